@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// The two ways in which cuboct refuses: the input is wrong (exit code 2), or a run found something wrong (exit code 1).
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+namespace cuboct {
+
+// Bad input. `what()` is the complete text that a user sees, in this form (the hint's line only where there is a hint):
+//   scenes/a.toml:12:3: unknown key 'capcity'
+//     hint: did you mean 'capacity'?
+class InputError : public std::runtime_error {
+ public:
+  explicit InputError(const std::string& message, const std::string& hint = {});
+  // line and column count from 1.
+  InputError(const std::string& file, int line, int column, const std::string& message,
+             const std::string& hint = {});
+};
+
+// The checks that every fixed engine makes, in the order in which a step makes them. When several particles fail in
+// one step, all engines report the same one: the least (step, fault, id).
+enum class Fault : uint8_t {
+  none = 0,
+  relative_velocity,  // w of an interacting pair does not fit `relative_velocity_bits`
+  strength,           // s of an interacting pair does not fit `strength_bits`
+  sum,                // a particle's summed kick does not fit `sum_bits`
+  displacement,       // u of a force-held particle does not fit `displacement_bits`
+  velocity,           // v does not fit `velocity_bits`; at P+G+1 bits: more than one node per step
+  left_x,             // moved along x into a place that has no node
+  full_x,             // moved along x into a node that holds `capacity` particles
+  left_y,
+  full_y,
+  left_z,
+  full_z,
+};
+
+const char* to_string(Fault fault);
+
+// A run that had to stop. `number` is the offending value in the integer units of the fixed rule (for `full_*`: the
+// capacity). `node` is an index into the lattice.
+class RunError : public std::runtime_error {
+ public:
+  RunError(Fault fault, uint64_t step, uint32_t node, uint32_t particle, int64_t number,
+           const std::string& where);
+
+  Fault fault;
+  uint64_t step;
+  uint32_t node;
+  uint32_t particle;
+  int64_t number;
+};
+
+}  // namespace cuboct

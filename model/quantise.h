@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// From a rule in doubles to one in integers.
+#pragma once
+
+#include "model/fixed_rule.h"
+#include "model/rule.h"
+
+namespace cuboct {
+
+// How to tabulate; an arch file may set each of them.
+struct TableChoice {
+  enum class Shape : uint8_t { automatic, uniform, octaves };
+  Shape shape = Shape::automatic;  // automatic: the shape with the smaller worst force error
+  int degree = 1;                  // 1 or 2
+  int index_bits = 9;              // 2^index_bits entries
+  int fraction_bits = 17;
+};
+
+// Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative shift, a
+// velocity, gain or scale out of its width.
+FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table);
+
+}  // namespace cuboct
