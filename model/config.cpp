@@ -325,6 +325,15 @@ std::optional<ConfigTable> ConfigTable::table_at(const std::string& key) const {
   return value->table();
 }
 
+std::vector<std::string> ConfigTable::names() const {
+  std::vector<std::string> names;
+  for (const ConfigNode& item : node_->items) {
+    names.push_back(item.key);
+    node_->asked.insert(item.key);
+  }
+  return names;
+}
+
 void ConfigTable::not_both(const std::string& a, const std::string& b) const {
   const auto second = find(b);
   if (find(a) && second) second->fail(fmt::format("give '{}' or '{}', not both", a, b));

@@ -5,6 +5,7 @@
 //     hint: did you mean 'capacity'?
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -100,6 +101,8 @@ class ConfigTable : public ConfigValue {
   // [key] table; none where the key is absent.
   std::optional<ConfigTable> table_at(const std::string& key) const;
 
+  // The keys of the file, in its order, for tables whose keys are names that the user chose. Counts as asking for all.
+  std::vector<std::string> names() const;
   // At most one of the two may be there.
   void not_both(const std::string& a, const std::string& b) const;
   // Error at the first key that no one asked for, in this table and the tables within that were opened.
