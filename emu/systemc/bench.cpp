@@ -36,8 +36,8 @@ NodeModule::NodeModule(const sc_core::sc_module_name& name, uint32_t node, uint8
 
 void NodeModule::end_of_elaboration() {
   for (const int f : faces_) {
-    in_link_[f] = link_i[f].get_interface();
-    out_link_[f] = link_o[f].get_interface();
+    in_link_[f] = link_i[f][0];
+    out_link_[f] = link_o[f][0];
     in_link_[f]->wake_with(wake_);
   }
 }

@@ -9,6 +9,14 @@
 #include "emu/systemc/words.h"
 
 namespace cuboct::emu {
+namespace {
+
+std::string place_of(const Lattice& lattice, uint32_t node) {
+  const Cell& c = lattice.cell(node);
+  return fmt::format(" at cell ({}, {}, {})", c[0], c[1], c[2]);
+}
+
+}  // namespace
 
 uint64_t patience_of(const Plan& plan, double stall_rate) {
   // The longest phase is FORCE, where each of the 27 C candidates passes ceil(C / L) times and each of its 27
@@ -23,7 +31,14 @@ uint64_t patience_of(const Plan& plan, double stall_rate) {
 
 std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initial) {
   std::vector<std::vector<Particle>> nodes(plan.lattice.size());
-  for (const Particle& p : initial.particles) nodes[p.node].push_back(p);
+  const Particle* first = nullptr;  // that found its node full; `initial` ascends in id
+  for (const Particle& p : initial.particles) {
+    if (static_cast<int>(nodes[p.node].size()) < plan.arch.capacity) nodes[p.node].push_back(p);
+    else if (first == nullptr) first = &p;
+  }
+  if (first != nullptr)
+    throw RunError(Fault::full_x, initial.step, first->node, first->id, plan.arch.capacity,
+                   place_of(plan.lattice, first->node));
   return nodes;
 }
 
@@ -119,9 +134,8 @@ void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
 
 Trace Collector::take_trace() {
   if (stop_.fault != Fault::none) {
-    const Cell& c = plan_.lattice.cell(stop_.node);
     stop_.text = RunError(stop_.fault, stop_.step, stop_.node, stop_.particle, stop_.number,
-                          fmt::format(" ({},{},{})", c[0], c[1], c[2]))
+                          place_of(plan_.lattice, stop_.node))
                      .what();
     trace_.stop = stop_;
     trace_.state_hash.resize(stop_.step + 1);

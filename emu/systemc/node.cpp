@@ -211,7 +211,7 @@ void Node::scan() {
     } else {
       const int face = 2 * a + (s.away[a] > 0);
       if (!linked(face)) {
-        fault_.add(static_cast<Fault>(static_cast<int>(Fault::left_x) + 2 * a), s.id, s.away[a]);
+        fault_.add(static_cast<Fault>(static_cast<int>(Fault::left_x) + 2 * a), s.id, 0);
       } else {
         if (!can_load(face)) {
           ++link_waits_;
