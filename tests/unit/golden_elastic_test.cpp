@@ -2,6 +2,8 @@
 // Elastic constants of the Lennard-Jones FCC crystal from golden's integer pair kicks.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+
 #include "hw/setup.h"
 #include "model/law.h"
 
