@@ -127,7 +127,7 @@ FixedRule::Error error_of(const FixedRule& fixed, const Rule& rule, double scale
   const FixedTable& table = fixed.force;
   const double unit = std::ldexp(1.0, -table.value_frac) * rule.mass / (rule.dt * rule.dt) / scale;
   double largest = 0;
-  constexpr int kSamples = 16;  // per bin
+  constexpr int kSamples = 64;  // per bin
   for (uint32_t k = 0; k < bins_used(table); ++k) {
     const double a = bin_start(table, k), b = bin_start(table, k + 1);
     for (int sample = 0; sample < kSamples; ++sample) {
