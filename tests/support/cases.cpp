@@ -11,20 +11,21 @@ namespace cuboct::test {
 namespace {
 
 struct Recipe {
-  Features features{.size = {2, 2, 2}, .jitter = 0.05, .speed = 0.05, .margin = 1.0};
+  Features features{.size = {2, 2, 2}, .jitter = 0.08, .speed = 0.2, .margin = 1.0};
   Arch arch;
   Cell periodic{};  // axes that repeat
-  uint64_t steps = 20;
+  uint64_t steps = 30;
 };
 
 const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
   using R = Recipe&;
   static const std::map<std::string, std::function<void(R)>> all{
-      {"undamped_2x2x2", [](R r) { r.features.margin = 0; }},
+      {"undamped_2x2x2", [](R r) { r.features.margin = 0, r.steps = 15; }},
       {"lattice_3x2x1",
        [](R r) {
          r.features.size = {3, 2, 1};
          r.features.margin = 0;
+         r.steps = 15;
        }},
       {"single_node",
        [](R r) {
@@ -46,7 +47,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
       {"wide_links", [](R r) { r.arch.link_bits = 1000; }},
       {"no_overlap", [](R r) { r.arch.overlap = false; }},
       {"queue_of_one", [](R r) { r.arch.queue_depth = 1; }},
-      {"tight_capacity", [](R r) { r.arch.capacity = 11, r.features.margin = 0; }},
+      {"tight_capacity", [](R r) { r.arch.capacity = 6, r.features.margin = 0, r.steps = 15; }},
       {"ring_of_3",
        [](R r) {
          r.features.size = {4, 1, 1};
@@ -70,6 +71,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
       {"rich_damped",
        [](R r) {
          r.features.damping = 0.2;
+         r.features.speed = 0.5;
          r.features.two_materials = r.features.held = true;
          r.arch.force_pipes = 2;
          r.arch.filter_lanes = 4;
@@ -209,13 +211,13 @@ Case fault_case(Fault fault) {
     return result;
   }
   // One rule with damping and PD and narrow formats; what differs is where the particles are and how fast.
-  Scene scene = block_scene({.size = {1, 1, 1}, .damping = 6, .force_held = true, .margin = 3});
+  Scene scene = block_scene({.size = {1, 1, 1}, .damping = 40, .force_held = true, .margin = 3});
   scene.steps = result.steps;
   Arch arch;
   arch.widths.velocity_bits = 27;
   arch.widths.relative_velocity_bits = 17;
   arch.widths.sum_bits = 24;
-  arch.widths.displacement_bits = 25;
+  arch.widths.displacement_bits = 28;
   const double out = 1.25;
   switch (fault) {
     case Fault::relative_velocity:
@@ -229,10 +231,10 @@ Case fault_case(Fault fault) {
                                     {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
       break;
     case Fault::displacement:
-      result.setup = with_particles(scene, arch, {{0, 0, 0}, {3, 0, 0}}, {{0.1, 0, 0}, {0, 0, 0}});
+      result.setup = with_particles(scene, arch, {{0, 0, 0}, {3, 0, 0}}, {{1.7, 0, 0}, {0, 0, 0}});
       break;
     case Fault::velocity:
-      result.setup = with_particles(scene, arch, {{0, 0, 0}, {0.9, 0, 0}}, {{0, 0, 0}, {0, 0, 0}});
+      result.setup = with_particles(scene, arch, {{0, 0, 0}, {0, 0.5, 0}}, {{0, 2.65, 0}, {0, 2.65, 0}});
       break;
     default:
       throw std::logic_error("no such fault");
