@@ -11,10 +11,6 @@
 
 namespace cuboct::emu {
 
-// sc_signal asks for these two.
-static std::ostream& operator<<(std::ostream& out, const Control& c) { return out << c.reset_n << c.start; }
-static void sc_trace(sc_core::sc_trace_file*, const Control&, const std::string&) {}
-
 namespace {
 
 double now() {

@@ -33,8 +33,10 @@ std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initia
   std::vector<std::vector<Particle>> nodes(plan.lattice.size());
   const Particle* first = nullptr;  // that found its node full; `initial` ascends in id
   for (const Particle& p : initial.particles) {
-    if (static_cast<int>(nodes[p.node].size()) < plan.arch.capacity) nodes[p.node].push_back(p);
-    else if (first == nullptr) first = &p;
+    if (static_cast<int>(nodes[p.node].size()) < plan.arch.capacity)
+      nodes[p.node].push_back(p);
+    else if (first == nullptr)
+      first = &p;
   }
   if (first != nullptr)
     throw RunError(Fault::full_x, initial.step, first->node, first->id, plan.arch.capacity,
