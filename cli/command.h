@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The commands of `cuboct`. Each adds itself to the command line and leaves its exit code: 0 done, 1 the run found
-// what it looks for wrong, 2 (by InputError) the input is wrong.
+// The commands of `cuboct`. Each adds itself to the command line and leaves its exit code: 0 done, 1 the run
+// found what it looks for wrong, 2 (by InputError) the input is wrong.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -26,7 +26,8 @@ const std::vector<std::string>& fixed_engines() {
 void check_engine(const std::string& name, const std::vector<std::string>& allowed) {
   if (std::find(allowed.begin(), allowed.end(), name) != allowed.end()) return;
   const std::string near = did_you_mean(name, allowed);
-  throw InputError(fmt::format("unknown engine '{}'", name), near.empty() ? "one of " + list_of(allowed) : near);
+  throw InputError(fmt::format("unknown engine '{}'", name),
+                   near.empty() ? "one of " + list_of(allowed) : near);
 }
 
 struct RunningEngine::State {
@@ -39,9 +40,10 @@ RunningEngine::RunningEngine(const std::string& engine, const Input& input, cons
                              std::string path, bool progress) {
   const std::string program = program_directory() + "/cuboct-" + engine;
   if (access(program.c_str(), X_OK) != 0)
-    throw InputError(fmt::format("the {} engine is not built: no program cuboct-{} beside cuboct", engine, engine),
-                     engine == "systemc" ? "install libsystemc-dev and build again"
-                                         : "install verilator and libsystemc-dev and build again");
+    throw InputError(
+        fmt::format("the {} engine is not built: no program cuboct-{} beside cuboct", engine, engine),
+        engine == "systemc" ? "install libsystemc-dev and build again"
+                            : "install verilator and libsystemc-dev and build again");
   std::vector<std::string> arguments{input.scene, "--steps", std::to_string(request.steps), "--out", path};
   if (!input.arch.empty()) arguments.insert(arguments.end(), {"--arch", input.arch});
   if (!request.frames.empty())
@@ -54,7 +56,8 @@ Trace RunningEngine::finish() {
   const int code = state_->process.wait();
   const std::string name = std::filesystem::path(state_->program).filename().string();
   if (code == 2) throw AlreadyTold(2);
-  if (code < 0) throw std::runtime_error(fmt::format("{} was ended by signal {} ({})", name, -code, strsignal(-code)));
+  if (code < 0)
+    throw std::runtime_error(fmt::format("{} was ended by signal {} ({})", name, -code, strsignal(-code)));
   if (code != 0) throw std::runtime_error(fmt::format("{} ended with exit code {}", name, code));
   return read_trace(state_->path);
 }

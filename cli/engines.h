@@ -34,7 +34,8 @@ class RunningEngine {
   // Throws InputError where the program was not built.
   RunningEngine(const std::string& engine, const Input& input, const Request& request, std::string path,
                 bool progress);
-  // Waits. Exit code 2 throws InputError (the program told the text already), any other failure std::runtime_error.
+  // Waits. Exit code 2 throws InputError (the program told the text already), any other failure
+  // std::runtime_error.
   Trace finish();
 
  private:

@@ -39,8 +39,8 @@ void Items::add(const std::string& name, int64_t value, const std::string& unit,
 }
 
 void Items::add(const std::string& name, double value, const std::string& unit, const std::string& note) {
-  items_.push_back(
-      {name, fmt::format("{:.6g}", value), std::isfinite(value) ? fmt::format("{}", value) : "null", unit, note});
+  items_.push_back({name, fmt::format("{:.6g}", value),
+                    std::isfinite(value) ? fmt::format("{}", value) : "null", unit, note});
 }
 
 std::string Items::text() const {

@@ -20,7 +20,9 @@ extern char** environ;
 
 namespace cuboct {
 
-std::string program_directory() { return std::filesystem::read_symlink("/proc/self/exe").parent_path().string(); }
+std::string program_directory() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
+}
 
 Process::Process(const std::string& program, const std::vector<std::string>& arguments) : pid_(-1) {
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
@@ -29,7 +31,7 @@ Process::Process(const std::string& program, const std::vector<std::string>& arg
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  const int error = posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ);
+  const int error = posix_spawnp(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
     pid_ = -1;

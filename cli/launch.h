@@ -14,8 +14,9 @@ std::string program_directory();
 
 class Process {
  public:
-  // Starts `program` with these arguments, without a shell; its stderr is ours, its stdout is dropped (results travel
-  // in files). Throws InputError where it cannot be started.
+  // Starts `program` (looked for in PATH unless it has a slash) with these arguments, without a shell; its
+  // stderr is ours, its stdout is dropped (results travel in files). Throws InputError where it cannot be
+  // started.
   Process(const std::string& program, const std::vector<std::string>& arguments);
   ~Process();  // ends it where nobody waited
   Process(Process&& other) noexcept;

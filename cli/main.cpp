@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/engines.h"
 #include "cli/interrupt.h"
 #include "model/spelling.h"
 
@@ -23,12 +25,12 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
       throw InputError(fmt::format("unknown option '{}'", words[0]), "see 'cuboct --help'");
     return;
   }
-  const CLI::App* command = app.get_subcommand_no_throw(words[0]);
-  if (!command) {
+  if (std::find(commands.begin(), commands.end(), words[0]) == commands.end()) {
     const std::string near = did_you_mean(words[0], commands);
     throw InputError(fmt::format("unknown command '{}'", words[0]),
                      near.empty() ? "one of " + list_of(commands) : near);
   }
+  const CLI::App* command = app.get_subcommand(words[0]);
   std::vector<std::string> options;
   for (const CLI::Option* option : command->get_options())
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
@@ -44,12 +46,15 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
 
 int main_of(int argc, char** argv) {
   int exit_code = 0;
-  CLI::App app("Particle matter and the hardware that computes it: one rule, the same bits everywhere.", "cuboct");
+  CLI::App app("Particle matter and the hardware that computes it: one rule, the same bits everywhere.",
+               "cuboct");
   app.require_subcommand(1);
   add_check(app, exit_code);
   add_run(app, exit_code);
   add_crosscheck(app, exit_code);
+#ifdef CUBOCT_EMIT
   add_emit(app, exit_code);
+#endif
   add_report(app, exit_code);
   try {
     check_words(app, {argv + 1, argv + argc});
@@ -60,6 +65,8 @@ int main_of(int argc, char** argv) {
   } catch (const CLI::Error& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;
+  } catch (const AlreadyTold& told) {
+    return told.exit_code;
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;

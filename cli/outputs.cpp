@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <toml++/toml.h>
 #include <filesystem>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "model/output.h"
 
@@ -73,7 +73,8 @@ void write_record(const std::string& directory, const RunRecord& record) {
 RunRecord read_record(const std::string& directory) {
   const std::string path = directory + "/run.toml";
   if (!fs::exists(path))
-    throw InputError(fmt::format("{} holds no run: no file run.toml", directory), "'cuboct run SCENE --out DIR' makes one");
+    throw InputError(fmt::format("{} holds no run: no file run.toml", directory),
+                     "'cuboct run SCENE --out DIR' makes one");
   try {
     const toml::table table = toml::parse_file(path);
     const auto from = [&](const char* key) {
@@ -83,7 +84,8 @@ RunRecord read_record(const std::string& directory) {
     return {from("scene"), from("arch"), table["engine"].value_or(std::string())};
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
-    throw InputError(path, static_cast<int>(at.line), static_cast<int>(at.column), std::string(error.description()));
+    throw InputError(path, static_cast<int>(at.line), static_cast<int>(at.column),
+                     std::string(error.description()));
   }
 }
 

@@ -31,8 +31,9 @@ void Progress::at(uint64_t step) {
   const double seconds = std::chrono::duration<double>(now - begin_).count();
   const double rate = static_cast<double>(step) / seconds;
   const auto left = rate > 0 ? static_cast<uint64_t>(static_cast<double>(steps_ - step) / rate) : 0;
-  fmt::print(stderr, "\r\x1b[K{}: step {} of {} ({} %), {:.3g} particle-steps/s, {}:{:02} left", label_, step, steps_,
-             steps_ > 0 ? step * 100 / steps_ : 100, rate * static_cast<double>(particles_), left / 60, left % 60);
+  fmt::print(stderr, "\r\x1b[K{}: step {} of {} ({} %), {:.3g} particle-steps/s, {}:{:02} left", label_, step,
+             steps_, steps_ > 0 ? step * 100 / steps_ : 100, rate * static_cast<double>(particles_),
+             left / 60, left % 60);
   std::fflush(stderr);
 }
 

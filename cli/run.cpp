@@ -86,11 +86,15 @@ void add_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "run a scene and end with a summary");
   options->input.add_to(*command);
-  command->add_option("--engine", options->engine, "golden, systemc, rtl or reference (doubles)")->capture_default_str();
+  command->add_option("--engine", options->engine, "golden, systemc, rtl or reference (doubles)")
+      ->capture_default_str();
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")->type_name("N");
-  auto* frames = command->add_option("--frames-every", options->frames_every,
-                                     "keep every K-th state; default: the scene's; 0: first and last")->type_name("K");
-  command->add_option("--out", options->out, "directory for trace, frames, plan and summary")->type_name("DIR");
+  auto* frames = command
+                     ->add_option("--frames-every", options->frames_every,
+                                  "keep every K-th state; default: the scene's; 0: first and last")
+                     ->type_name("K");
+  command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
+      ->type_name("DIR");
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->callback([options, steps, frames, &exit_code] {
     options->steps_given = steps->count() > 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <chrono>
 #include <algorithm>
+#include <chrono>
 
 #include "cli/engines.h"
 #include "cli/interrupt.h"
@@ -19,7 +19,8 @@ Trace run_golden(const Setup& setup, const Request& request, const std::function
   Progress progress("golden", request.steps, plan.particles);
   const auto record = [&](const State& state) {
     trace.state_hash.push_back(hash_of(plan.lattice, state));
-    if (std::binary_search(request.frames.begin(), request.frames.end(), state.step)) trace.frames.push_back(state);
+    if (std::binary_search(request.frames.begin(), request.frames.end(), state.step))
+      trace.frames.push_back(state);
     if (watch) watch(state);
   };
   State state = setup.initial;

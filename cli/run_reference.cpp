@@ -93,7 +93,8 @@ ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vect
             keeps_momentum(scene.rule) ? "" : "held or driven from outside");
   items.add("energy", kinetic.value.back() + potential.value.back(), "J", "kinetic and pairs");
   items.add("energy change",
-            kinetic.value.back() + potential.value.back() - kinetic.value.front() - potential.value.front(), "J");
+            kinetic.value.back() + potential.value.back() - kinetic.value.front() - potential.value.front(),
+            "J");
   items.add("largest speed", fastest * scene.rule.dt / loaded.setup.plan.rule.cell_edge, "node/step");
   return run;
 }

@@ -90,12 +90,15 @@ Items summarise(const Loaded& loaded, const Trace& trace, const RunMeter& meter)
   items.add("simulated time", static_cast<double>(trace.steps()) * plan.rule.dt, "s");
   items.add("host time", trace.seconds, "s");
   if (trace.seconds > 0)
-    items.add("speed", static_cast<double>(trace.steps() * plan.particles) / trace.seconds, "particle-steps/s");
+    items.add("speed", static_cast<double>(trace.steps() * plan.particles) / trace.seconds,
+              "particle-steps/s");
 
   const Int3 before = momentum(meter.first()), after = momentum(meter.last());
   int64_t change = 0;
-  for (int axis = 0; axis < 3; ++axis) change = std::max<int64_t>(change, std::abs(after[axis] - before[axis]));
-  items.add("momentum change", change, "LSB", keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside");
+  for (int axis = 0; axis < 3; ++axis)
+    change = std::max<int64_t>(change, std::abs(after[axis] - before[axis]));
+  items.add("momentum change", change, "LSB",
+            keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside");
 
   for (const Curve& curve : meter.curves())
     if (curve.name == "energy.total" && curve.value.size() > 1) {

@@ -16,7 +16,8 @@ namespace cuboct {
 // The steps 0, every, 2 every, ... and `last`; every 0: 0 and `last` alone.
 std::vector<uint64_t> every_so_often(uint64_t every, uint64_t last);
 
-// Watches the states of a run: probe curves at the probe steps, energies there and at the last state, largest speed.
+// Watches the states of a run: probe curves at the probe steps, energies there and at the last state, largest
+// speed.
 class RunMeter {
  public:
   RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps);
