@@ -29,7 +29,10 @@ void read_widths(const ConfigTable& table, Widths& w) {
   set(table, "velocity_bits", 2, 62, w.velocity_bits);
   set(table, "relative_velocity_frac", 1, 62, w.relative_velocity_frac);
   set(table, "relative_velocity_bits", 2, 62, w.relative_velocity_bits);
-  set(table, "strength_bits", 0, 27, w.strength_bits);
+  if (const auto bits = table.find("strength_bits"))
+    w.strength_bits = bits->is_string() && bits->choice("width", {"auto"}) == 0
+                          ? 0
+                          : static_cast<int>(bits->integer(2, 27));
   set(table, "sum_bits", 2, 62, w.sum_bits);
   set(table, "displacement_bits", 2, 62, w.displacement_bits);
   set(table, "scale_frac", 1, 16, w.scale_frac);
