@@ -13,6 +13,7 @@
 
 #include "hw/arch.h"
 #include "model/config.h"
+#include "model/error.h"
 #include "model/scene.h"
 
 namespace cuboct {
@@ -141,6 +142,38 @@ TEST(Docs, EveryArchKeyIsDocumentedAndViceVersa) {
   EXPECT_GT(named.size(), 20U);
   for (const std::string& key : named)
     EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
+}
+
+// "8 to 30" in the row of a key: both ends are read, one beyond each is not.
+TEST(Docs, ArchRangesAreThoseOfTheReader) {
+  const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_ranges_test.toml";
+  const auto accepts = [&](const std::string& section, const std::string& key, int value) {
+    std::ofstream(path) << "name = \"t\"\n[" << section << "]\n" << key << " = " << value << "\n";
+    try {
+      read_arch(path.string());
+    } catch (const InputError&) {
+      return false;
+    }
+    return true;
+  };
+  static const std::regex row(R"(\| `([a-z_]+)` \|[^|0-9]*(\d+) to (\d+))");
+  int rows = 0;
+  for (const auto& [section, text] : sections(text_of(kRoot + "/docs/user/arch.md"))) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      std::smatch match;
+      // "2^index_bits" is no range.
+      line = std::regex_replace(line, std::regex("2\\^"), "");
+      if (!std::regex_search(line, match, row)) continue;
+      const std::string key = match[1];
+      const int low = std::stoi(match[2]), high = std::stoi(match[3]);
+      EXPECT_TRUE(accepts(section, key, low) && accepts(section, key, high)) << key;
+      EXPECT_FALSE(accepts(section, key, low - 1) || accepts(section, key, high + 1)) << key;
+      ++rows;
+    }
+  }
+  EXPECT_EQ(rows, 18);
+  std::filesystem::remove(path);
 }
 
 }  // namespace
