@@ -12,7 +12,8 @@ void set(const ConfigTable& table, const char* key, int low, int high, int& valu
 
 void read_node(const ConfigTable& node, Arch& arch) {
   if (const auto edge = node.find("cell_edge"))
-    arch.cell_edge = edge->is_string() && edge->string() == "auto" ? 0 : edge->number(quantity::length, Range::positive());
+    arch.cell_edge =
+        edge->is_string() && edge->string() == "auto" ? 0 : edge->number(quantity::length, Range::positive());
   set(node, "capacity", 1, 1 << 16, arch.capacity);
   set(node, "filter_lanes", 1, 1 << 16, arch.filter_lanes);
   set(node, "force_pipes", 1, 64, arch.force_pipes);
@@ -28,7 +29,7 @@ void read_widths(const ConfigTable& table, Widths& w) {
   set(table, "velocity_bits", 2, 62, w.velocity_bits);
   set(table, "relative_velocity_frac", 1, 62, w.relative_velocity_frac);
   set(table, "relative_velocity_bits", 2, 62, w.relative_velocity_bits);
-  set(table, "strength_bits", 2, 32, w.strength_bits);
+  set(table, "strength_bits", 0, 27, w.strength_bits);
   set(table, "sum_bits", 2, 62, w.sum_bits);
   set(table, "displacement_bits", 2, 62, w.displacement_bits);
   set(table, "scale_frac", 1, 16, w.scale_frac);
@@ -38,7 +39,8 @@ void read_widths(const ConfigTable& table, Widths& w) {
 
 void read_table(const ConfigTable& table, TableChoice& choice) {
   if (const auto shape = table.find("shape"))
-    choice.shape = static_cast<TableChoice::Shape>(shape->choice("table shape", {"automatic", "uniform", "octaves"}));
+    choice.shape =
+        static_cast<TableChoice::Shape>(shape->choice("table shape", {"automatic", "uniform", "octaves"}));
   set(table, "degree", 1, 2, choice.degree);
   set(table, "index_bits", 1, 20, choice.index_bits);
   set(table, "fraction_bits", 1, 17, choice.fraction_bits);

@@ -34,7 +34,7 @@ class CellList {
     Vec3 d = b - a;
     for (int axis = 0; axis < 3; ++axis) {
       const double extent = periodic_.extent[axis];
-      if (extent > 0) d[axis] -= extent * std::round(d[axis] / extent);
+      if (extent > 0 && std::abs(d[axis]) > extent / 2) d[axis] -= extent * std::round(d[axis] / extent);
     }
     return d;
   }
