@@ -70,15 +70,16 @@ void add_code(Hash& hash, const std::string& text) {
 }
 
 struct Build {
-  std::string top;                                     // module
-  std::string shim;                                    // file of shim_sources()
+  std::string top;       // module
+  std::string shim;      // file of shim_sources()
+  std::string optimise;  // -O3 for the node that runs scenes, less for a lattice in tests
   std::vector<std::pair<std::string, int>> constants;  // of the shim
   std::function<void(const std::string& dir)> emit;
 };
 
 constexpr const char* kVerilatorFlags = "--cc -O3 -fno-const-bit-op-tree --assert -Wno-fatal";
 constexpr const char* kCompilerFlags =
-    "-std=c++17 -O3 -fPIC -shared -fno-gnu-unique -w -DVM_COVERAGE=0 -DVM_SC=0 -DVM_TRACE=0 -DVM_TIMING=0";
+    "-std=c++17 -fPIC -shared -fno-gnu-unique -w -DVM_COVERAGE=0 -DVM_SC=0 -DVM_TRACE=0 -DVM_TIMING=0";
 
 uint64_t key_of(const Build& build, const fs::path& dir) {
   std::map<std::string, std::string> files;  // in the order of names
@@ -88,7 +89,7 @@ uint64_t key_of(const Build& build, const fs::path& dir) {
   for (const auto& [name, text] : files) add_code(hash, "file " + name + "\n" + text);
   for (const auto& [name, text] : shim_sources()) add_code(hash, text);
   for (const auto& [name, value] : build.constants) add_code(hash, fmt::format("{}={}", name, value));
-  add_code(hash, build.top + kVerilatorFlags + kCompilerFlags + compiler());
+  add_code(hash, build.top + kVerilatorFlags + kCompilerFlags + build.optimise + compiler());
   return hash.value();
 }
 
@@ -120,19 +121,21 @@ std::string compile(const Build& build, const std::string& build_directory) {
   require_tool("verilator", "verilator");
   require_tool(compiler(), "g++");
   const fs::path log = dir / "log.txt";
+  // One copy of the node's code serves all nodes of a lattice; inlined, the build takes minutes.
+  write_file(dir / "keep.vlt", "`verilator_config\nno_inline -module \"cuboct_node_core\"\n");
   run_logged("verilator",
-             fmt::format("verilator {} --top-module {} --prefix V{} -Mdir {} -f files.f", kVerilatorFlags,
-                         build.top, build.top, quoted((dir / "model").string())),
+             fmt::format("verilator {} --top-module {} --prefix V{} -Mdir {} ../keep.vlt -f files.f",
+                         kVerilatorFlags, build.top, build.top, quoted((dir / "model").string())),
              rtl, log);
   for (const auto& [name, text] : shim_sources()) write_file(dir / name, text);
   std::string constants;
   for (const auto& [name, value] : build.constants) constants += fmt::format(" -D{}={}", name, value);
   run_logged(
       "the C++ compiler",
-      fmt::format("root=$(verilator --getenv VERILATOR_ROOT) && {} {}{} -I. -Imodel -I\"$root/include\" "
+      fmt::format("root=$(verilator --getenv VERILATOR_ROOT) && {} {} {}{} -I. -Imodel -I\"$root/include\" "
                   "-I\"$root/include/vltstd\" {} model/*.cpp \"$root/include/verilated.cpp\" "
                   "\"$root/include/verilated_threads.cpp\" -o library.so -pthread",
-                  compiler(), kCompilerFlags, constants, build.shim),
+                  compiler(), kCompilerFlags, build.optimise, constants, build.shim),
       dir, log);
   fs::rename(dir / "library.so", result);
   fs::remove_all(dir);
@@ -158,6 +161,7 @@ std::string default_build_directory() {
 std::string compile_node(const Plan& plan, const std::string& build_directory) {
   return compile({"cuboct_node",
                   "shim_node.cpp",
+                  "-O3",
                   {{"LINK_BITS", plan.words.link_bits}, {"PARTICLE_BITS", plan.words.particle_bits}},
                   [&](const std::string& dir) { emit_node(plan, dir); }},
                  build_directory);
@@ -166,6 +170,7 @@ std::string compile_node(const Plan& plan, const std::string& build_directory) {
 std::string compile_lattice(const Plan& plan, const State& initial, const std::string& build_directory) {
   return compile({"cuboct_lattice",
                   "shim_lattice.cpp",
+                  "-O1",
                   {{"NODES", static_cast<int>(plan.lattice.size())},
                    {"PARTICLE_BITS", plan.words.particle_bits},
                    {"ID_BITS", plan.words.id_bits}},

@@ -109,13 +109,17 @@ Case cook(const std::string& name, const Recipe& recipe) {
   return {name, make_setup(scene, recipe.arch), recipe.steps};
 }
 
-// Puts hand-made particles into a scene of the block's rule.
-Setup with_particles(Scene scene, const Arch& arch, const std::vector<Vec3>& x, const std::vector<Vec3>& v,
-                     uint8_t type = 0) {
+// Puts hand-made particles into a scene of the block's rule; far ones along `side` fill up to five, so that
+// all such plans have the same words.
+Setup with_particles(Scene scene, const Arch& arch, std::vector<Vec3> x, std::vector<Vec3> v, int side = 1) {
+  while (x.size() < 5) {
+    x.push_back(Vec3::Unit(side) * (6.0 + 3.0 * static_cast<double>(x.size())));
+    v.push_back(Vec3::Zero());
+  }
   scene.body = {};
   scene.body.x = x;
   scene.body.v = v;
-  scene.body.type.assign(x.size(), type);
+  scene.body.type.assign(x.size(), 0);
   return make_setup(scene, arch);
 }
 
@@ -207,7 +211,7 @@ Case fault_case(Fault fault) {
     }
     x.push_back(at);
     v.push_back(speed);
-    result.setup = with_particles(scene, arch, x, v);
+    result.setup = with_particles(scene, arch, x, v, (axis + 1) % 3);
     return result;
   }
   // One rule with damping and PD and narrow formats; what differs is where the particles are and how fast.
