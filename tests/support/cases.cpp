@@ -13,7 +13,8 @@ namespace {
 struct Recipe {
   Features features{.size = {2, 2, 2}, .jitter = 0.08, .speed = 0.2, .margin = 1.0};
   Arch arch;
-  Cell periodic{};  // axes that repeat
+  Cell periodic{};    // axes that repeat
+  bool lone = false;  // particle 0 flies alone along the diagonal, and crosses three faces in one step
   uint64_t steps = 30;
 };
 
@@ -67,6 +68,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.features.margin = 4;
          r.steps = 40;
        }},
+      {"lone_diagonal", [](R r) { r.lone = true; }},
       // Rich ones, of which the RTL is built.
       {"rich_damped",
        [](R r) {
@@ -106,6 +108,10 @@ Case cook(const std::string& name, const Recipe& recipe) {
       scene.periodic.origin[a] = -0.3;
       scene.periodic.extent[a] = recipe.features.size[a] * std::sqrt(2.0);
     }
+  if (recipe.lone) {
+    scene.body.x[0] = Vec3::Constant(-4);
+    scene.body.v[0] = Vec3::Constant(1);
+  }
   return {name, make_setup(scene, recipe.arch), recipe.steps};
 }
 
