@@ -68,7 +68,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.features.margin = 4;
          r.steps = 40;
        }},
-      {"lone_diagonal", [](R r) { r.lone = true; }},
+      {"lone_diagonal", [](R r) { r.lone = true, r.features.margin = 2; }},
       // Rich ones, of which the RTL is built.
       {"rich_damped",
        [](R r) {
