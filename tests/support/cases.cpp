@@ -13,7 +13,8 @@ namespace {
 struct Recipe {
   Features features{.size = {2, 2, 2}, .jitter = 0.08, .speed = 0.2, .margin = 1.0};
   Arch arch;
-  Cell periodic{};  // axes that repeat
+  Cell periodic{};    // axes that repeat
+  bool lone = false;  // particle 0 flies alone along the diagonal, and crosses three faces in one step
   uint64_t steps = 30;
 };
 
@@ -67,6 +68,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.features.margin = 4;
          r.steps = 40;
        }},
+      {"lone_diagonal", [](R r) { r.lone = true, r.features.margin = 2; }},
       // Rich ones, of which the RTL is built.
       {"rich_damped",
        [](R r) {
@@ -106,16 +108,24 @@ Case cook(const std::string& name, const Recipe& recipe) {
       scene.periodic.origin[a] = -0.3;
       scene.periodic.extent[a] = recipe.features.size[a] * std::sqrt(2.0);
     }
+  if (recipe.lone) {
+    scene.body.x[0] = Vec3::Constant(-4);
+    scene.body.v[0] = Vec3::Constant(1);
+  }
   return {name, make_setup(scene, recipe.arch), recipe.steps};
 }
 
-// Puts hand-made particles into a scene of the block's rule.
-Setup with_particles(Scene scene, const Arch& arch, const std::vector<Vec3>& x, const std::vector<Vec3>& v,
-                     uint8_t type = 0) {
+// Puts hand-made particles into a scene of the block's rule; far ones along `side` fill up to five, so that
+// all such plans have the same words.
+Setup with_particles(Scene scene, const Arch& arch, std::vector<Vec3> x, std::vector<Vec3> v, int side = 1) {
+  while (x.size() < 5) {
+    x.push_back(Vec3::Unit(side) * (6.0 + 3.0 * static_cast<double>(x.size())));
+    v.push_back(Vec3::Zero());
+  }
   scene.body = {};
   scene.body.x = x;
   scene.body.v = v;
-  scene.body.type.assign(x.size(), type);
+  scene.body.type.assign(x.size(), 0);
   return make_setup(scene, arch);
 }
 
@@ -207,7 +217,7 @@ Case fault_case(Fault fault) {
     }
     x.push_back(at);
     v.push_back(speed);
-    result.setup = with_particles(scene, arch, x, v);
+    result.setup = with_particles(scene, arch, x, v, (axis + 1) % 3);
     return result;
   }
   // One rule with damping and PD and narrow formats; what differs is where the particles are and how fast.

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#include <cstdlib>
+#include <systemc>
+
+#include "emu/systemc/node.h"
+#include "emu/systemc/program.h"
+
+int sc_main(int argc, char** argv) {
+  return cuboct::emu::run_program(argc, argv,
+                                  {.name = "cuboct-systemc",
+                                   .description = "Runs a scene on cycle-accurate nodes in SystemC",
+                                   .engine = "systemc",
+                                   .nodes = cuboct::emu::native_nodes});
+}
+
+// Instead of SystemC's own main, which would print a banner first.
+int main(int argc, char** argv) {
+  setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
+  return sc_core::sc_elab_and_sim(argc, argv);
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "emu/systemc/program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "emu/systemc/bench.h"
+#include "hw/setup.h"
+#include "model/measure.h"
+#include "model/output.h"
+
+namespace cuboct::emu {
+namespace {
+
+struct Request {
+  std::string scene, arch, out;
+  std::optional<uint64_t> steps;
+  std::vector<uint64_t> frames;
+  bool frames_given = false;
+  RunOptions run;
+};
+
+// The steps at which the scene measures.
+std::vector<uint64_t> probe_steps(const Scene& scene, uint64_t steps) {
+  std::vector<uint64_t> at;
+  if (scene.probe_every == 0 || scene.probes.empty()) return at;
+  for (uint64_t s = 0; s <= steps; s += scene.probe_every) at.push_back(s);
+  return at;
+}
+
+// Curves from the kept states; then only the frames that were asked for stay.
+void measure(const Scene& scene, const Setup& setup, const std::vector<uint64_t>& probes,
+             const std::vector<uint64_t>& frames, Trace& trace) {
+  const Plan& plan = setup.plan;
+  const auto in = [](const std::vector<uint64_t>& list, uint64_t step) {
+    return std::find(list.begin(), list.end(), step) != list.end();
+  };
+  if (!probes.empty()) {
+    ProbeMeter meter(scene.probes, scene.periodic, scene.body.x);
+    for (const State& s : trace.frames)
+      if (in(probes, s.step))
+        meter.add(
+            sample_of(plan.rule, plan.lattice, plan.origin, s, summed_kicks(plan.rule, plan.lattice, s)));
+    trace.curves = meter.curves();
+  }
+  std::erase_if(trace.frames, [&](const State& s) { return !in(frames, s.step); });
+}
+
+int run(const Program& program, Request request) {
+  check_writable(request.out);
+  const Scene scene = read_scene(request.scene);
+  const Arch arch = read_arch(request.arch);
+  const Setup setup = make_setup(scene, arch);
+  RunOptions& options = request.run;
+  options.steps = request.steps.value_or(scene.steps);
+  if (options.steps > std::numeric_limits<uint32_t>::max())
+    throw InputError(fmt::format("{} steps: a node counts at most {}", options.steps,
+                                 std::numeric_limits<uint32_t>::max()));
+  if (!request.frames_given) request.frames = {0, options.steps};
+  const std::vector<uint64_t> probes = probe_steps(scene, options.steps);
+  options.frames = request.frames;
+  options.frames.insert(options.frames.end(), probes.begin(), probes.end());
+  std::sort(options.frames.begin(), options.frames.end());
+
+  Bench bench("bench", setup.plan, setup.initial, options, program.nodes(setup.plan), program.engine);
+  simulate({&bench});
+  Trace trace = bench.take_result().trace;
+  measure(scene, setup, probes, request.frames, trace);
+  write_trace(request.out, trace);
+  const double cycles = trace.counters.front().second;
+  fmt::print("{} steps of {} particles on {} nodes in {:.0f} cycles, {:.3g} node-cycles/s\n", trace.steps(),
+             setup.plan.particles, trace.nodes, cycles,
+             cycles * static_cast<double>(trace.nodes) / std::max(trace.seconds, 1e-9));
+  if (!trace.stop) return 0;
+  fmt::print(stderr, "{}: {}\n", request.scene, trace.stop->text);
+  return 1;
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, const Program& program) {
+  Request request;
+  CLI::App app{program.description, program.name};
+  app.add_option("scene", request.scene, "Scene file (TOML)")->required();
+  app.add_option("--arch", request.arch, "Machine description (TOML); the defaults without one");
+  app.add_option("--steps", request.steps, "Steps to run; the scene's own number without it");
+  app.add_option("--out", request.out, "Trace file to write (HDF5)")->required();
+  const CLI::Option* frames = app.add_option("--frames", request.frames,
+                                             "Steps whose states are kept; the first and the last without it")
+                                  ->delimiter(',');
+  app.add_option("--stall-rate", request.run.stall_rate, "Share of cycles in which a link passes nothing")
+      ->check(CLI::Range(0.0, 0.99));
+  app.add_option("--stall-seed", request.run.stall_seed, "Seed of the stalls")->capture_default_str();
+  app.add_flag("--progress", request.run.progress, "A line per second on standard error");
+  program.add_options(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  request.frames_given = frames->count() > 0;
+  try {
+    return run(program, std::move(request));
+  } catch (const InputError& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}: {}\n", program.name, e.what());
+    return 1;
+  }
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The C interface of a compiled RTL library. Included by the shim, which is compiled with the Verilated
+// model, and by the engine that loads it. Words are little endian, 512 bits.
+#ifndef CUBOCT_VERILATED_ABI_H
+#define CUBOCT_VERILATED_ABI_H
+
+#include <cstdint>
+
+enum { kCuboctAbi = 1, kCuboctFaces = 6, kCuboctWords = 8 };
+
+// Inputs of one node during one cycle. `link_data[f]` is read where bit f of `link_valid` is set.
+struct CuboctIn {
+  uint8_t reset_n, start, load_valid, has_link, link_valid, link_ready, link_end;
+  uint32_t steps;
+  const uint64_t* load_data;
+  const uint64_t* link_data[kCuboctFaces];
+};
+
+// Outputs of one node: `link_*` after the edge that ends the cycle, the others of the cycle.
+struct CuboctOut {
+  uint8_t phase_start, phase_end, observe_valid, fault_valid, fault_code, idle;
+  uint8_t link_valid, link_end, link_ready;
+  uint32_t fault_id;
+  int64_t fault_number;
+  uint64_t observe_data[kCuboctWords];             // where observe_valid
+  uint64_t link_data[kCuboctFaces][kCuboctWords];  // where link_valid
+};
+
+// A library gives these symbols:
+//   int cuboct_abi(void);                      kCuboctAbi
+//   void* cuboct_create(uint32_t seed);        0: registers start as zeros; else as random bits
+//   void cuboct_destroy(void* model);
+// and, of a node,
+//   void cuboct_clock(void* model, const CuboctIn*, CuboctOut*);
+// or, of a whole lattice, whose host loads one particle of node `load_node` per cycle; `out` has an element
+// per node
+//   void cuboct_clock_lattice(void* model, const CuboctIn* host, uint32_t load_node, CuboctOut* out);
+
+#endif

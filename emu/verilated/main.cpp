@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include <cstdlib>
+#include <systemc>
+
+#include "emu/systemc/program.h"
+#include "emu/verilated/verilated_node.h"
+
+int sc_main(int argc, char** argv) {
+  using namespace cuboct::emu;
+  std::string build_directory;
+  Program program{.name = "cuboct-rtl",
+                  .description = "Runs a scene on the emitted hardware, compiled by Verilator",
+                  .engine = "rtl",
+                  .nodes = [&](const cuboct::Plan& plan) {
+                    return verilated_nodes(
+                        plan, build_directory.empty() ? default_build_directory() : build_directory);
+                  }};
+  program.add_options = [&](CLI::App& app) {
+    app.add_option("--build-dir", build_directory,
+                   "Where compiled nodes are kept; $XDG_CACHE_HOME/cuboct or ~/.cache/cuboct without it");
+  };
+  return run_program(argc, argv, program);
+}
+
+// Instead of SystemC's own main, which would print a banner first.
+int main(int argc, char** argv) {
+  setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
+  return sc_core::sc_elab_and_sim(argc, argv);
+}

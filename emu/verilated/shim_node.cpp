@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// One Verilated node. LINK_BITS and PARTICLE_BITS come from the command line.
+#include "Vcuboct_node.h"
+#include "shim.h"
+
+namespace {
+
+struct Node : Instance<Vcuboct_node> {
+  using Instance::Instance;
+  uint64_t link_in[words_of(6 * LINK_BITS)] = {}, link_out[words_of(6 * LINK_BITS)] = {};
+  uint64_t particle[words_of(PARTICLE_BITS)] = {};
+};
+
+}  // namespace
+
+extern "C" {
+
+int cuboct_abi() { return kCuboctAbi; }
+void* cuboct_create(uint32_t seed) { return new Node(seed); }
+void cuboct_destroy(void* handle) { delete static_cast<Node*>(handle); }
+
+void cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
+  Node& n = *static_cast<Node*>(handle);
+  Vcuboct_node& m = *n.model;
+  m.rst_ni = in->reset_n;
+  m.start_i = in->start;
+  m.steps_i = in->steps;
+  m.has_link_i = in->has_link;
+  m.load_valid_i = in->load_valid;
+  if (in->load_valid) set_port(m.load_data_i, in->load_data);
+  m.link_ready_i = in->link_ready;
+  m.link_valid_i = in->link_valid;
+  m.link_end_i = in->link_end;
+  if (in->link_valid) {
+    for (int f = 0; f < kCuboctFaces; ++f)
+      if (in->link_valid >> f & 1)
+        copy_bits(n.link_in, f * LINK_BITS, in->link_data[f], 0, held_bits(LINK_BITS));
+    set_port(m.link_data_i, n.link_in);
+  }
+  m.clk_i = 0;
+  m.eval();
+  out->phase_start = m.phase_start_o;
+  out->phase_end = m.phase_end_o;
+  out->idle = m.idle_o;
+  out->observe_valid = m.observe_valid_o;
+  if (m.observe_valid_o) {
+    get_port(m.observe_data_o, n.particle);
+    copy_bits(out->observe_data, 0, n.particle, 0, PARTICLE_BITS);
+  }
+  out->fault_valid = m.fault_valid_o;
+  if (m.fault_valid_o) {
+    out->fault_code = m.fault_code_o;
+    out->fault_id = static_cast<uint32_t>(m.fault_id_o);
+    out->fault_number = static_cast<int64_t>(m.fault_number_o);
+  }
+  m.clk_i = 1;
+  m.eval();
+  out->link_valid = m.link_valid_o;
+  out->link_end = m.link_end_o;
+  out->link_ready = m.link_ready_o;
+  if (m.link_valid_o) {
+    get_port(m.link_data_o, n.link_out);
+    for (int f = 0; f < kCuboctFaces; ++f)
+      if (m.link_valid_o >> f & 1)
+        copy_bits(out->link_data[f], 0, n.link_out, f * LINK_BITS, held_bits(LINK_BITS));
+  }
+}
+
+}  // extern "C"

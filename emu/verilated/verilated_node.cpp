@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "emu/verilated/verilated_node.h"
+
+#include <cstring>
+
+#include "emu/systemc/words.h"
+#include "model/trace.h"
+
+namespace cuboct::emu {
+
+void read_outputs(const CuboctOut& from, NodeOutputs& out) {
+  out.phase_start = from.phase_start;
+  out.phase_end = from.phase_end;
+  out.idle = from.idle != 0;
+  out.observe = from.observe_valid != 0;
+  if (out.observe) std::memcpy(out.observe_data.word.data(), from.observe_data, sizeof from.observe_data);
+  out.fault = from.fault_valid != 0;
+  out.fault_code = from.fault_code;
+  out.fault_id = from.fault_id;
+  out.fault_number = from.fault_number;
+}
+
+VerilatedNode::VerilatedNode(std::shared_ptr<const Library> library, uint8_t has_link, uint32_t seed)
+    : library_(std::move(library)), has_link_(has_link), model_(library_->create(seed)) {}
+
+VerilatedNode::~VerilatedNode() { library_->destroy(model_); }
+
+void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
+  const Control& host = *in.control;
+  CuboctIn ports{};
+  ports.reset_n = host.reset_n;
+  ports.start = host.start;
+  ports.steps = host.steps;
+  ports.load_valid = host.load_valid;
+  ports.load_data = host.load_data.word.data();
+  ports.has_link = has_link_;
+  ports.link_valid = in.valid;
+  ports.link_ready = in.ready;
+  for (uint8_t left = in.valid; left != 0; left &= static_cast<uint8_t>(left - 1)) {
+    const int f = __builtin_ctz(left);
+    ports.link_end |= static_cast<uint8_t>(in.beat[f]->end << f);
+    ports.link_data[f] = in.beat[f]->payload.word.data();
+  }
+  library_->clock(model_, &ports, &out_);
+
+  read_outputs(out_, out);
+  out.valid = out.loaded = out_.link_valid & has_link_;
+  out.ready = out_.link_ready & has_link_;
+  for (uint8_t left = out.loaded; left != 0; left &= static_cast<uint8_t>(left - 1)) {
+    const int f = __builtin_ctz(left);
+    out.beat[f].end = out_.link_end >> f & 1;
+    std::memcpy(out.beat[f].payload.word.data(), out_.link_data[f], sizeof out_.link_data[f]);
+  }
+  phases_ = static_cast<uint8_t>((phases_ | out.phase_start) & ~out.phase_end);
+  idle_ = out.idle;
+}
+
+std::string VerilatedNode::doing() const {
+  if (idle_) return "idle";
+  std::string text = "in";
+  for (int p = 0; p < kPhases; ++p)
+    if (phases_ >> p & 1) text += std::string(" ") + to_string(static_cast<Phase>(p));
+  return text;
+}
+
+NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed) {
+  check_words(plan);
+  auto library = std::make_shared<const Library>(compile_node(plan, build_directory));
+  return [library, seed](uint32_t node, uint8_t has_link) {
+    return std::make_unique<VerilatedNode>(library, has_link, seed == 0 ? 0 : seed + node);
+  };
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The emitted RTL as a NodeModel: the Verilated node behind the same bench as the native one.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "emu/systemc/node_model.h"
+#include "emu/verilated/library.h"
+
+namespace cuboct::emu {
+
+class VerilatedNode : public NodeModel {
+ public:
+  // `seed`: 0, or what the registers hold before reset is drawn from it.
+  VerilatedNode(std::shared_ptr<const Library> library, uint8_t has_link, uint32_t seed);
+  ~VerilatedNode() override;
+  VerilatedNode(const VerilatedNode&) = delete;
+  VerilatedNode& operator=(const VerilatedNode&) = delete;
+
+  void clock(const NodeInputs& in, NodeOutputs& out) override;
+  std::string doing() const override;
+
+ private:
+  const std::shared_ptr<const Library> library_;
+  const uint8_t has_link_;
+  void* const model_;
+  CuboctOut out_{};
+  uint8_t phases_ = 0;  // that run
+  bool idle_ = true;
+};
+
+// The outputs that belong to the cycle, without the link registers.
+void read_outputs(const CuboctOut& from, NodeOutputs& out);
+
+// Compiles (or finds) the plan's node; throws InputError.
+NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed = 0);
+
+}  // namespace cuboct::emu

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// The emitted hardware behind the same bench: golden's bits, the native node's cycles. One test per process,
+// as for systemc_test.cpp; compiled nodes stay in the build tree.
+#include <gtest/gtest.h>
+
+#include <systemc>
+
+#include "emu/systemc/bench.h"
+#include "emu/systemc/node.h"
+#include "emu/systemc/words.h"
+#include "emu/verilated/verilated_node.h"
+#include "tests/backend/engines.h"
+#include "tests/support/cases.h"
+
+namespace cuboct::test {
+namespace {
+
+constexpr const char* kCache = CUBOCT_TEST_CACHE;
+
+// Cases that between them need few compiled nodes: the first four share one.
+std::vector<std::string> rtl_cases() {
+  return {"undamped_2x2x2", "lattice_3x2x1",   "hot_gas",  "lone_diagonal",
+          "rich_damped",    "rich_force_held", "rich_ring"};
+}
+
+class Rtl : public testing::TestWithParam<std::string> {};
+
+// Native and Verilated nodes, without and with stalls: four lattices in one simulation. The Verilated
+// registers start as random bits in one of them: nothing may hang on what reset leaves alone.
+TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
+  const Case c = make_case(GetParam());
+  const Plan& plan = c.setup.plan;
+  const emu::NodeFactory native = emu::native_nodes(plan), verilated = emu::verilated_nodes(plan, kCache),
+                         random = emu::verilated_nodes(plan, kCache, 17);
+  const auto free = keep_all(c.steps), stalled = keep_all(c.steps, 0.3, 7);
+  emu::Bench native_free("native_free", plan, c.setup.initial, free, native, "systemc");
+  emu::Bench native_stalled("native_stalled", plan, c.setup.initial, stalled, native, "systemc");
+  emu::Bench rtl_free("rtl_free", plan, c.setup.initial, free, verilated, "rtl");
+  emu::Bench rtl_stalled("rtl_stalled", plan, c.setup.initial, stalled, random, "rtl");
+  emu::simulate({&native_free, &native_stalled, &rtl_free, &rtl_stalled});
+  const emu::RunResult nf = native_free.take_result(), ns = native_stalled.take_result(),
+                       rf = rtl_free.take_result(), rs = rtl_stalled.take_result();
+
+  const GoldenRun golden = run_golden(c.setup, c.steps);
+  for (const emu::RunResult* run : {&rf, &rs}) {
+    const Compared compared = compare(plan, golden, *run);
+    EXPECT_EQ(compared.difference, "");
+    EXPECT_EQ(compared.steps, c.steps + 1);
+    EXPECT_EQ(compared.particles, (c.steps + 1) * c.setup.initial.particles.size());
+    EXPECT_EQ(compared.slots, compared.particles);
+  }
+  const uint64_t spans = c.steps * plan.lattice.size() * kPhases;
+  for (const auto& [a, b] : {std::pair{&nf, &rf}, std::pair{&ns, &rs}}) {
+    const Compared compared = compare_cycles(*a, *b);
+    EXPECT_EQ(compared.difference, "");
+    EXPECT_EQ(compared.spans, spans);
+  }
+  EXPECT_FALSE(rf.trace.cycles == rs.trace.cycles);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Rtl, testing::ValuesIn(rtl_cases()), [](const auto& p) { return p.param; });
+
+class RtlFaults : public testing::TestWithParam<Fault> {};
+
+TEST_P(RtlFaults, ArisesAsInGolden) {
+  const Case c = fault_case(GetParam());
+  const Plan& plan = c.setup.plan;
+  const GoldenRun golden = run_golden(c.setup, c.steps);
+  for (const double rate : {0.0, 0.4}) {
+    const auto options = keep_all(c.steps, rate);
+    const auto rtl = run_plain(plan, c.setup.initial, options, emu::verilated_nodes(plan, kCache), "rtl");
+    const auto native = run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain");
+    EXPECT_EQ(compare(plan, golden, rtl).difference, "");
+    ASSERT_TRUE(rtl.trace.stop);
+    EXPECT_EQ(rtl.trace.stop->fault, GetParam());
+    EXPECT_EQ(rtl.trace.stop->number, golden.fault->number);
+    EXPECT_EQ(compare_cycles(native, rtl).difference, "");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, RtlFaults, testing::ValuesIn(all_faults()),
+                         [](const auto& p) { return "fault_" + std::to_string(static_cast<int>(p.param)); });
+
+// Against a golden run whose table has one more in every word, the hardware's run is seen to differ.
+TEST(RtlMutation, AnotherTableIsSeen) {
+  const Case c = make_case("undamped_2x2x2");
+  Case other = c;
+  for (int32_t& word : other.setup.plan.rule.force.c0) word += 1;
+  const auto run = run_plain(c.setup.plan, c.setup.initial, keep_all(c.steps),
+                             emu::verilated_nodes(c.setup.plan, kCache), "rtl");
+  EXPECT_EQ(compare(c.setup.plan, run_golden(c.setup, c.steps), run).difference, "");
+  EXPECT_EQ(compare(c.setup.plan, run_golden(other.setup, c.steps), run).difference.substr(0, 17),
+            "step 1: particle ");
+}
+
+// The emitted lattice as one model: its wiring is the generator's, not the bench's.
+emu::RunResult run_lattice(const Case& c) {
+  const Plan& plan = c.setup.plan;
+  const emu::Library library(emu::compile_lattice(plan, c.setup.initial, kCache));
+  void* model = library.create(5);
+  const auto particles = emu::by_node(plan, c.setup.initial);
+  const uint32_t nodes = plan.lattice.size();
+  emu::Collector collector(plan, keep_all(c.steps));
+  std::vector<CuboctOut> outs(nodes);
+  CuboctIn host{};
+  const auto clock = [&](uint32_t load_node) { library.clock_lattice(model, &host, load_node, outs.data()); };
+  clock(0);
+  host.reset_n = 1;
+  host.load_valid = 1;
+  for (uint32_t n = 0; n < nodes; ++n)
+    for (const Particle& p : particles[n]) {
+      const emu::Bits word = emu::load_word(plan, p);
+      host.load_data = word.word.data();
+      clock(n);
+    }
+  host.load_valid = 0;
+  host.start = 1;
+  host.steps = static_cast<uint32_t>(c.steps);
+  clock(0);
+  host.start = 0;
+  emu::NodeOutputs shown;
+  for (uint64_t cycle = 0; !collector.done() && cycle < 1000000; ++cycle) {
+    clock(0);
+    for (uint32_t n = 0; n < nodes; ++n) {
+      emu::read_outputs(outs[n], shown);
+      if (emu::Collector::shows(shown)) collector.collect(n, cycle, shown);
+    }
+  }
+  library.destroy(model);
+  emu::RunResult result;
+  EXPECT_TRUE(collector.done());
+  if (!collector.done()) return result;
+  result.trace = collector.take_trace();
+  result.order = collector.order();
+  result.trace.engine = "lattice";
+  return result;
+}
+
+class RtlLattice : public testing::TestWithParam<std::string> {};
+
+TEST_P(RtlLattice, EqualsTheWiredNodes) {
+  const Case c = make_case(GetParam());
+  const Plan& plan = c.setup.plan;
+  const emu::RunResult whole = run_lattice(c);
+  const Compared with_golden = compare(plan, run_golden(c.setup, c.steps), whole);
+  EXPECT_EQ(with_golden.difference, "");
+  EXPECT_EQ(with_golden.steps, c.steps + 1);
+  const auto wired =
+      run_plain(plan, c.setup.initial, keep_all(c.steps), emu::verilated_nodes(plan, kCache), "rtl");
+  const Compared with_wired = compare_cycles(wired, whole);
+  EXPECT_EQ(with_wired.difference, "");
+  EXPECT_EQ(with_wired.spans, c.steps * plan.lattice.size() * kPhases);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice, testing::Values("undamped_2x2x2", "lattice_3x2x1"),
+                         [](const auto& p) { return p.param; });
+
+}  // namespace
+}  // namespace cuboct::test
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
