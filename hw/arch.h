@@ -11,13 +11,13 @@ namespace cuboct {
 
 struct Arch {
   std::string name = "default";
-  double cell_edge = 0;      // m; 0: the pair law's cutoff, or the next length that divides a periodic box
-  int capacity = 16;         // particles that a node holds
-  int filter_lanes = 8;      // own particles that a candidate meets per cycle
-  int force_pipes = 1;       // pairs per cycle
-  int queue_depth = 16;      // (candidate, mask) entries between filter and pipes
-  bool overlap = true;       // candidates are filtered while the exchange still runs
-  int link_bits = 0;         // payload bits per beat; 0: one halo record per beat
+  double cell_edge = 0;  // m; 0: the pair law's cutoff, or the next length that divides a periodic box
+  int capacity = 16;     // particles that a node holds
+  int filter_lanes = 8;  // own particles that a candidate meets per cycle
+  int force_pipes = 1;   // pairs per cycle
+  int queue_depth = 16;  // (candidate, mask) entries between filter and pipes
+  bool overlap = true;   // candidates are filtered while the exchange still runs
+  int link_bits = 0;     // payload bits per beat; 0: one halo record per beat
   Widths widths;
   TableChoice table;
 };

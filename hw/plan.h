@@ -16,22 +16,23 @@ namespace cuboct {
 //   halo record:    x[P+2] y[P+2] z[P] type[type_bits, if scaled] v[3 x velocity_bits, if damped]
 //   particle:       x[P] y[P] z[P] away_y[2] away_z[2] v[3 x velocity_bits] type[type_bits] id[id_bits]
 //                   u[3 x displacement_bits, if pd]
-// x and y of a halo record are signed, in the frame of the sender's node (see docs/reference/node.md); `away` is two's complement:
-// -1, 0, +1. The particle word is the migrate record and the word of the load and observe ports.
+// x and y of a halo record are signed, in the frame of the sender's node (see docs/reference/node.md); `away`
+// is two's complement: -1, 0, +1. The particle word is the migrate record and the word of the load and
+// observe ports.
 struct Words {
   int id_bits = 0;
   int halo_bits = 0;
   int particle_bits = 0;
-  int halo_beats = 0;      // ceil(halo_bits / link_bits)
-  int migrate_beats = 0;   // ceil(particle_bits / link_bits)
-  int link_bits = 0;       // as built: arch.link_bits, or halo_bits
+  int halo_beats = 0;     // ceil(halo_bits / link_bits)
+  int migrate_beats = 0;  // ceil(particle_bits / link_bits)
+  int link_bits = 0;      // as built: arch.link_bits, or halo_bits
 };
 
 // Fixed latencies of the datapath, in cycles; they depend only on what the rule uses. docs/reference/node.md.
 struct Latency {
-  int filter = 2;   // from the candidate's read to its push into the queue
-  int pipe = 0;     // from a pair's issue to its sum
-  int update = 0;   // from a particle's read to its write-back
+  int filter = 2;  // from the candidate's read to its push into the queue
+  int pipe = 0;    // from a pair's issue to its sum
+  int update = 0;  // from a particle's read to its write-back
 };
 
 struct Plan {
@@ -42,7 +43,7 @@ struct Plan {
   Words words;
   Latency latency;
   uint32_t particles = 0;
-  uint64_t hash = 0;           // of everything above that an engine can see
+  uint64_t hash = 0;  // of everything above that an engine can see
 };
 
 // Derives words, latency and hash. Throws InputError where the arch cannot work (a capacity below 1, ...).

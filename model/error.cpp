@@ -21,18 +21,30 @@ InputError::InputError(const std::string& file, int line, int column, const std:
 
 const char* to_string(Fault fault) {
   switch (fault) {
-    case Fault::none: return "none";
-    case Fault::relative_velocity: return "relative velocity out of width";
-    case Fault::strength: return "pair strength out of width";
-    case Fault::sum: return "sum of kicks out of width";
-    case Fault::displacement: return "displacement out of width";
-    case Fault::velocity: return "velocity out of width";
-    case Fault::left_x: return "left the lattice along x";
-    case Fault::full_x: return "node full after moving along x";
-    case Fault::left_y: return "left the lattice along y";
-    case Fault::full_y: return "node full after moving along y";
-    case Fault::left_z: return "left the lattice along z";
-    case Fault::full_z: return "node full after moving along z";
+    case Fault::none:
+      return "none";
+    case Fault::relative_velocity:
+      return "relative velocity out of width";
+    case Fault::strength:
+      return "pair strength out of width";
+    case Fault::sum:
+      return "sum of kicks out of width";
+    case Fault::displacement:
+      return "displacement out of width";
+    case Fault::velocity:
+      return "velocity out of width";
+    case Fault::left_x:
+      return "left the lattice along x";
+    case Fault::full_x:
+      return "node full after moving along x";
+    case Fault::left_y:
+      return "left the lattice along y";
+    case Fault::full_y:
+      return "node full after moving along y";
+    case Fault::left_z:
+      return "left the lattice along z";
+    case Fault::full_z:
+      return "node full after moving along z";
   }
   return "?";
 }

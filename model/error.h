@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The two ways in which cuboct refuses: the input is wrong (exit code 2), or a run found something wrong (exit code 1).
+// The two ways in which cuboct refuses: the input is wrong (exit code 2), or a run found something wrong
+// (exit code 1).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,8 @@
 
 namespace cuboct {
 
-// Bad input. `what()` is the complete text that a user sees, in this form (the hint's line only where there is a hint):
+// Bad input. `what()` is the complete text that a user sees, in this form (the hint's line only where there
+// is a hint):
 //   scenes/a.toml:12:3: unknown key 'capcity'
 //     hint: did you mean 'capacity'?
 class InputError : public std::runtime_error {
@@ -19,8 +21,8 @@ class InputError : public std::runtime_error {
              const std::string& hint = {});
 };
 
-// The checks that every fixed engine makes, in the order in which a step makes them. When several particles fail in
-// one step, all engines report the same one: the least (step, fault, id).
+// The checks that every fixed engine makes, in the order in which a step makes them. When several particles
+// fail in one step, all engines report the same one: the least (step, fault, id).
 enum class Fault : uint8_t {
   none = 0,
   relative_velocity,  // w of an interacting pair does not fit `relative_velocity_bits`
@@ -38,8 +40,8 @@ enum class Fault : uint8_t {
 
 const char* to_string(Fault fault);
 
-// A run that had to stop. `number` is the offending value in the integer units of the fixed rule (for `full_*`: the
-// capacity). `node` is an index into the lattice.
+// A run that had to stop. `number` is the offending value in the integer units of the fixed rule (for
+// `full_*`: the capacity). `node` is an index into the lattice.
 class RunError : public std::runtime_error {
  public:
   RunError(Fault fault, uint64_t step, uint32_t node, uint32_t particle, int64_t number,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The integer arithmetic that every fixed engine shares. Plain functions, so that a GPU compiler takes them too.
+// The integer arithmetic that every fixed engine shares. Plain functions, so that a GPU compiler takes them
+// too.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,8 @@
 namespace cuboct {
 
 // a / 2^s, rounded to nearest, halves away from zero. Odd: round_odd(-a, s) == -round_odd(a, s). s >= 0.
-// Derivation: floor((a + 2^(s-1)) / 2^s) rounds halves up; subtracting 1 from a negative `a` first moves exactly its
-// halves down and nothing else, as `a` is an integer.
+// Derivation: floor((a + 2^(s-1)) / 2^s) rounds halves up; subtracting 1 from a negative `a` first moves
+// exactly its halves down and nothing else, as `a` is an integer.
 CUBOCT_HD constexpr int64_t round_odd(int64_t a, int s) {
   return s == 0 ? a : (a + (int64_t{1} << (s - 1)) - (a < 0)) >> s;
 }

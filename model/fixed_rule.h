@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The update rule in integers. Lengths count cell edges, times count steps; a `_bits` is a width, a `_frac` a number
-// of fractional bits. docs/reference/numeric.md derives each format.
+// The update rule in integers. Lengths count cell edges, times count steps; a `_bits` is a width, a `_frac` a
+// number of fractional bits. docs/reference/numeric.md derives each format.
 #pragma once
 
 #include <cstdint>
@@ -33,10 +33,12 @@ enum class TableShape : uint8_t { uniform, octaves };
 
 // A piecewise polynomial in r2 (an integer with 2D fractional bits, 0 <= r2 < 2^(2D)):
 //   uniform: k = the top index_bits of r2, t = the next fraction_bits.
-//   octaves: with o = floor(log2 r2), row = o - first_octave: k = row * 2^bin_bits + the bin_bits below the leading
-//            one, t = the next fraction_bits (zeros where r2 has no more); r2 below 2^first_octave takes k = 0, t = 0.
-// value = c0[k] + round_odd((c1[k] + round_odd(c2[k] * t, T)) * t, T), T = fraction_bits; c2 is empty at degree 1,
-// where value = c0[k] + round_odd(c1[k] * t, T).
+//   octaves: with o = floor(log2 r2), row = o - first_octave: k = row * 2^bin_bits + the bin_bits below the
+//   leading
+//            one, t = the next fraction_bits (zeros where r2 has no more); r2 below 2^first_octave takes k =
+//            0, t = 0.
+// value = c0[k] + round_odd((c1[k] + round_odd(c2[k] * t, T)) * t, T), T = fraction_bits; c2 is empty at
+// degree 1, where value = c0[k] + round_odd(c1[k] * t, T).
 struct FixedTable {
   TableShape shape = TableShape::uniform;
   int degree = 1;
@@ -61,8 +63,8 @@ struct FixedType {
   Int3 velocity{};  // P+G fractional bits
   Int3 gravity{};   // cell edges per step^2, P+G fractional bits
   bool pd = false;
-  int64_t kp = 0;   // per step^2, gain_frac fractional bits
-  int64_t kd = 0;   // per step, gain_frac fractional bits
+  int64_t kp = 0;  // per step^2, gain_frac fractional bits
+  int64_t kd = 0;  // per step, gain_frac fractional bits
 };
 
 struct FixedRule {
@@ -71,42 +73,42 @@ struct FixedRule {
   double dt = 0;         // s
   double mass = 0;       // kg
 
-  uint64_t cutoff2 = 0;      // 2D fractional bits; r2 >= cutoff2: no interaction
-  // Adder-only test that no interacting pair fails: |d_a| <= [0], |d_a|+|d_b| <= [1], |d_x|+|d_y|+|d_z| <= [2]
-  // (cutoff * {1, sqrt 2, sqrt 3} rounded up). D fractional bits.
+  uint64_t cutoff2 = 0;  // 2D fractional bits; r2 >= cutoff2: no interaction
+  // Adder-only test that no interacting pair fails: |d_a| <= [0], |d_a|+|d_b| <= [1], |d_x|+|d_y|+|d_z| <=
+  // [2] (cutoff * {1, sqrt 2, sqrt 3} rounded up). D fractional bits.
   std::array<int64_t, 3> planar{};
 
-  FixedTable force;    // f(r)/r * dt^2/m, times the largest pair scale
+  FixedTable force;  // f(r)/r * dt^2/m, times the largest pair scale
   bool damped = false;
-  FixedTable damp;     // c(r)/(r/cell_edge)^2 * dt/m, times the largest pair scale; only if damped
-  bool scaled = false;                        // pair scales differ
-  std::vector<std::vector<int32_t>> scale;    // types x types, scale_frac fractional bits; only if scaled
+  FixedTable damp;      // c(r)/(r/cell_edge)^2 * dt/m, times the largest pair scale; only if damped
+  bool scaled = false;  // pair scales differ
+  std::vector<std::vector<int32_t>> scale;  // types x types, scale_frac fractional bits; only if scaled
   std::vector<FixedType> types;
-  bool pd = false;           // some type is held or moved by force
+  bool pd = false;  // some type is held or moved by force
 
   // Derived shifts, all >= 0.
   int difference_shift = 0;  // P - D
   int w_shift = 0;           // P+G - W
-  int q_shift = 0;           // W+D - (W-1): w.d is kept with W-1 fractional bits, `relative_velocity_bits` wide
-  int damp_shift = 0;        // damp.value_frac + (W-1) - force.value_frac
-  int kick_shift = 0;        // force.value_frac + D - (P+G)
+  int q_shift = 0;     // W+D - (W-1): w.d is kept with W-1 fractional bits, `relative_velocity_bits` wide
+  int damp_shift = 0;  // damp.value_frac + (W-1) - force.value_frac
+  int kick_shift = 0;  // force.value_frac + D - (P+G)
 
-  int type_bits = 0;         // 0 where there is one type
+  int type_bits = 0;  // 0 where there is one type
 
   // What quantisation cost, against the rule in doubles (quantise.h).
   struct Error {
-    double worst_force = 0;     // N, largest |f_fixed - f| over the distances outside the core
-    double at = 0;              // m, where
-    double relative = 0;        // worst_force over the largest |f| outside the core
+    double worst_force = 0;  // N, largest |f_fixed - f| over the distances outside the core
+    double at = 0;           // m, where
+    double relative = 0;     // worst_force over the largest |f| outside the core
   } error;
 };
 
-// One pair's part of the kick: what j does to i, P+G fractional bits, and the tests on its way. Exactly the contract:
-// pair(i, j) == -pair(j, i).
+// One pair's part of the kick: what j does to i, P+G fractional bits, and the tests on its way. Exactly the
+// contract: pair(i, j) == -pair(j, i).
 struct PairResult {
-  bool inside = false;       // r2 < cutoff2
+  bool inside = false;  // r2 < cutoff2
   Fault fault = Fault::none;
-  int64_t number = 0;        // the value that did not fit
+  int64_t number = 0;  // the value that did not fit
   Int3 kick{};
 };
 
@@ -125,6 +127,7 @@ struct FinishResult {
   int64_t number = 0;
   Int3 x{}, v{}, u{};
 };
-FinishResult finish(const FixedRule& rule, const Int3& sum, const Int3& x, const Int3& v, const Int3& u, int type);
+FinishResult finish(const FixedRule& rule, const Int3& sum, const Int3& x, const Int3& v, const Int3& u,
+                    int type);
 
 }  // namespace cuboct

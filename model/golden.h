@@ -18,7 +18,7 @@ class Golden {
   // Advances one step; throws RunError at the first step that breaks a width, a capacity or the lattice.
   void step();
 
-  State state() const;         // sorted by id
+  State state() const;  // sorted by id
   uint64_t step_count() const { return step_; }
   // Particles by node, in the order of the node's slots: the order that the machine keeps.
   const std::vector<std::vector<Particle>>& nodes() const { return nodes_; }
@@ -28,6 +28,7 @@ class Golden {
     Particle particle;
     std::array<int, 3> away;  // per axis: -1, 0, +1 node still to go
   };
+  RunError fault_of(Fault fault, uint32_t node, uint32_t particle, int64_t number) const;
   void fail_if_any(const std::vector<RunError>& faults) const;
   void migrate(int axis, std::vector<std::vector<Moving>>& moving) const;
 

@@ -17,10 +17,10 @@ inline constexpr uint32_t kNoNode = 0xffffffffu;
 class Lattice {
  public:
   Lattice() = default;
-  // The nodes are `cells`, deduplicated, plus the cells that keep the set closed: records and particles travel to a
-  // diagonal neighbour by x, then y, then z, so the cells on that way must exist too. `period[a]` > 0 makes axis a a
-  // ring of that many cells (at least 3, and every coordinate in [0, period)).
-  // Node indices follow the order of (z, y, x).
+  // The nodes are `cells`, deduplicated, plus the cells that keep the set closed: records and particles
+  // travel to a diagonal neighbour by x, then y, then z, so the cells on that way must exist too. `period[a]`
+  // > 0 makes axis a a ring of that many cells (at least 3, and every coordinate in [0, period)). Node
+  // indices follow the order of (z, y, x).
   Lattice(std::vector<Cell> cells, Cell period);
 
   uint32_t size() const { return static_cast<uint32_t>(cells_.size()); }

@@ -16,8 +16,8 @@ struct TableChoice {
   int fraction_bits = 17;
 };
 
-// Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative shift, a
-// velocity, gain or scale out of its width.
+// Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative
+// shift, a velocity, gain or scale out of its width.
 FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table);
 
 }  // namespace cuboct

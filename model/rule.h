@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The local update rule in real units (SI, double precision): pair law, damping, types and their constraints.
-// A Rule and a Body are all that a physical scene is; quantisation makes a FixedRule of the one and a State of the other.
+// A Rule and a Body are all that a physical scene is; quantisation makes a FixedRule of the one and a State
+// of the other.
 #pragma once
 
 #include <algorithm>
@@ -25,36 +26,38 @@ class PairLaw {
   // df/dr in N/m.
   virtual double slope(double r) const = 0;
   virtual double cutoff() const = 0;
-  // Below this distance every law is linear, force(r) = r * force(core)/core: the force rolls off and f/r stays finite.
+  // Below this distance every law is linear, force(r) = r * force(core)/core: the force rolls off and f/r
+  // stays finite.
   virtual double core() const = 0;  // > 0
 };
 
-// Damping on the radial velocity difference: on i the force c(r) * (w . e) e, e = d/r, d = x_j - x_i, w = v_j - v_i.
-// c(r) = coefficient * (1 - (r/cutoff)^2)^2, in kg/s: smooth, and zero at the cutoff of the pair law. Below the law's
-// core c/r^2 keeps its value at the core.
+// Damping on the radial velocity difference: on i the force c(r) * (w . e) e, e = d/r, d = x_j - x_i, w = v_j
+// - v_i. c(r) = coefficient * (1 - (r/cutoff)^2)^2, in kg/s: smooth, and zero at the cutoff of the pair law.
+// Below the law's core c/r^2 keeps its value at the core.
 struct Damping {
   double coefficient = 0;  // kg/s, >= 0; 0: the scene does not damp
 };
 
 // What sets one particle apart from another. Particles of one type share material and constraints.
 struct ParticleType {
-  std::string name;                                 // "material" or "material/constraint", for messages
-  int material = 0;                                 // index into Rule::strength
+  std::string name;                                  // "material" or "material/constraint", for messages
+  int material = 0;                                  // index into Rule::strength
   std::array<bool, 3> imposed{false, false, false};  // axes whose velocity is imposed; held is an imposed 0
-  Vec3 velocity = Vec3::Zero();                     // m/s, imposed, or followed by the anchor of the PD controller
-  Vec3 gravity = Vec3::Zero();                      // m/s^2
-  bool pd = false;                                  // held or moved by force
-  double kp = 0;                                    // N/m
-  double kd = 0;                                    // kg/s
+  Vec3 velocity = Vec3::Zero();  // m/s, imposed, or followed by the anchor of the PD controller
+  Vec3 gravity = Vec3::Zero();   // m/s^2
+  bool pd = false;               // held or moved by force
+  double kp = 0;                 // N/m
+  double kd = 0;                 // kg/s
 };
 
 struct Rule {
   std::shared_ptr<const PairLaw> law;
   Damping damping;
-  double mass = 0;                            // kg per particle
-  double dt = 0;                              // s
-  std::vector<ParticleType> types;            // at least one
-  std::vector<std::vector<double>> strength;  // symmetric, materials x materials, > 0: factor on the pair force
+  double mass = 0;                  // kg per particle
+  double dt = 0;                    // s
+  std::vector<ParticleType> types;  // at least one
+  std::vector<std::vector<double>>
+      strength;  // symmetric, materials x materials, > 0: factor on the pair force
 
   // c(r)/r^2 in kg/(s m^2).
   double damping_over_r2(double r) const {
@@ -69,10 +72,10 @@ struct Rule {
 
 // Particles in SI units; the index is the particle's id.
 struct Body {
-  std::vector<Vec3> x;         // m
-  std::vector<Vec3> v;         // m/s
-  std::vector<Vec3> u;         // m, displacement from the PD anchor; empty unless some type has one
-  std::vector<uint8_t> type;   // index into Rule::types
+  std::vector<Vec3> x;        // m
+  std::vector<Vec3> v;        // m/s
+  std::vector<Vec3> u;        // m, displacement from the PD anchor; empty unless some type has one
+  std::vector<uint8_t> type;  // index into Rule::types
 
   size_t size() const { return x.size(); }
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a user writes, resolved to SI units: particles, rule, what to measure and for how long. docs/user/scene.md is
-// the reference of the file format.
+// What a user writes, resolved to SI units: particles, rule, what to measure and for how long.
+// docs/user/scene.md is the reference of the file format.
 #pragma once
 
 #include <array>
@@ -23,31 +23,33 @@ struct Probe {
   enum class Kind : uint8_t {
     force,          // total pair force on a set, N: force_x, force_y, force_z
     displacement,   // mean displacement of a set from its initial mean position, m: x, y, z
-    stress_strain,  // two sets and an axis: strain = change of the distance between their means over its initial
-                    // value; stress = pull on `grip` along the axis over `area`, Pa
+    stress_strain,  // two sets and an axis: strain = change of the distance between their means over its
+                    // initial value; stress = pull on `grip` along the axis over `area`, Pa
   };
   Kind kind = Kind::force;
   std::string name;
-  ParticleSet set;          // force, displacement
-  ParticleSet lower, upper; // stress_strain: gauge marks
-  ParticleSet grip;         // stress_strain: whose force counts, on the side of `upper`
+  ParticleSet set;           // force, displacement
+  ParticleSet lower, upper;  // stress_strain: gauge marks
+  ParticleSet grip;          // stress_strain: whose force counts, on the side of `upper`
   int axis = 0;
-  double area = 0;          // m^2
+  double area = 0;  // m^2
 };
 
 struct Scene {
-  std::string path;          // as given
+  std::string path;  // as given
   std::string title;
   Rule rule;
   Body body;
   Periodic periodic;
-  double pitch = 0;          // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
+  double pitch = 0;  // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
   Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates
-  double density = 0;        // kg/m^3, 0 if the mass was given
-  double dt_limit = 0;       // s, 2/omega_max of the perfect packing; 0 if unknown (no packing)
-  double dt_safety = 0;      // dt = dt_safety * dt_limit where dt was "auto", else dt / dt_limit
-  Vec3 reach_margin = Vec3::Zero();     // m, space around the body that particles may reach (at least one cell is added)
-  std::array<Vec3, 2> reach{Vec3::Zero(), Vec3::Zero()};  // m, an extra box that particles may reach; empty if equal
+  double density = 0;                   // kg/m^3, 0 if the mass was given
+  double dt_limit = 0;                  // s, 2/omega_max of the perfect packing; 0 if unknown (no packing)
+  double dt_safety = 0;                 // dt = dt_safety * dt_limit where dt was "auto", else dt / dt_limit
+  Vec3 reach_margin =
+      Vec3::Constant(-1);  // m, space around the body that particles may reach; negative: one cell edge
+  std::array<Vec3, 2> reach{Vec3::Zero(),
+                            Vec3::Zero()};  // m, an extra box that particles may reach; empty if equal
   std::vector<Probe> probes;
   uint64_t steps = 0;
   uint64_t probe_every = 0;  // 0: never

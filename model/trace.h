@@ -13,7 +13,14 @@ namespace cuboct {
 
 // The named parts of a node's step, in order (the force phase may start earlier, beside the exchange).
 enum class Phase : uint8_t {
-  exchange_x, exchange_y, exchange_z, force, update, migrate_x, migrate_y, migrate_z
+  exchange_x,
+  exchange_y,
+  exchange_z,
+  force,
+  update,
+  migrate_x,
+  migrate_y,
+  migrate_z
 };
 inline constexpr int kPhases = 8;
 const char* to_string(Phase phase);
@@ -26,8 +33,8 @@ struct PhaseSpan {
 
 // One measured quantity over the run.
 struct Curve {
-  std::string name;              // e.g. "grip.force_x"
-  std::string unit;              // e.g. "N"
+  std::string name;  // e.g. "grip.force_x"
+  std::string unit;  // e.g. "N"
   std::vector<uint64_t> step;
   std::vector<double> value;
 };
@@ -42,23 +49,24 @@ struct StopReason {
 };
 
 struct Trace {
-  std::string engine;                 // "golden", "systemc", ...
+  std::string engine;  // "golden", "systemc", ...
   uint64_t plan_hash = 0;
   uint64_t nodes = 0;
-  std::vector<uint64_t> state_hash;   // [step], 0 ... steps done
-  std::vector<State> frames;          // the states that were asked for, ascending in step
+  std::vector<uint64_t> state_hash;  // [step], 0 ... steps done
+  std::vector<State> frames;         // the states that were asked for, ascending in step
   std::vector<Curve> curves;
-  std::vector<PhaseSpan> cycles;      // [(step * nodes + node) * kPhases + phase]; empty where the engine counts none
-  std::optional<StopReason> stop;     // the run had to stop: after the last complete step
+  std::vector<PhaseSpan>
+      cycles;  // [(step * nodes + node) * kPhases + phase]; empty where the engine counts none
+  std::optional<StopReason> stop;  // the run had to stop: after the last complete step
   // Not compared between engines:
-  double seconds = 0;                 // host time of the steps alone
+  double seconds = 0;                                    // host time of the steps alone
   std::vector<std::pair<std::string, double>> counters;  // e.g. {"pairs_issued", 123}
 
   uint64_t steps() const { return state_hash.empty() ? 0 : state_hash.size() - 1; }
 };
 
-// HDF5; layout in docs/reference/trace.md. Written to a temporary name beside `path`, then renamed: never half a file.
-// Same trace, same bytes.
+// HDF5; layout in docs/reference/trace.md. Written to a temporary name beside `path`, then renamed: never
+// half a file. Same trace, same bytes.
 void write_trace(const std::string& path, const Trace& trace);
 Trace read_trace(const std::string& path);
 

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "emu/systemc/bench.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ostream>
+
+namespace cuboct::emu {
+
+// sc_signal asks for these two.
+static std::ostream& operator<<(std::ostream& out, const Control& c) { return out << c.reset_n << c.start; }
+static void sc_trace(sc_core::sc_trace_file*, const Control&, const std::string&) {}
+
+namespace {
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+NodeModule::NodeModule(const sc_core::sc_module_name& name, uint32_t node, uint8_t has_link,
+                       std::unique_ptr<NodeModel> model)
+    : sc_module(name), node_(node), has_link_(has_link), model_(std::move(model)) {
+  for (int f = 0; f < kFaces; ++f)
+    if (has_link >> f & 1) faces_.push_back(f);
+  SC_HAS_PROCESS(NodeModule);
+  SC_METHOD(cycle);
+  sensitive << clk_i.pos();
+  dont_initialize();
+}
+
+void NodeModule::end_of_elaboration() {
+  for (const int f : faces_) {
+    in_link_[f] = link_i[f][0];
+    out_link_[f] = link_o[f][0];
+    in_link_[f]->wake_with(wake_);
+  }
+}
+
+void NodeModule::cycle() {
+  // The wake event comes one delta after the edge at which a link or the control changed: the change belongs
+  // to the next cycle, and the static sensitivity is back.
+  if (asleep_) {
+    asleep_ = false;
+    return;
+  }
+  in_.control = &control_i.read();
+  in_.valid = in_.ready = 0;
+  bool beats = false;
+  for (const int f : faces_) {
+    const LinkReceiver& from = *in_link_[f];
+    if (from.holds()) {
+      beats = true;
+      if (from.valid()) {
+        in_.valid |= static_cast<uint8_t>(1u << f);
+        in_.beat[f] = &from.beat();
+      }
+    }
+    if (out_link_[f]->ready()) in_.ready |= static_cast<uint8_t>(1u << f);
+  }
+  model_->clock(in_, out_);
+  if (monitor_o->running() && Collector::shows(out_)) monitor_o->report(node_, out_);
+
+  const uint8_t emptied = valid_ & static_cast<uint8_t>(~out_.valid);
+  const uint8_t ready_changed = ready_ ^ out_.ready;
+  if ((out_.loaded | emptied | ready_changed) != 0) {
+    for (const int f : faces_) {
+      if (out_.loaded >> f & 1)
+        out_link_[f]->put(out_.beat[f]);
+      else if (emptied >> f & 1)
+        out_link_[f]->clear();
+      if (ready_changed >> f & 1) in_link_[f]->set_ready(out_.ready >> f & 1);
+    }
+  }
+  valid_ = out_.valid;
+  ready_ = out_.ready;
+  if (monitor_o->over() || (model_->quiet() && !beats && valid_ == 0)) {
+    asleep_ = true;
+    next_trigger(wake_ | control_i.value_changed_event());
+  }
+}
+
+Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State& initial,
+             const RunOptions& options, const NodeFactory& factory, const std::string& engine)
+    : sc_module(name),
+      plan_(plan),
+      options_(options),
+      engine_(engine),
+      particles_(by_node(plan, initial)),
+      patience_(options.patience != 0 ? options.patience : patience_of(plan, options.stall_rate)),
+      stalls_(options.stall_rate, options.stall_seed),
+      collector_(plan, options),
+      control_("control", plan.lattice.size()) {
+  const Lattice& lattice = plan.lattice;
+  for (const auto& list : particles_) most_ = std::max(most_, list.size());
+  for (uint32_t n = 0; n < lattice.size(); ++n) {
+    const uint8_t has_link = links_of(lattice, n);
+    nodes_.push_back(
+        std::make_unique<NodeModule>(fmt::format("node_{}", n).c_str(), n, has_link, factory(n, has_link)));
+    nodes_[n]->clk_i(clk_i);
+    nodes_[n]->control_i(control_[n]);
+    nodes_[n]->monitor_o(*this);
+  }
+  for (uint32_t n = 0; n < lattice.size(); ++n)
+    for (int f = 0; f < kFaces; ++f) {
+      const uint32_t other = lattice.neighbour(n, f);
+      if (other == kNoNode) continue;
+      links_.push_back(std::make_unique<Link>(fmt::format("link_{}_{}", n, f).c_str(), timeline_, stalls_,
+                                              n * kFaces + static_cast<uint32_t>(f)));
+      nodes_[n]->link_o[static_cast<size_t>(f)](*links_.back());
+      nodes_[other]->link_i[static_cast<size_t>(f ^ 1)](*links_.back());
+    }
+  timeline_.period = sc_core::sc_time(1, sc_core::SC_NS).value();
+  SC_HAS_PROCESS(Bench);
+  SC_METHOD(host);
+  sensitive << clk_i.pos();
+  dont_initialize();
+}
+
+Bench::~Bench() = default;
+
+void Bench::report(uint32_t node, const NodeOutputs& out) {
+  if (!over_) collector_.collect(node, timeline_.cycle(), out);
+}
+
+// Writes the controls for the next cycle.
+void Bench::host() {
+  if (over_) return;
+  Control control;
+  control.reset_n = true;
+  switch (state_) {
+    case Host::reset:
+      for (auto& c : control_) c.write(control);
+      state_ = Host::load;
+      return;
+    case Host::load:
+      for (uint32_t n = 0; n < nodes_.size(); ++n) {
+        control.load_valid = loaded_ < particles_[n].size();
+        control.load_data = control.load_valid ? load_word(plan_, particles_[n][loaded_]) : Bits{};
+        control_[n].write(control);
+      }
+      if (++loaded_ > most_) state_ = Host::start;
+      return;
+    case Host::start:
+      control.start = true;
+      control.steps = static_cast<uint32_t>(options_.steps);
+      for (auto& c : control_) c.write(control);
+      timeline_.base = timeline_.edge() + 2;  // the next cycle is the last in IDLE
+      begin_ = shown_ = now();
+      state_ = Host::run;
+      return;
+    case Host::run:
+      if (timeline_.edge() + 1 == timeline_.base)
+        for (auto& c : control_) c.write(control);
+      if (!running()) return;
+      if (collector_.done()) {
+        over_ = true;
+        seconds_ = now() - begin_;
+      } else if (timeline_.cycle() > collector_.last_event() + patience_) {
+        std::vector<std::string> doing;
+        for (const auto& n : nodes_) doing.push_back(n->model().doing());
+        stuck_ = stuck_text(plan_.lattice, timeline_.cycle(), patience_, doing);
+        over_ = true;
+      } else if (options_.progress && timeline_.cycle() % 1024 == 0) {
+        show_progress();
+      }
+      return;
+  }
+}
+
+void Bench::show_progress() {
+  if (now() - shown_ < 1) return;
+  shown_ = now();
+  fmt::print(stderr, "{}step {} of {}, cycle {}{}", isatty(2) ? "\r" : "", collector_.steps_done(),
+             options_.steps, timeline_.cycle(), isatty(2) ? "" : "\n");
+}
+
+RunResult Bench::take_result() {
+  if (!stuck_.empty()) throw std::runtime_error(stuck_);
+  if (!over_) throw std::runtime_error("the bench has not run");
+  RunResult result;
+  result.order = collector_.order();
+  Counters counters{{"cycles", static_cast<double>(collector_.last_cycle() + 1)}};
+  for (const auto& n : nodes_) add_counters(counters, 1, n->model().counters());
+  result.trace = collector_.take_trace();
+  result.trace.engine = engine_;
+  result.trace.seconds = seconds_;
+  result.trace.counters = std::move(counters);
+  return result;
+}
+
+void simulate(const std::vector<Bench*>& benches) {
+  sc_core::sc_clock clock("clock", sc_core::sc_time(1, sc_core::SC_NS));
+  for (Bench* b : benches) b->clk_i(clock);
+  const auto all_over = [&] {
+    return std::all_of(benches.begin(), benches.end(), [](const Bench* b) { return b->over(); });
+  };
+  while (!all_over()) sc_core::sc_start(sc_core::sc_time(1000, sc_core::SC_NS));
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "emu/systemc/collector.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "emu/systemc/words.h"
+
+namespace cuboct::emu {
+namespace {
+
+std::string place_of(const Lattice& lattice, uint32_t node) {
+  const Cell& c = lattice.cell(node);
+  return fmt::format(" at cell ({}, {}, {})", c[0], c[1], c[2]);
+}
+
+}  // namespace
+
+uint64_t patience_of(const Plan& plan, double stall_rate) {
+  // The longest phase is FORCE, where each of the 27 C candidates passes ceil(C / L) times and each of its 27
+  // C^2 pairs may take a cycle; an exchange sends at most 9 C records and waits for a neighbour that may be a
+  // step behind.
+  const uint64_t c = static_cast<uint64_t>(plan.arch.capacity);
+  const uint64_t force = 27 * c * (c + 1) + 1000;
+  const uint64_t beats =
+      16 * c * static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
+  return 4 * force + static_cast<uint64_t>(64.0 * static_cast<double>(beats) / (1.0 - stall_rate));
+}
+
+std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initial) {
+  std::vector<std::vector<Particle>> nodes(plan.lattice.size());
+  const Particle* first = nullptr;  // that found its node full; `initial` ascends in id
+  for (const Particle& p : initial.particles) {
+    if (static_cast<int>(nodes[p.node].size()) < plan.arch.capacity) nodes[p.node].push_back(p);
+    else if (first == nullptr) first = &p;
+  }
+  if (first != nullptr)
+    throw RunError(Fault::full_x, initial.step, first->node, first->id, plan.arch.capacity,
+                   place_of(plan.lattice, first->node));
+  return nodes;
+}
+
+Bits load_word(const Plan& plan, const Particle& particle) {
+  Slot slot;
+  slot.body = {particle.x, particle.v, particle.type};
+  slot.u = particle.u;
+  slot.id = particle.id;
+  return pack_particle(plan, slot);
+}
+
+Collector::Collector(const Plan& plan, const RunOptions& options)
+    : plan_(plan), options_(options), nodes_(plan.lattice.size()), step_(nodes_), stopped_(nodes_) {
+  trace_.plan_hash = plan.hash;
+  trace_.nodes = nodes_;
+}
+
+bool Collector::wants(uint64_t step) const {
+  return std::find(options_.frames.begin(), options_.frames.end(), step) != options_.frames.end();
+}
+
+void Collector::observe(uint32_t node, const Bits& word) {
+  const Slot slot = unpack_particle(plan_, word);
+  const uint64_t step = step_[node];
+  Particle p;
+  p.id = slot.id;
+  p.type = slot.body.type;
+  p.node = node;
+  p.x = slot.body.x;
+  p.v = slot.body.v;
+  p.u = slot.u;
+  Snapshot& s = open_[step];
+  s.hash += hash_of(plan_.lattice, p);
+  if (wants(step)) s.state.particles.push_back(p);
+  if (options_.keep_order) {
+    if (order_.size() <= step) order_.resize(step + 1, std::vector<std::vector<uint32_t>>(nodes_));
+    order_[step][node].push_back(p.id);
+  }
+}
+
+void Collector::complete(uint64_t step) {
+  Snapshot& s = open_[step];
+  if (++s.complete < nodes_) return;
+  trace_.state_hash.push_back(s.hash);
+  if (wants(step)) {
+    s.state.step = step;
+    std::sort(s.state.particles.begin(), s.state.particles.end(),
+              [](const Particle& a, const Particle& b) { return a.id < b.id; });
+    trace_.frames.push_back(std::move(s.state));
+  }
+  open_.erase(step);
+}
+
+void Collector::close(uint64_t cycle) {
+  done_ = true;
+  last_cycle_ = cycle;
+}
+
+void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
+  if (done_ || stopped_[node]) return;
+  last_event_ = cycle;
+  const uint64_t step = step_[node];
+  const auto span = [&](int phase) -> PhaseSpan& {
+    return trace_.cycles[(step * nodes_ + node) * kPhases + static_cast<size_t>(phase)];
+  };
+  if (out.phase_start != 0 && trace_.cycles.size() < (step + 1) * nodes_ * kPhases)
+    trace_.cycles.resize((step + 1) * nodes_ * kPhases);
+  for (int p = 0; p < kPhases; ++p)
+    if (out.phase_start >> p & 1) span(p).start = cycle;
+  if (out.observe) observe(node, out.observe_data);
+  for (int p = 0; p < kPhases; ++p)
+    if (out.phase_end >> p & 1) span(p).end = cycle;
+  if (out.phase_end & 1u << static_cast<int>(Phase::exchange_x)) complete(step);
+  if (out.fault) {
+    const StopReason found{
+        static_cast<Fault>(out.fault_code), step, node, out.fault_id, out.fault_number, {}};
+    const auto key = [](const StopReason& r) { return std::tie(r.step, r.fault, r.particle, r.number); };
+    if (stop_.fault == Fault::none || key(found) < key(stop_)) stop_ = found;
+  }
+  if (out.phase_end & 1u << static_cast<int>(Phase::migrate_z)) {
+    ++step_[node];
+    ++finished_[step];
+  }
+  if (out.idle) {
+    stopped_[node] = true;
+    complete(options_.steps);
+  }
+  // No fault of an earlier step can come once all nodes have finished this one.
+  if (stop_.fault != Fault::none ? finished_[stop_.step] == nodes_
+                                 : trace_.state_hash.size() == options_.steps + 1)
+    close(cycle);
+}
+
+Trace Collector::take_trace() {
+  if (stop_.fault != Fault::none) {
+    stop_.text = RunError(stop_.fault, stop_.step, stop_.node, stop_.particle, stop_.number,
+                          place_of(plan_.lattice, stop_.node))
+                     .what();
+    trace_.stop = stop_;
+    trace_.state_hash.resize(stop_.step + 1);
+    std::erase_if(trace_.frames, [&](const State& s) { return s.step > stop_.step; });
+  }
+  trace_.cycles.resize(steps_done() * nodes_ * kPhases);
+  return std::move(trace_);
+}
+
+}  // namespace cuboct::emu

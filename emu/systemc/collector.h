@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Makes a Trace of what the nodes show, cycle by cycle. Knows nothing of SystemC.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "emu/systemc/node_model.h"
+#include "hw/plan.h"
+#include "model/trace.h"
+
+namespace cuboct::emu {
+
+struct RunOptions {
+  uint64_t steps = 0;
+  std::vector<uint64_t> frames;  // steps whose states are kept; those beyond `steps` never come
+  double stall_rate = 0;         // share of cycles in which a link passes nothing, [0, 1)
+  uint64_t stall_seed = 1;
+  bool progress = false;    // a line per second on standard error
+  bool keep_order = false;  // keep the ids in the order of the slots, per step and node
+  uint64_t patience =
+      0;  // cycles without any event after which the run is stuck; 0: `patience_of(plan, ...)`
+};
+
+// More cycles than any phase of this plan can take, stalls included.
+uint64_t patience_of(const Plan& plan, double stall_rate);
+
+// The particles by node, sorted by id within a node: the order in which they are loaded. Throws RunError
+// where a node would hold more than its capacity.
+std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initial);
+
+// The word of the load port.
+Bits load_word(const Plan& plan, const Particle& particle);
+
+class Collector {
+ public:
+  // Keeps a reference to `plan`.
+  Collector(const Plan& plan, const RunOptions& options);
+
+  // Whether `out` shows anything that `collect` must see; `collect` may be skipped where it does not.
+  static bool shows(const NodeOutputs& out) {
+    return (out.phase_start | out.phase_end) != 0 || out.observe || out.fault || out.idle;
+  }
+  // One cycle of one node; cycles count from the start of the run. To be called for each cycle of a node in
+  // order, and for all nodes with a cycle before the next one.
+  void collect(uint32_t node, uint64_t cycle, const NodeOutputs& out);
+
+  // All steps are complete, or all nodes have finished the first step with a fault.
+  bool done() const { return done_; }
+  uint64_t steps_done() const { return trace_.state_hash.empty() ? 0 : trace_.state_hash.size() - 1; }
+  uint64_t last_event() const { return last_event_; }  // cycle
+  uint64_t last_cycle() const { return last_cycle_; }  // of the run, once done
+  // [step][node]: ids in the order of the slots, if asked for.
+  const std::vector<std::vector<std::vector<uint32_t>>>& order() const { return order_; }
+  // Valid once done. `engine`, `seconds` and the counters are the caller's.
+  Trace take_trace();
+
+ private:
+  struct Snapshot {
+    State state;  // kept only for frames
+    uint64_t hash = 0;
+    uint32_t complete = 0;  // nodes that have shown all of it
+  };
+  bool wants(uint64_t step) const;
+  void observe(uint32_t node, const Bits& word);
+  void complete(uint64_t step);
+  void close(uint64_t cycle);
+
+  const Plan& plan_;
+  const RunOptions options_;
+  const uint32_t nodes_;
+  Trace trace_;
+  std::vector<uint64_t> step_;             // per node: the step it is in
+  std::vector<bool> stopped_;              // per node: back in IDLE
+  std::map<uint64_t, Snapshot> open_;      // states of which a part is still to come
+  std::map<uint64_t, uint32_t> finished_;  // nodes that finished a step
+  std::vector<std::vector<std::vector<uint32_t>>> order_;
+  StopReason stop_;  // the least (step, fault, id, number) so far
+  bool done_ = false;
+  uint64_t last_event_ = 0, last_cycle_ = 0;
+};
+
+}  // namespace cuboct::emu

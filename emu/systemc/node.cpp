@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: MIT
+#include "emu/systemc/node.h"
+
+#include <fmt/format.h>
+
+#include "model/fixed_math.h"
+
+namespace cuboct::emu {
+namespace {
+
+constexpr uint8_t bit(int i) { return static_cast<uint8_t>(1u << i); }
+constexpr uint8_t bit(Phase phase) { return bit(static_cast<int>(phase)); }
+
+}  // namespace
+
+Node::Node(const Plan& plan, uint8_t has_link)
+    : plan_(plan), has_link_(has_link), capacity_(plan.arch.capacity), engine_(plan, own_, halo_, fault_) {
+  own_.reserve(capacity_);
+  // Depths of the memories: an axis brings what the axes before it brought too.
+  for (int f = 0, depth = capacity_; f < kFaces; f += 2, depth *= 3)
+    halo_[f].reserve(depth), halo_[f + 1].reserve(depth);
+  for (Receiver& r : receiver_) r.fifo.reserve(capacity_);
+}
+
+void Node::reset() {
+  own_.clear();
+  for (auto& h : halo_) h.clear();
+  for (Receiver& r : receiver_) {
+    r.migrating = r.halo_end = r.migrate_end = false;
+    r.beat = 0;
+    r.fifo.clear();
+    r.popped = 0;
+  }
+  engine_.reset();
+  main_ = Main::idle;
+  fault_ = {};
+  starting_ = valid_ = 0;
+}
+
+int Node::axis() const {
+  return static_cast<int>(main_) % 5;  // exchange_* are 0...2, migrate_* are 5...7
+}
+
+void Node::load(int face, const Bits& payload, bool end) {
+  if (!linked(face)) return;
+  valid_ |= bit(face);
+  out_->loaded |= bit(face);
+  out_->beat[face].end = end;
+  out_->beat[face].payload = payload;
+  ++beats_;
+}
+
+// Loads beat `beat_` of `record` on a range of faces.
+void Node::load_record_beat(int faces_from, int faces_to, const Bits& record) {
+  const int width = plan_.words.link_bits;
+  if (beat_ == 0 && width >= Bits::kWidth) {
+    for (int f = faces_from; f < faces_to; ++f) load(f, record, false);
+    return;
+  }
+  const Bits payload = record.slice(beat_ * width, width);
+  for (int f = faces_from; f < faces_to; ++f) load(f, payload, false);
+}
+
+// Prepares the registers for a main state's first cycle, which is the next one.
+void Node::enter(Main next) {
+  main_ = next;
+  segment_ = record_ = beat_ = 0;
+  sent_ = false;
+  kept_ = 0;
+  if (next == Main::dump || next == Main::idle) return;
+  const bool begins_engine = plan_.arch.overlap ? next == Main::exchange_x : next == Main::force;
+  if (begins_engine) engine_.begin(), starting_ |= bit(Phase::force);
+  if (next != Main::force) starting_ |= bit(static_cast<int>(next));
+  if (next == Main::update) {
+    const int n = static_cast<int>(own_.size());
+    remaining_ = n == 0 ? 1 : n - 1 + plan_.latency.update;
+  }
+  if (next >= Main::migrate_x) migrate_ = leaving_ & bit(axis()) ? Migrate::scan : Migrate::end;
+}
+
+void Node::finish_phase(Main next) {
+  out_->phase_end |= bit(static_cast<int>(main_));
+  enter(next);
+}
+
+void Node::idle() {
+  const Control& host = *control_;
+  out_->idle = true;
+  quiet_ = !host.load_valid && !host.start;
+  if (host.load_valid) own_.push_back(unpack_particle(plan_, host.load_data));
+  if (!host.start) return;
+  steps_ = host.steps;
+  step_ = 0;
+  enter(steps_ == 0 ? Main::dump : Main::exchange_x);
+}
+
+int Node::relayed_size(int segment) const {
+  return static_cast<int>(segment == 0 ? own_.size() : halo_[segment - 1].size());
+}
+
+const Candidate& Node::relayed(int segment, int record) const {
+  return segment == 0 ? own_[record].body : halo_[segment - 1][record];
+}
+
+void Node::exchange() {
+  const int low = 2 * axis(), high = low + 1;
+  const auto ended = [&](int f) { return !linked(f) || receiver_[f].halo_end; };
+  if (sent_) {
+    if (ended(low) && ended(high)) {
+      finish_phase(static_cast<Main>(static_cast<int>(main_) + 1));
+    } else {
+      quiet_ = true;
+    }
+    return;
+  }
+  const int segments = 1 + low;
+  if (segment_ < segments && relayed_size(segment_) == 0) {
+    ++segment_;
+    return;
+  }
+  if (!can_load(low) || !can_load(high)) {
+    ++link_waits_;
+    return;
+  }
+  if (segment_ == segments) {
+    load(low, {}, true);
+    load(high, {}, true);
+    sent_ = true;
+    return;
+  }
+  if (beat_ == 0) {
+    word_ = pack_halo(plan_, relayed(segment_, record_));
+    if (main_ == Main::exchange_x) {
+      out_->observe = true;
+      out_->observe_data = pack_particle(plan_, own_[record_]);
+    }
+  }
+  load_record_beat(low, high + 1, word_);
+  if (++beat_ < plan_.words.halo_beats) return;
+  beat_ = 0;
+  if (++record_ < relayed_size(segment_)) return;
+  record_ = 0;
+  ++segment_;
+}
+
+void Node::force(bool engine_last) {
+  if (!engine_last) {
+    quiet_ = engine_.quiet();
+    return;
+  }
+  for (auto& h : halo_) h.clear();
+  for (Receiver& r : receiver_) r.halo_end = false;
+  enter(Main::update);
+}
+
+void Node::update() {
+  if (--remaining_ > 0) return;
+  finish_particles();
+  finish_phase(Main::migrate_x);
+}
+
+void Node::finish_particles() {
+  const int p = plan_.rule.widths.position_frac;
+  leaving_ = 0;
+  for (size_t k = 0; k < own_.size(); ++k) {
+    Slot& s = own_[k];
+    const FinishResult r =
+        finish(plan_.rule, engine_.take_sum(static_cast<int>(k)), s.body.x, s.body.v, s.u, s.body.type);
+    fault_.add(r.fault, s.id, r.number);
+    s.u = r.u;
+    for (int a = 0; a < 3; ++a) {
+      s.body.v[a] = wrap(r.v[a], plan_.rule.widths.velocity_bits);
+      s.away[a] = static_cast<int8_t>(wrap(r.x[a] >> p, 2));
+      s.body.x[a] = r.x[a] & ((int64_t{1} << p) - 1);
+      if (s.away[a] != 0) leaving_ |= bit(a);
+    }
+  }
+}
+
+void Node::migrate() {
+  const int low = 2 * axis(), high = low + 1;
+  switch (migrate_) {
+    case Migrate::scan:
+      scan();
+      break;
+    case Migrate::end:
+      if (!can_load(low) || !can_load(high)) {
+        ++link_waits_;
+        break;
+      }
+      load(low, {}, true);
+      load(high, {}, true);
+      migrate_ = Migrate::take_low;
+      break;
+    case Migrate::take_low:
+      take(low, Migrate::take_high, false);
+      break;
+    case Migrate::take_high:
+      take(high, Migrate::scan, true);
+      break;
+  }
+}
+
+void Node::scan() {
+  const int a = axis();
+  if (!own_.empty()) {
+    Slot& s = own_[record_];
+    if (s.away[a] == 0) {
+      if (kept_ != static_cast<size_t>(record_)) own_[kept_] = s;
+      ++kept_;
+    } else {
+      const int face = 2 * a + (s.away[a] > 0);
+      if (!linked(face)) {
+        fault_.add(static_cast<Fault>(static_cast<int>(Fault::left_x) + 2 * a), s.id, 0);
+      } else {
+        if (!can_load(face)) {
+          ++link_waits_;
+          return;
+        }
+        if (beat_ == 0) {
+          word_ = pack_particle(plan_, s);
+        }
+        load_record_beat(face, face + 1, word_);
+        if (++beat_ < plan_.words.migrate_beats) return;
+        beat_ = 0;
+      }
+    }
+    if (static_cast<size_t>(++record_) < own_.size()) return;
+    own_.resize(kept_);
+  }
+  migrate_ = Migrate::end;
+}
+
+void Node::take(int face, Migrate next, bool last) {
+  const int a = axis();
+  Receiver& r = receiver_[face];
+  if (r.popped < r.fifo.size()) {
+    Slot s = r.fifo[r.popped++];
+    if (r.popped == r.fifo.size()) r.fifo.clear(), r.popped = 0;
+    s.away[a] = 0;
+    for (int later = a + 1; later < 3; ++later)
+      if (s.away[later] != 0) leaving_ |= bit(later);
+    if (static_cast<int>(own_.size()) == capacity_)
+      fault_.add(static_cast<Fault>(static_cast<int>(Fault::full_x) + 2 * a), s.id, capacity_);
+    else
+      own_.push_back(s);
+    return;
+  }
+  if (linked(face) && !r.migrate_end) {
+    quiet_ = true;
+    return;
+  }
+  migrate_ = next;
+  if (!last) return;
+  receiver_[2 * a].migrate_end = receiver_[2 * a + 1].migrate_end = false;
+  if (main_ != Main::migrate_z) {
+    finish_phase(static_cast<Main>(static_cast<int>(main_) + 1));
+    return;
+  }
+  if (fault_.code != Fault::none) {
+    out_->fault = true;
+    out_->fault_code = static_cast<uint8_t>(fault_.code);
+    out_->fault_id = fault_.id;
+    out_->fault_number = fault_.number;
+  }
+  fault_ = {};
+  finish_phase(++step_ < steps_ ? Main::exchange_x : Main::dump);
+}
+
+void Node::dump() {
+  if (record_ < static_cast<int>(own_.size())) {
+    out_->observe = true;
+    out_->observe_data = pack_particle(plan_, own_[record_]);
+    ++record_;
+  }
+  if (record_ == static_cast<int>(own_.size())) enter(Main::idle);
+}
+
+void Node::receive(int face, const Beat& beat) {
+  Receiver& r = receiver_[face];
+  if (beat.end) {
+    (r.migrating ? r.migrate_end : r.halo_end) = true;
+    r.migrating = !r.migrating;
+    return;
+  }
+  const int beats = r.migrating ? plan_.words.migrate_beats : plan_.words.halo_beats;
+  const Bits* record = &beat.payload;
+  if (beats > 1) {
+    if (r.beat == 0) r.partial = {};
+    r.partial.join(r.beat * plan_.words.link_bits, plan_.words.link_bits, beat.payload);
+    if (++r.beat < beats) return;
+    r.beat = 0;
+    record = &r.partial;
+  }
+  if (r.migrating) {
+    r.fifo.push_back(unpack_particle(plan_, *record));
+    return;
+  }
+  Candidate c = unpack_halo(plan_, *record);
+  const int64_t cell = int64_t{1} << plan_.rule.widths.position_frac;
+  c.x[face / 2] += face % 2 == 0 ? -cell : cell;
+  halo_[face].push_back(c);
+}
+
+void Node::clock(const NodeInputs& in, NodeOutputs& out) {
+  out_ = &out;
+  control_ = in.control;
+  out.phase_start = starting_;
+  out.phase_end = out.loaded = 0;
+  out.observe = out.fault = out.idle = false;
+  out.ready = has_link_;
+  starting_ = 0;
+  quiet_ = false;
+  if (!in.control->reset_n) {
+    reset();
+    out.valid = 0;
+    return;
+  }
+  can_load_ = static_cast<uint8_t>(~valid_ | in.ready | ~has_link_);
+  valid_ &= static_cast<uint8_t>(~in.ready);
+
+  bool engine_last = false;
+  if (engine_.active()) {
+    const int m = static_cast<int>(main_);
+    engine_last = engine_.cycle(m >= static_cast<int>(Main::force) ? ForceEngine::kSegments : 1 + 2 * m);
+    if (engine_last) out.phase_end |= bit(Phase::force);
+  }
+  switch (main_) {
+    case Main::idle:
+      idle();
+      break;
+    case Main::exchange_x:
+    case Main::exchange_y:
+    case Main::exchange_z:
+      exchange();
+      break;
+    case Main::force:
+      force(engine_last);
+      break;
+    case Main::update:
+      update();
+      break;
+    case Main::migrate_x:
+    case Main::migrate_y:
+    case Main::migrate_z:
+      migrate();
+      break;
+    case Main::dump:
+      dump();
+      break;
+  }
+  quiet_ = quiet_ && !(engine_.active() && !engine_.quiet()) && in.valid == 0 && out.phase_start == 0;
+  for (uint8_t left = in.valid; left != 0; left &= static_cast<uint8_t>(left - 1)) {
+    const int f = __builtin_ctz(left);
+    receive(f, *in.beat[f]);
+  }
+  out.valid = valid_;
+}
+
+std::string Node::doing() const {
+  static const char* const kFace[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
+  if (main_ == Main::idle) return "idle";
+  if (main_ == Main::dump) return "dump";
+  std::string text = fmt::format("step {}, {}", step_, to_string(static_cast<Phase>(main_)));
+  const auto faces = [&](uint8_t mask) {
+    std::string list;
+    for (int f = 0; f < kFaces; ++f)
+      if (mask >> f & 1) list += fmt::format(" {}", kFace[f]);
+    return list;
+  };
+  const int low = 2 * axis(), high = low + 1;
+  if (main_ <= Main::exchange_z && sent_) {
+    uint8_t missing = 0;
+    for (const int f : {low, high})
+      if (linked(f) && !receiver_[f].halo_end) missing |= bit(f);
+    return text + ": waits for the halo of" + faces(missing);
+  }
+  if (main_ >= Main::migrate_x && migrate_ >= Migrate::take_low)
+    return text + ": waits for the particles of" + faces(bit(migrate_ == Migrate::take_low ? low : high));
+  if (valid_ != 0) return text + ": waits for ready of" + faces(valid_);
+  return text;
+}
+
+Counters Node::counters() const {
+  const ForceEngine::Counts& c = engine_.counts();
+  const auto number = [](uint64_t n) { return static_cast<double>(n); };
+  return {{"candidates", number(c.candidates)},     {"pairs_issued", number(c.pairs_issued)},
+          {"pairs_inside", number(c.pairs_inside)}, {"queue_stalls", number(c.stalls)},
+          {"issue_cycles", number(c.issue_cycles)}, {"force_cycles", number(c.busy)},
+          {"link_beats", number(beats_)},           {"link_waits", number(link_waits_)}};
+}
+
+NodeFactory native_nodes(const Plan& plan) {
+  check_words(plan);
+  return [&plan](uint32_t, uint8_t has_link) { return std::make_unique<Node>(plan, has_link); };
+}
+
+}  // namespace cuboct::emu

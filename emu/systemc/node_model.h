@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// What the bench asks of a node, whoever implements it: the ports of docs/reference/node.md, one call per
+// clock cycle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "emu/systemc/bits.h"
+#include "model/lattice.h"
+
+namespace cuboct::emu {
+
+// One beat of a link: the payload, or the end of a stream.
+struct Beat {
+  bool end = false;
+  Bits payload;
+};
+
+// The host's side of a node's ports.
+struct Control {
+  bool reset_n = false;
+  bool start = false;
+  uint32_t steps = 0;
+  bool load_valid = false;
+  Bits load_data;
+  bool operator==(const Control&) const = default;
+};
+
+// A node's inputs during one cycle. Bit f of a mask belongs to face f.
+struct NodeInputs {
+  const Control* control = nullptr;
+  uint8_t valid = 0;                       // link_valid_i
+  uint8_t ready = 0;                       // link_ready_i
+  std::array<const Beat*, kFaces> beat{};  // where `valid`
+};
+
+// What a node shows of one cycle, and its link registers after the edge that ends the cycle.
+struct NodeOutputs {
+  // Of the cycle.
+  uint8_t phase_start = 0, phase_end = 0;  // bit p: Phase p
+  bool observe = false, fault = false, idle = false;
+  Bits observe_data;       // where `observe`
+  uint8_t fault_code = 0;  // these three where `fault`
+  uint32_t fault_id = 0;
+  int64_t fault_number = 0;
+  // After the edge.
+  uint8_t valid = 0;                // link_valid_o
+  uint8_t loaded = 0;               // faces whose `beat` is new; a subset of `valid`
+  uint8_t ready = 0;                // link_ready_o
+  std::array<Beat, kFaces> beat{};  // link_end_o, link_data_o
+};
+
+using Counters = std::vector<std::pair<std::string, double>>;
+
+// Adds `part` to what `sum` holds from `first` on; an empty tail takes its names.
+inline void add_counters(Counters& sum, size_t first, const Counters& part) {
+  if (sum.size() == first)
+    for (const auto& [name, value] : part) sum.emplace_back(name, 0.0);
+  for (size_t k = 0; k < part.size(); ++k) sum[first + k].second += part[k].second;
+}
+
+class NodeModel {
+ public:
+  virtual ~NodeModel() = default;
+  // One clock cycle. `out` is the same object in every call.
+  virtual void clock(const NodeInputs& in, NodeOutputs& out) = 0;
+  // Whether the last cycle changed nothing and showed no event, so that a further cycle with the same inputs,
+  // and with no valid beat on either side of any link, will do the same. False is always right.
+  virtual bool quiet() const { return false; }
+  // What the node is doing, for the report of a deadlock.
+  virtual std::string doing() const { return "unknown"; }
+  // Counters of this node, always the same names in the same order; the bench adds them up over the nodes.
+  virtual Counters counters() const { return {}; }
+};
+
+// `node` is an index into the lattice; `has_link` the faces that have a neighbour.
+using NodeFactory = std::function<std::unique_ptr<NodeModel>(uint32_t node, uint8_t has_link)>;
+
+}  // namespace cuboct::emu

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The words of hw/plan.h, packed and unpacked: halo records and particles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "emu/systemc/bits.h"
+#include "hw/plan.h"
+
+namespace cuboct::emu {
+
+// What a pair needs of a candidate; the halo memories hold these in the receiver's own frame.
+struct Candidate {
+  Int3 x{};  // P fractional bits, P+2 bits signed
+  Int3 v{};  // P+G fractional bits; zero unless the rule damps
+  uint8_t type = 0;
+};
+
+// A particle in a slot.
+struct Slot {
+  Candidate body;
+  Int3 u{};
+  uint32_t id = 0;
+  std::array<int8_t, 3> away{};  // per axis: nodes still to go, -1, 0, +1
+};
+
+// Throws InputError where a word is wider than Bits.
+void check_words(const Plan& plan);
+
+Bits pack_halo(const Plan& plan, const Candidate& candidate);
+Candidate unpack_halo(const Plan& plan, const Bits& bits);
+Bits pack_particle(const Plan& plan, const Slot& slot);
+Slot unpack_particle(const Plan& plan, const Bits& bits);
+
+}  // namespace cuboct::emu

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "hw/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "model/hash.h"
+
+namespace cuboct {
+namespace {
+
+int ceil_div(int a, int b) { return (a + b - 1) / b; }
+
+void check_arch(const Arch& arch) {
+  const auto positive = [](const char* what, int value, int high) {
+    if (value < 1 || value > high)
+      throw InputError(fmt::format("{} = {} is out of range: 1 to {}", what, value, high));
+  };
+  positive("capacity", arch.capacity, 256);
+  positive("filter_lanes", arch.filter_lanes, 64);
+  positive("force_pipes", arch.force_pipes, arch.filter_lanes);
+  positive("queue_depth", arch.queue_depth, 1024);
+  if (arch.link_bits < 0 || arch.link_bits > 1024)
+    throw InputError(fmt::format("link bits = {} is out of range: 1 to 1024, or 0 for one record per beat",
+                                 arch.link_bits));
+}
+
+void add(Hash& hash, const FixedTable& table) {
+  hash.add(static_cast<int>(table.shape)).add(table.degree).add(table.difference_frac).add(table.index_bits);
+  hash.add(table.bin_bits).add(table.first_octave).add(table.fraction_bits).add(table.value_frac);
+  for (const auto* column : {&table.c0, &table.c1, &table.c2})
+    for (const int32_t c : *column) hash.add(c);
+}
+
+uint64_t hash_of(const Plan& plan) {
+  Hash hash;
+  const FixedRule& rule = plan.rule;
+  const Widths& w = rule.widths;
+  for (const int value : {w.position_frac, w.guard, w.difference_frac, w.velocity_bits,
+                          w.relative_velocity_frac, w.relative_velocity_bits, w.strength_bits, w.sum_bits,
+                          w.displacement_bits, w.scale_frac, w.gain_frac})
+    hash.add(value);
+  hash.add(static_cast<int64_t>(rule.cutoff2)).add(rule.damped).add(rule.scaled).add(rule.pd);
+  add(hash, rule.force);
+  if (rule.damped) add(hash, rule.damp);
+  for (const auto& row : rule.scale)
+    for (const int32_t s : row) hash.add(s);
+  for (const FixedType& type : rule.types) {
+    for (int a = 0; a < 3; ++a) hash.add(type.imposed[a]).add(type.velocity[a]).add(type.gravity[a]);
+    hash.add(type.pd).add(type.kp).add(type.kd);
+  }
+  const Arch& arch = plan.arch;
+  hash.add(arch.capacity)
+      .add(arch.filter_lanes)
+      .add(arch.force_pipes)
+      .add(arch.queue_depth)
+      .add(arch.overlap);
+  hash.add(plan.words.link_bits).add(plan.particles);
+  for (const int32_t p : plan.lattice.period()) hash.add(p);
+  for (uint32_t n = 0; n < plan.lattice.size(); ++n)
+    for (const int32_t c : plan.lattice.cell(n)) hash.add(c);
+  return hash.value();
+}
+
+}  // namespace
+
+Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, Vec3 origin, uint32_t particles) {
+  check_arch(arch);
+  Plan plan;
+  plan.rule = std::move(rule);
+  plan.arch = std::move(arch);
+  plan.lattice = std::move(lattice);
+  plan.origin = origin;
+  plan.particles = particles;
+
+  const FixedRule& r = plan.rule;
+  const int P = r.widths.position_frac;
+  Words& words = plan.words;
+  words.id_bits = std::max(1, static_cast<int>(std::bit_width(particles > 0 ? particles - 1 : 0u)));
+  words.halo_bits = 3 * P + 4 + (r.scaled ? r.type_bits : 0) + (r.damped ? 3 * r.widths.velocity_bits : 0);
+  words.particle_bits = 3 * P + 4 + 3 * r.widths.velocity_bits + r.type_bits + words.id_bits +
+                        (r.pd ? 3 * r.widths.displacement_bits : 0);
+  words.link_bits = plan.arch.link_bits > 0 ? plan.arch.link_bits : words.halo_bits;
+  words.halo_beats = ceil_div(words.halo_bits, words.link_bits);
+  words.migrate_beats = ceil_div(words.particle_bits, words.link_bits);
+
+  plan.latency.pipe = 11 + (r.force.shape == TableShape::octaves ? 1 : 0) + (r.force.degree == 2 ? 2 : 0) +
+                      (r.damped ? 2 : 0) + (r.scaled ? 2 : 0);
+  plan.latency.update = r.pd ? 6 : 3;
+  plan.hash = hash_of(plan);
+  return plan;
+}
+
+std::string describe(const Plan& plan) {
+  const FixedRule& r = plan.rule;
+  const Widths& w = r.widths;
+  const FixedTable& t = r.force;
+  std::string text;
+  const auto line = [&text](const char* name, const std::string& value) {
+    text += fmt::format("  {:<22} {}\n", name, value);
+  };
+  line("plan hash", fmt::format("{:016x}", plan.hash));
+  line("particles",
+       fmt::format("{} of {} type{}", plan.particles, r.types.size(), r.types.size() == 1 ? "" : "s"));
+  line("nodes", fmt::format("{} of {} slots, cell edge {:.6g} m", plan.lattice.size(), plan.arch.capacity,
+                            r.cell_edge));
+  line("time step", fmt::format("{:.6g} s", r.dt));
+  line("position", fmt::format("{} fractional bits, differences {}", w.position_frac, w.difference_frac));
+  line("velocity", fmt::format("{} bits, {} fractional", w.velocity_bits, w.velocity_frac()));
+  line("table",
+       fmt::format("{} entries of {} bits, {}, degree {}, scaled by 2^{}", 1 << t.index_bits, w.strength_bits,
+                   t.shape == TableShape::uniform ? std::string("uniform in r^2")
+                                                  : fmt::format("{} per octave of r^2", 1 << t.bin_bits),
+                   t.degree, t.value_frac));
+  line("worst force error", fmt::format("{:.3g} N at r = {:.6g} m ({:.3g} of the largest force)",
+                                        r.error.worst_force, r.error.at, r.error.relative));
+  line("halo record", fmt::format("{} bits in {} beat{} of {}", plan.words.halo_bits, plan.words.halo_beats,
+                                  plan.words.halo_beats == 1 ? "" : "s", plan.words.link_bits));
+  line("particle word", fmt::format("{} bits in {} beat{}", plan.words.particle_bits,
+                                    plan.words.migrate_beats, plan.words.migrate_beats == 1 ? "" : "s"));
+  line("filter lanes, pipes",
+       fmt::format("{}, {}, queue of {}{}", plan.arch.filter_lanes, plan.arch.force_pipes,
+                   plan.arch.queue_depth, plan.arch.overlap ? ", force overlaps the exchange" : ""));
+  line("latency", fmt::format("pipe {}, update {} cycles", plan.latency.pipe, plan.latency.update));
+  std::string out;
+  for (const auto& [used, name] : {std::pair{r.damped, "damping"}, std::pair{r.scaled, "pair scales"},
+                                   std::pair{r.pd, "force-held types"}, std::pair{r.type_bits > 0, "types"}})
+    if (!used) out += (out.empty() ? "" : ", ") + std::string(name);
+  line("left out, as unused", out.empty() ? "nothing" : out);
+  return text;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Equality of two engines: bits, stops and cycles. Host times and counters are no part of it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/lattice.h"
+#include "model/trace.h"
+
+namespace cuboct {
+
+// The first place where two traces part.
+struct Mismatch {
+  enum class Kind : uint8_t {
+    plan,     // the plans' hashes: the engines ran different machines
+    nodes,    // number of nodes
+    state,    // the state's hash after `step`
+    length,   // one engine did fewer steps
+    stop,     // why the run stopped
+    cycles,   // a phase's start or end
+    particle  // a field of a particle after `step`
+  };
+  Kind kind = Kind::plan;
+  uint64_t step = 0;             // state, cycles, particle. In cycles: the step that begins with state `step`
+  uint32_t node = kNoNode;       // cycles, particle (where a has it)
+  uint32_t particle = 0;         // particle
+  std::string field;             // stop, cycles, particle: "fault", "force end", "v.y", ...
+  std::string value_a, value_b;  // as text
+
+  // One line, e.g. "step 13, node 5 (cell 1 2 0), particle 17, v.y: golden 120, rtl 121".
+  std::string text(const std::string& engine_a, const std::string& engine_b, const Lattice& lattice) const;
+};
+
+// In this order: plans, nodes, state hashes step by step, number of steps, stop reasons, cycles step by step
+// (only where both engines count them).
+std::optional<Mismatch> compare(const Trace& a, const Trace& b);
+
+// Particle by particle in the order of ids, field by field: missing, type, node, x, v, u.
+std::optional<Mismatch> compare(const State& a, const State& b);
+
+// The frame of that step; null where the trace has none.
+const State* frame_at(const Trace& trace, uint64_t step);
+
+// Particle updates that `compare` found equal in two traces without a mismatch.
+uint64_t updates_compared(const Trace& trace, uint64_t particles);
+
+}  // namespace cuboct

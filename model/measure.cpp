@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "model/measure.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include "model/strain.h"
+
+namespace cuboct {
+namespace {
+
+// Calls visit(i, j, x_j in the frame of i's node) for each particle i and each other one in reach.
+template <typename Visit>
+void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, Visit visit) {
+  std::vector<std::vector<size_t>> at_node(lattice.size());
+  for (size_t i = 0; i < state.particles.size(); ++i) at_node[state.particles[i].node].push_back(i);
+  const int64_t edge = int64_t{1} << rule.widths.position_frac;
+  for (uint32_t node = 0; node < lattice.size(); ++node) {
+    if (at_node[node].empty()) continue;
+    for (const Lattice::Near& near : lattice.neighbourhood(node))
+      for (const size_t j : at_node[near.node]) {
+        Int3 x = state.particles[j].x;
+        for (int axis = 0; axis < 3; ++axis) x[axis] += near.offset[axis] * edge;
+        for (const size_t i : at_node[node])
+          if (i != j) visit(i, j, x);
+      }
+  }
+}
+
+double velocity_unit(const FixedRule& rule) {
+  return std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
+}
+
+}  // namespace
+
+std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state) {
+  std::vector<Int3> sums(state.particles.size(), Int3{});
+  for_each_pair(rule, lattice, state, [&](size_t i, size_t j, const Int3& x_j) {
+    const Particle &a = state.particles[i], &b = state.particles[j];
+    const PairResult pair = pair_kick(rule, a.x, a.v, a.type, x_j, b.v, b.type);
+    if (!pair.inside) return;
+    for (int axis = 0; axis < 3; ++axis) sums[i][axis] += pair.kick[axis];
+  });
+  return sums;
+}
+
+double newtons_per_kick(const FixedRule& rule) { return velocity_unit(rule) * rule.mass / rule.dt; }
+
+Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
+                  const State& state, const std::vector<Int3>& kicks) {
+  Energies sum;
+  const double length = std::ldexp(fixed.cell_edge, -fixed.widths.position_frac);
+  const double velocity = velocity_unit(fixed);
+  for (size_t i = 0; i < state.particles.size(); ++i) {
+    const Particle& particle = state.particles[i];
+    const FixedType& type = fixed.types[particle.type];
+    const Vec3& gravity = rule.types[particle.type].gravity;
+    const Cell& cell = lattice.cell(particle.node);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double gain =
+          type.imposed[axis] ? 0 : 0.5 * static_cast<double>(kicks[i][axis] + type.gravity[axis]);
+      const double v = (static_cast<double>(particle.v[axis]) + gain) * velocity;
+      const double x =
+          origin[axis] + cell[axis] * fixed.cell_edge + static_cast<double>(particle.x[axis]) * length;
+      sum.kinetic += 0.5 * fixed.mass * v * v;
+      sum.gravity -= fixed.mass * gravity[axis] * x;
+    }
+  }
+  const double cutoff = rule.law->cutoff();
+  for_each_pair(fixed, lattice, state, [&](size_t i, size_t j, const Int3& x_j) {
+    if (j < i) return;
+    const Particle &a = state.particles[i], &b = state.particles[j];
+    const Vec3 d(static_cast<double>(x_j[0] - a.x[0]), static_cast<double>(x_j[1] - a.x[1]),
+                 static_cast<double>(x_j[2] - a.x[2]));
+    const double r = d.norm() * length;
+    if (r < cutoff) sum.potential += rule.law->energy(r) * rule.strength_of(a.type, b.type);
+  });
+  return sum;
+}
+
+bool keeps_energy(const Rule& rule, const Periodic& periodic) {
+  if (rule.damping.coefficient > 0) return false;
+  for (const ParticleType& type : rule.types) {
+    if (type.pd) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (type.imposed[axis] && type.velocity[axis] != 0) return false;
+      if (type.gravity[axis] != 0 && periodic.extent[axis] > 0) return false;
+    }
+  }
+  return true;
+}
+
+bool keeps_momentum(const Rule& rule) {
+  for (const ParticleType& type : rule.types)
+    if (type.pd || type.imposed != std::array<bool, 3>{} || !type.gravity.isZero(0)) return false;
+  return true;
+}
+
+double largest_speed(const FixedRule& rule, const State& state) {
+  int64_t largest = 0;
+  for (const Particle& particle : state.particles)
+    for (const int64_t v : particle.v) largest = std::max<int64_t>(largest, std::abs(v));
+  return std::ldexp(static_cast<double>(largest), -rule.widths.velocity_frac());
+}
+
+Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
+                 const std::vector<Int3>& kicks) {
+  Sample sample{state.step, to_real(state, rule, lattice, origin).x, {}};
+  const double unit = newtons_per_kick(rule);
+  for (const Int3& kick : kicks)
+    sample.force.push_back(unit * Vec3(static_cast<double>(kick[0]), static_cast<double>(kick[1]),
+                                       static_cast<double>(kick[2])));
+  return sample;
+}
+
+ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodic,
+                       const std::vector<Vec3>& initial)
+    : probes_(probes),
+      periodic_(periodic),
+      initial_(initial),
+      latest_(initial),
+      moved_(initial.size(), Vec3::Zero()) {
+  for (const Probe& probe : probes_) {
+    const auto curve = [&](const char* quantity, const char* unit) {
+      curves_.push_back({probe.name + "." + quantity, unit, {}, {}});
+    };
+    switch (probe.kind) {
+      case Probe::Kind::force:
+        curve("force_x", "N"), curve("force_y", "N"), curve("force_z", "N");
+        break;
+      case Probe::Kind::displacement:
+        curve("x", "m"), curve("y", "m"), curve("z", "m");
+        break;
+      case Probe::Kind::stress_strain:
+        curve("strain", "1"), curve("stress", "Pa");
+        break;
+    }
+  }
+}
+
+void ProbeMeter::add(const Sample& sample) {
+  for (size_t i = 0; i < moved_.size(); ++i) {
+    moved_[i] += nearest_image(sample.x[i] - latest_[i], periodic_);
+    latest_[i] = sample.x[i];
+  }
+  const auto total_force = [&](const ParticleSet& set) {
+    Vec3 sum = Vec3::Zero();
+    for (const uint32_t id : set.ids) sum += sample.force[id];
+    return sum;
+  };
+  size_t next = 0;
+  const auto point = [&](double value) {
+    curves_[next].step.push_back(sample.step);
+    curves_[next++].value.push_back(value);
+  };
+  for (const Probe& probe : probes_) switch (probe.kind) {
+      case Probe::Kind::force: {
+        const Vec3 force = total_force(probe.set);
+        point(force.x()), point(force.y()), point(force.z());
+        break;
+      }
+      case Probe::Kind::displacement: {
+        const Vec3 moved = displacement(probe.set);
+        point(moved.x()), point(moved.y()), point(moved.z());
+        break;
+      }
+      case Probe::Kind::stress_strain: {
+        const double gauge = (position(probe.upper) - position(probe.lower))[probe.axis];
+        const double stretch = (displacement(probe.upper) - displacement(probe.lower))[probe.axis];
+        point(stretch / gauge);
+        point(-total_force(probe.grip)[probe.axis] / probe.area);
+        break;
+      }
+    }
+}
+
+Vec3 ProbeMeter::displacement(const ParticleSet& set) const {
+  Vec3 sum = Vec3::Zero();
+  for (const uint32_t id : set.ids) sum += moved_[id];
+  return set.ids.empty() ? sum : Vec3(sum / static_cast<double>(set.ids.size()));
+}
+
+Vec3 ProbeMeter::position(const ParticleSet& set) const {
+  Vec3 sum = Vec3::Zero();
+  for (const uint32_t id : set.ids) sum += initial_[id];
+  return set.ids.empty() ? sum : Vec3(sum / static_cast<double>(set.ids.size()));
+}
+
+}  // namespace cuboct

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// What a state means in real units: forces, energies, momentum, and the curves of a scene's probes. Nothing
+// here knows which engine made the state.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "model/fixed_rule.h"
+#include "model/lattice.h"
+#include "model/scene.h"
+#include "model/state.h"
+#include "model/trace.h"
+
+namespace cuboct {
+
+// Sum of the pair kicks on each particle, in the order of `state.particles`; P+G fractional bits of a cell
+// edge per step. It is what the machine adds up in the step that begins with `state`.
+std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state);
+
+// Newtons per unit of a kick: a kick of one cell edge per step is cell_edge/dt in velocity, gained within dt.
+double newtons_per_kick(const FixedRule& rule);
+
+struct Energies {
+  double kinetic = 0;    // J, at the time of the positions: v + dv/2, as v lives half a step earlier
+  double potential = 0;  // J, of the pairs, by the pair law in doubles at the fixed positions
+  double gravity = 0;    // J, -m g.x summed, from the origin of the scene's coordinates
+  double total() const { return kinetic + potential + gravity; }
+};
+
+Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
+                  const State& state, const std::vector<Int3>& kicks);
+
+// Whether a run of the rule keeps its energy: nothing damps, drives or steers, and no gravity acts along a
+// ring.
+bool keeps_energy(const Rule& rule, const Periodic& periodic);
+// Whether a run keeps the sum of all particles' velocities: nothing holds, drives, steers or weighs.
+bool keeps_momentum(const Rule& rule);
+
+// Largest |v| along an axis, as a fraction of one node per step.
+double largest_speed(const FixedRule& rule, const State& state);
+
+// Particles at one time in real units; the index is the particle's id.
+struct Sample {
+  uint64_t step = 0;
+  std::vector<Vec3> x;      // m; an axis with a period may be given in any image
+  std::vector<Vec3> force;  // N, of the pairs
+};
+
+Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
+                 const std::vector<Int3>& kicks);
+
+// Turns samples into the curves of a scene's probes:
+//   force          <name>.force_x, .force_y, .force_z   N
+//   displacement   <name>.x, .y, .z                     m
+//   stress_strain  <name>.strain                        1
+//                  <name>.stress                        Pa, positive where the body pulls at the grip
+class ProbeMeter {
+ public:
+  // `initial`: positions at step 0, from which displacements and strains count.
+  ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodic, const std::vector<Vec3>& initial);
+
+  // Samples come in the order of steps, close enough that no particle moves half a period between two of
+  // them.
+  void add(const Sample& sample);
+  const std::vector<Curve>& curves() const { return curves_; }
+
+ private:
+  Vec3 displacement(const ParticleSet& set) const;  // mean, m
+  Vec3 position(const ParticleSet& set) const;      // mean initial position, m
+
+  std::vector<Probe> probes_;
+  Periodic periodic_;
+  std::vector<Vec3> initial_, latest_, moved_;
+  std::vector<Curve> curves_;
+};
+
+}  // namespace cuboct

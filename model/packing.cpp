@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "model/packing.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "model/error.h"
+
+namespace cuboct {
+namespace {
+
+constexpr double kTolerance = 1e-6;  // of the pitch
+
+}  // namespace
+
+double Fcc::cell() const { return std::numbers::sqrt2 * pitch; }
+
+double particle_mass(double density, double pitch) { return density * pitch * pitch * pitch / std::numbers::sqrt2; }
+
+std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) {
+  Bounds bounds = shape != nullptr ? shape->bounds() : Bounds{};
+  for (int a = 0; a < 3; ++a) {
+    if (box.extent[a] == 0) continue;
+    bounds.low[a] = std::max(bounds.low[a], box.origin[a]);
+    bounds.high[a] = std::min(bounds.high[a], box.origin[a] + box.extent[a]);
+  }
+  if (!bounds.low.allFinite() || !bounds.high.allFinite()) throw InputError("the geometry has no end");
+  const double tolerance = kTolerance * fcc.pitch;
+  const double half = fcc.cell() / 2;
+
+  // Corners of the bounds in units of half cells of the crystal give the range of h, k and l.
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 x;
+    for (int a = 0; a < 3; ++a) x[a] = (corner >> a & 1) != 0 ? bounds.high[a] : bounds.low[a];
+    const Vec3 c = fcc.orientation.transpose() * (x - fcc.offset) / half;
+    low = low.cwiseMin(c);
+    high = high.cwiseMax(c);
+  }
+  std::array<int64_t, 3> first, last;
+  for (int a = 0; a < 3; ++a) {
+    if (std::max(std::abs(low[a]), std::abs(high[a])) > 1e6) throw InputError("the geometry is beyond a million pitches");
+    first[a] = std::llround(std::floor(low[a])) - 1;
+    last[a] = std::llround(std::ceil(high[a])) + 1;
+  }
+
+  std::vector<Vec3> sites;
+  for (int64_t l = first[2]; l <= last[2]; ++l) {
+    for (int64_t k = first[1]; k <= last[1]; ++k) {
+      // The first h of the row at which h + k + l is even.
+      for (int64_t h = first[0] + ((first[0] + k + l) & 1); h <= last[0]; h += 2) {
+        const Vec3 hkl(static_cast<double>(h), static_cast<double>(k), static_cast<double>(l));
+        Vec3 x = fcc.offset + fcc.orientation * (half * hkl);
+        bool inside = shape == nullptr || shape->distance(x) <= tolerance;
+        for (int a = 0; a < 3 && inside; ++a) {
+          if (box.extent[a] == 0) continue;
+          const double in = x[a] - box.origin[a];
+          inside = in >= -tolerance && in < box.extent[a] - tolerance;
+          if (in < 0) x[a] = box.origin[a];
+        }
+        if (inside) sites.push_back(x);
+      }
+    }
+  }
+  return sites;
+}
+
+bool is_period(const Fcc& fcc, const Vec3& shift) {
+  const Vec3 hkl = fcc.orientation.transpose() * shift / (fcc.cell() / 2);
+  int64_t sum = 0;
+  for (int a = 0; a < 3; ++a) {
+    if (!(std::abs(hkl[a] - std::round(hkl[a])) < kTolerance)) return false;
+    sum += std::llround(hkl[a]);
+  }
+  return (sum & 1) == 0;
+}
+
+void add_thermal(std::vector<Vec3>& v, const std::vector<uint32_t>& ids, double speed, uint64_t seed) {
+  if (ids.empty()) return;
+  std::mt19937_64 generator(seed);
+  // In (0, 1), 53 bits: the logarithm below needs a number above 0.
+  auto uniform = [&] { return (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53; };
+  std::vector<Vec3> draw(ids.size());
+  Vec3 mean = Vec3::Zero();
+  double spare = 0;
+  bool have_spare = false;
+  for (Vec3& d : draw) {
+    for (int a = 0; a < 3; ++a) {
+      if (have_spare) {
+        d[a] = spare;
+      } else {
+        const double radius = std::sqrt(-2 * std::log(uniform()));
+        const double angle = 2 * std::numbers::pi * uniform();
+        d[a] = radius * std::cos(angle);
+        spare = radius * std::sin(angle);
+      }
+      have_spare = !have_spare;
+    }
+    mean += d;
+  }
+  mean /= static_cast<double>(draw.size());
+  for (size_t i = 0; i < ids.size(); ++i) v[ids[i]] += speed * (draw[i] - mean);
+}
+
+}  // namespace cuboct

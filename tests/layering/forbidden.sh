@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# The layering check must see a forbidden edge: a copy of the tree with one such include has to fail, naming it.
+set -euo pipefail
+copy=$(mktemp -d)
+trap 'rm -rf "$copy"' EXIT
+for d in model hw rtl emu gpu_ref cli tests; do cp -r "$1/$d" "$copy/"; done
+echo '#include "hw/plan.h"' >> "$copy/model/state.h"
+if out=$(bash "$1/tests/layering/layering.sh" "$copy"); then
+  echo "a forbidden include was not seen"; exit 1
+fi
+grep -q 'model/state.h:[0-9]*: model must not include hw/plan.h' <<<"$out"

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "tests/peer/lammps.h"
+
+#include <fmt/format.h>
+#include <fmt/os.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace cuboct::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A directory that goes when its owner does.
+class Scratch {
+ public:
+  Scratch() {
+    std::string name = (fs::temp_directory_path() / "cuboct-lammps-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a scratch directory");
+    path_ = name;
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
+  std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(path_ / name).rdbuf();
+    return text.str();
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+// Numbers travel as text with 17 significant digits, which keeps every bit of a double.
+std::string data_file(const LammpsRun& run, const Body& body) {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+  for (const Vec3& x : body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  std::string text = fmt::format("\n\n{} atoms\n1 atom types\n", body.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool ring = run.periodic.extent[axis] > 0;
+    const double room = 2 * (high[axis] - low[axis]) + 10;
+    const double begin = ring ? run.periodic.origin[axis] : low[axis] - room;
+    const double end = ring ? begin + run.periodic.extent[axis] : high[axis] + room;
+    text += fmt::format("{0:.17g} {1:.17g} {2}lo {2}hi\n", begin, end, "xyz"[axis]);
+  }
+  text += fmt::format("\nMasses\n\n1 {:.17g}\n\nAtoms # atomic\n\n", run.mass);
+  for (size_t i = 0; i < body.size(); ++i) {
+    text += fmt::format("{} 1 {:.17g} {:.17g} {:.17g}\n", i + 1, body.x[i].x(), body.x[i].y(), body.x[i].z());
+  }
+  text += "\nVelocities\n\n";
+  for (size_t i = 0; i < body.size(); ++i) {
+    text += fmt::format("{} {:.17g} {:.17g} {:.17g}\n", i + 1, body.v[i].x(), body.v[i].y(), body.v[i].z());
+  }
+  return text;
+}
+
+std::string input_file(const LammpsRun& run) {
+  const auto boundary = [&](int axis) { return run.periodic.extent[axis] > 0 ? 'p' : 'f'; };
+  return fmt::format(R"(units lj
+boundary {} {} {}
+atom_style atomic
+newton on
+read_data body.data
+{}
+neighbor 0.3 bin
+neigh_modify every 1 delay 0 check yes
+timestep {:.17g}
+compute virial all stress/atom NULL virial
+dump frames all custom {} frames.txt id xu yu zu vx vy vz fx fy fz c_virial[1] c_virial[2] c_virial[3] c_virial[4] c_virial[5] c_virial[6]
+dump_modify frames sort id format float %.17g
+thermo_style custom step pe ke
+thermo_modify norm no format float "energies %.17g"
+thermo {}
+fix nve all nve
+run {}
+)",
+                     boundary(0), boundary(1), boundary(2), run.pair, run.dt, run.steps, run.steps,
+                     run.steps);
+}
+
+}  // namespace
+
+bool have_lammps() { return *CUBOCT_LMP != '\0'; }
+
+std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body) {
+  const Scratch scratch;
+  scratch.write("body.data", data_file(run, body));
+  scratch.write("in.lmp", input_file(run));
+  for (const auto& [name, text] : run.files) scratch.write(name, text);
+  const std::string command =
+      fmt::format("cd '{}' && OMP_NUM_THREADS=1 '{}' -in in.lmp -log none > out.txt 2>&1",
+                  scratch.path().string(), CUBOCT_LMP);
+  if (std::system(command.c_str()) != 0)
+    throw std::runtime_error("LAMMPS failed:\n" + scratch.read("out.txt"));
+
+  std::vector<LammpsFrame> frames;
+  std::istringstream text(scratch.read("frames.txt"));
+  for (std::string line; std::getline(text, line);) {
+    if (line.rfind("ITEM: ATOMS", 0) != 0) continue;
+    LammpsFrame frame;
+    for (size_t i = 0; i < body.size(); ++i) {
+      size_t id = 0;
+      Vec3 x, v, f;
+      double s[6];
+      text >> id >> x[0] >> x[1] >> x[2] >> v[0] >> v[1] >> v[2] >> f[0] >> f[1] >> f[2];
+      for (double& component : s) text >> component;  // xx, yy, zz, xy, xz, yz
+      if (!text || id != i + 1) throw std::runtime_error("LAMMPS wrote a broken frame");
+      frame.x.push_back(x);
+      frame.v.push_back(v);
+      frame.f.push_back(f);
+      Mat3 virial;
+      virial << s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2];
+      frame.virial.push_back(virial);
+    }
+    frames.push_back(std::move(frame));
+  }
+  if (frames.size() != (run.steps > 0 ? 2 : 1)) {
+    throw std::runtime_error(fmt::format("LAMMPS wrote {} frames", frames.size()));
+  }
+  // The lines "step energies pe energies ke" of the output.
+  std::istringstream out(scratch.read("out.txt"));
+  size_t next = 0;
+  for (std::string line; std::getline(out, line) && next < frames.size();) {
+    std::istringstream words(line);
+    std::string step, a, b;
+    double pe = 0, ke = 0;
+    if (words >> step >> a >> pe >> b >> ke && a == "energies" && b == "energies") {
+      frames[next].potential_energy = pe;
+      frames[next++].kinetic_energy = ke;
+    }
+  }
+  if (next != frames.size())
+    throw std::runtime_error("LAMMPS wrote no energies:\n" + scratch.read("out.txt"));
+  return frames;
+}
+
+}  // namespace cuboct::test

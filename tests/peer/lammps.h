@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Runs LAMMPS on a Body: velocity Verlet without thermostat, in LAMMPS's reduced units (`units lj`, where
+// forces, masses and lengths are plain numbers as ours are).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/rule.h"
+
+namespace cuboct::test {
+
+bool have_lammps();
+
+// What LAMMPS holds at one step, by particle.
+struct LammpsFrame {
+  std::vector<Vec3> x, v, f;    // x unwrapped
+  std::vector<Mat3> virial;     // stress times volume, tension positive, without the kinetic part
+  double potential_energy = 0;  // of all particles
+  double kinetic_energy = 0;
+};
+
+struct LammpsRun {
+  Periodic periodic;  // open axes get a fixed boundary well beyond the particles
+  std::string pair;   // the lines that set pair_style and pair_coeff
+  double mass = 1, dt = 0;
+  int steps = 0;
+  std::vector<std::pair<std::string, std::string>> files;  // name, text: put beside the input
+};
+
+// Frames at step 0 and at the last. std::runtime_error with LAMMPS's output where it fails.
+std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body);
+
+}  // namespace cuboct::test

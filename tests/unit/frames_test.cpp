@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "model/frames.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "model/base64.h"
+
+namespace cuboct {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class Frames : public testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ = fs::temp_directory_path() / ("cuboct_frames_" + std::to_string(getpid()));
+    fs::create_directory(directory_);
+    for (int k = 0; k < 2; ++k) {
+      Frame frame;
+      frame.step = 10u * k;
+      frame.time = 0.5 * k;
+      frame.x = {Vec3(0, 0, 0), Vec3(1, 2 + k, 3)};
+      frame.v = {Vec3(0, 0, 0), Vec3(0, 0.5, 0)};
+      frame.type = {0, 1};
+      frame.strain = {0, 0.125 * k};
+      frames_.push_back(frame);
+    }
+    style_.radius = 0.5;
+    style_.types = {"delrin", "delrin/top grip"};
+    style_.periodic = {Vec3(-1, 0, 0), Vec3(4, 0, 0)};
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  fs::path directory_;
+  std::vector<Frame> frames_;
+  FrameStyle style_;
+};
+
+TEST_F(Frames, ExtendedXyzHoldsBoxColumnsAndTimes) {
+  write_extended_xyz(directory_ / "f.xyz", frames_, style_);
+  const std::string head =
+      "2\nLattice=\"4 0 0 0 4 0 0 0 4\" Origin=\"-1 -0.5 -0.5\" pbc=\"T F F\" "
+      "Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1 ";
+  EXPECT_EQ(text_of(directory_ / "f.xyz"), head +
+                                               "Step=0 Time=0\n"
+                                               "0 delrin 0 0 0 0 0 0 0.5 0\n"
+                                               "1 delrin/top_grip 1 2 3 0 0.5 0 0.5 0\n" +
+                                               head +
+                                               "Step=10 Time=0.5\n"
+                                               "0 delrin 0 0 0 0 0 0 0.5 0\n"
+                                               "1 delrin/top_grip 1 3 3 0 0.5 0 0.5 0.125\n");
+}
+
+TEST_F(Frames, VtkListsItsFilesAndHoldsTheValues) {
+  write_vtk(directory_ / "f", frames_, style_);
+  EXPECT_EQ(text_of(directory_ / "f.pvd"),
+            "<?xml version=\"1.0\"?>\n"
+            "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+            "  <Collection>\n"
+            "    <DataSet timestep=\"0\" part=\"0\" file=\"f_000000.vtp\"/>\n"
+            "    <DataSet timestep=\"0.5\" part=\"0\" file=\"f_000001.vtp\"/>\n"
+            "  </Collection>\n"
+            "</VTKFile>\n");
+  const std::string vtp = text_of(directory_ / "f_000001.vtp");
+  // 16 bytes follow: 0.0 and 0.125.
+  const uint8_t strain[] = {16, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xc0, 0x3f};
+  EXPECT_NE(vtp.find("Name=\"axial_strain\" format=\"binary\">" + base64(strain, sizeof strain) + "<"),
+            std::string::npos);
+  const uint8_t ends[] = {8, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
+  EXPECT_NE(vtp.find("Name=\"offsets\" format=\"binary\">" + base64(ends, sizeof ends) + "<"),
+            std::string::npos);
+  EXPECT_NE(vtp.find("NumberOfPoints=\"2\""), std::string::npos);
+}
+
+// The vectors of RFC 4648, section 10.
+TEST(Base64, FollowsTheStandard) {
+  const std::pair<const char*, const char*> cases[] = {{"", ""},
+                                                       {"f", "Zg=="},
+                                                       {"fo", "Zm8="},
+                                                       {"foo", "Zm9v"},
+                                                       {"foob", "Zm9vYg=="},
+                                                       {"fooba", "Zm9vYmE="},
+                                                       {"foobar", "Zm9vYmFy"}};
+  for (const auto& [plain, coded] : cases) EXPECT_EQ(base64(plain, std::string(plain).size()), coded);
+}
+
+}  // namespace
+}  // namespace cuboct

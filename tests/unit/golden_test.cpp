@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "model/golden.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "model/fixed_math.h"
+#include "tests/support/block.h"
+
+namespace cuboct {
+namespace {
+
+using test::block;
+using test::Features;
+
+State run(const Setup& setup, const State& from, int steps) {
+  Golden golden(setup.plan.rule, setup.plan.lattice, setup.plan.arch.capacity, from);
+  for (int k = 0; k < steps; ++k) golden.step();
+  return golden.state();
+}
+
+Features hot() { return {.size = {3, 2, 2}, .speed = 0.12, .margin = 4}; }
+
+// How often a particle changed node between two states of the same particles.
+int moves(const State& a, const State& b) {
+  int count = 0;
+  for (size_t k = 0; k < a.particles.size(); ++k) count += a.particles[k].node != b.particles[k].node;
+  return count;
+}
+
+TEST(RoundOdd, HalvesGoAwayFromZeroAndItIsOdd) {
+  EXPECT_EQ(round_odd(3, 1), 2);  // 1.5
+  EXPECT_EQ(round_odd(-3, 1), -2);
+  EXPECT_EQ(round_odd(5, 2), 1);  // 1.25
+  EXPECT_EQ(round_odd(6, 2), 2);  // 1.5
+  EXPECT_EQ(round_odd(-6, 2), -2);
+  EXPECT_EQ(round_odd(7, 0), 7);
+  for (int64_t a = -4096; a <= 4096; ++a)
+    for (int s = 0; s < 14; ++s) ASSERT_EQ(round_odd(-a, s), -round_odd(a, s)) << a << " " << s;
+}
+
+// Two particles at rest, half a spacing of bond away from equilibrium along x: the kick is f(r)/m dt, by
+// hand.
+TEST(Golden, OneStepOfTwoParticlesByHand) {
+  Scene scene = test::block_scene({.jitter = 0, .speed = 0});
+  scene.body.x = {Vec3(0, 0, 0), Vec3(1.1, 0, 0)};
+  scene.body.v.assign(2, Vec3::Zero());
+  scene.body.type.assign(2, 0);
+  const auto setup = make_setup(scene, {});
+  const State after = run(setup, setup.initial, 1);
+  const Body body = to_real(after, setup.plan.rule, setup.plan.lattice, setup.plan.origin);
+  const double f = scene.rule.law->force(1.1), v = f * scene.rule.dt;  // m = 1; f < 0 attracts
+  ASSERT_LT(f, -0.01);
+  // The table's error, as the quantiser reports it, plus half a unit of d (2^-17 cells on a slope near 1).
+  const double bound = (setup.plan.rule.error.worst_force + 1.6 / (1 << 17)) * scene.rule.dt;
+  EXPECT_NEAR(body.v[0].x(), -v, bound);
+  EXPECT_NEAR(body.v[1].x(), v, bound);
+  EXPECT_NEAR(body.x[1].x(), 1.1 + v * scene.rule.dt, bound * scene.rule.dt + 1.6 / (1 << 20));
+  EXPECT_EQ(after.particles[0].v[0], -after.particles[1].v[0]);
+  EXPECT_EQ(after.particles[0].v[1], 0);
+}
+
+TEST(Golden, MomentumOfAFreeBodyStaysToTheLastBit) {
+  for (const double damping : {0.0, 0.1}) {
+    const auto setup =
+        block({.size = {2, 2, 2}, .speed = 0.03, .damping = damping, .two_materials = true, .margin = 12});
+    const State after = run(setup, setup.initial, 10000);
+    EXPECT_EQ(momentum(after), momentum(setup.initial));
+    EXPECT_GT(moves(setup.initial, after), 3);
+  }
+}
+
+TEST(Golden, UndampedRunReversesBitForBit) {
+  const auto setup = block(hot());
+  const int steps = 2000;
+  const State first = run(setup, setup.initial, 1), last = run(setup, setup.initial, steps);
+  const State beyond = run(setup, last, 1);
+  ASSERT_GT(moves(setup.initial, last), 10);
+  State back = last;  // positions of `steps`, velocities half a step later and negated
+  for (size_t k = 0; k < back.particles.size(); ++k)
+    for (int a = 0; a < 3; ++a) back.particles[k].v[a] = -beyond.particles[k].v[a];
+  back = run(setup, back, steps);
+  for (size_t k = 0; k < back.particles.size(); ++k) {
+    ASSERT_EQ(back.particles[k].node, setup.initial.particles[k].node) << k;
+    ASSERT_EQ(back.particles[k].x, setup.initial.particles[k].x) << k;
+    for (int a = 0; a < 3; ++a) ASSERT_EQ(back.particles[k].v[a], -first.particles[k].v[a]) << k;
+  }
+}
+
+TEST(Golden, OrderOfParticlesChangesNoBit) {
+  const auto setup = block(hot());
+  State shuffled = setup.initial;
+  std::shuffle(shuffled.particles.begin(), shuffled.particles.end(), std::mt19937_64(7));
+  ASSERT_NE(shuffled.particles, setup.initial.particles);
+  EXPECT_EQ(run(setup, shuffled, 300), run(setup, setup.initial, 300));
+}
+
+TEST(Golden, TranslationByWholeNodesChangesNoBit) {
+  const auto setup = block(hot());
+  const Cell by{5, -3, 2};
+  std::vector<Cell> cells;
+  for (uint32_t n = 0; n < setup.plan.lattice.size(); ++n) {
+    Cell c = setup.plan.lattice.cell(n);
+    for (int a = 0; a < 3; ++a) c[a] += by[a];
+    cells.push_back(c);
+  }
+  const Lattice moved(cells, {0, 0, 0});
+  ASSERT_EQ(moved.size(), setup.plan.lattice.size());
+  State state = setup.initial;  // node indices follow (z, y, x), so they stay what they were
+  Golden golden(setup.plan.rule, moved, setup.plan.arch.capacity, state);
+  for (int k = 0; k < 300; ++k) golden.step();
+  EXPECT_EQ(golden.state(), run(setup, setup.initial, 300));
+  EXPECT_NE(hash_of(moved, golden.state()),
+            hash_of(setup.plan.lattice, golden.state()));  // cells are part of the hash
+}
+
+TEST(Golden, HeldParticlesStandAndMovedOnesMove) {
+  const auto setup = block({.damping = 0.1, .held = true, .gravity = true});
+  const State after = run(setup, setup.initial, 50);
+  int held = 0, moved = 0;
+  for (size_t k = 0; k < after.particles.size(); ++k) {
+    const Particle& a = setup.initial.particles[k];
+    const Particle& b = after.particles[k];
+    const FixedType& type = setup.plan.rule.types[b.type];
+    if (!type.imposed[0]) continue;
+    EXPECT_EQ(b.v, type.velocity);
+    const int P = setup.plan.rule.widths.position_frac;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int64_t cells = setup.plan.lattice.cell(b.node)[axis] - setup.plan.lattice.cell(a.node)[axis];
+      EXPECT_EQ((cells << P) + b.x[axis] - a.x[axis],
+                50 * round_odd(type.velocity[axis], setup.plan.rule.widths.guard));
+    }
+    (type.velocity == Int3{} ? held : moved)++;
+  }
+  EXPECT_EQ(held, 18);
+  EXPECT_EQ(moved, 18);
+}
+
+// A PD-held layer comes to rest where kp u balances the load; kp and the weight of the column are known.
+TEST(Golden, ForceHeldTypeCarriesTheWeight) {
+  Scene scene = test::block_scene(
+      {.size = {1, 1, 1}, .jitter = 0, .speed = 0, .damping = 0.2, .force_held = true, .gravity = true});
+  scene.body.x = {Vec3(0, 0, 0)};
+  scene.body.v = {Vec3::Zero()};
+  scene.body.type = {0};
+  ASSERT_TRUE(scene.rule.types[0].pd);
+  const auto setup = make_setup(scene, {});
+  const State after = run(setup, setup.initial, 2000);
+  const double unit = std::ldexp(setup.plan.rule.cell_edge, -setup.plan.rule.widths.velocity_frac());
+  const double expected = -1e-3 / 1.5;  // m g / kp
+  // At rest kp u dt^2/m rounds to g dt^2 within half a unit, so u to half a unit over kp dt^2; gains and g to
+  // 1e-3.
+  EXPECT_NEAR(static_cast<double>(after.particles[0].u[2]) * unit, expected, 2e-3 * -expected);
+  EXPECT_EQ(after.particles[0].u[0], 0);
+  const Body body = to_real(after, setup.plan.rule, setup.plan.lattice, setup.plan.origin);
+  EXPECT_NEAR(body.x[0].z(), expected, 4e-3 * -expected);
+}
+
+RunError fault_of(const Setup& setup, int steps) {
+  Golden golden(setup.plan.rule, setup.plan.lattice, setup.plan.arch.capacity, setup.initial);
+  try {
+    for (int k = 0; k < steps; ++k) golden.step();
+  } catch (const RunError& e) {
+    return e;
+  }
+  return {Fault::none, 0, 0, 0, 0, ""};
+}
+
+TEST(GoldenFaults, EachNamesItsParticle) {
+  const auto out = block({.size = {1, 1, 1}, .speed = 0.3, .margin = 0.1});
+  const RunError left = fault_of(out, 500);
+  EXPECT_GE(left.fault, Fault::left_x);
+  EXPECT_EQ(left.number, 0);
+
+  Arch narrow;
+  narrow.widths.velocity_bits = 22;
+  const RunError fast = fault_of(block({.jitter = 0.2, .speed = 0}, narrow), 50);
+  EXPECT_EQ(fast.fault, Fault::velocity);
+  EXPECT_FALSE(fits(fast.number, 22));
+  EXPECT_TRUE(fits(fast.number, 24));
+
+  narrow = {};
+  narrow.widths.sum_bits = 16;
+  const RunError sum = fault_of(block({.jitter = 0.1}, narrow), 50);
+  EXPECT_EQ(sum.fault, Fault::sum);
+  EXPECT_EQ(sum.step, 0u);
+  EXPECT_FALSE(fits(sum.number, 16));
+  EXPECT_STREQ(std::string(sum.what()).substr(0, 13).c_str(), "step 0, node ");
+
+  narrow = {};
+  narrow.widths.relative_velocity_bits = 10;
+  EXPECT_EQ(fault_of(block({.speed = 0.1, .damping = 0.1}, narrow), 5).fault, Fault::relative_velocity);
+
+  narrow = {};
+  narrow.widths.displacement_bits = 20;
+  EXPECT_EQ(fault_of(block({.force_held = true}, narrow), 500).fault, Fault::displacement);
+}
+
+TEST(GoldenFaults, CapacityHoldsAtTheLimitAndStopsOneBeyond) {
+  // 4 particles in a cell meet a fifth that flies in along x.
+  Scene scene = test::block_scene({.size = {1, 1, 1}, .jitter = 0, .speed = 0, .margin = 3});
+  scene.body.x.push_back(Vec3(-1.5, 0.3, 0.3));
+  scene.body.v.push_back(Vec3(0.8, 0, 0));
+  scene.body.type.push_back(0);
+  Arch arch;
+  arch.capacity = 5;
+  EXPECT_EQ(fault_of(make_setup(scene, arch), 12).fault, Fault::none);
+  arch.capacity = 4;
+  const RunError full = fault_of(make_setup(scene, arch), 12);
+  EXPECT_EQ(full.fault, Fault::full_x);
+  EXPECT_EQ(full.number, 4);
+  EXPECT_EQ(full.particle, 4u);
+  arch.capacity = 3;
+  try {
+    make_setup(scene, arch);
+    FAIL() << "a full node was accepted";
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(),
+                 "a node would hold 4 particles: its capacity is 3\n  hint: set node.capacity to at least 4 "
+                 "in the arch file");
+  }
+}
+
+}  // namespace
+}  // namespace cuboct

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "model/trace.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "model/output.h"
+#include "tests/unit/made_trace.h"
+
+namespace cuboct {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TraceFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ = fs::temp_directory_path() / ("cuboct_trace_" + std::to_string(getpid()) + "_" +
+                                              testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directory(directory_);
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+
+  fs::path directory_;
+};
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+template <typename Action>
+std::string error_of(Action action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void expect_equal(const Trace& a, const Trace& b) {
+  EXPECT_EQ(a.engine, b.engine);
+  EXPECT_EQ(a.plan_hash, b.plan_hash);
+  EXPECT_EQ(a.nodes, b.nodes);
+  EXPECT_EQ(a.state_hash, b.state_hash);
+  ASSERT_EQ(a.frames.size(), b.frames.size());
+  for (size_t k = 0; k < a.frames.size(); ++k) {
+    EXPECT_EQ(a.frames[k].step, b.frames[k].step);
+    EXPECT_EQ(a.frames[k].particles, b.frames[k].particles);
+  }
+  ASSERT_EQ(a.curves.size(), b.curves.size());
+  for (size_t k = 0; k < a.curves.size(); ++k) {
+    EXPECT_EQ(a.curves[k].name, b.curves[k].name);
+    EXPECT_EQ(a.curves[k].unit, b.curves[k].unit);
+    EXPECT_EQ(a.curves[k].step, b.curves[k].step);
+    EXPECT_EQ(a.curves[k].value, b.curves[k].value);
+  }
+  EXPECT_EQ(a.cycles, b.cycles);
+  EXPECT_EQ(a.stop, b.stop);
+  EXPECT_EQ(a.seconds, b.seconds);
+  EXPECT_EQ(a.counters, b.counters);
+}
+
+TEST_F(TraceFile, ReturnsEachFieldAsWritten) {
+  const Trace trace = made_trace();
+  write_trace(path("t.h5"), trace);
+  expect_equal(trace, read_trace(path("t.h5")));
+}
+
+TEST_F(TraceFile, ReturnsAnEmptyTrace) {
+  write_trace(path("t.h5"), Trace{});
+  expect_equal(Trace{}, read_trace(path("t.h5")));
+}
+
+TEST_F(TraceFile, KeepsManyChunks) {
+  Trace trace = made_trace();
+  for (uint64_t i = 0; i < 100'000; ++i) trace.state_hash.push_back(i * 0x9e3779b97f4a7c15u);
+  write_trace(path("t.h5"), trace);
+  expect_equal(trace, read_trace(path("t.h5")));
+}
+
+TEST_F(TraceFile, SameTraceSameBytes) {
+  write_trace(path("a.h5"), made_trace());
+  sleep(1);  // a time of the clock inside the file would show
+  write_trace(path("b.h5"), made_trace());
+  EXPECT_EQ(bytes_of(path("a.h5")), bytes_of(path("b.h5")));
+}
+
+TEST_F(TraceFile, LeavesNoTemporaryFile) {
+  write_trace(path("t.h5"), made_trace());
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), fs::directory_iterator()), 1);
+}
+
+TEST_F(TraceFile, ReplacesAnOlderFileWhole) {
+  std::ofstream(path("t.h5")) << "old";
+  write_trace(path("t.h5"), made_trace());
+  expect_equal(made_trace(), read_trace(path("t.h5")));
+}
+
+TEST_F(TraceFile, OpensInH5py) {
+  write_trace(path("t.h5"), made_trace());
+  const std::string command =
+      "/usr/bin/python3 " CUBOCT_SOURCE_DIR "/tests/unit/read_trace.py " + path("t.h5");
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+TEST_F(TraceFile, NamesPathAndReasonWhereItCannotWrite) {
+  const std::string nowhere = path("none/t.h5");
+  const std::string expected = "cannot write " + nowhere + ": No such file or directory";
+  EXPECT_EQ(error_of([&] { check_writable(nowhere); }), expected);
+  EXPECT_EQ(error_of([&] { write_trace(nowhere, made_trace()); }), expected);
+  EXPECT_EQ(error_of([&] { check_writable(path("")); }), "cannot write " + path("") + ": Is a directory");
+  check_writable(path("t.h5"));
+  EXPECT_FALSE(fs::exists(path("t.h5")));
+  EXPECT_TRUE(fs::is_empty(directory_));
+}
+
+TEST_F(TraceFile, NamesADirectoryThatCannotBeMade) {
+  std::ofstream(path("file")) << "x";
+  EXPECT_EQ(error_of([&] { make_directory(path("file")); }),
+            "cannot make the directory " + path("file") + ": Not a directory");
+  EXPECT_EQ(error_of([&] { make_directory(path("file/below")); }),
+            "cannot make the directory " + path("file/below") + ": Not a directory");
+}
+
+TEST_F(TraceFile, KeepsTheOldFileWhereWritingFails) {
+  std::ofstream(path("t.txt")) << "old";
+  EXPECT_EQ(error_of([&] {
+              write_whole(path("t.txt"), [](const std::string& temporary) {
+                std::ofstream(temporary) << "half";
+                throw InputError("broken");
+              });
+            }),
+            "broken");
+  EXPECT_EQ(bytes_of(path("t.txt")), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), fs::directory_iterator()), 1);
+}
+
+TEST_F(TraceFile, SaysWhatIsWrongWithAFileThatIsNoTrace) {
+  EXPECT_EQ(error_of([&] { read_trace(path("none.h5")); }),
+            "cannot read " + path("none.h5") + ": No such file or directory");
+  std::ofstream(path("text.h5")) << "not HDF5";
+  EXPECT_EQ(error_of([&] { read_trace(path("text.h5")); }), path("text.h5") + " is not an HDF5 file");
+}
+
+TEST_F(TraceFile, RefusesACurveNameThatHdf5WouldSplit) {
+  Trace trace = made_trace();
+  trace.curves[0].name = "a/b";
+  EXPECT_EQ(error_of([&] { write_trace(path("t.h5"), trace); }),
+            "a curve cannot be called 'a/b' in a trace: a name needs characters, none of them '/'");
+  EXPECT_TRUE(fs::is_empty(directory_));
+}
+
+}  // namespace
+}  // namespace cuboct
