@@ -12,36 +12,41 @@ void set(const ConfigTable& table, const char* key, int low, int high, int& valu
 
 void read_node(const ConfigTable& node, Arch& arch) {
   if (const auto edge = node.find("cell_edge"))
-    arch.cell_edge = edge->is_string() && edge->string() == "auto" ? 0 : edge->number(quantity::length, Range::positive());
-  set(node, "capacity", 1, 1 << 16, arch.capacity);
-  set(node, "filter_lanes", 1, 1 << 16, arch.filter_lanes);
+    arch.cell_edge =
+        edge->is_string() && edge->string() == "auto" ? 0 : edge->number(quantity::length, Range::positive());
+  set(node, "capacity", 1, 256, arch.capacity);
+  set(node, "filter_lanes", 1, 64, arch.filter_lanes);
   set(node, "force_pipes", 1, 64, arch.force_pipes);
-  set(node, "queue_depth", 1, 1 << 16, arch.queue_depth);
+  set(node, "queue_depth", 1, 1024, arch.queue_depth);
   arch.overlap = node.boolean_or("overlap", arch.overlap);
   node.done();
 }
 
 void read_widths(const ConfigTable& table, Widths& w) {
-  set(table, "position_frac", 1, 40, w.position_frac);
-  set(table, "guard", 0, 40, w.guard);
-  set(table, "difference_frac", 1, 30, w.difference_frac);
-  set(table, "velocity_bits", 2, 62, w.velocity_bits);
-  set(table, "relative_velocity_frac", 1, 62, w.relative_velocity_frac);
-  set(table, "relative_velocity_bits", 2, 62, w.relative_velocity_bits);
-  set(table, "strength_bits", 2, 32, w.strength_bits);
-  set(table, "sum_bits", 2, 62, w.sum_bits);
-  set(table, "displacement_bits", 2, 62, w.displacement_bits);
-  set(table, "scale_frac", 1, 16, w.scale_frac);
-  set(table, "gain_frac", 1, 17, w.gain_frac);
+  set(table, "position_frac", 8, 30, w.position_frac);
+  set(table, "guard", 1, 20, w.guard);
+  set(table, "difference_frac", 6, 24, w.difference_frac);
+  set(table, "velocity_bits", 8, 51, w.velocity_bits);
+  set(table, "relative_velocity_frac", 4, 50, w.relative_velocity_frac);
+  set(table, "relative_velocity_bits", 4, 27, w.relative_velocity_bits);
+  if (const auto bits = table.find("strength_bits"))
+    w.strength_bits = bits->is_string() && bits->choice("table width", {"auto"}) == 0
+                          ? 0
+                          : static_cast<int>(bits->integer(8, 27));
+  set(table, "sum_bits", 8, 48, w.sum_bits);
+  set(table, "displacement_bits", 8, 40, w.displacement_bits);
+  set(table, "scale_frac", 4, 16, w.scale_frac);
+  set(table, "gain_frac", 4, 24, w.gain_frac);
   table.done();
 }
 
 void read_table(const ConfigTable& table, TableChoice& choice) {
   if (const auto shape = table.find("shape"))
-    choice.shape = static_cast<TableChoice::Shape>(shape->choice("table shape", {"automatic", "uniform", "octaves"}));
+    choice.shape =
+        static_cast<TableChoice::Shape>(shape->choice("table shape", {"automatic", "uniform", "octaves"}));
   set(table, "degree", 1, 2, choice.degree);
-  set(table, "index_bits", 1, 20, choice.index_bits);
-  set(table, "fraction_bits", 1, 17, choice.fraction_bits);
+  set(table, "index_bits", 2, 16, choice.index_bits);
+  set(table, "fraction_bits", 1, 24, choice.fraction_bits);
   table.done();
 }
 
@@ -57,7 +62,7 @@ Arch read_arch(const std::string& path) {
     if (const auto bits = link->find("bits"))
       arch.link_bits = bits->is_string() && bits->choice("link width", {"record"}) == 0
                            ? 0
-                           : static_cast<int>(bits->integer(1, 4096));
+                           : static_cast<int>(bits->integer(1, 1024));
     link->done();
   }
   if (const auto widths = root.table_at("widths")) read_widths(*widths, arch.widths);

@@ -45,13 +45,20 @@ std::set<std::string>* recorder = nullptr;
 
 const char* kind_name(Kind kind) {
   switch (kind) {
-    case Kind::boolean: return "true or false";
-    case Kind::integer: return "a whole number";
-    case Kind::real: return "a number";
-    case Kind::string: return "a string";
-    case Kind::date: return "a date";
-    case Kind::array: return "an array";
-    case Kind::table: return "a table";
+    case Kind::boolean:
+      return "true or false";
+    case Kind::integer:
+      return "a whole number";
+    case Kind::real:
+      return "a number";
+    case Kind::string:
+      return "a string";
+    case Kind::date:
+      return "a date";
+    case Kind::array:
+      return "an array";
+    case Kind::table:
+      return "a table";
   }
   return "?";
 }
@@ -70,7 +77,8 @@ ConfigNode convert(const toml::node& from, const std::string& key, const std::st
       node.items.back().key_line = static_cast<int>(name.source().begin.line);
       node.items.back().key_column = static_cast<int>(name.source().begin.column);
     }
-    std::ranges::sort(node.items, {}, [](const ConfigNode& n) { return std::pair(n.key_line, n.key_column); });
+    std::ranges::sort(node.items, {},
+                      [](const ConfigNode& n) { return std::pair(n.key_line, n.key_column); });
   } else if (const auto* array = from.as_array()) {
     node.kind = Kind::array;
     for (const auto& value : *array) node.items.push_back(convert(value, key, path));
@@ -157,7 +165,8 @@ size_t ConfigValue::choice(const std::string& what, const std::vector<std::strin
 
 void ConfigValue::check(double value, const Range& range) const {
   if (std::isfinite(value) && range.contains(value)) return;
-  const std::string shown = node_->kind == Kind::string ? fmt::format("\"{}\"", node_->text) : fmt::format("{}", value);
+  const std::string shown =
+      node_->kind == Kind::string ? fmt::format("\"{}\"", node_->text) : fmt::format("{}", value);
   std::string limits;
   if (!std::isfinite(value))
     limits = "finite";
@@ -187,7 +196,8 @@ double ConfigValue::number(const Quantity& quantity, const Range& range) const {
   if (is_array()) wants(fmt::format("{} such as \"{}\"", quantity.name, quantity.example));
   const std::vector<double> values = numbers(quantity, range);
   if (values.size() != 1)
-    fail(fmt::format("'{}' must be {} such as \"{}\", not a list", node_->key, quantity.name, quantity.example));
+    fail(fmt::format("'{}' must be {} such as \"{}\", not a list", node_->key, quantity.name,
+                     quantity.example));
   return values[0];
 }
 
@@ -220,7 +230,8 @@ Vec3 ConfigValue::vector(const Quantity& quantity) const {
     const bool plain = file_->reduced || quantity.dimension == Dimension{};
     const std::string example = quantity.example;
     fail(fmt::format("'{}' needs three components, not {}", node_->key, values.size()),
-         plain ? "for instance [0, 0, 1]" : fmt::format("for instance \"[0, 0, 1]{}\"", example.substr(example.find(' '))));
+         plain ? "for instance [0, 0, 1]"
+               : fmt::format("for instance \"[0, 0, 1]{}\"", example.substr(example.find(' '))));
   }
   return {values[0], values[1], values[2]};
 }
@@ -348,7 +359,8 @@ ConfigTable parse_config(const std::string& text, const std::string& path) {
     file->root = convert(toml::parse(text, path), "", "");
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
-    throw InputError(path, static_cast<int>(at.line), static_cast<int>(at.column), std::string(error.description()));
+    throw InputError(path, static_cast<int>(at.line), static_cast<int>(at.column),
+                     std::string(error.description()));
   }
   file->root.line = file->root.column = 1;
   file->root.opened = true;

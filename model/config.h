@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A TOML file with a memory: every value knows where it stands, every table which keys were asked for. A key that no
-// one asked for is an error, so that a misspelt option cannot pass silently. All errors are InputError:
+// A TOML file with a memory: every value knows where it stands, every table which keys were asked for. A key
+// that no one asked for is an error, so that a misspelt option cannot pass silently. All errors are
+// InputError:
 //   scenes/a.toml:12:3: unknown key 'capcity'
 //     hint: did you mean 'capacity'?
 #pragma once
@@ -101,7 +102,8 @@ class ConfigTable : public ConfigValue {
   // [key] table; none where the key is absent.
   std::optional<ConfigTable> table_at(const std::string& key) const;
 
-  // The keys of the file, in its order, for tables whose keys are names that the user chose. Counts as asking for all.
+  // The keys of the file, in its order, for tables whose keys are names that the user chose. Counts as asking
+  // for all.
   std::vector<std::string> names() const;
   // At most one of the two may be there.
   void not_both(const std::string& a, const std::string& b) const;
@@ -109,13 +111,14 @@ class ConfigTable : public ConfigValue {
   void done() const;
 };
 
-// Parses a file. The top-level key `units` ("SI", or "reduced": all quantities are plain numbers) is read here.
+// Parses a file. The top-level key `units` ("SI", or "reduced": all quantities are plain numbers) is read
+// here.
 ConfigTable read_config(const std::string& path);
 // The same for text in memory; `path` stands in messages.
 ConfigTable parse_config(const std::string& text, const std::string& path);
 
-// Every key that anyone has asked for since `keys` was given, as "table.key" with "shape" for any shape's table; null
-// stops. For the test that compares the reader with its documentation.
+// Every key that anyone has asked for since `keys` was given, as "table.key" with "shape" for any shape's
+// table; null stops. For the test that compares the reader with its documentation.
 void record_config_keys(std::set<std::string>* keys);
 
 }  // namespace cuboct

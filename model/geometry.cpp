@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Distance of a point to a solid whose extents along independent directions are known: q[i] is the signed distance
-// along direction i.
+// Distance of a point to a solid whose extents along independent directions are known: q[i] is the signed
+// distance along direction i.
 template <typename V>
 double corner_distance(const V& q) {
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
@@ -23,7 +23,9 @@ struct Sphere final : Shape {
   double radius;
   Sphere(const Vec3& c, double r) : centre(c), radius(r) {}
   double distance(const Vec3& x) const override { return (x - centre).norm() - radius; }
-  Bounds bounds() const override { return {centre - Vec3::Constant(radius), centre + Vec3::Constant(radius)}; }
+  Bounds bounds() const override {
+    return {centre - Vec3::Constant(radius), centre + Vec3::Constant(radius)};
+  }
 };
 
 struct Box final : Shape {
@@ -107,7 +109,8 @@ struct Extrusion final : Shape {
     return corner_distance<Eigen::Vector2d>({in_plane(x[0], x[1]), std::abs(x[2]) - half});
   }
   Bounds bounds() const override {
-    return {{std::ranges::min(px), std::ranges::min(py), -half}, {std::ranges::max(px), std::ranges::max(py), half}};
+    return {{std::ranges::min(px), std::ranges::min(py), -half},
+            {std::ranges::max(px), std::ranges::max(py), half}};
   }
 };
 
@@ -194,7 +197,9 @@ ShapePtr cylinder(const Vec3& centre, const Vec3& axis, double radius, double le
 ShapePtr capsule(const Vec3& from, const Vec3& to, double radius) {
   return std::make_shared<Capsule>(from, to, radius);
 }
-ShapePtr half_space(const Vec3& point, const Vec3& normal) { return std::make_shared<HalfSpace>(point, normal); }
+ShapePtr half_space(const Vec3& point, const Vec3& normal) {
+  return std::make_shared<HalfSpace>(point, normal);
+}
 ShapePtr extrude(std::vector<double> x, std::vector<double> y, double thickness) {
   return std::make_shared<Extrusion>(std::move(x), std::move(y), thickness);
 }
@@ -214,9 +219,10 @@ double DogBone::fillet_length() const {
   return std::sqrt(fillet_radius * fillet_radius - below * below);
 }
 
-// The overall bar less one notch per side. All points of a notch are those nearer than R to the segment that the
-// fillet's centre would sweep along the narrow section: the segment's straight part cuts the narrow section's side, its
-// round ends cut the fillets. The centre stands outside the bar as R is at least the depth of the notch.
+// The overall bar less one notch per side. All points of a notch are those nearer than R to the segment that
+// the fillet's centre would sweep along the narrow section: the segment's straight part cuts the narrow
+// section's side, its round ends cut the fillets. The centre stands outside the bar as R is at least the
+// depth of the notch.
 ShapePtr dog_bone(const DogBone& bone) {
   const Vec3 half{bone.length / 2, bone.width / 2, bone.thickness / 2};
   std::vector<ShapePtr> notches;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Solids as signed distance fields. Formulas of the primitives: I. Quilez, "Distance functions" (2D and 3D); the
-// combinations and the dog-bone are as derived here.
+// Solids as signed distance fields. Formulas of the primitives: I. Quilez, "Distance functions" (2D and 3D);
+// the combinations and the dog-bone are as derived here.
 #pragma once
 
 #include <limits>
@@ -21,8 +21,8 @@ struct Bounds {
 class Shape {
  public:
   virtual ~Shape() = default;
-  // Metres, negative inside. The sign is exact. The size is the distance to the surface for primitives; combinations
-  // return a lower bound of it (no part of the surface is nearer).
+  // Metres, negative inside. The sign is exact. The size is the distance to the surface for primitives;
+  // combinations return a lower bound of it (no part of the surface is nearer).
   virtual double distance(const Vec3& x) const = 0;
   // Holds the solid; need not be the smallest such box.
   virtual Bounds bounds() const = 0;
@@ -42,9 +42,10 @@ ShapePtr half_space(const Vec3& point, const Vec3& normal);
 // A polygon in the x-y plane, simple, in either sense of rotation, centred in z with that thickness.
 ShapePtr extrude(std::vector<double> x, std::vector<double> y, double thickness);
 
-// The flat specimen of ASTM D638: length along x, width along y, thickness along z, centred at the origin. Between the
-// narrow section and the tabs an arc of `fillet_radius` starts tangent to the narrow section; where it meets the tab's
-// side there is an edge, as in the standard. Needs narrow_width < width and fillet_radius >= half their difference.
+// The flat specimen of ASTM D638: length along x, width along y, thickness along z, centred at the origin.
+// Between the narrow section and the tabs an arc of `fillet_radius` starts tangent to the narrow section;
+// where it meets the tab's side there is an edge, as in the standard. Needs narrow_width < width and
+// fillet_radius >= half their difference.
 struct DogBone {
   double length = 0, width = 0, thickness = 0;  // m, overall
   double narrow_length = 0, narrow_width = 0;   // m, of the parallel section

@@ -17,7 +17,9 @@ constexpr double kTolerance = 1e-6;  // of the pitch
 
 double Fcc::cell() const { return std::numbers::sqrt2 * pitch; }
 
-double particle_mass(double density, double pitch) { return density * pitch * pitch * pitch / std::numbers::sqrt2; }
+double particle_mass(double density, double pitch) {
+  return density * pitch * pitch * pitch / std::numbers::sqrt2;
+}
 
 std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) {
   Bounds bounds = shape != nullptr ? shape->bounds() : Bounds{};
@@ -41,7 +43,8 @@ std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) 
   }
   std::array<int64_t, 3> first, last;
   for (int a = 0; a < 3; ++a) {
-    if (std::max(std::abs(low[a]), std::abs(high[a])) > 1e6) throw InputError("the geometry is beyond a million pitches");
+    if (std::max(std::abs(low[a]), std::abs(high[a])) > 1e6)
+      throw InputError("the geometry is beyond a million pitches");
     first[a] = std::llround(std::floor(low[a])) - 1;
     last[a] = std::llround(std::ceil(high[a])) + 1;
   }

@@ -13,6 +13,8 @@
 namespace cuboct {
 namespace {
 
+constexpr int kLeastStrength = 18, kWidestStrength = 27;
+
 using Real = std::function<double(double)>;  // of r2 in cell edges squared
 
 // floor(sqrt(a)) for a < 2^52, where the double square root is off by less than one.
@@ -159,7 +161,7 @@ void check_widths(const Widths& w, const TableChoice& table) {
   check_range("velocity_bits", w.velocity_bits, 8, w.velocity_frac() + 1);
   check_range("relative_velocity_frac", w.relative_velocity_frac, 4, w.velocity_frac());
   check_range("relative_velocity_bits", w.relative_velocity_bits, 4, 27);
-  check_range("strength_bits", w.strength_bits, 8, 27);
+  if (w.strength_bits != 0) check_range("strength_bits", w.strength_bits, 8, kWidestStrength);
   check_range("sum_bits", w.sum_bits, 8, 48);
   check_range("displacement_bits", w.displacement_bits, 8, 40);
   check_range("scale_frac", w.scale_frac, 4, 16);
@@ -194,6 +196,30 @@ void make_tables(FixedRule& fixed, const Rule& rule, TableShape shape, const Tab
         end, fixed.widths.strength_bits, 0);
   }
   fixed.error = error_of(fixed, rule, scale);
+}
+
+// Strongest pull of the law in newtons; its strongest push if it never pulls.
+double strongest_pull(const PairLaw& law) {
+  constexpr int kSamples = 4096;
+  double pull = 0, push = 0;
+  for (int k = 0; k < kSamples; ++k) {
+    const double f = law.force(law.core() + (law.cutoff() - law.core()) * k / kSamples);
+    pull = std::max(pull, -f);
+    push = std::max(push, f);
+  }
+  return pull > 0 ? pull : push;
+}
+
+// Tables of the chosen shape, or of the shape that errs less.
+FixedRule with_tables(const FixedRule& fixed, const Rule& rule, const TableChoice& choice, double scale,
+                      bool fits_octaves) {
+  FixedRule uniform = fixed, octaves = fixed;
+  if (choice.shape != TableChoice::Shape::octaves)
+    make_tables(uniform, rule, TableShape::uniform, choice, scale);
+  if (choice.shape == TableChoice::Shape::uniform || !fits_octaves) return uniform;
+  make_tables(octaves, rule, TableShape::octaves, choice, scale);
+  if (choice.shape == TableChoice::Shape::octaves) return octaves;
+  return octaves.error.worst_force < uniform.error.worst_force ? octaves : uniform;
 }
 
 }  // namespace
@@ -231,15 +257,17 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
     throw InputError(
         fmt::format("{} index bits are too few for the octaves between the law's core and its cutoff",
                     choice.index_bits));
-  if (choice.shape != TableChoice::Shape::octaves)
-    make_tables(fixed, rule, TableShape::uniform, choice, scale);
-  if (choice.shape == TableChoice::Shape::octaves ||
-      (choice.shape == TableChoice::Shape::automatic && fits_octaves)) {
-    FixedRule other = fixed;
-    make_tables(other, rule, TableShape::octaves, choice, scale);
-    if (choice.shape == TableChoice::Shape::octaves || other.error.worst_force < fixed.error.worst_force)
-      fixed = other;
+  if (widths.strength_bits == 0) {
+    const double pull = strongest_pull(*rule.law);
+    for (fixed.widths.strength_bits = kLeastStrength; fixed.widths.strength_bits < kWidestStrength;
+         ++fixed.widths.strength_bits) {
+      const FixedRule tried = with_tables(fixed, rule, choice, scale, fits_octaves);
+      const double half_unit =
+          std::ldexp(0.5, -tried.force.value_frac) * rule.mass / (rule.dt * rule.dt) / scale * cutoff;
+      if (half_unit <= std::ldexp(pull, -13)) break;
+    }
   }
+  fixed = with_tables(fixed, rule, choice, scale, fits_octaves);
 
   const int frac = widths.velocity_frac();
   fixed.difference_shift = widths.position_frac - D;
@@ -252,8 +280,8 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
     throw InputError(
         fmt::format("the pair law's f/r * dt^2/m reaches {:.3g}: with {} value bits its kicks have fewer "
                     "fractional bits ({}) than velocities ({})",
-                    std::ldexp(1.0, widths.strength_bits - 1 - fixed.force.value_frac), widths.strength_bits,
-                    fixed.force.value_frac + D, frac),
+                    std::ldexp(1.0, fixed.widths.strength_bits - 1 - fixed.force.value_frac),
+                    fixed.widths.strength_bits, fixed.force.value_frac + D, frac),
         "use a smaller dt, a larger core, more strength_bits, or fewer guard bits");
   if (fixed.damp_shift < 0)
     throw InputError(

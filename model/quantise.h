@@ -16,6 +16,10 @@ struct TableChoice {
   int fraction_bits = 17;
 };
 
+// `widths.strength_bits` = 0 takes the least width from 18 (a multiplier of small FPGAs) to 27 at which half a unit of
+// the force table is worth at most 2^-13 of the law's strongest pull: laws with a steep core, as Lennard-Jones, need
+// more than soft ones. The result says which.
+//
 // Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative
 // shift, a velocity, gain or scale out of its width.
 FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table);

@@ -119,7 +119,8 @@ ShapePtr read_placement(const ConfigTable& t, ShapePtr shape) {
     const Vec3 axis = direction(rotate->at("axis")).normalized();
     rotation = Eigen::AngleAxisd(rotate->number("angle", quantity::angle), axis).toRotationMatrix();
   }
-  return transform(std::move(shape), scale, rotation, t.vector_or("translate", quantity::length, Vec3::Zero()));
+  return transform(std::move(shape), scale, rotation,
+                   t.vector_or("translate", quantity::length, Vec3::Zero()));
 }
 
 }  // namespace

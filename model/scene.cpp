@@ -30,7 +30,8 @@ Damping read_damping(const ConfigTable& root, const Scene& scene) {
     const double ratio = table->number("ratio", quantity::number, Range::not_negative());
     const double stiffness = scene.pitch > 0 ? -scene.rule.law->slope(scene.pitch) : 0;
     if (!(stiffness > 0))
-      table->at("ratio").fail("'ratio' needs a packing with a stiff bond at its pitch", "give 'coefficient' instead");
+      table->at("ratio").fail("'ratio' needs a packing with a stiff bond at its pitch",
+                              "give 'coefficient' instead");
     damping.coefficient = ratio * 2 * std::sqrt(stiffness * scene.rule.mass);
   } else {
     damping.coefficient = table->number("coefficient", quantity::damping, Range::not_negative());
@@ -62,9 +63,9 @@ void read_time(const ConfigTable& root, Scene& scene) {
   const bool automatic = !dt || (dt->is_string() && dt->string() == "auto");
   const auto safety = run.find("dt_safety");
   if (automatic) {
-    scene.dt_safety = safety ? safety->number(quantity::number, {.low = 0, .high = 1, .low_open = true}) : 0.2;
-    if (scene.dt_limit == 0)
-      (dt ? *dt : run).fail("no stability limit is known for this scene", "give 'dt'");
+    scene.dt_safety =
+        safety ? safety->number(quantity::number, {.low = 0, .high = 1, .low_open = true}) : 0.2;
+    if (scene.dt_limit == 0) (dt ? *dt : run).fail("no stability limit is known for this scene", "give 'dt'");
     scene.rule.dt = scene.dt_safety * scene.dt_limit;
   } else {
     if (safety) safety->fail("'dt_safety' serves dt = \"auto\" only");
@@ -79,7 +80,8 @@ void read_time(const ConfigTable& root, Scene& scene) {
 
   run.not_both("steps", "duration");
   if (run.has("duration")) {
-    const double steps = std::ceil(run.number("duration", quantity::time, Range::positive()) / scene.rule.dt * (1 - 1e-12));
+    const double steps =
+        std::ceil(run.number("duration", quantity::time, Range::positive()) / scene.rule.dt * (1 - 1e-12));
     if (steps > 1e15) run.at("duration").fail(fmt::format("'duration' takes {:.3g} steps", steps));
     scene.steps = static_cast<uint64_t>(steps);
   } else {
@@ -88,7 +90,8 @@ void read_time(const ConfigTable& root, Scene& scene) {
   const auto every = [&](const char* key, uint64_t otherwise) {
     return static_cast<uint64_t>(run.integer_or(key, 0, INT64_MAX, static_cast<int64_t>(otherwise)));
   };
-  scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max<uint64_t>(1, scene.steps / 500));
+  scene.probe_every =
+      every("probe_every", scene.probes.empty() ? 0 : std::max<uint64_t>(1, scene.steps / 500));
   scene.frame_every = every("frame_every", 0);
   run.done();
 }
@@ -97,7 +100,8 @@ void read_reach(const ConfigTable& root, Scene& scene) {
   const auto table = root.table_at("reach");
   if (!table) return;
   if (const auto margin = table->find("margin")) {
-    const auto values = margin->is_number() ? std::vector{margin->number(quantity::length)} : margin->numbers(quantity::length);
+    const auto values = margin->is_number() ? std::vector{margin->number(quantity::length)}
+                                            : margin->numbers(quantity::length);
     if (values.size() != 1 && values.size() != 3) margin->fail("'margin' needs one length or three");
     for (size_t a = 0; a < 3; ++a) scene.reach_margin[a] = values[values.size() == 1 ? 0 : a];
     if (scene.reach_margin.minCoeff() < 0) margin->fail("'margin' must not be negative");

@@ -29,8 +29,8 @@ void check_size(const ConfigTable& geometry, const Bounds& bounds, double pitch)
     const char axis = "xyz"[a];
     if (std::isinf(size)) geometry.fail(fmt::format("the geometry has no end along {}", axis));
     if (size < pitch * (1 - kTolerance))
-      geometry.fail(fmt::format("the geometry is {:.6g} m along {}, less than the pitch {:.6g} m", std::max(size, 0.0),
-                                axis, pitch));
+      geometry.fail(fmt::format("the geometry is {:.6g} m along {}, less than the pitch {:.6g} m",
+                                std::max(size, 0.0), axis, pitch));
   }
 }
 
@@ -41,7 +41,8 @@ void pack_geometry(const ConfigTable& root, const PackingChoice& packing, Scene&
   scene.periodic.origin = boxed.origin;
   const auto geometry = root.table_at("geometry");
   const bool whole_box = (boxed.extent.array() > 0).all();
-  if (!geometry && !whole_box) root.at("packing").fail("nothing says what to pack", "add [geometry], or [box] with 'cells'");
+  if (!geometry && !whole_box)
+    root.at("packing").fail("nothing says what to pack", "add [geometry], or [box] with 'cells'");
   ShapePtr shape;
   if (geometry) {
     shape = read_shape(*geometry);
@@ -54,7 +55,8 @@ void pack_geometry(const ConfigTable& root, const PackingChoice& packing, Scene&
     check_size(*geometry, bounds, scene.pitch);
   }
   scene.body.x = pack(packing.fcc, shape.get(), boxed);
-  if (scene.body.x.empty()) (geometry ? *geometry : root.at("box").table()).fail("no particle: no site of the packing lies inside");
+  if (scene.body.x.empty())
+    (geometry ? *geometry : root.at("box").table()).fail("no particle: no site of the packing lies inside");
   scene.body.v.assign(scene.body.x.size(), Vec3::Zero());
 }
 
@@ -66,7 +68,8 @@ void read_single_box(const ConfigTable& root, Scene& scene) {
 }
 
 // The materials named by [[particle]] entries; -1: by region.
-std::vector<int> read_particles(const ConfigTable& root, const std::vector<std::string>& materials, Scene& scene) {
+std::vector<int> read_particles(const ConfigTable& root, const std::vector<std::string>& materials,
+                                Scene& scene) {
   std::vector<int> named(scene.body.x.size(), -1);
   for (const ConfigTable& table : root.tables("particle")) {
     const ConfigValue position = table.at("position");
@@ -103,9 +106,11 @@ struct Material {
 std::vector<Material> read_materials(const ConfigTable& root) {
   std::vector<Material> materials;
   for (const ConfigTable& table : root.tables("material")) {
-    Material material{table.at("name").string(), table.number_or("strength", quantity::number, 1, Range::positive())};
+    Material material{table.at("name").string(),
+                      table.number_or("strength", quantity::number, 1, Range::positive())};
     for (const Material& other : materials)
-      if (other.name == material.name) table.at("name").fail(fmt::format("material '{}' is there twice", other.name));
+      if (other.name == material.name)
+        table.at("name").fail(fmt::format("material '{}' is there twice", other.name));
     materials.push_back(material);
   }
   if (materials.empty()) materials.push_back({"matter", 1});
@@ -119,7 +124,8 @@ void read_strengths(const ConfigTable& root, const std::vector<Material>& materi
   rule.strength.assign(n, std::vector<double>(n));
   for (size_t i = 0; i < n; ++i)
     for (size_t j = 0; j < n; ++j)
-      rule.strength[i][j] = i == j ? materials[i].strength : std::sqrt(materials[i].strength * materials[j].strength);
+      rule.strength[i][j] =
+          i == j ? materials[i].strength : std::sqrt(materials[i].strength * materials[j].strength);
   for (const ConfigTable& table : root.tables("bond")) {
     const ConfigValue between = table.at("between");
     const auto pair = between.items();
@@ -130,8 +136,8 @@ void read_strengths(const ConfigTable& root, const std::vector<Material>& materi
   }
 }
 
-std::vector<int> assign_materials(const ConfigTable& root, const Regions& regions, const std::vector<int>& named,
-                                  const Scene& scene) {
+std::vector<int> assign_materials(const ConfigTable& root, const Regions& regions,
+                                  const std::vector<int>& named, const Scene& scene) {
   std::vector<int> material(scene.body.size(), 0);
   int index = 0;
   for (const ConfigTable& table : root.tables("material")) {
@@ -157,7 +163,8 @@ ParticleType read_constraint(const ConfigTable& table, const Rule& rule, double 
     type.imposed = table.has("axes") ? table.axes("axes") : std::array{true, true, true};
     for (size_t a = 0; a < 3; ++a)
       if (!type.imposed[a] && type.velocity[a] != 0)
-        table.at("velocity").fail(fmt::format("'velocity' has a part along {}, which 'axes' leaves free", "xyz"[a]));
+        table.at("velocity")
+            .fail(fmt::format("'velocity' has a part along {}, which 'axes' leaves free", "xyz"[a]));
   } else {
     if (const auto axes = table.find("axes"))
       axes->fail(fmt::format("'axes' serves 'held' and 'moved' only, not '{}'", kinds[kind]));
@@ -191,7 +198,8 @@ void read_velocities(const ConfigTable& root, const Regions& regions, Scene& sce
     table.not_both("thermal_speed", "thermal_energy");
     double speed = table.number_or("thermal_speed", quantity::velocity, 0, Range::not_negative());
     if (table.has("thermal_energy"))
-      speed = std::sqrt(table.number("thermal_energy", quantity::energy, Range::not_negative()) / scene.rule.mass);
+      speed = std::sqrt(table.number("thermal_energy", quantity::energy, Range::not_negative()) /
+                        scene.rule.mass);
     if (table.has("thermal_speed") || table.has("thermal_energy"))
       add_thermal(body.v, ids, speed, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)));
     table.done();
@@ -211,11 +219,13 @@ Regions::Regions(const ConfigTable& root) {
 
 ShapePtr Regions::read(const ConfigValue& value) const {
   if (value.is_string()) return shapes_[value.choice("region", names_)];
-  if (!value.is_table()) value.fail(fmt::format("'{}' must be the name of a region, or a shape", value.key()));
+  if (!value.is_table())
+    value.fail(fmt::format("'{}' must be the name of a region, or a shape", value.key()));
   return read_shape(value.table());
 }
 
-std::vector<uint32_t> Regions::select(const ConfigValue& value, const std::vector<Vec3>& x, double tolerance) const {
+std::vector<uint32_t> Regions::select(const ConfigValue& value, const std::vector<Vec3>& x,
+                                      double tolerance) const {
   const ShapePtr shape = read(value);
   std::vector<uint32_t> ids;
   for (uint32_t id = 0; id < x.size(); ++id)
@@ -236,7 +246,8 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
     const ConfigValue cells = table->at("cells");
     const Vec3 n = cells.vector(quantity::number);
     for (size_t a = 0; a < 3; ++a) {
-      if (!(n[a] >= 1 && n[a] == std::round(n[a]))) cells.fail("'cells' must hold three whole numbers of at least 1");
+      if (!(n[a] >= 1 && n[a] == std::round(n[a])))
+        cells.fail("'cells' must hold three whole numbers of at least 1");
       if (!packing->along[a]) cells.fail("'cells' needs 'axes' of whole numbers; give 'size' instead");
       box.extent[a] = n[a] * packing->along[a]->norm() * packing->fcc.cell();
     }
@@ -277,7 +288,8 @@ void read_body(const ConfigTable& root, const Regions& regions, const PackingCho
     ParticleType type = read_constraint(table, scene.rule, scene.pitch);
     type.name = table.at("name").string();
     for (const ParticleType& other : constraints)
-      if (other.name == type.name) table.at("name").fail(fmt::format("constraint '{}' is there twice", type.name));
+      if (other.name == type.name)
+        table.at("name").fail(fmt::format("constraint '{}' is there twice", type.name));
     for (uint32_t id : regions.select(table.at("region"), body.x, tolerance_of(scene)))
       constraint[id] = static_cast<int>(constraints.size());
     table.done();
@@ -287,7 +299,8 @@ void read_body(const ConfigTable& root, const Regions& regions, const PackingCho
   std::map<std::pair<int, int>, size_t> occurring;
   for (size_t i = 0; i < body.size(); ++i) occurring.try_emplace({material[i], constraint[i]}, 0);
   if (occurring.size() > kMaxTypes)
-    root.fail(fmt::format("{} pairs of material and constraint occur, at most {} may", occurring.size(), kMaxTypes));
+    root.fail(fmt::format("{} pairs of material and constraint occur, at most {} may", occurring.size(),
+                          kMaxTypes));
   for (auto& [pair, index] : occurring) {
     ParticleType type = pair.second < 0 ? ParticleType{} : constraints[static_cast<size_t>(pair.second)];
     const std::string& name = names[static_cast<size_t>(pair.first)];

@@ -34,7 +34,8 @@ void read_orientation(const ConfigTable& table, PackingChoice& packing) {
   if (rows.size() != 2) axes->fail("'axes' needs two crystal directions: along x and along y");
   const Vec3 x = rows[0].vector(quantity::number), y = rows[1].vector(quantity::number);
   if (x.norm() == 0 || y.norm() == 0) axes->fail("'axes' must not hold a zero direction");
-  if (std::abs(x.dot(y)) > 1e-9 * x.norm() * y.norm()) axes->fail("the two directions of 'axes' are not perpendicular");
+  if (std::abs(x.dot(y)) > 1e-9 * x.norm() * y.norm())
+    axes->fail("the two directions of 'axes' are not perpendicular");
   packing.fcc.orientation.row(0) = x.normalized();
   packing.fcc.orientation.row(1) = y.normalized();
   packing.fcc.orientation.row(2) = x.normalized().cross(y.normalized());
@@ -106,7 +107,8 @@ std::shared_ptr<const PairLaw> read_preset(const ConfigTable& law, const std::st
 
 void check_at_pitch(const ConfigTable& table, const PairLaw& law, double pitch, bool must_vanish) {
   if (law.cutoff() <= pitch)
-    table.fail(fmt::format("the cutoff {:.6g} m of the law is not beyond the pitch {:.6g} m", law.cutoff(), pitch));
+    table.fail(
+        fmt::format("the cutoff {:.6g} m of the law is not beyond the pitch {:.6g} m", law.cutoff(), pitch));
   const double f = law.force(pitch);
   if (must_vanish && std::abs(f) > 1e-6 * std::abs(law.slope(pitch)) * pitch)
     table.fail(fmt::format("the law does not vanish at the pitch: {:.6g} N at {:.6g} m", f, pitch),

@@ -23,7 +23,8 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
     probe.kind = static_cast<Probe::Kind>(table.at("kind").choice("probe", kinds));
     probe.name = table.at("name").string();
     for (const Probe& other : scene.probes)
-      if (other.name == probe.name) table.at("name").fail(fmt::format("probe '{}' is there twice", probe.name));
+      if (other.name == probe.name)
+        table.at("name").fail(fmt::format("probe '{}' is there twice", probe.name));
     const auto set = [&](const char* key, const std::string& name) {
       return ParticleSet{name, regions.select(table.at(key), scene.body.x, tolerance)};
     };
@@ -33,7 +34,8 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
       probe.grip = set("grip", probe.name + ".grip");
       probe.axis = static_cast<int>(table.at("axis").choice("axis", {"x", "y", "z"}));
       probe.area = table.number("area", quantity::area, Range::positive());
-      if (!(mean_along(probe.lower, scene.body.x, probe.axis) < mean_along(probe.upper, scene.body.x, probe.axis)))
+      if (!(mean_along(probe.lower, scene.body.x, probe.axis) <
+            mean_along(probe.upper, scene.body.x, probe.axis)))
         table.at("upper").fail(fmt::format("'upper' must lie above 'lower' along {}", "xyz"[probe.axis]));
     } else {
       probe.set = set("region", probe.name);

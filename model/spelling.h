@@ -7,8 +7,9 @@
 
 namespace cuboct {
 
-// The candidate with the least edit distance (insert, delete, replace, swap of two neighbours), the first of equals;
-// empty where none is nearer than a third of the name's length (at least one edit is always allowed).
+// The candidate with the least edit distance (insert, delete, replace, swap of two neighbours; a wrong case
+// counts half), the first of equals; empty where none is nearer than a third of the name's length (at least
+// one edit is always allowed).
 std::string nearest_spelling(const std::string& name, const std::vector<std::string>& candidates);
 
 // "did you mean 'capacity'?", or empty.

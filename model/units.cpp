@@ -72,8 +72,8 @@ const NamedUnit* find_unit(std::string_view name) {
 std::vector<std::string> common_spellings() {
   std::vector<std::string> names;
   for (const NamedUnit& unit : kUnits) names.emplace_back(unit.name);
-  for (const char* name : {"kg", "mg", "mm", "um", "nm", "cm", "km", "ms", "us", "ns", "kN", "mN", "MN", "kPa",
-                           "MPa", "GPa", "mJ", "uJ", "nJ", "kHz", "MHz"})
+  for (const char* name : {"kg", "mg", "mm",  "um",  "nm",  "cm", "km", "ms", "us",  "ns", "kN",
+                           "mN", "MN", "kPa", "MPa", "GPa", "mJ", "uJ", "nJ", "kHz", "MHz"})
     names.emplace_back(name);
   return names;
 }
@@ -99,7 +99,8 @@ class Parser {
     skip_space();
     if (at_ < text_.size()) unit = product();
     if (at_ < text_.size()) fail(fmt::format("unexpected '{}'", rest()));
-    for (std::string_view digits : numbers) result.values.push_back(scaled(digits, unit.decimal) * unit.factor);
+    for (std::string_view digits : numbers)
+      result.values.push_back(scaled(digits, unit.decimal) * unit.factor);
     result.dimension = unit.dimension;
     return result;
   }
@@ -223,9 +224,9 @@ class Parser {
 
 std::string describe(const Dimension& dimension) {
   for (const Quantity& known :
-       {quantity::number, quantity::length, quantity::area, quantity::mass, quantity::time, quantity::velocity,
-        quantity::acceleration, quantity::density, quantity::force, quantity::stiffness, quantity::pressure,
-        quantity::energy, quantity::damping, quantity::angle, quantity::angular_velocity})
+       {quantity::number, quantity::length, quantity::area, quantity::mass, quantity::time,
+        quantity::velocity, quantity::acceleration, quantity::density, quantity::force, quantity::stiffness,
+        quantity::pressure, quantity::energy, quantity::damping, quantity::angle, quantity::angular_velocity})
     if (known.dimension == dimension) return known.name;
   const char* base[] = {"kg", "m", "s", "rad"};
   std::string above, below;

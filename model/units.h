@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Physical dimensions and the text form of quantities: "0.5 mm", "1.41 g/cm^3", "[0, 0, -9.81] m/s^2".
 //
-// A unit is built of named units with `*`, `/`, `^` and a whole exponent, and parentheses; `*` and `/` bind alike, from
-// left to right; `1` stands alone in "1/s". Named units: g m s N Pa J W Hz eV angstrom rad deg min, each with the
-// prefixes f p n u (or µ) m c k M G T where that gives no other named unit.
+// A unit is built of named units with `*`, `/`, `^` and a whole exponent, and parentheses; `*` and `/` bind
+// alike, from left to right; `1` stands alone in "1/s". Named units: g m s N Pa J W Hz eV angstrom rad deg
+// min, each with the prefixes f p n u (or µ) m c k M G T where that gives no other named unit.
 #pragma once
 
 #include <array>
@@ -47,12 +47,13 @@ inline constexpr Quantity angular_velocity{{{0, 0, -1, 1}}, "an angular velocity
 // "a length" for the known ones, else base units: "kg*m^2/s^3".
 std::string describe(const Dimension& dimension);
 
-// What a text says, in SI units. A decimal prefix moves the decimal exponent before the digits are read, so that
-// "1.41 g/cm^3" is exactly the double nearest to 1410.
+// What a text says, in SI units. A decimal prefix moves the decimal exponent before the digits are read, so
+// that "1.41 g/cm^3" is exactly the double nearest to 1410.
 struct ParsedQuantity {
   std::vector<double> values;  // one, or those between brackets
   bool list = false;           // written with brackets
   Dimension dimension;
+  bool operator==(const ParsedQuantity&) const = default;
 };
 
 // Throws UnitError.

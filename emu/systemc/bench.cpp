@@ -11,10 +11,6 @@
 
 namespace cuboct::emu {
 
-// sc_signal asks for these two.
-static std::ostream& operator<<(std::ostream& out, const Control& c) { return out << c.reset_n << c.start; }
-static void sc_trace(sc_core::sc_trace_file*, const Control&, const std::string&) {}
-
 namespace {
 
 double now() {
@@ -184,10 +180,10 @@ RunResult Bench::take_result() {
   if (!stuck_.empty()) throw std::runtime_error(stuck_);
   if (!over_) throw std::runtime_error("the bench has not run");
   RunResult result;
-  result.order = collector_.order();
   Counters counters{{"cycles", static_cast<double>(collector_.last_cycle() + 1)}};
   for (const auto& n : nodes_) add_counters(counters, 1, n->model().counters());
   result.trace = collector_.take_trace();
+  result.order = collector_.order();
   result.trace.engine = engine_;
   result.trace.seconds = seconds_;
   result.trace.counters = std::move(counters);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <ostream>
 #include <string>
 #include <systemc>
 #include <vector>
@@ -15,6 +16,10 @@
 #include "emu/systemc/plain.h"
 
 namespace cuboct::emu {
+
+// sc_signal and its ports ask for these two.
+inline std::ostream& operator<<(std::ostream& out, const Control& c) { return out << c.reset_n << c.start; }
+inline void sc_trace(sc_core::sc_trace_file*, const Control&, const std::string&) {}
 
 // The host's view of the run that the node modules report to.
 class Monitor : public virtual sc_core::sc_interface {

@@ -33,8 +33,10 @@ std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initia
   std::vector<std::vector<Particle>> nodes(plan.lattice.size());
   const Particle* first = nullptr;  // that found its node full; `initial` ascends in id
   for (const Particle& p : initial.particles) {
-    if (static_cast<int>(nodes[p.node].size()) < plan.arch.capacity) nodes[p.node].push_back(p);
-    else if (first == nullptr) first = &p;
+    if (static_cast<int>(nodes[p.node].size()) < plan.arch.capacity)
+      nodes[p.node].push_back(p);
+    else if (first == nullptr)
+      first = &p;
   }
   if (first != nullptr)
     throw RunError(Fault::full_x, initial.step, first->node, first->id, plan.arch.capacity,
@@ -139,6 +141,7 @@ Trace Collector::take_trace() {
                      .what();
     trace_.stop = stop_;
     trace_.state_hash.resize(stop_.step + 1);
+    if (options_.keep_order) order_.resize(stop_.step + 1);
     std::erase_if(trace_.frames, [&](const State& s) { return s.step > stop_.step; });
   }
   trace_.cycles.resize(steps_done() * nodes_ * kPhases);

@@ -10,6 +10,8 @@ namespace {
 
 constexpr uint8_t bit(int i) { return static_cast<uint8_t>(1u << i); }
 constexpr uint8_t bit(Phase phase) { return bit(static_cast<int>(phase)); }
+// `left_x` and `full_x` for another axis.
+constexpr Fault along(Fault x, int axis) { return static_cast<Fault>(static_cast<int>(x) + 2 * axis); }
 
 }  // namespace
 
@@ -75,7 +77,8 @@ void Node::enter(Main next) {
     const int n = static_cast<int>(own_.size());
     remaining_ = n == 0 ? 1 : n - 1 + plan_.latency.update;
   }
-  if (next >= Main::migrate_x) migrate_ = leaving_ & bit(axis()) ? Migrate::scan : Migrate::end;
+  if (next >= Main::migrate_x)
+    migrate_ = (leaving_ & bit(axis())) != 0 && !own_.empty() ? Migrate::scan : Migrate::end;
 }
 
 void Node::finish_phase(Main next) {
@@ -203,31 +206,24 @@ void Node::migrate() {
 
 void Node::scan() {
   const int a = axis();
-  if (!own_.empty()) {
-    Slot& s = own_[record_];
-    if (s.away[a] == 0) {
-      if (kept_ != static_cast<size_t>(record_)) own_[kept_] = s;
-      ++kept_;
-    } else {
-      const int face = 2 * a + (s.away[a] > 0);
-      if (!linked(face)) {
-        fault_.add(static_cast<Fault>(static_cast<int>(Fault::left_x) + 2 * a), s.id, 0);
-      } else {
-        if (!can_load(face)) {
-          ++link_waits_;
-          return;
-        }
-        if (beat_ == 0) {
-          word_ = pack_particle(plan_, s);
-        }
-        load_record_beat(face, face + 1, word_);
-        if (++beat_ < plan_.words.migrate_beats) return;
-        beat_ = 0;
-      }
-    }
-    if (static_cast<size_t>(++record_) < own_.size()) return;
-    own_.resize(kept_);
+  const Slot& s = own_[record_];
+  const int face = 2 * a + (s.away[a] > 0);
+  if (s.away[a] == 0) {
+    if (kept_ != static_cast<size_t>(record_)) own_[kept_] = s;
+    ++kept_;
+  } else if (!linked(face)) {
+    fault_.add(along(Fault::left_x, a), s.id, 0);
+  } else if (!can_load(face)) {
+    ++link_waits_;
+    return;
+  } else {
+    if (beat_ == 0) word_ = pack_particle(plan_, s);
+    load_record_beat(face, face + 1, word_);
+    if (++beat_ < plan_.words.migrate_beats) return;
+    beat_ = 0;
   }
+  if (static_cast<size_t>(++record_) < own_.size()) return;
+  own_.resize(kept_);
   migrate_ = Migrate::end;
 }
 
@@ -238,12 +234,13 @@ void Node::take(int face, Migrate next, bool last) {
     Slot s = r.fifo[r.popped++];
     if (r.popped == r.fifo.size()) r.fifo.clear(), r.popped = 0;
     s.away[a] = 0;
+    if (static_cast<int>(own_.size()) == capacity_) {
+      fault_.add(along(Fault::full_x, a), s.id, capacity_);
+      return;
+    }
+    own_.push_back(s);
     for (int later = a + 1; later < 3; ++later)
       if (s.away[later] != 0) leaving_ |= bit(later);
-    if (static_cast<int>(own_.size()) == capacity_)
-      fault_.add(static_cast<Fault>(static_cast<int>(Fault::full_x) + 2 * a), s.id, capacity_);
-    else
-      own_.push_back(s);
     return;
   }
   if (linked(face) && !r.migrate_end) {

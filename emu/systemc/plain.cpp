@@ -111,9 +111,9 @@ RunResult run_plain(const Plan& plan, const State& initial, const RunOptions& op
     }
   }
   RunResult result;
-  result.order = collector.order();
   const double cycles = static_cast<double>(collector.last_cycle() + 1);
   result.trace = collector.take_trace();
+  result.order = collector.order();
   result.trace.engine = engine;
   result.trace.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   result.trace.counters = {{"cycles", cycles}};

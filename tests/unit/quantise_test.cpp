@@ -41,9 +41,13 @@ TEST(Quantise, ReportedErrorIsTheWorstThatRandomDistancesFind) {
         ++inside;
       }
       ASSERT_GT(inside, 300000);
-      // The report samples each bin at 64 points: what lies between adds little to a smooth error.
-      EXPECT_LE(worst, 1.1 * fixed.error.worst_force) << degree;
-      EXPECT_GE(worst, 0.9 * fixed.error.worst_force) << degree;
+      // The report samples each bin at 64 points: what lies between is the rounding of an entry, half a unit
+      // times r, and at the core's kink a 64th of the bin.
+      const double rounding =
+          std::ldexp(0.5, -fixed.force.value_frac) * rule.mass / (rule.dt * rule.dt) * 1.6;
+      EXPECT_LE(worst, 1.05 * fixed.error.worst_force + rounding) << degree;
+      EXPECT_GE(worst, 0.95 * fixed.error.worst_force - rounding) << degree;
+      EXPECT_GT(worst, 2 * rounding) << degree;
     }
 }
 

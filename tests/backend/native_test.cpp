@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// The native node against golden, without the SystemC kernel: every feature, random plans, random stalls,
+// faults.
+#include <gtest/gtest.h>
+
+#include "emu/systemc/node.h"
+#include "tests/backend/engines.h"
+#include "tests/support/cases.h"
+
+namespace cuboct::test {
+namespace {
+
+emu::RunResult run(const Case& c, double stall_rate = 0, uint64_t stall_seed = 1) {
+  return run_plain(c.setup.plan, c.setup.initial, keep_all(c.steps, stall_rate, stall_seed),
+                   emu::native_nodes(c.setup.plan), "plain");
+}
+
+int moves(const GoldenRun& golden) {
+  int count = 0;
+  for (size_t s = 1; s < golden.states.size(); ++s)
+    for (size_t k = 0; k < golden.states[s].particles.size(); ++k)
+      count += golden.states[s].particles[k].node != golden.states[s - 1].particles[k].node;
+  return count;
+}
+
+class Native : public testing::TestWithParam<std::string> {};
+
+TEST_P(Native, EqualsGoldenAtEachStep) {
+  const Case c = make_case(GetParam());
+  const GoldenRun golden = run_golden(c.setup, c.steps);
+  ASSERT_FALSE(golden.fault) << golden.fault->what();
+  const Compared compared = compare(c.setup.plan, golden, run(c));
+  EXPECT_EQ(compared.difference, "");
+  EXPECT_EQ(compared.steps, c.steps + 1);
+  EXPECT_EQ(compared.particles, (c.steps + 1) * c.setup.initial.particles.size());
+  EXPECT_EQ(compared.slots, compared.particles);
+  EXPECT_TRUE(c.name == "single_node" || moves(golden) > 0);
+}
+
+TEST_P(Native, StallsChangeCyclesAndNoBits) {
+  const Case c = make_case(GetParam());
+  const emu::RunResult free = run(c);
+  for (const double rate : {0.1, 0.6}) {
+    const emu::RunResult stalled = run(c, rate, 42);
+    EXPECT_EQ(free.trace.state_hash, stalled.trace.state_hash);
+    EXPECT_TRUE(free.order == stalled.order);
+    EXPECT_EQ(free.trace.cycles == stalled.trace.cycles, c.setup.plan.lattice.size() == 1);
+    EXPECT_TRUE(run(c, rate, 42).trace.cycles == stalled.trace.cycles);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Native, testing::ValuesIn(case_names()),
+                         [](const auto& p) { return p.param; });
+
+TEST(NativeRandom, EqualsGolden) {
+  uint64_t particles = 0, faults = 0, moved = 0;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    const Case c = random_case(seed);
+    const GoldenRun golden = run_golden(c.setup, c.steps);
+    for (const double rate : {0.0, 0.3}) {
+      const Compared compared = compare(c.setup.plan, golden, run(c, rate, seed));
+      ASSERT_EQ(compared.difference, "") << c.name << " at stall rate " << rate;
+      ASSERT_EQ(compared.steps, golden.states.size());
+      particles += compared.particles;
+    }
+    faults += golden.fault.has_value();
+    moved += static_cast<uint64_t>(moves(golden));
+  }
+  EXPECT_GT(particles, 20000u);
+  EXPECT_GT(moved, 200u);
+  EXPECT_GT(faults, 0u);
+  EXPECT_LT(faults, 40u);
+  RecordProperty("particle_steps", static_cast<int>(particles));
+}
+
+TEST(NativeFaults, EachArisesAsInGolden) {
+  int seen = 0;
+  for (const Fault fault : all_faults()) {
+    const Case c = fault_case(fault);
+    const GoldenRun golden = run_golden(c.setup, c.steps);
+    ASSERT_TRUE(golden.fault) << c.name;
+    EXPECT_EQ(golden.fault->fault, fault) << golden.fault->what();
+    for (const double rate : {0.0, 0.4}) {
+      const emu::RunResult result = run(c, rate);
+      EXPECT_EQ(compare(c.setup.plan, golden, result).difference, "") << c.name;
+      ASSERT_TRUE(result.trace.stop) << c.name;
+      EXPECT_EQ(result.trace.stop->fault, fault);
+      EXPECT_EQ(result.trace.stop->number, golden.fault->number);
+      EXPECT_EQ(result.trace.steps(), golden.fault->step);
+      EXPECT_EQ(result.trace.cycles.size(), golden.fault->step * c.setup.plan.lattice.size() * kPhases);
+    }
+    ++seen;
+  }
+  EXPECT_EQ(seen, 11);
+}
+
+TEST(NativeFaults, CapacityHoldsAtTheLimit) {
+  for (const Fault fault : {Fault::full_x, Fault::full_y, Fault::full_z}) {
+    Case c = fault_case(fault);
+    c.setup.plan.arch.capacity = 5;
+    c.setup.plan =
+        make_plan(c.setup.plan.rule, c.setup.plan.arch, c.setup.plan.lattice, c.setup.plan.origin, 5);
+    const GoldenRun golden = run_golden(c.setup, 12);
+    ASSERT_FALSE(golden.fault);
+    size_t fullest = 0;
+    for (const auto& step : golden.order)
+      for (const auto& node : step) fullest = std::max(fullest, node.size());
+    EXPECT_EQ(fullest, 5u);
+    c.steps = 12;
+    EXPECT_EQ(compare(c.setup.plan, golden, run(c)).difference, "");
+  }
+}
+
+TEST(NativeFaults, AFullNodeAtTheStartIsRefusedAsByGolden) {
+  Case c = make_case("undamped_2x2x2");
+  c.setup.plan.arch.capacity = 3;
+  const GoldenRun golden = run_golden(c.setup, 1);
+  ASSERT_TRUE(golden.fault);
+  try {
+    run(c);
+    FAIL();
+  } catch (const RunError& e) {
+    EXPECT_STREQ(e.what(), golden.fault->what());
+  }
+}
+
+TEST(Native, NoStepsShowsTheInitialState) {
+  Case c = make_case("undamped_2x2x2");
+  c.steps = 0;
+  const Compared compared = compare(c.setup.plan, run_golden(c.setup, 0), run(c));
+  EXPECT_EQ(compared.difference, "");
+  EXPECT_EQ(compared.steps, 1u);
+}
+
+}  // namespace
+}  // namespace cuboct::test

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// The SystemC bench: the same bits as golden and the same cycles as the plain loop, with and without stalls.
+// SystemC elaborates once per process, so ctest runs one test per process.
+#include <gtest/gtest.h>
+
+#include "emu/systemc/bench.h"
+#include "emu/systemc/node.h"
+#include "tests/backend/engines.h"
+#include "tests/support/cases.h"
+
+namespace cuboct::test {
+namespace {
+
+class SystemC : public testing::TestWithParam<std::string> {};
+
+// A bench without and one with stalls, in one simulation.
+TEST_P(SystemC, EqualsGoldenAndThePlainLoop) {
+  const Case c = make_case(GetParam());
+  const Plan& plan = c.setup.plan;
+  const emu::NodeFactory nodes = emu::native_nodes(plan);
+  const auto free = keep_all(c.steps), stalled = keep_all(c.steps, 0.3, 7);
+  emu::Bench free_bench("free", plan, c.setup.initial, free, nodes, "systemc");
+  emu::Bench stalled_bench("stalled", plan, c.setup.initial, stalled, nodes, "systemc");
+  emu::simulate({&free_bench, &stalled_bench});
+  const emu::RunResult a = free_bench.take_result(), b = stalled_bench.take_result();
+
+  const GoldenRun golden = run_golden(c.setup, c.steps);
+  for (const emu::RunResult* run : {&a, &b}) {
+    const Compared compared = compare(plan, golden, *run);
+    EXPECT_EQ(compared.difference, "");
+    EXPECT_EQ(compared.steps, c.steps + 1);
+    EXPECT_EQ(compared.slots, (c.steps + 1) * c.setup.initial.particles.size());
+  }
+  const uint64_t spans = c.steps * plan.lattice.size() * kPhases;
+  const Compared with_plain = compare_cycles(a, run_plain(plan, c.setup.initial, free, nodes, "plain"));
+  EXPECT_EQ(with_plain.difference, "");
+  EXPECT_EQ(with_plain.spans, spans);
+  const Compared with_stalled = compare_cycles(b, run_plain(plan, c.setup.initial, stalled, nodes, "plain"));
+  EXPECT_EQ(with_stalled.difference, "");
+  EXPECT_EQ(with_stalled.spans, spans);
+  EXPECT_EQ(a.trace.cycles == b.trace.cycles, plan.lattice.size() == 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, SystemC, testing::ValuesIn(case_names()),
+                         [](const auto& p) { return p.param; });
+
+TEST(SystemCFaults, EachArisesAsInGolden) {
+  std::vector<std::unique_ptr<Case>> cases;
+  std::vector<std::unique_ptr<emu::Bench>> benches;
+  std::vector<emu::Bench*> all;
+  for (const Fault fault : all_faults()) {
+    cases.push_back(std::make_unique<Case>(fault_case(fault)));
+    const auto& setup = cases.back()->setup;
+    const std::string name = "bench_" + std::to_string(cases.size());
+    benches.push_back(std::make_unique<emu::Bench>(name.c_str(), setup.plan, setup.initial, keep_all(30),
+                                                   emu::native_nodes(setup.plan), "systemc"));
+    all.push_back(benches.back().get());
+  }
+  emu::simulate(all);
+  for (size_t k = 0; k < cases.size(); ++k) {
+    const emu::RunResult run = benches[k]->take_result();
+    EXPECT_EQ(compare(cases[k]->setup.plan, run_golden(cases[k]->setup, 30), run).difference, "")
+        << cases[k]->name;
+    ASSERT_TRUE(run.trace.stop) << cases[k]->name;
+    EXPECT_EQ(run.trace.stop->fault, all_faults()[k]);
+  }
+  EXPECT_EQ(cases.size(), 11u);
+}
+
+// A node that never answers: the bench says who waits and for what.
+TEST(SystemCStuck, NamesTheNodes) {
+  class Dead : public emu::NodeModel {
+    void clock(const emu::NodeInputs&, emu::NodeOutputs& out) override { out = {}; }
+    std::string doing() const override { return "dead"; }
+  };
+  const Case c = make_case("lattice_3x2x1");
+  const emu::NodeFactory live = emu::native_nodes(c.setup.plan);
+  emu::RunOptions options = keep_all(1);
+  options.patience = 500;
+  emu::Bench bench(
+      "bench", c.setup.plan, c.setup.initial, options,
+      [&](uint32_t node, uint8_t has_link) -> std::unique_ptr<emu::NodeModel> {
+        if (node == 5) return std::make_unique<Dead>();
+        return live(node, has_link);
+      },
+      "systemc");
+  emu::simulate({&bench});
+  try {
+    bench.take_result();
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    const std::string text = e.what();
+    EXPECT_NE(text.find("\n  node 4 (1,1,0): step 0, exchange_x: waits for"), std::string::npos) << text;
+    EXPECT_NE(text.find("\n  node 5 (2,1,0): dead"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace cuboct::test
+
+int sc_main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

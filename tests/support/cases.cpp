@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+#include "tests/support/cases.h"
+
+#include <functional>
+#include <map>
+#include <stdexcept>
+
+#include "tests/support/block.h"
+
+namespace cuboct::test {
+namespace {
+
+struct Recipe {
+  Features features{.size = {2, 2, 2}, .jitter = 0.08, .speed = 0.2, .margin = 1.0};
+  Arch arch;
+  Cell periodic{};  // axes that repeat
+  uint64_t steps = 30;
+};
+
+const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
+  using R = Recipe&;
+  static const std::map<std::string, std::function<void(R)>> all{
+      {"undamped_2x2x2", [](R r) { r.features.margin = 0, r.steps = 15; }},
+      {"lattice_3x2x1",
+       [](R r) {
+         r.features.size = {3, 2, 1};
+         r.features.margin = 0;
+         r.steps = 15;
+       }},
+      {"single_node",
+       [](R r) {
+         r.features.size = {1, 1, 1};
+         r.features.margin = 0.1;
+         r.arch.cell_edge = 12;
+         r.steps = 40;
+       }},
+      {"damped", [](R r) { r.features.damping = 0.2; }},
+      {"two_materials", [](R r) { r.features.two_materials = true; }},
+      {"held_and_moved", [](R r) { r.features.held = true; }},
+      {"force_held", [](R r) { r.features.force_held = r.features.gravity = true; }},
+      {"octaves", [](R r) { r.arch.table.shape = TableChoice::Shape::octaves; }},
+      {"degree_2", [](R r) { r.arch.table.degree = 2, r.arch.table.index_bits = 6; }},
+      {"two_pipes", [](R r) { r.arch.force_pipes = 2; }},
+      {"several_passes", [](R r) { r.arch.filter_lanes = 2; }},
+      {"one_lane", [](R r) { r.arch.filter_lanes = 1; }},
+      {"narrow_links", [](R r) { r.arch.link_bits = 17; }},
+      {"wide_links", [](R r) { r.arch.link_bits = 1000; }},
+      {"no_overlap", [](R r) { r.arch.overlap = false; }},
+      {"queue_of_one", [](R r) { r.arch.queue_depth = 1; }},
+      {"tight_capacity", [](R r) { r.arch.capacity = 6, r.features.margin = 0, r.steps = 15; }},
+      {"ring_of_3",
+       [](R r) {
+         r.features.size = {4, 1, 1};
+         r.periodic = {1, 0, 0};
+       }},
+      {"periodic_27",
+       [](R r) {
+         r.features.size = {4, 4, 4};
+         r.periodic = {1, 1, 1};
+         r.arch.capacity = 20;
+         r.steps = 8;
+       }},
+      {"hot_gas",
+       [](R r) {
+         r.features.jitter = 0.1;
+         r.features.speed = 0.6;
+         r.features.margin = 4;
+         r.steps = 40;
+       }},
+      // Rich ones, of which the RTL is built.
+      {"rich_damped",
+       [](R r) {
+         r.features.damping = 0.2;
+         r.features.speed = 0.5;
+         r.features.two_materials = r.features.held = true;
+         r.arch.force_pipes = 2;
+         r.arch.filter_lanes = 4;
+         r.arch.capacity = 13;
+       }},
+      {"rich_force_held",
+       [](R r) {
+         r.features.force_held = r.features.gravity = true;
+         r.arch.table = {.shape = TableChoice::Shape::octaves, .degree = 2, .index_bits = 7};
+         r.arch.link_bits = 24;
+         r.arch.overlap = false;
+       }},
+      {"rich_ring",
+       [](R r) {
+         r.features.size = {4, 1, 2};
+         r.features.two_materials = true;
+         r.periodic = {1, 0, 0};
+         r.arch.queue_depth = 1;
+         r.arch.filter_lanes = 3;
+         r.arch.force_pipes = 3;
+         r.arch.table = {.shape = TableChoice::Shape::uniform, .degree = 2, .index_bits = 6};
+       }},
+  };
+  return all;
+}
+
+Case cook(const std::string& name, const Recipe& recipe) {
+  Scene scene = block_scene(recipe.features);
+  scene.steps = recipe.steps;
+  for (int a = 0; a < 3; ++a)
+    if (recipe.periodic[a] != 0) {
+      scene.periodic.origin[a] = -0.3;
+      scene.periodic.extent[a] = recipe.features.size[a] * std::sqrt(2.0);
+    }
+  return {name, make_setup(scene, recipe.arch), recipe.steps};
+}
+
+// Puts hand-made particles into a scene of the block's rule.
+Setup with_particles(Scene scene, const Arch& arch, const std::vector<Vec3>& x, const std::vector<Vec3>& v,
+                     uint8_t type = 0) {
+  scene.body = {};
+  scene.body.x = x;
+  scene.body.v = v;
+  scene.body.type.assign(x.size(), type);
+  return make_setup(scene, arch);
+}
+
+}  // namespace
+
+std::vector<std::string> case_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, change] : recipes()) names.push_back(name);
+  return names;
+}
+
+Case make_case(const std::string& name) {
+  Recipe recipe;
+  recipes().at(name)(recipe);
+  return cook(name, recipe);
+}
+
+Case random_case(uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto draw = [&random](int low, int high) {
+    return low + static_cast<int>(random() % static_cast<uint64_t>(high - low + 1));
+  };
+  const auto chance = [&draw](int percent) { return draw(0, 99) < percent; };
+  Recipe r;
+  r.features.seed = seed;
+  r.features.size = {draw(1, 3), draw(1, 3), draw(1, 2)};
+  r.features.jitter = 0.01 * draw(0, 10);
+  r.features.speed = 0.01 * draw(0, 60);
+  r.features.damping = chance(40) ? 0.05 * draw(1, 4) : 0;
+  r.features.two_materials = chance(40);
+  r.features.held = chance(25);
+  r.features.force_held = !r.features.held && chance(30);
+  r.features.gravity = chance(30);
+  r.features.margin = 0.5 * draw(0, 6);
+  r.arch.filter_lanes = draw(1, 12);
+  r.arch.force_pipes = draw(1, std::min(3, r.arch.filter_lanes));
+  r.arch.queue_depth = chance(50) ? draw(1, 3) : 16;
+  r.arch.overlap = chance(60);
+  r.arch.link_bits = chance(50) ? 0 : draw(5, 150);
+  r.arch.table.degree = draw(1, 2);
+  r.arch.table.index_bits = r.arch.table.degree == 2 ? 7 : 9;
+  if (chance(30)) r.arch.table.shape = TableChoice::Shape::octaves;
+  r.arch.cell_edge = chance(30) ? 2.0 + 0.1 * draw(0, 10) : 0;
+  r.arch.capacity = r.arch.cell_edge > 0 ? 40 : draw(14, 24);
+  r.steps = static_cast<uint64_t>(draw(5, 12));
+  if (chance(25)) {
+    r.features.size[1] = 4;
+    r.periodic = {0, 1, 0};
+    r.arch.cell_edge = 0;
+    r.arch.capacity = 24;
+  }
+  return cook("random_" + std::to_string(seed), r);
+}
+
+std::vector<Fault> all_faults() {
+  return {Fault::relative_velocity,
+          Fault::strength,
+          Fault::sum,
+          Fault::displacement,
+          Fault::velocity,
+          Fault::left_x,
+          Fault::full_x,
+          Fault::left_y,
+          Fault::full_y,
+          Fault::left_z,
+          Fault::full_z};
+}
+
+Case fault_case(Fault fault) {
+  Case result{to_string(fault), {}, 30};
+  const int code = static_cast<int>(fault);
+  if (fault >= Fault::left_x) {
+    // Four particles in a cell and one that flies in along an axis, or out of the lattice. All share one rule
+    // and arch.
+    const int axis = (code - static_cast<int>(Fault::left_x)) / 2;
+    const bool full = (code - static_cast<int>(Fault::left_x)) % 2 == 1;
+    Scene scene = block_scene({.jitter = 0, .speed = 0, .margin = full ? 3.0 : 0.0});
+    scene.steps = result.steps;
+    Arch arch;
+    arch.capacity = 4;
+    std::vector<Vec3> x{{0, 0, 0}, {0, 0.70711, 0.70711}, {0.70711, 0, 0.70711}, {0.70711, 0.70711, 0}};
+    std::vector<Vec3> v(4, Vec3::Zero());
+    Vec3 at = Vec3::Constant(0.3), speed = Vec3::Zero();
+    at[axis] = full ? -1.5 : 1.1;
+    speed[axis] = full ? 0.8 : 1.5;
+    if (!full) {  // alone, so that the others do not push it aside
+      x.resize(1);
+      v.resize(1);
+    }
+    x.push_back(at);
+    v.push_back(speed);
+    result.setup = with_particles(scene, arch, x, v);
+    return result;
+  }
+  // One rule with damping and PD and narrow formats; what differs is where the particles are and how fast.
+  Scene scene = block_scene({.size = {1, 1, 1}, .damping = 40, .force_held = true, .margin = 3});
+  scene.steps = result.steps;
+  Arch arch;
+  arch.widths.velocity_bits = 27;
+  arch.widths.relative_velocity_bits = 17;
+  arch.widths.sum_bits = 24;
+  arch.widths.displacement_bits = 28;
+  const double out = 1.25;
+  switch (fault) {
+    case Fault::relative_velocity:
+      result.setup = with_particles(scene, arch, {{0, 0, 0}, {out, 0, 0}}, {{0.5, 0, 0}, {-0.5, 0, 0}});
+      break;
+    case Fault::strength:
+      result.setup = with_particles(scene, arch, {{0, 0, 0}, {0.5, 0, 0}}, {{0.3, 0, 0}, {-0.3, 0, 0}});
+      break;
+    case Fault::sum:
+      result.setup = with_particles(scene, arch, {{0, 0, 0}, {0.5, 0.1, 0}, {0.4, -0.2, 0.1}},
+                                    {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+      break;
+    case Fault::displacement:
+      result.setup = with_particles(scene, arch, {{0, 0, 0}, {3, 0, 0}}, {{1.7, 0, 0}, {0, 0, 0}});
+      break;
+    case Fault::velocity:
+      result.setup = with_particles(scene, arch, {{0, 0, 0}, {0, 0.5, 0}}, {{0, 2.65, 0}, {0, 2.65, 0}});
+      break;
+    default:
+      throw std::logic_error("no such fault");
+  }
+  return result;
+}
+
+}  // namespace cuboct::test

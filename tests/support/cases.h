@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Small plans that between them use every feature of a node, for the tests that compare engines.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hw/setup.h"
+
+namespace cuboct::test {
+
+struct Case {
+  std::string name;
+  Setup setup;
+  uint64_t steps = 0;
+};
+
+// One feature or awkward size each.
+std::vector<std::string> case_names();
+Case make_case(const std::string& name);
+
+// Features, sizes and initial state drawn from `seed`.
+Case random_case(uint64_t seed);
+
+// A case of this fault, which golden must meet within `steps`. Those that need narrow formats share one rule
+// and arch.
+Case fault_case(Fault fault);
+std::vector<Fault> all_faults();
+
+}  // namespace cuboct::test

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "model/config.h"
+#include "model/error.h"
+
+namespace cuboct {
+namespace {
+
+std::string error_of(const std::string& text, const std::function<void(const ConfigTable&)>& read) {
+  try {
+    read(parse_config(text, "a.toml"));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Config, PointsAtUnknownKeys) {
+  const auto read = [](const ConfigTable& root) {
+    const auto node = root.table_at("node");
+    node->integer_or("capacity", 1, 100, 16);
+    node->integer_or("filter_lanes", 1, 100, 8);
+    root.done();
+  };
+  EXPECT_EQ(error_of("[node]\n  capcity = 3\n", read),
+            "a.toml:2:3: unknown key 'capcity'\n  hint: did you mean 'capacity'?");
+  // No key that the table already has is worth a hint.
+  EXPECT_EQ(error_of("[node]\ncapacity = 1\ncapacty = 3\n", read), "a.toml:3:1: unknown key 'capacty'");
+  EXPECT_EQ(error_of("[node]\ncapacity = 1\n\n[nodes]\n", read), "a.toml:4:2: unknown key 'nodes'");
+  EXPECT_EQ(error_of("[node]\nx = 1\n", read), "a.toml:2:1: unknown key 'x'");
+  EXPECT_EQ(error_of("[node]\ncapacity = 1\n", read), "accepted");
+}
+
+TEST(Config, AMisspeltRequiredKeyIsCalledSo) {
+  const auto read = [](const ConfigTable& root) { root.number("pitch", quantity::length); };
+  EXPECT_EQ(error_of("ptich = \"1 mm\"\n", read),
+            "a.toml:1:1: unknown key 'ptich'\n  hint: did you mean 'pitch'?");
+  EXPECT_EQ(error_of("size = 1\n", read), "a.toml:1:1: missing key 'pitch'");
+  EXPECT_EQ(error_of("[p]\n[p.q]\n",
+                     [](const ConfigTable& root) { root.at("p").table().at("q").table().at("pitch"); }),
+            "a.toml:2:1: missing key 'pitch' in 'p.q'");
+}
+
+TEST(Config, WantsUnits) {
+  const auto read = [](const ConfigTable& root) {
+    root.number("pitch", quantity::length, Range::positive());
+  };
+  EXPECT_EQ(error_of("pitch = 0.5", read), "a.toml:1:9: 'pitch' needs a unit: a length such as \"0.5 mm\"");
+  EXPECT_EQ(error_of("pitch = \"0.5\"", read),
+            "a.toml:1:9: 'pitch' needs a unit: a length such as \"0.5 mm\"");
+  EXPECT_EQ(error_of("pitch = \"3 GPa\"", read),
+            "a.toml:1:9: 'pitch' must be a length such as \"0.5 mm\", but \"3 GPa\" is a pressure");
+  EXPECT_EQ(error_of("pitch = \"[1, 2] mm\"", read),
+            "a.toml:1:9: 'pitch' must be a length such as \"0.5 mm\", not a list");
+  EXPECT_EQ(error_of("pitch = true", read),
+            "a.toml:1:9: 'pitch' must be a length such as \"0.5 mm\", not true or false");
+  EXPECT_EQ(error_of("pitch = \"-1 mm\"", read), "a.toml:1:9: 'pitch' must be greater than 0, not \"-1 mm\"");
+  EXPECT_EQ(error_of("pitch = \"1 mn\"", read),
+            "a.toml:1:9: unknown unit 'mn' in \"1 mn\"\n  hint: did you mean 'mN'?");
+}
+
+TEST(Config, ReducedUnitsArePlain) {
+  const auto read = [](const ConfigTable& root) {
+    EXPECT_EQ(root.number("pitch", quantity::length), 2.0);
+    root.done();
+  };
+  EXPECT_EQ(error_of("units = \"reduced\"\npitch = 2\n", read), "accepted");
+  EXPECT_EQ(error_of("units = \"reduced\"\npitch = \"2 m\"\n", read),
+            "a.toml:2:9: 'pitch' must be a plain number, as units = \"reduced\"");
+  EXPECT_EQ(error_of("units = \"reducd\"\n", read),
+            "a.toml:1:9: unknown units 'reducd'\n  hint: did you mean 'reduced'?");
+}
+
+TEST(Config, ChecksRangesAndKinds) {
+  const auto ratio = [](const ConfigTable& root) {
+    root.number("ratio", quantity::number, Range::between(0, 1));
+  };
+  EXPECT_EQ(error_of("ratio = 2", ratio), "a.toml:1:9: 'ratio' must be between 0 and 1, not 2");
+  EXPECT_EQ(error_of("ratio = nan", ratio), "a.toml:1:9: 'ratio' must be finite, not nan");
+  EXPECT_EQ(error_of("ratio = \"1\"", ratio), "a.toml:1:9: 'ratio' must be a number, not a string");
+  EXPECT_EQ(error_of("ratio = 1", ratio), "accepted");
+  const auto safety = [](const ConfigTable& root) {
+    root.number("safety", quantity::number, {.low = 0, .high = 1, .low_open = true});
+  };
+  EXPECT_EQ(error_of("safety = 0", safety), "a.toml:1:10: 'safety' must be above 0 and at most 1, not 0");
+  const auto count = [](const ConfigTable& root) { root.integer_or("n", 1, 4, 1); };
+  EXPECT_EQ(error_of("n = 5", count), "a.toml:1:5: 'n' must be between 1 and 4, not 5");
+  EXPECT_EQ(error_of("n = 1.5", count), "a.toml:1:5: 'n' must be a whole number, not a number");
+  const auto axes = [](const ConfigTable& root) { root.axes("axes"); };
+  EXPECT_EQ(error_of("axes = \"xyx\"", axes),
+            "a.toml:1:8: 'axes' must name axes, such as \"x\" or \"xyz\", not \"xyx\"");
+  const auto vector = [](const ConfigTable& root) { root.vector_or("v", quantity::velocity, Vec3::Zero()); };
+  EXPECT_EQ(error_of("v = \"[1, 2] m/s\"", vector),
+            "a.toml:1:5: 'v' needs three components, not 2\n  hint: for instance \"[0, 0, 1] m/s\"");
+  EXPECT_EQ(error_of("v = [\"1 m/s\", \"2 m/s\", \"3 m\"]", vector),
+            "a.toml:1:24: 'v' must be a velocity such as \"2 m/s\", but \"3 m\" is a length");
+  const auto tables = [](const ConfigTable& root) { root.tables("t"); };
+  EXPECT_EQ(error_of("[t]\n", tables), "a.toml:1:1: 't' must be an array of tables\n  hint: write [[t]]");
+}
+
+TEST(Config, PassesSyntaxErrorsOn) {
+  const auto read = [](const ConfigTable&) {};
+  EXPECT_EQ(error_of("a = 1\nb = = 2\n", read).substr(0, 12), "a.toml:2:5: ");
+  EXPECT_EQ(error_of("a = 1\na = 2\n", read).substr(0, 9), "a.toml:2:");
+  EXPECT_THROW(read_config("no/such/file.toml"), InputError);
+  try {
+    read_config("no/such/file.toml");
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "no/such/file.toml: cannot read this file");
+  }
+  EXPECT_THROW(read_config("."), InputError);
+}
+
+}  // namespace
+}  // namespace cuboct

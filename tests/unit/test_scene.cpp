@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "hw/arch.h"
+#include "model/config.h"
+#include "model/dynamical_matrix.h"
+#include "model/error.h"
+#include "model/law.h"
+#include "model/scene.h"
+#include "model/scene_parts.h"
+
+namespace cuboct {
+namespace {
+
+const std::string kRoot = CUBOCT_SOURCE_DIR;
+
+// A valid scene: a bar of 2 x 2 x 4 cells, faces included.
+const std::string kBase = R"(density = "1.41 g/cm^3"
+[packing]
+pitch = "0.5 mm"
+[geometry]
+shape = "box"
+min = "[0, 0, 0] mm"
+max = "[1.5, 1.5, 2.9] mm"
+[law]
+kind = "elastic"
+stiffness = "1 MN/m"
+[run]
+dt = "auto"
+steps = 10
+)";
+
+class SceneTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::temp_directory_path() / (std::string("cuboct_scene_") + info->name() + ".toml");
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  Scene read(const std::string& text) {
+    std::ofstream(path_) << text;
+    return read_scene(path_.string());
+  }
+  // The error's text, with the file's name cut down to "a.toml".
+  std::string error(const std::string& text) {
+    try {
+      read(text);
+    } catch (const InputError& e) {
+      std::string what = e.what();
+      const size_t at = what.find(path_.string());
+      if (at == 0) what.replace(0, path_.string().size(), "a.toml");
+      return what;
+    }
+    return "accepted";
+  }
+  // The base with one thing changed.
+  static std::string with(const std::string& from, const std::string& to) {
+    std::string text = kBase;
+    const size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST_F(SceneTest, BaseIsRead) {
+  const Scene s = read(kBase);
+  // n_x x n_y x n_z half cells of 0.35355 mm: 5 x 5 x 9 points of which those with an even sum are sites.
+  EXPECT_EQ(s.body.size(), (5U * 5 * 9 + 1) / 2);
+  EXPECT_DOUBLE_EQ(s.rule.mass, 1410 * 1.25e-10 / std::sqrt(2));
+  EXPECT_EQ(s.density, 1410.0);
+  EXPECT_EQ(s.pitch, 0.5e-3);
+  ASSERT_EQ(s.rule.types.size(), 1U);
+  EXPECT_EQ(s.rule.types[0].name, "matter");
+  EXPECT_DOUBLE_EQ(s.rule.law->slope(s.pitch), -1e6);
+  // Undamped: exactly 2/omega.
+  EXPECT_DOUBLE_EQ(s.dt_limit, 2 / largest_frequency(*s.rule.law, s.rule.mass, s.pitch));
+  EXPECT_NEAR(s.dt_limit, 2 / std::sqrt(8e6 / s.rule.mass),
+              1e-6 * s.dt_limit);  // FCC, nearest neighbours: w^2 = 8k/m
+  EXPECT_DOUBLE_EQ(s.rule.dt, 0.2 * s.dt_limit);
+  EXPECT_TRUE(s.body.u.empty());
+}
+
+TEST_F(SceneTest, ReadsTheSameTwice) {
+  const std::string text = kBase + "[[velocity]]\nthermal_speed = \"1 m/s\"\nseed = 3\n";
+  const Scene a = read(text), b = read(text);
+  EXPECT_EQ(a.body.x, b.body.x);
+  EXPECT_EQ(a.body.v, b.body.v);
+}
+
+TEST_F(SceneTest, ErrorsWordForWord) {
+  EXPECT_EQ(error(kBase), "accepted");
+  EXPECT_EQ(error(with("steps = 10", "steps = 10\nfram_every = 2")),
+            "a.toml:14:1: unknown key 'fram_every'\n  hint: did you mean 'frame_every'?");
+  EXPECT_EQ(error(kBase + "[dampng]\nratio = 0.1\n"),
+            "a.toml:14:2: unknown key 'dampng'\n  hint: did you mean 'damping'?");
+  EXPECT_EQ(error(with("density = ", "densty = ")),
+            "a.toml:1:1: unknown key 'densty'\n  hint: did you mean 'density'?");
+  EXPECT_EQ(error(with("\"0.5 mm\"", "0.5")),
+            "a.toml:3:9: 'pitch' needs a unit: a length such as \"0.5 mm\"");
+  EXPECT_EQ(error(with("1 MN/m", "1 MN")),
+            "a.toml:10:13: 'stiffness' must be a stiffness such as \"1 MN/m\", but \"1 MN\" is a force");
+  EXPECT_EQ(error(with("\"elastic\"", "\"elastc\"")),
+            "a.toml:9:8: unknown law 'elastc'\n  hint: did you mean 'elastic'?");
+  EXPECT_EQ(
+      error(with("\"elastic\"", "\"plasma\"")),
+      "a.toml:9:8: unknown law 'plasma'\n  hint: known: elastic, brittle, ductile, viscous, spline or lj");
+  EXPECT_EQ(error(with("[1.5, 1.5, 2.9]", "[1.5, 0.4, 2.9]")),
+            "a.toml:4:1: the geometry is 0.0004 m along y, less than the pitch 0.0005 m");
+  EXPECT_EQ(error(with("shape = \"box\"\nmin = \"[0, 0, 0] mm\"\nmax = \"[1.5, 1.5, 2.9] mm\"",
+                       "shape = \"half_space\"\nnormal = [0, 0, 1]")),
+            "a.toml:4:1: the geometry has no end along x");
+  EXPECT_EQ(error(with("shape = \"box\"\nmin = \"[0, 0, 0] mm\"\nmax = \"[1.5, 1.5, 2.9] mm\"",
+                       "shape = \"sphere\"\ncentre = \"[0.35, 0, 0] mm\"\nradius = \"0.251 mm\"")),
+            "a.toml:4:1: no particle: no site of the packing lies inside");
+  EXPECT_EQ(
+      error("mass = \"1 g\"\n[law]\nkind = \"lj\"\nepsilon = \"1 J\"\nsigma = \"1 mm\"\ncutoff = \"2 mm\"\n"),
+      "a.toml:1:1: no particle\n  hint: add [packing] with [geometry], or [[particle]]");
+  EXPECT_EQ(error(with("dt = \"auto\"", "dt = \"1 ms\"")).substr(0, 53),
+            "a.toml:12:6: 'dt' is beyond the stability limit 2.496");
+  EXPECT_EQ(error(with("steps = 10", "dt_safety = 1.5\nsteps = 10")),
+            "a.toml:13:13: 'dt_safety' must be above 0 and at most 1, not 1.5");
+  EXPECT_EQ(
+      error(
+          kBase +
+          "[[constraint]]\nname = \"a\"\nkind = \"held\"\nregion = { shape = \"sphere\", radius = \"1 um\", "
+          "centre = \"[9, 9, 9] mm\" }\n"),
+      "a.toml:17:10: no particle lies in this region");
+  EXPECT_EQ(
+      error(
+          kBase +
+          "[regions]\ntop = { shape = \"half_space\", normal = \"z\" }\n[[constraint]]\nname = \"a\"\nkind = "
+          "\"held\"\nregion = \"tip\"\n"),
+      "a.toml:19:10: unknown region 'tip'\n  hint: did you mean 'top'?");
+  EXPECT_EQ(error(kBase + "[[constraint]]\nname = \"a\"\nkind = \"moved\"\naxes = \"z\"\nvelocity = \"[1, 0, "
+                          "1] m/s\"\nregion "
+                          "= { shape = \"half_space\", normal = \"z\" }\n"),
+            "a.toml:18:12: 'velocity' has a part along x, which 'axes' leaves free");
+  EXPECT_EQ(error(kBase +
+                  "[[constraint]]\nname = \"a\"\nkind = \"held_by_force\"\naxes = \"z\"\nregion = { shape = "
+                  "\"half_space\", normal = \"z\" }\n"),
+            "a.toml:17:8: 'axes' serves 'held' and 'moved' only, not 'held_by_force'");
+  EXPECT_EQ(error(kBase + "[box]\nperiodic = \"x\"\nsize = \"[1.5, 2, 3] mm\"\n"),
+            "a.toml:16:8: the packing does not repeat after 0.0015 m along x\n  hint: give 'cells' instead");
+  EXPECT_EQ(error(kBase + "[[particle]]\nposition = \"[0, 0, 0] mm\"\n"),
+            "a.toml:1:1: particles 0 and 113 stand at the same point");
+  EXPECT_EQ(error(kBase + "[[velocity]]\nthermal_speed = \"1 m/s\"\n"),
+            "a.toml:14:1: missing key 'seed' in 'velocity'");
+  EXPECT_EQ(error(with("steps = 10", "steps = 10\nduration = \"1 s\"")),
+            "a.toml:14:12: give 'steps' or 'duration', not both");
+}
+
+std::string spline(const std::string& force) {
+  return "[law]\nkind = \"spline\"\nr = \"[0, 0.25, 0.5, 0.6, 0.7] mm\"\nforce = \"" + force + " N\"\n";
+}
+
+TEST_F(SceneTest, LawsMustFitThePacking) {
+  const std::string preset = "[law]\nkind = \"elastic\"\nstiffness = \"1 MN/m\"\n";
+  EXPECT_EQ(error(with(preset, spline("[150, 125, 0, -30, 0]"))), "accepted");
+  EXPECT_EQ(error(with(preset, spline("[150, 125, 5, -30, 0]"))),
+            "a.toml:8:1: the law does not vanish at the pitch: 5 N at 0.0005 m\n"
+            "  hint: the undeformed packing would not be at rest");
+  EXPECT_EQ(error(with(preset, spline("[150, 125, 0, -30, 2]"))),
+            "a.toml:11:9: the law does not vanish at the cutoff: the last force is 2 N\n  hint: let the last "
+            "force be 0");
+  EXPECT_EQ(error(with(preset, spline("[150, 125, 0, 0]"))), "a.toml:11:9: 'r' has 5 points, 'force' has 4");
+  // A Lennard-Jones packing may be under pressure.
+  const std::string lj = "[law]\nkind = \"lj\"\nepsilon = \"1 J\"\nsigma = \"0.47 mm\"\n";
+  EXPECT_EQ(error(with(preset, lj + "cutoff = \"0.9 mm\"\n")), "accepted");
+  EXPECT_EQ(error(with(preset, lj + "cutoff = \"0.45 mm\"\n")),
+            "a.toml:8:1: the cutoff 0.00045 m of the law is not beyond the pitch 0.0005 m");
+}
+
+// The bond's stiffness from Young's modulus, against the lattice sums over the very law.
+TEST_F(SceneTest, ModulusIsMet) {
+  for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(1, 2, 3)}) {
+    const double k = stiffness_from_modulus(3e9, direction, 0.5e-3);
+    const auto law = preset_law("elastic", 0.5e-3, k);
+    EXPECT_NEAR(youngs_modulus(elastic_constants(*law, 0.5e-3), direction), 3e9, 3e9 * 1e-9);
+  }
+  const Scene s = read(with("stiffness = \"1 MN/m\"", "youngs_modulus = \"3 GPa\"\ndirection = [1, 1, 0]"));
+  // E110 = sqrt(2) k/pitch.
+  EXPECT_NEAR(-s.rule.law->slope(s.pitch), 3e9 * 0.5e-3 / std::sqrt(2), 1e-3);
+}
+
+TEST_F(SceneTest, MaterialsAndConstraintsMakeTypes) {
+  const std::string text = "gravity = \"[0, 0, -9.81] m/s^2\"\n" + kBase + R"(
+[damping]
+ratio = 0.25
+[regions]
+bottom = { shape = "half_space", normal = "z" }
+top = { shape = "half_space", point = "[0, 0, 2.7] mm", normal = [0, 0, -1] }
+[[material]]
+name = "hard"
+[[material]]
+name = "soft"
+strength = 0.25
+region = "top"
+[[material]]
+name = "odd"
+strength = 0.5
+region = { shape = "sphere", radius = "0.1 mm" }
+[[bond]]
+between = ["soft", "odd"]
+strength = 0.125
+[[constraint]]
+name = "base"
+kind = "held_by_force"
+region = "bottom"
+[[constraint]]
+name = "pull"
+kind = "moved"
+axes = "z"
+velocity = "[0, 0, 2] m/s"
+region = "top"
+[[velocity]]
+uniform = "[1, 0, 0] m/s"
+)";
+  const Scene s = read(text);
+  std::map<std::string, int> count;
+  for (uint8_t type : s.body.type) ++count[s.rule.types[type].name];
+  // 13 sites in the bottom layer, of which one is odd; the top layer (z = 8 half cells) has 13.
+  EXPECT_EQ(count, (std::map<std::string, int>{
+                       {"hard", 87}, {"hard/base", 12}, {"odd/base", 1}, {"soft/pull", 13}}));
+  ASSERT_EQ(s.rule.types.size(), 4U);
+  EXPECT_EQ(s.rule.types[0].name, "hard");  // by material, then constraint
+  EXPECT_EQ(s.rule.types[2].name, "soft/pull");
+  const auto named = [&](const std::string& name) {
+    return *std::ranges::find(s.rule.types, name, &ParticleType::name);
+  };
+  for (const ParticleType& type : s.rule.types) EXPECT_EQ(type.gravity, Vec3(0, 0, -9.81));
+  const double critical = 2 * std::sqrt(1e6 * s.rule.mass);
+  EXPECT_DOUBLE_EQ(s.rule.damping.coefficient, 0.25 * critical);
+  EXPECT_TRUE(named("hard/base").pd);
+  EXPECT_DOUBLE_EQ(named("hard/base").kp, 10 * largest_stiffness(*s.rule.law, s.pitch));
+  EXPECT_GE(named("hard/base").kp, 10e6 * (1 - 1e-12));
+  EXPECT_DOUBLE_EQ(named("hard/base").kd, 0.25 * critical);
+  EXPECT_EQ(named("soft/pull").imposed, (std::array{false, false, true}));
+  // Symmetric; the geometric mean unless [[bond]] says otherwise.
+  const auto& f = s.rule.strength;
+  EXPECT_EQ(f[0][0], 1.0);
+  EXPECT_EQ(f[1][1], 0.25);
+  EXPECT_DOUBLE_EQ(f[0][1], 0.5);
+  EXPECT_EQ(f[1][0], f[0][1]);
+  EXPECT_EQ(f[1][2], 0.125);
+  EXPECT_EQ(f[2][1], 0.125);
+  for (size_t i = 0; i < s.body.size(); ++i) {
+    const bool pulled = s.rule.types[s.body.type[i]].name == "soft/pull";
+    EXPECT_EQ(s.body.v[i], pulled ? Vec3(1, 0, 2) : Vec3(1, 0, 0));
+  }
+  EXPECT_EQ(s.body.u.size(), s.body.size());
+}
+
+// dt_limit with damping and PD: the mode equation z^2 - (2 - g dt - w^2 dt^2) z + 1 - g dt = 0 has a root on
+// the unit circle at the limit and one outside beyond it.
+TEST_F(SceneTest, DampingLowersTheLimit) {
+  const Scene free = read(kBase), damped = read(kBase + "[damping]\nratio = 1.0\n");
+  EXPECT_LT(damped.dt_limit, 0.6 * free.dt_limit);
+  // Nearest neighbours only: the damping matrix is c(pitch)/k times the stiffness matrix.
+  const double w = 2 / free.dt_limit;
+  const double g = w * w * damped.rule.damping_over_r2(damped.pitch) * damped.pitch * damped.pitch / 1e6;
+  const auto radius = [&](double dt) {
+    const double b = 2 - g * dt - w * w * dt * dt, c = 1 - g * dt, disc = b * b - 4 * c;
+    return disc < 0 ? std::sqrt(c)
+                    : std::max(std::abs(b + std::sqrt(disc)), std::abs(b - std::sqrt(disc))) / 2;
+  };
+  EXPECT_NEAR(radius(damped.dt_limit), 1, 1e-6);
+  EXPECT_GT(radius(1.01 * damped.dt_limit), 1.001);
+  EXPECT_LT(radius(0.99 * damped.dt_limit), 0.999);
+}
+
+TEST_F(SceneTest, ListedParticles) {
+  const Scene s = read(R"(units = "reduced"
+mass = 2.0
+[box]
+size = [4, 5, 6]
+origin = [-1, 0, 0]
+periodic = "xy"
+[law]
+kind = "lj"
+epsilon = 1
+sigma = 1
+cutoff = 1.3
+[[particle]]
+position = [0, 1, 2]
+velocity = [1, 0, 0]
+[[particle]]
+position = [1, 1, 7]
+[run]
+dt = 0.01
+duration = 1.0
+)");
+  ASSERT_EQ(s.body.size(), 2U);
+  EXPECT_EQ(s.body.x[1], Vec3(1, 1, 7));
+  EXPECT_EQ(s.body.v[0], Vec3(1, 0, 0));
+  EXPECT_EQ(s.periodic.extent, Vec3(4, 5, 0));
+  EXPECT_EQ(s.periodic.origin, Vec3(-1, 0, 0));
+  EXPECT_EQ(s.steps, 100U);
+  EXPECT_EQ(s.dt_limit, 0.0);
+  EXPECT_EQ(s.rule.mass, 2.0);
+}
+
+// Angular momentum about the centre of mass and momentum of a spinning, drifting body.
+TEST_F(SceneTest, SpinAndDrift) {
+  const Scene s =
+      read(kBase + "[[velocity]]\nspin = \"[0, 0, 10] rad/s\"\n[[velocity]]\nuniform = \"[1, 2, 3] m/s\"\n");
+  Vec3 mean = Vec3::Zero(), centre = Vec3::Zero();
+  const double n = static_cast<double>(s.body.size());
+  for (size_t i = 0; i < s.body.size(); ++i) mean += s.body.v[i] / n, centre += s.body.x[i] / n;
+  EXPECT_LT((mean - Vec3(1, 2, 3)).norm(), 1e-12);
+  for (size_t i = 0; i < s.body.size(); ++i) {
+    const Vec3 d = s.body.x[i] - centre;
+    EXPECT_LT((s.body.v[i] - mean - Vec3(-10 * d[1], 10 * d[0], 0)).norm(), 1e-12);
+  }
+}
+
+// Every committed scene and arch is read.
+TEST(Examples, AreRead) {
+  std::map<std::string, size_t> sizes;
+  for (const auto& entry : std::filesystem::directory_iterator(kRoot + "/scenes"))
+    if (entry.path().extension() == ".toml")
+      sizes[entry.path().stem()] = read_scene(entry.path().string()).body.size();
+  EXPECT_EQ(sizes.at("undamped_block"), 256U);
+  EXPECT_EQ(sizes.at("lj_block"), 256U);
+  EXPECT_GE(sizes.at("coupon"), 2000U);
+  EXPECT_LE(sizes.at("coupon"), 4000U);
+  EXPECT_GE(sizes.at("hot_cluster"), 50U);
+  EXPECT_GE(sizes.at("two_types"), 50U);
+}
+
+TEST(Examples, DefaultArchIsTheDefault) {
+  const Arch file = read_arch(kRoot + "/scenes/archs/default.toml"), none = read_arch("");
+  EXPECT_EQ(file.name, none.name);
+  EXPECT_EQ(file.cell_edge, none.cell_edge);
+  EXPECT_EQ(file.capacity, none.capacity);
+  EXPECT_EQ(file.filter_lanes, none.filter_lanes);
+  EXPECT_EQ(file.force_pipes, none.force_pipes);
+  EXPECT_EQ(file.queue_depth, none.queue_depth);
+  EXPECT_EQ(file.overlap, none.overlap);
+  EXPECT_EQ(file.link_bits, none.link_bits);
+  EXPECT_EQ(file.widths.position_frac, none.widths.position_frac);
+  EXPECT_EQ(file.widths.guard, none.widths.guard);
+  EXPECT_EQ(file.widths.difference_frac, none.widths.difference_frac);
+  EXPECT_EQ(file.widths.velocity_bits, none.widths.velocity_bits);
+  EXPECT_EQ(file.widths.relative_velocity_frac, none.widths.relative_velocity_frac);
+  EXPECT_EQ(file.widths.relative_velocity_bits, none.widths.relative_velocity_bits);
+  EXPECT_EQ(file.widths.strength_bits, none.widths.strength_bits);
+  EXPECT_EQ(file.widths.sum_bits, none.widths.sum_bits);
+  EXPECT_EQ(file.widths.displacement_bits, none.widths.displacement_bits);
+  EXPECT_EQ(file.widths.scale_frac, none.widths.scale_frac);
+  EXPECT_EQ(file.widths.gain_frac, none.widths.gain_frac);
+  EXPECT_EQ(file.table.shape, none.table.shape);
+  EXPECT_EQ(file.table.degree, none.table.degree);
+  EXPECT_EQ(file.table.index_bits, none.table.index_bits);
+  EXPECT_EQ(file.table.fraction_bits, none.table.fraction_bits);
+}
+
+TEST(Examples, ArchValuesArrive) {
+  const Arch small = read_arch(kRoot + "/scenes/archs/small.toml");
+  EXPECT_EQ(small.name, "small");
+  EXPECT_EQ(small.filter_lanes, 1);
+  EXPECT_EQ(small.link_bits, 16);
+  EXPECT_FALSE(small.overlap);
+  EXPECT_EQ(small.table.index_bits, 8);
+  const Arch fast = read_arch(kRoot + "/scenes/archs/fast.toml");
+  EXPECT_EQ(fast.force_pipes, 2);
+  EXPECT_EQ(fast.table.degree, 2);
+}
+
+}  // namespace
+}  // namespace cuboct
