@@ -25,39 +25,37 @@ module cuboct_issue #(
   logic [CandidateBits-1:0] candidate_q;
   logic [RowBits-1:0]       row_q;
   logic [FilterLanes-1:0]   mask_d, mask_q;
-  logic [FilterLanes-1:0]   rest [0:ForcePipes];  // what the pipes before this one left
+  logic [FilterLanes-1:0]   rest, lowest;  // what the pipes before leave; its lowest bit
+  logic [SlotBits-1:0]      row_base;
 
-  assign rest[0] = mask_q;
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
-    localparam int LaneBits = $clog2(FilterLanes + 1);
-    logic [FilterLanes-1:0] lowest;
-    logic [LaneBits-1:0]    lane [0:FilterLanes];
-    logic [SlotBits-1:0]    row_base, lane_slot;
-    assign lowest    = rest[f] & (~rest[f] + 1'b1);
-    assign rest[f+1] = rest[f] & ~lowest;
-    assign lane[0]   = '0;
-    for (genvar l = 0; l < FilterLanes; l++) begin : gen_lane
-      localparam int Lane = l;
-      assign lane[l+1] = lane[l] | (lowest[l] ? Lane[LaneBits-1:0] : '0);
+  // The lane whose bit is set. A slot's number needs no more bits: lanes beyond the last slot never pass.
+  function automatic logic [SlotBits-1:0] lane_of(input logic [FilterLanes-1:0] onehot);
+    integer l;
+    begin
+      lane_of = '0;
+      for (l = 0; l < FilterLanes; l = l + 1) begin
+        if (onehot[l]) lane_of = l[SlotBits-1:0];
+      end
     end
-    if (RowBits > SlotBits) begin : gen_narrow
-      assign row_base = row_q[SlotBits-1:0] * FilterLanes[SlotBits-1:0];
-    end else begin : gen_wide
-      assign row_base = {{(SlotBits - RowBits) {1'b0}}, row_q} * FilterLanes[SlotBits-1:0];
+  endfunction
+
+  assign row_base = {{(SlotBits - RowBits) {1'b0}}, row_q} * FilterLanes[SlotBits-1:0];
+  integer f;
+  always_comb begin
+    rest    = mask_q;
+    lowest  = '0;
+    valid_o = '0;
+    slot_o  = '0;
+    for (f = 0; f < ForcePipes; f = f + 1) begin
+      lowest                          = rest & (~rest + 1'b1);
+      valid_o[f]                      = (rest != '0);
+      slot_o[f*SlotBits +: SlotBits] = row_base + lane_of(lowest);
+      rest                            = rest & ~lowest;
     end
-    if (LaneBits > SlotBits) begin : gen_lane_cut
-      logic unused_lane;
-      assign lane_slot   = lane[FilterLanes][SlotBits-1:0];
-      assign unused_lane = ^lane[FilterLanes];
-    end else begin : gen_lane_pad
-      assign lane_slot = {{(SlotBits - LaneBits) {1'b0}}, lane[FilterLanes]};
-    end
-    assign valid_o[f]                       = (rest[f] != '0);
-    assign slot_o[f*SlotBits +: SlotBits] = row_base + lane_slot;
   end
 
-  assign pop_o  = (rest[ForcePipes] == '0) && !empty_i;
-  assign mask_d = pop_o ? mask_i : rest[ForcePipes];
+  assign pop_o  = (rest == '0) && !empty_i;
+  assign mask_d = pop_o ? mask_i : rest;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) mask_q <= '0;
     else mask_q <= mask_d;

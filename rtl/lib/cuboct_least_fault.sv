@@ -21,18 +21,21 @@ module cuboct_least_fault #(
   // With its sign inverted, number orders as an unsigned value.
   logic                valid_d, valid_q;
   logic [KeyBits-1:0]  key_d, key_q;
-  logic [Sources:0]    some;
-  logic [KeyBits-1:0]  least [0:Sources];
-  assign some[0]  = valid_q;
-  assign least[0] = key_q;
-  for (genvar s = 0; s < Sources; s++) begin : gen_source
-    logic [KeyBits-1:0] key;
-    assign key        = {code_i[s*4 +: 4], id_i[s*IdBits +: IdBits], !number_i[s*64+63], number_i[s*64 +: 63]};
-    assign some[s+1]  = some[s] || valid_i[s];
-    assign least[s+1] = (valid_i[s] && (!some[s] || key < least[s])) ? key : least[s];
+  logic [KeyBits-1:0]  key;
+  integer              s;
+  always_comb begin
+    valid_d = valid_q;
+    key_d   = key_q;
+    key     = key_q;
+    for (s = 0; s < Sources; s = s + 1) begin
+      if (valid_i[s]) begin
+        key = {code_i[s*4 +: 4], id_i[s*IdBits +: IdBits], !number_i[s*64+63], number_i[s*64 +: 63]};
+        if (!valid_d || key < key_d) key_d = key;
+        valid_d = 1'b1;
+      end
+    end
+    if (clear_i) valid_d = 1'b0;
   end
-  assign valid_d = some[Sources] && !clear_i;
-  assign key_d   = least[Sources];
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) valid_q <= 1'b0;

@@ -57,7 +57,10 @@ module cuboct_migrate #(
   // The first state depends on what the update, or the axis before, found.
   always_comb begin
     state = state_q;
-    if (state_q == Enter) state = leaving_i ? Scan : End;
+    if (state_q == Enter) begin
+      state = End;
+      if (leaving_i) state = Scan;
+    end
   end
 
   // Where the slot that SCAN looks at wants to go.

@@ -112,6 +112,7 @@ module cuboct_node_core #(
   localparam int PipeSumBits = KickBits + $clog2(27 * Capacity);
   // Update.
   localparam int UpdateLatency = (Pd != 0) ? 6 : 3;
+  localparam int UpdateTail    = UpdateLatency - 2;
   localparam int TickBits      = $clog2(Capacity + UpdateLatency + 1);
 
   // The main machine.
@@ -275,7 +276,8 @@ module cuboct_node_core #(
   logic [ForcePipes-1:0]        issue, pipe_busy, kick_valid, pipe_fault, pipe_fault_strength;
   logic [ForcePipes*64-1:0]     pipe_fault_number;
   logic                         finder_done;
-  logic [3*PipeSumBits-1:0]     sum_so_far [0:ForcePipes];
+  logic [ForcePipes*3*PipeSumBits-1:0] sums;
+  logic [3*PipeSumBits-1:0]     total;
   logic [SlotBits-1:0]          tick_slot;
   logic                         take;
   cuboct_pair_finder #(
@@ -290,10 +292,8 @@ module cuboct_node_core #(
   );
   assign force_done = engine_runs && finder_done && (pipe_busy == '0);
 
-  assign sum_so_far[0] = '0;
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
     logic [3*KickBits-1:0]    kick;
-    logic [3*PipeSumBits-1:0] sum;
     logic [OwnBits-1:0]       own;
     logic [SomeType-1:0]      own_type, other_type;
     logic [VelBits-1:0]       other_v;
@@ -329,14 +329,22 @@ module cuboct_node_core #(
     );
     cuboct_sums #(.KickBits(KickBits), .SumBits(PipeSumBits), .Capacity(Capacity), .SlotBits(SlotBits)) u_sums (
       .clk_i, .rst_ni, .kick_valid_i(kick_valid[f]), .kick_slot_i(kick_slot[f*SlotBits +: SlotBits]),
-      .kick_i(kick), .take_i(take), .take_slot_i(tick_slot), .sum_o(sum)
+      .kick_i(kick), .take_i(take), .take_slot_i(tick_slot), .sum_o(sums[f*3*PipeSumBits +: 3*PipeSumBits])
     );
-    for (genvar a = 0; a < 3; a++) begin : gen_total
-      assign sum_so_far[f+1][a*PipeSumBits +: PipeSumBits] =
-          sum_so_far[f][a*PipeSumBits +: PipeSumBits] + sum[a*PipeSumBits +: PipeSumBits];
-    end
     logic unused_own;
     assign unused_own = ^own;
+  end
+  integer p;
+  always_comb begin
+    total = '0;
+    for (p = 0; p < ForcePipes; p = p + 1) begin
+      total[0*PipeSumBits +: PipeSumBits] = total[0*PipeSumBits +: PipeSumBits]
+                                          + sums[(3*p+0)*PipeSumBits +: PipeSumBits];
+      total[1*PipeSumBits +: PipeSumBits] = total[1*PipeSumBits +: PipeSumBits]
+                                          + sums[(3*p+1)*PipeSumBits +: PipeSumBits];
+      total[2*PipeSumBits +: PipeSumBits] = total[2*PipeSumBits +: PipeSumBits]
+                                          + sums[(3*p+2)*PipeSumBits +: PipeSumBits];
+    end
   end
   logic unused_candidate;
   assign unused_candidate = ^issue_candidate;
@@ -347,7 +355,7 @@ module cuboct_node_core #(
   assign tick_wide  = {{CountBits{1'b0}}, tick_q};
   assign count_wide = {{TickBits{1'b0}}, own_count_q};
   assign update_done = in_update && ((own_count_q == '0)
-                       || (tick_wide == count_wide + UpdateLatency[CountBits+TickBits-1:0] - 2'd2));
+                       || (tick_wide == count_wide + UpdateTail[CountBits+TickBits-1:0]));
   assign dump_done   = in_dump && ((own_count_q == '0) || (tick_wide + 1'b1 == count_wide));
   assign take        = in_update && (tick_wide < count_wide);
   assign tick_slot   = tick_q[SlotBits-1:0];
@@ -375,7 +383,7 @@ module cuboct_node_core #(
     .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .DisplacementBits(DisplacementBits), .GainBits(GainBits),
     .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(SlotBits), .IdBits(IdBits)
   ) u_update (
-    .clk_i, .rst_ni, .valid_i(take), .slot_i(tick_slot), .sum_i(sum_so_far[ForcePipes]),
+    .clk_i, .rst_ni, .valid_i(take), .slot_i(tick_slot), .sum_i(total),
     .x_i(main_data[PosBits-1:0]), .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
     .id_i(main_data[IdLsb +: IdBits]), .u_i(old_u), .valid_o(update_write), .slot_o(update_slot), .x_o(new_x),
     .away_o(new_away), .v_o(new_v), .type_o(new_type), .id_o(new_id), .u_o(new_u), .fault_o(update_fault),

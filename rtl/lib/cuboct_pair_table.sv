@@ -10,9 +10,9 @@ module cuboct_pair_table #(
   parameter int Octaves        = 0,   // 0 uniform, 1 octaves
   parameter int Degree         = 1,   // 1 or 2
   parameter int IndexBits      = 9,   // of the address, >= 1
-  parameter int BinBits        = 0,   // octaves only; < IndexBits
+  parameter int BinBits        = 0,   // octaves only; <= IndexBits
   parameter int FirstOctave    = 0,   // octaves only; < 2D
-  parameter int FractionBits   = 17,  // of t, in 1 ... 17
+  parameter int FractionBits   = 17,  // of t, in 1 ... 24
   parameter int EntryBits      = 18,  // of c0, c1, c2, signed
   parameter int ValueBits      = 18,  // of the value; the generator proves that every value fits
   parameter int OctaveStage    = 0,   // 1 if this or another table of the pipe is by octaves
@@ -39,17 +39,21 @@ module cuboct_pair_table #(
     localparam int ShiftBits  = R2Bits + BelowBits;
     localparam int Top        = R2Bits - 1;
 
-    logic [OctaveBits-1:0] leading [0:R2Bits];
+    function automatic logic [OctaveBits-1:0] leading_one(input logic [R2Bits-1:0] bits);
+      integer b;
+      begin
+        leading_one = '0;
+        for (b = 0; b < R2Bits; b = b + 1) begin
+          if (bits[b]) leading_one = b[OctaveBits-1:0];
+        end
+      end
+    endfunction
+
     logic [OctaveBits-1:0] octave_q;
     logic [R2Bits-1:0]     r2_q;
     logic                  below_q;
-    assign leading[0] = '0;
-    for (genvar b = 0; b < R2Bits; b++) begin : gen_bit
-      localparam int Bit = b;
-      assign leading[b+1] = r2_i[b] ? Bit[OctaveBits-1:0] : leading[b];
-    end
     always_ff @(posedge clk_i) begin
-      octave_q <= leading[R2Bits];
+      octave_q <= leading_one(r2_i);
       r2_q     <= r2_i;
       below_q  <= (r2_i[R2Bits-1:FirstOctave] == '0);
     end
@@ -61,7 +65,9 @@ module cuboct_pair_table #(
     localparam int First = FirstOctave;
     assign aligned = {r2_q, {BelowBits{1'b0}}} << (Top[OctaveBits-1:0] - octave_q);
     assign row     = octave_q - First[OctaveBits-1:0];
-    if (BinBits > 0) begin : gen_bins
+    if (BinBits == IndexBits) begin : gen_one_row
+      assign row_index = aligned[ShiftBits-2 -: BinBits];
+    end else if (BinBits > 0) begin : gen_bins
       assign row_index = {row[IndexBits-BinBits-1:0], aligned[ShiftBits-2 -: BinBits]};
     end else begin : gen_no_bins
       assign row_index = row[IndexBits-1:0];

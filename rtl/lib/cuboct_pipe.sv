@@ -5,7 +5,7 @@
 //   s = round_odd(s * scale[type_i][type_j])     with Scaled
 //   kick = -round_odd(s * d)                     nothing where r2 >= Cutoff2
 // The kick of a pair accepted in cycle t is at the outputs in cycle t + Stages, Stages = 10 (+1 octaves, +2 degree 2,
-// +2 damped, +2 scaled). Operands are those of a pair that passed the planar test: |d_a| <= 2^D.
+// +2 damped, +2 scaled). Operands are those of a pair that passed the planar test: |d_a| < 2^D.
 module cuboct_pipe #(
   parameter int          PositionFrac         = 20,     // P
   parameter int          DifferenceShift      = 4,      // P - D
@@ -59,7 +59,7 @@ module cuboct_pipe #(
   output logic                            busy_o        // a pair is on its way
 );
   localparam int D            = PositionFrac - DifferenceShift;
-  localparam int DBits        = D + 2;
+  localparam int DBits        = D + 1;
   localparam int R2Bits       = 2 * D + 2;  // three squares of at most 2^(2D)
   localparam int OctaveStage  = ((Octaves != 0) || (DampOctaves != 0 && Damped != 0)) ? 1 : 0;
   localparam int SquareStages = (Degree == 2 || (DampDegree == 2 && Damped != 0)) ? 1 : 0;
@@ -74,9 +74,9 @@ module cuboct_pipe #(
   // valid[k]: stage k holds a pair; hit[k], from stage 5 on: one inside the cutoff.
   logic [Stages:1] valid_d, valid_q;
   logic [Stages:5] hit_d, hit_q;
-  logic            inside;
+  logic            near;
   assign valid_d = {valid_q[Stages-1:1], valid_i};
-  assign hit_d   = {hit_q[Stages-1:5], valid_q[4] && inside};
+  assign hit_d   = {hit_q[Stages-1:5], valid_q[4] && near};
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       valid_q <= '0;
@@ -124,7 +124,7 @@ module cuboct_pipe #(
   always_ff @(posedge clk_i) begin
     if (valid_q[3]) r2_q <= r2_d;
   end
-  assign inside = (r2_q < Cutoff2[R2Bits-1:0]);
+  assign near = (r2_q < Cutoff2[R2Bits-1:0]);
   cuboct_delay #(.Bits(3 * DBits), .Depth(StageS - 2)) u_d (.clk_i, .d_i(d_q), .q_o(d_s));
 
   // Stages 5 ... StageValue: the force table.
@@ -151,8 +151,8 @@ module cuboct_pipe #(
     localparam int DampedBits  = ((ProductBits > ForceBits) ? ProductBits : ForceBits) + 2;
 
     logic [2:0]                             misfit;
-    logic signed [WFullBits-1:0]            w_full [0:2];
-    logic signed [WdBits+1:0]               wd [0:2];
+    logic [3*WFullBits-1:0]                 w_full;
+    logic [3*(WdBits+2)-1:0]                wd;
     logic signed [WdBits+1:0]               wd_d, wd_q;    // stage 4
     logic signed [RelativeVelocityBits-1:0] q_d, q_q, q;   // stage 5, stage StageValue
     for (genvar a = 0; a < 3; a++) begin : gen_w
@@ -176,13 +176,13 @@ module cuboct_pipe #(
       cuboct_resize #(.InBits(WFullBits), .OutBits(RelativeVelocityBits)) u_wrap (.a_i(w_q), .y_o(w_used));
       cuboct_resize #(.InBits(RelativeVelocityBits), .OutBits(WFullBits)) u_again (.a_i(w_used), .y_o(w_again));
       assign misfit[a] = (w_again != w_q);
-      assign w_full[a] = w_q;
+      assign w_full[a*WFullBits +: WFullBits] = w_q;
       cuboct_mult #(.ABits(RelativeVelocityBits), .BBits(DBits)) u_wd (
         .clk_i, .en_i(valid_q[2]), .a_i(w_used), .b_i($signed(d_q[a*DBits +: DBits])), .p_o(product)
       );
-      assign wd[a] = $signed({{2{product[WdBits-1]}}, product});
+      assign wd[a*(WdBits+2) +: WdBits+2] = {{2{product[WdBits-1]}}, product};
     end
-    assign wd_d = wd[0] + wd[1] + wd[2];
+    assign wd_d = wd[0 +: WdBits+2] + wd[WdBits+2 +: WdBits+2] + wd[2*(WdBits+2) +: WdBits+2];
     // Inside the cutoff |w.d| <= |w| |d| < sqrt(3) 2^(bits-1) 2^D, so q fits its width.
     cuboct_round_odd #(.InBits(WdBits + 2), .Shift(QShift), .OutBits(RelativeVelocityBits)) u_q (
       .a_i(wd_q), .y_o(q_d)
@@ -195,7 +195,8 @@ module cuboct_pipe #(
 
     // A w that does not fit: known at stage 2, told with the kick. The first axis gives the number.
     logic signed [WFullBits-1:0] w_first, w_late;
-    assign w_first = misfit[0] ? w_full[0] : misfit[1] ? w_full[1] : w_full[2];
+    assign w_first = misfit[0] ? w_full[0 +: WFullBits]
+                   : misfit[1] ? w_full[WFullBits +: WFullBits] : w_full[2*WFullBits +: WFullBits];
     cuboct_delay #(.Bits(WFullBits + 1), .Depth(Stages - 2)) u_w_late (
       .clk_i, .d_i({misfit != 3'b000, w_first}), .q_o({w_fault, w_late})
     );

@@ -48,14 +48,16 @@ module cuboct_sequencer #(
       MigrateZ: begin
         if (migrate_done_i) begin
           steps_d = steps_q - 32'd1;
-          state_d = (steps_q == 32'd1) ? Dump : ExchangeX;
+          state_d = ExchangeX;
+          if (steps_q == 32'd1) state_d = Dump;
         end
       end
       Dump:      if (dump_done_i) state_d = Idle;
       default: begin
         if (start_i) begin
           steps_d = steps_i;
-          state_d = (steps_i == 32'd0) ? Dump : ExchangeX;
+          state_d = ExchangeX;
+          if (steps_i == 32'd0) state_d = Dump;
         end
       end
     endcase

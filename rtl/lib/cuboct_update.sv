@@ -78,7 +78,7 @@ module cuboct_update #(
   );
 
   logic [2:0]         bad_sum, bad_u, bad_v;                       // with the outputs
-  logic signed [63:0] sum_number [0:2], u_number [0:2], v_number [0:2];
+  logic [3*64-1:0]    sum_number, u_number, v_number;
 
   for (genvar a = 0; a < 3; a++) begin : gen_axis
     // Check of the sum.
@@ -86,7 +86,7 @@ module cuboct_update #(
     logic signed [SumBits-1:0]   dv_1;
     logic                        imposed_1, bad_1;
     logic signed [WideBits-1:0]  dv_wide, g_wide, to_go_wide, v_wide_1;
-    logic [VelocityBits-1:0]     v_1;
+    logic signed [VelocityBits-1:0] v_1;
     cuboct_delay #(.Bits(TotalBits), .Depth(1)) u_sum (
       .clk_i, .d_i(sum_i[a*TotalBits +: TotalBits]), .q_o(sum_1)
     );
@@ -104,7 +104,7 @@ module cuboct_update #(
     cuboct_resize #(.InBits(ConstantBits), .OutBits(WideBits)) u_to_go_wide (
       .a_i($signed(to_go[a*ConstantBits +: ConstantBits])), .y_o(to_go_wide)
     );
-    cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_wide (.a_i($signed(v_1)), .y_o(v_wide_1));
+    cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_wide (.a_i(v_1), .y_o(v_wide_1));
 
     // What v becomes, before its check, and what the check needs; stage VStage-1.
     logic signed [WideBits-1:0] plain, v_free, v_imposed;
@@ -119,15 +119,15 @@ module cuboct_update #(
       localparam int SpringBits = ((KpBits > KdBits) ? KpBits : KdBits) + 1;
 
       // Stage 2: the error of the velocity. 3: products. 4: their rounded sum is subtracted.
-      logic [DisplacementBits-1:0] u_2, u_last;
+      logic signed [DisplacementBits-1:0] u_2, u_last;
       logic signed [ErrorBits-1:0] error_d, error_2;
       logic signed [KpBits-1:0]    spring;
       logic signed [KdBits-1:0]    drag;
       logic signed [SpringBits-1:0]  pull_sum;
       logic signed [WideBits-1:0]  pull, v_d, v_q;
-      logic [GainBits-1:0]         kp_2, kd_2;
+      logic signed [GainBits-1:0]  kp_2, kd_2;
       logic                        held_3;
-      logic [WideBits-1:0]         plain_3, to_go_last;
+      logic signed [WideBits-1:0]  plain_3, to_go_last;
       logic                        held_last;
       cuboct_delay #(.Bits(DisplacementBits), .Depth(2)) u_u2 (
         .clk_i, .d_i(u_i[a*DisplacementBits +: DisplacementBits]), .q_o(u_2)
@@ -137,10 +137,10 @@ module cuboct_update #(
       cuboct_delay #(.Bits(ErrorBits), .Depth(1)) u_error2 (.clk_i, .d_i(error_d), .q_o(error_2));
       cuboct_delay #(.Bits(2 * GainBits), .Depth(1)) u_gain2 (.clk_i, .d_i({kd, kp}), .q_o({kd_2, kp_2}));
       cuboct_mult #(.ABits(GainBits), .BBits(DisplacementBits)) u_spring (
-        .clk_i, .en_i(valid_q[2]), .a_i($signed(kp_2)), .b_i($signed(u_2)), .p_o(spring)
+        .clk_i, .en_i(valid_q[2]), .a_i(kp_2), .b_i(u_2), .p_o(spring)
       );
       cuboct_mult #(.ABits(GainBits), .BBits(ErrorBits)) u_drag (
-        .clk_i, .en_i(valid_q[2]), .a_i($signed(kd_2)), .b_i(error_2), .p_o(drag)
+        .clk_i, .en_i(valid_q[2]), .a_i(kd_2), .b_i(error_2), .p_o(drag)
       );
       assign pull_sum = $signed({{(SpringBits - KpBits) {spring[KpBits-1]}}, spring})
                       + $signed({{(SpringBits - KdBits) {drag[KdBits-1]}}, drag});
@@ -150,7 +150,7 @@ module cuboct_update #(
       cuboct_delay #(.Bits(WideBits + 1), .Depth(2)) u_plain3 (
         .clk_i, .d_i({held, plain}), .q_o({held_3, plain_3})
       );
-      assign v_d = $signed(plain_3) - (held_3 ? pull : '0);
+      assign v_d = plain_3 - (held_3 ? pull : '0);
       always_ff @(posedge clk_i) v_q <= v_d;
       assign v_free = v_q;
       cuboct_delay #(.Bits(TotalBits + WideBits + 2), .Depth(3)) u_rest (
@@ -162,16 +162,16 @@ module cuboct_update #(
       logic signed [DisplacementBits-1:0] u_new;
       cuboct_delay #(.Bits(WideBits), .Depth(1)) u_to_go_last (.clk_i, .d_i(v_imposed), .q_o(to_go_last));
       cuboct_delay #(.Bits(1), .Depth(2)) u_held_last (.clk_i, .d_i(held_3), .q_o(held_last));
-      cuboct_resize #(.InBits(DisplacementBits), .OutBits(WideBits)) u_u_wide (.a_i($signed(u_last)), .y_o(u_wide));
+      cuboct_resize #(.InBits(DisplacementBits), .OutBits(WideBits)) u_u_wide (.a_i(u_last), .y_o(u_wide));
       cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_out (
         .a_i($signed(v_o[a*VelocityBits +: VelocityBits])), .y_o(v_out_wide)
       );
-      assign u_full = u_wide + v_out_wide - $signed(to_go_last);
+      assign u_full = u_wide + v_out_wide - to_go_last;
       cuboct_resize #(.InBits(WideBits), .OutBits(DisplacementBits)) u_u_new (.a_i(u_full), .y_o(u_new));
       cuboct_resize #(.InBits(DisplacementBits), .OutBits(WideBits)) u_u_back (.a_i(u_new), .y_o(u_back));
-      assign u_o[a*DisplacementBits +: DisplacementBits] = held_last ? u_new : $signed(u_last);
+      assign u_o[a*DisplacementBits +: DisplacementBits] = held_last ? u_new : u_last;
       assign bad_u[a] = held_last && (u_back != u_full);
-      cuboct_resize #(.InBits(WideBits), .OutBits(64)) u_u_number (.a_i(u_full), .y_o(u_number[a]));
+      cuboct_resize #(.InBits(WideBits), .OutBits(64)) u_u_number (.a_i(u_full), .y_o(u_number[a*64 +: 64]));
     end else begin : gen_free
       assign v_free    = plain;
       assign imposed_v = imposed_1;
@@ -179,7 +179,7 @@ module cuboct_update #(
       assign sum_v     = sum_1;
       assign v_imposed = to_go_wide;
       assign bad_u[a]  = 1'b0;
-      assign u_number[a] = '0;
+      assign u_number[a*64 +: 64] = '0;
       assign u_o[a*DisplacementBits +: DisplacementBits] = '0;
       logic unused_pd;
       assign unused_pd = ^{u_i[a*DisplacementBits +: DisplacementBits], held, kp, kd};
@@ -205,8 +205,8 @@ module cuboct_update #(
     end
     assign bad_sum[a] = bad_sum_q;
     assign bad_v[a]   = bad_v_q;
-    cuboct_resize #(.InBits(TotalBits), .OutBits(64)) u_sum_number (.a_i(sum_q), .y_o(sum_number[a]));
-    cuboct_resize #(.InBits(WideBits), .OutBits(64)) u_v_number (.a_i(v_wide_q), .y_o(v_number[a]));
+    cuboct_resize #(.InBits(TotalBits), .OutBits(64)) u_sum_number (.a_i(sum_q), .y_o(sum_number[a*64 +: 64]));
+    cuboct_resize #(.InBits(WideBits), .OutBits(64)) u_v_number (.a_i(v_wide_q), .y_o(v_number[a*64 +: 64]));
 
     cuboct_round_odd #(.InBits(VelocityBits), .Shift(Guard), .OutBits(PositionFrac + 2)) u_drift (
       .a_i(v_q), .y_o(drift)
@@ -221,14 +221,14 @@ module cuboct_update #(
   always_comb begin
     fault_o        = valid_o && ((bad_sum | bad_u | bad_v) != 3'b000);
     fault_code_o   = 4'd5;
-    fault_number_o = bad_v[0] ? v_number[0] : bad_v[1] ? v_number[1] : v_number[2];
+    fault_number_o = bad_v[0] ? v_number[0*64 +: 64] : bad_v[1] ? v_number[1*64 +: 64] : v_number[2*64 +: 64];
     if (bad_u != 3'b000) begin
       fault_code_o   = 4'd4;
-      fault_number_o = bad_u[0] ? u_number[0] : bad_u[1] ? u_number[1] : u_number[2];
+      fault_number_o = bad_u[0] ? u_number[0*64 +: 64] : bad_u[1] ? u_number[1*64 +: 64] : u_number[2*64 +: 64];
     end
     if (bad_sum != 3'b000) begin
       fault_code_o   = 4'd3;
-      fault_number_o = bad_sum[0] ? sum_number[0] : bad_sum[1] ? sum_number[1] : sum_number[2];
+      fault_number_o = bad_sum[0] ? sum_number[0*64 +: 64] : bad_sum[1] ? sum_number[1*64 +: 64] : sum_number[2*64 +: 64];
     end
   end
 endmodule
