@@ -51,7 +51,7 @@ module cuboct_migrate #(
   logic [CountBits-1:0] read_d, read_q, write_d, write_q;  // Scan: slots read, slots kept
   logic [BeatBits-1:0]  beat_d, beat_q;
   logic [1:0]           away;
-  logic                 stays, up, linked, advance, last_slot, taking, side, has_room;
+  logic                 stays, up, linked, loadable, last_beat, advance, last_slot, taking, side, has_room;
   logic [ParticleBits-1:0] candidate;
 
   // The first state depends on what the update, or the axis before, found.
@@ -75,6 +75,9 @@ module cuboct_migrate #(
   assign stays     = (away == 2'b00);
   assign up        = !away[1];
   assign linked    = up ? has_link_i[1] : has_link_i[0];
+  assign loadable  = up ? can_load_i[1] : can_load_i[0];
+  assign last_beat = (beat_q == LastBeat[BeatBits-1:0]);
+  assign advance   = stays || !linked || (loadable && last_beat);  // SCAN is done with the slot
   assign last_slot = (read_q + 1'b1 == count_i);
 
   assign side      = (state == TakeHigh);
@@ -95,7 +98,6 @@ module cuboct_migrate #(
     read_d         = read_q;
     write_d        = write_q;
     beat_d         = beat_q;
-    advance        = 1'b0;
     done_o         = 1'b0;
     load_o         = 2'b00;
     end_o          = 1'b0;
@@ -113,17 +115,13 @@ module cuboct_migrate #(
         Scan: begin
           state_d = Scan;
           if (stays) begin
-            advance = 1'b1;
             write_o = 1'b1;
             write_d = write_q + 1'b1;
           end else if (!linked) begin
-            advance      = 1'b1;
             fault_left_o = 1'b1;
-          end else if (up ? can_load_i[1] : can_load_i[0]) begin
-            load_o  = {up, !up};
-            beat_d  = beat_q + 1'b1;
-            advance = (beat_q == LastBeat[BeatBits-1:0]);
-            if (advance) beat_d = '0;
+          end else if (loadable) begin
+            load_o = {up, !up};
+            beat_d = last_beat ? '0 : beat_q + 1'b1;
           end
           if (advance) read_d = read_q + 1'b1;
           if (advance && last_slot) begin

@@ -334,18 +334,19 @@ module cuboct_node_core #(
     logic unused_own;
     assign unused_own = ^own;
   end
-  integer p;
-  always_comb begin
-    total = '0;
-    for (p = 0; p < ForcePipes; p = p + 1) begin
-      total[0*PipeSumBits +: PipeSumBits] = total[0*PipeSumBits +: PipeSumBits]
-                                          + sums[(3*p+0)*PipeSumBits +: PipeSumBits];
-      total[1*PipeSumBits +: PipeSumBits] = total[1*PipeSumBits +: PipeSumBits]
-                                          + sums[(3*p+1)*PipeSumBits +: PipeSumBits];
-      total[2*PipeSumBits +: PipeSumBits] = total[2*PipeSumBits +: PipeSumBits]
-                                          + sums[(3*p+2)*PipeSumBits +: PipeSumBits];
+  // One after the other: of pipe f and those before it.
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_total
+    logic [3*PipeSumBits-1:0] so_far;
+    for (genvar a = 0; a < 3; a++) begin : gen_axis
+      if (f == 0) begin : gen_first
+        assign so_far[a*PipeSumBits +: PipeSumBits] = sums[a*PipeSumBits +: PipeSumBits];
+      end else begin : gen_more
+        assign so_far[a*PipeSumBits +: PipeSumBits] = gen_total[f-1].so_far[a*PipeSumBits +: PipeSumBits]
+                                                    + sums[(3*f+a)*PipeSumBits +: PipeSumBits];
+      end
     end
   end
+  assign total = gen_total[ForcePipes-1].so_far;
   logic unused_candidate;
   assign unused_candidate = ^issue_candidate;
 
