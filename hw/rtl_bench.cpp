@@ -164,7 +164,8 @@ module cuboct_bench;
       $finish;
     end
     if (cycle > Limit) begin
-      $display("FAIL no end after %0d cycles", cycle);
+      for (k = Nodes - 1; k > 0 && idle[k]; k = k - 1) ;
+      $display("FAIL node %0d: still busy after %0d cycles", k, cycle);
       $fatal(1, "timeout");
     end
   end
@@ -200,7 +201,8 @@ icarus: icarus/cuboct_bench.vvp
 icarus/cuboct_bench.vvp: $(RTL) cuboct_bench.sv
 	mkdir -p icarus
 	for f in $(notdir $(RTL)); do sed 's/always_comb/always @*/' ../rtl/$$f > icarus/$$f; done
-	$(IVERILOG) -g2012 -DSYNTHESIS -o $@ -s cuboct_bench $(addprefix icarus/,$(notdir $(RTL))) cuboct_bench.sv
+	$(IVERILOG) -g2012 -DSYNTHESIS -o $@ -s cuboct_bench $(addprefix icarus/,$(notdir $(RTL))) cuboct_bench.sv \
+	  2> icarus/log || { cat icarus/log; exit 1; }
 
 yosys:
 	$(YOSYS) -q -p 'read_verilog -sv $(RTL); hierarchy -check -top cuboct_lattice; proc; check -assert'
@@ -301,10 +303,11 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
   first += fmt::format("{:08x}\n", total);
   if (initial.particles.empty()) throw InputError("RTL: the bench needs a particle");
 
-  // No step takes longer: every record of 27 full nodes sent, met by every row, every pair issued alone.
-  const uint64_t c = static_cast<uint64_t>(plan.arch.capacity);
-  const uint64_t beats = static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
-  const uint64_t limit = (steps + 2) * (40 * c * beats + 27 * c * c * 2 + 1000);
+  // No step takes longer: every record that there can be sent three times, met by every row, every pair issued alone.
+  const auto c = static_cast<uint64_t>(plan.arch.capacity);
+  const uint64_t records = std::min<uint64_t>(27 * c, initial.particles.size());
+  const auto beats = static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
+  const uint64_t limit = (steps + 2) * (4 * records * beats + 2 * c * records + 300);
 
   std::map<std::string, std::string> files;
   const auto filled = [&](std::string text) {
