@@ -60,7 +60,8 @@ std::vector<Field> fields_of(const Plan& plan) {
 }
 
 // Placeholders in capitals between @ are replaced; the rest is the file.
-constexpr const char* kBench = R"sv(// Loads the lattice, runs Steps steps and compares every particle that a node observes with golden's.
+constexpr const char* kBench =
+    R"sv(// Loads the lattice, runs Steps steps and compares every particle that a node observes with golden's.
 `timescale 1ns / 1ns
 module cuboct_bench;
   localparam int Nodes        = @NODES@;
@@ -266,7 +267,8 @@ std::string print_fields(const Plan& plan, int& id_lsb) {
     };
     text += fmt::format(
         "        if (got[{0} +: {1}] !== want[{0} +: {1}]) begin\n"
-        "          $display(\"FAIL step %0d node %0d slot %0d particle %0d: {2} is %0d, golden has %0d\", step, k,\n"
+        "          $display(\"FAIL step %0d node %0d slot %0d particle %0d: {2} is %0d, golden has %0d\", "
+        "step, k,\n"
         "                   slot, want[{3} +: IdBits], {4}, {5});\n"
         "          $fatal(1, \"differs\");\n"
         "        end\n",
@@ -277,8 +279,8 @@ std::string print_fields(const Plan& plan, int& id_lsb) {
 
 }  // namespace
 
-std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign& design, const State& initial,
-                                               uint64_t steps) {
+std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign& design,
+                                               const State& initial, uint64_t steps) {
   const auto nodes = plan.lattice.size();
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity, initial);
   std::string loads;
@@ -303,7 +305,8 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
   first += fmt::format("{:08x}\n", total);
   if (initial.particles.empty()) throw InputError("RTL: the bench needs a particle");
 
-  // No step takes longer: every record that there can be sent three times, met by every row, every pair issued alone.
+  // No step takes longer: every record that there can be sent three times, met by every row, every pair
+  // issued alone.
   const auto c = static_cast<uint64_t>(plan.arch.capacity);
   const uint64_t records = std::min<uint64_t>(27 * c, initial.particles.size());
   const auto beats = static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
@@ -324,7 +327,8 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
     replace(text, "@PLAN@", describe(plan));
     return text;
   };
-  files["bench/cuboct_bench.sv"] = "// SPDX-License-Identifier: MIT\n// " + design.maker + "\n" + filled(kBench);
+  files["bench/cuboct_bench.sv"] =
+      "// SPDX-License-Identifier: MIT\n// " + design.maker + "\n" + filled(kBench);
   files["bench/Makefile"] = filled(kMakefile);
   files["bench/loads.hex"] = loads;
   files["bench/expected.hex"] = all;

@@ -11,9 +11,9 @@
 
 namespace cuboct {
 
-// Files of the bench by path in the project: testbench, what to load, what to observe in `steps` steps of golden, Makefile and
-// README. Throws RunError where golden does.
-std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign& design, const State& initial,
-                                               uint64_t steps);
+// Files of the bench by path in the project: testbench, what to load, what to observe in `steps` steps of
+// golden, Makefile and README. Throws RunError where golden does.
+std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign& design,
+                                               const State& initial, uint64_t steps);
 
 }  // namespace cuboct

@@ -26,7 +26,8 @@ void add_table(RtlDesign& design, const std::string& module, const FixedTable& t
 }  // namespace
 
 ValueRange table_range(const FixedTable& table) {
-  // t lies in [0, 2^T), and round_odd(slope * t, T) is monotonic in both, so its ends are those of the slopes' range.
+  // t lies in [0, 2^T), and round_odd(slope * t, T) is monotonic in both, so its ends are those of the
+  // slopes' range.
   const int T = table.fraction_bits;
   const int64_t t_max = (int64_t{1} << T) - 1;
   const auto reach = [&](int64_t low, int64_t high) {
@@ -111,7 +112,8 @@ RtlDesign decide(const Plan& plan) {
   }
   constant("Scaled", rule.scaled, "pair scales differ");
   constant("Pd", rule.pd, "some type is held by force");
-  design.constants.push_back({"ParticleBits", plan.words.particle_bits, false, false, "of the words to load and observe"});
+  design.constants.push_back(
+      {"ParticleBits", plan.words.particle_bits, false, false, "of the words to load and observe"});
 
   add_table(design, "cuboct_force_rom", rule.force, w.strength_bits);
   if (rule.damped) add_table(design, "cuboct_damp_rom", rule.damp, w.strength_bits);
@@ -134,7 +136,8 @@ RtlDesign decide(const Plan& plan) {
 
 void legalise(const RtlDesign& design, bool with_lattice) {
   const auto at_most = [](const char* what, int64_t value, int64_t limit) {
-    if (value > limit) throw InputError(fmt::format("RTL: {} is {}: at most {} can be emitted", what, value, limit));
+    if (value > limit)
+      throw InputError(fmt::format("RTL: {} is {}: at most {} can be emitted", what, value, limit));
   };
   at_most("the width of a particle's exact sum", design.pair_sum_bits, 64);
   at_most("the width of a particle", design.particle_bits, 1024);
@@ -143,7 +146,8 @@ void legalise(const RtlDesign& design, bool with_lattice) {
     for (const auto* column : {&t.c0, &t.c1, &t.c2})
       for (const int32_t c : *column)
         if (!fits(c, t.entry_bits))
-          throw InputError(fmt::format("RTL: the entry {} of {} does not fit {} bits", c, t.module, t.entry_bits));
+          throw InputError(
+              fmt::format("RTL: the entry {} of {} does not fit {} bits", c, t.module, t.entry_bits));
   }
   if (!with_lattice) return;
   // Observation ports are one vector over all nodes; simulators limit the width of a vector.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the RTL generator has decided, before any text: constants, tables and wiring. Three passes: decide() derives a
-// design from a plan, legalise() refuses what the modules cannot hold, and the printers turn it into text.
+// What the RTL generator has decided, before any text: constants, tables and wiring. Three passes: decide()
+// derives a design from a plan, legalise() refuses what the modules cannot hold, and the printers turn it
+// into text.
 #pragma once
 
 #include <array>
@@ -43,8 +44,8 @@ struct RtlDesign {
   int type_bits = 0;
   int velocity_bits = 0;
   int particle_bits = 0, link_bits = 0;
-  int pair_sum_bits = 0;                    // of a pipe's exact sum
-  std::vector<Cell> cells;                  // of the nodes
+  int pair_sum_bits = 0;    // of a pipe's exact sum
+  std::vector<Cell> cells;  // of the nodes
   std::vector<std::array<uint32_t, kFaces>> neighbour;
 };
 

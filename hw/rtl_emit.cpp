@@ -24,7 +24,8 @@ constexpr const char* kMarker = ".cuboct-emit";
 void add_node(Files& files, const RtlDesign& design) {
   for (const RtlSource& source : rtl_library()) files["rtl/" + std::string(source.name)] = source.text;
   files["rtl/cuboct_pkg.sv"] = print_package(design);
-  for (const RtlTable& table : design.tables) files["rtl/" + table.module + ".sv"] = print_table(design, table);
+  for (const RtlTable& table : design.tables)
+    files["rtl/" + table.module + ".sv"] = print_table(design, table);
   if (!design.scale.empty()) files["rtl/cuboct_scale_rom.sv"] = print_scale(design);
   files["rtl/cuboct_type_rom.sv"] = print_types(design);
   files["rtl/cuboct_node.sv"] = print_node(design);

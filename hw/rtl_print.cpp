@@ -19,7 +19,8 @@ std::string literal(int64_t value, int bits) {
 }
 
 std::string concatenated(const Int3& values, int bits) {
-  return fmt::format("{{{}, {}, {}}}", literal(values[2], bits), literal(values[1], bits), literal(values[0], bits));
+  return fmt::format("{{{}, {}, {}}}", literal(values[2], bits), literal(values[1], bits),
+                     literal(values[0], bits));
 }
 
 struct Port {
@@ -70,7 +71,9 @@ std::string print_ports(const std::vector<Port>& ports) {
 }  // namespace
 
 std::string print_package(const RtlDesign& design) {
-  std::string text = head(design) + "// The constants of the plan; docs/reference/node.md says what each is.\npackage cuboct_pkg;\n";
+  std::string text =
+      head(design) +
+      "// The constants of the plan; docs/reference/node.md says what each is.\npackage cuboct_pkg;\n";
   for (const RtlConstant& c : design.constants) {
     const std::string value = c.wide ? literal(c.value, 64) : std::to_string(c.value);
     const std::string declared =
@@ -99,9 +102,10 @@ std::string print_table(const RtlDesign& design, const RtlTable& table) {
       "  always_ff @(posedge clk_i) data_q <= mem[index_i];\n"
       "  assign c0_o = data_q[{}:0];\n"
       "  assign c1_o = data_q[{}:{}];\n",
-      table.c0.size(), degree == 2 ? "c2, " : "", e, table.module, table.index_bits - 1, e - 1, e - 1, e - 1, bits - 1,
-      table.c0.size() - 1, bits - 1, e - 1, 2 * e - 1, e);
-  text += degree == 2 ? fmt::format("  assign c2_o = data_q[{}:{}];\n", 3 * e - 1, 2 * e) : "  assign c2_o = '0;\n";
+      table.c0.size(), degree == 2 ? "c2, " : "", e, table.module, table.index_bits - 1, e - 1, e - 1, e - 1,
+      bits - 1, table.c0.size() - 1, bits - 1, e - 1, 2 * e - 1, e);
+  text += degree == 2 ? fmt::format("  assign c2_o = data_q[{}:{}];\n", 3 * e - 1, 2 * e)
+                      : "  assign c2_o = '0;\n";
   text += "  initial begin\n";
   for (size_t k = 0; k < table.c0.size(); ++k)
     text += fmt::format("    mem[{}] = {{{}{}, {}}};\n", k, degree == 2 ? literal(table.c2[k], e) + ", " : "",
@@ -134,7 +138,8 @@ std::string print_types(const RtlDesign& design) {
   const int t = std::max(1, design.type_bits), v = design.velocity_bits;
   std::string text = head(design);
   text += fmt::format(
-      "// What sets the types apart, axis 0 in the least significant place: imposed axes, velocity (imposed, or of the\n"
+      "// What sets the types apart, axis 0 in the least significant place: imposed axes, velocity (imposed, "
+      "or of the\n"
       "// anchor), gravity, whether held by force, gains. Combinational.\n"
       "module cuboct_type_rom (\n"
       "  input  logic [{}:0] type_i,\n"
@@ -148,8 +153,8 @@ std::string print_types(const RtlDesign& design) {
       t - 1, 3 * v - 1, 3 * v - 1);
   const auto assigns = [&](const FixedType& type, const std::string& indent) {
     std::string lines;
-    lines += fmt::format("{}imposed_o  = 3'b{}{}{};\n", indent, type.imposed[2] ? 1 : 0, type.imposed[1] ? 1 : 0,
-                         type.imposed[0] ? 1 : 0);
+    lines += fmt::format("{}imposed_o  = 3'b{}{}{};\n", indent, type.imposed[2] ? 1 : 0,
+                         type.imposed[1] ? 1 : 0, type.imposed[0] ? 1 : 0);
     lines += fmt::format("{}velocity_o = {};\n", indent, concatenated(type.velocity, v));
     lines += fmt::format("{}gravity_o  = {};\n", indent, concatenated(type.gravity, v));
     lines += fmt::format("{}pd_o       = 1'b{};\n", indent, type.pd ? 1 : 0);
@@ -158,8 +163,8 @@ std::string print_types(const RtlDesign& design) {
     return lines;
   };
   if (design.types.size() == 1)
-    return text + "  logic unused_type;\n  assign unused_type = ^type_i;\n" + assigns(design.types[0], "  assign ") +
-           "endmodule\n";
+    return text + "  logic unused_type;\n  assign unused_type = ^type_i;\n" +
+           assigns(design.types[0], "  assign ") + "endmodule\n";
   text += "  always_comb begin\n" + assigns(FixedType{}, "    ") + "    unique case (type_i)\n";
   for (size_t k = 0; k < design.types.size(); ++k)
     text += fmt::format("      {}: begin\n{}      end\n", literal(static_cast<int64_t>(k), t),
@@ -184,7 +189,8 @@ std::string print_lattice(const RtlDesign& design) {
   const size_t nodes = design.cells.size();
   std::string text = head(design);
   text +=
-      "// All nodes and their links. Node n's part of a vector over nodes has n times the part's width below it.\n"
+      "// All nodes and their links. Node n's part of a vector over nodes has n times the part's width below "
+      "it.\n"
       "// load_valid_i appends load_data_i to node load_node_i; start_i starts all nodes.\n"
       "module cuboct_lattice #(\n"
       "  localparam int Nodes = @NODES@\n"
@@ -209,8 +215,8 @@ std::string print_lattice(const RtlDesign& design) {
       "  localparam int LinkBits = cuboct_pkg::LinkBits;\n\n";
   text.replace(text.find("@NODES@"), 7, std::to_string(nodes));
   for (size_t n = 0; n < nodes; ++n)
-    text += fmt::format(
-        "  logic [5:0] valid_{0}, end_{0}, ready_{0};\n  logic [6*LinkBits-1:0] data_{0};\n", n);
+    text +=
+        fmt::format("  logic [5:0] valid_{0}, end_{0}, ready_{0};\n  logic [6*LinkBits-1:0] data_{0};\n", n);
   std::string unused_ends;
   for (size_t n = 0; n < nodes; ++n) {
     const Cell& cell = design.cells[n];
@@ -224,10 +230,12 @@ std::string print_lattice(const RtlDesign& design) {
       valid += (linked ? fmt::format("valid_{}[{}]", to, back) : "1'b0") + comma;
       end += (linked ? fmt::format("end_{}[{}]", to, back) : "1'b0") + comma;
       ready += (linked ? fmt::format("ready_{}[{}]", to, back) : "1'b0") + comma;
-      data += (linked ? fmt::format("data_{}[{}*LinkBits +: LinkBits]", to, back) : "{LinkBits{1'b0}}") + comma;
+      data +=
+          (linked ? fmt::format("data_{}[{}*LinkBits +: LinkBits]", to, back) : "{LinkBits{1'b0}}") + comma;
       if (!linked)
-        unused_ends += fmt::format("{}valid_{}[{}], end_{}[{}], ready_{}[{}], data_{}[{}*LinkBits +: LinkBits]",
-                                   unused_ends.empty() ? "    " : ",\n    ", n, f, n, f, n, f, n, f);
+        unused_ends +=
+            fmt::format("{}valid_{}[{}], end_{}[{}], ready_{}[{}], data_{}[{}*LinkBits +: LinkBits]",
+                        unused_ends.empty() ? "    " : ",\n    ", n, f, n, f, n, f, n, f);
     }
     text += fmt::format(
         "\n  // Cell ({1}, {2}, {3}).\n"

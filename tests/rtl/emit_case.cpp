@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// emit_case NAME DIR [STEPS]: emits the project of a test case (tests/support/cases.h; random_<seed> is a random one,
-// `example` the committed one). emit_case --list prints the names.
+// emit_case NAME DIR [STEPS]: emits the project of a test case (tests/support/cases.h; random_<seed> is a
+// random one, `example` the committed one). emit_case --list prints the names.
 #include <cstdio>
 #include <string>
 
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   }
   try {
     const std::string name = argv[1];
-    const test::Case c = name == "example"           ? example()
+    const test::Case c = name == "example"             ? example()
                          : name.starts_with("random_") ? test::random_case(std::stoull(name.substr(7)))
                                                        : test::make_case(name);
     emit_rtl(c.setup.plan, c.setup.initial, argv[2], argc == 4 ? std::stoull(argv[3]) : c.steps);
