@@ -14,6 +14,8 @@ namespace cuboct {
 namespace {
 
 constexpr int kLeastStrength = 18, kWidestStrength = 27;
+constexpr double kHalfUnit =
+    1.7e-4;  // of the strongest pull: where the elastic constants of Lennard-Jones are right to 1 %
 
 using Real = std::function<double(double)>;  // of r2 in cell edges squared
 
@@ -264,7 +266,7 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
       const FixedRule tried = with_tables(fixed, rule, choice, scale, fits_octaves);
       const double half_unit =
           std::ldexp(0.5, -tried.force.value_frac) * rule.mass / (rule.dt * rule.dt) / scale * cutoff;
-      if (half_unit <= std::ldexp(pull, -13)) break;
+      if (half_unit <= kHalfUnit * pull) break;
     }
   }
   fixed = with_tables(fixed, rule, choice, scale, fits_octaves);

@@ -17,7 +17,7 @@ struct TableChoice {
 };
 
 // `widths.strength_bits` = 0 takes the least width from 18 (a multiplier of small FPGAs) to 27 at which half a unit of
-// the force table is worth at most 2^-13 of the law's strongest pull: laws with a steep core, as Lennard-Jones, need
+// the force table is worth at most 1.7e-4 of the law's strongest pull: laws with a steep core, as Lennard-Jones, need
 // more than soft ones. The result says which.
 //
 // Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "cli/check.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace cuboct {
+namespace {
+
+void add_table(Items& items, const std::string& name, const FixedTable& table) {
+  const std::string shape = table.shape == TableShape::uniform
+                                ? "uniform in r^2"
+                                : fmt::format("octaves of r^2, {} bins each", uint64_t{1} << table.bin_bits);
+  items.add(name, fmt::format("{}, degree {}, {} entries, {} fractional bits", shape, table.degree,
+                              table.c0.size(), table.value_frac));
+}
+
+}  // namespace
+
+Items resolve(const Loaded& loaded) {
+  const Scene& scene = loaded.scene;
+  const Plan& plan = loaded.setup.plan;
+  const FixedRule& rule = plan.rule;
+  const Widths& w = rule.widths;
+  Items items;
+  items.add("scene", scene.path);
+  if (!scene.title.empty()) items.add("title", scene.title);
+  items.add("arch", plan.arch.name);
+  items.add("particles", plan.particles);
+  items.add("particle types", static_cast<uint64_t>(rule.types.size()));
+  items.add("nodes", plan.lattice.size());
+  items.add("capacity", plan.arch.capacity, "particles/node");
+  items.add("steps", scene.steps);
+  if (scene.pitch > 0) items.add("pitch", scene.pitch, "m");
+  items.add("cutoff", scene.rule.law->cutoff(), "m");
+  items.add("cell edge", rule.cell_edge, "m");
+  items.add("mass", rule.mass, "kg");
+  items.add("dt", rule.dt, "s");
+  if (scene.dt_limit > 0) {
+    items.add("dt limit", scene.dt_limit, "s", "2/omega_max of the perfect packing");
+    items.add("dt safety", scene.dt_safety, "", "dt over its limit");
+  }
+  items.add("position bits", w.position_frac);
+  items.add("guard bits", w.guard);
+  items.add("difference bits", w.difference_frac);
+  items.add("velocity bits", w.velocity_bits);
+  items.add("strength bits", w.strength_bits);
+  items.add("sum bits", w.sum_bits);
+  add_table(items, "force table", rule.force);
+  if (rule.damped) {
+    add_table(items, "damping table", rule.damp);
+    items.add("relative velocity bits", w.relative_velocity_bits);
+  }
+  items.add("worst force error", rule.error.worst_force, "N",
+            fmt::format("at {:.4g} m; {:.2g} of the largest force", rule.error.at, rule.error.relative));
+  items.add("halo record", plan.words.halo_bits, "bit", fmt::format("{} beats", plan.words.halo_beats));
+  items.add("particle record", plan.words.particle_bits, "bit",
+            fmt::format("{} beats", plan.words.migrate_beats));
+  items.add("link", plan.words.link_bits, "bit");
+  items.add("filter lanes", plan.arch.filter_lanes);
+  items.add("force pipes", plan.arch.force_pipes);
+  items.add("filter latency", plan.latency.filter, "cycles");
+  items.add("pipe latency", plan.latency.pipe, "cycles");
+  items.add("update latency", plan.latency.update, "cycles");
+  std::string without;
+  const auto leave_out = [&](bool used, const char* part) {
+    if (!used) without += (without.empty() ? "" : ", ") + std::string(part);
+  };
+  leave_out(rule.damped, "damping");
+  leave_out(rule.scaled, "pair scales");
+  leave_out(rule.type_bits > 0, "types");
+  leave_out(rule.pd, "PD controllers");
+  items.add("not built", without.empty() ? "nothing is left out" : without);
+  items.add("plan hash", fmt::format("{:016x}", plan.hash));
+  return items;
+}
+
+void add_check(CLI::App& app, int&) {
+  struct Options {
+    Input input;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("check", "read a scene, resolve it and print what would be built");
+  options->input.add_to(*command);
+  command->add_flag("--json", options->json, "print as JSON");
+  command->callback([options] {
+    const Items items = resolve(load(options->input));
+    fmt::print("{}", options->json ? items.json() : items.text());
+  });
+}
+
+}  // namespace cuboct

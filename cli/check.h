@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "cli/command.h"
+#include "cli/items.h"
+
+namespace cuboct {
+
+// What a scene becomes: sizes, time step, widths, tables, records, latencies, and what its plan leaves out.
+Items resolve(const Loaded& loaded);
+
+}  // namespace cuboct

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The commands of `cuboct`. Each adds itself to the command line and leaves its exit code: 0 done, 1 the run
+// found what it looks for wrong, 2 (by InputError) the input is wrong.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "hw/setup.h"
+
+namespace cuboct {
+
+void add_check(CLI::App& app, int& exit_code);
+void add_run(CLI::App& app, int& exit_code);
+void add_crosscheck(CLI::App& app, int& exit_code);
+void add_emit(CLI::App& app, int& exit_code);
+void add_report(CLI::App& app, int& exit_code);
+
+// What every command that reads a scene takes.
+struct Input {
+  std::string scene;
+  std::string arch;  // empty: the defaults
+
+  void add_to(CLI::App& command);
+};
+
+// A scene with its machine.
+struct Loaded {
+  Scene scene;
+  Setup setup;
+};
+Loaded load(const Input& input);
+
+}  // namespace cuboct

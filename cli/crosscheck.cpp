@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "cli/command.h"
+#include "cli/engines.h"
+#include "cli/interrupt.h"
+#include "cli/launch.h"
+
+#include "model/compare.h"
+#include "model/output.h"
+
+namespace cuboct {
+namespace {
+
+struct Options {
+  Input input;
+  std::vector<std::string> engines{"golden", "systemc", "rtl"};
+  std::string out;
+  uint64_t steps = 0;
+  bool steps_given = false;
+};
+
+// Programs run beside golden, which runs here.
+std::vector<Trace> run_all(const std::vector<std::string>& engines, const Input& input, const Setup& setup,
+                           const Request& request, const std::string& directory) {
+  std::vector<std::optional<RunningEngine>> programs(engines.size());
+  for (size_t i = 0; i < engines.size(); ++i)
+    if (engines[i] != "golden")
+      programs[i].emplace(engines[i], input, request, directory + "/" + engines[i] + ".h5", false);
+  std::vector<Trace> traces(engines.size());
+  for (size_t i = 0; i < engines.size(); ++i)
+    if (engines[i] == "golden") traces[i] = run_golden(setup, request);
+  for (size_t i = 0; i < engines.size(); ++i)
+    if (programs[i]) traces[i] = programs[i]->finish();
+  return traces;
+}
+
+// The particle and field behind two hashes that differ: both engines again, up to that step, with the states
+// before and after it.
+std::string explain(const Options& options, const Setup& setup, const std::string& engine_a,
+                    const std::string& engine_b, uint64_t step, const std::string& directory) {
+  Request request{step, {}};
+  if (step > 0) request.frames.push_back(step - 1);
+  request.frames.push_back(step);
+  const std::vector<Trace> again = run_all({engine_a, engine_b}, options.input, setup, request, directory);
+  for (const uint64_t at : request.frames) {
+    const State *a = frame_at(again[0], at), *b = frame_at(again[1], at);
+    if (!a || !b) return fmt::format("{} recorded no state of step {}", a ? engine_b : engine_a, at);
+    if (const auto mismatch = compare(*a, *b)) return mismatch->text(engine_a, engine_b, setup.plan.lattice);
+  }
+  return fmt::format(
+      "the states of step {} are equal when run again: one of the engines is not deterministic, or "
+      "computes its hashes wrong",
+      step);
+}
+
+int crosscheck(Options options) {
+  for (const std::string& engine : options.engines) {
+    if (engine == "reference")
+      throw InputError("engine 'reference' computes in doubles and has no bits to compare",
+                       "one of golden, systemc or rtl");
+    check_engine(engine, fixed_engines());
+  }
+  std::vector<std::string> sorted = options.engines;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::unique(sorted.begin(), sorted.end()) != sorted.end() || sorted.size() < 2)
+    throw InputError("a crosscheck needs two or more different engines", "--engines golden,systemc,rtl");
+  const Loaded loaded = load(options.input);
+  const Setup& setup = loaded.setup;
+  const Plan& plan = setup.plan;
+  const Scratch scratch;
+  std::string directory = scratch.path("");
+  if (!options.out.empty()) {
+    make_directory(options.out);
+    for (const std::string& engine : options.engines) check_writable(options.out + "/" + engine + ".h5");
+    directory = options.out;
+  }
+
+  const uint64_t steps = options.steps_given ? options.steps : loaded.scene.steps;
+  const std::vector<Trace> traces = run_all(options.engines, options.input, setup, {steps, {}}, directory);
+  for (size_t i = 0; i < traces.size(); ++i)
+    if (!options.out.empty() && options.engines[i] == "golden")
+      write_trace(options.out + "/golden.h5", traces[i]);
+  if (interrupted()) {
+    fmt::print(stderr, "interrupted\n");
+    return 1;
+  }
+
+  uint64_t phase_times = 0;
+  for (size_t a = 0; a < traces.size(); ++a) {
+    if (traces[a].plan_hash != plan.hash) {
+      fmt::print("mismatch: plan hash: cuboct {:016x}, {} {:016x}\n", plan.hash, options.engines[a],
+                 traces[a].plan_hash);
+      return 1;
+    }
+    for (size_t b = a + 1; b < traces.size(); ++b) {
+      const auto mismatch = compare(traces[a], traces[b]);
+      if (!mismatch) {
+        if (!traces[a].cycles.empty() && !traces[b].cycles.empty()) phase_times = traces[a].cycles.size();
+        continue;
+      }
+      fmt::print("mismatch: {}\n", mismatch->text(options.engines[a], options.engines[b], plan.lattice));
+      if (mismatch->kind == Mismatch::Kind::state) {
+        const Scratch second;
+        fmt::print("first difference: {}\n", explain(options, setup, options.engines[a], options.engines[b],
+                                                     mismatch->step, second.path("")));
+      }
+      if (mismatch->kind == Mismatch::Kind::length || mismatch->kind == Mismatch::Kind::stop)
+        for (const size_t i : {a, b})
+          fmt::print("{}: {}\n", options.engines[i], traces[i].stop ? traces[i].stop->text : "not stopped");
+      return 1;
+    }
+  }
+  fmt::print("matched {} updates over {} steps in {} engines\n", updates_compared(traces[0], plan.particles),
+             traces[0].steps(), traces.size());
+  if (phase_times > 0) fmt::print("matched {} phase times\n", phase_times);
+  if (traces[0].stop) fmt::print("all stopped: {}\n", traces[0].stop->text);
+  return 0;
+}
+
+}  // namespace
+
+void add_crosscheck(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("crosscheck", "run a scene in several engines and compare every bit");
+  options->input.add_to(*command);
+  command->add_option("--engines", options->engines, "which ones; default: golden,systemc,rtl")
+      ->delimiter(',')
+      ->type_name("A,B,...");
+  auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")->type_name("N");
+  command->add_option("--out", options->out, "directory that keeps each engine's trace")->type_name("DIR");
+  command->callback([options, steps, &exit_code] {
+    options->steps_given = steps->count() > 0;
+    exit_code = crosscheck(*options);
+  });
+}
+
+}  // namespace cuboct

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "cli/engines.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "cli/interrupt.h"
+#include "cli/launch.h"
+#include "cli/progress.h"
+#include "model/spelling.h"
+
+namespace cuboct {
+
+const std::vector<std::string>& fixed_engines() {
+  static const std::vector<std::string> names{"golden", "systemc", "rtl"};
+  return names;
+}
+
+void check_engine(const std::string& name, const std::vector<std::string>& allowed) {
+  if (std::find(allowed.begin(), allowed.end(), name) != allowed.end()) return;
+  const std::string near = did_you_mean(name, allowed);
+  throw InputError(fmt::format("unknown engine '{}'", name),
+                   near.empty() ? "one of " + list_of(allowed) : near);
+}
+
+struct RunningEngine::State {
+  std::string program;
+  std::string path;
+  Process process;
+};
+
+RunningEngine::RunningEngine(const std::string& engine, const Input& input, const Request& request,
+                             std::string path, bool progress) {
+  const std::string program = program_directory() + "/cuboct-" + engine;
+  if (access(program.c_str(), X_OK) != 0)
+    throw InputError(
+        fmt::format("the {} engine is not built: no program cuboct-{} beside cuboct", engine, engine),
+        engine == "systemc" ? "install libsystemc-dev and build again"
+                            : "install verilator and libsystemc-dev and build again");
+  std::vector<std::string> arguments{input.scene, "--steps", std::to_string(request.steps), "--out", path};
+  if (!input.arch.empty()) arguments.insert(arguments.end(), {"--arch", input.arch});
+  if (!request.frames.empty())
+    arguments.insert(arguments.end(), {"--frames", fmt::format("{}", fmt::join(request.frames, ","))});
+  if (progress) arguments.push_back("--progress");
+  state_ = std::make_shared<State>(State{program, std::move(path), Process(program, arguments)});
+}
+
+Trace RunningEngine::finish() {
+  const int code = state_->process.wait();
+  const std::string name = std::filesystem::path(state_->program).filename().string();
+  if (code == 2) throw AlreadyTold(2);
+  if (code < 0)
+    throw std::runtime_error(fmt::format("{} was ended by signal {} ({})", name, -code, strsignal(-code)));
+  if (code != 0) throw std::runtime_error(fmt::format("{} ended with exit code {}", name, code));
+  return read_trace(state_->path);
+}
+
+Scratch::Scratch() {
+  std::string name = (std::filesystem::temp_directory_path() / "cuboct-XXXXXX").string();
+  if (!mkdtemp(name.data()))
+    throw InputError(fmt::format("cannot make the directory {}: {}", name, std::strerror(errno)));
+  directory_ = name;
+}
+
+Scratch::~Scratch() {
+  std::error_code none;
+  std::filesystem::remove_all(directory_, none);
+}
+
+Trace run_fixed(const std::string& engine, const Input& input, const Setup& setup, const Request& request,
+                const std::function<void(const State&)>& watch) {
+  if (engine == "golden") return run_golden(setup, request, watch);
+  const Scratch scratch;
+  Trace trace =
+      RunningEngine(engine, input, request, scratch.path(engine + ".h5"), stderr_is_terminal()).finish();
+  for (const State& frame : trace.frames) watch(frame);
+  return trace;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Every engine behind one call.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "model/trace.h"
+
+namespace cuboct {
+
+// What to run and what to keep. Steps ascend and are at most `steps`.
+struct Request {
+  uint64_t steps = 0;
+  std::vector<uint64_t> frames;
+};
+
+// Engines that hold the bits of the fixed rule.
+const std::vector<std::string>& fixed_engines();
+// InputError with the nearest spelling where `name` is not in `allowed`.
+void check_engine(const std::string& name, const std::vector<std::string>& allowed);
+
+// Golden runs here. A run that has to stop is a trace with a stop reason; Ctrl-C gives the trace so far.
+// `watch` is called with each state, step 0 included.
+Trace run_golden(const Setup& setup, const Request& request,
+                 const std::function<void(const State&)>& watch = {});
+
+// An engine at work in a program of its own; its trace goes to `path`.
+class RunningEngine {
+ public:
+  // Throws InputError where the program was not built.
+  RunningEngine(const std::string& engine, const Input& input, const Request& request, std::string path,
+                bool progress);
+  // Waits. Exit code 2 throws InputError (the program told the text already), any other failure
+  // std::runtime_error.
+  Trace finish();
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+// The exit of a command whose engine has told its error already.
+class AlreadyTold : public std::exception {
+ public:
+  explicit AlreadyTold(int exit_code) : exit_code(exit_code) {}
+  int exit_code;
+};
+
+// A directory for traces between programs, removed at the end.
+class Scratch {
+ public:
+  Scratch();
+  ~Scratch();
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+
+ private:
+  std::string directory_;
+};
+
+// Any fixed engine, waited for. `watch` sees every state of golden, and the recorded frames of the others.
+Trace run_fixed(const std::string& engine, const Input& input, const Setup& setup, const Request& request,
+                const std::function<void(const State&)>& watch);
+
+}  // namespace cuboct

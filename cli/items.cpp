@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "cli/items.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cuboct {
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\')
+      out += {'\\', c};
+    else if (c == '\n')
+      out += "\\n";
+    else if (static_cast<unsigned char>(c) < 0x20)
+      out += fmt::format("\\u{:04x}", c);
+    else
+      out += c;
+  }
+  return out + '"';
+}
+
+}  // namespace
+
+void Items::add(const std::string& name, const std::string& text) {
+  items_.push_back({name, text, quoted(text), "", ""});
+}
+
+void Items::add(const std::string& name, uint64_t value, const std::string& unit, const std::string& note) {
+  items_.push_back({name, std::to_string(value), std::to_string(value), unit, note});
+}
+
+void Items::add(const std::string& name, int64_t value, const std::string& unit, const std::string& note) {
+  items_.push_back({name, std::to_string(value), std::to_string(value), unit, note});
+}
+
+void Items::add(const std::string& name, double value, const std::string& unit, const std::string& note) {
+  items_.push_back({name, fmt::format("{:.6g}", value),
+                    std::isfinite(value) ? fmt::format("{}", value) : "null", unit, note});
+}
+
+std::string Items::text() const {
+  size_t width = 0;
+  for (const Item& item : items_) width = std::max(width, item.name.size());
+  std::string out;
+  for (const Item& item : items_) {
+    out += fmt::format("{:<{}}  {}", item.name, width, item.text);
+    if (!item.unit.empty()) out += " " + item.unit;
+    if (!item.note.empty()) out += " (" + item.note + ")";
+    out += '\n';
+  }
+  return out;
+}
+
+std::string Items::json() const {
+  std::string out = "{";
+  const char* separator = "\n";
+  for (const Item& item : items_) {
+    std::string name = item.name;
+    std::replace(name.begin(), name.end(), ' ', '_');
+    out += fmt::format("{}  {}: {{\"value\": {}", separator, quoted(name), item.json);
+    if (!item.unit.empty()) out += ", \"unit\": " + quoted(item.unit);
+    if (!item.note.empty()) out += ", \"note\": " + quoted(item.note);
+    out += "}";
+    separator = ",\n";
+  }
+  return out + "\n}\n";
+}
+
+}  // namespace cuboct

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Engines with heavy needs are programs of their own, in the directory of `cuboct`.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+namespace cuboct {
+
+// Directory of the running program.
+std::string program_directory();
+
+class Process {
+ public:
+  // Starts `program` (looked for in PATH unless it has a slash) with these arguments, without a shell; its
+  // stderr is ours, its stdout is dropped (results travel in files). Throws InputError where it cannot be
+  // started.
+  Process(const std::string& program, const std::vector<std::string>& arguments);
+  ~Process();  // ends it where nobody waited
+  Process(Process&& other) noexcept;
+  Process& operator=(Process&&) = delete;
+
+  // Exit code, or -N where signal N ended it. An interrupt of ours is passed on once.
+  int wait();
+
+ private:
+  pid_t pid_;
+};
+
+}  // namespace cuboct

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/engines.h"
+#include "cli/interrupt.h"
+#include "model/spelling.h"
+
+namespace cuboct {
+namespace {
+
+// CLI11 reports unknown words without a proposal, so they are looked for first.
+void check_words(const CLI::App& app, const std::vector<std::string>& words) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  if (words.empty()) throw InputError("no command", "one of " + list_of(commands) + "; see 'cuboct --help'");
+  if (words[0].starts_with('-')) {
+    if (words[0] != "--help" && words[0] != "-h")
+      throw InputError(fmt::format("unknown option '{}'", words[0]), "see 'cuboct --help'");
+    return;
+  }
+  if (std::find(commands.begin(), commands.end(), words[0]) == commands.end()) {
+    const std::string near = did_you_mean(words[0], commands);
+    throw InputError(fmt::format("unknown command '{}'", words[0]),
+                     near.empty() ? "one of " + list_of(commands) : near);
+  }
+  const CLI::App* command = app.get_subcommand(words[0]);
+  std::vector<std::string> options;
+  for (const CLI::Option* option : command->get_options())
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  for (size_t i = 1; i < words.size(); ++i) {
+    if (!words[i].starts_with("--")) continue;
+    const std::string name = words[i].substr(0, words[i].find('='));
+    if (std::find(options.begin(), options.end(), name) != options.end()) continue;
+    const std::string near = did_you_mean(name, options);
+    throw InputError(fmt::format("unknown option '{}' of 'cuboct {}'", name, words[0]),
+                     near.empty() ? fmt::format("see 'cuboct {} --help'", words[0]) : near);
+  }
+}
+
+int main_of(int argc, char** argv) {
+  int exit_code = 0;
+  CLI::App app("Particle matter and the hardware that computes it: one rule, the same bits everywhere.",
+               "cuboct");
+  app.require_subcommand(1);
+  add_check(app, exit_code);
+  add_run(app, exit_code);
+  add_crosscheck(app, exit_code);
+#ifdef CUBOCT_EMIT
+  add_emit(app, exit_code);
+#endif
+  add_report(app, exit_code);
+  try {
+    check_words(app, {argv + 1, argv + argc});
+    catch_interrupts();
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::Error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  } catch (const AlreadyTold& told) {
+    return told.exit_code;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace cuboct
+
+int main(int argc, char** argv) { return cuboct::main_of(argc, argv); }

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "cli/outputs.h"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <filesystem>
+#include <sstream>
+
+#include "model/output.h"
+
+namespace cuboct {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string relative_to(const std::string& directory, const std::string& path) {
+  return path.empty() ? path : fs::relative(fs::absolute(path), fs::absolute(directory)).generic_string();
+}
+
+}  // namespace
+
+int strain_axis(const Scene& scene) {
+  for (const Probe& probe : scene.probes)
+    if (probe.kind == Probe::Kind::stress_strain) return probe.axis;
+  if (scene.body.size() == 0) return 0;
+  Vec3 lower = scene.body.x[0], upper = lower;
+  for (const Vec3& x : scene.body.x) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
+  int axis = 0;
+  (upper - lower).maxCoeff(&axis);
+  return axis;
+}
+
+StrainMeter strain_meter(const Scene& scene, const std::vector<Vec3>& initial) {
+  // Between the first and second shell of the packing: pitch (1 + sqrt 2)/2.
+  return {initial, scene.periodic, scene.pitch > 0 ? 1.207 * scene.pitch : scene.rule.law->cutoff()};
+}
+
+std::vector<Frame> real_frames(const Loaded& loaded, const std::vector<State>& states) {
+  const Plan& plan = loaded.setup.plan;
+  const auto real = [&](const State& state) { return to_real(state, plan.rule, plan.lattice, plan.origin); };
+  const Scene& scene = loaded.scene;
+  const std::vector<Vec3> initial = real(loaded.setup.initial).x;
+  const StrainMeter meter = strain_meter(scene, initial);
+  const int axis = strain_axis(scene);
+  std::vector<Frame> frames;
+  for (const State& state : states) {
+    const Body body = real(state);
+    Frame frame{state.step, static_cast<double>(state.step) * plan.rule.dt, body.x, body.v, body.type, {}};
+    for (const LocalStrain& strain : meter.measure(body.x)) frame.strain.push_back(strain.axial(axis));
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+FrameStyle frame_style(const Scene& scene) {
+  FrameStyle style;
+  style.periodic = scene.periodic;
+  style.radius = (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff()) / 2;
+  for (const ParticleType& type : scene.rule.types) style.types.push_back(type.name);
+  return style;
+}
+
+void write_record(const std::string& directory, const RunRecord& record) {
+  toml::table table{{"scene", relative_to(directory, record.scene)},
+                    {"arch", relative_to(directory, record.arch)},
+                    {"engine", record.engine}};
+  std::ostringstream text;
+  text << table << '\n';
+  write_text(directory + "/run.toml", text.str());
+}
+
+RunRecord read_record(const std::string& directory) {
+  const std::string path = directory + "/run.toml";
+  if (!fs::exists(path))
+    throw InputError(fmt::format("{} holds no run: no file run.toml", directory),
+                     "'cuboct run SCENE --out DIR' makes one");
+  try {
+    const toml::table table = toml::parse_file(path);
+    const auto from = [&](const char* key) {
+      const std::string value = table[key].value_or(std::string());
+      return value.empty() ? value : (fs::path(directory) / value).lexically_normal().string();
+    };
+    return {from("scene"), from("arch"), table["engine"].value_or(std::string())};
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    throw InputError(path, static_cast<int>(at.line), static_cast<int>(at.column),
+                     std::string(error.description()));
+  }
+}
+
+void prepare_directory(const std::string& directory) {
+  make_directory(directory);
+  for (const char* name : {"trace.h5", "run.toml", "summary.json", "plan.txt", "frames.xyz", "frames.pvd"})
+    check_writable(directory + "/" + name);
+}
+
+}  // namespace cuboct

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "cli/plot.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "cli/engines.h"
+#include "cli/launch.h"
+#include "model/error.h"
+#include "model/output.h"
+
+namespace cuboct {
+namespace {
+
+std::string contents(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void run_gnuplot(const Scratch& scratch, const std::string& script) {
+  write_text(scratch.path("script.gp"), script);
+  int code = 0;
+  try {
+    code = Process("gnuplot", {scratch.path("script.gp")}).wait();
+  } catch (const InputError& error) {
+    throw InputError(error.what(), "install gnuplot-nox");
+  }
+  if (code != 0) throw std::runtime_error(fmt::format("gnuplot ended with exit code {}", code));
+}
+
+void write_raw(const std::string& path, const Image& image) {
+  write_text(path, std::string(reinterpret_cast<const char*>(image.pixels.data()), 3 * image.pixels.size()));
+}
+
+}  // namespace
+
+std::string plot_lines(const std::vector<Series>& series, const std::string& x_label,
+                       const std::string& y_label) {
+  static const char* const kColours[] = {"#1f5fa8", "#c8501e", "#2a8a55", "#7a4fa0"};
+  const Scratch scratch;
+  std::string script = fmt::format(
+      "set terminal svg size 900,420 dynamic font 'Helvetica,14' background '#ffffff'\n"
+      "set output '{}'\n"
+      "set border 3 lc '#444444'\nset tics nomirror\nset grid lc '#dddddd' lt 1\nset key top right\n"
+      "set xlabel '{}'\nset ylabel '{}'\nplot ",
+      scratch.path("plot.svg"), x_label, y_label);
+  for (size_t i = 0; i < series.size(); ++i) {
+    std::string points, marks;
+    for (size_t k = 0; k < series[i].x.size(); ++k)
+      points += fmt::format("{:.9g} {:.9g}\n", series[i].x[k], series[i].y[k]);
+    for (const auto& [x, y] : series[i].marks) marks += fmt::format("{:.9g} {:.9g}\n", x, y);
+    const std::string name = scratch.path(fmt::format("series{}", i));
+    write_text(name, points);
+    script += fmt::format("{}'{}' with lines lw 2 lc '{}' {}", i > 0 ? ", " : "", name, kColours[i % 4],
+                          series[i].title.empty() ? "notitle" : "title '" + series[i].title + "'");
+    if (!marks.empty()) {
+      write_text(name + ".marks", marks);
+      script += fmt::format(", '{}.marks' with points pt 7 ps 0.8 lc '{}' title 'pictures above'", name,
+                            kColours[1]);
+    }
+  }
+  run_gnuplot(scratch, script + "\n");
+  const std::string svg = contents(scratch.path("plot.svg"));
+  const size_t begin = svg.find("<svg");
+  if (begin == std::string::npos) throw std::runtime_error("gnuplot made no SVG");
+  return svg.substr(begin);
+}
+
+std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
+                          const std::string& bar_label, double low, double high) {
+  constexpr int kLabel = 30, kBar = 84;
+  const Scratch scratch;
+  const int width = pictures[0].width, row = pictures[0].height + kLabel;
+  const int height = static_cast<int>(pictures.size()) * row + kBar;
+  const auto y = [&](int from_top) { return 1 - static_cast<double>(from_top) / height; };
+  std::string script = fmt::format(
+      "set terminal pngcairo size {},{} font 'Helvetica,13' background '#ffffff'\nset output '{}'\n"
+      "set multiplot\nunset key\nunset border\nunset tics\n",
+      width, height, scratch.path("plot.png"));
+  for (size_t i = 0; i < pictures.size(); ++i) {
+    const std::string name = scratch.path(fmt::format("picture{}", i));
+    write_raw(name, pictures[i]);
+    const int top = static_cast<int>(i) * row;
+    script += fmt::format(
+        "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen {:.6f}\nset bmargin at "
+        "screen {:.6f}\n"
+        "set label 1 '{}' at screen 0.012,{:.6f} front\n"
+        "set xrange [0:{}]\nset yrange [0:{}]\n"
+        "plot '{}' binary array=({},{}) flipy format='%uchar' using 1:2:3 with rgbimage\n",
+        y(top + kLabel), y(top + row), labels[i], y(top + kLabel / 2), width - 1, pictures[i].height - 1,
+        name, width, pictures[i].height);
+  }
+  Image bar{256, 1, {}};
+  for (int k = 0; k < 256; ++k) bar.pixels.push_back(viridis(k / 255.0));
+  write_raw(scratch.path("bar"), bar);
+  script += fmt::format(
+      "unset label 1\nset lmargin at screen 0.25\nset rmargin at screen 0.75\n"
+      "set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\n"
+      "set border 15 lc '#444444'\nset xtics out nomirror\nset xlabel '{}'\n"
+      "set xrange [{:.9g}:{:.9g}]\nset yrange [0:1]\n"
+      "plot '{}' binary array=(256,1) format='%uchar' dx={:.9g} dy=1 origin=({:.9g},0.5) using 1:2:3 with "
+      "rgbimage\n"
+      "unset multiplot\n",
+      y(height - kBar + 14), y(height - kBar + 32), bar_label, low, high, scratch.path("bar"),
+      (high - low) / 255, low);
+  run_gnuplot(scratch, script);
+  return contents(scratch.path("plot.png"));
+}
+
+}  // namespace cuboct

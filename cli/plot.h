@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Figures by gnuplot.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/render.h"
+
+namespace cuboct {
+
+struct Series {
+  std::string title;
+  std::vector<double> x, y;
+  std::vector<std::pair<double, double>> marks;  // points to stand out
+};
+
+// An SVG element, ready to stand in HTML.
+std::string plot_lines(const std::vector<Series>& series, const std::string& x_label,
+                       const std::string& y_label);
+
+// Pictures of one size under one another, each with its label, above a bar that maps [low, high] to viridis.
+// PNG bytes.
+std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
+                          const std::string& bar_label, double low, double high);
+
+}  // namespace cuboct

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "cli/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace cuboct {
+
+bool stderr_is_terminal() { return isatty(STDERR_FILENO) != 0; }
+
+Progress::Progress(std::string label, uint64_t steps, uint64_t particles)
+    : label_(std::move(label)),
+      steps_(steps),
+      particles_(particles),
+      terminal_(stderr_is_terminal()),
+      begin_(Clock::now()),
+      last_(begin_) {}
+
+Progress::~Progress() {
+  if (shown_) fmt::print(stderr, "\r\x1b[K");
+}
+
+void Progress::at(uint64_t step) {
+  if (!terminal_) return;
+  const auto now = Clock::now();
+  if (now - last_ < std::chrono::milliseconds(200)) return;
+  last_ = now;
+  shown_ = true;
+  const double seconds = std::chrono::duration<double>(now - begin_).count();
+  const double rate = static_cast<double>(step) / seconds;
+  const auto left = rate > 0 ? static_cast<uint64_t>(static_cast<double>(steps_ - step) / rate) : 0;
+  fmt::print(stderr, "\r\x1b[K{}: step {} of {} ({} %), {:.3g} particle-steps/s, {}:{:02} left", label_, step,
+             steps_, steps_ > 0 ? step * 100 / steps_ : 100, rate * static_cast<double>(particles_),
+             left / 60, left % 60);
+  std::fflush(stderr);
+}
+
+}  // namespace cuboct

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "cli/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cuboct {
+namespace {
+
+std::vector<Vec3> positions(const Setup& setup) {
+  return to_real(setup.initial, setup.plan.rule, setup.plan.lattice, setup.plan.origin).x;
+}
+
+}  // namespace
+
+std::vector<uint64_t> every_so_often(uint64_t every, uint64_t last) {
+  std::vector<uint64_t> steps{0};
+  for (uint64_t step = every; every > 0 && step < last; step += every) steps.push_back(step);
+  if (last > 0) steps.push_back(last);
+  return steps;
+}
+
+RunMeter::RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps)
+    : loaded_(loaded),
+      probe_steps_(probe_steps.begin(), probe_steps.end()),
+      probes_(loaded.scene.probes, loaded.scene.periodic, positions(loaded.setup)) {
+  for (const char* part : {"kinetic", "potential", "gravity", "total"})
+    energy_.push_back({std::string("energy.") + part, "J", {}, {}});
+}
+
+void RunMeter::see(const State& state) {
+  if (!any_) first_ = state;
+  any_ = true;
+  last_ = state;
+  const Plan& plan = loaded_.setup.plan;
+  largest_speed_ = std::max(largest_speed_, cuboct::largest_speed(plan.rule, state));
+  measured_ = probe_steps_.contains(state.step);
+  if (measured_) measure(state);
+}
+
+void RunMeter::finish() {
+  if (any_ && !measured_) measure(last_);
+  measured_ = true;
+}
+
+void RunMeter::measure(const State& state) {
+  const Plan& plan = loaded_.setup.plan;
+  const std::vector<Int3> kicks = summed_kicks(plan.rule, plan.lattice, state);
+  probes_.add(sample_of(plan.rule, plan.lattice, plan.origin, state, kicks));
+  const Energies e = energies(loaded_.scene.rule, plan.rule, plan.lattice, plan.origin, state, kicks);
+  const double values[] = {e.kinetic, e.potential, e.gravity, e.total()};
+  for (size_t i = 0; i < energy_.size(); ++i) {
+    energy_[i].step.push_back(state.step);
+    energy_[i].value.push_back(values[i]);
+  }
+}
+
+std::vector<Curve> RunMeter::curves() const {
+  std::vector<Curve> all = probes_.curves();
+  all.insert(all.end(), energy_.begin(), energy_.end());
+  return all;
+}
+
+std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
+  const size_t row = trace.nodes * kPhases;
+  if (trace.cycles.empty() || row == 0) return std::nullopt;
+  CyclesPerStep result;
+  uint64_t before = 0;
+  const size_t steps = trace.cycles.size() / row;
+  for (size_t step = 0; step < steps; ++step) {
+    uint64_t end = 0;
+    for (size_t i = step * row; i < (step + 1) * row; ++i) end = std::max(end, trace.cycles[i].end + 1);
+    result.max = std::max(result.max, end - before);
+    before = end;
+  }
+  result.mean = static_cast<double>(before) / static_cast<double>(steps);
+  return result;
+}
+
+Items summarise(const Loaded& loaded, const Trace& trace, const RunMeter& meter) {
+  const Plan& plan = loaded.setup.plan;
+  Items items;
+  items.add("engine", trace.engine);
+  items.add("scene", loaded.scene.path);
+  items.add("particles", plan.particles);
+  items.add("nodes", plan.lattice.size());
+  items.add("steps", trace.steps());
+  items.add("simulated time", static_cast<double>(trace.steps()) * plan.rule.dt, "s");
+  items.add("host time", trace.seconds, "s");
+  if (trace.seconds > 0)
+    items.add("speed", static_cast<double>(trace.steps() * plan.particles) / trace.seconds,
+              "particle-steps/s");
+
+  const Int3 before = momentum(meter.first()), after = momentum(meter.last());
+  int64_t change = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    change = std::max<int64_t>(change, std::abs(after[axis] - before[axis]));
+  items.add("momentum change", change, "LSB",
+            keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside");
+
+  for (const Curve& curve : meter.curves())
+    if (curve.name == "energy.total" && curve.value.size() > 1) {
+      const auto [low, high] = std::minmax_element(curve.value.begin(), curve.value.end());
+      if (keeps_energy(loaded.scene.rule, loaded.scene.periodic))
+        items.add("energy drift", *high - *low, "J", "largest minus smallest total");
+      else
+        items.add("energy change", curve.value.back() - curve.value.front(), "J", "driven or damped");
+      items.add("energy", curve.value.back(), "J");
+    }
+  items.add("largest speed", meter.largest_speed(), "node/step");
+  if (const auto cycles = cycles_per_step(trace)) {
+    items.add("cycles per step, mean", cycles->mean);
+    items.add("cycles per step, max", cycles->max);
+  }
+  for (const auto& [name, value] : trace.counters) items.add(name, value);
+  items.add("plan hash", fmt::format("{:016x}", trace.plan_hash));
+  if (!trace.state_hash.empty()) items.add("state hash", fmt::format("{:016x}", trace.state_hash.back()));
+  if (trace.stop) items.add("stopped", trace.stop->text);
+  return items;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// What a run's states add up to, and the summary that ends a run.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/items.h"
+#include "model/measure.h"
+#include "model/trace.h"
+
+namespace cuboct {
+
+// The steps 0, every, 2 every, ... and `last`; every 0: 0 and `last` alone.
+std::vector<uint64_t> every_so_often(uint64_t every, uint64_t last);
+
+// Watches the states of a run: probe curves at the probe steps, energies there and at the last state, largest
+// speed.
+class RunMeter {
+ public:
+  RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps);
+
+  void see(const State& state);
+  // Measures the last state too, where it was no probe step.
+  void finish();
+
+  // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J.
+  std::vector<Curve> curves() const;
+  double largest_speed() const { return largest_speed_; }
+  const State& first() const { return first_; }
+  const State& last() const { return last_; }
+
+ private:
+  void measure(const State& state);
+
+  const Loaded& loaded_;
+  std::set<uint64_t> probe_steps_;
+  ProbeMeter probes_;
+  std::vector<Curve> energy_;
+  State first_, last_;
+  bool any_ = false, measured_ = false;
+  double largest_speed_ = 0;
+};
+
+// Cycles that the machine takes per step: from the end of its slowest node in one step to that in the next.
+struct CyclesPerStep {
+  double mean = 0;
+  uint64_t max = 0;
+};
+std::optional<CyclesPerStep> cycles_per_step(const Trace& trace);
+
+Items summarise(const Loaded& loaded, const Trace& trace, const RunMeter& meter);
+
+}  // namespace cuboct
