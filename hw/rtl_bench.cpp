@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: MIT
+#include "hw/rtl_bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <vector>
+
+#include "model/golden.h"
+
+namespace cuboct {
+namespace {
+
+// Bits appended least significant first.
+class BitWord {
+ public:
+  void add(int64_t value, int bits) {
+    for (int b = 0; b < bits; ++b) bits_.push_back(static_cast<uint64_t>(value) >> b & 1);
+  }
+  std::string hex() const {
+    std::string text;
+    for (size_t low = 0; low < bits_.size(); low += 4) {
+      int digit = 0;
+      for (size_t b = 0; b < 4 && low + b < bits_.size(); ++b) digit |= bits_[low + b] << b;
+      text += "0123456789abcdef"[digit];
+    }
+    std::reverse(text.begin(), text.end());
+    return text;
+  }
+
+ private:
+  std::vector<int> bits_;
+};
+
+struct Field {
+  std::string name;
+  int lsb, bits;
+  bool is_signed;
+};
+
+std::vector<Field> fields_of(const Plan& plan) {
+  const Widths& w = plan.rule.widths;
+  const char* axis = "xyz";
+  std::vector<Field> fields;
+  int lsb = 0;
+  const auto add = [&](const std::string& name, int bits, bool is_signed) {
+    if (bits > 0) fields.push_back({name, lsb, bits, is_signed});
+    lsb += bits;
+  };
+  for (int a = 0; a < 3; ++a) add(fmt::format("x_{}", axis[a]), w.position_frac, false);
+  add("away_y", 2, true);
+  add("away_z", 2, true);
+  for (int a = 0; a < 3; ++a) add(fmt::format("v_{}", axis[a]), w.velocity_bits, true);
+  add("type", plan.rule.type_bits, false);
+  add("id", plan.words.id_bits, false);
+  if (plan.rule.pd)
+    for (int a = 0; a < 3; ++a) add(fmt::format("u_{}", axis[a]), w.displacement_bits, true);
+  return fields;
+}
+
+// Placeholders in capitals between @ are replaced; the rest is the file.
+constexpr const char* kBench =
+    R"sv(// Loads the lattice, runs Steps steps and compares every particle that a node observes with golden's.
+`timescale 1ns / 1ns
+module cuboct_bench;
+  localparam int Nodes        = @NODES@;
+  localparam int ParticleBits = cuboct_pkg::ParticleBits;
+  localparam int IdBits       = cuboct_pkg::IdBits;
+  localparam int Loads        = @LOADS@;
+  localparam int Expected     = @EXPECTED@;
+  localparam int Steps        = @STEPS@;
+  localparam int Limit        = @LIMIT@;  // cycles; a run that takes longer hangs
+
+  logic clk, rst_n, start, load_valid;
+  logic [31:0] load_node;
+  logic [ParticleBits-1:0] load_data;
+  logic [8*Nodes-1:0] phase_start, phase_end;
+  logic [Nodes-1:0] observe_valid, fault_valid, idle;
+  logic [Nodes*ParticleBits-1:0] observe_data;
+  logic [4*Nodes-1:0] fault_code;
+  logic [Nodes*IdBits-1:0] fault_id;
+  logic [64*Nodes-1:0] fault_number;
+
+  cuboct_lattice u_lattice (
+    .clk_i(clk), .rst_ni(rst_n), .start_i(start), .steps_i(Steps), .load_valid_i(load_valid),
+    .load_node_i(load_node), .load_data_i(load_data), .phase_start_o(phase_start), .phase_end_o(phase_end),
+    .observe_valid_o(observe_valid), .observe_data_o(observe_data), .fault_valid_o(fault_valid),
+    .fault_code_o(fault_code), .fault_id_o(fault_id), .fault_number_o(fault_number), .idle_o(idle)
+  );
+
+  // Words are {node, particle}; {step, slot, particle}, all of node 0 in the order of time, then of node 1, ...;
+  // and where each node's begin, with the end.
+  logic [ParticleBits+31:0] loads [0:Loads-1];
+  logic [ParticleBits+63:0] expected [0:Expected-1];
+  logic [31:0] first [0:Nodes];
+
+  integer next [0:Nodes-1];
+  integer n, k, cycle, compared, phases;
+  logic [ParticleBits-1:0] got, want;
+  logic [31:0] step, slot;
+  logic running;
+
+  initial clk = 1'b0;
+  always #5 clk = !clk;
+
+  initial begin
+    $readmemh("loads.hex", loads);
+    $readmemh("expected.hex", expected);
+    $readmemh("first.hex", first);
+    for (n = 0; n < Nodes; n = n + 1) next[n] = first[n];
+    rst_n = 1'b0; start = 1'b0; load_valid = 1'b0; load_node = '0; load_data = '0; running = 1'b0;
+  end
+
+  // Four cycles of reset, a particle per cycle, start.
+  integer tick;
+  initial tick = 0;
+  always @(posedge clk) begin
+    tick       <= tick + 1;
+    rst_n      <= (tick >= 4);
+    load_valid <= (tick >= 6 && tick < 6 + Loads);
+    if (tick >= 6 && tick < 6 + Loads) {load_node, load_data} <= loads[tick-6];
+    start      <= (tick == 6 + Loads);
+    if (tick == 7 + Loads) running <= 1'b1;
+  end
+
+  initial begin
+    cycle    = 0;
+    compared = 0;
+    phases   = 0;
+  end
+  always @(posedge clk) if (running) begin
+    cycle = cycle + 1;
+    for (k = 0; k < Nodes; k = k + 1) begin
+      if (fault_valid[k]) begin
+        $display("FAIL node %0d: fault %0d, particle %0d, number %0d", k, fault_code[4*k +: 4],
+                 fault_id[IdBits*k +: IdBits], $signed(fault_number[64*k +: 64]));
+        $fatal(1, "fault");
+      end
+      if (observe_valid[k]) begin
+        got = observe_data[ParticleBits*k +: ParticleBits];
+        if (next[k] >= first[k+1]) begin
+          $display("FAIL node %0d: observes a particle more than golden has", k);
+          $fatal(1, "more");
+        end
+        {step, slot, want} = expected[next[k]];
+@FIELDS@        compared = compared + 1;
+        next[k] = next[k] + 1;
+      end
+      if (phase_end[8*k+7]) phases = phases + 1;
+    end
+    if (cycle > 1 && (&idle)) begin
+      for (k = 0; k < Nodes; k = k + 1) if (next[k] != first[k+1]) begin
+        {step, slot, want} = expected[next[k]];
+        $display("FAIL step %0d node %0d slot %0d: particle %0d was not observed", step, k, slot,
+                 want[@IDLSB@ +: IdBits]);
+        $fatal(1, "less");
+      end
+      if (compared != Expected || phases != Steps * Nodes) begin
+        $display("FAIL %0d of %0d comparisons, %0d of %0d steps of nodes", compared, Expected, phases,
+                 Steps * Nodes);
+        $fatal(1, "count");
+      end
+      $display("PASS %0d comparisons, %0d steps, %0d nodes, %0d cycles", compared, Steps, Nodes, cycle - 1);
+      $finish;
+    end
+    if (cycle > Limit) begin
+      for (k = Nodes - 1; k > 0 && idle[k]; k = k - 1) ;
+      $display("FAIL node %0d: still busy after %0d cycles", k, cycle);
+      $fatal(1, "timeout");
+    end
+  end
+
+  logic unused_phases;
+  assign unused_phases = ^{phase_start, phase_end};
+endmodule
+)sv";
+
+constexpr const char* kMakefile = R"(# @MAKER@
+# Targets: lint, verilator, icarus, yosys. Each runs in this directory.
+RTL := $(addprefix ../,$(shell cat ../files.f))
+VERILATOR ?= verilator
+IVERILOG ?= iverilog
+YOSYS ?= yosys
+
+all: lint verilator icarus yosys
+
+lint:
+	$(VERILATOR) --lint-only -Wall --top-module cuboct_lattice $(RTL)
+
+# The constant bit-operation tree of Verilator 5.006 is wrong in rare cases; without it nothing is slower.
+verilator: obj_dir/cuboct_bench
+	./obj_dir/cuboct_bench
+obj_dir/cuboct_bench: $(RTL) cuboct_bench.sv
+	$(VERILATOR) --binary --timing -fno-const-bit-op-tree -Wno-fatal -O3 -CFLAGS -O2 --Mdir obj_dir -o cuboct_bench \
+	  --top-module cuboct_bench $(RTL) cuboct_bench.sv
+
+# Icarus 11 wakes an always_comb without a change of its inputs, for ever where two of them meet; as always @* the same
+# blocks are fine.
+icarus: icarus/cuboct_bench.vvp
+	vvp -n icarus/cuboct_bench.vvp
+icarus/cuboct_bench.vvp: $(RTL) cuboct_bench.sv
+	mkdir -p icarus
+	for f in $(notdir $(RTL)); do sed 's/always_comb/always @*/' ../rtl/$$f > icarus/$$f; done
+	$(IVERILOG) -g2012 -DSYNTHESIS -o $@ -s cuboct_bench $(addprefix icarus/,$(notdir $(RTL))) cuboct_bench.sv \
+	  2> icarus/log || { cat icarus/log; exit 1; }
+
+yosys:
+	$(YOSYS) -q -p 'read_verilog -sv $(RTL); hierarchy -check -top cuboct_lattice; proc; check -assert'
+
+clean:
+	rm -rf obj_dir icarus
+.PHONY: all lint verilator icarus yosys clean
+)";
+
+constexpr const char* kReadme = R"(@MAKER@
+
+A lattice of @NODES@ particle processors in SystemVerilog, self-contained.
+
+| file | what |
+|---|---|
+| `rtl/cuboct_pkg.sv` | the plan's constants |
+| `rtl/cuboct_*_rom.sv` | its tables |
+| `rtl/cuboct_node.sv` | one node |
+| `rtl/cuboct_lattice.sv` | the nodes and their links: the top module |
+| other files of `rtl/` | the library that they use |
+| `files.f` | all of them, in the order to read |
+| `bench/` | a bench that loads @LOADS@ particles, runs @STEPS@ steps and compares each observed particle with golden's |
+
+    cd bench && make verilator     # or: icarus, lint, yosys
+
+The bench ends with `PASS n comparisons, ...` and exit status 0, or with `FAIL`, the place and another status.
+
+The plan:
+
+@PLAN@)";
+
+// {above, particle}, the particle as plan.words lays it out; above are 32-bit words, least significant first.
+std::string particle_hex(const Plan& plan, const Particle& particle, std::initializer_list<uint64_t> above) {
+  const Widths& w = plan.rule.widths;
+  BitWord word;
+  for (const int64_t x : particle.x) word.add(x, w.position_frac);
+  word.add(0, 4);  // away
+  for (const int64_t v : particle.v) word.add(v, w.velocity_bits);
+  word.add(particle.type, plan.rule.type_bits);
+  word.add(particle.id, plan.words.id_bits);
+  if (plan.rule.pd)
+    for (const int64_t u : particle.u) word.add(u, w.displacement_bits);
+  for (const uint64_t more : above) word.add(static_cast<int64_t>(more), 32);
+  return word.hex() + "\n";
+}
+
+void replace(std::string& text, const std::string& key, const std::string& value) {
+  for (size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + value.size()))
+    text.replace(at, key.size(), value);
+}
+
+std::string print_fields(const Plan& plan, int& id_lsb) {
+  std::string text;
+  const std::vector<Field> fields = fields_of(plan);
+  for (const Field& f : fields)
+    if (f.name == "id") id_lsb = f.lsb;
+  for (const Field& f : fields) {
+    const auto part = [&](const char* word) {
+      return f.is_signed ? fmt::format("$signed({}[{} +: {}])", word, f.lsb, f.bits)
+                         : fmt::format("{}[{} +: {}]", word, f.lsb, f.bits);
+    };
+    text += fmt::format(
+        "        if (got[{0} +: {1}] !== want[{0} +: {1}]) begin\n"
+        "          $display(\"FAIL step %0d node %0d slot %0d particle %0d: {2} is %0d, golden has %0d\", "
+        "step, k,\n"
+        "                   slot, want[{3} +: IdBits], {4}, {5});\n"
+        "          $fatal(1, \"differs\");\n"
+        "        end\n",
+        f.lsb, f.bits, f.name, id_lsb, part("got"), part("want"));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign& design,
+                                               const State& initial, uint64_t steps) {
+  const auto nodes = plan.lattice.size();
+  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, initial);
+  std::string loads;
+  for (uint32_t n = 0; n < nodes; ++n)
+    for (const Particle& p : golden.nodes()[n]) loads += particle_hex(plan, p, {n});
+  std::vector<std::string> expected(nodes);
+  std::vector<uint64_t> count(nodes);
+  for (uint64_t step = 0;; ++step) {
+    for (uint32_t n = 0; n < nodes; ++n)
+      for (size_t slot = 0; slot < golden.nodes()[n].size(); ++slot, ++count[n])
+        expected[n] += particle_hex(plan, golden.nodes()[n][slot], {slot, step});
+    if (step == steps) break;
+    golden.step();
+  }
+  std::string all, first;
+  uint64_t total = 0;
+  for (uint32_t n = 0; n < nodes; ++n) {
+    first += fmt::format("{:08x}\n", total);
+    total += count[n];
+    all += expected[n];
+  }
+  first += fmt::format("{:08x}\n", total);
+  if (initial.particles.empty()) throw InputError("RTL: the bench needs a particle");
+
+  // No step takes longer: every record that there can be sent three times, met by every row, every pair
+  // issued alone.
+  const auto c = static_cast<uint64_t>(plan.arch.capacity);
+  const uint64_t records = std::min<uint64_t>(27 * c, initial.particles.size());
+  const auto beats = static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
+  const uint64_t limit = (steps + 2) * (4 * records * beats + 2 * c * records + 300);
+
+  std::map<std::string, std::string> files;
+  const auto filled = [&](std::string text) {
+    int id_lsb = 0;
+    const std::string fields = print_fields(plan, id_lsb);
+    replace(text, "@MAKER@", design.maker);
+    replace(text, "@NODES@", std::to_string(nodes));
+    replace(text, "@LOADS@", std::to_string(initial.particles.size()));
+    replace(text, "@EXPECTED@", std::to_string(total));
+    replace(text, "@STEPS@", std::to_string(steps));
+    replace(text, "@LIMIT@", std::to_string(limit));
+    replace(text, "@FIELDS@", fields);
+    replace(text, "@IDLSB@", std::to_string(id_lsb));
+    replace(text, "@PLAN@", describe(plan));
+    return text;
+  };
+  files["bench/cuboct_bench.sv"] =
+      "// SPDX-License-Identifier: MIT\n// " + design.maker + "\n" + filled(kBench);
+  files["bench/Makefile"] = filled(kMakefile);
+  files["bench/loads.hex"] = loads;
+  files["bench/expected.hex"] = all;
+  files["bench/first.hex"] = first;
+  files["README.md"] = filled(kReadme);
+  return files;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "hw/rtl_design.h"
+#include "model/fixed_math.h"
+
+namespace cuboct {
+namespace {
+
+// Bits of two's complement that hold both ends.
+int bits_for(const ValueRange& range) {
+  int bits = 1;
+  while (!fits(range.low, bits) || !fits(range.high, bits)) ++bits;
+  return bits;
+}
+
+int clog2(uint64_t n) { return n <= 1 ? 0 : std::bit_width(n - 1); }
+
+void add_table(RtlDesign& design, const std::string& module, const FixedTable& table, int entry_bits) {
+  design.tables.push_back({module, entry_bits, table.index_bits, table.c0, table.c1, table.c2});
+}
+
+}  // namespace
+
+ValueRange table_range(const FixedTable& table) {
+  // t lies in [0, 2^T), and round_odd(slope * t, T) is monotonic in both, so its ends are those of the
+  // slopes' range.
+  const int T = table.fraction_bits;
+  const int64_t t_max = (int64_t{1} << T) - 1;
+  const auto reach = [&](int64_t low, int64_t high) {
+    return ValueRange{std::min<int64_t>(0, round_odd(low * t_max, T)),
+                      std::max<int64_t>(0, round_odd(high * t_max, T))};
+  };
+  ValueRange all;
+  for (size_t k = 0; k < table.c0.size(); ++k) {
+    ValueRange slope{table.c1[k], table.c1[k]};
+    if (table.degree == 2) {
+      const ValueRange curve = reach(table.c2[k], table.c2[k]);
+      slope = {slope.low + curve.low, slope.high + curve.high};
+    }
+    const ValueRange rise = reach(slope.low, slope.high);
+    all.low = std::min(all.low, table.c0[k] + rise.low);
+    all.high = std::max(all.high, table.c0[k] + rise.high);
+  }
+  return all;
+}
+
+RtlDesign decide(const Plan& plan) {
+  const FixedRule& rule = plan.rule;
+  const Widths& w = rule.widths;
+  const Arch& arch = plan.arch;
+  RtlDesign design;
+  design.maker = fmt::format("Made by cuboct emit from plan {:016x}; do not edit.", plan.hash);
+
+  const auto constant = [&](const char* name, int64_t value, const char* comment) {
+    design.constants.push_back({name, value, false, true, comment});
+  };
+  const auto wide = [&](const char* name, uint64_t value, const char* comment) {
+    design.constants.push_back({name, static_cast<int64_t>(value), true, true, comment});
+  };
+  constant("Capacity", arch.capacity, "particles per node");
+  constant("FilterLanes", arch.filter_lanes, "own particles that a candidate meets per cycle");
+  constant("ForcePipes", arch.force_pipes, "pairs per cycle");
+  constant("QueueDepth", arch.queue_depth, "entries between filter and pipes");
+  constant("Overlap", arch.overlap, "1: the force engine starts with the exchange");
+  constant("LinkBits", plan.words.link_bits, "payload of a beat");
+  constant("IdBits", plan.words.id_bits, "");
+  constant("TypeBits", rule.type_bits, "0 with one type");
+  constant("PositionFrac", w.position_frac, "fractional bits of x");
+  constant("Guard", w.guard, "v has PositionFrac + Guard fractional bits");
+  constant("VelocityBits", w.velocity_bits, "");
+  constant("RelativeVelocityBits", w.relative_velocity_bits, "");
+  constant("StrengthBits", w.strength_bits, "s, and the entries of the tables");
+  constant("SumBits", w.sum_bits, "a particle's summed kick");
+  constant("DisplacementBits", w.displacement_bits, "");
+  constant("ScaleFrac", w.scale_frac, "fractional bits of the pair scales");
+  constant("GainFrac", w.gain_frac, "fractional bits of kp, kd");
+  constant("GainBits", 18, "");
+  constant("ScaleBits", 18, "");
+  constant("ConstantBits", w.velocity_bits, "imposed velocities and gravity");
+  constant("DifferenceShift", rule.difference_shift, "");
+  constant("WShift", rule.w_shift, "");
+  constant("QShift", rule.q_shift, "");
+  constant("DampShift", rule.damp_shift, "");
+  constant("KickShift", rule.kick_shift, "");
+  wide("Cutoff2", rule.cutoff2, "in units of r2");
+  wide("PlanarOne", static_cast<uint64_t>(rule.planar[0]), "in units of d");
+  wide("PlanarTwo", static_cast<uint64_t>(rule.planar[1]), "");
+  wide("PlanarThree", static_cast<uint64_t>(rule.planar[2]), "");
+  const auto table = [&](const std::string& prefix, const FixedTable& t, const char* what) {
+    const auto name = [&](const char* field) { return prefix + field; };
+    const auto put = [&](const std::string& field, int64_t value, const char* comment) {
+      design.constants.push_back({field, value, false, true, comment});
+    };
+    put(name("Octaves"), t.shape == TableShape::octaves, what);
+    put(name("Degree"), t.degree, "");
+    put(name("IndexBits"), t.index_bits, "");
+    put(name("BinBits"), t.bin_bits, "");
+    put(name("FirstOctave"), t.first_octave, "");
+    put(name("FractionBits"), t.fraction_bits, "");
+  };
+  const int force_bits = bits_for(table_range(rule.force));
+  table("", rule.force, "force table: 0 uniform, 1 by octaves");
+  constant("ForceBits", force_bits, "that hold every value of the force table");
+  constant("Damped", rule.damped, "");
+  if (rule.damped) {
+    table("Damp", rule.damp, "damping table");
+    constant("DampBits", bits_for(table_range(rule.damp)), "that hold every value of the damping table");
+  }
+  constant("Scaled", rule.scaled, "pair scales differ");
+  constant("Pd", rule.pd, "some type is held by force");
+  design.constants.push_back(
+      {"ParticleBits", plan.words.particle_bits, false, false, "of the words to load and observe"});
+
+  add_table(design, "cuboct_force_rom", rule.force, w.strength_bits);
+  if (rule.damped) add_table(design, "cuboct_damp_rom", rule.damp, w.strength_bits);
+  design.types = rule.types;
+  if (rule.scaled) design.scale = rule.scale;
+  design.type_bits = rule.type_bits;
+  design.velocity_bits = w.velocity_bits;
+  design.particle_bits = plan.words.particle_bits;
+  design.link_bits = plan.words.link_bits;
+  const int s_bits = rule.damped ? w.strength_bits : force_bits;
+  const int kick_bits = std::max(2, s_bits + w.difference_frac + 1 - rule.kick_shift);
+  design.pair_sum_bits = kick_bits + clog2(27u * static_cast<uint64_t>(arch.capacity));
+  for (uint32_t n = 0; n < plan.lattice.size(); ++n) {
+    design.cells.push_back(plan.lattice.cell(n));
+    auto& faces = design.neighbour.emplace_back();
+    for (int f = 0; f < kFaces; ++f) faces[f] = plan.lattice.neighbour(n, f);
+  }
+  return design;
+}
+
+void legalise(const RtlDesign& design, bool with_lattice) {
+  const auto at_most = [](const char* what, int64_t value, int64_t limit) {
+    if (value > limit)
+      throw InputError(fmt::format("RTL: {} is {}: at most {} can be emitted", what, value, limit));
+  };
+  at_most("the width of a particle's exact sum", design.pair_sum_bits, 64);
+  at_most("the width of a particle", design.particle_bits, 1024);
+  for (const RtlTable& t : design.tables) {
+    at_most("a table's index width", t.index_bits, 16);
+    for (const auto* column : {&t.c0, &t.c1, &t.c2})
+      for (const int32_t c : *column)
+        if (!fits(c, t.entry_bits))
+          throw InputError(
+              fmt::format("RTL: the entry {} of {} does not fit {} bits", c, t.module, t.entry_bits));
+  }
+  if (!with_lattice) return;
+  // Observation ports are one vector over all nodes; simulators limit the width of a vector.
+  const auto nodes = static_cast<int64_t>(design.cells.size());
+  if (nodes < 1) throw InputError("RTL: the lattice has no node");
+  at_most("the width of the lattice's observation port", nodes * design.particle_bits, 1 << 19);
+  at_most("the width of the lattice's link vectors", nodes * kFaces * design.link_bits, 1 << 19);
+}
+
+}  // namespace cuboct

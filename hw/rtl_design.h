@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// What the RTL generator has decided, before any text: constants, tables and wiring. Three passes: decide()
+// derives a design from a plan, legalise() refuses what the modules cannot hold, and the printers turn it
+// into text.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hw/plan.h"
+
+namespace cuboct {
+
+// A constant of cuboct_pkg; `wide` ones are 64-bit vectors, the others `int`.
+struct RtlConstant {
+  std::string name;
+  int64_t value = 0;
+  bool wide = false;
+  bool core = false;    // a parameter of cuboct_node_core
+  std::string comment;  // unit or meaning
+};
+
+// A synchronous read-only memory of {c2, c1, c0}.
+struct RtlTable {
+  std::string module;
+  int entry_bits = 0;
+  int index_bits = 0;
+  std::vector<int32_t> c0, c1, c2;  // c2 is empty at degree 1
+};
+
+// Every value that a table can give lies in [low, high].
+struct ValueRange {
+  int64_t low = 0, high = 0;
+};
+
+struct RtlDesign {
+  std::string maker;  // first line of every generated file: what made it, from what
+  std::vector<RtlConstant> constants;
+  std::vector<RtlTable> tables;
+  std::vector<FixedType> types;
+  std::vector<std::vector<int32_t>> scale;  // types x types; empty where the plan has none
+  int type_bits = 0;
+  int velocity_bits = 0;
+  int particle_bits = 0, link_bits = 0;
+  int pair_sum_bits = 0;    // of a pipe's exact sum
+  std::vector<Cell> cells;  // of the nodes
+  std::vector<std::array<uint32_t, kFaces>> neighbour;
+};
+
+ValueRange table_range(const FixedTable& table);
+
+RtlDesign decide(const Plan& plan);
+// Throws InputError with the numbers.
+void legalise(const RtlDesign& design, bool with_lattice);
+
+std::string print_package(const RtlDesign& design);
+std::string print_table(const RtlDesign& design, const RtlTable& table);
+std::string print_scale(const RtlDesign& design);  // cuboct_scale_rom
+std::string print_types(const RtlDesign& design);  // cuboct_type_rom
+std::string print_node(const RtlDesign& design);   // cuboct_node
+std::string print_lattice(const RtlDesign& design);
+
+}  // namespace cuboct

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "hw/rtl_emit.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "hw/rtl_bench.h"
+#include "hw/rtl_design.h"
+#include "hw/rtl_library.h"
+
+namespace cuboct {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Files = std::map<std::string, std::string>;  // path in the project: text
+
+// Every emission begins with this, so that a second one may overwrite it.
+constexpr const char* kMarker = ".cuboct-emit";
+
+void add_node(Files& files, const RtlDesign& design) {
+  for (const RtlSource& source : rtl_library()) files["rtl/" + std::string(source.name)] = source.text;
+  files["rtl/cuboct_pkg.sv"] = print_package(design);
+  for (const RtlTable& table : design.tables)
+    files["rtl/" + table.module + ".sv"] = print_table(design, table);
+  if (!design.scale.empty()) files["rtl/cuboct_scale_rom.sv"] = print_scale(design);
+  files["rtl/cuboct_type_rom.sv"] = print_types(design);
+  files["rtl/cuboct_node.sv"] = print_node(design);
+}
+
+// The package first: the others refer to it.
+void add_list(Files& files) {
+  std::string list = "rtl/cuboct_pkg.sv\n";
+  for (const auto& [path, text] : files)
+    if (path.ends_with(".sv") && path.starts_with("rtl/") && path != "rtl/cuboct_pkg.sv") list += path + "\n";
+  files["files.f"] = list;
+}
+
+void write(const std::string& dir, const Files& files) {
+  std::error_code error;
+  fs::create_directories(dir, error);
+  if (error) throw InputError(fmt::format("{}: cannot create the directory: {}", dir, error.message()));
+  if (!fs::is_empty(dir) && !fs::exists(fs::path(dir) / kMarker))
+    throw InputError(fmt::format("{}: is not empty and holds no earlier emission", dir),
+                     "give an empty or a new directory");
+  const auto put = [&](const fs::path& path, const std::string& text) {
+    std::ofstream out(path, std::ios::binary);
+    out << text;
+    if (!out.flush()) throw InputError(fmt::format("{}: cannot write", path.string()));
+  };
+  // What an earlier emission wrote and this one does not would be read by a later build.
+  std::ifstream earlier(fs::path(dir) / kMarker);
+  for (std::string path; std::getline(earlier, path);)
+    if (!path.empty() && !files.contains(path)) fs::remove(fs::path(dir) / path, error);
+  std::string list;
+  for (const auto& [path, text] : files) list += path + "\n";
+  put(fs::path(dir) / kMarker, list);
+  for (const auto& [path, text] : files) {
+    fs::create_directories((fs::path(dir) / path).parent_path());
+    put(fs::path(dir) / path, text);
+  }
+}
+
+}  // namespace
+
+void emit_node(const Plan& plan, const std::string& dir) {
+  const RtlDesign design = decide(plan);
+  legalise(design, false);
+  Files files;
+  add_node(files, design);
+  add_list(files);
+  write(dir, files);
+}
+
+void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps) {
+  const RtlDesign design = decide(plan);
+  legalise(design, true);
+  Files files;
+  add_node(files, design);
+  files["rtl/cuboct_lattice.sv"] = print_lattice(design);
+  add_list(files);
+  for (auto& [path, text] : print_bench(plan, design, initial, vector_steps)) files[path] = std::move(text);
+  write(dir, files);
+}
+
+}  // namespace cuboct

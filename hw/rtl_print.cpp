@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hw/rtl_design.h"
+
+namespace cuboct {
+namespace {
+
+std::string head(const RtlDesign& design) {
+  return "// SPDX-License-Identifier: MIT\n// " + design.maker + "\n";
+}
+
+// A value in two's complement, as a sized hexadecimal literal.
+std::string literal(int64_t value, int bits) {
+  const uint64_t mask = bits == 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
+  return fmt::format("{}'h{:x}", bits, static_cast<uint64_t>(value) & mask);
+}
+
+std::string concatenated(const Int3& values, int bits) {
+  return fmt::format("{{{}, {}, {}}}", literal(values[2], bits), literal(values[1], bits),
+                     literal(values[0], bits));
+}
+
+struct Port {
+  const char* direction;
+  std::string range;  // with a trailing blank, or empty
+  const char* name;
+};
+
+// The ports of cuboct_node in order; `p` stands before each constant's name.
+std::vector<Port> node_ports() {
+  const std::string link = "[6*cuboct_pkg::LinkBits-1:0]", particle = "[cuboct_pkg::ParticleBits-1:0]";
+  return {{"input ", "", "clk_i"},
+          {"input ", "", "rst_ni"},
+          {"input ", "", "start_i"},
+          {"input ", "[31:0]", "steps_i"},
+          {"input ", "[5:0]", "has_link_i"},
+          {"input ", "", "load_valid_i"},
+          {"input ", particle, "load_data_i"},
+          {"output", "[5:0]", "link_valid_o"},
+          {"output", "[5:0]", "link_end_o"},
+          {"output", link, "link_data_o"},
+          {"input ", "[5:0]", "link_ready_i"},
+          {"input ", "[5:0]", "link_valid_i"},
+          {"input ", "[5:0]", "link_end_i"},
+          {"input ", link, "link_data_i"},
+          {"output", "[5:0]", "link_ready_o"},
+          {"output", "[7:0]", "phase_start_o"},
+          {"output", "[7:0]", "phase_end_o"},
+          {"output", "", "observe_valid_o"},
+          {"output", particle, "observe_data_o"},
+          {"output", "", "fault_valid_o"},
+          {"output", "[3:0]", "fault_code_o"},
+          {"output", "[cuboct_pkg::IdBits-1:0]", "fault_id_o"},
+          {"output", "[63:0]", "fault_number_o"},
+          {"output", "", "idle_o"}};
+}
+
+std::string print_ports(const std::vector<Port>& ports) {
+  size_t width = 0;
+  for (const Port& p : ports) width = std::max(width, p.range.size());
+  std::string text;
+  for (size_t k = 0; k < ports.size(); ++k)
+    text += fmt::format("  {} logic {:<{}} {}{}\n", ports[k].direction, ports[k].range, width, ports[k].name,
+                        k + 1 < ports.size() ? "," : "");
+  return text;
+}
+
+}  // namespace
+
+std::string print_package(const RtlDesign& design) {
+  std::string text =
+      head(design) +
+      "// The constants of the plan; docs/reference/node.md says what each is.\npackage cuboct_pkg;\n";
+  for (const RtlConstant& c : design.constants) {
+    const std::string value = c.wide ? literal(c.value, 64) : std::to_string(c.value);
+    const std::string declared =
+        fmt::format("  localparam {} {:<20} = {};", c.wide ? "logic [63:0]" : "int         ", c.name, value);
+    text += c.comment.empty() ? declared + "\n" : fmt::format("{:<62}  // {}\n", declared, c.comment);
+  }
+  return text + "endpackage\n";
+}
+
+std::string print_table(const RtlDesign& design, const RtlTable& table) {
+  const int degree = table.c2.empty() ? 1 : 2;
+  const int e = table.entry_bits;
+  const int bits = (degree + 1) * e;
+  std::string text = head(design);
+  text += fmt::format(
+      "// {} entries of {{{}c1, c0}}, {} bits each. Synchronous read.\n"
+      "module {} (\n"
+      "  input  logic                clk_i,\n"
+      "  input  logic [{}:0] index_i,\n"
+      "  output logic signed [{}:0] c0_o,\n"
+      "  output logic signed [{}:0] c1_o,\n"
+      "  output logic signed [{}:0] c2_o\n"
+      ");\n"
+      "  (* rom_style = \"block\", ram_style = \"block\" *) logic [{}:0] mem [0:{}];\n"
+      "  logic [{}:0] data_q;\n"
+      "  always_ff @(posedge clk_i) data_q <= mem[index_i];\n"
+      "  assign c0_o = data_q[{}:0];\n"
+      "  assign c1_o = data_q[{}:{}];\n",
+      table.c0.size(), degree == 2 ? "c2, " : "", e, table.module, table.index_bits - 1, e - 1, e - 1, e - 1,
+      bits - 1, table.c0.size() - 1, bits - 1, e - 1, 2 * e - 1, e);
+  text += degree == 2 ? fmt::format("  assign c2_o = data_q[{}:{}];\n", 3 * e - 1, 2 * e)
+                      : "  assign c2_o = '0;\n";
+  text += "  initial begin\n";
+  for (size_t k = 0; k < table.c0.size(); ++k)
+    text += fmt::format("    mem[{}] = {{{}{}, {}}};\n", k, degree == 2 ? literal(table.c2[k], e) + ", " : "",
+                        literal(table.c1[k], e), literal(table.c0[k], e));
+  return text + "  end\nendmodule\n";
+}
+
+std::string print_scale(const RtlDesign& design) {
+  const int t = design.type_bits;
+  std::string text = head(design);
+  text += fmt::format(
+      "// What a pair of types multiplies its strength by, ScaleFrac fractional bits. Combinational.\n"
+      "module cuboct_scale_rom (\n"
+      "  input  logic [{0}:0]         own_type_i,\n"
+      "  input  logic [{0}:0]         other_type_i,\n"
+      "  output logic signed [17:0] scale_o\n"
+      ");\n"
+      "  always_comb begin\n"
+      "    scale_o = '0;\n"
+      "    unique case ({{own_type_i, other_type_i}})\n",
+      t - 1);
+  for (size_t i = 0; i < design.scale.size(); ++i)
+    for (size_t j = 0; j < design.scale.size(); ++j)
+      text += fmt::format("      {}: scale_o = {};\n", literal(static_cast<int64_t>(i << t | j), 2 * t),
+                          literal(design.scale[i][j], 18));
+  return text + "      default: scale_o = '0;\n    endcase\n  end\nendmodule\n";
+}
+
+std::string print_types(const RtlDesign& design) {
+  const int t = std::max(1, design.type_bits), v = design.velocity_bits;
+  std::string text = head(design);
+  text += fmt::format(
+      "// What sets the types apart, axis 0 in the least significant place: imposed axes, velocity (imposed, "
+      "or of the\n"
+      "// anchor), gravity, whether held by force, gains. Combinational.\n"
+      "module cuboct_type_rom (\n"
+      "  input  logic [{}:0] type_i,\n"
+      "  output logic [2:0] imposed_o,\n"
+      "  output logic [{}:0] velocity_o,\n"
+      "  output logic [{}:0] gravity_o,\n"
+      "  output logic pd_o,\n"
+      "  output logic [17:0] kp_o,\n"
+      "  output logic [17:0] kd_o\n"
+      ");\n",
+      t - 1, 3 * v - 1, 3 * v - 1);
+  const auto assigns = [&](const FixedType& type, const std::string& indent) {
+    std::string lines;
+    lines += fmt::format("{}imposed_o  = 3'b{}{}{};\n", indent, type.imposed[2] ? 1 : 0,
+                         type.imposed[1] ? 1 : 0, type.imposed[0] ? 1 : 0);
+    lines += fmt::format("{}velocity_o = {};\n", indent, concatenated(type.velocity, v));
+    lines += fmt::format("{}gravity_o  = {};\n", indent, concatenated(type.gravity, v));
+    lines += fmt::format("{}pd_o       = 1'b{};\n", indent, type.pd ? 1 : 0);
+    lines += fmt::format("{}kp_o       = {};\n", indent, literal(type.kp, 18));
+    lines += fmt::format("{}kd_o       = {};\n", indent, literal(type.kd, 18));
+    return lines;
+  };
+  if (design.types.size() == 1)
+    return text + "  logic unused_type;\n  assign unused_type = ^type_i;\n" +
+           assigns(design.types[0], "  assign ") + "endmodule\n";
+  text += "  always_comb begin\n" + assigns(FixedType{}, "    ") + "    unique case (type_i)\n";
+  for (size_t k = 0; k < design.types.size(); ++k)
+    text += fmt::format("      {}: begin\n{}      end\n", literal(static_cast<int64_t>(k), t),
+                        assigns(design.types[k], "        "));
+  return text + "      default: imposed_o = 3'b000;\n    endcase\n  end\nendmodule\n";
+}
+
+std::string print_node(const RtlDesign& design) {
+  std::string text = head(design);
+  text += "// One node of the plan: cuboct_node_core with the plan's constants.\nmodule cuboct_node (\n" +
+          print_ports(node_ports()) + ");\n  cuboct_node_core #(\n";
+  std::vector<std::string> core;
+  for (const RtlConstant& c : design.constants)
+    if (c.core) core.push_back(fmt::format("    .{0}(cuboct_pkg::{0})", c.name));
+  text += fmt::format("{}\n  ) u_core (\n", fmt::join(core, ",\n"));
+  std::vector<std::string> ports;
+  for (const Port& p : node_ports()) ports.push_back(fmt::format("    .{}", p.name));
+  return text + fmt::format("{}\n  );\nendmodule\n", fmt::join(ports, ",\n"));
+}
+
+std::string print_lattice(const RtlDesign& design) {
+  const size_t nodes = design.cells.size();
+  std::string text = head(design);
+  text +=
+      "// All nodes and their links. Node n's part of a vector over nodes has n times the part's width below "
+      "it.\n"
+      "// load_valid_i appends load_data_i to node load_node_i; start_i starts all nodes.\n"
+      "module cuboct_lattice #(\n"
+      "  localparam int Nodes = @NODES@\n"
+      ") (\n"
+      "  input  logic clk_i,\n"
+      "  input  logic rst_ni,\n"
+      "  input  logic start_i,\n"
+      "  input  logic [31:0] steps_i,\n"
+      "  input  logic load_valid_i,\n"
+      "  input  logic [31:0] load_node_i,\n"
+      "  input  logic [cuboct_pkg::ParticleBits-1:0] load_data_i,\n"
+      "  output logic [8*Nodes-1:0] phase_start_o,\n"
+      "  output logic [8*Nodes-1:0] phase_end_o,\n"
+      "  output logic [Nodes-1:0] observe_valid_o,\n"
+      "  output logic [Nodes*cuboct_pkg::ParticleBits-1:0] observe_data_o,\n"
+      "  output logic [Nodes-1:0] fault_valid_o,\n"
+      "  output logic [4*Nodes-1:0] fault_code_o,\n"
+      "  output logic [Nodes*cuboct_pkg::IdBits-1:0] fault_id_o,\n"
+      "  output logic [64*Nodes-1:0] fault_number_o,\n"
+      "  output logic [Nodes-1:0] idle_o\n"
+      ");\n"
+      "  localparam int LinkBits = cuboct_pkg::LinkBits;\n\n";
+  text.replace(text.find("@NODES@"), 7, std::to_string(nodes));
+  for (size_t n = 0; n < nodes; ++n)
+    text +=
+        fmt::format("  logic [5:0] valid_{0}, end_{0}, ready_{0};\n  logic [6*LinkBits-1:0] data_{0};\n", n);
+  std::string unused_ends;
+  for (size_t n = 0; n < nodes; ++n) {
+    const Cell& cell = design.cells[n];
+    std::string has, valid, end, ready, data;
+    for (int f = kFaces - 1; f >= 0; --f) {
+      const uint32_t to = design.neighbour[n][f];
+      const int back = f ^ 1;  // the face of the neighbour that looks here
+      const char* comma = f > 0 ? ", " : "";
+      const bool linked = to != kNoNode;
+      has += linked ? '1' : '0';
+      valid += (linked ? fmt::format("valid_{}[{}]", to, back) : "1'b0") + comma;
+      end += (linked ? fmt::format("end_{}[{}]", to, back) : "1'b0") + comma;
+      ready += (linked ? fmt::format("ready_{}[{}]", to, back) : "1'b0") + comma;
+      data +=
+          (linked ? fmt::format("data_{}[{}*LinkBits +: LinkBits]", to, back) : "{LinkBits{1'b0}}") + comma;
+      if (!linked)
+        unused_ends +=
+            fmt::format("{}valid_{}[{}], end_{}[{}], ready_{}[{}], data_{}[{}*LinkBits +: LinkBits]",
+                        unused_ends.empty() ? "    " : ",\n    ", n, f, n, f, n, f, n, f);
+    }
+    text += fmt::format(
+        "\n  // Cell ({1}, {2}, {3}).\n"
+        "  cuboct_node u_node_{0} (\n"
+        "    .clk_i, .rst_ni, .start_i, .steps_i, .has_link_i(6'b{4}),\n"
+        "    .load_valid_i(load_valid_i && load_node_i == 32'd{0}), .load_data_i,\n"
+        "    .link_valid_o(valid_{0}), .link_end_o(end_{0}), .link_data_o(data_{0}),\n"
+        "    .link_ready_i({{{7}}}),\n"
+        "    .link_valid_i({{{5}}}),\n"
+        "    .link_end_i({{{6}}}),\n"
+        "    .link_data_i({{{8}}}),\n"
+        "    .link_ready_o(ready_{0}),\n"
+        "    .phase_start_o(phase_start_o[8*{0} +: 8]), .phase_end_o(phase_end_o[8*{0} +: 8]),\n"
+        "    .observe_valid_o(observe_valid_o[{0}]),\n"
+        "    .observe_data_o(observe_data_o[{0}*cuboct_pkg::ParticleBits +: cuboct_pkg::ParticleBits]),\n"
+        "    .fault_valid_o(fault_valid_o[{0}]), .fault_code_o(fault_code_o[4*{0} +: 4]),\n"
+        "    .fault_id_o(fault_id_o[{0}*cuboct_pkg::IdBits +: cuboct_pkg::IdBits]),\n"
+        "    .fault_number_o(fault_number_o[64*{0} +: 64]), .idle_o(idle_o[{0}])\n"
+        "  );\n",
+        n, cell[0], cell[1], cell[2], has, valid, end, ready, data);
+  }
+  if (!unused_ends.empty())
+    text += "\n  logic unused_faces;\n  assign unused_faces = ^{\n" + unused_ends + "\n  };\n";
+  return text + "endmodule\n";
+}
+
+}  // namespace cuboct

@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: MIT
+# cmake -D OUT=file.cpp -D DIR=rtl/lib -P embed.cmake: the hand-written modules as a C++ table, in the order of names.
+file(GLOB sources RELATIVE ${DIR} ${DIR}/*.sv)
+list(SORT sources)
+set(text "// SPDX-License-Identifier: MIT\n#include \"hw/rtl_library.h\"\n\nnamespace cuboct {\n\n")
+string(APPEND text "const std::vector<RtlSource>& rtl_library() {\n  static const std::vector<RtlSource> sources{\n")
+foreach(source ${sources})
+  file(READ ${DIR}/${source} body)
+  string(APPEND text "{\"${source}\", R\"sv~(${body})sv~\"},\n")
+endforeach()
+string(APPEND text "};\n  return sources;\n}\n\n}  // namespace cuboct\n")
+file(WRITE ${OUT} "${text}")

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// Made by cuboct emit from plan 9b84c320cd1649dc; do not edit.
+// Loads the lattice, runs Steps steps and compares every particle that a node observes with golden's.
+`timescale 1ns / 1ns
+module cuboct_bench;
+  localparam int Nodes        = 2;
+  localparam int ParticleBits = cuboct_pkg::ParticleBits;
+  localparam int IdBits       = cuboct_pkg::IdBits;
+  localparam int Loads        = 8;
+  localparam int Expected     = 24;
+  localparam int Steps        = 2;
+  localparam int Limit        = 2096;  // cycles; a run that takes longer hangs
+
+  logic clk, rst_n, start, load_valid;
+  logic [31:0] load_node;
+  logic [ParticleBits-1:0] load_data;
+  logic [8*Nodes-1:0] phase_start, phase_end;
+  logic [Nodes-1:0] observe_valid, fault_valid, idle;
+  logic [Nodes*ParticleBits-1:0] observe_data;
+  logic [4*Nodes-1:0] fault_code;
+  logic [Nodes*IdBits-1:0] fault_id;
+  logic [64*Nodes-1:0] fault_number;
+
+  cuboct_lattice u_lattice (
+    .clk_i(clk), .rst_ni(rst_n), .start_i(start), .steps_i(Steps), .load_valid_i(load_valid),
+    .load_node_i(load_node), .load_data_i(load_data), .phase_start_o(phase_start), .phase_end_o(phase_end),
+    .observe_valid_o(observe_valid), .observe_data_o(observe_data), .fault_valid_o(fault_valid),
+    .fault_code_o(fault_code), .fault_id_o(fault_id), .fault_number_o(fault_number), .idle_o(idle)
+  );
+
+  // Words are {node, particle}; {step, slot, particle}, all of node 0 in the order of time, then of node 1, ...;
+  // and where each node's begin, with the end.
+  logic [ParticleBits+31:0] loads [0:Loads-1];
+  logic [ParticleBits+63:0] expected [0:Expected-1];
+  logic [31:0] first [0:Nodes];
+
+  integer next [0:Nodes-1];
+  integer n, k, cycle, compared, phases;
+  logic [ParticleBits-1:0] got, want;
+  logic [31:0] step, slot;
+  logic running;
+
+  initial clk = 1'b0;
+  always #5 clk = !clk;
+
+  initial begin
+    $readmemh("loads.hex", loads);
+    $readmemh("expected.hex", expected);
+    $readmemh("first.hex", first);
+    for (n = 0; n < Nodes; n = n + 1) next[n] = first[n];
+    rst_n = 1'b0; start = 1'b0; load_valid = 1'b0; load_node = '0; load_data = '0; running = 1'b0;
+  end
+
+  // Four cycles of reset, a particle per cycle, start.
+  integer tick;
+  initial tick = 0;
+  always @(posedge clk) begin
+    tick       <= tick + 1;
+    rst_n      <= (tick >= 4);
+    load_valid <= (tick >= 6 && tick < 6 + Loads);
+    if (tick >= 6 && tick < 6 + Loads) {load_node, load_data} <= loads[tick-6];
+    start      <= (tick == 6 + Loads);
+    if (tick == 7 + Loads) running <= 1'b1;
+  end
+
+  initial begin
+    cycle    = 0;
+    compared = 0;
+    phases   = 0;
+  end
+  always @(posedge clk) if (running) begin
+    cycle = cycle + 1;
+    for (k = 0; k < Nodes; k = k + 1) begin
+      if (fault_valid[k]) begin
+        $display("FAIL node %0d: fault %0d, particle %0d, number %0d", k, fault_code[4*k +: 4],
+                 fault_id[IdBits*k +: IdBits], $signed(fault_number[64*k +: 64]));
+        $fatal(1, "fault");
+      end
+      if (observe_valid[k]) begin
+        got = observe_data[ParticleBits*k +: ParticleBits];
+        if (next[k] >= first[k+1]) begin
+          $display("FAIL node %0d: observes a particle more than golden has", k);
+          $fatal(1, "more");
+        end
+        {step, slot, want} = expected[next[k]];
+        if (got[0 +: 20] !== want[0 +: 20]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: x_x is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], got[0 +: 20], want[0 +: 20]);
+          $fatal(1, "differs");
+        end
+        if (got[20 +: 20] !== want[20 +: 20]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: x_y is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], got[20 +: 20], want[20 +: 20]);
+          $fatal(1, "differs");
+        end
+        if (got[40 +: 20] !== want[40 +: 20]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: x_z is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], got[40 +: 20], want[40 +: 20]);
+          $fatal(1, "differs");
+        end
+        if (got[60 +: 2] !== want[60 +: 2]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: away_y is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], $signed(got[60 +: 2]), $signed(want[60 +: 2]));
+          $fatal(1, "differs");
+        end
+        if (got[62 +: 2] !== want[62 +: 2]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: away_z is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], $signed(got[62 +: 2]), $signed(want[62 +: 2]));
+          $fatal(1, "differs");
+        end
+        if (got[64 +: 29] !== want[64 +: 29]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: v_x is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], $signed(got[64 +: 29]), $signed(want[64 +: 29]));
+          $fatal(1, "differs");
+        end
+        if (got[93 +: 29] !== want[93 +: 29]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: v_y is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], $signed(got[93 +: 29]), $signed(want[93 +: 29]));
+          $fatal(1, "differs");
+        end
+        if (got[122 +: 29] !== want[122 +: 29]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: v_z is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], $signed(got[122 +: 29]), $signed(want[122 +: 29]));
+          $fatal(1, "differs");
+        end
+        if (got[151 +: 3] !== want[151 +: 3]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: id is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], got[151 +: 3], want[151 +: 3]);
+          $fatal(1, "differs");
+        end
+        compared = compared + 1;
+        next[k] = next[k] + 1;
+      end
+      if (phase_end[8*k+7]) phases = phases + 1;
+    end
+    if (cycle > 1 && (&idle)) begin
+      for (k = 0; k < Nodes; k = k + 1) if (next[k] != first[k+1]) begin
+        {step, slot, want} = expected[next[k]];
+        $display("FAIL step %0d node %0d slot %0d: particle %0d was not observed", step, k, slot,
+                 want[151 +: IdBits]);
+        $fatal(1, "less");
+      end
+      if (compared != Expected || phases != Steps * Nodes) begin
+        $display("FAIL %0d of %0d comparisons, %0d of %0d steps of nodes", compared, Expected, phases,
+                 Steps * Nodes);
+        $fatal(1, "count");
+      end
+      $display("PASS %0d comparisons, %0d steps, %0d nodes, %0d cycles", compared, Steps, Nodes, cycle - 1);
+      $finish;
+    end
+    if (cycle > Limit) begin
+      for (k = Nodes - 1; k > 0 && idle[k]; k = k - 1) ;
+      $display("FAIL node %0d: still busy after %0d cycles", k, cycle);
+      $fatal(1, "timeout");
+    end
+  end
+
+  logic unused_phases;
+  assign unused_phases = ^{phase_start, phase_end};
+endmodule

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// First in, first out. What is pushed in cycle t is at the head, or counts as full, from t+1 on. The head is read
+// without latency. No bypass: push_i only when not full, pop_i only when not empty.
+module cuboct_fifo #(
+  parameter int Bits  = 32,  // width of an entry, >= 1
+  parameter int Depth = 16   // entries, >= 1
+) (
+  input  logic            clk_i,
+  input  logic            rst_ni,
+  input  logic            push_i,
+  input  logic [Bits-1:0] data_i,
+  output logic            full_o,
+  input  logic            pop_i,
+  output logic [Bits-1:0] data_o,
+  output logic            empty_o
+);
+  localparam int PtrBits   = (Depth > 1) ? $clog2(Depth) : 1;
+  localparam int CountBits = $clog2(Depth + 1);
+  localparam int Last      = Depth - 1;
+
+  logic [Bits-1:0]      mem_q [0:Depth-1];
+  logic [PtrBits-1:0]   write_d, write_q, read_d, read_q;
+  logic [CountBits-1:0] count_d, count_q;
+
+  always_comb begin
+    write_d = write_q;
+    read_d  = read_q;
+    count_d = count_q;
+    if (push_i) write_d = (write_q == Last[PtrBits-1:0]) ? '0 : write_q + 1'b1;
+    if (pop_i) read_d = (read_q == Last[PtrBits-1:0]) ? '0 : read_q + 1'b1;
+    if (push_i && !pop_i) count_d = count_q + 1'b1;
+    if (pop_i && !push_i) count_d = count_q - 1'b1;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      write_q <= '0;
+      read_q  <= '0;
+      count_q <= '0;
+    end else begin
+      write_q <= write_d;
+      read_q  <= read_d;
+      count_q <= count_d;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (push_i) mem_q[write_q] <= data_i;
+  end
+
+  assign data_o  = mem_q[read_q];
+  assign full_o  = (count_q == Depth[CountBits-1:0]);
+  assign empty_o = (count_q == '0);
+endmodule

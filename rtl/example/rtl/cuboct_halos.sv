@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// The receiving side of the six links: assembly, halo memories in the node's own frame, migrate FIFOs, and the flags
+// that say which streams have ended.
+module cuboct_halos #(
+  parameter int PositionFrac  = 20,   // P
+  parameter int Capacity      = 16,
+  parameter int LinkBits      = 32,
+  parameter int HaloBits      = 62,   // of a halo record: x[P+2] y[P+2] z[P] rest
+  parameter int CandidateBits = 64,   // of a halo in memory: x[P+2] y[P+2] z[P+2] rest; HaloBits + 2
+  parameter int ParticleBits  = 128,
+  parameter int AddrBits      = 8,    // of a record's number in any segment
+  parameter int CountBits     = 9     // of a segment's count
+) (
+  input  logic                       clk_i,
+  input  logic                       rst_ni,
+  input  logic [5:0]                 has_link_i,
+  input  logic [5:0]                 link_valid_i,
+  input  logic [5:0]                 link_end_i,
+  input  logic [6*LinkBits-1:0]      link_data_i,
+  output logic [5:0]                 link_ready_o,
+  // Halos.
+  input  logic                       halo_clear_i,
+  output logic [5:0]                 halo_end_o,     // complete; always where there is no link
+  output logic [6*CountBits-1:0]     halo_count_o,
+  input  logic [AddrBits-1:0]        stream_addr_i,  // read by the streamer
+  output logic [6*CandidateBits-1:0] stream_data_o,  // by face
+  input  logic [AddrBits-1:0]        relay_addr_i,   // read by the relay, faces of x and y
+  output logic [4*CandidateBits-1:0] relay_data_o,
+  // Migrating particles.
+  input  logic [5:0]                 migrate_clear_i,
+  output logic [5:0]                 migrate_end_o,  // complete; always where there is no link
+  output logic [5:0]                 migrate_empty_o,
+  output logic [6*ParticleBits-1:0]  migrate_data_o,
+  input  logic [5:0]                 migrate_pop_i
+);
+  localparam int RestBits = HaloBits - 3 * PositionFrac - 4;
+
+  logic [5:0] halo_end_d, halo_end_q, migrate_end_d, migrate_end_q, halo_end, migrate_end;
+  assign halo_end_d    = (halo_end_q | halo_end) & ~{6{halo_clear_i}};
+  assign migrate_end_d = (migrate_end_q | migrate_end) & ~migrate_clear_i;
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      halo_end_q    <= '0;
+      migrate_end_q <= '0;
+    end else begin
+      halo_end_q    <= halo_end_d;
+      migrate_end_q <= migrate_end_d;
+    end
+  end
+  assign halo_end_o    = halo_end_q | ~has_link_i;
+  assign migrate_end_o = migrate_end_q | ~has_link_i;
+
+  for (genvar f = 0; f < 6; f++) begin : gen_face
+    localparam int Axis  = f / 2;
+    localparam int Depth = ((Axis == 0) ? 1 : (Axis == 1) ? 3 : 9) * Capacity;
+
+    logic                     halo_valid, migrate_valid, migrate_full;
+    logic [HaloBits-1:0]      halo;
+    logic [CandidateBits-1:0] local_halo, relay_data;
+    logic [ParticleBits-1:0]  particle;
+    cuboct_link_rx #(.LinkBits(LinkBits), .HaloBits(HaloBits), .MigrateBits(ParticleBits)) u_rx (
+      .clk_i, .rst_ni, .valid_i(link_valid_i[f] && has_link_i[f]), .end_i(link_end_i[f]),
+      .data_i(link_data_i[f*LinkBits +: LinkBits]), .ready_o(link_ready_o[f]),
+      .halo_valid_o(halo_valid), .halo_o(halo), .halo_end_o(halo_end[f]),
+      .migrate_valid_o(migrate_valid), .migrate_o(particle), .migrate_end_o(migrate_end[f])
+    );
+
+    // One node further along the axis: -2^P from below, +2^P from above.
+    logic [3*(PositionFrac+2)-1:0] sent, moved;
+    assign sent = {2'b00, halo[2*(PositionFrac+2) +: PositionFrac], halo[2*(PositionFrac+2)-1:0]};
+    for (genvar a = 0; a < 3; a++) begin : gen_axis
+      localparam int Lsb = a * (PositionFrac + 2);
+      assign moved[Lsb +: PositionFrac] = sent[Lsb +: PositionFrac];
+      if (a != Axis) begin : gen_same
+        assign moved[Lsb+PositionFrac +: 2] = sent[Lsb+PositionFrac +: 2];
+      end else if (f % 2 == 0) begin : gen_below
+        assign moved[Lsb+PositionFrac +: 2] = sent[Lsb+PositionFrac +: 2] - 2'd1;
+      end else begin : gen_above
+        assign moved[Lsb+PositionFrac +: 2] = sent[Lsb+PositionFrac +: 2] + 2'd1;
+      end
+    end
+    if (RestBits > 0) begin : gen_rest
+      assign local_halo = {halo[HaloBits-1 -: RestBits], moved};
+    end else begin : gen_bare
+      assign local_halo = moved;
+    end
+
+    cuboct_halo_mem #(.Bits(CandidateBits), .Depth(Depth), .AddrBits(AddrBits), .CountBits(CountBits)) u_halos (
+      .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(halo_valid), .data_i(local_halo),
+      .count_o(halo_count_o[f*CountBits +: CountBits]),
+      .addr_a_i(stream_addr_i), .data_a_o(stream_data_o[f*CandidateBits +: CandidateBits]),
+      .addr_b_i(relay_addr_i), .data_b_o(relay_data)
+    );
+    if (Axis < 2) begin : gen_relay
+      assign relay_data_o[f*CandidateBits +: CandidateBits] = relay_data;
+    end else begin : gen_no_relay
+      logic unused_relay;
+      assign unused_relay = ^relay_data;
+    end
+
+    cuboct_fifo #(.Bits(ParticleBits), .Depth(Capacity)) u_arrived (
+      .clk_i, .rst_ni, .push_i(migrate_valid), .data_i(particle), .full_o(migrate_full),
+      .pop_i(migrate_pop_i[f]), .data_o(migrate_data_o[f*ParticleBits +: ParticleBits]),
+      .empty_o(migrate_empty_o[f])
+    );
+
+`ifndef SYNTHESIS
+    always_ff @(posedge clk_i) begin
+      if (rst_ni && halo_valid) a_halo_room: assert (halo_count_o[f*CountBits +: CountBits] != Depth[CountBits-1:0]);
+      if (rst_ni && migrate_valid) a_migrate_room: assert (!migrate_full);
+    end
+`endif
+    logic unused_full;
+    assign unused_full = migrate_full;
+  end
+endmodule

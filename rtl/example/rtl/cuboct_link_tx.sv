@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// The output register of one link. It may load when it is empty or its beat is taken in this cycle; where there is no
+// link it may always load, and what is loaded vanishes.
+module cuboct_link_tx #(
+  parameter int LinkBits = 32  // payload of a beat, >= 1
+) (
+  input  logic                clk_i,
+  input  logic                rst_ni,
+  input  logic                has_link_i,  // constant
+  // From the senders; load_i only in a cycle with can_load_o.
+  input  logic                load_i,
+  input  logic                end_i,
+  input  logic [LinkBits-1:0] data_i,
+  output logic                can_load_o,  // depends on ready_i
+  // To the neighbour.
+  output logic                valid_o,
+  output logic                end_o,
+  output logic [LinkBits-1:0] data_o,
+  input  logic                ready_i
+);
+  logic                valid_d, valid_q, take, end_q;
+  logic [LinkBits-1:0] data_q;
+
+  assign can_load_o = !valid_q || ready_i || !has_link_i;
+  assign take       = load_i && has_link_i;
+  assign valid_d    = take || (valid_q && !ready_i);
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) valid_q <= 1'b0;
+    else valid_q <= valid_d;
+  end
+  always_ff @(posedge clk_i) begin
+    if (take) begin
+      end_q  <= end_i;
+      data_q <= data_i;
+    end
+  end
+
+  assign valid_o = valid_q;
+  assign end_o   = end_q;
+  assign data_o  = data_q;
+endmodule

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// The three migration phases. SCAN sends those who leave along the axis and closes the gaps, END closes the streams,
+// TAKE_LOW and TAKE_HIGH append what came from below and from above. SCAN is left out where no one leaves.
+module cuboct_migrate #(
+  parameter int ParticleBits = 128,  // the word that travels
+  parameter int PositionBits = 60,   // its least significant field; away_y and away_z follow, 2 bits each
+  parameter int LinkBits     = 32,
+  parameter int Capacity     = 16,
+  parameter int SlotBits     = 4,    // of a slot's number
+  parameter int CountBits    = 5     // of the number of own particles
+) (
+  input  logic                      clk_i,
+  input  logic                      rst_ni,
+  input  logic                      active_i,         // the machine is in a migration phase
+  input  logic [1:0]                axis_i,           // 0, 1, 2
+  output logic                      done_o,           // last cycle of the phase
+  input  logic [1:0]                has_link_i,       // of the axis: below, above
+  // Own particles: a slot is {away_x, particle}.
+  input  logic                      leaving_i,        // some particle leaves along the axis
+  input  logic [CountBits-1:0]      count_i,
+  output logic                      count_set_o,
+  output logic [CountBits-1:0]      count_o,
+  output logic [SlotBits-1:0]       read_slot_o,
+  input  logic [ParticleBits+1:0]   read_data_i,
+  output logic                      write_o,
+  output logic [SlotBits-1:0]       write_slot_o,
+  output logic [ParticleBits+1:0]   write_data_o,
+  output logic [2:0]                leaving_more_o,   // axes along which an arrived particle goes on
+  // Links of the axis: below, above.
+  input  logic [1:0]                can_load_i,
+  output logic [1:0]                load_o,
+  output logic                      end_o,
+  output logic [LinkBits-1:0]       data_o,
+  // FIFOs of the axis: below, above.
+  input  logic [1:0]                empty_i,
+  input  logic [1:0]                ended_i,          // the end beat came
+  input  logic [2*ParticleBits-1:0] arrived_i,
+  output logic [1:0]                pop_o,
+  // Faults, of the particle in fault_particle_o.
+  output logic                      fault_left_o,
+  output logic                      fault_full_o,
+  output logic [ParticleBits-1:0]   fault_particle_o
+);
+  localparam int Beats    = (ParticleBits + LinkBits - 1) / LinkBits;
+  localparam int BeatBits = (Beats > 1) ? $clog2(Beats) : 1;
+  localparam int LastBeat = Beats - 1;
+
+  typedef enum logic [2:0] {Enter, Scan, End, TakeLow, TakeHigh} state_t;
+
+  state_t               state_d, state_q, state;
+  logic [CountBits-1:0] read_d, read_q, write_d, write_q;  // Scan: slots read, slots kept
+  logic [BeatBits-1:0]  beat_d, beat_q;
+  logic [1:0]           away;
+  logic                 stays, up, linked, loadable, last_beat, advance, last_slot, taking, side, has_room;
+  logic [ParticleBits-1:0] candidate;
+
+  // The first state depends on what the update, or the axis before, found.
+  always_comb begin
+    state = state_q;
+    if (state_q == Enter) begin
+      state = End;
+      if (leaving_i) state = Scan;
+    end
+  end
+
+  // Where the slot that SCAN looks at wants to go.
+  always_comb begin
+    away = read_data_i[ParticleBits +: 2];
+    unique case (axis_i)
+      2'd1:    away = read_data_i[PositionBits +: 2];
+      2'd2:    away = read_data_i[PositionBits+2 +: 2];
+      default: away = read_data_i[ParticleBits +: 2];
+    endcase
+  end
+  assign stays     = (away == 2'b00);
+  assign up        = !away[1];
+  assign linked    = up ? has_link_i[1] : has_link_i[0];
+  assign loadable  = up ? can_load_i[1] : can_load_i[0];
+  assign last_beat = (beat_q == LastBeat[BeatBits-1:0]);
+  assign advance   = stays || !linked || (loadable && last_beat);  // SCAN is done with the slot
+  assign last_slot = (read_q + 1'b1 == count_i);
+
+  assign side      = (state == TakeHigh);
+  assign taking    = active_i && (state == TakeLow || state == TakeHigh) && !(side ? empty_i[1] : empty_i[0]);
+  assign candidate = side ? arrived_i[ParticleBits +: ParticleBits] : arrived_i[0 +: ParticleBits];
+  assign has_room  = (count_i != Capacity[CountBits-1:0]);
+
+  // An arrived particle has come to where it goes on this axis.
+  logic [3:0] away_yz;
+  always_comb begin
+    away_yz = candidate[PositionBits +: 4];
+    if (axis_i != 2'd0) away_yz[1:0] = 2'b00;
+    if (axis_i == 2'd2) away_yz[3:2] = 2'b00;
+  end
+
+  always_comb begin
+    state_d        = state_q;
+    read_d         = read_q;
+    write_d        = write_q;
+    beat_d         = beat_q;
+    done_o         = 1'b0;
+    load_o         = 2'b00;
+    end_o          = 1'b0;
+    write_o        = 1'b0;
+    write_slot_o   = write_q[SlotBits-1:0];
+    write_data_o   = read_data_i;
+    count_set_o    = 1'b0;
+    count_o        = write_q;
+    leaving_more_o = 3'b000;
+    pop_o          = 2'b00;
+    fault_left_o   = 1'b0;
+    fault_full_o   = 1'b0;
+    if (active_i) begin
+      unique case (state)
+        Scan: begin
+          state_d = Scan;
+          if (stays) begin
+            write_o = 1'b1;
+            write_d = write_q + 1'b1;
+          end else if (!linked) begin
+            fault_left_o = 1'b1;
+          end else if (loadable) begin
+            load_o = {up, !up};
+            beat_d = last_beat ? '0 : beat_q + 1'b1;
+          end
+          if (advance) read_d = read_q + 1'b1;
+          if (advance && last_slot) begin
+            read_d      = '0;
+            write_d     = '0;
+            count_set_o = 1'b1;
+            count_o     = stays ? write_q + 1'b1 : write_q;
+            state_d     = End;
+          end
+        end
+        End: begin
+          state_d = End;
+          if (can_load_i == 2'b11) begin
+            load_o  = 2'b11;
+            end_o   = 1'b1;
+            state_d = TakeLow;
+          end
+        end
+        TakeLow: begin
+          if (!taking && ended_i[0]) state_d = TakeHigh;
+        end
+        TakeHigh: begin
+          if (!taking && ended_i[1]) begin
+            state_d = Enter;
+            done_o  = 1'b1;
+          end
+        end
+        default: state_d = Enter;
+      endcase
+      if (taking) begin
+        pop_o        = {side, !side};
+        write_slot_o = count_i[SlotBits-1:0];
+        write_data_o = {2'b00, candidate[ParticleBits-1:PositionBits+4], away_yz, candidate[PositionBits-1:0]};
+        write_o      = has_room;
+        count_set_o  = has_room;
+        count_o      = count_i + 1'b1;
+        fault_full_o = !has_room;
+        if (has_room) leaving_more_o = {away_yz[3:2] != 2'b00, away_yz[1:0] != 2'b00, 1'b0};
+      end
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      state_q <= Enter;
+      read_q  <= '0;
+      write_q <= '0;
+      beat_q  <= '0;
+    end else begin
+      state_q <= state_d;
+      read_q  <= read_d;
+      write_q <= write_d;
+      beat_q  <= beat_d;
+    end
+  end
+
+  assign read_slot_o      = read_q[SlotBits-1:0];
+  assign fault_particle_o = fault_left_o ? read_data_i[ParticleBits-1:0] : candidate;
+
+  logic [LinkBits-1:0] beat;
+  cuboct_beat #(.Bits(ParticleBits), .LinkBits(LinkBits), .BeatBits(BeatBits)) u_beat (
+    .word_i(read_data_i[ParticleBits-1:0]), .beat_i(beat_q), .data_o(beat)
+  );
+  assign data_o = end_o ? '0 : beat;
+endmodule

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// From candidates to pairs: streamer, filter lanes, queue, issue. Every own particle meets every candidate that the
+// planar test lets pass, once.
+module cuboct_pair_finder #(
+  parameter int          PositionFrac    = 20,
+  parameter int          DifferenceShift = 4,
+  parameter logic [63:0] PlanarOne       = 64'd0,
+  parameter logic [63:0] PlanarTwo       = 64'd0,
+  parameter logic [63:0] PlanarThree     = 64'd0,
+  parameter int          CandidateBits   = 66,  // its position is least significant
+  parameter int          FilterLanes     = 8,
+  parameter int          ForcePipes      = 1,
+  parameter int          QueueDepth      = 16,
+  parameter int          RowBits         = 1,
+  parameter int          SlotBits        = 4,
+  parameter int          AddrBits        = 8,
+  parameter int          CountBits       = 9
+) (
+  input  logic                                  clk_i,
+  input  logic                                  rst_ni,
+  input  logic                                  run_i,
+  input  logic                                  restart_i,
+  input  logic [3:0]                            available_i,
+  input  logic [7*CountBits-1:0]                counts_i,
+  // Where the candidate is read: own slot, and record of the faces' halos; same cycle.
+  output logic [SlotBits-1:0]                   slot_o,
+  output logic [AddrBits-1:0]                   addr_o,
+  input  logic [CandidateBits-1:0]              own_i,
+  input  logic [6*CandidateBits-1:0]            halos_i,
+  // A row of own positions.
+  output logic [RowBits-1:0]                    row_o,
+  input  logic [FilterLanes*3*PositionFrac-1:0] row_data_i,
+  // Pairs.
+  output logic [CandidateBits-1:0]              candidate_o,
+  output logic [ForcePipes-1:0]                 issue_o,
+  output logic [ForcePipes*SlotBits-1:0]        issue_slot_o,
+  output logic                                  done_o        // no candidate is left anywhere
+);
+  logic [2:0]               segment;
+  logic [RowBits-1:0]       row, row_f1, row_head;
+  logic                     present, past, stall, filter_busy, issue_busy;
+  logic [CandidateBits-1:0] candidate, candidate_f1, candidate_head;
+  logic [FilterLanes-1:0]   mask_f1, mask_head;
+  logic                     push, pop, full, empty;
+
+  cuboct_streamer #(
+    .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
+  ) u_streamer (
+    .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .available_i, .counts_i,
+    .segment_o(segment), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
+  );
+
+  always_comb begin
+    candidate = own_i;
+    unique case (segment)
+      3'd1:    candidate = halos_i[0*CandidateBits +: CandidateBits];
+      3'd2:    candidate = halos_i[1*CandidateBits +: CandidateBits];
+      3'd3:    candidate = halos_i[2*CandidateBits +: CandidateBits];
+      3'd4:    candidate = halos_i[3*CandidateBits +: CandidateBits];
+      3'd5:    candidate = halos_i[4*CandidateBits +: CandidateBits];
+      3'd6:    candidate = halos_i[5*CandidateBits +: CandidateBits];
+      default: candidate = own_i;
+    endcase
+  end
+
+  cuboct_filter #(
+    .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo),
+    .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .RowBits(RowBits),
+    .SlotBits(SlotBits), .CountBits(CountBits)
+  ) u_filter (
+    .clk_i, .rst_ni, .present_i(present), .candidate_i(candidate), .row_i(row), .own_i(segment == 3'd0),
+    .slot_i(slot_o), .own_count_i(counts_i[0 +: CountBits]), .row_o, .row_data_i,
+    .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_f1), .row_f1_o(row_f1),
+    .mask_o(mask_f1), .busy_o(filter_busy)
+  );
+
+  cuboct_fifo #(.Bits(CandidateBits + RowBits + FilterLanes), .Depth(QueueDepth)) u_queue (
+    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_f1, row_f1, mask_f1}), .full_o(full),
+    .pop_i(pop), .data_o({candidate_head, row_head, mask_head}), .empty_o(empty)
+  );
+
+  cuboct_issue #(
+    .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits),
+    .ForcePipes(ForcePipes)
+  ) u_issue (
+    .clk_i, .rst_ni, .empty_i(empty), .candidate_i(candidate_head), .row_i(row_head), .mask_i(mask_head),
+    .pop_o(pop), .candidate_o, .valid_o(issue_o), .slot_o(issue_slot_o), .busy_o(issue_busy)
+  );
+
+  assign done_o = past && !filter_busy && empty && !issue_busy;
+endmodule

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// A function of r2 as a piecewise polynomial. The memory stands outside (generated); this is its address, and the
+// interpolation of what it answers one cycle later. Latency 4 cycles, +1 with OctaveStage, +2 with SquareStages.
+//   uniform: index = the top IndexBits of r2, t = the next FractionBits.
+//   octaves: with o = floor(log2 r2): index = (o - FirstOctave) * 2^BinBits + the BinBits below the leading one,
+//            t = the next FractionBits, zeros where r2 has no more; r2 < 2^FirstOctave has index 0, t 0.
+//   value = c0 + round_odd(slope * t, FractionBits), slope = c1 or c1 + round_odd(c2 * t, FractionBits).
+module cuboct_pair_table #(
+  parameter int DifferenceFrac = 16,  // D; r2 has 2D fractional bits
+  parameter int Octaves        = 0,   // 0 uniform, 1 octaves
+  parameter int Degree         = 1,   // 1 or 2
+  parameter int IndexBits      = 9,   // of the address, >= 1
+  parameter int BinBits        = 0,   // octaves only; <= IndexBits
+  parameter int FirstOctave    = 0,   // octaves only; < 2D
+  parameter int FractionBits   = 17,  // of t, in 1 ... 24
+  parameter int EntryBits      = 18,  // of c0, c1, c2, signed
+  parameter int ValueBits      = 18,  // of the value; the generator proves that every value fits
+  parameter int OctaveStage    = 0,   // 1 if this or another table of the pipe is by octaves
+  parameter int SquareStages   = 0    // 1 if this or another table of the pipe has degree 2
+) (
+  input  logic                        clk_i,
+  input  logic [2*DifferenceFrac-1:0] r2_i,
+  // The memory: synchronous read, c0, c1, c2 in the cycle after index_o.
+  output logic [IndexBits-1:0]        index_o,
+  input  logic signed [EntryBits-1:0] c0_i,
+  input  logic signed [EntryBits-1:0] c1_i,
+  input  logic signed [EntryBits-1:0] c2_i,  // unused at degree 1
+  output logic signed [ValueBits-1:0] value_o
+);
+  localparam int R2Bits    = 2 * DifferenceFrac;
+  localparam int SlopeBits = (Degree == 2) ? EntryBits + 1 : EntryBits;
+
+  // Address.
+  logic [IndexBits-1:0]    index_d, index_q;
+  logic [FractionBits-1:0] t_d, t_q;
+  if (Octaves != 0) begin : gen_octaves
+    localparam int OctaveBits = $clog2(R2Bits + 1);
+    localparam int BelowBits  = BinBits + FractionBits;  // taken below the leading one
+    localparam int ShiftBits  = R2Bits + BelowBits;
+    localparam int Top        = R2Bits - 1;
+
+    function automatic logic [OctaveBits-1:0] leading_one(input logic [R2Bits-1:0] bits);
+      integer b;
+      begin
+        leading_one = '0;
+        for (b = 0; b < R2Bits; b = b + 1) begin
+          if (bits[b]) leading_one = b[OctaveBits-1:0];
+        end
+      end
+    endfunction
+
+    logic [OctaveBits-1:0] octave_q;
+    logic [R2Bits-1:0]     r2_q;
+    logic                  below_q;
+    always_ff @(posedge clk_i) begin
+      octave_q <= leading_one(r2_i);
+      r2_q     <= r2_i;
+      below_q  <= (r2_i[R2Bits-1:FirstOctave] == '0);
+    end
+
+    // The leading one goes to the top bit, so that index and t stand at fixed places below it.
+    logic [ShiftBits-1:0]  aligned;
+    logic [OctaveBits-1:0] row;
+    logic [IndexBits-1:0]  row_index;
+    localparam int First = FirstOctave;
+    assign aligned = {r2_q, {BelowBits{1'b0}}} << (Top[OctaveBits-1:0] - octave_q);
+    assign row     = octave_q - First[OctaveBits-1:0];
+    if (BinBits == IndexBits) begin : gen_one_row
+      assign row_index = aligned[ShiftBits-2 -: BinBits];
+    end else if (BinBits > 0) begin : gen_bins
+      assign row_index = {row[IndexBits-BinBits-1:0], aligned[ShiftBits-2 -: BinBits]};
+    end else begin : gen_no_bins
+      assign row_index = row[IndexBits-1:0];
+    end
+    assign index_d = below_q ? '0 : row_index;
+    assign t_d     = below_q ? '0 : aligned[ShiftBits-2-BinBits -: FractionBits];
+    logic unused_octaves;
+    assign unused_octaves = ^{aligned, row};
+  end else begin : gen_uniform
+    logic [IndexBits+FractionBits-1:0] both_d, both_q;
+    assign both_d = r2_i[R2Bits-1 -: IndexBits+FractionBits];
+    cuboct_delay #(.Bits(IndexBits + FractionBits), .Depth(OctaveStage)) u_align (
+      .clk_i, .d_i(both_d), .q_o(both_q)
+    );
+    assign index_d = both_q[FractionBits +: IndexBits];
+    assign t_d     = both_q[FractionBits-1:0];
+    logic unused_r2;
+    assign unused_r2 = ^r2_i;
+  end
+  always_ff @(posedge clk_i) begin
+    index_q <= index_d;
+    t_q     <= t_d;
+  end
+  assign index_o = index_q;
+
+  // While the memory answers t waits one cycle.
+  logic [FractionBits-1:0]     t_read_q, t_slope;
+  logic signed [EntryBits-1:0] c0_slope;
+  logic signed [SlopeBits-1:0] slope;
+  always_ff @(posedge clk_i) t_read_q <= t_q;
+
+  if (Degree == 2) begin : gen_square
+    logic signed [EntryBits+FractionBits:0] product;
+    logic signed [EntryBits-1:0]            c1;
+    logic signed [SlopeBits-1:0]            rounded, slope_d, slope_q;
+    cuboct_mult #(.ABits(EntryBits), .BBits(FractionBits + 1)) u_square (
+      .clk_i, .en_i(1'b1), .a_i(c2_i), .b_i($signed({1'b0, t_read_q})), .p_o(product)
+    );
+    cuboct_delay #(.Bits(EntryBits), .Depth(1)) u_c1 (.clk_i, .d_i(c1_i), .q_o(c1));
+    cuboct_round_odd #(.InBits(EntryBits + FractionBits + 1), .Shift(FractionBits), .OutBits(SlopeBits)) u_round (
+      .a_i(product), .y_o(rounded)
+    );
+    assign slope_d = $signed({c1[EntryBits-1], c1}) + rounded;
+    always_ff @(posedge clk_i) slope_q <= slope_d;
+    assign slope = slope_q;
+    cuboct_delay #(.Bits(EntryBits), .Depth(2)) u_c0 (.clk_i, .d_i(c0_i), .q_o(c0_slope));
+    cuboct_delay #(.Bits(FractionBits), .Depth(2)) u_t (.clk_i, .d_i(t_read_q), .q_o(t_slope));
+  end else begin : gen_line
+    logic [2*EntryBits-1:0] late;
+    cuboct_delay #(.Bits(2 * EntryBits), .Depth(2 * SquareStages)) u_c (
+      .clk_i, .d_i({c1_i, c0_i}), .q_o(late)
+    );
+    cuboct_delay #(.Bits(FractionBits), .Depth(2 * SquareStages)) u_t (.clk_i, .d_i(t_read_q), .q_o(t_slope));
+    assign c0_slope = $signed(late[EntryBits-1:0]);
+    assign slope    = $signed(late[2*EntryBits-1:EntryBits]);
+    logic unused_c2;
+    assign unused_c2 = ^c2_i;
+  end
+
+  logic signed [SlopeBits+FractionBits:0] product;
+  logic signed [EntryBits-1:0]            c0;
+  logic signed [ValueBits-1:0]            rise, base, value_d, value_q;
+  cuboct_mult #(.ABits(SlopeBits), .BBits(FractionBits + 1)) u_slope (
+    .clk_i, .en_i(1'b1), .a_i(slope), .b_i($signed({1'b0, t_slope})), .p_o(product)
+  );
+  cuboct_delay #(.Bits(EntryBits), .Depth(1)) u_c0 (.clk_i, .d_i(c0_slope), .q_o(c0));
+  cuboct_round_odd #(.InBits(SlopeBits + FractionBits + 1), .Shift(FractionBits), .OutBits(ValueBits)) u_round (
+    .a_i(product), .y_o(rise)
+  );
+  // Modulo 2^ValueBits: rise alone may wrap, the sum is right because the value fits.
+  cuboct_resize #(.InBits(EntryBits), .OutBits(ValueBits)) u_base (.a_i(c0), .y_o(base));
+  assign value_d = base + rise;
+  always_ff @(posedge clk_i) value_q <= value_d;
+  assign value_o = value_q;
+endmodule

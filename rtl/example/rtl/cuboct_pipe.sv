@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: MIT
+// The force pipe: one pair per cycle, from operands to the kick on the own particle. It never stalls.
+//   d = round_odd(x_j - x_i), r2 = d.d, s = force(r2)
+//   s -= round_odd(damp(r2) * round_odd(w.d))    with Damped; w = round_odd(v_j - v_i)
+//   s = round_odd(s * scale[type_i][type_j])     with Scaled
+//   kick = -round_odd(s * d)                     nothing where r2 >= Cutoff2
+// The kick of a pair accepted in cycle t is at the outputs in cycle t + Stages, Stages = 10 (+1 octaves, +2 degree 2,
+// +2 damped, +2 scaled). Operands are those of a pair that passed the planar test: |d_a| < 2^D.
+module cuboct_pipe #(
+  parameter int          PositionFrac         = 20,     // P
+  parameter int          DifferenceShift      = 4,      // P - D
+  parameter logic [63:0] Cutoff2              = 64'd0,  // 2D fractional bits, <= 2^(2D)
+  parameter int          EntryBits            = 18,     // of a table entry
+  parameter int          IndexBits            = 9,      // of the force table
+  parameter int          Octaves              = 0,
+  parameter int          Degree               = 1,
+  parameter int          BinBits              = 0,
+  parameter int          FirstOctave          = 0,
+  parameter int          FractionBits         = 17,
+  parameter int          ForceBits            = 18,     // of any value of the force table
+  parameter int          Damped               = 0,
+  parameter int          VelocityBits         = 29,
+  parameter int          RelativeVelocityBits = 18,
+  parameter int          WShift               = 8,
+  parameter int          QShift               = 17,
+  parameter int          DampShift            = 17,
+  parameter int          DampIndexBits        = 9,
+  parameter int          DampOctaves          = 0,
+  parameter int          DampDegree           = 1,
+  parameter int          DampBinBits          = 0,
+  parameter int          DampFirstOctave      = 0,
+  parameter int          DampFractionBits     = 17,
+  parameter int          DampBits             = 18,     // of any value of the damping table
+  parameter int          StrengthBits         = 18,     // of s after damping, checked; only if Damped
+  parameter int          Scaled               = 0,
+  parameter int          TypeBits             = 1,      // >= 1; used if Scaled
+  parameter int          ScaleBits            = 18,
+  parameter int          ScaleFrac            = 16,
+  parameter int          KickShift            = 4,
+  parameter int          KickBits             = 18,
+  parameter int          SlotBits             = 4
+) (
+  input  logic                            clk_i,
+  input  logic                            rst_ni,
+  input  logic                            valid_i,
+  input  logic [SlotBits-1:0]             slot_i,       // the own particle
+  input  logic [3*PositionFrac-1:0]       own_x_i,      // unsigned
+  input  logic [3*VelocityBits-1:0]       own_v_i,
+  input  logic [TypeBits-1:0]             own_type_i,
+  input  logic [3*(PositionFrac+2)-1:0]   other_x_i,    // signed, in the own frame
+  input  logic [3*VelocityBits-1:0]       other_v_i,
+  input  logic [TypeBits-1:0]             other_type_i,
+  output logic                            valid_o,      // a pair inside the cutoff
+  output logic [SlotBits-1:0]             slot_o,
+  output logic [3*KickBits-1:0]           kick_o,       // signed, P+G fractional bits
+  output logic                            fault_o,      // that pair does not fit:
+  output logic                            fault_strength_o,  // s, else w
+  output logic signed [63:0]              fault_number_o,
+  output logic                            busy_o        // a pair is on its way
+);
+  localparam int D            = PositionFrac - DifferenceShift;
+  localparam int DBits        = D + 1;
+  localparam int R2Bits       = 2 * D + 2;  // three squares of at most 2^(2D)
+  localparam int OctaveStage  = ((Octaves != 0) || (DampOctaves != 0 && Damped != 0)) ? 1 : 0;
+  localparam int SquareStages = (Degree == 2 || (DampDegree == 2 && Damped != 0)) ? 1 : 0;
+  localparam int DampStages   = (Damped != 0) ? 2 : 0;
+  localparam int ScaleStages  = (Scaled != 0) ? 2 : 0;
+  localparam int StageValue   = 8 + OctaveStage + 2 * SquareStages;  // the tables' values
+  localparam int StageDamped  = StageValue + DampStages;             // s after damping
+  localparam int StageS       = StageDamped + ScaleStages;           // s
+  localparam int Stages       = StageS + 2;                          // the kick
+  localparam int SBits        = (Damped != 0) ? StrengthBits : ForceBits;
+
+  // valid[k]: stage k holds a pair; hit[k], from stage 5 on: one inside the cutoff.
+  logic [Stages:1] valid_d, valid_q;
+  logic [Stages:5] hit_d, hit_q;
+  logic            near;
+  assign valid_d = {valid_q[Stages-1:1], valid_i};
+  assign hit_d   = {hit_q[Stages-1:5], valid_q[4] && near};
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      valid_q <= '0;
+      hit_q   <= '0;
+    end else begin
+      valid_q <= valid_d;
+      hit_q   <= hit_d;
+    end
+  end
+  assign busy_o  = (valid_q != '0);
+  assign valid_o = hit_q[Stages];
+  cuboct_delay #(.Bits(SlotBits), .Depth(Stages)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_o));
+
+  // Stages 1 ... 4: operands, d, its squares, r2.
+  logic [3*DBits-1:0] d_q;         // stage 2
+  logic [3*DBits-1:0] d_s;         // stage StageS
+  logic [R2Bits-1:0]  square [0:2];
+  logic [R2Bits-1:0]  r2_d, r2_q;  // stage 4
+  for (genvar a = 0; a < 3; a++) begin : gen_d
+    logic [PositionFrac-1:0]        own_q;
+    logic [PositionFrac+1:0]        other_q;
+    logic signed [PositionFrac+2:0] difference;
+    logic signed [DBits-1:0]        d_d;
+    logic signed [2*DBits-1:0]      product;
+    always_ff @(posedge clk_i) begin
+      if (valid_i) begin
+        own_q   <= own_x_i[a*PositionFrac +: PositionFrac];
+        other_q <= other_x_i[a*(PositionFrac+2) +: PositionFrac+2];
+      end
+      if (valid_q[1]) d_q[a*DBits +: DBits] <= d_d;
+    end
+    assign difference = $signed({other_q[PositionFrac+1], other_q}) - $signed({3'b000, own_q});
+    cuboct_round_odd #(.InBits(PositionFrac + 3), .Shift(DifferenceShift), .OutBits(DBits)) u_round (
+      .a_i(difference), .y_o(d_d)
+    );
+    cuboct_mult #(.ABits(DBits), .BBits(DBits)) u_square (
+      .clk_i, .en_i(valid_q[2]), .a_i($signed(d_q[a*DBits +: DBits])), .b_i($signed(d_q[a*DBits +: DBits])),
+      .p_o(product)
+    );
+    assign square[a] = product[R2Bits-1:0];
+    logic unused_high;
+    assign unused_high = ^product;
+  end
+  assign r2_d = square[0] + square[1] + square[2];
+  always_ff @(posedge clk_i) begin
+    if (valid_q[3]) r2_q <= r2_d;
+  end
+  assign near = (r2_q < Cutoff2[R2Bits-1:0]);
+  cuboct_delay #(.Bits(3 * DBits), .Depth(StageS - 2)) u_d (.clk_i, .d_i(d_q), .q_o(d_s));
+
+  // Stages 5 ... StageValue: the force table.
+  logic [IndexBits-1:0]        index;
+  logic signed [EntryBits-1:0] c0, c1, c2;
+  logic signed [ForceBits-1:0] force_value;
+  cuboct_pair_table #(
+    .DifferenceFrac(D), .Octaves(Octaves), .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits),
+    .FirstOctave(FirstOctave), .FractionBits(FractionBits), .EntryBits(EntryBits), .ValueBits(ForceBits),
+    .OctaveStage(OctaveStage), .SquareStages(SquareStages)
+  ) u_force (
+    .clk_i, .r2_i(r2_q[2*D-1:0]), .index_o(index), .c0_i(c0), .c1_i(c1), .c2_i(c2), .value_o(force_value)
+  );
+  cuboct_force_rom u_force_rom (.clk_i, .index_i(index), .c0_o(c0), .c1_o(c1), .c2_o(c2));
+
+  // Two stages: minus damp * q.
+  logic signed [SBits-1:0] s_damped;  // stage StageDamped
+  logic                    w_fault, s_fault;
+  logic signed [63:0]      w_number, s_number;
+  if (Damped != 0) begin : gen_damp
+    localparam int WFullBits   = VelocityBits + 2;
+    localparam int WdBits      = RelativeVelocityBits + DBits;  // of one product
+    localparam int ProductBits = DampBits + RelativeVelocityBits;
+    localparam int DampedBits  = ((ProductBits > ForceBits) ? ProductBits : ForceBits) + 2;
+
+    logic [2:0]                             misfit;
+    logic [3*WFullBits-1:0]                 w_full;
+    logic [3*(WdBits+2)-1:0]                wd;
+    logic signed [WdBits+1:0]               wd_d, wd_q;    // stage 4
+    logic signed [RelativeVelocityBits-1:0] q_d, q_q, q;   // stage 5, stage StageValue
+    for (genvar a = 0; a < 3; a++) begin : gen_w
+      logic [VelocityBits-1:0]                own_q, other_q;
+      logic signed [VelocityBits:0]           difference;
+      logic signed [WFullBits-1:0]            w_d, w_q;     // stage 2
+      logic signed [RelativeVelocityBits-1:0] w_used;
+      logic signed [WFullBits-1:0]            w_again;
+      logic signed [WdBits-1:0]               product;
+      always_ff @(posedge clk_i) begin
+        if (valid_i) begin
+          own_q   <= own_v_i[a*VelocityBits +: VelocityBits];
+          other_q <= other_v_i[a*VelocityBits +: VelocityBits];
+        end
+        if (valid_q[1]) w_q <= w_d;
+      end
+      assign difference = $signed({other_q[VelocityBits-1], other_q}) - $signed({own_q[VelocityBits-1], own_q});
+      cuboct_round_odd #(.InBits(VelocityBits + 1), .Shift(WShift), .OutBits(WFullBits)) u_round (
+        .a_i(difference), .y_o(w_d)
+      );
+      cuboct_resize #(.InBits(WFullBits), .OutBits(RelativeVelocityBits)) u_wrap (.a_i(w_q), .y_o(w_used));
+      cuboct_resize #(.InBits(RelativeVelocityBits), .OutBits(WFullBits)) u_again (.a_i(w_used), .y_o(w_again));
+      assign misfit[a] = (w_again != w_q);
+      assign w_full[a*WFullBits +: WFullBits] = w_q;
+      cuboct_mult #(.ABits(RelativeVelocityBits), .BBits(DBits)) u_wd (
+        .clk_i, .en_i(valid_q[2]), .a_i(w_used), .b_i($signed(d_q[a*DBits +: DBits])), .p_o(product)
+      );
+      assign wd[a*(WdBits+2) +: WdBits+2] = {{2{product[WdBits-1]}}, product};
+    end
+    assign wd_d = wd[0 +: WdBits+2] + wd[WdBits+2 +: WdBits+2] + wd[2*(WdBits+2) +: WdBits+2];
+    // Inside the cutoff |w.d| <= |w| |d| < sqrt(3) 2^(bits-1) 2^D, so q fits its width.
+    cuboct_round_odd #(.InBits(WdBits + 2), .Shift(QShift), .OutBits(RelativeVelocityBits)) u_q (
+      .a_i(wd_q), .y_o(q_d)
+    );
+    always_ff @(posedge clk_i) begin
+      if (valid_q[3]) wd_q <= wd_d;
+      if (valid_q[4]) q_q <= q_d;
+    end
+    cuboct_delay #(.Bits(RelativeVelocityBits), .Depth(StageValue - 5)) u_q_late (.clk_i, .d_i(q_q), .q_o(q));
+
+    // A w that does not fit: known at stage 2, told with the kick. The first axis gives the number.
+    logic signed [WFullBits-1:0] w_first, w_late;
+    assign w_first = misfit[0] ? w_full[0 +: WFullBits]
+                   : misfit[1] ? w_full[WFullBits +: WFullBits] : w_full[2*WFullBits +: WFullBits];
+    cuboct_delay #(.Bits(WFullBits + 1), .Depth(Stages - 2)) u_w_late (
+      .clk_i, .d_i({misfit != 3'b000, w_first}), .q_o({w_fault, w_late})
+    );
+    cuboct_resize #(.InBits(WFullBits), .OutBits(64)) u_w_number (.a_i(w_late), .y_o(w_number));
+
+    logic [DampIndexBits-1:0]          damp_index;
+    logic signed [EntryBits-1:0]       e0, e1, e2;
+    logic signed [DampBits-1:0]        damp_value;
+    logic signed [ProductBits-1:0]     product;
+    logic signed [ForceBits-1:0]       force_late;
+    logic signed [DampedBits-1:0]      friction, s_full, s_again, s_last;
+    logic signed [StrengthBits-1:0]    s_wrapped, s_q;
+    logic                              s_misfit_q;
+    logic signed [DampedBits-1:0]      s_full_q;
+    cuboct_pair_table #(
+      .DifferenceFrac(D), .Octaves(DampOctaves), .Degree(DampDegree), .IndexBits(DampIndexBits),
+      .BinBits(DampBinBits), .FirstOctave(DampFirstOctave), .FractionBits(DampFractionBits),
+      .EntryBits(EntryBits), .ValueBits(DampBits), .OctaveStage(OctaveStage), .SquareStages(SquareStages)
+    ) u_damp (
+      .clk_i, .r2_i(r2_q[2*D-1:0]), .index_o(damp_index), .c0_i(e0), .c1_i(e1), .c2_i(e2), .value_o(damp_value)
+    );
+    cuboct_damp_rom u_damp_rom (.clk_i, .index_i(damp_index), .c0_o(e0), .c1_o(e1), .c2_o(e2));
+    cuboct_mult #(.ABits(DampBits), .BBits(RelativeVelocityBits)) u_friction (
+      .clk_i, .en_i(hit_q[StageValue]), .a_i(damp_value), .b_i(q), .p_o(product)
+    );
+    cuboct_delay #(.Bits(ForceBits), .Depth(1)) u_force_late (.clk_i, .d_i(force_value), .q_o(force_late));
+    cuboct_round_odd #(.InBits(ProductBits), .Shift(DampShift), .OutBits(DampedBits)) u_round (
+      .a_i(product), .y_o(friction)
+    );
+    assign s_full = $signed({{(DampedBits - ForceBits) {force_late[ForceBits-1]}}, force_late}) - friction;
+    cuboct_resize #(.InBits(DampedBits), .OutBits(StrengthBits)) u_wrap (.a_i(s_full), .y_o(s_wrapped));
+    cuboct_resize #(.InBits(StrengthBits), .OutBits(DampedBits)) u_again (.a_i(s_wrapped), .y_o(s_again));
+    always_ff @(posedge clk_i) begin
+      if (hit_q[StageValue+1]) begin
+        s_q        <= s_wrapped;
+        s_full_q   <= s_full;
+        s_misfit_q <= (s_again != s_full);
+      end
+    end
+    assign s_damped = s_q;
+    cuboct_delay #(.Bits(DampedBits + 1), .Depth(Stages - StageDamped)) u_s_late (
+      .clk_i, .d_i({s_misfit_q, s_full_q}), .q_o({s_fault, s_last})
+    );
+    cuboct_resize #(.InBits(DampedBits), .OutBits(64)) u_s_number (.a_i(s_last), .y_o(s_number));
+  end else begin : gen_undamped
+    logic unused_velocity;
+    assign unused_velocity = ^{own_v_i, other_v_i};
+    assign s_damped = force_value;
+    assign w_fault  = 1'b0;
+    assign s_fault  = 1'b0;
+    assign w_number = '0;
+    assign s_number = '0;
+  end
+  assign fault_o          = valid_o && (w_fault || s_fault);
+  assign fault_strength_o = !w_fault;
+  assign fault_number_o   = w_fault ? w_number : s_number;
+
+  // Two stages: times the pair's scale, which is at most 1.
+  logic signed [SBits-1:0] s;  // stage StageS
+  if (Scaled != 0) begin : gen_scale
+    logic [2*TypeBits-1:0]            types;
+    logic signed [ScaleBits-1:0]      scale;
+    logic signed [SBits+ScaleBits-1:0] product;
+    logic signed [SBits-1:0]          s_d, s_q;
+    cuboct_delay #(.Bits(2 * TypeBits), .Depth(StageDamped)) u_types (
+      .clk_i, .d_i({other_type_i, own_type_i}), .q_o(types)
+    );
+    cuboct_scale_rom u_scale_rom (
+      .own_type_i(types[TypeBits-1:0]), .other_type_i(types[2*TypeBits-1:TypeBits]), .scale_o(scale)
+    );
+    cuboct_mult #(.ABits(SBits), .BBits(ScaleBits)) u_mult (
+      .clk_i, .en_i(hit_q[StageDamped]), .a_i(s_damped), .b_i(scale), .p_o(product)
+    );
+    cuboct_round_odd #(.InBits(SBits + ScaleBits), .Shift(ScaleFrac), .OutBits(SBits)) u_round (
+      .a_i(product), .y_o(s_d)
+    );
+    always_ff @(posedge clk_i) begin
+      if (hit_q[StageDamped+1]) s_q <= s_d;
+    end
+    assign s = s_q;
+  end else begin : gen_unscaled
+    logic unused_types;
+    assign unused_types = ^{own_type_i, other_type_i};
+    assign s = s_damped;
+  end
+
+  // Last two stages: times d, rounded once, with the sign of the reaction.
+  for (genvar a = 0; a < 3; a++) begin : gen_kick
+    logic signed [SBits+DBits-1:0] product;
+    logic signed [KickBits-1:0]    push, kick_d, kick_q;
+    cuboct_mult #(.ABits(SBits), .BBits(DBits)) u_mult (
+      .clk_i, .en_i(hit_q[StageS]), .a_i(s), .b_i($signed(d_s[a*DBits +: DBits])), .p_o(product)
+    );
+    cuboct_round_odd #(.InBits(SBits + DBits), .Shift(KickShift), .OutBits(KickBits)) u_round (
+      .a_i(product), .y_o(push)
+    );
+    assign kick_d = -push;
+    always_ff @(posedge clk_i) begin
+      if (hit_q[StageS+1]) kick_q <= kick_d;
+    end
+    assign kick_o[a*KickBits +: KickBits] = kick_q;
+  end
+endmodule

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Made by cuboct emit from plan 9b84c320cd1649dc; do not edit.
+// The constants of the plan; docs/reference/node.md says what each is.
+package cuboct_pkg;
+  localparam int          Capacity             = 8;             // particles per node
+  localparam int          FilterLanes          = 4;             // own particles that a candidate meets per cycle
+  localparam int          ForcePipes           = 1;             // pairs per cycle
+  localparam int          QueueDepth           = 4;             // entries between filter and pipes
+  localparam int          Overlap              = 1;             // 1: the force engine starts with the exchange
+  localparam int          LinkBits             = 64;            // payload of a beat
+  localparam int          IdBits               = 3;
+  localparam int          TypeBits             = 0;             // 0 with one type
+  localparam int          PositionFrac         = 20;            // fractional bits of x
+  localparam int          Guard                = 8;             // v has PositionFrac + Guard fractional bits
+  localparam int          VelocityBits         = 29;
+  localparam int          RelativeVelocityBits = 18;
+  localparam int          StrengthBits         = 22;            // s, and the entries of the tables
+  localparam int          SumBits              = 29;            // a particle's summed kick
+  localparam int          DisplacementBits     = 29;
+  localparam int          ScaleFrac            = 16;            // fractional bits of the pair scales
+  localparam int          GainFrac             = 16;            // fractional bits of kp, kd
+  localparam int          GainBits             = 18;
+  localparam int          ScaleBits            = 18;
+  localparam int          ConstantBits         = 29;            // imposed velocities and gravity
+  localparam int          DifferenceShift      = 4;
+  localparam int          WShift               = 8;
+  localparam int          QShift               = 17;
+  localparam int          DampShift            = 0;
+  localparam int          KickShift            = 12;
+  localparam logic [63:0] Cutoff2              = 64'h100000000;  // in units of r2
+  localparam logic [63:0] PlanarOne            = 64'hffff;      // in units of d
+  localparam logic [63:0] PlanarTwo            = 64'h16a09;
+  localparam logic [63:0] PlanarThree          = 64'h1bb67;
+  localparam int          Octaves              = 0;             // force table: 0 uniform, 1 by octaves
+  localparam int          Degree               = 1;
+  localparam int          IndexBits            = 4;
+  localparam int          BinBits              = 0;
+  localparam int          FirstOctave          = 0;
+  localparam int          FractionBits         = 17;
+  localparam int          ForceBits            = 22;            // that hold every value of the force table
+  localparam int          Damped               = 0;
+  localparam int          Scaled               = 0;             // pair scales differ
+  localparam int          Pd                   = 0;             // some type is held by force
+  localparam int          ParticleBits         = 154;           // of the words to load and observe
+endpackage

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// The sender of the exchange phases: own records, then the halos that the axes before this one brought, to both links
+// of the axis in lock step. One thing per cycle: an empty segment is left, or a beat is loaded, or it waits.
+module cuboct_relay #(
+  parameter int LinkBits  = 32,  // payload of a beat
+  parameter int HaloBits  = 32,  // bits of a record
+  parameter int SlotBits  = 4,   // of an own slot's number
+  parameter int AddrBits  = 8,   // of a record's number in any segment
+  parameter int CountBits = 8    // of a segment's count
+) (
+  input  logic                   clk_i,
+  input  logic                   rst_ni,
+  input  logic                   active_i,    // the machine is in an exchange phase
+  input  logic [1:0]             axis_i,      // 0, 1, 2
+  input  logic                   done_i,      // last cycle of the phase
+  // Segments: 0 own, 1 ... 4 the halos of -x, +x, -y, +y; their counts, and where to read.
+  input  logic [5*CountBits-1:0] counts_i,
+  output logic [2:0]             segment_o,
+  output logic [AddrBits-1:0]    addr_o,
+  output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles
+  input  logic [HaloBits-1:0]    record_i,    // at segment_o, addr_o; same cycle
+  // To the link registers.
+  input  logic                   can_load_i,  // both links can
+  output logic                   load_o,
+  output logic                   end_o,
+  output logic [LinkBits-1:0]    data_o,
+  output logic                   first_own_o, // the first beat of an own record is loaded
+  output logic                   sent_o       // the end beat was loaded
+);
+  localparam int Beats    = (HaloBits + LinkBits - 1) / LinkBits;
+  localparam int BeatBits = (Beats > 1) ? $clog2(Beats) : 1;
+  localparam int LastBeat = Beats - 1;
+
+  logic [2:0]           segment_d, segment_q, segments;
+  logic [AddrBits-1:0]  record_d, record_q;
+  logic [BeatBits-1:0]  beat_d, beat_q;
+  logic                 sent_d, sent_q;
+  logic [CountBits-1:0] count;
+  logic                 past, empty, working, last_record;
+
+  always_comb begin
+    segments = 3'd1;
+    unique case (axis_i)
+      2'd1:    segments = 3'd3;
+      2'd2:    segments = 3'd5;
+      default: segments = 3'd1;
+    endcase
+  end
+  always_comb begin
+    count = counts_i[0 +: CountBits];
+    unique case (segment_q)
+      3'd1:    count = counts_i[1*CountBits +: CountBits];
+      3'd2:    count = counts_i[2*CountBits +: CountBits];
+      3'd3:    count = counts_i[3*CountBits +: CountBits];
+      3'd4:    count = counts_i[4*CountBits +: CountBits];
+      default: count = counts_i[0 +: CountBits];
+    endcase
+  end
+
+  assign working     = active_i && !sent_q;
+  assign past        = (segment_q == segments);
+  assign empty       = (count == '0);
+  assign last_record = (count == {{(CountBits - AddrBits) {1'b0}}, record_q} + 1'b1);
+  assign end_o       = working && past && can_load_i;
+  assign load_o      = working && can_load_i && (past || !empty);
+
+  always_comb begin
+    segment_d = segment_q;
+    record_d  = record_q;
+    beat_d    = beat_q;
+    sent_d    = sent_q;
+    if (working && !past && empty) begin
+      segment_d = segment_q + 3'd1;
+    end else if (end_o) begin
+      sent_d = 1'b1;
+    end else if (load_o) begin
+      beat_d = beat_q + 1'b1;
+      if (beat_q == LastBeat[BeatBits-1:0]) begin
+        beat_d   = '0;
+        record_d = record_q + 1'b1;
+        if (last_record) begin
+          record_d  = '0;
+          segment_d = segment_q + 3'd1;
+        end
+      end
+    end
+    if (done_i) begin
+      segment_d = 3'd0;
+      sent_d    = 1'b0;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      segment_q <= 3'd0;
+      record_q  <= '0;
+      beat_q    <= '0;
+      sent_q    <= 1'b0;
+    end else begin
+      segment_q <= segment_d;
+      record_q  <= record_d;
+      beat_q    <= beat_d;
+      sent_q    <= sent_d;
+    end
+  end
+
+  assign segment_o   = segment_q;
+  assign addr_o      = record_q;
+  assign slot_o      = record_q[SlotBits-1:0];
+  assign sent_o      = sent_q;
+  assign first_own_o = load_o && !past && (segment_q == 3'd0) && (beat_q == '0);
+
+  logic [LinkBits-1:0] beat;
+  cuboct_beat #(.Bits(HaloBits), .LinkBits(LinkBits), .BeatBits(BeatBits)) u_beat (
+    .word_i(record_i), .beat_i(beat_q), .data_o(beat)
+  );
+  assign data_o = past ? '0 : beat;
+endmodule

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Walks the candidates of a step: own particles, then the halos of -x, +x, -y, +y, -z, +z; every record once for each
+// row of own slots. One (record, row) per cycle, or one empty segment left.
+module cuboct_streamer #(
+  parameter int FilterLanes = 8,  // own slots per row
+  parameter int RowBits     = 1,  // of a row's number
+  parameter int SlotBits    = 4,  // of an own slot's number
+  parameter int AddrBits    = 8,  // of a record's number in any segment
+  parameter int CountBits   = 8   // of a segment's count
+) (
+  input  logic                   clk_i,
+  input  logic                   rst_ni,
+  input  logic                   run_i,        // the force engine's phase
+  input  logic                   restart_i,    // its last cycle
+  input  logic                   stall_i,
+  input  logic [3:0]             available_i,  // own; x, y, z halos complete
+  input  logic [7*CountBits-1:0] counts_i,     // by segment
+  output logic [2:0]             segment_o,
+  output logic [AddrBits-1:0]    addr_o,
+  output logic [SlotBits-1:0]    slot_o,       // addr_o, for the own particles
+  output logic [RowBits-1:0]     row_o,
+  output logic                   present_o,    // (segment, addr, row) goes to the filter
+  output logic                   past_o        // all segments are done
+);
+  localparam int RowSlots = CountBits + $clog2(FilterLanes + 1);  // bits of a slot number beyond the last row
+
+  logic [2:0]           segment_d, segment_q;
+  logic [AddrBits-1:0]  record_d, record_q;
+  logic [RowBits-1:0]   row_d, row_q;
+  logic [RowSlots-1:0]  next_slot_d, next_slot_q;  // first slot of the next row
+  logic [CountBits-1:0] count, own;
+  logic                 available, skip, go, last_row, last_record;
+
+  always_comb begin
+    count = counts_i[0 +: CountBits];
+    unique case (segment_q)
+      3'd1:    count = counts_i[1*CountBits +: CountBits];
+      3'd2:    count = counts_i[2*CountBits +: CountBits];
+      3'd3:    count = counts_i[3*CountBits +: CountBits];
+      3'd4:    count = counts_i[4*CountBits +: CountBits];
+      3'd5:    count = counts_i[5*CountBits +: CountBits];
+      3'd6:    count = counts_i[6*CountBits +: CountBits];
+      default: count = counts_i[0 +: CountBits];
+    endcase
+  end
+  always_comb begin
+    available = 1'b0;
+    unique case (segment_q)
+      3'd0:       available = available_i[0];
+      3'd1, 3'd2: available = available_i[1];
+      3'd3, 3'd4: available = available_i[2];
+      3'd5, 3'd6: available = available_i[3];
+      default:    available = 1'b0;
+    endcase
+  end
+
+  assign own         = counts_i[0 +: CountBits];
+  assign go          = run_i && !stall_i && available;
+  assign skip        = (own == '0) || (count == '0);
+  assign last_row    = (next_slot_q >= {{(RowSlots - CountBits) {1'b0}}, own});
+  assign last_record = (count == {{(CountBits - AddrBits) {1'b0}}, record_q} + 1'b1);
+  assign present_o   = go && !skip;
+
+  always_comb begin
+    segment_d   = segment_q;
+    record_d    = record_q;
+    row_d       = row_q;
+    next_slot_d = next_slot_q;
+    if (go && skip) begin
+      segment_d = segment_q + 3'd1;
+    end else if (go && !last_row) begin
+      row_d       = row_q + 1'b1;
+      next_slot_d = next_slot_q + FilterLanes[RowSlots-1:0];
+    end else if (go) begin
+      row_d       = '0;
+      next_slot_d = FilterLanes[RowSlots-1:0];
+      record_d    = record_q + 1'b1;
+      if (last_record) begin
+        record_d  = '0;
+        segment_d = segment_q + 3'd1;
+      end
+    end
+    if (restart_i) segment_d = 3'd0;
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      segment_q   <= 3'd0;
+      record_q    <= '0;
+      row_q       <= '0;
+      next_slot_q <= FilterLanes[RowSlots-1:0];
+    end else begin
+      segment_q   <= segment_d;
+      record_q    <= record_d;
+      row_q       <= row_d;
+      next_slot_q <= next_slot_d;
+    end
+  end
+
+  assign segment_o = segment_q;
+  assign addr_o    = record_q;
+  assign slot_o    = record_q[SlotBits-1:0];
+  assign row_o     = row_q;
+  assign past_o    = (segment_q == 3'd7);
+endmodule

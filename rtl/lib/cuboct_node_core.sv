@@ -1,0 +1,521 @@
+// SPDX-License-Identifier: MIT
+// One particle processor. It knows no coordinates: has_link_i says which faces have a neighbour. The contract, cycle by
+// cycle, is docs/reference/node.md; the words are
+//   particle:    x[P] y[P] z[P] away_y[2] away_z[2] v[3 x VelocityBits] type[TypeBits] id[IdBits] u[3 x DisplacementBits, Pd]
+//   halo record: x[P+2] y[P+2] z[P] type[TypeBits, Scaled] v[3 x VelocityBits, Damped]
+// least significant field first. The modules cuboct_force_rom, _damp_rom, _scale_rom and _type_rom are generated.
+module cuboct_node_core #(
+  // Machine.
+  parameter int          Capacity             = 16,     // particles, >= 1
+  parameter int          FilterLanes          = 8,      // >= 1
+  parameter int          ForcePipes           = 1,      // >= 1
+  parameter int          QueueDepth           = 16,     // entries, >= 1
+  parameter int          Overlap              = 1,      // 0, 1
+  parameter int          LinkBits             = 66,     // payload of a beat, >= 1
+  parameter int          IdBits               = 8,      // >= 1
+  parameter int          TypeBits             = 0,      // 0 with one type
+  // Formats: model/fixed_rule.h, Widths.
+  parameter int          PositionFrac         = 20,
+  parameter int          Guard                = 8,
+  parameter int          VelocityBits         = 29,
+  parameter int          RelativeVelocityBits = 18,
+  parameter int          StrengthBits         = 18,
+  parameter int          SumBits              = 29,
+  parameter int          DisplacementBits     = 29,
+  parameter int          ScaleFrac            = 16,
+  parameter int          GainFrac             = 16,
+  parameter int          GainBits             = 18,
+  parameter int          ScaleBits            = 18,
+  parameter int          ConstantBits         = 29,     // imposed velocities and gravity
+  // Shifts.
+  parameter int          DifferenceShift      = 4,
+  parameter int          WShift               = 8,
+  parameter int          QShift               = 17,
+  parameter int          DampShift            = 0,
+  parameter int          KickShift            = 0,
+  // Law.
+  parameter logic [63:0] Cutoff2              = 64'd0,
+  parameter logic [63:0] PlanarOne            = 64'd0,
+  parameter logic [63:0] PlanarTwo            = 64'd0,
+  parameter logic [63:0] PlanarThree          = 64'd0,
+  parameter int          Octaves              = 0,      // force table: 0 uniform, 1 octaves
+  parameter int          Degree               = 1,
+  parameter int          IndexBits            = 9,
+  parameter int          BinBits              = 0,
+  parameter int          FirstOctave          = 0,
+  parameter int          FractionBits         = 17,
+  parameter int          ForceBits            = 18,     // of any value of the force table
+  parameter int          Damped               = 0,      // 0, 1
+  parameter int          DampOctaves          = 0,
+  parameter int          DampDegree           = 1,
+  parameter int          DampIndexBits        = 9,
+  parameter int          DampBinBits          = 0,
+  parameter int          DampFirstOctave      = 0,
+  parameter int          DampFractionBits     = 17,
+  parameter int          DampBits             = 18,     // of any value of the damping table
+  parameter int          Scaled               = 0,      // 0, 1
+  parameter int          Pd                   = 0,      // 0, 1
+  // Derived; do not set.
+  localparam int         HaloType             = (Scaled != 0) ? TypeBits : 0,
+  localparam int         HaloVelocity         = (Damped != 0) ? 3 * VelocityBits : 0,
+  localparam int         HaloBits             = 3 * PositionFrac + 4 + HaloType + HaloVelocity,
+  localparam int         ParticleBits         = 3 * PositionFrac + 4 + 3 * VelocityBits + TypeBits + IdBits
+                                                + ((Pd != 0) ? 3 * DisplacementBits : 0)
+) (
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    start_i,        // in IDLE: run steps_i steps
+  input  logic [31:0]             steps_i,
+  input  logic [5:0]              has_link_i,     // constant; faces -x, +x, -y, +y, -z, +z
+  input  logic                    load_valid_i,   // in IDLE: append a particle
+  input  logic [ParticleBits-1:0] load_data_i,
+  output logic [5:0]              link_valid_o,
+  output logic [5:0]              link_end_o,
+  output logic [6*LinkBits-1:0]   link_data_o,
+  input  logic [5:0]              link_ready_i,
+  input  logic [5:0]              link_valid_i,
+  input  logic [5:0]              link_end_i,
+  input  logic [6*LinkBits-1:0]   link_data_i,
+  output logic [5:0]              link_ready_o,
+  output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
+  output logic [7:0]              phase_end_o,
+  output logic                    observe_valid_o,
+  output logic [ParticleBits-1:0] observe_data_o,
+  output logic                    fault_valid_o,
+  output logic [3:0]              fault_code_o,
+  output logic [IdBits-1:0]       fault_id_o,
+  output logic [63:0]             fault_number_o,
+  output logic                    idle_o
+);
+  // Fields of a particle.
+  localparam int PosBits    = 3 * PositionFrac;
+  localparam int VelBits    = 3 * VelocityBits;
+  localparam int DispBits   = 3 * DisplacementBits;
+  localparam int VelLsb     = PosBits + 4;
+  localparam int TypeLsb    = VelLsb + VelBits;
+  localparam int IdLsb      = TypeLsb + TypeBits;
+  localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
+  localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}
+  // Fields of a candidate: a halo record with z as wide as x and y.
+  localparam int CandPos       = 3 * (PositionFrac + 2);
+  localparam int CandidateBits = CandPos + HaloType + HaloVelocity;
+  // Numbers of slots, rows, records; counts have a bit to spare over addresses.
+  localparam int SlotBits  = (Capacity > 1) ? $clog2(Capacity) : 1;
+  localparam int Rows      = (Capacity + FilterLanes - 1) / FilterLanes;
+  localparam int RowBits   = (Rows > 1) ? $clog2(Rows) : 1;
+  localparam int AddrBits  = $clog2(9 * Capacity);
+  localparam int CountBits = AddrBits + 1;
+  // |s| <= 2^(SBits-1) and |d| <= 2^D; a node sees at most 27 * Capacity kicks.
+  localparam int SBits       = (Damped != 0) ? StrengthBits : ForceBits;
+  localparam int KickFull    = SBits + PositionFrac - DifferenceShift + 1 - KickShift;
+  localparam int KickBits    = (KickFull > 2) ? KickFull : 2;
+  localparam int PipeSumBits = KickBits + $clog2(27 * Capacity);
+  // Update.
+  localparam int UpdateLatency = (Pd != 0) ? 6 : 3;
+  localparam int UpdateTail    = UpdateLatency - 2;
+  localparam int TickBits      = $clog2(Capacity + UpdateLatency + 1);
+
+  // The main machine.
+  logic       in_exchange, in_update, in_migrate, in_dump, engine_runs, step_end;
+  logic [1:0] axis;
+  logic [2:0] past_exchange;
+  logic       exchange_done, force_done, update_done, migrate_done, dump_done;
+  cuboct_sequencer #(.Overlap(Overlap)) u_sequencer (
+    .clk_i, .rst_ni, .start_i, .steps_i, .exchange_done_i(exchange_done), .force_done_i(force_done),
+    .update_done_i(update_done), .migrate_done_i(migrate_done), .dump_done_i(dump_done), .idle_o,
+    .exchange_o(in_exchange), .update_o(in_update), .migrate_o(in_migrate), .dump_o(in_dump), .axis_o(axis),
+    .engine_o(engine_runs), .past_exchange_o(past_exchange), .step_end_o(step_end), .phase_start_o, .phase_end_o
+  );
+
+  // Own particles: how many, and where they are written and read.
+  logic [CountBits-1:0]           own_count_d, own_count_q, migrate_count;
+  logic                           own_write, load, update_write, migrate_write, migrate_count_set;
+  logic [SlotBits-1:0]            own_write_slot, update_slot, migrate_write_slot, main_slot, stream_slot;
+  logic [OwnBits-1:0]             own_write_data, update_data, migrate_write_data, main_data, stream_data;
+  logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot;
+  logic [ForcePipes*OwnBits-1:0]  pipe_data;
+  logic [ForcePipes*IdBits-1:0]   kick_id;
+  logic [RowBits-1:0]             row;
+  logic [FilterLanes*PosBits-1:0] row_data;
+
+  assign load = idle_o && load_valid_i && (own_count_q != Capacity[CountBits-1:0]);
+  always_comb begin
+    own_count_d = own_count_q;
+    if (load) own_count_d = own_count_q + 1'b1;
+    else if (migrate_count_set) own_count_d = migrate_count;
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) own_count_q <= '0;
+    else own_count_q <= own_count_d;
+  end
+  always_comb begin
+    own_write      = load || update_write || migrate_write;
+    own_write_slot = own_count_q[SlotBits-1:0];
+    own_write_data = {2'b00, load_data_i};
+    if (update_write) begin
+      own_write_slot = update_slot;
+      own_write_data = update_data;
+    end else if (migrate_write) begin
+      own_write_slot = migrate_write_slot;
+      own_write_data = migrate_write_data;
+    end
+  end
+  cuboct_slots #(
+    .Bits(OwnBits), .PosBits(PosBits), .IdLsb(IdLsb), .IdBits(IdBits), .Capacity(Capacity), .SlotBits(SlotBits),
+    .FilterLanes(FilterLanes), .RowBits(RowBits), .ForcePipes(ForcePipes)
+  ) u_slots (
+    .clk_i, .write_i(own_write), .write_slot_i(own_write_slot), .write_data_i(own_write_data),
+    .main_slot_i(main_slot), .main_data_o(main_data), .stream_slot_i(stream_slot), .stream_data_o(stream_data),
+    .pipe_slot_i(issue_slot), .pipe_data_o(pipe_data), .fault_slot_i(kick_slot), .fault_id_o(kick_id),
+    .row_i(row), .row_data_o(row_data)
+  );
+
+  // Links: receivers.
+  logic [5:0]                 halo_end, migrate_end, migrate_empty, migrate_pop, migrate_clear;
+  logic [6*CountBits-1:0]     halo_count;
+  logic [AddrBits-1:0]        stream_addr, relay_addr;
+  logic [6*CandidateBits-1:0] stream_halos;
+  logic [4*CandidateBits-1:0] relay_halos;
+  logic [6*ParticleBits-1:0]  arrived;
+  cuboct_halos #(
+    .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits),
+    .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .AddrBits(AddrBits), .CountBits(CountBits)
+  ) u_halos (
+    .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
+    .halo_clear_i(force_done), .halo_end_o(halo_end), .halo_count_o(halo_count),
+    .stream_addr_i(stream_addr), .stream_data_o(stream_halos), .relay_addr_i(relay_addr),
+    .relay_data_o(relay_halos), .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end),
+    .migrate_empty_o(migrate_empty), .migrate_data_o(arrived), .migrate_pop_i(migrate_pop)
+  );
+
+  // Links: senders. One axis speaks at a time: the relay in EXCHANGE, the migration in MIGRATE.
+  logic [5:0]          can_load, load_link;
+  logic [1:0]          axis_can_load, axis_load, migrate_load, axis_has_link;
+  logic                relay_load, relay_end, migrate_send_end, send_end;
+  logic [LinkBits-1:0] relay_beat, migrate_beat, send_data;
+  for (genvar f = 0; f < 6; f++) begin : gen_tx
+    cuboct_link_tx #(.LinkBits(LinkBits)) u_tx (
+      .clk_i, .rst_ni, .has_link_i(has_link_i[f]), .load_i(load_link[f]), .end_i(send_end), .data_i(send_data),
+      .can_load_o(can_load[f]), .valid_o(link_valid_o[f]), .end_o(link_end_o[f]),
+      .data_o(link_data_o[f*LinkBits +: LinkBits]), .ready_i(link_ready_i[f])
+    );
+  end
+  always_comb begin
+    axis_can_load = can_load[1:0];
+    axis_has_link = has_link_i[1:0];
+    unique case (axis)
+      2'd1: begin
+        axis_can_load = can_load[3:2];
+        axis_has_link = has_link_i[3:2];
+      end
+      2'd2: begin
+        axis_can_load = can_load[5:4];
+        axis_has_link = has_link_i[5:4];
+      end
+      default: begin
+        axis_can_load = can_load[1:0];
+        axis_has_link = has_link_i[1:0];
+      end
+    endcase
+  end
+  assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
+  assign send_end  = in_migrate ? migrate_send_end : relay_end;
+  assign send_data = in_migrate ? migrate_beat : relay_beat;
+  assign load_link = {(axis == 2'd2) ? axis_load : 2'b00, (axis == 2'd1) ? axis_load : 2'b00,
+                      (axis == 2'd0) ? axis_load : 2'b00};
+
+  // A particle as a candidate: x, y, z with their sign bits, then what the rule needs of type and v.
+  logic [CandidateBits-1:0] own_candidate, relay_own;
+  cuboct_candidate #(
+    .PositionFrac(PositionFrac), .VelLsb(VelLsb), .VelBits(HaloVelocity), .TypeLsb(TypeLsb), .TypeBits(HaloType),
+    .OwnBits(OwnBits), .CandidateBits(CandidateBits)
+  ) u_stream_candidate (.own_i(stream_data), .candidate_o(own_candidate));
+  cuboct_candidate #(
+    .PositionFrac(PositionFrac), .VelLsb(VelLsb), .VelBits(HaloVelocity), .TypeLsb(TypeLsb), .TypeBits(HaloType),
+    .OwnBits(OwnBits), .CandidateBits(CandidateBits)
+  ) u_relay_candidate (.own_i(main_data), .candidate_o(relay_own));
+
+  // Exchange.
+  logic [2:0]               relay_segment;
+  logic [SlotBits-1:0]      relay_slot;
+  logic                     relay_first_own, relay_sent;
+  logic [CandidateBits-1:0] relay_candidate;
+  logic [HaloBits-1:0]      relay_record;
+  always_comb begin
+    relay_candidate = relay_own;
+    unique case (relay_segment)
+      3'd1:    relay_candidate = relay_halos[0*CandidateBits +: CandidateBits];
+      3'd2:    relay_candidate = relay_halos[1*CandidateBits +: CandidateBits];
+      3'd3:    relay_candidate = relay_halos[2*CandidateBits +: CandidateBits];
+      3'd4:    relay_candidate = relay_halos[3*CandidateBits +: CandidateBits];
+      default: relay_candidate = relay_own;
+    endcase
+  end
+  // On the link z has no sign: what is sent lies in this node's layer.
+  if (CandidateBits > CandPos) begin : gen_record
+    assign relay_record = {relay_candidate[CandidateBits-1:CandPos], relay_candidate[CandPos-3:0]};
+  end else begin : gen_bare_record
+    assign relay_record = relay_candidate[CandPos-3:0];
+  end
+  logic unused_relay_sign;
+  assign unused_relay_sign = ^relay_candidate[CandPos-1:CandPos-2];
+  cuboct_relay #(
+    .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
+  ) u_relay (
+    .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
+    .counts_i({halo_count[4*CountBits-1:0], own_count_q}), .segment_o(relay_segment), .addr_o(relay_addr),
+    .slot_o(relay_slot), .record_i(relay_record), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load),
+    .end_o(relay_end), .data_o(relay_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
+  );
+  logic [1:0] axis_halo_end;
+  assign axis_halo_end = (axis == 2'd2) ? halo_end[5:4] : (axis == 2'd1) ? halo_end[3:2] : halo_end[1:0];
+  assign exchange_done = in_exchange && relay_sent && (axis_halo_end == 2'b11);
+
+  // Force engine.
+  logic [CandidateBits-1:0]     issue_candidate;
+  logic [ForcePipes-1:0]        issue, pipe_busy, kick_valid, pipe_fault, pipe_fault_strength;
+  logic [ForcePipes*64-1:0]     pipe_fault_number;
+  logic                         finder_done;
+  logic [ForcePipes*3*PipeSumBits-1:0] sums;
+  logic [3*PipeSumBits-1:0]     total;
+  logic [SlotBits-1:0]          tick_slot;
+  logic                         take;
+  cuboct_pair_finder #(
+    .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo),
+    .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .ForcePipes(ForcePipes),
+    .QueueDepth(QueueDepth), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
+  ) u_finder (
+    .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .available_i({past_exchange, 1'b1}),
+    .counts_i({halo_count, own_count_q}), .slot_o(stream_slot), .addr_o(stream_addr), .own_i(own_candidate),
+    .halos_i(stream_halos), .row_o(row), .row_data_i(row_data), .candidate_o(issue_candidate),
+    .issue_o(issue), .issue_slot_o(issue_slot), .done_o(finder_done)
+  );
+  assign force_done = engine_runs && finder_done && (pipe_busy == '0);
+
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
+    logic [3*KickBits-1:0]    kick;
+    logic [OwnBits-1:0]       own;
+    logic [SomeType-1:0]      own_type, other_type;
+    logic [VelBits-1:0]       other_v;
+    assign own = pipe_data[f*OwnBits +: OwnBits];
+    if (HaloType > 0) begin : gen_type
+      assign own_type   = own[TypeLsb +: SomeType];
+      assign other_type = issue_candidate[CandPos +: SomeType];
+    end else begin : gen_no_type
+      assign own_type   = '0;
+      assign other_type = '0;
+    end
+    if (HaloVelocity > 0) begin : gen_velocity
+      assign other_v = issue_candidate[CandPos + HaloType +: VelBits];
+    end else begin : gen_no_velocity
+      assign other_v = '0;
+    end
+    cuboct_pipe #(
+      .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .Cutoff2(Cutoff2), .EntryBits(StrengthBits),
+      .IndexBits(IndexBits), .Octaves(Octaves), .Degree(Degree), .BinBits(BinBits), .FirstOctave(FirstOctave),
+      .FractionBits(FractionBits), .ForceBits(ForceBits), .Damped(Damped), .VelocityBits(VelocityBits),
+      .RelativeVelocityBits(RelativeVelocityBits), .WShift(WShift), .QShift(QShift), .DampShift(DampShift),
+      .DampIndexBits(DampIndexBits), .DampOctaves(DampOctaves), .DampDegree(DampDegree), .DampBinBits(DampBinBits),
+      .DampFirstOctave(DampFirstOctave), .DampFractionBits(DampFractionBits), .DampBits(DampBits),
+      .StrengthBits(StrengthBits), .Scaled(Scaled), .TypeBits(SomeType), .ScaleBits(ScaleBits),
+      .ScaleFrac(ScaleFrac), .KickShift(KickShift), .KickBits(KickBits), .SlotBits(SlotBits)
+    ) u_pipe (
+      .clk_i, .rst_ni, .valid_i(issue[f]), .slot_i(issue_slot[f*SlotBits +: SlotBits]),
+      .own_x_i(own[PosBits-1:0]), .own_v_i(own[VelLsb +: VelBits]), .own_type_i(own_type),
+      .other_x_i(issue_candidate[CandPos-1:0]), .other_v_i(other_v), .other_type_i(other_type),
+      .valid_o(kick_valid[f]), .slot_o(kick_slot[f*SlotBits +: SlotBits]), .kick_o(kick),
+      .fault_o(pipe_fault[f]), .fault_strength_o(pipe_fault_strength[f]),
+      .fault_number_o(pipe_fault_number[f*64 +: 64]), .busy_o(pipe_busy[f])
+    );
+    cuboct_sums #(.KickBits(KickBits), .SumBits(PipeSumBits), .Capacity(Capacity), .SlotBits(SlotBits)) u_sums (
+      .clk_i, .rst_ni, .kick_valid_i(kick_valid[f]), .kick_slot_i(kick_slot[f*SlotBits +: SlotBits]),
+      .kick_i(kick), .take_i(take), .take_slot_i(tick_slot), .sum_o(sums[f*3*PipeSumBits +: 3*PipeSumBits])
+    );
+    logic unused_own;
+    assign unused_own = ^own;
+  end
+  // One after the other: of pipe f and those before it.
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_total
+    logic [3*PipeSumBits-1:0] so_far;
+    for (genvar a = 0; a < 3; a++) begin : gen_axis
+      if (f == 0) begin : gen_first
+        assign so_far[a*PipeSumBits +: PipeSumBits] = sums[a*PipeSumBits +: PipeSumBits];
+      end else begin : gen_more
+        assign so_far[a*PipeSumBits +: PipeSumBits] = gen_total[f-1].so_far[a*PipeSumBits +: PipeSumBits]
+                                                    + sums[(3*f+a)*PipeSumBits +: PipeSumBits];
+      end
+    end
+  end
+  assign total = gen_total[ForcePipes-1].so_far;
+  logic unused_candidate;
+  assign unused_candidate = ^issue_candidate;
+
+  // Update and dump walk the slots.
+  logic [TickBits-1:0] tick_d, tick_q;
+  logic [CountBits+TickBits-1:0] tick_wide, count_wide;
+  assign tick_wide  = {{CountBits{1'b0}}, tick_q};
+  assign count_wide = {{TickBits{1'b0}}, own_count_q};
+  assign update_done = in_update && ((own_count_q == '0)
+                       || (tick_wide == count_wide + UpdateTail[CountBits+TickBits-1:0]));
+  assign dump_done   = in_dump && ((own_count_q == '0) || (tick_wide + 1'b1 == count_wide));
+  assign take        = in_update && (tick_wide < count_wide);
+  assign tick_slot   = tick_q[SlotBits-1:0];
+  always_comb begin
+    tick_d = tick_q;
+    if (in_update || in_dump) tick_d = tick_q + 1'b1;
+    if (update_done || dump_done) tick_d = '0;
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) tick_q <= '0;
+    else tick_q <= tick_d;
+  end
+
+  logic [PosBits-1:0]  new_x;
+  logic [5:0]          new_away;
+  logic [VelBits-1:0]  new_v;
+  logic [SomeType-1:0] old_type, new_type;
+  logic [IdBits-1:0]   new_id;
+  logic [DispBits-1:0] old_u, new_u;
+  logic                update_fault;
+  logic [3:0]          update_fault_code;
+  logic [63:0]         update_fault_number;
+  cuboct_update #(
+    .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
+    .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .DisplacementBits(DisplacementBits), .GainBits(GainBits),
+    .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(SlotBits), .IdBits(IdBits)
+  ) u_update (
+    .clk_i, .rst_ni, .valid_i(take), .slot_i(tick_slot), .sum_i(total),
+    .x_i(main_data[PosBits-1:0]), .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
+    .id_i(main_data[IdLsb +: IdBits]), .u_i(old_u), .valid_o(update_write), .slot_o(update_slot), .x_o(new_x),
+    .away_o(new_away), .v_o(new_v), .type_o(new_type), .id_o(new_id), .u_o(new_u), .fault_o(update_fault),
+    .fault_code_o(update_fault_code), .fault_number_o(update_fault_number)
+  );
+  assign update_data[PosBits-1:0]         = new_x;
+  assign update_data[PosBits +: 4]        = new_away[5:2];
+  assign update_data[VelLsb +: VelBits]   = new_v;
+  assign update_data[IdLsb +: IdBits]     = new_id;
+  assign update_data[ParticleBits +: 2]   = new_away[1:0];
+  if (TypeBits > 0) begin : gen_types
+    assign old_type                         = main_data[TypeLsb +: SomeType];
+    assign update_data[TypeLsb +: SomeType] = new_type;
+  end else begin : gen_one_type
+    logic unused_new_type;
+    assign unused_new_type = ^new_type;
+    assign old_type        = '0;
+  end
+  if (Pd != 0) begin : gen_displacement
+    assign old_u                                       = main_data[IdLsb + IdBits +: DispBits];
+    assign update_data[IdLsb + IdBits +: DispBits] = new_u;
+  end else begin : gen_no_displacement
+    logic unused_new_u;
+    assign unused_new_u = ^new_u;
+    assign old_u        = '0;
+  end
+
+  // Migration. leaving[a]: some own particle has to go along axis a.
+  logic [2:0]              leaving_d, leaving_q, leaving_more, axis_onehot;
+  logic [SlotBits-1:0]     migrate_read_slot;
+  logic                    fault_left, fault_full, axis_leaving;
+  logic [1:0]              axis_empty, axis_ended, axis_pop;
+  logic [2*ParticleBits-1:0] axis_arrived;
+  logic [ParticleBits-1:0] fault_particle;
+  assign axis_onehot = {axis == 2'd2, axis == 2'd1, axis == 2'd0};
+  always_comb begin
+    axis_empty   = migrate_empty[1:0];
+    axis_ended   = migrate_end[1:0];
+    axis_leaving = leaving_q[0];
+    axis_arrived = arrived[0 +: 2*ParticleBits];
+    unique case (axis)
+      2'd1: begin
+        axis_empty   = migrate_empty[3:2];
+        axis_ended   = migrate_end[3:2];
+        axis_leaving = leaving_q[1];
+        axis_arrived = arrived[2*ParticleBits +: 2*ParticleBits];
+      end
+      2'd2: begin
+        axis_empty   = migrate_empty[5:4];
+        axis_ended   = migrate_end[5:4];
+        axis_leaving = leaving_q[2];
+        axis_arrived = arrived[4*ParticleBits +: 2*ParticleBits];
+      end
+      default: begin
+        axis_empty   = migrate_empty[1:0];
+        axis_ended   = migrate_end[1:0];
+        axis_leaving = leaving_q[0];
+        axis_arrived = arrived[0 +: 2*ParticleBits];
+      end
+    endcase
+  end
+  assign migrate_pop   = {axis_pop & {2{axis_onehot[2]}}, axis_pop & {2{axis_onehot[1]}},
+                          axis_pop & {2{axis_onehot[0]}}};
+  assign migrate_clear = {{2{axis_onehot[2]}}, {2{axis_onehot[1]}}, {2{axis_onehot[0]}}} & {6{migrate_done}};
+  always_comb begin
+    leaving_d = leaving_q | leaving_more;
+    if (update_write) begin
+      leaving_d = leaving_q | {new_away[5:4] != 2'b00, new_away[3:2] != 2'b00, new_away[1:0] != 2'b00};
+    end
+    if (migrate_done) leaving_d = leaving_q & ~axis_onehot;
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) leaving_q <= '0;
+    else leaving_q <= leaving_d;
+  end
+  cuboct_migrate #(
+    .ParticleBits(ParticleBits), .PositionBits(PosBits), .LinkBits(LinkBits), .Capacity(Capacity),
+    .SlotBits(SlotBits), .CountBits(CountBits)
+  ) u_migrate (
+    .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .has_link_i(axis_has_link),
+    .leaving_i(axis_leaving), .count_i(own_count_q), .count_set_o(migrate_count_set), .count_o(migrate_count),
+    .read_slot_o(migrate_read_slot), .read_data_i(main_data), .write_o(migrate_write),
+    .write_slot_o(migrate_write_slot), .write_data_o(migrate_write_data), .leaving_more_o(leaving_more),
+    .can_load_i(axis_can_load), .load_o(migrate_load), .end_o(migrate_send_end), .data_o(migrate_beat),
+    .empty_i(axis_empty), .ended_i(axis_ended), .arrived_i(axis_arrived), .pop_o(axis_pop),
+    .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
+  );
+
+  // The main read port of the slots, and what is observed through it.
+  always_comb begin
+    main_slot = tick_slot;
+    if (in_exchange) main_slot = relay_slot;
+    else if (in_migrate) main_slot = migrate_read_slot;
+  end
+  assign observe_valid_o = (relay_first_own && (axis == 2'd0)) || (in_dump && (own_count_q != '0));
+  assign observe_data_o  = main_data[ParticleBits-1:0];
+
+  // Faults: source 0 is pipe 0, the update, or the migration, which never speak in one cycle.
+  logic [ForcePipes-1:0]        fault_valid;
+  logic [ForcePipes*4-1:0]      fault_code;
+  logic [ForcePipes*IdBits-1:0] fault_id;
+  logic [ForcePipes*64-1:0]     fault_number;
+  logic [3:0]                   migrate_fault_code;
+  assign migrate_fault_code = 4'd6 + {1'b0, axis, 1'b0} + {3'b000, fault_full};  // left, full: 6 7, 8 9, 10 11
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_fault
+    always_comb begin
+      fault_valid[f]                   = pipe_fault[f];
+      fault_code[f*4 +: 4]             = pipe_fault_strength[f] ? 4'd2 : 4'd1;
+      fault_id[f*IdBits +: IdBits]     = kick_id[f*IdBits +: IdBits];
+      fault_number[f*64 +: 64]         = pipe_fault_number[f*64 +: 64];
+      if (f == 0 && update_fault) begin
+        fault_valid[f]                 = 1'b1;
+        fault_code[f*4 +: 4]           = update_fault_code;
+        fault_id[f*IdBits +: IdBits]   = new_id;
+        fault_number[f*64 +: 64]       = update_fault_number;
+      end else if (f == 0 && in_migrate) begin
+        fault_valid[f]                 = fault_left || fault_full;
+        fault_code[f*4 +: 4]           = migrate_fault_code;
+        fault_id[f*IdBits +: IdBits]   = fault_particle[IdLsb +: IdBits];
+        fault_number[f*64 +: 64]       = fault_full ? {32'd0, Capacity} : 64'd0;
+      end
+    end
+  end
+  logic some_fault;
+  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(IdBits)) u_fault (
+    .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
+    .number_i(fault_number), .valid_o(some_fault), .code_o(fault_code_o), .id_o(fault_id_o),
+    .number_o(fault_number_o)
+  );
+  assign fault_valid_o = some_fault && step_end;
+
+  logic unused_fields;
+  assign unused_fields = ^{main_data, stream_data, fault_particle};
+endmodule

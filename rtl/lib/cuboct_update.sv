@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+// Kick, constraints and drift: one particle per cycle. Per axis
+//   dv   = sum, which must fit SumBits                        not where the type imposes the velocity
+//   dv  -= round_odd(kp * u + kd * (v - V), GainFrac)         types held by force only (Pd)
+//   v   += dv + g, which must fit VelocityBits; or v = V      where imposed
+//   u   += v - V, which must fit DisplacementBits             types held by force only
+//   x   += round_odd(v, Guard)
+// A particle accepted in cycle t is at the outputs in cycle t + Latency - 1, Latency = 3, or 6 with Pd: it is written
+// back at the edge of that cycle.
+module cuboct_update #(
+  parameter int PositionFrac     = 20,
+  parameter int Guard            = 8,
+  parameter int VelocityBits     = 29,
+  parameter int TotalBits        = 30,  // of the exact sum over all pipes
+  parameter int SumBits          = 29,  // that it must fit
+  parameter int TypeBits         = 1,   // >= 1
+  parameter int Pd               = 0,
+  parameter int DisplacementBits = 29,
+  parameter int GainBits         = 18,
+  parameter int GainFrac         = 16,
+  parameter int ConstantBits     = 29,  // of V and g
+  parameter int SlotBits         = 4,
+  parameter int IdBits           = 8
+) (
+  input  logic                          clk_i,
+  input  logic                          rst_ni,
+  input  logic                          valid_i,
+  input  logic [SlotBits-1:0]           slot_i,
+  input  logic [3*TotalBits-1:0]        sum_i,
+  input  logic [3*PositionFrac-1:0]     x_i,
+  input  logic [3*VelocityBits-1:0]     v_i,
+  input  logic [TypeBits-1:0]           type_i,
+  input  logic [IdBits-1:0]             id_i,
+  input  logic [3*DisplacementBits-1:0] u_i,           // Pd only
+  output logic                          valid_o,
+  output logic [SlotBits-1:0]           slot_o,
+  output logic [3*PositionFrac-1:0]     x_o,
+  output logic [5:0]                    away_o,        // per axis 2 bits, -1, 0, +1: the node that x is in
+  output logic [3*VelocityBits-1:0]     v_o,
+  output logic [TypeBits-1:0]           type_o,
+  output logic [IdBits-1:0]             id_o,
+  output logic [3*DisplacementBits-1:0] u_o,
+  output logic                          fault_o,
+  output logic [3:0]                    fault_code_o,  // 3 sum, 4 displacement, 5 velocity
+  output logic signed [63:0]            fault_number_o
+);
+  // Stage 1: operands. Stage VStage-1 holds what v is made of; v at VStage; the outputs are made in stage VStage.
+  localparam int VStage   = (Pd != 0) ? 5 : 2;
+  // Wide enough for every sum below: four terms, none wider than PullBits after its rounding.
+  localparam int PullBits = (Pd != 0) ? GainBits + DisplacementBits + 2 : 1;
+  localparam int MaxVs    = (VelocityBits > SumBits) ? VelocityBits : SumBits;
+  localparam int MaxCp    = (ConstantBits > PullBits) ? ConstantBits : PullBits;
+  localparam int WideBits = ((MaxVs > MaxCp) ? MaxVs : MaxCp) + 4;
+
+  logic [VStage:1] valid_d, valid_q;
+  assign valid_d = {valid_q[VStage-1:1], valid_i};
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) valid_q <= '0;
+    else valid_q <= valid_d;
+  end
+  assign valid_o = valid_q[VStage];
+
+  logic [3*PositionFrac-1:0] x_last;
+  logic [TypeBits-1:0]       type_1;
+  cuboct_delay #(.Bits(SlotBits), .Depth(VStage)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_o));
+  cuboct_delay #(.Bits(IdBits), .Depth(VStage)) u_id (.clk_i, .d_i(id_i), .q_o(id_o));
+  cuboct_delay #(.Bits(3*PositionFrac), .Depth(VStage)) u_x (.clk_i, .d_i(x_i), .q_o(x_last));
+  cuboct_delay #(.Bits(TypeBits), .Depth(1)) u_type (.clk_i, .d_i(type_i), .q_o(type_1));
+  cuboct_delay #(.Bits(TypeBits), .Depth(VStage - 1)) u_type_late (.clk_i, .d_i(type_1), .q_o(type_o));
+
+  logic [2:0]                imposed;     // of type_1
+  logic [3*ConstantBits-1:0] to_go, gravity;
+  logic                      held;
+  logic [GainBits-1:0]       kp, kd;
+  cuboct_type_rom u_type_rom (
+    .type_i(type_1), .imposed_o(imposed), .velocity_o(to_go), .gravity_o(gravity), .pd_o(held), .kp_o(kp),
+    .kd_o(kd)
+  );
+
+  logic [2:0]         bad_sum, bad_u, bad_v;                       // with the outputs
+  logic [3*64-1:0]    sum_number, u_number, v_number;
+
+  for (genvar a = 0; a < 3; a++) begin : gen_axis
+    // Check of the sum.
+    logic signed [TotalBits-1:0] sum_1, sum_again;
+    logic signed [SumBits-1:0]   dv_1;
+    logic                        imposed_1, bad_1;
+    logic signed [WideBits-1:0]  dv_wide, g_wide, to_go_wide, v_wide_1;
+    logic signed [VelocityBits-1:0] v_1;
+    cuboct_delay #(.Bits(TotalBits), .Depth(1)) u_sum (
+      .clk_i, .d_i(sum_i[a*TotalBits +: TotalBits]), .q_o(sum_1)
+    );
+    cuboct_delay #(.Bits(VelocityBits), .Depth(1)) u_v (
+      .clk_i, .d_i(v_i[a*VelocityBits +: VelocityBits]), .q_o(v_1)
+    );
+    cuboct_resize #(.InBits(TotalBits), .OutBits(SumBits)) u_dv (.a_i(sum_1), .y_o(dv_1));
+    cuboct_resize #(.InBits(SumBits), .OutBits(TotalBits)) u_again (.a_i(dv_1), .y_o(sum_again));
+    assign imposed_1 = imposed[a];
+    assign bad_1     = !imposed_1 && (TotalBits > SumBits) && (sum_again != sum_1);
+    cuboct_resize #(.InBits(SumBits), .OutBits(WideBits)) u_dv_wide (.a_i(dv_1), .y_o(dv_wide));
+    cuboct_resize #(.InBits(ConstantBits), .OutBits(WideBits)) u_g_wide (
+      .a_i($signed(gravity[a*ConstantBits +: ConstantBits])), .y_o(g_wide)
+    );
+    cuboct_resize #(.InBits(ConstantBits), .OutBits(WideBits)) u_to_go_wide (
+      .a_i($signed(to_go[a*ConstantBits +: ConstantBits])), .y_o(to_go_wide)
+    );
+    cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_wide (.a_i(v_1), .y_o(v_wide_1));
+
+    // What v becomes, before its check, and what the check needs; stage VStage-1.
+    logic signed [WideBits-1:0] plain, v_free, v_imposed;
+    logic                       imposed_v, bad_sum_v;
+    logic signed [TotalBits-1:0] sum_v;
+    assign plain = v_wide_1 + dv_wide + g_wide;
+
+    if (Pd != 0) begin : gen_pd
+      localparam int ErrorBits = ((VelocityBits > ConstantBits) ? VelocityBits : ConstantBits) + 1;
+      localparam int KpBits    = GainBits + DisplacementBits;
+      localparam int KdBits    = GainBits + ErrorBits;
+      localparam int SpringBits = ((KpBits > KdBits) ? KpBits : KdBits) + 1;
+
+      // Stage 2: the error of the velocity. 3: products. 4: their rounded sum is subtracted.
+      logic signed [DisplacementBits-1:0] u_2, u_last;
+      logic signed [ErrorBits-1:0] error_d, error_2;
+      logic signed [KpBits-1:0]    spring;
+      logic signed [KdBits-1:0]    drag;
+      logic signed [SpringBits-1:0]  pull_sum;
+      logic signed [WideBits-1:0]  pull, v_d, v_q;
+      logic signed [GainBits-1:0]  kp_2, kd_2;
+      logic                        held_3;
+      logic signed [WideBits-1:0]  plain_3, to_go_last;
+      logic                        held_last;
+      cuboct_delay #(.Bits(DisplacementBits), .Depth(2)) u_u2 (
+        .clk_i, .d_i(u_i[a*DisplacementBits +: DisplacementBits]), .q_o(u_2)
+      );
+      cuboct_delay #(.Bits(DisplacementBits), .Depth(3)) u_u_last (.clk_i, .d_i(u_2), .q_o(u_last));
+      cuboct_resize #(.InBits(WideBits), .OutBits(ErrorBits)) u_error (.a_i(v_wide_1 - to_go_wide), .y_o(error_d));
+      cuboct_delay #(.Bits(ErrorBits), .Depth(1)) u_error2 (.clk_i, .d_i(error_d), .q_o(error_2));
+      cuboct_delay #(.Bits(2 * GainBits), .Depth(1)) u_gain2 (.clk_i, .d_i({kd, kp}), .q_o({kd_2, kp_2}));
+      cuboct_mult #(.ABits(GainBits), .BBits(DisplacementBits)) u_spring (
+        .clk_i, .en_i(valid_q[2]), .a_i(kp_2), .b_i(u_2), .p_o(spring)
+      );
+      cuboct_mult #(.ABits(GainBits), .BBits(ErrorBits)) u_drag (
+        .clk_i, .en_i(valid_q[2]), .a_i(kd_2), .b_i(error_2), .p_o(drag)
+      );
+      assign pull_sum = $signed({{(SpringBits - KpBits) {spring[KpBits-1]}}, spring})
+                      + $signed({{(SpringBits - KdBits) {drag[KdBits-1]}}, drag});
+      cuboct_round_odd #(.InBits(SpringBits), .Shift(GainFrac), .OutBits(WideBits)) u_pull (
+        .a_i(pull_sum), .y_o(pull)
+      );
+      cuboct_delay #(.Bits(WideBits + 1), .Depth(2)) u_plain3 (
+        .clk_i, .d_i({held, plain}), .q_o({held_3, plain_3})
+      );
+      assign v_d = plain_3 - (held_3 ? pull : '0);
+      always_ff @(posedge clk_i) v_q <= v_d;
+      assign v_free = v_q;
+      cuboct_delay #(.Bits(TotalBits + WideBits + 2), .Depth(3)) u_rest (
+        .clk_i, .d_i({imposed_1, bad_1, sum_1, to_go_wide}), .q_o({imposed_v, bad_sum_v, sum_v, v_imposed})
+      );
+
+      // The displacement, with the outputs.
+      logic signed [WideBits-1:0]         u_wide, u_full, u_back, v_out_wide;
+      logic signed [DisplacementBits-1:0] u_new;
+      cuboct_delay #(.Bits(WideBits), .Depth(1)) u_to_go_last (.clk_i, .d_i(v_imposed), .q_o(to_go_last));
+      cuboct_delay #(.Bits(1), .Depth(2)) u_held_last (.clk_i, .d_i(held_3), .q_o(held_last));
+      cuboct_resize #(.InBits(DisplacementBits), .OutBits(WideBits)) u_u_wide (.a_i(u_last), .y_o(u_wide));
+      cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_out (
+        .a_i($signed(v_o[a*VelocityBits +: VelocityBits])), .y_o(v_out_wide)
+      );
+      assign u_full = u_wide + v_out_wide - to_go_last;
+      cuboct_resize #(.InBits(WideBits), .OutBits(DisplacementBits)) u_u_new (.a_i(u_full), .y_o(u_new));
+      cuboct_resize #(.InBits(DisplacementBits), .OutBits(WideBits)) u_u_back (.a_i(u_new), .y_o(u_back));
+      assign u_o[a*DisplacementBits +: DisplacementBits] = held_last ? u_new : u_last;
+      assign bad_u[a] = held_last && (u_back != u_full);
+      cuboct_resize #(.InBits(WideBits), .OutBits(64)) u_u_number (.a_i(u_full), .y_o(u_number[a*64 +: 64]));
+    end else begin : gen_free
+      assign v_free    = plain;
+      assign imposed_v = imposed_1;
+      assign bad_sum_v = bad_1;
+      assign sum_v     = sum_1;
+      assign v_imposed = to_go_wide;
+      assign bad_u[a]  = 1'b0;
+      assign u_number[a*64 +: 64] = '0;
+      assign u_o[a*DisplacementBits +: DisplacementBits] = '0;
+      logic unused_pd;
+      assign unused_pd = ^{u_i[a*DisplacementBits +: DisplacementBits], held, kp, kd};
+    end
+
+    // Stage VStage: v, checked; then the drift.
+    logic signed [WideBits-1:0]     v_new_wide, v_back, v_wide_q;
+    logic signed [VelocityBits-1:0] v_new, v_q;
+    logic                           bad_v_q, bad_sum_q;
+    logic signed [TotalBits-1:0]    sum_q;
+    logic signed [PositionFrac+1:0] drift, moved;
+    assign v_new_wide = imposed_v ? v_imposed : v_free;
+    cuboct_resize #(.InBits(WideBits), .OutBits(VelocityBits)) u_v_new (.a_i(v_new_wide), .y_o(v_new));
+    cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_back (.a_i(v_new), .y_o(v_back));
+    always_ff @(posedge clk_i) begin
+      if (valid_q[VStage-1]) begin
+        v_q       <= v_new;
+        v_wide_q  <= v_new_wide;
+        bad_v_q   <= !imposed_v && (v_back != v_new_wide);
+        bad_sum_q <= bad_sum_v;
+        sum_q     <= sum_v;
+      end
+    end
+    assign bad_sum[a] = bad_sum_q;
+    assign bad_v[a]   = bad_v_q;
+    cuboct_resize #(.InBits(TotalBits), .OutBits(64)) u_sum_number (.a_i(sum_q), .y_o(sum_number[a*64 +: 64]));
+    cuboct_resize #(.InBits(WideBits), .OutBits(64)) u_v_number (.a_i(v_wide_q), .y_o(v_number[a*64 +: 64]));
+
+    cuboct_round_odd #(.InBits(VelocityBits), .Shift(Guard), .OutBits(PositionFrac + 2)) u_drift (
+      .a_i(v_q), .y_o(drift)
+    );
+    assign moved = $signed({2'b00, x_last[a*PositionFrac +: PositionFrac]}) + drift;
+    assign x_o[a*PositionFrac +: PositionFrac]    = moved[PositionFrac-1:0];
+    assign away_o[a*2 +: 2]                       = moved[PositionFrac+1:PositionFrac];
+    assign v_o[a*VelocityBits +: VelocityBits] = v_q;
+  end
+
+  // The least fault; of one kind, that of the first axis.
+  always_comb begin
+    fault_o        = valid_o && ((bad_sum | bad_u | bad_v) != 3'b000);
+    fault_code_o   = 4'd5;
+    fault_number_o = bad_v[0] ? v_number[0*64 +: 64] : bad_v[1] ? v_number[1*64 +: 64] : v_number[2*64 +: 64];
+    if (bad_u != 3'b000) begin
+      fault_code_o   = 4'd4;
+      fault_number_o = bad_u[0] ? u_number[0*64 +: 64] : bad_u[1] ? u_number[1*64 +: 64] : u_number[2*64 +: 64];
+    end
+    if (bad_sum != 3'b000) begin
+      fault_code_o   = 4'd3;
+      fault_number_o = bad_sum[0] ? sum_number[0*64 +: 64] : bad_sum[1] ? sum_number[1*64 +: 64] : sum_number[2*64 +: 64];
+    end
+  end
+endmodule
