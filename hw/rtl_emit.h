@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// The RTL generator: a plan becomes a self-contained SystemVerilog project.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "hw/plan.h"
+#include "model/state.h"
+
+namespace cuboct {
+
+// Writes into `dir` (created; must be empty or hold an earlier emission): rtl/ (library modules and what is
+// generated: cuboct_pkg.sv, tables, cuboct_node.sv, cuboct_lattice.sv), bench/ with vectors of `vector_steps`
+// steps from golden, files.f, README.md. Same plan, same bytes. Throws InputError.
+void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps);
+
+// The node alone (rtl/ without lattice and bench), for the Verilated engine.
+void emit_node(const Plan& plan, const std::string& dir);
+
+}  // namespace cuboct
