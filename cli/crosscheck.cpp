@@ -133,7 +133,9 @@ void add_crosscheck(CLI::App& app, int& exit_code) {
   command->add_option("--engines", options->engines, "which ones; default: golden,systemc,rtl")
       ->delimiter(',')
       ->type_name("A,B,...");
-  auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")->type_name("N");
+  auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
+                    ->check(CLI::NonNegativeNumber)
+                    ->type_name("N");
   command->add_option("--out", options->out, "directory that keeps each engine's trace")->type_name("DIR");
   command->callback([options, steps, &exit_code] {
     options->steps_given = steps->count() > 0;

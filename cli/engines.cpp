@@ -49,6 +49,7 @@ RunningEngine::RunningEngine(const std::string& engine, const Input& input, cons
   if (!request.frames.empty())
     arguments.insert(arguments.end(), {"--frames", fmt::format("{}", fmt::join(request.frames, ","))});
   if (progress) arguments.push_back("--progress");
+  std::filesystem::remove(path);  // what is found there afterwards is this run's
   state_ = std::make_shared<State>(State{program, std::move(path), Process(program, arguments)});
 }
 
@@ -56,6 +57,8 @@ Trace RunningEngine::finish() {
   const int code = state_->process.wait();
   const std::string name = std::filesystem::path(state_->program).filename().string();
   if (code == 2) throw AlreadyTold(2);
+  // Exit code 1 with a trace: the run had to stop, and the trace says why.
+  if (code == 1 && std::filesystem::exists(state_->path)) return read_trace(state_->path);
   if (code < 0)
     throw std::runtime_error(fmt::format("{} was ended by signal {} ({})", name, -code, strsignal(-code)));
   if (code != 0) throw std::runtime_error(fmt::format("{} ended with exit code {}", name, code));

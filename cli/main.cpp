@@ -52,9 +52,7 @@ int main_of(int argc, char** argv) {
   add_check(app, exit_code);
   add_run(app, exit_code);
   add_crosscheck(app, exit_code);
-#ifdef CUBOCT_EMIT
   add_emit(app, exit_code);
-#endif
   add_report(app, exit_code);
   try {
     check_words(app, {argv + 1, argv + argc});

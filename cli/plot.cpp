@@ -73,7 +73,7 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
 
 std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
                           const std::string& bar_label, double low, double high) {
-  constexpr int kLabel = 30, kBar = 84;
+  constexpr int kLabel = 30, kBar = 96;
   const Scratch scratch;
   const int width = pictures[0].width, row = pictures[0].height + kLabel;
   const int height = static_cast<int>(pictures.size()) * row + kBar;
@@ -95,15 +95,15 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
         y(top + kLabel), y(top + row), labels[i], y(top + kLabel / 2), width - 1, pictures[i].height - 1,
         name, width, pictures[i].height);
   }
-  Image bar{256, 1, {}};
-  for (int k = 0; k < 256; ++k) bar.pixels.push_back(viridis(k / 255.0));
+  Image bar{256, 2, {}};  // gnuplot draws no image of one row
+  for (int k = 0; k < 512; ++k) bar.pixels.push_back(viridis(k % 256 / 255.0));
   write_raw(scratch.path("bar"), bar);
   script += fmt::format(
       "unset label 1\nset lmargin at screen 0.25\nset rmargin at screen 0.75\n"
       "set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\n"
       "set border 15 lc '#444444'\nset xtics out nomirror\nset xlabel '{}'\n"
       "set xrange [{:.9g}:{:.9g}]\nset yrange [0:1]\n"
-      "plot '{}' binary array=(256,1) format='%uchar' dx={:.9g} dy=1 origin=({:.9g},0.5) using 1:2:3 with "
+      "plot '{}' binary array=(256,2) format='%uchar' dx={:.9g} dy=1 origin=({:.9g},0) using 1:2:3 with "
       "rgbimage\n"
       "unset multiplot\n",
       y(height - kBar + 14), y(height - kBar + 32), bar_label, low, high, scratch.path("bar"),

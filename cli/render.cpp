@@ -34,13 +34,19 @@ View view_of(const Vec3& lower, const Vec3& upper, int width, int& height) {
   axes(0, order[0]) = 1;
   axes(1, order[1]) = 1;
   axes.row(2) = axes.row(0).cross(axes.row(1));
-  // Turned by 20 degrees about the vertical, then tipped by 28 towards the eye: the faces to the side show.
-  const double yaw = 20 * M_PI / 180, tip = 28 * M_PI / 180;
+  // Turned by 24 degrees about the vertical and tipped by 30 towards the eye, so that three faces show, then
+  // rolled until the longest axis lies level again.
+  const double yaw = 24 * M_PI / 180, tip = 30 * M_PI / 180;
   Mat3 about_up, about_right;
   about_up << std::cos(yaw), 0, std::sin(yaw), 0, 1, 0, -std::sin(yaw), 0, std::cos(yaw);
   about_right << 1, 0, 0, 0, std::cos(tip), -std::sin(tip), 0, std::sin(tip), std::cos(tip);
   View view;
   view.turn = about_right * about_up * axes;
+  const Vec3 longest = view.turn.col(order[0]);
+  const double roll = -std::atan2(longest[1], longest[0]);
+  Mat3 about_eye;
+  about_eye << std::cos(roll), -std::sin(roll), 0, std::sin(roll), std::cos(roll), 0, 0, 0, 1;
+  view.turn = about_eye * view.turn;
   view.centre = (lower + upper) / 2;
   const Vec3 seen = view.turn.cwiseAbs() * extent;
   view.scale = 0.97 * width / seen[0];
@@ -75,7 +81,7 @@ Image render(const std::vector<Vec3>& x, const std::vector<Colour>& colour, doub
         depth[pixel] = z;
         // Ambient and diffuse light, darker towards the rim so that neighbours stand apart, and a faint
         // highlight.
-        const double lit = (0.42 + 0.62 * std::max(0.0, normal.dot(light))) * (0.55 + 0.45 * normal[2]);
+        const double lit = (0.62 + 0.58 * std::max(0.0, normal.dot(light))) * (0.62 + 0.38 * normal[2]);
         const double shine = 50 * std::pow(std::max(0.0, normal.dot(half)), 40);
         for (int c = 0; c < 3; ++c)
           fine[pixel][c] = static_cast<float>(std::min(255.0, colour[i][c] * lit + shine));

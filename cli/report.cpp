@@ -55,21 +55,18 @@ size_t nearest_frame(const Trace& trace, uint64_t step) {
   return best;
 }
 
-// Four frames that tell the story: the start, the largest stress, the break (the first sample after it below
-// a tenth of it), the end; where those fall together or no stress was measured, evenly spread ones.
+// Four frames that tell the story: the start, the largest stress, a quarter of the way from there to the end,
+// the end; where those fall together or no stress was measured, evenly spread ones.
 std::vector<size_t> choose_frames(const Trace& trace) {
-  std::set<size_t> chosen{0, trace.frames.size() - 1};
+  const size_t last = trace.frames.size() - 1;
+  std::set<size_t> chosen{0, last};
   if (const auto tension = tension_of(trace)) {
-    const auto& stress = tension->stress->value;
-    chosen.insert(nearest_frame(trace, tension->stress->step[tension->peak]));
-    for (size_t k = tension->peak; k < stress.size(); ++k)
-      if (stress[k] < 0.1 * stress[tension->peak]) {
-        chosen.insert(nearest_frame(trace, tension->stress->step[k]));
-        break;
-      }
+    const size_t peak = nearest_frame(trace, tension->stress->step[tension->peak]);
+    chosen.insert(peak);
+    chosen.insert(peak + (last - peak) / 4);
   }
   for (size_t k = 1; k <= 2; ++k)
-    if (chosen.size() < 4) chosen.insert(k * (trace.frames.size() - 1) / 3);
+    if (chosen.size() < 4) chosen.insert(k * last / 3);
   return {chosen.begin(), chosen.end()};
 }
 
