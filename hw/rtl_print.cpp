@@ -114,7 +114,7 @@ std::string print_table(const RtlDesign& design, const RtlTable& table) {
 }
 
 std::string print_scale(const RtlDesign& design) {
-  const int t = design.type_bits;
+  const int t = std::max(1, design.type_bits);  // one type may still have a scale below 1
   std::string text = head(design);
   text += fmt::format(
       "// What a pair of types multiplies its strength by, ScaleFrac fractional bits. Combinational.\n"

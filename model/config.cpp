@@ -27,6 +27,7 @@ struct ConfigNode {
   double real = 0;
   std::string text;
   std::vector<ConfigNode> items;  // elements of an array, or the fields of a table in the order of the file
+  mutable std::string alias;      // instead of the path, for the recorder
   mutable std::set<std::string> asked;
   mutable bool opened = false;  // a table that someone reads
 };
@@ -254,9 +255,8 @@ bool ConfigTable::has(const std::string& key) const { return find(key).has_value
 std::optional<ConfigValue> ConfigTable::find(const std::string& key) const {
   node_->asked.insert(key);
   if (recorder != nullptr) {
-    // Shapes nest without end; their keys are the same everywhere.
-    const bool shape = node_->asked.contains("shape");
-    recorder->insert(shape ? "shape." + key : node_->path.empty() ? key : node_->path + "." + key);
+    const std::string& table = node_->alias.empty() ? node_->path : node_->alias;
+    recorder->insert(table.empty() ? key : table + "." + key);
   }
   const ConfigNode* found = field(*node_, key);
   if (found == nullptr) return std::nullopt;
@@ -349,6 +349,8 @@ void ConfigTable::not_both(const std::string& a, const std::string& b) const {
   const auto second = find(b);
   if (find(a) && second) second->fail(fmt::format("give '{}' or '{}', not both", a, b));
 }
+
+void ConfigTable::record_as(const std::string& name) const { node_->alias = name; }
 
 void ConfigTable::done() const { check_asked(*file_, *node_); }
 

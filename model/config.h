@@ -107,6 +107,8 @@ class ConfigTable : public ConfigValue {
   std::vector<std::string> names() const;
   // At most one of the two may be there.
   void not_both(const std::string& a, const std::string& b) const;
+  // The name under which record_config_keys notes this table, where tables of one kind stand in many places.
+  void record_as(const std::string& name) const;
   // Error at the first key that no one asked for, in this table and the tables within that were opened.
   void done() const;
 };
@@ -117,8 +119,8 @@ ConfigTable read_config(const std::string& path);
 // The same for text in memory; `path` stands in messages.
 ConfigTable parse_config(const std::string& text, const std::string& path);
 
-// Every key that anyone has asked for since `keys` was given, as "table.key" with "shape" for any shape's
-// table; null stops. For the test that compares the reader with its documentation.
+// Every key that anyone has asked for since `keys` was given, as "table.key"; null stops. For the test that
+// compares readers with their documentation.
 void record_config_keys(std::set<std::string>* keys);
 
 }  // namespace cuboct

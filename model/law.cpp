@@ -255,7 +255,7 @@ const std::vector<Preset>& presets() {
   static const std::vector<Preset> table = {
       // name        peak (strength)      end of the plateau   hump (hardness)
       {"elastic", {{1.20, peak(0.20)}, {1.350, 0.004}}},
-      {"brittle", {{1.06, peak(0.06)}, {1.180, 0.030}}},
+      {"brittle", {{1.06, peak(0.06)}, {1.160, 0.006}}},
       {"ductile", {{1.09, peak(0.09)}, {1.270, -0.050}, {1.350, 0.006}}},
       {"viscous", {{1.03, peak(0.03)}}},
   };

@@ -126,6 +126,7 @@ ShapePtr read_placement(const ConfigTable& t, ShapePtr shape) {
 }  // namespace
 
 ShapePtr read_shape(const ConfigTable& table) {
+  table.record_as("shape");
   using Reader = std::function<ShapePtr(const ConfigTable&)>;
   const std::vector<std::pair<std::string, Reader>> readers = {
       {"sphere", read_sphere},

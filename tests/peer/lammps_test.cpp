@@ -28,6 +28,8 @@ struct Space {
 const Space kSpaces[] = {
     {"periodic", {true, true, true}}, {"open", {false, false, false}}, {"slab", {true, true, false}}};
 
+void PrintTo(const Space& space, std::ostream* out) { *out << space.name; }
+
 struct System {
   Body body;
   Periodic box;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <numbers>
 #include <unsupported/Eigen/Splines>
 
@@ -42,7 +44,7 @@ std::vector<Named> all_laws() {
   laws.push_back({"b_spline", spline_law(kR, kF, Interpolation::b_spline, 0.5), joints});
   for (const char* name : {"elastic", "brittle", "ductile", "viscous"}) {
     std::vector<double> at{0, 0.5};
-    for (const double r : {1.0, 1.03, 1.06, 1.09, 1.18, 1.20, 1.27, 1.35, std::numbers::sqrt2})
+    for (const double r : {1.0, 1.03, 1.06, 1.09, 1.16, 1.20, 1.27, 1.35, std::numbers::sqrt2})
       at.push_back(r);
     laws.push_back({name, preset_law(name, 1.0, 1.0), at});
   }
@@ -191,6 +193,8 @@ TEST(Preset, IsAtRestAtThePitchAndEndsSoftlyAtTheSecondNeighbours) {
     EXPECT_EQ(law->cutoff(), end) << name;
     EXPECT_NEAR(law->force(end * (1 - 1e-7)), 0, 1e-10 * k * pitch) << name;
     EXPECT_NEAR(law->slope(end * (1 - 1e-7)), 0, 1e-4 * k) << name;
+    // Bound: parting two particles costs energy, so a surface does.
+    EXPECT_LT(law->energy(pitch), 0) << name;
     // Nothing is stiffer than the bond at the pitch where it resists, or largest_frequency would not be its
     // own.
     double steepest = 0;
@@ -225,10 +229,25 @@ TEST(Preset, DiffersInStrengthRangeAndHardness) {
   EXPECT_GT(ductile.range, 1.32);
   EXPECT_GT(elastic.range, 1.33);
   EXPECT_GT(viscous.range, 1.41);
-  EXPECT_NEAR(brittle.hump, 0.03, 1e-6);
+  EXPECT_NEAR(brittle.hump, 0.006, 1e-6);
   EXPECT_NEAR(elastic.hump, 0.004, 1e-6);
   EXPECT_NEAR(ductile.hump, 0.006, 1e-6);
   EXPECT_EQ(viscous.hump, 0);
+}
+
+// The manual's table of the points is the code's.
+TEST(Preset, IsAsDocumented) {
+  std::ifstream manual(CUBOCT_SOURCE_DIR "/docs/reference/physics.md");
+  int points = 0;
+  for (std::string line; std::getline(manual, line);) {
+    char name[16];
+    double r, f;
+    if (std::sscanf(line.c_str(), "| %15s | %lf | %lf |", name, &r, &f) != 3) continue;
+    EXPECT_NEAR(preset_law(name, 1, 1)->force(r), f, 1e-12) << line;
+    EXPECT_NEAR(preset_law(name, 1, 1)->slope(r), 0, 1e-12) << line;
+    ++points;
+  }
+  EXPECT_EQ(points, 8);
 }
 
 TEST(Law, RefusesWithNumbers) {

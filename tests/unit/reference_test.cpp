@@ -261,6 +261,29 @@ TEST(Reference, LeapfrogIsStableUpToTheLargestFrequency) {
   EXPECT_GT(energy_after(1.01 * limit), 1e12);
 }
 
+// Damping by the velocity of the half step before lowers the limit. A mode of frequency w and damping rate g
+// steps by z^2 - (2 - w^2 dt^2 - g dt) z + 1 - g dt = 0; |z| <= 1 down to z = -1, where w^2 dt^2 + 2 g dt
+// = 4. Nearest neighbours alone are damped as they are bound, so g = (c/k) w^2 in every mode, with c =
+// c(pitch) = coefficient/4.
+TEST(Reference, DampingLowersTheLimit) {
+  const auto law = preset_law("elastic", 1, 1);
+  Rule rule = test::simple_rule(law, 1, 0);
+  rule.damping.coefficient = 1;
+  const double w2 = 8, g = 8 * rule.damping.coefficient / 4;
+  const double limit = (-g + std::sqrt(g * g + 4 * w2)) / w2;
+  EXPECT_LT(limit, 0.8 * 2 / largest_frequency(*law, 1, 1));
+  const auto energy_after = [&](double dt) {
+    Body body = test::fcc_block(4, 1);
+    test::shake(body, 1e-9, 0, 3);
+    rule.dt = dt;
+    Reference run(rule, body, test::fcc_box(4, 1), semi_implicit_euler);
+    run.step(400);
+    return run.kinetic_energy() / 1e-18;
+  };
+  EXPECT_LT(energy_after(0.99 * limit), 1e2);
+  EXPECT_GT(energy_after(1.01 * limit), 1e6);
+}
+
 // NVE: the energy of velocity Verlet fluctuates as dt^2, that of semi-implicit Euler's half-step velocities
 // as dt. The cutoff lies midway between two shells and the crystal is cold, so that no pair crosses it and
 // the energy is smooth.

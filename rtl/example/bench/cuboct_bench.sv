@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Made by cuboct emit from plan 9b84c320cd1649dc; do not edit.
+// Made by cuboct emit from plan 51d72f21d7820c0e; do not edit.
 // Loads the lattice, runs Steps steps and compares every particle that a node observes with golden's.
 `timescale 1ns / 1ns
 module cuboct_bench;

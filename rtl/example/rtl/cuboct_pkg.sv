@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Made by cuboct emit from plan 9b84c320cd1649dc; do not edit.
+// Made by cuboct emit from plan 51d72f21d7820c0e; do not edit.
 // The constants of the plan; docs/reference/node.md says what each is.
 package cuboct_pkg;
   localparam int          Capacity             = 8;             // particles per node
@@ -14,7 +14,7 @@ package cuboct_pkg;
   localparam int          Guard                = 8;             // v has PositionFrac + Guard fractional bits
   localparam int          VelocityBits         = 29;
   localparam int          RelativeVelocityBits = 18;
-  localparam int          StrengthBits         = 22;            // s, and the entries of the tables
+  localparam int          StrengthBits         = 21;            // s, and the entries of the tables
   localparam int          SumBits              = 29;            // a particle's summed kick
   localparam int          DisplacementBits     = 29;
   localparam int          ScaleFrac            = 16;            // fractional bits of the pair scales
@@ -26,7 +26,7 @@ package cuboct_pkg;
   localparam int          WShift               = 8;
   localparam int          QShift               = 17;
   localparam int          DampShift            = 0;
-  localparam int          KickShift            = 12;
+  localparam int          KickShift            = 11;
   localparam logic [63:0] Cutoff2              = 64'h100000000;  // in units of r2
   localparam logic [63:0] PlanarOne            = 64'hffff;      // in units of d
   localparam logic [63:0] PlanarTwo            = 64'h16a09;
@@ -37,7 +37,7 @@ package cuboct_pkg;
   localparam int          BinBits              = 0;
   localparam int          FirstOctave          = 0;
   localparam int          FractionBits         = 17;
-  localparam int          ForceBits            = 22;            // that hold every value of the force table
+  localparam int          ForceBits            = 21;            // that hold every value of the force table
   localparam int          Damped               = 0;
   localparam int          Scaled               = 0;             // pair scales differ
   localparam int          Pd                   = 0;             // some type is held by force

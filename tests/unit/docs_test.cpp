@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// The reference pages of the file formats and the readers name the same keys.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "hw/arch.h"
+#include "model/config.h"
+#include "model/error.h"
+#include "model/scene.h"
+
+namespace cuboct {
+namespace {
+
+const std::string kRoot = CUBOCT_SOURCE_DIR;
+
+std::string text_of(const std::string& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// The sections "## `[name]`..." of a page, the top level under "Top level" and what precedes it; section by
+// name.
+std::map<std::string, std::string> sections(const std::string& page) {
+  std::map<std::string, std::string> result;
+  std::istringstream lines(page);
+  std::string line;
+  std::vector<std::string> current{""};
+  while (std::getline(lines, line)) {
+    if (line.starts_with("## ")) {
+      current.clear();
+      static const std::regex bracketed(R"(`\[+([a-z]+)\]+`)");
+      for (std::sregex_iterator i(line.begin(), line.end(), bracketed), end; i != end; ++i)
+        current.push_back((*i)[1]);
+      if (current.empty()) current.push_back("");
+    }
+    for (const std::string& section : current) result[section] += line + "\n";
+  }
+  return result;
+}
+
+std::string in_code(const std::string& key) { return "`" + key + "`"; }
+
+// `key` in code type somewhere in its section.
+void expect_documented(const std::string& page, const std::set<std::string>& asked) {
+  const auto in = sections(page);
+  for (const std::string& path : asked) {
+    const size_t dot = path.rfind('.');
+    const std::string section = dot == std::string::npos ? "" : path.substr(0, dot);
+    const std::string key = path.substr(dot == std::string::npos ? 0 : dot + 1);
+    if (section == "regions") continue;  // names that the user chose
+    if (section.find("rotate") != std::string::npos) continue;
+    // Tables are documented by their own section.
+    if (section.empty() && in.contains(key)) continue;
+    const std::string where = section == "shape" ? "geometry" : section;
+    ASSERT_TRUE(in.contains(where)) << path;
+    EXPECT_NE(in.at(where).find(in_code(key)), std::string::npos) << path << " is read but not documented";
+  }
+}
+
+// First cells of the tables, `a`, `b`: what the page says there is. Cells with a value such as `sphere` are
+// named by the heading of their column, which then is no "key".
+std::set<std::string> documented(const std::string& page) {
+  std::set<std::string> keys;
+  for (const auto& [section, text] : sections(page)) {
+    bool of_keys = false;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("|")) of_keys = false;
+      if (line.starts_with("| key")) of_keys = true;
+      if (!of_keys || line.starts_with("| key") || line.starts_with("|-")) continue;
+      const std::string cell = line.substr(2, line.find(" |", 2) - 2);
+      static const std::regex name("`([a-z_]+)`");
+      for (std::sregex_iterator i(cell.begin(), cell.end(), name), end; i != end; ++i)
+        keys.insert(section.empty() ? (*i)[1].str() : section + "." + (*i)[1].str());
+    }
+  }
+  return keys;
+}
+
+// All keys that readers ask for, over scenes that between them take every branch.
+std::set<std::string> scene_keys() {
+  const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_test.toml";
+  std::set<std::string> keys;
+  record_config_keys(&keys);
+  for (const auto& entry : std::filesystem::directory_iterator(kRoot + "/scenes"))
+    if (entry.path().extension() == ".toml") read_scene(entry.path().string());
+  const std::string lengths = "r = [0, 1, 2]\nforce = [1, 0, 0]\ncore = 0.5\n";
+  const std::string reduced = "units = \"reduced\"\nmass = 1\n";
+  const std::string run = "[run]\ndt = 0.01\nsteps = 1\n";
+  for (const std::string shape :
+       {"shape = \"box\"\nmin = [-9, -9, -9]\nmax = [9, 9, 9]\n", "shape = \"sphere\"\nradius = 9\n",
+        "shape = \"cylinder\"\nradius = 9\nlength = 9\n",
+        "shape = \"capsule\"\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nradius = 9\n",
+        "shape = \"extrude\"\nx = [-9, 9, 0]\ny = [-9, -9, 9]\nthickness = 9\n",
+        "shape = \"half_space\"\nnormal = \"z\"\n",
+        "shape = \"astm_d638\"\nlength = 90\nwidth = 20\nthickness = 9\nnarrow_length = 9\nnarrow_width = "
+        "9\nfillet_radius = 20\n",
+        "shape = \"union\"\nof = [ { shape = \"sphere\", radius = 9 } ]\n",
+        "shape = \"difference\"\nfrom = { shape = \"sphere\", radius = 9 }\nminus = [ { shape = \"sphere\", "
+        "radius = 0.5, centre = [5, 0, 0] } ]\n"
+        "rotate = { axis = \"x\", angle = 0.1 }\n"}) {
+    std::ofstream(path) << reduced << "[law]\nkind = \"spline\"\n"
+                        << lengths << "[[particle]]\nposition = [0, 0, 0]\n"
+                        << "[[velocity]]\n[velocity.region]\n"
+                        << shape << run;
+    read_scene(path.string());
+  }
+  std::filesystem::remove(path);
+  record_config_keys(nullptr);
+  return keys;
+}
+
+TEST(Docs, EverySceneKeyIsDocumentedAndViceVersa) {
+  const std::string page = text_of(kRoot + "/docs/user/scene.md");
+  const auto keys = scene_keys();
+  EXPECT_GT(keys.size(), 80U);
+  expect_documented(page, keys);
+  const auto named = documented(page);
+  EXPECT_GT(named.size(), 50U);
+  for (const std::string& key : named)
+    EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
+}
+
+TEST(Docs, EveryArchKeyIsDocumentedAndViceVersa) {
+  const std::string page = text_of(kRoot + "/docs/user/arch.md");
+  std::set<std::string> keys;
+  record_config_keys(&keys);
+  read_arch(kRoot + "/scenes/archs/default.toml");
+  record_config_keys(nullptr);
+  expect_documented(page, keys);
+  const auto named = documented(page);
+  EXPECT_GT(named.size(), 20U);
+  for (const std::string& key : named)
+    EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
+}
+
+// "8 to 30" in the row of a key: both ends are read, one beyond each is not.
+TEST(Docs, ArchRangesAreThoseOfTheReader) {
+  const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_ranges_test.toml";
+  const auto accepts = [&](const std::string& section, const std::string& key, int value) {
+    std::ofstream(path) << "name = \"t\"\n[" << section << "]\n" << key << " = " << value << "\n";
+    try {
+      read_arch(path.string());
+    } catch (const InputError&) {
+      return false;
+    }
+    return true;
+  };
+  static const std::regex row(R"(\| `([a-z_]+)` \|[^|0-9]*(\d+) to (\d+))");
+  int rows = 0;
+  for (const auto& [section, text] : sections(text_of(kRoot + "/docs/user/arch.md"))) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      std::smatch match;
+      // "2^index_bits" is no range.
+      line = std::regex_replace(line, std::regex("2\\^"), "");
+      if (!std::regex_search(line, match, row)) continue;
+      const std::string key = match[1];
+      const int low = std::stoi(match[2]), high = std::stoi(match[3]);
+      EXPECT_TRUE(accepts(section, key, low) && accepts(section, key, high)) << key;
+      EXPECT_FALSE(accepts(section, key, low - 1) || accepts(section, key, high + 1)) << key;
+      ++rows;
+    }
+  }
+  EXPECT_EQ(rows, 18);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace cuboct

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The example scenes as a machine gets them: each is read, quantised and run by golden for some steps.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "hw/setup.h"
+#include "model/golden.h"
+#include "model/scene.h"
+
+namespace cuboct {
+namespace {
+
+const std::string kRoot = CUBOCT_SOURCE_DIR;
+
+using MadeSetup = cuboct::Setup;  // testing::Test has a member of that name
+
+struct Outcome {
+  size_t moved = 0;   // particles that changed their node
+  size_t corner = 0;  // of which along more than one axis in one step
+};
+
+Outcome run(const MadeSetup& setup, int steps) {
+  Golden golden(setup.plan.rule, setup.plan.lattice, setup.plan.arch.capacity, setup.initial);
+  Outcome outcome;
+  State before = setup.initial;
+  for (int i = 0; i < steps; ++i) {
+    golden.step();
+    const State after = golden.state();
+    for (size_t p = 0; p < after.particles.size(); ++p) {
+      if (after.particles[p].node == before.particles[p].node) continue;
+      ++outcome.moved;
+      int axes = 0;
+      for (int a = 0; a < 3; ++a)
+        axes += setup.plan.lattice.cell(after.particles[p].node)[a] !=
+                setup.plan.lattice.cell(before.particles[p].node)[a];
+      outcome.corner += axes > 1;
+    }
+    before = after;
+  }
+  return outcome;
+}
+
+TEST(Examples, RunOnEveryArch) {
+  for (const char* name : {"hot_cluster", "two_types", "undamped_block", "lj_block", "coupon"}) {
+    const Scene scene = read_scene(kRoot + "/scenes/" + name + ".toml");
+    for (const char* arch : {"default", "small", "fast"}) {
+      SCOPED_TRACE(std::string(name) + " on " + arch);
+      EXPECT_NO_THROW(run(make_setup(scene, read_arch(kRoot + "/scenes/archs/" + arch + ".toml")), 5));
+    }
+  }
+}
+
+// The whole length of the small ones.
+TEST(Examples, RunToTheirEnd) {
+  for (const char* name : {"hot_cluster", "two_types", "undamped_block", "lj_block"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = read_scene(kRoot + "/scenes/" + std::string(name) + ".toml");
+    const MadeSetup setup = make_setup(scene, {});
+    const Outcome outcome = run(setup, static_cast<int>(scene.steps));
+    EXPECT_GT(outcome.moved, 0U);
+    if (std::string(name) == "hot_cluster") {
+      EXPECT_GT(outcome.moved, 100U);
+      EXPECT_GT(outcome.corner, 0U);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cuboct
