@@ -1,11 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command.h"
 
+#include <fmt/format.h>
+
+#include <charconv>
+
 namespace cuboct {
 
 void Input::add_to(CLI::App& command) {
   command.add_option("scene", scene, "scene file (TOML)")->required()->type_name("SCENE");
   command.add_option("--arch", arch, "machine description (TOML)")->type_name("FILE");
+}
+
+CLI::Validator whole_number() {
+  return CLI::Validator(
+      [](std::string& text) {
+        int64_t value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool whole =
+            error == std::errc() && end == text.data() + text.size() && value >= 0 && text[0] != '-';
+        return whole ? std::string() : fmt::format("'{}' is not a whole number below 2^63", text);
+      },
+      "");
 }
 
 Loaded load(const Input& input) {

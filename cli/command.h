@@ -24,6 +24,9 @@ struct Input {
   void add_to(CLI::App& command);
 };
 
+// Accepts 0 ... 2^63 - 1, in decimal digits alone.
+CLI::Validator whole_number();
+
 // A scene with its machine.
 struct Loaded {
   Scene scene;

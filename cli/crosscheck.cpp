@@ -91,13 +91,15 @@ int crosscheck(Options options) {
     return 1;
   }
 
-  uint64_t phase_times = 0;
   for (size_t a = 0; a < traces.size(); ++a) {
     if (traces[a].plan_hash != plan.hash) {
       fmt::print("mismatch: plan hash: cuboct {:016x}, {} {:016x}\n", plan.hash, options.engines[a],
                  traces[a].plan_hash);
       return 1;
     }
+  }
+  uint64_t phase_times = 0;
+  for (size_t a = 0; a < traces.size(); ++a) {
     for (size_t b = a + 1; b < traces.size(); ++b) {
       const auto mismatch = compare(traces[a], traces[b]);
       if (!mismatch) {
@@ -134,7 +136,7 @@ void add_crosscheck(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->type_name("A,B,...");
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
-                    ->check(CLI::NonNegativeNumber)
+                    ->check(whole_number())
                     ->type_name("N");
   command->add_option("--out", options->out, "directory that keeps each engine's trace")->type_name("DIR");
   command->callback([options, steps, &exit_code] {

@@ -22,7 +22,7 @@ void add_emit(CLI::App& app, int&) {
       ->type_name("DIR");
   command
       ->add_option("--vector-steps", options->vector_steps, "steps of golden that the project's bench checks")
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number())
       ->type_name("N")
       ->capture_default_str();
   command->callback([options] {

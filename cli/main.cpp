@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -35,7 +36,9 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
   for (const CLI::Option* option : command->get_options())
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
   for (size_t i = 1; i < words.size(); ++i) {
-    if (!words[i].starts_with("--")) continue;
+    const bool is_short =
+        words[i].size() > 1 && words[i][0] == '-' && std::isalpha(words[i][1]) && words[i] != "-h";
+    if (!words[i].starts_with("--") && !is_short) continue;
     const std::string name = words[i].substr(0, words[i].find('='));
     if (std::find(options.begin(), options.end(), name) != options.end()) continue;
     const std::string near = did_you_mean(name, options);

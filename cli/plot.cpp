@@ -73,7 +73,7 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
 
 std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
                           const std::string& bar_label, double low, double high) {
-  constexpr int kLabel = 30, kBar = 96;
+  constexpr int kLabel = 30, kBar = 106;
   const Scratch scratch;
   const int width = pictures[0].width, row = pictures[0].height + kLabel;
   const int height = static_cast<int>(pictures.size()) * row + kBar;

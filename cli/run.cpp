@@ -89,12 +89,12 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_option("--engine", options->engine, "golden, systemc, rtl or reference (doubles)")
       ->capture_default_str();
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
-                    ->check(CLI::NonNegativeNumber)
+                    ->check(whole_number())
                     ->type_name("N");
   auto* frames = command
                      ->add_option("--frames-every", options->frames_every,
                                   "keep every K-th state; default: the scene's; 0: first and last")
-                     ->check(CLI::NonNegativeNumber)
+                     ->check(whole_number())
                      ->type_name("K");
   command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
       ->type_name("DIR");

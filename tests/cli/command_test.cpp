@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// What the command line refuses, word for word.
+#include <gtest/gtest.h>
+
+#include "tests/cli/shell.h"
+
+namespace cuboct::test {
+namespace {
+
+void expect_refusal(const std::vector<std::string>& arguments, const std::string& text) {
+  const Answer answer = Bench(false).cuboct(arguments);
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(answer.out, "");
+  EXPECT_EQ(answer.err, text);
+}
+
+TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
+  expect_refusal({},
+                 "no command\n  hint: one of check, run, crosscheck, emit or report; see 'cuboct --help'\n");
+  expect_refusal({"chek"}, "unknown command 'chek'\n  hint: did you mean 'check'?\n");
+  expect_refusal({"simulate"},
+                 "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit or report\n");
+  expect_refusal({"--version"}, "unknown option '--version'\n  hint: see 'cuboct --help'\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--stepz", "3"},
+                 "unknown option '--stepz' of 'cuboct run'\n  hint: did you mean '--steps'?\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--quux=3"},
+                 "unknown option '--quux' of 'cuboct run'\n  hint: see 'cuboct run --help'\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "-q"},
+                 "unknown option '-q' of 'cuboct run'\n  hint: see 'cuboct run --help'\n");
+}
+
+TEST(Command, RefusesWrongValues) {
+  expect_refusal({"run"}, "scene is required\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--steps", "-3"},
+                 "--steps: '-3' is not a whole number below 2^63\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--steps", "many"},
+                 "--steps: 'many' is not a whole number below 2^63\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--steps", "99999999999999999999"},
+                 "--steps: '99999999999999999999' is not a whole number below 2^63\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--engine", "goldn"},
+                 "unknown engine 'goldn'\n  hint: did you mean 'golden'?\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--engine", "fpga"},
+                 "unknown engine 'fpga'\n  hint: one of golden, systemc, rtl or reference\n");
+  expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden"},
+                 "a crosscheck needs two or more different engines\n  hint: --engines golden,systemc,rtl\n");
+  expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden,golden"},
+                 "a crosscheck needs two or more different engines\n  hint: --engines golden,systemc,rtl\n");
+  expect_refusal(
+      {"crosscheck", "scenes/lj_block.toml", "--engines", "golden,reference"},
+      "engine 'reference' computes in doubles and has no bits to compare\n  hint: one of golden, systemc "
+      "or rtl\n");
+}
+
+TEST(Command, NamesAFileThatIsNotThere) {
+  for (const char* command : {"check", "run", "crosscheck"})
+    expect_refusal({command, "scenes/none.toml"}, "scenes/none.toml: cannot read this file\n");
+}
+
+TEST(Command, SaysHowToGetAnEngineThatIsNotBuilt) {
+  expect_refusal({"run", "scenes/lj_block.toml", "--engine", "systemc"},
+                 "the systemc engine is not built: no program cuboct-systemc beside cuboct\n"
+                 "  hint: install libsystemc-dev and build again\n");
+  expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden,rtl", "--steps", "1"},
+                 "the rtl engine is not built: no program cuboct-rtl beside cuboct\n"
+                 "  hint: install verilator and libsystemc-dev and build again\n");
+}
+
+TEST(Command, RefusesAnOutputThatCannotBeWrittenBeforeTheRun) {
+  // The default of 1000 steps would take a second; the refusal comes at once and leaves the file as it is.
+  expect_refusal({"run", "scenes/lj_block.toml", "--out", "LICENSE"},
+                 "cannot make the directory LICENSE: Not a directory\n");
+  expect_refusal({"report", "scenes"},
+                 "scenes holds no run: no file run.toml\n  hint: 'cuboct run SCENE --out DIR' makes one\n");
+}
+
+TEST(Command, HelpIsNoError) {
+  const Answer answer = Bench(false).cuboct({"--help"});
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_EQ(answer.err, "");
+  for (const char* command : {"check", "run", "crosscheck", "emit", "report"})
+    EXPECT_NE(answer.out.find(command), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cuboct::test

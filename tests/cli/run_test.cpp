@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// Runs: the summary, the files, the end by Ctrl-C.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <regex>
+
+#include "model/trace.h"
+#include "tests/cli/shell.h"
+
+namespace cuboct::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The value of a line "name   value ..." of a summary.
+std::string value_of(const std::string& summary, const std::string& name) {
+  std::smatch found;
+  const std::regex line("(^|\n)" + name + "  +([^\n]*)");
+  return std::regex_search(summary, found, line) ? found[2].str() : "no " + name;
+}
+
+TEST(Run, KeepsMomentumToTheLastBit) {
+  const Answer answer = Bench(false).cuboct({"run", "scenes/undamped_block.toml", "--steps", "50"});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(answer.err, "");  // no progress without a terminal
+  EXPECT_EQ(value_of(answer.out, "momentum change"), "0 LSB");
+  EXPECT_EQ(value_of(answer.out, "steps"), "50");
+  EXPECT_EQ(value_of(answer.out, "engine"), "golden");
+}
+
+TEST(Run, DriftsLittleWhereEnergyIsKept) {
+  const Answer answer = Bench(false).cuboct({"run", "scenes/lj_block.toml", "--steps", "200"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  // 256 particles with 0.2 epsilon of thermal energy each; leapfrog's error of the energy is of order dt^2.
+  const double drift = std::stod(value_of(answer.out, "energy drift")),
+               energy = std::stod(value_of(answer.out, "energy"));
+  EXPECT_GT(drift, 0);
+  EXPECT_LT(drift, 1e-3 * std::abs(energy));
+}
+
+TEST(Run, WritesItsDirectoryTheSameEachTime) {
+  const Bench bench(false);
+  for (const char* name : {"a", "b"})
+    ASSERT_EQ(bench
+                  .cuboct({"run", "scenes/coupon.toml", "--steps", "20", "--frames-every", "10", "--out",
+                           bench.path(name)})
+                  .code,
+              0);
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(bench.path("a"))) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"frames.pvd", "frames.xyz", "frames_000000.vtp",
+                                             "frames_000001.vtp", "frames_000002.vtp", "plan.txt", "run.toml",
+                                             "summary.json", "trace.h5"}));
+  for (const std::string& name : names)
+    if (name != "trace.h5" && name != "summary.json") {  // these tell the host's time
+      EXPECT_EQ(contents(bench.path("a/" + name)), contents(bench.path("b/" + name))) << name;
+    }
+  const Trace a = read_trace(bench.path("a/trace.h5")), b = read_trace(bench.path("b/trace.h5"));
+  EXPECT_EQ(a.state_hash.size(), 21u);
+  EXPECT_EQ(a.state_hash, b.state_hash);
+  ASSERT_EQ(a.frames.size(), 3u);
+  EXPECT_EQ(a.frames[1].step, 10u);
+  ASSERT_FALSE(a.curves.empty());
+  EXPECT_EQ(a.curves[0].name, "tension.strain");
+  EXPECT_EQ(a.curves[0].value[0], 0);
+}
+
+TEST(Run, OfAnEngineBesideGivesGoldensCurves) {
+  const Bench bench(true);
+  for (const char* engine : {"golden", "systemc"})
+    ASSERT_EQ(bench
+                  .cuboct({"run", "scenes/coupon.toml", "--steps", "60", "--engine", engine, "--out",
+                           bench.path(engine)})
+                  .code,
+              0);
+  const Trace golden = read_trace(bench.path("golden/trace.h5")),
+              other = read_trace(bench.path("systemc/trace.h5"));
+  EXPECT_EQ(other.engine, "systemc");
+  EXPECT_EQ(golden.state_hash, other.state_hash);
+  ASSERT_EQ(golden.curves.size(), other.curves.size());
+  for (size_t i = 0; i < golden.curves.size(); ++i) {
+    EXPECT_EQ(golden.curves[i].step, other.curves[i].step);
+    EXPECT_EQ(golden.curves[i].value, other.curves[i].value);
+  }
+  EXPECT_EQ(contents(bench.path("golden/frames.xyz")), contents(bench.path("systemc/frames.xyz")));
+}
+
+TEST(Run, OfTheReferenceFollowsGolden) {
+  const Bench bench(false);
+  std::vector<double> stress;
+  for (const char* engine : {"golden", "reference"}) {
+    ASSERT_EQ(bench
+                  .cuboct({"run", "scenes/coupon.toml", "--steps", "500", "--engine", engine, "--out",
+                           bench.path(engine)})
+                  .code,
+              0);
+    const Trace trace = read_trace(bench.path(std::string(engine) + "/trace.h5"));
+    ASSERT_EQ(trace.curves[1].name, "tension.stress");
+    stress.push_back(*std::max_element(trace.curves[1].value.begin(), trace.curves[1].value.end()));
+  }
+  // The table's worst force error is below 1e-3 of the largest force.
+  EXPECT_GT(stress[1], 0);
+  EXPECT_NEAR(stress[0], stress[1], 1e-2 * stress[1]);
+}
+
+TEST(Run, EndsCleanlyOnCtrlC) {
+  const Bench bench(false);
+  const auto begin = std::chrono::steady_clock::now();
+  const Answer answer = bench.cuboct(
+      {"run", "scenes/lj_block.toml", "--steps", "100000000", "--out", bench.path("out_dir")}, 1.0);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_EQ(answer.err, "interrupted\n");
+  const Trace trace = read_trace(bench.path("out_dir/trace.h5"));
+  EXPECT_GT(trace.steps(), 0u);
+  EXPECT_EQ(std::to_string(trace.steps()), value_of(answer.out, "steps"));
+  ASSERT_EQ(trace.frames.size(), 2u);
+  EXPECT_EQ(trace.frames[1].step, trace.steps());
+}
+
+TEST(Run, PrintsJson) {
+  const Bench bench(false);
+  const Answer answer = bench.cuboct({"run", "scenes/lj_block.toml", "--steps", "3", "--json"});
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_EQ(answer.out.front(), '{');
+  EXPECT_NE(answer.out.find("\n  \"steps\": {\"value\": 3},\n"), std::string::npos) << answer.out;
+}
+
+TEST(Report, IsOneFileWithoutOutsideResources) {
+  const Bench bench(true);
+  const std::string out = bench.path("run");
+  ASSERT_EQ(
+      bench.cuboct({"run", "scenes/coupon.toml", "--steps", "100", "--frames-every", "25", "--out", out})
+          .code,
+      0);
+  ASSERT_EQ(
+      bench.cuboct({"crosscheck", "scenes/coupon.toml", "--steps", "5", "--out", out + "/crosscheck"}).code,
+      0);
+  const Answer answer = bench.cuboct({"report", out});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(answer.out, out + "/report.html\n");
+  const std::string html = contents(out + "/report.html");
+  EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+  EXPECT_NE(html.find("<svg"), std::string::npos);
+  EXPECT_NE(html.find("Largest stress"), std::string::npos);
+  EXPECT_EQ(html.find("href=\"http"), std::string::npos);
+  EXPECT_EQ(html.find("src=\"http"), std::string::npos);
+  std::smatch found;
+  std::string rest = html;
+  int equal = 0;
+  while (std::regex_search(rest, found, std::regex("bits equal"))) {
+    ++equal;
+    rest = found.suffix();
+  }
+  EXPECT_EQ(equal, 3);  // golden, systemc, rtl
+}
+
+}  // namespace
+}  // namespace cuboct::test
