@@ -1,8 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# example.sh EMIT_CASE COMMITTED DIR: re-emits the committed example, twice, and compares byte by byte.
+# example.sh EMIT_CASE COMMITTED LIBRARY DIR: re-emits the committed example, twice, and compares byte by byte. The
+# library's modules, which an emission copies, are compared with their originals; the commit holds the rest.
 set -eu
-rm -rf "$3"
-"$1" example "$3" 2
-"$1" example "$3" 2
-diff -r "$2" "$3"
+rm -rf "$4"
+"$1" example "$4" 2
+"$1" example "$4" 2
+for module in "$3"/*.sv; do
+  copy="$4/rtl/$(basename "$module")"
+  [ -e "$copy" ] || continue
+  cmp "$module" "$copy"
+  rm "$copy"
+done
+diff -r "$2" "$4"
