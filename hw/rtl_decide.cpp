@@ -154,7 +154,6 @@ void legalise(const RtlDesign& design, bool with_lattice) {
   const auto nodes = static_cast<int64_t>(design.cells.size());
   if (nodes < 1) throw InputError("RTL: the lattice has no node");
   at_most("the width of the lattice's observation port", nodes * design.particle_bits, 1 << 19);
-  at_most("the width of the lattice's link vectors", nodes * kFaces * design.link_bits, 1 << 19);
 }
 
 }  // namespace cuboct

@@ -234,7 +234,7 @@ std::string print_lattice(const RtlDesign& design) {
           (linked ? fmt::format("data_{}[{}*LinkBits +: LinkBits]", to, back) : "{LinkBits{1'b0}}") + comma;
       if (!linked)
         unused_ends +=
-            fmt::format("{}valid_{}[{}], end_{}[{}], ready_{}[{}], data_{}[{}*LinkBits +: LinkBits]",
+            fmt::format("{}valid_{}[{}], end_{}[{}], ready_{}[{}], ^data_{}[{}*LinkBits +: LinkBits]",
                         unused_ends.empty() ? "    " : ",\n    ", n, f, n, f, n, f, n, f);
     }
     text += fmt::format(

@@ -67,15 +67,15 @@ module cuboct_lattice #(
 
   logic unused_faces;
   assign unused_faces = ^{
-    valid_0[5], end_0[5], ready_0[5], data_0[5*LinkBits +: LinkBits],
-    valid_0[4], end_0[4], ready_0[4], data_0[4*LinkBits +: LinkBits],
-    valid_0[3], end_0[3], ready_0[3], data_0[3*LinkBits +: LinkBits],
-    valid_0[2], end_0[2], ready_0[2], data_0[2*LinkBits +: LinkBits],
-    valid_0[0], end_0[0], ready_0[0], data_0[0*LinkBits +: LinkBits],
-    valid_1[5], end_1[5], ready_1[5], data_1[5*LinkBits +: LinkBits],
-    valid_1[4], end_1[4], ready_1[4], data_1[4*LinkBits +: LinkBits],
-    valid_1[3], end_1[3], ready_1[3], data_1[3*LinkBits +: LinkBits],
-    valid_1[2], end_1[2], ready_1[2], data_1[2*LinkBits +: LinkBits],
-    valid_1[1], end_1[1], ready_1[1], data_1[1*LinkBits +: LinkBits]
+    valid_0[5], end_0[5], ready_0[5], ^data_0[5*LinkBits +: LinkBits],
+    valid_0[4], end_0[4], ready_0[4], ^data_0[4*LinkBits +: LinkBits],
+    valid_0[3], end_0[3], ready_0[3], ^data_0[3*LinkBits +: LinkBits],
+    valid_0[2], end_0[2], ready_0[2], ^data_0[2*LinkBits +: LinkBits],
+    valid_0[0], end_0[0], ready_0[0], ^data_0[0*LinkBits +: LinkBits],
+    valid_1[5], end_1[5], ready_1[5], ^data_1[5*LinkBits +: LinkBits],
+    valid_1[4], end_1[4], ready_1[4], ^data_1[4*LinkBits +: LinkBits],
+    valid_1[3], end_1[3], ready_1[3], ^data_1[3*LinkBits +: LinkBits],
+    valid_1[2], end_1[2], ready_1[2], ^data_1[2*LinkBits +: LinkBits],
+    valid_1[1], end_1[1], ready_1[1], ^data_1[1*LinkBits +: LinkBits]
   };
 endmodule
