@@ -5,6 +5,8 @@
 
 #include <memory>
 
+#include "hw/cycles.h"
+
 namespace cuboct {
 namespace {
 
@@ -38,7 +40,7 @@ Items resolve(const Loaded& loaded) {
   items.add("mass", rule.mass, "kg");
   items.add("dt", rule.dt, "s");
   if (scene.dt_limit > 0) {
-    items.add("dt limit", scene.dt_limit, "s", "2/omega_max of the perfect packing");
+    items.add("dt limit", scene.dt_limit, "s", "largest stable step of the perfect packing");
     items.add("dt safety", scene.dt_safety, "", "dt over its limit");
   }
   items.add("position bits", w.position_frac);
@@ -63,6 +65,9 @@ Items resolve(const Loaded& loaded) {
   items.add("filter latency", plan.latency.filter, "cycles");
   items.add("pipe latency", plan.latency.pipe, "cycles");
   items.add("update latency", plan.latency.update, "cycles");
+  const ExpectedCycles cycles = expected_cycles(plan, loaded.setup.initial);
+  items.add("expected cycles", cycles.step, "cycles/step",
+            fmt::format("at the start; filter lanes and force pipes alone: {}", cycles.ideal));
   std::string without;
   const auto leave_out = [&](bool used, const char* part) {
     if (!used) without += (without.empty() ? "" : ", ") + std::string(part);
