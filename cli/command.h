@@ -19,9 +19,12 @@ void add_report(CLI::App& app, int& exit_code);
 // What every command that reads a scene takes.
 struct Input {
   std::string scene;
-  std::string arch;  // empty: the defaults
+  std::string arch;       // empty: the defaults
+  double stall_rate = 0;  // share of cycles in which a link of a cycle-accurate engine passes nothing
+  uint64_t stall_seed = 1;
 
   void add_to(CLI::App& command);
+  void add_stalls_to(CLI::App& command);  // for commands that run such engines
 };
 
 // Accepts 0 ... 2^63 - 1, in decimal digits alone.

@@ -132,6 +132,7 @@ void add_crosscheck(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("crosscheck", "run a scene in several engines and compare every bit");
   options->input.add_to(*command);
+  options->input.add_stalls_to(*command);
   command->add_option("--engines", options->engines, "which ones; default: golden,systemc,rtl")
       ->delimiter(',')
       ->type_name("A,B,...");

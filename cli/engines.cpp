@@ -48,6 +48,9 @@ RunningEngine::RunningEngine(const std::string& engine, const Input& input, cons
   if (!input.arch.empty()) arguments.insert(arguments.end(), {"--arch", input.arch});
   if (!request.frames.empty())
     arguments.insert(arguments.end(), {"--frames", fmt::format("{}", fmt::join(request.frames, ","))});
+  if (input.stall_rate > 0)
+    arguments.insert(arguments.end(), {"--stall-rate", fmt::format("{}", input.stall_rate), "--stall-seed",
+                                       std::to_string(input.stall_seed)});
   if (progress) arguments.push_back("--progress");
   std::filesystem::remove(path);  // what is found there afterwards is this run's
   state_ = std::make_shared<State>(State{program, std::move(path), Process(program, arguments)});

@@ -86,6 +86,7 @@ void add_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "run a scene and end with a summary");
   options->input.add_to(*command);
+  options->input.add_stalls_to(*command);
   command->add_option("--engine", options->engine, "golden, systemc, rtl or reference (doubles)")
       ->capture_default_str();
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
