@@ -93,7 +93,7 @@ TEST(RtlMutation, AnotherTableIsSeen) {
             "step 1: particle ");
 }
 
-// The emitted lattice as one model: its wiring is the generator's, not the bench's.
+// The emitted lattice as one SystemC module: its wiring is the generator's, not the bench's.
 emu::RunResult run_lattice(const Case& c) {
   const Plan& plan = c.setup.plan;
   const emu::Library library(emu::compile_lattice(plan, c.setup.initial, kCache));
@@ -103,7 +103,9 @@ emu::RunResult run_lattice(const Case& c) {
   emu::Collector collector(plan, keep_all(c.steps));
   std::vector<CuboctOut> outs(nodes);
   CuboctIn host{};
-  const auto clock = [&](uint32_t load_node) { library.clock_lattice(model, &host, load_node, outs.data()); };
+  const auto clock = [&](uint32_t load_node) {
+    EXPECT_STREQ(library.clock_lattice(model, &host, load_node, outs.data()), nullptr);
+  };
   clock(0);
   host.reset_n = 1;
   host.load_valid = 1;
