@@ -122,8 +122,8 @@ struct Scratch {
 }  // namespace
 
 std::string compile(const Build& build, const std::string& directory) {
-  const std::string tools =
-      version_of("verilator", "verilator") + compiler() + "\n" + version_of(compiler(), "g++");
+  std::string tools = version_of("verilator", "verilator");
+  tools += compiler() + ": " + version_of(compiler(), "g++");
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) throw InputError(fmt::format("cannot make the directory {}: {}", directory, error.message()));
