@@ -195,8 +195,8 @@ obj_dir/cuboct_bench: $(RTL) cuboct_bench.sv
 	$(VERILATOR) --binary --timing -fno-const-bit-op-tree -Wno-fatal -O3 -CFLAGS -O2 --Mdir obj_dir -o cuboct_bench \
 	  --top-module cuboct_bench $(RTL) cuboct_bench.sv
 
-# Icarus 11 wakes an always_comb without a change of its inputs, for ever where two of them meet; as always @* the same
-# blocks are fine.
+# With always_comb Icarus 11 hangs in this design: time stands still at 445. The cause is not known. With always @* the
+# same blocks simulate, to the same values.
 icarus: icarus/cuboct_bench.vvp
 	vvp -n icarus/cuboct_bench.vvp
 icarus/cuboct_bench.vvp: $(RTL) cuboct_bench.sv

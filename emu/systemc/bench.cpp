@@ -59,7 +59,14 @@ void NodeModule::cycle() {
     }
     if (out_link_[f]->ready()) in_.ready |= static_cast<uint8_t>(1u << f);
   }
-  model_->clock(in_, out_);
+  // SystemC would wrap the text of an exception that leaves a process.
+  try {
+    model_->clock(in_, out_);
+  } catch (const std::runtime_error& e) {
+    monitor_o->fail(node_, e.what());
+    next_trigger(never_);
+    return;
+  }
   if (monitor_o->running() && Collector::shows(out_)) monitor_o->report(node_, out_);
 
   const uint8_t emptied = valid_ & static_cast<uint8_t>(~out_.valid);
@@ -122,6 +129,12 @@ Bench::~Bench() = default;
 
 void Bench::report(uint32_t node, const NodeOutputs& out) {
   if (!over_) collector_.collect(node, timeline_.cycle(), out);
+}
+
+void Bench::fail(uint32_t node, const std::string& text) {
+  if (over_) return;
+  stuck_ = node_text(plan_.lattice, node) + ", " + text;
+  over_ = true;
 }
 
 // Writes the controls for the next cycle.

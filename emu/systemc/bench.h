@@ -27,6 +27,8 @@ class Monitor : public virtual sc_core::sc_interface {
   virtual bool running() const = 0;  // this cycle counts
   virtual bool over() const = 0;
   virtual void report(uint32_t node, const NodeOutputs& out) = 0;
+  // A node that cannot go on: the run is over.
+  virtual void fail(uint32_t node, const std::string& text) = 0;
 };
 
 class NodeModule : public sc_core::sc_module {
@@ -59,7 +61,7 @@ class NodeModule : public sc_core::sc_module {
   NodeOutputs out_;
   uint8_t valid_ = 0, ready_ = 0;
   bool asleep_ = false;
-  sc_core::sc_event wake_;
+  sc_core::sc_event wake_, never_;
 };
 
 class Bench : public sc_core::sc_module, private Monitor {
@@ -72,7 +74,7 @@ class Bench : public sc_core::sc_module, private Monitor {
   sc_core::sc_in<bool> clk_i{"clk_i"};
 
   bool over() const override { return over_; }
-  // After `simulate`; throws std::runtime_error for a run that was stuck.
+  // After `simulate`; throws std::runtime_error for a run that was stuck or whose node failed.
   RunResult take_result();
 
  private:
@@ -80,6 +82,7 @@ class Bench : public sc_core::sc_module, private Monitor {
 
   bool running() const override { return timeline_.running(); }
   void report(uint32_t node, const NodeOutputs& out) override;
+  void fail(uint32_t node, const std::string& text) override;
   void host();
   void show_progress();
 
@@ -97,7 +100,7 @@ class Bench : public sc_core::sc_module, private Monitor {
   Host state_ = Host::reset;
   size_t loaded_ = 0, most_ = 0;
   bool over_ = false;
-  std::string stuck_;
+  std::string stuck_;                           // why there is no result
   double begin_ = 0, seconds_ = 0, shown_ = 0;  // host time, s
 };
 

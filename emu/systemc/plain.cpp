@@ -37,7 +37,11 @@ void clock_all(const Lattice& lattice, std::vector<Place>& places, const StallSo
         p.in.valid |= bit;
       p.in.beat[static_cast<size_t>(f)] = &places[other].beat[static_cast<size_t>(back)];
     }
-    p.model->clock(p.in, p.out);
+    try {
+      p.model->clock(p.in, p.out);
+    } catch (const std::runtime_error& e) {
+      throw std::runtime_error(node_text(lattice, n) + ", " + e.what());
+    }
   }
   for (Place& p : places) {
     p.valid = p.out.valid;
@@ -56,6 +60,11 @@ uint8_t links_of(const Lattice& lattice, uint32_t node) {
   return mask;
 }
 
+std::string node_text(const Lattice& lattice, uint32_t node) {
+  const Cell& c = lattice.cell(node);
+  return fmt::format("node {} ({},{},{})", node, c[0], c[1], c[2]);
+}
+
 std::string stuck_text(const Lattice& lattice, uint64_t cycle, uint64_t patience,
                        const std::vector<std::string>& doing) {
   std::string text =
@@ -63,8 +72,7 @@ std::string stuck_text(const Lattice& lattice, uint64_t cycle, uint64_t patience
   size_t told = 0;
   for (uint32_t n = 0; n < doing.size() && told < 16; ++n) {
     if (doing[n] == "idle") continue;
-    const Cell& c = lattice.cell(n);
-    text += fmt::format("\n  node {} ({},{},{}): {}", n, c[0], c[1], c[2], doing[n]);
+    text += fmt::format("\n  {}: {}", node_text(lattice, n), doing[n]);
     ++told;
   }
   return text;

@@ -13,12 +13,16 @@ struct RunResult {
   std::vector<std::vector<std::vector<uint32_t>>> order;  // [step][node] ids in slot order, if kept
 };
 
-// Throws RunError for an initial state beyond a capacity, std::runtime_error for a run that is stuck.
+// Throws RunError for an initial state beyond a capacity, std::runtime_error for a run that is stuck
+// or whose node fails.
 RunResult run_plain(const Plan& plan, const State& initial, const RunOptions& options,
                     const NodeFactory& factory, const std::string& engine);
 
 // Faces of `node` that have a neighbour.
 uint8_t links_of(const Lattice& lattice, uint32_t node);
+
+// "node 3 (1,0,1)".
+std::string node_text(const Lattice& lattice, uint32_t node);
 
 // The text that names the waiting nodes; `doing` by node.
 std::string stuck_text(const Lattice& lattice, uint64_t cycle, uint64_t patience,

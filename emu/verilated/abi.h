@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-enum { kCuboctAbi = 1, kCuboctFaces = 6, kCuboctWords = 8 };
+enum { kCuboctAbi = 2, kCuboctFaces = 6, kCuboctWords = 8 };
 
 // Inputs of one node during one cycle. `link_data[f]` is read where bit f of `link_valid` is set.
 struct CuboctIn {
@@ -31,9 +31,11 @@ struct CuboctOut {
 //   void* cuboct_create(uint32_t seed);        0: registers start as zeros; else as random bits
 //   void cuboct_destroy(void* model);
 // and, of a node,
-//   void cuboct_clock(void* model, const CuboctIn*, CuboctOut*);
+//   const char* cuboct_clock(void* model, const CuboctIn*, CuboctOut*);
 // or, of a whole lattice, whose host loads one particle of node `load_node` per cycle; `out` has an element
 // per node
-//   void cuboct_clock_lattice(void* model, const CuboctIn* host, uint32_t load_node, CuboctOut* out);
+//   const char* cuboct_clock_lattice(void* model, const CuboctIn* host, uint32_t load_node, CuboctOut* out);
+// Both return null, or "file:line" of the first assertion of the RTL that failed: then the model is of no
+// further use but to be destroyed.
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From emitted RTL to a shared library: Verilator, a C++ compiler, and a cache of what they made.
+// The emitted node, or the whole emitted lattice, as a library that is loaded.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,8 @@ namespace cuboct::emu {
 // neither is set.
 std::string default_build_directory();
 
-// The node of `plan`, or the whole lattice, emitted and compiled unless `build_directory` already holds the
-// same. Returns the path of the library. What is built first gets a temporary name, so that two builders do
-// not meet. Throws InputError where a tool is missing or fails; the log stays in the build directory.
+// The path of the compiled node of `plan`, or of its whole lattice as a SystemC module (the process that
+// loads it elaborates it, so once, and links with SystemC). Throws InputError, see compile.h.
 std::string compile_node(const Plan& plan, const std::string& build_directory);
 std::string compile_lattice(const Plan& plan, const State& initial, const std::string& build_directory);
 
@@ -31,8 +30,9 @@ class Library {
 
   void* (*create)(uint32_t seed) = nullptr;
   void (*destroy)(void*) = nullptr;
-  void (*clock)(void*, const CuboctIn*, CuboctOut*) = nullptr;                    // of a node's library
-  void (*clock_lattice)(void*, const CuboctIn*, uint32_t, CuboctOut*) = nullptr;  // of a lattice's library
+  // Of a node's library, of a lattice's library; null, or the assertion of the RTL that failed.
+  const char* (*clock)(void*, const CuboctIn*, CuboctOut*) = nullptr;
+  const char* (*clock_lattice)(void*, const CuboctIn*, uint32_t, CuboctOut*) = nullptr;
 
  private:
   void* handle_ = nullptr;

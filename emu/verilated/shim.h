@@ -2,6 +2,7 @@
 // Ports of a Verilated model as runs of 64-bit words, whatever type Verilator gave them.
 #include <cstring>
 #include <memory>
+#include <string>
 
 #include "abi.h"
 #include "verilated.h"
@@ -52,17 +53,27 @@ inline void copy_bits(uint64_t* to, int to_lsb, const uint64_t* from, int from_l
 // A beat wider than the words of the interface carries zeros there.
 constexpr int held_bits(int bits) { return bits < 64 * kCuboctWords ? bits : 64 * kCuboctWords; }
 
+// Where the first assertion failed in this thread; empty: nowhere.
+inline thread_local std::string stopped_at;
+
 template <typename Model>
 struct Instance {
   VerilatedContext context;
   std::unique_ptr<Model> model;
-  explicit Instance(uint32_t seed) {
+  std::string stopped;
+  // `name...`: that of a SystemC module.
+  template <typename... Name>
+  explicit Instance(uint32_t seed, const Name&... name) {
     context.threads(1);  // else each context starts a pool of threads
     if (seed != 0) {
       context.randReset(2);
       context.randSeed(static_cast<int>(seed & 0x7fffffffu));
     }
-    model = std::make_unique<Model>(&context);
+    Verilated::threadContextp(&context);  // a SystemC module takes its context from here
+    if constexpr (sizeof...(name) > 0)
+      model = std::make_unique<Model>(name...);
+    else
+      model = std::make_unique<Model>(&context);
   }
   ~Instance() {
     // The model's scopes leave the thread's context, which is that of the instance made last unless told.
@@ -70,6 +81,19 @@ struct Instance {
     model->final();
     model.reset();
   }
+  // What a clock function returns.
+  const char* failure() {
+    stopped = std::move(stopped_at);
+    stopped_at.clear();
+    return stopped.empty() ? nullptr : stopped.c_str();
+  }
 };
 
 }  // namespace
+
+// Verilator's own ends the process. Called by what a failed assertion runs; the evaluation goes on.
+void vl_stop(const char* file, int line, const char*) {
+  if (!stopped_at.empty()) return;
+  const char* slash = std::strrchr(file, '/');
+  stopped_at = std::string(slash != nullptr ? slash + 1 : file) + ":" + std::to_string(line);
+}

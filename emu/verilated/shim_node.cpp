@@ -19,7 +19,7 @@ int cuboct_abi() { return kCuboctAbi; }
 void* cuboct_create(uint32_t seed) { return new Node(seed); }
 void cuboct_destroy(void* handle) { delete static_cast<Node*>(handle); }
 
-void cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
+const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
   Node& n = *static_cast<Node*>(handle);
   Vcuboct_node& m = *n.model;
   m.rst_ni = in->reset_n;
@@ -64,6 +64,7 @@ void cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
       if (m.link_valid_o >> f & 1)
         copy_bits(out->link_data[f], 0, n.link_out, f * LINK_BITS, held_bits(LINK_BITS));
   }
+  return n.failure();
 }
 
 }  // extern "C"

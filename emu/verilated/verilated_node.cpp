@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "emu/verilated/verilated_node.h"
 
+#include <fmt/format.h>
+
 #include <cstring>
+#include <stdexcept>
 
 #include "emu/systemc/words.h"
 #include "model/trace.h"
@@ -41,7 +44,15 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
     ports.link_end |= static_cast<uint8_t>(in.beat[f]->end << f);
     ports.link_data[f] = in.beat[f]->payload.word.data();
   }
-  library_->clock(model_, &ports, &out_);
+  const char* failed = library_->clock(model_, &ports, &out_);
+  if (failed != nullptr) {
+    const std::string when = cycle_ ? fmt::format("cycle {}", *cycle_) : "before the run";
+    throw std::runtime_error(fmt::format("{}: the assertion of the RTL at {} failed", when, failed));
+  }
+  if (host.start)
+    cycle_ = 0;
+  else if (cycle_)
+    ++*cycle_;
 
   read_outputs(out_, out);
   out.valid = out.loaded = out_.link_valid & has_link_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "emu/systemc/node_model.h"
@@ -18,6 +19,7 @@ class VerilatedNode : public NodeModel {
   VerilatedNode(const VerilatedNode&) = delete;
   VerilatedNode& operator=(const VerilatedNode&) = delete;
 
+  // Throws std::runtime_error with cycle, file and line where an assertion of the RTL fails.
   void clock(const NodeInputs& in, NodeOutputs& out) override;
   std::string doing() const override;
 
@@ -28,6 +30,7 @@ class VerilatedNode : public NodeModel {
   CuboctOut out_{};
   uint8_t phases_ = 0;  // that run
   bool idle_ = true;
+  std::optional<uint64_t> cycle_;  // of the run, once it was started
 };
 
 // The outputs that belong to the cycle, without the link registers.

@@ -7,6 +7,7 @@
 
 #include "emu/systemc/bench.h"
 #include "emu/systemc/node.h"
+#include "emu/systemc/program.h"
 #include "emu/systemc/words.h"
 #include "emu/verilated/verilated_node.h"
 #include "tests/backend/engines.h"
@@ -93,7 +94,66 @@ TEST(RtlMutation, AnotherTableIsSeen) {
             "step 1: particle ");
 }
 
-// The emitted lattice as one model: its wiring is the generator's, not the bench's.
+// A node that hears zeros without end from below x, from cycle 11 of the run on: records of whichever stream
+// is open then.
+class Flooded : public emu::NodeModel {
+ public:
+  explicit Flooded(std::unique_ptr<emu::NodeModel> inner) : inner_(std::move(inner)) {}
+  void clock(const emu::NodeInputs& in, emu::NodeOutputs& out) override {
+    emu::NodeInputs changed = in;
+    if (in.control->start)
+      since_ = 0;
+    else if (since_ >= 0)
+      ++since_;
+    if (since_ > 10) {
+      changed.valid |= 1;
+      changed.beat[0] = &beat_;
+    }
+    inner_->clock(changed, out);
+  }
+
+ private:
+  std::unique_ptr<emu::NodeModel> inner_;
+  const emu::Beat beat_;
+  int since_ = -1;
+};
+
+emu::NodeFactory one_flooded(const Plan& plan) {
+  return [inner = emu::verilated_nodes(plan, kCache)](uint32_t node, uint8_t has_link) {
+    std::unique_ptr<emu::NodeModel> model = inner(node, has_link);
+    if (node == 1) model = std::make_unique<Flooded>(std::move(model));
+    return model;
+  };
+}
+
+// The assertions that a node's memories have room: the run ends, the process does not.
+TEST(RtlAssertion, EndsThePlainRunWithNodeCycleAndLine) {
+  const Case c = make_case("undamped_2x2x2");
+  try {
+    run_plain(c.setup.plan, c.setup.initial, keep_all(5), one_flooded(c.setup.plan), "rtl");
+    FAIL() << "no assertion failed";
+  } catch (const std::runtime_error& e) {
+    EXPECT_STREQ(e.what(),
+                 "node 1 (1,0,0), cycle 60: the assertion of the RTL at cuboct_halos.sv:110 failed");
+  }
+}
+
+TEST(RtlAssertion, EndsTheProgramWithOne) {
+  const std::string scene = CUBOCT_SOURCE_DIR "/scenes/lj_block.toml",
+                    out = testing::TempDir() + "assertion.h5";
+  std::vector<std::string> words{"cuboct-rtl", scene, "--steps", "2", "--out", out};
+  std::vector<char*> argv;
+  for (std::string& w : words) argv.push_back(w.data());
+  testing::internal::CaptureStderr();
+  const int code =
+      emu::run_program(static_cast<int>(argv.size()), argv.data(),
+                       {.name = "cuboct-rtl", .description = "", .engine = "rtl", .nodes = one_flooded});
+  EXPECT_EQ(code, 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "cuboct-rtl: node 1 (1,0,0), cycle 17: the assertion of the RTL at cuboct_halos.sv:109 failed\n");
+}
+
+// The emitted lattice as one SystemC module: its wiring is the generator's, not the bench's.
 emu::RunResult run_lattice(const Case& c) {
   const Plan& plan = c.setup.plan;
   const emu::Library library(emu::compile_lattice(plan, c.setup.initial, kCache));
@@ -103,7 +163,9 @@ emu::RunResult run_lattice(const Case& c) {
   emu::Collector collector(plan, keep_all(c.steps));
   std::vector<CuboctOut> outs(nodes);
   CuboctIn host{};
-  const auto clock = [&](uint32_t load_node) { library.clock_lattice(model, &host, load_node, outs.data()); };
+  const auto clock = [&](uint32_t load_node) {
+    EXPECT_STREQ(library.clock_lattice(model, &host, load_node, outs.data()), nullptr);
+  };
   clock(0);
   host.reset_n = 1;
   host.load_valid = 1;

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "emu/verilated/compile.h"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "model/error.h"
+#include "model/hash.h"
+
+namespace cuboct::emu {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The constant bit-operation tree of Verilator 5.006 is wrong in rare cases.
+constexpr const char* kVerilatorFlags = "-O3 -fno-const-bit-op-tree --assert -Wno-fatal";
+// VL_USER_STOP: the sources say what happens where an assertion of the RTL fails (shim.h).
+constexpr const char* kCompilerFlags =
+    "-std=c++17 -fPIC -shared -fno-gnu-unique -w -DVM_COVERAGE=0 -DVM_TRACE=0 -DVM_TIMING=0 -DVL_USER_STOP";
+
+// For the shell: 'it'\''s'.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
+  return out + "'";
+}
+
+bool succeeds(const std::string& command) {
+  const int status = std::system(command.c_str());
+  return status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+// What the tool says of itself.
+std::string version_of(const std::string& tool, const std::string& package) {
+  if (!succeeds("command -v " + quoted(tool) + " > /dev/null 2>&1"))
+    throw InputError(fmt::format(
+        "{} is missing: the emitted hardware is compiled with it (Debian package {})", tool, package));
+  std::string text;
+  if (FILE* pipe = popen((quoted(tool) + " --version 2>&1").c_str(), "r"); pipe != nullptr) {
+    std::array<char, 256> part;
+    while (std::fgets(part.data(), part.size(), pipe) != nullptr) text += part.data();
+    if (pclose(pipe) == 0) return text;
+  }
+  throw InputError(fmt::format("'{} --version' fails: the tool does not work", tool));
+}
+
+std::string read_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void write_file(const fs::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw InputError(fmt::format("cannot write {}", path.string()));
+}
+
+std::string compiler() {
+  const char* cxx = std::getenv("CXX");
+  return cxx != nullptr && *cxx != 0 ? cxx : "c++";
+}
+
+// Comments name the plan that a file was made from, and the package counts the lattice's nodes; what the
+// hardware is stands in the other lines.
+void add_code(Hash& hash, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("//") || line.find(" Nodes ") != std::string::npos) continue;
+    for (const char c : line) hash.add(c);
+    hash.add('\n');
+  }
+}
+
+uint64_t key_of(const Build& build, const fs::path& dir, const std::string& tools) {
+  std::map<std::string, std::string> files;  // in the order of names
+  for (const auto& entry : fs::recursive_directory_iterator(dir / "rtl"))
+    if (entry.is_regular_file()) files[fs::relative(entry.path(), dir).string()] = read_file(entry.path());
+  Hash hash;
+  for (const auto& [name, text] : files) add_code(hash, "file " + name + "\n" + text);
+  for (const auto& [name, text] : build.sources) add_code(hash, "file " + name + "\n" + text);
+  for (const auto& [name, value] : build.constants) add_code(hash, fmt::format("{}={}", name, value));
+  add_code(hash, fmt::format("{}\n{} {}\n{} {}\n{}", build.top, kVerilatorFlags, build.verilator_flags,
+                             kCompilerFlags, build.compiler_flags, tools));
+  return hash.value();
+}
+
+void run_logged(const std::string& what, const std::string& command, const fs::path& dir,
+                const fs::path& log) {
+  const std::string line =
+      fmt::format("cd {} && ({}) >> {} 2>&1", quoted(dir.string()), command, quoted(log.string()));
+  if (!succeeds(line)) throw InputError(fmt::format("{} failed: see {}", what, log.string()));
+}
+
+// A directory that goes with its owner.
+struct Scratch {
+  fs::path path;
+  explicit Scratch(const fs::path& name) {
+    std::string pattern = name.string() + "-XXXXXX";
+    if (mkdtemp(pattern.data()) == nullptr)
+      throw InputError(fmt::format("cannot write in {}", name.parent_path().string()));
+    path = pattern;
+  }
+  ~Scratch() {
+    std::error_code error;
+    fs::remove_all(path, error);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+};
+
+}  // namespace
+
+std::string compile(const Build& build, const std::string& directory) {
+  std::string tools = version_of("verilator", "verilator");
+  tools += compiler() + ": " + version_of(compiler(), "g++");
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw InputError(fmt::format("cannot make the directory {}: {}", directory, error.message()));
+  const fs::path home = fs::absolute(directory);
+  const Scratch scratch(home / build.top);
+  const fs::path &dir = scratch.path, rtl = dir / "emitted";
+  build.emit(rtl.string());
+  const std::string name = fmt::format("{}-{:016x}", build.top, key_of(build, rtl, tools));
+  const fs::path result = home / (name + ".so"), log = home / (name + ".log");
+  if (fs::exists(result)) return result.string();
+
+  fs::remove(log, error);
+  // One copy of the node's code serves all nodes of a lattice; inlined, the build takes minutes.
+  write_file(dir / "keep.vlt", "`verilator_config\nno_inline -module \"cuboct_node_core\"\n");
+  run_logged("verilator",
+             fmt::format("verilator {} {} --top-module {} --prefix V{} -Mdir {} ../keep.vlt -f files.f",
+                         kVerilatorFlags, build.verilator_flags, build.top, build.top,
+                         quoted((dir / "model").string())),
+             rtl, log);
+  std::string arguments;
+  for (const auto& [name_of_source, text] : build.sources) {
+    write_file(dir / name_of_source, text);
+    if (name_of_source.ends_with(".cpp")) arguments += " " + name_of_source;
+  }
+  for (const auto& [constant, value] : build.constants) arguments += fmt::format(" -D{}={}", constant, value);
+  run_logged("the C++ compiler",
+             fmt::format("root=$(verilator --getenv VERILATOR_ROOT) && {} {} -I. -Imodel -I\"$root/include\" "
+                         "-I\"$root/include/vltstd\" {} model/*.cpp \"$root/include/verilated.cpp\" "
+                         "\"$root/include/verilated_threads.cpp\" -o library.so -pthread {}",
+                         compiler(), kCompilerFlags, arguments, build.compiler_flags),
+             dir, log);
+  fs::rename(dir / "library.so", result);
+  fs::remove(log, error);
+  return result.string();
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// The command lines of cuboct-systemc and cuboct-rtl: exit codes and texts, as a user meets them.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+namespace cuboct::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Ended {
+  int code = -1;
+  std::string err;
+};
+
+class Programs : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "cuboct-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    dir_ = pattern;
+    std::ofstream(dir_ / "bad.toml") << "stepz = 3\n"
+                                     << std::ifstream(CUBOCT_SOURCE_DIR "/scenes/lj_block.toml").rdbuf();
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  Ended run(const std::string& command) const {
+    const int status = std::system(fmt::format("cd '{}' && {} > out 2> err", dir_.string(), command).c_str());
+    std::ifstream file(dir_ / "err");
+    std::ostringstream text;
+    text << file.rdbuf();
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
+  }
+  // A tool on the path that `script` describes; the path holds nothing else.
+  void tool(const std::string& name, const std::string& script) const {
+    fs::create_directories(dir_ / "bin");
+    std::ofstream(dir_ / "bin" / name) << "#!/bin/sh\n" << script << "\n";
+    fs::permissions(dir_ / "bin" / name, fs::perms::owner_all);
+  }
+  // cuboct-rtl on a good scene, with that path.
+  Ended rtl() const {
+    fs::create_directories(dir_ / "bin");
+    return run(fmt::format("env -u CXX PATH='{}' '{}' '{}' --steps 1 --out t.h5 --build-dir made",
+                           (dir_ / "bin").string(), CUBOCT_RTL, CUBOCT_SOURCE_DIR "/scenes/lj_block.toml"));
+  }
+  // Files in the build directory, by extension.
+  std::vector<std::string> made(const std::string& extension) const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(dir_ / "made"))
+      if (entry.path().extension() == extension) names.push_back(entry.path().filename().string());
+    return names;
+  }
+
+  fs::path dir_;
+};
+
+constexpr const char* kVerilator = "if [ \"$1\" = --version ]; then echo Verilator 5.006; exit 0; fi; ";
+constexpr const char* kCompiler =
+    "[ \"$1\" = --version ] && echo c++ 12 && exit 0; echo 'no such flag'; exit 4";
+
+TEST_F(Programs, WrongCommandLinesAndScenesEndWithTwo) {
+  for (const std::string program : {CUBOCT_SYSTEMC, CUBOCT_RTL}) {
+    const auto ends = [&](const std::string& arguments, const std::string& text) {
+      const Ended e = run("'" + program + "' " + arguments);
+      EXPECT_EQ(e.code, 2) << program << " " << arguments;
+      EXPECT_EQ(e.err, text) << program << " " << arguments;
+    };
+    const std::string help = "Run with --help for more information.\n";
+    const std::string scene = "'" CUBOCT_SOURCE_DIR "/scenes/lj_block.toml'";
+    ends("", "scene is required\n" + help);
+    ends(scene, "--out is required\n" + help);
+    ends(scene + " --out t.h5 --stepz", "The following argument was not expected: --stepz\n" + help);
+    ends(scene + " --out t.h5 --stall-rate 2",
+         "--stall-rate: Value 2 not in range 0.000000 to 0.990000\n" + help);
+    ends("none.toml --out t.h5", "none.toml: cannot read this file\n");
+    ends("bad.toml --out t.h5", "bad.toml:1:1: unknown key 'stepz'\n");
+    ends(scene + " --out none/t.h5", "cannot write none/t.h5: No such file or directory\n");
+    ends(scene + " --out t.h5 --steps 5000000000", "5000000000 steps: a node counts at most 4294967295\n");
+  }
+  EXPECT_EQ(run(fmt::format("'{}' --help", CUBOCT_RTL)).code, 0);
+}
+
+TEST_F(Programs, WithoutVerilatorOneLineNamesItsPackage) {
+  const Ended e = rtl();
+  EXPECT_EQ(e.code, 2);
+  EXPECT_EQ(e.err,
+            "verilator is missing: the emitted hardware is compiled with it (Debian package verilator)\n");
+}
+
+TEST_F(Programs, WithoutACompilerOneLineNamesItsPackage) {
+  tool("verilator", kVerilator);
+  const Ended e = rtl();
+  EXPECT_EQ(e.code, 2);
+  EXPECT_EQ(e.err, "c++ is missing: the emitted hardware is compiled with it (Debian package g++)\n");
+}
+
+TEST_F(Programs, AToolThatDoesNotRunIsNamed) {
+  tool("verilator", "exit 1");
+  const Ended e = rtl();
+  EXPECT_EQ(e.code, 2);
+  EXPECT_EQ(e.err, "'verilator --version' fails: the tool does not work\n");
+}
+
+// The log keeps what the tool said; its name is the library's, so another try writes the same file.
+TEST_F(Programs, AFailureNamesTheLog) {
+  tool("verilator", std::string(kVerilator) + "echo 'bad day'; exit 3");
+  tool("c++", kCompiler);
+  for (const std::string tool_name : {"verilator", "the C++ compiler"}) {
+    fs::remove_all(dir_ / "made");
+    if (tool_name != "verilator") tool("verilator", std::string(kVerilator) + "echo /usr; exit 0");
+    for (int tries = 0; tries < 2; ++tries) {
+      const Ended e = rtl();
+      EXPECT_EQ(e.code, 2);
+      const std::vector<std::string> logs = made(".log");
+      ASSERT_EQ(logs.size(), 1u);
+      EXPECT_TRUE(std::regex_match(logs[0], std::regex("cuboct_node-[0-9a-f]{16}\\.log"))) << logs[0];
+      EXPECT_EQ(e.err, fmt::format("{} failed: see {}\n", tool_name, (dir_ / "made" / logs[0]).string()));
+      std::ifstream log(dir_ / "made" / logs[0]);
+      std::string line, last;
+      while (std::getline(log, line)) last = line;
+      EXPECT_EQ(last, tool_name == "verilator" ? "bad day" : "no such flag");
+      EXPECT_EQ(std::distance(fs::directory_iterator(dir_ / "made"), fs::directory_iterator()), 1)
+          << "only the log";
+    }
+  }
+}
+
+// A compiled node serves only the tools that made it: another version has another name.
+TEST_F(Programs, TheNameHoldsTheVersionsOfTheTools) {
+  std::vector<std::string> names;
+  for (const auto& [verilator, compiler] : {std::pair{"5.006", "12"}, {"5.008", "12"}, {"5.006", "13"}}) {
+    tool("verilator",
+         fmt::format("if [ \"$1\" = --version ]; then echo Verilator {}; exit 0; fi; exit 3", verilator));
+    tool("c++", fmt::format("echo c++ {}", compiler));
+    fs::remove_all(dir_ / "made");
+    EXPECT_EQ(rtl().code, 2);
+    for (const std::string& name : made(".log")) names.push_back(name);
+  }
+  ASSERT_EQ(names.size(), 3u);
+  EXPECT_NE(names[0], names[1]);
+  EXPECT_NE(names[0], names[2]);
+  EXPECT_NE(names[1], names[2]);
+}
+
+}  // namespace
+}  // namespace cuboct::test
