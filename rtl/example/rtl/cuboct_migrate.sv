@@ -59,7 +59,7 @@ module cuboct_migrate #(
     state = state_q;
     if (state_q == Enter) begin
       state = End;
-      if (leaving_i) state = Scan;
+      if (leaving_i && count_i != '0) state = Scan;
     end
   end
 
