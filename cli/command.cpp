@@ -17,7 +17,7 @@ void Input::add_stalls_to(CLI::App& command) {
       .add_option(
           "--stall-rate", stall_rate,
           "share of cycles in which a link of systemc or rtl passes nothing: cycles change, bits do not")
-      ->check(CLI::Range(0.0, 0.95))
+      ->check(CLI::Range(0.0, 0.99))
       ->type_name("R");
   command.add_option("--stall-seed", stall_seed, "seed of the stalls")->check(whole_number())->type_name("N");
 }

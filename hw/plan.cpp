@@ -66,7 +66,7 @@ uint64_t hash_of(const Plan& plan) {
 
 }  // namespace
 
-Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, Vec3 origin, uint32_t particles) {
+Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, uint32_t particles) {
   check_arch(arch);
   Plan plan;
   plan.rule = std::move(rule);

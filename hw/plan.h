@@ -47,7 +47,7 @@ struct Plan {
 };
 
 // Derives words, latency and hash. Throws InputError where the arch cannot work (a capacity below 1, ...).
-Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, Vec3 origin, uint32_t particles);
+Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, uint32_t particles);
 
 // The plan as text, for people and for diffs; no dates, no addresses.
 std::string describe(const Plan& plan);

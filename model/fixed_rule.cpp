@@ -20,7 +20,7 @@ FixedTable::Address FixedTable::address(uint64_t r2) const {
   const uint64_t mantissa = r2 ^ (uint64_t{1} << octave);
   const int spare =
       octave - bin_bits - fraction_bits;  // bits of r2 below t; negative: t is padded with zeros
-  const uint64_t bin_and_t = spare >= 0 ? mantissa >> spare : mantissa << -spare;
+  const uint64_t bin_and_t = spare >= 0 ? mantissa >> spare : mantissa << static_cast<unsigned>(-spare);
   const auto row = static_cast<uint32_t>(octave - first_octave);
   return {(row << bin_bits) + static_cast<uint32_t>(bin_and_t >> fraction_bits),
           static_cast<uint32_t>(bin_and_t & t_mask)};
