@@ -71,6 +71,7 @@ int crosscheck(Options options) {
   if (std::unique(sorted.begin(), sorted.end()) != sorted.end() || sorted.size() < 2)
     throw InputError("a crosscheck needs two or more different engines", "--engines golden,systemc,rtl");
   const Loaded loaded = load(options.input);
+  catch_interrupts();
   const Setup& setup = loaded.setup;
   const Plan& plan = setup.plan;
   const Scratch scratch;
@@ -121,7 +122,10 @@ int crosscheck(Options options) {
   fmt::print("matched {} updates over {} steps in {} engines\n", updates_compared(traces[0], plan.particles),
              traces[0].steps(), traces.size());
   if (phase_times > 0) fmt::print("matched {} phase times\n", phase_times);
-  if (traces[0].stop) fmt::print("all stopped: {}\n", traces[0].stop->text);
+  if (traces[0].stop) {
+    fmt::print("all stopped: {}\n", traces[0].stop->text);
+    return 1;
+  }
   return 0;
 }
 

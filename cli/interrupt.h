@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Ctrl-C ends a run after the step at hand, so that what was done can be written; a second one ends the
-// program.
+// program. To be caught where the stepping begins: before, nothing asks `interrupted`.
 #pragma once
 
 namespace cuboct {

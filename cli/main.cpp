@@ -9,7 +9,6 @@
 
 #include "cli/command.h"
 #include "cli/engines.h"
-#include "cli/interrupt.h"
 #include "model/spelling.h"
 
 namespace cuboct {
@@ -59,7 +58,6 @@ int main_of(int argc, char** argv) {
   add_report(app, exit_code);
   try {
     check_words(app, {argv + 1, argv + argc});
-    catch_interrupts();
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
     return app.exit(help);

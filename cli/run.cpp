@@ -41,6 +41,7 @@ int run(Options options) {
   allowed.push_back("reference");
   check_engine(options.engine, allowed);
   const Loaded loaded = load(options.input);
+  catch_interrupts();
   if (!options.out.empty()) prepare_directory(options.out);
   const Scene& scene = loaded.scene;
   const uint64_t steps = options.steps_given ? options.steps : scene.steps;

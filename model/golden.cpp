@@ -11,6 +11,11 @@
 namespace cuboct {
 namespace {
 
+// The fault of `axis` that belongs to `along_x`: they follow one another by axis.
+Fault along(int axis, Fault along_x) { return static_cast<Fault>(static_cast<int>(along_x) + 2 * axis); }
+static_assert(static_cast<int>(Fault::left_z) == static_cast<int>(Fault::left_x) + 4);
+static_assert(static_cast<int>(Fault::full_z) == static_cast<int>(Fault::full_x) + 4);
+
 auto order(const RunError& e) { return std::tuple(e.fault, e.particle, e.number); }
 
 }  // namespace
@@ -104,10 +109,7 @@ void Golden::migrate(int axis, std::vector<std::vector<Moving>>& moving) const {
       }
       const uint32_t to = lattice_.neighbour(n, 2 * axis + (way > 0));
       if (to == kNoNode) {
-        faults.push_back(fault_of(axis == 0   ? Fault::left_x
-                                  : axis == 1 ? Fault::left_y
-                                              : Fault::left_z,
-                                  n, m.particle.id, 0));
+        faults.push_back(fault_of(along(axis, Fault::left_x), n, m.particle.id, 0));
         continue;
       }
       m.particle.node = to;
@@ -121,10 +123,7 @@ void Golden::migrate(int axis, std::vector<std::vector<Moving>>& moving) const {
         if (static_cast<int>(moving[n].size()) < capacity_)
           moving[n].push_back(m);
         else
-          faults.push_back(fault_of(axis == 0   ? Fault::full_x
-                                    : axis == 1 ? Fault::full_y
-                                                : Fault::full_z,
-                                    n, m.particle.id, capacity_));
+          faults.push_back(fault_of(along(axis, Fault::full_x), n, m.particle.id, capacity_));
       }
   fail_if_any(faults);
 }

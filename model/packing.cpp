@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "model/packing.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +12,8 @@
 
 namespace cuboct {
 namespace {
+
+constexpr double kMostSites = 2e9;  // minutes of testing, 50 GB if all were inside
 
 constexpr double kTolerance = 1e-6;  // of the pitch
 
@@ -48,6 +52,14 @@ std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) 
     first[a] = std::llround(std::floor(low[a])) - 1;
     last[a] = std::llround(std::ceil(high[a])) + 1;
   }
+
+  double tested = 0.5;  // every other (h, k, l) is a site
+  for (int a = 0; a < 3; ++a) tested *= static_cast<double>(last[a] - first[a] + 1);
+  if (tested > kMostSites)
+    throw InputError(
+        fmt::format("the geometry's bounds hold {:.3g} sites of the packing: at most {:.3g} are tested",
+                    tested, kMostSites),
+        "a larger pitch, or a smaller geometry");
 
   std::vector<Vec3> sites;
   for (int64_t l = first[2]; l <= last[2]; ++l) {

@@ -55,11 +55,16 @@ int run(int argc, char** argv) {
         const bool late = lie == "cycles" && step == 2 && node == 5 && phase == 3;
         trace.cycles.push_back({start, start + 9 + late});
       }
-    golden.step();
+    try {
+      golden.step();
+    } catch (const RunError& e) {
+      trace.stop = StopReason{e.fault, e.step, e.node, e.particle, e.number, e.what()};
+      break;
+    }
   }
   if (lie == "stop") trace.stop = StopReason{Fault::sum, steps, 1, 2, 3, "stopped by the fake engine"};
   write_trace(out, trace);
-  return lie == "stop" ? 1 : 0;
+  return trace.stop ? 1 : 0;
 }
 
 }  // namespace
