@@ -119,10 +119,13 @@ void write_vtk(const std::string& stem, const std::vector<Frame>& frames, const 
   std::string list =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
       "  <Collection>\n";
+  const auto file = [&stem](size_t k) { return fmt::format("{}_{:06}.vtp", stem, k); };
   for (size_t k = 0; k < frames.size(); ++k) {
-    write_text(fmt::format("{}_{:06}.vtp", stem, k), vtp(frames[k], style));
+    write_text(file(k), vtp(frames[k], style));
     list += fmt::format("    <DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}_{:06}.vtp\"/>\n",
                         frames[k].time, name, k);
+  }
+  for (size_t k = frames.size(); std::filesystem::remove(file(k)); ++k) {  // of an earlier, longer run
   }
   write_text(stem + ".pvd", list + "  </Collection>\n</VTKFile>\n");
 }

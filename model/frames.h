@@ -30,8 +30,8 @@ struct FrameStyle {
 // of all frames.
 void write_extended_xyz(const std::string& path, const std::vector<Frame>& frames, const FrameStyle& style);
 
-// <stem>.pvd lists <stem>_000000.vtp, ...: one file per frame with velocity, type, id, strain and radius per
-// point.
+// <stem>.pvd lists <stem>_000000.vtp, ... (left-overs of a longer run are removed): one file per frame with
+// velocity, type, id, strain and radius per point.
 void write_vtk(const std::string& stem, const std::vector<Frame>& frames, const FrameStyle& style);
 
 }  // namespace cuboct

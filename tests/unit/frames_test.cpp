@@ -85,6 +85,17 @@ TEST_F(Frames, VtkListsItsFilesAndHoldsTheValues) {
 }
 
 // The vectors of RFC 4648, section 10.
+TEST_F(Frames, VtkLeavesNoFilesOfALongerRun) {
+  write_vtk(directory_ / "f", frames_, style_);
+  const size_t before = frames_.size();
+  ASSERT_GE(before, 2U);
+  frames_.pop_back();
+  write_vtk(directory_ / "f", frames_, style_);
+  const auto file = [&](size_t k) { return directory_ / ("f_00000" + std::to_string(k) + ".vtp"); };
+  EXPECT_TRUE(std::filesystem::exists(file(before - 2)));
+  EXPECT_FALSE(std::filesystem::exists(file(before - 1)));
+}
+
 TEST(Base64, FollowsTheStandard) {
   const std::pair<const char*, const char*> cases[] = {{"", ""},
                                                        {"f", "Zg=="},
