@@ -10,6 +10,7 @@
 #include "hw/rtl_bench.h"
 #include "hw/rtl_design.h"
 #include "hw/rtl_library.h"
+#include "model/output.h"
 
 namespace cuboct {
 namespace {
@@ -39,6 +40,12 @@ void add_list(Files& files) {
   files["files.f"] = list;
 }
 
+// Whether a path of the marker file, which anyone may have edited, names something below the project.
+bool stays_inside(const std::string& path) {
+  const fs::path normal = fs::path(path).lexically_normal();
+  return normal.is_relative() && *normal.begin() != "..";
+}
+
 void write(const std::string& dir, const Files& files) {
   std::error_code error;
   fs::create_directories(dir, error);
@@ -46,21 +53,16 @@ void write(const std::string& dir, const Files& files) {
   if (!fs::is_empty(dir) && !fs::exists(fs::path(dir) / kMarker))
     throw InputError(fmt::format("{}: is not empty and holds no earlier emission", dir),
                      "give an empty or a new directory");
-  const auto put = [&](const fs::path& path, const std::string& text) {
-    std::ofstream out(path, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw InputError(fmt::format("{}: cannot write", path.string()));
-  };
   // What an earlier emission wrote and this one does not would be read by a later build.
   std::ifstream earlier(fs::path(dir) / kMarker);
   for (std::string path; std::getline(earlier, path);)
-    if (!path.empty() && !files.contains(path)) fs::remove(fs::path(dir) / path, error);
+    if (!path.empty() && !files.contains(path) && stays_inside(path)) fs::remove(fs::path(dir) / path, error);
   std::string list;
   for (const auto& [path, text] : files) list += path + "\n";
-  put(fs::path(dir) / kMarker, list);
+  write_text((fs::path(dir) / kMarker).string(), list);
   for (const auto& [path, text] : files) {
     fs::create_directories((fs::path(dir) / path).parent_path());
-    put(fs::path(dir) / path, text);
+    write_text((fs::path(dir) / path).string(), text);
   }
 }
 
