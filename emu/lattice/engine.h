@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The engine for real scenes: golden's bits from vector units and threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "emu/lattice/slots.h"
+#include "hw/plan.h"
+#include "model/state.h"
+
+namespace cuboct::emu {
+
+struct LatticeOptions {
+  int threads = 0;         // 0: one per core that the process may use
+  bool quiescence = true;  // nodes at rest among nodes at rest are skipped; no bit depends on it
+  std::string simd;        // "avx512", "avx2", "portable"; empty: the widest that this machine has
+};
+
+// What a run did so far.
+struct LatticeCounters {
+  uint64_t list_builds = 0;       // of the pair list
+  uint64_t node_steps = 0;        // nodes times steps
+  uint64_t quiet_node_steps = 0;  // of those, nodes whose particles and neighbours did not change in the step
+                                  // before: their clock could stand still (quiescence on)
+};
+
+class LatticeEngine {
+ public:
+  // `particle(k)`, k = 0 ... count-1, is called once each in this order: no second copy of the state is held.
+  // Particles of one node take its slots in the order in which they come (by id at the start of a run; in the
+  // order of for_each_slot when a run resumes). `plan` must outlive the engine. Throws RunError where a node
+  // would hold more than its capacity, InputError where `simd` is not to be had.
+  LatticeEngine(const Plan& plan, uint64_t step, uint32_t count,
+                const std::function<Particle(uint32_t)>& particle, const LatticeOptions& options);
+  ~LatticeEngine();
+  LatticeEngine(const LatticeEngine&) = delete;
+  LatticeEngine& operator=(const LatticeEngine&) = delete;
+
+  // Advances one step. Throws RunError, the same as golden's, at the first step that breaks a width, a
+  // capacity or the lattice; the engine's state is lost then.
+  void step();
+
+  uint64_t step_count() const;
+  uint32_t size() const;                                                      // particles
+  State state() const;                                                        // sorted by id
+  void for_each_slot(const std::function<void(const Particle&)>& see) const;  // by node, then slot
+  uint64_t hash() const;                                                      // hash_of(lattice, state())
+  Int3 momentum() const;
+
+  // For the timing model: the particles by node and slot, and those that left their node in the last step.
+  void slots(NodeSlots& out) const;
+  std::span<const Leaving> leaving() const;
+
+  const LatticeCounters& counters() const;
+  int threads() const;
+  const std::string& simd() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cuboct::emu

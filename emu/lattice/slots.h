@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Particles as the machine keeps them: node by node, slot by slot.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace cuboct::emu {
+
+struct NodeSlots {
+  std::vector<uint32_t> first;            // nodes + 1: node n holds [first[n], first[n+1])
+  std::array<std::vector<int32_t>, 3> x;  // P fractional bits, in [0, 2^P)
+};
+
+// A particle that left its node in a step: `slot` at the step's start, `away` nodes per axis (-1, 0, +1).
+struct Leaving {
+  uint32_t node;
+  uint32_t slot;
+  std::array<int8_t, 3> away;
+};
+
+}  // namespace cuboct::emu
