@@ -31,6 +31,11 @@ class PaddedArray {
     data_ = raw + lead;
     std::fill(raw, raw + bytes / sizeof(T), fill);
   }
+  PaddedArray copy() const {
+    PaddedArray result(size_);
+    std::copy(data_, data_ + size_, result.data_);
+    return result;
+  }
   T* data() { return data_; }
   const T* data() const { return data_; }
   size_t size() const { return size_; }

@@ -26,6 +26,7 @@ class Members {
 
   // False where the node is full.
   bool append(uint32_t node, uint32_t particle);
+  size_t room() const { return next_.size(); }
   int count(uint32_t node) const { return count_[node]; }
   template <typename See>
   void for_each(uint32_t node, const See& see) const {

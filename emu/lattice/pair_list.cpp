@@ -11,15 +11,15 @@ namespace {
 // Collects a group's pairs into entries: a small open hash table by (first, shift), emptied by counting laps.
 class Merger {
  public:
-  Merger() : table_(kSize) {}
+  Merger() : table_(size_) {}
   void add(int32_t first, uint8_t shift, uint32_t lane) {
-    uint32_t at = (static_cast<uint32_t>(first) * 2654435761u + shift * 40503u) >> (32 - kBits);
-    for (;; at = (at + 1) & (kSize - 1)) {
+    uint32_t at = (static_cast<uint32_t>(first) * 2654435761u + shift * 40503u) >> (32 - bits_);
+    for (;; at = (at + 1) & (size_ - 1)) {
       Place& place = table_[at];
       if (place.lap != lap_) {
         place = {lap_, static_cast<uint32_t>(entries_.size())};
         entries_.push_back({first, static_cast<uint8_t>(1u << lane), shift});
-        if (entries_.size() > kSize / 2) grow();
+        if (entries_.size() > size_ / 2) grow();
         return;
       }
       Entry& entry = entries_[place.entry];
@@ -44,16 +44,16 @@ class Merger {
     uint32_t lap = 0, entry = 0;
   };
   void grow() {
-    kBits += 1;
-    kSize *= 2;
-    table_.assign(kSize, {});
+    bits_ += 1;
+    size_ *= 2;
+    table_.assign(size_, {});
     for (uint32_t e = 0; e < entries_.size(); ++e) {
-      uint32_t at = (static_cast<uint32_t>(entries_[e].first) * 2654435761u + entries_[e].shift * 40503u) >> (32 - kBits);
-      while (table_[at].lap == lap_) at = (at + 1) & (kSize - 1);
+      uint32_t at = (static_cast<uint32_t>(entries_[e].first) * 2654435761u + entries_[e].shift * 40503u) >> (32 - bits_);
+      while (table_[at].lap == lap_) at = (at + 1) & (size_ - 1);
       table_[at] = {lap_, e};
     }
   }
-  uint32_t kBits = 9, kSize = 512;
+  uint32_t bits_ = 9, size_ = 512;
   uint32_t lap_ = 1;
   std::vector<Place> table_;
   std::vector<Entry> entries_;
