@@ -57,21 +57,25 @@ struct Found {
   int64_t number;
 };
 
+// Entries by group: those of the k-th are [first[k], first[k + 1]).
+struct PairList {
+  std::vector<uint32_t> first;
+  std::vector<Entry> entries;
+};
+
 struct Block {
   uint32_t begin = 0, end = 0;  // particles (indices), begin a multiple of kGroup
   uint32_t first_group() const { return begin / kGroup; }
   uint32_t groups() const { return (end - begin + kGroup - 1) / kGroup; }
 
-  // Entries of group first_group() + k: [first[k], first[k + 1]).
-  std::vector<uint32_t> first;
-  std::vector<Entry> entries;
+  // Pairs inside the block: all that may meet while the long list holds, and those of them that may meet in the
+  // next few steps.
+  PairList far_inside, inside;
+  // The same for pairs with other blocks, for the groups that have any; 3 x kGroup sums each.
+  std::vector<uint32_t> edge_group;  // ascending, less first_group()
+  PairList far_across, across;
+  PaddedArray<double> across_sum;
   std::vector<uint8_t> plain;  // by group: updated in vectors
-
-  // Pairs with other blocks, for the groups that have any; `outer_sum`: 3 x kGroup sums each.
-  std::vector<uint32_t> outer_group;  // ascending, less first_group()
-  std::vector<uint32_t> outer_first;
-  std::vector<Entry> outer;
-  PaddedArray<double> outer_sum;
 
   // Sums of particle p at index p - begin modulo the ring's size, a power of two, kMagic where nothing was added; a
   // vector may overhang the end, where the next lap's first kGroup sums continue.
@@ -82,7 +86,7 @@ struct Block {
   std::vector<Crossing> crossings;
   std::vector<Found> pair_faults, update_faults;
   std::vector<uint32_t> changed;  // particles, if wanted
-  double fastest = 0;             // largest |v| of an axis
+  double fastest2 = 0;            // largest v.v
 };
 
 }  // namespace cuboct::emu

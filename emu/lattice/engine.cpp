@@ -19,11 +19,16 @@
 namespace cuboct::emu {
 namespace {
 
-// Pairs are listed up to the cutoff and this much further, in cells, at first; the list holds until some
-// particle has moved half of it. It grows while lists hold for less than kShortLife steps.
-constexpr double kFirstSkin = 0.06;
+// Two lists, as in Verlet's method: the far one holds pairs up to the cutoff plus kFirstSkin, in cells; it is
+// searched anew when some particle may have moved half of that. The near one is what the far one leaves within
+// the cutoff plus a thinner skin, and is taken from it every few steps (a dual pair list: Pall and Hess 2013).
+// The far skin grows while its lists hold for less than kShortLife steps.
+constexpr double kFirstSkin = 0.17;
 constexpr double kMostSkin = 0.5;
 constexpr uint64_t kShortLife = 20;
+// The near list's skin: at least so many cells, and enough for so many steps.
+constexpr double kNearSkin = 0.04;
+constexpr double kNearSteps = 4;
 // Entries with fewer pairs than this on average are not what storage in rows is for: particles are stored by
 // node then.
 constexpr double kFewLanes = 2.5;
@@ -44,13 +49,15 @@ struct LatticeEngine::Impl {
   Impl(const Plan& plan, uint64_t step, uint32_t count, const LatticeOptions& options);
   void fill(const std::function<Particle(uint32_t)>& particle);
   void step();
+  void refresh_lists();
   void build();
+  void prune(double skin);
   void cut();
   void take_snapshot();
   bool crystal() const;
   void store_by_node();
   double displacement() const;
-  double bound_of(double fastest) const;
+  double reach_of_step() const;
   Particle particle(uint32_t index) const;
   template <typename Work>
   void for_each_block(const Work& work);
@@ -63,6 +70,7 @@ struct LatticeEngine::Impl {
   LatticeOptions options_;
   KernelRule rule_;
   Kernels kernels_;
+  double cutoff_;  // cells
   int threads_;
   uint64_t step_;
   uint32_t count_;
@@ -78,9 +86,10 @@ struct LatticeEngine::Impl {
 
   bool listed_ = false;
   double skin_ = kFirstSkin;  // cells
-  double moved_ = 0;          // cells: no particle is farther from where the list found it
-  double fastest_ = 0;        // |v| of an axis in the last step, P+G fractional bits
-  uint64_t listed_at_ = 0;    // step
+  double moved_ = 0;          // cells: no particle is farther from where the far list found it
+  double near_skin_ = 0, near_moved_ = 0;  // the same of the near list
+  double fastest_ = 0;                     // largest |v| after the last step, P+G fractional bits
+  uint64_t listed_at_ = 0;                 // step
 };
 
 LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const LatticeOptions& options)
@@ -88,6 +97,7 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
       lattice_(plan.lattice),
       options_(options),
       rule_(kernel_rule(plan.rule, plan.arch.capacity)),
+      cutoff_(std::ldexp(std::sqrt(static_cast<double>(plan.rule.cutoff2)), -plan.rule.widths.difference_frac)),
       threads_(thread_count(options.threads, count)),
       step_(step),
       count_(count),
@@ -143,8 +153,8 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
       particles_.x[a][at] = static_cast<double>(p.x[a]) + cell[a] * rule_.cell;
       particles_.v[a][at] = static_cast<double>(p.v[a]);
       if (plan_.rule.pd) particles_.u[a][at] = static_cast<double>(p.u[a]);
-      fastest_ = std::max(fastest_, std::abs(particles_.v[a][at]));
     }
+    fastest_ = std::max(fastest_, std::hypot(particles_.v[0][at], particles_.v[1][at], particles_.v[2][at]));
     if (!members_.append(p.node, at)) faults.push_back(error(Fault::full_x, p.node, at, plan_.arch.capacity));
   }
   fail_if_any(faults);
@@ -191,9 +201,9 @@ void LatticeEngine::Impl::for_each_block(const Work& work) {
   for (size_t b = 0; b < blocks_.size(); ++b) work(blocks_[b]);
 }
 
-// Cells that a step at this speed may move a particle.
-double LatticeEngine::Impl::bound_of(double fastest) const {
-  return std::sqrt(3.0) * std::ldexp(fastest + 1, -plan_.rule.widths.velocity_frac());
+// Cells that a particle can have moved in the last step.
+double LatticeEngine::Impl::reach_of_step() const {
+  return std::ldexp(fastest_ + 2 * std::ldexp(1.0, plan_.rule.widths.guard), -plan_.rule.widths.velocity_frac());
 }
 
 // The largest distance of a particle from where the list found it, in cells, rounded up.
@@ -246,8 +256,8 @@ void LatticeEngine::Impl::take_snapshot() {
 bool LatticeEngine::Impl::crystal() const {
   size_t entries = 0, pairs = 0;
   for (const Block& block : blocks_) {
-    entries += block.entries.size();
-    for (const Entry& e : block.entries) pairs += static_cast<size_t>(std::popcount(e.lanes));
+    entries += block.far_inside.entries.size();
+    for (const Entry& e : block.far_inside.entries) pairs += static_cast<size_t>(std::popcount(e.lanes));
   }
   return static_cast<double>(pairs) >= kFewLanes * static_cast<double>(entries);
 }
@@ -273,11 +283,9 @@ void LatticeEngine::Impl::store_by_node() {
 
 void LatticeEngine::Impl::build() {
   if (listed_ && step_ - listed_at_ < kShortLife) skin_ = std::min(kMostSkin, skin_ * 1.3);
-  const double cutoff = std::sqrt(static_cast<double>(plan_.rule.cutoff2)) *
-                        std::ldexp(1.0, -plan_.rule.widths.difference_frac);
   const auto list = [&] {
     for_each_block([&](Block& block) {
-      build_list(rule_, lattice_, rows_, snapshot_, particles_, cutoff + skin_, block);
+      build_list(rule_, lattice_, rows_, snapshot_, particles_, cutoff_ + skin_, block);
     });
   };
   take_snapshot();
@@ -292,12 +300,34 @@ void LatticeEngine::Impl::build() {
   moved_ = 0;
 }
 
-void LatticeEngine::Impl::step() {
-  if (!listed_ || moved_ > skin_ / 2) {
+void LatticeEngine::Impl::prune(double skin) {
+  near_skin_ = skin;
+  near_moved_ = 0;
+  const double reach = (cutoff_ + skin) * rule_.cell * (1 + 1e-9);
+  for_each_block([&](Block& block) {
+    kernels_.prune(particles_, reach, block.first_group(), nullptr, block.far_inside, block.inside);
+    kernels_.prune(particles_, reach, block.first_group(), &block.edge_group, block.far_across, block.across);
+  });
+}
+
+// Makes sure that the near list holds every pair inside the cutoff.
+void LatticeEngine::Impl::refresh_lists() {
+  if (listed_ && near_moved_ <= near_skin_ / 2) return;
+  const double wanted = std::max(kNearSkin, 2 * kNearSteps * reach_of_step());
+  const double least = 2 * reach_of_step();
+  // The far list must hold every pair within the near list's reach.
+  const auto room = [&] { return skin_ - 2 * moved_; };
+  if (!listed_ || room() < wanted) {
     if (listed_) moved_ = displacement();
-    // A list that would be measured again in a few steps is better made anew.
-    if (!listed_ || moved_ + 4 * bound_of(fastest_) > skin_ / 2) build();
+    if (!listed_ || room() < std::max(least, wanted / 2)) {
+      build();
+    }
   }
+  prune(std::min(wanted, room()));
+}
+
+void LatticeEngine::Impl::step() {
+  refresh_lists();
   Active active;
   if (quiet_) active = quiet_->next(members_);
   for (Block& block : blocks_) {
@@ -305,10 +335,10 @@ void LatticeEngine::Impl::step() {
     block.pair_faults.clear();
     block.update_faults.clear();
     block.changed.clear();
-    block.fastest = 0;
+    block.fastest2 = 0;
   }
-  for_each_block([&](Block& block) { kernels_.outer(rule_, particles_, active, block); });
-  for_each_block([&](Block& block) { kernels_.inner(rule_, particles_, active, block); });
+  for_each_block([&](Block& block) { kernels_.across(rule_, particles_, active, block); });
+  for_each_block([&](Block& block) { kernels_.inside(rule_, particles_, active, block); });
   fail_if_any(&Block::pair_faults);
   fail_if_any(&Block::update_faults);
 
@@ -329,8 +359,9 @@ void LatticeEngine::Impl::step() {
     for (const Crossing& c : crossings) quiet_->changed(particles_.node[c.particle]);
 
   fastest_ = 0;
-  for (const Block& block : blocks_) fastest_ = std::max(fastest_, block.fastest);
-  moved_ += bound_of(fastest_);
+  for (const Block& block : blocks_) fastest_ = std::max(fastest_, std::sqrt(block.fastest2));
+  moved_ += reach_of_step();
+  near_moved_ += reach_of_step();
   counters_.node_steps += lattice_.size();
   if (quiet_) counters_.quiet_node_steps += quiet_->quiet_nodes();
   ++step_;

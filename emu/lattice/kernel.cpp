@@ -88,8 +88,8 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
     dx[a] = rounded(x, rule.difference_factor);
   }
   const V r2 = hn::MulAdd(dx[2], dx[2], hn::MulAdd(dx[1], dx[1], hn::Mul(dx[0], dx[0])));
-  const M inside = hn::And(lane_mask(entry.lanes >> at), hn::Lt(r2, hn::Set(d, rule.cutoff2)));
-  if (HWY_UNLIKELY(hn::AllFalse(d, inside))) return false;
+  const M near = hn::And(lane_mask(entry.lanes >> at), hn::Lt(r2, hn::Set(d, rule.cutoff2)));
+  if (HWY_UNLIKELY(hn::AllFalse(d, near))) return false;
   V s = hn::Sub(table_value<kSimple>(rule.force, r2), hn::Set(d, rule.force.bias));
   if (kDamped) {
     V wd = hn::Zero(d), most = hn::Zero(d);
@@ -103,7 +103,7 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
     s = hn::Sub(hn::NegMulAdd(hn::Mul(c, q), hn::Set(d, rule.damp_factor), hn::Add(s, magic())), magic());
     const M odd = hn::Or(hn::Ge(most, hn::Set(d, rule.w_limit)),
                          hn::Or(hn::Lt(s, hn::Set(d, rule.s_low)), hn::Ge(s, hn::Set(d, rule.s_high))));
-    doubtful = mask_lanes(hn::And(odd, inside));
+    doubtful = mask_lanes(hn::And(odd, near));
   }
   if (kScaled) {
     double factor[kLanes];
@@ -111,9 +111,41 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
       factor[l] = rule.scale[particles.type[i + l] * rule.types + particles.type[j + l]];
     s = rounded(hn::Mul(s, hn::LoadU(d, factor)), rule.scale_factor);
   }
-  s = hn::IfThenElseZero(inside, s);
+  s = hn::IfThenElseZero(near, s);
   for (int a = 0; a < 3; ++a) kick[a] = hn::Mul(s, dx[a]);
   return true;
+}
+
+void prune(const Particles& particles, double reach, uint32_t first_group, const std::vector<uint32_t>* groups,
+           const PairList& from, PairList& to) {
+  const size_t count = from.first.size() - 1;
+  to.first.resize(count + 1);
+  to.entries.resize(from.entries.size());
+  Entry* out = to.entries.data();
+  const V reach2 = hn::Set(d, reach * reach);
+  for (size_t k = 0; k < count; ++k) {
+    to.first[k] = static_cast<uint32_t>(out - to.entries.data());
+    const size_t base = size_t{first_group + (groups != nullptr ? (*groups)[k] : static_cast<uint32_t>(k))} * kGroup;
+    for (uint32_t e = from.first[k]; e < from.first[k + 1]; ++e) {
+      const Entry entry = from.entries[e];
+      uint32_t lanes = 0;
+      for (uint32_t at = 0; at < kGroup; at += kLanes) {
+        V r2 = hn::Zero(d);
+        for (int a = 0; a < 3; ++a) {
+          const V x_j = hn::LoadU(d, particles.x[a].data() + entry.first + static_cast<ptrdiff_t>(at));
+          const V x = hn::Add(hn::Sub(x_j, hn::Load(d, particles.x[a].data() + base + at)),
+                              hn::Set(d, particles.shift[entry.shift][a]));
+          r2 = hn::MulAdd(x, x, r2);
+        }
+        lanes |= mask_lanes(hn::Le(r2, reach2)) << at;
+      }
+      lanes &= entry.lanes;
+      *out = {entry.first, static_cast<uint8_t>(lanes), entry.shift};
+      out += lanes != 0;
+    }
+  }
+  to.first[count] = static_cast<uint32_t>(out - to.entries.data());
+  to.entries.resize(to.first[count]);
 }
 
 template <bool kDamped>
@@ -133,16 +165,16 @@ HWY_NOINLINE void report(const KernelRule& rule, const Particles& particles, uin
 }
 
 template <bool kSimple, bool kDamped, bool kScaled>
-void outer(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
-  for (size_t k = 0; k < block.outer_group.size(); ++k) {
-    const uint32_t g = block.first_group() + block.outer_group[k];
+void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
+  for (size_t k = 0; k < block.edge_group.size(); ++k) {
+    const uint32_t g = block.first_group() + block.edge_group[k];
     if (active.group != nullptr && active.group[g] == 0) continue;
     for (uint32_t at = 0; at < kGroup; at += kLanes) {
       const uint32_t i = g * kGroup + at;
       const Own own = load_own<kDamped>(particles, i);
       V sum[3] = {magic(), magic(), magic()};
-      for (uint32_t e = block.outer_first[k]; e < block.outer_first[k + 1]; ++e) {
-        const Entry& entry = block.outer[e];
+      for (uint32_t e = block.across.first[k]; e < block.across.first[k + 1]; ++e) {
+        const Entry& entry = block.across.entries[e];
         uint32_t doubtful = 0;
         V kick[3];
         if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, entry, at, kick, doubtful)) continue;
@@ -150,7 +182,7 @@ void outer(const KernelRule& rule, const Particles& particles, const Active& act
           report(rule, particles, i, entry.first + static_cast<int32_t>(at), entry.shift, doubtful, false, block);
         for (int a = 0; a < 3; ++a) sum[a] = hn::NegMulAdd(kick[a], hn::Set(d, rule.kick_factor), sum[a]);
       }
-      for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, &block.outer_sum[(k * 3 + a) * kGroup + at]);
+      for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, &block.across_sum[(k * 3 + a) * kGroup + at]);
     }
   }
 }
@@ -172,7 +204,7 @@ HWY_INLINE void take_ring(Block& block, uint32_t slot, uint32_t at, V sum[3]) {
 
 // Kick and drift of a group's lanes `at` on, all free.
 HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i, uint32_t lanes, bool track,
-                       const V sum[3], Block& block, V& fastest) {
+                       const V sum[3], Block& block, V& fastest2) {
   const M mask = lane_mask(lanes);
   const FixedType& type = rule.rule->types[particles.type[i]];
   V v[3];
@@ -206,8 +238,9 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
     if (track) changed = hn::Or(changed, hn::Or(hn::Ne(step, hn::Zero(d)), hn::Ne(v[a], old_v)));
     hn::Store(hn::IfThenElse(mask, new_x, x), d, particles.x[a].data() + i);
     hn::Store(hn::IfThenElse(mask, v[a], old_v), d, particles.v[a].data() + i);
-    fastest = hn::Max(fastest, hn::IfThenElseZero(mask, hn::Abs(v[a])));
   }
+  const V speed2 = hn::MulAdd(v[2], v[2], hn::MulAdd(v[1], v[1], hn::Mul(v[0], v[0])));
+  fastest2 = hn::Max(fastest2, hn::IfThenElseZero(mask, speed2));
   crossed = hn::And(crossed, mask);
   if (HWY_UNLIKELY(!hn::AllFalse(d, crossed))) {
     double away[3][kLanes];
@@ -227,17 +260,17 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
 }
 
 template <bool kSimple, bool kDamped, bool kScaled>
-void inner(const KernelRule& rule, Particles& particles, const Active& active, Block& block) {
+void inside(const KernelRule& rule, Particles& particles, const Active& active, Block& block) {
   const bool track = active.track;
   double* const ring[3] = {block.ring[0].data(), block.ring[1].data(), block.ring[2].data()};
-  V fastest = hn::Zero(d);
-  size_t next_outer = 0;
+  V fastest2 = hn::Zero(d);
+  size_t next_edge = 0;
   for (uint32_t k = 0; k < block.groups(); ++k) {
     const uint32_t g = block.first_group() + k;
     const uint32_t base = g * kGroup;
-    const double* outer_sum = nullptr;
-    if (next_outer < block.outer_group.size() && block.outer_group[next_outer] == k)
-      outer_sum = &block.outer_sum[next_outer++ * 3 * kGroup];
+    const double* across_sum = nullptr;
+    if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
+      across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
     const uint32_t slot = (k * kGroup) & block.ring_mask;
     const bool work = active.group == nullptr || active.group[g] != 0;
     uint32_t lanes = base + kGroup <= block.end ? 0xffu : (1u << (block.end - base)) - 1;
@@ -251,8 +284,8 @@ void inner(const KernelRule& rule, Particles& particles, const Active& active, B
       V sum[3] = {magic(), magic(), magic()};
       if (work) {
         const Own own = load_own<kDamped>(particles, i);
-        const Entry* const end = block.entries.data() + block.first[k + 1];
-        for (const Entry* e = block.entries.data() + block.first[k]; e != end; ++e) {
+        const Entry* const end = block.inside.entries.data() + block.inside.first[k + 1];
+        for (const Entry* e = block.inside.entries.data() + block.inside.first[k]; e != end; ++e) {
           uint32_t doubtful = 0;
           V kick[3];
           if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, kick, doubtful)) continue;
@@ -268,14 +301,14 @@ void inner(const KernelRule& rule, Particles& particles, const Active& active, B
       }
       for (int a = 0; a < 3; ++a) {
         sum[a] = hn::Sub(sum[a], magic());
-        if (outer_sum != nullptr && work)
-          sum[a] = hn::Add(sum[a], hn::Sub(hn::LoadU(d, outer_sum + a * kGroup + at), magic()));
+        if (across_sum != nullptr && work)
+          sum[a] = hn::Add(sum[a], hn::Sub(hn::LoadU(d, across_sum + a * kGroup + at), magic()));
       }
       take_ring(block, slot, at, sum);
       const uint32_t mine = lanes >> at & ((1u << kLanes) - 1);
       if (mine == 0) continue;
       if (HWY_LIKELY(block.plain[k] != 0)) {
-        update(rule, particles, i, mine, track, sum, block, fastest);
+        update(rule, particles, i, mine, track, sum, block, fastest2);
       } else {
         double sums[3][kLanes];
         for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
@@ -287,16 +320,16 @@ void inner(const KernelRule& rule, Particles& particles, const Active& active, B
       }
     }
   }
-  block.fastest = std::max(block.fastest, hn::GetLane(hn::MaxOfLanes(d, fastest)));
+  block.fastest2 = std::max(block.fastest2, hn::GetLane(hn::MaxOfLanes(d, fastest2)));
 }
 
 template <bool kSimple>
 Kernels kernels_for(const KernelRule& rule, const char* name) {
   if (rule.damped)
-    return rule.scaled ? Kernels{name, outer<kSimple, true, true>, inner<kSimple, true, true>}
-                       : Kernels{name, outer<kSimple, true, false>, inner<kSimple, true, false>};
-  return rule.scaled ? Kernels{name, outer<kSimple, false, true>, inner<kSimple, false, true>}
-                     : Kernels{name, outer<kSimple, false, false>, inner<kSimple, false, false>};
+    return rule.scaled ? Kernels{name, prune, across<kSimple, true, true>, inside<kSimple, true, true>}
+                       : Kernels{name, prune, across<kSimple, true, false>, inside<kSimple, true, false>};
+  return rule.scaled ? Kernels{name, prune, across<kSimple, false, true>, inside<kSimple, false, true>}
+                     : Kernels{name, prune, across<kSimple, false, false>, inside<kSimple, false, false>};
 }
 #endif
 

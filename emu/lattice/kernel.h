@@ -19,10 +19,14 @@ struct Active {
 
 struct Kernels {
   std::string name;
+  // The entries of `from` with a pair within `reach` (P fractional bits). Its k-th group is `groups[k]` of the block,
+  // or k where `groups` is null.
+  void (*prune)(const Particles&, double reach, uint32_t first_group, const std::vector<uint32_t>* groups,
+                const PairList& from, PairList& to);
   // Sums of the pairs with other blocks.
-  void (*outer)(const KernelRule&, const Particles&, const Active&, Block&);
+  void (*across)(const KernelRule&, const Particles&, const Active&, Block&);
   // Pairs inside the block, then each group's update.
-  void (*inner)(const KernelRule&, Particles&, const Active&, Block&);
+  void (*inside)(const KernelRule&, Particles&, const Active&, Block&);
 };
 
 // Those that this machine runs and `rule` allows: the widest first; "portable", plain integers that fit every

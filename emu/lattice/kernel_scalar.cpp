@@ -20,14 +20,37 @@ PairResult pair(const KernelRule& rule, const Particles& particles, uint32_t i, 
                    particles.type[j]);
 }
 
-void outer(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
-  for (size_t k = 0; k < block.outer_group.size(); ++k) {
-    const uint32_t g = block.first_group() + block.outer_group[k];
+void prune(const Particles& particles, double reach, uint32_t first_group, const std::vector<uint32_t>* groups,
+           const PairList& from, PairList& to) {
+  to.first.assign(1, 0);
+  to.entries.clear();
+  for (uint32_t k = 0; k + 1 < from.first.size(); ++k) {
+    const uint32_t base = (first_group + (groups != nullptr ? (*groups)[k] : k)) * kGroup;
+    for (uint32_t e = from.first[k]; e < from.first[k + 1]; ++e) {
+      Entry entry = from.entries[e];
+      for (uint32_t l = 0; l < kGroup; ++l) {
+        if ((entry.lanes >> l & 1) == 0) continue;
+        double r2 = 0;
+        for (int a = 0; a < 3; ++a) {
+          const double d = particles.x[a][entry.first + l] - particles.x[a][base + l] + particles.shift[entry.shift][a];
+          r2 += d * d;
+        }
+        if (r2 > reach * reach) entry.lanes = static_cast<uint8_t>(entry.lanes & ~(1u << l));
+      }
+      if (entry.lanes != 0) to.entries.push_back(entry);
+    }
+    to.first.push_back(static_cast<uint32_t>(to.entries.size()));
+  }
+}
+
+void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
+  for (size_t k = 0; k < block.edge_group.size(); ++k) {
+    const uint32_t g = block.first_group() + block.edge_group[k];
     if (active.group != nullptr && active.group[g] == 0) continue;
-    double* sum = &block.outer_sum[k * 3 * kGroup];
+    double* sum = &block.across_sum[k * 3 * kGroup];
     std::fill(sum, sum + 3 * kGroup, kMagic);
-    for (uint32_t e = block.outer_first[k]; e < block.outer_first[k + 1]; ++e) {
-      const Entry& entry = block.outer[e];
+    for (uint32_t e = block.across.first[k]; e < block.across.first[k + 1]; ++e) {
+      const Entry& entry = block.across.entries[e];
       for (uint32_t l = 0; l < kGroup; ++l) {
         if ((entry.lanes >> l & 1) == 0) continue;
         const PairResult result = pair(rule, particles, g * kGroup + l, entry.first + l, entry.shift);
@@ -39,19 +62,19 @@ void outer(const KernelRule& rule, const Particles& particles, const Active& act
   }
 }
 
-void inner(const KernelRule& rule, Particles& particles, const Active& active, Block& block) {
-  size_t next_outer = 0;
+void inside(const KernelRule& rule, Particles& particles, const Active& active, Block& block) {
+  size_t next_edge = 0;
   for (uint32_t k = 0; k < block.groups(); ++k) {
     const uint32_t g = block.first_group() + k;
-    const double* outer_sum = nullptr;
-    if (next_outer < block.outer_group.size() && block.outer_group[next_outer] == k)
-      outer_sum = &block.outer_sum[next_outer++ * 3 * kGroup];
+    const double* across_sum = nullptr;
+    if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
+      across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
     const bool work = active.group == nullptr || active.group[g] != 0;
     const uint32_t slot = (k * kGroup) & block.ring_mask;
     double sums[kGroup][3] = {};
     if (work)
-      for (uint32_t e = block.first[k]; e < block.first[k + 1]; ++e) {
-        const Entry& entry = block.entries[e];
+      for (uint32_t e = block.inside.first[k]; e < block.inside.first[k + 1]; ++e) {
+        const Entry& entry = block.inside.entries[e];
         for (uint32_t l = 0; l < kGroup; ++l) {
           if ((entry.lanes >> l & 1) == 0) continue;
           const uint32_t i = g * kGroup + l, j = entry.first + l;
@@ -74,7 +97,7 @@ void inner(const KernelRule& rule, Particles& particles, const Active& active, B
           sums[l][a] += overhang - kMagic;
           overhang = kMagic;
         }
-        if (outer_sum != nullptr) sums[l][a] += outer_sum[a * kGroup + l] - kMagic;
+        if (across_sum != nullptr) sums[l][a] += across_sum[a * kGroup + l] - kMagic;
       }
       const uint32_t p = g * kGroup + l;
       if (!work || p >= block.end || (active.node != nullptr && active.node[particles.node[p]] == 0)) continue;
@@ -104,18 +127,20 @@ void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const 
   const int P = rule.rule->widths.position_frac;
   Crossing crossing{p, {}};
   bool changed = false;
+  double speed2 = 0;
   for (int a = 0; a < 3; ++a) {
     crossing.away[a] = static_cast<int8_t>((done.x[a] >> P) - (x[a] >> P));
     changed |= done.x[a] != x[a] || done.v[a] != v[a] || done.u[a] != u[a];
     particles.x[a][p] = static_cast<double>(done.x[a]);
     particles.v[a][p] = static_cast<double>(done.v[a]);
     if (pd) particles.u[a][p] = static_cast<double>(done.u[a]);
-    block.fastest = std::max(block.fastest, std::abs(static_cast<double>(done.v[a])));
+    speed2 += static_cast<double>(done.v[a]) * static_cast<double>(done.v[a]);
   }
+  block.fastest2 = std::max(block.fastest2, speed2);
   if (changed) block.changed.push_back(p);
   if (crossing.away != std::array<int8_t, 3>{}) block.crossings.push_back(crossing);
 }
 
-Kernels scalar_kernels() { return {"portable", outer, inner}; }
+Kernels scalar_kernels() { return {"portable", prune, across, inside}; }
 
 }  // namespace cuboct::emu

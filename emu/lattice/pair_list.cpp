@@ -65,12 +65,12 @@ void build_list(const KernelRule& rule, const Lattice& lattice, const Rows& rows
                 const Particles& particles, double reach, Block& block) {
   const int P = rule.rule->widths.position_frac;
   Search search(lattice, rows, snapshot, reach);
-  Merger inner, outer;
-  block.first.assign(1, 0);
-  block.entries.clear();
-  block.outer_group.clear();
-  block.outer_first.assign(1, 0);
-  block.outer.clear();
+  Merger inside, across;
+  for (PairList* list : {&block.far_inside, &block.far_across}) {
+    list->first.assign(1, 0);
+    list->entries.clear();
+  }
+  block.edge_group.clear();
   block.plain.assign(block.groups(), 1);
   uint32_t window = kGroup;
   for (uint32_t k = 0; k < block.groups(); ++k) {
@@ -85,24 +85,24 @@ void build_list(const KernelRule& rule, const Lattice& lattice, const Rows& rows
                                                   coarse(particles.x[1][i], P), coarse(particles.x[2][i], P))) {
         const auto first = static_cast<int32_t>(j) - static_cast<int32_t>(i - base);
         if (j < block.begin || j >= block.end)
-          outer.add(first, shift, i - base);
+          across.add(first, shift, i - base);
         else if (j > i)
-          inner.add(first, shift, i - base);
+          inside.add(first, shift, i - base);
       }
     }
-    inner.take(block.entries);
-    const auto last = static_cast<uint32_t>(block.entries.size());
-    if (last > block.first.back())
-      window = std::max(window, static_cast<uint32_t>(block.entries.back().first) + kGroup - base);
-    block.first.push_back(last);
-    outer.take(block.outer);
-    if (block.outer.size() > block.outer_first.back()) {
-      block.outer_group.push_back(k);
-      block.outer_first.push_back(static_cast<uint32_t>(block.outer.size()));
+    inside.take(block.far_inside.entries);
+    const auto last = static_cast<uint32_t>(block.far_inside.entries.size());
+    if (last > block.far_inside.first.back())
+      window = std::max(window, static_cast<uint32_t>(block.far_inside.entries.back().first) + kGroup - base);
+    block.far_inside.first.push_back(last);
+    across.take(block.far_across.entries);
+    if (block.far_across.entries.size() > block.far_across.first.back()) {
+      block.edge_group.push_back(k);
+      block.far_across.first.push_back(static_cast<uint32_t>(block.far_across.entries.size()));
     }
   }
-  block.outer_sum = PaddedArray<double>(block.outer_group.size() * 3 * kGroup, kMagic);
-  // Twice: the group at hand and those up to the farthest partner never meet in the ring.
+  block.across_sum = PaddedArray<double>(block.edge_group.size() * 3 * kGroup, kMagic);
+  // The group at hand and those up to the farthest partner never meet in the ring.
   const uint32_t size = std::bit_ceil(window + kGroup);
   block.ring_mask = size - 1;
   for (auto& ring : block.ring) ring = PaddedArray<double>(size, kMagic);

@@ -8,7 +8,7 @@
 
 namespace cuboct::emu {
 
-// Pairs within `reach` cells in the snapshot. Writes first, entries, outer*, the rings and `plain` of `block`.
+// Pairs within `reach` cells in the snapshot. Writes the far lists, edge_group, the rings and `plain` of `block`.
 void build_list(const KernelRule& rule, const Lattice& lattice, const Rows& rows, const Snapshot& snapshot,
                 const Particles& particles, double reach, Block& block);
 

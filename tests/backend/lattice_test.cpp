@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Lattice, testing::ValuesIn(case_names()), [](con
 
 TEST(LatticeRandom, EqualsGolden) {
   Count count;
-  for (uint64_t seed = 1; seed <= 150; ++seed) {
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
     const Case c = random_case(seed);
     const auto all = variants(c.setup.plan);
     // Each seed meets the widest unit and one other variant.
