@@ -60,7 +60,7 @@ struct Found {
 // Entries by group: those of the k-th are [first[k], first[k + 1]).
 struct PairList {
   std::vector<uint32_t> first;
-  std::vector<Entry> entries;
+  std::vector<Entry, Untouched<Entry>> entries;
 };
 
 struct Block {

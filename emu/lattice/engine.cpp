@@ -26,6 +26,9 @@ namespace {
 constexpr double kFirstSkin = 0.17;
 constexpr double kMostSkin = 0.5;
 constexpr uint64_t kShortLife = 20;
+// A list is mended where at most this share of the particles moved farther than this share of the skin.
+constexpr double kMostMended = 0.1;
+constexpr double kMendFrom = 0.125;
 // The near list's skin: at least so many cells, and enough for so many steps.
 constexpr double kNearSkin = 0.04;
 constexpr double kNearSteps = 4;
@@ -51,12 +54,12 @@ struct LatticeEngine::Impl {
   void step();
   void refresh_lists();
   void build();
+  bool mend();
+  void list(const std::vector<uint8_t>* only);
   void prune(double skin);
   void cut();
-  void take_snapshot();
   bool crystal() const;
   void store_by_node();
-  double displacement() const;
   double reach_of_step() const;
   Particle particle(uint32_t index) const;
   template <typename Work>
@@ -80,7 +83,6 @@ struct LatticeEngine::Impl {
   Rows rows_;
   Snapshot snapshot_;
   std::optional<Quiet> quiet_;
-  std::vector<uint32_t> place_;  // index by id
   std::vector<Leaving> leaving_;
   LatticeCounters counters_;
 
@@ -102,6 +104,8 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
       step_(step),
       count_(count),
       rows_(plan.lattice) {
+  snapshot_.position_frac = plan.rule.widths.position_frac;
+  snapshot_.threads = threads_;
   const std::vector<Kernels> here = kernels_here(rule_);
   const auto named = std::find_if(here.begin(), here.end(), [&](const Kernels& k) {
     return options_.simd.empty() || k.name == options_.simd;
@@ -206,52 +210,6 @@ double LatticeEngine::Impl::reach_of_step() const {
   return std::ldexp(fastest_ + 2 * std::ldexp(1.0, plan_.rule.widths.guard), -plan_.rule.widths.velocity_frac());
 }
 
-// The largest distance of a particle from where the list found it, in cells, rounded up.
-double LatticeEngine::Impl::displacement() const {
-  const int P = plan_.rule.widths.position_frac;
-  double most = 0;
-#pragma omp parallel for reduction(max : most) num_threads(threads_)
-  for (uint32_t k = 0; k < count_; ++k) {
-    const uint32_t p = snapshot_.particle[k];
-    // Differences modulo 2^32: a particle may have passed the seam of a ring since.
-    const auto d = [&](const PaddedArray<int32_t>& was, int a) {
-      return static_cast<double>(static_cast<int32_t>(static_cast<uint32_t>(coarse(particles_.x[a][p], P)) -
-                                                      static_cast<uint32_t>(was[k])));
-    };
-    const double x = d(snapshot_.x, 0), y = d(snapshot_.y, 1), z = d(snapshot_.z, 2);
-    most = std::max(most, x * x + y * y + z * z);
-  }
-  return std::ldexp(std::sqrt(most) + 2, -kCoarse);
-}
-
-void LatticeEngine::Impl::take_snapshot() {
-  const int P = plan_.rule.widths.position_frac;
-  if (snapshot_.first.empty()) {
-    snapshot_.first.resize(lattice_.size() + 1);
-    for (auto* array : {&snapshot_.x, &snapshot_.y, &snapshot_.z}) *array = PaddedArray<int32_t>(count_ + kGroup);
-    snapshot_.particle = PaddedArray<uint32_t>(count_);
-  }
-  uint32_t at = 0;
-  for (uint32_t n = 0; n < lattice_.size(); ++n) {
-    snapshot_.first[n] = at;
-    members_.for_each(n, [&](uint32_t p) { snapshot_.particle[at++] = p; });
-  }
-  snapshot_.first[lattice_.size()] = at;
-#pragma omp parallel for num_threads(threads_)
-  for (uint32_t n = 0; n < lattice_.size(); ++n)
-    for (uint32_t k = snapshot_.first[n]; k < snapshot_.first[n + 1]; ++k) {
-      const uint32_t p = snapshot_.particle[k];
-      // Back into the cells of the rings.
-      for (int a = 0; a < 3; ++a) {
-        double& x = particles_.x[a][p];
-        x += (lattice_.cell(n)[a] - std::floor(x * rule_.inverse_cell)) * rule_.cell;
-      }
-      snapshot_.x[k] = coarse(particles_.x[0][p], P);
-      snapshot_.y[k] = coarse(particles_.x[1][p], P);
-      snapshot_.z[k] = coarse(particles_.x[2][p], P);
-    }
-}
-
 // Whether the order of storage lets an entry hold several pairs.
 bool LatticeEngine::Impl::crystal() const {
   size_t entries = 0, pairs = 0;
@@ -281,23 +239,43 @@ void LatticeEngine::Impl::store_by_node() {
   for (uint32_t k = 0; k < count_; ++k) snapshot_.particle[k] = k;
 }
 
+void LatticeEngine::Impl::list(const std::vector<uint8_t>* only) {
+  const std::vector<uint32_t> place = snapshot_.places();
+  for_each_block([&](Block& block) {
+    build_list(rule_, lattice_, rows_, snapshot_, place, particles_, cutoff_ + skin_, only, block);
+  });
+}
+
 void LatticeEngine::Impl::build() {
   if (listed_ && step_ - listed_at_ < kShortLife) skin_ = std::min(kMostSkin, skin_ * 1.3);
-  const auto list = [&] {
-    for_each_block([&](Block& block) {
-      build_list(rule_, lattice_, rows_, snapshot_, particles_, cutoff_ + skin_, block);
-    });
-  };
-  take_snapshot();
+  snapshot_.take(lattice_, members_, particles_);
   if (listed_ && !crystal()) {
     store_by_node();
     if (quiet_) quiet_->regroup((count_ + kGroup - 1) / kGroup);
   }
-  list();
+  list(nullptr);
   ++counters_.list_builds;
   listed_ = true;
   listed_at_ = step_;
   moved_ = 0;
+}
+
+// Where few particles moved far, as around a crack or an impact: lists anew the groups of those, and of all
+// around where they are now. False where that is not worth it.
+bool LatticeEngine::Impl::mend() {
+  const std::vector<uint32_t> moved =
+      snapshot_.retake(lattice_, members_, particles_, kMendFrom * skin_, static_cast<size_t>(kMostMended * count_));
+  if (moved.empty()) return false;
+  std::vector<uint8_t> only((count_ + kGroup - 1) / kGroup);
+  Search search(lattice_, rows_, snapshot_, cutoff_ + skin_);
+  for (const uint32_t place : moved) {
+    const uint32_t p = snapshot_.particle[place];
+    for (const auto& hit : search.around(particles_.node[p], place)) only[hit.particle / kGroup] = 1;
+  }
+  list(&only);
+  ++counters_.list_mends;
+  moved_ = snapshot_.displacement(particles_);
+  return true;
 }
 
 void LatticeEngine::Impl::prune(double skin) {
@@ -318,9 +296,9 @@ void LatticeEngine::Impl::refresh_lists() {
   // The far list must hold every pair within the near list's reach.
   const auto room = [&] { return skin_ - 2 * moved_; };
   if (!listed_ || room() < wanted) {
-    if (listed_) moved_ = displacement();
+    if (listed_) moved_ = snapshot_.displacement(particles_);
     if (!listed_ || room() < std::max(least, wanted / 2)) {
-      build();
+      if (!listed_ || !mend() || room() < least) build();
     }
   }
   prune(std::min(wanted, room()));

@@ -8,8 +8,10 @@
 
 namespace cuboct::emu {
 
-// Pairs within `reach` cells in the snapshot. Writes the far lists, edge_group, the rings and `plain` of `block`.
+// Pairs within `reach` cells in the snapshot; `place` is its places(). Writes the far lists, edge_group, the rings and
+// `plain` of `block`. With `only`, by group, the others keep their entries.
 void build_list(const KernelRule& rule, const Lattice& lattice, const Rows& rows, const Snapshot& snapshot,
-                const Particles& particles, double reach, Block& block);
+                const std::vector<uint32_t>& place, const Particles& particles, double reach,
+                const std::vector<uint8_t>* only, Block& block);
 
 }  // namespace cuboct::emu

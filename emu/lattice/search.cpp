@@ -81,8 +81,9 @@ void Search::add(Rows::Range nodes, int32_t x, int32_t y, int32_t z, uint8_t shi
   for (uint32_t k = 0; k < n; ++k) hits_.push_back({snapshot_.particle[begin + found_[k]], shift});
 }
 
-const std::vector<Search::Hit>& Search::around(uint32_t node, int32_t x, int32_t y, int32_t z) {
+const std::vector<Search::Hit>& Search::around(uint32_t node, uint32_t place) {
   hits_.clear();
+  const int32_t x = snapshot_.x[place], y = snapshot_.y[place], z = snapshot_.z[place];
   const Cell& cell = lattice_.cell(node);
   const Cell& period = lattice_.period();
   // The cells that [x - reach, x + reach] touches, relative to the particle's own.

@@ -6,19 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "emu/lattice/block.h"
-#include "emu/lattice/members.h"
+#include "emu/lattice/snapshot.h"
 #include "model/lattice.h"
 
 namespace cuboct::emu {
-
-// Fractional bits of a cell edge in which pairs are searched and displacements are measured.
-inline constexpr int kCoarse = 16;
-inline int32_t coarse(double x, int position_frac) {
-  const auto whole = static_cast<int64_t>(x);
-  return static_cast<int32_t>(position_frac >= kCoarse ? whole >> (position_frac - kCoarse)
-                                                       : whole << (kCoarse - position_frac));
-}
 
 // Neighbours in x, y and z of a row of nodes: nodes of one (y, z) stand one after another in a Lattice, so the
 // particles of a stretch of a row are a stretch of an array.
@@ -48,16 +39,7 @@ class Rows {
   std::vector<std::array<uint32_t, (2 * kReach + 1) * (2 * kReach + 1)>> near_;
 };
 
-// The particles as they stood when the list was made, by node and slot: coarse coordinates (modulo 2^32: only
-// differences over a few cells are used).
-struct Snapshot {
-  std::vector<uint32_t> first;  // nodes + 1
-  PaddedArray<int32_t> x, y, z;
-  PaddedArray<uint32_t> particle;
-};
-
-// Calls see(particle, shift) for each particle within `reach` cells (at most kReach) of one in `node` that
-// stood at (x, y, z) in the snapshot, itself included; `shift` as in Entry.
+// Finds the particles within `reach` cells (at most Rows::kReach) of a point of the snapshot.
 class Search {
  public:
   Search(const Lattice& lattice, const Rows& rows, const Snapshot& snapshot, double reach);
@@ -65,8 +47,8 @@ class Search {
     uint32_t particle;
     uint8_t shift;
   };
-  // The hits are valid until the next call.
-  const std::vector<Hit>& around(uint32_t node, int32_t x, int32_t y, int32_t z);
+  // Around the particle at `place` of `node`, itself included. The hits are valid until the next call.
+  const std::vector<Hit>& around(uint32_t node, uint32_t place);
 
  private:
   void add(Rows::Range nodes, int32_t x, int32_t y, int32_t z, uint8_t shift);
