@@ -57,9 +57,13 @@ struct Found {
   int64_t number;
 };
 
-// Entries by group: those of the k-th are [first[k], first[k + 1]).
+// Entries by group. A group's entries that may meet in the next few steps stand before its others.
 struct PairList {
-  std::vector<uint32_t> first;
+  struct Group {
+    uint32_t begin;
+    uint16_t near, count;  // entries
+  };
+  std::vector<Group> groups;
   std::vector<Entry, Untouched<Entry>> entries;
 };
 
@@ -68,12 +72,10 @@ struct Block {
   uint32_t first_group() const { return begin / kGroup; }
   uint32_t groups() const { return (end - begin + kGroup - 1) / kGroup; }
 
-  // Pairs inside the block: all that may meet while the long list holds, and those of them that may meet in the
-  // next few steps.
-  PairList far_inside, inside;
-  // The same for pairs with other blocks, for the groups that have any; 3 x kGroup sums each.
-  std::vector<uint32_t> edge_group;  // ascending, less first_group()
-  PairList far_across, across;
+  PairList inside;  // pairs inside the block
+  // Pairs with other blocks, for the groups that have any; 3 x kGroup sums each.
+  std::vector<uint32_t> edge_group;  // less first_group()
+  PairList across;
   PaddedArray<double> across_sum;
   std::vector<uint8_t> plain;  // by group: updated in vectors
 

@@ -55,11 +55,10 @@ struct LatticeEngine::Impl {
   void refresh_lists();
   void build();
   bool mend();
-  void list(const std::vector<uint8_t>* only);
   void prune(double skin);
   void cut();
   bool crystal() const;
-  void store_by_node();
+  void store_by_node(Bins& bins);
   double reach_of_step() const;
   Particle particle(uint32_t index) const;
   template <typename Work>
@@ -90,6 +89,7 @@ struct LatticeEngine::Impl {
   double skin_ = kFirstSkin;  // cells
   double moved_ = 0;          // cells: no particle is farther from where the far list found it
   double near_skin_ = 0, near_moved_ = 0;  // the same of the near list
+  double near_floor_ = -1;                 // all groups were pruned with at least this skin
   double fastest_ = 0;                     // largest |v| after the last step, P+G fractional bits
   uint64_t listed_at_ = 0;                 // step
 };
@@ -214,18 +214,18 @@ double LatticeEngine::Impl::reach_of_step() const {
 bool LatticeEngine::Impl::crystal() const {
   size_t entries = 0, pairs = 0;
   for (const Block& block : blocks_) {
-    entries += block.far_inside.entries.size();
-    for (const Entry& e : block.far_inside.entries) pairs += static_cast<size_t>(std::popcount(e.lanes));
+    entries += block.inside.entries.size();
+    for (const Entry& e : block.inside.entries) pairs += static_cast<size_t>(std::popcount(e.lanes));
   }
   return static_cast<double>(pairs) >= kFewLanes * static_cast<double>(entries);
 }
 
-void LatticeEngine::Impl::store_by_node() {
+void LatticeEngine::Impl::store_by_node(Bins& bins) {
   std::vector<uint32_t> renamed(members_.room());
-  for (uint32_t k = 0; k < count_; ++k) renamed[snapshot_.particle[k]] = k;
+  for (uint32_t k = 0; k < count_; ++k) renamed[bins.particle[k]] = k;
   const auto reorder = [&](auto& array) {
-    auto copy = array.copy();
-    for (uint32_t k = 0; k < count_; ++k) array[k] = copy[snapshot_.particle[k]];
+    const auto copy = array.copy();
+    for (uint32_t k = 0; k < count_; ++k) array[k] = copy[bins.particle[k]];
   };
   for (int a = 0; a < 3; ++a) {
     reorder(particles_.x[a]);
@@ -236,72 +236,72 @@ void LatticeEngine::Impl::store_by_node() {
   reorder(particles_.node);
   reorder(particles_.type);
   members_.rename(renamed);
-  for (uint32_t k = 0; k < count_; ++k) snapshot_.particle[k] = k;
-}
-
-void LatticeEngine::Impl::list(const std::vector<uint8_t>* only) {
-  const std::vector<uint32_t> place = snapshot_.places();
-  for_each_block([&](Block& block) {
-    build_list(rule_, lattice_, rows_, snapshot_, place, particles_, cutoff_ + skin_, only, block);
-  });
+  for (uint32_t k = 0; k < count_; ++k) bins.particle[k] = k;
+  if (quiet_) quiet_->regroup((count_ + kGroup - 1) / kGroup);
 }
 
 void LatticeEngine::Impl::build() {
   if (listed_ && step_ - listed_at_ < kShortLife) skin_ = std::min(kMostSkin, skin_ * 1.3);
-  snapshot_.take(lattice_, members_, particles_);
-  if (listed_ && !crystal()) {
-    store_by_node();
-    if (quiet_) quiet_->regroup((count_ + kGroup - 1) / kGroup);
-  }
-  list(nullptr);
+  Bins bins(lattice_, members_, particles_, snapshot_.position_frac, threads_);
+  if (listed_ && !crystal()) store_by_node(bins);
+  for_each_block([&](Block& block) {
+    build_list(rule_, particles_, Search(lattice_, rows_, cutoff_ + skin_, bins), block);
+  });
+  bins.release_to(snapshot_);
   ++counters_.list_builds;
   listed_ = true;
   listed_at_ = step_;
   moved_ = 0;
+  near_floor_ = -1;
 }
 
 // Where few particles moved far, as around a crack or an impact: lists anew the groups of those, and of all
 // around where they are now. False where that is not worth it.
 bool LatticeEngine::Impl::mend() {
-  const std::vector<uint32_t> moved =
-      snapshot_.retake(lattice_, members_, particles_, kMendFrom * skin_, static_cast<size_t>(kMostMended * count_));
-  if (moved.empty()) return false;
+  const std::vector<uint32_t> strays = snapshot_.strays(lattice_, particles_, kMendFrom * skin_);
+  if (static_cast<double>(strays.size()) > kMostMended * count_) return false;
+  for (const uint32_t p : strays)
+    for (int a = 0; a < 3; ++a)  // beyond the seam of a ring: the shifts of its entries no longer hold
+      if (std::floor(particles_.x[a][p] * rule_.inverse_cell) != lattice_.cell(particles_.node[p])[a]) return false;
+  for (const uint32_t p : strays) snapshot_.look(particles_, p);
   std::vector<uint8_t> only((count_ + kGroup - 1) / kGroup);
-  Search search(lattice_, rows_, snapshot_, cutoff_ + skin_);
-  for (const uint32_t place : moved) {
-    const uint32_t p = snapshot_.particle[place];
-    for (const auto& hit : search.around(particles_.node[p], place)) only[hit.particle / kGroup] = 1;
-  }
-  list(&only);
+  Search search(lattice_, rows_, cutoff_ + skin_, members_, snapshot_);
+  for (const uint32_t p : strays)
+    for (const auto& hit : search.around(particles_.node[p], {snapshot_.at[0][p], snapshot_.at[1][p], snapshot_.at[2][p]}))
+      only[hit.particle / kGroup] = 1;
+  for_each_block([&](Block& block) { mend_list(particles_, snapshot_, search, only, block); });
   ++counters_.list_mends;
   moved_ = snapshot_.displacement(particles_);
   return true;
 }
 
+// Every pair within the cutoff plus `skin` cells comes into the near list.
 void LatticeEngine::Impl::prune(double skin) {
+  // Groups far from all that changed since the last time keep what they have, if that was as wide.
+  const uint8_t* only = quiet_ ? quiet_->take_touched(members_) : nullptr;
+  if (near_floor_ < skin) only = nullptr;
+  if (only == nullptr) near_floor_ = skin;
   near_skin_ = skin;
   near_moved_ = 0;
-  const double reach = (cutoff_ + skin) * rule_.cell * (1 + 1e-9);
-  for_each_block([&](Block& block) {
-    kernels_.prune(particles_, reach, block.first_group(), nullptr, block.far_inside, block.inside);
-    kernels_.prune(particles_, reach, block.first_group(), &block.edge_group, block.far_across, block.across);
-  });
+  const double reach = (cutoff_ + near_floor_) * rule_.cell * (1 + 1e-9);
+  for_each_block([&](Block& block) { kernels_.prune(particles_, reach, only, block); });
 }
 
 // Makes sure that the near list holds every pair inside the cutoff.
 void LatticeEngine::Impl::refresh_lists() {
   if (listed_ && near_moved_ <= near_skin_ / 2) return;
-  const double wanted = std::max(kNearSkin, 2 * kNearSteps * reach_of_step());
-  const double least = 2 * reach_of_step();
   // The far list must hold every pair within the near list's reach.
   const auto room = [&] { return skin_ - 2 * moved_; };
+  const double least = 2 * reach_of_step();
+  double wanted = std::min(std::max(kNearSkin, 2 * kNearSteps * reach_of_step()), skin_ / 2);
   if (!listed_ || room() < wanted) {
     if (listed_) moved_ = snapshot_.displacement(particles_);
     if (!listed_ || room() < std::max(least, wanted / 2)) {
       if (!listed_ || !mend() || room() < least) build();
     }
+    wanted = std::min(wanted, room());
   }
-  prune(std::min(wanted, room()));
+  prune(wanted);
 }
 
 void LatticeEngine::Impl::step() {

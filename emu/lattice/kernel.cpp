@@ -116,36 +116,40 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
   return true;
 }
 
-void prune(const Particles& particles, double reach, uint32_t first_group, const std::vector<uint32_t>* groups,
-           const PairList& from, PairList& to) {
-  const size_t count = from.first.size() - 1;
-  to.first.resize(count + 1);
-  to.entries.resize(from.entries.size());
-  Entry* out = to.entries.data();
-  const V reach2 = hn::Set(d, reach * reach);
-  for (size_t k = 0; k < count; ++k) {
-    to.first[k] = static_cast<uint32_t>(out - to.entries.data());
-    const size_t base = size_t{first_group + (groups != nullptr ? (*groups)[k] : static_cast<uint32_t>(k))} * kGroup;
-    for (uint32_t e = from.first[k]; e < from.first[k + 1]; ++e) {
-      const Entry entry = from.entries[e];
-      uint32_t lanes = 0;
-      for (uint32_t at = 0; at < kGroup; at += kLanes) {
-        V r2 = hn::Zero(d);
-        for (int a = 0; a < 3; ++a) {
-          const V x_j = hn::LoadU(d, particles.x[a].data() + entry.first + static_cast<ptrdiff_t>(at));
-          const V x = hn::Add(hn::Sub(x_j, hn::Load(d, particles.x[a].data() + base + at)),
-                              hn::Set(d, particles.shift[entry.shift][a]));
-          r2 = hn::MulAdd(x, x, r2);
-        }
-        lanes |= mask_lanes(hn::Le(r2, reach2)) << at;
+HWY_INLINE void prune_group(const Particles& particles, V reach2, size_t base, PairList::Group& group,
+                            Entry* entries) {
+  uint32_t front = group.begin;
+  for (uint32_t e = group.begin; e < group.begin + group.count; ++e) {
+    const Entry entry = entries[e];
+    uint32_t lanes = 0;
+    for (uint32_t at = 0; at < kGroup; at += kLanes) {
+      V r2 = hn::Zero(d);
+      for (int a = 0; a < 3; ++a) {
+        const V x_j = hn::LoadU(d, particles.x[a].data() + entry.first + static_cast<ptrdiff_t>(at));
+        const V x = hn::Add(hn::Sub(x_j, hn::Load(d, particles.x[a].data() + base + at)),
+                            hn::Set(d, particles.shift[entry.shift][a]));
+        r2 = hn::MulAdd(x, x, r2);
       }
-      lanes &= entry.lanes;
-      *out = {entry.first, static_cast<uint8_t>(lanes), entry.shift};
-      out += lanes != 0;
+      lanes |= mask_lanes(hn::Le(r2, reach2)) << at;
     }
+    entries[e] = entries[front];
+    entries[front] = entry;
+    front += (lanes & entry.lanes) != 0;
   }
-  to.first[count] = static_cast<uint32_t>(out - to.entries.data());
-  to.entries.resize(to.first[count]);
+  group.near = static_cast<uint16_t>(front - group.begin);
+}
+
+void prune(const Particles& particles, double reach, const uint8_t* only, Block& block) {
+  const V reach2 = hn::Set(d, reach * reach);
+  const uint32_t first = block.first_group();
+  for (uint32_t k = 0; k < block.groups(); ++k)
+    if (only == nullptr || only[first + k] != 0)
+      prune_group(particles, reach2, size_t{first + k} * kGroup, block.inside.groups[k], block.inside.entries.data());
+  for (uint32_t k = 0; k < block.edge_group.size(); ++k) {
+    const uint32_t g = first + block.edge_group[k];
+    if (only == nullptr || only[g] != 0)
+      prune_group(particles, reach2, size_t{g} * kGroup, block.across.groups[k], block.across.entries.data());
+  }
 }
 
 template <bool kDamped>
@@ -173,7 +177,8 @@ void across(const KernelRule& rule, const Particles& particles, const Active& ac
       const uint32_t i = g * kGroup + at;
       const Own own = load_own<kDamped>(particles, i);
       V sum[3] = {magic(), magic(), magic()};
-      for (uint32_t e = block.across.first[k]; e < block.across.first[k + 1]; ++e) {
+      const PairList::Group& group = block.across.groups[k];
+      for (uint32_t e = group.begin; e < group.begin + group.near; ++e) {
         const Entry& entry = block.across.entries[e];
         uint32_t doubtful = 0;
         V kick[3];
@@ -264,6 +269,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
   const bool track = active.track;
   double* const ring[3] = {block.ring[0].data(), block.ring[1].data(), block.ring[2].data()};
   V fastest2 = hn::Zero(d);
+  uint32_t written = 0;  // the ring holds sums of particles below this
   size_t next_edge = 0;
   for (uint32_t k = 0; k < block.groups(); ++k) {
     const uint32_t g = block.first_group() + k;
@@ -273,6 +279,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
       across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
     const uint32_t slot = (k * kGroup) & block.ring_mask;
     const bool work = active.group == nullptr || active.group[g] != 0;
+    if (!work && base >= written) continue;
     uint32_t lanes = base + kGroup <= block.end ? 0xffu : (1u << (block.end - base)) - 1;
     if (!work)
       lanes = 0;
@@ -284,13 +291,15 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
       V sum[3] = {magic(), magic(), magic()};
       if (work) {
         const Own own = load_own<kDamped>(particles, i);
-        const Entry* const end = block.inside.entries.data() + block.inside.first[k + 1];
-        for (const Entry* e = block.inside.entries.data() + block.inside.first[k]; e != end; ++e) {
+        const PairList::Group& group = block.inside.groups[k];
+        const Entry* const end = block.inside.entries.data() + group.begin + group.near;
+        for (const Entry* e = block.inside.entries.data() + group.begin; e != end; ++e) {
           uint32_t doubtful = 0;
           V kick[3];
           if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, kick, doubtful)) continue;
           if (HWY_UNLIKELY(doubtful != 0))
             report(rule, particles, i, e->first + static_cast<int32_t>(at), e->shift, doubtful, true, block);
+          written = std::max(written, static_cast<uint32_t>(e->first) + kGroup);
           const uint32_t to = ((static_cast<uint32_t>(e->first) - block.begin) & block.ring_mask) + at;
           const V factor = hn::Set(d, rule.kick_factor);
           for (int a = 0; a < 3; ++a) {

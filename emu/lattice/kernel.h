@@ -19,10 +19,9 @@ struct Active {
 
 struct Kernels {
   std::string name;
-  // The entries of `from` with a pair within `reach` (P fractional bits). Its k-th group is `groups[k]` of the block,
-  // or k where `groups` is null.
-  void (*prune)(const Particles&, double reach, uint32_t first_group, const std::vector<uint32_t>* groups,
-                const PairList& from, PairList& to);
+  // Puts the entries with a pair within `reach` (P fractional bits) first in their groups, in the groups of `only`
+  // (by group; null: all).
+  void (*prune)(const Particles&, double reach, const uint8_t* only, Block&);
   // Sums of the pairs with other blocks.
   void (*across)(const KernelRule&, const Particles&, const Active&, Block&);
   // Pairs inside the block, then each group's update.

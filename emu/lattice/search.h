@@ -39,23 +39,28 @@ class Rows {
   std::vector<std::array<uint32_t, (2 * kReach + 1) * (2 * kReach + 1)>> near_;
 };
 
-// Finds the particles within `reach` cells (at most Rows::kReach) of a point of the snapshot.
+// Finds the particles within `reach` cells (at most Rows::kReach) of a point: in the bins, or, where only a few points
+// are looked at, among the members of the nodes as the snapshot has them.
 class Search {
  public:
-  Search(const Lattice& lattice, const Rows& rows, const Snapshot& snapshot, double reach);
+  Search(const Lattice& lattice, const Rows& rows, double reach, const Bins& bins);
+  Search(const Lattice& lattice, const Rows& rows, double reach, const Members& members, const Snapshot& snapshot);
   struct Hit {
     uint32_t particle;
-    uint8_t shift;
+    uint8_t shift;  // as in Entry
   };
-  // Around the particle at `place` of `node`, itself included. The hits are valid until the next call.
-  const std::vector<Hit>& around(uint32_t node, uint32_t place);
+  // Around the point `at` of the cell of `node`. The hits are valid until the next call.
+  const std::vector<Hit>& around(uint32_t node, const std::array<int32_t, 3>& at);
 
  private:
-  void add(Rows::Range nodes, int32_t x, int32_t y, int32_t z, uint8_t shift);
+  Search(const Lattice& lattice, const Rows& rows, double reach);
+  void add(Rows::Range nodes, const std::array<int32_t, 3>& at, uint8_t shift);
   const Lattice& lattice_;
   const Rows& rows_;
-  const Snapshot& snapshot_;
-  int32_t reach_;    // coarse, rounded up
+  const Bins* bins_ = nullptr;
+  const Members* members_ = nullptr;
+  const Snapshot* snapshot_ = nullptr;
+  int32_t reach_;  // coarse, rounded up
   float reach2_;
   std::vector<Hit> hits_;
   std::vector<uint32_t> found_;

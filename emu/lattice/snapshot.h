@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the far list found the particles.
+// Where the far list found the particles, and in which bins it looks for them.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace cuboct::emu {
 
-// Fractional bits of a cell edge in which pairs are searched and displacements are measured.
+// Fractional bits of a cell edge in which pairs are searched and displacements are measured. Coarse coordinates
+// are taken modulo 2^32: only differences over a few cells are used.
 inline constexpr int kCoarse = 16;
 inline int32_t coarse(double x, int position_frac) {
   const auto whole = static_cast<int64_t>(x);
@@ -19,29 +20,33 @@ inline int32_t coarse(double x, int position_frac) {
                                                        : whole << (kCoarse - position_frac));
 }
 
-// By node and slot; coarse coordinates modulo 2^32: only differences over a few cells are used.
+// By particle.
 struct Snapshot {
-  std::vector<uint32_t> first;  // nodes + 1
-  PaddedArray<int32_t> x, y, z;
-  PaddedArray<uint32_t> particle;
+  std::array<PaddedArray<int32_t>, 3> at;
   int position_frac = 0;
   int threads = 1;
 
-  // As things stand; positions of particles go back into the cells of the rings.
-  void take(const Lattice& lattice, const Members& members, Particles& particles);
-  // The same for those that moved farther than `threshold` cells or to another node; the others stay where they
-  // were found. Returns them (ascending places in the new snapshot), or nothing where there are more than `most`,
-  // or one passed the seam of a ring: then nothing has changed.
-  std::vector<uint32_t> retake(const Lattice& lattice, const Members& members, const Particles& particles,
-                               double threshold, size_t most);
   // The largest distance of a particle from its place here, in cells, rounded up.
   double displacement(const Particles& particles) const;
-  // By particle: its place here.
-  std::vector<uint32_t> places() const;
+  // The particles farther than `threshold` cells from their place here, and those whose place is not in the cell
+  // of their node, ascending.
+  std::vector<uint32_t> strays(const Lattice& lattice, const Particles& particles, double threshold) const;
+  void look(const Particles& particles, uint32_t particle);
 
  private:
-  double moved2(const Particles& particles, uint32_t place) const;  // coarse units
-  void look(const Particles& particles, uint32_t place);
+  double moved2(const Particles& particles, uint32_t particle) const;  // coarse units
+};
+
+// The particles sorted by node and slot: those of a stretch of nodes are a stretch of arrays.
+struct Bins {
+  // Positions of particles go back into the cells of the rings first.
+  Bins(const Lattice& lattice, const Members& members, Particles& particles, int position_frac, int threads);
+  std::vector<uint32_t> first;  // nodes + 1
+  std::array<PaddedArray<int32_t>, 3> at;
+  PaddedArray<uint32_t> particle;
+
+  // Leaves the places to `snapshot`, and nothing here.
+  void release_to(Snapshot& snapshot);
 };
 
 }  // namespace cuboct::emu
