@@ -46,7 +46,9 @@ std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initia
 
 Bits load_word(const Plan& plan, const Particle& particle) {
   Slot slot;
-  slot.body = {particle.x, particle.v, particle.type};
+  for (int a = 0; a < 3; ++a) slot.body.x[a] = static_cast<int32_t>(particle.x[a]);
+  slot.body.v = particle.v;
+  slot.body.type = particle.type;
   slot.u = particle.u;
   slot.id = particle.id;
   return pack_particle(plan, slot);
@@ -69,7 +71,7 @@ void Collector::observe(uint32_t node, const Bits& word) {
   p.id = slot.id;
   p.type = slot.body.type;
   p.node = node;
-  p.x = slot.body.x;
+  for (int a = 0; a < 3; ++a) p.x[a] = slot.body.x[a];
   p.v = slot.body.v;
   p.u = slot.u;
   Snapshot& s = open_[step];

@@ -47,8 +47,9 @@ void Node::load(int face, const Bits& payload, bool end) {
   if (!linked(face)) return;
   valid_ |= bit(face);
   out_->loaded |= bit(face);
-  out_->beat[face].end = end;
-  out_->beat[face].payload = payload;
+  Beat& beat = *out_->beat[face];
+  beat.end = end;
+  beat.payload = payload;
   ++beats_;
 }
 
@@ -71,11 +72,16 @@ void Node::enter(Main next) {
   kept_ = 0;
   if (next == Main::dump || next == Main::idle) return;
   const bool begins_engine = plan_.arch.overlap ? next == Main::exchange_x : next == Main::force;
-  if (begins_engine) engine_.begin(), starting_ |= bit(Phase::force);
-  if (next != Main::force) starting_ |= bit(static_cast<int>(next));
+  if (begins_engine) engine_.begin(now_ + 1), starting_ |= bit(Phase::force);
+  if (next > Main::exchange_x && next <= Main::force)
+    engine_.available(static_cast<int>(next) - 1, now_ + 1);
+  if (next == Main::force)
+    phase_last_ = engine_.run();
+  else
+    starting_ |= bit(static_cast<int>(next));
   if (next == Main::update) {
     const int n = static_cast<int>(own_.size());
-    remaining_ = n == 0 ? 1 : n - 1 + plan_.latency.update;
+    phase_last_ = now_ + static_cast<uint64_t>(n == 0 ? 1 : n - 1 + plan_.latency.update);
   }
   if (next >= Main::migrate_x)
     migrate_ = (leaving_ & bit(axis())) != 0 && !own_.empty() ? Migrate::scan : Migrate::end;
@@ -89,7 +95,7 @@ void Node::finish_phase(Main next) {
 void Node::idle() {
   const Control& host = *control_;
   out_->idle = true;
-  quiet_ = !host.load_valid && !host.start;
+  if (!host.load_valid && !host.start) wakes_at_ = kNever;
   if (host.load_valid) own_.push_back(unpack_particle(plan_, host.load_data));
   if (!host.start) return;
   steps_ = host.steps;
@@ -112,7 +118,7 @@ void Node::exchange() {
     if (ended(low) && ended(high)) {
       finish_phase(static_cast<Main>(static_cast<int>(main_) + 1));
     } else {
-      quiet_ = true;
+      wakes_at_ = kNever;
     }
     return;
   }
@@ -146,18 +152,22 @@ void Node::exchange() {
   ++segment_;
 }
 
-void Node::force(bool engine_last) {
-  if (!engine_last) {
-    quiet_ = engine_.quiet();
+void Node::force() {
+  if (now_ < phase_last_) {
+    wakes_at_ = phase_last_;
     return;
   }
+  out_->phase_end |= bit(Phase::force);
   for (auto& h : halo_) h.clear();
   for (Receiver& r : receiver_) r.halo_end = false;
   enter(Main::update);
 }
 
 void Node::update() {
-  if (--remaining_ > 0) return;
+  if (now_ < phase_last_) {
+    wakes_at_ = phase_last_;
+    return;
+  }
   finish_particles();
   finish_phase(Main::migrate_x);
 }
@@ -168,13 +178,14 @@ void Node::finish_particles() {
   for (size_t k = 0; k < own_.size(); ++k) {
     Slot& s = own_[k];
     const FinishResult r =
-        finish(plan_.rule, engine_.take_sum(static_cast<int>(k)), s.body.x, s.body.v, s.u, s.body.type);
+        finish(plan_.rule, engine_.take_sum(static_cast<int>(k)), {s.body.x[0], s.body.x[1], s.body.x[2]},
+               s.body.v, s.u, s.body.type);
     fault_.add(r.fault, s.id, r.number);
     s.u = r.u;
     for (int a = 0; a < 3; ++a) {
       s.body.v[a] = wrap(r.v[a], plan_.rule.widths.velocity_bits);
       s.away[a] = static_cast<int8_t>(wrap(r.x[a] >> p, 2));
-      s.body.x[a] = r.x[a] & ((int64_t{1} << p) - 1);
+      s.body.x[a] = static_cast<int32_t>(r.x[a] & ((int64_t{1} << p) - 1));
       if (s.away[a] != 0) leaving_ |= bit(a);
     }
   }
@@ -244,7 +255,7 @@ void Node::take(int face, Migrate next, bool last) {
     return;
   }
   if (linked(face) && !r.migrate_end) {
-    quiet_ = true;
+    wakes_at_ = kNever;
     return;
   }
   migrate_ = next;
@@ -294,20 +305,22 @@ void Node::receive(int face, const Beat& beat) {
     return;
   }
   Candidate c = unpack_halo(plan_, *record);
-  const int64_t cell = int64_t{1} << plan_.rule.widths.position_frac;
-  c.x[face / 2] += face % 2 == 0 ? -cell : cell;
+  // Without sign: a wrong record may lie anywhere in its P+2 bits.
+  const uint32_t cell = uint32_t{1} << plan_.rule.widths.position_frac, x = static_cast<uint32_t>(c.x[face / 2]);
+  c.x[face / 2] = static_cast<int32_t>(face % 2 == 0 ? x - cell : x + cell);
   halo_[face].push_back(c);
 }
 
 void Node::clock(const NodeInputs& in, NodeOutputs& out) {
   out_ = &out;
+  now_ = in.now;
+  wakes_at_ = now_ + 1;
   control_ = in.control;
   out.phase_start = starting_;
   out.phase_end = out.loaded = 0;
   out.observe = out.fault = out.idle = false;
   out.ready = has_link_;
   starting_ = 0;
-  quiet_ = false;
   if (!in.control->reset_n) {
     reset();
     out.valid = 0;
@@ -316,12 +329,6 @@ void Node::clock(const NodeInputs& in, NodeOutputs& out) {
   can_load_ = static_cast<uint8_t>(~valid_ | in.ready | ~has_link_);
   valid_ &= static_cast<uint8_t>(~in.ready);
 
-  bool engine_last = false;
-  if (engine_.active()) {
-    const int m = static_cast<int>(main_);
-    engine_last = engine_.cycle(m >= static_cast<int>(Main::force) ? ForceEngine::kSegments : 1 + 2 * m);
-    if (engine_last) out.phase_end |= bit(Phase::force);
-  }
   switch (main_) {
     case Main::idle:
       idle();
@@ -332,7 +339,7 @@ void Node::clock(const NodeInputs& in, NodeOutputs& out) {
       exchange();
       break;
     case Main::force:
-      force(engine_last);
+      force();
       break;
     case Main::update:
       update();
@@ -346,7 +353,8 @@ void Node::clock(const NodeInputs& in, NodeOutputs& out) {
       dump();
       break;
   }
-  quiet_ = quiet_ && !(engine_.active() && !engine_.quiet()) && in.valid == 0 && out.phase_start == 0;
+  // What comes now may be what the node waits for; the end of a phase of known length does not.
+  if (in.valid != 0 && wakes_at_ == kNever) wakes_at_ = now_ + 1;
   for (uint8_t left = in.valid; left != 0; left &= static_cast<uint8_t>(left - 1)) {
     const int f = __builtin_ctz(left);
     receive(f, *in.beat[f]);

@@ -20,7 +20,7 @@ class Node : public NodeModel {
   Node(const Plan& plan, uint8_t has_link);
 
   void clock(const NodeInputs& in, NodeOutputs& out) override;
-  bool quiet() const override { return quiet_; }
+  uint64_t wakes_at() const override { return wakes_at_; }
   std::string doing() const override;
   Counters counters() const override;
 
@@ -59,7 +59,7 @@ class Node : public NodeModel {
   void finish_phase(Main next);
   void idle();
   void exchange();
-  void force(bool engine_last);
+  void force();
   void update();
   void finish_particles();
   void migrate();
@@ -86,13 +86,14 @@ class Node : public NodeModel {
   int segment_ = 0, record_ = 0, beat_ = 0;  // exchange; `record_` and `beat_` also scan and dump
   bool sent_ = false;
   Bits word_;            // the record that is being sent
-  int remaining_ = 0;    // cycles of UPDATE still to come
+  uint64_t now_ = 0;         // the cycle that runs
+  uint64_t phase_last_ = 0;  // the last cycle of FORCE or UPDATE, known from its start
+  uint64_t wakes_at_ = 0;    // as wakes_at()
   size_t kept_ = 0;      // slots that SCAN has moved down
   uint8_t leaving_ = 0;  // bit a: `leaving_a`
   uint8_t valid_ = 0, can_load_ = 0;
   NodeOutputs* out_ = nullptr;  // of the cycle that runs, as is `control_`
   const Control* control_ = nullptr;
-  bool quiet_ = false;
   uint64_t link_waits_ = 0, beats_ = 0;
 };
 

@@ -32,9 +32,9 @@ Candidate unpack_halo(const Plan& plan, const Bits& bits) {
   int at = 0;
   const auto take = [&](int width) { return at += width, bits.get(at - width, width); };
   const auto take_signed = [&](int width) { return at += width, bits.get_signed(at - width, width); };
-  out.x[0] = take_signed(w.position_frac + 2);
-  out.x[1] = take_signed(w.position_frac + 2);
-  out.x[2] = static_cast<int64_t>(take(w.position_frac));
+  out.x[0] = static_cast<int32_t>(take_signed(w.position_frac + 2));
+  out.x[1] = static_cast<int32_t>(take_signed(w.position_frac + 2));
+  out.x[2] = static_cast<int32_t>(take(w.position_frac));
   if (plan.rule.scaled) out.type = static_cast<uint8_t>(take(plan.rule.type_bits));
   if (plan.rule.damped)
     for (int64_t& v : out.v) v = take_signed(w.velocity_bits);
@@ -46,7 +46,7 @@ Bits pack_particle(const Plan& plan, const Slot& slot) {
   Bits out;
   int at = 0;
   const auto field = [&](int width, int64_t value) { out.put(at, width, value), at += width; };
-  for (const int64_t x : slot.body.x) field(w.position_frac, x);
+  for (const int32_t x : slot.body.x) field(w.position_frac, x);
   field(2, slot.away[1]);
   field(2, slot.away[2]);
   for (const int64_t v : slot.body.v) field(w.velocity_bits, v);
@@ -63,7 +63,7 @@ Slot unpack_particle(const Plan& plan, const Bits& bits) {
   int at = 0;
   const auto take = [&](int width) { return at += width, bits.get(at - width, width); };
   const auto take_signed = [&](int width) { return at += width, bits.get_signed(at - width, width); };
-  for (int64_t& x : out.body.x) x = static_cast<int64_t>(take(w.position_frac));
+  for (int32_t& x : out.body.x) x = static_cast<int32_t>(take(w.position_frac));
   out.away[1] = static_cast<int8_t>(take_signed(2));
   out.away[2] = static_cast<int8_t>(take_signed(2));
   for (int64_t& v : out.body.v) v = take_signed(w.velocity_bits);

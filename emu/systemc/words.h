@@ -12,9 +12,9 @@ namespace cuboct::emu {
 
 // What a pair needs of a candidate; the halo memories hold these in the receiver's own frame.
 struct Candidate {
-  Int3 x{};  // P fractional bits, P+2 bits signed
-  Int3 v{};  // P+G fractional bits; zero unless the rule damps
+  std::array<int32_t, 3> x{};  // P fractional bits, P+2 bits signed; P <= 30
   uint8_t type = 0;
+  Int3 v{};  // P+G fractional bits; zero unless the rule damps
 };
 
 // A particle in a slot.
