@@ -35,6 +35,7 @@ NodeModule::NodeModule(const sc_core::sc_module_name& name, uint32_t node, uint8
 
 void NodeModule::end_of_elaboration() {
   timeline_ = &monitor_o->timeline();
+  in_.control = &control_i.read();  // the signal's current value, which keeps its place
   for (const int f : faces_) {
     in_link_[f] = link_i[f][0];
     out_link_[f] = link_o[f][0];
@@ -70,7 +71,6 @@ void NodeModule::cycle() {
     return;
   }
   in_.now = timeline_->edge;
-  in_.control = &control_i.read();
   in_.valid = pins_.held;
   in_.ready = pins_.ready;
   in_.beat = pins_.in;
@@ -90,7 +90,10 @@ void NodeModule::cycle() {
     sleep(kNever);
     return;
   }
-  if (Collector::shows(out_) && timeline_->running()) monitor_o->report(node_, out_);
+  if (timeline_->running()) {
+    ++calls_;
+    if (Collector::shows(out_)) monitor_o->report(node_, out_);
+  }
 
   const uint8_t emptied = valid_ & static_cast<uint8_t>(~out_.valid);
   const uint8_t ready_changed = ready_ ^ out_.ready;
@@ -218,7 +221,12 @@ RunResult Bench::take_result() {
   if (!timeline_.over) throw std::runtime_error("the bench has not run");
   RunResult result;
   Counters counters{{"cycles", static_cast<double>(collector_.last_cycle() + 1)}};
-  for (const auto& n : nodes_) add_counters(counters, 1, n->model().counters());
+  double calls = 0;
+  for (const auto& n : nodes_) {
+    add_counters(counters, 1, n->model().counters());
+    calls += static_cast<double>(n->calls());
+  }
+  counters.emplace_back("node_calls", calls);
   result.trace = collector_.take_trace();
   result.order = collector_.order();
   result.trace.engine = engine_;

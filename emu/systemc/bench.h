@@ -45,6 +45,7 @@ class NodeModule : public sc_core::sc_module {
   NodeModule(const sc_core::sc_module_name& name, uint32_t node, uint8_t has_link,
              std::unique_ptr<NodeModel> model);
   NodeModel& model() { return *model_; }
+  uint64_t calls() const { return calls_; }  // of the model, in cycles that count
 
  private:
   void end_of_elaboration() override;
@@ -63,6 +64,7 @@ class NodeModule : public sc_core::sc_module {
   LinkPins pins_;
   NodeInputs in_;
   NodeOutputs out_;
+  uint64_t calls_ = 0;
   uint8_t valid_ = 0, ready_ = 0;  // the link registers as the node left them
 };
 

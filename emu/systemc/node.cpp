@@ -43,25 +43,24 @@ int Node::axis() const {
   return static_cast<int>(main_) % 5;  // exchange_* are 0...2, migrate_* are 5...7
 }
 
-void Node::load(int face, const Bits& payload, bool end) {
-  if (!linked(face)) return;
+// The register of a linked face, for what is loaded in this cycle.
+Bits& Node::load(int face, bool end) {
   valid_ |= bit(face);
   out_->loaded |= bit(face);
+  ++beats_;
   Beat& beat = *out_->beat[face];
   beat.end = end;
-  beat.payload = payload;
-  ++beats_;
+  return beat.payload;
 }
 
-// Loads beat `beat_` of `record` on a range of faces.
-void Node::load_record_beat(int faces_from, int faces_to, const Bits& record) {
-  const int width = plan_.words.link_bits;
-  if (beat_ == 0 && width >= Bits::kWidth) {
-    for (int f = faces_from; f < faces_to; ++f) load(f, record, false);
-    return;
-  }
-  const Bits payload = record.slice(beat_ * width, width);
-  for (int f = faces_from; f < faces_to; ++f) load(f, payload, false);
+void Node::load_end(int low) {
+  for (const int f : {low, low + 1})
+    if (linked(f)) load(f, true) = {};
+}
+
+// Loads beat `beat_` of `word_`.
+void Node::load_slice(int face) {
+  if (linked(face)) load(face, false) = word_.slice(beat_ * plan_.words.link_bits, plan_.words.link_bits);
 }
 
 // Prepares the registers for a main state's first cycle, which is the next one.
@@ -132,19 +131,23 @@ void Node::exchange() {
     return;
   }
   if (segment_ == segments) {
-    load(low, {}, true);
-    load(high, {}, true);
+    load_end(low);
     sent_ = true;
     return;
   }
-  if (beat_ == 0) {
-    word_ = pack_halo(plan_, relayed(segment_, record_));
-    if (main_ == Main::exchange_x) {
-      out_->observe = true;
-      out_->observe_data = pack_particle(plan_, own_[record_]);
-    }
+  if (beat_ == 0 && main_ == Main::exchange_x) {
+    out_->observe = true;
+    out_->observe_data = pack_particle(plan_, own_[record_]);
   }
-  load_record_beat(low, high + 1, word_);
+  const Candidate& record = relayed(segment_, record_);
+  if (plan_.words.halo_beats == 1) {
+    for (const int f : {low, high})
+      if (linked(f)) pack_halo(plan_, record, load(f, false));
+  } else {
+    if (beat_ == 0) pack_halo(plan_, record, word_);
+    load_slice(low);
+    load_slice(high);
+  }
   if (++beat_ < plan_.words.halo_beats) return;
   beat_ = 0;
   if (++record_ < relayed_size(segment_)) return;
@@ -202,8 +205,7 @@ void Node::migrate() {
         ++link_waits_;
         break;
       }
-      load(low, {}, true);
-      load(high, {}, true);
+      load_end(low);
       migrate_ = Migrate::take_low;
       break;
     case Migrate::take_low:
@@ -229,7 +231,7 @@ void Node::scan() {
     return;
   } else {
     if (beat_ == 0) word_ = pack_particle(plan_, s);
-    load_record_beat(face, face + 1, word_);
+    load_slice(face);
     if (++beat_ < plan_.words.migrate_beats) return;
     beat_ = 0;
   }
@@ -304,11 +306,8 @@ void Node::receive(int face, const Beat& beat) {
     r.fifo.push_back(unpack_particle(plan_, *record));
     return;
   }
-  Candidate c = unpack_halo(plan_, *record);
-  // Without sign: a wrong record may lie anywhere in its P+2 bits.
-  const uint32_t cell = uint32_t{1} << plan_.rule.widths.position_frac, x = static_cast<uint32_t>(c.x[face / 2]);
-  c.x[face / 2] = static_cast<int32_t>(face % 2 == 0 ? x - cell : x + cell);
-  halo_[face].push_back(c);
+  const int64_t cell = int64_t{1} << plan_.rule.widths.position_frac;
+  unpack_halo(plan_, *record, face / 2, face % 2 == 0 ? -cell : cell, halo_[face].emplace_back());
 }
 
 void Node::clock(const NodeInputs& in, NodeOutputs& out) {

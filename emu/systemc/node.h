@@ -52,8 +52,9 @@ class Node : public NodeModel {
   int axis() const;
   bool linked(int face) const { return has_link_ >> face & 1; }
   bool can_load(int face) const { return can_load_ >> face & 1; }
-  void load(int face, const Bits& payload, bool end);
-  void load_record_beat(int faces_from, int faces_to, const Bits& record);
+  Bits& load(int face, bool end);
+  void load_end(int low);
+  void load_slice(int face);
 
   void enter(Main next);
   void finish_phase(Main next);

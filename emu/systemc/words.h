@@ -28,8 +28,10 @@ struct Slot {
 // Throws InputError where a word is wider than Bits.
 void check_words(const Plan& plan);
 
-Bits pack_halo(const Plan& plan, const Candidate& candidate);
-Candidate unpack_halo(const Plan& plan, const Bits& bits);
+// In place: a record's way through a link is what a busy lattice does most.
+void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out);
+// In the frame of the receiver: `shift` is added to the coordinate `axis`, in P+2 bits.
+void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Candidate& out);
 Bits pack_particle(const Plan& plan, const Slot& slot);
 Slot unpack_particle(const Plan& plan, const Bits& bits);
 
