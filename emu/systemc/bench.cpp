@@ -35,7 +35,7 @@ NodeModule::NodeModule(const sc_core::sc_module_name& name, uint32_t node, uint8
 
 void NodeModule::end_of_elaboration() {
   timeline_ = &monitor_o->timeline();
-  in_.control = &control_i.read();  // the signal's current value, which keeps its place
+  pins_.inputs.control = &control_i.read();  // the signal's current value, which keeps its place
   for (const int f : faces_) {
     in_link_[f] = link_i[f][0];
     out_link_[f] = link_o[f][0];
@@ -70,21 +70,21 @@ void NodeModule::cycle() {
     sleep(kNever);
     return;
   }
-  in_.now = timeline_->edge;
-  in_.valid = pins_.held;
-  in_.ready = pins_.ready;
-  in_.beat = pins_.in;
-  out_.beat = pins_.out;
+  NodeInputs& in = pins_.inputs;
+  NodeOutputs& out = pins_.outputs;
+  in.now = timeline_->edge;
+  in.valid = pins_.held;
+  in.ready = pins_.ready;
   if (stalls_) {
     for (const int f : faces_) {
       const uint8_t bit = static_cast<uint8_t>(1u << f);
-      if ((in_.valid & bit) && in_link_[f]->gated()) in_.valid &= static_cast<uint8_t>(~bit);
-      if ((in_.ready & bit) && out_link_[f]->gated()) in_.ready &= static_cast<uint8_t>(~bit);
+      if ((in.valid & bit) && in_link_[f]->gated()) in.valid &= static_cast<uint8_t>(~bit);
+      if ((in.ready & bit) && out_link_[f]->gated()) in.ready &= static_cast<uint8_t>(~bit);
     }
   }
   // SystemC would wrap the text of an exception that leaves a process.
   try {
-    model_->clock(in_, out_);
+    model_->clock(in, out);
   } catch (const std::runtime_error& e) {
     monitor_o->fail(node_, e.what());
     sleep(kNever);
@@ -92,23 +92,23 @@ void NodeModule::cycle() {
   }
   if (timeline_->running()) {
     ++calls_;
-    if (Collector::shows(out_)) monitor_o->report(node_, out_);
+    if (Collector::shows(out)) monitor_o->report(node_, out);
   }
 
-  const uint8_t emptied = valid_ & static_cast<uint8_t>(~out_.valid);
-  const uint8_t ready_changed = ready_ ^ out_.ready;
-  const uint8_t taken = in_.valid & ready_;
-  for (uint8_t left = out_.loaded; left != 0; left &= static_cast<uint8_t>(left - 1))
+  const uint8_t emptied = valid_ & static_cast<uint8_t>(~out.valid);
+  const uint8_t ready_changed = ready_ ^ out.ready;
+  const uint8_t taken = in.valid & ready_;
+  for (uint8_t left = out.loaded; left != 0; left &= static_cast<uint8_t>(left - 1))
     out_link_[__builtin_ctz(left)]->put();
   for (uint8_t left = emptied; left != 0; left &= static_cast<uint8_t>(left - 1))
     out_link_[__builtin_ctz(left)]->clear();
   for (uint8_t left = ready_changed; left != 0; left &= static_cast<uint8_t>(left - 1)) {
     const int f = __builtin_ctz(left);
-    in_link_[f]->set_ready(out_.ready >> f & 1);
+    in_link_[f]->set_ready(out.ready >> f & 1);
   }
-  valid_ = out_.valid;
-  ready_ = out_.ready;
-  if (model_->wakes_at() > in_.now + 1 && valid_ == 0 && (pins_.held & ~taken) == 0)
+  valid_ = out.valid;
+  ready_ = out.ready;
+  if (model_->wakes_at() > in.now + 1 && valid_ == 0 && (pins_.held & ~taken) == 0)
     sleep(model_->wakes_at());
 }
 

@@ -62,8 +62,6 @@ class NodeModule : public sc_core::sc_module {
   const Timeline* timeline_ = nullptr;
   bool stalls_ = false;
   LinkPins pins_;
-  NodeInputs in_;
-  NodeOutputs out_;
   uint64_t calls_ = 0;
   uint8_t valid_ = 0, ready_ = 0;  // the link registers as the node left them
 };

@@ -78,7 +78,7 @@ void ForceEngine::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
         pair_kick(plan_.rule, {i.x[0], i.x[1], i.x[2]}, i.v, i.type, x_j, j.v, j.type);
     ++counts_.pairs_issued;
     counts_.pairs_inside += pair.inside;
-    fault_.add(pair.fault, own_[slot].id, pair.number);
+    if (pair.fault != Fault::none) fault_.add(pair.fault, own_[slot].id, pair.number);
     for (int a = 0; a < 3; ++a) sum_[slot][a] += pair.kick[a];
   }
 }

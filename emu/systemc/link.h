@@ -23,18 +23,18 @@ struct Timeline {
 // A node's end of its links: what the channels' current values are, gathered so that a node looks in one place.
 // Links write it in SystemC's update phase and at no other time. Bit f of a mask belongs to face f.
 struct LinkPins {
-  uint8_t held = 0;                    // incoming registers that are not empty
-  uint8_t ready = 0;                   // receivers of the outgoing links that are ready
-  std::array<const Beat*, kFaces> in{};  // the incoming registers, where held
-  std::array<Beat*, kFaces> out{};       // where the next beat is written
-  bool asleep = false;                   // the node asks to be woken by a filled register
+  uint8_t held = 0;     // incoming registers that are not empty
+  uint8_t ready = 0;    // receivers of the outgoing links that are ready
+  bool asleep = false;  // the node asks to be woken by a filled register
+  NodeInputs inputs;    // `beat`: the incoming registers, where held
+  NodeOutputs outputs;  // `beat`: where the next beat is written
   sc_core::sc_event wake;
 };
 
 class LinkSender : public virtual sc_core::sc_interface {
  public:
   virtual void attach_sender(LinkPins& pins, int face) = 0;
-  virtual void put() = 0;          // from the next cycle on the register holds what was written to `pins.out`
+  virtual void put() = 0;          // from the next cycle on the register holds what was written to `outputs.beat`
   virtual void clear() = 0;        // the register is empty from the next cycle on
   virtual bool gated() const = 0;  // in this cycle neither side sees the other
   virtual bool stalls() const = 0;  // whether it ever is
@@ -56,7 +56,7 @@ class Link final : public sc_core::sc_prim_channel, public LinkSender, public Li
   void attach_sender(LinkPins& pins, int face) override {
     sender_ = &pins;
     out_face_ = face;
-    pins.out[static_cast<size_t>(face)] = &buffer_[0];
+    pins.outputs.beat[static_cast<size_t>(face)] = &buffer_[0];
   }
   void attach_receiver(LinkPins& pins, int face) override {
     receiver_ = &pins;
@@ -87,24 +87,24 @@ class Link final : public sc_core::sc_prim_channel, public LinkSender, public Li
     if (flip_) {
       flip_ = false;
       // The receiver reads one buffer while the sender writes the other.
-      receiver_->in[static_cast<size_t>(in_face_)] = &buffer_[spare_];
-      spare_ = 1 - spare_;
-      sender_->out[static_cast<size_t>(out_face_)] = &buffer_[spare_];
+      receiver_->inputs.beat[static_cast<size_t>(in_face_)] = &buffer_[spare_];
+      spare_ ^= 1;
+      sender_->outputs.beat[static_cast<size_t>(out_face_)] = &buffer_[spare_];
       if (receiver_->asleep) receiver_->wake.notify(sc_core::SC_ZERO_TIME);
     }
     set(receiver_->held, in_face_, next_valid_);
     set(sender_->ready, out_face_, next_ready_);
   }
 
+  bool flip_ = false, next_valid_ = false, next_ready_ = false;
+  uint8_t spare_ = 0;  // the buffer that the sender writes
+  int out_face_ = 0, in_face_ = 0;
+  LinkPins* sender_ = nullptr;
+  LinkPins* receiver_ = nullptr;
+  Beat buffer_[2];
   const Timeline& timeline_;
   const StallSource& stalls_;
   const uint32_t number_;
-  LinkPins* sender_ = nullptr;
-  LinkPins* receiver_ = nullptr;
-  int out_face_ = 0, in_face_ = 0;
-  int spare_ = 0;  // the buffer that the sender writes
-  bool flip_ = false, next_valid_ = false, next_ready_ = false;
-  Beat buffer_[2];
 };
 
 }  // namespace cuboct::emu

@@ -28,11 +28,11 @@ void Node::reset() {
   own_.clear();
   for (auto& h : halo_) h.clear();
   for (Receiver& r : receiver_) {
-    r.migrating = r.halo_end = r.migrate_end = false;
     r.beat = 0;
     r.fifo.clear();
     r.popped = 0;
   }
+  migrating_ = halo_end_ = migrate_end_ = 0;
   engine_.reset();
   main_ = Main::idle;
   fault_ = {};
@@ -55,7 +55,10 @@ Bits& Node::load(int face, bool end) {
 
 void Node::load_end(int low) {
   for (const int f : {low, low + 1})
-    if (linked(f)) load(f, true) = {};
+    if (linked(f)) {
+      Bits& payload = load(f, true);
+      for (int k = 0; 64 * k < plan_.words.link_bits && k < Bits::kWords; ++k) payload.word[k] = 0;
+    }
 }
 
 // Loads beat `beat_` of `word_`.
@@ -112,9 +115,8 @@ const Candidate& Node::relayed(int segment, int record) const {
 
 void Node::exchange() {
   const int low = 2 * axis(), high = low + 1;
-  const auto ended = [&](int f) { return !linked(f) || receiver_[f].halo_end; };
   if (sent_) {
-    if (ended(low) && ended(high)) {
+    if ((faces_of(axis()) & ~halo_end_) == 0) {
       finish_phase(static_cast<Main>(static_cast<int>(main_) + 1));
     } else {
       wakes_at_ = kNever;
@@ -162,7 +164,7 @@ void Node::force() {
   }
   out_->phase_end |= bit(Phase::force);
   for (auto& h : halo_) h.clear();
-  for (Receiver& r : receiver_) r.halo_end = false;
+  halo_end_ = 0;
   enter(Main::update);
 }
 
@@ -256,13 +258,13 @@ void Node::take(int face, Migrate next, bool last) {
       if (s.away[later] != 0) leaving_ |= bit(later);
     return;
   }
-  if (linked(face) && !r.migrate_end) {
+  if (linked(face) && !(migrate_end_ & bit(face))) {
     wakes_at_ = kNever;
     return;
   }
   migrate_ = next;
   if (!last) return;
-  receiver_[2 * a].migrate_end = receiver_[2 * a + 1].migrate_end = false;
+  migrate_end_ &= static_cast<uint8_t>(~faces_of(a));
   if (main_ != Main::migrate_z) {
     finish_phase(static_cast<Main>(static_cast<int>(main_) + 1));
     return;
@@ -287,23 +289,24 @@ void Node::dump() {
 }
 
 void Node::receive(int face, const Beat& beat) {
-  Receiver& r = receiver_[face];
+  const bool migrating = migrating_ & bit(face);
   if (beat.end) {
-    (r.migrating ? r.migrate_end : r.halo_end) = true;
-    r.migrating = !r.migrating;
+    (migrating ? migrate_end_ : halo_end_) |= bit(face);
+    migrating_ ^= bit(face);
     return;
   }
-  const int beats = r.migrating ? plan_.words.migrate_beats : plan_.words.halo_beats;
+  const int beats = migrating ? plan_.words.migrate_beats : plan_.words.halo_beats;
   const Bits* record = &beat.payload;
   if (beats > 1) {
+    Receiver& r = receiver_[face];
     if (r.beat == 0) r.partial = {};
     r.partial.join(r.beat * plan_.words.link_bits, plan_.words.link_bits, beat.payload);
     if (++r.beat < beats) return;
     r.beat = 0;
     record = &r.partial;
   }
-  if (r.migrating) {
-    r.fifo.push_back(unpack_particle(plan_, *record));
+  if (migrating) {
+    receiver_[face].fifo.push_back(unpack_particle(plan_, *record));
     return;
   }
   const int64_t cell = int64_t{1} << plan_.rule.widths.position_frac;
@@ -373,12 +376,8 @@ std::string Node::doing() const {
     return list;
   };
   const int low = 2 * axis(), high = low + 1;
-  if (main_ <= Main::exchange_z && sent_) {
-    uint8_t missing = 0;
-    for (const int f : {low, high})
-      if (linked(f) && !receiver_[f].halo_end) missing |= bit(f);
-    return text + ": waits for the halo of" + faces(missing);
-  }
+  if (main_ <= Main::exchange_z && sent_)
+    return text + ": waits for the halo of" + faces(faces_of(axis()) & static_cast<uint8_t>(~halo_end_));
   if (main_ >= Main::migrate_x && migrate_ >= Migrate::take_low)
     return text + ": waits for the particles of" + faces(bit(migrate_ == Migrate::take_low ? low : high));
   if (valid_ != 0) return text + ": waits for ready of" + faces(valid_);

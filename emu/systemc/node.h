@@ -40,10 +40,8 @@ class Node : public NodeModel {
   enum class Migrate : uint8_t { scan, end, take_low, take_high };
   // A face's receiving side.
   struct Receiver {
-    bool migrating = false;  // streams alternate: halo, migrate, halo, ...
-    int beat = 0;            // beats of the current record that have come
+    int beat = 0;  // beats of the current record that have come
     Bits partial;
-    bool halo_end = false, migrate_end = false;
     std::vector<Slot> fifo;  // particles not yet popped, oldest at `popped`
     size_t popped = 0;
   };
@@ -53,6 +51,7 @@ class Node : public NodeModel {
   bool linked(int face) const { return has_link_ >> face & 1; }
   bool can_load(int face) const { return can_load_ >> face & 1; }
   Bits& load(int face, bool end);
+  uint8_t faces_of(int axis) const { return static_cast<uint8_t>(has_link_ & 3u << 2 * axis); }
   void load_end(int low);
   void load_slice(int face);
 
@@ -78,6 +77,8 @@ class Node : public NodeModel {
   std::vector<Slot> own_;
   std::array<std::vector<Candidate>, kFaces> halo_;
   std::array<Receiver, kFaces> receiver_;
+  // By face. Streams alternate: halo, migrate, halo, ...
+  uint8_t migrating_ = 0, halo_end_ = 0, migrate_end_ = 0;
   ForceEngine engine_;
 
   Main main_ = Main::idle;
