@@ -60,8 +60,8 @@ void NodeModule::sleep(uint64_t until) {
 }
 
 void NodeModule::cycle() {
-  // The wake event comes between two edges, or one delta after the edge at which a link or the control changed:
-  // the change belongs to the next cycle, and the static sensitivity is back.
+  // The wake event comes between two edges, or one delta after the edge at which a link or the control
+  // changed: the change belongs to the next cycle, and the static sensitivity is back.
   if (pins_.asleep) {
     pins_.asleep = false;
     return;
@@ -108,8 +108,7 @@ void NodeModule::cycle() {
   }
   valid_ = out.valid;
   ready_ = out.ready;
-  if (model_->wakes_at() > in.now + 1 && valid_ == 0 && (pins_.held & ~taken) == 0)
-    sleep(model_->wakes_at());
+  if (model_->wakes_at() > in.now + 1 && valid_ == 0 && (pins_.held & ~taken) == 0) sleep(model_->wakes_at());
 }
 
 Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State& initial,

@@ -74,8 +74,7 @@ void ForceEngine::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
     const int slot = first_slot + std::countr_zero(mask);
     mask &= mask - 1;
     const Candidate& i = own_[slot].body;
-    const PairResult pair =
-        pair_kick(plan_.rule, {i.x[0], i.x[1], i.x[2]}, i.v, i.type, x_j, j.v, j.type);
+    const PairResult pair = pair_kick(plan_.rule, {i.x[0], i.x[1], i.x[2]}, i.v, i.type, x_j, j.v, j.type);
     ++counts_.pairs_issued;
     counts_.pairs_inside += pair.inside;
     if (pair.fault != Fault::none) fault_.add(pair.fault, own_[slot].id, pair.number);
@@ -116,8 +115,8 @@ uint64_t ForceEngine::run() {
     if (current_mask != 0) {
       issue(stream, current, current_mask);
       ++counts_.issue_cycles;
-      // Issued in cycle t, in the sum from t + pipe on: the pipe is empty in cycle t + pipe, and this edge ends
-      // cycle t.
+      // Issued in cycle t, in the sum from t + pipe on: the pipe is empty in cycle t + pipe, and this edge
+      // ends cycle t.
       drain = plan_.latency.pipe - 1;
     } else if (drain > 0) {
       --drain;

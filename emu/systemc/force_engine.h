@@ -3,8 +3,9 @@
 // engine".
 //
 // It sees nothing of the node but the own slots, which rest while it runs, and the halo memories, of which it
-// reads a segment only once that is complete. So it need not be stepped beside the main machine: when the last
-// segment is there, `run` steps all its cycles at once, register by register, and tells which one is the last.
+// reads a segment only once that is complete. So it need not be stepped beside the main machine: when the
+// last segment is there, `run` steps all its cycles at once, register by register, and tells which one is the
+// last.
 #pragma once
 
 #include <array>

@@ -20,8 +20,8 @@ struct Timeline {
   uint64_t cycle() const { return edge - base; }
 };
 
-// A node's end of its links: what the channels' current values are, gathered so that a node looks in one place.
-// Links write it in SystemC's update phase and at no other time. Bit f of a mask belongs to face f.
+// A node's end of its links: what the channels' current values are, gathered so that a node looks in one
+// place. Links write it in SystemC's update phase and at no other time. Bit f of a mask belongs to face f.
 struct LinkPins {
   uint8_t held = 0;     // incoming registers that are not empty
   uint8_t ready = 0;    // receivers of the outgoing links that are ready
@@ -34,9 +34,9 @@ struct LinkPins {
 class LinkSender : public virtual sc_core::sc_interface {
  public:
   virtual void attach_sender(LinkPins& pins, int face) = 0;
-  virtual void put() = 0;          // from the next cycle on the register holds what was written to `outputs.beat`
-  virtual void clear() = 0;        // the register is empty from the next cycle on
-  virtual bool gated() const = 0;  // in this cycle neither side sees the other
+  virtual void put() = 0;    // from the next cycle on the register holds what was written to `outputs.beat`
+  virtual void clear() = 0;  // the register is empty from the next cycle on
+  virtual bool gated() const = 0;   // in this cycle neither side sees the other
   virtual bool stalls() const = 0;  // whether it ever is
 };
 

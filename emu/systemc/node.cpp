@@ -75,8 +75,7 @@ void Node::enter(Main next) {
   if (next == Main::dump || next == Main::idle) return;
   const bool begins_engine = plan_.arch.overlap ? next == Main::exchange_x : next == Main::force;
   if (begins_engine) engine_.begin(now_ + 1), starting_ |= bit(Phase::force);
-  if (next > Main::exchange_x && next <= Main::force)
-    engine_.available(static_cast<int>(next) - 1, now_ + 1);
+  if (next > Main::exchange_x && next <= Main::force) engine_.available(static_cast<int>(next) - 1, now_ + 1);
   if (next == Main::force)
     phase_last_ = engine_.run();
   else
@@ -182,9 +181,8 @@ void Node::finish_particles() {
   leaving_ = 0;
   for (size_t k = 0; k < own_.size(); ++k) {
     Slot& s = own_[k];
-    const FinishResult r =
-        finish(plan_.rule, engine_.take_sum(static_cast<int>(k)), {s.body.x[0], s.body.x[1], s.body.x[2]},
-               s.body.v, s.u, s.body.type);
+    const FinishResult r = finish(plan_.rule, engine_.take_sum(static_cast<int>(k)),
+                                  {s.body.x[0], s.body.x[1], s.body.x[2]}, s.body.v, s.u, s.body.type);
     fault_.add(r.fault, s.id, r.number);
     s.u = r.u;
     for (int a = 0; a < 3; ++a) {

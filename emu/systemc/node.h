@@ -87,12 +87,12 @@ class Node : public NodeModel {
   uint8_t starting_ = 0;                     // phases whose first cycle is the next one to run
   int segment_ = 0, record_ = 0, beat_ = 0;  // exchange; `record_` and `beat_` also scan and dump
   bool sent_ = false;
-  Bits word_;            // the record that is being sent
+  Bits word_;                // the record that is being sent
   uint64_t now_ = 0;         // the cycle that runs
   uint64_t phase_last_ = 0;  // the last cycle of FORCE or UPDATE, known from its start
   uint64_t wakes_at_ = 0;    // as wakes_at()
-  size_t kept_ = 0;      // slots that SCAN has moved down
-  uint8_t leaving_ = 0;  // bit a: `leaving_a`
+  size_t kept_ = 0;          // slots that SCAN has moved down
+  uint8_t leaving_ = 0;      // bit a: `leaving_a`
   uint8_t valid_ = 0, can_load_ = 0;
   NodeOutputs* out_ = nullptr;  // of the cycle that runs, as is `control_`
   const Control* control_ = nullptr;

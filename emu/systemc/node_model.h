@@ -16,8 +16,8 @@
 
 namespace cuboct::emu {
 
-// One beat of a link: the payload, or the end of a stream. Bits beyond the link's width are zero, from the start on:
-// who writes a beat may leave them alone. Aligned so that a narrow one lies in one cache line.
+// One beat of a link: the payload, or the end of a stream. Bits beyond the link's width are zero, from the
+// start on: who writes a beat may leave them alone. Aligned so that a narrow one lies in one cache line.
 struct alignas(64) Beat {
   bool end = false;
   Bits payload;
@@ -38,7 +38,8 @@ inline constexpr uint64_t kNever = UINT64_MAX;
 
 // A node's inputs during one cycle. Bit f of a mask belongs to face f.
 struct NodeInputs {
-  uint64_t now = 0;  // the cycle, counted from any origin; ascends over the calls, by more than one after a sleep
+  uint64_t now =
+      0;  // the cycle, counted from any origin; ascends over the calls, by more than one after a sleep
   const Control* control = nullptr;
   uint8_t valid = 0;                       // link_valid_i
   uint8_t ready = 0;                       // link_ready_i
@@ -78,8 +79,9 @@ class NodeModel {
   // One clock cycle. `out` is the same object in every call.
   virtual void clock(const NodeInputs& in, NodeOutputs& out) = 0;
   // After `clock`: the next cycle that the node must be called for. In the cycles before, as long as no link
-  // holds a beat on either side and the control stays as it is, the node would show nothing and load nothing, and
-  // they may be left out. A call in one of them is right too; any value up to the next cycle asks for each.
+  // holds a beat on either side and the control stays as it is, the node would show nothing and load nothing,
+  // and they may be left out. A call in one of them is right too; any value up to the next cycle asks for
+  // each.
   virtual uint64_t wakes_at() const { return 0; }
   // What the node is doing, for the report of a deadlock.
   virtual std::string doing() const { return "unknown"; }

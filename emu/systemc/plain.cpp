@@ -20,10 +20,10 @@ struct Place {
   uint8_t valid = 0, ready = 0;
 };
 
-// A clock cycle of every node: all read the registers of before the edge, then all registers change. `cycle` is
-// that of the run, which the stalls go by; `now` counts from reset.
-void clock_all(const Lattice& lattice, std::vector<Place>& places, const StallSource& stalls,
-               uint64_t now, uint64_t cycle) {
+// A clock cycle of every node: all read the registers of before the edge, then all registers change. `cycle`
+// is that of the run, which the stalls go by; `now` counts from reset.
+void clock_all(const Lattice& lattice, std::vector<Place>& places, const StallSource& stalls, uint64_t now,
+               uint64_t cycle) {
   for (uint32_t n = 0; n < places.size(); ++n) {
     Place& p = places[n];
     p.in = {now, &p.control, 0, 0, {}};

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 
 #include "model/fixed_rule.h"
 
@@ -15,7 +16,7 @@ constexpr int kPlanarSlots = 256;  // the most that a node holds (hw/plan.h)
 
 // The slots' positions, P fractional bits.
 struct PlanarSlots {
-  alignas(16) std::array<std::array<int32_t, kPlanarSlots>, 3> x;
+  std::array<std::array<int32_t, kPlanarSlots>, 3> x;
   int count = 0;
 
   void clear() { count = 0; }
@@ -72,9 +73,12 @@ class PlanarTest {
   typedef uint32_t Magnitudes __attribute__((vector_size(4 * kLanes)));
 
   // |round_odd(candidate - slot, shift)| = (|candidate - slot| + half) >> shift, as round_odd is odd. The
-  // difference of a P+2 bit and a P bit number fits 32 bits, and its magnitude plus half fits 32 without sign.
+  // difference of a P+2 bit and a P bit number fits 32 bits, and its magnitude plus half fits 32 without
+  // sign.
   Lanes distance(const std::array<int32_t, kPlanarSlots>& x, int slot, int32_t candidate) const {
-    const Lanes d = candidate - *reinterpret_cast<const Lanes*>(&x[static_cast<size_t>(slot)]);
+    Lanes own;
+    std::memcpy(&own, &x[static_cast<size_t>(slot)], sizeof own);
+    const Lanes d = candidate - own;
     const Lanes sign = d >> 31;
     const auto magnitude = reinterpret_cast<Magnitudes>((d ^ sign) - sign);
     return reinterpret_cast<Lanes>((magnitude + half_) >> shift_);

@@ -37,7 +37,8 @@ std::vector<uint64_t> read_steps(const std::string& path) {
     uint64_t step = 0;
     const auto [stopped, error] = std::from_chars(line.data(), end, step);
     if (error != std::errc{} || stopped != end)
-      throw InputError(path, number, 1, fmt::format("expected a step, got '{}'", line), "one number per line");
+      throw InputError(path, number, 1, fmt::format("expected a step, got '{}'", line),
+                       "one number per line");
     steps.push_back(step);
   }
   return steps;

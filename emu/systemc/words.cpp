@@ -25,7 +25,9 @@ void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out) {
   const Widths& w = plan.rule.widths;
   const int p = w.position_frac;
   const Wide mask = (Wide{1} << (p + 2)) - 1;
-  const auto signed_field = [&](int a) { return static_cast<Wide>(candidate.x[static_cast<size_t>(a)]) & mask; };
+  const auto signed_field = [&](int a) {
+    return static_cast<Wide>(candidate.x[static_cast<size_t>(a)]) & mask;
+  };
   // 3P+4 bits: at most 94.
   const Wide xyz = signed_field(0) | signed_field(1) << (p + 2) |
                    static_cast<Wide>(candidate.x[2] & ((int64_t{1} << p) - 1)) << (2 * p + 4);
@@ -44,7 +46,9 @@ void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Ca
   const int p = w.position_frac;
   const Wide xyz = static_cast<Wide>(bits.word[1]) << 64 | bits.word[0];
   const auto signed_field = [&](Wide v) { return wrap(static_cast<int64_t>(v), p + 2); };
-  const auto moved = [&](int a, int64_t x) { return static_cast<int32_t>(wrap(a == axis ? x + shift : x, p + 2)); };
+  const auto moved = [&](int a, int64_t x) {
+    return static_cast<int32_t>(wrap(a == axis ? x + shift : x, p + 2));
+  };
   out.x[0] = moved(0, signed_field(xyz));
   out.x[1] = moved(1, signed_field(xyz >> (p + 2)));
   out.x[2] = moved(2, static_cast<int64_t>(xyz >> (2 * p + 4)) & ((int64_t{1} << p) - 1));

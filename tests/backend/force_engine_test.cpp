@@ -121,7 +121,8 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
     }
     engine.available[0] = static_cast<uint64_t>(draw(0, 1000));
     for (size_t a = 1; a < 4; ++a)
-      engine.available[a] = engine.available[a - 1] + static_cast<uint64_t>(draw(0, 2) == 0 ? 0 : draw(1, 60));
+      engine.available[a] =
+          engine.available[a - 1] + static_cast<uint64_t>(draw(0, 2) == 0 ? 0 : draw(1, 60));
 
     emu::FaultKeeper fault;
     emu::ForceEngine tested(plan, engine.own, engine.halo, fault);
@@ -131,8 +132,9 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
     const emu::ForceEngine::Counts& counts = tested.counts();
     const Outcome expected = stepped(plan, engine);
     const Outcome got{last, counts.stalls, counts.issue_cycles, counts.candidates, counts.pairs_issued};
-    ASSERT_TRUE(got == expected) << "run " << run << ": last cycle " << got.last << ", expected " << expected.last
-                                 << "; stalls " << got.stalls << ", expected " << expected.stalls;
+    ASSERT_TRUE(got == expected) << "run " << run << ": last cycle " << got.last << ", expected "
+                                 << expected.last << "; stalls " << got.stalls << ", expected "
+                                 << expected.stalls;
     EXPECT_EQ(counts.busy, last - engine.available[0] + 1);
     stalled += expected.stalls > 0;
     empty += engine.own.empty();

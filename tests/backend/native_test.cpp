@@ -145,7 +145,8 @@ TEST(NativePlanar, EqualsMayInteract) {
       const emu::PlanarTest test(rule);
       std::array<int32_t, 3> candidate{};
       for (int32_t& x : candidate)
-        x = static_cast<int32_t>(run % 10 == 0 ? (run % 20 == 0 ? -cell : 2 * cell - 1) : draw(-cell, 2 * cell - 1));
+        x = static_cast<int32_t>(run % 10 == 0 ? (run % 20 == 0 ? -cell : 2 * cell - 1)
+                                               : draw(-cell, 2 * cell - 1));
       const int count = run % 7 == 0 ? emu::kPlanarSlots : static_cast<int>(draw(0, 70));
       std::vector<Int3> own;
       slots.clear();
@@ -153,7 +154,8 @@ TEST(NativePlanar, EqualsMayInteract) {
         std::array<int32_t, 3> x{};
         for (size_t a = 0; a < 3; ++a) {
           // Half of them a plane's distance away, or one unit more.
-          const int64_t near = candidate[a] + (draw(0, 1) ? 1 : -1) * (rule.planar[0] << rule.difference_shift) + draw(-1, 1);
+          const int64_t near =
+              candidate[a] + (draw(0, 1) ? 1 : -1) * (rule.planar[0] << rule.difference_shift) + draw(-1, 1);
           const bool on_plane = draw(0, 1) && near >= 0 && near < cell;
           edges += on_plane;
           x[a] = static_cast<int32_t>(on_plane ? near : draw(0, 3) == 0 ? cell - 1 : draw(0, cell - 1));

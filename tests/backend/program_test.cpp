@@ -91,7 +91,8 @@ TEST_F(Programs, WrongCommandLinesAndScenesEndWithTwo) {
 }
 
 TEST_F(Programs, AFileOfFramesTakesWhatACommandLineCannot) {
-  const std::string scene = "'" CUBOCT_SOURCE_DIR "/scenes/lj_block.toml'", program = "'" CUBOCT_SYSTEMC "' " + scene;
+  const std::string scene = "'" CUBOCT_SOURCE_DIR "/scenes/lj_block.toml'",
+                    program = "'" CUBOCT_SYSTEMC "' " + scene;
   std::ofstream every(dir_ / "every");
   for (int step = 100000; step >= 0; --step) every << step << '\n';  // 590 kB; an argument holds 128 kB
   every.close();

@@ -62,7 +62,8 @@ double counted(const emu::RunResult& run, const std::string& name) {
   return 0;
 }
 
-// Each case has nodes that wait for neighbours of more particles, with and without stalls, and with narrow links.
+// Each case has nodes that wait for neighbours of more particles, with and without stalls, and with narrow
+// links.
 TEST(SystemCSleep, ChangesNothingButTheNumberOfCalls) {
   std::vector<std::unique_ptr<Case>> cases;
   std::vector<std::unique_ptr<emu::Bench>> benches;
@@ -71,9 +72,10 @@ TEST(SystemCSleep, ChangesNothingButTheNumberOfCalls) {
     for (const double rate : {0.0, 0.3}) {
       const Case& c = *cases.emplace_back(std::make_unique<Case>(make_case(name)));
       const Plan& plan = c.setup.plan;
-      const emu::NodeFactory nodes = emu::native_nodes(plan), restless = [nodes](uint32_t node, uint8_t has_link) {
-        return std::make_unique<Restless>(nodes(node, has_link));
-      };
+      const emu::NodeFactory nodes = emu::native_nodes(plan),
+                             restless = [nodes](uint32_t node, uint8_t has_link) {
+                               return std::make_unique<Restless>(nodes(node, has_link));
+                             };
       for (const auto& [prefix, factory] : {std::pair{"sleeping", nodes}, {"restless", restless}}) {
         const std::string bench = prefix + std::to_string(benches.size());
         benches.push_back(std::make_unique<emu::Bench>(bench.c_str(), plan, c.setup.initial,
@@ -84,7 +86,8 @@ TEST(SystemCSleep, ChangesNothingButTheNumberOfCalls) {
   emu::simulate(all);
   for (size_t k = 0; k < cases.size(); ++k) {
     const double nodes = cases[k]->setup.plan.lattice.size();
-    const emu::RunResult sleeping = benches[2 * k]->take_result(), restless = benches[2 * k + 1]->take_result();
+    const emu::RunResult sleeping = benches[2 * k]->take_result(),
+                         restless = benches[2 * k + 1]->take_result();
     const Compared compared = compare_cycles(restless, sleeping);
     EXPECT_EQ(compared.difference, "") << cases[k]->name;
     EXPECT_EQ(compared.spans, cases[k]->steps * static_cast<uint64_t>(nodes) * kPhases);
