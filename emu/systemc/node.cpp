@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "model/fixed_math.h"
 
 namespace cuboct::emu {
@@ -16,7 +18,11 @@ constexpr Fault along(Fault x, int axis) { return static_cast<Fault>(static_cast
 }  // namespace
 
 Node::Node(const Plan& plan, uint8_t has_link)
-    : plan_(plan), has_link_(has_link), capacity_(plan.arch.capacity), engine_(plan, own_, halo_, fault_) {
+    : plan_(plan),
+      has_link_(has_link),
+      capacity_(plan.arch.capacity),
+      link_words_(std::min((plan.words.link_bits + 63) / 64, int{Bits::kWords})),
+      engine_(plan, own_, halo_, fault_) {
   own_.reserve(capacity_);
   // Depths of the memories: an axis brings what the axes before it brought too.
   for (int f = 0, depth = capacity_; f < kFaces; f += 2, depth *= 3)
@@ -43,22 +49,20 @@ int Node::axis() const {
   return static_cast<int>(main_) % 5;  // exchange_* are 0...2, migrate_* are 5...7
 }
 
-// The register of a linked face, for what is loaded in this cycle.
+// The register of a linked face, for what is loaded in this cycle; zeros.
 Bits& Node::load(int face, bool end) {
   valid_ |= bit(face);
   out_->loaded |= bit(face);
   ++beats_;
   Beat& beat = *out_->beat[face];
   beat.end = end;
+  for (int k = 0; k < link_words_; ++k) beat.payload.word[k] = 0;
   return beat.payload;
 }
 
 void Node::load_end(int low) {
   for (const int f : {low, low + 1})
-    if (linked(f)) {
-      Bits& payload = load(f, true);
-      for (int k = 0; 64 * k < plan_.words.link_bits && k < Bits::kWords; ++k) payload.word[k] = 0;
-    }
+    if (linked(f)) load(f, true);
 }
 
 // Loads beat `beat_` of `word_`.
@@ -145,7 +149,7 @@ void Node::exchange() {
     for (const int f : {low, high})
       if (linked(f)) pack_halo(plan_, record, load(f, false));
   } else {
-    if (beat_ == 0) pack_halo(plan_, record, word_);
+    if (beat_ == 0) word_ = {}, pack_halo(plan_, record, word_);
     load_slice(low);
     load_slice(high);
   }

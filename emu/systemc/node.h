@@ -72,7 +72,7 @@ class Node : public NodeModel {
 
   const Plan& plan_;
   const uint8_t has_link_;
-  const int capacity_;
+  const int capacity_, link_words_;
   FaultKeeper fault_;
   std::vector<Slot> own_;
   std::array<std::vector<Candidate>, kFaces> halo_;

@@ -32,8 +32,7 @@ void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out) {
   const Wide xyz = signed_field(0) | signed_field(1) << (p + 2) |
                    static_cast<Wide>(candidate.x[2] & ((int64_t{1} << p) - 1)) << (2 * p + 4);
   out.word[0] = static_cast<uint64_t>(xyz);
-  for (int k = 1; 64 * k < plan.words.halo_bits; ++k) out.word[static_cast<size_t>(k)] = 0;
-  if (3 * p + 4 > 64) out.word[1] = static_cast<uint64_t>(xyz >> 64);
+  out.word[1] = static_cast<uint64_t>(xyz >> 64);
   int at = 3 * p + 4;
   const auto field = [&](int width, int64_t value) { out.put(at, width, value), at += width; };
   if (plan.rule.scaled) field(plan.rule.type_bits, candidate.type);

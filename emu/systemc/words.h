@@ -28,8 +28,7 @@ struct Slot {
 // Throws InputError where a word is wider than Bits.
 void check_words(const Plan& plan);
 
-// In place, as a record's way through a link is what a busy lattice does most; the words of `out` beyond the
-// record's stay as they are.
+// In place, as a record's way through a link is what a busy lattice does most. `out` must hold zeros.
 void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out);
 // In the frame of the receiver: `shift` is added to the coordinate `axis`, in P+2 bits.
 void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Candidate& out);

@@ -104,6 +104,47 @@ TEST(SystemCSleep, ChangesNothingButTheNumberOfCalls) {
   EXPECT_EQ(cases.size(), 8u);
 }
 
+// A link's word beyond the record is zero, whatever the register held before.
+TEST(SystemCLinks, RecordsAreZeroPadded) {
+  class Watched : public emu::NodeModel {
+   public:
+    Watched(std::unique_ptr<emu::NodeModel> inner, const Words& words, std::array<uint64_t, 2>& seen)
+        : inner_(std::move(inner)), words_(words), seen_(seen) {}
+    void clock(const emu::NodeInputs& in, emu::NodeOutputs& out) override {
+      for (size_t f = 0; f < kFaces; ++f) {
+        if (!(in.valid >> f & 1)) continue;
+        const emu::Beat& beat = *in.beat[f];
+        // Streams alternate: halo, migrate, ...
+        const int bits = beat.end ? 0 : migrating_[f] ? words_.particle_bits : words_.halo_bits;
+        EXPECT_EQ(beat.payload.slice(bits, emu::Bits::kWidth), emu::Bits{});
+        if (beat.end)
+          migrating_[f] = !migrating_[f];
+        else
+          ++seen_[migrating_[f]];
+      }
+      inner_->clock(in, out);
+    }
+
+   private:
+    std::unique_ptr<emu::NodeModel> inner_;
+    const Words& words_;
+    std::array<uint64_t, 2>& seen_;
+    std::array<bool, kFaces> migrating_{};
+  };
+  const Case c = make_case("wide_links");
+  const Plan& plan = c.setup.plan;
+  ASSERT_GT(plan.words.link_bits, (plan.words.halo_bits + 63) / 64 * 64);
+  const emu::NodeFactory nodes = emu::native_nodes(plan);
+  std::array<uint64_t, 2> seen{};
+  const auto watched = [&](uint32_t node, uint8_t has_link) {
+    return std::make_unique<Watched>(nodes(node, has_link), plan.words, seen);
+  };
+  emu::Bench bench("bench", plan, c.setup.initial, keep_all(c.steps), watched, "systemc");
+  emu::simulate({&bench});
+  EXPECT_GT(seen[0], 100u);
+  EXPECT_GT(seen[1], 0u);
+}
+
 TEST(SystemCFaults, EachArisesAsInGolden) {
   std::vector<std::unique_ptr<Case>> cases;
   std::vector<std::unique_ptr<emu::Bench>> benches;
