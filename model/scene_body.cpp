@@ -91,7 +91,8 @@ std::vector<int> read_particles(const ConfigTable& root, const std::vector<std::
   return named;
 }
 
-// Sites of a packing are a pitch apart: only the listed particles, the last of `x`, can stand where another does.
+// Sites of a packing are a pitch apart: only the listed particles, the last of `x`, can stand where another
+// does.
 void check_distinct(const ConfigTable& root, const std::vector<Vec3>& x, size_t listed) {
   const auto key = [&](size_t i) { return std::array{x[i][0], x[i][1], x[i][2], static_cast<double>(i)}; };
   std::vector<size_t> order(listed);
