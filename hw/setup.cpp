@@ -2,9 +2,12 @@
 #include "hw/setup.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "hw/reach.h"
 
@@ -72,7 +75,29 @@ Plan plan_with(const Scene& scene, const Arch& arch, See see) {
                    static_cast<uint32_t>(scene.body.size()));
 }
 
+// Gives the whole pages among a vector's elements [first, last) back to the system; those elements become
+// zeros. (A vector cannot shrink at its front.)
+template <typename T>
+void give_back(std::vector<T>& values, size_t first, size_t last) {
+  static const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto begin = (reinterpret_cast<uintptr_t>(values.data() + first) + page - 1) / page * page;
+  const auto end = reinterpret_cast<uintptr_t>(values.data() + last) / page * page;
+  if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
+}
+
 }  // namespace
+
+Particle InitialParticles::operator()(uint32_t id) {
+  constexpr uint32_t kBlock = 1 << 16;
+  if (id > 0 && id % kBlock == 0) {
+    // A page that reaches into the block before went with neither block: a few remain.
+    give_back(body_.x, id - kBlock, id);
+    give_back(body_.v, id - kBlock, id);
+    give_back(body_.type, id - kBlock, id);
+    if (!body_.u.empty()) give_back(body_.u, id - kBlock, id);
+  }
+  return fixed_particle(body_, id, plan_.rule, plan_.lattice, plan_.origin);
+}
 
 Plan plan_of(const Scene& scene, const Arch& arch) {
   return plan_with(scene, arch, [](const Particle&) {});
