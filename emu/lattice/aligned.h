@@ -16,8 +16,8 @@ namespace cuboct::emu {
 // multiple of it.
 inline constexpr uint32_t kGroup = 8;
 
-// A fixed number of trivially copyable elements, readable (and writable) kGroup elements beyond either end,
-// so that a vector may overhang. Cache-line aligned, filled with `fill`.
+// A fixed number of trivially copyable elements, readable (and writable) kGroup elements and 64 bytes beyond either
+// end, so that a vector may overhang. Cache-line aligned, filled with `fill`.
 template <typename T>
 class PaddedArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -25,8 +25,8 @@ class PaddedArray {
  public:
   PaddedArray() = default;
   explicit PaddedArray(size_t size, T fill = T{}) : size_(size) {
-    const size_t lead = std::max<size_t>(kLine / sizeof(T), kGroup);
-    const size_t bytes = ((size + lead + kGroup) * sizeof(T) + kLine - 1) / kLine * kLine;
+    const size_t lead = std::max<size_t>(kLine / sizeof(T), kGroup);  // a vector's width
+    const size_t bytes = ((size + 2 * lead) * sizeof(T) + kLine - 1) / kLine * kLine;
     T* raw = static_cast<T*>(std::aligned_alloc(kLine, bytes));
     if (raw == nullptr) throw std::bad_alloc();
     memory_.reset(raw);
