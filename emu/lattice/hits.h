@@ -16,31 +16,38 @@ namespace cuboct::emu {
 // of three is below 2^27.
 struct PlanarTest {
   explicit PlanarTest(const FixedRule& rule);
-  int position_frac;
+  int position_frac;                // P
   int shift;                        // P - D
   std::array<int32_t, 3> planar{};  // D fractional bits
 };
 
-// Particles by node. Vectors may be loaded beyond the last particle: 64 more elements can be read. Node number
-// `nodes` stands for one that does not exist: it holds nothing, and its neighbours are itself.
+struct Filter {
+  Filter(const FixedRule& rule, int lanes, int pipes);
+  PlanarTest test;
+  uint32_t lanes, pipes;
+};
+
+// Particles by node. Node number `nodes` stands for one that does not exist: it holds nothing, and its neighbours
+// are itself.
 struct Places {
+  // Elements that vector loads may read beyond the last particle.
+  static constexpr size_t kBeyond = 64;
   std::array<const int32_t*, 3> x;
-  const uint32_t* first;                      // nodes + 2
+  const uint32_t* first;                     // nodes + 2
   const std::array<uint32_t, 6>* neighbour;  // nodes + 1
 };
 
 struct HitScratch {
+  HitScratch(int capacity, int lanes);
   std::array<std::vector<int32_t>, 3> x;  // candidates in the frame of the node
-  std::vector<uint8_t> hits, service;
+  size_t row;                             // candidates, and room for a vector
+  std::vector<uint8_t> hits;              // [pass][candidate], rows of `row`
+  std::vector<uint8_t> items;             // hits by item
+  std::vector<uint32_t> entries;          // of the ForceWork that filter_node returned last
+  std::vector<int64_t> popped;            // scratch of force_time
 };
 
-struct Filter {
-  PlanarTest test;
-  int lanes;                           // own particles per pass
-  std::array<uint8_t, 65> service{};  // ceil(hits / force_pipes), by hits
-};
-
-// The work of `node`'s force engine; its services stay valid until `scratch` is used again. `node` is not empty.
+// What the streamer of `node`, which is not empty, walks.
 ForceWork filter_node(const Filter& filter, const Places& places, uint32_t node, HitScratch& scratch);
 
 }  // namespace cuboct::emu

@@ -30,6 +30,13 @@ std::span<const Migration::Arrival> Migration::arrivals(int axis, uint32_t node,
   return {arrivals_.data() + from, to - from};
 }
 
+void Migration::mark(std::span<uint8_t> changed) const {
+  for (const auto& nodes : leaving_)
+    for (const uint32_t node : nodes) changed[node] = 1;
+  for (const auto& nodes : received_)
+    for (const uint32_t node : nodes) changed[node] = 1;
+}
+
 void Migration::forget() {
   for (int axis = 0; axis < 3; ++axis) {
     for (const uint32_t node : leaving_[at(axis)]) scan_[at(axis)][node] = 0, leaving_bits_[node] = 0;

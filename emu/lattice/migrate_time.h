@@ -28,6 +28,9 @@ class Migration {
   // order, all within the lattice.
   void plan(std::span<uint32_t> count, std::span<const Leaving> leaving);
 
+  // changed[node] = 1 where the planned step takes particles away or brings some.
+  void mark(std::span<uint8_t> changed) const;
+
   // Whether anything moves in the step; if not, no node scans and nothing arrives.
   bool any() const { return any_; }
   // Cycles of SCAN.

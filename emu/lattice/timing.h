@@ -8,18 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "emu/lattice/node_force.h"
 #include "emu/lattice/slots.h"
 #include "hw/plan.h"
 #include "model/trace.h"
 
 namespace cuboct::emu {
-
-// How often the model could save work; for reports and tests, not for results.
-struct TimingCounters {
-  uint64_t node_steps = 0;
-  uint64_t filtered = 0;   // node-steps whose candidates were tested
-  uint64_t streamed = 0;   // node-steps whose force engine's recurrence was walked item by item
-};
 
 class TimingModel {
  public:
@@ -40,7 +34,7 @@ class TimingModel {
   uint64_t cycles(const NodeSlots& slots) const;
 
   // All that later steps depend on: the cycle, by node, at which the next step begins.
-  const std::vector<uint64_t>& starts() const;
+  std::vector<uint64_t> starts() const;
   // Goes on from there. Throws std::invalid_argument where the size is not the number of nodes.
   void resume(std::span<const uint64_t> starts);
 
