@@ -118,20 +118,23 @@ void TimingModel::Impl::begin(const NodeSlots& slots, std::span<const Leaving> l
   const size_t particles = slots.first[nodes_];
   for (const auto& x : slots.x)
     if (x.size() < particles) throw std::invalid_argument("slots without positions");
+  for (uint32_t n = 0; n < nodes_; ++n) {
+    const uint32_t count = slots.first[n + 1] - slots.first[n];
+    if (count > static_cast<uint32_t>(plan_.arch.capacity))
+      throw std::invalid_argument("a node holds more than its capacity");
+    if (steps_ > 0 && count != final_count_[n])
+      throw std::invalid_argument("a node does not hold what the step before left there");
+  }
+  for (const Leaving& l : leaving)
+    if (l.node >= nodes_ || l.slot >= slots.first[l.node + 1] - slots.first[l.node])
+      throw std::invalid_argument("no such particle leaves");
+
   std::swap(x_, old_x_);
   std::swap(first_, old_first_);
   for (auto& x : x_) x.resize(particles + Places::kBeyond);
   std::copy(slots.first.begin(), slots.first.end(), first_.begin());
   first_[nodes_ + 1] = first_[nodes_];
-  for (uint32_t n = 0; n < nodes_; ++n) {
-    count_[n] = first_[n + 1] - first_[n];
-    if (count_[n] > static_cast<uint32_t>(plan_.arch.capacity))
-      throw std::invalid_argument("a node holds more than its capacity");
-    if (steps_ > 0 && count_[n] != final_count_[n])
-      throw std::invalid_argument("a node does not hold what the step before left there");
-  }
-  for (const Leaving& l : leaving)
-    if (l.node >= nodes_ || l.slot >= count_[l.node]) throw std::invalid_argument("no such particle leaves");
+  for (uint32_t n = 0; n < nodes_; ++n) count_[n] = first_[n + 1] - first_[n];
   // Those that moved in the step before are what makes a node's particles others than they were.
   std::fill(changed_.begin(), changed_.end() - 1, steps_ == 0);
   migration_.mark(changed_);

@@ -25,8 +25,9 @@ class TimingModel {
 
   // The next step: `slots` are the particles at its start, `leaving` those that leave their node in it, in any
   // order. The step must be one that ends without a fault. spans[node * kPhases + phase] gets first and last
-  // cycle, cycle 0 being the first of the run; empty where nobody wants them. Throws std::invalid_argument where
-  // sizes do not fit the plan, a node holds more than its capacity or a particle leaves the lattice.
+  // cycle, cycle 0 being the first of the run; empty where nobody wants them. Throws std::invalid_argument, and is of
+  // no use after, where sizes do not fit the plan, a node holds more than its capacity or not what the step before
+  // left there, or a particle leaves the lattice.
   void step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans);
 
   // Cycles of the run if it ends after the steps so far, DUMP and the last node's first cycle of IDLE included: what
