@@ -20,10 +20,11 @@ int64_t force_time(const ForceShape& shape, const ForceWork& work, const Availab
   int64_t* pop = popped.data();
   std::fill(pop, pop + depth, kLongAgo);
 
-  int64_t left = 1;           // cycle in which the item before leaves F1
-  int64_t next = 0;           // first cycle in which the streamer may present
-  int64_t issued = kLongAgo;  // last cycle that issues of the entries so far: the next may move to `current` in it
-  int64_t streamed = 0;       // cycle of the last presentation
+  int64_t left = 1;  // cycle in which the item before leaves F1
+  int64_t next = 0;  // first cycle in which the streamer may present
+  int64_t issued =
+      kLongAgo;          // last cycle that issues of the entries so far: the next may move to `current` in it
+  int64_t streamed = 0;  // cycle of the last presentation
   int64_t filtered = kLongAgo;  // cycle in which the last real item leaves F1
   const uint32_t* entry = work.entries.data();
   const uint32_t* const last_entry = entry + entries;
@@ -40,13 +41,14 @@ int64_t force_time(const ForceShape& shape, const ForceWork& work, const Availab
       next = left++;
       continue;
     }
-    // Item k of the segment leaves F1 in cycle base + k, unless an entry waits for room: then base grows. The last
-    // item but one leaves it in the cycle in which the streamer may begin the next segment.
+    // Item k of the segment leaves F1 in cycle base + k, unless an entry waits for room: then base grows. The
+    // last item but one leaves it in the cycle in which the streamer may begin the next segment.
     const uint32_t end_item = first_item + count;
     const uint32_t last = ForceWork::entry(end_item - 1, 0);
     int64_t base = left + 1 - first_item;
     for (; entry != last_entry && *entry < last; ++entry) {
-      const int64_t item = *entry >> ForceWork::kCycleBits, cycles = *entry & ((1 << ForceWork::kCycleBits) - 1);
+      const int64_t item = *entry >> ForceWork::kCycleBits,
+                    cycles = *entry & ((1 << ForceWork::kCycleBits) - 1);
       base = std::max(base, *pop + 1 - item);
       const int64_t moved = std::max(issued, base + item + 1);
       pop[depth] = moved;

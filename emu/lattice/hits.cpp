@@ -15,9 +15,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<int32_t>;
 using V = hn::Vec<D>;
 
-// The candidates of `node` in the order of its streamer. A halo holds what the face's neighbour holds and, for y
-// and z, what it got along the axes before, in its own order: three nested walks of (here, below, above).
-// Returns how many, and by segment.
+// The candidates of `node` in the order of its streamer. A halo holds what the face's neighbour holds and,
+// for y and z, what it got along the axes before, in its own order: three nested walks of (here, below,
+// above). Returns how many, and by segment.
 size_t gather(const PlanarTest& test, const Places& places, uint32_t node, HitScratch& scratch,
               std::array<uint32_t, kSegments>& records) {
   const D d;
@@ -110,19 +110,21 @@ const uint8_t* by_item(HitScratch& scratch, size_t candidates, uint32_t passes) 
 size_t pack(const uint8_t* hits, size_t items, uint32_t pipes, uint32_t* entries) {
   const D d;
   const hn::Rebind<uint8_t, D> bytes;
-  // ceil(h / F) = floor(h1 / F) with h1 = h + F - 1 < 128. With r = floor(2^16 / F) + 1, h1 r / 2^16 exceeds h1 / F by at
-  // most h1 / 2^16 < 1 / F: no integer lies between.
+  // ceil(h / F) = floor(h1 / F) with h1 = h + F - 1 < 128. With r = floor(2^16 / F) + 1, h1 r / 2^16 exceeds
+  // h1 / F by at most h1 / 2^16 < 1 / F: no integer lies between.
   const V more = hn::Set(d, static_cast<int32_t>(pipes) - 1),
           reciprocal = hn::Set(d, 65536 / static_cast<int32_t>(pipes) + 1);
   V item = hn::Iota(d, 0);
-  const V step = hn::Set(d, static_cast<int32_t>(hn::Lanes(d))), count = hn::Set(d, static_cast<int32_t>(items));
+  const V step = hn::Set(d, static_cast<int32_t>(hn::Lanes(d))),
+          count = hn::Set(d, static_cast<int32_t>(items));
   auto* to = reinterpret_cast<int32_t*>(entries);
   size_t packed = 0;
   for (size_t k = 0; k < items; k += hn::Lanes(d)) {
     const V h = hn::PromoteTo(d, hn::LoadU(bytes, hits + k));
     const V cycles = hn::ShiftRight<16>(hn::Mul(hn::Add(h, more), reciprocal));
     const auto hit = hn::And(hn::Gt(h, hn::Zero(d)), hn::Lt(item, count));
-    packed += hn::CompressStore(hn::Or(hn::ShiftLeft<ForceWork::kCycleBits>(item), cycles), hit, d, to + packed);
+    packed +=
+        hn::CompressStore(hn::Or(hn::ShiftLeft<ForceWork::kCycleBits>(item), cycles), hit, d, to + packed);
     item = hn::Add(item, step);
   }
   return packed;
@@ -160,8 +162,7 @@ PlanarTest::PlanarTest(const FixedRule& rule)
 Filter::Filter(const FixedRule& rule, int lanes_, int pipes_)
     : test(rule), lanes(static_cast<uint32_t>(lanes_)), pipes(static_cast<uint32_t>(pipes_)) {}
 
-HitScratch::HitScratch(int capacity, int lanes)
-    : row(27 * static_cast<size_t>(capacity) + Places::kBeyond) {
+HitScratch::HitScratch(int capacity, int lanes) : row(27 * static_cast<size_t>(capacity) + Places::kBeyond) {
   const auto passes = static_cast<size_t>((capacity + lanes - 1) / lanes);
   for (auto& column : x) column.resize(row);
   hits.resize(row * passes);

@@ -12,8 +12,8 @@
 namespace cuboct::emu {
 
 // `difference` and `may_interact` of model/fixed_rule.h in 32 bits. They suffice for all formats: P <= 30, so
-// that candidates lie in [-2^30, 2^31) and differences in (-2^31, 2^31); |d| <= 2^(D+1) with D <= 24, and a sum
-// of three is below 2^27.
+// that candidates lie in [-2^30, 2^31) and differences in (-2^31, 2^31); |d| <= 2^(D+1) with D <= 24, and a
+// sum of three is below 2^27.
 struct PlanarTest {
   explicit PlanarTest(const FixedRule& rule);
   int position_frac;                // P
@@ -27,8 +27,8 @@ struct Filter {
   uint32_t lanes, pipes;
 };
 
-// Particles by node. Node number `nodes` stands for one that does not exist: it holds nothing, and its neighbours
-// are itself.
+// Particles by node. Node number `nodes` stands for one that does not exist: it holds nothing, and its
+// neighbours are itself.
 struct Places {
   // Elements that vector loads may read beyond the last particle.
   static constexpr size_t kBeyond = 64;

@@ -8,8 +8,8 @@
 namespace cuboct::emu {
 namespace {
 
-// From the cycle that loads a record's last beat to that in which the receiver sees it: the sender's register, the
-// receiver's.
+// From the cycle that loads a record's last beat to that in which the receiver sees it: the sender's
+// register, the receiver's.
 constexpr int32_t kOnTheWay = 2;
 
 constexpr size_t at(int axis) { return static_cast<size_t>(axis); }
@@ -96,7 +96,10 @@ void Migration::depart(int axis, std::span<uint32_t> count) {
     m.away[at(axis)] = 0;
     ++gone;
     const auto last_beat = static_cast<int32_t>(m.slot + gone * static_cast<uint32_t>(beats_ - 1));
-    landings_.push_back({to, way > 0 ? 0u : 1u, static_cast<uint32_t>(landings_.size()), m.away,
+    landings_.push_back({to,
+                         way > 0 ? 0u : 1u,
+                         static_cast<uint32_t>(landings_.size()),
+                         m.away,
                          {node, last_beat + kOnTheWay}});
     --count[node];
     scan_[at(axis)][node] += beats_ - 1;
@@ -104,7 +107,8 @@ void Migration::depart(int axis, std::span<uint32_t> count) {
   movers_.resize(kept);
 }
 
-// TAKE_LOW, TAKE_HIGH: those from below take the next slots, then those from above, each in its sender's order.
+// TAKE_LOW, TAKE_HIGH: those from below take the next slots, then those from above, each in its sender's
+// order.
 void Migration::land(int axis, std::span<uint32_t> count) {
   std::sort(landings_.begin(), landings_.end(), [](const Landing& a, const Landing& b) {
     return std::tie(a.to, a.side, a.order) < std::tie(b.to, b.side, b.order);

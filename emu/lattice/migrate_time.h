@@ -18,14 +18,15 @@ class Migration {
   // `beats`: of a migrate record. Keeps a reference to `lattice`.
   Migration(const Lattice& lattice, int beats);
 
-  // A particle that comes over a face: in the receiver's FIFO `after` cycles after the start of the sender's phase.
+  // A particle that comes over a face: in the receiver's FIFO `after` cycles after the start of the sender's
+  // phase.
   struct Arrival {
     uint32_t from;
     int32_t after;
   };
 
-  // Plans one step. `count`: particles by node at its start, and after the call those at its end. `leaving` in any
-  // order, all within the lattice.
+  // Plans one step. `count`: particles by node at its start, and after the call those at its end. `leaving`
+  // in any order, all within the lattice.
   void plan(std::span<uint32_t> count, std::span<const Leaving> leaving);
 
   // changed[node] = 1 where the planned step takes particles away or brings some.
@@ -60,12 +61,12 @@ class Migration {
   bool any_ = false;
   std::vector<Mover> movers_;  // by node, then slot
   std::vector<Landing> landings_;
-  std::array<std::vector<uint32_t>, 3> leaving_;         // [axis] nodes whose `leaving_a` is set, each once
-  std::vector<uint8_t> leaving_bits_;                    // [node] bit a: `leaving_a`
-  std::array<std::vector<int32_t>, 3> scan_;             // [axis][node]
-  std::array<std::vector<int32_t>, 3> group_;            // [axis][node]: its arrivals, -1 for none
-  std::array<std::vector<uint32_t>, 3> received_;        // [axis] nodes with arrivals
-  std::vector<std::array<uint32_t, 3>> groups_;          // arrivals from -a, from +a, end: into arrivals_
+  std::array<std::vector<uint32_t>, 3> leaving_;   // [axis] nodes whose `leaving_a` is set, each once
+  std::vector<uint8_t> leaving_bits_;              // [node] bit a: `leaving_a`
+  std::array<std::vector<int32_t>, 3> scan_;       // [axis][node]
+  std::array<std::vector<int32_t>, 3> group_;      // [axis][node]: its arrivals, -1 for none
+  std::array<std::vector<uint32_t>, 3> received_;  // [axis] nodes with arrivals
+  std::vector<std::array<uint32_t, 3>> groups_;    // arrivals from -a, from +a, end: into arrivals_
   std::vector<Arrival> arrivals_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is remembered of a node's force engine from step to step. Nothing here is an estimate: what is not proved to be
-// the same is computed again. docs/reference/timing.md, "What is remembered".
+// What is remembered of a node's force engine from step to step. Nothing here is an estimate: what is not
+// proved to be the same is computed again. docs/reference/timing.md, "What is remembered".
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,8 @@ struct TimingCounters {
 
 class NodeForce {
  public:
-  // The engine's last cycle, counted from its first, of `node`, which is not empty. `still`: since the last call no
-  // particle of the node or of those around has moved, come, gone or changed its slot.
+  // The engine's last cycle, counted from its first, of `node`, which is not empty. `still`: since the last
+  // call no particle of the node or of those around has moved, come, gone or changed its slot.
   int64_t time(const Filter& filter, const Places& places, uint32_t node, const ForceShape& shape,
                const Available& available, bool still, HitScratch& scratch, TimingCounters& counters) {
     ++counters.busy;

@@ -14,8 +14,8 @@
 namespace cuboct::emu {
 namespace {
 
-// An end beat loaded in cycle t is seen by its sender (`sent`) in t + 1, by its receiver in t + 2: through the
-// sender's output register and the receiver's.
+// An end beat loaded in cycle t is seen by its sender (`sent`) in t + 1, by its receiver in t + 2: through
+// the sender's output register and the receiver's.
 constexpr int64_t kSent = 1, kReceived = 2;
 // The end beat of a face without link: seen since long before.
 constexpr int64_t kLongAgo = INT64_MIN / 4;
@@ -38,8 +38,8 @@ struct TimingModel::Impl {
   Impl(const Plan& plan, int threads);
 
   void begin(const NodeSlots& slots, std::span<const Leaving> leaving);
-  // One node's part of a step, in four times: what a node does in one, it does with what its neighbours did in those
-  // before.
+  // One node's part of a step, in four times: what a node does in one, it does with what its neighbours did
+  // in those before.
   void exchange_x(const NodeSlots& slots, uint32_t n);
   void exchange_y(uint32_t n);
   void exchange_z_to_update(uint32_t n, Scratch& scratch);
@@ -67,13 +67,14 @@ struct TimingModel::Impl {
   std::array<std::vector<int32_t>, 3> x_, old_x_;  // at its start, and at that of the step before
   std::vector<uint32_t> first_, old_first_;        // one more
   std::vector<uint32_t> count_, final_count_;      // particles at its start, at its end
-  std::vector<uint8_t> changed_;                   // other particles than in the step before, or another order
-  std::vector<uint8_t> moved_, moved_x_;           // ... or another position; there, or in a neighbour along x too
+  std::vector<uint8_t> changed_;          // other particles than in the step before, or another order
+  std::vector<uint8_t> moved_, moved_x_;  // ... or another position; there, or in a neighbour along x too
   std::vector<uint32_t> sent_y_;          // records that it sends along y
 
   Cycles start_;                     // the step's first cycle
   std::array<Cycles, kPhases> end_;  // the phases' last cycles
-  std::array<Cycles, 3> halo_end_, migrate_end_, migrate_start_;  // [axis] cycle that loads the end beat; first cycle
+  std::array<Cycles, 3> halo_end_, migrate_end_,
+      migrate_start_;  // [axis] cycle that loads the end beat; first cycle
   std::vector<NodeForce> force_;
   std::vector<Scratch> scratch_;  // by thread
   uint64_t steps_ = 0;
@@ -158,7 +159,8 @@ void TimingModel::Impl::place(const NodeSlots& slots, uint32_t n) {
 int64_t TimingModel::Impl::exchanged(int axis, uint32_t n) const {
   const Cycles& end = halo_end_[at(axis)];
   const auto& near = neighbour_[n];
-  return std::max({end[n] + kSent, end[near[at(2 * axis)]] + kReceived, end[near[at(2 * axis + 1)]] + kReceived});
+  return std::max(
+      {end[n] + kSent, end[near[at(2 * axis)]] + kReceived, end[near[at(2 * axis + 1)]] + kReceived});
 }
 
 void TimingModel::Impl::exchange_x(const NodeSlots& slots, uint32_t n) {
@@ -193,7 +195,8 @@ int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
   for (size_t a = 0; a < 3; ++a) available[a] = end_[a][n] + 1 - begin;
   if (count_[n] == 0) return begin + idle_force_time(available);
   const Places places{{x_[0].data(), x_[1].data(), x_[2].data()}, first_.data(), neighbour_.data()};
-  return begin + force_[n].time(filter_, places, n, shape_, available, still(n), scratch.hits, scratch.counters);
+  return begin +
+         force_[n].time(filter_, places, n, shape_, available, still(n), scratch.hits, scratch.counters);
 }
 
 void TimingModel::Impl::exchange_z_to_update(uint32_t n, Scratch& scratch) {
@@ -282,14 +285,12 @@ uint64_t TimingModel::cycles(const NodeSlots& slots) const {
   if (slots.first.size() != m.nodes_ + 1) throw std::invalid_argument("slots of another lattice");
   uint64_t idle = 0;  // the last node's first cycle of IDLE
   for (uint32_t n = 0; n < m.nodes_; ++n)
-    idle = std::max(idle, static_cast<uint64_t>(m.start_[n]) +
-                              std::max(1u, slots.first[n + 1] - slots.first[n]));
+    idle = std::max(idle,
+                    static_cast<uint64_t>(m.start_[n]) + std::max(1u, slots.first[n + 1] - slots.first[n]));
   return idle + 1;
 }
 
-std::vector<uint64_t> TimingModel::starts() const {
-  return {impl_->start_.begin(), impl_->start_.end() - 1};
-}
+std::vector<uint64_t> TimingModel::starts() const { return {impl_->start_.begin(), impl_->start_.end() - 1}; }
 
 void TimingModel::resume(std::span<const uint64_t> starts) {
   if (starts.size() != impl_->nodes_) throw std::invalid_argument("starts of another lattice");
