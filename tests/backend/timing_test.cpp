@@ -253,22 +253,30 @@ TEST(TimingScenes, EqualTheClockedNode) {
   }
 }
 
-// Particles at rest, and one that flies along the diagonal and into them: what is remembered of the resting
-// nodes ends where it comes by.
+// Particles at rest, and three that fly through them along the axes, forth and back: what is remembered of
+// the resting nodes ends where one comes by or leaves.
 TEST(TimingRest, EndsWhereSomethingMoves) {
-  Scene scene = block_scene({.size = {2, 2, 2}, .jitter = 0, .speed = 0, .margin = 3});
-  scene.rule.types[0].imposed = {true, true, true};
-  scene.rule.types.push_back({.name = "flier"});
-  scene.body.type[0] = 1;
-  scene.body.x[0] = Vec3::Constant(-3);
-  scene.body.v[0] = Vec3::Constant(0.7);
-  scene.steps = 40;
   Seen seen;
-  EXPECT_EQ(difference({"flier", make_setup(scene, Arch{}), scene.steps}, seen), "");
-  EXPECT_GT(seen.leave, 1u);
+  for (const double way : {1.0, -1.0}) {
+    Scene scene = block_scene({.size = {4, 4, 4}, .jitter = 0, .speed = 0, .margin = 4});
+    scene.rule.types[0].imposed = {true, true, true};
+    scene.rule.types.push_back({.name = "flier"});
+    for (int a = 0; a < 3; ++a) {
+      const auto k = static_cast<size_t>(a);
+      scene.body.type[k] = 1;
+      scene.body.x[k] = Vec3::Constant(1.4 * a + 0.35);
+      scene.body.x[k][a] = 2.5 - 4 * way;
+      scene.body.v[k] = 4 * way * Vec3::Unit(a);
+    }
+    scene.steps = 14;
+    EXPECT_EQ(difference({"fliers", make_setup(scene, Arch{}), scene.steps}, seen), "");
+  }
+  EXPECT_EQ(seen.runs, 2u);
+  EXPECT_EQ(seen.faults, 0u);
+  EXPECT_GT(seen.leave, 20u);
   EXPECT_GT(seen.filtered, 0u);
   EXPECT_LT(seen.filtered, seen.busy);
-  EXPECT_LT(seen.walked, seen.filtered);
+  EXPECT_LT(seen.walked, seen.busy);
 }
 
 TEST(TimingThreads, MoveParticlesAlike) {
