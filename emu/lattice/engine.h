@@ -15,14 +15,15 @@
 namespace cuboct::emu {
 
 struct LatticeOptions {
-  int threads = 0;         // 0: one per core that the process may use
+  int threads = 0;         // 0: one per core that the process may use, fewer for small scenes
   bool quiescence = true;  // nodes at rest among nodes at rest are skipped; no bit depends on it
   std::string simd;        // "avx512", "avx2", "portable"; empty: the widest that this machine has
 };
 
 // What a run did so far.
 struct LatticeCounters {
-  uint64_t list_builds = 0;       // of the pair list
+  uint64_t list_builds = 0;       // of the far pair list
+  uint64_t list_mends = 0;        // of parts of it
   uint64_t node_steps = 0;        // nodes times steps
   uint64_t quiet_node_steps = 0;  // of those, nodes whose particles and neighbours did not change in the step
                                   // before: their clock could stand still (quiescence on)
