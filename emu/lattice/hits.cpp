@@ -10,6 +10,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace cuboct::emu::HWY_NAMESPACE {
+namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<int32_t>;
@@ -129,6 +130,8 @@ size_t pack(const uint8_t* hits, size_t items, uint32_t pipes, uint32_t* entries
   }
   return packed;
 }
+
+}  // namespace
 
 ForceWork filter_node(const Filter& filter, const Places& places, uint32_t node, HitScratch& scratch) {
   ForceWork work;

@@ -19,8 +19,9 @@ namespace {
 constexpr int64_t kSent = 1, kReceived = 2;
 // The end beat of a face without link: seen since long before.
 constexpr int64_t kLongAgo = INT64_MIN / 4;
-// Nodes that are worth a thread: below, its share of a step is not long against the barriers of the step.
-constexpr int64_t kNodesPerThread = 256;
+// A step costs about 50 ns per node and 100 ns per particle. A thread must have enough of it beside the
+// barriers of the step: in units of a node's 50 ns.
+constexpr int64_t kWorkPerThread = 1000;
 
 using Cycles = std::vector<int64_t>;  // by node
 
@@ -38,8 +39,8 @@ struct TimingModel::Impl {
   Impl(const Plan& plan, int threads);
 
   void begin(const NodeSlots& slots, std::span<const Leaving> leaving);
-  // One node's part of a step, in four times: what a node does in one, it does with what its neighbours did
-  // in those before.
+  // One node's part of a step, pass by pass (take_particles once per axis): each pass needs of the neighbours
+  // what they did in the passes before.
   void exchange_x(const NodeSlots& slots, uint32_t n);
   void exchange_y(uint32_t n);
   void exchange_z_to_update(uint32_t n, Scratch& scratch);
@@ -251,7 +252,8 @@ void TimingModel::step(const NodeSlots& slots, std::span<const Leaving> leaving,
     throw std::invalid_argument("spans of another lattice");
   m.begin(slots, leaving);
   const auto nodes = static_cast<int64_t>(m.nodes_);
-  const int threads = static_cast<int>(std::clamp<int64_t>(nodes / kNodesPerThread, 1, m.threads_));
+  const auto work = nodes + 2 * int64_t{m.first_[m.nodes_]};
+  const int threads = static_cast<int>(std::clamp<int64_t>(work / kWorkPerThread, 1, m.threads_));
   // Busy nodes cost many times what empty ones do: small shares, on demand.
   const int64_t share = std::clamp<int64_t>(nodes / (16 * threads), 1, 64);
 #pragma omp parallel num_threads(threads)

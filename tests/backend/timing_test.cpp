@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "emu/lattice/engine.h"
 #include "emu/lattice/timing.h"
 #include "emu/systemc/node.h"
 #include "model/golden.h"
@@ -286,6 +287,34 @@ TEST(TimingThreads, MoveParticlesAlike) {
   EXPECT_EQ(difference(c, seen, 4), "");
   EXPECT_EQ(difference(c, seen, 1), "");
   EXPECT_GT(seen.leave_twice, 0u);
+}
+
+// Driven by the lattice engine, as it is meant to be.
+TEST(TimingEngine, EqualsTheClockedNode) {
+  uint64_t left = 0;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    const Case c = random_case(seed);
+    const Plan& plan = c.setup.plan;
+    emu::RunOptions options;
+    options.steps = c.steps;
+    const Trace trace = run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
+    const auto& particles = c.setup.initial.particles;
+    emu::LatticeEngine engine(plan, 0, static_cast<uint32_t>(particles.size()),
+                              [&](uint32_t k) { return particles[k]; }, {});
+    emu::TimingModel model(plan, 1);
+    std::vector<PhaseSpan> spans(size_t{plan.lattice.size()} * kPhases);
+    emu::NodeSlots slots;
+    for (uint64_t step = 0; step < trace.steps(); ++step) {
+      engine.slots(slots);
+      engine.step();
+      model.step(slots, engine.leaving(), spans);
+      left += engine.leaving().size();
+      ASSERT_TRUE(std::equal(spans.begin(), spans.end(),
+                             trace.cycles.begin() + static_cast<long>(step * spans.size())))
+          << c.name << ", step " << step;
+    }
+  }
+  EXPECT_GT(left, 100u);
 }
 
 TEST(TimingModel, RefusesWhatDoesNotFit) {
