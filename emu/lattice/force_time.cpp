@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "emu/lattice/force_time.h"
+
+#include <algorithm>
+
+namespace cuboct::emu {
+namespace {
+
+// Long before the engine's first cycle.
+constexpr int64_t kLongAgo = INT64_MIN / 4;
+
+}  // namespace
+
+int64_t force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
+                   std::vector<int64_t>& popped) {
+  const auto depth = static_cast<size_t>(shape.queue_depth);
+  const size_t entries = work.entries.size();
+  if (popped.size() < entries + depth) popped.resize(entries + depth);
+  // pop[0] is the cycle at which the entry Q before the next one leaves the queue; the first Q wait for none.
+  int64_t* pop = popped.data();
+  std::fill(pop, pop + depth, kLongAgo);
+
+  int64_t left = 1;  // cycle in which the item before leaves F1
+  int64_t next = 0;  // first cycle in which the streamer may present
+  int64_t issued =
+      kLongAgo;          // last cycle that issues of the entries so far: the next may move to `current` in it
+  int64_t streamed = 0;  // cycle of the last presentation
+  int64_t filtered = kLongAgo;  // cycle in which the last real item leaves F1
+  const uint32_t* entry = work.entries.data();
+  const uint32_t* const last_entry = entry + entries;
+  uint32_t first_item = 0;
+  for (size_t segment = 0; segment < kSegments; ++segment) {
+    const int64_t from = segment == 0 ? 0 : available[(segment - 1) / 2];
+    streamed = next;
+    if (from > next) {  // bubbles follow the item before through F0 and F1
+      streamed = std::max(from, left);
+      left = streamed + 1;
+    }
+    const uint32_t count = work.items[segment];
+    if (count == 0) {
+      next = left++;
+      continue;
+    }
+    // Item k of the segment leaves F1 in cycle base + k, unless an entry waits for room: then base grows. The
+    // last item but one leaves it in the cycle in which the streamer may begin the next segment.
+    const uint32_t end_item = first_item + count;
+    const uint32_t last = ForceWork::entry(end_item - 1, 0);
+    int64_t base = left + 1 - first_item;
+    for (; entry != last_entry && *entry < last; ++entry) {
+      const int64_t item = *entry >> ForceWork::kCycleBits,
+                    cycles = *entry & ((1 << ForceWork::kCycleBits) - 1);
+      base = std::max(base, *pop + 1 - item);
+      const int64_t moved = std::max(issued, base + item + 1);
+      pop[depth] = moved;
+      ++pop;
+      issued = moved + cycles;
+    }
+    next = base + end_item - 2;
+    if (entry != last_entry && *entry >> ForceWork::kCycleBits == end_item - 1) {
+      base = std::max(base, *pop + 1 - (int64_t{end_item} - 1));
+      const int64_t moved = std::max(issued, base + end_item);
+      pop[depth] = moved;
+      ++pop;
+      issued = moved + (*entry & ((1 << ForceWork::kCycleBits) - 1));
+      ++entry;
+    }
+    left = filtered = base + end_item - 1;
+    first_item = end_item;
+  }
+  return std::max({streamed + 1, filtered + 1, issued + shape.pipe});
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// How long a node's force engine works: docs/reference/node.md, "Force engine", as a recurrence over the
+// entries of its queue. docs/reference/timing.md derives it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace cuboct::emu {
+
+inline constexpr int kSegments = 7;  // own, then the halos of faces -x, +x, -y, +y, -z, +z
+
+struct ForceShape {
+  int queue_depth = 1;
+  int pipe = 1;  // cycles from a pair's issue to its sum
+};
+
+// What the streamer walks. An item is a (record, pass); it becomes an entry of the queue if it has hits, and
+// then takes ceil(hits / force_pipes) cycles of the pipes. A segment without items takes a cycle.
+struct ForceWork {
+  // An entry: its item, counted from the first segment's first, and its cycles. At most 27 * 256 * 256 items,
+  // 64 cycles.
+  static constexpr int kCycleBits = 7;
+  static constexpr uint32_t entry(size_t item, uint32_t cycles) {
+    return static_cast<uint32_t>(item) << kCycleBits | cycles;
+  }
+
+  std::array<uint32_t, kSegments> items{};  // by segment
+  std::span<const uint32_t> entries;        // ascending
+};
+
+// Cycle, counted from the engine's first, at which the halos of an axis may be read: [axis]. Not positive
+// where that is so from the start.
+using Available = std::array<int64_t, 3>;
+
+// The engine's last cycle, counted from its first (0). `popped` is scratch, any content.
+int64_t force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
+                   std::vector<int64_t>& popped);
+
+// The same where there is no item: seven segments are passed at cycles 0, max(1, x), ..., one after the
+// other, and the engine ends a cycle after the last.
+inline int64_t idle_force_time(const Available& available) {
+  int64_t last = kSegments;
+  for (int axis = 0; axis < 3; ++axis)
+    if (const int64_t t = available[static_cast<size_t>(axis)] + 6 - 2 * axis; t > last) last = t;
+  return last;
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// What is remembered of a node's force engine from step to step. Nothing here is an estimate: what is not
+// proved to be the same is computed again. docs/reference/timing.md, "What is remembered".
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "emu/lattice/force_time.h"
+#include "emu/lattice/hits.h"
+
+namespace cuboct::emu {
+
+// How often work was saved; for reports and tests.
+struct TimingCounters {
+  uint64_t busy = 0;      // node-steps of nodes with particles
+  uint64_t filtered = 0;  // of those, whose candidates were tested
+  uint64_t walked = 0;    // of those, whose queue was followed entry by entry
+};
+
+class NodeForce {
+ public:
+  // The engine's last cycle, counted from its first, of `node`, which is not empty. `still`: since the last
+  // call no particle of the node or of those around has moved, come, gone or changed its slot.
+  int64_t time(const Filter& filter, const Places& places, uint32_t node, const ForceShape& shape,
+               const Available& available, bool still, HitScratch& scratch, TimingCounters& counters) {
+    ++counters.busy;
+    bool same = still && known_;
+    if (!same) {
+      ++counters.filtered;
+      const ForceWork work = filter_node(filter, places, node, scratch);
+      same = known_ && work.items == items_ && std::ranges::equal(work.entries, entries_);
+      if (!same) items_ = work.items, entries_.assign(work.entries.begin(), work.entries.end());
+    }
+    // What may be read before the streamer can ask for it may be read from the start: all such times are one.
+    Available asked;
+    for (size_t a = 0; a < 3; ++a) asked[a] = std::max<int64_t>(available[a], 0);
+    if (same && asked == available_) return time_;
+    ++counters.walked;
+    known_ = true;
+    available_ = asked;
+    return time_ = force_time(shape, {items_, entries_}, asked, scratch.popped);
+  }
+
+ private:
+  bool known_ = false;  // what follows is that of the last call
+  std::array<uint32_t, kSegments> items_{};
+  std::vector<uint32_t> entries_;
+  Available available_{};
+  int64_t time_ = 0;
+};
+
+}  // namespace cuboct::emu

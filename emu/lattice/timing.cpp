@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: MIT
+#include "emu/lattice/timing.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "emu/lattice/force_time.h"
+#include "emu/lattice/hits.h"
+#include "emu/lattice/migrate_time.h"
+
+namespace cuboct::emu {
+namespace {
+
+// An end beat loaded in cycle t is seen by its sender (`sent`) in t + 1, by its receiver in t + 2: through
+// the sender's output register and the receiver's.
+constexpr int64_t kSent = 1, kReceived = 2;
+// The end beat of a face without link: seen since long before.
+constexpr int64_t kLongAgo = INT64_MIN / 4;
+// A step costs about 50 ns per node and 100 ns per particle. A thread must have enough of it beside the
+// barriers of the step: in units of a node's 50 ns.
+constexpr int64_t kWorkPerThread = 1000;
+
+using Cycles = std::vector<int64_t>;  // by node
+
+constexpr size_t at(int index) { return static_cast<size_t>(index); }
+constexpr size_t at(Phase phase) { return static_cast<size_t>(phase); }
+
+struct Scratch {
+  HitScratch hits;
+  TimingCounters counters;
+};
+
+}  // namespace
+
+struct TimingModel::Impl {
+  Impl(const Plan& plan, int threads);
+
+  void begin(const NodeSlots& slots, std::span<const Leaving> leaving);
+  // One node's part of a step, pass by pass (take_particles once per axis): each pass needs of the neighbours
+  // what they did in the passes before.
+  void exchange_x(const NodeSlots& slots, uint32_t n);
+  void exchange_y(uint32_t n);
+  void exchange_z_to_update(uint32_t n, Scratch& scratch);
+  void take_particles(int axis, uint32_t n);
+  void finish(uint32_t n, std::span<PhaseSpan> spans);
+
+  void place(const NodeSlots& slots, uint32_t n);
+  bool still(uint32_t n) const;
+  int64_t stream(int64_t records) const { return records == 0 ? 1 : records * halo_beats_; }
+  int64_t exchanged(int axis, uint32_t n) const;
+  int64_t force(uint32_t n, Scratch& scratch);
+  void send_particles(int axis, uint32_t n, int64_t start);
+  int64_t taken(int axis, uint32_t n, int side, int64_t now) const;
+
+  const Plan& plan_;
+  const uint32_t nodes_;
+  const int threads_;
+  const int64_t halo_beats_;
+  const ForceShape shape_;
+  const Filter filter_;
+  std::vector<std::array<uint32_t, 6>> neighbour_;  // nodes + 1; number `nodes_` where there is none
+  Migration migration_;
+
+  // Of the step, nodes + 1 each: the one that does not exist is empty.
+  std::array<std::vector<int32_t>, 3> x_, old_x_;  // at its start, and at that of the step before
+  std::vector<uint32_t> first_, old_first_;        // one more
+  std::vector<uint32_t> count_, final_count_;      // particles at its start, at its end
+  std::vector<uint8_t> changed_;          // other particles than in the step before, or another order
+  std::vector<uint8_t> moved_, moved_x_;  // ... or another position; there, or in a neighbour along x too
+  std::vector<uint32_t> sent_y_;          // records that it sends along y
+
+  Cycles start_;                     // the step's first cycle
+  std::array<Cycles, kPhases> end_;  // the phases' last cycles
+  std::array<Cycles, 3> halo_end_, migrate_end_,
+      migrate_start_;  // [axis] cycle that loads the end beat; first cycle
+  std::vector<NodeForce> force_;
+  std::vector<Scratch> scratch_;  // by thread
+  uint64_t steps_ = 0;
+  TimingCounters counters_;
+};
+
+TimingModel::Impl::Impl(const Plan& plan, int threads)
+    : plan_(plan),
+      nodes_(plan.lattice.size()),
+      threads_(threads > 0 ? threads : omp_get_num_procs()),
+      halo_beats_(plan.words.halo_beats),
+      shape_{plan.arch.queue_depth, plan.latency.pipe},
+      filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
+      neighbour_(nodes_ + 1),
+      migration_(plan.lattice, plan.words.migrate_beats),
+      first_(nodes_ + 2),
+      old_first_(nodes_ + 2),
+      count_(nodes_ + 1),
+      final_count_(nodes_ + 1),
+      changed_(nodes_ + 1),
+      moved_(nodes_ + 1),
+      moved_x_(nodes_ + 1),
+      sent_y_(nodes_ + 1),
+      start_(nodes_ + 1),
+      force_(nodes_) {
+  neighbour_[nodes_].fill(nodes_);
+  for (uint32_t n = 0; n < nodes_; ++n)
+    for (int f = 0; f < kFaces; ++f) {
+      const uint32_t other = plan.lattice.neighbour(n, f);
+      neighbour_[n][at(f)] = other == kNoNode ? nodes_ : other;
+    }
+  start_[nodes_] = kLongAgo;
+  for (auto& cycles : end_) cycles.resize(nodes_);
+  for (auto* beats : {&halo_end_, &migrate_end_, &migrate_start_})
+    for (auto& cycles : *beats) cycles.assign(nodes_ + 1, kLongAgo);
+  for (int k = 0; k < threads_; ++k)
+    scratch_.push_back({HitScratch(plan.arch.capacity, plan.arch.filter_lanes), {}});
+}
+
+void TimingModel::Impl::begin(const NodeSlots& slots, std::span<const Leaving> leaving) {
+  if (slots.first.size() != nodes_ + 1) throw std::invalid_argument("slots of another lattice");
+  const size_t particles = slots.first[nodes_];
+  for (const auto& x : slots.x)
+    if (x.size() < particles) throw std::invalid_argument("slots without positions");
+  for (uint32_t n = 0; n < nodes_; ++n) {
+    const uint32_t count = slots.first[n + 1] - slots.first[n];
+    if (count > static_cast<uint32_t>(plan_.arch.capacity))
+      throw std::invalid_argument("a node holds more than its capacity");
+    if (steps_ > 0 && count != final_count_[n])
+      throw std::invalid_argument("a node does not hold what the step before left there");
+  }
+  for (const Leaving& l : leaving)
+    if (l.node >= nodes_ || l.slot >= slots.first[l.node + 1] - slots.first[l.node])
+      throw std::invalid_argument("no such particle leaves");
+
+  std::swap(x_, old_x_);
+  std::swap(first_, old_first_);
+  for (auto& x : x_) x.resize(particles + Places::kBeyond);
+  std::copy(slots.first.begin(), slots.first.end(), first_.begin());
+  first_[nodes_ + 1] = first_[nodes_];
+  for (uint32_t n = 0; n < nodes_; ++n) count_[n] = first_[n + 1] - first_[n];
+  // Those that moved in the step before are what makes a node's particles others than they were.
+  std::fill(changed_.begin(), changed_.end() - 1, steps_ == 0);
+  migration_.mark(changed_);
+  std::copy(count_.begin(), count_.end(), final_count_.begin());
+  migration_.plan(final_count_, leaving);
+}
+
+// Takes the node's particles, and notes whether they are where they were.
+void TimingModel::Impl::place(const NodeSlots& slots, uint32_t n) {
+  const uint32_t first = first_[n], count = count_[n], old = old_first_[n];
+  bool moved = changed_[n] != 0;
+  for (size_t a = 0; a < 3; ++a) {
+    const int32_t* const x = slots.x[a].data() + first;
+    moved = moved || !std::equal(x, x + count, old_x_[a].data() + old);
+    std::copy_n(x, count, x_[a].data() + first);
+  }
+  moved_[n] = moved;
+}
+
+// The last cycle of EXCHANGE_a.
+int64_t TimingModel::Impl::exchanged(int axis, uint32_t n) const {
+  const Cycles& end = halo_end_[at(axis)];
+  const auto& near = neighbour_[n];
+  return std::max(
+      {end[n] + kSent, end[near[at(2 * axis)]] + kReceived, end[near[at(2 * axis + 1)]] + kReceived});
+}
+
+void TimingModel::Impl::exchange_x(const NodeSlots& slots, uint32_t n) {
+  place(slots, n);
+  const uint32_t own = count_[n], low = neighbour_[n][0], high = neighbour_[n][1];
+  sent_y_[n] = own + count_[low] + count_[high];
+  const auto halo_end = [this](uint32_t of) { return start_[of] + stream(count_[of]); };
+  const int64_t end = std::max({halo_end(n) + kSent, halo_end(low) + kReceived, halo_end(high) + kReceived});
+  end_[at(Phase::exchange_x)][n] = end;
+  halo_end_[1][n] = end + 1 + stream(own) + stream(count_[low]) + stream(count_[high]);
+}
+
+void TimingModel::Impl::exchange_y(uint32_t n) {
+  const auto& near = neighbour_[n];
+  moved_x_[n] = moved_[n] | moved_[near[0]] | moved_[near[1]];
+  const int64_t end = end_[at(Phase::exchange_y)][n] = exchanged(1, n);
+  halo_end_[2][n] = end + 1 + stream(count_[n]) + stream(count_[near[0]]) + stream(count_[near[1]]) +
+                    stream(sent_y_[near[2]]) + stream(sent_y_[near[3]]);
+}
+
+// Whether the node and the 26 around hold what they held a step before, where they held it.
+bool TimingModel::Impl::still(uint32_t n) const {
+  unsigned moved = 0;
+  for (const uint32_t at_z : {n, neighbour_[n][4], neighbour_[n][5]})
+    moved |= moved_x_[at_z] | moved_x_[neighbour_[at_z][2]] | moved_x_[neighbour_[at_z][3]];
+  return moved == 0;
+}
+
+int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
+  const int64_t begin = plan_.arch.overlap ? start_[n] : end_[at(Phase::exchange_z)][n] + 1;
+  Available available;
+  for (size_t a = 0; a < 3; ++a) available[a] = end_[a][n] + 1 - begin;
+  if (count_[n] == 0) return begin + idle_force_time(available);
+  const Places places{{x_[0].data(), x_[1].data(), x_[2].data()}, first_.data(), neighbour_.data()};
+  return begin +
+         force_[n].time(filter_, places, n, shape_, available, still(n), scratch.hits, scratch.counters);
+}
+
+void TimingModel::Impl::exchange_z_to_update(uint32_t n, Scratch& scratch) {
+  end_[at(Phase::exchange_z)][n] = exchanged(2, n);
+  const int64_t force_end = end_[at(Phase::force)][n] = force(n, scratch);
+  const int64_t update = count_[n] == 0 ? 1 : int64_t{count_[n]} - 1 + plan_.latency.update;
+  const int64_t end = end_[at(Phase::update)][n] = force_end + update;
+  send_particles(0, n, end + 1);
+}
+
+void TimingModel::Impl::send_particles(int axis, uint32_t n, int64_t start) {
+  migrate_start_[at(axis)][n] = start;
+  migrate_end_[at(axis)][n] = start + (migration_.any() ? migration_.scan(axis, n) : 0);
+}
+
+// The cycle after TAKE_LOW (side 0) or TAKE_HIGH, whose first cycle is `now`.
+int64_t TimingModel::Impl::taken(int axis, uint32_t n, int side, int64_t now) const {
+  if (migration_.any())
+    for (const auto& arrival : migration_.arrivals(axis, n, side))
+      now = std::max(now, migrate_start_[at(axis)][arrival.from] + arrival.after) + 1;
+  const uint32_t near = neighbour_[n][at(2 * axis + side)];
+  return std::max(now, migrate_end_[at(axis)][near] + kReceived) + 1;
+}
+
+void TimingModel::Impl::take_particles(int axis, uint32_t n) {
+  const int64_t low = taken(axis, n, 0, migrate_end_[at(axis)][n] + 1);
+  const int64_t next = taken(axis, n, 1, low);
+  end_[at(Phase::migrate_x) + at(axis)][n] = next - 1;
+  if (axis < 2) send_particles(axis + 1, n, next);
+}
+
+void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
+  if (!spans.empty()) {
+    PhaseSpan* const span = spans.data() + size_t{n} * kPhases;
+    const auto begin = static_cast<uint64_t>(start_[n]);
+    uint64_t start = begin;
+    for (size_t p = 0; p < kPhases; ++p) {
+      const auto end = static_cast<uint64_t>(end_[p][n]);
+      span[p] = {p == at(Phase::force) && plan_.arch.overlap ? begin : start, end};
+      start = end + 1;
+    }
+  }
+  start_[n] = end_[at(Phase::migrate_z)][n] + 1;
+}
+
+TimingModel::TimingModel(const Plan& plan, int threads) : impl_(std::make_unique<Impl>(plan, threads)) {}
+TimingModel::~TimingModel() = default;
+
+void TimingModel::step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
+  Impl& m = *impl_;
+  if (!spans.empty() && spans.size() != size_t{m.nodes_} * kPhases)
+    throw std::invalid_argument("spans of another lattice");
+  m.begin(slots, leaving);
+  const auto nodes = static_cast<int64_t>(m.nodes_);
+  const auto work = nodes + 2 * int64_t{m.first_[m.nodes_]};
+  const int threads = static_cast<int>(std::clamp<int64_t>(work / kWorkPerThread, 1, m.threads_));
+  // Busy nodes cost many times what empty ones do: small shares, on demand.
+  const int64_t share = std::clamp<int64_t>(nodes / (16 * threads), 1, 64);
+#pragma omp parallel num_threads(threads)
+  {
+    Scratch& scratch = m.scratch_[at(omp_get_thread_num())];
+    const auto for_all = [nodes](const auto& part) {
+#pragma omp for schedule(static)
+      for (int64_t n = 0; n < nodes; ++n) part(static_cast<uint32_t>(n));
+    };
+    for_all([&](uint32_t n) { m.exchange_x(slots, n); });
+    for_all([&](uint32_t n) { m.exchange_y(n); });
+#pragma omp for schedule(dynamic, share)
+    for (int64_t n = 0; n < nodes; ++n) m.exchange_z_to_update(static_cast<uint32_t>(n), scratch);
+    for (int axis = 0; axis < 2; ++axis) for_all([&](uint32_t n) { m.take_particles(axis, n); });
+    for_all([&](uint32_t n) {
+      m.take_particles(2, n);
+      m.finish(n, spans);
+    });
+  }
+  ++m.steps_;
+  for (Scratch& s : m.scratch_) {
+    m.counters_.busy += s.counters.busy;
+    m.counters_.filtered += s.counters.filtered;
+    m.counters_.walked += s.counters.walked;
+    s.counters = {};
+  }
+}
+
+uint64_t TimingModel::cycles(const NodeSlots& slots) const {
+  const Impl& m = *impl_;
+  if (slots.first.size() != m.nodes_ + 1) throw std::invalid_argument("slots of another lattice");
+  uint64_t idle = 0;  // the last node's first cycle of IDLE
+  for (uint32_t n = 0; n < m.nodes_; ++n)
+    idle = std::max(idle,
+                    static_cast<uint64_t>(m.start_[n]) + std::max(1u, slots.first[n + 1] - slots.first[n]));
+  return idle + 1;
+}
+
+std::vector<uint64_t> TimingModel::starts() const { return {impl_->start_.begin(), impl_->start_.end() - 1}; }
+
+void TimingModel::resume(std::span<const uint64_t> starts) {
+  if (starts.size() != impl_->nodes_) throw std::invalid_argument("starts of another lattice");
+  std::copy(starts.begin(), starts.end(), impl_->start_.begin());
+  impl_->steps_ = 0;  // the next step's particles are not those of the last one
+}
+
+const TimingCounters& TimingModel::counters() const { return impl_->counters_; }
+
+}  // namespace cuboct::emu
