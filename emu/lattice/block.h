@@ -38,6 +38,11 @@ struct Particles {
   std::array<PaddedArray<double>, 3> u;  // P+G fractional bits; empty unless the rule has PD
   PaddedArray<uint32_t> id, node;        // id: kNoParticle where a block's last group is not full
   PaddedArray<uint8_t> type;
+  // By group: its nodes are among low ... low + span - 1. Wider than need be after migrations.
+  struct Nodes {
+    uint32_t low, span;
+  };
+  std::vector<Nodes> group_nodes;
   // What to add to x_j - x_i where the pair meets across the seam of a periodic box: (sx+1) + 3 (sy+1) + 9
   // (sz+1) periods.
   std::array<std::array<double, 3>, 27> shift{};
@@ -87,7 +92,6 @@ struct Block {
   // Answers of a step.
   std::vector<Crossing> crossings;
   std::vector<Found> pair_faults, update_faults;
-  std::vector<uint32_t> changed;  // particles, if wanted
   double fastest2 = 0;            // largest v.v
 };
 

@@ -32,6 +32,10 @@ constexpr double kMendFrom = 0.125;
 // The near list's skin: at least so many cells, and enough for so many steps.
 constexpr double kNearSkin = 0.04;
 constexpr double kNearSteps = 4;
+// At most this share of the far skin.
+constexpr double kMostNear = 0.4;
+// A near list this much wider than need be is made anew everywhere.
+constexpr double kWaste = 0.7;
 // Entries with fewer pairs than this on average are not what storage in rows is for: particles are stored by
 // node then.
 constexpr double kFewLanes = 2.5;
@@ -57,6 +61,11 @@ struct LatticeEngine::Impl {
   bool mend();
   void prune(double skin);
   void cut();
+  double displacement() const;
+  template <typename See>
+  void for_each_moved(const See& see) const;
+  void find_group_nodes();
+  void widen_group_nodes(uint32_t particle);
   bool crystal() const;
   void store_by_node(Bins& bins);
   double reach_of_step() const;
@@ -162,7 +171,7 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
     if (!members_.append(p.node, at)) faults.push_back(error(Fault::full_x, p.node, at, plan_.arch.capacity));
   }
   fail_if_any(faults);
-  if (options_.quiescence) quiet_.emplace(lattice_, room / kGroup);
+  if (options_.quiescence) quiet_.emplace(lattice_, rows_);
 }
 
 RunError LatticeEngine::Impl::error(Fault fault, uint32_t node, uint32_t index, int64_t number) const {
@@ -210,6 +219,41 @@ double LatticeEngine::Impl::reach_of_step() const {
   return std::ldexp(fastest_ + 2 * std::ldexp(1.0, plan_.rule.widths.guard), -plan_.rule.widths.velocity_frac());
 }
 
+// Calls see(particle) for each that may have moved since the far list was made.
+template <typename See>
+void LatticeEngine::Impl::for_each_moved(const See& see) const {
+  if (const NodeSet* moved = quiet_ ? quiet_->moved() : nullptr)
+    moved->for_each(rows_, [&](uint32_t n) { members_.for_each(n, see); });
+  else
+    for (uint32_t p = 0; p < count_; ++p) see(p);
+}
+
+double LatticeEngine::Impl::displacement() const {
+  if (!quiet_ || quiet_->moved() == nullptr) return snapshot_.displacement(particles_);
+  double most = 0;
+  for_each_moved([&](uint32_t p) { most = std::max(most, snapshot_.moved(particles_, p)); });
+  return most;
+}
+
+// The span of nodes of each group.
+void LatticeEngine::Impl::find_group_nodes() {
+  const uint32_t groups = (count_ + kGroup - 1) / kGroup;
+  particles_.group_nodes.assign(groups + 1, {0, 0});  // an entry may overhang the last group
+#pragma omp parallel for num_threads(threads_)
+  for (uint32_t g = 0; g < groups; ++g) {
+    const uint32_t* node = &particles_.node[g * kGroup];
+    const auto [low, high] = std::minmax_element(node, node + std::min(kGroup, count_ - g * kGroup));
+    particles_.group_nodes[g] = {*low, *high - *low + 1};
+  }
+}
+
+void LatticeEngine::Impl::widen_group_nodes(uint32_t particle) {
+  auto& [low, span] = particles_.group_nodes[particle / kGroup];
+  const uint32_t node = particles_.node[particle], high = std::max(low + span - 1, node);
+  low = std::min(low, node);
+  span = high - low + 1;
+}
+
 // Whether the order of storage lets an entry hold several pairs.
 bool LatticeEngine::Impl::crystal() const {
   size_t entries = 0, pairs = 0;
@@ -237,7 +281,6 @@ void LatticeEngine::Impl::store_by_node(Bins& bins) {
   reorder(particles_.type);
   members_.rename(renamed);
   for (uint32_t k = 0; k < count_; ++k) bins.particle[k] = k;
-  if (quiet_) quiet_->regroup((count_ + kGroup - 1) / kGroup);
 }
 
 void LatticeEngine::Impl::build() {
@@ -253,12 +296,19 @@ void LatticeEngine::Impl::build() {
   listed_at_ = step_;
   moved_ = 0;
   near_floor_ = -1;
+  if (quiet_) {
+    quiet_->forget_moved();
+    find_group_nodes();
+  }
 }
 
 // Where few particles moved far, as around a crack or an impact: lists anew the groups of those, and of all
 // around where they are now. False where that is not worth it.
 bool LatticeEngine::Impl::mend() {
-  const std::vector<uint32_t> strays = snapshot_.strays(lattice_, particles_, kMendFrom * skin_);
+  std::vector<uint32_t> strays;
+  for_each_moved([&](uint32_t p) {
+    if (snapshot_.astray(lattice_, particles_, p, kMendFrom * skin_)) strays.push_back(p);
+  });
   if (static_cast<double>(strays.size()) > kMostMended * count_) return false;
   for (const uint32_t p : strays)
     for (int a = 0; a < 3; ++a)  // beyond the seam of a ring: the shifts of its entries no longer hold
@@ -271,15 +321,15 @@ bool LatticeEngine::Impl::mend() {
       only[hit.particle / kGroup] = 1;
   for_each_block([&](Block& block) { mend_list(particles_, snapshot_, search, only, block); });
   ++counters_.list_mends;
-  moved_ = snapshot_.displacement(particles_);
+  moved_ = displacement();
   return true;
 }
 
 // Every pair within the cutoff plus `skin` cells comes into the near list.
 void LatticeEngine::Impl::prune(double skin) {
   // Groups far from all that changed since the last time keep what they have, if that was as wide.
-  const uint8_t* only = quiet_ ? quiet_->take_touched(members_) : nullptr;
-  if (near_floor_ < skin) only = nullptr;
+  const uint8_t* only = quiet_ ? quiet_->take_touched() : nullptr;
+  if (skin > near_floor_ || skin < kWaste * near_floor_) only = nullptr;
   if (only == nullptr) near_floor_ = skin;
   near_skin_ = skin;
   near_moved_ = 0;
@@ -293,9 +343,9 @@ void LatticeEngine::Impl::refresh_lists() {
   // The far list must hold every pair within the near list's reach.
   const auto room = [&] { return skin_ - 2 * moved_; };
   const double least = 2 * reach_of_step();
-  double wanted = std::min(std::max(kNearSkin, 2 * kNearSteps * reach_of_step()), skin_ / 2);
+  double wanted = std::min(std::max(kNearSkin, 2 * kNearSteps * reach_of_step()), kMostNear * skin_);
   if (!listed_ || room() < wanted) {
-    if (listed_) moved_ = snapshot_.displacement(particles_);
+    if (listed_) moved_ = displacement();
     if (!listed_ || room() < std::max(least, wanted / 2)) {
       if (!listed_ || !mend() || room() < least) build();
     }
@@ -307,12 +357,11 @@ void LatticeEngine::Impl::refresh_lists() {
 void LatticeEngine::Impl::step() {
   refresh_lists();
   Active active;
-  if (quiet_) active = quiet_->next(members_);
+  if (quiet_) active = quiet_->next();
   for (Block& block : blocks_) {
     block.crossings.clear();
     block.pair_faults.clear();
     block.update_faults.clear();
-    block.changed.clear();
     block.fastest2 = 0;
   }
   for_each_block([&](Block& block) { kernels_.across(rule_, particles_, active, block); });
@@ -320,9 +369,6 @@ void LatticeEngine::Impl::step() {
   fail_if_any(&Block::pair_faults);
   fail_if_any(&Block::update_faults);
 
-  if (active.track)
-    for (const Block& block : blocks_)
-      for (const uint32_t p : block.changed) quiet_->changed(particles_.node[p]);
   std::vector<Crossing> crossings;
   for (const Block& block : blocks_)
     crossings.insert(crossings.end(), block.crossings.begin(), block.crossings.end());
@@ -333,8 +379,13 @@ void LatticeEngine::Impl::step() {
                                ? plan_.arch.capacity
                                : 0));
   fail_if_any(faults);
-  if (active.track)
-    for (const Crossing& c : crossings) quiet_->changed(particles_.node[c.particle]);
+  if (quiet_) {
+    for (const Crossing& c : crossings) {
+      quiet_->changed(particles_.node[c.particle]);
+      widen_group_nodes(c.particle);
+    }
+    quiet_->done();
+  }
 
   fastest_ = 0;
   for (const Block& block : blocks_) fastest_ = std::max(fastest_, std::sqrt(block.fastest2));

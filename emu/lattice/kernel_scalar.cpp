@@ -36,7 +36,7 @@ bool near(const Particles& particles, double reach2, uint32_t base, const Entry&
 
 void prune(const Particles& particles, double reach, const uint8_t* only, Block& block) {
   const auto sort = [&](PairList& list, uint32_t k, uint32_t g) {
-    if (only != nullptr && only[g] == 0) return;
+    if (only != nullptr && !any_flag(only, particles, g)) return;
     PairList::Group& group = list.groups[k];
     Entry* const begin = list.entries.data() + group.begin;
     group.near = static_cast<uint16_t>(
@@ -52,7 +52,7 @@ void prune(const Particles& particles, double reach, const uint8_t* only, Block&
 void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
   for (size_t k = 0; k < block.edge_group.size(); ++k) {
     const uint32_t g = block.first_group() + block.edge_group[k];
-    if (active.group != nullptr && active.group[g] == 0) continue;
+    if (active.near != nullptr && !any_flag(active.near, particles, g)) continue;
     double* sum = &block.across_sum[k * 3 * kGroup];
     std::fill(sum, sum + 3 * kGroup, kMagic);
     const PairList::Group& group = block.across.groups[k];
@@ -76,7 +76,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
     const double* across_sum = nullptr;
     if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
       across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
-    const bool work = active.group == nullptr || active.group[g] != 0;
+    const bool work = active.near == nullptr || any_flag(active.near, particles, g);
     const uint32_t slot = (k * kGroup) & block.ring_mask;
     double sums[kGroup][3] = {};
     const PairList::Group& group = block.inside.groups[k];
@@ -108,8 +108,9 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
         if (across_sum != nullptr) sums[l][a] += across_sum[a * kGroup + l] - kMagic;
       }
       const uint32_t p = g * kGroup + l;
-      if (!work || p >= block.end || (active.node != nullptr && active.node[particles.node[p]] == 0)) continue;
-      update_one(rule, particles, p, sums[l], block);
+      if (!work || p >= block.end || (active.awake != nullptr && active.awake[particles.node[p]] == 0))
+        continue;
+      update_one(rule, particles, p, sums[l], active, block);
     }
   }
 }
@@ -125,7 +126,8 @@ void report_pair(const KernelRule& rule, const Particles& particles, uint32_t i,
   if (on_j.fault != Fault::none) block.pair_faults.push_back({on_j.fault, j, on_j.number});
 }
 
-void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const double sum[3], Block& block) {
+void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const double sum[3], const Active& active,
+                Block& block) {
   const Int3 x = whole(particles.x, p), v = whole(particles.v, p);
   const bool pd = particles.u[0].size() > 0;
   const Int3 u = pd ? whole(particles.u, p) : Int3{};
@@ -145,7 +147,7 @@ void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const 
     speed2 += static_cast<double>(done.v[a]) * static_cast<double>(done.v[a]);
   }
   block.fastest2 = std::max(block.fastest2, speed2);
-  if (changed) block.changed.push_back(p);
+  if (changed && active.changed != nullptr) active.changed[particles.node[p]] = 1;
   if (crossing.away != std::array<int8_t, 3>{}) block.crossings.push_back(crossing);
 }
 

@@ -83,17 +83,19 @@ void close_group(const PairList& list, uint32_t begin, PairList::Group& group) {
   group = {begin, count, count};
 }
 
-// Room for the sums up to the farthest partner.
-void make_ring(Block& block) {
+// How far ahead of group k its entries reach, in particles.
+uint32_t window_of(const Block& block, uint32_t k) {
   uint32_t window = kGroup;
-  for (uint32_t k = 0; k < block.groups(); ++k) {
-    const PairList::Group& group = block.inside.groups[k];
-    for (uint32_t e = group.begin; e < group.begin + group.count; ++e)
-      window = std::max(window, static_cast<uint32_t>(block.inside.entries[e].first) - block.begin - k * kGroup);
-  }
-  // The group at hand and those up to the farthest partner never meet in the ring.
+  const PairList::Group& group = block.inside.groups[k];
+  for (uint32_t e = group.begin; e < group.begin + group.count; ++e)
+    window = std::max(window, static_cast<uint32_t>(block.inside.entries[e].first) - block.begin - k * kGroup);
+  return window;
+}
+
+// Room for sums up to `window` ahead, an entry's own width, and the group at hand.
+void make_ring(Block& block, uint32_t window) {
   const uint32_t size = std::bit_ceil(window + 2 * kGroup);
-  if (size == block.ring_mask + 1) return;
+  if (size <= block.ring_mask + 1) return;
   block.ring_mask = size - 1;
   for (auto& ring : block.ring) ring = PaddedArray<double>(size, kMagic);
 }
@@ -109,6 +111,8 @@ void build_list(const KernelRule& rule, const Particles& particles, Search searc
   block.across.groups.clear();
   block.edge_group.clear();
   block.plain.assign(block.groups(), 1);
+  block.ring_mask = 0;
+  uint32_t window = kGroup;
   // A particle's place is not where the bins have it, but it was rounded from its position just now.
   const int P = rule.rule->widths.position_frac;
   const auto at = [&](uint32_t p) {
@@ -126,6 +130,7 @@ void build_list(const KernelRule& rule, const Particles& particles, Search searc
     const auto begin = static_cast<uint32_t>(block.inside.entries.size());
     inside.take(block.inside.entries);
     close_group(block.inside, begin, block.inside.groups[k]);
+    window = std::max(window, window_of(block, k));
     const auto edge = static_cast<uint32_t>(block.across.entries.size());
     across.take(block.across.entries);
     if (block.across.entries.size() == edge) continue;
@@ -133,7 +138,7 @@ void build_list(const KernelRule& rule, const Particles& particles, Search searc
     close_group(block.across, edge, block.across.groups.emplace_back());
   }
   block.across_sum = PaddedArray<double>(block.edge_group.size() * 3 * kGroup, kMagic);
-  make_ring(block);
+  make_ring(block, window);
 }
 
 void mend_list(const Particles& particles, const Snapshot& snapshot, Search search, const std::vector<uint8_t>& only,
@@ -155,12 +160,14 @@ void mend_list(const Particles& particles, const Snapshot& snapshot, Search sear
   std::vector<uint32_t> edge(block.groups());
   for (uint32_t k = 0; k < block.edge_group.size(); ++k) edge[block.edge_group[k]] = k + 1;
   bool new_edges = false;
+  uint32_t window = kGroup;
   for (uint32_t k = 0; k < block.groups(); ++k) {
     if (only[block.first_group() + k] == 0) continue;
     collect(particles, block, block.begin + k * kGroup, search, at, inside, across);
     entries.clear();
     inside.take(entries);
     put(block.inside, block.inside.groups[k], block.inside.groups[k].count);
+    window = std::max(window, window_of(block, k));
     entries.clear();
     across.take(entries);
     if (entries.empty() && edge[k] == 0) continue;
@@ -185,7 +192,7 @@ void mend_list(const Particles& particles, const Snapshot& snapshot, Search sear
     block.across.groups = std::move(groups);
     block.across_sum = PaddedArray<double>(block.edge_group.size() * 3 * kGroup, kMagic);
   }
-  make_ring(block);
+  make_ring(block, window);
 }
 
 }  // namespace cuboct::emu

@@ -42,11 +42,16 @@ Rows::Rows(const Lattice& lattice) : lattice_(lattice), row_of_(lattice.size()) 
   }
 }
 
+bool Rows::whole(uint32_t row) const {
+  const Range& r = rows_[row];
+  return lattice_.cell(r.end - 1)[0] - lattice_.cell(r.begin)[0] + 1 == static_cast<int32_t>(r.end - r.begin);
+}
+
 Rows::Range Rows::nodes(uint32_t row, int32_t low, int32_t high) const {
-  const Row& r = rows_[row];
+  const Range& r = rows_[row];
   const int32_t x0 = lattice_.cell(r.begin)[0], x1 = lattice_.cell(r.end - 1)[0];
   if (low > x1 || high < x0) return {r.begin, r.begin};
-  if (x1 - x0 + 1 == static_cast<int32_t>(r.end - r.begin))  // no gap
+  if (whole(row))
     return {r.begin + static_cast<uint32_t>(std::max(low - x0, 0)),
             r.begin + static_cast<uint32_t>(std::min(high, x1) - x0) + 1};
   const auto first = [&](int32_t x) {

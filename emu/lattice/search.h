@@ -27,14 +27,15 @@ class Rows {
   struct Range {
     uint32_t begin, end;
   };
+  uint32_t count() const { return static_cast<uint32_t>(rows_.size()); }
+  Range row(uint32_t row) const { return rows_[row]; }
+  // Whether its nodes stand without a gap.
+  bool whole(uint32_t row) const;
   Range nodes(uint32_t row, int32_t low, int32_t high) const;
 
  private:
-  struct Row {
-    uint32_t begin, end;
-  };
   const Lattice& lattice_;
-  std::vector<Row> rows_;
+  std::vector<Range> rows_;
   std::vector<uint32_t> row_of_;
   std::vector<std::array<uint32_t, (2 * kReach + 1) * (2 * kReach + 1)>> near_;
 };

@@ -23,6 +23,10 @@ double Snapshot::moved2(const Particles& particles, uint32_t particle) const {
 }
 
 // Each coordinate is rounded down to a coarse unit, then and now: a difference is wrong by less than one.
+double Snapshot::moved(const Particles& particles, uint32_t particle) const {
+  return std::ldexp(std::sqrt(moved2(particles, particle)) + 2, -kCoarse);
+}
+
 double Snapshot::displacement(const Particles& particles) const {
   double most = 0;
 #pragma omp parallel for reduction(max : most) num_threads(threads)
@@ -30,25 +34,12 @@ double Snapshot::displacement(const Particles& particles) const {
   return std::ldexp(std::sqrt(most) + 2, -kCoarse);
 }
 
-std::vector<uint32_t> Snapshot::strays(const Lattice& lattice, const Particles& particles, double threshold) const {
-  const double far2 = std::pow(std::max(0.0, std::ldexp(threshold, kCoarse) - 2), 2);
-  std::vector<uint32_t> found;
-#pragma omp parallel num_threads(threads)
-  {
-    std::vector<uint32_t> mine;
-#pragma omp for schedule(static) nowait
-    for (uint32_t p = 0; p < at[0].size(); ++p) {
-      const Cell& cell = lattice.cell(particles.node[p]);
-      static_assert(kCoarse == 16);  // a place keeps 16 bits of its cell
-      bool stray = moved2(particles, p) > far2;
-      for (int a = 0; a < 3; ++a) stray = stray || at[a][p] >> kCoarse != static_cast<int16_t>(cell[a]);
-      if (stray) mine.push_back(p);
-    }
-#pragma omp critical
-    found.insert(found.end(), mine.begin(), mine.end());
-  }
-  std::sort(found.begin(), found.end());
-  return found;
+bool Snapshot::astray(const Lattice& lattice, const Particles& particles, uint32_t particle, double threshold) const {
+  static_assert(kCoarse == 16);  // a place keeps 16 bits of its cell
+  const Cell& cell = lattice.cell(particles.node[particle]);
+  for (int a = 0; a < 3; ++a)
+    if (at[a][particle] >> kCoarse != static_cast<int16_t>(cell[a])) return true;
+  return moved(particles, particle) > threshold;
 }
 
 Bins::Bins(const Lattice& lattice, const Members& members, Particles& particles, int position_frac, int threads)

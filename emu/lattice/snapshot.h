@@ -26,11 +26,11 @@ struct Snapshot {
   int position_frac = 0;
   int threads = 1;
 
-  // The largest distance of a particle from its place here, in cells, rounded up.
+  // The distance of a particle from its place here, in cells, rounded up; the largest of all.
+  double moved(const Particles& particles, uint32_t particle) const;
   double displacement(const Particles& particles) const;
-  // The particles farther than `threshold` cells from their place here, and those whose place is not in the cell
-  // of their node, ascending.
-  std::vector<uint32_t> strays(const Lattice& lattice, const Particles& particles, double threshold) const;
+  // Whether a particle is farther than `threshold` cells from its place here, or that is not in the cell of its node.
+  bool astray(const Lattice& lattice, const Particles& particles, uint32_t particle, double threshold) const;
   void look(const Particles& particles, uint32_t particle);
 
  private:
