@@ -4,29 +4,47 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
+#include <span>
 
+#include "model/parallel.h"
 #include "model/strain.h"
 
 namespace cuboct {
 namespace {
 
-// Calls visit(i, j, x_j in the frame of i's node) for each particle i and each other one in reach.
+// Particles (indices into a state) by node, ascending in each.
+struct ByNode {
+  ByNode(const Lattice& lattice, const State& state) : first(lattice.size() + 1, 0), order(state.particles.size()) {
+    for (const Particle& particle : state.particles) ++first[particle.node + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<uint32_t> next(first.begin(), first.end() - 1);
+    for (uint32_t i = 0; i < order.size(); ++i) order[next[state.particles[i].node]++] = i;
+  }
+  std::span<const uint32_t> at(uint32_t node) const {
+    return {order.data() + first[node], order.data() + first[node + 1]};
+  }
+  std::vector<uint32_t> first, order;
+};
+
+// Calls visit(i, j, x_j in the frame of i's node) for each particle i of the nodes and each other one in reach.
 template <typename Visit>
-void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, Visit visit) {
-  std::vector<std::vector<size_t>> at_node(lattice.size());
-  for (size_t i = 0; i < state.particles.size(); ++i) at_node[state.particles[i].node].push_back(i);
+void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, const ByNode& by_node,
+                   uint32_t begin, uint32_t end, Visit visit) {
   const int64_t edge = int64_t{1} << rule.widths.position_frac;
-  for (uint32_t node = 0; node < lattice.size(); ++node) {
-    if (at_node[node].empty()) continue;
+  for (uint32_t node = begin; node < end; ++node) {
+    if (by_node.at(node).empty()) continue;
     for (const Lattice::Near& near : lattice.neighbourhood(node))
-      for (const size_t j : at_node[near.node]) {
+      for (const uint32_t j : by_node.at(near.node)) {
         Int3 x = state.particles[j].x;
         for (int axis = 0; axis < 3; ++axis) x[axis] += near.offset[axis] * edge;
-        for (const size_t i : at_node[node])
+        for (const uint32_t i : by_node.at(node))
           if (i != j) visit(i, j, x);
       }
   }
 }
+
+constexpr size_t kNodesWorthAThread = 1000;
 
 double velocity_unit(const FixedRule& rule) {
   return std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
@@ -36,11 +54,15 @@ double velocity_unit(const FixedRule& rule) {
 
 std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state) {
   std::vector<Int3> sums(state.particles.size(), Int3{});
-  for_each_pair(rule, lattice, state, [&](size_t i, size_t j, const Int3& x_j) {
-    const Particle &a = state.particles[i], &b = state.particles[j];
-    const PairResult pair = pair_kick(rule, a.x, a.v, a.type, x_j, b.v, b.type);
-    if (!pair.inside) return;
-    for (int axis = 0; axis < 3; ++axis) sums[i][axis] += pair.kick[axis];
+  const ByNode by_node(lattice, state);
+  for_each_range(lattice.size(), kNodesWorthAThread, [&](size_t begin, size_t end) {
+    for_each_pair(rule, lattice, state, by_node, static_cast<uint32_t>(begin), static_cast<uint32_t>(end),
+                  [&](uint32_t i, uint32_t j, const Int3& x_j) {
+                    const Particle &a = state.particles[i], &b = state.particles[j];
+                    const PairResult pair = pair_kick(rule, a.x, a.v, a.type, x_j, b.v, b.type);
+                    if (!pair.inside) return;
+                    for (int axis = 0; axis < 3; ++axis) sums[i][axis] += pair.kick[axis];
+                  });
   });
   return sums;
 }
@@ -68,14 +90,26 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
     }
   }
   const double cutoff = rule.law->cutoff();
-  for_each_pair(fixed, lattice, state, [&](size_t i, size_t j, const Int3& x_j) {
-    if (j < i) return;
-    const Particle &a = state.particles[i], &b = state.particles[j];
-    const Vec3 d(static_cast<double>(x_j[0] - a.x[0]), static_cast<double>(x_j[1] - a.x[1]),
-                 static_cast<double>(x_j[2] - a.x[2]));
-    const double r = d.norm() * length;
-    if (r < cutoff) sum.potential += rule.law->energy(r) * rule.strength_of(a.type, b.type);
+  // Summed by blocks of nodes, so that the rounding does not depend on the number of threads.
+  constexpr uint32_t kBlock = 4096;
+  const ByNode by_node(lattice, state);
+  std::vector<double> potential((lattice.size() + kBlock - 1) / kBlock, 0.0);
+  for_each_range(potential.size(), 1, [&](size_t first, size_t last) {
+    for (size_t block = first; block < last; ++block) {
+      const auto begin = static_cast<uint32_t>(block) * kBlock;
+      for_each_pair(fixed, lattice, state, by_node, begin, std::min(begin + kBlock, lattice.size()),
+                    [&](uint32_t i, uint32_t j, const Int3& x_j) {
+                      if (j < i) return;
+                      const Particle &a = state.particles[i], &b = state.particles[j];
+                      const Vec3 d(static_cast<double>(x_j[0] - a.x[0]), static_cast<double>(x_j[1] - a.x[1]),
+                                   static_cast<double>(x_j[2] - a.x[2]));
+                      const double r = d.norm() * length;
+                      if (r < cutoff)
+                        potential[block] += rule.law->energy(r) * rule.strength_of(a.type, b.type);
+                    });
+    }
   });
+  for (const double part : potential) sum.potential += part;
   return sum;
 }
 
