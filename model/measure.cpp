@@ -15,7 +15,8 @@ namespace {
 
 // Particles (indices into a state) by node, ascending in each.
 struct ByNode {
-  ByNode(const Lattice& lattice, const State& state) : first(lattice.size() + 1, 0), order(state.particles.size()) {
+  ByNode(const Lattice& lattice, const State& state)
+      : first(lattice.size() + 1, 0), order(state.particles.size()) {
     for (const Particle& particle : state.particles) ++first[particle.node + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<uint32_t> next(first.begin(), first.end() - 1);
@@ -27,7 +28,8 @@ struct ByNode {
   std::vector<uint32_t> first, order;
 };
 
-// Calls visit(i, j, x_j in the frame of i's node) for each particle i of the nodes and each other one in reach.
+// Calls visit(i, j, x_j in the frame of i's node) for each particle i of the nodes and each other one in
+// reach.
 template <typename Visit>
 void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, const ByNode& by_node,
                    uint32_t begin, uint32_t end, Visit visit) {
@@ -230,8 +232,7 @@ ProbeMeter::Followed ProbeMeter::follow(const ParticleSet& set) const {
   Followed followed;
   followed.reserve(set.ids.size());
   for (const uint32_t id : set.ids)
-    followed.push_back(
-        static_cast<uint32_t>(std::lower_bound(ids_.begin(), ids_.end(), id) - ids_.begin()));
+    followed.push_back(static_cast<uint32_t>(std::lower_bound(ids_.begin(), ids_.end(), id) - ids_.begin()));
   return followed;
 }
 

@@ -14,7 +14,8 @@ namespace cuboct {
 // must not depend on where the ranges part.
 template <typename Work>
 void for_each_range(size_t count, size_t least, Work work) {
-  const size_t parts = std::clamp<size_t>(count / least, 1, std::max(1u, std::thread::hardware_concurrency()));
+  const size_t parts =
+      std::clamp<size_t>(count / least, 1, std::max(1u, std::thread::hardware_concurrency()));
   std::vector<std::thread> threads;
   for (size_t part = 1; part < parts; ++part)
     threads.emplace_back(work, count * part / parts, count * (part + 1) / parts);
