@@ -93,7 +93,8 @@ class Cover {
     const double nearest = disc.at[2] + radius_ + 1e-3 * radius_ + 1e-6 * std::abs(disc.at[2]);
     for (int row = disc.top / tile_; row <= disc.bottom / tile_; ++row)
       for (int column = disc.left / tile_; column <= disc.right / tile_; ++column)
-        if (depth_[static_cast<size_t>(row) * static_cast<size_t>(columns_) + column] <= nearest) return false;
+        if (depth_[static_cast<size_t>(row) * static_cast<size_t>(columns_) + column] <= nearest)
+          return false;
     return true;
   }
 
@@ -183,8 +184,9 @@ Image render(const std::vector<Vec3>& x, const std::vector<Colour>& colour, doub
         const int fine_row = row * kSamples + k / kSamples, fine_column = column * kSamples + k % kSamples;
         const uint32_t i = front[static_cast<size_t>(fine_row) * w + fine_column];
         const std::array<float, 3> seen =
-            i == kNothing ? std::array<float, 3>{255, 255, 255}
-                          : shaded(colour[i], *projection.normal(projection.disc(x[i]), fine_column, fine_row));
+            i == kNothing
+                ? std::array<float, 3>{255, 255, 255}
+                : shaded(colour[i], *projection.normal(projection.disc(x[i]), fine_column, fine_row));
         for (size_t c = 0; c < 3; ++c) sum[c] += seen[c];
       }
       for (size_t c = 0; c < 3; ++c)

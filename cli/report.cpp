@@ -108,8 +108,8 @@ std::string pictures(const Loaded& loaded, const Trace& trace, const std::vector
     colours.reserve(strains[n].size());
     for (const float strain : strains[n]) colours.push_back(viridis((strain - low) / (high - low)));
     images.push_back(render(positions(state), colours, radius, view, kWidth, height));
-    labels.push_back(fmt::format("step {}    t = {:.4g} s", state.step,
-                                 static_cast<double>(state.step) * plan.rule.dt));
+    labels.push_back(
+        fmt::format("step {}    t = {:.4g} s", state.step, static_cast<double>(state.step) * plan.rule.dt));
   }
   const std::string png = plot_pictures(
       images, labels, fmt::format("axial strain along {}", "xyz"[strain_axis(loaded.scene)]), low, high);

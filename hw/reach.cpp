@@ -57,7 +57,8 @@ class Spans {
   size_t kept_ = 16;
 };
 
-// A union of boxes of cells. Boxes of the same rows are one entry: neighbouring particles mostly have the same.
+// A union of boxes of cells. Boxes of the same rows are one entry: neighbouring particles mostly have the
+// same.
 class Reach {
  public:
   Reach(double edge, const Vec3& origin, const Cell& period)

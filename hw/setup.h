@@ -22,8 +22,9 @@ Setup make_setup(const Scene& scene, const Arch& arch);
 // The same plan and errors, without a State in memory.
 Plan plan_of(const Scene& scene, const Arch& arch);
 
-// The particles of make_setup's initial state, out of the body that plan_of saw. It uses the body up: what was
-// asked for is given back to the system, so that an engine that is fed from here grows as the body shrinks.
+// The particles of make_setup's initial state, out of the body that plan_of saw. It uses the body up: what
+// was asked for is given back to the system, so that an engine that is fed from here grows as the body
+// shrinks.
 class InitialParticles {
  public:
   InitialParticles(Body body, const Plan& plan) : body_(std::move(body)), plan_(plan) {}

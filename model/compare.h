@@ -35,8 +35,8 @@ struct Mismatch {
   std::string text(const std::string& engine_a, const std::string& engine_b, const Lattice& lattice) const;
 };
 
-// In this order: plans, nodes, state hashes at the steps that both traces hashed (Trace::hash_every), number of
-// steps, stop reasons, cycles step by step (only where both engines count them).
+// In this order: plans, nodes, state hashes at the steps that both traces hashed (Trace::hash_every), number
+// of steps, stop reasons, cycles step by step (only where both engines count them).
 std::optional<Mismatch> compare(const Trace& a, const Trace& b);
 
 // Particle by particle in the order of ids, field by field: missing, type, node, x, v, u.

@@ -186,7 +186,8 @@ class Writer {
     return type;
   }
 
-  // Chunks of about 2^15 values along the first axis: large enough to pack well, small enough to read in part.
+  // Chunks of about 2^15 values along the first axis: large enough to pack well, small enough to read in
+  // part.
   static hsize_t chunk_rows(const Shape& shape) {
     hsize_t count = 1;
     for (const hsize_t extent : shape) count *= extent;
@@ -283,7 +284,9 @@ class Reader {
     return values;
   }
 
-  hsize_t length(hid_t where, const std::string& name) const { return shape_of(dataset(where, name), name)[0]; }
+  hsize_t length(hid_t where, const std::string& name) const {
+    return shape_of(dataset(where, name), name)[0];
+  }
 
   // The same in pieces, next(values) for one row of `columns` values after another; there must be `count`.
   template <typename T, typename Next>

@@ -118,8 +118,7 @@ void Lattice::missing_between(size_t row, int dz, int dy, std::vector<Cell>& mis
     if (aside && !same) missing.push_back({x, rows_[row].y, rows_[row].z});
     if (!corner || !(aside || same)) continue;
     while (in_middle < middle.end && cells_[in_middle][0] < x) ++in_middle;
-    if (in_middle == middle.end || cells_[in_middle][0] != x)
-      missing.push_back({x, middle_y, rows_[row].z});
+    if (in_middle == middle.end || cells_[in_middle][0] != x) missing.push_back({x, middle_y, rows_[row].z});
   }
 }
 
@@ -137,8 +136,8 @@ uint32_t Lattice::present_around(const Cell& cell) const {
   return present;
 }
 
-// A cell that is added may start further ways, so this goes on until nothing is missing. After the first round
-// only what is around new cells can be.
+// A cell that is added may start further ways, so this goes on until nothing is missing. After the first
+// round only what is around new cells can be.
 void Lattice::close() {
   index_rows();
   std::vector<Cell> missing;

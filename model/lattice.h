@@ -48,7 +48,7 @@ class Lattice {
   };
 
   Cell wrapped(Cell cell) const;
-  size_t row_at(int32_t z, int32_t y) const;       // index into rows_; that of the sentinel where there is none
+  size_t row_at(int32_t z, int32_t y) const;  // index into rows_; that of the sentinel where there is none
   uint32_t in_row(const Span& row, int32_t x) const;  // of a row that is not empty
   Span around(size_t row, int dz, int dy) const;  // the cells of the row beside that one; empty where none is
   bool neighbours_in_x(const Span& row, uint32_t at, int32_t x) const;

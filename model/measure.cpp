@@ -1,31 +1,52 @@
 // SPDX-License-Identifier: MIT
 #include "model/measure.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
+#include <span>
 
+#include "model/parallel.h"
 #include "model/strain.h"
 
 namespace cuboct {
 namespace {
 
-// Calls visit(i, j, x_j in the frame of i's node) for each particle i and each other one in reach.
+// Particles (indices into a state) by node, ascending in each.
+struct ByNode {
+  ByNode(const Lattice& lattice, const State& state)
+      : first(lattice.size() + 1, 0), order(state.particles.size()) {
+    for (const Particle& particle : state.particles) ++first[particle.node + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<uint32_t> next(first.begin(), first.end() - 1);
+    for (uint32_t i = 0; i < order.size(); ++i) order[next[state.particles[i].node]++] = i;
+  }
+  std::span<const uint32_t> at(uint32_t node) const {
+    return {order.data() + first[node], order.data() + first[node + 1]};
+  }
+  std::vector<uint32_t> first, order;
+};
+
+// Calls visit(i, j, x_j in the frame of i's node) for each particle i of the nodes and each other one in
+// reach.
 template <typename Visit>
-void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, Visit visit) {
-  std::vector<std::vector<size_t>> at_node(lattice.size());
-  for (size_t i = 0; i < state.particles.size(); ++i) at_node[state.particles[i].node].push_back(i);
+void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, const ByNode& by_node,
+                   uint32_t begin, uint32_t end, Visit visit) {
   const int64_t edge = int64_t{1} << rule.widths.position_frac;
-  for (uint32_t node = 0; node < lattice.size(); ++node) {
-    if (at_node[node].empty()) continue;
+  for (uint32_t node = begin; node < end; ++node) {
+    if (by_node.at(node).empty()) continue;
     for (const Lattice::Near& near : lattice.neighbourhood(node))
-      for (const size_t j : at_node[near.node]) {
+      for (const uint32_t j : by_node.at(near.node)) {
         Int3 x = state.particles[j].x;
         for (int axis = 0; axis < 3; ++axis) x[axis] += near.offset[axis] * edge;
-        for (const size_t i : at_node[node])
+        for (const uint32_t i : by_node.at(node))
           if (i != j) visit(i, j, x);
       }
   }
 }
+
+constexpr size_t kNodesWorthAThread = 1000;
 
 double velocity_unit(const FixedRule& rule) {
   return std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
@@ -35,11 +56,15 @@ double velocity_unit(const FixedRule& rule) {
 
 std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state) {
   std::vector<Int3> sums(state.particles.size(), Int3{});
-  for_each_pair(rule, lattice, state, [&](size_t i, size_t j, const Int3& x_j) {
-    const Particle &a = state.particles[i], &b = state.particles[j];
-    const PairResult pair = pair_kick(rule, a.x, a.v, a.type, x_j, b.v, b.type);
-    if (!pair.inside) return;
-    for (int axis = 0; axis < 3; ++axis) sums[i][axis] += pair.kick[axis];
+  const ByNode by_node(lattice, state);
+  for_each_range(lattice.size(), kNodesWorthAThread, [&](size_t begin, size_t end) {
+    for_each_pair(rule, lattice, state, by_node, static_cast<uint32_t>(begin), static_cast<uint32_t>(end),
+                  [&](uint32_t i, uint32_t j, const Int3& x_j) {
+                    const Particle &a = state.particles[i], &b = state.particles[j];
+                    const PairResult pair = pair_kick(rule, a.x, a.v, a.type, x_j, b.v, b.type);
+                    if (!pair.inside) return;
+                    for (int axis = 0; axis < 3; ++axis) sums[i][axis] += pair.kick[axis];
+                  });
   });
   return sums;
 }
@@ -67,14 +92,26 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
     }
   }
   const double cutoff = rule.law->cutoff();
-  for_each_pair(fixed, lattice, state, [&](size_t i, size_t j, const Int3& x_j) {
-    if (j < i) return;
-    const Particle &a = state.particles[i], &b = state.particles[j];
-    const Vec3 d(static_cast<double>(x_j[0] - a.x[0]), static_cast<double>(x_j[1] - a.x[1]),
-                 static_cast<double>(x_j[2] - a.x[2]));
-    const double r = d.norm() * length;
-    if (r < cutoff) sum.potential += rule.law->energy(r) * rule.strength_of(a.type, b.type);
+  // Summed by blocks of nodes, so that the rounding does not depend on the number of threads.
+  constexpr uint32_t kBlock = 4096;
+  const ByNode by_node(lattice, state);
+  std::vector<double> potential((lattice.size() + kBlock - 1) / kBlock, 0.0);
+  for_each_range(potential.size(), 1, [&](size_t first, size_t last) {
+    for (size_t block = first; block < last; ++block) {
+      const auto begin = static_cast<uint32_t>(block) * kBlock;
+      for_each_pair(fixed, lattice, state, by_node, begin, std::min(begin + kBlock, lattice.size()),
+                    [&](uint32_t i, uint32_t j, const Int3& x_j) {
+                      if (j < i) return;
+                      const Particle &a = state.particles[i], &b = state.particles[j];
+                      const Vec3 d(static_cast<double>(x_j[0] - a.x[0]), static_cast<double>(x_j[1] - a.x[1]),
+                                   static_cast<double>(x_j[2] - a.x[2]));
+                      const double r = d.norm() * length;
+                      if (r < cutoff)
+                        potential[block] += rule.law->energy(r) * rule.strength_of(a.type, b.type);
+                    });
+    }
   });
+  for (const double part : potential) sum.potential += part;
   return sum;
 }
 
@@ -115,12 +152,24 @@ Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& orig
 
 ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodic,
                        const std::vector<Vec3>& initial)
-    : probes_(probes),
-      periodic_(periodic),
-      initial_(initial),
-      latest_(initial),
-      moved_(initial.size(), Vec3::Zero()) {
+    : probes_(probes), periodic_(periodic) {
   for (const Probe& probe : probes_) {
+    if (probe.kind == Probe::Kind::force) continue;
+    for (const ParticleSet* set : {&probe.set, &probe.lower, &probe.upper})
+      ids_.insert(ids_.end(), set->ids.begin(), set->ids.end());
+  }
+  std::sort(ids_.begin(), ids_.end());
+  ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
+  for (const uint32_t id : ids_) initial_.push_back(initial[id]);
+  latest_ = initial_;
+  moved_.assign(initial_.size(), Vec3::Zero());
+  for (const Probe& probe : probes_) {
+    if (probe.kind == Probe::Kind::displacement)
+      sets_.push_back({follow(probe.set), {}});
+    else if (probe.kind == Probe::Kind::stress_strain)
+      sets_.push_back({follow(probe.lower), follow(probe.upper)});
+    else
+      sets_.push_back({});
     const auto curve = [&](const char* quantity, const char* unit) {
       curves_.push_back({probe.name + "." + quantity, unit, {}, {}});
     };
@@ -139,9 +188,10 @@ ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodi
 }
 
 void ProbeMeter::add(const Sample& sample) {
-  for (size_t i = 0; i < moved_.size(); ++i) {
-    moved_[i] += nearest_image(sample.x[i] - latest_[i], periodic_);
-    latest_[i] = sample.x[i];
+  for (size_t i = 0; i < ids_.size(); ++i) {
+    const Vec3& x = sample.x[ids_[i]];
+    moved_[i] += nearest_image(x - latest_[i], periodic_);
+    latest_[i] = x;
   }
   const auto total_force = [&](const ParticleSet& set) {
     Vec3 sum = Vec3::Zero();
@@ -153,37 +203,49 @@ void ProbeMeter::add(const Sample& sample) {
     curves_[next].step.push_back(sample.step);
     curves_[next++].value.push_back(value);
   };
-  for (const Probe& probe : probes_) switch (probe.kind) {
+  for (size_t p = 0; p < probes_.size(); ++p) {
+    const Probe& probe = probes_[p];
+    const auto& [lower, upper] = sets_[p];
+    switch (probe.kind) {
       case Probe::Kind::force: {
         const Vec3 force = total_force(probe.set);
         point(force.x()), point(force.y()), point(force.z());
         break;
       }
       case Probe::Kind::displacement: {
-        const Vec3 moved = displacement(probe.set);
+        const Vec3 moved = displacement(lower);
         point(moved.x()), point(moved.y()), point(moved.z());
         break;
       }
       case Probe::Kind::stress_strain: {
-        const double gauge = (position(probe.upper) - position(probe.lower))[probe.axis];
-        const double stretch = (displacement(probe.upper) - displacement(probe.lower))[probe.axis];
+        const double gauge = (position(upper) - position(lower))[probe.axis];
+        const double stretch = (displacement(upper) - displacement(lower))[probe.axis];
         point(stretch / gauge);
         point(-total_force(probe.grip)[probe.axis] / probe.area);
         break;
       }
     }
+  }
 }
 
-Vec3 ProbeMeter::displacement(const ParticleSet& set) const {
-  Vec3 sum = Vec3::Zero();
-  for (const uint32_t id : set.ids) sum += moved_[id];
-  return set.ids.empty() ? sum : Vec3(sum / static_cast<double>(set.ids.size()));
+ProbeMeter::Followed ProbeMeter::follow(const ParticleSet& set) const {
+  Followed followed;
+  followed.reserve(set.ids.size());
+  for (const uint32_t id : set.ids)
+    followed.push_back(static_cast<uint32_t>(std::lower_bound(ids_.begin(), ids_.end(), id) - ids_.begin()));
+  return followed;
 }
 
-Vec3 ProbeMeter::position(const ParticleSet& set) const {
+Vec3 ProbeMeter::displacement(const Followed& set) const {
   Vec3 sum = Vec3::Zero();
-  for (const uint32_t id : set.ids) sum += initial_[id];
-  return set.ids.empty() ? sum : Vec3(sum / static_cast<double>(set.ids.size()));
+  for (const uint32_t i : set) sum += moved_[i];
+  return set.empty() ? sum : Vec3(sum / static_cast<double>(set.size()));
+}
+
+Vec3 ProbeMeter::position(const Followed& set) const {
+  Vec3 sum = Vec3::Zero();
+  for (const uint32_t i : set) sum += initial_[i];
+  return set.empty() ? sum : Vec3(sum / static_cast<double>(set.size()));
 }
 
 }  // namespace cuboct

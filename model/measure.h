@@ -3,6 +3,7 @@
 // here knows which engine made the state.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -66,12 +67,17 @@ class ProbeMeter {
   const std::vector<Curve>& curves() const { return curves_; }
 
  private:
-  Vec3 displacement(const ParticleSet& set) const;  // mean, m
-  Vec3 position(const ParticleSet& set) const;      // mean initial position, m
+  // Particles of a set whose positions count, as indices into the arrays below: only those are followed.
+  using Followed = std::vector<uint32_t>;
+  Followed follow(const ParticleSet& set) const;
+  Vec3 displacement(const Followed& set) const;  // mean, m
+  Vec3 position(const Followed& set) const;      // mean initial position, m
 
   std::vector<Probe> probes_;
   Periodic periodic_;
-  std::vector<Vec3> initial_, latest_, moved_;
+  std::vector<uint32_t> ids_;                   // ascending
+  std::vector<Vec3> initial_, latest_, moved_;  // of ids_
+  std::vector<std::array<Followed, 2>> sets_;   // of each probe: its set, or lower and upper
   std::vector<Curve> curves_;
 };
 

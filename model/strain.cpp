@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <thread>
 
 #include "model/neighbours.h"
+#include "model/parallel.h"
 
 namespace cuboct {
 Vec3 nearest_image(Vec3 d, const Periodic& periodic) {
@@ -73,17 +73,9 @@ std::vector<LocalStrain> StrainMeter::measure(const std::vector<Vec3>& present) 
 
 std::vector<double> StrainMeter::axial(const std::vector<Vec3>& present, int axis) const {
   std::vector<double> strains(initial_.size());
-  const auto some = [&](size_t begin, size_t end) {
+  for_each_range(strains.size(), 10'000, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) strains[i] = LocalStrain{gradient(i, present), 0, 0}.axial(axis);
-  };
-  constexpr size_t kWorthAThread = 20'000;
-  const size_t parts =
-      std::clamp<size_t>(strains.size() / kWorthAThread, 1, std::max(1u, std::thread::hardware_concurrency()));
-  std::vector<std::thread> threads;
-  for (size_t part = 1; part < parts; ++part)
-    threads.emplace_back(some, strains.size() * part / parts, strains.size() * (part + 1) / parts);
-  some(0, strains.size() / parts);
-  for (std::thread& thread : threads) thread.join();
+  });
   return strains;
 }
 

@@ -51,10 +51,11 @@ void write_frames(const Writer& out, const std::vector<State>& frames) {
                 [rows = Rows(frames), field](T* value) mutable { *value = rows.next().*field; });
   };
   const auto triple = [&](const char* name, Int3 Particle::*field, const char* unit, const char* what) {
-    out.rows<int64_t>(group, name, count, 3, unit, what, [rows = Rows(frames), field](int64_t* values) mutable {
-      const Int3& from = rows.next().*field;
-      std::copy(from.begin(), from.end(), values);
-    });
+    out.rows<int64_t>(group, name, count, 3, unit, what,
+                      [rows = Rows(frames), field](int64_t* values) mutable {
+                        const Int3& from = rows.next().*field;
+                        std::copy(from.begin(), from.end(), values);
+                      });
   };
   number("id", &Particle::id, "[row]");
   number("type", &Particle::type, "[row] index into the rule's types");

@@ -53,13 +53,13 @@ struct Trace {
   std::string engine;  // "golden", "systemc", ...
   uint64_t plan_hash = 0;
   uint64_t nodes = 0;
-  // state_hash[k] is that of step k * hash_every; then that of the last step done, where it is no such step. A
-  // run that had to stop may lack the latter: an engine whose state went with the step that failed. Empty
+  // state_hash[k] is that of step k * hash_every; then that of the last step done, where it is no such step.
+  // A run that had to stop may lack the latter: an engine whose state went with the step that failed. Empty
   // where the engine hashes nothing.
   std::vector<uint64_t> state_hash;
-  uint64_t hash_every = 1;  // >= 1
-  uint64_t steps_done = 0;  // read where steps() cannot count state_hash: hash_every above 1, or no hashes
-  std::vector<State> frames;         // the states that were asked for, ascending in step
+  uint64_t hash_every = 1;    // >= 1
+  uint64_t steps_done = 0;    // read where steps() cannot count state_hash: hash_every above 1, or no hashes
+  std::vector<State> frames;  // the states that were asked for, ascending in step
   std::vector<Curve> curves;
   std::vector<PhaseSpan>
       cycles;  // [(step * nodes + node) * kPhases + phase]; empty where the engine counts none

@@ -35,8 +35,7 @@ TEST(Setup, APlanNeedsNoState) {
     EXPECT_EQ(describe(plan), describe(setup.plan));
     ASSERT_EQ(plan.particles, setup.initial.particles.size());
     InitialParticles initial(scene.body, plan);
-    for (uint32_t id = 0; id < plan.particles; ++id)
-      ASSERT_EQ(initial(id), setup.initial.particles[id]);
+    for (uint32_t id = 0; id < plan.particles; ++id) ASSERT_EQ(initial(id), setup.initial.particles[id]);
   }
 }
 

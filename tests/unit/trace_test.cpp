@@ -92,7 +92,8 @@ TEST_F(TraceFile, KeepsManyChunks) {
   expect_equal(trace, read_trace(path("t.h5")));
 }
 
-// Frames are written and read in pieces: more rows than a piece, pieces across frames, and a frame of nothing.
+// Frames are written and read in pieces: more rows than a piece, pieces across frames, and a frame of
+// nothing.
 TEST_F(TraceFile, KeepsLargeFrames) {
   Trace trace = made_trace();
   trace.frames.clear();
