@@ -17,22 +17,23 @@ namespace cuboct::emu {
 inline constexpr uint32_t kGroup = 8;
 
 // A fixed number of trivially copyable elements, readable (and writable) kGroup elements and 64 bytes beyond either
-// end, so that a vector may overhang. Cache-line aligned, filled with `fill`.
+// end, so that a vector may overhang. Cache-line aligned.
 template <typename T>
 class PaddedArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
   PaddedArray() = default;
-  explicit PaddedArray(size_t size, T fill = T{}) : size_(size) {
+  // Zeros, whose memory is taken when they are first written.
+  explicit PaddedArray(size_t size) : size_(size) {
     const size_t lead = std::max<size_t>(kLine / sizeof(T), kGroup);  // a vector's width
-    const size_t bytes = ((size + 2 * lead) * sizeof(T) + kLine - 1) / kLine * kLine;
-    T* raw = static_cast<T*>(std::aligned_alloc(kLine, bytes));
+    void* raw = std::calloc((size + 2 * lead) * sizeof(T) + kLine, 1);
     if (raw == nullptr) throw std::bad_alloc();
     memory_.reset(raw);
-    data_ = raw + lead;
-    std::fill(raw, raw + bytes / sizeof(T), fill);
+    const auto address = reinterpret_cast<uintptr_t>(raw);
+    data_ = reinterpret_cast<T*>((address + kLine - 1) / kLine * kLine) + lead;
   }
+  PaddedArray(size_t size, T fill) : PaddedArray(size) { std::fill(data_ - kGroup, data_ + size + kGroup, fill); }
   PaddedArray copy() const {
     PaddedArray result(size_);
     std::copy(data_, data_ + size_, result.data_);
@@ -47,9 +48,9 @@ class PaddedArray {
  private:
   static constexpr size_t kLine = 64;
   struct Free {
-    void operator()(T* p) const { std::free(p); }
+    void operator()(void* p) const { std::free(p); }
   };
-  std::unique_ptr<T, Free> memory_;
+  std::unique_ptr<void, Free> memory_;
   T* data_ = nullptr;
   size_t size_ = 0;
 };
