@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emu/lattice/hash_particles.h"
 #include "emu/lattice/impl.h"
 #include "model/error.h"
 
@@ -175,12 +176,12 @@ void LatticeEngine::for_each_slot(const std::function<void(const Particle&)>& se
 }
 
 uint64_t LatticeEngine::hash() const {
+  const Impl& impl = *impl_;
   uint64_t sum = 0;
-#pragma omp parallel num_threads(impl_->threads_) reduction(+ : sum)
-  for (const Block& block : impl_->blocks_) {
-#pragma omp for schedule(static) nowait
-    for (uint32_t p = block.begin; p < block.end; ++p) sum += hash_of(impl_->lattice_, impl_->particle(p));
-  }
+#pragma omp parallel for schedule(static, 1) num_threads(impl.threads_) reduction(+ : sum)
+  for (size_t b = 0; b < impl.blocks_.size(); ++b)
+    sum += hash_particles(impl.particles_, impl.lattice_, impl.members_.nodes(), impl.plan_.rule.widths.position_frac,
+                          impl.blocks_[b].begin, impl.blocks_[b].end);
   if (impl_->shared()) impl_->options_.ranks->sum({&sum, 1});
   return sum;
 }
