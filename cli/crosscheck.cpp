@@ -8,7 +8,7 @@
 
 #include "cli/command.h"
 #include "cli/engines.h"
-#include "cli/interrupt.h"
+#include "model/interrupt.h"
 #include "cli/launch.h"
 
 #include "model/compare.h"

@@ -11,9 +11,9 @@
 #include <cstring>
 #include <filesystem>
 
-#include "cli/interrupt.h"
+#include "model/interrupt.h"
 #include "cli/launch.h"
-#include "cli/progress.h"
+#include "model/progress.h"
 #include "model/spelling.h"
 
 namespace cuboct {

@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "cli/interrupt.h"
+#include "model/interrupt.h"
 #include "model/error.h"
 
 extern char** environ;

@@ -6,7 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/engines.h"
-#include "cli/interrupt.h"
+#include "model/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/run_reference.h"
 #include "cli/summary.h"
@@ -66,13 +66,13 @@ int run(Options options) {
     RunMeter meter(loaded, probe_steps);
     trace = run_fixed(options.engine, options.input, loaded.setup, request,
                       [&](const State& state) { meter.see(state); });
-    meter.finish();
-    trace.curves = meter.curves();
+    const RunFacts facts = meter.finish();
+    trace.curves = facts.curves;
     std::erase_if(trace.frames, [&](const State& frame) {
       return frame.step != trace.steps() &&
              !std::binary_search(frame_steps.begin(), frame_steps.end(), frame.step);
     });
-    summary = summarise(loaded, trace, meter);
+    summary = summarise(loaded, trace, facts);
     if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   }
   if (!options.out.empty()) write_outputs(options, loaded, trace, frames, summary);

@@ -1,30 +1,65 @@
 // SPDX-License-Identifier: MIT
 #include "model/measure.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <span>
+#include <thread>
 
 #include "model/strain.h"
 
 namespace cuboct {
 namespace {
 
-// Calls visit(i, j, x_j in the frame of i's node) for each particle i and each other one in reach.
+// Particles by node: node n holds index[first[n]] ... index[first[n+1] - 1], ascending.
+struct ByNode {
+  std::vector<size_t> first, index;
+};
+
+ByNode by_node(const Lattice& lattice, const State& state) {
+  ByNode nodes{std::vector<size_t>(lattice.size() + 1), std::vector<size_t>(state.particles.size())};
+  for (const Particle& p : state.particles) ++nodes.first[p.node + 1];
+  for (size_t n = 0; n < lattice.size(); ++n) nodes.first[n + 1] += nodes.first[n];
+  std::vector<size_t> next(nodes.first.begin(), nodes.first.end() - 1);
+  for (size_t i = 0; i < state.particles.size(); ++i) nodes.index[next[state.particles[i].node]++] = i;
+  return nodes;
+}
+
+// Calls visit(node, i, j, x_j in the frame of i's node) for each particle i and each other one in reach; each
+// thread has the pairs whose i is in its nodes.
 template <typename Visit>
-void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, Visit visit) {
-  std::vector<std::vector<size_t>> at_node(lattice.size());
-  for (size_t i = 0; i < state.particles.size(); ++i) at_node[state.particles[i].node].push_back(i);
+void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, int threads,
+                   Visit visit) {
+  const ByNode nodes = by_node(lattice, state);
   const int64_t edge = int64_t{1} << rule.widths.position_frac;
-  for (uint32_t node = 0; node < lattice.size(); ++node) {
-    if (at_node[node].empty()) continue;
-    for (const Lattice::Near& near : lattice.neighbourhood(node))
-      for (const size_t j : at_node[near.node]) {
-        Int3 x = state.particles[j].x;
-        for (int axis = 0; axis < 3; ++axis) x[axis] += near.offset[axis] * edge;
-        for (const size_t i : at_node[node])
-          if (i != j) visit(i, j, x);
-      }
+  const auto span = [&](uint32_t n) {
+    return std::span(nodes.index).subspan(nodes.first[n], nodes.first[n + 1] - nodes.first[n]);
+  };
+  const auto work = [&](uint32_t from, uint32_t to) {
+    for (uint32_t node = from; node < to; ++node) {
+      if (span(node).empty()) continue;
+      for (const Lattice::Near& near : lattice.neighbourhood(node))
+        for (const size_t j : span(near.node)) {
+          Int3 x = state.particles[j].x;
+          for (int axis = 0; axis < 3; ++axis) x[axis] += near.offset[axis] * edge;
+          for (const size_t i : span(node))
+            if (i != j) visit(node, i, j, x);
+        }
+    }
+  };
+  // Equal shares of particles, cut at nodes.
+  const auto shares = static_cast<size_t>(std::max(threads, 1));
+  std::vector<uint32_t> cut{0};
+  for (size_t t = 1; t < shares; ++t) {
+    const auto at = std::lower_bound(nodes.first.begin(), nodes.first.end() - 1,
+                                     state.particles.size() * t / shares);
+    cut.push_back(static_cast<uint32_t>(at - nodes.first.begin()));
   }
+  cut.push_back(lattice.size());
+  std::vector<std::jthread> others;
+  for (size_t t = 1; t < shares; ++t) others.emplace_back(work, cut[t], cut[t + 1]);
+  work(cut[0], cut[1]);
 }
 
 double velocity_unit(const FixedRule& rule) {
@@ -33,9 +68,10 @@ double velocity_unit(const FixedRule& rule) {
 
 }  // namespace
 
-std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state) {
+std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state,
+                               int threads) {
   std::vector<Int3> sums(state.particles.size(), Int3{});
-  for_each_pair(rule, lattice, state, [&](size_t i, size_t j, const Int3& x_j) {
+  for_each_pair(rule, lattice, state, threads, [&](uint32_t, size_t i, size_t j, const Int3& x_j) {
     const Particle &a = state.particles[i], &b = state.particles[j];
     const PairResult pair = pair_kick(rule, a.x, a.v, a.type, x_j, b.v, b.type);
     if (!pair.inside) return;
@@ -47,7 +83,7 @@ std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, co
 double newtons_per_kick(const FixedRule& rule) { return velocity_unit(rule) * rule.mass / rule.dt; }
 
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
-                  const State& state, const std::vector<Int3>& kicks) {
+                  const State& state, const std::vector<Int3>& kicks, int threads) {
   Energies sum;
   const double length = std::ldexp(fixed.cell_edge, -fixed.widths.position_frac);
   const double velocity = velocity_unit(fixed);
@@ -67,14 +103,16 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
     }
   }
   const double cutoff = rule.law->cutoff();
-  for_each_pair(fixed, lattice, state, [&](size_t i, size_t j, const Int3& x_j) {
+  std::vector<double> potential(lattice.size());  // by node, so that their sum has one order
+  for_each_pair(fixed, lattice, state, threads, [&](uint32_t node, size_t i, size_t j, const Int3& x_j) {
     if (j < i) return;
     const Particle &a = state.particles[i], &b = state.particles[j];
     const Vec3 d(static_cast<double>(x_j[0] - a.x[0]), static_cast<double>(x_j[1] - a.x[1]),
                  static_cast<double>(x_j[2] - a.x[2]));
     const double r = d.norm() * length;
-    if (r < cutoff) sum.potential += rule.law->energy(r) * rule.strength_of(a.type, b.type);
+    if (r < cutoff) potential[node] += rule.law->energy(r) * rule.strength_of(a.type, b.type);
   });
+  for (const double share : potential) sum.potential += share;
   return sum;
 }
 
@@ -101,6 +139,16 @@ double largest_speed(const FixedRule& rule, const State& state) {
   for (const Particle& particle : state.particles)
     for (const int64_t v : particle.v) largest = std::max<int64_t>(largest, std::abs(v));
   return std::ldexp(static_cast<double>(largest), -rule.widths.velocity_frac());
+}
+
+Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
+                 const Particle& particle) {
+  const double unit = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
+  const Cell& cell = lattice.cell(particle.node);
+  Vec3 x;
+  for (int a = 0; a < 3; ++a)
+    x[a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(particle.x[a]) * unit;
+  return x;
 }
 
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
@@ -172,6 +220,12 @@ void ProbeMeter::add(const Sample& sample) {
         break;
       }
     }
+}
+
+void ProbeMeter::restore(Memory memory, std::vector<Curve> curves) {
+  latest_ = std::move(memory.latest);
+  moved_ = std::move(memory.moved);
+  curves_ = std::move(curves);
 }
 
 Vec3 ProbeMeter::displacement(const ParticleSet& set) const {
