@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace cuboct {
 namespace {
@@ -83,9 +82,9 @@ std::vector<Cell> reachable(const Scene& scene, double edge, const Vec3& origin,
   return cells;
 }
 
-}  // namespace
-
-Setup make_setup(const Scene& scene, const Arch& arch) {
+// `see` is given each particle of the initial state once, in the order of ids.
+template <typename See>
+Plan plan_with(const Scene& scene, const Arch& arch, See see) {
   const double cutoff = scene.rule.law->cutoff();
   if (arch.cell_edge > 0 && arch.cell_edge < cutoff)
     throw InputError(fmt::format("cell_edge = {:.6g} m is shorter than the pair law's cutoff, {:.6g} m",
@@ -106,19 +105,33 @@ Setup make_setup(const Scene& scene, const Arch& arch) {
 
   FixedRule rule = quantise(scene.rule, edge, arch.widths, arch.table);
   Lattice lattice(reachable(scene, edge, origin, period), period);
-  Setup setup;
-  setup.initial = to_fixed(scene.body, rule, lattice, origin);
-  std::map<uint32_t, int> count;
-  for (const Particle& p : setup.initial.particles) ++count[p.node];
-  int fullest = 0;
-  for (const auto& [node, n] : count) fullest = std::max(fullest, n);
-  if (fullest > arch.capacity)
+  std::vector<uint32_t> count(lattice.size(), 0);
+  uint32_t fullest = 0;
+  for (uint32_t id = 0; id < scene.body.size(); ++id) {
+    const Particle particle = fixed_particle(scene.body, id, rule, lattice, origin);
+    fullest = std::max(fullest, ++count[particle.node]);
+    see(particle);
+  }
+  if (static_cast<int64_t>(fullest) > arch.capacity)
     throw InputError(
         fmt::format("a node would hold {} particles: its capacity is {}", fullest, arch.capacity),
         fmt::format("set node.capacity to at least {} in the arch file", fullest));
-  setup.plan =
-      make_plan(std::move(rule), arch, std::move(lattice), origin, static_cast<uint32_t>(scene.body.size()));
-  return setup;
+  return make_plan(std::move(rule), arch, std::move(lattice), origin,
+                   static_cast<uint32_t>(scene.body.size()));
+}
+
+}  // namespace
+
+Plan plan_of(const Scene& scene, const Arch& arch) {
+  return plan_with(scene, arch, [](const Particle&) {});
+}
+
+Setup make_setup(const Scene& scene, const Arch& arch) {
+  State initial;
+  initial.particles.reserve(scene.body.size());
+  Plan plan =
+      plan_with(scene, arch, [&](const Particle& particle) { initial.particles.push_back(particle); });
+  return {std::move(plan), std::move(initial)};
 }
 
 }  // namespace cuboct

@@ -12,7 +12,13 @@ struct Setup {
   State initial;
 };
 
-// Chooses the cell edge and the reachable cells, quantises rule and body. Deterministic.
+// Chooses the cell edge and the reachable cells, quantises rule and body. Deterministic. InputError where the
+// machine cannot hold the scene: a node too full, a particle too fast, ...
 Setup make_setup(const Scene& scene, const Arch& arch);
+
+// The same plan and errors, without a State in memory. An engine can then take the particles one by one,
+//   fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin),  id = 0 ... plan.particles - 1,
+// which are make_setup's initial state, after which the body may be given up.
+Plan plan_of(const Scene& scene, const Arch& arch);
 
 }  // namespace cuboct

@@ -59,6 +59,18 @@ std::optional<Mismatch> compare_cycles(const Trace& a, const Trace& b) {
   return std::nullopt;
 }
 
+// Calls see(step, hash of a, hash of b) for each step that both hashed, while it returns true.
+template <typename See>
+void for_each_common(const Trace& a, const Trace& b, See see) {
+  size_t i = 0, j = 0;
+  while (i < a.state_hash.size() && j < b.state_hash.size()) {
+    const uint64_t step_a = a.hashed_step(i), step_b = b.hashed_step(j);
+    if (step_a == step_b && !see(step_a, a.state_hash[i], b.state_hash[j])) return;
+    i += step_a <= step_b;
+    j += step_b <= step_a;
+  }
+}
+
 std::string place(const Lattice& lattice, uint32_t node) {
   if (node == kNoNode) return "";
   if (node >= lattice.size()) return fmt::format(", node {}", node);
@@ -79,7 +91,8 @@ std::string Mismatch::text(const std::string& engine_a, const std::string& engin
       where = "nodes";
       break;
     case Kind::state:
-      where = fmt::format("step {}, state hash", step);
+      where = step > equal_at + 1 ? fmt::format("step {} (equal at step {}), state hash", step, equal_at)
+                                  : fmt::format("step {}, state hash", step);
       break;
     case Kind::length:
       where = "steps done";
@@ -100,13 +113,20 @@ std::optional<Mismatch> compare(const Trace& a, const Trace& b) {
   using Kind = Mismatch::Kind;
   if (a.plan_hash != b.plan_hash) return found(Kind::plan, hex(a.plan_hash), hex(b.plan_hash));
   if (a.nodes != b.nodes) return found(Kind::nodes, std::to_string(a.nodes), std::to_string(b.nodes));
-  for (size_t step = 0; step < std::min(a.state_hash.size(), b.state_hash.size()); ++step)
-    if (a.state_hash[step] != b.state_hash[step]) {
-      Mismatch mismatch = found(Kind::state, hex(a.state_hash[step]), hex(b.state_hash[step]));
-      mismatch.step = step;
-      return mismatch;
+  std::optional<Mismatch> state;
+  uint64_t equal_at = 0;
+  for_each_common(a, b, [&](uint64_t step, uint64_t hash_a, uint64_t hash_b) {
+    if (hash_a == hash_b) {
+      equal_at = step;
+      return true;
     }
-  if (a.state_hash.size() != b.state_hash.size())
+    state = found(Kind::state, hex(hash_a), hex(hash_b));
+    state->step = step;
+    state->equal_at = equal_at;
+    return false;
+  });
+  if (state) return state;
+  if (a.steps() != b.steps() || a.state_hash.empty() != b.state_hash.empty())
     return found(Kind::length, std::to_string(a.steps()), std::to_string(b.steps()));
   if (const auto mismatch = compare_stops(a.stop, b.stop)) return mismatch;
   return compare_cycles(a, b);
@@ -152,6 +172,12 @@ const State* frame_at(const Trace& trace, uint64_t step) {
   for (const State& frame : trace.frames)
     if (frame.step == step) return &frame;
   return nullptr;
+}
+
+uint64_t states_compared(const Trace& a, const Trace& b) {
+  uint64_t count = 0;
+  for_each_common(a, b, [&](uint64_t, uint64_t, uint64_t) { return ++count, true; });
+  return count;
 }
 
 uint64_t updates_compared(const Trace& trace, uint64_t particles) { return trace.steps() * particles; }

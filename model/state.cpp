@@ -30,38 +30,41 @@ Int3 momentum(const State& state) {
   return sum;
 }
 
+Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, const Lattice& lattice,
+                        const Vec3& origin) {
+  const int P = rule.widths.position_frac;
+  const double position_unit = std::ldexp(rule.cell_edge, -P);
+  const double velocity_unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac()) / rule.dt;
+  Particle p;
+  p.id = id;
+  p.type = body.type[id];
+  const FixedType& type = rule.types[p.type];
+  Cell cell;
+  for (int a = 0; a < 3; ++a) {
+    const int64_t whole = std::llround((body.x[id][a] - origin[a]) / position_unit);
+    cell[a] = static_cast<int32_t>(whole >> P);
+    p.x[a] = whole & ((int64_t{1} << P) - 1);
+    p.v[a] = type.imposed[a] ? type.velocity[a] : std::llround(body.v[id][a] / velocity_unit);
+    if (!body.u.empty()) p.u[a] = std::llround(body.u[id][a] / (velocity_unit * rule.dt));
+    if (!fits(p.v[a], rule.widths.velocity_bits))
+      throw InputError(
+          fmt::format("particle {} moves at {:.4g} m/s: more than the {:.4g} m/s that {} velocity bits hold",
+                      id, body.v[id][a], std::ldexp(velocity_unit, rule.widths.velocity_bits - 1),
+                      rule.widths.velocity_bits),
+          "a smaller dt or a larger cell edge lets it move fewer cells per step");
+  }
+  p.node = lattice.find(cell);
+  if (p.node == kNoNode)
+    throw InputError(fmt::format("particle {} lies in cell ({}, {}, {}), which has no node", id, cell[0],
+                                 cell[1], cell[2]));
+  return p;
+}
+
 State to_fixed(const Body& body, const FixedRule& rule, const Lattice& lattice, const Vec3& origin) {
   State state;
   state.particles.resize(body.size());
-  const double position_unit = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
-  const double velocity_unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac()) / rule.dt;
-  for (uint32_t id = 0; id < body.size(); ++id) {
-    Particle& p = state.particles[id];
-    p.id = id;
-    p.type = body.type[id];
-    Cell cell;
-    for (int a = 0; a < 3; ++a) {
-      const int64_t whole = std::llround((body.x[id][a] - origin[a]) / position_unit);
-      cell[a] = static_cast<int32_t>(whole >> rule.widths.position_frac);
-      p.x[a] = whole & ((int64_t{1} << rule.widths.position_frac) - 1);
-      if (!rule.types[p.type].imposed[a])
-        p.v[a] = std::llround(body.v[id][a] / velocity_unit);
-      else
-        p.v[a] = rule.types[p.type].velocity[a];
-      if (!body.u.empty()) p.u[a] = std::llround(body.u[id][a] / (velocity_unit * rule.dt));
-      if (!fits(p.v[a], rule.widths.velocity_bits))
-        throw InputError(
-            fmt::format(
-                "particle {} moves at {:.4g} m/s: more than the {:.4g} m/s that {} velocity bits hold", id,
-                body.v[id][a], std::ldexp(velocity_unit, rule.widths.velocity_bits - 1),
-                rule.widths.velocity_bits),
-            "a smaller dt or a larger cell edge lets it move fewer cells per step");
-    }
-    p.node = lattice.find(cell);
-    if (p.node == kNoNode)
-      throw InputError(fmt::format("particle {} lies in cell ({}, {}, {}), which has no node", id, cell[0],
-                                   cell[1], cell[2]));
-  }
+  for (uint32_t id = 0; id < body.size(); ++id)
+    state.particles[id] = fixed_particle(body, id, rule, lattice, origin);
   return state;
 }
 

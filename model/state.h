@@ -37,7 +37,10 @@ uint64_t hash_of(const Lattice& lattice, const State& state);
 Int3 momentum(const State& state);
 
 // Between real and fixed state. `origin` is the position of cell (0,0,0)'s lower corner in metres.
-// Positions are rounded to nearest; a particle whose cell has no node is an InputError.
+// Positions are rounded to nearest; a particle whose cell has no node, or whose velocity does not fit its
+// width, is an InputError. Particle by particle, no State need be held: an engine can be fed from the Body.
+Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, const Lattice& lattice,
+                        const Vec3& origin);
 State to_fixed(const Body& body, const FixedRule& rule, const Lattice& lattice, const Vec3& origin);
 Body to_real(const State& state, const FixedRule& rule, const Lattice& lattice, const Vec3& origin);
 

@@ -196,6 +196,10 @@ class Reader {
     return H5Lexists(where, name.c_str(), H5P_DEFAULT) > 0;
   }
 
+  bool has_attribute(hid_t where, const std::string& name) const {
+    return H5Aexists(where, name.c_str()) > 0;
+  }
+
   Handle group(hid_t where, const std::string& name) const {
     return Handle(H5Gopen2(where, name.c_str(), H5P_DEFAULT), H5Gclose, missing("group", name));
   }
@@ -420,7 +424,21 @@ const char* to_string(Phase phase) {
   return "?";
 }
 
+namespace {
+
+// Whether the number of hashes is one that steps and hash_every allow.
+bool hashes_fit(const Trace& trace) {
+  if (trace.hash_every == 0) return false;
+  if (trace.hash_every == 1 || trace.state_hash.empty()) return true;
+  const uint64_t whole = trace.steps_done / trace.hash_every + 1;
+  const bool rest = trace.steps_done % trace.hash_every != 0;
+  return trace.state_hash.size() == whole + rest || (trace.stop && trace.state_hash.size() == whole);
+}
+
+}  // namespace
+
 void write_trace(const std::string& path, const Trace& trace) {
+  if (!hashes_fit(trace)) throw std::logic_error("a trace's hashes do not fit its steps and hash_every");
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
   check_writable(path);
   write_whole(path, [&](const std::string& temporary) {
@@ -431,7 +449,10 @@ void write_trace(const std::string& path, const Trace& trace) {
     out.number<uint64_t>(out.root(), "plan_hash", trace.plan_hash);
     out.number<uint64_t>(out.root(), "nodes", trace.nodes);
     out.number<double>(out.root(), "seconds", trace.seconds);
-    out.array(out.root(), "state_hash", {trace.state_hash.size()}, trace.state_hash, "", "[step]");
+    out.number<uint64_t>(out.root(), "steps", trace.steps());
+    out.number<uint64_t>(out.root(), "hash_every", trace.hash_every);
+    out.array(out.root(), "state_hash", {trace.state_hash.size()}, trace.state_hash, "",
+              trace.hash_every == 1 ? "[step]" : "[step / hash_every], then of the last step");
     write_frames(out, trace.frames);
     write_curves(out, trace.curves);
     write_cycles(out, trace);
@@ -471,6 +492,12 @@ Trace read_trace(const std::string& path) {
   trace.nodes = in.number<uint64_t>(in.root(), "nodes");
   trace.seconds = in.number<double>(in.root(), "seconds");
   trace.state_hash = in.array<uint64_t>(in.root(), "state_hash");
+  if (in.has_attribute(in.root(), "hash_every")) {
+    trace.hash_every = in.number<uint64_t>(in.root(), "hash_every");
+    const auto steps = in.number<uint64_t>(in.root(), "steps");
+    if (trace.hash_every != 1 || trace.state_hash.empty()) trace.steps_done = steps;
+    in.same_length(trace.hash_every > 0 && trace.steps() == steps, "steps and state hashes");
+  }  // else the file is from before hashes could be left out
   trace.frames = read_frames(in);
   trace.curves = read_curves(in);
   if (in.has(in.root(), "cycles")) {
@@ -491,6 +518,7 @@ Trace read_trace(const std::string& path) {
                             in.number<int64_t>(stop, "number"),
                             in.text(stop, "text")};
   }
+  in.same_length(hashes_fit(trace), "steps and state hashes");
   return trace;
 }
 

@@ -2,6 +2,7 @@
 // What an engine returns: the only thing that engines share.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -52,7 +53,12 @@ struct Trace {
   std::string engine;  // "golden", "systemc", ...
   uint64_t plan_hash = 0;
   uint64_t nodes = 0;
-  std::vector<uint64_t> state_hash;  // [step], 0 ... steps done
+  // state_hash[k] is that of step k * hash_every; then that of the last step done, where it is no such step. A
+  // run that had to stop may lack the latter: an engine whose state went with the step that failed. Empty
+  // where the engine hashes nothing.
+  std::vector<uint64_t> state_hash;
+  uint64_t hash_every = 1;  // >= 1
+  uint64_t steps_done = 0;  // read where steps() cannot count state_hash: hash_every above 1, or no hashes
   std::vector<State> frames;         // the states that were asked for, ascending in step
   std::vector<Curve> curves;
   std::vector<PhaseSpan>
@@ -62,7 +68,13 @@ struct Trace {
   double seconds = 0;                                    // host time of the steps alone
   std::vector<std::pair<std::string, double>> counters;  // e.g. {"pairs_issued", 123}
 
-  uint64_t steps() const { return state_hash.empty() ? 0 : state_hash.size() - 1; }
+  uint64_t steps() const {
+    return hash_every == 1 && !state_hash.empty() ? state_hash.size() - 1 : steps_done;
+  }
+  // Of state_hash[k].
+  uint64_t hashed_step(size_t k) const { return std::min(k * hash_every, steps()); }
+  // Whether state_hash should hold the state after `step` in a run that ends with step `last`.
+  bool hashes(uint64_t step, uint64_t last) const { return step % hash_every == 0 || step == last; }
 };
 
 // HDF5; layout in docs/reference/trace.md. Written to a temporary name beside `path`, then renamed: never

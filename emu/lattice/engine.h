@@ -15,7 +15,7 @@
 namespace cuboct::emu {
 
 struct LatticeOptions {
-  int threads = 0;         // 0: one per core that the process may use
+  int threads = 0;         // 0: one per core that the process may use, fewer for small scenes
   bool quiescence = true;  // nodes at rest among nodes at rest are skipped; no bit depends on it
   std::string simd;        // "avx512", "avx2", "portable"; empty: the widest that this machine has
 };

@@ -45,6 +45,41 @@ TEST(Compare, NamesTheFirstDifferenceOfEachKind) {
   EXPECT_EQ(difference_after([](Trace& t) { t.state_hash.pop_back(); }), "steps done: golden 2, rtl 1");
 }
 
+Trace hashed(uint64_t every, uint64_t steps) {
+  Trace trace;
+  trace.hash_every = every;
+  trace.steps_done = steps;
+  for (uint64_t step = 0; step <= steps; ++step)
+    if (trace.hashes(step, steps)) trace.state_hash.push_back(100 + step);
+  return trace;
+}
+
+TEST(Compare, LooksAtTheStepsThatBothHashed) {
+  // Of 0 ... 20: 0, 4, 8, 12, 16, 20 and 0, 6, 12, 18, 20 have 0, 12 and 20 in common.
+  EXPECT_EQ(states_compared(hashed(4, 20), hashed(6, 20)), 3u);
+  EXPECT_EQ(states_compared(hashed(1, 20), hashed(6, 20)), 5u);
+  EXPECT_EQ(states_compared(hashed(1, 20), hashed(1, 20)), 21u);
+  EXPECT_FALSE(compare(hashed(4, 20), hashed(6, 20)));
+  EXPECT_FALSE(compare(hashed(1, 20), hashed(7, 20)));
+  const auto difference = [](uint64_t every_a, uint64_t every_b, size_t at) {
+    Trace other = hashed(every_b, 20);
+    other.state_hash[at] = 0;
+    const auto mismatch = compare(hashed(every_a, 20), other);
+    return mismatch ? mismatch->text("golden", "lattice", two_nodes()) : "equal";
+  };
+  EXPECT_EQ(difference(4, 6, 2),
+            "step 12 (equal at step 0), state hash: golden 0000000000000070, lattice 0000000000000000");
+  EXPECT_EQ(difference(4, 6, 4),
+            "step 20 (equal at step 12), state hash: golden 0000000000000078, lattice 0000000000000000");
+  EXPECT_EQ(difference(4, 6, 1), "equal");  // step 6: golden has no hash of it
+  EXPECT_EQ(difference(1, 6, 1),
+            "step 6 (equal at step 0), state hash: golden 000000000000006a, lattice 0000000000000000");
+  EXPECT_EQ(difference(1, 1, 6), "step 6, state hash: golden 000000000000006a, lattice 0000000000000000");
+  const auto length = compare(hashed(4, 20), hashed(4, 17));
+  ASSERT_TRUE(length);
+  EXPECT_EQ(length->text("golden", "lattice", two_nodes()), "steps done: golden 20, lattice 17");
+}
+
 TEST(Compare, NamesEachFieldOfAStop) {
   EXPECT_EQ(difference_after([](Trace& t) { t.stop.reset(); }),
             "stop, fault: golden velocity out of width, rtl none");

@@ -9,6 +9,7 @@ with h5py.File(sys.argv[1], "r") as f:
     assert f.attrs["version"] == 1
     assert f.attrs["plan_hash"] == 0xFEDCBA9876543210
     assert f.attrs["nodes"] == 2
+    assert f.attrs["steps"] == 2 and f.attrs["hash_every"] == 1
     assert list(f["state_hash"]) == [1, 2**64 - 1, 3]
 
     frames = f["frames"]

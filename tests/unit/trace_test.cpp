@@ -2,12 +2,14 @@
 #include "model/trace.h"
 
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 
 #include "model/output.h"
 #include "tests/unit/made_trace.h"
@@ -52,6 +54,8 @@ void expect_equal(const Trace& a, const Trace& b) {
   EXPECT_EQ(a.plan_hash, b.plan_hash);
   EXPECT_EQ(a.nodes, b.nodes);
   EXPECT_EQ(a.state_hash, b.state_hash);
+  EXPECT_EQ(a.hash_every, b.hash_every);
+  EXPECT_EQ(a.steps(), b.steps());
   ASSERT_EQ(a.frames.size(), b.frames.size());
   for (size_t k = 0; k < a.frames.size(); ++k) {
     EXPECT_EQ(a.frames[k].step, b.frames[k].step);
@@ -86,6 +90,65 @@ TEST_F(TraceFile, KeepsManyChunks) {
   for (uint64_t i = 0; i < 100'000; ++i) trace.state_hash.push_back(i * 0x9e3779b97f4a7c15u);
   write_trace(path("t.h5"), trace);
   expect_equal(trace, read_trace(path("t.h5")));
+}
+
+TEST(Trace, CountsItsSteps) {
+  Trace trace;
+  EXPECT_EQ(trace.steps(), 0u);
+  trace.steps_done = 7;  // an engine without hashes
+  EXPECT_EQ(trace.steps(), 7u);
+  trace.state_hash = {1, 2, 3};
+  EXPECT_EQ(trace.steps(), 2u);
+  trace.hash_every = 5;  // of steps 0, 5 and 7
+  EXPECT_EQ(trace.steps(), 7u);
+  EXPECT_EQ(trace.hashed_step(0), 0u);
+  EXPECT_EQ(trace.hashed_step(1), 5u);
+  EXPECT_EQ(trace.hashed_step(2), 7u);
+  EXPECT_TRUE(trace.hashes(5, 7));
+  EXPECT_FALSE(trace.hashes(6, 7));
+  EXPECT_TRUE(trace.hashes(7, 7));
+}
+
+TEST_F(TraceFile, KeepsHashesWithStepsLeftOut) {
+  Trace trace;
+  trace.hash_every = 5;
+  for (const uint64_t steps : {0, 4, 5, 7, 10}) {
+    trace.steps_done = steps;
+    trace.state_hash.resize(1 + (steps + 4) / 5, 9);
+    write_trace(path("t.h5"), trace);
+    expect_equal(trace, read_trace(path("t.h5")));
+  }
+  trace.state_hash.push_back(9);
+  EXPECT_THROW(write_trace(path("t.h5"), trace), std::logic_error);
+  // Only a run that stopped may lack the hash of its last step.
+  trace.steps_done = 7;
+  trace.state_hash = {9, 9};
+  EXPECT_THROW(write_trace(path("t.h5"), trace), std::logic_error);
+  trace.stop = StopReason{};
+  write_trace(path("t.h5"), trace);
+  expect_equal(trace, read_trace(path("t.h5")));
+}
+
+// As written before hashes could be left out.
+TEST_F(TraceFile, ReadsAFileWithoutAStepCount) {
+  write_trace(path("t.h5"), made_trace());
+  const hid_t file = H5Fopen(path("t.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Adelete(file, "steps"), 0);
+  ASSERT_GE(H5Adelete(file, "hash_every"), 0);
+  H5Fclose(file);
+  expect_equal(made_trace(), read_trace(path("t.h5")));
+  EXPECT_EQ(read_trace(path("t.h5")).steps(), 2u);
+}
+
+TEST_F(TraceFile, RefusesAStepCountThatItsHashesContradict) {
+  write_trace(path("t.h5"), made_trace());
+  const hid_t file = H5Fopen(path("t.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t steps = H5Aopen(file, "steps", H5P_DEFAULT);
+  const uint64_t wrong = 3;
+  ASSERT_GE(H5Awrite(steps, H5T_NATIVE_UINT64, &wrong), 0);
+  H5Aclose(steps), H5Fclose(file);
+  EXPECT_EQ(error_of([&] { read_trace(path("t.h5")); }),
+            path("t.h5") + " is not a cuboct trace: steps and state hashes disagree in length");
 }
 
 TEST_F(TraceFile, SameTraceSameBytes) {

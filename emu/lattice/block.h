@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// What one thread works on: a range of groups of particles and the pairs among and around them.
+//
+// Particles are stored in a row, kGroup to a group. In a crystal whose rows are stored one after the other,
+// the partners of a group's particles are themselves kGroup particles in a row, so a pair list needs one
+// entry for kGroup pairs, and their positions one vector load each: no gather. In a fluid an entry has few
+// pairs. Any set of pairs can be written so.
+//
+// Inside a block each pair stands once, at its particle of lower index: the kick of the other one is added to
+// a ring of sums that runs ahead of the groups. When a group's own entries are done, nobody else needs its old
+// positions, and its sums are complete: it is updated on the spot. Pairs between blocks stand on both sides
+// and are summed before any block is updated.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "emu/lattice/aligned.h"
+#include "emu/lattice/kernel_rule.h"
+#include "model/error.h"
+
+namespace cuboct::emu {
+
+// The pairs (group's lane l, particle first + l) for the bits l of `lanes`.
+struct Entry {
+  int32_t first;
+  uint8_t lanes;
+  uint8_t shift;  // index into Particles::shift
+  bool operator==(const Entry&) const = default;
+};
+inline constexpr uint8_t kNoShift = 13;
+
+// Structure of arrays over all particles of this process, its ghosts behind them.
+struct Particles {
+  std::array<PaddedArray<double>, 3> x;  // P fractional bits, from the corner of cell (0, 0, 0); unwrapped
+                                         // since the last list was built
+  std::array<PaddedArray<double>, 3> v;  // P+G fractional bits
+  std::array<PaddedArray<double>, 3> u;  // P+G fractional bits; empty unless the rule has PD
+  PaddedArray<uint32_t> id, node;        // id: kNoParticle where a block's last group is not full
+  PaddedArray<uint8_t> type;
+  // What to add to x_j - x_i where the pair meets across the seam of a periodic box: (sx+1) + 3 (sy+1) + 9
+  // (sz+1) periods.
+  std::array<std::array<double, 3>, 27> shift{};
+};
+inline constexpr uint32_t kNoParticle = 0xffffffffu;
+
+// A particle that left its node in a step.
+struct Crossing {
+  uint32_t particle;  // index
+  std::array<int8_t, 3> away;
+};
+
+// Something that did not fit; the node is found from the particle.
+struct Found {
+  Fault fault;
+  uint32_t particle;  // index
+  int64_t number;
+};
+
+// Entries by group: those of the k-th are [first[k], first[k + 1]).
+struct PairList {
+  std::vector<uint32_t> first;
+  std::vector<Entry> entries;
+};
+
+struct Block {
+  uint32_t begin = 0, end = 0;  // particles (indices), begin a multiple of kGroup
+  uint32_t first_group() const { return begin / kGroup; }
+  uint32_t groups() const { return (end - begin + kGroup - 1) / kGroup; }
+
+  // Pairs inside the block: all that may meet while the long list holds, and those of them that may meet in the
+  // next few steps.
+  PairList far_inside, inside;
+  // The same for pairs with other blocks, for the groups that have any; 3 x kGroup sums each.
+  std::vector<uint32_t> edge_group;  // ascending, less first_group()
+  PairList far_across, across;
+  PaddedArray<double> across_sum;
+  std::vector<uint8_t> plain;  // by group: updated in vectors
+
+  // Sums of particle p at index p - begin modulo the ring's size, a power of two, kMagic where nothing was added; a
+  // vector may overhang the end, where the next lap's first kGroup sums continue.
+  std::array<PaddedArray<double>, 3> ring;
+  uint32_t ring_mask = 0;
+
+  // Answers of a step.
+  std::vector<Crossing> crossings;
+  std::vector<Found> pair_faults, update_faults;
+  std::vector<uint32_t> changed;  // particles, if wanted
+  double fastest2 = 0;            // largest v.v
+};
+
+}  // namespace cuboct::emu

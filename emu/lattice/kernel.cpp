@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: MIT
+// The kernels in vectors of doubles, compiled once per instruction set. kernel_rule.h has the arithmetic.
+#include "emu/lattice/kernel.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "emu/lattice/kernel.cpp"
+// Without a fused multiply-add the kernels do not exist; AVX3_DL would add nothing to AVX3.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace cuboct::emu::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_NATIVE_FMA
+using D = hn::CappedTag<double, kGroup>;
+using U = hn::RebindToUnsigned<D>;
+using I = hn::RebindToSigned<D>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+constexpr D d;
+constexpr uint32_t kLanes = hn::MaxLanes(d);
+static_assert(kGroup % kLanes == 0);
+
+HWY_INLINE V magic() { return hn::Set(d, kMagic); }
+// round_odd(a, s) for factor = rounding_factor(s).
+HWY_INLINE V rounded(V a, double factor) { return hn::Sub(hn::MulAdd(a, hn::Set(d, factor), magic()), magic()); }
+
+HWY_INLINE M lane_mask(uint32_t lanes) {
+  const uint8_t bits[8] = {static_cast<uint8_t>(lanes)};
+  return hn::LoadMaskBits(d, bits);
+}
+HWY_INLINE uint32_t mask_lanes(M mask) {
+  uint8_t bits[8] = {};
+  hn::StoreMaskBits(d, mask, bits);
+  return bits[0] & ((1u << kLanes) - 1);
+}
+
+// The table's value plus `bias`.
+template <bool kSimple>
+HWY_INLINE V table_value(const KernelTable& table, V r2) {
+  constexpr U u;
+  const auto two52 = hn::Set(u, uint64_t{0x4330000000000000});
+  hn::Vec<U> bits, index;
+  V t;
+  if (kSimple || !table.octaves) {
+    bits = hn::BitCast(u, hn::Add(r2, hn::BitCast(d, two52)));
+    index = hn::And(hn::ShiftRightSame(bits, table.index_shift), hn::Set(u, table.index_mask));
+    t = hn::Sub(hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(u, table.t_mask)), two52)), hn::BitCast(d, two52));
+  } else {
+    constexpr I i;
+    bits = hn::BitCast(u, r2);
+    const auto place = hn::Sub(hn::BitCast(i, hn::ShiftRightSame(bits, table.index_shift)),
+                               hn::Set(i, table.index_base));
+    const auto inside = hn::Gt(place, hn::Set(i, int64_t{-1}));
+    index = hn::And(hn::BitCast(u, hn::IfThenElseZero(inside, place)), hn::Set(u, table.index_mask));
+    t = hn::Sub(hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(u, table.t_mask)), two52)), hn::BitCast(d, two52));
+    t = hn::IfThenElseZero(hn::RebindMask(d, inside), t);
+  }
+  constexpr I i;
+  const auto word = hn::GatherIndex(u, table.words.data(), hn::BitCast(i, index));
+  const auto low = hn::Set(u, table.low_mask);
+  const V c0 = hn::BitCast(d, hn::Or(hn::And(word, low), hn::BitCast(u, magic())));
+  V slope = hn::BitCast(d, hn::AndNot(low, word));
+  if (!kSimple && table.degree == 2)
+    slope = hn::Add(slope, rounded(hn::Mul(hn::GatherIndex(d, table.c2.data(), hn::BitCast(i, index)), t),
+                                   table.t_factor));
+  return hn::MulAdd(hn::Mul(slope, t), hn::Set(d, table.t_factor), c0);
+}
+
+struct Own {
+  V x[3], v[3];
+};
+
+// One entry, or the part of it at lanes `at` on: s * d of each axis, zero where there is no pair. Returns whether
+// there is one.
+template <bool kSimple, bool kDamped, bool kScaled>
+HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, const Own& own, uint32_t i,
+                           const Entry& entry, uint32_t at, V kick[3], uint32_t& doubtful) {
+  const ptrdiff_t j = static_cast<ptrdiff_t>(entry.first) + at;
+  V dx[3];
+  for (int a = 0; a < 3; ++a) {
+    V x = hn::Sub(hn::LoadU(d, particles.x[a].data() + j), own.x[a]);
+    if (HWY_UNLIKELY(entry.shift != kNoShift)) x = hn::Add(x, hn::Set(d, particles.shift[entry.shift][a]));
+    dx[a] = rounded(x, rule.difference_factor);
+  }
+  const V r2 = hn::MulAdd(dx[2], dx[2], hn::MulAdd(dx[1], dx[1], hn::Mul(dx[0], dx[0])));
+  const M near = hn::And(lane_mask(entry.lanes >> at), hn::Lt(r2, hn::Set(d, rule.cutoff2)));
+  if (HWY_UNLIKELY(hn::AllFalse(d, near))) return false;
+  V s = hn::Sub(table_value<kSimple>(rule.force, r2), hn::Set(d, rule.force.bias));
+  if (kDamped) {
+    V wd = hn::Zero(d), most = hn::Zero(d);
+    for (int a = 0; a < 3; ++a) {
+      const V w = rounded(hn::Sub(hn::LoadU(d, particles.v[a].data() + j), own.v[a]), rule.w_factor);
+      most = hn::Max(most, hn::Abs(w));
+      wd = hn::MulAdd(w, dx[a], wd);
+    }
+    const V q = rounded(wd, rule.q_factor);
+    const V c = hn::Sub(table_value<kSimple>(rule.damp, r2), hn::Set(d, rule.damp.bias));
+    s = hn::Sub(hn::NegMulAdd(hn::Mul(c, q), hn::Set(d, rule.damp_factor), hn::Add(s, magic())), magic());
+    const M odd = hn::Or(hn::Ge(most, hn::Set(d, rule.w_limit)),
+                         hn::Or(hn::Lt(s, hn::Set(d, rule.s_low)), hn::Ge(s, hn::Set(d, rule.s_high))));
+    doubtful = mask_lanes(hn::And(odd, near));
+  }
+  if (kScaled) {
+    double factor[kLanes];
+    for (uint32_t l = 0; l < kLanes; ++l)
+      factor[l] = rule.scale[particles.type[i + l] * rule.types + particles.type[j + l]];
+    s = rounded(hn::Mul(s, hn::LoadU(d, factor)), rule.scale_factor);
+  }
+  s = hn::IfThenElseZero(near, s);
+  for (int a = 0; a < 3; ++a) kick[a] = hn::Mul(s, dx[a]);
+  return true;
+}
+
+void prune(const Particles& particles, double reach, uint32_t first_group, const std::vector<uint32_t>* groups,
+           const PairList& from, PairList& to) {
+  const size_t count = from.first.size() - 1;
+  to.first.resize(count + 1);
+  to.entries.resize(from.entries.size());
+  Entry* out = to.entries.data();
+  const V reach2 = hn::Set(d, reach * reach);
+  for (size_t k = 0; k < count; ++k) {
+    to.first[k] = static_cast<uint32_t>(out - to.entries.data());
+    const size_t base = size_t{first_group + (groups != nullptr ? (*groups)[k] : static_cast<uint32_t>(k))} * kGroup;
+    for (uint32_t e = from.first[k]; e < from.first[k + 1]; ++e) {
+      const Entry entry = from.entries[e];
+      uint32_t lanes = 0;
+      for (uint32_t at = 0; at < kGroup; at += kLanes) {
+        V r2 = hn::Zero(d);
+        for (int a = 0; a < 3; ++a) {
+          const V x_j = hn::LoadU(d, particles.x[a].data() + entry.first + static_cast<ptrdiff_t>(at));
+          const V x = hn::Add(hn::Sub(x_j, hn::Load(d, particles.x[a].data() + base + at)),
+                              hn::Set(d, particles.shift[entry.shift][a]));
+          r2 = hn::MulAdd(x, x, r2);
+        }
+        lanes |= mask_lanes(hn::Le(r2, reach2)) << at;
+      }
+      lanes &= entry.lanes;
+      *out = {entry.first, static_cast<uint8_t>(lanes), entry.shift};
+      out += lanes != 0;
+    }
+  }
+  to.first[count] = static_cast<uint32_t>(out - to.entries.data());
+  to.entries.resize(to.first[count]);
+}
+
+template <bool kDamped>
+HWY_INLINE Own load_own(const Particles& particles, uint32_t i) {
+  Own own;
+  for (int a = 0; a < 3; ++a) {
+    own.x[a] = hn::Load(d, particles.x[a].data() + i);
+    if (kDamped) own.v[a] = hn::Load(d, particles.v[a].data() + i);
+  }
+  return own;
+}
+
+HWY_NOINLINE void report(const KernelRule& rule, const Particles& particles, uint32_t i, int32_t j, uint8_t shift,
+                         uint32_t lanes, bool both, Block& block) {
+  for (uint32_t l = 0; l < kLanes; ++l)
+    if (lanes >> l & 1) report_pair(rule, particles, i + l, j + l, shift, both, block);
+}
+
+template <bool kSimple, bool kDamped, bool kScaled>
+void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
+  for (size_t k = 0; k < block.edge_group.size(); ++k) {
+    const uint32_t g = block.first_group() + block.edge_group[k];
+    if (active.group != nullptr && active.group[g] == 0) continue;
+    for (uint32_t at = 0; at < kGroup; at += kLanes) {
+      const uint32_t i = g * kGroup + at;
+      const Own own = load_own<kDamped>(particles, i);
+      V sum[3] = {magic(), magic(), magic()};
+      for (uint32_t e = block.across.first[k]; e < block.across.first[k + 1]; ++e) {
+        const Entry& entry = block.across.entries[e];
+        uint32_t doubtful = 0;
+        V kick[3];
+        if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, entry, at, kick, doubtful)) continue;
+        if (HWY_UNLIKELY(doubtful != 0))
+          report(rule, particles, i, entry.first + static_cast<int32_t>(at), entry.shift, doubtful, false, block);
+        for (int a = 0; a < 3; ++a) sum[a] = hn::NegMulAdd(kick[a], hn::Set(d, rule.kick_factor), sum[a]);
+      }
+      for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, &block.across_sum[(k * 3 + a) * kGroup + at]);
+    }
+  }
+}
+
+// Takes the sums of ring slots `slot` on and leaves the ring empty there.
+HWY_INLINE void take_ring(Block& block, uint32_t slot, uint32_t at, V sum[3]) {
+  for (int a = 0; a < 3; ++a) {
+    double* ring = block.ring[a].data();
+    V here = hn::Sub(hn::Load(d, ring + slot + at), magic());
+    hn::Store(magic(), d, ring + slot + at);
+    if (HWY_UNLIKELY(slot == 0)) {
+      double* overhang = ring + block.ring_mask + 1 + at;
+      here = hn::Add(here, hn::Sub(hn::Load(d, overhang), magic()));
+      hn::Store(magic(), d, overhang);
+    }
+    sum[a] = hn::Add(sum[a], here);
+  }
+}
+
+// Kick and drift of a group's lanes `at` on, all free.
+HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i, uint32_t lanes, bool track,
+                       const V sum[3], Block& block, V& fastest2) {
+  const M mask = lane_mask(lanes);
+  const FixedType& type = rule.rule->types[particles.type[i]];
+  V v[3];
+  M odd = hn::FirstN(d, 0);
+  for (int a = 0; a < 3; ++a) {
+    v[a] = hn::Add(hn::Load(d, particles.v[a].data() + i),
+                   hn::Add(sum[a], hn::Set(d, static_cast<double>(type.gravity[a]))));
+    odd = hn::Or(odd, hn::Or(hn::Ge(hn::Abs(sum[a]), hn::Set(d, rule.sum_limit)),
+                             hn::Ge(hn::Abs(v[a]), hn::Set(d, rule.v_limit))));
+  }
+  if (HWY_UNLIKELY(!hn::AllFalse(d, hn::And(odd, mask)))) {
+    double sums[3][kLanes];
+    for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
+    for (uint32_t l = 0; l < kLanes; ++l)
+      if (lanes >> l & 1) {
+        const double of[3] = {sums[0][l], sums[1][l], sums[2][l]};
+        update_one(rule, particles, i + l, of, block);
+      }
+    return;
+  }
+  M crossed = hn::FirstN(d, 0), changed = hn::FirstN(d, 0);
+  V before[3], after[3];
+  for (int a = 0; a < 3; ++a) {
+    const V x = hn::Load(d, particles.x[a].data() + i);
+    const V old_v = hn::Load(d, particles.v[a].data() + i);
+    const V step = rounded(v[a], rule.drift_factor);
+    const V new_x = hn::Add(x, step);
+    before[a] = hn::Floor(hn::Mul(x, hn::Set(d, rule.inverse_cell)));
+    after[a] = hn::Floor(hn::Mul(new_x, hn::Set(d, rule.inverse_cell)));
+    crossed = hn::Or(crossed, hn::Ne(before[a], after[a]));
+    if (track) changed = hn::Or(changed, hn::Or(hn::Ne(step, hn::Zero(d)), hn::Ne(v[a], old_v)));
+    hn::Store(hn::IfThenElse(mask, new_x, x), d, particles.x[a].data() + i);
+    hn::Store(hn::IfThenElse(mask, v[a], old_v), d, particles.v[a].data() + i);
+  }
+  const V speed2 = hn::MulAdd(v[2], v[2], hn::MulAdd(v[1], v[1], hn::Mul(v[0], v[0])));
+  fastest2 = hn::Max(fastest2, hn::IfThenElseZero(mask, speed2));
+  crossed = hn::And(crossed, mask);
+  if (HWY_UNLIKELY(!hn::AllFalse(d, crossed))) {
+    double away[3][kLanes];
+    for (int a = 0; a < 3; ++a) hn::StoreU(hn::Sub(after[a], before[a]), d, away[a]);
+    const uint32_t who = mask_lanes(crossed);
+    for (uint32_t l = 0; l < kLanes; ++l)
+      if (who >> l & 1)
+        block.crossings.push_back({i + l,
+                                   {static_cast<int8_t>(away[0][l]), static_cast<int8_t>(away[1][l]),
+                                    static_cast<int8_t>(away[2][l])}});
+  }
+  if (track) {
+    const uint32_t who = mask_lanes(hn::And(changed, mask));
+    for (uint32_t l = 0; l < kLanes; ++l)
+      if (who >> l & 1) block.changed.push_back(i + l);
+  }
+}
+
+template <bool kSimple, bool kDamped, bool kScaled>
+void inside(const KernelRule& rule, Particles& particles, const Active& active, Block& block) {
+  const bool track = active.track;
+  double* const ring[3] = {block.ring[0].data(), block.ring[1].data(), block.ring[2].data()};
+  V fastest2 = hn::Zero(d);
+  size_t next_edge = 0;
+  for (uint32_t k = 0; k < block.groups(); ++k) {
+    const uint32_t g = block.first_group() + k;
+    const uint32_t base = g * kGroup;
+    const double* across_sum = nullptr;
+    if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
+      across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
+    const uint32_t slot = (k * kGroup) & block.ring_mask;
+    const bool work = active.group == nullptr || active.group[g] != 0;
+    uint32_t lanes = base + kGroup <= block.end ? 0xffu : (1u << (block.end - base)) - 1;
+    if (!work)
+      lanes = 0;
+    else if (active.node != nullptr)
+      for (uint32_t l = 0; l < kGroup; ++l)
+        if (active.node[particles.node[base + l]] == 0) lanes &= ~(1u << l);
+    for (uint32_t at = 0; at < kGroup; at += kLanes) {
+      const uint32_t i = base + at;
+      V sum[3] = {magic(), magic(), magic()};
+      if (work) {
+        const Own own = load_own<kDamped>(particles, i);
+        const Entry* const end = block.inside.entries.data() + block.inside.first[k + 1];
+        for (const Entry* e = block.inside.entries.data() + block.inside.first[k]; e != end; ++e) {
+          uint32_t doubtful = 0;
+          V kick[3];
+          if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, kick, doubtful)) continue;
+          if (HWY_UNLIKELY(doubtful != 0))
+            report(rule, particles, i, e->first + static_cast<int32_t>(at), e->shift, doubtful, true, block);
+          const uint32_t to = ((static_cast<uint32_t>(e->first) - block.begin) & block.ring_mask) + at;
+          const V factor = hn::Set(d, rule.kick_factor);
+          for (int a = 0; a < 3; ++a) {
+            sum[a] = hn::NegMulAdd(kick[a], factor, sum[a]);
+            hn::StoreU(hn::MulAdd(kick[a], factor, hn::LoadU(d, ring[a] + to)), d, ring[a] + to);
+          }
+        }
+      }
+      for (int a = 0; a < 3; ++a) {
+        sum[a] = hn::Sub(sum[a], magic());
+        if (across_sum != nullptr && work)
+          sum[a] = hn::Add(sum[a], hn::Sub(hn::LoadU(d, across_sum + a * kGroup + at), magic()));
+      }
+      take_ring(block, slot, at, sum);
+      const uint32_t mine = lanes >> at & ((1u << kLanes) - 1);
+      if (mine == 0) continue;
+      if (HWY_LIKELY(block.plain[k] != 0)) {
+        update(rule, particles, i, mine, track, sum, block, fastest2);
+      } else {
+        double sums[3][kLanes];
+        for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
+        for (uint32_t l = 0; l < kLanes; ++l)
+          if (mine >> l & 1) {
+            const double of[3] = {sums[0][l], sums[1][l], sums[2][l]};
+            update_one(rule, particles, i + l, of, block);
+          }
+      }
+    }
+  }
+  block.fastest2 = std::max(block.fastest2, hn::GetLane(hn::MaxOfLanes(d, fastest2)));
+}
+
+template <bool kSimple>
+Kernels kernels_for(const KernelRule& rule, const char* name) {
+  if (rule.damped)
+    return rule.scaled ? Kernels{name, prune, across<kSimple, true, true>, inside<kSimple, true, true>}
+                       : Kernels{name, prune, across<kSimple, true, false>, inside<kSimple, true, false>};
+  return rule.scaled ? Kernels{name, prune, across<kSimple, false, true>, inside<kSimple, false, true>}
+                     : Kernels{name, prune, across<kSimple, false, false>, inside<kSimple, false, false>};
+}
+#endif
+
+void vector_kernels(const KernelRule& rule, std::vector<Kernels>& out) {
+#if HWY_NATIVE_FMA
+  const auto uniform1 = [](const KernelTable& t) { return !t.octaves && t.degree == 1; };
+  const bool simple = uniform1(rule.force) && (!rule.damped || uniform1(rule.damp));
+  const char* name = kLanes == 8 ? "avx512" : kLanes == 4 ? "avx2" : "128-bit";
+  out.push_back(simple ? kernels_for<true>(rule, name) : kernels_for<false>(rule, name));
+#else
+  static_cast<void>(rule);
+  static_cast<void>(out);
+#endif
+}
+
+}  // namespace cuboct::emu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace cuboct::emu {
+
+HWY_EXPORT(vector_kernels);
+Kernels scalar_kernels();
+
+std::vector<Kernels> kernels_here(const KernelRule& rule) {
+  std::vector<Kernels> kernels;
+  if (rule.fits) {
+    // Every vector unit of this machine, the widest first.
+    for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      hwy::GetChosenTarget().Update(target);
+      HWY_DYNAMIC_DISPATCH(vector_kernels)(rule, kernels);
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    std::stable_sort(kernels.begin(), kernels.end(),
+                     [](const Kernels& a, const Kernels& b) { return a.name.size() > b.name.size(); });
+  }
+  kernels.push_back(scalar_kernels());
+  return kernels;
+}
+
+}  // namespace cuboct::emu
+#endif

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// The kernels in plain integers: the contract's own functions.
+#include <cmath>
+
+#include "emu/lattice/kernel.h"
+#include "model/fixed_math.h"
+
+namespace cuboct::emu {
+namespace {
+
+Int3 whole(const std::array<PaddedArray<double>, 3>& a, uint32_t p) {
+  return {static_cast<int64_t>(a[0][p]), static_cast<int64_t>(a[1][p]), static_cast<int64_t>(a[2][p])};
+}
+
+PairResult pair(const KernelRule& rule, const Particles& particles, uint32_t i, uint32_t j, uint8_t shift) {
+  const Int3 x_i = whole(particles.x, i);
+  Int3 x_j = whole(particles.x, j);
+  for (int a = 0; a < 3; ++a) x_j[a] += static_cast<int64_t>(particles.shift[shift][a]);
+  return pair_kick(*rule.rule, x_i, whole(particles.v, i), particles.type[i], x_j, whole(particles.v, j),
+                   particles.type[j]);
+}
+
+void prune(const Particles& particles, double reach, uint32_t first_group, const std::vector<uint32_t>* groups,
+           const PairList& from, PairList& to) {
+  to.first.assign(1, 0);
+  to.entries.clear();
+  for (uint32_t k = 0; k + 1 < from.first.size(); ++k) {
+    const uint32_t base = (first_group + (groups != nullptr ? (*groups)[k] : k)) * kGroup;
+    for (uint32_t e = from.first[k]; e < from.first[k + 1]; ++e) {
+      Entry entry = from.entries[e];
+      for (uint32_t l = 0; l < kGroup; ++l) {
+        if ((entry.lanes >> l & 1) == 0) continue;
+        double r2 = 0;
+        for (int a = 0; a < 3; ++a) {
+          const double d = particles.x[a][entry.first + l] - particles.x[a][base + l] + particles.shift[entry.shift][a];
+          r2 += d * d;
+        }
+        if (r2 > reach * reach) entry.lanes = static_cast<uint8_t>(entry.lanes & ~(1u << l));
+      }
+      if (entry.lanes != 0) to.entries.push_back(entry);
+    }
+    to.first.push_back(static_cast<uint32_t>(to.entries.size()));
+  }
+}
+
+void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
+  for (size_t k = 0; k < block.edge_group.size(); ++k) {
+    const uint32_t g = block.first_group() + block.edge_group[k];
+    if (active.group != nullptr && active.group[g] == 0) continue;
+    double* sum = &block.across_sum[k * 3 * kGroup];
+    std::fill(sum, sum + 3 * kGroup, kMagic);
+    for (uint32_t e = block.across.first[k]; e < block.across.first[k + 1]; ++e) {
+      const Entry& entry = block.across.entries[e];
+      for (uint32_t l = 0; l < kGroup; ++l) {
+        if ((entry.lanes >> l & 1) == 0) continue;
+        const PairResult result = pair(rule, particles, g * kGroup + l, entry.first + l, entry.shift);
+        if (result.fault != Fault::none)
+          block.pair_faults.push_back({result.fault, g * kGroup + l, result.number});
+        for (int a = 0; a < 3; ++a) sum[a * kGroup + l] += static_cast<double>(result.kick[a]);
+      }
+    }
+  }
+}
+
+void inside(const KernelRule& rule, Particles& particles, const Active& active, Block& block) {
+  size_t next_edge = 0;
+  for (uint32_t k = 0; k < block.groups(); ++k) {
+    const uint32_t g = block.first_group() + k;
+    const double* across_sum = nullptr;
+    if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
+      across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
+    const bool work = active.group == nullptr || active.group[g] != 0;
+    const uint32_t slot = (k * kGroup) & block.ring_mask;
+    double sums[kGroup][3] = {};
+    if (work)
+      for (uint32_t e = block.inside.first[k]; e < block.inside.first[k + 1]; ++e) {
+        const Entry& entry = block.inside.entries[e];
+        for (uint32_t l = 0; l < kGroup; ++l) {
+          if ((entry.lanes >> l & 1) == 0) continue;
+          const uint32_t i = g * kGroup + l, j = entry.first + l;
+          const PairResult result = pair(rule, particles, i, j, entry.shift);
+          if (result.fault != Fault::none) report_pair(rule, particles, i, j, entry.shift, true, block);
+          const uint32_t to = ((entry.first - block.begin) & block.ring_mask) + l;
+          for (int a = 0; a < 3; ++a) {
+            sums[l][a] += static_cast<double>(result.kick[a]);
+            block.ring[a][to] -= static_cast<double>(result.kick[a]);
+          }
+        }
+      }
+    for (uint32_t l = 0; l < kGroup; ++l) {
+      for (int a = 0; a < 3; ++a) {
+        double& ahead = block.ring[a][slot + l];
+        sums[l][a] += ahead - kMagic;
+        ahead = kMagic;
+        if (slot == 0) {
+          double& overhang = block.ring[a][block.ring_mask + 1 + l];
+          sums[l][a] += overhang - kMagic;
+          overhang = kMagic;
+        }
+        if (across_sum != nullptr) sums[l][a] += across_sum[a * kGroup + l] - kMagic;
+      }
+      const uint32_t p = g * kGroup + l;
+      if (!work || p >= block.end || (active.node != nullptr && active.node[particles.node[p]] == 0)) continue;
+      update_one(rule, particles, p, sums[l], block);
+    }
+  }
+}
+
+}  // namespace
+
+void report_pair(const KernelRule& rule, const Particles& particles, uint32_t i, uint32_t j, uint8_t shift,
+                 bool both, Block& block) {
+  const PairResult on_i = pair(rule, particles, i, j, shift);
+  if (on_i.fault != Fault::none) block.pair_faults.push_back({on_i.fault, i, on_i.number});
+  if (!both) return;
+  const PairResult on_j = pair(rule, particles, j, i, static_cast<uint8_t>(2 * kNoShift - shift));
+  if (on_j.fault != Fault::none) block.pair_faults.push_back({on_j.fault, j, on_j.number});
+}
+
+void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const double sum[3], Block& block) {
+  const Int3 x = whole(particles.x, p), v = whole(particles.v, p);
+  const bool pd = particles.u[0].size() > 0;
+  const Int3 u = pd ? whole(particles.u, p) : Int3{};
+  const Int3 kick{static_cast<int64_t>(sum[0]), static_cast<int64_t>(sum[1]), static_cast<int64_t>(sum[2])};
+  const FinishResult done = finish(*rule.rule, kick, x, v, u, particles.type[p]);
+  if (done.fault != Fault::none) block.update_faults.push_back({done.fault, p, done.number});
+  const int P = rule.rule->widths.position_frac;
+  Crossing crossing{p, {}};
+  bool changed = false;
+  double speed2 = 0;
+  for (int a = 0; a < 3; ++a) {
+    crossing.away[a] = static_cast<int8_t>((done.x[a] >> P) - (x[a] >> P));
+    changed |= done.x[a] != x[a] || done.v[a] != v[a] || done.u[a] != u[a];
+    particles.x[a][p] = static_cast<double>(done.x[a]);
+    particles.v[a][p] = static_cast<double>(done.v[a]);
+    if (pd) particles.u[a][p] = static_cast<double>(done.u[a]);
+    speed2 += static_cast<double>(done.v[a]) * static_cast<double>(done.v[a]);
+  }
+  block.fastest2 = std::max(block.fastest2, speed2);
+  if (changed) block.changed.push_back(p);
+  if (crossing.away != std::array<int8_t, 3>{}) block.crossings.push_back(crossing);
+}
+
+Kernels scalar_kernels() { return {"portable", prune, across, inside}; }
+
+}  // namespace cuboct::emu

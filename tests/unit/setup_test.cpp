@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// From scenes to plans: with and without a State in memory, and the cells that a body can reach.
+#include "hw/setup.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "model/error.h"
+#include "model/scene.h"
+
+namespace cuboct {
+namespace {
+
+const std::string kRoot = CUBOCT_SOURCE_DIR;
+
+Scene example(const std::string& name) { return read_scene(kRoot + "/scenes/" + name + ".toml"); }
+
+std::string error_of(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Setup, APlanNeedsNoState) {
+  for (const char* name : {"coupon", "lj_block", "two_types"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = example(name);
+    const cuboct::Setup setup = make_setup(scene, {});
+    const Plan plan = plan_of(scene, {});
+    EXPECT_EQ(plan.hash, setup.plan.hash);
+    EXPECT_EQ(describe(plan), describe(setup.plan));
+    ASSERT_EQ(plan.particles, setup.initial.particles.size());
+    for (uint32_t id = 0; id < plan.particles; ++id)
+      ASSERT_EQ(fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin),
+                setup.initial.particles[id]);
+  }
+}
+
+TEST(Setup, BothWaysRefuseAlike) {
+  Scene scene = example("undamped_block");
+  Arch arch;
+  arch.capacity = 3;
+  EXPECT_EQ(error_of([&] { plan_of(scene, arch); }),
+            "a node would hold 4 particles: its capacity is 3\n"
+            "  hint: set node.capacity to at least 4 in the arch file");
+  EXPECT_EQ(error_of([&] { make_setup(scene, arch); }), error_of([&] { plan_of(scene, arch); }));
+  arch.capacity = 300;
+  EXPECT_EQ(error_of([&] { plan_of(scene, arch); }), "capacity = 300 is out of range: 1 to 256");
+  EXPECT_EQ(error_of([&] { make_setup(scene, arch); }), error_of([&] { plan_of(scene, arch); }));
+  scene.body.v[7][1] = 1e6;
+  const std::string fast = error_of([&] { plan_of(scene, {}); });
+  EXPECT_TRUE(fast.starts_with("particle 7 moves at 1e+06 m/s: more than the ")) << fast;
+  EXPECT_EQ(error_of([&] { make_setup(scene, {}); }), fast);
+}
+
+}  // namespace
+}  // namespace cuboct
