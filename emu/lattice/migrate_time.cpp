@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "emu/lattice/migrate_time.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+
+namespace cuboct::emu {
+namespace {
+
+// From the cycle that loads a record's last beat to that in which the receiver sees it: the sender's register, the
+// receiver's.
+constexpr int32_t kOnTheWay = 2;
+
+constexpr size_t at(int axis) { return static_cast<size_t>(axis); }
+
+}  // namespace
+
+Migration::Migration(const Lattice& lattice, int beats)
+    : lattice_(lattice), beats_(beats), leaving_bits_(lattice.size()) {
+  for (auto& scan : scan_) scan.resize(lattice.size());
+  for (auto& group : group_) group.assign(lattice.size(), -1);
+}
+
+std::span<const Migration::Arrival> Migration::arrivals(int axis, uint32_t node, int side) const {
+  const int32_t group = group_[at(axis)][node];
+  if (group < 0) return {};
+  const auto& range = groups_[static_cast<size_t>(group)];
+  const auto from = range[static_cast<size_t>(side)], to = range[static_cast<size_t>(side) + 1];
+  return {arrivals_.data() + from, to - from};
+}
+
+void Migration::forget() {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const uint32_t node : leaving_[at(axis)]) scan_[at(axis)][node] = 0, leaving_bits_[node] = 0;
+    for (const uint32_t node : received_[at(axis)]) group_[at(axis)][node] = -1;
+    leaving_[at(axis)].clear();
+    received_[at(axis)].clear();
+  }
+  movers_.clear();
+  groups_.clear();
+  arrivals_.clear();
+}
+
+void Migration::set_leaving(uint32_t node, int axis) {
+  const auto bit = static_cast<uint8_t>(1u << axis);
+  if ((leaving_bits_[node] & bit) != 0) return;
+  leaving_bits_[node] |= bit;
+  leaving_[at(axis)].push_back(node);
+}
+
+void Migration::plan(std::span<uint32_t> count, std::span<const Leaving> leaving) {
+  if (any_) forget();
+  any_ = !leaving.empty();
+  if (!any_) return;
+  for (const Leaving& l : leaving) {
+    movers_.push_back({l.node, l.slot, l.away});
+    for (int axis = 0; axis < 3; ++axis)
+      if (l.away[at(axis)] != 0) set_leaving(l.node, axis);
+  }
+  const auto before = [](const Mover& a, const Mover& b) {
+    return std::tie(a.node, a.slot) < std::tie(b.node, b.slot);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::is_sorted(movers_.begin(), movers_.end(), before))
+      std::sort(movers_.begin(), movers_.end(), before);
+    depart(axis, count);
+    land(axis, count);
+  }
+}
+
+// SCAN: a cycle per slot, and the further beats of those that leave. Those who stay close ranks.
+void Migration::depart(int axis, std::span<uint32_t> count) {
+  for (const uint32_t node : leaving_[at(axis)])  // none, if the last particle left along an earlier axis
+    scan_[at(axis)][node] = static_cast<int32_t>(count[node]);
+  landings_.clear();
+  size_t kept = 0;
+  uint32_t node = kNoNode, gone = 0;
+  for (Mover m : movers_) {
+    if (m.node != node) node = m.node, gone = 0;
+    const int way = m.away[at(axis)];
+    if (way == 0) {
+      m.slot -= gone;
+      movers_[kept++] = m;
+      continue;
+    }
+    const uint32_t to = lattice_.neighbour(node, 2 * axis + (way > 0));
+    if (to == kNoNode) throw std::invalid_argument("a particle leaves the lattice");
+    m.away[at(axis)] = 0;
+    ++gone;
+    const auto last_beat = static_cast<int32_t>(m.slot + gone * static_cast<uint32_t>(beats_ - 1));
+    landings_.push_back({to, way > 0 ? 0u : 1u, static_cast<uint32_t>(landings_.size()), m.away,
+                         {node, last_beat + kOnTheWay}});
+    --count[node];
+    scan_[at(axis)][node] += beats_ - 1;
+  }
+  movers_.resize(kept);
+}
+
+// TAKE_LOW, TAKE_HIGH: those from below take the next slots, then those from above, each in its sender's order.
+void Migration::land(int axis, std::span<uint32_t> count) {
+  std::sort(landings_.begin(), landings_.end(), [](const Landing& a, const Landing& b) {
+    return std::tie(a.to, a.side, a.order) < std::tie(b.to, b.side, b.order);
+  });
+  for (const Landing& l : landings_) {
+    int32_t& group = group_[at(axis)][l.to];
+    const auto here = static_cast<uint32_t>(arrivals_.size());
+    if (group < 0) {
+      group = static_cast<int32_t>(groups_.size());
+      groups_.push_back({here, here, here});
+      received_[at(axis)].push_back(l.to);
+    }
+    auto& range = groups_.back();
+    if (l.side == 0) range[1] = here + 1;
+    range[2] = here + 1;
+    arrivals_.push_back(l.arrival);
+    const uint32_t slot = count[l.to]++;
+    if (l.away == std::array<int8_t, 3>{}) continue;
+    movers_.push_back({l.to, slot, l.away});
+    for (int later = axis + 1; later < 3; ++later)
+      if (l.away[at(later)] != 0) set_leaving(l.to, later);
+  }
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// The exact cycles of a run without stalls, at the price of a few operations per node and step: the contract of
+// docs/reference/node.md as recurrences over nodes and their neighbours. docs/reference/timing.md derives them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "emu/lattice/slots.h"
+#include "hw/plan.h"
+#include "model/trace.h"
+
+namespace cuboct::emu {
+
+// How often the model could save work; for reports and tests, not for results.
+struct TimingCounters {
+  uint64_t node_steps = 0;
+  uint64_t filtered = 0;   // node-steps whose candidates were tested
+  uint64_t streamed = 0;   // node-steps whose force engine's recurrence was walked item by item
+};
+
+class TimingModel {
+ public:
+  // `threads`: 0 for one per core that the process may use. `plan` must outlive the model.
+  TimingModel(const Plan& plan, int threads);
+  ~TimingModel();
+  TimingModel(const TimingModel&) = delete;
+  TimingModel& operator=(const TimingModel&) = delete;
+
+  // The next step: `slots` are the particles at its start, `leaving` those that leave their node in it, in any
+  // order. The step must be one that ends without a fault. spans[node * kPhases + phase] gets first and last
+  // cycle, cycle 0 being the first of the run; empty where nobody wants them. Throws std::invalid_argument where
+  // sizes do not fit the plan, a node holds more than its capacity or a particle leaves the lattice.
+  void step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans);
+
+  // Cycles of the run if it ends after the steps so far, DUMP and the last node's first cycle of IDLE included: what
+  // the cycle-accurate engines count. `slots` are the particles then.
+  uint64_t cycles(const NodeSlots& slots) const;
+
+  // All that later steps depend on: the cycle, by node, at which the next step begins.
+  const std::vector<uint64_t>& starts() const;
+  // Goes on from there. Throws std::invalid_argument where the size is not the number of nodes.
+  void resume(std::span<const uint64_t> starts);
+
+  const TimingCounters& counters() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cuboct::emu

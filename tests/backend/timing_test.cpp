@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// The timing model against the native node stepped clock by clock: every phase span of every case.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+#include "emu/lattice/timing.h"
+#include "emu/systemc/node.h"
+#include "model/golden.h"
+#include "tests/backend/engines.h"
+#include "tests/support/cases.h"
+
+namespace cuboct::test {
+namespace {
+
+// What the stimuli contained.
+struct Seen {
+  uint64_t spans = 0, runs = 0, faults = 0;
+  uint64_t stalls = 0;           // cycles in which a full queue held a streamer
+  uint64_t multi_pass = 0;       // node-steps with more own particles than lanes
+  uint64_t multi_beat = 0;       // steps of plans whose records take several beats
+  uint64_t empty_nodes = 0;      // node-steps
+  uint64_t full_nodes = 0;       // node-steps that hold the capacity
+  uint64_t leave = 0;            // particles that leave their node in a step
+  uint64_t leave_twice = 0;      // along two axes, so that an arrival leaves again
+  uint64_t leave_thrice = 0;
+  uint64_t crowds = 0;           // node-steps in which several particles leave one node
+  uint64_t emptied = 0;          // nodes that hold particles before a step and none after
+  uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, damped = 0, rings_of_3 = 0, lone_nodes = 0;
+};
+
+emu::NodeSlots slots_of(const Golden& golden) {
+  emu::NodeSlots slots;
+  for (const auto& node : golden.nodes()) {
+    slots.first.push_back(static_cast<uint32_t>(slots.x[0].size()));
+    for (const Particle& p : node)
+      for (size_t a = 0; a < 3; ++a) slots.x[a].push_back(static_cast<int32_t>(p.x[a]));
+  }
+  slots.first.push_back(static_cast<uint32_t>(slots.x[0].size()));
+  return slots;
+}
+
+// Where each particle is, by id: node and slot.
+std::map<uint32_t, std::pair<uint32_t, uint32_t>> places_of(const Golden& golden) {
+  std::map<uint32_t, std::pair<uint32_t, uint32_t>> places;
+  for (uint32_t n = 0; n < golden.nodes().size(); ++n)
+    for (uint32_t k = 0; k < golden.nodes()[n].size(); ++k) places[golden.nodes()[n][k].id] = {n, k};
+  return places;
+}
+
+std::vector<emu::Leaving> leaving_between(const Lattice& lattice, const std::map<uint32_t, std::pair<uint32_t, uint32_t>>& before,
+                                          const std::map<uint32_t, std::pair<uint32_t, uint32_t>>& after) {
+  std::vector<emu::Leaving> leaving;
+  for (const auto& [id, from] : before) {
+    const uint32_t to = after.at(id).first;
+    if (to == from.first) continue;
+    emu::Leaving l{from.first, from.second, {}};
+    for (size_t a = 0; a < 3; ++a) {
+      int way = lattice.cell(to)[a] - lattice.cell(from.first)[a];
+      if (lattice.period()[a] > 0 && std::abs(way) > 1) way = way > 0 ? -1 : 1;
+      l.away[a] = static_cast<int8_t>(way);
+    }
+    leaving.push_back(l);
+  }
+  return leaving;  // by id: in no order that the model could rely on
+}
+
+void note(Seen& seen, const Plan& plan, const Golden& golden, const std::vector<emu::Leaving>& leaving) {
+  const auto& arch = plan.arch;
+  for (const auto& node : golden.nodes()) {
+    seen.multi_pass += static_cast<int>(node.size()) > arch.filter_lanes;
+    seen.empty_nodes += node.empty();
+    seen.full_nodes += static_cast<int>(node.size()) == arch.capacity;
+  }
+  std::map<uint32_t, uint32_t> from;
+  for (const auto& l : leaving) {
+    const int axes = (l.away[0] != 0) + (l.away[1] != 0) + (l.away[2] != 0);
+    ++seen.leave;
+    seen.leave_twice += axes == 2;
+    seen.leave_thrice += axes == 3;
+    seen.crowds += ++from[l.node] == 2;
+  }
+  for (const auto& [node, count] : from) seen.emptied += count == golden.nodes()[node].size();
+  seen.multi_beat += plan.words.halo_beats > 1 || plan.words.migrate_beats > 1;
+}
+
+// Runs both and compares; the text of the first difference.
+std::string difference(const Case& c, Seen& seen, int threads = 1) {
+  const Plan& plan = c.setup.plan;
+  emu::RunOptions options;
+  options.steps = c.steps;
+  const Trace trace = run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
+  const uint32_t nodes = plan.lattice.size();
+
+  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
+  auto model = std::make_unique<emu::TimingModel>(plan, threads);
+  std::vector<PhaseSpan> spans(size_t{nodes} * kPhases);
+  for (uint64_t step = 0; step < trace.steps(); ++step) {
+    const auto slots = slots_of(golden);
+    const auto before = places_of(golden);
+    const Golden old = golden;
+    golden.step();
+    const auto leaving = leaving_between(plan.lattice, before, places_of(golden));
+    note(seen, plan, old, leaving);
+    // A model that is made anew and told where it was goes on alike.
+    if (step == trace.steps() / 2) {
+      auto other = std::make_unique<emu::TimingModel>(plan, threads);
+      other->resume(model->starts());
+      model = std::move(other);
+    }
+    model->step(slots, leaving, spans);
+    for (size_t k = 0; k < spans.size(); ++k, ++seen.spans) {
+      const PhaseSpan expected = trace.cycles[step * spans.size() + k];
+      if (spans[k] == expected) continue;
+      return fmt::format("{}, step {}, node {}, {}: cycles {} to {}, expected {} to {}", c.name, step,
+                         k / kPhases, to_string(static_cast<Phase>(k % kPhases)), spans[k].start, spans[k].end,
+                         expected.start, expected.end);
+    }
+  }
+  if (!trace.stop) {
+    const auto counted = static_cast<uint64_t>(trace.counters.at(0).second);
+    const uint64_t cycles = model->cycles(slots_of(golden));
+    if (cycles != counted) return fmt::format("{}: {} cycles, expected {}", c.name, cycles, counted);
+  }
+  ++seen.runs;
+  seen.faults += trace.stop.has_value();
+  for (const auto& [name, value] : trace.counters)
+    if (name == "queue_stalls") seen.stalls += static_cast<uint64_t>(value);
+  seen.no_overlap += !plan.arch.overlap;
+  seen.queue_of_one += plan.arch.queue_depth == 1;
+  seen.pipes += plan.arch.force_pipes > 1;
+  seen.pd += plan.rule.pd;
+  seen.damped += plan.rule.damped;
+  const Cell& period = plan.lattice.period();
+  seen.rings_of_3 += period[0] == 3 || period[1] == 3 || period[2] == 3;
+  seen.lone_nodes += nodes == 1;
+  return {};
+}
+
+// The most particles that a node holds in the case's steps.
+int crowd_of(const Case& c) {
+  size_t most = 1;
+  for (const auto& step : run_golden(c.setup, c.steps).order)
+    for (const auto& node : step) most = std::max(most, node.size());
+  return static_cast<int>(most);
+}
+
+// The same scene and rule on another machine: everything of the arch that only changes cycles is drawn anew. The
+// capacity is sometimes what the fullest node holds.
+Case rebuilt(Case c, uint64_t seed) {
+  std::mt19937_64 random(seed * 7919);
+  const auto draw = [&random](int low, int high) {
+    return low + static_cast<int>(random() % static_cast<uint64_t>(high - low + 1));
+  };
+  Plan& plan = c.setup.plan;
+  Arch arch = plan.arch;
+  arch.filter_lanes = std::array{draw(1, 4), draw(5, 20), draw(21, 64)}[static_cast<size_t>(draw(0, 2))];
+  arch.force_pipes = draw(1, std::min(arch.filter_lanes, draw(1, 8)));
+  arch.queue_depth = std::array{1, draw(2, 4), draw(5, 30), 1024}[static_cast<size_t>(draw(0, 3))];
+  arch.overlap = draw(0, 3) > 0;
+  arch.link_bits = std::array{0, draw(1, 8), draw(9, 200), 1024}[static_cast<size_t>(draw(0, 3))];
+  if (draw(0, 2) == 0) arch.capacity = crowd_of(c);
+  plan = make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
+  c.name += " rebuilt";
+  return c;
+}
+
+class Timing : public testing::TestWithParam<std::string> {};
+
+TEST_P(Timing, EqualsTheClockedNode) {
+  Seen seen;
+  const Case c = make_case(GetParam());
+  EXPECT_EQ(difference(c, seen), "");
+  EXPECT_EQ(seen.spans, c.steps * c.setup.plan.lattice.size() * kPhases);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Timing, testing::ValuesIn(case_names()),
+                         [](const auto& p) { return p.param; });
+
+TEST(TimingRandom, EqualsTheClockedNode) {
+  Seen seen;
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
+    const Case c = random_case(seed);
+    ASSERT_EQ(difference(c, seen, seed % 8 == 0 ? 3 : 1), "");
+    ASSERT_EQ(difference(rebuilt(c, seed), seen), "");
+  }
+  for (const std::string& name : case_names())
+    for (uint64_t seed = 1; seed <= 4; ++seed) ASSERT_EQ(difference(rebuilt(make_case(name), seed), seen), "");
+  const std::vector<std::pair<const char*, uint64_t>> counts{{"spans", seen.spans},
+                                                {"runs", seen.runs},
+                                                {"faults", seen.faults},
+                                                {"stalls", seen.stalls},
+                                                {"multi_pass", seen.multi_pass},
+                                                {"multi_beat", seen.multi_beat},
+                                                {"empty_nodes", seen.empty_nodes},
+                                                {"full_nodes", seen.full_nodes},
+                                                {"leave", seen.leave},
+                                                {"leave_twice", seen.leave_twice},
+                                                {"leave_thrice", seen.leave_thrice},
+                                                {"crowds", seen.crowds},
+                                                {"emptied", seen.emptied},
+                                                {"no_overlap", seen.no_overlap},
+                                                {"queue_of_one", seen.queue_of_one},
+                                                {"pipes", seen.pipes},
+                                                {"pd", seen.pd},
+                                                {"damped", seen.damped},
+                                                {"rings_of_3", seen.rings_of_3},
+                                                {"lone_nodes", seen.lone_nodes}};
+  for (const auto& [name, count] : counts) {
+    RecordProperty(name, static_cast<int>(count));
+    EXPECT_GT(count, 0u) << name;
+  }
+}
+
+// Runs that a fault stops: the steps before it are as always.
+TEST(TimingFaults, TheStepsBeforeAreEqual) {
+  Seen seen;
+  for (const Fault fault : all_faults()) EXPECT_EQ(difference(fault_case(fault), seen), "");
+  EXPECT_EQ(seen.faults, all_faults().size());
+  EXPECT_GT(seen.spans, 0u);
+}
+
+}  // namespace
+}  // namespace cuboct::test
