@@ -76,6 +76,13 @@ std::vector<Curve> StateMeter::curves() const {
   return all;
 }
 
+std::vector<double> StateMeter::latest() const {
+  std::vector<double> values;
+  for (const std::vector<Curve>* part : {&probes_.curves(), &energy_})
+    for (const Curve& curve : *part) values.push_back(curve.value.back());
+  return values;
+}
+
 void StateMeter::restore(ProbeMeter::Memory memory, const std::vector<Curve>& curves) {
   const auto energies = curves.end() - static_cast<ptrdiff_t>(energy_.size());
   probes_.restore(std::move(memory), {curves.begin(), energies});

@@ -23,6 +23,9 @@ class StateMeter {
   // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J.
   std::vector<Curve> curves() const;
 
+  // The last value of each curve, once there is one.
+  std::vector<double> latest() const;
+
   // For checkpoints.
   ProbeMeter::Memory memory() const { return probes_.memory(); }
   size_t probed() const { return ids_.size(); }  // particles in `memory`
