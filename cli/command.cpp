@@ -40,4 +40,15 @@ Loaded load(const Input& input) {
   return loaded;
 }
 
+Loaded load_plan(const Input& input) {
+  Loaded loaded{read_scene(input.scene), {}};
+  loaded.setup.plan = plan_of(loaded.scene, read_arch(input.arch));
+  return loaded;
+}
+
+void load_initial(Loaded& loaded) {
+  const Plan& plan = loaded.setup.plan;
+  loaded.setup.initial = to_fixed(loaded.scene.body, plan.rule, plan.lattice, plan.origin);
+}
+
 }  // namespace cuboct

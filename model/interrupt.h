@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ctrl-C ends a run after the step at hand, so that what was done can be written; a second one ends the
-// program. To be caught where the stepping begins: before, nothing asks `interrupted`.
+// Ctrl-C (SIGINT, SIGTERM) ends a run after the step at hand, so that what was done can be written; a second one,
+// half a second later or more, ends the program. To be caught where the stepping begins: before, nothing asks `interrupted`.
 #pragma once
 
 namespace cuboct {
