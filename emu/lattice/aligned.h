@@ -3,10 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <utility>
 
 namespace cuboct::emu {
 
@@ -50,6 +52,23 @@ class PaddedArray {
   std::unique_ptr<T, Free> memory_;
   T* data_ = nullptr;
   size_t size_ = 0;
+};
+
+// Lets a vector grow without touching what it does not hold yet.
+template <typename T>
+struct Untouched : std::allocator<T> {
+  template <typename U>
+  struct rebind {
+    using other = Untouched<U>;
+  };
+  template <typename U>
+  void construct(U* at) noexcept {
+    ::new (static_cast<void*>(at)) U;
+  }
+  template <typename U, typename... Args>
+  void construct(U* at, Args&&... args) {
+    ::new (static_cast<void*>(at)) U(std::forward<Args>(args)...);
+  }
 };
 
 }  // namespace cuboct::emu

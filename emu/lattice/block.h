@@ -38,6 +38,11 @@ struct Particles {
   std::array<PaddedArray<double>, 3> u;  // P+G fractional bits; empty unless the rule has PD
   PaddedArray<uint32_t> id, node;        // id: kNoParticle where a block's last group is not full
   PaddedArray<uint8_t> type;
+  // By group: its nodes are among low ... low + span - 1. Wider than need be after migrations.
+  struct Nodes {
+    uint32_t low, span;
+  };
+  std::vector<Nodes> group_nodes;
   // What to add to x_j - x_i where the pair meets across the seam of a periodic box: (sx+1) + 3 (sy+1) + 9
   // (sz+1) periods.
   std::array<std::array<double, 3>, 27> shift{};
@@ -57,10 +62,14 @@ struct Found {
   int64_t number;
 };
 
-// Entries by group: those of the k-th are [first[k], first[k + 1]).
+// Entries by group. A group's entries that may meet in the next few steps stand before its others.
 struct PairList {
-  std::vector<uint32_t> first;
-  std::vector<Entry> entries;
+  struct Group {
+    uint32_t begin;
+    uint16_t near, count;  // entries
+  };
+  std::vector<Group> groups;
+  std::vector<Entry, Untouched<Entry>> entries;
 };
 
 struct Block {
@@ -68,12 +77,10 @@ struct Block {
   uint32_t first_group() const { return begin / kGroup; }
   uint32_t groups() const { return (end - begin + kGroup - 1) / kGroup; }
 
-  // Pairs inside the block: all that may meet while the long list holds, and those of them that may meet in the
-  // next few steps.
-  PairList far_inside, inside;
-  // The same for pairs with other blocks, for the groups that have any; 3 x kGroup sums each.
-  std::vector<uint32_t> edge_group;  // ascending, less first_group()
-  PairList far_across, across;
+  PairList inside;  // pairs inside the block
+  // Pairs with other blocks, for the groups that have any; 3 x kGroup sums each.
+  std::vector<uint32_t> edge_group;  // less first_group()
+  PairList across;
   PaddedArray<double> across_sum;
   std::vector<uint8_t> plain;  // by group: updated in vectors
 
@@ -85,7 +92,6 @@ struct Block {
   // Answers of a step.
   std::vector<Crossing> crossings;
   std::vector<Found> pair_faults, update_faults;
-  std::vector<uint32_t> changed;  // particles, if wanted
   double fastest2 = 0;            // largest v.v
 };
 

@@ -26,9 +26,14 @@ namespace {
 constexpr double kFirstSkin = 0.17;
 constexpr double kMostSkin = 0.5;
 constexpr uint64_t kShortLife = 20;
+// A list is mended where at most this share of the particles moved farther than this share of the skin.
+constexpr double kMostMended = 0.1;
+constexpr double kMendFrom = 0.125;
 // The near list's skin: at least so many cells, and enough for so many steps.
 constexpr double kNearSkin = 0.04;
 constexpr double kNearSteps = 4;
+// A near list this much wider than need be is made anew everywhere.
+constexpr double kWaste = 0.7;
 // Entries with fewer pairs than this on average are not what storage in rows is for: particles are stored by
 // node then.
 constexpr double kFewLanes = 2.5;
@@ -51,12 +56,16 @@ struct LatticeEngine::Impl {
   void step();
   void refresh_lists();
   void build();
+  bool mend();
   void prune(double skin);
   void cut();
-  void take_snapshot();
-  bool crystal() const;
-  void store_by_node();
   double displacement() const;
+  template <typename See>
+  void for_each_moved(const See& see) const;
+  void find_group_nodes();
+  void widen_group_nodes(uint32_t particle);
+  bool crystal() const;
+  void store_by_node(Bins& bins);
   double reach_of_step() const;
   Particle particle(uint32_t index) const;
   template <typename Work>
@@ -80,7 +89,6 @@ struct LatticeEngine::Impl {
   Rows rows_;
   Snapshot snapshot_;
   std::optional<Quiet> quiet_;
-  std::vector<uint32_t> place_;  // index by id
   std::vector<Leaving> leaving_;
   LatticeCounters counters_;
 
@@ -88,6 +96,7 @@ struct LatticeEngine::Impl {
   double skin_ = kFirstSkin;  // cells
   double moved_ = 0;          // cells: no particle is farther from where the far list found it
   double near_skin_ = 0, near_moved_ = 0;  // the same of the near list
+  double near_floor_ = -1;                 // all groups were pruned with at least this skin
   double fastest_ = 0;                     // largest |v| after the last step, P+G fractional bits
   uint64_t listed_at_ = 0;                 // step
 };
@@ -102,6 +111,8 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
       step_(step),
       count_(count),
       rows_(plan.lattice) {
+  snapshot_.position_frac = plan.rule.widths.position_frac;
+  snapshot_.threads = threads_;
   const std::vector<Kernels> here = kernels_here(rule_);
   const auto named = std::find_if(here.begin(), here.end(), [&](const Kernels& k) {
     return options_.simd.empty() || k.name == options_.simd;
@@ -158,7 +169,7 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
     if (!members_.append(p.node, at)) faults.push_back(error(Fault::full_x, p.node, at, plan_.arch.capacity));
   }
   fail_if_any(faults);
-  if (options_.quiescence) quiet_.emplace(lattice_, room / kGroup);
+  if (options_.quiescence) quiet_.emplace(lattice_, rows_);
 }
 
 RunError LatticeEngine::Impl::error(Fault fault, uint32_t node, uint32_t index, int64_t number) const {
@@ -206,68 +217,56 @@ double LatticeEngine::Impl::reach_of_step() const {
   return std::ldexp(fastest_ + 2 * std::ldexp(1.0, plan_.rule.widths.guard), -plan_.rule.widths.velocity_frac());
 }
 
-// The largest distance of a particle from where the list found it, in cells, rounded up.
-double LatticeEngine::Impl::displacement() const {
-  const int P = plan_.rule.widths.position_frac;
-  double most = 0;
-#pragma omp parallel for reduction(max : most) num_threads(threads_)
-  for (uint32_t k = 0; k < count_; ++k) {
-    const uint32_t p = snapshot_.particle[k];
-    // Differences modulo 2^32: a particle may have passed the seam of a ring since.
-    const auto d = [&](const PaddedArray<int32_t>& was, int a) {
-      return static_cast<double>(static_cast<int32_t>(static_cast<uint32_t>(coarse(particles_.x[a][p], P)) -
-                                                      static_cast<uint32_t>(was[k])));
-    };
-    const double x = d(snapshot_.x, 0), y = d(snapshot_.y, 1), z = d(snapshot_.z, 2);
-    most = std::max(most, x * x + y * y + z * z);
-  }
-  return std::ldexp(std::sqrt(most) + 2, -kCoarse);
+// Calls see(particle) for each that may have moved since the far list was made.
+template <typename See>
+void LatticeEngine::Impl::for_each_moved(const See& see) const {
+  if (const NodeSet* moved = quiet_ ? quiet_->moved() : nullptr)
+    moved->for_each(rows_, [&](uint32_t n) { members_.for_each(n, see); });
+  else
+    for (uint32_t p = 0; p < count_; ++p) see(p);
 }
 
-void LatticeEngine::Impl::take_snapshot() {
-  const int P = plan_.rule.widths.position_frac;
-  if (snapshot_.first.empty()) {
-    snapshot_.first.resize(lattice_.size() + 1);
-    for (auto* array : {&snapshot_.x, &snapshot_.y, &snapshot_.z}) *array = PaddedArray<int32_t>(count_ + kGroup);
-    snapshot_.particle = PaddedArray<uint32_t>(count_);
-  }
-  uint32_t at = 0;
-  for (uint32_t n = 0; n < lattice_.size(); ++n) {
-    snapshot_.first[n] = at;
-    members_.for_each(n, [&](uint32_t p) { snapshot_.particle[at++] = p; });
-  }
-  snapshot_.first[lattice_.size()] = at;
+double LatticeEngine::Impl::displacement() const {
+  if (!quiet_ || quiet_->moved() == nullptr) return snapshot_.displacement(particles_);
+  double most = 0;
+  for_each_moved([&](uint32_t p) { most = std::max(most, snapshot_.moved(particles_, p)); });
+  return most;
+}
+
+// The span of nodes of each group.
+void LatticeEngine::Impl::find_group_nodes() {
+  particles_.group_nodes.resize((count_ + kGroup - 1) / kGroup);
 #pragma omp parallel for num_threads(threads_)
-  for (uint32_t n = 0; n < lattice_.size(); ++n)
-    for (uint32_t k = snapshot_.first[n]; k < snapshot_.first[n + 1]; ++k) {
-      const uint32_t p = snapshot_.particle[k];
-      // Back into the cells of the rings.
-      for (int a = 0; a < 3; ++a) {
-        double& x = particles_.x[a][p];
-        x += (lattice_.cell(n)[a] - std::floor(x * rule_.inverse_cell)) * rule_.cell;
-      }
-      snapshot_.x[k] = coarse(particles_.x[0][p], P);
-      snapshot_.y[k] = coarse(particles_.x[1][p], P);
-      snapshot_.z[k] = coarse(particles_.x[2][p], P);
-    }
+  for (uint32_t g = 0; g < particles_.group_nodes.size(); ++g) {
+    const uint32_t* node = &particles_.node[g * kGroup];
+    const auto [low, high] = std::minmax_element(node, node + std::min(kGroup, count_ - g * kGroup));
+    particles_.group_nodes[g] = {*low, *high - *low + 1};
+  }
+}
+
+void LatticeEngine::Impl::widen_group_nodes(uint32_t particle) {
+  auto& [low, span] = particles_.group_nodes[particle / kGroup];
+  const uint32_t node = particles_.node[particle], high = std::max(low + span - 1, node);
+  low = std::min(low, node);
+  span = high - low + 1;
 }
 
 // Whether the order of storage lets an entry hold several pairs.
 bool LatticeEngine::Impl::crystal() const {
   size_t entries = 0, pairs = 0;
   for (const Block& block : blocks_) {
-    entries += block.far_inside.entries.size();
-    for (const Entry& e : block.far_inside.entries) pairs += static_cast<size_t>(std::popcount(e.lanes));
+    entries += block.inside.entries.size();
+    for (const Entry& e : block.inside.entries) pairs += static_cast<size_t>(std::popcount(e.lanes));
   }
   return static_cast<double>(pairs) >= kFewLanes * static_cast<double>(entries);
 }
 
-void LatticeEngine::Impl::store_by_node() {
+void LatticeEngine::Impl::store_by_node(Bins& bins) {
   std::vector<uint32_t> renamed(members_.room());
-  for (uint32_t k = 0; k < count_; ++k) renamed[snapshot_.particle[k]] = k;
+  for (uint32_t k = 0; k < count_; ++k) renamed[bins.particle[k]] = k;
   const auto reorder = [&](auto& array) {
-    auto copy = array.copy();
-    for (uint32_t k = 0; k < count_; ++k) array[k] = copy[snapshot_.particle[k]];
+    const auto copy = array.copy();
+    for (uint32_t k = 0; k < count_; ++k) array[k] = copy[bins.particle[k]];
   };
   for (int a = 0; a < 3; ++a) {
     reorder(particles_.x[a]);
@@ -278,63 +277,88 @@ void LatticeEngine::Impl::store_by_node() {
   reorder(particles_.node);
   reorder(particles_.type);
   members_.rename(renamed);
-  for (uint32_t k = 0; k < count_; ++k) snapshot_.particle[k] = k;
+  for (uint32_t k = 0; k < count_; ++k) bins.particle[k] = k;
 }
 
 void LatticeEngine::Impl::build() {
   if (listed_ && step_ - listed_at_ < kShortLife) skin_ = std::min(kMostSkin, skin_ * 1.3);
-  const auto list = [&] {
-    for_each_block([&](Block& block) {
-      build_list(rule_, lattice_, rows_, snapshot_, particles_, cutoff_ + skin_, block);
-    });
-  };
-  take_snapshot();
-  if (listed_ && !crystal()) {
-    store_by_node();
-    if (quiet_) quiet_->regroup((count_ + kGroup - 1) / kGroup);
-  }
-  list();
+  Bins bins(lattice_, members_, particles_, snapshot_.position_frac, threads_);
+  if (listed_ && !crystal()) store_by_node(bins);
+  for_each_block([&](Block& block) {
+    build_list(rule_, particles_, Search(lattice_, rows_, cutoff_ + skin_, bins), block);
+  });
+  bins.release_to(snapshot_);
   ++counters_.list_builds;
   listed_ = true;
   listed_at_ = step_;
   moved_ = 0;
+  near_floor_ = -1;
+  if (quiet_) {
+    quiet_->forget_moved();
+    find_group_nodes();
+  }
 }
 
+// Where few particles moved far, as around a crack or an impact: lists anew the groups of those, and of all
+// around where they are now. False where that is not worth it.
+bool LatticeEngine::Impl::mend() {
+  std::vector<uint32_t> strays;
+  for_each_moved([&](uint32_t p) {
+    if (snapshot_.astray(lattice_, particles_, p, kMendFrom * skin_)) strays.push_back(p);
+  });
+  if (static_cast<double>(strays.size()) > kMostMended * count_) return false;
+  for (const uint32_t p : strays)
+    for (int a = 0; a < 3; ++a)  // beyond the seam of a ring: the shifts of its entries no longer hold
+      if (std::floor(particles_.x[a][p] * rule_.inverse_cell) != lattice_.cell(particles_.node[p])[a]) return false;
+  for (const uint32_t p : strays) snapshot_.look(particles_, p);
+  std::vector<uint8_t> only((count_ + kGroup - 1) / kGroup);
+  Search search(lattice_, rows_, cutoff_ + skin_, members_, snapshot_);
+  for (const uint32_t p : strays)
+    for (const auto& hit : search.around(particles_.node[p], {snapshot_.at[0][p], snapshot_.at[1][p], snapshot_.at[2][p]}))
+      only[hit.particle / kGroup] = 1;
+  for_each_block([&](Block& block) { mend_list(particles_, snapshot_, search, only, block); });
+  ++counters_.list_mends;
+  moved_ = displacement();
+  return true;
+}
+
+// Every pair within the cutoff plus `skin` cells comes into the near list.
 void LatticeEngine::Impl::prune(double skin) {
+  // Groups far from all that changed since the last time keep what they have, if that was as wide.
+  const uint8_t* only = quiet_ ? quiet_->take_touched() : nullptr;
+  if (skin > near_floor_ || skin < kWaste * near_floor_) only = nullptr;
+  if (only == nullptr) near_floor_ = skin;
   near_skin_ = skin;
   near_moved_ = 0;
-  const double reach = (cutoff_ + skin) * rule_.cell * (1 + 1e-9);
-  for_each_block([&](Block& block) {
-    kernels_.prune(particles_, reach, block.first_group(), nullptr, block.far_inside, block.inside);
-    kernels_.prune(particles_, reach, block.first_group(), &block.edge_group, block.far_across, block.across);
-  });
+  const double reach = (cutoff_ + near_floor_) * rule_.cell * (1 + 1e-9);
+  for_each_block([&](Block& block) { kernels_.prune(particles_, reach, only, block); });
 }
 
 // Makes sure that the near list holds every pair inside the cutoff.
 void LatticeEngine::Impl::refresh_lists() {
   if (listed_ && near_moved_ <= near_skin_ / 2) return;
-  const double wanted = std::max(kNearSkin, 2 * kNearSteps * reach_of_step());
-  const double least = 2 * reach_of_step();
   // The far list must hold every pair within the near list's reach.
   const auto room = [&] { return skin_ - 2 * moved_; };
+  const double least = 2 * reach_of_step();
+  double wanted = std::min(std::max(kNearSkin, 2 * kNearSteps * reach_of_step()), skin_ / 2);
   if (!listed_ || room() < wanted) {
     if (listed_) moved_ = displacement();
     if (!listed_ || room() < std::max(least, wanted / 2)) {
-      build();
+      if (!listed_ || !mend() || room() < least) build();
     }
+    wanted = std::min(wanted, room());
   }
-  prune(std::min(wanted, room()));
+  prune(wanted);
 }
 
 void LatticeEngine::Impl::step() {
   refresh_lists();
   Active active;
-  if (quiet_) active = quiet_->next(members_);
+  if (quiet_) active = quiet_->next();
   for (Block& block : blocks_) {
     block.crossings.clear();
     block.pair_faults.clear();
     block.update_faults.clear();
-    block.changed.clear();
     block.fastest2 = 0;
   }
   for_each_block([&](Block& block) { kernels_.across(rule_, particles_, active, block); });
@@ -342,9 +366,6 @@ void LatticeEngine::Impl::step() {
   fail_if_any(&Block::pair_faults);
   fail_if_any(&Block::update_faults);
 
-  if (active.track)
-    for (const Block& block : blocks_)
-      for (const uint32_t p : block.changed) quiet_->changed(particles_.node[p]);
   std::vector<Crossing> crossings;
   for (const Block& block : blocks_)
     crossings.insert(crossings.end(), block.crossings.begin(), block.crossings.end());
@@ -355,8 +376,13 @@ void LatticeEngine::Impl::step() {
                                ? plan_.arch.capacity
                                : 0));
   fail_if_any(faults);
-  if (active.track)
-    for (const Crossing& c : crossings) quiet_->changed(particles_.node[c.particle]);
+  if (quiet_) {
+    for (const Crossing& c : crossings) {
+      quiet_->changed(particles_.node[c.particle]);
+      widen_group_nodes(c.particle);
+    }
+    quiet_->done();
+  }
 
   fastest_ = 0;
   for (const Block& block : blocks_) fastest_ = std::max(fastest_, std::sqrt(block.fastest2));

@@ -22,7 +22,8 @@ struct LatticeOptions {
 
 // What a run did so far.
 struct LatticeCounters {
-  uint64_t list_builds = 0;       // of the pair list
+  uint64_t list_builds = 0;       // of the far pair list
+  uint64_t list_mends = 0;        // of parts of it
   uint64_t node_steps = 0;        // nodes times steps
   uint64_t quiet_node_steps = 0;  // of those, nodes whose particles and neighbours did not change in the step
                                   // before: their clock could stand still (quiescence on)

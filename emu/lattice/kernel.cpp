@@ -116,36 +116,48 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
   return true;
 }
 
-void prune(const Particles& particles, double reach, uint32_t first_group, const std::vector<uint32_t>* groups,
-           const PairList& from, PairList& to) {
-  const size_t count = from.first.size() - 1;
-  to.first.resize(count + 1);
-  to.entries.resize(from.entries.size());
-  Entry* out = to.entries.data();
-  const V reach2 = hn::Set(d, reach * reach);
-  for (size_t k = 0; k < count; ++k) {
-    to.first[k] = static_cast<uint32_t>(out - to.entries.data());
-    const size_t base = size_t{first_group + (groups != nullptr ? (*groups)[k] : static_cast<uint32_t>(k))} * kGroup;
-    for (uint32_t e = from.first[k]; e < from.first[k + 1]; ++e) {
-      const Entry entry = from.entries[e];
-      uint32_t lanes = 0;
-      for (uint32_t at = 0; at < kGroup; at += kLanes) {
-        V r2 = hn::Zero(d);
-        for (int a = 0; a < 3; ++a) {
-          const V x_j = hn::LoadU(d, particles.x[a].data() + entry.first + static_cast<ptrdiff_t>(at));
-          const V x = hn::Add(hn::Sub(x_j, hn::Load(d, particles.x[a].data() + base + at)),
-                              hn::Set(d, particles.shift[entry.shift][a]));
-          r2 = hn::MulAdd(x, x, r2);
-        }
-        lanes |= mask_lanes(hn::Le(r2, reach2)) << at;
+HWY_INLINE uint32_t awake_lanes(const uint8_t* node_flag, const Particles& particles, uint32_t g) {
+  uint32_t lanes = 0;
+  const uint32_t* node = particles.node.data() + size_t{g} * kGroup;
+  for (uint32_t l = 0; l < kGroup; ++l)
+    lanes |= static_cast<uint32_t>((node_flag[node[l]] & Active::kAwake) != 0) << l;
+  return lanes;
+}
+
+HWY_INLINE void prune_group(const Particles& particles, V reach2, size_t base, PairList::Group& group,
+                            Entry* entries) {
+  uint32_t front = group.begin;
+  for (uint32_t e = group.begin; e < group.begin + group.count; ++e) {
+    const Entry entry = entries[e];
+    uint32_t lanes = 0;
+    for (uint32_t at = 0; at < kGroup; at += kLanes) {
+      V r2 = hn::Zero(d);
+      for (int a = 0; a < 3; ++a) {
+        const V x_j = hn::LoadU(d, particles.x[a].data() + entry.first + static_cast<ptrdiff_t>(at));
+        const V x = hn::Add(hn::Sub(x_j, hn::Load(d, particles.x[a].data() + base + at)),
+                            hn::Set(d, particles.shift[entry.shift][a]));
+        r2 = hn::MulAdd(x, x, r2);
       }
-      lanes &= entry.lanes;
-      *out = {entry.first, static_cast<uint8_t>(lanes), entry.shift};
-      out += lanes != 0;
+      lanes |= mask_lanes(hn::Le(r2, reach2)) << at;
     }
+    entries[e] = entries[front];
+    entries[front] = entry;
+    front += (lanes & entry.lanes) != 0;
   }
-  to.first[count] = static_cast<uint32_t>(out - to.entries.data());
-  to.entries.resize(to.first[count]);
+  group.near = static_cast<uint16_t>(front - group.begin);
+}
+
+void prune(const Particles& particles, double reach, const uint8_t* only, Block& block) {
+  const V reach2 = hn::Set(d, reach * reach);
+  const uint32_t first = block.first_group();
+  for (uint32_t k = 0; k < block.groups(); ++k)
+    if (only == nullptr || any_flag(only, particles, first + k))
+      prune_group(particles, reach2, size_t{first + k} * kGroup, block.inside.groups[k], block.inside.entries.data());
+  for (uint32_t k = 0; k < block.edge_group.size(); ++k) {
+    const uint32_t g = first + block.edge_group[k];
+    if (only == nullptr || any_flag(only, particles, g))
+      prune_group(particles, reach2, size_t{g} * kGroup, block.across.groups[k], block.across.entries.data());
+  }
 }
 
 template <bool kDamped>
@@ -168,12 +180,13 @@ template <bool kSimple, bool kDamped, bool kScaled>
 void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
   for (size_t k = 0; k < block.edge_group.size(); ++k) {
     const uint32_t g = block.first_group() + block.edge_group[k];
-    if (active.group != nullptr && active.group[g] == 0) continue;
+    if (active.node != nullptr && !any_flag(active.node, particles, g)) continue;
     for (uint32_t at = 0; at < kGroup; at += kLanes) {
       const uint32_t i = g * kGroup + at;
       const Own own = load_own<kDamped>(particles, i);
       V sum[3] = {magic(), magic(), magic()};
-      for (uint32_t e = block.across.first[k]; e < block.across.first[k + 1]; ++e) {
+      const PairList::Group& group = block.across.groups[k];
+      for (uint32_t e = group.begin; e < group.begin + group.near; ++e) {
         const Entry& entry = block.across.entries[e];
         uint32_t doubtful = 0;
         V kick[3];
@@ -203,7 +216,7 @@ HWY_INLINE void take_ring(Block& block, uint32_t slot, uint32_t at, V sum[3]) {
 }
 
 // Kick and drift of a group's lanes `at` on, all free.
-HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i, uint32_t lanes, bool track,
+HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i, uint32_t lanes, const Active& active,
                        const V sum[3], Block& block, V& fastest2) {
   const M mask = lane_mask(lanes);
   const FixedType& type = rule.rule->types[particles.type[i]];
@@ -221,7 +234,7 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
     for (uint32_t l = 0; l < kLanes; ++l)
       if (lanes >> l & 1) {
         const double of[3] = {sums[0][l], sums[1][l], sums[2][l]};
-        update_one(rule, particles, i + l, of, block);
+        update_one(rule, particles, i + l, of, active, block);
       }
     return;
   }
@@ -235,7 +248,7 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
     before[a] = hn::Floor(hn::Mul(x, hn::Set(d, rule.inverse_cell)));
     after[a] = hn::Floor(hn::Mul(new_x, hn::Set(d, rule.inverse_cell)));
     crossed = hn::Or(crossed, hn::Ne(before[a], after[a]));
-    if (track) changed = hn::Or(changed, hn::Or(hn::Ne(step, hn::Zero(d)), hn::Ne(v[a], old_v)));
+    if (active.changed != nullptr) changed = hn::Or(changed, hn::Or(hn::Ne(step, hn::Zero(d)), hn::Ne(v[a], old_v)));
     hn::Store(hn::IfThenElse(mask, new_x, x), d, particles.x[a].data() + i);
     hn::Store(hn::IfThenElse(mask, v[a], old_v), d, particles.v[a].data() + i);
   }
@@ -252,18 +265,18 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
                                    {static_cast<int8_t>(away[0][l]), static_cast<int8_t>(away[1][l]),
                                     static_cast<int8_t>(away[2][l])}});
   }
-  if (track) {
+  if (active.changed != nullptr) {
     const uint32_t who = mask_lanes(hn::And(changed, mask));
     for (uint32_t l = 0; l < kLanes; ++l)
-      if (who >> l & 1) block.changed.push_back(i + l);
+      if (who >> l & 1) active.changed[particles.node[i + l]] = 1;
   }
 }
 
 template <bool kSimple, bool kDamped, bool kScaled>
 void inside(const KernelRule& rule, Particles& particles, const Active& active, Block& block) {
-  const bool track = active.track;
   double* const ring[3] = {block.ring[0].data(), block.ring[1].data(), block.ring[2].data()};
   V fastest2 = hn::Zero(d);
+  uint32_t written = 0;  // the ring holds sums of particles below this
   size_t next_edge = 0;
   for (uint32_t k = 0; k < block.groups(); ++k) {
     const uint32_t g = block.first_group() + k;
@@ -272,25 +285,27 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
     if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
       across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
     const uint32_t slot = (k * kGroup) & block.ring_mask;
-    const bool work = active.group == nullptr || active.group[g] != 0;
+    const bool work = active.node == nullptr || any_flag(active.node, particles, g);
+    if (!work && base >= written) continue;
     uint32_t lanes = base + kGroup <= block.end ? 0xffu : (1u << (block.end - base)) - 1;
     if (!work)
       lanes = 0;
     else if (active.node != nullptr)
-      for (uint32_t l = 0; l < kGroup; ++l)
-        if (active.node[particles.node[base + l]] == 0) lanes &= ~(1u << l);
+      lanes &= awake_lanes(active.node, particles, g);
     for (uint32_t at = 0; at < kGroup; at += kLanes) {
       const uint32_t i = base + at;
       V sum[3] = {magic(), magic(), magic()};
       if (work) {
         const Own own = load_own<kDamped>(particles, i);
-        const Entry* const end = block.inside.entries.data() + block.inside.first[k + 1];
-        for (const Entry* e = block.inside.entries.data() + block.inside.first[k]; e != end; ++e) {
+        const PairList::Group& group = block.inside.groups[k];
+        const Entry* const end = block.inside.entries.data() + group.begin + group.near;
+        for (const Entry* e = block.inside.entries.data() + group.begin; e != end; ++e) {
           uint32_t doubtful = 0;
           V kick[3];
           if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, kick, doubtful)) continue;
           if (HWY_UNLIKELY(doubtful != 0))
             report(rule, particles, i, e->first + static_cast<int32_t>(at), e->shift, doubtful, true, block);
+          written = std::max(written, static_cast<uint32_t>(e->first) + kGroup);
           const uint32_t to = ((static_cast<uint32_t>(e->first) - block.begin) & block.ring_mask) + at;
           const V factor = hn::Set(d, rule.kick_factor);
           for (int a = 0; a < 3; ++a) {
@@ -308,14 +323,14 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
       const uint32_t mine = lanes >> at & ((1u << kLanes) - 1);
       if (mine == 0) continue;
       if (HWY_LIKELY(block.plain[k] != 0)) {
-        update(rule, particles, i, mine, track, sum, block, fastest2);
+        update(rule, particles, i, mine, active, sum, block, fastest2);
       } else {
         double sums[3][kLanes];
         for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
         for (uint32_t l = 0; l < kLanes; ++l)
           if (mine >> l & 1) {
             const double of[3] = {sums[0][l], sums[1][l], sums[2][l]};
-            update_one(rule, particles, i + l, of, block);
+            update_one(rule, particles, i + l, of, active, block);
           }
       }
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -10,19 +11,31 @@
 
 namespace cuboct::emu {
 
-// Which groups and particles to work on. Null pointers: all.
+// Which particles to work on.
 struct Active {
-  const uint8_t* group = nullptr;  // by group: some pair of it may be needed
-  const uint8_t* node = nullptr;   // by node: its particles are updated
-  bool track = false;              // tell which particles changed
+  static constexpr uint8_t kNear = 1;   // pairs of its particles may be needed
+  static constexpr uint8_t kAwake = 2;  // its particles are updated
+  const uint8_t* node = nullptr;        // by node, a sum of these, readable 8 bytes beyond; null: all are awake
+  uint8_t* changed = nullptr;           // by node: set to 1 where a particle changed; null: nobody asks
 };
+
+// Whether one of the nodes of group g has a flag; may say yes too often.
+inline bool any_flag(const uint8_t* node_flag, const Particles& particles, uint32_t g) {
+  const auto [low, span] = particles.group_nodes[g];
+  for (uint32_t n = 0; n < span; n += 8) {
+    uint64_t eight;  // arrays of flags are readable 8 bytes beyond their ends
+    std::memcpy(&eight, node_flag + low + n, 8);
+    if (span - n < 8) eight &= (uint64_t{1} << 8 * (span - n)) - 1;
+    if (eight != 0) return true;
+  }
+  return false;
+}
 
 struct Kernels {
   std::string name;
-  // The entries of `from` with a pair within `reach` (P fractional bits). Its k-th group is `groups[k]` of the block,
-  // or k where `groups` is null.
-  void (*prune)(const Particles&, double reach, uint32_t first_group, const std::vector<uint32_t>* groups,
-                const PairList& from, PairList& to);
+  // Puts the entries with a pair within `reach` (P fractional bits) first in their groups, in the groups with a
+  // particle in a node of `only` (by node; null: all).
+  void (*prune)(const Particles&, double reach, const uint8_t* only, Block&);
   // Sums of the pairs with other blocks.
   void (*across)(const KernelRule&, const Particles&, const Active&, Block&);
   // Pairs inside the block, then each group's update.
@@ -36,6 +49,7 @@ std::vector<Kernels> kernels_here(const KernelRule& rule);
 // Lanes of a pair (or an update) that something did not fit: plain integers find out what.
 void report_pair(const KernelRule& rule, const Particles& particles, uint32_t i, uint32_t j, uint8_t shift,
                  bool both, Block& block);
-void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const double sum[3], Block& block);
+void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const double sum[3], const Active& active,
+                Block& block);
 
 }  // namespace cuboct::emu

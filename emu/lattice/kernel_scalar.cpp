@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The kernels in plain integers: the contract's own functions.
+#include <algorithm>
 #include <cmath>
 
 #include "emu/lattice/kernel.h"
@@ -20,36 +21,42 @@ PairResult pair(const KernelRule& rule, const Particles& particles, uint32_t i, 
                    particles.type[j]);
 }
 
-void prune(const Particles& particles, double reach, uint32_t first_group, const std::vector<uint32_t>* groups,
-           const PairList& from, PairList& to) {
-  to.first.assign(1, 0);
-  to.entries.clear();
-  for (uint32_t k = 0; k + 1 < from.first.size(); ++k) {
-    const uint32_t base = (first_group + (groups != nullptr ? (*groups)[k] : k)) * kGroup;
-    for (uint32_t e = from.first[k]; e < from.first[k + 1]; ++e) {
-      Entry entry = from.entries[e];
-      for (uint32_t l = 0; l < kGroup; ++l) {
-        if ((entry.lanes >> l & 1) == 0) continue;
-        double r2 = 0;
-        for (int a = 0; a < 3; ++a) {
-          const double d = particles.x[a][entry.first + l] - particles.x[a][base + l] + particles.shift[entry.shift][a];
-          r2 += d * d;
-        }
-        if (r2 > reach * reach) entry.lanes = static_cast<uint8_t>(entry.lanes & ~(1u << l));
-      }
-      if (entry.lanes != 0) to.entries.push_back(entry);
+bool near(const Particles& particles, double reach2, uint32_t base, const Entry& entry) {
+  for (uint32_t l = 0; l < kGroup; ++l) {
+    if ((entry.lanes >> l & 1) == 0) continue;
+    double r2 = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = particles.x[a][entry.first + l] - particles.x[a][base + l] + particles.shift[entry.shift][a];
+      r2 += d * d;
     }
-    to.first.push_back(static_cast<uint32_t>(to.entries.size()));
+    if (r2 <= reach2) return true;
   }
+  return false;
+}
+
+void prune(const Particles& particles, double reach, const uint8_t* only, Block& block) {
+  const auto sort = [&](PairList& list, uint32_t k, uint32_t g) {
+    if (only != nullptr && !any_flag(only, particles, g)) return;
+    PairList::Group& group = list.groups[k];
+    Entry* const begin = list.entries.data() + group.begin;
+    group.near = static_cast<uint16_t>(
+        std::partition(begin, begin + group.count,
+                       [&](const Entry& e) { return near(particles, reach * reach, g * kGroup, e); }) -
+        begin);
+  };
+  for (uint32_t k = 0; k < block.groups(); ++k) sort(block.inside, k, block.first_group() + k);
+  for (uint32_t k = 0; k < block.edge_group.size(); ++k)
+    sort(block.across, k, block.first_group() + block.edge_group[k]);
 }
 
 void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
   for (size_t k = 0; k < block.edge_group.size(); ++k) {
     const uint32_t g = block.first_group() + block.edge_group[k];
-    if (active.group != nullptr && active.group[g] == 0) continue;
+    if (active.node != nullptr && !any_flag(active.node, particles, g)) continue;
     double* sum = &block.across_sum[k * 3 * kGroup];
     std::fill(sum, sum + 3 * kGroup, kMagic);
-    for (uint32_t e = block.across.first[k]; e < block.across.first[k + 1]; ++e) {
+    const PairList::Group& group = block.across.groups[k];
+    for (uint32_t e = group.begin; e < group.begin + group.near; ++e) {
       const Entry& entry = block.across.entries[e];
       for (uint32_t l = 0; l < kGroup; ++l) {
         if ((entry.lanes >> l & 1) == 0) continue;
@@ -69,11 +76,12 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
     const double* across_sum = nullptr;
     if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
       across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
-    const bool work = active.group == nullptr || active.group[g] != 0;
+    const bool work = active.node == nullptr || any_flag(active.node, particles, g);
     const uint32_t slot = (k * kGroup) & block.ring_mask;
     double sums[kGroup][3] = {};
+    const PairList::Group& group = block.inside.groups[k];
     if (work)
-      for (uint32_t e = block.inside.first[k]; e < block.inside.first[k + 1]; ++e) {
+      for (uint32_t e = group.begin; e < group.begin + group.near; ++e) {
         const Entry& entry = block.inside.entries[e];
         for (uint32_t l = 0; l < kGroup; ++l) {
           if ((entry.lanes >> l & 1) == 0) continue;
@@ -100,8 +108,9 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
         if (across_sum != nullptr) sums[l][a] += across_sum[a * kGroup + l] - kMagic;
       }
       const uint32_t p = g * kGroup + l;
-      if (!work || p >= block.end || (active.node != nullptr && active.node[particles.node[p]] == 0)) continue;
-      update_one(rule, particles, p, sums[l], block);
+      if (!work || p >= block.end || (active.node != nullptr && (active.node[particles.node[p]] & Active::kAwake) == 0))
+        continue;
+      update_one(rule, particles, p, sums[l], active, block);
     }
   }
 }
@@ -117,7 +126,8 @@ void report_pair(const KernelRule& rule, const Particles& particles, uint32_t i,
   if (on_j.fault != Fault::none) block.pair_faults.push_back({on_j.fault, j, on_j.number});
 }
 
-void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const double sum[3], Block& block) {
+void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const double sum[3], const Active& active,
+                Block& block) {
   const Int3 x = whole(particles.x, p), v = whole(particles.v, p);
   const bool pd = particles.u[0].size() > 0;
   const Int3 u = pd ? whole(particles.u, p) : Int3{};
@@ -137,7 +147,7 @@ void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const 
     speed2 += static_cast<double>(done.v[a]) * static_cast<double>(done.v[a]);
   }
   block.fastest2 = std::max(block.fastest2, speed2);
-  if (changed) block.changed.push_back(p);
+  if (changed && active.changed != nullptr) active.changed[particles.node[p]] = 1;
   if (crossing.away != std::array<int8_t, 3>{}) block.crossings.push_back(crossing);
 }
 

@@ -30,7 +30,8 @@ class Merger {
     }
   }
   // In order of `first`; appended to `out`.
-  void take(std::vector<Entry>& out) {
+  template <typename Entries>
+  void take(Entries& out) {
     std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
       return std::tie(a.first, a.shift) < std::tie(b.first, b.shift);
     });
@@ -59,53 +60,139 @@ class Merger {
   std::vector<Entry> entries_;
 };
 
-}  // namespace
+// The entries of one group: `at(particle)` is where it was found.
+template <typename At>
+void collect(const Particles& particles, const Block& block, uint32_t base, Search& search, const At& at,
+             Merger& inside, Merger& across) {
+  const uint32_t end = std::min(base + kGroup, block.end);
+  for (uint32_t i = base; i < end; ++i)
+    for (const auto& [j, shift] : search.around(particles.node[i], at(i))) {
+      const auto first = static_cast<int32_t>(j) - static_cast<int32_t>(i - base);
+      if (j < block.begin || j >= block.end)
+        across.add(first, shift, i - base);
+      else if (j > i)
+        inside.add(first, shift, i - base);
+    }
+}
 
-void build_list(const KernelRule& rule, const Lattice& lattice, const Rows& rows, const Snapshot& snapshot,
-                const Particles& particles, double reach, Block& block) {
-  const int P = rule.rule->widths.position_frac;
-  Search search(lattice, rows, snapshot, reach);
-  Merger inside, across;
-  for (PairList* list : {&block.far_inside, &block.far_across}) {
-    list->first.assign(1, 0);
-    list->entries.clear();
-  }
-  block.edge_group.clear();
-  block.plain.assign(block.groups(), 1);
+// What is not used is never touched.
+constexpr size_t kUsualEntries = 32;
+
+void close_group(const PairList& list, uint32_t begin, PairList::Group& group) {
+  const auto count = static_cast<uint16_t>(list.entries.size() - begin);
+  group = {begin, count, count};
+}
+
+// How far ahead of group k its entries reach, in particles.
+uint32_t window_of(const Block& block, uint32_t k) {
   uint32_t window = kGroup;
-  for (uint32_t k = 0; k < block.groups(); ++k) {
-    const uint32_t base = (block.first_group() + k) * kGroup;
-    const uint32_t end = std::min(base + kGroup, block.end);
-    for (uint32_t i = base; i < end; ++i) {
-      const uint8_t type = particles.type[i];
-      // A group is updated in vectors if its types are free and fall alike.
-      if (rule.plain[type] == 0 || rule.rule->types[type].gravity != rule.rule->types[particles.type[base]].gravity)
-        block.plain[k] = 0;
-      for (const auto& [j, shift] : search.around(particles.node[i], coarse(particles.x[0][i], P),
-                                                  coarse(particles.x[1][i], P), coarse(particles.x[2][i], P))) {
-        const auto first = static_cast<int32_t>(j) - static_cast<int32_t>(i - base);
-        if (j < block.begin || j >= block.end)
-          across.add(first, shift, i - base);
-        else if (j > i)
-          inside.add(first, shift, i - base);
-      }
-    }
-    inside.take(block.far_inside.entries);
-    const auto last = static_cast<uint32_t>(block.far_inside.entries.size());
-    if (last > block.far_inside.first.back())
-      window = std::max(window, static_cast<uint32_t>(block.far_inside.entries.back().first) + kGroup - base);
-    block.far_inside.first.push_back(last);
-    across.take(block.far_across.entries);
-    if (block.far_across.entries.size() > block.far_across.first.back()) {
-      block.edge_group.push_back(k);
-      block.far_across.first.push_back(static_cast<uint32_t>(block.far_across.entries.size()));
-    }
-  }
-  block.across_sum = PaddedArray<double>(block.edge_group.size() * 3 * kGroup, kMagic);
-  // The group at hand and those up to the farthest partner never meet in the ring.
-  const uint32_t size = std::bit_ceil(window + kGroup);
+  const PairList::Group& group = block.inside.groups[k];
+  for (uint32_t e = group.begin; e < group.begin + group.count; ++e)
+    window = std::max(window, static_cast<uint32_t>(block.inside.entries[e].first) - block.begin - k * kGroup);
+  return window;
+}
+
+// Room for sums up to `window` ahead, an entry's own width, and the group at hand.
+void make_ring(Block& block, uint32_t window) {
+  const uint32_t size = std::bit_ceil(window + 2 * kGroup);
+  if (size <= block.ring_mask + 1) return;
   block.ring_mask = size - 1;
   for (auto& ring : block.ring) ring = PaddedArray<double>(size, kMagic);
+}
+
+}  // namespace
+
+void build_list(const KernelRule& rule, const Particles& particles, Search search, Block& block) {
+  Merger inside, across;
+  block.inside.entries.clear();
+  block.inside.entries.reserve(kUsualEntries * block.groups());
+  block.inside.groups.resize(block.groups());
+  block.across.entries.clear();
+  block.across.groups.clear();
+  block.edge_group.clear();
+  block.plain.assign(block.groups(), 1);
+  block.ring_mask = 0;
+  uint32_t window = kGroup;
+  // A particle's place is not where the bins have it, but it was rounded from its position just now.
+  const int P = rule.rule->widths.position_frac;
+  const auto at = [&](uint32_t p) {
+    return std::array{coarse(particles.x[0][p], P), coarse(particles.x[1][p], P), coarse(particles.x[2][p], P)};
+  };
+  for (uint32_t k = 0; k < block.groups(); ++k) {
+    const uint32_t base = block.begin + k * kGroup;
+    // A group is updated in vectors if its types are free and fall alike.
+    for (uint32_t i = base; i < std::min(base + kGroup, block.end); ++i) {
+      const uint8_t type = particles.type[i];
+      if (rule.plain[type] == 0 || rule.rule->types[type].gravity != rule.rule->types[particles.type[base]].gravity)
+        block.plain[k] = 0;
+    }
+    collect(particles, block, base, search, at, inside, across);
+    const auto begin = static_cast<uint32_t>(block.inside.entries.size());
+    inside.take(block.inside.entries);
+    close_group(block.inside, begin, block.inside.groups[k]);
+    window = std::max(window, window_of(block, k));
+    const auto edge = static_cast<uint32_t>(block.across.entries.size());
+    across.take(block.across.entries);
+    if (block.across.entries.size() == edge) continue;
+    block.edge_group.push_back(k);
+    close_group(block.across, edge, block.across.groups.emplace_back());
+  }
+  block.across_sum = PaddedArray<double>(block.edge_group.size() * 3 * kGroup, kMagic);
+  make_ring(block, window);
+}
+
+void mend_list(const Particles& particles, const Snapshot& snapshot, Search search, const std::vector<uint8_t>& only,
+               Block& block) {
+  Merger inside, across;
+  std::vector<Entry> entries;
+  const auto at = [&](uint32_t p) { return std::array{snapshot.at[0][p], snapshot.at[1][p], snapshot.at[2][p]}; };
+  // Where they were, if they fit there; else behind all others.
+  const auto put = [&entries](PairList& list, PairList::Group& group, uint32_t room) {
+    const auto count = static_cast<uint16_t>(entries.size());
+    if (count > room) {
+      group.begin = static_cast<uint32_t>(list.entries.size());
+      list.entries.resize(list.entries.size() + count);
+    }
+    group.near = group.count = count;
+    std::copy(entries.begin(), entries.end(), list.entries.begin() + group.begin);
+  };
+  // By group, one beyond: the place in edge_group.
+  std::vector<uint32_t> edge(block.groups());
+  for (uint32_t k = 0; k < block.edge_group.size(); ++k) edge[block.edge_group[k]] = k + 1;
+  bool new_edges = false;
+  uint32_t window = kGroup;
+  for (uint32_t k = 0; k < block.groups(); ++k) {
+    if (only[block.first_group() + k] == 0) continue;
+    collect(particles, block, block.begin + k * kGroup, search, at, inside, across);
+    entries.clear();
+    inside.take(entries);
+    put(block.inside, block.inside.groups[k], block.inside.groups[k].count);
+    window = std::max(window, window_of(block, k));
+    entries.clear();
+    across.take(entries);
+    if (entries.empty() && edge[k] == 0) continue;
+    if (edge[k] == 0) {
+      block.edge_group.push_back(k);
+      edge[k] = static_cast<uint32_t>(block.edge_group.size());
+      block.across.groups.push_back({0, 0, 0});
+      new_edges = true;
+    }
+    PairList::Group& group = block.across.groups[edge[k] - 1];
+    put(block.across, group, group.count);
+  }
+  if (new_edges) {
+    // The kernels meet the edges in the order of their groups.
+    std::vector<PairList::Group> groups;
+    block.edge_group.clear();
+    for (uint32_t k = 0; k < block.groups(); ++k)
+      if (edge[k] != 0) {
+        block.edge_group.push_back(k);
+        groups.push_back(block.across.groups[edge[k] - 1]);
+      }
+    block.across.groups = std::move(groups);
+    block.across_sum = PaddedArray<double>(block.edge_group.size() * 3 * kGroup, kMagic);
+  }
+  make_ring(block, window);
 }
 
 }  // namespace cuboct::emu

@@ -8,8 +8,13 @@
 
 namespace cuboct::emu {
 
-// Pairs within `reach` cells in the snapshot. Writes the far lists, edge_group, the rings and `plain` of `block`.
-void build_list(const KernelRule& rule, const Lattice& lattice, const Rows& rows, const Snapshot& snapshot,
-                const Particles& particles, double reach, Block& block);
+// Pairs within the reach of `search`, around the places that the snapshot has: all groups anew. Writes the lists,
+// edge_group, the ring and `plain` of `block`.
+void build_list(const KernelRule& rule, const Particles& particles, Search search, Block& block);
+
+// The same for the groups of `only` (by group, of all blocks); the others keep their entries. All of a group's entries
+// come out near.
+void mend_list(const Particles& particles, const Snapshot& snapshot, Search search, const std::vector<uint8_t>& only,
+               Block& block);
 
 }  // namespace cuboct::emu

@@ -2,83 +2,178 @@
 #include "emu/lattice/quiet.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace cuboct::emu {
 namespace {
 
 // Beyond this share of nodes awake, telling them apart costs more than it saves; look again after a pause.
-constexpr double kMostAwake = 0.5;
+constexpr double kMostAwake = 0.8;
 constexpr int kPause = 16;
 
 }  // namespace
 
-Quiet::Quiet(const Lattice& lattice, size_t groups)
+void NodeSet::survey(const Rows& rows) {
+  for (uint32_t r = 0; r < row_.size(); ++r) {
+    const auto [begin, end] = rows.row(r);
+    uint8_t any = 0;
+    for (uint32_t n = begin; n < end; ++n) any |= flag_[n];
+    row_[r] = any;
+  }
+}
+
+void NodeSet::clear(const Rows& rows) {
+  for (uint32_t r = 0; r < row_.size(); ++r) {
+    if (row_[r] == 0) continue;
+    const auto [begin, end] = rows.row(r);
+    std::fill(flag_.begin() + begin, flag_.begin() + end, uint8_t{0});
+    row_[r] = 0;
+  }
+}
+
+void NodeSet::add(const NodeSet& other, const Rows& rows) {
+  for (uint32_t r = 0; r < row_.size(); ++r) {
+    if (other.row_[r] == 0) continue;
+    row_[r] = 1;
+    const auto [begin, end] = rows.row(r);
+    for (uint32_t n = begin; n < end; ++n) flag_[n] |= other.flag_[n];
+  }
+}
+
+uint64_t NodeSet::count(const Rows& rows) const {
+  uint64_t count = 0;
+  for (uint32_t r = 0; r < row_.size(); ++r)
+    if (row_[r] != 0)
+      count = std::accumulate(flag_.begin() + rows.row(r).begin, flag_.begin() + rows.row(r).end, count);
+  return count;
+}
+
+void NodeSet::spread_x(const NodeSet& other, const Lattice& lattice, const Rows& rows) {
+  for (uint32_t r = 0; r < row_.size(); ++r) {
+    if (other.row_[r] == 0) continue;
+    row_[r] = 1;
+    const auto [begin, end] = rows.row(r);
+    const uint8_t* from = other.flag_.data();
+    uint8_t* to = flag_.data();
+    if (rows.whole(r)) {
+      for (uint32_t n = begin; n < end; ++n) to[n] |= from[n];
+      for (uint32_t n = begin + 1; n < end; ++n) to[n] |= from[n - 1];
+      for (uint32_t n = begin; n + 1 < end; ++n) to[n] |= from[n + 1];
+      const uint32_t before = lattice.neighbour(begin, 0), behind = lattice.neighbour(end - 1, 1);
+      if (before != kNoNode) to[before] |= from[begin];  // around a ring
+      if (behind != kNoNode) to[behind] |= from[end - 1];
+      continue;
+    }
+    for (uint32_t n = begin; n < end; ++n) {
+      if (from[n] == 0) continue;
+      to[n] = 1;
+      for (const int face : {0, 1})
+        if (const uint32_t beside = lattice.neighbour(n, face); beside != kNoNode) to[beside] = 1;
+    }
+  }
+}
+
+// Adds `other` moved by (0, dy, dz).
+void NodeSet::spread_rows(const NodeSet& other, int dy, int dz, const Lattice& lattice, const Rows& rows) {
+  for (uint32_t r = 0; r < row_.size(); ++r) {
+    if (other.row_[r] == 0) continue;
+    const uint32_t t = rows.near(r, dy, dz);
+    if (t == kNoNode) continue;
+    row_[t] = 1;
+    const auto [begin, end] = rows.row(r);
+    if (rows.whole(r) && rows.whole(t)) {
+      const int32_t x = lattice.cell(begin)[0], to_x = lattice.cell(rows.row(t).begin)[0];
+      const int32_t low = std::max(x, to_x);
+      const int32_t high = std::min(x + static_cast<int32_t>(end - begin),
+                                    to_x + static_cast<int32_t>(rows.row(t).end - rows.row(t).begin));
+      const uint8_t* from = other.flag_.data() + begin + (low - x);
+      uint8_t* to = flag_.data() + rows.row(t).begin + (low - to_x);
+      for (int32_t k = 0; k < high - low; ++k) to[k] |= from[k];
+      continue;
+    }
+    for (uint32_t n = begin; n < end; ++n) {
+      if (other.flag_[n] == 0) continue;
+      const int32_t x = lattice.cell(n)[0];
+      const auto [at, behind] = rows.nodes(t, x, x);
+      if (at != behind) flag_[at] = 1;
+    }
+  }
+}
+
+void NodeSet::dilate(const NodeSet& other, const Lattice& lattice, const Rows& rows) {
+  thread_local NodeSet x, xy;
+  for (NodeSet* set : {&x, &xy}) {
+    if (set->flag_.size() != flag_.size() || set->row_.size() != row_.size()) *set = NodeSet(lattice, rows);
+    set->clear(rows);
+  }
+  clear(rows);
+  x.spread_x(other, lattice, rows);
+  for (const int dy : {-1, 0, 1}) xy.spread_rows(x, dy, 0, lattice, rows);
+  for (const int dz : {-1, 0, 1}) spread_rows(xy, 0, dz, lattice, rows);
+}
+
+Quiet::Quiet(const Lattice& lattice, const Rows& rows)
     : lattice_(&lattice),
-      changed_flag_(lattice.size()),
-      awake_flag_(lattice.size()),
-      near_flag_(lattice.size()),
-      group_flag_(groups) {}
+      rows_(&rows),
+      changed_(lattice, rows),
+      awake_(lattice, rows),
+      near_(lattice, rows),
+      touched_(lattice, rows),
+      moved_(lattice, rows),
+      spare_(lattice, rows),
+      work_(lattice.size() + 8) {}
 
-void Quiet::forget() {
-  for (const uint32_t n : awake_) awake_flag_[n] = 0;
-  for (const uint32_t n : near_) near_flag_[n] = 0;
-  for (const uint32_t g : groups_) group_flag_[g] = 0;
-  awake_.clear();
-  near_.clear();
-  groups_.clear();
-}
-
-void Quiet::regroup(size_t groups) {
-  forget();
-  group_flag_.assign(groups, 0);
-}
-
-// Over the links, axis by axis: the neighbourhood of a node is what three such hops reach (a Lattice is closed).
-void Quiet::dilate(std::vector<uint32_t>& nodes, std::vector<uint8_t>& flag) const {
-  for (int axis = 0; axis < 3; ++axis) {
-    const size_t before = nodes.size();
-    for (size_t k = 0; k < before; ++k)
-      for (int face = 2 * axis; face < 2 * axis + 2; ++face) {
-        const uint32_t other = lattice_->neighbour(nodes[k], face);
-        if (other == kNoNode || flag[other] != 0) continue;
-        flag[other] = 1;
-        nodes.push_back(other);
-      }
-  }
-}
-
-Active Quiet::next(const Members& members) {
-  forget();
-  const bool told = told_;
-  for (const uint32_t n : changed_) changed_flag_[n] = 0;
-  awake_.swap(changed_);
-  changed_.clear();
-  told_ = true;
+Active Quiet::next() {
   quiet_nodes_ = 0;
-  if (!told) {
-    awake_.clear();
+  telling_ = true;
+  if (!told_) {
     if (pause_ > 0) --pause_;
-    told_ = pause_ == 0;
-    return {nullptr, nullptr, told_};
+    telling_ = pause_ == 0;
+    return {nullptr, telling_ ? changed_.flags() : nullptr};
   }
-  for (const uint32_t n : awake_) awake_flag_[n] = 1;
-  dilate(awake_, awake_flag_);
-  quiet_nodes_ = lattice_->size() - awake_.size();
-  if (static_cast<double>(awake_.size()) > kMostAwake * lattice_->size()) {
+  awake_.dilate(changed_, *lattice_, *rows_);
+  changed_.clear(*rows_);
+  const uint64_t awake = awake_.count(*rows_);
+  quiet_nodes_ = lattice_->size() - awake;
+  if (static_cast<double>(awake) > kMostAwake * lattice_->size()) {
     pause_ = kPause;
-    told_ = false;
-    return {nullptr, nullptr, false};
+    telling_ = false;
+    return {};
   }
-  near_ = awake_;
-  for (const uint32_t n : near_) near_flag_[n] = 1;
-  dilate(near_, near_flag_);
-  for (const uint32_t n : near_)
-    members.for_each(n, [&](uint32_t p) {
-      uint8_t& flag = group_flag_[p / kGroup];
-      if (flag == 0) groups_.push_back(p / kGroup);
-      flag = 1;
-    });
-  return {group_flag_.data(), awake_flag_.data(), true};
+  near_.for_each(*rows_, [this](uint32_t n) { work_[n] = 0; });
+  near_.dilate(awake_, *lattice_, *rows_);
+  near_.for_each(*rows_, [this](uint32_t n) { work_[n] = Active::kNear; });
+  awake_.for_each(*rows_, [this](uint32_t n) { work_[n] |= Active::kAwake; });
+  return {work_.data(), changed_.flags()};
+}
+
+void Quiet::done() {
+  told_ = telling_;
+  if (!told_) {
+    touched_all_ = moved_all_ = true;
+    return;
+  }
+  changed_.survey(*rows_);
+  if (!touched_all_) touched_.add(changed_, *rows_);
+  if (!moved_all_) moved_.add(changed_, *rows_);
+}
+
+const uint8_t* Quiet::take_touched() {
+  const bool all = touched_all_;
+  touched_all_ = false;
+  if (!all) {
+    spare_.dilate(touched_, *lattice_, *rows_);
+    NodeSet twice = spare_;
+    twice.dilate(spare_, *lattice_, *rows_);
+    spare_.dilate(twice, *lattice_, *rows_);
+  }
+  touched_.clear(*rows_);
+  return all ? nullptr : spare_.flags();
+}
+
+void Quiet::forget_moved() {
+  moved_all_ = false;
+  moved_.clear(*rows_);
 }
 
 }  // namespace cuboct::emu

@@ -9,42 +9,72 @@
 #include <vector>
 
 #include "emu/lattice/kernel.h"
-#include "emu/lattice/members.h"
+#include "emu/lattice/search.h"
 
 namespace cuboct::emu {
+
+// A set of nodes, dense, that knows which rows hold any.
+class NodeSet {
+ public:
+  NodeSet() = default;
+  NodeSet(const Lattice& lattice, const Rows& rows) : flag_(lattice.size() + 8), row_(rows.count()) {}
+  const uint8_t* flags() const { return flag_.data(); }
+  uint8_t* flags() { return flag_.data(); }
+
+  // By node, readable 8 bytes beyond.
+  // Looks at flags() again after others have written there.
+  void survey(const Rows& rows);
+  void clear(const Rows& rows);
+  void add(const NodeSet& other, const Rows& rows);
+  uint64_t count(const Rows& rows) const;
+  // This becomes `other` and all its neighbours (26 each).
+  void dilate(const NodeSet& other, const Lattice& lattice, const Rows& rows);
+  template <typename See>
+  void for_each(const Rows& rows, const See& see) const {
+    for (uint32_t r = 0; r < row_.size(); ++r)
+      if (row_[r] != 0)
+        for (uint32_t n = rows.row(r).begin; n < rows.row(r).end; ++n)
+          if (flag_[n] != 0) see(n);
+  }
+
+ private:
+  void spread_x(const NodeSet& other, const Lattice& lattice, const Rows& rows);
+  void spread_rows(const NodeSet& other, int dy, int dz, const Lattice& lattice, const Rows& rows);
+  std::vector<uint8_t> flag_, row_;
+};
 
 class Quiet {
  public:
   Quiet() = default;
-  Quiet(const Lattice& lattice, size_t groups);
+  Quiet(const Lattice& lattice, const Rows& rows);
 
   // What the next step has to look at; valid until the next call.
-  Active next(const Members& members);
+  Active next();
   // Nodes at rest in the step that next() began, as far as they were told apart.
   uint64_t quiet_nodes() const { return quiet_nodes_; }
 
-  // Tells of the step that next() began. Needed if Active::track was set.
-  void changed(uint32_t node) {
-    if (changed_flag_[node] != 0) return;
-    changed_flag_[node] = 1;
-    changed_.push_back(node);
-  }
-  // Particles changed their places in storage.
-  void regroup(size_t groups);
+  // Where the step that next() began tells by node what changed, if Active::changed is set.
+  void changed(uint32_t node) { changed_.flags()[node] = 1; }
+  // The step is over.
+  void done();
+
+  // Nodes within kHops of one that changed since the last call; null: all. Valid until the next call.
+  static constexpr int kHops = 3;
+  const uint8_t* take_touched();
+  // Nodes in which something changed since forget_moved(); null: all.
+  const NodeSet* moved() const { return moved_all_ ? nullptr : &moved_; }
+  void forget_moved();
 
  private:
-  void forget();
-  void dilate(std::vector<uint32_t>& nodes, std::vector<uint8_t>& flag) const;
-
   const Lattice* lattice_ = nullptr;
-  bool told_ = false;  // the changes of the step before are known
-  int pause_ = 0;      // steps for which nothing is told apart
+  const Rows* rows_ = nullptr;
+  bool told_ = false;     // the changes of the step before are known
+  bool telling_ = false;  // those of this step will be
+  int pause_ = 0;         // steps for which nothing is told apart
   uint64_t quiet_nodes_ = 0;
-  std::vector<uint32_t> changed_, awake_, near_, groups_;
-  std::vector<uint8_t> changed_flag_;  // by node
-  std::vector<uint8_t> awake_flag_;    // by node: it or a neighbour changed
-  std::vector<uint8_t> near_flag_;     // by node: awake or beside one that is
-  std::vector<uint8_t> group_flag_;    // by group: holds a particle of a near node
+  bool touched_all_ = true, moved_all_ = true;
+  NodeSet changed_, awake_, near_, touched_, moved_, spare_;
+  std::vector<uint8_t> work_;  // by node, see Active::node
 };
 
 }  // namespace cuboct::emu

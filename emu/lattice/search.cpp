@@ -42,11 +42,16 @@ Rows::Rows(const Lattice& lattice) : lattice_(lattice), row_of_(lattice.size()) 
   }
 }
 
+bool Rows::whole(uint32_t row) const {
+  const Range& r = rows_[row];
+  return lattice_.cell(r.end - 1)[0] - lattice_.cell(r.begin)[0] + 1 == static_cast<int32_t>(r.end - r.begin);
+}
+
 Rows::Range Rows::nodes(uint32_t row, int32_t low, int32_t high) const {
-  const Row& r = rows_[row];
+  const Range& r = rows_[row];
   const int32_t x0 = lattice_.cell(r.begin)[0], x1 = lattice_.cell(r.end - 1)[0];
   if (low > x1 || high < x0) return {r.begin, r.begin};
-  if (x1 - x0 + 1 == static_cast<int32_t>(r.end - r.begin))  // no gap
+  if (whole(row))
     return {r.begin + static_cast<uint32_t>(std::max(low - x0, 0)),
             r.begin + static_cast<uint32_t>(std::min(high, x1) - x0) + 1};
   const auto first = [&](int32_t x) {
@@ -61,8 +66,7 @@ Rows::Range Rows::nodes(uint32_t row, int32_t low, int32_t high) const {
   return {first(low), first(high + 1)};
 }
 
-Search::Search(const Lattice& lattice, const Rows& rows, const Snapshot& snapshot, double reach)
-    : lattice_(lattice), rows_(rows), snapshot_(snapshot) {
+Search::Search(const Lattice& lattice, const Rows& rows, double reach) : lattice_(lattice), rows_(rows) {
   // Coordinates are rounded down to 2^-kCoarse, so a difference is wrong by less than one unit per axis; floats
   // add less than one part in 10^6.
   const double units = std::ldexp(reach, kCoarse) + std::sqrt(3.0);
@@ -70,24 +74,47 @@ Search::Search(const Lattice& lattice, const Rows& rows, const Snapshot& snapsho
   reach2_ = static_cast<float>(units * units * (1 + 1e-6));
 }
 
-void Search::add(Rows::Range nodes, int32_t x, int32_t y, int32_t z, uint8_t shift) {
-  if (nodes.begin == nodes.end) return;
-  const uint32_t begin = snapshot_.first[nodes.begin], count = snapshot_.first[nodes.end] - begin;
-  if (count == 0) return;
-  found_.resize(std::max<size_t>(found_.size(), count + 16));
-  const int32_t at[3] = {x, y, z};
-  const uint32_t n = within(&snapshot_.x[begin], &snapshot_.y[begin], &snapshot_.z[begin], count, at, reach2_,
-                            found_.data());
-  for (uint32_t k = 0; k < n; ++k) hits_.push_back({snapshot_.particle[begin + found_[k]], shift});
+Search::Search(const Lattice& lattice, const Rows& rows, double reach, const Bins& bins)
+    : Search(lattice, rows, reach) {
+  bins_ = &bins;
 }
 
-const std::vector<Search::Hit>& Search::around(uint32_t node, int32_t x, int32_t y, int32_t z) {
+Search::Search(const Lattice& lattice, const Rows& rows, double reach, const Members& members,
+               const Snapshot& snapshot)
+    : Search(lattice, rows, reach) {
+  members_ = &members;
+  snapshot_ = &snapshot;
+}
+
+void Search::add(Rows::Range nodes, const std::array<int32_t, 3>& at, uint8_t shift) {
+  if (nodes.begin == nodes.end) return;
+  if (bins_ == nullptr) {
+    for (uint32_t n = nodes.begin; n < nodes.end; ++n)
+      members_->for_each(n, [&](uint32_t p) {
+        float r2 = 0;
+        for (int a = 0; a < 3; ++a) {
+          const auto d = static_cast<float>(static_cast<int32_t>(static_cast<uint32_t>(snapshot_->at[a][p]) -
+                                                                 static_cast<uint32_t>(at[a])));
+          r2 += d * d;
+        }
+        if (r2 <= reach2_) hits_.push_back({p, shift});
+      });
+    return;
+  }
+  const uint32_t begin = bins_->first[nodes.begin], count = bins_->first[nodes.end] - begin;
+  if (count == 0) return;
+  found_.resize(std::max<size_t>(found_.size(), count + 16));
+  const uint32_t n = within(&bins_->at[0][begin], &bins_->at[1][begin], &bins_->at[2][begin], count, at.data(),
+                            reach2_, found_.data());
+  for (uint32_t k = 0; k < n; ++k) hits_.push_back({bins_->particle[begin + found_[k]], shift});
+}
+
+const std::vector<Search::Hit>& Search::around(uint32_t node, const std::array<int32_t, 3>& at) {
   hits_.clear();
   const Cell& cell = lattice_.cell(node);
   const Cell& period = lattice_.period();
   // The cells that [x - reach, x + reach] touches, relative to the particle's own.
   std::array<int, 3> low, high;
-  const std::array<int32_t, 3> at{x, y, z};
   for (int a = 0; a < 3; ++a) {
     const int32_t local = at[a] & ((1 << kCoarse) - 1);
     low[a] = (local - reach_) >> kCoarse;
@@ -105,10 +132,11 @@ const std::vector<Search::Hit>& Search::around(uint32_t node, int32_t x, int32_t
         const int32_t a = cell[0] + low[0] - image_x * period[0], b = cell[0] + high[0] - image_x * period[0];
         if (period[0] > 0 && (b < 0 || a >= period[0])) continue;
         const auto moved = [](int32_t value, int image, int32_t cells) {
-          return value - static_cast<int32_t>(static_cast<uint32_t>(image * cells) << kCoarse);
+          return static_cast<int32_t>(static_cast<uint32_t>(value) -
+                                      (static_cast<uint32_t>(image * cells) << kCoarse));
         };
-        add(rows_.nodes(other, a, b), moved(x, image_x, period[0]), moved(y, image_y, period[1]),
-            moved(z, image_z, period[2]),
+        add(rows_.nodes(other, a, b),
+            {moved(at[0], image_x, period[0]), moved(at[1], image_y, period[1]), moved(at[2], image_z, period[2])},
             static_cast<uint8_t>(image_x + 1 + 3 * (image_y + 1) + 9 * (image_z + 1)));
       }
     }

@@ -6,19 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "emu/lattice/block.h"
-#include "emu/lattice/members.h"
+#include "emu/lattice/snapshot.h"
 #include "model/lattice.h"
 
 namespace cuboct::emu {
-
-// Fractional bits of a cell edge in which pairs are searched and displacements are measured.
-inline constexpr int kCoarse = 16;
-inline int32_t coarse(double x, int position_frac) {
-  const auto whole = static_cast<int64_t>(x);
-  return static_cast<int32_t>(position_frac >= kCoarse ? whole >> (position_frac - kCoarse)
-                                                       : whole << (kCoarse - position_frac));
-}
 
 // Neighbours in x, y and z of a row of nodes: nodes of one (y, z) stand one after another in a Lattice, so the
 // particles of a stretch of a row are a stretch of an array.
@@ -36,44 +27,41 @@ class Rows {
   struct Range {
     uint32_t begin, end;
   };
+  uint32_t count() const { return static_cast<uint32_t>(rows_.size()); }
+  Range row(uint32_t row) const { return rows_[row]; }
+  // Whether its nodes stand without a gap.
+  bool whole(uint32_t row) const;
   Range nodes(uint32_t row, int32_t low, int32_t high) const;
 
  private:
-  struct Row {
-    uint32_t begin, end;
-  };
   const Lattice& lattice_;
-  std::vector<Row> rows_;
+  std::vector<Range> rows_;
   std::vector<uint32_t> row_of_;
   std::vector<std::array<uint32_t, (2 * kReach + 1) * (2 * kReach + 1)>> near_;
 };
 
-// The particles as they stood when the list was made, by node and slot: coarse coordinates (modulo 2^32: only
-// differences over a few cells are used).
-struct Snapshot {
-  std::vector<uint32_t> first;  // nodes + 1
-  PaddedArray<int32_t> x, y, z;
-  PaddedArray<uint32_t> particle;
-};
-
-// Calls see(particle, shift) for each particle within `reach` cells (at most kReach) of one in `node` that
-// stood at (x, y, z) in the snapshot, itself included; `shift` as in Entry.
+// Finds the particles within `reach` cells (at most Rows::kReach) of a point: in the bins, or, where only a few points
+// are looked at, among the members of the nodes as the snapshot has them.
 class Search {
  public:
-  Search(const Lattice& lattice, const Rows& rows, const Snapshot& snapshot, double reach);
+  Search(const Lattice& lattice, const Rows& rows, double reach, const Bins& bins);
+  Search(const Lattice& lattice, const Rows& rows, double reach, const Members& members, const Snapshot& snapshot);
   struct Hit {
     uint32_t particle;
-    uint8_t shift;
+    uint8_t shift;  // as in Entry
   };
-  // The hits are valid until the next call.
-  const std::vector<Hit>& around(uint32_t node, int32_t x, int32_t y, int32_t z);
+  // Around the point `at` of the cell of `node`. The hits are valid until the next call.
+  const std::vector<Hit>& around(uint32_t node, const std::array<int32_t, 3>& at);
 
  private:
-  void add(Rows::Range nodes, int32_t x, int32_t y, int32_t z, uint8_t shift);
+  Search(const Lattice& lattice, const Rows& rows, double reach);
+  void add(Rows::Range nodes, const std::array<int32_t, 3>& at, uint8_t shift);
   const Lattice& lattice_;
   const Rows& rows_;
-  const Snapshot& snapshot_;
-  int32_t reach_;    // coarse, rounded up
+  const Bins* bins_ = nullptr;
+  const Members* members_ = nullptr;
+  const Snapshot* snapshot_ = nullptr;
+  int32_t reach_;  // coarse, rounded up
   float reach2_;
   std::vector<Hit> hits_;
   std::vector<uint32_t> found_;

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "emu/lattice/snapshot.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cuboct::emu {
+
+void Snapshot::look(const Particles& particles, uint32_t particle) {
+  for (int a = 0; a < 3; ++a) at[a][particle] = coarse(particles.x[a][particle], position_frac);
+}
+
+double Snapshot::moved2(const Particles& particles, uint32_t particle) const {
+  double sum = 0;
+  for (int a = 0; a < 3; ++a) {
+    // Modulo 2^32: a particle may have passed the seam of a ring since.
+    const auto d = static_cast<double>(
+        static_cast<int32_t>(static_cast<uint32_t>(coarse(particles.x[a][particle], position_frac)) -
+                             static_cast<uint32_t>(at[a][particle])));
+    sum += d * d;
+  }
+  return sum;
+}
+
+// Each coordinate is rounded down to a coarse unit, then and now: a difference is wrong by less than one.
+double Snapshot::moved(const Particles& particles, uint32_t particle) const {
+  return std::ldexp(std::sqrt(moved2(particles, particle)) + 2, -kCoarse);
+}
+
+double Snapshot::displacement(const Particles& particles) const {
+  double most = 0;
+#pragma omp parallel for reduction(max : most) num_threads(threads)
+  for (uint32_t p = 0; p < at[0].size(); ++p) most = std::max(most, moved2(particles, p));
+  return std::ldexp(std::sqrt(most) + 2, -kCoarse);
+}
+
+bool Snapshot::astray(const Lattice& lattice, const Particles& particles, uint32_t particle, double threshold) const {
+  static_assert(kCoarse == 16);  // a place keeps 16 bits of its cell
+  const Cell& cell = lattice.cell(particles.node[particle]);
+  for (int a = 0; a < 3; ++a)
+    if (at[a][particle] >> kCoarse != static_cast<int16_t>(cell[a])) return true;
+  return moved(particles, particle) > threshold;
+}
+
+Bins::Bins(const Lattice& lattice, const Members& members, Particles& particles, int position_frac, int threads)
+    : first(lattice.size() + 1) {
+  uint32_t count = 0;
+  for (uint32_t n = 0; n < lattice.size(); ++n) {
+    first[n] = count;
+    count += static_cast<uint32_t>(members.count(n));
+  }
+  first[lattice.size()] = count;
+  for (auto& array : at) array = PaddedArray<int32_t>(count);
+  particle = PaddedArray<uint32_t>(count);
+  const double cell = std::ldexp(1.0, position_frac), inverse = std::ldexp(1.0, -position_frac);
+#pragma omp parallel for num_threads(threads)
+  for (uint32_t n = 0; n < lattice.size(); ++n) {
+    uint32_t k = first[n];
+    members.for_each(n, [&](uint32_t p) {
+      for (int a = 0; a < 3; ++a) {
+        double& x = particles.x[a][p];
+        x += (lattice.cell(n)[a] - std::floor(x * inverse)) * cell;
+        at[a][k] = coarse(x, position_frac);
+      }
+      particle[k++] = p;
+    });
+  }
+}
+
+void Bins::release_to(Snapshot& snapshot) {
+  for (int a = 0; a < 3; ++a) {
+    if (snapshot.at[a].size() != particle.size()) snapshot.at[a] = PaddedArray<int32_t>(particle.size());
+    for (uint32_t k = 0; k < particle.size(); ++k) snapshot.at[a][particle[k]] = at[a][k];
+    at[a] = {};
+  }
+  particle = {};
+}
+
+}  // namespace cuboct::emu

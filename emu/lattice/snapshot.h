@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Where the far list found the particles, and in which bins it looks for them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "emu/lattice/block.h"
+#include "emu/lattice/members.h"
+#include "model/lattice.h"
+
+namespace cuboct::emu {
+
+// Fractional bits of a cell edge in which pairs are searched and displacements are measured. Coarse coordinates
+// are taken modulo 2^32: only differences over a few cells are used.
+inline constexpr int kCoarse = 16;
+inline int32_t coarse(double x, int position_frac) {
+  const auto whole = static_cast<int64_t>(x);
+  return static_cast<int32_t>(position_frac >= kCoarse ? whole >> (position_frac - kCoarse)
+                                                       : whole << (kCoarse - position_frac));
+}
+
+// By particle.
+struct Snapshot {
+  std::array<PaddedArray<int32_t>, 3> at;
+  int position_frac = 0;
+  int threads = 1;
+
+  // The distance of a particle from its place here, in cells, rounded up; the largest of all.
+  double moved(const Particles& particles, uint32_t particle) const;
+  double displacement(const Particles& particles) const;
+  // Whether a particle is farther than `threshold` cells from its place here, or that is not in the cell of its node.
+  bool astray(const Lattice& lattice, const Particles& particles, uint32_t particle, double threshold) const;
+  void look(const Particles& particles, uint32_t particle);
+
+ private:
+  double moved2(const Particles& particles, uint32_t particle) const;  // coarse units
+};
+
+// The particles sorted by node and slot: those of a stretch of nodes are a stretch of arrays.
+struct Bins {
+  // Positions of particles go back into the cells of the rings first.
+  Bins(const Lattice& lattice, const Members& members, Particles& particles, int position_frac, int threads);
+  std::vector<uint32_t> first;  // nodes + 1
+  std::array<PaddedArray<int32_t>, 3> at;
+  PaddedArray<uint32_t> particle;
+
+  // Leaves the places to `snapshot`, and nothing here.
+  void release_to(Snapshot& snapshot);
+};
+
+}  // namespace cuboct::emu
