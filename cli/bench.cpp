@@ -240,9 +240,13 @@ std::vector<Entry> entries(const Options& options) {
               run_lattice_block(s, name, scene, cores ? all : 1, false, seconds);
             });
       }
-  add("lattice.cycles_32k.all_cores", "the same with the timing model, 32000 particles", [=](auto& s) {
-    run_lattice_block(s, "lattice.cycles_32k.all_cores", {}, all, true, seconds);
-  });
+  for (const bool cores : {false, true}) {
+    const std::string name = fmt::format("lattice.cycles_32k.{}", cores ? "all_cores" : "1_thread");
+    add(name,
+        fmt::format("the same with the timing model, 32000 particles, {}",
+                    cores ? "a thread per core" : "one thread"),
+        [=](auto& s) { run_lattice_block(s, name, {}, cores ? all : 1, true, seconds); });
+  }
   add("golden.block_4k", "the golden engine, 4000 particles", [=](auto& s) {
     run_golden_block(s, "golden.block_4k", {.cells = 10}, seconds);
   });
