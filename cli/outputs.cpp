@@ -45,10 +45,10 @@ std::vector<Frame> real_frames(const Loaded& loaded, const std::vector<State>& s
   const int axis = strain_axis(scene);
   std::vector<Frame> frames;
   for (const State& state : states) {
-    const Body body = real(state);
-    Frame frame{state.step, static_cast<double>(state.step) * plan.rule.dt, body.x, body.v, body.type, {}};
-    for (const LocalStrain& strain : meter.measure(body.x)) frame.strain.push_back(strain.axial(axis));
-    frames.push_back(std::move(frame));
+    Body body = real(state);
+    std::vector<double> strain = meter.axial(body.x, axis);
+    frames.push_back({state.step, static_cast<double>(state.step) * plan.rule.dt, std::move(body.x),
+                      std::move(body.v), std::move(body.type), std::move(strain)});
   }
   return frames;
 }

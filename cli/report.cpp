@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -71,30 +72,44 @@ std::vector<size_t> choose_frames(const Trace& trace) {
 }
 
 std::string pictures(const Loaded& loaded, const Trace& trace, const std::vector<size_t>& chosen) {
-  std::vector<State> states;
-  for (const size_t k : chosen) states.push_back(trace.frames[k]);
-  const std::vector<Frame> frames = real_frames(loaded, states);
+  const Plan& plan = loaded.setup.plan;
+  const auto positions = [&](const State& state) {
+    return to_real(state, plan.rule, plan.lattice, plan.origin).x;
+  };
   const double radius = frame_style(loaded.scene).radius;
 
-  std::vector<double> strains;
-  Vec3 lower = frames[0].x[0], upper = lower;
-  for (const Frame& frame : frames) {
-    strains.insert(strains.end(), frame.strain.begin(), frame.strain.end());
-    for (const Vec3& x : frame.x) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
+  // Of one frame at a time only the strains are kept: there may be millions of particles.
+  std::vector<std::vector<float>> strains;
+  Vec3 lower = Vec3::Constant(INFINITY), upper = -lower;
+  {
+    const StrainMeter meter = strain_meter(loaded.scene, positions(loaded.setup.initial));
+    for (const size_t k : chosen) {
+      const std::vector<Vec3> x = positions(trace.frames[k]);
+      for (const Vec3& one : x) lower = lower.cwiseMin(one), upper = upper.cwiseMax(one);
+      const std::vector<double> strain = meter.axial(x, strain_axis(loaded.scene));
+      strains.emplace_back(strain.begin(), strain.end());
+    }
   }
   // The scale ends at the 98th percentile: the few pairs that a crack parts would else take all of it.
-  std::sort(strains.begin(), strains.end());
-  const double low = 0, high = std::max(strains[strains.size() * 98 / 100], 1e-4);
+  std::vector<float> all;
+  for (const auto& strain : strains) all.insert(all.end(), strain.begin(), strain.end());
+  const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 98 / 100);
+  std::nth_element(all.begin(), end, all.end());
+  const double low = 0, high = std::max(double{*end}, 1e-4);
+  all = {};
   int height = 0;
   constexpr int kWidth = 1100;
   const View view = view_of(lower - Vec3::Constant(radius), upper + Vec3::Constant(radius), kWidth, height);
   std::vector<Image> images;
   std::vector<std::string> labels;
-  for (const Frame& frame : frames) {
+  for (size_t n = 0; n < chosen.size(); ++n) {
+    const State& state = trace.frames[chosen[n]];
     std::vector<Colour> colours;
-    for (const double strain : frame.strain) colours.push_back(viridis((strain - low) / (high - low)));
-    images.push_back(render(frame.x, colours, radius, view, kWidth, height));
-    labels.push_back(fmt::format("step {}    t = {:.4g} s", frame.step, frame.time));
+    colours.reserve(strains[n].size());
+    for (const float strain : strains[n]) colours.push_back(viridis((strain - low) / (high - low)));
+    images.push_back(render(positions(state), colours, radius, view, kWidth, height));
+    labels.push_back(fmt::format("step {}    t = {:.4g} s", state.step,
+                                 static_cast<double>(state.step) * plan.rule.dt));
   }
   const std::string png = plot_pictures(
       images, labels, fmt::format("axial strain along {}", "xyz"[strain_axis(loaded.scene)]), low, high);

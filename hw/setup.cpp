@@ -2,14 +2,17 @@
 #include "hw/setup.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+
+#include "hw/reach.h"
 
 namespace cuboct {
 namespace {
-
-constexpr double kMostCells = 3e7;  // about 3 GB of lattice
 
 // A periodic axis must be a ring of whole cells, all of one edge: the shortest edge, not below `least`, that
 // divides every periodic extent. Without periodic axes it is `least`.
@@ -34,54 +37,6 @@ double periodic_edge(const Vec3& extent, double least) {
       "use a larger box, or one whose sides have a common part");
 }
 
-// Every cell that a box touches.
-void add_box(std::vector<Cell>& cells, const Vec3& low, const Vec3& high, const Vec3& origin, double edge,
-             const Cell& period) {
-  std::array<int32_t, 3> first, last;
-  double count = 1;
-  for (int a = 0; a < 3; ++a) count *= (high[a] - low[a]) / edge + 1;
-  if (!(count < kMostCells) || !((high - origin).cwiseAbs().maxCoeff() < 1e9 * edge) ||
-      !((low - origin).cwiseAbs().maxCoeff() < 1e9 * edge))
-    throw InputError(fmt::format("the reach spans {:.3g} cells of {:.4g} m: at most {:.3g} can be built",
-                                 count, edge, kMostCells),
-                     "a smaller reach.margin or reach box");
-  for (int a = 0; a < 3; ++a) {
-    first[a] = static_cast<int32_t>(std::floor((low[a] - origin[a]) / edge));
-    last[a] = static_cast<int32_t>(std::floor((high[a] - origin[a]) / edge));
-    if (period[a] > 0) last[a] = std::min(last[a], first[a] + period[a] - 1);
-  }
-  for (int32_t z = first[2]; z <= last[2]; ++z)
-    for (int32_t y = first[1]; y <= last[1]; ++y)
-      for (int32_t x = first[0]; x <= last[0]; ++x) cells.push_back({x, y, z});
-}
-
-// The cells that the body, its margin, its driven types on their way and the extra box touch.
-std::vector<Cell> reachable(const Scene& scene, double edge, const Vec3& origin, const Cell& period) {
-  const Vec3 margin = scene.reach_margin.minCoeff() < 0 ? Vec3(Vec3::Constant(edge)) : scene.reach_margin;
-  const double duration = static_cast<double>(scene.steps) * scene.rule.dt;
-  std::vector<Cell> cells;
-  size_t kept = size_t{1} << 22;
-  for (size_t id = 0; id < scene.body.size(); ++id) {
-    const ParticleType& type = scene.rule.types[scene.body.type[id]];
-    const Vec3 way = type.velocity * duration;
-    const int stops = 1 + static_cast<int>(std::ceil(way.norm() / (0.5 * edge)));
-    for (int k = 0; k <= (way.norm() > 0 ? stops : 0); ++k) {
-      const Vec3 at = scene.body.x[id] + way * k / stops;
-      add_box(cells, at - margin, at + margin, origin, edge, period);
-    }
-    if (cells.size() > kept) {  // neighbours list the same cells: keep the list short
-      std::sort(cells.begin(), cells.end());
-      cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-      if (static_cast<double>(cells.size()) > kMostCells)
-        throw InputError(fmt::format("the body can reach {} cells of {:.4g} m: at most {:.3g} can be built",
-                                     cells.size(), edge, kMostCells));
-      kept = std::max(kept, 2 * cells.size());
-    }
-  }
-  if (scene.reach[0] != scene.reach[1]) add_box(cells, scene.reach[0], scene.reach[1], origin, edge, period);
-  return cells;
-}
-
 // `see` is given each particle of the initial state once, in the order of ids.
 template <typename See>
 Plan plan_with(const Scene& scene, const Arch& arch, See see) {
@@ -104,7 +59,7 @@ Plan plan_with(const Scene& scene, const Arch& arch, See see) {
     }
 
   FixedRule rule = quantise(scene.rule, edge, arch.widths, arch.table);
-  Lattice lattice(reachable(scene, edge, origin, period), period);
+  Lattice lattice(reachable_cells(scene, edge, origin, period), period);
   std::vector<uint32_t> count(lattice.size(), 0);
   uint32_t fullest = 0;
   for (uint32_t id = 0; id < scene.body.size(); ++id) {
@@ -120,7 +75,29 @@ Plan plan_with(const Scene& scene, const Arch& arch, See see) {
                    static_cast<uint32_t>(scene.body.size()));
 }
 
+// Gives the whole pages among a vector's elements [first, last) back to the system; those elements become
+// zeros. (A vector cannot shrink at its front.)
+template <typename T>
+void give_back(std::vector<T>& values, size_t first, size_t last) {
+  static const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto begin = (reinterpret_cast<uintptr_t>(values.data() + first) + page - 1) / page * page;
+  const auto end = reinterpret_cast<uintptr_t>(values.data() + last) / page * page;
+  if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
+}
+
 }  // namespace
+
+Particle InitialParticles::operator()(uint32_t id) {
+  constexpr uint32_t kBlock = 1 << 16;
+  if (id > 0 && id % kBlock == 0) {
+    // A page that reaches into the block before went with neither block: a few remain.
+    give_back(body_.x, id - kBlock, id);
+    give_back(body_.v, id - kBlock, id);
+    give_back(body_.type, id - kBlock, id);
+    if (!body_.u.empty()) give_back(body_.u, id - kBlock, id);
+  }
+  return fixed_particle(body_, id, plan_.rule, plan_.lattice, plan_.origin);
+}
 
 Plan plan_of(const Scene& scene, const Arch& arch) {
   return plan_with(scene, arch, [](const Particle&) {});

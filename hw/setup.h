@@ -2,6 +2,9 @@
 // From a scene and an arch to a plan and its initial state.
 #pragma once
 
+#include <cstdint>
+#include <utility>
+
 #include "hw/plan.h"
 #include "model/scene.h"
 
@@ -16,9 +19,23 @@ struct Setup {
 // machine cannot hold the scene: a node too full, a particle too fast, ...
 Setup make_setup(const Scene& scene, const Arch& arch);
 
-// The same plan and errors, without a State in memory. An engine can then take the particles one by one,
-//   fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin),  id = 0 ... plan.particles - 1,
-// which are make_setup's initial state, after which the body may be given up.
+// The same plan and errors, without a State in memory.
 Plan plan_of(const Scene& scene, const Arch& arch);
+
+// The particles of make_setup's initial state, out of the body that plan_of saw. It uses the body up: what was
+// asked for is given back to the system, so that an engine that is fed from here grows as the body shrinks.
+class InitialParticles {
+ public:
+  InitialParticles(Body body, const Plan& plan) : body_(std::move(body)), plan_(plan) {}
+  InitialParticles(const InitialParticles&) = delete;
+  InitialParticles& operator=(const InitialParticles&) = delete;
+
+  // Each id once, ascending from 0.
+  Particle operator()(uint32_t id);
+
+ private:
+  Body body_;
+  const Plan& plan_;
+};
 
 }  // namespace cuboct

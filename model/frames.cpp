@@ -3,6 +3,7 @@
 // justify the VTK libraries (over 100 packages on Debian) in every build.
 #include "model/frames.h"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <bit>
@@ -28,11 +29,11 @@ struct Box {
   Vec3 lower, extent;
 };
 
-Box box_of(const std::vector<Frame>& frames, const FrameStyle& style) {
+Box box_of(const FrameSource& frames, const FrameStyle& style) {
   Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
   bool any = false;
-  for (const Frame& frame : frames)
-    for (const Vec3& x : frame.x) {
+  for (const Frame* frame = frames(true); frame; frame = frames(false))
+    for (const Vec3& x : frame->x) {
       lower = any ? Vec3(lower.cwiseMin(x)) : x;
       upper = any ? Vec3(upper.cwiseMax(x)) : x;
       any = true;
@@ -46,88 +47,148 @@ Box box_of(const std::vector<Frame>& frames, const FrameStyle& style) {
   return box;
 }
 
-// A DataArray in VTK's inline binary form: base64 of a 32-bit byte count and the values, little-endian.
+FrameSource source_of(const std::vector<Frame>& frames) {
+  return [&frames, next = size_t{0}](bool restart) mutable {
+    if (restart) next = 0;
+    return next < frames.size() ? &frames[next++] : nullptr;
+  };
+}
+
 template <typename T>
-std::string data_array(const std::string& attributes, const std::vector<T>& values) {
-  static_assert(std::endian::native == std::endian::little, "the header says LittleEndian");
-  const char* type = std::is_same_v<T, double> ? "Float64" : std::is_same_v<T, uint32_t> ? "UInt32" : "UInt8";
-  const uint32_t bytes = static_cast<uint32_t>(values.size() * sizeof(T));
-  std::string raw(sizeof bytes + bytes, '\0');
-  std::copy_n(reinterpret_cast<const char*>(&bytes), sizeof bytes, raw.begin());
-  std::copy_n(reinterpret_cast<const char*>(values.data()), bytes, raw.begin() + sizeof bytes);
-  return fmt::format("        <DataArray type=\"{}\" {} format=\"binary\">{}</DataArray>\n", type, attributes,
-                     base64(raw.data(), raw.size()));
-}
+constexpr const char* kVtkType = std::is_same_v<T, double>     ? "Float64"
+                                 : std::is_same_v<T, float>    ? "Float32"
+                                 : std::is_same_v<T, uint32_t> ? "UInt32"
+                                                               : "UInt8";
 
-std::vector<double> flat(const std::vector<Vec3>& triples) {
-  std::vector<double> values;
-  for (const Vec3& t : triples) values.insert(values.end(), {t.x(), t.y(), t.z()});
-  return values;
-}
+// Writes the DataArrays of one file in VTK's inline binary form: base64 of a byte count and the values,
+// little-endian.
+class VtkArrays {
+ public:
+  VtkArrays(TextFile& file, size_t points) : file_(file), points_(points) {}
 
-std::string vtp(const Frame& frame, const FrameStyle& style) {
-  const auto n = static_cast<uint32_t>(frame.x.size());
-  std::vector<uint32_t> ids(n), ends(n);
-  for (uint32_t i = 0; i < n; ++i) ids[i] = i, ends[i] = i + 1;
-  std::string out =
+  // The widest array decides on the width of all counts.
+  const char* header_type() const { return wide() ? "UInt64" : "UInt32"; }
+
+  // value(k) for k = 0 ... count - 1.
+  template <typename T, typename Value>
+  void write(const std::string& attributes, size_t count, Value value) {
+    static_assert(std::endian::native == std::endian::little, "the header says LittleEndian");
+    file_.write(fmt::format("        <DataArray type=\"{}\" {} format=\"binary\">", kVtkType<T>, attributes));
+    const uint64_t bytes = count * sizeof(T);
+    add(&bytes, wide() ? 8 : 4);
+    for (size_t k = 0; k < count; ++k) {
+      const T one = value(k);
+      add(&one, sizeof one);
+    }
+    flush(true);
+    file_.write("</DataArray>\n");
+  }
+  template <typename T>
+  void triples(const std::string& attributes, const std::vector<Vec3>& values) {
+    write<T>(attributes + " NumberOfComponents=\"3\"", 3 * values.size(),
+             [&](size_t k) { return static_cast<T>(values[k / 3][static_cast<int>(k % 3)]); });
+  }
+
+ private:
+  static constexpr size_t kBlock = 3 << 14;  // base64 takes three bytes at a time
+
+  bool wide() const { return points_ * 3 * sizeof(double) > UINT32_MAX; }
+  void add(const void* data, size_t bytes) {
+    const auto* at = static_cast<const char*>(data);
+    block_.insert(block_.end(), at, at + bytes);
+    if (block_.size() >= kBlock) flush(false);
+  }
+  void flush(bool all) {
+    const size_t bytes = all ? block_.size() : block_.size() / 3 * 3;
+    file_.write(base64(block_.data(), bytes));
+    block_.erase(block_.begin(), block_.begin() + static_cast<ptrdiff_t>(bytes));
+  }
+
+  TextFile& file_;
+  size_t points_;
+  std::vector<char> block_;
+};
+
+void write_vtp(TextFile& out, const Frame& frame, const FrameStyle& style) {
+  const size_t n = frame.x.size();
+  VtkArrays arrays(out, n);
+  out.write(fmt::format(
       "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\">\n"
-      "  <PolyData>\n";
-  out += fmt::format(
+      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"{}\">\n"
+      "  <PolyData>\n"
       "    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
       "NumberOfPolys=\"0\">\n      <PointData Scalars=\"axial_strain\" Vectors=\"velocity\">\n",
-      n, n);
-  out += data_array("Name=\"axial_strain\"", frame.strain);
-  out += data_array("Name=\"velocity\" NumberOfComponents=\"3\"", flat(frame.v));
-  out += data_array("Name=\"type\"", frame.type);
-  out += data_array("Name=\"id\"", ids);
-  out += data_array("Name=\"radius\"", std::vector<double>(n, style.radius));
-  out += "      </PointData>\n      <Points>\n";
-  out += data_array("Name=\"position\" NumberOfComponents=\"3\"", flat(frame.x));
-  out += "      </Points>\n      <Verts>\n";
-  out += data_array("Name=\"connectivity\"", ids);
-  out += data_array("Name=\"offsets\"", ends);
-  out += "      </Verts>\n    </Piece>\n  </PolyData>\n</VTKFile>\n";
-  return out;
+      arrays.header_type(), n, n));
+  const auto index = [](size_t k) { return static_cast<uint32_t>(k); };
+  arrays.write<float>("Name=\"axial_strain\"", n,
+                      [&](size_t k) { return static_cast<float>(frame.strain[k]); });
+  arrays.triples<float>("Name=\"velocity\"", frame.v);
+  arrays.write<uint8_t>("Name=\"type\"", n, [&](size_t k) { return frame.type[k]; });
+  arrays.write<uint32_t>("Name=\"id\"", n, index);
+  arrays.write<float>("Name=\"radius\"", n, [&](size_t) { return static_cast<float>(style.radius); });
+  out.write("      </PointData>\n      <Points>\n");
+  arrays.triples<double>("Name=\"position\"", frame.x);
+  out.write("      </Points>\n      <Verts>\n");
+  arrays.write<uint32_t>("Name=\"connectivity\"", n, index);
+  arrays.write<uint32_t>("Name=\"offsets\"", n, [](size_t k) { return static_cast<uint32_t>(k + 1); });
+  out.write("      </Verts>\n    </Piece>\n  </PolyData>\n</VTKFile>\n");
 }
 
 }  // namespace
 
-void write_extended_xyz(const std::string& path, const std::vector<Frame>& frames, const FrameStyle& style) {
+void write_extended_xyz(const std::string& path, const FrameSource& frames, const FrameStyle& style) {
   const Box box = box_of(frames, style);
   const auto flag = [&](int axis) { return style.periodic.extent[axis] > 0 ? 'T' : 'F'; };
-  std::string out;
-  for (const Frame& frame : frames) {
-    fmt::format_to(
-        std::back_inserter(out),
-        "{}\nLattice=\"{:.9g} 0 0 0 {:.9g} 0 0 0 {:.9g}\" Origin=\"{:.9g} {:.9g} {:.9g}\" "
-        "pbc=\"{} {} {}\" "
-        "Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1 Step={} Time={:.9g}\n",
-        frame.x.size(), box.extent[0], box.extent[1], box.extent[2], box.lower[0], box.lower[1], box.lower[2],
-        flag(0), flag(1), flag(2), frame.step, frame.time);
-    for (size_t i = 0; i < frame.x.size(); ++i)
-      fmt::format_to(std::back_inserter(out),
-                     "{} {} {:.9g} {:.9g} {:.9g} {:.6g} {:.6g} {:.6g} {:.6g} {:.6g}\n", i,
-                     species(style, frame.type[i]), frame.x[i][0], frame.x[i][1], frame.x[i][2],
-                     frame.v[i][0], frame.v[i][1], frame.v[i][2], style.radius, frame.strain[i]);
-  }
-  write_text(path, out);
+  std::vector<std::string> names;
+  for (int type = 0; type < 256; ++type) names.push_back(species(style, static_cast<uint8_t>(type)));
+  const std::string radius = fmt::format("{:.6g}", style.radius);
+  write_text(path, [&](TextFile& file) {
+    fmt::memory_buffer out;
+    const auto to = std::back_inserter(out);
+    for (const Frame* frame = frames(true); frame; frame = frames(false)) {
+      fmt::format_to(
+          to,
+          "{}\nLattice=\"{:.9g} 0 0 0 {:.9g} 0 0 0 {:.9g}\" Origin=\"{:.9g} {:.9g} {:.9g}\" "
+          "pbc=\"{} {} {}\" "
+          "Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1 Step={} Time={:.9g}\n",
+          frame->x.size(), box.extent[0], box.extent[1], box.extent[2], box.lower[0], box.lower[1],
+          box.lower[2], flag(0), flag(1), flag(2), frame->step, frame->time);
+      for (size_t i = 0; i < frame->x.size(); ++i) {
+        const Vec3 &x = frame->x[i], &v = frame->v[i];
+        fmt::format_to(to, FMT_COMPILE("{} {} {:.9g} {:.9g} {:.9g} {:.6g} {:.6g} {:.6g} {} {:.6g}\n"), i,
+                       names[frame->type[i]], x[0], x[1], x[2], v[0], v[1], v[2], radius, frame->strain[i]);
+        if (out.size() < size_t{1} << 16) continue;
+        file.write(out.data(), out.size());
+        out.clear();
+      }
+    }
+    file.write(out.data(), out.size());
+  });
 }
 
-void write_vtk(const std::string& stem, const std::vector<Frame>& frames, const FrameStyle& style) {
+void write_extended_xyz(const std::string& path, const std::vector<Frame>& frames, const FrameStyle& style) {
+  write_extended_xyz(path, source_of(frames), style);
+}
+
+void write_vtk(const std::string& stem, const FrameSource& frames, const FrameStyle& style) {
   const std::string name = std::filesystem::path(stem).filename().string();
   std::string list =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
       "  <Collection>\n";
   const auto file = [&stem](size_t k) { return fmt::format("{}_{:06}.vtp", stem, k); };
-  for (size_t k = 0; k < frames.size(); ++k) {
-    write_text(file(k), vtp(frames[k], style));
-    list += fmt::format("    <DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}_{:06}.vtp\"/>\n",
-                        frames[k].time, name, k);
+  size_t k = 0;
+  for (const Frame* frame = frames(true); frame; frame = frames(false), ++k) {
+    write_text(file(k), [&](TextFile& out) { write_vtp(out, *frame, style); });
+    list += fmt::format("    <DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}_{:06}.vtp\"/>\n", frame->time,
+                        name, k);
   }
-  for (size_t k = frames.size(); std::filesystem::remove(file(k)); ++k) {  // of an earlier, longer run
+  for (; std::filesystem::remove(file(k)); ++k) {  // of an earlier, longer run
   }
   write_text(stem + ".pvd", list + "  </Collection>\n</VTKFile>\n");
+}
+
+void write_vtk(const std::string& stem, const std::vector<Frame>& frames, const FrameStyle& style) {
+  write_vtk(stem, source_of(frames), style);
 }
 
 }  // namespace cuboct

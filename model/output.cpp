@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 #include "model/error.h"
 
@@ -59,15 +60,34 @@ void write_whole(const std::string& path, const std::function<void(const std::st
   }
 }
 
-void write_text(const std::string& path, const std::string& text) {
+TextFile::TextFile(const std::string& temporary, std::string path)
+    : file_(std::fopen(temporary.c_str(), "wb")), path_(std::move(path)) {
+  if (!file_) throw cannot_write(path_, errno);
+  std::setvbuf(file_, nullptr, _IOFBF, size_t{1} << 18);
+}
+
+TextFile::~TextFile() {
+  if (file_) std::fclose(file_);
+}
+
+void TextFile::write(const char* text, size_t size) {
+  if (std::fwrite(text, 1, size, file_) != size) throw cannot_write(path_, errno);
+}
+
+void TextFile::close() {
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) throw cannot_write(path_, errno);
+}
+
+void write_text(const std::string& path, const std::function<void(TextFile&)>& write) {
   write_whole(path, [&](const std::string& temporary) {
-    std::FILE* file = std::fopen(temporary.c_str(), "wb");
-    if (!file) throw cannot_write(path, errno);
-    const bool all = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-    const int error = errno;
-    if (std::fclose(file) != 0) throw cannot_write(path, errno);  // a full disk may only show here
-    if (!all) throw cannot_write(path, error);
+    TextFile file(temporary, path);
+    write(file);
+    file.close();
   });
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  write_text(path, [&](TextFile& file) { file.write(text); });
 }
 
 }  // namespace cuboct

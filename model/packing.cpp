@@ -92,31 +92,48 @@ bool is_period(const Fcc& fcc, const Vec3& shift) {
   return (sum & 1) == 0;
 }
 
-void add_thermal(std::vector<Vec3>& v, const std::vector<uint32_t>& ids, double speed, uint64_t seed) {
-  if (ids.empty()) return;
-  std::mt19937_64 generator(seed);
-  // In (0, 1), 53 bits: the logarithm below needs a number above 0.
-  auto uniform = [&] { return (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53; };
-  std::vector<Vec3> draw(ids.size());
-  Vec3 mean = Vec3::Zero();
-  double spare = 0;
-  bool have_spare = false;
-  for (Vec3& d : draw) {
+namespace {
+
+// Normal deviates in a fixed order.
+class Deviates {
+ public:
+  explicit Deviates(uint64_t seed) : generator_(seed) {}
+
+  Vec3 next() {
+    Vec3 d;
     for (int a = 0; a < 3; ++a) {
-      if (have_spare) {
-        d[a] = spare;
+      if (have_spare_) {
+        d[a] = spare_;
       } else {
         const double radius = std::sqrt(-2 * std::log(uniform()));
         const double angle = 2 * std::numbers::pi * uniform();
         d[a] = radius * std::cos(angle);
-        spare = radius * std::sin(angle);
+        spare_ = radius * std::sin(angle);
       }
-      have_spare = !have_spare;
+      have_spare_ = !have_spare_;
     }
-    mean += d;
+    return d;
   }
-  mean /= static_cast<double>(draw.size());
-  for (size_t i = 0; i < ids.size(); ++i) v[ids[i]] += speed * (draw[i] - mean);
+
+ private:
+  // In (0, 1), 53 bits: the logarithm above needs a number above 0.
+  double uniform() { return (static_cast<double>(generator_() >> 11) + 0.5) * 0x1p-53; }
+
+  std::mt19937_64 generator_;
+  double spare_ = 0;
+  bool have_spare_ = false;
+};
+
+}  // namespace
+
+void add_thermal(std::vector<Vec3>& v, const std::vector<uint32_t>& ids, double speed, uint64_t seed) {
+  if (ids.empty()) return;
+  // Drawn twice, once for the mean: kept, the draws would take half as much memory as the body.
+  Vec3 mean = Vec3::Zero();
+  Deviates first(seed), again(seed);
+  for (size_t i = 0; i < ids.size(); ++i) mean += first.next();
+  mean /= static_cast<double>(ids.size());
+  for (const uint32_t id : ids) v[id] += speed * (again.next() - mean);
 }
 
 }  // namespace cuboct

@@ -67,11 +67,14 @@ void read_single_box(const ConfigTable& root, Scene& scene) {
     if (periodic[a]) scene.periodic.extent[a] = boxed.extent[a];
 }
 
-// The materials named by [[particle]] entries; -1: by region.
+// The materials named by the [[particle]] entries, the last of all particles; -1: by region.
 std::vector<int> read_particles(const ConfigTable& root, const std::vector<std::string>& materials,
                                 Scene& scene) {
-  std::vector<int> named(scene.body.x.size(), -1);
-  for (const ConfigTable& table : root.tables("particle")) {
+  std::vector<int> named;
+  const auto tables = root.tables("particle");
+  scene.body.x.reserve(scene.body.x.size() + tables.size());  // behind millions: no growth by halves
+  scene.body.v.reserve(scene.body.v.size() + tables.size());
+  for (const ConfigTable& table : tables) {
     const ConfigValue position = table.at("position");
     const Vec3 x = position.vector(quantity::length);
     for (int a = 0; a < 3; ++a) {
@@ -88,10 +91,19 @@ std::vector<int> read_particles(const ConfigTable& root, const std::vector<std::
   return named;
 }
 
-void check_distinct(const ConfigTable& root, const std::vector<Vec3>& x) {
-  std::vector<size_t> order(x.size());
-  std::iota(order.begin(), order.end(), size_t{0});
+// Sites of a packing are a pitch apart: only the listed particles, the last of `x`, can stand where another
+// does.
+void check_distinct(const ConfigTable& root, const std::vector<Vec3>& x, size_t listed) {
   const auto key = [&](size_t i) { return std::array{x[i][0], x[i][1], x[i][2], static_cast<double>(i)}; };
+  std::vector<size_t> order(listed);
+  std::iota(order.begin(), order.end(), x.size() - listed);
+  std::ranges::sort(order, {}, key);
+  const size_t packed = listed > 0 ? x.size() - listed : 0;
+  const auto place = [&](size_t i) { return std::array{x[i][0], x[i][1], x[i][2]}; };
+  std::vector<size_t> covered;
+  for (size_t i = 0; i < packed; ++i)
+    if (std::ranges::binary_search(order, place(i), {}, place)) covered.push_back(i);
+  order.insert(order.end(), covered.begin(), covered.end());
   std::ranges::sort(order, {}, key);
   for (size_t i = 1; i < order.size(); ++i)
     if (x[order[i]] == x[order[i - 1]])
@@ -148,8 +160,9 @@ std::vector<int> assign_materials(const ConfigTable& root, const Regions& region
     table.done();
     ++index;
   }
+  const size_t packed = material.size() - named.size();
   for (size_t i = 0; i < named.size(); ++i)
-    if (named[i] >= 0) material[i] = named[i];
+    if (named[i] >= 0) material[packed + i] = named[i];
   return material;
 }
 
@@ -277,7 +290,7 @@ void read_body(const ConfigTable& root, const Regions& regions, const PackingCho
   const std::vector<int> named = read_particles(root, names, scene);
   Body& body = scene.body;
   if (body.size() == 0) root.fail("no particle", "add [packing] with [geometry], or [[particle]]");
-  check_distinct(root, body.x);
+  check_distinct(root, body.x, named.size());
   read_velocities(root, regions, scene);
 
   const std::vector<int> material = assign_materials(root, regions, named, scene);

@@ -2,7 +2,10 @@
 #include "model/strain.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <thread>
 
 #include "model/neighbours.h"
 
@@ -15,40 +18,72 @@ Vec3 nearest_image(Vec3 d, const Periodic& periodic) {
 }
 
 StrainMeter::StrainMeter(const std::vector<Vec3>& initial, const Periodic& periodic, double radius)
-    : initial_(initial), periodic_(periodic), neighbours_(initial.size()) {
+    : initial_(initial), periodic_(periodic), first_(initial.size() + 1, 0) {
   CellList cells(radius, periodic);
   cells.build(initial);
   cells.for_each_pair(initial, [&](uint32_t i, uint32_t j, const Vec3&, double) {
-    neighbours_[i].push_back(j);
-    neighbours_[j].push_back(i);
+    ++first_[i + 1];
+    ++first_[j + 1];
   });
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  neighbours_.resize(first_.back());
+  // first_[i] moves on to the end of i's neighbours, which is where those of i + 1 begin.
+  cells.for_each_pair(initial, [&](uint32_t i, uint32_t j, const Vec3&, double) {
+    neighbours_[first_[i]++] = j;
+    neighbours_[first_[j]++] = i;
+  });
+  std::copy_backward(first_.begin(), first_.end() - 1, first_.end());
+  first_.front() = 0;
+}
+
+Mat3 StrainMeter::gradient(size_t i, const std::vector<Vec3>& present) const {
+  // Least squares for A = F - 1 in  du = A dx : A = (sum du dx^T) (sum dx dx^T)^+ . The pseudo-inverse is the
+  // least-norm answer, so unseen directions get A = 0.
+  Mat3 moved = Mat3::Zero(), shape = Mat3::Zero();
+  for (size_t k = first_[i]; k < first_[i + 1]; ++k) {
+    const uint32_t j = neighbours_[k];
+    const Vec3 before = nearest_image(initial_[j] - initial_[i], periodic_);
+    const Vec3 after = nearest_image(present[j] - present[i], periodic_);
+    moved += (after - before) * before.transpose();
+    shape += before * before.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(shape);
+  Vec3 inverse = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (axes.eigenvalues()[k] > 1e-6 * axes.eigenvalues()[2]) inverse[k] = 1 / axes.eigenvalues()[k];
+  return Mat3::Identity() +
+         moved * axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose();
 }
 
 std::vector<LocalStrain> StrainMeter::measure(const std::vector<Vec3>& present) const {
   std::vector<LocalStrain> strains(initial_.size());
   for (size_t i = 0; i < strains.size(); ++i) {
     LocalStrain& strain = strains[i];
-    strain.neighbours = static_cast<int>(neighbours_[i].size());
-    // Least squares for A = F - 1 in  du = A dx : A = (sum du dx^T) (sum dx dx^T)^+ . The pseudo-inverse is
-    // the least-norm answer, so unseen directions get A = 0.
-    Mat3 moved = Mat3::Zero(), shape = Mat3::Zero();
-    for (const uint32_t j : neighbours_[i]) {
-      const Vec3 before = nearest_image(initial_[j] - initial_[i], periodic_);
-      const Vec3 after = nearest_image(present[j] - present[i], periodic_);
-      moved += (after - before) * before.transpose();
-      shape += before * before.transpose();
-    }
-    const Eigen::SelfAdjointEigenSolver<Mat3> axes(shape);
-    Vec3 inverse = Vec3::Zero();
-    for (int k = 0; k < 3; ++k)
-      if (axes.eigenvalues()[k] > 1e-6 * axes.eigenvalues()[2]) inverse[k] = 1 / axes.eigenvalues()[k];
-    strain.gradient += moved * axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose();
-    for (const uint32_t j : neighbours_[i]) {
+    strain.neighbours = static_cast<int>(first_[i + 1] - first_[i]);
+    strain.gradient = gradient(i, present);
+    for (size_t k = first_[i]; k < first_[i + 1]; ++k) {
+      const uint32_t j = neighbours_[k];
       const Vec3 before = nearest_image(initial_[j] - initial_[i], periodic_);
       const Vec3 after = nearest_image(present[j] - present[i], periodic_);
       strain.residual += (after - strain.gradient * before).squaredNorm();
     }
   }
+  return strains;
+}
+
+std::vector<double> StrainMeter::axial(const std::vector<Vec3>& present, int axis) const {
+  std::vector<double> strains(initial_.size());
+  const auto some = [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) strains[i] = LocalStrain{gradient(i, present), 0, 0}.axial(axis);
+  };
+  constexpr size_t kWorthAThread = 20'000;
+  const size_t parts =
+      std::clamp<size_t>(strains.size() / kWorthAThread, 1, std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<std::thread> threads;
+  for (size_t part = 1; part < parts; ++part)
+    threads.emplace_back(some, strains.size() * part / parts, strains.size() * (part + 1) / parts);
+  some(0, strains.size() / parts);
+  for (std::thread& thread : threads) thread.join();
   return strains;
 }
 

@@ -37,11 +37,16 @@ class StrainMeter {
   // `present` has the order of `initial`. Where the neighbours span less than space (a chain, a sheet, a lone
   // particle), the directions that they do not see count as unstrained.
   std::vector<LocalStrain> measure(const std::vector<Vec3>& present) const;
+  // The elongation along one axis alone, LocalStrain::axial: 8 bytes per particle instead of 96, in threads.
+  std::vector<double> axial(const std::vector<Vec3>& present, int axis) const;
 
  private:
+  Mat3 gradient(size_t i, const std::vector<Vec3>& present) const;
+
   std::vector<Vec3> initial_;
   Periodic periodic_;
-  std::vector<std::vector<uint32_t>> neighbours_;
+  std::vector<size_t> first_;         // [particle]: begin of its neighbours; one more at the end
+  std::vector<uint32_t> neighbours_;  // by particle
 };
 
 // `d` in the nearest image: each periodic axis in [-extent/2, extent/2].

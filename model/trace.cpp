@@ -2,347 +2,97 @@
 #include "model/trace.h"
 
 #include <fmt/format.h>
-#include <hdf5.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
+#include <stdexcept>
 #include <utility>
 
+#include "model/hdf5_file.h"
 #include "model/output.h"
 
 namespace cuboct {
 namespace {
 
+using hdf5::Handle;
+using hdf5::Reader;
+using hdf5::Writer;
+
 constexpr char kFormat[] = "cuboct trace";
 constexpr uint32_t kVersion = 1;
 
-// An HDF5 identifier that closes itself; a call that failed throws the error of the file at hand.
-class Handle {
+// The particles of all frames, one after another.
+template <typename States>
+class Rows {
  public:
-  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& error) : id_(id), close_(close) {
-    if (id < 0) throw InputError(error);
+  explicit Rows(States& frames) : frames_(frames) {}
+  auto& next() {
+    while (at_ == frames_[frame_].particles.size()) ++frame_, at_ = 0;
+    return frames_[frame_].particles[at_++];
   }
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Handle& operator=(Handle&&) = delete;
-  operator hid_t() const { return id_; }
-  herr_t close() { return close_(std::exchange(id_, -1)); }
 
  private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-template <typename T>
-hid_t type_in_memory();
-template <>
-hid_t type_in_memory<uint64_t>() {
-  return H5T_NATIVE_UINT64;
-}
-template <>
-hid_t type_in_memory<int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-template <>
-hid_t type_in_memory<uint32_t>() {
-  return H5T_NATIVE_UINT32;
-}
-template <>
-hid_t type_in_memory<uint8_t>() {
-  return H5T_NATIVE_UINT8;
-}
-template <>
-hid_t type_in_memory<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-
-// Little-endian on every machine: same trace, same bytes.
-template <typename T>
-hid_t type_in_file();
-template <>
-hid_t type_in_file<uint64_t>() {
-  return H5T_STD_U64LE;
-}
-template <>
-hid_t type_in_file<int64_t>() {
-  return H5T_STD_I64LE;
-}
-template <>
-hid_t type_in_file<uint32_t>() {
-  return H5T_STD_U32LE;
-}
-template <>
-hid_t type_in_file<uint8_t>() {
-  return H5T_STD_U8LE;
-}
-template <>
-hid_t type_in_file<double>() {
-  return H5T_IEEE_F64LE;
-}
-
-using Shape = std::vector<hsize_t>;
-
-class Writer {
- public:
-  Writer(const std::string& temporary, const std::string& path)
-      : error_(fmt::format("cannot write {}: ", path)), file_(create(temporary)) {}
-
-  hid_t root() const { return file_; }
-
-  Handle group(hid_t where, const std::string& name) const {
-    Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, error_ + "HDF5 property list");
-    check(H5Pset_obj_track_times(properties, false), name);
-    return Handle(H5Gcreate2(where, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose,
-                  error_ + "group '" + name + "'");
-  }
-
-  void text(hid_t where, const std::string& name, const std::string& value) const {
-    Handle type = string_type(value.size());
-    Handle space(H5Screate(H5S_SCALAR), H5Sclose, error_ + name);
-    Handle attribute(H5Acreate2(where, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                     error_ + "attribute '" + name + "'");
-    check(H5Awrite(attribute, type, value.empty() ? "" : value.c_str()), name);
-  }
-
-  template <typename T>
-  void number(hid_t where, const std::string& name, T value) const {
-    Handle space(H5Screate(H5S_SCALAR), H5Sclose, error_ + name);
-    Handle attribute(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Aclose, error_ + "attribute '" + name + "'");
-    check(H5Awrite(attribute, type_in_memory<T>(), &value), name);
-  }
-
-  // `what` says the meaning of the rows and columns, `unit` the unit of a value.
-  template <typename T>
-  void array(hid_t where, const std::string& name, const Shape& shape, const std::vector<T>& values,
-             const std::string& unit, const std::string& what) const {
-    write(where, name, shape, type_in_file<T>(), type_in_memory<T>(), values.data(), unit, what);
-  }
-
-  void names(hid_t where, const std::string& name, const std::vector<std::string>& values) const {
-    size_t width = 1;
-    for (const std::string& value : values) width = std::max(width, value.size());
-    std::string flat(width * values.size(), '\0');
-    for (size_t i = 0; i < values.size(); ++i) values[i].copy(&flat[i * width], width);
-    Handle type = string_type(width);
-    write(where, name, {values.size()}, type, type, flat.data(), "", "name");
-  }
-
-  // Closing writes the last blocks: a full disk shows here.
-  void close() { check(file_.close(), "close"); }
-
- private:
-  Handle create(const std::string& temporary) const {
-    Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose, error_ + "HDF5 property list");
-    check(H5Pset_obj_track_times(properties, false), "file");
-    errno = 0;
-    const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, properties, H5P_DEFAULT);
-    return Handle(id, H5Fclose, error_ + std::strerror(errno));
-  }
-
-  Handle string_type(size_t size) const {
-    Handle type(H5Tcopy(H5T_C_S1), H5Tclose, error_ + "string type");
-    check(H5Tset_size(type, std::max<size_t>(size, 1)), "string type");
-    check(H5Tset_strpad(type, H5T_STR_NULLPAD), "string type");
-    check(H5Tset_cset(type, H5T_CSET_UTF8), "string type");
-    return type;
-  }
-
-  void write(hid_t where, const std::string& name, const Shape& shape, hid_t in_file, hid_t in_memory,
-             const void* values, const std::string& unit, const std::string& what) const {
-    Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, error_ + "HDF5 property list");
-    check(H5Pset_obj_track_times(properties, false), name);
-    hsize_t count = 1;
-    for (const hsize_t extent : shape) count *= extent;
-    if (count > 0) {
-      // Chunks of about 2^15 values along the first axis: large enough to pack well, small enough to read in
-      // part.
-      Shape chunk = shape;
-      chunk[0] = std::clamp<hsize_t>((hsize_t{1} << 15) * shape[0] / count, 1, shape[0]);
-      check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), name);
-      check(H5Pset_shuffle(properties), name);
-      check(H5Pset_deflate(properties, 4), name);
-    }
-    Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose,
-                 error_ + name);
-    Handle data(H5Dcreate2(where, name.c_str(), in_file, space, H5P_DEFAULT, properties, H5P_DEFAULT),
-                H5Dclose, error_ + "dataset '" + name + "'");
-    if (count > 0) check(H5Dwrite(data, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
-    text(data, "unit", unit);
-    text(data, "what", what);
-  }
-
-  void check(herr_t result, const std::string& name) const {
-    if (result < 0) throw InputError(fmt::format("{}HDF5 failed at '{}'", error_, name));
-  }
-
-  std::string error_;
-  Handle file_;
-};
-
-class Reader {
- public:
-  explicit Reader(const std::string& path) : path_(path), file_(open(path)) {}
-
-  hid_t root() const { return file_; }
-  std::string missing(const std::string& kind, const std::string& name) const {
-    return fmt::format("{} is not a cuboct trace: no {} '{}'", path_, kind, name);
-  }
-
-  bool has(hid_t where, const std::string& name) const {
-    return H5Lexists(where, name.c_str(), H5P_DEFAULT) > 0;
-  }
-
-  bool has_attribute(hid_t where, const std::string& name) const {
-    return H5Aexists(where, name.c_str()) > 0;
-  }
-
-  Handle group(hid_t where, const std::string& name) const {
-    return Handle(H5Gopen2(where, name.c_str(), H5P_DEFAULT), H5Gclose, missing("group", name));
-  }
-
-  std::string text(hid_t where, const std::string& name) const {
-    Handle attribute(H5Aopen(where, name.c_str(), H5P_DEFAULT), H5Aclose, missing("attribute", name));
-    Handle type(H5Aget_type(attribute), H5Tclose, missing("attribute", name));
-    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
-      throw InputError(missing("text attribute", name));
-    std::string value(H5Tget_size(type), '\0');
-    if (H5Aread(attribute, type, value.data()) < 0) throw InputError(missing("text attribute", name));
-    return value.substr(0, value.find('\0'));
-  }
-
-  template <typename T>
-  T number(hid_t where, const std::string& name) const {
-    Handle attribute(H5Aopen(where, name.c_str(), H5P_DEFAULT), H5Aclose, missing("attribute", name));
-    Handle space(H5Aget_space(attribute), H5Sclose, missing("attribute", name));
-    T value{};
-    if (H5Sget_simple_extent_npoints(space) != 1 || H5Aread(attribute, type_in_memory<T>(), &value) < 0)
-      throw InputError(missing("number", name));
-    return value;
-  }
-
-  // All values; the shape must be `columns` behind a first axis of any length.
-  template <typename T>
-  std::vector<T> array(hid_t where, const std::string& name, const Shape& columns = {}) const {
-    Handle data = dataset(where, name);
-    const Shape shape = shape_of(data, name);
-    if (Shape(shape.begin() + 1, shape.end()) != columns)
-      throw InputError(fmt::format("{} is not a cuboct trace: the shape of '{}' is wrong", path_, name));
-    size_t count = 1;
-    for (const hsize_t extent : shape) count *= extent;
-    std::vector<T> values(count);
-    if (count > 0 && H5Dread(data, type_in_memory<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-      throw InputError(fmt::format("cannot read '{}' of {}", name, path_));
-    return values;
-  }
-
-  std::vector<std::string> names(hid_t where, const std::string& name) const {
-    Handle data = dataset(where, name);
-    const Shape shape = shape_of(data, name);
-    Handle type(H5Dget_type(data), H5Tclose, missing("dataset", name));
-    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
-      throw InputError(missing("list of names", name));
-    const size_t width = H5Tget_size(type);
-    std::string flat(width * shape[0], '\0');
-    if (shape[0] > 0 && H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, flat.data()) < 0)
-      throw InputError(fmt::format("cannot read '{}' of {}", name, path_));
-    std::vector<std::string> values(shape[0]);
-    for (size_t i = 0; i < values.size(); ++i) {
-      values[i] = flat.substr(i * width, width);
-      values[i].resize(std::min(values[i].find('\0'), values[i].size()));
-    }
-    return values;
-  }
-
-  void same_length(bool same, const std::string& what) const {
-    if (!same) throw InputError(fmt::format("{} is not a cuboct trace: {} disagree in length", path_, what));
-  }
-  const std::string& path() const { return path_; }
-
- private:
-  static Handle open(const std::string& path) {
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (!file) throw InputError(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
-    std::fclose(file);
-    return Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
-                  fmt::format("{} is not an HDF5 file", path));
-  }
-  Handle dataset(hid_t where, const std::string& name) const {
-    return Handle(H5Dopen2(where, name.c_str(), H5P_DEFAULT), H5Dclose, missing("dataset", name));
-  }
-  Shape shape_of(hid_t data, const std::string& name) const {
-    Handle space(H5Dget_space(data), H5Sclose, missing("dataset", name));
-    const int rank = H5Sget_simple_extent_ndims(space);
-    if (rank < 1) throw InputError(missing("array", name));
-    Shape shape(rank);
-    H5Sget_simple_extent_dims(space, shape.data(), nullptr);
-    return shape;
-  }
-
-  std::string path_;
-  Handle file_;
+  States& frames_;
+  size_t frame_ = 0, at_ = 0;
 };
 
 void write_frames(const Writer& out, const std::vector<State>& frames) {
   std::vector<uint64_t> step;
   std::vector<int64_t> first{0};  // signed: NumPy makes a float of an unsigned 64-bit number plus 1
-  std::vector<uint32_t> id, node;
-  std::vector<uint8_t> type;
-  std::vector<int64_t> x, v, u;
   for (const State& frame : frames) {
     step.push_back(frame.step);
-    for (const Particle& particle : frame.particles) {
-      id.push_back(particle.id);
-      type.push_back(particle.type);
-      node.push_back(particle.node);
-      x.insert(x.end(), particle.x.begin(), particle.x.end());
-      v.insert(v.end(), particle.v.begin(), particle.v.end());
-      u.insert(u.end(), particle.u.begin(), particle.u.end());
-    }
-    first.push_back(static_cast<int64_t>(id.size()));
+    first.push_back(first.back() + static_cast<int64_t>(frame.particles.size()));
   }
   const Handle group = out.group(out.root(), "frames");
-  const hsize_t rows = id.size();
   out.array(group, "step", {step.size()}, step, "step", "[frame]");
   out.array(group, "first", {first.size()}, first, "", "[frame]: rows first[k] to first[k+1]-1 are frame k");
-  out.array(group, "id", {rows}, id, "", "[row]");
-  out.array(group, "type", {rows}, type, "", "[row] index into the rule's types");
-  out.array(group, "node", {rows}, node, "", "[row] index into the lattice");
-  out.array(group, "x", {rows, 3}, x, "cell edge / 2^P", "[row][axis] offset in the node");
-  out.array(group, "v", {rows, 3}, v, "cell edge / step / 2^(P+G)",
-            "[row][axis] velocity, half a step earlier");
-  out.array(group, "u", {rows, 3}, u, "cell edge / 2^(P+G)", "[row][axis] displacement from the anchor");
+  const auto count = static_cast<hsize_t>(first.back());
+  const auto number = [&]<typename T>(const char* name, T Particle::*field, const char* what) {
+    out.rows<T>(group, name, count, 1, "", what,
+                [rows = Rows(frames), field](T* value) mutable { *value = rows.next().*field; });
+  };
+  const auto triple = [&](const char* name, Int3 Particle::*field, const char* unit, const char* what) {
+    out.rows<int64_t>(group, name, count, 3, unit, what, [rows = Rows(frames), field](int64_t* values) mutable {
+      const Int3& from = rows.next().*field;
+      std::copy(from.begin(), from.end(), values);
+    });
+  };
+  number("id", &Particle::id, "[row]");
+  number("type", &Particle::type, "[row] index into the rule's types");
+  number("node", &Particle::node, "[row] index into the lattice");
+  triple("x", &Particle::x, "cell edge / 2^P", "[row][axis] offset in the node");
+  triple("v", &Particle::v, "cell edge / step / 2^(P+G)", "[row][axis] velocity, half a step earlier");
+  triple("u", &Particle::u, "cell edge / 2^(P+G)", "[row][axis] displacement from the anchor");
 }
 
 std::vector<State> read_frames(const Reader& in) {
   const Handle group = in.group(in.root(), "frames");
   const auto step = in.array<uint64_t>(group, "step");
   const auto first = in.array<int64_t>(group, "first");
-  const auto id = in.array<uint32_t>(group, "id");
-  const auto type = in.array<uint8_t>(group, "type");
-  const auto node = in.array<uint32_t>(group, "node");
-  const auto x = in.array<int64_t>(group, "x", {3});
-  const auto v = in.array<int64_t>(group, "v", {3});
-  const auto u = in.array<int64_t>(group, "u", {3});
+  const hsize_t count = in.length(group, "id");
   in.same_length(first.size() == step.size() + 1 && first.front() == 0 &&
-                     first.back() == static_cast<int64_t>(id.size()) &&
-                     std::is_sorted(first.begin(), first.end()) && type.size() == id.size() &&
-                     node.size() == id.size() && x.size() == 3 * id.size() && v.size() == x.size() &&
-                     u.size() == x.size(),
+                     first.back() == static_cast<int64_t>(count) &&
+                     std::is_sorted(first.begin(), first.end()),
                  "the frames' fields");
   std::vector<State> frames(step.size());
   for (size_t k = 0; k < frames.size(); ++k) {
     frames[k].step = step[k];
-    for (auto row = static_cast<size_t>(first[k]); row < static_cast<size_t>(first[k + 1]); ++row) {
-      const auto triple = [row](const std::vector<int64_t>& a) {
-        return Int3{a[3 * row], a[3 * row + 1], a[3 * row + 2]};
-      };
-      frames[k].particles.push_back({id[row], type[row], node[row], triple(x), triple(v), triple(u)});
-    }
+    frames[k].particles.resize(static_cast<size_t>(first[k + 1] - first[k]));
   }
+  const auto number = [&]<typename T>(const char* name, T Particle::*field) {
+    in.rows<T>(group, name, count, 1,
+               [rows = Rows(frames), field](const T* value) mutable { rows.next().*field = *value; });
+  };
+  const auto triple = [&](const char* name, Int3 Particle::*field) {
+    in.rows<int64_t>(group, name, count, 3, [rows = Rows(frames), field](const int64_t* values) mutable {
+      std::copy_n(values, 3, (rows.next().*field).begin());
+    });
+  };
+  number("id", &Particle::id);
+  number("type", &Particle::type);
+  number("node", &Particle::node);
+  triple("x", &Particle::x);
+  triple("v", &Particle::v);
+  triple("u", &Particle::u);
   return frames;
 }
 

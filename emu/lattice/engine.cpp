@@ -32,6 +32,8 @@ constexpr double kMendFrom = 0.125;
 // The near list's skin: at least so many cells, and enough for so many steps.
 constexpr double kNearSkin = 0.04;
 constexpr double kNearSteps = 4;
+// At most this share of the far skin.
+constexpr double kMostNear = 0.4;
 // A near list this much wider than need be is made anew everywhere.
 constexpr double kWaste = 0.7;
 // Entries with fewer pairs than this on average are not what storage in rows is for: particles are stored by
@@ -235,9 +237,10 @@ double LatticeEngine::Impl::displacement() const {
 
 // The span of nodes of each group.
 void LatticeEngine::Impl::find_group_nodes() {
-  particles_.group_nodes.resize((count_ + kGroup - 1) / kGroup);
+  const uint32_t groups = (count_ + kGroup - 1) / kGroup;
+  particles_.group_nodes.assign(groups + 1, {0, 0});  // an entry may overhang the last group
 #pragma omp parallel for num_threads(threads_)
-  for (uint32_t g = 0; g < particles_.group_nodes.size(); ++g) {
+  for (uint32_t g = 0; g < groups; ++g) {
     const uint32_t* node = &particles_.node[g * kGroup];
     const auto [low, high] = std::minmax_element(node, node + std::min(kGroup, count_ - g * kGroup));
     particles_.group_nodes[g] = {*low, *high - *low + 1};
@@ -340,7 +343,7 @@ void LatticeEngine::Impl::refresh_lists() {
   // The far list must hold every pair within the near list's reach.
   const auto room = [&] { return skin_ - 2 * moved_; };
   const double least = 2 * reach_of_step();
-  double wanted = std::min(std::max(kNearSkin, 2 * kNearSteps * reach_of_step()), skin_ / 2);
+  double wanted = std::min(std::max(kNearSkin, 2 * kNearSteps * reach_of_step()), kMostNear * skin_);
   if (!listed_ || room() < wanted) {
     if (listed_) moved_ = displacement();
     if (!listed_ || room() < std::max(least, wanted / 2)) {

@@ -120,7 +120,7 @@ HWY_INLINE uint32_t awake_lanes(const uint8_t* node_flag, const Particles& parti
   uint32_t lanes = 0;
   const uint32_t* node = particles.node.data() + size_t{g} * kGroup;
   for (uint32_t l = 0; l < kGroup; ++l)
-    lanes |= static_cast<uint32_t>((node_flag[node[l]] & Active::kAwake) != 0) << l;
+    lanes |= static_cast<uint32_t>(node_flag[node[l]] != 0) << l;
   return lanes;
 }
 
@@ -180,7 +180,7 @@ template <bool kSimple, bool kDamped, bool kScaled>
 void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
   for (size_t k = 0; k < block.edge_group.size(); ++k) {
     const uint32_t g = block.first_group() + block.edge_group[k];
-    if (active.node != nullptr && !any_flag(active.node, particles, g)) continue;
+    if (active.near != nullptr && !any_flag(active.near, particles, g)) continue;
     for (uint32_t at = 0; at < kGroup; at += kLanes) {
       const uint32_t i = g * kGroup + at;
       const Own own = load_own<kDamped>(particles, i);
@@ -285,13 +285,14 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
     if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
       across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
     const uint32_t slot = (k * kGroup) & block.ring_mask;
-    const bool work = active.node == nullptr || any_flag(active.node, particles, g);
+    const bool work = active.near == nullptr || any_flag(active.near, particles, g);
     if (!work && base >= written) continue;
     uint32_t lanes = base + kGroup <= block.end ? 0xffu : (1u << (block.end - base)) - 1;
     if (!work)
       lanes = 0;
-    else if (active.node != nullptr)
-      lanes &= awake_lanes(active.node, particles, g);
+    else if (active.awake != nullptr)
+      lanes &= awake_lanes(active.awake, particles, g);
+    const bool asleep = lanes == 0;
     for (uint32_t at = 0; at < kGroup; at += kLanes) {
       const uint32_t i = base + at;
       V sum[3] = {magic(), magic(), magic()};
@@ -300,6 +301,9 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
         const PairList::Group& group = block.inside.groups[k];
         const Entry* const end = block.inside.entries.data() + group.begin + group.near;
         for (const Entry* e = block.inside.entries.data() + group.begin; e != end; ++e) {
+          if (asleep && !any_flag(active.awake, particles, static_cast<uint32_t>(e->first) / kGroup) &&
+              !any_flag(active.awake, particles, (static_cast<uint32_t>(e->first) + kGroup - 1) / kGroup))
+            continue;
           uint32_t doubtful = 0;
           V kick[3];
           if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, kick, doubtful)) continue;

@@ -13,10 +13,10 @@ namespace cuboct::emu {
 
 // Which particles to work on.
 struct Active {
-  static constexpr uint8_t kNear = 1;   // pairs of its particles may be needed
-  static constexpr uint8_t kAwake = 2;  // its particles are updated
-  const uint8_t* node = nullptr;        // by node, a sum of these, readable 8 bytes beyond; null: all are awake
-  uint8_t* changed = nullptr;           // by node: set to 1 where a particle changed; null: nobody asks
+  // Flags by node, readable 8 bytes beyond; null: all are awake.
+  const uint8_t* near = nullptr;   // pairs of its particles may be needed
+  const uint8_t* awake = nullptr;  // its particles are updated
+  uint8_t* changed = nullptr;      // by node: set to 1 where a particle changed; null: nobody asks
 };
 
 // Whether one of the nodes of group g has a flag; may say yes too often.

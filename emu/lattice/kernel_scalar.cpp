@@ -52,7 +52,7 @@ void prune(const Particles& particles, double reach, const uint8_t* only, Block&
 void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
   for (size_t k = 0; k < block.edge_group.size(); ++k) {
     const uint32_t g = block.first_group() + block.edge_group[k];
-    if (active.node != nullptr && !any_flag(active.node, particles, g)) continue;
+    if (active.near != nullptr && !any_flag(active.near, particles, g)) continue;
     double* sum = &block.across_sum[k * 3 * kGroup];
     std::fill(sum, sum + 3 * kGroup, kMagic);
     const PairList::Group& group = block.across.groups[k];
@@ -76,7 +76,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
     const double* across_sum = nullptr;
     if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
       across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
-    const bool work = active.node == nullptr || any_flag(active.node, particles, g);
+    const bool work = active.near == nullptr || any_flag(active.near, particles, g);
     const uint32_t slot = (k * kGroup) & block.ring_mask;
     double sums[kGroup][3] = {};
     const PairList::Group& group = block.inside.groups[k];
@@ -108,7 +108,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
         if (across_sum != nullptr) sums[l][a] += across_sum[a * kGroup + l] - kMagic;
       }
       const uint32_t p = g * kGroup + l;
-      if (!work || p >= block.end || (active.node != nullptr && (active.node[particles.node[p]] & Active::kAwake) == 0))
+      if (!work || p >= block.end || (active.awake != nullptr && active.awake[particles.node[p]] == 0))
         continue;
       update_one(rule, particles, p, sums[l], active, block);
     }

@@ -120,8 +120,7 @@ Quiet::Quiet(const Lattice& lattice, const Rows& rows)
       near_(lattice, rows),
       touched_(lattice, rows),
       moved_(lattice, rows),
-      spare_(lattice, rows),
-      work_(lattice.size() + 8) {}
+      spare_(lattice, rows) {}
 
 Active Quiet::next() {
   quiet_nodes_ = 0;
@@ -129,7 +128,7 @@ Active Quiet::next() {
   if (!told_) {
     if (pause_ > 0) --pause_;
     telling_ = pause_ == 0;
-    return {nullptr, telling_ ? changed_.flags() : nullptr};
+    return {nullptr, nullptr, telling_ ? changed_.flags() : nullptr};
   }
   awake_.dilate(changed_, *lattice_, *rows_);
   changed_.clear(*rows_);
@@ -140,11 +139,8 @@ Active Quiet::next() {
     telling_ = false;
     return {};
   }
-  near_.for_each(*rows_, [this](uint32_t n) { work_[n] = 0; });
   near_.dilate(awake_, *lattice_, *rows_);
-  near_.for_each(*rows_, [this](uint32_t n) { work_[n] = Active::kNear; });
-  awake_.for_each(*rows_, [this](uint32_t n) { work_[n] |= Active::kAwake; });
-  return {work_.data(), changed_.flags()};
+  return {near_.flags(), awake_.flags(), changed_.flags()};
 }
 
 void Quiet::done() {

@@ -74,7 +74,6 @@ class Quiet {
   uint64_t quiet_nodes_ = 0;
   bool touched_all_ = true, moved_all_ = true;
   NodeSet changed_, awake_, near_, touched_, moved_, spare_;
-  std::vector<uint8_t> work_;  // by node, see Active::node
 };
 
 }  // namespace cuboct::emu

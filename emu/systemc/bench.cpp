@@ -28,64 +28,87 @@ NodeModule::NodeModule(const sc_core::sc_module_name& name, uint32_t node, uint8
   SC_METHOD(cycle);
   sensitive << clk_i.pos();
   dont_initialize();
+  SC_METHOD(heed_control);
+  sensitive << control_i;
+  dont_initialize();
 }
 
 void NodeModule::end_of_elaboration() {
+  timeline_ = &monitor_o->timeline();
+  pins_.inputs.control = &control_i.read();  // the signal's current value, which keeps its place
   for (const int f : faces_) {
     in_link_[f] = link_i[f][0];
     out_link_[f] = link_o[f][0];
-    in_link_[f]->wake_with(wake_);
+    in_link_[f]->attach_receiver(pins_, f);
+    out_link_[f]->attach_sender(pins_, f);
+    stalls_ |= out_link_[f]->stalls();
   }
 }
 
+void NodeModule::heed_control() {
+  if (pins_.asleep) pins_.wake.notify(sc_core::SC_ZERO_TIME);
+}
+
+void NodeModule::sleep(uint64_t until) {
+  pins_.asleep = true;
+  next_trigger(pins_.wake);
+  if (until == kNever) return;
+  // Half a period before the edge. A register that is filled before notifies the same event at once, which
+  // takes the place of this.
+  const uint64_t period = timeline_->period;
+  pins_.wake.notify(sc_core::sc_time::from_value((until - timeline_->edge) * period - period / 2));
+}
+
 void NodeModule::cycle() {
-  // The wake event comes one delta after the edge at which a link or the control changed: the change belongs
-  // to the next cycle, and the static sensitivity is back.
-  if (asleep_) {
-    asleep_ = false;
+  // The wake event comes between two edges, or one delta after the edge at which a link or the control
+  // changed: the change belongs to the next cycle, and the static sensitivity is back.
+  if (pins_.asleep) {
+    pins_.asleep = false;
     return;
   }
-  in_.control = &control_i.read();
-  in_.valid = in_.ready = 0;
-  bool beats = false;
-  for (const int f : faces_) {
-    const LinkReceiver& from = *in_link_[f];
-    if (from.holds()) {
-      beats = true;
-      if (from.valid()) {
-        in_.valid |= static_cast<uint8_t>(1u << f);
-        in_.beat[f] = &from.beat();
-      }
+  if (timeline_->over) {
+    sleep(kNever);
+    return;
+  }
+  NodeInputs& in = pins_.inputs;
+  NodeOutputs& out = pins_.outputs;
+  in.now = timeline_->edge;
+  in.valid = pins_.held;
+  in.ready = pins_.ready;
+  if (stalls_) {
+    for (const int f : faces_) {
+      const uint8_t bit = static_cast<uint8_t>(1u << f);
+      if ((in.valid & bit) && in_link_[f]->gated()) in.valid &= static_cast<uint8_t>(~bit);
+      if ((in.ready & bit) && out_link_[f]->gated()) in.ready &= static_cast<uint8_t>(~bit);
     }
-    if (out_link_[f]->ready()) in_.ready |= static_cast<uint8_t>(1u << f);
   }
   // SystemC would wrap the text of an exception that leaves a process.
   try {
-    model_->clock(in_, out_);
+    model_->clock(in, out);
   } catch (const std::runtime_error& e) {
     monitor_o->fail(node_, e.what());
-    next_trigger(never_);
+    sleep(kNever);
     return;
   }
-  if (monitor_o->running() && Collector::shows(out_)) monitor_o->report(node_, out_);
+  if (timeline_->running()) {
+    ++calls_;
+    if (Collector::shows(out)) monitor_o->report(node_, out);
+  }
 
-  const uint8_t emptied = valid_ & static_cast<uint8_t>(~out_.valid);
-  const uint8_t ready_changed = ready_ ^ out_.ready;
-  if ((out_.loaded | emptied | ready_changed) != 0) {
-    for (const int f : faces_) {
-      if (out_.loaded >> f & 1)
-        out_link_[f]->put(out_.beat[f]);
-      else if (emptied >> f & 1)
-        out_link_[f]->clear();
-      if (ready_changed >> f & 1) in_link_[f]->set_ready(out_.ready >> f & 1);
-    }
+  const uint8_t emptied = valid_ & static_cast<uint8_t>(~out.valid);
+  const uint8_t ready_changed = ready_ ^ out.ready;
+  const uint8_t taken = in.valid & ready_;
+  for (uint8_t left = out.loaded; left != 0; left &= static_cast<uint8_t>(left - 1))
+    out_link_[__builtin_ctz(left)]->put();
+  for (uint8_t left = emptied; left != 0; left &= static_cast<uint8_t>(left - 1))
+    out_link_[__builtin_ctz(left)]->clear();
+  for (uint8_t left = ready_changed; left != 0; left &= static_cast<uint8_t>(left - 1)) {
+    const int f = __builtin_ctz(left);
+    in_link_[f]->set_ready(out.ready >> f & 1);
   }
-  valid_ = out_.valid;
-  ready_ = out_.ready;
-  if (monitor_o->over() || (model_->quiet() && !beats && valid_ == 0)) {
-    asleep_ = true;
-    next_trigger(wake_ | control_i.value_changed_event());
-  }
+  valid_ = out.valid;
+  ready_ = out.ready;
+  if (model_->wakes_at() > in.now + 1 && valid_ == 0 && (pins_.held & ~taken) == 0) sleep(model_->wakes_at());
 }
 
 Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State& initial,
@@ -123,23 +146,26 @@ Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State&
   SC_METHOD(host);
   sensitive << clk_i.pos();
   dont_initialize();
+  SC_METHOD(tick);
+  sensitive << clk_i.neg();
+  dont_initialize();
 }
 
 Bench::~Bench() = default;
 
 void Bench::report(uint32_t node, const NodeOutputs& out) {
-  if (!over_) collector_.collect(node, timeline_.cycle(), out);
+  if (!timeline_.over) collector_.collect(node, timeline_.cycle(), out);
 }
 
 void Bench::fail(uint32_t node, const std::string& text) {
-  if (over_) return;
+  if (timeline_.over) return;
   stuck_ = node_text(plan_.lattice, node) + ", " + text;
-  over_ = true;
+  timeline_.over = true;
 }
 
 // Writes the controls for the next cycle.
 void Bench::host() {
-  if (over_) return;
+  if (timeline_.over) return;
   Control control;
   control.reset_n = true;
   switch (state_) {
@@ -159,22 +185,22 @@ void Bench::host() {
       control.start = true;
       control.steps = static_cast<uint32_t>(options_.steps);
       for (auto& c : control_) c.write(control);
-      timeline_.base = timeline_.edge() + 2;  // the next cycle is the last in IDLE
+      timeline_.base = timeline_.edge + 2;  // the next cycle is the last in IDLE
       begin_ = shown_ = now();
       state_ = Host::run;
       return;
     case Host::run:
-      if (timeline_.edge() + 1 == timeline_.base)
+      if (timeline_.edge + 1 == timeline_.base)
         for (auto& c : control_) c.write(control);
-      if (!running()) return;
+      if (!timeline_.running()) return;
       if (collector_.done()) {
-        over_ = true;
+        timeline_.over = true;
         seconds_ = now() - begin_;
       } else if (timeline_.cycle() > collector_.last_event() + patience_) {
         std::vector<std::string> doing;
         for (const auto& n : nodes_) doing.push_back(n->model().doing());
         stuck_ = stuck_text(plan_.lattice, timeline_.cycle(), patience_, doing);
-        over_ = true;
+        timeline_.over = true;
       } else if (options_.progress && timeline_.cycle() % 1024 == 0) {
         show_progress();
       }
@@ -191,10 +217,15 @@ void Bench::show_progress() {
 
 RunResult Bench::take_result() {
   if (!stuck_.empty()) throw std::runtime_error(stuck_);
-  if (!over_) throw std::runtime_error("the bench has not run");
+  if (!timeline_.over) throw std::runtime_error("the bench has not run");
   RunResult result;
   Counters counters{{"cycles", static_cast<double>(collector_.last_cycle() + 1)}};
-  for (const auto& n : nodes_) add_counters(counters, 1, n->model().counters());
+  double calls = 0;
+  for (const auto& n : nodes_) {
+    add_counters(counters, 1, n->model().counters());
+    calls += static_cast<double>(n->calls());
+  }
+  counters.emplace_back("node_calls", calls);
   result.trace = collector_.take_trace();
   result.order = collector_.order();
   result.trace.engine = engine_;

@@ -24,8 +24,8 @@ inline void sc_trace(sc_core::sc_trace_file*, const Control&, const std::string&
 // The host's view of the run that the node modules report to.
 class Monitor : public virtual sc_core::sc_interface {
  public:
-  virtual bool running() const = 0;  // this cycle counts
-  virtual bool over() const = 0;
+  virtual const Timeline& timeline() const = 0;
+  // For the cycles that count and in which the node shows something.
   virtual void report(uint32_t node, const NodeOutputs& out) = 0;
   // A node that cannot go on: the run is over.
   virtual void fail(uint32_t node, const std::string& text) = 0;
@@ -45,11 +45,13 @@ class NodeModule : public sc_core::sc_module {
   NodeModule(const sc_core::sc_module_name& name, uint32_t node, uint8_t has_link,
              std::unique_ptr<NodeModel> model);
   NodeModel& model() { return *model_; }
-  sc_core::sc_event& wake() { return wake_; }
+  uint64_t calls() const { return calls_; }  // of the model, in cycles that count
 
  private:
   void end_of_elaboration() override;
   void cycle();
+  void heed_control();
+  void sleep(uint64_t until);
 
   const uint32_t node_;
   const uint8_t has_link_;
@@ -57,11 +59,11 @@ class NodeModule : public sc_core::sc_module {
   std::vector<int> faces_;  // that have a neighbour
   std::array<LinkReceiver*, kFaces> in_link_{};
   std::array<LinkSender*, kFaces> out_link_{};
-  NodeInputs in_;
-  NodeOutputs out_;
-  uint8_t valid_ = 0, ready_ = 0;
-  bool asleep_ = false;
-  sc_core::sc_event wake_, never_;
+  const Timeline* timeline_ = nullptr;
+  bool stalls_ = false;
+  LinkPins pins_;
+  uint64_t calls_ = 0;
+  uint8_t valid_ = 0, ready_ = 0;  // the link registers as the node left them
 };
 
 class Bench : public sc_core::sc_module, private Monitor {
@@ -73,17 +75,18 @@ class Bench : public sc_core::sc_module, private Monitor {
 
   sc_core::sc_in<bool> clk_i{"clk_i"};
 
-  bool over() const override { return over_; }
+  bool over() const { return timeline_.over; }
   // After `simulate`; throws std::runtime_error for a run that was stuck or whose node failed.
   RunResult take_result();
 
  private:
   enum class Host : uint8_t { reset, load, start, run };
 
-  bool running() const override { return timeline_.running(); }
+  const Timeline& timeline() const override { return timeline_; }
   void report(uint32_t node, const NodeOutputs& out) override;
   void fail(uint32_t node, const std::string& text) override;
   void host();
+  void tick() { ++timeline_.edge; }
   void show_progress();
 
   const Plan& plan_;
@@ -99,7 +102,6 @@ class Bench : public sc_core::sc_module, private Monitor {
   std::vector<std::unique_ptr<NodeModule>> nodes_;
   Host state_ = Host::reset;
   size_t loaded_ = 0, most_ = 0;
-  bool over_ = false;
   std::string stuck_;                           // why there is no result
   double begin_ = 0, seconds_ = 0, shown_ = 0;  // host time, s
 };

@@ -46,7 +46,9 @@ std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initia
 
 Bits load_word(const Plan& plan, const Particle& particle) {
   Slot slot;
-  slot.body = {particle.x, particle.v, particle.type};
+  for (int a = 0; a < 3; ++a) slot.body.x[a] = static_cast<int32_t>(particle.x[a]);
+  slot.body.v = particle.v;
+  slot.body.type = particle.type;
   slot.u = particle.u;
   slot.id = particle.id;
   return pack_particle(plan, slot);
@@ -54,12 +56,15 @@ Bits load_word(const Plan& plan, const Particle& particle) {
 
 Collector::Collector(const Plan& plan, const RunOptions& options)
     : plan_(plan), options_(options), nodes_(plan.lattice.size()), step_(nodes_), stopped_(nodes_) {
+  std::sort(options_.frames.begin(), options_.frames.end());
   trace_.plan_hash = plan.hash;
   trace_.nodes = nodes_;
 }
 
-bool Collector::wants(uint64_t step) const {
-  return std::find(options_.frames.begin(), options_.frames.end(), step) != options_.frames.end();
+Collector::Snapshot& Collector::snapshot(uint64_t step) {
+  const auto [at, is_new] = open_.try_emplace(step);
+  if (is_new) at->second.kept = std::binary_search(options_.frames.begin(), options_.frames.end(), step);
+  return at->second;
 }
 
 void Collector::observe(uint32_t node, const Bits& word) {
@@ -69,12 +74,12 @@ void Collector::observe(uint32_t node, const Bits& word) {
   p.id = slot.id;
   p.type = slot.body.type;
   p.node = node;
-  p.x = slot.body.x;
+  for (int a = 0; a < 3; ++a) p.x[a] = slot.body.x[a];
   p.v = slot.body.v;
   p.u = slot.u;
-  Snapshot& s = open_[step];
+  Snapshot& s = snapshot(step);
   s.hash += hash_of(plan_.lattice, p);
-  if (wants(step)) s.state.particles.push_back(p);
+  if (s.kept) s.state.particles.push_back(p);
   if (options_.keep_order) {
     if (order_.size() <= step) order_.resize(step + 1, std::vector<std::vector<uint32_t>>(nodes_));
     order_[step][node].push_back(p.id);
@@ -82,10 +87,10 @@ void Collector::observe(uint32_t node, const Bits& word) {
 }
 
 void Collector::complete(uint64_t step) {
-  Snapshot& s = open_[step];
+  Snapshot& s = snapshot(step);
   if (++s.complete < nodes_) return;
   trace_.state_hash.push_back(s.hash);
-  if (wants(step)) {
+  if (s.kept) {
     s.state.step = step;
     std::sort(s.state.particles.begin(), s.state.particles.end(),
               [](const Particle& a, const Particle& b) { return a.id < b.id; });

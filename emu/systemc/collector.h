@@ -14,7 +14,7 @@ namespace cuboct::emu {
 
 struct RunOptions {
   uint64_t steps = 0;
-  std::vector<uint64_t> frames;  // steps whose states are kept; those beyond `steps` never come
+  std::vector<uint64_t> frames;  // steps whose states are kept, in any order; those beyond `steps` never come
   double stall_rate = 0;         // share of cycles in which a link passes nothing, [0, 1)
   uint64_t stall_seed = 1;
   bool progress = false;    // a line per second on standard error
@@ -59,16 +59,17 @@ class Collector {
  private:
   struct Snapshot {
     State state;  // kept only for frames
+    bool kept = false;
     uint64_t hash = 0;
     uint32_t complete = 0;  // nodes that have shown all of it
   };
-  bool wants(uint64_t step) const;
+  Snapshot& snapshot(uint64_t step);
   void observe(uint32_t node, const Bits& word);
   void complete(uint64_t step);
   void close(uint64_t cycle);
 
   const Plan& plan_;
-  const RunOptions options_;
+  RunOptions options_;  // frames ascending
   const uint32_t nodes_;
   Trace trace_;
   std::vector<uint64_t> step_;             // per node: the step it is in

@@ -5,7 +5,19 @@
 #include <bit>
 #include <tuple>
 
+#include "emu/systemc/planar.h"
+
 namespace cuboct::emu {
+
+// What the streamer presents in a step, in order, and the engine's queue. An entry is a (record, pass).
+struct ForceEngine::Stream {
+  std::vector<const Candidate*> record;         // of all segments
+  std::vector<uint64_t> mask;                   // by entry: what the filter makes of it
+  std::array<uint32_t, kSegments> segment_end;  // entries
+  uint32_t passes = 1;
+  PlanarSlots own;
+  std::vector<uint32_t> queue;  // a ring of entries
+};
 
 void FaultKeeper::add(Fault new_code, uint32_t new_id, int64_t new_number) {
   if (new_code == Fault::none) return;
@@ -21,113 +33,124 @@ ForceEngine::ForceEngine(const Plan& plan, const std::vector<Slot>& own,
       fault_(fault),
       lanes_(plan.arch.filter_lanes),
       pipes_(plan.arch.force_pipes),
-      queue_(plan.arch.queue_depth),
       sum_(plan.arch.capacity) {}
 
-void ForceEngine::reset() {
-  active_ = f0_valid_ = f1_valid_ = false;
-  current_.mask = 0;
-  queue_head_ = queue_count_ = 0;
-  drain_ = 0;
-  std::fill(sum_.begin(), sum_.end(), Int3{});
+void ForceEngine::reset() { std::fill(sum_.begin(), sum_.end(), Int3{}); }
+
+void ForceEngine::begin(uint64_t cycle) { available_.fill(cycle); }
+
+// Lists the records and tests each against all own slots.
+void ForceEngine::filter(Stream& stream) const {
+  const uint32_t n = static_cast<uint32_t>(own_.size()), lanes = static_cast<uint32_t>(lanes_);
+  stream.record.clear();
+  stream.mask.clear();
+  stream.passes = (n + lanes - 1) / lanes;
+  stream.own.clear();
+  for (const Slot& s : own_) stream.own.add(s.body.x);
+  const PlanarTest test(plan_.rule);
+  const uint64_t lane_mask = ~uint64_t{0} >> (64 - lanes);
+  for (int segment = 0; segment < kSegments; ++segment) {
+    const auto one = [&](const Candidate& c, uint32_t self) {
+      stream.record.push_back(&c);
+      PlanarMask met = test(stream.own, c.x);
+      if (self < n) met.clear(self);
+      for (uint32_t p = 0; p < stream.passes; ++p) stream.mask.push_back(met.from(p * lanes) & lane_mask);
+    };
+    if (segment > 0)
+      for (const Candidate& c : halo_[segment - 1]) one(c, n);
+    else
+      for (uint32_t k = 0; k < n; ++k) one(own_[k].body, k);
+    stream.segment_end[segment] = static_cast<uint32_t>(stream.mask.size());
+  }
 }
 
-void ForceEngine::begin() {
-  active_ = true;
-  segment_ = record_ = pass_ = 0;
-}
-
-int ForceEngine::segment_size(int segment) const {
-  return static_cast<int>(segment == 0 ? own_.size() : halo_[segment - 1].size());
-}
-
-uint64_t ForceEngine::filter(const Entry& entry, int self) const {
-  const int end = std::min(lanes_, static_cast<int>(own_.size()) - entry.first_slot);
-  uint64_t mask = 0;
-  for (int l = 0; l < end; ++l)
-    mask |= static_cast<uint64_t>(may_interact(
-                plan_.rule, difference(plan_.rule, own_[entry.first_slot + l].body.x, entry.candidate->x)))
-            << l;
-  const int own_lane = self - entry.first_slot;
-  if (self >= 0 && own_lane >= 0 && own_lane < lanes_) mask &= ~(uint64_t{1} << own_lane);
-  return mask;
-}
-
-void ForceEngine::issue() {
-  for (int pipe = 0; pipe < pipes_ && current_.mask != 0; ++pipe) {
-    const int slot = current_.first_slot + std::countr_zero(current_.mask);
-    current_.mask &= current_.mask - 1;
-    const Slot& i = own_[slot];
-    const Candidate& j = *current_.candidate;
-    const PairResult pair = pair_kick(plan_.rule, i.body.x, i.body.v, i.body.type, j.x, j.v, j.type);
+// Issues the lowest bits of `mask`, one per pipe, and clears them.
+void ForceEngine::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
+  const uint32_t record = stream.passes == 1 ? entry : entry / stream.passes;
+  const int first_slot = static_cast<int>(entry - record * stream.passes) * lanes_;
+  const Candidate& j = *stream.record[record];
+  const Int3 x_j{j.x[0], j.x[1], j.x[2]};
+  for (int pipe = 0; pipe < pipes_ && mask != 0; ++pipe) {
+    const int slot = first_slot + std::countr_zero(mask);
+    mask &= mask - 1;
+    const Candidate& i = own_[slot].body;
+    const PairResult pair = pair_kick(plan_.rule, {i.x[0], i.x[1], i.x[2]}, i.v, i.type, x_j, j.v, j.type);
     ++counts_.pairs_issued;
     counts_.pairs_inside += pair.inside;
-    fault_.add(pair.fault, i.id, pair.number);
+    if (pair.fault != Fault::none) fault_.add(pair.fault, own_[slot].id, pair.number);
     for (int a = 0; a < 3; ++a) sum_[slot][a] += pair.kick[a];
   }
 }
 
-void ForceEngine::present(int available) {
-  f0_valid_ = false;
-  if (segment_ == kSegments || segment_ >= available) return;
-  quiet_ = false;
-  const int n = static_cast<int>(own_.size());
-  if (n == 0 || segment_size(segment_) == 0) {
-    ++segment_;
-    return;
-  }
-  f0_valid_ = true;
-  f0_self_ = segment_ == 0 ? record_ : -1;
-  f0_ = {segment_ == 0 ? &own_[record_].body : &halo_[segment_ - 1][record_], pass_ * lanes_, 0};
-  ++counts_.candidates;
-  if (++pass_ * lanes_ < n) return;
-  pass_ = 0;
-  if (++record_ < segment_size(segment_)) return;
-  record_ = 0;
-  ++segment_;
-}
+uint64_t ForceEngine::run() {
+  static thread_local Stream stream;  // of the node that runs: a lattice of nodes shares the cache lines
+  filter(stream);
+  const uint32_t depth = static_cast<uint32_t>(plan_.arch.queue_depth);
+  stream.queue.resize(depth);
 
-bool ForceEngine::cycle(int available) {
-  quiet_ = true;
-  if (!active_) return false;
-  ++counts_.busy;
-  if (segment_ == kSegments && !f0_valid_ && !f1_valid_ && queue_count_ == 0 && current_.mask == 0 &&
-      drain_ == 0) {
-    active_ = quiet_ = false;
-    return true;
-  }
-  quiet_ = !f0_valid_ && !f1_valid_ && queue_count_ == 0 && current_.mask == 0 && drain_ == 0;
+  // The registers. `mask` of F1 and of `current` is that of their entry, less what was issued.
+  int segment = 0;
+  uint32_t next = 0;  // the streamer's entry
+  bool f0_valid = false, f1_valid = false;
+  uint32_t f0 = 0, f1 = 0, current = 0;
+  uint64_t current_mask = 0;
+  uint32_t head = 0, count = 0;  // queue
+  int drain = 0;                 // cycles until the last issued pair is in its sum
 
-  const uint32_t held = queue_count_;  // at the start of the cycle
-  if (current_.mask != 0) {
-    issue();
-    ++counts_.issue_cycles;
-    // Issued in cycle t, in the sum from t + pipe on: the pipe is empty in cycle t + pipe, and this edge ends
-    // cycle t.
-    drain_ = plan_.latency.pipe - 1;
-  } else if (drain_ > 0) {
-    --drain_;
-  }
-  if (current_.mask == 0 && held > 0) {
-    current_ = queue_[queue_head_];
-    queue_head_ = queue_head_ + 1 == queue_.size() ? 0 : queue_head_ + 1;
-    --queue_count_;
-  }
-  if (f1_valid_ && f1_.mask != 0) {
-    if (held == queue_.size()) {
-      ++counts_.stalls;
-      return false;
+  const auto from = [&](int s) { return available_[(s + 1) / 2]; };
+  uint64_t cycle = available_[0];
+  for (;; ++cycle) {
+    if (!f0_valid && !f1_valid && count == 0 && current_mask == 0) {
+      // Nothing moves but the pipes: on to where the streamer may go on, or the pipes are empty.
+      if (segment == kSegments) {
+        cycle += static_cast<uint64_t>(drain);
+        break;
+      }
+      if (from(segment) > cycle) {
+        drain = static_cast<int>(std::max<int64_t>(0, drain - static_cast<int64_t>(from(segment) - cycle)));
+        cycle = from(segment);
+      }
     }
-    queue_[(queue_head_ + queue_count_) % queue_.size()] = f1_;
-    ++queue_count_;
+    const uint32_t held = count;  // at the start of the cycle
+    if (current_mask != 0) {
+      issue(stream, current, current_mask);
+      ++counts_.issue_cycles;
+      // Issued in cycle t, in the sum from t + pipe on: the pipe is empty in cycle t + pipe, and this edge
+      // ends cycle t.
+      drain = plan_.latency.pipe - 1;
+    } else if (drain > 0) {
+      --drain;
+    }
+    if (current_mask == 0 && held > 0) {
+      current = stream.queue[head];
+      current_mask = stream.mask[current];
+      head = head + 1 == depth ? 0 : head + 1;
+      --count;
+    }
+    if (f1_valid && stream.mask[f1] != 0) {
+      if (held == depth) {
+        ++counts_.stalls;
+        continue;
+      }
+      const uint32_t tail = head + count;
+      stream.queue[tail < depth ? tail : tail - depth] = f1;
+      ++count;
+    }
+    f1_valid = f0_valid;
+    f1 = f0;
+    f0_valid = false;
+    if (segment == kSegments || from(segment) > cycle) continue;
+    if (next == stream.segment_end[segment]) {  // no record, or no slot to meet it
+      ++segment;
+      continue;
+    }
+    f0_valid = true;
+    f0 = next++;
+    ++counts_.candidates;
+    if (next == stream.segment_end[segment]) ++segment;
   }
-  f1_valid_ = f0_valid_;
-  if (f0_valid_) {
-    f1_ = f0_;
-    f1_.mask = filter(f0_, f0_self_);
-  }
-  present(available);
-  return false;
+  counts_.busy += cycle - available_[0] + 1;
+  return cycle;
 }
 
 Int3 ForceEngine::take_sum(int slot) {

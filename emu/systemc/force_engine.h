@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The force engine of a node: streamer, filter lanes, queue, issue, pipes. docs/reference/node.md, "Force
 // engine".
+//
+// It sees nothing of the node but the own slots, which rest while it runs, and the halo memories, of which it
+// reads a segment only once that is complete. So it need not be stepped beside the main machine: when the
+// last segment is there, `run` steps all its cycles at once, register by register, and tells which one is the
+// last.
 #pragma once
 
 #include <array>
@@ -39,45 +44,29 @@ class ForceEngine {
               const std::array<std::vector<Candidate>, kFaces>& halo, FaultKeeper& fault);
 
   void reset();
-  // The next cycle is the engine's first.
-  void begin();
-  bool active() const { return active_; }
-  // One cycle; segments below `available` may be read. True in the engine's last cycle.
-  bool cycle(int available);
-  // Whether the last cycle changed nothing.
-  bool quiet() const { return quiet_; }
+  // The engine's first cycle; segment 0 may be read from there on.
+  void begin(uint64_t cycle);
+  // The cycle from which on the halos of `axis` may be read; in the order of the axes.
+  void available(int axis, uint64_t cycle) { available_[axis + 1] = cycle; }
+  // All cycles of the step, once the three axes are available; the engine's last cycle.
+  uint64_t run();
 
   // A slot's sum over the pipes, and clears it.
   Int3 take_sum(int slot);
   const Counts& counts() const { return counts_; }
 
  private:
-  struct Entry {
-    const Candidate* candidate = nullptr;
-    int first_slot = 0;  // pass * L
-    uint64_t mask = 0;   // bit l: slot first_slot + l
-  };
-
-  uint64_t filter(const Entry& entry, int self) const;
-  void issue();
-  void present(int available);
-  int segment_size(int segment) const;
+  struct Stream;
+  void filter(Stream& stream) const;
+  void issue(const Stream& stream, uint32_t entry, uint64_t& mask);
 
   const Plan& plan_;
   const std::vector<Slot>& own_;
   const std::array<std::vector<Candidate>, kFaces>& halo_;
   FaultKeeper& fault_;
   const int lanes_, pipes_;
-
-  bool active_ = false, quiet_ = true;
-  int segment_ = 0, record_ = 0, pass_ = 0;  // streamer
-  bool f0_valid_ = false, f1_valid_ = false;
-  Entry f0_, f1_, current_;
-  int f0_self_ = -1;          // the candidate's own slot, -1 for a halo record
-  std::vector<Entry> queue_;  // a ring
-  uint32_t queue_head_ = 0, queue_count_ = 0;
-  int drain_ = 0;          // cycles until the last issued pair is in its sum
-  std::vector<Int3> sum_;  // by slot, over all pipes: integer sums do not depend on the split
+  std::array<uint64_t, 4> available_{};  // own, x, y, z
+  std::vector<Int3> sum_;                // by slot, over all pipes: integer sums do not depend on the split
   Counts counts_;
 };
 

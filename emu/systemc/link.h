@@ -12,39 +12,57 @@ namespace cuboct::emu {
 
 // Counts clock edges; cycle c of the run ends at edge base + c.
 struct Timeline {
-  uint64_t period = 1;         // of the clock, in units of the simulator's resolution
-  uint64_t base = UINT64_MAX;  // edge that ends cycle 0 of the run; unset before the start
-  uint64_t edge() const { return sc_core::sc_time_stamp().value() / period; }
-  bool running() const { return base != UINT64_MAX && edge() >= base; }
-  uint64_t cycle() const { return edge() - base; }
+  uint64_t period = 1;     // of the clock, in units of the simulator's resolution
+  uint64_t edge = 0;       // the next one, or the one that is being evaluated; moves between edges
+  uint64_t base = kNever;  // edge that ends cycle 0 of the run; unset before the start
+  bool over = false;       // no cycle counts any more
+  bool running() const { return base != kNever && edge >= base; }
+  uint64_t cycle() const { return edge - base; }
+};
+
+// A node's end of its links: what the channels' current values are, gathered so that a node looks in one
+// place. Links write it in SystemC's update phase and at no other time. Bit f of a mask belongs to face f.
+struct LinkPins {
+  uint8_t held = 0;     // incoming registers that are not empty
+  uint8_t ready = 0;    // receivers of the outgoing links that are ready
+  bool asleep = false;  // the node asks to be woken by a filled register
+  NodeInputs inputs;    // `beat`: the incoming registers, where held
+  NodeOutputs outputs;  // `beat`: where the next beat is written
+  sc_core::sc_event wake;
 };
 
 class LinkSender : public virtual sc_core::sc_interface {
  public:
-  virtual bool ready() const = 0;          // link_ready_i of the sender
-  virtual void put(const Beat& beat) = 0;  // the register holds `beat` from the next cycle on
-  virtual void clear() = 0;                // the register is empty from the next cycle on
-  virtual bool holds() const = 0;          // the register is not empty, stalled or not
+  virtual void attach_sender(LinkPins& pins, int face) = 0;
+  virtual void put() = 0;    // from the next cycle on the register holds what was written to `outputs.beat`
+  virtual void clear() = 0;  // the register is empty from the next cycle on
+  virtual bool gated() const = 0;   // in this cycle neither side sees the other
+  virtual bool stalls() const = 0;  // whether it ever is
 };
 
 class LinkReceiver : public virtual sc_core::sc_interface {
  public:
-  virtual bool valid() const = 0;  // link_valid_i of the receiver
-  virtual const Beat& beat() const = 0;
-  virtual bool holds() const = 0;                        // as LinkSender's
-  virtual void set_ready(bool ready) = 0;                // from the next cycle on
-  virtual void wake_with(sc_core::sc_event& event) = 0;  // notified when the register is filled
+  virtual void attach_receiver(LinkPins& pins, int face) = 0;
+  virtual void set_ready(bool ready) = 0;  // from the next cycle on
+  virtual bool gated() const = 0;          // as LinkSender's
 };
 
-class Link : public sc_core::sc_prim_channel, public LinkSender, public LinkReceiver {
+class Link final : public sc_core::sc_prim_channel, public LinkSender, public LinkReceiver {
  public:
   // `number` seeds this link's stalls: sender * 6 + face.
   Link(const char* name, const Timeline& timeline, const StallSource& stalls, uint32_t number)
       : sc_prim_channel(name), timeline_(timeline), stalls_(stalls), number_(number) {}
 
-  bool ready() const override { return ready_ && !gated(); }
-  void put(const Beat& beat) override {
-    buffer_[1 - current_] = beat;
+  void attach_sender(LinkPins& pins, int face) override {
+    sender_ = &pins;
+    out_face_ = face;
+    pins.outputs.beat[static_cast<size_t>(face)] = &buffer_[0];
+  }
+  void attach_receiver(LinkPins& pins, int face) override {
+    receiver_ = &pins;
+    in_face_ = face;
+  }
+  void put() override {
     flip_ = next_valid_ = true;
     request_update();
   }
@@ -52,36 +70,41 @@ class Link : public sc_core::sc_prim_channel, public LinkSender, public LinkRece
     next_valid_ = false;
     request_update();
   }
-  bool holds() const override { return valid_; }
-  bool valid() const override { return valid_ && !gated(); }
-  const Beat& beat() const override { return buffer_[current_]; }
   void set_ready(bool ready) override {
     next_ready_ = ready;
     request_update();
   }
-  void wake_with(sc_core::sc_event& event) override { wake_ = &event; }
+  bool stalls() const override { return stalls_.enabled(); }
+  bool gated() const override {
+    return stalls_.enabled() && timeline_.running() && stalls_.stalled(number_, timeline_.cycle());
+  }
 
  private:
-  bool gated() const {
-    return stalls_.enabled() && timeline_.running() && stalls_.stalled(number_, timeline_.cycle());
+  static void set(uint8_t& mask, int face, bool value) {
+    mask = static_cast<uint8_t>((mask & ~(1u << face)) | static_cast<unsigned>(value) << face);
   }
   void update() override {
     if (flip_) {
-      current_ = 1 - current_;
       flip_ = false;
-      if (wake_ != nullptr) wake_->notify(sc_core::SC_ZERO_TIME);
+      // The receiver reads one buffer while the sender writes the other.
+      receiver_->inputs.beat[static_cast<size_t>(in_face_)] = &buffer_[spare_];
+      spare_ ^= 1;
+      sender_->outputs.beat[static_cast<size_t>(out_face_)] = &buffer_[spare_];
+      if (receiver_->asleep) receiver_->wake.notify(sc_core::SC_ZERO_TIME);
     }
-    valid_ = next_valid_;
-    ready_ = next_ready_;
+    set(receiver_->held, in_face_, next_valid_);
+    set(sender_->ready, out_face_, next_ready_);
   }
 
+  bool flip_ = false, next_valid_ = false, next_ready_ = false;
+  uint8_t spare_ = 0;  // the buffer that the sender writes
+  int out_face_ = 0, in_face_ = 0;
+  LinkPins* sender_ = nullptr;
+  LinkPins* receiver_ = nullptr;
+  Beat buffer_[2];
   const Timeline& timeline_;
   const StallSource& stalls_;
   const uint32_t number_;
-  Beat buffer_[2];  // what the receiver sees, and what the sender writes
-  int current_ = 0;
-  bool flip_ = false, valid_ = false, next_valid_ = false, ready_ = false, next_ready_ = false;
-  sc_core::sc_event* wake_ = nullptr;
 };
 
 }  // namespace cuboct::emu

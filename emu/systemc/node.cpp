@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "model/fixed_math.h"
 
 namespace cuboct::emu {
@@ -16,7 +18,11 @@ constexpr Fault along(Fault x, int axis) { return static_cast<Fault>(static_cast
 }  // namespace
 
 Node::Node(const Plan& plan, uint8_t has_link)
-    : plan_(plan), has_link_(has_link), capacity_(plan.arch.capacity), engine_(plan, own_, halo_, fault_) {
+    : plan_(plan),
+      has_link_(has_link),
+      capacity_(plan.arch.capacity),
+      link_words_(std::min((plan.words.link_bits + 63) / 64, int{Bits::kWords})),
+      engine_(plan, own_, halo_, fault_) {
   own_.reserve(capacity_);
   // Depths of the memories: an axis brings what the axes before it brought too.
   for (int f = 0, depth = capacity_; f < kFaces; f += 2, depth *= 3)
@@ -28,11 +34,11 @@ void Node::reset() {
   own_.clear();
   for (auto& h : halo_) h.clear();
   for (Receiver& r : receiver_) {
-    r.migrating = r.halo_end = r.migrate_end = false;
     r.beat = 0;
     r.fifo.clear();
     r.popped = 0;
   }
+  migrating_ = halo_end_ = migrate_end_ = 0;
   engine_.reset();
   main_ = Main::idle;
   fault_ = {};
@@ -43,24 +49,25 @@ int Node::axis() const {
   return static_cast<int>(main_) % 5;  // exchange_* are 0...2, migrate_* are 5...7
 }
 
-void Node::load(int face, const Bits& payload, bool end) {
-  if (!linked(face)) return;
+// The register of a linked face, for what is loaded in this cycle; zeros.
+Bits& Node::load(int face, bool end) {
   valid_ |= bit(face);
   out_->loaded |= bit(face);
-  out_->beat[face].end = end;
-  out_->beat[face].payload = payload;
   ++beats_;
+  Beat& beat = *out_->beat[face];
+  beat.end = end;
+  for (int k = 0; k < link_words_; ++k) beat.payload.word[k] = 0;
+  return beat.payload;
 }
 
-// Loads beat `beat_` of `record` on a range of faces.
-void Node::load_record_beat(int faces_from, int faces_to, const Bits& record) {
-  const int width = plan_.words.link_bits;
-  if (beat_ == 0 && width >= Bits::kWidth) {
-    for (int f = faces_from; f < faces_to; ++f) load(f, record, false);
-    return;
-  }
-  const Bits payload = record.slice(beat_ * width, width);
-  for (int f = faces_from; f < faces_to; ++f) load(f, payload, false);
+void Node::load_end(int low) {
+  for (const int f : {low, low + 1})
+    if (linked(f)) load(f, true);
+}
+
+// Loads beat `beat_` of `word_`.
+void Node::load_slice(int face) {
+  if (linked(face)) load(face, false) = word_.slice(beat_ * plan_.words.link_bits, plan_.words.link_bits);
 }
 
 // Prepares the registers for a main state's first cycle, which is the next one.
@@ -71,11 +78,15 @@ void Node::enter(Main next) {
   kept_ = 0;
   if (next == Main::dump || next == Main::idle) return;
   const bool begins_engine = plan_.arch.overlap ? next == Main::exchange_x : next == Main::force;
-  if (begins_engine) engine_.begin(), starting_ |= bit(Phase::force);
-  if (next != Main::force) starting_ |= bit(static_cast<int>(next));
+  if (begins_engine) engine_.begin(now_ + 1), starting_ |= bit(Phase::force);
+  if (next > Main::exchange_x && next <= Main::force) engine_.available(static_cast<int>(next) - 1, now_ + 1);
+  if (next == Main::force)
+    phase_last_ = engine_.run();
+  else
+    starting_ |= bit(static_cast<int>(next));
   if (next == Main::update) {
     const int n = static_cast<int>(own_.size());
-    remaining_ = n == 0 ? 1 : n - 1 + plan_.latency.update;
+    phase_last_ = now_ + static_cast<uint64_t>(n == 0 ? 1 : n - 1 + plan_.latency.update);
   }
   if (next >= Main::migrate_x)
     migrate_ = (leaving_ & bit(axis())) != 0 && !own_.empty() ? Migrate::scan : Migrate::end;
@@ -89,7 +100,7 @@ void Node::finish_phase(Main next) {
 void Node::idle() {
   const Control& host = *control_;
   out_->idle = true;
-  quiet_ = !host.load_valid && !host.start;
+  if (!host.load_valid && !host.start) wakes_at_ = kNever;
   if (host.load_valid) own_.push_back(unpack_particle(plan_, host.load_data));
   if (!host.start) return;
   steps_ = host.steps;
@@ -107,12 +118,11 @@ const Candidate& Node::relayed(int segment, int record) const {
 
 void Node::exchange() {
   const int low = 2 * axis(), high = low + 1;
-  const auto ended = [&](int f) { return !linked(f) || receiver_[f].halo_end; };
   if (sent_) {
-    if (ended(low) && ended(high)) {
+    if ((faces_of(axis()) & ~halo_end_) == 0) {
       finish_phase(static_cast<Main>(static_cast<int>(main_) + 1));
     } else {
-      quiet_ = true;
+      wakes_at_ = kNever;
     }
     return;
   }
@@ -126,19 +136,23 @@ void Node::exchange() {
     return;
   }
   if (segment_ == segments) {
-    load(low, {}, true);
-    load(high, {}, true);
+    load_end(low);
     sent_ = true;
     return;
   }
-  if (beat_ == 0) {
-    word_ = pack_halo(plan_, relayed(segment_, record_));
-    if (main_ == Main::exchange_x) {
-      out_->observe = true;
-      out_->observe_data = pack_particle(plan_, own_[record_]);
-    }
+  if (beat_ == 0 && main_ == Main::exchange_x) {
+    out_->observe = true;
+    out_->observe_data = pack_particle(plan_, own_[record_]);
   }
-  load_record_beat(low, high + 1, word_);
+  const Candidate& record = relayed(segment_, record_);
+  if (plan_.words.halo_beats == 1) {
+    for (const int f : {low, high})
+      if (linked(f)) pack_halo(plan_, record, load(f, false));
+  } else {
+    if (beat_ == 0) word_ = {}, pack_halo(plan_, record, word_);
+    load_slice(low);
+    load_slice(high);
+  }
   if (++beat_ < plan_.words.halo_beats) return;
   beat_ = 0;
   if (++record_ < relayed_size(segment_)) return;
@@ -146,18 +160,22 @@ void Node::exchange() {
   ++segment_;
 }
 
-void Node::force(bool engine_last) {
-  if (!engine_last) {
-    quiet_ = engine_.quiet();
+void Node::force() {
+  if (now_ < phase_last_) {
+    wakes_at_ = phase_last_;
     return;
   }
+  out_->phase_end |= bit(Phase::force);
   for (auto& h : halo_) h.clear();
-  for (Receiver& r : receiver_) r.halo_end = false;
+  halo_end_ = 0;
   enter(Main::update);
 }
 
 void Node::update() {
-  if (--remaining_ > 0) return;
+  if (now_ < phase_last_) {
+    wakes_at_ = phase_last_;
+    return;
+  }
   finish_particles();
   finish_phase(Main::migrate_x);
 }
@@ -167,14 +185,14 @@ void Node::finish_particles() {
   leaving_ = 0;
   for (size_t k = 0; k < own_.size(); ++k) {
     Slot& s = own_[k];
-    const FinishResult r =
-        finish(plan_.rule, engine_.take_sum(static_cast<int>(k)), s.body.x, s.body.v, s.u, s.body.type);
+    const FinishResult r = finish(plan_.rule, engine_.take_sum(static_cast<int>(k)),
+                                  {s.body.x[0], s.body.x[1], s.body.x[2]}, s.body.v, s.u, s.body.type);
     fault_.add(r.fault, s.id, r.number);
     s.u = r.u;
     for (int a = 0; a < 3; ++a) {
       s.body.v[a] = wrap(r.v[a], plan_.rule.widths.velocity_bits);
       s.away[a] = static_cast<int8_t>(wrap(r.x[a] >> p, 2));
-      s.body.x[a] = r.x[a] & ((int64_t{1} << p) - 1);
+      s.body.x[a] = static_cast<int32_t>(r.x[a] & ((int64_t{1} << p) - 1));
       if (s.away[a] != 0) leaving_ |= bit(a);
     }
   }
@@ -191,8 +209,7 @@ void Node::migrate() {
         ++link_waits_;
         break;
       }
-      load(low, {}, true);
-      load(high, {}, true);
+      load_end(low);
       migrate_ = Migrate::take_low;
       break;
     case Migrate::take_low:
@@ -218,7 +235,7 @@ void Node::scan() {
     return;
   } else {
     if (beat_ == 0) word_ = pack_particle(plan_, s);
-    load_record_beat(face, face + 1, word_);
+    load_slice(face);
     if (++beat_ < plan_.words.migrate_beats) return;
     beat_ = 0;
   }
@@ -243,13 +260,13 @@ void Node::take(int face, Migrate next, bool last) {
       if (s.away[later] != 0) leaving_ |= bit(later);
     return;
   }
-  if (linked(face) && !r.migrate_end) {
-    quiet_ = true;
+  if (linked(face) && !(migrate_end_ & bit(face))) {
+    wakes_at_ = kNever;
     return;
   }
   migrate_ = next;
   if (!last) return;
-  receiver_[2 * a].migrate_end = receiver_[2 * a + 1].migrate_end = false;
+  migrate_end_ &= static_cast<uint8_t>(~faces_of(a));
   if (main_ != Main::migrate_z) {
     finish_phase(static_cast<Main>(static_cast<int>(main_) + 1));
     return;
@@ -274,40 +291,40 @@ void Node::dump() {
 }
 
 void Node::receive(int face, const Beat& beat) {
-  Receiver& r = receiver_[face];
+  const bool migrating = migrating_ & bit(face);
   if (beat.end) {
-    (r.migrating ? r.migrate_end : r.halo_end) = true;
-    r.migrating = !r.migrating;
+    (migrating ? migrate_end_ : halo_end_) |= bit(face);
+    migrating_ ^= bit(face);
     return;
   }
-  const int beats = r.migrating ? plan_.words.migrate_beats : plan_.words.halo_beats;
+  const int beats = migrating ? plan_.words.migrate_beats : plan_.words.halo_beats;
   const Bits* record = &beat.payload;
   if (beats > 1) {
+    Receiver& r = receiver_[face];
     if (r.beat == 0) r.partial = {};
     r.partial.join(r.beat * plan_.words.link_bits, plan_.words.link_bits, beat.payload);
     if (++r.beat < beats) return;
     r.beat = 0;
     record = &r.partial;
   }
-  if (r.migrating) {
-    r.fifo.push_back(unpack_particle(plan_, *record));
+  if (migrating) {
+    receiver_[face].fifo.push_back(unpack_particle(plan_, *record));
     return;
   }
-  Candidate c = unpack_halo(plan_, *record);
   const int64_t cell = int64_t{1} << plan_.rule.widths.position_frac;
-  c.x[face / 2] += face % 2 == 0 ? -cell : cell;
-  halo_[face].push_back(c);
+  unpack_halo(plan_, *record, face / 2, face % 2 == 0 ? -cell : cell, halo_[face].emplace_back());
 }
 
 void Node::clock(const NodeInputs& in, NodeOutputs& out) {
   out_ = &out;
+  now_ = in.now;
+  wakes_at_ = now_ + 1;
   control_ = in.control;
   out.phase_start = starting_;
   out.phase_end = out.loaded = 0;
   out.observe = out.fault = out.idle = false;
   out.ready = has_link_;
   starting_ = 0;
-  quiet_ = false;
   if (!in.control->reset_n) {
     reset();
     out.valid = 0;
@@ -316,12 +333,6 @@ void Node::clock(const NodeInputs& in, NodeOutputs& out) {
   can_load_ = static_cast<uint8_t>(~valid_ | in.ready | ~has_link_);
   valid_ &= static_cast<uint8_t>(~in.ready);
 
-  bool engine_last = false;
-  if (engine_.active()) {
-    const int m = static_cast<int>(main_);
-    engine_last = engine_.cycle(m >= static_cast<int>(Main::force) ? ForceEngine::kSegments : 1 + 2 * m);
-    if (engine_last) out.phase_end |= bit(Phase::force);
-  }
   switch (main_) {
     case Main::idle:
       idle();
@@ -332,7 +343,7 @@ void Node::clock(const NodeInputs& in, NodeOutputs& out) {
       exchange();
       break;
     case Main::force:
-      force(engine_last);
+      force();
       break;
     case Main::update:
       update();
@@ -346,7 +357,8 @@ void Node::clock(const NodeInputs& in, NodeOutputs& out) {
       dump();
       break;
   }
-  quiet_ = quiet_ && !(engine_.active() && !engine_.quiet()) && in.valid == 0 && out.phase_start == 0;
+  // What comes now may be what the node waits for; the end of a phase of known length does not.
+  if (in.valid != 0 && wakes_at_ == kNever) wakes_at_ = now_ + 1;
   for (uint8_t left = in.valid; left != 0; left &= static_cast<uint8_t>(left - 1)) {
     const int f = __builtin_ctz(left);
     receive(f, *in.beat[f]);
@@ -366,12 +378,8 @@ std::string Node::doing() const {
     return list;
   };
   const int low = 2 * axis(), high = low + 1;
-  if (main_ <= Main::exchange_z && sent_) {
-    uint8_t missing = 0;
-    for (const int f : {low, high})
-      if (linked(f) && !receiver_[f].halo_end) missing |= bit(f);
-    return text + ": waits for the halo of" + faces(missing);
-  }
+  if (main_ <= Main::exchange_z && sent_)
+    return text + ": waits for the halo of" + faces(faces_of(axis()) & static_cast<uint8_t>(~halo_end_));
   if (main_ >= Main::migrate_x && migrate_ >= Migrate::take_low)
     return text + ": waits for the particles of" + faces(bit(migrate_ == Migrate::take_low ? low : high));
   if (valid_ != 0) return text + ": waits for ready of" + faces(valid_);

@@ -20,7 +20,7 @@ class Node : public NodeModel {
   Node(const Plan& plan, uint8_t has_link);
 
   void clock(const NodeInputs& in, NodeOutputs& out) override;
-  bool quiet() const override { return quiet_; }
+  uint64_t wakes_at() const override { return wakes_at_; }
   std::string doing() const override;
   Counters counters() const override;
 
@@ -40,10 +40,8 @@ class Node : public NodeModel {
   enum class Migrate : uint8_t { scan, end, take_low, take_high };
   // A face's receiving side.
   struct Receiver {
-    bool migrating = false;  // streams alternate: halo, migrate, halo, ...
-    int beat = 0;            // beats of the current record that have come
+    int beat = 0;  // beats of the current record that have come
     Bits partial;
-    bool halo_end = false, migrate_end = false;
     std::vector<Slot> fifo;  // particles not yet popped, oldest at `popped`
     size_t popped = 0;
   };
@@ -52,14 +50,16 @@ class Node : public NodeModel {
   int axis() const;
   bool linked(int face) const { return has_link_ >> face & 1; }
   bool can_load(int face) const { return can_load_ >> face & 1; }
-  void load(int face, const Bits& payload, bool end);
-  void load_record_beat(int faces_from, int faces_to, const Bits& record);
+  Bits& load(int face, bool end);
+  uint8_t faces_of(int axis) const { return static_cast<uint8_t>(has_link_ & 3u << 2 * axis); }
+  void load_end(int low);
+  void load_slice(int face);
 
   void enter(Main next);
   void finish_phase(Main next);
   void idle();
   void exchange();
-  void force(bool engine_last);
+  void force();
   void update();
   void finish_particles();
   void migrate();
@@ -72,11 +72,13 @@ class Node : public NodeModel {
 
   const Plan& plan_;
   const uint8_t has_link_;
-  const int capacity_;
+  const int capacity_, link_words_;
   FaultKeeper fault_;
   std::vector<Slot> own_;
   std::array<std::vector<Candidate>, kFaces> halo_;
   std::array<Receiver, kFaces> receiver_;
+  // By face. Streams alternate: halo, migrate, halo, ...
+  uint8_t migrating_ = 0, halo_end_ = 0, migrate_end_ = 0;
   ForceEngine engine_;
 
   Main main_ = Main::idle;
@@ -85,14 +87,15 @@ class Node : public NodeModel {
   uint8_t starting_ = 0;                     // phases whose first cycle is the next one to run
   int segment_ = 0, record_ = 0, beat_ = 0;  // exchange; `record_` and `beat_` also scan and dump
   bool sent_ = false;
-  Bits word_;            // the record that is being sent
-  int remaining_ = 0;    // cycles of UPDATE still to come
-  size_t kept_ = 0;      // slots that SCAN has moved down
-  uint8_t leaving_ = 0;  // bit a: `leaving_a`
+  Bits word_;                // the record that is being sent
+  uint64_t now_ = 0;         // the cycle that runs
+  uint64_t phase_last_ = 0;  // the last cycle of FORCE or UPDATE, known from its start
+  uint64_t wakes_at_ = 0;    // as wakes_at()
+  size_t kept_ = 0;          // slots that SCAN has moved down
+  uint8_t leaving_ = 0;      // bit a: `leaving_a`
   uint8_t valid_ = 0, can_load_ = 0;
   NodeOutputs* out_ = nullptr;  // of the cycle that runs, as is `control_`
   const Control* control_ = nullptr;
-  bool quiet_ = false;
   uint64_t link_waits_ = 0, beats_ = 0;
 };
 

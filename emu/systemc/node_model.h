@@ -16,8 +16,9 @@
 
 namespace cuboct::emu {
 
-// One beat of a link: the payload, or the end of a stream.
-struct Beat {
+// One beat of a link: the payload, or the end of a stream. Bits beyond the link's width are zero, from the
+// start on: who writes a beat may leave them alone. Aligned so that a narrow one lies in one cache line.
+struct alignas(64) Beat {
   bool end = false;
   Bits payload;
 };
@@ -32,8 +33,13 @@ struct Control {
   bool operator==(const Control&) const = default;
 };
 
+// A cycle that never comes.
+inline constexpr uint64_t kNever = UINT64_MAX;
+
 // A node's inputs during one cycle. Bit f of a mask belongs to face f.
 struct NodeInputs {
+  uint64_t now =
+      0;  // the cycle, counted from any origin; ascends over the calls, by more than one after a sleep
   const Control* control = nullptr;
   uint8_t valid = 0;                       // link_valid_i
   uint8_t ready = 0;                       // link_ready_i
@@ -50,10 +56,12 @@ struct NodeOutputs {
   uint32_t fault_id = 0;
   int64_t fault_number = 0;
   // After the edge.
-  uint8_t valid = 0;                // link_valid_o
-  uint8_t loaded = 0;               // faces whose `beat` is new; a subset of `valid`
-  uint8_t ready = 0;                // link_ready_o
-  std::array<Beat, kFaces> beat{};  // link_end_o, link_data_o
+  uint8_t valid = 0;   // link_valid_o
+  uint8_t loaded = 0;  // faces whose register is new; a subset of `valid`
+  uint8_t ready = 0;   // link_ready_o
+  // Where the node writes link_end_o and link_data_o of the loaded faces: the caller's, who may put another
+  // place here between calls. None where there is no link.
+  std::array<Beat*, kFaces> beat{};
 };
 
 using Counters = std::vector<std::pair<std::string, double>>;
@@ -70,9 +78,11 @@ class NodeModel {
   virtual ~NodeModel() = default;
   // One clock cycle. `out` is the same object in every call.
   virtual void clock(const NodeInputs& in, NodeOutputs& out) = 0;
-  // Whether the last cycle changed nothing and showed no event, so that a further cycle with the same inputs,
-  // and with no valid beat on either side of any link, will do the same. False is always right.
-  virtual bool quiet() const { return false; }
+  // After `clock`: the next cycle that the node must be called for. In the cycles before, as long as no link
+  // holds a beat on either side and the control stays as it is, the node would show nothing and load nothing,
+  // and they may be left out. A call in one of them is right too; any value up to the next cycle asks for
+  // each.
+  virtual uint64_t wakes_at() const { return 0; }
   // What the node is doing, for the report of a deadlock.
   virtual std::string doing() const { return "unknown"; }
   // Counters of this node, always the same names in the same order; the bench adds them up over the nodes.

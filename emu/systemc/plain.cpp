@@ -15,16 +15,18 @@ struct Place {
   NodeOutputs out;
   NodeInputs in;
   Control control;
-  std::array<Beat, kFaces> beat;  // the link registers
+  // The link registers, and where the node writes the next; a node is called while others read the former.
+  std::array<Beat, kFaces> beat, next;
   uint8_t valid = 0, ready = 0;
 };
 
-// A clock cycle of every node: all read the registers of before the edge, then all registers change.
-void clock_all(const Lattice& lattice, std::vector<Place>& places, const StallSource& stalls,
+// A clock cycle of every node: all read the registers of before the edge, then all registers change. `cycle`
+// is that of the run, which the stalls go by; `now` counts from reset.
+void clock_all(const Lattice& lattice, std::vector<Place>& places, const StallSource& stalls, uint64_t now,
                uint64_t cycle) {
   for (uint32_t n = 0; n < places.size(); ++n) {
     Place& p = places[n];
-    p.in = {&p.control, 0, 0, {}};
+    p.in = {now, &p.control, 0, 0, {}};
     for (int f = 0; f < kFaces; ++f) {
       const uint32_t other = lattice.neighbour(n, f);
       if (other == kNoNode) continue;
@@ -47,7 +49,7 @@ void clock_all(const Lattice& lattice, std::vector<Place>& places, const StallSo
     p.valid = p.out.valid;
     p.ready = p.out.ready;
     for (size_t f = 0; f < kFaces; ++f)
-      if (p.out.loaded >> f & 1) p.beat[f] = p.out.beat[f];
+      if (p.out.loaded >> f & 1) p.beat[f] = p.next[f];
   }
 }
 
@@ -84,9 +86,13 @@ RunResult run_plain(const Plan& plan, const State& initial, const RunOptions& op
   Collector collector(plan, options);
   const uint32_t nodes = plan.lattice.size();
   std::vector<Place> places(nodes);
-  for (uint32_t n = 0; n < nodes; ++n) places[n].model = factory(n, links_of(plan.lattice, n));
+  for (uint32_t n = 0; n < nodes; ++n) {
+    places[n].model = factory(n, links_of(plan.lattice, n));
+    for (size_t f = 0; f < kFaces; ++f) places[n].out.beat[f] = &places[n].next[f];
+  }
+  uint64_t now = 0;
   const StallSource none, stalls(options.stall_rate, options.stall_seed);
-  clock_all(plan.lattice, places, none, 0);  // in reset
+  clock_all(plan.lattice, places, none, now++, 0);  // in reset
   for (Place& p : places) p.control.reset_n = true;
   size_t most = 0;
   for (const auto& list : particles) most = std::max(most, list.size());
@@ -96,20 +102,20 @@ RunResult run_plain(const Plan& plan, const State& initial, const RunOptions& op
       c.load_valid = k < particles[n].size();
       if (c.load_valid) c.load_data = load_word(plan, particles[n][k]);
     }
-    clock_all(plan.lattice, places, none, 0);
+    clock_all(plan.lattice, places, none, now++, 0);
   }
   for (Place& p : places) {
     p.control.load_valid = false;
     p.control.start = true;
     p.control.steps = static_cast<uint32_t>(options.steps);
   }
-  clock_all(plan.lattice, places, none, 0);
+  clock_all(plan.lattice, places, none, now++, 0);
   for (Place& p : places) p.control.start = false;
 
   const uint64_t patience = options.patience != 0 ? options.patience : patience_of(plan, options.stall_rate);
   const auto begin = std::chrono::steady_clock::now();
   for (uint64_t cycle = 0; !collector.done(); ++cycle) {
-    clock_all(plan.lattice, places, stalls, cycle);
+    clock_all(plan.lattice, places, stalls, now + cycle, cycle);
     for (uint32_t n = 0; n < nodes; ++n)
       if (Collector::shows(places[n].out)) collector.collect(n, cycle, places[n].out);
     if (cycle - collector.last_event() > patience) {

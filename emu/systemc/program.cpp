@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <fstream>
 #include <limits>
 
 #include "emu/systemc/bench.h"
@@ -15,12 +17,32 @@ namespace cuboct::emu {
 namespace {
 
 struct Request {
-  std::string scene, arch, out;
+  std::string scene, arch, out, frames_file;
   std::optional<uint64_t> steps;
   std::vector<uint64_t> frames;
-  bool frames_given = false;
+  bool frames_given = false, bench = false;
   RunOptions run;
 };
+
+// One step per line; blank lines count for nothing.
+std::vector<uint64_t> read_steps(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) throw InputError(fmt::format("{}: cannot read this file", path));
+  std::vector<uint64_t> steps;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty()) continue;
+    const char* const end = line.data() + line.size();
+    uint64_t step = 0;
+    const auto [stopped, error] = std::from_chars(line.data(), end, step);
+    if (error != std::errc{} || stopped != end)
+      throw InputError(path, number, 1, fmt::format("expected a step, got '{}'", line),
+                       "one number per line");
+    steps.push_back(step);
+  }
+  return steps;
+}
 
 // The steps at which the scene measures.
 std::vector<uint64_t> probe_steps(const Scene& scene, uint64_t steps) {
@@ -30,12 +52,12 @@ std::vector<uint64_t> probe_steps(const Scene& scene, uint64_t steps) {
   return at;
 }
 
-// Curves from the kept states; then only the frames that were asked for stay.
+// Curves from the kept states; then only the frames that were asked for stay. Both lists ascend.
 void measure(const Scene& scene, const Setup& setup, const std::vector<uint64_t>& probes,
              const std::vector<uint64_t>& frames, Trace& trace) {
   const Plan& plan = setup.plan;
   const auto in = [](const std::vector<uint64_t>& list, uint64_t step) {
-    return std::find(list.begin(), list.end(), step) != list.end();
+    return std::binary_search(list.begin(), list.end(), step);
   };
   if (!probes.empty()) {
     ProbeMeter meter(scene.probes, scene.periodic, scene.body.x);
@@ -49,7 +71,8 @@ void measure(const Scene& scene, const Setup& setup, const std::vector<uint64_t>
 }
 
 int run(const Program& program, Request request) {
-  check_writable(request.out);
+  if (!request.out.empty()) check_writable(request.out);
+  if (!request.frames_file.empty()) request.frames = read_steps(request.frames_file);
   const Scene scene = read_scene(request.scene);
   const Arch arch = read_arch(request.arch);
   const Setup setup = make_setup(scene, arch);
@@ -59,6 +82,7 @@ int run(const Program& program, Request request) {
     throw InputError(fmt::format("{} steps: a node counts at most {}", options.steps,
                                  std::numeric_limits<uint32_t>::max()));
   if (!request.frames_given) request.frames = {0, options.steps};
+  std::sort(request.frames.begin(), request.frames.end());
   const std::vector<uint64_t> probes = probe_steps(scene, options.steps);
   options.frames = request.frames;
   options.frames.insert(options.frames.end(), probes.begin(), probes.end());
@@ -68,11 +92,15 @@ int run(const Program& program, Request request) {
   simulate({&bench});
   Trace trace = bench.take_result().trace;
   measure(scene, setup, probes, request.frames, trace);
-  write_trace(request.out, trace);
+  if (!request.out.empty()) write_trace(request.out, trace);
   const double cycles = trace.counters.front().second;
-  fmt::print("{} steps of {} particles on {} nodes in {:.0f} cycles, {:.3g} node-cycles/s\n", trace.steps(),
-             setup.plan.particles, trace.nodes, cycles,
-             cycles * static_cast<double>(trace.nodes) / std::max(trace.seconds, 1e-9));
+  const double node_cycles =
+      cycles * static_cast<double>(trace.nodes) / std::max(trace.seconds, 1e-9);  // per s
+  if (request.bench)
+    fmt::print("{}.node_cycles {:.4g} 1/s\n", program.engine, node_cycles);
+  else
+    fmt::print("{} steps of {} particles on {} nodes in {:.0f} cycles, {:.3g} node-cycles/s\n", trace.steps(),
+               setup.plan.particles, trace.nodes, cycles, node_cycles);
   if (!trace.stop) return 0;
   fmt::print(stderr, "{}: {}\n", request.scene, trace.stop->text);
   return 1;
@@ -86,21 +114,26 @@ int run_program(int argc, char** argv, const Program& program) {
   app.add_option("scene", request.scene, "Scene file (TOML)")->required();
   app.add_option("--arch", request.arch, "Machine description (TOML); the defaults without one");
   app.add_option("--steps", request.steps, "Steps to run; the scene's own number without it");
-  app.add_option("--out", request.out, "Trace file to write (HDF5)")->required();
-  const CLI::Option* frames = app.add_option("--frames", request.frames,
+  app.add_option("--out", request.out, "Trace file to write (HDF5); --bench does without");
+  CLI::Option* const frames = app.add_option("--frames", request.frames,
                                              "Steps whose states are kept; the first and the last without it")
                                   ->delimiter(',');
+  const CLI::Option* const frames_file =
+      app.add_option("--frames-file", request.frames_file, "The same, one step per line of this file")
+          ->excludes(frames);
   app.add_option("--stall-rate", request.run.stall_rate, "Share of cycles in which a link passes nothing")
       ->check(CLI::Range(0.0, 0.99));
   app.add_option("--stall-seed", request.run.stall_seed, "Seed of the stalls")->capture_default_str();
   app.add_flag("--progress", request.run.progress, "A line per second on standard error");
+  app.add_flag("--bench", request.bench, "Print the speed of the simulation alone, as 'name value unit'");
   program.add_options(app);
   try {
     app.parse(argc, argv);
+    if (request.out.empty() && !request.bench) throw CLI::RequiredError("--out");
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
-  request.frames_given = frames->count() > 0;
+  request.frames_given = frames->count() > 0 || frames_file->count() > 0;
   try {
     return run(program, std::move(request));
   } catch (const InputError& e) {

@@ -12,9 +12,9 @@ namespace cuboct::emu {
 
 // What a pair needs of a candidate; the halo memories hold these in the receiver's own frame.
 struct Candidate {
-  Int3 x{};  // P fractional bits, P+2 bits signed
-  Int3 v{};  // P+G fractional bits; zero unless the rule damps
+  std::array<int32_t, 3> x{};  // P fractional bits, P+2 bits signed; P <= 30
   uint8_t type = 0;
+  Int3 v{};  // P+G fractional bits; zero unless the rule damps
 };
 
 // A particle in a slot.
@@ -28,8 +28,10 @@ struct Slot {
 // Throws InputError where a word is wider than Bits.
 void check_words(const Plan& plan);
 
-Bits pack_halo(const Plan& plan, const Candidate& candidate);
-Candidate unpack_halo(const Plan& plan, const Bits& bits);
+// In place, as a record's way through a link is what a busy lattice does most. `out` must hold zeros.
+void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out);
+// In the frame of the receiver: `shift` is added to the coordinate `axis`, in P+2 bits.
+void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Candidate& out);
 Bits pack_particle(const Plan& plan, const Slot& slot);
 Slot unpack_particle(const Plan& plan, const Bits& bits);
 

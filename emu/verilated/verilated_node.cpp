@@ -59,8 +59,8 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
   out.ready = out_.link_ready & has_link_;
   for (uint8_t left = out.loaded; left != 0; left &= static_cast<uint8_t>(left - 1)) {
     const int f = __builtin_ctz(left);
-    out.beat[f].end = out_.link_end >> f & 1;
-    std::memcpy(out.beat[f].payload.word.data(), out_.link_data[f], sizeof out_.link_data[f]);
+    out.beat[f]->end = out_.link_end >> f & 1;
+    std::memcpy(out.beat[f]->payload.word.data(), out_.link_data[f], sizeof out_.link_data[f]);
   }
   phases_ = static_cast<uint8_t>((phases_ | out.phase_start) & ~out.phase_end);
   idle_ = out.idle;

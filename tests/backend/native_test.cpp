@@ -3,7 +3,10 @@
 // faults.
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "emu/systemc/node.h"
+#include "emu/systemc/planar.h"
 #include "tests/backend/engines.h"
 #include "tests/support/cases.h"
 
@@ -122,6 +125,58 @@ TEST(NativeFaults, AFullNodeAtTheStartIsRefusedAsByGolden) {
   } catch (const RunError& e) {
     EXPECT_STREQ(e.what(), golden.fault->what());
   }
+}
+
+// Four slots at a time, at the limits of the formats and on both sides of each plane.
+TEST(NativePlanar, EqualsMayInteract) {
+  std::mt19937_64 random(3);
+  const auto draw = [&](int64_t low, int64_t high) {
+    return std::uniform_int_distribution<int64_t>(low, high)(random);
+  };
+  static emu::PlanarSlots slots;
+  uint64_t met = 0, passed = 0, edges = 0;
+  for (const auto& [p, d] : {std::pair{20, 16}, {30, 24}, {30, 6}, {8, 8}, {12, 6}})
+    for (int run = 0; run < 200; ++run) {
+      FixedRule rule;
+      rule.widths.position_frac = p;
+      rule.difference_shift = p - d;
+      const int64_t cell = int64_t{1} << p, cutoff = draw(1, int64_t{1} << d);
+      rule.planar = {cutoff, cutoff * 1414214 / 1000000 + 1, cutoff * 1732051 / 1000000 + 1};
+      const emu::PlanarTest test(rule);
+      std::array<int32_t, 3> candidate{};
+      for (int32_t& x : candidate)
+        x = static_cast<int32_t>(run % 10 == 0 ? (run % 20 == 0 ? -cell : 2 * cell - 1)
+                                               : draw(-cell, 2 * cell - 1));
+      const int count = run % 7 == 0 ? emu::kPlanarSlots : static_cast<int>(draw(0, 70));
+      std::vector<Int3> own;
+      slots.clear();
+      for (int k = 0; k < count; ++k) {
+        std::array<int32_t, 3> x{};
+        for (size_t a = 0; a < 3; ++a) {
+          // Half of them a plane's distance away, or one unit more.
+          const int64_t near =
+              candidate[a] + (draw(0, 1) ? 1 : -1) * (rule.planar[0] << rule.difference_shift) + draw(-1, 1);
+          const bool on_plane = draw(0, 1) && near >= 0 && near < cell;
+          edges += on_plane;
+          x[a] = static_cast<int32_t>(on_plane ? near : draw(0, 3) == 0 ? cell - 1 : draw(0, cell - 1));
+        }
+        slots.add(x);
+        own.push_back({x[0], x[1], x[2]});
+      }
+      const emu::PlanarMask mask = test(slots, candidate);
+      for (int k = 0; k < emu::kPlanarSlots; ++k) {
+        const bool got = mask.from(static_cast<uint32_t>(k)) & 1;
+        const bool expected =
+            k < count && may_interact(rule, difference(rule, own[static_cast<size_t>(k)],
+                                                       {candidate[0], candidate[1], candidate[2]}));
+        ASSERT_EQ(got, expected) << "P " << p << " D " << d << " run " << run << " slot " << k;
+        met += k < count;
+        passed += expected;
+      }
+    }
+  EXPECT_GT(met, 50000u);
+  EXPECT_GT(passed, 2000u);
+  EXPECT_GT(edges, 5000u);
 }
 
 TEST(Native, NoStepsShowsTheInitialState) {

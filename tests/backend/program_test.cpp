@@ -9,6 +9,8 @@
 #include <regex>
 #include <sstream>
 
+#include "model/trace.h"
+
 namespace cuboct::test {
 namespace {
 
@@ -16,7 +18,7 @@ namespace fs = std::filesystem;
 
 struct Ended {
   int code = -1;
-  std::string err;
+  std::string err, out;
 };
 
 class Programs : public testing::Test {
@@ -32,10 +34,12 @@ class Programs : public testing::Test {
 
   Ended run(const std::string& command) const {
     const int status = std::system(fmt::format("cd '{}' && {} > out 2> err", dir_.string(), command).c_str());
-    std::ifstream file(dir_ / "err");
-    std::ostringstream text;
-    text << file.rdbuf();
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
+    const auto text_of = [&](const char* name) {
+      std::ostringstream text;
+      text << std::ifstream(dir_ / name).rdbuf();
+      return text.str();
+    };
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of("err"), text_of("out")};
   }
   // A tool on the path that `script` describes; the path holds nothing else.
   void tool(const std::string& name, const std::string& script) const {
@@ -84,6 +88,45 @@ TEST_F(Programs, WrongCommandLinesAndScenesEndWithTwo) {
     ends(scene + " --out t.h5 --steps 5000000000", "5000000000 steps: a node counts at most 4294967295\n");
   }
   EXPECT_EQ(run(fmt::format("'{}' --help", CUBOCT_RTL)).code, 0);
+}
+
+TEST_F(Programs, AFileOfFramesTakesWhatACommandLineCannot) {
+  const std::string scene = "'" CUBOCT_SOURCE_DIR "/scenes/lj_block.toml'",
+                    program = "'" CUBOCT_SYSTEMC "' " + scene;
+  std::ofstream every(dir_ / "every");
+  for (int step = 100000; step >= 0; --step) every << step << '\n';  // 590 kB; an argument holds 128 kB
+  every.close();
+  std::ofstream(dir_ / "few") << "1\r\n\n3";
+  std::ofstream(dir_ / "bad") << "1\n2 \n";
+  const Ended all = run(program + " --out all.h5 --steps 3 --frames-file every");
+  EXPECT_EQ(all.code, 0) << all.err;
+  EXPECT_EQ(run(program + " --out listed.h5 --steps 3 --frames 0,1,2,3").code, 0);
+  EXPECT_EQ(run(program + " --out few.h5 --steps 3 --frames-file few").code, 0);
+  const Trace all_frames = read_trace(dir_ / "all.h5"), listed = read_trace(dir_ / "listed.h5"),
+              few = read_trace(dir_ / "few.h5");
+  ASSERT_EQ(all_frames.frames.size(), 4u);
+  EXPECT_TRUE(all_frames.frames == listed.frames);
+  ASSERT_EQ(few.frames.size(), 2u);
+  EXPECT_TRUE(few.frames[1] == listed.frames[3]);
+
+  const Ended bad = run(program + " --out t.h5 --frames-file bad");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_EQ(bad.err, "bad:2:1: expected a step, got '2 '\n  hint: one number per line\n");
+  const Ended none = run(program + " --out t.h5 --frames-file none");
+  EXPECT_EQ(none.code, 2);
+  EXPECT_EQ(none.err, "none: cannot read this file\n");
+  const Ended both = run(program + " --out t.h5 --frames-file few --frames 1");
+  EXPECT_EQ(both.code, 2);
+  EXPECT_EQ(both.err, "--frames excludes --frames-file\nRun with --help for more information.\n");
+}
+
+TEST_F(Programs, BenchPrintsOneLineAndNeedsNoTrace) {
+  const Ended e = run("'" CUBOCT_SYSTEMC "' '" CUBOCT_SOURCE_DIR "/scenes/lj_block.toml' --steps 3 --bench");
+  EXPECT_EQ(e.code, 0) << e.err;
+  std::smatch match;
+  ASSERT_TRUE(std::regex_match(e.out, match, std::regex("systemc\\.node_cycles ([0-9.e+]+) 1/s\n"))) << e.out;
+  EXPECT_GT(std::stod(match[1]), 1e3);
+  EXPECT_LT(std::stod(match[1]), 1e10);
 }
 
 TEST_F(Programs, WithoutVerilatorOneLineNamesItsPackage) {

@@ -44,6 +44,107 @@ TEST_P(SystemC, EqualsGoldenAndThePlainLoop) {
 INSTANTIATE_TEST_SUITE_P(Cases, SystemC, testing::ValuesIn(case_names()),
                          [](const auto& p) { return p.param; });
 
+// A native node that is called in every cycle.
+class Restless : public emu::NodeModel {
+ public:
+  explicit Restless(std::unique_ptr<emu::NodeModel> inner) : inner_(std::move(inner)) {}
+  void clock(const emu::NodeInputs& in, emu::NodeOutputs& out) override { inner_->clock(in, out); }
+  emu::Counters counters() const override { return inner_->counters(); }
+
+ private:
+  std::unique_ptr<emu::NodeModel> inner_;
+};
+
+double counted(const emu::RunResult& run, const std::string& name) {
+  for (const auto& [key, value] : run.trace.counters)
+    if (key == name) return value;
+  ADD_FAILURE() << "no counter " << name;
+  return 0;
+}
+
+// Each case has nodes that wait for neighbours of more particles, with and without stalls, and with narrow
+// links.
+TEST(SystemCSleep, ChangesNothingButTheNumberOfCalls) {
+  std::vector<std::unique_ptr<Case>> cases;
+  std::vector<std::unique_ptr<emu::Bench>> benches;
+  std::vector<emu::Bench*> all;
+  for (const std::string name : {"undamped_2x2x2", "lattice_3x2x1", "two_pipes", "wide_links"})
+    for (const double rate : {0.0, 0.3}) {
+      const Case& c = *cases.emplace_back(std::make_unique<Case>(make_case(name)));
+      const Plan& plan = c.setup.plan;
+      const emu::NodeFactory nodes = emu::native_nodes(plan),
+                             restless = [nodes](uint32_t node, uint8_t has_link) {
+                               return std::make_unique<Restless>(nodes(node, has_link));
+                             };
+      for (const auto& [prefix, factory] : {std::pair{"sleeping", nodes}, {"restless", restless}}) {
+        const std::string bench = prefix + std::to_string(benches.size());
+        benches.push_back(std::make_unique<emu::Bench>(bench.c_str(), plan, c.setup.initial,
+                                                       keep_all(c.steps, rate, 5), factory, prefix));
+        all.push_back(benches.back().get());
+      }
+    }
+  emu::simulate(all);
+  for (size_t k = 0; k < cases.size(); ++k) {
+    const double nodes = cases[k]->setup.plan.lattice.size();
+    const emu::RunResult sleeping = benches[2 * k]->take_result(),
+                         restless = benches[2 * k + 1]->take_result();
+    const Compared compared = compare_cycles(restless, sleeping);
+    EXPECT_EQ(compared.difference, "") << cases[k]->name;
+    EXPECT_EQ(compared.spans, cases[k]->steps * static_cast<uint64_t>(nodes) * kPhases);
+    const double cycles = counted(restless, "cycles");
+    for (const auto& [name, value] : restless.trace.counters)
+      if (name != "node_calls") {
+        EXPECT_EQ(value, counted(sleeping, name)) << name;
+      }
+    // The cycle in which the host sees the end may count in some nodes.
+    EXPECT_NEAR(counted(restless, "node_calls"), cycles * nodes, nodes);
+    EXPECT_LT(counted(sleeping, "node_calls"), 0.8 * cycles * nodes) << cases[k]->name;
+    EXPECT_GT(counted(sleeping, "node_calls"), 0.05 * cycles * nodes) << cases[k]->name;
+  }
+  EXPECT_EQ(cases.size(), 8u);
+}
+
+// A link's word beyond the record is zero, whatever the register held before.
+TEST(SystemCLinks, RecordsAreZeroPadded) {
+  class Watched : public emu::NodeModel {
+   public:
+    Watched(std::unique_ptr<emu::NodeModel> inner, const Words& words, std::array<uint64_t, 2>& seen)
+        : inner_(std::move(inner)), words_(words), seen_(seen) {}
+    void clock(const emu::NodeInputs& in, emu::NodeOutputs& out) override {
+      for (size_t f = 0; f < kFaces; ++f) {
+        if (!(in.valid >> f & 1)) continue;
+        const emu::Beat& beat = *in.beat[f];
+        // Streams alternate: halo, migrate, ...
+        const int bits = beat.end ? 0 : migrating_[f] ? words_.particle_bits : words_.halo_bits;
+        EXPECT_EQ(beat.payload.slice(bits, emu::Bits::kWidth), emu::Bits{});
+        if (beat.end)
+          migrating_[f] = !migrating_[f];
+        else
+          ++seen_[migrating_[f]];
+      }
+      inner_->clock(in, out);
+    }
+
+   private:
+    std::unique_ptr<emu::NodeModel> inner_;
+    const Words& words_;
+    std::array<uint64_t, 2>& seen_;
+    std::array<bool, kFaces> migrating_{};
+  };
+  const Case c = make_case("wide_links");
+  const Plan& plan = c.setup.plan;
+  ASSERT_GT(plan.words.link_bits, (plan.words.halo_bits + 63) / 64 * 64);
+  const emu::NodeFactory nodes = emu::native_nodes(plan);
+  std::array<uint64_t, 2> seen{};
+  const auto watched = [&](uint32_t node, uint8_t has_link) {
+    return std::make_unique<Watched>(nodes(node, has_link), plan.words, seen);
+  };
+  emu::Bench bench("bench", plan, c.setup.initial, keep_all(c.steps), watched, "systemc");
+  emu::simulate({&bench});
+  EXPECT_GT(seen[0], 100u);
+  EXPECT_GT(seen[1], 0u);
+}
+
 TEST(SystemCFaults, EachArisesAsInGolden) {
   std::vector<std::unique_ptr<Case>> cases;
   std::vector<std::unique_ptr<emu::Bench>> benches;

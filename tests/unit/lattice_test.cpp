@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
+#include <tuple>
 
 namespace cuboct {
 namespace {
@@ -76,6 +78,100 @@ TEST(Lattice, NeighbourhoodByLinksIsWhatCoordinatesSay) {
     }
   }
   EXPECT_GT(added, 0u);
+}
+
+struct Order {
+  bool operator()(const Cell& a, const Cell& b) const {
+    return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]);
+  }
+};
+using Cells = std::set<Cell, Order>;
+
+Cell wrapped(Cell c, const Cell& period) {
+  for (int a = 0; a < 3; ++a)
+    if (period[a] > 0) c[a] = ((c[a] % period[a]) + period[a]) % period[a];
+  return c;
+}
+
+// The definition: whenever two diagonal neighbours are in the set, so are the cells on the way by x, y, z.
+Cells closed(const std::vector<Cell>& cells, const Cell& period) {
+  Cells set;
+  for (const Cell& c : cells) set.insert(wrapped(c, period));
+  for (size_t before = 0; before != set.size();) {
+    before = set.size();
+    for (const Cell& c : std::vector<Cell>(set.begin(), set.end()))
+      for (int k = 0; k < 27; ++k) {
+        const Cell d{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+        if (!set.contains(wrapped({c[0] + d[0], c[1] + d[1], c[2] + d[2]}, period))) continue;
+        set.insert(wrapped({c[0] + d[0], c[1], c[2]}, period));
+        set.insert(wrapped({c[0] + d[0], c[1] + d[1], c[2]}, period));
+      }
+  }
+  return set;
+}
+
+// Nodes, order, links and find() against that definition, on sparse and dense sets with and without rings.
+TEST(Lattice, IsTheClosureOfItsCells) {
+  std::mt19937_64 random(11);
+  size_t added = 0, rings = 0;
+  for (int round = 0; round < 300; ++round) {
+    Cell period{};
+    for (int a = 0; a < 3; ++a)
+      if (random() % 3 == 0) period[a] = 3 + static_cast<int>(random() % 6);
+    rings += period != Cell{};
+    const int spread = 4 + static_cast<int>(random() % 9);
+    std::vector<Cell> cells(1 + random() % 60);
+    for (Cell& c : cells)
+      for (int a = 0; a < 3; ++a) c[a] = static_cast<int>(random() % spread) - 3;
+    const Cells expected = closed(cells, period);
+    std::set<Cell, Order> given;
+    for (const Cell& c : cells) given.insert(wrapped(c, period));
+    added += expected.size() - given.size();
+    const Lattice lattice(cells, period);
+    ASSERT_EQ(lattice.size(), expected.size());
+    uint32_t n = 0;
+    for (const Cell& c : expected) ASSERT_EQ(lattice.cell(n++), c);
+    const auto index = [&](const Cell& c) {
+      const auto it = expected.find(wrapped(c, period));
+      return it == expected.end() ? kNoNode : static_cast<uint32_t>(std::distance(expected.begin(), it));
+    };
+    for (n = 0; n < lattice.size(); ++n)
+      for (int face = 0; face < kFaces; ++face) {
+        Cell c = lattice.cell(n);
+        c[face / 2] += face % 2 ? 1 : -1;
+        ASSERT_EQ(lattice.neighbour(n, face), index(c));
+      }
+    for (int k = 0; k < 200; ++k) {
+      const Cell c{static_cast<int>(random() % 20) - 8, static_cast<int>(random() % 20) - 8,
+                   static_cast<int>(random() % 20) - 8};
+      ASSERT_EQ(lattice.find(c), index(c));
+    }
+  }
+  EXPECT_GT(added, 1000u);
+  EXPECT_GT(rings, 100u);
+}
+
+// A lattice over the box that holds both would have 10^18 cells.
+TEST(Lattice, TwoBodiesAMillionCellsApart) {
+  std::vector<Cell> cells = box(20, 20, 20);
+  for (const Cell& c : box(20, 20, 20))
+    cells.push_back({c[0] + 1'000'000, c[1] - 1'000'000, c[2] + 1'000'000});
+  cells.push_back({500'000, 0, 0});
+  const Lattice lattice(cells, {0, 0, 0});
+  ASSERT_EQ(lattice.size(), 16'001u);
+  EXPECT_EQ(lattice.cell(0), (Cell{0, 0, 0}));
+  EXPECT_EQ(lattice.find({1'000'019, -999'981, 1'000'019}), 16'000u);
+  EXPECT_EQ(lattice.find({500'000, 0, 0}), 20u);  // in the row of the first body
+  EXPECT_EQ(lattice.find({499'999, 0, 0}), kNoNode);
+  EXPECT_EQ(lattice.neighbour(20, 0), kNoNode);
+  EXPECT_EQ(lattice.neighbourhood(20).size(), 1u);
+}
+
+TEST(Lattice, MayBeEmpty) {
+  const Lattice lattice({}, {0, 0, 0});
+  EXPECT_EQ(lattice.size(), 0u);
+  EXPECT_EQ(lattice.find({0, 0, 0}), kNoNode);
+  EXPECT_EQ(Lattice().find({0, 0, 0}), kNoNode);
 }
 
 }  // namespace

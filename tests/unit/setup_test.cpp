@@ -34,10 +34,18 @@ TEST(Setup, APlanNeedsNoState) {
     EXPECT_EQ(plan.hash, setup.plan.hash);
     EXPECT_EQ(describe(plan), describe(setup.plan));
     ASSERT_EQ(plan.particles, setup.initial.particles.size());
+    InitialParticles initial(scene.body, plan);
     for (uint32_t id = 0; id < plan.particles; ++id)
-      ASSERT_EQ(fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin),
-                setup.initial.particles[id]);
+      ASSERT_EQ(initial(id), setup.initial.particles[id]);
   }
+}
+
+// A body of many blocks of what InitialParticles gives back.
+TEST(Setup, ABodyIsUsedUpWithoutHarm) {
+  const Scene scene = example("bench/block_256k");
+  const cuboct::Setup setup = make_setup(scene, {});
+  InitialParticles initial(scene.body, setup.plan);
+  for (uint32_t id = 0; id < setup.plan.particles; ++id) ASSERT_EQ(initial(id), setup.initial.particles[id]);
 }
 
 TEST(Setup, BothWaysRefuseAlike) {

@@ -96,5 +96,24 @@ TEST(Strain, ResidualIsWhatNoAffineMapExplains) {
   EXPECT_NEAR(strains[1].residual, 0.02, 1e-12);
 }
 
+// In threads, from some 20 000 particles on, as one by one.
+TEST(Strain, AxialIsThatOfEachParticle) {
+  for (const int n : {3, 28}) {
+    const std::vector<Vec3> before = fcc(n);
+    std::vector<Vec3> after = before;
+    for (size_t i = 0; i < after.size(); ++i) {
+      const double t = static_cast<double>(i);
+      after[i] += 0.05 * Vec3(std::sin(t), std::cos(1.7 * t), std::sin(2.3 * t));
+    }
+    const StrainMeter meter(before, {}, kBetweenShells);
+    const auto whole = meter.measure(after);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto axial = meter.axial(after, axis);
+      ASSERT_EQ(axial.size(), whole.size());
+      for (size_t i = 0; i < axial.size(); ++i) ASSERT_EQ(axial[i], whole[i].axial(axis));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cuboct

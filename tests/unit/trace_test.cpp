@@ -92,6 +92,24 @@ TEST_F(TraceFile, KeepsManyChunks) {
   expect_equal(trace, read_trace(path("t.h5")));
 }
 
+// Frames are written and read in pieces: more rows than a piece, pieces across frames, and a frame of nothing.
+TEST_F(TraceFile, KeepsLargeFrames) {
+  Trace trace = made_trace();
+  trace.frames.clear();
+  uint32_t id = 0;
+  for (const uint32_t rows : {40'000u, 0u, 70'001u}) {
+    State& frame = trace.frames.emplace_back();
+    frame.step = trace.frames.size();
+    for (uint32_t k = 0; k < rows; ++k, ++id) {
+      const int64_t n = id;
+      const auto type = static_cast<uint8_t>(id % 5);
+      frame.particles.push_back({id, type, id / 7, {n, n + 1, n + 2}, {-n, 3 * n, 5}, {n * n, 7, -7}});
+    }
+  }
+  write_trace(path("t.h5"), trace);
+  expect_equal(trace, read_trace(path("t.h5")));
+}
+
 TEST(Trace, CountsItsSteps) {
   Trace trace;
   EXPECT_EQ(trace.steps(), 0u);

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// The planar test of one candidate against all slots of a node, four slots per operation: the same answer as
+// `may_interact(difference(...))` of model/fixed_rule.h.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+#include "model/fixed_rule.h"
+
+namespace cuboct::emu {
+
+constexpr int kPlanarSlots = 256;  // the most that a node holds (hw/plan.h)
+
+// The slots' positions, P fractional bits.
+struct PlanarSlots {
+  std::array<std::array<int32_t, kPlanarSlots>, 3> x;
+  int count = 0;
+
+  void clear() { count = 0; }
+  void add(const std::array<int32_t, 3>& at) {
+    for (size_t a = 0; a < 3; ++a) x[a][static_cast<size_t>(count)] = at[a];
+    ++count;
+  }
+};
+
+// Bit k: slot k may interact.
+struct PlanarMask {
+  std::array<uint64_t, kPlanarSlots / 64> word{};
+
+  void clear(uint32_t slot) { word[slot / 64] &= ~(uint64_t{1} << slot % 64); }
+  // 64 bits from `slot` on.
+  uint64_t from(uint32_t slot) const {
+    const uint32_t w = slot / 64, s = slot % 64;
+    const uint64_t low = word[w] >> s;
+    return s == 0 || w + 1 == word.size() ? low : low | word[w + 1] << (64 - s);
+  }
+};
+
+class PlanarTest {
+ public:
+  explicit PlanarTest(const FixedRule& rule)
+      : shift_(rule.difference_shift), half_(shift_ == 0 ? 0 : 1u << (shift_ - 1)) {
+    // Magnitudes, at most 2^(D+1) each with D <= 24, and their sums lie below 2^28.
+    for (size_t k = 0; k < 3; ++k)
+      limit_[k] = static_cast<int32_t>(std::min(rule.planar[k], int64_t{1} << 28));
+  }
+
+  PlanarMask operator()(const PlanarSlots& slots, const std::array<int32_t, 3>& candidate) const {
+    PlanarMask mask;
+    for (int k = 0; k < slots.count; k += kLanes) {
+      const Lanes dx = distance(slots.x[0], k, candidate[0]), dy = distance(slots.x[1], k, candidate[1]),
+                  dz = distance(slots.x[2], k, candidate[2]);
+      const Lanes xy = dx + dy;
+      // The sign of limit - value says that a limit is passed; one sign is enough.
+      const Lanes far = (limit_[0] - dx) | (limit_[0] - dy) | (limit_[0] - dz) | (limit_[1] - xy) |
+                        (limit_[1] - (dy + dz)) | (limit_[1] - (dz + dx)) | (limit_[2] - (xy + dz));
+      const uint64_t near = ~signs(far) & ((1u << kLanes) - 1);
+      mask.word[static_cast<size_t>(k) / 64] |= near << k % 64;
+    }
+    // What lies behind the last slot was tested too.
+    const int rest = slots.count % 64;
+    if (rest != 0) mask.word[static_cast<size_t>(slots.count) / 64] &= (uint64_t{1} << rest) - 1;
+    return mask;
+  }
+
+ private:
+  static constexpr int kLanes = 4;
+  typedef int32_t Lanes __attribute__((vector_size(4 * kLanes)));
+  typedef float Floats __attribute__((vector_size(4 * kLanes)));
+  typedef uint32_t Magnitudes __attribute__((vector_size(4 * kLanes)));
+
+  // |round_odd(candidate - slot, shift)| = (|candidate - slot| + half) >> shift, as round_odd is odd. The
+  // difference of a P+2 bit and a P bit number fits 32 bits, and its magnitude plus half fits 32 without
+  // sign.
+  Lanes distance(const std::array<int32_t, kPlanarSlots>& x, int slot, int32_t candidate) const {
+    Lanes own;
+    std::memcpy(&own, &x[static_cast<size_t>(slot)], sizeof own);
+    const Lanes d = candidate - own;
+    const Lanes sign = d >> 31;
+    const auto magnitude = reinterpret_cast<Magnitudes>((d ^ sign) - sign);
+    return reinterpret_cast<Lanes>((magnitude + half_) >> shift_);
+  }
+  static unsigned signs(Lanes v) {
+#ifdef __SSE__
+    return static_cast<unsigned>(__builtin_ia32_movmskps(reinterpret_cast<Floats>(v)));
+#else
+    unsigned bits = 0;
+    for (int l = 0; l < kLanes; ++l) bits |= (static_cast<uint32_t>(v[l]) >> 31) << l;
+    return bits;
+#endif
+  }
+
+  const int shift_;
+  const uint32_t half_;
+  std::array<int32_t, 3> limit_{};
+};
+
+}  // namespace cuboct::emu

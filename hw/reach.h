@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Which cells a scene can reach.
+#pragma once
+
+#include <vector>
+
+#include "model/lattice.h"
+#include "model/scene.h"
+
+namespace cuboct {
+
+// The cells of edge `edge` m, cell (0,0,0) with its lower corner at `origin`, that the body, its margin, its
+// driven types on their way and the scene's further box touch: for each particle, all that the box of its
+// margin touches. Sorted by (z, y, x), each once, those of rings (period > 0) in [0, period). Time grows with
+// the particles, memory with the cells (12 bytes each): not with both. InputError where there would be more
+// cells than can be built.
+std::vector<Cell> reachable_cells(const Scene& scene, double edge, const Vec3& origin, const Cell& period);
+
+}  // namespace cuboct

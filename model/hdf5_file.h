@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: MIT
+// What a trace needs of HDF5: files, groups, attributes and arrays that close themselves and complain in the
+// words of the file at hand.
+#pragma once
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/error.h"
+
+namespace cuboct::hdf5 {
+
+// An HDF5 identifier that closes itself; a call that failed throws the error of the file at hand.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& error) : id_(id), close_(close) {
+    if (id < 0) throw InputError(error);
+  }
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&&) = delete;
+  operator hid_t() const { return id_; }
+  herr_t close() { return close_(std::exchange(id_, -1)); }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+template <typename T>
+hid_t type_in_memory();
+template <>
+inline hid_t type_in_memory<uint64_t>() {
+  return H5T_NATIVE_UINT64;
+}
+template <>
+inline hid_t type_in_memory<int64_t>() {
+  return H5T_NATIVE_INT64;
+}
+template <>
+inline hid_t type_in_memory<uint32_t>() {
+  return H5T_NATIVE_UINT32;
+}
+template <>
+inline hid_t type_in_memory<uint8_t>() {
+  return H5T_NATIVE_UINT8;
+}
+template <>
+inline hid_t type_in_memory<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+
+// Little-endian on every machine: same trace, same bytes.
+template <typename T>
+hid_t type_in_file();
+template <>
+inline hid_t type_in_file<uint64_t>() {
+  return H5T_STD_U64LE;
+}
+template <>
+inline hid_t type_in_file<int64_t>() {
+  return H5T_STD_I64LE;
+}
+template <>
+inline hid_t type_in_file<uint32_t>() {
+  return H5T_STD_U32LE;
+}
+template <>
+inline hid_t type_in_file<uint8_t>() {
+  return H5T_STD_U8LE;
+}
+template <>
+inline hid_t type_in_file<double>() {
+  return H5T_IEEE_F64LE;
+}
+
+using Shape = std::vector<hsize_t>;
+
+// Rows first ... first + size - 1 of a dataset, and the memory for them.
+struct Slab {
+  Slab(hid_t data, Shape shape, hsize_t first, hsize_t size, const std::string& error)
+      : file(H5Dget_space(data), H5Sclose, error), memory(space_of(shape, size), H5Sclose, error) {
+    Shape start(shape.size(), 0);
+    start[0] = first;
+    shape[0] = size;
+    if (H5Sselect_hyperslab(file, H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr) < 0)
+      throw InputError(error);
+  }
+  static hid_t space_of(Shape shape, hsize_t size) {
+    shape[0] = size;
+    return H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+  }
+  Handle file, memory;
+};
+
+class Writer {
+ public:
+  Writer(const std::string& temporary, const std::string& path)
+      : error_(fmt::format("cannot write {}: ", path)), file_(create(temporary)) {}
+
+  hid_t root() const { return file_; }
+
+  Handle group(hid_t where, const std::string& name) const {
+    Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, error_ + "HDF5 property list");
+    check(H5Pset_obj_track_times(properties, false), name);
+    return Handle(H5Gcreate2(where, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose,
+                  error_ + "group '" + name + "'");
+  }
+
+  void text(hid_t where, const std::string& name, const std::string& value) const {
+    Handle type = string_type(value.size());
+    Handle space(H5Screate(H5S_SCALAR), H5Sclose, error_ + name);
+    Handle attribute(H5Acreate2(where, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                     error_ + "attribute '" + name + "'");
+    check(H5Awrite(attribute, type, value.empty() ? "" : value.c_str()), name);
+  }
+
+  template <typename T>
+  void number(hid_t where, const std::string& name, T value) const {
+    Handle space(H5Screate(H5S_SCALAR), H5Sclose, error_ + name);
+    Handle attribute(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT),
+                     H5Aclose, error_ + "attribute '" + name + "'");
+    check(H5Awrite(attribute, type_in_memory<T>(), &value), name);
+  }
+
+  // `what` says the meaning of the rows and columns, `unit` the unit of a value.
+  template <typename T>
+  void array(hid_t where, const std::string& name, const Shape& shape, const std::vector<T>& values,
+             const std::string& unit, const std::string& what) const {
+    write(where, name, shape, type_in_file<T>(), type_in_memory<T>(), values.data(), unit, what);
+  }
+
+  // The same in pieces of one chunk, for what is nowhere in memory as an array: next(values) is asked for one
+  // row of `columns` values after another.
+  template <typename T, typename Next>
+  void rows(hid_t where, const std::string& name, hsize_t count, hsize_t columns, const std::string& unit,
+            const std::string& what, Next next) const {
+    const Shape shape = columns == 1 ? Shape{count} : Shape{count, columns};
+    const Handle data = dataset(where, name, shape, type_in_file<T>(), unit, what);
+    const hsize_t block = chunk_rows(shape);
+    std::vector<T> values(block * columns);
+    for (hsize_t first = 0; first < count; first += block) {
+      const hsize_t size = std::min(block, count - first);
+      for (hsize_t row = 0; row < size; ++row) next(&values[row * columns]);
+      const Slab slab(data, shape, first, size, error_ + name);
+      check(H5Dwrite(data, type_in_memory<T>(), slab.memory, slab.file, H5P_DEFAULT, values.data()), name);
+    }
+  }
+
+  void names(hid_t where, const std::string& name, const std::vector<std::string>& values) const {
+    size_t width = 1;
+    for (const std::string& value : values) width = std::max(width, value.size());
+    std::string flat(width * values.size(), '\0');
+    for (size_t i = 0; i < values.size(); ++i) values[i].copy(&flat[i * width], width);
+    Handle type = string_type(width);
+    write(where, name, {values.size()}, type, type, flat.data(), "", "name");
+  }
+
+  // Closing writes the last blocks: a full disk shows here.
+  void close() { check(file_.close(), "close"); }
+
+ private:
+  Handle create(const std::string& temporary) const {
+    Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose, error_ + "HDF5 property list");
+    check(H5Pset_obj_track_times(properties, false), "file");
+    errno = 0;
+    const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, properties, H5P_DEFAULT);
+    return Handle(id, H5Fclose, error_ + std::strerror(errno));
+  }
+
+  Handle string_type(size_t size) const {
+    Handle type(H5Tcopy(H5T_C_S1), H5Tclose, error_ + "string type");
+    check(H5Tset_size(type, std::max<size_t>(size, 1)), "string type");
+    check(H5Tset_strpad(type, H5T_STR_NULLPAD), "string type");
+    check(H5Tset_cset(type, H5T_CSET_UTF8), "string type");
+    return type;
+  }
+
+  // Chunks of about 2^15 values along the first axis: large enough to pack well, small enough to read in part.
+  static hsize_t chunk_rows(const Shape& shape) {
+    hsize_t count = 1;
+    for (const hsize_t extent : shape) count *= extent;
+    return count > 0 ? std::clamp<hsize_t>((hsize_t{1} << 15) * shape[0] / count, 1, shape[0]) : 0;
+  }
+
+  Handle dataset(hid_t where, const std::string& name, const Shape& shape, hid_t in_file,
+                 const std::string& unit, const std::string& what) const {
+    Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, error_ + "HDF5 property list");
+    check(H5Pset_obj_track_times(properties, false), name);
+    Shape chunk = shape;
+    chunk[0] = chunk_rows(shape);
+    if (chunk[0] > 0) {
+      check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), name);
+      check(H5Pset_shuffle(properties), name);
+      check(H5Pset_deflate(properties, 4), name);
+    }
+    Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose,
+                 error_ + name);
+    Handle data(H5Dcreate2(where, name.c_str(), in_file, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+                H5Dclose, error_ + "dataset '" + name + "'");
+    text(data, "unit", unit);
+    text(data, "what", what);
+    return data;
+  }
+
+  void write(hid_t where, const std::string& name, const Shape& shape, hid_t in_file, hid_t in_memory,
+             const void* values, const std::string& unit, const std::string& what) const {
+    const Handle data = dataset(where, name, shape, in_file, unit, what);
+    if (chunk_rows(shape) > 0) check(H5Dwrite(data, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
+  }
+
+  void check(herr_t result, const std::string& name) const {
+    if (result < 0) throw InputError(fmt::format("{}HDF5 failed at '{}'", error_, name));
+  }
+
+  std::string error_;
+  Handle file_;
+};
+
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path), file_(open(path)) {}
+
+  hid_t root() const { return file_; }
+  std::string missing(const std::string& kind, const std::string& name) const {
+    return fmt::format("{} is not a cuboct trace: no {} '{}'", path_, kind, name);
+  }
+
+  bool has(hid_t where, const std::string& name) const {
+    return H5Lexists(where, name.c_str(), H5P_DEFAULT) > 0;
+  }
+
+  bool has_attribute(hid_t where, const std::string& name) const {
+    return H5Aexists(where, name.c_str()) > 0;
+  }
+
+  Handle group(hid_t where, const std::string& name) const {
+    return Handle(H5Gopen2(where, name.c_str(), H5P_DEFAULT), H5Gclose, missing("group", name));
+  }
+
+  std::string text(hid_t where, const std::string& name) const {
+    Handle attribute(H5Aopen(where, name.c_str(), H5P_DEFAULT), H5Aclose, missing("attribute", name));
+    Handle type(H5Aget_type(attribute), H5Tclose, missing("attribute", name));
+    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
+      throw InputError(missing("text attribute", name));
+    std::string value(H5Tget_size(type), '\0');
+    if (H5Aread(attribute, type, value.data()) < 0) throw InputError(missing("text attribute", name));
+    return value.substr(0, value.find('\0'));
+  }
+
+  template <typename T>
+  T number(hid_t where, const std::string& name) const {
+    Handle attribute(H5Aopen(where, name.c_str(), H5P_DEFAULT), H5Aclose, missing("attribute", name));
+    Handle space(H5Aget_space(attribute), H5Sclose, missing("attribute", name));
+    T value{};
+    if (H5Sget_simple_extent_npoints(space) != 1 || H5Aread(attribute, type_in_memory<T>(), &value) < 0)
+      throw InputError(missing("number", name));
+    return value;
+  }
+
+  // All values; the shape must be `columns` behind a first axis of any length.
+  template <typename T>
+  std::vector<T> array(hid_t where, const std::string& name, const Shape& columns = {}) const {
+    Handle data = dataset(where, name);
+    const Shape shape = shape_of(data, name);
+    if (Shape(shape.begin() + 1, shape.end()) != columns)
+      throw InputError(fmt::format("{} is not a cuboct trace: the shape of '{}' is wrong", path_, name));
+    size_t count = 1;
+    for (const hsize_t extent : shape) count *= extent;
+    std::vector<T> values(count);
+    if (count > 0 && H5Dread(data, type_in_memory<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+      throw InputError(fmt::format("cannot read '{}' of {}", name, path_));
+    return values;
+  }
+
+  hsize_t length(hid_t where, const std::string& name) const { return shape_of(dataset(where, name), name)[0]; }
+
+  // The same in pieces, next(values) for one row of `columns` values after another; there must be `count`.
+  template <typename T, typename Next>
+  void rows(hid_t where, const std::string& name, hsize_t count, hsize_t columns, Next next) const {
+    const Handle data = dataset(where, name);
+    const Shape shape = columns == 1 ? Shape{count} : Shape{count, columns};
+    const Shape found = shape_of(data, name);
+    if (found.size() != shape.size() || (columns > 1 && found[1] != columns))
+      throw InputError(fmt::format("{} is not a cuboct trace: the shape of '{}' is wrong", path_, name));
+    same_length(found[0] == count, "the frames' fields");
+    const hsize_t block = std::min<hsize_t>(count, 1 << 15);
+    std::vector<T> values(block * columns);
+    for (hsize_t first = 0; first < count; first += block) {
+      const hsize_t size = std::min(block, count - first);
+      const std::string error = fmt::format("cannot read '{}' of {}", name, path_);
+      const Slab slab(data, shape, first, size, error);
+      if (H5Dread(data, type_in_memory<T>(), slab.memory, slab.file, H5P_DEFAULT, values.data()) < 0)
+        throw InputError(error);
+      for (hsize_t row = 0; row < size; ++row) next(&values[row * columns]);
+    }
+  }
+
+  std::vector<std::string> names(hid_t where, const std::string& name) const {
+    Handle data = dataset(where, name);
+    const Shape shape = shape_of(data, name);
+    Handle type(H5Dget_type(data), H5Tclose, missing("dataset", name));
+    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
+      throw InputError(missing("list of names", name));
+    const size_t width = H5Tget_size(type);
+    std::string flat(width * shape[0], '\0');
+    if (shape[0] > 0 && H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, flat.data()) < 0)
+      throw InputError(fmt::format("cannot read '{}' of {}", name, path_));
+    std::vector<std::string> values(shape[0]);
+    for (size_t i = 0; i < values.size(); ++i) {
+      values[i] = flat.substr(i * width, width);
+      values[i].resize(std::min(values[i].find('\0'), values[i].size()));
+    }
+    return values;
+  }
+
+  void same_length(bool same, const std::string& what) const {
+    if (!same) throw InputError(fmt::format("{} is not a cuboct trace: {} disagree in length", path_, what));
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  static Handle open(const std::string& path) {
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (!file) throw InputError(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+    std::fclose(file);
+    return Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
+                  fmt::format("{} is not an HDF5 file", path));
+  }
+  Handle dataset(hid_t where, const std::string& name) const {
+    return Handle(H5Dopen2(where, name.c_str(), H5P_DEFAULT), H5Dclose, missing("dataset", name));
+  }
+  Shape shape_of(hid_t data, const std::string& name) const {
+    Handle space(H5Dget_space(data), H5Sclose, missing("dataset", name));
+    const int rank = H5Sget_simple_extent_ndims(space);
+    if (rank < 1) throw InputError(missing("array", name));
+    Shape shape(rank);
+    H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+    return shape;
+  }
+
+  std::string path_;
+  Handle file_;
+};
+
+}  // namespace cuboct::hdf5
