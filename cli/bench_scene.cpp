@@ -23,15 +23,14 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
 }  // namespace
 
 std::string BenchScene::text() const {
+  if (impact) return kBenchImpact;
   std::string text = kBenchBlock;
   replace(text, "cells = [20, 20, 20]", fmt::format("cells = [{0}, {0}, {0}]", cells));
   if (damped) replace(text, "[run]", "[damping]\nratio = 0.1\n\n[run]");
-  // A corner of three pitches' radius, at a tenth of the speed of sound.
-  if (impact)
-    replace(text, "thermal_speed = \"20 m/s\"\nseed = 1",
-            "region = { shape = \"sphere\", radius = \"1.5 mm\" }\nuniform = \"[40, 40, 40] m/s\"");
   return text;
 }
+
+std::string BenchScene::arch() const { return impact ? kBenchImpactArch : ""; }
 
 std::shared_ptr<const Loaded> load_bench(const BenchScene& scene) {
   static std::optional<BenchScene> latest;
@@ -43,6 +42,10 @@ std::shared_ptr<const Loaded> load_bench(const BenchScene& scene) {
     write_text(path, scene.text());
     Input input;
     input.scene = path;
+    if (const std::string arch = scene.arch(); !arch.empty()) {
+      input.arch = scratch.path("arch.toml");
+      write_text(input.arch, arch);
+    }
     loaded = std::make_shared<const Loaded>(load_plan(input));
     latest = scene;
   }

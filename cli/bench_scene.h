@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scenes that `cuboct bench` runs: scenes/bench/block_32k.toml, which is built in, in other sizes and moods.
+// The scenes that `cuboct bench` runs: those of scenes/bench, built in, the block in other sizes.
 #pragma once
 
 #include <memory>
@@ -9,15 +9,18 @@
 
 namespace cuboct {
 
-extern const char kBenchBlock[];
+extern const char kBenchBlock[];       // block_32k.toml
+extern const char kBenchImpact[];      // impact_1m.toml
+extern const char kBenchImpactArch[];  // impact_arch.toml
 
 struct BenchScene {
-  int cells = 20;       // cubic cells of four particles along each side
+  int cells = 20;       // cubic cells of four particles along each side; of the impact: 63
   bool damped = false;  // ratio 0.1
-  bool impact = false;  // at rest but for one corner, which is hit, instead of warm
+  bool impact = false;  // the struck corner instead of the warm block
 
   uint64_t particles() const { return 4 * static_cast<uint64_t>(cells) * cells * cells; }
   std::string text() const;  // TOML
+  std::string arch() const;  // TOML; empty: the defaults
   bool operator==(const BenchScene&) const = default;
 };
 

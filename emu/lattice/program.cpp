@@ -5,8 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <fstream>
 #include <optional>
 
 #include "emu/lattice/run.h"
@@ -14,6 +12,7 @@
 #include "model/interrupt.h"
 #include "model/output.h"
 #include "model/state_meter.h"
+#include "model/steps.h"
 
 namespace cuboct::emu {
 namespace {
@@ -51,8 +50,7 @@ int run(Request request) {
   const Plan plan = plan_of(scene, read_arch(request.arch));
   run.steps = request.steps.value_or(scene.steps);
   run.frames = std::move(request.frames);
-  std::sort(run.frames.begin(), run.frames.end());
-  run.frames.erase(std::unique(run.frames.begin(), run.frames.end()), run.frames.end());
+  put_in_order(run.frames);
   if (!request.frames_given && !request.bench) run.frames = {0, run.steps};
   run.probes = probe_steps_of(scene, run.steps);
   run.engine.quiescence = !request.no_quiescence;
@@ -81,25 +79,6 @@ int run(Request request) {
 }
 
 }  // namespace
-
-std::vector<uint64_t> read_steps(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw InputError(fmt::format("{}: cannot read this file", path));
-  std::vector<uint64_t> steps;
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty()) continue;
-    uint64_t step = 0;
-    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), step);
-    if (error != std::errc() || end != line.data() + line.size())
-      throw InputError(path, number, 1, fmt::format("'{}' is no step", line), "one whole number per line");
-    steps.push_back(step);
-  }
-  std::sort(steps.begin(), steps.end());
-  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
-  return steps;
-}
 
 bool lattice_has_mpi() {
 #ifdef CUBOCT_LATTICE_MPI

@@ -71,7 +71,7 @@ TEST_F(LatticeProgram, TakesKeptStepsFromAFile) {
   EXPECT_EQ(steps, (std::vector<uint64_t>{3, 6, 9, 12, 15, 18, 21, 24, 25}));
   std::ofstream(path("steps")) << "3\nsix\n";
   expect_refusal("scenes/lj_block.toml --out '" + path("t.h5") + "' --frames-file '" + path("steps") + "'",
-                 path("steps") + ":2:1: 'six' is no step\n  hint: one whole number per line\n");
+                 path("steps") + ":2:1: expected a step, got 'six'\n  hint: one number per line\n");
   expect_refusal("scenes/lj_block.toml --out '" + path("t.h5") + "' --frames-file none",
                  "none: cannot read this file\n");
 }
