@@ -56,7 +56,7 @@ bool fits_in_memory(uint64_t particles) {
   std::ifstream in("/proc/meminfo");
   std::string name, unit;
   for (uint64_t kilobytes = 0; in >> name >> kilobytes; std::getline(in, unit))
-    if (name == "MemAvailable:") return particles * 600 < kilobytes * 1024;
+    if (name == "MemAvailable:") return particles * 300 < kilobytes * 1024;
   return true;
 }
 

@@ -46,9 +46,4 @@ Loaded load_plan(const Input& input) {
   return loaded;
 }
 
-void load_initial(Loaded& loaded) {
-  const Plan& plan = loaded.setup.plan;
-  loaded.setup.initial = to_fixed(loaded.scene.body, plan.rule, plan.lattice, plan.origin);
-}
-
 }  // namespace cuboct

@@ -40,7 +40,5 @@ Loaded load(const Input& input);
 // The same without `setup.initial`: for engines that take their particles one by one, and scenes of which a second
 // copy would not fit.
 Loaded load_plan(const Input& input);
-// Fills `setup.initial` in.
-void load_initial(Loaded& loaded);
 
 }  // namespace cuboct

@@ -61,7 +61,7 @@ int run(Options options) {
   check_engine(options.engine, allowed);
   const bool lattice = options.engine == "lattice";
   if (!lattice) options.lattice.check_unused(options.engine);
-  Loaded loaded = lattice ? load_plan(options.input) : load(options.input);
+  const Loaded loaded = lattice ? load_plan(options.input) : load(options.input);
   catch_interrupts();
   if (!options.out.empty()) prepare_directory(options.out);
   const Scene& scene = loaded.scene;
@@ -85,10 +85,7 @@ int run(Options options) {
     request.probes = probe_steps;
     const RunFacts facts = run_by_lattice(options, loaded, std::move(request), trace);
     summary = summarise(loaded, trace, facts);
-    if (!options.out.empty()) {
-      load_initial(loaded);
-      frames = real_frames(loaded, trace.frames);
-    }
+    if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   } else {
     // Engines know nothing of probes: they record states, and one meter reads them.
     Request request{steps, {}};
