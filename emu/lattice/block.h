@@ -17,6 +17,7 @@
 
 #include "emu/lattice/aligned.h"
 #include "emu/lattice/kernel_rule.h"
+#include "emu/lattice/slots.h"
 #include "model/error.h"
 
 namespace cuboct::emu {
@@ -36,7 +37,8 @@ struct Particles {
                                          // since the last list was built
   std::array<PaddedArray<double>, 3> v;  // P+G fractional bits
   std::array<PaddedArray<double>, 3> u;  // P+G fractional bits; empty unless the rule has PD
-  PaddedArray<uint32_t> id, node;        // id: kNoParticle where a block's last group is not full
+  PaddedArray<uint32_t> id;              // kNoParticle where a block's last group is not full
+  const uint32_t* node = nullptr;        // readable kGroup elements beyond
   PaddedArray<uint8_t> type;
   // By group: its nodes are among low ... low + span - 1. Wider than need be after migrations.
   struct Nodes {
@@ -48,12 +50,6 @@ struct Particles {
   std::array<std::array<double, 3>, 27> shift{};
 };
 inline constexpr uint32_t kNoParticle = 0xffffffffu;
-
-// A particle that left its node in a step.
-struct Crossing {
-  uint32_t particle;  // index
-  std::array<int8_t, 3> away;
-};
 
 // Something that did not fit; the node is found from the particle.
 struct Found {
@@ -72,16 +68,21 @@ struct PairList {
   std::vector<Entry, Untouched<Entry>> entries;
 };
 
+// One-sided pairs, for the groups that have any.
+struct Edge {
+  std::vector<uint32_t> group;  // ascending, less first_group()
+  PairList pairs;               // one of its groups each
+  PaddedArray<double> sum;      // 3 x kGroup each
+};
+
 struct Block {
   uint32_t begin = 0, end = 0;  // particles (indices), begin a multiple of kGroup
   uint32_t first_group() const { return begin / kGroup; }
   uint32_t groups() const { return (end - begin + kGroup - 1) / kGroup; }
 
   PairList inside;  // pairs inside the block
-  // Pairs with other blocks, for the groups that have any; 3 x kGroup sums each.
-  std::vector<uint32_t> edge_group;  // less first_group()
-  PairList across;
-  PaddedArray<double> across_sum;
+  Edge beside;      // pairs with other blocks
+  Edge ghosts;      // pairs with particles of other ranks
   std::vector<uint8_t> plain;  // by group: updated in vectors
 
   // Sums of particle p at index p - begin modulo the ring's size, a power of two, kMagic where nothing was added; a
@@ -90,9 +91,24 @@ struct Block {
   uint32_t ring_mask = 0;
 
   // Answers of a step.
-  std::vector<Crossing> crossings;
+  std::vector<Crossing> crossings;  // indices
   std::vector<Found> pair_faults, update_faults;
   double fastest2 = 0;            // largest v.v
+};
+
+// The sums of an edge while its block's groups go by.
+class EdgeSums {
+ public:
+  explicit EdgeSums(const Edge& edge) : edge_(edge) {}
+  // Of the block's k-th group, k ascending: 3 x kGroup sums, or null.
+  const double* next(uint32_t k) {
+    if (at_ == edge_.group.size() || edge_.group[at_] != k) return nullptr;
+    return &edge_.sum[at_++ * 3 * kGroup];
+  }
+
+ private:
+  const Edge& edge_;
+  size_t at_ = 0;
 };
 
 }  // namespace cuboct::emu

@@ -1,107 +1,28 @@
 // SPDX-License-Identifier: MIT
-#include "emu/lattice/engine.h"
-
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <tuple>
 
-#include "emu/lattice/kernel.h"
-#include "emu/lattice/members.h"
-#include "emu/lattice/pair_list.h"
-#include "emu/lattice/quiet.h"
+#include "emu/lattice/impl.h"
 #include "model/error.h"
-#include "model/fixed_math.h"
 
 namespace cuboct::emu {
 namespace {
 
-// Two lists, as in Verlet's method: the far one holds pairs up to the cutoff plus kFirstSkin, in cells; it is
-// searched anew when some particle may have moved half of that. The near one is what the far one leaves within
-// the cutoff plus a thinner skin, and is taken from it every few steps (a dual pair list: Pall and Hess 2013).
-// The far skin grows while its lists hold for less than kShortLife steps.
-constexpr double kFirstSkin = 0.17;
-constexpr double kMostSkin = 0.5;
-constexpr uint64_t kShortLife = 20;
-// A list is mended where at most this share of the particles moved farther than this share of the skin.
-constexpr double kMostMended = 0.1;
-constexpr double kMendFrom = 0.125;
-// The near list's skin: at least so many cells, and enough for so many steps.
-constexpr double kNearSkin = 0.04;
-constexpr double kNearSteps = 4;
-// At most this share of the far skin.
-constexpr double kMostNear = 0.4;
-// A near list this much wider than need be is made anew everywhere.
-constexpr double kWaste = 0.7;
-// Entries with fewer pairs than this on average are not what storage in rows is for: particles are stored by
-// node then.
-constexpr double kFewLanes = 2.5;
-
-auto order(const RunError& e) { return std::tuple(e.fault, e.particle, e.number); }
-
 // Below this a barrier costs more than a thread's work.
 constexpr uint32_t kLeastPerThread = 1000;
 
-int thread_count(int wanted, uint32_t particles) {
-  if (wanted > 0) return wanted;
+int thread_count(const LatticeOptions& options, uint32_t particles) {
+  if (options.threads > 0) return options.threads;
+  if (options.ranks != nullptr && options.ranks->size() > 1) return 1;
   return std::clamp(static_cast<int>(particles / kLeastPerThread), 1, omp_get_num_procs());
 }
 
+// The far list's skin at first: in an FCC packing, cutoff 1.6 pitches, it stays clear of the fourth shell.
+constexpr double kFirstSkin = 0.17;
+
 }  // namespace
-
-struct LatticeEngine::Impl {
-  Impl(const Plan& plan, uint64_t step, uint32_t count, const LatticeOptions& options);
-  void fill(const std::function<Particle(uint32_t)>& particle);
-  void step();
-  void refresh_lists();
-  void build();
-  bool mend();
-  void prune(double skin);
-  void cut();
-  double displacement() const;
-  template <typename See>
-  void for_each_moved(const See& see) const;
-  void find_group_nodes();
-  void widen_group_nodes(uint32_t particle);
-  bool crystal() const;
-  void store_by_node(Bins& bins);
-  double reach_of_step() const;
-  Particle particle(uint32_t index) const;
-  template <typename Work>
-  void for_each_block(const Work& work);
-  RunError error(Fault fault, uint32_t node, uint32_t index, int64_t number) const;
-  void fail_if_any(const std::vector<RunError>& faults) const;
-  void fail_if_any(std::vector<Found> Block::*faults);
-
-  const Plan& plan_;
-  const Lattice& lattice_;
-  LatticeOptions options_;
-  KernelRule rule_;
-  Kernels kernels_;
-  double cutoff_;  // cells
-  int threads_;
-  uint64_t step_;
-  uint32_t count_;
-  Particles particles_;
-  std::vector<Block> blocks_;
-  Members members_;
-  Rows rows_;
-  Snapshot snapshot_;
-  std::optional<Quiet> quiet_;
-  std::vector<Leaving> leaving_;
-  LatticeCounters counters_;
-
-  bool listed_ = false;
-  double skin_ = kFirstSkin;  // cells
-  double moved_ = 0;          // cells: no particle is farther from where the far list found it
-  double near_skin_ = 0, near_moved_ = 0;  // the same of the near list
-  double near_floor_ = -1;                 // all groups were pruned with at least this skin
-  double fastest_ = 0;                     // largest |v| after the last step, P+G fractional bits
-  uint64_t listed_at_ = 0;                 // step
-};
 
 LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const LatticeOptions& options)
     : plan_(plan),
@@ -109,10 +30,11 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
       options_(options),
       rule_(kernel_rule(plan.rule, plan.arch.capacity)),
       cutoff_(std::ldexp(std::sqrt(static_cast<double>(plan.rule.cutoff2)), -plan.rule.widths.difference_frac)),
-      threads_(thread_count(options.threads, count)),
+      threads_(thread_count(options, count)),
       step_(step),
       count_(count),
-      rows_(plan.lattice) {
+      rows_(plan.lattice),
+      skin_(kFirstSkin) {
   snapshot_.position_frac = plan.rule.widths.position_frac;
   snapshot_.threads = threads_;
   const std::vector<Kernels> here = kernels_here(rule_);
@@ -131,36 +53,15 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
     }
 }
 
-// Blocks of equal size, one per thread.
-void LatticeEngine::Impl::cut() {
-  const uint32_t groups = (count_ + kGroup - 1) / kGroup;
-  const auto blocks = static_cast<uint32_t>(std::clamp<int64_t>(groups, 1, threads_));
-  blocks_.resize(blocks);
-  for (uint32_t b = 0; b < blocks; ++b) {
-    blocks_[b].begin = static_cast<uint32_t>(uint64_t{groups} * b / blocks) * kGroup;
-    blocks_[b].end = std::min(count_, static_cast<uint32_t>(uint64_t{groups} * (b + 1) / blocks) * kGroup);
-  }
-}
-
 void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle) {
-  cut();
-  const size_t room = (count_ + kGroup - 1) / kGroup * kGroup;
-  for (auto& x : particles_.x) x = PaddedArray<double>(room);
-  for (auto& v : particles_.v) v = PaddedArray<double>(room);
-  if (plan_.rule.pd)
-    for (auto& u : particles_.u) u = PaddedArray<double>(room);
-  particles_.id = PaddedArray<uint32_t>(room, kNoParticle);
-  particles_.node = PaddedArray<uint32_t>(room);
-  particles_.type = PaddedArray<uint8_t>(room);
-  members_ = Members(lattice_, plan_.arch.capacity, room);
+  members_ = Members(lattice_, plan_.arch.capacity, count_);
   std::vector<RunError> faults;
-  for (uint32_t k = 0; k < count_; ++k) {
-    // Stored by id: packings number their sites row by row.
-    const Particle p = particle(k);
-    const uint32_t at = p.id;
+  const auto enter = [&](const Particle& p) {
+    if (!members_.append(p.node, p.id)) faults.push_back(error(Fault::full_x, p.node, p.id, plan_.arch.capacity));
+  };
+  const auto put = [&](const Particle& p, uint32_t at) {
     particles_.id[at] = p.id;
     particles_.type[at] = p.type;
-    particles_.node[at] = p.node;
     const Cell& cell = lattice_.cell(p.node);
     for (int a = 0; a < 3; ++a) {
       particles_.x[a][at] = static_cast<double>(p.x[a]) + cell[a] * rule_.cell;
@@ -168,37 +69,47 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
       if (plan_.rule.pd) particles_.u[a][at] = static_cast<double>(p.u[a]);
     }
     fastest_ = std::max(fastest_, std::hypot(particles_.v[0][at], particles_.v[1][at], particles_.v[2][at]));
-    if (!members_.append(p.node, at)) faults.push_back(error(Fault::full_x, p.node, at, plan_.arch.capacity));
+  };
+  if (!shared()) {
+    // Stored by id: packings number their sites row by row.
+    make_room((count_ + kGroup - 1) / kGroup * kGroup, 0);
+    cut_blocks(blocks_, 0, count_);
+    for (uint32_t k = 0; k < count_; ++k) {
+      const Particle p = particle(k);
+      put(p, p.id);
+      enter(p);
+    }
+    fail_if_any(faults);
+    particles_.node = members_.nodes();
+  } else {
+    // Once to know who owns what, once to take what is owned; build() brings it in order.
+    for (uint32_t k = 0; k < count_; ++k) enter(particle(k));
+    fail_if_any(faults);
+    own_nodes();
+    const auto mine = [&](uint32_t node) { return owner_[node] == options_.ranks->rank(); };
+    uint32_t held = 0;
+    for (uint32_t n = 0; n < lattice_.size(); ++n)
+      if (mine(n)) held += static_cast<uint32_t>(members_.count(n));
+    make_room((held + kGroup - 1) / kGroup * kGroup, 0);
+    cut_blocks(blocks_, 0, held);
+    index_.by_id.assign(count_, kNoParticle);
+    uint32_t at = 0;
+    for (uint32_t k = 0; k < count_; ++k) {
+      const Particle p = particle(k);
+      if (!mine(p.node)) continue;
+      put(p, at);
+      index_.by_id[p.id] = at++;
+    }
+    options_.ranks->most({&fastest_, 1});
   }
-  fail_if_any(faults);
   if (options_.quiescence) quiet_.emplace(lattice_, rows_);
-}
-
-RunError LatticeEngine::Impl::error(Fault fault, uint32_t node, uint32_t index, int64_t number) const {
-  const Cell& c = lattice_.cell(node);
-  return {fault, step_,  node, particles_.id[index],
-          number, fmt::format(" at cell ({}, {}, {})", c[0], c[1], c[2])};
-}
-
-void LatticeEngine::Impl::fail_if_any(const std::vector<RunError>& faults) const {
-  if (faults.empty()) return;
-  throw *std::min_element(faults.begin(), faults.end(),
-                          [](const auto& a, const auto& b) { return order(a) < order(b); });
-}
-
-void LatticeEngine::Impl::fail_if_any(std::vector<Found> Block::*faults) {
-  std::vector<RunError> errors;
-  for (const Block& block : blocks_)
-    for (const Found& f : block.*faults)
-      errors.push_back(error(f.fault, particles_.node[f.particle], f.particle, f.number));
-  fail_if_any(errors);
 }
 
 Particle LatticeEngine::Impl::particle(uint32_t index) const {
   Particle p;
   p.id = particles_.id[index];
   p.type = particles_.type[index];
-  p.node = particles_.node[index];
+  p.node = members_.nodes()[p.id];
   const int64_t mask = (int64_t{1} << plan_.rule.widths.position_frac) - 1;
   for (int a = 0; a < 3; ++a) {
     p.x[a] = static_cast<int64_t>(particles_.x[a][index]) & mask;
@@ -208,192 +119,29 @@ Particle LatticeEngine::Impl::particle(uint32_t index) const {
   return p;
 }
 
-template <typename Work>
-void LatticeEngine::Impl::for_each_block(const Work& work) {
-#pragma omp parallel for schedule(static, 1) num_threads(threads_)
-  for (size_t b = 0; b < blocks_.size(); ++b) work(blocks_[b]);
-}
-
-// Cells that a particle can have moved in the last step.
-double LatticeEngine::Impl::reach_of_step() const {
-  return std::ldexp(fastest_ + 2 * std::ldexp(1.0, plan_.rule.widths.guard), -plan_.rule.widths.velocity_frac());
-}
-
-// Calls see(particle) for each that may have moved since the far list was made.
-template <typename See>
-void LatticeEngine::Impl::for_each_moved(const See& see) const {
-  if (const NodeSet* moved = quiet_ ? quiet_->moved() : nullptr)
-    moved->for_each(rows_, [&](uint32_t n) { members_.for_each(n, see); });
-  else
-    for (uint32_t p = 0; p < count_; ++p) see(p);
-}
-
-double LatticeEngine::Impl::displacement() const {
-  if (!quiet_ || quiet_->moved() == nullptr) return snapshot_.displacement(particles_);
-  double most = 0;
-  for_each_moved([&](uint32_t p) { most = std::max(most, snapshot_.moved(particles_, p)); });
-  return most;
-}
-
-// The span of nodes of each group.
-void LatticeEngine::Impl::find_group_nodes() {
-  const uint32_t groups = (count_ + kGroup - 1) / kGroup;
-  particles_.group_nodes.assign(groups + 1, {0, 0});  // an entry may overhang the last group
-#pragma omp parallel for num_threads(threads_)
-  for (uint32_t g = 0; g < groups; ++g) {
-    const uint32_t* node = &particles_.node[g * kGroup];
-    const auto [low, high] = std::minmax_element(node, node + std::min(kGroup, count_ - g * kGroup));
-    particles_.group_nodes[g] = {*low, *high - *low + 1};
+std::vector<Particle> LatticeEngine::Impl::everyone() const {
+  std::vector<Particle> all;
+  if (!shared()) {
+    all.resize(count_);
+    for_each_index([&](uint32_t p) { all[particles_.id[p]] = particle(p); });
+    return all;
   }
-}
-
-void LatticeEngine::Impl::widen_group_nodes(uint32_t particle) {
-  auto& [low, span] = particles_.group_nodes[particle / kGroup];
-  const uint32_t node = particles_.node[particle], high = std::max(low + span - 1, node);
-  low = std::min(low, node);
-  span = high - low + 1;
-}
-
-// Whether the order of storage lets an entry hold several pairs.
-bool LatticeEngine::Impl::crystal() const {
-  size_t entries = 0, pairs = 0;
-  for (const Block& block : blocks_) {
-    entries += block.inside.entries.size();
-    for (const Entry& e : block.inside.entries) pairs += static_cast<size_t>(std::popcount(e.lanes));
-  }
-  return static_cast<double>(pairs) >= kFewLanes * static_cast<double>(entries);
-}
-
-void LatticeEngine::Impl::store_by_node(Bins& bins) {
-  std::vector<uint32_t> renamed(members_.room());
-  for (uint32_t k = 0; k < count_; ++k) renamed[bins.particle[k]] = k;
-  const auto reorder = [&](auto& array) {
-    const auto copy = array.copy();
-    for (uint32_t k = 0; k < count_; ++k) array[k] = copy[bins.particle[k]];
-  };
-  for (int a = 0; a < 3; ++a) {
-    reorder(particles_.x[a]);
-    reorder(particles_.v[a]);
-    if (plan_.rule.pd) reorder(particles_.u[a]);
-  }
-  reorder(particles_.id);
-  reorder(particles_.node);
-  reorder(particles_.type);
-  members_.rename(renamed);
-  for (uint32_t k = 0; k < count_; ++k) bins.particle[k] = k;
-}
-
-void LatticeEngine::Impl::build() {
-  if (listed_ && step_ - listed_at_ < kShortLife) skin_ = std::min(kMostSkin, skin_ * 1.3);
-  Bins bins(lattice_, members_, particles_, snapshot_.position_frac, threads_);
-  if (listed_ && !crystal()) store_by_node(bins);
-  for_each_block([&](Block& block) {
-    build_list(rule_, particles_, Search(lattice_, rows_, cutoff_ + skin_, bins), block);
+  std::vector<Bytes> to(static_cast<size_t>(options_.ranks->size()));
+  for_each_index([&](uint32_t p) {
+    const Particle one = particle(p);
+    const auto* bytes = reinterpret_cast<const std::byte*>(&one);
+    to[0].insert(to[0].end(), bytes, bytes + sizeof one);
   });
-  bins.release_to(snapshot_);
-  ++counters_.list_builds;
-  listed_ = true;
-  listed_at_ = step_;
-  moved_ = 0;
-  near_floor_ = -1;
-  if (quiet_) {
-    quiet_->forget_moved();
-    find_group_nodes();
-  }
-}
-
-// Where few particles moved far, as around a crack or an impact: lists anew the groups of those, and of all
-// around where they are now. False where that is not worth it.
-bool LatticeEngine::Impl::mend() {
-  std::vector<uint32_t> strays;
-  for_each_moved([&](uint32_t p) {
-    if (snapshot_.astray(lattice_, particles_, p, kMendFrom * skin_)) strays.push_back(p);
-  });
-  if (static_cast<double>(strays.size()) > kMostMended * count_) return false;
-  for (const uint32_t p : strays)
-    for (int a = 0; a < 3; ++a)  // beyond the seam of a ring: the shifts of its entries no longer hold
-      if (std::floor(particles_.x[a][p] * rule_.inverse_cell) != lattice_.cell(particles_.node[p])[a]) return false;
-  for (const uint32_t p : strays) snapshot_.look(particles_, p);
-  std::vector<uint8_t> only((count_ + kGroup - 1) / kGroup);
-  Search search(lattice_, rows_, cutoff_ + skin_, members_, snapshot_);
-  for (const uint32_t p : strays)
-    for (const auto& hit : search.around(particles_.node[p], {snapshot_.at[0][p], snapshot_.at[1][p], snapshot_.at[2][p]}))
-      only[hit.particle / kGroup] = 1;
-  for_each_block([&](Block& block) { mend_list(particles_, snapshot_, search, only, block); });
-  ++counters_.list_mends;
-  moved_ = displacement();
-  return true;
-}
-
-// Every pair within the cutoff plus `skin` cells comes into the near list.
-void LatticeEngine::Impl::prune(double skin) {
-  // Groups far from all that changed since the last time keep what they have, if that was as wide.
-  const uint8_t* only = quiet_ ? quiet_->take_touched() : nullptr;
-  if (skin > near_floor_ || skin < kWaste * near_floor_) only = nullptr;
-  if (only == nullptr) near_floor_ = skin;
-  near_skin_ = skin;
-  near_moved_ = 0;
-  const double reach = (cutoff_ + near_floor_) * rule_.cell * (1 + 1e-9);
-  for_each_block([&](Block& block) { kernels_.prune(particles_, reach, only, block); });
-}
-
-// Makes sure that the near list holds every pair inside the cutoff.
-void LatticeEngine::Impl::refresh_lists() {
-  if (listed_ && near_moved_ <= near_skin_ / 2) return;
-  // The far list must hold every pair within the near list's reach.
-  const auto room = [&] { return skin_ - 2 * moved_; };
-  const double least = 2 * reach_of_step();
-  double wanted = std::min(std::max(kNearSkin, 2 * kNearSteps * reach_of_step()), kMostNear * skin_);
-  if (!listed_ || room() < wanted) {
-    if (listed_) moved_ = displacement();
-    if (!listed_ || room() < std::max(least, wanted / 2)) {
-      if (!listed_ || !mend() || room() < least) build();
+  const std::vector<Bytes> from = options_.ranks->exchange(to);
+  if (options_.ranks->rank() != 0) return all;
+  all.resize(count_);
+  for (const Bytes& bytes : from)
+    for (size_t k = 0; k < bytes.size(); k += sizeof(Particle)) {
+      Particle one;
+      std::memcpy(&one, bytes.data() + k, sizeof one);
+      all[one.id] = one;
     }
-    wanted = std::min(wanted, room());
-  }
-  prune(wanted);
-}
-
-void LatticeEngine::Impl::step() {
-  refresh_lists();
-  Active active;
-  if (quiet_) active = quiet_->next();
-  for (Block& block : blocks_) {
-    block.crossings.clear();
-    block.pair_faults.clear();
-    block.update_faults.clear();
-    block.fastest2 = 0;
-  }
-  for_each_block([&](Block& block) { kernels_.across(rule_, particles_, active, block); });
-  for_each_block([&](Block& block) { kernels_.inside(rule_, particles_, active, block); });
-  fail_if_any(&Block::pair_faults);
-  fail_if_any(&Block::update_faults);
-
-  std::vector<Crossing> crossings;
-  for (const Block& block : blocks_)
-    crossings.insert(crossings.end(), block.crossings.begin(), block.crossings.end());
-  std::vector<RunError> faults;
-  for (const Refused& r : members_.migrate(crossings, particles_.node, leaving_))
-    faults.push_back(error(r.fault, r.node, r.particle,
-                           r.fault == Fault::full_x || r.fault == Fault::full_y || r.fault == Fault::full_z
-                               ? plan_.arch.capacity
-                               : 0));
-  fail_if_any(faults);
-  if (quiet_) {
-    for (const Crossing& c : crossings) {
-      quiet_->changed(particles_.node[c.particle]);
-      widen_group_nodes(c.particle);
-    }
-    quiet_->done();
-  }
-
-  fastest_ = 0;
-  for (const Block& block : blocks_) fastest_ = std::max(fastest_, std::sqrt(block.fastest2));
-  moved_ += reach_of_step();
-  near_moved_ += reach_of_step();
-  counters_.node_steps += lattice_.size();
-  if (quiet_) counters_.quiet_node_steps += quiet_->quiet_nodes();
-  ++step_;
+  return all;
 }
 
 LatticeEngine::LatticeEngine(const Plan& plan, uint64_t step, uint32_t count,
@@ -412,31 +160,41 @@ int LatticeEngine::threads() const { return impl_->threads_; }
 const std::string& LatticeEngine::simd() const { return impl_->kernels_.name; }
 std::span<const Leaving> LatticeEngine::leaving() const { return impl_->leaving_; }
 
-State LatticeEngine::state() const {
-  State state{impl_->step_, std::vector<Particle>(impl_->count_)};
-  for (uint32_t k = 0; k < impl_->count_; ++k) {
-    const Particle p = impl_->particle(k);
-    state.particles[p.id] = p;
-  }
-  return state;
-}
+State LatticeEngine::state() const { return {impl_->step_, impl_->everyone()}; }
 
 void LatticeEngine::for_each_slot(const std::function<void(const Particle&)>& see) const {
+  if (!impl_->shared()) {
+    for (uint32_t n = 0; n < impl_->lattice_.size(); ++n)
+      impl_->members_.for_each(n, [&](uint32_t id) { see(impl_->particle(impl_->index_(id))); });
+    return;
+  }
+  const std::vector<Particle> all = impl_->everyone();
+  if (all.empty()) return;
   for (uint32_t n = 0; n < impl_->lattice_.size(); ++n)
-    impl_->members_.for_each(n, [&](uint32_t p) { see(impl_->particle(p)); });
+    impl_->members_.for_each(n, [&](uint32_t id) { see(all[id]); });
 }
 
 uint64_t LatticeEngine::hash() const {
   uint64_t sum = 0;
-#pragma omp parallel for reduction(+ : sum) num_threads(impl_->threads_)
-  for (uint32_t k = 0; k < impl_->count_; ++k) sum += hash_of(impl_->lattice_, impl_->particle(k));
+#pragma omp parallel num_threads(impl_->threads_) reduction(+ : sum)
+  for (const Block& block : impl_->blocks_) {
+#pragma omp for schedule(static) nowait
+    for (uint32_t p = block.begin; p < block.end; ++p) sum += hash_of(impl_->lattice_, impl_->particle(p));
+  }
+  if (impl_->shared()) impl_->options_.ranks->sum({&sum, 1});
   return sum;
 }
 
 Int3 LatticeEngine::momentum() const {
   Int3 sum{};
   for (int a = 0; a < 3; ++a)
-    for (uint32_t k = 0; k < impl_->count_; ++k) sum[a] += static_cast<int64_t>(impl_->particles_.v[a][k]);
+    impl_->for_each_index([&](uint32_t p) { sum[a] += static_cast<int64_t>(impl_->particles_.v[a][p]); });
+  if (impl_->shared())
+    for (int64_t& s : sum) {
+      auto modulo = static_cast<uint64_t>(s);
+      impl_->options_.ranks->sum({&modulo, 1});
+      s = static_cast<int64_t>(modulo);
+    }
   return sum;
 }
 
@@ -454,7 +212,8 @@ void LatticeEngine::slots(NodeSlots& out) const {
 #pragma omp parallel for num_threads(impl_->threads_)
   for (uint32_t n = 0; n < nodes; ++n) {
     uint32_t k = out.first[n];
-    impl_->members_.for_each(n, [&](uint32_t p) {
+    impl_->members_.for_each(n, [&](uint32_t id) {
+      const uint32_t p = impl_->index_(id);
       for (int a = 0; a < 3; ++a)
         out.x[a][k] = static_cast<int32_t>(static_cast<int64_t>(impl_->particles_.x[a][p]) & mask);
       ++k;

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "emu/lattice/ranks.h"
 #include "emu/lattice/slots.h"
 #include "hw/plan.h"
 #include "model/state.h"
@@ -18,6 +19,8 @@ struct LatticeOptions {
   int threads = 0;         // 0: one per core that the process may use, fewer for small scenes
   bool quiescence = true;  // nodes at rest among nodes at rest are skipped; no bit depends on it
   std::string simd;        // "avx512", "avx2", "portable"; empty: the widest that this machine has
+  Ranks* ranks = nullptr;      // who shares the scene; null: nobody. Must outlive the engine
+  std::string cut = "bricks";  // how: see cut.h
 };
 
 // What a run did so far.
@@ -29,9 +32,11 @@ struct LatticeCounters {
                                   // before: their clock could stand still (quiescence on)
 };
 
+// Where ranks share the scene, every call but the plain getters is collective.
 class LatticeEngine {
  public:
-  // `particle(k)`, k = 0 ... count-1, is called once each in this order: no second copy of the state is held.
+  // `particle(k)`, k = 0 ... count-1, is called once each in this order (twice with ranks): no second copy of the
+  // state is held. Ids are 0 ... count-1.
   // Particles of one node take its slots in the order in which they come (by id at the start of a run; in the
   // order of for_each_slot when a run resumes). `plan` must outlive the engine. Throws RunError where a node
   // would hold more than its capacity, InputError where `simd` is not to be had.
@@ -48,11 +53,12 @@ class LatticeEngine {
   uint64_t step_count() const;
   uint32_t size() const;                                                      // particles
   State state() const;                                                        // sorted by id
-  void for_each_slot(const std::function<void(const Particle&)>& see) const;  // by node, then slot
+  void for_each_slot(const std::function<void(const Particle&)>& see) const;  // by node, then slot; of
+                                                                              // all, on rank 0
   uint64_t hash() const;                                                      // hash_of(lattice, state())
   Int3 momentum() const;
 
-  // For the timing model: the particles by node and slot, and those that left their node in the last step.
+  // For the timing model, without ranks: the particles by node and slot, and those that left their node in the last step.
   void slots(NodeSlots& out) const;
   std::span<const Leaving> leaving() const;
 

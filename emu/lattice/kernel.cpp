@@ -118,7 +118,7 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
 
 HWY_INLINE uint32_t awake_lanes(const uint8_t* node_flag, const Particles& particles, uint32_t g) {
   uint32_t lanes = 0;
-  const uint32_t* node = particles.node.data() + size_t{g} * kGroup;
+  const uint32_t* node = particles.node + size_t{g} * kGroup;
   for (uint32_t l = 0; l < kGroup; ++l)
     lanes |= static_cast<uint32_t>(node_flag[node[l]] != 0) << l;
   return lanes;
@@ -153,11 +153,12 @@ void prune(const Particles& particles, double reach, const uint8_t* only, Block&
   for (uint32_t k = 0; k < block.groups(); ++k)
     if (only == nullptr || any_flag(only, particles, first + k))
       prune_group(particles, reach2, size_t{first + k} * kGroup, block.inside.groups[k], block.inside.entries.data());
-  for (uint32_t k = 0; k < block.edge_group.size(); ++k) {
-    const uint32_t g = first + block.edge_group[k];
-    if (only == nullptr || any_flag(only, particles, g))
-      prune_group(particles, reach2, size_t{g} * kGroup, block.across.groups[k], block.across.entries.data());
-  }
+  for (Edge* edge : {&block.beside, &block.ghosts})
+    for (uint32_t k = 0; k < edge->group.size(); ++k) {
+      const uint32_t g = first + edge->group[k];
+      if (only == nullptr || any_flag(only, particles, g))
+        prune_group(particles, reach2, size_t{g} * kGroup, edge->pairs.groups[k], edge->pairs.entries.data());
+    }
 }
 
 template <bool kDamped>
@@ -177,17 +178,17 @@ HWY_NOINLINE void report(const KernelRule& rule, const Particles& particles, uin
 }
 
 template <bool kSimple, bool kDamped, bool kScaled>
-void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
-  for (size_t k = 0; k < block.edge_group.size(); ++k) {
-    const uint32_t g = block.first_group() + block.edge_group[k];
+void across(const KernelRule& rule, const Particles& particles, const Active& active, Edge& edge, Block& block) {
+  for (size_t k = 0; k < edge.group.size(); ++k) {
+    const uint32_t g = block.first_group() + edge.group[k];
     if (active.near != nullptr && !any_flag(active.near, particles, g)) continue;
     for (uint32_t at = 0; at < kGroup; at += kLanes) {
       const uint32_t i = g * kGroup + at;
       const Own own = load_own<kDamped>(particles, i);
       V sum[3] = {magic(), magic(), magic()};
-      const PairList::Group& group = block.across.groups[k];
+      const PairList::Group& group = edge.pairs.groups[k];
       for (uint32_t e = group.begin; e < group.begin + group.near; ++e) {
-        const Entry& entry = block.across.entries[e];
+        const Entry& entry = edge.pairs.entries[e];
         uint32_t doubtful = 0;
         V kick[3];
         if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, entry, at, kick, doubtful)) continue;
@@ -195,7 +196,7 @@ void across(const KernelRule& rule, const Particles& particles, const Active& ac
           report(rule, particles, i, entry.first + static_cast<int32_t>(at), entry.shift, doubtful, false, block);
         for (int a = 0; a < 3; ++a) sum[a] = hn::NegMulAdd(kick[a], hn::Set(d, rule.kick_factor), sum[a]);
       }
-      for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, &block.across_sum[(k * 3 + a) * kGroup + at]);
+      for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, &edge.sum[(k * 3 + a) * kGroup + at]);
     }
   }
 }
@@ -277,13 +278,11 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
   double* const ring[3] = {block.ring[0].data(), block.ring[1].data(), block.ring[2].data()};
   V fastest2 = hn::Zero(d);
   uint32_t written = 0;  // the ring holds sums of particles below this
-  size_t next_edge = 0;
+  EdgeSums beside_sums(block.beside), ghost_sums(block.ghosts);
   for (uint32_t k = 0; k < block.groups(); ++k) {
     const uint32_t g = block.first_group() + k;
     const uint32_t base = g * kGroup;
-    const double* across_sum = nullptr;
-    if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
-      across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
+    const double* const edges[2] = {beside_sums.next(k), ghost_sums.next(k)};
     const uint32_t slot = (k * kGroup) & block.ring_mask;
     const bool work = active.near == nullptr || any_flag(active.near, particles, g);
     if (!work && base >= written) continue;
@@ -320,8 +319,9 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
       }
       for (int a = 0; a < 3; ++a) {
         sum[a] = hn::Sub(sum[a], magic());
-        if (across_sum != nullptr && work)
-          sum[a] = hn::Add(sum[a], hn::Sub(hn::LoadU(d, across_sum + a * kGroup + at), magic()));
+        for (const double* edge : edges)
+          if (edge != nullptr && work)
+            sum[a] = hn::Add(sum[a], hn::Sub(hn::LoadU(d, edge + a * kGroup + at), magic()));
       }
       take_ring(block, slot, at, sum);
       const uint32_t mine = lanes >> at & ((1u << kLanes) - 1);

@@ -36,8 +36,8 @@ struct Kernels {
   // Puts the entries with a pair within `reach` (P fractional bits) first in their groups, in the groups with a
   // particle in a node of `only` (by node; null: all).
   void (*prune)(const Particles&, double reach, const uint8_t* only, Block&);
-  // Sums of the pairs with other blocks.
-  void (*across)(const KernelRule&, const Particles&, const Active&, Block&);
+  // The sums of an edge of the block.
+  void (*across)(const KernelRule&, const Particles&, const Active&, Edge&, Block&);
   // Pairs inside the block, then each group's update.
   void (*inside)(const KernelRule&, Particles&, const Active&, Block&);
 };

@@ -45,19 +45,19 @@ void prune(const Particles& particles, double reach, const uint8_t* only, Block&
         begin);
   };
   for (uint32_t k = 0; k < block.groups(); ++k) sort(block.inside, k, block.first_group() + k);
-  for (uint32_t k = 0; k < block.edge_group.size(); ++k)
-    sort(block.across, k, block.first_group() + block.edge_group[k]);
+  for (Edge* edge : {&block.beside, &block.ghosts})
+    for (uint32_t k = 0; k < edge->group.size(); ++k) sort(edge->pairs, k, block.first_group() + edge->group[k]);
 }
 
-void across(const KernelRule& rule, const Particles& particles, const Active& active, Block& block) {
-  for (size_t k = 0; k < block.edge_group.size(); ++k) {
-    const uint32_t g = block.first_group() + block.edge_group[k];
+void across(const KernelRule& rule, const Particles& particles, const Active& active, Edge& edge, Block& block) {
+  for (size_t k = 0; k < edge.group.size(); ++k) {
+    const uint32_t g = block.first_group() + edge.group[k];
     if (active.near != nullptr && !any_flag(active.near, particles, g)) continue;
-    double* sum = &block.across_sum[k * 3 * kGroup];
+    double* sum = &edge.sum[k * 3 * kGroup];
     std::fill(sum, sum + 3 * kGroup, kMagic);
-    const PairList::Group& group = block.across.groups[k];
+    const PairList::Group& group = edge.pairs.groups[k];
     for (uint32_t e = group.begin; e < group.begin + group.near; ++e) {
-      const Entry& entry = block.across.entries[e];
+      const Entry& entry = edge.pairs.entries[e];
       for (uint32_t l = 0; l < kGroup; ++l) {
         if ((entry.lanes >> l & 1) == 0) continue;
         const PairResult result = pair(rule, particles, g * kGroup + l, entry.first + l, entry.shift);
@@ -70,12 +70,11 @@ void across(const KernelRule& rule, const Particles& particles, const Active& ac
 }
 
 void inside(const KernelRule& rule, Particles& particles, const Active& active, Block& block) {
-  size_t next_edge = 0;
+  EdgeSums beside_sums(block.beside), ghost_sums(block.ghosts);
   for (uint32_t k = 0; k < block.groups(); ++k) {
     const uint32_t g = block.first_group() + k;
-    const double* across_sum = nullptr;
-    if (next_edge < block.edge_group.size() && block.edge_group[next_edge] == k)
-      across_sum = &block.across_sum[next_edge++ * 3 * kGroup];
+    const double* beside = beside_sums.next(k);
+    const double* ghosts = ghost_sums.next(k);
     const bool work = active.near == nullptr || any_flag(active.near, particles, g);
     const uint32_t slot = (k * kGroup) & block.ring_mask;
     double sums[kGroup][3] = {};
@@ -105,7 +104,8 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
           sums[l][a] += overhang - kMagic;
           overhang = kMagic;
         }
-        if (across_sum != nullptr) sums[l][a] += across_sum[a * kGroup + l] - kMagic;
+        if (beside != nullptr) sums[l][a] += beside[a * kGroup + l] - kMagic;
+        if (ghosts != nullptr) sums[l][a] += ghosts[a * kGroup + l] - kMagic;
       }
       const uint32_t p = g * kGroup + l;
       if (!work || p >= block.end || (active.awake != nullptr && active.awake[particles.node[p]] == 0))

@@ -7,9 +7,11 @@
 namespace cuboct::emu {
 
 Members::Members(const Lattice& lattice, int capacity, size_t particles)
-    : lattice_(&lattice), capacity_(capacity), head_(lattice.size()), next_(particles), count_(lattice.size()) {}
+    : lattice_(&lattice), capacity_(capacity), head_(lattice.size()), next_(particles), count_(lattice.size()),
+      node_(particles) {}
 
 bool Members::append(uint32_t node, uint32_t particle) {
+  node_[particle] = node;
   if (count_[node] == capacity_) return false;
   if (count_[node] == 0) {
     head_[node] = particle;
@@ -39,11 +41,10 @@ void Members::remove(uint32_t node, uint32_t particle) {
   next_[before] = next_[particle];
 }
 
-std::vector<Refused> Members::migrate(std::span<const Crossing> crossings, PaddedArray<uint32_t>& node,
-                                      std::vector<Leaving>& leaving) {
+std::vector<Refused> Members::migrate(std::span<const Crossing> crossings, std::vector<Leaving>& leaving) {
   leaving.clear();
   for (const Crossing& c : crossings)
-    leaving.push_back({node[c.particle], slot_of(node[c.particle], c.particle), c.away});
+    leaving.push_back({node_[c.particle], slot_of(node_[c.particle], c.particle), c.away});
   std::sort(leaving.begin(), leaving.end(),
             [](const auto& a, const auto& b) { return std::tie(a.node, a.slot) < std::tie(b.node, b.slot); });
 
@@ -60,38 +61,23 @@ std::vector<Refused> Members::migrate(std::span<const Crossing> crossings, Padde
     for (const Crossing& c : crossings) {
       const int way = c.away[axis];
       if (way == 0) continue;
-      const uint32_t from = node[c.particle], to = lattice_->neighbour(from, 2 * axis + (way > 0));
+      const uint32_t from = node_[c.particle], to = lattice_->neighbour(from, 2 * axis + (way > 0));
       moves.push_back({to, way < 0, slot_of(from, c.particle), c.particle});
     }
-    for (const Move& m : moves) remove(node[m.particle], m.particle);
+    for (const Move& m : moves) remove(node_[m.particle], m.particle);
     std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
       return std::tie(a.to, a.from_above, a.slot) < std::tie(b.to, b.from_above, b.slot);
     });
     for (const Move& m : moves) {
       if (m.to == kNoNode) {
-        refused.push_back({fault(Fault::left_x), node[m.particle], m.particle});
+        refused.push_back({fault(Fault::left_x), node_[m.particle], m.particle});
         continue;
       }
-      node[m.particle] = m.to;
       if (!append(m.to, m.particle)) refused.push_back({fault(Fault::full_x), m.to, m.particle});
     }
     if (!refused.empty()) break;
   }
   return refused;
-}
-
-void Members::rename(std::span<const uint32_t> renamed) {
-  std::vector<uint32_t> next(next_.size());
-  for (uint32_t n = 0; n < head_.size(); ++n) {
-    if (count_[n] == 0) continue;
-    uint32_t p = head_[n];
-    head_[n] = renamed[p];
-    for (int k = 1; k < count_[n]; ++k) {
-      next[renamed[p]] = renamed[next_[p]];
-      p = next_[p];
-    }
-  }
-  next_ = std::move(next);
 }
 
 }  // namespace cuboct::emu

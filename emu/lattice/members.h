@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Which particles a node holds, in the order of its slots, and their migration.
+// Which particles (by id) a node holds, in the order of its slots, and their migration. Where ranks share a scene each has
+// all of this: it is what decides alike on all of them.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "emu/lattice/block.h"
+#include "emu/lattice/aligned.h"
 #include "emu/lattice/slots.h"
+#include "model/error.h"
 #include "model/lattice.h"
 
 namespace cuboct::emu {
@@ -18,7 +20,7 @@ struct Refused {
   uint32_t node, particle;
 };
 
-// A list per node, linked through the particles: 5 bytes per node and 4 per particle.
+// A list per node, linked through the particles: 6 bytes per node and 8 per particle.
 class Members {
  public:
   Members() = default;
@@ -26,21 +28,19 @@ class Members {
 
   // False where the node is full.
   bool append(uint32_t node, uint32_t particle);
-  size_t room() const { return next_.size(); }
+  // By particle; readable kGroup elements beyond either end.
+  const uint32_t* nodes() const { return node_.data(); }
   int count(uint32_t node) const { return count_[node]; }
+  const std::vector<uint16_t>& counts() const { return count_; }
   template <typename See>
   void for_each(uint32_t node, const See& see) const {
     for (uint32_t p = head_[node], k = 0; k < count_[node]; ++k, p = next_[p]) see(p);
   }
 
-  // Moves the particles that crossed, axis by axis, as the machine does: those who stay keep their order, then
-  // come those from below in their order, then those from above. `node` is kept up to date. Stops after an
-  // axis on which someone was refused. `leaving` becomes what the timing model needs.
-  std::vector<Refused> migrate(std::span<const Crossing> crossings, PaddedArray<uint32_t>& node,
-                               std::vector<Leaving>& leaving);
-
-  // The particles get new indices: particle p is now renamed[p].
-  void rename(std::span<const uint32_t> renamed);
+  // Moves the particles (ids) that crossed, axis by axis, as the machine does: those who stay keep their order, then
+  // come those from below in their order, then those from above. Stops after an axis on which someone was
+  // refused. `leaving` becomes what the timing model needs.
+  std::vector<Refused> migrate(std::span<const Crossing> crossings, std::vector<Leaving>& leaving);
 
  private:
   uint32_t slot_of(uint32_t node, uint32_t particle) const;
@@ -50,6 +50,7 @@ class Members {
   int capacity_ = 0;
   std::vector<uint32_t> head_, next_;
   std::vector<uint16_t> count_;
+  PaddedArray<uint32_t> node_;
 };
 
 }  // namespace cuboct::emu

@@ -63,13 +63,15 @@ class Merger {
 // The entries of one group: `at(particle)` is where it was found.
 template <typename At>
 void collect(const Particles& particles, const Block& block, uint32_t base, Search& search, const At& at,
-             Merger& inside, Merger& across) {
+             uint32_t ghosts, Merger& inside, Merger& beside, Merger& beyond) {
   const uint32_t end = std::min(base + kGroup, block.end);
   for (uint32_t i = base; i < end; ++i)
     for (const auto& [j, shift] : search.around(particles.node[i], at(i))) {
       const auto first = static_cast<int32_t>(j) - static_cast<int32_t>(i - base);
-      if (j < block.begin || j >= block.end)
-        across.add(first, shift, i - base);
+      if (j >= ghosts)
+        beyond.add(first, shift, i - base);
+      else if (j < block.begin || j >= block.end)
+        beside.add(first, shift, i - base);
       else if (j > i)
         inside.add(first, shift, i - base);
     }
@@ -81,6 +83,14 @@ constexpr size_t kUsualEntries = 32;
 void close_group(const PairList& list, uint32_t begin, PairList::Group& group) {
   const auto count = static_cast<uint16_t>(list.entries.size() - begin);
   group = {begin, count, count};
+}
+
+void close_edge(Merger& merger, uint32_t k, Edge& edge) {
+  const auto begin = static_cast<uint32_t>(edge.pairs.entries.size());
+  merger.take(edge.pairs.entries);
+  if (edge.pairs.entries.size() == begin) return;
+  edge.group.push_back(k);
+  close_group(edge.pairs, begin, edge.pairs.groups.emplace_back());
 }
 
 // How far ahead of group k its entries reach, in particles.
@@ -102,14 +112,16 @@ void make_ring(Block& block, uint32_t window) {
 
 }  // namespace
 
-void build_list(const KernelRule& rule, const Particles& particles, Search search, Block& block) {
-  Merger inside, across;
+void build_list(const KernelRule& rule, const Particles& particles, uint32_t ghosts, Search search, Block& block) {
+  Merger inside, beside, beyond;
   block.inside.entries.clear();
   block.inside.entries.reserve(kUsualEntries * block.groups());
   block.inside.groups.resize(block.groups());
-  block.across.entries.clear();
-  block.across.groups.clear();
-  block.edge_group.clear();
+  for (Edge* edge : {&block.beside, &block.ghosts}) {
+    edge->group.clear();
+    edge->pairs.groups.clear();
+    edge->pairs.entries.clear();
+  }
   block.plain.assign(block.groups(), 1);
   block.ring_mask = 0;
   uint32_t window = kGroup;
@@ -126,24 +138,22 @@ void build_list(const KernelRule& rule, const Particles& particles, Search searc
       if (rule.plain[type] == 0 || rule.rule->types[type].gravity != rule.rule->types[particles.type[base]].gravity)
         block.plain[k] = 0;
     }
-    collect(particles, block, base, search, at, inside, across);
+    collect(particles, block, base, search, at, ghosts, inside, beside, beyond);
     const auto begin = static_cast<uint32_t>(block.inside.entries.size());
     inside.take(block.inside.entries);
     close_group(block.inside, begin, block.inside.groups[k]);
     window = std::max(window, window_of(block, k));
-    const auto edge = static_cast<uint32_t>(block.across.entries.size());
-    across.take(block.across.entries);
-    if (block.across.entries.size() == edge) continue;
-    block.edge_group.push_back(k);
-    close_group(block.across, edge, block.across.groups.emplace_back());
+    close_edge(beside, k, block.beside);
+    close_edge(beyond, k, block.ghosts);
   }
-  block.across_sum = PaddedArray<double>(block.edge_group.size() * 3 * kGroup, kMagic);
+  for (Edge* edge : {&block.beside, &block.ghosts})
+    edge->sum = PaddedArray<double>(edge->group.size() * 3 * kGroup, kMagic);
   make_ring(block, window);
 }
 
 void mend_list(const Particles& particles, const Snapshot& snapshot, Search search, const std::vector<uint8_t>& only,
                Block& block) {
-  Merger inside, across;
+  Merger inside, beside, beyond;
   std::vector<Entry> entries;
   const auto at = [&](uint32_t p) { return std::array{snapshot.at[0][p], snapshot.at[1][p], snapshot.at[2][p]}; };
   // Where they were, if they fit there; else behind all others.
@@ -158,39 +168,39 @@ void mend_list(const Particles& particles, const Snapshot& snapshot, Search sear
   };
   // By group, one beyond: the place in edge_group.
   std::vector<uint32_t> edge(block.groups());
-  for (uint32_t k = 0; k < block.edge_group.size(); ++k) edge[block.edge_group[k]] = k + 1;
+  for (uint32_t k = 0; k < block.beside.group.size(); ++k) edge[block.beside.group[k]] = k + 1;
   bool new_edges = false;
   uint32_t window = kGroup;
   for (uint32_t k = 0; k < block.groups(); ++k) {
     if (only[block.first_group() + k] == 0) continue;
-    collect(particles, block, block.begin + k * kGroup, search, at, inside, across);
+    collect(particles, block, block.begin + k * kGroup, search, at, kNoParticle, inside, beside, beyond);
     entries.clear();
     inside.take(entries);
     put(block.inside, block.inside.groups[k], block.inside.groups[k].count);
     window = std::max(window, window_of(block, k));
     entries.clear();
-    across.take(entries);
+    beside.take(entries);
     if (entries.empty() && edge[k] == 0) continue;
     if (edge[k] == 0) {
-      block.edge_group.push_back(k);
-      edge[k] = static_cast<uint32_t>(block.edge_group.size());
-      block.across.groups.push_back({0, 0, 0});
+      block.beside.group.push_back(k);
+      edge[k] = static_cast<uint32_t>(block.beside.group.size());
+      block.beside.pairs.groups.push_back({0, 0, 0});
       new_edges = true;
     }
-    PairList::Group& group = block.across.groups[edge[k] - 1];
-    put(block.across, group, group.count);
+    PairList::Group& group = block.beside.pairs.groups[edge[k] - 1];
+    put(block.beside.pairs, group, group.count);
   }
   if (new_edges) {
     // The kernels meet the edges in the order of their groups.
     std::vector<PairList::Group> groups;
-    block.edge_group.clear();
+    block.beside.group.clear();
     for (uint32_t k = 0; k < block.groups(); ++k)
       if (edge[k] != 0) {
-        block.edge_group.push_back(k);
-        groups.push_back(block.across.groups[edge[k] - 1]);
+        block.beside.group.push_back(k);
+        groups.push_back(block.beside.pairs.groups[edge[k] - 1]);
       }
-    block.across.groups = std::move(groups);
-    block.across_sum = PaddedArray<double>(block.edge_group.size() * 3 * kGroup, kMagic);
+    block.beside.pairs.groups = std::move(groups);
+    block.beside.sum = PaddedArray<double>(block.beside.group.size() * 3 * kGroup, kMagic);
   }
   make_ring(block, window);
 }

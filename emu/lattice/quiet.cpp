@@ -143,12 +143,13 @@ Active Quiet::next() {
   return {near_.flags(), awake_.flags(), changed_.flags()};
 }
 
-void Quiet::done() {
+void Quiet::done(Ranks* ranks) {
   told_ = telling_;
   if (!told_) {
     touched_all_ = moved_all_ = true;
     return;
   }
+  if (ranks != nullptr) ranks->any({changed_.flags(), lattice_->size()});
   changed_.survey(*rows_);
   if (!touched_all_) touched_.add(changed_, *rows_);
   if (!moved_all_) moved_.add(changed_, *rows_);

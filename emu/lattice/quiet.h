@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "emu/lattice/kernel.h"
+#include "emu/lattice/ranks.h"
 #include "emu/lattice/search.h"
 
 namespace cuboct::emu {
@@ -55,8 +56,8 @@ class Quiet {
 
   // Where the step that next() began tells by node what changed, if Active::changed is set.
   void changed(uint32_t node) { changed_.flags()[node] = 1; }
-  // The step is over.
-  void done();
+  // The step is over, on all ranks (null: there is one).
+  void done(Ranks* ranks);
 
   // Nodes within kHops of one that changed since the last call; null: all. Valid until the next call.
   static constexpr int kHops = 3;

@@ -80,9 +80,10 @@ Search::Search(const Lattice& lattice, const Rows& rows, double reach, const Bin
 }
 
 Search::Search(const Lattice& lattice, const Rows& rows, double reach, const Members& members,
-               const Snapshot& snapshot)
+               const Index& index, const Snapshot& snapshot)
     : Search(lattice, rows, reach) {
   members_ = &members;
+  index_ = &index;
   snapshot_ = &snapshot;
 }
 
@@ -90,7 +91,8 @@ void Search::add(Rows::Range nodes, const std::array<int32_t, 3>& at, uint8_t sh
   if (nodes.begin == nodes.end) return;
   if (bins_ == nullptr) {
     for (uint32_t n = nodes.begin; n < nodes.end; ++n)
-      members_->for_each(n, [&](uint32_t p) {
+      members_->for_each(n, [&](uint32_t id) {
+        const uint32_t p = (*index_)(id);
         float r2 = 0;
         for (int a = 0; a < 3; ++a) {
           const auto d = static_cast<float>(static_cast<int32_t>(static_cast<uint32_t>(snapshot_->at[a][p]) -

@@ -45,7 +45,8 @@ class Rows {
 class Search {
  public:
   Search(const Lattice& lattice, const Rows& rows, double reach, const Bins& bins);
-  Search(const Lattice& lattice, const Rows& rows, double reach, const Members& members, const Snapshot& snapshot);
+  Search(const Lattice& lattice, const Rows& rows, double reach, const Members& members, const Index& index,
+         const Snapshot& snapshot);
   struct Hit {
     uint32_t particle;
     uint8_t shift;  // as in Entry
@@ -60,6 +61,7 @@ class Search {
   const Rows& rows_;
   const Bins* bins_ = nullptr;
   const Members* members_ = nullptr;
+  const Index* index_ = nullptr;
   const Snapshot* snapshot_ = nullptr;
   int32_t reach_;  // coarse, rounded up
   float reach2_;

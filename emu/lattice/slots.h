@@ -13,7 +13,13 @@ struct NodeSlots {
   std::array<std::vector<int32_t>, 3> x;  // P fractional bits, in [0, 2^P)
 };
 
-// A particle that left its node in a step: `slot` at the step's start, `away` nodes per axis (-1, 0, +1).
+// A particle that left its node in a step.
+struct Crossing {
+  uint32_t particle;  // index or id, as said
+  std::array<int8_t, 3> away;
+};
+
+// The same, for the timing model: `slot` at the step's start, `away` nodes per axis (-1, 0, +1).
 struct Leaving {
   uint32_t node;
   uint32_t slot;

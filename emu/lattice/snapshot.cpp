@@ -27,10 +27,10 @@ double Snapshot::moved(const Particles& particles, uint32_t particle) const {
   return std::ldexp(std::sqrt(moved2(particles, particle)) + 2, -kCoarse);
 }
 
-double Snapshot::displacement(const Particles& particles) const {
+double Snapshot::displacement(const Particles& particles, uint32_t count) const {
   double most = 0;
 #pragma omp parallel for reduction(max : most) num_threads(threads)
-  for (uint32_t p = 0; p < at[0].size(); ++p) most = std::max(most, moved2(particles, p));
+  for (uint32_t p = 0; p < count; ++p) most = std::max(most, moved2(particles, p));
   return std::ldexp(std::sqrt(most) + 2, -kCoarse);
 }
 
@@ -42,26 +42,30 @@ bool Snapshot::astray(const Lattice& lattice, const Particles& particles, uint32
   return moved(particles, particle) > threshold;
 }
 
-Bins::Bins(const Lattice& lattice, const Members& members, Particles& particles, int position_frac, int threads)
+Bins::Bins(const Lattice& lattice, const Members& members, const Index& index, const Particles& particles,
+           int position_frac, int threads)
     : first(lattice.size() + 1) {
+  const auto for_each_here = [&](uint32_t node, const auto& see) {
+    members.for_each(node, [&](uint32_t id) {
+      if (const uint32_t p = index(id); p != kNoParticle) see(p);
+    });
+  };
   uint32_t count = 0;
   for (uint32_t n = 0; n < lattice.size(); ++n) {
     first[n] = count;
-    count += static_cast<uint32_t>(members.count(n));
+    if (index.by_id.empty())
+      count += static_cast<uint32_t>(members.count(n));
+    else
+      for_each_here(n, [&](uint32_t) { ++count; });
   }
   first[lattice.size()] = count;
   for (auto& array : at) array = PaddedArray<int32_t>(count);
   particle = PaddedArray<uint32_t>(count);
-  const double cell = std::ldexp(1.0, position_frac), inverse = std::ldexp(1.0, -position_frac);
 #pragma omp parallel for num_threads(threads)
   for (uint32_t n = 0; n < lattice.size(); ++n) {
     uint32_t k = first[n];
-    members.for_each(n, [&](uint32_t p) {
-      for (int a = 0; a < 3; ++a) {
-        double& x = particles.x[a][p];
-        x += (lattice.cell(n)[a] - std::floor(x * inverse)) * cell;
-        at[a][k] = coarse(x, position_frac);
-      }
+    for_each_here(n, [&](uint32_t p) {
+      for (int a = 0; a < 3; ++a) at[a][k] = coarse(particles.x[a][p], position_frac);
       particle[k++] = p;
     });
   }
@@ -69,7 +73,8 @@ Bins::Bins(const Lattice& lattice, const Members& members, Particles& particles,
 
 void Bins::release_to(Snapshot& snapshot) {
   for (int a = 0; a < 3; ++a) {
-    if (snapshot.at[a].size() != particle.size()) snapshot.at[a] = PaddedArray<int32_t>(particle.size());
+    const size_t room = snapshot.room;
+    if (snapshot.at[a].size() != room) snapshot.at[a] = PaddedArray<int32_t>(room);
     for (uint32_t k = 0; k < particle.size(); ++k) snapshot.at[a][particle[k]] = at[a][k];
     at[a] = {};
   }

@@ -20,15 +20,16 @@ inline int32_t coarse(double x, int position_frac) {
                                                        : whole << (kCoarse - position_frac));
 }
 
-// By particle.
+// By index.
 struct Snapshot {
   std::array<PaddedArray<int32_t>, 3> at;
   int position_frac = 0;
   int threads = 1;
+  uint32_t room = 0;  // particles stored here, with those of other ranks
 
-  // The distance of a particle from its place here, in cells, rounded up; the largest of all.
+  // The distance of a particle from its place here, in cells, rounded up; the largest of the first `count`.
   double moved(const Particles& particles, uint32_t particle) const;
-  double displacement(const Particles& particles) const;
+  double displacement(const Particles& particles, uint32_t count) const;
   // Whether a particle is farther than `threshold` cells from its place here, or that is not in the cell of its node.
   bool astray(const Lattice& lattice, const Particles& particles, uint32_t particle, double threshold) const;
   void look(const Particles& particles, uint32_t particle);
@@ -37,15 +38,21 @@ struct Snapshot {
   double moved2(const Particles& particles, uint32_t particle) const;  // coarse units
 };
 
-// The particles sorted by node and slot: those of a stretch of nodes are a stretch of arrays.
+// Where the particle of an id is stored.
+struct Index {
+  std::vector<uint32_t> by_id;  // kNoParticle: elsewhere; empty: at its id
+  uint32_t operator()(uint32_t id) const { return by_id.empty() ? id : by_id[id]; }
+};
+
+// The particles stored here sorted by node and slot: those of a stretch of nodes are a stretch of arrays.
 struct Bins {
-  // Positions of particles go back into the cells of the rings first.
-  Bins(const Lattice& lattice, const Members& members, Particles& particles, int position_frac, int threads);
+  Bins(const Lattice& lattice, const Members& members, const Index& index, const Particles& particles,
+       int position_frac, int threads);
   std::vector<uint32_t> first;  // nodes + 1
   std::array<PaddedArray<int32_t>, 3> at;
   PaddedArray<uint32_t> particle;
 
-  // Leaves the places to `snapshot`, and nothing here.
+  // Leaves the places to `snapshot`, by index, and nothing here.
   void release_to(Snapshot& snapshot);
 };
 

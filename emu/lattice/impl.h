@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// The parts of the lattice engine: engine.cpp (in and out), step.cpp (one step), lists.cpp (who meets whom), share.cpp
+// (what each rank stores).
+#pragma once
+
+#include <omp.h>
+
+#include <optional>
+
+#include "emu/lattice/engine.h"
+#include "emu/lattice/kernel.h"
+#include "emu/lattice/members.h"
+#include "emu/lattice/pair_list.h"
+#include "emu/lattice/quiet.h"
+#include "emu/lattice/ranks.h"
+
+namespace cuboct::emu {
+
+struct LatticeEngine::Impl {
+  Impl(const Plan& plan, uint64_t step, uint32_t count, const LatticeOptions& options);
+  void fill(const std::function<Particle(uint32_t)>& particle);
+  Particle particle(uint32_t index) const;
+  template <typename See>
+  void for_each_index(const See& see) const {
+    for (const Block& block : blocks_)
+      for (uint32_t p = block.begin; p < block.end; ++p) see(p);
+  }
+  template <typename Work>
+  void for_each_block(const Work& work) {
+#pragma omp parallel for schedule(static, 1) num_threads(threads_)
+    for (size_t b = 0; b < blocks_.size(); ++b) work(blocks_[b]);
+  }
+  std::vector<Particle> everyone() const;  // sorted by id; of all ranks, on rank 0
+
+  // step.cpp
+  void step();
+  void forces_and_update(const Active& active);
+  std::vector<Crossing> all_crossings() const;
+  RunError error(Fault fault, uint32_t node, uint32_t id, int64_t number) const;
+  void fail_if_any(std::vector<RunError> faults) const;
+  void fail_if_any(std::vector<Found> Block::*faults) const;
+
+  // lists.cpp
+  void refresh_lists();
+  void build();
+  bool mend();
+  void prune(double skin);
+  double displacement() const;
+  template <typename See>
+  void for_each_moved(const See& see) const;
+  bool crystal() const;
+  void find_group_nodes();
+  void widen_group_nodes(uint32_t index);
+  double reach_of_step() const;  // cells that a particle can have moved in the last step
+
+  // share.cpp
+  bool shared() const { return options_.ranks != nullptr && options_.ranks->size() > 1; }
+  void own_nodes();
+  void make_room(uint32_t stored, uint32_t ghosts);
+  void cut_blocks(std::vector<Block>& blocks, uint32_t begin, uint32_t end) const;
+  void wrap();
+  void store_by_node();
+  void redistribute();
+  void start_halo();
+  void finish_halo();
+
+  const Plan& plan_;
+  const Lattice& lattice_;
+  LatticeOptions options_;
+  KernelRule rule_;
+  Kernels kernels_;
+  double cutoff_;  // cells
+  int threads_;
+  uint64_t step_;
+  uint32_t count_;       // particles of all ranks
+  uint32_t stored_ = 0;  // places for this rank's own; ghosts stand behind them
+  Particles particles_;
+  PaddedArray<uint32_t> node_;  // by index; empty where the index is the id
+  Index index_;
+  std::vector<Block> blocks_;  // those without ghosts first
+  Members members_;
+  Rows rows_;
+  Snapshot snapshot_;
+  std::optional<Quiet> quiet_;
+  std::vector<Leaving> leaving_;
+  LatticeCounters counters_;
+
+  // With another rank: own particles (indices) that it sees as ghosts, and the places of its own that are ghosts here.
+  struct Peer {
+    std::vector<uint32_t> give;
+    uint32_t take_from = 0, take_count = 0;
+    std::vector<double> out, in;
+  };
+  std::vector<uint16_t> owner_;  // by node, its rank
+  std::vector<NodeSet> reach_;   // by rank: nodes whose particles it may need
+  std::vector<Peer> peers_;
+
+  bool listed_ = false;
+  double skin_;                            // cells
+  double moved_ = 0;                       // cells: no particle is farther from where the far list found it
+  double near_skin_ = 0, near_moved_ = 0;  // the same of the near list
+  double near_floor_ = -1;                 // all groups were pruned with at least this skin
+  double fastest_ = 0;                     // largest |v| after the last step, P+G fractional bits
+  uint64_t listed_at_ = 0;                 // step
+};
+
+}  // namespace cuboct::emu

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "emu/lattice/mpi_ranks.h"
+
+#include <limits>
+#include <stdexcept>
+
+namespace cuboct::emu {
+namespace {
+
+// MPI counts in int.
+int checked(size_t count) {
+  if (count > static_cast<size_t>(std::numeric_limits<int>::max()))
+    throw std::runtime_error("a message between ranks of more than 2^31 - 1 elements: use more ranks");
+  return static_cast<int>(count);
+}
+
+struct Layout {
+  std::vector<int> count, at;
+  int total = 0;
+  explicit Layout(const std::vector<int>& counts) : count(counts), at(counts.size()) {
+    size_t sum = 0;
+    for (size_t q = 0; q < counts.size(); ++q) {
+      at[q] = checked(sum);
+      sum += static_cast<size_t>(counts[q]);
+    }
+    total = checked(sum);
+  }
+};
+
+}  // namespace
+
+MpiRanks::MpiRanks(int* argc, char*** argv) {
+  int provided = 0;
+  // Threads compute; only the first one talks.
+  MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &size_);
+}
+
+MpiRanks::~MpiRanks() { MPI_Finalize(); }
+
+void MpiRanks::sum(std::span<uint64_t> values) {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+}
+
+void MpiRanks::most(std::span<double> values) {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+}
+
+void MpiRanks::any(std::span<uint8_t> flags) {
+  MPI_Allreduce(MPI_IN_PLACE, flags.data(), checked(flags.size()), MPI_UINT8_T, MPI_BOR, MPI_COMM_WORLD);
+}
+
+std::vector<Bytes> MpiRanks::exchange(const std::vector<Bytes>& to) {
+  std::vector<int> out(to.size()), in(to.size());
+  for (size_t q = 0; q < to.size(); ++q) out[q] = checked(to[q].size());
+  MPI_Alltoall(out.data(), 1, MPI_INT, in.data(), 1, MPI_INT, MPI_COMM_WORLD);
+  const Layout send(out), receive(in);
+  Bytes sent, received(static_cast<size_t>(receive.total));
+  sent.reserve(static_cast<size_t>(send.total));
+  for (const Bytes& b : to) sent.insert(sent.end(), b.begin(), b.end());
+  MPI_Alltoallv(sent.data(), send.count.data(), send.at.data(), MPI_BYTE, received.data(), receive.count.data(),
+                receive.at.data(), MPI_BYTE, MPI_COMM_WORLD);
+  std::vector<Bytes> from(to.size());
+  for (size_t q = 0; q < to.size(); ++q)
+    from[q].assign(received.begin() + receive.at[q], received.begin() + receive.at[q] + receive.count[q]);
+  return from;
+}
+
+Bytes MpiRanks::all(const Bytes& mine) {
+  const int count = checked(mine.size());
+  std::vector<int> counts(static_cast<size_t>(size_));
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD);
+  const Layout layout(counts);
+  Bytes received(static_cast<size_t>(layout.total));
+  MPI_Allgatherv(mine.data(), count, MPI_BYTE, received.data(), layout.count.data(), layout.at.data(), MPI_BYTE,
+                 MPI_COMM_WORLD);
+  return received;
+}
+
+void MpiRanks::start(const std::vector<std::span<const double>>& to, const std::vector<std::span<double>>& from) {
+  for (int q = 0; q < size_; ++q)
+    if (const auto& place = from[static_cast<size_t>(q)]; !place.empty())
+      MPI_Irecv(place.data(), checked(place.size()), MPI_DOUBLE, q, 0, MPI_COMM_WORLD, &requests_.emplace_back());
+  for (int q = 0; q < size_; ++q)
+    if (const auto& message = to[static_cast<size_t>(q)]; !message.empty())
+      MPI_Isend(message.data(), checked(message.size()), MPI_DOUBLE, q, 0, MPI_COMM_WORLD,
+                &requests_.emplace_back());
+}
+
+void MpiRanks::finish() {
+  MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+  requests_.clear();
+}
+
+}  // namespace cuboct::emu

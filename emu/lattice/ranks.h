@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The processes that share a scene. Every call is collective: all ranks make the same calls in the same order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace cuboct::emu {
+
+using Bytes = std::vector<std::byte>;
+
+class Ranks {
+ public:
+  virtual ~Ranks() = default;
+  virtual int rank() const = 0;
+  virtual int size() const = 0;
+
+  // Element by element over all ranks.
+  virtual void sum(std::span<uint64_t> values) = 0;
+  virtual void most(std::span<double> values) = 0;
+  virtual void any(std::span<uint8_t> flags) = 0;
+  // `to[q]` goes to rank q; what rank q sent here comes back in [q].
+  virtual std::vector<Bytes> exchange(const std::vector<Bytes>& to) = 0;
+  // What all ranks gave, in the order of ranks.
+  virtual Bytes all(const Bytes& mine) = 0;
+
+  // One message to and from each rank (empty: none), under way until finish() returns; the memory must stay.
+  virtual void start(const std::vector<std::span<const double>>& to, const std::vector<std::span<double>>& from) = 0;
+  virtual void finish() = 0;
+};
+
+}  // namespace cuboct::emu

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "emu/lattice/cut.h"
+#include "emu/lattice/impl.h"
+
+namespace cuboct::emu {
+namespace {
+
+// All of a particle that moves to another rank.
+struct Moving {
+  uint32_t id, type;
+  double x[3], v[3], u[3];
+};
+
+// Pairs reach no farther than two nodes, also from where particles stood when the far list was made.
+constexpr int kGhostHops = 2;
+
+}  // namespace
+
+void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
+  stored_ = stored;
+  const uint32_t room = stored + ghosts;
+  for (auto& x : particles_.x) x = PaddedArray<double>(room);
+  for (auto& v : particles_.v) v = PaddedArray<double>(room);
+  if (plan_.rule.pd)
+    for (auto& u : particles_.u) u = PaddedArray<double>(room);
+  particles_.id = PaddedArray<uint32_t>(room, kNoParticle);
+  particles_.type = PaddedArray<uint8_t>(room);
+  snapshot_.room = room;
+}
+
+// Appends blocks of equal size, one per thread, for the places [begin, end).
+void LatticeEngine::Impl::cut_blocks(std::vector<Block>& blocks, uint32_t begin, uint32_t end) const {
+  const uint32_t groups = (end - begin + kGroup - 1) / kGroup;
+  const uint32_t parts = std::min(groups, static_cast<uint32_t>(threads_));
+  for (uint32_t b = 0; b < parts; ++b) {
+    Block& block = blocks.emplace_back();
+    block.begin = begin + static_cast<uint32_t>(uint64_t{groups} * b / parts) * kGroup;
+    block.end = std::min(end, begin + static_cast<uint32_t>(uint64_t{groups} * (b + 1) / parts) * kGroup);
+  }
+}
+
+// Positions go back into the cells of the rings.
+void LatticeEngine::Impl::wrap() {
+  if (lattice_.period() == Cell{}) return;
+  for_each_block([&](Block& block) {
+    for (uint32_t p = block.begin; p < block.end; ++p) {
+      const Cell& cell = lattice_.cell(members_.nodes()[particles_.id[p]]);
+      for (int a = 0; a < 3; ++a) {
+        double& x = particles_.x[a][p];
+        x += (cell[a] - std::floor(x * rule_.inverse_cell)) * rule_.cell;
+      }
+    }
+  });
+}
+
+// Where particles no longer stand in rows they are stored node by node, so that neighbours stay near in memory.
+void LatticeEngine::Impl::store_by_node() {
+  std::vector<uint32_t> from;  // by new index, the old one
+  from.reserve(count_);
+  for (uint32_t n = 0; n < lattice_.size(); ++n)
+    members_.for_each(n, [&](uint32_t id) { from.push_back(index_(id)); });
+  const auto reorder = [&](auto& array) {
+    const auto copy = array.copy();
+    for (uint32_t k = 0; k < count_; ++k) array[k] = copy[from[k]];
+  };
+  for (int a = 0; a < 3; ++a) {
+    reorder(particles_.x[a]);
+    reorder(particles_.v[a]);
+    if (plan_.rule.pd) reorder(particles_.u[a]);
+  }
+  reorder(particles_.id);
+  reorder(particles_.type);
+  index_.by_id.resize(count_);
+  if (node_.size() == 0) node_ = PaddedArray<uint32_t>(stored_);
+  for (uint32_t k = 0; k < count_; ++k) {
+    index_.by_id[particles_.id[k]] = k;
+    node_[k] = members_.nodes()[particles_.id[k]];
+  }
+  particles_.node = node_.data();
+}
+
+void LatticeEngine::Impl::own_nodes() {
+  const int ranks = options_.ranks->size();
+  owner_ = cut_nodes(lattice_, members_.counts(), ranks, options_.cut);
+  for (int r = 0; r < ranks; ++r) {
+    NodeSet own(lattice_, rows_), reach(lattice_, rows_);
+    for (uint32_t n = 0; n < lattice_.size(); ++n) own.flags()[n] = owner_[n] == r;
+    own.survey(rows_);
+    for (int hop = 0; hop < kGhostHops; ++hop) {
+      reach.dilate(own, lattice_, rows_);
+      own = reach;
+    }
+    reach_.push_back(std::move(reach));
+  }
+  peers_.resize(static_cast<size_t>(ranks));
+}
+
+// Particles go to the ranks that own their nodes; those that others see as ghosts are stored last.
+void LatticeEngine::Impl::redistribute() {
+  Ranks& ranks = *options_.ranks;
+  const int me = ranks.rank();
+  std::vector<Bytes> to(peers_.size());
+  for_each_index([&](uint32_t p) {
+    const uint32_t id = particles_.id[p];
+    const int owner = owner_[members_.nodes()[id]];
+    if (owner == me) return;
+    Moving moving{id, particles_.type[p], {}, {}, {}};
+    for (int a = 0; a < 3; ++a) {
+      moving.x[a] = particles_.x[a][p];
+      moving.v[a] = particles_.v[a][p];
+      if (plan_.rule.pd) moving.u[a] = particles_.u[a][p];
+    }
+    const auto* bytes = reinterpret_cast<const std::byte*>(&moving);
+    to[static_cast<size_t>(owner)].insert(to[static_cast<size_t>(owner)].end(), bytes, bytes + sizeof moving);
+  });
+  const std::vector<Bytes> from = ranks.exchange(to);
+
+  std::vector<uint32_t> rim, core;  // ids
+  for (uint32_t n = 0; n < lattice_.size(); ++n) {
+    if (owner_[n] != me) continue;
+    bool seen = false;
+    for (size_t q = 0; q < reach_.size(); ++q) seen = seen || (static_cast<int>(q) != me && reach_[q].flags()[n] != 0);
+    members_.for_each(n, [&](uint32_t id) { (seen ? rim : core).push_back(id); });
+  }
+  if (!listed_ || crystal())  // else they stay in the order of nodes
+    for (auto* ids : {&rim, &core}) std::sort(ids->begin(), ids->end());
+  const auto rounded = [](size_t n) { return static_cast<uint32_t>((n + kGroup - 1) / kGroup * kGroup); };
+
+  // By rank, the ids of ghosts: those of its nodes that this rank may need.
+  std::vector<std::vector<uint32_t>> ghosts(peers_.size()), given(peers_.size());
+  for (uint32_t n = 0; n < lattice_.size(); ++n)
+    for (size_t q = 0; q < peers_.size(); ++q) {
+      if (static_cast<int>(q) == me) continue;
+      const bool take = owner_[n] == q && reach_[static_cast<size_t>(me)].flags()[n] != 0;
+      const bool give = owner_[n] == me && reach_[q].flags()[n] != 0;
+      if (take) members_.for_each(n, [&](uint32_t id) { ghosts[q].push_back(id); });
+      if (give) members_.for_each(n, [&](uint32_t id) { given[q].push_back(id); });
+    }
+  size_t ghost_count = 0;
+  for (size_t q = 0; q < peers_.size(); ++q) {
+    std::sort(ghosts[q].begin(), ghosts[q].end());
+    std::sort(given[q].begin(), given[q].end());
+    ghost_count += ghosts[q].size();
+  }
+
+  const Particles old = std::move(particles_);
+  particles_ = {};
+  particles_.shift = old.shift;
+  const Index old_index = std::move(index_);
+  make_room(rounded(rim.size()) + rounded(core.size()), static_cast<uint32_t>(ghost_count));
+  node_ = PaddedArray<uint32_t>(snapshot_.room);
+  particles_.node = node_.data();
+  index_.by_id.assign(count_, kNoParticle);
+  const auto place = [&](const std::vector<uint32_t>& ids, uint32_t begin) {
+    for (const uint32_t id : ids) {
+      index_.by_id[id] = begin;
+      particles_.id[begin] = id;
+      node_[begin] = members_.nodes()[id];
+      if (const uint32_t p = old_index(id); p != kNoParticle && old.id[p] == id) {
+        particles_.type[begin] = old.type[p];
+        for (int a = 0; a < 3; ++a) {
+          particles_.x[a][begin] = old.x[a][p];
+          particles_.v[a][begin] = old.v[a][p];
+          if (plan_.rule.pd) particles_.u[a][begin] = old.u[a][p];
+        }
+      }
+      ++begin;
+    }
+  };
+  place(core, 0);
+  place(rim, rounded(core.size()));
+  for (const Bytes& bytes : from)
+    for (size_t k = 0; k < bytes.size(); k += sizeof(Moving)) {
+      Moving moving;
+      std::memcpy(&moving, bytes.data() + k, sizeof moving);
+      const uint32_t p = index_(moving.id);
+      particles_.type[p] = static_cast<uint8_t>(moving.type);
+      for (int a = 0; a < 3; ++a) {
+        particles_.x[a][p] = moving.x[a];
+        particles_.v[a][p] = moving.v[a];
+        if (plan_.rule.pd) particles_.u[a][p] = moving.u[a];
+      }
+    }
+  blocks_.clear();
+  cut_blocks(blocks_, 0, static_cast<uint32_t>(core.size()));
+  const uint32_t rim_begin = rounded(core.size());
+  cut_blocks(blocks_, rim_begin, rim_begin + static_cast<uint32_t>(rim.size()));
+
+  // The ghosts' types and positions.
+  uint32_t at = stored_;
+  std::vector<Bytes> types(peers_.size());
+  for (size_t q = 0; q < peers_.size(); ++q) {
+    Peer& peer = peers_[q];
+    peer.give.clear();
+    for (const uint32_t id : given[q]) {
+      peer.give.push_back(index_(id));
+      types[q].push_back(static_cast<std::byte>(particles_.type[index_(id)]));
+    }
+    peer.take_from = at;
+    peer.take_count = static_cast<uint32_t>(ghosts[q].size());
+    for (const uint32_t id : ghosts[q]) {
+      index_.by_id[id] = at;
+      particles_.id[at] = id;
+      node_[at++] = members_.nodes()[id];
+    }
+  }
+  const std::vector<Bytes> their_types = ranks.exchange(types);
+  for (size_t q = 0; q < peers_.size(); ++q)
+    for (uint32_t k = 0; k < peers_[q].take_count; ++k)
+      particles_.type[peers_[q].take_from + k] = static_cast<uint8_t>(their_types[q][k]);
+  start_halo();
+  finish_halo();
+}
+
+// Positions, and velocities where they matter, axis by axis.
+void LatticeEngine::Impl::start_halo() {
+  std::vector<std::span<const double>> out;
+  std::vector<std::span<double>> in;
+  const size_t fields = plan_.rule.damped ? 6 : 3;
+  for (Peer& peer : peers_) {
+    peer.out.resize(peer.give.size() * fields);
+    peer.in.resize(peer.take_count * fields);
+    double* to = peer.out.data();
+    for (size_t f = 0; f < fields; ++f) {
+      const PaddedArray<double>& field = f < 3 ? particles_.x[f] : particles_.v[f - 3];
+      for (const uint32_t p : peer.give) *to++ = field[p];
+    }
+    out.emplace_back(peer.out);
+    in.emplace_back(peer.in);
+  }
+  options_.ranks->start(out, in);
+}
+
+void LatticeEngine::Impl::finish_halo() {
+  options_.ranks->finish();
+  const size_t fields = plan_.rule.damped ? 6 : 3;
+  for (const Peer& peer : peers_) {
+    const double* from = peer.in.data();
+    for (size_t f = 0; f < fields; ++f) {
+      PaddedArray<double>& field = f < 3 ? particles_.x[f] : particles_.v[f - 3];
+      std::copy(from, from + peer.take_count, field.data() + peer.take_from);
+      from += peer.take_count;
+    }
+  }
+}
+
+}  // namespace cuboct::emu

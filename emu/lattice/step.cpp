@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "emu/lattice/impl.h"
+#include "model/error.h"
+
+namespace cuboct::emu {
+namespace {
+
+auto order(const RunError& e) { return std::tuple(e.fault, e.particle, e.number); }
+
+bool is_full(Fault fault) { return fault == Fault::full_x || fault == Fault::full_y || fault == Fault::full_z; }
+
+}  // namespace
+
+RunError LatticeEngine::Impl::error(Fault fault, uint32_t node, uint32_t id, int64_t number) const {
+  const Cell& c = lattice_.cell(node);
+  return {fault, step_, node, id, number, fmt::format(" at cell ({}, {}, {})", c[0], c[1], c[2])};
+}
+
+void LatticeEngine::Impl::fail_if_any(std::vector<RunError> faults) const {
+  if (faults.empty()) return;
+  throw *std::min_element(faults.begin(), faults.end(),
+                          [](const auto& a, const auto& b) { return order(a) < order(b); });
+}
+
+// The least fault of all ranks, the same on each.
+void LatticeEngine::Impl::fail_if_any(std::vector<Found> Block::*faults) const {
+  struct Told {
+    Fault fault;
+    uint32_t node, id;
+    int64_t number;
+  };
+  Bytes mine;
+  for (const Block& block : blocks_)
+    for (const Found& f : block.*faults) {
+      const uint32_t id = particles_.id[f.particle];
+      const Told told{f.fault, members_.nodes()[id], id, f.number};
+      const auto* bytes = reinterpret_cast<const std::byte*>(&told);
+      mine.insert(mine.end(), bytes, bytes + sizeof told);
+    }
+  const Bytes all = shared() ? options_.ranks->all(mine) : mine;
+  std::vector<RunError> errors;
+  for (size_t k = 0; k < all.size(); k += sizeof(Told)) {
+    Told told;
+    std::memcpy(&told, all.data() + k, sizeof told);
+    errors.push_back(error(told.fault, told.node, told.id, told.number));
+  }
+  fail_if_any(errors);
+}
+
+// By id, of all ranks.
+std::vector<Crossing> LatticeEngine::Impl::all_crossings() const {
+  std::vector<Crossing> crossings;
+  for (const Block& block : blocks_)
+    for (const Crossing& c : block.crossings) crossings.push_back({particles_.id[c.particle], c.away});
+  if (!shared()) return crossings;
+  Bytes mine(crossings.size() * sizeof(Crossing));
+  std::memcpy(mine.data(), crossings.data(), mine.size());
+  const Bytes all = options_.ranks->all(mine);
+  crossings.resize(all.size() / sizeof(Crossing));
+  std::memcpy(crossings.data(), all.data(), all.size());
+  return crossings;
+}
+
+// The ghosts travel while all that does not need them is worked on.
+void LatticeEngine::Impl::forces_and_update(const Active& active) {
+  if (shared()) start_halo();
+  for_each_block([&](Block& block) { kernels_.across(rule_, particles_, active, block.beside, block); });
+  for_each_block([&](Block& block) {
+    if (block.ghosts.group.empty()) kernels_.inside(rule_, particles_, active, block);
+  });
+  if (!shared()) return;
+  finish_halo();
+  for_each_block([&](Block& block) {
+    if (block.ghosts.group.empty()) return;
+    kernels_.across(rule_, particles_, active, block.ghosts, block);
+    kernels_.inside(rule_, particles_, active, block);
+  });
+}
+
+void LatticeEngine::Impl::step() {
+  refresh_lists();
+  Active active;
+  if (quiet_) active = quiet_->next();
+  for (Block& block : blocks_) {
+    block.crossings.clear();
+    block.pair_faults.clear();
+    block.update_faults.clear();
+    block.fastest2 = 0;
+  }
+  forces_and_update(active);
+
+  // The largest speed, and whether some rank met a fault of each kind.
+  std::array<double, 3> most{};
+  for (const Block& block : blocks_) {
+    most[0] = std::max(most[0], std::sqrt(block.fastest2));
+    most[1] = std::max(most[1], block.pair_faults.empty() ? 0.0 : 1.0);
+    most[2] = std::max(most[2], block.update_faults.empty() ? 0.0 : 1.0);
+  }
+  if (shared()) options_.ranks->most(most);
+  if (most[1] > 0) fail_if_any(&Block::pair_faults);
+  if (most[2] > 0) fail_if_any(&Block::update_faults);
+
+  const std::vector<Crossing> crossings = all_crossings();
+  std::vector<RunError> faults;
+  for (const Refused& r : members_.migrate(crossings, leaving_))
+    faults.push_back(error(r.fault, r.node, r.particle, is_full(r.fault) ? plan_.arch.capacity : 0));
+  fail_if_any(faults);
+  for (const Crossing& c : crossings) {
+    const uint32_t index = index_(c.particle);
+    if (index == kNoParticle || index >= stored_) continue;
+    if (node_.size() > 0) node_[index] = members_.nodes()[c.particle];
+    if (!quiet_) continue;
+    quiet_->changed(particles_.node[index]);
+    widen_group_nodes(index);
+  }
+  if (quiet_) quiet_->done(options_.ranks);
+
+  fastest_ = most[0];
+  moved_ += reach_of_step();
+  near_moved_ += reach_of_step();
+  counters_.node_steps += lattice_.size();
+  if (quiet_) counters_.quiet_node_steps += quiet_->quiet_nodes();
+  ++step_;
+}
+
+}  // namespace cuboct::emu
