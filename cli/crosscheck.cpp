@@ -47,7 +47,8 @@ std::vector<Trace> run_all(const std::vector<std::string>& engines, const Option
     emu::LatticeRun run;
     run.steps = request.steps;
     run.frames = request.frames;
-    run.cycles = input.stall_rate == 0 && !std::all_of(engines.begin(), engines.end(), runs_here);
+    run.cycles = input.stall_rate == 0 && options.lattice.ranks == 1 &&
+                 !std::all_of(engines.begin(), engines.end(), runs_here);
     traces[i] = run_on_lattice(input, loaded.scene, setup.plan, options.lattice, std::move(run)).trace;
   }
   for (size_t i = 0; i < engines.size(); ++i)

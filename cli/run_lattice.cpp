@@ -29,6 +29,8 @@ bool in_path(const std::string& program) {
 
 emu::LatticeResult run_over_mpi(const Input& input, const Plan& plan, const LatticeChoice& choice,
                                 const emu::LatticeRun& request) {
+  if (access((program_directory() + "/cuboct-lattice").c_str(), X_OK) != 0)
+    throw InputError(fmt::format("--ranks {}: no program cuboct-lattice beside cuboct", choice.ranks));
   if (!emu::lattice_has_mpi())
     throw InputError(fmt::format("--ranks {}: the lattice engine was built without MPI", choice.ranks),
                      "--threads uses the cores of this machine");
@@ -37,7 +39,11 @@ emu::LatticeResult run_over_mpi(const Input& input, const Plan& plan, const Latt
   const Scratch scratch;
   const std::string out = scratch.path("lattice.h5"), frames = scratch.path("frames");
   write_text(frames, fmt::format("{}\n", fmt::join(request.frames, "\n")));
-  std::vector<std::string> arguments{"-n",
+  std::vector<std::string> arguments{"--quiet",
+                                     "--oversubscribe",
+                                     "--bind-to",
+                                     "none",
+                                     "-n",
                                      std::to_string(choice.ranks),
                                      program_directory() + "/cuboct-lattice",
                                      input.scene,
@@ -61,13 +67,15 @@ emu::LatticeResult run_over_mpi(const Input& input, const Plan& plan, const Latt
   add(!choice.checkpoint_every.empty(), {"--checkpoint-every", choice.checkpoint_every});
   add(checkpoint.resume, {"--resume"});
   add(stderr_is_terminal(), {"--progress"});
+  // Open MPI warns root, who in a container is everyone.
+  if (geteuid() == 0) arguments.insert(arguments.begin(), "--allow-run-as-root");
   emu::LatticeResult result;
-  Process process("mpirun", arguments);
+  Process process("mpirun", arguments, true);
   const int code = process.wait();
   if (code == 2) throw AlreadyTold(2);
   if (!std::filesystem::exists(out)) throw std::runtime_error(fmt::format("mpirun ended with code {}", code));
   result.trace = read_trace(out);
-  result.interrupted = code != 0 && !result.trace.stop;
+  result.interrupted = result.trace.steps() < request.steps && !result.trace.stop;
   for (const State& state : result.trace.frames) {
     if (state.step == 0) result.momentum_before = momentum(state);
     result.momentum_after = momentum(state);

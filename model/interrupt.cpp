@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <ctime>
+#include <initializer_list>
 
 namespace cuboct {
 namespace {
@@ -33,8 +34,7 @@ void handle(int signal) {
 void catch_interrupts() {
   struct sigaction action {};
   action.sa_handler = handle;  // no SA_RESTART: a wait for an engine must return
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaction(signal, &action, nullptr);
 }
 
 bool interrupted() { return asked_to_stop != 0; }

@@ -97,7 +97,10 @@ CheckpointReader::CheckpointReader(const std::string& path, uint64_t plan_hash, 
   head_.probes.moved = take_vectors(in_);
   head_.timing.resize(in_.word());
   in_.words(head_.timing);
+  first_ = in_.mark().words;
 }
+
+void CheckpointReader::rewind() { in_.seek(first_); }
 
 Particle CheckpointReader::next() { return take_particle(in_, displaced_); }
 

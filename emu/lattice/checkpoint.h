@@ -42,11 +42,13 @@ class CheckpointReader {
 
   const CheckpointHead& head() const { return head_; }
   Particle next();  // head().particles times
+  void rewind();    // to the first particle
 
  private:
   WordReader in_;
   bool displaced_;
   CheckpointHead head_;
+  uint64_t first_ = 0;  // where the particles begin
 };
 
 }  // namespace cuboct::emu

@@ -38,9 +38,10 @@ void print_bench(const LatticeResult& result, uint32_t particles) {
 }
 
 int run(Request request) {
+  const bool leads = !request.run.engine.ranks || request.run.engine.ranks->rank() == 0;
   LatticeRun& run = request.run;
   if (request.out.empty() && !request.bench) throw InputError("--out is required");
-  if (!request.out.empty()) check_writable(request.out);
+  if (!request.out.empty() && leads) check_writable(request.out);
   if (!request.interval.empty()) read_interval(request.interval, run.checkpoint);
   if (run.checkpoint.path.empty() && (run.checkpoint.resume || !request.interval.empty()))
     throw InputError("--resume and --checkpoint-every need --checkpoint FILE");
@@ -60,6 +61,7 @@ int run(Request request) {
   catch_interrupts();
   const LatticeResult result = run_lattice(scene, plan, run);
   const Trace& trace = result.trace;
+  if (!leads) return trace.stop || result.interrupted ? 1 : 0;
   if (!request.out.empty()) write_trace(request.out, trace);
   if (request.bench)
     print_bench(result, plan.particles);
@@ -88,8 +90,9 @@ bool lattice_has_mpi() {
 #endif
 }
 
-int run_lattice_program(int argc, char** argv) {
+int run_lattice_program(int argc, char** argv, Ranks* ranks) {
   Request request;
+  request.run.engine.ranks = ranks;
   LatticeRun& run = request.run;
   CLI::App app{"Runs a scene on vector units and threads, with the bits of the golden engine",
                "cuboct-lattice"};
@@ -124,7 +127,7 @@ int run_lattice_program(int argc, char** argv) {
   try {
     return cuboct::emu::run(std::move(request));
   } catch (const InputError& e) {
-    fmt::print(stderr, "{}\n", e.what());
+    if (!ranks || ranks->rank() == 0) fmt::print(stderr, "{}\n", e.what());
     return 2;
   } catch (const std::exception& e) {
     fmt::print(stderr, "cuboct-lattice: {}\n", e.what());

@@ -5,11 +5,14 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "emu/lattice/checkpoint.h"
 #include "emu/lattice/journal.h"
@@ -44,6 +47,11 @@ class Loop {
  private:
   void start();
   void resume();
+  void resume_trace(const CheckpointHead& head);
+  // Of ranks that share the scene all step, and the first keeps the trace and the files.
+  bool leads() const { return !ranks_ || ranks_->rank() == 0; }
+  // What any rank asks for, all do.
+  std::pair<bool, bool> agreed(bool stop, bool save) const;
   void make_engine(CheckpointReader* from);
   void check_alike(const CheckpointReader& from) const;
   void step();
@@ -60,6 +68,7 @@ class Loop {
   const std::function<Particle(uint32_t)> particle_;  // of the initial state, by id
   const LatticeRun& request_;
   const CheckpointPlan& save_plan_;
+  Ranks* const ranks_;
   const bool displaced_;
   StateMeter meter_;
   std::unique_ptr<LatticeEngine> engine_;
@@ -83,6 +92,7 @@ Loop::Loop(const Scene& scene, const Plan& plan, const LatticeRun& request)
       }),
       request_(request),
       save_plan_(request.checkpoint),
+      ranks_(request.engine.ranks),
       displaced_(plan.rule.pd),
       meter_(scene, plan.rule, plan.lattice, plan.origin, particle_, request.energies,
              request.engine.threads > 0 ? request.engine.threads : cores()),
@@ -98,6 +108,10 @@ void Loop::make_engine(CheckpointReader* from) {
   const uint64_t step = from ? from->head().step : 0;
   Int3 sum{};
   const auto next = [&](uint32_t k) {
+    if (k == 0) {  // ranks take the particles twice
+      sum = {};
+      if (from) from->rewind();
+    }
     if (from) return from->next();
     const Particle p = particle_(k);
     for (int a = 0; a < 3; ++a) sum[a] += p.v[a];
@@ -108,7 +122,7 @@ void Loop::make_engine(CheckpointReader* from) {
 }
 
 void Loop::start() {
-  if (!save_plan_.path.empty()) {
+  if (!save_plan_.path.empty() && leads()) {
     if (std::filesystem::exists(save_plan_.path))
       throw InputError(fmt::format("{} holds a run that did not end", save_plan_.path),
                        "--resume goes on with it; to begin anew, remove it first");
@@ -146,8 +160,23 @@ void Loop::resume() {
                      "leave out --resume to begin at step 0");
   CheckpointReader from(save_plan_.path, plan_.hash, displaced_);
   const CheckpointHead& head = from.head();
-  journal_.emplace(save_plan_.path + ".journal", plan_.hash, displaced_, head.journal, trace_);
+  if (leads()) {
+    resume_trace(head);
+    check_alike(from);
+  }
   trace_.steps_done = head.step;
+  trace_.seconds = head.seconds;
+  result_.largest_speed = head.largest_speed;
+  result_.resumed_at = saved_step_ = head.step;
+  earlier_ = head.counters;
+  saved_ = true;
+  make_engine(&from);
+  if (timing_) timing_->resume(head.timing);
+}
+
+// From the journal.
+void Loop::resume_trace(const CheckpointHead& head) {
+  journal_.emplace(save_plan_.path + ".journal", plan_.hash, displaced_, head.journal, trace_);
   const std::vector<Curve> fresh = meter_.curves();
   if (!trace_.curves.empty()) {
     sample_steps_ = trace_.curves.front().step;
@@ -158,14 +187,6 @@ void Loop::resume() {
       trace_.curves[k].name = fresh[k].name, trace_.curves[k].unit = fresh[k].unit;
     meter_.restore(head.probes, trace_.curves);
   }
-  check_alike(from);
-  trace_.seconds = head.seconds;
-  result_.largest_speed = head.largest_speed;
-  result_.resumed_at = saved_step_ = head.step;
-  earlier_ = head.counters;
-  saved_ = true;
-  make_engine(&from);
-  if (timing_) timing_->resume(head.timing);
 }
 
 // A state is made only where a frame or a sample asks for one.
@@ -179,6 +200,7 @@ void Loop::record() {
   const bool measured = among(request_.probes, step), kept = among(request_.frames, step);
   if (!measured && !kept) return;
   State state = engine_->state();
+  if (!leads()) return;
   if (measured) {
     measure(state);
     if (journal_) {
@@ -219,7 +241,19 @@ bool Loop::save_is_due() const {
                       (save_plan_.every_seconds > 0 && since(saved_time_) >= save_plan_.every_seconds));
 }
 
+std::pair<bool, bool> Loop::agreed(bool stop, bool save) const {
+  if (!ranks_) return {stop, save};
+  std::array<uint8_t, 2> asked{stop, save};
+  ranks_->any(asked);
+  return {asked[0] != 0, asked[1] != 0};
+}
+
 void Loop::save() {
+  saved_ = true;
+  if (!leads()) {
+    engine_->for_each_slot([](const Particle&) {});  // they are gathered where they are written
+    return;
+  }
   CheckpointHead head;
   head.plan_hash = plan_.hash;
   head.step = engine_->step_count();
@@ -239,7 +273,6 @@ void Loop::save() {
   if (timing_) head.timing = timing_->starts();
   head.journal = journal_->sync();
   write_checkpoint(save_plan_.path, head, *engine_, displaced_);
-  saved_ = true;
   saved_step_ = head.step;
   saved_time_ = Clock::now();
 }
@@ -260,9 +293,9 @@ void Loop::finish() {
   if (trace_.state_hash.empty()) return;  // not even the initial state could be held
   const uint64_t last = step_count();
   if (journal_) trace_.frames = journal_->frames();
-  const bool has_frame = !trace_.frames.empty() && trace_.frames.back().step == last;
+  const bool has_frame = among(request_.frames, last);
   const bool frame = !request_.frames.empty() && !has_frame;
-  const bool sample = request_.energies && (sample_steps_.empty() || sample_steps_.back() != last);
+  const bool sample = request_.energies && !among(request_.probes, last);
   const bool hash = last % request_.hash_every != 0;
   const bool lost = trace_.stop.has_value();
   if (lost && (sample || hash || !has_frame)) go_back_to(last);
@@ -270,10 +303,11 @@ void Loop::finish() {
   if (frame || sample) {
     State state = engine_->state();
     result_.largest_speed = std::max(result_.largest_speed, largest_speed(plan_.rule, state));
-    if (sample) measure(state);
+    if (sample && leads()) measure(state);
     if (frame) trace_.frames.push_back(std::move(state));
   }
-  result_.momentum_after = lost && has_frame ? momentum(trace_.frames.back()) : engine_->momentum();
+  const bool kept = lost && !sample && !hash && has_frame;  // the engine's state is still lost
+  result_.momentum_after = kept ? momentum(trace_.frames.back()) : engine_->momentum();
   trace_.curves = meter_.curves();
   if (timing_ && !lost) {
     engine_->slots(slots_);
@@ -282,6 +316,8 @@ void Loop::finish() {
 }
 
 LatticeResult Loop::run() {
+  if (request_.cycles && ranks_ && ranks_->size() > 1)
+    throw InputError("--cycles: the timing model runs on one rank alone");
   if (request_.cycles) {
     timing_.emplace(plan_, request_.engine.threads);
     spans_.resize(trace_.nodes * kPhases);
@@ -296,15 +332,17 @@ LatticeResult Loop::run() {
       start();
     threads = engine_->threads();
     Progress progress("lattice", request_.steps, plan_.particles, step_count(), request_.progress);
-    while (step_count() < request_.steps && !interrupted()) {
+    for (bool stop = agreed(interrupted(), false).first; step_count() < request_.steps && !stop;) {
       step();
       record();
-      progress.at(step_count());
-      if (save_is_due() && step_count() < request_.steps) save();
+      if (leads()) progress.at(step_count());
+      bool due = false;
+      std::tie(stop, due) = agreed(interrupted(), save_is_due());
+      if (due && !stop && step_count() < request_.steps) save();
     }
     counters = engine_->counters();
     result_.interrupted = step_count() < request_.steps;
-    if (result_.interrupted && journal_) save();
+    if (result_.interrupted && !save_plan_.path.empty()) save();
   } catch (const RunError& error) {
     trace_.stop = StopReason{error.fault, error.step, error.node, error.particle, error.number, error.what()};
     if (engine_) counters = engine_->counters();

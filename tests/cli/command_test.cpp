@@ -65,10 +65,9 @@ TEST(Command, RefusesOptionsOfAnotherEngine) {
                  "--checkpoint-every needs --out DIR, where the checkpoint lies\n");
 }
 
-TEST(Command, RefusesRanksThatThisBuildCannotStart) {
+TEST(Command, RefusesRanksThatItCannotStart) {
   expect_refusal({"run", "scenes/lj_block.toml", "--ranks", "2"},
-                 "--ranks 2: the lattice engine was built without MPI\n"
-                 "  hint: --threads uses the cores of this machine\n");
+                 "--ranks 2: no program cuboct-lattice beside cuboct\n");
 }
 
 TEST(Command, NamesAFileThatIsNotThere) {
