@@ -44,10 +44,6 @@ void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& s
           if (i != j) visit(i, j, x);
       }
   }
-  cut.push_back(lattice.size());
-  std::vector<std::jthread> others;
-  for (size_t t = 1; t < shares; ++t) others.emplace_back(work, cut[t], cut[t + 1]);
-  work(cut[0], cut[1]);
 }
 
 constexpr size_t kNodesWorthAThread = 1000;
@@ -241,6 +237,12 @@ void ProbeMeter::add(const Sample& sample) {
       }
     }
   }
+}
+
+void ProbeMeter::restore(Memory memory, std::vector<Curve> curves) {
+  latest_ = std::move(memory.latest);
+  moved_ = std::move(memory.moved);
+  curves_ = std::move(curves);
 }
 
 ProbeMeter::Followed ProbeMeter::follow(const ParticleSet& set) const {
