@@ -44,14 +44,25 @@ template <bool kSimple>
 HWY_INLINE V table_value(const KernelTable& table, V r2) {
   constexpr U u;
   const auto two52 = hn::Set(u, uint64_t{0x4330000000000000});
+  constexpr I i;
+  if (kSimple) {  // uniform, degree 1, narrow
+    const auto bits = hn::BitCast(u, hn::Add(r2, hn::BitCast(d, two52)));
+    const auto index = hn::And(hn::ShiftRightSame(bits, table.index_shift), hn::Set(u, table.index_mask));
+    const auto word = hn::GatherIndex(u, table.words.data(), hn::BitCast(i, index));
+    const V t = hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(u, table.t_mask)), two52));
+    const V factor = hn::Set(d, table.narrow_t_factor);
+    const V scaled_t = hn::MulSub(t, factor, hn::Set(d, table.narrow_t_factor * 0x1p52));
+    const auto low = hn::Set(u, table.low_mask);
+    const V c0 = hn::BitCast(d, hn::Or(hn::And(word, low), hn::BitCast(u, magic())));
+    return hn::MulAdd(hn::BitCast(d, hn::AndNot(low, word)), scaled_t, c0);
+  }
   hn::Vec<U> bits, index;
   V t;
-  if (kSimple || !table.octaves) {
+  if (!table.octaves) {
     bits = hn::BitCast(u, hn::Add(r2, hn::BitCast(d, two52)));
     index = hn::And(hn::ShiftRightSame(bits, table.index_shift), hn::Set(u, table.index_mask));
     t = hn::Sub(hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(u, table.t_mask)), two52)), hn::BitCast(d, two52));
   } else {
-    constexpr I i;
     bits = hn::BitCast(u, r2);
     const auto place = hn::Sub(hn::BitCast(i, hn::ShiftRightSame(bits, table.index_shift)),
                                hn::Set(i, table.index_base));
@@ -60,12 +71,11 @@ HWY_INLINE V table_value(const KernelTable& table, V r2) {
     t = hn::Sub(hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(u, table.t_mask)), two52)), hn::BitCast(d, two52));
     t = hn::IfThenElseZero(hn::RebindMask(d, inside), t);
   }
-  constexpr I i;
   const auto word = hn::GatherIndex(u, table.words.data(), hn::BitCast(i, index));
   const auto low = hn::Set(u, table.low_mask);
   const V c0 = hn::BitCast(d, hn::Or(hn::And(word, low), hn::BitCast(u, magic())));
   V slope = hn::BitCast(d, hn::AndNot(low, word));
-  if (!kSimple && table.degree == 2)
+  if (table.degree == 2)
     slope = hn::Add(slope, rounded(hn::Mul(hn::GatherIndex(d, table.c2.data(), hn::BitCast(i, index)), t),
                                    table.t_factor));
   return hn::MulAdd(hn::Mul(slope, t), hn::Set(d, table.t_factor), c0);
@@ -75,13 +85,12 @@ struct Own {
   V x[3], v[3];
 };
 
-// One entry, or the part of it at lanes `at` on: s * d of each axis, zero where there is no pair. Returns whether
-// there is one.
+// One entry, or the part of it at lanes `at` on: s, zero where there is no pair, and d. Their product times
+// `factor` is the kick, once rounded. Returns whether there is a pair.
 template <bool kSimple, bool kDamped, bool kScaled>
 HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, const Own& own, uint32_t i,
-                           const Entry& entry, uint32_t at, V kick[3], uint32_t& doubtful) {
+                           const Entry& entry, uint32_t at, V& s, V dx[3], uint32_t& doubtful) {
   const ptrdiff_t j = static_cast<ptrdiff_t>(entry.first) + at;
-  V dx[3];
   for (int a = 0; a < 3; ++a) {
     V x = hn::Sub(hn::LoadU(d, particles.x[a].data() + j), own.x[a]);
     if (HWY_UNLIKELY(entry.shift != kNoShift)) x = hn::Add(x, hn::Set(d, particles.shift[entry.shift][a]));
@@ -90,7 +99,7 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
   const V r2 = hn::MulAdd(dx[2], dx[2], hn::MulAdd(dx[1], dx[1], hn::Mul(dx[0], dx[0])));
   const M near = hn::And(lane_mask(entry.lanes >> at), hn::Lt(r2, hn::Set(d, rule.cutoff2)));
   if (HWY_UNLIKELY(hn::AllFalse(d, near))) return false;
-  V s = hn::Sub(table_value<kSimple>(rule.force, r2), hn::Set(d, rule.force.bias));
+  s = hn::Sub(table_value<kSimple>(rule.force, r2), hn::Set(d, rule.force.bias));
   if (kDamped) {
     V wd = hn::Zero(d), most = hn::Zero(d);
     for (int a = 0; a < 3; ++a) {
@@ -112,8 +121,15 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
     s = rounded(hn::Mul(s, hn::LoadU(d, factor)), rule.scale_factor);
   }
   s = hn::IfThenElseZero(near, s);
-  for (int a = 0; a < 3; ++a) kick[a] = hn::Mul(s, dx[a]);
   return true;
+}
+
+// s * dx * factor comes out of one fma: what to multiply with what.
+template <bool kSimple>
+HWY_INLINE V kick_factor(const KernelRule& rule, V& s, V dx[3]) {
+  if (kSimple) return hn::Mul(s, hn::Set(d, rule.narrow_kick_factor));
+  for (int a = 0; a < 3; ++a) dx[a] = hn::Mul(s, dx[a]);
+  return hn::Set(d, rule.kick_factor);
 }
 
 HWY_INLINE uint32_t awake_lanes(const uint8_t* node_flag, const Particles& particles, uint32_t g) {
@@ -190,11 +206,12 @@ void across(const KernelRule& rule, const Particles& particles, const Active& ac
       for (uint32_t e = group.begin; e < group.begin + group.near; ++e) {
         const Entry& entry = edge.pairs.entries[e];
         uint32_t doubtful = 0;
-        V kick[3];
-        if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, entry, at, kick, doubtful)) continue;
+        V s, dx[3];
+        if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, entry, at, s, dx, doubtful)) continue;
         if (HWY_UNLIKELY(doubtful != 0))
           report(rule, particles, i, entry.first + static_cast<int32_t>(at), entry.shift, doubtful, false, block);
-        for (int a = 0; a < 3; ++a) sum[a] = hn::NegMulAdd(kick[a], hn::Set(d, rule.kick_factor), sum[a]);
+        const V factor = kick_factor<kSimple>(rule, s, dx);
+        for (int a = 0; a < 3; ++a) sum[a] = hn::NegMulAdd(dx[a], factor, sum[a]);
       }
       for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, &edge.sum[(k * 3 + a) * kGroup + at]);
     }
@@ -304,16 +321,16 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
               !any_flag(active.awake, particles, (static_cast<uint32_t>(e->first) + kGroup - 1) / kGroup))
             continue;
           uint32_t doubtful = 0;
-          V kick[3];
-          if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, kick, doubtful)) continue;
+          V s, dx[3];
+          if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, s, dx, doubtful)) continue;
           if (HWY_UNLIKELY(doubtful != 0))
             report(rule, particles, i, e->first + static_cast<int32_t>(at), e->shift, doubtful, true, block);
           written = std::max(written, static_cast<uint32_t>(e->first) + kGroup);
           const uint32_t to = ((static_cast<uint32_t>(e->first) - block.begin) & block.ring_mask) + at;
-          const V factor = hn::Set(d, rule.kick_factor);
+          const V factor = kick_factor<kSimple>(rule, s, dx);
           for (int a = 0; a < 3; ++a) {
-            sum[a] = hn::NegMulAdd(kick[a], factor, sum[a]);
-            hn::StoreU(hn::MulAdd(kick[a], factor, hn::LoadU(d, ring[a] + to)), d, ring[a] + to);
+            sum[a] = hn::NegMulAdd(dx[a], factor, sum[a]);
+            hn::StoreU(hn::MulAdd(dx[a], factor, hn::LoadU(d, ring[a] + to)), d, ring[a] + to);
           }
         }
       }
@@ -355,7 +372,7 @@ Kernels kernels_for(const KernelRule& rule, const char* name) {
 void vector_kernels(const KernelRule& rule, std::vector<Kernels>& out) {
 #if HWY_NATIVE_FMA
   const auto uniform1 = [](const KernelTable& t) { return !t.octaves && t.degree == 1; };
-  const bool simple = uniform1(rule.force) && (!rule.damped || uniform1(rule.damp));
+  const bool simple = rule.narrow && uniform1(rule.force) && (!rule.damped || uniform1(rule.damp));
   const char* name = kLanes == 8 ? "avx512" : kLanes == 4 ? "avx2" : "128-bit";
   out.push_back(simple ? kernels_for<true>(rule, name) : kernels_for<false>(rule, name));
 #else

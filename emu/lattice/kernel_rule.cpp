@@ -31,12 +31,15 @@ KernelTable kernel_table(const FixedTable& table, int strength_bits) {
   const int below_t = k.index_shift - table.fraction_bits;
   k.t_mask = ((uint64_t{1} << table.fraction_bits) - 1) << below_t;
   k.t_factor = std::ldexp(rounding_factor(table.fraction_bits), -below_t);
+  k.narrow_t_factor = std::ldexp(rounding_factor(table.fraction_bits, strength_bits + table.fraction_bits), -below_t);
   return k;
 }
 
 }  // namespace
 
-double rounding_factor(int shift) { return shift == 0 ? 1.0 : std::ldexp(1.0 + std::ldexp(1.0, -52), -shift); }
+double rounding_factor(int shift, int e) {
+  return shift == 0 ? 1.0 : std::ldexp(1.0 + std::ldexp(1.0, -e), -shift);
+}
 
 KernelRule kernel_rule(const FixedRule& rule, int capacity) {
   const Widths& w = rule.widths;
@@ -48,6 +51,7 @@ KernelRule kernel_rule(const FixedRule& rule, int capacity) {
   k.cutoff2 = static_cast<double>(rule.cutoff2);
   k.force = kernel_table(rule.force, w.strength_bits);
   k.kick_factor = rounding_factor(rule.kick_shift);
+  k.narrow_kick_factor = rounding_factor(rule.kick_shift, w.strength_bits + w.difference_frac);
   k.damped = rule.damped;
   if (rule.damped) {
     k.damp = kernel_table(rule.damp, w.strength_bits);
@@ -73,6 +77,8 @@ KernelRule kernel_rule(const FixedRule& rule, int capacity) {
   const int D = w.difference_frac, S = w.strength_bits - 1;
   const int partners = static_cast<int>(std::bit_width(static_cast<unsigned>(27 * capacity)));
   const int T = std::max(rule.force.fraction_bits, rule.damped ? rule.damp.fraction_bits : 0);
+  // Bits of s (of t) and of the factor: 1 + 2^-(S + 1 + D), 1 + 2^-(S + 1 + T).
+  k.narrow = S + (S + 1 + D) <= 53 && T + (S + 1 + T) <= 53;
   k.fits = 2 * D + 4 <= 52 && S + 1 + T + 1 <= kExact && S + D <= kExact &&
            S + D - rule.kick_shift + partners < kExact && w.velocity_bits <= kExact && S + 1 + 18 <= kExact &&
            2 * (w.strength_bits) + 10 <= 64;

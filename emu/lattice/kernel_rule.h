@@ -21,8 +21,8 @@ namespace cuboct::emu {
 
 inline constexpr double kMagic = 6755399441055744.0;  // 1.5 * 2^52
 
-// 2^-shift (1 + 2^-52), or 1 where nothing is rounded.
-double rounding_factor(int shift);
+// 2^-shift (1 + 2^-e), or 1 where nothing is rounded: for |a| < 2^e.
+double rounding_factor(int shift, int e = 52);
 
 // A FixedTable whose c0 and c1 come with one gather: the upper bits of a word are c1 as a double (whose
 // mantissa ends early, as c1 has few bits), the lower `low_bits` are c0 + 2^(low_bits - 1).
@@ -40,6 +40,8 @@ struct KernelTable {
   int64_t index_base = 0;
   uint64_t t_mask = 0;
   double t_factor = 1;  // rounding_factor of a product with t, over 2^k
+  // The same for narrow widths: t_factor * t is exact, and so is this times 2^52.
+  double narrow_t_factor = 1;
 };
 
 struct KernelRule {
@@ -51,6 +53,10 @@ struct KernelRule {
   double cutoff2 = 0;
   KernelTable force;
   double kick_factor = 0;
+  // Widths so narrow that a rounding factor can be multiplied into s, and into t, exactly: one multiplication less for
+  // each product.
+  bool narrow = false;
+  double narrow_kick_factor = 0;
   bool damped = false;
   KernelTable damp;
   double w_factor = 0, q_factor = 0, damp_factor = 0;
