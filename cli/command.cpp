@@ -40,4 +40,10 @@ Loaded load(const Input& input) {
   return loaded;
 }
 
+Loaded load_plan(const Input& input) {
+  Loaded loaded{read_scene(input.scene), {}};
+  loaded.setup.plan = plan_of(loaded.scene, read_arch(input.arch));
+  return loaded;
+}
+
 }  // namespace cuboct

@@ -14,6 +14,7 @@ void add_check(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_crosscheck(CLI::App& app, int& exit_code);
 void add_emit(CLI::App& app, int& exit_code);
+void add_bench(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
 
 // What every command that reads a scene takes.
@@ -36,5 +37,8 @@ struct Loaded {
   Setup setup;
 };
 Loaded load(const Input& input);
+// The same without `setup.initial`: for engines that take their particles one by one, and scenes of which a second
+// copy would not fit.
+Loaded load_plan(const Input& input);
 
 }  // namespace cuboct

@@ -8,8 +8,9 @@
 
 #include "cli/command.h"
 #include "cli/engines.h"
-#include "cli/interrupt.h"
+#include "model/interrupt.h"
 #include "cli/launch.h"
+#include "cli/run_lattice.h"
 
 #include "model/compare.h"
 #include "model/output.h"
@@ -19,22 +20,37 @@ namespace {
 
 struct Options {
   Input input;
-  std::vector<std::string> engines{"golden", "systemc", "rtl"};
+  std::vector<std::string> engines{"golden", "lattice", "systemc", "rtl"};
+  LatticeChoice lattice;
   std::string out;
   uint64_t steps = 0;
   bool steps_given = false;
 };
 
-// Programs run beside golden, which runs here.
-std::vector<Trace> run_all(const std::vector<std::string>& engines, const Input& input, const Setup& setup,
-                           const Request& request, const std::string& directory) {
+bool runs_here(const std::string& engine) { return engine == "golden" || engine == "lattice"; }
+
+// Programs run beside golden and lattice, which run here. Lattice counts cycles where another engine does, but
+// for links that stall.
+std::vector<Trace> run_all(const std::vector<std::string>& engines, const Options& options,
+                           const Loaded& loaded, const Request& request, const std::string& directory) {
+  const Input& input = options.input;
+  const Setup& setup = loaded.setup;
   std::vector<std::optional<RunningEngine>> programs(engines.size());
   for (size_t i = 0; i < engines.size(); ++i)
-    if (engines[i] != "golden")
+    if (!runs_here(engines[i]))
       programs[i].emplace(engines[i], input, request, directory + "/" + engines[i] + ".h5", false);
   std::vector<Trace> traces(engines.size());
   for (size_t i = 0; i < engines.size(); ++i)
     if (engines[i] == "golden") traces[i] = run_golden(setup, request);
+  for (size_t i = 0; i < engines.size(); ++i) {
+    if (engines[i] != "lattice") continue;
+    emu::LatticeRun run;
+    run.steps = request.steps;
+    run.frames = request.frames;
+    run.cycles = input.stall_rate == 0 && options.lattice.ranks == 1 &&
+                 !std::all_of(engines.begin(), engines.end(), runs_here);
+    traces[i] = run_on_lattice(input, loaded.scene, setup.plan, options.lattice, std::move(run)).trace;
+  }
   for (size_t i = 0; i < engines.size(); ++i)
     if (programs[i]) traces[i] = programs[i]->finish();
   return traces;
@@ -42,12 +58,13 @@ std::vector<Trace> run_all(const std::vector<std::string>& engines, const Input&
 
 // The particle and field behind two hashes that differ: both engines again, up to that step, with the states
 // before and after it.
-std::string explain(const Options& options, const Setup& setup, const std::string& engine_a,
+std::string explain(const Options& options, const Loaded& loaded, const std::string& engine_a,
                     const std::string& engine_b, uint64_t step, const std::string& directory) {
+  const Setup& setup = loaded.setup;
   Request request{step, {}};
   if (step > 0) request.frames.push_back(step - 1);
   request.frames.push_back(step);
-  const std::vector<Trace> again = run_all({engine_a, engine_b}, options.input, setup, request, directory);
+  const std::vector<Trace> again = run_all({engine_a, engine_b}, options, loaded, request, directory);
   for (const uint64_t at : request.frames) {
     const State *a = frame_at(again[0], at), *b = frame_at(again[1], at);
     if (!a || !b) return fmt::format("{} recorded no state of step {}", a ? engine_b : engine_a, at);
@@ -63,13 +80,13 @@ int crosscheck(Options options) {
   for (const std::string& engine : options.engines) {
     if (engine == "reference")
       throw InputError("engine 'reference' computes in doubles and has no bits to compare",
-                       "one of golden, systemc or rtl");
+                       "one of golden, lattice, systemc or rtl");
     check_engine(engine, fixed_engines());
   }
   std::vector<std::string> sorted = options.engines;
   std::sort(sorted.begin(), sorted.end());
   if (std::unique(sorted.begin(), sorted.end()) != sorted.end() || sorted.size() < 2)
-    throw InputError("a crosscheck needs two or more different engines", "--engines golden,systemc,rtl");
+    throw InputError("a crosscheck needs two or more different engines", "--engines golden,lattice,systemc,rtl");
   const Loaded loaded = load(options.input);
   catch_interrupts();
   const Setup& setup = loaded.setup;
@@ -83,10 +100,10 @@ int crosscheck(Options options) {
   }
 
   const uint64_t steps = options.steps_given ? options.steps : loaded.scene.steps;
-  const std::vector<Trace> traces = run_all(options.engines, options.input, setup, {steps, {}}, directory);
+  const std::vector<Trace> traces = run_all(options.engines, options, loaded, {steps, {}}, directory);
   for (size_t i = 0; i < traces.size(); ++i)
-    if (!options.out.empty() && options.engines[i] == "golden")
-      write_trace(options.out + "/golden.h5", traces[i]);
+    if (!options.out.empty() && runs_here(options.engines[i]))
+      write_trace(options.out + "/" + options.engines[i] + ".h5", traces[i]);
   if (interrupted()) {
     fmt::print(stderr, "interrupted\n");
     return 1;
@@ -110,7 +127,7 @@ int crosscheck(Options options) {
       fmt::print("mismatch: {}\n", mismatch->text(options.engines[a], options.engines[b], plan.lattice));
       if (mismatch->kind == Mismatch::Kind::state) {
         const Scratch second;
-        fmt::print("first difference: {}\n", explain(options, setup, options.engines[a], options.engines[b],
+        fmt::print("first difference: {}\n", explain(options, loaded, options.engines[a], options.engines[b],
                                                      mismatch->step, second.path("")));
       }
       if (mismatch->kind == Mismatch::Kind::length || mismatch->kind == Mismatch::Kind::stop)
@@ -137,7 +154,8 @@ void add_crosscheck(CLI::App& app, int& exit_code) {
       app.add_subcommand("crosscheck", "run a scene in several engines and compare every bit");
   options->input.add_to(*command);
   options->input.add_stalls_to(*command);
-  command->add_option("--engines", options->engines, "which ones; default: golden,systemc,rtl")
+  options->lattice.add_to(*command);
+  command->add_option("--engines", options->engines, "which ones; default: golden,lattice,systemc,rtl")
       ->delimiter(',')
       ->type_name("A,B,...");
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")

@@ -11,15 +11,15 @@
 #include <cstring>
 #include <filesystem>
 
-#include "cli/interrupt.h"
 #include "cli/launch.h"
-#include "cli/progress.h"
+#include "model/output.h"
+#include "model/progress.h"
 #include "model/spelling.h"
 
 namespace cuboct {
 
 const std::vector<std::string>& fixed_engines() {
-  static const std::vector<std::string> names{"golden", "systemc", "rtl"};
+  static const std::vector<std::string> names{"golden", "lattice", "systemc", "rtl"};
   return names;
 }
 
@@ -46,8 +46,14 @@ RunningEngine::RunningEngine(const std::string& engine, const Input& input, cons
                             : "install verilator and libsystemc-dev and build again");
   std::vector<std::string> arguments{input.scene, "--steps", std::to_string(request.steps), "--out", path};
   if (!input.arch.empty()) arguments.insert(arguments.end(), {"--arch", input.arch});
-  if (!request.frames.empty())
+  // A few on the command line, where they can be read; it holds no more than some ten thousand.
+  constexpr size_t kListed = 1000;
+  if (request.frames.size() > kListed) {
+    write_text(path + ".steps", fmt::format("{}\n", fmt::join(request.frames, "\n")));
+    arguments.insert(arguments.end(), {"--frames-file", path + ".steps"});
+  } else if (!request.frames.empty()) {
     arguments.insert(arguments.end(), {"--frames", fmt::format("{}", fmt::join(request.frames, ","))});
+  }
   if (input.stall_rate > 0)
     arguments.insert(arguments.end(), {"--stall-rate", fmt::format("{}", input.stall_rate), "--stall-seed",
                                        std::to_string(input.stall_seed)});
@@ -58,6 +64,7 @@ RunningEngine::RunningEngine(const std::string& engine, const Input& input, cons
 
 Trace RunningEngine::finish() {
   const int code = state_->process.wait();
+  std::filesystem::remove(state_->path + ".steps");
   const std::string name = std::filesystem::path(state_->program).filename().string();
   if (code == 2) throw AlreadyTold(2);
   // Exit code 1 with a trace: the run had to stop, and the trace says why.

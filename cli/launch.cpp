@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "cli/interrupt.h"
+#include "model/interrupt.h"
 #include "model/error.h"
 
 extern char** environ;
@@ -24,14 +24,19 @@ std::string program_directory() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
 }
 
-Process::Process(const std::string& program, const std::vector<std::string>& arguments) : pid_(-1) {
+Process::Process(const std::string& program, const std::vector<std::string>& arguments, bool apart)
+    : pid_(-1), passed_on_(apart ? SIGUSR1 : SIGTERM) {
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  const int error = posix_spawnp(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  if (apart) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  const int error = posix_spawnp(&pid_, program.c_str(), &actions, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
     pid_ = -1;
@@ -46,7 +51,7 @@ Process::~Process() {
   }
 }
 
-Process::Process(Process&& other) noexcept : pid_(std::exchange(other.pid_, -1)) {}
+Process::Process(Process&& other) noexcept : pid_(std::exchange(other.pid_, -1)), passed_on_(other.passed_on_) {}
 
 int Process::wait() {
   bool passed_on = false;
@@ -54,7 +59,7 @@ int Process::wait() {
   while (waitpid(pid_, &status, 0) < 0) {
     if (errno != EINTR) throw std::runtime_error(fmt::format("waitpid: {}", std::strerror(errno)));
     // A terminal sends Ctrl-C to the engine as well; a `kill` meets us alone.
-    if (interrupted() && !std::exchange(passed_on, true)) kill(pid_, SIGTERM);
+    if (interrupted() && !std::exchange(passed_on, true)) kill(pid_, passed_on_);
   }
   pid_ = -1;
   return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "model/measure.h"
 #include "model/output.h"
 
 namespace cuboct {
@@ -40,7 +41,12 @@ std::vector<Frame> real_frames(const Loaded& loaded, const std::vector<State>& s
   const Plan& plan = loaded.setup.plan;
   const auto real = [&](const State& state) { return to_real(state, plan.rule, plan.lattice, plan.origin); };
   const Scene& scene = loaded.scene;
-  const std::vector<Vec3> initial = real(loaded.setup.initial).x;
+  std::vector<Vec3> initial;  // without a State: see load_plan
+  initial.reserve(scene.body.size());
+  for (uint32_t id = 0; id < scene.body.size(); ++id)
+    initial.push_back(
+        position_of(plan.rule, plan.lattice, plan.origin,
+                    fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin)));
   const StrainMeter meter = strain_meter(scene, initial);
   const int axis = strain_axis(scene);
   std::vector<Frame> frames;

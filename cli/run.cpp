@@ -6,7 +6,8 @@
 
 #include "cli/command.h"
 #include "cli/engines.h"
-#include "cli/interrupt.h"
+#include "cli/run_lattice.h"
+#include "model/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/run_reference.h"
 #include "cli/summary.h"
@@ -17,7 +18,8 @@ namespace {
 
 struct Options {
   Input input;
-  std::string engine = "golden";
+  std::string engine = "lattice";
+  LatticeChoice lattice;
   std::string out;
   uint64_t steps = 0;
   uint64_t frames_every = 0;
@@ -36,11 +38,30 @@ void write_outputs(const Options& options, const Loaded& loaded, const Trace& tr
   write_record(out, {options.input.scene, options.input.arch, options.engine});
 }
 
+// A run of the lattice engine measures itself: the states in between stay where they are.
+RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::LatticeRun request, Trace& trace) {
+  if (options.out.empty() && options.lattice.keeps_checkpoints())
+    throw InputError(fmt::format("{} needs --out DIR, where the checkpoint lies",
+                                 options.lattice.resume ? "--resume" : "--checkpoint-every"));
+  if (options.out.empty()) request.frames.clear();
+  if (options.lattice.keeps_checkpoints())
+    request.checkpoint.path = options.out + "/checkpoint";
+  request.energies = true;
+  request.cycles = options.lattice.cycles;
+  request.hash_every = options.lattice.hash_every;
+  emu::LatticeResult result =
+      run_on_lattice(options.input, loaded.scene, loaded.setup.plan, options.lattice, std::move(request));
+  trace = std::move(result.trace);
+  return {result.momentum_before, result.momentum_after, result.largest_speed, trace.curves};
+}
+
 int run(Options options) {
   std::vector<std::string> allowed = fixed_engines();
   allowed.push_back("reference");
   check_engine(options.engine, allowed);
-  const Loaded loaded = load(options.input);
+  const bool lattice = options.engine == "lattice";
+  if (!lattice) options.lattice.check_unused(options.engine);
+  const Loaded loaded = lattice ? load_plan(options.input) : load(options.input);
   catch_interrupts();
   if (!options.out.empty()) prepare_directory(options.out);
   const Scene& scene = loaded.scene;
@@ -57,6 +78,14 @@ int run(Options options) {
     trace = std::move(reference.trace);
     frames = std::move(reference.frames);
     summary = std::move(reference.summary);
+  } else if (lattice) {
+    emu::LatticeRun request;
+    request.steps = steps;
+    request.frames = frame_steps;
+    request.probes = probe_steps;
+    const RunFacts facts = run_by_lattice(options, loaded, std::move(request), trace);
+    summary = summarise(loaded, trace, facts);
+    if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   } else {
     // Engines know nothing of probes: they record states, and one meter reads them.
     Request request{steps, {}};
@@ -66,18 +95,23 @@ int run(Options options) {
     RunMeter meter(loaded, probe_steps);
     trace = run_fixed(options.engine, options.input, loaded.setup, request,
                       [&](const State& state) { meter.see(state); });
-    meter.finish();
-    trace.curves = meter.curves();
+    const RunFacts facts = meter.finish();
+    trace.curves = facts.curves;
     std::erase_if(trace.frames, [&](const State& frame) {
       return frame.step != trace.steps() &&
              !std::binary_search(frame_steps.begin(), frame_steps.end(), frame.step);
     });
-    summary = summarise(loaded, trace, meter);
+    summary = summarise(loaded, trace, facts);
     if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   }
   if (!options.out.empty()) write_outputs(options, loaded, trace, frames, summary);
   fmt::print("{}", options.json ? summary.json() : summary.text());
-  if (interrupted()) fmt::print(stderr, "interrupted\n");
+  const bool kept = options.lattice.keeps_checkpoints();
+  if (interrupted())
+    fmt::print(stderr, "interrupted{}\n",
+               kept ? fmt::format("; the same command with --resume goes on at step {}", trace.steps()) : "");
+  else if (kept)
+    emu::remove_checkpoint(options.out + "/checkpoint");
   return trace.stop || interrupted() ? 1 : 0;
 }
 
@@ -88,7 +122,7 @@ void add_run(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "run a scene and end with a summary");
   options->input.add_to(*command);
   options->input.add_stalls_to(*command);
-  command->add_option("--engine", options->engine, "golden, systemc, rtl or reference (doubles)")
+  command->add_option("--engine", options->engine, "lattice, golden, systemc, rtl or reference (doubles)")
       ->capture_default_str();
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
                     ->check(whole_number())
@@ -98,6 +132,18 @@ void add_run(CLI::App& app, int& exit_code) {
                                   "keep every K-th state; default: the scene's; 0: first and last")
                      ->check(whole_number())
                      ->type_name("K");
+  LatticeChoice& lattice = options->lattice;
+  lattice.add_to(*command);
+  command->add_option("--hash-every", lattice.hash_every, "steps between two hashes of lattice's state")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))
+      ->capture_default_str()
+      ->type_name("K");
+  command->add_flag("--cycles", lattice.cycles, "count the machine's cycles in lattice");
+  command
+      ->add_option("--checkpoint-every", lattice.checkpoint_every,
+                   "'1000 steps', '30 s', '5 min' or '2 h': how often lattice leaves a checkpoint in DIR")
+      ->type_name("T");
+  command->add_flag("--resume", lattice.resume, "go on from the checkpoint in DIR");
   command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
       ->type_name("DIR");
   command->add_flag("--json", options->json, "print the summary as JSON");

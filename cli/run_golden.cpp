@@ -3,8 +3,8 @@
 #include <chrono>
 
 #include "cli/engines.h"
-#include "cli/interrupt.h"
-#include "cli/progress.h"
+#include "model/interrupt.h"
+#include "model/progress.h"
 #include "model/golden.h"
 
 namespace cuboct {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "cli/interrupt.h"
+#include "model/interrupt.h"
 #include "cli/outputs.h"
-#include "cli/progress.h"
+#include "model/progress.h"
 #include "model/measure.h"
 #include "model/reference.h"
 #include "model/strain.h"

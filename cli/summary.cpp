@@ -7,14 +7,6 @@
 #include <cmath>
 
 namespace cuboct {
-namespace {
-
-std::vector<Vec3> positions(const Setup& setup) {
-  return to_real(setup.initial, setup.plan.rule, setup.plan.lattice, setup.plan.origin).x;
-}
-
-}  // namespace
-
 std::vector<uint64_t> every_so_often(uint64_t every, uint64_t last) {
   constexpr uint64_t kMost = 10'000'000;  // states; memory goes first
   if (every > 0 && last / every > kMost)
@@ -29,42 +21,25 @@ std::vector<uint64_t> every_so_often(uint64_t every, uint64_t last) {
 RunMeter::RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps)
     : loaded_(loaded),
       probe_steps_(probe_steps.begin(), probe_steps.end()),
-      probes_(loaded.scene.probes, loaded.scene.periodic, positions(loaded.setup)) {
-  for (const char* part : {"kinetic", "potential", "gravity", "total"})
-    energy_.push_back({std::string("energy.") + part, "J", {}, {}});
-}
+      meter_(
+          loaded.scene, loaded.setup.plan.rule, loaded.setup.plan.lattice, loaded.setup.plan.origin,
+          [&](uint32_t id) { return loaded.setup.initial.particles[id]; }, true) {}
 
 void RunMeter::see(const State& state) {
-  if (!any_) first_ = state;
+  if (!any_) facts_.momentum_before = momentum(state);
   any_ = true;
   last_ = state;
-  const Plan& plan = loaded_.setup.plan;
-  largest_speed_ = std::max(largest_speed_, cuboct::largest_speed(plan.rule, state));
+  facts_.largest_speed =
+      std::max(facts_.largest_speed, cuboct::largest_speed(loaded_.setup.plan.rule, state));
   measured_ = probe_steps_.contains(state.step);
-  if (measured_) measure(state);
+  if (measured_) meter_.add(state);
 }
 
-void RunMeter::finish() {
-  if (any_ && !measured_) measure(last_);
-  measured_ = true;
-}
-
-void RunMeter::measure(const State& state) {
-  const Plan& plan = loaded_.setup.plan;
-  const std::vector<Int3> kicks = summed_kicks(plan.rule, plan.lattice, state);
-  probes_.add(sample_of(plan.rule, plan.lattice, plan.origin, state, kicks));
-  const Energies e = energies(loaded_.scene.rule, plan.rule, plan.lattice, plan.origin, state, kicks);
-  const double values[] = {e.kinetic, e.potential, e.gravity, e.total()};
-  for (size_t i = 0; i < energy_.size(); ++i) {
-    energy_[i].step.push_back(state.step);
-    energy_[i].value.push_back(values[i]);
-  }
-}
-
-std::vector<Curve> RunMeter::curves() const {
-  std::vector<Curve> all = probes_.curves();
-  all.insert(all.end(), energy_.begin(), energy_.end());
-  return all;
+RunFacts RunMeter::finish() {
+  if (any_ && !measured_) meter_.add(last_);
+  facts_.momentum_after = momentum(last_);
+  facts_.curves = meter_.curves();
+  return facts_;
 }
 
 std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
@@ -83,7 +58,7 @@ std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
   return result;
 }
 
-Items summarise(const Loaded& loaded, const Trace& trace, const RunMeter& meter) {
+Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts) {
   const Plan& plan = loaded.setup.plan;
   Items items;
   items.add("engine", trace.engine);
@@ -97,14 +72,14 @@ Items summarise(const Loaded& loaded, const Trace& trace, const RunMeter& meter)
     items.add("speed", static_cast<double>(trace.steps() * plan.particles) / trace.seconds,
               "particle-steps/s");
 
-  const Int3 before = momentum(meter.first()), after = momentum(meter.last());
+  const Int3 &before = facts.momentum_before, &after = facts.momentum_after;
   int64_t change = 0;
   for (int axis = 0; axis < 3; ++axis)
     change = std::max<int64_t>(change, std::abs(after[axis] - before[axis]));
   items.add("momentum change", change, "LSB",
             keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside");
 
-  for (const Curve& curve : meter.curves())
+  for (const Curve& curve : facts.curves)
     if (curve.name == "energy.total" && curve.value.size() > 1) {
       const auto [low, high] = std::minmax_element(curve.value.begin(), curve.value.end());
       if (keeps_energy(loaded.scene.rule, loaded.scene.periodic))
@@ -113,7 +88,7 @@ Items summarise(const Loaded& loaded, const Trace& trace, const RunMeter& meter)
         items.add("energy change", curve.value.back() - curve.value.front(), "J", "driven or damped");
       items.add("energy", curve.value.back(), "J");
     }
-  items.add("largest speed", meter.largest_speed(), "node/step");
+  items.add("largest speed", facts.largest_speed, "node/step");
   if (const auto cycles = cycles_per_step(trace)) {
     items.add("cycles per step, mean", cycles->mean);
     items.add("cycles per step, max", cycles->max);

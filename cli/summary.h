@@ -8,13 +8,20 @@
 
 #include "cli/command.h"
 #include "cli/items.h"
-#include "model/measure.h"
+#include "model/state_meter.h"
 #include "model/trace.h"
 
 namespace cuboct {
 
 // The steps 0, every, 2 every, ... and `last`; every 0: 0 and `last` alone.
 std::vector<uint64_t> every_so_often(uint64_t every, uint64_t last);
+
+// What a summary says beyond the trace.
+struct RunFacts {
+  Int3 momentum_before{}, momentum_after{};  // P+G fractional bits
+  double largest_speed = 0;                  // nodes per step, over the states that were looked at
+  std::vector<Curve> curves;                 // energy.total among them
+};
 
 // Watches the states of a run: probe curves at the probe steps, energies there and at the last state, largest
 // speed.
@@ -23,25 +30,16 @@ class RunMeter {
   RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps);
 
   void see(const State& state);
-  // Measures the last state too, where it was no probe step.
-  void finish();
-
-  // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J.
-  std::vector<Curve> curves() const;
-  double largest_speed() const { return largest_speed_; }
-  const State& first() const { return first_; }
-  const State& last() const { return last_; }
+  // Measures the last state too, where it was no probe step. To be called once.
+  RunFacts finish();
 
  private:
-  void measure(const State& state);
-
   const Loaded& loaded_;
   std::set<uint64_t> probe_steps_;
-  ProbeMeter probes_;
-  std::vector<Curve> energy_;
-  State first_, last_;
+  StateMeter meter_;
+  State last_;
   bool any_ = false, measured_ = false;
-  double largest_speed_ = 0;
+  RunFacts facts_;
 };
 
 // Cycles that the machine takes per step: from the end of its slowest node in one step to that in the next.
@@ -51,6 +49,6 @@ struct CyclesPerStep {
 };
 std::optional<CyclesPerStep> cycles_per_step(const Trace& trace);
 
-Items summarise(const Loaded& loaded, const Trace& trace, const RunMeter& meter);
+Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts);
 
 }  // namespace cuboct

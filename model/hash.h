@@ -19,6 +19,8 @@ class Hash {
     return *this;
   }
   CUBOCT_HD constexpr uint64_t value() const { return value_; }
+  // Goes on from an earlier value().
+  CUBOCT_HD constexpr void resume(uint64_t value) { value_ = value; }
 
  private:
   uint64_t value_ = 0;

@@ -54,7 +54,8 @@ double velocity_unit(const FixedRule& rule) {
 
 }  // namespace
 
-std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state) {
+std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state,
+                               int threads) {
   std::vector<Int3> sums(state.particles.size(), Int3{});
   const ByNode by_node(lattice, state);
   for_each_range(lattice.size(), kNodesWorthAThread, [&](size_t begin, size_t end) {
@@ -65,14 +66,14 @@ std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, co
                     if (!pair.inside) return;
                     for (int axis = 0; axis < 3; ++axis) sums[i][axis] += pair.kick[axis];
                   });
-  });
+  }, threads);
   return sums;
 }
 
 double newtons_per_kick(const FixedRule& rule) { return velocity_unit(rule) * rule.mass / rule.dt; }
 
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
-                  const State& state, const std::vector<Int3>& kicks) {
+                  const State& state, const std::vector<Int3>& kicks, int threads) {
   Energies sum;
   const double length = std::ldexp(fixed.cell_edge, -fixed.widths.position_frac);
   const double velocity = velocity_unit(fixed);
@@ -110,7 +111,7 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
                         potential[block] += rule.law->energy(r) * rule.strength_of(a.type, b.type);
                     });
     }
-  });
+  }, threads);
   for (const double part : potential) sum.potential += part;
   return sum;
 }
@@ -138,6 +139,16 @@ double largest_speed(const FixedRule& rule, const State& state) {
   for (const Particle& particle : state.particles)
     for (const int64_t v : particle.v) largest = std::max<int64_t>(largest, std::abs(v));
   return std::ldexp(static_cast<double>(largest), -rule.widths.velocity_frac());
+}
+
+Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
+                 const Particle& particle) {
+  const double unit = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
+  const Cell& cell = lattice.cell(particle.node);
+  Vec3 x;
+  for (int a = 0; a < 3; ++a)
+    x[a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(particle.x[a]) * unit;
+  return x;
 }
 
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
@@ -226,6 +237,12 @@ void ProbeMeter::add(const Sample& sample) {
       }
     }
   }
+}
+
+void ProbeMeter::restore(Memory memory, std::vector<Curve> curves) {
+  latest_ = std::move(memory.latest);
+  moved_ = std::move(memory.moved);
+  curves_ = std::move(curves);
 }
 
 ProbeMeter::Followed ProbeMeter::follow(const ParticleSet& set) const {

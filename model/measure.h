@@ -17,7 +17,9 @@ namespace cuboct {
 
 // Sum of the pair kicks on each particle, in the order of `state.particles`; P+G fractional bits of a cell
 // edge per step. It is what the machine adds up in the step that begins with `state`.
-std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state);
+// `threads` (0: one per core) share the nodes; no bit depends on their number, here and in `energies`.
+std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state,
+                               int threads = 0);
 
 // Newtons per unit of a kick: a kick of one cell edge per step is cell_edge/dt in velocity, gained within dt.
 double newtons_per_kick(const FixedRule& rule);
@@ -30,7 +32,7 @@ struct Energies {
 };
 
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
-                  const State& state, const std::vector<Int3>& kicks);
+                  const State& state, const std::vector<Int3>& kicks, int threads = 0);
 
 // Whether a run of the rule keeps its energy: nothing damps, drives or steers, and no gravity acts along a
 // ring.
@@ -47,6 +49,9 @@ struct Sample {
   std::vector<Vec3> x;      // m; an axis with a period may be given in any image
   std::vector<Vec3> force;  // N, of the pairs
 };
+
+// Position of a particle, m.
+Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const Particle& particle);
 
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
                  const std::vector<Int3>& kicks);
@@ -65,6 +70,15 @@ class ProbeMeter {
   // them.
   void add(const Sample& sample);
   const std::vector<Curve>& curves() const { return curves_; }
+
+  // What the next sample counts on from, to keep with a checkpoint: the latest positions and the way since
+  // step 0, in m.
+  struct Memory {
+    std::vector<Vec3> latest, moved;
+  };
+  Memory memory() const { return {latest_, moved_}; }
+  // Goes on from a memory of the same probes and from their curves so far.
+  void restore(Memory memory, std::vector<Curve> curves);
 
  private:
   // Particles of a set whose positions count, as indices into the arrays below: only those are followed.

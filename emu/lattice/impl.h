@@ -27,7 +27,7 @@ struct LatticeEngine::Impl {
   }
   template <typename Work>
   void for_each_block(const Work& work) {
-#pragma omp parallel for schedule(static, 1) num_threads(threads_)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
     for (size_t b = 0; b < blocks_.size(); ++b) work(blocks_[b]);
   }
   std::vector<Particle> everyone() const;  // sorted by id; of all ranks, on rank 0

@@ -18,6 +18,10 @@ struct Moving {
 // Pairs reach no farther than two nodes, also from where particles stood when the far list was made.
 constexpr int kGhostHops = 2;
 
+// In a block of so many particles of a cube of millions one pair in 15 goes beyond it.
+constexpr uint32_t kRoomyBlock = 100000;
+constexpr uint32_t kMostPerThread = 4;
+
 }  // namespace
 
 void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
@@ -32,10 +36,13 @@ void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
   snapshot_.room = room;
 }
 
-// Appends blocks of equal size, one per thread, for the places [begin, end).
+// Appends blocks of equal size for the places [begin, end): one per thread, or several where the pairs between them, which
+// are worked out twice, are few beside those inside. Threads then share rest and work more evenly.
 void LatticeEngine::Impl::cut_blocks(std::vector<Block>& blocks, uint32_t begin, uint32_t end) const {
   const uint32_t groups = (end - begin + kGroup - 1) / kGroup;
-  const uint32_t parts = std::min(groups, static_cast<uint32_t>(threads_));
+  const auto threads = static_cast<uint32_t>(threads_);
+  const uint32_t fine = threads == 1 ? 1 : std::clamp((end - begin) / kRoomyBlock, threads, kMostPerThread * threads);
+  const uint32_t parts = std::min(groups, fine);
   for (uint32_t b = 0; b < parts; ++b) {
     Block& block = blocks.emplace_back();
     block.begin = begin + static_cast<uint32_t>(uint64_t{groups} * b / parts) * kGroup;

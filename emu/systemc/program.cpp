@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <fstream>
 #include <limits>
 
 #include "emu/systemc/bench.h"
 #include "hw/setup.h"
-#include "model/measure.h"
 #include "model/output.h"
+#include "model/state_meter.h"
+#include "model/steps.h"
 
 namespace cuboct::emu {
 namespace {
@@ -24,34 +23,6 @@ struct Request {
   RunOptions run;
 };
 
-// One step per line; blank lines count for nothing.
-std::vector<uint64_t> read_steps(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw InputError(fmt::format("{}: cannot read this file", path));
-  std::vector<uint64_t> steps;
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty()) continue;
-    const char* const end = line.data() + line.size();
-    uint64_t step = 0;
-    const auto [stopped, error] = std::from_chars(line.data(), end, step);
-    if (error != std::errc{} || stopped != end)
-      throw InputError(path, number, 1, fmt::format("expected a step, got '{}'", line),
-                       "one number per line");
-    steps.push_back(step);
-  }
-  return steps;
-}
-
-// The steps at which the scene measures.
-std::vector<uint64_t> probe_steps(const Scene& scene, uint64_t steps) {
-  std::vector<uint64_t> at;
-  if (scene.probe_every == 0 || scene.probes.empty()) return at;
-  for (uint64_t s = 0; s <= steps; s += scene.probe_every) at.push_back(s);
-  return at;
-}
-
 // Curves from the kept states; then only the frames that were asked for stay. Both lists ascend.
 void measure(const Scene& scene, const Setup& setup, const std::vector<uint64_t>& probes,
              const std::vector<uint64_t>& frames, Trace& trace) {
@@ -60,11 +31,11 @@ void measure(const Scene& scene, const Setup& setup, const std::vector<uint64_t>
     return std::binary_search(list.begin(), list.end(), step);
   };
   if (!probes.empty()) {
-    ProbeMeter meter(scene.probes, scene.periodic, scene.body.x);
+    StateMeter meter(
+        scene, plan.rule, plan.lattice, plan.origin,
+        [&](uint32_t id) { return setup.initial.particles[id]; }, false);
     for (const State& s : trace.frames)
-      if (in(probes, s.step))
-        meter.add(
-            sample_of(plan.rule, plan.lattice, plan.origin, s, summed_kicks(plan.rule, plan.lattice, s)));
+      if (in(probes, s.step)) meter.add(s);
     trace.curves = meter.curves();
   }
   std::erase_if(trace.frames, [&](const State& s) { return !in(frames, s.step); });
@@ -82,8 +53,8 @@ int run(const Program& program, Request request) {
     throw InputError(fmt::format("{} steps: a node counts at most {}", options.steps,
                                  std::numeric_limits<uint32_t>::max()));
   if (!request.frames_given) request.frames = {0, options.steps};
-  std::sort(request.frames.begin(), request.frames.end());
-  const std::vector<uint64_t> probes = probe_steps(scene, options.steps);
+  put_in_order(request.frames);
+  const std::vector<uint64_t> probes = probe_steps_of(scene, options.steps);
   options.frames = request.frames;
   options.frames.insert(options.frames.end(), probes.begin(), probes.end());
   std::sort(options.frames.begin(), options.frames.end());

@@ -16,10 +16,10 @@ void expect_refusal(const std::vector<std::string>& arguments, const std::string
 
 TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
   expect_refusal({},
-                 "no command\n  hint: one of check, run, crosscheck, emit or report; see 'cuboct --help'\n");
+                 "no command\n  hint: one of check, run, crosscheck, emit, bench or report; see 'cuboct --help'\n");
   expect_refusal({"chek"}, "unknown command 'chek'\n  hint: did you mean 'check'?\n");
   expect_refusal({"simulate"},
-                 "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit or report\n");
+                 "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit, bench or report\n");
   expect_refusal({"--version"}, "unknown option '--version'\n  hint: see 'cuboct --help'\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--stepz", "3"},
                  "unknown option '--stepz' of 'cuboct run'\n  hint: did you mean '--steps'?\n");
@@ -40,15 +40,34 @@ TEST(Command, RefusesWrongValues) {
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "goldn"},
                  "unknown engine 'goldn'\n  hint: did you mean 'golden'?\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "fpga"},
-                 "unknown engine 'fpga'\n  hint: one of golden, systemc, rtl or reference\n");
+                 "unknown engine 'fpga'\n  hint: one of golden, lattice, systemc, rtl or reference\n");
   expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden"},
-                 "a crosscheck needs two or more different engines\n  hint: --engines golden,systemc,rtl\n");
+                 "a crosscheck needs two or more different engines\n  hint: --engines golden,lattice,systemc,rtl\n");
   expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden,golden"},
-                 "a crosscheck needs two or more different engines\n  hint: --engines golden,systemc,rtl\n");
+                 "a crosscheck needs two or more different engines\n  hint: --engines golden,lattice,systemc,rtl\n");
   expect_refusal(
       {"crosscheck", "scenes/lj_block.toml", "--engines", "golden,reference"},
-      "engine 'reference' computes in doubles and has no bits to compare\n  hint: one of golden, systemc "
-      "or rtl\n");
+      "engine 'reference' computes in doubles and has no bits to compare\n  hint: one of golden, lattice, "
+      "systemc or rtl\n");
+}
+
+TEST(Command, RefusesOptionsOfAnotherEngine) {
+  const std::vector<std::string> golden{"run", "scenes/lj_block.toml", "--engine", "golden"};
+  for (const std::vector<std::string>& option : std::vector<std::vector<std::string>>{
+           {"--threads", "2"}, {"--ranks", "2"}, {"--cycles"}, {"--resume"}, {"--checkpoint-every", "5 min"}}) {
+    std::vector<std::string> arguments = golden;
+    arguments.insert(arguments.end(), option.begin(), option.end());
+    expect_refusal(arguments, option[0] + " is an option of the lattice engine, not of golden\n");
+  }
+  expect_refusal({"run", "scenes/lj_block.toml", "--resume"},
+                 "--resume needs --out DIR, where the checkpoint lies\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--checkpoint-every", "5 min"},
+                 "--checkpoint-every needs --out DIR, where the checkpoint lies\n");
+}
+
+TEST(Command, RefusesRanksThatItCannotStart) {
+  expect_refusal({"run", "scenes/lj_block.toml", "--ranks", "2"},
+                 "--ranks 2: no program cuboct-lattice beside cuboct\n");
 }
 
 TEST(Command, NamesAFileThatIsNotThere) {
@@ -77,7 +96,7 @@ TEST(Command, HelpIsNoError) {
   const Answer answer = Bench(false).cuboct({"--help"});
   EXPECT_EQ(answer.code, 0);
   EXPECT_EQ(answer.err, "");
-  for (const char* command : {"check", "run", "crosscheck", "emit", "report"})
+  for (const char* command : {"check", "run", "crosscheck", "emit", "bench", "report"})
     EXPECT_NE(answer.out.find(command), std::string::npos);
 }
 

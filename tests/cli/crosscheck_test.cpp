@@ -44,6 +44,18 @@ TEST(Crosscheck, NamesTheParticleBehindADifferentHash) {
   EXPECT_EQ(std::stoll(found[1]) ^ 1, std::stoll(found[2]));
 }
 
+TEST(Crosscheck, OfLatticeSharesItsBits) {
+  EXPECT_EQ(crosscheck("", "golden,lattice").out, "matched 1280 updates over 5 steps in 2 engines\n");
+  // The fake engine's cycles are made up; lattice counts the machine's, and they are compared.
+  const Answer answer = crosscheck("", "lattice,systemc");
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_TRUE(std::regex_match(
+      answer.out, std::regex("mismatch: step 0, node 0 \\(cell 0 0 0\\), exchange_x \\w+: lattice \\d+, "
+                             "systemc \\d+\n")))
+      << answer.out;
+  EXPECT_EQ(crosscheck("state", "lattice,rtl").code, 1);
+}
+
 TEST(Crosscheck, SaysWhereOnlyAHashIsWrong) {
   const Answer answer = crosscheck("hash");
   EXPECT_EQ(answer.code, 1);

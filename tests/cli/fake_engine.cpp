@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "hw/setup.h"
 #include "model/golden.h"
@@ -18,7 +19,7 @@ namespace {
 using namespace cuboct;
 
 int run(int argc, char** argv) {
-  std::string scene, arch, out;
+  std::string scene, arch, out, frames_file;
   uint64_t steps = 0;
   std::vector<uint64_t> frames;
   CLI::App app;
@@ -27,9 +28,12 @@ int run(int argc, char** argv) {
   app.add_option("--steps", steps);
   app.add_option("--out", out);
   app.add_option("--frames", frames)->delimiter(',');
+  app.add_option("--frames-file", frames_file);
   app.add_flag("--progress");
   CLI11_PARSE(app, argc, argv);
 
+  std::ifstream list(frames_file);
+  for (uint64_t step; list >> step;) frames.push_back(step);
   const std::string name = std::filesystem::path(argv[0]).filename().string();
   const char* told = std::getenv("LIE");
   const std::string lie = told && name == "cuboct-rtl" ? told : "";

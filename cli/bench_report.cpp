@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "cli/bench_report.h"
+
+#include <fmt/format.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+
+namespace cuboct {
+
+int usable_cores() {
+  cpu_set_t set;
+  return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+}
+
+std::string machine() {
+  std::string model = "processor unknown";
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name")) {
+      model = line.substr(line.find(':') + 2);
+      break;
+    }
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+                        static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e9;
+  return fmt::format("{}, {} cores, {:.0f} GB of memory", model, usable_cores(), memory);
+}
+
+bool LineReporter::ReportContext(const Context&) { return true; }
+
+void LineReporter::ReportRuns(const std::vector<Run>& runs) {
+  const auto name_of = [](const Run& run) { return run.run_name.function_name; };
+  const Run* spread = nullptr;
+  for (const Run& run : runs)
+    if (run.aggregate_name == "stddev") spread = &run;
+  for (const Run& run : runs) {
+    if (run.error_occurred) {
+      if (skipped_ != name_of(run)) fmt::print("# {}: {}\n", name_of(run), run.error_message);
+      skipped_ = name_of(run);  // its repetitions say the same
+      failed_ |= !run.error_message.starts_with(kSkipped);
+      continue;
+    }
+    const bool alone = run.run_type == Run::RT_Iteration && run.repetitions == 1;
+    if (!alone && run.aggregate_name != "median") continue;
+    if (!run.report_label.empty()) fmt::print("# {}: {}\n", name_of(run), run.report_label);
+    for (const auto& [counter, value] : run.counters) {
+      if (spread && value.value > 0)
+        fmt::print("# {}: {} repeats, standard deviation {:.1f} %\n", name_of(run), run.repetitions,
+                   100 * spread->counters.at(counter).value / value.value);
+      fmt::print("{}.{} {:.4g} 1/s\n", name_of(run), counter, value.value);
+    }
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace cuboct

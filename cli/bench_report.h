@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+namespace cuboct {
+
+// "name value unit" lines, one per rate: the median over the repetitions, whose spread stands in a comment line
+// before. Comment lines begin with "# ".
+class LineReporter : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context& context) override;
+  void ReportRuns(const std::vector<Run>& runs) override;
+  // Some benchmark failed, other than for want of memory or of a program.
+  bool failed() const { return failed_; }
+
+ private:
+  bool failed_ = false;
+  std::string skipped_;
+};
+
+// "AMD EPYC 9B14, 4 cores, 24 GB of memory".
+std::string machine();
+int usable_cores();
+
+// What a benchmark says where it does not run, and why: no failure.
+inline constexpr char kSkipped[] = "skipped: ";
+
+}  // namespace cuboct

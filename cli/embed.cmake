@@ -1,0 +1,10 @@
+# cmake -D OUT=file.cpp -D DIR=scenes/bench -P embed.cmake: the scenes of `cuboct bench` as C++ text.
+set(text "// SPDX-License-Identifier: MIT\n#include \"cli/bench_scene.h\"\n\nnamespace cuboct {\n\n")
+foreach(pair kBenchBlock:block_32k kBenchImpact:impact_1m kBenchImpactArch:impact_arch)
+  string(REPLACE ":" ";" pair ${pair})
+  list(GET pair 0 name)
+  list(GET pair 1 file)
+  file(READ ${DIR}/${file}.toml body)
+  string(APPEND text "const char ${name}[] = R\"scene~(${body})scene~\";\n\n")
+endforeach()
+file(WRITE ${OUT} "${text}}  // namespace cuboct\n")

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "emu/lattice/journal.h"
+
+#include <fmt/format.h>
+
+#include "model/error.h"
+
+namespace cuboct::emu {
+namespace {
+
+constexpr uint64_t kMagic = 0x4c4e524a54424355;  // "UCBTJRNL"
+constexpr uint64_t kVersion = 1;
+enum Kind : uint64_t { kHash = 1, kSample, kCycles, kFrame };
+
+}  // namespace
+
+void put(WordWriter& out, const Particle& p, bool displaced) {
+  out.word(p.id | uint64_t{p.node} << 32);
+  out.word(static_cast<uint64_t>(p.x[0]) | static_cast<uint64_t>(p.x[1]) << 32);
+  out.word(static_cast<uint64_t>(p.x[2]) | uint64_t{p.type} << 32);
+  for (const int64_t v : p.v) out.word(static_cast<uint64_t>(v));
+  if (displaced)
+    for (const int64_t u : p.u) out.word(static_cast<uint64_t>(u));
+}
+
+Particle take_particle(WordReader& in, bool displaced) {
+  Particle p;
+  const uint64_t place = in.word(), xy = in.word(), z_type = in.word();
+  p.id = static_cast<uint32_t>(place);
+  p.node = static_cast<uint32_t>(place >> 32);
+  p.x = {static_cast<uint32_t>(xy), static_cast<uint32_t>(xy >> 32), static_cast<uint32_t>(z_type)};
+  p.type = static_cast<uint8_t>(z_type >> 32);
+  for (int64_t& v : p.v) v = static_cast<int64_t>(in.word());
+  if (displaced)
+    for (int64_t& u : p.u) u = static_cast<int64_t>(in.word());
+  return p;
+}
+
+Journal::Journal(const std::string& path, uint64_t plan_hash, bool displaced)
+    : path_(path), displaced_(displaced), out_(std::make_unique<WordWriter>(path, WordMark{})) {
+  for (const uint64_t value : {kMagic, kVersion, plan_hash}) out_->word(value);
+}
+
+Journal::Journal(const std::string& path, uint64_t plan_hash, bool displaced, const WordMark& end,
+                 Trace& trace)
+    : path_(path), displaced_(displaced) {
+  WordReader in(path);
+  if (in.size() < end.words)
+    throw InputError(fmt::format("{} is damaged: its checkpoint needs {} words, it has {}", path, end.words,
+                                 in.size()));
+  for (uint64_t k = 0; k < end.words; ++k) in.word();
+  if (in.mark() != end)
+    throw InputError(fmt::format("{} is damaged: its words hash to {:016x}, its checkpoint says {:016x}",
+                                 path, in.mark().hash, end.hash));
+  in.seek(0);
+  if (in.word() != kMagic || in.word() != kVersion || in.word() != plan_hash)
+    throw InputError(fmt::format("{} is not the journal of this plan", path));
+  while (in.mark().words < end.words) {
+    const uint64_t place = in.mark().words, kind = in.word(), step = in.word(), words = in.word();
+    switch (kind) {
+      case kHash:
+        trace.state_hash.push_back(in.word());
+        break;
+      case kSample:
+        trace.curves.resize(words);
+        for (Curve& curve : trace.curves) {
+          curve.step.push_back(step);
+          curve.value.push_back(in.number());
+        }
+        break;
+      case kCycles:
+        for (uint64_t k = 0; k < words / 2; ++k) {
+          const uint64_t start = in.word();
+          trace.cycles.push_back({start, in.word()});
+        }
+        break;
+      case kFrame:
+        frame_steps_.push_back(step);
+        frame_places_.push_back(place);
+        in.seek(place + 3 + words);
+        break;
+      default:
+        throw InputError(fmt::format("{} is not the journal of this plan", path));
+    }
+  }
+  out_ = std::make_unique<WordWriter>(path, end);
+}
+
+void Journal::head(uint64_t kind, uint64_t step, uint64_t words) {
+  for (const uint64_t value : {kind, step, words}) out_->word(value);
+}
+
+void Journal::hash(uint64_t step, uint64_t hash) {
+  head(kHash, step, 1);
+  out_->word(hash);
+}
+
+void Journal::sample(uint64_t step, std::span<const double> values) {
+  head(kSample, step, values.size());
+  for (const double value : values) out_->number(value);
+}
+
+void Journal::cycles(uint64_t step, std::span<const PhaseSpan> spans) {
+  head(kCycles, step, 2 * spans.size());
+  for (const PhaseSpan& span : spans) {
+    out_->word(span.start);
+    out_->word(span.end);
+  }
+}
+
+void Journal::frame(const State& state) {
+  frame_steps_.push_back(state.step);
+  frame_places_.push_back(out_->mark().words);
+  head(kFrame, state.step, state.particles.size() * (displaced_ ? 9 : 6));
+  for (const Particle& p : state.particles) put(*out_, p, displaced_);
+}
+
+WordMark Journal::sync() {
+  out_->sync();
+  return out_->mark();
+}
+
+std::vector<State> Journal::frames() {
+  sync();
+  std::vector<State> frames(frame_steps_.size());
+  WordReader in(path_);
+  for (size_t k = 0; k < frames.size(); ++k) {
+    frames[k].step = frame_steps_[k];
+    in.seek(frame_places_[k] + 2);
+    frames[k].particles.resize(in.word() / (displaced_ ? 9 : 6));
+    for (Particle& p : frames[k].particles) p = take_particle(in, displaced_);
+  }
+  return frames;
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#include "emu/lattice/program.h"
+
+#ifdef CUBOCT_LATTICE_MPI
+#include <cstdlib>
+
+#include "emu/lattice/mpi_ranks.h"
+
+// Alone, without mpirun (Open MPI, MPICH, Slurm), MPI is not even started.
+int main(int argc, char** argv) {
+  for (const char* launcher : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
+    if (std::getenv(launcher)) {
+      cuboct::emu::MpiRanks ranks(&argc, &argv);
+      const int code = cuboct::emu::run_lattice_program(argc, argv, &ranks);
+      // A rank that failed alone (a full disk) would leave the others waiting for it.
+      if (code == 2 && ranks.size() > 1) MPI_Abort(MPI_COMM_WORLD, code);
+      return code;
+    }
+  return cuboct::emu::run_lattice_program(argc, argv);
+}
+#else
+int main(int argc, char** argv) { return cuboct::emu::run_lattice_program(argc, argv); }
+#endif

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "model/state_meter.h"
+
+#include <algorithm>
+
+namespace cuboct {
+namespace {
+
+std::vector<uint32_t> probed_ids(const std::vector<Probe>& probes) {
+  std::vector<uint32_t> ids;
+  for (const Probe& probe : probes)
+    for (const ParticleSet* set : {&probe.set, &probe.lower, &probe.upper, &probe.grip})
+      ids.insert(ids.end(), set->ids.begin(), set->ids.end());
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+// The probes with their ids replaced by places in `ids`.
+std::vector<Probe> placed(std::vector<Probe> probes, const std::vector<uint32_t>& ids) {
+  for (Probe& probe : probes)
+    for (ParticleSet* set : {&probe.set, &probe.lower, &probe.upper, &probe.grip})
+      for (uint32_t& id : set->ids)
+        id = static_cast<uint32_t>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  return probes;
+}
+
+}  // namespace
+
+StateMeter::StateMeter(const Scene& scene, const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
+                       const std::function<Particle(uint32_t)>& initial, bool energies, int threads)
+    : scene_(scene),
+      rule_(rule),
+      lattice_(lattice),
+      origin_(origin),
+      ids_(probed_ids(scene.probes)),
+      probes_(placed(scene.probes, ids_), scene.periodic,
+              [&] {
+                std::vector<Vec3> x;
+                for (const uint32_t id : ids_) x.push_back(position_of(rule, lattice, origin, initial(id)));
+                return x;
+              }()),
+      threads_(threads) {
+  for (const Probe& probe : scene.probes) forces_ |= probe.kind != Probe::Kind::displacement;
+  if (energies)
+    for (const char* part : {"kinetic", "potential", "gravity", "total"})
+      energy_.push_back({std::string("energy.") + part, "J", {}, {}});
+}
+
+void StateMeter::add(const State& state) {
+  std::vector<Int3> kicks;
+  if (forces_ || !energy_.empty()) kicks = summed_kicks(rule_, lattice_, state, threads_);
+  if (!scene_.probes.empty()) {
+    Sample sample{state.step, {}, {}};
+    const double unit = newtons_per_kick(rule_);
+    for (const uint32_t id : ids_) {
+      sample.x.push_back(position_of(rule_, lattice_, origin_, state.particles[id]));
+      const Int3 kick = kicks.empty() ? Int3{} : kicks[id];
+      sample.force.push_back(unit * Vec3(static_cast<double>(kick[0]), static_cast<double>(kick[1]),
+                                         static_cast<double>(kick[2])));
+    }
+    probes_.add(sample);
+  }
+  if (energy_.empty()) return;
+  const Energies e = energies(scene_.rule, rule_, lattice_, origin_, state, kicks, threads_);
+  const double values[] = {e.kinetic, e.potential, e.gravity, e.total()};
+  for (size_t i = 0; i < energy_.size(); ++i) {
+    energy_[i].step.push_back(state.step);
+    energy_[i].value.push_back(values[i]);
+  }
+}
+
+std::vector<Curve> StateMeter::curves() const {
+  std::vector<Curve> all = probes_.curves();
+  all.insert(all.end(), energy_.begin(), energy_.end());
+  return all;
+}
+
+std::vector<double> StateMeter::latest() const {
+  std::vector<double> values;
+  for (const std::vector<Curve>* part : {&probes_.curves(), &energy_})
+    for (const Curve& curve : *part) values.push_back(curve.value.back());
+  return values;
+}
+
+void StateMeter::restore(ProbeMeter::Memory memory, const std::vector<Curve>& curves) {
+  const auto energies = curves.end() - static_cast<ptrdiff_t>(energy_.size());
+  probes_.restore(std::move(memory), {curves.begin(), energies});
+  energy_.assign(energies, curves.end());
+}
+
+std::vector<uint64_t> probe_steps_of(const Scene& scene, uint64_t last) {
+  std::vector<uint64_t> at;
+  if (scene.probe_every == 0 || scene.probes.empty()) return at;
+  for (uint64_t s = 0; s <= last; s += scene.probe_every) at.push_back(s);
+  return at;
+}
+
+}  // namespace cuboct

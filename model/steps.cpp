@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#include "model/steps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+
+#include "model/error.h"
+
+namespace cuboct {
+
+std::vector<uint64_t> read_steps(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) throw InputError(fmt::format("{}: cannot read this file", path));
+  std::vector<uint64_t> steps;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty()) continue;
+    const char* const end = line.data() + line.size();
+    uint64_t step = 0;
+    const auto [stopped, error] = std::from_chars(line.data(), end, step);
+    if (error != std::errc{} || stopped != end)
+      throw InputError(path, number, 1, fmt::format("expected a step, got '{}'", line),
+                       "one number per line");
+    steps.push_back(step);
+  }
+  put_in_order(steps);
+  return steps;
+}
+
+void put_in_order(std::vector<uint64_t>& steps) {
+  std::sort(steps.begin(), steps.end());
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+}
+
+}  // namespace cuboct

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// `cuboct bench` as scripts read it.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <regex>
+#include <sstream>
+
+#include "tests/cli/shell.h"
+
+namespace cuboct::test {
+namespace {
+
+// The "name value unit" lines; any other line must be a comment.
+std::map<std::string, double> values_of(const std::string& out) {
+  std::map<std::string, double> values;
+  std::istringstream lines(out);
+  const std::regex form("([a-z][a-z0-9_.]*) ([0-9.e+-]+) 1/s");
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch found;
+    if (std::regex_match(line, found, form))
+      EXPECT_TRUE(values.emplace(found[1], std::stod(found[2])).second) << line;
+    else
+      EXPECT_TRUE(line.starts_with("# ")) << line;
+  }
+  return values;
+}
+
+Answer bench(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "bench");
+  return Bench(false).cuboct(arguments);
+}
+
+TEST(BenchCommand, TellsTheMedianOfItsRepeats) {
+  const Answer answer = bench({"golden", "--seconds", "0.01", "--repeats", "3"});
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_EQ(answer.err, "");
+  const auto values = values_of(answer.out);
+  ASSERT_EQ(values.size(), 1u) << answer.out;
+  // 4000 particles meet some hundred candidates each: no machine does it a billion times a second, or less than a
+  // thousand times.
+  EXPECT_GT(values.at("golden.block_4k.particle_steps"), 1e3);
+  EXPECT_LT(values.at("golden.block_4k.particle_steps"), 1e9);
+  EXPECT_NE(answer.out.find("# golden.block_4k: 3 repeats, standard deviation "), std::string::npos) << answer.out;
+}
+
+TEST(BenchCommand, TimesWhatItSays) {
+  // The lattice engine's steps cost more with the timing model beside it; a step of either moves every particle.
+  const Answer answer = bench({"lattice.block_32k.1_thread", "--seconds", "0.05", "--repeats", "2"});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(answer.out, found, std::regex("32000 particles on (\\d+) nodes, 1 thread, \\w+, "
+                                                              "(\\d+) steps per repeat")))
+      << answer.out;
+  // A repeat was to take 0.05 s: the rate and the number of steps agree with it within a factor of ten.
+  const double steps = std::stod(found[2]),
+               rate = values_of(answer.out).at("lattice.block_32k.1_thread.particle_steps");
+  EXPECT_GT(steps * 32000 / rate, 0.005);
+  EXPECT_LT(steps * 32000 / rate, 0.5);
+}
+
+TEST(BenchCommand, SaysWhatItSkips) {
+  const Answer answer = bench({"systemc", "--repeats", "2"});
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_TRUE(values_of(answer.out).empty());
+  EXPECT_NE(answer.out.find("# systemc.block_2k: skipped: no program cuboct-systemc beside cuboct\n"),
+            std::string::npos)
+      << answer.out;
+}
+
+TEST(BenchCommand, NamesWhatItHas) {
+  const Answer list = bench({"--list"});
+  EXPECT_EQ(list.code, 0);
+  for (const char* name : {"lattice.block_32k.1_thread ", "lattice.damped_2m.all_cores ", "lattice.cycles_32k.",
+                           "golden.block_4k ", "systemc.block_2k ", "impact.quiescence_off ", "scaling.threads_1 "})
+    EXPECT_NE(list.out.find(name), std::string::npos) << name;
+  EXPECT_EQ(bench({"golden.block_4"}).err, "no benchmark 'golden.block_4'\n  hint: did you mean 'golden.block_4k'?\n");
+  EXPECT_EQ(bench({"gpu"}).err, "no benchmark 'gpu'\n  hint: 'cuboct bench --list' names them\n");
+  EXPECT_EQ(bench({"gpu"}).code, 2);
+}
+
+}  // namespace
+}  // namespace cuboct::test
