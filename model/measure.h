@@ -77,6 +77,7 @@ class ProbeMeter {
     std::vector<Vec3> latest, moved;
   };
   Memory memory() const { return {latest_, moved_}; }
+  size_t followed() const { return ids_.size(); }  // particles in it
   // Goes on from a memory of the same probes and from their curves so far.
   void restore(Memory memory, std::vector<Curve> curves);
 
