@@ -2,6 +2,7 @@
 #include "emu/lattice/program.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -47,8 +48,12 @@ int run(Request request) {
     throw InputError("--resume and --checkpoint-every need --checkpoint FILE");
   if (run.hash_every == 0) throw InputError("--hash-every: 0 is not a number of steps");
   if (!request.frames_file.empty()) request.frames = read_steps(request.frames_file);
-  const Scene scene = read_scene(request.scene);
+  // Blocks of this size go back to the system when they are freed, as a body of millions does.
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  Scene scene = read_scene(request.scene);
   const Plan plan = plan_of(scene, read_arch(request.arch));
+  run.spare = &scene.body;
+  run.body_again = [&] { return read_scene(request.scene).body; };
   run.steps = request.steps.value_or(scene.steps);
   run.frames = std::move(request.frames);
   put_in_order(run.frames);

@@ -17,6 +17,7 @@
 #include "emu/lattice/checkpoint.h"
 #include "emu/lattice/journal.h"
 #include "emu/lattice/timing.h"
+#include "hw/setup.h"
 #include "model/interrupt.h"
 #include "model/output.h"
 #include "model/progress.h"
@@ -106,6 +107,11 @@ Loop::Loop(const Scene& scene, const Plan& plan, const LatticeRun& request)
 void Loop::make_engine(CheckpointReader* from) {
   engine_.reset();
   const uint64_t step = from ? from->head().step : 0;
+  if (!from && request_.spare && request_.spare->size() == 0) *request_.spare = request_.body_again();
+  // One process alone takes each particle once: the body shrinks as the engine grows.
+  const bool shrink = !from && request_.spare && (!ranks_ || ranks_->size() == 1);
+  std::optional<InitialParticles> shrinking;
+  if (shrink) shrinking.emplace(std::exchange(*request_.spare, {}), plan_);
   Int3 sum{};
   const auto next = [&](uint32_t k) {
     if (k == 0) {  // ranks take the particles twice
@@ -113,11 +119,12 @@ void Loop::make_engine(CheckpointReader* from) {
       if (from) from->rewind();
     }
     if (from) return from->next();
-    const Particle p = particle_(k);
+    const Particle p = shrinking ? (*shrinking)(k) : particle_(k);
     for (int a = 0; a < 3; ++a) sum[a] += p.v[a];
     return p;
   };
   engine_ = std::make_unique<LatticeEngine>(plan_, step, plan_.particles, next, request_.engine);
+  if (request_.spare) *request_.spare = {};
   result_.momentum_before = from ? from->head().momentum : sum;
 }
 

@@ -2,6 +2,7 @@
 // A run of the lattice engine from its first step, or from a checkpoint, to its trace.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct LatticeRun {
   bool progress = false;         // a line per second on stderr where that is no terminal
   LatticeOptions engine;
   CheckpointPlan checkpoint;
+  // Where memory is short: the scene's own body, which is used up, and how to get it again if need be.
+  Body* spare = nullptr;
+  std::function<Body()> body_again;
 };
 
 struct LatticeResult {
