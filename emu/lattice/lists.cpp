@@ -50,7 +50,8 @@ void LatticeEngine::Impl::for_each_moved(const See& see) const {
 double LatticeEngine::Impl::displacement() const {
   double most = 0;
   if (!quiet_ || quiet_->moved() == nullptr)
-    most = snapshot_.displacement(particles_, stored_);
+    for (const Block& block : blocks_)
+      most = std::max(most, snapshot_.displacement(particles_, block.begin, block.end));
   else
     for_each_moved([&](uint32_t p) { most = std::max(most, snapshot_.moved(particles_, p)); });
   if (shared()) options_.ranks->most({&most, 1});
