@@ -59,11 +59,18 @@ Drawn random_widths(Dice& dice) {
   w.position_frac = dice.draw(8, 30);
   w.guard = dice.draw(1, 20);
   w.difference_frac = dice.draw(6, std::min(w.position_frac, 24));
+  const bool wide = dice.chance(50);  // about where the vectors end
+  if (wide) {
+    w.position_frac = dice.draw(27, 30);
+    w.guard = dice.draw(17, 20);
+    w.difference_frac = dice.draw(20, 24);
+    d.features.dt = 0.02 * dice.draw(1, 15);
+  }
   w.velocity_bits = std::max(8, w.velocity_frac() + 1 - (dice.chance(30) ? dice.draw(1, 3) : 0));
   w.relative_velocity_frac = dice.draw(4, std::min(50, w.velocity_frac()));
   w.relative_velocity_bits = std::clamp(w.relative_velocity_frac - dice.draw(-1, 2), 4, 27);
-  w.strength_bits = dice.chance(30) ? 0 : dice.draw(8, 27);
-  w.sum_bits = std::clamp(w.velocity_bits - dice.draw(0, 2), 8, 48);
+  w.strength_bits = dice.chance(30) ? 0 : dice.draw(wide ? 23 : 8, 27);
+  w.sum_bits = std::clamp(w.velocity_bits - dice.draw(-1, 5), 8, 48);
   w.displacement_bits = std::min(40, w.velocity_frac() + 2);
   w.scale_frac = dice.draw(8, 16);
   d.arch.table.shape = dice.chance(50) ? TableChoice::Shape::uniform : TableChoice::Shape::octaves;
@@ -77,7 +84,7 @@ Drawn random_widths(Dice& dice) {
 TEST(LatticeWidths, RandomOnesHoldGoldensBits) {
   Count inside, beyond;
   int refused = 0, held = 0, portable = 0;
-  for (uint64_t seed = 1; seed <= 1500; ++seed) {
+  for (uint64_t seed = 1; seed <= 800; ++seed) {
     Dice dice(seed);
     const Drawn drawn = random_widths(dice);
     Case c{"widths " + std::to_string(seed), {}, 8};
@@ -92,10 +99,10 @@ TEST(LatticeWidths, RandomOnesHoldGoldensBits) {
     compare_both(c, dice, fit ? inside : beyond);
     if (HasFatalFailure()) return;
   }
-  EXPECT_GT(held, 300) << refused << " refused";
+  EXPECT_GT(held, 250) << refused << " refused";
   EXPECT_GT(portable, 100) << refused << " refused";
   EXPECT_GT(inside.updates, 20000u);
-  EXPECT_GT(inside.faults, 50u);
+  EXPECT_GT(inside.faults, 20u);
   EXPECT_GT(beyond.updates, 10000u);
   EXPECT_GT(beyond.faults, 10u);
 }
@@ -222,7 +229,7 @@ TEST(LatticeSpan, BodiesFarApartHoldGoldensBits) {
         Arch arch;
         arch.capacity = 40;
         arch.widths.position_frac = frac;
-        arch.widths.velocity_bits = frac + arch.widths.guard + 1;
+        arch.widths.velocity_bits = arch.widths.sum_bits = frac + arch.widths.guard + 1;
         Count count;
         compare_both({"far apart", far_apart(cells, arch, axis), 30}, dice, count);
         if (HasFatalFailure()) return;
@@ -264,10 +271,10 @@ TEST(LatticeSpan, RefusesWhatADoubleOrAnIndexDoesNotHold) {
   arch.capacity = 40;
   arch.widths.position_frac = 30;
   arch.widths.velocity_bits = 39;
-  const Setup setup = far_apart(5.0e6, arch, 1);
+  const Plan plan = far_apart(5.0e6, arch, 1).plan;
   int32_t last = 0;
-  for (uint32_t n = 0; n < setup.plan.lattice.size(); ++n) last = std::max(last, setup.plan.lattice.cell(n)[1]);
-  EXPECT_EQ(refusal(setup.plan, 0), "the lattice reaches " + std::to_string(last) +
+  for (uint32_t n = 0; n < plan.lattice.size(); ++n) last = std::max(last, plan.lattice.cell(n)[1]);
+  EXPECT_EQ(refusal(plan, 0), "the lattice reaches " + std::to_string(last) +
                                         " cells along y: with position_frac = 30 the lattice engine holds up to "
                                         "4194300\n"
                                         "  hint: use another engine, or fewer fractional bits in the arch file");
