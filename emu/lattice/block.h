@@ -62,7 +62,7 @@ struct Found {
 struct PairList {
   struct Group {
     uint32_t begin;
-    uint16_t near, count;  // entries
+    uint32_t near, count;  // entries
   };
   std::vector<Group> groups;
   std::vector<Entry, Untouched<Entry>> entries;

@@ -20,6 +20,20 @@ int thread_count(const LatticeOptions& options, uint32_t particles) {
   return std::clamp(static_cast<int>(particles / kLeastPerThread), 1, omp_get_num_procs());
 }
 
+// A double holds every position, a period more or less, as a whole number of 2^-P cells.
+void check_span(const Lattice& lattice, int position_frac) {
+  const auto most = static_cast<int64_t>(std::ldexp(1.0, 52 - position_frac)) - 4;
+  for (int a = 0; a < 3; ++a) {
+    int64_t reach = lattice.period()[a];
+    for (uint32_t n = 0; n < lattice.size(); ++n) reach = std::max(reach, std::abs(int64_t{lattice.cell(n)[a]}));
+    if (reach > most)
+      throw InputError(fmt::format("the lattice reaches {} cells along {}: with position_frac = {} the lattice engine "
+                                   "holds up to {}",
+                                   reach, "xyz"[a], position_frac, most),
+                       "use another engine, or fewer fractional bits in the arch file");
+  }
+}
+
 // The far list's skin at first: in an FCC packing, cutoff 1.6 pitches, it stays clear of the fourth shell.
 constexpr double kFirstSkin = 0.17;
 
@@ -36,6 +50,8 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
       count_(count),
       rows_(plan.lattice),
       skin_(kFirstSkin) {
+  check_span(lattice_, plan.rule.widths.position_frac);
+  if (!shared()) check_room(count);
   snapshot_.position_frac = plan.rule.widths.position_frac;
   snapshot_.threads = threads_;
   const std::vector<Kernels> here = kernels_here(rule_);

@@ -27,6 +27,9 @@ struct LatticeOptions {
 struct LatticeCounters {
   uint64_t list_builds = 0;       // of the far pair list
   uint64_t list_mends = 0;        // of parts of it
+  uint64_t near_lists = 0;        // taken from the far list
+  uint64_t near_parts = 0;        // of those, taken only where something had changed
+  uint64_t sorts = 0;             // builds for which particles were stored anew by node
   uint64_t node_steps = 0;        // nodes times steps
   uint64_t quiet_node_steps = 0;  // of those, nodes whose particles and neighbours did not change in the step
                                   // before: their clock could stand still (quiescence on)

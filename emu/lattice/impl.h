@@ -5,6 +5,7 @@
 
 #include <omp.h>
 
+#include <exception>
 #include <optional>
 
 #include "emu/lattice/engine.h"
@@ -25,10 +26,20 @@ struct LatticeEngine::Impl {
     for (const Block& block : blocks_)
       for (uint32_t p = block.begin; p < block.end; ++p) see(p);
   }
+  // An exception may not leave a thread: the first one is thrown behind the loop.
   template <typename Work>
   void for_each_block(const Work& work) {
+    std::exception_ptr thrown;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
-    for (size_t b = 0; b < blocks_.size(); ++b) work(blocks_[b]);
+    for (size_t b = 0; b < blocks_.size(); ++b) {
+      try {
+        work(blocks_[b]);
+      } catch (...) {
+#pragma omp critical(cuboct_lattice_thrown)
+        if (!thrown) thrown = std::current_exception();
+      }
+    }
+    if (thrown) std::rethrow_exception(thrown);
   }
   std::vector<Particle> everyone() const;  // sorted by id; of all ranks, on rank 0
 
@@ -56,6 +67,7 @@ struct LatticeEngine::Impl {
   // share.cpp
   bool shared() const { return options_.ranks != nullptr && options_.ranks->size() > 1; }
   void own_nodes();
+  static void check_room(uint64_t particles);  // InputError where one process cannot hold them
   void make_room(uint32_t stored, uint32_t ghosts);
   void cut_blocks(std::vector<Block>& blocks, uint32_t begin, uint32_t end) const;
   void wrap();

@@ -160,7 +160,7 @@ HWY_INLINE void prune_group(const Particles& particles, V reach2, size_t base, P
     entries[front] = entry;
     front += (lanes & entry.lanes) != 0;
   }
-  group.near = static_cast<uint16_t>(front - group.begin);
+  group.near = front - group.begin;
 }
 
 void prune(const Particles& particles, double reach, const uint8_t* only, Block& block) {
@@ -251,7 +251,7 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
     for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
     for (uint32_t l = 0; l < kLanes; ++l)
       if (lanes >> l & 1) {
-        const double of[3] = {sums[0][l], sums[1][l], sums[2][l]};
+        const Int3 of{static_cast<int64_t>(sums[0][l]), static_cast<int64_t>(sums[1][l]), static_cast<int64_t>(sums[2][l])};
         update_one(rule, particles, i + l, of, active, block);
       }
     return;
@@ -286,7 +286,7 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
   if (active.changed != nullptr) {
     const uint32_t who = mask_lanes(hn::And(changed, mask));
     for (uint32_t l = 0; l < kLanes; ++l)
-      if (who >> l & 1) active.changed[particles.node[i + l]] = 1;
+      if (who >> l & 1) active.mark(particles.node[i + l]);
   }
 }
 
@@ -350,7 +350,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
         for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
         for (uint32_t l = 0; l < kLanes; ++l)
           if (mine >> l & 1) {
-            const double of[3] = {sums[0][l], sums[1][l], sums[2][l]};
+            const Int3 of{static_cast<int64_t>(sums[0][l]), static_cast<int64_t>(sums[1][l]), static_cast<int64_t>(sums[2][l])};
             update_one(rule, particles, i + l, of, active, block);
           }
       }

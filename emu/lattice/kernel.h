@@ -2,6 +2,7 @@
 // The pair term and the update over a block, for each instruction set.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -17,6 +18,9 @@ struct Active {
   const uint8_t* near = nullptr;   // pairs of its particles may be needed
   const uint8_t* awake = nullptr;  // its particles are updated
   uint8_t* changed = nullptr;      // by node: set to 1 where a particle changed; null: nobody asks
+
+  // Particles of one node may be in the blocks of several threads.
+  void mark(uint32_t node) const { std::atomic_ref<uint8_t>(changed[node]).store(1, std::memory_order_relaxed); }
 };
 
 // Whether one of the nodes of group g has a flag; may say yes too often.
@@ -49,7 +53,7 @@ std::vector<Kernels> kernels_here(const KernelRule& rule);
 // Lanes of a pair (or an update) that something did not fit: plain integers find out what.
 void report_pair(const KernelRule& rule, const Particles& particles, uint32_t i, uint32_t j, uint8_t shift,
                  bool both, Block& block);
-void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const double sum[3], const Active& active,
+void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const Int3& sum, const Active& active,
                 Block& block);
 
 }  // namespace cuboct::emu

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The kernels in plain integers: the contract's own functions.
 #include <algorithm>
-#include <cmath>
+#include <bit>
+#include <cstdlib>
 
 #include "emu/lattice/kernel.h"
 #include "model/fixed_math.h"
@@ -13,10 +14,19 @@ Int3 whole(const std::array<PaddedArray<double>, 3>& a, uint32_t p) {
   return {static_cast<int64_t>(a[0][p]), static_cast<int64_t>(a[1][p]), static_cast<int64_t>(a[2][p])};
 }
 
+// Sums beside kMagic as whole numbers. Between 2^52 and 2^53 doubles are spaced by 1, so their bits count like
+// integers: where the vector kernels fit these are their sums, and 64 bits hold those of any rule.
+int64_t taken(double sum) { return std::bit_cast<int64_t>(sum) - std::bit_cast<int64_t>(kMagic); }
+void add(double& sum, int64_t value) { sum = std::bit_cast<double>(std::bit_cast<int64_t>(sum) + value); }
+
 PairResult pair(const KernelRule& rule, const Particles& particles, uint32_t i, uint32_t j, uint8_t shift) {
   const Int3 x_i = whole(particles.x, i);
   Int3 x_j = whole(particles.x, j);
-  for (int a = 0; a < 3; ++a) x_j[a] += static_cast<int64_t>(particles.shift[shift][a]);
+  for (int a = 0; a < 3; ++a) {
+    x_j[a] += static_cast<int64_t>(particles.shift[shift][a]);
+    // An entry that was not mended may keep a pair that flew apart: too far for the square of its distance.
+    if (static_cast<double>(std::abs(x_j[a] - x_i[a])) > 2 * rule.cell) return {};
+  }
   return pair_kick(*rule.rule, x_i, whole(particles.v, i), particles.type[i], x_j, whole(particles.v, j),
                    particles.type[j]);
 }
@@ -39,7 +49,7 @@ void prune(const Particles& particles, double reach, const uint8_t* only, Block&
     if (only != nullptr && !any_flag(only, particles, g)) return;
     PairList::Group& group = list.groups[k];
     Entry* const begin = list.entries.data() + group.begin;
-    group.near = static_cast<uint16_t>(
+    group.near = static_cast<uint32_t>(
         std::partition(begin, begin + group.count,
                        [&](const Entry& e) { return near(particles, reach * reach, g * kGroup, e); }) -
         begin);
@@ -63,7 +73,7 @@ void across(const KernelRule& rule, const Particles& particles, const Active& ac
         const PairResult result = pair(rule, particles, g * kGroup + l, entry.first + l, entry.shift);
         if (result.fault != Fault::none)
           block.pair_faults.push_back({result.fault, g * kGroup + l, result.number});
-        for (int a = 0; a < 3; ++a) sum[a * kGroup + l] += static_cast<double>(result.kick[a]);
+        for (int a = 0; a < 3; ++a) add(sum[a * kGroup + l], result.kick[a]);
       }
     }
   }
@@ -77,7 +87,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
     const double* ghosts = ghost_sums.next(k);
     const bool work = active.near == nullptr || any_flag(active.near, particles, g);
     const uint32_t slot = (k * kGroup) & block.ring_mask;
-    double sums[kGroup][3] = {};
+    std::array<Int3, kGroup> sums{};
     const PairList::Group& group = block.inside.groups[k];
     if (work)
       for (uint32_t e = group.begin; e < group.begin + group.near; ++e) {
@@ -89,23 +99,23 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
           if (result.fault != Fault::none) report_pair(rule, particles, i, j, entry.shift, true, block);
           const uint32_t to = ((entry.first - block.begin) & block.ring_mask) + l;
           for (int a = 0; a < 3; ++a) {
-            sums[l][a] += static_cast<double>(result.kick[a]);
-            block.ring[a][to] -= static_cast<double>(result.kick[a]);
+            sums[l][a] += result.kick[a];
+            add(block.ring[a][to], -result.kick[a]);
           }
         }
       }
     for (uint32_t l = 0; l < kGroup; ++l) {
       for (int a = 0; a < 3; ++a) {
         double& ahead = block.ring[a][slot + l];
-        sums[l][a] += ahead - kMagic;
+        sums[l][a] += taken(ahead);
         ahead = kMagic;
         if (slot == 0) {
           double& overhang = block.ring[a][block.ring_mask + 1 + l];
-          sums[l][a] += overhang - kMagic;
+          sums[l][a] += taken(overhang);
           overhang = kMagic;
         }
-        if (beside != nullptr) sums[l][a] += beside[a * kGroup + l] - kMagic;
-        if (ghosts != nullptr) sums[l][a] += ghosts[a * kGroup + l] - kMagic;
+        if (beside != nullptr) sums[l][a] += taken(beside[a * kGroup + l]);
+        if (ghosts != nullptr) sums[l][a] += taken(ghosts[a * kGroup + l]);
       }
       const uint32_t p = g * kGroup + l;
       if (!work || p >= block.end || (active.awake != nullptr && active.awake[particles.node[p]] == 0))
@@ -126,13 +136,12 @@ void report_pair(const KernelRule& rule, const Particles& particles, uint32_t i,
   if (on_j.fault != Fault::none) block.pair_faults.push_back({on_j.fault, j, on_j.number});
 }
 
-void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const double sum[3], const Active& active,
+void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const Int3& sum, const Active& active,
                 Block& block) {
   const Int3 x = whole(particles.x, p), v = whole(particles.v, p);
   const bool pd = particles.u[0].size() > 0;
   const Int3 u = pd ? whole(particles.u, p) : Int3{};
-  const Int3 kick{static_cast<int64_t>(sum[0]), static_cast<int64_t>(sum[1]), static_cast<int64_t>(sum[2])};
-  const FinishResult done = finish(*rule.rule, kick, x, v, u, particles.type[p]);
+  const FinishResult done = finish(*rule.rule, sum, x, v, u, particles.type[p]);
   if (done.fault != Fault::none) block.update_faults.push_back({done.fault, p, done.number});
   const int P = rule.rule->widths.position_frac;
   Crossing crossing{p, {}};
@@ -147,7 +156,7 @@ void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const 
     speed2 += static_cast<double>(done.v[a]) * static_cast<double>(done.v[a]);
   }
   block.fastest2 = std::max(block.fastest2, speed2);
-  if (changed && active.changed != nullptr) active.changed[particles.node[p]] = 1;
+  if (changed && active.changed != nullptr) active.mark(particles.node[p]);
   if (crossing.away != std::array<int8_t, 3>{}) block.crossings.push_back(crossing);
 }
 

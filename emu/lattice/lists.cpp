@@ -50,7 +50,8 @@ void LatticeEngine::Impl::for_each_moved(const See& see) const {
 double LatticeEngine::Impl::displacement() const {
   double most = 0;
   if (!quiet_ || quiet_->moved() == nullptr)
-    most = snapshot_.displacement(particles_, stored_);
+    for (const Block& block : blocks_)
+      most = std::max(most, snapshot_.displacement(particles_, block.begin, block.end));
   else
     for_each_moved([&](uint32_t p) { most = std::max(most, snapshot_.moved(particles_, p)); });
   if (shared()) options_.ranks->most({&most, 1});
@@ -92,7 +93,7 @@ void LatticeEngine::Impl::build() {
   if (shared())
     redistribute();
   else if (listed_ && !crystal())
-    store_by_node();
+    store_by_node(), ++counters_.sorts;
   {
     Bins bins(lattice_, members_, index_, particles_, snapshot_.position_frac, threads_);
     for_each_block([&](Block& block) {
@@ -145,6 +146,8 @@ void LatticeEngine::Impl::prune(double skin) {
   near_moved_ = 0;
   const double reach = (cutoff_ + near_floor_) * rule_.cell * (1 + 1e-9);
   for_each_block([&](Block& block) { kernels_.prune(particles_, reach, only, block); });
+  ++counters_.near_lists;
+  counters_.near_parts += only != nullptr;
 }
 
 // Makes sure that the near list holds every pair inside the cutoff.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
+#include <stdexcept>
 #include <tuple>
 
 namespace cuboct::emu {
@@ -80,13 +82,36 @@ void collect(const Particles& particles, const Block& block, uint32_t base, Sear
 // What is not used is never touched.
 constexpr size_t kUsualEntries = 32;
 
+// The place of the next entry.
+uint32_t next_place(const PairList& list) {
+  if (list.entries.size() > std::numeric_limits<uint32_t>::max())
+    throw std::length_error("a pair list of more than 2^32 - 1 entries: use more threads");
+  return static_cast<uint32_t>(list.entries.size());
+}
+
 void close_group(const PairList& list, uint32_t begin, PairList::Group& group) {
-  const auto count = static_cast<uint16_t>(list.entries.size() - begin);
+  const auto count = static_cast<uint32_t>(list.entries.size() - begin);
   group = {begin, count, count};
 }
 
+// Where mended groups left more holes than entries, the entries move together.
+void close_holes(PairList& list) {
+  size_t count = 0;
+  for (const PairList::Group& group : list.groups) count += group.count;
+  if (list.entries.size() <= 2 * count + kUsualEntries) return;
+  std::vector<Entry, Untouched<Entry>> entries;
+  entries.reserve(count);
+  for (PairList::Group& group : list.groups) {
+    const auto begin = static_cast<uint32_t>(entries.size());
+    entries.insert(entries.end(), list.entries.begin() + group.begin,
+                   list.entries.begin() + group.begin + group.count);
+    group.begin = begin;
+  }
+  list.entries = std::move(entries);
+}
+
 void close_edge(Merger& merger, uint32_t k, Edge& edge) {
-  const auto begin = static_cast<uint32_t>(edge.pairs.entries.size());
+  const uint32_t begin = next_place(edge.pairs);
   merger.take(edge.pairs.entries);
   if (edge.pairs.entries.size() == begin) return;
   edge.group.push_back(k);
@@ -139,7 +164,7 @@ void build_list(const KernelRule& rule, const Particles& particles, uint32_t gho
         block.plain[k] = 0;
     }
     collect(particles, block, base, search, at, ghosts, inside, beside, beyond);
-    const auto begin = static_cast<uint32_t>(block.inside.entries.size());
+    const uint32_t begin = next_place(block.inside);
     inside.take(block.inside.entries);
     close_group(block.inside, begin, block.inside.groups[k]);
     window = std::max(window, window_of(block, k));
@@ -158,9 +183,9 @@ void mend_list(const Particles& particles, const Snapshot& snapshot, Search sear
   const auto at = [&](uint32_t p) { return std::array{snapshot.at[0][p], snapshot.at[1][p], snapshot.at[2][p]}; };
   // Where they were, if they fit there; else behind all others.
   const auto put = [&entries](PairList& list, PairList::Group& group, uint32_t room) {
-    const auto count = static_cast<uint16_t>(entries.size());
+    const auto count = static_cast<uint32_t>(entries.size());
     if (count > room) {
-      group.begin = static_cast<uint32_t>(list.entries.size());
+      group.begin = next_place(list);
       list.entries.resize(list.entries.size() + count);
     }
     group.near = group.count = count;
@@ -202,6 +227,8 @@ void mend_list(const Particles& particles, const Snapshot& snapshot, Search sear
     block.beside.pairs.groups = std::move(groups);
     block.beside.sum = PaddedArray<double>(block.beside.group.size() * 3 * kGroup, kMagic);
   }
+  close_holes(block.inside);
+  close_holes(block.beside.pairs);
   make_ring(block, window);
 }
 

@@ -101,15 +101,15 @@ void NodeSet::spread_rows(const NodeSet& other, int dy, int dz, const Lattice& l
 }
 
 void NodeSet::dilate(const NodeSet& other, const Lattice& lattice, const Rows& rows) {
-  thread_local NodeSet x, xy;
-  for (NodeSet* set : {&x, &xy}) {
+  thread_local NodeSet x, xy;  // empty between calls: the next one may be of another lattice
+  for (NodeSet* set : {&x, &xy})
     if (set->flag_.size() != flag_.size() || set->row_.size() != row_.size()) *set = NodeSet(lattice, rows);
-    set->clear(rows);
-  }
   clear(rows);
   x.spread_x(other, lattice, rows);
   for (const int dy : {-1, 0, 1}) xy.spread_rows(x, dy, 0, lattice, rows);
   for (const int dz : {-1, 0, 1}) spread_rows(xy, 0, dz, lattice, rows);
+  x.clear(rows);
+  xy.clear(rows);
 }
 
 Quiet::Quiet(const Lattice& lattice, const Rows& rows)

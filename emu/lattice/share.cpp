@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "emu/lattice/cut.h"
 #include "emu/lattice/impl.h"
+#include "model/error.h"
 
 namespace cuboct::emu {
 namespace {
@@ -24,7 +28,15 @@ constexpr uint32_t kMostPerThread = 4;
 
 }  // namespace
 
+void LatticeEngine::Impl::check_room(uint64_t particles) {
+  constexpr uint64_t kMost = std::numeric_limits<int32_t>::max() - 2 * kGroup;  // entries hold signed indices
+  if (particles > kMost)
+    throw InputError(fmt::format("{} particles in one process: the lattice engine holds up to {}", particles, kMost),
+                     "share the scene between more ranks");
+}
+
 void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
+  check_room(uint64_t{stored} + ghosts);
   stored_ = stored;
   const uint32_t room = stored + ghosts;
   for (auto& x : particles_.x) x = PaddedArray<double>(room);

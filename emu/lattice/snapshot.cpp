@@ -27,10 +27,10 @@ double Snapshot::moved(const Particles& particles, uint32_t particle) const {
   return std::ldexp(std::sqrt(moved2(particles, particle)) + 2, -kCoarse);
 }
 
-double Snapshot::displacement(const Particles& particles, uint32_t count) const {
+double Snapshot::displacement(const Particles& particles, uint32_t begin, uint32_t end) const {
   double most = 0;
 #pragma omp parallel for reduction(max : most) num_threads(threads)
-  for (uint32_t p = 0; p < count; ++p) most = std::max(most, moved2(particles, p));
+  for (uint32_t p = begin; p < end; ++p) most = std::max(most, moved2(particles, p));
   return std::ldexp(std::sqrt(most) + 2, -kCoarse);
 }
 

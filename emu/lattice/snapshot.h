@@ -27,9 +27,9 @@ struct Snapshot {
   int threads = 1;
   uint32_t room = 0;  // particles stored here, with those of other ranks
 
-  // The distance of a particle from its place here, in cells, rounded up; the largest of the first `count`.
+  // The distance of a particle from its place here, in cells, rounded up; the largest of [begin, end).
   double moved(const Particles& particles, uint32_t particle) const;
-  double displacement(const Particles& particles, uint32_t count) const;
+  double displacement(const Particles& particles, uint32_t begin, uint32_t end) const;
   // Whether a particle is farther than `threshold` cells from its place here, or that is not in the cell of its node.
   bool astray(const Lattice& lattice, const Particles& particles, uint32_t particle, double threshold) const;
   void look(const Particles& particles, uint32_t particle);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <tuple>
 
 #include "emu/lattice/impl.h"
@@ -59,11 +60,10 @@ std::vector<Crossing> LatticeEngine::Impl::all_crossings() const {
   for (const Block& block : blocks_)
     for (const Crossing& c : block.crossings) crossings.push_back({particles_.id[c.particle], c.away});
   if (!shared()) return crossings;
-  Bytes mine(crossings.size() * sizeof(Crossing));
-  std::memcpy(mine.data(), crossings.data(), mine.size());
-  const Bytes all = options_.ranks->all(mine);
+  const auto bytes = std::as_bytes(std::span(crossings));
+  const Bytes all = options_.ranks->all({bytes.begin(), bytes.end()});
   crossings.resize(all.size() / sizeof(Crossing));
-  std::memcpy(crossings.data(), all.data(), all.size());
+  if (!all.empty()) std::memcpy(crossings.data(), all.data(), all.size());
   return crossings;
 }
 

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "tests/backend/against_golden.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "model/golden.h"
+
+namespace cuboct::test {
+namespace {
+
+std::string where(const RunError& e) {
+  return fmt::format("{} step {} node {} particle {} number {}: {}", static_cast<int>(e.fault), e.step, e.node,
+                     e.particle, e.number, e.what());
+}
+
+}  // namespace
+
+std::vector<Variant> variants(const Plan& plan) {
+  std::vector<Variant> all;
+  for (const char* simd : {"avx512", "avx2", "128-bit", "portable"})
+    for (const int threads : {1, 2, 3, 5})
+      for (const bool quiescence : {false, true}) all.push_back({simd, threads, quiescence});
+  std::erase_if(all, [&](const Variant& v) {
+    try {
+      emu::LatticeEngine(plan, 0, 0, {}, {v.threads, v.quiescence, v.simd});
+      return false;
+    } catch (const InputError&) {
+      return true;
+    }
+  });
+  return all;
+}
+
+std::string name(const Variant& v) {
+  return v.simd + ", " + std::to_string(v.threads) + " threads, quiescence " + (v.quiescence ? "on" : "off");
+}
+
+void compare(const Case& c, const Variant& variant, Count& count) {
+  SCOPED_TRACE(c.name + ", " + name(variant));
+  const Plan& plan = c.setup.plan;
+  const auto& start = c.setup.initial.particles;
+  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
+  emu::LatticeEngine engine(
+      plan, c.setup.initial.step, static_cast<uint32_t>(start.size()), [&](uint32_t k) { return start[k]; },
+      {variant.threads, variant.quiescence, variant.simd});
+  count.vectors += engine.simd() != "portable";
+  State before = golden.state();
+  uint64_t at_rest = 0;
+  bool was_at_rest = true;
+  for (uint64_t s = 0; s < c.steps; ++s) {
+    std::string expected, found;
+    try {
+      golden.step();
+    } catch (const RunError& e) {
+      expected = where(e);
+    }
+    try {
+      engine.step();
+    } catch (const RunError& e) {
+      found = where(e);
+    }
+    ASSERT_EQ(found, expected) << "step " << s;
+    if (!expected.empty()) {
+      ++count.faults;
+      break;
+    }
+    const State state = golden.state();
+    ASSERT_TRUE(engine.state() == state) << "step " << s;
+    ASSERT_EQ(engine.hash(), hash_of(plan.lattice, state));
+    ASSERT_EQ(engine.momentum(), momentum(state));
+    std::vector<Particle> slots, golden_slots;
+    engine.for_each_slot([&](const Particle& p) { slots.push_back(p); });
+    for (const auto& node : golden.nodes()) golden_slots.insert(golden_slots.end(), node.begin(), node.end());
+    ASSERT_TRUE(slots == golden_slots) << "step " << s;
+    uint64_t moved = 0;
+    for (size_t k = 0; k < state.particles.size(); ++k)
+      moved += state.particles[k].node != before.particles[k].node;
+    ASSERT_EQ(engine.leaving().size(), moved);
+    count.moves += moved;
+    count.updates += state.particles.size();
+    const bool now_at_rest = engine.counters().quiet_node_steps > at_rest;
+    count.resumed += now_at_rest && !was_at_rest;
+    was_at_rest = now_at_rest;
+    at_rest = engine.counters().quiet_node_steps;
+    before = state;
+  }
+  const emu::LatticeCounters& lists = engine.counters();
+  count.lists.list_builds += lists.list_builds;
+  count.lists.list_mends += lists.list_mends;
+  count.lists.near_lists += lists.near_lists;
+  count.lists.near_parts += lists.near_parts;
+  count.lists.sorts += lists.sorts;
+  count.lists.node_steps += lists.node_steps;
+  count.lists.quiet_node_steps += lists.quiet_node_steps;
+}
+
+}  // namespace cuboct::test
