@@ -90,7 +90,7 @@ struct Own {
 template <bool kSimple, bool kDamped, bool kScaled>
 HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, const Own& own, uint32_t i,
                            const Entry& entry, uint32_t at, V& s, V dx[3], uint32_t& doubtful) {
-  const ptrdiff_t j = static_cast<ptrdiff_t>(entry.first) + at;
+  const ptrdiff_t j = static_cast<ptrdiff_t>(entry.first()) + at;
   for (int a = 0; a < 3; ++a) {
     V x = hn::Sub(hn::LoadU(d, particles.x[a].data() + j), own.x[a]);
     if (HWY_UNLIKELY(entry.shift != kNoShift)) x = hn::Add(x, hn::Set(d, particles.shift[entry.shift][a]));
@@ -149,7 +149,7 @@ HWY_INLINE void prune_group(const Particles& particles, V reach2, size_t base, P
     for (uint32_t at = 0; at < kGroup; at += kLanes) {
       V r2 = hn::Zero(d);
       for (int a = 0; a < 3; ++a) {
-        const V x_j = hn::LoadU(d, particles.x[a].data() + entry.first + static_cast<ptrdiff_t>(at));
+        const V x_j = hn::LoadU(d, particles.x[a].data() + entry.first() + static_cast<ptrdiff_t>(at));
         const V x = hn::Add(hn::Sub(x_j, hn::Load(d, particles.x[a].data() + base + at)),
                             hn::Set(d, particles.shift[entry.shift][a]));
         r2 = hn::MulAdd(x, x, r2);
@@ -209,7 +209,7 @@ void across(const KernelRule& rule, const Particles& particles, const Active& ac
         V s, dx[3];
         if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, entry, at, s, dx, doubtful)) continue;
         if (HWY_UNLIKELY(doubtful != 0))
-          report(rule, particles, i, entry.first + static_cast<int32_t>(at), entry.shift, doubtful, false, block);
+          report(rule, particles, i, entry.first() + static_cast<int32_t>(at), entry.shift, doubtful, false, block);
         const V factor = kick_factor<kSimple>(rule, s, dx);
         for (int a = 0; a < 3; ++a) sum[a] = hn::NegMulAdd(dx[a], factor, sum[a]);
       }
@@ -317,16 +317,16 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
         const PairList::Group& group = block.inside.groups[k];
         const Entry* const end = block.inside.entries.data() + group.begin + group.near;
         for (const Entry* e = block.inside.entries.data() + group.begin; e != end; ++e) {
-          if (asleep && !any_flag(active.awake, particles, static_cast<uint32_t>(e->first) / kGroup) &&
-              !any_flag(active.awake, particles, (static_cast<uint32_t>(e->first) + kGroup - 1) / kGroup))
+          if (asleep && !any_flag(active.awake, particles, static_cast<uint32_t>(e->first()) / kGroup) &&
+              !any_flag(active.awake, particles, (static_cast<uint32_t>(e->first()) + kGroup - 1) / kGroup))
             continue;
           uint32_t doubtful = 0;
           V s, dx[3];
           if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, s, dx, doubtful)) continue;
           if (HWY_UNLIKELY(doubtful != 0))
-            report(rule, particles, i, e->first + static_cast<int32_t>(at), e->shift, doubtful, true, block);
-          written = std::max(written, static_cast<uint32_t>(e->first) + kGroup);
-          const uint32_t to = ((static_cast<uint32_t>(e->first) - block.begin) & block.ring_mask) + at;
+            report(rule, particles, i, e->first() + static_cast<int32_t>(at), e->shift, doubtful, true, block);
+          written = std::max(written, static_cast<uint32_t>(e->first()) + kGroup);
+          const uint32_t to = ((static_cast<uint32_t>(e->first()) - block.begin) & block.ring_mask) + at;
           const V factor = kick_factor<kSimple>(rule, s, dx);
           for (int a = 0; a < 3; ++a) {
             sum[a] = hn::NegMulAdd(dx[a], factor, sum[a]);

@@ -24,7 +24,7 @@ constexpr int kGhostHops = 2;
 
 // In a block of so many particles of a cube of millions one pair in 15 goes beyond it.
 constexpr uint32_t kRoomyBlock = 100000;
-constexpr uint32_t kMostPerThread = 4;
+constexpr uint32_t kMostPerThread = 2;
 
 }  // namespace
 
