@@ -42,7 +42,9 @@ struct Particles {
                                          // since the last list was built
   std::array<PaddedArray<double>, 3> v;  // P+G fractional bits
   std::array<PaddedArray<double>, 3> u;  // P+G fractional bits; empty unless the rule has PD
-  PaddedArray<uint32_t> id;              // kNoParticle where a block's last group is not full
+  PaddedArray<uint32_t> id;              // empty where a particle's index is its id; else kNoParticle where a block's
+                                         // last group is not full
+  uint32_t id_of(uint32_t index) const { return id.size() == 0 ? index : id[index]; }
   const uint32_t* node = nullptr;        // readable kGroup elements beyond
   PaddedArray<uint8_t> type;
   // By group: its nodes are among low ... low + span - 1. Wider than need be after migrations.

@@ -77,7 +77,7 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
     if (!members_.append(p.node, p.id)) faults.push_back(error(Fault::full_x, p.node, p.id, plan_.arch.capacity));
   };
   const auto put = [&](const Particle& p, uint32_t at) {
-    particles_.id[at] = p.id;
+    if (particles_.id.size() > 0) particles_.id[at] = p.id;
     particles_.type[at] = p.type;
     const Cell& cell = lattice_.cell(p.node);
     for (int a = 0; a < 3; ++a) {
@@ -124,7 +124,7 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
 
 Particle LatticeEngine::Impl::particle(uint32_t index) const {
   Particle p;
-  p.id = particles_.id[index];
+  p.id = particles_.id_of(index);
   p.type = particles_.type[index];
   p.node = members_.nodes()[p.id];
   const int64_t mask = (int64_t{1} << plan_.rule.widths.position_frac) - 1;
@@ -140,7 +140,7 @@ std::vector<Particle> LatticeEngine::Impl::everyone() const {
   std::vector<Particle> all;
   if (!shared()) {
     all.resize(count_);
-    for_each_index([&](uint32_t p) { all[particles_.id[p]] = particle(p); });
+    for_each_index([&](uint32_t p) { all[particles_.id_of(p)] = particle(p); });
     return all;
   }
   std::vector<Bytes> to(static_cast<size_t>(options_.ranks->size()));

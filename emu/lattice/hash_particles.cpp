@@ -51,7 +51,7 @@ uint64_t hash_particles(const Particles& particles, const Lattice& lattice, cons
   for (uint32_t i = begin; i < end; i += kStride) {
     uint64_t head[5][kStride] = {};  // id, type, cell
     for (uint32_t l = 0; l < std::min(kStride, end - i); ++l) {
-      const uint32_t id = particles.id[i + l];
+      const uint32_t id = particles.id_of(i + l);
       head[0][l] = id;
       head[1][l] = particles.type[i + l];
       for (int a = 0; a < 3; ++a)

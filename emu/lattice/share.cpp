@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <limits>
 
 #include "emu/lattice/cut.h"
@@ -43,7 +44,7 @@ void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
   for (auto& v : particles_.v) v = PaddedArray<double>(room);
   if (plan_.rule.pd)
     for (auto& u : particles_.u) u = PaddedArray<double>(room);
-  particles_.id = PaddedArray<uint32_t>(room, kNoParticle);
+  if (shared()) particles_.id = PaddedArray<uint32_t>(room, kNoParticle);
   particles_.type = PaddedArray<uint8_t>(room);
   snapshot_.room = room;
 }
@@ -67,7 +68,7 @@ void LatticeEngine::Impl::wrap() {
   if (lattice_.period() == Cell{}) return;
   for_each_block([&](Block& block) {
     for (uint32_t p = block.begin; p < block.end; ++p) {
-      const Cell& cell = lattice_.cell(members_.nodes()[particles_.id[p]]);
+      const Cell& cell = lattice_.cell(members_.nodes()[particles_.id_of(p)]);
       for (int a = 0; a < 3; ++a) {
         double& x = particles_.x[a][p];
         x += (cell[a] - std::floor(x * rule_.inverse_cell)) * rule_.cell;
@@ -90,6 +91,10 @@ void LatticeEngine::Impl::store_by_node() {
     reorder(particles_.x[a]);
     reorder(particles_.v[a]);
     if (plan_.rule.pd) reorder(particles_.u[a]);
+  }
+  if (particles_.id.size() == 0) {
+    particles_.id = PaddedArray<uint32_t>(stored_, kNoParticle);
+    std::iota(particles_.id.data(), particles_.id.data() + count_, 0u);
   }
   reorder(particles_.id);
   reorder(particles_.type);
@@ -124,7 +129,7 @@ void LatticeEngine::Impl::redistribute() {
   const int me = ranks.rank();
   std::vector<Bytes> to(peers_.size());
   for_each_index([&](uint32_t p) {
-    const uint32_t id = particles_.id[p];
+    const uint32_t id = particles_.id_of(p);
     const int owner = owner_[members_.nodes()[id]];
     if (owner == me) return;
     Moving moving{id, particles_.type[p], {}, {}, {}};

@@ -39,7 +39,7 @@ void LatticeEngine::Impl::fail_if_any(std::vector<Found> Block::*faults) const {
   Bytes mine;
   for (const Block& block : blocks_)
     for (const Found& f : block.*faults) {
-      const uint32_t id = particles_.id[f.particle];
+      const uint32_t id = particles_.id_of(f.particle);
       const Told told{f.fault, members_.nodes()[id], id, f.number};
       const auto* bytes = reinterpret_cast<const std::byte*>(&told);
       mine.insert(mine.end(), bytes, bytes + sizeof told);
@@ -58,7 +58,7 @@ void LatticeEngine::Impl::fail_if_any(std::vector<Found> Block::*faults) const {
 std::vector<Crossing> LatticeEngine::Impl::all_crossings() const {
   std::vector<Crossing> crossings;
   for (const Block& block : blocks_)
-    for (const Crossing& c : block.crossings) crossings.push_back({particles_.id[c.particle], c.away});
+    for (const Crossing& c : block.crossings) crossings.push_back({particles_.id_of(c.particle), c.away});
   if (!shared()) return crossings;
   const auto bytes = std::as_bytes(std::span(crossings));
   const Bytes all = options_.ranks->all({bytes.begin(), bytes.end()});
