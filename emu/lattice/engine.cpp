@@ -78,7 +78,7 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
   };
   const auto put = [&](const Particle& p, uint32_t at) {
     if (particles_.id.size() > 0) particles_.id[at] = p.id;
-    particles_.type[at] = p.type;
+    if (p.type != 0) particles_.type[at] = p.type;  // zeros are there, and take no memory
     const Cell& cell = lattice_.cell(p.node);
     for (int a = 0; a < 3; ++a) {
       particles_.x[a][at] = static_cast<double>(p.x[a]) + cell[a] * rule_.cell;

@@ -146,6 +146,7 @@ void build_list(const KernelRule& rule, const Particles& particles, uint32_t gho
     edge->group.clear();
     edge->pairs.groups.clear();
     edge->pairs.entries.clear();
+    edge->pairs.entries.reserve(kUsualEntries * block.groups());
   }
   block.plain.assign(block.groups(), 1);
   block.ring_mask = 0;
