@@ -18,7 +18,7 @@ namespace cuboct::emu {
 struct LatticeOptions {
   int threads = 0;         // 0: one per core that the process may use, fewer for small scenes
   bool quiescence = true;  // nodes at rest among nodes at rest are skipped; no bit depends on it
-  std::string simd;        // "avx512", "avx2", "portable"; empty: the widest that this machine has
+  std::string simd;        // "avx512", "avx2", "128-bit", "portable"; empty: the widest that this machine has
   Ranks* ranks = nullptr;      // who shares the scene; null: nobody. Must outlive the engine
   std::string cut = "bricks";  // how: see cut.h
 };

@@ -10,7 +10,7 @@ namespace {
 
 // Two lists, as in Verlet's method: the far one holds pairs up to the cutoff plus a skin, in cells; it is
 // searched anew when some particle may have moved half of that. The near one is what the far one leaves within
-// the cutoff plus a thinner skin, and is taken from it every few steps (a dual pair list: Pall and Hess 2013).
+// the cutoff plus a thinner skin, and is taken from it every few steps (a dual pair list: Pall et al., J. Chem. Phys. 153, 134110, 2020).
 // The far skin grows while its lists hold for less than kShortLife steps.
 constexpr double kMostSkin = 0.5;
 constexpr uint64_t kShortLife = 20;
