@@ -132,6 +132,27 @@ Case random_shots(uint64_t seed) {
   return cooked("shots " + std::to_string(seed), scene, 60);
 }
 
+// A chain at rest is hit from below in x: its first group, all of whose nodes lie ahead, must list the shot from two
+// nodes away, wherever the faces between them are. Or two pairs fly apart, and half of each against the other.
+Case random_chain(uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  Features features = spheres({1, 1, 1});
+  features.margin = 1.5;
+  Scene scene = block_scene(features);
+  scene.body = {};
+  for (int k = 0; k < 24; ++k) add_shot(scene, {1.0 * k, 0, 0}, Vec3::Zero());
+  if (seed % 4 != 0) {
+    add_shot(scene, {-3 - uniform(), 0, 0}, Vec3::Zero());  // where the cells start
+    add_shot(scene, {-0.99 - 0.1 * uniform(), 0.02 * uniform(), 0.02 * uniform()}, {0.1 + 0.25 * uniform(), 0, 0});
+  } else {
+    const double gap = 1.6 + 0.4 * uniform(), squeeze = 0.35 + 0.3 * uniform();
+    for (const double x : {0.0, squeeze, squeeze + gap, 2 * squeeze + gap})
+      add_shot(scene, {2 + x, 2 + 0.02 * uniform(), 0.02 * uniform()}, Vec3::Zero());
+  }
+  return cooked("chain " + std::to_string(seed), scene, 25);
+}
+
 // A compressed crystal that fills its rings, in cells of a conventional one: each particle is pushed by twelve
 // neighbours, whose kicks cancel to the last bit, until two of them are given a speed. Who is awake must feel those who
 // sleep; and no sum of a sleeper may meet another particle in the ring of sums, which of three threads the second goes
@@ -254,6 +275,15 @@ TEST(LatticeRuns, RandomShotsTouchPartsOfTheLists) {
   EXPECT_GT(count.lists.near_parts, 500u);
   EXPECT_GT(count.lists.list_mends, 150u);
   EXPECT_GT(count.updates, 200000u);
+}
+
+TEST(LatticeRuns, RandomChainsAreHitAcrossFaces) {
+  Count count;
+  for (uint64_t seed = 1; seed <= 400; ++seed) {
+    compare(random_chain(seed), {"", 1, true}, count);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(count.lists.near_parts, 500u);
 }
 
 TEST(LatticeRuns, SleepersPushThoseAwake) {
