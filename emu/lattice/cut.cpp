@@ -16,7 +16,7 @@ namespace {
 // Gives [begin, end) of `nodes` to the ranks [first, first + ranks), cut in planes across `axis` (-1: the longest).
 void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::vector<uint32_t>& nodes, size_t begin,
             size_t end, int first, int ranks, int axis, std::vector<uint16_t>& owner) {
-  if (ranks == 1) {
+  if (ranks == 1 || begin == end) {
     for (size_t k = begin; k < end; ++k) owner[nodes[k]] = static_cast<uint16_t>(first);
     return;
   }
@@ -32,7 +32,7 @@ void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::ve
       }
     along = 0;
     for (int a = 1; a < 3; ++a)
-      if (high[a] - low[a] > high[along] - low[along]) along = a;
+      if (int64_t{high[a]} - low[a] > int64_t{high[along]} - low[along]) along = a;
   }
   std::map<int32_t, uint64_t> planes;  // coordinate, weight
   uint64_t total = 0;

@@ -233,6 +233,12 @@ HWY_INLINE void take_ring(Block& block, uint32_t slot, uint32_t at, V sum[3]) {
   }
 }
 
+HWY_INLINE Int3 whole(const double sums[3][kLanes], uint32_t lane) {
+  Int3 of;
+  for (int a = 0; a < 3; ++a) of[a] = static_cast<int64_t>(sums[a][lane]);
+  return of;
+}
+
 // Kick and drift of a group's lanes `at` on, all free.
 HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i, uint32_t lanes, const Active& active,
                        const V sum[3], Block& block, V& fastest2) {
@@ -251,7 +257,7 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
     for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
     for (uint32_t l = 0; l < kLanes; ++l)
       if (lanes >> l & 1) {
-        const Int3 of{static_cast<int64_t>(sums[0][l]), static_cast<int64_t>(sums[1][l]), static_cast<int64_t>(sums[2][l])};
+        const Int3 of = whole(sums, l);
         update_one(rule, particles, i + l, of, active, block);
       }
     return;
@@ -350,7 +356,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
         for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
         for (uint32_t l = 0; l < kLanes; ++l)
           if (mine >> l & 1) {
-            const Int3 of{static_cast<int64_t>(sums[0][l]), static_cast<int64_t>(sums[1][l]), static_cast<int64_t>(sums[2][l])};
+            const Int3 of = whole(sums, l);
             update_one(rule, particles, i + l, of, active, block);
           }
       }

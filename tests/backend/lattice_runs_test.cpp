@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "tests/backend/against_golden.h"
 #include "tests/support/block.h"
@@ -84,6 +85,94 @@ Case blow() {
   return cooked("blow", scene, 400, widths);
 }
 
+// Particles of the last thread meet those of the first, who had no neighbours on other threads.
+Case from_below() {
+  Scene scene = block_scene(spheres({3, 3, 6}));
+  for (int k = 0; k < 2; ++k) add_shot(scene, {1.1 + 1.3 * k, 1.4 + 0.8 * k, -1.2 - 0.3 * k}, {0.1, -0.2, 1.2});
+  return cooked("from below", scene, 60);
+}
+
+// One particle flies far while all others rest: its list is mended all the way.
+Case flyer() {
+  Scene scene = block_scene(spheres({3, 3, 2}));
+  scene.reach = {Vec3(0, 0, 0), Vec3(3, 3, 20)};
+  add_shot(scene, {1.5, 1.4, 2 * kEdge + 0.6}, {0, 0.01, 1.3});
+  return cooked("flyer", scene, 120);
+}
+
+// A gas, damped, that at last collides faster than its relative velocities are wide.
+Case faulty_gas(uint64_t seed) {
+  Scene scene = block_scene({.size = {4, 4, 4},
+                             .cutoff = 1.4,
+                             .dt = 0.1,
+                             .jitter = 0.1,
+                             .speed = 0.8,
+                             .damping = 0.02,
+                             .seed = seed});
+  for (int a = 0; a < 3; ++a) {
+    scene.periodic.origin[a] = -0.3;
+    scene.periodic.extent[a] = 4 * kEdge;
+  }
+  return cooked("faulty gas " + std::to_string(seed), scene, 100);
+}
+
+// Shots at a block at rest, or between two that are squeezed together and fly apart, slow at first.
+Case random_shots(uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  Features features = spheres({3, 3, 2});
+  features.margin = 2;
+  Scene scene = block_scene(features);
+  const double top = 2 * kEdge;
+  if (seed % 2 == 0) {
+    for (int k = 0; k < 2; ++k)
+      add_shot(scene, {3 * kEdge * uniform(), 3 * kEdge * uniform(), top + 0.6 + k + 0.3 * uniform()},
+               {uniform() - 0.5, uniform() - 0.5, -0.2 - 1.3 * uniform()});
+  } else {
+    const Vec3 at(3 * kEdge * uniform(), 3 * kEdge * uniform(), top + 0.6 + uniform());
+    add_shot(scene, at, Vec3::Zero());
+    add_shot(scene, at + Vec3(0.3 * uniform(), 0.3 * uniform(), 0.3), Vec3::Zero());
+    scene.rule.dt = 0.05 + 0.2 * uniform();
+  }
+  return cooked("shots " + std::to_string(seed), scene, 60);
+}
+
+// A chain at rest is hit from below in x: its first group, all of whose nodes lie ahead, must list the shot from two
+// nodes away, wherever the faces between them are. Or two pairs fly apart, and half of each against the other.
+Case random_chain(uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  Features features = spheres({1, 1, 1});
+  features.margin = 1.5;
+  Scene scene = block_scene(features);
+  scene.body = {};
+  for (int k = 0; k < 24; ++k) add_shot(scene, {1.0 * k, 0, 0}, Vec3::Zero());
+  if (seed % 4 != 0) {
+    add_shot(scene, {-3 - uniform(), 0, 0}, Vec3::Zero());  // where the cells start
+    add_shot(scene, {-0.99 - 0.1 * uniform(), 0.02 * uniform(), 0.02 * uniform()}, {0.1 + 0.25 * uniform(), 0, 0});
+  } else {
+    const double gap = 1.6 + 0.4 * uniform(), squeeze = 0.35 + 0.3 * uniform();
+    for (const double x : {0.0, squeeze, squeeze + gap, 2 * squeeze + gap})
+      add_shot(scene, {2 + x, 2 + 0.02 * uniform(), 0.02 * uniform()}, Vec3::Zero());
+  }
+  return cooked("chain " + std::to_string(seed), scene, 25);
+}
+
+// A compressed crystal that fills its rings, in cells of a conventional one: each particle is pushed by twelve
+// neighbours, whose kicks cancel to the last bit, until two of them are given a speed. Who is awake must feel those who
+// sleep; and no sum of a sleeper may meet another particle in the ring of sums, which of three threads the second goes
+// through twice: the two are four layers apart, one lap.
+Case pressed() {
+  constexpr double kPress = 0.9;
+  Scene scene = block_scene({.size = {8, 8, 24}, .cutoff = 1.2, .jitter = 0, .speed = 0});
+  for (Vec3& x : scene.body.x) x *= kPress;
+  scene.periodic.origin.setConstant(-0.25 * kPress * kEdge);
+  scene.periodic.extent = Vec3(8, 8, 24) * kPress * kEdge;
+  const auto first_of = [](size_t x, size_t y, size_t z) { return 4 * (x + 8 * (y + 8 * z)); };
+  scene.body.v[first_of(7, 5, 9)] = scene.body.v[first_of(3, 5, 13)] = {0.3, -0.2, 0.1};
+  return cooked("pressed", scene, 6);
+}
+
 // The widest unit and plain integers, with and without threads.
 void compare_some(const Case& c, bool quiescence, Count& count) {
   const auto all = variants(c.setup.plan);
@@ -146,6 +235,70 @@ TEST(LatticeRuns, ABodySplitsInTwo) {
     EXPECT_GT(count.lists.list_builds, 40u);
     EXPECT_GT(count.lists.near_lists, count.lists.list_builds + 20);
     EXPECT_GT(count.moves, 2000u);
+  }
+}
+
+TEST(LatticeRuns, MendedListsJoinThreadsThatHadNoPairs) {
+  for (const bool quiescence : {false, true}) {
+    Count count;
+    compare_some(from_below(), quiescence, count);
+    if (HasFatalFailure()) return;
+    EXPECT_GT(count.lists.list_mends, 20u);
+  }
+}
+
+TEST(LatticeRuns, AFlyerStaysAwakeThroughAllNodes) {
+  for (const bool quiescence : {false, true}) {
+    Count count;
+    compare_some(flyer(), quiescence, count);
+    if (HasFatalFailure()) return;
+    EXPECT_EQ(count.faults, 0u);
+    EXPECT_GT(count.lists.list_mends, 100u);
+    EXPECT_GT(count.moves, 4 * 10u);
+  }
+}
+
+// Golden names the lower id of the two; storage by node puts it behind the other as often as not.
+TEST(LatticeRuns, FaultsOfPairsNameTheLowerIdHoweverParticlesAreStored) {
+  Count count;
+  for (uint64_t seed = 1; seed <= 12; ++seed)
+    for (const char* simd : {"", "portable"}) {
+      compare(faulty_gas(seed), {simd, 1, true}, count);
+      if (HasFatalFailure()) return;
+    }
+  EXPECT_GT(count.faults, 12u);
+  EXPECT_GT(count.lists.sorts, 12u);
+}
+
+TEST(LatticeRuns, RandomShotsTouchPartsOfTheLists) {
+  Count count;
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    const Case c = random_shots(seed);
+    compare(c, {seed % 4 == 0 ? "portable" : "", 1 + static_cast<int>(seed % 2), true}, count);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(count.lists.near_parts, 500u);
+  EXPECT_GT(count.lists.list_mends, 150u);
+  EXPECT_GT(count.updates, 200000u);
+}
+
+TEST(LatticeRuns, RandomChainsAreHitAcrossFaces) {
+  Count count;
+  for (uint64_t seed = 1; seed <= 400; ++seed) {
+    compare(random_chain(seed), {"", 1, true}, count);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(count.lists.near_parts, 500u);
+}
+
+TEST(LatticeRuns, SleepersPushThoseAwake) {
+  const Case c = pressed();
+  ASSERT_EQ(c.setup.plan.lattice.period(), (Cell{8, 8, 24}));
+  for (const bool quiescence : {false, true}) {
+    Count count;
+    compare_some(c, quiescence, count);
+    if (HasFatalFailure()) return;
+    EXPECT_EQ(count.lists.quiet_node_steps > 2 * 4 * 1000u, quiescence);
   }
 }
 

@@ -166,6 +166,40 @@ TEST(LatticeWidths, BeyondTheVectorsPlainIntegersAreChosen) {
   }
 }
 
+// A free particle between held ones: the sums from either side pass 2^51, where doubles beside 1.5 * 2^52 are no longer
+// whole, and cancel.
+TEST(LatticeWidths, SumsBeyondDoublesStayExact) {
+  Scene scene = block_scene({.size = {1, 1, 1}, .cutoff = 0.95, .dt = 0.6, .jitter = 0, .speed = 0, .margin = 1});
+  scene.rule.types = {{.name = "free"}, {.name = "held"}};
+  scene.rule.types[1].imposed = {true, true, true};
+  scene.body = {};
+  Dice dice(6);
+  std::vector<Vec3> side;
+  for (int k = 0; k < 8; ++k) side.emplace_back(0.5, 1e-4 * dice.draw(-500, 500), 1e-4 * dice.draw(-500, 500));
+  const auto put = [&](const Vec3& x, uint8_t type) {
+    scene.body.x.push_back(x);
+    scene.body.v.push_back(Vec3::Zero());
+    scene.body.type.push_back(type);
+  };
+  for (const Vec3& x : side) put(-x, 1);
+  put(Vec3::Zero(), 0);
+  for (const Vec3& x : side) put(x, 1);
+  Arch arch = widest();
+  arch.capacity = 40;
+  Count count;
+  const Case c{"squeezed", make_setup(scene, arch), 6};
+  ASSERT_FALSE(fits(c.setup.plan));
+  const FixedRule& rule = c.setup.plan.rule;
+  const auto kick = pair_kick(rule, c.setup.initial.particles[8].x, {}, 0,
+                              {c.setup.initial.particles[8].x[0] - (int64_t{1} << 29), c.setup.initial.particles[8].x[1],
+                               c.setup.initial.particles[8].x[2]},
+                              {}, 1);
+  ASSERT_GT(8 * kick.kick[0], int64_t{1} << 51);
+  compare_both(c, dice, count);
+  EXPECT_EQ(count.faults, 0u);
+  EXPECT_GT(count.updates, 100u);
+}
+
 // Tables of random words, steeper than any law's: each value that they can give shows in the kicks.
 TEST(LatticeWidths, RandomTablesGiveTheirValues) {
   Count count;

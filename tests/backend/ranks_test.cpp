@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "emu/lattice/engine.h"
@@ -111,6 +112,49 @@ TEST(Ranks, HoldGoldensBitsWhileParticlesChangeRanks) {
   compare(c, {1, true, "", nullptr, "bricks"}, count);
   EXPECT_GT(count.builds, 3u);
   EXPECT_GT(count.moves, 200u);
+}
+
+// Golden names the least fault, whichever rank meets it and however often particles changed ranks before.
+TEST(Ranks, HoldGoldensBitsInAHotGasUpToItsFault) {
+  Count count;
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    Scene scene = block_scene({.size = {4, 4, 4},
+                               .cutoff = 1.4,
+                               .dt = 0.1,
+                               .jitter = 0.1,
+                               .speed = 0.8,
+                               .damping = 0.02,
+                               .seed = seed});
+    for (int a = 0; a < 3; ++a) {
+      scene.periodic.origin[a] = -0.3;
+      scene.periodic.extent[a] = 4 * std::sqrt(2.0);
+    }
+    Arch arch;
+    arch.capacity = 60;
+    compare({"hot gas", make_setup(scene, arch), 100}, {1, seed % 2 == 0, "", nullptr, kCuts[seed - 1]}, count);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(count.faults, 1u);
+  EXPECT_GT(count.builds, 20u);
+  EXPECT_GT(count.moves, 400u);
+}
+
+// Where a rank stores nobody is not far from where it stored somebody before: the lists last as long as on one rank.
+TEST(Ranks, KeepTheirListsAsLongAsOneRankDoes) {
+  Features features;
+  features.size = {6, 3, 3};
+  features.speed = 0.3;
+  const Case c{"warm bar", block(features), 40};
+  Count count;
+  compare(c, {1, false, "", nullptr, "x"}, count);
+  if (HasFatalFailure()) return;
+  const auto& start = c.setup.initial.particles;
+  emu::LatticeEngine alone(c.setup.plan, 0, static_cast<uint32_t>(start.size()),
+                           [&](uint32_t k) { return start[k]; }, {1, false, "", nullptr, "bricks"});
+  for (uint64_t s = 0; s < c.steps; ++s) alone.step();
+  // One engine mends a list where ranks make it anew.
+  EXPECT_LE(count.builds, alone.counters().list_builds + alone.counters().list_mends + 1);
+  EXPECT_GT(count.builds, 3u);
 }
 
 TEST(Ranks, RefuseAnUnknownCut) {
