@@ -16,8 +16,8 @@ namespace cuboct::emu {
 // multiple of it.
 inline constexpr uint32_t kGroup = 8;
 
-// A fixed number of trivially copyable elements, readable (and writable) kGroup elements and 64 bytes beyond either
-// end, so that a vector may overhang. Cache-line aligned.
+// A fixed number of trivially copyable elements, readable (and writable) kGroup elements and 64 bytes beyond
+// either end, so that a vector may overhang. Cache-line aligned.
 template <typename T>
 class PaddedArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -33,7 +33,9 @@ class PaddedArray {
     const auto address = reinterpret_cast<uintptr_t>(raw);
     data_ = reinterpret_cast<T*>((address + kLine - 1) / kLine * kLine) + lead;
   }
-  PaddedArray(size_t size, T fill) : PaddedArray(size) { std::fill(data_ - kGroup, data_ + size + kGroup, fill); }
+  PaddedArray(size_t size, T fill) : PaddedArray(size) {
+    std::fill(data_ - kGroup, data_ + size + kGroup, fill);
+  }
   PaddedArray copy() const {
     PaddedArray result(size_);
     std::copy(data_, data_ + size_, result.data_);

@@ -7,9 +7,9 @@
 // pairs. Any set of pairs can be written so.
 //
 // Inside a block each pair stands once, at its particle of lower index: the kick of the other one is added to
-// a ring of sums that runs ahead of the groups. When a group's own entries are done, nobody else needs its old
-// positions, and its sums are complete: it is updated on the spot. Pairs between blocks stand on both sides
-// and are summed before any block is updated.
+// a ring of sums that runs ahead of the groups. When a group's own entries are done, nobody else needs its
+// old positions, and its sums are complete: it is updated on the spot. Pairs between blocks stand on both
+// sides and are summed before any block is updated.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@
 
 namespace cuboct::emu {
 
-// The pairs (group's lane l, particle first() + l) for the bits l of `lanes`. Six bytes: a crystal has some three entries per
-// particle.
+// The pairs (group's lane l, particle first() + l) for the bits l of `lanes`. Six bytes: a crystal has some
+// three entries per particle.
 struct Entry {
   uint16_t first_low, first_high;
   uint8_t lanes;
@@ -42,10 +42,10 @@ struct Particles {
                                          // since the last list was built
   std::array<PaddedArray<double>, 3> v;  // P+G fractional bits
   std::array<PaddedArray<double>, 3> u;  // P+G fractional bits; empty unless the rule has PD
-  PaddedArray<uint32_t> id;              // empty where a particle's index is its id; else kNoParticle where a block's
-                                         // last group is not full
+  PaddedArray<uint32_t> id;  // empty where a particle's index is its id; else kNoParticle where a block's
+                             // last group is not full
   uint32_t id_of(uint32_t index) const { return id.size() == 0 ? index : id[index]; }
-  const uint32_t* node = nullptr;        // readable kGroup elements beyond
+  const uint32_t* node = nullptr;  // readable kGroup elements beyond
   PaddedArray<uint8_t> type;
   // By group: its nodes are among low ... low + span - 1. Wider than need be after migrations.
   struct Nodes {
@@ -87,20 +87,20 @@ struct Block {
   uint32_t first_group() const { return begin / kGroup; }
   uint32_t groups() const { return (end - begin + kGroup - 1) / kGroup; }
 
-  PairList inside;  // pairs inside the block
-  Edge beside;      // pairs with other blocks
-  Edge ghosts;      // pairs with particles of other ranks
+  PairList inside;             // pairs inside the block
+  Edge beside;                 // pairs with other blocks
+  Edge ghosts;                 // pairs with particles of other ranks
   std::vector<uint8_t> plain;  // by group: updated in vectors
 
-  // Sums of particle p at index p - begin modulo the ring's size, a power of two, kMagic where nothing was added; a
-  // vector may overhang the end, where the next lap's first kGroup sums continue.
+  // Sums of particle p at index p - begin modulo the ring's size, a power of two, kMagic where nothing was
+  // added; a vector may overhang the end, where the next lap's first kGroup sums continue.
   std::array<PaddedArray<double>, 3> ring;
   uint32_t ring_mask = 0;
 
   // Answers of a step.
   std::vector<Crossing> crossings;  // indices
   std::vector<Found> pair_faults, update_faults;
-  double fastest2 = 0;            // largest v.v
+  double fastest2 = 0;  // largest v.v
 };
 
 // The sums of an edge while its block's groups go by.

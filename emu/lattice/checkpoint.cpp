@@ -76,10 +76,9 @@ CheckpointReader::CheckpointReader(const std::string& path, uint64_t plan_hash, 
   in_.seek(2);
   head_.plan_hash = in_.word();
   if (head_.plan_hash != plan_hash)
-    throw InputError(
-        fmt::format("{} was made by plan {:016x}; this scene and machine give plan {:016x}", path,
-                    head_.plan_hash, plan_hash),
-        "resume with the scene, machine and program that wrote it");
+    throw InputError(fmt::format("{} was made by plan {:016x}; this scene and machine give plan {:016x}",
+                                 path, head_.plan_hash, plan_hash),
+                     "resume with the scene, machine and program that wrote it");
   head_.step = in_.word();
   head_.particles = static_cast<uint32_t>(in_.word());
   head_.hash_every = in_.word();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A run's state on disk. A checkpoint is written under another name, brought to the disk and renamed: whatever
-// kills the run, the file of this name is a whole one. Layout: docs/reference/checkpoint.md.
+// A run's state on disk. A checkpoint is written under another name, brought to the disk and renamed:
+// whatever kills the run, the file of this name is a whole one. Layout: docs/reference/checkpoint.md.
 #pragma once
 
 #include <string>

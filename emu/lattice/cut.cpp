@@ -13,9 +13,10 @@
 namespace cuboct::emu {
 namespace {
 
-// Gives [begin, end) of `nodes` to the ranks [first, first + ranks), cut in planes across `axis` (-1: the longest).
-void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::vector<uint32_t>& nodes, size_t begin,
-            size_t end, int first, int ranks, int axis, std::vector<uint16_t>& owner) {
+// Gives [begin, end) of `nodes` to the ranks [first, first + ranks), cut in planes across `axis` (-1: the
+// longest).
+void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::vector<uint32_t>& nodes,
+            size_t begin, size_t end, int first, int ranks, int axis, std::vector<uint16_t>& owner) {
   if (ranks == 1 || begin == end) {
     for (size_t k = begin; k < end; ++k) owner[nodes[k]] = static_cast<uint16_t>(first);
     return;
@@ -66,11 +67,13 @@ std::vector<uint16_t> cut_nodes(const Lattice& lattice, const std::vector<uint16
                                 const std::string& how) {
   const std::string axes = "xyz";
   const bool slabs = how.size() == 1 && axes.find(how) != std::string::npos;
-  if (!slabs && how != "bricks") throw InputError(fmt::format("unknown cut '{}'", how), "one of bricks, x, y, z");
+  if (!slabs && how != "bricks")
+    throw InputError(fmt::format("unknown cut '{}'", how), "one of bricks, x, y, z");
   std::vector<uint16_t> owner(lattice.size());
   std::vector<uint32_t> nodes(lattice.size());
   std::iota(nodes.begin(), nodes.end(), 0u);
-  bisect(lattice, weight, nodes, 0, nodes.size(), 0, ranks, slabs ? static_cast<int>(axes.find(how)) : -1, owner);
+  bisect(lattice, weight, nodes, 0, nodes.size(), 0, ranks, slabs ? static_cast<int>(axes.find(how)) : -1,
+         owner);
   return owner;
 }
 

@@ -25,12 +25,14 @@ void check_span(const Lattice& lattice, int position_frac) {
   const auto most = static_cast<int64_t>(std::ldexp(1.0, 52 - position_frac)) - 4;
   for (int a = 0; a < 3; ++a) {
     int64_t reach = lattice.period()[a];
-    for (uint32_t n = 0; n < lattice.size(); ++n) reach = std::max(reach, std::abs(int64_t{lattice.cell(n)[a]}));
+    for (uint32_t n = 0; n < lattice.size(); ++n)
+      reach = std::max(reach, std::abs(int64_t{lattice.cell(n)[a]}));
     if (reach > most)
-      throw InputError(fmt::format("the lattice reaches {} cells along {}: with position_frac = {} the lattice engine "
-                                   "holds up to {}",
-                                   reach, "xyz"[a], position_frac, most),
-                       "use another engine, or fewer fractional bits in the arch file");
+      throw InputError(
+          fmt::format("the lattice reaches {} cells along {}: with position_frac = {} the lattice engine "
+                      "holds up to {}",
+                      reach, "xyz"[a], position_frac, most),
+          "use another engine, or fewer fractional bits in the arch file");
   }
 }
 
@@ -44,7 +46,8 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
       lattice_(plan.lattice),
       options_(options),
       rule_(kernel_rule(plan.rule, plan.arch.capacity)),
-      cutoff_(std::ldexp(std::sqrt(static_cast<double>(plan.rule.cutoff2)), -plan.rule.widths.difference_frac)),
+      cutoff_(
+          std::ldexp(std::sqrt(static_cast<double>(plan.rule.cutoff2)), -plan.rule.widths.difference_frac)),
       threads_(thread_count(options, count)),
       step_(step),
       count_(count),
@@ -74,7 +77,8 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
   members_ = Members(lattice_, plan_.arch.capacity, count_);
   std::vector<RunError> faults;
   const auto enter = [&](const Particle& p) {
-    if (!members_.append(p.node, p.id)) faults.push_back(error(Fault::full_x, p.node, p.id, plan_.arch.capacity));
+    if (!members_.append(p.node, p.id))
+      faults.push_back(error(Fault::full_x, p.node, p.id, plan_.arch.capacity));
   };
   const auto put = [&](const Particle& p, uint32_t at) {
     if (particles_.id.size() > 0) particles_.id[at] = p.id;
@@ -196,8 +200,8 @@ uint64_t LatticeEngine::hash() const {
   uint64_t sum = 0;
 #pragma omp parallel for schedule(static, 1) num_threads(impl.threads_) reduction(+ : sum)
   for (size_t b = 0; b < impl.blocks_.size(); ++b)
-    sum += hash_particles(impl.particles_, impl.lattice_, impl.members_.nodes(), impl.plan_.rule.widths.position_frac,
-                          impl.blocks_[b].begin, impl.blocks_[b].end);
+    sum += hash_particles(impl.particles_, impl.lattice_, impl.members_.nodes(),
+                          impl.plan_.rule.widths.position_frac, impl.blocks_[b].begin, impl.blocks_[b].end);
   if (impl_->shared()) impl_->options_.ranks->sum({&sum, 1});
   return sum;
 }

@@ -19,7 +19,7 @@ struct LatticeOptions {
   int threads = 0;         // 0: one per core that the process may use, fewer for small scenes
   bool quiescence = true;  // nodes at rest among nodes at rest are skipped; no bit depends on it
   std::string simd;        // "avx512", "avx2", "128-bit", "portable"; empty: the widest that this machine has
-  Ranks* ranks = nullptr;      // who shares the scene; null: nobody. Must outlive the engine
+  Ranks* ranks = nullptr;  // who shares the scene; null: nobody. Must outlive the engine
   std::string cut = "bricks";  // how: see cut.h
 };
 
@@ -38,11 +38,11 @@ struct LatticeCounters {
 // Where ranks share the scene, every call but the plain getters is collective.
 class LatticeEngine {
  public:
-  // `particle(k)`, k = 0 ... count-1, is called once each in this order (twice with ranks): no second copy of the
-  // state is held. Ids are 0 ... count-1.
-  // Particles of one node take its slots in the order in which they come (by id at the start of a run; in the
-  // order of for_each_slot when a run resumes). `plan` must outlive the engine. Throws RunError where a node
-  // would hold more than its capacity, InputError where `simd` is not to be had.
+  // `particle(k)`, k = 0 ... count-1, is called once each in this order (twice with ranks): no second copy of
+  // the state is held. Ids are 0 ... count-1. Particles of one node take its slots in the order in which they
+  // come (by id at the start of a run; in the order of for_each_slot when a run resumes). `plan` must outlive
+  // the engine. Throws RunError where a node would hold more than its capacity, InputError where `simd` is
+  // not to be had.
   LatticeEngine(const Plan& plan, uint64_t step, uint32_t count,
                 const std::function<Particle(uint32_t)>& particle, const LatticeOptions& options);
   ~LatticeEngine();
@@ -61,7 +61,8 @@ class LatticeEngine {
   uint64_t hash() const;                                                      // hash_of(lattice, state())
   Int3 momentum() const;
 
-  // For the timing model, without ranks: the particles by node and slot, and those that left their node in the last step.
+  // For the timing model, without ranks: the particles by node and slot, and those that left their node in
+  // the last step.
   void slots(NodeSlots& out) const;
   std::span<const Leaving> leaving() const;
 

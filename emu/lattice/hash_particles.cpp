@@ -43,9 +43,10 @@ HWY_INLINE V integer(hn::Vec<D> whole) {
   return hn::Sub(hn::BitCast(u, hn::Add(whole, magic)), hn::BitCast(u, magic));
 }
 
-uint64_t hash_particles(const Particles& particles, const Lattice& lattice, const uint32_t* node, int position_frac,
-                        uint32_t begin, uint32_t end) {
-  const auto cell = hn::Set(d, std::ldexp(1.0, position_frac)), inverse = hn::Set(d, std::ldexp(1.0, -position_frac));
+uint64_t hash_particles(const Particles& particles, const Lattice& lattice, const uint32_t* node,
+                        int position_frac, uint32_t begin, uint32_t end) {
+  const auto cell = hn::Set(d, std::ldexp(1.0, position_frac)),
+             inverse = hn::Set(d, std::ldexp(1.0, -position_frac));
   const bool pd = particles.u[0].size() > 0;
   V sum = hn::Zero(u);
   for (uint32_t i = begin; i < end; i += kStride) {
@@ -92,8 +93,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace cuboct::emu {
 HWY_EXPORT(hash_particles);
-uint64_t hash_particles(const Particles& particles, const Lattice& lattice, const uint32_t* node, int position_frac,
-                        uint32_t begin, uint32_t end) {
+uint64_t hash_particles(const Particles& particles, const Lattice& lattice, const uint32_t* node,
+                        int position_frac, uint32_t begin, uint32_t end) {
   return HWY_DYNAMIC_DISPATCH(hash_particles)(particles, lattice, node, position_frac, begin, end);
 }
 }  // namespace cuboct::emu

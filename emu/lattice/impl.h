@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The parts of the lattice engine: engine.cpp (in and out), step.cpp (one step), lists.cpp (who meets whom), share.cpp
-// (what each rank stores).
+// The parts of the lattice engine: engine.cpp (in and out), step.cpp (one step), lists.cpp (who meets whom),
+// share.cpp (what each rank stores).
 #pragma once
 
 #include <omp.h>
@@ -97,7 +97,8 @@ struct LatticeEngine::Impl {
   std::vector<Leaving> leaving_;
   LatticeCounters counters_;
 
-  // With another rank: own particles (indices) that it sees as ghosts, and the places of its own that are ghosts here.
+  // With another rank: own particles (indices) that it sees as ghosts, and the places of its own that are
+  // ghosts here.
   struct Peer {
     std::vector<uint32_t> give;
     uint32_t take_from = 0, take_count = 0;

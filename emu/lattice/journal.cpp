@@ -46,8 +46,8 @@ Journal::Journal(const std::string& path, uint64_t plan_hash, bool displaced, co
     : path_(path), displaced_(displaced) {
   WordReader in(path);
   if (in.size() < end.words)
-    throw InputError(fmt::format("{} is damaged: its checkpoint needs {} words, it has {}", path, end.words,
-                                 in.size()));
+    throw InputError(
+        fmt::format("{} is damaged: its checkpoint needs {} words, it has {}", path, end.words, in.size()));
   for (uint64_t k = 0; k < end.words; ++k) in.word();
   if (in.mark() != end)
     throw InputError(fmt::format("{} is damaged: its words hash to {:016x}, its checkpoint says {:016x}",

@@ -27,7 +27,9 @@ static_assert(kGroup % kLanes == 0);
 
 HWY_INLINE V magic() { return hn::Set(d, kMagic); }
 // round_odd(a, s) for factor = rounding_factor(s).
-HWY_INLINE V rounded(V a, double factor) { return hn::Sub(hn::MulAdd(a, hn::Set(d, factor), magic()), magic()); }
+HWY_INLINE V rounded(V a, double factor) {
+  return hn::Sub(hn::MulAdd(a, hn::Set(d, factor), magic()), magic());
+}
 
 HWY_INLINE M lane_mask(uint32_t lanes) {
   const uint8_t bits[8] = {static_cast<uint8_t>(lanes)};
@@ -61,14 +63,16 @@ HWY_INLINE V table_value(const KernelTable& table, V r2) {
   if (!table.octaves) {
     bits = hn::BitCast(u, hn::Add(r2, hn::BitCast(d, two52)));
     index = hn::And(hn::ShiftRightSame(bits, table.index_shift), hn::Set(u, table.index_mask));
-    t = hn::Sub(hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(u, table.t_mask)), two52)), hn::BitCast(d, two52));
+    t = hn::Sub(hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(u, table.t_mask)), two52)),
+                hn::BitCast(d, two52));
   } else {
     bits = hn::BitCast(u, r2);
-    const auto place = hn::Sub(hn::BitCast(i, hn::ShiftRightSame(bits, table.index_shift)),
-                               hn::Set(i, table.index_base));
+    const auto place =
+        hn::Sub(hn::BitCast(i, hn::ShiftRightSame(bits, table.index_shift)), hn::Set(i, table.index_base));
     const auto inside = hn::Gt(place, hn::Set(i, int64_t{-1}));
     index = hn::And(hn::BitCast(u, hn::IfThenElseZero(inside, place)), hn::Set(u, table.index_mask));
-    t = hn::Sub(hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(u, table.t_mask)), two52)), hn::BitCast(d, two52));
+    t = hn::Sub(hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(u, table.t_mask)), two52)),
+                hn::BitCast(d, two52));
     t = hn::IfThenElseZero(hn::RebindMask(d, inside), t);
   }
   const auto word = hn::GatherIndex(u, table.words.data(), hn::BitCast(i, index));
@@ -135,8 +139,7 @@ HWY_INLINE V kick_factor(const KernelRule& rule, V& s, V dx[3]) {
 HWY_INLINE uint32_t awake_lanes(const uint8_t* node_flag, const Particles& particles, uint32_t g) {
   uint32_t lanes = 0;
   const uint32_t* node = particles.node + size_t{g} * kGroup;
-  for (uint32_t l = 0; l < kGroup; ++l)
-    lanes |= static_cast<uint32_t>(node_flag[node[l]] != 0) << l;
+  for (uint32_t l = 0; l < kGroup; ++l) lanes |= static_cast<uint32_t>(node_flag[node[l]] != 0) << l;
   return lanes;
 }
 
@@ -168,7 +171,8 @@ void prune(const Particles& particles, double reach, const uint8_t* only, Block&
   const uint32_t first = block.first_group();
   for (uint32_t k = 0; k < block.groups(); ++k)
     if (only == nullptr || any_flag(only, particles, first + k))
-      prune_group(particles, reach2, size_t{first + k} * kGroup, block.inside.groups[k], block.inside.entries.data());
+      prune_group(particles, reach2, size_t{first + k} * kGroup, block.inside.groups[k],
+                  block.inside.entries.data());
   for (Edge* edge : {&block.beside, &block.ghosts})
     for (uint32_t k = 0; k < edge->group.size(); ++k) {
       const uint32_t g = first + edge->group[k];
@@ -187,14 +191,15 @@ HWY_INLINE Own load_own(const Particles& particles, uint32_t i) {
   return own;
 }
 
-HWY_NOINLINE void report(const KernelRule& rule, const Particles& particles, uint32_t i, int32_t j, uint8_t shift,
-                         uint32_t lanes, bool both, Block& block) {
+HWY_NOINLINE void report(const KernelRule& rule, const Particles& particles, uint32_t i, int32_t j,
+                         uint8_t shift, uint32_t lanes, bool both, Block& block) {
   for (uint32_t l = 0; l < kLanes; ++l)
     if (lanes >> l & 1) report_pair(rule, particles, i + l, j + l, shift, both, block);
 }
 
 template <bool kSimple, bool kDamped, bool kScaled>
-void across(const KernelRule& rule, const Particles& particles, const Active& active, Edge& edge, Block& block) {
+void across(const KernelRule& rule, const Particles& particles, const Active& active, Edge& edge,
+            Block& block) {
   for (size_t k = 0; k < edge.group.size(); ++k) {
     const uint32_t g = block.first_group() + edge.group[k];
     if (active.near != nullptr && !any_flag(active.near, particles, g)) continue;
@@ -207,9 +212,11 @@ void across(const KernelRule& rule, const Particles& particles, const Active& ac
         const Entry& entry = edge.pairs.entries[e];
         uint32_t doubtful = 0;
         V s, dx[3];
-        if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, entry, at, s, dx, doubtful)) continue;
+        if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, entry, at, s, dx, doubtful))
+          continue;
         if (HWY_UNLIKELY(doubtful != 0))
-          report(rule, particles, i, entry.first() + static_cast<int32_t>(at), entry.shift, doubtful, false, block);
+          report(rule, particles, i, entry.first() + static_cast<int32_t>(at), entry.shift, doubtful, false,
+                 block);
         const V factor = kick_factor<kSimple>(rule, s, dx);
         for (int a = 0; a < 3; ++a) sum[a] = hn::NegMulAdd(dx[a], factor, sum[a]);
       }
@@ -240,8 +247,8 @@ HWY_INLINE Int3 whole(const double sums[3][kLanes], uint32_t lane) {
 }
 
 // Kick and drift of a group's lanes `at` on, all free.
-HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i, uint32_t lanes, const Active& active,
-                       const V sum[3], Block& block, V& fastest2) {
+HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i, uint32_t lanes,
+                       const Active& active, const V sum[3], Block& block, V& fastest2) {
   const M mask = lane_mask(lanes);
   const FixedType& type = rule.rule->types[particles.type[i]];
   V v[3];
@@ -272,7 +279,8 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
     before[a] = hn::Floor(hn::Mul(x, hn::Set(d, rule.inverse_cell)));
     after[a] = hn::Floor(hn::Mul(new_x, hn::Set(d, rule.inverse_cell)));
     crossed = hn::Or(crossed, hn::Ne(before[a], after[a]));
-    if (active.changed != nullptr) changed = hn::Or(changed, hn::Or(hn::Ne(step, hn::Zero(d)), hn::Ne(v[a], old_v)));
+    if (active.changed != nullptr)
+      changed = hn::Or(changed, hn::Or(hn::Ne(step, hn::Zero(d)), hn::Ne(v[a], old_v)));
     hn::Store(hn::IfThenElse(mask, new_x, x), d, particles.x[a].data() + i);
     hn::Store(hn::IfThenElse(mask, v[a], old_v), d, particles.v[a].data() + i);
   }
@@ -328,9 +336,11 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
             continue;
           uint32_t doubtful = 0;
           V s, dx[3];
-          if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, s, dx, doubtful)) continue;
+          if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, s, dx, doubtful))
+            continue;
           if (HWY_UNLIKELY(doubtful != 0))
-            report(rule, particles, i, e->first() + static_cast<int32_t>(at), e->shift, doubtful, true, block);
+            report(rule, particles, i, e->first() + static_cast<int32_t>(at), e->shift, doubtful, true,
+                   block);
           written = std::max(written, static_cast<uint32_t>(e->first()) + kGroup);
           const uint32_t to = ((static_cast<uint32_t>(e->first()) - block.begin) & block.ring_mask) + at;
           const V factor = kick_factor<kSimple>(rule, s, dx);

@@ -20,7 +20,9 @@ struct Active {
   uint8_t* changed = nullptr;      // by node: set to 1 where a particle changed; null: nobody asks
 
   // Particles of one node may be in the blocks of several threads.
-  void mark(uint32_t node) const { std::atomic_ref<uint8_t>(changed[node]).store(1, std::memory_order_relaxed); }
+  void mark(uint32_t node) const {
+    std::atomic_ref<uint8_t>(changed[node]).store(1, std::memory_order_relaxed);
+  }
 };
 
 // Whether one of the nodes of group g has a flag; may say yes too often.
@@ -37,8 +39,8 @@ inline bool any_flag(const uint8_t* node_flag, const Particles& particles, uint3
 
 struct Kernels {
   std::string name;
-  // Puts the entries with a pair within `reach` (P fractional bits) first in their groups, in the groups with a
-  // particle in a node of `only` (by node; null: all).
+  // Puts the entries with a pair within `reach` (P fractional bits) first in their groups, in the groups with
+  // a particle in a node of `only` (by node; null: all).
   void (*prune)(const Particles&, double reach, const uint8_t* only, Block&);
   // The sums of an edge of the block.
   void (*across)(const KernelRule&, const Particles&, const Active&, Edge&, Block&);
@@ -53,7 +55,7 @@ std::vector<Kernels> kernels_here(const KernelRule& rule);
 // Lanes of a pair (or an update) that something did not fit: plain integers find out what.
 void report_pair(const KernelRule& rule, const Particles& particles, uint32_t i, uint32_t j, uint8_t shift,
                  bool both, Block& block);
-void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const Int3& sum, const Active& active,
-                Block& block);
+void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const Int3& sum,
+                const Active& active, Block& block);
 
 }  // namespace cuboct::emu

@@ -31,7 +31,8 @@ KernelTable kernel_table(const FixedTable& table, int strength_bits) {
   const int below_t = k.index_shift - table.fraction_bits;
   k.t_mask = ((uint64_t{1} << table.fraction_bits) - 1) << below_t;
   k.t_factor = std::ldexp(rounding_factor(table.fraction_bits), -below_t);
-  k.narrow_t_factor = std::ldexp(rounding_factor(table.fraction_bits, strength_bits + table.fraction_bits), -below_t);
+  k.narrow_t_factor =
+      std::ldexp(rounding_factor(table.fraction_bits, strength_bits + table.fraction_bits), -below_t);
   return k;
 }
 
@@ -83,8 +84,8 @@ KernelRule kernel_rule(const FixedRule& rule, int capacity) {
            S + D - rule.kick_shift + partners < kExact && w.velocity_bits <= kExact && S + 1 + 18 <= kExact &&
            2 * (w.strength_bits) + 10 <= 64;
   if (rule.damped)
-    k.fits = k.fits && w.relative_velocity_bits - 1 + D + 2 <= kExact &&
-             S + w.relative_velocity_bits - 1 < kExact;
+    k.fits =
+        k.fits && w.relative_velocity_bits - 1 + D + 2 <= kExact && S + w.relative_velocity_bits - 1 < kExact;
   return k;
 }
 

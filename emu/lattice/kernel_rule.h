@@ -53,14 +53,14 @@ struct KernelRule {
   double cutoff2 = 0;
   KernelTable force;
   double kick_factor = 0;
-  // Widths so narrow that a rounding factor can be multiplied into s, and into t, exactly: one multiplication less for
-  // each product.
+  // Widths so narrow that a rounding factor can be multiplied into s, and into t, exactly: one multiplication
+  // less for each product.
   bool narrow = false;
   double narrow_kick_factor = 0;
   bool damped = false;
   KernelTable damp;
   double w_factor = 0, q_factor = 0, damp_factor = 0;
-  double w_limit = 0;         // |w| from here on may not fit
+  double w_limit = 0;            // |w| from here on may not fit
   double s_low = 0, s_high = 0;  // s outside [low, high) does not fit
   bool scaled = false;
   int types = 1;

@@ -14,8 +14,8 @@ Int3 whole(const std::array<PaddedArray<double>, 3>& a, uint32_t p) {
   return {static_cast<int64_t>(a[0][p]), static_cast<int64_t>(a[1][p]), static_cast<int64_t>(a[2][p])};
 }
 
-// Sums beside kMagic as whole numbers. Between 2^52 and 2^53 doubles are spaced by 1, so their bits count like
-// integers: where the vector kernels fit these are their sums, and 64 bits hold those of any rule.
+// Sums beside kMagic as whole numbers. Between 2^52 and 2^53 doubles are spaced by 1, so their bits count
+// like integers: where the vector kernels fit these are their sums, and 64 bits hold those of any rule.
 int64_t taken(double sum) { return std::bit_cast<int64_t>(sum) - std::bit_cast<int64_t>(kMagic); }
 void add(double& sum, int64_t value) { sum = std::bit_cast<double>(std::bit_cast<int64_t>(sum) + value); }
 
@@ -36,7 +36,8 @@ bool near(const Particles& particles, double reach2, uint32_t base, const Entry&
     if ((entry.lanes >> l & 1) == 0) continue;
     double r2 = 0;
     for (int a = 0; a < 3; ++a) {
-      const double d = particles.x[a][entry.first() + l] - particles.x[a][base + l] + particles.shift[entry.shift][a];
+      const double d =
+          particles.x[a][entry.first() + l] - particles.x[a][base + l] + particles.shift[entry.shift][a];
       r2 += d * d;
     }
     if (r2 <= reach2) return true;
@@ -56,10 +57,12 @@ void prune(const Particles& particles, double reach, const uint8_t* only, Block&
   };
   for (uint32_t k = 0; k < block.groups(); ++k) sort(block.inside, k, block.first_group() + k);
   for (Edge* edge : {&block.beside, &block.ghosts})
-    for (uint32_t k = 0; k < edge->group.size(); ++k) sort(edge->pairs, k, block.first_group() + edge->group[k]);
+    for (uint32_t k = 0; k < edge->group.size(); ++k)
+      sort(edge->pairs, k, block.first_group() + edge->group[k]);
 }
 
-void across(const KernelRule& rule, const Particles& particles, const Active& active, Edge& edge, Block& block) {
+void across(const KernelRule& rule, const Particles& particles, const Active& active, Edge& edge,
+            Block& block) {
   for (size_t k = 0; k < edge.group.size(); ++k) {
     const uint32_t g = block.first_group() + edge.group[k];
     if (active.near != nullptr && !any_flag(active.near, particles, g)) continue;
@@ -136,8 +139,8 @@ void report_pair(const KernelRule& rule, const Particles& particles, uint32_t i,
   if (on_j.fault != Fault::none) block.pair_faults.push_back({on_j.fault, j, on_j.number});
 }
 
-void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const Int3& sum, const Active& active,
-                Block& block) {
+void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const Int3& sum,
+                const Active& active, Block& block) {
   const Int3 x = whole(particles.x, p), v = whole(particles.v, p);
   const bool pd = particles.u[0].size() > 0;
   const Int3 u = pd ? whole(particles.u, p) : Int3{};

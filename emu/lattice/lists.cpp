@@ -9,9 +9,9 @@ namespace cuboct::emu {
 namespace {
 
 // Two lists, as in Verlet's method: the far one holds pairs up to the cutoff plus a skin, in cells; it is
-// searched anew when some particle may have moved half of that. The near one is what the far one leaves within
-// the cutoff plus a thinner skin, and is taken from it every few steps (a dual pair list: Pall et al., J. Chem. Phys. 153, 134110, 2020).
-// The far skin grows while its lists hold for less than kShortLife steps.
+// searched anew when some particle may have moved half of that. The near one is what the far one leaves
+// within the cutoff plus a thinner skin, and is taken from it every few steps (a dual pair list: Pall et al.,
+// J. Chem. Phys. 153, 134110, 2020). The far skin grows while its lists hold for less than kShortLife steps.
 constexpr double kMostSkin = 0.5;
 constexpr uint64_t kShortLife = 20;
 // A list is mended where at most this share of the particles moved farther than this share of the skin.
@@ -31,7 +31,8 @@ constexpr double kFewLanes = 2.5;
 }  // namespace
 
 double LatticeEngine::Impl::reach_of_step() const {
-  return std::ldexp(fastest_ + 2 * std::ldexp(1.0, plan_.rule.widths.guard), -plan_.rule.widths.velocity_frac());
+  return std::ldexp(fastest_ + 2 * std::ldexp(1.0, plan_.rule.widths.guard),
+                    -plan_.rule.widths.velocity_frac());
 }
 
 // Calls see(index) for each that may have moved since the far list was made.
@@ -123,12 +124,14 @@ bool LatticeEngine::Impl::mend() {
   if (static_cast<double>(strays.size()) > kMostMended * count_) return false;
   for (const uint32_t p : strays)
     for (int a = 0; a < 3; ++a)  // beyond the seam of a ring: the shifts of its entries no longer hold
-      if (std::floor(particles_.x[a][p] * rule_.inverse_cell) != lattice_.cell(particles_.node[p])[a]) return false;
+      if (std::floor(particles_.x[a][p] * rule_.inverse_cell) != lattice_.cell(particles_.node[p])[a])
+        return false;
   for (const uint32_t p : strays) snapshot_.look(particles_, p);
   std::vector<uint8_t> only(stored_ / kGroup);
   Search search(lattice_, rows_, cutoff_ + skin_, members_, index_, snapshot_);
   for (const uint32_t p : strays)
-    for (const auto& hit : search.around(particles_.node[p], {snapshot_.at[0][p], snapshot_.at[1][p], snapshot_.at[2][p]}))
+    for (const auto& hit :
+         search.around(particles_.node[p], {snapshot_.at[0][p], snapshot_.at[1][p], snapshot_.at[2][p]}))
       only[hit.particle / kGroup] = 1;
   for_each_block([&](Block& block) { mend_list(particles_, snapshot_, search, only, block); });
   ++counters_.list_mends;

@@ -7,7 +7,11 @@
 namespace cuboct::emu {
 
 Members::Members(const Lattice& lattice, int capacity, size_t particles)
-    : lattice_(&lattice), capacity_(capacity), head_(lattice.size()), next_(particles), count_(lattice.size()),
+    : lattice_(&lattice),
+      capacity_(capacity),
+      head_(lattice.size()),
+      next_(particles),
+      count_(lattice.size()),
       node_(particles) {}
 
 bool Members::append(uint32_t node, uint32_t particle) {
@@ -56,7 +60,9 @@ std::vector<Refused> Members::migrate(std::span<const Crossing> crossings, std::
   std::vector<Refused> refused;
   std::vector<Move> moves;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto fault = [axis](Fault along_x) { return static_cast<Fault>(static_cast<int>(along_x) + 2 * axis); };
+    const auto fault = [axis](Fault along_x) {
+      return static_cast<Fault>(static_cast<int>(along_x) + 2 * axis);
+    };
     moves.clear();
     for (const Crossing& c : crossings) {
       const int way = c.away[axis];

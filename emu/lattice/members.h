@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which particles (by id) a node holds, in the order of its slots, and their migration. Where ranks share a scene each has
-// all of this: it is what decides alike on all of them.
+// Which particles (by id) a node holds, in the order of its slots, and their migration. Where ranks share a
+// scene each has all of this: it is what decides alike on all of them.
 #pragma once
 
 #include <cstdint>
@@ -37,9 +37,9 @@ class Members {
     for (uint32_t p = head_[node], k = 0; k < count_[node]; ++k, p = next_[p]) see(p);
   }
 
-  // Moves the particles (ids) that crossed, axis by axis, as the machine does: those who stay keep their order, then
-  // come those from below in their order, then those from above. Stops after an axis on which someone was
-  // refused. `leaving` becomes what the timing model needs.
+  // Moves the particles (ids) that crossed, axis by axis, as the machine does: those who stay keep their
+  // order, then come those from below in their order, then those from above. Stops after an axis on which
+  // someone was refused. `leaving` becomes what the timing model needs.
   std::vector<Refused> migrate(std::span<const Crossing> crossings, std::vector<Leaving>& leaving);
 
  private:

@@ -59,8 +59,8 @@ std::vector<Bytes> MpiRanks::exchange(const std::vector<Bytes>& to) {
   Bytes sent, received(static_cast<size_t>(receive.total));
   sent.reserve(static_cast<size_t>(send.total));
   for (const Bytes& b : to) sent.insert(sent.end(), b.begin(), b.end());
-  MPI_Alltoallv(sent.data(), send.count.data(), send.at.data(), MPI_BYTE, received.data(), receive.count.data(),
-                receive.at.data(), MPI_BYTE, MPI_COMM_WORLD);
+  MPI_Alltoallv(sent.data(), send.count.data(), send.at.data(), MPI_BYTE, received.data(),
+                receive.count.data(), receive.at.data(), MPI_BYTE, MPI_COMM_WORLD);
   std::vector<Bytes> from(to.size());
   for (size_t q = 0; q < to.size(); ++q)
     from[q].assign(received.begin() + receive.at[q], received.begin() + receive.at[q] + receive.count[q]);
@@ -73,15 +73,17 @@ Bytes MpiRanks::all(const Bytes& mine) {
   MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD);
   const Layout layout(counts);
   Bytes received(static_cast<size_t>(layout.total));
-  MPI_Allgatherv(mine.data(), count, MPI_BYTE, received.data(), layout.count.data(), layout.at.data(), MPI_BYTE,
-                 MPI_COMM_WORLD);
+  MPI_Allgatherv(mine.data(), count, MPI_BYTE, received.data(), layout.count.data(), layout.at.data(),
+                 MPI_BYTE, MPI_COMM_WORLD);
   return received;
 }
 
-void MpiRanks::start(const std::vector<std::span<const double>>& to, const std::vector<std::span<double>>& from) {
+void MpiRanks::start(const std::vector<std::span<const double>>& to,
+                     const std::vector<std::span<double>>& from) {
   for (int q = 0; q < size_; ++q)
     if (const auto& place = from[static_cast<size_t>(q)]; !place.empty())
-      MPI_Irecv(place.data(), checked(place.size()), MPI_DOUBLE, q, 0, MPI_COMM_WORLD, &requests_.emplace_back());
+      MPI_Irecv(place.data(), checked(place.size()), MPI_DOUBLE, q, 0, MPI_COMM_WORLD,
+                &requests_.emplace_back());
   for (int q = 0; q < size_; ++q)
     if (const auto& message = to[static_cast<size_t>(q)]; !message.empty())
       MPI_Isend(message.data(), checked(message.size()), MPI_DOUBLE, q, 0, MPI_COMM_WORLD,

@@ -22,7 +22,8 @@ class MpiRanks : public Ranks {
   void any(std::span<uint8_t> flags) override;
   std::vector<Bytes> exchange(const std::vector<Bytes>& to) override;
   Bytes all(const Bytes& mine) override;
-  void start(const std::vector<std::span<const double>>& to, const std::vector<std::span<double>>& from) override;
+  void start(const std::vector<std::span<const double>>& to,
+             const std::vector<std::span<double>>& from) override;
   void finish() override;
 
  private:

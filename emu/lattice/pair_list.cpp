@@ -51,7 +51,8 @@ class Merger {
     size_ *= 2;
     table_.assign(size_, {});
     for (uint32_t e = 0; e < entries_.size(); ++e) {
-      uint32_t at = (static_cast<uint32_t>(entries_[e].first()) * 2654435761u + entries_[e].shift * 40503u) >> (32 - bits_);
+      uint32_t at = (static_cast<uint32_t>(entries_[e].first()) * 2654435761u + entries_[e].shift * 40503u) >>
+                    (32 - bits_);
       while (table_[at].lap == lap_) at = (at + 1) & (size_ - 1);
       table_[at] = {lap_, e};
     }
@@ -123,7 +124,8 @@ uint32_t window_of(const Block& block, uint32_t k) {
   uint32_t window = kGroup;
   const PairList::Group& group = block.inside.groups[k];
   for (uint32_t e = group.begin; e < group.begin + group.count; ++e)
-    window = std::max(window, static_cast<uint32_t>(block.inside.entries[e].first()) - block.begin - k * kGroup);
+    window =
+        std::max(window, static_cast<uint32_t>(block.inside.entries[e].first()) - block.begin - k * kGroup);
   return window;
 }
 
@@ -137,7 +139,8 @@ void make_ring(Block& block, uint32_t window) {
 
 }  // namespace
 
-void build_list(const KernelRule& rule, const Particles& particles, uint32_t ghosts, Search search, Block& block) {
+void build_list(const KernelRule& rule, const Particles& particles, uint32_t ghosts, Search search,
+                Block& block) {
   Merger inside, beside, beyond;
   block.inside.entries.clear();
   block.inside.entries.reserve(kUsualEntries * block.groups());
@@ -154,14 +157,16 @@ void build_list(const KernelRule& rule, const Particles& particles, uint32_t gho
   // A particle's place is not where the bins have it, but it was rounded from its position just now.
   const int P = rule.rule->widths.position_frac;
   const auto at = [&](uint32_t p) {
-    return std::array{coarse(particles.x[0][p], P), coarse(particles.x[1][p], P), coarse(particles.x[2][p], P)};
+    return std::array{coarse(particles.x[0][p], P), coarse(particles.x[1][p], P),
+                      coarse(particles.x[2][p], P)};
   };
   for (uint32_t k = 0; k < block.groups(); ++k) {
     const uint32_t base = block.begin + k * kGroup;
     // A group is updated in vectors if its types are free and fall alike.
     for (uint32_t i = base; i < std::min(base + kGroup, block.end); ++i) {
       const uint8_t type = particles.type[i];
-      if (rule.plain[type] == 0 || rule.rule->types[type].gravity != rule.rule->types[particles.type[base]].gravity)
+      if (rule.plain[type] == 0 ||
+          rule.rule->types[type].gravity != rule.rule->types[particles.type[base]].gravity)
         block.plain[k] = 0;
     }
     collect(particles, block, base, search, at, ghosts, inside, beside, beyond);
@@ -177,11 +182,13 @@ void build_list(const KernelRule& rule, const Particles& particles, uint32_t gho
   make_ring(block, window);
 }
 
-void mend_list(const Particles& particles, const Snapshot& snapshot, Search search, const std::vector<uint8_t>& only,
-               Block& block) {
+void mend_list(const Particles& particles, const Snapshot& snapshot, Search search,
+               const std::vector<uint8_t>& only, Block& block) {
   Merger inside, beside, beyond;
   std::vector<Entry> entries;
-  const auto at = [&](uint32_t p) { return std::array{snapshot.at[0][p], snapshot.at[1][p], snapshot.at[2][p]}; };
+  const auto at = [&](uint32_t p) {
+    return std::array{snapshot.at[0][p], snapshot.at[1][p], snapshot.at[2][p]};
+  };
   // Where they were, if they fit there; else behind all others.
   const auto put = [&entries](PairList& list, PairList::Group& group, uint32_t room) {
     const auto count = static_cast<uint32_t>(entries.size());

@@ -117,7 +117,8 @@ int run_lattice_program(int argc, char** argv, Ranks* ranks) {
   app.add_option("--simd", run.engine.simd, "Vector units: avx512, avx2 or portable; the widest without it");
   app.add_flag("--cycles", run.cycles, "Count the machine's cycles with the timing model");
   app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
-  app.add_option("--hash-every", run.hash_every, "The state's hash each so many steps")->capture_default_str();
+  app.add_option("--hash-every", run.hash_every, "The state's hash each so many steps")
+      ->capture_default_str();
   app.add_option("--checkpoint", run.checkpoint.path, "File that the run can go on from; gone when it ends");
   app.add_option("--checkpoint-every", request.interval, "'1000 steps', '30 s', '5 min' or '2 h'");
   app.add_flag("--resume", run.checkpoint.resume, "Go on from the checkpoint");

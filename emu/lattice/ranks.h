@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The processes that share a scene. Every call is collective: all ranks make the same calls in the same order.
+// The processes that share a scene. Every call is collective: all ranks make the same calls in the same
+// order.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +28,8 @@ class Ranks {
   virtual Bytes all(const Bytes& mine) = 0;
 
   // One message to and from each rank (empty: none), under way until finish() returns; the memory must stay.
-  virtual void start(const std::vector<std::span<const double>>& to, const std::vector<std::span<double>>& from) = 0;
+  virtual void start(const std::vector<std::span<const double>>& to,
+                     const std::vector<std::span<double>>& from) = 0;
   virtual void finish() = 0;
 };
 

@@ -41,14 +41,15 @@ struct LatticeRun {
 struct LatticeResult {
   Trace trace;  // where the run stopped or was interrupted: up to the last complete step
   Int3 momentum_before{}, momentum_after{};  // P+G fractional bits, at step 0 and after the last complete one
-  double largest_speed = 0;  // nodes per step, over the states that were kept or measured
-  uint64_t resumed_at = 0;   // step of the checkpoint
+  double largest_speed = 0;                  // nodes per step, over the states that were kept or measured
+  uint64_t resumed_at = 0;                   // step of the checkpoint
   bool interrupted = false;
 };
 
-// `plan` is the scene's. The engine loses its state in a step that fails: the last complete state is then made
-// again, from the last checkpoint or from the start. Heeds model/interrupt.h after each step: a checkpoint is written where
-// one is planned. Throws InputError for a checkpoint that is not this run's, or a file that cannot be written.
+// `plan` is the scene's. The engine loses its state in a step that fails: the last complete state is then
+// made again, from the last checkpoint or from the start. Heeds model/interrupt.h after each step: a
+// checkpoint is written where one is planned. Throws InputError for a checkpoint that is not this run's, or a
+// file that cannot be written.
 LatticeResult run_lattice(const Scene& scene, const Plan& plan, const LatticeRun& request);
 
 // To be called once the trace is safe: a finished run leaves no checkpoint.

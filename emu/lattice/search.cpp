@@ -35,7 +35,8 @@ Rows::Rows(const Lattice& lattice) : lattice_(lattice), row_of_(lattice.size()) 
     const Cell& c = lattice.cell(rows_[r].begin);
     for (int dz = -kReach; dz <= kReach; ++dz)
       for (int dy = -kReach; dy <= kReach; ++dy) {
-        const auto at = index.find({wrapped(c[2] + dz, period[2]).first, wrapped(c[1] + dy, period[1]).first});
+        const auto at =
+            index.find({wrapped(c[2] + dz, period[2]).first, wrapped(c[1] + dy, period[1]).first});
         near_[r][static_cast<size_t>((dz + kReach) * (2 * kReach + 1) + dy + kReach)] =
             at == index.end() ? kNoNode : at->second;
       }
@@ -58,8 +59,10 @@ Rows::Range Rows::nodes(uint32_t row, int32_t low, int32_t high) const {
     uint32_t a = r.begin, b = r.end;
     while (a < b) {
       const uint32_t m = (a + b) / 2;
-      if (lattice_.cell(m)[0] < x) a = m + 1;
-      else b = m;
+      if (lattice_.cell(m)[0] < x)
+        a = m + 1;
+      else
+        b = m;
     }
     return a;
   };
@@ -67,8 +70,8 @@ Rows::Range Rows::nodes(uint32_t row, int32_t low, int32_t high) const {
 }
 
 Search::Search(const Lattice& lattice, const Rows& rows, double reach) : lattice_(lattice), rows_(rows) {
-  // Coordinates are rounded down to 2^-kCoarse, so a difference is wrong by less than one unit per axis; floats
-  // add less than one part in 10^6.
+  // Coordinates are rounded down to 2^-kCoarse, so a difference is wrong by less than one unit per axis;
+  // floats add less than one part in 10^6.
   const double units = std::ldexp(reach, kCoarse) + std::sqrt(3.0);
   reach_ = static_cast<int32_t>(std::ceil(units));
   reach2_ = static_cast<float>(units * units * (1 + 1e-6));
@@ -106,8 +109,8 @@ void Search::add(Rows::Range nodes, const std::array<int32_t, 3>& at, uint8_t sh
   const uint32_t begin = bins_->first[nodes.begin], count = bins_->first[nodes.end] - begin;
   if (count == 0) return;
   found_.resize(std::max<size_t>(found_.size(), count + 16));
-  const uint32_t n = within(&bins_->at[0][begin], &bins_->at[1][begin], &bins_->at[2][begin], count, at.data(),
-                            reach2_, found_.data());
+  const uint32_t n = within(&bins_->at[0][begin], &bins_->at[1][begin], &bins_->at[2][begin], count,
+                            at.data(), reach2_, found_.data());
   for (uint32_t k = 0; k < n; ++k) hits_.push_back({bins_->particle[begin + found_[k]], shift});
 }
 
@@ -138,7 +141,8 @@ const std::vector<Search::Hit>& Search::around(uint32_t node, const std::array<i
                                       (static_cast<uint32_t>(image * cells) << kCoarse));
         };
         add(rows_.nodes(other, a, b),
-            {moved(at[0], image_x, period[0]), moved(at[1], image_y, period[1]), moved(at[2], image_z, period[2])},
+            {moved(at[0], image_x, period[0]), moved(at[1], image_y, period[1]),
+             moved(at[2], image_z, period[2])},
             static_cast<uint8_t>(image_x + 1 + 3 * (image_y + 1) + 9 * (image_z + 1)));
       }
     }

@@ -11,8 +11,8 @@
 
 namespace cuboct::emu {
 
-// Neighbours in x, y and z of a row of nodes: nodes of one (y, z) stand one after another in a Lattice, so the
-// particles of a stretch of a row are a stretch of an array.
+// Neighbours in x, y and z of a row of nodes: nodes of one (y, z) stand one after another in a Lattice, so
+// the particles of a stretch of a row are a stretch of an array.
 class Rows {
  public:
   explicit Rows(const Lattice& lattice);
@@ -40,8 +40,8 @@ class Rows {
   std::vector<std::array<uint32_t, (2 * kReach + 1) * (2 * kReach + 1)>> near_;
 };
 
-// Finds the particles within `reach` cells (at most Rows::kReach) of a point: in the bins, or, where only a few points
-// are looked at, among the members of the nodes as the snapshot has them.
+// Finds the particles within `reach` cells (at most Rows::kReach) of a point: in the bins, or, where only a
+// few points are looked at, among the members of the nodes as the snapshot has them.
 class Search {
  public:
   Search(const Lattice& lattice, const Rows& rows, double reach, const Bins& bins);
@@ -69,8 +69,8 @@ class Search {
   std::vector<uint32_t> found_;
 };
 
-// The positions k in [0, count) with (x[k] - at[0])^2 + ... <= reach2, up to the rounding of floats; `found` has
-// room for count + 16. Returns how many.
+// The positions k in [0, count) with (x[k] - at[0])^2 + ... <= reach2, up to the rounding of floats; `found`
+// has room for count + 16. Returns how many.
 uint32_t within(const int32_t* x, const int32_t* y, const int32_t* z, uint32_t count, const int32_t at[3],
                 float reach2, uint32_t* found);
 

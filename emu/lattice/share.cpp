@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 #include <limits>
+#include <numeric>
 
 #include "emu/lattice/cut.h"
 #include "emu/lattice/impl.h"
@@ -32,8 +32,9 @@ constexpr uint32_t kMostPerThread = 2;
 void LatticeEngine::Impl::check_room(uint64_t particles) {
   constexpr uint64_t kMost = std::numeric_limits<int32_t>::max() - 2 * kGroup;  // entries hold signed indices
   if (particles > kMost)
-    throw InputError(fmt::format("{} particles in one process: the lattice engine holds up to {}", particles, kMost),
-                     "share the scene between more ranks");
+    throw InputError(
+        fmt::format("{} particles in one process: the lattice engine holds up to {}", particles, kMost),
+        "share the scene between more ranks");
 }
 
 void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
@@ -49,12 +50,14 @@ void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
   snapshot_.room = room;
 }
 
-// Appends blocks of equal size for the places [begin, end): one per thread, or several where the pairs between them, which
-// are worked out twice, are few beside those inside. Threads then share rest and work more evenly.
+// Appends blocks of equal size for the places [begin, end): one per thread, or several where the pairs
+// between them, which are worked out twice, are few beside those inside. Threads then share rest and work
+// more evenly.
 void LatticeEngine::Impl::cut_blocks(std::vector<Block>& blocks, uint32_t begin, uint32_t end) const {
   const uint32_t groups = (end - begin + kGroup - 1) / kGroup;
   const auto threads = static_cast<uint32_t>(threads_);
-  const uint32_t fine = threads == 1 ? 1 : std::clamp((end - begin) / kRoomyBlock, threads, kMostPerThread * threads);
+  const uint32_t fine =
+      threads == 1 ? 1 : std::clamp((end - begin) / kRoomyBlock, threads, kMostPerThread * threads);
   const uint32_t parts = std::min(groups, fine);
   for (uint32_t b = 0; b < parts; ++b) {
     Block& block = blocks.emplace_back();
@@ -77,7 +80,8 @@ void LatticeEngine::Impl::wrap() {
   });
 }
 
-// Where particles no longer stand in rows they are stored node by node, so that neighbours stay near in memory.
+// Where particles no longer stand in rows they are stored node by node, so that neighbours stay near in
+// memory.
 void LatticeEngine::Impl::store_by_node() {
   std::vector<uint32_t> from;  // by new index, the old one
   from.reserve(count_);
@@ -147,7 +151,8 @@ void LatticeEngine::Impl::redistribute() {
   for (uint32_t n = 0; n < lattice_.size(); ++n) {
     if (owner_[n] != me) continue;
     bool seen = false;
-    for (size_t q = 0; q < reach_.size(); ++q) seen = seen || (static_cast<int>(q) != me && reach_[q].flags()[n] != 0);
+    for (size_t q = 0; q < reach_.size(); ++q)
+      seen = seen || (static_cast<int>(q) != me && reach_[q].flags()[n] != 0);
     members_.for_each(n, [&](uint32_t id) { (seen ? rim : core).push_back(id); });
   }
   if (!listed_ || crystal())  // else they stay in the order of nodes

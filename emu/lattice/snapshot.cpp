@@ -34,7 +34,8 @@ double Snapshot::displacement(const Particles& particles, uint32_t begin, uint32
   return std::ldexp(std::sqrt(most) + 2, -kCoarse);
 }
 
-bool Snapshot::astray(const Lattice& lattice, const Particles& particles, uint32_t particle, double threshold) const {
+bool Snapshot::astray(const Lattice& lattice, const Particles& particles, uint32_t particle,
+                      double threshold) const {
   static_assert(kCoarse == 16);  // a place keeps 16 bits of its cell
   const Cell& cell = lattice.cell(particles.node[particle]);
   for (int a = 0; a < 3; ++a)

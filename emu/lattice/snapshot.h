@@ -11,8 +11,8 @@
 
 namespace cuboct::emu {
 
-// Fractional bits of a cell edge in which pairs are searched and displacements are measured. Coarse coordinates
-// are taken modulo 2^32: only differences over a few cells are used.
+// Fractional bits of a cell edge in which pairs are searched and displacements are measured. Coarse
+// coordinates are taken modulo 2^32: only differences over a few cells are used.
 inline constexpr int kCoarse = 16;
 inline int32_t coarse(double x, int position_frac) {
   const auto whole = static_cast<int64_t>(x);
@@ -30,7 +30,8 @@ struct Snapshot {
   // The distance of a particle from its place here, in cells, rounded up; the largest of [begin, end).
   double moved(const Particles& particles, uint32_t particle) const;
   double displacement(const Particles& particles, uint32_t begin, uint32_t end) const;
-  // Whether a particle is farther than `threshold` cells from its place here, or that is not in the cell of its node.
+  // Whether a particle is farther than `threshold` cells from its place here, or that is not in the cell of
+  // its node.
   bool astray(const Lattice& lattice, const Particles& particles, uint32_t particle, double threshold) const;
   void look(const Particles& particles, uint32_t particle);
 

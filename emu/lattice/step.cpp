@@ -14,7 +14,9 @@ namespace {
 
 auto order(const RunError& e) { return std::tuple(e.fault, e.particle, e.number); }
 
-bool is_full(Fault fault) { return fault == Fault::full_x || fault == Fault::full_y || fault == Fault::full_z; }
+bool is_full(Fault fault) {
+  return fault == Fault::full_x || fault == Fault::full_y || fault == Fault::full_z;
+}
 
 }  // namespace
 

@@ -44,8 +44,7 @@ WordWriter::WordWriter(const std::string& path, const WordMark& end, bool exclus
   try {
     if (exclusive && flock(file_, LOCK_EX | LOCK_NB) != 0)
       throw InputError(fmt::format("{} is in use by another run", path));
-    if (ftruncate(file_, bytes) != 0 || lseek(file_, bytes, SEEK_SET) < 0)
-      throw cannot("write", path, errno);
+    if (ftruncate(file_, bytes) != 0 || lseek(file_, bytes, SEEK_SET) < 0) throw cannot("write", path, errno);
   } catch (...) {
     close(file_);
     throw;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Files of 64-bit little-endian words with a running hash over them: what checkpoints and journals are made of.
+// Files of 64-bit little-endian words with a running hash over them: what checkpoints and journals are made
+// of.
 #pragma once
 
 #include <bit>
@@ -60,7 +61,7 @@ class WordReader {
   WordReader(const WordReader&) = delete;
   WordReader& operator=(const WordReader&) = delete;
 
-  uint64_t size() const { return size_; }   // whole words in the file
+  uint64_t size() const { return size_; }  // whole words in the file
   bool ragged() const { return ragged_; }  // bytes are left over behind them
   // Throws InputError ("... is damaged: ...") behind the end.
   uint64_t word();

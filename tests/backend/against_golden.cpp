@@ -10,8 +10,8 @@ namespace cuboct::test {
 namespace {
 
 std::string where(const RunError& e) {
-  return fmt::format("{} step {} node {} particle {} number {}: {}", static_cast<int>(e.fault), e.step, e.node,
-                     e.particle, e.number, e.what());
+  return fmt::format("{} step {} node {} particle {} number {}: {}", static_cast<int>(e.fault), e.step,
+                     e.node, e.particle, e.number, e.what());
 }
 
 }  // namespace
@@ -41,9 +41,9 @@ void compare(const Case& c, const Variant& variant, Count& count) {
   const Plan& plan = c.setup.plan;
   const auto& start = c.setup.initial.particles;
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
-  emu::LatticeEngine engine(
-      plan, c.setup.initial.step, static_cast<uint32_t>(start.size()), [&](uint32_t k) { return start[k]; },
-      {variant.threads, variant.quiescence, variant.simd});
+  emu::LatticeEngine engine(plan, c.setup.initial.step, static_cast<uint32_t>(start.size()),
+                            [&](uint32_t k) { return start[k]; },
+                            {variant.threads, variant.quiescence, variant.simd});
   count.vectors += engine.simd() != "portable";
   State before = golden.state();
   uint64_t at_rest = 0;

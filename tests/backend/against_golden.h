@@ -27,8 +27,8 @@ struct Count {
   emu::LatticeCounters lists;
 };
 
-// Runs both up to the case's steps or the fault that golden meets: state, hash, momentum, order of slots, number of
-// crossings and faults at each step.
+// Runs both up to the case's steps or the fault that golden meets: state, hash, momentum, order of slots,
+// number of crossings and faults at each step.
 void compare(const Case& c, const Variant& variant, Count& count);
 
 }  // namespace cuboct::test

@@ -23,7 +23,9 @@ namespace {
 class Dice {
  public:
   explicit Dice(uint64_t seed) : random_(seed) {}
-  int draw(int low, int high) { return low + static_cast<int>(random_() % static_cast<uint64_t>(high - low + 1)); }
+  int draw(int low, int high) {
+    return low + static_cast<int>(random_() % static_cast<uint64_t>(high - low + 1));
+  }
   bool chance(int percent) { return draw(0, 99) < percent; }
   uint64_t bits(int n) { return n == 0 ? 0 : random_() >> (64 - n); }
 
@@ -64,7 +66,8 @@ struct Crowd {
       EXPECT_TRUE(members.append(node, p));
       for (int a = 0; a < 3; ++a) {
         // On faces and corners too.
-        const auto local = dice.chance(10) ? (dice.chance(50) ? 0 : (1 << kFrac) - 1) : static_cast<int>(dice.bits(kFrac));
+        const auto local =
+            dice.chance(10) ? (dice.chance(50) ? 0 : (1 << kFrac) - 1) : static_cast<int>(dice.bits(kFrac));
         particles.x[a][p] = lattice.cell(node)[a] * std::ldexp(1.0, kFrac) + local;
       }
     }
@@ -79,8 +82,8 @@ struct Crowd {
 };
 
 // (particle, shift) -> distance squared in cells, of all images less than `most` away.
-std::map<std::pair<uint32_t, int>, double> brute(const Lattice& lattice, const Crowd& crowd, uint32_t count, uint32_t i,
-                                                 double most) {
+std::map<std::pair<uint32_t, int>, double> brute(const Lattice& lattice, const Crowd& crowd, uint32_t count,
+                                                 uint32_t i, double most) {
   std::map<std::pair<uint32_t, int>, double> found;
   for (uint32_t j = 0; j < count; ++j)
     for (int s = 0; s < 27; ++s) {
@@ -264,7 +267,8 @@ TEST(LatticeMembers, KeepTheOrderOfSlotsAndRefuseInTheOrderOfAxes) {
   {
     // The head and the tail of node 1 leave, one comes from above, one from below: below stands first.
     emu::Members members = filled();
-    const std::vector<emu::Crossing> crossings{{3, {-1, 0, 0}}, {6, {1, 0, 0}}, {0, {1, 0, 0}}, {2, {-1, 0, 0}}};
+    const std::vector<emu::Crossing> crossings{
+        {3, {-1, 0, 0}}, {6, {1, 0, 0}}, {0, {1, 0, 0}}, {2, {-1, 0, 0}}};
     EXPECT_TRUE(members.migrate(crossings, leaving).empty());
     EXPECT_EQ(ids(members, 0), (std::vector<uint32_t>{5, 2}));
     EXPECT_EQ(ids(members, 1), (std::vector<uint32_t>{1, 0, 3}));
@@ -372,7 +376,8 @@ TEST(LatticeRounding, FusedMultiplyAddRoundsAsTheContractSays) {
     const auto check = [&](int64_t a, int64_t b) {
       const int64_t expected = b + round_odd(a, s);
       if (std::abs(expected) >= int64_t{1} << 51) return;
-      const double found = std::fma(static_cast<double>(a), factor, emu::kMagic + static_cast<double>(b)) - emu::kMagic;
+      const double found =
+          std::fma(static_cast<double>(a), factor, emu::kMagic + static_cast<double>(b)) - emu::kMagic;
       ASSERT_EQ(static_cast<int64_t>(found), expected) << a << " / 2^" << s << " + " << b;
     };
     const int64_t most = (int64_t{1} << 52) - 1, unit = int64_t{1} << s, half = unit / 2;

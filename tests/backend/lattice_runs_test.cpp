@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Longer runs of the lattice engine against golden, each of which takes a path through the lists or through quiescence
-// that short ones do not; counters prove that it was taken.
+// Longer runs of the lattice engine against golden, each of which takes a path through the lists or through
+// quiescence that short ones do not; counters prove that it was taken.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,7 +48,8 @@ Case across_the_seam() {
     scene.periodic.extent[a] = (a == 0 ? 8 : 4) * kEdge;
   }
   for (int k = 0; k < 6; ++k)
-    add_shot(scene, {7.5 + 0.4 * k, 0.4 + 0.9 * k, 0.6 + 0.8 * (k % 3)}, {k % 2 == 0 ? 1.5 : -0.8, 0.3 - 0.2 * k, 0.5});
+    add_shot(scene, {7.5 + 0.4 * k, 0.4 + 0.9 * k, 0.6 + 0.8 * (k % 3)},
+             {k % 2 == 0 ? 1.5 : -0.8, 0.3 - 0.2 * k, 0.5});
   return cooked("across the seam", scene, 200);
 }
 
@@ -70,10 +71,11 @@ Case split() {
   return cooked("split", scene, 80);
 }
 
-// Springs of the nearest neighbours alone, in coarse formats and strongly damped: a blow wakes all nodes, then they come
-// to rest one after another.
+// Springs of the nearest neighbours alone, in coarse formats and strongly damped: a blow wakes all nodes,
+// then they come to rest one after another.
 Case blow() {
-  Scene scene = block_scene({.size = {3, 3, 3}, .cutoff = 1.3, .jitter = 0, .speed = 0, .damping = 0.6, .margin = 2});
+  Scene scene =
+      block_scene({.size = {3, 3, 3}, .cutoff = 1.3, .jitter = 0, .speed = 0, .damping = 0.6, .margin = 2});
   scene.body.v[0] = {0.5, 0.4, 0.3};
   Widths widths;
   widths.position_frac = 12;
@@ -88,7 +90,8 @@ Case blow() {
 // Particles of the last thread meet those of the first, who had no neighbours on other threads.
 Case from_below() {
   Scene scene = block_scene(spheres({3, 3, 6}));
-  for (int k = 0; k < 2; ++k) add_shot(scene, {1.1 + 1.3 * k, 1.4 + 0.8 * k, -1.2 - 0.3 * k}, {0.1, -0.2, 1.2});
+  for (int k = 0; k < 2; ++k)
+    add_shot(scene, {1.1 + 1.3 * k, 1.4 + 0.8 * k, -1.2 - 0.3 * k}, {0.1, -0.2, 1.2});
   return cooked("from below", scene, 60);
 }
 
@@ -137,8 +140,9 @@ Case random_shots(uint64_t seed) {
   return cooked("shots " + std::to_string(seed), scene, 60);
 }
 
-// A chain at rest is hit from below in x: its first group, all of whose nodes lie ahead, must list the shot from two
-// nodes away, wherever the faces between them are. Or two pairs fly apart, and half of each against the other.
+// A chain at rest is hit from below in x: its first group, all of whose nodes lie ahead, must list the shot
+// from two nodes away, wherever the faces between them are. Or two pairs fly apart, and half of each against
+// the other.
 Case random_chain(uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -149,7 +153,8 @@ Case random_chain(uint64_t seed) {
   for (int k = 0; k < 24; ++k) add_shot(scene, {1.0 * k, 0, 0}, Vec3::Zero());
   if (seed % 4 != 0) {
     add_shot(scene, {-3 - uniform(), 0, 0}, Vec3::Zero());  // where the cells start
-    add_shot(scene, {-0.99 - 0.1 * uniform(), 0.02 * uniform(), 0.02 * uniform()}, {0.1 + 0.25 * uniform(), 0, 0});
+    add_shot(scene, {-0.99 - 0.1 * uniform(), 0.02 * uniform(), 0.02 * uniform()},
+             {0.1 + 0.25 * uniform(), 0, 0});
   } else {
     const double gap = 1.6 + 0.4 * uniform(), squeeze = 0.35 + 0.3 * uniform();
     for (const double x : {0.0, squeeze, squeeze + gap, 2 * squeeze + gap})
@@ -158,10 +163,10 @@ Case random_chain(uint64_t seed) {
   return cooked("chain " + std::to_string(seed), scene, 25);
 }
 
-// A compressed crystal that fills its rings, in cells of a conventional one: each particle is pushed by twelve
-// neighbours, whose kicks cancel to the last bit, until two of them are given a speed. Who is awake must feel those who
-// sleep; and no sum of a sleeper may meet another particle in the ring of sums, which of three threads the second goes
-// through twice: the two are four layers apart, one lap.
+// A compressed crystal that fills its rings, in cells of a conventional one: each particle is pushed by
+// twelve neighbours, whose kicks cancel to the last bit, until two of them are given a speed. Who is awake
+// must feel those who sleep; and no sum of a sleeper may meet another particle in the ring of sums, which of
+// three threads the second goes through twice: the two are four layers apart, one lap.
 Case pressed() {
   constexpr double kPress = 0.9;
   Scene scene = block_scene({.size = {8, 8, 24}, .cutoff = 1.2, .jitter = 0, .speed = 0});

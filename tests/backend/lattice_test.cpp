@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The lattice engine against golden: state, order of slots and faults at every step, on every vector unit of the
-// machine, any number of threads, with and without quiescence.
+// The lattice engine against golden: state, order of slots and faults at every step, on every vector unit of
+// the machine, any number of threads, with and without quiescence.
 #include <gtest/gtest.h>
 
 #include "tests/backend/against_golden.h"
@@ -17,7 +17,8 @@ TEST_P(Lattice, EqualsGoldenAtEachStep) {
   EXPECT_GT(count.updates, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Lattice, testing::ValuesIn(case_names()), [](const auto& p) { return p.param; });
+INSTANTIATE_TEST_SUITE_P(Cases, Lattice, testing::ValuesIn(case_names()),
+                         [](const auto& p) { return p.param; });
 
 TEST(LatticeRandom, EqualsGolden) {
   Count count;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The lattice engine against golden over the widths and tables that an arch file may ask for, inside and beyond what the
-// vector kernels hold, and over lattices that span far.
+// The lattice engine against golden over the widths and tables that an arch file may ask for, inside and
+// beyond what the vector kernels hold, and over lattices that span far.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,9 @@ namespace {
 class Dice {
  public:
   explicit Dice(uint64_t seed) : random_(seed) {}
-  int draw(int low, int high) { return low + static_cast<int>(random_() % static_cast<uint64_t>(high - low + 1)); }
+  int draw(int low, int high) {
+    return low + static_cast<int>(random_() % static_cast<uint64_t>(high - low + 1));
+  }
   bool chance(int percent) { return draw(0, 99) < percent; }
 
  private:
@@ -133,10 +135,11 @@ TEST(LatticeWidths, TheWidestFormatsFitTheVectors) {
       Arch arch = widest();
       arch.table.shape = shape;
       Count count;
-      const Case c{"widest",
-                   block({.size = {3, 2, 2}, .dt = 0.01, .jitter = 0.1, .speed = 2, .damping = damping, .margin = 3},
-                         arch),
-                   40};
+      const Case c{
+          "widest",
+          block({.size = {3, 2, 2}, .dt = 0.01, .jitter = 0.1, .speed = 2, .damping = damping, .margin = 3},
+                arch),
+          40};
       ASSERT_TRUE(fits(c.setup.plan));
       compare_both(c, dice, count);
       if (HasFatalFailure()) return;
@@ -150,12 +153,15 @@ TEST(LatticeWidths, BeyondTheVectorsPlainIntegersAreChosen) {
   Dice dice(2);
   Arch arch = widest();
   arch.table.fraction_bits = 24;
-  const Case wide{"a wider table", block({.size = {2, 2, 2}, .dt = 0.01, .jitter = 0.1, .speed = 2}, arch), 20};
-  const Case strong{"stronger kicks", block({.size = {2, 2, 2}, .dt = 0.3, .jitter = 0.1, .speed = 0.1}, widest()), 20};
+  const Case wide{"a wider table", block({.size = {2, 2, 2}, .dt = 0.01, .jitter = 0.1, .speed = 2}, arch),
+                  20};
+  const Case strong{"stronger kicks",
+                    block({.size = {2, 2, 2}, .dt = 0.3, .jitter = 0.1, .speed = 0.1}, widest()), 20};
   Arch fast = widest();
   fast.widths.relative_velocity_bits = 27;
   const Case damped{"wider velocities",
-                    block({.size = {2, 2, 2}, .dt = 0.01, .jitter = 0.1, .speed = 2, .damping = 0.1}, fast), 20};
+                    block({.size = {2, 2, 2}, .dt = 0.01, .jitter = 0.1, .speed = 2, .damping = 0.1}, fast),
+                    20};
   for (const Case& c : {wide, strong, damped}) {
     ASSERT_FALSE(fits(c.setup.plan)) << c.name;
     Count count;
@@ -166,16 +172,18 @@ TEST(LatticeWidths, BeyondTheVectorsPlainIntegersAreChosen) {
   }
 }
 
-// A free particle between held ones: the sums from either side pass 2^51, where doubles beside 1.5 * 2^52 are no longer
-// whole, and cancel.
+// A free particle between held ones: the sums from either side pass 2^51, where doubles beside 1.5 * 2^52 are
+// no longer whole, and cancel.
 TEST(LatticeWidths, SumsBeyondDoublesStayExact) {
-  Scene scene = block_scene({.size = {1, 1, 1}, .cutoff = 0.95, .dt = 0.6, .jitter = 0, .speed = 0, .margin = 1});
+  Scene scene =
+      block_scene({.size = {1, 1, 1}, .cutoff = 0.95, .dt = 0.6, .jitter = 0, .speed = 0, .margin = 1});
   scene.rule.types = {{.name = "free"}, {.name = "held"}};
   scene.rule.types[1].imposed = {true, true, true};
   scene.body = {};
   Dice dice(6);
   std::vector<Vec3> side;
-  for (int k = 0; k < 8; ++k) side.emplace_back(0.5, 1e-4 * dice.draw(-500, 500), 1e-4 * dice.draw(-500, 500));
+  for (int k = 0; k < 8; ++k)
+    side.emplace_back(0.5, 1e-4 * dice.draw(-500, 500), 1e-4 * dice.draw(-500, 500));
   const auto put = [&](const Vec3& x, uint8_t type) {
     scene.body.x.push_back(x);
     scene.body.v.push_back(Vec3::Zero());
@@ -191,8 +199,8 @@ TEST(LatticeWidths, SumsBeyondDoublesStayExact) {
   ASSERT_FALSE(fits(c.setup.plan));
   const FixedRule& rule = c.setup.plan.rule;
   const auto kick = pair_kick(rule, c.setup.initial.particles[8].x, {}, 0,
-                              {c.setup.initial.particles[8].x[0] - (int64_t{1} << 29), c.setup.initial.particles[8].x[1],
-                               c.setup.initial.particles[8].x[2]},
+                              {c.setup.initial.particles[8].x[0] - (int64_t{1} << 29),
+                               c.setup.initial.particles[8].x[1], c.setup.initial.particles[8].x[2]},
                               {}, 1);
   ASSERT_GT(8 * kick.kick[0], int64_t{1} << 51);
   compare_both(c, dice, count);
@@ -217,7 +225,10 @@ TEST(LatticeWidths, RandomTablesGiveTheirValues) {
           arch.widths.sum_bits = 30;
           arch.table = {.shape = shape, .degree = degree, .index_bits = 8, .fraction_bits = dice.draw(8, 20)};
           Case c{"table of " + std::to_string(bits) + " bits",
-                 block({.size = {2, 2, 2}, .jitter = 0.5, .speed = 0.1, .damping = damping,
+                 block({.size = {2, 2, 2},
+                        .jitter = 0.5,
+                        .speed = 0.1,
+                        .damping = damping,
                         .seed = static_cast<uint64_t>(bits)},
                        arch),
                  2};
@@ -309,9 +320,9 @@ TEST(LatticeSpan, RefusesWhatADoubleOrAnIndexDoesNotHold) {
   int32_t last = 0;
   for (uint32_t n = 0; n < plan.lattice.size(); ++n) last = std::max(last, plan.lattice.cell(n)[1]);
   EXPECT_EQ(refusal(plan, 0), "the lattice reaches " + std::to_string(last) +
-                                        " cells along y: with position_frac = 30 the lattice engine holds up to "
-                                        "4194300\n"
-                                        "  hint: use another engine, or fewer fractional bits in the arch file");
+                                  " cells along y: with position_frac = 30 the lattice engine holds up to "
+                                  "4194300\n"
+                                  "  hint: use another engine, or fewer fractional bits in the arch file");
   EXPECT_EQ(refusal(far_apart(10, arch, 0).plan, 0xfffffff0u),
             "4294967280 particles in one process: the lattice engine holds up to 2147483631\n"
             "  hint: share the scene between more ranks");

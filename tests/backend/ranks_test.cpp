@@ -18,8 +18,8 @@ namespace {
 emu::MpiRanks* world = nullptr;
 
 std::string where(const RunError& e) {
-  return fmt::format("{} step {} node {} particle {} number {}: {}", static_cast<int>(e.fault), e.step, e.node,
-                     e.particle, e.number, e.what());
+  return fmt::format("{} step {} node {} particle {} number {}: {}", static_cast<int>(e.fault), e.step,
+                     e.node, e.particle, e.number, e.what());
 }
 
 struct Count {
@@ -33,8 +33,9 @@ void compare(const Case& c, emu::LatticeOptions options, Count& count) {
   const Plan& plan = c.setup.plan;
   const auto& start = c.setup.initial.particles;
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
-  emu::LatticeEngine engine(plan, c.setup.initial.step, static_cast<uint32_t>(start.size()),
-                            [&](uint32_t k) { return start[k]; }, options);
+  emu::LatticeEngine engine(
+      plan, c.setup.initial.step, static_cast<uint32_t>(start.size()), [&](uint32_t k) { return start[k]; },
+      options);
   for (uint64_t s = 0; s < c.steps; ++s) {
     std::string expected, found;
     try {
@@ -85,7 +86,8 @@ TEST(Ranks, HoldGoldensBitsInEachCase) {
 TEST(Ranks, HoldGoldensBitsInRandomCases) {
   Count count;
   for (uint64_t seed = 1; seed <= 60; ++seed) {
-    compare(random_case(seed), {1 + static_cast<int>(seed % 2), seed % 3 != 0, "", nullptr, kCuts[seed % 4]}, count);
+    compare(random_case(seed), {1 + static_cast<int>(seed % 2), seed % 3 != 0, "", nullptr, kCuts[seed % 4]},
+            count);
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(count.updates, 10000u);
@@ -131,7 +133,8 @@ TEST(Ranks, HoldGoldensBitsInAHotGasUpToItsFault) {
     }
     Arch arch;
     arch.capacity = 60;
-    compare({"hot gas", make_setup(scene, arch), 100}, {1, seed % 2 == 0, "", nullptr, kCuts[seed - 1]}, count);
+    compare({"hot gas", make_setup(scene, arch), 100}, {1, seed % 2 == 0, "", nullptr, kCuts[seed - 1]},
+            count);
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(count.faults, 1u);
@@ -139,7 +142,8 @@ TEST(Ranks, HoldGoldensBitsInAHotGasUpToItsFault) {
   EXPECT_GT(count.moves, 400u);
 }
 
-// Where a rank stores nobody is not far from where it stored somebody before: the lists last as long as on one rank.
+// Where a rank stores nobody is not far from where it stored somebody before: the lists last as long as on
+// one rank.
 TEST(Ranks, KeepTheirListsAsLongAsOneRankDoes) {
   Features features;
   features.size = {6, 3, 3};
@@ -162,8 +166,8 @@ TEST(Ranks, RefuseAnUnknownCut) {
   const Case c = make_case("single_node");
   const auto& start = c.setup.initial.particles;
   try {
-    emu::LatticeEngine(c.setup.plan, 0, static_cast<uint32_t>(start.size()), [&](uint32_t k) { return start[k]; },
-                       {1, true, "", world, "diagonal"});
+    emu::LatticeEngine(c.setup.plan, 0, static_cast<uint32_t>(start.size()),
+                       [&](uint32_t k) { return start[k]; }, {1, true, "", world, "diagonal"});
     FAIL();
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("unknown cut 'diagonal'"), std::string::npos);
@@ -177,8 +181,9 @@ int main(int argc, char** argv) {
   cuboct::emu::MpiRanks ranks(&argc, &argv);
   cuboct::test::world = &ranks;
   testing::InitGoogleTest(&argc, argv);
-  if (ranks.rank() != 0) delete testing::UnitTest::GetInstance()->listeners().Release(
-      testing::UnitTest::GetInstance()->listeners().default_result_printer());
+  if (ranks.rank() != 0)
+    delete testing::UnitTest::GetInstance()->listeners().Release(
+        testing::UnitTest::GetInstance()->listeners().default_result_printer());
   uint64_t failed = RUN_ALL_TESTS() != 0;
   ranks.sum({&failed, 1});
   return failed != 0;
