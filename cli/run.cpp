@@ -43,7 +43,8 @@ RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::Latti
   if (options.out.empty() && options.lattice.keeps_checkpoints())
     throw InputError(fmt::format("{} needs --out DIR, where the checkpoint lies",
                                  options.lattice.resume ? "--resume" : "--checkpoint-every"));
-  if (options.out.empty()) request.frames.clear();
+  // Ranks leave their figures in the trace alone: two states tell the rest.
+  if (options.out.empty() && options.lattice.ranks <= 1) request.frames.clear();
   if (options.lattice.keeps_checkpoints())
     request.checkpoint.path = options.out + "/checkpoint";
   request.energies = true;

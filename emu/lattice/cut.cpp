@@ -31,9 +31,12 @@ void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::ve
         low[a] = std::min(low[a], lattice.cell(nodes[k])[a]);
         high[a] = std::max(high[a], lattice.cell(nodes[k])[a]);
       }
+    // Particles are stored in rows along x: a cut across x leaves stumps of rows at the rim, so x has to be
+    // twice as long.
+    const auto length = [&](int a) { return (a == 0 ? 1 : 2) * (int64_t{high[a]} - low[a]); };
     along = 0;
     for (int a = 1; a < 3; ++a)
-      if (int64_t{high[a]} - low[a] > int64_t{high[along]} - low[along]) along = a;
+      if (length(a) >= length(along)) along = a;
   }
   std::map<int32_t, uint64_t> planes;  // coordinate, weight
   uint64_t total = 0;

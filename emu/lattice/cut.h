@@ -10,9 +10,9 @@
 
 namespace cuboct::emu {
 
-// By node, its rank. `how`: "bricks" (bisection along the longest side, recursively: Berger and Bokhari 1987)
-// or slabs along "x", "y" or "z"; parts hold about the same sum of `weight` (by node) each. InputError where
-// `how` is none of these.
+// By node, its rank. `how`: "bricks" (bisection across the longest side, x counted half, recursively: after
+// Berger and Bokhari 1987) or slabs along "x", "y" or "z"; parts hold about the same sum of `weight` (by
+// node) each. InputError where `how` is none of these.
 std::vector<uint16_t> cut_nodes(const Lattice& lattice, const std::vector<uint16_t>& weight, int ranks,
                                 const std::string& how);
 
