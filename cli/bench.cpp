@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How fast the engines are. Each benchmark makes its engine once, steps it a little to warm up, then times some
-// steps per repetition.
+// How fast the engines are. Each benchmark makes its engine once, steps it a little to warm up, then times
+// some steps per repetition.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -16,7 +16,9 @@
 #include "cli/command.h"
 #include "cli/engines.h"
 #include "cli/launch.h"
+#include "cli/run_lattice.h"
 #include "emu/lattice/engine.h"
+#include "emu/lattice/program.h"
 #include "emu/lattice/timing.h"
 #include "model/golden.h"
 #include "model/output.h"
@@ -43,8 +45,8 @@ struct Entry {
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-// Times `step` for about so many seconds in each repetition; answers the steps of one. The number is found in the
-// first, which warms up, and then stays.
+// Times `step` for about so many seconds in each repetition; answers the steps of one. The number is found in
+// the first, which warms up, and then stays.
 class Timed {
  public:
   explicit Timed(double seconds) : seconds_(seconds) {}
@@ -55,7 +57,8 @@ class Timed {
       const auto begin = Clock::now();
       uint64_t warm = 0;
       for (; warm < 1 || (since(begin) < 0.3 * seconds_ && warm < 1000); ++warm) step();
-      steps_ = std::max<uint64_t>(1, static_cast<uint64_t>(seconds_ * static_cast<double>(warm) / since(begin)));
+      steps_ =
+          std::max<uint64_t>(1, static_cast<uint64_t>(seconds_ * static_cast<double>(warm) / since(begin)));
     }
     for (auto _ : state) {
       const auto begin = Clock::now();
@@ -156,16 +159,16 @@ void run_golden_block(benchmark::State& state, const std::string& name, const Be
   if (!bed.golden) {
     bed.loaded = load_bench(scene);
     const Plan& plan = bed.loaded->setup.plan;
-    bed.golden = std::make_unique<Golden>(
-        plan.rule, plan.lattice, plan.arch.capacity,
-        to_fixed(bed.loaded->scene.body, plan.rule, plan.lattice, plan.origin));
+    bed.golden =
+        std::make_unique<Golden>(plan.rule, plan.lattice, plan.arch.capacity,
+                                 to_fixed(bed.loaded->scene.body, plan.rule, plan.lattice, plan.origin));
     bed.timed.emplace(seconds);
   }
   bed.timed->run(state, [&] { bed.golden->step(); });
   state.counters["particle_steps"] =
       rate(static_cast<double>(bed.timed->steps()) * bed.loaded->setup.plan.particles);
-  state.SetLabel(fmt::format("{} particles, 1 thread, {} steps per repeat", scene.particles(),
-                             bed.timed->steps()));
+  state.SetLabel(
+      fmt::format("{} particles, 1 thread, {} steps per repeat", scene.particles(), bed.timed->steps()));
 }
 
 // Its own program tells how long the clock ran.
@@ -192,10 +195,19 @@ void run_systemc_block(benchmark::State& state, const BenchScene& scene, uint64_
   state.SetLabel(fmt::format("{} particles, 1 thread, {} steps per repeat", scene.particles(), steps));
 }
 
-// A run of given length from its start. Runs of one `group` must end in one state.
+// Runs of one `group` must end in one state. False, and the benchmark is told, if they do not.
+bool same_state(benchmark::State& state, const std::string& group, uint64_t hash) {
+  static std::map<std::string, uint64_t> hashes;
+  const uint64_t expected = hashes.try_emplace(group, hash).first->second;
+  if (hash == expected) return true;
+  state.SkipWithError(
+      fmt::format("wrong: its state hash is {:016x}, another run's {:016x}", hash, expected).c_str());
+  return false;
+}
+
+// A run of given length from its start.
 void run_whole(benchmark::State& state, const std::string& group, const BenchScene& scene,
                const emu::LatticeOptions& options, uint64_t steps) {
-  static std::map<std::string, uint64_t> hashes;
   bed_of("");  // of the benchmark before: its memory is needed
   if (too_large(state, scene.particles())) return;
   const auto loaded = load_bench(scene);
@@ -205,17 +217,44 @@ void run_whole(benchmark::State& state, const std::string& group, const BenchSce
     for (uint64_t k = 0; k < steps; ++k) engine->step();
     state.SetIterationTime(since(begin));
   }
-  const uint64_t hash = engine->hash(), expected = hashes.try_emplace(group, hash).first->second;
-  if (hash != expected) {
-    state.SkipWithError(fmt::format("wrong: its state hash is {:016x}, another run's {:016x}", hash, expected).c_str());
-    return;
-  }
+  const uint64_t hash = engine->hash();
+  if (!same_state(state, group, hash)) return;
   state.counters["particle_steps"] = rate(static_cast<double>(steps * scene.particles()));
   const emu::LatticeCounters& counters = engine->counters();
   state.SetLabel(fmt::format(
-      "{} particles, {}, {} steps, {:.0f} % of the node-steps quiet, state hash {:016x}",
-      scene.particles(), counted(engine->threads()), steps,
+      "{} particles, {}, {} steps, {:.0f} % of the node-steps quiet, state hash {:016x}", scene.particles(),
+      counted(engine->threads()), steps,
       100 * static_cast<double>(counters.quiet_node_steps) / static_cast<double>(counters.node_steps), hash));
+}
+
+// The same over MPI, a thread per rank, by the program's own clock.
+void run_ranks(benchmark::State& state, const std::string& group, const BenchScene& scene, int ranks,
+               uint64_t steps) {
+  bed_of("");
+  if (!emu::lattice_has_mpi() || !in_path("mpirun")) {
+    state.SkipWithError(fmt::format("{}no MPI here", kSkipped).c_str());
+    return;
+  }
+  const Scratch scratch;
+  Input input;
+  input.scene = scratch.path("block.toml");
+  write_text(input.scene, scene.text());
+  const auto loaded = load_bench(scene);
+  LatticeChoice choice;
+  choice.threads = 1;
+  choice.ranks = ranks;
+  emu::LatticeRun request;
+  request.steps = request.hash_every = steps;
+  Trace trace;
+  for (auto _ : state) {
+    trace = run_on_lattice(input, loaded->scene, loaded->setup.plan, choice, request).trace;
+    state.SetIterationTime(trace.seconds);
+  }
+  if (!same_state(state, group, trace.state_hash.back())) return;
+  state.counters["particle_steps"] = rate(static_cast<double>(steps * scene.particles()));
+  state.SetLabel(fmt::format("{} particles, {} x 1 thread, {} steps, state hash {:016x}", scene.particles(),
+                             ranks == 1 ? "1 rank" : fmt::format("{} ranks", ranks), steps,
+                             trace.state_hash.back()));
 }
 
 std::vector<Entry> entries(const Options& options) {
@@ -236,9 +275,7 @@ std::vector<Entry> entries(const Options& options) {
         add(name,
             fmt::format("the lattice engine, {} particles{}, {}", scene.particles(), damped ? ", damped" : "",
                         cores ? "a thread per core" : "one thread"),
-            [=](benchmark::State& s) {
-              run_lattice_block(s, name, scene, cores ? all : 1, false, seconds);
-            });
+            [=](benchmark::State& s) { run_lattice_block(s, name, scene, cores ? all : 1, false, seconds); });
       }
   for (const bool cores : {false, true}) {
     const std::string name = fmt::format("lattice.cycles_32k.{}", cores ? "all_cores" : "1_thread");
@@ -247,22 +284,24 @@ std::vector<Entry> entries(const Options& options) {
                     cores ? "a thread per core" : "one thread"),
         [=](auto& s) { run_lattice_block(s, name, {}, cores ? all : 1, true, seconds); });
   }
-  add("golden.block_4k", "the golden engine, 4000 particles", [=](auto& s) {
-    run_golden_block(s, "golden.block_4k", {.cells = 10}, seconds);
-  });
-  add("systemc.block_2k", "the clocked engine, 2048 particles, 10 steps", [](auto& s) {
-    run_systemc_block(s, {.cells = 8}, 10);
-  });
+  add("golden.block_4k", "the golden engine, 4000 particles",
+      [=](auto& s) { run_golden_block(s, "golden.block_4k", {.cells = 10}, seconds); });
+  add("systemc.block_2k", "the clocked engine, 2048 particles, 10 steps",
+      [](auto& s) { run_systemc_block(s, {.cells = 8}, 10); });
   for (const bool on : {true, false})
-    add(fmt::format("impact.quiescence_{}", on ? "on" : "off"),
+    add(
+        fmt::format("impact.quiescence_{}", on ? "on" : "off"),
         "a corner of 1000188 particles at rest is hit: 500 steps",
-        [=](auto& s) {
-          run_whole(s, "impact", {.cells = 63, .impact = true}, on_threads(all, on), 500);
-        },
+        [=](auto& s) { run_whole(s, "impact", {.cells = 63, .impact = true}, on_threads(all, on), 500); },
         true);
-  for (int threads = 1; threads <= all; threads = threads < all ? std::min(2 * threads, all) : all + 1)
-    add(fmt::format("scaling.threads_{}", threads), "256000 particles, 100 steps",
+  for (int threads = 1; threads <= all; ++threads)
+    add(
+        fmt::format("scaling.threads_{}", threads), "256000 particles, 100 steps",
         [=](auto& s) { run_whole(s, "scaling", {.cells = 40}, on_threads(threads), 100); }, true);
+  for (int ranks = 1; ranks <= all; ++ranks)
+    add(
+        fmt::format("scaling.ranks_{}", ranks), "256000 particles, 100 steps, over MPI",
+        [=](auto& s) { run_ranks(s, "scaling", {.cells = 40}, ranks, 100); }, true);
   return list;
 }
 

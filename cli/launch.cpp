@@ -9,12 +9,14 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <sstream>
 #include <utility>
 
-#include "model/interrupt.h"
 #include "model/error.h"
+#include "model/interrupt.h"
 
 extern char** environ;
 
@@ -51,7 +53,8 @@ Process::~Process() {
   }
 }
 
-Process::Process(Process&& other) noexcept : pid_(std::exchange(other.pid_, -1)), passed_on_(other.passed_on_) {}
+Process::Process(Process&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)), passed_on_(other.passed_on_) {}
 
 int Process::wait() {
   bool passed_on = false;
@@ -63,6 +66,14 @@ int Process::wait() {
   }
   pid_ = -1;
   return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+bool in_path(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::istringstream directories(path ? path : "");
+  for (std::string directory; std::getline(directories, directory, ':');)
+    if (access((directory + "/" + program).c_str(), X_OK) == 0) return true;
+  return false;
 }
 
 }  // namespace cuboct

@@ -17,8 +17,8 @@ class Process {
   // Starts `program` (looked for in PATH unless it has a slash) with these arguments, without a shell; its
   // stderr is ours, its stdout is dropped (results travel in files). Throws InputError where it cannot be
   // started.
-  // `apart`: in a process group of its own, where Ctrl-C does not reach it, and an interrupt of ours is passed on as
-  // SIGUSR1: mpirun ends its processes on the one and tells them the other.
+  // `apart`: in a process group of its own, where Ctrl-C does not reach it, and an interrupt of ours is
+  // passed on as SIGUSR1: mpirun ends its processes on the one and tells them the other.
   Process(const std::string& program, const std::vector<std::string>& arguments, bool apart = false);
   ~Process();  // ends it where nobody waited
   Process(Process&& other) noexcept;
@@ -31,5 +31,8 @@ class Process {
   pid_t pid_;
   int passed_on_ = 0;  // the signal that stands for an interrupt
 };
+
+// Whether a directory of PATH has it.
+bool in_path(const std::string& program);
 
 }  // namespace cuboct

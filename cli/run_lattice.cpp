@@ -5,9 +5,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 
 #include "cli/engines.h"
 #include "cli/launch.h"
@@ -18,14 +16,6 @@
 
 namespace cuboct {
 namespace {
-
-bool in_path(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  std::istringstream directories(path ? path : "");
-  for (std::string directory; std::getline(directories, directory, ':');)
-    if (access((directory + "/" + program).c_str(), X_OK) == 0) return true;
-  return false;
-}
 
 emu::LatticeResult run_over_mpi(const Input& input, const Plan& plan, const LatticeChoice& choice,
                                 const emu::LatticeRun& request) {
