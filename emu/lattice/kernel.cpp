@@ -246,6 +246,15 @@ HWY_INLINE Int3 whole(const double sums[3][kLanes], uint32_t lane) {
   return of;
 }
 
+// Lanes that are not free, or may not fit: one by one.
+HWY_NOINLINE void update_each(const KernelRule& rule, Particles& particles, uint32_t i, uint32_t lanes,
+                              const Active& active, const V sum[3], Block& block) {
+  double sums[3][kLanes];
+  for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
+  for (uint32_t l = 0; l < kLanes; ++l)
+    if (lanes >> l & 1) update_one(rule, particles, i + l, whole(sums, l), active, block);
+}
+
 // Kick and drift of a group's lanes `at` on, all free.
 HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i, uint32_t lanes,
                        const Active& active, const V sum[3], Block& block, V& fastest2) {
@@ -260,13 +269,7 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
                              hn::Ge(hn::Abs(v[a]), hn::Set(d, rule.v_limit))));
   }
   if (HWY_UNLIKELY(!hn::AllFalse(d, hn::And(odd, mask)))) {
-    double sums[3][kLanes];
-    for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
-    for (uint32_t l = 0; l < kLanes; ++l)
-      if (lanes >> l & 1) {
-        const Int3 of = whole(sums, l);
-        update_one(rule, particles, i + l, of, active, block);
-      }
+    update_each(rule, particles, i, lanes, active, sum, block);
     return;
   }
   M crossed = hn::FirstN(d, 0), changed = hn::FirstN(d, 0);
@@ -362,13 +365,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
       if (HWY_LIKELY(block.plain[k] != 0)) {
         update(rule, particles, i, mine, active, sum, block, fastest2);
       } else {
-        double sums[3][kLanes];
-        for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
-        for (uint32_t l = 0; l < kLanes; ++l)
-          if (mine >> l & 1) {
-            const Int3 of = whole(sums, l);
-            update_one(rule, particles, i + l, of, active, block);
-          }
+        update_each(rule, particles, i, mine, active, sum, block);
       }
     }
   }

@@ -14,16 +14,24 @@ std::string where(const RunError& e) {
                      e.node, e.particle, e.number, e.what());
 }
 
+std::string name(const emu::LatticeOptions& options) {
+  const emu::Ranks* ranks = options.ranks;
+  return fmt::format(
+      "{}, {} threads, quiescence {}{}", options.simd.empty() ? "widest" : options.simd, options.threads,
+      options.quiescence ? "on" : "off",
+      ranks ? fmt::format(", rank {} of {}, cut in {}", ranks->rank(), ranks->size(), options.cut) : "");
+}
+
 }  // namespace
 
-std::vector<Variant> variants(const Plan& plan) {
-  std::vector<Variant> all;
+std::vector<emu::LatticeOptions> variants(const Plan& plan) {
+  std::vector<emu::LatticeOptions> all;
   for (const char* simd : {"avx512", "avx2", "128-bit", "portable"})
     for (const int threads : {1, 2, 3, 5})
-      for (const bool quiescence : {false, true}) all.push_back({simd, threads, quiescence});
-  std::erase_if(all, [&](const Variant& v) {
+      for (const bool quiescence : {false, true}) all.push_back({threads, quiescence, simd});
+  std::erase_if(all, [&](const emu::LatticeOptions& options) {
     try {
-      emu::LatticeEngine(plan, 0, 0, {}, {v.threads, v.quiescence, v.simd});
+      emu::LatticeEngine(plan, 0, 0, {}, options);
       return false;
     } catch (const InputError&) {
       return true;
@@ -32,18 +40,15 @@ std::vector<Variant> variants(const Plan& plan) {
   return all;
 }
 
-std::string name(const Variant& v) {
-  return v.simd + ", " + std::to_string(v.threads) + " threads, quiescence " + (v.quiescence ? "on" : "off");
-}
-
-void compare(const Case& c, const Variant& variant, Count& count) {
-  SCOPED_TRACE(c.name + ", " + name(variant));
+void compare(const Case& c, const emu::LatticeOptions& options, Count& count) {
+  SCOPED_TRACE(c.name + ", " + name(options));
+  const bool first = !options.ranks || options.ranks->rank() == 0;
   const Plan& plan = c.setup.plan;
   const auto& start = c.setup.initial.particles;
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
-  emu::LatticeEngine engine(plan, c.setup.initial.step, static_cast<uint32_t>(start.size()),
-                            [&](uint32_t k) { return start[k]; },
-                            {variant.threads, variant.quiescence, variant.simd});
+  emu::LatticeEngine engine(
+      plan, c.setup.initial.step, static_cast<uint32_t>(start.size()), [&](uint32_t k) { return start[k]; },
+      options);
   count.vectors += engine.simd() != "portable";
   State before = golden.state();
   uint64_t at_rest = 0;
@@ -66,13 +71,14 @@ void compare(const Case& c, const Variant& variant, Count& count) {
       break;
     }
     const State state = golden.state();
-    ASSERT_TRUE(engine.state() == state) << "step " << s;
+    const State found_state = engine.state();
+    ASSERT_TRUE(!first || found_state == state) << "step " << s;
     ASSERT_EQ(engine.hash(), hash_of(plan.lattice, state));
     ASSERT_EQ(engine.momentum(), momentum(state));
     std::vector<Particle> slots, golden_slots;
     engine.for_each_slot([&](const Particle& p) { slots.push_back(p); });
     for (const auto& node : golden.nodes()) golden_slots.insert(golden_slots.end(), node.begin(), node.end());
-    ASSERT_TRUE(slots == golden_slots) << "step " << s;
+    ASSERT_TRUE(!first || slots == golden_slots) << "step " << s;
     uint64_t moved = 0;
     for (size_t k = 0; k < state.particles.size(); ++k)
       moved += state.particles[k].node != before.particles[k].node;

@@ -10,15 +10,8 @@
 
 namespace cuboct::test {
 
-struct Variant {
-  std::string simd;
-  int threads;
-  bool quiescence;
-};
-
 // Those of this machine, the widest unit first: "portable" everywhere.
-std::vector<Variant> variants(const Plan& plan);
-std::string name(const Variant& v);
+std::vector<emu::LatticeOptions> variants(const Plan& plan);
 
 // What comparisons met, summed over calls.
 struct Count {
@@ -28,7 +21,7 @@ struct Count {
 };
 
 // Runs both up to the case's steps or the fault that golden meets: state, hash, momentum, order of slots,
-// number of crossings and faults at each step.
-void compare(const Case& c, const Variant& variant, Count& count);
+// number of crossings and faults at each step. With ranks each runs golden, and the first has all particles.
+void compare(const Case& c, const emu::LatticeOptions& options, Count& count);
 
 }  // namespace cuboct::test

@@ -13,7 +13,7 @@ class Lattice : public testing::TestWithParam<std::string> {};
 TEST_P(Lattice, EqualsGoldenAtEachStep) {
   const Case c = make_case(GetParam());
   Count count;
-  for (const Variant& v : variants(c.setup.plan)) compare(c, v, count);
+  for (const emu::LatticeOptions& v : variants(c.setup.plan)) compare(c, v, count);
   EXPECT_GT(count.updates, 0u);
 }
 
@@ -41,7 +41,7 @@ TEST(LatticeFaults, EachArisesAsInGolden) {
   size_t expected = 0;
   for (const Fault fault : all_faults()) {
     const Case c = fault_case(fault);
-    for (const Variant& v : variants(c.setup.plan)) {
+    for (const emu::LatticeOptions& v : variants(c.setup.plan)) {
       compare(c, v, count);
       ++expected;
     }

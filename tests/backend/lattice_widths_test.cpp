@@ -31,12 +31,12 @@ bool fits(const Plan& plan) { return emu::kernel_rule(plan.rule, plan.arch.capac
 // The widest unit that the rule allows, which must be the one expected, and plain integers.
 void compare_both(const Case& c, Dice& dice, Count& count) {
   const auto all = variants(c.setup.plan);
-  const bool vectors = fits(c.setup.plan) && std::any_of(all.begin(), all.end(), [](const Variant& v) {
-                         return v.simd != "portable";
-                       });
+  const bool vectors =
+      fits(c.setup.plan) &&
+      std::any_of(all.begin(), all.end(), [](const emu::LatticeOptions& v) { return v.simd != "portable"; });
   ASSERT_EQ(all.front().simd != "portable", vectors);
   for (const std::string& simd : {std::string(), std::string("portable")}) {
-    compare(c, {simd, dice.draw(1, 3), dice.chance(50)}, count);
+    compare(c, {dice.draw(1, 3), dice.chance(50), simd}, count);
     if (testing::Test::HasFatalFailure()) return;
   }
 }

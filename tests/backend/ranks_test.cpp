@@ -8,7 +8,7 @@
 
 #include "emu/lattice/engine.h"
 #include "emu/lattice/mpi_ranks.h"
-#include "model/golden.h"
+#include "tests/backend/against_golden.h"
 #include "tests/support/block.h"
 #include "tests/support/cases.h"
 
@@ -17,67 +17,13 @@ namespace {
 
 emu::MpiRanks* world = nullptr;
 
-std::string where(const RunError& e) {
-  return fmt::format("{} step {} node {} particle {} number {}: {}", static_cast<int>(e.fault), e.step,
-                     e.node, e.particle, e.number, e.what());
-}
-
-struct Count {
-  uint64_t updates = 0, moves = 0, faults = 0, quiet = 0, builds = 0;
-};
-
-void compare(const Case& c, emu::LatticeOptions options, Count& count) {
-  SCOPED_TRACE(fmt::format("{}, {} ranks cut in {}, {} threads, rank {}", c.name, world->size(), options.cut,
-                           options.threads, world->rank()));
-  options.ranks = world;
-  const Plan& plan = c.setup.plan;
-  const auto& start = c.setup.initial.particles;
-  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
-  emu::LatticeEngine engine(
-      plan, c.setup.initial.step, static_cast<uint32_t>(start.size()), [&](uint32_t k) { return start[k]; },
-      options);
-  for (uint64_t s = 0; s < c.steps; ++s) {
-    std::string expected, found;
-    try {
-      golden.step();
-    } catch (const RunError& e) {
-      expected = where(e);
-    }
-    try {
-      engine.step();
-    } catch (const RunError& e) {
-      found = where(e);
-    }
-    ASSERT_EQ(found, expected) << "step " << s;
-    if (!expected.empty()) {
-      ++count.faults;
-      break;
-    }
-    const State state = golden.state();
-    ASSERT_EQ(engine.hash(), hash_of(plan.lattice, state)) << "step " << s;
-    ASSERT_EQ(engine.momentum(), momentum(state));
-    count.moves += engine.leaving().size();
-    count.updates += state.particles.size();
-    if (s % 5 != 0 && s + 1 != c.steps) continue;
-    const State found_state = engine.state();
-    std::vector<Particle> slots, golden_slots;
-    engine.for_each_slot([&](const Particle& p) { slots.push_back(p); });
-    if (world->rank() != 0) continue;
-    for (const auto& node : golden.nodes()) golden_slots.insert(golden_slots.end(), node.begin(), node.end());
-    ASSERT_TRUE(found_state == state) << "step " << s;
-    ASSERT_TRUE(slots == golden_slots) << "step " << s;
-  }
-  count.quiet += engine.counters().quiet_node_steps;
-  count.builds += engine.counters().list_builds;
-}
-
 const std::vector<std::string> kCuts{"bricks", "x", "y", "z"};
 
 TEST(Ranks, HoldGoldensBitsInEachCase) {
   Count count;
   for (const std::string& name : case_names())
     for (const std::string& cut : kCuts) {
-      compare(make_case(name), {1, cut != "x", "", nullptr, cut}, count);
+      compare(make_case(name), {1, cut != "x", "", world, cut}, count);
       if (HasFatalFailure()) return;
     }
   EXPECT_GT(count.updates, 0u);
@@ -86,7 +32,7 @@ TEST(Ranks, HoldGoldensBitsInEachCase) {
 TEST(Ranks, HoldGoldensBitsInRandomCases) {
   Count count;
   for (uint64_t seed = 1; seed <= 60; ++seed) {
-    compare(random_case(seed), {1 + static_cast<int>(seed % 2), seed % 3 != 0, "", nullptr, kCuts[seed % 4]},
+    compare(random_case(seed), {1 + static_cast<int>(seed % 2), seed % 3 != 0, "", world, kCuts[seed % 4]},
             count);
     if (HasFatalFailure()) return;
   }
@@ -98,7 +44,7 @@ TEST(Ranks, HoldGoldensBitsInRandomCases) {
 TEST(Ranks, MeetEachFaultAlike) {
   Count count;
   for (const Fault fault : all_faults()) {
-    compare(fault_case(fault), {1, true, "", nullptr, "bricks"}, count);
+    compare(fault_case(fault), {1, true, "", world, "bricks"}, count);
     if (HasFatalFailure()) return;
   }
   EXPECT_EQ(count.faults, all_faults().size());
@@ -111,8 +57,8 @@ TEST(Ranks, HoldGoldensBitsWhileParticlesChangeRanks) {
   features.size = {5, 5, 5};
   features.speed = 0.5;
   Case c{"warm block", block(features), 60};
-  compare(c, {1, true, "", nullptr, "bricks"}, count);
-  EXPECT_GT(count.builds, 3u);
+  compare(c, {1, true, "", world, "bricks"}, count);
+  EXPECT_GT(count.lists.list_builds, 3u);
   EXPECT_GT(count.moves, 200u);
 }
 
@@ -133,12 +79,11 @@ TEST(Ranks, HoldGoldensBitsInAHotGasUpToItsFault) {
     }
     Arch arch;
     arch.capacity = 60;
-    compare({"hot gas", make_setup(scene, arch), 100}, {1, seed % 2 == 0, "", nullptr, kCuts[seed - 1]},
-            count);
+    compare({"hot gas", make_setup(scene, arch), 100}, {1, seed % 2 == 0, "", world, kCuts[seed - 1]}, count);
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(count.faults, 1u);
-  EXPECT_GT(count.builds, 20u);
+  EXPECT_GT(count.lists.list_builds, 20u);
   EXPECT_GT(count.moves, 400u);
 }
 
@@ -150,15 +95,15 @@ TEST(Ranks, KeepTheirListsAsLongAsOneRankDoes) {
   features.speed = 0.3;
   const Case c{"warm bar", block(features), 40};
   Count count;
-  compare(c, {1, false, "", nullptr, "x"}, count);
+  compare(c, {1, false, "", world, "x"}, count);
   if (HasFatalFailure()) return;
   const auto& start = c.setup.initial.particles;
   emu::LatticeEngine alone(c.setup.plan, 0, static_cast<uint32_t>(start.size()),
-                           [&](uint32_t k) { return start[k]; }, {1, false, "", nullptr, "bricks"});
+                           [&](uint32_t k) { return start[k]; }, {1, false, "", world, "bricks"});
   for (uint64_t s = 0; s < c.steps; ++s) alone.step();
   // One engine mends a list where ranks make it anew.
-  EXPECT_LE(count.builds, alone.counters().list_builds + alone.counters().list_mends + 1);
-  EXPECT_GT(count.builds, 3u);
+  EXPECT_LE(count.lists.list_builds, alone.counters().list_builds + alone.counters().list_mends + 1);
+  EXPECT_GT(count.lists.list_builds, 3u);
 }
 
 TEST(Ranks, RefuseAnUnknownCut) {
