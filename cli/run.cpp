@@ -12,6 +12,7 @@
 #include "cli/run_reference.h"
 #include "cli/summary.h"
 #include "model/output.h"
+#include "model/steps.h"
 
 namespace cuboct {
 namespace {

@@ -7,17 +7,6 @@
 #include <cmath>
 
 namespace cuboct {
-std::vector<uint64_t> every_so_often(uint64_t every, uint64_t last) {
-  constexpr uint64_t kMost = 10'000'000;  // states; memory goes first
-  if (every > 0 && last / every > kMost)
-    throw InputError(fmt::format("every {} of {} steps are {} states: at most {} can be kept", every, last,
-                                 last / every, kMost));
-  std::vector<uint64_t> steps{0};
-  for (uint64_t step = every; every > 0 && step < last; step += every) steps.push_back(step);
-  if (last > 0) steps.push_back(last);
-  return steps;
-}
-
 RunMeter::RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps)
     : loaded_(loaded),
       probe_steps_(probe_steps.begin(), probe_steps.end()),

@@ -9,12 +9,10 @@
 #include "cli/command.h"
 #include "cli/items.h"
 #include "model/state_meter.h"
+#include "model/steps.h"
 #include "model/trace.h"
 
 namespace cuboct {
-
-// The steps 0, every, 2 every, ... and `last`; every 0: 0 and `last` alone.
-std::vector<uint64_t> every_so_often(uint64_t every, uint64_t last);
 
 // What a summary says beyond the trace.
 struct RunFacts {

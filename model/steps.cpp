@@ -36,4 +36,15 @@ void put_in_order(std::vector<uint64_t>& steps) {
   steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
 }
 
+std::vector<uint64_t> every_so_often(uint64_t every, uint64_t last) {
+  constexpr uint64_t kMost = 10'000'000;  // states; memory goes first
+  if (every > 0 && last / every > kMost)
+    throw InputError(fmt::format("every {} of {} steps are {} states: at most {} can be kept", every, last,
+                                 last / every, kMost));
+  std::vector<uint64_t> steps{0};
+  for (uint64_t step = every; every > 0 && step < last; step += every) steps.push_back(step);
+  if (last > 0) steps.push_back(last);
+  return steps;
+}
+
 }  // namespace cuboct

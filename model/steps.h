@@ -15,4 +15,7 @@ std::vector<uint64_t> read_steps(const std::string& path);
 // Ascending, each once.
 void put_in_order(std::vector<uint64_t>& steps);
 
+// The steps 0, every, 2 every, ... and `last`; every 0: 0 and `last` alone.
+std::vector<uint64_t> every_so_often(uint64_t every, uint64_t last);
+
 }  // namespace cuboct

@@ -58,7 +58,9 @@ int run(Request request) {
   run.frames = std::move(request.frames);
   put_in_order(run.frames);
   if (!request.frames_given && !request.bench) run.frames = {0, run.steps};
-  run.probes = probe_steps_of(scene, run.steps);
+  // Energies are read at the first and the last step too.
+  run.probes =
+      run.energies ? every_so_often(scene.probe_every, run.steps) : probe_steps_of(scene, run.steps);
   run.engine.quiescence = !request.no_quiescence;
   // A benchmark times steps: its one hash is the last state's.
   if (request.bench) run.hash_every = std::max<uint64_t>(run.steps, 1);

@@ -72,8 +72,8 @@ TEST(Run, WritesItsDirectoryTheSameEachTime) {
 TEST(Run, OfAnEngineBesideGivesGoldensCurves) {
   const Bench bench(true);
   const auto run = [&](const std::string& engine) {
-    std::vector<std::string> arguments{"run",      "scenes/coupon.toml", "--steps", "60",
-                                       "--engine", engine,               "--out",   bench.path(engine)};
+    std::vector<std::string> arguments{"run",   "scenes/coupon.toml", "--steps", "60", "--engine", engine,
+                                       "--out", bench.path(engine)};
     if (engine == "lattice") arguments.insert(arguments.end(), {"--hash-every", "1"});
     EXPECT_EQ(bench.cuboct(arguments).code, 0);
     return read_trace(bench.path(engine + "/trace.h5"));
@@ -111,6 +111,37 @@ TEST(Run, OfTheReferenceFollowsGolden) {
   EXPECT_NEAR(stress[0], stress[1], 1e-2 * stress[1]);
 }
 
+// Summary and trace of three processes are those of one.
+TEST(Run, SharesASceneAmongRanks) {
+  const Bench bench(false);
+  fs::copy(CUBOCT_LATTICE, bench.path("bin/cuboct-lattice"));
+  const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run",
+                                       "scenes/undamped_block.toml",
+                                       "--steps",
+                                       "120",
+                                       "--frames-every",
+                                       "40",
+                                       "--hash-every",
+                                       "1",
+                                       "--out",
+                                       bench.path(out)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return bench.cuboct(arguments);
+  };
+  const Answer one = run("one", {}), three = run("three", {"--ranks", "3"});
+  ASSERT_EQ(one.code, 0) << one.err;
+  if (three.code == 2 && three.err.find("MPI") != std::string::npos) GTEST_SKIP() << three.err;
+  ASSERT_EQ(three.code, 0) << three.err;
+  const Trace alone = read_trace(bench.path("one/trace.h5")),
+              shared = read_trace(bench.path("three/trace.h5"));
+  ASSERT_EQ(shared.state_hash.size(), 121u);
+  EXPECT_EQ(alone.state_hash, shared.state_hash);
+  EXPECT_EQ(alone.frames, shared.frames);
+  for (const char* line : {"momentum change", "largest speed", "energy", "state hash"})
+    EXPECT_EQ(value_of(one.out, line), value_of(three.out, line));
+}
+
 TEST(Run, EndsCleanlyOnCtrlC) {
   const Bench bench(false);
   const auto begin = std::chrono::steady_clock::now();
@@ -128,8 +159,8 @@ TEST(Run, EndsCleanlyOnCtrlC) {
 
 TEST(Run, GoesOnWhereCtrlCLeftIt) {
   const Bench bench(false);
-  const std::vector<std::string> plain{"run", "scenes/coupon.toml", "--steps", "2000", "--frames-every", "500",
-                                       "--out"};
+  const std::vector<std::string> plain{
+      "run", "scenes/coupon.toml", "--steps", "2000", "--frames-every", "500", "--out"};
   const auto run = [&](const std::string& out, const std::vector<std::string>& more, double interrupt = 0) {
     std::vector<std::string> arguments = plain;
     arguments.push_back(bench.path(out));
@@ -147,7 +178,8 @@ TEST(Run, GoesOnWhereCtrlCLeftIt) {
   }
   EXPECT_GT(interrupts, 0);
   ASSERT_EQ(answer.code, 0) << answer.err;
-  const Trace whole = read_trace(bench.path("whole/trace.h5")), parts = read_trace(bench.path("parts/trace.h5"));
+  const Trace whole = read_trace(bench.path("whole/trace.h5")),
+              parts = read_trace(bench.path("parts/trace.h5"));
   EXPECT_EQ(whole.state_hash, parts.state_hash);
   EXPECT_EQ(whole.frames, parts.frames);
   ASSERT_EQ(whole.curves.size(), parts.curves.size());
@@ -170,12 +202,11 @@ TEST(Report, IsOneFileWithoutOutsideResources) {
       bench.cuboct({"run", "scenes/coupon.toml", "--steps", "100", "--frames-every", "25", "--out", out})
           .code,
       0);
-  ASSERT_EQ(
-      bench
-          .cuboct({"crosscheck", "scenes/coupon.toml", "--steps", "5", "--engines", "golden,systemc,rtl",
-                   "--out", out + "/crosscheck"})
-          .code,
-      0);
+  ASSERT_EQ(bench
+                .cuboct({"crosscheck", "scenes/coupon.toml", "--steps", "5", "--engines",
+                         "golden,systemc,rtl", "--out", out + "/crosscheck"})
+                .code,
+            0);
   const Answer answer = bench.cuboct({"report", out});
   EXPECT_EQ(answer.code, 0) << answer.err;
   EXPECT_EQ(answer.out, out + "/report.html\n");
