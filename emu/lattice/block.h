@@ -22,18 +22,12 @@
 
 namespace cuboct::emu {
 
-// The pairs (group's lane l, particle first() + l) for the bits l of `lanes`. Six bytes: a crystal has some
-// three entries per particle.
+// The pairs (group's lane l, particle first + l) for the bits l of `lanes`.
 struct Entry {
-  uint16_t first_low, first_high;
+  int32_t first;
   uint8_t lanes;
   uint8_t shift;  // index into Particles::shift
-  int32_t first() const { return static_cast<int32_t>(first_low | static_cast<uint32_t>(first_high) << 16); }
 };
-inline Entry make_entry(int32_t first, uint8_t lanes, uint8_t shift) {
-  const auto bits = static_cast<uint32_t>(first);
-  return {static_cast<uint16_t>(bits), static_cast<uint16_t>(bits >> 16), lanes, shift};
-}
 inline constexpr uint8_t kNoShift = 13;
 
 // Structure of arrays over all particles of this process, its ghosts behind them.

@@ -94,7 +94,7 @@ struct Own {
 template <bool kSimple, bool kDamped, bool kScaled>
 HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, const Own& own, uint32_t i,
                            const Entry& entry, uint32_t at, V& s, V dx[3], uint32_t& doubtful) {
-  const ptrdiff_t j = static_cast<ptrdiff_t>(entry.first()) + at;
+  const ptrdiff_t j = static_cast<ptrdiff_t>(entry.first) + at;
   for (int a = 0; a < 3; ++a) {
     V x = hn::Sub(hn::LoadU(d, particles.x[a].data() + j), own.x[a]);
     if (HWY_UNLIKELY(entry.shift != kNoShift)) x = hn::Add(x, hn::Set(d, particles.shift[entry.shift][a]));
@@ -152,7 +152,7 @@ HWY_INLINE void prune_group(const Particles& particles, V reach2, size_t base, P
     for (uint32_t at = 0; at < kGroup; at += kLanes) {
       V r2 = hn::Zero(d);
       for (int a = 0; a < 3; ++a) {
-        const V x_j = hn::LoadU(d, particles.x[a].data() + entry.first() + static_cast<ptrdiff_t>(at));
+        const V x_j = hn::LoadU(d, particles.x[a].data() + entry.first + static_cast<ptrdiff_t>(at));
         const V x = hn::Add(hn::Sub(x_j, hn::Load(d, particles.x[a].data() + base + at)),
                             hn::Set(d, particles.shift[entry.shift][a]));
         r2 = hn::MulAdd(x, x, r2);
@@ -215,7 +215,7 @@ void across(const KernelRule& rule, const Particles& particles, const Active& ac
         if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, entry, at, s, dx, doubtful))
           continue;
         if (HWY_UNLIKELY(doubtful != 0))
-          report(rule, particles, i, entry.first() + static_cast<int32_t>(at), entry.shift, doubtful, false,
+          report(rule, particles, i, entry.first + static_cast<int32_t>(at), entry.shift, doubtful, false,
                  block);
         const V factor = kick_factor<kSimple>(rule, s, dx);
         for (int a = 0; a < 3; ++a) sum[a] = hn::NegMulAdd(dx[a], factor, sum[a]);
@@ -269,7 +269,8 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
                              hn::Ge(hn::Abs(v[a]), hn::Set(d, rule.v_limit))));
   }
   if (HWY_UNLIKELY(!hn::AllFalse(d, hn::And(odd, mask)))) {
-    update_each(rule, particles, i, lanes, active, sum, block);
+    const V sums[3] = {sum[0], sum[1], sum[2]};  // only these need an address
+    update_each(rule, particles, i, lanes, active, sums, block);
     return;
   }
   M crossed = hn::FirstN(d, 0), changed = hn::FirstN(d, 0);
@@ -334,18 +335,18 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
         const PairList::Group& group = block.inside.groups[k];
         const Entry* const end = block.inside.entries.data() + group.begin + group.near;
         for (const Entry* e = block.inside.entries.data() + group.begin; e != end; ++e) {
-          if (asleep && !any_flag(active.awake, particles, static_cast<uint32_t>(e->first()) / kGroup) &&
-              !any_flag(active.awake, particles, (static_cast<uint32_t>(e->first()) + kGroup - 1) / kGroup))
+          if (asleep && !any_flag(active.awake, particles, static_cast<uint32_t>(e->first) / kGroup) &&
+              !any_flag(active.awake, particles, (static_cast<uint32_t>(e->first) + kGroup - 1) / kGroup))
             continue;
           uint32_t doubtful = 0;
           V s, dx[3];
           if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, s, dx, doubtful))
             continue;
           if (HWY_UNLIKELY(doubtful != 0))
-            report(rule, particles, i, e->first() + static_cast<int32_t>(at), e->shift, doubtful, true,
+            report(rule, particles, i, e->first + static_cast<int32_t>(at), e->shift, doubtful, true,
                    block);
-          written = std::max(written, static_cast<uint32_t>(e->first()) + kGroup);
-          const uint32_t to = ((static_cast<uint32_t>(e->first()) - block.begin) & block.ring_mask) + at;
+          written = std::max(written, static_cast<uint32_t>(e->first) + kGroup);
+          const uint32_t to = ((static_cast<uint32_t>(e->first) - block.begin) & block.ring_mask) + at;
           const V factor = kick_factor<kSimple>(rule, s, dx);
           for (int a = 0; a < 3; ++a) {
             sum[a] = hn::NegMulAdd(dx[a], factor, sum[a]);
@@ -365,7 +366,8 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
       if (HWY_LIKELY(block.plain[k] != 0)) {
         update(rule, particles, i, mine, active, sum, block, fastest2);
       } else {
-        update_each(rule, particles, i, mine, active, sum, block);
+        const V sums[3] = {sum[0], sum[1], sum[2]};  // only these need an address
+        update_each(rule, particles, i, mine, active, sums, block);
       }
     }
   }

@@ -37,7 +37,7 @@ bool near(const Particles& particles, double reach2, uint32_t base, const Entry&
     double r2 = 0;
     for (int a = 0; a < 3; ++a) {
       const double d =
-          particles.x[a][entry.first() + l] - particles.x[a][base + l] + particles.shift[entry.shift][a];
+          particles.x[a][entry.first + l] - particles.x[a][base + l] + particles.shift[entry.shift][a];
       r2 += d * d;
     }
     if (r2 <= reach2) return true;
@@ -73,7 +73,7 @@ void across(const KernelRule& rule, const Particles& particles, const Active& ac
       const Entry& entry = edge.pairs.entries[e];
       for (uint32_t l = 0; l < kGroup; ++l) {
         if ((entry.lanes >> l & 1) == 0) continue;
-        const PairResult result = pair(rule, particles, g * kGroup + l, entry.first() + l, entry.shift);
+        const PairResult result = pair(rule, particles, g * kGroup + l, entry.first + l, entry.shift);
         if (result.fault != Fault::none)
           block.pair_faults.push_back({result.fault, g * kGroup + l, result.number});
         for (int a = 0; a < 3; ++a) add(sum[a * kGroup + l], result.kick[a]);
@@ -97,10 +97,10 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
         const Entry& entry = block.inside.entries[e];
         for (uint32_t l = 0; l < kGroup; ++l) {
           if ((entry.lanes >> l & 1) == 0) continue;
-          const uint32_t i = g * kGroup + l, j = entry.first() + l;
+          const uint32_t i = g * kGroup + l, j = entry.first + l;
           const PairResult result = pair(rule, particles, i, j, entry.shift);
           if (result.fault != Fault::none) report_pair(rule, particles, i, j, entry.shift, true, block);
-          const uint32_t to = ((entry.first() - block.begin) & block.ring_mask) + l;
+          const uint32_t to = ((entry.first - block.begin) & block.ring_mask) + l;
           for (int a = 0; a < 3; ++a) {
             sums[l][a] += result.kick[a];
             add(block.ring[a][to], -result.kick[a]);

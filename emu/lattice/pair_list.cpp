@@ -20,12 +20,12 @@ class Merger {
       Place& place = table_[at];
       if (place.lap != lap_) {
         place = {lap_, static_cast<uint32_t>(entries_.size())};
-        entries_.push_back(make_entry(first, static_cast<uint8_t>(1u << lane), shift));
+        entries_.push_back({first, static_cast<uint8_t>(1u << lane), shift});
         if (entries_.size() > size_ / 2) grow();
         return;
       }
       Entry& entry = entries_[place.entry];
-      if (entry.first() == first && entry.shift == shift) {
+      if (entry.first == first && entry.shift == shift) {
         entry.lanes = static_cast<uint8_t>(entry.lanes | 1u << lane);
         return;
       }
@@ -35,7 +35,7 @@ class Merger {
   template <typename Entries>
   void take(Entries& out) {
     std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-      return std::pair(a.first(), a.shift) < std::pair(b.first(), b.shift);
+      return std::pair(a.first, a.shift) < std::pair(b.first, b.shift);
     });
     out.insert(out.end(), entries_.begin(), entries_.end());
     entries_.clear();
@@ -51,7 +51,7 @@ class Merger {
     size_ *= 2;
     table_.assign(size_, {});
     for (uint32_t e = 0; e < entries_.size(); ++e) {
-      uint32_t at = (static_cast<uint32_t>(entries_[e].first()) * 2654435761u + entries_[e].shift * 40503u) >>
+      uint32_t at = (static_cast<uint32_t>(entries_[e].first) * 2654435761u + entries_[e].shift * 40503u) >>
                     (32 - bits_);
       while (table_[at].lap == lap_) at = (at + 1) & (size_ - 1);
       table_[at] = {lap_, e};
@@ -125,7 +125,7 @@ uint32_t window_of(const Block& block, uint32_t k) {
   const PairList::Group& group = block.inside.groups[k];
   for (uint32_t e = group.begin; e < group.begin + group.count; ++e)
     window =
-        std::max(window, static_cast<uint32_t>(block.inside.entries[e].first()) - block.begin - k * kGroup);
+        std::max(window, static_cast<uint32_t>(block.inside.entries[e].first) - block.begin - k * kGroup);
   return window;
 }
 
