@@ -72,6 +72,11 @@ std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, co
 
 double newtons_per_kick(const FixedRule& rule) { return velocity_unit(rule) * rule.mass / rule.dt; }
 
+Vec3 force_of(const FixedRule& rule, const Int3& kick) {
+  return newtons_per_kick(rule) * Vec3(static_cast<double>(kick[0]), static_cast<double>(kick[1]),
+                                       static_cast<double>(kick[2]));
+}
+
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                   const State& state, const std::vector<Int3>& kicks, int threads) {
   Energies sum;
@@ -154,33 +159,18 @@ Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& orig
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
                  const std::vector<Int3>& kicks) {
   Sample sample{state.step, to_real(state, rule, lattice, origin).x, {}};
-  const double unit = newtons_per_kick(rule);
-  for (const Int3& kick : kicks)
-    sample.force.push_back(unit * Vec3(static_cast<double>(kick[0]), static_cast<double>(kick[1]),
-                                       static_cast<double>(kick[2])));
+  for (const Int3& kick : kicks) sample.force.push_back(force_of(rule, kick));
   return sample;
 }
 
 ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodic,
                        const std::vector<Vec3>& initial)
-    : probes_(probes), periodic_(periodic) {
+    : probes_(probes),
+      periodic_(periodic),
+      initial_(initial),
+      latest_(initial),
+      moved_(initial.size(), Vec3::Zero()) {
   for (const Probe& probe : probes_) {
-    if (probe.kind == Probe::Kind::force) continue;
-    for (const ParticleSet* set : {&probe.set, &probe.lower, &probe.upper})
-      ids_.insert(ids_.end(), set->ids.begin(), set->ids.end());
-  }
-  std::sort(ids_.begin(), ids_.end());
-  ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
-  for (const uint32_t id : ids_) initial_.push_back(initial[id]);
-  latest_ = initial_;
-  moved_.assign(initial_.size(), Vec3::Zero());
-  for (const Probe& probe : probes_) {
-    if (probe.kind == Probe::Kind::displacement)
-      sets_.push_back({follow(probe.set), {}});
-    else if (probe.kind == Probe::Kind::stress_strain)
-      sets_.push_back({follow(probe.lower), follow(probe.upper)});
-    else
-      sets_.push_back({});
     const auto curve = [&](const char* quantity, const char* unit) {
       curves_.push_back({probe.name + "." + quantity, unit, {}, {}});
     };
@@ -199,10 +189,9 @@ ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodi
 }
 
 void ProbeMeter::add(const Sample& sample) {
-  for (size_t i = 0; i < ids_.size(); ++i) {
-    const Vec3& x = sample.x[ids_[i]];
-    moved_[i] += nearest_image(x - latest_[i], periodic_);
-    latest_[i] = x;
+  for (size_t i = 0; i < moved_.size(); ++i) {
+    moved_[i] += nearest_image(sample.x[i] - latest_[i], periodic_);
+    latest_[i] = sample.x[i];
   }
   const auto total_force = [&](const ParticleSet& set) {
     Vec3 sum = Vec3::Zero();
@@ -214,29 +203,25 @@ void ProbeMeter::add(const Sample& sample) {
     curves_[next].step.push_back(sample.step);
     curves_[next++].value.push_back(value);
   };
-  for (size_t p = 0; p < probes_.size(); ++p) {
-    const Probe& probe = probes_[p];
-    const auto& [lower, upper] = sets_[p];
-    switch (probe.kind) {
+  for (const Probe& probe : probes_) switch (probe.kind) {
       case Probe::Kind::force: {
         const Vec3 force = total_force(probe.set);
         point(force.x()), point(force.y()), point(force.z());
         break;
       }
       case Probe::Kind::displacement: {
-        const Vec3 moved = displacement(lower);
+        const Vec3 moved = displacement(probe.set);
         point(moved.x()), point(moved.y()), point(moved.z());
         break;
       }
       case Probe::Kind::stress_strain: {
-        const double gauge = (position(upper) - position(lower))[probe.axis];
-        const double stretch = (displacement(upper) - displacement(lower))[probe.axis];
+        const double gauge = (position(probe.upper) - position(probe.lower))[probe.axis];
+        const double stretch = (displacement(probe.upper) - displacement(probe.lower))[probe.axis];
         point(stretch / gauge);
         point(-total_force(probe.grip)[probe.axis] / probe.area);
         break;
       }
     }
-  }
 }
 
 void ProbeMeter::restore(Memory memory, std::vector<Curve> curves) {
@@ -245,24 +230,16 @@ void ProbeMeter::restore(Memory memory, std::vector<Curve> curves) {
   curves_ = std::move(curves);
 }
 
-ProbeMeter::Followed ProbeMeter::follow(const ParticleSet& set) const {
-  Followed followed;
-  followed.reserve(set.ids.size());
-  for (const uint32_t id : set.ids)
-    followed.push_back(static_cast<uint32_t>(std::lower_bound(ids_.begin(), ids_.end(), id) - ids_.begin()));
-  return followed;
+Vec3 ProbeMeter::displacement(const ParticleSet& set) const {
+  Vec3 sum = Vec3::Zero();
+  for (const uint32_t id : set.ids) sum += moved_[id];
+  return set.ids.empty() ? sum : Vec3(sum / static_cast<double>(set.ids.size()));
 }
 
-Vec3 ProbeMeter::displacement(const Followed& set) const {
+Vec3 ProbeMeter::position(const ParticleSet& set) const {
   Vec3 sum = Vec3::Zero();
-  for (const uint32_t i : set) sum += moved_[i];
-  return set.empty() ? sum : Vec3(sum / static_cast<double>(set.size()));
-}
-
-Vec3 ProbeMeter::position(const Followed& set) const {
-  Vec3 sum = Vec3::Zero();
-  for (const uint32_t i : set) sum += initial_[i];
-  return set.empty() ? sum : Vec3(sum / static_cast<double>(set.size()));
+  for (const uint32_t id : set.ids) sum += initial_[id];
+  return set.ids.empty() ? sum : Vec3(sum / static_cast<double>(set.ids.size()));
 }
 
 }  // namespace cuboct

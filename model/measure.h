@@ -23,6 +23,7 @@ std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, co
 
 // Newtons per unit of a kick: a kick of one cell edge per step is cell_edge/dt in velocity, gained within dt.
 double newtons_per_kick(const FixedRule& rule);
+Vec3 force_of(const FixedRule& rule, const Int3& kick);  // N
 
 struct Energies {
   double kinetic = 0;    // J, at the time of the positions: v + dv/2, as v lives half a step earlier
@@ -77,22 +78,16 @@ class ProbeMeter {
     std::vector<Vec3> latest, moved;
   };
   Memory memory() const { return {latest_, moved_}; }
-  size_t followed() const { return ids_.size(); }  // particles in it
   // Goes on from a memory of the same probes and from their curves so far.
   void restore(Memory memory, std::vector<Curve> curves);
 
  private:
-  // Particles of a set whose positions count, as indices into the arrays below: only those are followed.
-  using Followed = std::vector<uint32_t>;
-  Followed follow(const ParticleSet& set) const;
-  Vec3 displacement(const Followed& set) const;  // mean, m
-  Vec3 position(const Followed& set) const;      // mean initial position, m
+  Vec3 displacement(const ParticleSet& set) const;  // mean, m
+  Vec3 position(const ParticleSet& set) const;      // mean initial position, m
 
   std::vector<Probe> probes_;
   Periodic periodic_;
-  std::vector<uint32_t> ids_;                   // ascending
-  std::vector<Vec3> initial_, latest_, moved_;  // of ids_
-  std::vector<std::array<Followed, 2>> sets_;   // of each probe: its set, or lower and upper
+  std::vector<Vec3> initial_, latest_, moved_;
   std::vector<Curve> curves_;
 };
 

@@ -52,12 +52,9 @@ void StateMeter::add(const State& state) {
   if (forces_ || !energy_.empty()) kicks = summed_kicks(rule_, lattice_, state, threads_);
   if (!scene_.probes.empty()) {
     Sample sample{state.step, {}, {}};
-    const double unit = newtons_per_kick(rule_);
     for (const uint32_t id : ids_) {
       sample.x.push_back(position_of(rule_, lattice_, origin_, state.particles[id]));
-      const Int3 kick = kicks.empty() ? Int3{} : kicks[id];
-      sample.force.push_back(unit * Vec3(static_cast<double>(kick[0]), static_cast<double>(kick[1]),
-                                         static_cast<double>(kick[2])));
+      sample.force.push_back(force_of(rule_, kicks.empty() ? Int3{} : kicks[id]));
     }
     probes_.add(sample);
   }

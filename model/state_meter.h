@@ -28,7 +28,7 @@ class StateMeter {
 
   // For checkpoints.
   ProbeMeter::Memory memory() const { return probes_.memory(); }
-  size_t probed() const { return probes_.followed(); }  // particles in `memory`
+  size_t probed() const { return ids_.size(); }  // particles in `memory`
   void restore(ProbeMeter::Memory memory, const std::vector<Curve>& curves);
 
  private:
