@@ -15,6 +15,10 @@ namespace cuboct::emu {
 // Particles per group: the lanes of the widest vector of doubles. Every array index that begins a group is a
 // multiple of it.
 inline constexpr uint32_t kGroup = 8;
+// Groups that hold so many particles.
+inline constexpr uint32_t groups_of(size_t particles) {
+  return static_cast<uint32_t>((particles + kGroup - 1) / kGroup);
+}
 
 // A fixed number of trivially copyable elements, readable (and writable) kGroup elements and 64 bytes beyond
 // either end, so that a vector may overhang. Cache-line aligned.

@@ -79,7 +79,7 @@ struct Edge {
 struct Block {
   uint32_t begin = 0, end = 0;  // particles (indices), begin a multiple of kGroup
   uint32_t first_group() const { return begin / kGroup; }
-  uint32_t groups() const { return (end - begin + kGroup - 1) / kGroup; }
+  uint32_t groups() const { return groups_of(end - begin); }
 
   PairList inside;             // pairs inside the block
   Edge beside;                 // pairs with other blocks

@@ -93,7 +93,7 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
   };
   if (!shared()) {
     // Stored by id: packings number their sites row by row.
-    make_room((count_ + kGroup - 1) / kGroup * kGroup, 0);
+    make_room(groups_of(count_) * kGroup, 0);
     cut_blocks(blocks_, 0, count_);
     for (uint32_t k = 0; k < count_; ++k) {
       const Particle p = particle(k);
@@ -111,7 +111,7 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
     uint32_t held = 0;
     for (uint32_t n = 0; n < lattice_.size(); ++n)
       if (mine(n)) held += static_cast<uint32_t>(members_.count(n));
-    make_room((held + kGroup - 1) / kGroup * kGroup, 0);
+    make_room(groups_of(held) * kGroup, 0);
     cut_blocks(blocks_, 0, held);
     index_.by_id.assign(count_, kNoParticle);
     uint32_t at = 0;
@@ -148,20 +148,12 @@ std::vector<Particle> LatticeEngine::Impl::everyone() const {
     return all;
   }
   std::vector<Bytes> to(static_cast<size_t>(options_.ranks->size()));
-  for_each_index([&](uint32_t p) {
-    const Particle one = particle(p);
-    const auto* bytes = reinterpret_cast<const std::byte*>(&one);
-    to[0].insert(to[0].end(), bytes, bytes + sizeof one);
-  });
+  for_each_index([&](uint32_t p) { append(to[0], particle(p)); });
   const std::vector<Bytes> from = options_.ranks->exchange(to);
   if (options_.ranks->rank() != 0) return all;
   all.resize(count_);
   for (const Bytes& bytes : from)
-    for (size_t k = 0; k < bytes.size(); k += sizeof(Particle)) {
-      Particle one;
-      std::memcpy(&one, bytes.data() + k, sizeof one);
-      all[one.id] = one;
-    }
+    for_each_of<Particle>(bytes, [&](const Particle& one) { all[one.id] = one; });
   return all;
 }
 

@@ -15,8 +15,7 @@ class Merger {
  public:
   Merger() : table_(size_) {}
   void add(int32_t first, uint8_t shift, uint32_t lane) {
-    uint32_t at = (static_cast<uint32_t>(first) * 2654435761u + shift * 40503u) >> (32 - bits_);
-    for (;; at = (at + 1) & (size_ - 1)) {
+    for (uint32_t at = home(first, shift);; at = (at + 1) & (size_ - 1)) {
       Place& place = table_[at];
       if (place.lap != lap_) {
         place = {lap_, static_cast<uint32_t>(entries_.size())};
@@ -46,13 +45,16 @@ class Merger {
   struct Place {
     uint32_t lap = 0, entry = 0;
   };
+  // Multiplicative hashing (Knuth).
+  uint32_t home(int32_t first, uint8_t shift) const {
+    return (static_cast<uint32_t>(first) * 2654435761u + shift * 40503u) >> (32 - bits_);
+  }
   void grow() {
     bits_ += 1;
     size_ *= 2;
     table_.assign(size_, {});
     for (uint32_t e = 0; e < entries_.size(); ++e) {
-      uint32_t at = (static_cast<uint32_t>(entries_[e].first) * 2654435761u + entries_[e].shift * 40503u) >>
-                    (32 - bits_);
+      uint32_t at = home(entries_[e].first, entries_[e].shift);
       while (table_[at].lap == lap_) at = (at + 1) & (size_ - 1);
       table_[at] = {lap_, e};
     }
@@ -199,7 +201,7 @@ void mend_list(const Particles& particles, const Snapshot& snapshot, Search sear
     group.near = group.count = count;
     std::copy(entries.begin(), entries.end(), list.entries.begin() + group.begin);
   };
-  // By group, one beyond: the place in edge_group.
+  // By group, one beyond: its place in block.beside.
   std::vector<uint32_t> edge(block.groups());
   for (uint32_t k = 0; k < block.beside.group.size(); ++k) edge[block.beside.group[k]] = k + 1;
   bool new_edges = false;

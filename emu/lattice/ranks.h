@@ -5,12 +5,30 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace cuboct::emu {
 
 using Bytes = std::vector<std::byte>;
+
+// Values as bytes, one behind the other, and back.
+template <typename T>
+void append(Bytes& bytes, const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  const auto* from = reinterpret_cast<const std::byte*>(&value);
+  bytes.insert(bytes.end(), from, from + sizeof value);
+}
+template <typename T, typename See>
+void for_each_of(const Bytes& bytes, const See& see) {
+  for (size_t k = 0; k < bytes.size(); k += sizeof(T)) {
+    T value;
+    std::memcpy(&value, bytes.data() + k, sizeof value);
+    see(value);
+  }
+}
 
 class Ranks {
  public:

@@ -54,7 +54,7 @@ void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
 // between them, which are worked out twice, are few beside those inside. Threads then share rest and work
 // more evenly.
 void LatticeEngine::Impl::cut_blocks(std::vector<Block>& blocks, uint32_t begin, uint32_t end) const {
-  const uint32_t groups = (end - begin + kGroup - 1) / kGroup;
+  const uint32_t groups = groups_of(end - begin);
   const auto threads = static_cast<uint32_t>(threads_);
   const uint32_t fine =
       threads == 1 ? 1 : std::clamp((end - begin) / kRoomyBlock, threads, kMostPerThread * threads);
@@ -142,8 +142,7 @@ void LatticeEngine::Impl::redistribute() {
       moving.v[a] = particles_.v[a][p];
       if (plan_.rule.pd) moving.u[a] = particles_.u[a][p];
     }
-    const auto* bytes = reinterpret_cast<const std::byte*>(&moving);
-    to[static_cast<size_t>(owner)].insert(to[static_cast<size_t>(owner)].end(), bytes, bytes + sizeof moving);
+    append(to[static_cast<size_t>(owner)], moving);
   });
   const std::vector<Bytes> from = ranks.exchange(to);
 
@@ -157,7 +156,7 @@ void LatticeEngine::Impl::redistribute() {
   }
   if (!listed_ || crystal())  // else they stay in the order of nodes
     for (auto* ids : {&rim, &core}) std::sort(ids->begin(), ids->end());
-  const auto rounded = [](size_t n) { return static_cast<uint32_t>((n + kGroup - 1) / kGroup * kGroup); };
+  const uint32_t core_room = groups_of(core.size()) * kGroup, rim_room = groups_of(rim.size()) * kGroup;
 
   // By rank, the ids of ghosts: those of its nodes that this rank may need.
   std::vector<std::vector<uint32_t>> ghosts(peers_.size()), given(peers_.size());
@@ -180,7 +179,7 @@ void LatticeEngine::Impl::redistribute() {
   particles_ = {};
   particles_.shift = old.shift;
   const Index old_index = std::move(index_);
-  make_room(rounded(rim.size()) + rounded(core.size()), static_cast<uint32_t>(ghost_count));
+  make_room(core_room + rim_room, static_cast<uint32_t>(ghost_count));
   node_ = PaddedArray<uint32_t>(snapshot_.room);
   particles_.node = node_.data();
   index_.by_id.assign(count_, kNoParticle);
@@ -201,11 +200,9 @@ void LatticeEngine::Impl::redistribute() {
     }
   };
   place(core, 0);
-  place(rim, rounded(core.size()));
+  place(rim, core_room);
   for (const Bytes& bytes : from)
-    for (size_t k = 0; k < bytes.size(); k += sizeof(Moving)) {
-      Moving moving;
-      std::memcpy(&moving, bytes.data() + k, sizeof moving);
+    for_each_of<Moving>(bytes, [&](const Moving& moving) {
       const uint32_t p = index_(moving.id);
       particles_.type[p] = static_cast<uint8_t>(moving.type);
       for (int a = 0; a < 3; ++a) {
@@ -213,11 +210,10 @@ void LatticeEngine::Impl::redistribute() {
         particles_.v[a][p] = moving.v[a];
         if (plan_.rule.pd) particles_.u[a][p] = moving.u[a];
       }
-    }
+    });
   blocks_.clear();
   cut_blocks(blocks_, 0, static_cast<uint32_t>(core.size()));
-  const uint32_t rim_begin = rounded(core.size());
-  cut_blocks(blocks_, rim_begin, rim_begin + static_cast<uint32_t>(rim.size()));
+  cut_blocks(blocks_, core_room, core_room + static_cast<uint32_t>(rim.size()));
 
   // The ghosts' types and positions.
   uint32_t at = stored_;

@@ -42,17 +42,12 @@ void LatticeEngine::Impl::fail_if_any(std::vector<Found> Block::*faults) const {
   for (const Block& block : blocks_)
     for (const Found& f : block.*faults) {
       const uint32_t id = particles_.id_of(f.particle);
-      const Told told{f.fault, members_.nodes()[id], id, f.number};
-      const auto* bytes = reinterpret_cast<const std::byte*>(&told);
-      mine.insert(mine.end(), bytes, bytes + sizeof told);
+      append(mine, Told{f.fault, members_.nodes()[id], id, f.number});
     }
   const Bytes all = shared() ? options_.ranks->all(mine) : mine;
   std::vector<RunError> errors;
-  for (size_t k = 0; k < all.size(); k += sizeof(Told)) {
-    Told told;
-    std::memcpy(&told, all.data() + k, sizeof told);
-    errors.push_back(error(told.fault, told.node, told.id, told.number));
-  }
+  for_each_of<Told>(
+      all, [&](const Told& told) { errors.push_back(error(told.fault, told.node, told.id, told.number)); });
   fail_if_any(errors);
 }
 
@@ -62,10 +57,10 @@ std::vector<Crossing> LatticeEngine::Impl::all_crossings() const {
   for (const Block& block : blocks_)
     for (const Crossing& c : block.crossings) crossings.push_back({particles_.id_of(c.particle), c.away});
   if (!shared()) return crossings;
-  const auto bytes = std::as_bytes(std::span(crossings));
-  const Bytes all = options_.ranks->all({bytes.begin(), bytes.end()});
-  crossings.resize(all.size() / sizeof(Crossing));
-  if (!all.empty()) std::memcpy(crossings.data(), all.data(), all.size());
+  Bytes mine;
+  for (const Crossing& c : crossings) append(mine, c);
+  crossings.clear();
+  for_each_of<Crossing>(options_.ranks->all(mine), [&](const Crossing& c) { crossings.push_back(c); });
   return crossings;
 }
 
