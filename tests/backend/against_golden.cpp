@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "model/golden.h"
+#include "tests/support/block.h"
 
 namespace cuboct::test {
 namespace {
@@ -99,6 +102,23 @@ void compare(const Case& c, const emu::LatticeOptions& options, Count& count) {
   count.lists.sorts += lists.sorts;
   count.lists.node_steps += lists.node_steps;
   count.lists.quiet_node_steps += lists.quiet_node_steps;
+}
+
+Case faulty_gas(uint64_t seed) {
+  Scene scene = block_scene({.size = {4, 4, 4},
+                             .cutoff = 1.4,
+                             .dt = 0.1,
+                             .jitter = 0.1,
+                             .speed = 0.8,
+                             .damping = 0.02,
+                             .seed = seed});
+  for (int a = 0; a < 3; ++a) {
+    scene.periodic.origin[a] = -0.3;
+    scene.periodic.extent[a] = 4 * std::sqrt(2.0);
+  }
+  Arch arch;
+  arch.capacity = 60;
+  return {"faulty gas " + std::to_string(seed), make_setup(scene, arch), 100};
 }
 
 }  // namespace cuboct::test

@@ -24,4 +24,7 @@ struct Count {
 // number of crossings and faults at each step. With ranks each runs golden, and the first has all particles.
 void compare(const Case& c, const emu::LatticeOptions& options, Count& count);
 
+// A gas, damped, that at last collides faster than its relative velocities are wide.
+Case faulty_gas(uint64_t seed);
+
 }  // namespace cuboct::test

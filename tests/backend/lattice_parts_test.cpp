@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <random>
 #include <set>
 #include <tuple>
 
@@ -16,22 +15,10 @@
 #include "emu/lattice/quiet.h"
 #include "emu/lattice/search.h"
 #include "model/fixed_math.h"
+#include "tests/support/dice.h"
 
 namespace cuboct::test {
 namespace {
-
-class Dice {
- public:
-  explicit Dice(uint64_t seed) : random_(seed) {}
-  int draw(int low, int high) {
-    return low + static_cast<int>(random_() % static_cast<uint64_t>(high - low + 1));
-  }
-  bool chance(int percent) { return draw(0, 99) < percent; }
-  uint64_t bits(int n) { return n == 0 ? 0 : random_() >> (64 - n); }
-
- private:
-  std::mt19937_64 random_;
-};
 
 // Boxes with gaps between them; axes are rings of 3 to 8 cells, or open with coordinates of any sign.
 Lattice random_lattice(Dice& dice) {

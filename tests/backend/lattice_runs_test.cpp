@@ -103,22 +103,6 @@ Case flyer() {
   return cooked("flyer", scene, 120);
 }
 
-// A gas, damped, that at last collides faster than its relative velocities are wide.
-Case faulty_gas(uint64_t seed) {
-  Scene scene = block_scene({.size = {4, 4, 4},
-                             .cutoff = 1.4,
-                             .dt = 0.1,
-                             .jitter = 0.1,
-                             .speed = 0.8,
-                             .damping = 0.02,
-                             .seed = seed});
-  for (int a = 0; a < 3; ++a) {
-    scene.periodic.origin[a] = -0.3;
-    scene.periodic.extent[a] = 4 * kEdge;
-  }
-  return cooked("faulty gas " + std::to_string(seed), scene, 100);
-}
-
 // Shots at a block at rest, or between two that are squeezed together and fly apart, slow at first.
 Case random_shots(uint64_t seed) {
   std::mt19937_64 random(seed);

@@ -5,26 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "emu/lattice/kernel_rule.h"
 #include "tests/backend/against_golden.h"
 #include "tests/support/block.h"
+#include "tests/support/dice.h"
 
 namespace cuboct::test {
 namespace {
-
-class Dice {
- public:
-  explicit Dice(uint64_t seed) : random_(seed) {}
-  int draw(int low, int high) {
-    return low + static_cast<int>(random_() % static_cast<uint64_t>(high - low + 1));
-  }
-  bool chance(int percent) { return draw(0, 99) < percent; }
-
- private:
-  std::mt19937_64 random_;
-};
 
 bool fits(const Plan& plan) { return emu::kernel_rule(plan.rule, plan.arch.capacity).fits; }
 

@@ -66,20 +66,7 @@ TEST(Ranks, HoldGoldensBitsWhileParticlesChangeRanks) {
 TEST(Ranks, HoldGoldensBitsInAHotGasUpToItsFault) {
   Count count;
   for (uint64_t seed = 1; seed <= 4; ++seed) {
-    Scene scene = block_scene({.size = {4, 4, 4},
-                               .cutoff = 1.4,
-                               .dt = 0.1,
-                               .jitter = 0.1,
-                               .speed = 0.8,
-                               .damping = 0.02,
-                               .seed = seed});
-    for (int a = 0; a < 3; ++a) {
-      scene.periodic.origin[a] = -0.3;
-      scene.periodic.extent[a] = 4 * std::sqrt(2.0);
-    }
-    Arch arch;
-    arch.capacity = 60;
-    compare({"hot gas", make_setup(scene, arch), 100}, {1, seed % 2 == 0, "", world, kCuts[seed - 1]}, count);
+    compare(faulty_gas(seed), {1, seed % 2 == 0, "", world, kCuts[seed - 1]}, count);
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(count.faults, 1u);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "tests/support/block.h"
+#include "tests/support/dice.h"
 
 namespace cuboct::test {
 namespace {
@@ -144,34 +145,30 @@ Case make_case(const std::string& name) {
 }
 
 Case random_case(uint64_t seed) {
-  std::mt19937_64 random(seed);
-  const auto draw = [&random](int low, int high) {
-    return low + static_cast<int>(random() % static_cast<uint64_t>(high - low + 1));
-  };
-  const auto chance = [&draw](int percent) { return draw(0, 99) < percent; };
+  Dice dice(seed);
   Recipe r;
   r.features.seed = seed;
-  r.features.size = {draw(1, 3), draw(1, 3), draw(1, 2)};
-  r.features.jitter = 0.01 * draw(0, 10);
-  r.features.speed = 0.01 * draw(0, 60);
-  r.features.damping = chance(40) ? 0.05 * draw(1, 4) : 0;
-  r.features.two_materials = chance(40);
-  r.features.held = chance(25);
-  r.features.force_held = !r.features.held && chance(30);
-  r.features.gravity = chance(30);
-  r.features.margin = 0.5 * draw(0, 6);
-  r.arch.filter_lanes = draw(1, 12);
-  r.arch.force_pipes = draw(1, std::min(3, r.arch.filter_lanes));
-  r.arch.queue_depth = chance(50) ? draw(1, 3) : 16;
-  r.arch.overlap = chance(60);
-  r.arch.link_bits = chance(50) ? 0 : draw(5, 150);
-  r.arch.table.degree = draw(1, 2);
+  r.features.size = {dice.draw(1, 3), dice.draw(1, 3), dice.draw(1, 2)};
+  r.features.jitter = 0.01 * dice.draw(0, 10);
+  r.features.speed = 0.01 * dice.draw(0, 60);
+  r.features.damping = dice.chance(40) ? 0.05 * dice.draw(1, 4) : 0;
+  r.features.two_materials = dice.chance(40);
+  r.features.held = dice.chance(25);
+  r.features.force_held = !r.features.held && dice.chance(30);
+  r.features.gravity = dice.chance(30);
+  r.features.margin = 0.5 * dice.draw(0, 6);
+  r.arch.filter_lanes = dice.draw(1, 12);
+  r.arch.force_pipes = dice.draw(1, std::min(3, r.arch.filter_lanes));
+  r.arch.queue_depth = dice.chance(50) ? dice.draw(1, 3) : 16;
+  r.arch.overlap = dice.chance(60);
+  r.arch.link_bits = dice.chance(50) ? 0 : dice.draw(5, 150);
+  r.arch.table.degree = dice.draw(1, 2);
   r.arch.table.index_bits = r.arch.table.degree == 2 ? 7 : 9;
-  if (chance(30)) r.arch.table.shape = TableChoice::Shape::octaves;
-  r.arch.cell_edge = chance(30) ? 2.0 + 0.1 * draw(0, 10) : 0;
-  r.arch.capacity = r.arch.cell_edge > 0 ? 40 : draw(14, 24);
-  r.steps = static_cast<uint64_t>(draw(5, 12));
-  if (chance(25)) {
+  if (dice.chance(30)) r.arch.table.shape = TableChoice::Shape::octaves;
+  r.arch.cell_edge = dice.chance(30) ? 2.0 + 0.1 * dice.draw(0, 10) : 0;
+  r.arch.capacity = r.arch.cell_edge > 0 ? 40 : dice.draw(14, 24);
+  r.steps = static_cast<uint64_t>(dice.draw(5, 12));
+  if (dice.chance(25)) {
     r.features.size[1] = 4;
     r.periodic = {0, 1, 0};
     r.arch.cell_edge = 0;
