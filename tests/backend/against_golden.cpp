@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "model/compare.h"
 #include "model/golden.h"
 #include "tests/support/block.h"
 
@@ -23,6 +24,12 @@ std::string name(const emu::LatticeOptions& options) {
       "{}, {} threads, quiescence {}{}", options.simd.empty() ? "widest" : options.simd, options.threads,
       options.quiescence ? "on" : "off",
       ranks ? fmt::format(", rank {} of {}, cut in {}", ranks->rank(), ranks->size(), options.cut) : "");
+}
+
+// The particle, the field and both values.
+std::string first_difference(const Lattice& lattice, const State& golden, const State& found) {
+  const auto mismatch = cuboct::compare(golden, found);
+  return mismatch ? mismatch->text("golden", "lattice", lattice) : "the states' steps differ";
 }
 
 }  // namespace
@@ -75,7 +82,7 @@ void compare(const Case& c, const emu::LatticeOptions& options, Count& count) {
     }
     const State state = golden.state();
     const State found_state = engine.state();
-    ASSERT_TRUE(!first || found_state == state) << "step " << s;
+    ASSERT_TRUE(!first || found_state == state) << first_difference(plan.lattice, state, found_state);
     ASSERT_EQ(engine.hash(), hash_of(plan.lattice, state));
     ASSERT_EQ(engine.momentum(), momentum(state));
     std::vector<Particle> slots, golden_slots;
