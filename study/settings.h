@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// How a scene is computed: everything that a study may vary.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "hw/arch.h"
+#include "model/changes.h"
+#include "model/reference.h"
+#include "model/scene.h"
+
+namespace cuboct::study {
+
+// What a study starts from: the texts of a scene and of an arch, and where they came from.
+struct Base {
+  std::string scene_path, scene_text;
+  std::string arch_path, arch_text;  // empty: the defaults
+};
+// Reads both files; throws InputError where one cannot be read or holds no scene (arch).
+Base read_base(const std::string& scene_path, const std::string& arch_path);
+
+enum class Arithmetic : uint8_t { float64, float32, fixed };
+
+struct Settings {
+  std::string engine = "lattice";  // "reference" (float64, float32) or "lattice" (fixed); points of other
+                                   // engines come from elsewhere (store.h)
+  Arithmetic arithmetic = Arithmetic::fixed;
+  Integrator integrator = Integrator::semi_implicit_euler;  // fixed knows this one only
+  int threads = 1;
+  std::vector<Change> scene, arch;  // from the base, e.g. {"run.dt_safety", "0.1"}, {"widths.guard", "6"}
+
+  // What the numbers depend on: all of it, but for the threads of a fixed engine. One line, the same for the
+  // same settings; the key of results.
+  std::string numbers_key() const;
+  // All of it. The key of speeds.
+  std::string key() const;
+  bool operator==(const Settings&) const = default;
+};
+
+// The resolved scene and arch of some settings. Throws InputError: the scene or arch that results is wrong
+// (its text says which key), or engine and arithmetic do not go together.
+struct Case {
+  Settings settings;
+  Scene scene;
+  Arch arch;
+  std::string scene_text, arch_text;  // as changed
+};
+Case resolve(const Base& base, const Settings& settings);
+
+}  // namespace cuboct::study
