@@ -77,7 +77,7 @@ function base_options(x_axis, y_axis, legend) {
     toolbox: {top: slim ? 30 : 0, right: 0, iconStyle: {borderColor: "#333"}, feature: {
       dataZoom: {title: {zoom: "select a part", back: "back"}},
       restore: {title: "all of it"}, saveAsImage: {title: "save as SVG"}}},
-    tooltip: {trigger: "item", confine: true, enterable: true, formatter: (p) => (p.data && p.data.point !== undefined ? tip(p.data.point) : "")},
+    tooltip: {trigger: "item", confine: true, formatter: (p) => (p.data && p.data.point !== undefined ? tip(p.data.point) : "")},
     dataZoom: [0, 1].map((axis) => ({type: "inside", [axis ? "yAxisIndex" : "xAxisIndex"]: 0, filterMode: "none",
       zoomOnMouseWheel: "shift", moveOnMouseMove: "shift", moveOnMouseWheel: false, preventDefaultMouseMove: false})),
     xAxis: x_axis, yAxis: y_axis, series: [],

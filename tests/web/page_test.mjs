@@ -27,6 +27,9 @@ async function open(browser, width, height) {
   return page;
 }
 
+// To the middle of the window: its upper edge is under the selectors.
+const bring = (page, id) => page.$eval("#" + id, (chart) => chart.scrollIntoView({block: "center"}));
+
 // Texts that a chart draws.
 const texts = (page, id) => page.$$eval(`#${id} svg text`, (all) => all.map((t) => t.textContent));
 
@@ -37,17 +40,17 @@ const lone_marks = (page, id) => page.evaluate((id) => {
   const marks = chart.getOption().series.flatMap((series, s) => (series.data || [])
     .filter((d) => d && d.point !== undefined)
     .map((d) => ({point: d.point, at: chart.convertToPixel({seriesIndex: s}, d.value)})));
-  return marks.filter((m) => marks.every((o) => o === m || Math.hypot(o.at[0] - m.at[0], o.at[1] - m.at[1]) > 16))
+  return marks.filter((m) => marks.every((o) => o === m || Math.hypot(o.at[0] - m.at[0], o.at[1] - m.at[1]) > 8))
     .map((m) => ({point: m.point, x: box.left + m.at[0], y: box.top + m.at[1]}));
 }, id);
 
-async function hover(page, mark) {
+async function hover(page, id, mark) {
   await page.mouse.move(2, 2);
-  await page.waitForSelector(".tip", {state: "hidden", timeout: 5000});
+  await page.waitForSelector(`#${id} .tip`, {state: "hidden", timeout: 5000});
   await page.mouse.move(mark.x, mark.y);
-  await page.waitForSelector(".tip", {state: "visible", timeout: 5000});
+  await page.waitForSelector(`#${id} .tip`, {state: "visible", timeout: 5000});
   ++hovers;
-  return page.$eval(".tip", (tip) => tip.textContent);
+  return page.$eval(`#${id} .tip`, (tip) => tip.textContent);
 }
 
 const column = (page, name) => page.$$eval("#points tr", ([head, ...rows], name) => {
@@ -82,11 +85,11 @@ async function charts_are_there(page, study) {
 async function hovering_tells_settings(page, study) {
   const error = study.errors.find((e) => e.id === "trajectory");
   const seen = new Set();
-  await page.locator("#error-speed").scrollIntoViewIfNeeded();
+  await bring(page, "error-speed");
   for (const mark of await lone_marks(page, "error-speed")) {
     const point = study.points[mark.point], name = `${point.engine}, ${point.arithmetic}`;
     if (seen.has(name)) continue;
-    const text = await hover(page, mark);
+    const text = await hover(page, "error-speed", mark);
     assert.ok(text.startsWith(`Point ${mark.point + 1}engine${name}`), `hovering point ${mark.point + 1} shows: ${text}`);
     for (const [key, value] of [...point.scene, ...point.arch]) assert.ok(text.includes(key + value), `${key} = ${value} is not in: ${text}`);
     const shown = as_number(text.split(error.label)[1].match(/^[-0-9.]+(·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?/)[0]);
@@ -95,14 +98,13 @@ async function hovering_tells_settings(page, study) {
   }
   assert.deepEqual([...seen].sort(), study.series.map((s) => s.name).sort());
   // The settings' charts tell as much.
-  const grid = page.locator("#parameter-0");
-  await grid.scrollIntoViewIfNeeded();
+  await bring(page, "parameter-0");
   const [mark] = await lone_marks(page, "parameter-0");
-  assert.ok((await hover(page, mark)).startsWith(`Point ${mark.point + 1}engine`));
+  assert.ok((await hover(page, "parameter-0", mark)).startsWith(`Point ${mark.point + 1}engine`));
 }
 
 async function pressing_a_mark_finds_its_row(page) {
-  await page.locator("#error-speed").scrollIntoViewIfNeeded();
+  await bring(page, "error-speed");
   const [mark] = await lone_marks(page, "error-speed");
   await page.mouse.click(mark.x, mark.y);
   const chosen = await page.$$eval("#points tr.chosen", (rows) => rows.map((r) => r.cells[0].textContent));
@@ -181,7 +183,7 @@ async function tables_sort_and_filter(page, study) {
 
 async function zooms_and_comes_back(page) {
   const ends = () => page.evaluate(() => echarts.getInstanceByDom(document.getElementById("error-speed")).getOption().dataZoom.map((z) => z.end - z.start));
-  await page.locator("#error-speed").scrollIntoViewIfNeeded();
+  await bring(page, "error-speed");
   const box = await page.locator("#error-speed").boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.keyboard.down("Shift");
@@ -199,9 +201,10 @@ async function fits_a_phone(browser) {
   const page = await open(browser, 390, 844);
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 390, "the page is wider than the screen");
   for (const box of await page.$$eval(".chart svg", (all) => all.map((s) => s.getBoundingClientRect().right))) assert.ok(box <= 390);
-  const [mark] = await (await page.locator("#error-speed").scrollIntoViewIfNeeded(), lone_marks(page, "error-speed"));
-  await hover(page, mark);
-  const tip = await page.locator(".tip").boundingBox();
+  await bring(page, "error-speed");
+  const [mark] = await lone_marks(page, "error-speed");
+  await hover(page, "error-speed", mark);
+  const tip = await page.locator("#error-speed .tip").boundingBox();
   assert.ok(tip.x >= 0 && tip.x + tip.width <= 390, "what a mark tells is cut");
   await page.context().close();
 }
