@@ -84,7 +84,7 @@ Set set_of(const Key& key, const ConfigValue& value) {
   }
   if (name == "integrator") {
     const auto integrator =
-        static_cast<Integrator>(value.choice("integrator", {"semi_implicit_euler", "velocity_verlet"}));
+        static_cast<Integrator>(value.choice("integrator", {"euler", "verlet"}));
     return [integrator](Settings& settings) { settings.integrator = integrator; };
   }
   if (name == "threads") {

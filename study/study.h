@@ -32,7 +32,7 @@ struct Study {
   double horizon = 0;            // s, where trajectories are compared at the latest; 0: the truth decides
   int repeats = 3;               // of each speed
   double seconds = 0.3;          // of host time that each repeat takes at least
-  double truth_tolerance = 1e-4; // refinement of the truth ends where every figure changes by less
+  double truth_tolerance = 1e-4;  // refinement of the truth ends where every figure changes by less
   int truth_rungs = 8;           // and after so many time steps
   bool lengthen_cutoff = true;   // of a law that is cut off for speed alone (lj)
   uint64_t hash = 0;             // of all that errors depend on but the points: results of another are refused
