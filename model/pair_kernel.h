@@ -31,6 +31,7 @@ struct PairForce {
   static constexpr size_t kLeastPieces = 16;  // as many as a vector has lanes
   std::array<std::vector<Real>, 6> coefficient;
   size_t pieces = 0;
+  std::vector<Real> joint2;  // m^2, where one piece ends and the next begins
   const PairLaw* law = nullptr;
 
   Real cutoff2 = 0, core2 = 0;  // m^2
