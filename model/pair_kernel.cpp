@@ -270,6 +270,36 @@ void forces64(const PairForce<double>& force, const PairRows& rows, const double
 void forces32(const PairForce<float>& force, const PairRows& rows, const float* x, const float* v, float* f) {
   forces_of(force, rows, x, v, f);
 }
+size_t nearer_ones(const double* const at[3], const uint64_t* names, size_t count, const double* home,
+                   const double* box, double range2, uint64_t* found) {
+  const hn::ScalableTag<double> d;
+  const hn::ScalableTag<uint64_t> u;
+  const size_t lanes = hn::Lanes(d);
+  const bool ring = box[0] > 0 || box[1] > 0 || box[2] > 0;
+  size_t n = 0, c = 0;
+  const auto distance2 = [&](auto load) HWY_ATTR {
+    auto r2 = hn::Zero(d);
+    for (int axis = 0; axis < 3; ++axis) {
+      auto of = hn::Sub(load(axis), hn::Set(d, home[axis]));
+      if (ring && box[axis] > 0)
+        of = hn::Sub(of, hn::Mul(hn::Set(d, box[axis]), hn::Round(hn::Mul(of, hn::Set(d, 1 / box[axis])))));
+      r2 = hn::Add(r2, hn::Mul(of, of));
+    }
+    return r2;
+  };
+  for (; c + lanes <= count; c += lanes) {
+    const auto r2 = distance2([&](int axis) HWY_ATTR { return hn::LoadU(d, at[axis] + c); });
+    const auto near = hn::RebindMask(u, hn::Lt(r2, hn::Set(d, range2)));
+    n += hn::CompressStore(hn::LoadU(u, names + c), near, u, found + n);
+  }
+  for (; c < count; ++c) {
+    double one[HWY_MAX_BYTES / sizeof(double)];
+    hn::StoreU(distance2([&](int axis) HWY_ATTR { return hn::Set(d, at[axis][c]); }), d, one);
+    found[n] = names[c];
+    n += one[0] < range2 ? 1 : 0;
+  }
+  return n;
+}
 size_t lanes64() { return hn::Lanes(hn::ScalableTag<double>()); }
 size_t lanes32() { return hn::Lanes(hn::ScalableTag<float>()); }
 const char* simd() { return hwy::TargetName(HWY_TARGET); }
@@ -282,6 +312,7 @@ namespace cuboct {
 
 HWY_EXPORT(forces64);
 HWY_EXPORT(forces32);
+HWY_EXPORT(nearer_ones);
 HWY_EXPORT(lanes64);
 HWY_EXPORT(lanes32);
 HWY_EXPORT(simd);
@@ -291,6 +322,12 @@ void pair_forces(const PairForce<double>& force, const PairRows& rows, const dou
 }
 void pair_forces(const PairForce<float>& force, const PairRows& rows, const float* x, const float* v, float* f) {
   HWY_DYNAMIC_DISPATCH(forces32)(force, rows, x, v, f);
+}
+size_t nearer(const std::vector<double> (&at)[3], const std::vector<uint64_t>& names, const Vec3& home,
+              const std::array<double, 3>& box, double range2, std::vector<uint64_t>& found) {
+  const double* const axes[3] = {at[0].data(), at[1].data(), at[2].data()};
+  return HWY_DYNAMIC_DISPATCH(nearer_ones)(axes, names.data(), names.size(), home.data(), box.data(), range2,
+                                           found.data());
 }
 template <>
 size_t pair_lanes<double>() {

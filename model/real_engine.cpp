@@ -61,7 +61,7 @@ class Engine final : public RealEngine {
     }
     double fastest = 0;
     for (const Vec3& v : body.v) fastest = std::max(fastest, v.norm());
-    relist(std::isfinite(fastest) ? fastest * dt_ : 0, 0);
+    relist(0, true, std::isfinite(fastest) ? fastest * dt_ : 0);
     plan_in_ = kFirstPlan;
     if (options.integrator == Integrator::velocity_verlet) evaluate(0);
   }
@@ -167,14 +167,15 @@ class Engine final : public RealEngine {
     const bool due = --plan_in_ == 0;
     if (due) plan_in_ = kPlanEvery;
     if (lost || farthest > list_.skin() / 2 || due)
-      relist(farthest / static_cast<double>(steps_on_list_), number);
+      relist(number, due, farthest / static_cast<double>(steps_on_list_));
   }
 
-  void relist(double speed, uint64_t number) {
+  void relist(uint64_t number, bool plan, double speed) {
     std::vector<Vec3> x(particles_);
     unpack(x_, x);
     try {
-      list_.build(x, speed);
+      if (plan) list_.plan(x, speed);
+      list_.build(x);
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(fmt::format("step {}: {}; is dt too long?", number, error.what()));
     }

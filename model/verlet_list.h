@@ -18,9 +18,10 @@ class VerletList {
   VerletList(double cutoff, const Periodic& periodic, size_t lanes, int threads);
 
   // Gives each particle a slot, by cells, and lists its neighbours by ascending id: a sum over them does not depend on
-  // slots, nor on when lists were made. The skin is the one that costs least, were the fastest particle to go on at
-  // `speed` (m per step). std::runtime_error where a position is not finite.
-  void build(std::span<const Vec3> x, double speed);
+  // slots, nor on when lists were made. std::runtime_error where a position is not finite.
+  void build(std::span<const Vec3> x);
+  // Lists from now on have the skin that costs least, were the fastest particle to go on at `speed` (m per step).
+  void plan(std::span<const Vec3> x, double speed);
 
   double skin() const { return skin_; }                           // m
   std::span<const uint32_t> order() const { return order_; }      // [slot]: id
@@ -32,7 +33,6 @@ class VerletList {
   Vec3 difference(const Vec3& a, const Vec3& b) const { return nearest_.difference(a, b); }
 
  private:
-  double best_skin(std::span<const Vec3> x, double speed) const;
   void fill(const CellList& cells, const std::vector<Vec3>& x, const std::vector<uint32_t>& ids, PairRows& part,
             size_t end_group) const;
 
