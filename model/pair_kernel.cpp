@@ -2,6 +2,7 @@
 // Compiled once per instruction set. Products and sums are rounded apart, so that all give the same bits.
 #include "model/pair_kernel.h"
 
+#include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
@@ -297,6 +298,21 @@ size_t nearer_ones(const double* const at[3], const uint64_t* names, size_t coun
     hn::StoreU(distance2([&](int axis) HWY_ATTR { return hn::Set(d, at[axis][c]); }), d, one);
     found[n] = names[c];
     n += one[0] < range2 ? 1 : 0;
+  }
+  // Each goes where as many stand before it as are less: for few, without a branch that depends on them.
+  constexpr size_t kFew = 64;
+  if (n > kFew) {
+    std::sort(found, found + n);
+    return n;
+  }
+  uint64_t few[kFew + hn::MaxLanes(u)];
+  std::copy_n(found, n, few);
+  hn::StoreU(hn::Set(u, ~uint64_t{0}), u, few + n);
+  for (size_t k = 0; k < n; ++k) {
+    const auto own = hn::Set(u, few[k]);
+    size_t less = 0;
+    for (size_t m = 0; m < n; m += lanes) less += hn::CountTrue(u, hn::Lt(hn::LoadU(u, few + m), own));
+    found[less] = few[k];
   }
   return n;
 }

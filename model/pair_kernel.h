@@ -47,7 +47,7 @@ struct PairForce {
 void pair_forces(const PairForce<double>& force, const PairRows& rows, const double* x, const double* v, double* f);
 void pair_forces(const PairForce<float>& force, const PairRows& rows, const float* x, const float* v, float* f);
 // Of candidates at `at` (axis, candidate) those whose nearest image in `box` (0: an open axis) is nearer to `home` than the
-// root of range2 (m^2): their `names`, in order, begin `found`, which has kNearerSpill more places than candidates.
+// root of range2 (m^2): their `names`, ascending, begin `found`, which has kNearerSpill more places than candidates.
 // Answers how many.
 inline constexpr size_t kNearerSpill = 64;
 size_t nearer(const std::vector<double> (&at)[3], const std::vector<uint64_t>& names, const Vec3& home,

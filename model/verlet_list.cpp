@@ -100,9 +100,6 @@ void VerletList::fill(const CellList& cells, const std::vector<Vec3>& x, const s
         found.resize(candidates.size() + kNearerSpill);
       }
       const size_t n = nearer(near, candidates, x[slot], box, range2, found);
-      // Few, and in stretches that ascend.
-      for (size_t k = 1; k < n; ++k)
-        for (size_t at = k; at > 0 && found[at] < found[at - 1]; --at) std::swap(found[at], found[at - 1]);
       for (size_t k = 0; k < n; ++k) {
         const auto other = static_cast<uint32_t>(found[k]);
         if (other != slot) lists[lane].push_back(other);
