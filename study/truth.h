@@ -48,8 +48,8 @@ struct Truth {
 // three Lyapunov times of a run that parts steadily, the end of a run that does not. Beyond, errors tell the
 // run's sensitivity and nothing of the method.
 //
-// `jobs`: rungs that are computed at once. Throws InputError, Interrupted (measure_run.h).
-Truth make_truth(const Study& study, int jobs);
+// No bit depends on `threads`. Throws InputError, Interrupted (measure_run.h).
+Truth make_truth(const Study& study, int threads);
 
 // What of some settings changes the physical scene: "" for the study's own, else its changes in one line.
 std::string physics_key(const Settings& settings);
