@@ -72,7 +72,7 @@ class LennardJones final : public CoredLaw {
     if (smoothing == Smoothing::linear) end_force_ = whole_force(cutoff);
     set_core();
   }
-  LawForm form() const override { return LennardJonesForm{epsilon_, sigma_, 0}; }
+  LawForm form() const override { return LennardJonesForm{epsilon_, sigma_, -end_force_}; }
 
  private:
   double sixth(double r) const {
