@@ -191,13 +191,14 @@ int stability(const Options& options) {
                                  scene.body.size(), kMostParticles),
                      "a smaller piece of the same body has the same limit");
   if (!options.maps.empty()) {
-    check_maps(scene);
+    study::check_maps(scene);
     make_directory(options.maps);
     check_writable(options.maps + "/damping.png");
   }
   catch_interrupts();
   Status status;
   std::vector<Row> rows;
+  std::vector<std::string> drawn;
   const auto print = [&] {
     status.clear();
     fmt::print("{}", options.json ? json_of(scene, rows) : text_of(scene, rows));
@@ -232,12 +233,20 @@ int stability(const Options& options) {
         line(fmt::format("{} {:g} % along {}", strain > 0 ? "stretched by" : "pressed by",
                          100 * options.strain, "xyz"[axis]),
              scene, axis, strain);
+    if (!options.maps.empty())
+      for (const study::StabilityMap& map :
+           study::stability_maps(scene, arch, axis, [&](const std::string& name, double done) {
+             status.say(fmt::format("map of {}: {:.0f} %", name, 100 * done));
+           }))
+        for (const std::string& path : draw(map, options.maps)) drawn.push_back(path);
   } catch (const study::Interrupted&) {
     print();
     fmt::print(stderr, "interrupted\n");
     return 1;
   }
   print();
+  if (!options.json)
+    for (const std::string& path : drawn) fmt::print("{}\n", path);
   return 0;
 }
 

@@ -4,12 +4,11 @@
 
 #include <string>
 
-#include "hw/arch.h"
-#include "model/scene.h"
+#include "study/stability_map.h"
 
 namespace cuboct {
 
-// Throws InputError where the scene is too large for maps of hundreds of runs.
-void check_maps(const Scene& scene);
+// DIRECTORY/<name>.png and .svg: the cells of the map with the theory's line over them. The names written.
+std::vector<std::string> draw(const study::StabilityMap& map, const std::string& directory);
 
 }  // namespace cuboct

@@ -17,11 +17,12 @@ namespace {
 
 using Matrix = Vibrations::Matrix;
 
-// The symmetric matrix a K + b C as an operator.
+// The symmetric matrix a K + b C + shift as an operator.
 class Combined {
  public:
   using Scalar = double;
-  Combined(const Matrix& k, const Matrix& c, double a, double b) : k_(k), c_(c), a_(a), b_(b) {}
+  Combined(const Matrix& k, const Matrix& c, double a, double b, double shift = 0)
+      : k_(k), c_(c), a_(a), b_(b), shift_(shift) {}
   Eigen::Index rows() const { return k_.rows(); }
   Eigen::Index cols() const { return k_.cols(); }
   void perform_op(const double* in, double* out) const {
@@ -29,17 +30,19 @@ class Combined {
     Eigen::Map<Eigen::VectorXd> y(out, rows());
     y.noalias() = a_ * (k_ * x);
     if (b_ != 0) y.noalias() += b_ * (c_ * x);
+    if (shift_ != 0) y += shift_ * x;
   }
   Eigen::MatrixXd dense() const {
     Eigen::MatrixXd m = a_ * Eigen::MatrixXd(k_);
     if (b_ != 0) m += b_ * Eigen::MatrixXd(c_);
+    m.diagonal().array() += shift_;
     return m;
   }
 
  private:
   const Matrix& k_;
   const Matrix& c_;
-  double a_, b_;
+  double a_, b_, shift_;
 };
 
 struct Mode {
@@ -49,17 +52,17 @@ struct Mode {
 
 constexpr Eigen::Index kDense = 64;  // rows up to which a full decomposition is as quick
 
-// The largest eigenvalue, or the least; `start` is where the iterations begin.
-Mode extreme(const Combined& m, bool largest, const Eigen::VectorXd& start, double tolerance) {
+// The largest eigenvalue; `start` is where the iterations begin.
+Mode largest(const Combined& m, const Eigen::VectorXd& start, double tolerance) {
   if (m.rows() <= kDense) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(m.dense());
-    const Eigen::Index at = largest ? m.rows() - 1 : 0;
-    return {solver.eigenvalues()[at], solver.eigenvectors().col(at)};
+    const Eigen::Index last = m.rows() - 1;
+    return {solver.eigenvalues()[last], solver.eigenvectors().col(last)};
   }
   constexpr Eigen::Index kKept = 40;  // Lanczos vectors
   Spectra::SymEigsSolver<Combined> solver(const_cast<Combined&>(m), 1, kKept);
   solver.init(start.data());
-  solver.compute(largest ? Spectra::SortRule::LargestAlge : Spectra::SortRule::SmallestAlge, 2000, tolerance);
+  solver.compute(Spectra::SortRule::LargestAlge, 2000, tolerance);
   if (solver.info() != Spectra::CompInfo::Successful)
     throw std::runtime_error("the Lanczos iterations for the largest frequency did not converge");
   return {solver.eigenvalues()[0], solver.eigenvectors().col(0)};
@@ -145,9 +148,10 @@ Limit stability_limit(const Vibrations& vibrations) {
 
   // An eigenvalue is at most this (a fraction of itself) from the one that is found; dt errs by half of it.
   constexpr double kTolerance = 1e-6;
-  const Mode stiffest = extreme({k, c, 1, 0}, true, start_vector(k.rows()), kTolerance);
+  const Mode stiffest = largest({k, c, 1, 0}, start_vector(k.rows()), kTolerance);
   limit.frequency = std::sqrt(std::max(0.0, stiffest.value));
-  limit.softest = extreme({k, c, 1, 0}, false, start_vector(k.rows()), 1e-4).value;
+  // Turned over, so that a mode at 0 is no small number to be found to its last digits.
+  limit.softest = stiffest.value - largest({k, c, -1, 0, stiffest.value}, start_vector(k.rows()), 1e-8).value;
   Mode mode = stiffest;
   double share = 0;
   // The limit of a mode of stiffness w2 and damping g, both per unit mass.
@@ -158,7 +162,7 @@ Limit stability_limit(const Vibrations& vibrations) {
     double dt = limit_of(stiffest.y.dot(k * stiffest.y), stiffest.y.dot(c * stiffest.y));
     if (!std::isfinite(dt)) dt = 4 / c.norm();
     for (int round = 0; round < 50; ++round) {
-      mode = extreme({k, c, dt * dt, 2 * dt}, true, mode.y + 1e-3 * start_vector(k.rows()) / std::sqrt(k.rows()),
+      mode = largest({k, c, dt * dt, 2 * dt}, mode.y + 1e-3 * start_vector(k.rows()) / std::sqrt(k.rows()),
                      kTolerance);
       const double g = mode.y.dot(c * mode.y);
       const double next = limit_of(mode.y.dot(k * mode.y), g);

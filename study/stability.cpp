@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "emu/lattice/engine.h"
 #include "hw/setup.h"
@@ -18,13 +19,15 @@ namespace {
 
 constexpr uint64_t kSeed = 20231;
 
-// Of random displacements, in pitches (or cutoffs): small, so that forces are linear, and large beside what the
-// arithmetic resolves. Doubles resolve 1e-16 of a body; floats, of one that is 30 pitches long, 2e-6; the fixed
-// formats 1.5e-5 of a cell in the differences, and more where an arch has narrower ones.
+// Of random displacements, in pitches (or cutoffs): large beside what the arithmetic resolves, and small, as laws
+// soften: a mode that is unstable by a part eps of dt stops growing where it has lost 2 eps of its stiffness, for
+// the presets at a swing of about 0.3 sqrt(eps) pitches. Doubles resolve 1e-16 of a body; floats, of one that is 30
+// pitches long, 2e-6; the fixed formats 1.5e-5 of a cell in the differences, and more where an arch has narrower
+// ones.
 double seed_size(Arithmetic arithmetic, const Arch& arch) {
   if (arithmetic == Arithmetic::float64) return 1e-6;
-  if (arithmetic == Arithmetic::float32) return 2e-4;
-  return std::max(1e-3, std::ldexp(16.0, -std::min(arch.widths.position_frac, arch.widths.difference_frac)));
+  if (arithmetic == Arithmetic::float32) return 1e-4;
+  return std::max(2e-4, std::ldexp(8.0, -std::min(arch.widths.position_frac, arch.widths.difference_frac)));
 }
 
 // The same everywhere: uniform in [-1, 1].
@@ -79,29 +82,40 @@ class Flips {
 
 constexpr size_t kEarly = 8;  // steps whose largest flip is the start
 
-// A growth beyond what a stable mode swings to.
-std::optional<std::string> outgrown(const std::vector<double>& sizes, double resolution) {
-  if (sizes.size() <= kEarly) return std::nullopt;
-  const double start = *std::max_element(sizes.begin(), sizes.begin() + kEarly);
-  const double most = std::max(20.0, 4 / std::sqrt(8 * resolution));
-  if (!(sizes.back() > most * start)) return std::nullopt;
-  return fmt::format("motion that flips at each step grew {:.0f}-fold in {} steps", sizes.back() / start,
-                     sizes.size() + 2);
-}
+// Judges the sizes of a run as they come. `seed`: of the random displacements per axis, in the unit of w.
+class Judge {
+ public:
+  Judge(double seed, double resolution)
+      : bound_(4 * 5 * std::sqrt(3.0) * seed), most_(std::max(20.0, 4 / std::sqrt(8 * resolution))) {}
 
-Trial verdict_of(const std::vector<double>& sizes) {
-  const size_t quarter = sizes.size() / 4;
-  const double start = *std::max_element(sizes.begin(), sizes.begin() + kEarly);
-  const double second = *std::max_element(sizes.begin() + quarter, sizes.begin() + 2 * quarter);
-  const double last = *std::max_element(sizes.end() - quarter, sizes.end());
-  if (last > 3 * second && last > 1e-3 * start)
-    return {Verdict::unstable, fmt::format("motion that flips at each step grew {:.1f}-fold from the second "
-                                           "quarter of {} steps to the last",
-                                           last / second, sizes.size() + 2)};
-  return {Verdict::stable, ""};
-}
+  // A growth beyond what a stable mode swings to.
+  std::optional<Trial> outgrown(const std::vector<double>& sizes) const {
+    if (sizes.empty() || !(sizes.back() > most_ * start(sizes))) return std::nullopt;
+    return Trial{Verdict::unstable, fmt::format("motion that flips at each step grew {:.0f}-fold in {} steps",
+                                                sizes.back() / start(sizes), sizes.size() + 2)};
+  }
+  Trial at_end(const std::vector<double>& sizes) const {
+    const size_t quarter = sizes.size() / 4;
+    const double second = *std::max_element(sizes.begin() + quarter, sizes.begin() + 2 * quarter);
+    const double last = *std::max_element(sizes.end() - quarter, sizes.end());
+    if (last > 3 * second && last > 1e-3 * start(sizes))
+      return {Verdict::unstable, fmt::format("motion that flips at each step grew {:.1f}-fold from the second "
+                                             "quarter of {} steps to the last",
+                                             last / second, sizes.size() + 2)};
+    return {Verdict::stable, ""};
+  }
 
-Trial try_reference(const Scene& scene, const Method& method, double resolution, uint64_t steps) {
+ private:
+  // Far beyond the limit the first steps grow as well: no more counts than a stable run can start with, which is
+  // |y| < 4 |w|, |w| < |v dt| + dt^2 |K x| < |v dt| + 4 |x|, with v dt and x below `seed` along each axis.
+  double start(const std::vector<double>& sizes) const {
+    const auto end = sizes.begin() + static_cast<ptrdiff_t>(std::min(kEarly, sizes.size()));
+    return std::min(bound_, *std::max_element(sizes.begin(), end));
+  }
+  double bound_, most_;
+};
+
+Trial try_reference(const Scene& scene, const Method& method, const Judge& judge, uint64_t steps) {
   Reference run(scene.rule, scene.body, scene.periodic,
                 RealOptions{method.integrator,
                             method.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64,
@@ -121,20 +135,29 @@ Trial try_reference(const Scene& scene, const Method& method, double resolution,
       before[i] = x[i];
     }
     flips.end_step();
-    if (auto sign = outgrown(flips.sizes(), resolution)) return {Verdict::unstable, *sign};
+    if (const auto trial = judge.outgrown(flips.sizes())) return *trial;
   }
-  return verdict_of(flips.sizes());
+  return judge.at_end(flips.sizes());
 }
 
-Trial try_lattice(const Scene& scene, Arch arch, const Method& method, double resolution, uint64_t steps) {
+Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolution, double seed,
+                  uint64_t steps) {
   // A body under pressure has more particles in a node than the machine may be built for; no bit depends on it.
   arch.capacity = std::max(arch.capacity, 32);
+  // Forces that hold a stretched body still, where the format of gravity would round them to less than 1 %: they
+  // are less than a difference's rounding does.
+  const double unit = std::ldexp(scene.rule.law->cutoff(), -arch.widths.velocity_frac()) / (scene.rule.dt * scene.rule.dt);
+  for (ParticleType& type : scene.rule.types)
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::abs(type.gravity[axis]) < 128 * unit) type.gravity[axis] = 0;
   std::optional<Setup> setup;
   try {
     setup.emplace(make_setup(scene, arch));
   } catch (const InputError& error) {
     return {Verdict::refused, error.what()};
   }
+  const FixedRule& rule = setup->plan.rule;
+  const Judge judge(std::ldexp(seed / rule.cell_edge, rule.widths.velocity_frac()), resolution);
   const std::vector<Particle>& initial = setup->initial.particles;
   emu::LatticeOptions options;
   options.threads = method.threads;
@@ -152,9 +175,9 @@ Trial try_lattice(const Scene& scene, Arch arch, const Method& method, double re
       flips.add(p.id, Vec3(static_cast<double>(p.v[0]), static_cast<double>(p.v[1]), static_cast<double>(p.v[2])));
     });
     flips.end_step();
-    if (auto sign = outgrown(flips.sizes(), resolution)) return {Verdict::unstable, *sign};
+    if (const auto trial = judge.outgrown(flips.sizes())) return *trial;
   }
-  return verdict_of(flips.sizes());
+  return judge.at_end(flips.sizes());
 }
 
 }  // namespace
@@ -164,10 +187,12 @@ Trial try_step(const Subject& subject, const Arch& arch, const Method& method, d
   if (method.arithmetic == Arithmetic::fixed && method.integrator != Integrator::semi_implicit_euler)
     throw InputError("the fixed rule is semi-implicit Euler");
   const double length = subject.scene.pitch > 0 ? subject.scene.pitch : subject.scene.rule.law->cutoff();
-  const Scene scene = shaken(subject, dt, seed_size(method.arithmetic, arch) * length);
+  const double seed = seed_size(method.arithmetic, arch) * length;
+  Scene scene = shaken(subject, dt, seed);
   steps = std::max<uint64_t>(steps, 4 * kEarly + 2);
-  return method.arithmetic == Arithmetic::fixed ? try_lattice(scene, arch, method, resolution, steps)
-                                                : try_reference(scene, method, resolution, steps);
+  return method.arithmetic == Arithmetic::fixed
+             ? try_lattice(std::move(scene), arch, method, resolution, seed, steps)
+             : try_reference(scene, method, Judge(seed, resolution), steps);
 }
 
 uint64_t steps_to_tell(const Limit& limit, double resolution) {
