@@ -32,19 +32,22 @@ std::vector<std::string> draw(const study::StabilityMap& map, const std::string&
       keys += fmt::format(", NaN with points pt 5 ps 2 lc rgb '{}' title '{}'", kColours[c], kNames[c]);
   }
   const double dx = (map.x[1] - map.x[0]) / 2, dy = (map.y[1] - map.y[0]) / 2;
-  const std::string plot = fmt::format(
-      "set border 3 lc '#444444'\nset tics nomirror out\nset key outside below horizontal samplen 2\n"
-      "set title '{}'\nset xlabel '{}'\nset ylabel 'dt over 2/ω_{{max}} of the free, undamped body'\n"
+  // As rectangles an SVG has no file inside; a PNG would show their seams.
+  const auto plot = [&](const std::string& kind) {
+    return fmt::format(
+      "set border 3 lc '#444444'\nset tics nomirror out\nset key tmargin center horizontal samplen 2\n"
+      "set title '{}'\nset xlabel '{}' noenhanced\nset ylabel 'dt over 2/ω_{{max}} of the free, undamped body'\n"
       "set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n"
       "set palette defined ({})\nset cbrange [0:3]\nunset colorbox\n"
-      "plot $cells using 1:2:3 with image pixels notitle{}, $theory with lines lw 3 lc rgb '#111111' title "
+      "plot $cells using 1:2:3 with image {} notitle{}, $theory with lines lw 3 lc rgb '#111111' title "
       "'theory'\n",
       map.title, map.x_label, map.x.front() - dx, map.x.back() + dx, map.y.front() - dy, map.y.back() + dy, colours,
-      keys);
+      kind == "svg" ? "pixels" : "", keys);
+  };
   std::vector<std::string> names;
   for (const char* kind : {"png", "svg"}) {
     const std::string path = fmt::format("{}/{}.{}", directory, map.name, kind);
-    write_text(path, gnuplot(data, plot, kind, 760, 560));
+    write_text(path, gnuplot(data, plot(kind), kind, 760, 560));
     names.push_back(path);
   }
   return names;

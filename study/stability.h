@@ -63,8 +63,7 @@ struct Trial {
 // unstable where the largest |y| of all particles
 //   - grows beyond what a stable mode can swing to that is `resolution` (relative) below its limit:
 //     1/sqrt(8 resolution) of its start, with a factor of 4 of room; or
-//   - is three times as large in the last quarter as in the second, and not the rounding of a body that has come
-//     to rest (a thousandth of the start);
+//   - is three times as large in the last quarter as in the second, and larger than at the start;
 // or where the engine stops: a fault, a position that is not finite.
 Trial try_step(const Subject& subject, const Arch& arch, const Method& method, double dt, double resolution,
                uint64_t steps);

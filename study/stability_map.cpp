@@ -40,7 +40,7 @@ struct Frame {
 template <typename ColumnAt>
 StabilityMap map_of(const Frame& frame, int axis, double unit, const ColumnAt& column_at,
                     const std::function<void(const std::string&, double)>& progress) {
-  StabilityMap map{frame.name, frame.title, frame.x_label, frame.x, even(0.05, 1.3, 26), {}, {}};
+  StabilityMap map{frame.name, frame.title, frame.x_label, frame.x, even(0.025, 1.325, 27), {}, {}};
   const size_t nx = map.x.size();
   map.cells.assign(nx * map.y.size(), StabilityMap::Cell::body_unstable);
   map.theory.assign(nx, std::numeric_limits<double>::quiet_NaN());
