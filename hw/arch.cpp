@@ -50,12 +50,8 @@ void read_table(const ConfigTable& table, TableChoice& choice) {
   table.done();
 }
 
-}  // namespace
-
-Arch read_arch(const std::string& path) {
+Arch arch_of(const ConfigTable& root) {
   Arch arch;
-  if (path.empty()) return arch;
-  const ConfigTable root = read_config(path);
   arch.name = root.at("name").string();
   if (const auto node = root.table_at("node")) read_node(*node, arch);
   if (const auto link = root.table_at("link")) {
@@ -69,6 +65,14 @@ Arch read_arch(const std::string& path) {
   if (const auto table = root.table_at("table")) read_table(*table, arch.table);
   root.done();
   return arch;
+}
+
+}  // namespace
+
+Arch read_arch(const std::string& path) { return path.empty() ? Arch() : arch_of(read_config(path)); }
+
+Arch parse_arch(const std::string& text, const std::string& path) {
+  return arch_of(parse_config(text, path));
 }
 
 }  // namespace cuboct

@@ -24,5 +24,7 @@ struct Arch {
 
 // Throws InputError with file:line:column. An empty path gives the defaults.
 Arch read_arch(const std::string& path);
+// The same for text in memory; `path` stands in messages.
+Arch parse_arch(const std::string& text, const std::string& path);
 
 }  // namespace cuboct

@@ -18,6 +18,7 @@ struct Change {
 // `path` stands in messages. A key that is not there yet is added to its table, a table that is not there to
 // the end. Throws InputError where the text is no TOML, a value is none, or a key runs through something that
 // is no table.
-std::string with_changes(const std::string& text, const std::string& path, const std::vector<Change>& changes);
+std::string with_changes(const std::string& text, const std::string& path,
+                         const std::vector<Change>& changes);
 
 }  // namespace cuboct

@@ -23,9 +23,9 @@ struct Figure {
     final        // the last value of `curve`
   };
   Kind kind = Kind::final;
-  std::string name;     // for reports; default: the kind
-  std::string curve;    // "<probe>.<quantity>", or "energy.total" and its parts
-  std::string against;  // modulus
+  std::string name;         // for reports; default: the kind
+  std::string curve;        // "<probe>.<quantity>", or "energy.total" and its parts
+  std::string against;      // modulus
   double from = 0, to = 0;  // to 0: the end
   double fraction = 0.5;    // break_time
 

@@ -71,6 +71,7 @@ class LennardJones final : public CoredLaw {
     shift_ = unshifted(cutoff);
     set_core();
   }
+  LawForm form() const override { return LennardJonesForm{epsilon_, sigma_, 0}; }
 
  private:
   double sixth(double r) const {
@@ -105,6 +106,14 @@ class HermiteLaw final : public CoredLaw {
         energy_(r_.size()) {
     for (size_t k = r_.size() - 1; k-- > 0;) energy_[k] = energy_[k + 1] + rest_of_piece(k, 0);
     set_core();
+  }
+  LawForm form() const override {
+    std::vector<CubicPiece> pieces;
+    for (size_t k = 0; k + 1 < r_.size(); ++k) {
+      const Piece p = piece(k);
+      pieces.push_back({r_[k], p.c0, p.c1 / p.h, p.c2 / (p.h * p.h), p.c3 / (p.h * p.h * p.h)});
+    }
+    return pieces;
   }
 
  private:
@@ -194,6 +203,12 @@ class BSplineLaw final : public CoredLaw {
           k + 1 < arcs_.size() ? arcs_[k + 1].energy_after + rest_of_arc(arcs_[k + 1], 0) : 0;
     }
     set_core();
+  }
+  LawForm form() const override {
+    std::vector<ArcPiece> pieces;
+    for (const Arc& arc : arcs_)
+      pieces.push_back({arc.r[0], linear(arc.r), quadratic(arc.r), arc.f[0], linear(arc.f), quadratic(arc.f)});
+    return pieces;
   }
 
  private:

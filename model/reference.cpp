@@ -9,8 +9,9 @@
 
 namespace cuboct {
 
-Reference::Reference(const Rule& rule, const Body& body, const Periodic& periodic, Integrator integrator)
-    : rule_(rule), body_(body), cells_(rule.law->cutoff(), periodic), integrator_(integrator) {
+Reference::Reference(const Rule& rule, const Body& body, const Periodic& periodic,
+                     const RealOptions& options)
+    : rule_(rule), body_(body), cells_(rule.law->cutoff(), periodic), integrator_(options.integrator) {
   const size_t n = body_.size();
   if (body_.v.size() != n || body_.type.size() != n || (!body_.u.empty() && body_.u.size() != n)) {
     throw InputError(fmt::format("a body of {} positions has {} velocities, {} types and {} displacements", n,

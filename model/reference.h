@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The reference engine: the rule in double precision, the physics that everything else is measured against.
+// The real-number engine: the rule in doubles, the physics that everything else is measured against, or in floats.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +21,27 @@ enum class Integrator : uint8_t {
   velocity_verlet,
 };
 
+enum class Precision : uint8_t {
+  float64,
+  // Positions (absolute, as most codes hold them), velocities, differences, law, damping and sums in floats.
+  float32,
+};
+
+struct RealOptions {
+  Integrator integrator = Integrator::semi_implicit_euler;
+  Precision precision = Precision::float64;
+  int threads = 1;
+  // Not 0: a particle's pairs are summed in an order drawn from it at each step, as by a machine without order.
+  uint64_t order_seed = 0;
+};
+
 class Reference {
  public:
   // InputError where sizes or types of the body do not fit the rule, or the box is below 2 cutoffs. An empty
   // body.u means that every anchor stands at its particle.
-  Reference(const Rule& rule, const Body& body, const Periodic& periodic, Integrator integrator);
+  Reference(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options);
+  Reference(const Rule& rule, const Body& body, const Periodic& periodic, Integrator integrator)
+      : Reference(rule, body, periodic, RealOptions{.integrator = integrator}) {}
 
   // Advances `steps` steps. std::runtime_error, naming step and particle, where a position stops being
   // finite.

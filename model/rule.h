@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "model/law_form.h"
 #include "model/vec.h"
 
 namespace cuboct {
@@ -29,6 +30,8 @@ class PairLaw {
   // Below this distance every law is linear, force(r) = r * force(core)/core: the force rolls off and f/r
   // stays finite.
   virtual double core() const = 0;  // > 0
+  // The same force between core and cutoff, but for rounding.
+  virtual LawForm form() const { return {}; }
 };
 
 // Damping on the radial velocity difference: on i the force c(r) * (w . e) e, e = d/r, d = x_j - x_i, w = v_j

@@ -137,8 +137,9 @@ double stable_time_step(const Rule& rule, double pitch) {
   return 4 / (std::sqrt(g * g + 4 * w2) + g);
 }
 
-Scene read_scene(const std::string& path) {
-  const ConfigTable root = read_config(path);
+namespace {
+
+Scene scene_of(const ConfigTable& root, const std::string& path) {
   Scene scene;
   scene.path = path;
   scene.title = root.string_or("title", "");
@@ -158,6 +159,14 @@ Scene read_scene(const std::string& path) {
   read_reach(root, scene);
   root.done();
   return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::string& path) { return scene_of(read_config(path), path); }
+
+Scene parse_scene(const std::string& text, const std::string& path) {
+  return scene_of(parse_config(text, path), path);
 }
 
 }  // namespace cuboct

@@ -59,5 +59,7 @@ struct Scene {
 
 // Throws InputError with file:line:column.
 Scene read_scene(const std::string& path);
+// The same for text in memory; `path` stands in messages.
+Scene parse_scene(const std::string& text, const std::string& path);
 
 }  // namespace cuboct

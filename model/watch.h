@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Where methods fail: detectors that look at a run while it goes, in any engine, and name what went wrong with
-// step, place and number. docs/reference/failures.md has a section per failure. The faults of the fixed
-// engines (model/error.h: a velocity that saturates, a full node) stop a run by themselves; what stands here is
-// what a run survives and is wrong all the same.
+// Where methods fail: detectors that look at a run while it goes, in any engine, and name what went wrong
+// with step, place and number. docs/reference/failures.md has a section per failure. The faults of the fixed
+// engines (model/error.h: a velocity that saturates, a full node) stop a run by themselves; what stands here
+// is what a run survives and is wrong all the same.
 #pragma once
 
 #include <cstdint>

@@ -48,12 +48,12 @@ enum class Status : uint8_t {
 struct Outcome {
   Settings settings;
   Status status = Status::done;
-  std::string why;         // one line; empty where there is nothing to say
-  double dt = 0;           // s
-  double pitch = 0;        // m
+  std::string why;   // one line; empty where there is nothing to say
+  double dt = 0;     // s
+  double pitch = 0;  // m
   uint32_t particles = 0;
   uint64_t steps = 0;
-  double cost = kNotMeasured;  // cost.h: multiplier bits per simulated second, machine-independent
+  double cost = kNotMeasured;         // cost.h: multiplier bits per simulated second, machine-independent
   int halo_bits = 0, table_bits = 0;  // of the plan, fixed only: a record, and all tables
   Errors errors;
   Speed speed;

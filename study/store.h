@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The results of a study in one file (SQLite), written point by point: a study that is killed goes on where it
-// was. Points of other engines and machines (a GPU, a board) are rows as well.
+// The results of a study in one file (SQLite), written point by point: a study that is killed goes on where
+// it was. Points of other engines and machines (a GPU, a board) are rows as well.
 #pragma once
 
 #include <memory>
@@ -15,10 +15,10 @@ namespace cuboct::study {
 
 // Everything a report is made of.
 struct Results {
-  std::string title, scene, machine;       // machine: processor, cores
+  std::string title, scene, machine;  // machine: processor, cores
   std::vector<std::string> figure_names, figure_units;
-  Truth truth;                             // without its states
-  std::vector<Outcome> outcomes;           // in the order of the study's points, then those from elsewhere
+  Truth truth;                    // without its states
+  std::vector<Outcome> outcomes;  // in the order of the study's points, then those from elsewhere
 };
 
 class Store {

@@ -25,12 +25,12 @@ struct Study {
   std::string title;
   Base base;
   std::vector<Figure> figures;
-  std::vector<Settings> points;  // of all [[sweep]] grids, in their order, each once
-  std::vector<Axis> search;      // [search]: for each setting its notches from cheap to dear
-  int repeats = 3;               // of each speed
-  double seconds = 0.3;          // of host time that each repeat takes at least
-  double truth_tolerance = 1e-4; // refinement of the truth ends where every figure changes by less
-  uint64_t hash = 0;             // of the study, scene and arch texts: results of another study are refused
+  std::vector<Settings> points;   // of all [[sweep]] grids, in their order, each once
+  std::vector<Axis> search;       // [search]: for each setting its notches from cheap to dear
+  int repeats = 3;                // of each speed
+  double seconds = 0.3;           // of host time that each repeat takes at least
+  double truth_tolerance = 1e-4;  // refinement of the truth ends where every figure changes by less
+  uint64_t hash = 0;              // of the study, scene and arch texts: results of another study are refused
 };
 
 // Throws InputError with file:line:column.

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "study/settings.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "model/error.h"
+
+namespace cuboct::study {
+namespace {
+
+std::string text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  // A directory opens and then fails to read.
+  if (!in || !(text << in.rdbuf())) throw InputError(fmt::format("{}: cannot read this file", path));
+  return text.str();
+}
+
+const char* name_of(Arithmetic arithmetic) {
+  switch (arithmetic) {
+    case Arithmetic::float64:
+      return "float64";
+    case Arithmetic::float32:
+      return "float32";
+    case Arithmetic::fixed:
+      return "fixed";
+  }
+  return "?";
+}
+
+}  // namespace
+
+Base read_base(const std::string& scene_path, const std::string& arch_path) {
+  Base base{scene_path, text_of(scene_path), arch_path, arch_path.empty() ? "" : text_of(arch_path)};
+  resolve(base, {});
+  return base;
+}
+
+std::string Settings::numbers_key() const {
+  std::string key = fmt::format("{} {} {}", engine, name_of(arithmetic),
+                                integrator == Integrator::semi_implicit_euler ? "euler" : "verlet");
+  if (arithmetic != Arithmetic::fixed) key += fmt::format(" threads={}", threads);
+  for (const Change& change : scene) key += fmt::format(" {}={}", change.key, change.value);
+  for (const Change& change : arch) key += fmt::format(" arch.{}={}", change.key, change.value);
+  return key;
+}
+
+std::string Settings::key() const {
+  return arithmetic == Arithmetic::fixed ? fmt::format("{} threads={}", numbers_key(), threads)
+                                         : numbers_key();
+}
+
+Case resolve(const Base& base, const Settings& settings) {
+  const bool fixed = settings.arithmetic == Arithmetic::fixed;
+  if (settings.engine == "reference" ? fixed : settings.engine == "lattice" && !fixed)
+    throw InputError(fmt::format("engine '{}' does not know {} arithmetic", settings.engine,
+                                 name_of(settings.arithmetic)));
+  if (fixed && settings.integrator != Integrator::semi_implicit_euler)
+    throw InputError("fixed arithmetic knows the integrator 'euler' only");
+  Case c{settings, {}, {}, with_changes(base.scene_text, base.scene_path, settings.scene), {}};
+  c.scene = parse_scene(c.scene_text, base.scene_path);
+  const std::string arch_path = base.arch_path.empty() ? "(default arch)" : base.arch_path;
+  const std::string arch_text = base.arch_text.empty() ? "name = \"default\"\n" : base.arch_text;
+  c.arch_text = with_changes(arch_text, arch_path, settings.arch);
+  c.arch = parse_arch(c.arch_text, arch_path);
+  return c;
+}
+
+}  // namespace cuboct::study
