@@ -257,7 +257,7 @@ TEST(Search, IsExactOnRandomLandscapes) {
       errors[p] = hole ? kNan : sum_of(terms)(p) + real(-0.05, 0.05);
     });
     const Landscape error = [&](const Notches& p) { return errors.at(p); };
-    const double budget = real(0.1, 0.6);
+    const double budget = real(0.03, 0.4);
     Asked asked;
     const SearchResult result = search(
         asked.space(sizes, error, [&](const Notches& p) { return costs.at(p); }), budget);
