@@ -2,7 +2,6 @@
 // The cheapest settings of a study that keep a figure within an error budget: search.h on real runs.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,11 +13,10 @@
 namespace cuboct::study {
 
 struct BudgetQuestion {
-  size_t figure = 0;    // of study.figures
-  double budget = 0.01; // > 0, relative
-  int jobs = 1;         // runs at once
-  // Told runs made or remembered, and the least cost so far (inf: none yet). May be empty.
-  std::function<void(size_t, double)> progress;
+  size_t figure = 0;     // of study.figures
+  double budget = 0.01;  // > 0, relative
+  int jobs = 0;          // runs at once; 0: one per core
+  bool progress = true;  // a line on stderr, where that is a terminal
 };
 
 struct Priced {

@@ -59,8 +59,8 @@ struct Node {
 
 class Search {
  public:
-  Search(const SearchSpace& space, double budget, const std::function<void(size_t, double)>& progress)
-      : space_(space), budget_(budget), progress_(progress), axes_(space.sizes.size()), measured_(space) {}
+  Search(const SearchSpace& space, double budget)
+      : space_(space), budget_(budget), axes_(space.sizes.size()), measured_(space) {}
 
   SearchResult run() {
     find_reference();
@@ -96,7 +96,6 @@ class Search {
     while (size_of(measured_(at)) > kReferenceShare * budget_) {
       const std::vector<Notches> near = one_cheaper(at);
       measured_.want(near);
-      tell();
       Notches next = at;
       for (const Notches& p : near)
         if (size_of(measured_(p)) < size_of(measured_(next))) next = p;
@@ -156,7 +155,6 @@ class Search {
         for (int n = walk.next; n >= 0 && walk.next - n < static_cast<int>(ahead); --n)
           wanted.push_back(with(walk.node->at, walk.node->depth, n));
       measured_.want(wanted);
-      tell();
       for (Walk& walk : walks)
         for (size_t i = 0; i < ahead && walk.next >= 0; ++i) {
           const Notches at = with(walk.node->at, walk.node->depth, walk.next);
@@ -246,7 +244,6 @@ class Search {
     for (size_t a = 0; a < axes_; ++a)
       if (result_.best.at[a] > 0)
         result_.cheaper.push_back({a, spending(moved(result_.best.at, a, -1))});
-    tell();
   }
 
   // The axis that would have to be finer: what still changes the error is not converged.
@@ -271,13 +268,8 @@ class Search {
     }
   }
 
-  void tell() const {
-    if (progress_) progress_(measured_.all().size(), result_.best.at.empty() ? kInfinity : result_.cost);
-  }
-
   const SearchSpace& space_;
   const double budget_;
-  const std::function<void(size_t, double)>& progress_;
   const size_t axes_;
   Measured measured_;
   std::map<Notches, double> costs_;
@@ -291,9 +283,8 @@ NotchOrder::NotchOrder(size_t axis_, int notch_)
       axis(axis_),
       notch(notch_) {}
 
-SearchResult search(const SearchSpace& space, double budget,
-                    const std::function<void(size_t, double)>& progress) {
-  return Search(space, budget, progress).run();
+SearchResult search(const SearchSpace& space, double budget) {
+  return Search(space, budget).run();
 }
 
 }  // namespace cuboct::study

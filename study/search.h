@@ -74,9 +74,7 @@ class NotchOrder : public std::runtime_error {
 };
 
 // The point of least cost whose sum is within `budget` (> 0); of equal costs the one with the lower notches. So
-// no single axis of it can go one notch cheaper. Exact, by best-first search. `progress`, where there is one,
-// is told the points measured and the least cost so far (inf: none yet).
-SearchResult search(const SearchSpace& space, double budget,
-                    const std::function<void(size_t, double)>& progress = {});
+// no single axis of it can go one notch cheaper. Exact, by best-first search.
+SearchResult search(const SearchSpace& space, double budget);
 
 }  // namespace cuboct::study
