@@ -100,4 +100,16 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
   return contents(scratch.path("plot.png"));
 }
 
+std::string gnuplot(const std::string& data, const std::string& plot, const std::string& kind, int width,
+                    int height) {
+  const Scratch scratch;
+  const std::string out = scratch.path("plot." + kind);
+  const std::string terminal =
+      kind == "svg" ? fmt::format("svg size {},{} dynamic font 'Helvetica,14'", width, height)
+                    : fmt::format("pngcairo size {},{} font 'Helvetica,13'", width, height);
+  run_gnuplot(scratch, fmt::format("{}set encoding utf8\nset terminal {} background '#ffffff'\nset output '{}'\n{}",
+                                   data, terminal, out, plot));
+  return contents(out);
+}
+
 }  // namespace cuboct
