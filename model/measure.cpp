@@ -78,7 +78,7 @@ Vec3 force_of(const FixedRule& rule, const Int3& kick) {
 }
 
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
-                  const State& state, const std::vector<Int3>& kicks, int threads) {
+                  const State& state, const std::vector<Int3>& kicks, int threads, ClosestPair* closest) {
   Energies sum;
   const double length = std::ldexp(fixed.cell_edge, -fixed.widths.position_frac);
   const double velocity = velocity_unit(fixed);
@@ -102,6 +102,7 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
   constexpr uint32_t kBlock = 4096;
   const ByNode by_node(lattice, state);
   std::vector<double> potential((lattice.size() + kBlock - 1) / kBlock, 0.0);
+  std::vector<ClosestPair> nearest(potential.size());
   for_each_range(potential.size(), 1, [&](size_t first, size_t last) {
     for (size_t block = first; block < last; ++block) {
       const auto begin = static_cast<uint32_t>(block) * kBlock;
@@ -112,12 +113,16 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
                       const Vec3 d(static_cast<double>(x_j[0] - a.x[0]), static_cast<double>(x_j[1] - a.x[1]),
                                    static_cast<double>(x_j[2] - a.x[2]));
                       const double r = d.norm() * length;
-                      if (r < cutoff)
-                        potential[block] += rule.law->energy(r) * rule.strength_of(a.type, b.type);
+                      if (r >= cutoff) return;
+                      potential[block] += rule.law->energy(r) * rule.strength_of(a.type, b.type);
+                      if (r < nearest[block].r) nearest[block] = {a.id, b.id, r};
                     });
     }
   }, threads);
   for (const double part : potential) sum.potential += part;
+  if (closest)
+    for (const ClosestPair& pair : nearest)
+      if (pair.r < closest->r) *closest = pair;
   return sum;
 }
 
