@@ -24,7 +24,7 @@ struct Options {
   std::string out;
   uint64_t steps = 0;
   uint64_t frames_every = 0;
-  bool steps_given = false, frames_given = false, json = false;
+  bool steps_given = false, frames_given = false, json = false, no_watch = false;
 };
 
 void write_outputs(const Options& options, const Loaded& loaded, const Trace& trace,
@@ -49,12 +49,14 @@ RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::Latti
   if (options.lattice.keeps_checkpoints())
     request.checkpoint.path = options.out + "/checkpoint";
   request.energies = true;
+  request.watch = !options.no_watch;
   request.cycles = options.lattice.cycles;
   request.hash_every = options.lattice.hash_every;
   emu::LatticeResult result =
       run_on_lattice(options.input, loaded.scene, loaded.setup.plan, options.lattice, std::move(request));
   trace = std::move(result.trace);
-  return {result.momentum_before, result.momentum_after, result.largest_speed, trace.curves};
+  return {result.momentum_before, result.momentum_after, result.largest_speed, trace.curves,
+          result.watched.has_value(), std::move(result.findings), result.watched};
 }
 
 int run(Options options) {
@@ -75,8 +77,10 @@ int run(Options options) {
   Trace trace;
   std::vector<Frame> frames;
   Items summary;
+  bool failed = false;  // in the sense of model/watch.h
   if (options.engine == "reference") {
-    ReferenceRun reference = run_reference(loaded, steps, frame_steps, probe_steps);
+    ReferenceRun reference = run_reference(loaded, steps, frame_steps, probe_steps, !options.no_watch);
+    failed = reference.failed;
     trace = std::move(reference.trace);
     frames = std::move(reference.frames);
     summary = std::move(reference.summary);
@@ -87,6 +91,7 @@ int run(Options options) {
     request.probes = probe_steps;
     const RunFacts facts = run_by_lattice(options, loaded, std::move(request), trace);
     summary = summarise(loaded, trace, facts);
+    failed = !facts.findings.empty();
     if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   } else {
     // Engines know nothing of probes: they record states, and one meter reads them.
@@ -94,7 +99,7 @@ int run(Options options) {
     std::set_union(frame_steps.begin(), frame_steps.end(), probe_steps.begin(), probe_steps.end(),
                    std::back_inserter(request.frames));
     if (options.engine == "golden") request.frames = frame_steps;
-    RunMeter meter(loaded, probe_steps);
+    RunMeter meter(loaded, probe_steps, !options.no_watch);
     trace = run_fixed(options.engine, options.input, loaded.setup, request,
                       [&](const State& state) { meter.see(state); });
     const RunFacts facts = meter.finish();
@@ -104,6 +109,7 @@ int run(Options options) {
              !std::binary_search(frame_steps.begin(), frame_steps.end(), frame.step);
     });
     summary = summarise(loaded, trace, facts);
+    failed = !facts.findings.empty();
     if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   }
   if (!options.out.empty()) write_outputs(options, loaded, trace, frames, summary);
@@ -114,7 +120,7 @@ int run(Options options) {
                kept ? fmt::format("; the same command with --resume goes on at step {}", trace.steps()) : "");
   else if (kept)
     emu::remove_checkpoint(options.out + "/checkpoint");
-  return trace.stop || interrupted() ? 1 : 0;
+  return trace.stop || failed || interrupted() ? 1 : 0;
 }
 
 }  // namespace
@@ -148,6 +154,8 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--resume", lattice.resume, "go on from the checkpoint in DIR");
   command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
       ->type_name("DIR");
+  command->add_flag("--no-watch", options->no_watch,
+                    "do not look for what makes a run wrong (docs/reference/failures.md)");
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->callback([options, steps, frames, &exit_code] {
     options->steps_given = steps->count() > 0;

@@ -6,6 +6,7 @@
 
 #include "model/interrupt.h"
 #include "cli/outputs.h"
+#include "cli/summary.h"
 #include "model/progress.h"
 #include "model/measure.h"
 #include "model/reference.h"
@@ -31,7 +32,7 @@ double kinetic_energy(const Rule& rule, const Body& body, const std::vector<Vec3
 }  // namespace
 
 ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vector<uint64_t>& frame_steps,
-                           const std::vector<uint64_t>& probe_steps) {
+                           const std::vector<uint64_t>& probe_steps, bool watch) {
   using Clock = std::chrono::steady_clock;
   const Scene& scene = loaded.scene;
   Reference reference(scene.rule, scene.body, scene.periodic, Integrator::semi_implicit_euler);
@@ -44,6 +45,7 @@ ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vect
   const int axis = strain_axis(scene);
   Curve kinetic{"energy.kinetic", "J", {}, {}}, potential{"energy.potential", "J", {}, {}};
   double fastest = 0;
+  Watch detectors(scene, 0);
 
   const auto record = [&](uint64_t step, bool last) {
     const Body& body = reference.body();
@@ -55,6 +57,7 @@ ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vect
       kinetic.value.push_back(kinetic_energy(scene.rule, body, force));
       potential.step.push_back(step);
       potential.value.push_back(reference.potential_energy());
+      if (watch) detectors.see(step, body, force, kinetic.value.back(), potential.value.back());
     }
     if (last || std::binary_search(frame_steps.begin(), frame_steps.end(), step)) {
       Frame frame{step, static_cast<double>(step) * scene.rule.dt, body.x, body.v, body.type, {}};
@@ -96,6 +99,8 @@ ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vect
             kinetic.value.back() + potential.value.back() - kinetic.value.front() - potential.value.front(),
             "J");
   items.add("largest speed", fastest * scene.rule.dt / loaded.setup.plan.rule.cell_edge, "node/step");
+  if (watch) add_findings(items, detectors.findings());
+  run.failed = !detectors.findings().empty();
   return run;
 }
 

@@ -15,10 +15,11 @@ struct ReferenceRun {
   Trace trace;  // curves, no hashes
   std::vector<Frame> frames;
   Items summary;
+  bool failed = false;  // the watch found something
 };
 
 // Semi-implicit Euler, as the fixed engines. Ctrl-C gives the run so far.
 ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vector<uint64_t>& frame_steps,
-                           const std::vector<uint64_t>& probe_steps);
+                           const std::vector<uint64_t>& probe_steps, bool watch);
 
 }  // namespace cuboct
