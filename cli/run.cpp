@@ -6,11 +6,11 @@
 
 #include "cli/command.h"
 #include "cli/engines.h"
-#include "cli/run_lattice.h"
-#include "model/interrupt.h"
 #include "cli/outputs.h"
+#include "cli/run_lattice.h"
 #include "cli/run_reference.h"
 #include "cli/summary.h"
+#include "model/interrupt.h"
 #include "model/output.h"
 #include "model/steps.h"
 
@@ -21,6 +21,7 @@ struct Options {
   Input input;
   std::string engine = "lattice";
   LatticeChoice lattice;
+  RealChoice real;
   std::string out;
   uint64_t steps = 0;
   uint64_t frames_every = 0;
@@ -64,7 +65,9 @@ int run(Options options) {
   allowed.push_back("reference");
   check_engine(options.engine, allowed);
   const bool lattice = options.engine == "lattice";
+  const bool reference = options.engine == "reference";
   if (!lattice) options.lattice.check_unused(options.engine);
+  if (!reference) options.real.check_unused(options.engine);
   const Loaded loaded = lattice ? load_plan(options.input) : load(options.input);
   catch_interrupts();
   if (!options.out.empty()) prepare_directory(options.out);
@@ -78,12 +81,14 @@ int run(Options options) {
   std::vector<Frame> frames;
   Items summary;
   bool failed = false;  // in the sense of model/watch.h
-  if (options.engine == "reference") {
-    ReferenceRun reference = run_reference(loaded, steps, frame_steps, probe_steps, !options.no_watch);
-    failed = reference.failed;
-    trace = std::move(reference.trace);
-    frames = std::move(reference.frames);
-    summary = std::move(reference.summary);
+  if (reference) {
+    RealOptions real = options.real.options();
+    real.threads = options.lattice.threads;
+    ReferenceRun run = run_reference(loaded, real, steps, frame_steps, probe_steps, !options.no_watch);
+    failed = run.failed;
+    trace = std::move(run.trace);
+    frames = std::move(run.frames);
+    summary = std::move(run.summary);
   } else if (lattice) {
     emu::LatticeRun request;
     request.steps = steps;
@@ -130,7 +135,7 @@ void add_run(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "run a scene and end with a summary");
   options->input.add_to(*command);
   options->input.add_stalls_to(*command);
-  command->add_option("--engine", options->engine, "lattice, golden, systemc, rtl or reference (doubles)")
+  command->add_option("--engine", options->engine, "lattice, golden, systemc, rtl or reference (doubles or floats)")
       ->capture_default_str();
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
                     ->check(whole_number())
@@ -142,6 +147,7 @@ void add_run(CLI::App& app, int& exit_code) {
                      ->type_name("K");
   LatticeChoice& lattice = options->lattice;
   lattice.add_to(*command);
+  options->real.add_to(*command);
   command->add_option("--hash-every", lattice.hash_every, "steps between two hashes of lattice's state")
       ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))
       ->capture_default_str()
