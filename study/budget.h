@@ -30,6 +30,8 @@ struct Priced {
 struct BudgetAnswer {
   std::vector<Axis> axes;  // as searched: study.search in the order of search.h
   SearchResult result;     // its notches are places on these axes
+  // Of each of result.cheaper that cannot be run: why not; else empty.
+  std::vector<std::string> why;
   Priced chosen;           // result.best
   Priced standard;         // the study's scene and arch as they are
 };
@@ -53,5 +55,7 @@ Written written(const Study& study, const Truth& truth, const Settings& settings
 
 // Settings of a point, as the engines look at them.
 Settings settings_at(const std::vector<Axis>& axes, const Notches& at);
+// Whether another notch of an axis makes other settings there: engines of real numbers look at no arch.
+bool matters(const std::vector<Axis>& axes, Notches at, size_t axis);
 
 }  // namespace cuboct::study
