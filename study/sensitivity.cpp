@@ -38,11 +38,11 @@ double slope(std::span<const double> y) {
 
 }  // namespace
 
-std::vector<double> separation(const Case& c, const TimeGrid& grid) {
+std::vector<double> separation(const Case& c, const TimeGrid& grid, int threads) {
   Scene scene = c.scene;
   const uint64_t per_sample = grid.steps_per_sample(scene.rule.dt);
   scene.rule.dt = grid.fitted(scene.rule.dt);
-  const RealOptions options{.integrator = Integrator::velocity_verlet};
+  const RealOptions options{.integrator = Integrator::velocity_verlet, .threads = threads};
   Reference one(scene.rule, scene.body, scene.periodic, options);
   Reference other(scene.rule, neighbour_of(scene), scene.periodic, options);
   std::vector<double> distance;

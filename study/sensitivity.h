@@ -11,7 +11,7 @@ namespace cuboct::study {
 
 // Distance (rms over particles, m) at each sample between two runs of velocity Verlet in doubles whose initial
 // positions differ by 1e-9 of the pitch along axes that are free. Ends early where it passes 1e-3 of the pitch.
-std::vector<double> separation(const Case& c, const TimeGrid& grid);
+std::vector<double> separation(const Case& c, const TimeGrid& grid, int threads);
 
 struct Sensitivity {
   double lyapunov_time = 0;  // s; infinite where the distance does not grow exponentially

@@ -43,11 +43,11 @@ Base read_changed_base(const ConfigTable& root, const std::string& path) {
 }
 
 void read_figures(const ConfigTable& root, const Scene& scene, Study& study) {
-  std::vector<std::string> curves;
-  for (const Curve& curve : ProbeMeter(scene.probes, scene.periodic, scene.body.x).curves())
-    curves.push_back(curve.name);
+  std::vector<Curve> known = ProbeMeter(scene.probes, scene.periodic, scene.body.x).curves();
   for (const char* part : {"total", "kinetic", "potential", "gravity"})
-    curves.push_back(std::string("energy.") + part);
+    known.push_back({std::string("energy.") + part, "J", {}, {}});
+  std::vector<std::string> curves;
+  for (const Curve& curve : known) curves.push_back(curve.name);
   std::set<std::string> names;
   for (const ConfigTable& table : root.tables("figure")) {
     study.figures.push_back(read_figure(table));
@@ -58,6 +58,7 @@ void read_figures(const ConfigTable& root, const Scene& scene, Study& study) {
       value->fail(fmt::format("the scene has no curve '{}'", value->string()),
                   near.empty() ? "known: " + list_of(curves) : near);
     }
+    study.figure_units.push_back(study.figures.back().unit(known));
     if (!names.insert(study.figures.back().name).second)
       table.fail(fmt::format("two figures are called '{}'", study.figures.back().name), "give one a 'name'");
   }

@@ -26,6 +26,7 @@ struct Study {
   std::string title;
   Base base;  // with the study's [change] made
   std::vector<Figure> figures;
+  std::vector<std::string> figure_units;
   std::vector<Settings> points;  // of all [[sweep]] grids, in their order, each once
   std::vector<Axis> search;      // [search]: for each setting its notches from cheap to dear
   TimeGrid grid;                 // of all runs; horizon 0 until the truth has found it

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <limits>
 #include <stdexcept>
 
@@ -45,7 +44,8 @@ struct Climb {
   Run run;
 };
 
-Climb climb(const Study& study, Case c, const TimeGrid& grid, uint64_t per_sample, uint64_t until) {
+Climb climb(const Study& study, Case c, const TimeGrid& grid, uint64_t per_sample, uint64_t until,
+            int threads) {
   c.scene.rule.dt = grid.sample / static_cast<double>(per_sample);
   RunRequest request;
   request.grid = grid;
@@ -53,6 +53,7 @@ Climb climb(const Study& study, Case c, const TimeGrid& grid, uint64_t per_sampl
   request.curves = until == grid.samples && !study.figures.empty();
   request.energies = request.curves;
   request.keep = kept_samples(grid);
+  request.threads = threads;
   Climb result;
   result.run = run_case(c, request);
   result.rung.dt = result.run.dt;
@@ -91,6 +92,7 @@ double largest_frequency_of(const Scene& scene) {
 
 void keep_states(const Run& run, const TimeGrid& grid, Truth& truth) {
   const std::vector<uint64_t> samples = kept_samples(grid);
+  truth.states.clear();
   for (size_t k = 0; k < run.kept.size(); ++k)
     truth.states.push_back({static_cast<double>(samples[k]) * grid.sample, run.kept[k]});
   truth.horizon = truth.states.back();
@@ -104,35 +106,33 @@ double error_left(double before, double last) {
   return ratio >= 2 ? last / (std::min(ratio, 4.0) - 1) : last;
 }
 
-void refine(const Study& study, const Case& c, int jobs, Truth& truth) {
+void refine(const Study& study, const Case& c, int threads, Truth& truth,
+            const std::function<void(const Truth&)>& save) {
   const uint64_t first = truth.grid.steps_per_sample(c.scene.rule.dt);
   const double unit = length_unit(c.scene);
-  const auto rung = [&](int k) { return climb(study, c, truth.grid, first << k, truth.grid.samples); };
-  std::vector<std::future<Climb>> ahead;
-  Run before;
-  for (int k = 0; k < study.truth_rungs; ++k) {
-    // Three rungs are needed to see an order at all: they are made at once.
-    if (k == 0 && jobs > 1)
-      for (int early = 0; early < std::min({3, jobs, study.truth_rungs}); ++early)
-        ahead.push_back(std::async(std::launch::async, rung, early));
-    Climb now = static_cast<size_t>(k) < ahead.size() ? ahead[static_cast<size_t>(k)].get() : rung(k);
+  const auto ended = [&] {
+    return truth.converged || truth.rungs.size() >= static_cast<size_t>(study.truth_rungs);
+  };
+  while (!ended()) {
+    const size_t k = truth.rungs.size();
+    Climb now = climb(study, c, truth.grid, first << k, truth.grid.samples, threads);
     if (k > 0) {
       now.rung.change = change_between(truth.rungs.back().figures, now.rung.figures);
-      now.rung.trajectory = rms_distance(before.kept.back().x, now.run.kept.back().x, c.scene.periodic) / unit;
+      now.rung.trajectory =
+          rms_distance(truth.horizon.body.x, now.run.kept.back().x, c.scene.periodic) / unit;
       truth.floor = k > 1 ? error_left(truth.rungs.back().trajectory, now.rung.trajectory) : now.rung.trajectory;
     }
     truth.rungs.push_back(now.rung);
-    before = std::move(now.run);
-    // Two changes in a row, so that one that is small by chance does not end the refinement.
+    keep_states(now.run, truth.grid, truth);
+    // From the third rung on, so that one change that is small by chance does not end the refinement.
     truth.converged = k > 1 && now.rung.trajectory < study.truth_tolerance &&
                       !(now.rung.change >= study.truth_tolerance);
-    if (truth.converged) break;
+    if (save) save(truth);
   }
   if (!truth.converged)
     truth.notes.push_back(fmt::format(
         "the truth has not converged: at dt = {:.4g} s figures still change by {:.2g}, positions by {:.2g}",
         truth.rungs.back().dt, truth.rungs.back().change, truth.rungs.back().trajectory));
-  keep_states(before, truth.grid, truth);
   truth.figures = truth.rungs.back().figures;
 }
 
@@ -145,7 +145,7 @@ bool is_cut_for_speed(const Study& study, bool& reduced) {
   return kind && kind->is_string() && kind->string() == "lj";
 }
 
-void lengthen(const Study& study, const Case& c, Truth& truth) {
+void lengthen(const Study& study, const Case& c, int threads, Truth& truth) {
   bool reduced = false;
   if (!is_cut_for_speed(study, reduced)) {
     truth.notes.push_back("the cutoff is a part of this law: it is not lengthened");
@@ -164,7 +164,7 @@ void lengthen(const Study& study, const Case& c, Truth& truth) {
     settings.scene.push_back({"law.cutoff", reduced ? fmt::format("{}", cutoff) : fmt::format("\"{} m\"", cutoff)});
     try {
       // Positions with another cutoff are those of another law: they are not compared.
-      Climb now = climb(study, resolve(study.base, settings), truth.grid, per_sample, truth.grid.samples);
+      Climb now = climb(study, resolve(study.base, settings), truth.grid, per_sample, truth.grid.samples, threads);
       now.rung.change = change_between(truth.rungs.back().figures, now.rung.figures);
       truth.rungs.push_back(now.rung);
       truth.figures = now.rung.figures;
@@ -192,19 +192,25 @@ std::string physics_key(const Settings& settings) {
   return key;
 }
 
-Truth make_truth(const Study& study, int jobs) {
+Truth make_truth(const Study& study, int jobs, Truth begun, const std::function<void(const Truth&)>& save) {
   const Case c = resolve(study.base, verlet_in_doubles());
-  Truth truth;
-  truth.grid = study.grid;
-  truth.largest_frequency = largest_frequency_of(c.scene);
-  const Sensitivity sensitivity = sensitivity_of(separation(c, study.grid), study.grid.sample);
-  truth.lyapunov_time = sensitivity.lyapunov_time;
-  truth.grid.horizon = sensitivity.horizon;
-  if (study.horizon > 0)
-    truth.grid.horizon = std::clamp<uint64_t>(
-        static_cast<uint64_t>(study.horizon / study.grid.sample * (1 + 1e-9)), 1, sensitivity.horizon);
-  refine(study, c, jobs, truth);
-  lengthen(study, c, truth);
+  // Fewer particles than that are not worth a thread, and less than that where the machine has other work.
+  constexpr size_t kPerThread = 16384;
+  const int threads = std::clamp(static_cast<int>(c.scene.body.size() / kPerThread), 1, std::max(1, jobs));
+  Truth truth = std::move(begun);
+  if (truth.rungs.empty()) {
+    truth.grid = study.grid;
+    truth.largest_frequency = largest_frequency_of(c.scene);
+    const Sensitivity sensitivity =
+        sensitivity_of(separation(c, study.grid, threads), study.grid.sample);
+    truth.lyapunov_time = sensitivity.lyapunov_time;
+    truth.grid.horizon = sensitivity.horizon;
+    if (study.horizon > 0)
+      truth.grid.horizon = std::clamp<uint64_t>(
+          static_cast<uint64_t>(study.horizon / study.grid.sample * (1 + 1e-9)), 1, sensitivity.horizon);
+  }
+  refine(study, c, threads, truth, save);
+  lengthen(study, c, threads, truth);
   for (size_t k = 0; k < study.figures.size(); ++k)
     if (!std::isfinite(truth.figures[k]))
       truth.notes.push_back(fmt::format("the run in doubles does not hold the figure '{}'", study.figures[k].name));
@@ -228,8 +234,8 @@ Truth make_own_truth(const Study& study, const Truth& study_truth, const Setting
   truth.converged = study_truth.converged;
   truth.figures = study_truth.figures;
   const uint64_t per_sample = truth.grid.steps_per_sample(refined->dt * scale);
-  const Climb coarse = climb(study, c, truth.grid, std::max<uint64_t>(1, per_sample / 2), truth.grid.horizon);
-  Climb fine = climb(study, c, truth.grid, per_sample, truth.grid.horizon);
+  const Climb coarse = climb(study, c, truth.grid, std::max<uint64_t>(1, per_sample / 2), truth.grid.horizon, 1);
+  Climb fine = climb(study, c, truth.grid, per_sample, truth.grid.horizon, 1);
   fine.rung.figures.clear();
   fine.rung.trajectory = truth.floor =
       rms_distance(coarse.run.kept.back().x, fine.run.kept.back().x, c.scene.periodic) / length_unit(c.scene);
