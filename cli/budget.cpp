@@ -151,6 +151,14 @@ size_t figure_named(const study::Study& study, const std::string& name) {
   throw InputError(fmt::format("{}: no figure '{}'", study.path, name), near.empty() ? "known: " + list_of(names) : near);
 }
 
+void check_budget(const study::Study& study, const std::string& error, const std::string& figure) {
+  read_error_budget(error);
+  figure_named(study, figure);
+  if (study.search.empty())
+    throw InputError(fmt::format("{}: no [search] to choose from", study.path),
+                     "list settings from cheap to dear, e.g. [search] dt_safety = [0.8, 0.4, 0.2]");
+}
+
 int run_budget(const study::Study& study, const study::Truth& truth, const BudgetOptions& options) {
   study::BudgetQuestion question;
   question.budget = read_error_budget(options.error);

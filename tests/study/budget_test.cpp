@@ -309,7 +309,7 @@ TEST_F(Budget, WrongQuestions) {
             "  hint: a smaller 'tolerance' or more 'rungs' in [truth]");
   Study plain = s;
   plain.search.clear();
-  EXPECT_EQ(message([&] { keep_budget(plain, truth, memory, question(0.1)); }),
+  EXPECT_EQ(message([&] { check_budget(plain, "1%", "breath"); }),
             s.path + ": no [search] to choose from\n"
                      "  hint: list settings from cheap to dear, e.g. [search] dt_safety = [0.8, 0.4, 0.2]");
 }
