@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// Bodies brought to rest.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/error.h"
+#include "model/interrupt.h"
+#include "study/stability.h"
+
+namespace cuboct::study {
+namespace {
+
+// A particle is at rest where its force would move it, against the stiffest site of the body, by less than
+// this part of the cutoff: a thousandth of the smallest seed of a trial.
+constexpr double kAtRest = 1e-9;
+constexpr size_t kMostTypes = 256;  // a type is a byte
+
+void zero_imposed(const Rule& rule, const Body& body, std::vector<Vec3>& values) {
+  for (size_t i = 0; i < values.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      if (rule.types[body.type[i]].imposed[axis]) values[i][axis] = 0;
+}
+
+// m/s^2, of the pair law and the PD controllers at rest, over the free axes.
+std::vector<Vec3> accelerations(const Scene& scene) {
+  const Rule& rule = scene.rule;
+  std::vector<Vec3> a =
+      Reference(rule, scene.body, scene.periodic, Integrator::semi_implicit_euler).forces();
+  for (size_t i = 0; i < a.size(); ++i) {
+    const ParticleType& type = rule.types[scene.body.type[i]];
+    if (type.pd && !scene.body.u.empty()) a[i] -= type.kp * scene.body.u[i];
+    a[i] = a[i] / rule.mass + type.gravity;
+  }
+  zero_imposed(rule, scene.body, a);
+  return a;
+}
+
+double largest(const std::vector<Vec3>& values) {
+  double most = 0;
+  for (const Vec3& value : values) most = std::max(most, value.norm());
+  return most;
+}
+
+double norm2(const std::vector<Vec3>& values) {
+  double sum = 0;
+  for (const Vec3& value : values) sum += value.squaredNorm();
+  return sum;
+}
+
+// rad^2/s^2: the stiffest site. Between a third of the largest squared frequency and all of it, in a packing.
+double stiffest_site(const Scene& scene) {
+  const Vibrations vibrations = vibrations_of(scene.rule, scene.body, scene.periodic);
+  return vibrations.stiffness.rows() > 0 ? vibrations.stiffness.diagonal().maxCoeff() : 0.0;
+}
+
+// FIRE with its authors' parameters. Whether the body came to rest.
+bool relax(Scene& scene, double tolerance, double site) {
+  constexpr int kMostSteps = 20000, kDelay = 5;
+  constexpr double kGrow = 1.1, kShrink = 0.5, kMixing = 0.1, kLessMixing = 0.99;
+  Body& body = scene.body;
+  const bool pd = std::any_of(scene.rule.types.begin(), scene.rule.types.end(),
+                              [](const ParticleType& type) { return type.pd; });
+  if (pd && body.u.empty()) body.u.assign(body.size(), Vec3::Zero());
+  const double longest = 0.5 / std::sqrt(site);
+  double dt = 0.2 * longest, mixing = kMixing;
+  int downhill = 0;
+  std::vector<Vec3> v(body.size(), Vec3::Zero());
+  for (int step = 0; step < kMostSteps; ++step) {
+    if (interrupted()) throw Interrupted();
+    const std::vector<Vec3> a = accelerations(scene);
+    if (largest(a) < tolerance) return true;
+    double power = 0;
+    for (size_t i = 0; i < v.size(); ++i) power += a[i].dot(v[i]);
+    if (power > 0) {
+      const double ratio = std::sqrt(norm2(v) / norm2(a));
+      for (size_t i = 0; i < v.size(); ++i) v[i] = (1 - mixing) * v[i] + mixing * ratio * a[i];
+      if (++downhill > kDelay) dt = std::min(kGrow * dt, longest), mixing *= kLessMixing;
+    } else {
+      std::fill(v.begin(), v.end(), Vec3::Zero());
+      downhill = 0, dt *= kShrink, mixing = kMixing;
+    }
+    for (size_t i = 0; i < v.size(); ++i) {
+      v[i] += a[i] * dt;
+      body.x[i] += v[i] * dt;
+      if (!body.u.empty()) body.u[i] += v[i] * dt;
+    }
+  }
+  return largest(accelerations(scene)) < 100 * tolerance;
+}
+
+// Gives each particle a type whose gravity is against its acceleration. False where that takes too many.
+bool hold_still(Scene& scene, double tolerance) {
+  const std::vector<Vec3> a = accelerations(scene);
+  const std::vector<ParticleType> before = scene.rule.types;
+  std::vector<ParticleType> types;
+  std::vector<uint8_t> of;  // [new type]: the old one
+  for (size_t i = 0; i < a.size(); ++i) {
+    const uint8_t old = scene.body.type[i];
+    size_t k = 0;
+    while (k < types.size() && (of[k] != old || (types[k].gravity + a[i]).norm() > tolerance)) ++k;
+    if (k == kMostTypes) return false;
+    if (k == types.size()) {
+      types.push_back(before[old]);
+      types.back().gravity = -a[i];
+      of.push_back(old);
+    }
+    scene.body.type[i] = static_cast<uint8_t>(k);
+  }
+  scene.rule.types = std::move(types);
+  return true;
+}
+
+void stretch(Scene& scene, int axis, double strain) {
+  for (Vec3& x : scene.body.x) x[axis] += strain * (x[axis] - scene.periodic.origin[axis]);
+  scene.periodic.extent[axis] *= 1 + strain;
+}
+
+}  // namespace
+
+Scene with_parts(Scene scene, const Parts& parts) {
+  Rule& rule = scene.rule;
+  if (!parts.damping) rule.damping.coefficient = 0;
+  if (!parts.strengths)
+    for (auto& row : rule.strength) std::fill(row.begin(), row.end(), 1.0);
+  for (ParticleType& type : rule.types) {
+    if (!parts.imposed) type.imposed = {false, false, false};
+    if (!parts.pd) type.pd = false, type.kp = type.kd = 0;
+    if (type.pd && !parts.damping) type.kd = 0;
+  }
+  return scene;
+}
+
+Subject subject_of(const Scene& scene, int axis, double strain) {
+  Subject out{scene, {}, "", true};
+  Scene& s = out.scene;
+  for (ParticleType& type : s.rule.types) type.velocity = type.gravity = Vec3::Zero();
+  std::fill(s.body.v.begin(), s.body.v.end(), Vec3::Zero());
+  s.body.u.clear();
+  s.steps = 0, s.probes.clear();
+  s.reach_margin = Vec3::Constant(-1), s.reach = {Vec3::Zero(), Vec3::Zero()};
+
+  const auto tolerance = [&] { return kAtRest * s.rule.law->cutoff() * stiffest_site(s); };
+  const auto give_up = [&](const std::string& why) {
+    out.note += (out.note.empty() ? "" : "; ") + why;
+    out.measurable = false;
+  };
+  if (const double start = tolerance(); start > 0 && largest(accelerations(s)) > start) {
+    const std::vector<Vec3> x = s.body.x;
+    const bool rests = relax(s, start, start / (kAtRest * s.rule.law->cutoff()));
+    double farthest = 0;
+    for (size_t i = 0; i < x.size(); ++i) farthest = std::max(farthest, (s.body.x[i] - x[i]).norm());
+    if (rests) {
+      const double length = s.pitch > 0 ? s.pitch : s.rule.law->cutoff();
+      out.note = fmt::format("relaxed first: particles moved by up to {:.2g} {}", farthest / length,
+                             s.pitch > 0 ? "pitches" : "cutoffs");
+    } else {
+      give_up("the body does not come to rest");
+    }
+  }
+  if (strain != 0) {
+    stretch(s, axis, strain);
+    if (const double now = tolerance(); now > 0 && largest(accelerations(s)) > now) {
+      if (!hold_still(s, 10 * now))
+        give_up(fmt::format("held as stretched it would need more than {} types", kMostTypes));
+    }
+  }
+  out.limit = stability_limit(vibrations_of(s.rule, s.body, s.periodic));
+  if (!std::isfinite(out.limit.dt)) give_up("nothing is restored or damped");
+  else if (out.limit.body_unstable())
+    give_up("the body itself is unstable: no dt cures that");
+  return out;
+}
+
+}  // namespace cuboct::study
