@@ -76,11 +76,11 @@ Vec3 between(const Particle& i, const Int3& x_j) {
           static_cast<double>(x_j[2] - i.x[2])};
 }
 
-struct PairsSeen {
-  double potential = 0;  // J
+struct PairEnergy {
+  double energy = 0;  // J
   ClosestPair closest;
-  PairsSeen& operator+=(const PairsSeen& other) {
-    potential += other.potential;
+  PairEnergy& operator+=(const PairEnergy& other) {
+    energy += other.energy;
     if (other.closest.r < closest.r) closest = other.closest;
     return *this;
   }
@@ -136,15 +136,15 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
     }
   }
   const double cutoff = rule.law->cutoff();
-  const PairsSeen seen =
-      sum_over_pairs(fixed, lattice, state, PairsSeen{}, threads, [&](uint32_t i, uint32_t j, const Int3& x_j) {
+  const PairEnergy pairs = sum_over_pairs(
+      fixed, lattice, state, PairEnergy{}, threads, [&](uint32_t i, uint32_t j, const Int3& x_j) -> PairEnergy {
         const Particle &a = state.particles[i], &b = state.particles[j];
         const double r = between(a, x_j).norm() * length;
-        if (r >= cutoff) return PairsSeen{};
-        return PairsSeen{rule.law->energy(r) * rule.strength_of(a.type, b.type), {a.id, b.id, r}};
+        if (r >= cutoff) return {};
+        return {rule.law->energy(r) * rule.strength_of(a.type, b.type), {a.id, b.id, r}};
       });
-  sum.potential = seen.potential;
-  if (closest) *closest = seen.closest;
+  sum.potential = pairs.energy;
+  if (closest) *closest = pairs.closest;
   return sum;
 }
 

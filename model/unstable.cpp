@@ -87,6 +87,7 @@ Quotient stability_quotient(const Rule& rule, const Periodic& periodic, std::spa
   }
   for (uint32_t i = 0; i < y.size(); ++i)
     if (y[i].squaredNorm() > y[q.particle].squaredNorm()) q.particle = i;
+  q.mode = std::move(y);
   return q;
 }
 

@@ -3,8 +3,8 @@
 // dt^2 K + 2 dt C, which must stay below 4 (model/vibrations.h has the derivation).
 #pragma once
 
-#include <functional>
 #include <span>
+#include <vector>
 
 #include "model/scene.h"
 
@@ -16,7 +16,8 @@ struct Quotient {
   double law = 0;      // dt^2 times the stiffness of the pairs
   double damping = 0;  // 2 dt times their damping
   double hold = 0;     // both, of PD controllers
-  uint32_t particle = 0;  // where y is largest
+  uint32_t particle = 0;  // where the mode is largest
+  std::vector<Vec3> mode;  // y, of length 1
   double total() const { return law + damping + hold; }
   double stable_dt(double dt) const;  // s: where this quotient would be 4
 

@@ -26,10 +26,12 @@ constexpr double kCreep = 1e-3;  // of the pitch: where a law's stiffness begins
 double stiffness_of(const PairLaw& law) {
   constexpr int kSamples = 4096;
   double most = 0;
+  bool pulled = false;
   for (int k = kSamples - 1; k > 0; --k) {
-    const double r = law.cutoff() * k / kSamples;
+    const double r = law.cutoff() * k / kSamples, f = law.force(r);
     most = std::max(most, -law.slope(r));
-    if (law.force(r) > 0 && law.energy(r) > 0) break;
+    if (pulled && f > 0) break;
+    pulled |= f < 0;
   }
   return most;
 }
@@ -51,6 +53,17 @@ double least_of(const std::vector<std::vector<double>>& strength) {
   double least = largest_of(strength);
   for (const auto& row : strength) least = std::min(least, *std::min_element(row.begin(), row.end()));
   return least;
+}
+
+// The limit of dt, s, of an FCC packing of such bonds, where a scene has none: sums over 8 bonds, as at the edge of
+// its Brillouin zone (docs/reference/physics.md).
+double limit_of_bonds(const Rule& rule) {
+  double kp = 0, kd = 0;
+  for (const ParticleType& type : rule.types) kp = std::max(kp, type.kp), kd = std::max(kd, type.kd);
+  const double strength = largest_of(rule.strength), core = rule.law->core();
+  const double k = (8 * strength * stiffness_of(*rule.law) + kp) / rule.mass;
+  const double c = (8 * strength * rule.damping_over_r2(core) * core * core + kd) / rule.mass;
+  return 4 / (c + std::sqrt(c * c + 4 * k));
 }
 
 // Whether every pair force of the body is 0, to what `law` of a scene may lack of it at its pitch.
@@ -112,10 +125,11 @@ Watch::Watch(const Scene& scene, double table_error, int threads)
   // omega dt; it starts at one end where all starts as kinetic. The mean over the modes of the packing is half
   // the largest theta^2 = 4 (dt/limit)^2: (dt/limit)^2/4 is to be expected. Twice that, and 2 % for a run far
   // below the limit.
-  const double limit = scene.dt_limit > 0
-                           ? scene.dt_limit
-                           : 2 / std::sqrt(8 * stiffness_of(law) * largest_of(rule.strength) / rule.mass);
+  const double limit = scene.dt_limit > 0 ? scene.dt_limit : limit_of_bonds(rule);
   energy_limit_ = 0.02 + 0.5 * (rule.dt / limit) * (rule.dt / limit);
+  faint_ = 0.5 * static_cast<double>(type_.size()) * stiffness_of(law) *
+           std::pow(kCreep * (scene.pitch > 0 ? scene.pitch : law.cutoff()), 2);
+  near_limit_ = rule.dt > 0.5 * limit;
 
   bool weighs = false, led = false;
   for (const ParticleType& type : rule.types) {
@@ -221,29 +235,48 @@ void Watch::see(const Moment& moment) {
   see_flips(moment, motion);
   see_core(moment, motion);
   see_driven(moment);
-  see_energy(moment, motion);
   see_rest(moment);
+  see_energy(moment, motion);
 }
 
 // Where a mode is unstable, z < -1: its velocity turns over in each step. A mode at 0.2 of the limit turns over
 // near the ends of its swing alone, where it has less than theta^2/4 = 4 % of its kinetic energy. Either way
-// the flip is only a suspicion; what is told is proven by the quotient.
+// the flip is only a suspicion; what is told is proven by the quotient. Near the limit the fastest mode is
+// looked for at once, and told where it turns over.
 void Watch::see_flips(const Moment& moment, const Motion& motion) {
   constexpr double kShare = 0.05;
-  if (motion.sudden || motion.flipped > kShare * motion.swing) prove_unstable(moment, motion, true);
+  if (motion.sudden || motion.flipped > kShare * motion.swing)
+    prove_unstable(moment, motion, Suspicion::flips);
+  else if (near_limit_)
+    prove_unstable(moment, motion, Suspicion::near_limit);
 }
 
-bool Watch::prove_unstable(const Moment& moment, const Motion& motion, bool flipped_alone) {
+bool Watch::prove_unstable(const Moment& moment, const Motion& motion, Suspicion suspicion) {
   std::vector<Vec3> x(type_.size()), y(type_.size(), Vec3::Zero());
   for (uint32_t id = 0; id < type_.size(); ++id) {
     x[id] = moment.x(id);
     if (!x[id].allFinite()) return false;
     const Vec3 before = moment.v(id) - motion.mean, after = moment.v_next(id) - motion.mean;
-    if (!flipped_alone || before.dot(after) < 0) y[id] = after;
+    // Kicks hold more of the fast modes than velocities do.
+    if (suspicion != Suspicion::flips)
+      y[id] = after - before;
+    else if (before.dot(after) < 0)
+      y[id] = after;
   }
   const Rule& rule = scene_.rule;
   const Quotient q = stability_quotient(rule, scene_.periodic, x, type_, std::move(y));
   if (!(q.total() > 4)) return false;
+  if (suspicion == Suspicion::near_limit) {
+    // One per cent beyond, and a mode needs hundreds of steps to matter.
+    if (q.total() < 4.04) return false;
+    double before = 0, after = 0;
+    for (uint32_t id = 0; id < type_.size(); ++id) {
+      before += q.mode[id].dot(moment.v(id) - motion.mean);
+      after += q.mode[id].dot(moment.v_next(id) - motion.mean);
+    }
+    if (!(before * after < 0 && std::abs(after) > std::abs(before) && std::abs(after) > moment.noise))
+      return false;
+  }
   const Failure failure = q.hold > std::max(q.law, q.damping) ? Failure::stiff_hold
                           : q.damping > q.law                 ? Failure::damping
                                                               : Failure::time_step;
@@ -251,7 +284,8 @@ bool Watch::prove_unstable(const Moment& moment, const Motion& motion, bool flip
        fmt::format("{}: dt^2 K + 2 dt C is {:.3g}, stable below 4 "
                    "(law {:.3g}, damping {:.3g}, held by force {:.3g}); dt = {:.3g} s would be at the limit, "
                    "it is {:.3g} s",
-                   flipped_alone ? "velocities turn over from step to step" : "the energy runs away",
+                   suspicion == Suspicion::energy ? "the energy runs away"
+                                                  : "velocities turn over from step to step",
                    q.total(), q.law, q.damping, q.hold, q.stable_dt(rule.dt), rule.dt));
   return true;
 }
@@ -268,8 +302,8 @@ void Watch::see_core(const Moment& moment, const Motion& motion) {
     return;
   }
   // Two particles with w between them have the energy m w^2/4 along their line, and w is at most twice the
-  // fastest.
-  if (!std::isfinite(closest.r) || rule.mass * motion.fastest * motion.fastest <
+  // fastest. Damping may stop them all the same.
+  if (rule.damping.coefficient > 0 || !std::isfinite(closest.r) || rule.mass * motion.fastest * motion.fastest <
                                        least_of(rule.strength) * (barrier_ - law.energy(closest.r)))
     return;
   std::vector<Vec3> x(type_.size());
@@ -319,13 +353,14 @@ void Watch::see_energy(const Moment& moment, const Motion& motion) {
                        "apart",
                        fed, held));
   }
-  if (!(thermal_ > 0) || !(keeps_energy_ || (only_loses_ && change > 0))) return;
+  if (!(thermal_ > faint_) || !(keeps_energy_ || (only_loses_ && change > 0))) return;
   const double share = std::abs(change) / thermal_;
   if (!(share > energy_limit_) || found(Failure::force_jump) || found(Failure::heating)) return;
-  // What comes of a step too long is told as that.
-  for (const Failure cause : {Failure::time_step, Failure::damping, Failure::stiff_hold})
+  // What comes of another failure is told as that.
+  for (const Failure cause :
+       {Failure::time_step, Failure::damping, Failure::stiff_hold, Failure::creep, Failure::tunnelling})
     if (found(cause)) return;
-  if (prove_unstable(moment, motion, false)) return;
+  if (prove_unstable(moment, motion, Suspicion::energy)) return;
   const std::string what = fmt::format("the energy is off by {:.3g} J: {:.3g} of the largest kinetic energy, "
                                        "{:.3g} is to be expected; ",
                                        change, share, energy_limit_);

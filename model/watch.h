@@ -88,7 +88,9 @@ class Watch {
   void find(Failure failure, const Moment& moment, std::optional<uint32_t> particle, double number,
             double limit, const std::string& what);
   void see_flips(const Moment& moment, const Motion& motion);
-  bool prove_unstable(const Moment& moment, const Motion& motion, bool flipped_alone);
+  // Why a step is held to be too long; `near_limit` asks for a flip of the mode that is found.
+  enum class Suspicion : uint8_t { flips, near_limit, energy };
+  bool prove_unstable(const Moment& moment, const Motion& motion, Suspicion suspicion);
   void see_energy(const Moment& moment, const Motion& motion);
   void see_core(const Moment& moment, const Motion& motion);
   void see_driven(const Moment& moment);
@@ -100,6 +102,8 @@ class Watch {
   double pull_ = 0, jump_ = 0;  // N, of the law: strongest pull, force at the cutoff
   double barrier_ = 0;          // J, of the law between two particles at one place
   double energy_limit_ = 0;     // of |change of energy| over the largest thermal energy
+  double faint_ = 0;            // J: less is no energy to speak of; bonds strained as far as creep may go
+  bool near_limit_ = false;     // dt is more than half of the limit, as far as it is known
   bool keeps_energy_ = false, only_loses_ = false, drives_ = false;
   std::vector<uint8_t> type_;    // by id
   std::vector<uint32_t> driven_;  // ids of imposed and PD-led particles, where some of them move
