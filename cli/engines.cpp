@@ -3,11 +3,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
@@ -73,18 +70,6 @@ Trace RunningEngine::finish() {
     throw std::runtime_error(fmt::format("{} was ended by signal {} ({})", name, -code, strsignal(-code)));
   if (code != 0) throw std::runtime_error(fmt::format("{} ended with exit code {}", name, code));
   return read_trace(state_->path);
-}
-
-Scratch::Scratch() {
-  std::string name = (std::filesystem::temp_directory_path() / "cuboct-XXXXXX").string();
-  if (!mkdtemp(name.data()))
-    throw InputError(fmt::format("cannot make the directory {}: {}", name, std::strerror(errno)));
-  directory_ = name;
-}
-
-Scratch::~Scratch() {
-  std::error_code none;
-  std::filesystem::remove_all(directory_, none);
 }
 
 Trace run_fixed(const std::string& engine, const Input& input, const Setup& setup, const Request& request,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "model/process.h"
 #include "model/trace.h"
 
 namespace cuboct {
@@ -48,19 +49,6 @@ class AlreadyTold : public std::exception {
  public:
   explicit AlreadyTold(int exit_code) : exit_code(exit_code) {}
   int exit_code;
-};
-
-// A directory for traces between programs, removed at the end.
-class Scratch {
- public:
-  Scratch();
-  ~Scratch();
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  std::string path(const std::string& name) const { return directory_ + "/" + name; }
-
- private:
-  std::string directory_;
 };
 
 // Any fixed engine, waited for. `watch` sees every state of golden, and the recorded frames of the others.

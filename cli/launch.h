@@ -2,37 +2,13 @@
 // Engines with heavy needs are programs of their own, in the directory of `cuboct`.
 #pragma once
 
-#include <sys/types.h>
-
 #include <string>
-#include <vector>
+
+#include "model/process.h"
 
 namespace cuboct {
 
 // Directory of the running program.
 std::string program_directory();
-
-class Process {
- public:
-  // Starts `program` (looked for in PATH unless it has a slash) with these arguments, without a shell; its
-  // stderr is ours, its stdout is dropped (results travel in files). Throws InputError where it cannot be
-  // started.
-  // `apart`: in a process group of its own, where Ctrl-C does not reach it, and an interrupt of ours is
-  // passed on as SIGUSR1: mpirun ends its processes on the one and tells them the other.
-  Process(const std::string& program, const std::vector<std::string>& arguments, bool apart = false);
-  ~Process();  // ends it where nobody waited
-  Process(Process&& other) noexcept;
-  Process& operator=(Process&&) = delete;
-
-  // Exit code, or -N where signal N ended it. An interrupt of ours is passed on once.
-  int wait();
-
- private:
-  pid_t pid_;
-  int passed_on_ = 0;  // the signal that stands for an interrupt
-};
-
-// Whether a directory of PATH has it.
-bool in_path(const std::string& program);
 
 }  // namespace cuboct

@@ -7,10 +7,9 @@
 #include <iterator>
 #include <sstream>
 
-#include "cli/engines.h"
-#include "cli/launch.h"
-#include "model/error.h"
 #include "model/output.h"
+#include "model/process.h"
+#include "study/gnuplot.h"
 
 namespace cuboct {
 namespace {
@@ -20,17 +19,6 @@ std::string contents(const std::string& path) {
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
-}
-
-void run_gnuplot(const Scratch& scratch, const std::string& script) {
-  write_text(scratch.path("script.gp"), script);
-  int code = 0;
-  try {
-    code = Process("gnuplot", {scratch.path("script.gp")}).wait();
-  } catch (const InputError& error) {
-    throw InputError(error.what(), "install gnuplot-nox");
-  }
-  if (code != 0) throw std::runtime_error(fmt::format("gnuplot ended with exit code {}", code));
 }
 
 void write_raw(const std::string& path, const Image& image) {
@@ -64,7 +52,7 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
                             kColours[1]);
     }
   }
-  run_gnuplot(scratch, script + "\n");
+  study::run_gnuplot(scratch, script + "\n");
   const std::string svg = contents(scratch.path("plot.svg"));
   const size_t begin = svg.find("<svg");
   if (begin == std::string::npos) throw std::runtime_error("gnuplot made no SVG");
@@ -108,7 +96,7 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
       "unset multiplot\n",
       y(height - kBar + 14), y(height - kBar + 32), bar_label, low, high, scratch.path("bar"),
       (high - low) / 255, low);
-  run_gnuplot(scratch, script);
+  study::run_gnuplot(scratch, script);
   return contents(scratch.path("plot.png"));
 }
 

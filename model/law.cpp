@@ -64,28 +64,33 @@ class CoredLaw : public PairLaw {
 
 class LennardJones final : public CoredLaw {
  public:
-  LennardJones(double epsilon, double sigma, double cutoff, double core)
-      : CoredLaw("lennard_jones", core, cutoff), epsilon_(epsilon), sigma_(sigma) {
+  LennardJones(double epsilon, double sigma, double cutoff, double core, Smoothing smoothing)
+      : CoredLaw("lennard_jones", core, cutoff), epsilon_(epsilon), sigma_(sigma), end_(cutoff) {
     require_positive("lennard_jones", "epsilon", epsilon, "J");
     require_positive("lennard_jones", "sigma", sigma, "m");
-    shift_ = unshifted(cutoff);
+    end_energy_ = whole_energy(cutoff);
+    if (smoothing == Smoothing::linear) end_force_ = whole_force(cutoff);
     set_core();
   }
-  LawForm form() const override { return LennardJonesForm{epsilon_, sigma_, 0}; }
+  LawForm form() const override { return LennardJonesForm{epsilon_, sigma_, -end_force_}; }
 
  private:
   double sixth(double r) const {
     const double q2 = (sigma_ / r) * (sigma_ / r);
     return q2 * q2 * q2;
   }
-  double unshifted(double r) const { return 4 * epsilon_ * sixth(r) * (sixth(r) - 1); }
-  double outer_force(double r) const override { return 24 * epsilon_ * sixth(r) * (2 * sixth(r) - 1) / r; }
+  double whole_energy(double r) const { return 4 * epsilon_ * sixth(r) * (sixth(r) - 1); }
+  double whole_force(double r) const { return 24 * epsilon_ * sixth(r) * (2 * sixth(r) - 1) / r; }
+  double outer_force(double r) const override { return whole_force(r) - end_force_; }
   double outer_slope(double r) const override {
     return -24 * epsilon_ * sixth(r) * (26 * sixth(r) - 7) / (r * r);
   }
-  double outer_energy(double r) const override { return unshifted(r) - shift_; }
+  double outer_energy(double r) const override {
+    return whole_energy(r) - end_energy_ - end_force_ * (end_ - r);
+  }
 
-  double epsilon_, sigma_, shift_ = 0;
+  double epsilon_, sigma_, end_;
+  double end_energy_ = 0, end_force_ = 0;  // taken off: J; N, 0 where the force may jump
 };
 
 // Index k of the piece [at[k], at[k+1]) that holds r; the end pieces take what lies outside.
@@ -279,8 +284,9 @@ const std::vector<Preset>& presets() {
 
 }  // namespace
 
-std::shared_ptr<const PairLaw> lennard_jones(double epsilon, double sigma, double cutoff, double core) {
-  return std::make_shared<LennardJones>(epsilon, sigma, cutoff, core);
+std::shared_ptr<const PairLaw> lennard_jones(double epsilon, double sigma, double cutoff, double core,
+                                             Smoothing smoothing) {
+  return std::make_shared<LennardJones>(epsilon, sigma, cutoff, core, smoothing);
 }
 
 std::shared_ptr<const PairLaw> spline_law(std::vector<double> r, std::vector<double> f,

@@ -2,6 +2,7 @@
 // The radial pair laws. docs/reference/physics.md has the formulas and a plot of the presets.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,9 +20,16 @@ namespace cuboct {
 // makes no such law: something not finite, epsilon, sigma, pitch or stiffness not above 0, or not 0 < core <
 // cutoff.
 
-// Lennard-Jones 12-6, truncated (the force jumps to 0 at the cutoff; the energy is shifted, so it does not
-// jump).
-std::shared_ptr<const PairLaw> lennard_jones(double epsilon, double sigma, double cutoff, double core);
+// How a law of infinite range ends at its cutoff. The energy is 0 there either way.
+enum class Smoothing : uint8_t {
+  none,    // truncated: the force jumps to 0
+  linear,  // the force at the cutoff is taken off everywhere, so that it does not jump (its slope does); LAMMPS's
+           // lj/smooth/linear. S. Toxvaerd and J. C. Dyre, J. Chem. Phys. 134 (2011) 081102: "shifted forces".
+};
+
+// Lennard-Jones 12-6.
+std::shared_ptr<const PairLaw> lennard_jones(double epsilon, double sigma, double cutoff, double core,
+                                             Smoothing smoothing = Smoothing::none);
 
 enum class Interpolation {
   // Through the points: C1 cubics whose slopes keep each stretch between two points monotone; an extremum of

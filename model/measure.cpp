@@ -48,6 +48,34 @@ void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& s
 
 constexpr size_t kNodesWorthAThread = 1000;
 
+// The sum of part(i, j, x_j) over unordered pairs in reach; by blocks of nodes, so that its rounding does not
+// depend on the number of threads.
+template <typename T, typename Part>
+T sum_over_pairs(const FixedRule& rule, const Lattice& lattice, const State& state, const T& zero,
+                 int threads, Part part) {
+  constexpr uint32_t kBlock = 4096;
+  const ByNode by_node(lattice, state);
+  std::vector<T> sums((lattice.size() + kBlock - 1) / kBlock, zero);
+  for_each_range(sums.size(), 1, [&](size_t first, size_t last) {
+    for (size_t block = first; block < last; ++block) {
+      const auto begin = static_cast<uint32_t>(block) * kBlock;
+      for_each_pair(rule, lattice, state, by_node, begin, std::min(begin + kBlock, lattice.size()),
+                    [&](uint32_t i, uint32_t j, const Int3& x_j) {
+                      if (i < j) sums[block] += part(i, j, x_j);
+                    });
+    }
+  }, threads);
+  T sum = zero;
+  for (const T& one : sums) sum += one;
+  return sum;
+}
+
+// x_j - x_i, P fractional bits.
+Vec3 between(const Particle& i, const Int3& x_j) {
+  return {static_cast<double>(x_j[0] - i.x[0]), static_cast<double>(x_j[1] - i.x[1]),
+          static_cast<double>(x_j[2] - i.x[2])};
+}
+
 double velocity_unit(const FixedRule& rule) {
   return std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
 }
@@ -98,27 +126,30 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
     }
   }
   const double cutoff = rule.law->cutoff();
-  // Summed by blocks of nodes, so that the rounding does not depend on the number of threads.
-  constexpr uint32_t kBlock = 4096;
-  const ByNode by_node(lattice, state);
-  std::vector<double> potential((lattice.size() + kBlock - 1) / kBlock, 0.0);
-  for_each_range(potential.size(), 1, [&](size_t first, size_t last) {
-    for (size_t block = first; block < last; ++block) {
-      const auto begin = static_cast<uint32_t>(block) * kBlock;
-      for_each_pair(fixed, lattice, state, by_node, begin, std::min(begin + kBlock, lattice.size()),
-                    [&](uint32_t i, uint32_t j, const Int3& x_j) {
-                      if (j < i) return;
-                      const Particle &a = state.particles[i], &b = state.particles[j];
-                      const Vec3 d(static_cast<double>(x_j[0] - a.x[0]), static_cast<double>(x_j[1] - a.x[1]),
-                                   static_cast<double>(x_j[2] - a.x[2]));
-                      const double r = d.norm() * length;
-                      if (r < cutoff)
-                        potential[block] += rule.law->energy(r) * rule.strength_of(a.type, b.type);
-                    });
-    }
-  }, threads);
-  for (const double part : potential) sum.potential += part;
+  sum.potential =
+      sum_over_pairs(fixed, lattice, state, 0.0, threads, [&](uint32_t i, uint32_t j, const Int3& x_j) {
+        const Particle &a = state.particles[i], &b = state.particles[j];
+        const double r = between(a, x_j).norm() * length;
+        return r < cutoff ? rule.law->energy(r) * rule.strength_of(a.type, b.type) : 0.0;
+      });
   return sum;
+}
+
+Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,
+                   int threads) {
+  const double length = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
+  const Mat3 sum = sum_over_pairs(
+      rule, lattice, state, Mat3(Mat3::Zero()), threads, [&](uint32_t i, uint32_t j, const Int3& x_j) -> Mat3 {
+        const Particle &a = state.particles[i], &b = state.particles[j];
+        const PairResult pair = pair_kick(rule, a.x, a.v, a.type, x_j, b.v, b.type);
+        if (!pair.inside) return Mat3::Zero();
+        return force_of(rule, pair.kick) * between(a, x_j).transpose();
+      });
+  return sum * (length / volume);
+}
+
+double pressure(const Energies& energies, const Mat3& virial_stress, double volume) {
+  return energies.kinetic / (1.5 * volume) - virial_stress.trace() / 3;
 }
 
 bool keeps_energy(const Rule& rule, const Periodic& periodic) {

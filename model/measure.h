@@ -35,6 +35,17 @@ struct Energies {
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                   const State& state, const std::vector<Int3>& kicks, int threads = 0);
 
+// Virial stress of the whole body over `volume` (m^3), Pa, tension positive: the sum over pairs of f (x) d by the
+// kicks that the machine adds up and the positions that it holds. In a periodic box the mean of
+// Reference::virial_stress, which leaves out the kinetic part too.
+Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,
+                   int threads = 0);
+
+// Of a box that repeats along all axes, Pa: 2/3 of the kinetic energy over the volume, less a third of the trace
+// of the virial stress. R. Clausius, Phil. Mag. 40 (1870) 122. Kinetic energy is that in the scene's frame, also
+// of a body that moves as a whole.
+double pressure(const Energies& energies, const Mat3& virial_stress, double volume);
+
 // Whether a run of the rule keeps its energy: nothing damps, drives or steers, and no gravity acts along a
 // ring.
 bool keeps_energy(const Rule& rule, const Periodic& periodic);

@@ -9,7 +9,8 @@
 
 namespace cuboct {
 
-CellList::CellList(double cutoff, const Periodic& periodic) : cutoff_(cutoff), periodic_(periodic) {
+CellList::CellList(double cutoff, const Periodic& periodic, double skin)
+    : range_(cutoff + skin), periodic_(periodic) {
   for (int axis = 0; axis < 3; ++axis) {
     const double extent = periodic.extent[axis];
     if (extent != 0 && !(extent >= 2 * cutoff)) {
@@ -45,8 +46,8 @@ void CellList::build(std::span<const Vec3> x) {
     const bool ring = periodic_.extent[axis] > 0;
     origin_[axis] = ring ? periodic_.origin[axis] : low[axis];
     extent[axis] = ring ? periodic_.extent[axis] : high[axis] - low[axis];
-    // A cell is a little larger than the cutoff, so that rounding cannot part a pair by two cells.
-    count[axis] = std::max(1.0, std::floor(extent[axis] / (cutoff_ * (1 + 1e-9))));
+    // A cell is a little larger than the range, so that rounding cannot part a pair by two cells.
+    count[axis] = std::max(1.0, std::floor(extent[axis] / (range_ * (1 + 1e-9))));
   }
   while (count[0] * count[1] * count[2] > wanted) {
     double& most = *std::max_element(count.begin(), count.end());
@@ -55,7 +56,7 @@ void CellList::build(std::span<const Vec3> x) {
   for (int axis = 0; axis < 3; ++axis) {
     if (periodic_.extent[axis] > 0 && count[axis] < 3) count[axis] = 1;
     count_[axis] = static_cast<int>(count[axis]);
-    edge_[axis] = extent[axis] > 0 ? extent[axis] / count[axis] : cutoff_;
+    edge_[axis] = extent[axis] > 0 ? extent[axis] / count[axis] : range_;
   }
 
   // Counting sort.

@@ -3,15 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
+#include <numeric>
 
 #include "model/error.h"
+#include "model/real_engine.h"
 
 namespace cuboct {
 
-Reference::Reference(const Rule& rule, const Body& body, const Periodic& periodic,
-                     const RealOptions& options)
-    : rule_(rule), body_(body), cells_(rule.law->cutoff(), periodic), integrator_(options.integrator) {
+Reference::Reference(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options)
+    : rule_(rule), threads_(options.threads), body_(body) {
   const size_t n = body_.size();
   if (body_.v.size() != n || body_.type.size() != n || (!body_.u.empty() && body_.u.size() != n)) {
     throw InputError(fmt::format("a body of {} positions has {} velocities, {} types and {} displacements", n,
@@ -23,112 +23,90 @@ Reference::Reference(const Rule& rule, const Body& body, const Periodic& periodi
           fmt::format("particle {} has type {}, but the rule has {}", i, body_.type[i], rule_.types.size()));
     }
   }
-  for (const ParticleType& type : rule_.types) pd_ = pd_ || type.pd;
-  if (pd_ && body_.u.empty()) body_.u.assign(n, Vec3::Zero());
-  sort();
-  if (integrator_ == Integrator::velocity_verlet) a_ = accelerations();
+  bool pd = false;
+  for (const ParticleType& type : rule_.types) pd = pd || type.pd;
+  if (pd && body_.u.empty()) body_.u.assign(n, Vec3::Zero());
+  engine_ = make_real_engine(rule_, body_, periodic, options);
 }
-
-template <class On>
-void Reference::for_each_force(On&& on) const {
-  const PairLaw& law = *rule_.law;
-  const bool damps = rule_.damping.coefficient > 0;
-  cells_.for_each_pair(body_.x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
-    double k = law.force(r) / r;
-    if (damps) k -= rule_.damping_over_r2(r) * (body_.v[j] - body_.v[i]).dot(d);
-    on(i, j, d, r, k * rule_.strength_of(body_.type[i], body_.type[j]));
-  });
-}
-
-std::vector<Vec3> Reference::forces() const {
-  std::vector<Vec3> f(body_.size(), Vec3::Zero());
-  for_each_force([&](uint32_t i, uint32_t j, const Vec3& d, double, double k) {
-    f[i] -= k * d;
-    f[j] += k * d;
-  });
-  return f;
-}
-
-std::vector<Vec3> Reference::accelerations() const {
-  std::vector<Vec3> a = forces();
-  for (size_t i = 0; i < a.size(); ++i) {
-    const ParticleType& type = rule_.types[body_.type[i]];
-    if (type.pd) a[i] -= type.kp * body_.u[i] + type.kd * (body_.v[i] - type.velocity);
-    a[i] = a[i] / rule_.mass + type.gravity;
-  }
-  return a;
-}
-
-void Reference::kick(double dt) {
-  for (size_t i = 0; i < body_.size(); ++i) {
-    const ParticleType& type = rule_.types[body_.type[i]];
-    body_.v[i] += a_[i] * dt;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (type.imposed[axis]) body_.v[i][axis] = type.velocity[axis];
-    }
-  }
-}
-
-void Reference::drift(double dt) {
-  for (size_t i = 0; i < body_.size(); ++i) {
-    const ParticleType& type = rule_.types[body_.type[i]];
-    if (type.pd) body_.u[i] += (body_.v[i] - type.velocity) * dt;
-    body_.x[i] += body_.v[i] * dt;
-  }
-  sort();
-}
-
-void Reference::sort() {
-  try {
-    cells_.build(body_.x);
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("step {}: {}; is dt too long?", step_, error.what()));
-  }
-}
+Reference::~Reference() = default;
+Reference::Reference(Reference&&) noexcept = default;
+Reference& Reference::operator=(Reference&&) noexcept = default;
 
 void Reference::step(uint64_t steps) {
+  stale_ = true;
   for (uint64_t n = 0; n < steps; ++n) {
-    if (integrator_ == Integrator::semi_implicit_euler) {
-      a_ = accelerations();
-      kick(rule_.dt);
-      drift(rule_.dt);
-    } else {
-      kick(rule_.dt / 2);
-      drift(rule_.dt);
-      a_ = accelerations();
-      kick(rule_.dt / 2);
-    }
+    engine_->step(step_);
     ++step_;
   }
 }
 
+const Body& Reference::body() const {
+  if (stale_) engine_->read(body_);
+  stale_ = false;
+  return body_;
+}
+
+std::vector<Vec3> Reference::forces() const { return engine_->forces(); }
+uint64_t Reference::lists_made() const { return engine_->lists_made(); }
+const char* Reference::simd() { return pair_simd(); }
+
+template <class On>
+void Reference::for_each_neighbour(On&& on) const {
+  const VerletList& list = engine_->list();
+  const std::vector<Vec3>& x = body().x;
+  const std::span<const uint32_t> ids = list.order();
+  const std::vector<PairRows>& parts = list.parts();
+  const size_t groups = parts.back().first_group + parts.back().begin.size() - 1;
+  const size_t lanes = groups == 0 ? 1 : list.slots() / groups;
+  const double cutoff2 = rule_.law->cutoff() * rule_.law->cutoff();
+#pragma omp parallel for num_threads(threads_) schedule(static, 1)
+  for (size_t p = 0; p < parts.size(); ++p) {
+    const PairRows& part = parts[p];
+    for (size_t g = 0; g + 1 < part.begin.size(); ++g) {
+      for (size_t lane = 0; lane < lanes; ++lane) {
+        const size_t slot = (part.first_group + g) * lanes + lane;
+        if (slot >= ids.size()) break;
+        for (size_t row = part.begin[g]; row < part.begin[g + 1]; ++row) {
+          const uint32_t i = ids[slot], j = ids[part.entry[row * lanes + lane] / 4];
+          const Vec3 d = list.difference(x[i], x[j]);
+          const double r2 = d.squaredNorm();
+          if (r2 > 0 && r2 < cutoff2) on(i, j, d, r2);
+        }
+      }
+    }
+  }
+}
+
 double Reference::potential_energy() const {
-  double sum = 0;
-  cells_.for_each_pair(body_.x, [&](uint32_t i, uint32_t j, const Vec3&, double r) {
-    sum += rule_.law->energy(r) * rule_.strength_of(body_.type[i], body_.type[j]);
+  std::vector<double> of(body().size());
+  for_each_neighbour([&](uint32_t i, uint32_t j, const Vec3&, double r2) {
+    if (i < j) of[i] += rule_.law->energy(std::sqrt(r2)) * rule_.strength_of(body_.type[i], body_.type[j]);
   });
-  return sum;
+  return std::accumulate(of.begin(), of.end(), 0.0);
 }
 
 double Reference::kinetic_energy() const {
   double sum = 0;
-  for (const Vec3& v : body_.v) sum += v.squaredNorm();
+  for (const Vec3& v : body().v) sum += v.squaredNorm();
   return rule_.mass * sum / 2;
 }
 
 Vec3 Reference::momentum() const {
   Vec3 sum = Vec3::Zero();
-  for (const Vec3& v : body_.v) sum += v;
+  for (const Vec3& v : body().v) sum += v;
   return rule_.mass * sum;
 }
 
 std::vector<Mat3> Reference::virial_stress(double volume) const {
-  std::vector<Mat3> stress(body_.size(), Mat3::Zero());
-  // A pair that pulls (k < 0) is under tension along d.
-  for_each_force([&](uint32_t i, uint32_t j, const Vec3& d, double, double k) {
-    const Mat3 half = -k / (2 * volume) * d * d.transpose();
-    stress[i] += half;
-    stress[j] += half;
+  std::vector<Mat3> stress(body().size(), Mat3::Zero());
+  const bool damps = rule_.damping.coefficient > 0;
+  for_each_neighbour([&](uint32_t i, uint32_t j, const Vec3& d, double r2) {
+    const double r = std::sqrt(r2);
+    double k = rule_.law->force(r) / r;
+    if (damps) k -= rule_.damping_over_r2(r) * (body_.v[j] - body_.v[i]).dot(d);
+    k *= rule_.strength_of(body_.type[i], body_.type[j]);
+    // A pair that pulls (k < 0) is under tension along d.
+    stress[i] += -k / (2 * volume) * d * d.transpose();
   });
   return stress;
 }

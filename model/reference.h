@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "model/neighbours.h"
 #include "model/rule.h"
 
 namespace cuboct {
@@ -30,30 +30,40 @@ enum class Precision : uint8_t {
 struct RealOptions {
   Integrator integrator = Integrator::semi_implicit_euler;
   Precision precision = Precision::float64;
-  int threads = 1;
-  // Not 0: a particle's pairs are summed in an order drawn from it at each step, as by a machine without order.
+  int threads = 1;  // at least 1; leave no mark in the bits
+  // 0: a particle's pairs are summed by ascending id of the other. Else in an order drawn from it anew at each step, as
+  // by a machine without order.
   uint64_t order_seed = 0;
 };
 
+class RealEngine;
+
+// A particle's sum runs over its own pairs by ascending id of the other, each rounded in the same way whatever computes
+// it: the bits are a function of rule, body and integrator, not of threads, vectors or neighbour lists.
 class Reference {
  public:
   // InputError where sizes or types of the body do not fit the rule, or the box is below 2 cutoffs. An empty
   // body.u means that every anchor stands at its particle.
-  Reference(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options);
+  Reference(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options = {});
   Reference(const Rule& rule, const Body& body, const Periodic& periodic, Integrator integrator)
       : Reference(rule, body, periodic, RealOptions{.integrator = integrator}) {}
+  ~Reference();
+  Reference(Reference&&) noexcept;
+  Reference& operator=(Reference&&) noexcept;
 
   // Advances `steps` steps. std::runtime_error, naming step and particle, where a position stops being
   // finite.
   void step(uint64_t steps = 1);
   uint64_t step_count() const { return step_; }
 
-  // Positions are not wrapped into a periodic box: differences to earlier ones are displacements.
-  const Body& body() const { return body_; }
+  // Positions are not wrapped into a periodic box: differences to earlier ones are displacements. The first call after
+  // a step copies; it is not safe beside another.
+  const Body& body() const;
 
   // Everything below is evaluated afresh at body()'s x and v.
-  // Pair force on each particle, N: pair law and damping, without gravity and PD force.
+  // Pair force on each particle, N: pair law and damping, without gravity and PD force; in the precision of the steps.
   std::vector<Vec3> forces() const;
+  // The rest is evaluated in doubles whatever the precision of the steps: it shows the state, not its own rounding.
   // J; of the pair law alone.
   double potential_energy() const;
   double kinetic_energy() const;
@@ -65,23 +75,22 @@ class Reference {
   // D. H. Tsai, J. Chem. Phys. 70 (1979) 1375.
   std::vector<Mat3> virial_stress(double volume) const;
 
+  // How often neighbour lists were made, and the instruction set that evaluates pairs, e.g. "AVX3".
+  uint64_t lists_made() const;
+  static const char* simd();
+
  private:
-  // Calls on(i, j, d, r, k) per interacting pair; the force on j is k*d, that on i is -k*d.
+  // Calls on(i, j, d, r2) for each particle i and each other j inside the cutoff, d = x[j] - x[i]; all of one i in one
+  // thread, by ascending j.
   template <class On>
-  void for_each_force(On&& on) const;
-  std::vector<Vec3> accelerations() const;
-  // The parts of a step: v += a * dt with imposed velocities; x and u by v * dt.
-  void kick(double dt);
-  void drift(double dt);
-  void sort();
+  void for_each_neighbour(On&& on) const;
 
   Rule rule_;
-  Body body_;
-  CellList cells_;
-  Integrator integrator_;
-  bool pd_ = false;
+  int threads_;
   uint64_t step_ = 0;
-  std::vector<Vec3> a_;  // at the current x; of velocity Verlet, kept from the step before
+  std::unique_ptr<RealEngine> engine_;
+  mutable Body body_;  // as of the last call of body()
+  mutable bool stale_ = true;
 };
 
 }  // namespace cuboct

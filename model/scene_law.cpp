@@ -68,7 +68,10 @@ std::shared_ptr<const PairLaw> read_lennard_jones(const ConfigTable& law) {
   const double epsilon = positive(law, "epsilon", quantity::energy);
   const double cutoff = positive(law, "cutoff", quantity::length);
   const double core = law.number_or("core", quantity::length, 0.8 * sigma, Range::positive());
-  return placed(law, [&] { return lennard_jones(epsilon, sigma, cutoff, core); });
+  const auto smooth = law.find("smooth");
+  const Smoothing smoothing =
+      smooth ? static_cast<Smoothing>(smooth->choice("smoothing", {"none", "linear"})) : Smoothing::none;
+  return placed(law, [&] { return lennard_jones(epsilon, sigma, cutoff, core, smoothing); });
 }
 
 std::shared_ptr<const PairLaw> read_spline(const ConfigTable& law, const PackingChoice* packing) {

@@ -45,6 +45,8 @@ StateMeter::StateMeter(const Scene& scene, const FixedRule& rule, const Lattice&
   if (energies)
     for (const char* part : {"kinetic", "potential", "gravity", "total"})
       energy_.push_back({std::string("energy.") + part, "J", {}, {}});
+  volume_ = scene.periodic.extent.prod();
+  if (energies && volume_ > 0) energy_.push_back({"pressure", "Pa", {}, {}});
 }
 
 void StateMeter::add(const State& state) {
@@ -60,8 +62,10 @@ void StateMeter::add(const State& state) {
   }
   if (energy_.empty()) return;
   const Energies e = energies(scene_.rule, rule_, lattice_, origin_, state, kicks, threads_);
-  const double values[] = {e.kinetic, e.potential, e.gravity, e.total()};
-  for (size_t i = 0; i < energy_.size(); ++i) {
+  std::vector<double> values{e.kinetic, e.potential, e.gravity, e.total()};
+  if (volume_ > 0)
+    values.push_back(pressure(e, virial_stress(rule_, lattice_, state, volume_, threads_), volume_));
+  for (size_t i = 0; i < values.size(); ++i) {
     energy_[i].step.push_back(state.step);
     energy_[i].value.push_back(values[i]);
   }

@@ -20,7 +20,8 @@ class StateMeter {
   // States come in the order of steps, sorted by id.
   void add(const State& state);
 
-  // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J.
+  // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where all
+  // three axes of the box repeat, pressure in Pa.
   std::vector<Curve> curves() const;
 
   // The last value of each curve, once there is one.
@@ -38,8 +39,9 @@ class StateMeter {
   Vec3 origin_;
   std::vector<uint32_t> ids_;  // particles in any probe's set, ascending: the probes' ids index this list
   ProbeMeter probes_;
-  std::vector<Curve> energy_;
+  std::vector<Curve> energy_;  // and the pressure
   bool forces_ = false;  // some probe needs them
+  double volume_ = 0;    // m^3, of a box that repeats along all axes; else 0
   int threads_;
 };
 

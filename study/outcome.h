@@ -57,6 +57,7 @@ struct Outcome {
   int halo_bits = 0, table_bits = 0;  // of the plan, fixed only: a record, and all tables
   Errors errors;
   Speed speed;
+  std::string machine;  // where it was measured; empty: on the study's own (store.h)
 };
 
 }  // namespace cuboct::study

@@ -5,17 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "study/front.h"
 #include "study/store.h"
 
 namespace cuboct::study {
 
-// No other point is at least as fast and at least as exact. Indices into `outcomes` of points that are done
-// and have both numbers, from fast to exact. `error(outcome)` may be nan: not a candidate.
-std::vector<size_t> pareto_front(const std::vector<Outcome>& outcomes, double (*error)(const Outcome&));
-
-// One HTML file: charts (zoom, hover with each point's settings), tables, the machine.
+// One HTML file that asks for nothing else: charts (zoom, hover with each point's settings), tables, the
+// machine. Charts and tables are drawn in the reader's browser by study/web/*.js from the numbers that stand in
+// the page. The same results give the same bytes.
+std::string page_of(const Results& results);
 void write_page(const Results& results, const std::string& path);
-// The same charts as PNG and SVG, made by gnuplot: DIR/<chart>.png, .svg. Their names.
+
+// The same charts as PNG and SVG, made by gnuplot, in a directory that is made where needed: each error against
+// each speed, each error against each varied setting, the truth's refinement. The names of the files, without
+// directory. Throws InputError where gnuplot is missing.
 std::vector<std::string> write_charts(const Results& results, const std::string& directory);
 
 }  // namespace cuboct::study

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The results of a study in one file (SQLite), written point by point: a study that is killed goes on where
-// it was. Points of other engines and machines (a GPU, a board) are rows as well.
+// The results of a study in one file (SQLite), written point by point: a study that is killed goes on where it
+// was. Points of other engines and machines (a GPU, a board) are rows as well. docs/user/study.md describes the
+// tables.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,22 +23,35 @@ struct Results {
   std::vector<Outcome> outcomes;  // in the order of the study's points, then those from elsewhere
 };
 
+// May be used by several threads. Each `put` is on the disk, whole, when it returns: a process may be killed at
+// any time.
 class Store {
  public:
-  // Opens or makes `path`. Throws InputError where it is no store, or that of another study (its hash).
+  // Opens or makes `path`. Throws InputError where it is no store, that of another study (its hash), or at work
+  // in another process.
   Store(const std::string& path, const Study& study);
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  void put_truth(const Truth& truth);
-  bool has_truth() const;
+  // By physics_key (truth.h); "" is the study's own.
+  void put_truth(const std::string& physics, const Truth& truth);
+  std::optional<Truth> truth(const std::string& physics) const;
+  void put_truth(const Truth& truth) { put_truth("", truth); }
+  bool has_truth() const { return truth("").has_value(); }
+
   void put_errors(const Outcome& outcome);  // by settings.numbers_key()
   bool has_errors(const Settings& settings) const;
+  // Without its speed.
+  std::optional<Outcome> errors(const Settings& settings) const;
+
   void put_speed(const Settings& settings, const Speed& speed);  // by settings.key()
   bool has_speed(const Settings& settings) const;
-  // Rows of another store of the same scene, measured elsewhere.
-  void add(const std::string& path);
+  std::optional<Speed> speed(const Settings& settings) const;
+
+  // Rows of another store of the same scene, figures and times, measured elsewhere; what is here already stays.
+  // Throws InputError. The number of rows that came.
+  int add(const std::string& path);
 
   Results results() const;
 
@@ -44,5 +59,8 @@ class Store {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// "AMD EPYC 7763, 4 cores": what Results::machine says of this one.
+std::string this_machine();
 
 }  // namespace cuboct::study

@@ -135,6 +135,28 @@ TEST_P(Lammps, LennardJonesAgreesToRounding) {
   EXPECT_GT(wrong.last_force, 10 * kTrajectoryTolerance);
 }
 
+TEST_P(Lammps, SmoothedLennardJonesAgreesToRounding) {
+  const double cutoff = 2.5;
+  const auto law = lennard_jones(1, 1, cutoff, 0.5, Smoothing::linear);
+  const double pitch = relaxed_pitch(*law, 1.1);
+  const System system = shaken_block(GetParam(), pitch);
+  const auto peer = run(system, fmt::format("pair_style lj/smooth/linear {0}\npair_coeff 1 1 1 1", cutoff));
+  const Differences d = compare(law, system, pitch, peer);
+  // A double's rounding of the largest of a few hundred terms.
+  EXPECT_LT(d.force, 2e-14);
+  EXPECT_LT(d.virial, kForceTolerance);
+  EXPECT_LT(d.energy, kForceTolerance);
+  EXPECT_LT(d.x, kTrajectoryTolerance);
+  EXPECT_LT(d.v, kTrajectoryTolerance);
+  EXPECT_LT(d.last_force, kTrajectoryTolerance);
+  EXPECT_LT(d.last_energy, kTrajectoryTolerance);
+
+  const Differences wrong = compare(lennard_jones(1, 1, cutoff, 0.5), system, pitch, peer);
+  EXPECT_GT(wrong.force, 1e-4);
+  EXPECT_GT(wrong.energy, 1e-2);
+  EXPECT_GT(wrong.x, 1e-4);
+}
+
 // A law of ours as LAMMPS's table. With `linear`, values at N equal steps h of r^2 that span exactly the
 // table's range are taken as they stand (the style's "match"), and LAMMPS's force is the linear interpolant
 // in r^2 of g = f/r. It differs from ours by at most h^2/8 max |d2g/d(r2)^2| in g.

@@ -37,6 +37,7 @@ std::vector<Named> all_laws() {
   laws.push_back({"lennard_jones", lennard_jones(1.3, 0.9, 2.2, 0.7), {0, 0.7, 2.2}});
   std::vector<double> joints{0, 0.5};
   joints.insert(joints.end(), kR.begin() + 1, kR.end());
+  laws.push_back({"smoothed", lennard_jones(1.3, 0.9, 2.2, 0.7, Smoothing::linear), {0, 0.7, 2.2}});
   laws.push_back({"monotone_cubic", spline_law(kR, kF, Interpolation::monotone_cubic, 0.5), joints});
   joints = {0, 0.5};
   for (size_t k = 1; k + 2 < kR.size(); ++k) joints.push_back((kR[k] + kR[k + 1]) / 2);
@@ -82,7 +83,7 @@ TEST(Law, EnergyIsTheIntegralOfTheForceToTheCutoff) {
     }
     EXPECT_EQ(law.law->energy(law.law->cutoff()), 0) << law.name;
   }
-  EXPECT_EQ(checked, 2 + 7 + 6 + 4 * 10);
+  EXPECT_EQ(checked, 2 + 2 + 7 + 6 + 4 * 10);
 }
 
 TEST(Law, SlopeIsTheDerivativeOfTheForce) {
@@ -114,6 +115,20 @@ TEST(Law, IsLinearBelowTheCoreAndZeroFromTheCutoffOn) {
     }
     EXPECT_EQ(law.law->cutoff(), law.joints.back());
   }
+}
+
+TEST(LennardJones, SmoothedEndsWithoutForce) {
+  const double cutoff = 1.5;
+  const auto plain = lennard_jones(2, 0.5, cutoff, 0.4);
+  const auto smooth = lennard_jones(2, 0.5, cutoff, 0.4, Smoothing::linear);
+  const double end = 24 * 2 / 1.5 * (2 * std::pow(3, -12) - std::pow(3, -6));
+  for (const double r : {0.4, 0.5, 0.9, 1.49}) {
+    EXPECT_NEAR(smooth->force(r), plain->force(r) - end, 1e-15 * std::abs(plain->force(r))) << r;
+    EXPECT_NEAR(smooth->energy(r), plain->energy(r) - end * (cutoff - r), 1e-14) << r;
+    EXPECT_EQ(smooth->slope(r), plain->slope(r)) << r;
+  }
+  EXPECT_GT(std::abs(plain->force(cutoff * (1 - 1e-12))), 0.04);
+  EXPECT_LT(std::abs(smooth->force(cutoff * (1 - 1e-12))), 1e-12);
 }
 
 TEST(LennardJones, HasItsTextbookValues) {

@@ -90,6 +90,18 @@ TEST(Measure, EnergiesOfTwoParticlesByHand) {
   EXPECT_DOUBLE_EQ(e.total(), e.kinetic + e.potential + e.gravity);
 }
 
+// Each is pulled with 0.75 N over 1 m: in 8 m^3 a tension of 0.75/8 Pa along x. The kinetic energy is as above.
+TEST(Measure, VirialAndPressureOfTwoParticlesByHand) {
+  TwoParticles two;
+  const Mat3 stress = virial_stress(two.fixed, two.lattice, two.state, 8);
+  EXPECT_DOUBLE_EQ(stress(0, 0), 0.75 / 8);
+  EXPECT_EQ(stress.cwiseAbs().sum(), stress(0, 0));
+  two.state.particles[0].v = {two.velocity(3.0 / 32), 0, 0};
+  const auto kicks = summed_kicks(two.fixed, two.lattice, two.state);
+  const Energies e = energies(two.rule, two.fixed, two.lattice, two.origin, two.state, kicks);
+  EXPECT_DOUBLE_EQ(pressure(e, stress, 8), (2.0 / 3 * e.kinetic - 0.75 / 3) / 8);
+}
+
 TEST(Measure, AHeldParticleGainsNoKineticEnergy) {
   TwoParticles two;
   two.fixed.types[0].imposed = {true, true, true};

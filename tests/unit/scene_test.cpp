@@ -182,6 +182,14 @@ TEST_F(SceneTest, LawsMustFitThePacking) {
   EXPECT_EQ(error(with(preset, lj + "cutoff = \"0.9 mm\"\n")), "accepted");
   EXPECT_EQ(error(with(preset, lj + "cutoff = \"0.45 mm\"\n")),
             "a.toml:8:1: the cutoff 0.00045 m of the law is not beyond the pitch 0.0005 m");
+  EXPECT_EQ(error(with(preset, lj + "cutoff = \"0.9 mm\"\nsmooth = \"liner\"\n")),
+            "a.toml:13:10: unknown smoothing 'liner'\n  hint: did you mean 'linear'?");
+  const auto jump = [&](const std::string& smooth) {
+    return read(with(preset, lj + "cutoff = \"0.9 mm\"\n" + smooth)).rule.law->force(0.9e-3 * (1 - 1e-12));
+  };
+  EXPECT_LT(jump(""), -50);
+  EXPECT_EQ(jump("smooth = \"none\"\n"), jump(""));
+  EXPECT_NEAR(jump("smooth = \"linear\"\n"), 0, 1e-6);
 }
 
 // The bond's stiffness from Young's modulus, against the lattice sums over the very law.

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "cli/budget.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "model/error.h"
+#include "model/measure.h"
+#include "model/output.h"
+#include "model/spelling.h"
+#include "study/budget.h"
+
+namespace cuboct {
+namespace {
+
+using study::Axis;
+using study::BudgetAnswer;
+using study::Spending;
+
+std::string percent(double error) { return std::isnan(error) ? "-" : fmt::format("{:.3g} %", 100 * error); }
+std::string signed_percent(double error) {
+  return std::isnan(error) ? "-" : fmt::format("{:+.3g} %", 100 * error);
+}
+
+std::string label(const BudgetAnswer& answer, size_t axis, const study::Notches& at) {
+  return answer.axes[axis].labels[static_cast<size_t>(at[axis])];
+}
+
+// Why a point that is one notch cheaper does not do.
+std::string verdict(const Spending& s, double budget) {
+  if (std::isnan(s.error)) return "cannot be run";
+  if (std::abs(s.error) > budget) return percent(std::abs(s.error));
+  if (std::isinf(s.sum)) return percent(std::abs(s.error)) + ", but a finer notch cannot be run";
+  return fmt::format("{}, but its parts make {}", percent(std::abs(s.error)), percent(s.sum));
+}
+
+// Rows of text in columns, the last one free.
+std::string in_columns(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<size_t> width;
+  for (const auto& row : rows)
+    for (size_t k = 0; k < row.size(); ++k) {
+      if (k == width.size()) width.push_back(0);
+      width[k] = std::max(width[k], row[k].size());
+    }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (size_t k = 0; k < row.size(); ++k) line += fmt::format("{:<{}}", row[k], width[k] + 2);
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
+  }
+  return text;
+}
+
+std::string unit_of(const study::Study& study, size_t figure) {
+  const Scene scene = study::resolve(study.base, {}).scene;
+  std::vector<Curve> curves = ProbeMeter(scene.probes, scene.periodic, scene.body.x).curves();
+  for (const char* part : {"total", "kinetic", "potential", "gravity"})
+    curves.push_back({std::string("energy.") + part, "J", {}, {}});
+  return study.figures[figure].unit(curves);
+}
+
+// An engine of real numbers looks at no arch: any notch of such an axis is the same run.
+bool is_used(const BudgetAnswer& answer, size_t axis) {
+  const Axis& a = answer.axes[axis];
+  for (size_t n = 0; n < a.sets.size(); ++n) {
+    study::Notches at = answer.result.best.at;
+    at[axis] = static_cast<int>(n);
+    if (!(study::settings_at(answer.axes, at) == answer.chosen.settings)) return true;
+  }
+  return a.sets.size() == 1;
+}
+
+std::string table(const BudgetAnswer& answer, double budget) {
+  const study::SearchResult& result = answer.result;
+  std::vector<std::vector<std::string>> rows{{"setting", "chosen", "its part", "one notch cheaper"}};
+  for (size_t a = 0; a < answer.axes.size(); ++a) {
+    if (!is_used(answer, a)) {
+      rows.push_back({answer.axes[a].name, "not used"});
+      continue;
+    }
+    std::string cheaper = "there is none";
+    for (const auto& c : result.cheaper)
+      if (c.axis == a)
+        cheaper = fmt::format("{}: {}", label(answer, a, c.spending.at), verdict(c.spending, budget));
+    rows.push_back(
+        {answer.axes[a].name, label(answer, a, result.best.at), percent(result.best.parts.at(a)), cheaper});
+  }
+  rows.push_back({"finest settings", "", percent(std::abs(result.reference_error))});
+  rows.push_back({"sum", "", percent(result.best.sum)});
+  return in_columns(rows);
+}
+
+std::string settings_of(const BudgetAnswer& answer, const study::Notches& at) {
+  std::string text;
+  for (size_t a = 0; a < answer.axes.size(); ++a)
+    if (is_used(answer, a))
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", answer.axes[a].name, label(answer, a, at));
+  return text;
+}
+
+void print_failure(const BudgetAnswer& answer, const std::string& figure, const std::string& error) {
+  const study::SearchResult& result = answer.result;
+  fmt::print("no settings of [search] keep '{}' within {}\n", figure, error);
+  fmt::print("the best: {} with {}\n",
+             std::isnan(result.best.error)
+                 ? "cannot be run (" + answer.chosen.why + ")"
+                 : signed_percent(result.best.error),
+             settings_of(answer, result.best.at));
+  if (result.accident)
+    fmt::print("  by accident: with a notch finer next to it the error is above the budget\n");
+  const double size = std::abs(result.best.error);
+  if (result.limit < 0)
+    fmt::print("what limits cannot be told: no setting has another notch that runs\n");
+  else if (result.limit_change < 0.1 * size)
+    fmt::print("what limits is none of these settings: a notch of {}, which matters most, changes the error by {}\n",
+               answer.axes[static_cast<size_t>(result.limit)].name, percent(result.limit_change));
+  else
+    fmt::print("what limits is {}: the notch next to it still changes the error by {}\n",
+               answer.axes[static_cast<size_t>(result.limit)].name, percent(result.limit_change));
+}
+
+}  // namespace
+
+double read_error_budget(const std::string& text) {
+  const bool percents = text.ends_with('%');
+  const std::string digits = percents ? text.substr(0, text.size() - 1) : text;
+  double value = 0;
+  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (code != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
+    throw InputError(fmt::format("'{}' is no error", text), "a percentage or a share: --error 1% or --error 0.01");
+  if (percents) value /= 100;
+  if (!(value > 0 && value < 1))
+    throw InputError(fmt::format("an error of '{}' is out of range: above 0 and below 100%", text),
+                     text == "1" ? "did you mean '1%'?" : "a percentage or a share: --error 1% or --error 0.01");
+  return value;
+}
+
+size_t figure_named(const study::Study& study, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Figure& figure : study.figures) names.push_back(figure.name);
+  if (names.empty())
+    throw InputError(fmt::format("{}: no [[figure]] whose error could be held", study.path));
+  if (name.empty() && names.size() > 1)
+    throw InputError(fmt::format("{}: which figure?", study.path), "--figure " + list_of(names));
+  for (size_t k = 0; k < names.size(); ++k)
+    if (name.empty() || names[k] == name) return k;
+  const std::string near = did_you_mean(name, names);
+  throw InputError(fmt::format("{}: no figure '{}'", study.path, name), near.empty() ? "known: " + list_of(names) : near);
+}
+
+int run_budget(const study::Study& study, const study::Truth& truth, const BudgetOptions& options) {
+  study::BudgetQuestion question;
+  question.budget = read_error_budget(options.error);
+  question.figure = figure_named(study, options.figure);
+  question.jobs = options.jobs;
+  study::Store store(options.out + "/search.db", study);
+  const BudgetAnswer answer = study::keep_budget(study, truth, store, question);
+  const std::string& figure = study.figures[question.figure].name;
+  const study::SearchResult& result = answer.result;
+  const std::string unit = unit_of(study, question.figure);
+  fmt::print("figure '{}': {:.6g} {} by the truth\n", figure, truth.figures[question.figure], unit);
+  if (!result.met) {
+    print_failure(answer, figure, options.error);
+    return 1;
+  }
+  const bool fixed = answer.chosen.settings.arithmetic == study::Arithmetic::fixed;
+  const std::string command =
+      fixed ? fmt::format("cuboct run {0}/cheapest.toml --arch {0}/cheapest_arch.toml", options.out)
+            : fmt::format("cuboct run {}/cheapest.toml --engine reference", options.out);
+  fmt::print("the cheapest settings within {}\n\n{}\n", options.error, table(answer, question.budget));
+  fmt::print("as measured: {:.6g} {}, {}\n", answer.chosen.value, unit, signed_percent(answer.chosen.error));
+  fmt::print("cost: {:.3g} transistors x pairs/s, {:.3g} of that of the study's own settings ({:.3g}, {})\n",
+             answer.chosen.cost, answer.chosen.cost / answer.standard.cost, answer.standard.cost,
+             std::isnan(answer.standard.error) ? answer.standard.why : signed_percent(answer.standard.error));
+  fmt::print("points: {} of {}\n", result.measured, [&] {
+    size_t all = 1;
+    for (const Axis& axis : answer.axes) all *= axis.sets.size();
+    return all;
+  }());
+  if (answer.chosen.settings.arithmetic == study::Arithmetic::float32)
+    fmt::print("float32 is known to studies alone: `run` computes in doubles\n");
+  study::Written texts = study::written(study, truth, answer.chosen.settings);
+  const std::string head = fmt::format("# Chosen by `cuboct explore {} --error {}{}`: {} of '{}' by parts, cost {:.3g}.\n",
+                                       study.path, options.error,
+                                       options.figure.empty() ? "" : " --figure " + options.figure,
+                                       percent(result.best.sum), figure, answer.chosen.cost);
+  write_text(options.out + "/cheapest.toml", head + texts.scene);
+  write_text(options.out + "/cheapest_arch.toml", head + texts.arch);
+  fmt::print("{}\n", command);
+  return 0;
+}
+
+}  // namespace cuboct

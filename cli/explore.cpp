@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "cli/command.h"
+#include "model/interrupt.h"
+#include "model/output.h"
+#include "study/measure_run.h"
+#include "study/runner.h"
+#include "study/table.h"
+
+namespace cuboct {
+namespace {
+
+struct Options {
+  std::string study, out;
+  std::vector<std::string> add;
+  int jobs = 0;
+  bool no_speed = false;
+};
+
+std::string default_directory(const std::string& study) {
+  return std::filesystem::path(study).stem().string() + ".study";
+}
+
+void print_table(const study::Results& results) {
+  fmt::print("{}\n{}", study::describe(results.truth, results), study::cheapest_per_decade(results));
+  size_t refused = 0, unstable = 0;
+  for (const study::Outcome& outcome : results.outcomes) {
+    refused += outcome.status == study::Status::refused;
+    unstable += outcome.status == study::Status::unstable;
+  }
+  fmt::print("{} points, {} refused, {} unstable\n", results.outcomes.size(), refused, unstable);
+}
+
+int explore(const Options& options) {
+  const study::Study study = study::read_study(options.study);
+  const std::string out = options.out.empty() ? default_directory(options.study) : options.out;
+  make_directory(out);
+  study::Store store(out + "/results.db", study);
+  catch_interrupts();
+  for (const std::string& file : options.add)
+    fmt::print("{} rows from {}\n", store.add(file), file);
+  study::Runner runner(study, store, {.jobs = options.jobs, .speed = !options.no_speed});
+  try {
+    runner.run();
+  } catch (const study::Interrupted&) {
+    fmt::print(stderr, "interrupted; the same command goes on where it was\n");
+    return 1;
+  }
+  print_table(store.results());
+  return 0;
+}
+
+}  // namespace
+
+void add_explore(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("explore", "chart speed against accuracy over a study's settings");
+  command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
+  command->add_option("--out", options->out, "directory for results; default: the study's name with .study")
+      ->type_name("DIR");
+  command->add_option("--jobs", options->jobs, "points computed at once; default: one per core")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command->add_option("--add", options->add, "results of the same study from elsewhere")->type_name("FILE");
+  command->add_flag("--no-speed", options->no_speed, "measure errors alone");
+  command->callback([options, &exit_code] { exit_code = explore(*options); });
+}
+
+}  // namespace cuboct

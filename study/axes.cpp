@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "study/axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include "model/error.h"
+
+namespace cuboct::study {
+namespace {
+
+using Set = std::function<void(Settings&)>;
+
+void put(std::vector<Change>& changes, const std::string& key, const std::string& value) {
+  std::erase_if(changes, [&](const Change& change) { return change.key == key; });
+  changes.push_back({key, value});
+}
+
+// "arch.widths.guard" goes to the arch, all else to the scene.
+Set change_of(const std::string& key, const std::string& value) {
+  return [key, value](Settings& settings) {
+    if (key.starts_with("arch."))
+      put(settings.arch, key.substr(5), value);
+    else
+      put(settings.scene, key, value);
+  };
+}
+
+struct Key {
+  const char* name;
+  const char* target;  // key of the scene, of the arch ("arch."); null: of the settings themselves
+  bool alone = true;   // a value that is wrong by itself is a mistake
+};
+
+// In the order in which axes nest, the last one fastest.
+constexpr Key kKeys[] = {
+    {"engine", nullptr},
+    {"arithmetic", nullptr},
+    {"integrator", nullptr},
+    {"pitch", "packing.pitch", false},
+    {"cutoff", "law.cutoff", false},
+    {"dt", "run.dt", false},
+    {"dt_safety", "run.dt_safety"},
+    {"cell_edge", "arch.node.cell_edge", false},
+    {"capacity", "arch.node.capacity"},
+    {"position_frac", "arch.widths.position_frac"},
+    {"guard", "arch.widths.guard"},
+    {"difference_frac", "arch.widths.difference_frac"},
+    {"velocity_bits", "arch.widths.velocity_bits"},
+    {"relative_velocity_frac", "arch.widths.relative_velocity_frac"},
+    {"relative_velocity_bits", "arch.widths.relative_velocity_bits"},
+    {"strength_bits", "arch.widths.strength_bits"},
+    {"sum_bits", "arch.widths.sum_bits"},
+    {"displacement_bits", "arch.widths.displacement_bits"},
+    {"scale_frac", "arch.widths.scale_frac"},
+    {"gain_frac", "arch.widths.gain_frac"},
+    {"table_shape", "arch.table.shape"},
+    {"degree", "arch.table.degree"},
+    {"index_bits", "arch.table.index_bits"},
+    {"fraction_bits", "arch.table.fraction_bits"},
+    {"threads", nullptr},
+};
+
+// What one value of one key does.
+Set set_of(const Key& key, const ConfigValue& value) {
+  const std::string name = key.name;
+  if (name == "engine") {
+    const bool lattice = value.choice("engine", {"lattice", "reference"}) == 0;
+    return [lattice](Settings& settings) {
+      settings.engine = lattice ? "lattice" : "reference";
+      settings.arithmetic = lattice ? Arithmetic::fixed : Arithmetic::float64;
+    };
+  }
+  if (name == "arithmetic") {
+    const auto arithmetic =
+        static_cast<Arithmetic>(value.choice("arithmetic", {"float64", "float32", "fixed"}));
+    return [arithmetic](Settings& settings) {
+      settings.arithmetic = arithmetic;
+      settings.engine = arithmetic == Arithmetic::fixed ? "lattice" : "reference";
+    };
+  }
+  if (name == "integrator") {
+    const auto integrator =
+        static_cast<Integrator>(value.choice("integrator", {"euler", "verlet"}));
+    return [integrator](Settings& settings) { settings.integrator = integrator; };
+  }
+  if (name == "threads") {
+    const int threads = static_cast<int>(value.integer(1, 4096));
+    return [threads](Settings& settings) { settings.threads = threads; };
+  }
+  const Set change = change_of(key.target, toml_text(value));
+  // "auto" with its safety and a given dt rule each other out.
+  if (name == "dt") return [change](Settings& s) { change_of("run.dt_safety", "")(s), change(s); };
+  if (name == "dt_safety") return [change](Settings& s) { change_of("run.dt", "\"auto\"")(s), change(s); };
+  return change;
+}
+
+// An InputError's text without the place in a scene that the user did not write.
+std::string without_place(const std::string& text, const Base& base) {
+  for (const std::string& path : {base.scene_path, base.arch_path})
+    if (!path.empty() && text.starts_with(path + ":")) {
+      const size_t at = text.find(": ");
+      if (at != std::string::npos) return text.substr(at + 2);
+    }
+  return text;
+}
+
+void try_alone(const ConfigValue& value, const Set& set, const Base& base) {
+  Settings settings;
+  set(settings);
+  try {
+    resolve(base, settings);
+  } catch (const InputError& error) {
+    const std::string text = without_place(error.what(), base);
+    const size_t hint = text.find("\n  hint: ");
+    value.fail(text.substr(0, hint), hint == std::string::npos ? "" : text.substr(hint + 9));
+  }
+}
+
+std::string label_of(const ConfigValue& value) { return value.is_string() ? value.string() : toml_text(value); }
+
+std::vector<ConfigValue> notches(const ConfigValue& value) {
+  const std::vector<ConfigValue> items = value.is_array() ? value.items() : std::vector{value};
+  if (items.empty()) value.fail(fmt::format("'{}' lists nothing", value.key()));
+  return items;
+}
+
+Axis axis_of(const Key& key, const ConfigValue& value, const Base& base) {
+  Axis axis{key.name, {}, {}};
+  for (const ConfigValue& item : notches(value)) {
+    axis.labels.push_back(label_of(item));
+    axis.sets.push_back(set_of(key, item));
+    if (key.alone && key.target) try_alone(item, axis.sets.back(), base);
+  }
+  return axis;
+}
+
+// Each preset sets what it names.
+Axis read_presets(const ConfigValue& value, const Base& base) {
+  Axis axis{"presets", {}, {}};
+  for (const ConfigValue& item : notches(value)) {
+    const ConfigTable preset = item.table();
+    axis.labels.push_back(preset.at("name").string());
+    std::vector<Set> sets;
+    for (const Key& key : kKeys)
+      if (const auto found = preset.find(key.name)) sets.push_back(set_of(key, *found));
+    axis.sets.push_back([sets](Settings& settings) {
+      for (const Set& set : sets) set(settings);
+    });
+    preset.done();
+    try_alone(item, axis.sets.back(), base);
+  }
+  return axis;
+}
+
+void add_leaves(const ConfigTable& table, const std::string& prefix, std::vector<Leaf>& out) {
+  for (const std::string& name : table.names()) {
+    const ConfigValue value = table.at(name);
+    if (value.is_table())
+      add_leaves(value.table(), prefix + name + ".", out);
+    else
+      out.push_back({prefix + name, value});
+  }
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c == '\n' || c == '\t' ? ' ' : c;
+  }
+  return out + "\"";
+}
+
+}  // namespace
+
+std::string toml_text(const ConfigValue& value) {
+  if (value.is_string()) return quoted(value.string());
+  if (value.is_number()) return fmt::format("{}", value.number(quantity::number));
+  if (!value.is_array()) return value.boolean() ? "true" : "false";
+  std::string text;
+  for (const ConfigValue& item : value.items()) text += (text.empty() ? "" : ", ") + toml_text(item);
+  return "[" + text + "]";
+}
+
+std::vector<Leaf> leaves(const ConfigTable& table) {
+  std::vector<Leaf> out;
+  add_leaves(table, "", out);
+  return out;
+}
+
+std::vector<Axis> read_axes(const ConfigTable& table, const Base& base) {
+  std::vector<Axis> axes;
+  for (const Key& key : kKeys)
+    if (const auto value = table.find(key.name)) axes.push_back(axis_of(key, *value, base));
+  if (const auto presets = table.find("presets")) axes.push_back(read_presets(*presets, base));
+  if (const auto set = table.table_at("set"))
+    for (const Leaf& leaf : leaves(*set)) {
+      Axis axis{leaf.key, {}, {}};
+      for (const ConfigValue& item : notches(leaf.value)) {
+        axis.labels.push_back(label_of(item));
+        axis.sets.push_back(change_of(leaf.key, toml_text(item)));
+        try_alone(item, axis.sets.back(), base);
+      }
+      axes.push_back(std::move(axis));
+    }
+  table.done();
+  return axes;
+}
+
+}  // namespace cuboct::study

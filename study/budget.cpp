@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "study/budget.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "model/config.h"
+#include "model/error.h"
+#include "study/cost.h"
+#include "study/measure_run.h"
+#include "study/work.h"
+
+namespace cuboct::study {
+namespace {
+
+// A time step's part is the method's alone as long as numbers are still the finest, so what sets the precision
+// comes after it; an axis of the list keeps its place otherwise.
+std::vector<Axis> in_order(std::vector<Axis> axes) {
+  std::ranges::stable_partition(axes, [](const Axis& axis) {
+    return axis.name == "pitch" || axis.name == "cutoff" || axis.name == "integrator" || axis.name == "dt" ||
+           axis.name == "dt_safety";
+  });
+  return axes;
+}
+
+std::string one_line(std::string text) {
+  const size_t hint = text.find("\n  hint: ");
+  if (hint != std::string::npos) text.replace(hint, 9, "; ");
+  std::ranges::replace(text, '\n', ' ');
+  return text;
+}
+
+// The case with the time step that the grid leaves, as run_case takes it.
+Case fitted(const Study& study, const Truth& truth, const Settings& settings) {
+  Case c = resolve(study.base, settings);
+  c.scene.rule.dt = truth.grid.fitted(c.scene.rule.dt);
+  c.scene.steps = truth.grid.steps_per_sample(c.scene.rule.dt) * truth.grid.samples;
+  return c;
+}
+
+bool is_reduced(const Study& study) {
+  const auto units = parse_config(study.base.scene_text, study.base.scene_path).find("units");
+  return units && units->is_string() && units->string() == "reduced";
+}
+
+void check(const Study& study, const Truth& truth, const BudgetQuestion& question) {
+  if (study.search.empty())
+    throw InputError(fmt::format("{}: no [search] to choose from", study.path),
+                     "list settings from cheap to dear, e.g. [search] dt_safety = [0.8, 0.4, 0.2]");
+  const std::string& name = study.figures.at(question.figure).name;
+  const double value = truth.figures.at(question.figure);
+  if (!std::isfinite(value) || value == 0)
+    throw InputError(fmt::format("{}: the figure '{}' of the truth is {}: no relative error can be told",
+                                 study.path, name, std::isfinite(value) ? "0" : "not to be had"));
+  const double known = truth.rungs.empty() ? 0 : truth.rungs.back().change;
+  if (known >= question.budget)
+    throw InputError(
+        fmt::format("the truth itself is known to {:.2g} only, worse than the budget of {:.2g}", known,
+                    question.budget),
+        "a smaller 'tolerance' or more 'rungs' in [truth]");
+}
+
+// Answers to settings, out of the store where it has them.
+class Runs {
+ public:
+  Runs(const Study& study, const Truth& truth, Store& store, const BudgetQuestion& question)
+      : study_(study), truth_(truth), store_(store), question_(question) {}
+
+  std::vector<double> errors(const std::vector<Settings>& wanted) {
+    std::vector<Settings> fresh;
+    for (const Settings& settings : wanted)
+      if (!store_.has_errors(settings) && std::ranges::find(fresh, settings) == fresh.end())
+        fresh.push_back(settings);
+    run(fresh);
+    std::vector<double> errors;
+    for (const Settings& settings : wanted) errors.push_back(error_of(*store_.errors(settings)));
+    return errors;
+  }
+
+  double error_of(const Outcome& outcome) const {
+    const double truth = truth_.figures[question_.figure];
+    return (outcome.errors.values.at(question_.figure) - truth) / std::abs(truth);
+  }
+
+  Priced priced(const Settings& settings) {
+    Priced p;
+    p.settings = settings;
+    p.error = errors({settings})[0];
+    const Outcome outcome = *store_.errors(settings);
+    p.value = outcome.errors.values[question_.figure];
+    p.why = outcome.why;
+    p.cost = cost(settings);
+    return p;
+  }
+
+  double cost(const Settings& settings) const {
+    try {
+      return cost_of(fitted(study_, truth_, settings));
+    } catch (const InputError&) {
+      return kNotMeasured;
+    }
+  }
+
+ private:
+  void run(const std::vector<Settings>& fresh) {
+    std::vector<Piece> pieces;
+    for (const Settings& settings : fresh)
+      pieces.push_back({particle_steps(settings), [&, settings] {
+                          store_.put_errors(measure_figures(study_, truth_, settings));
+                        }});
+    made_ += pieces.size();
+    work_off(std::move(pieces), question_.jobs, fmt::format("search, {} runs in all", made_), question_.progress);
+  }
+
+  // For the order and the time left: doubles take about as long as ten fixed ones.
+  double particle_steps(const Settings& settings) const {
+    try {
+      const Case c = fitted(study_, truth_, settings);
+      return static_cast<double>(c.scene.steps) * static_cast<double>(c.scene.body.size()) *
+             (settings.arithmetic == Arithmetic::fixed ? 1 : 10);
+    } catch (const InputError&) {
+      return 0;
+    }
+  }
+
+  const Study& study_;
+  const Truth& truth_;
+  Store& store_;
+  const BudgetQuestion& question_;
+  size_t made_ = 0;
+};
+
+}  // namespace
+
+Settings settings_at(const std::vector<Axis>& axes, const Notches& at) {
+  Settings settings;
+  for (size_t a = 0; a < axes.size(); ++a) axes[a].sets.at(static_cast<size_t>(at[a]))(settings);
+  return canonical(std::move(settings));
+}
+
+Outcome measure_figures(const Study& study, const Truth& truth, const Settings& settings) {
+  Outcome outcome;
+  outcome.settings = settings;
+  outcome.errors.figures.assign(study.figures.size(), kNotMeasured);
+  outcome.errors.values = outcome.errors.figures;
+  try {
+    const Case c = fitted(study, truth, settings);
+    outcome.dt = c.scene.rule.dt;
+    outcome.pitch = c.scene.pitch;
+    outcome.particles = static_cast<uint32_t>(c.scene.body.size());
+    RunRequest request;
+    request.grid = truth.grid;
+    request.until = truth.grid.samples;
+    request.curves = true;
+    request.energies =
+        std::ranges::any_of(study.figures, [](const Figure& f) { return f.curve.starts_with("energy."); });
+    const Run run = run_case(c, request);
+    outcome.steps = run.steps;
+    if (!run.stop.empty()) {
+      outcome.status = Status::unstable;
+      outcome.why = one_line(run.stop);
+      return outcome;
+    }
+    for (size_t k = 0; k < study.figures.size(); ++k) {
+      try {
+        outcome.errors.values[k] = value_of(study.figures[k], run.curves, run.dt);
+        outcome.errors.figures[k] =
+            std::abs(outcome.errors.values[k] - truth.figures[k]) / std::abs(truth.figures[k]);
+      } catch (const std::runtime_error& error) {
+        outcome.why += (outcome.why.empty() ? "" : "; ") + one_line(error.what());
+      }
+    }
+  } catch (const InputError& error) {
+    outcome.status = Status::refused;
+    outcome.why = one_line(error.what());
+  } catch (const RunError& error) {  // not even the initial state can be held
+    outcome.status = Status::unstable;
+    outcome.why = one_line(error.what());
+  }
+  return outcome;
+}
+
+BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store, const BudgetQuestion& question) {
+  check(study, truth, question);
+  BudgetAnswer answer;
+  answer.axes = in_order(study.search);
+  Runs runs(study, truth, store, question);
+  SearchSpace space;
+  for (const Axis& axis : answer.axes) space.sizes.push_back(static_cast<int>(axis.sets.size()));
+  space.errors = [&](const std::vector<Notches>& points) {
+    std::vector<Settings> wanted;
+    for (const Notches& p : points) wanted.push_back(settings_at(answer.axes, p));
+    return runs.errors(wanted);
+  };
+  space.cost = [&](const Notches& p) { return runs.cost(settings_at(answer.axes, p)); };
+  try {
+    answer.result = search(space, question.budget);
+  } catch (const NotchOrder& order) {
+    const Axis& axis = answer.axes[order.axis];
+    const auto notch = static_cast<size_t>(order.notch);
+    throw InputError(fmt::format("{}: [search]: '{}' of {} costs more than '{}' after it", study.path,
+                                 axis.labels[notch], axis.name, axis.labels[notch + 1]),
+                     "notches go from cheap to dear");
+  }
+  answer.chosen = runs.priced(settings_at(answer.axes, answer.result.best.at));
+  answer.standard = runs.priced(canonical({}));
+  return answer;
+}
+
+Written written(const Study& study, const Truth& truth, const Settings& settings) {
+  const Case c = fitted(study, truth, settings);
+  std::vector<Change> changes = settings.scene;
+  const auto put = [&](const char* key, const std::string& value) {
+    std::erase_if(changes, [&](const Change& change) { return change.key == key; });
+    changes.push_back({key, value});
+  };
+  put("run.dt_safety", "");
+  put("run.dt", is_reduced(study) ? fmt::format("{}", c.scene.rule.dt) : fmt::format("\"{} s\"", c.scene.rule.dt));
+  put("run.duration", "");
+  put("run.steps", fmt::format("{}", c.scene.steps));
+  put("run.probe_every", fmt::format("{}", truth.grid.steps_per_sample(c.scene.rule.dt)));
+  return {with_changes(study.base.scene_text, study.base.scene_path, changes), c.arch_text};
+}
+
+}  // namespace cuboct::study

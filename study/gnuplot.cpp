@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include "study/gnuplot.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "model/error.h"
+#include "model/output.h"
+
+namespace cuboct::study {
+
+void run_gnuplot(const Scratch& scratch, const std::string& script) {
+  write_text(scratch.path("script.gp"), script);
+  int code = 0;
+  try {
+    code = Process("gnuplot", {scratch.path("script.gp")}).wait();
+  } catch (const InputError& error) {
+    throw InputError(error.what(), "install gnuplot-nox");
+  }
+  if (code != 0) throw std::runtime_error(fmt::format("gnuplot ended with exit code {}", code));
+}
+
+}  // namespace cuboct::study

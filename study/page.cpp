@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "study/page.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "model/output.h"
+#include "study/json.h"
+#include "study/measures.h"
+#include "study/parameters.h"
+#include "study/series.h"
+#include "study/web.h"
+
+namespace cuboct::study {
+namespace {
+
+std::vector<double> values_of(const Results& results, const Measure& measure) {
+  std::vector<double> values;
+  for (const Outcome& outcome : results.outcomes) values.push_back(measure.value(outcome));
+  return values;
+}
+
+std::string measures_json(const Results& results, const std::vector<Measure>& measures) {
+  std::vector<std::string> items;
+  for (const Measure& measure : measures)
+    items.push_back(JsonObject()
+                        .add("id", json(measure.id))
+                        .add("label", json(measure.label))
+                        .add("less", json(measure.less_is_better))
+                        .add("floor", json(measure.floor))
+                        .add("values", json(values_of(results, measure)))
+                        .text());
+  return json_array(items);
+}
+
+// [error][speed]: the front, and the table by decades as [exponent or null, point].
+std::string choices_json(const Results& results, const std::vector<Measure>& errors,
+                         const std::vector<Measure>& speeds) {
+  std::vector<std::string> by_error;
+  for (const Measure& error : errors) {
+    std::vector<std::string> by_speed;
+    for (const Measure& speed : speeds) {
+      const ValueOf merit = [&](const Outcome& outcome) { return speed.merit(outcome); };
+      std::vector<std::string> rows;
+      for (const Cheapest& row : cheapest_by_decade(results.outcomes, error.value, merit))
+        rows.push_back(fmt::format("[{},{}]",
+                                   row.exponent == Cheapest::kExact ? "null" : std::to_string(row.exponent),
+                                   row.point));
+      by_speed.push_back(JsonObject()
+                             .add("front", json(pareto_front(results.outcomes, error.value, merit)))
+                             .add("decades", json_array(rows))
+                             .text());
+    }
+    by_error.push_back(json_array(by_speed));
+  }
+  return json_array(by_error);
+}
+
+std::string orders_json(const Results& results, const Parameter& parameter, const Measure& error) {
+  std::vector<std::string> orders;
+  for (const Order& order : expected_orders(results, parameter, error))
+    if (const auto line = order_line(results, parameter, error, order))
+      orders.push_back(JsonObject()
+                           .add("label", json(order.label))
+                           .add("line", fmt::format("[[{},{}],[{},{}]]", json(line->first.first),
+                                                    json(line->first.second), json(line->second.first),
+                                                    json(line->second.second)))
+                           .text());
+  return json_array(orders);
+}
+
+std::string parameters_json(const Results& results, const std::vector<Measure>& errors) {
+  std::vector<std::string> items;
+  for (const Parameter& parameter : swept_parameters(results)) {
+    std::vector<std::string> sweeps, orders;
+    for (const Sweep& sweep : parameter.sweeps) sweeps.push_back(json(sweep.points));
+    for (const Measure& error : errors) orders.push_back(orders_json(results, parameter, error));
+    items.push_back(JsonObject()
+                        .add("id", json(parameter.id))
+                        .add("label", json(parameter.label))
+                        .add("logarithmic", json(parameter.logarithmic))
+                        .add("names", json(parameter.names))
+                        .add("x", json(parameter.x))
+                        .add("sweeps", json_array(sweeps))
+                        .add("orders", json_array(orders))
+                        .text());
+  }
+  return json_array(items);
+}
+
+std::string series_json(const Results& results) {
+  std::vector<std::string> items;
+  for (const Series& series : series_of(results))
+    items.push_back(JsonObject()
+                        .add("name", json(series.name))
+                        .add("colour", json(series.colour))
+                        .add("symbol", std::to_string(series.symbol))
+                        .add("points", json(series.points))
+                        .text());
+  return json_array(items);
+}
+
+std::string changes_json(const std::vector<Change>& changes) {
+  std::vector<std::string> items;
+  for (const Change& change : changes) items.push_back(json(std::vector{change.key, change.value}));
+  return json_array(items);
+}
+
+std::string points_json(const Results& results) {
+  std::vector<std::string> items;
+  for (const Outcome& outcome : results.outcomes) {
+    const Settings& settings = outcome.settings;
+    items.push_back(JsonObject()
+                        .add("engine", json(settings.engine))
+                        .add("arithmetic", json(std::string(label(settings.arithmetic))))
+                        .add("integrator", json(std::string(label(settings.integrator))))
+                        .add("threads", std::to_string(settings.threads))
+                        .add("scene", changes_json(settings.scene))
+                        .add("arch", changes_json(settings.arch))
+                        .add("status", json(std::string(label(outcome.status))))
+                        .add("why", json(outcome.why))
+                        .add("dt", json(outcome.dt))
+                        .add("pitch", json(outcome.pitch))
+                        .add("particles", std::to_string(outcome.particles))
+                        .add("steps", std::to_string(outcome.steps))
+                        .add("halo_bits", std::to_string(outcome.halo_bits))
+                        .add("table_bits", std::to_string(outcome.table_bits))
+                        .add("spread", json(outcome.speed.spread))
+                        .add("repeats", std::to_string(outcome.speed.repeats))
+                        .add("figures", json(outcome.errors.values))
+                        .text());
+  }
+  return json_array(items);
+}
+
+std::string truth_json(const Results& results) {
+  const Truth& truth = results.truth;
+  std::vector<std::string> rungs;
+  for (const Rung& rung : truth.rungs)
+    rungs.push_back(JsonObject()
+                        .add("dt", json(rung.dt))
+                        .add("cutoff", json(rung.cutoff))
+                        .add("figures", json(rung.figures))
+                        .add("trajectory", json(rung.trajectory))
+                        .add("change", json(rung.change))
+                        .text());
+  return JsonObject()
+      .add("rungs", json_array(rungs))
+      .add("figures", json(truth.figures))
+      .add("lyapunov_time", json(truth.lyapunov_time))
+      .add("floor", json(truth.floor))
+      .add("largest_frequency", json(truth.largest_frequency))
+      .add("converged", json(truth.converged))
+      .text();
+}
+
+std::string data_of(const Results& results) {
+  const std::vector<Measure> errors = error_measures(results), speeds = speed_measures(results);
+  return JsonObject()
+      .add("title", json(results.title))
+      .add("scene", json(results.scene))
+      .add("machine", json(results.machine))
+      .add("figure_names", json(results.figure_names))
+      .add("figure_units", json(results.figure_units))
+      .add("series", series_json(results))
+      .add("errors", measures_json(results, errors))
+      .add("speeds", measures_json(results, speeds))
+      .add("choices", choices_json(results, errors, speeds))
+      .add("parameters", parameters_json(results, errors))
+      .add("points", points_json(results))
+      .add("truth", truth_json(results))
+      .text();
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return out;
+}
+
+}  // namespace
+
+// The frame's places "@name@", in their order.
+std::string page_of(const Results& results) {
+  const std::string title = escaped(results.title.empty() ? "A study" : results.title);
+  const std::pair<const char*, std::string> parts[] = {
+      {"@title@", title},
+      {"@style@", std::string(web_style())},
+      {"@title@", title},
+      {"@licences@", escaped(std::string(web_licences()))},
+      {"@data@", data_of(results)},
+      {"@library@", std::string(web_library())},
+      {"@script@", std::string(web_script())}};
+  const std::string_view frame = web_frame();
+  std::string page;
+  size_t from = 0;
+  for (const auto& [name, text] : parts) {
+    const size_t at = frame.find(name, from);
+    if (at == std::string_view::npos) throw std::logic_error(fmt::format("study/web/page.html: no {}", name));
+    page += frame.substr(from, at - from);
+    page += text;
+    from = at + std::string_view(name).size();
+  }
+  page += frame.substr(from);
+  return page;
+}
+
+void write_page(const Results& results, const std::string& path) { write_text(path, page_of(results)); }
+
+}  // namespace cuboct::study

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Computes what a study asks for and its store lacks.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "study/store.h"
+#include "study/study.h"
+#include "study/truth.h"
+
+namespace cuboct::study {
+
+struct RunnerOptions {
+  int jobs = 0;         // points computed at once; 0: one per core
+  bool speed = true;    // measure speeds as well, one after the other when all errors are there
+  bool progress = true; // a line on stderr, where that is a terminal
+};
+
+// Every call answers from the store where it can, and puts what it computes there before it returns: a process
+// that was killed, run again, ends with the same errors. All throw Interrupted (measure_run.h) once
+// model/interrupt.h was asked to stop. Study and store must outlive the runner.
+class Runner {
+ public:
+  Runner(const Study& study, Store& store, const RunnerOptions& options);
+
+  // The study's points.
+  void run();
+
+  // The study's truth, computed where it is not there yet.
+  const Truth& truth();
+  // Errors of any settings, not of the study's points alone; several at once on the runner's jobs. In their
+  // order, without speeds.
+  std::vector<Outcome> errors_of(const std::vector<Settings>& points);
+  Outcome errors_of(const Settings& settings) { return errors_of(std::vector{settings})[0]; }
+  // To be called while nothing else computes.
+  Speed speed_of(const Settings& settings);
+
+ private:
+  void make_truths(const std::vector<Settings>& points);
+  const Truth& truth_of(const Settings& settings);
+  void measure_speeds();
+
+  const Study& study_;
+  Store& store_;
+  RunnerOptions options_;
+  std::map<std::string, Truth> truths_;  // by physics_key
+  std::map<std::string, std::string> no_truth_;  // why there is none: no run in doubles has an end
+};
+
+}  // namespace cuboct::study

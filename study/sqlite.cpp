@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "study/sqlite.h"
+
+#include <fmt/format.h>
+
+namespace cuboct::study {
+
+Database::Database(const std::string& path, bool writable) : path_(path) {
+  const int flags = writable ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
+  if (sqlite3_open_v2(path.c_str(), &handle_, flags | SQLITE_OPEN_FULLMUTEX, nullptr) != SQLITE_OK) {
+    const std::string text = fmt::format("cannot open {}: {}", path, sqlite3_errmsg(handle_));
+    sqlite3_close(handle_);
+    throw InputError(text);
+  }
+  sqlite3_busy_timeout(handle_, 10'000);
+}
+
+void Database::fail() const { throw InputError(fmt::format("{}: {}", path_, sqlite3_errmsg(handle_))); }
+
+void Database::run(const std::string& sql) {
+  if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+}
+
+Query::Query(const Database& database, const std::string& sql) : database_(database) {
+  if (sqlite3_prepare_v2(database.handle(), sql.c_str(), -1, &statement_, nullptr) != SQLITE_OK) database.fail();
+}
+
+Query& Query::bind(double value) {
+  if (std::isnan(value) ? sqlite3_bind_null(statement_, ++bound_) != SQLITE_OK
+                        : sqlite3_bind_double(statement_, ++bound_, value) != SQLITE_OK)
+    database_.fail();
+  return *this;
+}
+
+Query& Query::bind(int64_t value) {
+  if (sqlite3_bind_int64(statement_, ++bound_, value) != SQLITE_OK) database_.fail();
+  return *this;
+}
+
+Query& Query::bind(const std::string& value) {
+  if (sqlite3_bind_text(statement_, ++bound_, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT) !=
+      SQLITE_OK)
+    database_.fail();
+  return *this;
+}
+
+Query& Query::bind_blob(const std::string& bytes) {
+  if (sqlite3_bind_blob64(statement_, ++bound_, bytes.data(), bytes.size(), SQLITE_TRANSIENT) != SQLITE_OK)
+    database_.fail();
+  return *this;
+}
+
+bool Query::next() {
+  read_ = 0;
+  const int code = sqlite3_step(statement_);
+  if (code != SQLITE_ROW && code != SQLITE_DONE) database_.fail();
+  return code == SQLITE_ROW;
+}
+
+void Query::copy_to(Query& to, const std::string& last) {
+  const int columns = sqlite3_column_count(statement_);
+  for (int k = 0; k < columns; ++k) {
+    if (k + 1 == columns && !last.empty())
+      to.bind(last);
+    else if (sqlite3_bind_value(to.statement_, ++to.bound_, sqlite3_column_value(statement_, k)) != SQLITE_OK)
+      to.database_.fail();
+  }
+}
+
+double Query::real() {
+  const int column = read_++;
+  return sqlite3_column_type(statement_, column) == SQLITE_NULL ? std::nan("")
+                                                                 : sqlite3_column_double(statement_, column);
+}
+
+int64_t Query::integer() { return sqlite3_column_int64(statement_, read_++); }
+
+std::string Query::text() { return blob(); }
+
+std::string Query::blob() {
+  const int column = read_++;
+  const void* bytes = sqlite3_column_blob(statement_, column);
+  const int size = sqlite3_column_bytes(statement_, column);
+  return bytes ? std::string(static_cast<const char*>(bytes), static_cast<size_t>(size)) : std::string();
+}
+
+}  // namespace cuboct::study

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// SQLite's C interface as far as studies need it.
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cmath>
+#include <string>
+
+#include "model/error.h"
+
+namespace cuboct::study {
+
+class Database {
+ public:
+  // Throws InputError where the file cannot be opened. `writable`: it is made where it is not there.
+  Database(const std::string& path, bool writable);
+  ~Database() { sqlite3_close(handle_); }
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  void run(const std::string& sql);
+  sqlite3* handle() const { return handle_; }
+  [[noreturn]] void fail() const;
+
+ private:
+  std::string path_;
+  sqlite3* handle_ = nullptr;
+};
+
+// One statement; values are bound and columns read from left to right. A nan is NULL and back.
+class Query {
+ public:
+  Query(const Database& database, const std::string& sql);
+  ~Query() { sqlite3_finalize(statement_); }
+  Query(const Query&) = delete;
+  Query& operator=(const Query&) = delete;
+
+  Query& bind(double value);
+  Query& bind(int64_t value);
+  Query& bind(const std::string& value);
+  Query& bind_blob(const std::string& bytes);
+
+  bool next();  // a row is there
+  void done() { while (next()) {} }
+
+  // The row's columns into `to`, one after the other; the last one is `last` where that is not empty.
+  void copy_to(Query& to, const std::string& last);
+
+  double real();
+  int64_t integer();
+  std::string text();
+  std::string blob();
+
+ private:
+  const Database& database_;
+  sqlite3_stmt* statement_ = nullptr;
+  int bound_ = 0, read_ = 0;
+};
+
+}  // namespace cuboct::study

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: MIT
+#include "study/store.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <mutex>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "model/error.h"
+#include "study/sqlite.h"
+#include "study/truth_bytes.h"
+
+namespace cuboct::study {
+namespace {
+
+constexpr const char* kFormat = "cuboct study 1";
+
+constexpr const char* kTables =
+    "CREATE TABLE IF NOT EXISTS meta(name TEXT PRIMARY KEY, value TEXT);"
+    "CREATE TABLE IF NOT EXISTS truths(physics TEXT PRIMARY KEY, truth BLOB);"
+    "CREATE TABLE IF NOT EXISTS rungs(physics TEXT, rung INTEGER, dt REAL, cutoff REAL, trajectory REAL,"
+    " change REAL, PRIMARY KEY(physics, rung));"
+    "CREATE TABLE IF NOT EXISTS points(numbers TEXT PRIMARY KEY, settings TEXT, status TEXT, why TEXT, dt REAL,"
+    " pitch REAL, particles INTEGER, steps INTEGER, cost REAL, halo_bits INTEGER, table_bits INTEGER,"
+    " force_median REAL, force_999 REAL, force_max REAL, trajectory REAL, drift_per_step REAL,"
+    " drift_per_oscillation REAL, momentum REAL, machine TEXT);"
+    "CREATE TABLE IF NOT EXISTS figures(numbers TEXT, figure INTEGER, name TEXT, value REAL, error REAL,"
+    " PRIMARY KEY(numbers, figure));"
+    "CREATE TABLE IF NOT EXISTS speeds(point TEXT PRIMARY KEY, numbers TEXT, settings TEXT, particle_steps REAL,"
+    " simulated_seconds REAL, spread REAL, repeats INTEGER, machine TEXT);";
+
+constexpr const char* kPointColumns =
+    "numbers, settings, status, why, dt, pitch, particles, steps, cost, halo_bits, table_bits, force_median,"
+    " force_999, force_max, trajectory, drift_per_step, drift_per_oscillation, momentum, machine";
+constexpr const char* kSpeedColumns =
+    "point, numbers, settings, particle_steps, simulated_seconds, spread, repeats, machine";
+
+const std::vector<std::string> kStatuses{"done", "unstable", "refused"};
+const std::vector<std::string> kArithmetics{"float64", "float32", "fixed"};
+const std::vector<std::string> kIntegrators{"euler", "verlet"};
+
+template <class Enum>
+Enum named(const std::vector<std::string>& names, const std::string& name) {
+  for (size_t k = 0; k < names.size(); ++k)
+    if (names[k] == name) return static_cast<Enum>(k);
+  throw InputError(fmt::format("results with an unknown word '{}'", name));
+}
+
+std::string insert(const char* how, const char* table, const std::string& columns) {
+  std::string marks = "?";
+  for (const char c : columns)
+    if (c == ',') marks += ", ?";
+  return fmt::format("{} INTO {}({}) VALUES({})", how, table, columns, marks);
+}
+
+// One setting per line.
+std::string text_of(const Settings& settings) {
+  std::string text =
+      fmt::format("engine={}\narithmetic={}\nintegrator={}\nthreads={}\n", settings.engine,
+                  kArithmetics[static_cast<size_t>(settings.arithmetic)],
+                  kIntegrators[static_cast<size_t>(settings.integrator)], settings.threads);
+  for (const Change& change : settings.scene) text += fmt::format("scene.{}={}\n", change.key, change.value);
+  for (const Change& change : settings.arch) text += fmt::format("arch.{}={}\n", change.key, change.value);
+  return text;
+}
+
+Settings settings_of(const std::string& text) {
+  Settings settings;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const size_t at = line.find('=');
+    const std::string key = line.substr(0, at), value = at == std::string::npos ? "" : line.substr(at + 1);
+    if (key == "engine")
+      settings.engine = value;
+    else if (key == "arithmetic")
+      settings.arithmetic = named<Arithmetic>(kArithmetics, value);
+    else if (key == "integrator")
+      settings.integrator = named<Integrator>(kIntegrators, value);
+    else if (key == "threads")
+      settings.threads = std::stoi(value);
+    else if (key.starts_with("scene."))
+      settings.scene.push_back({key.substr(6), value});
+    else if (key.starts_with("arch."))
+      settings.arch.push_back({key.substr(5), value});
+  }
+  return settings;
+}
+
+Outcome read_point(Query& row) {
+  Outcome outcome;
+  row.text();  // numbers
+  outcome.settings = settings_of(row.text());
+  outcome.status = named<Status>(kStatuses, row.text());
+  outcome.why = row.text();
+  outcome.dt = row.real();
+  outcome.pitch = row.real();
+  outcome.particles = static_cast<uint32_t>(row.integer());
+  outcome.steps = static_cast<uint64_t>(row.integer());
+  outcome.cost = row.real();
+  outcome.halo_bits = static_cast<int>(row.integer());
+  outcome.table_bits = static_cast<int>(row.integer());
+  Errors& e = outcome.errors;
+  for (double* value : {&e.force_median, &e.force_999, &e.force_max, &e.trajectory, &e.drift_per_step,
+                        &e.drift_per_oscillation, &e.momentum})
+    *value = row.real();
+  outcome.machine = row.text();
+  return outcome;
+}
+
+Speed read_speed(Query& row) {
+  Speed speed;
+  speed.particle_steps = row.real();
+  speed.simulated_seconds = row.real();
+  speed.spread = row.real();
+  speed.repeats = static_cast<int>(row.integer());
+  return speed;
+}
+
+}  // namespace
+
+struct Store::Impl {
+  Impl(const std::string& path, const Study& study) : study(study), database(path, true) {}
+
+  void check();
+  void read_figures(Outcome& outcome, const std::string& numbers) const;
+  std::string meta(const std::string& name) const {
+    Query row(database, "SELECT value FROM meta WHERE name = ?");
+    return row.bind(name).next() ? row.text() : "";
+  }
+
+  const Study& study;
+  Database database;
+  int lock = -1;
+  mutable std::mutex mutex;
+};
+
+// One process at a time: two would measure the same points, and one another's speed.
+void Store::Impl::check() {
+  const std::string hash = fmt::format("{:016x}", study.hash);
+  if (const std::string format = meta("format"); !format.empty() && format != kFormat)
+    throw InputError(fmt::format("results of the format '{}', not '{}'", format, kFormat));
+  if (const std::string there = meta("study"); !there.empty() && there != hash)
+    throw InputError("these are results of another study: its scene, arch, figures or times were others",
+                     "take another directory, or remove this one's results.db");
+  Query put(database, "INSERT OR REPLACE INTO meta VALUES('format', ?), ('study', ?), ('title', ?), ('scene', ?)");
+  put.bind(kFormat).bind(hash).bind(study.title).bind(study.base.scene_path).done();
+  Query machine(database, "INSERT OR IGNORE INTO meta VALUES('machine', ?)");
+  machine.bind(this_machine()).done();
+}
+
+void Store::Impl::read_figures(Outcome& outcome, const std::string& numbers) const {
+  Query row(database, "SELECT value, error FROM figures WHERE numbers = ? ORDER BY figure");
+  row.bind(numbers);
+  while (row.next()) {
+    outcome.errors.values.push_back(row.real());
+    outcome.errors.figures.push_back(row.real());
+  }
+}
+
+Store::Store(const std::string& path, const Study& study) {
+  // The lock goes with the process, however it ends.
+  const int lock = open((path + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (lock < 0) throw InputError(fmt::format("cannot write {}.lock", path));
+  if (flock(lock, LOCK_EX | LOCK_NB) != 0) {
+    close(lock);
+    throw InputError(fmt::format("another process is at work on {}", path));
+  }
+  try {
+    impl_ = std::make_unique<Impl>(path, study);
+    impl_->lock = lock;
+    // With a write-ahead log a row that was put survives the process; only a loss of power may take the last ones.
+    impl_->database.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
+    impl_->database.run(kTables);
+    impl_->check();
+  } catch (const InputError& error) {
+    close(lock);
+    const std::string text = error.what();
+    throw text.find(path) == std::string::npos ? InputError(fmt::format("{}: {}", path, text)) : error;
+  }
+}
+
+Store::~Store() {
+  if (impl_ && impl_->lock >= 0) close(impl_->lock);
+}
+
+void Store::put_truth(const std::string& physics, const Truth& truth) {
+  const std::lock_guard guard(impl_->mutex);
+  impl_->database.run("BEGIN");
+  Query put(impl_->database, "INSERT OR REPLACE INTO truths VALUES(?, ?)");
+  put.bind(physics).bind_blob(bytes_of(truth)).done();
+  for (size_t k = 0; k < truth.rungs.size(); ++k) {
+    const Rung& rung = truth.rungs[k];
+    Query row(impl_->database, "INSERT OR REPLACE INTO rungs VALUES(?, ?, ?, ?, ?, ?)");
+    row.bind(physics).bind(static_cast<int64_t>(k)).bind(rung.dt).bind(rung.cutoff);
+    row.bind(rung.trajectory).bind(rung.change).done();
+  }
+  impl_->database.run("COMMIT");
+}
+
+std::optional<Truth> Store::truth(const std::string& physics) const {
+  const std::lock_guard guard(impl_->mutex);
+  Query row(impl_->database, "SELECT truth FROM truths WHERE physics = ?");
+  if (!row.bind(physics).next()) return std::nullopt;
+  return truth_of(row.blob());
+}
+
+void Store::put_errors(const Outcome& outcome) {
+  const std::lock_guard guard(impl_->mutex);
+  const std::string numbers = outcome.settings.numbers_key();
+  const Errors& e = outcome.errors;
+  impl_->database.run("BEGIN");
+  Query put(impl_->database, insert("INSERT OR REPLACE", "points", kPointColumns));
+  put.bind(numbers).bind(text_of(outcome.settings)).bind(kStatuses[static_cast<size_t>(outcome.status)]);
+  put.bind(outcome.why).bind(outcome.dt).bind(outcome.pitch).bind(static_cast<int64_t>(outcome.particles));
+  put.bind(static_cast<int64_t>(outcome.steps)).bind(outcome.cost).bind(int64_t{outcome.halo_bits});
+  put.bind(int64_t{outcome.table_bits}).bind(e.force_median).bind(e.force_999).bind(e.force_max);
+  put.bind(e.trajectory).bind(e.drift_per_step).bind(e.drift_per_oscillation).bind(e.momentum);
+  put.bind(outcome.machine).done();
+  for (size_t k = 0; k < e.figures.size(); ++k) {
+    Query row(impl_->database, "INSERT OR REPLACE INTO figures VALUES(?, ?, ?, ?, ?)");
+    row.bind(numbers).bind(static_cast<int64_t>(k)).bind(impl_->study.figures[k].name);
+    row.bind(e.values[k]).bind(e.figures[k]).done();
+  }
+  impl_->database.run("COMMIT");
+}
+
+std::optional<Outcome> Store::errors(const Settings& settings) const {
+  const std::lock_guard guard(impl_->mutex);
+  Query row(impl_->database, fmt::format("SELECT {} FROM points WHERE numbers = ?", kPointColumns));
+  if (!row.bind(settings.numbers_key()).next()) return std::nullopt;
+  Outcome outcome = read_point(row);
+  outcome.settings = settings;
+  impl_->read_figures(outcome, settings.numbers_key());
+  return outcome;
+}
+
+bool Store::has_errors(const Settings& settings) const {
+  const std::lock_guard guard(impl_->mutex);
+  Query row(impl_->database, "SELECT 1 FROM points WHERE numbers = ?");
+  return row.bind(settings.numbers_key()).next();
+}
+
+void Store::put_speed(const Settings& settings, const Speed& speed) {
+  const std::lock_guard guard(impl_->mutex);
+  Query put(impl_->database, insert("INSERT OR REPLACE", "speeds", kSpeedColumns));
+  put.bind(settings.key()).bind(settings.numbers_key()).bind(text_of(settings)).bind(speed.particle_steps);
+  put.bind(speed.simulated_seconds).bind(speed.spread).bind(int64_t{speed.repeats}).bind("").done();
+}
+
+std::optional<Speed> Store::speed(const Settings& settings) const {
+  const std::lock_guard guard(impl_->mutex);
+  Query row(impl_->database,
+            "SELECT particle_steps, simulated_seconds, spread, repeats FROM speeds WHERE point = ?");
+  if (!row.bind(settings.key()).next()) return std::nullopt;
+  return read_speed(row);
+}
+
+bool Store::has_speed(const Settings& settings) const { return speed(settings).has_value(); }
+
+int Store::add(const std::string& path) {
+  if (access(path.c_str(), R_OK) != 0) throw InputError(fmt::format("cannot read {}", path));
+  const std::lock_guard guard(impl_->mutex);
+  const Database other(path, false);
+  std::string hash, machine;
+  {
+    Query row(other, "SELECT name, value FROM meta");
+    while (row.next()) {
+      const std::string name = row.text();
+      const std::string value = row.text();
+      if (name == "study") hash = value;
+      if (name == "machine") machine = value;
+    }
+  }
+  if (hash != fmt::format("{:016x}", impl_->study.hash))
+    throw InputError(fmt::format("{} holds results of another study: its scene, arch, figures or times are others",
+                                 path));
+  int came = 0;
+  const auto copy = [&](const char* table, const std::string& columns, bool has_machine) {
+    Query row(other, fmt::format("SELECT {} FROM {} ORDER BY 1, 2", columns, table));
+    while (row.next()) {
+      Query put(impl_->database, insert("INSERT OR IGNORE", table, columns));
+      row.copy_to(put, has_machine ? machine : "");
+      put.done();
+      came += has_machine ? sqlite3_changes(impl_->database.handle()) : 0;
+    }
+  };
+  impl_->database.run("BEGIN");
+  copy("points", kPointColumns, true);
+  copy("figures", "numbers, figure, name, value, error", false);
+  copy("speeds", kSpeedColumns, true);
+  impl_->database.run("COMMIT");
+  return came;
+}
+
+Results Store::results() const {
+  Results results;
+  if (auto own = truth("")) results.truth = std::move(*own);
+  results.truth.states.clear();
+  results.truth.horizon = {};
+  const Study& study = impl_->study;
+  results.title = study.title;
+  results.scene = study.base.scene_path;
+  for (const Figure& figure : study.figures) results.figure_names.push_back(figure.name);
+  results.figure_units = study.figure_units;
+  std::set<std::string> shown, shown_numbers;
+  for (const Settings& settings : study.points) {
+    auto outcome = errors(settings);
+    if (!outcome) continue;
+    if (const auto measured = speed(settings)) outcome->speed = *measured;
+    shown.insert(settings.key());
+    shown_numbers.insert(settings.numbers_key());
+    results.outcomes.push_back(std::move(*outcome));
+  }
+  const std::lock_guard guard(impl_->mutex);
+  results.machine = impl_->meta("machine");
+  // What is no point of the study: of a search, or from elsewhere. By speeds, then points without any.
+  Query speeds(impl_->database, "SELECT point, numbers, settings, machine, particle_steps, simulated_seconds,"
+                                " spread, repeats FROM speeds ORDER BY point");
+  while (speeds.next()) {
+    const std::string key = speeds.text(), numbers = speeds.text(), settings = speeds.text();
+    const std::string machine = speeds.text();
+    if (!shown.insert(key).second) continue;
+    Query row(impl_->database, fmt::format("SELECT {} FROM points WHERE numbers = ?", kPointColumns));
+    Outcome outcome;
+    if (row.bind(numbers).next()) outcome = read_point(row);
+    impl_->read_figures(outcome, numbers);
+    outcome.settings = settings_of(settings);
+    outcome.speed = read_speed(speeds);
+    outcome.machine = machine;
+    shown_numbers.insert(numbers);
+    results.outcomes.push_back(std::move(outcome));
+  }
+  Query points(impl_->database, fmt::format("SELECT {} FROM points ORDER BY numbers", kPointColumns));
+  while (points.next()) {
+    Outcome outcome = read_point(points);
+    const std::string numbers = outcome.settings.numbers_key();
+    if (!shown_numbers.insert(numbers).second) continue;
+    impl_->read_figures(outcome, numbers);
+    results.outcomes.push_back(std::move(outcome));
+  }
+  return results;
+}
+
+std::string this_machine() {
+  std::ifstream in("/proc/cpuinfo");
+  std::string model = "unknown processor";
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name")) {
+      model = line.substr(line.find(':') + 2);
+      break;
+    }
+  return fmt::format("{}, {} cores", model, std::thread::hardware_concurrency());
+}
+
+}  // namespace cuboct::study

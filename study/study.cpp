@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "study/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "model/config.h"
+#include "model/error.h"
+#include "model/hash.h"
+#include "model/measure.h"
+#include "model/spelling.h"
+#include "study/axes.h"
+
+namespace cuboct::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Paths in a study count from its own directory.
+std::string beside(const std::string& study, const std::string& path) {
+  if (path.empty() || fs::path(path).is_absolute()) return path;
+  return (fs::path(study).parent_path() / path).lexically_normal().string();
+}
+
+Base read_changed_base(const ConfigTable& root, const std::string& path) {
+  Base base = read_base(beside(path, root.at("scene").string()), beside(path, root.string_or("arch", "")));
+  const auto change = root.table_at("change");
+  if (!change) return base;
+  std::vector<Change> scene, arch;
+  for (const Leaf& leaf : leaves(*change)) {
+    const bool of_arch = leaf.key.starts_with("arch.");
+    (of_arch ? arch : scene).push_back({of_arch ? leaf.key.substr(5) : leaf.key, toml_text(leaf.value)});
+  }
+  base.scene_text = with_changes(base.scene_text, base.scene_path, scene);
+  if (!arch.empty()) {
+    if (base.arch_text.empty()) base.arch_text = "name = \"study\"\n";
+    base.arch_text = with_changes(base.arch_text, base.arch_path, arch);
+  }
+  return base;
+}
+
+void read_figures(const ConfigTable& root, const Scene& scene, Study& study) {
+  std::vector<Curve> known = ProbeMeter(scene.probes, scene.periodic, scene.body.x).curves();
+  for (const char* part : {"total", "kinetic", "potential", "gravity"})
+    known.push_back({std::string("energy.") + part, "J", {}, {}});
+  std::vector<std::string> curves;
+  for (const Curve& curve : known) curves.push_back(curve.name);
+  std::set<std::string> names;
+  for (const ConfigTable& table : root.tables("figure")) {
+    study.figures.push_back(read_figure(table));
+    for (const char* key : {"curve", "against"}) {
+      const auto value = table.find(key);
+      if (!value || std::ranges::find(curves, value->string()) != curves.end()) continue;
+      const std::string near = did_you_mean(value->string(), curves);
+      value->fail(fmt::format("the scene has no curve '{}'", value->string()),
+                  near.empty() ? "known: " + list_of(curves) : near);
+    }
+    study.figure_units.push_back(study.figures.back().unit(known));
+    if (!names.insert(study.figures.back().name).second)
+      table.fail(fmt::format("two figures are called '{}'", study.figures.back().name), "give one a 'name'");
+  }
+}
+
+// The times at which runs are looked at. Half of the default step is the shortest time between two.
+void read_grid(const ConfigTable& root, const Scene& scene, Study& study) {
+  const double duration = static_cast<double>(scene.steps) * scene.rule.dt;
+  if (scene.steps == 0) root.at("scene").fail("the scene has no steps");
+  const uint64_t from_scene = scene.probe_every > 0 ? scene.steps / scene.probe_every : 100;
+  study.grid.samples = static_cast<uint64_t>(root.integer_or(
+      "samples", 1, 1'000'000, static_cast<int64_t>(std::clamp<uint64_t>(from_scene, 1, scene.steps))));
+  study.grid.sample = duration / static_cast<double>(study.grid.samples);
+}
+
+void read_truth_settings(const ConfigTable& root, Study& study) {
+  const auto table = root.table_at("truth");
+  if (!table) return;
+  study.truth_tolerance =
+      table->number_or("tolerance", quantity::number, study.truth_tolerance, {.low = 1e-12, .high = 1});
+  study.truth_rungs = static_cast<int>(table->integer_or("rungs", 2, 20, study.truth_rungs));
+  study.lengthen_cutoff = table->boolean_or("lengthen_cutoff", study.lengthen_cutoff);
+  study.horizon = table->number_or("horizon", quantity::time, 0, Range::positive());
+  table->done();
+}
+
+void read_speed_settings(const ConfigTable& root, Study& study) {
+  const auto table = root.table_at("speed");
+  if (!table) return;
+  study.repeats = static_cast<int>(table->integer_or("repeats", 1, 1000, study.repeats));
+  study.seconds = table->number_or("seconds", quantity::number, study.seconds, {.low = 1e-3, .high = 1e4});
+  table->done();
+}
+
+// All combinations of the axes' notches, the last axis fastest.
+void add_grid(const std::vector<Axis>& axes, std::set<std::string>& known, std::vector<Settings>& points) {
+  std::vector<size_t> at(axes.size(), 0);
+  for (;;) {
+    Settings settings;
+    for (size_t k = 0; k < axes.size(); ++k) axes[k].sets[at[k]](settings);
+    settings = canonical(std::move(settings));
+    if (known.insert(settings.key()).second) points.push_back(std::move(settings));
+    size_t k = axes.size();
+    while (k > 0 && ++at[k - 1] == axes[k - 1].sets.size()) at[--k] = 0;
+    if (k == 0) return;
+  }
+}
+
+void read_points(const ConfigTable& root, Study& study) {
+  std::set<std::string> known;
+  for (const ConfigTable& table : root.tables("sweep")) {
+    const std::vector<Axis> axes = read_axes(table, study.base);
+    double count = 1;
+    for (const Axis& axis : axes) count *= static_cast<double>(axis.sets.size());
+    if (count > 100'000) table.fail(fmt::format("this grid has {:.3g} points: at most 100000 are taken", count));
+    add_grid(axes, known, study.points);
+  }
+}
+
+uint64_t hash_of(const Study& study) {
+  Hash hash;
+  const auto text = [&](const std::string& t) {
+    hash.add(static_cast<int64_t>(t.size()));
+    for (const char c : t) hash.add(c);
+  };
+  text(study.base.scene_text);
+  text(study.base.arch_text);
+  for (const Figure& f : study.figures)
+    text(fmt::format("{} {} {} {} {} {} {}", static_cast<int>(f.kind), f.name, f.curve, f.against, f.from, f.to,
+                     f.fraction));
+  text(fmt::format("{} {} {} {} {} {}", study.grid.sample, study.grid.samples, study.horizon,
+                   study.truth_tolerance, study.truth_rungs, study.lengthen_cutoff));
+  return hash.value();
+}
+
+}  // namespace
+
+Settings canonical(Settings settings) {
+  if (settings.arithmetic != Arithmetic::fixed) settings.arch.clear();
+  return settings;
+}
+
+Study read_study(const std::string& path) {
+  const ConfigTable root = read_config(path);
+  Study study;
+  study.path = path;
+  study.title = root.string_or("title", "");
+  study.base = read_changed_base(root, path);
+  Settings plain;
+  plain.engine = "reference";
+  plain.arithmetic = Arithmetic::float64;
+  const Scene scene = resolve(study.base, plain).scene;
+  read_grid(root, scene, study);
+  read_truth_settings(root, study);
+  read_speed_settings(root, study);
+  read_figures(root, scene, study);
+  read_points(root, study);
+  if (const auto search = root.table_at("search")) study.search = read_axes(*search, study.base);
+  if (study.points.empty() && study.search.empty())
+    root.fail("a study without points", "add a [[sweep]] or a [search]");
+  root.done();
+  study.hash = hash_of(study);
+  return study;
+}
+
+}  // namespace cuboct::study

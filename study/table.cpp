@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "study/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cuboct::study {
+namespace {
+
+constexpr const char* kArithmetic[] = {"float64", "float32", "fixed"};
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-"; }
+
+double error_of(const Results& results, const Outcome& outcome) {
+  return results.figure_names.empty() ? outcome.errors.trajectory : figure_error(outcome);
+}
+
+}  // namespace
+
+double figure_error(const Outcome& outcome) {
+  double worst = kNotMeasured;
+  for (const double error : outcome.errors.figures) {
+    if (std::isnan(error)) return kNotMeasured;
+    worst = std::fmax(worst, error);
+  }
+  return worst;
+}
+
+std::string short_name(const Settings& settings) {
+  std::string text = kArithmetic[static_cast<size_t>(settings.arithmetic)];
+  if (settings.engine != "lattice" && settings.engine != "reference") text = settings.engine + " " + text;
+  if (settings.arithmetic != Arithmetic::fixed)
+    text += settings.integrator == Integrator::velocity_verlet ? " verlet" : " euler";
+  const auto add = [&](const Change& change) {
+    if (change.value.empty() || change.value == "\"auto\"") return;
+    std::string value = change.value;
+    std::erase(value, '"');
+    text += fmt::format(" {} {}", change.key.substr(change.key.rfind('.') + 1), value);
+  };
+  for (const Change& change : settings.scene) add(change);
+  for (const Change& change : settings.arch) add(change);
+  if (settings.threads > 1) text += fmt::format(" threads {}", settings.threads);
+  return text;
+}
+
+std::string cheapest_per_decade(const Results& results) {
+  double least = INFINITY;
+  for (const Outcome& outcome : results.outcomes) {
+    const double error = error_of(results, outcome);
+    if (outcome.status == Status::done && error > 0) least = std::min(least, error);
+  }
+  std::string text = fmt::format("{:>8}  {:>9}  {:>9}  {:>12}  {:>9}  {}\n", "error at", "", "", "particle-",
+                                 "simulated", "");
+  text += fmt::format("{:>8}  {:>9}  {:>9}  {:>12}  {:>9}  {}\n", "most", "error", "cost", "steps/s", "s/s",
+                      "settings");
+  const int last = std::isfinite(least) ? static_cast<int>(std::ceil(std::log10(least) - 1e-12)) : 0;
+  for (int decade = 0; decade >= std::max(last, -16); --decade) {
+    const Outcome* best = nullptr;
+    for (const Outcome& outcome : results.outcomes) {
+      if (outcome.status != Status::done || !(error_of(results, outcome) <= std::pow(10, decade))) continue;
+      if (!best || outcome.cost < best->cost) best = &outcome;
+    }
+    if (!best) continue;
+    text += fmt::format("{:>8}  {:>9}  {:>9}  {:>12}  {:>9}  {}\n", fmt::format("1e{}", decade),
+                        number(error_of(results, *best)), number(best->cost), number(best->speed.particle_steps),
+                        number(best->speed.simulated_seconds), short_name(best->settings));
+  }
+  return text;
+}
+
+std::string describe(const Truth& truth, const Results& results) {
+  std::string text = fmt::format("{:>10}  {:>10}  {:>10}  {:>9}", "dt", "cutoff", "trajectory", "change");
+  for (const std::string& name : results.figure_names) text += fmt::format("  {:>14}", name);
+  text += '\n';
+  for (const Rung& rung : truth.rungs) {
+    text += fmt::format("{:>10.4g}  {:>10.4g}  {:>10}  {:>9}", rung.dt, rung.cutoff, number(rung.trajectory),
+                        number(rung.change));
+    for (const double value : rung.figures) text += fmt::format("  {:>14.8g}", value);
+    text += '\n';
+  }
+  text += fmt::format("horizon {:.4g} s, Lyapunov time {:.4g} s, the truth's own error there {:.2g}\n",
+                      truth.grid.horizon_time(), truth.lyapunov_time, truth.floor);
+  for (const std::string& note : truth.notes) text += note + "\n";
+  return text;
+}
+
+}  // namespace cuboct::study

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Results as text.
+#pragma once
+
+#include <string>
+
+#include "study/store.h"
+
+namespace cuboct::study {
+
+// What of the settings differs from point to point, in one line: "fixed dt_safety 0.1 guard 6".
+std::string short_name(const Settings& settings);
+
+// For each decade of the error that counts, the cheapest point (least `cost`) at least as exact, and its speed. The
+// error: of the worst figure, in studies without figures of the trajectory.
+std::string cheapest_per_decade(const Results& results);
+// The truth: rungs, horizon, notes.
+std::string describe(const Truth& truth, const Results& results);
+
+// The worst relative error of the figures; nan where none was measured.
+double figure_error(const Outcome& outcome);
+
+}  // namespace cuboct::study

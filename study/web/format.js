@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Numbers and settings as people read them.
+"use strict";
+
+const study = JSON.parse(document.getElementById("data").textContent);
+
+const superscript = (n) => String(n).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
+const power_of_ten = (n) => (n === 0 ? "1" : n === 1 ? "10" : "10" + superscript(n));
+
+// Four significant digits: 0.01234, 1.234·10⁻⁷; "–" where there is none.
+function number(x, digits = 4) {
+  if (x === null || x === undefined) return "–";
+  if (x === 0) return "0";
+  const size = Math.abs(x);
+  if (size >= 1e-3 && size < 1e6) return String(Number(x.toPrecision(digits)));
+  const [mantissa, exponent] = x.toExponential(digits - 1).split("e");
+  return Number(mantissa) + "·10" + superscript(Number(exponent));
+}
+
+const escape_html = (text) => String(text).replace(/[<>&"]/g, (c) => ({"<": "&lt;", ">": "&gt;", "&": "&amp;", '"': "&quot;"})[c]);
+
+const series_of_point = [];
+for (const series of study.series) for (const n of series.points) series_of_point[n] = series;
+
+// [name, value] of all that was set.
+function settings_of(point) {
+  const rows = [["engine", point.engine + ", " + point.arithmetic]];
+  if (point.arithmetic !== "fixed") rows.push(["integrator", point.integrator]);
+  rows.push(["threads", point.threads]);
+  return rows.concat(point.scene, point.arch);
+}
+const settings_text = (point) =>
+  settings_of(point).slice(1).map(([name, value]) => name + " " + value).join("; ");
+
+// What a mark tells.
+function tip(n) {
+  const point = study.points[n];
+  const error = study.errors[state.error], speed = study.speeds[state.speed];
+  const rows = settings_of(point);
+  rows.push(["time step, s", number(point.dt)], ["steps", point.steps]);
+  if (error) rows.push([error.label, number(error.values[n])]);
+  if (speed) rows.push([speed.label, number(speed.values[n])]);
+  if (speed && speed.id !== "cost" && point.spread !== null)
+    rows.push(["spread of " + point.repeats + " repeats", number(100 * point.spread, 2) + " %"]);
+  if (point.status !== "done") rows.push([point.status, point.why]);
+  return `<div class="tip"><b>Point ${n + 1}</b><table>` +
+    rows.map(([name, value]) => `<tr><th>${escape_html(name)}</th><td>${escape_html(value)}</td></tr>`).join("") + "</table></div>";
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Puts the page together: selectors, charts, tables.
+"use strict";
+
+// Indices of what the charts show.
+const state = {error: 0, speed: 0};
+
+function draw() {
+  draw_error_speed();
+  draw_parameters();
+  fill_decades();
+}
+
+function fill_select(id, measures, key) {
+  const select = document.getElementById(id);
+  measures.forEach((measure, k) => select.append(new Option(measure.label, String(k))));
+  select.value = String(state[key]);
+  select.addEventListener("change", () => {
+    state[key] = Number(select.value);
+    draw();
+  });
+}
+
+function summarise() {
+  const count = (status) => study.points.filter((p) => p.status === status).length;
+  document.getElementById("summary").textContent =
+    `${study.points.length} points: ${count("done")} done, ${count("unstable")} unstable, ${count("refused")} refused. Machine: ${study.machine || "not told"}.`;
+  const truth = study.truth;
+  document.getElementById("truth-text").textContent = (truth.rungs.length
+    ? `Errors are measured against a run in doubles, refined ${truth.rungs.length - 1} times. ` +
+      (truth.converged ? "Its figures changed by less than the study's tolerance at the last rung. "
+                       : "Its figures still changed by more than the study's tolerance at the last rung. ")
+    : "") +
+    (truth.floor !== null && truth.floor > 0 ? `Its own trajectory is uncertain by ${number(truth.floor, 2)} pitches at the horizon. ` : "") +
+    (truth.lyapunov_time !== null && truth.lyapunov_time > 0 ? `Neighbouring runs part by a factor of e in ${number(truth.lyapunov_time, 3)} s. ` : "") +
+    (truth.largest_frequency ? `The fastest vibration takes ${number(2 * Math.PI / truth.largest_frequency, 3)} s.` : "");
+  const about = document.getElementById("about");
+  for (const [name, text] of [["Machine", study.machine], ["Scene", study.scene]]) {
+    const value = element("dd");
+    value.append(element(text.includes("\n") ? "pre" : "span", text || "not told"));
+    about.append(element("dt", name), value);
+  }
+}
+
+// The first error that is of use to most: the trajectory, where there is one.
+state.error = Math.max(0, study.errors.findIndex((e) => e.id === "trajectory"));
+fill_select("error", study.errors, "error");
+fill_select("speed", study.speeds, "speed");
+summarise();
+draw();
+draw_truth();
+fill_rungs();
+fill_points();
+
+function fit(width) {
+  for (const chart of charts) chart.resize(width ? {width} : {width: "auto"});
+}
+let was_narrow = narrow();
+window.addEventListener("resize", () => {
+  fit();
+  if (narrow() !== was_narrow) {
+    was_narrow = narrow();
+    draw();
+    draw_truth();
+  }
+});
+window.addEventListener("beforeprint", () => fit(680));
+window.addEventListener("afterprint", () => fit());
