@@ -239,6 +239,7 @@ void draw_truth(const Results& results, Script& script) {
   if (lines[0].second.size() > 1) {
     const auto [dt, change] = lines[0].second.front();
     const double last = lines[0].second.back().first;
+    script.plot({{dt, change}, {last, change * last / dt}}, "dt", "lines lw 1.5 dt 3 lc '#000000'");
     script.plot({{dt, change}, {last, change * std::pow(last / dt, 2)}}, "dt^2", "lines lw 1.5 dt 2 lc '#000000'");
   }
   script.end();

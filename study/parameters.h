@@ -34,12 +34,12 @@ struct Parameter {
   std::vector<Sweep> sweeps;       // of at least two points that are done
 };
 
-// Those that take at least two values: the time step, then keys of the scene, then of the arch, in the order in
+// Those of which there are sweeps: the time step, then keys of the scene, then of the arch, in the order in
 // which they occur. Threads are left out: no error depends on them.
 std::vector<Parameter> swept_parameters(const Results& results);
 
 // What theory expects of this error; empty where it expects nothing. docs/reference/numeric.md and physics.md
-// derive them: the integrators are of second order; a table of 2^b entries and degree g is wrong by its
+// derive them: the integrators are of second order, of first where velocities make forces; a table of 2^b entries and degree g is wrong by its
 // entries' width to the power of g + 1; a format's rounding halves with each bit.
 std::vector<Order> expected_orders(const Results& results, const Parameter& parameter,
                                    const Measure& error);

@@ -79,18 +79,46 @@ TEST(Parameters, WhatAPresetSetsTogetherFollows) {
 
 TEST(Parameters, NumbersWithUnitsAndNames) {
   Results results;
-  add(results, {{"packing.pitch", "\"0.5 mm\""}}, {{"table.shape", "\"uniform\""}, {"widths.strength_bits", "18"}}, 1, 1);
-  add(results, {{"packing.pitch", "\"0.25 mm\""}}, {{"table.shape", "\"octaves\""}, {"widths.strength_bits", "22"}}, 1, 1);
-  add(results, {{"packing.pitch", "\"0.25 mm\""}}, {{"widths.strength_bits", "\"auto\""}}, 1, 1);
+  const char* const points[][3] = {{"0.5 mm", "uniform", "18"}, {"0.25 mm", "uniform", "18"},
+                                   {"0.25 mm", "octaves", "18"}, {"0.25 mm", "uniform", "22"},
+                                   {"0.25 mm", "uniform", "\"auto\""}};
+  for (const auto& [pitch, shape, strength] : points)
+    add(results, {{"packing.pitch", fmt::format("\"{}\"", pitch)}},
+        {{"table.shape", fmt::format("\"{}\"", shape)}, {"widths.strength_bits", strength}}, 1, 1);
   const auto found = study::swept_parameters(results);
-  ASSERT_EQ(ids(found), (std::vector<std::string>{"scene.packing.pitch", "arch.table.shape", "arch.widths.strength_bits"}));
+  ASSERT_EQ(ids(found), (std::vector<std::string>{"scene.packing.pitch", "arch.table.shape",
+                                                  "arch.widths.strength_bits"}));
   EXPECT_EQ(found[0].label, "packing.pitch, mm");
-  EXPECT_EQ(found[0].x, (std::vector<double>{0.5, 0.25, 0.25}));
+  EXPECT_EQ(found[0].x, (std::vector<double>{0.5, 0.25, 0.25, 0.25, 0.25}));
+  EXPECT_EQ(sweeps(found[0]), (std::vector<std::vector<size_t>>{{1, 0}}));
   EXPECT_EQ(found[1].names, (std::vector<std::string>{"uniform", "octaves"}));
-  EXPECT_EQ(found[1].x[1], 1);
-  EXPECT_TRUE(std::isnan(found[1].x[2]));
-  EXPECT_EQ(found[2].x[1], 22);
-  EXPECT_TRUE(std::isnan(found[2].x[2]));  // "auto" is no number
+  EXPECT_EQ(sweeps(found[1]), (std::vector<std::vector<size_t>>{{1, 2}}));
+  EXPECT_EQ(sweeps(found[2]), (std::vector<std::vector<size_t>>{{1, 3}}));
+  EXPECT_FALSE(found[2].logarithmic);
+  EXPECT_TRUE(std::isnan(found[2].x[4]));  // "auto" is no number
+}
+
+// Each pitch has time steps of its own; they are still two sweeps.
+TEST(Parameters, APitchDoesNotFollowFromTimeSteps) {
+  Results results;
+  for (const double pitch : {0.5, 0.3})
+    for (const double safety : {0.1, 0.2, 0.4})
+      add(results, {{"packing.pitch", fmt::format("\"{} mm\"", pitch)}, {"run.dt_safety", fmt::format("{}", safety)}},
+          {}, safety * pitch, 1);
+  const auto found = study::swept_parameters(results);
+  ASSERT_EQ(ids(found), (std::vector<std::string>{"dt", "scene.packing.pitch"}));
+  EXPECT_EQ(sweeps(found[0]), (std::vector<std::vector<size_t>>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(sweeps(found[1]), (std::vector<std::vector<size_t>>{{3, 0}, {4, 1}, {5, 2}}));
+}
+
+// What changes only together with several others has no sweep, and so no chart.
+TEST(Parameters, NoChartWithoutASweep) {
+  Results results;
+  for (const int p : {14, 20})
+    for (const int g : {2, 5})
+      add(results, {}, {{"widths.position_frac", std::to_string(p)}, {"widths.guard", std::to_string(g)},
+                        {"widths.velocity_bits", std::to_string(p + g + 1)}}, 1, 1);
+  EXPECT_TRUE(ids(study::swept_parameters(results)).empty());
 }
 
 // error = 5 dt^2 + a rest of other settings: the line goes through the purest points.
@@ -103,9 +131,10 @@ TEST(Orders, OfTheTimeStep) {
   const auto errors = study::error_measures(results);
   const Parameter dt = study::swept_parameters(results)[0];
   const auto orders = study::expected_orders(results, dt, measure(errors, "trajectory"));
-  ASSERT_EQ(orders.size(), 1U);
-  EXPECT_EQ(orders[0].label, "dt^2");
-  const auto line = study::order_line(results, dt, measure(errors, "trajectory"), orders[0]);
+  ASSERT_EQ(orders.size(), 2U);
+  EXPECT_EQ(orders[0].label, "dt, where something damps");
+  EXPECT_EQ(orders[1].label, "dt^2");
+  const auto line = study::order_line(results, dt, measure(errors, "trajectory"), orders[1]);
   ASSERT_TRUE(line);
   EXPECT_EQ(line->first, (std::pair{0.16, 5 * 0.16 * 0.16}));
   EXPECT_EQ(line->second.first, 0.01);
