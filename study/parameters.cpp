@@ -56,7 +56,8 @@ std::optional<Number> number_of(std::string text) {
 }
 
 std::string unquoted(const std::string& text) {
-  return text.size() > 1 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
+  return text.size() > 1 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2)
+                                                                      : text;
 }
 
 // Bits and small counts stay linear.
@@ -151,9 +152,8 @@ std::vector<Parameter> swept_parameters(const Results& results) {
   std::set<std::string> keys;
   for (const Outcome& outcome : results.outcomes) {
     all.push_back(values_of(outcome.settings));
-    for (const auto& [changes, prefix, order] :
-         {std::tuple(&outcome.settings.scene, kScene, &scene_keys),
-          std::tuple(&outcome.settings.arch, kArch, &arch_keys)})
+    for (const auto& [changes, prefix, order] : {std::tuple(&outcome.settings.scene, kScene, &scene_keys),
+                                                 std::tuple(&outcome.settings.arch, kArch, &arch_keys)})
       for (const Change& change : *changes)
         if (keys.insert(prefix + change.key).second) order->push_back(prefix + change.key);
   }
@@ -178,17 +178,17 @@ std::vector<Parameter> swept_parameters(const Results& results) {
   return found;
 }
 
-std::vector<Order> expected_orders(const Results& results, const Parameter& parameter,
-                                   const Measure& error) {
+std::vector<Order> expected_orders(const Results& results, const Parameter& parameter, const Measure& error) {
   using Kind = Measure::Kind;
   const bool motion = error.kind == Kind::trajectory || error.kind == Kind::figure;
   if ((!motion && error.kind != Kind::force) || !parameter.names.empty()) return {};
-  if (parameter.id == "dt") return motion ? std::vector<Order>{{"dt, where something damps", 1, 0, 0}, {"dt^2", 2, 0, 0}}
+  if (parameter.id == "dt")
+    return motion ? std::vector<Order>{{"dt, where something damps", 1, 0, 0}, {"dt^2", 2, 0, 0}}
                   : std::vector<Order>{};
   if (parameter.id == "scene.packing.pitch")
-    return error.kind == Kind::figure ? std::vector<Order>{{"pitch, of free surfaces", 1, 0, 0},
-                                                           {"pitch^2, of the bulk", 2, 0, 0}}
-                                      : std::vector<Order>{};
+    return error.kind == Kind::figure
+               ? std::vector<Order>{{"pitch, of free surfaces", 1, 0, 0}, {"pitch^2, of the bulk", 2, 0, 0}}
+               : std::vector<Order>{};
   if (parameter.id == "arch.table.index_bits") {
     std::set<int> degrees;
     for (size_t n = 0; n < results.outcomes.size(); ++n)
@@ -207,8 +207,8 @@ std::vector<Order> expected_orders(const Results& results, const Parameter& para
   return {};
 }
 
-std::optional<std::pair<std::pair<double, double>, std::pair<double, double>>> order_line(
-    const Results& results, const Parameter& parameter, const Measure& error, const Order& order) {
+std::optional<Line> order_line(const Results& results, const Parameter& parameter, const Measure& error,
+                               const Order& order) {
   // From coarse to fine the order falls.
   const bool falls_with_x = order.power <= 0;
   double coarse = NAN, fine = NAN, least = NAN;
@@ -224,7 +224,7 @@ std::optional<std::pair<std::pair<double, double>, std::pair<double, double>>> o
       if (x == coarse) least = std::min(least, e);
     }
   if (std::isnan(coarse) || coarse == fine) return std::nullopt;
-  return std::pair{std::pair{coarse, least}, std::pair{fine, least * order.at(fine) / order.at(coarse)}};
+  return Line{{coarse, least}, {fine, least * order.at(fine) / order.at(coarse)}};
 }
 
 }  // namespace cuboct::study

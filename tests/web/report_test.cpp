@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a report finds in results: the settings that were varied, the orders that are expected, series and their
-// looks; and that its page and pictures are the same bytes for the same results.
+// What a report finds in results: the settings that were varied, the orders that are expected, series and
+// their looks; and that its page and pictures are the same bytes for the same results.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -69,7 +69,8 @@ TEST(Parameters, WhatAPresetSetsTogetherFollows) {
   Results results;
   for (const int p : {14, 17, 20})
     add(results, {},
-        {{"widths.position_frac", std::to_string(p)}, {"widths.difference_frac", std::to_string(p - 4)}}, 1e-8, 1);
+        {{"widths.position_frac", std::to_string(p)}, {"widths.difference_frac", std::to_string(p - 4)}},
+        1e-8, 1);
   const auto found = study::swept_parameters(results);
   ASSERT_EQ(ids(found),
             (std::vector<std::string>{"arch.widths.position_frac", "arch.widths.difference_frac"}));
@@ -79,8 +80,10 @@ TEST(Parameters, WhatAPresetSetsTogetherFollows) {
 
 TEST(Parameters, NumbersWithUnitsAndNames) {
   Results results;
-  const char* const points[][3] = {{"0.5 mm", "uniform", "18"}, {"0.25 mm", "uniform", "18"},
-                                   {"0.25 mm", "octaves", "18"}, {"0.25 mm", "uniform", "22"},
+  const char* const points[][3] = {{"0.5 mm", "uniform", "18"},
+                                   {"0.25 mm", "uniform", "18"},
+                                   {"0.25 mm", "octaves", "18"},
+                                   {"0.25 mm", "uniform", "22"},
                                    {"0.25 mm", "uniform", "\"auto\""}};
   for (const auto& [pitch, shape, strength] : points)
     add(results, {{"packing.pitch", fmt::format("\"{}\"", pitch)}},
@@ -103,7 +106,8 @@ TEST(Parameters, APitchDoesNotFollowFromTimeSteps) {
   Results results;
   for (const double pitch : {0.5, 0.3})
     for (const double safety : {0.1, 0.2, 0.4})
-      add(results, {{"packing.pitch", fmt::format("\"{} mm\"", pitch)}, {"run.dt_safety", fmt::format("{}", safety)}},
+      add(results,
+          {{"packing.pitch", fmt::format("\"{} mm\"", pitch)}, {"run.dt_safety", fmt::format("{}", safety)}},
           {}, safety * pitch, 1);
   const auto found = study::swept_parameters(results);
   ASSERT_EQ(ids(found), (std::vector<std::string>{"dt", "scene.packing.pitch"}));
@@ -116,8 +120,11 @@ TEST(Parameters, NoChartWithoutASweep) {
   Results results;
   for (const int p : {14, 20})
     for (const int g : {2, 5})
-      add(results, {}, {{"widths.position_frac", std::to_string(p)}, {"widths.guard", std::to_string(g)},
-                        {"widths.velocity_bits", std::to_string(p + g + 1)}}, 1, 1);
+      add(results, {},
+          {{"widths.position_frac", std::to_string(p)},
+           {"widths.guard", std::to_string(g)},
+           {"widths.velocity_bits", std::to_string(p + g + 1)}},
+          1, 1);
   EXPECT_TRUE(ids(study::swept_parameters(results)).empty());
 }
 
@@ -146,8 +153,8 @@ TEST(Orders, OfTablesByTheirDegree) {
   Results results;
   for (const int degree : {1, 2})
     for (const int bits : {4, 6, 8})
-      add(results, {}, {{"table.degree", std::to_string(degree)}, {"table.index_bits", std::to_string(bits)}}, 1,
-          std::exp2(-(degree + 1) * bits));
+      add(results, {}, {{"table.degree", std::to_string(degree)}, {"table.index_bits", std::to_string(bits)}},
+          1, std::exp2(-(degree + 1) * bits));
   const auto errors = study::error_measures(results);
   const auto found = study::swept_parameters(results);
   ASSERT_EQ(ids(found), (std::vector<std::string>{"arch.table.degree", "arch.table.index_bits"}));
@@ -230,11 +237,11 @@ TEST(Charts, PicturesOfEachChartTwiceTheSame) {
   add(results, {}, {}, 0.08, 0).settings.engine = "it's new";
   const Scratch scratch;
   const auto names = study::write_charts(results, scratch.path("a"));
-  EXPECT_EQ(names, (std::vector<std::string>{
-                       "force_max_simulated_seconds.png", "force_max_simulated_seconds.svg",
-                       "trajectory_simulated_seconds.png", "trajectory_simulated_seconds.svg",
-                       "force_max_by_dt.png", "force_max_by_dt.svg", "trajectory_by_dt.png",
-                       "trajectory_by_dt.svg"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"force_max_simulated_seconds.png", "force_max_simulated_seconds.svg",
+                                      "trajectory_simulated_seconds.png", "trajectory_simulated_seconds.svg",
+                                      "force_max_by_dt.png", "force_max_by_dt.svg", "trajectory_by_dt.png",
+                                      "trajectory_by_dt.svg"}));
   EXPECT_EQ(study::write_charts(results, scratch.path("b")), names);
   for (const std::string& name : names) {
     const std::string picture = bytes(scratch.path("a/" + name));
