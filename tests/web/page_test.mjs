@@ -206,6 +206,7 @@ async function fits_a_phone(browser) {
   await hover(page, "error-speed", mark);
   const tip = await page.locator("#error-speed .tip").boundingBox();
   assert.ok(tip.x >= 0 && tip.x + tip.width <= 390, "what a mark tells is cut");
+  assert.ok(tip.height < 400, `what a mark tells is ${tip.height} pixels high`);
   await page.context().close();
 }
 
