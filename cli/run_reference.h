@@ -31,6 +31,7 @@ struct ReferenceRun {
 
 // Ctrl-C gives the run so far. `threads` of `options` may be 0: as many as suit the scene.
 ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t steps,
-                           const std::vector<uint64_t>& frame_steps, const std::vector<uint64_t>& probe_steps);
+                           const std::vector<uint64_t>& frame_steps,
+                           const std::vector<uint64_t>& probe_steps);
 
 }  // namespace cuboct
