@@ -51,10 +51,10 @@ void report(const study::Results& results, const std::string& out) {
 }
 
 int explore(const Options& options) {
-  if (!options.error.empty()) read_error_budget(options.error);
-  if (!options.figure.empty() && options.error.empty()) throw InputError("--figure serves --error only");
   const study::Study study = study::read_study(options.study);
-  if (!options.error.empty()) figure_named(study, options.figure);
+  const bool budget = !options.error.empty();
+  if (budget) check_budget(study, options.error, options.figure);
+  if (!budget && !options.figure.empty()) throw InputError("--figure names the figure of --error E");
   const std::string out = options.out.empty() ? default_directory(options.study) : options.out;
   make_directory(out);
   study::Store store(out + "/results.db", study);
@@ -62,8 +62,7 @@ int explore(const Options& options) {
   for (const std::string& file : options.add) fmt::print("{} rows from {}\n", store.add(file), file);
   study::Runner runner(study, store, {.jobs = options.jobs, .speed = !options.no_speed});
   try {
-    if (!options.error.empty())
-      return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs});
+    if (budget) return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs});
     if (study.points.empty())
       throw InputError(fmt::format("{}: no [[sweep]], so there are no points", options.study),
                        "--error asks its [search]");
@@ -88,10 +87,11 @@ void add_explore(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   command->add_option("--add", options->add, "results of the same study from elsewhere")->type_name("FILE");
-  command->add_option("--error", options->error,
-                      "instead of the sweeps: the cheapest settings of [search] within this error, as 1%")
+  command
+      ->add_option("--error", options->error,
+                   "instead: the cheapest settings of [search] that keep a figure's error within E, as 1% or 0.01")
       ->type_name("E");
-  command->add_option("--figure", options->figure, "whose error --error is")->type_name("NAME");
+  command->add_option("--figure", options->figure, "the figure of --error")->type_name("NAME");
   command->add_flag("--no-speed", options->no_speed, "measure errors alone");
   command->callback([options, &exit_code] { exit_code = explore(*options); });
 }
