@@ -170,7 +170,7 @@ TEST(Stability, ALennardJonesSurfaceIsRelaxedFirst) {
   scene.pitch = relaxed_pitch(*law, 1.1);
   scene.body = test::fcc_block(2, scene.pitch);
   const Subject subject = subject_of(scene);
-  EXPECT_EQ(subject.note.rfind("relaxed first: particles moved by up to 0.0", 0), 0U) << subject.note;
+  EXPECT_EQ(subject.note.rfind("relaxed first: particles moved by up to ", 0), 0U) << subject.note;
   EXPECT_FALSE(subject.limit.body_unstable());
   expect_as_predicted(subject);
 }
