@@ -25,10 +25,19 @@ struct LammpsRun {
   std::string pair;   // the lines that set pair_style and pair_coeff
   double mass = 1, dt = 0;
   int steps = 0;
+  int every = 0;          // steps between samples
   std::vector<std::pair<std::string, std::string>> files;  // name, text: put beside the input
+};
+
+// What LAMMPS measures on its way, of all particles: J and Pa in our words.
+struct LammpsSample {
+  int step = 0;
+  double potential_energy = 0, kinetic_energy = 0, pressure = 0;
 };
 
 // Frames at step 0 and at the last. std::runtime_error with LAMMPS's output where it fails.
 std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body);
+// Samples at step 0, every, 2 every, ...; no frames.
+std::vector<LammpsSample> sample_lammps(const LammpsRun& run, const Body& body);
 
 }  // namespace cuboct::test
