@@ -25,8 +25,8 @@ struct LammpsRun {
   std::string pair;   // the lines that set pair_style and pair_coeff
   double mass = 1, dt = 0;
   int steps = 0;
-  int every = 0;          // steps between samples
   std::vector<std::pair<std::string, std::string>> files;  // name, text: put beside the input
+  int every = 0;  // steps between samples
 };
 
 // What LAMMPS measures on its way, of all particles: J and Pa in our words.

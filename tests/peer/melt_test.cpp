@@ -34,7 +34,7 @@ TEST(Blocks, FindTheErrorOfACorrelatedSeries) {
   EXPECT_LT(std::abs(mean.value), 4 * expected);
   // Independent samples need no blocks.
   for (double& value : x) value = noise();
-  EXPECT_NEAR(test::blocked(x).error * std::sqrt(static_cast<double>(x.size())), 1, 0.05);
+  EXPECT_NEAR(test::blocked(x).error * std::sqrt(static_cast<double>(x.size())), 1, 0.1);
 }
 
 struct Liquid {
@@ -54,7 +54,7 @@ double sigmas(const Mean& a, const Mean& b) { return (a.value - b.value) / std::
 
 TEST(Melt, TemperatureAndPressureAreThoseOfLammps) {
   if (!test::have_lammps()) GTEST_SKIP() << "LAMMPS (lmp) was not found when the build was configured";
-  constexpr int kMelt = 2500, kSteps = 8700, kEvery = 25;  // 10 units of time to melt, 25 to measure
+  constexpr int kMelt = 2000, kSteps = 6000, kEvery = 25;  // 8 units of time to melt, 16 to measure
   const Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/validation/melt_864.toml");
   const auto n = static_cast<double>(scene.body.size());
   Arch arch = read_arch(CUBOCT_SOURCE_DIR "/scenes/validation/default.toml");
@@ -75,7 +75,7 @@ TEST(Melt, TemperatureAndPressureAreThoseOfLammps) {
   const Liquid ours = liquid_of(curve("energy.kinetic"), curve("pressure"), curve("energy.total"), n);
 
   test::LammpsRun peer{scene.periodic, "pair_style lj/smooth/linear 2.5\npair_coeff 1 1 1 1", 1, scene.rule.dt, kSteps,
-                       kEvery, {}};
+                       {}, kEvery};
   std::vector<double> kinetic, pressure, total;
   for (const test::LammpsSample& sample : test::sample_lammps(peer, scene.body)) {
     if (sample.step < kMelt) continue;
