@@ -22,6 +22,7 @@
 #include "emu/lattice/timing.h"
 #include "model/golden.h"
 #include "model/output.h"
+#include "model/reference.h"
 #include "model/spelling.h"
 
 namespace cuboct {
@@ -107,6 +108,7 @@ struct Bed {
   std::unique_ptr<emu::LatticeEngine> lattice;
   std::unique_ptr<emu::TimingModel> timing;
   std::unique_ptr<Golden> golden;
+  std::unique_ptr<Reference> real;
   emu::NodeSlots slots;
   std::optional<Timed> timed;
 };
@@ -169,6 +171,23 @@ void run_golden_block(benchmark::State& state, const std::string& name, const Be
       rate(static_cast<double>(bed.timed->steps()) * bed.loaded->setup.plan.particles);
   state.SetLabel(
       fmt::format("{} particles, 1 thread, {} steps per repeat", scene.particles(), bed.timed->steps()));
+}
+
+void run_real_block(benchmark::State& state, const std::string& name, const BenchScene& scene,
+                    const RealOptions& options, double seconds) {
+  if (too_large(state, scene.particles())) return;
+  Bed& bed = bed_of(name);
+  if (!bed.real) {
+    bed.loaded = load_bench(scene);
+    const Scene& s = bed.loaded->scene;
+    bed.real = std::make_unique<Reference>(s.rule, s.body, s.periodic, options);
+    bed.timed.emplace(seconds);
+  }
+  bed.timed->run(state, [&] { bed.real->step(); });
+  state.counters["particle_steps"] =
+      rate(static_cast<double>(bed.timed->steps()) * static_cast<double>(scene.particles()));
+  state.SetLabel(fmt::format("{} particles, {}, {}, {} steps per repeat", scene.particles(),
+                             counted(options.threads), Reference::simd(), bed.timed->steps()));
 }
 
 // Its own program tells how long the clock ran.
@@ -284,6 +303,21 @@ std::vector<Entry> entries(const Options& options) {
                     cores ? "a thread per core" : "one thread"),
         [=](auto& s) { run_lattice_block(s, name, {}, cores ? all : 1, true, seconds); });
   }
+  for (const auto& [size, cells] : {sizes[0], sizes[1]})
+    for (const bool damped : {false, true})
+      for (const Precision precision : {Precision::float64, Precision::float32})
+        for (const bool cores : {false, true}) {
+          const char* const number = precision == Precision::float32 ? "float" : "double";
+          const std::string name = fmt::format("real.{}_{}_{}.{}", number, damped ? "damped" : "block", size,
+                                               cores ? "all_cores" : "1_thread");
+          const BenchScene scene{.cells = cells, .damped = damped};
+          add(name,
+              fmt::format("the reference engine in {}s, {} particles{}, {}", number, scene.particles(),
+                          damped ? ", damped" : "", cores ? "a thread per core" : "one thread"),
+              [=](benchmark::State& s) {
+                run_real_block(s, name, scene, {.precision = precision, .threads = cores ? all : 1}, seconds);
+              });
+        }
   add("golden.block_4k", "the golden engine, 4000 particles",
       [=](auto& s) { run_golden_block(s, "golden.block_4k", {.cells = 10}, seconds); });
   add("systemc.block_2k", "the clocked engine, 2048 particles, 10 steps",

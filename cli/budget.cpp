@@ -62,15 +62,8 @@ std::string unit_of(const study::Study& study, size_t figure) {
   return study.figures[figure].unit(curves);
 }
 
-// An engine of real numbers looks at no arch: any notch of such an axis is the same run.
 bool is_used(const BudgetAnswer& answer, size_t axis) {
-  const Axis& a = answer.axes[axis];
-  for (size_t n = 0; n < a.sets.size(); ++n) {
-    study::Notches at = answer.result.best.at;
-    at[axis] = static_cast<int>(n);
-    if (!(study::settings_at(answer.axes, at) == answer.chosen.settings)) return true;
-  }
-  return a.sets.size() == 1;
+  return study::matters(answer.axes, answer.result.best.at, axis);
 }
 
 std::string table(const BudgetAnswer& answer, double budget) {
@@ -90,7 +83,14 @@ std::string table(const BudgetAnswer& answer, double budget) {
   }
   rows.push_back({"finest settings", "", percent(std::abs(result.reference_error))});
   rows.push_back({"sum", "", percent(result.best.sum)});
-  return in_columns(rows);
+  std::string text = in_columns(rows);
+  for (size_t k = 0; k < result.cheaper.size(); ++k)
+    if (!answer.why[k].empty()) {
+      const size_t axis = result.cheaper[k].axis;
+      text += fmt::format("{} {}: {}\n", answer.axes[axis].name,
+                          label(answer, axis, result.cheaper[k].spending.at), answer.why[k]);
+    }
+  return text;
 }
 
 std::string settings_of(const BudgetAnswer& answer, const study::Notches& at) {
@@ -149,6 +149,14 @@ size_t figure_named(const study::Study& study, const std::string& name) {
     if (name.empty() || names[k] == name) return k;
   const std::string near = did_you_mean(name, names);
   throw InputError(fmt::format("{}: no figure '{}'", study.path, name), near.empty() ? "known: " + list_of(names) : near);
+}
+
+void check_budget(const study::Study& study, const std::string& error, const std::string& figure) {
+  read_error_budget(error);
+  figure_named(study, figure);
+  if (study.search.empty())
+    throw InputError(fmt::format("{}: no [search] to choose from", study.path),
+                     "list settings from cheap to dear, e.g. [search] dt_safety = [0.8, 0.4, 0.2]");
 }
 
 int run_budget(const study::Study& study, const study::Truth& truth, const BudgetOptions& options) {

@@ -22,6 +22,9 @@ double read_error_budget(const std::string& text);
 // Throws InputError where the study has no such figure, or several and none is named.
 size_t figure_named(const study::Study& study, const std::string& name);
 
+// What of a question can be told before anything is computed. Throws InputError.
+void check_budget(const study::Study& study, const std::string& error, const std::string& figure);
+
 // Prints what was chosen and writes it to DIR. The exit code: 0, or 1 where no settings keep the budget.
 int run_budget(const study::Study& study, const study::Truth& truth, const BudgetOptions& options);
 

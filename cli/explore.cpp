@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cli/budget.h"
 #include "cli/command.h"
 #include "model/interrupt.h"
 #include "model/output.h"
@@ -15,7 +16,7 @@ namespace cuboct {
 namespace {
 
 struct Options {
-  std::string study, out;
+  std::string study, out, error, figure;
   std::vector<std::string> add;
   int jobs = 0;
   bool no_speed = false;
@@ -37,6 +38,9 @@ void print_table(const study::Results& results) {
 
 int explore(const Options& options) {
   const study::Study study = study::read_study(options.study);
+  const bool budget = !options.error.empty();
+  if (budget) check_budget(study, options.error, options.figure);
+  if (!budget && !options.figure.empty()) throw InputError("--figure names the figure of --error E");
   const std::string out = options.out.empty() ? default_directory(options.study) : options.out;
   make_directory(out);
   study::Store store(out + "/results.db", study);
@@ -45,6 +49,7 @@ int explore(const Options& options) {
     fmt::print("{} rows from {}\n", store.add(file), file);
   study::Runner runner(study, store, {.jobs = options.jobs, .speed = !options.no_speed});
   try {
+    if (budget) return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs});
     runner.run();
   } catch (const study::Interrupted&) {
     fmt::print(stderr, "interrupted; the same command goes on where it was\n");
@@ -66,6 +71,11 @@ void add_explore(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   command->add_option("--add", options->add, "results of the same study from elsewhere")->type_name("FILE");
+  command
+      ->add_option("--error", options->error,
+                   "instead: the cheapest settings of [search] that keep a figure's error within E, as 1% or 0.01")
+      ->type_name("E");
+  command->add_option("--figure", options->figure, "the figure of --error")->type_name("NAME");
   command->add_flag("--no-speed", options->no_speed, "measure errors alone");
   command->callback([options, &exit_code] { exit_code = explore(*options); });
 }

@@ -27,27 +27,50 @@ std::string quoted(const std::string& text) {
 }  // namespace
 
 void Items::add(const std::string& name, const std::string& text) {
-  items_.push_back({name, text, quoted(text), "", ""});
+  items_.push_back({name, text, quoted(text), "", "", false});
 }
 
 void Items::add(const std::string& name, uint64_t value, const std::string& unit, const std::string& note) {
-  items_.push_back({name, std::to_string(value), std::to_string(value), unit, note});
+  items_.push_back({name, std::to_string(value), std::to_string(value), unit, note, false});
 }
 
 void Items::add(const std::string& name, int64_t value, const std::string& unit, const std::string& note) {
-  items_.push_back({name, std::to_string(value), std::to_string(value), unit, note});
+  items_.push_back({name, std::to_string(value), std::to_string(value), unit, note, false});
 }
 
 void Items::add(const std::string& name, double value, const std::string& unit, const std::string& note) {
   items_.push_back({name, fmt::format("{:.6g}", value),
-                    std::isfinite(value) ? fmt::format("{}", value) : "null", unit, note});
+                    std::isfinite(value) ? fmt::format("{}", value) : "null", unit, note, false});
+}
+
+void Items::add_list(const std::string& name, const std::string& line, const std::vector<Items>& list) {
+  Item item{name, "", "[", "", "", true};
+  const char* separator = "";
+  for (const Items& one : list) {
+    item.json += fmt::format("{}\n    {{", separator);
+    const char* inner = "";
+    for (const Item& part : one.all()) {
+      if (part.name == "text") item.text += fmt::format("{}: {}\n", line, part.text);
+      item.json += fmt::format("{}{}: {}", inner, quoted(part.name), part.json);
+      inner = ", ";
+    }
+    item.json += "}";
+    separator = ",";
+  }
+  item.json += list.empty() ? "]" : "\n  ]";
+  items_.push_back(std::move(item));
 }
 
 std::string Items::text() const {
   size_t width = 0;
-  for (const Item& item : items_) width = std::max(width, item.name.size());
+  for (const Item& item : items_)
+    if (!item.list) width = std::max(width, item.name.size());
   std::string out;
   for (const Item& item : items_) {
+    if (item.list) {
+      out += item.text;
+      continue;
+    }
     out += fmt::format("{:<{}}  {}", item.name, width, item.text);
     if (!item.unit.empty()) out += " " + item.unit;
     if (!item.note.empty()) out += " (" + item.note + ")";

@@ -25,6 +25,10 @@ class Items {
   }
   void add(const std::string& name, double value, const std::string& unit = {}, const std::string& note = {});
 
+  // Several findings of one kind: in the text a line "line: <text>" each, where <text> is the value of its item
+  // "text"; in JSON {"value": [{"step": 1, ...}, ...]}, values alone.
+  void add_list(const std::string& name, const std::string& line, const std::vector<Items>& list);
+
   // "name   value unit (note)" per line, values in one column.
   std::string text() const;
   // {"name": {"value": 1, "unit": "m", "note": "..."}, ...} with a final newline; blanks of names become '_'.
@@ -33,6 +37,7 @@ class Items {
 
   struct Item {
     std::string name, text, json, unit, note;  // `json`: the value as JSON
+    bool list = false;                         // `text` is whole lines
   };
   const std::vector<Item>& all() const { return items_; }
 

@@ -6,11 +6,11 @@
 
 #include "cli/command.h"
 #include "cli/engines.h"
-#include "cli/run_lattice.h"
-#include "model/interrupt.h"
 #include "cli/outputs.h"
+#include "cli/run_lattice.h"
 #include "cli/run_reference.h"
 #include "cli/summary.h"
+#include "model/interrupt.h"
 #include "model/output.h"
 #include "model/steps.h"
 
@@ -21,10 +21,11 @@ struct Options {
   Input input;
   std::string engine = "lattice";
   LatticeChoice lattice;
+  RealChoice real;
   std::string out;
   uint64_t steps = 0;
   uint64_t frames_every = 0;
-  bool steps_given = false, frames_given = false, json = false;
+  bool steps_given = false, frames_given = false, json = false, no_watch = false;
 };
 
 void write_outputs(const Options& options, const Loaded& loaded, const Trace& trace,
@@ -49,12 +50,14 @@ RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::Latti
   if (options.lattice.keeps_checkpoints())
     request.checkpoint.path = options.out + "/checkpoint";
   request.energies = true;
+  request.watch = !options.no_watch;
   request.cycles = options.lattice.cycles;
   request.hash_every = options.lattice.hash_every;
   emu::LatticeResult result =
       run_on_lattice(options.input, loaded.scene, loaded.setup.plan, options.lattice, std::move(request));
   trace = std::move(result.trace);
-  return {result.momentum_before, result.momentum_after, result.largest_speed, trace.curves};
+  return {result.momentum_before, result.momentum_after, result.largest_speed, trace.curves,
+          result.watched.has_value(), std::move(result.findings), result.watched};
 }
 
 int run(Options options) {
@@ -62,7 +65,9 @@ int run(Options options) {
   allowed.push_back("reference");
   check_engine(options.engine, allowed);
   const bool lattice = options.engine == "lattice";
+  const bool reference = options.engine == "reference";
   if (!lattice) options.lattice.check_unused(options.engine);
+  if (!reference) options.real.check_unused(options.engine);
   const Loaded loaded = lattice ? load_plan(options.input) : load(options.input);
   catch_interrupts();
   if (!options.out.empty()) prepare_directory(options.out);
@@ -75,11 +80,15 @@ int run(Options options) {
   Trace trace;
   std::vector<Frame> frames;
   Items summary;
-  if (options.engine == "reference") {
-    ReferenceRun reference = run_reference(loaded, steps, frame_steps, probe_steps);
-    trace = std::move(reference.trace);
-    frames = std::move(reference.frames);
-    summary = std::move(reference.summary);
+  bool failed = false;  // in the sense of model/watch.h
+  if (reference) {
+    RealOptions real = options.real.options();
+    real.threads = options.lattice.threads;
+    ReferenceRun run = run_reference(loaded, real, steps, frame_steps, probe_steps, !options.no_watch);
+    failed = run.failed;
+    trace = std::move(run.trace);
+    frames = std::move(run.frames);
+    summary = std::move(run.summary);
   } else if (lattice) {
     emu::LatticeRun request;
     request.steps = steps;
@@ -87,6 +96,7 @@ int run(Options options) {
     request.probes = probe_steps;
     const RunFacts facts = run_by_lattice(options, loaded, std::move(request), trace);
     summary = summarise(loaded, trace, facts);
+    failed = !facts.findings.empty();
     if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   } else {
     // Engines know nothing of probes: they record states, and one meter reads them.
@@ -94,7 +104,7 @@ int run(Options options) {
     std::set_union(frame_steps.begin(), frame_steps.end(), probe_steps.begin(), probe_steps.end(),
                    std::back_inserter(request.frames));
     if (options.engine == "golden") request.frames = frame_steps;
-    RunMeter meter(loaded, probe_steps);
+    RunMeter meter(loaded, probe_steps, !options.no_watch);
     trace = run_fixed(options.engine, options.input, loaded.setup, request,
                       [&](const State& state) { meter.see(state); });
     const RunFacts facts = meter.finish();
@@ -104,6 +114,7 @@ int run(Options options) {
              !std::binary_search(frame_steps.begin(), frame_steps.end(), frame.step);
     });
     summary = summarise(loaded, trace, facts);
+    failed = !facts.findings.empty();
     if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   }
   if (!options.out.empty()) write_outputs(options, loaded, trace, frames, summary);
@@ -114,7 +125,7 @@ int run(Options options) {
                kept ? fmt::format("; the same command with --resume goes on at step {}", trace.steps()) : "");
   else if (kept)
     emu::remove_checkpoint(options.out + "/checkpoint");
-  return trace.stop || interrupted() ? 1 : 0;
+  return trace.stop || failed || interrupted() ? 1 : 0;
 }
 
 }  // namespace
@@ -124,7 +135,7 @@ void add_run(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "run a scene and end with a summary");
   options->input.add_to(*command);
   options->input.add_stalls_to(*command);
-  command->add_option("--engine", options->engine, "lattice, golden, systemc, rtl or reference (doubles)")
+  command->add_option("--engine", options->engine, "lattice, golden, systemc, rtl or reference (doubles or floats)")
       ->capture_default_str();
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
                     ->check(whole_number())
@@ -136,6 +147,7 @@ void add_run(CLI::App& app, int& exit_code) {
                      ->type_name("K");
   LatticeChoice& lattice = options->lattice;
   lattice.add_to(*command);
+  options->real.add_to(*command);
   command->add_option("--hash-every", lattice.hash_every, "steps between two hashes of lattice's state")
       ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))
       ->capture_default_str()
@@ -148,6 +160,8 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--resume", lattice.resume, "go on from the checkpoint in DIR");
   command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
       ->type_name("DIR");
+  command->add_flag("--no-watch", options->no_watch,
+                    "do not look for what makes a run wrong (docs/reference/failures.md)");
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->callback([options, steps, frames, &exit_code] {
     options->steps_given = steps->count() > 0;

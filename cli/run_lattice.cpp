@@ -77,7 +77,7 @@ emu::LatticeResult run_over_mpi(const Input& input, const Plan& plan, const Latt
 }  // namespace
 
 void LatticeChoice::add_to(CLI::App& command) {
-  command.add_option("--threads", threads, "threads of lattice; default: as many as suit the scene")
+  command.add_option("--threads", threads, "threads of lattice or reference; default: as many as suit the scene")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   command.add_option("--ranks", ranks, "processes of lattice, over MPI")
@@ -90,7 +90,9 @@ void LatticeChoice::check_unused(const std::string& engine) const {
     if (given)
       throw InputError(fmt::format("{} is an option of the lattice engine, not of {}", option, engine));
   };
-  refuse(threads > 0, "--threads");
+  if (threads > 0 && engine != "reference")
+    throw InputError(
+        fmt::format("--threads is an option of the lattice and the reference engine, not of {}", engine));
   refuse(ranks > 1, "--ranks");
   refuse(cycles, "--cycles");
   refuse(!checkpoint_every.empty(), "--checkpoint-every");

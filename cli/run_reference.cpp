@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "cli/run_reference.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
-#include "model/interrupt.h"
 #include "cli/outputs.h"
+#include "cli/summary.h"
+#include "model/error.h"
+#include "model/interrupt.h"
 #include "model/progress.h"
 #include "model/measure.h"
-#include "model/reference.h"
 #include "model/strain.h"
 
 namespace cuboct {
 namespace {
 
-// Kinetic energy at the time of the positions: v + a dt/2, as v lives half a step earlier.
+// A thread of its own for this many particles.
+constexpr size_t kParticlesPerThread = 2000;
+
+// Kinetic energy at the time of the positions under semi-implicit Euler: v + a dt/2, as v lives half a step earlier.
 double kinetic_energy(const Rule& rule, const Body& body, const std::vector<Vec3>& force) {
   double sum = 0;
   for (size_t i = 0; i < body.size(); ++i) {
@@ -30,11 +37,39 @@ double kinetic_energy(const Rule& rule, const Body& body, const std::vector<Vec3
 
 }  // namespace
 
-ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vector<uint64_t>& frame_steps,
-                           const std::vector<uint64_t>& probe_steps) {
+void RealChoice::add_to(CLI::App& command) {
+  command.add_option("--precision", precision, "double or float: the numbers of reference")
+      ->check(CLI::IsMember({"double", "float"}))
+      ->capture_default_str();
+  command.add_option("--integrator", integrator, "euler (semi-implicit, as the fixed rule) or verlet, of reference")
+      ->check(CLI::IsMember({"euler", "verlet"}))
+      ->capture_default_str();
+}
+
+void RealChoice::check_unused(const std::string& engine) const {
+  const auto refuse = [&](bool given, const char* option) {
+    if (given)
+      throw InputError(fmt::format("{} is an option of the reference engine, not of {}", option, engine));
+  };
+  refuse(precision != "double", "--precision");
+  refuse(integrator != "euler", "--integrator");
+}
+
+RealOptions RealChoice::options() const {
+  return {.integrator = integrator == "verlet" ? Integrator::velocity_verlet : Integrator::semi_implicit_euler,
+          .precision = precision == "float" ? Precision::float32 : Precision::float64};
+}
+
+ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t steps,
+                           const std::vector<uint64_t>& frame_steps, const std::vector<uint64_t>& probe_steps,
+                           bool watch) {
   using Clock = std::chrono::steady_clock;
   const Scene& scene = loaded.scene;
-  Reference reference(scene.rule, scene.body, scene.periodic, Integrator::semi_implicit_euler);
+  if (options.threads == 0)
+    options.threads = static_cast<int>(std::clamp<size_t>(scene.body.size() / kParticlesPerThread, 1,
+                                                          std::max(1u, std::thread::hardware_concurrency())));
+  Reference reference(scene.rule, scene.body, scene.periodic, options);
+  const bool verlet = options.integrator == Integrator::velocity_verlet;
   ReferenceRun run;
   run.trace.engine = "reference";
   run.trace.plan_hash = loaded.setup.plan.hash;
@@ -43,20 +78,23 @@ ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vect
   const StrainMeter strains = strain_meter(scene, scene.body.x);
   const int axis = strain_axis(scene);
   Curve kinetic{"energy.kinetic", "J", {}, {}}, potential{"energy.potential", "J", {}, {}};
-  double fastest = 0;
+  Watch detectors(scene, 0);
 
   const auto record = [&](uint64_t step, bool last) {
+    const bool probed = last || std::binary_search(probe_steps.begin(), probe_steps.end(), step);
+    const bool kept = last || std::binary_search(frame_steps.begin(), frame_steps.end(), step);
+    if (!probed && !kept) return;
     const Body& body = reference.body();
-    for (const Vec3& v : body.v) fastest = std::max(fastest, v.cwiseAbs().maxCoeff());
-    if (last || std::binary_search(probe_steps.begin(), probe_steps.end(), step)) {
+    if (probed) {
       const std::vector<Vec3> force = reference.forces();
       probes.add({step, body.x, force});
       kinetic.step.push_back(step);
-      kinetic.value.push_back(kinetic_energy(scene.rule, body, force));
+      kinetic.value.push_back(verlet ? reference.kinetic_energy() : kinetic_energy(scene.rule, body, force));
       potential.step.push_back(step);
       potential.value.push_back(reference.potential_energy());
+      if (watch) detectors.see(step, body, force, kinetic.value.back(), potential.value.back());
     }
-    if (last || std::binary_search(frame_steps.begin(), frame_steps.end(), step)) {
+    if (kept) {
       Frame frame{step, static_cast<double>(step) * scene.rule.dt, body.x, body.v, body.type, {}};
       for (const LocalStrain& strain : strains.measure(body.x)) frame.strain.push_back(strain.axial(axis));
       run.frames.push_back(std::move(frame));
@@ -82,6 +120,9 @@ ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vect
 
   Items& items = run.summary;
   items.add("engine", "reference");
+  items.add("precision", options.precision == Precision::float32 ? "float" : "double");
+  items.add("integrator", verlet ? "velocity Verlet" : "semi-implicit Euler");
+  items.add("threads", static_cast<uint64_t>(options.threads));
   items.add("scene", scene.path);
   items.add("particles", static_cast<uint64_t>(scene.body.size()));
   items.add("steps", step);
@@ -95,7 +136,9 @@ ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vect
   items.add("energy change",
             kinetic.value.back() + potential.value.back() - kinetic.value.front() - potential.value.front(),
             "J");
-  items.add("largest speed", fastest * scene.rule.dt / loaded.setup.plan.rule.cell_edge, "node/step");
+  items.add("largest speed", reference.largest_speed() * scene.rule.dt / loaded.setup.plan.rule.cell_edge, "node/step");
+  if (watch) add_findings(items, detectors.findings());
+  run.failed = !detectors.findings().empty();
   return run;
 }
 

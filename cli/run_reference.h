@@ -1,24 +1,38 @@
 // SPDX-License-Identifier: MIT
-// The rule in doubles over the same scene: the same curves and frames, no bits to compare.
+// The rule in real numbers over the same scene: the same curves and frames, no bits to compare.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "cli/command.h"
 #include "cli/items.h"
 #include "model/frames.h"
+#include "model/reference.h"
 #include "model/trace.h"
 
 namespace cuboct {
+
+// What the command line says about the reference engine.
+struct RealChoice {
+  std::string precision = "double", integrator = "euler";
+
+  void add_to(CLI::App& command);  // --precision and --integrator
+  // Throws InputError where an option is given that only the reference engine has.
+  void check_unused(const std::string& engine) const;
+  RealOptions options() const;
+};
 
 struct ReferenceRun {
   Trace trace;  // curves, no hashes
   std::vector<Frame> frames;
   Items summary;
+  bool failed = false;  // the watch found something
 };
 
-// Semi-implicit Euler, as the fixed engines. Ctrl-C gives the run so far.
-ReferenceRun run_reference(const Loaded& loaded, uint64_t steps, const std::vector<uint64_t>& frame_steps,
-                           const std::vector<uint64_t>& probe_steps);
+// Ctrl-C gives the run so far. `threads` of `options` may be 0: as many as suit the scene.
+ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t steps,
+                           const std::vector<uint64_t>& frame_steps, const std::vector<uint64_t>& probe_steps,
+                           bool watch);
 
 }  // namespace cuboct

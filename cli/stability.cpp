@@ -235,7 +235,7 @@ int stability(const Options& options) {
              scene, axis, strain);
     if (!options.maps.empty())
       for (const study::StabilityMap& map :
-           study::stability_maps(scene, arch, axis, [&](const std::string& name, double done) {
+           study::stability_maps(scene, arch, axis, 26, [&](const std::string& name, double done) {
              status.say(fmt::format("map of {}: {:.0f} %", name, 100 * done));
            }))
         for (const std::string& path : draw(map, options.maps)) drawn.push_back(path);

@@ -6,13 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/advice.h"
+
 namespace cuboct {
-RunMeter::RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps)
+RunMeter::RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps, bool watch)
     : loaded_(loaded),
       probe_steps_(probe_steps.begin(), probe_steps.end()),
       meter_(
           loaded.scene, loaded.setup.plan.rule, loaded.setup.plan.lattice, loaded.setup.plan.origin,
-          [&](uint32_t id) { return loaded.setup.initial.particles[id]; }, true) {}
+          [&](uint32_t id) { return loaded.setup.initial.particles[id]; }, true, 0, watch) {}
 
 void RunMeter::see(const State& state) {
   if (!any_) facts_.momentum_before = momentum(state);
@@ -28,6 +30,11 @@ RunFacts RunMeter::finish() {
   if (any_ && !measured_) meter_.add(last_);
   facts_.momentum_after = momentum(last_);
   facts_.curves = meter_.curves();
+  if (const Watch* watch = meter_.watch()) {
+    facts_.watch = true;
+    facts_.findings = watch->findings();
+    facts_.watched = watch->last_step();
+  }
   return facts_;
 }
 
@@ -45,6 +52,23 @@ std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
   }
   result.mean = static_cast<double>(before) / static_cast<double>(steps);
   return result;
+}
+
+void add_findings(Items& items, const std::vector<Finding>& findings) {
+  std::vector<Items> list;
+  for (const Finding& f : findings) {
+    Items& item = list.emplace_back();
+    item.add("failure", to_string(f.failure));
+    item.add("step", f.step);
+    if (f.particle) {
+      item.add("particle", *f.particle);
+      for (int a = 0; a < 3; ++a) item.add(std::string(1, "xyz"[a]), f.place[a], "m");
+    }
+    item.add("number", f.number);
+    item.add("limit", f.limit);
+    item.add("text", f.text);
+  }
+  items.add_list("warnings", "warning", list);
 }
 
 Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts) {
@@ -85,7 +109,14 @@ Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts)
   for (const auto& [name, value] : trace.counters) items.add(name, value);
   items.add("plan hash", fmt::format("{:016x}", trace.plan_hash));
   if (!trace.state_hash.empty()) items.add("state hash", fmt::format("{:016x}", trace.state_hash.back()));
-  if (trace.stop) items.add("stopped", trace.stop->text);
+  if (facts.watch) add_findings(items, facts.findings);
+  if (trace.stop) {
+    if (facts.watched)
+      items.add("last look", fmt::format("step {}: {}", *facts.watched,
+                                         facts.findings.empty() ? "nothing amiss" : "see the warnings"));
+    items.add("advice", advice_on(*trace.stop, plan, loaded.scene));
+    items.add("stopped", trace.stop->text);
+  }
   return items;
 }
 

@@ -19,13 +19,16 @@ struct RunFacts {
   Int3 momentum_before{}, momentum_after{};  // P+G fractional bits
   double largest_speed = 0;                  // nodes per step, over the states that were looked at
   std::vector<Curve> curves;                 // energy.total among them
+  bool watch = false;                        // whether anyone looked for failures
+  std::vector<Finding> findings;             // what was found
+  std::optional<uint64_t> watched;           // the last step that was looked at
 };
 
 // Watches the states of a run: probe curves at the probe steps, energies there and at the last state, largest
 // speed.
 class RunMeter {
  public:
-  RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps);
+  RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps, bool watch);
 
   void see(const State& state);
   // Measures the last state too, where it was no probe step. To be called once.
@@ -46,6 +49,9 @@ struct CyclesPerStep {
   uint64_t max = 0;
 };
 std::optional<CyclesPerStep> cycles_per_step(const Trace& trace);
+
+// "warning: ..." lines and the array "warnings", where someone watched.
+void add_findings(Items& items, const std::vector<Finding>& findings);
 
 Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts);
 

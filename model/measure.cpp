@@ -76,6 +76,16 @@ Vec3 between(const Particle& i, const Int3& x_j) {
           static_cast<double>(x_j[2] - i.x[2])};
 }
 
+struct PairEnergy {
+  double energy = 0;  // J
+  ClosestPair closest;
+  PairEnergy& operator+=(const PairEnergy& other) {
+    energy += other.energy;
+    if (other.closest.r < closest.r) closest = other.closest;
+    return *this;
+  }
+};
+
 double velocity_unit(const FixedRule& rule) {
   return std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
 }
@@ -106,7 +116,7 @@ Vec3 force_of(const FixedRule& rule, const Int3& kick) {
 }
 
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
-                  const State& state, const std::vector<Int3>& kicks, int threads) {
+                  const State& state, const std::vector<Int3>& kicks, int threads, ClosestPair* closest) {
   Energies sum;
   const double length = std::ldexp(fixed.cell_edge, -fixed.widths.position_frac);
   const double velocity = velocity_unit(fixed);
@@ -126,12 +136,15 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
     }
   }
   const double cutoff = rule.law->cutoff();
-  sum.potential =
-      sum_over_pairs(fixed, lattice, state, 0.0, threads, [&](uint32_t i, uint32_t j, const Int3& x_j) {
+  const PairEnergy pairs = sum_over_pairs(
+      fixed, lattice, state, PairEnergy{}, threads, [&](uint32_t i, uint32_t j, const Int3& x_j) -> PairEnergy {
         const Particle &a = state.particles[i], &b = state.particles[j];
         const double r = between(a, x_j).norm() * length;
-        return r < cutoff ? rule.law->energy(r) * rule.strength_of(a.type, b.type) : 0.0;
+        if (r >= cutoff) return {};
+        return {rule.law->energy(r) * rule.strength_of(a.type, b.type), {a.id, b.id, r}};
       });
+  sum.potential = pairs.energy;
+  if (closest) *closest = pairs.closest;
   return sum;
 }
 

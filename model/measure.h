@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -32,8 +33,15 @@ struct Energies {
   double total() const { return kinetic + potential + gravity; }
 };
 
+// The two particles that are nearest to each other inside the cutoff; r infinite where none are.
+struct ClosestPair {
+  uint32_t i = 0, j = 0;  // ids, i < j
+  double r = std::numeric_limits<double>::infinity();  // m
+};
+
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
-                  const State& state, const std::vector<Int3>& kicks, int threads = 0);
+                  const State& state, const std::vector<Int3>& kicks, int threads = 0,
+                  ClosestPair* closest = nullptr);
 
 // Virial stress of the whole body over `volume` (m^3), Pa, tension positive: the sum over pairs of f (x) d by the
 // kicks that the machine adds up and the positions that it holds. In a periodic box the mean of

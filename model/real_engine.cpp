@@ -10,6 +10,9 @@
 namespace cuboct {
 namespace {
 
+// Threads for fewer particles would cost more than they bring.
+constexpr size_t kParticlesPerThread = 64;
+
 // Lists are planned anew when the first steps have shown how far particles go, and now and then later.
 constexpr uint64_t kFirstPlan = 20, kPlanEvery = 1000;
 
@@ -40,7 +43,9 @@ class Engine final : public RealEngine {
  public:
   Engine(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options)
       : force_(rule, periodic),
-        list_(rule.law->cutoff(), periodic, pair_lanes<Real>(), options.threads),
+        threads_(static_cast<int>(std::clamp<size_t>(body.size() / kParticlesPerThread, 1,
+                                                      static_cast<size_t>(std::max(1, options.threads))))),
+        list_(rule.law->cutoff(), periodic, pair_lanes<Real>(), threads_),
         options_(options),
         mass_(static_cast<Real>(rule.mass)),
         dt_(rule.dt),
@@ -60,7 +65,10 @@ class Engine final : public RealEngine {
       rank_[i] = static_cast<uint32_t>(i);
     }
     double fastest = 0;
-    for (const Vec3& v : body.v) fastest = std::max(fastest, v.norm());
+    for (const Vec3& v : body.v) {
+      fastest = std::max(fastest, v.norm());
+      fastest_ = std::max(fastest_, static_cast<Real>(v.cwiseAbs().maxCoeff()));
+    }
     relist(0, true, std::isfinite(fastest) ? fastest * dt_ : 0);
     plan_in_ = kFirstPlan;
     if (options.integrator == Integrator::velocity_verlet) evaluate(0);
@@ -89,6 +97,7 @@ class Engine final : public RealEngine {
     unpack(f, by_id);
     return by_id;
   }
+  double largest_speed() const override { return static_cast<double>(fastest_); }
   const VerletList& list() const override { return list_; }
   uint64_t lists_made() const override { return lists_made_; }
 
@@ -106,7 +115,7 @@ class Engine final : public RealEngine {
 
   void sum(std::vector<Real>& f) const {
     const std::vector<PairRows>& parts = list_.parts();
-#pragma omp parallel for num_threads(options_.threads) schedule(static, 1)
+#pragma omp parallel for num_threads(threads_) schedule(static, 1)
     for (size_t p = 0; p < parts.size(); ++p) pair_forces(force_, parts[p], x_.data(), v_.data(), f.data());
   }
   void evaluate(uint64_t number) {
@@ -136,9 +145,9 @@ class Engine final : public RealEngine {
   template <bool kDrifts>
   void move(double kick, double drift, uint64_t number) {
     const Real kick_dt = static_cast<Real>(kick), drift_dt = static_cast<Real>(drift);
-    Real farthest2 = 0;
+    Real farthest2 = 0, fastest = fastest_;
     bool lost = false;
-#pragma omp parallel for num_threads(options_.threads) schedule(static) reduction(max : farthest2) reduction(|| : lost)
+#pragma omp parallel for num_threads(threads_) schedule(static) reduction(max : farthest2, fastest) reduction(|| : lost)
     for (size_t s = 0; s < particles_; ++s) {
       const Push<Real>& push = pushes_[type_[s]];
       Real* const x = &x_[4 * s];
@@ -151,6 +160,7 @@ class Engine final : public RealEngine {
         const Real a = total / mass_ + push.gravity[axis];
         const Real free = v[axis] + a * kick_dt;
         v[axis] = push.imposed[axis] ? push.velocity[axis] : free;
+        fastest = std::max(fastest, std::abs(v[axis]));
         if (!kDrifts) continue;
         if (push.pd) u_[4 * s + axis] += (v[axis] - push.velocity[axis]) * drift_dt;
         x[axis] += v[axis] * drift_dt;
@@ -161,6 +171,7 @@ class Engine final : public RealEngine {
       farthest2 = std::max(farthest2, moved2);
       lost = lost || !std::isfinite(moved2);
     }
+    fastest_ = fastest;
     if (!kDrifts) return;
     ++steps_on_list_;
     const double farthest = std::sqrt(static_cast<double>(farthest2));
@@ -200,6 +211,7 @@ class Engine final : public RealEngine {
   }
 
   const PairForce<Real> force_;
+  const int threads_;
   VerletList list_;
   const RealOptions options_;
   const Real mass_;
@@ -213,6 +225,7 @@ class Engine final : public RealEngine {
   std::vector<Real> listed_;  // x when the list was made
   std::vector<uint8_t> type_;
   std::vector<uint32_t> rank_;  // [id]: slot
+  Real fastest_ = 0;  // m/s, along an axis, since the start
   uint64_t steps_on_list_ = 0, plan_in_ = kPlanEvery, lists_made_ = 0;
 };
 

@@ -18,6 +18,7 @@ class RealEngine {
   // x, v and u by id.
   virtual void read(Body& body) const = 0;
   virtual std::vector<Vec3> forces() const = 0;
+  virtual double largest_speed() const = 0;  // m/s, along an axis, since the start
   virtual const VerletList& list() const = 0;
   virtual uint64_t lists_made() const = 0;
 };

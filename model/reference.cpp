@@ -47,6 +47,7 @@ const Body& Reference::body() const {
 }
 
 std::vector<Vec3> Reference::forces() const { return engine_->forces(); }
+double Reference::largest_speed() const { return engine_->largest_speed(); }
 uint64_t Reference::lists_made() const { return engine_->lists_made(); }
 const char* Reference::simd() { return pair_simd(); }
 

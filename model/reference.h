@@ -69,6 +69,8 @@ class Reference {
   double kinetic_energy() const;
   // kg m/s
   Vec3 momentum() const;
+  // m/s, along an axis, of any particle since the start.
+  double largest_speed() const;
   // Virial stress of each particle, Pa, tension positive: sum over its pairs of f (x) d / 2 over `volume`
   // (m^3, per particle; fcc_volume(pitch) in a packing). The mean over a periodic box is the box's stress at
   // rest: the kinetic part -m v (x) v / volume is left out, as it would count the motion of a body as stress.

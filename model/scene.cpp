@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "model/dynamical_matrix.h"
 #include "model/error.h"
 #include "model/scene_parts.h"
+#include "model/vibrations.h"
 
 namespace cuboct {
 namespace {
@@ -54,13 +57,59 @@ class DampingAsLaw final : public PairLaw {
   const Rule& rule_;
 };
 
+// The limit of the body's own vibrations, or of its part [low, high]; infinite where nothing is restored.
+double vibrations_limit(const Scene& scene, const Vec3& low, const Vec3& high) {
+  Body part;
+  for (size_t i = 0; i < scene.body.size(); ++i) {
+    const Vec3& x = scene.body.x[i];
+    if ((x.array() < low.array()).any() || (x.array() > high.array()).any()) continue;
+    part.x.push_back(x);
+    part.type.push_back(scene.body.type[i]);
+  }
+  return stability_limit(vibrations_of(scene.rule, part, scene.periodic)).dt;
+}
+
+// Of a dt that the scene gives, and of "auto", which must last for what listed particles may become.
+struct TimeLimits {
+  double given = 0, automatic = 0;  // s; 0: unknown
+};
+
+TimeLimits time_limits(const Scene& scene, size_t listed) {
+  const Rule& rule = scene.rule;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  double given = kNone, automatic = kNone;
+  const auto meet = [](double& limit, double other) { limit = other > 0 ? std::min(limit, other) : limit; };
+  const double cutoff = rule.law->cutoff();
+  if (scene.pitch > 0) meet(given, stable_time_step(rule, scene.pitch));
+  bool small = false;  // a box that every engine will refuse
+  for (const double extent : scene.periodic.extent) small = small || (extent > 0 && extent < 2 * cutoff);
+  if (listed > 0 && !small) {
+    // They, and what of a packing is near: elsewhere it is perfect, or has lost bonds.
+    Vec3 low = Vec3::Constant(-kNone), high = Vec3::Constant(kNone);
+    if (scene.pitch > 0) {
+      std::swap(low, high);
+      for (size_t i = scene.body.size() - listed; i < scene.body.size(); ++i)
+        low = low.cwiseMin(scene.body.x[i]), high = high.cwiseMax(scene.body.x[i]);
+      low.array() -= 3 * cutoff, high.array() += 3 * cutoff;
+      for (int axis = 0; axis < 3; ++axis)
+        if (scene.periodic.extent[axis] > 0) low[axis] = -kNone, high[axis] = kNone;
+    }
+    meet(given, vibrations_limit(scene, low, high));
+    const double rest = stiffest_rest_distance(*rule.law);
+    if (scene.pitch == 0 && rest > 0.1 * cutoff) meet(automatic, stable_time_step(rule, rest));
+  }
+  automatic = std::min(automatic, given);
+  return {std::isinf(given) ? 0 : given, std::isinf(automatic) ? 0 : automatic};
+}
+
 void read_time(const ConfigTable& root, Scene& scene) {
   const auto found = root.table_at("run");
   if (!found) root.at("run");
   const ConfigTable& run = *found;
-  scene.dt_limit = scene.pitch > 0 ? stable_time_step(scene.rule, scene.pitch) : 0;
+  const TimeLimits limits = time_limits(scene, root.tables("particle").size());
   const auto dt = run.find("dt");
   const bool automatic = !dt || (dt->is_string() && dt->string() == "auto");
+  scene.dt_limit = automatic ? limits.automatic : limits.given;
   const auto safety = run.find("dt_safety");
   if (automatic) {
     scene.dt_safety =
@@ -74,7 +123,7 @@ void read_time(const ConfigTable& root, Scene& scene) {
       scene.dt_safety = scene.rule.dt / scene.dt_limit;
       if (scene.dt_safety > 1)
         dt->fail(fmt::format("'dt' is beyond the stability limit {:.4g} s", scene.dt_limit),
-                 fmt::format("\"auto\" would take {:.4g} s", 0.2 * scene.dt_limit));
+                 fmt::format("\"auto\" would take {:.4g} s", 0.2 * limits.automatic));
     }
   }
 
@@ -116,6 +165,18 @@ void read_reach(const ConfigTable& root, Scene& scene) {
 }
 
 }  // namespace
+
+double stiffest_rest_distance(const PairLaw& law) {
+  constexpr int kSamples = 4096;
+  double stiffest = 0, at = 0;
+  for (int k = 0; k < kSamples; ++k) {
+    const auto distance = [&](int n) { return law.core() + (law.cutoff() - law.core()) * n / kSamples; };
+    const double r = distance(k), next = distance(k + 1);
+    if (!(law.force(r) > 0) || law.force(next) > 0 || next >= law.cutoff()) continue;
+    if (-law.slope(next) > stiffest) stiffest = -law.slope(next), at = next;
+  }
+  return at;
+}
 
 double stable_time_step(const Rule& rule, double pitch) {
   double strongest = 0, kp = 0, kd = 0;

@@ -44,8 +44,8 @@ struct Scene {
   double pitch = 0;  // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
   Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates
   double density = 0;                   // kg/m^3, 0 if the mass was given
-  double dt_limit = 0;                  // s, largest stable dt of the perfect packing (undamped: 2/omega_max;
-                                        // docs/user/scene.md, [run]); 0 if unknown (no packing)
+  double dt_limit = 0;                  // s, largest stable dt: of the perfect packing, and of the vibrations of
+                                        // particles that are listed (docs/user/scene.md, [run]); 0 if unknown
   double dt_safety = 0;                 // dt = dt_safety * dt_limit where dt was "auto", else dt / dt_limit
   Vec3 reach_margin =
       Vec3::Constant(-1);  // m, space around the body that particles may reach; negative: one cell edge

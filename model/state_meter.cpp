@@ -28,7 +28,8 @@ std::vector<Probe> placed(std::vector<Probe> probes, const std::vector<uint32_t>
 }  // namespace
 
 StateMeter::StateMeter(const Scene& scene, const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
-                       const std::function<Particle(uint32_t)>& initial, bool energies, int threads)
+                       const std::function<Particle(uint32_t)>& initial, bool energies, int threads,
+                       bool watch)
     : scene_(scene),
       rule_(rule),
       lattice_(lattice),
@@ -47,6 +48,7 @@ StateMeter::StateMeter(const Scene& scene, const FixedRule& rule, const Lattice&
       energy_.push_back({std::string("energy.") + part, "J", {}, {}});
   volume_ = scene.periodic.extent.prod();
   if (energies && volume_ > 0) energy_.push_back({"pressure", "Pa", {}, {}});
+  if (energies && watch) watch_.emplace(scene, rule.error.worst_force, threads);
 }
 
 void StateMeter::add(const State& state) {
@@ -61,7 +63,9 @@ void StateMeter::add(const State& state) {
     probes_.add(sample);
   }
   if (energy_.empty()) return;
-  const Energies e = energies(scene_.rule, rule_, lattice_, origin_, state, kicks, threads_);
+  ClosestPair closest;
+  const Energies e = energies(scene_.rule, rule_, lattice_, origin_, state, kicks, threads_, &closest);
+  if (watch_) watch_->see(rule_, lattice_, origin_, state, kicks, e, closest);
   std::vector<double> values{e.kinetic, e.potential, e.gravity, e.total()};
   if (volume_ > 0)
     values.push_back(pressure(e, virial_stress(rule_, lattice_, state, volume_, threads_), volume_));
@@ -88,6 +92,8 @@ void StateMeter::restore(ProbeMeter::Memory memory, const std::vector<Curve>& cu
   const auto energies = curves.end() - static_cast<ptrdiff_t>(energy_.size());
   probes_.restore(std::move(memory), {curves.begin(), energies});
   energy_.assign(energies, curves.end());
+  if (watch_ && !energy_.front().value.empty())
+    watch_->remember({energy_[0].value[0], energy_[1].value[0], energy_[2].value[0]});
 }
 
 std::vector<uint64_t> probe_steps_of(const Scene& scene, uint64_t last) {

@@ -4,18 +4,21 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "model/measure.h"
+#include "model/watch.h"
 
 namespace cuboct {
 
 class StateMeter {
  public:
   // `initial(id)`: the particle at step 0; called for those in a probe's set alone. Keeps references to
-  // scene, rule and lattice.
+  // scene, rule and lattice. `watch`: look for what fails as well; of use with `energies` alone.
   StateMeter(const Scene& scene, const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
-             const std::function<Particle(uint32_t)>& initial, bool energies, int threads = 0);
+             const std::function<Particle(uint32_t)>& initial, bool energies, int threads = 0,
+             bool watch = false);
 
   // States come in the order of steps, sorted by id.
   void add(const State& state);
@@ -26,6 +29,9 @@ class StateMeter {
 
   // The last value of each curve, once there is one.
   std::vector<double> latest() const;
+
+  // Null where nobody watches.
+  const Watch* watch() const { return watch_ ? &*watch_ : nullptr; }
 
   // For checkpoints.
   ProbeMeter::Memory memory() const { return probes_.memory(); }
@@ -43,6 +49,7 @@ class StateMeter {
   bool forces_ = false;  // some probe needs them
   double volume_ = 0;    // m^3, of a box that repeats along all axes; else 0
   int threads_;
+  std::optional<Watch> watch_;
 };
 
 // The steps 0, every, 2 every, ... up to `last`; none for every 0.

@@ -29,6 +29,35 @@ Set change_of(const std::string& key, const std::string& value) {
   };
 }
 
+std::optional<int> whole(const std::vector<Change>& changes, const std::string& key) {
+  for (const Change& change : changes)
+    if (change.key == key && !change.value.empty() && change.value[0] != '"') return std::stoi(change.value);
+  return std::nullopt;
+}
+
+// Positions or velocities of another format: what counts in their bits keeps its range, so that one width can be
+// swept by itself.
+void fit_widths(Settings& settings, const Widths& base) {
+  const auto now = [&](const char* key, int otherwise) {
+    return whole(settings.arch, std::string("widths.") + key).value_or(otherwise);
+  };
+  const auto follow = [&](const char* key, int from, int to) {
+    std::erase_if(settings.arch, [&](const Change& c) { return c.key == std::string("widths.") + key; });
+    if (to != from) settings.arch.push_back({std::string("widths.") + key, std::to_string(to)});
+  };
+  const int position = now("position_frac", base.position_frac);
+  const int velocity = position + now("guard", base.guard);
+  const int wider = velocity - base.velocity_frac();
+  follow("velocity_bits", base.velocity_bits, base.velocity_bits + wider);
+  follow("sum_bits", base.sum_bits, std::min(48, base.sum_bits + wider));
+  follow("displacement_bits", base.displacement_bits, std::min(40, base.displacement_bits + wider));
+  follow("difference_frac", base.difference_frac, std::min(base.difference_frac, position));
+  const int relative = std::min(base.relative_velocity_frac, velocity);
+  follow("relative_velocity_frac", base.relative_velocity_frac, relative);
+  follow("relative_velocity_bits", base.relative_velocity_bits,
+         base.relative_velocity_bits + relative - base.relative_velocity_frac);
+}
+
 struct Key {
   const char* name;
   const char* target;  // key of the scene, of the arch ("arch."); null: of the settings themselves
@@ -65,7 +94,7 @@ constexpr Key kKeys[] = {
 };
 
 // What one value of one key does.
-Set set_of(const Key& key, const ConfigValue& value) {
+Set set_of(const Key& key, const ConfigValue& value, const Widths& widths) {
   const std::string name = key.name;
   if (name == "engine") {
     const bool lattice = value.choice("engine", {"lattice", "reference"}) == 0;
@@ -95,8 +124,12 @@ Set set_of(const Key& key, const ConfigValue& value) {
   // "auto" with its safety and a given dt rule each other out.
   if (name == "dt") return [change](Settings& s) { change_of("run.dt_safety", "")(s), change(s); };
   if (name == "dt_safety") return [change](Settings& s) { change_of("run.dt", "\"auto\"")(s), change(s); };
+  if (name == "position_frac" || name == "guard")
+    return [change, widths](Settings& s) { change(s), fit_widths(s, widths); };
   return change;
 }
+
+Widths widths_of(const Base& base) { return resolve(base, {}).arch.widths; }
 
 // An InputError's text without the place in a scene that the user did not write.
 std::string without_place(const std::string& text, const Base& base) {
@@ -128,25 +161,25 @@ std::vector<ConfigValue> notches(const ConfigValue& value) {
   return items;
 }
 
-Axis axis_of(const Key& key, const ConfigValue& value, const Base& base) {
+Axis axis_of(const Key& key, const ConfigValue& value, const Base& base, const Widths& widths) {
   Axis axis{key.name, {}, {}};
   for (const ConfigValue& item : notches(value)) {
     axis.labels.push_back(label_of(item));
-    axis.sets.push_back(set_of(key, item));
+    axis.sets.push_back(set_of(key, item, widths));
     if (key.alone && key.target) try_alone(item, axis.sets.back(), base);
   }
   return axis;
 }
 
 // Each preset sets what it names.
-Axis read_presets(const ConfigValue& value, const Base& base) {
+Axis read_presets(const ConfigValue& value, const Base& base, const Widths& widths) {
   Axis axis{"presets", {}, {}};
   for (const ConfigValue& item : notches(value)) {
     const ConfigTable preset = item.table();
     axis.labels.push_back(preset.at("name").string());
     std::vector<Set> sets;
     for (const Key& key : kKeys)
-      if (const auto found = preset.find(key.name)) sets.push_back(set_of(key, *found));
+      if (const auto found = preset.find(key.name)) sets.push_back(set_of(key, *found, widths));
     axis.sets.push_back([sets](Settings& settings) {
       for (const Set& set : sets) set(settings);
     });
@@ -194,9 +227,10 @@ std::vector<Leaf> leaves(const ConfigTable& table) {
 
 std::vector<Axis> read_axes(const ConfigTable& table, const Base& base) {
   std::vector<Axis> axes;
+  const Widths widths = widths_of(base);
   for (const Key& key : kKeys)
-    if (const auto value = table.find(key.name)) axes.push_back(axis_of(key, *value, base));
-  if (const auto presets = table.find("presets")) axes.push_back(read_presets(*presets, base));
+    if (const auto value = table.find(key.name)) axes.push_back(axis_of(key, *value, base, widths));
+  if (const auto presets = table.find("presets")) axes.push_back(read_presets(*presets, base, widths));
   if (const auto set = table.table_at("set"))
     for (const Leaf& leaf : leaves(*set)) {
       Axis axis{leaf.key, {}, {}};

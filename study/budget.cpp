@@ -46,20 +46,25 @@ bool is_reduced(const Study& study) {
   return units && units->is_string() && units->string() == "reduced";
 }
 
+// By how much the last rung of the truth still moved the figure.
+double last_change(const Truth& truth, size_t figure) {
+  const size_t n = truth.rungs.size();
+  if (n < 2) return 0;
+  const double before = truth.rungs[n - 2].figures.at(figure), last = truth.rungs[n - 1].figures.at(figure);
+  return before == last ? 0 : std::abs(before - last) / std::abs(last);
+}
+
 void check(const Study& study, const Truth& truth, const BudgetQuestion& question) {
-  if (study.search.empty())
-    throw InputError(fmt::format("{}: no [search] to choose from", study.path),
-                     "list settings from cheap to dear, e.g. [search] dt_safety = [0.8, 0.4, 0.2]");
   const std::string& name = study.figures.at(question.figure).name;
   const double value = truth.figures.at(question.figure);
   if (!std::isfinite(value) || value == 0)
     throw InputError(fmt::format("{}: the figure '{}' of the truth is {}: no relative error can be told",
                                  study.path, name, std::isfinite(value) ? "0" : "not to be had"));
-  const double known = truth.rungs.empty() ? 0 : truth.rungs.back().change;
+  const double known = last_change(truth, question.figure);
   if (known >= question.budget)
     throw InputError(
-        fmt::format("the truth itself is known to {:.2g} only, worse than the budget of {:.2g}", known,
-                    question.budget),
+        fmt::format("{}: the truth of '{}' is known to {:.2g} only, worse than the budget of {:.2g}",
+                    study.path, name, known, question.budget),
         "a smaller 'tolerance' or more 'rungs' in [truth]");
 }
 
@@ -141,6 +146,16 @@ Settings settings_at(const std::vector<Axis>& axes, const Notches& at) {
   return canonical(std::move(settings));
 }
 
+bool matters(const std::vector<Axis>& axes, Notches at, size_t axis) {
+  const Settings settings = settings_at(axes, at);
+  const size_t notches = axes[axis].sets.size();
+  for (size_t n = 0; n < notches; ++n) {
+    at[axis] = static_cast<int>(n);
+    if (!(settings_at(axes, at) == settings)) return true;
+  }
+  return notches == 1;
+}
+
 Outcome measure_figures(const Study& study, const Truth& truth, const Settings& settings) {
   Outcome outcome;
   outcome.settings = settings;
@@ -196,6 +211,11 @@ BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store, c
     return runs.errors(wanted);
   };
   space.cost = [&](const Notches& p) { return runs.cost(settings_at(answer.axes, p)); };
+  space.finest_alike = [&](Notches p) {
+    for (size_t a = 0; a < p.size(); ++a)
+      if (!matters(answer.axes, p, a)) p[a] = space.sizes[a] - 1;
+    return p;
+  };
   try {
     answer.result = search(space, question.budget);
   } catch (const NotchOrder& order) {
@@ -205,6 +225,10 @@ BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store, c
                                  axis.labels[notch], axis.name, axis.labels[notch + 1]),
                      "notches go from cheap to dear");
   }
+  for (const auto& c : answer.result.cheaper)
+    answer.why.push_back(std::isnan(c.spending.error)
+                             ? store.errors(settings_at(answer.axes, c.spending.at))->why
+                             : "");
   answer.chosen = runs.priced(settings_at(answer.axes, answer.result.best.at));
   answer.standard = runs.priced(canonical({}));
   return answer;

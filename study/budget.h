@@ -30,6 +30,8 @@ struct Priced {
 struct BudgetAnswer {
   std::vector<Axis> axes;  // as searched: study.search in the order of search.h
   SearchResult result;     // its notches are places on these axes
+  // Of each of result.cheaper that cannot be run: why not; else empty.
+  std::vector<std::string> why;
   Priced chosen;           // result.best
   Priced standard;         // the study's scene and arch as they are
 };
@@ -37,7 +39,7 @@ struct BudgetAnswer {
 // Runs what it needs, several at once, and puts each into `store`, out of which a search that was killed goes
 // on. Each run measures figures alone, so `store` must not be that of a study's points. `truth` is the study's:
 // also where settings change the packing, as the figure is to be that of the material and not of its packing.
-// Throws InputError: no [search], a truth that is worse than the budget or has no such figure, notches that do
+// Throws InputError: a truth that is worse than the budget or has no such figure, notches that do
 // not go from cheap to dear; Interrupted (measure_run.h).
 BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store, const BudgetQuestion& question);
 
@@ -53,5 +55,7 @@ Written written(const Study& study, const Truth& truth, const Settings& settings
 
 // Settings of a point, as the engines look at them.
 Settings settings_at(const std::vector<Axis>& axes, const Notches& at);
+// Whether another notch of an axis makes other settings there: engines of real numbers look at no arch.
+bool matters(const std::vector<Axis>& axes, Notches at, size_t axis);
 
 }  // namespace cuboct::study

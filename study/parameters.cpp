@@ -31,6 +31,11 @@ std::string value_in(const Values& values, const std::string& key) {
   return found == values.end() ? "" : found->second;
 }
 
+// Where the study does not set it: that of the arch, which is 1 by default.
+int degree_of(const Settings& settings) {
+  return value_in(values_of(settings), "arch.table.degree") == "2" ? 2 : 1;
+}
+
 bool is_time_step(const std::string& key) { return key == "scene.run.dt" || key == "scene.run.dt_safety"; }
 
 // TOML text of a number, or of a quantity with its unit.
@@ -170,29 +175,26 @@ std::vector<Order> expected_orders(const Results& results, const Parameter& para
   using Kind = Measure::Kind;
   const bool motion = error.kind == Kind::trajectory || error.kind == Kind::figure;
   if ((!motion && error.kind != Kind::force) || !parameter.names.empty()) return {};
-  if (parameter.id == "dt") return motion ? std::vector<Order>{{"dt^2", 2, 0}} : std::vector<Order>{};
+  if (parameter.id == "dt") return motion ? std::vector<Order>{{"dt^2", 2, 0, 0}} : std::vector<Order>{};
   if (parameter.id == "scene.packing.pitch")
-    return error.kind == Kind::figure ? std::vector<Order>{{"pitch, of free surfaces", 1, 0},
-                                                           {"pitch^2, of the bulk", 2, 0}}
+    return error.kind == Kind::figure ? std::vector<Order>{{"pitch, of free surfaces", 1, 0, 0},
+                                                           {"pitch^2, of the bulk", 2, 0, 0}}
                                       : std::vector<Order>{};
   if (parameter.id == "arch.table.index_bits") {
-    bool linear = false, quadratic = false;
-    for (size_t n = 0; n < results.outcomes.size(); ++n) {
-      if (!std::isfinite(parameter.x[n])) continue;
-      const bool second = value_in(values_of(results.outcomes[n].settings), "arch.table.degree") == "2";
-      (second ? quadratic : linear) = true;
-    }
+    std::set<int> degrees;
+    for (size_t n = 0; n < results.outcomes.size(); ++n)
+      if (std::isfinite(parameter.x[n])) degrees.insert(degree_of(results.outcomes[n].settings));
     std::vector<Order> orders;
-    if (linear) orders.push_back({"bins^-2, degree 1", 0, 2});
-    if (quadratic) orders.push_back({"bins^-3, degree 2", 0, 3});
+    for (const int degree : degrees)
+      orders.push_back({fmt::format("bins^-{}, degree {}", degree + 1, degree), 0, degree + 1.0, degree});
     return orders;
   }
   // The guard's bits are of velocities, which no force depends on.
   if (parameter.id == "arch.widths.guard")
-    return motion ? std::vector<Order>{{"2^-bits", 0, 1}} : std::vector<Order>{};
+    return motion ? std::vector<Order>{{"2^-bits", 0, 1, 0}} : std::vector<Order>{};
   if (parameter.id == "arch.widths.position_frac" || parameter.id == "arch.widths.difference_frac" ||
       parameter.id == "arch.widths.strength_bits" || parameter.id == "arch.table.fraction_bits")
-    return {{"2^-bits", 0, 1}};
+    return {{"2^-bits", 0, 1, 0}};
   return {};
 }
 
@@ -205,6 +207,7 @@ std::optional<std::pair<std::pair<double, double>, std::pair<double, double>>> o
     for (const size_t n : sweep.points) {
       const double x = parameter.x[n], e = error.value(results.outcomes[n]);
       if (!(e > 0) || !std::isfinite(e)) continue;
+      if (order.degree > 0 && order.degree != degree_of(results.outcomes[n].settings)) continue;
       const bool coarser = falls_with_x ? x < coarse : x > coarse;
       const bool finer = falls_with_x ? x > fine : x < fine;
       if (std::isnan(fine) || finer) fine = x;

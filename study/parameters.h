@@ -14,8 +14,9 @@ namespace cuboct::study {
 // How an error grows with a parameter x where that parameter alone makes it.
 struct Order {
   std::string label;  // "dt^2"
-  double power = 0;   // error ~ x^power
+  double power = 0;     // error ~ x^power
   double halvings = 0;  // error ~ 2^(-halvings x): x counts bits
+  int degree = 0;       // of the table's polynomials, where this holds for one degree only
   double at(double x) const;  // up to a factor
 };
 
@@ -43,8 +44,8 @@ std::vector<Parameter> swept_parameters(const Results& results);
 std::vector<Order> expected_orders(const Results& results, const Parameter& parameter,
                                    const Measure& error);
 
-// Where the line of an order runs: through the least error at the coarsest value that any sweep has, where this
-// parameter weighs most (all other errors only add). The line's two ends, (x, error); none without such points.
+// Where the line of an order runs: through the least error at the coarsest value that any sweep (of the order's
+// degree) has, where this parameter weighs most and all other errors only add. The line's two ends, (x, error); none without such points.
 std::optional<std::pair<std::pair<double, double>, std::pair<double, double>>> order_line(
     const Results& results, const Parameter& parameter, const Measure& error, const Order& order);
 

@@ -14,6 +14,9 @@
 namespace cuboct::study {
 namespace {
 
+// The name under which the store keeps a truth that is not refined to its end; no scene has it.
+constexpr const char* kBegun = "(begun)";
+
 // Particle-steps of a point's run: for the order and the time left, so a guess will do. Doubles take about as
 // long as ten fixed ones.
 double size_of(const Study& study, const Settings& settings) {
@@ -40,9 +43,13 @@ const Truth& Runner::truth() {
   if (!fresh) return at->second;
   try {
     if (auto kept = store_.truth("")) return at->second = std::move(*kept);
-    work_off({{1, [&] { at->second = make_truth(study_, options_.jobs); }}}, 1, "the run in doubles",
-             options_.progress);
+    const auto compute = [&] {
+      at->second = make_truth(study_, options_.jobs, store_.truth(kBegun).value_or(Truth()),
+                              [&](const Truth& so_far) { store_.put_truth(kBegun, so_far); });
+    };
+    work_off({{1, compute}}, 1, "the run in doubles", options_.progress);
     store_.put_truth(at->second);
+    store_.drop_truth(kBegun);
   } catch (...) {
     truths_.erase(at);
     throw;

@@ -237,13 +237,15 @@ class Search {
     return s;
   }
 
+  Notches finest_alike(const Notches& p) const { return space_.finest_alike ? space_.finest_alike(p) : p; }
+
   void explain() {
-    result_.best = spending(result_.best.at);
-    const std::vector<Notches> cheaper = one_cheaper(result_.best.at);
-    measured_.want(cheaper);
+    const Notches best = finest_alike(result_.best.at);
+    result_.best = spending(best);
+    measured_.want(one_cheaper(best));
     for (size_t a = 0; a < axes_; ++a)
-      if (result_.best.at[a] > 0)
-        result_.cheaper.push_back({a, spending(moved(result_.best.at, a, -1))});
+      if (best[a] > 0 && finest_alike(moved(best, a, -1)) != best)
+        result_.cheaper.push_back({a, spending(moved(best, a, -1))});
   }
 
   // The axis that would have to be finer: what still changes the error is not converged.

@@ -33,6 +33,9 @@ struct SearchSpace {
   std::function<std::vector<double>(const std::vector<Notches>&)> errors;
   // Must not fall from a notch to the next. nan where there is none: the settings fit no machine.
   std::function<double(const Notches&)> cost;
+  // The same settings with the axes that do not matter at this point (widths, to doubles) at their finest notch.
+  // May be empty: all matter.
+  std::function<Notches(const Notches&)> finest_alike;
 };
 
 // What a point takes of the budget.
@@ -52,7 +55,8 @@ struct SearchResult {
   // Not met, though the reference keeps the budget: a finer notch next to it does not, so that its small error
   // is a zero between errors of either sign.
   bool accident = false;
-  // met: for each axis of which `best` is not at the cheapest notch, `best` with that axis one notch cheaper.
+  // met: for each axis that matters at `best` and is not at its cheapest notch there, `best` with that axis one
+  // notch cheaper.
   struct Cheaper {
     size_t axis = 0;
     Spending spending;  // its sum is above the budget

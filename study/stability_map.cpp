@@ -38,9 +38,9 @@ struct Frame {
 };
 
 template <typename ColumnAt>
-StabilityMap map_of(const Frame& frame, int axis, double unit, const ColumnAt& column_at,
+StabilityMap map_of(const Frame& frame, int axis, int fineness, double unit, const ColumnAt& column_at,
                     const std::function<void(const std::string&, double)>& progress) {
-  StabilityMap map{frame.name, frame.title, frame.x_label, frame.x, even(0.025, 1.325, 27), {}, {}};
+  StabilityMap map{frame.name, frame.title, frame.x_label, frame.x, even(0.65 / fineness, 1.3 - 0.65 / fineness, fineness), {}, {}};
   const size_t nx = map.x.size();
   map.cells.assign(nx * map.y.size(), StabilityMap::Cell::body_unstable);
   map.theory.assign(nx, std::numeric_limits<double>::quiet_NaN());
@@ -117,7 +117,7 @@ void check_maps(const Scene& scene) {
     throw InputError("--maps needs a [packing]: damping and stiffness are counted in those of its bonds");
 }
 
-std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, int axis,
+std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, int axis, int fineness,
                                          const std::function<void(const std::string&, double)>& progress) {
   check_maps(scene);
   const Scene bare = with_parts(scene, {false, false, false, false});
@@ -127,27 +127,25 @@ std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, i
   std::vector<StabilityMap> maps;
 
   maps.push_back(map_of(
-      {"damping", "damping, in doubles", "damping ratio", even(0, 2, 26), Arithmetic::float64}, axis, unit,
+      {"damping", "damping, in doubles", "damping ratio", even(0, 2, fineness), Arithmetic::float64}, axis, fineness, unit,
       [&](double ratio) {
         Column column{bare, arch};
         column.scene.rule.damping.coefficient = ratio * critical;
         return column;
       },
       progress));
-  Scene with_pd = scene;
-  with_pd = with_parts(with_pd, {false, false, false, true});
-  maps.push_back(map_of(
-      {"pd_stiffness", "a region held by force, in the fixed engine", "kp over the stiffness of a bond",
-       even(0, 50, 26), Arithmetic::fixed},
-      axis, unit,
-      [&](double kp) {
-        return Column{held_by_force(with_pd, axis, kp * stiffness), arch};
-      },
-      progress));
+  const Scene with_pd = with_parts(scene, {false, false, false, true});
+  const auto held = [&](double kp) { return Column{held_by_force(with_pd, axis, kp * stiffness), arch}; };
+  maps.push_back(map_of({"pd_stiffness", "a region held by force, in doubles", "kp over the stiffness of a bond",
+                         even(0, 50, fineness), Arithmetic::float64},
+                        axis, fineness, unit, held, progress));
+  maps.push_back(map_of({"pd_stiffness_fixed", "a region held by force, in the fixed engine",
+                         "kp over the stiffness of a bond", even(0, 50, fineness), Arithmetic::fixed},
+                        axis, fineness, unit, held, progress));
   maps.push_back(map_of(
       {"position_bits", "formats of positions, in the fixed engine",
-       "position_frac (difference_frac: 16, or all where there are fewer)", even(8, 26, 19), Arithmetic::fixed},
-      axis, unit,
+       "position_frac (difference_frac: 16, or all where there are fewer)", even(8, 26, fineness >= 19 ? 19 : 4), Arithmetic::fixed},
+      axis, fineness, unit,
       [&](double bits) {
         Column column{bare, arch};
         Widths& w = column.arch.widths;
@@ -159,9 +157,9 @@ std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, i
       },
       progress));
   maps.push_back(map_of(
-      {"strength_bits", "width of the force table, in the fixed engine", "strength_bits", even(8, 27, 20),
+      {"strength_bits", "width of the force table, in the fixed engine", "strength_bits", even(8, 26, fineness >= 19 ? 19 : 4),
        Arithmetic::fixed},
-      axis, unit,
+      axis, fineness, unit,
       [&](double bits) {
         Column column{bare, arch};
         column.arch.widths.strength_bits = static_cast<int>(bits);
@@ -169,9 +167,9 @@ std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, i
       },
       progress));
   maps.push_back(map_of(
-      {"strain", fmt::format("strain along {}, in doubles", "xyz"[axis]), "strain", even(-0.15, 0.15, 31),
+      {"strain", fmt::format("strain along {}, in doubles", "xyz"[axis]), "strain", even(-0.15, 0.15, fineness | 1),
        Arithmetic::float64},
-      axis, unit, [&](double strain) { return Column{bare, arch, strain}; }, progress));
+      axis, fineness, unit, [&](double strain) { return Column{bare, arch, strain}; }, progress));
   return maps;
 }
 

@@ -210,6 +210,12 @@ std::optional<Truth> Store::truth(const std::string& physics) const {
   return truth_of(row.blob());
 }
 
+void Store::drop_truth(const std::string& physics) {
+  const std::lock_guard guard(impl_->mutex);
+  for (const char* table : {"truths", "rungs"})
+    Query(impl_->database, fmt::format("DELETE FROM {} WHERE physics = ?", table)).bind(physics).done();
+}
+
 void Store::put_errors(const Outcome& outcome) {
   const std::lock_guard guard(impl_->mutex);
   const std::string numbers = outcome.settings.numbers_key();

@@ -37,6 +37,7 @@ class Store {
   // By physics_key (truth.h); "" is the study's own.
   void put_truth(const std::string& physics, const Truth& truth);
   std::optional<Truth> truth(const std::string& physics) const;
+  void drop_truth(const std::string& physics);
   void put_truth(const Truth& truth) { put_truth("", truth); }
   bool has_truth() const { return truth("").has_value(); }
 

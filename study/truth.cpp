@@ -92,6 +92,7 @@ double largest_frequency_of(const Scene& scene) {
 
 void keep_states(const Run& run, const TimeGrid& grid, Truth& truth) {
   const std::vector<uint64_t> samples = kept_samples(grid);
+  truth.states.clear();
   for (size_t k = 0; k < run.kept.size(); ++k)
     truth.states.push_back({static_cast<double>(samples[k]) * grid.sample, run.kept[k]});
   truth.horizon = truth.states.back();
@@ -105,29 +106,33 @@ double error_left(double before, double last) {
   return ratio >= 2 ? last / (std::min(ratio, 4.0) - 1) : last;
 }
 
-void refine(const Study& study, const Case& c, int threads, Truth& truth) {
+void refine(const Study& study, const Case& c, int threads, Truth& truth,
+            const std::function<void(const Truth&)>& save) {
   const uint64_t first = truth.grid.steps_per_sample(c.scene.rule.dt);
   const double unit = length_unit(c.scene);
-  Run before;
-  for (int k = 0; k < study.truth_rungs; ++k) {
+  const auto ended = [&] {
+    return truth.converged || truth.rungs.size() >= static_cast<size_t>(study.truth_rungs);
+  };
+  while (!ended()) {
+    const size_t k = truth.rungs.size();
     Climb now = climb(study, c, truth.grid, first << k, truth.grid.samples, threads);
     if (k > 0) {
       now.rung.change = change_between(truth.rungs.back().figures, now.rung.figures);
-      now.rung.trajectory = rms_distance(before.kept.back().x, now.run.kept.back().x, c.scene.periodic) / unit;
+      now.rung.trajectory =
+          rms_distance(truth.horizon.body.x, now.run.kept.back().x, c.scene.periodic) / unit;
       truth.floor = k > 1 ? error_left(truth.rungs.back().trajectory, now.rung.trajectory) : now.rung.trajectory;
     }
     truth.rungs.push_back(now.rung);
-    before = std::move(now.run);
-    // Two changes in a row, so that one that is small by chance does not end the refinement.
+    keep_states(now.run, truth.grid, truth);
+    // From the third rung on, so that one change that is small by chance does not end the refinement.
     truth.converged = k > 1 && now.rung.trajectory < study.truth_tolerance &&
                       !(now.rung.change >= study.truth_tolerance);
-    if (truth.converged) break;
+    if (save) save(truth);
   }
   if (!truth.converged)
     truth.notes.push_back(fmt::format(
         "the truth has not converged: at dt = {:.4g} s figures still change by {:.2g}, positions by {:.2g}",
         truth.rungs.back().dt, truth.rungs.back().change, truth.rungs.back().trajectory));
-  keep_states(before, truth.grid, truth);
   truth.figures = truth.rungs.back().figures;
 }
 
@@ -187,18 +192,24 @@ std::string physics_key(const Settings& settings) {
   return key;
 }
 
-Truth make_truth(const Study& study, int threads) {
+Truth make_truth(const Study& study, int jobs, Truth begun, const std::function<void(const Truth&)>& save) {
   const Case c = resolve(study.base, verlet_in_doubles());
-  Truth truth;
-  truth.grid = study.grid;
-  truth.largest_frequency = largest_frequency_of(c.scene);
-  const Sensitivity sensitivity = sensitivity_of(separation(c, study.grid, threads), study.grid.sample);
-  truth.lyapunov_time = sensitivity.lyapunov_time;
-  truth.grid.horizon = sensitivity.horizon;
-  if (study.horizon > 0)
-    truth.grid.horizon = std::clamp<uint64_t>(
-        static_cast<uint64_t>(study.horizon / study.grid.sample * (1 + 1e-9)), 1, sensitivity.horizon);
-  refine(study, c, threads, truth);
+  // Fewer particles than that are not worth a thread, and less than that where the machine has other work.
+  constexpr size_t kPerThread = 16384;
+  const int threads = std::clamp(static_cast<int>(c.scene.body.size() / kPerThread), 1, std::max(1, jobs));
+  Truth truth = std::move(begun);
+  if (truth.rungs.empty()) {
+    truth.grid = study.grid;
+    truth.largest_frequency = largest_frequency_of(c.scene);
+    const Sensitivity sensitivity =
+        sensitivity_of(separation(c, study.grid, threads), study.grid.sample);
+    truth.lyapunov_time = sensitivity.lyapunov_time;
+    truth.grid.horizon = sensitivity.horizon;
+    if (study.horizon > 0)
+      truth.grid.horizon = std::clamp<uint64_t>(
+          static_cast<uint64_t>(study.horizon / study.grid.sample * (1 + 1e-9)), 1, sensitivity.horizon);
+  }
+  refine(study, c, threads, truth, save);
   lengthen(study, c, threads, truth);
   for (size_t k = 0; k < study.figures.size(); ++k)
     if (!std::isfinite(truth.figures[k]))

@@ -2,6 +2,7 @@
 // The converged run of a scene in doubles, against which errors are measured, and how far it can be trusted.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -48,8 +49,10 @@ struct Truth {
 // three Lyapunov times of a run that parts steadily, the end of a run that does not. Beyond, errors tell the
 // run's sensitivity and nothing of the method.
 //
-// No bit depends on `threads`. Throws InputError, Interrupted (measure_run.h).
-Truth make_truth(const Study& study, int threads);
+// `jobs`: threads at most; no bit depends on them. After each rung `save` is given the truth so far; `begun`, such a truth or an empty
+// one, is where the refinement goes on. Throws InputError, Interrupted (measure_run.h).
+Truth make_truth(const Study& study, int jobs, Truth begun = {},
+                 const std::function<void(const Truth&)>& save = {});
 
 // What of some settings changes the physical scene: "" for the study's own, else its changes in one line.
 std::string physics_key(const Settings& settings);

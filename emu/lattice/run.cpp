@@ -96,7 +96,7 @@ Loop::Loop(const Scene& scene, const Plan& plan, const LatticeRun& request)
       ranks_(request.engine.ranks),
       displaced_(plan.rule.pd),
       meter_(scene, plan.rule, plan.lattice, plan.origin, particle_, request.energies,
-             request.engine.threads > 0 ? request.engine.threads : cores()),
+             request.engine.threads > 0 ? request.engine.threads : cores(), request.watch),
       trace_(result_.trace) {
   trace_.engine = "lattice";
   trace_.plan_hash = plan.hash;
@@ -316,6 +316,10 @@ void Loop::finish() {
   const bool kept = lost && !sample && !hash && has_frame;  // the engine's state is still lost
   result_.momentum_after = kept ? momentum(trace_.frames.back()) : engine_->momentum();
   trace_.curves = meter_.curves();
+  if (const Watch* watch = meter_.watch()) {
+    result_.findings = watch->findings();
+    result_.watched = watch->last_step();
+  }
   if (timing_ && !lost) {
     engine_->slots(slots_);
     trace_.counters.emplace_back("cycles", static_cast<double>(timing_->cycles(slots_)));

@@ -9,6 +9,7 @@
 #include "emu/lattice/engine.h"
 #include "model/scene.h"
 #include "model/trace.h"
+#include "model/watch.h"
 
 namespace cuboct::emu {
 
@@ -28,6 +29,7 @@ struct LatticeRun {
   std::vector<uint64_t> frames;  // steps whose states are kept, ascending; the last one too where any are
   std::vector<uint64_t> probes;  // steps at which the scene's probes are read, ascending
   bool energies = false;         // and the energies; the last state is then measured too
+  bool watch = false;            // look for what fails wherever energies are read (model/watch.h)
   bool cycles = false;           // run the timing model
   uint64_t hash_every = 1;       // the state's hash each so many steps and at the last one
   bool progress = false;         // a line per second on stderr where that is no terminal
@@ -44,6 +46,8 @@ struct LatticeResult {
   double largest_speed = 0;                  // nodes per step, over the states that were kept or measured
   uint64_t resumed_at = 0;                   // step of the checkpoint
   bool interrupted = false;
+  std::vector<Finding> findings;             // of the watch
+  std::optional<uint64_t> watched;           // the last step that it looked at
 };
 
 // `plan` is the scene's. The engine loses its state in a step that fails: the last complete state is then

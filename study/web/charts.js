@@ -33,25 +33,51 @@ function log_range(values) {
 const placed = (value, range) => (value === 0 ? range.zero : value);
 const shown = (value) => value !== null && value !== undefined && value >= 0;
 
+const near_whole = (x) => Math.abs(x - Math.round(x)) < 1e-6;
+
 function log_axis(name, range, more) {
-  return Object.assign({
+  const label = (v) => (v === range.zero ? "0" : near_whole(Math.log10(v)) ? power_of_ten(Math.round(Math.log10(v))) : range.ticks ? number(v, 1) : "");
+  const only = range.ticks ? {customValues: range.ticks} : {};
+  return {
     type: "log", min: range.min, max: range.max, name, nameLocation: "middle", nameTextStyle: kText,
-    axisLabel: {...kText, hideOverlap: true, formatter: (v) => (v === range.zero ? "0" : Math.abs(Math.log10(v) % 1) < 1e-6 || Math.abs(Math.log10(v) % 1) > 1 - 1e-6 ? power_of_ten(Math.round(Math.log10(v))) : "")},
-    axisLine: {show: true, onZero: false, lineStyle: {color: "#444"}}, axisTick: {show: true},
-    splitLine: {show: true, lineStyle: {color: "#ddd"}}, minorTick: {show: true, splitNumber: 9},
-  }, more);
+    axisLabel: {...kText, hideOverlap: true, formatter: label, ...only},
+    axisLine: {show: true, onZero: false, lineStyle: {color: "#444"}}, axisTick: {show: true, ...only},
+    splitLine: {show: true, lineStyle: {color: "#ddd"}}, minorTick: {show: !range.ticks, splitNumber: 9}, ...more,
+  };
+}
+
+// An axis close around the values of a setting: logarithmic with ticks at 1, 2 and 5, or plain with ticks at the values.
+function setting_axis(parameter, xs) {
+  const plain = {name: parameter.label, nameLocation: "middle", nameGap: 32, nameTextStyle: kText, axisLabel: kText,
+    axisLine: {show: true, onZero: false, lineStyle: {color: "#444"}}, splitLine: {show: true, lineStyle: {color: "#eee"}}};
+  if (parameter.names.length) return {...plain, type: "category", data: parameter.names};
+  const low = Math.min(...xs), high = Math.max(...xs);
+  if (parameter.logarithmic) {
+    const range = {min: low / 1.3, max: high * 1.3, zero: null, ticks: []};
+    for (let e = Math.floor(Math.log10(low)) - 1; e <= Math.log10(high) + 1; ++e)
+      for (const digit of [1, 2, 5]) {
+        const tick = Number(`${digit}e${e}`);
+        if (tick >= range.min && tick <= range.max) range.ticks.push(tick);
+      }
+    return log_axis(parameter.label, range, {nameGap: 32});
+  }
+  const margin = high > low ? 0.06 * (high - low) : 1, values = [...new Set(xs)];
+  const only = values.length <= 12 ? {customValues: values} : {};
+  return {...plain, type: "value", min: Number((low - margin).toPrecision(6)), max: Number((high + margin).toPrecision(6)),
+    axisTick: {show: true, ...only}, axisLabel: {...kText, showMinLabel: values.length <= 12, showMaxLabel: values.length <= 12,
+      hideOverlap: true, formatter: (v) => number(v), ...only}};
 }
 
 function base_options(x_axis, y_axis, legend) {
   const slim = narrow();
   return {
     animation: false, textStyle: {fontFamily: "system-ui, sans-serif"},
-    grid: {left: slim ? 54 : 70, right: slim ? 14 : 30, top: slim ? 84 : 64, bottom: 56},
-    legend: {type: "scroll", top: 0, left: 0, right: slim ? 0 : 120, textStyle: kText, data: legend},
+    grid: {left: slim ? 54 : 70, right: slim ? 14 : 30, top: slim ? 64 : 40, bottom: 56},
+    legend: {type: "scroll", top: 0, left: 0, right: slim ? 0 : 120, itemWidth: 16, itemHeight: 11, textStyle: kText, data: legend},
     toolbox: {top: slim ? 30 : 0, right: 0, iconStyle: {borderColor: "#333"}, feature: {
       dataZoom: {title: {zoom: "select a part", back: "back"}},
       restore: {title: "all of it"}, saveAsImage: {title: "save as SVG"}}},
-    tooltip: {trigger: "item", confine: true, enterable: true, formatter: (p) => (p.data && p.data.point !== undefined ? tip(p.data.point) : "")},
+    tooltip: {trigger: "item", confine: true, formatter: (p) => (p.data && p.data.point !== undefined ? tip(p.data.point) : "")},
     dataZoom: [0, 1].map((axis) => ({type: "inside", [axis ? "yAxisIndex" : "xAxisIndex"]: 0, filterMode: "none",
       zoomOnMouseWheel: "shift", moveOnMouseMove: "shift", moveOnMouseWheel: false, preventDefaultMouseMove: false})),
     xAxis: x_axis, yAxis: y_axis, series: [],
@@ -74,7 +100,7 @@ function draw_error_speed() {
   const y = log_range(error.values.filter((_, n) => has[n])), x = log_range(speed.values.filter((_, n) => has[n]));
   const front = study.choices[state.error][state.speed].front;
   const on_front = new Set(front);
-  const legend = study.series.map((s) => s.name).concat(["Pareto front"]);
+  const legend = study.series.map((s) => s.name).concat([{name: "Pareto front", itemStyle: {opacity: 0}}]);
   const place = (n) => [speed.values[n], placed(error.values[n], y)];
   const options = base_options(log_axis(speed.label, x, {nameGap: 32, inverse: speed.less}),
     log_axis(error.label, y, {nameGap: narrow() ? 40 : 52}), legend);
@@ -102,27 +128,30 @@ function draw_error_speed() {
     .setOption(options, true);
 }
 
+// Where an order's line leaves the chart below, its end stands there; its name stands beside its middle.
+function order_parts(order, range, axis) {
+  const [[x0, y0], [x1, y1]] = order.line;
+  const logarithmic = axis.type === "log";
+  const along = (t) => (logarithmic ? x0 * (x1 / x0) ** t : x0 + (x1 - x0) * t);
+  const at = (t) => [along(t), y0 * (y1 / y0) ** t];
+  const end = y1 >= range.min ? 1 : Math.log(range.min / y0) / Math.log(y1 / y0);
+  return {line: [at(0), at(end)], middle: at(0.6 * end), falling: (x1 > x0) !== (y1 > y0)};
+}
+
 function draw_parameter(parameter, element) {
   const error = study.errors[state.error];
-  const orders = parameter.orders[state.error];
   const has = study.points.map((point, n) => parameter.x[n] !== null && shown(error.values[n]) && point.status === "done");
-  const values = error.values.filter((_, n) => has[n]);
-  const range = log_range(values);
+  const range = log_range(error.values.filter((_, n) => has[n]));
   const named = parameter.names.length > 0;
   const place = (n) => [named ? parameter.names[parameter.x[n]] : parameter.x[n], placed(error.values[n], range)];
-  const xs = parameter.x.filter((x) => x !== null);
-  const low = Math.min(...xs), high = Math.max(...xs), margin = 0.06 * (high - low);
-  const plain = {name: parameter.label, nameLocation: "middle", nameGap: 32, nameTextStyle: kText, axisLabel: kText,
-    axisLine: {show: true, onZero: false, lineStyle: {color: "#444"}}, splitLine: {show: true, lineStyle: {color: "#eee"}}};
-  const x_axis = named ? {...plain, type: "category", data: parameter.names}
-    : parameter.logarithmic ? log_axis(parameter.label, log_range(xs), {nameGap: 32})
-    : {...plain, type: "value", min: Number((low - margin).toPrecision(6)), max: Number((high + margin).toPrecision(6)),
-       axisLabel: {...kText, showMinLabel: false, showMaxLabel: false}};
-  const names = study.series.map((s) => s.name);
-  const options = base_options(x_axis, log_axis(error.label, range, {nameGap: narrow() ? 40 : 52}), names);
+  const xs = parameter.x.filter((_, n) => has[n]);
+  element.style.display = xs.length ? "" : "none";
+  if (!xs.length) return;
+  const x_axis = setting_axis(parameter, xs);
+  const options = base_options(x_axis, log_axis(error.label, range, {nameGap: narrow() ? 40 : 52}));
   delete options.toolbox;
-  options.legend.right = 0;
-  options.grid.top = 44;
+  delete options.legend;
+  options.grid.top = 16;
   const joined = new Set();
   for (const sweep of parameter.sweeps) {
     const points = sweep.filter((n) => has[n]);
@@ -135,18 +164,25 @@ function draw_parameter(parameter, element) {
   for (const series of study.series)
     options.series.push({name: series.name, type: "scatter", symbol: kSymbols[series.symbol], symbolSize: 6, color: series.colour,
       itemStyle: {opacity: 0.6}, data: series.points.filter((n) => has[n] && !joined.has(n)).map((n) => ({value: place(n), point: n}))});
-  for (const order of orders)
-    options.series.push({name: order.label, type: "line", symbol: "none", silent: true, clip: true, color: "#000", z: 4,
-      lineStyle: {type: "dashed", width: 1.5, color: "#000"}, data: order.line,
-      markPoint: {silent: true, symbol: "rect", symbolSize: [1, 1], itemStyle: {opacity: 0}, data: [{coord: order_label(order, range)}],
-        label: {show: true, position: "top", color: "#000", fontSize: 12, formatter: order.label,
-          textBorderColor: "#fff", textBorderWidth: 3}}});
+  parameter.orders[state.error].forEach((order, k) => {
+    const {line, middle, falling} = order_parts(order, range, x_axis);
+    const left = falling === (k % 2 === 0);
+    options.series.push({name: order.label, type: "line", symbol: "none", silent: true, z: 4,
+      lineStyle: {type: "dashed", width: 1.5, color: "#000"}, data: line});
+    options.series.push({name: order.label, type: "scatter", symbolSize: 0.01, silent: true, z: 5, data: [middle],
+      label: {show: true, position: left ? "left" : "right", distance: 8, offset: [0, falling === left ? 8 : -8], color: "#000", fontSize: 12,
+        formatter: order.label.replace(/\^(-?\d+)/g, (_, n) => superscript(n)), textBorderColor: "#fff", textBorderWidth: 3}});
+  });
   options.series.push({name: "floor", type: "line", data: [], markArea: floor_band(error.floor, range)});
-  chart_in(element, `${error.label} against ${parameter.label}`).setOption(options, true);
+  chart_in(element, `${error.label} against ${parameter.label}: ${xs.length} points`).setOption(options, true);
 }
 
-// The coarse end: there the line is inside of the chart.
-const order_label = (order) => order.line[0];
+// One legend for all settings' charts.
+function draw_series_names() {
+  const paths = ["M5 0A5 5 0 1 0 5.01 0Z", "M0 0H10V10H0Z", "M5 0L10 10H0Z", "M5 0L10 5L5 10L0 5Z", ...kSymbols.slice(4).map((s) => s.slice(7))];
+  document.getElementById("series").innerHTML = study.series.map((s) =>
+    `<span><svg width="11" height="11" viewBox="0 0 10 10" aria-hidden="true"><path d="${paths[s.symbol]}" fill="${s.colour}"/></svg> ${escape_html(s.name)}</span>`).join(" ");
+}
 
 function draw_parameters() {
   const grid = document.getElementById("parameters");

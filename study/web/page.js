@@ -47,6 +47,7 @@ state.error = Math.max(0, study.errors.findIndex((e) => e.id === "trajectory"));
 fill_select("error", study.errors, "error");
 fill_select("speed", study.speeds, "speed");
 summarise();
+draw_series_names();
 draw();
 draw_truth();
 fill_rungs();

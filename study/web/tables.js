@@ -32,16 +32,16 @@ function fill_decades() {
   };
   for (const [exponent, n] of decades) {
     const series = series_of_point[n];
-    const name = element("td", series.name);
+    const name = element("td", series.name, "name");
     const swatch = element("span", "", "swatch");
     swatch.style.background = series.colour;
     name.prepend(swatch);
     const limit = exponent === null ? 0 : Number("1e" + exponent);
-    const row = row_of([element("th", exponent === null ? "0" : power_of_ten(exponent)), element("td", number(speed.values[n]), "number best"),
-      element("td", number(error.values[n]), "number"), name, element("td", settings_text(study.points[n]), "settings"),
+    const row = row_of([element("th", exponent === null ? "0" : power_of_ten(exponent)), element("td", number(speed.values[n], 3), "number best"),
+      element("td", number(error.values[n], 3), "number"), name, element("td", settings_text(study.points[n]), "settings"),
       ...study.series.map((s) => {
         const best = best_of(s, limit);
-        return element("td", best === null ? "–" : number(speed.values[best]), s === series ? "number best" : "number");
+        return element("td", best === null ? "–" : number(speed.values[best], 3), s === series ? "number best" : "number");
       })]);
     row.dataset.point = n;
     table.tBodies[0].append(row);
@@ -95,7 +95,7 @@ function fill_points() {
   const rows = study.points.map((point, n) => {
     const row = row_of(columns.map((column) => {
       const value = column.value(n);
-      const kind = column.name === "status" && value !== "done" ? value : column.name === "why" ? "why" : "";
+      const kind = column.name === "status" && value !== "done" ? value : column.name === "why" ? "why" : "name";
       return element("td", column.name === "why" ? value : typeof value === "number" ? number(value) : value === null || value === "" ? "–" : value,
         column.number || typeof value === "number" ? "number" : kind);
     }));

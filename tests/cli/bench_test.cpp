@@ -59,6 +59,20 @@ TEST(BenchCommand, TimesWhatItSays) {
   EXPECT_LT(steps * 32000 / rate, 0.5);
 }
 
+// The same steps as `run` takes: a repeat of N steps at the told rate took about as long as asked.
+TEST(BenchCommand, TimesRealNumbers) {
+  const Answer answer = bench({"real.float_block_32k.1_thread", "--seconds", "0.05", "--repeats", "2"});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(answer.out, found,
+                                std::regex("32000 particles, 1 thread, \\w+, (\\d+) steps per repeat\n")))
+      << answer.out;
+  const double steps = std::stod(found[1]),
+               rate = values_of(answer.out).at("real.float_block_32k.1_thread.particle_steps");
+  EXPECT_GT(steps * 32000 / rate, 0.005);
+  EXPECT_LT(steps * 32000 / rate, 0.5);
+}
+
 TEST(BenchCommand, SaysWhatItSkips) {
   const Answer answer = bench({"systemc", "--repeats", "2"});
   EXPECT_EQ(answer.code, 0);
@@ -72,7 +86,8 @@ TEST(BenchCommand, NamesWhatItHas) {
   const Answer list = bench({"--list"});
   EXPECT_EQ(list.code, 0);
   for (const char* name : {"lattice.block_32k.1_thread ", "lattice.damped_2m.all_cores ", "lattice.cycles_32k.",
-                           "golden.block_4k ", "systemc.block_2k ", "impact.quiescence_off ", "scaling.threads_1 "})
+                           "golden.block_4k ", "real.double_block_32k.1_thread ",
+                           "real.float_damped_256k.all_cores ", "systemc.block_2k ", "impact.quiescence_off ", "scaling.threads_1 "})
     EXPECT_NE(list.out.find(name), std::string::npos) << name;
   EXPECT_EQ(bench({"golden.block_4"}).err, "no benchmark 'golden.block_4'\n  hint: did you mean 'golden.block_4k'?\n");
   EXPECT_EQ(bench({"gpu"}).err, "no benchmark 'gpu'\n  hint: 'cuboct bench --list' names them\n");

@@ -54,11 +54,21 @@ TEST(Command, RefusesWrongValues) {
 TEST(Command, RefusesOptionsOfAnotherEngine) {
   const std::vector<std::string> golden{"run", "scenes/lj_block.toml", "--engine", "golden"};
   for (const std::vector<std::string>& option : std::vector<std::vector<std::string>>{
-           {"--threads", "2"}, {"--ranks", "2"}, {"--cycles"}, {"--resume"}, {"--checkpoint-every", "5 min"}}) {
+           {"--ranks", "2"}, {"--cycles"}, {"--resume"}, {"--checkpoint-every", "5 min"}}) {
     std::vector<std::string> arguments = golden;
     arguments.insert(arguments.end(), option.begin(), option.end());
     expect_refusal(arguments, option[0] + " is an option of the lattice engine, not of golden\n");
   }
+  expect_refusal({"run", "scenes/lj_block.toml", "--engine", "golden", "--threads", "2"},
+                 "--threads is an option of the lattice and the reference engine, not of golden\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--engine", "reference", "--ranks", "2"},
+                 "--ranks is an option of the lattice engine, not of reference\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--precision", "float"},
+                 "--precision is an option of the reference engine, not of lattice\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--engine", "golden", "--integrator", "verlet"},
+                 "--integrator is an option of the reference engine, not of golden\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--engine", "reference", "--precision", "half"},
+                 "--precision: half not in {double,float}\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--resume"},
                  "--resume needs --out DIR, where the checkpoint lies\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--checkpoint-every", "5 min"},

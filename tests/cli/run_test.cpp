@@ -111,6 +111,41 @@ TEST(Run, OfTheReferenceFollowsGolden) {
   EXPECT_NEAR(stress[0], stress[1], 1e-2 * stress[1]);
 }
 
+// Frames hold the state to six digits or more: threads leave no mark in them, floats and the other integrator do.
+TEST(Run, OfTheReferenceTakesItsOptions) {
+  const Bench bench(false);
+  const auto run = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"run",     "scenes/coupon.toml", "--engine", "reference",
+                                       "--steps", "100",                "--out",    bench.path(name)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Answer answer = bench.cuboct(arguments);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    return answer.out;
+  };
+  const auto stress = [&](const std::string& name) {
+    const Trace trace = read_trace(bench.path(name + "/trace.h5"));
+    EXPECT_EQ(trace.curves[1].name, "tension.stress");
+    return trace.curves[1].value.back();
+  };
+  std::string out = run("one", {"--threads", "1"});
+  EXPECT_EQ(value_of(out, "precision"), "double");
+  EXPECT_EQ(value_of(out, "integrator"), "semi-implicit Euler");
+  EXPECT_EQ(value_of(out, "threads"), "1");
+  out = run("two", {"--threads", "2"});
+  EXPECT_EQ(value_of(out, "threads"), "2");
+  EXPECT_EQ(contents(bench.path("one/frames.xyz")), contents(bench.path("two/frames.xyz")));
+  EXPECT_EQ(stress("one"), stress("two"));
+  out = run("float", {"--precision", "float"});
+  EXPECT_EQ(value_of(out, "precision"), "float");
+  // 2^-24 of coordinates of 20 pitches, over a strain of 1e-3 or so.
+  EXPECT_NE(stress("one"), stress("float"));
+  EXPECT_NEAR(stress("one"), stress("float"), 0.05 * std::abs(stress("one")));
+  out = run("verlet", {"--integrator", "verlet"});
+  EXPECT_EQ(value_of(out, "integrator"), "velocity Verlet");
+  EXPECT_NE(stress("one"), stress("verlet"));
+  EXPECT_NEAR(stress("one"), stress("verlet"), 0.05 * std::abs(stress("one")));
+}
+
 // Summary and trace of three processes are those of one.
 TEST(Run, SharesASceneAmongRanks) {
   const Bench bench(false);

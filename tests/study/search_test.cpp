@@ -33,7 +33,7 @@ struct Asked {
       }
       return errors;
     };
-    return {std::move(sizes), all, std::move(cost)};
+    return {std::move(sizes), all, std::move(cost), {}};
   }
 };
 
@@ -212,6 +212,21 @@ TEST(Search, OfEqualCostsTheLowerNotches) {
   const SearchResult lone = search(one.space({1, 1}, sum_of({{0.5}, {0.2}}), sum_of({{1}, {1}})), 1.0);
   EXPECT_TRUE(lone.met);
   EXPECT_TRUE(lone.cheaper.empty());
+}
+
+TEST(Search, AxesThatDoNotMatter) {
+  // Bits (axis 1) matter to integers (axis 0 at 0) only, which miss the budget with any.
+  Asked asked;
+  const Landscape error = [](const Notches& p) { return p[0] == 1 ? 0.0 : 2.0 - 0.1 * p[1]; };
+  auto space = asked.space({2, 3}, error, [](const Notches& p) { return p[0] == 1 ? 10.0 : 1.0 + p[1]; });
+  space.finest_alike = [](const Notches& p) { return p[0] == 1 ? Notches{1, 2} : p; };
+  const SearchResult result = search(space, 1.0);
+  ASSERT_TRUE(result.met);
+  EXPECT_EQ(result.best.at, (Notches{1, 2}));
+  // Integers are told with their finest bits, not with those that happen to stand there.
+  ASSERT_EQ(result.cheaper.size(), 1u);
+  EXPECT_EQ(result.cheaper[0].spending.at, (Notches{0, 2}));
+  EXPECT_DOUBLE_EQ(result.cheaper[0].spending.error, 1.8);
 }
 
 TEST(Search, NotchesOutOfOrder) {

@@ -58,6 +58,7 @@ std::vector<Case> cases() {
     f.push_back(2 * std::cos(3 * r.back()) + (k == 24 ? -2 * std::cos(4.5) : 0));
   }
   return {{"lennard_jones", lennard_jones(1, 0.9, 1.7, 0.6), false, false, true},
+          {"shifted", lennard_jones(1, 0.9, 1.5, 0.6, Smoothing::linear), false, false, true},
           {"presets", preset_law("ductile", 1, 20), true, false, false},
           {"many_pieces", spline_law(r, f, Interpolation::monotone_cubic, 0.6), false, true, true},
           {"arcs", spline_law({0.5, 0.8, 1.0, 1.3, 1.6}, {9, 4, 0, -2, 0}, Interpolation::b_spline, 0.6), true, true,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -318,6 +319,46 @@ duration = 1.0
   EXPECT_EQ(s.steps, 100U);
   EXPECT_EQ(s.dt_limit, 0.0);
   EXPECT_EQ(s.rule.mass, 2.0);
+}
+
+// A dimer of Lennard-Jones particles: w^2 = 2k/m. A given dt must be below its limit; "auto" lasts for a crystal that
+// listed particles may become.
+TEST_F(SceneTest, ListedParticlesHaveTheLimitOfTheirVibrations) {
+  const auto dimer = [&](double distance, const std::string& dt) {
+    return fmt::format("units = \"reduced\"\nmass = 2.0\n[law]\nkind = \"lj\"\nepsilon = 1\nsigma = 1\ncutoff = 1.8\n"
+                       "[[particle]]\nposition = [0, 0, 0]\n[[particle]]\nposition = [{:.17g}, 0, 0]\n"
+                       "[run]\ndt = {}\nsteps = 1\n",
+                       distance, dt);
+  };
+  const double rest = std::pow(2, 1.0 / 6);
+  const Scene given = read(dimer(rest, "0.1"));
+  const double k = -given.rule.law->slope(rest);
+  EXPECT_NEAR(given.dt_limit, 2 / std::sqrt(2 * k / 2.0), 1e-9);
+  EXPECT_NEAR(given.dt_safety, 0.1 / given.dt_limit, 1e-12);
+  EXPECT_EQ(error(dimer(rest, "0.3")), "a.toml:13:6: 'dt' is beyond the stability limit 0.2646 s\n"
+                                         "  hint: \"auto\" would take 0.02402 s");
+  const Scene automatic = read(dimer(rest, "\"auto\""));
+  EXPECT_NEAR(automatic.dt_limit, stable_time_step(automatic.rule, rest), 1e-3 * automatic.dt_limit);
+  EXPECT_LT(automatic.dt_limit, 0.5 * given.dt_limit);
+  EXPECT_DOUBLE_EQ(automatic.rule.dt, 0.2 * automatic.dt_limit);
+  // Out of reach of each other nothing vibrates, but may yet; pressed together they are stiffer than a crystal.
+  EXPECT_EQ(read(dimer(3, "0.3")).dt_limit, 0.0);
+  EXPECT_EQ(read(dimer(3, "\"auto\"")).dt_limit, automatic.dt_limit);
+  EXPECT_LT(read(dimer(0.85, "\"auto\"")).dt_limit, 0.6 * automatic.dt_limit);
+}
+
+// A listed particle pressed into the packing is stiffer than the packing.
+TEST_F(SceneTest, AListedParticleNearAPackingCounts) {
+  const std::string law = "kind = \"spline\"\nr = [0, 1, 1.4]\nforce = [30, 0, 0]\ncore = 0.05\n";
+  const auto scene = [&](double height) {
+    return read(fmt::format("units = \"reduced\"\nmass = 1\n[packing]\npitch = 1\n[box]\ncells = [3, 3, 3]\n[law]\n{}"
+                            "[[particle]]\nposition = [0, 0, {}]\n[run]\nsteps = 1\n",
+                            law, height));
+  };
+  const double far = scene(-3).dt_limit, near = scene(-0.2).dt_limit;
+  const Scene s = scene(-3);
+  EXPECT_DOUBLE_EQ(far, stable_time_step(s.rule, 1));
+  EXPECT_LT(near, 0.8 * far);
 }
 
 // Angular momentum about the centre of mass and momentum of a spinning, drifting body.

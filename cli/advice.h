@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// What a user can do about a fault that stopped a run.
+#pragma once
+
+#include <string>
+
+#include "hw/plan.h"
+#include "model/scene.h"
+#include "model/trace.h"
+
+namespace cuboct {
+
+// One line: the node with its cell and where that stands, what happened there with its number, and the keys of
+// scene or arch that help.
+std::string advice_on(const StopReason& stop, const Plan& plan, const Scene& scene);
+
+}  // namespace cuboct

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// `cuboct explore STUDY --error E` as users meet it.
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <vector>
+
+#include "model/figure.h"
+#include "model/output.h"
+#include "model/scene.h"
+#include "model/trace.h"
+#include "tests/cli/shell.h"
+
+namespace cuboct::test {
+namespace {
+
+// A free block of two cells a side that breathes.
+constexpr const char* kScene = R"(density = "1.41 g/cm^3"  # acetal
+
+[packing]
+pitch = "0.5 mm"
+
+[box]
+cells = [2, 2, 2]
+
+[law]
+kind = "elastic"
+youngs_modulus = "3 GPa"
+direction = [1, 0, 0]
+
+[[velocity]]
+region = { shape = "half_space", point = "[0.6, 0, 0] mm", normal = [-1, 0, 0] }
+uniform = "[20, 0, 0] m/s"
+
+[[velocity]]
+region = { shape = "half_space", point = "[0.6, 0, 0] mm", normal = [1, 0, 0] }
+uniform = "[-20, 0, 0] m/s"
+
+[[probe]]
+name = "right"
+kind = "displacement"
+region = { shape = "half_space", point = "[0.6, 0, 0] mm", normal = [-1, 0, 0] }
+
+[run]
+dt_safety = 0.2
+duration = "24 us"  # ten breaths
+)";
+constexpr const char* kStudy = R"(scene = "scene.toml"
+samples = 60
+
+[[figure]]
+kind = "frequency"
+name = "breath"
+curve = "right.x"
+
+[search]
+dt_safety = [0.9, 0.3]
+difference_frac = [8, 16]
+index_bits = [6, 9]
+)";
+
+struct Studied {
+  explicit Studied(const std::string& study = kStudy) : bench(false) {
+    write_text(bench.path("scene.toml"), std::string(kScene));
+    write_text(bench.path("study.toml"), study);
+  }
+  Answer explore(const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"explore", bench.path("study.toml"), "--out", bench.path("results"), "--jobs", "2"};
+    words.insert(words.end(), more.begin(), more.end());
+    return bench.cuboct(words);
+  }
+  Bench bench;
+};
+
+TEST(ErrorBudget, WrongQuestionsAreToldBeforeAnythingRuns) {
+  const Studied s;
+  const auto expect = [&](const std::vector<std::string>& words, const std::string& text) {
+    const Answer answer = s.explore(words);
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_EQ(answer.out, "");
+    EXPECT_EQ(answer.err, text);
+  };
+  expect({"--error", "little"},
+         "'little' is no error\n  hint: a percentage or a share: --error 1% or --error 0.01\n");
+  expect({"--error", "1"}, "an error of '1' is out of range: above 0 and below 100%\n  hint: did you mean '1%'?\n");
+  expect({"--error", "1%", "--figure", "breadth"},
+         s.bench.path("study.toml") + ": no figure 'breadth'\n  hint: did you mean 'breath'?\n");
+  expect({"--figure", "breath"}, "--figure names the figure of --error E\n");
+  std::string without = kStudy;
+  without = without.substr(0, without.find("[search]")) + "[[sweep]]\ndt_safety = 0.3\n";
+  const Answer answer = Studied(without).explore({"--error", "1%"});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_NE(answer.err.find(": no [search] to choose from\n  hint: list settings from cheap to dear, e.g. "),
+            std::string::npos)
+      << answer.err;
+}
+
+TEST(ErrorBudget, CannotBeKept) {
+  const Answer answer = Studied().explore({"--error", "0.02%"});
+  EXPECT_EQ(answer.code, 1) << answer.err;
+  EXPECT_NE(answer.out.find("no settings of [search] keep 'breath' within 0.02%\nthe best: "), std::string::npos)
+      << answer.out;
+  EXPECT_NE(answer.out.find("\nwhat limits is "), std::string::npos) << answer.out;
+}
+
+// What is written, run by `cuboct run`, has the figure that was told.
+TEST(ErrorBudget, TheChosenFilesRun) {
+  const Studied s;
+  const Answer answer = s.explore({"--error", "5%"});
+  ASSERT_EQ(answer.code, 0) << answer.err << answer.out;
+  EXPECT_EQ(answer.err, "");
+  double told = 0, truth = 0;
+  const auto number_after = [&](const std::string& words, double& number) {
+    const size_t at = answer.out.find(words);
+    ASSERT_NE(at, std::string::npos) << answer.out;
+    std::istringstream(answer.out.substr(at + words.size())) >> number;
+  };
+  number_after("as measured: ", told);
+  number_after("figure 'breath': ", truth);
+  EXPECT_NEAR(told, truth, 0.05 * truth);
+  const std::string out = s.bench.path("results");
+  EXPECT_NE(answer.out.find("cuboct run " + out + "/cheapest.toml --arch " + out + "/cheapest_arch.toml\n"),
+            std::string::npos);
+  const Answer run = s.bench.cuboct(
+      {"run", out + "/cheapest.toml", "--arch", out + "/cheapest_arch.toml", "--out", s.bench.path("run")});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Trace trace = read_trace(s.bench.path("run") + "/trace.h5");
+  Figure figure;
+  figure.kind = Figure::Kind::frequency;
+  figure.curve = "right.x";
+  // The engine of `run` starts with v(0) where the study starts with v(-dt/2): another amplitude, the same law,
+  // which is not quite linear.
+  EXPECT_NEAR(value_of(figure, trace.curves, read_scene(out + "/cheapest.toml").rule.dt), told, 2e-3 * told);
+  EXPECT_NE(contents(out + "/cheapest.toml").find("# acetal"), std::string::npos);
+  // Again: all is known, and the answer the same.
+  EXPECT_EQ(s.explore({"--error", "5%"}).out, answer.out);
+}
+
+}  // namespace
+}  // namespace cuboct::test

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+// The page of a study as a reader meets it, in headless Chromium, from file://.
+// usage: node page_test.mjs PAGE CHROMIUM STUDY_WEB; prints what it checked, ends with 1 where something is wrong.
+import assert from "node:assert/strict";
+import {createRequire} from "node:module";
+import {pathToFileURL} from "node:url";
+
+const [path, chromium_path, study_web] = process.argv.slice(2);
+const {chromium} = createRequire(study_web + "/")("playwright-core");
+const address = pathToFileURL(path).href;
+const flags = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
+  "--disable-component-update", "--disable-sync"];
+
+const problems = [];
+let requests = 0, hovers = 0;
+
+async function open(browser, width, height) {
+  const context = await browser.newContext({viewport: {width, height}, offline: true});
+  const page = await context.newPage();
+  page.on("console", (message) => problems.push(`console ${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => problems.push(`error: ${error.stack}`));
+  page.on("request", (request) => {
+    ++requests;
+    if (request.url() !== address && !request.url().startsWith("data:")) problems.push(`request: ${request.url()}`);
+  });
+  await page.goto(address);
+  return page;
+}
+
+// To the middle of the window: its upper edge is under the selectors.
+const bring = (page, id) => page.$eval("#" + id, (chart) => chart.scrollIntoView({block: "center"}));
+
+// Texts that a chart draws.
+const texts = (page, id) => page.$$eval(`#${id} svg text`, (all) => all.map((t) => t.textContent));
+
+// Marks of a chart that stand alone, so that the pointer meets no other: [{point, x, y}], in pixels of the page.
+const lone_marks = (page, id) => page.evaluate((id) => {
+  const element = document.getElementById(id), chart = echarts.getInstanceByDom(element);
+  const box = element.getBoundingClientRect();
+  const marks = chart.getOption().series.flatMap((series, s) => (series.data || [])
+    .filter((d) => d && d.point !== undefined)
+    .map((d) => ({point: d.point, at: chart.convertToPixel({seriesIndex: s}, d.value)})));
+  return marks.filter((m) => marks.every((o) => o === m || Math.hypot(o.at[0] - m.at[0], o.at[1] - m.at[1]) > 8))
+    .map((m) => ({point: m.point, x: box.left + m.at[0], y: box.top + m.at[1]}));
+}, id);
+
+async function hover(page, id, mark) {
+  await page.mouse.move(2, 2);
+  await page.waitForSelector(`#${id} .tip`, {state: "hidden", timeout: 5000});
+  await page.mouse.move(mark.x, mark.y);
+  await page.waitForSelector(`#${id} .tip`, {state: "visible", timeout: 5000});
+  ++hovers;
+  return page.$eval(`#${id} .tip`, (tip) => tip.textContent);
+}
+
+const column = (page, name) => page.$$eval("#points tr", ([head, ...rows], name) => {
+  const at = [...head.cells].findIndex((c) => c.textContent === name);
+  if (at < 0) throw new Error("no column " + name);
+  return rows.map((row) => row.cells[at].textContent);
+}, name);
+const press = (page, name) => page.locator("#points th button", {hasText: new RegExp(`^${name.replace(/[()]/g, "\\$&")}$`)}).click();
+const as_number = (text) => {
+  const [mantissa, power] = text.split("·10");
+  return Number(mantissa) * 10 ** (power ? Number(power.replace(/./g, (c) => "-0123456789"["⁻⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c)])) : 0);
+};
+
+async function charts_are_there(page, study) {
+  assert.equal(await page.textContent("h1"), study.title);
+  assert.match(await page.textContent("#summary"), /^265 points: 246 done, 17 unstable, 2 refused\./);
+  assert.equal((await page.$$(".chart svg")).length, 2 + study.parameters.length);
+  assert.ok(study.parameters.length >= 6);
+  const drawn = await texts(page, "error-speed");
+  for (const text of ["lattice, fixed", "reference, double", "reference, float", "gpu, float", "fpga, fixed", "Pareto front",
+    "distance from the true trajectory, pitches (rms)", "simulated seconds per second", "below: the truth's own error"])
+    assert.ok(drawn.includes(text), `the chart does not say '${text}': ${drawn}`);
+  // As many marks as there are points with both numbers.
+  const marks = await page.$$eval("#error-speed svg path", (all) => all.filter((p) => ["#0072b2", "#d55e00", "#00875f", "#aa4499", "#332288"]
+    .includes((p.getAttribute("fill") || "").toLowerCase())).length);
+  const expected = study.points.filter((p, n) => p.status === "done" && study.errors.find((e) => e.id === "trajectory").values[n] !== null).length;
+  assert.equal(expected, 246);
+  assert.ok(marks >= expected && marks <= expected + study.series.length, `${marks} marks of ${expected} points`);
+  assert.ok((await texts(page, "truth-chart")).includes("dt²"));
+}
+
+async function hovering_tells_settings(page, study) {
+  const error = study.errors.find((e) => e.id === "trajectory");
+  const seen = new Set();
+  await bring(page, "error-speed");
+  for (const mark of await lone_marks(page, "error-speed")) {
+    const point = study.points[mark.point], name = `${point.engine}, ${point.arithmetic}`;
+    if (seen.has(name)) continue;
+    const text = await hover(page, "error-speed", mark);
+    assert.ok(text.startsWith(`Point ${mark.point + 1}engine${name}`), `hovering point ${mark.point + 1} shows: ${text}`);
+    for (const [key, value] of [...point.scene, ...point.arch]) assert.ok(text.includes(key + value), `${key} = ${value} is not in: ${text}`);
+    const shown = as_number(text.split(error.label)[1].match(/^[-0-9.]+(·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?/)[0]);
+    assert.ok(Math.abs(shown / error.values[mark.point] - 1) < 1e-3, `${shown} is not the error of point ${mark.point + 1}`);
+    seen.add(name);
+  }
+  assert.deepEqual([...seen].sort(), study.series.map((s) => s.name).sort());
+  // The settings' charts tell as much.
+  await bring(page, "parameter-0");
+  const [mark] = await lone_marks(page, "parameter-0");
+  assert.ok((await hover(page, "parameter-0", mark)).startsWith(`Point ${mark.point + 1}engine`));
+}
+
+async function pressing_a_mark_finds_its_row(page) {
+  await bring(page, "error-speed");
+  const [mark] = await lone_marks(page, "error-speed");
+  await page.mouse.click(mark.x, mark.y);
+  const chosen = await page.$$eval("#points tr.chosen", (rows) => rows.map((r) => r.cells[0].textContent));
+  assert.deepEqual(chosen, [String(mark.point + 1)]);
+}
+
+async function selectors_change_charts(page, study) {
+  const table = () => page.textContent("#decades");
+  const before = await table();
+  await page.selectOption("#error", {label: "change of momentum, of the sum of |m v|"});
+  let drawn = await texts(page, "error-speed");
+  assert.ok(drawn.includes("change of momentum, of the sum of |m v|") && !drawn.includes("distance from the true trajectory, pitches (rms)"));
+  // Fixed engines keep momentum to the last bit: an error of 0 has a place on the logarithmic axis.
+  assert.ok(drawn.includes("0"), `no place for an error of 0: ${drawn}`);
+  assert.ok(drawn.includes("unstable"), "unstable points have a momentum error and are drawn");
+  const first = await page.$eval("#decades tbody tr:last-child th", (cell) => cell.textContent);
+  assert.equal(first, "0");
+  assert.notEqual(await table(), before);
+  assert.ok((await texts(page, "parameter-0")).includes("change of momentum, of the sum of |m v|"));
+
+  const by_cost = await table();
+  await page.selectOption("#speed", {label: "cost, multiplier bits per simulated second (less is better)"});
+  drawn = await texts(page, "error-speed");
+  assert.ok(drawn.includes("cost, multiplier bits per simulated second (less is better)"));
+  assert.notEqual(await table(), by_cost);
+  // The better is to the right: the cheapest point stands furthest there.
+  const places = await page.evaluate(() => {
+    const chart = echarts.getInstanceByDom(document.getElementById("error-speed"));
+    return chart.getOption().series.flatMap((s, k) => s.data.filter((d) => d.point !== undefined)
+      .map((d) => [d.value[0], chart.convertToPixel({seriesIndex: k}, d.value)[0]]));
+  });
+  places.sort((a, b) => a[0] - b[0]);
+  assert.ok(places[0][1] > places[places.length - 1][1]);
+
+  await page.selectOption("#error", {label: "relative error of Young's modulus"});
+  await page.selectOption("#speed", {label: "particle-steps per second"});
+  drawn = await texts(page, "error-speed");
+  assert.ok(drawn.includes("relative error of Young's modulus") && drawn.includes("particle-steps per second"));
+  await page.selectOption("#error", {label: "distance from the true trajectory, pitches (rms)"});
+  await page.selectOption("#speed", {label: "simulated seconds per second"});
+  assert.equal(await table(), before);
+  assert.equal(study.choices.length, study.errors.length);
+}
+
+async function tables_sort_and_filter(page, study) {
+  const label = "distance from the true trajectory, pitches (rms)";
+  const ascending = (cells) => cells.every((c, k) => k === 0 || as_number(cells[k - 1]) <= as_number(c));
+  for (const falling of [false, true]) {
+    await press(page, label);
+    const cells = await column(page, label);
+    assert.equal(cells.length, 265);
+    const some = cells.filter((c) => c !== "–");
+    assert.equal(some.length, 246);
+    assert.ok(cells.slice(246).every((c) => c === "–"), "points without a value stand last");
+    assert.ok(ascending(falling ? some.reverse() : some), `not sorted: ${some.slice(0, 5)}`);
+    assert.equal(await page.getAttribute("#points th[aria-sort]", "aria-sort"), falling ? "descending" : "ascending");
+  }
+  await press(page, "status");
+  assert.deepEqual([...new Set(await column(page, "status"))], ["done", "refused", "unstable"]);
+  await press(page, "point");
+  assert.deepEqual(await column(page, "point"), study.points.map((_, n) => String(n + 1)));
+
+  const visible = () => page.$$eval("#points tbody tr", (rows) => rows.filter((r) => r.offsetHeight > 0).map((r) => r.textContent));
+  await page.selectOption("#status", "refused");
+  let rows = await visible();
+  assert.equal(rows.length, 2);
+  assert.ok(rows.every((r) => r.includes("the law's strongest pull takes 10 bits <strength_bits & sign>: more than it has")));
+  await page.selectOption("#status", "");
+  await page.fill("#filter", "FPGA");
+  rows = await visible();
+  assert.equal(rows.length, 4);
+  assert.ok(rows.some((r) => r.includes("left the truth by 44 pitches at the horizon")));
+  assert.equal(await page.textContent("#shown"), "4 of 265");
+  await page.fill("#filter", "");
+}
+
+async function zooms_and_comes_back(page) {
+  const ends = () => page.evaluate(() => echarts.getInstanceByDom(document.getElementById("error-speed")).getOption().dataZoom.map((z) => z.end - z.start));
+  await bring(page, "error-speed");
+  const box = await page.locator("#error-speed").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.keyboard.down("Shift");
+  await page.mouse.wheel(0, -240);
+  await page.keyboard.up("Shift");
+  await page.waitForFunction(() => {
+    const [x] = echarts.getInstanceByDom(document.getElementById("error-speed")).getOption().dataZoom;
+    return x.end - x.start < 100;
+  }, undefined, {timeout: 5000});
+  await page.evaluate(() => echarts.getInstanceByDom(document.getElementById("error-speed")).dispatchAction({type: "restore"}));
+  assert.ok((await ends()).every((d) => d === 100));
+}
+
+async function fits_a_phone(browser) {
+  const page = await open(browser, 390, 844);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 390, "the page is wider than the screen");
+  for (const box of await page.$$eval(".chart svg", (all) => all.map((s) => s.getBoundingClientRect().right))) assert.ok(box <= 390);
+  await bring(page, "error-speed");
+  const [mark] = await lone_marks(page, "error-speed");
+  await hover(page, "error-speed", mark);
+  const tip = await page.locator("#error-speed .tip").boundingBox();
+  assert.ok(tip.x >= 0 && tip.x + tip.width <= 390, "what a mark tells is cut");
+  await page.context().close();
+}
+
+async function prints(page) {
+  await page.emulateMedia({media: "print"});
+  await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+  const widths = await page.$$eval(".chart svg", (all) => all.map((s) => s.getBoundingClientRect().width));
+  assert.ok(widths.every((w) => w <= 680), `charts of ${widths} pixels are cut on paper`);
+  await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
+  await page.emulateMedia({media: "screen"});
+}
+
+const browser = await chromium.launch({executablePath: chromium_path, args: flags});
+try {
+  const page = await open(browser, 1280, 900);
+  const study = await page.$eval("#data", (data) => JSON.parse(data.textContent));
+  await charts_are_there(page, study);
+  await hovering_tells_settings(page, study);
+  await pressing_a_mark_finds_its_row(page);
+  await selectors_change_charts(page, study);
+  await tables_sort_and_filter(page, study);
+  await zooms_and_comes_back(page);
+  await prints(page);
+  await fits_a_phone(browser);
+  assert.deepEqual(problems, []);
+  // The page itself, twice: the listener hears.
+  assert.ok(requests >= 2);
+  console.log(`${study.points.length} points, ${hovers} hovers, ${requests} requests, none of them to elsewhere`);
+} finally {
+  await browser.close();
+}

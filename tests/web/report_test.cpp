@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+// What a report finds in results: the settings that were varied, the orders that are expected, series and their
+// looks; and that its page and pictures are the same bytes for the same results.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "model/process.h"
+#include "study/json.h"
+#include "study/page.h"
+#include "study/parameters.h"
+#include "study/series.h"
+#include "tests/web/made_up_results.h"
+
+namespace cuboct::test {
+namespace {
+
+using study::Arithmetic, study::Outcome, study::Parameter, study::Results;
+
+Outcome& add(Results& results, std::vector<Change> scene, std::vector<Change> arch, double dt, double error) {
+  Outcome outcome;
+  outcome.settings.scene = std::move(scene);
+  outcome.settings.arch = std::move(arch);
+  outcome.dt = dt;
+  outcome.errors.trajectory = outcome.errors.force_max = error;
+  outcome.speed.simulated_seconds = 1 / dt;
+  results.outcomes.push_back(outcome);
+  return results.outcomes.back();
+}
+
+std::vector<std::string> ids(const std::vector<Parameter>& parameters) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : parameters) names.push_back(parameter.id);
+  return names;
+}
+
+std::vector<std::vector<size_t>> sweeps(const Parameter& parameter) {
+  std::vector<std::vector<size_t>> all;
+  for (const study::Sweep& sweep : parameter.sweeps) all.push_back(sweep.points);
+  return all;
+}
+
+const study::Measure& measure(const std::vector<study::Measure>& all, const std::string& id) {
+  return *std::find_if(all.begin(), all.end(), [&](const study::Measure& m) { return m.id == id; });
+}
+
+TEST(Parameters, SweepsJoinWhatDiffersInNothingElse) {
+  Results results;
+  for (const char* guard : {"4", "8"})
+    for (const double dt : {4e-8, 1e-8, 2e-8})
+      add(results, {{"run.dt", fmt::format("\"{} s\"", dt)}}, {{"widths.guard", guard}}, dt, 1);
+  results.outcomes[4].status = study::Status::unstable;
+  const auto found = study::swept_parameters(results);
+  // run.dt is told by the time step that results.
+  ASSERT_EQ(ids(found), (std::vector<std::string>{"dt", "arch.widths.guard"}));
+  EXPECT_EQ(sweeps(found[0]), (std::vector<std::vector<size_t>>{{1, 2, 0}, {5, 3}}));
+  EXPECT_TRUE(found[0].logarithmic);
+  EXPECT_EQ(sweeps(found[1]), (std::vector<std::vector<size_t>>{{0, 3}, {2, 5}}));
+  EXPECT_EQ(found[1].x, (std::vector<double>{4, 4, 4, 8, 8, 8}));
+}
+
+TEST(Parameters, WhatAPresetSetsTogetherFollows) {
+  Results results;
+  for (const int p : {14, 17, 20})
+    add(results, {},
+        {{"widths.position_frac", std::to_string(p)}, {"widths.difference_frac", std::to_string(p - 4)}}, 1e-8, 1);
+  const auto found = study::swept_parameters(results);
+  ASSERT_EQ(ids(found),
+            (std::vector<std::string>{"arch.widths.position_frac", "arch.widths.difference_frac"}));
+  EXPECT_EQ(sweeps(found[0]), (std::vector<std::vector<size_t>>{{0, 1, 2}}));
+  EXPECT_EQ(found[1].x, (std::vector<double>{10, 13, 16}));
+}
+
+TEST(Parameters, NumbersWithUnitsAndNames) {
+  Results results;
+  add(results, {{"packing.pitch", "\"0.5 mm\""}}, {{"table.shape", "\"uniform\""}, {"widths.strength_bits", "18"}}, 1, 1);
+  add(results, {{"packing.pitch", "\"0.25 mm\""}}, {{"table.shape", "\"octaves\""}, {"widths.strength_bits", "22"}}, 1, 1);
+  add(results, {{"packing.pitch", "\"0.25 mm\""}}, {{"widths.strength_bits", "\"auto\""}}, 1, 1);
+  const auto found = study::swept_parameters(results);
+  ASSERT_EQ(ids(found), (std::vector<std::string>{"scene.packing.pitch", "arch.table.shape", "arch.widths.strength_bits"}));
+  EXPECT_EQ(found[0].label, "packing.pitch, mm");
+  EXPECT_EQ(found[0].x, (std::vector<double>{0.5, 0.25, 0.25}));
+  EXPECT_EQ(found[1].names, (std::vector<std::string>{"uniform", "octaves"}));
+  EXPECT_EQ(found[1].x[1], 1);
+  EXPECT_TRUE(std::isnan(found[1].x[2]));
+  EXPECT_EQ(found[2].x[1], 22);
+  EXPECT_TRUE(std::isnan(found[2].x[2]));  // "auto" is no number
+}
+
+// error = 5 dt^2 + a rest of other settings: the line goes through the purest points.
+TEST(Orders, OfTheTimeStep) {
+  Results results;
+  for (const double rest : {0.3, 0.0})
+    for (const double dt : {0.01, 0.04, 0.16})
+      add(results, {{"run.dt_safety", fmt::format("{}", dt)}}, {{"widths.guard", rest > 0 ? "2" : "8"}}, dt,
+          5 * dt * dt + rest);
+  const auto errors = study::error_measures(results);
+  const Parameter dt = study::swept_parameters(results)[0];
+  const auto orders = study::expected_orders(results, dt, measure(errors, "trajectory"));
+  ASSERT_EQ(orders.size(), 1U);
+  EXPECT_EQ(orders[0].label, "dt^2");
+  const auto line = study::order_line(results, dt, measure(errors, "trajectory"), orders[0]);
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->first, (std::pair{0.16, 5 * 0.16 * 0.16}));
+  EXPECT_EQ(line->second.first, 0.01);
+  EXPECT_NEAR(line->second.second, 5e-4, 1e-15);  // rounding of a power
+  EXPECT_TRUE(study::expected_orders(results, dt, measure(errors, "force_max")).empty());
+}
+
+TEST(Orders, OfTablesByTheirDegree) {
+  Results results;
+  for (const int degree : {1, 2})
+    for (const int bits : {4, 6, 8})
+      add(results, {}, {{"table.degree", std::to_string(degree)}, {"table.index_bits", std::to_string(bits)}}, 1,
+          std::exp2(-(degree + 1) * bits));
+  const auto errors = study::error_measures(results);
+  const auto found = study::swept_parameters(results);
+  ASSERT_EQ(ids(found), (std::vector<std::string>{"arch.table.degree", "arch.table.index_bits"}));
+  const study::Measure& force = measure(errors, "force_max");
+  const auto orders = study::expected_orders(results, found[1], force);
+  ASSERT_EQ(orders.size(), 2U);
+  EXPECT_EQ(orders[0].label, "bins^-2, degree 1");
+  EXPECT_EQ(orders[1].label, "bins^-3, degree 2");
+  for (const int degree : {1, 2}) {
+    const auto line = study::order_line(results, found[1], force, orders[static_cast<size_t>(degree - 1)]);
+    ASSERT_TRUE(line);
+    EXPECT_EQ(line->first, (std::pair{4.0, std::exp2(-(degree + 1) * 4)}));
+    EXPECT_EQ(line->second, (std::pair{8.0, std::exp2(-(degree + 1) * 8)}));
+  }
+}
+
+TEST(Measures, TheTruthsOwnErrorAndWhatWasMeasured) {
+  Results results = made_up_results();
+  const auto errors = study::error_measures(results);
+  EXPECT_EQ(measure(errors, "trajectory").floor, 3e-5);
+  // The figure's error is 0.7 * 4e-3 / 4^k at rung k; the last two rungs are k = 4 and 5.
+  EXPECT_NEAR(measure(errors, "figure0_young_s_modulus").floor, 0.7 * 4e-3 * (1.0 / 256 - 1.0 / 1024), 1e-9);
+  EXPECT_EQ(errors.size(), 9U);
+  for (Outcome& outcome : results.outcomes) outcome.errors.momentum = study::kNotMeasured;
+  EXPECT_EQ(study::error_measures(results).size(), 8U);
+}
+
+// WCAG 2.2: relative luminance and contrast; graphics need 3:1.
+TEST(Series, EveryEngineHasALookOfItsOwnThatCanBeSeen) {
+  Results results = made_up_results();
+  for (int n = 0; n < 12; ++n) add(results, {}, {}, 1, 1).settings.engine = fmt::format("engine{}", n);
+  const auto all = study::series_of(results);
+  std::vector<std::string> names;
+  size_t points = 0;
+  for (const auto& series : all) names.push_back(series.name), points += series.points.size();
+  EXPECT_EQ(points, results.outcomes.size());
+  EXPECT_EQ(names[0], "lattice, fixed");
+  EXPECT_EQ(names[3], "gpu, float");
+  EXPECT_EQ(names[4], "fpga, fixed");
+  ASSERT_EQ(names.size(), 17U);
+  for (size_t a = 0; a < all.size(); ++a) {
+    const auto channel = [&](size_t at) {
+      const double c = std::stoi(all[a].colour.substr(at, 2), nullptr, 16) / 255.0;
+      return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    };
+    const double luminance = 0.2126 * channel(1) + 0.7152 * channel(3) + 0.0722 * channel(5);
+    EXPECT_GE(1.05 / (luminance + 0.05), 3) << all[a].colour;
+    for (size_t b = 0; b < a; ++b)
+      EXPECT_FALSE(all[a].colour == all[b].colour && all[a].symbol == all[b].symbol) << names[a] << names[b];
+  }
+}
+
+TEST(Json, TextThatCannotEndItsElement) {
+  EXPECT_EQ(study::json(std::string("a\"b\\c</script>\n")), R"("a\"b\\c\u003c/script>\u000a")");
+  EXPECT_EQ(study::json(0.1), "0.1");
+  EXPECT_EQ(study::json(std::vector<double>{1e-300, NAN, -INFINITY}), "[1e-300,null,null]");
+}
+
+std::string bytes(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(Page, SameResultsSameBytes) {
+  const std::string page = study::page_of(made_up_results());
+  EXPECT_EQ(page, study::page_of(made_up_results()));
+  EXPECT_NE(page.find("Licensed to the Apache Software Foundation"), std::string::npos);
+  EXPECT_NE(page.find("Apache ECharts\nCopyright"), std::string::npos);
+  EXPECT_EQ(page.find("@data@"), std::string::npos);
+  Results other = made_up_results();
+  other.outcomes[3].why = "changed";
+  EXPECT_NE(page, study::page_of(other));
+}
+
+TEST(Charts, PicturesOfEachChartTwiceTheSame) {
+  Results results;
+  for (const double dt : {0.01, 0.04}) add(results, {}, {}, dt, dt * dt);
+  add(results, {}, {}, 0.08, 0).settings.engine = "it's new";
+  const Scratch scratch;
+  const auto names = study::write_charts(results, scratch.path("a"));
+  EXPECT_EQ(names, (std::vector<std::string>{
+                       "force_max_simulated_seconds.png", "force_max_simulated_seconds.svg",
+                       "trajectory_simulated_seconds.png", "trajectory_simulated_seconds.svg",
+                       "force_max_by_dt.png", "force_max_by_dt.svg", "trajectory_by_dt.png",
+                       "trajectory_by_dt.svg"}));
+  EXPECT_EQ(study::write_charts(results, scratch.path("b")), names);
+  for (const std::string& name : names) {
+    const std::string picture = bytes(scratch.path("a/" + name));
+    EXPECT_EQ(picture, bytes(scratch.path("b/" + name))) << name;
+    EXPECT_EQ(picture.substr(0, 5), name.ends_with(".png") ? "\x89PNG\r" : "<?xml");
+  }
+  const std::string svg = bytes(scratch.path("a/trajectory_by_dt.svg"));
+  EXPECT_NE(svg.find("it's new, fixed"), std::string::npos);
+  EXPECT_NE(svg.find("dt^2"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cuboct::test
