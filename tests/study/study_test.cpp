@@ -93,6 +93,7 @@ TEST(Study, TheHashKnowsWhatErrorsDependOn) {
   EXPECT_EQ(hash(sweep), hash("[speed]\nrepeats = 5\n" + sweep));
   EXPECT_NE(hash(sweep), hash("[truth]\ntolerance = 1e-3\n" + sweep));
   EXPECT_NE(hash(sweep), hash("[change.run]\nsteps = 320\n" + sweep));
+  EXPECT_NE(hash(sweep), hash("[change.packing]\noffset = \"[0.2, 0.1, 0.1] mm\"\n" + sweep));
   EXPECT_NE(hash(sweep), hash("[[figure]]\nkind = \"final\"\ncurve = \"energy.kinetic\"\n" + sweep));
 }
 
