@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <functional>
 #include <optional>
 
@@ -131,14 +132,11 @@ Set set_of(const Key& key, const ConfigValue& value, const Widths& widths) {
 
 Widths widths_of(const Base& base) { return resolve(base, {}).arch.widths; }
 
-// An InputError's text without the place in a scene that the user did not write.
-std::string without_place(const std::string& text, const Base& base) {
-  for (const std::string& path : {base.scene_path, base.arch_path})
-    if (!path.empty() && text.starts_with(path + ":")) {
-      const size_t at = text.find(": ");
-      if (at != std::string::npos) return text.substr(at + 2);
-    }
-  return text;
+// An InputError's text without the place in a scene or arch that the user did not write: "path:line:column: ".
+std::string without_place(const std::string& text) {
+  const size_t at = text.find(": ");
+  const bool placed = at != std::string::npos && at > 0 && std::isdigit(static_cast<unsigned char>(text[at - 1]));
+  return placed ? text.substr(at + 2) : text;
 }
 
 void try_alone(const ConfigValue& value, const Set& set, const Base& base) {
@@ -147,7 +145,7 @@ void try_alone(const ConfigValue& value, const Set& set, const Base& base) {
   try {
     resolve(base, settings);
   } catch (const InputError& error) {
-    const std::string text = without_place(error.what(), base);
+    const std::string text = without_place(error.what());
     const size_t hint = text.find("\n  hint: ");
     value.fail(text.substr(0, hint), hint == std::string::npos ? "" : text.substr(hint + 9));
   }

@@ -10,10 +10,10 @@ namespace {
 
 TEST(Sensitivity, OfExponentialGrowthIsItsTime) {
   std::vector<double> distance;
-  for (int k = 0; k <= 400; ++k) distance.push_back(1e-9 * std::exp(0.03 * k));
+  for (int k = 0; k <= 400; ++k) distance.push_back(1e-9 * std::exp(0.0301 * k));
   const Sensitivity s = sensitivity_of(distance, 0.5);
-  EXPECT_NEAR(s.lyapunov_time, 0.5 / 0.03, 1e-9);
-  EXPECT_EQ(s.horizon, 99U);  // the last sample before e^3, three Lyapunov times
+  EXPECT_NEAR(s.lyapunov_time, 0.5 / 0.0301, 1e-9);
+  EXPECT_EQ(s.horizon, 99U);  // the last sample before 3/0.0301 = 99.7
 }
 
 TEST(Sensitivity, OfGrowthInProportionToTimeIsNone) {

@@ -93,6 +93,7 @@ TEST(Study, TheHashKnowsWhatErrorsDependOn) {
   EXPECT_EQ(hash(sweep), hash("[speed]\nrepeats = 5\n" + sweep));
   EXPECT_NE(hash(sweep), hash("[truth]\ntolerance = 1e-3\n" + sweep));
   EXPECT_NE(hash(sweep), hash("[change.run]\nsteps = 320\n" + sweep));
+  EXPECT_NE(hash(sweep), hash("[change.packing]\noffset = \"[0.2, 0.1, 0.1] mm\"\n" + sweep));
   EXPECT_NE(hash(sweep), hash("[[figure]]\nkind = \"final\"\ncurve = \"energy.kinetic\"\n" + sweep));
 }
 
@@ -105,7 +106,7 @@ TEST(Study, MistakesNameTheirPlace) {
   EXPECT_EQ(error_of(files, "[[sweep]]\narithmetic = \"fixd\"\n"),
             "study.toml:4:14: unknown arithmetic 'fixd'\n  hint: did you mean 'fixed'?");
   EXPECT_EQ(error_of(files, "[[sweep]]\nset.damping.ration = [0.1]\n"),
-            "study.toml:4:23: unknown key 'ration'\n  hint: did you mean 'ratio'?");
+            "study.toml:4:23: missing key 'coefficient' in 'damping'");
   EXPECT_EQ(error_of(files, "[[sweep]]\nindex_bits = []\n"), "study.toml:4:14: 'index_bits' lists nothing");
   EXPECT_EQ(error_of(files, ""), "study.toml:1:1: a study without points\n  hint: add a [[sweep]] or a [search]");
   EXPECT_EQ(error_of(files, "[[figure]]\nkind = \"mean\"\ncurve = \"energy.kinetc\"\n[[sweep]]\n"),
