@@ -77,8 +77,10 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Watch, ExamplesAreSilent) {
   const Bench bench(false);
   for (const char* name : {"coupon", "hot_cluster", "lj_block", "two_types", "undamped_block"})
-    for (const std::vector<std::string>& more :
-         {std::vector<std::string>{}, {"--engine", "reference", "--steps", "300"}}) {
+    for (std::vector<std::string> more :
+         {std::vector<std::string>{"--threads", "1"}, {"--engine", "reference", "--steps", "150"}}) {
+      // The coupon's whole length takes too long here; docs/reference/failures.md tells of it.
+      if (name == std::string("coupon") && more[0] == "--threads") more.insert(more.end(), {"--steps", "3000"});
       const Answer answer = run(bench, std::string("scenes/") + name + ".toml", "", more);
       EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
       EXPECT_TRUE(warnings(answer.out).empty()) << name << answer.out;
