@@ -64,12 +64,12 @@ class Search {
 
   SearchResult run() {
     find_reference();
-    if (size_of(result_.reference_error) <= budget_ && reference_is_no_accident()) {
-      descend();
+    if (size_of(result_.reference_error) <= budget_ && reference_is_no_accident()) descend();
+    result_.met = !result_.best.at.empty();
+    if (result_.met)
       explain();
-    } else {
+    else
       fail();
-    }
     result_.measured = measured_.all().size();
     return result_;
   }
@@ -184,7 +184,6 @@ class Search {
   }
 
   void descend() {
-    result_.met = true;
     result_.cost = kInfinity;
     std::set<Node> open{{bound(result_.reference, 0, 0), 0, result_.reference,
                          size_of(result_.reference_error)}};

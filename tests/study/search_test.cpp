@@ -191,6 +191,11 @@ TEST(Search, SettingsThatCannotRun) {
   ASSERT_EQ(result.cheaper.size(), 1u);
   EXPECT_TRUE(std::isnan(result.cheaper[0].spending.error));
   EXPECT_EQ(result.cheaper[0].spending.sum, kInfinity);
+  // What has no cost is not chosen, whatever its error.
+  Asked priceless;
+  const SearchResult free =
+      search(priceless.space({2}, sum_of({{0.2, 0.1}}), [](const Notches&) { return kNan; }), 1.0);
+  EXPECT_FALSE(free.met);
   // Nothing runs at all.
   Asked nothing;
   const SearchResult none =
@@ -206,6 +211,13 @@ TEST(Search, OfEqualCostsTheLowerNotches) {
   const SearchResult result = search(flat, 1.0);
   EXPECT_EQ(result.best.at, (Notches{0, 1}));
   ASSERT_EQ(result.cheaper.size(), 1u);
+  // More nodes of one bound than are looked at together; the lowest notches, (10, 0, 0), come last.
+  Asked wide;
+  std::vector<double> most(12, 0.9), last(12, 0.5);
+  most[10] = 0.1, most[11] = last[11] = 0;
+  const SearchResult late =
+      search(wide.space({12, 12, 2}, sum_of({most, last, {0.2, 0}}), [](const Notches&) { return 1.0; }), 1.0);
+  EXPECT_EQ(late.best.at, (Notches{10, 0, 0}));
   // No axis, and axes of one notch.
   Asked none, one;
   EXPECT_TRUE(search(none.space({}, sum_of({}), [](const Notches&) { return 1.0; }), 1.0).met);
