@@ -16,13 +16,13 @@ std::string what_happened(const StopReason& stop, const Plan& plan) {
       return fmt::format("particle {} would move {:.3g} nodes in a step, {:.3g} fit", stop.particle,
                          std::abs(per_step), std::ldexp(1.0, w.velocity_bits - 1 - w.velocity_frac()));
     case Fault::sum:
-      return fmt::format("the pairs would change particle {}'s velocity by {:.3g} nodes per step at once, "
-                         "{:.3g} fit",
-                         stop.particle, std::abs(per_step), std::ldexp(1.0, w.sum_bits - 1 - w.velocity_frac()));
+      return fmt::format(
+          "the pairs would change particle {}'s velocity by {:.3g} nodes per step at once, "
+          "{:.3g} fit",
+          stop.particle, std::abs(per_step), std::ldexp(1.0, w.sum_bits - 1 - w.velocity_frac()));
     case Fault::displacement:
       return fmt::format("particle {} is {:.3g} nodes from its anchor, {:.3g} fit", stop.particle,
-                         std::abs(per_step),
-                         std::ldexp(1.0, w.displacement_bits - 1 - w.velocity_frac()));
+                         std::abs(per_step), std::ldexp(1.0, w.displacement_bits - 1 - w.velocity_frac()));
     case Fault::relative_velocity:
       return fmt::format("a pair of particle {} moves apart or together at {:.3g} nodes per step, {:.3g} fit",
                          stop.particle,
@@ -49,7 +49,8 @@ std::string what_happened(const StopReason& stop, const Plan& plan) {
 const char* what_helps(Fault fault) {
   switch (fault) {
     case Fault::velocity:
-      return "use a smaller run.dt or a larger node.cell_edge; a run that was stable until then met an impact, "
+      return "use a smaller run.dt or a larger node.cell_edge; a run that was stable until then met an "
+             "impact, "
              "or its dt is too long";
     case Fault::sum:
       return "use a smaller run.dt or more widths.sum_bits";

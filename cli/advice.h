@@ -10,8 +10,8 @@
 
 namespace cuboct {
 
-// One line: the node with its cell and where that stands, what happened there with its number, and the keys of
-// scene or arch that help.
+// One line: the node with its cell and where that stands, what happened there with its number, and the keys
+// of scene or arch that help.
 std::string advice_on(const StopReason& stop, const Plan& plan, const Scene& scene);
 
 }  // namespace cuboct

@@ -25,8 +25,8 @@ class Items {
   }
   void add(const std::string& name, double value, const std::string& unit = {}, const std::string& note = {});
 
-  // Several findings of one kind: in the text a line "line: <text>" each, where <text> is the value of its item
-  // "text"; in JSON {"value": [{"step": 1, ...}, ...]}, values alone.
+  // Several findings of one kind: in the text a line "line: <text>" each, where <text> is the value of its
+  // item "text"; in JSON {"value": [{"step": 1, ...}, ...]}, values alone.
   void add_list(const std::string& name, const std::string& line, const std::vector<Items>& list);
 
   // "name   value unit (note)" per line, values in one column.

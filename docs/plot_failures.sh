@@ -30,7 +30,7 @@ set grid lc rgb "#dddddd"
 set border 3
 set tics nomirror
 set xlabel "step of the failing run"
-set key top left
+set key top center
 sick = "#d62728"; healthy = "#1f77b4"
 set logscale y
 set format y "10^{%T}"
@@ -41,15 +41,17 @@ plot "$work/time_step" w l lw 2 lc rgb sick title "fails", \
 set title "damping: 0.98 and 0.2 of the limit"
 plot "$work/damping" w l lw 2 lc rgb sick title "fails", \
      "$work/damping_healthy" u (\$1*0.2/0.98):2 w l lw 2 lc rgb healthy title "healthy"
-set title "stiff hold: dt = 0.02 and 0.005"
-plot [][1e-7:] "$work/stiff_hold" w l lw 2 lc rgb sick title "fails", \
+set title "stiff hold: dt = 0.0188 and 0.0047"
+plot [][1e-3:] "$work/stiff_hold" w l lw 2 lc rgb sick title "fails", \
      "$work/stiff_hold_healthy" u (\$1/4):2 w l lw 2 lc rgb healthy title "healthy"
 unset logscale y
 set format y "%g"
 set ylabel "change of the energy / J"
+set xtics 2000
 set title "force jump: cut off and led to 0"
 plot "$work/force_jump" u 1:(\$2-($(first force_jump))) w l lw 2 lc rgb sick title "fails", \
      "$work/force_jump_healthy" u 1:(\$2-($(first force_jump_healthy))) w l lw 2 lc rgb healthy title "healthy"
+set xtics autofreq
 set ylabel "force on the press / N"
 set title "constraint work: moved and moved by force"
 plot "$work/constraint_work" w l lw 2 lc rgb sick title "fails", \

@@ -55,8 +55,8 @@ double least_of(const std::vector<std::vector<double>>& strength) {
   return least;
 }
 
-// The limit of dt, s, of an FCC packing of such bonds, where a scene has none: sums over 8 bonds, as at the edge of
-// its Brillouin zone (docs/reference/physics.md).
+// The limit of dt, s, of an FCC packing of such bonds, where a scene has none: sums over 8 bonds, as at the
+// edge of its Brillouin zone (docs/reference/physics.md).
 double limit_of_bonds(const Rule& rule) {
   double kp = 0, kd = 0;
   for (const ParticleType& type : rule.types) kp = std::max(kp, type.kp), kd = std::max(kd, type.kd);
@@ -121,10 +121,10 @@ Watch::Watch(const Scene& scene, double table_error, int threads)
   undamped.damping.coefficient = 0;
   only_loses_ = cuboct::keeps_energy(undamped, scene.periodic);
 
-  // The energy of a leapfrog run, with v of half a step later, swings by theta^2/4 of a mode's energy, theta =
-  // omega dt; it starts at one end where all starts as kinetic. The mean over the modes of the packing is half
-  // the largest theta^2 = 4 (dt/limit)^2: (dt/limit)^2/4 is to be expected. Twice that, and 2 % for a run far
-  // below the limit.
+  // The energy of a leapfrog run, with v of half a step later, swings by theta^2/4 of a mode's energy, theta
+  // = omega dt; it starts at one end where all starts as kinetic. The mean over the modes of the packing is
+  // half the largest theta^2 = 4 (dt/limit)^2: (dt/limit)^2/4 is to be expected. Twice that, and 2 % for a
+  // run far below the limit.
   const double limit = scene.dt_limit > 0 ? scene.dt_limit : limit_of_bonds(rule);
   energy_limit_ = 0.02 + 0.5 * (rule.dt / limit) * (rule.dt / limit);
   faint_ = 0.5 * static_cast<double>(type_.size()) * stiffness_of(law) *
@@ -175,11 +175,14 @@ Watch::Motion Watch::motion_of(const Moment& moment) const {
   constexpr size_t kBlock = 4096;
   const size_t count = type_.size(), blocks = (count + kBlock - 1) / kBlock;
   const auto by_block = [&](auto work) {
-    for_each_range(blocks, 8, [&](size_t first, size_t last) {
-      for (size_t b = first; b < last; ++b)
-        for (size_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i)
-          work(b, static_cast<uint32_t>(i));
-    }, threads_);
+    for_each_range(
+        blocks, 8,
+        [&](size_t first, size_t last) {
+          for (size_t b = first; b < last; ++b)
+            for (size_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i)
+              work(b, static_cast<uint32_t>(i));
+        },
+        threads_);
   };
   struct Part {
     Vec3 sum = Vec3::Zero();
@@ -239,10 +242,10 @@ void Watch::see(const Moment& moment) {
   see_energy(moment, motion);
 }
 
-// Where a mode is unstable, z < -1: its velocity turns over in each step. A mode at 0.2 of the limit turns over
-// near the ends of its swing alone, where it has less than theta^2/4 = 4 % of its kinetic energy. Either way
-// the flip is only a suspicion; what is told is proven by the quotient. Near the limit the fastest mode is
-// looked for at once, and told where it turns over.
+// Where a mode is unstable, z < -1: its velocity turns over in each step. A mode at 0.2 of the limit turns
+// over near the ends of its swing alone, where it has less than theta^2/4 = 4 % of its kinetic energy. Either
+// way the flip is only a suspicion; what is told is proven by the quotient. Near the limit the fastest mode
+// is looked for at once, and told where it turns over.
 void Watch::see_flips(const Moment& moment, const Motion& motion) {
   constexpr double kShare = 0.05;
   if (motion.sudden || motion.flipped > kShare * motion.swing)
@@ -281,12 +284,12 @@ bool Watch::prove_unstable(const Moment& moment, const Motion& motion, Suspicion
                           : q.damping > q.law                 ? Failure::damping
                                                               : Failure::time_step;
   find(failure, moment, q.particle, q.total(), 4,
-       fmt::format("{}: dt^2 K + 2 dt C is {:.3g}, stable below 4 "
-                   "(law {:.3g}, damping {:.3g}, held by force {:.3g}); dt = {:.3g} s would be at the limit, "
-                   "it is {:.3g} s",
-                   suspicion == Suspicion::energy ? "the energy runs away"
-                                                  : "velocities turn over from step to step",
-                   q.total(), q.law, q.damping, q.hold, q.stable_dt(rule.dt), rule.dt));
+       fmt::format(
+           "{}: dt^2 K + 2 dt C is {:.3g}, stable below 4 "
+           "(law {:.3g}, damping {:.3g}, held by force {:.3g}); dt = {:.3g} s would be at the limit, "
+           "it is {:.3g} s",
+           suspicion == Suspicion::energy ? "the energy runs away" : "velocities turn over from step to step",
+           q.total(), q.law, q.damping, q.hold, q.stable_dt(rule.dt), rule.dt));
   return true;
 }
 
@@ -303,8 +306,9 @@ void Watch::see_core(const Moment& moment, const Motion& motion) {
   }
   // Two particles with w between them have the energy m w^2/4 along their line, and w is at most twice the
   // fastest. Damping may stop them all the same.
-  if (rule.damping.coefficient > 0 || !std::isfinite(closest.r) || rule.mass * motion.fastest * motion.fastest <
-                                       least_of(rule.strength) * (barrier_ - law.energy(closest.r)))
+  if (rule.damping.coefficient > 0 || !std::isfinite(closest.r) ||
+      rule.mass * motion.fastest * motion.fastest <
+          least_of(rule.strength) * (barrier_ - law.energy(closest.r)))
     return;
   std::vector<Vec3> x(type_.size());
   for (uint32_t id = 0; id < type_.size(); ++id) x[id] = moment.x(id);
@@ -361,9 +365,10 @@ void Watch::see_energy(const Moment& moment, const Motion& motion) {
        {Failure::time_step, Failure::damping, Failure::stiff_hold, Failure::creep, Failure::tunnelling})
     if (found(cause)) return;
   if (prove_unstable(moment, motion, Suspicion::energy)) return;
-  const std::string what = fmt::format("the energy is off by {:.3g} J: {:.3g} of the largest kinetic energy, "
-                                       "{:.3g} is to be expected; ",
-                                       change, share, energy_limit_);
+  const std::string what = fmt::format(
+      "the energy is off by {:.3g} J: {:.3g} of the largest kinetic energy, "
+      "{:.3g} is to be expected; ",
+      change, share, energy_limit_);
   if (jump_ > table_error_)
     find(Failure::force_jump, moment, std::nullopt, share, energy_limit_,
          what + fmt::format("the law's force jumps by {:.3g} N at its cutoff, {:.2g} of its strongest pull",
@@ -448,9 +453,10 @@ std::optional<Finding> find_far_origin(const Scene& scene) {
   const double limit = 1e-4 * pitch;
   if (spacing <= limit) return std::nullopt;
   Finding finding{Failure::far_origin, 0, std::nullopt, Vec3::Zero(), spacing, limit, {}};
-  finding.text = fmt::format("{}: float32 positions are {:.3g} m apart at {:.4g} m from the origin, more than "
-                             "{:.3g} m, 1e-4 of the pitch",
-                             to_string(finding.failure), spacing, farthest, limit);
+  finding.text = fmt::format(
+      "{}: float32 positions are {:.3g} m apart at {:.4g} m from the origin, more than "
+      "{:.3g} m, 1e-4 of the pitch",
+      to_string(finding.failure), spacing, farthest, limit);
   return finding;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Where methods fail: detectors that look at a run while it goes, in any engine, and name what went wrong with
-// step, place and number. docs/reference/failures.md has a section per failure. The faults of the fixed
-// engines (model/error.h: a velocity that saturates, a full node) stop a run by themselves; what stands here is
-// what a run survives and is wrong all the same.
+// Where methods fail: detectors that look at a run while it goes, in any engine, and name what went wrong
+// with step, place and number. docs/reference/failures.md has a section per failure. The faults of the fixed
+// engines (model/error.h: a velocity that saturates, a full node) stop a run by themselves; what stands here
+// is what a run survives and is wrong all the same.
 #pragma once
 
 #include <cstdint>
@@ -105,7 +105,7 @@ class Watch {
   double faint_ = 0;            // J: less is no energy to speak of; bonds strained as far as creep may go
   bool near_limit_ = false;     // dt is more than half of the limit, as far as it is known
   bool keeps_energy_ = false, only_loses_ = false, drives_ = false;
-  std::vector<uint8_t> type_;    // by id
+  std::vector<uint8_t> type_;     // by id
   std::vector<uint32_t> driven_;  // ids of imposed and PD-led particles, where some of them move
   std::vector<Vec3> rest_;        // m, where a body at rest stood; empty for others
   std::optional<Energies> first_;

@@ -4,12 +4,12 @@
 
 #include <cmath>
 
+#include "hw/setup.h"
 #include "model/golden.h"
 #include "model/law.h"
 #include "model/measure.h"
 #include "model/unstable.h"
 #include "model/watch.h"
-#include "hw/setup.h"
 #include "tests/fcc_block.h"
 
 namespace cuboct {
@@ -64,8 +64,8 @@ TEST(StabilityQuotient, AddsDampingAndControllers) {
   EXPECT_EQ(q.particle, 0u);
 }
 
-// A quotient is at most the largest eigenvalue: (dt/limit)^2 4 in the perfect packing, whatever it starts from.
-// From kicks it comes near.
+// A quotient is at most the largest eigenvalue: (dt/limit)^2 4 in the perfect packing, whatever it starts
+// from. From kicks it comes near.
 TEST(StabilityQuotient, IsAtMostThatOfThePacking) {
   const Rule rule = test::simple_rule(preset_law("elastic", 1, 1), 1, 0.7);
   const Body block = test::fcc_block(3, 1);
