@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/stability_maps.h"
 #include "model/dynamical_matrix.h"
+#include "model/error.h"
 #include "model/interrupt.h"
 #include "model/output.h"
 #include "model/progress.h"
@@ -46,11 +47,6 @@ constexpr std::array<Engine, 4> kEngines{
      {"Verlet", "verlet", Arithmetic::float64, Integrator::velocity_verlet},
      {"Euler, floats", "euler_float32", Arithmetic::float32, Integrator::semi_implicit_euler},
      {"Euler, fixed", "euler_fixed", Arithmetic::fixed, Integrator::semi_implicit_euler}}};
-
-struct Line {
-  std::string name;
-  Subject subject;
-};
 
 struct Row {
   std::string name, note;
@@ -183,7 +179,19 @@ std::string json_of(const Scene& scene, const std::vector<Row>& rows) {
   return out + "\n]}\n";
 }
 
+void check(const Options& options) {
+  if (!(options.strain >= 0 && options.strain <= 0.5))
+    throw InputError(fmt::format("--strain: {:g} is not in [0, 0.5]: the part of its length that the body is "
+                                 "stretched and pressed by",
+                                 options.strain));
+  if (!(options.resolution >= 1e-4 && options.resolution <= 0.1))
+    throw InputError(fmt::format("--resolution: {:g} is not in [0.0001, 0.1]", options.resolution));
+  if (!options.axis.empty() && options.axis != "x" && options.axis != "y" && options.axis != "z")
+    throw InputError(fmt::format("--axis: '{}' is not x, y or z", options.axis));
+}
+
 int stability(const Options& options) {
+  check(options);
   const Scene scene = read_scene(options.input.scene);
   const Arch arch = read_arch(options.input.arch);
   if (scene.body.size() > kMostParticles)
@@ -260,15 +268,13 @@ void add_stability(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "print as JSON");
   command->add_option("--maps", options->maps, "draw maps of stable and unstable runs there")->type_name("DIR");
   command
-      ->add_option("--strain", options->strain, "the strain that the body is stretched and pressed by; 0: none")
-      ->check(CLI::Range(0.0, 0.5))
+      ->add_option("--strain", options->strain,
+                   "the part of its length that the body is stretched and pressed by; 0: neither")
       ->type_name("E")
       ->capture_default_str();
   command->add_option("--axis", options->axis, "of the strain; default: the tensile probe's, or the longest")
-      ->check(CLI::IsMember({"x", "y", "z"}))
       ->type_name("A");
   command->add_option("--resolution", options->resolution, "of the measured limits, relative")
-      ->check(CLI::Range(1e-4, 0.1))
       ->type_name("R")
       ->capture_default_str();
   command->add_option("--threads", options->threads, "of the engines; default: 1")
