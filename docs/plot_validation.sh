@@ -18,7 +18,8 @@ set xlabel "time step, tau"
 set ylabel "rms fluctuation of the total energy per atom, epsilon"
 of(name) = sprintf("< grep '^%s ' nve.dat", name)
 plot 1.14*x**2 dashtype 2 linecolor "gray40" title "dt^2", \
-     of("LAMMPS") using 2:3 with points pointtype 6 pointsize 2.2 linecolor "black" title "LAMMPS, doubles", \
+     of("LAMMPS_own") using 2:3 with points pointtype 6 pointsize 2.2 linecolor "black" title "LAMMPS, doubles, its own start", \
+     of("LAMMPS") using 2:3 with points pointtype 4 pointsize 2.2 linecolor "black" title "LAMMPS, doubles, this start", \
      of("reference") using 2:3 with points pointtype 2 pointsize 1.5 linecolor "#d55e00" title "reference, doubles", \
      of("wide") using 2:3 with linespoints pointtype 7 linecolor "#0072b2" title "golden's bits, wide formats", \
      of("guard_16") using 2:3 with linespoints pointtype 9 linecolor "#009e73" title "default formats, 16 guard bits", \

@@ -14,7 +14,7 @@ from frequency import free_beam, frequency, without_time_step
 from runs import Curves, cuboct, in_parallel
 
 COUNTS = (12, 20, 32, 52, 80, 128)  # particles in the longer rows of bonds
-DT = 0.2 * 2 / np.sqrt(8)  # of the scene
+DT = 0.1414213562373095  # of the scene
 # The section (docs/reference/physics.md): a row of bonds carries stiffness * pitch = 1 per strain and weighs 1 per
 # length. 4 rows each at z = -sqrt(2), 0, sqrt(2) and 3 each at -+sqrt(1/2).
 ROWS, SECOND_MOMENT = 18, 2 * 4 * 2.0 + 2 * 3 * 0.5

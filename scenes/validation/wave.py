@@ -14,7 +14,7 @@ from frequency import frequency, without_time_step
 from runs import Curves, cuboct, in_parallel
 
 CELLS = (10, 15, 25, 50, 100)
-DT = 0.2 * 2 / np.sqrt(8)  # of the scene
+DT = 0.1414213562373095  # of the scene
 
 
 def speed(build, out, name, cells, strain, **kind):

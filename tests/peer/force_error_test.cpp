@@ -140,5 +140,29 @@ TEST_P(ForceError, InOpenMMsMeasure) {
   }
 }
 
+// The stress that pressure is made of, over the same liquid. Scale: 1/3 of the trace of the absolute pair virials is
+// some 10 epsilon/sigma^3, of which the pressure is a small difference; forces that are right to 4e-4 (4e-6 wide) at
+// random leave some 2e-3 of a unit, and wide formats 3e-6. Five times and thirty times that is allowed.
+TEST(Virial, IsThatOfTheReference) {
+  const Warm liquid = warm(kScenes + "validation/melt_864.toml", 1500);
+  const Scene& scene = liquid.scene;
+  const double volume = scene.periodic.extent.prod();
+  for (const auto& [name, tolerance] : {std::pair{"default", 1e-2}, std::pair{"wide", 1e-4}}) {
+    const Plan plan = plan_of(scene, arch_of(name));
+    double off = 0;
+    for (const Body& body : liquid.bodies) {
+      Mat3 exact = Mat3::Zero();
+      for (const Mat3& one :
+           Reference(scene.rule, body, scene.periodic, Integrator::velocity_verlet).virial_stress(volume))
+        exact += one;
+      const State state = to_fixed(body, plan.rule, plan.lattice, plan.origin);
+      EXPECT_GT(exact.cwiseAbs().maxCoeff(), 0.1);  // there is a stress to be wrong about
+      off = std::max(off, (virial_stress(plan.rule, plan.lattice, state, volume) - exact).cwiseAbs().maxCoeff());
+    }
+    fmt::print("{}: virial stress off by {:.1e} epsilon/sigma^3 at most\n", name, off);
+    EXPECT_LT(off, tolerance);
+  }
+}
+
 }  // namespace
 }  // namespace cuboct
