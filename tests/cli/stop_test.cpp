@@ -24,7 +24,7 @@ std::string stray(const Bench& bench, const std::string& reach = "") {
 }
 
 constexpr const char* kLeft =
-    "step 350, node 10 at cell (0, -1, 0), particle 0: left the lattice along y (0)";
+    "step 350, node 1 at cell (0, -1, 0), particle 0: left the lattice along y (0)";
 
 TEST(Stop, NamesStepNodeAndParticle) {
   const Bench bench(false);
@@ -49,7 +49,7 @@ TEST(Stop, AReachOfMoreCellsThanCanBeBuiltIsRefused) {
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.out, "");
   EXPECT_EQ(answer.err,
-            "the reach spans 5.12e+11 cells of 2.5 m: at most 3e+07 can be built\n"
+            "the reach spans 6.4e+07 cells of 2.5 m: at most 3e+07 can be built\n"
             "  hint: a smaller reach.margin or reach box\n");
 }
 

@@ -28,6 +28,7 @@ module cuboct_node (
   output logic                                idle_o
 );
   cuboct_node_core #(
+    .Axes(cuboct_pkg::Axes),
     .Capacity(cuboct_pkg::Capacity),
     .FilterLanes(cuboct_pkg::FilterLanes),
     .ForcePipes(cuboct_pkg::ForcePipes),

@@ -2,6 +2,7 @@
 // Made by cuboct emit from plan 51d72f21d7820c0e; do not edit.
 // The constants of the plan; docs/reference/node.md says what each is.
 package cuboct_pkg;
+  localparam int          Axes                 = 3;             // 3, or 2 where nothing happens along z
   localparam int          Capacity             = 8;             // particles per node
   localparam int          FilterLanes          = 4;             // own particles that a candidate meets per cycle
   localparam int          ForcePipes           = 1;             // pairs per cycle
