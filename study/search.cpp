@@ -64,8 +64,9 @@ class Search {
 
   SearchResult run() {
     find_reference();
+    result_.cost = kInfinity;
     if (size_of(result_.reference_error) <= budget_ && reference_is_no_accident()) descend();
-    result_.met = !result_.best.at.empty();
+    result_.met = result_.cost < kInfinity;
     if (result_.met)
       explain();
     else
@@ -184,7 +185,6 @@ class Search {
   }
 
   void descend() {
-    result_.cost = kInfinity;
     std::set<Node> open{{bound(result_.reference, 0, 0), 0, result_.reference,
                          size_of(result_.reference_error)}};
     if (axes_ == 0) take(*open.begin());
@@ -211,7 +211,7 @@ class Search {
     const auto rank = [](double price, const Notches& p) {
       return std::tuple(price, std::accumulate(p.begin(), p.end(), 0), p);
     };
-    if (!result_.best.at.empty() && !(rank(c, leaf.at) < rank(result_.cost, result_.best.at))) return;
+    if (!(rank(c, leaf.at) < rank(result_.cost, result_.best.at))) return;
     result_.cost = c;
     result_.best.at = leaf.at;
   }

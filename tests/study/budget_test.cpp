@@ -230,6 +230,11 @@ TEST_F(Budget, GoesOnFromItsStore) {
   memory.put_errors(lie);
   const BudgetAnswer second = keep_budget(s, truth, memory, question(0.01));
   EXPECT_FALSE(second.chosen.settings == first.chosen.settings);
+  // Errors have a sign, so that parts of either do not look alike.
+  Outcome standard = *memory.errors(first.standard.settings);
+  standard.errors.values[1] = 0.75 * truth.figures[1];
+  memory.put_errors(standard);
+  EXPECT_DOUBLE_EQ(keep_budget(s, truth, memory, question(0.01)).standard.error, -0.25);
 }
 
 TEST_F(Budget, WhatCannotBeKeptIsSaid) {

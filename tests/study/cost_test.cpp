@@ -104,9 +104,14 @@ TEST(Cost, TheDefaultPipeByHand) {
   // Squares of 17 bits, slope times t, strength (as wide as its values, at most 18 here) times d.
   EXPECT_DOUBLE_EQ(area.multipliers, 34.0 * (3 * 17 * 17 + 18 * 18 + 3 * 18 * 17));
   EXPECT_DOUBLE_EQ(area.tables, 6.0 * 512 * 2 * 18);
+  // Pipe: differences of 23 bits and their rounding to 17, two sums of r2, the table's, kicks, sums. A lane: differences,
+  // then 17 adders and comparisons of 21 bits. Update, per axis: two of v, two of x.
+  const double kick = 18 + 17 - plan.rule.kick_shift;
+  const double pipe = 3 * 23 + 3 * 17 + 2 * 34 + 18 + 3 * kick + 3 * (kick + 9), lane = 3 * 23 + 17 * 21;
+  EXPECT_DOUBLE_EQ(area.adders, 28.0 * (pipe + 8 * lane + 3 * (2 * 29 + 2 * 22)));
   // 16 slots and 6 x 16 arrivals of a particle, 26 x 16 halos of 64 bits, 16 queued with 8 mask bits.
   EXPECT_EQ(plan.words.halo_bits, 64);
-  const double sum = (18 + 17 - plan.rule.kick_shift) + 9;  // 27 * 16 kicks
+  const double sum = kick + 9;  // 27 * 16 kicks
   EXPECT_DOUBLE_EQ(area.particles, 6.0 * (7 * 16 * plan.words.particle_bits + 26 * 16 * 64 + 16 * (64 + 8) +
                                           16 * 3 * sum));
   // Every second one of 8 x 8 x 8 places in half cells is a site: along each of the six directions of nearest
