@@ -206,8 +206,7 @@ class Search {
   }
 
   void take(const Node& leaf) {
-    const double c = cost(leaf.at);
-    if (std::isnan(c)) return;
+    const double c = cost(leaf.at);  // nan ranks before nothing
     const auto rank = [](double price, const Notches& p) {
       return std::tuple(price, std::accumulate(p.begin(), p.end(), 0), p);
     };
