@@ -183,6 +183,8 @@ int run_budget(const study::Study& study, const study::Truth& truth, const Budge
   fmt::print("cost: {:.3g} transistors x pairs/s, {:.3g} of that of the study's own settings ({:.3g}, {})\n",
              answer.chosen.cost, answer.chosen.cost / answer.standard.cost, answer.standard.cost,
              std::isnan(answer.standard.error) ? answer.standard.why : signed_percent(answer.standard.error));
+  fmt::print("time step: {:.6g} s, {} to a sample\n", answer.chosen.dt,
+             truth.grid.steps_per_sample(answer.chosen.dt));
   fmt::print("points: {} of {}\n", result.measured, [&] {
     size_t all = 1;
     for (const Axis& axis : answer.axes) all *= axis.sets.size();

@@ -96,6 +96,7 @@ class Runs {
     p.error = errors({settings})[0];
     const Outcome outcome = *store_.errors(settings);
     p.value = outcome.errors.values[question_.figure];
+    p.dt = outcome.dt;
     p.why = outcome.why;
     p.cost = cost(settings);
     return p;

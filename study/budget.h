@@ -23,7 +23,8 @@ struct Priced {
   Settings settings;
   double value = kNotMeasured;  // of the figure, in its unit
   double error = kNotMeasured;  // (value - truth)/|truth|
-  double cost = kNotMeasured;   // cost.h, at the time step that the study's time grid leaves; nan: no plan
+  double dt = 0;                // s, as the study's time grid leaves it
+  double cost = kNotMeasured;   // cost.h, at that time step; nan: no plan
   std::string why;              // where something is not measured
 };
 

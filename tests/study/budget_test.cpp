@@ -262,7 +262,7 @@ TEST_F(Budget, TheReport) {
   const std::string out = testing::internal::GetCapturedStdout();
   for (const char* part :
        {"figure 'breath': ", " Hz by the truth\n", "the cheapest settings within 5%\n\nsetting ", "\ndt_safety ",
-        "\nindex_bits ", "\nfinest settings ", "\nsum ", "\nas measured: ", "\ncost: ",
+        "\nindex_bits ", "\nfinest settings ", "\nsum ", "\nas measured: ", "\ncost: ", "\ntime step: ",
         " of that of the study's own settings (", "/cheapest.toml --arch "})
     EXPECT_NE(out.find(part), std::string::npos) << part << "\n" << out;
   const std::string scene = read(dir_ / "cheapest.toml");
