@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <memory>
 
 #include "hw/cycles.h"
@@ -16,6 +17,52 @@ void add_table(Items& items, const std::string& name, const FixedTable& table) {
                                 : fmt::format("octaves of r^2, {} bins each", uint64_t{1} << table.bin_bits);
   items.add(name, fmt::format("{}, degree {}, {} entries, {} fractional bits", shape, table.degree,
                               table.c0.size(), table.value_frac));
+}
+
+// What the plan leaves out, each with what its records would be longer by. Pair scales are
+// counted with the types that they need.
+void add_not_built(Items& items, const Plan& plan) {
+  const auto words_with = [&](const Carry& carry) {
+    return words_of(carrying(plan.rule, carry), plan.arch, plan.particles);
+  };
+  // In the order of Carry.
+  static constexpr std::array<const char*, Carry::kCount> kNames{
+      "damping", "pair scales", "types", "PD controllers", "third axis", "empty nodes"};
+  static constexpr std::array<const char*, Carry::kCount> kBesides{
+      "velocities, a table, 2 cycles of the pipe", "types, a table, 2 cycles of the pipe", "types",
+      "displacements, 3 cycles of the update", "2 of 8 phases, and all that works along z",
+      ""};
+  const FixedRule& r = plan.rule;
+  const uint64_t cells = bounding_cells(plan.lattice);
+  const std::array<bool, Carry::kCount> used{r.damped, r.scaled,    r.type_bits > 0,
+                                             r.pd,     r.axes == 3, cells == plan.lattice.size()};
+  std::string list;
+  for (size_t k = 0; k < Carry::kCount; ++k)
+    if (!used[k])
+      list += (list.empty() ? "" : ", ") + std::string(kNames[k]) +
+              (k == 0 ? ", velocity in the halo record" : "");
+  items.add("not built", list.empty() ? "nothing is left out" : list);
+  for (size_t k = 0; k < Carry::kCount; ++k) {
+    if (used[k]) continue;
+    const std::string name = fmt::format("not built {}", kNames[k]);
+    if (k + 1 == Carry::kCount) {
+      const uint64_t empty = cells - plan.lattice.size();
+      items.add(name, empty, "cells", fmt::format("of {} cells of the bounding box have no node", cells));
+      continue;
+    }
+    Carry carry;
+    carry[k] = true;
+    carry.types = carry.types || carry.scales;  // without types there is no pair of them
+    const Words words = words_with(carry);
+    const int halo = words.halo_bits - plan.words.halo_bits,
+              particle = words.particle_bits - plan.words.particle_bits;
+    items.add(name, halo, "bit",
+              fmt::format("of a halo record, {} of a particle record; {}", particle, kBesides[k]));
+  }
+  const Words all = words_with(Carry::everything());
+  items.add("halo record with everything", all.halo_bits, "bit", fmt::format("{} as built", plan.words.halo_bits));
+  items.add("particle record with everything", all.particle_bits, "bit",
+            fmt::format("{} as built", plan.words.particle_bits));
 }
 
 }  // namespace
@@ -70,15 +117,7 @@ Items resolve(const Loaded& loaded) {
   const ExpectedCycles cycles = expected_cycles(plan, loaded.setup.initial);
   items.add("expected cycles", cycles.step, "cycles/step",
             fmt::format("at the start; filter lanes and force pipes alone: {}", cycles.ideal));
-  std::string without;
-  const auto leave_out = [&](bool used, const char* part) {
-    if (!used) without += (without.empty() ? "" : ", ") + std::string(part);
-  };
-  leave_out(rule.damped, "damping");
-  leave_out(rule.scaled, "pair scales");
-  leave_out(rule.type_bits > 0, "types");
-  leave_out(rule.pd, "PD controllers");
-  items.add("not built", without.empty() ? "nothing is left out" : without);
+  add_not_built(items, plan);
   items.add("plan hash", fmt::format("{:016x}", plan.hash));
   return items;
 }

@@ -9,6 +9,7 @@
 #include "model/interrupt.h"
 #include "model/output.h"
 #include "study/measure_run.h"
+#include "study/page.h"
 #include "study/runner.h"
 #include "study/table.h"
 
@@ -36,6 +37,19 @@ void print_table(const study::Results& results) {
   fmt::print("{} points, {} refused, {} unstable\n", results.outcomes.size(), refused, unstable);
 }
 
+// Charts need gnuplot; the page does not.
+void report(const study::Results& results, const std::string& out) {
+  print_table(results);
+  study::write_page(results, out + "/page.html");
+  fmt::print("page: {}/page.html\n", out);
+  try {
+    const size_t charts = study::write_charts(results, out + "/charts").size();
+    fmt::print("charts: {} in {}/charts\n", charts, out);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "no charts: {}\n", error.what());
+  }
+}
+
 int explore(const Options& options) {
   const study::Study study = study::read_study(options.study);
   const bool budget = !options.error.empty();
@@ -45,17 +59,19 @@ int explore(const Options& options) {
   make_directory(out);
   study::Store store(out + "/results.db", study);
   catch_interrupts();
-  for (const std::string& file : options.add)
-    fmt::print("{} rows from {}\n", store.add(file), file);
+  for (const std::string& file : options.add) fmt::print("{} rows from {}\n", store.add(file), file);
   study::Runner runner(study, store, {.jobs = options.jobs, .speed = !options.no_speed});
   try {
     if (budget) return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs});
+    if (study.points.empty())
+      throw InputError(fmt::format("{}: no [[sweep]], so there are no points", options.study),
+                       "--error asks its [search]");
     runner.run();
   } catch (const study::Interrupted&) {
     fmt::print(stderr, "interrupted; the same command goes on where it was\n");
     return 1;
   }
-  print_table(store.results());
+  report(store.results(), out);
   return 0;
 }
 
@@ -65,7 +81,7 @@ void add_explore(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("explore", "chart speed against accuracy over a study's settings");
   command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
-  command->add_option("--out", options->out, "directory for results; default: the study's name with .study")
+  command->add_option("--out", options->out, "directory for results; default: that of the study's name with .study")
       ->type_name("DIR");
   command->add_option("--jobs", options->jobs, "points computed at once; default: one per core")
       ->check(CLI::Range(1, 4096))

@@ -47,8 +47,7 @@ RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::Latti
                                  options.lattice.resume ? "--resume" : "--checkpoint-every"));
   // Ranks leave their figures in the trace alone: two states tell the rest.
   if (options.out.empty() && options.lattice.ranks <= 1) request.frames.clear();
-  if (options.lattice.keeps_checkpoints())
-    request.checkpoint.path = options.out + "/checkpoint";
+  if (options.lattice.keeps_checkpoints()) request.checkpoint.path = options.out + "/checkpoint";
   request.energies = true;
   request.watch = !options.no_watch;
   request.cycles = options.lattice.cycles;
@@ -135,7 +134,9 @@ void add_run(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "run a scene and end with a summary");
   options->input.add_to(*command);
   options->input.add_stalls_to(*command);
-  command->add_option("--engine", options->engine, "lattice, golden, systemc, rtl or reference (doubles or floats)")
+  command
+      ->add_option("--engine", options->engine,
+                   "lattice, golden, systemc, rtl or reference (doubles or floats)")
       ->capture_default_str();
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
                     ->check(whole_number())

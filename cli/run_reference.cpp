@@ -11,8 +11,8 @@
 #include "cli/summary.h"
 #include "model/error.h"
 #include "model/interrupt.h"
-#include "model/progress.h"
 #include "model/measure.h"
+#include "model/progress.h"
 #include "model/strain.h"
 
 namespace cuboct {
@@ -21,7 +21,8 @@ namespace {
 // A thread of its own for this many particles.
 constexpr size_t kParticlesPerThread = 2000;
 
-// Kinetic energy at the time of the positions under semi-implicit Euler: v + a dt/2, as v lives half a step earlier.
+// Kinetic energy at the time of the positions under semi-implicit Euler: v + a dt/2, as v lives half a step
+// earlier.
 double kinetic_energy(const Rule& rule, const Body& body, const std::vector<Vec3>& force) {
   double sum = 0;
   for (size_t i = 0; i < body.size(); ++i) {
@@ -41,7 +42,9 @@ void RealChoice::add_to(CLI::App& command) {
   command.add_option("--precision", precision, "double or float: the numbers of reference")
       ->check(CLI::IsMember({"double", "float"}))
       ->capture_default_str();
-  command.add_option("--integrator", integrator, "euler (semi-implicit, as the fixed rule) or verlet, of reference")
+  command
+      .add_option("--integrator", integrator,
+                  "euler (semi-implicit, as the fixed rule) or verlet, of reference")
       ->check(CLI::IsMember({"euler", "verlet"}))
       ->capture_default_str();
 }
@@ -56,8 +59,9 @@ void RealChoice::check_unused(const std::string& engine) const {
 }
 
 RealOptions RealChoice::options() const {
-  return {.integrator = integrator == "verlet" ? Integrator::velocity_verlet : Integrator::semi_implicit_euler,
-          .precision = precision == "float" ? Precision::float32 : Precision::float64};
+  return {
+      .integrator = integrator == "verlet" ? Integrator::velocity_verlet : Integrator::semi_implicit_euler,
+      .precision = precision == "float" ? Precision::float32 : Precision::float64};
 }
 
 ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t steps,
@@ -137,8 +141,11 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
             kinetic.value.back() + potential.value.back() - kinetic.value.front() - potential.value.front(),
             "J");
   items.add("largest speed", reference.largest_speed() * scene.rule.dt / loaded.setup.plan.rule.cell_edge, "node/step");
-  if (watch) add_findings(items, detectors.findings());
-  run.failed = !detectors.findings().empty();
+  std::vector<Finding> findings = detectors.findings();
+  if (const auto far = options.precision == Precision::float32 ? find_far_origin(scene) : std::nullopt)
+    findings.insert(findings.begin(), *far);
+  if (watch) add_findings(items, findings);
+  run.failed = watch && !findings.empty();
   return run;
 }
 

@@ -50,6 +50,13 @@ void read_table(const ConfigTable& table, TableChoice& choice) {
   table.done();
 }
 
+void read_plan(const ConfigTable& table, Carry& carry) {
+  const std::vector<std::string> names(Carry::kNames.begin(), Carry::kNames.end());
+  if (const auto list = table.find("carry"))
+    for (const ConfigValue& name : list->items()) carry[name.choice("part of a plan", names)] = true;
+  table.done();
+}
+
 Arch arch_of(const ConfigTable& root) {
   Arch arch;
   arch.name = root.at("name").string();
@@ -63,6 +70,7 @@ Arch arch_of(const ConfigTable& root) {
   }
   if (const auto widths = root.table_at("widths")) read_widths(*widths, arch.widths);
   if (const auto table = root.table_at("table")) read_table(*table, arch.table);
+  if (const auto plan = root.table_at("plan")) read_plan(*plan, arch.carry);
   root.done();
   return arch;
 }

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "hw/carry.h"
 #include "model/fixed_rule.h"
 #include "model/quantise.h"
 
@@ -20,6 +21,7 @@ struct Arch {
   int link_bits = 0;     // payload bits per beat; 0: one halo record per beat
   Widths widths;
   TableChoice table;
+  Carry carry;
 };
 
 // Throws InputError with file:line:column. An empty path gives the defaults.

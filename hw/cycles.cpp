@@ -25,12 +25,13 @@ struct Sends {
 
 ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
   const Lattice& lattice = plan.lattice;
+  const int axes = plan.rule.axes;
   std::vector<std::array<uint64_t, 7>> segment(lattice.size());  // particles: own, then the halos by face
   std::vector<Sends> sends(lattice.size());
   std::vector<std::vector<const Particle*>> nodes(lattice.size());
   for (const Particle& p : state.particles) nodes[p.node].push_back(&p);
   for (uint32_t n = 0; n < lattice.size(); ++n) segment[n][0] = nodes[n].size();
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < axes; ++axis) {
     for (uint32_t n = 0; n < lattice.size(); ++n)
       for (int s = 0; s < 1 + 2 * axis; ++s) {
         sends[n].records[axis] += segment[n][s];
@@ -50,9 +51,9 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
   for (uint32_t n = 0; n < lattice.size(); ++n) {
     const uint64_t own = segment[n][0];
     const uint64_t passes = ceil_div(own, static_cast<uint64_t>(plan.arch.filter_lanes));
-    std::array<uint64_t, 3> exchanged;  // the cycle at which each exchange is over
+    std::array<uint64_t, 3> exchanged{};  // the cycle at which each exchange is over
     uint64_t now = 0;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < axes; ++axis) {
       uint64_t longest = send_time(n, axis);
       for (int face = 2 * axis; face < 2 * axis + 2; ++face)
         if (lattice.neighbour(n, face) != kNoNode)
@@ -61,7 +62,7 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
     }
     uint64_t streamed = plan.arch.overlap ? 0 : now;
     uint64_t candidates = 0;
-    for (int s = 0; s < 7; ++s) {
+    for (int s = 0; s < 1 + 2 * axes; ++s) {
       if (s > 0 && plan.arch.overlap) streamed = std::max(streamed, exchanged[(s - 1) / 2]);
       const uint64_t work = segment[n][s] * passes;
       streamed += std::max<uint64_t>(work, 1);
@@ -83,7 +84,7 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
     const uint64_t force = std::max(streamed + static_cast<uint64_t>(plan.latency.filter), pairs) +
                            (own > 0 ? 2 + static_cast<uint64_t>(plan.latency.pipe) : 0);
     const uint64_t update = own > 0 ? own - 1 + static_cast<uint64_t>(plan.latency.update) : 1;
-    expected.step = std::max(expected.step, force + update + 3 * kQuietMigrate);
+    expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * kQuietMigrate);
   }
   return expected;
 }

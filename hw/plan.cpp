@@ -43,6 +43,9 @@ uint64_t hash_of(const Plan& plan) {
                           w.displacement_bits, w.scale_frac, w.gain_frac})
     hash.add(value);
   hash.add(static_cast<int64_t>(rule.cutoff2)).add(rule.damped).add(rule.scaled).add(rule.pd);
+  if (rule.axes != 3) hash.add(rule.axes);
+  // One that no type needs, but that a plan carries (hw/carry.h), widens the records.
+  if (rule.types.size() == 1 && rule.type_bits > 0) hash.add(rule.type_bits);
   add(hash, rule.force);
   if (rule.damped) add(hash, rule.damp);
   for (const auto& row : rule.scale)
@@ -66,6 +69,43 @@ uint64_t hash_of(const Plan& plan) {
 
 }  // namespace
 
+Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles) {
+  const int P = r.widths.position_frac;
+  Words words;
+  words.id_bits = std::max(1, static_cast<int>(std::bit_width(particles > 0 ? particles - 1 : 0u)));
+  // Signs of a halo's position, `away` of a particle: 2 bits for all axes but one.
+  const int position = r.axes * P + 2 * (r.axes - 1);
+  words.halo_bits =
+      position + (r.scaled ? r.type_bits : 0) + (r.damped ? r.axes * r.widths.velocity_bits : 0);
+  words.particle_bits = position + r.axes * r.widths.velocity_bits + r.type_bits + words.id_bits +
+                        (r.pd ? r.axes * r.widths.displacement_bits : 0);
+  words.link_bits = arch.link_bits > 0 ? arch.link_bits : words.halo_bits;
+  words.halo_beats = ceil_div(words.halo_bits, words.link_bits);
+  words.migrate_beats = ceil_div(words.particle_bits, words.link_bits);
+  return words;
+}
+
+Latency latency_of(const FixedRule& r) {
+  Latency latency;
+  latency.pipe = 11 + (r.force.shape == TableShape::octaves ? 1 : 0) + (r.force.degree == 2 ? 2 : 0) +
+                 (r.damped ? 2 : 0) + (r.scaled ? 2 : 0);
+  latency.update = r.pd ? 6 : 3;
+  return latency;
+}
+
+uint64_t bounding_cells(const Lattice& lattice) {
+  if (lattice.size() == 0) return 0;
+  Cell low = lattice.cell(0), high = low;
+  for (uint32_t n = 1; n < lattice.size(); ++n)
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], lattice.cell(n)[a]);
+      high[a] = std::max(high[a], lattice.cell(n)[a]);
+    }
+  uint64_t cells = 1;
+  for (int a = 0; a < 3; ++a) cells *= static_cast<uint64_t>(int64_t{high[a]} - low[a] + 1);
+  return cells;
+}
+
 Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, uint32_t particles) {
   check_arch(arch);
   Plan plan;
@@ -75,20 +115,8 @@ Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, u
   plan.origin = origin;
   plan.particles = particles;
 
-  const FixedRule& r = plan.rule;
-  const int P = r.widths.position_frac;
-  Words& words = plan.words;
-  words.id_bits = std::max(1, static_cast<int>(std::bit_width(particles > 0 ? particles - 1 : 0u)));
-  words.halo_bits = 3 * P + 4 + (r.scaled ? r.type_bits : 0) + (r.damped ? 3 * r.widths.velocity_bits : 0);
-  words.particle_bits = 3 * P + 4 + 3 * r.widths.velocity_bits + r.type_bits + words.id_bits +
-                        (r.pd ? 3 * r.widths.displacement_bits : 0);
-  words.link_bits = plan.arch.link_bits > 0 ? plan.arch.link_bits : words.halo_bits;
-  words.halo_beats = ceil_div(words.halo_bits, words.link_bits);
-  words.migrate_beats = ceil_div(words.particle_bits, words.link_bits);
-
-  plan.latency.pipe = 11 + (r.force.shape == TableShape::octaves ? 1 : 0) + (r.force.degree == 2 ? 2 : 0) +
-                      (r.damped ? 2 : 0) + (r.scaled ? 2 : 0);
-  plan.latency.update = r.pd ? 6 : 3;
+  plan.words = words_of(plan.rule, plan.arch, particles);
+  plan.latency = latency_of(plan.rule);
   plan.hash = hash_of(plan);
   return plan;
 }
@@ -126,7 +154,8 @@ std::string describe(const Plan& plan) {
   line("latency", fmt::format("pipe {}, update {} cycles", plan.latency.pipe, plan.latency.update));
   std::string out;
   for (const auto& [used, name] : {std::pair{r.damped, "damping"}, std::pair{r.scaled, "pair scales"},
-                                   std::pair{r.pd, "force-held types"}, std::pair{r.type_bits > 0, "types"}})
+                                   std::pair{r.pd, "force-held types"}, std::pair{r.type_bits > 0, "types"},
+                                   std::pair{r.axes == 3, "third axis"}})
     if (!used) out += (out.empty() ? "" : ", ") + std::string(name);
   line("left out, as unused", out.empty() ? "nothing" : out);
   return text;

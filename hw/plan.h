@@ -16,7 +16,8 @@ namespace cuboct {
 //   halo record:    x[P+2] y[P+2] z[P] type[type_bits, if scaled] v[3 x velocity_bits, if damped]
 //   particle:       x[P] y[P] z[P] away_y[2] away_z[2] v[3 x velocity_bits] type[type_bits] id[id_bits]
 //                   u[3 x displacement_bits, if pd]
-// x and y of a halo record are signed, in the frame of the sender's node (see docs/reference/node.md); `away`
+// A flat plan (rule.axes 2) has nothing of z: x[P+2] y[P] ..., x[P] y[P] away_y[2] v[2 x velocity_bits] ...
+// All but the last axis of a halo record are signed, in the frame of the sender's node (see docs/reference/node.md); `away`
 // is two's complement: -1, 0, +1. The particle word is the migrate record and the word of the load and
 // observe ports.
 struct Words {
@@ -45,6 +46,12 @@ struct Plan {
   uint32_t particles = 0;
   uint64_t hash = 0;  // of everything above that an engine can see
 };
+
+// What make_plan derives: words of records, latencies.
+Words words_of(const FixedRule& rule, const Arch& arch, uint32_t particles);
+Latency latency_of(const FixedRule& rule);
+// Cells of the smallest box that holds the lattice.
+uint64_t bounding_cells(const Lattice& lattice);
 
 // Derives words, latency and hash. Throws InputError where the arch cannot work (a capacity below 1, ...).
 Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, uint32_t particles);

@@ -16,8 +16,6 @@
 namespace cuboct {
 namespace {
 
-constexpr double kMostCells = 3e7;  // about 1 GB of lattice
-
 // Cells first ... last of a row along x.
 struct Span {
   int32_t first, last;
@@ -171,25 +169,32 @@ class Reach {
 
 }  // namespace
 
-std::vector<Cell> reachable_cells(const Scene& scene, double edge, const Vec3& origin, const Cell& period) {
-  const Vec3 margin = scene.reach_margin.minCoeff() < 0 ? Vec3(Vec3::Constant(edge)) : scene.reach_margin;
+std::vector<Cell> reachable_cells(const Scene& scene, double edge, const Vec3& origin, const Cell& period,
+                                  int axes) {
+  Vec3 margin = scene.reach_margin.minCoeff() < 0 ? Vec3(Vec3::Constant(edge)) : scene.reach_margin;
+  // A point in the middle of the layer stands for its whole height.
+  const auto layer = [&](Vec3 x) {
+    if (axes == 2) x.z() = origin.z() + 0.5 * edge;
+    return x;
+  };
+  if (axes == 2) margin.z() = 0;
   const double duration = static_cast<double>(scene.steps) * scene.rule.dt;
   Reach reach(edge, origin, period);
   for (size_t id = 0; id < scene.body.size(); ++id) {
     const Vec3& x = scene.body.x[id];
     const Vec3& velocity = scene.rule.types[scene.body.type[id]].velocity;
     if (velocity.isZero(0)) {
-      reach.add(x - margin, x + margin);
+      reach.add(layer(x - margin), layer(x + margin));
       continue;
     }
     const Vec3 way = velocity * duration;
     const int stops = 1 + static_cast<int>(std::ceil(way.norm() / (0.5 * edge)));
     for (int k = 0; k <= (way.norm() > 0 ? stops : 0); ++k) {
       const Vec3 at = x + way * k / stops;
-      reach.add(at - margin, at + margin);
+      reach.add(layer(at - margin), layer(at + margin));
     }
   }
-  if (scene.reach[0] != scene.reach[1]) reach.add(scene.reach[0], scene.reach[1]);
+  if (scene.reach[0] != scene.reach[1]) reach.add(layer(scene.reach[0]), layer(scene.reach[1]));
   return reach.cells();
 }
 

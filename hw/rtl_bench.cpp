@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/golden.h"
+#include "model/trace.h"
 
 namespace cuboct {
 namespace {
@@ -48,14 +49,14 @@ std::vector<Field> fields_of(const Plan& plan) {
     if (bits > 0) fields.push_back({name, lsb, bits, is_signed});
     lsb += bits;
   };
-  for (int a = 0; a < 3; ++a) add(fmt::format("x_{}", axis[a]), w.position_frac, false);
-  add("away_y", 2, true);
-  add("away_z", 2, true);
-  for (int a = 0; a < 3; ++a) add(fmt::format("v_{}", axis[a]), w.velocity_bits, true);
+  const int axes = plan.rule.axes;
+  for (int a = 0; a < axes; ++a) add(fmt::format("x_{}", axis[a]), w.position_frac, false);
+  for (int a = 1; a < axes; ++a) add(fmt::format("away_{}", axis[a]), 2, true);
+  for (int a = 0; a < axes; ++a) add(fmt::format("v_{}", axis[a]), w.velocity_bits, true);
   add("type", plan.rule.type_bits, false);
   add("id", plan.words.id_bits, false);
   if (plan.rule.pd)
-    for (int a = 0; a < 3; ++a) add(fmt::format("u_{}", axis[a]), w.displacement_bits, true);
+    for (int a = 0; a < axes; ++a) add(fmt::format("u_{}", axis[a]), w.displacement_bits, true);
   return fields;
 }
 
@@ -147,7 +148,7 @@ module cuboct_bench;
 @FIELDS@        compared = compared + 1;
         next[k] = next[k] + 1;
       end
-      if (phase_end[8*k+7]) phases = phases + 1;
+      if (phase_end[8*k+@LAST@]) phases = phases + 1;
     end
     if (cycle > 1 && (&idle)) begin
       for (k = 0; k < Nodes; k = k + 1) if (next[k] != first[k+1]) begin
@@ -239,13 +240,14 @@ The plan:
 std::string particle_hex(const Plan& plan, const Particle& particle, std::initializer_list<uint64_t> above) {
   const Widths& w = plan.rule.widths;
   BitWord word;
-  for (const int64_t x : particle.x) word.add(x, w.position_frac);
-  word.add(0, 4);  // away
-  for (const int64_t v : particle.v) word.add(v, w.velocity_bits);
+  const int axes = plan.rule.axes;
+  for (int a = 0; a < axes; ++a) word.add(particle.x[a], w.position_frac);
+  word.add(0, 2 * (axes - 1));  // away
+  for (int a = 0; a < axes; ++a) word.add(particle.v[a], w.velocity_bits);
   word.add(particle.type, plan.rule.type_bits);
   word.add(particle.id, plan.words.id_bits);
   if (plan.rule.pd)
-    for (const int64_t u : particle.u) word.add(u, w.displacement_bits);
+    for (int a = 0; a < axes; ++a) word.add(particle.u[a], w.displacement_bits);
   for (const uint64_t more : above) word.add(static_cast<int64_t>(more), 32);
   return word.hex() + "\n";
 }
@@ -323,6 +325,7 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
     replace(text, "@STEPS@", std::to_string(steps));
     replace(text, "@LIMIT@", std::to_string(limit));
     replace(text, "@FIELDS@", fields);
+    replace(text, "@LAST@", std::to_string(static_cast<int>(last_phase(plan.rule.axes))));
     replace(text, "@IDLSB@", std::to_string(id_lsb));
     replace(text, "@PLAN@", describe(plan));
     return text;

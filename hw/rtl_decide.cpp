@@ -61,6 +61,7 @@ RtlDesign decide(const Plan& plan) {
   const auto wide = [&](const char* name, uint64_t value, const char* comment) {
     design.constants.push_back({name, static_cast<int64_t>(value), true, true, comment});
   };
+  constant("Axes", rule.axes, "3, or 2 where nothing happens along z");
   constant("Capacity", arch.capacity, "particles per node");
   constant("FilterLanes", arch.filter_lanes, "own particles that a candidate meets per cycle");
   constant("ForcePipes", arch.force_pipes, "pairs per cycle");
@@ -119,13 +120,14 @@ RtlDesign decide(const Plan& plan) {
   if (rule.damped) add_table(design, "cuboct_damp_rom", rule.damp, w.strength_bits);
   design.types = rule.types;
   if (rule.scaled) design.scale = rule.scale;
+  design.axes = rule.axes;
   design.type_bits = rule.type_bits;
   design.velocity_bits = w.velocity_bits;
   design.particle_bits = plan.words.particle_bits;
   design.link_bits = plan.words.link_bits;
   const int s_bits = rule.damped ? w.strength_bits : force_bits;
   const int kick_bits = std::max(2, s_bits + w.difference_frac + 1 - rule.kick_shift);
-  design.pair_sum_bits = kick_bits + clog2(27u * static_cast<uint64_t>(arch.capacity));
+  design.pair_sum_bits = kick_bits + clog2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(arch.capacity));
   for (uint32_t n = 0; n < plan.lattice.size(); ++n) {
     design.cells.push_back(plan.lattice.cell(n));
     auto& faces = design.neighbour.emplace_back();

@@ -41,6 +41,7 @@ struct RtlDesign {
   std::vector<RtlTable> tables;
   std::vector<FixedType> types;
   std::vector<std::vector<int32_t>> scale;  // types x types; empty where the plan has none
+  int axes = 3;
   int type_bits = 0;
   int velocity_bits = 0;
   int particle_bits = 0, link_bits = 0;

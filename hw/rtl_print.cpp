@@ -18,9 +18,10 @@ std::string literal(int64_t value, int bits) {
   return fmt::format("{}'h{:x}", bits, static_cast<uint64_t>(value) & mask);
 }
 
-std::string concatenated(const Int3& values, int bits) {
-  return fmt::format("{{{}, {}, {}}}", literal(values[2], bits), literal(values[1], bits),
-                     literal(values[0], bits));
+std::string concatenated(const Int3& values, int bits, int axes) {
+  std::string text;
+  for (int a = axes - 1; a >= 0; --a) text += (text.empty() ? "" : ", ") + literal(values[a], bits);
+  return "{" + text + "}";
 }
 
 struct Port {
@@ -30,23 +31,25 @@ struct Port {
 };
 
 // The ports of cuboct_node in order; `p` stands before each constant's name.
-std::vector<Port> node_ports() {
-  const std::string link = "[6*cuboct_pkg::LinkBits-1:0]", particle = "[cuboct_pkg::ParticleBits-1:0]";
+std::vector<Port> node_ports(const RtlDesign& design) {
+  const int faces = 2 * design.axes;
+  const std::string link = fmt::format("[{}*cuboct_pkg::LinkBits-1:0]", faces),
+                    particle = "[cuboct_pkg::ParticleBits-1:0]", face = fmt::format("[{}:0]", faces - 1);
   return {{"input ", "", "clk_i"},
           {"input ", "", "rst_ni"},
           {"input ", "", "start_i"},
           {"input ", "[31:0]", "steps_i"},
-          {"input ", "[5:0]", "has_link_i"},
+          {"input ", face, "has_link_i"},
           {"input ", "", "load_valid_i"},
           {"input ", particle, "load_data_i"},
-          {"output", "[5:0]", "link_valid_o"},
-          {"output", "[5:0]", "link_end_o"},
+          {"output", face, "link_valid_o"},
+          {"output", face, "link_end_o"},
           {"output", link, "link_data_o"},
-          {"input ", "[5:0]", "link_ready_i"},
-          {"input ", "[5:0]", "link_valid_i"},
-          {"input ", "[5:0]", "link_end_i"},
+          {"input ", face, "link_ready_i"},
+          {"input ", face, "link_valid_i"},
+          {"input ", face, "link_end_i"},
           {"input ", link, "link_data_i"},
-          {"output", "[5:0]", "link_ready_o"},
+          {"output", face, "link_ready_o"},
           {"output", "[7:0]", "phase_start_o"},
           {"output", "[7:0]", "phase_end_o"},
           {"output", "", "observe_valid_o"},
@@ -135,7 +138,7 @@ std::string print_scale(const RtlDesign& design) {
 }
 
 std::string print_types(const RtlDesign& design) {
-  const int t = std::max(1, design.type_bits), v = design.velocity_bits;
+  const int t = std::max(1, design.type_bits), v = design.velocity_bits, axes = design.axes;
   std::string text = head(design);
   text += fmt::format(
       "// What sets the types apart, axis 0 in the least significant place: imposed axes, velocity (imposed, "
@@ -143,20 +146,21 @@ std::string print_types(const RtlDesign& design) {
       "// anchor), gravity, whether held by force, gains. Combinational.\n"
       "module cuboct_type_rom (\n"
       "  input  logic [{}:0] type_i,\n"
-      "  output logic [2:0] imposed_o,\n"
+      "  output logic [{}:0] imposed_o,\n"
       "  output logic [{}:0] velocity_o,\n"
       "  output logic [{}:0] gravity_o,\n"
       "  output logic pd_o,\n"
       "  output logic [17:0] kp_o,\n"
       "  output logic [17:0] kd_o\n"
       ");\n",
-      t - 1, 3 * v - 1, 3 * v - 1);
+      t - 1, axes - 1, axes * v - 1, axes * v - 1);
   const auto assigns = [&](const FixedType& type, const std::string& indent) {
     std::string lines;
-    lines += fmt::format("{}imposed_o  = 3'b{}{}{};\n", indent, type.imposed[2] ? 1 : 0,
-                         type.imposed[1] ? 1 : 0, type.imposed[0] ? 1 : 0);
-    lines += fmt::format("{}velocity_o = {};\n", indent, concatenated(type.velocity, v));
-    lines += fmt::format("{}gravity_o  = {};\n", indent, concatenated(type.gravity, v));
+    std::string imposed;
+    for (int a = axes - 1; a >= 0; --a) imposed += type.imposed[a] ? '1' : '0';
+    lines += fmt::format("{}imposed_o  = {}'b{};\n", indent, axes, imposed);
+    lines += fmt::format("{}velocity_o = {};\n", indent, concatenated(type.velocity, v, axes));
+    lines += fmt::format("{}gravity_o  = {};\n", indent, concatenated(type.gravity, v, axes));
     lines += fmt::format("{}pd_o       = 1'b{};\n", indent, type.pd ? 1 : 0);
     lines += fmt::format("{}kp_o       = {};\n", indent, literal(type.kp, 18));
     lines += fmt::format("{}kd_o       = {};\n", indent, literal(type.kd, 18));
@@ -169,24 +173,25 @@ std::string print_types(const RtlDesign& design) {
   for (size_t k = 0; k < design.types.size(); ++k)
     text += fmt::format("      {}: begin\n{}      end\n", literal(static_cast<int64_t>(k), t),
                         assigns(design.types[k], "        "));
-  return text + "      default: imposed_o = 3'b000;\n    endcase\n  end\nendmodule\n";
+  return text + "      default: imposed_o = '0;\n    endcase\n  end\nendmodule\n";
 }
 
 std::string print_node(const RtlDesign& design) {
   std::string text = head(design);
   text += "// One node of the plan: cuboct_node_core with the plan's constants.\nmodule cuboct_node (\n" +
-          print_ports(node_ports()) + ");\n  cuboct_node_core #(\n";
+          print_ports(node_ports(design)) + ");\n  cuboct_node_core #(\n";
   std::vector<std::string> core;
   for (const RtlConstant& c : design.constants)
     if (c.core) core.push_back(fmt::format("    .{0}(cuboct_pkg::{0})", c.name));
   text += fmt::format("{}\n  ) u_core (\n", fmt::join(core, ",\n"));
   std::vector<std::string> ports;
-  for (const Port& p : node_ports()) ports.push_back(fmt::format("    .{}", p.name));
+  for (const Port& p : node_ports(design)) ports.push_back(fmt::format("    .{}", p.name));
   return text + fmt::format("{}\n  );\nendmodule\n", fmt::join(ports, ",\n"));
 }
 
 std::string print_lattice(const RtlDesign& design) {
   const size_t nodes = design.cells.size();
+  const int faces = 2 * design.axes;
   std::string text = head(design);
   text +=
       "// All nodes and their links. Node n's part of a vector over nodes has n times the part's width below "
@@ -216,12 +221,13 @@ std::string print_lattice(const RtlDesign& design) {
   text.replace(text.find("@NODES@"), 7, std::to_string(nodes));
   for (size_t n = 0; n < nodes; ++n)
     text +=
-        fmt::format("  logic [5:0] valid_{0}, end_{0}, ready_{0};\n  logic [6*LinkBits-1:0] data_{0};\n", n);
+        fmt::format("  logic [{1}:0] valid_{0}, end_{0}, ready_{0};\n  logic [{2}*LinkBits-1:0] data_{0};\n", n,
+                        faces - 1, faces);
   std::string unused_ends;
   for (size_t n = 0; n < nodes; ++n) {
     const Cell& cell = design.cells[n];
     std::string has, valid, end, ready, data;
-    for (int f = kFaces - 1; f >= 0; --f) {
+    for (int f = faces - 1; f >= 0; --f) {
       const uint32_t to = design.neighbour[n][f];
       const int back = f ^ 1;  // the face of the neighbour that looks here
       const char* comma = f > 0 ? ", " : "";
@@ -240,7 +246,7 @@ std::string print_lattice(const RtlDesign& design) {
     text += fmt::format(
         "\n  // Cell ({1}, {2}, {3}).\n"
         "  cuboct_node u_node_{0} (\n"
-        "    .clk_i, .rst_ni, .start_i, .steps_i, .has_link_i(6'b{4}),\n"
+        "    .clk_i, .rst_ni, .start_i, .steps_i, .has_link_i({9}'b{4}),\n"
         "    .load_valid_i(load_valid_i && load_node_i == 32'd{0}), .load_data_i,\n"
         "    .link_valid_o(valid_{0}), .link_end_o(end_{0}), .link_data_o(data_{0}),\n"
         "    .link_ready_i({{{7}}}),\n"
@@ -255,7 +261,7 @@ std::string print_lattice(const RtlDesign& design) {
         "    .fault_id_o(fault_id_o[{0}*cuboct_pkg::IdBits +: cuboct_pkg::IdBits]),\n"
         "    .fault_number_o(fault_number_o[64*{0} +: 64]), .idle_o(idle_o[{0}])\n"
         "  );\n",
-        n, cell[0], cell[1], cell[2], has, valid, end, ready, data);
+        n, cell[0], cell[1], cell[2], has, valid, end, ready, data, faces);
   }
   if (!unused_ends.empty())
     text += "\n  logic unused_faces;\n  assign unused_faces = ^{\n" + unused_ends + "\n  };\n";

@@ -37,6 +37,43 @@ double periodic_edge(const Vec3& extent, double least) {
       "use a larger box, or one whose sides have a common part");
 }
 
+// Whether nothing happens along z: all particles share one height, none moves, is pulled or driven off it, to
+// the last bit of the fixed rule. Then the heights can be the lower faces of one layer of cells, and every d_z,
+// and with it every kick along z, is 0 (docs/reference/plan.md).
+bool is_flat(const Scene& scene, const FixedRule& rule, double lowest) {
+  if (scene.periodic.extent[2] > 0 || scene.body.size() == 0) return false;
+  for (const FixedType& type : rule.types)
+    if (type.velocity[2] != 0 || type.gravity[2] != 0) return false;
+  const double position = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
+  const double moved = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
+  const Body& body = scene.body;
+  for (size_t id = 0; id < body.size(); ++id) {
+    if (std::llround((body.x[id][2] - lowest) / position) != 0) return false;
+    if (!rule.types[body.type[id]].imposed[2] && std::llround(body.v[id][2] * rule.dt / moved) != 0)
+      return false;
+    if (!body.u.empty() && std::llround(body.u[id][2] / moved) != 0) return false;
+  }
+  return true;
+}
+
+// Every cell of the box around `cells`.
+std::vector<Cell> filled_box(const std::vector<Cell>& cells) {
+  Cell low = cells.front(), high = low;
+  for (const Cell& cell : cells)
+    for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], cell[a]), high[a] = std::max(high[a], cell[a]);
+  double count = 1;
+  for (int a = 0; a < 3; ++a) count *= high[a] - low[a] + 1.0;
+  if (count > kMostCells)
+    throw InputError(fmt::format("plan.carry = [\"empty_nodes\"]: the bounding box has {:.4g} cells, at most {:.3g} "
+                                 "can be built", count, kMostCells));
+  std::vector<Cell> box;
+  box.reserve(static_cast<size_t>(count));
+  for (int32_t z = low[2]; z <= high[2]; ++z)
+    for (int32_t y = low[1]; y <= high[1]; ++y)
+      for (int32_t x = low[0]; x <= high[0]; ++x) box.push_back({x, y, z});
+  return box;
+}
+
 // `see` is given each particle of the initial state once, in the order of ids.
 template <typename See>
 Plan plan_with(const Scene& scene, const Arch& arch, See see) {
@@ -47,9 +84,12 @@ Plan plan_with(const Scene& scene, const Arch& arch, See see) {
   const double edge = periodic_edge(scene.periodic.extent, std::max(cutoff, arch.cell_edge));
 
   // Cells start a quarter of an edge below the body, so that the planes of an aligned crystal do not lie on
-  // faces.
+  // faces; along z a flat body's only plane does.
   Vec3 origin = Vec3::Constant(INFINITY);
   for (const Vec3& x : scene.body.x) origin = origin.cwiseMin(x);
+  FixedRule rule = quantise(scene.rule, edge, arch.widths, arch.table);
+  const double lowest = origin[2];
+  const bool flat = is_flat(scene, rule, lowest);
   origin.array() -= 0.25 * edge;
   Cell period{};
   for (int a = 0; a < 3; ++a)
@@ -58,8 +98,12 @@ Plan plan_with(const Scene& scene, const Arch& arch, See see) {
       origin[a] = scene.periodic.origin[a];
     }
 
-  FixedRule rule = quantise(scene.rule, edge, arch.widths, arch.table);
-  Lattice lattice(reachable_cells(scene, edge, origin, period), period);
+  if (flat) origin[2] = lowest;
+  rule.axes = flat ? 2 : 3;
+  std::vector<Cell> cells = reachable_cells(scene, edge, origin, period, rule.axes);
+  if (arch.carry.empty_nodes) cells = filled_box(cells);
+  Lattice lattice(std::move(cells), period);
+  rule = carrying(std::move(rule), arch.carry);
   std::vector<uint32_t> count(lattice.size(), 0);
   uint32_t fullest = 0;
   for (uint32_t id = 0; id < scene.body.size(); ++id) {

@@ -85,6 +85,8 @@ struct FixedRule {
   std::vector<std::vector<int32_t>> scale;  // types x types, scale_frac fractional bits; only if scaled
   std::vector<FixedType> types;
   bool pd = false;  // some type is held or moved by force
+  // 2: every particle has z = 0, v_z = 0 and u_z = 0 for ever (hw/setup.h), and no record holds them.
+  int axes = 3;
 
   // Derived shifts, all >= 0.
   int difference_shift = 0;  // P - D

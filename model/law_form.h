@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a pair law is made of, for engines that evaluate it in vectors. Forces in N (positive repels), lengths in m.
+// What a pair law is made of, for engines that evaluate it in vectors. Forces in N (positive repels), lengths
+// in m.
 #pragma once
 
 #include <variant>
@@ -18,14 +19,14 @@ struct CubicPiece {
   double r = 0, c0 = 0, c1 = 0, c2 = 0, c3 = 0;
 };
 
-// A quadratic arc (r(t), f(t)), t in [0, 1], from r on: distance = r + t (r1 + t r2), f = f0 + t (f1 + t f2); r rises
-// with t.
+// A quadratic arc (r(t), f(t)), t in [0, 1], from r on: distance = r + t (r1 + t r2), f = f0 + t (f1 + t f2);
+// r rises with t.
 struct ArcPiece {
   double r = 0, r1 = 0, r2 = 0, f0 = 0, f1 = 0, f2 = 0;
 };
 
-// A law between its core and its cutoff; the first and the last piece take what lies outside of all. A law of no form
-// (monostate) is asked pair by pair.
+// A law between its core and its cutoff; the first and the last piece take what lies outside of all. A law of
+// no form (monostate) is asked pair by pair.
 using LawForm =
     std::variant<std::monostate, LennardJonesForm, std::vector<CubicPiece>, std::vector<ArcPiece>>;
 

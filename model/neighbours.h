@@ -25,8 +25,8 @@ class CellList {
   // std::runtime_error where a position is not finite.
   void build(std::span<const Vec3> x);
 
-  // Calls pair(i, j, d, r) once for each unordered pair at a distance 0 < r < cutoff + skin, with d = x[j] - x[i] in
-  // m, of the nearest image. The order depends on the positions alone. `x` as given to build().
+  // Calls pair(i, j, d, r) once for each unordered pair at a distance 0 < r < cutoff + skin, with d = x[j] -
+  // x[i] in m, of the nearest image. The order depends on the positions alone. `x` as given to build().
   template <class Pair>
   void for_each_pair(std::span<const Vec3> x, Pair&& pair) const;
 
@@ -36,7 +36,8 @@ class CellList {
   int64_t cell_at(const Vec3& x) const { return index_of(cell_of(x)); }
   template <class Cell>
   void for_each_near(int64_t cell, Cell&& on) const {
-    const std::array<int, 3> at{static_cast<int>(cell % count_[0]), static_cast<int>(cell / count_[0] % count_[1]),
+    const std::array<int, 3> at{static_cast<int>(cell % count_[0]),
+                                static_cast<int>(cell / count_[0] % count_[1]),
                                 static_cast<int>(cell / count_[0] / count_[1])};
     for (int neighbour = 0; neighbour < 27; ++neighbour) {
       const std::array<int, 3> offset{neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1};

@@ -34,8 +34,8 @@ struct Vectors {
   }
 };
 
-// The first three numbers of the records at entries `at`: gathers in general. Where a vector has 512 bits, whole records
-// are loaded and transposed, which takes half the time.
+// The first three numbers of the records at entries `at`: gathers in general. Where a vector has 512 bits,
+// whole records are loaded and transposed, which takes half the time.
 #if HWY_TARGET == HWY_AVX3
 HWY_INLINE void load_records(const double* from, const uint32_t* at, const Vectors<double>::Index&,
                              Vectors<double>::V out[3]) {
@@ -59,8 +59,10 @@ HWY_INLINE void load_records(const float* from, const uint32_t* at, const Vector
     return _mm512_insertf32x4(of, _mm_loadu_ps(from + at[first + 12]), 3);
   };
   const __m512 a = four(0), b = four(1), c = four(2), d = four(3);
-  const __m512d low0 = _mm512_castps_pd(_mm512_unpacklo_ps(a, b)), low1 = _mm512_castps_pd(_mm512_unpacklo_ps(c, d));
-  const __m512d high0 = _mm512_castps_pd(_mm512_unpackhi_ps(a, b)), high1 = _mm512_castps_pd(_mm512_unpackhi_ps(c, d));
+  const __m512d low0 = _mm512_castps_pd(_mm512_unpacklo_ps(a, b)),
+                low1 = _mm512_castps_pd(_mm512_unpacklo_ps(c, d));
+  const __m512d high0 = _mm512_castps_pd(_mm512_unpackhi_ps(a, b)),
+                high1 = _mm512_castps_pd(_mm512_unpackhi_ps(c, d));
   out[0] = Vectors<float>::V{_mm512_castpd_ps(_mm512_unpacklo_pd(low0, low1))};
   out[1] = Vectors<float>::V{_mm512_castpd_ps(_mm512_unpackhi_pd(low0, low1))};
   out[2] = Vectors<float>::V{_mm512_castpd_ps(_mm512_unpacklo_pd(high0, high1))};
@@ -69,7 +71,8 @@ HWY_INLINE void load_records(const float* from, const uint32_t* at, const Vector
 template <class Real>
 HWY_INLINE void load_records(const Real* from, const uint32_t*, const typename Vectors<Real>::Index& at,
                              typename Vectors<Real>::V out[3]) {
-  for (int axis = 0; axis < 3; ++axis) out[axis] = hn::GatherIndex(typename Vectors<Real>::D(), from + axis, at);
+  for (int axis = 0; axis < 3; ++axis)
+    out[axis] = hn::GatherIndex(typename Vectors<Real>::D(), from + axis, at);
 }
 #endif
 
@@ -105,7 +108,8 @@ struct Pieces : Vectors<Real> {
   using Vectors<Real>::set;
   const PairForce<Real>& force;
   bool small;  // a vector holds a coefficient of all pieces
-  HWY_INLINE explicit Pieces(const PairForce<Real>& force) : force(force), small(force.pieces <= hn::Lanes(D())) {}
+  HWY_INLINE explicit Pieces(const PairForce<Real>& force)
+      : force(force), small(force.pieces <= hn::Lanes(D())) {}
   // By r^2, which is known before the root. Where rounding picks the neighbour, both agree but for rounding.
   HWY_INLINE Index piece(V r2) const {
     const I i;
@@ -119,8 +123,7 @@ struct Pieces : Vectors<Real> {
   }
   HWY_INLINE V coefficient(size_t of, Index piece) const {
     const Real* table = force.coefficient[of].data();
-    if (HWY_LIKELY(small))
-      return hn::TableLookupLanes(hn::LoadU(D(), table), hn::IndicesFromVec(D(), piece));
+    if (HWY_LIKELY(small)) return hn::TableLookupLanes(hn::LoadU(D(), table), hn::IndicesFromVec(D(), piece));
     return hn::GatherIndex(D(), table, piece);
   }
 };
@@ -201,8 +204,8 @@ HWY_INLINE void sum_forces(const PairForce<Real>& force, const PairRows& rows, c
     }
     V row_of_strengths = zero;
     if (scaled)
-      row_of_strengths = hn::Mul(hn::GatherIndex(d, home + 3, own_lanes),
-                                 hn::Set(d, static_cast<Real>(force.materials)));
+      row_of_strengths =
+          hn::Mul(hn::GatherIndex(d, home + 3, own_lanes), hn::Set(d, static_cast<Real>(force.materials)));
     V f0 = zero, f1 = zero, f2 = zero;
     const uint32_t* const end = rows.entry.data() + rows.begin[g + 1] * lanes;
     for (const uint32_t* at = rows.entry.data() + rows.begin[g] * lanes; at < end; at += lanes) {
@@ -259,13 +262,18 @@ void forces_of(const PairForce<Real>& force, const PairRows& rows, const Real* x
       sum_forces<false, Real, Law>(force, rows, x, v, f);
   };
   switch (force.kind) {
-    case Kind::lennard_jones: return by.template operator()<LennardJones<Real>>();
-    case Kind::cubic: return by.template operator()<Cubic<Real>>();
-    case Kind::arc: return by.template operator()<Arc<Real>>();
-    case Kind::asked: return by.template operator()<Asked<Real>>();
+    case Kind::lennard_jones:
+      return by.template operator()<LennardJones<Real>>();
+    case Kind::cubic:
+      return by.template operator()<Cubic<Real>>();
+    case Kind::arc:
+      return by.template operator()<Arc<Real>>();
+    case Kind::asked:
+      return by.template operator()<Asked<Real>>();
   }
 }
-void forces64(const PairForce<double>& force, const PairRows& rows, const double* x, const double* v, double* f) {
+void forces64(const PairForce<double>& force, const PairRows& rows, const double* x, const double* v,
+              double* f) {
   forces_of(force, rows, x, v, f);
 }
 void forces32(const PairForce<float>& force, const PairRows& rows, const float* x, const float* v, float* f) {
@@ -333,10 +341,12 @@ HWY_EXPORT(lanes64);
 HWY_EXPORT(lanes32);
 HWY_EXPORT(simd);
 
-void pair_forces(const PairForce<double>& force, const PairRows& rows, const double* x, const double* v, double* f) {
+void pair_forces(const PairForce<double>& force, const PairRows& rows, const double* x, const double* v,
+                 double* f) {
   HWY_DYNAMIC_DISPATCH(forces64)(force, rows, x, v, f);
 }
-void pair_forces(const PairForce<float>& force, const PairRows& rows, const float* x, const float* v, float* f) {
+void pair_forces(const PairForce<float>& force, const PairRows& rows, const float* x, const float* v,
+                 float* f) {
   HWY_DYNAMIC_DISPATCH(forces32)(force, rows, x, v, f);
 }
 size_t nearer(const std::vector<double> (&at)[3], const std::vector<uint64_t>& names, const Vec3& home,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace cuboct {
@@ -44,8 +45,8 @@ class Engine final : public RealEngine {
   Engine(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options)
       : force_(rule, periodic),
         threads_(static_cast<int>(std::clamp<size_t>(body.size() / kParticlesPerThread, 1,
-                                                      static_cast<size_t>(std::max(1, options.threads))))),
-        list_(rule.law->cutoff(), periodic, pair_lanes<Real>(), threads_),
+                                                     static_cast<size_t>(std::max(1, options.threads))))),
+        list_(rule.law->cutoff(), periodic, margin(rule, periodic), pair_lanes<Real>(), threads_),
         options_(options),
         mass_(static_cast<Real>(rule.mass)),
         dt_(rule.dt),
@@ -102,6 +103,11 @@ class Engine final : public RealEngine {
   uint64_t lists_made() const override { return lists_made_; }
 
  private:
+  // Differences across a box and the box itself are rounded, each by half an epsilon of its size or less.
+  static double margin(const Rule& rule, const Periodic& periodic) {
+    return 8 * static_cast<double>(std::numeric_limits<Real>::epsilon()) *
+           (rule.law->cutoff() + periodic.extent.maxCoeff());
+  }
   static std::vector<Real> packed(const std::vector<Vec3>& by_id) {
     std::vector<Real> four(4 * by_id.size());
     for (size_t i = 0; i < by_id.size(); ++i)
@@ -110,7 +116,8 @@ class Engine final : public RealEngine {
   }
   void unpack(const std::vector<Real>& four, std::vector<Vec3>& by_id) const {
     for (size_t i = 0; i < particles_; ++i)
-      for (int axis = 0; axis < 3; ++axis) by_id[i][axis] = static_cast<double>(four[4 * size_t{rank_[i]} + axis]);
+      for (int axis = 0; axis < 3; ++axis)
+        by_id[i][axis] = static_cast<double>(four[4 * size_t{rank_[i]} + axis]);
   }
 
   void sum(std::vector<Real>& f) const {
@@ -147,7 +154,10 @@ class Engine final : public RealEngine {
     const Real kick_dt = static_cast<Real>(kick), drift_dt = static_cast<Real>(drift);
     Real farthest2 = 0, fastest = fastest_;
     bool lost = false;
-#pragma omp parallel for num_threads(threads_) schedule(static) reduction(max : farthest2, fastest) reduction(|| : lost)
+#pragma omp parallel for num_threads(threads_) schedule(static) reduction(max                   \
+                                                                          : farthest2, fastest) \
+    reduction(||                                                                                \
+              : lost)
     for (size_t s = 0; s < particles_; ++s) {
       const Push<Real>& push = pushes_[type_[s]];
       Real* const x = &x_[4 * s];
@@ -195,8 +205,7 @@ class Engine final : public RealEngine {
     const std::span<const uint32_t> order = list_.order();
     const auto sorted = [&](std::vector<Real>& four) {
       std::vector<Real> to(4 * list_.slots());
-      for (size_t s = 0; s < particles_; ++s)
-        std::copy_n(&four[4 * size_t{rank_[order[s]]}], 4, &to[4 * s]);
+      for (size_t s = 0; s < particles_; ++s) std::copy_n(&four[4 * size_t{rank_[order[s]]}], 4, &to[4 * s]);
       four.swap(to);
     };
     sorted(x_);
@@ -225,7 +234,7 @@ class Engine final : public RealEngine {
   std::vector<Real> listed_;  // x when the list was made
   std::vector<uint8_t> type_;
   std::vector<uint32_t> rank_;  // [id]: slot
-  Real fastest_ = 0;  // m/s, along an axis, since the start
+  Real fastest_ = 0;            // m/s, along an axis, since the start
   uint64_t steps_on_list_ = 0, plan_in_ = kPlanEvery, lists_made_ = 0;
 };
 

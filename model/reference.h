@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The real-number engine: the rule in doubles, the physics that everything else is measured against, or in floats.
+// The real-number engine: the rule in doubles, the physics that everything else is measured against, or in
+// floats.
 #pragma once
 
 #include <cstdint>
@@ -31,15 +32,16 @@ struct RealOptions {
   Integrator integrator = Integrator::semi_implicit_euler;
   Precision precision = Precision::float64;
   int threads = 1;  // at least 1; leave no mark in the bits
-  // 0: a particle's pairs are summed by ascending id of the other. Else in an order drawn from it anew at each step, as
-  // by a machine without order.
+  // 0: a particle's pairs are summed by ascending id of the other. Else in an order drawn from it anew at
+  // each step, as by a machine without order.
   uint64_t order_seed = 0;
 };
 
 class RealEngine;
 
-// A particle's sum runs over its own pairs by ascending id of the other, each rounded in the same way whatever computes
-// it: the bits are a function of rule, body and integrator, not of threads, vectors or neighbour lists.
+// A particle's sum runs over its own pairs by ascending id of the other, each rounded in the same way
+// whatever computes it: the bits are a function of rule, body and integrator, not of threads, vectors or
+// neighbour lists.
 class Reference {
  public:
   // InputError where sizes or types of the body do not fit the rule, or the box is below 2 cutoffs. An empty
@@ -56,15 +58,16 @@ class Reference {
   void step(uint64_t steps = 1);
   uint64_t step_count() const { return step_; }
 
-  // Positions are not wrapped into a periodic box: differences to earlier ones are displacements. The first call after
-  // a step copies; it is not safe beside another.
+  // Positions are not wrapped into a periodic box: differences to earlier ones are displacements. The first
+  // call after a step copies; it is not safe beside another.
   const Body& body() const;
 
   // Everything below is evaluated afresh at body()'s x and v.
-  // Pair force on each particle, N: pair law and damping, without gravity and PD force; in the precision of the steps.
+  // Pair force on each particle, N: pair law and damping, without gravity and PD force; in the precision of
+  // the steps.
   std::vector<Vec3> forces() const;
-  // The rest is evaluated in doubles whatever the precision of the steps: it shows the state, not its own rounding.
-  // J; of the pair law alone.
+  // The rest is evaluated in doubles whatever the precision of the steps: it shows the state, not its own
+  // rounding. J; of the pair law alone.
   double potential_energy() const;
   double kinetic_energy() const;
   // kg m/s
@@ -82,8 +85,8 @@ class Reference {
   static const char* simd();
 
  private:
-  // Calls on(i, j, d, r2) for each particle i and each other j inside the cutoff, d = x[j] - x[i]; all of one i in one
-  // thread, by ascending j.
+  // Calls on(i, j, d, r2) for each particle i and each other j inside the cutoff, d = x[j] - x[i]; all of one
+  // i in one thread, by ascending j.
   template <class On>
   void for_each_neighbour(On&& on) const;
 

@@ -176,6 +176,7 @@ Axis read_presets(const ConfigValue& value, const Base& base, const Widths& widt
   Axis axis{"presets", {}, {}};
   for (const ConfigValue& item : notches(value)) {
     const ConfigTable preset = item.table();
+    preset.record_as("sweep");
     axis.labels.push_back(preset.at("name").string());
     std::vector<Set> sets;
     for (const Key& key : kKeys)
@@ -228,6 +229,7 @@ std::vector<Leaf> leaves(const ConfigTable& table) {
 std::vector<Axis> read_axes(const ConfigTable& table, const Base& base) {
   std::vector<Axis> axes;
   const Widths widths = widths_of(base);
+  table.record_as("sweep");  // its keys have one place in the documentation
   for (const Key& key : kKeys)
     if (const auto value = table.find(key.name)) axes.push_back(axis_of(key, *value, base, widths));
   if (const auto presets = table.find("presets")) axes.push_back(read_presets(*presets, base, widths));

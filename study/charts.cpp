@@ -73,10 +73,12 @@ class Script {
   }
   void band(double floor, const LogRange& range) {
     if (floor <= range.low) return;
-    set(fmt::format("object 1 rectangle from graph 0,first {} to graph 1,first {} behind fillstyle solid noborder "
-                    "fillcolor '#e8e8e8'",
-                    range.low, std::min(floor, range.high)));
-    set(fmt::format("label 1 \"below: the truth's own error\" at graph 0.99,first {} right offset 0,0.6 "
+    set(fmt::format(
+        "object 1 rectangle from graph 0,first {} to graph 1,first {} behind fillstyle solid noborder "
+        "fillcolor '#e8e8e8'",
+        range.low, std::min(floor, range.high)));
+    set(
+        fmt::format("label 1 \"below: the truth's own error\" at graph 0.99,first {} right offset 0,0.6 "
                     "textcolor '#555555'",
                     range.low));
   }
@@ -97,7 +99,8 @@ class Script {
     for (const std::string& one : plots_) plot += (plot.size() > 5 ? ", " : "") + one;
     text_ += "reset\n" + data_ + settings_;
     text_ += output("pngcairo size 1100,680 font 'Helvetica,13' background '#ffffff'", ".png") + plot + "\n";
-    text_ += output("svg size 1100,680 dynamic font 'Helvetica,14' background '#ffffff'", ".svg") + plot + "\n";
+    text_ +=
+        output("svg size 1100,680 dynamic font 'Helvetica,14' background '#ffffff'", ".svg") + plot + "\n";
   }
 
   const std::string& text() const { return text_; }
@@ -106,7 +109,8 @@ class Script {
  private:
   std::string output(const std::string& terminal, const std::string& ending) {
     files_.push_back(name_ + ending);
-    return fmt::format("set terminal {}\nset output {}\n", terminal, quoted(directory_ + "/" + files_.back()));
+    return fmt::format("set terminal {}\nset output {}\n", terminal,
+                       quoted(directory_ + "/" + files_.back()));
   }
 
   std::string directory_, name_, settings_, data_, text_;
@@ -119,9 +123,10 @@ std::string marks(const Series& series, double size) {
 
 void draw_error_speed(const Results& results, const Measure& error, const Measure& speed, Script& script) {
   const auto& outcomes = results.outcomes;
-  const auto shown = [&](size_t n) { return error.value(outcomes[n]) >= 0 && speed.value(outcomes[n]) > 0 &&
-                                            std::isfinite(error.value(outcomes[n])) &&
-                                            std::isfinite(speed.value(outcomes[n])); };
+  const auto shown = [&](size_t n) {
+    return error.value(outcomes[n]) >= 0 && speed.value(outcomes[n]) > 0 &&
+           std::isfinite(error.value(outcomes[n])) && std::isfinite(speed.value(outcomes[n]));
+  };
   std::vector<double> xs, ys;
   for (size_t n = 0; n < outcomes.size(); ++n)
     if (shown(n)) xs.push_back(speed.value(outcomes[n])), ys.push_back(error.value(outcomes[n]));
@@ -155,7 +160,8 @@ void draw_error_speed(const Results& results, const Measure& error, const Measur
   script.end();
 }
 
-void draw_parameter(const Results& results, const Parameter& parameter, const Measure& error, Script& script) {
+void draw_parameter(const Results& results, const Parameter& parameter, const Measure& error,
+                    Script& script) {
   const auto& outcomes = results.outcomes;
   const auto shown = [&](size_t n) {
     const double e = error.value(outcomes[n]);
@@ -183,9 +189,7 @@ void draw_parameter(const Results& results, const Parameter& parameter, const Me
   }
   script.log_axis('y', error.label, y);
   script.band(error.floor, y);
-  const auto place = [&](size_t n) {
-    return std::pair{parameter.x[n], y.placed(error.value(outcomes[n]))};
-  };
+  const auto place = [&](size_t n) { return std::pair{parameter.x[n], y.placed(error.value(outcomes[n]))}; };
   for (const Series& series : series_of(results)) {
     std::vector<std::pair<double, double>> points;
     for (const size_t n : series.points)
@@ -203,7 +207,8 @@ void draw_parameter(const Results& results, const Parameter& parameter, const Me
   int dash = 2;
   for (const Order& order : expected_orders(results, parameter, error))
     if (const auto line = order_line(results, parameter, error, order))
-      script.plot({line->first, line->second}, order.label, fmt::format("lines lw 1.8 dt {} lc '#000000'", dash++));
+      script.plot({line->first, line->second}, order.label,
+                  fmt::format("lines lw 1.8 dt {} lc '#000000'", dash++));
   script.end();
 }
 
@@ -234,12 +239,15 @@ void draw_truth(const Results& results, Script& script) {
   script.log_axis('y', "change", log_range(ys));
   static const char* const kColours[] = {"#0072b2", "#d55e00", "#00875f", "#aa4499", "#332288", "#7a6a00"};
   for (size_t k = 0; k < lines.size(); ++k)
-    script.plot(lines[k].second, lines[k].first,
-                fmt::format("linespoints pt {} ps 1 lw 1.2 lc '{}'", kPointTypes[k % kSymbols], kColours[k % 6]));
+    script.plot(
+        lines[k].second, lines[k].first,
+        fmt::format("linespoints pt {} ps 1 lw 1.2 lc '{}'", kPointTypes[k % kSymbols], kColours[k % 6]));
   if (lines[0].second.size() > 1) {
     const auto [dt, change] = lines[0].second.front();
     const double last = lines[0].second.back().first;
-    script.plot({{dt, change}, {last, change * std::pow(last / dt, 2)}}, "dt^2", "lines lw 1.5 dt 2 lc '#000000'");
+    script.plot({{dt, change}, {last, change * last / dt}}, "dt", "lines lw 1.5 dt 3 lc '#000000'");
+    script.plot({{dt, change}, {last, change * std::pow(last / dt, 2)}}, "dt^2",
+                "lines lw 1.5 dt 2 lc '#000000'");
   }
   script.end();
 }

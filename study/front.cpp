@@ -7,11 +7,11 @@
 namespace cuboct::study {
 namespace {
 
-// The least e with error <= 10^e. The logarithm may round to either side of a whole number.
+// The least e with error <= 10^e. The logarithm of a number just above a power of ten rounds down to a whole
+// one.
 int decade_of(double error) {
   int e = static_cast<int>(std::ceil(std::log10(error)));
   while (error > std::pow(10.0, e)) ++e;
-  while (error <= std::pow(10.0, e - 1)) --e;
   return e;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which points of a study are worth choosing: the Pareto front of error and speed, and the cheapest point for an
-// error that is asked for.
+// Which points of a study are worth choosing: the Pareto front of error and speed, and the cheapest point for
+// an error that is asked for.
 #pragma once
 
 #include <climits>

@@ -57,7 +57,8 @@ std::vector<Measure> error_measures(const Results& results) {
        [](const Outcome& outcome) { return std::abs(outcome.errors.drift_per_step); }},
       {Kind::drift, "drift_per_oscillation", "energy drift per oscillation, of the largest kinetic energy",
        true, 0, [](const Outcome& outcome) { return std::abs(outcome.errors.drift_per_oscillation); }},
-      {Kind::momentum, "momentum", "change of momentum, of the sum of |m v|", true, 0, of(&Errors::momentum)}};
+      {Kind::momentum, "momentum", "change of momentum, of the sum of |m v|", true, 0,
+       of(&Errors::momentum)}};
   for (size_t n = 0; n < results.figure_names.size(); ++n)
     all.push_back({Kind::figure, id_of(results.figure_names[n], n),
                    "relative error of " + results.figure_names[n], true, figure_floor(results.truth, n),
@@ -69,13 +70,12 @@ std::vector<Measure> error_measures(const Results& results) {
 
 std::vector<Measure> speed_measures(const Results& results) {
   return measured(
-      results,
-      {{Kind::speed, "simulated_seconds", "simulated seconds per second", false, 0,
-        [](const Outcome& outcome) { return outcome.speed.simulated_seconds; }},
-       {Kind::speed, "particle_steps", "particle-steps per second", false, 0,
-        [](const Outcome& outcome) { return outcome.speed.particle_steps; }},
-       {Kind::speed, "cost", "cost, multiplier bits per simulated second (less is better)", true, 0,
-        [](const Outcome& outcome) { return outcome.cost; }}});
+      results, {{Kind::speed, "simulated_seconds", "simulated seconds per second", false, 0,
+                 [](const Outcome& outcome) { return outcome.speed.simulated_seconds; }},
+                {Kind::speed, "particle_steps", "particle-steps per second", false, 0,
+                 [](const Outcome& outcome) { return outcome.speed.particle_steps; }},
+                {Kind::speed, "cost", "cost, multiplier bits per simulated second (less is better)", true, 0,
+                 [](const Outcome& outcome) { return outcome.cost; }}});
 }
 
 }  // namespace cuboct::study

@@ -16,7 +16,7 @@ struct Measure {
   std::string id;     // of [a-z0-9_], unique among errors and among speeds: in file names
   std::string label;  // for axes, with its unit
   bool less_is_better = true;
-  double floor = 0;   // what the truth itself is uncertain by in this measure; 0: not known, or negligible
+  double floor = 0;  // what the truth itself is uncertain by in this measure; 0: not known, or negligible
   std::function<double(const Outcome&)> value;  // nan: not measured
 
   // Larger is better.

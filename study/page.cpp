@@ -45,9 +45,8 @@ std::string choices_json(const Results& results, const std::vector<Measure>& err
       const ValueOf merit = [&](const Outcome& outcome) { return speed.merit(outcome); };
       std::vector<std::string> rows;
       for (const Cheapest& row : cheapest_by_decade(results.outcomes, error.value, merit))
-        rows.push_back(fmt::format("[{},{}]",
-                                   row.exponent == Cheapest::kExact ? "null" : std::to_string(row.exponent),
-                                   row.point));
+        rows.push_back(fmt::format(
+            "[{},{}]", row.exponent == Cheapest::kExact ? "null" : std::to_string(row.exponent), row.point));
       by_speed.push_back(JsonObject()
                              .add("front", json(pareto_front(results.outcomes, error.value, merit)))
                              .add("decades", json_array(rows))
@@ -62,12 +61,12 @@ std::string orders_json(const Results& results, const Parameter& parameter, cons
   std::vector<std::string> orders;
   for (const Order& order : expected_orders(results, parameter, error))
     if (const auto line = order_line(results, parameter, error, order))
-      orders.push_back(JsonObject()
-                           .add("label", json(order.label))
-                           .add("line", fmt::format("[[{},{}],[{},{}]]", json(line->first.first),
-                                                    json(line->first.second), json(line->second.first),
-                                                    json(line->second.second)))
-                           .text());
+      orders.push_back(
+          JsonObject()
+              .add("label", json(order.label))
+              .add("line", fmt::format("[[{},{}],[{},{}]]", json(line->first.first), json(line->first.second),
+                                       json(line->second.first), json(line->second.second)))
+              .text());
   return json_array(orders);
 }
 
@@ -186,14 +185,13 @@ std::string escaped(const std::string& text) {
 // The frame's places "@name@", in their order.
 std::string page_of(const Results& results) {
   const std::string title = escaped(results.title.empty() ? "A study" : results.title);
-  const std::pair<const char*, std::string> parts[] = {
-      {"@title@", title},
-      {"@style@", std::string(web_style())},
-      {"@title@", title},
-      {"@licences@", escaped(std::string(web_licences()))},
-      {"@data@", data_of(results)},
-      {"@library@", std::string(web_library())},
-      {"@script@", std::string(web_script())}};
+  const std::pair<const char*, std::string> parts[] = {{"@title@", title},
+                                                       {"@style@", std::string(web_style())},
+                                                       {"@title@", title},
+                                                       {"@licences@", escaped(std::string(web_licences()))},
+                                                       {"@data@", data_of(results)},
+                                                       {"@library@", std::string(web_library())},
+                                                       {"@script@", std::string(web_script())}};
   const std::string_view frame = web_frame();
   std::string page;
   size_t from = 0;

@@ -11,14 +11,14 @@
 namespace cuboct::study {
 
 // One HTML file that asks for nothing else: charts (zoom, hover with each point's settings), tables, the
-// machine. Charts and tables are drawn in the reader's browser by study/web/*.js from the numbers that stand in
-// the page. The same results give the same bytes.
+// machine. Charts and tables are drawn in the reader's browser by study/web/*.js from the numbers that stand
+// in the page. The same results give the same bytes.
 std::string page_of(const Results& results);
 void write_page(const Results& results, const std::string& path);
 
-// The same charts as PNG and SVG, made by gnuplot, in a directory that is made where needed: each error against
-// each speed, each error against each varied setting, the truth's refinement. The names of the files, without
-// directory. Throws InputError where gnuplot is missing.
+// The same charts as PNG and SVG, made by gnuplot, in a directory that is made where needed: each error
+// against each speed, each error against each varied setting, the truth's refinement. The names of the files,
+// without directory. Throws InputError where gnuplot is missing.
 std::vector<std::string> write_charts(const Results& results, const std::string& directory);
 
 }  // namespace cuboct::study

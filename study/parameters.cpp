@@ -56,34 +56,45 @@ std::optional<Number> number_of(std::string text) {
 }
 
 std::string unquoted(const std::string& text) {
-  return text.size() > 1 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
+  return text.size() > 1 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2)
+                                                                      : text;
 }
-
-bool ends_with_bits(const std::string& id) { return id.ends_with("_bits") || id.ends_with("_frac"); }
 
 // Bits and small counts stay linear.
 bool wants_logarithm(const Parameter& p) {
   double low = INFINITY, high = -INFINITY;
+  bool counts = true;
   for (const double x : p.x)
-    if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
-  return p.names.empty() && !ends_with_bits(p.id) && low > 0 && high >= 4 * low;
+    if (std::isfinite(x)) {
+      low = std::min(low, x), high = std::max(high, x);
+      counts = counts && x == std::floor(x) && x < 100;
+    }
+  return p.names.empty() && !counts && low > 0 && high >= 4 * low;
 }
 
-// Sweeps of outcomes that are equal in everything but `varied` and the keys that are a function of it (a preset
-// sets several at once).
-std::vector<Sweep> sweeps_of(const Results& results, const std::vector<Values>& all,
-                             const std::set<std::string>& keys, const std::vector<double>& x,
-                             const std::set<std::string>& varied) {
-  std::set<std::string> follows = varied;
+// The keys that change with x, one value for each: a preset sets several at once. (A function one way alone
+// would take a sum of two settings for the cause of both.)
+std::set<std::string> followers(const std::vector<Values>& all, const std::set<std::string>& keys,
+                                const std::vector<double>& x) {
+  std::set<std::string> follows;
   for (const std::string& key : keys) {
-    std::map<double, std::string> seen;
-    const bool function = std::all_of(all.begin(), all.end(), [&](const Values& values) {
-      const double at = x[static_cast<size_t>(&values - all.data())];
-      if (!std::isfinite(at)) return true;
-      return seen.try_emplace(at, value_in(values, key)).first->second == value_in(values, key);
-    });
-    if (function) follows.insert(key);
+    std::map<double, std::string> value_at;
+    std::map<std::string, double> x_at;
+    bool one_to_one = true;
+    for (size_t n = 0; n < all.size(); ++n) {
+      if (!std::isfinite(x[n])) continue;
+      const std::string value = value_in(all[n], key);
+      one_to_one = one_to_one && value_at.try_emplace(x[n], value).first->second == value &&
+                   x_at.try_emplace(value, x[n]).first->second == x[n];
+    }
+    if (one_to_one) follows.insert(key);
   }
+  return follows;
+}
+
+// Sweeps of outcomes that are equal in everything but what `follows` x.
+std::vector<Sweep> sweeps_of(const Results& results, const std::vector<Values>& all,
+                             const std::vector<double>& x, const std::set<std::string>& follows) {
   std::map<std::string, size_t> index;  // of the sweep with these other values
   std::vector<std::map<double, size_t>> found;
   for (size_t n = 0; n < all.size(); ++n) {
@@ -131,13 +142,6 @@ Parameter parameter_of(const std::string& key, const std::vector<Values>& all) {
   return p;
 }
 
-size_t distinct(const std::vector<double>& x) {
-  std::set<double> values;
-  for (const double one : x)
-    if (std::isfinite(one)) values.insert(one);
-  return values.size();
-}
-
 }  // namespace
 
 double Order::at(double x) const { return power != 0 ? std::pow(x, power) : std::exp2(-halvings * x); }
@@ -148,38 +152,43 @@ std::vector<Parameter> swept_parameters(const Results& results) {
   std::set<std::string> keys;
   for (const Outcome& outcome : results.outcomes) {
     all.push_back(values_of(outcome.settings));
-    for (const auto& [changes, prefix, order] :
-         {std::tuple(&outcome.settings.scene, kScene, &scene_keys),
-          std::tuple(&outcome.settings.arch, kArch, &arch_keys)})
+    for (const auto& [changes, prefix, order] : {std::tuple(&outcome.settings.scene, kScene, &scene_keys),
+                                                 std::tuple(&outcome.settings.arch, kArch, &arch_keys)})
       for (const Change& change : *changes)
         if (keys.insert(prefix + change.key).second) order->push_back(prefix + change.key);
   }
   std::vector<Parameter> found;
-  const auto keep = [&](Parameter p, const std::set<std::string>& varied) {
-    if (distinct(p.x) < 2) return;
+  const auto keep = [&](Parameter p, const std::set<std::string>& follows) {
     p.logarithmic = wants_logarithm(p);
-    p.sweeps = sweeps_of(results, all, keys, p.x, varied);
-    found.push_back(std::move(p));
+    p.sweeps = sweeps_of(results, all, p.x, follows);
+    if (!p.sweeps.empty()) found.push_back(std::move(p));
   };
   Parameter dt{"dt", "time step, s", false, {}, {}, {}};
   for (const Outcome& outcome : results.outcomes) dt.x.push_back(outcome.dt > 0 ? outcome.dt : NAN);
+  // A pitch has its own time steps, yet does not follow from them.
   keep(std::move(dt), {"scene.run.dt", "scene.run.dt_safety"});
   for (const auto* order : {&scene_keys, &arch_keys})
     for (const std::string& key : *order)
-      if (!is_time_step(key)) keep(parameter_of(key, all), {key});
+      if (!is_time_step(key)) {
+        Parameter parameter = parameter_of(key, all);
+        std::set<std::string> follows = followers(all, keys, parameter.x);
+        follows.insert(key);
+        keep(std::move(parameter), follows);
+      }
   return found;
 }
 
-std::vector<Order> expected_orders(const Results& results, const Parameter& parameter,
-                                   const Measure& error) {
+std::vector<Order> expected_orders(const Results& results, const Parameter& parameter, const Measure& error) {
   using Kind = Measure::Kind;
   const bool motion = error.kind == Kind::trajectory || error.kind == Kind::figure;
   if ((!motion && error.kind != Kind::force) || !parameter.names.empty()) return {};
-  if (parameter.id == "dt") return motion ? std::vector<Order>{{"dt^2", 2, 0, 0}} : std::vector<Order>{};
+  if (parameter.id == "dt")
+    return motion ? std::vector<Order>{{"dt, where something damps", 1, 0, 0}, {"dt^2", 2, 0, 0}}
+                  : std::vector<Order>{};
   if (parameter.id == "scene.packing.pitch")
-    return error.kind == Kind::figure ? std::vector<Order>{{"pitch, of free surfaces", 1, 0, 0},
-                                                           {"pitch^2, of the bulk", 2, 0, 0}}
-                                      : std::vector<Order>{};
+    return error.kind == Kind::figure
+               ? std::vector<Order>{{"pitch, of free surfaces", 1, 0, 0}, {"pitch^2, of the bulk", 2, 0, 0}}
+               : std::vector<Order>{};
   if (parameter.id == "arch.table.index_bits") {
     std::set<int> degrees;
     for (size_t n = 0; n < results.outcomes.size(); ++n)
@@ -198,8 +207,8 @@ std::vector<Order> expected_orders(const Results& results, const Parameter& para
   return {};
 }
 
-std::optional<std::pair<std::pair<double, double>, std::pair<double, double>>> order_line(
-    const Results& results, const Parameter& parameter, const Measure& error, const Order& order) {
+std::optional<Line> order_line(const Results& results, const Parameter& parameter, const Measure& error,
+                               const Order& order) {
   // From coarse to fine the order falls.
   const bool falls_with_x = order.power <= 0;
   double coarse = NAN, fine = NAN, least = NAN;
@@ -215,7 +224,7 @@ std::optional<std::pair<std::pair<double, double>, std::pair<double, double>>> o
       if (x == coarse) least = std::min(least, e);
     }
   if (std::isnan(coarse) || coarse == fine) return std::nullopt;
-  return std::pair{std::pair{coarse, least}, std::pair{fine, least * order.at(fine) / order.at(coarse)}};
+  return Line{{coarse, least}, {fine, least * order.at(fine) / order.at(coarse)}};
 }
 
 }  // namespace cuboct::study

@@ -13,10 +13,10 @@ namespace cuboct::study {
 
 // How an error grows with a parameter x where that parameter alone makes it.
 struct Order {
-  std::string label;  // "dt^2"
-  double power = 0;     // error ~ x^power
-  double halvings = 0;  // error ~ 2^(-halvings x): x counts bits
-  int degree = 0;       // of the table's polynomials, where this holds for one degree only
+  std::string label;          // "dt^2"
+  double power = 0;           // error ~ x^power
+  double halvings = 0;        // error ~ 2^(-halvings x): x counts bits
+  int degree = 0;             // of the table's polynomials, where this holds for one degree only
   double at(double x) const;  // up to a factor
 };
 
@@ -34,19 +34,21 @@ struct Parameter {
   std::vector<Sweep> sweeps;       // of at least two points that are done
 };
 
-// Those that take at least two values: the time step, then keys of the scene, then of the arch, in the order in
+// Those of which there are sweeps: the time step, then keys of the scene, then of the arch, in the order in
 // which they occur. Threads are left out: no error depends on them.
 std::vector<Parameter> swept_parameters(const Results& results);
 
 // What theory expects of this error; empty where it expects nothing. docs/reference/numeric.md and physics.md
-// derive them: the integrators are of second order; a table of 2^b entries and degree g is wrong by its
-// entries' width to the power of g + 1; a format's rounding halves with each bit.
-std::vector<Order> expected_orders(const Results& results, const Parameter& parameter,
-                                   const Measure& error);
+// derive them: the integrators are of second order, of first where velocities make forces; a table of 2^b
+// entries and degree g is wrong by its entries' width to the power of g + 1; a format's rounding halves with
+// each bit.
+std::vector<Order> expected_orders(const Results& results, const Parameter& parameter, const Measure& error);
 
-// Where the line of an order runs: through the least error at the coarsest value that any sweep (of the order's
-// degree) has, where this parameter weighs most and all other errors only add. The line's two ends, (x, error); none without such points.
-std::optional<std::pair<std::pair<double, double>, std::pair<double, double>>> order_line(
-    const Results& results, const Parameter& parameter, const Measure& error, const Order& order);
+// Where the line of an order runs: through the least error at the coarsest value that any sweep (of the
+// order's degree) has, where this parameter weighs most and all other errors only add. The line's two ends,
+// (x, error); none without such points.
+using Line = std::pair<std::pair<double, double>, std::pair<double, double>>;
+std::optional<Line> order_line(const Results& results, const Parameter& parameter, const Measure& error,
+                               const Order& order);
 
 }  // namespace cuboct::study

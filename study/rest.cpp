@@ -112,6 +112,25 @@ bool hold_still(Scene& scene, double tolerance) {
   return true;
 }
 
+// FIRE keeps a body's symmetry, and may come to rest on a saddle: from there it is shaken, and relaxed again.
+bool relax_to_minimum(Scene& scene, double tolerance, double site) {
+  constexpr int kMostShakes = 3;
+  uint64_t dice = 1;
+  for (int shake = 0; relax(scene, tolerance, site); ++shake) {
+    const Limit limit = stability_limit(vibrations_of(scene.rule, scene.body, scene.periodic));
+    if (shake == kMostShakes || !limit.body_unstable()) return true;
+    for (size_t i = 0; i < scene.body.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis) {
+        dice = dice * 6364136223846793005u + 1442695040888963407u;
+        const double shift = 1e-3 * scene.rule.law->cutoff() * (static_cast<double>(dice >> 11) * 0x1p-52 - 1);
+        if (scene.rule.types[scene.body.type[i]].imposed[axis]) continue;
+        scene.body.x[i][axis] += shift;
+        if (!scene.body.u.empty()) scene.body.u[i][axis] += shift;
+      }
+  }
+  return false;
+}
+
 void stretch(Scene& scene, int axis, double strain) {
   for (Vec3& x : scene.body.x) x[axis] += strain * (x[axis] - scene.periodic.origin[axis]);
   scene.periodic.extent[axis] *= 1 + strain;
@@ -148,7 +167,7 @@ Subject subject_of(const Scene& scene, int axis, double strain) {
   };
   if (const double start = tolerance(); start > 0 && largest(accelerations(s)) > start) {
     const std::vector<Vec3> x = s.body.x;
-    const bool rests = relax(s, start, start / (kAtRest * s.rule.law->cutoff()));
+    const bool rests = relax_to_minimum(s, start, start / (kAtRest * s.rule.law->cutoff()));
     double farthest = 0;
     for (size_t i = 0; i < x.size(); ++i) farthest = std::max(farthest, (s.body.x[i] - x[i]).norm());
     if (rests) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/front.h"
+
 namespace cuboct::study {
 namespace {
 
@@ -46,26 +48,24 @@ std::string short_name(const Settings& settings) {
 }
 
 std::string cheapest_per_decade(const Results& results) {
-  double least = INFINITY;
-  for (const Outcome& outcome : results.outcomes) {
-    const double error = error_of(results, outcome);
-    if (outcome.status == Status::done && error > 0) least = std::min(least, error);
-  }
-  std::string text = fmt::format("{:>8}  {:>9}  {:>9}  {:>12}  {:>9}  {}\n", "error at", "", "", "particle-",
-                                 "simulated", "");
-  text += fmt::format("{:>8}  {:>9}  {:>9}  {:>12}  {:>9}  {}\n", "most", "error", "cost", "steps/s", "s/s",
-                      "settings");
-  const int last = std::isfinite(least) ? static_cast<int>(std::ceil(std::log10(least) - 1e-12)) : 0;
-  for (int decade = 0; decade >= std::max(last, -16); --decade) {
-    const Outcome* best = nullptr;
-    for (const Outcome& outcome : results.outcomes) {
-      if (outcome.status != Status::done || !(error_of(results, outcome) <= std::pow(10, decade))) continue;
-      if (!best || outcome.cost < best->cost) best = &outcome;
-    }
-    if (!best) continue;
-    text += fmt::format("{:>8}  {:>9}  {:>9}  {:>12}  {:>9}  {}\n", fmt::format("1e{}", decade),
-                        number(error_of(results, *best)), number(best->cost), number(best->speed.particle_steps),
-                        number(best->speed.simulated_seconds), short_name(best->settings));
+  const bool timed = std::ranges::any_of(results.outcomes, [](const Outcome& outcome) {
+    return std::isfinite(outcome.speed.simulated_seconds);
+  });
+  const ValueOf speed = timed ? ValueOf(default_speed) : [](const Outcome& outcome) { return -outcome.cost; };
+  const ValueOf error = [&](const Outcome& outcome) { return error_of(results, outcome); };
+  const auto row = [](const std::string& most, const std::string& error, const std::string& cost,
+                      const std::string& rate, const std::string& simulated, const std::string& settings) {
+    return fmt::format("{:>8}  {:>9}  {:>9}  {:>10}  {:>10}  {}\n", most, error, cost, rate, simulated, settings);
+  };
+  std::string text = fmt::format("the {} point for each error of {}\n", timed ? "fastest" : "cheapest",
+                                 results.figure_names.empty() ? "the trajectory" : "the worst figure");
+  text += row("error", "", "", "particle-", "simulated", "");
+  text += row("at most", "error", "cost", "steps/s", "s/s", "settings");
+  for (const Cheapest& best : cheapest_by_decade(results.outcomes, error, speed)) {
+    const Outcome& outcome = results.outcomes[best.point];
+    text += row(best.exponent == Cheapest::kExact ? "0" : fmt::format("1e{}", best.exponent), number(error(outcome)),
+                number(outcome.cost), number(outcome.speed.particle_steps), number(outcome.speed.simulated_seconds),
+                short_name(outcome.settings));
   }
   return text;
 }

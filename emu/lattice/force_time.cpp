@@ -29,7 +29,8 @@ int64_t force_time(const ForceShape& shape, const ForceWork& work, const Availab
   const uint32_t* entry = work.entries.data();
   const uint32_t* const last_entry = entry + entries;
   uint32_t first_item = 0;
-  for (size_t segment = 0; segment < kSegments; ++segment) {
+  const size_t segments = 1 + 2 * static_cast<size_t>(shape.axes);
+  for (size_t segment = 0; segment < segments; ++segment) {
     const int64_t from = segment == 0 ? 0 : available[(segment - 1) / 2];
     streamed = next;
     if (from > next) {  // bubbles follow the item before through F0 and F1

@@ -11,11 +11,12 @@
 
 namespace cuboct::emu {
 
-inline constexpr int kSegments = 7;  // own, then the halos of faces -x, +x, -y, +y, -z, +z
+inline constexpr int kSegments = 7;  // own, then the halos of faces -x, +x, -y, +y, -z, +z: 1 + 2 axes of them
 
 struct ForceShape {
   int queue_depth = 1;
   int pipe = 1;  // cycles from a pair's issue to its sum
+  int axes = 3;
 };
 
 // What the streamer walks. An item is a (record, pass); it becomes an entry of the queue if it has hits, and
@@ -40,12 +41,12 @@ using Available = std::array<int64_t, 3>;
 int64_t force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
                    std::vector<int64_t>& popped);
 
-// The same where there is no item: seven segments are passed at cycles 0, max(1, x), ..., one after the
+// The same where there is no item: the segments are passed at cycles 0, max(1, x), ..., one after the
 // other, and the engine ends a cycle after the last.
-inline int64_t idle_force_time(const Available& available) {
-  int64_t last = kSegments;
-  for (int axis = 0; axis < 3; ++axis)
-    if (const int64_t t = available[static_cast<size_t>(axis)] + 6 - 2 * axis; t > last) last = t;
+inline int64_t idle_force_time(const Available& available, int axes) {
+  int64_t last = 1 + 2 * axes;
+  for (int axis = 0; axis < axes; ++axis)
+    if (const int64_t t = available[static_cast<size_t>(axis)] + 2 * (axes - axis); t > last) last = t;
   return last;
 }
 

@@ -31,7 +31,7 @@ size_t gather(const PlanarTest& test, const Places& places, uint32_t node, HitSc
   };
   records = {};
   size_t count = 0;
-  for (size_t wz = 0; wz < 3; ++wz) {
+  for (size_t wz = 0; wz < test.layers; ++wz) {
     const uint32_t at_z = near(node, 2, wz);
     for (size_t wy = 0; wy < 3; ++wy) {
       const uint32_t at_y = near(at_z, 1, wy);
@@ -158,7 +158,7 @@ namespace cuboct::emu {
 HWY_EXPORT(filter_node);
 
 PlanarTest::PlanarTest(const FixedRule& rule)
-    : position_frac(rule.widths.position_frac), shift(rule.difference_shift) {
+    : position_frac(rule.widths.position_frac), shift(rule.difference_shift), layers(rule.axes == 3 ? 3 : 1) {
   for (size_t k = 0; k < planar.size(); ++k) planar[k] = static_cast<int32_t>(rule.planar[k]);
 }
 

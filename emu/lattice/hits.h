@@ -18,6 +18,7 @@ struct PlanarTest {
   explicit PlanarTest(const FixedRule& rule);
   int position_frac;                // P
   int shift;                        // P - D
+  size_t layers;                    // of cells around a node's along z: 3, or 1 in a flat plan
   std::array<int32_t, 3> planar{};  // D fractional bits
 };
 

@@ -57,6 +57,7 @@ struct TimingModel::Impl {
 
   const Plan& plan_;
   const uint32_t nodes_;
+  const int axes_;
   const int threads_;
   const int64_t halo_beats_;
   const ForceShape shape_;
@@ -85,9 +86,10 @@ struct TimingModel::Impl {
 TimingModel::Impl::Impl(const Plan& plan, int threads)
     : plan_(plan),
       nodes_(plan.lattice.size()),
+      axes_(plan.rule.axes),
       threads_(threads > 0 ? threads : omp_get_num_procs()),
       halo_beats_(plan.words.halo_beats),
-      shape_{plan.arch.queue_depth, plan.latency.pipe},
+      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes},
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       neighbour_(nodes_ + 1),
       migration_(plan.lattice, plan.words.migrate_beats),
@@ -178,6 +180,7 @@ void TimingModel::Impl::exchange_y(uint32_t n) {
   const auto& near = neighbour_[n];
   moved_x_[n] = moved_[n] | moved_[near[0]] | moved_[near[1]];
   const int64_t end = end_[at(Phase::exchange_y)][n] = exchanged(1, n);
+  if (axes_ == 2) return;
   halo_end_[2][n] = end + 1 + stream(count_[n]) + stream(count_[near[0]]) + stream(count_[near[1]]) +
                     stream(sent_y_[near[2]]) + stream(sent_y_[near[3]]);
 }
@@ -194,14 +197,15 @@ int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
   const int64_t begin = plan_.arch.overlap ? start_[n] : end_[at(Phase::exchange_z)][n] + 1;
   Available available;
   for (size_t a = 0; a < 3; ++a) available[a] = end_[a][n] + 1 - begin;
-  if (count_[n] == 0) return begin + idle_force_time(available);
+  if (count_[n] == 0) return begin + idle_force_time(available, axes_);
   const Places places{{x_[0].data(), x_[1].data(), x_[2].data()}, first_.data(), neighbour_.data()};
   return begin +
          force_[n].time(filter_, places, n, shape_, available, still(n), scratch.hits, scratch.counters);
 }
 
+// Where an axis does not exist its phases end with those before them.
 void TimingModel::Impl::exchange_z_to_update(uint32_t n, Scratch& scratch) {
-  end_[at(Phase::exchange_z)][n] = exchanged(2, n);
+  end_[at(Phase::exchange_z)][n] = axes_ == 3 ? exchanged(2, n) : end_[at(Phase::exchange_y)][n];
   const int64_t force_end = end_[at(Phase::force)][n] = force(n, scratch);
   const int64_t update = count_[n] == 0 ? 1 : int64_t{count_[n]} - 1 + plan_.latency.update;
   const int64_t end = end_[at(Phase::update)][n] = force_end + update;
@@ -226,7 +230,7 @@ void TimingModel::Impl::take_particles(int axis, uint32_t n) {
   const int64_t low = taken(axis, n, 0, migrate_end_[at(axis)][n] + 1);
   const int64_t next = taken(axis, n, 1, low);
   end_[at(Phase::migrate_x) + at(axis)][n] = next - 1;
-  if (axis < 2) send_particles(axis + 1, n, next);
+  if (axis + 1 < axes_) send_particles(axis + 1, n, next);
 }
 
 void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
@@ -267,9 +271,11 @@ void TimingModel::step(const NodeSlots& slots, std::span<const Leaving> leaving,
     for_all([&](uint32_t n) { m.exchange_y(n); });
 #pragma omp for schedule(dynamic, share)
     for (int64_t n = 0; n < nodes; ++n) m.exchange_z_to_update(static_cast<uint32_t>(n), scratch);
-    for (int axis = 0; axis < 2; ++axis) for_all([&](uint32_t n) { m.take_particles(axis, n); });
+    const int last = m.axes_ - 1;
+    for (int axis = 0; axis < last; ++axis) for_all([&](uint32_t n) { m.take_particles(axis, n); });
     for_all([&](uint32_t n) {
-      m.take_particles(2, n);
+      m.take_particles(last, n);
+      if (last < 2) m.end_[at(Phase::migrate_z)][n] = m.end_[at(Phase::migrate_y)][n];
       m.finish(n, spans);
     });
   }

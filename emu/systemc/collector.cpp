@@ -55,7 +55,9 @@ Bits load_word(const Plan& plan, const Particle& particle) {
 }
 
 Collector::Collector(const Plan& plan, const RunOptions& options)
-    : plan_(plan), options_(options), nodes_(plan.lattice.size()), step_(nodes_), stopped_(nodes_) {
+    : plan_(plan), options_(options), nodes_(plan.lattice.size()),
+      last_phase_(last_phase(plan.rule.axes)),
+      step_(nodes_), stopped_(nodes_) {
   std::sort(options_.frames.begin(), options_.frames.end());
   trace_.plan_hash = plan.hash;
   trace_.nodes = nodes_;
@@ -118,6 +120,10 @@ void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
   if (out.observe) observe(node, out.observe_data);
   for (int p = 0; p < kPhases; ++p)
     if (out.phase_end >> p & 1) span(p).end = cycle;
+  // What a flat plan does not have lies, empty, after what comes before it.
+  if (last_phase_ != Phase::migrate_z)
+    for (const Phase y : {Phase::exchange_y, Phase::migrate_y})
+      if (out.phase_end >> static_cast<int>(y) & 1) span(static_cast<int>(y) + 1) = {cycle + 1, cycle};
   if (out.phase_end & 1u << static_cast<int>(Phase::exchange_x)) complete(step);
   if (out.fault) {
     const StopReason found{
@@ -125,7 +131,7 @@ void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
     const auto key = [](const StopReason& r) { return std::tie(r.step, r.fault, r.particle, r.number); };
     if (stop_.fault == Fault::none || key(found) < key(stop_)) stop_ = found;
   }
-  if (out.phase_end & 1u << static_cast<int>(Phase::migrate_z)) {
+  if (out.phase_end & 1u << static_cast<int>(last_phase_)) {
     ++step_[node];
     ++finished_[step];
   }

@@ -71,6 +71,7 @@ class Collector {
   const Plan& plan_;
   RunOptions options_;  // frames ascending
   const uint32_t nodes_;
+  const Phase last_phase_;  // of a step
   Trace trace_;
   std::vector<uint64_t> step_;             // per node: the step it is in
   std::vector<bool> stopped_;              // per node: back in IDLE

@@ -33,6 +33,7 @@ ForceEngine::ForceEngine(const Plan& plan, const std::vector<Slot>& own,
       fault_(fault),
       lanes_(plan.arch.filter_lanes),
       pipes_(plan.arch.force_pipes),
+      segments_(1 + 2 * plan.rule.axes),
       sum_(plan.arch.capacity) {}
 
 void ForceEngine::reset() { std::fill(sum_.begin(), sum_.end(), Int3{}); }
@@ -49,7 +50,7 @@ void ForceEngine::filter(Stream& stream) const {
   for (const Slot& s : own_) stream.own.add(s.body.x);
   const PlanarTest test(plan_.rule);
   const uint64_t lane_mask = ~uint64_t{0} >> (64 - lanes);
-  for (int segment = 0; segment < kSegments; ++segment) {
+  for (int segment = 0; segment < segments_; ++segment) {
     const auto one = [&](const Candidate& c, uint32_t self) {
       stream.record.push_back(&c);
       PlanarMask met = test(stream.own, c.x);
@@ -102,7 +103,7 @@ uint64_t ForceEngine::run() {
   for (;; ++cycle) {
     if (!f0_valid && !f1_valid && count == 0 && current_mask == 0) {
       // Nothing moves but the pipes: on to where the streamer may go on, or the pipes are empty.
-      if (segment == kSegments) {
+      if (segment == segments_) {
         cycle += static_cast<uint64_t>(drain);
         break;
       }
@@ -139,7 +140,7 @@ uint64_t ForceEngine::run() {
     f1_valid = f0_valid;
     f1 = f0;
     f0_valid = false;
-    if (segment == kSegments || from(segment) > cycle) continue;
+    if (segment == segments_ || from(segment) > cycle) continue;
     if (next == stream.segment_end[segment]) {  // no record, or no slot to meet it
       ++segment;
       continue;

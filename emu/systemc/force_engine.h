@@ -28,7 +28,7 @@ struct FaultKeeper {
 
 class ForceEngine {
  public:
-  static constexpr int kSegments = 1 + kFaces;  // own, -x, +x, -y, +y, -z, +z
+  static constexpr int kSegments = 1 + kFaces;  // own, -x, +x, -y, +y, -z, +z; of a flat plan without -z, +z
 
   struct Counts {
     uint64_t candidates = 0;    // (record, pass) presented to the filter
@@ -48,7 +48,7 @@ class ForceEngine {
   void begin(uint64_t cycle);
   // The cycle from which on the halos of `axis` may be read; in the order of the axes.
   void available(int axis, uint64_t cycle) { available_[axis + 1] = cycle; }
-  // All cycles of the step, once the three axes are available; the engine's last cycle.
+  // All cycles of the step, once all axes are available; the engine's last cycle.
   uint64_t run();
 
   // A slot's sum over the pipes, and clears it.
@@ -64,7 +64,7 @@ class ForceEngine {
   const std::vector<Slot>& own_;
   const std::array<std::vector<Candidate>, kFaces>& halo_;
   FaultKeeper& fault_;
-  const int lanes_, pipes_;
+  const int lanes_, pipes_, segments_;
   std::array<uint64_t, 4> available_{};  // own, x, y, z
   std::vector<Int3> sum_;                // by slot, over all pipes: integer sums do not depend on the split
   Counts counts_;

@@ -20,6 +20,7 @@ constexpr Fault along(Fault x, int axis) { return static_cast<Fault>(static_cast
 Node::Node(const Plan& plan, uint8_t has_link)
     : plan_(plan),
       has_link_(has_link),
+      axes_(plan.rule.axes),
       capacity_(plan.arch.capacity),
       link_words_(std::min((plan.words.link_bits + 63) / 64, int{Bits::kWords})),
       engine_(plan, own_, halo_, fault_) {
@@ -70,6 +71,12 @@ void Node::load_slice(int face) {
   if (linked(face)) load(face, false) = word_.slice(beat_ * plan_.words.link_bits, plan_.words.link_bits);
 }
 
+// The main state after a phase; a step ends after the last one.
+Node::Main Node::after(Main phase) const {
+  if (axes_ == 2 && phase == Main::exchange_y) return Main::force;
+  return static_cast<Main>(static_cast<int>(phase) + 1);
+}
+
 // Prepares the registers for a main state's first cycle, which is the next one.
 void Node::enter(Main next) {
   main_ = next;
@@ -79,7 +86,10 @@ void Node::enter(Main next) {
   if (next == Main::dump || next == Main::idle) return;
   const bool begins_engine = plan_.arch.overlap ? next == Main::exchange_x : next == Main::force;
   if (begins_engine) engine_.begin(now_ + 1), starting_ |= bit(Phase::force);
-  if (next > Main::exchange_x && next <= Main::force) engine_.available(static_cast<int>(next) - 1, now_ + 1);
+  if (next == Main::force)
+    engine_.available(axes_ - 1, now_ + 1);
+  else if (next > Main::exchange_x && next < Main::force)
+    engine_.available(static_cast<int>(next) - 1, now_ + 1);
   if (next == Main::force)
     phase_last_ = engine_.run();
   else
@@ -120,7 +130,7 @@ void Node::exchange() {
   const int low = 2 * axis(), high = low + 1;
   if (sent_) {
     if ((faces_of(axis()) & ~halo_end_) == 0) {
-      finish_phase(static_cast<Main>(static_cast<int>(main_) + 1));
+      finish_phase(after(main_));
     } else {
       wakes_at_ = kNever;
     }
@@ -256,7 +266,7 @@ void Node::take(int face, Migrate next, bool last) {
       return;
     }
     own_.push_back(s);
-    for (int later = a + 1; later < 3; ++later)
+    for (int later = a + 1; later < axes_; ++later)
       if (s.away[later] != 0) leaving_ |= bit(later);
     return;
   }
@@ -267,8 +277,8 @@ void Node::take(int face, Migrate next, bool last) {
   migrate_ = next;
   if (!last) return;
   migrate_end_ &= static_cast<uint8_t>(~faces_of(a));
-  if (main_ != Main::migrate_z) {
-    finish_phase(static_cast<Main>(static_cast<int>(main_) + 1));
+  if (a != axes_ - 1) {
+    finish_phase(after(main_));
     return;
   }
   if (fault_.code != Fault::none) {

@@ -55,6 +55,7 @@ class Node : public NodeModel {
   void load_end(int low);
   void load_slice(int face);
 
+  Main after(Main phase) const;
   void enter(Main next);
   void finish_phase(Main next);
   void idle();
@@ -72,7 +73,7 @@ class Node : public NodeModel {
 
   const Plan& plan_;
   const uint8_t has_link_;
-  const int capacity_, link_words_;
+  const int axes_, capacity_, link_words_;
   FaultKeeper fault_;
   std::vector<Slot> own_;
   std::array<std::vector<Candidate>, kFaces> halo_;

@@ -28,16 +28,21 @@ void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out) {
   const auto signed_field = [&](int a) {
     return static_cast<Wide>(candidate.x[static_cast<size_t>(a)]) & mask;
   };
+  const auto last_field = [&](int a) {
+    return static_cast<Wide>(candidate.x[static_cast<size_t>(a)] & ((int64_t{1} << p) - 1));
+  };
+  const int axes = plan.rule.axes;
   // 3P+4 bits: at most 94.
-  const Wide xyz = signed_field(0) | signed_field(1) << (p + 2) |
-                   static_cast<Wide>(candidate.x[2] & ((int64_t{1} << p) - 1)) << (2 * p + 4);
+  const Wide xyz = axes == 3
+                       ? signed_field(0) | signed_field(1) << (p + 2) | last_field(2) << (2 * p + 4)
+                       : signed_field(0) | last_field(1) << (p + 2);
   out.word[0] = static_cast<uint64_t>(xyz);
   out.word[1] = static_cast<uint64_t>(xyz >> 64);
-  int at = 3 * p + 4;
+  int at = axes * p + 2 * (axes - 1);
   const auto field = [&](int width, int64_t value) { out.put(at, width, value), at += width; };
   if (plan.rule.scaled) field(plan.rule.type_bits, candidate.type);
   if (plan.rule.damped)
-    for (const int64_t v : candidate.v) field(w.velocity_bits, v);
+    for (int a = 0; a < axes; ++a) field(w.velocity_bits, candidate.v[a]);
 }
 
 void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Candidate& out) {
@@ -49,14 +54,20 @@ void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Ca
     return static_cast<int32_t>(wrap(a == axis ? x + shift : x, p + 2));
   };
   out.x[0] = moved(0, signed_field(xyz));
-  out.x[1] = moved(1, signed_field(xyz >> (p + 2)));
-  out.x[2] = moved(2, static_cast<int64_t>(xyz >> (2 * p + 4)) & ((int64_t{1} << p) - 1));
-  int at = 3 * p + 4;
+  const auto last_field = [&](Wide v) { return static_cast<int64_t>(v) & ((int64_t{1} << p) - 1); };
+  const int axes = plan.rule.axes;
+  if (axes == 3) {
+    out.x[1] = moved(1, signed_field(xyz >> (p + 2)));
+    out.x[2] = moved(2, last_field(xyz >> (2 * p + 4)));
+  } else {
+    out.x[1] = moved(1, last_field(xyz >> (p + 2)));
+  }
+  int at = axes * p + 2 * (axes - 1);
   const auto take = [&](int width) { return at += width, bits.get(at - width, width); };
   const auto take_signed = [&](int width) { return at += width, bits.get_signed(at - width, width); };
   out.type = plan.rule.scaled ? static_cast<uint8_t>(take(plan.rule.type_bits)) : 0;
   if (plan.rule.damped)
-    for (int64_t& v : out.v) v = take_signed(w.velocity_bits);
+    for (int a = 0; a < axes; ++a) out.v[a] = take_signed(w.velocity_bits);
 }
 
 Bits pack_particle(const Plan& plan, const Slot& slot) {
@@ -64,14 +75,14 @@ Bits pack_particle(const Plan& plan, const Slot& slot) {
   Bits out;
   int at = 0;
   const auto field = [&](int width, int64_t value) { out.put(at, width, value), at += width; };
-  for (const int32_t x : slot.body.x) field(w.position_frac, x);
-  field(2, slot.away[1]);
-  field(2, slot.away[2]);
-  for (const int64_t v : slot.body.v) field(w.velocity_bits, v);
+  const auto axes = static_cast<size_t>(plan.rule.axes);
+  for (size_t a = 0; a < axes; ++a) field(w.position_frac, slot.body.x[a]);
+  for (size_t a = 1; a < axes; ++a) field(2, slot.away[a]);
+  for (size_t a = 0; a < axes; ++a) field(w.velocity_bits, slot.body.v[a]);
   field(plan.rule.type_bits, slot.body.type);
   field(plan.words.id_bits, slot.id);
   if (plan.rule.pd)
-    for (const int64_t u : slot.u) field(w.displacement_bits, u);
+    for (size_t a = 0; a < axes; ++a) field(w.displacement_bits, slot.u[a]);
   return out;
 }
 
@@ -81,14 +92,14 @@ Slot unpack_particle(const Plan& plan, const Bits& bits) {
   int at = 0;
   const auto take = [&](int width) { return at += width, bits.get(at - width, width); };
   const auto take_signed = [&](int width) { return at += width, bits.get_signed(at - width, width); };
-  for (int32_t& x : out.body.x) x = static_cast<int32_t>(take(w.position_frac));
-  out.away[1] = static_cast<int8_t>(take_signed(2));
-  out.away[2] = static_cast<int8_t>(take_signed(2));
-  for (int64_t& v : out.body.v) v = take_signed(w.velocity_bits);
+  const auto axes = static_cast<size_t>(plan.rule.axes);
+  for (size_t a = 0; a < axes; ++a) out.body.x[a] = static_cast<int32_t>(take(w.position_frac));
+  for (size_t a = 1; a < axes; ++a) out.away[a] = static_cast<int8_t>(take_signed(2));
+  for (size_t a = 0; a < axes; ++a) out.body.v[a] = take_signed(w.velocity_bits);
   out.body.type = static_cast<uint8_t>(take(plan.rule.type_bits));
   out.id = static_cast<uint32_t>(take(plan.words.id_bits));
   if (plan.rule.pd)
-    for (int64_t& u : out.u) u = take_signed(w.displacement_bits);
+    for (size_t a = 0; a < axes; ++a) out.u[a] = take_signed(w.displacement_bits);
   return out;
 }
 

@@ -12,7 +12,7 @@ namespace cuboct::emu {
 
 // What a pair needs of a candidate; the halo memories hold these in the receiver's own frame.
 struct Candidate {
-  std::array<int32_t, 3> x{};  // P fractional bits, P+2 bits signed; P <= 30
+  std::array<int32_t, 3> x{};  // P fractional bits, P+2 bits signed; P <= 30. z stays 0 in a flat plan
   uint8_t type = 0;
   Int3 v{};  // P+G fractional bits; zero unless the rule damps
 };

@@ -45,7 +45,9 @@ std::string compile_node(const Plan& plan, const std::string& build_directory) {
       {.top = "cuboct_node",
        .verilator_flags = "--cc",
        .compiler_flags = "-O2 -fno-semantic-interposition -flto",
-       .constants = {{"LINK_BITS", plan.words.link_bits}, {"PARTICLE_BITS", plan.words.particle_bits}},
+       .constants = {{"FACES", 2 * plan.rule.axes},
+                     {"LINK_BITS", plan.words.link_bits},
+                     {"PARTICLE_BITS", plan.words.particle_bits}},
        .sources = with_headers("shim_node.cpp"),
        .emit = [&](const std::string& dir) { emit_node(plan, dir); }},
       build_directory);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One Verilated node. LINK_BITS and PARTICLE_BITS come from the command line.
+// One Verilated node. FACES, LINK_BITS and PARTICLE_BITS come from the command line.
 #include <type_traits>
 
 #include "Vcuboct_node.h"
@@ -27,7 +27,7 @@ struct Clock<Root, std::void_t<decltype(std::declval<Root&>().__Vtrigrprev__TOP_
 struct Node : Instance<Vcuboct_node> {
   using Instance::Instance;
   uint32_t shown_for = ~0u;  // the inputs that the outputs were last settled for
-  uint64_t link_in[words_of(6 * LINK_BITS)] = {}, link_out[words_of(6 * LINK_BITS)] = {};
+  uint64_t link_in[words_of(FACES * LINK_BITS)] = {}, link_out[words_of(FACES * LINK_BITS)] = {};
   uint64_t particle[words_of(PARTICLE_BITS)] = {};
 };
 
@@ -52,7 +52,7 @@ const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
   m.link_valid_i = in->link_valid;
   m.link_end_i = in->link_end;
   if (in->link_valid) {
-    for (int f = 0; f < kCuboctFaces; ++f)
+    for (int f = 0; f < FACES; ++f)
       if (in->link_valid >> f & 1)
         copy_bits(n.link_in, f * LINK_BITS, in->link_data[f], 0, held_bits(LINK_BITS));
     set_port(m.link_data_i, n.link_in);
@@ -87,7 +87,7 @@ const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
   out->link_ready = m.link_ready_o;
   if (m.link_valid_o) {
     get_port(m.link_data_o, n.link_out);
-    for (int f = 0; f < kCuboctFaces; ++f)
+    for (int f = 0; f < FACES; ++f)
       if (m.link_valid_o >> f & 1)
         copy_bits(out->link_data[f], 0, n.link_out, f * LINK_BITS, held_bits(LINK_BITS));
   }

@@ -2,26 +2,27 @@
 // What of an own particle the others see: its position with sign bits, its type and its velocity where the rule needs
 // them. Wires only.
 module cuboct_candidate #(
+  parameter int Axes          = 3,    // 2 or 3
   parameter int PositionFrac  = 20,
   parameter int VelLsb        = 64,
-  parameter int VelBits       = 0,    // of three axes; 0: not needed
+  parameter int VelBits       = 0,    // of all axes; 0: not needed
   parameter int TypeLsb       = 151,
   parameter int TypeBits      = 0,    // 0: not needed
   parameter int OwnBits       = 160,
-  parameter int CandidateBits = 66    // 3 * (PositionFrac + 2) + TypeBits + VelBits
+  parameter int CandidateBits = 66    // Axes * (PositionFrac + 2) + TypeBits + VelBits
 ) (
   input  logic [OwnBits-1:0]       own_i,
   output logic [CandidateBits-1:0] candidate_o
 );
   localparam int Axis = PositionFrac + 2;
-  for (genvar a = 0; a < 3; a++) begin : gen_axis
+  for (genvar a = 0; a < Axes; a++) begin : gen_axis
     assign candidate_o[a*Axis +: Axis] = {2'b00, own_i[a*PositionFrac +: PositionFrac]};
   end
   if (TypeBits > 0) begin : gen_type
-    assign candidate_o[3*Axis +: TypeBits] = own_i[TypeLsb +: TypeBits];
+    assign candidate_o[Axes*Axis +: TypeBits] = own_i[TypeLsb +: TypeBits];
   end
   if (VelBits > 0) begin : gen_velocity
-    assign candidate_o[3*Axis+TypeBits +: VelBits] = own_i[VelLsb +: VelBits];
+    assign candidate_o[Axes*Axis+TypeBits +: VelBits] = own_i[VelLsb +: VelBits];
   end
   logic unused_own;
   assign unused_own = ^own_i;

@@ -2,6 +2,7 @@
 // The filter: register F0 holds a candidate and a row, FilterLanes lanes test the candidate against the row's slots,
 // register F1 holds the mask of those that may interact. Both keep their contents in a stalled cycle.
 module cuboct_filter #(
+  parameter int          Axes            = 3,   // 2 or 3
   parameter int          PositionFrac    = 20,
   parameter int          DifferenceShift = 4,
   parameter logic [63:0] PlanarOne       = 64'd0,
@@ -24,7 +25,7 @@ module cuboct_filter #(
   input  logic [CountBits-1:0]                own_count_i,
   // The row of own positions that F0 asks for, same cycle.
   output logic [RowBits-1:0]                  row_o,
-  input  logic [FilterLanes*3*PositionFrac-1:0] row_data_i,
+  input  logic [FilterLanes*Axes*PositionFrac-1:0] row_data_i,
   // To the queue.
   input  logic                                full_i,
   output logic                                stall_o,
@@ -80,11 +81,11 @@ module cuboct_filter #(
     assign exists = (slot < {{(RowSlots - CountBits) {1'b0}}, own_count_i});
     assign itself = f0_own_q && (slot == {{(RowSlots - SlotBits) {1'b0}}, f0_slot_q});
     cuboct_filter_lane #(
-      .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift),
+      .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift),
       .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree)
     ) u_lane (
-      .test_i(exists && !itself), .own_i(row_data_i[l*3*PositionFrac +: 3*PositionFrac]),
-      .candidate_i(f0_candidate_q[3*(PositionFrac+2)-1:0]), .pass_o(mask[l])
+      .test_i(exists && !itself), .own_i(row_data_i[l*Axes*PositionFrac +: Axes*PositionFrac]),
+      .candidate_i(f0_candidate_q[Axes*(PositionFrac+2)-1:0]), .pass_o(mask[l])
     );
   end
 

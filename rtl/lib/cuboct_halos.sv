@@ -2,41 +2,44 @@
 // The receiving side of the six links: assembly, halo memories in the node's own frame, migrate FIFOs, and the flags
 // that say which streams have ended.
 module cuboct_halos #(
+  parameter int Axes          = 3,    // 2 or 3
   parameter int PositionFrac  = 20,   // P
   parameter int Capacity      = 16,
   parameter int LinkBits      = 32,
-  parameter int HaloBits      = 62,   // of a halo record: x[P+2] y[P+2] z[P] rest
-  parameter int CandidateBits = 64,   // of a halo in memory: x[P+2] y[P+2] z[P+2] rest; HaloBits + 2
+  parameter int HaloBits      = 62,   // of a halo record: x[P+2] y[P+2] z[P] rest; with two axes x[P+2] y[P] rest
+  parameter int CandidateBits = 64,   // of a halo in memory: all axes of P+2 bits, rest; HaloBits + 2
   parameter int ParticleBits  = 128,
   parameter int AddrBits      = 8,    // of a record's number in any segment
-  parameter int CountBits     = 9     // of a segment's count
+  parameter int CountBits     = 9,    // of a segment's count
+  localparam int Faces        = 2 * Axes
 ) (
   input  logic                       clk_i,
   input  logic                       rst_ni,
-  input  logic [5:0]                 has_link_i,
-  input  logic [5:0]                 link_valid_i,
-  input  logic [5:0]                 link_end_i,
-  input  logic [6*LinkBits-1:0]      link_data_i,
-  output logic [5:0]                 link_ready_o,
+  input  logic [Faces-1:0]           has_link_i,
+  input  logic [Faces-1:0]           link_valid_i,
+  input  logic [Faces-1:0]           link_end_i,
+  input  logic [Faces*LinkBits-1:0]  link_data_i,
+  output logic [Faces-1:0]           link_ready_o,
   // Halos.
   input  logic                       halo_clear_i,
-  output logic [5:0]                 halo_end_o,     // complete; always where there is no link
-  output logic [6*CountBits-1:0]     halo_count_o,
+  output logic [Faces-1:0]           halo_end_o,     // complete; always where there is no link
+  output logic [Faces*CountBits-1:0] halo_count_o,
   input  logic [AddrBits-1:0]        stream_addr_i,  // read by the streamer
-  output logic [6*CandidateBits-1:0] stream_data_o,  // by face
-  input  logic [AddrBits-1:0]        relay_addr_i,   // read by the relay, faces of x and y
-  output logic [4*CandidateBits-1:0] relay_data_o,
+  output logic [Faces*CandidateBits-1:0] stream_data_o,  // by face
+  input  logic [AddrBits-1:0]        relay_addr_i,   // read by the relay, faces of all axes but the last
+  output logic [(Faces-2)*CandidateBits-1:0] relay_data_o,
   // Migrating particles.
-  input  logic [5:0]                 migrate_clear_i,
-  output logic [5:0]                 migrate_end_o,  // complete; always where there is no link
-  output logic [5:0]                 migrate_empty_o,
-  output logic [6*ParticleBits-1:0]  migrate_data_o,
-  input  logic [5:0]                 migrate_pop_i
+  input  logic [Faces-1:0]           migrate_clear_i,
+  output logic [Faces-1:0]           migrate_end_o,  // complete; always where there is no link
+  output logic [Faces-1:0]           migrate_empty_o,
+  output logic [Faces*ParticleBits-1:0] migrate_data_o,
+  input  logic [Faces-1:0]           migrate_pop_i
 );
-  localparam int RestBits = HaloBits - 3 * PositionFrac - 4;
+  localparam int RestBits = HaloBits - Axes * PositionFrac - 2 * (Axes - 1);
+  localparam int LastLsb  = (Axes - 1) * (PositionFrac + 2);  // of the last axis, which has no sign on the link
 
-  logic [5:0] halo_end_d, halo_end_q, migrate_end_d, migrate_end_q, halo_end, migrate_end;
-  assign halo_end_d    = (halo_end_q | halo_end) & ~{6{halo_clear_i}};
+  logic [Faces-1:0] halo_end_d, halo_end_q, migrate_end_d, migrate_end_q, halo_end, migrate_end;
+  assign halo_end_d    = (halo_end_q | halo_end) & ~{Faces{halo_clear_i}};
   assign migrate_end_d = (migrate_end_q | migrate_end) & ~migrate_clear_i;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
@@ -50,7 +53,7 @@ module cuboct_halos #(
   assign halo_end_o    = halo_end_q | ~has_link_i;
   assign migrate_end_o = migrate_end_q | ~has_link_i;
 
-  for (genvar f = 0; f < 6; f++) begin : gen_face
+  for (genvar f = 0; f < Faces; f++) begin : gen_face
     localparam int Axis  = f / 2;
     localparam int Depth = ((Axis == 0) ? 1 : (Axis == 1) ? 3 : 9) * Capacity;
 
@@ -66,9 +69,9 @@ module cuboct_halos #(
     );
 
     // One node further along the axis: -2^P from below, +2^P from above.
-    logic [3*(PositionFrac+2)-1:0] sent, moved;
-    assign sent = {2'b00, halo[2*(PositionFrac+2) +: PositionFrac], halo[2*(PositionFrac+2)-1:0]};
-    for (genvar a = 0; a < 3; a++) begin : gen_axis
+    logic [Axes*(PositionFrac+2)-1:0] sent, moved;
+    assign sent = {2'b00, halo[LastLsb +: PositionFrac], halo[LastLsb-1:0]};
+    for (genvar a = 0; a < Axes; a++) begin : gen_axis
       localparam int Lsb = a * (PositionFrac + 2);
       assign moved[Lsb +: PositionFrac] = sent[Lsb +: PositionFrac];
       if (a != Axis) begin : gen_same
@@ -91,7 +94,7 @@ module cuboct_halos #(
       .addr_a_i(stream_addr_i), .data_a_o(stream_data_o[f*CandidateBits +: CandidateBits]),
       .addr_b_i(relay_addr_i), .data_b_o(relay_data)
     );
-    if (Axis < 2) begin : gen_relay
+    if (Axis < Axes - 1) begin : gen_relay
       assign relay_data_o[f*CandidateBits +: CandidateBits] = relay_data;
     end else begin : gen_no_relay
       logic unused_relay;

@@ -2,8 +2,9 @@
 // The three migration phases. SCAN sends those who leave along the axis and closes the gaps, END closes the streams,
 // TAKE_LOW and TAKE_HIGH append what came from below and from above. SCAN is left out where no one leaves.
 module cuboct_migrate #(
+  parameter int Axes         = 3,    // 2 or 3
   parameter int ParticleBits = 128,  // the word that travels
-  parameter int PositionBits = 60,   // its least significant field; away_y and away_z follow, 2 bits each
+  parameter int PositionBits = 60,   // its least significant field; away of y and z follow, 2 bits each
   parameter int LinkBits     = 32,
   parameter int Capacity     = 16,
   parameter int SlotBits     = 4,    // of a slot's number
@@ -12,7 +13,7 @@ module cuboct_migrate #(
   input  logic                      clk_i,
   input  logic                      rst_ni,
   input  logic                      active_i,         // the machine is in a migration phase
-  input  logic [1:0]                axis_i,           // 0, 1, 2
+  input  logic [1:0]                axis_i,           // below Axes
   output logic                      done_o,           // last cycle of the phase
   input  logic [1:0]                has_link_i,       // of the axis: below, above
   // Own particles: a slot is {away_x, particle}.
@@ -25,7 +26,7 @@ module cuboct_migrate #(
   output logic                      write_o,
   output logic [SlotBits-1:0]       write_slot_o,
   output logic [ParticleBits+1:0]   write_data_o,
-  output logic [2:0]                leaving_more_o,   // axes along which an arrived particle goes on
+  output logic [Axes-1:0]           leaving_more_o,   // axes along which an arrived particle goes on
   // Links of the axis: below, above.
   input  logic [1:0]                can_load_i,
   output logic [1:0]                load_o,
@@ -41,6 +42,7 @@ module cuboct_migrate #(
   output logic                      fault_full_o,
   output logic [ParticleBits-1:0]   fault_particle_o
 );
+  localparam int AwayBits = 2 * (Axes - 1);  // in a particle's word
   localparam int Beats    = (ParticleBits + LinkBits - 1) / LinkBits;
   localparam int BeatBits = (Beats > 1) ? $clog2(Beats) : 1;
   localparam int LastBeat = Beats - 1;
@@ -64,13 +66,12 @@ module cuboct_migrate #(
   end
 
   // Where the slot that SCAN looks at wants to go.
+  integer b;
   always_comb begin
     away = read_data_i[ParticleBits +: 2];
-    unique case (axis_i)
-      2'd1:    away = read_data_i[PositionBits +: 2];
-      2'd2:    away = read_data_i[PositionBits+2 +: 2];
-      default: away = read_data_i[ParticleBits +: 2];
-    endcase
+    for (b = 1; b < Axes; b = b + 1) begin
+      if (axis_i == b[1:0]) away = read_data_i[PositionBits+2*(b-1) +: 2];
+    end
   end
   assign stays     = (away == 2'b00);
   assign up        = !away[1];
@@ -86,11 +87,16 @@ module cuboct_migrate #(
   assign has_room  = (count_i != Capacity[CountBits-1:0]);
 
   // An arrived particle has come to where it goes on this axis.
-  logic [3:0] away_yz;
+  logic [AwayBits-1:0] away_on;
+  logic [Axes-1:0]     goes_on;
+  integer              a;
   always_comb begin
-    away_yz = candidate[PositionBits +: 4];
-    if (axis_i != 2'd0) away_yz[1:0] = 2'b00;
-    if (axis_i == 2'd2) away_yz[3:2] = 2'b00;
+    away_on = candidate[PositionBits +: AwayBits];
+    goes_on = '0;
+    for (a = 1; a < Axes; a = a + 1) begin
+      if (axis_i >= a[1:0]) away_on[2*(a-1) +: 2] = 2'b00;
+      goes_on[a] = (away_on[2*(a-1) +: 2] != 2'b00);
+    end
   end
 
   always_comb begin
@@ -106,7 +112,7 @@ module cuboct_migrate #(
     write_data_o   = read_data_i;
     count_set_o    = 1'b0;
     count_o        = write_q;
-    leaving_more_o = 3'b000;
+    leaving_more_o = '0;
     pop_o          = 2'b00;
     fault_left_o   = 1'b0;
     fault_full_o   = 1'b0;
@@ -154,12 +160,12 @@ module cuboct_migrate #(
       if (taking) begin
         pop_o        = {side, !side};
         write_slot_o = count_i[SlotBits-1:0];
-        write_data_o = {2'b00, candidate[ParticleBits-1:PositionBits+4], away_yz, candidate[PositionBits-1:0]};
+        write_data_o = {2'b00, candidate[ParticleBits-1:PositionBits+AwayBits], away_on, candidate[PositionBits-1:0]};
         write_o      = has_room;
         count_set_o  = has_room;
         count_o      = count_i + 1'b1;
         fault_full_o = !has_room;
-        if (has_room) leaving_more_o = {away_yz[3:2] != 2'b00, away_yz[1:0] != 2'b00, 1'b0};
+        if (has_room) leaving_more_o = goes_on;
       end
     end
   end

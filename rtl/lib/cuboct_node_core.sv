@@ -3,9 +3,10 @@
 // cycle, is docs/reference/node.md; the words are
 //   particle:    x[P] y[P] z[P] away_y[2] away_z[2] v[3 x VelocityBits] type[TypeBits] id[IdBits] u[3 x DisplacementBits, Pd]
 //   halo record: x[P+2] y[P+2] z[P] type[TypeBits, Scaled] v[3 x VelocityBits, Damped]
-// least significant field first. The modules cuboct_force_rom, _damp_rom, _scale_rom and _type_rom are generated.
+// least significant field first; with two axes nothing of z, and y[P] in the halo record. The modules cuboct_force_rom, _damp_rom, _scale_rom and _type_rom are generated.
 module cuboct_node_core #(
   // Machine.
+  parameter int          Axes                 = 3,      // 2 or 3
   parameter int          Capacity             = 16,     // particles, >= 1
   parameter int          FilterLanes          = 8,      // >= 1
   parameter int          ForcePipes           = 1,      // >= 1
@@ -56,27 +57,29 @@ module cuboct_node_core #(
   parameter int          Scaled               = 0,      // 0, 1
   parameter int          Pd                   = 0,      // 0, 1
   // Derived; do not set.
+  localparam int         Faces                = 2 * Axes,
   localparam int         HaloType             = (Scaled != 0) ? TypeBits : 0,
-  localparam int         HaloVelocity         = (Damped != 0) ? 3 * VelocityBits : 0,
-  localparam int         HaloBits             = 3 * PositionFrac + 4 + HaloType + HaloVelocity,
-  localparam int         ParticleBits         = 3 * PositionFrac + 4 + 3 * VelocityBits + TypeBits + IdBits
-                                                + ((Pd != 0) ? 3 * DisplacementBits : 0)
+  localparam int         HaloVelocity         = (Damped != 0) ? Axes * VelocityBits : 0,
+  localparam int         HaloBits             = Axes * PositionFrac + 2 * (Axes - 1) + HaloType + HaloVelocity,
+  localparam int         ParticleBits         = Axes * PositionFrac + 2 * (Axes - 1) + Axes * VelocityBits + TypeBits
+                                                + IdBits
+                                                + ((Pd != 0) ? Axes * DisplacementBits : 0)
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
   input  logic                    start_i,        // in IDLE: run steps_i steps
   input  logic [31:0]             steps_i,
-  input  logic [5:0]              has_link_i,     // constant; faces -x, +x, -y, +y, -z, +z
+  input  logic [Faces-1:0]        has_link_i,     // constant; faces -x, +x, -y, +y, -z, +z
   input  logic                    load_valid_i,   // in IDLE: append a particle
   input  logic [ParticleBits-1:0] load_data_i,
-  output logic [5:0]              link_valid_o,
-  output logic [5:0]              link_end_o,
-  output logic [6*LinkBits-1:0]   link_data_o,
-  input  logic [5:0]              link_ready_i,
-  input  logic [5:0]              link_valid_i,
-  input  logic [5:0]              link_end_i,
-  input  logic [6*LinkBits-1:0]   link_data_i,
-  output logic [5:0]              link_ready_o,
+  output logic [Faces-1:0]        link_valid_o,
+  output logic [Faces-1:0]        link_end_o,
+  output logic [Faces*LinkBits-1:0] link_data_o,
+  input  logic [Faces-1:0]        link_ready_i,
+  input  logic [Faces-1:0]        link_valid_i,
+  input  logic [Faces-1:0]        link_end_i,
+  input  logic [Faces*LinkBits-1:0] link_data_i,
+  output logic [Faces-1:0]        link_ready_o,
   output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
   output logic [7:0]              phase_end_o,
   output logic                    observe_valid_o,
@@ -88,28 +91,29 @@ module cuboct_node_core #(
   output logic                    idle_o
 );
   // Fields of a particle.
-  localparam int PosBits    = 3 * PositionFrac;
-  localparam int VelBits    = 3 * VelocityBits;
-  localparam int DispBits   = 3 * DisplacementBits;
-  localparam int VelLsb     = PosBits + 4;
+  localparam int PosBits    = Axes * PositionFrac;
+  localparam int VelBits    = Axes * VelocityBits;
+  localparam int DispBits   = Axes * DisplacementBits;
+  localparam int AwayBits   = 2 * (Axes - 1);
+  localparam int VelLsb     = PosBits + AwayBits;
   localparam int TypeLsb    = VelLsb + VelBits;
   localparam int IdLsb      = TypeLsb + TypeBits;
   localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
   localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}
-  // Fields of a candidate: a halo record with z as wide as x and y.
-  localparam int CandPos       = 3 * (PositionFrac + 2);
+  // Fields of a candidate: a halo record with all axes of one width.
+  localparam int CandPos       = Axes * (PositionFrac + 2);
   localparam int CandidateBits = CandPos + HaloType + HaloVelocity;
   // Numbers of slots, rows, records; counts have a bit to spare over addresses.
   localparam int SlotBits  = (Capacity > 1) ? $clog2(Capacity) : 1;
   localparam int Rows      = (Capacity + FilterLanes - 1) / FilterLanes;
   localparam int RowBits   = (Rows > 1) ? $clog2(Rows) : 1;
-  localparam int AddrBits  = $clog2(9 * Capacity);
+  localparam int AddrBits  = $clog2(((Axes == 3) ? 9 : 3) * Capacity);
   localparam int CountBits = AddrBits + 1;
-  // |s| <= 2^(SBits-1) and |d| <= 2^D; a node sees at most 27 * Capacity kicks.
+  // |s| <= 2^(SBits-1) and |d| <= 2^D; a node sees at most 3^Axes * Capacity kicks.
   localparam int SBits       = (Damped != 0) ? StrengthBits : ForceBits;
   localparam int KickFull    = SBits + PositionFrac - DifferenceShift + 1 - KickShift;
   localparam int KickBits    = (KickFull > 2) ? KickFull : 2;
-  localparam int PipeSumBits = KickBits + $clog2(27 * Capacity);
+  localparam int PipeSumBits = KickBits + $clog2(((Axes == 3) ? 27 : 9) * Capacity);
   // Update.
   localparam int UpdateLatency = (Pd != 0) ? 6 : 3;
   localparam int UpdateTail    = UpdateLatency - 2;
@@ -118,9 +122,9 @@ module cuboct_node_core #(
   // The main machine.
   logic       in_exchange, in_update, in_migrate, in_dump, engine_runs, step_end;
   logic [1:0] axis;
-  logic [2:0] past_exchange;
+  logic [Axes-1:0] past_exchange;
   logic       exchange_done, force_done, update_done, migrate_done, dump_done;
-  cuboct_sequencer #(.Overlap(Overlap)) u_sequencer (
+  cuboct_sequencer #(.Axes(Axes), .Overlap(Overlap)) u_sequencer (
     .clk_i, .rst_ni, .start_i, .steps_i, .exchange_done_i(exchange_done), .force_done_i(force_done),
     .update_done_i(update_done), .migrate_done_i(migrate_done), .dump_done_i(dump_done), .idle_o,
     .exchange_o(in_exchange), .update_o(in_update), .migrate_o(in_migrate), .dump_o(in_dump), .axis_o(axis),
@@ -171,14 +175,14 @@ module cuboct_node_core #(
   );
 
   // Links: receivers.
-  logic [5:0]                 halo_end, migrate_end, migrate_empty, migrate_pop, migrate_clear;
-  logic [6*CountBits-1:0]     halo_count;
+  logic [Faces-1:0]           halo_end, migrate_end, migrate_empty, migrate_pop, migrate_clear;
+  logic [Faces*CountBits-1:0] halo_count;
   logic [AddrBits-1:0]        stream_addr, relay_addr;
-  logic [6*CandidateBits-1:0] stream_halos;
-  logic [4*CandidateBits-1:0] relay_halos;
-  logic [6*ParticleBits-1:0]  arrived;
+  logic [Faces*CandidateBits-1:0]     stream_halos;
+  logic [(Faces-2)*CandidateBits-1:0] relay_halos;
+  logic [Faces*ParticleBits-1:0]      arrived;
   cuboct_halos #(
-    .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits),
+    .Axes(Axes), .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits),
     .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_halos (
     .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
@@ -188,51 +192,64 @@ module cuboct_node_core #(
     .migrate_empty_o(migrate_empty), .migrate_data_o(arrived), .migrate_pop_i(migrate_pop)
   );
 
+  // leaving[a]: some own particle has to go along axis a.
+  logic [Axes-1:0] leaving_d, leaving_q, leaving_more, axis_onehot, away_axes;
+
   // Links: senders. One axis speaks at a time: the relay in EXCHANGE, the migration in MIGRATE.
-  logic [5:0]          can_load, load_link;
+  logic [Faces-1:0]    can_load, load_link;
   logic [1:0]          axis_can_load, axis_load, migrate_load, axis_has_link;
   logic                relay_load, relay_end, migrate_send_end, send_end;
   logic [LinkBits-1:0] relay_beat, migrate_beat, send_data;
-  for (genvar f = 0; f < 6; f++) begin : gen_tx
+  for (genvar f = 0; f < Faces; f++) begin : gen_tx
     cuboct_link_tx #(.LinkBits(LinkBits)) u_tx (
       .clk_i, .rst_ni, .has_link_i(has_link_i[f]), .load_i(load_link[f]), .end_i(send_end), .data_i(send_data),
       .can_load_o(can_load[f]), .valid_o(link_valid_o[f]), .end_o(link_end_o[f]),
       .data_o(link_data_o[f*LinkBits +: LinkBits]), .ready_i(link_ready_i[f])
     );
   end
+  // What belongs to the axis of the present phase.
+  logic [1:0]                axis_halo_end, axis_empty, axis_ended;
+  logic                      axis_leaving;
+  logic [2*ParticleBits-1:0] axis_arrived;
+  integer                    b;
   always_comb begin
-    axis_can_load = can_load[1:0];
-    axis_has_link = has_link_i[1:0];
-    unique case (axis)
-      2'd1: begin
-        axis_can_load = can_load[3:2];
-        axis_has_link = has_link_i[3:2];
+    axis_can_load = 2'b00;
+    axis_has_link = 2'b00;
+    axis_halo_end = 2'b00;
+    axis_empty    = 2'b00;
+    axis_ended    = 2'b00;
+    axis_leaving  = 1'b0;
+    axis_arrived  = '0;
+    for (b = 0; b < Axes; b = b + 1) begin
+      if (axis_onehot[b]) begin
+        axis_can_load = can_load[2*b +: 2];
+        axis_has_link = has_link_i[2*b +: 2];
+        axis_halo_end = halo_end[2*b +: 2];
+        axis_empty    = migrate_empty[2*b +: 2];
+        axis_ended    = migrate_end[2*b +: 2];
+        axis_leaving  = leaving_q[b];
+        axis_arrived  = arrived[2*b*ParticleBits +: 2*ParticleBits];
       end
-      2'd2: begin
-        axis_can_load = can_load[5:4];
-        axis_has_link = has_link_i[5:4];
-      end
-      default: begin
-        axis_can_load = can_load[1:0];
-        axis_has_link = has_link_i[1:0];
-      end
-    endcase
+    end
   end
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
   assign send_end  = in_migrate ? migrate_send_end : relay_end;
   assign send_data = in_migrate ? migrate_beat : relay_beat;
-  assign load_link = {(axis == 2'd2) ? axis_load : 2'b00, (axis == 2'd1) ? axis_load : 2'b00,
-                      (axis == 2'd0) ? axis_load : 2'b00};
+  for (genvar a = 0; a < Axes; a++) begin : gen_axis_link
+    localparam int Axis = a;
+    assign axis_onehot[a]      = (axis == Axis[1:0]);
+    assign load_link[2*a +: 2] = axis_load & {2{axis_onehot[a]}};
+  end
 
   // A particle as a candidate: x, y, z with their sign bits, then what the rule needs of type and v.
   logic [CandidateBits-1:0] own_candidate, relay_own;
   cuboct_candidate #(
-    .PositionFrac(PositionFrac), .VelLsb(VelLsb), .VelBits(HaloVelocity), .TypeLsb(TypeLsb), .TypeBits(HaloType),
-    .OwnBits(OwnBits), .CandidateBits(CandidateBits)
+    .Axes(Axes), .PositionFrac(PositionFrac), .VelLsb(VelLsb), .VelBits(HaloVelocity), .TypeLsb(TypeLsb),
+    .TypeBits(HaloType), .OwnBits(OwnBits), .CandidateBits(CandidateBits)
   ) u_stream_candidate (.own_i(stream_data), .candidate_o(own_candidate));
   cuboct_candidate #(
-    .PositionFrac(PositionFrac), .VelLsb(VelLsb), .VelBits(HaloVelocity), .TypeLsb(TypeLsb), .TypeBits(HaloType),
-    .OwnBits(OwnBits), .CandidateBits(CandidateBits)
+    .Axes(Axes), .PositionFrac(PositionFrac), .VelLsb(VelLsb), .VelBits(HaloVelocity), .TypeLsb(TypeLsb),
+    .TypeBits(HaloType), .OwnBits(OwnBits), .CandidateBits(CandidateBits)
   ) u_relay_candidate (.own_i(main_data), .candidate_o(relay_own));
 
   // Exchange.
@@ -241,17 +258,14 @@ module cuboct_node_core #(
   logic                     relay_first_own, relay_sent;
   logic [CandidateBits-1:0] relay_candidate;
   logic [HaloBits-1:0]      relay_record;
+  integer h;
   always_comb begin
     relay_candidate = relay_own;
-    unique case (relay_segment)
-      3'd1:    relay_candidate = relay_halos[0*CandidateBits +: CandidateBits];
-      3'd2:    relay_candidate = relay_halos[1*CandidateBits +: CandidateBits];
-      3'd3:    relay_candidate = relay_halos[2*CandidateBits +: CandidateBits];
-      3'd4:    relay_candidate = relay_halos[3*CandidateBits +: CandidateBits];
-      default: relay_candidate = relay_own;
-    endcase
+    for (h = 0; h < Faces - 2; h = h + 1) begin
+      if (relay_segment == h[2:0] + 3'd1) relay_candidate = relay_halos[h*CandidateBits +: CandidateBits];
+    end
   end
-  // On the link z has no sign: what is sent lies in this node's layer.
+  // On the link the last axis has no sign: what is sent lies in this node's layer.
   if (CandidateBits > CandPos) begin : gen_record
     assign relay_record = {relay_candidate[CandidateBits-1:CandPos], relay_candidate[CandPos-3:0]};
   end else begin : gen_bare_record
@@ -260,15 +274,14 @@ module cuboct_node_core #(
   logic unused_relay_sign;
   assign unused_relay_sign = ^relay_candidate[CandPos-1:CandPos-2];
   cuboct_relay #(
-    .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
+    .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .AddrBits(AddrBits),
+    .CountBits(CountBits)
   ) u_relay (
     .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
-    .counts_i({halo_count[4*CountBits-1:0], own_count_q}), .segment_o(relay_segment), .addr_o(relay_addr),
+    .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_q}), .segment_o(relay_segment), .addr_o(relay_addr),
     .slot_o(relay_slot), .record_i(relay_record), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load),
     .end_o(relay_end), .data_o(relay_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
   );
-  logic [1:0] axis_halo_end;
-  assign axis_halo_end = (axis == 2'd2) ? halo_end[5:4] : (axis == 2'd1) ? halo_end[3:2] : halo_end[1:0];
   assign exchange_done = in_exchange && relay_sent && (axis_halo_end == 2'b11);
 
   // Force engine.
@@ -276,13 +289,13 @@ module cuboct_node_core #(
   logic [ForcePipes-1:0]        issue, pipe_busy, kick_valid, pipe_fault, pipe_fault_strength;
   logic [ForcePipes*64-1:0]     pipe_fault_number;
   logic                         finder_done;
-  logic [ForcePipes*3*PipeSumBits-1:0] sums;
-  logic [3*PipeSumBits-1:0]     total;
+  logic [ForcePipes*Axes*PipeSumBits-1:0] sums;
+  logic [Axes*PipeSumBits-1:0]  total;
   logic [SlotBits-1:0]          tick_slot;
   logic                         take;
   cuboct_pair_finder #(
-    .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo),
-    .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .ForcePipes(ForcePipes),
+    .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne),
+    .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .ForcePipes(ForcePipes),
     .QueueDepth(QueueDepth), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_finder (
     .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .available_i({past_exchange, 1'b1}),
@@ -293,7 +306,7 @@ module cuboct_node_core #(
   assign force_done = engine_runs && finder_done && (pipe_busy == '0);
 
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
-    logic [3*KickBits-1:0]    kick;
+    logic [Axes*KickBits-1:0] kick;
     logic [OwnBits-1:0]       own;
     logic [SomeType-1:0]      own_type, other_type;
     logic [VelBits-1:0]       other_v;
@@ -311,8 +324,8 @@ module cuboct_node_core #(
       assign other_v = '0;
     end
     cuboct_pipe #(
-      .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .Cutoff2(Cutoff2), .EntryBits(StrengthBits),
-      .IndexBits(IndexBits), .Octaves(Octaves), .Degree(Degree), .BinBits(BinBits), .FirstOctave(FirstOctave),
+      .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .Cutoff2(Cutoff2),
+      .EntryBits(StrengthBits), .IndexBits(IndexBits), .Octaves(Octaves), .Degree(Degree), .BinBits(BinBits), .FirstOctave(FirstOctave),
       .FractionBits(FractionBits), .ForceBits(ForceBits), .Damped(Damped), .VelocityBits(VelocityBits),
       .RelativeVelocityBits(RelativeVelocityBits), .WShift(WShift), .QShift(QShift), .DampShift(DampShift),
       .DampIndexBits(DampIndexBits), .DampOctaves(DampOctaves), .DampDegree(DampDegree), .DampBinBits(DampBinBits),
@@ -327,22 +340,24 @@ module cuboct_node_core #(
       .fault_o(pipe_fault[f]), .fault_strength_o(pipe_fault_strength[f]),
       .fault_number_o(pipe_fault_number[f*64 +: 64]), .busy_o(pipe_busy[f])
     );
-    cuboct_sums #(.KickBits(KickBits), .SumBits(PipeSumBits), .Capacity(Capacity), .SlotBits(SlotBits)) u_sums (
+    cuboct_sums #(
+      .Axes(Axes), .KickBits(KickBits), .SumBits(PipeSumBits), .Capacity(Capacity), .SlotBits(SlotBits)
+    ) u_sums (
       .clk_i, .rst_ni, .kick_valid_i(kick_valid[f]), .kick_slot_i(kick_slot[f*SlotBits +: SlotBits]),
-      .kick_i(kick), .take_i(take), .take_slot_i(tick_slot), .sum_o(sums[f*3*PipeSumBits +: 3*PipeSumBits])
+      .kick_i(kick), .take_i(take), .take_slot_i(tick_slot), .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
     );
     logic unused_own;
     assign unused_own = ^own;
   end
   // One after the other: of pipe f and those before it.
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_total
-    logic [3*PipeSumBits-1:0] so_far;
-    for (genvar a = 0; a < 3; a++) begin : gen_axis
+    logic [Axes*PipeSumBits-1:0] so_far;
+    for (genvar a = 0; a < Axes; a++) begin : gen_axis
       if (f == 0) begin : gen_first
         assign so_far[a*PipeSumBits +: PipeSumBits] = sums[a*PipeSumBits +: PipeSumBits];
       end else begin : gen_more
         assign so_far[a*PipeSumBits +: PipeSumBits] = gen_total[f-1].so_far[a*PipeSumBits +: PipeSumBits]
-                                                    + sums[(3*f+a)*PipeSumBits +: PipeSumBits];
+                                                    + sums[(Axes*f+a)*PipeSumBits +: PipeSumBits];
       end
     end
   end
@@ -371,7 +386,7 @@ module cuboct_node_core #(
   end
 
   logic [PosBits-1:0]  new_x;
-  logic [5:0]          new_away;
+  logic [2*Axes-1:0]   new_away;
   logic [VelBits-1:0]  new_v;
   logic [SomeType-1:0] old_type, new_type;
   logic [IdBits-1:0]   new_id;
@@ -380,7 +395,7 @@ module cuboct_node_core #(
   logic [3:0]          update_fault_code;
   logic [63:0]         update_fault_number;
   cuboct_update #(
-    .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
+    .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
     .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .DisplacementBits(DisplacementBits), .GainBits(GainBits),
     .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(SlotBits), .IdBits(IdBits)
   ) u_update (
@@ -391,7 +406,7 @@ module cuboct_node_core #(
     .fault_code_o(update_fault_code), .fault_number_o(update_fault_number)
   );
   assign update_data[PosBits-1:0]         = new_x;
-  assign update_data[PosBits +: 4]        = new_away[5:2];
+  assign update_data[PosBits +: AwayBits] = new_away[2*Axes-1:2];
   assign update_data[VelLsb +: VelBits]   = new_v;
   assign update_data[IdLsb +: IdBits]     = new_id;
   assign update_data[ParticleBits +: 2]   = new_away[1:0];
@@ -412,48 +427,19 @@ module cuboct_node_core #(
     assign old_u        = '0;
   end
 
-  // Migration. leaving[a]: some own particle has to go along axis a.
-  logic [2:0]              leaving_d, leaving_q, leaving_more, axis_onehot;
+  // Migration.
   logic [SlotBits-1:0]     migrate_read_slot;
-  logic                    fault_left, fault_full, axis_leaving;
-  logic [1:0]              axis_empty, axis_ended, axis_pop;
-  logic [2*ParticleBits-1:0] axis_arrived;
+  logic                    fault_left, fault_full;
+  logic [1:0]              axis_pop;
   logic [ParticleBits-1:0] fault_particle;
-  assign axis_onehot = {axis == 2'd2, axis == 2'd1, axis == 2'd0};
-  always_comb begin
-    axis_empty   = migrate_empty[1:0];
-    axis_ended   = migrate_end[1:0];
-    axis_leaving = leaving_q[0];
-    axis_arrived = arrived[0 +: 2*ParticleBits];
-    unique case (axis)
-      2'd1: begin
-        axis_empty   = migrate_empty[3:2];
-        axis_ended   = migrate_end[3:2];
-        axis_leaving = leaving_q[1];
-        axis_arrived = arrived[2*ParticleBits +: 2*ParticleBits];
-      end
-      2'd2: begin
-        axis_empty   = migrate_empty[5:4];
-        axis_ended   = migrate_end[5:4];
-        axis_leaving = leaving_q[2];
-        axis_arrived = arrived[4*ParticleBits +: 2*ParticleBits];
-      end
-      default: begin
-        axis_empty   = migrate_empty[1:0];
-        axis_ended   = migrate_end[1:0];
-        axis_leaving = leaving_q[0];
-        axis_arrived = arrived[0 +: 2*ParticleBits];
-      end
-    endcase
+  for (genvar a = 0; a < Axes; a++) begin : gen_axis_migrate
+    assign away_axes[a]            = (new_away[2*a +: 2] != 2'b00);
+    assign migrate_pop[2*a +: 2]   = axis_pop & {2{axis_onehot[a]}};
+    assign migrate_clear[2*a +: 2] = {2{axis_onehot[a] && migrate_done}};
   end
-  assign migrate_pop   = {axis_pop & {2{axis_onehot[2]}}, axis_pop & {2{axis_onehot[1]}},
-                          axis_pop & {2{axis_onehot[0]}}};
-  assign migrate_clear = {{2{axis_onehot[2]}}, {2{axis_onehot[1]}}, {2{axis_onehot[0]}}} & {6{migrate_done}};
   always_comb begin
     leaving_d = leaving_q | leaving_more;
-    if (update_write) begin
-      leaving_d = leaving_q | {new_away[5:4] != 2'b00, new_away[3:2] != 2'b00, new_away[1:0] != 2'b00};
-    end
+    if (update_write) leaving_d = leaving_q | away_axes;
     if (migrate_done) leaving_d = leaving_q & ~axis_onehot;
   end
   always_ff @(posedge clk_i) begin
@@ -461,7 +447,7 @@ module cuboct_node_core #(
     else leaving_q <= leaving_d;
   end
   cuboct_migrate #(
-    .ParticleBits(ParticleBits), .PositionBits(PosBits), .LinkBits(LinkBits), .Capacity(Capacity),
+    .Axes(Axes), .ParticleBits(ParticleBits), .PositionBits(PosBits), .LinkBits(LinkBits), .Capacity(Capacity),
     .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_migrate (
     .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .has_link_i(axis_has_link),

@@ -2,6 +2,7 @@
 // From candidates to pairs: streamer, filter lanes, queue, issue. Every own particle meets every candidate that the
 // planar test lets pass, once.
 module cuboct_pair_finder #(
+  parameter int          Axes            = 3,   // 2 or 3
   parameter int          PositionFrac    = 20,
   parameter int          DifferenceShift = 4,
   parameter logic [63:0] PlanarOne       = 64'd0,
@@ -20,16 +21,16 @@ module cuboct_pair_finder #(
   input  logic                                  rst_ni,
   input  logic                                  run_i,
   input  logic                                  restart_i,
-  input  logic [3:0]                            available_i,
-  input  logic [7*CountBits-1:0]                counts_i,
+  input  logic [Axes:0]                         available_i,
+  input  logic [(2*Axes+1)*CountBits-1:0]       counts_i,
   // Where the candidate is read: own slot, and record of the faces' halos; same cycle.
   output logic [SlotBits-1:0]                   slot_o,
   output logic [AddrBits-1:0]                   addr_o,
   input  logic [CandidateBits-1:0]              own_i,
-  input  logic [6*CandidateBits-1:0]            halos_i,
+  input  logic [2*Axes*CandidateBits-1:0]       halos_i,
   // A row of own positions.
   output logic [RowBits-1:0]                    row_o,
-  input  logic [FilterLanes*3*PositionFrac-1:0] row_data_i,
+  input  logic [FilterLanes*Axes*PositionFrac-1:0] row_data_i,
   // Pairs.
   output logic [CandidateBits-1:0]              candidate_o,
   output logic [ForcePipes-1:0]                 issue_o,
@@ -44,28 +45,24 @@ module cuboct_pair_finder #(
   logic                     push, pop, full, empty;
 
   cuboct_streamer #(
-    .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
+    .Axes(Axes), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits),
+    .CountBits(CountBits)
   ) u_streamer (
     .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .available_i, .counts_i,
     .segment_o(segment), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
   );
 
+  integer f;
   always_comb begin
     candidate = own_i;
-    unique case (segment)
-      3'd1:    candidate = halos_i[0*CandidateBits +: CandidateBits];
-      3'd2:    candidate = halos_i[1*CandidateBits +: CandidateBits];
-      3'd3:    candidate = halos_i[2*CandidateBits +: CandidateBits];
-      3'd4:    candidate = halos_i[3*CandidateBits +: CandidateBits];
-      3'd5:    candidate = halos_i[4*CandidateBits +: CandidateBits];
-      3'd6:    candidate = halos_i[5*CandidateBits +: CandidateBits];
-      default: candidate = own_i;
-    endcase
+    for (f = 0; f < 2 * Axes; f = f + 1) begin
+      if (segment == f[2:0] + 3'd1) candidate = halos_i[f*CandidateBits +: CandidateBits];
+    end
   end
 
   cuboct_filter #(
-    .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo),
-    .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .RowBits(RowBits),
+    .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne),
+    .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .RowBits(RowBits),
     .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_filter (
     .clk_i, .rst_ni, .present_i(present), .candidate_i(candidate), .row_i(row), .own_i(segment == 3'd0),

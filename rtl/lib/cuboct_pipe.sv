@@ -7,6 +7,7 @@
 // The kick of a pair accepted in cycle t is at the outputs in cycle t + Stages, Stages = 10 (+1 octaves, +2 degree 2,
 // +2 damped, +2 scaled). Operands are those of a pair that passed the planar test: |d_a| < 2^D.
 module cuboct_pipe #(
+  parameter int          Axes                 = 3,      // 2 or 3
   parameter int          PositionFrac         = 20,     // P
   parameter int          DifferenceShift      = 4,      // P - D
   parameter logic [63:0] Cutoff2              = 64'd0,  // 2D fractional bits, <= 2^(2D)
@@ -44,15 +45,15 @@ module cuboct_pipe #(
   input  logic                            rst_ni,
   input  logic                            valid_i,
   input  logic [SlotBits-1:0]             slot_i,       // the own particle
-  input  logic [3*PositionFrac-1:0]       own_x_i,      // unsigned
-  input  logic [3*VelocityBits-1:0]       own_v_i,
+  input  logic [Axes*PositionFrac-1:0]    own_x_i,      // unsigned
+  input  logic [Axes*VelocityBits-1:0]    own_v_i,
   input  logic [TypeBits-1:0]             own_type_i,
-  input  logic [3*(PositionFrac+2)-1:0]   other_x_i,    // signed, in the own frame
-  input  logic [3*VelocityBits-1:0]       other_v_i,
+  input  logic [Axes*(PositionFrac+2)-1:0] other_x_i,    // signed, in the own frame
+  input  logic [Axes*VelocityBits-1:0]    other_v_i,
   input  logic [TypeBits-1:0]             other_type_i,
   output logic                            valid_o,      // a pair inside the cutoff
   output logic [SlotBits-1:0]             slot_o,
-  output logic [3*KickBits-1:0]           kick_o,       // signed, P+G fractional bits
+  output logic [Axes*KickBits-1:0]        kick_o,       // signed, P+G fractional bits
   output logic                            fault_o,      // that pair does not fit:
   output logic                            fault_strength_o,  // s, else w
   output logic signed [63:0]              fault_number_o,
@@ -60,7 +61,7 @@ module cuboct_pipe #(
 );
   localparam int D            = PositionFrac - DifferenceShift;
   localparam int DBits        = D + 1;
-  localparam int R2Bits       = 2 * D + 2;  // three squares of at most 2^(2D)
+  localparam int R2Bits       = 2 * D + Axes - 1;  // so many squares of at most 2^(2D)
   localparam int OctaveStage  = ((Octaves != 0) || (DampOctaves != 0 && Damped != 0)) ? 1 : 0;
   localparam int SquareStages = (Degree == 2 || (DampDegree == 2 && Damped != 0)) ? 1 : 0;
   localparam int DampStages   = (Damped != 0) ? 2 : 0;
@@ -91,11 +92,11 @@ module cuboct_pipe #(
   cuboct_delay #(.Bits(SlotBits), .Depth(Stages)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_o));
 
   // Stages 1 ... 4: operands, d, its squares, r2.
-  logic [3*DBits-1:0] d_q;         // stage 2
-  logic [3*DBits-1:0] d_s;         // stage StageS
-  logic [R2Bits-1:0]  square [0:2];
-  logic [R2Bits-1:0]  r2_d, r2_q;  // stage 4
-  for (genvar a = 0; a < 3; a++) begin : gen_d
+  logic [Axes*DBits-1:0] d_q;         // stage 2
+  logic [Axes*DBits-1:0] d_s;         // stage StageS
+  logic [R2Bits-1:0]     square [0:Axes-1];
+  logic [R2Bits-1:0]     r2_d, r2_q;  // stage 4
+  for (genvar a = 0; a < Axes; a++) begin : gen_d
     logic [PositionFrac-1:0]        own_q;
     logic [PositionFrac+1:0]        other_q;
     logic signed [PositionFrac+2:0] difference;
@@ -120,12 +121,16 @@ module cuboct_pipe #(
     logic unused_high;
     assign unused_high = ^product;
   end
-  assign r2_d = square[0] + square[1] + square[2];
+  if (Axes == 3) begin : gen_space
+    assign r2_d = square[0] + square[1] + square[2];
+  end else begin : gen_plane
+    assign r2_d = square[0] + square[1];
+  end
   always_ff @(posedge clk_i) begin
     if (valid_q[3]) r2_q <= r2_d;
   end
   assign near = (r2_q < Cutoff2[R2Bits-1:0]);
-  cuboct_delay #(.Bits(3 * DBits), .Depth(StageS - 2)) u_d (.clk_i, .d_i(d_q), .q_o(d_s));
+  cuboct_delay #(.Bits(Axes * DBits), .Depth(StageS - 2)) u_d (.clk_i, .d_i(d_q), .q_o(d_s));
 
   // Stages 5 ... StageValue: the force table.
   logic [IndexBits-1:0]        index;
@@ -150,12 +155,12 @@ module cuboct_pipe #(
     localparam int ProductBits = DampBits + RelativeVelocityBits;
     localparam int DampedBits  = ((ProductBits > ForceBits) ? ProductBits : ForceBits) + 2;
 
-    logic [2:0]                             misfit;
-    logic [3*WFullBits-1:0]                 w_full;
-    logic [3*(WdBits+2)-1:0]                wd;
+    logic [Axes-1:0]                        misfit;
+    logic [Axes*WFullBits-1:0]              w_full;
+    logic [Axes*(WdBits+2)-1:0]             wd;
     logic signed [WdBits+1:0]               wd_d, wd_q;    // stage 4
     logic signed [RelativeVelocityBits-1:0] q_d, q_q, q;   // stage 5, stage StageValue
-    for (genvar a = 0; a < 3; a++) begin : gen_w
+    for (genvar a = 0; a < Axes; a++) begin : gen_w
       logic [VelocityBits-1:0]                own_q, other_q;
       logic signed [VelocityBits:0]           difference;
       logic signed [WFullBits-1:0]            w_d, w_q;     // stage 2
@@ -182,7 +187,11 @@ module cuboct_pipe #(
       );
       assign wd[a*(WdBits+2) +: WdBits+2] = {{2{product[WdBits-1]}}, product};
     end
-    assign wd_d = wd[0 +: WdBits+2] + wd[WdBits+2 +: WdBits+2] + wd[2*(WdBits+2) +: WdBits+2];
+    if (Axes == 3) begin : gen_space_wd
+      assign wd_d = wd[0 +: WdBits+2] + wd[WdBits+2 +: WdBits+2] + wd[2*(WdBits+2) +: WdBits+2];
+    end else begin : gen_plane_wd
+      assign wd_d = wd[0 +: WdBits+2] + wd[WdBits+2 +: WdBits+2];
+    end
     // Inside the cutoff |w.d| <= |w| |d| < sqrt(3) 2^(bits-1) 2^D, so q fits its width.
     cuboct_round_odd #(.InBits(WdBits + 2), .Shift(QShift), .OutBits(RelativeVelocityBits)) u_q (
       .a_i(wd_q), .y_o(q_d)
@@ -195,10 +204,15 @@ module cuboct_pipe #(
 
     // A w that does not fit: known at stage 2, told with the kick. The first axis gives the number.
     logic signed [WFullBits-1:0] w_first, w_late;
-    assign w_first = misfit[0] ? w_full[0 +: WFullBits]
-                   : misfit[1] ? w_full[WFullBits +: WFullBits] : w_full[2*WFullBits +: WFullBits];
+    integer first;
+    always_comb begin
+      w_first = w_full[(Axes-1)*WFullBits +: WFullBits];
+      for (first = Axes - 2; first >= 0; first = first - 1) begin
+        if (misfit[first]) w_first = w_full[first*WFullBits +: WFullBits];
+      end
+    end
     cuboct_delay #(.Bits(WFullBits + 1), .Depth(Stages - 2)) u_w_late (
-      .clk_i, .d_i({misfit != 3'b000, w_first}), .q_o({w_fault, w_late})
+      .clk_i, .d_i({misfit != '0, w_first}), .q_o({w_fault, w_late})
     );
     cuboct_resize #(.InBits(WFullBits), .OutBits(64)) u_w_number (.a_i(w_late), .y_o(w_number));
 
@@ -284,7 +298,7 @@ module cuboct_pipe #(
   end
 
   // Last two stages: times d, rounded once, with the sign of the reaction.
-  for (genvar a = 0; a < 3; a++) begin : gen_kick
+  for (genvar a = 0; a < Axes; a++) begin : gen_kick
     logic signed [SBits+DBits-1:0] product;
     logic signed [KickBits-1:0]    push, kick_d, kick_q;
     cuboct_mult #(.ABits(SBits), .BBits(DBits)) u_mult (

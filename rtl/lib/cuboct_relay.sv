@@ -2,6 +2,7 @@
 // The sender of the exchange phases: own records, then the halos that the axes before this one brought, to both links
 // of the axis in lock step. One thing per cycle: an empty segment is left, or a beat is loaded, or it waits.
 module cuboct_relay #(
+  parameter int Axes      = 3,   // 2 or 3
   parameter int LinkBits  = 32,  // payload of a beat
   parameter int HaloBits  = 32,  // bits of a record
   parameter int SlotBits  = 4,   // of an own slot's number
@@ -11,10 +12,10 @@ module cuboct_relay #(
   input  logic                   clk_i,
   input  logic                   rst_ni,
   input  logic                   active_i,    // the machine is in an exchange phase
-  input  logic [1:0]             axis_i,      // 0, 1, 2
+  input  logic [1:0]             axis_i,      // below Axes
   input  logic                   done_i,      // last cycle of the phase
-  // Segments: 0 own, 1 ... 4 the halos of -x, +x, -y, +y; their counts, and where to read.
-  input  logic [5*CountBits-1:0] counts_i,
+  // Segments: 0 own, then the halos of -x, +x and, with three axes, -y, +y; their counts, and where to read.
+  input  logic [(2*Axes-1)*CountBits-1:0] counts_i,
   output logic [2:0]             segment_o,
   output logic [AddrBits-1:0]    addr_o,
   output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles
@@ -38,23 +39,13 @@ module cuboct_relay #(
   logic [CountBits-1:0] count;
   logic                 past, empty, working, last_record;
 
-  always_comb begin
-    segments = 3'd1;
-    unique case (axis_i)
-      2'd1:    segments = 3'd3;
-      2'd2:    segments = 3'd5;
-      default: segments = 3'd1;
-    endcase
-  end
+  assign segments = {axis_i, 1'b1};  // one more than two per axis before this one
+  integer s;
   always_comb begin
     count = counts_i[0 +: CountBits];
-    unique case (segment_q)
-      3'd1:    count = counts_i[1*CountBits +: CountBits];
-      3'd2:    count = counts_i[2*CountBits +: CountBits];
-      3'd3:    count = counts_i[3*CountBits +: CountBits];
-      3'd4:    count = counts_i[4*CountBits +: CountBits];
-      default: count = counts_i[0 +: CountBits];
-    endcase
+    for (s = 1; s < 2 * Axes - 1; s = s + 1) begin
+      if (segment_q == s[2:0]) count = counts_i[s*CountBits +: CountBits];
+    end
   end
 
   assign working     = active_i && !sent_q;

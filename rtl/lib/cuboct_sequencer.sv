@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The main state machine: steps, phases and their events. A phase's unit says when its last cycle is.
 module cuboct_sequencer #(
+  parameter int Axes    = 3,  // 2 or 3; with 2 the machine has neither EXCHANGE_Z nor MIGRATE_Z
   parameter int Overlap = 1  // 1: the force engine starts with the exchange, 0: with FORCE
 ) (
   input  logic        clk_i,
@@ -21,8 +22,8 @@ module cuboct_sequencer #(
   output logic        dump_o,
   output logic [1:0]  axis_o,           // of exchange or migration
   output logic        engine_o,         // the force engine runs
-  output logic [2:0]  past_exchange_o,  // EXCHANGE_X, _Y, _Z of this step is over; only while the engine runs
-  output logic        step_end_o,       // last cycle of MIGRATE_Z
+  output logic [Axes-1:0] past_exchange_o,  // EXCHANGE_X, _Y, _Z of this step is over; only while the engine runs
+  output logic        step_end_o,       // last cycle of the last migration phase
   output logic [7:0]  phase_start_o,
   output logic [7:0]  phase_end_o
 );
@@ -39,19 +40,13 @@ module cuboct_sequencer #(
     steps_d = steps_q;
     unique case (state_q)
       ExchangeX: if (exchange_done_i) state_d = ExchangeY;
-      ExchangeY: if (exchange_done_i) state_d = ExchangeZ;
+      ExchangeY: if (exchange_done_i) state_d = (Axes == 3) ? ExchangeZ : Force;
       ExchangeZ: if (exchange_done_i) state_d = Force;
       Force:     if (force_done_i) state_d = Update;
       Update:    if (update_done_i) state_d = MigrateX;
       MigrateX:  if (migrate_done_i) state_d = MigrateY;
       MigrateY:  if (migrate_done_i) state_d = MigrateZ;
-      MigrateZ: begin
-        if (migrate_done_i) begin
-          steps_d = steps_q - 32'd1;
-          state_d = ExchangeX;
-          if (steps_q == 32'd1) state_d = Dump;
-        end
-      end
+      MigrateZ:  state_d = MigrateZ;
       Dump:      if (dump_done_i) state_d = Idle;
       default: begin
         if (start_i) begin
@@ -61,6 +56,11 @@ module cuboct_sequencer #(
         end
       end
     endcase
+    if (step_end_o) begin
+      steps_d = steps_q - 32'd1;
+      state_d = ExchangeX;
+      if (steps_q == 32'd1) state_d = Dump;
+    end
   end
   assign first_d = (state_d != state_q);
 
@@ -86,9 +86,12 @@ module cuboct_sequencer #(
   assign migrate_o       = (state_q == MigrateX) || (state_q == MigrateY) || (state_q == MigrateZ);
   assign dump_o          = (state_q == Dump);
   assign engine_o        = in_force || ((Overlap != 0) && exchange_o);
-  assign past_exchange_o = {in_force, in_force || (state_q == ExchangeZ), in_force || (state_q == ExchangeZ)
-                            || (state_q == ExchangeY)};
-  assign step_end_o      = (state_q == MigrateZ) && migrate_done_i;
+  assign past_exchange_o[0]      = in_force || (state_q == ExchangeZ) || (state_q == ExchangeY);
+  assign past_exchange_o[Axes-1] = in_force;
+  if (Axes == 3) begin : gen_middle
+    assign past_exchange_o[1] = in_force || (state_q == ExchangeZ);
+  end
+  assign step_end_o = (state_q == ((Axes == 3) ? MigrateZ : MigrateY)) && migrate_done_i;
   always_comb begin
     axis_o = 2'd0;
     unique case (state_q)
@@ -102,7 +105,7 @@ module cuboct_sequencer #(
                           first_q && (state_q == MigrateX), first_q && update_o, engine_first,
                           first_q && (state_q == ExchangeZ), first_q && (state_q == ExchangeY),
                           first_q && (state_q == ExchangeX)};
-  assign phase_end_o   = {step_end_o, (state_q == MigrateY) && migrate_done_i,
+  assign phase_end_o   = {(state_q == MigrateZ) && migrate_done_i, (state_q == MigrateY) && migrate_done_i,
                           (state_q == MigrateX) && migrate_done_i, update_o && update_done_i,
                           in_force && force_done_i, (state_q == ExchangeZ) && exchange_done_i,
                           (state_q == ExchangeY) && exchange_done_i, (state_q == ExchangeX) && exchange_done_i};

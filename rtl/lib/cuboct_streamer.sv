@@ -2,6 +2,7 @@
 // Walks the candidates of a step: own particles, then the halos of -x, +x, -y, +y, -z, +z; every record once for each
 // row of own slots. One (record, row) per cycle, or one empty segment left.
 module cuboct_streamer #(
+  parameter int Axes        = 3,  // 2 or 3
   parameter int FilterLanes = 8,  // own slots per row
   parameter int RowBits     = 1,  // of a row's number
   parameter int SlotBits    = 4,  // of an own slot's number
@@ -13,8 +14,8 @@ module cuboct_streamer #(
   input  logic                   run_i,        // the force engine's phase
   input  logic                   restart_i,    // its last cycle
   input  logic                   stall_i,
-  input  logic [3:0]             available_i,  // own; x, y, z halos complete
-  input  logic [7*CountBits-1:0] counts_i,     // by segment
+  input  logic [Axes:0]          available_i,  // own; x, y, z halos complete
+  input  logic [(2*Axes+1)*CountBits-1:0] counts_i,     // by segment
   output logic [2:0]             segment_o,
   output logic [AddrBits-1:0]    addr_o,
   output logic [SlotBits-1:0]    slot_o,       // addr_o, for the own particles
@@ -22,6 +23,7 @@ module cuboct_streamer #(
   output logic                   present_o,    // (segment, addr, row) goes to the filter
   output logic                   past_o        // all segments are done
 );
+  localparam int Segments = 2 * Axes + 1;
   localparam int RowSlots = CountBits + $clog2(FilterLanes + 1);  // bits of a slot number beyond the last row
 
   logic [2:0]           segment_d, segment_q;
@@ -31,27 +33,16 @@ module cuboct_streamer #(
   logic [CountBits-1:0] count, own;
   logic                 available, skip, go, last_row, last_record;
 
+  integer s;
   always_comb begin
-    count = counts_i[0 +: CountBits];
-    unique case (segment_q)
-      3'd1:    count = counts_i[1*CountBits +: CountBits];
-      3'd2:    count = counts_i[2*CountBits +: CountBits];
-      3'd3:    count = counts_i[3*CountBits +: CountBits];
-      3'd4:    count = counts_i[4*CountBits +: CountBits];
-      3'd5:    count = counts_i[5*CountBits +: CountBits];
-      3'd6:    count = counts_i[6*CountBits +: CountBits];
-      default: count = counts_i[0 +: CountBits];
-    endcase
-  end
-  always_comb begin
-    available = 1'b0;
-    unique case (segment_q)
-      3'd0:       available = available_i[0];
-      3'd1, 3'd2: available = available_i[1];
-      3'd3, 3'd4: available = available_i[2];
-      3'd5, 3'd6: available = available_i[3];
-      default:    available = 1'b0;
-    endcase
+    count     = counts_i[0 +: CountBits];
+    available = (segment_q == 3'd0) && available_i[0];
+    for (s = 1; s < Segments; s = s + 1) begin
+      if (segment_q == s[2:0]) begin
+        count     = counts_i[s*CountBits +: CountBits];
+        available = available_i[(s+1)/2];
+      end
+    end
   end
 
   assign own         = counts_i[0 +: CountBits];
@@ -100,5 +91,5 @@ module cuboct_streamer #(
   assign addr_o    = record_q;
   assign slot_o    = record_q[SlotBits-1:0];
   assign row_o     = row_q;
-  assign past_o    = (segment_q == 3'd7);
+  assign past_o    = (segment_q == Segments[2:0]);
 endmodule

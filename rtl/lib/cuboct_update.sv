@@ -8,6 +8,7 @@
 // A particle accepted in cycle t is at the outputs in cycle t + Latency - 1, Latency = 3, or 6 with Pd: it is written
 // back at the edge of that cycle.
 module cuboct_update #(
+  parameter int Axes             = 3,   // 2 or 3
   parameter int PositionFrac     = 20,
   parameter int Guard            = 8,
   parameter int VelocityBits     = 29,
@@ -26,20 +27,20 @@ module cuboct_update #(
   input  logic                          rst_ni,
   input  logic                          valid_i,
   input  logic [SlotBits-1:0]           slot_i,
-  input  logic [3*TotalBits-1:0]        sum_i,
-  input  logic [3*PositionFrac-1:0]     x_i,
-  input  logic [3*VelocityBits-1:0]     v_i,
+  input  logic [Axes*TotalBits-1:0]     sum_i,
+  input  logic [Axes*PositionFrac-1:0]  x_i,
+  input  logic [Axes*VelocityBits-1:0]  v_i,
   input  logic [TypeBits-1:0]           type_i,
   input  logic [IdBits-1:0]             id_i,
-  input  logic [3*DisplacementBits-1:0] u_i,           // Pd only
+  input  logic [Axes*DisplacementBits-1:0] u_i,        // Pd only
   output logic                          valid_o,
   output logic [SlotBits-1:0]           slot_o,
-  output logic [3*PositionFrac-1:0]     x_o,
-  output logic [5:0]                    away_o,        // per axis 2 bits, -1, 0, +1: the node that x is in
-  output logic [3*VelocityBits-1:0]     v_o,
+  output logic [Axes*PositionFrac-1:0]  x_o,
+  output logic [2*Axes-1:0]             away_o,        // per axis 2 bits, -1, 0, +1: the node that x is in
+  output logic [Axes*VelocityBits-1:0]  v_o,
   output logic [TypeBits-1:0]           type_o,
   output logic [IdBits-1:0]             id_o,
-  output logic [3*DisplacementBits-1:0] u_o,
+  output logic [Axes*DisplacementBits-1:0] u_o,
   output logic                          fault_o,
   output logic [3:0]                    fault_code_o,  // 3 sum, 4 displacement, 5 velocity
   output logic signed [63:0]            fault_number_o
@@ -60,16 +61,16 @@ module cuboct_update #(
   end
   assign valid_o = valid_q[VStage];
 
-  logic [3*PositionFrac-1:0] x_last;
+  logic [Axes*PositionFrac-1:0] x_last;
   logic [TypeBits-1:0]       type_1;
   cuboct_delay #(.Bits(SlotBits), .Depth(VStage)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_o));
   cuboct_delay #(.Bits(IdBits), .Depth(VStage)) u_id (.clk_i, .d_i(id_i), .q_o(id_o));
-  cuboct_delay #(.Bits(3*PositionFrac), .Depth(VStage)) u_x (.clk_i, .d_i(x_i), .q_o(x_last));
+  cuboct_delay #(.Bits(Axes*PositionFrac), .Depth(VStage)) u_x (.clk_i, .d_i(x_i), .q_o(x_last));
   cuboct_delay #(.Bits(TypeBits), .Depth(1)) u_type (.clk_i, .d_i(type_i), .q_o(type_1));
   cuboct_delay #(.Bits(TypeBits), .Depth(VStage - 1)) u_type_late (.clk_i, .d_i(type_1), .q_o(type_o));
 
-  logic [2:0]                imposed;     // of type_1
-  logic [3*ConstantBits-1:0] to_go, gravity;
+  logic [Axes-1:0]              imposed;  // of type_1
+  logic [Axes*ConstantBits-1:0] to_go, gravity;
   logic                      held;
   logic [GainBits-1:0]       kp, kd;
   cuboct_type_rom u_type_rom (
@@ -77,10 +78,10 @@ module cuboct_update #(
     .kd_o(kd)
   );
 
-  logic [2:0]         bad_sum, bad_u, bad_v;                       // with the outputs
-  logic [3*64-1:0]    sum_number, u_number, v_number;
+  logic [Axes-1:0]    bad_sum, bad_u, bad_v;                       // with the outputs
+  logic [Axes*64-1:0] sum_number, u_number, v_number;
 
-  for (genvar a = 0; a < 3; a++) begin : gen_axis
+  for (genvar a = 0; a < Axes; a++) begin : gen_axis
     // Check of the sum.
     logic signed [TotalBits-1:0] sum_1, sum_again;
     logic signed [SumBits-1:0]   dv_1;
@@ -218,17 +219,15 @@ module cuboct_update #(
   end
 
   // The least fault; of one kind, that of the first axis.
+  integer b;
   always_comb begin
-    fault_o        = valid_o && ((bad_sum | bad_u | bad_v) != 3'b000);
-    fault_code_o   = 4'd5;
-    fault_number_o = bad_v[0] ? v_number[0*64 +: 64] : bad_v[1] ? v_number[1*64 +: 64] : v_number[2*64 +: 64];
-    if (bad_u != 3'b000) begin
-      fault_code_o   = 4'd4;
-      fault_number_o = bad_u[0] ? u_number[0*64 +: 64] : bad_u[1] ? u_number[1*64 +: 64] : u_number[2*64 +: 64];
-    end
-    if (bad_sum != 3'b000) begin
-      fault_code_o   = 4'd3;
-      fault_number_o = bad_sum[0] ? sum_number[0*64 +: 64] : bad_sum[1] ? sum_number[1*64 +: 64] : sum_number[2*64 +: 64];
+    fault_o        = valid_o && ((bad_sum | bad_u | bad_v) != '0);
+    fault_code_o   = (bad_sum != '0) ? 4'd3 : (bad_u != '0) ? 4'd4 : 4'd5;
+    fault_number_o = '0;
+    for (b = Axes - 1; b >= 0; b = b - 1) begin
+      if (fault_code_o == 4'd3 && bad_sum[b]) fault_number_o = sum_number[b*64 +: 64];
+      if (fault_code_o == 4'd4 && bad_u[b]) fault_number_o = u_number[b*64 +: 64];
+      if (fault_code_o == 4'd5 && bad_v[b]) fault_number_o = v_number[b*64 +: 64];
     end
   end
 endmodule

@@ -3,7 +3,7 @@
 
     python3 scenes/validation/beam.py BUILD OUT [JOBS]
 
-prints the table and writes OUT/beam.dat. Frequencies are over that of Euler and Bernoulli's beam.
+prints the table and writes OUT/beam.dat and, for the picture, OUT/beam_theory.dat. Frequencies are over that of Euler and Bernoulli's beam.
 """
 import os
 import sys
@@ -27,6 +27,11 @@ def theories(count):
     length = (12 * count + 6 * (count - 1)) / ROWS
     return (length, free_beam(length, SECOND_MOMENT, ROWS),
             free_beam(length, SECOND_MOMENT, ROWS, SHEAR, SECOND_MOMENT))
+
+
+def slenderness_of(length):
+    """Over the height of a rectangle of the same area and second moment, sqrt(12 I/A)."""
+    return length / np.sqrt(12 * SECOND_MOMENT / ROWS)
 
 
 def measured(build, out, name, count, speed, **kind):
@@ -64,12 +69,15 @@ def main():
         print("# particles length/height w(Euler) " + " ".join(kinds) + " Timoshenko", file=table)
         for row, count in enumerate(COUNTS):
             length, euler, timoshenko = theories(count)
-            # The height of a section of the same area and second moment: sqrt(12 I/A).
-            slenderness = length / np.sqrt(12 * SECOND_MOMENT / ROWS)
             values = [w / euler for w in results[row * len(kinds) : (row + 1) * len(kinds)]] + [timoshenko / euler]
-            line = f"{count:4d} {slenderness:6.2f} {euler:.6e} " + " ".join(f"{value:.5f}" for value in values)
+            line = f"{count:4d} {slenderness_of(length):6.2f} {euler:.6e} " + " ".join(f"{value:.5f}" for value in values)
             print(line)
             print(line, file=table)
+    with open(f"{out}/beam_theory.dat", "w", encoding="utf-8") as table:
+        print("# length/height Timoshenko", file=table)
+        for count in np.geomspace(11, 145, 60):
+            length, euler, timoshenko = theories(count)
+            print(f"{slenderness_of(length):.3f} {timoshenko / euler:.5f}", file=table)
 
 
 if __name__ == "__main__":

@@ -44,6 +44,7 @@ def main():
     jobs = int(sys.argv[3]) if len(sys.argv) > 3 else os.cpu_count()
     kinds = [
         ("default", lambda dt: ours(build, out, "default", dt, 100, arch="default.toml")),
+        ("guard_16", lambda dt: ours(build, out, "guard", dt, 100, arch="guard.toml")),
         ("wide", lambda dt: ours(build, out, "wide", dt, 100, arch="wide.toml")),
         # A fifth of the time: sums in doubles over cells take their time, and the fluctuation does not.
         ("reference", lambda dt: ours(build, out, "reference", dt, 20, engine="reference", arch="wide.toml")),

@@ -222,7 +222,8 @@ function draw_truth() {
     data: v.map((x, r) => ({value: [by_dt ? rungs[r].dt : String(r + 1), x], rung: r})).filter((d) => d.value[1] !== null && d.value[1] > 0)}));
   const first = rungs.find((r) => r.trajectory !== null && r.trajectory > 0);
   if (by_dt && first && first !== last)
-    options.series.push({name: "dt²", type: "line", symbol: "none", silent: true, color: "#000", lineStyle: {type: "dashed", color: "#000"},
-      data: [[first.dt, first.trajectory], [last.dt, first.trajectory * (last.dt / first.dt) ** 2]]});
+    for (const [name, order, type] of [["dt", 1, "dotted"], ["dt²", 2, "dashed"]])
+      options.series.push({name, type: "line", symbol: "none", silent: true, color: "#000", lineStyle: {type, color: "#000"},
+        data: [[first.dt, first.trajectory], [last.dt, first.trajectory * (last.dt / first.dt) ** order]]});
   chart_in(element, "How much the truth changed with each rung of its refinement").setOption(options, true);
 }

@@ -21,7 +21,8 @@ constexpr const char* kCache = CUBOCT_TEST_CACHE;
 // Cases that between them need few compiled nodes: the first four share one.
 std::vector<std::string> rtl_cases() {
   return {"undamped_2x2x2", "lattice_3x2x1",   "hot_gas",  "lone_diagonal",
-          "rich_damped",    "rich_force_held", "rich_ring"};
+          "rich_damped",    "rich_force_held", "rich_ring", "flat", "flat_rich_damped",
+          "flat_rich_force_held", "flat_ring"};
 }
 
 class Rtl : public testing::TestWithParam<std::string> {};
@@ -214,7 +215,7 @@ TEST_P(RtlLattice, EqualsTheWiredNodes) {
   EXPECT_EQ(with_wired.spans, c.steps * plan.lattice.size() * kPhases);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice, testing::Values("undamped_2x2x2", "lattice_3x2x1"),
+INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice, testing::Values("undamped_2x2x2", "lattice_3x2x1", "flat"),
                          [](const auto& p) { return p.param; });
 
 }  // namespace

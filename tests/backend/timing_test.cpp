@@ -32,7 +32,8 @@ struct Seen {
   uint64_t crowds = 0;                          // node-steps in which several particles leave one node
   uint64_t emptied = 0;                         // nodes that hold particles before a step and none after
   uint64_t busy = 0, filtered = 0, walked = 0;  // TimingCounters
-  uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, damped = 0, rings_of_3 = 0, lone_nodes = 0;
+  uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, damped = 0, rings_of_3 = 0, lone_nodes = 0,
+           flat = 0;
 };
 
 emu::NodeSlots slots_of(const Golden& golden) {
@@ -149,6 +150,7 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   const Cell& period = plan.lattice.period();
   seen.rings_of_3 += period[0] == 3 || period[1] == 3 || period[2] == 3;
   seen.lone_nodes += nodes == 1;
+  seen.flat += plan.rule.axes == 2;
   return {};
 }
 
@@ -199,6 +201,11 @@ TEST(TimingRandom, EqualsTheClockedNode) {
     ASSERT_EQ(difference(c, seen), "");
     ASSERT_EQ(difference(rebuilt(c, seed), seen), "");
   }
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    const Case c = random_flat_case(seed);
+    ASSERT_EQ(difference(c, seen), "");
+    ASSERT_EQ(difference(rebuilt(c, seed), seen), "");
+  }
   for (const std::string& name : case_names())
     for (uint64_t seed = 1; seed <= 4; ++seed)
       ASSERT_EQ(difference(rebuilt(make_case(name), seed), seen), "");
@@ -222,6 +229,7 @@ TEST(TimingRandom, EqualsTheClockedNode) {
                                                              {"damped", seen.damped},
                                                              {"rings_of_3", seen.rings_of_3},
                                                              {"lone_nodes", seen.lone_nodes},
+                                                             {"flat", seen.flat},
                                                              {"not walked", seen.filtered - seen.walked}};
   for (const auto& [name, count] : counts) {
     RecordProperty(name, static_cast<int>(count));
@@ -240,7 +248,7 @@ TEST(TimingFaults, TheStepsBeforeAreEqual) {
 // Sparse lattices, resting parts, hundreds of nodes; several threads where there are enough for them.
 TEST(TimingScenes, EqualTheClockedNode) {
   const std::vector<std::pair<std::string, uint64_t>> scenes{
-      {"coupon", 12}, {"hot_cluster", 20}, {"lj_block", 12}, {"two_types", 20}, {"undamped_block", 20}};
+      {"coupon", 12}, {"hot_cluster", 20}, {"lj_block", 12}, {"sheet", 8},      {"two_types", 20},   {"undamped_block", 20}};
   for (const auto& [name, steps] : scenes) {
     const Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/" + name + ".toml");
     Case c{name, make_setup(scene, Arch{}), steps};

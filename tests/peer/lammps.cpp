@@ -66,7 +66,12 @@ std::string data_file(const LammpsRun& run, const Body& body) {
   return text;
 }
 
-std::string input_file(const LammpsRun& run) {
+constexpr const char* kDump = R"(compute virial all stress/atom NULL virial
+dump frames all custom {} frames.txt id xu yu zu vx vy vz fx fy fz c_virial[1] c_virial[2] c_virial[3] c_virial[4] c_virial[5] c_virial[6]
+dump_modify frames sort id format float %.17g
+)";
+
+std::string input_file(const LammpsRun& run, bool frames) {
   const auto boundary = [&](int axis) { return run.periodic.extent[axis] > 0 ? 'p' : 'f'; };
   return fmt::format(R"(units lj
 boundary {} {} {}
@@ -77,17 +82,40 @@ read_data body.data
 neighbor 0.3 bin
 neigh_modify every 1 delay 0 check yes
 timestep {:.17g}
-compute virial all stress/atom NULL virial
-dump frames all custom {} frames.txt id xu yu zu vx vy vz fx fy fz c_virial[1] c_virial[2] c_virial[3] c_virial[4] c_virial[5] c_virial[6]
-dump_modify frames sort id format float %.17g
-thermo_style custom step pe ke
+{}thermo_style custom step pe ke press
 thermo_modify norm no format float "energies %.17g"
 thermo {}
 fix nve all nve
 run {}
 )",
-                     boundary(0), boundary(1), boundary(2), run.pair, run.dt, run.steps, run.steps,
-                     run.steps);
+                     boundary(0), boundary(1), boundary(2), run.pair, run.dt,
+                     frames ? fmt::format(kDump, run.steps) : "", frames ? run.steps : run.every, run.steps);
+}
+
+// Runs LAMMPS in the scratch directory.
+std::vector<LammpsSample> samples_of(const LammpsRun& run, const Body& body, const Scratch& scratch,
+                                     bool frames) {
+  scratch.write("body.data", data_file(run, body));
+  scratch.write("in.lmp", input_file(run, frames));
+  for (const auto& [name, text] : run.files) scratch.write(name, text);
+  const std::string command =
+      fmt::format("cd '{}' && OMP_NUM_THREADS=1 '{}' -in in.lmp -log none > out.txt 2>&1",
+                  scratch.path().string(), CUBOCT_LMP);
+  if (std::system(command.c_str()) != 0)
+    throw std::runtime_error("LAMMPS failed:\n" + scratch.read("out.txt"));
+  // The lines "step energies pe energies ke energies press" of the output.
+  std::vector<LammpsSample> samples;
+  std::istringstream out(scratch.read("out.txt"));
+  for (std::string line; std::getline(out, line);) {
+    std::istringstream words(line);
+    LammpsSample sample;
+    std::string a, b, c;
+    if (words >> sample.step >> a >> sample.potential_energy >> b >> sample.kinetic_energy >> c >>
+            sample.pressure &&
+        a == "energies" && b == a && c == a)
+      samples.push_back(sample);
+  }
+  return samples;
 }
 
 }  // namespace
@@ -96,15 +124,7 @@ bool have_lammps() { return *CUBOCT_LMP != '\0'; }
 
 std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body) {
   const Scratch scratch;
-  scratch.write("body.data", data_file(run, body));
-  scratch.write("in.lmp", input_file(run));
-  for (const auto& [name, text] : run.files) scratch.write(name, text);
-  const std::string command =
-      fmt::format("cd '{}' && OMP_NUM_THREADS=1 '{}' -in in.lmp -log none > out.txt 2>&1",
-                  scratch.path().string(), CUBOCT_LMP);
-  if (std::system(command.c_str()) != 0)
-    throw std::runtime_error("LAMMPS failed:\n" + scratch.read("out.txt"));
-
+  const std::vector<LammpsSample> samples = samples_of(run, body, scratch, true);
   std::vector<LammpsFrame> frames;
   std::istringstream text(scratch.read("frames.txt"));
   for (std::string line; std::getline(text, line);) {
@@ -129,21 +149,22 @@ std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body) {
   if (frames.size() != (run.steps > 0 ? 2 : 1)) {
     throw std::runtime_error(fmt::format("LAMMPS wrote {} frames", frames.size()));
   }
-  // The lines "step energies pe energies ke" of the output.
-  std::istringstream out(scratch.read("out.txt"));
-  size_t next = 0;
-  for (std::string line; std::getline(out, line) && next < frames.size();) {
-    std::istringstream words(line);
-    std::string step, a, b;
-    double pe = 0, ke = 0;
-    if (words >> step >> a >> pe >> b >> ke && a == "energies" && b == "energies") {
-      frames[next].potential_energy = pe;
-      frames[next++].kinetic_energy = ke;
-    }
+  if (samples.size() < frames.size()) throw std::runtime_error("LAMMPS wrote no energies");
+  for (size_t k = 0; k < frames.size(); ++k) {
+    frames[k].potential_energy = samples[k].potential_energy;
+    frames[k].kinetic_energy = samples[k].kinetic_energy;
   }
-  if (next != frames.size())
-    throw std::runtime_error("LAMMPS wrote no energies:\n" + scratch.read("out.txt"));
   return frames;
+}
+
+std::vector<LammpsSample> sample_lammps(const LammpsRun& run, const Body& body) {
+  const Scratch scratch;
+  std::vector<LammpsSample> samples = samples_of(run, body, scratch, false);
+  const int expected = run.steps / run.every + 1;
+  if (static_cast<int>(samples.size()) < expected)
+    throw std::runtime_error(
+        fmt::format("LAMMPS wrote {} samples, not {}:\n{}", samples.size(), expected, scratch.read("out.txt")));
+  return samples;
 }
 
 }  // namespace cuboct::test

@@ -26,9 +26,18 @@ struct LammpsRun {
   double mass = 1, dt = 0;
   int steps = 0;
   std::vector<std::pair<std::string, std::string>> files;  // name, text: put beside the input
+  int every = 0;  // steps between samples
+};
+
+// What LAMMPS measures on its way, of all particles: J and Pa in our words.
+struct LammpsSample {
+  int step = 0;
+  double potential_energy = 0, kinetic_energy = 0, pressure = 0;
 };
 
 // Frames at step 0 and at the last. std::runtime_error with LAMMPS's output where it fails.
 std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body);
+// Samples at step 0, every, 2 every, ...; no frames.
+std::vector<LammpsSample> sample_lammps(const LammpsRun& run, const Body& body);
 
 }  // namespace cuboct::test

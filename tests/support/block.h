@@ -48,8 +48,22 @@ struct Features {
   bool force_held = false;     // the same by PD
   bool gravity = false;
   double margin = -1;  // m
+  bool flat = false;   // one layer, a square lattice of the pitch turned by 45 degrees, with nothing along z
   uint64_t seed = 1;
 };
+
+// Leaves the particles of the lowest plane, and takes everything along z from them.
+inline void flatten(Scene& scene) {
+  Body sheet;
+  for (size_t k = 0; k < scene.body.size(); ++k) {
+    Vec3 x = scene.body.x[k], v = scene.body.v[k];
+    if (x.z() > 0.4) continue;
+    x.z() = 0.3, v.z() = 0;
+    sheet.x.push_back(x), sheet.v.push_back(v), sheet.type.push_back(scene.body.type[k]);
+  }
+  scene.body = sheet;
+  for (ParticleType& type : scene.rule.types) type.velocity.z() = type.gravity.z() = 0;
+}
 
 inline Scene block_scene(const Features& f) {
   Scene scene;
@@ -98,6 +112,7 @@ inline Scene block_scene(const Features& f) {
           scene.body.x.push_back(at + f.jitter * jitter);
           scene.body.v.push_back(f.speed * speed);
         }
+  if (f.flat) flatten(scene);
   return scene;
 }
 

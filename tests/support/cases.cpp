@@ -70,6 +70,51 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.steps = 40;
        }},
       {"lone_diagonal", [](R r) { r.lone = true, r.features.margin = 2; }},
+      // Flat ones: no third axis.
+      {"flat",
+       [](R r) {
+         r.features.flat = true;
+         r.features.size = {3, 3, 1};
+       }},
+      {"flat_gas",
+       [](R r) {
+         r.features.flat = true;
+         r.features.size = {4, 4, 1};
+         r.features.jitter = 0.1;
+         r.features.speed = 0.6;
+         r.features.margin = 4;
+         r.steps = 40;
+       }},
+      {"flat_ring",
+       [](R r) {
+         r.features.flat = true;
+         r.features.size = {4, 4, 1};
+         r.periodic = {1, 1, 0};
+         r.arch.overlap = false;
+         r.arch.link_bits = 19;
+         r.arch.filter_lanes = 2;
+       }},
+      {"flat_rich_damped",
+       [](R r) {
+         r.features.flat = true;
+         r.features.size = {4, 3, 1};
+         r.features.damping = 0.2;
+         r.features.speed = 0.5;
+         r.features.two_materials = r.features.held = true;
+         r.arch.force_pipes = 2;
+         r.arch.filter_lanes = 3;
+         r.arch.capacity = 13;
+         r.arch.queue_depth = 1;
+       }},
+      {"flat_rich_force_held",
+       [](R r) {
+         r.features.flat = true;
+         r.features.size = {3, 3, 1};
+         r.features.force_held = true;
+         r.arch.table = {.shape = TableChoice::Shape::octaves, .degree = 2, .index_bits = 7};
+         r.arch.link_bits = 24;
+         r.arch.overlap = false;
+       }},
       // Rich ones, of which the RTL is built.
       {"rich_damped",
        [](R r) {
@@ -144,9 +189,10 @@ Case make_case(const std::string& name) {
   return cook(name, recipe);
 }
 
-Case random_case(uint64_t seed) {
+Case random_recipe(uint64_t seed, bool flat) {
   Dice dice(seed);
   Recipe r;
+  r.features.flat = flat;
   r.features.seed = seed;
   r.features.size = {dice.draw(1, 3), dice.draw(1, 3), dice.draw(1, 2)};
   r.features.jitter = 0.01 * dice.draw(0, 10);
@@ -174,8 +220,12 @@ Case random_case(uint64_t seed) {
     r.arch.cell_edge = 0;
     r.arch.capacity = 24;
   }
-  return cook("random_" + std::to_string(seed), r);
+  return cook((flat ? "random_flat_" : "random_") + std::to_string(seed), r);
 }
+
+Case random_case(uint64_t seed) { return random_recipe(seed, false); }
+
+Case random_flat_case(uint64_t seed) { return random_recipe(seed, true); }
 
 std::vector<Fault> all_faults() {
   return {Fault::relative_velocity,

@@ -21,6 +21,8 @@ Case make_case(const std::string& name);
 
 // Features, sizes and initial state drawn from `seed`.
 Case random_case(uint64_t seed);
+// The same without a third axis.
+Case random_flat_case(uint64_t seed);
 
 // A case of this fault, which golden must meet within `steps`. Those that need narrow formats share one rule
 // and arch.

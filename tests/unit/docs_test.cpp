@@ -15,6 +15,7 @@
 #include "model/config.h"
 #include "model/error.h"
 #include "model/scene.h"
+#include "study/study.h"
 
 namespace cuboct {
 namespace {
@@ -140,6 +141,35 @@ TEST(Docs, EveryArchKeyIsDocumentedAndViceVersa) {
   expect_documented(page, keys);
   const auto named = documented(page);
   EXPECT_GT(named.size(), 20U);
+  for (const std::string& key : named)
+    EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
+}
+
+// Keys of studies: those of one that takes every branch, less what the scene and arch inside it ask for.
+TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
+  const std::string page = text_of(kRoot + "/docs/user/study.md");
+  std::set<std::string> of_scene = scene_keys();
+  const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_study_test.toml";
+  std::ofstream(path) << "scene = \"" << kRoot << "/scenes/coupon.toml\"\narch = \"" << kRoot
+                      << "/scenes/archs/default.toml\"\n"
+                      << "[change.run]\nduration = \"1 us\"\n[truth]\n[speed]\n"
+                         "[[figure]]\nkind = \"modulus\"\ncurve = \"tension.stress\"\n"
+                         "[[figure]]\nkind = \"break_time\"\ncurve = \"tension.stress\"\n"
+                         "[[sweep]]\npresets = [ { name = \"a\" } ]\n[search]\nguard = [4]\n";
+  std::set<std::string> keys;
+  record_config_keys(&of_scene);
+  read_arch(kRoot + "/scenes/archs/default.toml");
+  record_config_keys(&keys);
+  study::read_study(path.string());
+  record_config_keys(nullptr);
+  std::filesystem::remove(path);
+  std::set<std::string> asked;
+  for (const std::string& key : keys)
+    if (!of_scene.contains(key) && !key.starts_with("change.")) asked.insert(key);  // names that the user chose
+  EXPECT_GT(asked.size(), 40U);
+  expect_documented(page, asked);
+  const auto named = documented(page);
+  EXPECT_GT(named.size(), 40U);
   for (const std::string& key : named)
     EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
 }

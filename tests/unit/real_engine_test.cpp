@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The reference engine as a machine: lists, vectors, threads, precision. Its physics is in reference_test.cpp.
+// The reference engine as a machine: lists, vectors, threads, precision. Its physics is in
+// reference_test.cpp.
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
@@ -61,8 +62,8 @@ std::vector<Case> cases() {
           {"shifted", lennard_jones(1, 0.9, 1.5, 0.6, Smoothing::linear), false, false, true},
           {"presets", preset_law("ductile", 1, 20), true, false, false},
           {"many_pieces", spline_law(r, f, Interpolation::monotone_cubic, 0.6), false, true, true},
-          {"arcs", spline_law({0.5, 0.8, 1.0, 1.3, 1.6}, {9, 4, 0, -2, 0}, Interpolation::b_spline, 0.6), true, true,
-           true},
+          {"arcs", spline_law({0.5, 0.8, 1.0, 1.3, 1.6}, {9, 4, 0, -2, 0}, Interpolation::b_spline, 0.6),
+           true, true, true},
           {"many_arcs", spline_law(r, f, Interpolation::b_spline, 0.6), false, false, false},
           {"asked", std::make_shared<test::BondLaw>(20, 1.6), true, false, true}};
 }
@@ -85,8 +86,8 @@ Made made(const Case& c, double speed) {
   return m;
 }
 
-// In doubles only the order of operations differs: some units of 2^-53 of the largest pair force. A core and a joint
-// between pieces are met among the pairs.
+// In doubles only the order of operations differs: some units of 2^-53 of the largest pair force. A core and
+// a joint between pieces are met among the pairs.
 TEST(RealEngine, ForcesAreThoseOfAllPairs) {
   for (const Case& c : cases()) {
     Made m = made(c, 0.5);
@@ -165,7 +166,8 @@ TEST(RealEngine, BitsDependOnNoInstructionSet) {
       }
       hwy::SetSupportedTargetsForTest(0);
       hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-      for (size_t k = 1; k < ends.size(); ++k) EXPECT_TRUE(same_bits(ends[0], ends[k])) << c.name << ' ' << names[k];
+      for (size_t k = 1; k < ends.size(); ++k)
+        EXPECT_TRUE(same_bits(ends[0], ends[k])) << c.name << ' ' << names[k];
       sets = std::set<std::string>(names.begin(), names.end()).size();
     }
   if (sets < 2) GTEST_SKIP() << "this machine has one instruction set only";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where floats fail and the fixed rule does not: coordinates far from the origin, the order of sums. With CUBOCT_VERBOSE
-// set the measured tables are printed; docs/plot_failures_real.sh draws them.
+// Where floats fail and the fixed rule does not: coordinates far from the origin, the order of sums. With
+// CUBOCT_VERBOSE set the measured tables are printed; docs/plot_failures_real.sh draws them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -45,9 +45,10 @@ Scene block_at(double pitches) {
 double energy(const Reference& run) { return run.kinetic_energy() + run.potential_energy(); }
 
 struct FarOrigin {
-  double unit;                      // distance of neighbouring numbers there, in pitches
-  double force_median, force_max;   // 2|a-b|/(|a|+|b|) against doubles at the origin
-  double energy_start, energy_end;  // at steps 0 and 1000, less doubles' at the origin at 0, over the kinetic energy
+  double unit;                     // distance of neighbouring numbers there, in pitches
+  double force_median, force_max;  // 2|a-b|/(|a|+|b|) against doubles at the origin
+  double energy_start,
+      energy_end;  // at steps 0 and 1000, less doubles' at the origin at 0, over the kinetic energy
 };
 
 FarOrigin measure(double pitches, Precision precision) {
@@ -101,8 +102,8 @@ TEST(RealFailures, FloatsFarFromTheOriginLoseTheirForces) {
         fmt::print("{} {:g} {:.3g} {:.3g} {:.3g} {:.3g} {:.3g}\n", precision == float32 ? "float" : "double",
                    pitches, far.unit, far.force_median, far.force_max, far.energy_start, far.energy_end);
     }
-  // Bonds are stretched by some hundredths of a pitch; a unit of 2^-21 there is 1e-4 of the force, one of 1/128 most of
-  // it. The integrator's own energy error is 0.4 % of the kinetic energy.
+  // Bonds are stretched by some hundredths of a pitch; a unit of 2^-21 there is 1e-4 of the force, one of
+  // 1/128 most of it. The integrator's own energy error is 0.4 % of the kinetic energy.
   EXPECT_LT((at[{float32, 0}].force_median), 1e-4);
   EXPECT_GT((at[{float32, 1e3}].force_median), (30 * at[{float32, 0}].force_median));
   EXPECT_GT((at[{float32, 1e5}].force_median), 0.1);
@@ -148,7 +149,8 @@ TEST(RealFailures, SumsInAnotherOrderPartRuns) {
           for (Reference* run : {&one, &two, &three}) run->step(next - step);
         step = next;
         at[step] = distance(a, b, scene.pitch);
-        if (verbose()) fmt::print("{} {} {} {:.3g}\n", name, precision == float32 ? "float" : "double", step, at[step]);
+        if (verbose())
+          fmt::print("{} {} {} {:.3g}\n", name, precision == float32 ? "float" : "double", step, at[step]);
       }
       // This engine sums each particle's pairs in one order whatever the threads.
       EXPECT_EQ(distance(one, two, scene.pitch), 0);
@@ -157,8 +159,8 @@ TEST(RealFailures, SumsInAnotherOrderPartRuns) {
       const double unit = precision == float32 ? 0x1p-24 : 0x1p-53;
       EXPECT_GT(at[10], 0) << name;
       EXPECT_LT(at[10], 100 * unit) << name;
-      // Errors that only add up, kicks at random to velocities, grow as t^1.5: by 5 from step 200 to 600. Chaos grows
-      // them as exp(2 t): by 25 in these 1.6 units of time.
+      // Errors that only add up, kicks at random to velocities, grow as t^1.5: by 5 from step 200 to 600.
+      // Chaos grows them as exp(2 t): by 25 in these 1.6 units of time.
       const double growth = at[600] / at[200];
       if (hot)
         EXPECT_GT(growth, 12) << name;

@@ -105,13 +105,14 @@ TEST(ParetoFront, IsWhatBruteForceFinds) {
 }
 
 TEST(CheapestByDecade, FastestWithinEachDecade) {
-  const std::vector<Outcome> outcomes{
-      point(100, 3e-2),  // at most 10^-1
-      point(80, 2e-3),   // at most 10^-2
-      point(60, 1.5e-3),
-      point(40, 1e-4),   // at most 10^-3 and, just, 10^-4
-      point(20, 9e-7),   // at most 10^-5 and 10^-6
-      point(90, kNan), point(95, 1e-7, Status::unstable), point(99, 1e-8, Status::refused)};
+  const std::vector<Outcome> outcomes{point(100, 3e-2),  // at most 10^-1
+                                      point(80, 2e-3),   // at most 10^-2
+                                      point(60, 1.5e-3),
+                                      point(40, 1e-4),  // at most 10^-3 and, just, 10^-4
+                                      point(20, 9e-7),  // at most 10^-5 and 10^-6
+                                      point(90, kNan),
+                                      point(95, 1e-7, Status::unstable),
+                                      point(99, 1e-8, Status::refused)};
   EXPECT_EQ(study::cheapest_by_decade(outcomes, trajectory),
             (std::vector<Cheapest>{{-1, 0}, {-2, 1}, {-3, 3}, {-4, 3}, {-5, 4}, {-6, 4}}));
 }

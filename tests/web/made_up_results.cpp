@@ -17,7 +17,8 @@ constexpr uint32_t kParticles = 3456;
 
 class Maker {
  public:
-  // `force`: relative error of forces by rounding and tables; `rate`: particle-steps per second of one thread.
+  // `force`: relative error of forces by rounding and tables; `rate`: particle-steps per second of one
+  // thread.
   void point(const Settings& settings, double safety, double force, double rate, double bit_products,
              int index_bits) {
     Outcome o;
@@ -37,7 +38,9 @@ class Maker {
     o.speed.simulated_seconds = o.speed.particle_steps / kParticles * o.dt;
     o.speed.spread = 0.01 * dice_.draw(1, 60) / 10;
     o.speed.repeats = 3;
-    o.errors.momentum = fixed ? 0 : settings.arithmetic == Arithmetic::float32 ? 3e-6 * noise() : 2e-15 * noise();
+    o.errors.momentum = fixed                                        ? 0
+                        : settings.arithmetic == Arithmetic::float32 ? 3e-6 * noise()
+                                                                     : 2e-15 * noise();
     if (safety >= 1) {
       o.status = Status::unstable;
       o.why = fmt::format("left the truth by {:.3g} pitches at the horizon", 40 * safety);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Results that nobody measured: numbers made up by formulas of the size and shape that a study of a small coupon
-// has, for tests of what a report makes of them. They say nothing about cuboct.
+// Results that nobody measured: numbers made up by formulas of the size and shape that a study of a small
+// coupon has, for tests of what a report makes of them. They say nothing about cuboct.
 #pragma once
 
 #include "study/store.h"

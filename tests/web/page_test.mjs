@@ -46,9 +46,9 @@ const lone_marks = (page, id) => page.evaluate((id) => {
 
 async function hover(page, id, mark) {
   await page.mouse.move(2, 2);
-  await page.waitForSelector(`#${id} .tip`, {state: "hidden", timeout: 5000});
+  await page.waitForSelector(`#${id} .tip`, {state: "hidden", timeout: 20000});
   await page.mouse.move(mark.x, mark.y);
-  await page.waitForSelector(`#${id} .tip`, {state: "visible", timeout: 5000});
+  await page.waitForSelector(`#${id} .tip`, {state: "visible", timeout: 20000});
   ++hovers;
   return page.$eval(`#${id} .tip`, (tip) => tip.textContent);
 }
@@ -192,7 +192,7 @@ async function zooms_and_comes_back(page) {
   await page.waitForFunction(() => {
     const [x] = echarts.getInstanceByDom(document.getElementById("error-speed")).getOption().dataZoom;
     return x.end - x.start < 100;
-  }, undefined, {timeout: 5000});
+  }, undefined, {timeout: 20000});
   await page.evaluate(() => echarts.getInstanceByDom(document.getElementById("error-speed")).dispatchAction({type: "restore"}));
   assert.ok((await ends()).every((d) => d === 100));
 }
@@ -206,6 +206,7 @@ async function fits_a_phone(browser) {
   await hover(page, "error-speed", mark);
   const tip = await page.locator("#error-speed .tip").boundingBox();
   assert.ok(tip.x >= 0 && tip.x + tip.width <= 390, "what a mark tells is cut");
+  assert.ok(tip.height < 400, `what a mark tells is ${tip.height} pixels high`);
   await page.context().close();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a report finds in results: the settings that were varied, the orders that are expected, series and their
-// looks; and that its page and pictures are the same bytes for the same results.
+// What a report finds in results: the settings that were varied, the orders that are expected, series and
+// their looks; and that its page and pictures are the same bytes for the same results.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -69,7 +69,8 @@ TEST(Parameters, WhatAPresetSetsTogetherFollows) {
   Results results;
   for (const int p : {14, 17, 20})
     add(results, {},
-        {{"widths.position_frac", std::to_string(p)}, {"widths.difference_frac", std::to_string(p - 4)}}, 1e-8, 1);
+        {{"widths.position_frac", std::to_string(p)}, {"widths.difference_frac", std::to_string(p - 4)}},
+        1e-8, 1);
   const auto found = study::swept_parameters(results);
   ASSERT_EQ(ids(found),
             (std::vector<std::string>{"arch.widths.position_frac", "arch.widths.difference_frac"}));
@@ -79,18 +80,52 @@ TEST(Parameters, WhatAPresetSetsTogetherFollows) {
 
 TEST(Parameters, NumbersWithUnitsAndNames) {
   Results results;
-  add(results, {{"packing.pitch", "\"0.5 mm\""}}, {{"table.shape", "\"uniform\""}, {"widths.strength_bits", "18"}}, 1, 1);
-  add(results, {{"packing.pitch", "\"0.25 mm\""}}, {{"table.shape", "\"octaves\""}, {"widths.strength_bits", "22"}}, 1, 1);
-  add(results, {{"packing.pitch", "\"0.25 mm\""}}, {{"widths.strength_bits", "\"auto\""}}, 1, 1);
+  const char* const points[][3] = {{"0.5 mm", "uniform", "18"},
+                                   {"0.25 mm", "uniform", "18"},
+                                   {"0.25 mm", "octaves", "18"},
+                                   {"0.25 mm", "uniform", "22"},
+                                   {"0.25 mm", "uniform", "\"auto\""}};
+  for (const auto& [pitch, shape, strength] : points)
+    add(results, {{"packing.pitch", fmt::format("\"{}\"", pitch)}},
+        {{"table.shape", fmt::format("\"{}\"", shape)}, {"widths.strength_bits", strength}}, 1, 1);
   const auto found = study::swept_parameters(results);
-  ASSERT_EQ(ids(found), (std::vector<std::string>{"scene.packing.pitch", "arch.table.shape", "arch.widths.strength_bits"}));
+  ASSERT_EQ(ids(found), (std::vector<std::string>{"scene.packing.pitch", "arch.table.shape",
+                                                  "arch.widths.strength_bits"}));
   EXPECT_EQ(found[0].label, "packing.pitch, mm");
-  EXPECT_EQ(found[0].x, (std::vector<double>{0.5, 0.25, 0.25}));
+  EXPECT_EQ(found[0].x, (std::vector<double>{0.5, 0.25, 0.25, 0.25, 0.25}));
+  EXPECT_EQ(sweeps(found[0]), (std::vector<std::vector<size_t>>{{1, 0}}));
   EXPECT_EQ(found[1].names, (std::vector<std::string>{"uniform", "octaves"}));
-  EXPECT_EQ(found[1].x[1], 1);
-  EXPECT_TRUE(std::isnan(found[1].x[2]));
-  EXPECT_EQ(found[2].x[1], 22);
-  EXPECT_TRUE(std::isnan(found[2].x[2]));  // "auto" is no number
+  EXPECT_EQ(sweeps(found[1]), (std::vector<std::vector<size_t>>{{1, 2}}));
+  EXPECT_EQ(sweeps(found[2]), (std::vector<std::vector<size_t>>{{1, 3}}));
+  EXPECT_FALSE(found[2].logarithmic);
+  EXPECT_TRUE(std::isnan(found[2].x[4]));  // "auto" is no number
+}
+
+// Each pitch has time steps of its own; they are still two sweeps.
+TEST(Parameters, APitchDoesNotFollowFromTimeSteps) {
+  Results results;
+  for (const double pitch : {0.5, 0.3})
+    for (const double safety : {0.1, 0.2, 0.4})
+      add(results,
+          {{"packing.pitch", fmt::format("\"{} mm\"", pitch)}, {"run.dt_safety", fmt::format("{}", safety)}},
+          {}, safety * pitch, 1);
+  const auto found = study::swept_parameters(results);
+  ASSERT_EQ(ids(found), (std::vector<std::string>{"dt", "scene.packing.pitch"}));
+  EXPECT_EQ(sweeps(found[0]), (std::vector<std::vector<size_t>>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(sweeps(found[1]), (std::vector<std::vector<size_t>>{{3, 0}, {4, 1}, {5, 2}}));
+}
+
+// What changes only together with several others has no sweep, and so no chart.
+TEST(Parameters, NoChartWithoutASweep) {
+  Results results;
+  for (const int p : {14, 20})
+    for (const int g : {2, 5})
+      add(results, {},
+          {{"widths.position_frac", std::to_string(p)},
+           {"widths.guard", std::to_string(g)},
+           {"widths.velocity_bits", std::to_string(p + g + 1)}},
+          1, 1);
+  EXPECT_TRUE(ids(study::swept_parameters(results)).empty());
 }
 
 // error = 5 dt^2 + a rest of other settings: the line goes through the purest points.
@@ -103,9 +138,10 @@ TEST(Orders, OfTheTimeStep) {
   const auto errors = study::error_measures(results);
   const Parameter dt = study::swept_parameters(results)[0];
   const auto orders = study::expected_orders(results, dt, measure(errors, "trajectory"));
-  ASSERT_EQ(orders.size(), 1U);
-  EXPECT_EQ(orders[0].label, "dt^2");
-  const auto line = study::order_line(results, dt, measure(errors, "trajectory"), orders[0]);
+  ASSERT_EQ(orders.size(), 2U);
+  EXPECT_EQ(orders[0].label, "dt, where something damps");
+  EXPECT_EQ(orders[1].label, "dt^2");
+  const auto line = study::order_line(results, dt, measure(errors, "trajectory"), orders[1]);
   ASSERT_TRUE(line);
   EXPECT_EQ(line->first, (std::pair{0.16, 5 * 0.16 * 0.16}));
   EXPECT_EQ(line->second.first, 0.01);
@@ -117,8 +153,8 @@ TEST(Orders, OfTablesByTheirDegree) {
   Results results;
   for (const int degree : {1, 2})
     for (const int bits : {4, 6, 8})
-      add(results, {}, {{"table.degree", std::to_string(degree)}, {"table.index_bits", std::to_string(bits)}}, 1,
-          std::exp2(-(degree + 1) * bits));
+      add(results, {}, {{"table.degree", std::to_string(degree)}, {"table.index_bits", std::to_string(bits)}},
+          1, std::exp2(-(degree + 1) * bits));
   const auto errors = study::error_measures(results);
   const auto found = study::swept_parameters(results);
   ASSERT_EQ(ids(found), (std::vector<std::string>{"arch.table.degree", "arch.table.index_bits"}));
@@ -201,11 +237,11 @@ TEST(Charts, PicturesOfEachChartTwiceTheSame) {
   add(results, {}, {}, 0.08, 0).settings.engine = "it's new";
   const Scratch scratch;
   const auto names = study::write_charts(results, scratch.path("a"));
-  EXPECT_EQ(names, (std::vector<std::string>{
-                       "force_max_simulated_seconds.png", "force_max_simulated_seconds.svg",
-                       "trajectory_simulated_seconds.png", "trajectory_simulated_seconds.svg",
-                       "force_max_by_dt.png", "force_max_by_dt.svg", "trajectory_by_dt.png",
-                       "trajectory_by_dt.svg"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"force_max_simulated_seconds.png", "force_max_simulated_seconds.svg",
+                                      "trajectory_simulated_seconds.png", "trajectory_simulated_seconds.svg",
+                                      "force_max_by_dt.png", "force_max_by_dt.svg", "trajectory_by_dt.png",
+                                      "trajectory_by_dt.svg"}));
   EXPECT_EQ(study::write_charts(results, scratch.path("b")), names);
   for (const std::string& name : names) {
     const std::string picture = bytes(scratch.path("a/" + name));

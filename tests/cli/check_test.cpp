@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// What `cuboct check` says of what a plan leaves out, word for word.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/cli/shell.h"
+
+namespace cuboct::test {
+namespace {
+
+std::string not_built(const std::vector<std::string>& arguments) {
+  const Answer answer = Bench(false).cuboct(arguments);
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_EQ(answer.err, "");
+  const size_t from = answer.out.find(arguments.back() == "--json" ? "  \"not_built\"" : "not built"),
+               to = answer.out.find("plan hash");
+  return answer.out.substr(from, (to == std::string::npos ? answer.out.find("  \"plan_hash\"") : to) - from);
+}
+
+TEST(Check, NamesWhatIsNotBuilt) {
+  EXPECT_EQ(
+      not_built({"check", "scenes/hot_cluster.toml"}),
+      R"(not built                        damping, velocity in the halo record, pair scales, types, PD controllers
+not built damping                87 bit (of a halo record, 0 of a particle record; velocities, a table, 2 cycles of the pipe)
+not built pair scales            1 bit (of a halo record, 1 of a particle record; types, a table, 2 cycles of the pipe)
+not built types                  0 bit (of a halo record, 1 of a particle record; types)
+not built PD controllers         0 bit (of a halo record, 87 of a particle record; displacements, 3 cycles of the update)
+halo record with everything      152 bit (64 as built)
+particle record with everything  246 bit (158 as built)
+)");
+  EXPECT_EQ(
+      not_built({"check", "scenes/sheet.toml"}),
+      R"(not built                        pair scales, PD controllers, third axis
+not built pair scales            2 bit (of a halo record, 0 of a particle record; types, a table, 2 cycles of the pipe)
+not built PD controllers         0 bit (of a halo record, 58 of a particle record; displacements, 3 cycles of the update)
+not built third axis             51 bit (of a halo record, 51 of a particle record; 2 of 8 phases, and all that works along z)
+halo record with everything      153 bit (100 as built)
+particle record with everything  252 bit (114 as built)
+)");
+  EXPECT_EQ(
+      not_built({"check", "scenes/sheet.toml", "--arch", "scenes/archs/everything.toml"}),
+      R"(not built                        nothing is left out
+halo record with everything      153 bit (153 as built)
+particle record with everything  252 bit (252 as built)
+)");
+}
+
+// Two particles at the corners of a large box: 27 cells around each.
+TEST(Check, CountsTheCellsWithoutNode) {
+  const Bench bench(false);
+  std::ofstream(bench.path("two.toml")) << "units = \"reduced\"\nmass = 1.0\n"
+                                           "[law]\nkind = \"lj\"\nepsilon = 1.0\nsigma = 1.0\ncutoff = 2.5\n"
+                                           "[[particle]]\nposition = [0.0, 0.0, 0.0]\n"
+                                           "[[particle]]\nposition = [20.0, 20.0, 20.0]\n"
+                                           "[run]\ndt = 0.001\nsteps = 20\n";
+  const Answer answer = bench.cuboct({"check", bench.path("two.toml")});
+  EXPECT_NE(answer.out.find("PD controllers, empty nodes\n"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("not built empty nodes            1277 cells (of 1331 cells of the bounding box have "
+                            "no node)\n"),
+            std::string::npos)
+      << answer.out;
+}
+
+TEST(Check, NamesItInJsonToo) {
+  EXPECT_EQ(
+      not_built({"check", "scenes/coupon.toml", "--json"}),
+      R"(  "not_built": {"value": "pair scales, PD controllers"},
+  "not_built_pair_scales": {"value": 2, "unit": "bit", "note": "of a halo record, 0 of a particle record; types, a table, 2 cycles of the pipe"},
+  "not_built_PD_controllers": {"value": 0, "unit": "bit", "note": "of a halo record, 87 of a particle record; displacements, 3 cycles of the update"},
+  "halo_record_with_everything": {"value": 153, "unit": "bit", "note": "151 as built"},
+  "particle_record_with_everything": {"value": 252, "unit": "bit", "note": "165 as built"},
+)");
+}
+
+}  // namespace
+}  // namespace cuboct::test

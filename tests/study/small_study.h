@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Studies of a ringing block that take a fraction of a second.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace cuboct::test {
+
+// A directory with the scene, removed at the end.
+class SmallStudy {
+ public:
+  SmallStudy() {
+    std::string name = (std::filesystem::temp_directory_path() / "cuboct_study_XXXXXX").string();
+    directory_ = mkdtemp(name.data());
+    std::ofstream(path("block.toml")) << R"(density = "1.41 g/cm^3"
+[packing]
+pitch = "0.5 mm"
+offset = "[0.1, 0.1, 0.1] mm"
+[box]
+cells = [3, 3, 3]
+[law]
+kind = "elastic"
+youngs_modulus = "3 GPa"
+direction = [1, 0, 0]
+[[velocity]]
+thermal_speed = "20 m/s"
+seed = 1
+[run]
+dt = "auto"
+steps = 160
+)";
+  }
+  ~SmallStudy() { std::filesystem::remove_all(directory_); }
+  SmallStudy(const SmallStudy&) = delete;
+  SmallStudy& operator=(const SmallStudy&) = delete;
+
+  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  // A study of the block; `text` follows the top-level keys.
+  std::string study(const std::string& text, const std::string& name = "study.toml") const {
+    std::ofstream(path(name)) << "scene = \"block.toml\"\nsamples = 16\n" << text;
+    return path(name);
+  }
+
+ private:
+  std::string directory_;
+};
+
+}  // namespace cuboct::test

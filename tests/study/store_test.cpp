@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// Results on disk: what was put comes back to the last bit, rows of other machines come in, those of other studies
+// do not; a runner computes what lacks and nothing else.
+#include "study/store.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/error.h"
+#include "study/runner.h"
+#include "tests/study/rows.h"
+#include "tests/study/small_study.h"
+
+namespace cuboct::study {
+namespace {
+
+using test::rows;
+using test::SmallStudy;
+
+constexpr const char* kStudy =
+    "[truth]\nrungs = 2\n[[figure]]\nkind = \"mean\"\ncurve = \"energy.potential\"\n"
+    "[[sweep]]\ndt_safety = [0.2, 0.4]\nthreads = [1, 2]\n[[sweep]]\ncell_edge = \"0.6 mm\"\n";
+
+const RunnerOptions kQuiet{.jobs = 2, .speed = false, .progress = false};
+
+// Bit for bit, nan included.
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+void expect_same_errors(const Outcome& a, const Outcome& b) {
+  EXPECT_EQ(a.settings, b.settings);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.why, b.why);
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_TRUE(same(a.dt, b.dt) && same(a.cost, b.cost) && same(a.pitch, b.pitch));
+  EXPECT_TRUE(same(a.errors.force_median, b.errors.force_median) && same(a.errors.force_max, b.errors.force_max));
+  EXPECT_TRUE(same(a.errors.trajectory, b.errors.trajectory) && same(a.errors.momentum, b.errors.momentum));
+  EXPECT_TRUE(same(a.errors.drift_per_step, b.errors.drift_per_step));
+  ASSERT_EQ(a.errors.figures.size(), b.errors.figures.size());
+  for (size_t k = 0; k < a.errors.figures.size(); ++k)
+    EXPECT_TRUE(same(a.errors.figures[k], b.errors.figures[k]) && same(a.errors.values[k], b.errors.values[k]));
+}
+
+TEST(Store, KeepsEverythingToTheLastBit) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  const std::string path = files.path("results.db");
+  std::vector<Outcome> first;
+  Truth truth;
+  {
+    Store store(path, study);
+    Runner runner(study, store, kQuiet);
+    runner.run();
+    first = runner.errors_of(study.points);
+    truth = runner.truth();
+    store.put_speed(study.points[1], {1e6, 0.25, 0.03, 5});
+  }
+  EXPECT_EQ(rows(path, "select count(*) from points"), "3|\n");  // threads share their errors
+  Store store(path, study);
+  const Results results = store.results();
+  ASSERT_EQ(results.outcomes.size(), 5U);
+  for (size_t k = 0; k < 5; ++k) expect_same_errors(results.outcomes[k], first[k]);
+  EXPECT_EQ(results.outcomes[4].status, Status::refused);
+  EXPECT_EQ(results.outcomes[1].speed.particle_steps, 1e6);
+  EXPECT_EQ(results.outcomes[1].speed.repeats, 5);
+  EXPECT_TRUE(std::isnan(results.outcomes[0].speed.particle_steps));
+  EXPECT_EQ(results.figure_names, std::vector<std::string>{"mean"});
+  EXPECT_EQ(results.figure_units, std::vector<std::string>{"J"});
+  const auto kept = store.truth("");
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->horizon.body.x, truth.horizon.body.x);
+  EXPECT_EQ(kept->states.size(), truth.states.size());
+  EXPECT_EQ(kept->rungs.back().figures, truth.rungs.back().figures);
+  EXPECT_EQ(kept->notes, truth.notes);
+}
+
+TEST(Store, ARunnerComputesWhatLacks) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  const std::string path = files.path("results.db");
+  std::vector<Outcome> first;
+  {
+    Store store(path, study);
+    Runner runner(study, store, kQuiet);
+    first = runner.errors_of(study.points);
+  }
+  rows(path, "delete from points where settings like '%0.4%'");
+  rows(path, "update points set momentum = 7 where settings like '%0.2%'");  // what is there is not done again
+  Store store(path, study);
+  Runner runner(study, store, kQuiet);
+  const std::vector<Outcome> again = runner.errors_of(study.points);
+  EXPECT_EQ(again[0].errors.momentum, 7);
+  expect_same_errors(again[2], first[2]);
+}
+
+// A truth whose refinement was cut off goes on with the next rung, and ends the same.
+TEST(Store, ABegunTruthGoesOn) {
+  const SmallStudy files;
+  const Study study = read_study(files.study("[truth]\nrungs = 4\ntolerance = 1e-9\n[[sweep]]\n"));
+  const Truth whole = make_truth(study, 1);
+  std::vector<Truth> saved;
+  make_truth(study, 1, {}, [&](const Truth& truth) { saved.push_back(truth); });
+  ASSERT_EQ(saved.size(), 4U);
+  int rungs = 0;
+  const Truth resumed = make_truth(study, 1, saved[1], [&](const Truth&) { ++rungs; });
+  EXPECT_EQ(rungs, 2);
+  EXPECT_EQ(resumed.horizon.body.x, whole.horizon.body.x);
+  EXPECT_EQ(resumed.floor, whole.floor);
+  EXPECT_EQ(resumed.notes, whole.notes);
+}
+
+TEST(Store, RefusesAnotherStudyAndASecondProcess) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  const std::string path = files.path("results.db");
+  const auto error_of = [&](const Study& other) -> std::string {
+    try {
+      Store store(path, other);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  {
+    const Store store(path, study);
+    EXPECT_EQ(error_of(study), "another process is at work on " + path);
+  }
+  const Study other = read_study(files.study(std::string("[change.run]\nsteps = 80\n") + kStudy));
+  EXPECT_EQ(error_of(other), path + ": these are results of another study: its scene, arch, figures or times were others\n"
+                                    "  hint: take another directory, or remove this one's results.db");
+  EXPECT_EQ(error_of(study), "no error");
+}
+
+TEST(Store, TakesInRowsOfAnotherMachine) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  const std::string elsewhere = files.path("elsewhere.db");
+  {
+    Store store(elsewhere, study);
+    Outcome outcome;
+    outcome.settings.engine = "gpu";
+    outcome.settings.scene = {{"run.dt_safety", "0.3"}};
+    outcome.errors.trajectory = 0.125;
+    outcome.errors.figures = outcome.errors.values = {0.5};
+    store.put_errors(outcome);
+    store.put_speed(outcome.settings, {2e9, 3, 0.01, 3});
+  }
+  rows(elsewhere, "update meta set value = 'a GPU' where name = 'machine'");
+  Store store(files.path("results.db"), study);
+  EXPECT_EQ(store.add(elsewhere), 2);
+  EXPECT_EQ(store.add(elsewhere), 0);  // they are here
+  const Results results = store.results();
+  ASSERT_EQ(results.outcomes.size(), 1U);
+  EXPECT_EQ(results.outcomes[0].settings.engine, "gpu");
+  EXPECT_EQ(results.outcomes[0].settings.scene[0].value, "0.3");
+  EXPECT_EQ(results.outcomes[0].errors.trajectory, 0.125);
+  EXPECT_EQ(results.outcomes[0].errors.figures, std::vector<double>{0.5});
+  EXPECT_EQ(results.outcomes[0].speed.particle_steps, 2e9);
+  EXPECT_EQ(results.outcomes[0].machine, "a GPU");
+  EXPECT_EQ(results.machine, this_machine());
+  const Study other = read_study(files.study(std::string("[change.run]\nsteps = 80\n") + kStudy));
+  Store another(files.path("another.db"), other);
+  EXPECT_THROW(another.add(elsewhere), InputError);
+}
+
+}  // namespace
+}  // namespace cuboct::study
