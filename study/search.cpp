@@ -134,8 +134,8 @@ class Search {
     return known != costs_.end() ? known->second : costs_.emplace(p, space_.cost(p)).first->second;
   }
 
-  // Children of several nodes: each walks its next axis from the reference down until the budget breaks. Their
-  // bounds are still those of their parents.
+  // Children of several nodes: each walks its next axis from the reference down until the budget breaks.
+  // Their bounds are still those of their parents.
   std::vector<Node> children(const std::vector<Node>& nodes) {
     struct Walk {
       const Node* node;
@@ -185,8 +185,8 @@ class Search {
   }
 
   void descend() {
-    std::set<Node> open{{bound(result_.reference, 0, 0), 0, result_.reference,
-                         size_of(result_.reference_error)}};
+    std::set<Node> open{
+        {bound(result_.reference, 0, 0), 0, result_.reference, size_of(result_.reference_error)}};
     if (axes_ == 0) take(*open.begin());
     while (!open.empty() && axes_ > 0) {
       std::vector<Node> next;
@@ -283,8 +283,6 @@ NotchOrder::NotchOrder(size_t axis_, int notch_)
       axis(axis_),
       notch(notch_) {}
 
-SearchResult search(const SearchSpace& space, double budget) {
-  return Search(space, budget).run();
-}
+SearchResult search(const SearchSpace& space, double budget) { return Search(space, budget).run(); }
 
 }  // namespace cuboct::study
