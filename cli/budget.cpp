@@ -105,9 +105,8 @@ void print_failure(const BudgetAnswer& answer, const std::string& figure, const 
   const study::SearchResult& result = answer.result;
   fmt::print("no settings of [search] keep '{}' within {}\n", figure, error);
   fmt::print("the best: {} with {}\n",
-             std::isnan(result.best.error)
-                 ? "cannot be run (" + answer.chosen.why + ")"
-                 : signed_percent(result.best.error),
+             std::isnan(result.best.error) ? "cannot be run (" + answer.chosen.why + ")"
+                                           : signed_percent(result.best.error),
              settings_of(answer, result.best.at));
   if (result.accident)
     fmt::print("  by accident: with a notch finer next to it the error is above the budget\n");
@@ -115,8 +114,9 @@ void print_failure(const BudgetAnswer& answer, const std::string& figure, const 
   if (result.limit < 0)
     fmt::print("what limits cannot be told: no setting has another notch that runs\n");
   else if (result.limit_change < 0.1 * size)
-    fmt::print("what limits is none of these settings: a notch of {}, which matters most, changes the error by {}\n",
-               answer.axes[static_cast<size_t>(result.limit)].name, percent(result.limit_change));
+    fmt::print(
+        "what limits is none of these settings: a notch of {}, which matters most, changes the error by {}\n",
+        answer.axes[static_cast<size_t>(result.limit)].name, percent(result.limit_change));
   else
     fmt::print("what limits is {}: the notch next to it still changes the error by {}\n",
                answer.axes[static_cast<size_t>(result.limit)].name, percent(result.limit_change));
@@ -130,25 +130,27 @@ double read_error_budget(const std::string& text) {
   double value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (code != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-    throw InputError(fmt::format("'{}' is no error", text), "a percentage or a share: --error 1% or --error 0.01");
+    throw InputError(fmt::format("'{}' is no error", text),
+                     "a percentage or a share: --error 1% or --error 0.01");
   if (percents) value /= 100;
   if (!(value > 0 && value < 1))
-    throw InputError(fmt::format("an error of '{}' is out of range: above 0 and below 100%", text),
-                     text == "1" ? "did you mean '1%'?" : "a percentage or a share: --error 1% or --error 0.01");
+    throw InputError(
+        fmt::format("an error of '{}' is out of range: above 0 and below 100%", text),
+        text == "1" ? "did you mean '1%'?" : "a percentage or a share: --error 1% or --error 0.01");
   return value;
 }
 
 size_t figure_named(const study::Study& study, const std::string& name) {
   std::vector<std::string> names;
   for (const Figure& figure : study.figures) names.push_back(figure.name);
-  if (names.empty())
-    throw InputError(fmt::format("{}: no [[figure]] whose error could be held", study.path));
+  if (names.empty()) throw InputError(fmt::format("{}: no [[figure]] whose error could be held", study.path));
   if (name.empty() && names.size() > 1)
     throw InputError(fmt::format("{}: which figure?", study.path), "--figure " + list_of(names));
   for (size_t k = 0; k < names.size(); ++k)
     if (name.empty() || names[k] == name) return k;
   const std::string near = did_you_mean(name, names);
-  throw InputError(fmt::format("{}: no figure '{}'", study.path, name), near.empty() ? "known: " + list_of(names) : near);
+  throw InputError(fmt::format("{}: no figure '{}'", study.path, name),
+                   near.empty() ? "known: " + list_of(names) : near);
 }
 
 void check_budget(const study::Study& study, const std::string& error, const std::string& figure) {
@@ -183,6 +185,8 @@ int run_budget(const study::Study& study, const study::Truth& truth, const Budge
   fmt::print("cost: {:.3g} transistors x pairs/s, {:.3g} of that of the study's own settings ({:.3g}, {})\n",
              answer.chosen.cost, answer.chosen.cost / answer.standard.cost, answer.standard.cost,
              std::isnan(answer.standard.error) ? answer.standard.why : signed_percent(answer.standard.error));
+  fmt::print("time step: {:.6g} s, {} to a sample\n", answer.chosen.dt,
+             truth.grid.steps_per_sample(answer.chosen.dt));
   fmt::print("points: {} of {}\n", result.measured, [&] {
     size_t all = 1;
     for (const Axis& axis : answer.axes) all *= axis.sets.size();
@@ -191,10 +195,10 @@ int run_budget(const study::Study& study, const study::Truth& truth, const Budge
   if (answer.chosen.settings.arithmetic == study::Arithmetic::float32)
     fmt::print("float32 is known to studies alone: `run` computes in doubles\n");
   study::Written texts = study::written(study, truth, answer.chosen.settings);
-  const std::string head = fmt::format("# Chosen by `cuboct explore {} --error {}{}`: {} of '{}' by parts, cost {:.3g}.\n",
-                                       study.path, options.error,
-                                       options.figure.empty() ? "" : " --figure " + options.figure,
-                                       percent(result.best.sum), figure, answer.chosen.cost);
+  const std::string head =
+      fmt::format("# Chosen by `cuboct explore {} --error {}{}`: {} of '{}' by parts, cost {:.3g}.\n",
+                  study.path, options.error, options.figure.empty() ? "" : " --figure " + options.figure,
+                  percent(result.best.sum), figure, answer.chosen.cost);
   write_text(options.out + "/cheapest.toml", head + texts.scene);
   write_text(options.out + "/cheapest_arch.toml", head + texts.arch);
   fmt::print("{}\n", command);

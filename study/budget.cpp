@@ -16,8 +16,8 @@
 namespace cuboct::study {
 namespace {
 
-// A time step's part is the method's alone as long as numbers are still the finest, so what sets the precision
-// comes after it; an axis of the list keeps its place otherwise.
+// A time step's part is the method's alone as long as numbers are still the finest, so what sets the
+// precision comes after it; an axis of the list keeps its place otherwise.
 std::vector<Axis> in_order(std::vector<Axis> axes) {
   std::ranges::stable_partition(axes, [](const Axis& axis) {
     return axis.name == "pitch" || axis.name == "cutoff" || axis.name == "integrator" || axis.name == "dt" ||
@@ -96,6 +96,7 @@ class Runs {
     p.error = errors({settings})[0];
     const Outcome outcome = *store_.errors(settings);
     p.value = outcome.errors.values[question_.figure];
+    p.dt = outcome.dt;
     p.why = outcome.why;
     p.cost = cost(settings);
     return p;
@@ -113,11 +114,11 @@ class Runs {
   void run(const std::vector<Settings>& fresh) {
     std::vector<Piece> pieces;
     for (const Settings& settings : fresh)
-      pieces.push_back({particle_steps(settings), [&, settings] {
-                          store_.put_errors(measure_figures(study_, truth_, settings));
-                        }});
+      pieces.push_back({particle_steps(settings),
+                        [&, settings] { store_.put_errors(measure_figures(study_, truth_, settings)); }});
     made_ += pieces.size();
-    work_off(std::move(pieces), question_.jobs, fmt::format("search, {} runs in all", made_), question_.progress);
+    work_off(std::move(pieces), question_.jobs, fmt::format("search, {} runs in all", made_),
+             question_.progress);
   }
 
   // For the order and the time left: doubles take about as long as ten fixed ones.
@@ -198,7 +199,8 @@ Outcome measure_figures(const Study& study, const Truth& truth, const Settings& 
   return outcome;
 }
 
-BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store, const BudgetQuestion& question) {
+BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store,
+                         const BudgetQuestion& question) {
   check(study, truth, question);
   BudgetAnswer answer;
   answer.axes = in_order(study.search);
@@ -226,9 +228,8 @@ BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store, c
                      "notches go from cheap to dear");
   }
   for (const auto& c : answer.result.cheaper)
-    answer.why.push_back(std::isnan(c.spending.error)
-                             ? store.errors(settings_at(answer.axes, c.spending.at))->why
-                             : "");
+    answer.why.push_back(
+        std::isnan(c.spending.error) ? store.errors(settings_at(answer.axes, c.spending.at))->why : "");
   answer.chosen = runs.priced(settings_at(answer.axes, answer.result.best.at));
   answer.standard = runs.priced(canonical({}));
   return answer;
@@ -242,7 +243,8 @@ Written written(const Study& study, const Truth& truth, const Settings& settings
     changes.push_back({key, value});
   };
   put("run.dt_safety", "");
-  put("run.dt", is_reduced(study) ? fmt::format("{}", c.scene.rule.dt) : fmt::format("\"{} s\"", c.scene.rule.dt));
+  put("run.dt",
+      is_reduced(study) ? fmt::format("{}", c.scene.rule.dt) : fmt::format("\"{} s\"", c.scene.rule.dt));
   put("run.duration", "");
   put("run.steps", fmt::format("{}", c.scene.steps));
   put("run.probe_every", fmt::format("{}", truth.grid.steps_per_sample(c.scene.rule.dt)));

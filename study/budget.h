@@ -23,7 +23,8 @@ struct Priced {
   Settings settings;
   double value = kNotMeasured;  // of the figure, in its unit
   double error = kNotMeasured;  // (value - truth)/|truth|
-  double cost = kNotMeasured;   // cost.h, at the time step that the study's time grid leaves; nan: no plan
+  double dt = 0;                // s, as the study's time grid leaves it
+  double cost = kNotMeasured;   // cost.h, at that time step; nan: no plan
   std::string why;              // where something is not measured
 };
 
@@ -32,22 +33,23 @@ struct BudgetAnswer {
   SearchResult result;     // its notches are places on these axes
   // Of each of result.cheaper that cannot be run: why not; else empty.
   std::vector<std::string> why;
-  Priced chosen;           // result.best
-  Priced standard;         // the study's scene and arch as they are
+  Priced chosen;    // result.best
+  Priced standard;  // the study's scene and arch as they are
 };
 
 // Runs what it needs, several at once, and puts each into `store`, out of which a search that was killed goes
-// on. Each run measures figures alone, so `store` must not be that of a study's points. `truth` is the study's:
-// also where settings change the packing, as the figure is to be that of the material and not of its packing.
-// Throws InputError: a truth that is worse than the budget or has no such figure, notches that do
+// on. Each run measures figures alone, so `store` must not be that of a study's points. `truth` is the
+// study's: also where settings change the packing, as the figure is to be that of the material and not of its
+// packing. Throws InputError: a truth that is worse than the budget or has no such figure, notches that do
 // not go from cheap to dear; Interrupted (measure_run.h).
-BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store, const BudgetQuestion& question);
+BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store,
+                         const BudgetQuestion& question);
 
 // Figures and nothing else of one run; never throws but Interrupted.
 Outcome measure_figures(const Study& study, const Truth& truth, const Settings& settings);
 
-// Settings as an input of `cuboct run`: the study's scene and arch with their comments, with the time step, the
-// steps and the probes' readings of the study's time grid.
+// Settings as an input of `cuboct run`: the study's scene and arch with their comments, with the time step,
+// the steps and the probes' readings of the study's time grid.
 struct Written {
   std::string scene, arch;
 };

@@ -17,7 +17,8 @@ constexpr double kBitProduct = 34, kAdderBit = 28, kMemoryBit = 6;
 constexpr double kScaleBits = 18, kGainBits = 18;
 
 // Ordered pairs inside the cutoff at the start: each is worked on by both of its nodes. Without those at the
-// cutoff itself: bond laws end at the second neighbours, and rounding alone would tell how many of these count.
+// cutoff itself: bond laws end at the second neighbours, and rounding alone would tell how many of these
+// count.
 double ordered_pairs(const Scene& scene) {
   const double cutoff = scene.rule.law->cutoff();
   CellList cells(cutoff, scene.periodic);
@@ -46,13 +47,13 @@ double table_bits(const FixedTable& table, int entry_bits) {
   return static_cast<double>(table.c0.size()) * entry_bits * (table.degree + 1);
 }
 
-// Slots, a FIFO of arrivals per face, halos of C, C, 3C, 3C, 9C, 9C records, the queue of candidates, and a sum
-// per slot and pipe.
+// Slots, a FIFO of arrivals per face, halos of C, C, 3C, 3C, 9C, 9C records, the queue of candidates, and a
+// sum per slot and pipe.
 double particle_memory(const Arch& arch, double particle_bits, double halo_bits, double sum_bits) {
   const double capacity = arch.capacity;
-  return kMemoryBit * (7 * capacity * particle_bits + 26 * capacity * halo_bits +
-                       arch.queue_depth * (halo_bits + arch.filter_lanes) +
-                       arch.force_pipes * capacity * 3 * sum_bits);
+  return kMemoryBit *
+         (7 * capacity * particle_bits + 26 * capacity * halo_bits +
+          arch.queue_depth * (halo_bits + arch.filter_lanes) + arch.force_pipes * capacity * 3 * sum_bits);
 }
 
 }  // namespace
@@ -103,8 +104,7 @@ NodeArea area_of(const Rule& rule, const Arch& arch, int mantissa, int bits) {
   const double lane = 3 + 4 + 7, update = 3 * 3;
   NodeArea area;
   area.multipliers = kBitProduct * arch.force_pipes * products * mantissa * mantissa;
-  area.adders = kAdderBit * 3 * mantissa *
-                (arch.force_pipes * adders + arch.filter_lanes * lane + update);
+  area.adders = kAdderBit * 3 * mantissa * (arch.force_pipes * adders + arch.filter_lanes * lane + update);
   area.particles = particle_memory(arch, 6.0 * bits, (damped ? 6.0 : 3.0) * bits, bits);
   return area;
 }

@@ -64,8 +64,9 @@ class Search {
 
   SearchResult run() {
     find_reference();
+    result_.cost = kInfinity;
     if (size_of(result_.reference_error) <= budget_ && reference_is_no_accident()) descend();
-    result_.met = !result_.best.at.empty();
+    result_.met = result_.cost < kInfinity;
     if (result_.met)
       explain();
     else
@@ -133,8 +134,8 @@ class Search {
     return known != costs_.end() ? known->second : costs_.emplace(p, space_.cost(p)).first->second;
   }
 
-  // Children of several nodes: each walks its next axis from the reference down until the budget breaks. Their
-  // bounds are still those of their parents.
+  // Children of several nodes: each walks its next axis from the reference down until the budget breaks.
+  // Their bounds are still those of their parents.
   std::vector<Node> children(const std::vector<Node>& nodes) {
     struct Walk {
       const Node* node;
@@ -184,9 +185,8 @@ class Search {
   }
 
   void descend() {
-    result_.cost = kInfinity;
-    std::set<Node> open{{bound(result_.reference, 0, 0), 0, result_.reference,
-                         size_of(result_.reference_error)}};
+    std::set<Node> open{
+        {bound(result_.reference, 0, 0), 0, result_.reference, size_of(result_.reference_error)}};
     if (axes_ == 0) take(*open.begin());
     while (!open.empty() && axes_ > 0) {
       std::vector<Node> next;
@@ -206,12 +206,11 @@ class Search {
   }
 
   void take(const Node& leaf) {
-    const double c = cost(leaf.at);
-    if (std::isnan(c)) return;
+    const double c = cost(leaf.at);  // nan ranks before nothing
     const auto rank = [](double price, const Notches& p) {
       return std::tuple(price, std::accumulate(p.begin(), p.end(), 0), p);
     };
-    if (!result_.best.at.empty() && !(rank(c, leaf.at) < rank(result_.cost, result_.best.at))) return;
+    if (!(rank(c, leaf.at) < rank(result_.cost, result_.best.at))) return;
     result_.cost = c;
     result_.best.at = leaf.at;
   }
@@ -284,8 +283,6 @@ NotchOrder::NotchOrder(size_t axis_, int notch_)
       axis(axis_),
       notch(notch_) {}
 
-SearchResult search(const SearchSpace& space, double budget) {
-  return Search(space, budget).run();
-}
+SearchResult search(const SearchSpace& space, double budget) { return Search(space, budget).run(); }
 
 }  // namespace cuboct::study

@@ -65,7 +65,8 @@ struct Studied {
     write_text(bench.path("study.toml"), study);
   }
   Answer explore(const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"explore", bench.path("study.toml"), "--out", bench.path("results"), "--jobs", "2"};
+    std::vector<std::string> words{
+        "explore", bench.path("study.toml"), "--out", bench.path("results"), "--jobs", "2"};
     words.insert(words.end(), more.begin(), more.end());
     return bench.cuboct(words);
   }
@@ -82,7 +83,8 @@ TEST(ErrorBudget, WrongQuestionsAreToldBeforeAnythingRuns) {
   };
   expect({"--error", "little"},
          "'little' is no error\n  hint: a percentage or a share: --error 1% or --error 0.01\n");
-  expect({"--error", "1"}, "an error of '1' is out of range: above 0 and below 100%\n  hint: did you mean '1%'?\n");
+  expect({"--error", "1"},
+         "an error of '1' is out of range: above 0 and below 100%\n  hint: did you mean '1%'?\n");
   expect({"--error", "1%", "--figure", "breadth"},
          s.bench.path("study.toml") + ": no figure 'breadth'\n  hint: did you mean 'breath'?\n");
   expect({"--figure", "breath"}, "--figure names the figure of --error E\n");
@@ -98,7 +100,8 @@ TEST(ErrorBudget, WrongQuestionsAreToldBeforeAnythingRuns) {
 TEST(ErrorBudget, CannotBeKept) {
   const Answer answer = Studied().explore({"--error", "0.02%"});
   EXPECT_EQ(answer.code, 1) << answer.err;
-  EXPECT_NE(answer.out.find("no settings of [search] keep 'breath' within 0.02%\nthe best: "), std::string::npos)
+  EXPECT_NE(answer.out.find("no settings of [search] keep 'breath' within 0.02%\nthe best: "),
+            std::string::npos)
       << answer.out;
   EXPECT_NE(answer.out.find("\nwhat limits is "), std::string::npos) << answer.out;
 }
@@ -128,8 +131,8 @@ TEST(ErrorBudget, TheChosenFilesRun) {
   Figure figure;
   figure.kind = Figure::Kind::frequency;
   figure.curve = "right.x";
-  // The engine of `run` starts with v(0) where the study starts with v(-dt/2): another amplitude, the same law,
-  // which is not quite linear.
+  // The engine of `run` starts with v(0) where the study starts with v(-dt/2): another amplitude, the same
+  // law, which is not quite linear.
   EXPECT_NEAR(value_of(figure, trace.curves, read_scene(out + "/cheapest.toml").rule.dt), told, 2e-3 * told);
   EXPECT_NE(contents(out + "/cheapest.toml").find("# acetal"), std::string::npos);
   // Again: all is known, and the answer the same.

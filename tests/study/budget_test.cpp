@@ -105,7 +105,9 @@ class Budget : public testing::Test {
     std::ofstream(dir_ / "study.toml") << text;
     return read_study((dir_ / "study.toml").string());
   }
-  Store store(const Study& study, const char* name = "search.db") const { return {(dir_ / name).string(), study}; }
+  Store store(const Study& study, const char* name = "search.db") const {
+    return {(dir_ / name).string(), study};
+  }
   BudgetQuestion question(double budget) const { return {1, budget, 2, false}; }
 
   fs::path dir_;
@@ -202,7 +204,8 @@ TEST_F(Budget, WrittenFilesAreTheRunThatWasMeasured) {
   const Written texts = written(s, truth, settings);
   std::ofstream(dir_ / "cheapest.toml") << texts.scene;
   std::ofstream(dir_ / "cheapest_arch.toml") << texts.arch;
-  const Case c = resolve(read_base((dir_ / "cheapest.toml").string(), (dir_ / "cheapest_arch.toml").string()), {});
+  const Case c =
+      resolve(read_base((dir_ / "cheapest.toml").string(), (dir_ / "cheapest_arch.toml").string()), {});
   EXPECT_EQ(c.scene.rule.dt, outcome.dt);
   EXPECT_EQ(c.scene.steps, outcome.steps);
   EXPECT_EQ(c.scene.probe_every * 60, c.scene.steps);
@@ -230,6 +233,11 @@ TEST_F(Budget, GoesOnFromItsStore) {
   memory.put_errors(lie);
   const BudgetAnswer second = keep_budget(s, truth, memory, question(0.01));
   EXPECT_FALSE(second.chosen.settings == first.chosen.settings);
+  // Errors have a sign, so that parts of either do not look alike.
+  Outcome standard = *memory.errors(first.standard.settings);
+  standard.errors.values[1] = 0.75 * truth.figures[1];
+  memory.put_errors(standard);
+  EXPECT_DOUBLE_EQ(keep_budget(s, truth, memory, question(0.01)).standard.error, -0.25);
 }
 
 TEST_F(Budget, WhatCannotBeKeptIsSaid) {
@@ -241,7 +249,8 @@ TEST_F(Budget, WhatCannotBeKeptIsSaid) {
   testing::internal::CaptureStdout();
   EXPECT_EQ(run_budget(s, truth, options), 1);
   const std::string out = testing::internal::GetCapturedStdout();
-  EXPECT_NE(out.find("no settings of [search] keep 'breath' within 0.05%\nthe best: "), std::string::npos) << out;
+  EXPECT_NE(out.find("no settings of [search] keep 'breath' within 0.05%\nthe best: "), std::string::npos)
+      << out;
   EXPECT_NE(out.find(" with dt_safety 0.4, arithmetic float64\n"), std::string::npos) << out;
   EXPECT_NE(out.find("\nwhat limits is dt_safety: the notch next to it still changes the error by "),
             std::string::npos)
@@ -256,9 +265,9 @@ TEST_F(Budget, TheReport) {
   EXPECT_EQ(run_budget(s, truth, {"5%", "breath", dir_.string(), 2}), 0);
   const std::string out = testing::internal::GetCapturedStdout();
   for (const char* part :
-       {"figure 'breath': ", " Hz by the truth\n", "the cheapest settings within 5%\n\nsetting ", "\ndt_safety ",
-        "\nindex_bits ", "\nfinest settings ", "\nsum ", "\nas measured: ", "\ncost: ",
-        " of that of the study's own settings (", "/cheapest.toml --arch "})
+       {"figure 'breath': ", " Hz by the truth\n", "the cheapest settings within 5%\n\nsetting ",
+        "\ndt_safety ", "\nindex_bits ", "\nfinest settings ", "\nsum ", "\nas measured: ", "\ncost: ",
+        "\ntime step: ", " of that of the study's own settings (", "/cheapest.toml --arch "})
     EXPECT_NE(out.find(part), std::string::npos) << part << "\n" << out;
   const std::string scene = read(dir_ / "cheapest.toml");
   EXPECT_EQ(scene.find("# Chosen by `cuboct explore "), 0u);
@@ -280,7 +289,8 @@ TEST_F(Budget, WrongQuestions) {
   for (const char* text : {"", "%", "abc", "1 %", "1%%", "nan", "inf", "0x1", "1e"})
     EXPECT_EQ(error(text), "'" + std::string(text) +
                                "' is no error\n  hint: a percentage or a share: --error 1% or --error 0.01");
-  EXPECT_EQ(error("1"), "an error of '1' is out of range: above 0 and below 100%\n  hint: did you mean '1%'?");
+  EXPECT_EQ(error("1"),
+            "an error of '1' is out of range: above 0 and below 100%\n  hint: did you mean '1%'?");
   for (const char* text : {"0", "-1%", "100%", "2"})
     EXPECT_EQ(error(text), "an error of '" + std::string(text) +
                                "' is out of range: above 0 and below 100%\n  hint: a percentage or a share: "
@@ -290,7 +300,8 @@ TEST_F(Budget, WrongQuestions) {
   EXPECT_DOUBLE_EQ(read_error_budget("1e-3"), 0.001);
 
   const Study s = study();
-  EXPECT_EQ(message([&] { figure_named(s, ""); }), s.path + ": which figure?\n  hint: --figure last or breath");
+  EXPECT_EQ(message([&] { figure_named(s, ""); }),
+            s.path + ": which figure?\n  hint: --figure last or breath");
   EXPECT_EQ(message([&] { figure_named(s, "breat"); }),
             s.path + ": no figure 'breat'\n  hint: did you mean 'breath'?");
   EXPECT_EQ(figure_named(s, "breath"), 1u);
@@ -302,16 +313,20 @@ TEST_F(Budget, WrongQuestions) {
   truth.rungs[0].figures = {0.0, 0.98};
   truth.rungs[1].figures = {0.0, 1.0};
   Store memory = store(s);
-  EXPECT_EQ(message([&] { keep_budget(s, truth, memory, {0, 0.01, 1, false}); }),
+  EXPECT_EQ(message([&] {
+              keep_budget(s, truth, memory, {0, 0.01, 1, false});
+            }),
             s.path + ": the figure 'last' of the truth is 0: no relative error can be told");
   EXPECT_EQ(message([&] { keep_budget(s, truth, memory, question(0.01)); }),
-            s.path + ": the truth of 'breath' is known to 0.02 only, worse than the budget of 0.01\n"
-            "  hint: a smaller 'tolerance' or more 'rungs' in [truth]");
+            s.path +
+                ": the truth of 'breath' is known to 0.02 only, worse than the budget of 0.01\n"
+                "  hint: a smaller 'tolerance' or more 'rungs' in [truth]");
   Study plain = s;
   plain.search.clear();
   EXPECT_EQ(message([&] { check_budget(plain, "1%", "breath"); }),
-            s.path + ": no [search] to choose from\n"
-                     "  hint: list settings from cheap to dear, e.g. [search] dt_safety = [0.8, 0.4, 0.2]");
+            s.path +
+                ": no [search] to choose from\n"
+                "  hint: list settings from cheap to dear, e.g. [search] dt_safety = [0.8, 0.4, 0.2]");
 }
 
 TEST_F(Budget, NotchesOutOfOrder) {
@@ -321,8 +336,9 @@ TEST_F(Budget, NotchesOutOfOrder) {
   const Truth& truth = truth_of(s);
   Store memory = store(s);
   EXPECT_EQ(message([&] { keep_budget(s, truth, memory, question(0.05)); }),
-            s.path + ": [search]: '9' of index_bits costs more than '6' after it\n"
-                     "  hint: notches go from cheap to dear");
+            s.path +
+                ": [search]: '9' of index_bits costs more than '6' after it\n"
+                "  hint: notches go from cheap to dear");
 }
 
 }  // namespace

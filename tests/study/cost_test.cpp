@@ -37,10 +37,11 @@ TEST(Cost, GoesWithTheStepsPerSecond) {
 }
 
 TEST(Cost, ACoarserPackingIsCheaper) {
-  // The same block of 2.8 mm: particles go with pitch^-3, steps with 1/pitch; twice the pitch leaves a sixteenth, or
-  // less, as more of the particles are at the surface and miss partners.
+  // The same block of 2.8 mm: particles go with pitch^-3, steps with 1/pitch; twice the pitch leaves a
+  // sixteenth, or less, as more of the particles are at the surface and miss partners.
   const auto packed = [](const char* pitch) {
-    return cost({{"packing.pitch", pitch}, {"box.cells", ""}, {"box.size", "\"[2.8284, 2.8284, 2.8284] mm\""}});
+    return cost(
+        {{"packing.pitch", pitch}, {"box.cells", ""}, {"box.size", "\"[2.8284, 2.8284, 2.8284] mm\""}});
   };
   const double fine = packed("\"0.25 mm\""), middle = packed("\"0.35 mm\""), coarse = packed("\"0.5 mm\"");
   EXPECT_LT(coarse, middle);
@@ -79,8 +80,9 @@ TEST(Cost, WhatASceneUsesIsPaid) {
   EXPECT_GT(damped / plain, 1.5);
   EXPECT_LT(damped / plain, 3);
   Base base = block();
-  base.scene_text += "\n[[constraint]]\nname = \"h\"\nkind = \"held_by_force\"\n"
-                     "region = { shape = \"sphere\", radius = \"1 mm\" }\n";
+  base.scene_text +=
+      "\n[[constraint]]\nname = \"h\"\nkind = \"held_by_force\"\n"
+      "region = { shape = \"sphere\", radius = \"1 mm\" }\n";
   const Case held = resolve(base, {});
   // kp u and kd (v - V), 18 bits by 29 and 30, per axis.
   const double products = area_of(plan_of(held.scene, held.arch)).multipliers;
@@ -89,7 +91,8 @@ TEST(Cost, WhatASceneUsesIsPaid) {
 }
 
 TEST(Cost, PrecisionsInTheirOrder) {
-  const double fixed = cost({}), f32 = cost({}, {}, Arithmetic::float32), f64 = cost({}, {}, Arithmetic::float64);
+  const double fixed = cost({}), f32 = cost({}, {}, Arithmetic::float32),
+               f64 = cost({}, {}, Arithmetic::float64);
   EXPECT_LT(fixed, f32);
   EXPECT_LT(f32, f64);
 }
@@ -104,11 +107,16 @@ TEST(Cost, TheDefaultPipeByHand) {
   // Squares of 17 bits, slope times t, strength (as wide as its values, at most 18 here) times d.
   EXPECT_DOUBLE_EQ(area.multipliers, 34.0 * (3 * 17 * 17 + 18 * 18 + 3 * 18 * 17));
   EXPECT_DOUBLE_EQ(area.tables, 6.0 * 512 * 2 * 18);
+  // Pipe: differences of 23 bits and their rounding to 17, two sums of r2, the table's, kicks, sums. A lane:
+  // differences, then 17 adders and comparisons of 21 bits. Update, per axis: two of v, two of x.
+  const double kick = 18 + 17 - plan.rule.kick_shift;
+  const double pipe = 3 * 23 + 3 * 17 + 2 * 34 + 18 + 3 * kick + 3 * (kick + 9), lane = 3 * 23 + 17 * 21;
+  EXPECT_DOUBLE_EQ(area.adders, 28.0 * (pipe + 8 * lane + 3 * (2 * 29 + 2 * 22)));
   // 16 slots and 6 x 16 arrivals of a particle, 26 x 16 halos of 64 bits, 16 queued with 8 mask bits.
   EXPECT_EQ(plan.words.halo_bits, 64);
-  const double sum = (18 + 17 - plan.rule.kick_shift) + 9;  // 27 * 16 kicks
-  EXPECT_DOUBLE_EQ(area.particles, 6.0 * (7 * 16 * plan.words.particle_bits + 26 * 16 * 64 + 16 * (64 + 8) +
-                                          16 * 3 * sum));
+  const double sum = kick + 9;  // 27 * 16 kicks
+  EXPECT_DOUBLE_EQ(area.particles,
+                   6.0 * (7 * 16 * plan.words.particle_bits + 26 * 16 * 64 + 16 * (64 + 8) + 16 * 3 * sum));
   // Every second one of 8 x 8 x 8 places in half cells is a site: along each of the six directions of nearest
   // neighbours 7 x 7 x 8 / 2 pairs. Second neighbours stand at the cutoff and do not count.
   const double pairs = 6 * 7 * 7 * 8 / 2;

@@ -78,8 +78,8 @@ void for_each_point(const std::vector<int>& sizes, const std::function<void(cons
 TEST(Search, TwoAxesByHand) {
   // Errors in per cent. (1,1): 0.1 + 0.4 + 0.2 = 0.7; (0,1) has 1.2, (1,0) has 1.1, both break 1.
   Asked asked;
-  const auto space = asked.space({3, 3}, sum_of({{1.0, 0.5, 0.1}, {0.6, 0.2, 0.0}}),
-                                 sum_of({{1, 2, 4}, {0.5, 2, 4}}));
+  const auto space =
+      asked.space({3, 3}, sum_of({{1.0, 0.5, 0.1}, {0.6, 0.2, 0.0}}), sum_of({{1, 2, 4}, {0.5, 2, 4}}));
   const SearchResult result = search(space, 1.0);
   ASSERT_TRUE(result.met);
   EXPECT_EQ(result.reference, (Notches{2, 2}));
@@ -167,7 +167,8 @@ TEST(Search, AReferenceThatIsNotTheFinestPoint) {
 
 TEST(Search, AnImpossibleBudgetNamesWhatLimits) {
   Asked asked;
-  const auto space = asked.space({3, 3}, sum_of({{9, 5, 3}, {1.2, 1.1, 1.0}}), sum_of({{1, 2, 3}, {1, 2, 3}}));
+  const auto space =
+      asked.space({3, 3}, sum_of({{9, 5, 3}, {1.2, 1.1, 1.0}}), sum_of({{1, 2, 3}, {1, 2, 3}}));
   const SearchResult result = search(space, 1.0);
   EXPECT_FALSE(result.met);
   EXPECT_FALSE(result.accident);
@@ -198,16 +199,17 @@ TEST(Search, SettingsThatCannotRun) {
   EXPECT_FALSE(free.met);
   // Nothing runs at all.
   Asked nothing;
-  const SearchResult none =
-      search(nothing.space({2, 2}, [](const Notches&) { return kNan; }, sum_of({{1, 2}, {1, 2}})), 1.0);
+  const SearchResult none = search(nothing.space(
+                                       {2, 2}, [](const Notches&) { return kNan; }, sum_of({{1, 2}, {1, 2}})),
+                                   1.0);
   EXPECT_FALSE(none.met);
   EXPECT_EQ(none.limit, -1);
 }
 
 TEST(Search, OfEqualCostsTheLowerNotches) {
   Asked asked;
-  const auto flat = asked.space({4, 4}, sum_of({{0.3, 0.2, 0.1, 0}, {9, 0.2, 0.1, 0}}),
-                                [](const Notches&) { return 1.0; });
+  const auto flat =
+      asked.space({4, 4}, sum_of({{0.3, 0.2, 0.1, 0}, {9, 0.2, 0.1, 0}}), [](const Notches&) { return 1.0; });
   const SearchResult result = search(flat, 1.0);
   EXPECT_EQ(result.best.at, (Notches{0, 1}));
   ASSERT_EQ(result.cheaper.size(), 1u);
@@ -215,8 +217,8 @@ TEST(Search, OfEqualCostsTheLowerNotches) {
   Asked wide;
   std::vector<double> most(12, 0.9), last(12, 0.5);
   most[10] = 0.1, most[11] = last[11] = 0;
-  const SearchResult late =
-      search(wide.space({12, 12, 2}, sum_of({most, last, {0.2, 0}}), [](const Notches&) { return 1.0; }), 1.0);
+  const SearchResult late = search(
+      wide.space({12, 12, 2}, sum_of({most, last, {0.2, 0}}), [](const Notches&) { return 1.0; }), 1.0);
   EXPECT_EQ(late.best.at, (Notches{10, 0, 0}));
   // No axis, and axes of one notch.
   Asked none, one;
@@ -286,8 +288,8 @@ TEST(Search, IsExactOnRandomLandscapes) {
     const Landscape error = [&](const Notches& p) { return errors.at(p); };
     const double budget = real(0.03, 0.4);
     Asked asked;
-    const SearchResult result = search(
-        asked.space(sizes, error, [&](const Notches& p) { return costs.at(p); }), budget);
+    const SearchResult result =
+        search(asked.space(sizes, error, [&](const Notches& p) { return costs.at(p); }), budget);
     points += errors.size();
     asked_for += asked.points.size();
     if (!result.met) {
