@@ -68,7 +68,7 @@ TEST(Stability, RefusesWrongInput) {
 
 TEST(Stability, CtrlCPrintsWhatIsThere) {
   const Bench bench(false);
-  const Answer answer = bench.cuboct({"stability", "scenes/coupon.toml"}, 2);
+  const Answer answer = bench.cuboct({"stability", "scenes/two_types.toml", "--resolution", "0.0005"}, 2);
   EXPECT_EQ(answer.code, 1);
   EXPECT_NE(answer.out.find("perfect packing"), std::string::npos) << answer.out;
   EXPECT_EQ(answer.out.find("pressed by"), std::string::npos) << answer.out;
