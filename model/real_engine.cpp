@@ -128,6 +128,17 @@ class Engine final : public RealEngine {
   void evaluate(uint64_t number) {
     if (options_.order_seed != 0) shuffle(number);
     sum(f_);
+    // Velocity Verlet kicks twice with these forces: they keep the velocities of now, as the damping does.
+    if (pd_) add_holds();
+  }
+  void add_holds() {
+#pragma omp parallel for num_threads(threads_) schedule(static)
+    for (size_t s = 0; s < particles_; ++s) {
+      const Push<Real>& push = pushes_[type_[s]];
+      if (!push.pd) continue;
+      for (size_t k = 4 * s; k < 4 * s + 3; ++k)
+        f_[k] -= push.kp * u_[k] + push.kd * (v_[k] - push.velocity[k - 4 * s]);
+    }
   }
 
   // Fisher and Yates, lane by lane; what fills a lane's rows is shuffled among them.
@@ -165,9 +176,7 @@ class Engine final : public RealEngine {
       const Real* const f = &f_[4 * s];
       Real moved2 = 0;
       for (int axis = 0; axis < 3; ++axis) {
-        Real total = f[axis];
-        if (push.pd) total -= push.kp * u_[4 * s + axis] + push.kd * (v[axis] - push.velocity[axis]);
-        const Real a = total / mass_ + push.gravity[axis];
+        const Real a = f[axis] / mass_ + push.gravity[axis];
         const Real free = v[axis] + a * kick_dt;
         v[axis] = push.imposed[axis] ? push.velocity[axis] : free;
         fastest = std::max(fastest, std::abs(v[axis]));
@@ -230,7 +239,7 @@ class Engine final : public RealEngine {
   std::vector<Push<Real>> pushes_;  // [type]
   std::vector<Real> materials_;     // [type]
   // By slot, four numbers each: coordinates, and in x the material.
-  std::vector<Real> x_, v_, u_, f_;
+  std::vector<Real> x_, v_, u_, f_;  // f_: of pairs and of holds
   std::vector<Real> listed_;  // x when the list was made
   std::vector<uint8_t> type_;
   std::vector<uint32_t> rank_;  // [id]: slot
