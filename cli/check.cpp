@@ -29,9 +29,8 @@ void add_not_built(Items& items, const Plan& plan) {
   static constexpr std::array<const char*, Carry::kCount> kNames{
       "damping", "pair scales", "types", "PD controllers", "third axis", "empty nodes"};
   static constexpr std::array<const char*, Carry::kCount> kBesides{
-      "velocities, a table, 2 cycles of the pipe", "types, a table, 2 cycles of the pipe", "types",
-      "displacements, 3 cycles of the update", "2 of 8 phases, and all that works along z",
-      ""};
+      "velocities, a table, 2 cycles of the pipe", "types, a table, 2 cycles of the pipe",      "types",
+      "displacements, 3 cycles of the update",     "2 of 8 phases, and all that works along z", ""};
   const FixedRule& r = plan.rule;
   const uint64_t cells = bounding_cells(plan.lattice);
   const std::array<bool, Carry::kCount> used{r.damped, r.scaled,    r.type_bits > 0,
@@ -60,7 +59,8 @@ void add_not_built(Items& items, const Plan& plan) {
               fmt::format("of a halo record, {} of a particle record; {}", particle, kBesides[k]));
   }
   const Words all = words_with(Carry::everything());
-  items.add("halo record with everything", all.halo_bits, "bit", fmt::format("{} as built", plan.words.halo_bits));
+  items.add("halo record with everything", all.halo_bits, "bit",
+            fmt::format("{} as built", plan.words.halo_bits));
   items.add("particle record with everything", all.particle_bits, "bit",
             fmt::format("{} as built", plan.words.particle_bits));
 }

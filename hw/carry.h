@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a plan carries although its scene does not use it. The bits of a run stay the same; words, latencies and
-// the paths that engines choose become those of a plan that needs it. For measuring what leaving it out saves.
+// What a plan carries although its scene does not use it. The bits of a run stay the same; words, latencies
+// and the paths that engines choose become those of a plan that needs it. For measuring what leaving it out
+// saves.
 #pragma once
 
 #include <array>
@@ -26,8 +27,8 @@ struct Carry {
 };
 
 // All but the empty nodes, which are no part of a rule. Two more things can stop a run then: a relative
-// velocity inside the cutoff that does not fit `relative_velocity_bits`, as in any damped plan, and a strength
-// that does not fit.
+// velocity inside the cutoff that does not fit `relative_velocity_bits`, as in any damped plan, and a
+// strength that does not fit.
 FixedRule carrying(FixedRule rule, const Carry& carry);
 
 }  // namespace cuboct

@@ -17,9 +17,9 @@ namespace cuboct {
 //   particle:       x[P] y[P] z[P] away_y[2] away_z[2] v[3 x velocity_bits] type[type_bits] id[id_bits]
 //                   u[3 x displacement_bits, if pd]
 // A flat plan (rule.axes 2) has nothing of z: x[P+2] y[P] ..., x[P] y[P] away_y[2] v[2 x velocity_bits] ...
-// All but the last axis of a halo record are signed, in the frame of the sender's node (see docs/reference/node.md); `away`
-// is two's complement: -1, 0, +1. The particle word is the migrate record and the word of the load and
-// observe ports.
+// All but the last axis of a halo record are signed, in the frame of the sender's node (see
+// docs/reference/node.md); `away` is two's complement: -1, 0, +1. The particle word is the migrate record and
+// the word of the load and observe ports.
 struct Words {
   int id_bits = 0;
   int halo_bits = 0;

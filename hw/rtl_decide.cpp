@@ -127,7 +127,8 @@ RtlDesign decide(const Plan& plan) {
   design.link_bits = plan.words.link_bits;
   const int s_bits = rule.damped ? w.strength_bits : force_bits;
   const int kick_bits = std::max(2, s_bits + w.difference_frac + 1 - rule.kick_shift);
-  design.pair_sum_bits = kick_bits + clog2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(arch.capacity));
+  design.pair_sum_bits =
+      kick_bits + clog2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(arch.capacity));
   for (uint32_t n = 0; n < plan.lattice.size(); ++n) {
     design.cells.push_back(plan.lattice.cell(n));
     auto& faces = design.neighbour.emplace_back();

@@ -221,8 +221,8 @@ std::string print_lattice(const RtlDesign& design) {
   text.replace(text.find("@NODES@"), 7, std::to_string(nodes));
   for (size_t n = 0; n < nodes; ++n)
     text +=
-        fmt::format("  logic [{1}:0] valid_{0}, end_{0}, ready_{0};\n  logic [{2}*LinkBits-1:0] data_{0};\n", n,
-                        faces - 1, faces);
+        fmt::format("  logic [{1}:0] valid_{0}, end_{0}, ready_{0};\n  logic [{2}*LinkBits-1:0] data_{0};\n",
+                    n, faces - 1, faces);
   std::string unused_ends;
   for (size_t n = 0; n < nodes; ++n) {
     const Cell& cell = design.cells[n];

@@ -37,9 +37,9 @@ double periodic_edge(const Vec3& extent, double least) {
       "use a larger box, or one whose sides have a common part");
 }
 
-// Whether nothing happens along z: all particles share one height, none moves, is pulled or driven off it, to
-// the last bit of the fixed rule. Then the heights can be the lower faces of one layer of cells, and every d_z,
-// and with it every kick along z, is 0 (docs/reference/plan.md).
+// Whether nothing happens along z: all particles share one height, none moves, is pulled or driven off it,
+// to the last bit of the fixed rule. Then the heights can be the lower faces of one layer of cells, and every
+// d_z, and with it every kick along z, is 0 (docs/reference/plan.md).
 bool is_flat(const Scene& scene, const FixedRule& rule, double lowest) {
   if (scene.periodic.extent[2] > 0 || scene.body.size() == 0) return false;
   for (const FixedType& type : rule.types)
@@ -64,8 +64,9 @@ std::vector<Cell> filled_box(const std::vector<Cell>& cells) {
   double count = 1;
   for (int a = 0; a < 3; ++a) count *= high[a] - low[a] + 1.0;
   if (count > kMostCells)
-    throw InputError(fmt::format("plan.carry = [\"empty_nodes\"]: the bounding box has {:.4g} cells, at most {:.3g} "
-                                 "can be built", count, kMostCells));
+    throw InputError(fmt::format(
+        "plan.carry = [\"empty_nodes\"]: the bounding box has {:.4g} cells, at most {:.3g} can be built",
+        count, kMostCells));
   std::vector<Cell> box;
   box.reserve(static_cast<size_t>(count));
   for (int32_t z = low[2]; z <= high[2]; ++z)

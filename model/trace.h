@@ -28,9 +28,9 @@ const char* to_string(Phase phase);
 // The one that ends a step, in a plan of two or three axes.
 constexpr Phase last_phase(int axes) { return axes == 3 ? Phase::migrate_z : Phase::migrate_y; }
 
-// First and last cycle of a phase, counted from the start of the run (cycle 0: the first cycle after start). A
-// phase that the plan does not have (exchange_z, migrate_z of a flat one) ends one cycle before it starts, between
-// those around it.
+// First and last cycle of a phase, counted from the start of the run (cycle 0: the first cycle after start).
+// A phase that the plan does not have (exchange_z, migrate_z of a flat one) ends one cycle before it starts,
+// between those around it.
 struct PhaseSpan {
   uint64_t start = 0, end = 0;
   bool operator==(const PhaseSpan&) const = default;

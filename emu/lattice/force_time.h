@@ -11,7 +11,8 @@
 
 namespace cuboct::emu {
 
-inline constexpr int kSegments = 7;  // own, then the halos of faces -x, +x, -y, +y, -z, +z: 1 + 2 axes of them
+// Own, then the halos of faces -x, +x, -y, +y, -z, +z; a flat plan has the first five.
+inline constexpr int kSegments = 7;
 
 struct ForceShape {
   int queue_depth = 1;

@@ -55,9 +55,12 @@ Bits load_word(const Plan& plan, const Particle& particle) {
 }
 
 Collector::Collector(const Plan& plan, const RunOptions& options)
-    : plan_(plan), options_(options), nodes_(plan.lattice.size()),
+    : plan_(plan),
+      options_(options),
+      nodes_(plan.lattice.size()),
       last_phase_(last_phase(plan.rule.axes)),
-      step_(nodes_), stopped_(nodes_) {
+      step_(nodes_),
+      stopped_(nodes_) {
   std::sort(options_.frames.begin(), options_.frames.end());
   trace_.plan_hash = plan.hash;
   trace_.nodes = nodes_;

@@ -33,9 +33,8 @@ void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out) {
   };
   const int axes = plan.rule.axes;
   // 3P+4 bits: at most 94.
-  const Wide xyz = axes == 3
-                       ? signed_field(0) | signed_field(1) << (p + 2) | last_field(2) << (2 * p + 4)
-                       : signed_field(0) | last_field(1) << (p + 2);
+  const Wide xyz = axes == 3 ? signed_field(0) | signed_field(1) << (p + 2) | last_field(2) << (2 * p + 4)
+                             : signed_field(0) | last_field(1) << (p + 2);
   out.word[0] = static_cast<uint64_t>(xyz);
   out.word[1] = static_cast<uint64_t>(xyz >> 64);
   int at = axes * p + 2 * (axes - 1);

@@ -29,18 +29,16 @@ not built PD controllers         0 bit (of a halo record, 87 of a particle recor
 halo record with everything      152 bit (64 as built)
 particle record with everything  246 bit (158 as built)
 )");
-  EXPECT_EQ(
-      not_built({"check", "scenes/sheet.toml"}),
-      R"(not built                        pair scales, PD controllers, third axis
+  EXPECT_EQ(not_built({"check", "scenes/sheet.toml"}),
+            R"(not built                        pair scales, PD controllers, third axis
 not built pair scales            2 bit (of a halo record, 0 of a particle record; types, a table, 2 cycles of the pipe)
 not built PD controllers         0 bit (of a halo record, 58 of a particle record; displacements, 3 cycles of the update)
 not built third axis             51 bit (of a halo record, 51 of a particle record; 2 of 8 phases, and all that works along z)
 halo record with everything      153 bit (100 as built)
 particle record with everything  252 bit (114 as built)
 )");
-  EXPECT_EQ(
-      not_built({"check", "scenes/sheet.toml", "--arch", "scenes/archs/everything.toml"}),
-      R"(not built                        nothing is left out
+  EXPECT_EQ(not_built({"check", "scenes/sheet.toml", "--arch", "scenes/archs/everything.toml"}),
+            R"(not built                        nothing is left out
 halo record with everything      153 bit (153 as built)
 particle record with everything  252 bit (252 as built)
 )");
@@ -56,16 +54,16 @@ TEST(Check, CountsTheCellsWithoutNode) {
                                            "[run]\ndt = 0.001\nsteps = 20\n";
   const Answer answer = bench.cuboct({"check", bench.path("two.toml")});
   EXPECT_NE(answer.out.find("PD controllers, empty nodes\n"), std::string::npos) << answer.out;
-  EXPECT_NE(answer.out.find("not built empty nodes            1277 cells (of 1331 cells of the bounding box have "
-                            "no node)\n"),
-            std::string::npos)
+  EXPECT_NE(
+      answer.out.find("not built empty nodes            1277 cells (of 1331 cells of the bounding box have "
+                      "no node)\n"),
+      std::string::npos)
       << answer.out;
 }
 
 TEST(Check, NamesItInJsonToo) {
-  EXPECT_EQ(
-      not_built({"check", "scenes/coupon.toml", "--json"}),
-      R"(  "not_built": {"value": "pair scales, PD controllers"},
+  EXPECT_EQ(not_built({"check", "scenes/coupon.toml", "--json"}),
+            R"(  "not_built": {"value": "pair scales, PD controllers"},
   "not_built_pair_scales": {"value": 2, "unit": "bit", "note": "of a halo record, 0 of a particle record; types, a table, 2 cycles of the pipe"},
   "not_built_PD_controllers": {"value": 0, "unit": "bit", "note": "of a halo record, 87 of a particle record; displacements, 3 cycles of the update"},
   "halo_record_with_everything": {"value": 153, "unit": "bit", "note": "151 as built"},

@@ -15,7 +15,9 @@ namespace {
 
 const std::string kRoot = CUBOCT_SOURCE_DIR;
 
-Scene sheet() { return block_scene({.size = {3, 3, 1}, .jitter = 0.05, .speed = 0.1, .held = true, .flat = true}); }
+Scene sheet() {
+  return block_scene({.size = {3, 3, 1}, .jitter = 0.05, .speed = 0.1, .held = true, .flat = true});
+}
 
 int axes_after(const std::function<void(Scene&)>& change) {
   Scene scene = sheet();
@@ -103,7 +105,8 @@ TEST(Carry, ChangesNoBit) {
       EXPECT_GE(plan.words.particle_bits, plain.words.particle_bits);
       other += plan.hash != plain.hash;
     }
-    // What the scene has already changes nothing: types of the sheet, the third axis and the nodes of the block.
+    // What the scene has already changes nothing: types of the sheet, the third axis and the nodes of the
+    // block.
     EXPECT_GE(other, 5);
   }
 }
