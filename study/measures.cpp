@@ -42,6 +42,15 @@ std::vector<Measure> measured(const Results& results, std::vector<Measure> all) 
 
 }  // namespace
 
+double worst_figure_error(const Outcome& outcome) {
+  double worst = kNotMeasured;
+  for (const double error : outcome.errors.figures) {
+    if (std::isnan(error)) return kNotMeasured;
+    worst = std::fmax(worst, error);
+  }
+  return worst;
+}
+
 std::vector<Measure> error_measures(const Results& results) {
   const auto of = [](double Errors::*member) {
     return [member](const Outcome& outcome) { return outcome.errors.*member; };
@@ -59,6 +68,11 @@ std::vector<Measure> error_measures(const Results& results) {
        true, 0, [](const Outcome& outcome) { return std::abs(outcome.errors.drift_per_oscillation); }},
       {Kind::momentum, "momentum", "change of momentum, of the sum of |m v|", true, 0,
        of(&Errors::momentum)}};
+  if (results.figure_names.size() > 1) {
+    double floor = 0;
+    for (size_t n = 0; n < results.figure_names.size(); ++n) floor = std::max(floor, figure_floor(results.truth, n));
+    all.push_back({Kind::figure, "figures_worst", "relative error of the worst figure", true, floor, worst_figure_error});
+  }
   for (size_t n = 0; n < results.figure_names.size(); ++n)
     all.push_back({Kind::figure, id_of(results.figure_names[n], n),
                    "relative error of " + results.figure_names[n], true, figure_floor(results.truth, n),
@@ -74,7 +88,7 @@ std::vector<Measure> speed_measures(const Results& results) {
                  [](const Outcome& outcome) { return outcome.speed.simulated_seconds; }},
                 {Kind::speed, "particle_steps", "particle-steps per second", false, 0,
                  [](const Outcome& outcome) { return outcome.speed.particle_steps; }},
-                {Kind::speed, "cost", "cost, multiplier bits per simulated second (less is better)", true, 0,
+                {Kind::speed, "cost", "cost, transistors x time per simulated second (less is better)", true, 0,
                  [](const Outcome& outcome) { return outcome.cost; }}});
 }
 

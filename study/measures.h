@@ -23,7 +23,11 @@ struct Measure {
   double merit(const Outcome& outcome) const { return less_is_better ? -value(outcome) : value(outcome); }
 };
 
-// Those that at least one outcome has: forces, trajectory, drift, momentum, then the study's figures.
+// The worst relative error of an outcome's figures; nan where one was not measured, or there is none.
+double worst_figure_error(const Outcome& outcome);
+
+// Those that at least one outcome has: forces, trajectory, drift, momentum, then the study's figures, the worst of
+// several first.
 std::vector<Measure> error_measures(const Results& results);
 // Simulated seconds and particle-steps per second of host time, and the cost that needs no machine.
 std::vector<Measure> speed_measures(const Results& results);

@@ -53,7 +53,7 @@ struct Outcome {
   double pitch = 0;  // m
   uint32_t particles = 0;
   uint64_t steps = 0;
-  double cost = kNotMeasured;         // cost.h: multiplier bits per simulated second, machine-independent
+  double cost = kNotMeasured;         // cost.h: transistors times time per simulated second
   int halo_bits = 0, table_bits = 0;  // of the plan, fixed only: a record, and all tables
   Errors errors;
   Speed speed;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "study/front.h"
+#include "study/measures.h"
 
 namespace cuboct::study {
 namespace {
@@ -16,19 +17,10 @@ constexpr const char* kArithmetic[] = {"float64", "float32", "fixed"};
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-"; }
 
 double error_of(const Results& results, const Outcome& outcome) {
-  return results.figure_names.empty() ? outcome.errors.trajectory : figure_error(outcome);
+  return results.figure_names.empty() ? outcome.errors.trajectory : worst_figure_error(outcome);
 }
 
 }  // namespace
-
-double figure_error(const Outcome& outcome) {
-  double worst = kNotMeasured;
-  for (const double error : outcome.errors.figures) {
-    if (std::isnan(error)) return kNotMeasured;
-    worst = std::fmax(worst, error);
-  }
-  return worst;
-}
 
 std::string short_name(const Settings& settings) {
   std::string text = kArithmetic[static_cast<size_t>(settings.arithmetic)];

@@ -17,7 +17,4 @@ std::string cheapest_per_decade(const Results& results);
 // The truth: rungs, horizon, notes.
 std::string describe(const Truth& truth, const Results& results);
 
-// The worst relative error of the figures; nan where none was measured.
-double figure_error(const Outcome& outcome);
-
 }  // namespace cuboct::study

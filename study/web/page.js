@@ -42,8 +42,9 @@ function summarise() {
   }
 }
 
-// The first error that is of use to most: the trajectory, where there is one.
-state.error = Math.max(0, study.errors.findIndex((e) => e.id === "trajectory"));
+// What the scene is run for comes first: the worst figure, or the only one; without figures the trajectory.
+const first_error = study.errors.findIndex((e) => e.id.startsWith("figure"));
+state.error = Math.max(0, first_error >= 0 ? first_error : study.errors.findIndex((e) => e.id === "trajectory"));
 fill_select("error", study.errors, "error");
 fill_select("speed", study.speeds, "speed");
 summarise();

@@ -69,6 +69,8 @@ async function charts_are_there(page, study) {
   assert.match(await page.textContent("#summary"), /^265 points: 246 done, 17 unstable, 2 refused\./);
   assert.equal((await page.$$(".chart svg")).length, 2 + study.parameters.length);
   assert.ok(study.parameters.length >= 6);
+  assert.ok((await texts(page, "error-speed")).includes("relative error of the worst figure"));
+  await page.selectOption("#error", {label: "distance from the true trajectory, pitches (rms)"});
   const drawn = await texts(page, "error-speed");
   for (const text of ["lattice, fixed", "reference, double", "reference, float", "gpu, float", "fpga, fixed", "Pareto front",
     "distance from the true trajectory, pitches (rms)", "simulated seconds per second", "below: the truth's own error"])
@@ -126,9 +128,9 @@ async function selectors_change_charts(page, study) {
   assert.ok((await texts(page, "parameter-0")).includes("change of momentum, of the sum of |m v|"));
 
   const by_cost = await table();
-  await page.selectOption("#speed", {label: "cost, multiplier bits per simulated second (less is better)"});
+  await page.selectOption("#speed", {label: "cost, transistors x time per simulated second (less is better)"});
   drawn = await texts(page, "error-speed");
-  assert.ok(drawn.includes("cost, multiplier bits per simulated second (less is better)"));
+  assert.ok(drawn.includes("cost, transistors x time per simulated second (less is better)"));
   assert.notEqual(await table(), by_cost);
   // The better is to the right: the cheapest point stands furthest there.
   const places = await page.evaluate(() => {

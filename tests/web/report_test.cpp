@@ -177,9 +177,15 @@ TEST(Measures, TheTruthsOwnErrorAndWhatWasMeasured) {
   EXPECT_EQ(measure(errors, "trajectory").floor, 3e-5);
   // The figure's error is 0.7 * 4e-3 / 4^k at rung k; the last two rungs are k = 4 and 5.
   EXPECT_NEAR(measure(errors, "figure0_young_s_modulus").floor, 0.7 * 4e-3 * (1.0 / 256 - 1.0 / 1024), 1e-9);
-  EXPECT_EQ(errors.size(), 9U);
+  EXPECT_EQ(errors.size(), 10U);
+  Outcome outcome;
+  outcome.errors.figures = {1e-3, 4e-3};
+  EXPECT_EQ(measure(errors, "figures_worst").value(outcome), 4e-3);
+  EXPECT_GE(measure(errors, "figures_worst").floor, measure(errors, "figure0_young_s_modulus").floor);
+  outcome.errors.figures[1] = study::kNotMeasured;
+  EXPECT_TRUE(std::isnan(measure(errors, "figures_worst").value(outcome)));
   for (Outcome& outcome : results.outcomes) outcome.errors.momentum = study::kNotMeasured;
-  EXPECT_EQ(study::error_measures(results).size(), 8U);
+  EXPECT_EQ(study::error_measures(results).size(), 9U);
 }
 
 // WCAG 2.2: relative luminance and contrast; graphics need 3:1.
