@@ -107,8 +107,9 @@ std::string gnuplot(const std::string& data, const std::string& plot, const std:
   const std::string terminal =
       kind == "svg" ? fmt::format("svg size {},{} dynamic font 'Helvetica,14'", width, height)
                     : fmt::format("pngcairo size {},{} font 'Helvetica,13'", width, height);
-  study::run_gnuplot(scratch, fmt::format("{}set encoding utf8\nset terminal {} background '#ffffff'\nset output '{}'\n{}",
-                                   data, terminal, out, plot));
+  study::run_gnuplot(
+      scratch, fmt::format("{}set encoding utf8\nset terminal {} background '#ffffff'\nset output '{}'\n{}", data,
+                           terminal, out, plot));
   return contents(out);
 }
 

@@ -130,7 +130,8 @@ std::string text_of(const Scene& scene, const std::vector<Row>& rows) {
       if (!any) break;
       if (!measured) out += fmt::format("  {:>13}  {:>7}", "-", "");
       else
-        out += fmt::format("  {:>13}  {:>7.4f}", fmt::format("{}{:.5g}", measured->refused ? ">" : "", measured->middle()),
+        out += fmt::format("  {:>13}  {:>7.4f}",
+                           fmt::format("{}{:.5g}", measured->refused ? ">" : "", measured->middle()),
                            measured->middle() / row.predicted);
       refused = refused || (measured && measured->refused);
     }

@@ -1,17 +1,25 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Draws docs/reference/failures.svg from runs of the scenes. Needs build/cuboct, g++, fmt, Eigen, HDF5 and gnuplot.
+# Draws docs/images/failures.svg from runs of the scenes. Needs build/cuboct, python3-h5py and gnuplot.
 set -eu
 cd "$(dirname "$0")/.."
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-g++ -std=c++20 -O1 -I. $(pkg-config --cflags eigen3 fmt hdf5-serial) docs/failures_data.cpp \
-  build/model/libcuboct_model.a $(pkg-config --libs fmt hdf5-serial) -o "$work/data"
+# curve TRACE NAME: a curve of a trace, "step value" lines.
+curve() {
+  /usr/bin/python3 - "$@" <<'PYTHON'
+import sys, h5py
+with h5py.File(sys.argv[1]) as trace:
+    curve = trace["curves/" + sys.argv[2]]
+    for step, value in zip(curve["step"], curve["value"]):
+        print(f"{step} {value:.9g}")
+PYTHON
+}
 # run NAME CURVE SCENE [ARCH]: the curve to $work/NAME, times counted in steps of the run.
 run() {
   build/cuboct run "scenes/failures/$3.toml" ${4:+--arch "scenes/failures/archs/$4.toml"} --no-watch \
     --out "$work/$1.run" >/dev/null || true  # a run that is sick may stop
-  "$work/data" "$work/$1.run/trace.h5" "$2" >"$work/$1"
+  curve "$work/$1.run/trace.h5" "$2" >"$work/$1"
 }
 for name in time_step damping stiff_hold; do
   run $name energy.kinetic $name
@@ -24,7 +32,7 @@ run heating_healthy energy.total heating heating_healthy
 first() { head -1 "$work/$1" | cut -d' ' -f2; }
 gnuplot <<PLOT
 set terminal ${1:-svg} size 1100,640 font "Helvetica,12" background "white"
-set output "${2:-docs/reference/failures.svg}"
+set output "${2:-docs/images/failures.svg}"
 set multiplot layout 2,3
 set grid lc rgb "#dddddd"
 set border 3

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Draws docs/reference/laws.svg from the code of the laws. Needs g++, fmt, Eigen and gnuplot.
+# Draws docs/images/laws.svg from the code of the laws. Needs g++, fmt, Eigen and gnuplot.
 set -eu
 cd "$(dirname "$0")/.."
 work=$(mktemp -d)
@@ -10,7 +10,7 @@ g++ -std=c++20 -O1 -I. $(pkg-config --cflags eigen3 fmt) docs/laws_data.cpp mode
 "$work/laws_data" > "$work/laws.txt"
 gnuplot <<PLOT
 set terminal ${1:-svg} size 900,380 font "Helvetica,13" background "white"
-set output "${2:-docs/reference/laws.svg}"
+set output "${2:-docs/images/laws.svg}"
 set multiplot layout 1,2
 set grid lc rgb "#dddddd"
 set border 3

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Ctrl-C (SIGINT; or SIGTERM, or SIGUSR1, which mpirun passes on) ends a run after the step at hand, so that what was done can be written; a second one,
-// half a second later or more, ends the program. To be caught where the stepping begins: before, nothing asks `interrupted`.
+// Ctrl-C (SIGINT; or SIGTERM, or SIGUSR1, which mpirun passes on) ends a run after the step at hand, so that what
+// was done can be written; a second one, half a second later or more, ends the program. To be caught where the
+// stepping begins: before, nothing asks `interrupted`.
 #pragma once
 
 namespace cuboct {

@@ -59,10 +59,10 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
 // scene.rule needs law, damping and mass.
 void read_body(const ConfigTable& root, const Regions& regions, const PackingChoice* packing, Scene& scene);
 
-// The largest stable time step of the perfect packing in s, 0 if unknown. With all frequencies up to w and all damping rates up to g
-// (rates of the matrices K/m and C/m) the update v += -dt (K/m x + C/m v), x += dt v has the mode equation
-// z^2 - (2 - g dt - w^2 dt^2) z + 1 - g dt = 0, stable while 2 g dt + w^2 dt^2 < 4; both at their largest
-// bound dt by (sqrt(g^2 + 4 w^2) - g)/w^2, which is 2/w where nothing damps.
+// The largest stable time step of the perfect packing in s, 0 if unknown. With all frequencies up to w and all
+// damping rates up to g (rates of the matrices K/m and C/m) the update v += -dt (K/m x + C/m v), x += dt v has the
+// mode equation z^2 - (2 - g dt - w^2 dt^2) z + 1 - g dt = 0, stable while 2 g dt + w^2 dt^2 < 4; both at their
+// largest bound dt by (sqrt(g^2 + 4 w^2) - g)/w^2, which is 2/w where nothing damps.
 double stable_time_step(const Rule& rule, double pitch);
 
 // Of the distances beyond the core at which the force turns from push to pull, that of the stiffest bond, in m to

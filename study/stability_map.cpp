@@ -40,7 +40,8 @@ struct Frame {
 template <typename ColumnAt>
 StabilityMap map_of(const Frame& frame, int axis, int fineness, double unit, const ColumnAt& column_at,
                     const std::function<void(const std::string&, double)>& progress) {
-  StabilityMap map{frame.name, frame.title, frame.x_label, frame.x, even(0.65 / fineness, 1.3 - 0.65 / fineness, fineness), {}, {}};
+  const std::vector<double> y = even(0.65 / fineness, 1.3 - 0.65 / fineness, fineness);
+  StabilityMap map{frame.name, frame.title, frame.x_label, frame.x, y, {}, {}};
   const size_t nx = map.x.size();
   map.cells.assign(nx * map.y.size(), StabilityMap::Cell::body_unstable);
   map.theory.assign(nx, std::numeric_limits<double>::quiet_NaN());
@@ -127,7 +128,8 @@ std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, i
   std::vector<StabilityMap> maps;
 
   maps.push_back(map_of(
-      {"damping", "damping, in doubles", "damping ratio", even(0, 2, fineness), Arithmetic::float64}, axis, fineness, unit,
+      {"damping", "damping, in doubles", "damping ratio", even(0, 2, fineness), Arithmetic::float64}, axis,
+      fineness, unit,
       [&](double ratio) {
         Column column{bare, arch};
         column.scene.rule.damping.coefficient = ratio * critical;
@@ -144,7 +146,8 @@ std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, i
                         axis, fineness, unit, held, progress));
   maps.push_back(map_of(
       {"position_bits", "formats of positions, in the fixed engine",
-       "position_frac (difference_frac: 16, or all where there are fewer)", even(8, 26, fineness >= 19 ? 19 : 4), Arithmetic::fixed},
+       "position_frac (difference_frac: 16, or all where there are fewer)",
+       even(8, 26, fineness >= 19 ? 19 : 4), Arithmetic::fixed},
       axis, fineness, unit,
       [&](double bits) {
         Column column{bare, arch};
@@ -157,8 +160,8 @@ std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, i
       },
       progress));
   maps.push_back(map_of(
-      {"strength_bits", "width of the force table, in the fixed engine", "strength_bits", even(8, 26, fineness >= 19 ? 19 : 4),
-       Arithmetic::fixed},
+      {"strength_bits", "width of the force table, in the fixed engine", "strength_bits",
+       even(8, 26, fineness >= 19 ? 19 : 4), Arithmetic::fixed},
       axis, fineness, unit,
       [&](double bits) {
         Column column{bare, arch};

@@ -25,9 +25,10 @@ struct StabilityMap {
 void check_maps(const Scene& scene);
 
 // dt against damping and PD stiffness (in doubles), PD stiffness, position_frac and strength_bits (in the fixed
-// engine), and strain along `axis` (in doubles). Everything else of the scene but its packing, law and boundaries is taken off. Held by
-// force are the scene's PD-held particles, else its lowest layer along `axis`. `fineness`: cells along each side;
-// 26 for pictures. `progress` is called with each map's name and the part that is done. Columns are run by as many threads as there are cores.
+// engine), and strain along `axis` (in doubles). Everything else of the scene but its packing, law and boundaries
+// is taken off. Held by force are the scene's PD-held particles, else its lowest layer along `axis`. `fineness`:
+// cells along each side; 26 for pictures. `progress` is called with each map's name and the part that is done.
+// Columns are run by as many threads as there are cores.
 std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, int axis, int fineness,
                                          const std::function<void(const std::string&, double)>& progress);
 

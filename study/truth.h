@@ -49,8 +49,8 @@ struct Truth {
 // three Lyapunov times of a run that parts steadily, the end of a run that does not. Beyond, errors tell the
 // run's sensitivity and nothing of the method.
 //
-// `jobs`: threads at most; no bit depends on them. After each rung `save` is given the truth so far; `begun`, such a truth or an empty
-// one, is where the refinement goes on. Throws InputError, Interrupted (measure_run.h).
+// `jobs`: threads at most; no bit depends on them. After each rung `save` is given the truth so far; `begun`, such
+// a truth or an empty one, is where the refinement goes on. Throws InputError, Interrupted (measure_run.h).
 Truth make_truth(const Study& study, int jobs, Truth begun = {},
                  const std::function<void(const Truth&)>& save = {});
 

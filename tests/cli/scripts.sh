@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The scripts of tools/ parse, and the list of packages holds names that dpkg could take, each once.
+# The scripts of tools/ parse, the list of packages holds names that dpkg could take, each once, and tools/setup
+# refuses a node that is too old before it installs anything.
 # usage: scripts.sh ROOT
 set -euo pipefail
 cd "$1"
@@ -17,4 +18,17 @@ if grep -vE '^[a-z0-9][a-z0-9+.-]+$' <<<"$names"; then
 fi
 twice=$(sort <<<"$names" | uniq -d)
 [ -z "$twice" ] || { echo "tools/packages lists twice: $twice"; exit 1; }
+
+fakes=$(mktemp -d)
+trap 'rm -rf "$fakes"' EXIT
+for program in apt-get sudo npm; do
+  printf '#!/bin/sh\necho "%s was called"; exit 1\n' "$program" >"$fakes/$program"
+done
+printf '#!/bin/sh\necho v16.20.2\n' >"$fakes/node"
+chmod +x "$fakes"/*
+if said=$(PATH=$fakes:$PATH tools/setup 2>&1) ||
+  [ "$said" != "tools/setup: $fakes/node is v16.20.2; study/web needs Node.js 18 or later" ]; then
+  echo "tools/setup with an old node: $said"
+  exit 1
+fi
 echo "$count scripts and $(wc -l <<<"$names") packages"
