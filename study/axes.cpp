@@ -105,8 +105,7 @@ Set set_of(const Key& key, const ConfigValue& value, const Widths& widths) {
     };
   }
   if (name == "arithmetic") {
-    const auto arithmetic =
-        static_cast<Arithmetic>(value.choice("arithmetic", {"float64", "float32", "fixed"}));
+    const auto arithmetic = static_cast<Arithmetic>(value.choice("arithmetic", arithmetic_names()));
     return [arithmetic](Settings& settings) {
       settings.arithmetic = arithmetic;
       settings.engine = arithmetic == Arithmetic::fixed ? "lattice" : "reference";

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "model/config.h"
 #include "model/error.h"
 #include "study/cost.h"
 #include "study/measure_run.h"
+#include "study/measures.h"
 #include "study/work.h"
 
 namespace cuboct::study {
@@ -26,13 +26,6 @@ std::vector<Axis> in_order(std::vector<Axis> axes) {
   return axes;
 }
 
-std::string one_line(std::string text) {
-  const size_t hint = text.find("\n  hint: ");
-  if (hint != std::string::npos) text.replace(hint, 9, "; ");
-  std::ranges::replace(text, '\n', ' ');
-  return text;
-}
-
 // The case with the time step that the grid leaves, as run_case takes it.
 Case fitted(const Study& study, const Truth& truth, const Settings& settings) {
   Case c = resolve(study.base, settings);
@@ -41,26 +34,13 @@ Case fitted(const Study& study, const Truth& truth, const Settings& settings) {
   return c;
 }
 
-bool is_reduced(const Study& study) {
-  const auto units = parse_config(study.base.scene_text, study.base.scene_path).find("units");
-  return units && units->is_string() && units->string() == "reduced";
-}
-
-// By how much the last rung of the truth still moved the figure.
-double last_change(const Truth& truth, size_t figure) {
-  const size_t n = truth.rungs.size();
-  if (n < 2) return 0;
-  const double before = truth.rungs[n - 2].figures.at(figure), last = truth.rungs[n - 1].figures.at(figure);
-  return before == last ? 0 : std::abs(before - last) / std::abs(last);
-}
-
 void check(const Study& study, const Truth& truth, const BudgetQuestion& question) {
   const std::string& name = study.figures.at(question.figure).name;
   const double value = truth.figures.at(question.figure);
   if (!std::isfinite(value) || value == 0)
     throw InputError(fmt::format("{}: the figure '{}' of the truth is {}: no relative error can be told",
                                  study.path, name, std::isfinite(value) ? "0" : "not to be had"));
-  const double known = last_change(truth, question.figure);
+  const double known = figure_floor(truth, question.figure);
   if (known >= question.budget)
     throw InputError(
         fmt::format("{}: the truth of '{}' is known to {:.2g} only, worse than the budget of {:.2g}",
@@ -114,22 +94,11 @@ class Runs {
   void run(const std::vector<Settings>& fresh) {
     std::vector<Piece> pieces;
     for (const Settings& settings : fresh)
-      pieces.push_back({particle_steps(settings),
+      pieces.push_back({size_of_run(study_, settings),
                         [&, settings] { store_.put_errors(measure_figures(study_, truth_, settings)); }});
     made_ += pieces.size();
     work_off(std::move(pieces), question_.jobs, fmt::format("search, {} runs in all", made_),
              question_.progress);
-  }
-
-  // For the order and the time left: doubles take about as long as ten fixed ones.
-  double particle_steps(const Settings& settings) const {
-    try {
-      const Case c = fitted(study_, truth_, settings);
-      return static_cast<double>(c.scene.steps) * static_cast<double>(c.scene.body.size()) *
-             (settings.arithmetic == Arithmetic::fixed ? 1 : 10);
-    } catch (const InputError&) {
-      return 0;
-    }
   }
 
   const Study& study_;
@@ -244,7 +213,7 @@ Written written(const Study& study, const Truth& truth, const Settings& settings
   };
   put("run.dt_safety", "");
   put("run.dt",
-      is_reduced(study) ? fmt::format("{}", c.scene.rule.dt) : fmt::format("\"{} s\"", c.scene.rule.dt));
+      is_reduced(study.base) ? fmt::format("{}", c.scene.rule.dt) : fmt::format("\"{} s\"", c.scene.rule.dt));
   put("run.duration", "");
   put("run.steps", fmt::format("{}", c.scene.steps));
   put("run.probe_every", fmt::format("{}", truth.grid.steps_per_sample(c.scene.rule.dt)));

@@ -41,7 +41,7 @@ struct BudgetAnswer {
 // on. Each run measures figures alone, so `store` must not be that of a study's points. `truth` is the
 // study's: also where settings change the packing, as the figure is to be that of the material and not of its
 // packing. Throws InputError: a truth that is worse than the budget or has no such figure, notches that do
-// not go from cheap to dear; Interrupted (measure_run.h).
+// not go from cheap to dear; Interrupted (interrupted.h).
 BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store,
                          const BudgetQuestion& question);
 

@@ -17,13 +17,6 @@
 namespace cuboct::study {
 namespace {
 
-std::string one_line(std::string text) {
-  const size_t hint = text.find("\n  hint: ");
-  if (hint != std::string::npos) text.replace(hint, 9, "; ");
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 void add_reason(Outcome& outcome, const std::string& reason) {
   outcome.why += (outcome.why.empty() ? "" : "; ") + one_line(reason);
 }

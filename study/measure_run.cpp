@@ -12,6 +12,7 @@
 #include "model/measure.h"
 #include "model/neighbours.h"
 #include "model/state_meter.h"
+#include "model/strain.h"
 
 namespace cuboct::study {
 namespace {
@@ -203,13 +204,7 @@ Run run_case(const Case& c, const RunRequest& request) {
 
 double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Periodic& periodic) {
   double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    Vec3 d = b[i] - a[i];
-    for (int axis = 0; axis < 3; ++axis)
-      if (const double extent = periodic.extent[axis]; extent > 0)
-        d[axis] -= extent * std::round(d[axis] / extent);
-    sum += d.squaredNorm();
-  }
+  for (size_t i = 0; i < a.size(); ++i) sum += nearest_image(b[i] - a[i], periodic).squaredNorm();
   return a.empty() ? 0 : std::sqrt(sum / static_cast<double>(a.size()));
 }
 

@@ -2,22 +2,16 @@
 // One run of one case, in any engine, and what a study keeps of it.
 #pragma once
 
-#include <exception>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "study/interrupted.h"
 #include "study/settings.h"
 #include "study/time_grid.h"
 #include "model/trace.h"
 
 namespace cuboct::study {
-
-// Thrown out of a run that was asked to stop.
-class Interrupted : public std::exception {
- public:
-  const char* what() const noexcept override { return "interrupted"; }
-};
 
 struct RunRequest {
   TimeGrid grid;

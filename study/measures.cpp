@@ -11,16 +11,6 @@ namespace {
 
 using Kind = Measure::Kind;
 
-// How much figure `n` moved at the last rung of the truth's refinement, relative to its value.
-double figure_floor(const Truth& truth, size_t n) {
-  if (truth.rungs.size() < 2) return 0;
-  const auto& last = truth.rungs.back().figures;
-  const auto& before = truth.rungs[truth.rungs.size() - 2].figures;
-  if (n >= last.size() || n >= before.size() || last[n] == 0) return 0;
-  const double moved = std::abs((last[n] - before[n]) / last[n]);
-  return std::isfinite(moved) ? moved : 0;
-}
-
 // "figure0_young_s_modulus"
 std::string id_of(const std::string& name, size_t n) {
   std::string id = fmt::format("figure{}_", n);
@@ -41,6 +31,15 @@ std::vector<Measure> measured(const Results& results, std::vector<Measure> all) 
 }
 
 }  // namespace
+
+double figure_floor(const Truth& truth, size_t n) {
+  if (truth.rungs.size() < 2) return 0;
+  const auto& last = truth.rungs.back().figures;
+  const auto& before = truth.rungs[truth.rungs.size() - 2].figures;
+  if (n >= last.size() || n >= before.size() || last[n] == 0) return 0;
+  const double moved = std::abs((last[n] - before[n]) / last[n]);
+  return std::isfinite(moved) ? moved : 0;
+}
 
 double worst_figure_error(const Outcome& outcome) {
   double worst = kNotMeasured;

@@ -23,6 +23,9 @@ struct Measure {
   double merit(const Outcome& outcome) const { return less_is_better ? -value(outcome) : value(outcome); }
 };
 
+// How much figure `n` moved at the last rung of the truth's refinement, relative to its value.
+double figure_floor(const Truth& truth, size_t n);
+
 // The worst relative error of an outcome's figures; nan where one was not measured, or there is none.
 double worst_figure_error(const Outcome& outcome);
 

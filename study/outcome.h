@@ -60,4 +60,7 @@ struct Outcome {
   std::string machine;  // where it was measured; empty: on the study's own (store.h)
 };
 
+// An error's text as it stands in `why`: its hint after a semicolon.
+std::string one_line(std::string text);
+
 }  // namespace cuboct::study

@@ -152,6 +152,7 @@ std::string truth_json(const Results& results) {
       .add("floor", json(truth.floor))
       .add("largest_frequency", json(truth.largest_frequency))
       .add("converged", json(truth.converged))
+      .add("notes", json(truth.notes))
       .text();
 }
 

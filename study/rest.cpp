@@ -7,6 +7,7 @@
 
 #include "model/error.h"
 #include "model/interrupt.h"
+#include "study/measure_run.h"
 #include "study/stability.h"
 
 namespace cuboct::study {
@@ -171,8 +172,7 @@ Subject subject_of(const Scene& scene, int axis, double strain) {
     double farthest = 0;
     for (size_t i = 0; i < x.size(); ++i) farthest = std::max(farthest, (s.body.x[i] - x[i]).norm());
     if (rests) {
-      const double length = s.pitch > 0 ? s.pitch : s.rule.law->cutoff();
-      out.note = fmt::format("relaxed first: particles moved by up to {:.2g} {}", farthest / length,
+      out.note = fmt::format("relaxed first: particles moved by up to {:.2g} {}", farthest / length_unit(s),
                              s.pitch > 0 ? "pitches" : "cutoffs");
     } else {
       give_up("the body does not come to rest");

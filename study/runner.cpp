@@ -2,6 +2,7 @@
 #include "study/runner.h"
 
 #include <algorithm>
+#include <mutex>
 #include <set>
 #include <thread>
 
@@ -16,19 +17,6 @@ namespace {
 
 // The name under which the store keeps a truth that is not refined to its end; no scene has it.
 constexpr const char* kBegun = "(begun)";
-
-// Particle-steps of a point's run: for the order and the time left, so a guess will do. Doubles take about as
-// long as ten fixed ones.
-double size_of(const Study& study, const Settings& settings) {
-  try {
-    const Case c = resolve(study.base, settings);
-    const double steps = static_cast<double>(study.grid.steps_per_sample(c.scene.rule.dt) * study.grid.samples);
-    return steps * static_cast<double>(c.scene.body.size()) *
-           (settings.arithmetic == Arithmetic::fixed ? 1 : 10);
-  } catch (const InputError&) {
-    return 0;
-  }
-}
 
 }  // namespace
 
@@ -84,9 +72,9 @@ void Runner::make_truths(const std::vector<Settings>& points) {
                           store_.put_truth(key, truth);
                           const std::lock_guard guard(mutex);
                           truths_[key] = std::move(truth);
-                        } catch (const InputError& error) {
+                        } catch (const InputError&) {
                           const std::lock_guard guard(mutex);
-                          no_truth_[key] = error.what();
+                          no_truth_.insert(key);
                         }
                       }});
   work_off(std::move(pieces), options_.jobs, "other scenes in doubles", options_.progress);
@@ -101,7 +89,7 @@ std::vector<Outcome> Runner::errors_of(const std::vector<Settings>& points) {
     make_truths(missing);
     std::vector<Piece> pieces;
     for (const Settings& settings : missing)
-      pieces.push_back({size_of(study_, settings), [&, settings] {
+      pieces.push_back({size_of_run(study_, settings), [&, settings] {
                           store_.put_errors(
                               measure_errors(study_, truths_.at(""), truth_of(settings), settings));
                         }});
@@ -112,17 +100,11 @@ std::vector<Outcome> Runner::errors_of(const std::vector<Settings>& points) {
   return outcomes;
 }
 
-Speed Runner::speed_of(const Settings& settings) {
-  if (const auto kept = store_.speed(settings)) return *kept;
-  const Speed speed = measure_speed(study_, settings);
-  store_.put_speed(settings, speed);
-  return speed;
-}
-
 void Runner::measure_speeds() {
   std::vector<Piece> pieces;
   for (const Settings& settings : study_.points)
-    if (!store_.has_speed(settings)) pieces.push_back({1, [&] { speed_of(settings); }});
+    if (!store_.has_speed(settings))
+      pieces.push_back({1, [&] { store_.put_speed(settings, measure_speed(study_, settings)); }});
   work_off(std::move(pieces), 1, "speeds", options_.progress);
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <map>
-#include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,7 +20,7 @@ struct RunnerOptions {
 };
 
 // Every call answers from the store where it can, and puts what it computes there before it returns: a process
-// that was killed, run again, ends with the same errors. All throw Interrupted (measure_run.h) once
+// that was killed, run again, ends with the same errors. All throw Interrupted (interrupted.h) once
 // model/interrupt.h was asked to stop. Study and store must outlive the runner.
 class Runner {
  public:
@@ -34,9 +34,6 @@ class Runner {
   // Errors of any settings, not of the study's points alone; several at once on the runner's jobs. In their
   // order, without speeds.
   std::vector<Outcome> errors_of(const std::vector<Settings>& points);
-  Outcome errors_of(const Settings& settings) { return errors_of(std::vector{settings})[0]; }
-  // To be called while nothing else computes.
-  Speed speed_of(const Settings& settings);
 
  private:
   void make_truths(const std::vector<Settings>& points);
@@ -47,7 +44,7 @@ class Runner {
   Store& store_;
   RunnerOptions options_;
   std::map<std::string, Truth> truths_;  // by physics_key
-  std::map<std::string, std::string> no_truth_;  // why there is none: no run in doubles has an end
+  std::set<std::string> no_truth_;       // physics_keys without one: no run in doubles has an end
 };
 
 }  // namespace cuboct::study

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "model/config.h"
 #include "model/error.h"
 
 namespace cuboct::study {
@@ -19,24 +20,22 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-const char* name_of(Arithmetic arithmetic) {
-  switch (arithmetic) {
-    case Arithmetic::float64:
-      return "float64";
-    case Arithmetic::float32:
-      return "float32";
-    case Arithmetic::fixed:
-      return "fixed";
-  }
-  return "?";
-}
-
 }  // namespace
 
 Base read_base(const std::string& scene_path, const std::string& arch_path) {
   Base base{scene_path, text_of(scene_path), arch_path, arch_path.empty() ? "" : text_of(arch_path)};
   resolve(base, {});
   return base;
+}
+
+bool is_reduced(const Base& base) {
+  const auto units = parse_config(base.scene_text, base.scene_path).find("units");
+  return units && units->is_string() && units->string() == "reduced";
+}
+
+const std::vector<std::string>& arithmetic_names() {
+  static const std::vector<std::string> names{"float64", "float32", "fixed"};
+  return names;
 }
 
 std::string Settings::numbers_key() const {

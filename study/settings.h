@@ -21,8 +21,16 @@ struct Base {
 };
 // Reads both files; throws InputError where one cannot be read or holds no scene (arch).
 Base read_base(const std::string& scene_path, const std::string& arch_path);
+// Whether the scene is in reduced units: its lengths and times are plain numbers.
+bool is_reduced(const Base& base);
 
 enum class Arithmetic : uint8_t { float64, float32, fixed };
+
+// By Arithmetic, as studies, keys and results call it: "float64", "float32", "fixed".
+const std::vector<std::string>& arithmetic_names();
+inline const std::string& name_of(Arithmetic arithmetic) {
+  return arithmetic_names()[static_cast<size_t>(arithmetic)];
+}
 
 struct Settings {
   std::string engine = "lattice";  // "reference" (float64, float32) or "lattice" (fixed); points of other

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "emu/lattice/engine.h"
 #include "hw/setup.h"
 #include "model/error.h"
 #include "model/interrupt.h"
+#include "study/measure_run.h"
 
 namespace cuboct::study {
 namespace {
@@ -189,8 +191,7 @@ Trial try_step(const Subject& subject, const Arch& arch, const Method& method, d
                uint64_t steps) {
   if (method.arithmetic == Arithmetic::fixed && method.integrator != Integrator::semi_implicit_euler)
     throw InputError("the fixed rule is semi-implicit Euler");
-  const double length = subject.scene.pitch > 0 ? subject.scene.pitch : subject.scene.rule.law->cutoff();
-  const double seed = seed_size(method.arithmetic, arch) * length;
+  const double seed = seed_size(method.arithmetic, arch) * length_unit(subject.scene);
   Scene scene = shaken(subject, dt, seed);
   steps = std::max<uint64_t>(steps, 4 * kEarly + 2);
   return method.arithmetic == Arithmetic::fixed

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "model/reference.h"
 #include "model/scene.h"
 #include "model/vibrations.h"
+#include "study/interrupted.h"
 #include "study/settings.h"
 
 namespace cuboct::study {
@@ -43,10 +43,7 @@ struct Method {
   int threads = 1;
 };
 
-// Thrown out of the functions below by Ctrl-C.
-struct Interrupted : std::runtime_error {
-  Interrupted() : std::runtime_error("interrupted") {}
-};
+// The functions below throw Interrupted once model/interrupt.h was asked to stop.
 
 enum class Verdict : uint8_t {
   stable,

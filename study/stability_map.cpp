@@ -7,10 +7,12 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <stdexcept>
 
 #include "model/error.h"
 #include "model/interrupt.h"
 #include "model/parallel.h"
+#include "study/measure_run.h"
 
 namespace cuboct::study {
 namespace {
@@ -86,7 +88,7 @@ Scene held_by_force(Scene scene, int axis, double kp) {
   if (!any) {
     double low = INFINITY;
     for (const Vec3& x : scene.body.x) low = std::min(low, x[axis]);
-    const double layer = 0.25 * (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff());
+    const double layer = 0.25 * length_unit(scene);
     // One more type for each that stands there.
     const std::vector<ParticleType> before = scene.rule.types;
     std::vector<int> held(before.size(), -1);

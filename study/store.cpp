@@ -42,7 +42,6 @@ constexpr const char* kSpeedColumns =
     "point, numbers, settings, particle_steps, simulated_seconds, spread, repeats, machine";
 
 const std::vector<std::string> kStatuses{"done", "unstable", "refused"};
-const std::vector<std::string> kArithmetics{"float64", "float32", "fixed"};
 const std::vector<std::string> kIntegrators{"euler", "verlet"};
 
 template <class Enum>
@@ -63,7 +62,7 @@ std::string insert(const char* how, const char* table, const std::string& column
 std::string text_of(const Settings& settings) {
   std::string text =
       fmt::format("engine={}\narithmetic={}\nintegrator={}\nthreads={}\n", settings.engine,
-                  kArithmetics[static_cast<size_t>(settings.arithmetic)],
+                  name_of(settings.arithmetic),
                   kIntegrators[static_cast<size_t>(settings.integrator)], settings.threads);
   for (const Change& change : settings.scene) text += fmt::format("scene.{}={}\n", change.key, change.value);
   for (const Change& change : settings.arch) text += fmt::format("arch.{}={}\n", change.key, change.value);
@@ -79,7 +78,7 @@ Settings settings_of(const std::string& text) {
     if (key == "engine")
       settings.engine = value;
     else if (key == "arithmetic")
-      settings.arithmetic = named<Arithmetic>(kArithmetics, value);
+      settings.arithmetic = named<Arithmetic>(arithmetic_names(), value);
     else if (key == "integrator")
       settings.integrator = named<Integrator>(kIntegrators, value);
     else if (key == "threads")
@@ -325,7 +324,8 @@ Results Store::results() const {
   }
   const std::lock_guard guard(impl_->mutex);
   results.machine = impl_->meta("machine");
-  // What is no point of the study: of a search, or from elsewhere. By speeds, then points without any.
+  // What is no point of the study: one that it had before, or from elsewhere. By speeds, then points without
+  // any.
   Query speeds(impl_->database, "SELECT point, numbers, settings, machine, particle_steps, simulated_seconds,"
                                 " spread, repeats FROM speeds ORDER BY point");
   while (speeds.next()) {

@@ -23,8 +23,8 @@ struct Results {
   std::vector<Outcome> outcomes;  // in the order of the study's points, then those from elsewhere
 };
 
-// May be used by several threads. Each `put` is on the disk, whole, when it returns: a process may be killed at
-// any time.
+// May be used by several threads. A process may be killed at any time: each `put` is there, whole, when it
+// returns. Only a loss of power may take the last ones.
 class Store {
  public:
   // Opens or makes `path`. Throws InputError where it is no store, that of another study (its hash), or at work
@@ -39,7 +39,6 @@ class Store {
   std::optional<Truth> truth(const std::string& physics) const;
   void drop_truth(const std::string& physics);
   void put_truth(const Truth& truth) { put_truth("", truth); }
-  bool has_truth() const { return truth("").has_value(); }
 
   void put_errors(const Outcome& outcome);  // by settings.numbers_key()
   bool has_errors(const Settings& settings) const;

@@ -141,6 +141,17 @@ Settings canonical(Settings settings) {
   return settings;
 }
 
+double size_of_run(const Study& study, const Settings& settings) {
+  try {
+    const Case c = resolve(study.base, settings);
+    const uint64_t steps = study.grid.steps_per_sample(c.scene.rule.dt) * study.grid.samples;
+    return static_cast<double>(steps) * static_cast<double>(c.scene.body.size()) *
+           (settings.arithmetic == Arithmetic::fixed ? 1 : 10);
+  } catch (const InputError&) {
+    return 0;
+  }
+}
+
 Study read_study(const std::string& path) {
   const ConfigTable root = read_config(path);
   Study study;

@@ -12,8 +12,6 @@
 namespace cuboct::study {
 namespace {
 
-constexpr const char* kArithmetic[] = {"float64", "float32", "fixed"};
-
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-"; }
 
 double error_of(const Results& results, const Outcome& outcome) {
@@ -23,7 +21,7 @@ double error_of(const Results& results, const Outcome& outcome) {
 }  // namespace
 
 std::string short_name(const Settings& settings) {
-  std::string text = kArithmetic[static_cast<size_t>(settings.arithmetic)];
+  std::string text = name_of(settings.arithmetic);
   if (settings.engine != "lattice" && settings.engine != "reference") text = settings.engine + " " + text;
   if (settings.arithmetic != Arithmetic::fixed)
     text += settings.integrator == Integrator::velocity_verlet ? " verlet" : " euler";

@@ -12,6 +12,7 @@
 #include "model/dynamical_matrix.h"
 #include "model/error.h"
 #include "study/measure_run.h"
+#include "study/sampling.h"
 #include "study/sensitivity.h"
 
 namespace cuboct::study {
@@ -19,6 +20,12 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kForceStates = 4;
+constexpr int kLengthenings = 12;  // of the cutoff, in all 15-fold
+
+// A figure that moves by more than so many tolerances if every second sample is left out is noted. All runs
+// are looked at at the same times, so in errors most of that cancels; ten tolerances are a per mille by
+// default, which is what errors of figures are read to.
+constexpr double kSamplingTolerances = 10;
 
 Settings verlet_in_doubles() {
   Settings settings;
@@ -124,6 +131,9 @@ void refine(const Study& study, const Case& c, int threads, Truth& truth,
     }
     truth.rungs.push_back(now.rung);
     keep_states(now.run, truth.grid, truth);
+    // Of each rung, so that they are there where a refinement goes on behind its last one.
+    truth.notes = sampling_notes(study.figures, now.run.curves, now.run.dt,
+                                 kSamplingTolerances * study.truth_tolerance);
     // From the third rung on, so that one change that is small by chance does not end the refinement.
     truth.converged = k > 1 && now.rung.trajectory < study.truth_tolerance &&
                       !(now.rung.change >= study.truth_tolerance);
@@ -136,18 +146,14 @@ void refine(const Study& study, const Case& c, int threads, Truth& truth,
   truth.figures = truth.rungs.back().figures;
 }
 
-bool is_cut_for_speed(const Study& study, bool& reduced) {
-  const ConfigTable root = parse_config(study.base.scene_text, study.base.scene_path);
-  const auto units = root.find("units");
-  reduced = units && units->is_string() && units->string() == "reduced";
-  const auto law = root.table_at("law");
+bool is_cut_for_speed(const Base& base) {
+  const auto law = parse_config(base.scene_text, base.scene_path).table_at("law");
   const auto kind = law ? law->find("kind") : std::nullopt;
   return kind && kind->is_string() && kind->string() == "lj";
 }
 
 void lengthen(const Study& study, const Case& c, int threads, Truth& truth) {
-  bool reduced = false;
-  if (!is_cut_for_speed(study, reduced)) {
+  if (!is_cut_for_speed(study.base)) {
     truth.notes.push_back("the cutoff is a part of this law: it is not lengthened");
     return;
   }
@@ -157,8 +163,9 @@ void lengthen(const Study& study, const Case& c, int threads, Truth& truth) {
     return;
   }
   const uint64_t per_sample = truth.grid.steps_per_sample(truth.rungs.back().dt);
+  const bool reduced = is_reduced(study.base);
   double cutoff = c.scene.rule.law->cutoff();
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < kLengthenings; ++k) {
     cutoff *= 1.25;
     Settings settings = c.settings;
     settings.scene.push_back({"law.cutoff", reduced ? fmt::format("{}", cutoff) : fmt::format("\"{} m\"", cutoff)});
@@ -168,7 +175,7 @@ void lengthen(const Study& study, const Case& c, int threads, Truth& truth) {
       now.rung.change = change_between(truth.rungs.back().figures, now.rung.figures);
       truth.rungs.push_back(now.rung);
       truth.figures = now.rung.figures;
-      if (now.rung.change < study.truth_tolerance) return;
+      if (!(now.rung.change >= study.truth_tolerance)) return;
     } catch (const InputError& error) {
       std::string text = error.what();
       std::replace(text.begin(), text.end(), '\n', ' ');
@@ -179,6 +186,10 @@ void lengthen(const Study& study, const Case& c, int threads, Truth& truth) {
       return;
     }
   }
+  truth.converged = false;
+  truth.notes.push_back(
+      fmt::format("the cutoff was lengthened up to {:.4g} m, where figures still changed by {:.2g}", cutoff,
+                  truth.rungs.back().change));
 }
 
 }  // namespace

@@ -43,14 +43,14 @@ struct Truth {
 // Refines from the scene's own dt by halves, until every figure changes by less than the study's tolerance
 // (relative) and positions at the horizon by less than it (over the pitch), or the rungs are used up. Then,
 // where the law is cut off for speed alone (`lj`), lengthens the cutoff by 1.25 until it stops mattering for the
-// figures.
+// figures, twelve times at most. Notes where the figures depend on the samples (sampling.h).
 //
 // The horizon is the sample at which a small difference between two runs has grown by e^3 = 20 since the start:
 // three Lyapunov times of a run that parts steadily, the end of a run that does not. Beyond, errors tell the
 // run's sensitivity and nothing of the method.
 //
 // `jobs`: threads at most; no bit depends on them. After each rung `save` is given the truth so far; `begun`, such
-// a truth or an empty one, is where the refinement goes on. Throws InputError, Interrupted (measure_run.h).
+// a truth or an empty one, is where the refinement goes on. Throws InputError, Interrupted (interrupted.h).
 Truth make_truth(const Study& study, int jobs, Truth begun = {},
                  const std::function<void(const Truth&)>& save = {});
 

@@ -21,19 +21,28 @@ function fill_select(id, measures, key) {
   });
 }
 
-function summarise() {
-  const count = (status) => study.points.filter((p) => p.status === status).length;
-  document.getElementById("summary").textContent =
-    `${study.points.length} points: ${count("done")} done, ${count("unstable")} unstable, ${count("refused")} refused. Machine: ${study.machine || "not told"}.`;
-  const truth = study.truth;
-  document.getElementById("truth-text").textContent = (truth.rungs.length
-    ? `Errors are measured against a run in doubles, refined ${truth.rungs.length - 1} times. ` +
+const times = (count) => (count === 1 ? "once" : `${count} times`);
+
+// Where the cutoff is lengthened, those rungs follow the ones of the time step.
+function truth_text(truth) {
+  const rungs = truth.rungs, lengthened = rungs.filter((rung) => rung.cutoff !== rungs[0].cutoff).length;
+  return (rungs.length
+    ? `Errors are measured against a run in doubles, its time step halved ${times(rungs.length - 1 - lengthened)}` +
+      (lengthened ? `, then its cutoff lengthened ${times(lengthened)}. ` : ". ") +
       (truth.converged ? "Its figures changed by less than the study's tolerance at the last rung. "
-                       : "Its figures still changed by more than the study's tolerance at the last rung. ")
+                       : "It has not converged to the study's tolerance. ")
     : "") +
     (truth.floor !== null && truth.floor > 0 ? `Its own trajectory is uncertain by ${number(truth.floor, 2)} pitches at the horizon. ` : "") +
     (truth.lyapunov_time !== null && truth.lyapunov_time > 0 ? `Neighbouring runs part by a factor of e in ${number(truth.lyapunov_time, 3)} s. ` : "") +
     (truth.largest_frequency ? `The fastest vibration takes ${number(2 * Math.PI / truth.largest_frequency, 3)} s.` : "");
+}
+
+function summarise() {
+  const count = (status) => study.points.filter((p) => p.status === status).length;
+  document.getElementById("summary").textContent =
+    `${study.points.length} points: ${count("done")} done, ${count("unstable")} unstable, ${count("refused")} refused. Machine: ${study.machine || "not told"}.`;
+  document.getElementById("truth-text").textContent = truth_text(study.truth);
+  document.getElementById("truth-notes").append(...study.truth.notes.map((note) => element("li", note)));
   const about = document.getElementById("about");
   for (const [name, text] of [["Machine", study.machine], ["Scene", study.scene]]) {
     const value = element("dd");

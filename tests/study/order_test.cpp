@@ -117,5 +117,49 @@ TEST(Truth, ConvergesInSecondOrderAndKnowsItsOwnError) {
   EXPECT_EQ(m.truth.notes[0], "the cutoff is a part of this law: it is not lengthened");
 }
 
+// Half of the kinetic energy goes into bonds at once: of 17 samples, or 9, one is the start with all of it.
+TEST(Truth, SaysThatSamplesDecideAFigure) {
+  const Measured m("[truth]\nrungs = 2\n[[figure]]\nkind = \"mean\"\ncurve = \"energy.kinetic\"\n[[sweep]]\n");
+  ASSERT_EQ(m.truth.notes.size(), 3U);
+  EXPECT_TRUE(m.truth.notes[0].starts_with("mean changes by ")) << m.truth.notes[0];
+  EXPECT_TRUE(m.truth.notes[1].starts_with("the truth has not converged")) << m.truth.notes[1];
+}
+
+// A row of particles, 1.1 apart: each lengthening of the cutoff takes in more of them, the last one by 1e-8 of the
+// energy. They hardly move meanwhile, so in time steps the run converges.
+TEST(Truth, SaysThatTheLongestCutoffStillMatters) {
+  const test::SmallStudy files;
+  std::ofstream scene(files.path("block.toml"));
+  scene << R"(units = "reduced"
+mass = 1.0
+[law]
+kind = "lj"
+epsilon = 1.0
+sigma = 1.0
+cutoff = 1.8
+[run]
+dt = 1e-5
+steps = 1
+)";
+  for (int k = 0; k < 26; ++k) scene << "[[particle]]\nposition = [" << 1.1 * k << ", 0.0, 0.0]\n";
+  scene.close();
+  std::ofstream(files.path("row.toml")) << R"(scene = "block.toml"
+samples = 1
+[truth]
+tolerance = 1e-9
+[[figure]]
+kind = "final"
+curve = "energy.potential"
+[[sweep]]
+)";
+  const Truth truth = make_truth(read_study(files.path("row.toml")), 1);
+  ASSERT_EQ(truth.rungs.size(), 3U + 12U);
+  EXPECT_FALSE(truth.converged);
+  ASSERT_EQ(truth.notes.size(), 1U);
+  // 1.8 * 1.25^12
+  EXPECT_TRUE(truth.notes[0].starts_with("the cutoff was lengthened up to 26.19 m, where figures still "))
+      << truth.notes[0];
+}
+
 }  // namespace
 }  // namespace cuboct::study

@@ -82,6 +82,12 @@ async function charts_are_there(page, study) {
   assert.equal(expected, 246);
   assert.ok(marks >= expected && marks <= expected + study.series.length, `${marks} marks of ${expected} points`);
   assert.ok((await texts(page, "truth-chart")).includes("dt²"));
+  assert.match(await page.textContent("#truth-text"), /^Errors are measured against a run in doubles, its time step halved 5 times\. Its figures/);
+  assert.deepEqual(await page.$$eval("#truth-notes li", (all) => all.map((note) => note.textContent)),
+    ["strength changes by 2.3 % if every second sample is left out: more 'samples'", "a <second> note & more"]);
+  const lengthened = await page.evaluate(() => truth_text({...study.truth, converged: false,
+    rungs: [1, 1, 1.25, 1.5625, 1.953].map((cutoff) => ({...study.truth.rungs[0], cutoff}))}));
+  assert.match(lengthened, /time step halved once, then its cutoff lengthened 3 times\. It has not converged to the study's tolerance\./);
 }
 
 async function hovering_tells_settings(page, study) {

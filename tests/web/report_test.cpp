@@ -232,6 +232,7 @@ TEST(Page, SameResultsSameBytes) {
   EXPECT_NE(page.find("Licensed to the Apache Software Foundation"), std::string::npos);
   EXPECT_NE(page.find("Apache ECharts\nCopyright"), std::string::npos);
   EXPECT_EQ(page.find("@data@"), std::string::npos);
+  EXPECT_NE(page.find(R"("notes":["strength changes by 2.3 %)"), std::string::npos);
   Results other = made_up_results();
   other.outcomes[3].why = "changed";
   EXPECT_NE(page, study::page_of(other));
