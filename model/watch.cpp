@@ -416,8 +416,7 @@ void Watch::see(const FixedRule& rule, const Lattice& lattice, const Vec3& origi
   see(moment);
 }
 
-void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force, double kinetic,
-                double potential) {
+void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force, const Energies& energies) {
   const Rule& rule = scene_.rule;
   Moment moment;
   moment.step = step;
@@ -425,17 +424,13 @@ void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force,
   moment.v = [&](uint32_t id) { return body.v[id]; };
   moment.v_next = [&](uint32_t id) {
     const ParticleType& type = rule.types[body.type[id]];
-    Vec3 f = force[id];
-    if (type.pd) f -= type.kp * body.u[id] + type.kd * (body.v[id] - type.velocity);
-    Vec3 v = body.v[id] + rule.dt * (f / rule.mass + type.gravity);
+    Vec3 v = body.v[id] + rule.dt * acceleration(rule, body, id, force[id]);
     for (int a = 0; a < 3; ++a)
       if (type.imposed[a]) v[a] = type.velocity[a];
     return v;
   };
   moment.force = [&](uint32_t id) { return force[id]; };
-  moment.energies = {kinetic, potential, 0};
-  for (size_t i = 0; i < body.size(); ++i)
-    moment.energies.gravity -= rule.mass * rule.types[body.type[i]].gravity.dot(body.x[i]);
+  moment.energies = energies;
   CellList cells(rule.law->cutoff(), scene_.periodic);
   cells.build(body.x);
   cells.for_each_pair(body.x, [&](uint32_t i, uint32_t j, const Vec3&, double r) {

@@ -64,7 +64,7 @@ class Watch {
   void see(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
            const std::vector<Int3>& kicks, const Energies& energies, const ClosestPair& closest);
   // A state of the reference in doubles; `force`: Reference::forces(). Finds the closest pair itself.
-  void see(uint64_t step, const Body& body, const std::vector<Vec3>& force, double kinetic, double potential);
+  void see(uint64_t step, const Body& body, const std::vector<Vec3>& force, const Energies& energies);
 
   // A run that goes on from a checkpoint: its first energies.
   void remember(const Energies& first) { first_ = first; }
