@@ -21,10 +21,10 @@ enum class Failure : uint8_t {
   time_step,        // velocities flip from step to step: dt is beyond the stability limit
   damping,          // the same, and the damping's share of the limit is the larger
   stiff_hold,       // the same, by the gains of PD controllers
-  force_jump,       // the law's force jumps at its cutoff: energy drifts in first order of dt
+  force_jump,       // the law's force jumps at its cutoff: energies scatter in first order of dt
   tunnelling,       // a pair inside the law's core, where the force rolls off, or fast enough to cross it
   constraint_work,  // driven particles press harder, or feed in more energy, than the body's bonds hold
-  heating,          // a run that should keep its energy does not: table seams, too few bits
+  heating,          // a run that should keep its energy does not: too few value bits make steps
   creep,            // a body at rest moves by itself
   far_origin,       // float32 positions whose spacing is not small beside the pitch
 };
