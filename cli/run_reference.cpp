@@ -99,8 +99,8 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
   Items& items = run.summary;
   items.add("engine", "reference");
   items.add("precision", options.precision == Precision::float32 ? "float" : "double");
-  items.add("integrator", options.integrator == Integrator::velocity_verlet ? "velocity Verlet"
-                                                                            : "semi-implicit Euler");
+  items.add("integrator",
+            options.integrator == Integrator::velocity_verlet ? "velocity Verlet" : "semi-implicit Euler");
   items.add("threads", static_cast<uint64_t>(options.threads));
   items.add("scene", scene.path);
   items.add("particles", static_cast<uint64_t>(scene.body.size()));

@@ -145,15 +145,15 @@ std::string text_of(const Scene& scene, const std::vector<Row>& rows) {
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null"; }
 
 std::string json_of(const Scene& scene, const std::vector<Row>& rows) {
-  std::string out = fmt::format("{{\"scene\": {}, \"particles\": {}, \"dt\": {}, \"lines\": [", study::json(scene.path),
-                                scene.body.size(), number(scene.rule.dt));
+  std::string out = fmt::format("{{\"scene\": {}, \"particles\": {}, \"dt\": {}, \"lines\": [",
+                                study::json(scene.path), scene.body.size(), number(scene.rule.dt));
   for (size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     out += fmt::format(
         "{}\n  {{\"name\": {}, \"note\": {}, \"predicted\": {}, \"frequency\": {}, \"damping_share\": {}, "
         "\"measured\": {{",
-        i > 0 ? "," : "", study::json(row.name), study::json(row.note), number(row.predicted), number(row.frequency),
-        number(row.damping_share));
+        i > 0 ? "," : "", study::json(row.name), study::json(row.note), number(row.predicted),
+        number(row.frequency), number(row.damping_share));
     bool first = true;
     for (size_t e = 0; e < kEngines.size(); ++e) {
       if (!row.measured[e]) continue;

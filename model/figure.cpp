@@ -151,7 +151,7 @@ double break_time(const Figure& figure, const Curve& curve, double dt) {
   if (!(curve.value[k] < level))
     cannot(figure, fmt::format("{} never stays below {:.6g}, {} of its largest value", figure.curve, level,
                                figure.fraction));
-  while (curve.value[k - 1] < level && static_cast<ptrdiff_t>(k) - 1 > top) --k;
+  while (level > curve.value[k - 1] && top + 1 < static_cast<ptrdiff_t>(k)) --k;
   const double above = curve.value[k - 1], below = curve.value[k];
   const double part = (above - level) / (above - below);
   return dt * (static_cast<double>(curve.step[k - 1]) +

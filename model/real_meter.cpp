@@ -33,8 +33,7 @@ void RealMeter::add(const Reference& reference, Watch* watch) {
   std::vector<double> values{e.kinetic, e.potential, e.gravity, e.total()};
   if (volume_ > 0) {
     const std::vector<Mat3> stress = reference.virial_stress(volume_);
-    values.push_back(
-        pressure(e, std::accumulate(stress.begin(), stress.end(), Mat3(Mat3::Zero())), volume_));
+    values.push_back(pressure(e, std::accumulate(stress.begin(), stress.end(), Mat3(Mat3::Zero())), volume_));
   }
   for (size_t k = 0; k < values.size(); ++k) {
     energy_[k].step.push_back(reference.step_count());

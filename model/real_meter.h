@@ -12,15 +12,16 @@ namespace cuboct {
 
 class RealMeter {
  public:
-  // Keeps a reference to `scene`. `integrator`, of the run, tells when velocities live. `probes`, `energies`: which
-  // curves are wanted.
+  // Keeps a reference to `scene`. `integrator`, of the run, tells when velocities live. `probes`, `energies`:
+  // which curves are wanted.
   RealMeter(const Scene& scene, Integrator integrator, bool probes, bool energies);
 
-  // The state as it stands; they come in the order of steps. `watch` looks at it too, where energies are wanted.
+  // The state as it stands; they come in the order of steps. `watch` looks at it too, where energies are
+  // wanted.
   void add(const Reference& reference, Watch* watch = nullptr);
 
-  // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where all
-  // three axes of the box repeat, pressure in Pa.
+  // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where
+  // all three axes of the box repeat, pressure in Pa.
   std::vector<Curve> curves() const;
 
  private:

@@ -45,8 +45,9 @@ TEST(BenchCommand, TellsTheMedianOfItsRepeats) {
   EXPECT_NE(answer.out.find("# golden.block_4k: 3 repeats of "), std::string::npos) << answer.out;
 }
 
-// A step moves every particle: steps and particles over the told length of a repeat make the rate. However busy the
-// machine is, two of three repeats take at least the told median, and all of them pass while the test waits.
+// A step moves every particle: steps and particles over the told length of a repeat make the rate. However
+// busy the machine is, two of three repeats take at least the told median, and all of them pass while the
+// test waits.
 void expect_times_what_it_says(const std::string& name, const std::string& label) {
   const auto begin = std::chrono::steady_clock::now();
   const Answer answer = bench({name, "--seconds", "0.05", "--repeats", "3"});
@@ -56,8 +57,8 @@ void expect_times_what_it_says(const std::string& name, const std::string& label
   ASSERT_TRUE(std::regex_search(answer.out, found, std::regex(label + ", (\\d+) steps per repeat\n")))
       << answer.out;
   const double steps = std::stod(found[1]);
-  ASSERT_TRUE(std::regex_search(answer.out, found,
-                                std::regex("# " + name + ": 3 repeats of ([0-9.e-]+) s, standard deviation ")))
+  ASSERT_TRUE(std::regex_search(
+      answer.out, found, std::regex("# " + name + ": 3 repeats of ([0-9.e-]+) s, standard deviation ")))
       << answer.out;
   const double seconds = std::stod(found[1]), rate = values_of(answer.out).at(name + ".particle_steps");
   EXPECT_NEAR(steps * 32000 / rate, seconds, 2e-3 * seconds);  // of four digits each

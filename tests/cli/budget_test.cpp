@@ -153,11 +153,11 @@ TEST(ErrorBudget, TheCommandNamesFloatsAndTheIntegrator) {
   const std::string scene = floats.bench.path("results") + "/cheapest.toml";
   EXPECT_EQ(command(floats),
             "cuboct run " + scene + " --engine reference --precision float --integrator verlet\n");
-  EXPECT_EQ(floats.bench
-                .cuboct({"run", scene, "--engine", "reference", "--precision", "float", "--integrator",
-                         "verlet"})
-                .code,
-            0);
+  EXPECT_EQ(
+      floats.bench
+          .cuboct({"run", scene, "--engine", "reference", "--precision", "float", "--integrator", "verlet"})
+          .code,
+      0);
   const Studied doubles(text + "arithmetic = [\"float64\"]\n");
   EXPECT_EQ(command(doubles),
             "cuboct run " + doubles.bench.path("results") + "/cheapest.toml --engine reference\n");

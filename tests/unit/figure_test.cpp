@@ -83,7 +83,8 @@ TEST(Figure, BreakTimeNeedsAPositiveMaximum) {
     }
   };
   EXPECT_EQ(refusal({"a", "N", {0}, {-4}}), "it: a has no value above 0: the largest is -4");
-  EXPECT_EQ(refusal({"a", "N", {0, 1, 2}, {-2, -1.5, -3}}), "it: a has no value above 0: the largest is -1.5");
+  EXPECT_EQ(refusal({"a", "N", {0, 1, 2}, {-2, -1.5, -3}}),
+            "it: a has no value above 0: the largest is -1.5");
   EXPECT_EQ(refusal({"a", "N", {0, 1}, {0, -3}}), "it: a has no value above 0: the largest is 0");
 }
 

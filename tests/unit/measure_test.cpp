@@ -102,9 +102,9 @@ TEST(Measure, VirialAndPressureOfTwoParticlesByHand) {
   EXPECT_DOUBLE_EQ(pressure(e, stress, 8), (2.0 / 3 * e.kinetic - 0.75 / 3) / 8);
 }
 
-// A controller's part of the step counts as well. Particle 0: v = 3/32, u = 3/16 cell; with kp = 1/8 and kd = 1/4 the
-// step adds 1/32 - 3/128 - 3/128 = -1/64, so that at the time of the positions v is 11/128 cell per step = 11/32 m/s.
-// Particle 1: v = u = 0, the step adds -1/32: -1/16 m/s.
+// A controller's part of the step counts as well. Particle 0: v = 3/32, u = 3/16 cell; with kp = 1/8 and kd =
+// 1/4 the step adds 1/32 - 3/128 - 3/128 = -1/64, so that at the time of the positions v is 11/128 cell per
+// step = 11/32 m/s. Particle 1: v = u = 0, the step adds -1/32: -1/16 m/s.
 TEST(Measure, AParticleHeldByForceFeelsItsController) {
   TwoParticles two;
   FixedType& type = two.fixed.types[0];

@@ -17,8 +17,8 @@ namespace {
 
 const std::string kRoot = CUBOCT_SOURCE_DIR;
 
-// One particle of 2 kg on a controller, kp = 7 N/m, kd = 3 kg/s, that follows 0.5 m/s. It goes at 1.5 m/s and lags by
-// 0.2 m; gravity is -4 m/s^2: a = -(7*0.2 + 3*1)/2 - 4 = -6.2 m/s^2.
+// One particle of 2 kg on a controller, kp = 7 N/m, kd = 3 kg/s, that follows 0.5 m/s. It goes at 1.5 m/s and
+// lags by 0.2 m; gravity is -4 m/s^2: a = -(7*0.2 + 3*1)/2 - 4 = -6.2 m/s^2.
 Scene one_particle() {
   Scene scene;
   scene.rule = test::simple_rule(preset_law("elastic", 1, 1), 2, 0.1);
@@ -50,8 +50,8 @@ TEST(RealMeter, EnergiesOfAParticleHeldByForce) {
   }
 }
 
-// The same names, units and, but for rounding and the table's error, values as those of the fixed rule: warm in a box that repeats, and held
-// by controllers under gravity.
+// The same names, units and, but for rounding and the table's error, values as those of the fixed rule: warm
+// in a box that repeats, and held by controllers under gravity.
 TEST(RealMeter, IsThatOfTheFixedRule) {
   for (const char* name : {"lj_block", "failures/stiff_hold_healthy"}) {
     const Scene scene = read_scene(kRoot + "/scenes/" + name + ".toml");
@@ -59,8 +59,9 @@ TEST(RealMeter, IsThatOfTheFixedRule) {
     const Plan& plan = setup.plan;
     Golden golden(plan.rule, plan.lattice, plan.arch.capacity, setup.initial);
     Reference reference(scene.rule, scene.body, scene.periodic);
-    StateMeter fixed(scene, plan.rule, plan.lattice, plan.origin,
-                     [&](uint32_t id) { return setup.initial.particles[id]; }, true);
+    StateMeter fixed(
+        scene, plan.rule, plan.lattice, plan.origin, [&](uint32_t id) { return setup.initial.particles[id]; },
+        true);
     RealMeter real(scene, Integrator::semi_implicit_euler, true, true);
     for (int n = 0; n < 20; ++n) golden.step();
     reference.step(20);
