@@ -22,6 +22,7 @@
 #include "emu/lattice/timing.h"
 #include "model/golden.h"
 #include "model/output.h"
+#include "model/process.h"
 #include "model/reference.h"
 #include "model/spelling.h"
 

@@ -47,7 +47,9 @@ void LineReporter::ReportRuns(const std::vector<Run>& runs) {
     if (!run.report_label.empty()) fmt::print("# {}: {}\n", name_of(run), run.report_label);
     for (const auto& [counter, value] : run.counters) {
       if (spread && value.value > 0)
-        fmt::print("# {}: {} repeats, standard deviation {:.1f} %\n", name_of(run), run.repetitions,
+        fmt::print("# {}: {} repeats of {:.4g} s, standard deviation {:.1f} %\n", name_of(run),
+                   run.repetitions,
+                   run.GetAdjustedRealTime() / benchmark::GetTimeUnitMultiplier(run.time_unit),
                    100 * spread->counters.at(counter).value / value.value);
       fmt::print("{}.{} {:.4g} 1/s\n", name_of(run), counter, value.value);
     }

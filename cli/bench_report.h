@@ -7,8 +7,8 @@
 
 namespace cuboct {
 
-// "name value unit" lines, one per rate: the median over the repetitions, whose spread stands in a comment line
-// before. Comment lines begin with "# ".
+// "name value unit" lines, one per rate: the median over the repetitions, whose length (the median too) and
+// spread stand in a comment line before. Comment lines begin with "# ".
 class LineReporter : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context& context) override;

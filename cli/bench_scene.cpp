@@ -9,6 +9,7 @@
 
 #include "cli/engines.h"
 #include "model/output.h"
+#include "model/process.h"
 
 namespace cuboct {
 namespace {

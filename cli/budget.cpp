@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "model/error.h"
-#include "model/measure.h"
 #include "model/output.h"
 #include "model/spelling.h"
 #include "study/budget.h"
@@ -54,14 +53,6 @@ std::string in_columns(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
-std::string unit_of(const study::Study& study, size_t figure) {
-  const Scene scene = study::resolve(study.base, {}).scene;
-  std::vector<Curve> curves = ProbeMeter(scene.probes, scene.periodic, scene.body.x).curves();
-  for (const char* part : {"total", "kinetic", "potential", "gravity"})
-    curves.push_back({std::string("energy.") + part, "J", {}, {}});
-  return study.figures[figure].unit(curves);
-}
-
 bool is_used(const BudgetAnswer& answer, size_t axis) {
   return study::matters(answer.axes, answer.result.best.at, axis);
 }
@@ -99,6 +90,14 @@ std::string settings_of(const BudgetAnswer& answer, const study::Notches& at) {
     if (is_used(answer, a))
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", answer.axes[a].name, label(answer, a, at));
   return text;
+}
+
+std::string command_of(const study::Settings& settings, const std::string& out) {
+  if (settings.arithmetic == study::Arithmetic::fixed)
+    return fmt::format("cuboct run {0}/cheapest.toml --arch {0}/cheapest_arch.toml", out);
+  return fmt::format("cuboct run {}/cheapest.toml --engine reference{}{}", out,
+                     settings.arithmetic == study::Arithmetic::float32 ? " --precision float" : "",
+                     settings.integrator == Integrator::velocity_verlet ? " --integrator verlet" : "");
 }
 
 void print_failure(const BudgetAnswer& answer, const std::string& figure, const std::string& error) {
@@ -170,16 +169,12 @@ int run_budget(const study::Study& study, const study::Truth& truth, const Budge
   const BudgetAnswer answer = study::keep_budget(study, truth, store, question);
   const std::string& figure = study.figures[question.figure].name;
   const study::SearchResult& result = answer.result;
-  const std::string unit = unit_of(study, question.figure);
+  const std::string& unit = study.figure_units[question.figure];
   fmt::print("figure '{}': {:.6g} {} by the truth\n", figure, truth.figures[question.figure], unit);
   if (!result.met) {
     print_failure(answer, figure, options.error);
     return 1;
   }
-  const bool fixed = answer.chosen.settings.arithmetic == study::Arithmetic::fixed;
-  const std::string command =
-      fixed ? fmt::format("cuboct run {0}/cheapest.toml --arch {0}/cheapest_arch.toml", options.out)
-            : fmt::format("cuboct run {}/cheapest.toml --engine reference", options.out);
   fmt::print("the cheapest settings within {}\n\n{}\n", options.error, table(answer, question.budget));
   fmt::print("as measured: {:.6g} {}, {}\n", answer.chosen.value, unit, signed_percent(answer.chosen.error));
   fmt::print("cost: {:.3g} transistors x pairs/s, {:.3g} of that of the study's own settings ({:.3g}, {})\n",
@@ -192,8 +187,6 @@ int run_budget(const study::Study& study, const study::Truth& truth, const Budge
     for (const Axis& axis : answer.axes) all *= axis.sets.size();
     return all;
   }());
-  if (answer.chosen.settings.arithmetic == study::Arithmetic::float32)
-    fmt::print("float32 is known to studies alone: `run` computes in doubles\n");
   study::Written texts = study::written(study, truth, answer.chosen.settings);
   const std::string head =
       fmt::format("# Chosen by `cuboct explore {} --error {}{}`: {} of '{}' by parts, cost {:.3g}.\n",
@@ -201,7 +194,7 @@ int run_budget(const study::Study& study, const study::Truth& truth, const Budge
                   percent(result.best.sum), figure, answer.chosen.cost);
   write_text(options.out + "/cheapest.toml", head + texts.scene);
   write_text(options.out + "/cheapest_arch.toml", head + texts.arch);
-  fmt::print("{}\n", command);
+  fmt::print("{}\n", command_of(answer.chosen.settings, options.out));
   return 0;
 }
 

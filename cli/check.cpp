@@ -87,9 +87,7 @@ Items resolve(const Loaded& loaded) {
   items.add("mass", rule.mass, "kg");
   items.add("dt", rule.dt, "s");
   if (scene.dt_limit > 0) {
-    items.add("dt limit", scene.dt_limit, "s",
-              scene.pitch > 0 ? "largest stable step of the perfect packing"
-                              : "largest stable step of the particles that are listed");
+    items.add("dt limit", scene.dt_limit, "s", "largest stable step of " + scene.dt_limit_of);
     items.add("dt safety", scene.dt_safety, "", "dt over its limit");
   }
   items.add("position bits", w.position_frac);

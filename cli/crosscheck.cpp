@@ -14,6 +14,7 @@
 
 #include "model/compare.h"
 #include "model/output.h"
+#include "model/process.h"
 
 namespace cuboct {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "cli/launch.h"
 #include "model/output.h"
+#include "model/process.h"
 #include "model/progress.h"
 #include "model/spelling.h"
 

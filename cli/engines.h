@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "model/process.h"
 #include "model/trace.h"
 
 namespace cuboct {

@@ -4,30 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+
+#include "study/json.h"
 
 namespace cuboct {
-namespace {
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      out += {'\\', c};
-    else if (c == '\n')
-      out += "\\n";
-    else if (static_cast<unsigned char>(c) < 0x20)
-      out += fmt::format("\\u{:04x}", c);
-    else
-      out += c;
-  }
-  return out + '"';
-}
-
-}  // namespace
 
 void Items::add(const std::string& name, const std::string& text) {
-  items_.push_back({name, text, quoted(text), "", "", false});
+  items_.push_back({name, text, study::json(text), "", "", false});
 }
 
 void Items::add(const std::string& name, uint64_t value, const std::string& unit, const std::string& note) {
@@ -39,8 +22,7 @@ void Items::add(const std::string& name, int64_t value, const std::string& unit,
 }
 
 void Items::add(const std::string& name, double value, const std::string& unit, const std::string& note) {
-  items_.push_back({name, fmt::format("{:.6g}", value),
-                    std::isfinite(value) ? fmt::format("{}", value) : "null", unit, note, false});
+  items_.push_back({name, fmt::format("{:.6g}", value), study::json(value), unit, note, false});
 }
 
 void Items::add_list(const std::string& name, const std::string& line, const std::vector<Items>& list) {
@@ -51,7 +33,7 @@ void Items::add_list(const std::string& name, const std::string& line, const std
     const char* inner = "";
     for (const Item& part : one.all()) {
       if (part.name == "text") item.text += fmt::format("{}: {}\n", line, part.text);
-      item.json += fmt::format("{}{}: {}", inner, quoted(part.name), part.json);
+      item.json += fmt::format("{}{}: {}", inner, study::json(part.name), part.json);
       inner = ", ";
     }
     item.json += "}";
@@ -85,9 +67,9 @@ std::string Items::json() const {
   for (const Item& item : items_) {
     std::string name = item.name;
     std::replace(name.begin(), name.end(), ' ', '_');
-    out += fmt::format("{}  {}: {{\"value\": {}", separator, quoted(name), item.json);
-    if (!item.unit.empty()) out += ", \"unit\": " + quoted(item.unit);
-    if (!item.note.empty()) out += ", \"note\": " + quoted(item.note);
+    out += fmt::format("{}  {}: {{\"value\": {}", separator, study::json(name), item.json);
+    if (!item.unit.empty()) out += ", \"unit\": " + study::json(item.unit);
+    if (!item.note.empty()) out += ", \"note\": " + study::json(item.note);
     out += "}";
     separator = ",\n";
   }

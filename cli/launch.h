@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include "model/process.h"
-
 namespace cuboct {
 
 // Directory of the running program.

@@ -12,6 +12,7 @@
 #include "emu/lattice/program.h"
 #include "model/measure.h"
 #include "model/output.h"
+#include "model/process.h"
 #include "model/progress.h"
 
 namespace cuboct {

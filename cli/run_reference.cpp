@@ -13,6 +13,7 @@
 #include "model/interrupt.h"
 #include "model/measure.h"
 #include "model/progress.h"
+#include "model/real_meter.h"
 #include "model/strain.h"
 
 namespace cuboct {
@@ -20,21 +21,6 @@ namespace {
 
 // A thread of its own for this many particles.
 constexpr size_t kParticlesPerThread = 2000;
-
-// Kinetic energy at the time of the positions under semi-implicit Euler: v + a dt/2, as v lives half a step
-// earlier.
-double kinetic_energy(const Rule& rule, const Body& body, const std::vector<Vec3>& force) {
-  double sum = 0;
-  for (size_t i = 0; i < body.size(); ++i) {
-    const ParticleType& type = rule.types[body.type[i]];
-    for (int axis = 0; axis < 3; ++axis) {
-      const double a = type.imposed[axis] ? 0 : force[i][axis] / rule.mass + type.gravity[axis];
-      const double v = body.v[i][axis] + 0.5 * a * rule.dt;
-      sum += 0.5 * rule.mass * v * v;
-    }
-  }
-  return sum;
-}
 
 }  // namespace
 
@@ -73,32 +59,22 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
     options.threads = static_cast<int>(std::clamp<size_t>(scene.body.size() / kParticlesPerThread, 1,
                                                           std::max(1u, std::thread::hardware_concurrency())));
   Reference reference(scene.rule, scene.body, scene.periodic, options);
-  const bool verlet = options.integrator == Integrator::velocity_verlet;
   ReferenceRun run;
   run.trace.engine = "reference";
   run.trace.plan_hash = loaded.setup.plan.hash;
   run.trace.nodes = loaded.setup.plan.lattice.size();
-  ProbeMeter probes(scene.probes, scene.periodic, scene.body.x);
+  RealMeter meter(scene, options.integrator, true, true);
   const StrainMeter strains = strain_meter(scene, scene.body.x);
   const int axis = strain_axis(scene);
-  Curve kinetic{"energy.kinetic", "J", {}, {}}, potential{"energy.potential", "J", {}, {}};
   Watch detectors(scene, 0);
 
   const auto record = [&](uint64_t step, bool last) {
     const bool probed = last || std::binary_search(probe_steps.begin(), probe_steps.end(), step);
     const bool kept = last || std::binary_search(frame_steps.begin(), frame_steps.end(), step);
     if (!probed && !kept) return;
-    const Body& body = reference.body();
-    if (probed) {
-      const std::vector<Vec3> force = reference.forces();
-      probes.add({step, body.x, force});
-      kinetic.step.push_back(step);
-      kinetic.value.push_back(verlet ? reference.kinetic_energy() : kinetic_energy(scene.rule, body, force));
-      potential.step.push_back(step);
-      potential.value.push_back(reference.potential_energy());
-      if (watch) detectors.see(step, body, force, kinetic.value.back(), potential.value.back());
-    }
+    if (probed) meter.add(reference, watch ? &detectors : nullptr);
     if (kept) {
+      const Body& body = reference.body();
       Frame frame{step, static_cast<double>(step) * scene.rule.dt, body.x, body.v, body.type, {}};
       for (const LocalStrain& strain : strains.measure(body.x)) frame.strain.push_back(strain.axial(axis));
       run.frames.push_back(std::move(frame));
@@ -118,14 +94,13 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
     if (interrupted()) break;
     progress.at(step);
   }
-  run.trace.curves = probes.curves();
-  run.trace.curves.push_back(kinetic);
-  run.trace.curves.push_back(potential);
+  run.trace.curves = meter.curves();
 
   Items& items = run.summary;
   items.add("engine", "reference");
   items.add("precision", options.precision == Precision::float32 ? "float" : "double");
-  items.add("integrator", verlet ? "velocity Verlet" : "semi-implicit Euler");
+  items.add("integrator",
+            options.integrator == Integrator::velocity_verlet ? "velocity Verlet" : "semi-implicit Euler");
   items.add("threads", static_cast<uint64_t>(options.threads));
   items.add("scene", scene.path);
   items.add("particles", static_cast<uint64_t>(scene.body.size()));
@@ -136,10 +111,7 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
     items.add("speed", static_cast<double>(step * scene.body.size()) / run.trace.seconds, "particle-steps/s");
   items.add("momentum change", (reference.momentum() - before).norm(), "kg m/s",
             keeps_momentum(scene.rule) ? "" : "held or driven from outside");
-  items.add("energy", kinetic.value.back() + potential.value.back(), "J", "kinetic and pairs");
-  items.add("energy change",
-            kinetic.value.back() + potential.value.back() - kinetic.value.front() - potential.value.front(),
-            "J");
+  add_energy(items, scene, run.trace.curves);
   items.add("largest speed", reference.largest_speed() * scene.rule.dt / loaded.setup.plan.rule.cell_edge, "node/step");
   std::vector<Finding> findings = detectors.findings();
   if (const auto far = options.precision == Precision::float32 ? find_far_origin(scene) : std::nullopt)

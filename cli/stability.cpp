@@ -15,6 +15,7 @@
 #include "model/interrupt.h"
 #include "model/output.h"
 #include "model/progress.h"
+#include "study/json.h"
 #include "study/stability.h"
 
 namespace cuboct {
@@ -142,28 +143,18 @@ std::string text_of(const Scene& scene, const std::vector<Row>& rows) {
   return out;
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n') out += "\\n";
-    else out += c;
-  }
-  return out + '"';
-}
-
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null"; }
 
 std::string json_of(const Scene& scene, const std::vector<Row>& rows) {
-  std::string out = fmt::format("{{\"scene\": {}, \"particles\": {}, \"dt\": {}, \"lines\": [", quoted(scene.path),
-                                scene.body.size(), number(scene.rule.dt));
+  std::string out = fmt::format("{{\"scene\": {}, \"particles\": {}, \"dt\": {}, \"lines\": [",
+                                study::json(scene.path), scene.body.size(), number(scene.rule.dt));
   for (size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     out += fmt::format(
         "{}\n  {{\"name\": {}, \"note\": {}, \"predicted\": {}, \"frequency\": {}, \"damping_share\": {}, "
         "\"measured\": {{",
-        i > 0 ? "," : "", quoted(row.name), quoted(row.note), number(row.predicted), number(row.frequency),
-        number(row.damping_share));
+        i > 0 ? "," : "", study::json(row.name), study::json(row.note), number(row.predicted),
+        number(row.frequency), number(row.damping_share));
     bool first = true;
     for (size_t e = 0; e < kEngines.size(); ++e) {
       if (!row.measured[e]) continue;
@@ -172,7 +163,7 @@ std::string json_of(const Scene& scene, const std::vector<Row>& rows) {
           "{}\n    \"{}\": {{\"stable\": {}, \"unstable\": {}, \"ratio\": {}, \"steps\": {}, \"trials\": {}, "
           "\"refused\": {}, \"sign\": {}}}",
           first ? "" : ",", kEngines[e].key, number(m.stable), number(m.unstable),
-          number(m.middle() / row.predicted), m.steps, m.trials, m.refused, quoted(m.sign));
+          number(m.middle() / row.predicted), m.steps, m.trials, m.refused, study::json(m.sign));
       first = false;
     }
     out += "}}";

@@ -54,6 +54,18 @@ std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
   return result;
 }
 
+void add_energy(Items& items, const Scene& scene, const std::vector<Curve>& curves) {
+  for (const Curve& curve : curves)
+    if (curve.name == "energy.total" && curve.value.size() > 1) {
+      const auto [low, high] = std::minmax_element(curve.value.begin(), curve.value.end());
+      if (keeps_energy(scene.rule, scene.periodic))
+        items.add("energy drift", *high - *low, "J", "largest minus smallest total");
+      else
+        items.add("energy change", curve.value.back() - curve.value.front(), "J", "driven or damped");
+      items.add("energy", curve.value.back(), "J");
+    }
+}
+
 void add_findings(Items& items, const std::vector<Finding>& findings) {
   std::vector<Items> list;
   for (const Finding& f : findings) {
@@ -92,15 +104,7 @@ Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts)
   items.add("momentum change", change, "LSB",
             keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside");
 
-  for (const Curve& curve : facts.curves)
-    if (curve.name == "energy.total" && curve.value.size() > 1) {
-      const auto [low, high] = std::minmax_element(curve.value.begin(), curve.value.end());
-      if (keeps_energy(loaded.scene.rule, loaded.scene.periodic))
-        items.add("energy drift", *high - *low, "J", "largest minus smallest total");
-      else
-        items.add("energy change", curve.value.back() - curve.value.front(), "J", "driven or damped");
-      items.add("energy", curve.value.back(), "J");
-    }
+  add_energy(items, loaded.scene, facts.curves);
   items.add("largest speed", facts.largest_speed, "node/step");
   if (const auto cycles = cycles_per_step(trace)) {
     items.add("cycles per step, mean", cycles->mean);

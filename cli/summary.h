@@ -50,6 +50,9 @@ struct CyclesPerStep {
 };
 std::optional<CyclesPerStep> cycles_per_step(const Trace& trace);
 
+// How much the total energy changed, and the last, where there are two values of it.
+void add_energy(Items& items, const Scene& scene, const std::vector<Curve>& curves);
+
 // "warning: ..." lines and the array "warnings", where someone watched.
 void add_findings(Items& items, const std::vector<Finding>& findings);
 

@@ -142,13 +142,16 @@ double frequency(const Figure& figure, const Curve& curve, double dt) {
 
 double break_time(const Figure& figure, const Curve& curve, double dt) {
   if (curve.value.empty()) cannot(figure, "no samples");
-  const double level = figure.fraction * std::ranges::max(curve.value);
+  const double most = std::ranges::max(curve.value);
+  if (!(most > 0))
+    cannot(figure, fmt::format("{} has no value above 0: the largest is {:.6g}", figure.curve, most));
+  const double level = figure.fraction * most;
   const auto top = std::ranges::max_element(curve.value) - curve.value.begin();
   size_t k = curve.value.size() - 1;
   if (!(curve.value[k] < level))
     cannot(figure, fmt::format("{} never stays below {:.6g}, {} of its largest value", figure.curve, level,
                                figure.fraction));
-  while (curve.value[k - 1]<level&& static_cast<ptrdiff_t>(k) - 1> top) --k;
+  while (level > curve.value[k - 1] && top + 1 < static_cast<ptrdiff_t>(k)) --k;
   const double above = curve.value[k - 1], below = curve.value[k];
   const double part = (above - level) / (above - below);
   return dt * (static_cast<double>(curve.step[k - 1]) +

@@ -126,9 +126,14 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
     const Vec3& gravity = rule.types[particle.type].gravity;
     const Cell& cell = lattice.cell(particle.node);
     for (int axis = 0; axis < 3; ++axis) {
-      const double gain =
-          type.imposed[axis] ? 0 : 0.5 * static_cast<double>(kicks[i][axis] + type.gravity[axis]);
-      const double v = (static_cast<double>(particle.v[axis]) + gain) * velocity;
+      // What the step adds to v, of any size: finish() wraps what its widths do not hold.
+      double gain = 0;
+      if (!type.imposed[axis]) gain = static_cast<double>(kicks[i][axis] + type.gravity[axis]);
+      if (!type.imposed[axis] && type.pd)
+        gain -= std::ldexp(static_cast<double>(type.kp * particle.u[axis] +
+                                               type.kd * (particle.v[axis] - type.velocity[axis])),
+                           -fixed.widths.gain_frac);
+      const double v = (static_cast<double>(particle.v[axis]) + gain / 2) * velocity;
       const double x =
           origin[axis] + cell[axis] * fixed.cell_edge + static_cast<double>(particle.x[axis]) * length;
       sum.kinetic += 0.5 * fixed.mass * v * v;
@@ -146,6 +151,17 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
   sum.potential = pairs.energy;
   if (closest) *closest = pairs.closest;
   return sum;
+}
+
+Vec3 acceleration(const Rule& rule, const Body& body, size_t i, const Vec3& force) {
+  const ParticleType& type = rule.types[body.type[i]];
+  Vec3 f = force;
+  const Vec3 u = body.u.empty() ? Vec3::Zero() : body.u[i];
+  if (type.pd) f -= type.kp * u + type.kd * (body.v[i] - type.velocity);
+  Vec3 a = f / rule.mass + type.gravity;
+  for (int axis = 0; axis < 3; ++axis)
+    if (type.imposed[axis]) a[axis] = 0;
+  return a;
 }
 
 Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,

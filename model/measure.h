@@ -27,7 +27,8 @@ double newtons_per_kick(const FixedRule& rule);
 Vec3 force_of(const FixedRule& rule, const Int3& kick);  // N
 
 struct Energies {
-  double kinetic = 0;    // J, at the time of the positions: v + dv/2, as v lives half a step earlier
+  double kinetic = 0;  // J, at the time of the positions: v + dv/2 with all that the step adds to v, which
+                       // lives half a step earlier
   double potential = 0;  // J, of the pairs, by the pair law in doubles at the fixed positions
   double gravity = 0;    // J, -m g.x summed, from the origin of the scene's coordinates
   double total() const { return kinetic + potential + gravity; }
@@ -42,6 +43,10 @@ struct ClosestPair {
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                   const State& state, const std::vector<Int3>& kicks, int threads = 0,
                   ClosestPair* closest = nullptr);
+
+// Of particle `i` in real units, m/s^2, at body's x, v and u: the pair force (N), the PD force and gravity; 0
+// along axes whose velocity is imposed.
+Vec3 acceleration(const Rule& rule, const Body& body, size_t i, const Vec3& force);
 
 // Virial stress of the whole body over `volume` (m^3), Pa, tension positive: the sum over pairs of f (x) d by the
 // kicks that the machine adds up and the positions that it holds. In a periodic box the mean of

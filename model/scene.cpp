@@ -69,18 +69,27 @@ double vibrations_limit(const Scene& scene, const Vec3& low, const Vec3& high) {
   return stability_limit(vibrations_of(scene.rule, part, scene.periodic)).dt;
 }
 
+struct TimeLimit {
+  double dt = std::numeric_limits<double>::infinity();  // s
+  std::string of;                                       // what sets it
+
+  void meet(double other, const std::string& what) {
+    if (other > 0 && other < dt) dt = other, of = what;
+  }
+  double known() const { return std::isinf(dt) ? 0 : dt; }  // 0: it is not
+};
+
 // Of a dt that the scene gives, and of "auto", which must last for what listed particles may become.
 struct TimeLimits {
-  double given = 0, automatic = 0;  // s; 0: unknown
+  TimeLimit given, automatic;
 };
 
 TimeLimits time_limits(const Scene& scene, size_t listed) {
   const Rule& rule = scene.rule;
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  double given = kNone, automatic = kNone;
-  const auto meet = [](double& limit, double other) { limit = other > 0 ? std::min(limit, other) : limit; };
+  TimeLimits limits;
   const double cutoff = rule.law->cutoff();
-  if (scene.pitch > 0) meet(given, stable_time_step(rule, scene.pitch));
+  if (scene.pitch > 0) limits.given.meet(stable_time_step(rule, scene.pitch), "the perfect packing");
   bool small = false;  // a box that every engine will refuse
   for (const double extent : scene.periodic.extent) small = small || (extent > 0 && extent < 2 * cutoff);
   if (listed > 0 && !small) {
@@ -94,12 +103,13 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
       for (int axis = 0; axis < 3; ++axis)
         if (scene.periodic.extent[axis] > 0) low[axis] = -kNone, high[axis] = kNone;
     }
-    meet(given, vibrations_limit(scene, low, high));
+    limits.given.meet(vibrations_limit(scene, low, high), "the particles that are listed");
     const double rest = stiffest_rest_distance(*rule.law);
-    if (scene.pitch == 0 && rest > 0.1 * cutoff) meet(automatic, stable_time_step(rule, rest));
+    if (scene.pitch == 0 && rest > 0.1 * cutoff)
+      limits.automatic.meet(stable_time_step(rule, rest), "a packing at the law's rest distance");
   }
-  automatic = std::min(automatic, given);
-  return {std::isinf(given) ? 0 : given, std::isinf(automatic) ? 0 : automatic};
+  limits.automatic.meet(limits.given.dt, limits.given.of);
+  return limits;
 }
 
 void read_time(const ConfigTable& root, Scene& scene) {
@@ -109,7 +119,9 @@ void read_time(const ConfigTable& root, Scene& scene) {
   const TimeLimits limits = time_limits(scene, root.tables("particle").size());
   const auto dt = run.find("dt");
   const bool automatic = !dt || (dt->is_string() && dt->string() == "auto");
-  scene.dt_limit = automatic ? limits.automatic : limits.given;
+  const TimeLimit& limit = automatic ? limits.automatic : limits.given;
+  scene.dt_limit = limit.known();
+  scene.dt_limit_of = limit.of;
   const auto safety = run.find("dt_safety");
   if (automatic) {
     scene.dt_safety =
@@ -123,7 +135,7 @@ void read_time(const ConfigTable& root, Scene& scene) {
       scene.dt_safety = scene.rule.dt / scene.dt_limit;
       if (scene.dt_safety > 1)
         dt->fail(fmt::format("'dt' is beyond the stability limit {:.4g} s", scene.dt_limit),
-                 fmt::format("\"auto\" would take {:.4g} s", 0.2 * limits.automatic));
+                 fmt::format("\"auto\" would take {:.4g} s", 0.2 * limits.automatic.dt));
     }
   }
 

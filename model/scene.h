@@ -46,6 +46,7 @@ struct Scene {
   double density = 0;                   // kg/m^3, 0 if the mass was given
   double dt_limit = 0;                  // s, largest stable dt: of the perfect packing, and of the vibrations of
                                         // particles that are listed (docs/user/scene.md, [run]); 0 if unknown
+  std::string dt_limit_of;              // what sets it, e.g. "the perfect packing"
   double dt_safety = 0;                 // dt = dt_safety * dt_limit where dt was "auto", else dt / dt_limit
   Vec3 reach_margin =
       Vec3::Constant(-1);  // m, space around the body that particles may reach; negative: one cell edge

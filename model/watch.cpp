@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
+#include <limits>
 
 #include "model/neighbours.h"
 #include "model/parallel.h"
@@ -22,18 +22,10 @@ constexpr int kBonds = 12;
 
 constexpr double kCreep = 1e-3;  // of the pitch: where a law's stiffness begins to change
 
-// Largest -slope of the law where it pulls or is at rest, N/m: what a bond's stiffness is without impact.
-double stiffness_of(const PairLaw& law) {
-  constexpr int kSamples = 4096;
-  double most = 0;
-  bool pulled = false;
-  for (int k = kSamples - 1; k > 0; --k) {
-    const double r = law.cutoff() * k / kSamples, f = law.force(r);
-    most = std::max(most, -law.slope(r));
-    if (pulled && f > 0) break;
-    pulled |= f < 0;
-  }
-  return most;
+// Where a bond is at rest, m; of a law that only pushes the core, where it is stiffest.
+double bond_length(const PairLaw& law) {
+  const double rest = stiffest_rest_distance(law);
+  return rest > 0 ? rest : law.core();
 }
 
 double strongest_pull(const PairLaw& law) {
@@ -55,15 +47,11 @@ double least_of(const std::vector<std::vector<double>>& strength) {
   return least;
 }
 
-// The limit of dt, s, of an FCC packing of such bonds, where a scene has none: sums over 8 bonds, as at the
-// edge of its Brillouin zone (docs/reference/physics.md).
-double limit_of_bonds(const Rule& rule) {
-  double kp = 0, kd = 0;
-  for (const ParticleType& type : rule.types) kp = std::max(kp, type.kp), kd = std::max(kd, type.kd);
-  const double strength = largest_of(rule.strength), core = rule.law->core();
-  const double k = (8 * strength * stiffness_of(*rule.law) + kp) / rule.mass;
-  const double c = (8 * strength * rule.damping_over_r2(core) * core * core + kd) / rule.mass;
-  return 4 / (c + std::sqrt(c * c + 4 * k));
+// The limit of dt, s: that of the scene, or where it has none of a packing of such bonds.
+double limit_of(const Scene& scene) {
+  if (scene.dt_limit > 0) return scene.dt_limit;
+  const double limit = stable_time_step(scene.rule, bond_length(*scene.rule.law));
+  return limit > 0 ? limit : std::numeric_limits<double>::infinity();
 }
 
 // Whether every pair force of the body is 0, to what `law` of a scene may lack of it at its pitch.
@@ -125,9 +113,9 @@ Watch::Watch(const Scene& scene, double table_error, int threads)
   // = omega dt; it starts at one end where all starts as kinetic. The mean over the modes of the packing is
   // half the largest theta^2 = 4 (dt/limit)^2: (dt/limit)^2/4 is to be expected. Twice that, and 2 % for a
   // run far below the limit.
-  const double limit = scene.dt_limit > 0 ? scene.dt_limit : limit_of_bonds(rule);
+  const double limit = limit_of(scene);
   energy_limit_ = 0.02 + 0.5 * (rule.dt / limit) * (rule.dt / limit);
-  faint_ = 0.5 * static_cast<double>(type_.size()) * stiffness_of(law) *
+  faint_ = 0.5 * static_cast<double>(type_.size()) * std::max(0.0, -law.slope(bond_length(law))) *
            std::pow(kCreep * (scene.pitch > 0 ? scene.pitch : law.cutoff()), 2);
   near_limit_ = rule.dt > 0.5 * limit;
 
@@ -416,8 +404,7 @@ void Watch::see(const FixedRule& rule, const Lattice& lattice, const Vec3& origi
   see(moment);
 }
 
-void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force, double kinetic,
-                double potential) {
+void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force, const Energies& energies) {
   const Rule& rule = scene_.rule;
   Moment moment;
   moment.step = step;
@@ -425,17 +412,13 @@ void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force,
   moment.v = [&](uint32_t id) { return body.v[id]; };
   moment.v_next = [&](uint32_t id) {
     const ParticleType& type = rule.types[body.type[id]];
-    Vec3 f = force[id];
-    if (type.pd) f -= type.kp * body.u[id] + type.kd * (body.v[id] - type.velocity);
-    Vec3 v = body.v[id] + rule.dt * (f / rule.mass + type.gravity);
+    Vec3 v = body.v[id] + rule.dt * acceleration(rule, body, id, force[id]);
     for (int a = 0; a < 3; ++a)
       if (type.imposed[a]) v[a] = type.velocity[a];
     return v;
   };
   moment.force = [&](uint32_t id) { return force[id]; };
-  moment.energies = {kinetic, potential, 0};
-  for (size_t i = 0; i < body.size(); ++i)
-    moment.energies.gravity -= rule.mass * rule.types[body.type[i]].gravity.dot(body.x[i]);
+  moment.energies = energies;
   CellList cells(rule.law->cutoff(), scene_.periodic);
   cells.build(body.x);
   cells.for_each_pair(body.x, [&](uint32_t i, uint32_t j, const Vec3&, double r) {
@@ -448,7 +431,8 @@ std::optional<Finding> find_far_origin(const Scene& scene) {
   double farthest = 0;
   for (const Vec3& x : scene.body.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
   const double pitch = scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff();
-  const double spacing = farthest * FLT_EPSILON;
+  const auto nearest = static_cast<float>(farthest);
+  const double spacing = std::nextafter(nearest, std::numeric_limits<float>::infinity()) - nearest;
   // 1e-4 of the pitch: a tenth of what counts as creep, for each of some ten bonds.
   const double limit = 1e-4 * pitch;
   if (spacing <= limit) return std::nullopt;

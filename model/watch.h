@@ -21,10 +21,10 @@ enum class Failure : uint8_t {
   time_step,        // velocities flip from step to step: dt is beyond the stability limit
   damping,          // the same, and the damping's share of the limit is the larger
   stiff_hold,       // the same, by the gains of PD controllers
-  force_jump,       // the law's force jumps at its cutoff: energy drifts in first order of dt
+  force_jump,       // the law's force jumps at its cutoff: energies scatter in first order of dt
   tunnelling,       // a pair inside the law's core, where the force rolls off, or fast enough to cross it
   constraint_work,  // driven particles press harder, or feed in more energy, than the body's bonds hold
-  heating,          // a run that should keep its energy does not: table seams, too few bits
+  heating,          // a run that should keep its energy does not: too few value bits make steps
   creep,            // a body at rest moves by itself
   far_origin,       // float32 positions whose spacing is not small beside the pitch
 };
@@ -64,7 +64,7 @@ class Watch {
   void see(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
            const std::vector<Int3>& kicks, const Energies& energies, const ClosestPair& closest);
   // A state of the reference in doubles; `force`: Reference::forces(). Finds the closest pair itself.
-  void see(uint64_t step, const Body& body, const std::vector<Vec3>& force, double kinetic, double potential);
+  void see(uint64_t step, const Body& body, const std::vector<Vec3>& force, const Energies& energies);
 
   // A run that goes on from a checkpoint: its first energies.
   void remember(const Energies& first) { first_ = first; }

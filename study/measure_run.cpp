@@ -10,22 +10,12 @@
 #include "hw/setup.h"
 #include "model/interrupt.h"
 #include "model/measure.h"
-#include "model/neighbours.h"
+#include "model/real_meter.h"
 #include "model/state_meter.h"
 #include "model/strain.h"
 
 namespace cuboct::study {
 namespace {
-
-// Acceleration of a particle by everything but imposed velocities, which take it away.
-Vec3 acceleration(const Rule& rule, const ParticleType& type, const Vec3& force, const Vec3& v, const Vec3& u) {
-  Vec3 f = force;
-  if (type.pd) f -= type.kp * u + type.kd * (v - type.velocity);
-  Vec3 a = f / rule.mass + type.gravity;
-  for (int axis = 0; axis < 3; ++axis)
-    if (type.imposed[axis]) a[axis] = 0;
-  return a;
-}
 
 struct Sums {
   Vec3 momentum = Vec3::Zero();
@@ -40,52 +30,6 @@ Sums sums_of(const Rule& rule, const Body& body) {
   }
   return sums;
 }
-
-// The probe curves and energies of the engine of real numbers.
-class RealMeter {
- public:
-  RealMeter(const Scene& scene, const RunRequest& request, bool half_step_back)
-      : scene_(scene),
-        half_step_(half_step_back ? scene.rule.dt / 2 : 0),
-        probes_(request.curves ? scene.probes : std::vector<Probe>(), scene.periodic, scene.body.x) {
-    if (!request.energies) return;
-    for (const char* name : {"energy.kinetic", "energy.potential", "energy.gravity", "energy.total"})
-      energy_.push_back({name, "J", {}, {}});
-  }
-
-  void add(const Reference& reference) {
-    const Body& body = reference.body();
-    const std::vector<Vec3> force = reference.forces();
-    probes_.add({reference.step_count(), body.x, force});
-    if (energy_.empty()) return;
-    double kinetic = 0, gravity = 0;
-    for (size_t i = 0; i < body.size(); ++i) {
-      const ParticleType& type = scene_.rule.types[body.type[i]];
-      const Vec3 u = body.u.empty() ? Vec3::Zero() : body.u[i];
-      const Vec3 v = body.v[i] + half_step_ * acceleration(scene_.rule, type, force[i], body.v[i], u);
-      kinetic += scene_.rule.mass * v.squaredNorm() / 2;
-      gravity -= scene_.rule.mass * type.gravity.dot(body.x[i]);
-    }
-    const double potential = reference.potential_energy();
-    const double values[] = {kinetic, potential, gravity, kinetic + potential + gravity};
-    for (size_t k = 0; k < energy_.size(); ++k) {
-      energy_[k].step.push_back(reference.step_count());
-      energy_[k].value.push_back(values[k]);
-    }
-  }
-
-  std::vector<Curve> curves() const {
-    std::vector<Curve> all = probes_.curves();
-    all.insert(all.end(), energy_.begin(), energy_.end());
-    return all;
-  }
-
- private:
-  const Scene& scene_;
-  double half_step_;
-  ProbeMeter probes_;
-  std::vector<Curve> energy_;
-};
 
 // What both engines share: steps from sample to sample, looking where asked.
 template <class Step, class Look>
@@ -114,7 +58,7 @@ Run run_real(const Scene& scene, const Settings& settings, const RunRequest& req
   Reference reference(scene.rule, started_body(scene, half_step_back), scene.periodic, options);
   Run run;
   run.dt = scene.rule.dt;
-  RealMeter meter(scene, request, half_step_back);
+  RealMeter meter(scene, settings.integrator, request.curves, request.energies);
   const Sums before = sums_of(scene.rule, reference.body());
   try {
     go(
@@ -184,11 +128,8 @@ Body started_body(const Scene& scene, bool half_step_back) {
   if (!half_step_back) return body;
   const Reference reference(scene.rule, body, scene.periodic, RealOptions{});
   const std::vector<Vec3> force = reference.forces();
-  for (size_t i = 0; i < body.size(); ++i) {
-    const Vec3 u = body.u.empty() ? Vec3::Zero() : body.u[i];
-    body.v[i] -= scene.rule.dt / 2 *
-                 acceleration(scene.rule, scene.rule.types[body.type[i]], force[i], scene.body.v[i], u);
-  }
+  for (size_t i = 0; i < body.size(); ++i)
+    body.v[i] -= scene.rule.dt / 2 * acceleration(scene.rule, scene.body, i, force[i]);
   return body;
 }
 

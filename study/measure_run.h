@@ -17,7 +17,7 @@ struct RunRequest {
   TimeGrid grid;
   uint64_t until = 0;           // the last sample
   bool curves = false;          // of the probes, read at each sample
-  bool energies = false;        // energy.kinetic, .potential, .gravity, .total as well
+  bool energies = false;  // energy.kinetic, .potential, .gravity, .total, and the pressure of a box, as well
   std::vector<uint64_t> keep;   // samples whose bodies are kept, ascending
   int threads = 1;              // of the host
 };

@@ -2,6 +2,7 @@
 // `cuboct bench` as scripts read it.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -41,36 +42,35 @@ TEST(BenchCommand, TellsTheMedianOfItsRepeats) {
   // thousand times.
   EXPECT_GT(values.at("golden.block_4k.particle_steps"), 1e3);
   EXPECT_LT(values.at("golden.block_4k.particle_steps"), 1e9);
-  EXPECT_NE(answer.out.find("# golden.block_4k: 3 repeats, standard deviation "), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("# golden.block_4k: 3 repeats of "), std::string::npos) << answer.out;
+}
+
+// A step moves every particle: steps and particles over the told length of a repeat make the rate. However
+// busy the machine is, two of three repeats take at least the told median, and all of them pass while the
+// test waits.
+void expect_times_what_it_says(const std::string& name, const std::string& label) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Answer answer = bench({name, "--seconds", "0.05", "--repeats", "3"});
+  const double waited = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(answer.out, found, std::regex(label + ", (\\d+) steps per repeat\n")))
+      << answer.out;
+  const double steps = std::stod(found[1]);
+  ASSERT_TRUE(std::regex_search(
+      answer.out, found, std::regex("# " + name + ": 3 repeats of ([0-9.e-]+) s, standard deviation ")))
+      << answer.out;
+  const double seconds = std::stod(found[1]), rate = values_of(answer.out).at(name + ".particle_steps");
+  EXPECT_NEAR(steps * 32000 / rate, seconds, 2e-3 * seconds);  // of four digits each
+  EXPECT_LT(2 * seconds, waited);
 }
 
 TEST(BenchCommand, TimesWhatItSays) {
-  // The lattice engine's steps cost more with the timing model beside it; a step of either moves every particle.
-  const Answer answer = bench({"lattice.block_32k.1_thread", "--seconds", "0.05", "--repeats", "2"});
-  EXPECT_EQ(answer.code, 0) << answer.err;
-  std::smatch found;
-  ASSERT_TRUE(std::regex_search(answer.out, found, std::regex("32000 particles on (\\d+) nodes, 1 thread, \\w+, "
-                                                              "(\\d+) steps per repeat")))
-      << answer.out;
-  // A repeat was to take 0.05 s: the rate and the number of steps agree with it within a factor of ten.
-  const double steps = std::stod(found[2]),
-               rate = values_of(answer.out).at("lattice.block_32k.1_thread.particle_steps");
-  EXPECT_GT(steps * 32000 / rate, 0.005);
-  EXPECT_LT(steps * 32000 / rate, 0.5);
+  expect_times_what_it_says("lattice.block_32k.1_thread", "32000 particles on \\d+ nodes, 1 thread, \\w+");
 }
 
-// The same steps as `run` takes: a repeat of N steps at the told rate took about as long as asked.
 TEST(BenchCommand, TimesRealNumbers) {
-  const Answer answer = bench({"real.float_block_32k.1_thread", "--seconds", "0.05", "--repeats", "2"});
-  EXPECT_EQ(answer.code, 0) << answer.err;
-  std::smatch found;
-  ASSERT_TRUE(std::regex_search(answer.out, found,
-                                std::regex("32000 particles, 1 thread, \\w+, (\\d+) steps per repeat\n")))
-      << answer.out;
-  const double steps = std::stod(found[1]),
-               rate = values_of(answer.out).at("real.float_block_32k.1_thread.particle_steps");
-  EXPECT_GT(steps * 32000 / rate, 0.005);
-  EXPECT_LT(steps * 32000 / rate, 0.5);
+  expect_times_what_it_says("real.float_block_32k.1_thread", "32000 particles, 1 thread, \\w+");
 }
 
 TEST(BenchCommand, SaysWhatItSkips) {

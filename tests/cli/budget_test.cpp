@@ -139,5 +139,29 @@ TEST(ErrorBudget, TheChosenFilesRun) {
   EXPECT_EQ(s.explore({"--error", "5%"}).out, answer.out);
 }
 
+// Real numbers: the command names precision and integrator where they were chosen, and nothing else.
+TEST(ErrorBudget, TheCommandNamesFloatsAndTheIntegrator) {
+  std::string text = kStudy;
+  text = text.substr(0, text.find("[search]")) + "[search]\ndt_safety = [0.9, 0.3]\n";
+  const auto command = [&](const Studied& s) {
+    const Answer answer = s.explore({"--error", "5%"});
+    EXPECT_EQ(answer.code, 0) << answer.err << answer.out;
+    const size_t at = answer.out.find("cuboct run ");
+    return at == std::string::npos ? answer.out : answer.out.substr(at);
+  };
+  const Studied floats(text + "arithmetic = [\"float32\"]\nintegrator = [\"verlet\"]\n");
+  const std::string scene = floats.bench.path("results") + "/cheapest.toml";
+  EXPECT_EQ(command(floats),
+            "cuboct run " + scene + " --engine reference --precision float --integrator verlet\n");
+  EXPECT_EQ(
+      floats.bench
+          .cuboct({"run", scene, "--engine", "reference", "--precision", "float", "--integrator", "verlet"})
+          .code,
+      0);
+  const Studied doubles(text + "arithmetic = [\"float64\"]\n");
+  EXPECT_EQ(command(doubles),
+            "cuboct run " + doubles.bench.path("results") + "/cheapest.toml --engine reference\n");
+}
+
 }  // namespace
 }  // namespace cuboct::test

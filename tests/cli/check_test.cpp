@@ -61,6 +61,17 @@ TEST(Check, CountsTheCellsWithoutNode) {
       << answer.out;
 }
 
+TEST(Check, SaysWhatSetsTheLimitOfDt) {
+  const auto limit = [](const std::string& scene) {
+    const std::string out = Bench(false).cuboct({"check", scene}).out;
+    const size_t from = out.find("\ndt limit ");
+    return out.substr(from, out.find('\n', from + 1) - from);
+  };
+  EXPECT_TRUE(limit("scenes/coupon.toml").ends_with(" s (largest stable step of the perfect packing)"));
+  EXPECT_TRUE(limit("scenes/failures/stiff_hold.toml")
+                  .ends_with(" s (largest stable step of the particles that are listed)"));
+}
+
 TEST(Check, NamesItInJsonToo) {
   EXPECT_EQ(not_built({"check", "scenes/coupon.toml", "--json"}),
             R"(  "not_built": {"value": "pair scales, PD controllers"},

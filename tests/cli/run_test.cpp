@@ -134,6 +134,7 @@ TEST(Run, OfTheReferenceTakesItsOptions) {
   out = run("two", {"--threads", "2"});
   EXPECT_EQ(value_of(out, "threads"), "2");
   EXPECT_EQ(contents(bench.path("one/frames.xyz")), contents(bench.path("two/frames.xyz")));
+  EXPECT_EQ(read_trace(bench.path("one/trace.h5")).curves.back().name, "energy.total");
   EXPECT_EQ(stress("one"), stress("two"));
   out = run("float", {"--precision", "float"});
   EXPECT_EQ(value_of(out, "precision"), "float");

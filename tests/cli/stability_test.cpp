@@ -46,6 +46,17 @@ TEST(Stability, JsonAndStrain) {
     EXPECT_NE(answer.out.find(part), std::string::npos) << part << "\n" << answer.out;
 }
 
+// Control characters have no place in JSON's strings.
+TEST(Stability, JsonIsEscaped) {
+  const Bench bench(false);
+  const std::string odd = bench.path("a\tb.toml");
+  std::filesystem::rename(block(bench), odd);
+  const Answer answer = bench.cuboct({"stability", odd, "--json", "--strain", "0", "--resolution", "0.1"});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(answer.out.find('\t'), std::string::npos);
+  EXPECT_NE(answer.out.find("/a\\u0009b.toml\", \"particles\": 32,"), std::string::npos) << answer.out;
+}
+
 TEST(Stability, RefusesWrongInput) {
   const auto expect_refusal = [](const std::vector<std::string>& arguments, const std::string& text) {
     const Answer answer = Bench(false).cuboct(arguments);

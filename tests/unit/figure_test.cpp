@@ -73,6 +73,21 @@ TEST(Figure, BreakTimeIsTheLastCrossing) {
   EXPECT_THROW(value_of(figure(Figure::Kind::break_time, "a"), whole, kDt), std::runtime_error);
 }
 
+// A curve that never rises has no part of its largest value to fall below.
+TEST(Figure, BreakTimeNeedsAPositiveMaximum) {
+  const auto refusal = [](const Curve& curve) -> std::string {
+    try {
+      return std::to_string(value_of(figure(Figure::Kind::break_time, "a"), {curve}, kDt));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(refusal({"a", "N", {0}, {-4}}), "it: a has no value above 0: the largest is -4");
+  EXPECT_EQ(refusal({"a", "N", {0, 1, 2}, {-2, -1.5, -3}}),
+            "it: a has no value above 0: the largest is -1.5");
+  EXPECT_EQ(refusal({"a", "N", {0, 1}, {0, -3}}), "it: a has no value above 0: the largest is 0");
+}
+
 TEST(Figure, MeanAndFinal) {
   const std::vector<Curve> curves{made("a", 101, 10, [](double t) { return t; })};
   EXPECT_NEAR(value_of(figure(Figure::Kind::mean, "a", 0.2, 0.4), curves, kDt), 0.3, 1e-12);

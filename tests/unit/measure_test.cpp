@@ -102,6 +102,24 @@ TEST(Measure, VirialAndPressureOfTwoParticlesByHand) {
   EXPECT_DOUBLE_EQ(pressure(e, stress, 8), (2.0 / 3 * e.kinetic - 0.75 / 3) / 8);
 }
 
+// A controller's part of the step counts as well. Particle 0: v = 3/32, u = 3/16 cell; with kp = 1/8 and kd =
+// 1/4 the step adds 1/32 - 3/128 - 3/128 = -1/64, so that at the time of the positions v is 11/128 cell per
+// step = 11/32 m/s. Particle 1: v = u = 0, the step adds -1/32: -1/16 m/s.
+TEST(Measure, AParticleHeldByForceFeelsItsController) {
+  TwoParticles two;
+  FixedType& type = two.fixed.types[0];
+  type.pd = two.fixed.pd = two.rule.types[0].pd = true;
+  type.kp = int64_t{1} << (two.fixed.widths.gain_frac - 3);
+  type.kd = int64_t{1} << (two.fixed.widths.gain_frac - 2);
+  Particle& held = two.state.particles[0];
+  held.v = {two.velocity(3.0 / 32), 0, 0};
+  held.u = {two.velocity(3.0 / 16), 0, 0};
+  const auto kicks = summed_kicks(two.fixed, two.lattice, two.state);
+  EXPECT_EQ(finish(two.fixed, kicks[0], held.x, held.v, held.u, 0).v[0], two.velocity(3.0 / 32 - 1.0 / 64));
+  EXPECT_DOUBLE_EQ(energies(two.rule, two.fixed, two.lattice, two.origin, two.state, kicks).kinetic,
+                   0.5 * 3 * (121.0 / 1024 + 1.0 / 256));
+}
+
 TEST(Measure, AHeldParticleGainsNoKineticEnergy) {
   TwoParticles two;
   two.fixed.types[0].imposed = {true, true, true};

@@ -335,16 +335,20 @@ TEST_F(SceneTest, ListedParticlesHaveTheLimitOfTheirVibrations) {
   const double k = -given.rule.law->slope(rest);
   EXPECT_NEAR(given.dt_limit, 2 / std::sqrt(2 * k / 2.0), 1e-9);
   EXPECT_NEAR(given.dt_safety, 0.1 / given.dt_limit, 1e-12);
+  EXPECT_EQ(given.dt_limit_of, "the particles that are listed");
   EXPECT_EQ(error(dimer(rest, "0.3")), "a.toml:13:6: 'dt' is beyond the stability limit 0.2646 s\n"
                                          "  hint: \"auto\" would take 0.02647 s");
   const Scene automatic = read(dimer(rest, "\"auto\""));
   EXPECT_NEAR(automatic.dt_limit, stable_time_step(automatic.rule, rest), 1e-3 * automatic.dt_limit);
   EXPECT_NEAR(automatic.dt_limit, 0.5 * given.dt_limit, 0.01 * given.dt_limit);  // w^2 = 8k/m
+  EXPECT_EQ(automatic.dt_limit_of, "a packing at the law's rest distance");
   EXPECT_DOUBLE_EQ(automatic.rule.dt, 0.2 * automatic.dt_limit);
   // Out of reach of each other nothing vibrates, but may yet; pressed together they are stiffer than a crystal.
   EXPECT_EQ(read(dimer(3, "0.3")).dt_limit, 0.0);
   EXPECT_EQ(read(dimer(3, "\"auto\"")).dt_limit, automatic.dt_limit);
-  EXPECT_LT(read(dimer(0.85, "\"auto\"")).dt_limit, 0.6 * automatic.dt_limit);
+  const Scene pressed = read(dimer(0.85, "\"auto\""));
+  EXPECT_LT(pressed.dt_limit, 0.6 * automatic.dt_limit);
+  EXPECT_EQ(pressed.dt_limit_of, "the particles that are listed");
 }
 
 // A listed particle pressed into the packing is stiffer than the packing.
@@ -355,10 +359,11 @@ TEST_F(SceneTest, AListedParticleNearAPackingCounts) {
                             "[[particle]]\nposition = [0, 0, {}]\n[run]\nsteps = 1\n",
                             law, height));
   };
-  const double far = scene(-3).dt_limit, near = scene(-0.2).dt_limit;
-  const Scene s = scene(-3);
-  EXPECT_DOUBLE_EQ(far, stable_time_step(s.rule, 1));
-  EXPECT_LT(near, 0.8 * far);
+  const Scene far = scene(-3), near = scene(-0.2);
+  EXPECT_DOUBLE_EQ(far.dt_limit, stable_time_step(far.rule, 1));
+  EXPECT_EQ(far.dt_limit_of, "the perfect packing");
+  EXPECT_LT(near.dt_limit, 0.8 * far.dt_limit);
+  EXPECT_EQ(near.dt_limit_of, "the particles that are listed");
 }
 
 // Angular momentum about the centre of mass and momentum of a spinning, drifting body.

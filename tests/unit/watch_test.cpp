@@ -138,9 +138,8 @@ TEST(Watch, FindsFloatsTooFarApart) {
   for (Vec3& x : scene.body.x) x.x() += 1e5;
   const auto found = find_far_origin(scene);
   ASSERT_TRUE(found);
-  // Beyond 2^16 floats are 2^-7 apart; the bound by epsilon is at most twice that.
-  EXPECT_GE(found->number, std::ldexp(1, -7));
-  EXPECT_LE(found->number, std::ldexp(1, -6));
+  // Beyond 2^16 floats are 2^-7 apart.
+  EXPECT_EQ(found->number, std::ldexp(1, -7));
 }
 
 }  // namespace

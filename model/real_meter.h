@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// The curves of a run in real numbers, the same as those of model/state_meter.h for the fixed engines.
+#pragma once
+
+#include <vector>
+
+#include "model/measure.h"
+#include "model/reference.h"
+#include "model/watch.h"
+
+namespace cuboct {
+
+class RealMeter {
+ public:
+  // Keeps a reference to `scene`. `integrator`, of the run, tells when velocities live. `probes`, `energies`:
+  // which curves are wanted.
+  RealMeter(const Scene& scene, Integrator integrator, bool probes, bool energies);
+
+  // The state as it stands; they come in the order of steps. `watch` looks at it too, where energies are
+  // wanted.
+  void add(const Reference& reference, Watch* watch = nullptr);
+
+  // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where
+  // all three axes of the box repeat, pressure in Pa.
+  std::vector<Curve> curves() const;
+
+ private:
+  const Scene& scene_;
+  double late_;  // s, from the time of the velocities to that of the positions
+  ProbeMeter probes_;
+  std::vector<Curve> energy_;  // and the pressure
+  double volume_ = 0;          // m^3, of a box that repeats along all axes; else 0
+};
+
+}  // namespace cuboct
