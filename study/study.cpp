@@ -25,8 +25,18 @@ std::string beside(const std::string& study, const std::string& path) {
   return (fs::path(study).parent_path() / path).lexically_normal().string();
 }
 
+// A file that is not there is told where the study names it.
+std::string file_named_by(const ConfigValue& value, const std::string& study) {
+  const std::string file = beside(study, value.string());
+  if (!fs::is_regular_file(file))
+    value.fail(fmt::format("'{}' names no file: {}", value.key(), file), "paths count from the study's directory");
+  return file;
+}
+
 Base read_changed_base(const ConfigTable& root, const std::string& path) {
-  Base base = read_base(beside(path, root.at("scene").string()), beside(path, root.string_or("arch", "")));
+  const auto arch_file = root.find("arch");
+  Base base =
+      read_base(file_named_by(root.at("scene"), path), arch_file ? file_named_by(*arch_file, path) : "");
   const auto change = root.table_at("change");
   if (!change) return base;
   std::vector<Change> scene, arch;

@@ -112,6 +112,9 @@ TEST(Study, MistakesNameTheirPlace) {
   EXPECT_EQ(error_of(files, "[[figure]]\nkind = \"mean\"\ncurve = \"energy.kinetc\"\n[[sweep]]\n"),
             "study.toml:5:9: the scene has no curve 'energy.kinetc'\n  hint: did you mean 'energy.kinetic'?");
   EXPECT_EQ(error_of(files, "[truth]\nrungs = 1\n[[sweep]]\n"), "study.toml:4:9: 'rungs' must be between 2 and 20, not 1");
+  const std::string missing = error_of(files, "arch = \"nowhere.toml\"\n[[sweep]]\n");
+  EXPECT_TRUE(missing.starts_with("study.toml:3:8: 'arch' names no file: ")) << missing;
+  EXPECT_TRUE(missing.ends_with("nowhere.toml\n  hint: paths count from the study's directory")) << missing;
 }
 
 // All runs are looked at at the same times: dt is made shorter until whole steps fit, never longer.
