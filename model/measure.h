@@ -27,8 +27,8 @@ double newtons_per_kick(const FixedRule& rule);
 Vec3 force_of(const FixedRule& rule, const Int3& kick);  // N
 
 struct Energies {
-  double kinetic = 0;  // J, at the time of the positions: v + dv/2 with all that the step adds to v, which
-                       // lives half a step earlier
+  double kinetic = 0;    // J, at the time of the positions: v + dv/2 with all that the step adds to v, which
+                         // lives half a step earlier
   double potential = 0;  // J, of the pairs, by the pair law in doubles at the fixed positions
   double gravity = 0;    // J, -m g.x summed, from the origin of the scene's coordinates
   double total() const { return kinetic + potential + gravity; }
