@@ -47,8 +47,6 @@ class Curves:
             self.step = next(iter(trace["curves"].values()))["step"][:]
 
     def __getitem__(self, name):
-        if name == "energy.total" and name not in self.values:  # the reference leaves it to the reader
-            return self.values["energy.kinetic"] + self.values["energy.potential"]
         return self.values[name]
 
 
