@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "model/error.h"
 #include "study/cost.h"
+#include "study/measure_errors.h"
 #include "study/measure_run.h"
 #include "study/measures.h"
 #include "study/work.h"
@@ -127,11 +127,7 @@ bool matters(const std::vector<Axis>& axes, Notches at, size_t axis) {
 }
 
 Outcome measure_figures(const Study& study, const Truth& truth, const Settings& settings) {
-  Outcome outcome;
-  outcome.settings = settings;
-  outcome.errors.figures.assign(study.figures.size(), kNotMeasured);
-  outcome.errors.values = outcome.errors.figures;
-  try {
+  return answered(study, settings, [&](Outcome& outcome) {
     const Case c = fitted(study, truth, settings);
     outcome.dt = c.scene.rule.dt;
     outcome.pitch = c.scene.pitch;
@@ -144,28 +140,10 @@ Outcome measure_figures(const Study& study, const Truth& truth, const Settings& 
         std::ranges::any_of(study.figures, [](const Figure& f) { return f.curve.starts_with("energy."); });
     const Run run = run_case(c, request);
     outcome.steps = run.steps;
-    if (!run.stop.empty()) {
-      outcome.status = Status::unstable;
-      outcome.why = one_line(run.stop);
-      return outcome;
-    }
-    for (size_t k = 0; k < study.figures.size(); ++k) {
-      try {
-        outcome.errors.values[k] = value_of(study.figures[k], run.curves, run.dt);
-        outcome.errors.figures[k] =
-            std::abs(outcome.errors.values[k] - truth.figures[k]) / std::abs(truth.figures[k]);
-      } catch (const std::runtime_error& error) {
-        outcome.why += (outcome.why.empty() ? "" : "; ") + one_line(error.what());
-      }
-    }
-  } catch (const InputError& error) {
-    outcome.status = Status::refused;
-    outcome.why = one_line(error.what());
-  } catch (const RunError& error) {  // not even the initial state can be held
+    if (run.stop.empty()) return compare_figures(study, truth, run, outcome);
     outcome.status = Status::unstable;
-    outcome.why = one_line(error.what());
-  }
-  return outcome;
+    outcome.why = one_line(run.stop);
+  });
 }
 
 BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store,

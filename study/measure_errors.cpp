@@ -48,8 +48,7 @@ void compare_forces(const Case& c, const Plan* plan, const Truth& own, Outcome& 
   for (const KeptState& state : own.states) {
     Body body = state.body;
     body.u.clear();  // pair forces do not depend on the anchors
-    const std::vector<Vec3> truth =
-        Reference(c.scene.rule, body, c.scene.periodic, RealOptions{}).forces();
+    const std::vector<Vec3> truth = Reference(c.scene.rule, body, c.scene.periodic, RealOptions{}).forces();
     std::vector<Vec3> forces;
     try {
       forces = forces_on(c, plan, body, c.scene.periodic);
@@ -79,7 +78,8 @@ void measure_drift(const Run& run, double largest_frequency, Outcome& outcome) {
   const Curve* kinetic = curve_named(run.curves, "energy.kinetic");
   if (!total || !kinetic || total->value.size() < 3) return;
   double n = 0, x1 = 0, y1 = 0, xx = 0, xy = 0;
-  for (size_t k = 0; k < total->value.size(); ++k) x1 += static_cast<double>(total->step[k]), y1 += total->value[k];
+  for (size_t k = 0; k < total->value.size(); ++k)
+    x1 += static_cast<double>(total->step[k]), y1 += total->value[k];
   n = static_cast<double>(total->value.size());
   x1 /= n, y1 /= n;
   for (size_t k = 0; k < total->value.size(); ++k) {
@@ -92,21 +92,6 @@ void measure_drift(const Run& run, double largest_frequency, Outcome& outcome) {
   if (largest_frequency > 0)
     outcome.errors.drift_per_oscillation =
         outcome.errors.drift_per_step / run.dt * 2 * std::numbers::pi / largest_frequency;
-}
-
-void compare_figures(const Study& study, const Truth& truth, const Run& run, Outcome& outcome) {
-  for (size_t k = 0; k < study.figures.size(); ++k) {
-    double value = kNotMeasured;
-    try {
-      value = value_of(study.figures[k], run.curves, run.dt);
-    } catch (const std::runtime_error& error) {
-      add_reason(outcome, error.what());
-    }
-    outcome.errors.values.push_back(value);
-    outcome.errors.figures.push_back(value == truth.figures[k] ? 0
-                                                               : std::abs(value - truth.figures[k]) /
-                                                                     std::abs(truth.figures[k]));
-  }
 }
 
 bool uses_energies(const Study& study) {
@@ -135,7 +120,8 @@ void measure_run(const Study& study, const Truth& truth, const Truth& own, const
         rms_distance(run.kept[0].x, own.horizon.body.x, c.scene.periodic) / length_unit(c.scene);
     if (!(outcome.errors.trajectory <= 1)) {
       outcome.status = Status::unstable;
-      add_reason(outcome, fmt::format("left the truth by {:.3g} pitches at the horizon", outcome.errors.trajectory));
+      add_reason(outcome,
+                 fmt::format("left the truth by {:.3g} pitches at the horizon", outcome.errors.trajectory));
     }
   }
   if (!run.stop.empty()) {
@@ -160,7 +146,8 @@ void measure(const Study& study, const Truth& truth, const Truth& own, Outcome& 
   if (c.settings.arithmetic == Arithmetic::fixed) {
     plan = plan_of(c.scene, c.arch);
     const auto bits = [&](const FixedTable& table) {
-      return static_cast<int>(table.c0.size() + table.c1.size() + table.c2.size()) * plan->rule.widths.strength_bits;
+      return static_cast<int>(table.c0.size() + table.c1.size() + table.c2.size()) *
+             plan->rule.widths.strength_bits;
     };
     outcome.halo_bits = plan->words.halo_bits;
     outcome.table_bits = bits(plan->rule.force) + (plan->rule.damped ? bits(plan->rule.damp) : 0);
@@ -172,11 +159,25 @@ void measure(const Study& study, const Truth& truth, const Truth& own, Outcome& 
 
 }  // namespace
 
-Outcome measure_errors(const Study& study, const Truth& study_truth, const Truth& own, const Settings& settings) {
+void compare_figures(const Study& study, const Truth& truth, const Run& run, Outcome& outcome) {
+  for (size_t k = 0; k < study.figures.size(); ++k) {
+    double value = kNotMeasured;
+    try {
+      value = value_of(study.figures[k], run.curves, run.dt);
+    } catch (const std::runtime_error& error) {
+      add_reason(outcome, error.what());
+    }
+    outcome.errors.values.push_back(value);
+    outcome.errors.figures.push_back(
+        value == truth.figures[k] ? 0 : std::abs(value - truth.figures[k]) / std::abs(truth.figures[k]));
+  }
+}
+
+Outcome answered(const Study& study, const Settings& settings, const std::function<void(Outcome&)>& measure) {
   Outcome outcome;
   outcome.settings = settings;
   try {
-    measure(study, study_truth, own, outcome);
+    measure(outcome);
   } catch (const InputError& error) {
     outcome.status = Status::refused;
     outcome.why = one_line(error.what());
@@ -187,6 +188,11 @@ Outcome measure_errors(const Study& study, const Truth& study_truth, const Truth
   outcome.errors.figures.resize(study.figures.size(), kNotMeasured);
   outcome.errors.values.resize(study.figures.size(), kNotMeasured);
   return outcome;
+}
+
+Outcome measure_errors(const Study& study, const Truth& study_truth, const Truth& own,
+                       const Settings& settings) {
+  return answered(study, settings, [&](Outcome& outcome) { measure(study, study_truth, own, outcome); });
 }
 
 }  // namespace cuboct::study
