@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Errors fall as theory says that they must, in each setting. A study that measured something else, or from an
-// untrue truth, would show other slopes.
+// Errors fall as theory says that they must, in each setting. A study that measured something else, or from
+// an untrue truth, would show other slopes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,8 +44,8 @@ TEST(Order, TrajectoryAndFigureFallWithTheSquareOfTheTimeStep) {
   for (size_t first : {0, 3, 6})
     for (size_t k = first; k < first + 2; ++k) {
       const Errors &coarse = m.outcomes[k].errors, &fine = m.outcomes[k + 1].errors;
-      // Of the next order dt^4 is left about (dt omega)^2/12 = 1 % at the coarsest step; the tables of the fixed
-      // points add less than 1 % of the error at the finest one.
+      // Of the next order dt^4 is left about (dt omega)^2/12 = 1 % at the coarsest step; the tables of the
+      // fixed points add less than 1 % of the error at the finest one.
       EXPECT_NEAR(order(coarse.trajectory, fine.trajectory), 2, 0.1) << k;
       EXPECT_NEAR(order(coarse.figures[0], fine.figures[0]), 2, 0.15) << k;
     }
@@ -54,30 +54,47 @@ TEST(Order, TrajectoryAndFigureFallWithTheSquareOfTheTimeStep) {
     EXPECT_NEAR(m.outcomes[k].errors.trajectory / m.outcomes[k + 3].errors.trajectory, 1, 1e-6) << k;
 }
 
+// The block above starts at rest in its forces; this one falls from the start, so that the half step back
+// counts.
+TEST(Order, ARunThatStartsUnderForceStartsHalfAStepBack) {
+  const Measured m(
+      "[change]\ngravity = \"[0, 0, -1e7] m/s^2\"\n[truth]\ntolerance = 1e-6\nrungs = 8\n"
+      "[[sweep]]\narithmetic = \"float64\"\nintegrator = [\"euler\", \"verlet\"]\ndt_safety = [0.2, 0.1]\n");
+  ASSERT_EQ(m.outcomes.size(), 4U);
+  EXPECT_NEAR(order(m.outcomes[0].errors.trajectory, m.outcomes[1].errors.trajectory), 2, 0.1);
+  for (size_t k = 0; k < 2; ++k)
+    EXPECT_NEAR(m.outcomes[k].errors.trajectory / m.outcomes[k + 2].errors.trajectory, 1, 1e-6) << k;
+}
+
 TEST(Order, ForceErrorFallsWithTheSquareOfATablesBins) {
-  const Measured m(std::string("[truth]\nrungs = 2\n[[sweep]]\nposition_frac = 28\nguard = 12\ndifference_frac = 22\n"
-                   "strength_bits = 27\ntable_shape = \"uniform\"\nindex_bits = [6, 7, 8, 9]\n"));
+  const Measured m(
+      std::string("[truth]\nrungs = 2\n[[sweep]]\nposition_frac = 28\nguard = 12\ndifference_frac = 22\n"
+                  "strength_bits = 27\ntable_shape = \"uniform\"\nindex_bits = [6, 7, 8, 9]\n"));
   ASSERT_EQ(m.outcomes.size(), 4U);
   for (size_t k = 0; k < 3; ++k) {
-    // A degree-1 table's error is h^2/8 f''; where a few bins span a stretch of the law, the median still feels
-    // where its knots lie: a fifth of an order.
+    // A degree-1 table's error is h^2/8 f''; where a few bins span a stretch of the law, the median still
+    // feels where its knots lie: a fifth of an order.
     EXPECT_NEAR(order(m.outcomes[k].errors.force_median, m.outcomes[k + 1].errors.force_median), 2, 0.2) << k;
   }
 }
 
 TEST(Order, ForceErrorFallsWithTheTablesBits) {
   // Velocities of 34 fractional bits: with more, tables of 10 bits could not be shifted to them.
-  const Measured m(std::string("[truth]\nrungs = 2\n[[sweep]]\nposition_frac = 26\nguard = 8\ndifference_frac = 22\n"
-                   "table_shape = \"uniform\"\ndegree = 2\nindex_bits = 10\nstrength_bits = [10, 12, 14, 16]\n"));
+  const Measured m(std::string(
+      "[truth]\nrungs = 2\n[[sweep]]\nposition_frac = 26\nguard = 8\ndifference_frac = 22\n"
+      "table_shape = \"uniform\"\ndegree = 2\nindex_bits = 10\nstrength_bits = [10, 12, 14, 16]\n"));
   for (size_t k = 0; k < 3; ++k)
-    EXPECT_NEAR(order(m.outcomes[k].errors.force_median, m.outcomes[k + 1].errors.force_median, 4), 1, 0.2) << k;
+    EXPECT_NEAR(order(m.outcomes[k].errors.force_median, m.outcomes[k + 1].errors.force_median, 4), 1, 0.2)
+        << k;
 }
 
 TEST(Order, ForceErrorFallsWithTheBitsOfDifferences) {
-  const Measured m(std::string("[truth]\nrungs = 2\n[[sweep]]\nposition_frac = 28\nguard = 12\nstrength_bits = 27\n"
-                   "table_shape = \"uniform\"\ndegree = 2\nindex_bits = 10\ndifference_frac = [10, 12, 14, 16]\n"));
+  const Measured m(std::string(
+      "[truth]\nrungs = 2\n[[sweep]]\nposition_frac = 28\nguard = 12\nstrength_bits = 27\n"
+      "table_shape = \"uniform\"\ndegree = 2\nindex_bits = 10\ndifference_frac = [10, 12, 14, 16]\n"));
   for (size_t k = 0; k < 3; ++k)
-    EXPECT_NEAR(order(m.outcomes[k].errors.force_median, m.outcomes[k + 1].errors.force_median, 4), 1, 0.15) << k;
+    EXPECT_NEAR(order(m.outcomes[k].errors.force_median, m.outcomes[k + 1].errors.force_median, 4), 1, 0.15)
+        << k;
 }
 
 // Momentum of fixed points is exact; that of doubles is rounding.
@@ -90,7 +107,8 @@ TEST(Order, MomentumOfIntegersIsKeptToTheLastBit) {
 
 TEST(Outcomes, RefusedAndUnstablePointsAreRows) {
   const Measured m(
-      "[truth]\nrungs = 2\n[[sweep]]\ncell_edge = \"0.6 mm\"\n[[sweep]]\ndifference_frac = 24\nposition_frac = 20\n"
+      "[truth]\nrungs = 2\n[[sweep]]\ncell_edge = \"0.6 mm\"\n[[sweep]]\ndifference_frac = 24\nposition_frac "
+      "= 20\n"
       "[[sweep]]\nintegrator = \"verlet\"\n[[sweep]]\nsum_bits = 14\n");
   EXPECT_EQ(m.outcomes[0].status, Status::refused);
   EXPECT_EQ(m.outcomes[0].why, "cell_edge = 0.0006 m is shorter than the pair law's cutoff, 0.000707107 m");
@@ -119,14 +137,15 @@ TEST(Truth, ConvergesInSecondOrderAndKnowsItsOwnError) {
 
 // Half of the kinetic energy goes into bonds at once: of 17 samples, or 9, one is the start with all of it.
 TEST(Truth, SaysThatSamplesDecideAFigure) {
-  const Measured m("[truth]\nrungs = 2\n[[figure]]\nkind = \"mean\"\ncurve = \"energy.kinetic\"\n[[sweep]]\n");
+  const Measured m(
+      "[truth]\nrungs = 2\n[[figure]]\nkind = \"mean\"\ncurve = \"energy.kinetic\"\n[[sweep]]\n");
   ASSERT_EQ(m.truth.notes.size(), 3U);
   EXPECT_TRUE(m.truth.notes[0].starts_with("mean changes by ")) << m.truth.notes[0];
   EXPECT_TRUE(m.truth.notes[1].starts_with("the truth has not converged")) << m.truth.notes[1];
 }
 
-// A row of particles, 1.1 apart: each lengthening of the cutoff takes in more of them, the last one by 1e-8 of the
-// energy. They hardly move meanwhile, so in time steps the run converges.
+// A row of particles, 1.1 apart: each lengthening of the cutoff takes in more of them, the last one by 1e-8
+// of the energy. They hardly move meanwhile, so in time steps the run converges.
 TEST(Truth, SaysThatTheLongestCutoffStillMatters) {
   const test::SmallStudy files;
   std::ofstream scene(files.path("block.toml"));
