@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// A scene on one or more GPUs of one host: in the fixed rule, with golden's bits after every step, or in real
+// numbers. Both share their storage: particles by cell, pair lists with a skin, batches of steps that the
+// devices do without the host. docs/reference/gpu.md.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hw/plan.h"
+#include "model/measure.h"
+#include "model/scene.h"
+#include "model/state.h"
+
+namespace cuboct::gpu {
+
+enum class Arithmetic : uint8_t { fixed, float32, float64 };
+const char* to_string(Arithmetic arithmetic);  // "fixed", "float", "double"
+
+struct Options {
+  // CUDA's ordinals, one per slab of the scene. One that comes twice holds two slabs: bits are the same.
+  std::vector<int> devices{0};
+  int block = 128;  // threads of a block, a multiple of 32; leaves no mark in the bits
+};
+
+struct Counters {
+  uint64_t list_builds = 0;      // of the pair lists
+  uint64_t golden_steps = 0;     // of the fixed rule, done by golden on the host, as a fault seemed near
+  uint64_t replayed_steps = 0;   // done twice, as another device had to stop earlier
+  uint64_t longest_list = 0;     // partners of one particle
+  double listed_pairs = 0;       // entries per particle in the last list
+  uint64_t halo_particles = 0;   // copies of neighbours' particles, all devices, at the last list
+  uint64_t device_bytes = 0;     // memory asked for, all devices
+};
+
+// What probes and energies need of a state, read on the devices.
+struct Reading {
+  uint64_t step = 0;
+  std::vector<Vec3> x, force;  // m, N (of the pairs), of the probed particles in the order of their ids
+  Energies energies;           // zero unless asked for
+  double largest_speed = 0;    // m/s, along an axis
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  // Advances `steps` steps; where `hashes` is given, the state's hash after each is appended (fixed only).
+  // Throws RunError at the first step that cannot be done (fixed: golden's error; real: a position that is
+  // not finite): the state before it stands. Returns early, after a complete step, where model/interrupt.h
+  // says so.
+  virtual void advance(uint64_t steps, std::vector<uint64_t>* hashes = nullptr) = 0;
+  virtual uint64_t step_count() const = 0;
+
+  // Of the particles given to `probe`, and the energies where `energies`.
+  virtual Reading read(bool energies) = 0;
+  // Ids, ascending, whose x and force `read` gives from now on.
+  virtual void probe(const std::vector<uint32_t>& ids) = 0;
+
+  // Fixed: sorted by id. RunError of real engines, which have none.
+  virtual State state() = 0;
+  virtual uint64_t hash() = 0;
+  // SI; positions are not wrapped into a periodic box in the real engines. No types.
+  virtual Body body() = 0;
+
+  virtual const Counters& counters() const = 0;
+};
+
+// Velocities of `body`, as of the scene, live half a step before its positions (semi-implicit Euler).
+// Throws InputError, before anything is allocated, where the scene does not fit the devices (with numbers),
+// or an ordinal is not there; std::runtime_error where CUDA fails. Keeps references to scene and plan.
+std::unique_ptr<Engine> make_fixed_engine(const Scene& scene, const Plan& plan, const State& initial,
+                                          const Options& options);
+std::unique_ptr<Engine> make_real_engine(const Scene& scene, const Body& body, Arithmetic arithmetic,
+                                         const Options& options);
+
+// A device as it is found.
+struct Device {
+  int ordinal = 0;
+  std::string name;            // "NVIDIA H100 80GB HBM3"
+  std::string bus;             // PCI bus id, as NVML wants it
+  int multiprocessors = 0;
+  uint64_t memory = 0, free = 0;  // bytes
+};
+// Empty where there is no driver, or no device; `why` then says which.
+std::vector<Device> find_devices(std::string* why = nullptr);
+
+}  // namespace cuboct::gpu

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// The arithmetic of the fixed rule, written once for every machine: for the host over FixedRule
+// (model/fixed_rule.h), for a GPU over a rule of plain arrays with the same members. The contract is
+// docs/reference/numeric.md.
+#pragma once
+
+#include <cstdint>
+
+#include "model/fixed_math.h"
+
+namespace cuboct {
+
+// floor(log2 a), a > 0.
+CUBOCT_HD constexpr int leading_bit(uint64_t a) {
+#ifdef __CUDA_ARCH__
+  return 63 - __clzll(static_cast<long long>(a));
+#else
+  return 63 - __builtin_clzll(a);
+#endif
+}
+
+// Where r2 falls in a table: FixedTable in model/fixed_rule.h.
+template <class Table>
+CUBOCT_HD void table_address(const Table& table, uint64_t r2, uint32_t& index, uint32_t& t) {
+  const uint64_t t_mask = (uint64_t{1} << table.fraction_bits) - 1;
+  if (static_cast<int>(table.shape) == 0) {  // TableShape::uniform
+    const int below = 2 * table.difference_frac - table.index_bits;
+    index = static_cast<uint32_t>(r2 >> below);
+    t = static_cast<uint32_t>(r2 >> (below - table.fraction_bits) & t_mask);
+    return;
+  }
+  index = t = 0;
+  const int octave = r2 > 0 ? leading_bit(r2) : -1;
+  if (octave < table.first_octave) return;
+  const uint64_t mantissa = r2 ^ (uint64_t{1} << octave);
+  // Bits of r2 below t; negative: t is padded with zeros.
+  const int spare = octave - table.bin_bits - table.fraction_bits;
+  const uint64_t bin_and_t = spare >= 0 ? mantissa >> spare : mantissa << static_cast<unsigned>(-spare);
+  const auto row = static_cast<uint32_t>(octave - table.first_octave);
+  index = (row << table.bin_bits) + static_cast<uint32_t>(bin_and_t >> table.fraction_bits);
+  t = static_cast<uint32_t>(bin_and_t & t_mask);
+}
+
+template <class Table>
+CUBOCT_HD int64_t table_value(const Table& table, uint64_t r2) {
+  uint32_t k, t;
+  table_address(table, r2, k, t);
+  int64_t slope = table.c1[k];
+  if (table.degree == 2) slope += round_odd(int64_t{table.c2[k]} * t, table.fraction_bits);
+  return table.c0[k] + round_odd(slope * t, table.fraction_bits);
+}
+
+// One pair's part of the kick, as PairResult holds it. `x_j` in the frame of i's node.
+template <class Result, class Rule, class Triple>
+CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple& v_i, int type_i,
+                              const Triple& x_j, const Triple& v_j, int type_j) {
+  using FaultType = decltype(Result::fault);
+  Result result;
+  int64_t d[3];
+  for (int a = 0; a < 3; ++a) d[a] = round_odd(x_j[a] - x_i[a], rule.difference_shift);
+  const auto r2 = static_cast<uint64_t>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  if (r2 >= rule.cutoff2) return result;
+  result.inside = true;
+  int64_t s = table_value(rule.force, r2);
+  if (rule.damped) {
+    const int w_bits = rule.widths.relative_velocity_bits;
+    int64_t wd = 0;
+    for (int a = 0; a < 3; ++a) {
+      const int64_t w = round_odd(v_j[a] - v_i[a], rule.w_shift);
+      if (!fits(w, w_bits) && result.fault == FaultType::none)
+        result.fault = FaultType::relative_velocity, result.number = w;
+      wd += wrap(w, w_bits) * d[a];
+    }
+    const int64_t q = round_odd(wd, rule.q_shift);
+    s -= round_odd(table_value(rule.damp, r2) * q, rule.damp_shift);
+    if (!fits(s, rule.widths.strength_bits) && result.fault == FaultType::none)
+      result.fault = FaultType::strength, result.number = s;
+    s = wrap(s, rule.widths.strength_bits);
+  }
+  if (rule.scaled) s = round_odd(s * rule.scale[type_i][type_j], rule.widths.scale_frac);
+  for (int a = 0; a < 3; ++a) result.kick[a] = -round_odd(s * d[a], rule.kick_shift);
+  return result;
+}
+
+// Kick, constraints and drift of one particle, as FinishResult holds it.
+template <class Result, class Rule, class Triple>
+CUBOCT_HD Result finish_of(const Rule& rule, const Triple& sum, const Triple& x, const Triple& v,
+                           const Triple& u, int type) {
+  using FaultType = decltype(Result::fault);
+  const auto& widths = rule.widths;
+  const auto& kind = rule.types[type];
+  Result result;
+  const auto check = [&result](int64_t value, int bits, FaultType fault) {
+    if (!fits(value, bits) && (result.fault == FaultType::none || fault < result.fault)) {
+      result.fault = fault;
+      result.number = value;
+    }
+    return wrap(value, bits);
+  };
+  for (int a = 0; a < 3; ++a) {
+    const int64_t to_go = kind.velocity[a];
+    if (kind.imposed[a]) {
+      result.v[a] = to_go;  // the sum is not used, so it may be of any size
+    } else {
+      int64_t dv = check(sum[a], widths.sum_bits, FaultType::sum);
+      if (kind.pd) dv -= round_odd(kind.kp * u[a] + kind.kd * (v[a] - to_go), widths.gain_frac);
+      result.v[a] = check(v[a] + dv + kind.gravity[a], widths.velocity_bits, FaultType::velocity);
+    }
+    if (kind.pd)
+      result.u[a] = check(u[a] + result.v[a] - to_go, widths.displacement_bits, FaultType::displacement);
+    result.x[a] = x[a] + round_odd(result.v[a], widths.guard);
+  }
+  return result;
+}
+
+}  // namespace cuboct
