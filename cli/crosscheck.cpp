@@ -9,7 +9,6 @@
 #include "cli/command.h"
 #include "cli/engines.h"
 #include "model/interrupt.h"
-#include "cli/launch.h"
 #include "cli/run_lattice.h"
 
 #include "model/compare.h"

@@ -148,6 +148,7 @@ uint64_t hash_of(const Study& study) {
 
 Settings canonical(Settings settings) {
   if (settings.arithmetic != Arithmetic::fixed) settings.arch.clear();
+  if (on_gpu(settings)) settings.threads = 1;
   return settings;
 }
 

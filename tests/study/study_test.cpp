@@ -53,6 +53,38 @@ index_bits = [5, 6]
   EXPECT_TRUE(study.points[9].arch.empty());
 }
 
+TEST(Study, AGpuHasEachArithmeticAndNoThreads) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(R"(
+[[sweep]]
+engine = "gpu"
+arithmetic = ["float32", "float64", "fixed"]
+index_bits = [5, 6]
+threads = [1, 2]
+[[sweep]]
+engine = "gpu"
+index_bits = 5
+[[sweep]]
+engine = ["reference", "gpu"]
+)"));
+  // Two in real numbers, which know no tables; two fixed ones; the second sweep has nothing new.
+  ASSERT_EQ(study.points.size(), 6U);
+  EXPECT_EQ(study.points[0].numbers_key(), "gpu float32 euler threads=1");
+  EXPECT_EQ(study.points[1].numbers_key(), "gpu float64 euler threads=1");
+  EXPECT_EQ(study.points[2].numbers_key(), "gpu fixed euler arch.table.index_bits=5");
+  EXPECT_EQ(study.points[3].numbers_key(), "gpu fixed euler arch.table.index_bits=6");
+  EXPECT_EQ(study.points[4].numbers_key(), "reference float64 euler threads=1");
+  EXPECT_EQ(study.points[5].numbers_key(), "gpu fixed euler");
+  Settings verlet = study.points[0];
+  verlet.integrator = Integrator::velocity_verlet;
+  try {
+    resolve(study.base, verlet);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "the gpu engine knows the integrator 'euler' only");
+  }
+}
+
 TEST(Study, PresetsSetSeveralKeysAndWidthsFollowPositions) {
   const SmallStudy files;
   const Study study = read_study(files.study(R"(

@@ -192,15 +192,25 @@ TEST(Measures, TheTruthsOwnErrorAndWhatWasMeasured) {
 TEST(Series, EveryEngineHasALookOfItsOwnThatCanBeSeen) {
   Results results = made_up_results();
   for (int n = 0; n < 12; ++n) add(results, {}, {}, 1, 1).settings.engine = fmt::format("engine{}", n);
+  const auto gpu = [&](Arithmetic arithmetic, const std::string& machine) {
+    Outcome& outcome = add(results, {}, {}, 1, 1);
+    outcome.settings.engine = "gpu", outcome.settings.arithmetic = arithmetic, outcome.machine = machine;
+  };
+  gpu(Arithmetic::fixed, "a <made-up> GPU"), gpu(Arithmetic::fixed, "another"), gpu(Arithmetic::float64, "");
+  add(results, {}, {}, 1, 1).machine = "another";
   const auto all = study::series_of(results);
   std::vector<std::string> names;
   size_t points = 0;
   for (const auto& series : all) names.push_back(series.name), points += series.points.size();
   EXPECT_EQ(points, results.outcomes.size());
   EXPECT_EQ(names[0], "lattice, fixed");
-  EXPECT_EQ(names[3], "gpu, float");
-  EXPECT_EQ(names[4], "fpga, fixed");
-  ASSERT_EQ(names.size(), 17U);
+  EXPECT_EQ(names[3], "gpu, fixed (a <made-up> GPU)");
+  EXPECT_EQ(names[4], "gpu, double");
+  EXPECT_EQ(names[5], "gpu, float (a <made-up> GPU)");
+  EXPECT_EQ(names[6], "fpga, fixed");
+  ASSERT_EQ(names.size(), 21U);
+  EXPECT_EQ(names[19], "gpu, fixed (another)");
+  EXPECT_EQ(names[20], "lattice, fixed (another)");
   for (size_t a = 0; a < all.size(); ++a) {
     const auto channel = [&](size_t at) {
       const double c = std::stoi(all[a].colour.substr(at, 2), nullptr, 16) / 255.0;
