@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ struct Reading {
   uint64_t step = 0;
   std::vector<Vec3> x, force;  // m, N (of the pairs), of the probed particles in the order of their ids
   Energies energies;           // zero unless asked for
+  // J, of the pairs, asked for with the energies: the sum of F_j . d, of the force on j by i and d = x_j - x_i,
+  // positive where they repel. Pressure comes of it; where an engine does not give it there is none.
+  std::optional<double> virial;
   double largest_speed = 0;    // m/s, along an axis
 };
 
