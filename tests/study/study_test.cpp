@@ -143,6 +143,10 @@ TEST(Study, MistakesNameTheirPlace) {
   EXPECT_EQ(error_of(files, ""), "study.toml:1:1: a study without points\n  hint: add a [[sweep]] or a [search]");
   EXPECT_EQ(error_of(files, "[[figure]]\nkind = \"mean\"\ncurve = \"energy.kinetc\"\n[[sweep]]\n"),
             "study.toml:5:9: the scene has no curve 'energy.kinetc'\n  hint: did you mean 'energy.kinetic'?");
+  EXPECT_EQ(error_of(files, "[search]\nengine = [\"lattice\", \"gpu\"]\n"),
+            "study.toml:3:1: a search cannot set the engine 'gpu'\n  hint: its fixed points have lattice's errors");
+  EXPECT_EQ(error_of(files, "[[sweep]]\nengine = \"gpuu\"\n"),
+            "study.toml:4:10: unknown engine 'gpuu'\n  hint: did you mean 'gpu'?");
   EXPECT_EQ(error_of(files, "[truth]\nrungs = 1\n[[sweep]]\n"), "study.toml:4:9: 'rungs' must be between 2 and 20, not 1");
   const std::string missing = error_of(files, "arch = \"nowhere.toml\"\n[[sweep]]\n");
   EXPECT_TRUE(missing.starts_with("study.toml:3:8: 'arch' names no file: ")) << missing;
