@@ -156,31 +156,29 @@ CUBOCT_HD int piece_of(const RealRule<Real>& rule, const Real* cache, Real r2) {
 // kind are bounded in tests/gpu/real_rule_tests.cpp.
 template <LawKind kKind, class Roots, class Real>
 CUBOCT_HD Real over_r(const RealRule<Real>& rule, const Real* cache, Real r2, Real& inverse_r2) {
-  if constexpr (kKind == LawKind::lennard_jones) {
+  if constexpr (!has_pieces(kKind)) {
+    // Not the square of 1/r, whose error the power 14 would double.
     const Real q = inverse_r2 = Roots::inverse(r2);
     const Real q3 = q * q * q;
-    return q * q3 * (rule.repulsion * q3 - rule.attraction);
+    const Real k = q * q3 * (rule.repulsion * q3 - rule.attraction);
+    if constexpr (kKind == LawKind::lennard_jones) return k;
+    return k + rule.offset * Roots::inverse_root(r2);
   } else {
     const Real inverse_r = Roots::inverse_root(r2);
-    const Real q = inverse_r2 = inverse_r * inverse_r;
-    if constexpr (kKind == LawKind::shifted_lennard_jones) {
-      const Real q3 = q * q * q;
-      return q * q3 * (rule.repulsion * q3 - rule.attraction) + rule.offset * inverse_r;
+    inverse_r2 = inverse_r * inverse_r;
+    const int piece = piece_of<is_crowded(kKind)>(rule, cache, r2);
+    const detail::Four<Real> c = detail::load_four(cache + 4 * piece);
+    const Real t = r2 * inverse_r - cache[rule.begin_at + piece];
+    if constexpr (!is_arc(kKind)) {
+      return (c.a + t * (c.b + t * (c.c + t * c.d))) * inverse_r;
     } else {
-      const int piece = piece_of<is_crowded(kKind)>(rule, cache, r2);
-      const detail::Four<Real> c = detail::load_four(cache + 4 * piece);
-      const Real t = r2 * inverse_r - cache[rule.begin_at + piece];
-      if constexpr (!is_arc(kKind)) {
-        return (c.a + t * (c.b + t * (c.c + t * c.d))) * inverse_r;
-      } else {
-        // An arc of model/law_form.h has r2 s^2 + r1 s = t; the root that does not cancel is s = 2/r1 * p with
-        // p = t/(1 + sqrt(z)), z = 1 + 4 r2/r1^2 t = ((dr/ds)/r1)^2. f is a square function of p too:
-        // c = {f0, 2 f1/r1, 4 f2/r1^2, 4 r2/r1^2}. The least z keeps rounding from taking the root of less
-        // than 0.
-        const Real z = detail::larger(1 + c.d * t, Real(0x1p-60));
-        const Real p = t * Roots::inverse(1 + z * Roots::inverse_root(z));
-        return (c.a + p * (c.b + p * c.c)) * inverse_r;
-      }
+      // An arc of model/law_form.h has r2 s^2 + r1 s = t; the root that does not cancel is s = 2/r1 * p with
+      // p = t/(1 + sqrt(z)), z = 1 + 4 r2/r1^2 t = ((dr/ds)/r1)^2. f is a square function of p too:
+      // c = {f0, 2 f1/r1, 4 f2/r1^2, 4 r2/r1^2}. The least z keeps rounding from taking the root of less
+      // than 0.
+      const Real z = detail::larger(1 + c.d * t, Real(0x1p-60));
+      const Real p = t * Roots::inverse(1 + z * Roots::inverse_root(z));
+      return (c.a + p * (c.b + p * c.c)) * inverse_r;
     }
   }
 }

@@ -21,6 +21,11 @@ template <class Real>
 constexpr int kMantissaBits = sizeof(Real) == 4 ? 23 : 20;  // of the word that bin_bits takes
 
 template <class Real>
+constexpr const char* kName = sizeof(Real) == 4 ? "float" : "double";
+template <class Real>
+constexpr const char* kHint = sizeof(Real) == 4 ? "a larger core, or doubles" : "a larger core";
+
+template <class Real>
 Real index_as_real(size_t index) {
   if constexpr (sizeof(Real) == 4) return std::bit_cast<float>(static_cast<uint32_t>(index));
   else return std::bit_cast<double>(static_cast<uint64_t>(index));
@@ -46,7 +51,8 @@ RealTables<Real>::RealTables(const Rule& rule) {
   rule_.core2 = real(core * core);
   if (rule_.core2 < std::numeric_limits<Real>::min()) {
     throw InputError(fmt::format("the pair law's core is {:g} of its cutoff, whose square no {} holds", core,
-                                 sizeof(Real) == 4 ? "float" : "double"));
+                                 kName<Real>),
+                     kHint<Real>);
   }
   take_law(*rule.law);
   rule_.damping = real(rule.damping.coefficient * rule.dt / rule.mass);
@@ -153,8 +159,8 @@ void RealTables<Real>::require_range(const PairLaw& law) const {
   });
   if (std::isfinite(k)) return;
   throw InputError(fmt::format("the pair law's force at its core, {:g} m, is beyond the range of a {}",
-                               law.core(), sizeof(Real) == 4 ? "float" : "double"),
-                   sizeof(Real) == 4 ? "a larger core, or doubles" : "a larger core");
+                               law.core(), kName<Real>),
+                   kHint<Real>);
 }
 
 template struct RealTables<float>;
