@@ -2,9 +2,9 @@
 // A rule in real numbers as GPUs and their host evaluate it: pair kicks in closed form, and the step of one
 // particle by semi-implicit Euler. The physics is that of model/reference.h.
 //
-// Units: lengths in cutoffs of the pair law, so that the cutoff is 1; times in steps. A velocity is in cutoffs
-// per step, and so is a kick, f dt^2/(m cutoff): no number comes near the ends of a float's range, as SI
-// would.
+// Units: lengths in cutoffs of the pair law, so that the cutoff is 1; times in steps. A velocity is in
+// cutoffs per step, and so is a kick, f dt^2/(m cutoff): no number comes near the ends of a float's range, as
+// SI would.
 #pragma once
 
 #include <bit>
@@ -141,8 +141,8 @@ CUBOCT_HD inline double smaller(double a, double b) { return a < b ? a : b; }
 
 }  // namespace detail
 
-// The piece of a law that holds r2, core2 <= r2 <= 1. Joints and r2 are rounded: beside a joint the answer may
-// be the neighbour, which there has the same force but for rounding.
+// The piece of a law that holds r2, core2 <= r2 <= 1. Joints and r2 are rounded: beside a joint the answer
+// may be the neighbour, which there has the same force but for rounding.
 template <bool kCrowded, class Real>
 CUBOCT_HD int piece_of(const RealRule<Real>& rule, const Real* cache, Real r2) {
   const detail::Two<Real> bin = detail::load_two(cache + rule.bin_at + 2 * bin_bits(r2, rule.bin_shift));
@@ -184,10 +184,10 @@ CUBOCT_HD Real over_r(const RealRule<Real>& rule, const Real* cache, Real r2, Re
 }
 
 // Adds to `sum` (cutoffs per step) what j does to i, and tells whether j is inside the cutoff; d = x_j - x_i,
-// in a periodic box the shortest, w = v_j - v_i (read only where kDamped), `cache`: rule.cache or a copy of it
-// (shared memory). Types are read only where kScaled. Of i and j swapped, with -d and -w, it is the negative
-// to the last bit: only even functions of d and w enter the factor on d. No lane goes an own way, but in
-// crowded laws.
+// in a periodic box the shortest, w = v_j - v_i (read only where kDamped), `cache`: rule.cache or a copy of
+// it (shared memory). Types are read only where kScaled. Of i and j swapped, with -d and -w, it is the
+// negative to the last bit: only even functions of d and w enter the factor on d. No lane goes an own way,
+// but in crowded laws.
 template <LawKind kKind, bool kDamped, bool kScaled, class Roots = FastRoots, class Real>
 CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, const Real d[3], const Real w[3],
                              int type_i, int type_j, Real sum[3]) {
@@ -217,10 +217,11 @@ CUBOCT_HD Real velocity_gain(const RealType<Real>& type, Real sum, Real v, const
   return gain;
 }
 
-// Kick, constraints and drift of one particle: sum of the pair kicks, x and u in cutoffs, v in cutoffs per step.
-// `u` may be null unless rule.pd.
+// Kick, constraints and drift of one particle: sum of the pair kicks, x and u in cutoffs, v in cutoffs per
+// step. `u` may be null unless rule.pd.
 template <class Real>
-CUBOCT_HD void finish(const RealRule<Real>& rule, const Real sum[3], Real x[3], Real v[3], Real u[3], int type) {
+CUBOCT_HD void finish(const RealRule<Real>& rule, const Real sum[3], Real x[3], Real v[3], Real u[3],
+                      int type) {
   if (!rule.constrained) {
     for (int a = 0; a < 3; ++a) {
       v[a] += sum[a];

@@ -27,8 +27,10 @@ constexpr const char* kHint = sizeof(Real) == 4 ? "a larger core, or doubles" : 
 
 template <class Real>
 Real index_as_real(size_t index) {
-  if constexpr (sizeof(Real) == 4) return std::bit_cast<float>(static_cast<uint32_t>(index));
-  else return std::bit_cast<double>(static_cast<uint64_t>(index));
+  if constexpr (sizeof(Real) == 4)
+    return std::bit_cast<float>(static_cast<uint32_t>(index));
+  else
+    return std::bit_cast<double>(static_cast<uint64_t>(index));
 }
 
 // Where the bin of these bits begins.
@@ -50,9 +52,9 @@ RealTables<Real>::RealTables(const Rule& rule) {
   const double core = rule.law->core() / length;
   rule_.core2 = real(core * core);
   if (rule_.core2 < std::numeric_limits<Real>::min()) {
-    throw InputError(fmt::format("the pair law's core is {:g} of its cutoff, whose square no {} holds", core,
-                                 kName<Real>),
-                     kHint<Real>);
+    throw InputError(
+        fmt::format("the pair law's core is {:g} of its cutoff, whose square no {} holds", core, kName<Real>),
+        kHint<Real>);
   }
   take_law(*rule.law);
   rule_.damping = real(rule.damping.coefficient * rule.dt / rule.mass);

@@ -44,8 +44,7 @@ inline std::vector<NamedRule> made_rules() {
   rules.push_back({"lj", lj(2.5, 0.6, Smoothing::none)});
   rules.push_back({"lj_deep_core", lj(2.5, 0.1, Smoothing::none)});
   rules.push_back({"lj_smooth", lj(2.2, 0.7, Smoothing::linear)});
-  const std::vector<double> r{0.4e-3, 0.7e-3, 1e-3, 1.1e-3, 1.3e-3, 1.7e-3},
-      f{0.5, 0.3, 0, -0.08, -0.03, 0};
+  const std::vector<double> r{0.4e-3, 0.7e-3, 1e-3, 1.1e-3, 1.3e-3, 1.7e-3}, f{0.5, 0.3, 0, -0.08, -0.03, 0};
   for (const auto by : {Interpolation::monotone_cubic, Interpolation::b_spline}) {
     const std::string name = by == Interpolation::b_spline ? "b_spline" : "cubic";
     rules.push_back({name, full_rule(spline_law(r, f, by, 0.5e-3), 1e-6, 3e-6, 1e3)});

@@ -18,7 +18,8 @@ using test::NamedRule;
 template <class Real>
 constexpr double kUnit = std::numeric_limits<Real>::epsilon() / 2;  // u: half an ulp of 1
 
-// The device's errors at their worst, on the host: the exact result times 1 + error or 1 - error, and rounded.
+// The device's errors at their worst, on the host: the exact result times 1 + error or 1 - error, and
+// rounded.
 struct WorstRoots {
   static float inverse(float a) { return off(1 / static_cast<double>(a), a, 0x1p-23); }
   static float inverse_root(float a) { return off(1 / std::sqrt(static_cast<double>(a)), a, 0x1.85p-23); }
@@ -58,11 +59,13 @@ TEST(FastRoots, DoublesAreWithinFourUnits) {
 //   joint f and f' are continuous. With f = sum of c_k t^k by Horner, 6 roundings on the way of the longest
 //   term, and y, two products at the end:
 //     |f'| T + (6u + a) sum |c_k t^k| + (rho/2 + g + 2u) |f|
-// Arcs: z = 1 + c t; (2u + a) |z - 1| + u z of it are not by t. s = z y(z): half of that over z, g + u; 1 + s:
+// Arcs: z = 1 + c t; (2u + a) |z - 1| + u z of it are not by t. s = z y(z): half of that over z, g + u; 1 +
+// s:
 //   u; inverse and product: i + u. Against p = t/(1 + s), f = sum of c_k p^k:
 //     dp = |t|/(2 s (1 + s)^2) ((2u + a) |z - 1| + u z) + |p| (g + i + 3u)
 //     |f'| T + |df/dp| dp + (4u + a) sum |c_k p^k| + (rho/2 + g + 2u) |f|
-// Damping D rest^2 q (w.d) r, rest = 1 - r2: rest is off by rho r2 + u, twice; q as above, four products and a:
+// Damping D rest^2 q (w.d) r, rest = 1 - r2: rest is off by rho r2 + u, twice; q as above, four products and
+// a:
 //     D q |w|.|d| r (2 rest (rho r2 + u) + rest^2 (q + 4u + a + 3u))
 // All times the strength with u + a, k d with u, the sum into 0 none.
 template <class Real>
@@ -70,7 +73,8 @@ double bound_of(const Rule& law_of, const RealTables<Real>& tables, double r, do
   const RealRule<Real> rule = tables.rule();
   const double u = kUnit<Real>, rho = 3 * u;
   const bool is_float = sizeof(Real) == 4;
-  const double inv = (is_float ? 3.0 : 4.0) * u, root = (is_float ? 4.1 : 4.0) * u, a = (is_float ? 1 : 10) * u;
+  const double inv = (is_float ? 3.0 : 4.0) * u, root = (is_float ? 4.1 : 4.0) * u,
+               a = (is_float ? 1 : 10) * u;
   const double core = law_of.law->core() / tables.length;
   const double near = std::max(r, core), r2 = near * near;
   const double q_error = has_pieces(rule.kind) ? 2 * (rho / 2 + root) + u : rho + inv;
@@ -78,7 +82,8 @@ double bound_of(const Rule& law_of, const RealTables<Real>& tables, double r, do
   if (!has_pieces(rule.kind)) {
     const double q = 1 / r2, q4 = q * q * q * q;
     const double R = static_cast<double>(rule.repulsion) * q4 * q * q * q,
-                 S = static_cast<double>(rule.attraction) * q4, O = std::abs(static_cast<double>(rule.offset));
+                 S = static_cast<double>(rule.attraction) * q4,
+                 O = std::abs(static_cast<double>(rule.offset));
     error = (7 * q_error + 9 * u + a) * (R + S) * near + (rho / 2 + root + 2 * u + a) * O;
     f = (R + S) * near + O;
   } else {
@@ -140,8 +145,8 @@ std::vector<double> distances(const PairLaw& law, double unit) {
 }
 
 struct Worst {
-  double of_bound = 0;   // error over bound
-  double of_scale = 0;   // error over u times the largest kick of the sweep
+  double of_bound = 0;  // error over bound
+  double of_scale = 0;  // error over u times the largest kick of the sweep
   size_t pairs = 0, inside = 0;
 };
 
@@ -190,8 +195,8 @@ Worst sweep(const NamedRule& named) {
     Vec3 expected = Vec3::Zero();
     if (r > 0 && r < 1) {
       const double metres = r * tables.length;
-      const double k = law_of.law->force(metres) / metres -
-                       law_of.damping_over_r2(metres) * tables.length * tables.velocity * exact_w.dot(exact_d);
+      const double k = law_of.law->force(metres) / metres - law_of.damping_over_r2(metres) * tables.length *
+                                                                tables.velocity * exact_w.dot(exact_d);
       expected = -k * law_of.strength_of(i, j) * tables.length / tables.force * exact_d;
     }
     const Vec3 got(static_cast<double>(kick[0]), static_cast<double>(kick[1]), static_cast<double>(kick[2]));
@@ -269,7 +274,8 @@ TEST(RealRule, FindsThePiece) {
     };
     for (int k = 0; k <= 20000; ++k) expect_piece(static_cast<float>(k) / 20000);
     for (const float joint : joints)
-      for (const float r2 : {std::nextafter(joint, 0.0f), joint, std::nextafter(joint, 1.0f)}) expect_piece(r2);
+      for (const float r2 : {std::nextafter(joint, 0.0f), joint, std::nextafter(joint, 1.0f)})
+        expect_piece(r2);
     expect_piece(rule.core2);
   }
 }
