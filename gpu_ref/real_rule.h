@@ -174,10 +174,11 @@ CUBOCT_HD Real over_r(const RealRule<Real>& rule, const Real* cache, Real r2, Re
     } else {
       // An arc of model/law_form.h has r2 s^2 + r1 s = t; the root that does not cancel is s = 2/r1 * p with
       // p = t/(1 + sqrt(z)), z = 1 + 4 r2/r1^2 t = ((dr/ds)/r1)^2. f is a square function of p too:
-      // c = {f0, 2 f1/r1, 4 f2/r1^2, 4 r2/r1^2}. The least z keeps rounding from taking the root of less
-      // than 0.
-      const Real z = detail::larger(1 + c.d * t, Real(0x1p-60));
-      const Real p = t * Roots::inverse(1 + z * Roots::inverse_root(z));
+      // c = {f0, 2 f1/r1, 4 f2/r1^2, 4 r2/r1^2}. Where legs of the control polygon differ much in length, an
+      // arc bends within less than a rounding of r: it must not be followed below its beginning, nor z to 0.
+      const Real from = detail::larger(t, Real(0));
+      const Real z = detail::larger(1 + c.d * from, Real(0x1p-60));
+      const Real p = from * Roots::inverse(1 + z * Roots::inverse_root(z));
       return (c.a + p * (c.b + p * c.c)) * inverse_r;
     }
   }
