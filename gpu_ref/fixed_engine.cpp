@@ -111,7 +111,7 @@ class FixedEngine final : public Engine {
     }
     g.nodes = &plan.lattice;
     // Two cells' edges hold any cutoff, which is an edge at most, and the skin.
-    g.reach = 2;
+    g.reach = Policy::kReach;
     setup.radius = std::sqrt(std::ldexp(static_cast<double>(rule.cutoff2), -2 * rule.widths.difference_frac));
     // Half a unit of a difference along three axes, for both of a pair.
     setup.rounding = 2 * std::ldexp(1.0, -rule.widths.difference_frac);

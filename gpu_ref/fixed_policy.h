@@ -111,6 +111,8 @@ struct CachedFixedRule {
 template <typename VelocityNumber>
 struct FixedPolicy {
   static constexpr bool kFixed = true;
+  static constexpr int kReach = 2;     // cells that a list may span along an axis
+  static constexpr int kUnrolled = 2;  // pairs in flight
   using Position = Four<int32_t, int32_t>;           // P fractional bits; type
   using Velocity = Four<VelocityNumber, VelocityNumber>;  // P+G fractional bits; anchor (machine.h)
   using Extra = Three<int64_t>;                      // u, P+G fractional bits

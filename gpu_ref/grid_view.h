@@ -21,7 +21,7 @@ struct CellAt {
 
 struct GridView {
   int low[3], total[3], local[3];
-  int axis, local_first, reach;
+  int axis, local_first;
   bool wraps[3], folds;
   float edge[3];
   const uint32_t* rank;
@@ -44,21 +44,44 @@ struct GridView {
   }
 };
 
-// An entry of a pair list: the partner's place in the slab's storage, and above it by how many cells, -2 to 2 along
-// each axis, its cell lies from one's own.
-inline constexpr int kPlaceBits = 25;
-inline constexpr uint32_t kPlaceMask = (1u << kPlaceBits) - 1;
+// An entry of a pair list: the partner's place in the slab's storage, and above it by how many cells along each axis
+// its cell lies from one's own: as far as kReach.
+template <int kReach>
+struct Entry;
 
-CUBOCT_DEVICE inline uint32_t entry_of(uint32_t place, int dx, int dy, int dz) {
-  return place | static_cast<uint32_t>(dz * 25 + dy * 5 + dx + 62) << kPlaceBits;
-}
-CUBOCT_DEVICE inline void cells_away(uint32_t entry, int (&away)[3]) {
-  const int code = static_cast<int>(entry >> kPlaceBits);
-  const int z = code / 25, y = code / 5;
-  away[0] = code - 5 * y - 2;
-  away[1] = y - 5 * z - 2;
-  away[2] = z - 2;
-}
+template <>
+struct Entry<1> {
+  static constexpr int kPlaceBits = 26;
+  CUBOCT_DEVICE static uint32_t of(uint32_t place, int dx, int dy, int dz) {
+    return place | static_cast<uint32_t>(dz * 16 + dy * 4 + dx + 21) << kPlaceBits;
+  }
+  CUBOCT_DEVICE static void away(uint32_t entry, int (&cells)[3]) {
+    cells[0] = static_cast<int>(entry >> kPlaceBits & 3u) - 1;
+    cells[1] = static_cast<int>(entry >> (kPlaceBits + 2) & 3u) - 1;
+    cells[2] = static_cast<int>(entry >> (kPlaceBits + 4)) - 1;
+  }
+};
+
+template <>
+struct Entry<2> {
+  static constexpr int kPlaceBits = 25;
+  CUBOCT_DEVICE static uint32_t of(uint32_t place, int dx, int dy, int dz) {
+    return place | static_cast<uint32_t>(dz * 25 + dy * 5 + dx + 62) << kPlaceBits;
+  }
+  CUBOCT_DEVICE static void away(uint32_t entry, int (&cells)[3]) {
+    const int code = static_cast<int>(entry >> kPlaceBits);
+    const int z = code / 25, y = code / 5;
+    cells[0] = code - 5 * y - 2;
+    cells[1] = y - 5 * z - 2;
+    cells[2] = z - 2;
+  }
+};
+
+template <int kReach>
+inline constexpr uint32_t kPlaceMask = (1u << Entry<kReach>::kPlaceBits) - 1;
+
+// Of a particle: its entries, and above how many of them the next thinner skin would hold.
+inline constexpr uint32_t kCountMask = 0xffff;
 
 struct List {
   const uint32_t* entries;  // [k * stride + particle]

@@ -21,6 +21,7 @@
 #include "gpu_ref/device.h"
 #include "gpu_ref/engine.h"
 #include "gpu_ref/messages.h"
+#include "gpu_ref/skin.h"
 #include "gpu_ref/step.h"
 #include "gpu_ref/storage.h"
 
@@ -158,7 +159,7 @@ class Machine {
   float farthest() const {
     const float edge = std::max({static_cast<float>(setup_.geometry.edge[0]), static_cast<float>(setup_.geometry.edge[1]),
                                  static_cast<float>(setup_.geometry.edge[2])});
-    return skin_ / 2 - kAnchorError * edge;
+    return static_cast<float>(skin_.now()) / 2 - kAnchorError * edge;
   }
 
   void make_room(Slab& slab, size_t particles);
@@ -171,7 +172,6 @@ class Machine {
   void start_batch(uint32_t steps, bool hash);
   void save();
   void go_back();
-  void choose_skin();
   void wait_for_all() {
     for (auto& slab : slabs_) slab->stream.synchronize();
   }
@@ -181,7 +181,7 @@ class Machine {
   Cells cells_;
   std::vector<std::unique_ptr<Slab>> slabs_;
   uint64_t particles_;
-  float skin_ = 0;
+  Skin skin_;
   int at_ = 0;  // which copy holds the state
   uint64_t age_ = 0;
   uint32_t batch_ = 16;

@@ -10,7 +10,7 @@ template <class Policy>
 template <class MakeRule>
 Machine<Policy>::Machine(const Options& options, const Setup& setup, const EnergyTables& energies,
                          const Loose<Policy>& state, const MakeRule& make_rule)
-    : options_(options), setup_(setup), particles_(state.size()) {
+    : options_(options), setup_(setup), particles_(state.size()), skin_(setup.radius, setup.largest_skin) {
   require_devices(options);
   const int slabs = static_cast<int>(options.devices.size());
   std::array<std::vector<uint64_t>, 3> per_plane;
@@ -42,7 +42,6 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
     slab.energy_weight.set(slab.stream, energies.weight);
     slab.energy = energies.rule(slab.energy_node.data(), slab.energy_strength.data(), slab.energy_weight.data());
   }
-  skin_ = static_cast<float>(std::min(0.05 * setup.radius, setup.largest_skin));
   upload(state);
 }
 
@@ -60,7 +59,6 @@ GridView Machine<Policy>::grid(const Slab& slab) const {
   view.axis = cells_.axis;
   view.local[view.axis] = of.local_planes;
   view.local_first = of.local_first;
-  view.reach = g.reach;
   view.folds = g.folds;
   view.rank = slab.rank.data();
   return view;
@@ -70,7 +68,7 @@ template <class Policy>
 void Machine<Policy>::make_room(Slab& slab, size_t particles) {
   if (particles <= slab.room) return;
   const auto room = static_cast<size_t>(static_cast<double>(particles) * (slab.room > 0 ? kSpare : 1.0)) + 256;
-  if (room > kPlaceMask) throw_too_many(particles);
+  if (room > kPlaceMask<Policy::kReach>) throw_too_many(particles, kPlaceMask<Policy::kReach>);
   const size_t kept = slab.room;
   for (int k = 0; k < 2; ++k) {
     slab.x[k].grow(slab.stream, room, kept);
@@ -258,8 +256,10 @@ void Machine<Policy>::mirror() {
 
 template <class Policy>
 void Machine<Policy>::list_pairs() {
-  counters.listed_pairs = 0;
-  const auto radius = static_cast<float>((setup_.radius + setup_.rounding + skin_) * (1 + 1e-6));
+  const auto reach_of = [&](double skin) {
+    return static_cast<float>((setup_.radius + setup_.rounding + skin) * (1 + 1e-6));
+  };
+  uint64_t entries = 0, within = 0;
   for (auto& slab : slabs_) {
     Slab& s = *slab;
     for (;;) {
@@ -271,29 +271,30 @@ void Machine<Policy>::list_pairs() {
         for (Graph& graph : s.graph) graph.drop();
       }
       s.notes.zero(s.stream);
-      MakeList<Policy> f{s.rule->view(), grid(s), radius, s.x[at_].data(), s.cell.data(), s.first.data(),
+      MakeList<Policy> f{s.rule->view(), grid(s), reach_of(skin_.now()), reach_of(skin_.thinner()), s.x[at_].data(), s.cell.data(), s.first.data(),
                          s.count.data(), s.entries.data(), s.counts.data(), s.width, s.stride};
       max_each(s.stream, 0, s.own, options_.block, f, s.notes.data() + 3);
       const uint32_t longest = s.notes.host(s.stream, 3, 1)[0];
       counters.longest_list = std::max<uint64_t>(counters.longest_list, longest);
       if (longest <= s.width) break;
       s.width = longest + longest / 16 + 1;
+      if (s.width > kCountMask) throw_too_dense(longest);
     }
+    s.hashes.zero(s.stream);
+    sum_each(s.stream, 0, s.own, options_.block, CountEntries{s.counts.data()}, s.hashes.data());
+    sum_each(s.stream, 0, s.own, options_.block, CountWithin{s.counts.data()}, s.hashes.data() + 1);
+    const std::vector<uint64_t> sums = s.hashes.host(s.stream, 0, 2);
+    entries += sums[0], within += sums[1];
   }
+  const auto n = static_cast<double>(particles_);
+  counters.listed_pairs = static_cast<double>(entries) / n;
+  skin_.listed(counters.listed_pairs, static_cast<double>(within) / n);
   ++counters.list_builds;
-}
-
-// Where lists grow old fast, a thicker skin pays. It depends on the steps alone, so that runs repeat.
-template <class Policy>
-void Machine<Policy>::choose_skin() {
-  if (counters.list_builds == 0) return;
-  const auto largest = static_cast<float>(setup_.largest_skin);
-  if (age_ < 24) skin_ = std::min(skin_ * 1.25f, largest);
 }
 
 template <class Policy>
 void Machine<Policy>::make_lists() {
-  choose_skin();
+  skin_.aged(age_);
   resettle();
   sort();
   mirror();

@@ -113,7 +113,10 @@ void Machine<Policy>::go_back() {
 
 template <class Policy>
 typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vector<uint64_t>* hashes) {
-  const auto steps = static_cast<uint32_t>(std::min<uint64_t>(wanted, batch_));
+  // Whether a thinner skin would do is asked at an age, not where a batch happens to end: runs repeat.
+  const uint64_t review = skin_.review();
+  const uint64_t until = age_ < review ? review - age_ : kLongest;
+  const auto steps = static_cast<uint32_t>(std::min({wanted, uint64_t{batch_}, until}));
   const int begin = at_;
   if (!alone()) save();
   start_batch(steps, hashes != nullptr);
@@ -133,7 +136,7 @@ typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vec
     outcome.end = End::crowded;
   else if (doubt == outcome.done + 1)
     outcome.end = End::doubt;
-  else if (old)
+  else if (old || age_ + outcome.done == review)
     outcome.end = End::list;
   // A slab that went two steps too far has overwritten the state.
   if (latest > outcome.done + 1) {

@@ -7,7 +7,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "gpu_ref/grid_view.h"
 #include "model/error.h"
 
 namespace cuboct::gpu {
@@ -16,11 +15,15 @@ const char* to_string(Arithmetic arithmetic) {
   return arithmetic == Arithmetic::fixed ? "fixed" : arithmetic == Arithmetic::float32 ? "float" : "double";
 }
 
-void throw_too_many(uint64_t particles) {
+void throw_too_many(uint64_t particles, uint64_t most) {
   throw InputError(fmt::format("{} particles on one device, copies of its neighbours' included: a pair list's entry "
                                "tells {} apart",
-                               particles, kPlaceMask),
+                               particles, most),
                    "use more devices");
+}
+
+void throw_too_dense(uint64_t others) {
+  throw std::runtime_error(fmt::format("a particle has {} others inside the cutoff and the skin: matter has collapsed", others));
 }
 
 void throw_far_particle(size_t particle) {

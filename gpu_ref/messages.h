@@ -10,8 +10,10 @@
 namespace cuboct::gpu {
 
 // InputError.
-[[noreturn]] void throw_too_many(uint64_t particles);
+[[noreturn]] void throw_too_many(uint64_t particles, uint64_t most);
 [[noreturn]] void throw_far_particle(size_t particle);
+// std::runtime_error: a particle with so many others around.
+[[noreturn]] void throw_too_dense(uint64_t others);
 // InputError where an ordinal is not there, or a block is no multiple of 32 up to 256.
 void require_devices(const Options& options);
 // InputError where the devices cannot hold a scene: `cells` bytes/4 of tables on each.

@@ -80,8 +80,8 @@ void check(const Request& request) {
   if (request.out.empty() && !request.bench) throw InputError("--out is required");
   if (!request.out.empty()) check_writable(request.out);
   if (request.run.hash_every == 0) throw InputError("--hash-every: 0 is not a number of steps");
-  if (request.run.engine.block % 32 != 0 || request.run.engine.block < 32 || request.run.engine.block > 1024)
-    throw InputError(fmt::format("--block {}: not a multiple of 32 from 32 to 1024", request.run.engine.block));
+  if (request.run.engine.block % 32 != 0 || request.run.engine.block < 32 || request.run.engine.block > 256)
+    throw InputError(fmt::format("--block {}: not a multiple of 32 from 32 to 256", request.run.engine.block));
   if (request.precision == "fixed" && request.run.forces)
     throw InputError("--forces goes with --precision float or double", "fixed states determine their forces");
   if (request.precision != "fixed" && request.hashes_given)

@@ -13,8 +13,8 @@
 namespace cuboct::gpu {
 namespace {
 
-// Cells of about a cutoff and a thin skin; the reach of two cells leaves room for a thick one.
-constexpr double kEdge = 1.06, kReach = 2, kLargestSkin = 0.4;
+// Cells as wide as the cutoff and the thickest skin.
+constexpr double kLargestSkin = 0.16, kEdge = 1 + kLargestSkin + 1e-4;
 
 // Cells of a fluid or a solid hold a few particles; more empty ones than these cost more memory than they save time.
 constexpr uint64_t kCellsPerParticle = 4, kLeastCells = 4096;
@@ -117,7 +117,7 @@ class RealEngine final : public Engine {
       }
     }
     geometry_.folds = true;
-    geometry_.reach = static_cast<int>(kReach);
+    geometry_.reach = Policy::kReach;
     const uint64_t most = kCellsPerParticle * body.size() + kLeastCells;
     const auto cells = [&] {
       return static_cast<uint64_t>(geometry_.total[0]) * geometry_.total[1] * geometry_.total[2];

@@ -49,6 +49,8 @@ class RealRuleOnDevice {
 template <class Real>
 struct RealPolicy {
   static constexpr bool kFixed = false;
+  static constexpr int kReach = 1;     // cells that a list may span along an axis
+  static constexpr int kUnrolled = 4;  // pairs in flight
   static constexpr bool kSingle = sizeof(Real) == 4;
   using Position = Four<Real, std::conditional_t<kSingle, int32_t, int64_t>>;    // cutoffs; type
   using Velocity = Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs per step; anchor

@@ -228,7 +228,7 @@ void Loop::finish() {
     trace_.watched = watch_->last_step();
   }
   if (request_.totals) {
-    largest_speed_ = std::max(largest_speed_, engine_->read(false).largest_speed);
+    largest_speed_ = std::max(largest_speed_, engine_->read(true).largest_speed);
     double change = 0;
     if (fixed()) {
       const bool kept = !trace_.frames.empty() && trace_.frames.back().step == last;

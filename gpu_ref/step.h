@@ -47,15 +47,16 @@ CUBOCT_DEVICE inline typename Policy::Sum kick_of(const typename Variant::Cached
                                                   const typename Policy::Position& x,
                                                   const typename Policy::Velocity& v, bool& sound) {
   typename Policy::Sum sum{};
-  const uint32_t count = list.count[i];
-  const uint32_t* entry = list.entries + i;
+  const uint32_t count = list.count[i] & kCountMask;
+  const uint32_t* at = list.entries + i;
 #ifdef __CUDACC__
-#pragma unroll 2
+#pragma unroll Policy::kUnrolled
 #endif
-  for (uint32_t k = 0; k < count; ++k, entry += list.stride) {
-    const uint32_t place = *entry & kPlaceMask;
+  for (uint32_t k = 0; k < count; ++k, at += list.stride) {
+    const uint32_t entry = *at;
+    const uint32_t place = entry & kPlaceMask<Policy::kReach>;
     int away[3];
-    cells_away(*entry, away);
+    Entry<Policy::kReach>::away(entry, away);
     const auto other = load(from.x + place);
     auto w = v;
     if constexpr (Variant::kDamped) w = load(from.v + place);
@@ -243,11 +244,11 @@ struct ReadEnergies {
       const auto kick = kick_of<Policy, Variant>(rule, grid, at, list, i, x, v, sound);
       double place[3];
       for (int a = 0; a < 3; ++a) place[a] = static_cast<double>(x.at[a]) * unit;
-      for (uint32_t k = 0; k < list.count[i]; ++k) {
+      for (uint32_t k = 0; k < (list.count[i] & kCountMask); ++k) {
         const uint32_t entry = list.entries[k * list.stride + i];
         int away[3];
-        cells_away(entry, away);
-        const auto other = load(at.x + (entry & kPlaceMask));
+        Entry<Policy::kReach>::away(entry, away);
+        const auto other = load(at.x + (entry & kPlaceMask<Policy::kReach>));
         double s = 0;
         for (int a = 0; a < 3; ++a) {
           const double d = static_cast<double>(other.at[a]) * unit - place[a] + away[a] * edge[a];

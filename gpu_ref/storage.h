@@ -189,6 +189,18 @@ struct Gather {
   }
 };
 
+// Entries of a list, and how many of them the next thinner skin would hold.
+struct CountEntries {
+  const uint32_t* counts;
+  CUBOCT_DEVICE bool idle() const { return false; }
+  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const { return counts[i] & kCountMask; }
+};
+struct CountWithin {
+  const uint32_t* counts;
+  CUBOCT_DEVICE bool idle() const { return false; }
+  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const { return counts[i] >> 16; }
+};
+
 // Distance of a place in a cell from the cell `k` away, along one axis.
 CUBOCT_DEVICE inline float gap(float place, int k, float edge) {
   if (k == 0) return 0;
@@ -201,7 +213,7 @@ template <class Policy>
 struct MakeList {
   typename Policy::View view;
   GridView grid;
-  float radius;
+  float radius, thinner;  // of this list, and what the next thinner skin would reach
   const typename Policy::Position* x;
   const CellAt* cell;
   const uint32_t *first, *count;
@@ -214,9 +226,9 @@ struct MakeList {
     float own[3];
     for (int a = 0; a < 3; ++a) own[a] = Policy::along(view, grid, x[i], a);
     const CellAt home = cell[i];
-    const float limit = radius * radius;
-    const int reach = grid.reach;
-    uint32_t found = 0;
+    const float limit = radius * radius, inner = thinner * thinner;
+    constexpr int reach = Policy::kReach;
+    uint32_t found = 0, within = 0;
     for (int dz = -reach; dz <= reach; ++dz)
       for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) {
@@ -237,12 +249,14 @@ struct MakeList {
             const float ex = Policy::along(view, grid, other, 0) - own[0] + static_cast<float>(dx) * grid.edge[0];
             const float ey = Policy::along(view, grid, other, 1) - own[1] + static_cast<float>(dy) * grid.edge[1];
             const float ez = Policy::along(view, grid, other, 2) - own[2] + static_cast<float>(dz) * grid.edge[2];
-            if (ex * ex + ey * ey + ez * ez > limit) continue;
-            if (found < width) entries[found * stride + i] = entry_of(j, dx, dy, dz);
+            const float square = ex * ex + ey * ey + ez * ez;
+            if (square > limit) continue;
+            if (found < width) entries[found * stride + i] = Entry<Policy::kReach>::of(j, dx, dy, dz);
             ++found;
+            if (square <= inner) ++within;
           }
         }
-    counts[i] = found;
+    counts[i] = found | within << 16;
     return found;
   }
 };

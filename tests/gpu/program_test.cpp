@@ -118,7 +118,7 @@ TEST_F(GpuProgram, TellsAFaultAsGoldenDoes) {
 }
 
 TEST_F(GpuProgram, WatchesAsGoldenDoes) {
-  const std::string scene = "scenes/failures/force_jump.toml";
+  const std::string scene = "scenes/failures/constraint_work.toml";
   const Trace gpu = run("gpu", {scene, "--engine", "gpu"}, 1);
   const std::string told = lines_with(answer_.out, "warning: ");
   EXPECT_NE(told, "");
@@ -226,7 +226,7 @@ TEST_F(GpuProgram, StandsAlone) {
   EXPECT_NE(lines_with(bench.out, "gpu.list_builds "), "");
   for (const auto& [arguments, text] : {
            std::pair<std::string, std::string>{kBlock, "--out is required\n"},
-           {to + " --block 100", "--block 100: not a multiple of 32 from 32 to 1024\n"},
+           {to + " --block 100", "--block 100: not a multiple of 32 from 32 to 256\n"},
            {to + " --forces", "--forces goes with --precision float or double\n  hint: fixed states determine their forces\n"},
            {to + " --hash-every 0", "--hash-every: 0 is not a number of steps\n"}}) {
     const Answer refused = program(arguments);
