@@ -77,6 +77,7 @@ int list_devices() {
 
 void check(const Request& request) {
   if (request.scene.empty()) throw InputError("a scene is required");
+  if (request.repeats > 0 && !request.bench) throw InputError("--repeats goes with --bench");
   if (request.out.empty() && !request.bench) throw InputError("--out is required");
   if (!request.out.empty()) check_writable(request.out);
   if (request.run.hash_every == 0) throw InputError("--hash-every: 0 is not a number of steps");

@@ -59,8 +59,8 @@ TEST_F(ExploreOnGpu, WithoutTheProgramItsPointsAreLeftOutAndComeFromAnotherMachi
   EXPECT_EQ(with.code, 0) << with.err;
   EXPECT_EQ(left_out(with.out), "");
   const std::string gpu = "gpu fixed euler run.dt=\"auto\" run.dt_safety=";
-  const std::string on_gpu = gpu + "0.2|done|a host|a host|\n" + gpu + "0.4|done|a host|a host|\n" +
-                             "gpu float32 euler threads=1|done|a host|a host|\n";
+  const std::string on_gpu = gpu + "0.2|done|host|host|\n" + gpu + "0.4|done|host|host|\n" +
+                             "gpu float32 euler threads=1|done|host|host|\n";
   EXPECT_EQ(points_of(there), on_gpu + points_of(here));
 
   // Lattice's rows are here already: they stay this machine's.
@@ -72,7 +72,7 @@ TEST_F(ExploreOnGpu, WithoutTheProgramItsPointsAreLeftOutAndComeFromAnotherMachi
   EXPECT_EQ(left_out(added.out), "");
   EXPECT_EQ(points_of(here), points_of(there));
   const std::string page = contents(here + "/page.html");
-  EXPECT_NE(page.find("\"name\":\"gpu, float (a host)\""), std::string::npos);
+  EXPECT_NE(page.find("\"name\":\"gpu, float (host)\""), std::string::npos);
   EXPECT_NE(page.find("\"name\":\"lattice, fixed\""), std::string::npos);
 }
 
