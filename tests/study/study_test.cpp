@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "model/error.h"
 #include "tests/study/small_study.h"
 
@@ -127,6 +129,23 @@ TEST(Study, TheHashKnowsWhatErrorsDependOn) {
   EXPECT_NE(hash(sweep), hash("[change.run]\nsteps = 320\n" + sweep));
   EXPECT_NE(hash(sweep), hash("[change.packing]\noffset = \"[0.2, 0.1, 0.1] mm\"\n" + sweep));
   EXPECT_NE(hash(sweep), hash("[[figure]]\nkind = \"final\"\ncurve = \"energy.kinetic\"\n" + sweep));
+}
+
+// Results of a GPU go into the coupon's study: --add takes what has its hash.
+TEST(Study, TheCouponOnAGpuIsTheSameStudy) {
+  const Study coupon = read_study(CUBOCT_SOURCE_DIR "/scenes/studies/coupon.toml");
+  const Study gpu = read_study(CUBOCT_SOURCE_DIR "/scenes/studies/coupon_gpu.toml");
+  EXPECT_EQ(gpu.hash, coupon.hash);
+  ASSERT_GT(gpu.points.size(), 40U);
+  for (const Settings& settings : gpu.points) {
+    EXPECT_TRUE(on_gpu(settings)) << settings.key();
+    EXPECT_NO_THROW(resolve(gpu.base, settings)) << settings.key();
+    // A fixed point has its twin in lattice's: same bits, so the same errors.
+    Settings twin = settings;
+    twin.engine = "lattice";
+    const bool has_twin = std::ranges::find(coupon.points, twin) != coupon.points.end();
+    EXPECT_EQ(has_twin, settings.arithmetic == Arithmetic::fixed) << settings.key();
+  }
 }
 
 TEST(Study, MistakesNameTheirPlace) {
