@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <cuda_runtime_api.h>
+#include <dlfcn.h>
 
 #include <array>
 
@@ -11,7 +12,13 @@ std::vector<Device> find_devices(std::string* why) {
   int count = 0;
   const cudaError_t error = cudaGetDeviceCount(&count);
   if (error != cudaSuccess || count == 0) {
-    if (why) *why = error == cudaSuccess ? "there is none" : cudaGetErrorString(error);
+    // CUDA calls a driver that is not there too old.
+    void* driver = dlopen("libcuda.so.1", RTLD_LAZY);
+    if (why)
+      *why = !driver                ? "no driver (libcuda.so.1)"
+             : error == cudaSuccess ? "there is none"
+                                    : cudaGetErrorString(error);
+    if (driver) dlclose(driver);
     return {};
   }
   std::vector<Device> devices;

@@ -227,6 +227,7 @@ struct ReadProbed {
 // Sums over some particles; each a few at a time in a fixed order, so that they are the same on every machine.
 struct Sums {
   double kinetic, potential, gravity;  // J
+  double virial;                       // J, see Reading::virial
   double speed;                        // largest, along an axis, in the unit of velocities
 };
 inline constexpr uint32_t kSummed = 64;  // particles of one Sums
@@ -254,8 +255,7 @@ struct ReadEnergies {
     for (uint32_t i = begin; i < end; ++i) {
       const auto x = load(at.x + i);
       const auto v = load(at.v + i);
-      bool sound = true;
-      const auto kick = kick_of<Policy, Variant>(view, cache, grid, at, list, i, x, v, sound);
+      typename Policy::Sum kick{};
       double place[3];
       for (int a = 0; a < 3; ++a) place[a] = static_cast<double>(x.at[a]) * unit;
       const uint32_t near = list.count[i] & kNearMask, further = list.count[i] >> kNearBits;
@@ -264,11 +264,19 @@ struct ReadEnergies {
         const uint32_t entry = list.entries[row * list.stride + i];
         int away[3];
         Entry<Policy::kReach>::away(entry, away);
-        const auto other = load(at.x + (entry & kPlaceMask<Policy::kReach>));
+        const uint32_t from = entry & kPlaceMask<Policy::kReach>;
+        const auto other = load(at.x + from);
+        auto w = v;
+        if constexpr (Variant::kDamped) w = load(at.v + from);
+        typename Policy::Sum one{};
+        Policy::add_pair(rule, grid, x, v, other, w, away, one);
         double s = 0;
         for (int a = 0; a < 3; ++a) {
           const double d = static_cast<double>(other.at[a]) * unit - place[a] + away[a] * edge[a];
           s += d * d;
+          kick.at[a] += one.at[a];
+          // Each pair is met from both sides, and mass (cutoff/dt)^2 is twice energy.kinetic.
+          sum.virial -= energy.kinetic * velocity_unit * static_cast<double>(one.at[a]) * d;
         }
         sum.potential += pair_energy(energy, s, static_cast<int>(x.last), static_cast<int>(other.last)) / 2;
       }
