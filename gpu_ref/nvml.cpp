@@ -87,9 +87,7 @@ std::optional<uint32_t> Nvml::power(Board board) const {
 
 std::optional<uint32_t> Nvml::sm_clock(Board board) const {
   unsigned value = 0;
-  const int answer = call_.clock(board, kSmClock, &value);
-  if (answer == kNotSupported) return std::nullopt;
-  check(answer, "clock");
+  if (call_.clock(board, kSmClock, &value) != kSuccess) return std::nullopt;
   return value;
 }
 

@@ -39,7 +39,7 @@ class Nvml {
   std::optional<uint64_t> energy(Board board) const;
   // mW of the whole board: since Ampere (but GA100) a mean over the second before, else the moment's.
   std::optional<uint32_t> power(Board board) const;
-  std::optional<uint32_t> sm_clock(Board board) const;  // MHz, the moment's
+  std::optional<uint32_t> sm_clock(Board board) const;  // MHz, the moment's; nothing on any error
 
  private:
   template <class Function>

@@ -68,10 +68,11 @@ TEST(MeanOfCounter, WorkBeforeTheWindowDoesNotCount) {
 }
 
 TEST(MeanOfCounter, NeedsThreeUpdates) {
-  const auto updates = counted(100, 0.1, 0.001, -0.05, 1);  // at 0.05, 0.15, 0.25, ...
-  EXPECT_FALSE(mean_of_counter(updates, 0.1, 0.3));
-  EXPECT_TRUE(mean_of_counter(updates, 0.04, 0.26));
-  EXPECT_FALSE(mean_of_counter(updates, 0.0505, 0.26));  // the first of the three may have come before
+  const auto updates = counted(100, 0.1, 0.001, -0.0495, 1);  // at 0.0505, 0.1505, 0.2505, ...
+  EXPECT_FALSE(mean_of_counter(updates, 0.06, 0.26));
+  EXPECT_TRUE(mean_of_counter(updates, 0.0499, 0.2511));
+  EXPECT_FALSE(mean_of_counter(updates, 0.0503, 0.2511));  // the first of the three may have come before,
+  EXPECT_FALSE(mean_of_counter(updates, 0.0499, 0.2508));  // the last after the window
 }
 
 TEST(MeanOfCounter, RefusesOneThatRunsBackwards) {
@@ -243,7 +244,10 @@ TEST_F(Power, SaysWhyARunHasNoEnergy) {
 
   only.period = 5;
   EXPECT_FALSE(measure(power, 0.6, &why, [] {}));
-  EXPECT_EQ(why, "the board at PCI bus 0000:1b:00.0 told its energy less than three times in 0.3 s");
+  // 0.3 s and what the host took longer.
+  EXPECT_TRUE(
+      why.starts_with("the board at PCI bus 0000:1b:00.0 told its energy less than three times in 0.3"))
+      << why;
   only.period = 0.02;
   EXPECT_FALSE(measure(power, 0.7, &why, [&] { only.loaded_anew = PowerMeter::now() + 0.4; }));
   EXPECT_EQ(why, "the energy counter ran backwards: was the driver loaded anew?");
