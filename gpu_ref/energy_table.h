@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Energies of pairs and of particles in joules, from a RealRule's units; in doubles whatever the steps are in.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gpu_ref/real_rule.h"
+
+namespace cuboct {
+struct Rule;  // model/rule.h, which no GPU compiler needs
+}
+namespace cuboct::gpu {
+
+// A view, as RealRule. U over s = (r/cutoff)^2 by cubics through values and slopes at the nodes: the core, and
+// beyond it the ends of kEnergyBins ranges of equal length in each octave of s, up to 1.
+// Error inside a bin [a, a + h], by Peano's kernel of the cubic Hermite interpolation:
+//   |U - table| <= h^4/384 max|U''''| + h^3/192 |J|      derivatives by s,
+// with a joint of the law in the bin, where U''' jumps by J; laws here have a continuous f', so U'' does not.
+struct EnergyRule {
+  const double* node = nullptr;  // U (J), dU/ds (J); from the bin of the core to 1
+  int first_bin = 0;
+  double core2 = 0, core_energy = 0, core_slope = 0;  // below: U = core_energy + core_slope (s - core2)
+  const double* strength = nullptr;                   // type_count x type_count
+  int type_count = 1;
+  const double* weight = nullptr;  // three per type, J per cutoff: mass * gravity * cutoff
+  double kinetic = 0;              // J: mass/2 (cutoff/dt)^2
+};
+
+inline constexpr int kEnergyBits = 12, kEnergyBins = 1 << kEnergyBits;
+inline constexpr int kEnergyShift = 20 - kEnergyBits;  // of an upper word: see bin_bits
+
+// Of one pair (count it once), J; 0 from the cutoff on. s = |x_j - x_i|^2 in cutoff^2. Strength included.
+CUBOCT_HD inline double pair_energy(const EnergyRule& rule, double s, int type_i, int type_j) {
+  if (!(s < 1)) return 0;
+  double energy;
+  if (s < rule.core2) {
+    energy = rule.core_energy + rule.core_slope * (s - rule.core2);
+  } else {
+    const int bits = bin_bits(s, kEnergyShift);
+    const auto begin_of = [](int bin) {
+      return std::bit_cast<double>(static_cast<uint64_t>(static_cast<uint32_t>(bin)) << (32 + kEnergyShift));
+    };
+    const double a = detail::larger(begin_of(bits), rule.core2), h = begin_of(bits + 1) - a;
+    const double* const n = rule.node + 2 * (bits - rule.first_bin);
+    const double t = (s - a) / h, left = h * n[1], right = h * n[3], rise = n[2] - n[0];
+    energy = n[0] + t * (left + t * (3 * rise - 2 * left - right + t * (left + right - 2 * rise)));
+  }
+  return energy * rule.strength[type_i * rule.type_count + type_j];
+}
+
+// Adds one particle's kinetic energy at the time of its positions, half a step after that of v: v + half of
+// what the coming step adds, 0 along imposed axes; and its energy by gravity, -m g.x. `sum`: of its pair kicks
+// at x; x in cutoffs in the scene's coordinates; u may be null unless rule.pd.
+template <class Real>
+CUBOCT_HD void add_particle_energy(const RealRule<Real>& rule, const EnergyRule& energy, const Real sum[3],
+                                   const double x[3], const Real v[3], const Real u[3], int type,
+                                   double& kinetic, double& gravity) {
+  const RealType<Real>& of = rule.types[type];
+  for (int a = 0; a < 3; ++a) {
+    double now = static_cast<double>(v[a]);
+    if (!of.imposed[a]) now += static_cast<double>(velocity_gain(of, sum[a], v[a], u, a)) / 2;
+    kinetic += energy.kinetic * now * now;
+    gravity -= energy.weight[3 * type + a] * x[a];
+  }
+}
+
+// Makes an EnergyRule and owns its arrays on the host.
+struct EnergyTables {
+  explicit EnergyTables(const Rule& rule);
+
+  std::vector<double> node, strength, weight;
+
+  EnergyRule rule() const { return rule(node.data(), strength.data(), weight.data()); }
+  EnergyRule rule(const double* node_copy, const double* strength_copy, const double* weight_copy) const {
+    EnergyRule view = rule_;
+    view.node = node_copy;
+    view.strength = strength_copy;
+    view.weight = weight_copy;
+    return view;
+  }
+
+ private:
+  EnergyRule rule_;
+};
+
+}  // namespace cuboct::gpu
