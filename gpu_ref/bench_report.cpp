@@ -9,7 +9,7 @@ namespace cuboct::gpu {
 namespace {
 
 std::string quoted(const std::string& text) {
-  std::string out = "\"";
+  std::string out(1, '"');
   for (const char c : text) {
     if (c == '"' || c == '\\')
       out += {'\\', c};
@@ -18,7 +18,8 @@ std::string quoted(const std::string& text) {
     else
       out += c;
   }
-  return out + '"';
+  out += '"';
+  return out;
 }
 
 // Numbers that JSON cannot hold are null.
@@ -43,7 +44,10 @@ class JsonLine {
 template <class List, class Write>
 std::string json_list(const List& list, const Write& write) {
   std::string out;
-  for (const auto& item : list) out += (out.empty() ? "" : ",") + write(item);
+  for (const auto& item : list) {
+    if (!out.empty()) out += ',';
+    out += write(item);
+  }
   return fmt::format("[{}]", out);
 }
 
@@ -53,7 +57,8 @@ std::string names_of(const std::vector<Device>& devices) {
   std::string all;
   for (const Device& device : devices) {
     alike = alike && device.name == devices.front().name;
-    all += (all.empty() ? "" : " and ") + device.name;
+    if (!all.empty()) all += " and ";
+    all += device.name;
   }
   if (!alike || devices.size() == 1) return all;
   return fmt::format("{} x {}", devices.size(), devices.front().name);
