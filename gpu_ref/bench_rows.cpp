@@ -67,7 +67,9 @@ std::vector<BenchRow> choose_rows(const std::vector<BenchRow>& rows, const std::
   std::vector<std::string> names;
   for (const BenchRow& row : rows) {
     names.push_back(row.name);
-    if (name.empty() || row.name == name || row.name.starts_with(name + ".")) chosen.push_back(row);
+    if (name.empty() || row.name == name || row.name.starts_with(name + ".") ||
+        row.name.starts_with(name + "_"))
+      chosen.push_back(row);
   }
   if (!chosen.empty()) return chosen;
   const std::string near = did_you_mean(name, names);

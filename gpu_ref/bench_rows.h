@@ -37,7 +37,8 @@ struct BenchRow {
 
 // Those of one scene in a row.
 std::vector<BenchRow> bench_rows();
-// Those that `name` begins, up to a point of the name; all where it is empty. InputError where there is none.
+// The row `name`, or those that begin with it and '_' or '.'; all where it is empty. InputError where there
+// is none.
 std::vector<BenchRow> choose_rows(const std::vector<BenchRow>& rows, const std::string& name);
 
 }  // namespace cuboct::gpu

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The benchmark around engines of known speed.
 #include <dlfcn.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -78,8 +79,11 @@ BenchMachine machine_of(Asked& asked, const std::function<void(uint64_t)>& on_st
   machine.real = [&asked, on_step](const Scene& scene, const Body& body, Arithmetic arithmetic,
                                    const Options& options) {
     EXPECT_EQ(&body, &scene.body);
-    asked = {
-        arithmetic == Arithmetic::float32 ? "float" : "double", 0, scene.rule.damping.coefficient > 0, options, {}};
+    asked = {arithmetic == Arithmetic::float32 ? "float" : "double",
+             0,
+             scene.rule.damping.coefficient > 0,
+             options,
+             {}};
     return std::make_unique<SlowEngine>(asked, on_step);
   };
   machine.copy_bandwidth = [](int device) { return device == 0 ? 2e12 : 1e12; };
@@ -123,6 +127,8 @@ TEST(Rows, AreWhatTheirNamesSay) {
                           : row.name.find("_2m.") != std::string::npos ? 2048000
                                                                        : 16384000;
     EXPECT_EQ(row.scene.particles(), size) << row.name;
+    EXPECT_NE(row.scene.text().find(fmt::format("\ncells = [{0}, {0}, {0}]\n", row.scene.cells)),
+              std::string::npos);
     EXPECT_TRUE(row.name.ends_with(std::string(".") + row.arithmetic));
     EXPECT_EQ(row.scene.damped, row.name.starts_with("damped_"));
     EXPECT_NE(row.scene.text().find(row.scene.damped ? "[damping]" : "[run]"), std::string::npos);
@@ -139,6 +145,8 @@ TEST(Rows, AreWhatTheirNamesSay) {
 
   EXPECT_EQ(choose_rows(rows, "").size(), rows.size());
   EXPECT_EQ(choose_rows(rows, "block_2m").size(), 3u);
+  EXPECT_EQ(choose_rows(rows, "melt").size(), 6u);
+  EXPECT_THROW(choose_rows(rows, "block_2"), InputError);  // half a word
   EXPECT_EQ(choose_rows(rows, "melt_256k.float").size(), 1u);
   EXPECT_EQ(choose_rows(rows, "melt_256k.float")[0].name, "melt_256k.float");
 }
