@@ -127,7 +127,7 @@ TEST(Rows, AreWhatTheirNamesSay) {
                           : row.name.find("_2m.") != std::string::npos ? 2048000
                                                                        : 16384000;
     EXPECT_EQ(row.scene.particles(), size) << row.name;
-    EXPECT_NE(row.scene.text().find(fmt::format("\ncells = [{0}, {0}, {0}]\n", row.scene.cells)),
+    EXPECT_NE(row.scene.text().find(fmt::format("\ncells = [{0}, {0}, {0}]", row.scene.cells)),
               std::string::npos);
     EXPECT_TRUE(row.name.ends_with(std::string(".") + row.arithmetic));
     EXPECT_EQ(row.scene.damped, row.name.starts_with("damped_"));
