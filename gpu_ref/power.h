@@ -9,7 +9,7 @@
 //   - the times of the two steps, each known to the time between two askings.
 // So energy is mean power times window, and its error is bounded by reading alone; assumed is that a step
 // follows what it counts after the same delay each time, and that power is steady (Energy::drift shows). The
-// sensor's own error comes on top: NVIDIA states +-5 % for readings of power.
+// sensor's own error comes on top: +-5 %, says NVIDIA of the boards of which it says anything.
 //
 // A board without the counter: its power readings, integrated by trapezoids.
 #pragma once
