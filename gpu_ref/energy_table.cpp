@@ -19,8 +19,8 @@ EnergyTables::EnergyTables(const Rule& rule) {
   node = {rule_.core_energy, rule_.core_slope};
   const int end = bin_bits(1.0, kEnergyShift);
   for (int bits = rule_.first_bin + 1; bits <= end; ++bits) {
-    const double s = std::bit_cast<double>(static_cast<uint64_t>(static_cast<uint32_t>(bits))
-                                           << (32 + kEnergyShift));
+    const double s =
+        std::bit_cast<double>(static_cast<uint64_t>(static_cast<uint32_t>(bits)) << (32 + kEnergyShift));
     const double r = bits < end ? std::sqrt(s) * cutoff : std::nextafter(cutoff, 0.0);
     node.push_back(law.energy(r));
     node.push_back(slope(r));
@@ -28,8 +28,7 @@ EnergyTables::EnergyTables(const Rule& rule) {
   rule_.type_count = static_cast<int>(rule.types.size());
   for (int i = 0; i < rule_.type_count; ++i) {
     for (int j = 0; j < rule_.type_count; ++j) strength.push_back(rule.strength_of(i, j));
-    for (int axis = 0; axis < 3; ++axis)
-      weight.push_back(rule.mass * rule.types[i].gravity[axis] * cutoff);
+    for (int axis = 0; axis < 3; ++axis) weight.push_back(rule.mass * rule.types[i].gravity[axis] * cutoff);
   }
   const double velocity = cutoff / rule.dt;
   rule_.kinetic = rule.mass * velocity * velocity / 2;

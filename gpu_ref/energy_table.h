@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Energies of pairs and of particles in joules, from a RealRule's units; in doubles whatever the steps are in.
+// Energies of pairs and of particles in joules, from a RealRule's units; in doubles whatever the steps are
+// in.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +13,9 @@ struct Rule;  // model/rule.h, which no GPU compiler needs
 }
 namespace cuboct::gpu {
 
-// A view, as RealRule. U over s = (r/cutoff)^2 by cubics through values and slopes at the nodes: the core, and
-// beyond it the ends of kEnergyBins ranges of equal length in each octave of s, up to 1.
-// Error inside a bin [a, a + h], by Peano's kernel of the cubic Hermite interpolation:
+// A view, as RealRule. U over s = (r/cutoff)^2 by cubics through values and slopes at the nodes: the core,
+// and beyond it the ends of kEnergyBins ranges of equal length in each octave of s, up to 1. Error inside a
+// bin [a, a + h], by Peano's kernel of the cubic Hermite interpolation:
 //   |U - table| <= h^4/384 max|U''''| + h^3/192 |J|      derivatives by s,
 // with a joint of the law in the bin, where U''' jumps by J; laws here have a continuous f', so U'' does not.
 struct EnergyRule {
@@ -50,8 +51,8 @@ CUBOCT_HD inline double pair_energy(const EnergyRule& rule, double s, int type_i
 }
 
 // Adds one particle's kinetic energy at the time of its positions, half a step after that of v: v + half of
-// what the coming step adds, 0 along imposed axes; and its energy by gravity, -m g.x. `sum`: of its pair kicks
-// at x; x in cutoffs in the scene's coordinates; u may be null unless rule.pd.
+// what the coming step adds, 0 along imposed axes; and its energy by gravity, -m g.x. `sum`: of its pair
+// kicks at x; x in cutoffs in the scene's coordinates; u may be null unless rule.pd.
 template <class Real>
 CUBOCT_HD void add_particle_energy(const RealRule<Real>& rule, const EnergyRule& energy, const Real sum[3],
                                    const double x[3], const Real v[3], const Real u[3], int type,

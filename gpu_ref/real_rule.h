@@ -2,9 +2,9 @@
 // A rule in real numbers as GPUs and their host evaluate it: pair kicks in closed form, and the step of one
 // particle by semi-implicit Euler. The physics is that of model/reference.h.
 //
-// Units: lengths in cutoffs of the pair law, so that the cutoff is 1; times in steps. A velocity is in cutoffs
-// per step, and so is a kick, f dt^2/(m cutoff): no number comes near the ends of a float's range, as SI
-// would.
+// Units: lengths in cutoffs of the pair law, so that the cutoff is 1; times in steps. A velocity is in
+// cutoffs per step, and so is a kick, f dt^2/(m cutoff): no number comes near the ends of a float's range, as
+// SI would.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,20 @@
 
 namespace cuboct::gpu {
 
-enum class LawKind : uint8_t { lennard_jones, shifted_lennard_jones, cubic, arc };
+// Crowded: joints so near to each other that some bin of r^2 (below) holds two, which takes a loop.
+enum class LawKind : uint8_t {
+  lennard_jones,
+  shifted_lennard_jones,
+  cubic,
+  arc,
+  crowded_cubic,
+  crowded_arc,
+};
+constexpr bool is_arc(LawKind kind) { return kind == LawKind::arc || kind == LawKind::crowded_arc; }
+constexpr bool has_pieces(LawKind kind) { return kind >= LawKind::cubic; }
+constexpr bool is_crowded(LawKind kind) {
+  return kind == LawKind::crowded_cubic || kind == LawKind::crowded_arc;
+}
 
 // What a type does to its particles.
 template <class Real>
@@ -34,7 +47,6 @@ struct RealRule {
   bool damped = false, scaled = false;  // the template arguments of add_pair_kick
   bool pd = false;                      // some type has a u
   bool constrained = false;             // some type has anything set: imposed axes, PD, gravity
-  bool crowded = false;                 // some bin holds two joints
   int type_count = 1;
   Real core2 = 0;    // cutoff^2; nearer pairs have the f/r of the core
   Real damping = 0;  // per step
@@ -42,15 +54,17 @@ struct RealRule {
   Real repulsion = 0, attraction = 0, offset = 0;
 
   // The law's coefficients: none for Lennard-Jones, else
+  //   pieces  4 each, see over_r
   //   bins    2 each: the first joint (cutoff^2) inside the bin, 2 where there is none; and, as an integer's
   //           bits, the piece at the bin's beginning
-  //   pieces  4 each, see over_r; then the r where each begins; then that squared, and a 2 at the end
+  //   begins  the r where each piece begins; then that squared, and a 2 at the end
   // A bin is a range of r^2 whose numbers have the same exponent and upper bits: its index is two integer
   // operations away, bins are finer where a law is steeper, and the cutoff is the end of one.
   const Real* cache = nullptr;  // aligned to 16 bytes, as every copy of it
   int cache_size = 0;           // Reals, a multiple of 4
-  int first_bin = 0, bin_shift = 0;
-  int piece_at = 0, begin_at = 0, joint_at = 0;  // in the cache
+  int bin_shift = 0;
+  // In the cache: where the bin of no bits would stand, the begins, their squares.
+  int bin_at = 0, begin_at = 0, joint_at = 0;
 
   const Real* strength = nullptr;  // type_count x type_count, factor on the pair force
   const RealType<Real>* types = nullptr;
@@ -127,14 +141,13 @@ CUBOCT_HD inline double smaller(double a, double b) { return a < b ? a : b; }
 
 }  // namespace detail
 
-// The piece of a law that holds r2, core2 <= r2 <= 1. Joints and r2 are rounded: beside a joint the answer may
-// be the neighbour, which there has the same force but for rounding.
-template <class Real>
+// The piece of a law that holds r2, core2 <= r2 <= 1. Joints and r2 are rounded: beside a joint the answer
+// may be the neighbour, which there has the same force but for rounding.
+template <bool kCrowded, class Real>
 CUBOCT_HD int piece_of(const RealRule<Real>& rule, const Real* cache, Real r2) {
-  const int bin = bin_bits(r2, rule.bin_shift) - rule.first_bin;
-  const detail::Two<Real> of = detail::load_two(cache + 2 * bin);
-  int piece = index_in(of.b) + (r2 >= of.a ? 1 : 0);
-  if (rule.crowded)
+  const detail::Two<Real> bin = detail::load_two(cache + rule.bin_at + 2 * bin_bits(r2, rule.bin_shift));
+  int piece = index_in(bin.b) + (r2 >= bin.a ? 1 : 0);
+  if constexpr (kCrowded)
     while (r2 >= cache[rule.joint_at + piece + 1]) ++piece;
   return piece;
 }
@@ -143,45 +156,47 @@ CUBOCT_HD int piece_of(const RealRule<Real>& rule, const Real* cache, Real r2) {
 // kind are bounded in tests/gpu/real_rule_tests.cpp.
 template <LawKind kKind, class Roots, class Real>
 CUBOCT_HD Real over_r(const RealRule<Real>& rule, const Real* cache, Real r2, Real& inverse_r2) {
-  if constexpr (kKind == LawKind::lennard_jones) {
+  if constexpr (!has_pieces(kKind)) {
+    // Not the square of 1/r, whose error the power 14 would double.
     const Real q = inverse_r2 = Roots::inverse(r2);
     const Real q3 = q * q * q;
-    return q * q3 * (rule.repulsion * q3 - rule.attraction);
+    const Real k = q * q3 * (rule.repulsion * q3 - rule.attraction);
+    if constexpr (kKind == LawKind::lennard_jones) return k;
+    return k + rule.offset * Roots::inverse_root(r2);
   } else {
     const Real inverse_r = Roots::inverse_root(r2);
-    const Real q = inverse_r2 = inverse_r * inverse_r;
-    if constexpr (kKind == LawKind::shifted_lennard_jones) {
-      const Real q3 = q * q * q;
-      return q * q3 * (rule.repulsion * q3 - rule.attraction) + rule.offset * inverse_r;
-    }
-    const int piece = piece_of(rule, cache, r2);
-    const detail::Four<Real> c = detail::load_four(cache + rule.piece_at + 4 * piece);
+    inverse_r2 = inverse_r * inverse_r;
+    const int piece = piece_of<is_crowded(kKind)>(rule, cache, r2);
+    const detail::Four<Real> c = detail::load_four(cache + 4 * piece);
     const Real t = r2 * inverse_r - cache[rule.begin_at + piece];
-    if constexpr (kKind == LawKind::cubic) {
+    if constexpr (!is_arc(kKind)) {
       return (c.a + t * (c.b + t * (c.c + t * c.d))) * inverse_r;
     } else {
       // An arc of model/law_form.h has r2 s^2 + r1 s = t; the root that does not cancel is s = 2/r1 * p with
       // p = t/(1 + sqrt(z)), z = 1 + 4 r2/r1^2 t = ((dr/ds)/r1)^2. f is a square function of p too:
-      // c = {f0, 2 f1/r1, 4 f2/r1^2, 4 r2/r1^2}. The least z keeps rounding from taking the root of less
-      // than 0.
-      const Real z = detail::larger(1 + c.d * t, Real(0x1p-60));
-      const Real p = t * Roots::inverse(1 + z * Roots::inverse_root(z));
+      // c = {f0, 2 f1/r1, 4 f2/r1^2, 4 r2/r1^2}. Where legs of the control polygon differ much in length, an
+      // arc bends within less than a rounding of r: it must not be followed below its beginning, nor z to 0.
+      const Real from = detail::larger(t, Real(0));
+      const Real z = detail::larger(1 + c.d * from, Real(0x1p-60));
+      const Real p = from * Roots::inverse(1 + z * Roots::inverse_root(z));
       return (c.a + p * (c.b + p * c.c)) * inverse_r;
     }
   }
 }
 
 // Adds to `sum` (cutoffs per step) what j does to i, and tells whether j is inside the cutoff; d = x_j - x_i,
-// in a periodic box the shortest, w = v_j - v_i (read only where kDamped), `cache`: rule.cache or a copy of it
-// (shared memory). Types are read only where kScaled. Of i and j swapped, with -d and -w, it is the negative
-// to the last bit: only even functions of d and w enter the factor on d. No lane goes an own way, but where
-// rule.crowded.
+// in a periodic box the shortest, w = v_j - v_i (read only where kDamped), `cache`: rule.cache or a copy of
+// it (shared memory). Types are read only where kScaled. Of i and j swapped, with -d and -w, it is the
+// negative to the last bit: only even functions of d and w enter the factor on d. No lane goes an own way,
+// but in crowded laws.
 template <LawKind kKind, bool kDamped, bool kScaled, class Roots = FastRoots, class Real>
 CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, const Real d[3], const Real w[3],
                              int type_i, int type_j, Real sum[3]) {
   const Real r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   const bool inside = r2 < Real(1);
-  const Real near2 = detail::smaller(detail::larger(r2, rule.core2), Real(1));
+  // Up to the cutoff, as bins end there.
+  Real near2 = detail::larger(r2, rule.core2);
+  if constexpr (has_pieces(kKind)) near2 = detail::smaller(near2, Real(1));
   Real inverse2;
   Real k = over_r<kKind, Roots>(rule, cache, near2, inverse2);
   if constexpr (kDamped) {
@@ -203,10 +218,11 @@ CUBOCT_HD Real velocity_gain(const RealType<Real>& type, Real sum, Real v, const
   return gain;
 }
 
-// Kick, constraints and drift of one particle: sum of the pair kicks, x and u in cutoffs, v in cutoffs per step.
-// `u` may be null unless rule.pd.
+// Kick, constraints and drift of one particle: sum of the pair kicks, x and u in cutoffs, v in cutoffs per
+// step. `u` may be null unless rule.pd.
 template <class Real>
-CUBOCT_HD void finish(const RealRule<Real>& rule, const Real sum[3], Real x[3], Real v[3], Real u[3], int type) {
+CUBOCT_HD void finish(const RealRule<Real>& rule, const Real sum[3], Real x[3], Real v[3], Real u[3],
+                      int type) {
   if (!rule.constrained) {
     for (int a = 0; a < 3; ++a) {
       v[a] += sum[a];
@@ -238,6 +254,10 @@ decltype(auto) with_kinds(const RealRule<Real>& rule, On&& on) {
       return of.template operator()<LawKind::cubic>();
     case LawKind::arc:
       return of.template operator()<LawKind::arc>();
+    case LawKind::crowded_cubic:
+      return of.template operator()<LawKind::crowded_cubic>();
+    case LawKind::crowded_arc:
+      return of.template operator()<LawKind::crowded_arc>();
     case LawKind::lennard_jones:
       break;
   }

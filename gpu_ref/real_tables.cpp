@@ -21,9 +21,16 @@ template <class Real>
 constexpr int kMantissaBits = sizeof(Real) == 4 ? 23 : 20;  // of the word that bin_bits takes
 
 template <class Real>
+constexpr const char* kName = sizeof(Real) == 4 ? "float" : "double";
+template <class Real>
+constexpr const char* kHint = sizeof(Real) == 4 ? "a larger core, or doubles" : "a larger core";
+
+template <class Real>
 Real index_as_real(size_t index) {
-  if constexpr (sizeof(Real) == 4) return std::bit_cast<float>(static_cast<uint32_t>(index));
-  else return std::bit_cast<double>(static_cast<uint64_t>(index));
+  if constexpr (sizeof(Real) == 4)
+    return std::bit_cast<float>(static_cast<uint32_t>(index));
+  else
+    return std::bit_cast<double>(static_cast<uint64_t>(index));
 }
 
 // Where the bin of these bits begins.
@@ -45,8 +52,9 @@ RealTables<Real>::RealTables(const Rule& rule) {
   const double core = rule.law->core() / length;
   rule_.core2 = real(core * core);
   if (rule_.core2 < std::numeric_limits<Real>::min()) {
-    throw InputError(fmt::format("the pair law's core is {:g} of its cutoff, whose square no {} holds", core,
-                                 sizeof(Real) == 4 ? "float" : "double"));
+    throw InputError(
+        fmt::format("the pair law's core is {:g} of its cutoff, whose square no {} holds", core, kName<Real>),
+        kHint<Real>);
   }
   take_law(*rule.law);
   rule_.damping = real(rule.damping.coefficient * rule.dt / rule.mass);
@@ -111,35 +119,35 @@ void RealTables<Real>::take_pieces(const std::vector<Piece>& pieces, Coefficient
   for (size_t k = 1; k < pieces.size(); ++k)
     joint2.push_back(static_cast<Real>(pieces[k].r * pieces[k].r / (length * length)));
   const auto bits_of = [&](Real r2) { return bin_bits(r2, rule_.bin_shift); };
+  bool crowded = false;
   for (int bits = kLeastBits; bits <= kMostBits; ++bits) {
     const int shift = kMantissaBits<Real> - bits;
     if (bits > kLeastBits && bin_bits(Real(1), shift) - bin_bits(rule_.core2, shift) >= kMostBins) break;
     rule_.bin_shift = shift;
-    rule_.crowded = false;
+    crowded = false;
     for (size_t k = 0; k + 1 < joint2.size(); ++k)
-      rule_.crowded |= bits_of(joint2[k]) == bits_of(joint2[k + 1]) && joint2[k + 1] > rule_.core2;
-    if (!rule_.crowded) break;
+      crowded |= bits_of(joint2[k]) == bits_of(joint2[k + 1]) && joint2[k + 1] > rule_.core2;
+    if (!crowded) break;
   }
-  rule_.first_bin = bits_of(rule_.core2);
-  for (int bits = rule_.first_bin; bits <= bits_of(Real(1)); ++bits) {
+  if (crowded) rule_.kind = is_arc(rule_.kind) ? LawKind::crowded_arc : LawKind::crowded_cubic;
+  for (const Piece& piece : pieces)
+    for (const double c : coefficients(piece)) cache.push_back(static_cast<Real>(c));
+  const int first = bits_of(rule_.core2);
+  rule_.bin_at = static_cast<int>(cache.size()) - 2 * first;
+  for (int bits = first; bits <= bits_of(Real(1)); ++bits) {
     const Real begin = std::max(begin_of_bin(bits, rule_.bin_shift, Real()), rule_.core2);
     const auto next = std::upper_bound(joint2.begin(), joint2.end(), begin);
     const bool inside = next != joint2.end() && bits_of(*next) == bits;
     cache.push_back(inside ? *next : Real(2));
     cache.push_back(index_as_real<Real>(static_cast<size_t>(next - joint2.begin())));
   }
-  const auto fill_up = [&] { cache.resize((cache.size() + 3) / 4 * 4, Real(0)); };
-  fill_up();
-  rule_.piece_at = static_cast<int>(cache.size());
-  for (const Piece& piece : pieces)
-    for (const double c : coefficients(piece)) cache.push_back(static_cast<Real>(c));
   rule_.begin_at = static_cast<int>(cache.size());
   for (const Piece& piece : pieces) cache.push_back(static_cast<Real>(piece.r / length));
   rule_.joint_at = static_cast<int>(cache.size());
   cache.push_back(0);
   cache.insert(cache.end(), joint2.begin(), joint2.end());
   cache.push_back(2);
-  fill_up();
+  cache.resize((cache.size() + 3) / 4 * 4, Real(0));
   rule_.cache_size = static_cast<int>(cache.size());
 }
 
@@ -153,8 +161,8 @@ void RealTables<Real>::require_range(const PairLaw& law) const {
   });
   if (std::isfinite(k)) return;
   throw InputError(fmt::format("the pair law's force at its core, {:g} m, is beyond the range of a {}",
-                               law.core(), sizeof(Real) == 4 ? "float" : "double"),
-                   sizeof(Real) == 4 ? "a larger core, or doubles" : "a larger core");
+                               law.core(), kName<Real>),
+                   kHint<Real>);
 }
 
 template struct RealTables<float>;

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+// The fixed rule: golden's bits. A step that may not be possible is golden's own, on the host, so that errors are too.
+#include <algorithm>
+#include <cmath>
+
+#include "gpu_ref/fixed_policy.h"
+#include "gpu_ref/machine.h"
+#include "model/golden.h"
+#include "model/interrupt.h"
+
+namespace cuboct::gpu {
+namespace {
+
+template <typename Number>
+class FixedEngine final : public Engine {
+ public:
+  using Policy = FixedPolicy<Number>;
+
+  FixedEngine(const Scene& scene, const Plan& plan, const State& initial, const Options& options)
+      : plan_(plan), step_(initial.step) {
+    machine_ = std::make_unique<Machine<Policy>>(
+        options, setup_of(scene, plan), EnergyTables(scene.rule), loose(initial),
+        [&](Stream& stream) { return std::make_unique<FixedRuleOnDevice>(stream, plan.rule); });
+  }
+
+  void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
+    const uint64_t last = step_ + steps;
+    while (step_ < last && !interrupted()) {
+      if (old_) renew();
+      const auto outcome = machine_->run(last - step_, hashes);
+      step_ += outcome.done;
+      using End = typename Machine<Policy>::End;
+      if (outcome.end == End::doubt || (outcome.end == End::crowded && machine_->age() == 0)) {
+        step_by_golden();
+        if (hashes) hashes->push_back(machine_->hash());
+      } else {
+        old_ = outcome.end != End::full;
+      }
+    }
+  }
+  uint64_t step_count() const override { return step_; }
+
+  Reading read(bool energies) override {
+    if (old_) renew();
+    Reading reading;
+    reading.step = step_;
+    const FixedRule& rule = plan_.rule;
+    const double position = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
+    for (const Found<Policy>& found : machine_->read_probed()) {
+      Vec3 x;
+      for (int a = 0; a < 3; ++a)
+        x[a] = plan_.origin[a] + found.cell.c[a] * rule.cell_edge + found.x.at[a] * position;
+      reading.x.push_back(x);
+      reading.force.push_back(force_of(rule, {found.kick.at[0], found.kick.at[1], found.kick.at[2]}));
+    }
+    if (energies) {
+      const Sums sums = machine_->read_energies();
+      reading.energies = {sums.kinetic, sums.potential, sums.gravity};
+      reading.largest_speed = sums.speed * std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
+    }
+    return reading;
+  }
+  void probe(const std::vector<uint32_t>& ids) override { machine_->probe(ids); }
+
+  State state() override {
+    const Loose<Policy> loose = machine_->download();
+    State state{step_, std::vector<Particle>(loose.size())};
+    const int P = plan_.rule.widths.position_frac;
+    const Lattice& lattice = plan_.lattice;
+    for (size_t i = 0; i < loose.size(); ++i) {
+      Particle& p = state.particles[loose.id[i]];
+      p.id = loose.id[i];
+      p.type = static_cast<uint8_t>(loose.x[i].last);
+      Cell cell;
+      for (int a = 0; a < 3; ++a) {
+        cell[a] = loose.cell[i].c[a] + (loose.x[i].at[a] >> P);
+        if (const int period = lattice.period()[a]; period > 0) cell[a] = (cell[a] % period + period) % period;
+        p.x[a] = loose.x[i].at[a] & ((int64_t{1} << P) - 1);
+        p.v[a] = loose.v[i].at[a];
+        if (!loose.u.empty()) p.u[a] = loose.u[i].at[a];
+      }
+      p.node = lattice.find(cell);
+    }
+    return state;
+  }
+  uint64_t hash() override { return machine_->hash(); }
+  Body body() override { return to_real(state(), plan_.rule, plan_.lattice, plan_.origin); }
+
+  const Counters& counters() const override {
+    counters_ = machine_->counters;
+    counters_.golden_steps = golden_steps_;
+    return counters_;
+  }
+
+ private:
+  static typename Machine<Policy>::Setup setup_of(const Scene& scene, const Plan& plan) {
+    const FixedRule& rule = plan.rule;
+    typename Machine<Policy>::Setup setup;
+    Geometry& g = setup.geometry;
+    Cell high = g.low = plan.lattice.cell(0);
+    for (uint32_t n = 0; n < plan.lattice.size(); ++n)
+      for (int a = 0; a < 3; ++a) {
+        g.low[a] = std::min(g.low[a], plan.lattice.cell(n)[a]);
+        high[a] = std::max(high[a], plan.lattice.cell(n)[a]);
+      }
+    for (int a = 0; a < 3; ++a) {
+      const int period = plan.lattice.period()[a];
+      g.wraps[a] = period > 0;
+      if (period > 0) g.low[a] = 0;
+      g.total[a] = period > 0 ? period : high[a] - g.low[a] + 1;
+    }
+    g.nodes = &plan.lattice;
+    // Two cells' edges hold any cutoff, which is an edge at most, and the skin.
+    g.reach = Policy::kReach;
+    setup.radius = std::sqrt(std::ldexp(static_cast<double>(rule.cutoff2), -2 * rule.widths.difference_frac));
+    // Half a unit of a difference along three axes, for both of a pair.
+    setup.rounding = 2 * std::ldexp(1.0, -rule.widths.difference_frac);
+    setup.largest_skin = 0.4 * setup.radius;
+    setup.capacity = static_cast<uint32_t>(plan.arch.capacity);
+    setup.pd = rule.pd, setup.damped = rule.damped;
+    const double cutoff = scene.rule.law->cutoff();
+    for (int a = 0; a < 3; ++a) {
+      setup.edge[a] = rule.cell_edge / cutoff;
+      setup.origin[a] = plan.origin[a] / cutoff;
+    }
+    setup.unit = std::ldexp(rule.cell_edge / cutoff, -rule.widths.position_frac);
+    setup.velocity_unit = std::ldexp(rule.cell_edge / cutoff, -rule.widths.velocity_frac());
+    return setup;
+  }
+
+  Loose<Policy> loose(const State& state) const {
+    Loose<Policy> loose;
+    const size_t n = state.particles.size();
+    loose.x.resize(n), loose.v.resize(n), loose.cell.resize(n), loose.id.resize(n);
+    if (plan_.rule.pd) loose.u.resize(n);
+    for (size_t i = 0; i < n; ++i) {
+      const Particle& p = state.particles[i];
+      const Cell& cell = plan_.lattice.cell(p.node);
+      for (int a = 0; a < 3; ++a) {
+        loose.x[i].at[a] = static_cast<int32_t>(p.x[a]);
+        loose.v[i].at[a] = static_cast<Number>(p.v[a]);
+        loose.cell[i].c[a] = cell[a];
+        if (plan_.rule.pd) loose.u[i].at[a] = p.u[a];
+      }
+      loose.x[i].last = p.type;
+      loose.id[i] = p.id;
+    }
+    return loose;
+  }
+
+  void renew() {
+    machine_->make_lists();
+    old_ = false;
+  }
+
+  // Throws where the step cannot be done.
+  void step_by_golden() {
+    Golden golden(plan_.rule, plan_.lattice, plan_.arch.capacity, state());
+    golden.step();
+    ++golden_steps_;
+    ++step_;
+    machine_->upload(loose(golden.state()));
+    old_ = false;
+  }
+
+  const Plan& plan_;
+  std::unique_ptr<Machine<Policy>> machine_;
+  uint64_t step_;
+  uint64_t golden_steps_ = 0;
+  bool old_ = false;  // the lists no longer serve
+  mutable Counters counters_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_fixed_engine(const Scene& scene, const Plan& plan, const State& initial,
+                                          const Options& options) {
+  if (plan.rule.widths.velocity_bits <= 32)
+    return std::make_unique<FixedEngine<int32_t>>(scene, plan, initial, options);
+  return std::make_unique<FixedEngine<int64_t>>(scene, plan, initial, options);
+}
+
+}  // namespace cuboct::gpu

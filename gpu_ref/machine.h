@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// The engine of both arithmetics on one or more devices.
+//
+// Space is cut into slabs, one per device or more. Particles are stored by cell; a pair list with a skin holds each
+// one's partners until some particle has moved half the skin. One kernel does a step of a particle, from one of two
+// copies of the state to the other. Steps go in batches without the host: kernels note up to which step all was
+// good, and those beyond it do nothing. A slab's borders come first in a step and are written into the neighbours'
+// memory as well, while the inner particles are computed. Where one slab had to stop earlier than another, all go
+// back to the beginning of the batch and do the steps that were good.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "gpu_ref/cells.h"
+#include "gpu_ref/device.h"
+#include "gpu_ref/engine.h"
+#include "gpu_ref/messages.h"
+#include "gpu_ref/skin.h"
+#include "gpu_ref/step.h"
+#include "gpu_ref/storage.h"
+
+namespace cuboct::gpu {
+
+// Bytes of device memory for a particle, about: what a card must hold is known before it is asked for.
+template <class Policy>
+constexpr double bytes_per_particle(bool slabs, bool pd, double listed) {
+  const double state = sizeof(typename Policy::Position) + sizeof(typename Policy::Velocity) +
+                       (pd ? sizeof(typename Policy::Extra) : 0);
+  const double order = 2 * (sizeof(CellAt) + 4) + 8 + (Policy::kFixed ? 8 : 0) + 4;
+  return (slabs ? 3 : 2) * state + order + 4 * listed;
+}
+
+
+// A state on the host, in the numbers of the devices; in no order.
+template <class Policy>
+struct Loose {
+  std::vector<typename Policy::Position> x;
+  std::vector<typename Policy::Velocity> v;
+  std::vector<typename Policy::Extra> u;  // empty unless the rule has PD types
+  std::vector<CellAt> cell;
+  std::vector<uint32_t> id;
+  size_t size() const { return x.size(); }
+};
+
+template <class Policy>
+class Machine {
+ public:
+  using Rule = typename Policy::Rule;
+  using View = typename Policy::View;
+
+  struct Setup {
+    Geometry geometry;
+    double radius = 1;     // of the interaction, in the unit of the geometry's edges
+    double rounding = 0;   // that the rule's own differences may bring pairs nearer
+    double largest_skin = 0;  // what the reach of the cells leaves room for
+    uint32_t capacity = kNever;  // of a node (fixed)
+    bool pd = false, damped = false;
+    // Of energies: see ReadEnergies.
+    std::array<double, 3> edge{}, origin{};
+    double unit = 1, velocity_unit = 1;
+  };
+  // `make_rule(stream)` puts the rule on a stream's device.
+  template <class MakeRule>
+  Machine(const Options& options, const Setup& setup, const EnergyTables& energies, const Loose<Policy>& state,
+          const MakeRule& make_rule);
+
+  // One batch of at most `steps`; how many were done, and why it ended. A hash for each where `hashes`.
+  enum class End : uint8_t { full, list, doubt, crowded };
+  struct Outcome {
+    uint64_t done = 0;
+    End end = End::full;
+  };
+  Outcome run(uint64_t steps, std::vector<uint64_t>* hashes);
+
+  // New lists; particles are stored anew.
+  void make_lists();
+  // Steps since then.
+  uint64_t age() const { return age_; }
+
+  void upload(const Loose<Policy>& state);
+  Loose<Policy> download();
+
+  uint64_t hash();
+  // A new list comes first where the old one no longer serves.
+  void probe(const std::vector<uint32_t>& ids);
+  std::vector<Found<Policy>> read_probed();
+  Sums read_energies();
+
+  Counters counters;
+
+ private:
+  struct Slab {
+    Slab(int device, int number) : device(device), number(number), stream(device) {
+      for (auto* a : {&x[0], &x[1], &saved_x}) *a = Array<typename Policy::Position>(device);
+      for (auto* a : {&v[0], &v[1], &saved_v}) *a = Array<typename Policy::Velocity>(device);
+      for (auto* a : {&u[0], &u[1], &saved_u}) *a = Array<typename Policy::Extra>(device);
+      for (auto* a : {&id, &spare_id, &rank_of, &order, &entered, &rank, &count, &first, &taken, &occupancy, &entries,
+                      &counts, &notes, &slot, &found_here})
+        *a = Array<uint32_t>(device);
+      for (auto* a : {&cell, &spare_cell}) *a = Array<CellAt>(device);
+      for (auto* a : {&leaving[0], &leaving[1], &arriving}) *a = Array<Traveller<Policy>>(device);
+      control = Array<Control>(device);
+      hashes = Array<uint64_t>(device);
+      found = Array<Found<Policy>>(device);
+      sums = Array<Sums>(device);
+      for (auto* a : {&energy_node, &energy_strength, &energy_weight}) *a = Array<double>(device);
+    }
+    int device, number;
+    Stream stream;
+    Event border_done[2];
+    std::unique_ptr<Rule> rule;
+    Array<typename Policy::Position> x[2], saved_x;
+    Array<typename Policy::Velocity> v[2], saved_v;
+    Array<typename Policy::Extra> u[2], saved_u;
+    Array<uint32_t> id, spare_id, rank_of, order, entered;
+    Array<CellAt> cell, spare_cell;
+    Array<uint32_t> rank, count, first, taken, occupancy;  // of cells
+    Array<uint32_t> entries, counts;
+    Array<uint32_t> notes;  // two counts of leavers, lost ones, longest list
+    Array<Traveller<Policy>> leaving[2], arriving;
+    Array<Control> control;
+    Array<uint64_t> hashes;
+    Array<uint32_t> slot, found_here;
+    Array<Found<Policy>> found;
+    Array<Sums> sums;
+    Array<double> energy_node, energy_strength, energy_weight;
+    EnergyRule energy;
+    Graph graph[2];  // a batch from either copy
+    uint32_t graph_steps[2] = {0, 0};
+    // Places: own [0, own), of them the lower border [0, low_end) and the upper one [high_begin, own); then the
+    // copies up to `lower_copy_end` and `all`.
+    uint32_t own = 0, low_end = 0, high_begin = 0, lower_copy_end = 0, all = 0;
+    size_t room = 0;   // of the arrays
+    size_t stride = 0;  // of the list
+    uint32_t width = 24;
+  };
+
+  // Particles that a slab has room for, beyond what it holds at a time.
+  static constexpr double kSpare = 1.1;
+  static constexpr uint32_t kLongest = 256;  // steps of a batch
+
+  bool alone() const { return slabs_.size() == 1; }
+  const SlabCells& cells_of(const Slab& slab) const { return cells_.slabs[static_cast<size_t>(slab.number)]; }
+  Slab* beside(const Slab& slab, int side) {
+    const int other = side == 0 ? cells_of(slab).lower : cells_of(slab).upper;
+    return other < 0 ? nullptr : slabs_[static_cast<size_t>(other)].get();
+  }
+  GridView grid(const Slab& slab) const;
+  ParticlesView<Policy> at(Slab& slab, int copy) const {
+    return {slab.x[copy].data(), slab.v[copy].data(), setup_.pd ? slab.u[copy].data() : nullptr};
+  }
+  List list(const Slab& slab) const { return {slab.entries.data(), slab.counts.data(), slab.stride}; }
+  float farthest() const {
+    const float edge = std::max({static_cast<float>(setup_.geometry.edge[0]), static_cast<float>(setup_.geometry.edge[1]),
+                                 static_cast<float>(setup_.geometry.edge[2])});
+    return static_cast<float>(skin_.now()) / 2 - kAnchorError * edge;
+  }
+
+  void make_room(Slab& slab, size_t particles);
+  void resettle();
+  void sort();
+  void mirror();
+  void list_pairs();
+  void scatter(const Loose<Policy>& state);
+  void step(uint32_t number, bool hash);
+  void start_batch(uint32_t steps, bool hash);
+  void save();
+  void go_back();
+  void wait_for_all() {
+    for (auto& slab : slabs_) slab->stream.synchronize();
+  }
+
+  Options options_;
+  Setup setup_;
+  Cells cells_;
+  std::vector<std::unique_ptr<Slab>> slabs_;
+  uint64_t particles_;
+  Skin skin_;
+  int at_ = 0;  // which copy holds the state
+  uint64_t age_ = 0;
+  uint32_t batch_ = 16;
+  size_t probed_ = 0;
+};
+
+}  // namespace cuboct::gpu
+
+#include "gpu_ref/machine_lists.h"
+#include "gpu_ref/machine_read.h"
+#include "gpu_ref/machine_steps.h"

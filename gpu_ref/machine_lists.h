@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: MIT
+// Machine: where particles are stored, which device owns them, and their pair lists.
+#pragma once
+
+#include "gpu_ref/machine.h"
+
+namespace cuboct::gpu {
+
+template <class Policy>
+template <class MakeRule>
+Machine<Policy>::Machine(const Options& options, const Setup& setup, const EnergyTables& energies,
+                         const Loose<Policy>& state, const MakeRule& make_rule)
+    : options_(options), setup_(setup), particles_(state.size()), skin_(setup.radius, setup.largest_skin) {
+  require_devices(options);
+  const int slabs = static_cast<int>(options.devices.size());
+  std::array<std::vector<uint64_t>, 3> per_plane;
+  const Geometry& g = setup.geometry;
+  for (int a = 0; a < 3; ++a) {
+    per_plane[a].assign(static_cast<size_t>(g.total[a]), 0);
+    for (const CellAt& c : state.cell) {
+      const int p = (c.c[a] - g.low[a]) % g.total[a];
+      ++per_plane[a][static_cast<size_t>(p < 0 ? p + g.total[a] : p)];
+    }
+  }
+  cells_ = make_cells(g, per_plane, slabs);
+  uint64_t cells = 0;
+  for (const SlabCells& slab : cells_.slabs) cells = std::max<uint64_t>(cells, slab.rank.size() + 4ull * slab.ranks);
+  require_memory(options, particles_, cells, bytes_per_particle<Policy>(slabs > 1, setup.pd, 24));
+  share(options.devices);
+  for (int s = 0; s < slabs; ++s) {
+    slabs_.push_back(std::make_unique<Slab>(options.devices[static_cast<size_t>(s)], s));
+    Slab& slab = *slabs_.back();
+    const SlabCells& of = cells_.slabs[static_cast<size_t>(s)];
+    slab.rule = make_rule(slab.stream);
+    slab.rank.set(slab.stream, of.rank);
+    for (auto* array : {&slab.count, &slab.first, &slab.taken, &slab.occupancy}) array->resize(of.ranks);
+    slab.notes.resize(4);
+    slab.control.resize(1);
+    slab.hashes.resize(kLongest + 1);
+    slab.energy_node.set(slab.stream, energies.node);
+    slab.energy_strength.set(slab.stream, energies.strength);
+    slab.energy_weight.set(slab.stream, energies.weight);
+    slab.energy = energies.rule(slab.energy_node.data(), slab.energy_strength.data(), slab.energy_weight.data());
+  }
+  upload(state);
+}
+
+template <class Policy>
+GridView Machine<Policy>::grid(const Slab& slab) const {
+  GridView view{};
+  const Geometry& g = setup_.geometry;
+  const SlabCells& of = cells_of(slab);
+  for (int a = 0; a < 3; ++a) {
+    view.low[a] = g.low[a];
+    view.total[a] = view.local[a] = g.total[a];
+    view.wraps[a] = g.wraps[a];
+    view.edge[a] = static_cast<float>(g.edge[a]);
+  }
+  view.axis = cells_.axis;
+  view.local[view.axis] = of.local_planes;
+  view.local_first = of.local_first;
+  view.folds = g.folds;
+  view.rank = slab.rank.data();
+  return view;
+}
+
+template <class Policy>
+void Machine<Policy>::make_room(Slab& slab, size_t particles) {
+  if (particles <= slab.room) return;
+  const auto room = static_cast<size_t>(static_cast<double>(particles) * (slab.room > 0 ? kSpare : 1.0)) + 256;
+  if (room > kPlaceMask<Policy::kReach>) throw_too_many(particles, kPlaceMask<Policy::kReach>);
+  const size_t kept = slab.room;
+  for (int k = 0; k < 2; ++k) {
+    slab.x[k].grow(slab.stream, room, kept);
+    slab.v[k].grow(slab.stream, room, kept);
+    if (setup_.pd) slab.u[k].grow(slab.stream, room, kept);
+    slab.graph[k].drop();
+  }
+  if (!alone()) {
+    slab.saved_x.resize(room), slab.saved_v.resize(room);
+    if (setup_.pd) slab.saved_u.resize(room);
+  }
+  for (auto* array : {&slab.id, &slab.spare_id, &slab.rank_of, &slab.order}) array->grow(slab.stream, room, kept);
+  if (Policy::kFixed) slab.entered.grow(slab.stream, room, kept);
+  for (auto* array : {&slab.cell, &slab.spare_cell}) array->grow(slab.stream, room, kept);
+  slab.room = room;
+}
+
+template <class Policy>
+void Machine<Policy>::scatter(const Loose<Policy>& state) {
+  std::vector<std::vector<uint32_t>> of(slabs_.size());
+  for (uint32_t i = 0; i < state.size(); ++i) {
+    const int owner = cells_.owner(cells_.plane({state.cell[i].c[0], state.cell[i].c[1], state.cell[i].c[2]}));
+    of[static_cast<size_t>(owner)].push_back(i);
+  }
+  const auto some = [](const auto& all, const std::vector<uint32_t>& which) {
+    auto few = std::remove_cvref_t<decltype(all)>();
+    few.reserve(which.size());
+    for (const uint32_t i : which) few.push_back(all[i]);
+    return few;
+  };
+  for (size_t s = 0; s < slabs_.size(); ++s) {
+    Slab& slab = *slabs_[s];
+    slab.own = static_cast<uint32_t>(of[s].size());
+    make_room(slab, of[s].size() + 1);
+    slab.x[at_].put(slab.stream, 0, some(state.x, of[s]));
+    slab.v[at_].put(slab.stream, 0, some(state.v, of[s]));
+    if (setup_.pd) slab.u[at_].put(slab.stream, 0, some(state.u, of[s]));
+    slab.cell.put(slab.stream, 0, some(state.cell, of[s]));
+    slab.id.put(slab.stream, 0, some(state.id, of[s]));
+  }
+}
+
+template <class Policy>
+void Machine<Policy>::upload(const Loose<Policy>& state) {
+  scatter(state);
+  make_lists();
+}
+
+template <class Policy>
+Loose<Policy> Machine<Policy>::download() {
+  Loose<Policy> state;
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  for (auto& slab : slabs_) {
+    append(state.x, slab->x[at_].host(slab->stream, 0, slab->own));
+    append(state.v, slab->v[at_].host(slab->stream, 0, slab->own));
+    if (setup_.pd) append(state.u, slab->u[at_].host(slab->stream, 0, slab->own));
+    append(state.cell, slab->cell.host(slab->stream, 0, slab->own));
+    append(state.id, slab->id.host(slab->stream, 0, slab->own));
+  }
+  return state;
+}
+
+// Each slab's particles where they are now, `own` of them with gaps of rank kGone.
+template <class Policy>
+void Machine<Policy>::resettle() {
+  for (auto& slab : slabs_) {
+    Slab& s = *slab;
+    const uint32_t room = alone() ? 0 : s.own / 8 + 1024;
+    for (int side = 0; side < 2; ++side)
+      if (s.leaving[side].size() < room) s.leaving[side].resize(room);
+    s.notes.zero(s.stream);
+    Resettle<Policy> f{};
+    f.view = s.rule->view(), f.grid = grid(s), f.at = at(s, at_), f.cell = s.cell.data(), f.id = s.id.data();
+    f.rank = s.rank_of.data(), f.alone = alone(), f.room = room;
+    f.own = {cells_of(s).first, cells_of(s).planes};
+    for (int side = 0; side < 2; ++side) {
+      if (const Slab* other = beside(s, side)) f.beside[side] = {cells_of(*other).first, cells_of(*other).planes};
+      f.leaving[side] = s.leaving[side].data();
+    }
+    f.leaving_count = s.notes.data(), f.lost = s.notes.data() + 2;
+    for_each(s.stream, 0, s.own, options_.block, f);
+  }
+  if (alone()) return;
+  std::vector<std::array<uint32_t, 2>> leavers;
+  bool lost = false;
+  for (auto& slab : slabs_) {
+    const std::vector<uint32_t> notes = slab->notes.host(slab->stream, 0, 3);
+    leavers.push_back({notes[0], notes[1]});
+    lost |= notes[2] > 0;
+  }
+  if (lost) {  // seldom: through the host
+    for (auto& slab : slabs_) for_each(slab->stream, 0, slab->own, options_.block, KeepAll{slab->rank_of.data()});
+    wait_for_all();
+    scatter(download());
+    for (auto& slab : slabs_) for_each(slab->stream, 0, slab->own, options_.block, KeepAll{slab->rank_of.data()});
+    wait_for_all();
+    return;
+  }
+  for (auto& slab : slabs_) {
+    Slab& s = *slab;
+    for (int side = 0; side < 2; ++side) {
+      Slab* other = beside(s, side);
+      // Both neighbours may be one: what left it for its own other side.
+      if (!other) continue;
+      const uint32_t coming = leavers[static_cast<size_t>(other->number)][1 - side];
+      if (coming == 0) continue;
+      make_room(s, s.own + coming);
+      if (s.arriving.size() < coming) s.arriving.resize(coming);
+      copy(s.stream, s.arriving.data(), s.device, other->leaving[1 - side].data(), other->device,
+           coming * sizeof(Traveller<Policy>));
+      Arrive<Policy> f{s.arriving.data(), at(s, at_), s.cell.data(), s.id.data(), s.rank_of.data(), s.own};
+      for_each(s.stream, 0, coming, options_.block, f);
+      s.own += coming;
+      s.stream.synchronize();
+    }
+  }
+}
+
+template <class Policy>
+void Machine<Policy>::sort() {
+  for (auto& slab : slabs_) {
+    Slab& s = *slab;
+    s.count.zero(s.stream), s.taken.zero(s.stream);
+    for_each(s.stream, 0, s.own, options_.block,
+             CountByCell{grid(s), s.cell.data(), s.rank_of.data(), s.count.data()});
+  }
+  wait_for_all();
+  for (auto& slab : slabs_) {  // the counts of the copies
+    Slab& s = *slab;
+    const SlabCells& mine = cells_of(s);
+    if (const Slab* lower = beside(s, 0))
+      copy(s.stream, s.count.data() + mine.own_end, s.device, lower->count.data() + cells_of(*lower).inner_end,
+           lower->device, (mine.lower_copy_end - mine.own_end) * sizeof(uint32_t));
+    if (const Slab* upper = beside(s, 1))
+      copy(s.stream, s.count.data() + mine.lower_copy_end, s.device, upper->count.data(), upper->device,
+           (mine.ranks - mine.lower_copy_end) * sizeof(uint32_t));
+    exclusive_sums(s.stream, s.count.data(), s.first.data(), mine.ranks);
+    if (Policy::kFixed)
+      copy(s.stream, s.occupancy.data(), s.device, s.count.data(), s.device, mine.own_end * sizeof(uint32_t));
+    // Where each part of the storage ends: the number of particles before a rank.
+    const auto before = [&](uint32_t rank) {
+      if (rank == 0) return 0u;
+      return s.first.host(s.stream, rank - 1, 1)[0] + s.count.host(s.stream, rank - 1, 1)[0];
+    };
+    const uint32_t gathered = before(mine.own_end);
+    s.low_end = before(mine.low_end), s.high_begin = before(mine.inner_end);
+    s.lower_copy_end = before(mine.lower_copy_end), s.all = before(mine.ranks);
+    make_room(s, s.all);
+    for_each(s.stream, 0, s.own, options_.block,
+             Order{s.rank_of.data(), s.first.data(), s.taken.data(), s.order.data()});
+    for_each(s.stream, 0, mine.own_end, options_.block,
+             OrderInCell{s.first.data(), s.count.data(), s.id.data(), s.order.data()});
+    s.own = gathered;
+    Gather<Policy> f{s.rule->view(), grid(s), s.order.data(), at(s, at_), at(s, 1 - at_), s.cell.data(), s.id.data(),
+                     s.spare_cell.data(), s.spare_id.data(), Policy::kFixed ? s.entered.data() : nullptr};
+    for_each(s.stream, 0, s.own, options_.block, f);
+    std::swap(s.cell, s.spare_cell), std::swap(s.id, s.spare_id);
+  }
+  at_ = 1 - at_;
+  wait_for_all();
+}
+
+// The neighbours' borders into one's own copies.
+template <class Policy>
+void Machine<Policy>::mirror() {
+  counters.halo_particles = 0;
+  for (auto& slab : slabs_) {
+    Slab& s = *slab;
+    counters.halo_particles += s.all - s.own;
+    for (int side = 0; side < 2; ++side) {
+      const Slab* other = beside(s, side);
+      if (!other) continue;
+      const uint32_t to = side == 0 ? s.own : s.lower_copy_end;
+      const uint32_t from = side == 0 ? other->high_begin : 0;
+      const size_t count = (side == 0 ? s.lower_copy_end : s.all) - to;
+      copy(s.stream, s.x[at_].data() + to, s.device, other->x[at_].data() + from, other->device,
+           count * sizeof(typename Policy::Position));
+      copy(s.stream, s.v[at_].data() + to, s.device, other->v[at_].data() + from, other->device,
+           count * sizeof(typename Policy::Velocity));
+      copy(s.stream, s.cell.data() + to, s.device, other->cell.data() + from, other->device, count * sizeof(CellAt));
+    }
+  }
+  wait_for_all();
+}
+
+template <class Policy>
+void Machine<Policy>::list_pairs() {
+  const auto reach_of = [&](double skin) {
+    return static_cast<float>((setup_.radius + setup_.rounding + skin) * (1 + 1e-6));
+  };
+  uint64_t entries = 0, within = 0;
+  for (auto& slab : slabs_) {
+    Slab& s = *slab;
+    for (;;) {
+      const size_t stride = (s.own + 31) / 32 * 32;
+      if (s.counts.size() < s.own) s.counts.resize(s.room);
+      if (s.entries.size() < stride * s.width || s.stride != stride) {
+        if (s.entries.size() < stride * s.width) s.entries.resize(stride * s.width);
+        s.stride = stride;
+        for (Graph& graph : s.graph) graph.drop();
+      }
+      s.notes.zero(s.stream);
+      MakeList<Policy> f{s.rule->view(), grid(s), reach_of(skin_.now()), reach_of(skin_.thinner()), s.x[at_].data(), s.cell.data(), s.first.data(),
+                         s.count.data(), s.entries.data(), s.counts.data(), s.width, s.stride};
+      max_each(s.stream, 0, s.own, options_.block, f, s.notes.data() + 3);
+      const uint32_t longest = s.notes.host(s.stream, 3, 1)[0];
+      counters.longest_list = std::max<uint64_t>(counters.longest_list, longest);
+      if (longest <= s.width) break;
+      s.width = longest + longest / 16 + 1;
+      if (s.width > kCountMask) throw_too_dense(longest);
+    }
+    s.hashes.zero(s.stream);
+    sum_each(s.stream, 0, s.own, options_.block, CountEntries{s.counts.data()}, s.hashes.data());
+    sum_each(s.stream, 0, s.own, options_.block, CountWithin{s.counts.data()}, s.hashes.data() + 1);
+    const std::vector<uint64_t> sums = s.hashes.host(s.stream, 0, 2);
+    entries += sums[0], within += sums[1];
+  }
+  const auto n = static_cast<double>(particles_);
+  counters.listed_pairs = static_cast<double>(entries) / n;
+  skin_.listed(counters.listed_pairs, static_cast<double>(within) / n);
+  ++counters.list_builds;
+}
+
+template <class Policy>
+void Machine<Policy>::make_lists() {
+  skin_.aged(age_);
+  resettle();
+  sort();
+  mirror();
+  list_pairs();
+  // Graphs hold the number of particles and the skin.
+  for (auto& slab : slabs_)
+    for (Graph& graph : slab->graph) graph.drop();
+  age_ = 0;
+}
+
+}  // namespace cuboct::gpu

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// Machine: steps in batches.
+#pragma once
+
+#include "gpu_ref/machine.h"
+
+namespace cuboct::gpu {
+
+struct ResetControl {
+  Control* control;
+  CUBOCT_DEVICE void operator()(uint32_t) const { *control = {kNever, kNever, kNever}; }
+};
+
+// The step from the copy that holds the state to the other one.
+template <class Policy>
+void Machine<Policy>::step(uint32_t number, bool hash) {
+  const float allowed = std::max(farthest(), 0.0f);
+  const auto launch = [&](Slab& s, uint32_t begin, uint32_t end) {
+    if (begin == end) return;
+    Policy::with_variant(s.rule->view(), [&](auto variant) {
+      Step<Policy, decltype(variant)> f{};
+      f.view = s.rule->view(), f.grid = grid(s), f.from = at(s, at_), f.to = at(s, 1 - at_), f.list = list(s);
+      if (const Slab* lower = beside(s, 0))
+        f.copies[0] = {lower->x[1 - at_].data(), setup_.damped ? lower->v[1 - at_].data() : nullptr, 0, s.low_end,
+                       int64_t{lower->lower_copy_end}};
+      if (const Slab* upper = beside(s, 1))
+        f.copies[1] = {upper->x[1 - at_].data(), setup_.damped ? upper->v[1 - at_].data() : nullptr, s.high_begin,
+                       s.own, int64_t{upper->own} - int64_t{s.high_begin}};
+      if constexpr (Policy::kFixed) {
+        const SlabCells& cells = cells_of(s);
+        f.occupancy = {s.occupancy.data(), nullptr, nullptr, cells.own_end, cells.lower_copy_end, setup_.capacity,
+                       s.entered.data()};
+        if (const Slab* lower = beside(s, 0))
+          f.occupancy.lower = lower->occupancy.data() + cells_of(*lower).inner_end;
+        if (const Slab* upper = beside(s, 1)) f.occupancy.upper = upper->occupancy.data();
+      }
+      f.cell = s.cell.data(), f.farthest2 = allowed * allowed, f.number = number, f.control = s.control.data();
+      for_each_cached(s.stream, begin, end, options_.block, s.rule->cache(), s.rule->cache_words(), f);
+    });
+  };
+  if (!alone())
+    for (auto& slab : slabs_) {
+      // What the neighbours wrote in the step before is read now; what is written now they have read by then.
+      for (int side = 0; side < 2; ++side)
+        if (Slab* other = beside(*slab, side); other && number > 1)
+          slab->stream.wait(other->border_done[(number - 1) % 2]);
+      launch(*slab, 0, slab->low_end);
+      launch(*slab, slab->high_begin, slab->own);
+      slab->stream.record(slab->border_done[number % 2]);
+    }
+  for (auto& slab : slabs_) {
+    launch(*slab, slab->low_end, slab->high_begin);
+    if (!hash) continue;
+    if constexpr (Policy::kFixed) {
+      const HashEach<Policy> f{slab->rule->view(), grid(*slab), at(*slab, 1 - at_), slab->cell.data(),
+                               slab->id.data(),    number,      slab->control.data()};
+      sum_each(slab->stream, 0, slab->own, options_.block, f, slab->hashes.data() + number);
+    }
+  }
+  at_ = 1 - at_;
+}
+
+template <class Policy>
+void Machine<Policy>::start_batch(uint32_t steps, bool hash) {
+  for (auto& slab : slabs_) {
+    for_each(slab->stream, 0, 1, 32, ResetControl{slab->control.data()});
+    if (hash) slab->hashes.zero(slab->stream);
+  }
+  // Another slab's first step may write into this one's memory.
+  if (!alone()) wait_for_all();
+  Slab& first = *slabs_.front();
+  // A graph pays where it is launched more than once.
+  if (kHasGraphs && alone() && !hash && steps == batch_ && age_ >= steps) {
+    const int begin = at_;
+    Graph& graph = first.graph[begin];
+    if (first.graph_steps[begin] != steps) graph.drop();
+    if (!graph.ready()) {
+      graph.begin(first.stream);
+      for (uint32_t k = 1; k <= steps; ++k) step(k, false);
+      graph.end(first.stream);
+      first.graph_steps[begin] = steps;
+    }
+    graph.launch(first.stream);
+    at_ = (begin + static_cast<int>(steps)) % 2;
+  } else {
+    for (uint32_t k = 1; k <= steps; ++k) step(k, hash);
+  }
+  wait_for_all();
+}
+
+// The state at the beginning of a batch, copies of neighbours' particles included.
+template <class Policy>
+void Machine<Policy>::save() {
+  for (auto& slab : slabs_) {
+    Slab& s = *slab;
+    copy(s.stream, s.saved_x.data(), s.device, s.x[at_].data(), s.device, s.all * sizeof(typename Policy::Position));
+    copy(s.stream, s.saved_v.data(), s.device, s.v[at_].data(), s.device, s.all * sizeof(typename Policy::Velocity));
+    if (setup_.pd)
+      copy(s.stream, s.saved_u.data(), s.device, s.u[at_].data(), s.device, s.own * sizeof(typename Policy::Extra));
+  }
+}
+
+template <class Policy>
+void Machine<Policy>::go_back() {
+  for (auto& slab : slabs_) {
+    Slab& s = *slab;
+    copy(s.stream, s.x[at_].data(), s.device, s.saved_x.data(), s.device, s.all * sizeof(typename Policy::Position));
+    copy(s.stream, s.v[at_].data(), s.device, s.saved_v.data(), s.device, s.all * sizeof(typename Policy::Velocity));
+    if (setup_.pd)
+      copy(s.stream, s.u[at_].data(), s.device, s.saved_u.data(), s.device, s.own * sizeof(typename Policy::Extra));
+  }
+}
+
+template <class Policy>
+typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vector<uint64_t>* hashes) {
+  // Whether a thinner skin would do is asked at an age, not where a batch happens to end: runs repeat.
+  const uint64_t review = skin_.review();
+  const uint64_t until = age_ < review ? review - age_ : kLongest;
+  const auto steps = static_cast<uint32_t>(std::min({wanted, uint64_t{batch_}, until}));
+  const int begin = at_;
+  if (!alone()) save();
+  start_batch(steps, hashes != nullptr);
+  Outcome outcome{steps, End::full};
+  uint64_t latest = 0;
+  uint32_t doubt = kNever, crowded = kNever;
+  bool old = false;
+  for (auto& slab : slabs_) {
+    const Control told = slab->control.host(slab->stream, 0, 1)[0];
+    const uint64_t done = std::min(told.limit, steps);
+    latest = std::max(latest, done);
+    outcome.done = std::min(outcome.done, done);
+    doubt = std::min(doubt, told.doubt), crowded = std::min(crowded, told.crowded);
+  }
+  for (auto& slab : slabs_) old |= slab->control.host(slab->stream, 0, 1)[0].limit <= outcome.done;
+  if (crowded == outcome.done + 1)
+    outcome.end = End::crowded;
+  else if (doubt == outcome.done + 1)
+    outcome.end = End::doubt;
+  else if (old || age_ + outcome.done == review)
+    outcome.end = End::list;
+  // A slab that went two steps too far has overwritten the state.
+  if (latest > outcome.done + 1) {
+    at_ = begin;
+    go_back();
+    counters.replayed_steps += outcome.done;
+    if (outcome.done > 0) start_batch(static_cast<uint32_t>(outcome.done), hashes != nullptr);
+  }
+  at_ = static_cast<int>((static_cast<uint64_t>(begin) + outcome.done) % 2);
+  age_ += outcome.done;
+  if (hashes) {
+    std::vector<uint64_t> sums(outcome.done, 0);
+    for (auto& slab : slabs_) {
+      const std::vector<uint64_t> part = slab->hashes.host(slab->stream, 1, outcome.done);
+      for (size_t k = 0; k < part.size(); ++k) sums[k] += part[k];
+    }
+    hashes->insert(hashes->end(), sums.begin(), sums.end());
+  }
+  if (outcome.end == End::full) {
+    if (steps == batch_) batch_ = std::min(2 * batch_, kLongest);
+  } else {  // about as long as lists live
+    batch_ = 8;
+    while (batch_ * 2 <= age_ && batch_ < kLongest) batch_ *= 2;
+  }
+  return outcome;
+}
+
+}  // namespace cuboct::gpu

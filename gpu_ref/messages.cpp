@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_ref/messages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "model/error.h"
+
+namespace cuboct::gpu {
+
+const char* to_string(Arithmetic arithmetic) {
+  return arithmetic == Arithmetic::fixed ? "fixed" : arithmetic == Arithmetic::float32 ? "float" : "double";
+}
+
+void throw_too_many(uint64_t particles, uint64_t most) {
+  throw InputError(fmt::format("{} particles on one device, copies of its neighbours' included: a pair list's entry "
+                               "tells {} apart",
+                               particles, most),
+                   "use more devices");
+}
+
+void throw_too_dense(uint64_t others) {
+  throw std::runtime_error(fmt::format("a particle has {} others inside the cutoff and the skin: matter has collapsed", others));
+}
+
+void throw_far_particle(size_t particle) {
+  throw InputError(fmt::format("particle {} is more than 1e9 cells away from the first", particle));
+}
+
+void throw_not_finite(uint64_t step, uint32_t fastest, double speed) {
+  throw std::runtime_error(fmt::format(
+      "step {}: a position leaves all bounds; before it particle {} was the fastest, at {:.4g} m/s", step + 1,
+      fastest, speed));
+}
+
+void require_devices(const Options& options) {
+  if (options.block < 32 || options.block > 256 || options.block % 32 != 0)
+    throw InputError(fmt::format("a block of {} threads", options.block), "a multiple of 32 from 32 to 256");
+  std::string why;
+  const std::vector<Device> devices = find_devices(&why);
+  if (devices.empty()) throw InputError(fmt::format("the gpu engine needs a CUDA device: {}", why));
+  for (const int ordinal : options.devices)
+    if (std::none_of(devices.begin(), devices.end(), [&](const Device& d) { return d.ordinal == ordinal; }))
+      throw InputError(fmt::format("there is no CUDA device {}", ordinal),
+                       devices.size() == 1 ? "this machine has one: 0"
+                                           : fmt::format("this machine has {}: 0 to {}", devices.size(),
+                                                         devices.size() - 1));
+}
+
+void require_memory(const Options& options, uint64_t particles, uint64_t cells, double bytes_per_particle) {
+  const size_t slabs = options.devices.size();
+  // Slabs have about equal shares; their copies of neighbours' particles and what grows take a tenth.
+  const double slab = 1.1 * static_cast<double>(particles) / static_cast<double>(slabs) * bytes_per_particle +
+                      4.0 * static_cast<double>(cells);
+  std::map<int, int> slabs_on;
+  for (const int ordinal : options.devices) ++slabs_on[ordinal];
+  for (const Device& device : find_devices()) {
+    const auto it = slabs_on.find(device.ordinal);
+    if (it == slabs_on.end()) continue;
+    const double needed = slab * it->second;
+    if (needed <= static_cast<double>(device.free)) continue;
+    throw InputError(
+        fmt::format("{} particles need {:.1f} GiB on device {} ({}), which has {:.1f} GiB free", particles,
+                    needed / 0x1p30, device.ordinal, device.name, static_cast<double>(device.free) / 0x1p30),
+        fmt::format("about {} particles fit, or use more devices",
+                    static_cast<uint64_t>(static_cast<double>(device.free) / needed * static_cast<double>(particles))));
+  }
+}
+
+}  // namespace cuboct::gpu

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// What the engine says where it refuses. Apart from the kernels: no GPU compiler sees how numbers are printed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "gpu_ref/engine.h"
+
+namespace cuboct::gpu {
+
+// InputError.
+[[noreturn]] void throw_too_many(uint64_t particles, uint64_t most);
+[[noreturn]] void throw_far_particle(size_t particle);
+// std::runtime_error: a particle with so many others around.
+[[noreturn]] void throw_too_dense(uint64_t others);
+// InputError where an ordinal is not there, or a block is no multiple of 32 up to 256.
+void require_devices(const Options& options);
+// InputError where the devices cannot hold a scene: `cells` bytes/4 of tables on each.
+void require_memory(const Options& options, uint64_t particles, uint64_t cells, double bytes_per_particle);
+// std::runtime_error: in the step after `step`.
+[[noreturn]] void throw_not_finite(uint64_t step, uint32_t fastest, double speed);
+
+}  // namespace cuboct::gpu

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// The rule in floats or doubles.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "gpu_ref/machine.h"
+#include "gpu_ref/messages.h"
+#include "gpu_ref/real_policy.h"
+#include "model/error.h"
+#include "model/interrupt.h"
+
+namespace cuboct::gpu {
+namespace {
+
+// Cells as wide as the cutoff and the thickest skin.
+constexpr double kLargestSkin = 0.16, kEdge = 1 + kLargestSkin + 1e-4;
+
+// Cells of a fluid or a solid hold a few particles; more empty ones than these cost more memory than they save time.
+constexpr uint64_t kCellsPerParticle = 4, kLeastCells = 4096;
+
+template <class Real>
+class RealEngine final : public Engine {
+ public:
+  using Policy = RealPolicy<Real>;
+
+  RealEngine(const Scene& scene, const Body& body, const Options& options)
+      : scene_(scene), tables_(scene.rule), type_(body.type) {
+    place(body);
+    typename Machine<Policy>::Setup setup;
+    setup.geometry = geometry_;
+    // Floats of a cell's coordinates, of both of a pair along three axes.
+    setup.rounding = 16 * static_cast<double>(std::numeric_limits<float>::epsilon());
+    setup.largest_skin = kLargestSkin;
+    setup.pd = tables_.rule().pd, setup.damped = tables_.rule().damped;
+    setup.edge = geometry_.edge;
+    for (int a = 0; a < 3; ++a) setup.origin[a] = origin_[a] / tables_.length;
+    double edge[3];
+    std::copy(geometry_.edge.begin(), geometry_.edge.end(), edge);
+    machine_ = std::make_unique<Machine<Policy>>(
+        options, setup, EnergyTables(scene.rule), loose(body), [&](Stream& stream) {
+          return std::make_unique<RealRuleOnDevice<Real>>(stream, tables_, edge);
+        });
+  }
+
+  void advance(uint64_t steps, std::vector<uint64_t>*) override {
+    const uint64_t last = step_ + steps;
+    while (step_ < last && !interrupted()) {
+      if (old_) renew();
+      const auto outcome = machine_->run(last - step_, nullptr);
+      step_ += outcome.done;
+      using End = typename Machine<Policy>::End;
+      if (outcome.end == End::doubt) throw_not_finite();
+      old_ = outcome.end != End::full;
+    }
+  }
+  uint64_t step_count() const override { return step_; }
+
+  Reading read(bool energies) override {
+    if (old_) renew();
+    Reading reading;
+    reading.step = step_;
+    for (const Found<Policy>& found : machine_->read_probed()) {
+      reading.x.push_back(position(found.x, found.cell));
+      reading.force.push_back(tables_.force * Vec3(found.kick.at[0], found.kick.at[1], found.kick.at[2]));
+    }
+    if (energies) {
+      const Sums sums = machine_->read_energies();
+      reading.energies = {sums.kinetic, sums.potential, sums.gravity};
+      reading.largest_speed = sums.speed * tables_.velocity;
+    }
+    return reading;
+  }
+  void probe(const std::vector<uint32_t>& ids) override { machine_->probe(ids); }
+
+  State state() override { throw std::logic_error("a real engine has no fixed state"); }
+  uint64_t hash() override { throw std::logic_error("a real engine has no hash"); }
+
+  Body body() override {
+    const Loose<Policy> loose = machine_->download();
+    Body body;
+    const size_t n = loose.size();
+    body.x.resize(n), body.v.resize(n);
+    body.type = type_;
+    if (!loose.u.empty()) body.u.resize(n);
+    for (size_t i = 0; i < n; ++i) {
+      const uint32_t id = loose.id[i];
+      body.x[id] = position(loose.x[i], loose.cell[i]);
+      const auto& v = loose.v[i].at;
+      body.v[id] = tables_.velocity * Vec3(v[0], v[1], v[2]);
+      if (loose.u.empty()) continue;
+      const auto& u = loose.u[i].at;
+      body.u[id] = tables_.length * Vec3(u[0], u[1], u[2]);
+    }
+    return body;
+  }
+
+  const Counters& counters() const override { return machine_->counters; }
+
+ private:
+  // Chooses cells: whole ones in a box that repeats, else from the body's lowest corner on.
+  void place(const Body& body) {
+    Vec3 low = body.x[0], high = body.x[0];
+    for (const Vec3& x : body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
+    const double length = tables_.length;
+    for (int a = 0; a < 3; ++a) {
+      const double extent = scene_.periodic.extent[a] / length;
+      geometry_.wraps[a] = extent > 0;
+      if (extent > 0) {
+        origin_[a] = scene_.periodic.origin[a];
+        geometry_.total[a] = std::max(1, static_cast<int>(extent / kEdge));
+        geometry_.edge[a] = extent / geometry_.total[a];
+      } else {
+        geometry_.edge[a] = kEdge;
+        origin_[a] = low[a] - 0.5 * kEdge * length;
+        geometry_.total[a] = static_cast<int>(std::min((high[a] - origin_[a]) / (kEdge * length), 1e6)) + 2;
+      }
+    }
+    geometry_.folds = true;
+    geometry_.reach = Policy::kReach;
+    const uint64_t most = kCellsPerParticle * body.size() + kLeastCells;
+    const auto cells = [&] {
+      return static_cast<uint64_t>(geometry_.total[0]) * geometry_.total[1] * geometry_.total[2];
+    };
+    while (cells() > most) {
+      int longest = -1;
+      for (int a = 0; a < 3; ++a)
+        if (!geometry_.wraps[a] && (longest < 0 || geometry_.total[a] > geometry_.total[longest])) longest = a;
+      if (longest < 0 || geometry_.total[longest] < 2) break;
+      geometry_.total[longest] = (geometry_.total[longest] + 1) / 2;
+    }
+  }
+
+  Loose<Policy> loose(const Body& body) const {
+    Loose<Policy> loose;
+    const size_t n = body.size();
+    loose.x.resize(n), loose.v.resize(n), loose.cell.resize(n), loose.id.resize(n);
+    const bool pd = tables_.rule().pd;
+    if (pd) loose.u.resize(n);
+    for (size_t i = 0; i < n; ++i) {
+      for (int a = 0; a < 3; ++a) {
+        const double at = (body.x[i][a] - origin_[a]) / tables_.length, edge = geometry_.edge[a];
+        const double cell = std::floor(at / edge);
+        if (!(std::abs(cell) < 1e9)) throw_far_particle(i);
+        loose.cell[i].c[a] = static_cast<int32_t>(cell);
+        loose.x[i].at[a] = static_cast<Real>(at - cell * edge);
+        loose.v[i].at[a] = static_cast<Real>(body.v[i][a] / tables_.velocity);
+        if (pd) loose.u[i].at[a] = body.u.empty() ? Real(0) : static_cast<Real>(body.u[i][a] / tables_.length);
+      }
+      loose.x[i].last = body.type[i];
+      loose.id[i] = static_cast<uint32_t>(i);
+    }
+    return loose;
+  }
+
+  Vec3 position(const typename Policy::Position& x, const CellAt& cell) const {
+    Vec3 position;
+    for (int a = 0; a < 3; ++a)
+      position[a] = origin_[a] + (cell.c[a] * geometry_.edge[a] + static_cast<double>(x.at[a])) * tables_.length;
+    return position;
+  }
+
+  void renew() {
+    machine_->make_lists();
+    old_ = false;
+  }
+
+  [[noreturn]] void throw_not_finite() {
+    const Body now = body();
+    size_t fastest = 0;
+    for (size_t i = 0; i < now.size(); ++i)
+      if (!(now.v[i].squaredNorm() <= now.v[fastest].squaredNorm())) fastest = i;
+    gpu::throw_not_finite(step_, static_cast<uint32_t>(fastest), now.v[fastest].norm());
+  }
+
+  const Scene& scene_;
+  RealTables<Real> tables_;
+  std::vector<uint8_t> type_;
+  Vec3 origin_ = Vec3::Zero();  // m, of cell (0,0,0)
+  Geometry geometry_;
+  std::unique_ptr<Machine<Policy>> machine_;
+  uint64_t step_ = 0;
+  bool old_ = false;  // the lists no longer serve
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_real_engine(const Scene& scene, const Body& body, Arithmetic arithmetic,
+                                         const Options& options) {
+  if (arithmetic == Arithmetic::float32) return std::make_unique<RealEngine<float>>(scene, body, options);
+  return std::make_unique<RealEngine<double>>(scene, body, options);
+}
+
+}  // namespace cuboct::gpu

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// How thick the skin of pair lists should be. A thick one holds more pairs than interact, a thin one is used up soon.
+// In a solid lists live for ever beyond the amplitude of its vibrations, and each shell of neighbours in the skin
+// costs at once; in a fluid both go smoothly. So the skin follows what lists have cost, per step and particle: their
+// entries, and the making over their life. It depends on steps and lists alone: runs repeat to the bit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace cuboct::gpu {
+
+class Skin {
+ public:
+  // `radius` of the interaction; `largest`: what the cells leave room for. Same unit.
+  Skin(double radius, double largest);
+
+  double now() const { return skin_[at_]; }
+  double thinner() const { return skin_[at_ > 0 ? at_ - 1 : 0]; }
+
+  // Of the list just made: entries per particle, and those that the next thinner skin would hold.
+  void listed(double entries, double within);
+  // The list has served for so many steps and a new one is to be made: chooses its skin.
+  void aged(uint64_t steps);
+  // The age at which a list is to be made anew though it still serves; never: kForGood.
+  uint64_t review() const;
+
+  static constexpr uint64_t kForGood = ~uint64_t{0};
+
+ private:
+  static constexpr int kSkins = 14;
+  // Making a list takes about the time of this many entries (docs/reference/gpu.md has the measurement).
+  static constexpr double kMaking = 400;
+  static constexpr double kWorthwhile = 0.04;  // a share of the cost
+  static constexpr uint64_t kRemembered = 64;  // lists
+
+  bool known(int skin) const { return lists_ - when_[skin] < kRemembered && cost_[skin] > 0; }
+
+  std::array<double, kSkins> skin_{};
+  std::array<double, kSkins> cost_{};    // 0: never tried
+  std::array<uint64_t, kSkins> when_{};  // number of the list that told
+  int at_ = 0, largest_ = 0;
+  uint64_t lists_ = 0;
+  double entries_ = 0, within_ = 0;
+};
+
+}  // namespace cuboct::gpu

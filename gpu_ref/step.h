@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+// One step of one particle, and what is read off a state.
+#pragma once
+
+#include <cstdint>
+
+#include "gpu_ref/energy_table.h"
+#include "gpu_ref/storage.h"
+#include "model/hash.h"
+
+namespace cuboct::gpu {
+
+// What a slab's kernels tell the host of a batch. Steps count from 1 in a batch.
+struct Control {
+  uint32_t limit;    // the steps up to this one are good
+  uint32_t doubt;    // the first step that may not be possible
+  uint32_t crowded;  // the first step in which a node may be too full
+};
+inline constexpr uint32_t kNever = 0xffffffffu;
+
+// How full nodes may be. No particle's departure is counted until the next list, nor does one count twice in a node:
+// while no node holds more than its capacity by that count, none has done so, in whatever order devices count.
+struct Occupancy {
+  uint32_t* own;
+  uint32_t *lower, *upper;  // the neighbours' counts of what this slab holds copies of
+  uint32_t own_end, lower_copy_end;
+  uint32_t capacity;
+  uint32_t* entered;  // 27 bits a particle: which nodes around that of the list's making
+  CUBOCT_DEVICE uint32_t* of(uint32_t rank) const {
+    if (rank < own_end) return own + rank;
+    return rank < lower_copy_end ? lower + (rank - own_end) : upper + (rank - lower_copy_end);
+  }
+};
+
+// Where a neighbour keeps its copies of a border: `shift` added to the border's own places.
+template <class Policy>
+struct Copies {
+  typename Policy::Position* x;  // null: there is no neighbour
+  typename Policy::Velocity* v;  // null: no rule needs it
+  uint32_t first, end;           // of the border's places
+  int64_t shift;
+};
+
+template <class Policy, class Variant>
+CUBOCT_DEVICE inline typename Policy::Sum kick_of(const typename Variant::Cached& rule, const GridView& grid,
+                                                  const ParticlesView<Policy>& from, const List& list, uint32_t i,
+                                                  const typename Policy::Position& x,
+                                                  const typename Policy::Velocity& v, bool& sound) {
+  typename Policy::Sum sum{};
+  const uint32_t count = list.count[i] & kCountMask;
+  const uint32_t* at = list.entries + i;
+#ifdef __CUDACC__
+#pragma unroll Policy::kUnrolled
+#endif
+  for (uint32_t k = 0; k < count; ++k, at += list.stride) {
+    const uint32_t entry = *at;
+    const uint32_t place = entry & kPlaceMask<Policy::kReach>;
+    int away[3];
+    Entry<Policy::kReach>::away(entry, away);
+    const auto other = load(from.x + place);
+    auto w = v;
+    if constexpr (Variant::kDamped) w = load(from.v + place);
+    sound &= Policy::add_pair(rule, grid, x, v, other, w, away, sum);
+  }
+  return sum;
+}
+
+template <class Policy, class Variant>
+struct Step {
+  typename Policy::View view;
+  GridView grid;
+  ParticlesView<Policy> from, to;
+  List list;
+  Copies<Policy> copies[2];
+  Occupancy occupancy;
+  const CellAt* cell;
+  float farthest2;  // square of the way that the list allows
+  uint32_t number;  // of the step in its batch
+  Control* control;
+
+  CUBOCT_DEVICE bool idle() const { return control->limit < number; }
+
+  CUBOCT_DEVICE void operator()(uint32_t i, const void* cache) const {
+    const auto rule = Variant::cached(view, cache);
+    auto x = load(from.x + i);
+    auto v = load(from.v + i);
+    const auto before = x;
+    bool sound = true;
+    const auto sum = kick_of<Policy, Variant>(rule, grid, from, list, i, x, v, sound);
+    if (from.u) {
+      auto u = from.u[i];
+      sound &= Policy::finish(rule, sum, x, v, &u);
+      to.u[i] = u;
+    } else {
+      sound &= Policy::finish(rule, sum, x, v, nullptr);
+    }
+    to.x[i] = x;
+    to.v[i] = v;
+    for (const Copies<Policy>& copy : copies)
+      if (copy.x && i >= copy.first && i < copy.end) {
+        copy.x[i + copy.shift] = x;
+        if (copy.v) copy.v[i + copy.shift] = v;
+      }
+    bool crowded = false;
+    if constexpr (Policy::kFixed) sound &= cross(i, before, x, crowded);
+    if (!sound || crowded) {
+      atomic_min(&control->limit, number - 1);
+      atomic_min(crowded ? &control->crowded : &control->doubt, number);
+      return;
+    }
+    float way = 0;
+    for (int a = 0; a < 3; ++a) {
+      const float d =
+          moved_along(Policy::along(view, grid, x, a), static_cast<uint32_t>(v.last), a, grid.edge[a]);
+      way += d * d;
+    }
+    if (!(way <= farthest2)) atomic_min(&control->limit, number);
+  }
+
+  // Golden's migration along x, then y, then z. False: not possible.
+  CUBOCT_DEVICE bool cross(uint32_t i, const typename Policy::Position& before,
+                           const typename Policy::Position& now, bool& crowded) const {
+    int from_cell[3], to_cell[3];
+    bool same = true;
+    for (int a = 0; a < 3; ++a) {
+      from_cell[a] = Policy::cells_off(view, grid, before, a);
+      to_cell[a] = Policy::cells_off(view, grid, now, a);
+      same = same && from_cell[a] == to_cell[a];
+    }
+    if (same) return true;
+    int at[3] = {from_cell[0], from_cell[1], from_cell[2]};
+    const CellAt home = cell[i];
+    for (int a = 0; a < 3; ++a) {
+      if (at[a] == to_cell[a]) continue;
+      if (to_cell[a] - at[a] > 1 || at[a] - to_cell[a] > 1) return false;
+      at[a] = to_cell[a];
+      const int32_t there[3] = {home.c[0] + at[0], home.c[1] + at[1], home.c[2] + at[2]};
+      const uint32_t rank = grid.find(there);
+      if (rank == kNoCell) return false;
+      for (int b = 0; b < 3; ++b)
+        if (at[b] < -1 || at[b] > 1) return false;
+      const uint32_t bit = 1u << (9 * at[2] + 3 * at[1] + at[0] + 13);
+      const uint32_t entered = occupancy.entered[i];
+      if (entered & bit) continue;
+      occupancy.entered[i] = entered | bit;
+      if (atomic_add(occupancy.of(rank), 1u) + 1 > occupancy.capacity) crowded = true;
+    }
+    return true;
+  }
+};
+
+// hash_of (model/state.h) of the state after step `number` of a batch, where it came so far; 0: of the state as it is.
+template <class Policy>
+struct HashEach {
+  typename Policy::View view;
+  GridView grid;
+  ParticlesView<Policy> at;
+  const CellAt* cell;
+  const uint32_t* id;
+  uint32_t number;
+  const Control* control;
+  CUBOCT_DEVICE bool idle() const { return control->limit < number; }
+  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const {
+    auto x = at.x[i];
+    const auto v = at.v[i];
+    const CellAt home = cell[i];
+    Hash hash;
+    hash.add(id[i]).add(x.last);
+    for (int a = 0; a < 3; ++a) {
+      const int off = Policy::cells_off(view, grid, x, a);
+      Policy::take_off(view, grid, x, a, off);
+      int c = home.c[a] + off;
+      if (grid.wraps[a])
+        c = grid.low[a] + ((c - grid.low[a]) % grid.total[a] + grid.total[a]) % grid.total[a];
+      hash.add(c);
+    }
+    for (int a = 0; a < 3; ++a) hash.add(x.at[a]).add(v.at[a]).add(at.u ? at.u[i].at[a] : 0);
+    return hash.value();
+  }
+};
+
+// A probed particle as it is found.
+template <class Policy>
+struct Found {
+  typename Policy::Position x;
+  typename Policy::Sum kick;
+  CellAt cell;
+};
+
+template <class Policy, class Variant>
+struct ReadProbed {
+  typename Policy::View view;
+  GridView grid;
+  ParticlesView<Policy> at;
+  List list;
+  const CellAt* cell;
+  const uint32_t* id;
+  const uint32_t* slot;  // of an id, kNever: not probed
+  Found<Policy>* found;
+  uint32_t* here;  // of a slot: 1
+  CUBOCT_DEVICE bool idle() const { return false; }
+  CUBOCT_DEVICE void operator()(uint32_t i, const void* cache) const {
+    const uint32_t to = slot[id[i]];
+    if (to == kNever) return;
+    const auto rule = Variant::cached(view, cache);
+    const auto x = load(at.x + i);
+    bool sound = true;
+    found[to] = {x, kick_of<Policy, Variant>(rule, grid, at, list, i, x, load(at.v + i), sound), cell[i]};
+    here[to] = 1;
+  }
+};
+
+// Sums over some particles; each a few at a time in a fixed order, so that they are the same on every machine.
+struct Sums {
+  double kinetic, potential, gravity;  // J
+  double speed;                        // largest, along an axis, in the unit of velocities
+};
+inline constexpr uint32_t kSummed = 64;  // particles of one Sums
+
+template <class Policy, class Variant>
+struct ReadEnergies {
+  typename Policy::View view;
+  GridView grid;
+  ParticlesView<Policy> at;
+  List list;
+  const CellAt* cell;
+  EnergyRule energy;
+  double edge[3];         // of a cell, cutoffs
+  double origin[3];       // of cell (0,0,0), cutoffs in the scene's coordinates
+  double unit;            // cutoffs per unit of a position
+  double velocity_unit;   // cutoffs per step per unit of a velocity
+  uint32_t count;
+  Sums* sums;
+
+  CUBOCT_DEVICE bool idle() const { return false; }
+  CUBOCT_DEVICE void operator()(uint32_t chunk, const void* cache) const {
+    const auto rule = Variant::cached(view, cache);
+    Sums sum{};
+    const uint32_t begin = chunk * kSummed, end = begin + kSummed < count ? begin + kSummed : count;
+    for (uint32_t i = begin; i < end; ++i) {
+      const auto x = load(at.x + i);
+      const auto v = load(at.v + i);
+      bool sound = true;
+      const auto kick = kick_of<Policy, Variant>(rule, grid, at, list, i, x, v, sound);
+      double place[3];
+      for (int a = 0; a < 3; ++a) place[a] = static_cast<double>(x.at[a]) * unit;
+      for (uint32_t k = 0; k < (list.count[i] & kCountMask); ++k) {
+        const uint32_t entry = list.entries[k * list.stride + i];
+        int away[3];
+        Entry<Policy::kReach>::away(entry, away);
+        const auto other = load(at.x + (entry & kPlaceMask<Policy::kReach>));
+        double s = 0;
+        for (int a = 0; a < 3; ++a) {
+          const double d = static_cast<double>(other.at[a]) * unit - place[a] + away[a] * edge[a];
+          s += d * d;
+        }
+        sum.potential += pair_energy(energy, s, static_cast<int>(x.last), static_cast<int>(other.last)) / 2;
+      }
+      const double scene[3] = {origin[0] + cell[i].c[0] * edge[0] + place[0],
+                               origin[1] + cell[i].c[1] * edge[1] + place[1],
+                               origin[2] + cell[i].c[2] * edge[2] + place[2]};
+      double gain[3];
+      Policy::gains(rule, kick, v, at.u ? &at.u[i] : nullptr, static_cast<int>(x.last), gain);
+      for (int a = 0; a < 3; ++a) {
+        const double now = (static_cast<double>(v.at[a]) + gain[a] / 2) * velocity_unit;
+        sum.kinetic += energy.kinetic * now * now;
+        sum.gravity -= energy.weight[3 * static_cast<int>(x.last) + a] * scene[a];
+        const double speed = v.at[a] < 0 ? -static_cast<double>(v.at[a]) : static_cast<double>(v.at[a]);
+        if (speed > sum.speed) sum.speed = speed;
+      }
+    }
+    sums[chunk] = sum;
+  }
+};
+
+}  // namespace cuboct::gpu
