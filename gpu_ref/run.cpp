@@ -180,9 +180,8 @@ void Loop::sample(const Reading& reading) {
   if (energy_.empty()) return;
   const Energies& e = reading.energies;
   std::vector<double> values{e.kinetic, e.potential, e.gravity, e.total()};
-  if (reading.virial && volume_ > 0)
-    values.push_back(pressure(e, Mat3(Mat3::Identity() * (-*reading.virial / (3 * volume_))), volume_));
-  energy_.resize(values.size());
+  if (volume_ > 0)
+    values.push_back(pressure(e, Mat3(Mat3::Identity() * (-reading.virial / (3 * volume_))), volume_));
   for (size_t k = 0; k < values.size(); ++k) {
     energy_[k].step.push_back(engine_->step_count());
     energy_[k].value.push_back(values[k]);
