@@ -61,7 +61,7 @@ double usual_limit(const Rasters& rasters, const RasterPicture& picture, std::ve
 }
 
 // Screen pixels around and between the panels.
-constexpr int kTitle = 44, kLabel = 26, kTics = 34, kLeft = 62, kRight = 18, kBar = 86;
+constexpr int kTitle = 44, kLabel = 26, kTics = 34, kLeft = 62, kRight = 18, kBar = 96;
 
 }  // namespace
 
