@@ -65,7 +65,7 @@ void add_picture(CLI::App& app, int&) {
       ->type_name("N,...");
   command
       ->add_option("--limit", options->limit,
-                   "where the colours end: strain (0.01 is 1 %), m/s or m; default: the 98th percentile")
+                   "where the colours end: strain (0.01 is 1 %), m/s or m; default: the 90th percentile")
       ->check(CLI::PositiveNumber)
       ->type_name("V");
   command->add_option("--width", options->width, "pixels of the picture")

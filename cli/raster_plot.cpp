@@ -45,7 +45,7 @@ bool is_seen(const Rasters& rasters, const Raster& frame, size_t pixel) {
   return frame.thickness[pixel] > 0.2 * particle_thickness(rasters.particle);
 }
 
-// The 98th percentile of the drawn pixels' values, without sign: the few that a crack parts would else take the whole
+// The 90th percentile of the drawn pixels' values, without sign: the few that a crack parts would else take the whole
 // scale.
 double usual_limit(const Rasters& rasters, const RasterPicture& picture, std::vector<float> Raster::*values) {
   std::vector<float> all;
@@ -55,7 +55,7 @@ double usual_limit(const Rasters& rasters, const RasterPicture& picture, std::ve
       if (is_seen(rasters, frame, pixel)) all.push_back(std::abs((frame.*values)[pixel]));
   }
   if (all.empty()) return 0;
-  const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 98 / 100);
+  const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 90 / 100);
   std::nth_element(all.begin(), end, all.end());
   return *end;
 }

@@ -17,7 +17,7 @@ Field field_of(const std::string& name);
 struct RasterPicture {
   Field field = Field::strain;
   std::vector<size_t> frames;  // indices into Rasters::frames, in the order of drawing
-  double limit = 0;            // of the colours, 1, m/s or m; 0: the 98th percentile of what is drawn
+  double limit = 0;            // of the colours, 1, m/s or m; 0: the 90th percentile of what is drawn
   int width = 1600;            // pixels
 };
 
