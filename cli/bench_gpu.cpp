@@ -10,7 +10,6 @@
 
 #include "cli/bench_report.h"
 #include "model/process.h"
-#include "model/process.h"
 
 namespace cuboct {
 namespace {
