@@ -38,11 +38,16 @@ Arithmetic arithmetic_of(const std::string& name) {
   return Arithmetic::fixed;
 }
 
+std::vector<Device> devices_here() {
+  std::string why;
+  std::vector<Device> found = find_devices(&why);
+  if (found.empty()) throw InputError("the gpu engine needs a CUDA device: " + why);
+  return found;
+}
+
 // The devices of the run, by their names, one after another. Fills in Options::devices.
 std::vector<std::string> choose_devices(const Request& request, Options& options) {
-  std::string why;
-  const std::vector<Device> found = find_devices(&why);
-  if (found.empty()) throw InputError("the gpu engine needs a CUDA device: " + why);
+  const std::vector<Device> found = devices_here();
   if (request.gpus > static_cast<int>(found.size()))
     throw InputError(fmt::format("--gpus {}: this machine has {} CUDA device{}", request.gpus, found.size(),
                                  found.size() == 1 ? "" : "s"),
@@ -68,10 +73,7 @@ std::vector<std::string> choose_devices(const Request& request, Options& options
 }
 
 int list_devices() {
-  std::string why;
-  const std::vector<Device> found = find_devices(&why);
-  if (found.empty()) throw InputError("the gpu engine needs a CUDA device: " + why);
-  for (const Device& device : found) fmt::print("{} {}\n", device.ordinal, device.name);
+  for (const Device& device : devices_here()) fmt::print("{} {}\n", device.ordinal, device.name);
   return 0;
 }
 

@@ -286,6 +286,7 @@ int Store::add(const std::string& path) {
   if (hash != fmt::format("{:016x}", impl_->study.hash))
     throw InputError(fmt::format("{} holds results of another study: its scene, arch, figures or times are others",
                                  path));
+  if (machine == impl_->meta("machine")) machine.clear();  // a part of the study, computed beside it
   int came = 0;
   const auto copy = [&](const char* table, const std::string& columns, bool has_machine) {
     Query row(other, fmt::format("SELECT {} FROM {} ORDER BY 1, 2", columns, table));
