@@ -185,12 +185,16 @@ TEST(Store, RowsKeepTheirMachine) {
     store.put_speed(study.points[2], {2e6, 1, 0.01, 3, "a third machine"});
   }
   rows(elsewhere, "update meta set value = 'another machine' where name = 'machine'");
+  const std::string beside = files.path("beside.db");
+  Store(beside, study).put_speed(study.points[1], {1e6, 1, 0.01, 3});  // on this machine
   Store store(files.path("results.db"), study);
   store.put_errors(outcome_of(0));
   store.add(elsewhere);
+  store.add(beside);
   const Results results = store.results();
   ASSERT_EQ(results.outcomes.size(), 4U);  // each with threads 1 and 2, which share their errors
   EXPECT_EQ(results.outcomes[0].measured_on(), "another machine");
+  EXPECT_EQ(results.outcomes[1].speed.repeats, 3);
   EXPECT_EQ(results.outcomes[1].measured_on(), "");
   EXPECT_EQ(results.outcomes[2].measured_on(), "a third machine");
   EXPECT_EQ(results.outcomes[3].measured_on(), "a third machine");
