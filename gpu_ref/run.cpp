@@ -32,7 +32,10 @@ uint64_t sooner(const std::vector<uint64_t>& ascending, uint64_t step, uint64_t 
   return at == ascending.end() ? next : std::min(*at, next);
 }
 
-int threads_of_host() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+// A thread of its own for some 2000 particles.
+int threads_for(size_t particles) {
+  return static_cast<int>(std::clamp<size_t>(particles / 2000, 1, std::max(1u, std::thread::hardware_concurrency())));
+}
 
 class Loop {
  public:
@@ -142,7 +145,7 @@ void Loop::look_at(const State& state) {
 void Loop::look_at(const Body& body) {
   RealOptions options;
   options.precision = request_.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
-  options.threads = threads_of_host();
+  options.threads = threads_for(body.size());
   const Reference here(scene_.rule, body, scene_.periodic, options);
   watch_->see(engine_->step_count(), body, here.forces(), engine_->read(true).energies);
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "gpu_ref/run.h"
@@ -154,6 +155,50 @@ TEST_F(GpuProgram, MeasuresRealNumbersAsTheReferenceDoes) {
   }
 }
 
+// A cuboct-gpu that reads another scene than it was given.
+void make_wrong(const test::Bench& bench, const std::string& edit) {
+  namespace fs = std::filesystem;
+  const std::string program = bench.path("bin/cuboct-gpu");
+  fs::rename(program, program + "-sound");
+  std::ofstream(program) << "#!/bin/sh\nsed '" << edit << "' \"$1\" >" << bench.path("wrong.toml") << "\nshift\nexec "
+                         << program << "-sound " << bench.path("wrong.toml") << " \"$@\"\n";
+  fs::permissions(program, fs::perms::owner_all);
+}
+
+TEST_F(GpuProgram, OfRealNumbersIsWithinBoundsOfTheReference) {
+  for (const std::string scene : {kBlock, std::string("scenes/coupon.toml"), std::string("scenes/hot_cluster.toml")})
+    for (const std::string precision : {"float", "double"}) {
+      const Answer answer = bench_.cuboct(
+          {"crosscheck", scene, "--engines", "reference,gpu", "--precision", precision, "--steps", "30"});
+      EXPECT_EQ(answer.code, 0) << scene << "\n" << answer.out << answer.err;
+      EXPECT_NE(lines_with(answer.out, "forces at the start: largest error "), "");
+      EXPECT_NE(lines_with(answer.out, "forces after 30 steps: largest error "), "");
+      EXPECT_NE(lines_with(answer.out, "(of the reference in floats "), "");
+      EXPECT_NE(lines_with(answer.out, " particles over 30 steps, gpu in " + precision + "s against the reference"), "");
+    }
+}
+
+TEST_F(GpuProgram, OfALawAThousandthOffIsBeyondItsBounds) {
+  make_wrong(bench_, "s/epsilon = 1.0/epsilon = 1.001/");
+  const Answer answer = bench_.cuboct({"crosscheck", kBlock, "--engines", "gpu,reference"});
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_NE(lines_with(answer.out, "beyond its bound: particle "), "") << answer.out << answer.err;
+  EXPECT_EQ(lines_with(answer.out, "within bounds"), "");
+  // Bits: the plan is another.
+  const Answer fixed = bench_.cuboct({"crosscheck", kBlock, "--engines", "golden,gpu", "--steps", "2"});
+  EXPECT_EQ(fixed.code, 1);
+  EXPECT_NE(lines_with(fixed.out, "mismatch: plan hash: cuboct "), "");
+}
+
+TEST_F(GpuProgram, OfALongerStepIsBeyondTheBoundOfPositions) {
+  make_wrong(bench_, "s/dt = 0.004/dt = 0.0041/");
+  const Answer answer = bench_.cuboct({"crosscheck", kBlock, "--engines", "reference,gpu", "--steps", "30"});
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_NE(answer.out.find("nearest to its bound"), std::string::npos) << answer.out << answer.err;
+  EXPECT_EQ(lines_with(answer.out, "beyond its bound").find("particle"), 18u);
+  EXPECT_LT(answer.out.find("positions after"), answer.out.find("beyond its bound"));
+}
+
 TEST_F(GpuProgram, EndsEarlyWhenItIsAsked) {
   const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--steps", "100000000", "--out",
                                        bench_.path("run"), "--hash-every", "1000000"},
@@ -187,6 +232,9 @@ TEST_F(GpuProgram, RefusesWhatItCannotDo) {
   expect_refusal({"run", kBlock, "--engine", "reference", "--precision", "fixed"},
                  "--precision fixed: the reference engine computes in doubles or floats\n"
                  "  hint: lattice, golden and gpu compute in the fixed rule's integers\n");
+  expect_refusal({"crosscheck", kBlock, "--engines", "golden,gpu", "--precision", "float"},
+                 "--precision goes with --engines reference,gpu\n"
+                 "  hint: other engines compute in the fixed rule\n");
   expect_refusal({"run", kBlock, "--gpus", "2"}, "--gpus is an option of the gpu engine, not of lattice\n");
   expect_refusal({"run", kBlock, "--engine", "golden", "--devices", "0"},
                  "--devices is an option of the gpu engine, not of golden\n");
