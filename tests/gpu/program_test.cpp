@@ -166,7 +166,7 @@ void make_wrong(const test::Bench& bench, const std::string& edit) {
 }
 
 TEST_F(GpuProgram, OfRealNumbersIsWithinBoundsOfTheReference) {
-  for (const std::string scene : {kBlock, std::string("scenes/coupon.toml"), std::string("scenes/hot_cluster.toml")})
+  for (const char* scene : {"scenes/lj_block.toml", "scenes/coupon.toml", "scenes/hot_cluster.toml"})
     for (const std::string precision : {"float", "double"}) {
       const Answer answer = bench_.cuboct(
           {"crosscheck", scene, "--engines", "reference,gpu", "--precision", precision, "--steps", "30"});
