@@ -11,6 +11,7 @@
 #include <memory>
 #include <numeric>
 
+#include "cli/bench_gpu.h"
 #include "cli/bench_report.h"
 #include "cli/bench_scene.h"
 #include "cli/command.h"
@@ -20,6 +21,7 @@
 #include "emu/lattice/engine.h"
 #include "emu/lattice/program.h"
 #include "emu/lattice/timing.h"
+#include "gpu_ref/bench_rows.h"
 #include "model/golden.h"
 #include "model/output.h"
 #include "model/process.h"
@@ -43,6 +45,7 @@ struct Entry {
   std::string name, what;
   std::function<void(benchmark::State&)> run;
   bool once = false;  // a run of given length: three repetitions at most
+  bool gpu = false;   // repeats by itself
 };
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
@@ -337,6 +340,10 @@ std::vector<Entry> entries(const Options& options) {
     add(
         fmt::format("scaling.ranks_{}", ranks), "256000 particles, 100 steps, over MPI",
         [=](auto& s) { run_ranks(s, "scaling", {.cells = 40}, ranks, 100); }, true);
+  for (const gpu::BenchRow& row : gpu::bench_rows())
+    list.push_back({"gpu." + row.name, "the GPU engine, " + row.what,
+                    [=](auto& s) { run_gpu_row(s, row.name, options.repeats, seconds); },
+                    false, true});
   return list;
 }
 
@@ -359,10 +366,16 @@ int bench(const Options& options) {
                      near.empty() ? "'cuboct bench --list' names them" : near);
   }
   fmt::print("# {}\n", machine());
+  if (std::any_of(chosen.begin(), chosen.end(), [](const Entry* entry) { return entry->gpu; }))
+    if (const std::string why = gpu_left_out(); !why.empty()) {
+      fmt::print("# gpu: {}{}\n", kSkipped, why);
+      std::erase_if(chosen, [](const Entry* entry) { return entry->gpu; });
+    }
+  if (chosen.empty()) return 0;
   for (const Entry* entry : chosen)
     benchmark::RegisterBenchmark(entry->name.c_str(), entry->run)
         ->Iterations(1)
-        ->Repetitions(entry->once ? std::min(options.repeats, 3) : options.repeats)
+        ->Repetitions(entry->gpu ? 1 : entry->once ? std::min(options.repeats, 3) : options.repeats)
         ->UseManualTime();
   int count = 1;
   char name[] = "cuboct";

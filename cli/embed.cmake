@@ -1,10 +1,17 @@
-# cmake -D OUT=file.cpp -D DIR=scenes/bench -P embed.cmake: the scenes of `cuboct bench` as C++ text.
-set(text "// SPDX-License-Identifier: MIT\n#include \"cli/bench_scene.h\"\n\nnamespace cuboct {\n\n")
-foreach(pair kBenchBlock:block_32k kBenchImpact:impact_1m kBenchImpactArch:impact_arch)
+# cmake -D OUT=file.cpp -D DIR=scenes/bench [-D PAIRS=name:file,... -D HEADER=h -D SPACE=n] -P embed.cmake: the scenes of a
+# benchmark as C++ text; those of `cuboct bench` unless said.
+if(NOT PAIRS)
+  set(PAIRS kBenchBlock:block_32k,kBenchImpact:impact_1m,kBenchImpactArch:impact_arch)
+  set(HEADER cli/bench_scene.h)
+  set(SPACE cuboct)
+endif()
+string(REPLACE "," ";" PAIRS ${PAIRS})
+set(text "// SPDX-License-Identifier: MIT\n#include \"${HEADER}\"\n\nnamespace ${SPACE} {\n\n")
+foreach(pair ${PAIRS})
   string(REPLACE ":" ";" pair ${pair})
   list(GET pair 0 name)
   list(GET pair 1 file)
   file(READ ${DIR}/${file}.toml body)
   string(APPEND text "const char ${name}[] = R\"scene~(${body})scene~\";\n\n")
 endforeach()
-file(WRITE ${OUT} "${text}}  // namespace cuboct\n")
+file(WRITE ${OUT} "${text}}  // namespace ${SPACE}\n")

@@ -27,16 +27,22 @@ struct Options {
   std::string out;
   uint64_t steps = 0;
   uint64_t frames_every = 0;
-  bool steps_given = false, frames_given = false, hashes_given = false, json = false, no_watch = false;
+  uint32_t raster = 800;
+  bool steps_given = false, frames_given = false, hashes_given = false, json = false, no_watch = false,
+       no_states = false;
 };
 
-void write_outputs(const Options& options, const Loaded& loaded, const Trace& trace,
+void write_outputs(const Options& options, const Loaded& loaded, Trace& trace,
                    const std::vector<Frame>& frames, const Items& summary) {
   const std::string& out = options.out;
   const FrameStyle style = frame_style(loaded.scene);
+  if (options.no_states) trace.frames.clear();
   write_trace(out + "/trace.h5", trace);
-  write_extended_xyz(out + "/frames.xyz", frames, style);
-  write_vtk(out + "/frames", frames, style);
+  if (!frames.empty()) write_rasters(out + "/rasters.h5", rasters_of(loaded.scene, frames, options.raster));
+  if (!options.no_states) {
+    write_extended_xyz(out + "/frames.xyz", frames, style);
+    write_vtk(out + "/frames", frames, style);
+  }
   write_text(out + "/plan.txt", describe(loaded.setup.plan));
   write_text(out + "/summary.json", summary.json());
   write_record(out, {options.input.scene, options.input.arch, options.engine});
@@ -179,6 +185,12 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--resume", lattice.resume, "go on from the checkpoint in DIR");
   command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
       ->type_name("DIR");
+  command->add_option("--raster", options->raster, "pixels along the body of the pictures that DIR keeps of its frames")
+      ->check(CLI::Range(16u, 16384u))
+      ->capture_default_str()
+      ->type_name("PX");
+  command->add_flag("--no-states", options->no_states,
+                    "of the frames, DIR keeps rasters.h5 alone: for bodies of millions of particles");
   command->add_flag("--no-watch", options->no_watch,
                     "do not look for what makes a run wrong (docs/reference/failures.md)");
   command->add_flag("--json", options->json, "print the summary as JSON");
