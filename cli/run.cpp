@@ -172,6 +172,8 @@ void add_run(CLI::App& app, int& exit_code) {
   lattice.add_to(*command);
   options->real.add_to(*command);
   options->gpu.add_to(*command);
+  command->add_flag("--joules", options->gpu.joules,
+                    "measure the energy of gpu's devices, which rest for two seconds first");
   auto* hashes =
       command->add_option("--hash-every", lattice.hash_every, "steps between two hashes of lattice's or gpu's state")
           ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))

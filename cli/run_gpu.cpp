@@ -103,6 +103,7 @@ void GpuChoice::check_unused(const std::string& engine) const {
   };
   refuse(gpus > 0, "--gpus");
   refuse(!devices.empty(), "--devices");
+  refuse(joules, "--joules");
 }
 
 RunningEngine start_gpu(const Input& input, const GpuChoice& choice, const GpuRequest& request, std::string path,
@@ -117,6 +118,7 @@ RunningEngine start_gpu(const Input& input, const GpuChoice& choice, const GpuRe
   add(request.energies, {"--energies"});
   add(request.watch, {"--watch"});
   add(request.forces, {"--forces"});
+  add(choice.joules, {"--joules"});
   return {"gpu", input, request, std::move(path), progress, more};
 }
 

@@ -17,6 +17,7 @@ namespace cuboct {
 struct GpuChoice {
   int gpus = 0;               // the first so many devices; 0: one
   std::vector<int> devices;   // or these, by CUDA's ordinals
+  bool joules = false;        // measure energy; of `run` alone
 
   void add_to(CLI::App& command);  // --gpus and --devices
   // Throws InputError where an option is given that only the gpu engine has.

@@ -70,7 +70,7 @@ class Loop {
   std::optional<Watch> watch_;
   std::unique_ptr<Engine> engine_;
   Int3 momentum_{};             // fixed, of the initial state
-  uint64_t piece_ = 1;          // steps between two looks at the clock, where progress is shown
+  uint64_t piece_ = 1;          // steps between two looks at the clock, where somebody looks
   double largest_speed_ = 0;    // m/s
   GpuResult result_;
   Trace& trace_;
@@ -202,14 +202,14 @@ void Loop::record() {
 void Loop::go() {
   record();
   Progress progress("gpu", request_.steps, plan_.particles, 0, request_.progress);
-  const bool shown = request_.progress || stderr_is_terminal();
+  const bool in_pieces = request_.progress || stderr_is_terminal() || request_.hooks.did;
   while (trace_.steps_done < request_.steps && !interrupted()) {
     const uint64_t step = trace_.steps_done;
     uint64_t to = sooner(request_.frames, step, sooner(request_.probes, step, request_.steps));
     if (fixed() && request_.hash_every > 1)
       to = std::min(to, (step / request_.hash_every + 1) * request_.hash_every);
-    const auto begin = Clock::now();
-    advance(shown ? std::min(to - step, piece_) : to - step);
+    const auto begin = Clock::now();  // a piece is long beside what a batch costs to start
+    advance(in_pieces ? std::min(to - step, piece_) : to - step);
     record();
     if (since(begin) < 0.1) piece_ *= 2;
     progress.at(trace_.steps_done);

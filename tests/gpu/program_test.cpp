@@ -235,6 +235,7 @@ TEST_F(GpuProgram, RefusesWhatItCannotDo) {
   expect_refusal({"crosscheck", kBlock, "--engines", "golden,gpu", "--precision", "float"},
                  "--precision goes with --engines reference,gpu\n"
                  "  hint: other engines compute in the fixed rule\n");
+  expect_refusal({"run", kBlock, "--joules"}, "--joules is an option of the gpu engine, not of lattice\n");
   expect_refusal({"run", kBlock, "--gpus", "2"}, "--gpus is an option of the gpu engine, not of lattice\n");
   expect_refusal({"run", kBlock, "--engine", "golden", "--devices", "0"},
                  "--devices is an option of the gpu engine, not of golden\n");
@@ -247,6 +248,12 @@ TEST_F(GpuProgram, SaysWhatIsMissing) {
       "  hint: install the CUDA toolkit (nvcc), configure and build again\n";
   expect_refusal({"run", kBlock, "--engine", "gpu"}, text);
   expect_refusal({"crosscheck", kBlock, "--engines", "golden,gpu"}, text);
+}
+
+TEST_F(GpuProgram, SaysWhereNoEnergyCouldBeMeasured) {
+  const Trace trace = run("joules", {kBlock, "--steps", "2", "--engine", "gpu", "--joules"});
+  EXPECT_NE(lines_with(answer_.out, "not measured: "), "");
+  for (const auto& [name, value] : trace.counters) EXPECT_EQ(name.find("joules"), std::string::npos) << value;
 }
 
 TEST_F(GpuProgram, StandsAlone) {
