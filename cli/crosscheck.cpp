@@ -9,10 +9,10 @@
 #include "cli/command.h"
 #include "cli/crosscheck_real.h"
 #include "cli/engines.h"
-#include "model/interrupt.h"
 #include "cli/launch.h"
 #include "cli/run_gpu.h"
 #include "cli/run_lattice.h"
+#include "model/interrupt.h"
 
 #include "model/compare.h"
 #include "model/output.h"
@@ -35,8 +35,8 @@ struct Options {
 bool runs_here(const std::string& engine) { return engine == "golden" || engine == "lattice"; }
 bool counts_cycles(const std::string& engine) { return engine == "systemc" || engine == "rtl"; }
 
-// Programs run beside golden and lattice, which run here. Lattice counts cycles where another engine does, but
-// for links that stall.
+// Programs run beside golden and lattice, which run here. Lattice counts cycles where another engine does,
+// but for links that stall.
 std::vector<Trace> run_all(const std::vector<std::string>& engines, const Options& options,
                            const Loaded& loaded, const Request& request, const std::string& directory) {
   const Input& input = options.input;
@@ -97,7 +97,8 @@ bool of_real_numbers(const Options& options) {
   std::sort(sorted.begin(), sorted.end());
   const bool real = sorted == std::vector<std::string>{"gpu", "reference"};
   if (!real && !options.precision.empty())
-    throw InputError("--precision goes with --engines reference,gpu", "other engines compute in the fixed rule");
+    throw InputError("--precision goes with --engines reference,gpu",
+                     "other engines compute in the fixed rule");
   return real;
 }
 
@@ -107,7 +108,8 @@ int crosscheck(Options options) {
       make_directory(options.out);
       check_writable(options.out + "/gpu.h5");
     }
-    return crosscheck_real(options.input, options.gpu, options.precision.empty() ? "float" : options.precision,
+    return crosscheck_real(options.input, options.gpu,
+                           options.precision.empty() ? "float" : options.precision,
                            options.steps_given ? std::optional(options.steps) : std::nullopt, options.out);
   }
   for (const std::string& engine : options.engines) {
@@ -119,7 +121,8 @@ int crosscheck(Options options) {
   std::vector<std::string> sorted = options.engines;
   std::sort(sorted.begin(), sorted.end());
   if (std::unique(sorted.begin(), sorted.end()) != sorted.end() || sorted.size() < 2)
-    throw InputError("a crosscheck needs two or more different engines", "--engines golden,lattice,systemc,rtl");
+    throw InputError("a crosscheck needs two or more different engines",
+                     "--engines golden,lattice,systemc,rtl");
   const Loaded loaded = load(options.input);
   catch_interrupts();
   const Setup& setup = loaded.setup;

@@ -35,11 +35,13 @@ bool tell(const std::string& what, const std::vector<Vec3>& got, const std::vect
     if (share > worst || std::isnan(share)) worst = share, at = i;
     if (std::isnan(share)) break;
   }
-  fmt::print("{}: largest error {:.3g} {}{}; nearest to its bound: particle {}, {:.3g} of {:.3g} {}\n", what, most,
-             unit, more, at, (got[at] - exact[at]).norm(), bound(at), unit);
+  fmt::print("{}: largest error {:.3g} {}{}; nearest to its bound: particle {}, {:.3g} of {:.3g} {}\n", what,
+             most, unit, more, at, (got[at] - exact[at]).norm(), bound(at), unit);
   if (worst <= 1) return true;
-  fmt::print("beyond its bound: particle {} has ({:.9g}, {:.9g}, {:.9g}) {}, the reference ({:.9g}, {:.9g}, {:.9g})\n",
-             at, got[at][0], got[at][1], got[at][2], unit, exact[at][0], exact[at][1], exact[at][2]);
+  fmt::print(
+      "beyond its bound: particle {} has ({:.9g}, {:.9g}, {:.9g}) {}, the reference ({:.9g}, {:.9g}, "
+      "{:.9g})\n",
+      at, got[at][0], got[at][1], got[at][2], unit, exact[at][0], exact[at][1], exact[at][2]);
   return false;
 }
 
@@ -86,11 +88,13 @@ bool check_forces(const Scene& scene, const RealFrame& frame, bool floats, const
   Body body = scene.body;
   body.x = frame.x;
   body.v = frame.v;
-  const std::vector<Vec3> exact = Reference(scene.rule, body, scene.periodic, options_of(scene, Precision::float64)).forces();
+  const std::vector<Vec3> exact =
+      Reference(scene.rule, body, scene.periodic, options_of(scene, Precision::float64)).forces();
   const std::vector<double> mine = force_bounds(scene, body.x, body.v, gpu_roundings(scene, floats)).force;
   const std::vector<double> its = force_bounds(scene, body.x, body.v, reference_roundings(scene)).force;
-  return tell("forces " + when, frame.force, exact, [&](size_t i) { return mine[i] + its[i]; }, "N",
-              fmt::format(", largest force {:.3g} N", largest(exact)));
+  return tell(
+      "forces " + when, frame.force, exact, [&](size_t i) { return mine[i] + its[i]; }, "N",
+      fmt::format(", largest force {:.3g} N", largest(exact)));
 }
 
 }  // namespace
@@ -112,7 +116,8 @@ int crosscheck_real(const Input& input, const GpuChoice& choice, const std::stri
   request.forces = true;
   const Scratch scratch;
   const Trace trace =
-      start_gpu(input, choice, request, out.empty() ? scratch.path("gpu.h5") : out + "/gpu.h5", false).finish();
+      start_gpu(input, choice, request, out.empty() ? scratch.path("gpu.h5") : out + "/gpu.h5", false)
+          .finish();
   if (interrupted()) {
     fmt::print(stderr, "interrupted\n");
     return 1;
@@ -122,12 +127,14 @@ int crosscheck_real(const Input& input, const GpuChoice& choice, const std::stri
     return 1;
   }
   bool within = check_forces(scene, trace.bodies.front(), floats, "at the start");
-  if (last > 0) within &= check_forces(scene, trace.bodies.back(), floats, fmt::format("after {} steps", last));
+  if (last > 0)
+    within &= check_forces(scene, trace.bodies.back(), floats, fmt::format("after {} steps", last));
   for (const RealFrame& frame : trace.bodies)
     if (frame.step == exact.step && exact.step > 0)
-      within &= tell(fmt::format("positions after {} steps", exact.step), frame.x, exact.x,
-                     [&](size_t) { return exact.bound; }, "m",
-                     fmt::format(" (of the reference in floats {:.3g} m)", exact.of_floats));
+      within &= tell(
+          fmt::format("positions after {} steps", exact.step), frame.x, exact.x,
+          [&](size_t) { return exact.bound; }, "m",
+          fmt::format(" (of the reference in floats {:.3g} m)", exact.of_floats));
   if (within)
     fmt::print("within bounds: {} particles over {} steps, gpu in {} against the reference in doubles\n",
                scene.body.size(), last, floats ? "floats" : "doubles");

@@ -89,9 +89,11 @@ ForceBounds force_bounds(const Scene& scene, const std::vector<Vec3>& x, const s
     if (r > cutoff - margin) one.error += jump;
     if (rule.damping.coefficient > 0) {
       const Vec3 w = v[j] - v[i];
-      const double near = std::max(std::min(r, cutoff), law.core()), c = rule.damping_over_r2(near) * near * near;
+      const double near = std::max(std::min(r, cutoff), law.core()),
+                   c = rule.damping_over_r2(near) * near * near;
       // c w.e e: its change by d over d is at most that of c, 4/cutoff of it at c's largest, and twice 1/r.
-      const double change = w.norm() * (4 * rule.damping.coefficient / cutoff + 2 * c / near) / near * std::min(r, near);
+      const double change =
+          w.norm() * (4 * rule.damping.coefficient / cutoff + 2 * c / near) / near * std::min(r, near);
       one.friction = c;
       one.stiffness += change;
       one.error += change * of.difference + kDamping * u * rule.damping.coefficient * w.norm() +

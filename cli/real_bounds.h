@@ -21,8 +21,8 @@ Roundings reference_roundings(const Scene& scene);  // in doubles, positions fro
 // At one state.
 struct ForceBounds {
   std::vector<double> force;  // N, by particle: error of its pair force at positions and velocities as given
-  double stiffness = 0;       // N/m: largest change of any particle's pair force by its own and the others' places
-  double friction = 0;        // kg/s: the same by velocities
+  double stiffness = 0;  // N/m: largest change of any particle's pair force by its own and the others' places
+  double friction = 0;   // kg/s: the same by velocities
 };
 ForceBounds force_bounds(const Scene& scene, const std::vector<Vec3>& x, const std::vector<Vec3>& v,
                          const Roundings& of);

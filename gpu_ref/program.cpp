@@ -69,7 +69,8 @@ void check(const Request& request) {
   if (!request.out.empty()) check_writable(request.out);
   if (request.run.hash_every == 0) throw InputError("--hash-every: 0 is not a number of steps");
   if (request.run.engine.block % 32 != 0 || request.run.engine.block < 32 || request.run.engine.block > 256)
-    throw InputError(fmt::format("--block {}: not a multiple of 32 from 32 to 256", request.run.engine.block));
+    throw InputError(
+        fmt::format("--block {}: not a multiple of 32 from 32 to 256", request.run.engine.block));
   if (request.precision == "fixed" && request.run.forces)
     throw InputError("--forces goes with --precision float or double", "fixed states determine their forces");
   if (request.precision != "fixed" && request.hashes_given)
@@ -166,7 +167,8 @@ int run(Request request) {
 int run_gpu_program(int argc, char** argv) {
   Request request;
   GpuRun& run = request.run;
-  CLI::App app{"Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers", "cuboct-gpu"};
+  CLI::App app{"Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers",
+               "cuboct-gpu"};
   app.add_option("scene", request.scene, "Scene file (TOML)")->required();
   app.add_option("--arch", request.arch, "Machine description (TOML); the defaults without one");
   app.add_option("--steps", request.steps, "Steps to run; the scene's own number without it");

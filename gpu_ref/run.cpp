@@ -34,7 +34,8 @@ uint64_t sooner(const std::vector<uint64_t>& ascending, uint64_t step, uint64_t 
 
 // A thread of its own for some 2000 particles.
 int threads_for(size_t particles) {
-  return static_cast<int>(std::clamp<size_t>(particles / 2000, 1, std::max(1u, std::thread::hardware_concurrency())));
+  return static_cast<int>(
+      std::clamp<size_t>(particles / 2000, 1, std::max(1u, std::thread::hardware_concurrency())));
 }
 
 class Loop {
@@ -69,9 +70,9 @@ class Loop {
   double volume_ = 0;          // m^3, of a box that repeats along all axes; else 0
   std::optional<Watch> watch_;
   std::unique_ptr<Engine> engine_;
-  Int3 momentum_{};             // fixed, of the initial state
-  uint64_t piece_ = 1;          // steps between two looks at the clock, where somebody looks
-  double largest_speed_ = 0;    // m/s
+  Int3 momentum_{};           // fixed, of the initial state
+  uint64_t piece_ = 1;        // steps between two looks at the clock, where somebody looks
+  double largest_speed_ = 0;  // m/s
   GpuResult result_;
   Trace& trace_;
 };
@@ -101,9 +102,10 @@ Loop::Loop(const Scene& scene, const Plan& plan, const GpuRun& request)
 std::vector<Vec3> Loop::initial_positions() const {
   std::vector<Vec3> x;
   for (const uint32_t id : ids_)
-    x.push_back(fixed() ? position_of(plan_.rule, plan_.lattice, plan_.origin,
-                                      fixed_particle(scene_.body, id, plan_.rule, plan_.lattice, plan_.origin))
-                        : scene_.body.x[id]);
+    x.push_back(fixed()
+                    ? position_of(plan_.rule, plan_.lattice, plan_.origin,
+                                  fixed_particle(scene_.body, id, plan_.rule, plan_.lattice, plan_.origin))
+                    : scene_.body.x[id]);
   return x;
 }
 
@@ -138,7 +140,8 @@ void Loop::advance(uint64_t steps) {
 void Loop::look_at(const State& state) {
   const std::vector<Int3> kicks = summed_kicks(plan_.rule, plan_.lattice, state);
   ClosestPair closest;
-  const Energies e = energies(scene_.rule, plan_.rule, plan_.lattice, plan_.origin, state, kicks, 0, &closest);
+  const Energies e =
+      energies(scene_.rule, plan_.rule, plan_.lattice, plan_.origin, state, kicks, 0, &closest);
   watch_->see(plan_.rule, plan_.lattice, plan_.origin, state, kicks, e, closest);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The gpu engine as users meet it: `cuboct` with cuboct-gpu beside it, here the one that computes on the host.
+// The gpu engine as users meet it: `cuboct` with cuboct-gpu beside it, here the one that computes on the
+// host.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,8 +27,8 @@ class GpuProgram : public testing::Test {
   // Runs cuboct-gpu itself, in the root of the sources.
   Answer program(const std::string& arguments) const {
     const std::string out = bench_.path("gpu.out"), err = bench_.path("gpu.err");
-    const std::string command = "cd " CUBOCT_SOURCE_DIR " && " + bench_.path("bin/cuboct-gpu") + " " + arguments +
-                                " >" + out + " 2>" + err + " </dev/null";
+    const std::string command = "cd " CUBOCT_SOURCE_DIR " && " + bench_.path("bin/cuboct-gpu") + " " +
+                                arguments + " >" + out + " 2>" + err + " </dev/null";
     const int status = std::system(command.c_str());
     return {WEXITSTATUS(status), contents(out), contents(err)};
   }
@@ -137,8 +138,8 @@ TEST_F(GpuProgram, WatchesAsGoldenDoes) {
 TEST_F(GpuProgram, MeasuresRealNumbersAsTheReferenceDoes) {
   for (const std::string precision : {"double", "float"}) {
     const auto of = [&](const char* engine) {
-      return run(engine, {kBlock, "--steps", "20", "--frames-every", "10", "--precision", precision, "--engine",
-                          engine});
+      return run(engine, {kBlock, "--steps", "20", "--frames-every", "10", "--precision", precision,
+                          "--engine", engine});
     };
     const Trace gpu = of("gpu");
     const std::string told = answer_.out;
@@ -160,8 +161,9 @@ void make_wrong(const test::Bench& bench, const std::string& edit) {
   namespace fs = std::filesystem;
   const std::string program = bench.path("bin/cuboct-gpu");
   fs::rename(program, program + "-sound");
-  std::ofstream(program) << "#!/bin/sh\nsed '" << edit << "' \"$1\" >" << bench.path("wrong.toml") << "\nshift\nexec "
-                         << program << "-sound " << bench.path("wrong.toml") << " \"$@\"\n";
+  std::ofstream(program) << "#!/bin/sh\nsed '" << edit << "' \"$1\" >" << bench.path("wrong.toml")
+                         << "\nshift\nexec " << program << "-sound " << bench.path("wrong.toml")
+                         << " \"$@\"\n";
   fs::permissions(program, fs::perms::owner_all);
 }
 
@@ -174,7 +176,9 @@ TEST_F(GpuProgram, OfRealNumbersIsWithinBoundsOfTheReference) {
       EXPECT_NE(lines_with(answer.out, "forces at the start: largest error "), "");
       EXPECT_NE(lines_with(answer.out, "forces after 30 steps: largest error "), "");
       EXPECT_NE(lines_with(answer.out, "(of the reference in floats "), "");
-      EXPECT_NE(lines_with(answer.out, " particles over 30 steps, gpu in " + precision + "s against the reference"), "");
+      EXPECT_NE(
+          lines_with(answer.out, " particles over 30 steps, gpu in " + precision + "s against the reference"),
+          "");
     }
 }
 
@@ -224,9 +228,11 @@ TEST_F(GpuProgram, RefusesWhatItCannotDo) {
   expect_refusal(with({"--threads", "2"}),
                  "--threads is an option of the lattice and the reference engine, not of gpu\n");
   expect_refusal(with({"--cycles"}), "--cycles is an option of the lattice engine, not of gpu\n");
-  expect_refusal(with({"--gpus", "9"}),
-                 "--gpus 9: this machine has 8 CUDA devices\n  hint: --devices 0,0 puts two parts of a scene on one\n");
-  expect_refusal(with({"--devices", "0,17"}), "--devices: there is no CUDA device 17\n  hint: one of 0, 1, 2, 3, 4, 5, 6, 7\n");
+  expect_refusal(
+      with({"--gpus", "9"}),
+      "--gpus 9: this machine has 8 CUDA devices\n  hint: --devices 0,0 puts two parts of a scene on one\n");
+  expect_refusal(with({"--devices", "0,17"}),
+                 "--devices: there is no CUDA device 17\n  hint: one of 0, 1, 2, 3, 4, 5, 6, 7\n");
   expect_refusal(with({"--precision", "float", "--hash-every", "5"}),
                  "--hash-every goes with --precision fixed\n  hint: states in real numbers have no hash\n");
   expect_refusal({"run", kBlock, "--engine", "reference", "--precision", "fixed"},
@@ -277,11 +283,12 @@ TEST_F(GpuProgram, StandsAlone) {
   EXPECT_EQ(bench.code, 0);
   EXPECT_NE(lines_with(bench.out, "gpu.particle_steps "), "");
   EXPECT_NE(lines_with(bench.out, "gpu.list_builds "), "");
-  for (const auto& [arguments, text] : {
-           std::pair<std::string, std::string>{kBlock, "--out is required\n"},
-           {to + " --block 100", "--block 100: not a multiple of 32 from 32 to 256\n"},
-           {to + " --forces", "--forces goes with --precision float or double\n  hint: fixed states determine their forces\n"},
-           {to + " --hash-every 0", "--hash-every: 0 is not a number of steps\n"}}) {
+  for (const auto& [arguments, text] :
+       {std::pair<std::string, std::string>{kBlock, "--out is required\n"},
+        {to + " --block 100", "--block 100: not a multiple of 32 from 32 to 256\n"},
+        {to + " --forces",
+         "--forces goes with --precision float or double\n  hint: fixed states determine their forces\n"},
+        {to + " --hash-every 0", "--hash-every: 0 is not a number of steps\n"}}) {
     const Answer refused = program(arguments);
     EXPECT_EQ(refused.code, 2);
     EXPECT_EQ(refused.err, text);
