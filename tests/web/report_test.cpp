@@ -270,5 +270,20 @@ TEST(Charts, PicturesOfEachChartTwiceTheSame) {
   EXPECT_NE(svg.find("dt^2"), std::string::npos);
 }
 
+// The chart keeps its width, of which its axis' name tells the middle: beside short names and above long ones.
+TEST(Charts, LongNamesStandBelow) {
+  const auto middle = [](const std::string& machine) {
+    Results results;
+    for (const double dt : {0.01, 0.04}) add(results, {}, {}, dt, dt * dt).speed.machine = machine;
+    const Scratch scratch;
+    study::write_charts(results, scratch.path("charts"));
+    const std::string svg = bytes(scratch.path("charts/trajectory_simulated_seconds.svg"));
+    const size_t name = svg.find(">simulated seconds per second<"), at = svg.rfind("translate(", name);
+    return name == std::string::npos ? 0.0 : std::stod(svg.substr(at + 10));
+  };
+  EXPECT_GT(middle(""), 450);  // of 1100
+  EXPECT_GT(middle("a processor of which the name alone is as wide as a chart"), 550);
+}
+
 }  // namespace
 }  // namespace cuboct::test

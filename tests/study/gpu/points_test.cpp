@@ -53,6 +53,7 @@ TEST(GpuPoints, FixedOnesHaveTheBitsOfTheLatticesPoints) {
     EXPECT_EQ(gpu.errors.force_max, lattice.errors.force_max);
     // Sums of curves are done in another order.
     EXPECT_NEAR(gpu.errors.values[0] / lattice.errors.values[0], 1, 1e-11);
+    EXPECT_NEAR(gpu.errors.drift_per_step / lattice.errors.drift_per_step, 1, 1e-5);
   }
 }
 
