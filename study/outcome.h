@@ -62,7 +62,8 @@ struct Outcome {
 
   // Where its speed was measured, which is what tells machines apart; without a speed, its errors.
   const std::string& measured_on() const {
-    return std::isnan(speed.particle_steps) ? machine : speed.machine;
+    const bool none = std::isnan(speed.particle_steps) && std::isnan(speed.simulated_seconds);
+    return none ? machine : speed.machine;
   }
 };
 
