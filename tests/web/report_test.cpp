@@ -194,10 +194,10 @@ TEST(Series, EveryEngineHasALookOfItsOwnThatCanBeSeen) {
   for (int n = 0; n < 12; ++n) add(results, {}, {}, 1, 1).settings.engine = fmt::format("engine{}", n);
   const auto gpu = [&](Arithmetic arithmetic, const std::string& machine) {
     Outcome& outcome = add(results, {}, {}, 1, 1);
-    outcome.settings.engine = "gpu", outcome.settings.arithmetic = arithmetic, outcome.machine = machine;
+    outcome.settings.engine = "gpu", outcome.settings.arithmetic = arithmetic, outcome.speed.machine = machine;
   };
   gpu(Arithmetic::fixed, "a <made-up> GPU"), gpu(Arithmetic::fixed, "another"), gpu(Arithmetic::float64, "");
-  add(results, {}, {}, 1, 1).machine = "another";
+  add(results, {}, {}, 1, 1).speed.machine = "another";
   const auto all = study::series_of(results);
   std::vector<std::string> names;
   size_t points = 0;
