@@ -52,7 +52,9 @@ struct RowResult {
   std::string no_energy;  // why, if there is none
 
   double median_seconds() const;
-  double rate() const;    // particle-steps/s, by the median
+  double rate() const;  // particle-steps/s, by the median
+  double mean_rate()
+      const;              // of all repeats together: where lists are made in few of them, their share is here
   double spread() const;  // standard deviation of the repeats' rates over their mean; 0 of a single one
 };
 
