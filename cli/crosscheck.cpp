@@ -10,6 +10,7 @@
 #include "cli/engines.h"
 #include "model/interrupt.h"
 #include "cli/launch.h"
+#include "cli/run_gpu.h"
 #include "cli/run_lattice.h"
 
 #include "model/compare.h"
@@ -23,12 +24,14 @@ struct Options {
   Input input;
   std::vector<std::string> engines{"golden", "lattice", "systemc", "rtl"};
   LatticeChoice lattice;
+  GpuChoice gpu;
   std::string out;
   uint64_t steps = 0;
   bool steps_given = false;
 };
 
 bool runs_here(const std::string& engine) { return engine == "golden" || engine == "lattice"; }
+bool counts_cycles(const std::string& engine) { return engine == "systemc" || engine == "rtl"; }
 
 // Programs run beside golden and lattice, which run here. Lattice counts cycles where another engine does, but
 // for links that stall.
@@ -37,9 +40,18 @@ std::vector<Trace> run_all(const std::vector<std::string>& engines, const Option
   const Input& input = options.input;
   const Setup& setup = loaded.setup;
   std::vector<std::optional<RunningEngine>> programs(engines.size());
-  for (size_t i = 0; i < engines.size(); ++i)
-    if (!runs_here(engines[i]))
-      programs[i].emplace(engines[i], input, request, directory + "/" + engines[i] + ".h5", false);
+  for (size_t i = 0; i < engines.size(); ++i) {
+    if (runs_here(engines[i])) continue;
+    std::string path = directory + "/" + engines[i] + ".h5";
+    if (engines[i] == "gpu") {
+      GpuRequest gpu{request};
+      gpu.hash_every = 1;
+      gpu.energies = false;
+      programs[i].emplace(start_gpu(input, options.gpu, gpu, std::move(path), false));
+    } else {
+      programs[i].emplace(engines[i], input, request, std::move(path), false);
+    }
+  }
   std::vector<Trace> traces(engines.size());
   for (size_t i = 0; i < engines.size(); ++i)
     if (engines[i] == "golden") traces[i] = run_golden(setup, request);
@@ -49,7 +61,7 @@ std::vector<Trace> run_all(const std::vector<std::string>& engines, const Option
     run.steps = request.steps;
     run.frames = request.frames;
     run.cycles = input.stall_rate == 0 && options.lattice.ranks == 1 &&
-                 !std::all_of(engines.begin(), engines.end(), runs_here);
+                 std::any_of(engines.begin(), engines.end(), counts_cycles);
     traces[i] = run_on_lattice(input, loaded.scene, setup.plan, options.lattice, std::move(run)).trace;
   }
   for (size_t i = 0; i < engines.size(); ++i)
@@ -81,7 +93,7 @@ int crosscheck(Options options) {
   for (const std::string& engine : options.engines) {
     if (engine == "reference")
       throw InputError("engine 'reference' computes in doubles and has no bits to compare",
-                       "one of golden, lattice, systemc or rtl");
+                       "one of golden, lattice, systemc, rtl or gpu");
     check_engine(engine, fixed_engines());
   }
   std::vector<std::string> sorted = options.engines;
@@ -156,6 +168,7 @@ void add_crosscheck(CLI::App& app, int& exit_code) {
   options->input.add_to(*command);
   options->input.add_stalls_to(*command);
   options->lattice.add_to(*command);
+  options->gpu.add_to(*command);
   command->add_option("--engines", options->engines, "which ones; default: golden,lattice,systemc,rtl")
       ->delimiter(',')
       ->type_name("A,B,...");

@@ -17,7 +17,7 @@
 namespace cuboct {
 
 const std::vector<std::string>& fixed_engines() {
-  static const std::vector<std::string> names{"golden", "lattice", "systemc", "rtl"};
+  static const std::vector<std::string> names{"golden", "lattice", "systemc", "rtl", "gpu"};
   return names;
 }
 
@@ -35,27 +35,30 @@ struct RunningEngine::State {
 };
 
 RunningEngine::RunningEngine(const std::string& engine, const Input& input, const Request& request,
-                             std::string path, bool progress) {
+                             std::string path, bool progress, const std::vector<std::string>& more) {
   const std::string program = program_directory() + "/cuboct-" + engine;
   if (access(program.c_str(), X_OK) != 0)
     throw InputError(
         fmt::format("the {} engine is not built: no program cuboct-{} beside cuboct", engine, engine),
         engine == "systemc" ? "install libsystemc-dev and build again"
+        : engine == "gpu"   ? "install the CUDA toolkit (nvcc), configure and build again"
                             : "install verilator and libsystemc-dev and build again");
   std::vector<std::string> arguments{input.scene, "--steps", std::to_string(request.steps), "--out", path};
   if (!input.arch.empty()) arguments.insert(arguments.end(), {"--arch", input.arch});
   // A few on the command line, where they can be read; it holds no more than some ten thousand.
   constexpr size_t kListed = 1000;
-  if (request.frames.size() > kListed) {
+  // An empty list in a file asks for none, as the list of no program does.
+  if (request.frames.size() > kListed || (request.frames.empty() && engine == "gpu")) {
     write_text(path + ".steps", fmt::format("{}\n", fmt::join(request.frames, "\n")));
     arguments.insert(arguments.end(), {"--frames-file", path + ".steps"});
   } else if (!request.frames.empty()) {
     arguments.insert(arguments.end(), {"--frames", fmt::format("{}", fmt::join(request.frames, ","))});
   }
-  if (input.stall_rate > 0)
+  if (input.stall_rate > 0 && engine != "gpu")  // it has no links that could stall
     arguments.insert(arguments.end(), {"--stall-rate", fmt::format("{}", input.stall_rate), "--stall-seed",
                                        std::to_string(input.stall_seed)});
   if (progress) arguments.push_back("--progress");
+  arguments.insert(arguments.end(), more.begin(), more.end());
   std::filesystem::remove(path);  // what is found there afterwards is this run's
   state_ = std::make_shared<State>(State{program, std::move(path), Process(program, arguments)});
 }

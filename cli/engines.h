@@ -31,9 +31,9 @@ Trace run_golden(const Setup& setup, const Request& request,
 // An engine at work in a program of its own; its trace goes to `path`.
 class RunningEngine {
  public:
-  // Throws InputError where the program was not built.
+  // Throws InputError where the program was not built. `more`: arguments that this engine alone has.
   RunningEngine(const std::string& engine, const Input& input, const Request& request, std::string path,
-                bool progress);
+                bool progress, const std::vector<std::string>& more = {});
   // Waits. Exit code 2 throws InputError (the program told the text already), any other failure
   // std::runtime_error.
   Trace finish();

@@ -58,6 +58,7 @@ int main_of(int argc, char** argv) {
   add_explore(app, exit_code);
   add_stability(app, exit_code);
   add_bench(app, exit_code);
+  add_picture(app, exit_code);
   add_report(app, exit_code);
   try {
     check_words(app, {argv + 1, argv + argc});

@@ -67,6 +67,13 @@ FrameStyle frame_style(const Scene& scene) {
   return style;
 }
 
+Rasters rasters_of(const Scene& scene, const std::vector<Frame>& frames, uint32_t across) {
+  const double radius = frame_style(scene).radius;
+  Rasters rasters{scene.title, strain_axis(scene), 2 * radius, raster_grid(frames, radius, across), {}};
+  for (const Frame& frame : frames) rasters.frames.push_back(rasterise(frame, rasters.grid, radius));
+  return rasters;
+}
+
 void write_record(const std::string& directory, const RunRecord& record) {
   toml::table table{{"scene", relative_to(directory, record.scene)},
                     {"arch", relative_to(directory, record.arch)},
@@ -97,7 +104,7 @@ RunRecord read_record(const std::string& directory) {
 
 void prepare_directory(const std::string& directory) {
   make_directory(directory);
-  for (const char* name : {"trace.h5", "run.toml", "summary.json", "plan.txt", "frames.xyz", "frames.pvd"})
+  for (const char* name : {"trace.h5", "run.toml", "summary.json", "plan.txt", "frames.xyz", "frames.pvd", "rasters.h5"})
     check_writable(directory + "/" + name);
 }
 

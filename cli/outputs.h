@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "model/frames.h"
+#include "model/raster.h"
 #include "model/strain.h"
 #include "model/trace.h"
 
@@ -21,6 +22,9 @@ StrainMeter strain_meter(const Scene& scene, const std::vector<Vec3>& initial);
 // Frames in real units, with each particle's axial strain against the initial state.
 std::vector<Frame> real_frames(const Loaded& loaded, const std::vector<State>& states);
 FrameStyle frame_style(const Scene& scene);
+
+// `across`: pixels along the body (raster_grid).
+Rasters rasters_of(const Scene& scene, const std::vector<Frame>& frames, uint32_t across);
 
 // What a report needs to find its way back: run.toml in the directory, its paths relative to the directory.
 struct RunRecord {

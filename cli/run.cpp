@@ -7,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/engines.h"
 #include "cli/outputs.h"
+#include "cli/run_gpu.h"
 #include "cli/run_lattice.h"
 #include "cli/run_reference.h"
 #include "cli/summary.h"
@@ -22,19 +23,26 @@ struct Options {
   std::string engine = "lattice";
   LatticeChoice lattice;
   RealChoice real;
+  GpuChoice gpu;
   std::string out;
   uint64_t steps = 0;
   uint64_t frames_every = 0;
-  bool steps_given = false, frames_given = false, json = false, no_watch = false;
+  uint32_t raster = 800;
+  bool steps_given = false, frames_given = false, hashes_given = false, json = false, no_watch = false,
+       no_states = false;
 };
 
-void write_outputs(const Options& options, const Loaded& loaded, const Trace& trace,
+void write_outputs(const Options& options, const Loaded& loaded, Trace& trace,
                    const std::vector<Frame>& frames, const Items& summary) {
   const std::string& out = options.out;
   const FrameStyle style = frame_style(loaded.scene);
+  if (options.no_states) trace.frames.clear();
   write_trace(out + "/trace.h5", trace);
-  write_extended_xyz(out + "/frames.xyz", frames, style);
-  write_vtk(out + "/frames", frames, style);
+  if (!frames.empty()) write_rasters(out + "/rasters.h5", rasters_of(loaded.scene, frames, options.raster));
+  if (!options.no_states) {
+    write_extended_xyz(out + "/frames.xyz", frames, style);
+    write_vtk(out + "/frames", frames, style);
+  }
   write_text(out + "/plan.txt", describe(loaded.setup.plan));
   write_text(out + "/summary.json", summary.json());
   write_record(out, {options.input.scene, options.input.arch, options.engine});
@@ -65,9 +73,11 @@ int run(Options options) {
   check_engine(options.engine, allowed);
   const bool lattice = options.engine == "lattice";
   const bool reference = options.engine == "reference";
+  const bool gpu = options.engine == "gpu";
   if (!lattice) options.lattice.check_unused(options.engine);
-  if (!reference) options.real.check_unused(options.engine);
-  const Loaded loaded = lattice ? load_plan(options.input) : load(options.input);
+  if (!gpu) options.gpu.check_unused(options.engine);
+  options.real.check_used(options.engine);
+  const Loaded loaded = lattice || gpu ? load_plan(options.input) : load(options.input);
   catch_interrupts();
   if (!options.out.empty()) prepare_directory(options.out);
   const Scene& scene = loaded.scene;
@@ -88,6 +98,18 @@ int run(Options options) {
     trace = std::move(run.trace);
     frames = std::move(run.frames);
     summary = std::move(run.summary);
+  } else if (gpu) {
+    GpuRequest request;
+    request.steps = steps;
+    if (!options.out.empty()) request.frames = frame_steps;
+    request.precision = options.real.precision.empty() ? "fixed" : options.real.precision;
+    request.watch = !options.no_watch;
+    if (options.hashes_given || request.precision == "fixed") request.hash_every = options.lattice.hash_every;
+    GpuAnswer answer = run_on_gpu(options.input, loaded, options.gpu, request);
+    failed = answer.failed;
+    trace = std::move(answer.trace);
+    frames = std::move(answer.frames);
+    summary = std::move(answer.summary);
   } else if (lattice) {
     emu::LatticeRun request;
     request.steps = steps;
@@ -136,7 +158,7 @@ void add_run(CLI::App& app, int& exit_code) {
   options->input.add_stalls_to(*command);
   command
       ->add_option("--engine", options->engine,
-                   "lattice, golden, systemc, rtl or reference (doubles or floats)")
+                   "lattice, golden, systemc, rtl, gpu or reference (doubles or floats)")
       ->capture_default_str();
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
                     ->check(whole_number())
@@ -149,10 +171,12 @@ void add_run(CLI::App& app, int& exit_code) {
   LatticeChoice& lattice = options->lattice;
   lattice.add_to(*command);
   options->real.add_to(*command);
-  command->add_option("--hash-every", lattice.hash_every, "steps between two hashes of lattice's state")
-      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))
-      ->capture_default_str()
-      ->type_name("K");
+  options->gpu.add_to(*command);
+  auto* hashes =
+      command->add_option("--hash-every", lattice.hash_every, "steps between two hashes of lattice's or gpu's state")
+          ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))
+          ->capture_default_str()
+          ->type_name("K");
   command->add_flag("--cycles", lattice.cycles, "count the machine's cycles in lattice");
   command
       ->add_option("--checkpoint-every", lattice.checkpoint_every,
@@ -161,10 +185,17 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--resume", lattice.resume, "go on from the checkpoint in DIR");
   command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
       ->type_name("DIR");
+  command->add_option("--raster", options->raster, "pixels along the body of the pictures that DIR keeps of its frames")
+      ->check(CLI::Range(16u, 16384u))
+      ->capture_default_str()
+      ->type_name("PX");
+  command->add_flag("--no-states", options->no_states,
+                    "of the frames, DIR keeps rasters.h5 alone: for bodies of millions of particles");
   command->add_flag("--no-watch", options->no_watch,
                     "do not look for what makes a run wrong (docs/reference/failures.md)");
   command->add_flag("--json", options->json, "print the summary as JSON");
-  command->callback([options, steps, frames, &exit_code] {
+  command->callback([options, steps, frames, hashes, &exit_code] {
+    options->hashes_given = hashes->count() > 0;
     options->steps_given = steps->count() > 0;
     options->frames_given = frames->count() > 0;
     exit_code = run(*options);

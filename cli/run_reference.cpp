@@ -25,9 +25,10 @@ constexpr size_t kParticlesPerThread = 2000;
 }  // namespace
 
 void RealChoice::add_to(CLI::App& command) {
-  command.add_option("--precision", precision, "double or float: the numbers of reference")
-      ->check(CLI::IsMember({"double", "float"}))
-      ->capture_default_str();
+  command
+      .add_option("--precision", precision,
+                  "the numbers of reference, double (default) or float, and of gpu, fixed (default), float or double")
+      ->check(CLI::IsMember({"fixed", "float", "double"}));
   command
       .add_option("--integrator", integrator,
                   "euler (semi-implicit, as the fixed rule) or verlet, of reference")
@@ -35,13 +36,15 @@ void RealChoice::add_to(CLI::App& command) {
       ->capture_default_str();
 }
 
-void RealChoice::check_unused(const std::string& engine) const {
-  const auto refuse = [&](bool given, const char* option) {
-    if (given)
-      throw InputError(fmt::format("{} is an option of the reference engine, not of {}", option, engine));
-  };
-  refuse(precision != "double", "--precision");
-  refuse(integrator != "euler", "--integrator");
+void RealChoice::check_used(const std::string& engine) const {
+  if (!precision.empty() && engine != "reference" && engine != "gpu")
+    throw InputError(
+        fmt::format("--precision is an option of the reference and the gpu engine, not of {}", engine));
+  if (precision == "fixed" && engine == "reference")
+    throw InputError("--precision fixed: the reference engine computes in doubles or floats",
+                     "lattice, golden and gpu compute in the fixed rule's integers");
+  if (integrator != "euler" && engine != "reference")
+    throw InputError(fmt::format("--integrator is an option of the reference engine, not of {}", engine));
 }
 
 RealOptions RealChoice::options() const {

@@ -13,14 +13,15 @@
 
 namespace cuboct {
 
-// What the command line says about the reference engine.
+// What the command line says about real numbers.
 struct RealChoice {
-  std::string precision = "double", integrator = "euler";
+  std::string precision;  // "fixed", "float", "double"; empty: the engine's own choice
+  std::string integrator = "euler";
 
   void add_to(CLI::App& command);  // --precision and --integrator
-  // Throws InputError where an option is given that only the reference engine has.
-  void check_unused(const std::string& engine) const;
-  RealOptions options() const;
+  // Throws InputError where an option is given that this engine does not have, or not so.
+  void check_used(const std::string& engine) const;
+  RealOptions options() const;  // of the reference
 };
 
 struct ReferenceRun {

@@ -87,6 +87,7 @@ Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts)
   const Plan& plan = loaded.setup.plan;
   Items items;
   items.add("engine", trace.engine);
+  for (const auto& [name, text] : trace.notes) items.add(name, text);
   items.add("scene", loaded.scene.path);
   items.add("particles", plan.particles);
   items.add("nodes", plan.lattice.size());

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <unistd.h>
 
-#include "gpu_ref/engine.h"
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <vector>
+
+#include "gpu_ref/bench.h"
 
 namespace cuboct::gpu {
 
@@ -11,6 +16,19 @@ std::vector<Device> find_devices(std::string*) {
   std::vector<Device> devices;
   for (int k = 0; k < 8; ++k) devices.push_back({k, "host", "", 1, free, free});
   return devices;
+}
+
+double copy_bandwidth(int) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<char> from(size_t{1} << 26, 1), to(from.size());
+  double best = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto begin = Clock::now();
+    std::memcpy(to.data(), from.data(), from.size());
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    best = std::max(best, 2.0 * static_cast<double>(from.size()) / seconds);
+  }
+  return best;
 }
 
 }  // namespace cuboct::gpu

@@ -40,6 +40,9 @@ struct Reading {
   uint64_t step = 0;
   std::vector<Vec3> x, force;  // m, N (of the pairs), of the probed particles in the order of their ids
   Energies energies;           // zero unless asked for
+  // J, with the energies: the sum over pairs of F . d, of the force on j by i and d = x_j - x_i; positive where
+  // they repel. Minus the trace of model/measure.h's virial_stress, times the volume.
+  double virial = 0;
   double largest_speed = 0;    // m/s, along an axis
 };
 

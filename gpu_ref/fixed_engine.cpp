@@ -56,6 +56,7 @@ class FixedEngine final : public Engine {
     if (energies) {
       const Sums sums = machine_->read_energies();
       reading.energies = {sums.kinetic, sums.potential, sums.gravity};
+      reading.virial = sums.virial;
       reading.largest_speed = sums.speed * std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
     }
     return reading;

@@ -80,13 +80,16 @@ struct Entry<2> {
 template <int kReach>
 inline constexpr uint32_t kPlaceMask = (1u << Entry<kReach>::kPlaceBits) - 1;
 
-// Of a particle: its entries, and above how many of them the next thinner skin would hold.
-inline constexpr uint32_t kCountMask = 0xffff;
-
+// A particle's partners within a thinner skin stand in the first rows of `entries`, the further ones in the last: one
+// that has hardly moved itself does not meet those, as the others may not have moved farther than the list allows.
 struct List {
-  const uint32_t* entries;  // [k * stride + particle]
-  const uint32_t* count;
+  const uint32_t* entries;  // [row * stride + particle], `width` rows
+  const uint32_t* count;    // near ones, and above kNearBits further ones
   size_t stride;
+  uint32_t width;
+  float hardly2;  // square of how far a particle may have moved and still not meet its further ones; -1: none may
 };
+inline constexpr int kNearBits = 16;
+inline constexpr uint32_t kNearMask = (1u << kNearBits) - 1;
 
 }  // namespace cuboct::gpu

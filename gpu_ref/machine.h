@@ -155,11 +155,16 @@ class Machine {
   ParticlesView<Policy> at(Slab& slab, int copy) const {
     return {slab.x[copy].data(), slab.v[copy].data(), setup_.pd ? slab.u[copy].data() : nullptr};
   }
-  List list(const Slab& slab) const { return {slab.entries.data(), slab.counts.data(), slab.stride}; }
-  float farthest() const {
-    const float edge = std::max({static_cast<float>(setup_.geometry.edge[0]), static_cast<float>(setup_.geometry.edge[1]),
-                                 static_cast<float>(setup_.geometry.edge[2])});
-    return static_cast<float>(skin_.now()) / 2 - kAnchorError * edge;
+  // How far a particle may move before a new list is due; what an anchor does not tell is taken off.
+  double anchor_error() const {
+    const auto& edge = setup_.geometry.edge;
+    return static_cast<double>(kAnchorError) * std::max({edge[0], edge[1], edge[2]});
+  }
+  double farthest() const { return std::max(skin_.now() / 2 - anchor_error(), 0.0); }
+  List list(const Slab& slab) const {
+    const double hardly = skin_.thinner() - skin_.now() / 2 - anchor_error();
+    return {slab.entries.data(), slab.counts.data(), slab.stride, slab.width,
+            hardly > 0 ? static_cast<float>(hardly * hardly) : -1.0f};
   }
 
   void make_room(Slab& slab, size_t particles);

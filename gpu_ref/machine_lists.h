@@ -259,7 +259,7 @@ void Machine<Policy>::list_pairs() {
   const auto reach_of = [&](double skin) {
     return static_cast<float>((setup_.radius + setup_.rounding + skin) * (1 + 1e-6));
   };
-  uint64_t entries = 0, within = 0;
+  uint64_t near = 0, further = 0;
   for (auto& slab : slabs_) {
     Slab& s = *slab;
     for (;;) {
@@ -278,17 +278,17 @@ void Machine<Policy>::list_pairs() {
       counters.longest_list = std::max<uint64_t>(counters.longest_list, longest);
       if (longest <= s.width) break;
       s.width = longest + longest / 16 + 1;
-      if (s.width > kCountMask) throw_too_dense(longest);
+      if (s.width > kNearMask) throw_too_dense(longest);
     }
     s.hashes.zero(s.stream);
-    sum_each(s.stream, 0, s.own, options_.block, CountEntries{s.counts.data()}, s.hashes.data());
-    sum_each(s.stream, 0, s.own, options_.block, CountWithin{s.counts.data()}, s.hashes.data() + 1);
+    sum_each(s.stream, 0, s.own, options_.block, CountNear{s.counts.data()}, s.hashes.data());
+    sum_each(s.stream, 0, s.own, options_.block, CountFurther{s.counts.data()}, s.hashes.data() + 1);
     const std::vector<uint64_t> sums = s.hashes.host(s.stream, 0, 2);
-    entries += sums[0], within += sums[1];
+    near += sums[0], further += sums[1];
   }
   const auto n = static_cast<double>(particles_);
-  counters.listed_pairs = static_cast<double>(entries) / n;
-  skin_.listed(counters.listed_pairs, static_cast<double>(within) / n);
+  counters.listed_pairs = static_cast<double>(near + further) / n;
+  skin_.listed(static_cast<double>(near) / n, static_cast<double>(further) / n);
   ++counters.list_builds;
 }
 

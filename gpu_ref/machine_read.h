@@ -69,6 +69,7 @@ Sums Machine<Policy>::read_energies() {
     });
     for (const Sums& part : s.sums.host(s.stream, 0, chunks)) {
       all.kinetic += part.kinetic, all.potential += part.potential, all.gravity += part.gravity;
+      all.virial += part.virial;
       all.speed = std::max(all.speed, part.speed);
     }
   }

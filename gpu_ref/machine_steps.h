@@ -14,7 +14,7 @@ struct ResetControl {
 // The step from the copy that holds the state to the other one.
 template <class Policy>
 void Machine<Policy>::step(uint32_t number, bool hash) {
-  const float allowed = std::max(farthest(), 0.0f);
+  const auto allowed = static_cast<float>(farthest());
   const auto launch = [&](Slab& s, uint32_t begin, uint32_t end) {
     if (begin == end) return;
     Policy::with_variant(s.rule->view(), [&](auto variant) {

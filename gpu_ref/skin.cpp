@@ -7,7 +7,7 @@
 namespace cuboct::gpu {
 
 Skin::Skin(double radius, double largest) {
-  constexpr double kThinnest = 0.012, kStep = 1.25, kFirst = 0.045;
+  constexpr double kThinnest = 0.012, kStep = 1.25, kFirst = 0.09;
   for (int k = 0; k < kSkins; ++k) {
     const double skin = radius * kThinnest * std::pow(kStep, k);
     skin_[k] = std::min(skin, largest);
@@ -17,22 +17,21 @@ Skin::Skin(double radius, double largest) {
   at_ = std::min(at_, largest_);
 }
 
-void Skin::listed(double entries, double within) {
-  entries_ = entries;
-  within_ = within;
+void Skin::listed(double near, double further) {
+  entries_ = near + kFurther * further;
 }
 
 uint64_t Skin::review() const {
-  // A thinner skin would save this much, and is not known to cost more.
-  const double saved = entries_ - within_;
-  if (at_ == 0 || saved < kWorthwhile * entries_) return kForGood;
-  if (known(at_ - 1) && cost_[at_ - 1] >= entries_) return kForGood;
-  // By then the making has cost less than what is to be gained.
-  return static_cast<uint64_t>(std::ceil(2 * kMaking / saved));
+  if (at_ == 0) return kForGood;
+  // By then the making costs less than what is to be gained.
+  if (!known(at_ - 1)) return static_cast<uint64_t>(std::ceil(kMaking / (kWorthwhile * entries_)));
+  const double saved = entries_ - cost_[at_ - 1];
+  return saved > kWorthwhile * entries_ ? static_cast<uint64_t>(std::ceil(2 * kMaking / saved)) : kRetried;
 }
 
 void Skin::aged(uint64_t steps) {
   if (steps == 0) return;  // the first list, or one that never served
+  const bool reviewed = steps >= review();
   ++lists_;
   const double making = kMaking / static_cast<double>(steps);
   const double cost = entries_ + making;
@@ -40,14 +39,13 @@ void Skin::aged(uint64_t steps) {
   when_[at_] = lists_;
   const int thinner = at_ - 1, thicker = at_ + 1;
   int next = at_;
-  double best = cost_[at_];
-  if (thinner >= 0 && known(thinner) && cost_[thinner] < best) next = thinner, best = cost_[thinner];
-  if (thicker <= largest_ && known(thicker) && cost_[thicker] < best) next = thicker, best = cost_[thicker];
+  if (thinner >= 0 && known(thinner) && cost_[thinner] < cost_[next]) next = thinner;
+  if (thicker <= largest_ && known(thicker) && cost_[thicker] < cost_[next]) next = thicker;
   // What is not known is tried where there is something to gain.
-  if (thicker <= largest_ && !known(thicker) && making > 2 * kWorthwhile * entries_)
-    next = thicker;
-  else if (thinner >= 0 && !known(thinner) && steps >= review())
+  if (reviewed)
     next = thinner;
+  else if (thicker <= largest_ && !known(thicker) && making > 2 * kWorthwhile * entries_)
+    next = thicker;
   at_ = next;
 }
 

@@ -18,11 +18,11 @@ class Skin {
   double now() const { return skin_[at_]; }
   double thinner() const { return skin_[at_ > 0 ? at_ - 1 : 0]; }
 
-  // Of the list just made: entries per particle, and those that the next thinner skin would hold.
-  void listed(double entries, double within);
+  // Of the list just made, per particle: entries within the next thinner skin, and further ones.
+  void listed(double near, double further);
   // The list has served for so many steps and a new one is to be made: chooses its skin.
   void aged(uint64_t steps);
-  // The age at which a list is to be made anew though it still serves; never: kForGood.
+  // The age at which a list is to be made anew with a thinner skin though it still serves; never: kForGood.
   uint64_t review() const;
 
   static constexpr uint64_t kForGood = ~uint64_t{0};
@@ -31,8 +31,11 @@ class Skin {
   static constexpr int kSkins = 14;
   // Making a list takes about the time of this many entries (docs/reference/gpu.md has the measurement).
   static constexpr double kMaking = 400;
+  // Further entries are met by few (gpu_ref/grid_view.h), which holds up those that are computed beside them.
+  static constexpr double kFurther = 0.15;
   static constexpr double kWorthwhile = 0.04;  // a share of the cost
   static constexpr uint64_t kRemembered = 64;  // lists
+  static constexpr uint64_t kRetried = 4096;   // steps after which what was worse may have become better
 
   bool known(int skin) const { return lists_ - when_[skin] < kRemembered && cost_[skin] > 0; }
 
@@ -41,7 +44,7 @@ class Skin {
   std::array<uint64_t, kSkins> when_{};  // number of the list that told
   int at_ = 0, largest_ = 0;
   uint64_t lists_ = 0;
-  double entries_ = 0, within_ = 0;
+  double entries_ = 0;  // by what they cost
 };
 
 }  // namespace cuboct::gpu

@@ -41,19 +41,26 @@ struct Copies {
   int64_t shift;
 };
 
+// Square of the way since the list was made.
+template <class Policy>
+CUBOCT_DEVICE inline float way2(const typename Policy::View& view, const GridView& grid,
+                                const typename Policy::Position& x, const typename Policy::Velocity& v) {
+  float sum = 0;
+  for (int a = 0; a < 3; ++a) {
+    const float d = moved_along(Policy::along(view, grid, x, a), static_cast<uint32_t>(v.last), a, grid.edge[a]);
+    sum += d * d;
+  }
+  return sum;
+}
+
 template <class Policy, class Variant>
-CUBOCT_DEVICE inline typename Policy::Sum kick_of(const typename Variant::Cached& rule, const GridView& grid,
-                                                  const ParticlesView<Policy>& from, const List& list, uint32_t i,
-                                                  const typename Policy::Position& x,
+CUBOCT_DEVICE inline typename Policy::Sum kick_of(const typename Policy::View& view, const void* cache,
+                                                  const GridView& grid, const ParticlesView<Policy>& from,
+                                                  const List& list, uint32_t i, const typename Policy::Position& x,
                                                   const typename Policy::Velocity& v, bool& sound) {
+  const auto rule = Variant::cached(view, cache);
   typename Policy::Sum sum{};
-  const uint32_t count = list.count[i] & kCountMask;
-  const uint32_t* at = list.entries + i;
-#ifdef __CUDACC__
-#pragma unroll Policy::kUnrolled
-#endif
-  for (uint32_t k = 0; k < count; ++k, at += list.stride) {
-    const uint32_t entry = *at;
+  const auto add = [&](uint32_t entry) {
     const uint32_t place = entry & kPlaceMask<Policy::kReach>;
     int away[3];
     Entry<Policy::kReach>::away(entry, away);
@@ -61,7 +68,21 @@ CUBOCT_DEVICE inline typename Policy::Sum kick_of(const typename Variant::Cached
     auto w = v;
     if constexpr (Variant::kDamped) w = load(from.v + place);
     sound &= Policy::add_pair(rule, grid, x, v, other, w, away, sum);
-  }
+  };
+  const uint32_t count = list.count[i];
+  const uint32_t near = count & kNearMask;
+  const uint32_t* at = list.entries + i;
+#ifdef __CUDACC__
+#pragma unroll Policy::kUnrolled
+#endif
+  for (uint32_t k = 0; k < near; ++k, at += list.stride) add(*at);
+  const uint32_t further = count >> kNearBits;
+  if (further == 0 || way2<Policy>(view, grid, x, v) <= list.hardly2) return sum;
+  at = list.entries + i + list.stride * (list.width - further);
+#ifdef __CUDACC__
+#pragma unroll 1
+#endif
+  for (uint32_t k = 0; k < further; ++k, at += list.stride) add(*at);
   return sum;
 }
 
@@ -81,12 +102,12 @@ struct Step {
   CUBOCT_DEVICE bool idle() const { return control->limit < number; }
 
   CUBOCT_DEVICE void operator()(uint32_t i, const void* cache) const {
-    const auto rule = Variant::cached(view, cache);
     auto x = load(from.x + i);
     auto v = load(from.v + i);
     const auto before = x;
     bool sound = true;
-    const auto sum = kick_of<Policy, Variant>(rule, grid, from, list, i, x, v, sound);
+    const auto sum = kick_of<Policy, Variant>(view, cache, grid, from, list, i, x, v, sound);
+    const auto rule = Variant::cached(view, cache);
     if (from.u) {
       auto u = from.u[i];
       sound &= Policy::finish(rule, sum, x, v, &u);
@@ -108,13 +129,7 @@ struct Step {
       atomic_min(crowded ? &control->crowded : &control->doubt, number);
       return;
     }
-    float way = 0;
-    for (int a = 0; a < 3; ++a) {
-      const float d =
-          moved_along(Policy::along(view, grid, x, a), static_cast<uint32_t>(v.last), a, grid.edge[a]);
-      way += d * d;
-    }
-    if (!(way <= farthest2)) atomic_min(&control->limit, number);
+    if (!(way2<Policy>(view, grid, x, v) <= farthest2)) atomic_min(&control->limit, number);
   }
 
   // Golden's migration along x, then y, then z. False: not possible.
@@ -202,10 +217,9 @@ struct ReadProbed {
   CUBOCT_DEVICE void operator()(uint32_t i, const void* cache) const {
     const uint32_t to = slot[id[i]];
     if (to == kNever) return;
-    const auto rule = Variant::cached(view, cache);
     const auto x = load(at.x + i);
     bool sound = true;
-    found[to] = {x, kick_of<Policy, Variant>(rule, grid, at, list, i, x, load(at.v + i), sound), cell[i]};
+    found[to] = {x, kick_of<Policy, Variant>(view, cache, grid, at, list, i, x, load(at.v + i), sound), cell[i]};
     here[to] = 1;
   }
 };
@@ -213,6 +227,7 @@ struct ReadProbed {
 // Sums over some particles; each a few at a time in a fixed order, so that they are the same on every machine.
 struct Sums {
   double kinetic, potential, gravity;  // J
+  double virial;                       // J, see Reading::virial
   double speed;                        // largest, along an axis, in the unit of velocities
 };
 inline constexpr uint32_t kSummed = 64;  // particles of one Sums
@@ -240,19 +255,28 @@ struct ReadEnergies {
     for (uint32_t i = begin; i < end; ++i) {
       const auto x = load(at.x + i);
       const auto v = load(at.v + i);
-      bool sound = true;
-      const auto kick = kick_of<Policy, Variant>(rule, grid, at, list, i, x, v, sound);
+      typename Policy::Sum kick{};
       double place[3];
       for (int a = 0; a < 3; ++a) place[a] = static_cast<double>(x.at[a]) * unit;
-      for (uint32_t k = 0; k < (list.count[i] & kCountMask); ++k) {
-        const uint32_t entry = list.entries[k * list.stride + i];
+      const uint32_t near = list.count[i] & kNearMask, further = list.count[i] >> kNearBits;
+      for (uint32_t k = 0; k < near + further; ++k) {
+        const uint32_t row = k < near ? k : list.width - 1 - (k - near);
+        const uint32_t entry = list.entries[row * list.stride + i];
         int away[3];
         Entry<Policy::kReach>::away(entry, away);
-        const auto other = load(at.x + (entry & kPlaceMask<Policy::kReach>));
+        const uint32_t from = entry & kPlaceMask<Policy::kReach>;
+        const auto other = load(at.x + from);
+        auto w = v;
+        if constexpr (Variant::kDamped) w = load(at.v + from);
+        typename Policy::Sum one{};
+        Policy::add_pair(rule, grid, x, v, other, w, away, one);
         double s = 0;
         for (int a = 0; a < 3; ++a) {
           const double d = static_cast<double>(other.at[a]) * unit - place[a] + away[a] * edge[a];
           s += d * d;
+          kick.at[a] += one.at[a];
+          // Each pair is met from both sides, and mass (cutoff/dt)^2 is twice energy.kinetic.
+          sum.virial -= energy.kinetic * velocity_unit * static_cast<double>(one.at[a]) * d;
         }
         sum.potential += pair_energy(energy, s, static_cast<int>(x.last), static_cast<int>(other.last)) / 2;
       }

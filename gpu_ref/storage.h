@@ -189,16 +189,15 @@ struct Gather {
   }
 };
 
-// Entries of a list, and how many of them the next thinner skin would hold.
-struct CountEntries {
+struct CountNear {
   const uint32_t* counts;
   CUBOCT_DEVICE bool idle() const { return false; }
-  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const { return counts[i] & kCountMask; }
+  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const { return counts[i] & kNearMask; }
 };
-struct CountWithin {
+struct CountFurther {
   const uint32_t* counts;
   CUBOCT_DEVICE bool idle() const { return false; }
-  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const { return counts[i] >> 16; }
+  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const { return counts[i] >> kNearBits; }
 };
 
 // Distance of a place in a cell from the cell `k` away, along one axis.
@@ -213,7 +212,7 @@ template <class Policy>
 struct MakeList {
   typename Policy::View view;
   GridView grid;
-  float radius, thinner;  // of this list, and what the next thinner skin would reach
+  float radius, near;  // what the list and its near ones reach
   const typename Policy::Position* x;
   const CellAt* cell;
   const uint32_t *first, *count;
@@ -226,9 +225,9 @@ struct MakeList {
     float own[3];
     for (int a = 0; a < 3; ++a) own[a] = Policy::along(view, grid, x[i], a);
     const CellAt home = cell[i];
-    const float limit = radius * radius, inner = thinner * thinner;
+    const float limit = radius * radius, near2 = near * near;
     constexpr int reach = Policy::kReach;
-    uint32_t found = 0, within = 0;
+    uint32_t found = 0, further = 0;  // near ones, others
     for (int dz = -reach; dz <= reach; ++dz)
       for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) {
@@ -251,13 +250,12 @@ struct MakeList {
             const float ez = Policy::along(view, grid, other, 2) - own[2] + static_cast<float>(dz) * grid.edge[2];
             const float square = ex * ex + ey * ey + ez * ez;
             if (square > limit) continue;
-            if (found < width) entries[found * stride + i] = Entry<Policy::kReach>::of(j, dx, dy, dz);
-            ++found;
-            if (square <= inner) ++within;
+            const uint32_t row = square <= near2 ? found++ : width - 1 - further++;
+            if (row < width) entries[row * stride + i] = Entry<Policy::kReach>::of(j, dx, dy, dz);
           }
         }
-    counts[i] = found | within << 16;
-    return found;
+    counts[i] = found | further << kNearBits;
+    return found + further;
   }
 };
 

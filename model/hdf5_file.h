@@ -60,6 +60,11 @@ inline hid_t type_in_memory<double>() {
   return H5T_NATIVE_DOUBLE;
 }
 
+template <>
+inline hid_t type_in_memory<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+
 // Little-endian on every machine: same trace, same bytes.
 template <typename T>
 hid_t type_in_file();
@@ -82,6 +87,10 @@ inline hid_t type_in_file<uint8_t>() {
 template <>
 inline hid_t type_in_file<double>() {
   return H5T_IEEE_F64LE;
+}
+template <>
+inline hid_t type_in_file<float>() {
+  return H5T_IEEE_F32LE;
 }
 
 using Shape = std::vector<hsize_t>;
@@ -230,11 +239,13 @@ class Writer {
 
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), file_(open(path)) {}
+  // `kind` of cuboct's files, for errors.
+  explicit Reader(const std::string& path, std::string kind = "trace")
+      : path_(path), kind_(std::move(kind)), file_(open(path)) {}
 
   hid_t root() const { return file_; }
   std::string missing(const std::string& kind, const std::string& name) const {
-    return fmt::format("{} is not a cuboct trace: no {} '{}'", path_, kind, name);
+    return fmt::format("{} is not a cuboct {}: no {} '{}'", path_, kind_, kind, name);
   }
 
   bool has(hid_t where, const std::string& name) const {
@@ -275,7 +286,7 @@ class Reader {
     Handle data = dataset(where, name);
     const Shape shape = shape_of(data, name);
     if (Shape(shape.begin() + 1, shape.end()) != columns)
-      throw InputError(fmt::format("{} is not a cuboct trace: the shape of '{}' is wrong", path_, name));
+      throw InputError(fmt::format("{} is not a cuboct {}: the shape of '{}' is wrong", path_, kind_, name));
     size_t count = 1;
     for (const hsize_t extent : shape) count *= extent;
     std::vector<T> values(count);
@@ -284,9 +295,8 @@ class Reader {
     return values;
   }
 
-  hsize_t length(hid_t where, const std::string& name) const {
-    return shape_of(dataset(where, name), name)[0];
-  }
+  Shape shape(hid_t where, const std::string& name) const { return shape_of(dataset(where, name), name); }
+  hsize_t length(hid_t where, const std::string& name) const { return shape(where, name)[0]; }
 
   // The same in pieces, next(values) for one row of `columns` values after another; there must be `count`.
   template <typename T, typename Next>
@@ -295,7 +305,7 @@ class Reader {
     const Shape shape = columns == 1 ? Shape{count} : Shape{count, columns};
     const Shape found = shape_of(data, name);
     if (found.size() != shape.size() || (columns > 1 && found[1] != columns))
-      throw InputError(fmt::format("{} is not a cuboct trace: the shape of '{}' is wrong", path_, name));
+      throw InputError(fmt::format("{} is not a cuboct {}: the shape of '{}' is wrong", path_, kind_, name));
     same_length(found[0] == count, "the frames' fields");
     const hsize_t block = std::min<hsize_t>(count, 1 << 15);
     std::vector<T> values(block * columns);
@@ -328,7 +338,7 @@ class Reader {
   }
 
   void same_length(bool same, const std::string& what) const {
-    if (!same) throw InputError(fmt::format("{} is not a cuboct trace: {} disagree in length", path_, what));
+    if (!same) throw InputError(fmt::format("{} is not a cuboct {}: {} disagree in length", path_, kind_, what));
   }
   const std::string& path() const { return path_; }
 
@@ -352,7 +362,7 @@ class Reader {
     return shape;
   }
 
-  std::string path_;
+  std::string path_, kind_;
   Handle file_;
 };
 

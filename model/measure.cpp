@@ -223,6 +223,24 @@ Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& orig
   return sample;
 }
 
+std::vector<uint32_t> probed_ids(const std::vector<Probe>& probes) {
+  std::vector<uint32_t> ids;
+  for (const Probe& probe : probes)
+    for (const ParticleSet* set : {&probe.set, &probe.lower, &probe.upper, &probe.grip})
+      ids.insert(ids.end(), set->ids.begin(), set->ids.end());
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+std::vector<Probe> placed(std::vector<Probe> probes, const std::vector<uint32_t>& ids) {
+  for (Probe& probe : probes)
+    for (ParticleSet* set : {&probe.set, &probe.lower, &probe.upper, &probe.grip})
+      for (uint32_t& id : set->ids)
+        id = static_cast<uint32_t>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  return probes;
+}
+
 ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodic,
                        const std::vector<Vec3>& initial)
     : probes_(probes),

@@ -81,6 +81,11 @@ Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& orig
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
                  const std::vector<Int3>& kicks);
 
+// Particles in any probe's set, ascending.
+std::vector<uint32_t> probed_ids(const std::vector<Probe>& probes);
+// The probes with their ids replaced by places in `ids`, for samples that hold the probed particles alone.
+std::vector<Probe> placed(std::vector<Probe> probes, const std::vector<uint32_t>& ids);
+
 // Turns samples into the curves of a scene's probes:
 //   force          <name>.force_x, .force_y, .force_z   N
 //   displacement   <name>.x, .y, .z                     m

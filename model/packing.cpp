@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "model/error.h"
 
@@ -16,6 +17,22 @@ namespace {
 constexpr double kMostSites = 2e9;  // minutes of testing, 50 GB if all were inside
 
 constexpr double kTolerance = 1e-6;  // of the pitch
+
+// The h at which start + h * step lies within the bounds grown by `slack`; first > second where it never does. In a crystal
+// that is turned against a thin body, most rows of the bounds' corners' range pass it by.
+std::pair<double, double> inside_bounds(const Vec3& start, const Vec3& step, const Bounds& bounds, double slack) {
+  std::pair<double, double> in{-1e9, 1e9};
+  for (int a = 0; a < 3; ++a) {
+    const double low = bounds.low[a] - slack - start[a], high = bounds.high[a] + slack - start[a];
+    if (std::abs(step[a]) < 1e-9 * slack) {
+      if (low > 0 || high < 0) return {1, 0};
+      continue;
+    }
+    in.first = std::max(in.first, std::min(low / step[a], high / step[a]));
+    in.second = std::min(in.second, std::max(low / step[a], high / step[a]));
+  }
+  return in;
+}
 
 }  // namespace
 
@@ -64,8 +81,13 @@ std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) 
   std::vector<Vec3> sites;
   for (int64_t l = first[2]; l <= last[2]; ++l) {
     for (int64_t k = first[1]; k <= last[1]; ++k) {
+      const Vec3 start =
+          fcc.offset + half * (fcc.orientation * Vec3(0, static_cast<double>(k), static_cast<double>(l)));
+      const auto [from, to] = inside_bounds(start, half * fcc.orientation.col(0), bounds, half);
+      const int64_t begin = from > static_cast<double>(first[0]) ? std::llround(std::ceil(from)) : first[0];
+      const int64_t end = to < static_cast<double>(last[0]) ? std::llround(std::floor(to)) : last[0];
       // The first h of the row at which h + k + l is even.
-      for (int64_t h = first[0] + ((first[0] + k + l) & 1); h <= last[0]; h += 2) {
+      for (int64_t h = begin + ((begin + k + l) & 1); h <= end; h += 2) {
         const Vec3 hkl(static_cast<double>(h), static_cast<double>(k), static_cast<double>(l));
         Vec3 x = fcc.offset + fcc.orientation * (half * hkl);
         bool inside = shape == nullptr || shape->distance(x) <= tolerance;

@@ -1,31 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "model/state_meter.h"
 
-#include <algorithm>
-
 namespace cuboct {
-namespace {
-
-std::vector<uint32_t> probed_ids(const std::vector<Probe>& probes) {
-  std::vector<uint32_t> ids;
-  for (const Probe& probe : probes)
-    for (const ParticleSet* set : {&probe.set, &probe.lower, &probe.upper, &probe.grip})
-      ids.insert(ids.end(), set->ids.begin(), set->ids.end());
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  return ids;
-}
-
-// The probes with their ids replaced by places in `ids`.
-std::vector<Probe> placed(std::vector<Probe> probes, const std::vector<uint32_t>& ids) {
-  for (Probe& probe : probes)
-    for (ParticleSet* set : {&probe.set, &probe.lower, &probe.upper, &probe.grip})
-      for (uint32_t& id : set->ids)
-        id = static_cast<uint32_t>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
-  return probes;
-}
-
-}  // namespace
 
 StateMeter::StateMeter(const Scene& scene, const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
                        const std::function<Particle(uint32_t)>& initial, bool energies, int threads,

@@ -97,6 +97,107 @@ std::vector<State> read_frames(const Reader& in) {
   return frames;
 }
 
+void write_bodies(const Writer& out, const std::vector<RealFrame>& frames) {
+  if (frames.empty()) return;
+  const Handle group = out.group(out.root(), "bodies");
+  const size_t particles = frames.front().x.size();
+  std::vector<uint64_t> step;
+  for (const RealFrame& frame : frames) step.push_back(frame.step);
+  out.array(group, "step", {step.size()}, step, "step", "[frame]");
+  const auto triple = [&](const char* name, std::vector<Vec3> RealFrame::*field, const char* unit) {
+    for (const RealFrame& frame : frames)
+      if ((frame.*field).size() != particles)
+        throw std::logic_error("the frames of a trace differ in their number of particles");
+    out.rows<double>(group, name, frames.size() * particles, 3, unit,
+                     "[row][axis] row frame * particles + id",
+                     [&frames, particles, field, row = size_t{0}](double* values) mutable {
+                       const Vec3& from = (frames[row / particles].*field)[row % particles];
+                       std::copy_n(from.data(), 3, values);
+                       ++row;
+                     });
+  };
+  triple("x", &RealFrame::x, "m");
+  triple("v", &RealFrame::v, "m/s");
+  if (!frames.front().force.empty()) triple("force", &RealFrame::force, "N");
+}
+
+std::vector<RealFrame> read_bodies(const Reader& in) {
+  if (!in.has(in.root(), "bodies")) return {};
+  const Handle group = in.group(in.root(), "bodies");
+  const auto step = in.array<uint64_t>(group, "step");
+  const hsize_t rows = in.length(group, "x");
+  in.same_length(!step.empty() && rows % step.size() == 0, "the bodies' fields");
+  const size_t particles = rows / step.size();
+  std::vector<RealFrame> frames(step.size());
+  for (size_t k = 0; k < frames.size(); ++k) frames[k].step = step[k];
+  const auto triple = [&](const char* name, std::vector<Vec3> RealFrame::*field) {
+    for (RealFrame& frame : frames) (frame.*field).resize(particles);
+    in.rows<double>(group, name, rows, 3,
+                    [&frames, particles, field, row = size_t{0}](const double* values) mutable {
+                      std::copy_n(values, 3, (frames[row / particles].*field)[row % particles].data());
+                      ++row;
+                    });
+  };
+  triple("x", &RealFrame::x);
+  triple("v", &RealFrame::v);
+  if (in.has(group, "force")) triple("force", &RealFrame::force);
+  return frames;
+}
+
+void write_findings(const Writer& out, const Trace& trace) {
+  if (!trace.watched) return;
+  const Handle group = out.group(out.root(), "findings");
+  out.number<uint64_t>(group, "watched", *trace.watched);
+  std::vector<uint8_t> failure;
+  std::vector<uint64_t> step;
+  std::vector<int64_t> particle;
+  std::vector<double> place, number, limit;
+  std::vector<std::string> text;
+  for (const Finding& f : trace.findings) {
+    failure.push_back(static_cast<uint8_t>(f.failure));
+    step.push_back(f.step);
+    particle.push_back(f.particle ? int64_t{*f.particle} : -1);
+    place.insert(place.end(), f.place.data(), f.place.data() + 3);
+    number.push_back(f.number);
+    limit.push_back(f.limit);
+    text.push_back(f.text);
+  }
+  const hsize_t count = text.size();
+  out.array(group, "failure", {count}, failure, "", "[finding] model/finding.h");
+  out.array(group, "step", {count}, step, "step", "[finding]");
+  out.array(group, "particle", {count}, particle, "", "[finding] id; -1 where there is none");
+  out.array(group, "place", {count, 3}, place, "m", "[finding][axis]");
+  out.array(group, "number", {count}, number, "", "[finding] in the unit of its text");
+  out.array(group, "limit", {count}, limit, "", "[finding] in the unit of its text");
+  out.names(group, "text", text);
+}
+
+void read_findings(const Reader& in, Trace& trace) {
+  if (!in.has(in.root(), "findings")) return;
+  const Handle group = in.group(in.root(), "findings");
+  trace.watched = in.number<uint64_t>(group, "watched");
+  const auto failure = in.array<uint8_t>(group, "failure");
+  const auto step = in.array<uint64_t>(group, "step");
+  const auto particle = in.array<int64_t>(group, "particle");
+  const auto place = in.array<double>(group, "place", {3});
+  const auto number = in.array<double>(group, "number"), limit = in.array<double>(group, "limit");
+  const auto text = in.names(group, "text");
+  for (const size_t size : {failure.size(), step.size(), particle.size(), place.size() / 3, number.size(),
+                            limit.size()})
+    in.same_length(size == text.size(), "the findings' fields");
+  for (size_t k = 0; k < text.size(); ++k) {
+    if (failure[k] >= kFailures) throw InputError(in.missing("failure of number", std::to_string(failure[k])));
+    Finding& f = trace.findings.emplace_back();
+    f.failure = static_cast<Failure>(failure[k]);
+    f.step = step[k];
+    if (particle[k] >= 0) f.particle = static_cast<uint32_t>(particle[k]);
+    f.place = Vec3(place[3 * k], place[3 * k + 1], place[3 * k + 2]);
+    f.number = number[k];
+    f.limit = limit[k];
+    f.text = text[k];
+  }
+}
+
 void write_curves(const Writer& out, const std::vector<Curve>& curves) {
   const Handle group = out.group(out.root(), "curves");
   uint32_t index = 0;
@@ -205,6 +306,7 @@ void write_trace(const std::string& path, const Trace& trace) {
     out.array(out.root(), "state_hash", {trace.state_hash.size()}, trace.state_hash, "",
               trace.hash_every == 1 ? "[step]" : "[step / hash_every], then of the last step");
     write_frames(out, trace.frames);
+    write_bodies(out, trace.bodies);
     write_curves(out, trace.curves);
     write_cycles(out, trace);
     {
@@ -215,6 +317,14 @@ void write_trace(const std::string& path, const Trace& trace) {
       out.names(counters, "name", names);
       out.array(counters, "value", {values.size()}, values, "", "[counter]");
     }
+    if (!trace.notes.empty()) {
+      const Handle notes = out.group(out.root(), "notes");
+      std::vector<std::string> names, texts;
+      for (const auto& [name, text] : trace.notes) names.push_back(name), texts.push_back(text);
+      out.names(notes, "name", names);
+      out.names(notes, "text", texts);
+    }
+    write_findings(out, trace);
     if (trace.stop) {
       const Handle stop = out.group(out.root(), "stop");
       out.number<uint8_t>(stop, "fault", static_cast<uint8_t>(trace.stop->fault));
@@ -250,6 +360,7 @@ Trace read_trace(const std::string& path) {
     in.same_length(trace.hash_every > 0 && trace.steps() == steps, "steps and state hashes");
   }  // else the file is from before hashes could be left out
   trace.frames = read_frames(in);
+  trace.bodies = read_bodies(in);
   trace.curves = read_curves(in);
   if (in.has(in.root(), "cycles")) {
     const auto flat = in.array<uint64_t>(in.root(), "cycles", {trace.nodes, hsize_t{kPhases}, 2});
@@ -260,6 +371,13 @@ Trace read_trace(const std::string& path) {
   const auto values = in.array<double>(counters, "value");
   in.same_length(names.size() == values.size(), "the counters' names and values");
   for (size_t i = 0; i < names.size(); ++i) trace.counters.emplace_back(names[i], values[i]);
+  if (in.has(in.root(), "notes")) {
+    const Handle notes = in.group(in.root(), "notes");
+    const auto of = in.names(notes, "name"), texts = in.names(notes, "text");
+    in.same_length(of.size() == texts.size(), "the notes' names and texts");
+    for (size_t i = 0; i < of.size(); ++i) trace.notes.emplace_back(of[i], texts[i]);
+  }
+  read_findings(in, trace);
   if (in.has(in.root(), "stop")) {
     const Handle stop = in.group(in.root(), "stop");
     trace.stop = StopReason{static_cast<Fault>(in.number<uint8_t>(stop, "fault")),

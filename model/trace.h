@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "model/finding.h"
 #include "model/state.h"
 
 namespace cuboct {
@@ -44,6 +45,13 @@ struct Curve {
   std::vector<double> value;
 };
 
+// A state of a run in real numbers, in SI; the index is the particle's id. Types are the scene's.
+struct RealFrame {
+  uint64_t step = 0;
+  std::vector<Vec3> x, v;   // m, not wrapped into a periodic box; m/s, half a step before the positions
+  std::vector<Vec3> force;  // N, of the pairs; empty, or of all particles in each frame of a trace
+};
+
 struct StopReason {
   Fault fault = Fault::none;
   uint64_t step = 0;
@@ -64,13 +72,18 @@ struct Trace {
   uint64_t hash_every = 1;    // >= 1
   uint64_t steps_done = 0;    // read where steps() cannot count state_hash: hash_every above 1, or no hashes
   std::vector<State> frames;  // the states that were asked for, ascending in step
+  std::vector<RealFrame> bodies;  // the same of a run in real numbers; one number of particles in all
   std::vector<Curve> curves;
   std::vector<PhaseSpan>
       cycles;  // [(step * nodes + node) * kPhases + phase]; empty where the engine counts none
   std::optional<StopReason> stop;  // the run had to stop: after the last complete step
+  // Of an engine that watches its own run (model/watch.h):
+  std::vector<Finding> findings;    // in the order in which they came
+  std::optional<uint64_t> watched;  // the last step that was looked at; nothing where nobody watched
   // Not compared between engines:
   double seconds = 0;                                    // host time of the steps alone
   std::vector<std::pair<std::string, double>> counters;  // e.g. {"pairs_issued", 123}
+  std::vector<std::pair<std::string, std::string>> notes;  // e.g. {"precision", "float"}
 
   uint64_t steps() const {
     return hash_every == 1 && !state_hash.empty() ? state_hash.size() - 1 : steps_done;

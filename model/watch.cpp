@@ -73,30 +73,6 @@ std::string place_text(const Vec3& x) { return fmt::format("({:.4g}, {:.4g}, {:.
 
 }  // namespace
 
-const char* to_string(Failure failure) {
-  switch (failure) {
-    case Failure::time_step:
-      return "time step";
-    case Failure::damping:
-      return "damping";
-    case Failure::stiff_hold:
-      return "stiff hold";
-    case Failure::force_jump:
-      return "force jump";
-    case Failure::tunnelling:
-      return "tunnelling";
-    case Failure::constraint_work:
-      return "constraint work";
-    case Failure::heating:
-      return "heating";
-    case Failure::creep:
-      return "creep";
-    case Failure::far_origin:
-      return "far origin";
-  }
-  return "?";
-}
-
 Watch::Watch(const Scene& scene, double table_error, int threads)
     : scene_(scene), table_error_(table_error), threads_(threads), type_(scene.body.type) {
   const Rule& rule = scene.rule;

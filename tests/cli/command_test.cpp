@@ -16,10 +16,10 @@ void expect_refusal(const std::vector<std::string>& arguments, const std::string
 
 TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
   expect_refusal({},
-                 "no command\n  hint: one of check, run, crosscheck, emit, explore, stability, bench or report; see 'cuboct --help'\n");
+                 "no command\n  hint: one of check, run, crosscheck, emit, explore, stability, bench, picture or report; see 'cuboct --help'\n");
   expect_refusal({"chek"}, "unknown command 'chek'\n  hint: did you mean 'check'?\n");
   expect_refusal({"simulate"},
-                 "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit, explore, stability, bench or report\n");
+                 "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit, explore, stability, bench, picture or report\n");
   expect_refusal({"--version"}, "unknown option '--version'\n  hint: see 'cuboct --help'\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--stepz", "3"},
                  "unknown option '--stepz' of 'cuboct run'\n  hint: did you mean '--steps'?\n");
@@ -40,7 +40,7 @@ TEST(Command, RefusesWrongValues) {
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "goldn"},
                  "unknown engine 'goldn'\n  hint: did you mean 'golden'?\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "fpga"},
-                 "unknown engine 'fpga'\n  hint: one of golden, lattice, systemc, rtl or reference\n");
+                 "unknown engine 'fpga'\n  hint: one of golden, lattice, systemc, rtl, gpu or reference\n");
   expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden"},
                  "a crosscheck needs two or more different engines\n  hint: --engines golden,lattice,systemc,rtl\n");
   expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden,golden"},
@@ -48,7 +48,7 @@ TEST(Command, RefusesWrongValues) {
   expect_refusal(
       {"crosscheck", "scenes/lj_block.toml", "--engines", "golden,reference"},
       "engine 'reference' computes in doubles and has no bits to compare\n  hint: one of golden, lattice, "
-      "systemc or rtl\n");
+      "systemc, rtl or gpu\n");
 }
 
 TEST(Command, RefusesOptionsOfAnotherEngine) {
@@ -64,11 +64,11 @@ TEST(Command, RefusesOptionsOfAnotherEngine) {
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "reference", "--ranks", "2"},
                  "--ranks is an option of the lattice engine, not of reference\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--precision", "float"},
-                 "--precision is an option of the reference engine, not of lattice\n");
+                 "--precision is an option of the reference and the gpu engine, not of lattice\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "golden", "--integrator", "verlet"},
                  "--integrator is an option of the reference engine, not of golden\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "reference", "--precision", "half"},
-                 "--precision: half not in {double,float}\n");
+                 "--precision: half not in {fixed,float,double}\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--resume"},
                  "--resume needs --out DIR, where the checkpoint lies\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--checkpoint-every", "5 min"},
@@ -106,7 +106,7 @@ TEST(Command, HelpIsNoError) {
   const Answer answer = Bench(false).cuboct({"--help"});
   EXPECT_EQ(answer.code, 0);
   EXPECT_EQ(answer.err, "");
-  for (const char* command : {"check", "run", "crosscheck", "emit", "bench", "report"})
+  for (const char* command : {"check", "run", "crosscheck", "emit", "bench", "picture", "report"})
     EXPECT_NE(answer.out.find(command), std::string::npos);
 }
 

@@ -53,8 +53,8 @@ TEST(Run, WritesItsDirectoryTheSameEachTime) {
   for (const auto& entry : fs::directory_iterator(bench.path("a"))) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{"frames.pvd", "frames.xyz", "frames_000000.vtp",
-                                             "frames_000001.vtp", "frames_000002.vtp", "plan.txt", "run.toml",
-                                             "summary.json", "trace.h5"}));
+                                             "frames_000001.vtp", "frames_000002.vtp", "plan.txt", "rasters.h5",
+                                             "run.toml", "summary.json", "trace.h5"}));
   for (const std::string& name : names)
     if (name != "trace.h5" && name != "summary.json") {  // these tell the host's time
       EXPECT_EQ(contents(bench.path("a/" + name)), contents(bench.path("b/" + name))) << name;

@@ -30,6 +30,18 @@ with h5py.File(sys.argv[1], "r") as f:
     assert f["cycles"].shape == (2, 2, 8, 2)
     assert list(f["cycles"][1, 1, 3]) == [1301, 1310]
 
+    bodies = f["bodies"]
+    assert list(bodies["step"]) == [0, 2]
+    assert bodies["x"].shape == (4, 3) and bodies["x"].dtype == "float64"
+    assert list(bodies["x"][2 + 1]) == [4, 5, -6] and list(bodies["v"][2]) == [-1, 0.1, 2]
+    assert list(bodies["force"][3]) == [-3, 0, 1e9]
+    assert bodies["v"].attrs["unit"] in (b"m/s", "m/s")
+
+    assert f["findings"].attrs["watched"] == 2
+    assert list(f["findings/particle"]) == [-1, 5] and list(f["findings/failure"]) == [2, 8]
+    assert [t.decode() for t in f["findings/text"][:]][0] == "step 1: stiff hold: ..."
+    assert [t.decode() for t in f["notes/text"][:]] == ["float", "a device, of some name", ""]
+
     stop = f["stop"].attrs
     assert stop["fault_name"] in (b"velocity out of width", "velocity out of width")
     assert stop["particle"] == 5 and stop["number"] == -(2**40)

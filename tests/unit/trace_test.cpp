@@ -72,6 +72,25 @@ void expect_equal(const Trace& a, const Trace& b) {
   EXPECT_EQ(a.stop, b.stop);
   EXPECT_EQ(a.seconds, b.seconds);
   EXPECT_EQ(a.counters, b.counters);
+  EXPECT_EQ(a.notes, b.notes);
+  ASSERT_EQ(a.bodies.size(), b.bodies.size());
+  for (size_t k = 0; k < a.bodies.size(); ++k) {
+    EXPECT_EQ(a.bodies[k].step, b.bodies[k].step);
+    EXPECT_EQ(a.bodies[k].x, b.bodies[k].x);
+    EXPECT_EQ(a.bodies[k].v, b.bodies[k].v);
+    EXPECT_EQ(a.bodies[k].force, b.bodies[k].force);
+  }
+  EXPECT_EQ(a.watched, b.watched);
+  ASSERT_EQ(a.findings.size(), b.findings.size());
+  for (size_t k = 0; k < a.findings.size(); ++k) {
+    EXPECT_EQ(a.findings[k].failure, b.findings[k].failure);
+    EXPECT_EQ(a.findings[k].step, b.findings[k].step);
+    EXPECT_EQ(a.findings[k].particle, b.findings[k].particle);
+    EXPECT_EQ(a.findings[k].place, b.findings[k].place);
+    EXPECT_EQ(a.findings[k].number, b.findings[k].number);
+    EXPECT_EQ(a.findings[k].limit, b.findings[k].limit);
+    EXPECT_EQ(a.findings[k].text, b.findings[k].text);
+  }
 }
 
 TEST_F(TraceFile, ReturnsEachFieldAsWritten) {

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "cli/command.h"
+#include "cli/raster_plot.h"
+#include "model/output.h"
+
+namespace cuboct {
+namespace {
+
+struct Options {
+  std::string directory, out, field = "strain";
+  std::vector<uint64_t> steps;
+  double limit = 0;
+  int width = 1600;
+};
+
+std::vector<size_t> frames_of(const Rasters& rasters, const std::vector<uint64_t>& steps) {
+  std::vector<size_t> frames;
+  for (const uint64_t step : steps) {
+    size_t k = 0;
+    while (k < rasters.frames.size() && rasters.frames[k].step != step) ++k;
+    if (k == rasters.frames.size()) {
+      std::vector<uint64_t> kept;
+      for (const Raster& frame : rasters.frames) kept.push_back(frame.step);
+      throw InputError(fmt::format("no frame of step {}", step),
+                       fmt::format("kept are {}", fmt::join(kept, ", ")));
+    }
+    frames.push_back(k);
+  }
+  return frames;
+}
+
+void draw(const Options& options) {
+  const Field field = field_of(options.field);
+  const std::string out = options.out.empty() ? options.directory + "/picture.png" : options.out;
+  const std::string path = options.directory + "/rasters.h5";
+  if (!std::filesystem::exists(path))
+    throw InputError(fmt::format("{} holds no pictures: no file rasters.h5", options.directory),
+                     "'cuboct run SCENE --out DIR' makes one");
+  const Rasters rasters = read_rasters(path);
+  RasterPicture picture{field, frames_of(rasters, options.steps), options.limit, options.width};
+  if (options.steps.empty()) picture.frames = spread_frames(rasters.frames.size());
+  check_writable(out);
+  const std::string png = plot_rasters(rasters, picture);
+  write_text(out, png);
+  fmt::print("{}\n", out);
+}
+
+}  // namespace
+
+void add_picture(CLI::App& app, int&) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("picture", "draw the frames of a run's directory, of bodies of any size");
+  command->add_option("directory", options->directory, "what 'cuboct run --out' wrote")->required()->type_name("DIR");
+  command->add_option("--out", options->out, "the PNG file; default: DIR/picture.png")->type_name("FILE");
+  command->add_option("--field", options->field, "strain, speed or thickness")->capture_default_str();
+  command->add_option("--steps", options->steps, "frames to draw, by their steps; default: up to four")
+      ->delimiter(',')
+      ->check(whole_number())
+      ->type_name("N,...");
+  command
+      ->add_option("--limit", options->limit,
+                   "where the colours end: strain (0.01 is 1 %), m/s or m; default: the 90th percentile")
+      ->check(CLI::PositiveNumber)
+      ->type_name("V");
+  command->add_option("--width", options->width, "pixels of the picture")
+      ->check(CLI::Range(400, 16384))
+      ->capture_default_str()
+      ->type_name("PX");
+  command->callback([options] { draw(*options); });
+}
+
+}  // namespace cuboct

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+#include <string_view>
+
+#include "gpu_ref/bench.h"
+#include "gpu_ref/program.h"
+
+int main(int argc, char** argv) {
+  if (argc > 1 && argv[1] == std::string_view("bench")) return cuboct::gpu::run_bench(argc - 1, argv + 1);
+  return cuboct::gpu::run_gpu_program(argc, argv);
+}

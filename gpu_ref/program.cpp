@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_ref/program.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "gpu_ref/run.h"
+#include "hw/setup.h"
+#include "model/interrupt.h"
+#include "model/output.h"
+#include "model/state_meter.h"
+#include "model/steps.h"
+
+namespace cuboct::gpu {
+namespace {
+
+struct Request {
+  std::string scene, arch, out, frames_file, precision = "fixed";
+  std::optional<uint64_t> steps;
+  std::vector<uint64_t> frames;
+  int gpus = 0;
+  bool frames_given = false, devices_given = false, hashes_given = false, bench = false;
+  GpuRun run;
+};
+
+Arithmetic arithmetic_of(const std::string& name) {
+  for (const Arithmetic arithmetic : {Arithmetic::float32, Arithmetic::float64})
+    if (name == to_string(arithmetic)) return arithmetic;
+  return Arithmetic::fixed;
+}
+
+// The devices of the run, by their names, one after another. Fills in Options::devices.
+std::vector<std::string> choose_devices(const Request& request, Options& options) {
+  std::string why;
+  const std::vector<Device> found = find_devices(&why);
+  if (found.empty()) throw InputError("the gpu engine needs a CUDA device: " + why);
+  if (request.gpus > static_cast<int>(found.size()))
+    throw InputError(fmt::format("--gpus {}: this machine has {} CUDA device{}", request.gpus, found.size(),
+                                 found.size() == 1 ? "" : "s"),
+                     "--devices 0,0 puts two parts of a scene on one");
+  if (request.gpus > 0) {
+    options.devices.clear();
+    for (int k = 0; k < request.gpus; ++k) options.devices.push_back(found[k].ordinal);
+  } else if (!request.devices_given) {
+    options.devices = {found.front().ordinal};
+  }
+  std::vector<std::string> names;
+  for (const int ordinal : options.devices) {
+    const auto at = std::find_if(found.begin(), found.end(), [&](auto& d) { return d.ordinal == ordinal; });
+    if (at == found.end()) {
+      std::vector<int> ordinals;
+      for (const Device& device : found) ordinals.push_back(device.ordinal);
+      throw InputError(fmt::format("--devices: there is no CUDA device {}", ordinal),
+                       fmt::format("one of {}", fmt::join(ordinals, ", ")));
+    }
+    names.push_back(at->name);
+  }
+  return names;
+}
+
+void check(const Request& request) {
+  if (request.out.empty() && !request.bench) throw InputError("--out is required");
+  if (!request.out.empty()) check_writable(request.out);
+  if (request.run.hash_every == 0) throw InputError("--hash-every: 0 is not a number of steps");
+  if (request.run.engine.block % 32 != 0 || request.run.engine.block < 32 || request.run.engine.block > 256)
+    throw InputError(fmt::format("--block {}: not a multiple of 32 from 32 to 256", request.run.engine.block));
+  if (request.precision == "fixed" && request.run.forces)
+    throw InputError("--forces goes with --precision float or double", "fixed states determine their forces");
+  if (request.precision != "fixed" && request.hashes_given)
+    throw InputError("--hash-every goes with --precision fixed", "states in real numbers have no hash");
+}
+
+void print_bench(const Trace& trace, uint64_t particles) {
+  const double seconds = std::max(trace.seconds, 1e-9);
+  fmt::print("gpu.particle_steps {:.6g} 1/s\n",
+             static_cast<double>(trace.steps()) * static_cast<double>(particles) / seconds);
+  for (const auto& [name, value] : trace.counters) fmt::print("gpu.{} {:.15g} 1\n", name, value);
+  fmt::print("gpu.seconds {:.6g} s\n", trace.seconds);
+}
+
+int run(Request request) {
+  GpuRun& run = request.run;
+  check(request);
+  const std::vector<std::string> names = choose_devices(request, run.engine);
+  if (!request.frames_file.empty()) request.frames = read_steps(request.frames_file);
+  const Scene scene = read_scene(request.scene);
+  const Plan plan = plan_of(scene, read_arch(request.arch));
+  run.arithmetic = arithmetic_of(request.precision);
+  run.steps = request.steps.value_or(scene.steps);
+  run.frames = std::move(request.frames);
+  put_in_order(run.frames);
+  if (!request.frames_given && !request.bench) run.frames = {0, run.steps};
+  if (run.watch) run.energies = true;
+  // Energies are read at the first and the last step too.
+  run.probes = run.energies ? every_so_often(scene.probe_every, run.steps) : probe_steps_of(scene, run.steps);
+  run.totals = !request.bench;
+  // A benchmark times steps: its one hash is the last state's.
+  if (request.bench) run.hash_every = std::max<uint64_t>(run.steps, 1);
+
+  catch_interrupts();
+  GpuResult result = run_gpu(scene, plan, run);
+  Trace& trace = result.trace;
+  for (size_t k = 0; k < names.size(); ++k) trace.notes.emplace_back(fmt::format("device {}", k), names[k]);
+  if (!request.out.empty()) write_trace(request.out, trace);
+  if (request.bench)
+    print_bench(trace, plan.particles);
+  else
+    fmt::print("{} steps of {} particles on {}, {:.3g} particle-steps/s\n", trace.steps(), plan.particles,
+               fmt::join(names, ", "),
+               static_cast<double>(trace.steps()) * plan.particles / std::max(trace.seconds, 1e-9));
+  for (const Finding& finding : trace.findings) fmt::print("warning: {}\n", finding.text);
+  if (result.interrupted && !trace.stop) fmt::print("interrupted after step {}\n", trace.steps());
+  if (trace.stop) fmt::print(stderr, "{}: {}\n", request.scene, trace.stop->text);
+  return result.interrupted || trace.stop || !trace.findings.empty() ? 1 : 0;
+}
+
+}  // namespace
+
+int run_gpu_program(int argc, char** argv) {
+  Request request;
+  GpuRun& run = request.run;
+  CLI::App app{"Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers", "cuboct-gpu"};
+  app.add_option("scene", request.scene, "Scene file (TOML)")->required();
+  app.add_option("--arch", request.arch, "Machine description (TOML); the defaults without one");
+  app.add_option("--steps", request.steps, "Steps to run; the scene's own number without it");
+  app.add_option("--precision", request.precision, "fixed (golden's bits), float or double")
+      ->check(CLI::IsMember({"fixed", "float", "double"}))
+      ->capture_default_str();
+  auto* devices = app.add_option("--devices", run.engine.devices,
+                                 "CUDA's ordinals, one per slab of the scene; the first device without it")
+                      ->delimiter(',');
+  app.add_option("--gpus", request.gpus, "The first N devices")->check(CLI::Range(1, 64))->excludes(devices);
+  app.add_option("--block", run.engine.block, "Threads of a block")->capture_default_str();
+  app.add_option("--out", request.out, "Trace file to write (HDF5)");
+  auto* frames = app.add_option("--frames", request.frames,
+                                "Steps whose states are kept; the first and the last without it")
+                     ->delimiter(',');
+  auto* frames_file =
+      app.add_option("--frames-file", request.frames_file, "The same from a file, one step per line")
+          ->excludes(frames);
+  app.add_flag("--forces", run.forces, "Frames in real numbers hold the pair forces too");
+  app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
+  app.add_flag("--watch", run.watch, "Look for what makes a run wrong; energies are measured with it");
+  auto* hashes = app.add_option("--hash-every", run.hash_every, "The state's hash each so many steps")
+                     ->capture_default_str();
+  app.add_flag("--bench", request.bench, "Print 'name value unit' lines; no trace unless --out asks for one");
+  app.add_flag("--progress", run.progress, "A line per second on standard error");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  request.frames_given = frames->count() > 0 || frames_file->count() > 0;
+  request.devices_given = devices->count() > 0;
+  request.hashes_given = hashes->count() > 0;
+  try {
+    return cuboct::gpu::run(std::move(request));
+  } catch (const InputError& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "cuboct-gpu: {}\n", e.what());
+    return 1;
+  }
+}
+
+}  // namespace cuboct::gpu

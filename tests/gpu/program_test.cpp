@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+// The gpu engine as users meet it: `cuboct` with cuboct-gpu beside it, here the one that computes on the host.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "gpu_ref/run.h"
+#include "model/trace.h"
+#include "tests/cli/shell.h"
+
+namespace cuboct {
+namespace {
+
+using test::Answer;
+using test::contents;
+
+const std::string kBlock = "scenes/lj_block.toml";
+
+class GpuProgram : public testing::Test {
+ protected:
+  GpuProgram() { std::filesystem::copy(CUBOCT_GPU_HOST, bench_.path("bin/cuboct-gpu")); }
+
+  // Runs cuboct-gpu itself, in the root of the sources.
+  Answer program(const std::string& arguments) const {
+    const std::string out = bench_.path("gpu.out"), err = bench_.path("gpu.err");
+    const std::string command = "cd " CUBOCT_SOURCE_DIR " && " + bench_.path("bin/cuboct-gpu") + " " + arguments +
+                                " >" + out + " 2>" + err + " </dev/null";
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), contents(out), contents(err)};
+  }
+  Trace run(const std::string& name, std::vector<std::string> arguments, int code = 0) const {
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--out", bench_.path(name)});
+    answer_ = bench_.cuboct(arguments);
+    EXPECT_EQ(answer_.code, code) << answer_.out << answer_.err;
+    return read_trace(bench_.path(name) + "/trace.h5");
+  }
+  void expect_refusal(const std::vector<std::string>& arguments, const std::string& text) const {
+    const Answer answer = bench_.cuboct(arguments);
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_EQ(answer.err, text);
+    EXPECT_EQ(answer.out, "");
+  }
+
+  test::Bench bench_{false};
+  mutable Answer answer_;
+};
+
+std::string lines_with(const std::string& text, const std::string& word) {
+  std::istringstream in(text);
+  std::string found;
+  for (std::string line; std::getline(in, line);)
+    if (line.find(word) != std::string::npos) found += line + "\n";
+  return found;
+}
+
+// The same names, units and steps, and values to `tolerance` of the largest of the curve.
+void expect_curves(const Trace& a, const Trace& b, double tolerance) {
+  ASSERT_EQ(a.curves.size(), b.curves.size());
+  ASSERT_FALSE(a.curves.empty());
+  for (size_t k = 0; k < a.curves.size(); ++k) {
+    const Curve &one = a.curves[k], &other = b.curves[k];
+    EXPECT_EQ(one.name, other.name);
+    EXPECT_EQ(one.unit, other.unit);
+    EXPECT_EQ(one.step, other.step);
+    double most = 0;
+    for (const double value : other.value) most = std::max(most, std::abs(value));
+    ASSERT_EQ(one.value.size(), other.value.size());
+    for (size_t i = 0; i < one.value.size(); ++i)
+      EXPECT_NEAR(one.value[i], other.value[i], tolerance * most) << one.name << " at step " << one.step[i];
+  }
+}
+
+TEST_F(GpuProgram, HasGoldensBits) {
+  Answer answer = bench_.cuboct({"crosscheck", kBlock, "--steps", "5", "--engines", "golden,lattice,gpu"});
+  EXPECT_EQ(answer.out, "matched 1280 updates over 5 steps in 3 engines\n");
+  EXPECT_EQ(answer.err, "");
+  EXPECT_EQ(answer.code, 0);
+  answer = bench_.cuboct(
+      {"crosscheck", "scenes/coupon.toml", "--steps", "5", "--engines", "lattice,gpu", "--gpus", "2"});
+  EXPECT_EQ(answer.out, "matched 13455 updates over 5 steps in 2 engines\n") << answer.err;
+}
+
+TEST_F(GpuProgram, LeavesTheSameFilesAsGolden) {
+  const std::vector<std::string> scene{"scenes/coupon.toml", "--steps", "60", "--frames-every", "30"};
+  std::vector<std::string> golden = scene, gpu = scene;
+  golden.insert(golden.end(), {"--engine", "golden"});
+  gpu.insert(gpu.end(), {"--engine", "gpu", "--hash-every", "25"});
+  const Trace a = run("gpu", gpu), b = run("golden", golden);
+  expect_curves(a, b, 1e-11);
+  EXPECT_EQ(a.curves.front().name, b.curves.front().name);
+  ASSERT_EQ(a.frames.size(), 3u);
+  for (size_t k = 0; k < 3; ++k) EXPECT_EQ(a.frames[k], b.frames[k]);
+  ASSERT_EQ(a.state_hash.size(), 4u);
+  for (size_t k = 0; k < 4; ++k) EXPECT_EQ(a.state_hash[k], b.state_hash[std::min<size_t>(25 * k, 60)]);
+  EXPECT_TRUE(a.bodies.empty());
+  for (const char* file : {"/frames.xyz", "/frames_000001.vtp", "/plan.txt"}) {
+    EXPECT_NE(contents(bench_.path("gpu") + file), "") << file;
+    EXPECT_EQ(contents(bench_.path("gpu") + file), contents(bench_.path("golden") + file)) << file;
+  }
+  for (const char* line : {"momentum change", "energy   ", "state hash", "plan hash"})
+    EXPECT_EQ(lines_with(contents(bench_.path("gpu") + "/summary.json"), line),
+              lines_with(contents(bench_.path("golden") + "/summary.json"), line));
+}
+
+TEST_F(GpuProgram, TellsAFaultAsGoldenDoes) {
+  const std::vector<std::string> scene{"scenes/failures/velocity.toml"};
+  const Trace gpu = run("gpu", {"scenes/failures/velocity.toml", "--engine", "gpu"}, 1);
+  const Answer told = answer_;
+  const Trace golden = run("golden", {"scenes/failures/velocity.toml", "--engine", "golden"}, 1);
+  ASSERT_TRUE(gpu.stop && golden.stop);
+  EXPECT_EQ(*gpu.stop, *golden.stop);
+  EXPECT_EQ(gpu.steps(), golden.steps());
+  EXPECT_EQ(gpu.state_hash.back(), golden.state_hash.back());
+  for (const char* line : {"stopped", "advice", "last look"})
+    EXPECT_EQ(lines_with(told.out, line), lines_with(answer_.out, line));
+  EXPECT_EQ(told.err, "scenes/failures/velocity.toml: " + golden.stop->text + "\n");
+}
+
+TEST_F(GpuProgram, WatchesAsGoldenDoes) {
+  const std::string scene = "scenes/failures/constraint_work.toml";
+  const Trace gpu = run("gpu", {scene, "--engine", "gpu"}, 1);
+  const std::string told = lines_with(answer_.out, "warning: ");
+  EXPECT_NE(told, "");
+  run("golden", {scene, "--engine", "golden"}, 1);
+  EXPECT_EQ(told, lines_with(answer_.out, "warning: "));
+  EXPECT_EQ(gpu.findings.size(), 1u);
+  EXPECT_EQ(gpu.watched, gpu.steps());
+  const Trace silent = run("silent", {scene, "--engine", "gpu", "--no-watch"});
+  EXPECT_FALSE(silent.watched);
+  EXPECT_EQ(lines_with(answer_.out, "warning"), "");
+}
+
+TEST_F(GpuProgram, MeasuresRealNumbersAsTheReferenceDoes) {
+  for (const std::string precision : {"double", "float"}) {
+    const auto of = [&](const char* engine) {
+      return run(engine, {kBlock, "--steps", "20", "--frames-every", "10", "--precision", precision, "--engine",
+                          engine});
+    };
+    const Trace gpu = of("gpu");
+    const std::string told = answer_.out;
+    expect_curves(gpu, of("reference"), precision == "float" ? 1e-5 : 1e-12);
+    EXPECT_EQ(gpu.curves.back().name, "pressure");
+    ASSERT_EQ(gpu.bodies.size(), 3u);
+    EXPECT_EQ(gpu.bodies[1].step, 10u);
+    EXPECT_EQ(gpu.bodies[1].x.size(), 256u);
+    EXPECT_TRUE(gpu.bodies[1].force.empty());
+    EXPECT_TRUE(gpu.state_hash.empty());
+    EXPECT_EQ(gpu.steps(), 20u);
+    EXPECT_NE(lines_with(told, "precision        " + precision), "");
+    EXPECT_NE(contents(bench_.path("gpu") + "/frames.xyz"), "");
+  }
+}
+
+TEST_F(GpuProgram, EndsEarlyWhenItIsAsked) {
+  const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--steps", "100000000", "--out",
+                                       bench_.path("run"), "--hash-every", "1000000"},
+                                      1.5);
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_EQ(answer.err, "interrupted\n");
+  const Trace trace = read_trace(bench_.path("run") + "/trace.h5");
+  EXPECT_GT(trace.steps(), 0u);
+  EXPECT_EQ(trace.frames.back().step, trace.steps());
+  EXPECT_EQ(trace.curves.back().step.back(), trace.steps());
+  EXPECT_FALSE(trace.stop);
+}
+
+TEST_F(GpuProgram, RefusesWhatItCannotDo) {
+  std::vector<std::string> gpu{"run", kBlock, "--engine", "gpu", "--steps", "1"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = gpu;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  expect_refusal(with({"--integrator", "verlet"}),
+                 "--integrator is an option of the reference engine, not of gpu\n");
+  expect_refusal(with({"--threads", "2"}),
+                 "--threads is an option of the lattice and the reference engine, not of gpu\n");
+  expect_refusal(with({"--cycles"}), "--cycles is an option of the lattice engine, not of gpu\n");
+  expect_refusal(with({"--gpus", "9"}),
+                 "--gpus 9: this machine has 8 CUDA devices\n  hint: --devices 0,0 puts two parts of a scene on one\n");
+  expect_refusal(with({"--devices", "0,17"}), "--devices: there is no CUDA device 17\n  hint: one of 0, 1, 2, 3, 4, 5, 6, 7\n");
+  expect_refusal(with({"--precision", "float", "--hash-every", "5"}),
+                 "--hash-every goes with --precision fixed\n  hint: states in real numbers have no hash\n");
+  expect_refusal({"run", kBlock, "--engine", "reference", "--precision", "fixed"},
+                 "--precision fixed: the reference engine computes in doubles or floats\n"
+                 "  hint: lattice, golden and gpu compute in the fixed rule's integers\n");
+  expect_refusal({"run", kBlock, "--gpus", "2"}, "--gpus is an option of the gpu engine, not of lattice\n");
+  expect_refusal({"run", kBlock, "--engine", "golden", "--devices", "0"},
+                 "--devices is an option of the gpu engine, not of golden\n");
+}
+
+TEST_F(GpuProgram, SaysWhatIsMissing) {
+  std::filesystem::remove(bench_.path("bin/cuboct-gpu"));
+  const std::string text =
+      "the gpu engine is not built: no program cuboct-gpu beside cuboct\n"
+      "  hint: install the CUDA toolkit (nvcc), configure and build again\n";
+  expect_refusal({"run", kBlock, "--engine", "gpu"}, text);
+  expect_refusal({"crosscheck", kBlock, "--engines", "golden,gpu"}, text);
+}
+
+TEST_F(GpuProgram, StandsAlone) {
+  const std::string out = bench_.path("alone.h5"), to = kBlock + " --steps 4 --out " + out;
+  EXPECT_EQ(program(to).code, 0);
+  const Trace trace = read_trace(out);
+  ASSERT_EQ(trace.frames.size(), 2u);
+  EXPECT_EQ(trace.frames[1].step, 4u);
+  EXPECT_EQ(trace.state_hash.size(), 5u);
+  EXPECT_TRUE(trace.curves.empty());  // the scene has no probes
+  EXPECT_EQ(program(to + " --frames 3 --precision double --forces").code, 0);
+  const Trace real = read_trace(out);
+  ASSERT_EQ(real.bodies.size(), 2u);
+  EXPECT_EQ(real.bodies[0].step, 3u);
+  // The force of a step is what it adds to the velocity; nothing else acts here. Mass and dt: kBlock's.
+  for (size_t i = 0; i < 256; ++i) {
+    const Vec3 gained = (real.bodies[1].v[i] - real.bodies[0].v[i]) / 0.004;
+    EXPECT_LT((gained - real.bodies[0].force[i]).norm(), 1e-9 * (1 + gained.norm()));
+  }
+  const Answer bench = program(kBlock + " --steps 4 --bench");
+  EXPECT_EQ(bench.code, 0);
+  EXPECT_NE(lines_with(bench.out, "gpu.particle_steps "), "");
+  EXPECT_NE(lines_with(bench.out, "gpu.list_builds "), "");
+  for (const auto& [arguments, text] : {
+           std::pair<std::string, std::string>{kBlock, "--out is required\n"},
+           {to + " --block 100", "--block 100: not a multiple of 32 from 32 to 256\n"},
+           {to + " --forces", "--forces goes with --precision float or double\n  hint: fixed states determine their forces\n"},
+           {to + " --hash-every 0", "--hash-every: 0 is not a number of steps\n"}}) {
+    const Answer refused = program(arguments);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_EQ(refused.err, text);
+  }
+}
+
+TEST(GpuLooks, AreAllOrAboutTwenty) {
+  std::vector<uint64_t> probes;
+  for (uint64_t k = 0; k <= 1000; ++k) probes.push_back(10 * k);
+  EXPECT_EQ(gpu::looks_of(probes, 1000), probes);
+  const auto few = gpu::looks_of(probes, 10'000'000);  // 1001 looks would be 1e10 particles
+  EXPECT_EQ(few.size(), 20u);
+  EXPECT_EQ(few.front(), 0u);
+  EXPECT_EQ(few[1], 510u);
+  EXPECT_TRUE(gpu::looks_of({}, 1000).empty());
+  EXPECT_EQ(gpu::looks_of({0, 7}, 1'000'000'000), (std::vector<uint64_t>{0, 7}));
+}
+
+}  // namespace
+}  // namespace cuboct

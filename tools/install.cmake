@@ -1,0 +1,17 @@
+# `cmake --install build --strip --prefix DIR`: a directory for machines that have none of our packages. DIR/bin has
+# the programs that need no more than a shell, DIR/lib every shared library they load but glibc's, which comes with
+# each system and must be its own.
+set(installed cuboct)
+if(TARGET cuboct-gpu)
+  list(APPEND installed cuboct-gpu)
+endif()
+foreach(program ${installed})
+  # RPATH, not RUNPATH: it holds for what the libraries themselves load too.
+  target_link_options(${program} PRIVATE -Wl,--disable-new-dtags)
+  set_target_properties(${program} PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
+endforeach()
+install(TARGETS ${installed} RUNTIME_DEPENDENCY_SET libraries RUNTIME DESTINATION bin)
+install(RUNTIME_DEPENDENCY_SET libraries
+  PRE_EXCLUDE_REGEXES "^ld-linux" "^lib(c|m|mvec|dl|rt|pthread|resolv|util|anl)\\.so"
+  LIBRARY DESTINATION lib)
+install(DIRECTORY scenes DESTINATION .)
