@@ -87,7 +87,7 @@ std::optional<RowResult> measure_row(const BenchRow& row, BenchBody& body, const
   result.particles = scene.body.size();
   EnergyMeter meter(power, options.times);
   if (options.energy) meter.idle();
-  engine->advance(row.scene.settle_steps());
+  engine->advance(options.settle.value_or(row.scene.settle_steps()));
   result.steps = steps_for(*engine, options.seconds);
   while (!interrupted()) {
     result.seconds.clear();
