@@ -7,11 +7,12 @@
 #include <optional>
 
 #include "cli/command.h"
+#include "cli/crosscheck_real.h"
 #include "cli/engines.h"
-#include "model/interrupt.h"
 #include "cli/launch.h"
 #include "cli/run_gpu.h"
 #include "cli/run_lattice.h"
+#include "model/interrupt.h"
 
 #include "model/compare.h"
 #include "model/output.h"
@@ -25,6 +26,7 @@ struct Options {
   std::vector<std::string> engines{"golden", "lattice", "systemc", "rtl"};
   LatticeChoice lattice;
   GpuChoice gpu;
+  std::string precision;
   std::string out;
   uint64_t steps = 0;
   bool steps_given = false;
@@ -33,8 +35,8 @@ struct Options {
 bool runs_here(const std::string& engine) { return engine == "golden" || engine == "lattice"; }
 bool counts_cycles(const std::string& engine) { return engine == "systemc" || engine == "rtl"; }
 
-// Programs run beside golden and lattice, which run here. Lattice counts cycles where another engine does, but
-// for links that stall.
+// Programs run beside golden and lattice, which run here. Lattice counts cycles where another engine does,
+// but for links that stall.
 std::vector<Trace> run_all(const std::vector<std::string>& engines, const Options& options,
                            const Loaded& loaded, const Request& request, const std::string& directory) {
   const Input& input = options.input;
@@ -89,7 +91,27 @@ std::string explain(const Options& options, const Loaded& loaded, const std::str
       step);
 }
 
+// Whether numbers are to be compared instead of bits.
+bool of_real_numbers(const Options& options) {
+  std::vector<std::string> sorted = options.engines;
+  std::sort(sorted.begin(), sorted.end());
+  const bool real = sorted == std::vector<std::string>{"gpu", "reference"};
+  if (!real && !options.precision.empty())
+    throw InputError("--precision goes with --engines reference,gpu",
+                     "other engines compute in the fixed rule");
+  return real;
+}
+
 int crosscheck(Options options) {
+  if (of_real_numbers(options)) {
+    if (!options.out.empty()) {
+      make_directory(options.out);
+      check_writable(options.out + "/gpu.h5");
+    }
+    return crosscheck_real(options.input, options.gpu,
+                           options.precision.empty() ? "float" : options.precision,
+                           options.steps_given ? std::optional(options.steps) : std::nullopt, options.out);
+  }
   for (const std::string& engine : options.engines) {
     if (engine == "reference")
       throw InputError("engine 'reference' computes in doubles and has no bits to compare",
@@ -99,7 +121,8 @@ int crosscheck(Options options) {
   std::vector<std::string> sorted = options.engines;
   std::sort(sorted.begin(), sorted.end());
   if (std::unique(sorted.begin(), sorted.end()) != sorted.end() || sorted.size() < 2)
-    throw InputError("a crosscheck needs two or more different engines", "--engines golden,lattice,systemc,rtl");
+    throw InputError("a crosscheck needs two or more different engines",
+                     "--engines golden,lattice,systemc,rtl");
   const Loaded loaded = load(options.input);
   catch_interrupts();
   const Setup& setup = loaded.setup;
@@ -172,6 +195,10 @@ void add_crosscheck(CLI::App& app, int& exit_code) {
   command->add_option("--engines", options->engines, "which ones; default: golden,lattice,systemc,rtl")
       ->delimiter(',')
       ->type_name("A,B,...");
+  command
+      ->add_option("--precision", options->precision,
+                   "float (default) or double: the numbers of gpu against reference, within bounds")
+      ->check(CLI::IsMember({"float", "double"}));
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
                     ->check(whole_number())
                     ->type_name("N");

@@ -63,7 +63,7 @@ RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::Latti
   emu::LatticeResult result =
       run_on_lattice(options.input, loaded.scene, loaded.setup.plan, options.lattice, std::move(request));
   trace = std::move(result.trace);
-  return {result.momentum_before, result.momentum_after, result.largest_speed, trace.curves,
+  return {result.momentum_before,     result.momentum_after,      result.largest_speed, trace.curves,
           result.watched.has_value(), std::move(result.findings), result.watched};
 }
 
@@ -172,11 +172,14 @@ void add_run(CLI::App& app, int& exit_code) {
   lattice.add_to(*command);
   options->real.add_to(*command);
   options->gpu.add_to(*command);
-  auto* hashes =
-      command->add_option("--hash-every", lattice.hash_every, "steps between two hashes of lattice's or gpu's state")
-          ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))
-          ->capture_default_str()
-          ->type_name("K");
+  command->add_flag("--joules", options->gpu.joules,
+                    "measure the energy of gpu's devices, which rest for two seconds first");
+  auto* hashes = command
+                     ->add_option("--hash-every", lattice.hash_every,
+                                  "steps between two hashes of lattice's or gpu's state")
+                     ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))
+                     ->capture_default_str()
+                     ->type_name("K");
   command->add_flag("--cycles", lattice.cycles, "count the machine's cycles in lattice");
   command
       ->add_option("--checkpoint-every", lattice.checkpoint_every,
@@ -185,7 +188,9 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--resume", lattice.resume, "go on from the checkpoint in DIR");
   command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
       ->type_name("DIR");
-  command->add_option("--raster", options->raster, "pixels along the body of the pictures that DIR keeps of its frames")
+  command
+      ->add_option("--raster", options->raster,
+                   "pixels along the body of the pictures that DIR keeps of its frames")
       ->check(CLI::Range(16u, 16384u))
       ->capture_default_str()
       ->type_name("PX");

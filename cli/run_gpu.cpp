@@ -87,10 +87,12 @@ Items summarise_gpu(const Loaded& loaded, Trace trace, const std::string& precis
 }  // namespace
 
 void GpuChoice::add_to(CLI::App& command) {
-  auto* list = command.add_option("--devices", devices, "devices of gpu by CUDA's ordinals, one per part of the scene")
-                   ->delimiter(',')
-                   ->check(CLI::Range(0, 1023))
-                   ->type_name("A,B,...");
+  auto* list =
+      command
+          .add_option("--devices", devices, "devices of gpu by CUDA's ordinals, one per part of the scene")
+          ->delimiter(',')
+          ->check(CLI::Range(0, 1023))
+          ->type_name("A,B,...");
   command.add_option("--gpus", gpus, "the first N devices of gpu; default: one")
       ->check(CLI::Range(1, 64))
       ->excludes(list)
@@ -103,10 +105,11 @@ void GpuChoice::check_unused(const std::string& engine) const {
   };
   refuse(gpus > 0, "--gpus");
   refuse(!devices.empty(), "--devices");
+  refuse(joules, "--joules");
 }
 
-RunningEngine start_gpu(const Input& input, const GpuChoice& choice, const GpuRequest& request, std::string path,
-                        bool progress) {
+RunningEngine start_gpu(const Input& input, const GpuChoice& choice, const GpuRequest& request,
+                        std::string path, bool progress) {
   std::vector<std::string> more{"--precision", request.precision};
   const auto add = [&](bool wanted, std::initializer_list<std::string> words) {
     if (wanted) more.insert(more.end(), words);
@@ -117,6 +120,7 @@ RunningEngine start_gpu(const Input& input, const GpuChoice& choice, const GpuRe
   add(request.energies, {"--energies"});
   add(request.watch, {"--watch"});
   add(request.forces, {"--forces"});
+  add(choice.joules, {"--joules"});
   return {"gpu", input, request, std::move(path), progress, more};
 }
 

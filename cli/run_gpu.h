@@ -15,8 +15,9 @@ namespace cuboct {
 
 // What the command line says about the gpu engine.
 struct GpuChoice {
-  int gpus = 0;               // the first so many devices; 0: one
-  std::vector<int> devices;   // or these, by CUDA's ordinals
+  int gpus = 0;              // the first so many devices; 0: one
+  std::vector<int> devices;  // or these, by CUDA's ordinals
+  bool joules = false;       // measure energy; of `run` alone
 
   void add_to(CLI::App& command);  // --gpus and --devices
   // Throws InputError where an option is given that only the gpu engine has.
@@ -28,12 +29,12 @@ struct GpuRequest : Request {
   uint64_t hash_every = 0;          // 0: none; of a fixed run alone
   bool watch = false;               // energies are measured then too
   bool energies = true;
-  bool forces = false;              // frames in real numbers hold the pair forces
+  bool forces = false;  // frames in real numbers hold the pair forces
 };
 
 // The engine at work; see RunningEngine.
-RunningEngine start_gpu(const Input& input, const GpuChoice& choice, const GpuRequest& request, std::string path,
-                        bool progress);
+RunningEngine start_gpu(const Input& input, const GpuChoice& choice, const GpuRequest& request,
+                        std::string path, bool progress);
 
 struct GpuAnswer {
   Trace trace;

@@ -26,8 +26,9 @@ constexpr size_t kParticlesPerThread = 2000;
 
 void RealChoice::add_to(CLI::App& command) {
   command
-      .add_option("--precision", precision,
-                  "the numbers of reference, double (default) or float, and of gpu, fixed (default), float or double")
+      .add_option(
+          "--precision", precision,
+          "the numbers of reference, double (default) or float, and of gpu, fixed (default), float or double")
       ->check(CLI::IsMember({"fixed", "float", "double"}));
   command
       .add_option("--integrator", integrator,
@@ -115,7 +116,8 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
   items.add("momentum change", (reference.momentum() - before).norm(), "kg m/s",
             keeps_momentum(scene.rule) ? "" : "held or driven from outside");
   add_energy(items, scene, run.trace.curves);
-  items.add("largest speed", reference.largest_speed() * scene.rule.dt / loaded.setup.plan.rule.cell_edge, "node/step");
+  items.add("largest speed", reference.largest_speed() * scene.rule.dt / loaded.setup.plan.rule.cell_edge,
+            "node/step");
   std::vector<Finding> findings = detectors.findings();
   if (const auto far = options.precision == Precision::float32 ? find_far_origin(scene) : std::nullopt)
     findings.insert(findings.begin(), *far);

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "gpu_ref/power.h"
 #include "gpu_ref/run.h"
 #include "hw/setup.h"
 #include "model/interrupt.h"
@@ -24,7 +25,7 @@ struct Request {
   std::optional<uint64_t> steps;
   std::vector<uint64_t> frames;
   int gpus = 0;
-  bool frames_given = false, devices_given = false, hashes_given = false, bench = false;
+  bool frames_given = false, devices_given = false, hashes_given = false, bench = false, joules = false;
   GpuRun run;
 };
 
@@ -34,8 +35,8 @@ Arithmetic arithmetic_of(const std::string& name) {
   return Arithmetic::fixed;
 }
 
-// The devices of the run, by their names, one after another. Fills in Options::devices.
-std::vector<std::string> choose_devices(const Request& request, Options& options) {
+// The devices of the run, one after another. Fills in Options::devices.
+std::vector<Device> choose_devices(const Request& request, Options& options) {
   std::string why;
   const std::vector<Device> found = find_devices(&why);
   if (found.empty()) throw InputError("the gpu engine needs a CUDA device: " + why);
@@ -49,7 +50,7 @@ std::vector<std::string> choose_devices(const Request& request, Options& options
   } else if (!request.devices_given) {
     options.devices = {found.front().ordinal};
   }
-  std::vector<std::string> names;
+  std::vector<Device> chosen;
   for (const int ordinal : options.devices) {
     const auto at = std::find_if(found.begin(), found.end(), [&](auto& d) { return d.ordinal == ordinal; });
     if (at == found.end()) {
@@ -58,9 +59,9 @@ std::vector<std::string> choose_devices(const Request& request, Options& options
       throw InputError(fmt::format("--devices: there is no CUDA device {}", ordinal),
                        fmt::format("one of {}", fmt::join(ordinals, ", ")));
     }
-    names.push_back(at->name);
+    chosen.push_back(*at);
   }
-  return names;
+  return chosen;
 }
 
 void check(const Request& request) {
@@ -68,7 +69,8 @@ void check(const Request& request) {
   if (!request.out.empty()) check_writable(request.out);
   if (request.run.hash_every == 0) throw InputError("--hash-every: 0 is not a number of steps");
   if (request.run.engine.block % 32 != 0 || request.run.engine.block < 32 || request.run.engine.block > 256)
-    throw InputError(fmt::format("--block {}: not a multiple of 32 from 32 to 256", request.run.engine.block));
+    throw InputError(
+        fmt::format("--block {}: not a multiple of 32 from 32 to 256", request.run.engine.block));
   if (request.precision == "fixed" && request.run.forces)
     throw InputError("--forces goes with --precision float or double", "fixed states determine their forces");
   if (request.precision != "fixed" && request.hashes_given)
@@ -83,10 +85,45 @@ void print_bench(const Trace& trace, uint64_t particles) {
   fmt::print("gpu.seconds {:.6g} s\n", trace.seconds);
 }
 
+// Measures the energy of a run's devices.
+class Joules {
+ public:
+  Joules(const std::vector<Device>& devices, uint64_t particles)
+      : power_(buses_of(devices)), meter_(power_), particles_(particles) {}
+  Joules(const Joules&) = delete;
+  Joules& operator=(const Joules&) = delete;
+
+  Hooks hooks() {
+    return {[this] { meter_.idle(); }, [this](uint64_t steps) { meter_.did(steps); },
+            [this](Trace& trace) {
+              std::string why;
+              if (const auto energy = meter_.finish(&why)) {
+                const auto counters = energy->counters(particles_);
+                trace.counters.insert(trace.counters.end(), counters.begin(), counters.end());
+                trace.notes.emplace_back("energy by", energy->method);
+              } else {
+                trace.notes.emplace_back("energy", "not measured: " + why);
+              }
+            }};
+  }
+
+ private:
+  static std::vector<std::string> buses_of(const std::vector<Device>& devices) {
+    std::vector<std::string> buses;
+    for (const Device& device : devices) buses.push_back(device.bus);
+    return buses;
+  }
+  PowerMeter power_;
+  EnergyMeter meter_;
+  uint64_t particles_;
+};
+
 int run(Request request) {
   GpuRun& run = request.run;
   check(request);
-  const std::vector<std::string> names = choose_devices(request, run.engine);
+  const std::vector<Device> devices = choose_devices(request, run.engine);
+  std::vector<std::string> names;
+  for (const Device& device : devices) names.push_back(device.name);
   if (!request.frames_file.empty()) request.frames = read_steps(request.frames_file);
   const Scene scene = read_scene(request.scene);
   const Plan plan = plan_of(scene, read_arch(request.arch));
@@ -101,6 +138,12 @@ int run(Request request) {
   run.totals = !request.bench;
   // A benchmark times steps: its one hash is the last state's.
   if (request.bench) run.hash_every = std::max<uint64_t>(run.steps, 1);
+
+  std::optional<Joules> joules;
+  if (request.joules) {
+    joules.emplace(devices, plan.particles);
+    run.hooks = joules->hooks();
+  }
 
   catch_interrupts();
   GpuResult result = run_gpu(scene, plan, run);
@@ -124,7 +167,8 @@ int run(Request request) {
 int run_gpu_program(int argc, char** argv) {
   Request request;
   GpuRun& run = request.run;
-  CLI::App app{"Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers", "cuboct-gpu"};
+  CLI::App app{"Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers",
+               "cuboct-gpu"};
   app.add_option("scene", request.scene, "Scene file (TOML)")->required();
   app.add_option("--arch", request.arch, "Machine description (TOML); the defaults without one");
   app.add_option("--steps", request.steps, "Steps to run; the scene's own number without it");
@@ -146,6 +190,8 @@ int run_gpu_program(int argc, char** argv) {
   app.add_flag("--forces", run.forces, "Frames in real numbers hold the pair forces too");
   app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
   app.add_flag("--watch", run.watch, "Look for what makes a run wrong; energies are measured with it");
+  app.add_flag("--joules", request.joules,
+               "Measure the devices' energy, by the driver: they rest for two seconds first");
   auto* hashes = app.add_option("--hash-every", run.hash_every, "The state's hash each so many steps")
                      ->capture_default_str();
   app.add_flag("--bench", request.bench, "Print 'name value unit' lines; no trace unless --out asks for one");

@@ -4,9 +4,9 @@
 
 namespace cuboct::gpu {
 
-// Parses, runs, writes the trace. Returns the exit code: 0 done, 1 the run stopped on a fault, was interrupted, or
-// its watch found something (the trace is written all the same), 2 the input or the command line is wrong, or
-// there is no device.
+// Parses, runs, writes the trace. Returns the exit code: 0 done, 1 the run stopped on a fault, was
+// interrupted, or its watch found something (the trace is written all the same), 2 the input or the command
+// line is wrong, or there is no device.
 int run_gpu_program(int argc, char** argv);
 
 }  // namespace cuboct::gpu

@@ -32,7 +32,11 @@ uint64_t sooner(const std::vector<uint64_t>& ascending, uint64_t step, uint64_t 
   return at == ascending.end() ? next : std::min(*at, next);
 }
 
-int threads_of_host() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+// A thread of its own for some 2000 particles.
+int threads_for(size_t particles) {
+  return static_cast<int>(
+      std::clamp<size_t>(particles / 2000, 1, std::max(1u, std::thread::hardware_concurrency())));
+}
 
 class Loop {
  public:
@@ -66,9 +70,9 @@ class Loop {
   double volume_ = 0;          // m^3, of a box that repeats along all axes; else 0
   std::optional<Watch> watch_;
   std::unique_ptr<Engine> engine_;
-  Int3 momentum_{};             // fixed, of the initial state
-  uint64_t piece_ = 1;          // steps between two looks at the clock, where progress is shown
-  double largest_speed_ = 0;    // m/s
+  Int3 momentum_{};           // fixed, of the initial state
+  uint64_t piece_ = 1;        // steps between two looks at the clock, where somebody looks
+  double largest_speed_ = 0;  // m/s
   GpuResult result_;
   Trace& trace_;
 };
@@ -98,9 +102,10 @@ Loop::Loop(const Scene& scene, const Plan& plan, const GpuRun& request)
 std::vector<Vec3> Loop::initial_positions() const {
   std::vector<Vec3> x;
   for (const uint32_t id : ids_)
-    x.push_back(fixed() ? position_of(plan_.rule, plan_.lattice, plan_.origin,
-                                      fixed_particle(scene_.body, id, plan_.rule, plan_.lattice, plan_.origin))
-                        : scene_.body.x[id]);
+    x.push_back(fixed()
+                    ? position_of(plan_.rule, plan_.lattice, plan_.origin,
+                                  fixed_particle(scene_.body, id, plan_.rule, plan_.lattice, plan_.origin))
+                    : scene_.body.x[id]);
   return x;
 }
 
@@ -135,14 +140,15 @@ void Loop::advance(uint64_t steps) {
 void Loop::look_at(const State& state) {
   const std::vector<Int3> kicks = summed_kicks(plan_.rule, plan_.lattice, state);
   ClosestPair closest;
-  const Energies e = energies(scene_.rule, plan_.rule, plan_.lattice, plan_.origin, state, kicks, 0, &closest);
+  const Energies e =
+      energies(scene_.rule, plan_.rule, plan_.lattice, plan_.origin, state, kicks, 0, &closest);
   watch_->see(plan_.rule, plan_.lattice, plan_.origin, state, kicks, e, closest);
 }
 
 void Loop::look_at(const Body& body) {
   RealOptions options;
   options.precision = request_.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
-  options.threads = threads_of_host();
+  options.threads = threads_for(body.size());
   const Reference here(scene_.rule, body, scene_.periodic, options);
   watch_->see(engine_->step_count(), body, here.forces(), engine_->read(true).energies);
 }
@@ -199,14 +205,14 @@ void Loop::record() {
 void Loop::go() {
   record();
   Progress progress("gpu", request_.steps, plan_.particles, 0, request_.progress);
-  const bool shown = request_.progress || stderr_is_terminal();
+  const bool in_pieces = request_.progress || stderr_is_terminal() || request_.hooks.did;
   while (trace_.steps_done < request_.steps && !interrupted()) {
     const uint64_t step = trace_.steps_done;
     uint64_t to = sooner(request_.frames, step, sooner(request_.probes, step, request_.steps));
     if (fixed() && request_.hash_every > 1)
       to = std::min(to, (step / request_.hash_every + 1) * request_.hash_every);
-    const auto begin = Clock::now();
-    advance(shown ? std::min(to - step, piece_) : to - step);
+    const auto begin = Clock::now();  // a piece is long beside what a batch costs to start
+    advance(in_pieces ? std::min(to - step, piece_) : to - step);
     record();
     if (since(begin) < 0.1) piece_ *= 2;
     progress.at(trace_.steps_done);

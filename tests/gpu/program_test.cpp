@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The gpu engine as users meet it: `cuboct` with cuboct-gpu beside it, here the one that computes on the host.
+// The gpu engine as users meet it: `cuboct` with cuboct-gpu beside it, here the one that computes on the
+// host.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "gpu_ref/run.h"
@@ -25,8 +27,8 @@ class GpuProgram : public testing::Test {
   // Runs cuboct-gpu itself, in the root of the sources.
   Answer program(const std::string& arguments) const {
     const std::string out = bench_.path("gpu.out"), err = bench_.path("gpu.err");
-    const std::string command = "cd " CUBOCT_SOURCE_DIR " && " + bench_.path("bin/cuboct-gpu") + " " + arguments +
-                                " >" + out + " 2>" + err + " </dev/null";
+    const std::string command = "cd " CUBOCT_SOURCE_DIR " && " + bench_.path("bin/cuboct-gpu") + " " +
+                                arguments + " >" + out + " 2>" + err + " </dev/null";
     const int status = std::system(command.c_str());
     return {WEXITSTATUS(status), contents(out), contents(err)};
   }
@@ -136,8 +138,8 @@ TEST_F(GpuProgram, WatchesAsGoldenDoes) {
 TEST_F(GpuProgram, MeasuresRealNumbersAsTheReferenceDoes) {
   for (const std::string precision : {"double", "float"}) {
     const auto of = [&](const char* engine) {
-      return run(engine, {kBlock, "--steps", "20", "--frames-every", "10", "--precision", precision, "--engine",
-                          engine});
+      return run(engine, {kBlock, "--steps", "20", "--frames-every", "10", "--precision", precision,
+                          "--engine", engine});
     };
     const Trace gpu = of("gpu");
     const std::string told = answer_.out;
@@ -152,6 +154,53 @@ TEST_F(GpuProgram, MeasuresRealNumbersAsTheReferenceDoes) {
     EXPECT_NE(lines_with(told, "precision        " + precision), "");
     EXPECT_NE(contents(bench_.path("gpu") + "/frames.xyz"), "");
   }
+}
+
+// A cuboct-gpu that reads another scene than it was given.
+void make_wrong(const test::Bench& bench, const std::string& edit) {
+  namespace fs = std::filesystem;
+  const std::string program = bench.path("bin/cuboct-gpu");
+  fs::rename(program, program + "-sound");
+  std::ofstream(program) << "#!/bin/sh\nsed '" << edit << "' \"$1\" >" << bench.path("wrong.toml")
+                         << "\nshift\nexec " << program << "-sound " << bench.path("wrong.toml")
+                         << " \"$@\"\n";
+  fs::permissions(program, fs::perms::owner_all);
+}
+
+TEST_F(GpuProgram, OfRealNumbersIsWithinBoundsOfTheReference) {
+  for (const char* scene : {"scenes/lj_block.toml", "scenes/coupon.toml", "scenes/hot_cluster.toml"})
+    for (const std::string precision : {"float", "double"}) {
+      const Answer answer = bench_.cuboct(
+          {"crosscheck", scene, "--engines", "reference,gpu", "--precision", precision, "--steps", "30"});
+      EXPECT_EQ(answer.code, 0) << scene << "\n" << answer.out << answer.err;
+      EXPECT_NE(lines_with(answer.out, "forces at the start: largest error "), "");
+      EXPECT_NE(lines_with(answer.out, "forces after 30 steps: largest error "), "");
+      EXPECT_NE(lines_with(answer.out, "(of the reference in floats "), "");
+      EXPECT_NE(
+          lines_with(answer.out, " particles over 30 steps, gpu in " + precision + "s against the reference"),
+          "");
+    }
+}
+
+TEST_F(GpuProgram, OfALawAThousandthOffIsBeyondItsBounds) {
+  make_wrong(bench_, "s/epsilon = 1.0/epsilon = 1.001/");
+  const Answer answer = bench_.cuboct({"crosscheck", kBlock, "--engines", "gpu,reference"});
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_NE(lines_with(answer.out, "beyond its bound: particle "), "") << answer.out << answer.err;
+  EXPECT_EQ(lines_with(answer.out, "within bounds"), "");
+  // Bits: the plan is another.
+  const Answer fixed = bench_.cuboct({"crosscheck", kBlock, "--engines", "golden,gpu", "--steps", "2"});
+  EXPECT_EQ(fixed.code, 1);
+  EXPECT_NE(lines_with(fixed.out, "mismatch: plan hash: cuboct "), "");
+}
+
+TEST_F(GpuProgram, OfALongerStepIsBeyondTheBoundOfPositions) {
+  make_wrong(bench_, "s/dt = 0.004/dt = 0.0041/");
+  const Answer answer = bench_.cuboct({"crosscheck", kBlock, "--engines", "reference,gpu", "--steps", "30"});
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_NE(answer.out.find("nearest to its bound"), std::string::npos) << answer.out << answer.err;
+  EXPECT_EQ(lines_with(answer.out, "beyond its bound").find("particle"), 18u);
+  EXPECT_LT(answer.out.find("positions after"), answer.out.find("beyond its bound"));
 }
 
 TEST_F(GpuProgram, EndsEarlyWhenItIsAsked) {
@@ -179,14 +228,20 @@ TEST_F(GpuProgram, RefusesWhatItCannotDo) {
   expect_refusal(with({"--threads", "2"}),
                  "--threads is an option of the lattice and the reference engine, not of gpu\n");
   expect_refusal(with({"--cycles"}), "--cycles is an option of the lattice engine, not of gpu\n");
-  expect_refusal(with({"--gpus", "9"}),
-                 "--gpus 9: this machine has 8 CUDA devices\n  hint: --devices 0,0 puts two parts of a scene on one\n");
-  expect_refusal(with({"--devices", "0,17"}), "--devices: there is no CUDA device 17\n  hint: one of 0, 1, 2, 3, 4, 5, 6, 7\n");
+  expect_refusal(
+      with({"--gpus", "9"}),
+      "--gpus 9: this machine has 8 CUDA devices\n  hint: --devices 0,0 puts two parts of a scene on one\n");
+  expect_refusal(with({"--devices", "0,17"}),
+                 "--devices: there is no CUDA device 17\n  hint: one of 0, 1, 2, 3, 4, 5, 6, 7\n");
   expect_refusal(with({"--precision", "float", "--hash-every", "5"}),
                  "--hash-every goes with --precision fixed\n  hint: states in real numbers have no hash\n");
   expect_refusal({"run", kBlock, "--engine", "reference", "--precision", "fixed"},
                  "--precision fixed: the reference engine computes in doubles or floats\n"
                  "  hint: lattice, golden and gpu compute in the fixed rule's integers\n");
+  expect_refusal({"crosscheck", kBlock, "--engines", "golden,gpu", "--precision", "float"},
+                 "--precision goes with --engines reference,gpu\n"
+                 "  hint: other engines compute in the fixed rule\n");
+  expect_refusal({"run", kBlock, "--joules"}, "--joules is an option of the gpu engine, not of lattice\n");
   expect_refusal({"run", kBlock, "--gpus", "2"}, "--gpus is an option of the gpu engine, not of lattice\n");
   expect_refusal({"run", kBlock, "--engine", "golden", "--devices", "0"},
                  "--devices is an option of the gpu engine, not of golden\n");
@@ -199,6 +254,12 @@ TEST_F(GpuProgram, SaysWhatIsMissing) {
       "  hint: install the CUDA toolkit (nvcc), configure and build again\n";
   expect_refusal({"run", kBlock, "--engine", "gpu"}, text);
   expect_refusal({"crosscheck", kBlock, "--engines", "golden,gpu"}, text);
+}
+
+TEST_F(GpuProgram, SaysWhereNoEnergyCouldBeMeasured) {
+  const Trace trace = run("joules", {kBlock, "--steps", "2", "--engine", "gpu", "--joules"});
+  EXPECT_NE(lines_with(answer_.out, "not measured: "), "");
+  for (const auto& [name, value] : trace.counters) EXPECT_EQ(name.find("joules"), std::string::npos) << value;
 }
 
 TEST_F(GpuProgram, StandsAlone) {
@@ -222,11 +283,12 @@ TEST_F(GpuProgram, StandsAlone) {
   EXPECT_EQ(bench.code, 0);
   EXPECT_NE(lines_with(bench.out, "gpu.particle_steps "), "");
   EXPECT_NE(lines_with(bench.out, "gpu.list_builds "), "");
-  for (const auto& [arguments, text] : {
-           std::pair<std::string, std::string>{kBlock, "--out is required\n"},
-           {to + " --block 100", "--block 100: not a multiple of 32 from 32 to 256\n"},
-           {to + " --forces", "--forces goes with --precision float or double\n  hint: fixed states determine their forces\n"},
-           {to + " --hash-every 0", "--hash-every: 0 is not a number of steps\n"}}) {
+  for (const auto& [arguments, text] :
+       {std::pair<std::string, std::string>{kBlock, "--out is required\n"},
+        {to + " --block 100", "--block 100: not a multiple of 32 from 32 to 256\n"},
+        {to + " --forces",
+         "--forces goes with --precision float or double\n  hint: fixed states determine their forces\n"},
+        {to + " --hash-every 0", "--hash-every: 0 is not a number of steps\n"}}) {
     const Answer refused = program(arguments);
     EXPECT_EQ(refused.code, 2);
     EXPECT_EQ(refused.err, text);

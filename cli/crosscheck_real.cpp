@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "cli/crosscheck_real.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "cli/real_bounds.h"
+#include "model/interrupt.h"
+#include "model/process.h"
+#include "model/reference.h"
+#include "model/steps.h"
+
+namespace cuboct {
+namespace {
+
+double largest(const std::vector<Vec3>& of) {
+  double most = 0;
+  for (const Vec3& value : of) most = std::max(most, value.norm());
+  return most;
+}
+
+// Prints the particle whose error is the largest share of its bound. Whether all are within.
+template <class Bound>
+bool tell(const std::string& what, const std::vector<Vec3>& got, const std::vector<Vec3>& exact, Bound bound,
+          const char* unit, const std::string& more) {
+  double worst = -1, most = 0;
+  size_t at = 0;
+  for (size_t i = 0; i < got.size(); ++i) {
+    const double error = (got[i] - exact[i]).norm();
+    const double share = error > 0 || std::isnan(error) ? error / bound(i) : 0;
+    most = std::max(most, error);
+    if (share > worst || std::isnan(share)) worst = share, at = i;
+    if (std::isnan(share)) break;
+  }
+  fmt::print("{}: largest error {:.3g} {}{}; nearest to its bound: particle {}, {:.3g} of {:.3g} {}\n", what,
+             most, unit, more, at, (got[at] - exact[at]).norm(), bound(at), unit);
+  if (worst <= 1) return true;
+  fmt::print(
+      "beyond its bound: particle {} has ({:.9g}, {:.9g}, {:.9g}) {}, the reference ({:.9g}, {:.9g}, "
+      "{:.9g})\n",
+      at, got[at][0], got[at][1], got[at][2], unit, exact[at][0], exact[at][1], exact[at][2]);
+  return false;
+}
+
+RealOptions options_of(const Scene& scene, Precision precision) {
+  RealOptions options;
+  options.precision = precision;
+  options.threads = static_cast<int>(
+      std::clamp<size_t>(scene.body.size() / 2000, 1, std::max(1u, std::thread::hardware_concurrency())));
+  return options;
+}
+
+// The reference, as far as its distance from the gpu engine's run has a bound that tells something.
+struct Short {
+  Short(const Scene& scene, bool floats, uint64_t most);
+
+  uint64_t step = 0;
+  std::vector<Vec3> x;   // m
+  double bound = 0;      // m, on the error of any particle, of both engines
+  double of_floats = 0;  // m: largest error of the reference in floats
+};
+
+Short::Short(const Scene& scene, bool floats, uint64_t most) {
+  Reference reference(scene.rule, scene.body, scene.periodic, options_of(scene, Precision::float64));
+  Reference other(scene.rule, scene.body, scene.periodic, options_of(scene, Precision::float32));
+  const Roundings mine = gpu_roundings(scene, floats), its = reference_roundings(scene);
+  ErrorGrowth of_gpu(scene, mine), of_reference(scene, its);
+  while (step < most && !interrupted()) {
+    const Body& body = reference.body();
+    const double speed = largest(body.v);
+    of_gpu.step(force_bounds(scene, body.x, body.v, mine), speed);
+    of_reference.step(force_bounds(scene, body.x, body.v, its), speed);
+    const double next = of_gpu.position() + of_reference.position();
+    if (step > 0 && next > kRealTold(floats) * scene.rule.law->cutoff()) break;
+    bound = next;
+    reference.step();
+    other.step();
+    ++step;
+  }
+  x = reference.body().x;
+  for (size_t i = 0; i < x.size(); ++i) of_floats = std::max(of_floats, (other.body().x[i] - x[i]).norm());
+}
+
+bool check_forces(const Scene& scene, const RealFrame& frame, bool floats, const std::string& when) {
+  Body body = scene.body;
+  body.x = frame.x;
+  body.v = frame.v;
+  const std::vector<Vec3> exact =
+      Reference(scene.rule, body, scene.periodic, options_of(scene, Precision::float64)).forces();
+  const std::vector<double> mine = force_bounds(scene, body.x, body.v, gpu_roundings(scene, floats)).force;
+  const std::vector<double> its = force_bounds(scene, body.x, body.v, reference_roundings(scene)).force;
+  return tell(
+      "forces " + when, frame.force, exact, [&](size_t i) { return mine[i] + its[i]; }, "N",
+      fmt::format(", largest force {:.3g} N", largest(exact)));
+}
+
+}  // namespace
+
+int crosscheck_real(const Input& input, const GpuChoice& choice, const std::string& precision,
+                    std::optional<uint64_t> steps, const std::string& out) {
+  const Loaded loaded = load_plan(input);
+  const Scene& scene = loaded.scene;
+  catch_interrupts();
+  const bool floats = precision == "float";
+  const uint64_t last = steps.value_or(std::min(scene.steps, kRealSteps));
+  const Short exact(scene, floats, last);
+  GpuRequest request;
+  request.steps = last;
+  request.frames = {0, exact.step, last};
+  put_in_order(request.frames);
+  request.precision = precision;
+  request.energies = false;
+  request.forces = true;
+  const Scratch scratch;
+  const Trace trace =
+      start_gpu(input, choice, request, out.empty() ? scratch.path("gpu.h5") : out + "/gpu.h5", false)
+          .finish();
+  if (interrupted()) {
+    fmt::print(stderr, "interrupted\n");
+    return 1;
+  }
+  if (trace.stop || trace.steps() != last) {
+    fmt::print("gpu: {}\n", trace.stop ? trace.stop->text : fmt::format("ended at step {}", trace.steps()));
+    return 1;
+  }
+  bool within = check_forces(scene, trace.bodies.front(), floats, "at the start");
+  if (last > 0)
+    within &= check_forces(scene, trace.bodies.back(), floats, fmt::format("after {} steps", last));
+  for (const RealFrame& frame : trace.bodies)
+    if (frame.step == exact.step && exact.step > 0)
+      within &= tell(
+          fmt::format("positions after {} steps", exact.step), frame.x, exact.x,
+          [&](size_t) { return exact.bound; }, "m",
+          fmt::format(" (of the reference in floats {:.3g} m)", exact.of_floats));
+  if (within)
+    fmt::print("within bounds: {} particles over {} steps, gpu in {} against the reference in doubles\n",
+               scene.body.size(), last, floats ? "floats" : "doubles");
+  return within ? 0 : 1;
+}
+
+}  // namespace cuboct
