@@ -8,14 +8,19 @@ namespace cuboct::gpu {
 
 struct ResetControl {
   Control* control;
-  CUBOCT_DEVICE void operator()(uint32_t) const { *control = {kNever, kNever, kNever}; }
+  CUBOCT_DEVICE void operator()(uint32_t) const { *control = {0, kNever, kNever, kNever}; }
+};
+struct RaiseBase {
+  Control* control;
+  uint32_t steps;
+  CUBOCT_DEVICE void operator()(uint32_t) const { control->base += steps; }
 };
 
 // The step from the copy that holds the state to the other one.
 template <class Policy>
 void Machine<Policy>::step(uint32_t number, bool hash) {
   const auto allowed = static_cast<float>(farthest());
-  const auto launch = [&](Slab& s, uint32_t begin, uint32_t end) {
+  const auto launch = [&](Slab& s, uint32_t begin, uint32_t end, uint32_t jump_at, uint32_t jump_by) {
     if (begin == end) return;
     Policy::with_variant(s.rule->view(), [&](auto variant) {
       Step<Policy, decltype(variant)> f{};
@@ -35,6 +40,7 @@ void Machine<Policy>::step(uint32_t number, bool hash) {
         if (const Slab* upper = beside(s, 1)) f.occupancy.upper = upper->occupancy.data();
       }
       f.cell = s.cell.data(), f.farthest2 = allowed * allowed, f.number = number, f.control = s.control.data();
+      f.jump_at = jump_at, f.jump_by = jump_by;
       for_each_cached(s.stream, begin, end, options_.block, s.rule->cache(), s.rule->cache_words(), f);
     });
   };
@@ -44,12 +50,12 @@ void Machine<Policy>::step(uint32_t number, bool hash) {
       for (int side = 0; side < 2; ++side)
         if (Slab* other = beside(*slab, side); other && number > 1)
           slab->stream.wait(other->border_done[(number - 1) % 2]);
-      launch(*slab, 0, slab->low_end);
-      launch(*slab, slab->high_begin, slab->own);
+      launch(*slab, 0, slab->low_end + (slab->own - slab->high_begin), slab->low_end,
+             slab->high_begin - slab->low_end);
       slab->stream.record(slab->border_done[number % 2]);
     }
   for (auto& slab : slabs_) {
-    launch(*slab, slab->low_end, slab->high_begin);
+    launch(*slab, slab->low_end, slab->high_begin, kNever, 0);
     if (!hash) continue;
     if constexpr (Policy::kFixed) {
       const HashEach<Policy> f{slab->rule->view(), grid(*slab), at(*slab, 1 - at_), slab->cell.data(),
@@ -68,23 +74,24 @@ void Machine<Policy>::start_batch(uint32_t steps, bool hash) {
   }
   // Another slab's first step may write into this one's memory.
   if (!alone()) wait_for_all();
-  Slab& first = *slabs_.front();
-  // A graph pays where it is launched more than once.
-  if (kHasGraphs && alone() && !hash && steps == batch_ && age_ >= steps) {
-    const int begin = at_;
-    Graph& graph = first.graph[begin];
-    if (first.graph_steps[begin] != steps) graph.drop();
-    if (!graph.ready()) {
-      graph.begin(first.stream);
-      for (uint32_t k = 1; k <= steps; ++k) step(k, false);
-      graph.end(first.stream);
-      first.graph_steps[begin] = steps;
+  // A graph pays where it is launched several times: once a list has lived for a while.
+  uint32_t done = 0;
+  if (kHasGraphs && alone() && !hash && age_ >= 2 * kGraphSteps) {
+    Slab& only = *slabs_.front();
+    for (; done + kGraphSteps <= steps; done += kGraphSteps) {
+      Graph& graph = only.graph[at_];
+      if (!graph.ready()) {
+        graph.begin(only.stream);
+        for (uint32_t k = 1; k <= kGraphSteps; ++k) step(k, false);
+        for_each(only.stream, 0, 1, 32, RaiseBase{only.control.data(), kGraphSteps});
+        graph.end(only.stream);
+      }
+      graph.launch(only.stream);
     }
-    graph.launch(first.stream);
-    at_ = (begin + static_cast<int>(steps)) % 2;
-  } else {
-    for (uint32_t k = 1; k <= steps; ++k) step(k, hash);
+    // What follows counts on.
+    for (uint32_t k = 1; done < steps; ++k, ++done) step(k, false);
   }
+  for (uint32_t k = done + 1; k <= steps; ++k) step(k, hash);
   wait_for_all();
 }
 
