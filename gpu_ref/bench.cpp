@@ -49,6 +49,13 @@ double RowResult::rate() const {
   return static_cast<double>(particles) * static_cast<double>(steps) / median_seconds();
 }
 
+double RowResult::mean_rate() const {
+  double sum = 0;
+  for (const double s : seconds) sum += s;
+  return static_cast<double>(particles) * static_cast<double>(steps) * static_cast<double>(seconds.size()) /
+         sum;
+}
+
 double RowResult::spread() const {
   if (seconds.size() < 2) return 0;
   double sum = 0, squares = 0;
@@ -80,7 +87,7 @@ std::optional<RowResult> measure_row(const BenchRow& row, BenchBody& body, const
   result.particles = scene.body.size();
   EnergyMeter meter(power, options.times);
   if (options.energy) meter.idle();
-  engine->advance(row.scene.settle_steps());
+  engine->advance(options.settle.value_or(row.scene.settle_steps()));
   result.steps = steps_for(*engine, options.seconds);
   while (!interrupted()) {
     result.seconds.clear();

@@ -17,8 +17,8 @@
 namespace cuboct::gpu {
 
 // What a device's own copy in its memory moves, bytes read plus bytes written per second (2 * size / time):
-// the best of several copies of an array far larger than its caches, 1 GiB or half of what is free. The share
-// of it that a row needs tells how near it is to what the machine can do. Implemented with the engines.
+// the best of several series of copies of an array far larger than its caches: 1 GiB, or a quarter of what is
+// free. Beside it a row's rate tells how near it is to what the machine can do. Implemented with the engines.
 double copy_bandwidth(int device);
 
 // `cuboct-gpu bench ...`: argv[0] is "bench". Exit code: 0, 1 where a row failed or an interrupt came, 2 for
@@ -39,6 +39,7 @@ struct BenchOptions {
   int repeats = 5;
   double seconds = 0.3;  // of a repeat, at least
   bool energy = true;
+  std::optional<uint64_t> settle;  // steps before the timing; the scene's own number without
   EnergyTimes times;
   Options engine;
 };
@@ -52,7 +53,9 @@ struct RowResult {
   std::string no_energy;  // why, if there is none
 
   double median_seconds() const;
-  double rate() const;    // particle-steps/s, by the median
+  double rate() const;  // particle-steps/s, by the median
+  double mean_rate()
+      const;              // of all repeats together: where lists are made in few of them, their share is here
   double spread() const;  // standard deviation of the repeats' rates over their mean; 0 of a single one
 };
 

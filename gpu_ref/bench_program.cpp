@@ -57,7 +57,7 @@ std::vector<Device> devices_of(const Request& request, const BenchMachine& machi
     const auto at = std::find_if(found.begin(), found.end(), is);
     if (at == found.end())
       throw InputError(
-          fmt::format("--devices: there is no GPU {}", ordinal),
+          fmt::format("--devices: there is no CUDA device {}", ordinal),
           found.size() == 1 ? "there is one, 0" : fmt::format("there are {}, from 0", found.size()));
     if (std::none_of(chosen.begin(), chosen.end(), is)) chosen.push_back(*at);
   }
@@ -154,13 +154,14 @@ int run_bench(int argc, char** argv, const BenchMachine& machine) {
   app.add_option("--devices", options.engine.devices, "GPUs, one per slab: 0,1")
       ->delimiter(',')
       ->capture_default_str();
-  app.add_option("--block", options.engine.block, "Threads of a block, a multiple of 32")
-      ->check(CLI::Range(32, 1024))
+  app.add_option("--block", options.engine.block, "Threads of a block, a multiple of 32 up to 256")
       ->capture_default_str();
   app.add_option("--repeats", request.repeats, "Of which the median is told; 5, quick: 3")
       ->check(CLI::Range(1, 1000));
   app.add_option("--seconds", request.seconds, "Least length of a repeat; 0.3, quick: 0.1")
       ->check(CLI::Range(1e-3, 1e4));
+  app.add_option("--settle", options.settle,
+                 "Steps before the timing; a melt's 1000, others' 100 without it");
   app.add_flag("--quick", request.quick,
                "Short repeats, no energies, the smallest size unless --only names one");
   app.add_flag("--no-energy", request.no_energy, "Measure no energies");
@@ -173,8 +174,8 @@ int run_bench(int argc, char** argv, const BenchMachine& machine) {
   app.add_option("--machine", request.machine, "Write to this file what the devices are, and end");
   try {
     app.parse(argc, argv);
-    if (options.engine.block % 32 != 0)
-      throw InputError(fmt::format("--block: {} is no multiple of 32", options.engine.block));
+    if (options.engine.block % 32 != 0 || options.engine.block < 32 || options.engine.block > 256)
+      throw InputError(fmt::format("--block {}: not a multiple of 32 from 32 to 256", options.engine.block));
     return run(request, machine);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;

@@ -69,12 +69,12 @@ double copied(const BenchSetting& setting, const RowResult& result) {
   return setting.bandwidth / result.rate();
 }
 
-constexpr char kForm[] =
-    "{:<18} {:>9} {:>7} {:>10} {:>5} {:>6} {:>6} {:>6} {:>7} {:>9} {:>9} {:>5} {:>5} {:>5}\n";
+constexpr int kWidths[] = {18, 9, 7, 10, 10, 5, 6, 6, 6, 7, 9, 9, 5, 5, 5};
 
 std::string table(const std::vector<std::string>& cells) {
-  return fmt::format(kForm, cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7],
-                     cells[8], cells[9], cells[10], cells[11], cells[12], cells[13]);
+  std::string line = fmt::format("{:<{}}", cells[0], kWidths[0]);
+  for (size_t k = 1; k < cells.size(); ++k) line += fmt::format(" {:>{}}", cells[k], kWidths[k]);
+  return line + "\n";
 }
 
 }  // namespace
@@ -87,18 +87,20 @@ std::string table_head(const BenchSetting& setting) {
                   o.engine.devices.size() == 1 ? "" : "s", o.engine.block);
   text += fmt::format("# copies in the devices' memory move {:.4g} GB/s, read and written\n",
                       setting.bandwidth * 1e-9);
-  text += fmt::format("# rate: the median of {} repeats of {:g} s or more; sd: their standard deviation\n",
-                      o.repeats, o.seconds);
+  text += fmt::format(
+      "# 1/s: particle-steps by the median of {} repeats of {:g} s or more; mean: of all; sd: of their "
+      "rates\n",
+      o.repeats, o.seconds);
   if (!setting.no_energy.empty())
     text += fmt::format("# no energies: {}\n", setting.no_energy);
   else
     text += fmt::format(
         "# energies of whole boards over {:g} s or more after {:g} s of warm-up; idle: {:g} s before the "
-        "work, after {:g} s at "
-        "rest; net: less idle\n",
+        "work, "
+        "after {:g} s at rest; net: less idle\n",
         o.times.window, o.times.warm_up, o.times.idle, o.times.settle);
-  return text + table({"row", "particles", "steps", "1/s", "sd %", "lists", "pairs", "B", "copy B", "J",
-                       "net J", "W", "idle", "MHz"});
+  return text + table({"row", "particles", "steps", "1/s", "mean", "sd %", "lists", "pairs", "B", "copy B",
+                       "J", "net J", "W", "idle", "MHz"});
 }
 
 std::string table_line(const BenchSetting& setting, const BenchRow& row, const RowResult& result) {
@@ -107,7 +109,8 @@ std::string table_line(const BenchSetting& setting, const BenchRow& row, const R
     return energy ? fmt::format(fmt::runtime(form), value) : std::string("-");
   };
   return table({row.name, std::to_string(result.particles), std::to_string(result.steps),
-                fmt::format("{:.4g}", result.rate()), fmt::format("{:.1f}", 100 * result.spread()),
+                fmt::format("{:.4g}", result.rate()), fmt::format("{:.4g}", result.mean_rate()),
+                fmt::format("{:.1f}", 100 * result.spread()),
                 std::to_string(result.after.list_builds - result.before.list_builds),
                 fmt::format("{:.1f}", result.after.listed_pairs),
                 fmt::format("{:.0f}", static_cast<double>(result.after.device_bytes) /
@@ -142,7 +145,9 @@ std::string json_line(const BenchSetting& setting, const BenchRow& row, const Ro
   JsonLine line;
   line.text("row", row.name).text("arithmetic", row.arithmetic).add("particles", result.particles);
   line.add("steps", result.steps).add("seconds", json_list(result.seconds, number));
-  line.add("particle_steps_per_second", result.rate()).add("spread", result.spread());
+  line.add("particle_steps_per_second", result.rate())
+      .add("mean_particle_steps_per_second", result.mean_rate())
+      .add("spread", result.spread());
   line.add("copied_bytes", copied(setting, result));
   line.add("list_builds", result.after.list_builds - result.before.list_builds);
   line.add("golden_steps", result.after.golden_steps - result.before.golden_steps);

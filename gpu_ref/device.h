@@ -31,30 +31,37 @@ template <typename T>
 class Array {
  public:
   Array() = default;
-  explicit Array(int device) : device_(device) {}
+  // `account`, where given, holds the bytes of all arrays that share it.
+  explicit Array(int device, uint64_t* account = nullptr) : device_(device), account_(account) {}
   Array(const Array&) = delete;
   Array& operator=(const Array&) = delete;
   Array(Array&& other) noexcept { *this = std::move(other); }
   Array& operator=(Array&& other) noexcept {
     std::swap(device_, other.device_);
+    std::swap(account_, other.account_);
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
     return *this;
   }
-  ~Array() { release(device_, data_); }
+  ~Array() {
+    release(device_, data_);
+    count(-static_cast<int64_t>(size_));
+  }
 
   // What it held is lost, unless the size is the same.
   void resize(size_t size) {
     if (size == size_) return;
     release(device_, data_);
+    count(-static_cast<int64_t>(size_));
     data_ = nullptr, size_ = 0;
     if (size > 0) data_ = static_cast<T*>(allocate(device_, size * sizeof(T)));
     size_ = size;
+    count(static_cast<int64_t>(size));
   }
   // Room for `size` values, keeping the first `kept`.
   void grow(Stream& stream, size_t size, size_t kept) {
     if (size <= size_) return;
-    Array larger(device_);
+    Array larger(device_, account_);
     larger.resize(size);
     if (kept > 0) copy(stream, larger.data(), device_, data_, device_, kept * sizeof(T));
     stream.synchronize();
@@ -80,7 +87,12 @@ class Array {
   size_t size() const { return size_; }
 
  private:
+  void count(int64_t values) {
+    if (account_) *account_ += static_cast<uint64_t>(values * static_cast<int64_t>(sizeof(T)));
+  }
+
   int device_ = 0;
+  uint64_t* account_ = nullptr;
   T* data_ = nullptr;
   size_t size_ = 0;
 };

@@ -96,20 +96,20 @@ class Machine {
 
  private:
   struct Slab {
-    Slab(int device, int number) : device(device), number(number), stream(device) {
-      for (auto* a : {&x[0], &x[1], &saved_x}) *a = Array<typename Policy::Position>(device);
-      for (auto* a : {&v[0], &v[1], &saved_v}) *a = Array<typename Policy::Velocity>(device);
-      for (auto* a : {&u[0], &u[1], &saved_u}) *a = Array<typename Policy::Extra>(device);
+    Slab(int device, int number, uint64_t* account) : device(device), number(number), stream(device) {
+      for (auto* a : {&x[0], &x[1], &saved_x}) *a = Array<typename Policy::Position>(device, account);
+      for (auto* a : {&v[0], &v[1], &saved_v}) *a = Array<typename Policy::Velocity>(device, account);
+      for (auto* a : {&u[0], &u[1], &saved_u}) *a = Array<typename Policy::Extra>(device, account);
       for (auto* a : {&id, &spare_id, &rank_of, &order, &entered, &rank, &count, &first, &taken, &occupancy, &entries,
                       &counts, &notes, &slot, &found_here})
-        *a = Array<uint32_t>(device);
-      for (auto* a : {&cell, &spare_cell}) *a = Array<CellAt>(device);
-      for (auto* a : {&leaving[0], &leaving[1], &arriving}) *a = Array<Traveller<Policy>>(device);
-      control = Array<Control>(device);
-      hashes = Array<uint64_t>(device);
-      found = Array<Found<Policy>>(device);
-      sums = Array<Sums>(device);
-      for (auto* a : {&energy_node, &energy_strength, &energy_weight}) *a = Array<double>(device);
+        *a = Array<uint32_t>(device, account);
+      for (auto* a : {&cell, &spare_cell}) *a = Array<CellAt>(device, account);
+      for (auto* a : {&leaving[0], &leaving[1], &arriving}) *a = Array<Traveller<Policy>>(device, account);
+      control = Array<Control>(device, account);
+      hashes = Array<uint64_t>(device, account);
+      found = Array<Found<Policy>>(device, account);
+      sums = Array<Sums>(device, account);
+      for (auto* a : {&energy_node, &energy_strength, &energy_weight}) *a = Array<double>(device, account);
     }
     int device, number;
     Stream stream;
@@ -131,8 +131,7 @@ class Machine {
     Array<Sums> sums;
     Array<double> energy_node, energy_strength, energy_weight;
     EnergyRule energy;
-    Graph graph[2];  // a batch from either copy
-    uint32_t graph_steps[2] = {0, 0};
+    Graph graph[2];  // kGraphSteps steps from either copy
     // Places: own [0, own), of them the lower border [0, low_end) and the upper one [high_begin, own); then the
     // copies up to `lower_copy_end` and `all`.
     uint32_t own = 0, low_end = 0, high_begin = 0, lower_copy_end = 0, all = 0;
@@ -143,7 +142,8 @@ class Machine {
 
   // Particles that a slab has room for, beyond what it holds at a time.
   static constexpr double kSpare = 1.1;
-  static constexpr uint32_t kLongest = 256;  // steps of a batch
+  static constexpr uint32_t kLongest = 512;  // steps of a batch
+  static constexpr uint32_t kGraphSteps = 16;  // even: it ends at the copy where it began
 
   bool alone() const { return slabs_.size() == 1; }
   const SlabCells& cells_of(const Slab& slab) const { return cells_.slabs[static_cast<size_t>(slab.number)]; }

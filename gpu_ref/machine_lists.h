@@ -28,13 +28,13 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
   require_memory(options, particles_, cells, bytes_per_particle<Policy>(slabs > 1, setup.pd, 24));
   share(options.devices);
   for (int s = 0; s < slabs; ++s) {
-    slabs_.push_back(std::make_unique<Slab>(options.devices[static_cast<size_t>(s)], s));
+    slabs_.push_back(std::make_unique<Slab>(options.devices[static_cast<size_t>(s)], s, &counters.device_bytes));
     Slab& slab = *slabs_.back();
     const SlabCells& of = cells_.slabs[static_cast<size_t>(s)];
     slab.rule = make_rule(slab.stream);
     slab.rank.set(slab.stream, of.rank);
     for (auto* array : {&slab.count, &slab.first, &slab.taken, &slab.occupancy}) array->resize(of.ranks);
-    slab.notes.resize(4);
+    slab.notes.resize(8);
     slab.control.resize(1);
     slab.hashes.resize(kLongest + 1);
     slab.energy_node.set(slab.stream, energies.node);
@@ -209,13 +209,16 @@ void Machine<Policy>::sort() {
     if (Policy::kFixed)
       copy(s.stream, s.occupancy.data(), s.device, s.count.data(), s.device, mine.own_end * sizeof(uint32_t));
     // Where each part of the storage ends: the number of particles before a rank.
-    const auto before = [&](uint32_t rank) {
-      if (rank == 0) return 0u;
-      return s.first.host(s.stream, rank - 1, 1)[0] + s.count.host(s.stream, rank - 1, 1)[0];
-    };
-    const uint32_t gathered = before(mine.own_end);
-    s.low_end = before(mine.low_end), s.high_begin = before(mine.inner_end);
-    s.lower_copy_end = before(mine.lower_copy_end), s.all = before(mine.ranks);
+    uint32_t gathered = s.own;
+    if (alone()) {
+      s.low_end = 0, s.high_begin = s.lower_copy_end = s.all = s.own;
+    } else {
+      for_each(s.stream, 0, 1, 32,
+               PartEnds{s.first.data(), s.count.data(), s.notes.data(),
+                        {mine.low_end, mine.inner_end, mine.own_end, mine.lower_copy_end, mine.ranks}});
+      const std::vector<uint32_t> ends = s.notes.host(s.stream, 0, 5);
+      s.low_end = ends[0], s.high_begin = ends[1], gathered = ends[2], s.lower_copy_end = ends[3], s.all = ends[4];
+    }
     make_room(s, s.all);
     for_each(s.stream, 0, s.own, options_.block,
              Order{s.rank_of.data(), s.first.data(), s.taken.data(), s.order.data()});

@@ -8,7 +8,12 @@ namespace cuboct::gpu {
 
 struct ResetControl {
   Control* control;
-  CUBOCT_DEVICE void operator()(uint32_t) const { *control = {kNever, kNever, kNever}; }
+  CUBOCT_DEVICE void operator()(uint32_t) const { *control = {0, kNever, kNever, kNever}; }
+};
+struct RaiseBase {
+  Control* control;
+  uint32_t steps;
+  CUBOCT_DEVICE void operator()(uint32_t) const { control->base += steps; }
 };
 
 // The step from the copy that holds the state to the other one.
@@ -68,23 +73,24 @@ void Machine<Policy>::start_batch(uint32_t steps, bool hash) {
   }
   // Another slab's first step may write into this one's memory.
   if (!alone()) wait_for_all();
-  Slab& first = *slabs_.front();
-  // A graph pays where it is launched more than once.
-  if (kHasGraphs && alone() && !hash && steps == batch_ && age_ >= steps) {
-    const int begin = at_;
-    Graph& graph = first.graph[begin];
-    if (first.graph_steps[begin] != steps) graph.drop();
-    if (!graph.ready()) {
-      graph.begin(first.stream);
-      for (uint32_t k = 1; k <= steps; ++k) step(k, false);
-      graph.end(first.stream);
-      first.graph_steps[begin] = steps;
+  // A graph pays where it is launched several times: once a list has lived for a while.
+  uint32_t done = 0;
+  if (kHasGraphs && alone() && !hash && age_ >= 2 * kGraphSteps) {
+    Slab& only = *slabs_.front();
+    for (; done + kGraphSteps <= steps; done += kGraphSteps) {
+      Graph& graph = only.graph[at_];
+      if (!graph.ready()) {
+        graph.begin(only.stream);
+        for (uint32_t k = 1; k <= kGraphSteps; ++k) step(k, false);
+        for_each(only.stream, 0, 1, 32, RaiseBase{only.control.data(), kGraphSteps});
+        graph.end(only.stream);
+      }
+      graph.launch(only.stream);
     }
-    graph.launch(first.stream);
-    at_ = (begin + static_cast<int>(steps)) % 2;
-  } else {
-    for (uint32_t k = 1; k <= steps; ++k) step(k, hash);
+    // What follows counts on.
+    for (uint32_t k = 1; done < steps; ++k, ++done) step(k, false);
   }
+  for (uint32_t k = done + 1; k <= steps; ++k) step(k, hash);
   wait_for_all();
 }
 

@@ -12,6 +12,7 @@ namespace cuboct::gpu {
 
 // What a slab's kernels tell the host of a batch. Steps count from 1 in a batch.
 struct Control {
+  uint32_t base;     // of step numbers: a graph counts its steps from 1 each time that it is launched
   uint32_t limit;    // the steps up to this one are good
   uint32_t doubt;    // the first step that may not be possible
   uint32_t crowded;  // the first step in which a node may be too full
@@ -96,10 +97,10 @@ struct Step {
   Occupancy occupancy;
   const CellAt* cell;
   float farthest2;  // square of the way that the list allows
-  uint32_t number;  // of the step in its batch
+  uint32_t number;  // of the step, above the control's base
   Control* control;
 
-  CUBOCT_DEVICE bool idle() const { return control->limit < number; }
+  CUBOCT_DEVICE bool idle() const { return control->limit < control->base + number; }
 
   CUBOCT_DEVICE void operator()(uint32_t i, const void* cache) const {
     auto x = load(from.x + i);
@@ -125,11 +126,12 @@ struct Step {
     bool crowded = false;
     if constexpr (Policy::kFixed) sound &= cross(i, before, x, crowded);
     if (!sound || crowded) {
-      atomic_min(&control->limit, number - 1);
-      atomic_min(crowded ? &control->crowded : &control->doubt, number);
+      const uint32_t now = control->base + number;
+      atomic_min(&control->limit, now - 1);
+      atomic_min(crowded ? &control->crowded : &control->doubt, now);
       return;
     }
-    if (!(way2<Policy>(view, grid, x, v) <= farthest2)) atomic_min(&control->limit, number);
+    if (!(way2<Policy>(view, grid, x, v) <= farthest2)) atomic_min(&control->limit, control->base + number);
   }
 
   // Golden's migration along x, then y, then z. False: not possible.

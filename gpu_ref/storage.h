@@ -140,6 +140,16 @@ struct CountByCell {
   }
 };
 
+// The number of particles before each of five ranks.
+struct PartEnds {
+  const uint32_t *first, *count;
+  uint32_t* ends;
+  uint32_t rank[5];
+  CUBOCT_DEVICE void operator()(uint32_t) const {
+    for (int k = 0; k < 5; ++k) ends[k] = rank[k] == 0 ? 0 : first[rank[k] - 1] + count[rank[k] - 1];
+  }
+};
+
 struct Order {
   const uint32_t* rank;
   const uint32_t* first;

@@ -112,6 +112,7 @@ TEST(Statistics, OfFewNumbers) {
   result.seconds = {0.5, 0.25, 1.0 / 3, 0.5,
                     0.2};  // rates 2, 4, 3, 2, 5: mean 3.2, variance (1.44+0.64+0.04+1.44+3.24)/4
   EXPECT_DOUBLE_EQ(result.rate(), 150000);
+  EXPECT_DOUBLE_EQ(result.mean_rate(), 250000 / (0.5 + 0.25 + 1.0 / 3 + 0.5 + 0.2));
   EXPECT_NEAR(result.spread(), std::sqrt(1.7) / 3.2, 1e-12);
   result.seconds = {0.5};
   EXPECT_EQ(result.spread(), 0);
@@ -211,6 +212,9 @@ TEST(MeasureRow, AMeltMeltsFirst) {
   EXPECT_EQ(asked.advances.front(), 1000u);
   ASSERT_TRUE(measure_row(row_of(BenchScene::Kind::melt, "double"), body, options, machine, power));
   EXPECT_EQ(asked.arithmetic, "double");
+  options.settle = 7;
+  ASSERT_TRUE(measure_row(row_of(BenchScene::Kind::melt, "double"), body, options, machine, power));
+  EXPECT_EQ(asked.advances.front(), 7u);
 }
 
 // 50 W at rest, 250 W from the first step on.
@@ -286,22 +290,26 @@ RowResult result_of() {
 TEST(Report, TableIsWhatWasMeasured) {
   const BenchRow row{{}, "float", "block_256k.float", ""};
   BenchSetting setting = setting_of();
-  EXPECT_EQ(table_head(setting),
-            "# NVIDIA H100 \"80GB\", driver 580.1, 1 slab, blocks of 128 threads\n"
-            "# copies in the devices' memory move 2000 GB/s, read and written\n"
-            "# rate: the median of 5 repeats of 0.3 s or more; sd: their standard deviation\n"
-            "# energies of whole boards over 2 s or more after 1 s of warm-up; idle: 1 s before the work, "
-            "after 1 s at rest; net: less idle\n"
-            "row                particles   steps        1/s  sd %  lists  pairs      B  copy B         J    "
-            " net J     W  idle   MHz\n");
+  EXPECT_EQ(
+      table_head(setting),
+      "# NVIDIA H100 \"80GB\", driver 580.1, 1 slab, blocks of 128 threads\n"
+      "# copies in the devices' memory move 2000 GB/s, read and written\n"
+      "# 1/s: particle-steps by the median of 5 repeats of 0.3 s or more; mean: of all; sd: of their rates\n"
+      "# energies of whole boards over 2 s or more after 1 s of warm-up; idle: 1 s before the work, "
+      "after 1 s at rest; net: less idle\n"
+      "row                particles   steps        1/s       mean  sd %  lists  pairs      B  copy B         "
+      "J    "
+      " net J     W  idle   MHz\n");
   // 256e6 in 0.4 s; 2e12 B/s over it; rates 2, 4, 2.5: mean 2.8333, variance (0.6944+1.3611+0.1111)/2.
   EXPECT_EQ(table_line(setting, row, result_of()),
-            "block_256k.float      256000    1000    6.4e+08  36.7      3   20.6    100    3125     1e-06    "
+            "block_256k.float      256000    1000    6.4e+08  6.678e+08  36.7      3   20.6    100    3125   "
+            "  1e-06    "
             " 8e-07   640   128  1980\n");
   RowResult without = result_of();
   without.energy.reset();
   EXPECT_EQ(table_line(setting, row, without),
-            "block_256k.float      256000    1000    6.4e+08  36.7      3   20.6    100    3125         -    "
+            "block_256k.float      256000    1000    6.4e+08  6.678e+08  36.7      3   20.6    100    3125   "
+            "      -    "
             "     -     -     -     -\n");
   setting.no_energy = "no library x";
   EXPECT_NE(table_head(setting).find("\n# no energies: no library x\nrow "), std::string::npos);
@@ -318,7 +326,7 @@ TEST(Report, JsonIsWhatWasMeasured) {
   EXPECT_EQ(
       json_line(setting, row, result_of()),
       R"({"row":"block_256k.float","arithmetic":"float","particles":256000,"steps":1000,"seconds":[0.5,0.25,0.4],)"
-      R"("particle_steps_per_second":6.4e+08,"spread":0.367353,"copied_bytes":3125,"list_builds":3,)"
+      R"("particle_steps_per_second":6.4e+08,"mean_particle_steps_per_second":6.67826e+08,"spread":0.367353,"copied_bytes":3125,"list_builds":3,)"
       R"("golden_steps":0,"replayed_steps":0,"listed_pairs":20.55,"longest_list":31,"halo_particles":0,)"
       R"("device_bytes":25600000,"energy_method":"energy counter","energy_board":1280,"energy_net":1024,)"
       R"("energy_error":4,"energy_window":2,"energy_power":640,"energy_idle_power":128,"energy_drift":0,)"
@@ -360,8 +368,10 @@ TEST(Program, SaysWhatIsWrong) {
   EXPECT_EQ(error({"--only", "block_256k.flaot"}),
             "no benchmark 'block_256k.flaot'\n  hint: did you mean 'block_256k.float'?\n");
   EXPECT_EQ(error({"--only", "everything"}), "no benchmark 'everything'\n  hint: --list names them\n");
-  EXPECT_EQ(error({"--devices", "0,3"}), "--devices: there is no GPU 3\n  hint: there are 2, from 0\n");
-  EXPECT_EQ(error({"--block", "100"}), "--block: 100 is no multiple of 32\n");
+  EXPECT_EQ(error({"--devices", "0,3"}),
+            "--devices: there is no CUDA device 3\n  hint: there are 2, from 0\n");
+  EXPECT_EQ(error({"--block", "100"}), "--block 100: not a multiple of 32 from 32 to 256\n");
+  EXPECT_EQ(error({"--block", "512"}), "--block 512: not a multiple of 32 from 32 to 256\n");
   EXPECT_EQ(error({"--only", "block_256k", "--json", "/nowhere/x"}),
             "cannot write /nowhere/x: No such file or directory\n");
   EXPECT_NE(error({"--repeats", "0"}).find("--repeats"), std::string::npos);
