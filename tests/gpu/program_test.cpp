@@ -110,6 +110,19 @@ TEST_F(GpuProgram, LeavesTheSameFilesAsGolden) {
   }
 }
 
+// The virial of the integers' own kicks, with damping too.
+TEST_F(GpuProgram, MeasuresPressureAsGoldenDoes) {
+  const std::string damped = bench_.path("damped.toml");
+  std::ofstream(damped) << contents(CUBOCT_SOURCE_DIR "/" + kBlock) << "\n[damping]\nratio = 0.1\n";
+  for (const std::string& scene : {kBlock, damped}) {
+    const Trace gpu = run("gpu", {scene, "--steps", "10", "--engine", "gpu"});
+    const Trace golden = run("golden", {scene, "--steps", "10", "--engine", "golden"});
+    ASSERT_EQ(gpu.curves.back().name, "pressure");
+    EXPECT_NE(golden.curves.back().value.back(), 0);
+    expect_curves(gpu, golden, 1e-11);
+  }
+}
+
 TEST_F(GpuProgram, TellsAFaultAsGoldenDoes) {
   const Trace gpu = run("gpu", {"scenes/failures/velocity.toml", "--engine", "gpu"}, 1);
   const Answer told = answer_;
