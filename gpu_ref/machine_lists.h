@@ -10,7 +10,10 @@ template <class Policy>
 template <class MakeRule>
 Machine<Policy>::Machine(const Options& options, const Setup& setup, const EnergyTables& energies,
                          const Loose<Policy>& state, const MakeRule& make_rule)
-    : options_(options), setup_(setup), particles_(state.size()), skin_(setup.radius, setup.largest_skin) {
+    : options_(options),
+      setup_(setup),
+      particles_(state.size()),
+      skin_(setup.radius, setup.largest_skin, static_cast<double>(state.size())) {
   require_devices(options);
   const int slabs = static_cast<int>(options.devices.size());
   std::array<std::vector<uint64_t>, 3> per_plane;

@@ -20,7 +20,7 @@ struct RaiseBase {
 template <class Policy>
 void Machine<Policy>::step(uint32_t number, bool hash) {
   const auto allowed = static_cast<float>(farthest());
-  const auto launch = [&](Slab& s, uint32_t begin, uint32_t end) {
+  const auto launch = [&](Slab& s, uint32_t begin, uint32_t end, uint32_t jump_at, uint32_t jump_by) {
     if (begin == end) return;
     Policy::with_variant(s.rule->view(), [&](auto variant) {
       Step<Policy, decltype(variant)> f{};
@@ -40,6 +40,7 @@ void Machine<Policy>::step(uint32_t number, bool hash) {
         if (const Slab* upper = beside(s, 1)) f.occupancy.upper = upper->occupancy.data();
       }
       f.cell = s.cell.data(), f.farthest2 = allowed * allowed, f.number = number, f.control = s.control.data();
+      f.jump_at = jump_at, f.jump_by = jump_by;
       for_each_cached(s.stream, begin, end, options_.block, s.rule->cache(), s.rule->cache_words(), f);
     });
   };
@@ -49,12 +50,12 @@ void Machine<Policy>::step(uint32_t number, bool hash) {
       for (int side = 0; side < 2; ++side)
         if (Slab* other = beside(*slab, side); other && number > 1)
           slab->stream.wait(other->border_done[(number - 1) % 2]);
-      launch(*slab, 0, slab->low_end);
-      launch(*slab, slab->high_begin, slab->own);
+      launch(*slab, 0, slab->low_end + (slab->own - slab->high_begin), slab->low_end,
+             slab->high_begin - slab->low_end);
       slab->stream.record(slab->border_done[number % 2]);
     }
   for (auto& slab : slabs_) {
-    launch(*slab, slab->low_end, slab->high_begin);
+    launch(*slab, slab->low_end, slab->high_begin, kNever, 0);
     if (!hash) continue;
     if constexpr (Policy::kFixed) {
       const HashEach<Policy> f{slab->rule->view(), grid(*slab), at(*slab, 1 - at_), slab->cell.data(),

@@ -98,11 +98,13 @@ struct Step {
   const CellAt* cell;
   float farthest2;  // square of the way that the list allows
   uint32_t number;  // of the step, above the control's base
+  uint32_t jump_at, jump_by;  // both borders of a slab in one loop: from the one index on, places lie further
   Control* control;
 
   CUBOCT_DEVICE bool idle() const { return control->limit < control->base + number; }
 
-  CUBOCT_DEVICE void operator()(uint32_t i, const void* cache) const {
+  CUBOCT_DEVICE void operator()(uint32_t index, const void* cache) const {
+    const uint32_t i = index < jump_at ? index : index + jump_by;
     auto x = load(from.x + i);
     auto v = load(from.v + i);
     const auto before = x;
