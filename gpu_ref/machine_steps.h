@@ -133,7 +133,9 @@ typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vec
   for (auto& slab : slabs_) {
     const Control told = slab->control.host(slab->stream, 0, 1)[0];
     const uint64_t done = std::min(told.limit, steps);
-    latest = std::max(latest, done);
+    // One that found a step impossible has begun it.
+    const bool begun = std::min(told.doubt, told.crowded) == done + 1;
+    latest = std::max(latest, done + (begun ? 1 : 0));
     outcome.done = std::min(outcome.done, done);
     doubt = std::min(doubt, told.doubt), crowded = std::min(crowded, told.crowded);
   }
