@@ -16,7 +16,6 @@
 #include "cli/bench_scene.h"
 #include "cli/command.h"
 #include "cli/engines.h"
-#include "cli/launch.h"
 #include "cli/run_lattice.h"
 #include "emu/lattice/engine.h"
 #include "emu/lattice/program.h"

@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "cli/bench_report.h"
-#include "cli/launch.h"
 #include "model/process.h"
 
 namespace cuboct {

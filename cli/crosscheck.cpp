@@ -9,7 +9,6 @@
 #include "cli/command.h"
 #include "cli/crosscheck_real.h"
 #include "cli/engines.h"
-#include "cli/launch.h"
 #include "cli/run_gpu.h"
 #include "cli/run_lattice.h"
 #include "model/interrupt.h"

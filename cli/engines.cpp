@@ -8,7 +8,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include "cli/launch.h"
 #include "model/output.h"
 #include "model/process.h"
 #include "model/progress.h"

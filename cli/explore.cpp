@@ -71,6 +71,8 @@ int explore(const Options& options) {
     fmt::print(stderr, "interrupted; the same command goes on where it was\n");
     return 1;
   }
+  if (!runner.left_out().empty())
+    fmt::print("{}\n  hint: --add FILE takes them from another machine's results.db\n", runner.left_out());
   report(store.results(), out);
   return 0;
 }

@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "cli/engines.h"
-#include "cli/launch.h"
 #include "emu/lattice/program.h"
 #include "model/measure.h"
 #include "model/output.h"

@@ -151,7 +151,6 @@ std::string json_line(const BenchSetting& setting, const BenchRow& row, const Ro
   line.add("copied_bytes", copied(setting, result));
   line.add("list_builds", result.after.list_builds - result.before.list_builds);
   line.add("golden_steps", result.after.golden_steps - result.before.golden_steps);
-  line.add("replayed_steps", result.after.replayed_steps - result.before.replayed_steps);
   line.add("listed_pairs", result.after.listed_pairs).add("longest_list", result.after.longest_list);
   line.add("halo_particles", result.after.halo_particles).add("device_bytes", result.after.device_bytes);
   if (!result.energy) return line.text("no_energy", result.no_energy).object();

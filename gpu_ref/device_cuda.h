@@ -145,10 +145,9 @@ inline void share(const std::vector<int>& devices) {
     }
 }
 
-// Seen by all devices: they share counters of cells at their borders.
+// Seen by all devices: they share counters of cells at their borders, and tell each other when to stop.
 __device__ inline uint32_t atomic_add(uint32_t* at, uint32_t value) { return atomicAdd_system(at, value); }
-__device__ inline void atomic_min(uint32_t* at, uint32_t value) { atomicMin(at, value); }
-__device__ inline void atomic_max(uint32_t* at, uint32_t value) { atomicMax(at, value); }
+__device__ inline void atomic_min(uint32_t* at, uint32_t value) { atomicMin_system(at, value); }
 
 // The four numbers of a particle, in loads of 16 bytes.
 template <typename T>

@@ -57,10 +57,6 @@ template <typename T>
 void atomic_min(T* at, T value) {
   *at = std::min(*at, value);
 }
-template <typename T>
-void atomic_max(T* at, T value) {
-  *at = std::max(*at, value);
-}
 
 // The four numbers of a particle, in one access where the machine has one.
 template <typename T>

@@ -19,8 +19,10 @@ namespace cuboct::gpu {
 enum class Arithmetic : uint8_t { fixed, float32, float64 };
 const char* to_string(Arithmetic arithmetic);  // "fixed", "float", "double"
 
+inline constexpr int kMostSlabs = 16;
+
 struct Options {
-  // CUDA's ordinals, one per slab of the scene. One that comes twice holds two slabs: bits are the same.
+  // CUDA's ordinals, one per slab of the scene, at most kMostSlabs. One that comes twice holds two slabs: bits are the same.
   std::vector<int> devices{0};
   int block = 128;  // threads of a block, a multiple of 32; leaves no mark in the bits
 };
@@ -28,7 +30,6 @@ struct Options {
 struct Counters {
   uint64_t list_builds = 0;      // of the pair lists
   uint64_t golden_steps = 0;     // of the fixed rule, done by golden on the host, as a fault seemed near
-  uint64_t replayed_steps = 0;   // done twice, as another device had to stop earlier
   uint64_t longest_list = 0;     // partners of one particle
   double listed_pairs = 0;       // entries per particle in the last list
   uint64_t halo_particles = 0;   // copies of neighbours' particles, all devices, at the last list

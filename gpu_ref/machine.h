@@ -5,8 +5,8 @@
 // one's partners until some particle has moved half the skin. One kernel does a step of a particle, from one of two
 // copies of the state to the other. Steps go in batches without the host: kernels note up to which step all was
 // good, and those beyond it do nothing. A slab's borders come first in a step and are written into the neighbours'
-// memory as well, while the inner particles are computed. Where one slab had to stop earlier than another, all go
-// back to the beginning of the batch and do the steps that were good.
+// memory as well, while the inner particles are computed. A slab that has to stop tells the others, which may then be
+// one step ahead: the state that all have reached is still in one of their two copies.
 #pragma once
 
 #include <array>
@@ -29,11 +29,11 @@ namespace cuboct::gpu {
 
 // Bytes of device memory for a particle, about: what a card must hold is known before it is asked for.
 template <class Policy>
-constexpr double bytes_per_particle(bool slabs, bool pd, double listed) {
+constexpr double bytes_per_particle(bool pd, double listed) {
   const double state = sizeof(typename Policy::Position) + sizeof(typename Policy::Velocity) +
                        (pd ? sizeof(typename Policy::Extra) : 0);
   const double order = 2 * (sizeof(CellAt) + 4) + 8 + (Policy::kFixed ? 8 : 0) + 4;
-  return (slabs ? 3 : 2) * state + order + 4 * listed;
+  return 2 * state + order + 4 * listed;
 }
 
 
@@ -97,9 +97,9 @@ class Machine {
  private:
   struct Slab {
     Slab(int device, int number, uint64_t* account) : device(device), number(number), stream(device) {
-      for (auto* a : {&x[0], &x[1], &saved_x}) *a = Array<typename Policy::Position>(device, account);
-      for (auto* a : {&v[0], &v[1], &saved_v}) *a = Array<typename Policy::Velocity>(device, account);
-      for (auto* a : {&u[0], &u[1], &saved_u}) *a = Array<typename Policy::Extra>(device, account);
+      for (auto* a : {&x[0], &x[1]}) *a = Array<typename Policy::Position>(device, account);
+      for (auto* a : {&v[0], &v[1]}) *a = Array<typename Policy::Velocity>(device, account);
+      for (auto* a : {&u[0], &u[1]}) *a = Array<typename Policy::Extra>(device, account);
       for (auto* a : {&id, &spare_id, &rank_of, &order, &entered, &rank, &count, &first, &taken, &occupancy, &entries,
                       &counts, &notes, &slot, &found_here})
         *a = Array<uint32_t>(device, account);
@@ -115,9 +115,9 @@ class Machine {
     Stream stream;
     Event border_done[2];
     std::unique_ptr<Rule> rule;
-    Array<typename Policy::Position> x[2], saved_x;
-    Array<typename Policy::Velocity> v[2], saved_v;
-    Array<typename Policy::Extra> u[2], saved_u;
+    Array<typename Policy::Position> x[2];
+    Array<typename Policy::Velocity> v[2];
+    Array<typename Policy::Extra> u[2];
     Array<uint32_t> id, spare_id, rank_of, order, entered;
     Array<CellAt> cell, spare_cell;
     Array<uint32_t> rank, count, first, taken, occupancy;  // of cells
@@ -172,11 +172,10 @@ class Machine {
   void sort();
   void mirror();
   void list_pairs();
+  void list_pairs(Slab& slab);
   void scatter(const Loose<Policy>& state);
   void step(uint32_t number, bool hash);
   void start_batch(uint32_t steps, bool hash);
-  void save();
-  void go_back();
   void wait_for_all() {
     for (auto& slab : slabs_) slab->stream.synchronize();
   }

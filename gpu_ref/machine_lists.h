@@ -10,7 +10,10 @@ template <class Policy>
 template <class MakeRule>
 Machine<Policy>::Machine(const Options& options, const Setup& setup, const EnergyTables& energies,
                          const Loose<Policy>& state, const MakeRule& make_rule)
-    : options_(options), setup_(setup), particles_(state.size()), skin_(setup.radius, setup.largest_skin) {
+    : options_(options),
+      setup_(setup),
+      particles_(state.size()),
+      skin_(setup.radius, setup.largest_skin, static_cast<double>(state.size())) {
   require_devices(options);
   const int slabs = static_cast<int>(options.devices.size());
   std::array<std::vector<uint64_t>, 3> per_plane;
@@ -25,7 +28,7 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
   cells_ = make_cells(g, per_plane, slabs);
   uint64_t cells = 0;
   for (const SlabCells& slab : cells_.slabs) cells = std::max<uint64_t>(cells, slab.rank.size() + 4ull * slab.ranks);
-  require_memory(options, particles_, cells, bytes_per_particle<Policy>(slabs > 1, setup.pd, 24));
+  require_memory(options, particles_, cells, bytes_per_particle<Policy>(setup.pd, 24));
   share(options.devices);
   for (int s = 0; s < slabs; ++s) {
     slabs_.push_back(std::make_unique<Slab>(options.devices[static_cast<size_t>(s)], s, &counters.device_bytes));
@@ -75,10 +78,6 @@ void Machine<Policy>::make_room(Slab& slab, size_t particles) {
     slab.v[k].grow(slab.stream, room, kept);
     if (setup_.pd) slab.u[k].grow(slab.stream, room, kept);
     slab.graph[k].drop();
-  }
-  if (!alone()) {
-    slab.saved_x.resize(room), slab.saved_v.resize(room);
-    if (setup_.pd) slab.saved_u.resize(room);
   }
   for (auto* array : {&slab.id, &slab.spare_id, &slab.rank_of, &slab.order}) array->grow(slab.stream, room, kept);
   if (Policy::kFixed) slab.entered.grow(slab.stream, room, kept);
@@ -209,22 +208,25 @@ void Machine<Policy>::sort() {
     if (Policy::kFixed)
       copy(s.stream, s.occupancy.data(), s.device, s.count.data(), s.device, mine.own_end * sizeof(uint32_t));
     // Where each part of the storage ends: the number of particles before a rank.
-    uint32_t gathered = s.own;
-    if (alone()) {
-      s.low_end = 0, s.high_begin = s.lower_copy_end = s.all = s.own;
-    } else {
+    if (!alone())
       for_each(s.stream, 0, 1, 32,
                PartEnds{s.first.data(), s.count.data(), s.notes.data(),
                         {mine.low_end, mine.inner_end, mine.own_end, mine.lower_copy_end, mine.ranks}});
+  }
+  for (auto& slab : slabs_) {
+    Slab& s = *slab;
+    const uint32_t before = s.own;
+    if (alone()) {
+      s.low_end = 0, s.high_begin = s.lower_copy_end = s.all = s.own;
+    } else {
       const std::vector<uint32_t> ends = s.notes.host(s.stream, 0, 5);
-      s.low_end = ends[0], s.high_begin = ends[1], gathered = ends[2], s.lower_copy_end = ends[3], s.all = ends[4];
+      s.low_end = ends[0], s.high_begin = ends[1], s.own = ends[2], s.lower_copy_end = ends[3], s.all = ends[4];
+      make_room(s, s.all);
     }
-    make_room(s, s.all);
-    for_each(s.stream, 0, s.own, options_.block,
+    for_each(s.stream, 0, before, options_.block,
              Order{s.rank_of.data(), s.first.data(), s.taken.data(), s.order.data()});
-    for_each(s.stream, 0, mine.own_end, options_.block,
+    for_each(s.stream, 0, cells_of(s).own_end, options_.block,
              OrderInCell{s.first.data(), s.count.data(), s.id.data(), s.order.data()});
-    s.own = gathered;
     Gather<Policy> f{s.rule->view(), grid(s), s.order.data(), at(s, at_), at(s, 1 - at_), s.cell.data(), s.id.data(),
                      s.spare_cell.data(), s.spare_id.data(), Policy::kFixed ? s.entered.data() : nullptr};
     for_each(s.stream, 0, s.own, options_.block, f);
@@ -258,35 +260,39 @@ void Machine<Policy>::mirror() {
 }
 
 template <class Policy>
-void Machine<Policy>::list_pairs() {
+void Machine<Policy>::list_pairs(Slab& s) {
   const auto reach_of = [&](double skin) {
     return static_cast<float>((setup_.radius + setup_.rounding + skin) * (1 + 1e-6));
   };
+  s.stride = (s.own + 31) / 32 * 32;
+  if (s.counts.size() < s.own) s.counts.resize(s.room);
+  if (s.entries.size() < s.stride * s.width) s.entries.resize(s.stride * s.width);
+  s.notes.zero(s.stream);
+  MakeList<Policy> f{};
+  f.view = s.rule->view(), f.grid = grid(s);
+  f.radius = reach_of(skin_.now()), f.near = reach_of(skin_.thinner());
+  f.x = s.x[at_].data(), f.cell = s.cell.data(), f.first = s.first.data(), f.count = s.count.data();
+  f.entries = s.entries.data(), f.counts = s.counts.data(), f.width = s.width, f.stride = s.stride;
+  max_each(s.stream, 0, s.own, options_.block, f, s.notes.data());
+  s.hashes.zero(s.stream);
+  sum_each(s.stream, 0, s.own, options_.block, CountNear{s.counts.data()}, s.hashes.data());
+  sum_each(s.stream, 0, s.own, options_.block, CountFurther{s.counts.data()}, s.hashes.data() + 1);
+}
+
+template <class Policy>
+void Machine<Policy>::list_pairs() {
   uint64_t near = 0, further = 0;
+  for (auto& slab : slabs_) list_pairs(*slab);
   for (auto& slab : slabs_) {
-    Slab& s = *slab;
     for (;;) {
-      const size_t stride = (s.own + 31) / 32 * 32;
-      if (s.counts.size() < s.own) s.counts.resize(s.room);
-      if (s.entries.size() < stride * s.width || s.stride != stride) {
-        if (s.entries.size() < stride * s.width) s.entries.resize(stride * s.width);
-        s.stride = stride;
-        for (Graph& graph : s.graph) graph.drop();
-      }
-      s.notes.zero(s.stream);
-      MakeList<Policy> f{s.rule->view(), grid(s), reach_of(skin_.now()), reach_of(skin_.thinner()), s.x[at_].data(), s.cell.data(), s.first.data(),
-                         s.count.data(), s.entries.data(), s.counts.data(), s.width, s.stride};
-      max_each(s.stream, 0, s.own, options_.block, f, s.notes.data() + 3);
-      const uint32_t longest = s.notes.host(s.stream, 3, 1)[0];
+      const uint32_t longest = slab->notes.host(slab->stream, 0, 1)[0];
       counters.longest_list = std::max<uint64_t>(counters.longest_list, longest);
-      if (longest <= s.width) break;
-      s.width = longest + longest / 16 + 1;
-      if (s.width > kNearMask) throw_too_dense(longest);
+      if (longest <= slab->width) break;
+      slab->width = longest + longest / 16 + 1;
+      if (slab->width > kNearMask) throw_too_dense(longest);
+      list_pairs(*slab);
     }
-    s.hashes.zero(s.stream);
-    sum_each(s.stream, 0, s.own, options_.block, CountNear{s.counts.data()}, s.hashes.data());
-    sum_each(s.stream, 0, s.own, options_.block, CountFurther{s.counts.data()}, s.hashes.data() + 1);
-    const std::vector<uint64_t> sums = s.hashes.host(s.stream, 0, 2);
+    const std::vector<uint64_t> sums = slab->hashes.host(slab->stream, 0, 2);
     near += sums[0], further += sums[1];
   }
   const auto n = static_cast<double>(particles_);

@@ -20,7 +20,7 @@ struct RaiseBase {
 template <class Policy>
 void Machine<Policy>::step(uint32_t number, bool hash) {
   const auto allowed = static_cast<float>(farthest());
-  const auto launch = [&](Slab& s, uint32_t begin, uint32_t end) {
+  const auto launch = [&](Slab& s, uint32_t begin, uint32_t end, uint32_t jump_at, uint32_t jump_by) {
     if (begin == end) return;
     Policy::with_variant(s.rule->view(), [&](auto variant) {
       Step<Policy, decltype(variant)> f{};
@@ -40,21 +40,24 @@ void Machine<Policy>::step(uint32_t number, bool hash) {
         if (const Slab* upper = beside(s, 1)) f.occupancy.upper = upper->occupancy.data();
       }
       f.cell = s.cell.data(), f.farthest2 = allowed * allowed, f.number = number, f.control = s.control.data();
+      f.jump_at = jump_at, f.jump_by = jump_by;
+      for (const auto& other : slabs_)
+        if (other.get() != &s) f.others.at[f.others.count++] = other->control.data();
       for_each_cached(s.stream, begin, end, options_.block, s.rule->cache(), s.rule->cache_words(), f);
     });
   };
   if (!alone())
     for (auto& slab : slabs_) {
-      // What the neighbours wrote in the step before is read now; what is written now they have read by then.
-      for (int side = 0; side < 2; ++side)
-        if (Slab* other = beside(*slab, side); other && number > 1)
-          slab->stream.wait(other->border_done[(number - 1) % 2]);
-      launch(*slab, 0, slab->low_end);
-      launch(*slab, slab->high_begin, slab->own);
+      // What the neighbours wrote in the step before is read now; what is written now they have read by then. Of the
+      // others too: nobody is two steps ahead of anybody.
+      for (auto& other : slabs_)
+        if (other != slab && number > 1) slab->stream.wait(other->border_done[(number - 1) % 2]);
+      launch(*slab, 0, slab->low_end + (slab->own - slab->high_begin), slab->low_end,
+             slab->high_begin - slab->low_end);
       slab->stream.record(slab->border_done[number % 2]);
     }
   for (auto& slab : slabs_) {
-    launch(*slab, slab->low_end, slab->high_begin);
+    launch(*slab, slab->low_end, slab->high_begin, kNever, 0);
     if (!hash) continue;
     if constexpr (Policy::kFixed) {
       const HashEach<Policy> f{slab->rule->view(), grid(*slab), at(*slab, 1 - at_), slab->cell.data(),
@@ -94,29 +97,6 @@ void Machine<Policy>::start_batch(uint32_t steps, bool hash) {
   wait_for_all();
 }
 
-// The state at the beginning of a batch, copies of neighbours' particles included.
-template <class Policy>
-void Machine<Policy>::save() {
-  for (auto& slab : slabs_) {
-    Slab& s = *slab;
-    copy(s.stream, s.saved_x.data(), s.device, s.x[at_].data(), s.device, s.all * sizeof(typename Policy::Position));
-    copy(s.stream, s.saved_v.data(), s.device, s.v[at_].data(), s.device, s.all * sizeof(typename Policy::Velocity));
-    if (setup_.pd)
-      copy(s.stream, s.saved_u.data(), s.device, s.u[at_].data(), s.device, s.own * sizeof(typename Policy::Extra));
-  }
-}
-
-template <class Policy>
-void Machine<Policy>::go_back() {
-  for (auto& slab : slabs_) {
-    Slab& s = *slab;
-    copy(s.stream, s.x[at_].data(), s.device, s.saved_x.data(), s.device, s.all * sizeof(typename Policy::Position));
-    copy(s.stream, s.v[at_].data(), s.device, s.saved_v.data(), s.device, s.all * sizeof(typename Policy::Velocity));
-    if (setup_.pd)
-      copy(s.stream, s.u[at_].data(), s.device, s.saved_u.data(), s.device, s.own * sizeof(typename Policy::Extra));
-  }
-}
-
 template <class Policy>
 typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vector<uint64_t>* hashes) {
   // Whether a thinner skin would do is asked at an age, not where a batch happens to end: runs repeat.
@@ -124,18 +104,13 @@ typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vec
   const uint64_t until = age_ < review ? review - age_ : kLongest;
   const auto steps = static_cast<uint32_t>(std::min({wanted, uint64_t{batch_}, until}));
   const int begin = at_;
-  if (!alone()) save();
   start_batch(steps, hashes != nullptr);
   Outcome outcome{steps, End::full};
-  uint64_t latest = 0;
   uint32_t doubt = kNever, crowded = kNever;
   bool old = false;
   for (auto& slab : slabs_) {
     const Control told = slab->control.host(slab->stream, 0, 1)[0];
     const uint64_t done = std::min(told.limit, steps);
-    // One that found a step impossible has begun it.
-    const bool begun = std::min(told.doubt, told.crowded) == done + 1;
-    latest = std::max(latest, done + (begun ? 1 : 0));
     outcome.done = std::min(outcome.done, done);
     doubt = std::min(doubt, told.doubt), crowded = std::min(crowded, told.crowded);
   }
@@ -146,13 +121,6 @@ typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vec
     outcome.end = End::doubt;
   else if (old || age_ + outcome.done == review)
     outcome.end = End::list;
-  // A slab that went two steps too far has overwritten the state.
-  if (latest > outcome.done + 1) {
-    at_ = begin;
-    go_back();
-    counters.replayed_steps += outcome.done;
-    if (outcome.done > 0) start_batch(static_cast<uint32_t>(outcome.done), hashes != nullptr);
-  }
   at_ = static_cast<int>((static_cast<uint64_t>(begin) + outcome.done) % 2);
   age_ += outcome.done;
   if (hashes) {

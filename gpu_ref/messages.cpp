@@ -39,7 +39,8 @@ void throw_not_finite(uint64_t step, uint32_t fastest, double speed) {
 void require_devices(const Options& options) {
   if (options.block < 32 || options.block > 256 || options.block % 32 != 0)
     throw InputError(fmt::format("a block of {} threads", options.block), "a multiple of 32 from 32 to 256");
-  if (options.devices.empty()) throw InputError("no device to run on", "a run needs one or more");
+  if (options.devices.empty() || options.devices.size() > size_t{kMostSlabs})
+    throw InputError(fmt::format("{} slabs", options.devices.size()), fmt::format("from 1 to {}", kMostSlabs));
   std::string why;
   const std::vector<Device> devices = find_devices(&why);
   if (devices.empty()) throw InputError(fmt::format("the gpu engine needs a CUDA device: {}", why));

@@ -10,7 +10,9 @@
 #include <optional>
 
 #include "gpu_ref/power.h"
+#include "gpu_ref/rates.h"
 #include "gpu_ref/run.h"
+#include "gpu_ref/start.h"
 #include "hw/setup.h"
 #include "model/interrupt.h"
 #include "model/output.h"
@@ -21,11 +23,14 @@ namespace cuboct::gpu {
 namespace {
 
 struct Request {
-  std::string scene, arch, out, frames_file, precision = "fixed";
+  std::string scene, arch, start, out, frames_file, precision = "fixed";
   std::optional<uint64_t> steps;
   std::vector<uint64_t> frames;
   int gpus = 0;
   bool frames_given = false, devices_given = false, hashes_given = false, bench = false, joules = false;
+  bool list = false;
+  int repeats = 0;
+  double seconds = 0.3;
   GpuRun run;
 };
 
@@ -35,11 +40,16 @@ Arithmetic arithmetic_of(const std::string& name) {
   return Arithmetic::fixed;
 }
 
+std::vector<Device> devices_here() {
+  std::string why;
+  std::vector<Device> found = find_devices(&why);
+  if (found.empty()) throw InputError("the gpu engine needs a CUDA device: " + why);
+  return found;
+}
+
 // The devices of the run, one after another. Fills in Options::devices.
 std::vector<Device> choose_devices(const Request& request, Options& options) {
-  std::string why;
-  const std::vector<Device> found = find_devices(&why);
-  if (found.empty()) throw InputError("the gpu engine needs a CUDA device: " + why);
+  const std::vector<Device> found = devices_here();
   if (request.gpus > static_cast<int>(found.size()))
     throw InputError(fmt::format("--gpus {}: this machine has {} CUDA device{}", request.gpus, found.size(),
                                  found.size() == 1 ? "" : "s"),
@@ -64,7 +74,14 @@ std::vector<Device> choose_devices(const Request& request, Options& options) {
   return chosen;
 }
 
+int list_devices() {
+  for (const Device& device : devices_here()) fmt::print("{} {}\n", device.ordinal, device.name);
+  return 0;
+}
+
 void check(const Request& request) {
+  if (request.scene.empty()) throw InputError("a scene is required");
+  if (request.repeats > 0 && !request.bench) throw InputError("--repeats goes with --bench");
   if (request.out.empty() && !request.bench) throw InputError("--out is required");
   if (!request.out.empty()) check_writable(request.out);
   if (request.run.hash_every == 0) throw InputError("--hash-every: 0 is not a number of steps");
@@ -83,6 +100,14 @@ void print_bench(const Trace& trace, uint64_t particles) {
              static_cast<double>(trace.steps()) * static_cast<double>(particles) / seconds);
   for (const auto& [name, value] : trace.counters) fmt::print("gpu.{} {:.15g} 1\n", name, value);
   fmt::print("gpu.seconds {:.6g} s\n", trace.seconds);
+}
+
+// Rates of whole runs; a run that stops is told by the trace of one run.
+void print_rates(const Scene& scene, const Plan& plan, const Request& request) {
+  const GpuRun& run = request.run;
+  for (const double rate : step_rates(
+           scene, plan, {run.arithmetic, run.steps, request.repeats, request.seconds, run.engine}))
+    fmt::print("gpu.steps_per_second {:.15g} 1/s\n", rate);
 }
 
 // Measures the energy of a run's devices.
@@ -119,13 +144,15 @@ class Joules {
 };
 
 int run(Request request) {
+  if (request.list) return list_devices();
   GpuRun& run = request.run;
   check(request);
   const std::vector<Device> devices = choose_devices(request, run.engine);
   std::vector<std::string> names;
   for (const Device& device : devices) names.push_back(device.name);
   if (!request.frames_file.empty()) request.frames = read_steps(request.frames_file);
-  const Scene scene = read_scene(request.scene);
+  Scene scene = read_scene(request.scene);
+  if (!request.start.empty()) start_from(request.start, scene);
   const Plan plan = plan_of(scene, read_arch(request.arch));
   run.arithmetic = arithmetic_of(request.precision);
   run.steps = request.steps.value_or(scene.steps);
@@ -150,6 +177,8 @@ int run(Request request) {
   Trace& trace = result.trace;
   for (size_t k = 0; k < names.size(); ++k) trace.notes.emplace_back(fmt::format("device {}", k), names[k]);
   if (!request.out.empty()) write_trace(request.out, trace);
+  if (request.bench && request.repeats > 0 && !trace.stop && !result.interrupted)
+    print_rates(scene, plan, request);
   if (request.bench)
     print_bench(trace, plan.particles);
   else
@@ -169,8 +198,10 @@ int run_gpu_program(int argc, char** argv) {
   GpuRun& run = request.run;
   CLI::App app{"Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers",
                "cuboct-gpu"};
-  app.add_option("scene", request.scene, "Scene file (TOML)")->required();
+  app.add_option("scene", request.scene, "Scene file (TOML)");
   app.add_option("--arch", request.arch, "Machine description (TOML); the defaults without one");
+  app.add_option("--start", request.start,
+                 "Trace with a state in real numbers; its last one is where the run starts, not the scene's");
   app.add_option("--steps", request.steps, "Steps to run; the scene's own number without it");
   app.add_option("--precision", request.precision, "fixed (golden's bits), float or double")
       ->check(CLI::IsMember({"fixed", "float", "double"}))
@@ -195,6 +226,13 @@ int run_gpu_program(int argc, char** argv) {
   auto* hashes = app.add_option("--hash-every", run.hash_every, "The state's hash each so many steps")
                      ->capture_default_str();
   app.add_flag("--bench", request.bench, "Print 'name value unit' lines; no trace unless --out asks for one");
+  app.add_option("--repeats", request.repeats,
+                 "With --bench: then steps per second of whole runs, measured so many times")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--seconds", request.seconds, "Of each of --repeats, at least")
+      ->check(CLI::Range(1e-3, 1e4))
+      ->capture_default_str();
+  app.add_flag("--list", request.list, "Print the devices, and no more");
   app.add_flag("--progress", run.progress, "A line per second on standard error");
   try {
     app.parse(argc, argv);

@@ -261,7 +261,6 @@ void Loop::count() {
   add("list_builds", static_cast<double>(counters.list_builds));
   if (fixed()) {
     add("golden_steps", static_cast<double>(counters.golden_steps));
-    add("replayed_steps", static_cast<double>(counters.replayed_steps));
   }
   add("longest_list", static_cast<double>(counters.longest_list));
   add("listed_pairs", counters.listed_pairs);

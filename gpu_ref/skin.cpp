@@ -6,7 +6,8 @@
 
 namespace cuboct::gpu {
 
-Skin::Skin(double radius, double largest) {
+Skin::Skin(double radius, double largest, double particles)
+    : making_(kMaking + kMakingOfFew * std::min(1.0, kFew / std::max(particles, 1.0))) {
   constexpr double kThinnest = 0.012, kStep = 1.25, kFirst = 0.09;
   for (int k = 0; k < kSkins; ++k) {
     const double skin = radius * kThinnest * std::pow(kStep, k);
@@ -24,16 +25,16 @@ void Skin::listed(double near, double further) {
 uint64_t Skin::review() const {
   if (at_ == 0) return kForGood;
   // By then the making costs less than what is to be gained.
-  if (!known(at_ - 1)) return static_cast<uint64_t>(std::ceil(kMaking / (kWorthwhile * entries_)));
+  if (!known(at_ - 1)) return static_cast<uint64_t>(std::ceil(making_ / (kWorthwhile * entries_)));
   const double saved = entries_ - cost_[at_ - 1];
-  return saved > kWorthwhile * entries_ ? static_cast<uint64_t>(std::ceil(2 * kMaking / saved)) : kRetried;
+  return saved > kWorthwhile * entries_ ? static_cast<uint64_t>(std::ceil(2 * making_ / saved)) : kRetried;
 }
 
 void Skin::aged(uint64_t steps) {
   if (steps == 0) return;  // the first list, or one that never served
   const bool reviewed = steps >= review();
   ++lists_;
-  const double making = kMaking / static_cast<double>(steps);
+  const double making = making_ / static_cast<double>(steps);
   const double cost = entries_ + making;
   cost_[at_] = known(at_) ? (cost_[at_] + cost) / 2 : cost;
   when_[at_] = lists_;

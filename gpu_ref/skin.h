@@ -12,8 +12,9 @@ namespace cuboct::gpu {
 
 class Skin {
  public:
-  // `radius` of the interaction; `largest`: what the cells leave room for. Same unit.
-  Skin(double radius, double largest);
+  // `radius` of the interaction; `largest`: what the cells leave room for. Same unit. `particles` in all, on however
+  // many devices.
+  Skin(double radius, double largest, double particles);
 
   double now() const { return skin_[at_]; }
   double thinner() const { return skin_[at_ > 0 ? at_ - 1 : 0]; }
@@ -29,8 +30,9 @@ class Skin {
 
  private:
   static constexpr int kSkins = 14;
-  // Making a list takes about the time of this many entries (docs/reference/gpu.md has the measurement).
-  static constexpr double kMaking = 400;
+  // Making a list takes about the time of this many entries per particle, and where there are few particles that of
+  // more: it is then a matter of waiting for the host (docs/reference/gpu.md has the measurement).
+  static constexpr double kMaking = 400, kMakingOfFew = 1100, kFew = 50e3;
   // Further entries are met by few (gpu_ref/grid_view.h), which holds up those that are computed beside them.
   static constexpr double kFurther = 0.15;
   static constexpr double kWorthwhile = 0.04;  // a share of the cost
@@ -42,6 +44,7 @@ class Skin {
   std::array<double, kSkins> skin_{};
   std::array<double, kSkins> cost_{};    // 0: never tried
   std::array<uint64_t, kSkins> when_{};  // number of the list that told
+  double making_;
   int at_ = 0, largest_ = 0;
   uint64_t lists_ = 0;
   double entries_ = 0;  // by what they cost

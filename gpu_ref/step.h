@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "gpu_ref/energy_table.h"
+#include "gpu_ref/engine.h"
 #include "gpu_ref/storage.h"
 #include "model/hash.h"
 
@@ -18,6 +19,12 @@ struct Control {
   uint32_t crowded;  // the first step in which a node may be too full
 };
 inline constexpr uint32_t kNever = 0xffffffffu;
+
+// Of the other slabs.
+struct Controls {
+  Control* at[kMostSlabs - 1];
+  int count;
+};
 
 // How full nodes may be. No particle's departure is counted until the next list, nor does one count twice in a node:
 // while no node holds more than its capacity by that count, none has done so, in whatever order devices count.
@@ -98,11 +105,14 @@ struct Step {
   const CellAt* cell;
   float farthest2;  // square of the way that the list allows
   uint32_t number;  // of the step, above the control's base
+  Controls others;
+  uint32_t jump_at, jump_by;  // both borders of a slab in one loop: from the one index on, places lie further
   Control* control;
 
   CUBOCT_DEVICE bool idle() const { return control->limit < control->base + number; }
 
-  CUBOCT_DEVICE void operator()(uint32_t i, const void* cache) const {
+  CUBOCT_DEVICE void operator()(uint32_t index, const void* cache) const {
+    const uint32_t i = index < jump_at ? index : index + jump_by;
     auto x = load(from.x + i);
     auto v = load(from.v + i);
     const auto before = x;
@@ -127,11 +137,18 @@ struct Step {
     if constexpr (Policy::kFixed) sound &= cross(i, before, x, crowded);
     if (!sound || crowded) {
       const uint32_t now = control->base + number;
-      atomic_min(&control->limit, now - 1);
       atomic_min(crowded ? &control->crowded : &control->doubt, now);
+      stop_after(now - 1);
       return;
     }
-    if (!(way2<Policy>(view, grid, x, v) <= farthest2)) atomic_min(&control->limit, control->base + number);
+    if (!(way2<Policy>(view, grid, x, v) <= farthest2)) stop_after(control->base + number);
+  }
+
+  // The other slabs may be a step ahead, and no more: the state after this step stays in one of their two copies.
+  // They learn of it in time, as their next but one step begins after this slab's next one has.
+  CUBOCT_DEVICE void stop_after(uint32_t step) const {
+    atomic_min(&control->limit, step);
+    for (int k = 0; k < others.count; ++k) atomic_min(&others.at[k]->limit, step + 1);
   }
 
   // Golden's migration along x, then y, then z. False: not possible.

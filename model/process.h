@@ -9,25 +9,34 @@
 
 namespace cuboct {
 
+// Where a program's words go; an empty name: where ours go.
+struct Streams {
+  std::string out = "/dev/null", err = "";
+};
+
 class Process {
  public:
-  // Starts `program` (looked for in PATH unless it has a slash) with these arguments, without a shell; its
-  // stderr is ours, its stdout is dropped (results travel in files). Throws InputError where it cannot be
-  // started.
+  // Starts `program` (looked for in PATH unless it has a slash) with these arguments, without a shell; by
+  // default its stderr is ours, its stdout is dropped (results travel in files). Throws InputError where it
+  // cannot be started.
   // `apart`: in a process group of its own, where Ctrl-C does not reach it, and an interrupt of ours is
   // passed on as SIGUSR1: mpirun ends its processes on the one and tells them the other.
-  Process(const std::string& program, const std::vector<std::string>& arguments, bool apart = false);
+  Process(const std::string& program, const std::vector<std::string>& arguments, bool apart = false,
+          const Streams& streams = {});
   ~Process();  // ends it where nobody waited
   Process(Process&& other) noexcept;
   Process& operator=(Process&&) = delete;
 
-  // Exit code, or -N where signal N ended it. An interrupt of ours is passed on once.
+  // Exit code, or -N where signal N ended it. An interrupt of ours is passed on once, whichever thread met it.
   int wait();
 
  private:
   pid_t pid_;
   int passed_on_ = 0;  // the signal that stands for an interrupt
 };
+
+// Directory of the running program: engines with heavy needs are programs of their own, beside it.
+std::string program_directory();
 
 // Whether a directory of PATH has it.
 bool in_path(const std::string& program);

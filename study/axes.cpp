@@ -98,17 +98,18 @@ constexpr Key kKeys[] = {
 Set set_of(const Key& key, const ConfigValue& value, const Widths& widths) {
   const std::string name = key.name;
   if (name == "engine") {
-    const bool lattice = value.choice("engine", {"lattice", "reference"}) == 0;
-    return [lattice](Settings& settings) {
-      settings.engine = lattice ? "lattice" : "reference";
-      settings.arithmetic = lattice ? Arithmetic::fixed : Arithmetic::float64;
+    static const std::vector<std::string> engines{"lattice", "reference", "gpu"};
+    const std::string engine = engines[value.choice("engine", engines)];
+    return [engine](Settings& settings) {
+      settings.engine = engine;
+      settings.arithmetic = engine == "reference" ? Arithmetic::float64 : Arithmetic::fixed;
     };
   }
   if (name == "arithmetic") {
     const auto arithmetic = static_cast<Arithmetic>(value.choice("arithmetic", arithmetic_names()));
     return [arithmetic](Settings& settings) {
       settings.arithmetic = arithmetic;
-      settings.engine = arithmetic == Arithmetic::fixed ? "lattice" : "reference";
+      if (!on_gpu(settings)) settings.engine = arithmetic == Arithmetic::fixed ? "lattice" : "reference";
     };
   }
   if (name == "integrator") {

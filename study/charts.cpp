@@ -17,6 +17,8 @@
 namespace cuboct::study {
 namespace {
 
+constexpr size_t kLongName = 24;  // letters
+
 // gnuplot's point types that look like the page's symbols.
 constexpr int kPointTypes[kSymbols] = {7, 5, 9, 13, 11, 15};
 
@@ -59,6 +61,11 @@ class Script {
     set("tics nomirror");
     set("grid lc '#dddddd' lt 1 lw 0.5");
     set("key outside right top Left reverse noenhanced samplen 2 spacing 1.15");
+  }
+  // Names that take half of the width beside the chart stand below it.
+  void key_of(const std::vector<Series>& all) {
+    const bool is_long = std::ranges::any_of(all, [](const Series& s) { return s.name.size() > kLongName; });
+    if (is_long) set("key below Left reverse noenhanced samplen 2 spacing 1.15");
   }
   void set(const std::string& what) { settings_ += "set " + what + "\n"; }
 
@@ -135,6 +142,7 @@ void draw_error_speed(const Results& results, const Measure& error, const Measur
     return std::pair{speed.value(outcomes[n]), y.placed(error.value(outcomes[n]))};
   };
   script.begin(fmt::format("{}_{}", error.id, speed.id));
+  script.key_of(series_of(results));
   script.log_axis('x', speed.label, x, speed.less_is_better);
   script.log_axis('y', error.label, y);
   script.band(error.floor, y);
@@ -175,6 +183,7 @@ void draw_parameter(const Results& results, const Parameter& parameter, const Me
   std::string name = parameter.id;
   std::replace(name.begin(), name.end(), '.', '-');
   script.begin(fmt::format("{}_by_{}", error.id, name));
+  script.key_of(series_of(results));
   if (parameter.logarithmic) {
     script.log_axis('x', parameter.label, log_range(xs));
   } else {

@@ -12,6 +12,7 @@
 #include "model/error.h"
 #include "model/measure.h"
 #include "study/cost.h"
+#include "study/gpu_program.h"
 #include "study/measure_run.h"
 
 namespace cuboct::study {
@@ -28,8 +29,9 @@ std::vector<Vec3> forces_on(const Case& c, const Plan* plan, const Body& body, c
     std::vector<Vec3> forces;
     for (const Int3& kick : summed_kicks(plan->rule, plan->lattice, state, 1))
       forces.push_back(force_of(plan->rule, kick));
-    return forces;
+    return forces;  // the same in every fixed engine
   }
+  if (on_gpu(c.settings)) return gpu_forces(c, body);
   RealOptions options;
   options.precision = c.settings.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
   return Reference(c.scene.rule, body, periodic, options).forces();

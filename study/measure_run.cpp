@@ -13,6 +13,7 @@
 #include "model/real_meter.h"
 #include "model/state_meter.h"
 #include "model/strain.h"
+#include "study/gpu_program.h"
 
 namespace cuboct::study {
 namespace {
@@ -22,9 +23,9 @@ struct Sums {
   double scale = 0;
 };
 
-Sums sums_of(const Rule& rule, const Body& body) {
+Sums sums_of(const Rule& rule, const std::vector<Vec3>& velocities) {
   Sums sums;
-  for (const Vec3& v : body.v) {
+  for (const Vec3& v : velocities) {
     sums.momentum += rule.mass * v;
     sums.scale += rule.mass * v.norm();
   }
@@ -59,7 +60,7 @@ Run run_real(const Scene& scene, const Settings& settings, const RunRequest& req
   Run run;
   run.dt = scene.rule.dt;
   RealMeter meter(scene, settings.integrator, request.curves, request.energies);
-  const Sums before = sums_of(scene.rule, reference.body());
+  const Sums before = sums_of(scene.rule, reference.body().v);
   try {
     go(
         request, per_sample, run, [&] { reference.step(); },
@@ -72,11 +73,23 @@ Run run_real(const Scene& scene, const Settings& settings, const RunRequest& req
   } catch (const std::runtime_error& error) {
     run.stop = error.what();
   }
-  const Sums after = sums_of(scene.rule, reference.body());
+  const Sums after = sums_of(scene.rule, reference.body().v);
   run.momentum_change = after.momentum - before.momentum;
   run.momentum_scale = after.scale;
   run.curves = meter.curves();
   return run;
+}
+
+// `before`: of the start.
+void add_momenta(const Scene& scene, const FixedRule& rule, const Int3& before, const State& last, Run& run) {
+  const double unit = scene.rule.mass * rule.cell_edge / rule.dt / std::exp2(rule.widths.velocity_frac());
+  const Int3 after = momentum(last);
+  for (int a = 0; a < 3; ++a) run.momentum_change[a] = unit * static_cast<double>(after[a] - before[a]);
+  for (const Particle& p : last.particles) {
+    Vec3 v;
+    for (int a = 0; a < 3; ++a) v[a] = unit * static_cast<double>(p.v[a]);
+    run.momentum_scale += v.norm();
+  }
 }
 
 Run run_fixed(Scene scene, const Arch& arch, const RunRequest& request, uint64_t per_sample) {
@@ -109,15 +122,54 @@ Run run_fixed(Scene scene, const Arch& arch, const RunRequest& request, uint64_t
     // The engine's state went with the step that failed: sums are those of the sample before it.
     run.stop = error.what();
   }
-  const double unit = scene.rule.mass * rule.cell_edge / rule.dt / std::exp2(rule.widths.velocity_frac());
-  const Int3 after = momentum(last);
-  for (int a = 0; a < 3; ++a) run.momentum_change[a] = unit * static_cast<double>(after[a] - before[a]);
-  for (const Particle& p : last.particles) {
-    Vec3 v;
-    for (int a = 0; a < 3; ++a) v[a] = unit * static_cast<double>(p.v[a]);
-    run.momentum_scale += v.norm();
-  }
+  add_momenta(scene, rule, before, last, run);
   run.curves = meter.curves();
+  return run;
+}
+
+// In the program of the GPU engine. States of a run that stopped: those up to there.
+Run run_on_gpu(const Case& c, const Scene& scene, const RunRequest& request, uint64_t per_sample) {
+  GpuRequest asked;
+  asked.dt = scene.rule.dt;
+  asked.scene_steps = scene.steps;
+  asked.steps = request.until * per_sample;
+  asked.energies = request.energies;
+  asked.probe_every = request.curves || request.energies ? per_sample : 0;
+  asked.keep = {0};
+  for (const uint64_t sample : request.keep) asked.keep.push_back(sample * per_sample);
+  asked.keep.push_back(asked.steps);
+  Trace trace = run_gpu(c, started_body(scene, true), asked);
+  Run run;
+  run.dt = scene.rule.dt;
+  run.steps = trace.steps();
+  run.curves = std::move(trace.curves);
+  if (trace.stop) run.stop = trace.stop->text;
+  const auto wanted = [&](uint64_t step) {
+    return step % per_sample == 0 && among(request.keep, step / per_sample);
+  };
+  if (c.settings.arithmetic == Arithmetic::fixed) {
+    Scene started = scene;
+    started.body = started_body(scene, true);
+    const Plan plan = plan_of(started, c.arch);
+    if (trace.plan_hash != plan.hash)
+      throw std::runtime_error("cuboct-gpu made another plan of the same scene: build both from one source");
+    for (const State& state : trace.frames)
+      if (wanted(state.step)) run.kept.push_back(to_real(state, plan.rule, plan.lattice, plan.origin));
+    if (!trace.frames.empty())
+      add_momenta(scene, plan.rule, momentum(trace.frames.front()), trace.frames.back(), run);
+    return run;
+  }
+  for (const RealFrame& frame : trace.bodies) {
+    if (!wanted(frame.step)) continue;
+    run.kept.push_back(scene.body);
+    run.kept.back().x = frame.x, run.kept.back().v = frame.v;
+  }
+  if (!trace.bodies.empty()) {
+    const Sums before = sums_of(scene.rule, trace.bodies.front().v);
+    const Sums after = sums_of(scene.rule, trace.bodies.back().v);
+    run.momentum_change = after.momentum - before.momentum;
+    run.momentum_scale = after.scale;
+  }
   return run;
 }
 
@@ -139,6 +191,7 @@ Run run_case(const Case& c, const RunRequest& request) {
   scene.rule.dt = request.grid.fitted(scene.rule.dt);
   scene.steps = per_sample * request.grid.samples;
   scene.probe_every = per_sample;
+  if (on_gpu(c.settings)) return run_on_gpu(c, scene, request, per_sample);
   if (c.settings.arithmetic == Arithmetic::fixed) return run_fixed(std::move(scene), c.arch, request, per_sample);
   return run_real(scene, c.settings, request, per_sample);
 }

@@ -12,6 +12,7 @@
 #include "hw/setup.h"
 #include "model/error.h"
 #include "model/interrupt.h"
+#include "study/gpu_program.h"
 #include "study/measure_run.h"
 
 namespace cuboct::study {
@@ -79,6 +80,32 @@ class Stepper {
   uint64_t done_ = 0;
 };
 
+// Steps per second, once per repeat.
+std::vector<double> rates_here(Case c, const Study& study) {
+  Stepper stepper(std::move(c));
+  // Memory is touched and lists are made; then the length of a repeat is found, which warms up as well.
+  stepper.timed(3);
+  uint64_t steps = 1;
+  for (double seconds = stepper.timed(steps); seconds < study.seconds / 4; seconds = stepper.timed(steps))
+    steps = std::max(steps + 1, static_cast<uint64_t>(static_cast<double>(steps) *
+                                                      std::min(10.0, 0.3 * study.seconds / seconds)));
+  std::vector<double> rates;
+  for (int repeat = 0; repeat < study.repeats; ++repeat) {
+    uint64_t done = 0;
+    double seconds = 0;
+    while (seconds < study.seconds) seconds += stepper.timed(steps), done += steps;
+    rates.push_back(static_cast<double>(done) / seconds);
+  }
+  return rates;
+}
+
+std::vector<double> rates_on_gpu(const Case& c, const Study& study) {
+  GpuRequest request;
+  request.dt = c.scene.rule.dt;
+  request.scene_steps = request.steps = c.scene.steps;
+  return gpu_rates(c, started_body(c.scene, true), request, study.repeats, study.seconds);
+}
+
 }  // namespace
 
 Speed measure_speed(const Study& study, const Settings& settings) {
@@ -90,20 +117,8 @@ Speed measure_speed(const Study& study, const Settings& settings) {
     c.scene.steps = per_sample * study.grid.samples;
     const double dt = c.scene.rule.dt;
     const auto particles = static_cast<double>(c.scene.body.size());
-    Stepper stepper(std::move(c));
-    // Memory is touched and lists are made; then the length of a repeat is found, which warms up as well.
-    stepper.timed(3);
-    uint64_t steps = 1;
-    for (double seconds = stepper.timed(steps); seconds < study.seconds / 4; seconds = stepper.timed(steps))
-      steps = std::max(steps + 1, static_cast<uint64_t>(static_cast<double>(steps) *
-                                                        std::min(10.0, 0.3 * study.seconds / seconds)));
-    std::vector<double> rates;
-    for (int repeat = 0; repeat < study.repeats; ++repeat) {
-      uint64_t done = 0;
-      double seconds = 0;
-      while (seconds < study.seconds) seconds += stepper.timed(steps), done += steps;
-      rates.push_back(static_cast<double>(done) / seconds);
-    }
+    std::vector<double> rates = on_gpu(settings) ? rates_on_gpu(c, study) : rates_here(std::move(c), study);
+    if (rates.empty()) return speed;
     std::ranges::sort(rates);
     const size_t n = rates.size();
     const double median = n % 2 ? rates[n / 2] : (rates[n / 2 - 1] + rates[n / 2]) / 2;
@@ -113,7 +128,9 @@ Speed measure_speed(const Study& study, const Settings& settings) {
     speed.repeats = study.repeats;
   } catch (const Interrupted&) {
     throw;
-  } catch (const std::runtime_error&) {  // InputError, RunError, not finite: the errors' row says it
+  } catch (const std::runtime_error& error) {
+    // InputError, RunError, not finite: the errors' row says it. A program that failed says nothing of a point.
+    if (on_gpu(settings) && !dynamic_cast<const InputError*>(&error)) throw;
   }
   return speed;
 }

@@ -37,6 +37,7 @@ struct Speed {
   double simulated_seconds = kNotMeasured;  // per second of host time
   double spread = kNotMeasured;             // (largest - smallest)/median of the repeats
   int repeats = 0;
+  std::string machine = {};  // where it was measured; empty: on the study's own
 };
 
 enum class Status : uint8_t {
@@ -57,7 +58,13 @@ struct Outcome {
   int halo_bits = 0, table_bits = 0;  // of the plan, fixed only: a record, and all tables
   Errors errors;
   Speed speed;
-  std::string machine;  // where it was measured; empty: on the study's own (store.h)
+  std::string machine;  // where its errors were measured; empty: on the study's own (store.h)
+
+  // Where its speed was measured, which is what tells machines apart; without a speed, its errors.
+  const std::string& measured_on() const {
+    const bool none = std::isnan(speed.particle_steps) && std::isnan(speed.simulated_seconds);
+    return none ? machine : speed.machine;
+  }
 };
 
 // An error's text as it stands in `why`: its hint after a semicolon.

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "study/runner.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <mutex>
 #include <set>
 #include <thread>
 
 #include "model/error.h"
+#include "study/gpu_program.h"
 #include "study/measure_errors.h"
 #include "study/measure_run.h"
 #include "study/measure_speed.h"
@@ -86,32 +89,54 @@ std::vector<Outcome> Runner::errors_of(const std::vector<Settings>& points) {
   for (const Settings& settings : points)
     if (!store_.has_errors(settings) && known.insert(settings.numbers_key()).second) missing.push_back(settings);
   if (!missing.empty()) {
+    const bool some_on_gpu = std::ranges::any_of(missing, on_gpu);
+    if (some_on_gpu && !has_gpu()) throw InputError(no_gpu_);
     make_truths(missing);
-    std::vector<Piece> pieces;
+    std::vector<Piece> here, there;
     for (const Settings& settings : missing)
-      pieces.push_back({size_of_run(study_, settings), [&, settings] {
-                          store_.put_errors(
-                              measure_errors(study_, truths_.at(""), truth_of(settings), settings));
-                        }});
-    work_off(std::move(pieces), options_.jobs, "points", options_.progress);
+      (on_gpu(settings) ? there : here).push_back({size_of_run(study_, settings), [&, settings] {
+        Outcome outcome = measure_errors(study_, truths_.at(""), truth_of(settings), settings);
+        if (on_gpu(settings)) outcome.machine = *gpu_;
+        store_.put_errors(outcome);
+      }});
+    work_off(std::move(here), options_.jobs, "points", options_.progress);
+    work_off(std::move(there), 1, "points on the GPU", options_.progress);
   }
   std::vector<Outcome> outcomes;
   for (const Settings& settings : points) outcomes.push_back(*store_.errors(settings));
   return outcomes;
 }
 
-void Runner::measure_speeds() {
+void Runner::measure_speeds(const std::vector<Settings>& points) {
   std::vector<Piece> pieces;
-  for (const Settings& settings : study_.points)
-    if (!store_.has_speed(settings))
-      pieces.push_back({1, [&] { store_.put_speed(settings, measure_speed(study_, settings)); }});
+  for (const Settings& settings : points)
+    if (!store_.has_speed(settings) && (!on_gpu(settings) || has_gpu()))
+      pieces.push_back({1, [&] {
+                          Speed speed = measure_speed(study_, settings);
+                          if (on_gpu(settings)) speed.machine = *gpu_;
+                          store_.put_speed(settings, speed);
+                        }});
   work_off(std::move(pieces), 1, "speeds", options_.progress);
+}
+
+bool Runner::has_gpu() {
+  if (!gpu_) gpu_ = find_gpu(no_gpu_);
+  return !gpu_->empty();
 }
 
 void Runner::run() {
   truth();
-  errors_of(study_.points);
-  if (options_.speed) measure_speeds();
+  const auto lacks = [&](const Settings& settings) {
+    return on_gpu(settings) && (!store_.has_errors(settings) || (options_.speed && !store_.has_speed(settings)));
+  };
+  std::vector<Settings> points = study_.points;
+  const auto lacking = std::ranges::count_if(points, lacks);
+  if (lacking > 0 && !has_gpu()) {
+    left_out_ = fmt::format("{} point{} of the gpu engine left out: {}", lacking, lacking == 1 ? "" : "s", no_gpu_);
+    std::erase_if(points, [&](const Settings& s) { return on_gpu(s) && !store_.has_errors(s); });
+  }
+  errors_of(points);
+  if (options_.speed) measure_speeds(points);
 }
 
 }  // namespace cuboct::study

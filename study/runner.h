@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -26,25 +27,31 @@ class Runner {
  public:
   Runner(const Study& study, Store& store, const RunnerOptions& options);
 
-  // The study's points.
+  // The study's points. Those of the gpu engine are left out where it cannot run.
   void run();
+  // In one line what `run` left out, and why; empty: nothing.
+  const std::string& left_out() const { return left_out_; }
 
   // The study's truth, computed where it is not there yet.
   const Truth& truth();
   // Errors of any settings, not of the study's points alone; several at once on the runner's jobs. In their
-  // order, without speeds.
+  // order, without speeds. InputError where the gpu engine is asked for and cannot run.
   std::vector<Outcome> errors_of(const std::vector<Settings>& points);
 
  private:
+  // Whether the gpu engine can run here; looked up once.
+  bool has_gpu();
   void make_truths(const std::vector<Settings>& points);
   const Truth& truth_of(const Settings& settings);
-  void measure_speeds();
+  void measure_speeds(const std::vector<Settings>& points);
 
   const Study& study_;
   Store& store_;
   RunnerOptions options_;
   std::map<std::string, Truth> truths_;  // by physics_key
   std::set<std::string> no_truth_;       // physics_keys without one: no run in doubles has an end
+  std::optional<std::string> gpu_;       // its name, once looked up; empty: there is none
+  std::string no_gpu_, left_out_;
 };
 
 }  // namespace cuboct::study

@@ -31,25 +31,33 @@ const char* label(Integrator integrator) {
 std::string describe(const Settings& settings) {
   std::string text = fmt::format("{}, {}", settings.engine, label(settings.arithmetic));
   if (settings.arithmetic != Arithmetic::fixed) text += fmt::format("; {}", label(settings.integrator));
-  text += fmt::format("; {} thread{}", settings.threads, settings.threads == 1 ? "" : "s");
+  if (!on_gpu(settings)) text += fmt::format("; {} thread{}", settings.threads, settings.threads == 1 ? "" : "s");
   for (const auto* changes : {&settings.scene, &settings.arch})
     for (const Change& change : *changes) text += fmt::format("; {} {}", change.key, change.value);
   return text;
 }
 
 std::vector<Series> series_of(const Results& results) {
-  std::vector<Series> all{{"lattice, fixed", kColours[0], 0, {}},
-                          {"reference, double", kColours[1], 1, {}},
-                          {"reference, float", kColours[2], 2, {}}};
+  constexpr std::array kKnown{"lattice, fixed", "reference, double", "reference, float",
+                              "gpu, fixed",     "gpu, double",       "gpu, float"};
+  std::vector<Series> all;
+  const auto add = [&](const std::string& name) {
+    const size_t k = all.size();
+    all.push_back({name, kColours[k % kColours.size()], static_cast<int>(k % kSymbols), {}});
+    return all.end() - 1;
+  };
+  for (const char* name : kKnown) add(name);
   for (size_t n = 0; n < results.outcomes.size(); ++n) {
-    const Settings& settings = results.outcomes[n].settings;
-    const std::string name = fmt::format("{}, {}", settings.engine, label(settings.arithmetic));
-    auto at = std::find_if(all.begin(), all.end(), [&](const Series& s) { return s.name == name; });
-    if (at == all.end()) {
-      const size_t k = all.size();
-      all.push_back({name, kColours[k % kColours.size()], static_cast<int>(k % kSymbols), {}});
-      at = all.end() - 1;
-    }
+    const Outcome& outcome = results.outcomes[n];
+    const std::string engine =
+        fmt::format("{}, {}", outcome.settings.engine, label(outcome.settings.arithmetic));
+    const std::string& machine = outcome.measured_on();
+    const std::string name = machine.empty() ? engine : fmt::format("{} ({})", engine, machine);
+    auto at = std::ranges::find(all, name, &Series::name);
+    // The first machine of a GPU takes the look of its engine.
+    const auto own = std::ranges::find(all, engine, &Series::name);
+    if (at == all.end() && on_gpu(outcome.settings) && own != all.end()) own->name = name, at = own;
+    if (at == all.end()) at = add(name);
     at->points.push_back(n);
   }
   std::erase_if(all, [](const Series& s) { return s.points.empty(); });

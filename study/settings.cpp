@@ -57,8 +57,9 @@ Case resolve(const Base& base, const Settings& settings) {
   if (settings.engine == "reference" ? fixed : settings.engine == "lattice" && !fixed)
     throw InputError(fmt::format("engine '{}' does not know {} arithmetic", settings.engine,
                                  name_of(settings.arithmetic)));
-  if (fixed && settings.integrator != Integrator::semi_implicit_euler)
-    throw InputError("fixed arithmetic knows the integrator 'euler' only");
+  if (settings.integrator != Integrator::semi_implicit_euler && (fixed || on_gpu(settings)))
+    throw InputError(fmt::format("{} knows the integrator 'euler' only",
+                                 fixed ? "fixed arithmetic" : "the gpu engine"));
   Case c{settings, {}, {}, with_changes(base.scene_text, base.scene_path, settings.scene), {}};
   c.scene = parse_scene(c.scene_text, base.scene_path);
   const std::string arch_path = base.arch_path.empty() ? "(default arch)" : base.arch_path;

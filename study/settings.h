@@ -33,11 +33,11 @@ inline const std::string& name_of(Arithmetic arithmetic) {
 }
 
 struct Settings {
-  std::string engine = "lattice";  // "reference" (float64, float32) or "lattice" (fixed); points of other
-                                   // engines come from elsewhere (store.h)
+  std::string engine = "lattice";  // "reference" (float64, float32), "lattice" (fixed) or "gpu" (all three);
+                                   // points of other engines come from elsewhere (store.h)
   Arithmetic arithmetic = Arithmetic::fixed;
   Integrator integrator = Integrator::semi_implicit_euler;  // fixed knows this one only
-  int threads = 1;
+  int threads = 1;                    // of the host; the gpu engine knows none
   std::vector<Change> scene, arch;  // from the base, e.g. {"run.dt_safety", "0.1"}, {"widths.guard", "6"}
 
   // What the numbers depend on: all of it, but for the threads of a fixed engine. One line, the same for the
@@ -47,6 +47,7 @@ struct Settings {
   std::string key() const;
   bool operator==(const Settings&) const = default;
 };
+inline bool on_gpu(const Settings& settings) { return settings.engine == "gpu"; }
 
 // The resolved scene and arch of some settings. Throws InputError: the scene or arch that results is wrong
 // (its text says which key), or engine and arithmetic do not go together.

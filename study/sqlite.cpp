@@ -57,14 +57,22 @@ bool Query::next() {
   return code == SQLITE_ROW;
 }
 
+void Query::copy_column(int column, Query& to) {
+  if (sqlite3_bind_value(to.statement_, ++to.bound_, sqlite3_column_value(statement_, column)) != SQLITE_OK)
+    to.database_.fail();
+}
+
+void Query::copy_to(Query& to) {
+  for (int k = 0; k < sqlite3_column_count(statement_); ++k) copy_column(k, to);
+}
+
 void Query::copy_to(Query& to, const std::string& last) {
-  const int columns = sqlite3_column_count(statement_);
-  for (int k = 0; k < columns; ++k) {
-    if (k + 1 == columns && !last.empty())
-      to.bind(last);
-    else if (sqlite3_bind_value(to.statement_, ++to.bound_, sqlite3_column_value(statement_, k)) != SQLITE_OK)
-      to.database_.fail();
-  }
+  const int end = sqlite3_column_count(statement_) - 1;
+  for (int k = 0; k < end; ++k) copy_column(k, to);
+  if (sqlite3_column_bytes(statement_, end) > 0)
+    copy_column(end, to);
+  else
+    to.bind(last);
 }
 
 double Query::real() {

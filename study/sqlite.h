@@ -44,8 +44,9 @@ class Query {
   bool next();  // a row is there
   void done() { while (next()) {} }
 
-  // The row's columns into `to`, one after the other; the last one is `last` where that is not empty.
+  // The row's columns into `to`, one after the other; the last one, of text, is `last` where it is empty.
   void copy_to(Query& to, const std::string& last);
+  void copy_to(Query& to);
 
   double real();
   int64_t integer();
@@ -53,6 +54,8 @@ class Query {
   std::string blob();
 
  private:
+  void copy_column(int column, Query& to);
+
   const Database& database_;
   sqlite3_stmt* statement_ = nullptr;
   int bound_ = 0, read_ = 0;

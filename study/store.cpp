@@ -118,6 +118,7 @@ Speed read_speed(Query& row) {
   speed.simulated_seconds = row.real();
   speed.spread = row.real();
   speed.repeats = static_cast<int>(row.integer());
+  speed.machine = row.text();
   return speed;
 }
 
@@ -255,13 +256,13 @@ void Store::put_speed(const Settings& settings, const Speed& speed) {
   const std::lock_guard guard(impl_->mutex);
   Query put(impl_->database, insert("INSERT OR REPLACE", "speeds", kSpeedColumns));
   put.bind(settings.key()).bind(settings.numbers_key()).bind(text_of(settings)).bind(speed.particle_steps);
-  put.bind(speed.simulated_seconds).bind(speed.spread).bind(int64_t{speed.repeats}).bind("").done();
+  put.bind(speed.simulated_seconds).bind(speed.spread).bind(int64_t{speed.repeats}).bind(speed.machine).done();
 }
 
 std::optional<Speed> Store::speed(const Settings& settings) const {
   const std::lock_guard guard(impl_->mutex);
   Query row(impl_->database,
-            "SELECT particle_steps, simulated_seconds, spread, repeats FROM speeds WHERE point = ?");
+            "SELECT particle_steps, simulated_seconds, spread, repeats, machine FROM speeds WHERE point = ?");
   if (!row.bind(settings.key()).next()) return std::nullopt;
   return read_speed(row);
 }
@@ -285,12 +286,16 @@ int Store::add(const std::string& path) {
   if (hash != fmt::format("{:016x}", impl_->study.hash))
     throw InputError(fmt::format("{} holds results of another study: its scene, arch, figures or times are others",
                                  path));
+  if (machine == impl_->meta("machine")) machine.clear();  // a part of the study, computed beside it
   int came = 0;
   const auto copy = [&](const char* table, const std::string& columns, bool has_machine) {
     Query row(other, fmt::format("SELECT {} FROM {} ORDER BY 1, 2", columns, table));
     while (row.next()) {
       Query put(impl_->database, insert("INSERT OR IGNORE", table, columns));
-      row.copy_to(put, has_machine ? machine : "");
+      if (has_machine)
+        row.copy_to(put, machine);
+      else
+        row.copy_to(put);
       put.done();
       came += has_machine ? sqlite3_changes(impl_->database.handle()) : 0;
     }
@@ -326,11 +331,10 @@ Results Store::results() const {
   results.machine = impl_->meta("machine");
   // What is no point of the study: one that it had before, or from elsewhere. By speeds, then points without
   // any.
-  Query speeds(impl_->database, "SELECT point, numbers, settings, machine, particle_steps, simulated_seconds,"
-                                " spread, repeats FROM speeds ORDER BY point");
+  Query speeds(impl_->database, "SELECT point, numbers, settings, particle_steps, simulated_seconds,"
+                                " spread, repeats, machine FROM speeds ORDER BY point");
   while (speeds.next()) {
     const std::string key = speeds.text(), numbers = speeds.text(), settings = speeds.text();
-    const std::string machine = speeds.text();
     if (!shown.insert(key).second) continue;
     Query row(impl_->database, fmt::format("SELECT {} FROM points WHERE numbers = ?", kPointColumns));
     Outcome outcome;
@@ -338,7 +342,6 @@ Results Store::results() const {
     impl_->read_figures(outcome, numbers);
     outcome.settings = settings_of(settings);
     outcome.speed = read_speed(speeds);
-    outcome.machine = machine;
     shown_numbers.insert(numbers);
     results.outcomes.push_back(std::move(outcome));
   }

@@ -128,6 +128,17 @@ void read_points(const ConfigTable& root, Study& study) {
   }
 }
 
+// What is sought is the least hardware (cost.h), and a GPU has its own.
+void read_search(const ConfigTable& table, Study& study) {
+  study.search = read_axes(table, study.base);
+  for (const Axis& axis : study.search)
+    for (const auto& set : axis.sets) {
+      Settings settings;
+      set(settings);
+      if (on_gpu(settings)) table.fail("a search cannot set the engine 'gpu'", "its fixed points have lattice's errors");
+    }
+}
+
 uint64_t hash_of(const Study& study) {
   Hash hash;
   const auto text = [&](const std::string& t) {
@@ -148,6 +159,7 @@ uint64_t hash_of(const Study& study) {
 
 Settings canonical(Settings settings) {
   if (settings.arithmetic != Arithmetic::fixed) settings.arch.clear();
+  if (on_gpu(settings)) settings.threads = 1;
   return settings;
 }
 
@@ -177,7 +189,7 @@ Study read_study(const std::string& path) {
   read_speed_settings(root, study);
   read_figures(root, scene, study);
   read_points(root, study);
-  if (const auto search = root.table_at("search")) study.search = read_axes(*search, study.base);
+  if (const auto search = root.table_at("search")) read_search(*search, study);
   if (study.points.empty() && study.search.empty())
     root.fail("a study without points", "add a [[sweep]] or a [search]");
   root.done();

@@ -47,7 +47,7 @@ Study read_study(const std::string& path);
 double size_of_run(const Study& study, const Settings& settings);
 
 // Settings with what their engine does not look at taken out, so that equal runs have equal settings: an engine
-// of real numbers knows no arch.
+// of real numbers knows no arch, a GPU none of the host's threads.
 Settings canonical(Settings settings);
 
 }  // namespace cuboct::study

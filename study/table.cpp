@@ -33,7 +33,7 @@ std::string short_name(const Settings& settings) {
   };
   for (const Change& change : settings.scene) add(change);
   for (const Change& change : settings.arch) add(change);
-  if (settings.threads > 1) text += fmt::format(" threads {}", settings.threads);
+  if (settings.threads > 1 && !on_gpu(settings)) text += fmt::format(" threads {}", settings.threads);
   return text;
 }
 
@@ -55,7 +55,8 @@ std::string cheapest_per_decade(const Results& results) {
     const Outcome& outcome = results.outcomes[best.point];
     text += row(best.exponent == Cheapest::kExact ? "0" : fmt::format("1e{}", best.exponent), number(error(outcome)),
                 number(outcome.cost), number(outcome.speed.particle_steps), number(outcome.speed.simulated_seconds),
-                short_name(outcome.settings));
+                short_name(outcome.settings) +
+                    (outcome.measured_on().empty() ? "" : fmt::format(" ({})", outcome.measured_on())));
   }
   return text;
 }

@@ -26,7 +26,7 @@ for (const series of study.series) for (const n of series.points) series_of_poin
 function settings_of(point) {
   const rows = [["engine", point.engine + ", " + point.arithmetic]];
   if (point.arithmetic !== "fixed") rows.push(["integrator", point.integrator]);
-  rows.push(["threads", point.threads]);
+  if (point.threads !== null) rows.push(["threads", point.threads]);
   return rows.concat(point.scene, point.arch);
 }
 const settings_text = (point) =>
@@ -37,6 +37,7 @@ function tip(n) {
   const point = study.points[n];
   const error = study.errors[state.error], speed = study.speeds[state.speed];
   const rows = settings_of(point);
+  if (point.machine) rows.push(["machine", point.machine]);
   rows.push(["time step, s", number(point.dt)], ["steps", point.steps]);
   if (error) rows.push([error.label, number(error.values[n])]);
   if (speed) rows.push([speed.label, number(speed.values[n])]);

@@ -39,12 +39,15 @@ function truth_text(truth) {
 
 function summarise() {
   const count = (status) => study.points.filter((p) => p.status === status).length;
+  // Those of the points that were measured elsewhere.
+  const others = [...new Set(study.points.map((p) => p.machine))].filter((machine) => machine);
   document.getElementById("summary").textContent =
-    `${study.points.length} points: ${count("done")} done, ${count("unstable")} unstable, ${count("refused")} refused. Machine: ${study.machine || "not told"}.`;
+    `${study.points.length} points: ${count("done")} done, ${count("unstable")} unstable, ${count("refused")} refused. Machine: ${study.machine || "not told"}` +
+    (others.length ? `; of some points ${others.join(", ")}.` : ".");
   document.getElementById("truth-text").textContent = truth_text(study.truth);
   document.getElementById("truth-notes").append(...study.truth.notes.map((note) => element("li", note)));
   const about = document.getElementById("about");
-  for (const [name, text] of [["Machine", study.machine], ["Scene", study.scene]]) {
+  for (const [name, text] of [["Machine", study.machine], ...others.map((machine) => ["Machine", machine]), ["Scene", study.scene]]) {
     const value = element("dd");
     value.append(element(text.includes("\n") ? "pre" : "span", text || "not told"));
     about.append(element("dt", name), value);

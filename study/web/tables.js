@@ -61,6 +61,7 @@ function point_columns() {
   const of = (name, field, is_number) => ({name, value: (n) => study.points[n][field], number: is_number});
   return [
     {name: "point", value: (n) => n + 1, number: true}, of("engine", "engine"), of("arithmetic", "arithmetic"),
+    ...(study.points.some((p) => p.machine) ? [of("machine", "machine")] : []),
     of("status", "status"), of("threads", "threads", true), of("integrator", "integrator"),
     ...keys("scene").map((key) => change("scene", key)), ...keys("arch").map((key) => change("arch", key)),
     of("time step, s", "dt", true),
@@ -123,7 +124,7 @@ function fill_points() {
     let count = 0;
     for (const row of rows) {
       const point = study.points[Number(row.dataset.point)];
-      const text = settings_of(point).flat().concat(point.why).join(" ").toLowerCase();
+      const text = settings_of(point).flat().concat(point.machine, point.why).join(" ").toLowerCase();
       row.hidden = (status.value !== "" && point.status !== status.value) || !text.includes(filter.value.toLowerCase());
       if (!row.hidden) ++count;
     }

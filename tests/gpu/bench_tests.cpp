@@ -327,7 +327,7 @@ TEST(Report, JsonIsWhatWasMeasured) {
       json_line(setting, row, result_of()),
       R"({"row":"block_256k.float","arithmetic":"float","particles":256000,"steps":1000,"seconds":[0.5,0.25,0.4],)"
       R"("particle_steps_per_second":6.4e+08,"mean_particle_steps_per_second":6.67826e+08,"spread":0.367353,"copied_bytes":3125,"list_builds":3,)"
-      R"("golden_steps":0,"replayed_steps":0,"listed_pairs":20.55,"longest_list":31,"halo_particles":0,)"
+      R"("golden_steps":0,"listed_pairs":20.55,"longest_list":31,"halo_particles":0,)"
       R"("device_bytes":25600000,"energy_method":"energy counter","energy_board":1280,"energy_net":1024,)"
       R"("energy_error":4,"energy_window":2,"energy_power":640,"energy_idle_power":128,"energy_drift":0,)"
       R"("energy_update_period":0.02,"energy_boards":1,"energy_steps":5000,"joules_per_particle_step":1e-06,)"

@@ -25,7 +25,7 @@ enum class Cut { whole, single, random };
 // What comparisons met, summed over calls.
 struct Met {
   uint64_t runs = 0, updates = 0, faults = 0, crossed = 0;
-  uint64_t lists = 0, replayed = 0, golden_steps = 0, halo = 0;
+  uint64_t lists = 0, golden_steps = 0, halo = 0;
 };
 
 // All of a run: `seed` draws the cuts and what is read in between.

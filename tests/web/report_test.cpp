@@ -192,15 +192,25 @@ TEST(Measures, TheTruthsOwnErrorAndWhatWasMeasured) {
 TEST(Series, EveryEngineHasALookOfItsOwnThatCanBeSeen) {
   Results results = made_up_results();
   for (int n = 0; n < 12; ++n) add(results, {}, {}, 1, 1).settings.engine = fmt::format("engine{}", n);
+  const auto gpu = [&](Arithmetic arithmetic, const std::string& machine) {
+    Outcome& outcome = add(results, {}, {}, 1, 1);
+    outcome.settings.engine = "gpu", outcome.settings.arithmetic = arithmetic, outcome.speed.machine = machine;
+  };
+  gpu(Arithmetic::fixed, "a <made-up> GPU"), gpu(Arithmetic::fixed, "another"), gpu(Arithmetic::float64, "");
+  add(results, {}, {}, 1, 1).speed.machine = "another";
   const auto all = study::series_of(results);
   std::vector<std::string> names;
   size_t points = 0;
   for (const auto& series : all) names.push_back(series.name), points += series.points.size();
   EXPECT_EQ(points, results.outcomes.size());
   EXPECT_EQ(names[0], "lattice, fixed");
-  EXPECT_EQ(names[3], "gpu, float");
-  EXPECT_EQ(names[4], "fpga, fixed");
-  ASSERT_EQ(names.size(), 17U);
+  EXPECT_EQ(names[3], "gpu, fixed (a <made-up> GPU)");
+  EXPECT_EQ(names[4], "gpu, double");
+  EXPECT_EQ(names[5], "gpu, float (a <made-up> GPU)");
+  EXPECT_EQ(names[6], "fpga, fixed");
+  ASSERT_EQ(names.size(), 21U);
+  EXPECT_EQ(names[19], "gpu, fixed (another)");
+  EXPECT_EQ(names[20], "lattice, fixed (another)");
   for (size_t a = 0; a < all.size(); ++a) {
     const auto channel = [&](size_t at) {
       const double c = std::stoi(all[a].colour.substr(at, 2), nullptr, 16) / 255.0;
@@ -258,6 +268,21 @@ TEST(Charts, PicturesOfEachChartTwiceTheSame) {
   const std::string svg = bytes(scratch.path("a/trajectory_by_dt.svg"));
   EXPECT_NE(svg.find("it's new, fixed"), std::string::npos);
   EXPECT_NE(svg.find("dt^2"), std::string::npos);
+}
+
+// The chart keeps its width, of which its axis' name tells the middle: beside short names and above long ones.
+TEST(Charts, LongNamesStandBelow) {
+  const auto middle = [](const std::string& machine) {
+    Results results;
+    for (const double dt : {0.01, 0.04}) add(results, {}, {}, dt, dt * dt).speed.machine = machine;
+    const Scratch scratch;
+    study::write_charts(results, scratch.path("charts"));
+    const std::string svg = bytes(scratch.path("charts/trajectory_simulated_seconds.svg"));
+    const size_t name = svg.find(">simulated seconds per second<"), at = svg.rfind("translate(", name);
+    return name == std::string::npos ? 0.0 : std::stod(svg.substr(at + 10));
+  };
+  EXPECT_GT(middle(""), 450);  // of 1100
+  EXPECT_GT(middle("a processor of which the name alone is as wide as a chart"), 550);
 }
 
 }  // namespace

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// `cuboct explore` with and without the gpu engine's program beside it.
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "tests/cli/shell.h"
+#include "tests/study/rows.h"
+#include "tests/study/small_study.h"
+
+namespace cuboct::test {
+namespace {
+
+constexpr const char* kStudy =
+    "[speed]\nrepeats = 1\nseconds = 0.01\n[truth]\nrungs = 2\n[[figure]]\nkind = \"mean\"\n"
+    "curve = \"energy.potential\"\n[[sweep]]\nengine = [\"lattice\", \"gpu\"]\ndt_safety = [0.2, 0.4]\n"
+    "[[sweep]]\nengine = \"gpu\"\narithmetic = \"float32\"\n";
+
+// What is told of the points that are not there: the line that begins with a number of points, and its hint.
+std::string left_out(const std::string& out) {
+  const size_t at = out.find(" of the gpu engine left out");
+  if (at == std::string::npos) return "";
+  const size_t begin = out.rfind('\n', at) + 1, end = out.find('\n', out.find('\n', at) + 1);
+  return out.substr(begin, end - begin);
+}
+
+std::string points_of(const std::string& directory) {
+  return rows(directory + "/results.db",
+              "select p.numbers, p.status, p.machine, s.machine from points p left join speeds s on "
+              "p.numbers = s.numbers order by p.numbers");
+}
+
+constexpr const char* kHint = "\n  hint: --add FILE takes them from another machine's results.db";
+
+class ExploreOnGpu : public testing::Test {
+ protected:
+  void put(const std::string& script) const {
+    std::ofstream(bench_.path("bin/cuboct-gpu")) << "#!/bin/sh\n" << script;
+    std::filesystem::permissions(bench_.path("bin/cuboct-gpu"), std::filesystem::perms::owner_all);
+  }
+  Answer explore(const std::string& out, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"explore", study_, "--out", out});
+    return bench_.cuboct(more);
+  }
+  Bench bench_{false};
+  SmallStudy files_;
+  std::string study_ = files_.study(kStudy);
+};
+
+TEST_F(ExploreOnGpu, WithoutTheProgramItsPointsAreLeftOutAndComeFromAnotherMachine) {
+  const std::string here = bench_.path("here"), there = bench_.path("there");
+  const Answer alone = explore(here);
+  EXPECT_EQ(alone.code, 0) << alone.err;
+  EXPECT_EQ(left_out(alone.out),
+            std::string("3 points of the gpu engine left out: no program cuboct-gpu beside this one") + kHint);
+  const std::string lattice = "lattice fixed euler run.dt=\"auto\" run.dt_safety=";
+  EXPECT_EQ(points_of(here), lattice + "0.2|done|||\n" + lattice + "0.4|done|||\n");
+
+  std::filesystem::copy(CUBOCT_GPU_HOST, bench_.path("bin/cuboct-gpu"));
+  const Answer with = explore(there);
+  EXPECT_EQ(with.code, 0) << with.err;
+  EXPECT_EQ(left_out(with.out), "");
+  const std::string gpu = "gpu fixed euler run.dt=\"auto\" run.dt_safety=";
+  const std::string on_gpu = gpu + "0.2|done|host|host|\n" + gpu + "0.4|done|host|host|\n" +
+                             "gpu float32 euler threads=1|done|host|host|\n";
+  EXPECT_EQ(points_of(there), on_gpu + points_of(here));
+
+  // Lattice's rows are here already: they stay this machine's.
+  std::filesystem::remove(bench_.path("bin/cuboct-gpu"));
+  rows(there + "/results.db", "update meta set value = 'another machine' where name = 'machine'");
+  const Answer added = explore(here, {"--add", there + "/results.db"});
+  EXPECT_EQ(added.code, 0) << added.err;
+  EXPECT_TRUE(added.out.starts_with("6 rows from ")) << added.out;
+  EXPECT_EQ(left_out(added.out), "");
+  EXPECT_EQ(points_of(here), points_of(there));
+  const std::string page = contents(here + "/page.html");
+  EXPECT_NE(page.find("\"name\":\"gpu, float (host)\""), std::string::npos);
+  EXPECT_NE(page.find("\"name\":\"lattice, fixed\""), std::string::npos);
+}
+
+// What the program says where there is no driver is tested with it.
+TEST_F(ExploreOnGpu, WithoutADeviceItsPointsAreLeftOut) {
+  put("echo 'the gpu engine needs a CUDA device: no driver (libcuda.so.1)' >&2\nexit 2\n");
+  const Answer answer = explore(bench_.path("here"), {"--no-speed"});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(left_out(answer.out), std::string("3 points of the gpu engine left out: the gpu engine needs a CUDA "
+                                              "device: no driver (libcuda.so.1)") +
+                                      kHint);
+  EXPECT_EQ(rows(bench_.path("here") + "/results.db", "select count(*) from points"), "2|\n");
+}
+
+// A device that fails is no property of a point: nothing is recorded of it, and the next call begins there.
+TEST_F(ExploreOnGpu, AProgramThatFailsEndsTheStudyAndLeavesNoRow) {
+  put("case \"$*\" in --list) echo '0 a GPU';; *) echo 'cuboct-gpu: an illegal memory access' >&2; exit 1;; esac\n");
+  const Answer answer = explore(bench_.path("here"), {"--no-speed"});
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_EQ(answer.err, "cuboct-gpu: an illegal memory access\n");
+  EXPECT_EQ(rows(bench_.path("here") + "/results.db", "select count(*) from points"), "2|\n");
+}
+
+// An interrupt that meets cuboct alone is passed on, from whichever thread waits: the program need not end by itself.
+TEST_F(ExploreOnGpu, AnInterruptEndsTheProgram) {
+  put("case \"$*\" in --list) echo '0 a GPU';; *) touch " + bench_.path("begun") + "; exec sleep 100;; esac\n");
+  const auto begin = std::chrono::steady_clock::now();
+  double after = 1;
+  // A busy machine may not have come to the first point of the GPU yet.
+  for (; !std::filesystem::exists(bench_.path("begun")) && after < 60; after *= 2) {
+    const Answer answer = bench_.cuboct({"explore", study_, "--out", bench_.path("here"), "--no-speed"}, after);
+    EXPECT_EQ(answer.code, 1);
+    EXPECT_EQ(answer.err, "interrupted; the same command goes on where it was\n");
+  }
+  EXPECT_TRUE(std::filesystem::exists(bench_.path("begun")));
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 2 * after + 20);
+}
+
+}  // namespace
+}  // namespace cuboct::test
