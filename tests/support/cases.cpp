@@ -158,12 +158,12 @@ Case cook(const std::string& name, const Recipe& recipe) {
     scene.body.x[0] = Vec3::Constant(-4);
     scene.body.v[0] = Vec3::Constant(1);
   }
-  return {name, make_setup(scene, recipe.arch), recipe.steps};
+  return {name, make_setup(scene, recipe.arch), recipe.steps, scene};
 }
 
 // Puts hand-made particles into a scene of the block's rule; far ones along `side` fill up to five, so that
 // all such plans have the same words.
-Setup with_particles(Scene scene, const Arch& arch, std::vector<Vec3> x, std::vector<Vec3> v, int side = 1) {
+Setup with_particles(Scene& scene, const Arch& arch, std::vector<Vec3> x, std::vector<Vec3> v, int side = 1) {
   while (x.size() < 5) {
     x.push_back(Vec3::Unit(side) * (6.0 + 3.0 * static_cast<double>(x.size())));
     v.push_back(Vec3::Zero());
@@ -265,6 +265,7 @@ Case fault_case(Fault fault) {
     x.push_back(at);
     v.push_back(speed);
     result.setup = with_particles(scene, arch, x, v, (axis + 1) % 3);
+    result.scene = scene;
     return result;
   }
   // One rule with damping and PD and narrow formats; what differs is where the particles are and how fast.
@@ -296,6 +297,7 @@ Case fault_case(Fault fault) {
     default:
       throw std::logic_error("no such fault");
   }
+  result.scene = scene;
   return result;
 }
 

@@ -13,6 +13,7 @@ struct Case {
   std::string name;
   Setup setup;
   uint64_t steps = 0;
+  Scene scene{};  // of which the setup was made
 };
 
 // One feature or awkward size each.
