@@ -51,7 +51,7 @@ class RealEngine final : public Engine {
       step_ += outcome.done;
       using End = typename Machine<Policy>::End;
       if (outcome.end == End::doubt) throw_not_finite();
-      old_ = outcome.end != End::full;
+      old_ = outcome.end != End::full && outcome.end != End::thin;
     }
   }
   uint64_t step_count() const override { return step_; }
