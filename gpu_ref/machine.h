@@ -113,7 +113,7 @@ class Machine {
     }
     int device, number;
     Stream stream;
-    Event border_done[2];
+    Event step_done[2];
     std::unique_ptr<Rule> rule;
     Array<typename Policy::Position> x[2];
     Array<typename Policy::Velocity> v[2];

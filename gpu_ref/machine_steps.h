@@ -48,16 +48,16 @@ void Machine<Policy>::step(uint32_t number, bool hash) {
   };
   if (!alone())
     for (auto& slab : slabs_) {
-      // What the neighbours wrote in the step before is read now; what is written now they have read by then. Of the
-      // others too: nobody is two steps ahead of anybody.
+      // What the neighbours wrote in the step before is read now; what is written now they have read by then. And the
+      // state before that step goes, which is wanted where any slab's inner particles found the step impossible.
       for (auto& other : slabs_)
-        if (other != slab && number > 1) slab->stream.wait(other->border_done[(number - 1) % 2]);
+        if (other != slab && number > 1) slab->stream.wait(other->step_done[(number - 1) % 2]);
       launch(*slab, 0, slab->low_end + (slab->own - slab->high_begin), slab->low_end,
              slab->high_begin - slab->low_end);
-      slab->stream.record(slab->border_done[number % 2]);
     }
   for (auto& slab : slabs_) {
     launch(*slab, slab->low_end, slab->high_begin, kNever, 0);
+    if (!alone()) slab->stream.record(slab->step_done[number % 2]);
     if (!hash) continue;
     if constexpr (Policy::kFixed) {
       const HashEach<Policy> f{slab->rule->view(), grid(*slab), at(*slab, 1 - at_), slab->cell.data(),

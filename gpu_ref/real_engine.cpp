@@ -50,8 +50,8 @@ class RealEngine final : public Engine {
       const auto outcome = machine_->run(last - step_, nullptr);
       step_ += outcome.done;
       using End = typename Machine<Policy>::End;
-      if (outcome.end == End::doubt) throw_not_finite();
       old_ = outcome.end != End::full;
+      if (outcome.end == End::doubt) throw_not_finite();
     }
   }
   uint64_t step_count() const override { return step_; }
