@@ -36,7 +36,10 @@ void write_outputs(const Options& options, const Loaded& loaded, Trace& trace,
                    const std::vector<Frame>& frames, const Items& summary) {
   const std::string& out = options.out;
   const FrameStyle style = frame_style(loaded.scene);
-  if (options.no_states) trace.frames.clear();
+  if (options.no_states) {
+    trace.frames.clear();
+    trace.bodies.clear();
+  }
   write_trace(out + "/trace.h5", trace);
   if (!frames.empty()) write_rasters(out + "/rasters.h5", rasters_of(loaded.scene, frames, options.raster));
   if (!options.no_states) {

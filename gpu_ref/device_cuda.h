@@ -40,9 +40,12 @@ class Event {
 
 class Stream {
  public:
-  explicit Stream(int device = 0) : device_(device) {
+  // Kernels of an urgent stream go first where both wait for the device.
+  explicit Stream(int device = 0, bool urgent = false) : device_(device) {
     activate();
-    check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "make a stream");
+    int least = 0, greatest = 0;
+    check(cudaDeviceGetStreamPriorityRange(&least, &greatest), "make a stream");
+    check(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, urgent ? greatest : least), "make a stream");
     check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, device), "device");
   }
   Stream(const Stream&) = delete;

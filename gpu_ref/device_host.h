@@ -17,7 +17,7 @@ class Event {};
 
 class Stream {
  public:
-  explicit Stream(int device = 0) : device_(device) {}
+  explicit Stream(int device = 0, bool = false) : device_(device) {}
   int device() const { return device_; }
   void record(Event&) {}
   void wait(const Event&) {}

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -47,13 +48,22 @@ struct Reading {
   double largest_speed = 0;    // m/s, along an axis
 };
 
+// A step of a real engine in which a position leaves all bounds: the state before it stands.
+class LostPosition : public std::runtime_error {
+ public:
+  LostPosition(const std::string& text, uint64_t step, uint32_t particle)
+      : std::runtime_error(text), step(step), particle(particle) {}
+  uint64_t step;  // done before it
+  uint32_t particle;
+};
+
 class Engine {
  public:
   virtual ~Engine() = default;
 
   // Advances `steps` steps; where `hashes` is given, the state's hash after each is appended (fixed only).
-  // Throws RunError at the first step that cannot be done (fixed: golden's error; real: a position that is
-  // not finite): the state before it stands. Returns early, after a complete step, where model/interrupt.h
+  // Throws at the first step that cannot be done (fixed: golden's RunError; real: LostPosition): the state
+  // before it stands. Returns early, after a complete step, where model/interrupt.h
   // says so.
   virtual void advance(uint64_t steps, std::vector<uint64_t>* hashes = nullptr) = 0;
   virtual uint64_t step_count() const = 0;

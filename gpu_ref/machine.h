@@ -4,7 +4,7 @@
 // Space is cut into slabs, one per device or more. Particles are stored by cell; a pair list with a skin holds each
 // one's partners until some particle has moved half the skin. One kernel does a step of a particle, from one of two
 // copies of the state to the other. Steps go in batches without the host: kernels note up to which step all was
-// good, and those beyond it do nothing. A slab's borders come first in a step and are written into the neighbours'
+// good, and those beyond it do nothing. A slab's borders have a stream of their own: they are written into the neighbours'
 // memory as well, while the inner particles are computed. A slab that has to stop tells the others, which may then be
 // one step ahead: the state that all have reached is still in one of their two copies.
 #pragma once
@@ -96,7 +96,7 @@ class Machine {
 
  private:
   struct Slab {
-    Slab(int device, int number, uint64_t* account) : device(device), number(number), stream(device) {
+    Slab(int device, int number, uint64_t* account) : device(device), number(number), stream(device), edge(device, true) {
       for (auto* a : {&x[0], &x[1]}) *a = Array<typename Policy::Position>(device, account);
       for (auto* a : {&v[0], &v[1]}) *a = Array<typename Policy::Velocity>(device, account);
       for (auto* a : {&u[0], &u[1]}) *a = Array<typename Policy::Extra>(device, account);
@@ -113,7 +113,8 @@ class Machine {
     }
     int device, number;
     Stream stream;
-    Event step_done[2];
+    Stream edge;  // for the borders
+    Event begun[2], border_done[2], inner_done[2];  // of a step, by its number's last bit
     std::unique_ptr<Rule> rule;
     Array<typename Policy::Position> x[2];
     Array<typename Policy::Velocity> v[2];
@@ -177,7 +178,10 @@ class Machine {
   void step(uint32_t number, bool hash);
   void start_batch(uint32_t steps, bool hash);
   void wait_for_all() {
-    for (auto& slab : slabs_) slab->stream.synchronize();
+    for (auto& slab : slabs_) {
+      slab->edge.synchronize();
+      slab->stream.synchronize();
+    }
   }
 
   Options options_;

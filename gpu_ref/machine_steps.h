@@ -20,7 +20,7 @@ struct RaiseBase {
 template <class Policy>
 void Machine<Policy>::step(uint32_t number, bool hash) {
   const auto allowed = static_cast<float>(farthest());
-  const auto launch = [&](Slab& s, uint32_t begin, uint32_t end, uint32_t jump_at, uint32_t jump_by) {
+  const auto launch = [&](Slab& s, Stream& stream, uint32_t begin, uint32_t end, uint32_t jump_at, uint32_t jump_by) {
     if (begin == end) return;
     Policy::with_variant(s.rule->view(), [&](auto variant) {
       Step<Policy, decltype(variant)> f{};
@@ -43,21 +43,30 @@ void Machine<Policy>::step(uint32_t number, bool hash) {
       f.jump_at = jump_at, f.jump_by = jump_by;
       for (const auto& other : slabs_)
         if (other.get() != &s) f.others.at[f.others.count++] = other->control.data();
-      for_each_cached(s.stream, begin, end, options_.block, s.rule->cache(), s.rule->cache_words(), f);
+      for_each_cached(stream, begin, end, options_.block, s.rule->cache(), s.rule->cache_words(), f);
     });
   };
+  const size_t now = number % 2, last = 1 - now;
   if (!alone())
     for (auto& slab : slabs_) {
-      // What the neighbours wrote in the step before is read now; what is written now they have read by then. And the
-      // state before that step goes, which is wanted where any slab's inner particles found the step impossible.
-      for (auto& other : slabs_)
-        if (other != slab && number > 1) slab->stream.wait(other->step_done[(number - 1) % 2]);
-      launch(*slab, 0, slab->low_end + (slab->own - slab->high_begin), slab->low_end,
+      // What the neighbours wrote in the step before is read now; what is written now they have read by then. And what
+      // is written now takes the place of the state before that step, which is wanted where a particle of any slab, at
+      // its border or not, found the step impossible.
+      if (number > 1)
+        for (auto& other : slabs_) {
+          if (other != slab) slab->edge.wait(other->border_done[last]);
+          slab->edge.wait(other->inner_done[last]);
+        }
+      slab->edge.record(slab->begun[now]);
+      launch(*slab, slab->edge, 0, slab->low_end + (slab->own - slab->high_begin), slab->low_end,
              slab->high_begin - slab->low_end);
+      slab->edge.record(slab->border_done[now]);
     }
   for (auto& slab : slabs_) {
-    launch(*slab, slab->low_end, slab->high_begin, kNever, 0);
-    if (!alone()) slab->stream.record(slab->step_done[number % 2]);
+    if (!alone()) slab->stream.wait(slab->begun[now]);
+    launch(*slab, slab->stream, slab->low_end, slab->high_begin, kNever, 0);
+    if (!alone()) slab->stream.record(slab->inner_done[now]);
+    if (hash && !alone()) slab->stream.wait(slab->border_done[now]);
     if (!hash) continue;
     if constexpr (Policy::kFixed) {
       const HashEach<Policy> f{slab->rule->view(), grid(*slab), at(*slab, 1 - at_), slab->cell.data(),

@@ -31,9 +31,10 @@ void throw_far_particle(size_t particle) {
 }
 
 void throw_not_finite(uint64_t step, uint32_t fastest, double speed) {
-  throw std::runtime_error(fmt::format(
-      "step {}: a position leaves all bounds; before it particle {} was the fastest, at {:.4g} m/s", step + 1,
-      fastest, speed));
+  throw LostPosition(
+      fmt::format("step {}: a position leaves all bounds; before it particle {} was the fastest, at {:.4g} m/s",
+                  step + 1, fastest, speed),
+      step, fastest);
 }
 
 void require_devices(const Options& options) {

@@ -133,6 +133,9 @@ void Loop::advance(uint64_t steps) {
   } catch (const RunError&) {
     done();
     throw;
+  } catch (const LostPosition&) {
+    done();
+    throw;
   }
   done();
 }
@@ -275,6 +278,8 @@ GpuResult Loop::run() {
     go();
   } catch (const RunError& error) {
     trace_.stop = StopReason{error.fault, error.step, error.node, error.particle, error.number, error.what()};
+  } catch (const LostPosition& error) {
+    trace_.stop = StopReason{Fault::none, error.step, 0, error.particle, 0, error.what()};
   }
   if (engine_) finish();
   return std::move(result_);

@@ -27,7 +27,7 @@ uint64_t Skin::review() const {
   // By then the making costs less than what is to be gained.
   if (!known(at_ - 1)) return static_cast<uint64_t>(std::ceil(making_ / (kWorthwhile * entries_)));
   const double saved = entries_ - cost_[at_ - 1];
-  return saved > kWorthwhile * entries_ ? static_cast<uint64_t>(std::ceil(2 * making_ / saved)) : kRetried;
+  return saved > kWorthwhile * entries_ ? static_cast<uint64_t>(std::ceil(2 * making_ / saved)) : patience_;
 }
 
 void Skin::aged(uint64_t steps) {
@@ -36,7 +36,8 @@ void Skin::aged(uint64_t steps) {
   ++lists_;
   const double making = making_ / static_cast<double>(steps);
   const double cost = entries_ + making;
-  cost_[at_] = known(at_) ? (cost_[at_] + cost) / 2 : cost;
+  // What was long ago may have been another motion.
+  cost_[at_] = when_[at_] + 1 == lists_ && cost_[at_] > 0 ? (cost_[at_] + cost) / 2 : cost;
   when_[at_] = lists_;
   const int thinner = at_ - 1, thicker = at_ + 1;
   int next = at_;
@@ -47,6 +48,12 @@ void Skin::aged(uint64_t steps) {
     next = thinner;
   else if (thicker <= largest_ && !known(thicker) && making > 2 * kWorthwhile * entries_)
     next = thicker;
+  if (reviewed)
+    trying_ = true;
+  else if (trying_) {
+    patience_ = next > at_ ? std::min(2 * patience_, kMostPatience) : kLeastPatience;
+    trying_ = false;
+  }
   at_ = next;
 }
 

@@ -37,7 +37,8 @@ class Skin {
   static constexpr double kFurther = 0.15;
   static constexpr double kWorthwhile = 0.04;  // a share of the cost
   static constexpr uint64_t kRemembered = 64;  // lists
-  static constexpr uint64_t kRetried = 4096;   // steps after which what was worse may have become better
+  // Steps after which a thinner skin that was worse is tried again: twice as many each time that it is worse still.
+  static constexpr uint64_t kLeastPatience = 256, kMostPatience = 16384;
 
   bool known(int skin) const { return lists_ - when_[skin] < kRemembered && cost_[skin] > 0; }
 
@@ -46,6 +47,8 @@ class Skin {
   std::array<uint64_t, kSkins> when_{};  // number of the list that told
   double making_;
   int at_ = 0, largest_ = 0;
+  uint64_t patience_ = kLeastPatience;
+  bool trying_ = false;  // a thinner skin, after a review
   uint64_t lists_ = 0;
   double entries_ = 0;  // by what they cost
 };

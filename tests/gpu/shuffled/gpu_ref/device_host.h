@@ -40,7 +40,7 @@ struct Shuffle {
 
 class Stream {
  public:
-  explicit Stream(int device = 0) : device_(device) { Shuffle::all().streams.push_back(this); }
+  explicit Stream(int device = 0, bool = false) : device_(device) { Shuffle::all().streams.push_back(this); }
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
   ~Stream() {
