@@ -19,7 +19,9 @@ struct RaiseBase {
 // The step from the copy that holds the state to the other one.
 template <class Policy>
 void Machine<Policy>::step(uint32_t number, bool hash) {
+  // Less than an anchor tells is no way at all: a new list at each step.
   const auto allowed = static_cast<float>(farthest());
+  const float farthest2 = allowed > 0 ? allowed * allowed : -1;
   const auto launch = [&](Slab& s, Stream& stream, uint32_t begin, uint32_t end, uint32_t jump_at, uint32_t jump_by) {
     if (begin == end) return;
     Policy::with_variant(s.rule->view(), [&](auto variant) {
@@ -39,7 +41,7 @@ void Machine<Policy>::step(uint32_t number, bool hash) {
           f.occupancy.lower = lower->occupancy.data() + cells_of(*lower).inner_end;
         if (const Slab* upper = beside(s, 1)) f.occupancy.upper = upper->occupancy.data();
       }
-      f.cell = s.cell.data(), f.farthest2 = allowed * allowed, f.number = number, f.control = s.control.data();
+      f.cell = s.cell.data(), f.farthest2 = farthest2, f.number = number, f.control = s.control.data();
       f.jump_at = jump_at, f.jump_by = jump_by;
       for (const auto& other : slabs_)
         if (other.get() != &s) f.others.at[f.others.count++] = other->control.data();

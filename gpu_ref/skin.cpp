@@ -23,7 +23,7 @@ void Skin::listed(double near, double further) {
 }
 
 uint64_t Skin::review() const {
-  if (at_ == 0) return kForGood;
+  if (at_ == 0 || entries_ <= 0) return kForGood;  // there is nothing to gain
   // By then the making costs less than what is to be gained.
   if (!known(at_ - 1)) return static_cast<uint64_t>(std::ceil(making_ / (kWorthwhile * entries_)));
   const double saved = entries_ - cost_[at_ - 1];
