@@ -125,13 +125,13 @@ TEST(FixedRandom, SkinsBelowTheAnchorsAreNotTrusted) {
   Arch arch;
   arch.cell_edge = 1200;
   Widths& w = arch.widths;
-  w.position_frac = 28, w.guard = 16, w.velocity_bits = w.sum_bits = 45, w.difference_frac = 24;
+  w.position_frac = 28, w.guard = 12, w.velocity_bits = w.sum_bits = 41, w.difference_frac = 24;
   c.setup = make_setup(c.scene, arch);
   constexpr int64_t kStep = int64_t{1} << 18, kMiddle = 300 * kStep + kStep / 2, kMove = kStep * 3 / 10;
   auto& particles = c.setup.initial.particles;
   ASSERT_EQ(particles[0].node, particles[1].node);
-  c.setup.plan.rule.types[0].velocity = {kMove << 16, 0, 0};
-  particles[0].v = {kMove << 16, 0, 0};
+  c.setup.plan.rule.types[0].velocity = {kMove << 12, 0, 0};
+  particles[0].v = {kMove << 12, 0, 0};
   particles[0].x = {kMiddle - kMove, kMiddle, kMiddle};
   particles[1].x = {kMiddle + kStep, kMiddle, kMiddle};  // 0.977 of a thousandth
   const GoldenPath golden = golden_path(c);

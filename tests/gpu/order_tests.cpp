@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "gpu_ref/device.h"
+#include "model/law.h"
+#include "tests/fcc_block.h"
 #include "tests/gpu/beside_golden.h"
 
 namespace cuboct::test {
@@ -32,6 +34,27 @@ TEST(GpuOrder, SeveralDevicesHoldGoldensBitsInWhateverOrderTheyWork) {
   EXPECT_GT(met.golden_steps, 3u);
   EXPECT_GT(met.faults, 80u);
   EXPECT_GT(shuffle.overtaken, 10000u);
+}
+
+TEST(GpuOrder, RealEnginesHaveOneRunInWhateverOrderTheyWork) {
+  Scene scene;
+  scene.rule = simple_rule(preset_law("ductile", 1e-3, 1e3), 1e-6, 3e-6);
+  scene.rule.damping.coefficient = 1e-3;
+  scene.body = fcc_block(8, 1e-3);
+  scene.periodic = fcc_box(8, 1e-3);
+  scene.periodic.extent.z() = 0;
+  shake(scene.body, 3e-5, 20, 5);
+  std::vector<Vec3> expected;
+  for (uint64_t seed = 0; seed <= 6; ++seed) {
+    gpu::Options options;
+    for (int s = 1; s < std::min(static_cast<int>(seed), 3); ++s) options.devices.push_back(s);
+    gpu::Shuffle::all().random.seed(seed);
+    const auto engine = gpu::make_real_engine(scene, scene.body, gpu::Arithmetic::float32, options);
+    engine->advance(80);
+    EXPECT_GT(engine->counters().list_builds, 8u);
+    if (seed == 0) expected = engine->body().x;
+    ASSERT_EQ(engine->body().x, expected) << options.devices.size() << " devices, seed " << seed;
+  }
 }
 
 }  // namespace
