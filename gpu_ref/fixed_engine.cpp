@@ -30,12 +30,11 @@ class FixedEngine final : public Engine {
       const auto outcome = machine_->run(last - step_, hashes);
       step_ += outcome.done;
       using End = typename Machine<Policy>::End;
-      if (outcome.end == End::doubt || (outcome.end == End::crowded && machine_->age() == 0)) {
-        step_by_golden();
-        if (hashes) hashes->push_back(machine_->hash());
-      } else {
-        old_ = outcome.end != End::full && outcome.end != End::thin;
-      }
+      // Whatever else comes of a step that stopped: nodes have counted particles that did not enter.
+      old_ = outcome.end != End::full && outcome.end != End::thin;
+      if (outcome.end != End::doubt && (outcome.end != End::crowded || machine_->age() > 0)) continue;
+      step_by_golden();
+      if (hashes) hashes->push_back(machine_->hash());
     }
   }
   uint64_t step_count() const override { return step_; }

@@ -19,7 +19,8 @@ struct RaiseBase {
 // The step from the copy that holds the state to the other one.
 template <class Policy>
 void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
-  const auto square = [](double way) { return static_cast<float>(way * way); };
+  // Less than an anchor tells is no way at all: a new list at each step.
+  const auto square = [](double way) { return way > 0 ? static_cast<float>(way * way) : -1.0f; };
   const auto launch = [&](Slab& s, Stream& stream, uint32_t begin, uint32_t end, uint32_t jump_at, uint32_t jump_by) {
     if (begin == end) return;
     const auto fill_and_run = [&](auto f) {
@@ -56,13 +57,14 @@ void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
   const size_t now = number % 2, last = 1 - now;
   if (!alone())
     for (auto& slab : slabs_) {
-      // What the neighbours wrote in the step before is read now; what is written now they have read by then. Of the
-      // others too: nobody is two steps ahead of anybody.
-      if (number > 1) {
-        for (auto& other : slabs_)
+      // What the neighbours wrote in the step before is read now; what is written now they have read by then. And what
+      // is written now takes the place of the state before that step, which is wanted where a particle of any slab, at
+      // its border or not, found the step impossible.
+      if (number > 1)
+        for (auto& other : slabs_) {
           if (other != slab) slab->edge.wait(other->border_done[last]);
-        slab->edge.wait(slab->inner_done[last]);
-      }
+          slab->edge.wait(other->inner_done[last]);
+        }
       slab->edge.record(slab->begun[now]);
       launch(*slab, slab->edge, 0, slab->low_end + (slab->own - slab->high_begin), slab->low_end,
              slab->high_begin - slab->low_end);

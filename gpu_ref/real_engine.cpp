@@ -9,6 +9,7 @@
 #include "gpu_ref/real_policy.h"
 #include "model/error.h"
 #include "model/interrupt.h"
+#include "model/neighbours.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -50,8 +51,8 @@ class RealEngine final : public Engine {
       const auto outcome = machine_->run(last - step_, nullptr);
       step_ += outcome.done;
       using End = typename Machine<Policy>::End;
-      if (outcome.end == End::doubt) throw_not_finite();
       old_ = outcome.end != End::full && outcome.end != End::thin;
+      if (outcome.end == End::doubt) throw_not_finite();
     }
   }
   uint64_t step_count() const override { return step_; }
@@ -78,6 +79,9 @@ class RealEngine final : public Engine {
   uint64_t hash() override { throw std::logic_error("a real engine has no hash"); }
 
   Body body() override {
+    // Whether new lists have been made since the last step shows in the last bits: they make positions count from other
+    // cells.
+    if (old_) renew();
     const Loose<Policy> loose = machine_->download();
     Body body;
     const size_t n = loose.size();
@@ -101,6 +105,7 @@ class RealEngine final : public Engine {
  private:
   // Chooses cells: whole ones in a box that repeats, else from the body's lowest corner on.
   void place(const Body& body) {
+    CellList(scene_.rule.law->cutoff(), scene_.periodic);  // refuses a box in which pairs meet twice
     Vec3 low = body.x[0], high = body.x[0];
     for (const Vec3& x : body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
     const double length = tables_.length;

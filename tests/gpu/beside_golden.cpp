@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/compare.h"
 #include "model/golden.h"
+#include "tests/support/block.h"
 #include "tests/support/dice.h"
 
 namespace cuboct::test {
@@ -126,6 +128,54 @@ void compare(const Case& c, const GoldenPath& golden, const gpu::Options& option
   met.lists += counters.list_builds;
   met.golden_steps += counters.golden_steps;
   met.halo += counters.halo_particles;
+}
+
+Case random_bar(uint64_t seed) {
+  Dice dice(seed);
+  Features f;
+  const int along = dice.draw(0, 2);
+  for (int a = 0; a < 3; ++a) f.size[a] = dice.draw(1, 2);
+  f.size[along] = dice.draw(8, 15);
+  f.cutoff = 1.2;
+  f.dt = 0.01 * dice.draw(2, 15);
+  f.jitter = 0.01 * dice.draw(0, 12);
+  f.speed = 0.01 * dice.draw(0, 90);
+  f.damping = dice.chance(40) ? 0.05 * dice.draw(1, 4) : 0;
+  f.two_materials = dice.chance(40);
+  f.held = dice.chance(20);
+  f.force_held = !f.held && dice.chance(40);
+  f.gravity = dice.chance(30);
+  f.margin = 0.5 * dice.draw(0, 4);
+  f.seed = seed;
+  Arch arch;
+  Widths& w = arch.widths;
+  w.position_frac = dice.draw(8, 30);
+  w.guard = dice.draw(1, 20);
+  w.difference_frac = dice.draw(6, std::min(w.position_frac, 24));
+  w.velocity_bits = std::max(8, w.velocity_frac() + 1 - (dice.chance(30) ? dice.draw(1, 2) : 0));
+  w.relative_velocity_frac = dice.draw(4, std::min(50, w.velocity_frac()));
+  w.relative_velocity_bits = std::clamp(w.relative_velocity_frac - dice.draw(-1, 1), 4, 27);
+  w.strength_bits = dice.chance(30) ? 0 : dice.draw(16, 27);
+  w.sum_bits = std::clamp(w.velocity_bits - dice.draw(-1, 3), 8, 48);
+  w.displacement_bits = std::min(40, w.velocity_frac() + 2);
+  w.scale_frac = dice.draw(8, 16);
+  arch.table.shape = dice.chance(50) ? TableChoice::Shape::uniform : TableChoice::Shape::octaves;
+  arch.table.degree = dice.draw(1, 2);
+  arch.table.index_bits = std::min(dice.draw(6, 10), 2 * w.difference_frac - 1);
+  arch.table.fraction_bits = dice.draw(4, 17);
+  arch.capacity = dice.chance(30) ? 40 : dice.draw(4, 7);
+  Case c{"bar " + std::to_string(seed), {}, static_cast<uint64_t>(dice.draw(5, 60)), {}};
+  std::array<bool, 3> ring{};
+  for (int a = 0; a < 3; ++a)
+    if (dice.chance(30)) ring[static_cast<size_t>(a)] = true, f.size[a] = std::max(f.size[a], 3);
+  c.scene = block_scene(f);
+  for (int a = 0; a < 3; ++a)
+    if (ring[static_cast<size_t>(a)]) {
+      c.scene.periodic.origin[a] = -0.3;
+      c.scene.periodic.extent[a] = f.size[a] * std::sqrt(2.0);
+    }
+  c.setup = make_setup(c.scene, arch);
+  return c;
 }
 
 }  // namespace cuboct::test

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/measure.h"
 #include "tests/gpu/beside_golden.h"
 #include "tests/support/block.h"
-#include "tests/support/dice.h"
 
 namespace cuboct::test {
 namespace {
@@ -81,55 +81,6 @@ TEST(FixedRandom, HoldGoldensBits) {
   EXPECT_GT(met.faults, 5u);
 }
 
-// A bar with room for four slabs along one axis, whatever else a rule and an arch may ask for.
-Case random_bar(uint64_t seed) {
-  Dice dice(seed);
-  Features f;
-  const int along = dice.draw(0, 2);
-  for (int a = 0; a < 3; ++a) f.size[a] = dice.draw(1, 2);
-  f.size[along] = dice.draw(8, 15);
-  f.cutoff = 1.2;
-  f.dt = 0.01 * dice.draw(2, 15);
-  f.jitter = 0.01 * dice.draw(0, 12);
-  f.speed = 0.01 * dice.draw(0, 90);
-  f.damping = dice.chance(40) ? 0.05 * dice.draw(1, 4) : 0;
-  f.two_materials = dice.chance(40);
-  f.held = dice.chance(20);
-  f.force_held = !f.held && dice.chance(40);
-  f.gravity = dice.chance(30);
-  f.margin = 0.5 * dice.draw(0, 4);
-  f.seed = seed;
-  Arch arch;
-  Widths& w = arch.widths;
-  w.position_frac = dice.draw(8, 30);
-  w.guard = dice.draw(1, 20);
-  w.difference_frac = dice.draw(6, std::min(w.position_frac, 24));
-  w.velocity_bits = std::max(8, w.velocity_frac() + 1 - (dice.chance(30) ? dice.draw(1, 2) : 0));
-  w.relative_velocity_frac = dice.draw(4, std::min(50, w.velocity_frac()));
-  w.relative_velocity_bits = std::clamp(w.relative_velocity_frac - dice.draw(-1, 1), 4, 27);
-  w.strength_bits = dice.chance(30) ? 0 : dice.draw(16, 27);
-  w.sum_bits = std::clamp(w.velocity_bits - dice.draw(-1, 3), 8, 48);
-  w.displacement_bits = std::min(40, w.velocity_frac() + 2);
-  w.scale_frac = dice.draw(8, 16);
-  arch.table.shape = dice.chance(50) ? TableChoice::Shape::uniform : TableChoice::Shape::octaves;
-  arch.table.degree = dice.draw(1, 2);
-  arch.table.index_bits = std::min(dice.draw(6, 10), 2 * w.difference_frac - 1);
-  arch.table.fraction_bits = dice.draw(4, 17);
-  arch.capacity = dice.chance(50) ? 40 : 9;
-  Case c{"bar " + std::to_string(seed), {}, static_cast<uint64_t>(dice.draw(5, 60)), {}};
-  std::array<bool, 3> ring{};
-  for (int a = 0; a < 3; ++a)
-    if (dice.chance(30)) ring[static_cast<size_t>(a)] = true, f.size[a] = std::max(f.size[a], 3);
-  c.scene = block_scene(f);
-  for (int a = 0; a < 3; ++a)
-    if (ring[static_cast<size_t>(a)]) {
-      c.scene.periodic.origin[a] = -0.3;
-      c.scene.periodic.extent[a] = f.size[a] * std::sqrt(2.0);
-    }
-  c.setup = make_setup(c.scene, arch);
-  return c;
-}
-
 TEST(FixedRandom, BarsOfSeveralSlabsHoldGoldensBits) {
   Met met;
   int refused = 0, wide = 0, rings = 0, four = 0, pd = 0;
@@ -157,6 +108,166 @@ TEST(FixedRandom, BarsOfSeveralSlabsHoldGoldensBits) {
   EXPECT_GT(met.crossed, 5000u);
   EXPECT_GT(met.faults, 20u);
   EXPECT_GT(met.halo, 10000u);
+}
+
+// Cells a thousand cutoffs wide, where any skin is below what an anchor tells: one particle comes to stand in the middle
+// of its anchor's step, within the reach of another that stands in the middle of its own.
+TEST(FixedRandom, SkinsBelowTheAnchorsAreNotTrusted) {
+  Case c{"wide cells", {}, 20, {}};
+  c.scene = block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .jitter = 0, .speed = 0, .margin = 1});
+  c.scene.body = {};
+  c.scene.body.x = {Vec3(0, 0, 0), Vec3(1.1, 0, 0)};
+  c.scene.body.v.assign(2, Vec3::Zero());
+  c.scene.body.type = {0, 1};
+  c.scene.rule.types = {{.name = "moved"}, {.name = "free"}};
+  c.scene.rule.types[0].imposed = {true, true, true};
+  c.scene.rule.types[0].velocity = Vec3(1, 0, 0);
+  Arch arch;
+  arch.cell_edge = 1200;
+  Widths& w = arch.widths;
+  w.position_frac = 28, w.guard = 12, w.velocity_bits = w.sum_bits = 41, w.difference_frac = 24;
+  c.setup = make_setup(c.scene, arch);
+  constexpr int64_t kStep = int64_t{1} << 18, kMiddle = 300 * kStep + kStep / 2, kMove = kStep * 3 / 10;
+  auto& particles = c.setup.initial.particles;
+  ASSERT_EQ(particles[0].node, particles[1].node);
+  c.setup.plan.rule.types[0].velocity = {kMove << 12, 0, 0};
+  particles[0].v = {kMove << 12, 0, 0};
+  particles[0].x = {kMiddle - kMove, kMiddle, kMiddle};
+  particles[1].x = {kMiddle + kStep, kMiddle, kMiddle};  // 0.977 of a thousandth
+  const GoldenPath golden = golden_path(c);
+  ASSERT_NE(golden.last.particles[1].v, (Int3{}));
+  Met met;
+  compare(c, golden, slabs(1), Cut::whole, 1, met);
+}
+
+TEST(FixedFaults, AreGoldensWhateverTheSlabs) {
+  Met met;
+  uint64_t runs = 0;
+  for (const Fault fault : all_faults()) {
+    const Case c = fault_case(fault);
+    const GoldenPath golden = golden_path(c);
+    ASSERT_TRUE(golden.fault) << c.name;
+    ASSERT_EQ(golden.fault->fault, fault);
+    for (int s = 1; s <= std::min(3, most_slabs(c.setup.plan)); ++s)
+      for (const Cut cut : kCuts) {
+        compare(c, golden, slabs(s), cut, 7, met);
+        if (HasFatalFailure()) return;
+        ++runs;
+      }
+  }
+  EXPECT_EQ(met.faults, runs);
+  EXPECT_GE(runs, 33u);
+}
+
+// A gas that damps and at last collides faster than its relative velocities are wide, and another whose nodes run
+// full: most have several particles at fault, of which golden names one.
+TEST(FixedFaults, OfGasesAreGoldens) {
+  Met met;
+  for (uint64_t seed = 1; seed <= 16; ++seed) {
+    Case c{"gas " + std::to_string(seed), {}, 100, {}};
+    c.scene = block_scene({.size = {12, 3, 3},
+                           .cutoff = 1.4,
+                           .dt = 0.1,
+                           .jitter = 0.1,
+                           .speed = 0.8,
+                           .damping = seed % 2 == 0 ? 0.02 : 0,
+                           .seed = seed});
+    for (int a = 0; a < 3; ++a) {
+      c.scene.periodic.origin[a] = -0.3;
+      c.scene.periodic.extent[a] = (a == 0 ? 12 : 3) * std::sqrt(2.0);
+    }
+    Arch arch;
+    arch.capacity = seed % 2 == 0 ? 60 : 9;
+    c.setup = make_setup(c.scene, arch);
+    ASSERT_EQ(most_slabs(c.setup.plan), 3);
+    const GoldenPath golden = golden_path(c);
+    for (int s = 1; s <= 3; ++s) {
+      compare(c, golden, slabs(s), kCuts[(seed + static_cast<uint64_t>(s)) % 3], seed, met);
+      if (HasFatalFailure()) return;
+    }
+  }
+  EXPECT_GE(met.faults, 40u);
+  EXPECT_GT(met.crossed, 10000u);
+}
+
+// Nodes that are as full as they may be, and particles that come and go, but never one too many.
+TEST(FixedFaults, FullNodesAreNoFault) {
+  Met met;
+  uint64_t near_misses = 0;
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    Case c{"near miss " + std::to_string(seed), {}, 120, {}};
+    c.scene = block_scene({.size = {12, 2, 2}, .jitter = 0.05, .speed = 0.15, .margin = 2, .seed = seed});
+    // The least capacity with which golden comes through.
+    GoldenPath golden;
+    int capacity = 4;
+    for (;; ++capacity) {
+      Arch arch;
+      arch.capacity = capacity;
+      try {
+        c.setup = make_setup(c.scene, arch);
+      } catch (const InputError&) {
+        continue;
+      }
+      golden = golden_path(c);
+      if (!golden.fault) break;
+    }
+    Met one;
+    for (int s = 1; s <= most_slabs(c.setup.plan); ++s) {
+      compare(c, golden, slabs(s), Cut::whole, seed, one);
+      if (HasFatalFailure()) return;
+    }
+    near_misses += one.golden_steps;
+    met.crossed += one.crossed;
+    // The step before a node is full asks golden; others do not.
+    EXPECT_LT(one.golden_steps, one.runs * c.steps / 4) << c.name;
+  }
+  EXPECT_GT(near_misses, 0u);
+  EXPECT_GT(met.crossed, 100u);
+}
+
+// What is read is what the host measures: forces to the bit, sums of doubles but for their order.
+TEST(FixedReading, IsWhatTheHostMeasures) {
+  uint64_t read = 0;
+  for (const char* name : {"rich_damped", "rich_force_held", "rich_ring", "flat_rich_damped", "hot_gas", "periodic_27",
+                           "held_and_moved", "force_held", "damped"}) {
+    const Case c = make_case(name);
+    const Plan& plan = c.setup.plan;
+    for (int s = 1; s <= most_slabs(plan); ++s) {
+      SCOPED_TRACE(std::string(name) + ", " + std::to_string(s) + " slabs");
+      const auto engine = gpu::make_fixed_engine(c.scene, plan, c.setup.initial, slabs(s));
+      std::vector<uint32_t> ids;
+      for (uint32_t id = 1; id < plan.particles; id += 2) ids.push_back(id);
+      engine->probe(ids);
+      for (int k = 0; k < 4; ++k) {
+        const gpu::Reading reading = engine->read(true);
+        const State state = engine->state();
+        const std::vector<Int3> kicks = summed_kicks(plan.rule, plan.lattice, state, 1);
+        EXPECT_EQ(reading.step, state.step);
+        ASSERT_EQ(reading.x.size(), ids.size());
+        for (size_t n = 0; n < ids.size(); ++n) {
+          const uint32_t id = ids[n];
+          ASSERT_EQ(reading.force[n], force_of(plan.rule, kicks[id])) << "particle " << id;
+          Vec3 away = reading.x[n] - position_of(plan.rule, plan.lattice, plan.origin, state.particles[id]);
+          for (int a = 0; a < 3; ++a)
+            if (const double extent = c.scene.periodic.extent[a]; extent > 0)
+              away[a] -= extent * std::round(away[a] / extent);
+          ASSERT_LE(away.norm(), 1e-12 * plan.rule.cell_edge * 100) << "particle " << id;
+          ++read;
+        }
+        const Energies e = energies(c.scene.rule, plan.rule, plan.lattice, plan.origin, state, kicks, 1);
+        EXPECT_NEAR(reading.energies.kinetic, e.kinetic, 1e-9 * e.kinetic);
+        EXPECT_NEAR(reading.energies.potential, e.potential, 1e-9 * std::abs(e.potential));
+        EXPECT_NEAR(reading.energies.gravity, e.gravity, 1e-9 * std::abs(e.gravity) + 1e-15);
+        EXPECT_NEAR(reading.largest_speed,
+                    largest_speed(plan.rule, state) * plan.rule.cell_edge / plan.rule.dt, 1e-12);
+        const double trace = virial_stress(plan.rule, plan.lattice, state, 1.0, 1).trace();
+        EXPECT_NEAR(reading.virial, -trace, 1e-9 * (std::abs(trace) + std::abs(e.potential)));
+        if (HasFailure()) return;
+        engine->advance(6);
+      }
+    }
+  }
+  EXPECT_GT(read, 1000u);
 }
 
 }  // namespace
