@@ -207,7 +207,7 @@ class Machine {
   uint64_t age_ = 0;
   uint32_t batch_ = 16;
   // Thin lists are made every so many steps, a power of two; in the step before the next one they are so old.
-  uint32_t thin_every_ = 4, thin_age_ = kNever;
+  uint32_t thin_every_ = 8, thin_age_ = kNever;
   uint32_t thin_good_ = 0, thin_patience_ = 16;  // thin lists that served to their end; after so many a longer life is tried
   size_t probed_ = 0;
 };

@@ -201,11 +201,19 @@ struct Step {
     x.last = static_cast<Last>(type_in(x.last)) | static_cast<Last>(thin_anchor_of(moved, range)) << kTypeBits;
     const uint32_t near = list.count[i] & kNearMask, further = list.count[i] >> kNearBits;
     uint32_t kept = 0;
-    for (uint32_t k = 0; k < near + further; ++k) {
-      const uint32_t row = k < near ? k : list.width - 1 - (k - near);
-      const uint32_t entry = list.entries[row * list.stride + i];
+    const auto keep = [&](uint32_t entry) {
       if (pairs.add_near(entry, thin2)) thin.entries[kept++ * list.stride + i] = entry;
-    }
+    };
+    const uint32_t* at = list.entries + i;
+#ifdef __CUDACC__
+#pragma unroll Policy::kUnrolled
+#endif
+    for (uint32_t k = 0; k < near; ++k, at += list.stride) keep(*at);
+    at = list.entries + i + list.stride * (list.width - further);
+#ifdef __CUDACC__
+#pragma unroll Policy::kUnrolled
+#endif
+    for (uint32_t k = 0; k < further; ++k, at += list.stride) keep(*at);
     thin.count[i] = kept;
   }
 
