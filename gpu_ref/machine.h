@@ -168,8 +168,8 @@ class Machine {
   // Of thin anchors: a particle that has just left its list's bounds is still within.
   double range() const { return 1.02 * skin_.now() / 2 + 1e-3 * setup_.radius; }
   double thin_skin() const { return std::min(kThinSkin * setup_.radius, skin_.now()); }
-  double thin_way() const {
-    return std::max(thin_skin() / 2 - static_cast<double>(kThinAnchorError) * range(), 0.0);
+  double thin_ways() const {
+    return std::max(thin_skin() - 2 * static_cast<double>(kThinAnchorError) * range(), 0.0);
   }
   // What a list of that skin reaches.
   float reach_of(double skin) const {

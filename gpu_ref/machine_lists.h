@@ -251,8 +251,10 @@ void Machine<Policy>::mirror() {
       const size_t count = (side == 0 ? s.lower_copy_end : s.all) - to;
       copy(s.stream, s.x[at_].data() + to, s.device, other->x[at_].data() + from, other->device,
            count * sizeof(typename Policy::Position));
-      copy(s.stream, s.v[at_].data() + to, s.device, other->v[at_].data() + from, other->device,
-           count * sizeof(typename Policy::Velocity));
+      // Velocities into both of the slab's states: with them go anchors, which a list's steps leave as they are.
+      for (int state = 0; state < 2; ++state)
+        copy(s.stream, s.v[state].data() + to, s.device, other->v[at_].data() + from, other->device,
+             count * sizeof(typename Policy::Velocity));
       copy(s.stream, s.cell.data() + to, s.device, other->cell.data() + from, other->device, count * sizeof(CellAt));
     }
   }

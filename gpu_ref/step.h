@@ -18,7 +18,7 @@ struct Control {
   uint32_t doubt;    // the first step that may not be possible
   uint32_t crowded;  // the first step in which a node may be too full
   uint32_t old;      // the first step after which the list serves no longer
-  uint32_t thin;     // ... and the thin lists
+  uint32_t thin;     // the step after which the thin lists serve no longer
 };
 inline constexpr uint32_t kNever = 0xffffffffu;
 
@@ -121,9 +121,9 @@ struct Step {
   ParticlesView<Policy> from, to;
   List list;
   ThinList thin;
-  float thin2;        // square of what the thin list reaches
-  float range;        // of thin anchors
-  float thin_way2;    // square of the way that it allows
+  float thin2;      // square of what the thin list reaches
+  float range;      // of thin anchors
+  float thin_skin;  // the ways of two that it allows together
   Copies<Policy> copies[2];
   Occupancy occupancy;
   const CellAt* cell;
@@ -141,10 +141,17 @@ struct Step {
     auto v = load(from.v + i);
     const auto before = x;
     Pairs<Policy, Variant> pairs{view, grid, from, Variant::cached(view, cache), x, v};
-    if constexpr (kThins)
+    if constexpr (kThins) {
       thin_out(i, x, v, pairs);
-    else
+    } else {
+      const float way = thin_way(x, v);
+      if (2 * way > thin_skin && meets_a_stranger(i, way)) {
+        atomic_min(&control->thin, control->base + number - 1);
+        stop_after(control->base + number - 1);
+        return;
+      }
       go_over(i, pairs);
+    }
     bool sound = pairs.sound;
     const auto& rule = pairs.rule;
     const auto& sum = pairs.sum;
@@ -170,18 +177,35 @@ struct Step {
       stop_after(now - 1);
       return;
     }
-    float moved[3], way = 0, thin_way = 0;
+    float moved[3];
+    moved_since<Policy>(view, grid, x, v, moved);
+    if (moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2] <= farthest2) return;
+    const uint32_t now = control->base + number;
+    atomic_min(&control->old, now);
+    stop_after(now);
+  }
+
+  // The way since the thin list was made.
+  CUBOCT_DEVICE float thin_way(const typename Policy::Position& x, const typename Policy::Velocity& v) const {
+    float moved[3], sum = 0;
     moved_since<Policy>(view, grid, x, v, moved);
     const auto anchor = static_cast<uint32_t>(x.last >> kTypeBits);
     for (int a = 0; a < 3; ++a) {
       const float d = moved[a] - thin_anchor_at(anchor, a, range);
-      way += moved[a] * moved[a], thin_way += d * d;
+      sum += d * d;
     }
-    const bool old = !(way <= farthest2);
-    if (!old && thin_way <= thin_way2) return;
-    const uint32_t now = control->base + number;
-    atomic_min(old ? &control->old : &control->thin, now);
-    stop_after(now);
+    return sqrtf(sum);
+  }
+  // Whether a pair that no thin list holds may have come near: two that together have moved as far as the thin skin.
+  // One of them has moved half of that; few have, and they look at their partners.
+  CUBOCT_DEVICE bool meets_a_stranger(uint32_t i, float way) const {
+    const uint32_t near = list.count[i] & kNearMask, further = list.count[i] >> kNearBits;
+    for (uint32_t k = 0; k < near + further; ++k) {
+      const uint32_t row = k < near ? k : list.width - 1 - (k - near);
+      const uint32_t place = list.entries[row * list.stride + i] & kPlaceMask<Policy::kReach>;
+      if (way + thin_way(load(from.x + place), load(from.v + place)) > thin_skin) return true;
+    }
+    return false;
   }
 
   CUBOCT_DEVICE void go_over(uint32_t i, Pairs<Policy, Variant>& pairs) const {
