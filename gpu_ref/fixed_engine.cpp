@@ -31,7 +31,7 @@ class FixedEngine final : public Engine {
       step_ += outcome.done;
       using End = typename Machine<Policy>::End;
       // Whatever else comes of a step that stopped: nodes have counted particles that did not enter.
-      old_ = outcome.end != End::full;
+      old_ = outcome.end != End::full && outcome.end != End::thin;
       if (outcome.end != End::doubt && (outcome.end != End::crowded || machine_->age() > 0)) continue;
       step_by_golden();
       if (hashes) hashes->push_back(machine_->hash());
@@ -70,7 +70,7 @@ class FixedEngine final : public Engine {
     for (size_t i = 0; i < loose.size(); ++i) {
       Particle& p = state.particles[loose.id[i]];
       p.id = loose.id[i];
-      p.type = static_cast<uint8_t>(loose.x[i].last);
+      p.type = static_cast<uint8_t>(type_in(loose.x[i].last));
       Cell cell;
       for (int a = 0; a < 3; ++a) {
         cell[a] = loose.cell[i].c[a] + (loose.x[i].at[a] >> P);
@@ -115,7 +115,7 @@ class FixedEngine final : public Engine {
     setup.radius = std::sqrt(std::ldexp(static_cast<double>(rule.cutoff2), -2 * rule.widths.difference_frac));
     // Half a unit of a difference along three axes, for both of a pair.
     setup.rounding = 2 * std::ldexp(1.0, -rule.widths.difference_frac);
-    setup.largest_skin = 0.4 * setup.radius;
+    setup.largest_skin = 0.2 * setup.radius;
     setup.capacity = static_cast<uint32_t>(plan.arch.capacity);
     setup.pd = rule.pd, setup.damped = rule.damped;
     const double cutoff = scene.rule.law->cutoff();

@@ -113,7 +113,7 @@ struct FixedPolicy {
   static constexpr bool kFixed = true;
   static constexpr int kReach = 2;     // cells that a list may span along an axis
   static constexpr int kUnrolled = 2;  // pairs in flight
-  using Position = Four<int32_t, int32_t>;           // P fractional bits; type
+  using Position = Four<int32_t, uint32_t>;          // P fractional bits; type and thin anchor
   using Velocity = Four<VelocityNumber, VelocityNumber>;  // P+G fractional bits; anchor (machine.h)
   using Extra = Three<int64_t>;                      // u, P+G fractional bits
   using Sum = Three<int64_t>;                        // kicks, P+G fractional bits
@@ -164,7 +164,7 @@ struct FixedPolicy {
                                      const Position& other, const Velocity& w, const int (&away)[3], Sum& sum) {
     Triple y;
     for (int a = 0; a < 3; ++a) y[a] = other.at[a] + away[a] * (int64_t{1} << rule.widths.position_frac);
-    const auto pair = pair_kick_of<PairOutcome>(rule, triple(one.at), triple(v), one.last, y, triple(w), other.last);
+    const auto pair = pair_kick_of<PairOutcome>(rule, triple(one.at), triple(v), type_in(one.last), y, triple(w), type_in(other.last));
     for (int a = 0; a < 3; ++a) sum.at[a] += pair.kick[a];
     return pair.fault == Fault::none;
   }
@@ -176,7 +176,7 @@ struct FixedPolicy {
     if (u)
       for (int a = 0; a < 3; ++a) displacement[a] = u->at[a];
     const Triple sums{{sum.at[0], sum.at[1], sum.at[2]}};
-    const auto result = finish_of<FinishOutcome>(rule, sums, triple(x.at), triple(v), displacement, x.last);
+    const auto result = finish_of<FinishOutcome>(rule, sums, triple(x.at), triple(v), displacement, type_in(x.last));
     for (int a = 0; a < 3; ++a) {
       x.at[a] = static_cast<int32_t>(result.x[a]);
       v.at[a] = static_cast<VelocityNumber>(result.v[a]);

@@ -80,14 +80,18 @@ struct Entry<2> {
 template <int kReach>
 inline constexpr uint32_t kPlaceMask = (1u << Entry<kReach>::kPlaceBits) - 1;
 
-// A particle's partners within a thinner skin stand in the first rows of `entries`, the further ones in the last: one
-// that has hardly moved itself does not meet those, as the others may not have moved farther than the list allows.
+// A particle's partners: those that were near when the list was made stand in the first rows of `entries`, the further
+// ones in the last.
 struct List {
   const uint32_t* entries;  // [row * stride + particle], `width` rows
   const uint32_t* count;    // near ones, and above kNearBits further ones
   size_t stride;
   uint32_t width;
-  float hardly2;  // square of how far a particle may have moved and still not meet its further ones; -1: none may
+};
+// Those of them that were within a thin skin at a later step, in the list's order: most steps go over these alone.
+struct ThinList {
+  uint32_t* entries;  // as List's, without further ones
+  uint32_t* count;
 };
 inline constexpr int kNearBits = 16;
 inline constexpr uint32_t kNearMask = (1u << kNearBits) - 1;

@@ -6,7 +6,7 @@
 namespace cuboct::gpu {
 
 std::vector<uint64_t> looks_of(const std::vector<uint64_t>& probes, uint64_t particles) {
-  constexpr uint64_t kParticles = 200'000'000, kFewest = 20;
+  constexpr uint64_t kParticles = 50'000'000, kFewest = 5;
   const uint64_t most = std::max(kFewest, kParticles / std::max<uint64_t>(particles, 1));
   const uint64_t every = (probes.size() + most - 1) / most;
   std::vector<uint64_t> looks;

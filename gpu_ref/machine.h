@@ -33,7 +33,7 @@ constexpr double bytes_per_particle(bool pd, double listed) {
   const double state = sizeof(typename Policy::Position) + sizeof(typename Policy::Velocity) +
                        (pd ? sizeof(typename Policy::Extra) : 0);
   const double order = 2 * (sizeof(CellAt) + 4) + 8 + (Policy::kFixed ? 8 : 0) + 4;
-  return 2 * state + order + 4 * listed;
+  return 2 * state + order + 8 * listed + 4;
 }
 
 
@@ -71,7 +71,7 @@ class Machine {
           const MakeRule& make_rule);
 
   // One batch of at most `steps`; how many were done, and why it ended. A hash for each where `hashes`.
-  enum class End : uint8_t { full, list, doubt, crowded };
+  enum class End : uint8_t { full, thin, list, doubt, crowded };
   struct Outcome {
     uint64_t done = 0;
     End end = End::full;
@@ -101,7 +101,7 @@ class Machine {
       for (auto* a : {&v[0], &v[1]}) *a = Array<typename Policy::Velocity>(device, account);
       for (auto* a : {&u[0], &u[1]}) *a = Array<typename Policy::Extra>(device, account);
       for (auto* a : {&id, &spare_id, &rank_of, &order, &entered, &rank, &count, &first, &taken, &occupancy, &entries,
-                      &counts, &notes, &slot, &found_here})
+                      &counts, &thin_entries, &thin_counts, &notes, &slot, &found_here})
         *a = Array<uint32_t>(device, account);
       for (auto* a : {&cell, &spare_cell}) *a = Array<CellAt>(device, account);
       for (auto* a : {&leaving[0], &leaving[1], &arriving}) *a = Array<Traveller<Policy>>(device, account);
@@ -122,7 +122,7 @@ class Machine {
     Array<uint32_t> id, spare_id, rank_of, order, entered;
     Array<CellAt> cell, spare_cell;
     Array<uint32_t> rank, count, first, taken, occupancy;  // of cells
-    Array<uint32_t> entries, counts;
+    Array<uint32_t> entries, counts, thin_entries, thin_counts;
     Array<uint32_t> notes;  // two counts of leavers, lost ones, longest list
     Array<Traveller<Policy>> leaving[2], arriving;
     Array<Control> control;
@@ -144,6 +144,9 @@ class Machine {
   // Particles that a slab has room for, beyond what it holds at a time.
   static constexpr double kSpare = 1.1;
   static constexpr uint32_t kLongest = 512;  // steps of a batch
+  // Share of the interaction's radius. Thinner ones hold fewer pairs and are made more often.
+  static constexpr double kThinSkin = 0.07;
+  static constexpr uint32_t kThinLongest = 16;  // steps of a thin list
   static constexpr uint32_t kGraphSteps = 16;  // even: it ends at the copy where it began
 
   bool alone() const { return slabs_.size() == 1; }
@@ -156,16 +159,24 @@ class Machine {
   ParticlesView<Policy> at(Slab& slab, int copy) const {
     return {slab.x[copy].data(), slab.v[copy].data(), setup_.pd ? slab.u[copy].data() : nullptr};
   }
-  // How far a particle may move before a new list is due; what an anchor does not tell is taken off.
-  double anchor_error() const {
+  // How far a particle may move before a new list is due, and before a new thin one is: what anchors do not tell is
+  // taken off.
+  double farthest() const {
     const auto& edge = setup_.geometry.edge;
-    return static_cast<double>(kAnchorError) * std::max({edge[0], edge[1], edge[2]});
+    return std::max(skin_.now() / 2 - static_cast<double>(kAnchorError) * std::max({edge[0], edge[1], edge[2]}), 0.0);
   }
-  double farthest() const { return std::max(skin_.now() / 2 - anchor_error(), 0.0); }
+  // Of thin anchors: a particle that has just left its list's bounds is still within.
+  double range() const { return 1.02 * skin_.now() / 2 + 1e-3 * setup_.radius; }
+  double thin_skin() const { return std::min(kThinSkin * setup_.radius, skin_.now()); }
+  double thin_way() const {
+    return std::max(thin_skin() / 2 - static_cast<double>(kThinAnchorError) * range(), 0.0);
+  }
+  // What a list of that skin reaches.
+  float reach_of(double skin) const {
+    return static_cast<float>((setup_.radius + setup_.rounding + skin) * (1 + 1e-6));
+  }
   List list(const Slab& slab) const {
-    const double hardly = skin_.thinner() - skin_.now() / 2 - anchor_error();
-    return {slab.entries.data(), slab.counts.data(), slab.stride, slab.width,
-            hardly > 0 ? static_cast<float>(hardly * hardly) : -1.0f};
+    return {slab.entries.data(), slab.counts.data(), slab.stride, slab.width};
   }
 
   void make_room(Slab& slab, size_t particles);
@@ -175,7 +186,9 @@ class Machine {
   void list_pairs();
   void list_pairs(Slab& slab);
   void scatter(const Loose<Policy>& state);
-  void step(uint32_t number, bool hash);
+  void step(uint32_t number, bool hash, bool thins);
+  bool next_thins();
+  void plan_thin_lists(const Outcome& outcome);
   void start_batch(uint32_t steps, bool hash);
   void wait_for_all() {
     for (auto& slab : slabs_) {
@@ -193,6 +206,9 @@ class Machine {
   int at_ = 0;  // which copy holds the state
   uint64_t age_ = 0;
   uint32_t batch_ = 16;
+  // Thin lists are made every so many steps, a power of two; in the step before the next one they are so old.
+  uint32_t thin_every_ = 8, thin_age_ = kNever;
+  uint32_t thin_good_ = 0, thin_patience_ = 16;  // thin lists that served to their end; after so many a longer life is tried
   size_t probed_ = 0;
 };
 

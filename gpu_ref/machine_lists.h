@@ -261,27 +261,25 @@ void Machine<Policy>::mirror() {
 
 template <class Policy>
 void Machine<Policy>::list_pairs(Slab& s) {
-  const auto reach_of = [&](double skin) {
-    return static_cast<float>((setup_.radius + setup_.rounding + skin) * (1 + 1e-6));
-  };
   s.stride = (s.own + 31) / 32 * 32;
-  if (s.counts.size() < s.own) s.counts.resize(s.room);
-  if (s.entries.size() < s.stride * s.width) s.entries.resize(s.stride * s.width);
+  for (auto* counts : {&s.counts, &s.thin_counts})
+    if (counts->size() < s.own) counts->resize(s.room);
+  for (auto* entries : {&s.entries, &s.thin_entries})
+    if (entries->size() < s.stride * s.width) entries->resize(s.stride * s.width);
   s.notes.zero(s.stream);
   MakeList<Policy> f{};
   f.view = s.rule->view(), f.grid = grid(s);
-  f.radius = reach_of(skin_.now()), f.near = reach_of(skin_.thinner());
+  f.radius = reach_of(skin_.now()), f.near = reach_of(thin_skin());
   f.x = s.x[at_].data(), f.cell = s.cell.data(), f.first = s.first.data(), f.count = s.count.data();
   f.entries = s.entries.data(), f.counts = s.counts.data(), f.width = s.width, f.stride = s.stride;
   max_each(s.stream, 0, s.own, options_.block, f, s.notes.data());
   s.hashes.zero(s.stream);
-  sum_each(s.stream, 0, s.own, options_.block, CountNear{s.counts.data()}, s.hashes.data());
-  sum_each(s.stream, 0, s.own, options_.block, CountFurther{s.counts.data()}, s.hashes.data() + 1);
+  sum_each(s.stream, 0, s.own, options_.block, CountEntries{s.counts.data()}, s.hashes.data());
 }
 
 template <class Policy>
 void Machine<Policy>::list_pairs() {
-  uint64_t near = 0, further = 0;
+  uint64_t entries = 0;
   for (auto& slab : slabs_) list_pairs(*slab);
   for (auto& slab : slabs_) {
     for (;;) {
@@ -292,12 +290,10 @@ void Machine<Policy>::list_pairs() {
       if (slab->width > kNearMask) throw_too_dense(longest);
       list_pairs(*slab);
     }
-    const std::vector<uint64_t> sums = slab->hashes.host(slab->stream, 0, 2);
-    near += sums[0], further += sums[1];
+    entries += slab->hashes.host(slab->stream, 0, 1)[0];
   }
-  const auto n = static_cast<double>(particles_);
-  counters.listed_pairs = static_cast<double>(near + further) / n;
-  skin_.listed(static_cast<double>(near) / n, static_cast<double>(further) / n);
+  counters.listed_pairs = static_cast<double>(entries) / static_cast<double>(particles_);
+  skin_.listed(counters.listed_pairs);
   ++counters.list_builds;
 }
 
@@ -312,6 +308,7 @@ void Machine<Policy>::make_lists() {
   for (auto& slab : slabs_)
     for (Graph& graph : slab->graph) graph.drop();
   age_ = 0;
+  thin_age_ = kNever;
 }
 
 }  // namespace cuboct::gpu

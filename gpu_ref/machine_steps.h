@@ -8,7 +8,7 @@ namespace cuboct::gpu {
 
 struct ResetControl {
   Control* control;
-  CUBOCT_DEVICE void operator()(uint32_t) const { *control = {0, kNever, kNever, kNever}; }
+  CUBOCT_DEVICE void operator()(uint32_t) const { *control = {0, kNever, kNever, kNever, kNever, kNever}; }
 };
 struct RaiseBase {
   Control* control;
@@ -18,15 +18,15 @@ struct RaiseBase {
 
 // The step from the copy that holds the state to the other one.
 template <class Policy>
-void Machine<Policy>::step(uint32_t number, bool hash) {
+void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
   // Less than an anchor tells is no way at all: a new list at each step.
-  const auto allowed = static_cast<float>(farthest());
-  const float farthest2 = allowed > 0 ? allowed * allowed : -1;
+  const auto square = [](double way) { return way > 0 ? static_cast<float>(way * way) : -1.0f; };
   const auto launch = [&](Slab& s, Stream& stream, uint32_t begin, uint32_t end, uint32_t jump_at, uint32_t jump_by) {
     if (begin == end) return;
-    Policy::with_variant(s.rule->view(), [&](auto variant) {
-      Step<Policy, decltype(variant)> f{};
+    const auto fill_and_run = [&](auto f) {
       f.view = s.rule->view(), f.grid = grid(s), f.from = at(s, at_), f.to = at(s, 1 - at_), f.list = list(s);
+      f.thin = {s.thin_entries.data(), s.thin_counts.data()};
+      f.thin2 = square(reach_of(thin_skin())), f.range = static_cast<float>(range()), f.thin_way2 = thin_every_ == 1 ? 1e30f : square(thin_way());
       if (const Slab* lower = beside(s, 0))
         f.copies[0] = {lower->x[1 - at_].data(), setup_.damped ? lower->v[1 - at_].data() : nullptr, 0, s.low_end,
                        int64_t{lower->lower_copy_end}};
@@ -41,11 +41,17 @@ void Machine<Policy>::step(uint32_t number, bool hash) {
           f.occupancy.lower = lower->occupancy.data() + cells_of(*lower).inner_end;
         if (const Slab* upper = beside(s, 1)) f.occupancy.upper = upper->occupancy.data();
       }
-      f.cell = s.cell.data(), f.farthest2 = farthest2, f.number = number, f.control = s.control.data();
+      f.cell = s.cell.data(), f.farthest2 = square(farthest()), f.number = number, f.control = s.control.data();
       f.jump_at = jump_at, f.jump_by = jump_by;
       for (const auto& other : slabs_)
         if (other.get() != &s) f.others.at[f.others.count++] = other->control.data();
       for_each_cached(stream, begin, end, options_.block, s.rule->cache(), s.rule->cache_words(), f);
+    };
+    Policy::with_variant(s.rule->view(), [&](auto variant) {
+      if (thins)
+        fill_and_run(Step<Policy, decltype(variant), true>());
+      else
+        fill_and_run(Step<Policy, decltype(variant), false>());
     });
   };
   const size_t now = number % 2, last = 1 - now;
@@ -79,6 +85,32 @@ void Machine<Policy>::step(uint32_t number, bool hash) {
   at_ = 1 - at_;
 }
 
+// Whether the next step makes thin lists.
+template <class Policy>
+bool Machine<Policy>::next_thins() {
+  const bool thins = thin_age_ == kNever || thin_age_ >= thin_every_;
+  thin_age_ = thins ? 1 : thin_age_ + 1;
+  return thins;
+}
+
+// Thin lists live longer where they have served to their end, and shorter where they have not.
+template <class Policy>
+void Machine<Policy>::plan_thin_lists(const Outcome& outcome) {
+  const uint32_t before = thin_every_;
+  if (outcome.end == End::thin) {
+    thin_age_ = kNever;
+    thin_every_ = std::max(thin_every_ / 2, 1u);
+    thin_good_ = 0;
+    thin_patience_ = std::min(2 * thin_patience_, 4096u);
+  } else if ((thin_good_ += static_cast<uint32_t>(outcome.done) / thin_every_) >= thin_patience_) {
+    thin_every_ = std::min(2 * thin_every_, kThinLongest);
+    thin_good_ = 0;
+  }
+  if (thin_every_ != before)
+    for (auto& slab : slabs_)
+      for (Graph& graph : slab->graph) graph.drop();
+}
+
 template <class Policy>
 void Machine<Policy>::start_batch(uint32_t steps, bool hash) {
   for (auto& slab : slabs_) {
@@ -95,43 +127,43 @@ void Machine<Policy>::start_batch(uint32_t steps, bool hash) {
       Graph& graph = only.graph[at_];
       if (!graph.ready()) {
         graph.begin(only.stream);
-        for (uint32_t k = 1; k <= kGraphSteps; ++k) step(k, false);
+        for (uint32_t k = 1; k <= kGraphSteps; ++k) step(k, false, (k - 1) % thin_every_ == 0);
         for_each(only.stream, 0, 1, 32, RaiseBase{only.control.data(), kGraphSteps});
         graph.end(only.stream);
       }
       graph.launch(only.stream);
     }
     // What follows counts on.
-    for (uint32_t k = 1; done < steps; ++k, ++done) step(k, false);
+    if (done > 0) thin_age_ = thin_every_;
+    for (uint32_t k = 1; done < steps; ++k, ++done) step(k, false, next_thins());
   }
-  for (uint32_t k = done + 1; k <= steps; ++k) step(k, hash);
+  for (uint32_t k = done + 1; k <= steps; ++k) step(k, hash, next_thins());
   wait_for_all();
 }
 
 template <class Policy>
 typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vector<uint64_t>* hashes) {
-  // Whether a thinner skin would do is asked at an age, not where a batch happens to end: runs repeat.
-  const uint64_t review = skin_.review();
-  const uint64_t until = age_ < review ? review - age_ : kLongest;
-  const auto steps = static_cast<uint32_t>(std::min({wanted, uint64_t{batch_}, until}));
+  const auto steps = static_cast<uint32_t>(std::min<uint64_t>(wanted, batch_));
   const int begin = at_;
   start_batch(steps, hashes != nullptr);
   Outcome outcome{steps, End::full};
-  uint32_t doubt = kNever, crowded = kNever;
-  bool old = false;
+  uint32_t doubt = kNever, crowded = kNever, old = kNever, thin = kNever;
   for (auto& slab : slabs_) {
     const Control told = slab->control.host(slab->stream, 0, 1)[0];
     const uint64_t done = std::min(told.limit, steps);
     outcome.done = std::min(outcome.done, done);
     doubt = std::min(doubt, told.doubt), crowded = std::min(crowded, told.crowded);
+    old = std::min(old, told.old), thin = std::min(thin, told.thin);
   }
-  for (auto& slab : slabs_) old |= slab->control.host(slab->stream, 0, 1)[0].limit <= outcome.done;
   if (crowded == outcome.done + 1)
     outcome.end = End::crowded;
   else if (doubt == outcome.done + 1)
     outcome.end = End::doubt;
-  else if (old || age_ + outcome.done == review)
+  else if (old == outcome.done)
     outcome.end = End::list;
+  else if (thin == outcome.done)
+    outcome.end = End::thin;
+  plan_thin_lists(outcome);
   at_ = static_cast<int>((static_cast<uint64_t>(begin) + outcome.done) % 2);
   age_ += outcome.done;
   if (hashes) {
@@ -142,7 +174,9 @@ typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vec
     }
     hashes->insert(hashes->end(), sums.begin(), sums.end());
   }
-  if (outcome.end == End::full) {
+  if (outcome.end == End::thin) {
+    batch_ = std::max(batch_ / 4, kGraphSteps);
+  } else if (outcome.end == End::full) {
     if (steps == batch_) batch_ = std::min(2 * batch_, kLongest);
   } else {  // about as long as lists live
     batch_ = 8;

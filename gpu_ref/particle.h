@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "model/fixed_math.h"
+
 namespace cuboct::gpu {
 
 template <typename Number, typename Last>
@@ -11,6 +13,13 @@ struct alignas(16) Four {
   Number at[3];
   Last last;
 };
+
+// The last number of a position: the type, and above it a thin anchor (gpu_ref/storage.h).
+inline constexpr int kTypeBits = 8;
+template <typename Last>
+CUBOCT_HD constexpr int type_in(Last last) {
+  return static_cast<int>(last & 255);
+}
 
 template <typename Number>
 struct Three {

@@ -52,7 +52,7 @@ struct RealPolicy {
   static constexpr int kReach = 1;     // cells that a list may span along an axis
   static constexpr int kUnrolled = 4;  // pairs in flight
   static constexpr bool kSingle = sizeof(Real) == 4;
-  using Position = Four<Real, std::conditional_t<kSingle, int32_t, int64_t>>;    // cutoffs; type
+  using Position = Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs; type and thin anchor
   using Velocity = Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs per step; anchor
   using Extra = Three<Real>;                                                     // u, cutoffs
   using Sum = Three<Real>;                                                       // kicks, cutoffs per step
@@ -89,16 +89,15 @@ struct RealPolicy {
       d[a] = (other.at[a] - one.at[a]) + static_cast<Real>(away[a]) * rule.edge[a];
       dv[a] = w.at[a] - v.at[a];
     }
-    add_pair_kick<Cached::kLaw, Cached::kDamps, Cached::kScales>(rule.rule, rule.cache, d, dv,
-                                                                 static_cast<int>(one.last),
-                                                                 static_cast<int>(other.last), sum.at);
+    add_pair_kick<Cached::kLaw, Cached::kDamps, Cached::kScales>(rule.rule, rule.cache, d, dv, type_in(one.last),
+                                                                 type_in(other.last), sum.at);
     return true;
   }
 
   // One step of the particle. False: a position is not finite.
   template <class Cached>
   CUBOCT_DEVICE static bool finish(const Cached& rule, const Sum& sum, Position& x, Velocity& v, Extra* u) {
-    gpu::finish(rule.rule, sum.at, x.at, v.at, u ? u->at : nullptr, static_cast<int>(x.last));
+    gpu::finish(rule.rule, sum.at, x.at, v.at, u ? u->at : nullptr, type_in(x.last));
     // Cells are counted in 32 bits; what goes beyond in one step is on its way to infinity.
     bool sound = true;
     for (int a = 0; a < 3; ++a) sound = sound && x.at[a] > Real(-1e6) && x.at[a] < Real(1e6);

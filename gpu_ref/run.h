@@ -47,7 +47,7 @@ struct GpuResult {
 GpuResult run_gpu(const Scene& scene, const Plan& plan, const GpuRun& request);
 
 // Where a watch looks: a look takes the whole state to the host and sums its forces there. All of `probes` up
-// to some 2e8 particles in all, else about 20 of them, evenly spread. The last state of a run is looked at
+// to some 5e7 particles in all, else about 5 of them, evenly spread. The last state of a run is looked at
 // anyway.
 std::vector<uint64_t> looks_of(const std::vector<uint64_t>& probes, uint64_t particles);
 

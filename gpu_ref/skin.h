@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// How thick the skin of pair lists should be. A thick one holds more pairs than interact, a thin one is used up soon.
-// In a solid lists live for ever beyond the amplitude of its vibrations, and each shell of neighbours in the skin
-// costs at once; in a fluid both go smoothly. So the skin follows what lists have cost, per step and particle: their
-// entries, and the making over their life. It depends on steps and lists alone: runs repeat to the bit.
+// How thick the skin of pair lists should be. A thick one lives long and holds many pairs, which are gone over
+// whenever a thin list is made of it (gpu_ref/step.h); a thin one is used up soon. In a solid lists live for ever beyond
+// the amplitude of its vibrations, and each shell of neighbours counts at once; in a fluid both go smoothly. So the skin
+// follows what lists have cost, per step and particle. It depends on steps and lists alone: runs repeat to the bit.
 #pragma once
 
 #include <array>
@@ -17,40 +17,33 @@ class Skin {
   Skin(double radius, double largest, double particles);
 
   double now() const { return skin_[at_]; }
-  double thinner() const { return skin_[at_ > 0 ? at_ - 1 : 0]; }
 
-  // Of the list just made, per particle: entries within the next thinner skin, and further ones.
-  void listed(double near, double further);
+  // Entries per particle of the list just made.
+  void listed(double entries) { entries_ = entries; }
   // The list has served for so many steps and a new one is to be made: chooses its skin.
   void aged(uint64_t steps);
-  // The age at which a list is to be made anew with a thinner skin though it still serves; never: kForGood.
-  uint64_t review() const;
-
-  static constexpr uint64_t kForGood = ~uint64_t{0};
 
  private:
   static constexpr int kSkins = 14;
-  // Making a list takes about the time of this many entries per particle, and where there are few particles that of
-  // more: it is then a matter of waiting for the host (docs/reference/gpu.md has the measurement).
-  static constexpr double kMaking = 400, kMakingOfFew = 1100, kFew = 50e3;
-  // Further entries are met by few (gpu_ref/grid_view.h), which holds up those that are computed beside them.
-  static constexpr double kFurther = 0.15;
-  static constexpr double kWorthwhile = 0.04;  // a share of the cost
-  static constexpr uint64_t kRemembered = 64;  // lists
-  // Steps after which a thinner skin that was worse is tried again: twice as many each time that it is worse still.
-  static constexpr uint64_t kLeastPatience = 256, kMostPatience = 16384;
+  // In the time of a pair of a thin list: making a list takes that of so many pairs per particle, and where there are
+  // few particles that of more, as it is then a matter of waiting for the host; an entry that is met now and then,
+  // when thin lists are made, takes so much a step.
+  static constexpr double kMaking = 400, kMakingOfFew = 1100, kFew = 50e3, kEntry = 0.06;
+  // The share of the cost that is worth a try, and for how many lists one remembers what it gave.
+  static constexpr double kWorthwhile = 0.05, kOthers = 20;
+  static constexpr uint64_t kRemembered = 64;
 
-  bool known(int skin) const { return lists_ - when_[skin] < kRemembered && cost_[skin] > 0; }
+  bool known(int skin) const {
+    return skin >= 0 && skin <= largest_ && cost_[skin] > 0 && lists_ - when_[skin] < kRemembered;
+  }
 
   std::array<double, kSkins> skin_{};
   std::array<double, kSkins> cost_{};    // 0: never tried
   std::array<uint64_t, kSkins> when_{};  // number of the list that told
   double making_;
   int at_ = 0, largest_ = 0;
-  uint64_t patience_ = kLeastPatience;
-  bool trying_ = false;  // a thinner skin, after a review
   uint64_t lists_ = 0;
-  double entries_ = 0;  // by what they cost
+  double entries_ = 0;
 };
 
 }  // namespace cuboct::gpu

@@ -17,6 +17,8 @@ struct Control {
   uint32_t limit;    // the steps up to this one are good
   uint32_t doubt;    // the first step that may not be possible
   uint32_t crowded;  // the first step in which a node may be too full
+  uint32_t old;      // the first step after which the list serves no longer
+  uint32_t thin;     // ... and the thin lists
 };
 inline constexpr uint32_t kNever = 0xffffffffu;
 
@@ -49,57 +51,79 @@ struct Copies {
   int64_t shift;
 };
 
-// Square of the way since the list was made.
+// From the anchor's middle, along each axis.
 template <class Policy>
-CUBOCT_DEVICE inline float way2(const typename Policy::View& view, const GridView& grid,
-                                const typename Policy::Position& x, const typename Policy::Velocity& v) {
-  float sum = 0;
-  for (int a = 0; a < 3; ++a) {
-    const float d = moved_along(Policy::along(view, grid, x, a), static_cast<uint32_t>(v.last), a, grid.edge[a]);
-    sum += d * d;
-  }
-  return sum;
+CUBOCT_DEVICE inline void moved_since(const typename Policy::View& view, const GridView& grid,
+                                      const typename Policy::Position& x, const typename Policy::Velocity& v,
+                                      float (&moved)[3]) {
+  for (int a = 0; a < 3; ++a)
+    moved[a] = moved_along(Policy::along(view, grid, x, a), static_cast<uint32_t>(v.last), a, grid.edge[a]);
 }
+
+// The pairs of one particle.
+template <class Policy, class Variant>
+struct Pairs {
+  const typename Policy::View& view;
+  const GridView& grid;
+  const ParticlesView<Policy>& from;
+  typename Variant::Cached rule;
+  typename Policy::Position x;
+  typename Policy::Velocity v;
+  typename Policy::Sum sum{};
+  bool sound = true;
+
+  CUBOCT_DEVICE void add(const typename Policy::Position& other, uint32_t place, const int (&away)[3]) {
+    auto w = v;
+    if constexpr (Variant::kDamped) w = load(from.v + place);
+    sound &= Policy::add_pair(rule, grid, x, v, other, w, away, sum);
+  }
+  CUBOCT_DEVICE void add(uint32_t entry) {
+    const uint32_t place = entry & kPlaceMask<Policy::kReach>;
+    int away[3];
+    Entry<Policy::kReach>::away(entry, away);
+    add(load(from.x + place), place, away);
+  }
+  // Whether it was nearer than the root of `thin2`.
+  CUBOCT_DEVICE bool add_near(uint32_t entry, float thin2) {
+    const uint32_t place = entry & kPlaceMask<Policy::kReach>;
+    int away[3];
+    Entry<Policy::kReach>::away(entry, away);
+    const auto other = load(from.x + place);
+    float square = 0;
+    for (int a = 0; a < 3; ++a) {
+      const float d = Policy::along(view, grid, other, a) - Policy::along(view, grid, x, a) +
+                      static_cast<float>(away[a]) * grid.edge[a];
+      square += d * d;
+    }
+    if (square > thin2) return false;
+    add(other, place, away);
+    return true;
+  }
+};
 
 template <class Policy, class Variant>
 CUBOCT_DEVICE inline typename Policy::Sum kick_of(const typename Policy::View& view, const void* cache,
                                                   const GridView& grid, const ParticlesView<Policy>& from,
                                                   const List& list, uint32_t i, const typename Policy::Position& x,
-                                                  const typename Policy::Velocity& v, bool& sound) {
-  const auto rule = Variant::cached(view, cache);
-  typename Policy::Sum sum{};
-  const auto add = [&](uint32_t entry) {
-    const uint32_t place = entry & kPlaceMask<Policy::kReach>;
-    int away[3];
-    Entry<Policy::kReach>::away(entry, away);
-    const auto other = load(from.x + place);
-    auto w = v;
-    if constexpr (Variant::kDamped) w = load(from.v + place);
-    sound &= Policy::add_pair(rule, grid, x, v, other, w, away, sum);
-  };
-  const uint32_t count = list.count[i];
-  const uint32_t near = count & kNearMask;
-  const uint32_t* at = list.entries + i;
-#ifdef __CUDACC__
-#pragma unroll Policy::kUnrolled
-#endif
-  for (uint32_t k = 0; k < near; ++k, at += list.stride) add(*at);
-  const uint32_t further = count >> kNearBits;
-  if (further == 0 || way2<Policy>(view, grid, x, v) <= list.hardly2) return sum;
-  at = list.entries + i + list.stride * (list.width - further);
-#ifdef __CUDACC__
-#pragma unroll 1
-#endif
-  for (uint32_t k = 0; k < further; ++k, at += list.stride) add(*at);
-  return sum;
+                                                  const typename Policy::Velocity& v) {
+  Pairs<Policy, Variant> pairs{view, grid, from, Variant::cached(view, cache), x, v};
+  const uint32_t near = list.count[i] & kNearMask, further = list.count[i] >> kNearBits;
+  for (uint32_t k = 0; k < near; ++k) pairs.add(list.entries[k * list.stride + i]);
+  for (uint32_t k = 0; k < further; ++k) pairs.add(list.entries[(list.width - 1 - k) * list.stride + i]);
+  return pairs.sum;
 }
 
-template <class Policy, class Variant>
+// Thins: goes over the whole list and leaves a new thin list on the way; else over the thin list.
+template <class Policy, class Variant, bool kThins>
 struct Step {
   typename Policy::View view;
   GridView grid;
   ParticlesView<Policy> from, to;
   List list;
+  ThinList thin;
+  float thin2;        // square of what the thin list reaches
+  float range;        // of thin anchors
+  float thin_way2;    // square of the way that it allows
   Copies<Policy> copies[2];
   Occupancy occupancy;
   const CellAt* cell;
@@ -116,9 +140,14 @@ struct Step {
     auto x = load(from.x + i);
     auto v = load(from.v + i);
     const auto before = x;
-    bool sound = true;
-    const auto sum = kick_of<Policy, Variant>(view, cache, grid, from, list, i, x, v, sound);
-    const auto rule = Variant::cached(view, cache);
+    Pairs<Policy, Variant> pairs{view, grid, from, Variant::cached(view, cache), x, v};
+    if constexpr (kThins)
+      thin_out(i, x, v, pairs);
+    else
+      go_over(i, pairs);
+    bool sound = pairs.sound;
+    const auto& rule = pairs.rule;
+    const auto& sum = pairs.sum;
     if (from.u) {
       auto u = from.u[i];
       sound &= Policy::finish(rule, sum, x, v, &u);
@@ -141,7 +170,51 @@ struct Step {
       stop_after(now - 1);
       return;
     }
-    if (!(way2<Policy>(view, grid, x, v) <= farthest2)) stop_after(control->base + number);
+    float moved[3], way = 0, thin_way = 0;
+    moved_since<Policy>(view, grid, x, v, moved);
+    const auto anchor = static_cast<uint32_t>(x.last >> kTypeBits);
+    for (int a = 0; a < 3; ++a) {
+      const float d = moved[a] - thin_anchor_at(anchor, a, range);
+      way += moved[a] * moved[a], thin_way += d * d;
+    }
+    const bool old = !(way <= farthest2);
+    if (!old && thin_way <= thin_way2) return;
+    const uint32_t now = control->base + number;
+    atomic_min(old ? &control->old : &control->thin, now);
+    stop_after(now);
+  }
+
+  CUBOCT_DEVICE void go_over(uint32_t i, Pairs<Policy, Variant>& pairs) const {
+    const uint32_t count = thin.count[i];
+    const uint32_t* at = thin.entries + i;
+#ifdef __CUDACC__
+#pragma unroll Policy::kUnrolled
+#endif
+    for (uint32_t k = 0; k < count; ++k, at += list.stride) pairs.add(*at);
+  }
+
+  CUBOCT_DEVICE void thin_out(uint32_t i, typename Policy::Position& x, const typename Policy::Velocity& v,
+                              Pairs<Policy, Variant>& pairs) const {
+    float moved[3];
+    moved_since<Policy>(view, grid, x, v, moved);
+    using Last = decltype(x.last);
+    x.last = static_cast<Last>(type_in(x.last)) | static_cast<Last>(thin_anchor_of(moved, range)) << kTypeBits;
+    const uint32_t near = list.count[i] & kNearMask, further = list.count[i] >> kNearBits;
+    uint32_t kept = 0;
+    const auto keep = [&](uint32_t entry) {
+      if (pairs.add_near(entry, thin2)) thin.entries[kept++ * list.stride + i] = entry;
+    };
+    const uint32_t* at = list.entries + i;
+#ifdef __CUDACC__
+#pragma unroll Policy::kUnrolled
+#endif
+    for (uint32_t k = 0; k < near; ++k, at += list.stride) keep(*at);
+    at = list.entries + i + list.stride * (list.width - further);
+#ifdef __CUDACC__
+#pragma unroll Policy::kUnrolled
+#endif
+    for (uint32_t k = 0; k < further; ++k, at += list.stride) keep(*at);
+    thin.count[i] = kept;
   }
 
   // The other slabs may be a step ahead, and no more: the state after this step stays in one of their two copies.
@@ -199,7 +272,7 @@ struct HashEach {
     const auto v = at.v[i];
     const CellAt home = cell[i];
     Hash hash;
-    hash.add(id[i]).add(x.last);
+    hash.add(id[i]).add(type_in(x.last));
     for (int a = 0; a < 3; ++a) {
       const int off = Policy::cells_off(view, grid, x, a);
       Policy::take_off(view, grid, x, a, off);
@@ -237,8 +310,7 @@ struct ReadProbed {
     const uint32_t to = slot[id[i]];
     if (to == kNever) return;
     const auto x = load(at.x + i);
-    bool sound = true;
-    found[to] = {x, kick_of<Policy, Variant>(view, cache, grid, at, list, i, x, load(at.v + i), sound), cell[i]};
+    found[to] = {x, kick_of<Policy, Variant>(view, cache, grid, at, list, i, x, load(at.v + i)), cell[i]};
     here[to] = 1;
   }
 };
@@ -297,17 +369,17 @@ struct ReadEnergies {
           // Each pair is met from both sides, and mass (cutoff/dt)^2 is twice energy.kinetic.
           sum.virial -= energy.kinetic * velocity_unit * static_cast<double>(one.at[a]) * d;
         }
-        sum.potential += pair_energy(energy, s, static_cast<int>(x.last), static_cast<int>(other.last)) / 2;
+        sum.potential += pair_energy(energy, s, type_in(x.last), type_in(other.last)) / 2;
       }
       const double scene[3] = {origin[0] + cell[i].c[0] * edge[0] + place[0],
                                origin[1] + cell[i].c[1] * edge[1] + place[1],
                                origin[2] + cell[i].c[2] * edge[2] + place[2]};
       double gain[3];
-      Policy::gains(rule, kick, v, at.u ? &at.u[i] : nullptr, static_cast<int>(x.last), gain);
+      Policy::gains(rule, kick, v, at.u ? &at.u[i] : nullptr, type_in(x.last), gain);
       for (int a = 0; a < 3; ++a) {
         const double now = (static_cast<double>(v.at[a]) + gain[a] / 2) * velocity_unit;
         sum.kinetic += energy.kinetic * now * now;
-        sum.gravity -= energy.weight[3 * static_cast<int>(x.last) + a] * scene[a];
+        sum.gravity -= energy.weight[3 * type_in(x.last) + a] * scene[a];
         const double speed = v.at[a] < 0 ? -static_cast<double>(v.at[a]) : static_cast<double>(v.at[a]);
         if (speed > sum.speed) sum.speed = speed;
       }

@@ -7,6 +7,7 @@
 
 #include "gpu_ref/device.h"
 #include "gpu_ref/grid_view.h"
+#include "gpu_ref/particle.h"
 
 namespace cuboct::gpu {
 
@@ -33,6 +34,22 @@ CUBOCT_DEVICE inline float moved_along(float place, uint32_t anchor, int axis, f
   const auto step = static_cast<float>(anchor >> kAnchorBits * axis & 1023u);
   return place - (step + 0.5f) * (edge / kAnchorSteps);
 }
+
+// Where a particle was when its thin list was made, from its anchor's middle: eight bits an axis, of a range of `range`
+// to both sides, which it does not leave while its list serves.
+CUBOCT_DEVICE inline uint32_t thin_anchor_of(const float (&moved)[3], float range) {
+  uint32_t anchor = 0;
+  for (int a = 0; a < 3; ++a) {
+    const int step = static_cast<int>((moved[a] / range + 1) * 128);
+    anchor |= static_cast<uint32_t>(step < 0 ? 0 : step > 255 ? 255 : step) << 8 * a;
+  }
+  return anchor;
+}
+CUBOCT_DEVICE inline float thin_anchor_at(uint32_t anchor, int axis, float range) {
+  return (static_cast<float>(anchor >> 8 * axis & 255u) - 127.5f) * (range / 128);
+}
+// Half a step along three axes, as a share of the range.
+inline constexpr float kThinAnchorError = 0.8661f / 128;
 
 template <class Policy>
 struct ParticlesView {
@@ -199,15 +216,12 @@ struct Gather {
   }
 };
 
-struct CountNear {
+struct CountEntries {
   const uint32_t* counts;
   CUBOCT_DEVICE bool idle() const { return false; }
-  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const { return counts[i] & kNearMask; }
-};
-struct CountFurther {
-  const uint32_t* counts;
-  CUBOCT_DEVICE bool idle() const { return false; }
-  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const { return counts[i] >> kNearBits; }
+  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const {
+    return (counts[i] & kNearMask) + (counts[i] >> kNearBits);
+  }
 };
 
 // Distance of a place in a cell from the cell `k` away, along one axis.
