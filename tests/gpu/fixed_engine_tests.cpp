@@ -140,6 +140,27 @@ TEST(FixedRandom, SkinsBelowTheAnchorsAreNotTrusted) {
   compare(c, golden, slabs(1), Cut::whole, 1, met);
 }
 
+// Two particles that meet head on, from all distances around what the first lists reach: each of the two has gone less
+// far than the list allows when they come within the cutoff.
+TEST(FixedRandom, FurtherPartnersComeIntoReach) {
+  Met met;
+  for (int k = 0; k < 40; ++k) {
+    Case c{"head on " + std::to_string(k), {}, 60, {}};
+    c.scene = block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .dt = 0.05, .jitter = 0, .speed = 0, .margin = 1});
+    c.scene.body = {};
+    c.scene.body.x = {Vec3(0, 0, 0), Vec3(1.2 * (1.06 + 0.001 * k), 0, 0)};
+    c.scene.body.v = {Vec3(0.021, 0, 0), Vec3(-0.021, 0, 0)};
+    c.scene.body.type = {0, 0};
+    Arch arch;
+    Widths& w = arch.widths;
+    w.position_frac = 28, w.guard = 12, w.velocity_bits = w.sum_bits = 41, w.difference_frac = 24;
+    c.setup = make_setup(c.scene, arch);
+    compare(c, golden_path(c), slabs(1), Cut::whole, 1, met);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_LT(met.lists, 10 * met.runs);
+}
+
 TEST(FixedFaults, AreGoldensWhateverTheSlabs) {
   Met met;
   uint64_t runs = 0;

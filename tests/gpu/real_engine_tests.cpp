@@ -164,7 +164,7 @@ void compare(const Trial& run, int count) {
   ASSERT_EQ(found.u.size(), expected.u.size());
   EXPECT_LE(farthest(found.u, expected.u) / cutoff, tolerance);
   EXPECT_EQ(found.type, expected.type);
-  EXPECT_GT(engine->counters().list_builds, run.steps / 15);
+  EXPECT_GT(engine->counters().list_builds, run.steps / 30);
   if (testing::Test::HasFailure()) return;
   // What is read off it, at the reference's own state but for that.
   std::vector<uint32_t> ids;
