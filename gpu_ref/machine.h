@@ -145,7 +145,7 @@ class Machine {
   static constexpr double kSpare = 1.1;
   static constexpr uint32_t kLongest = 512;  // steps of a batch
   // Share of the interaction's radius. Thinner ones hold fewer pairs and are made more often.
-  static constexpr double kThinSkin = 0.07;
+  static constexpr double kThinSkin = 0.06;
   static constexpr uint32_t kThinLongest = 16;  // steps of a thin list
   static constexpr uint32_t kGraphSteps = 16;  // even: it ends at the copy where it began
 
