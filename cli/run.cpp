@@ -107,6 +107,7 @@ int run(Options options) {
     if (!options.out.empty()) request.frames = frame_steps;
     request.precision = options.real.precision.empty() ? "fixed" : options.real.precision;
     request.watch = !options.no_watch;
+    request.passes = true;
     if (options.hashes_given || request.precision == "fixed") request.hash_every = options.lattice.hash_every;
     GpuAnswer answer = run_on_gpu(options.input, loaded, options.gpu, request);
     failed = answer.failed;

@@ -121,6 +121,7 @@ RunningEngine start_gpu(const Input& input, const GpuChoice& choice, const GpuRe
   add(request.watch, {"--watch"});
   add(request.forces, {"--forces"});
   add(choice.joules, {"--joules"});
+  add(request.passes, {"--unpacked"});
   return {"gpu", input, request, std::move(path), progress, more};
 }
 

@@ -30,6 +30,7 @@ struct GpuRequest : Request {
   bool watch = false;               // energies are measured then too
   bool energies = true;
   bool forces = false;  // frames in real numbers hold the pair forces
+  bool passes = false;  // the trace is read once and dropped: not compressed
 };
 
 // The engine at work; see RunningEngine.

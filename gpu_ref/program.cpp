@@ -27,7 +27,7 @@ struct Request {
   std::optional<uint64_t> steps;
   std::vector<uint64_t> frames;
   int gpus = 0;
-  bool frames_given = false, devices_given = false, hashes_given = false, bench = false, joules = false;
+  bool frames_given = false, devices_given = false, hashes_given = false, bench = false, unpacked = false, joules = false;
   bool list = false;
   int repeats = 0;
   double seconds = 0.3;
@@ -176,7 +176,7 @@ int run(Request request) {
   GpuResult result = run_gpu(scene, plan, run);
   Trace& trace = result.trace;
   for (size_t k = 0; k < names.size(); ++k) trace.notes.emplace_back(fmt::format("device {}", k), names[k]);
-  if (!request.out.empty()) write_trace(request.out, trace);
+  if (!request.out.empty()) write_trace(request.out, trace, !request.unpacked);
   if (request.bench && request.repeats > 0 && !trace.stop && !result.interrupted)
     print_rates(scene, plan, request);
   if (request.bench)
@@ -212,6 +212,7 @@ int run_gpu_program(int argc, char** argv) {
   app.add_option("--gpus", request.gpus, "The first N devices")->check(CLI::Range(1, 64))->excludes(devices);
   app.add_option("--block", run.engine.block, "Threads of a block")->capture_default_str();
   app.add_option("--out", request.out, "Trace file to write (HDF5)");
+  app.add_flag("--unpacked", request.unpacked, "Do not compress the trace: larger, and written in less time");
   auto* frames = app.add_option("--frames", request.frames,
                                 "Steps whose states are kept; the first and the last without it")
                      ->delimiter(',');

@@ -114,8 +114,9 @@ struct Slab {
 
 class Writer {
  public:
-  Writer(const std::string& temporary, const std::string& path)
-      : error_(fmt::format("cannot write {}: ", path)), file_(create(temporary)) {}
+  // `packed`: datasets are compressed.
+  Writer(const std::string& temporary, const std::string& path, bool packed = true)
+      : error_(fmt::format("cannot write {}: ", path)), packed_(packed), file_(create(temporary)) {}
 
   hid_t root() const { return file_; }
 
@@ -211,8 +212,10 @@ class Writer {
     chunk[0] = chunk_rows(shape);
     if (chunk[0] > 0) {
       check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), name);
-      check(H5Pset_shuffle(properties), name);
-      check(H5Pset_deflate(properties, 4), name);
+      if (packed_) {
+        check(H5Pset_shuffle(properties), name);
+        check(H5Pset_deflate(properties, 4), name);
+      }
     }
     Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose,
                  error_ + name);
@@ -234,6 +237,7 @@ class Writer {
   }
 
   std::string error_;
+  bool packed_;
   Handle file_;
 };
 

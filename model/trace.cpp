@@ -289,12 +289,12 @@ bool hashes_fit(const Trace& trace) {
 
 }  // namespace
 
-void write_trace(const std::string& path, const Trace& trace) {
+void write_trace(const std::string& path, const Trace& trace, bool packed) {
   if (!hashes_fit(trace)) throw std::logic_error("a trace's hashes do not fit its steps and hash_every");
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
   check_writable(path);
   write_whole(path, [&](const std::string& temporary) {
-    Writer out(temporary, path);
+    Writer out(temporary, path, packed);
     out.text(out.root(), "format", kFormat);
     out.number<uint32_t>(out.root(), "version", kVersion);
     out.text(out.root(), "engine", trace.engine);

@@ -128,6 +128,9 @@ TEST_F(TraceFile, KeepsLargeFrames) {
   }
   write_trace(path("t.h5"), trace);
   expect_equal(trace, read_trace(path("t.h5")));
+  write_trace(path("whole.h5"), trace, false);
+  expect_equal(trace, read_trace(path("whole.h5")));
+  EXPECT_GT(std::filesystem::file_size(path("whole.h5")), 3 * std::filesystem::file_size(path("t.h5")));
 }
 
 TEST(Trace, CountsItsSteps) {
