@@ -172,12 +172,13 @@ __global__ void __launch_bounds__(kLargestBlock) each_kernel(uint32_t begin, uin
   for (uint32_t i = begin + blockIdx.x * blockDim.x + threadIdx.x; i < end; i += gridDim.x * blockDim.x) f(i);
 }
 
-// Each block holds `cache` in shared memory.
+// Each block holds `cache` in shared memory. All its threads go on or none does, though what they are told of may change
+// while they ask: those that left would leave a part of the cache unread.
 template <class F>
 __global__ void __launch_bounds__(kLargestBlock) cached_kernel(uint32_t begin, uint32_t end, const uint32_t* cache,
                                                                uint32_t words, const __grid_constant__ F f) {
   extern __shared__ uint4 memory[];
-  if (f.idle()) return;
+  if (__syncthreads_or(f.idle())) return;
   auto* here = reinterpret_cast<uint32_t*>(memory);
   for (uint32_t k = threadIdx.x; k < words; k += blockDim.x) here[k] = cache[k];
   __syncthreads();
@@ -225,6 +226,12 @@ void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int block, co
                      const F& f) {
   if (begin >= end) return;
   stream.activate();
+  // A block may have so much unasked; up to four times that on some devices.
+  constexpr size_t kUnasked = 48 * 1024;
+  if (words * 4 > kUnasked)
+    check(cudaFuncSetAttribute(cached_kernel<F>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                               static_cast<int>(words * 4)),
+          "hold a rule's tables in a block's shared memory");
   cached_kernel<<<resident_blocks(stream, end - begin, block), block, words * 4, stream.get()>>>(
       begin, end, static_cast<const uint32_t*>(cache), static_cast<uint32_t>(words), f);
   check(cudaGetLastError(), "start a kernel");

@@ -2,6 +2,7 @@
 // The fixed rule: golden's bits. A step that may not be possible is golden's own, on the host, so that errors are too.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gpu_ref/fixed_policy.h"
 #include "gpu_ref/machine.h"
@@ -113,8 +114,10 @@ class FixedEngine final : public Engine {
     // Two cells' edges hold any cutoff, which is an edge at most, and the skin.
     g.reach = Policy::kReach;
     setup.radius = std::sqrt(std::ldexp(static_cast<double>(rule.cutoff2), -2 * rule.widths.difference_frac));
-    // Half a unit of a difference along three axes, for both of a pair.
-    setup.rounding = 2 * std::ldexp(1.0, -rule.widths.difference_frac);
+    // Half a unit of a difference along three axes, for both of a pair; and floats of a node's coordinates, below 2
+    // edges, which lists and ways since then are made of.
+    setup.rounding = 2 * std::ldexp(1.0, -rule.widths.difference_frac) +
+                     16 * static_cast<double>(std::numeric_limits<float>::epsilon());
     setup.largest_skin = 0.2 * setup.radius;
     setup.capacity = static_cast<uint32_t>(plan.arch.capacity);
     setup.pd = rule.pd, setup.damped = rule.damped;

@@ -98,6 +98,7 @@ template <class Policy>
 void Machine<Policy>::plan_thin_lists(const Outcome& outcome) {
   const uint32_t before = thin_every_;
   if (outcome.end == End::thin) {
+    ++counters.thin_stops;
     thin_age_ = kNever;
     thin_every_ = std::max(thin_every_ / 2, 1u);
     thin_good_ = 0;

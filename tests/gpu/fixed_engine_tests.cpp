@@ -161,6 +161,34 @@ TEST(FixedRandom, FurtherPartnersComeIntoReach) {
   EXPECT_LT(met.lists, 10 * met.runs);
 }
 
+// Two on springs that swing to and fro about a distance just outside the cutoff, in and out of what thin lists reach: each
+// is soon back where the pair list found it, though not where the thin list did.
+TEST(FixedRandom, WaysCountFromWhereTheThinListWasMade) {
+  Met met;
+  for (int k = 0; k < 40; ++k) {
+    Case c{"swing " + std::to_string(k), {}, 200, {}};
+    c.scene = block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .dt = 0.05, .jitter = 0, .speed = 0, .margin = 1});
+    c.scene.body = {};
+    const double far = 0.02 * 1.2, turn = 0.25 + 0.005 * k;  // amplitude; radians a step
+    ParticleType& type = c.scene.rule.types[0];
+    type.pd = true;
+    type.kp = turn * turn / (0.05 * 0.05) * c.scene.rule.mass;
+    c.scene.body.x = {Vec3(0, 0, 0), Vec3(1.2 * 1.03, 0, 0)};
+    c.scene.body.v = {Vec3(-far * turn / 0.05, 0, 0), Vec3(far * turn / 0.05, 0, 0)};
+    c.scene.body.type = {0, 0};
+    Arch arch;
+    Widths& w = arch.widths;
+    w.position_frac = 28, w.guard = 12, w.velocity_bits = w.sum_bits = 41, w.difference_frac = 24;
+    w.displacement_bits = 40;
+    c.setup = make_setup(c.scene, arch);
+    const GoldenPath golden = golden_path(c);
+    ASSERT_EQ(golden.hashes.size(), c.steps) << golden.fault->what();
+    compare(c, golden, slabs(1), Cut::whole, 1, met);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_LE(met.lists, 3 * met.runs);
+}
+
 TEST(FixedFaults, AreGoldensWhateverTheSlabs) {
   Met met;
   uint64_t runs = 0;

@@ -255,6 +255,23 @@ TEST(GpuReal, BitsDoNotKnowOfSlabsBlocksAndCuts) {
   expect_one_run(flight(), Arithmetic::float32, 4);
 }
 
+// Ways are those of the particles themselves, whoever looks: copies have their anchors in both states.
+TEST(GpuReal, ThinListsServeAsLongOnSlabs) {
+  uint64_t stops = 0;
+  for (int k = 0; k < 8; ++k) {
+    Trial run = melt({4, 4, 14}, 0);
+    for (Vec3& v : run.scene.body.v) v *= 0.3 + 0.15 * k;
+    const auto alone = engine_of(run, Arithmetic::float32, slabs(1));
+    const auto many = engine_of(run, Arithmetic::float32, slabs(4));
+    for (uint64_t step = 1; step <= 120; ++step) {
+      alone->advance(1), many->advance(1);
+      ASSERT_EQ(many->counters().thin_stops, alone->counters().thin_stops) << "run " << k << ", step " << step;
+    }
+    stops += alone->counters().thin_stops;
+  }
+  EXPECT_GT(stops, 6u);
+}
+
 // A free flight in a box that repeats: x - x(0) grows through many periods.
 TEST(GpuReal, PositionsAreNotWrapped) {
   Trial run = solid({4, 4, 4}, true, false);
