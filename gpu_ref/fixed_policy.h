@@ -114,7 +114,7 @@ struct FixedPolicy {
   static constexpr int kReach = 2;     // cells that a list may span along an axis
   static constexpr int kUnrolled = 2;  // pairs in flight
   using Position = Four<int32_t, uint32_t>;          // P fractional bits; type and thin anchor
-  using Velocity = Four<VelocityNumber, VelocityNumber>;  // P+G fractional bits; anchor (machine.h)
+  using Velocity = Four<VelocityNumber, VelocityNumber>;  // P+G fractional bits; anchor (storage.h)
   using Extra = Three<int64_t>;                      // u, P+G fractional bits
   using Sum = Three<int64_t>;                        // kicks, P+G fractional bits
   using View = FixedView;

@@ -2,7 +2,7 @@
 // The engine of both arithmetics on one or more devices.
 //
 // Space is cut into slabs, one per device or more. Particles are stored by cell; a pair list with a skin holds each
-// one's partners until some particle has moved half the skin. One kernel does a step of a particle, from one of two
+// one's partners until some particle has moved half the skin, and a thin list those of them that are near now (step.h). One kernel does a step of a particle, from one of two
 // copies of the state to the other. Steps go in batches without the host: kernels note up to which step all was
 // good, and those beyond it do nothing. A slab's borders have a stream of their own: they are written into the neighbours'
 // memory as well, while the inner particles are computed. A slab that has to stop tells the others, which may then be
@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <stdexcept>
@@ -33,7 +34,7 @@ constexpr double bytes_per_particle(bool pd, double listed) {
   const double state = sizeof(typename Policy::Position) + sizeof(typename Policy::Velocity) +
                        (pd ? sizeof(typename Policy::Extra) : 0);
   const double order = 2 * (sizeof(CellAt) + 4) + 8 + (Policy::kFixed ? 8 : 0) + 4;
-  return 2 * state + order + 8 * listed + 4;
+  return 2 * state + order + 8 * listed + 8;
 }
 
 
@@ -159,8 +160,7 @@ class Machine {
   ParticlesView<Policy> at(Slab& slab, int copy) const {
     return {slab.x[copy].data(), slab.v[copy].data(), setup_.pd ? slab.u[copy].data() : nullptr};
   }
-  // How far a particle may move before a new list is due, and before a new thin one is: what anchors do not tell is
-  // taken off.
+  // How far a particle may move before a new list is due: what an anchor does not tell is taken off.
   double farthest() const {
     const auto& edge = setup_.geometry.edge;
     return std::max(skin_.now() / 2 - static_cast<double>(kAnchorError) * std::max({edge[0], edge[1], edge[2]}), 0.0);
@@ -168,6 +168,7 @@ class Machine {
   // Of thin anchors: a particle that has just left its list's bounds is still within.
   double range() const { return 1.02 * skin_.now() / 2 + 1e-3 * setup_.radius; }
   double thin_skin() const { return std::min(kThinSkin * setup_.radius, skin_.now()); }
+  // How far two may have moved together since their thin list was made.
   double thin_ways() const {
     return std::max(thin_skin() - 2 * static_cast<double>(kThinAnchorError) * range(), 0.0);
   }
@@ -179,6 +180,7 @@ class Machine {
     return {slab.entries.data(), slab.counts.data(), slab.stride, slab.width};
   }
 
+  double entries_expected(const std::vector<CellAt>& cells) const;
   void make_room(Slab& slab, size_t particles);
   void resettle();
   void sort();

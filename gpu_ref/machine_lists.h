@@ -28,7 +28,7 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
   cells_ = make_cells(g, per_plane, slabs);
   uint64_t cells = 0;
   for (const SlabCells& slab : cells_.slabs) cells = std::max<uint64_t>(cells, slab.rank.size() + 4ull * slab.ranks);
-  require_memory(options, particles_, cells, bytes_per_particle<Policy>(setup.pd, 24));
+  require_memory(options, particles_, cells, bytes_per_particle<Policy>(setup.pd, entries_expected(state.cell)));
   share(options.devices);
   for (int s = 0; s < slabs; ++s) {
     slabs_.push_back(std::make_unique<Slab>(options.devices[static_cast<size_t>(s)], s, &counters.device_bytes));
@@ -46,6 +46,24 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
     slab.energy = energies.rule(slab.energy_node.data(), slab.energy_strength.data(), slab.energy_weight.data());
   }
   upload(state);
+}
+
+// The longest list, by how full the cells of some particles are.
+template <class Policy>
+double Machine<Policy>::entries_expected(const std::vector<CellAt>& cells) const {
+  constexpr size_t kSampled = 500;
+  // Lists are as wide as their longest, which is longer than most.
+  constexpr double kLongest = 1.35, kLeast = 24;
+  std::map<std::array<int32_t, 3>, uint64_t> some;
+  for (size_t i = 0; i < cells.size(); i += cells.size() / kSampled + 1)
+    some[{cells[i].c[0], cells[i].c[1], cells[i].c[2]}] = 0;
+  uint64_t all = 0;
+  for (const CellAt& cell : cells)
+    if (some.count({cell.c[0], cell.c[1], cell.c[2]}) > 0) ++all;
+  const auto& edge = setup_.geometry.edge;
+  const double density = static_cast<double>(all) / static_cast<double>(some.size()) / (edge[0] * edge[1] * edge[2]);
+  const double reach = setup_.radius + setup_.largest_skin;
+  return std::max(kLeast, kLongest * density * 4 / 3 * 3.14159265 * reach * reach * reach);
 }
 
 template <class Policy>

@@ -212,7 +212,7 @@ struct Gather {
     v.last = static_cast<Anchor>(anchor_of(place, grid.edge));
     to.x[k] = x, to.v[k] = v, new_cell[k] = cell[i], new_id[k] = id[i];
     if (from.u) to.u[k] = from.u[i];
-    if (entered) entered[k] = 1u << 13;  // its own cell (machine.h)
+    if (entered) entered[k] = 1u << 13;  // its own cell (step.h)
   }
 };
 
