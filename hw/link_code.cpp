@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "hw/link_code.h"
 
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "model/error.h"
+
 namespace cuboct {
 namespace {
 
@@ -57,6 +63,20 @@ const char* to_string(LinkCheck check) {
       return "retry";
   }
   return "?";
+}
+
+FaultShare read_fault_share(const std::string& text) {
+  FaultShare share;
+  const char *begin = text.data(), *end = begin + text.size();
+  if (const auto whole = std::from_chars(begin, end, share.count);
+      whole.ec == std::errc() && whole.ptr == end && share.count > 0)
+    return share;
+  share.count = 0;
+  if (const auto real = std::from_chars(begin, end, share.rate);
+      real.ec == std::errc() && real.ptr == end && share.rate > 0 && share.rate < 1)
+    return share;
+  throw InputError(fmt::format("'{}' faults cannot be injected", text),
+                   "give a share of all beats, as 0.001, or their number in the run, as 10000");
 }
 
 LinkCode link_code(LinkCheck check, int link_bits) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 namespace cuboct {
 
@@ -53,6 +54,14 @@ struct LinkCode {
   int latency = 0;    // cycles that a beat takes longer than without a check
   bool checked() const { return check != LinkCheck::none; }
 };
+
+// How many faults a run is to meet on its links: a share of all beats, or a number in the run.
+struct FaultShare {
+  double rate = 0;     // below 1
+  uint64_t count = 0;  // 0 where a rate is given
+};
+// "0.001" or "10000". Throws InputError.
+FaultShare read_fault_share(const std::string& text);
 
 // `link_bits`: payload, 1 to 1024.
 LinkCode link_code(LinkCheck check, int link_bits);

@@ -57,7 +57,7 @@ std::vector<Port> node_ports(const RtlDesign& design, bool core) {
                              {"output", face, "link_ready_o"}});
   if (checked) {
     ports.push_back({"output", by_face("AckBits"), "link_ack_o"});
-    ports.push_back({"output", face, "link_error_o"});
+    ports.push_back({"output", fmt::format("[{}:0]", 2 * faces - 1), "link_error_o"});
   }
   ports.insert(ports.end(), {{"output", "[7:0]", "phase_start_o"},
                              {"output", "[7:0]", "phase_end_o"},
@@ -265,7 +265,7 @@ std::string print_lattice(const RtlDesign& design) {
       "  output logic [4*Nodes-1:0] fault_code_o,\n"
       "  output logic [Nodes*cuboct_pkg::IdBits-1:0] fault_id_o,\n"
       "  output logic [64*Nodes-1:0] fault_number_o,\n";
-  if (design.checked) text += fmt::format("  output logic [{}*Nodes-1:0] link_error_o,\n", faces);
+  if (design.checked) text += fmt::format("  output logic [{}*Nodes-1:0] link_error_o,\n", 2 * faces);
   text += fmt::format(
       "  output logic [Nodes-1:0] idle_o\n"
       ");\n"
@@ -325,7 +325,7 @@ std::string print_lattice(const RtlDesign& design) {
         n, cell[0], cell[1], cell[2], has, valid, end, ready, data, faces,
         design.checked ? fmt::format("    .link_ack_i({{{0}}}),\n"
                                      "    .link_ack_o(ack_{1}), .link_error_o(link_error_o[{2}*{1} +: {2}]),\n",
-                                     ack, n, faces)
+                                     ack, n, 2 * faces)
                        : "");
   }
   if (!unused_ends.empty())

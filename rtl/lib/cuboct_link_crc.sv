@@ -21,16 +21,16 @@ module cuboct_link_crc #(
   endfunction
   localparam logic [Width-1:0] Reversed = reversed(0);
 
-  // The message bits that bit `row` of the check depends on: the last bit's remainder is the polynomial, and each bit
-  // before it has gone one step further.
-  function [Bits-1:0] taps(input integer row);
+  // The message bits that the bit of the check in `row`, one-hot, depends on: the last bit's remainder is the
+  // polynomial, and each bit before it has gone one step further.
+  function [Bits-1:0] taps(input logic [Width-1:0] row);
     integer i;
     logic [Width-1:0] r;
     begin
       taps = {Bits{1'b0}};
       r = Reversed;
       for (i = Bits - 1; i >= 0; i = i - 1) begin
-        taps[i] = r[row];
+        taps[i] = |(r & row);
         r = {1'b0, r[Width-1:1]} ^ (r[0] ? Reversed : {Width{1'b0}});
       end
     end
@@ -49,7 +49,7 @@ module cuboct_link_crc #(
   localparam logic [Width-1:0] Started = started(Bits);
 
   for (genvar j = 0; j < Width; j++) begin : gen_bit
-    localparam logic [Bits-1:0] Taps = taps(j);
+    localparam logic [Bits-1:0] Taps = taps({{(Width - 1) {1'b0}}, 1'b1} << j);
     assign crc_o[j] = (^(data_i & Taps)) ^ Started[j];
   end
 endmodule

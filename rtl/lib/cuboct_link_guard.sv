@@ -45,14 +45,15 @@ module cuboct_link_guard #(
   input  logic [Faces*WireBits-1:0] link_data_i,
   output logic [Faces-1:0]          link_ready_o,
   output logic [Faces*AckBits-1:0]  link_ack_o,
-  // Faces at which something was found wrong, one cycle later; for counters.
-  output logic [Faces-1:0]          link_error_o,
+  // Faces at which something was found wrong, one cycle later, for counters: {acknowledgements, arriving beats}.
+  output logic [2*Faces-1:0]        link_error_o,
   output logic                      fault_valid_o,
   output logic [3:0]                fault_code_o,
   output logic [IdBits-1:0]         fault_id_o,
   output logic [63:0]               fault_number_o
 );
-  logic [Faces-1:0] beat_wrong, beat_order, ack_wrong, silent, error_q;
+  logic [Faces-1:0]   beat_wrong, beat_order, ack_wrong, silent;
+  logic [2*Faces-1:0] error_q;
   for (genvar f = 0; f < Faces; f++) begin : gen_face
     cuboct_link_send #(
       .LinkBits(LinkBits), .SequenceBits(SequenceBits), .Window(Window), .Patience(Patience), .Retry(Retry),
@@ -77,7 +78,7 @@ module cuboct_link_guard #(
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) error_q <= '0;
-    else error_q <= beat_wrong | beat_order | ack_wrong | silent;
+    else error_q <= {ack_wrong | silent, beat_wrong | beat_order};
   end
   assign link_error_o = error_q;
 
@@ -91,14 +92,12 @@ module cuboct_link_guard #(
       told_d = told_q;
       code_d = code_q;
       face_d = face_q;
-      if (!told_q) begin
-        for (f = Faces - 1; f >= 0; f = f - 1) begin
-          if (beat_wrong[f] || beat_order[f] || ack_wrong[f] || silent[f]) begin
-            told_d = 1'b1;
-            face_d = f[2:0];
-            code_d = 4'd12;
-            if (!beat_wrong[f] && !ack_wrong[f]) code_d = beat_order[f] ? 4'd13 : 4'd14;
-          end
+      for (f = Faces - 1; f >= 0; f = f - 1) begin
+        if (!told_q && (beat_wrong[f] || beat_order[f] || ack_wrong[f] || silent[f])) begin
+          told_d = 1'b1;
+          face_d = f[2:0];
+          code_d = 4'd12;
+          if (!beat_wrong[f] && !ack_wrong[f]) code_d = beat_order[f] ? 4'd13 : 4'd14;
         end
       end
     end
