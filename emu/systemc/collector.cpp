@@ -113,9 +113,16 @@ void Collector::close(uint64_t cycle) {
 }
 
 void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
-  if (done_ || stopped_[node]) return;
-  last_event_ = cycle;
+  if (done_) return;
   const uint64_t step = step_[node];
+  // The nodes around a link that failed wait for ever; the node that tells may be idle already.
+  if (out.fault && is_of_link(static_cast<Fault>(out.fault_code))) {
+    stop_ = {static_cast<Fault>(out.fault_code), step, node, out.fault_id, out.fault_number, {}};
+    close(cycle);
+    return;
+  }
+  if (stopped_[node]) return;
+  last_event_ = cycle;
   const auto span = [&](int phase) -> PhaseSpan& {
     return trace_.cycles[(step * nodes_ + node) * kPhases + static_cast<size_t>(phase)];
   };
@@ -135,11 +142,7 @@ void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
     const StopReason found{
         static_cast<Fault>(out.fault_code), step, node, out.fault_id, out.fault_number, {}};
     const auto key = [](const StopReason& r) { return std::tie(r.step, r.fault, r.particle, r.number); };
-    if (stop_.fault == Fault::none || is_of_link(found.fault) || key(found) < key(stop_)) stop_ = found;
-    if (is_of_link(found.fault)) {
-      close(cycle);
-      return;
-    }
+    if (stop_.fault == Fault::none || key(found) < key(stop_)) stop_ = found;
   }
   if (out.phase_end & 1u << static_cast<int>(last_phase_)) {
     ++step_[node];

@@ -9,8 +9,12 @@
 namespace cuboct::emu {
 namespace {
 
-// Faults by count are drawn this much denser than needed, and end with the last.
-constexpr double kDenser = 1.05;
+// The number of beats is that of the initial state; this share of it is counted on.
+constexpr double kCertain = 0.9;
+uint64_t threshold_of(double rate) {
+  return rate >= 1 ? UINT64_MAX : static_cast<uint64_t>(std::ldexp(rate, 64));
+}
+
 // Bits that one fault flips at the most, next to each other: a burst as wide as the check. Scattered ones are
 // fewer than the check's distance, or this many where there is none.
 constexpr int kBurst = 16, kScattered = 3;
@@ -40,13 +44,19 @@ uint64_t beats_per_step(const Plan& plan, const State& state) {
 FaultSource::FaultSource(const Plan& plan, const FaultOptions& options, const State& initial, uint64_t steps)
     : plan_(plan), options_(options) {
   if (!options.enabled()) return;
-  double rate = options.rate;
-  if (options.count > 0) {
-    double beats = static_cast<double>(beats_per_step(plan, initial) * std::max<uint64_t>(steps, 1));
-    if (plan.link.checked() && options.acks > 0) beats *= 2;
-    rate = kDenser * static_cast<double>(options.count) / std::max(beats, 1.0);
-  }
-  threshold_ = rate >= 1 ? UINT64_MAX : static_cast<uint64_t>(std::ldexp(rate, 64));
+  threshold_ = threshold_of(options.rate);
+  if (options.count == 0) return;
+  expected_ = kCertain * static_cast<double>(beats_per_step(plan, initial) * std::max<uint64_t>(steps, 1));
+  if (plan.link.checked() && options.acks > 0) expected_ *= 2;
+}
+
+// Before the first beat of a cycle: so a fault does not depend on the order of the wires.
+void FaultSource::begin(uint64_t cycle) {
+  if (cycle == cycle_) return;
+  cycle_ = cycle;
+  if (options_.count == 0) return;
+  const double wanted = static_cast<double>(options_.count) - static_cast<double>(counts_.injected());
+  threshold_ = threshold_of(wanted / std::max(expected_ - static_cast<double>(seen_), 100.0));
 }
 
 Counters FaultSource::counters() const {
@@ -81,6 +91,7 @@ FaultKind FaultyWire::draw(uint64_t cycle, bool ack) {
   FaultSource& s = source_;
   const uint64_t wire = uint64_t{node_} * kFaces + static_cast<uint64_t>(face_);
   const uint64_t number = ack ? acks_++ : beats_++;
+  ++s.seen_;
   const uint64_t dice = mix(mix(mix(s.options_.seed) + 2 * wire + (ack ? 1 : 0)) ^ number);
   if (!s.enabled() || (open_ != FaultKind::none && s.plan_.link.checked())) return FaultKind::none;
   const FaultKind kind = choose(number, ack, dice);
@@ -178,6 +189,7 @@ void FaultyWire::pass(uint64_t cycle, const View& truth) {
 const FaultyWire::View& FaultyWire::look(uint64_t cycle, const View& truth) {
   if (cycle != cycle_) {
     cycle_ = cycle;
+    source_.begin(cycle);
     pass(cycle, truth);
   }
   return view_;

@@ -25,7 +25,7 @@ struct FaultTarget {
 
 struct FaultOptions {
   double rate = 0;     // share of beats and acknowledgements that meet a fault, [0, 1]
-  uint64_t count = 0;  // ... or about how many in the run, spread evenly, and no more; 0: `rate` holds
+  uint64_t count = 0;  // ... or how many in the run, spread evenly; 0: `rate` holds
   FaultTarget target;  // with a kind: this one alone
   uint64_t seed = 1;
   // Shares of the kinds among faults; what has none is left out.
@@ -63,9 +63,15 @@ class FaultSource {
 
  private:
   friend class FaultyWire;
+  void begin(uint64_t cycle);
   const Plan& plan_;
   const FaultOptions options_;
-  uint64_t threshold_ = 0;  // of a hash of 64 bits
+  // Of a hash of 64 bits. For a count it is set anew in each cycle, as in Knuth's selection sampling (The Art
+  // of Computer Programming, 3.4.2, algorithm S): those left over the beats left.
+  uint64_t threshold_ = 0;
+  uint64_t cycle_ = kNever;
+  double expected_ = 0;  // beats and acknowledgements of the run
+  uint64_t seen_ = 0;    // of them
   bool open_ = true;
   FaultCounts counts_;
   FaultPlace first_;

@@ -32,7 +32,8 @@ struct Seen {
   uint64_t crowds = 0;                          // node-steps in which several particles leave one node
   uint64_t emptied = 0;                         // nodes that hold particles before a step and none after
   uint64_t busy = 0, filtered = 0, walked = 0;  // TimingCounters
-  uint64_t checked = 0, no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, damped = 0, rings_of_3 = 0, lone_nodes = 0,
+  uint64_t checked = 0;
+  uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, damped = 0, rings_of_3 = 0, lone_nodes = 0,
            flat = 0;
 };
 
@@ -225,6 +226,7 @@ TEST(TimingRandom, EqualsTheClockedNode) {
                                                              {"leave_thrice", seen.leave_thrice},
                                                              {"crowds", seen.crowds},
                                                              {"emptied", seen.emptied},
+                                                             {"checked", seen.checked},
                                                              {"no_overlap", seen.no_overlap},
                                                              {"queue_of_one", seen.queue_of_one},
                                                              {"pipes", seen.pipes},
