@@ -6,7 +6,7 @@
 module checked_link_formal #(
   parameter int SequenceBits = 2,
   parameter int Window       = 2,
-  parameter int Patience     = 5,
+  parameter int Patience     = 4,
   parameter int Retry        = 1,
   parameter int Wire         = 0,
   parameter int LinkBits     = 3
@@ -23,7 +23,7 @@ module checked_link_formal #(
   localparam int WireBits = LinkBits + SequenceBits + CrcBits;
   localparam int AckBits  = SequenceBits + 8;
   localparam int Entry    = CrcBits + 1 + LinkBits;
-  localparam int ToldIn   = Patience + 4;
+  localparam int ToldIn   = Patience + 3;
   localparam int HealedIn = Patience + 9;
 
   logic running_q = 1'b0;  // reset in the first cycle only
@@ -127,7 +127,7 @@ module checked_link_formal #(
       if (Wire != 0 && !fault_q && !faulty) a_quiet: assert (!wrong && !order && !ack_wrong && !silent);
       if (Wire == 1) a_told: assert (since_q <= ToldIn[7:0]);
       if (Wire == 1 && Retry != 0) a_heals: assert (waits_q <= HealedIn[7:0]);
-      c_run: cover (came_q == 8'd7 && !fault_q);
+      c_run: cover (came_q == 8'd4 && !fault_q);
       if (Wire != 2) c_silent: cover (silent);
       if (Wire != 2) c_order:  cover (order);
       if (Wire != 2) c_wrong:  cover (wrong);

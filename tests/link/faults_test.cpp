@@ -25,7 +25,7 @@ std::string before_stop(const Plan& plan, const GoldenRun& golden, const emu::Ru
 
 // A beat with checks takes two cycles more; which check makes no difference, and nothing else changes.
 TEST(CheckedLinks, CostTwoCyclesPerBeatAndNoBits) {
-  for (const std::string name : {"undamped_2x2x2", "flat_ring", "narrow_links", "periodic_27", "hot_gas"}) {
+  for (const std::string name : {"undamped_2x2x2", "flat_ring", "rich_ring", "lattice_3x2x1"}) {
     const Case none = make_case(name), detect = make_case(name + ".detect"), retry = make_case(name + ".retry");
     const GoldenRun golden = run_golden(none.setup, none.steps);
     const auto options = keep_all(none.steps), stalled = keep_all(none.steps, 0.4, 5);
@@ -122,11 +122,11 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EachBeat,
 // Many faults in one run, with and without stalls, where particles move: all bits are golden's.
 TEST(Retry, HealsHundredsOfFaults) {
   emu::FaultCounts all;
-  for (const std::string name : {"hot_gas", "flat_ring", "rich_ring", "lone_diagonal", "rich_damped"})
+  for (const std::string name : {"flat_ring", "rich_ring", "undamped_2x2x2", "rich_damped"})
     for (const double stalls : {0.0, 0.3}) {
       const Case c = make_case(name + ".retry");
       emu::RunOptions options = keep_all(c.steps, stalls, 3);
-      options.faults.rate = 0.01;
+      options.faults.rate = 0.03;
       const emu::RunResult got = run(c, options);
       EXPECT_EQ(compare(c.setup.plan, run_golden(c.setup, c.steps), got).difference, "") << name;
       EXPECT_EQ(got.faults.detected, got.faults.injected()) << name;
@@ -137,10 +137,10 @@ TEST(Retry, HealsHundredsOfFaults) {
       all.repeats += got.faults.repeats;
       all.acks += got.faults.acks;
     }
-  EXPECT_GT(all.flips, 300u);
-  EXPECT_GT(all.drops, 300u);
-  EXPECT_GT(all.repeats, 300u);
-  EXPECT_GT(all.acks, 300u);
+  EXPECT_GT(all.flips, 200u);
+  EXPECT_GT(all.drops, 200u);
+  EXPECT_GT(all.repeats, 200u);
+  EXPECT_GT(all.acks, 200u);
 }
 
 // One fault in ten beats: faults meet beats that are sent again.
@@ -156,7 +156,7 @@ TEST(Retry, HealsWhereFaultsFollowEachOther) {
 
 // A count is met, spread over the run; the same seed gives the same faults.
 TEST(Faults, ComeInTheNumberAskedForAndAgain) {
-  const Case c = make_case("hot_gas.retry");
+  const Case c = make_case("rich_ring.retry");
   emu::RunOptions options = keep_all(c.steps);
   options.faults.count = 200;
   const emu::RunResult a = run(c, options), b = run(c, options);

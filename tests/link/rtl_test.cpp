@@ -90,7 +90,7 @@ TEST_P(LinkRtl, SpeaksTheNativeNodesCode) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, LinkRtl,
-                         testing::Values("undamped_2x2x2.detect", "undamped_2x2x2.retry", "flat_ring.retry"),
+                         testing::Values("undamped_2x2x2.detect", "flat_ring.retry"),
                          [](const auto& p) {
                            std::string name = p.param;
                            name[name.find('.')] = '_';
