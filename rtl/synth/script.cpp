@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "rtl/synth/script.h"
+
+#include <fmt/format.h>
+
+#include "rtl/synth/elaborate.h"
+
+namespace cuboct::synth {
+namespace {
+
+// A file name as yosys takes it.
+std::string quoted(const std::string& path) { return "\"" + path + "\""; }
+
+std::string read_all(const std::vector<std::string>& files, const std::string& top) {
+  std::string text;
+  for (const std::string& f : files) text += fmt::format("read_verilog -sv {}\n", quoted(f));
+  return text + fmt::format("hierarchy -check -top {}\n", top);
+}
+
+std::string synth_command(const Target& target) {
+  switch (target.family) {
+    case Family::ice40: return target.holds[Resource::dsp] > 0 ? "synth_ice40 -dsp" : "synth_ice40";
+    case Family::ecp5: return "synth_ecp5";
+    case Family::xc7: return "synth_xilinx -family xc7";
+    case Family::asic: break;
+  }
+  return "";
+}
+
+// Cells at whose registers a path ends. Without them, what is left has no path through a register.
+std::string registers_of(Family family) {
+  switch (family) {
+    case Family::ice40: return "t:SB_DFF* t:SB_RAM40_4K*";
+    case Family::ecp5: return "t:TRELLIS_FF t:DP16KD t:PDPW16KD";
+    case Family::xc7: return "t:FD?E t:RAMB* t:SRL*";
+    case Family::asic: break;
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string elaborate_script(const std::vector<std::string>& files, const std::string& top,
+                             const std::string& out) {
+  return read_all(files, top) + fmt::format("proc\nwrite_json {}\n", quoted(out + "/elaborated.json"));
+}
+
+std::string fpga_script(const Synthesis& s, const Target& target) {
+  std::string text = read_all(s.files, s.top);
+  if (s.module != s.unit) text += fmt::format("rename {} {}\n", s.module, s.unit);
+  if (s.harness)
+    text += fmt::format("read_verilog {}\nsetattr -mod -set keep_hierarchy 1 {}\n", quoted(s.out + "/harness.v"), s.unit);
+  if (!s.kept.empty()) text += fmt::format("setattr -mod -set keep_hierarchy 1 {}\n", s.kept);
+  text += fmt::format("{} -top {} -json {}\n", synth_command(target), s.harness ? kHarness : s.unit,
+                      quoted(s.out + "/netlist.json"));
+  text += fmt::format("write_verilog -noattr {}\n", quoted(s.out + "/netlist.v"));
+  // The longest path between registers, in cells: all that can be said of speed before placing.
+  text += fmt::format("flatten\ndelete {}\nopt_clean\nltp\n", registers_of(target.family));
+  return text;
+}
+
+std::string place_script(const Target& target, const std::string& top, double frequency, int seed,
+                         const std::string& pins) {
+  return fmt::format(
+      "#!/bin/sh\n"
+      "# Places and routes netlist.json: run it in this directory, where nextpnr-ecp5 and ecppack are in PATH.\n"
+      "# Then, in the project's directory: cuboct synth . --target {0} --unit UNIT --timing timing.json\n"
+      "set -eu\n"
+      "nextpnr-ecp5 --{1} --package {2} --speed 6 --json netlist.json --top {3} --freq {4:g} --seed {5} \\\n"
+      "  --timing-allow-fail {6}--textcfg unit.config --report timing.json --log nextpnr.log\n"
+      "ecppack --compress unit.config unit.bit\n",
+      target.name, target.name == "ecp5-25" ? "25k" : "85k", target.package, top, frequency, seed,
+      pins.empty() ? "--lpf-allow-unconstrained " : "--lpf pins.lpf ");
+}
+
+}  // namespace cuboct::synth
