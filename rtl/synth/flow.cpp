@@ -122,6 +122,7 @@ class Flow {
     if (lattice) s.kept = "cuboct_node";
     if (s.harness) tools_.write("harness.v", make_harness(s.unit, design.modules.at(s.module).ports).text);
     top_ = s.harness ? kHarness : s.unit;
+    if (target_.family == Family::ecp5) tools_.write("read_side.v", read_side_module());
     tools_.write("synth.ys", fpga_script(s, target_));
     tools_.run("yosys synthesises", "yosys", "yosys", {out_ + "/synth.ys"});
     report_.block = read_netlist(tools_.path("netlist.json"), s.unit, design, s.module, target_.family);

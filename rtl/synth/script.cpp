@@ -27,12 +27,15 @@ std::string synth_command(const Target& target) {
   return "";
 }
 
-// Cells at whose registers a path ends. Without them, what is left has no path through a register.
-std::string registers_of(Family family) {
+// The longest path between registers, in cells: all that can be said of speed before placing. Cells whose outputs come
+// from registers go; a LUT memory stays as what it is on its read side, LUTs, or each write would be a path.
+std::string depth_commands(Family family, const std::string& out) {
+  const std::string flat = "setattr -mod -unset keep_hierarchy *\nflatten\n", end = "ltp\n";
   switch (family) {
-    case Family::ice40: return "t:SB_DFF* t:SB_RAM40_4K*";
-    case Family::ecp5: return "t:TRELLIS_FF t:DP16KD t:PDPW16KD";
-    case Family::xc7: return "t:FD?E t:RAMB* t:SRL*";
+    case Family::ecp5:
+      return flat + fmt::format("delete t:TRELLIS_FF t:DP16KD t:PDPW16KD\ntechmap -map {}\n", quoted(out + "/read_side.v")) + end;
+    case Family::xc7: return flat + "delete t:FD?E t:RAM* t:SRL* t:DSP48E1\n" + end;
+    case Family::ice40:  // nextpnr says more
     case Family::asic: break;
   }
   return "";
@@ -54,9 +57,16 @@ std::string fpga_script(const Synthesis& s, const Target& target) {
   text += fmt::format("{} -top {} -json {}\n", synth_command(target), s.harness ? kHarness : s.unit,
                       quoted(s.out + "/netlist.json"));
   text += fmt::format("write_verilog -noattr {}\n", quoted(s.out + "/netlist.v"));
-  // The longest path between registers, in cells: all that can be said of speed before placing.
-  text += fmt::format("flatten\ndelete {}\nopt_clean\nltp\n", registers_of(target.family));
+  text += depth_commands(target.family, s.out);
   return text;
+}
+
+std::string read_side_module() {
+  std::string luts;
+  for (int b = 0; b < 4; ++b)
+    luts += fmt::format("  LUT4 u_{0} (.A(RAD[0]), .B(RAD[1]), .C(RAD[2]), .D(RAD[3]), .Z(DO[{0}]));\n", b);
+  return "module TRELLIS_DPR16X4 (\n  input [3:0] DI, WAD, RAD, input WRE, WCK, output [3:0] DO\n);\n" + luts +
+         "endmodule\n";
 }
 
 std::string place_script(const Target& target, const std::string& top, double frequency, int seed,

@@ -20,8 +20,11 @@ struct Synthesis {
   bool harness = true;           // out/harness.v is around the unit
   std::string out;               // directory
 };
-// yosys: netlist.json and netlist.v, and the longest path to the log.
+// yosys: netlist.json and netlist.v, and the longest path to the log. It reads harness.v and, for ecp5, read_side.v.
 std::string fpga_script(const Synthesis& synthesis, const Target& target);
+
+// A 16 x 4 LUT memory of ECP5 as the LUTs that its read side is. Verilog.
+std::string read_side_module();
 
 // Shell: from netlist.json to a bitstream and timing.json with nextpnr-ecp5 and ecppack.
 std::string place_script(const Target& target, const std::string& top, double frequency, int seed,

@@ -74,11 +74,15 @@ std::optional<double> read_icetime(const std::string& log) {
 }
 
 std::optional<uint64_t> read_depth(const std::string& log) {
-  // std::regex would recurse over the whole log.
-  const std::string key = "(length=";
-  const size_t at = log.find(key, std::min(log.find("Longest topological path"), log.size()));
-  if (at == std::string::npos) return std::nullopt;
-  return std::stoull(log.substr(at + key.size(), 20));
+  // std::regex would recurse over the whole log. `ltp` tells of each module.
+  const std::string title = "Longest topological path", key = "(length=";
+  std::optional<uint64_t> depth;
+  for (size_t at = log.find(title); at != std::string::npos; at = log.find(title, at + title.size())) {
+    const size_t length = log.find(key, at);
+    if (length == std::string::npos) break;
+    depth = std::max<uint64_t>(depth.value_or(0), std::stoull(log.substr(length + key.size(), 20)));
+  }
+  return depth;
 }
 
 }  // namespace cuboct::synth
