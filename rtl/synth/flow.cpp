@@ -59,6 +59,8 @@ class Pending {
   std::string final_, path_;
 };
 
+constexpr const char* kOsu018 = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
+
 // What is being done, on a terminal.
 void say(const std::string& what) {
   if (stderr_is_terminal()) fmt::print(stderr, "\r\033[K{}", what.empty() ? "" : "synth: " + what + " ...");
@@ -66,7 +68,7 @@ void say(const std::string& what) {
 
 std::string numbers(const Target& target, const Counts& used) {
   std::string text;
-  for (const Resource r : kResources)
+  for (const Resource r : resources_of(target.family))
     if (used[r] > 0)
       text += fmt::format("{}{} {}/{}", text.empty() ? "" : ", ", to_string(r), used[r], target.holds[r]);
   return text;
@@ -102,6 +104,8 @@ class Flow {
     report_.tools.push_back(first_line("yosys", "-V"));
     Synthesis s;
     s.out = out_;
+    const bool asic = target_.family == Family::asic;
+    if (asic) need("sta");
     const bool board = request_.unit == "board", lattice = request_.unit == "lattice";
     if (board) {
       const Board b = read_board(project_);
@@ -120,19 +124,28 @@ class Flow {
     s.module = board || lattice ? design.top : module_of(design, request_.unit);
     s.unit = base_name(s.module);
     if (lattice) s.kept = "cuboct_node";
+    if (asic) {
+      s.harness = false;
+      const auto& ports = design.modules.at(s.module).ports;
+      if (std::none_of(ports.begin(), ports.end(), [](const Port& p) { return p.name == "clk_i"; }))
+        throw InputError(fmt::format("the block '{}' has no clock, so no time can be told of it", request_.unit));
+    }
     if (s.harness) tools_.write("harness.v", make_harness(s.unit, design.modules.at(s.module).ports).text);
     top_ = s.harness ? kHarness : s.unit;
     if (target_.family == Family::ecp5) tools_.write("read_side.v", read_side_module());
-    tools_.write("synth.ys", fpga_script(s, target_));
+    if (asic) tools_.write("abc.constr", "set_load 0.02 [all_outputs]\n");  // pF: one or two inputs
+    tools_.write("synth.ys", asic ? asic_script(s, liberty()) : fpga_script(s, target_));
     tools_.run("yosys synthesises", "yosys", "yosys", {out_ + "/synth.ys"});
-    report_.block = read_netlist(tools_.path("netlist.json"), s.unit, design, s.module, target_.family);
-    report_.used = count_all(tools_.path("netlist.json"), top_, target_.family);
+    const CostOf costs = asic ? costs_of_liberty(liberty()) : costs_of(target_.family);
+    report_.block = read_netlist(tools_.path("netlist.json"), s.unit, design, s.module, costs);
+    report_.used = count_all(tools_.path("netlist.json"), top_, costs);
     report_.depth = read_depth(read_text(tools_.path("yosys.log")));
   }
 
   // Throws InputError where the unit alone has no room.
   void check_room() const {
-    for (const Resource r : kResources)
+    if (target_.family == Family::asic) return;
+    for (const Resource r : resources_of(target_.family))
       if (report_.used[r] > target_.holds[r]) throw no_room(report_, target_, numbers(target_, report_.used));
   }
 
@@ -175,6 +188,30 @@ class Flow {
     take(read_nextpnr_report(tools_.path("timing.json")), fmt::format("nextpnr-ecp5, seed {}", request_.seed));
   }
 
+  // Once for the time, once for the power at the clock that this allows.
+  void time_asic() {
+    constexpr double kFirst = 1000;  // ns; longer than any path
+    Silicon s;
+    s.library = fs::path(liberty()).filename().string();
+    s.activity = request_.activity;
+    s.area = static_cast<double>(report_.block.counts[Resource::area]);
+    const auto sta = [&](double period) {
+      tools_.write("sta.tcl", sta_script(liberty(), tools_.path("netlist.v"), top_, period, s.activity));
+      tools_.run("sta times the gates", "sta", "sta", {"-no_splash", "-exit", tools_.path("sta.tcl")});
+      const std::string log = read_text(tools_.path("sta.log"));
+      const auto analysed = read_sta(log);
+      // It goes on after an error, with exit status 0.
+      if (!analysed || log.find("\nError:") != std::string::npos) throw ToolFailed("sta", "sta.log", complaint_of(log));
+      return *analysed;
+    };
+    s.delay = kFirst - sta(kFirst).slack;
+    s.power = sta(s.delay).power;
+    s.frequency = 1000 / s.delay;
+    report_.silicon = s;
+    report_.fmax = s.frequency;
+    report_.fmax_from = "OpenSTA, without wires";
+  }
+
   void take(const Placed& placed, const std::string& from) {
     report_.fmax = placed.fmax;
     report_.fmax_from = from;
@@ -189,6 +226,7 @@ class Flow {
     for (const std::string& f : files) paths.push_back(project_.directory + "/" + f);
     return paths;
   }
+  std::string liberty() const { return request_.liberty.empty() ? kOsu018 : request_.liberty; }
   double frequency() const { return request_.frequency > 0 ? request_.frequency : target_.frequency; }
 
   const Request& request_;
@@ -221,12 +259,15 @@ Report synthesise(const Request& request) {
   catch_interrupts();
   Pending pending(results_directory(request));
   Flow flow(request, target, std::move(project), pending.path());
+  if (target.family == Family::asic && request.liberty.empty() && !fs::exists(kOsu018))
+    throw InputError(fmt::format("{} is not there", kOsu018), "apt-get install qflow-tech-osu018, or --liberty FILE");
   try {
     flow.synthesise();
     try {
       flow.check_room();
       if (target.family == Family::ice40) flow.place_ice40();
       if (target.family == Family::ecp5) flow.place_ecp5();
+      if (target.family == Family::asic) flow.time_asic();
     } catch (const InputError&) {
       // What it takes is worth knowing all the same.
       store(pending, flow.report());

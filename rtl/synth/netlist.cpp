@@ -73,15 +73,15 @@ class Tree {
 };
 
 // Calls `found(path, counts)` for each cell below `module`, the paths of kept modules joined.
-void walk(const json& modules, const std::string& module, const std::string& path, Family family,
+void walk(const json& modules, const std::string& module, const std::string& path, const CostOf& cost_of,
           const std::function<void(const std::string&, const Counts&)>& found) {
   for (const auto& [cell, what] : modules.at(module).at("cells").items()) {
     const std::string& type = what.at("type").get_ref<const std::string&>();
     const std::string name = path.empty() ? cell : path + "." + cell;
-    if (const auto cost = cost_of(family, type)) {
+    if (const auto cost = cost_of(type)) {
       found(name, *cost);
     } else if (modules.contains(type) && !modules.at(type).at("attributes").contains("blackbox")) {
-      walk(modules, type, name, family, found);
+      walk(modules, type, name, cost_of, found);
     } else if (type != "$scopeinfo") {
       throw std::runtime_error(fmt::format("the netlist has a cell of an unknown kind, {}", type));
     }
@@ -95,16 +95,16 @@ json read_modules(const std::string& file) {
 }  // namespace
 
 Block read_netlist(const std::string& file, const std::string& netlist_module, const Design& design,
-                   const std::string& root, Family family) {
+                   const std::string& root, const CostOf& cost_of) {
   Tree tree(design, root);
-  walk(read_modules(file), netlist_module, "", family,
+  walk(read_modules(file), netlist_module, "", cost_of,
        [&](const std::string& path, const Counts& counts) { tree.at(path) += counts; });
   return tree.block();
 }
 
-Counts count_all(const std::string& file, const std::string& top, Family family) {
+Counts count_all(const std::string& file, const std::string& top, const CostOf& cost_of) {
   Counts all;
-  walk(read_modules(file), top, "", family, [&](const std::string&, const Counts& counts) { all += counts; });
+  walk(read_modules(file), top, "", cost_of, [&](const std::string&, const Counts& counts) { all += counts; });
   return all;
 }
 

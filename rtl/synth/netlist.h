@@ -21,12 +21,12 @@ struct Block {
   std::vector<Block> children;  // in the order of names
 };
 
-// Reads a netlist (yosys's write_json) of `family`; `root` is the module of `design` that `netlist_module` was made of.
+// Reads a netlist (yosys's write_json); `root` is the module of `design` that `netlist_module` was made of.
 // Throws std::runtime_error on a cell type that is not known.
 Block read_netlist(const std::string& file, const std::string& netlist_module, const Design& design,
-                   const std::string& root, Family family);
+                   const std::string& root, const CostOf& cost_of);
 
 // Cells of a whole netlist below `top`, each counted.
-Counts count_all(const std::string& file, const std::string& top, Family family);
+Counts count_all(const std::string& file, const std::string& top, const CostOf& cost_of);
 
 }  // namespace cuboct::synth

@@ -16,7 +16,7 @@ namespace cuboct::synth {
 
 // Of standard cells.
 struct Silicon {
-  std::string library;
+  std::string library;  // name of the liberty file
   double area = 0;      // um^2
   double delay = 0;     // ns, of the longest path
   double power = 0;     // W at `frequency`

@@ -21,7 +21,7 @@ std::string synth_command(const Target& target) {
   switch (target.family) {
     case Family::ice40: return target.holds[Resource::dsp] > 0 ? "synth_ice40 -dsp" : "synth_ice40";
     case Family::ecp5: return "synth_ecp5";
-    case Family::xc7: return "synth_xilinx -family xc7";
+    case Family::xc7: return "synth_xilinx -family xc7 -flatten";
     case Family::asic: break;
   }
   return "";
@@ -54,11 +54,44 @@ std::string fpga_script(const Synthesis& s, const Target& target) {
   if (s.harness)
     text += fmt::format("read_verilog {}\nsetattr -mod -set keep_hierarchy 1 {}\n", quoted(s.out + "/harness.v"), s.unit);
   if (!s.kept.empty()) text += fmt::format("setattr -mod -set keep_hierarchy 1 {}\n", s.kept);
-  text += fmt::format("{} -top {} -json {}\n", synth_command(target), s.harness ? kHarness : s.unit,
+  text += fmt::format("{} -top {}\nautoname\nwrite_json {}\n", synth_command(target), s.harness ? kHarness : s.unit,
                       quoted(s.out + "/netlist.json"));
   text += fmt::format("write_verilog -noattr {}\n", quoted(s.out + "/netlist.v"));
   text += depth_commands(target.family, s.out);
   return text;
+}
+
+std::string asic_script(const Synthesis& s, const std::string& liberty) {
+  std::string text = read_all(s.files, s.top);
+  if (s.module != s.unit) text += fmt::format("rename {} {}\n", s.module, s.unit);
+  // Multipliers stay apart until they are gates. A clock of 1 ps: as fast as can be.
+  return text + fmt::format(
+                    "synth -flatten -top {0}\n"
+                    "dfflibmap -liberty {1}\n"
+                    "abc -liberty {1} -constr {2} -D 1\n"
+                    "setattr -mod -unset keep_hierarchy *\n"
+                    "flatten\n"
+                    "splitnets\n"
+                    "opt_clean -purge\n"
+                    "autoname\n"
+                    "write_json {3}\n"
+                    "write_verilog -noattr {4}\n",
+                    s.unit, quoted(liberty), quoted(s.out + "/abc.constr"), quoted(s.out + "/netlist.json"),
+                    quoted(s.out + "/netlist.v"));
+}
+
+std::string sta_script(const std::string& liberty, const std::string& netlist, const std::string& top, double period,
+                       double activity) {
+  return fmt::format(
+      "read_liberty {{{0}}}\n"
+      "set_cmd_units -time ns -power W\n"
+      "read_verilog {{{1}}}\n"
+      "link_design {2}\n"
+      "create_clock -name clk -period {3:.4f} [get_ports clk_i]\n"
+      "report_checks -path_delay max\n"
+      "set_power_activity -global -activity {4:g}\n"
+      "report_power\n",
+      liberty, netlist, top, period, activity);
 }
 
 std::string read_side_module() {

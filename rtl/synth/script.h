@@ -23,6 +23,12 @@ struct Synthesis {
 // yosys: netlist.json and netlist.v, and the longest path to the log. It reads harness.v and, for ecp5, read_side.v.
 std::string fpga_script(const Synthesis& synthesis, const Target& target);
 
+// yosys: the unit in the cells of a liberty file, flat. abc also puts buffers behind nets that drive much.
+std::string asic_script(const Synthesis& synthesis, const std::string& liberty);
+// OpenSTA (Tcl): the longest path between registers, and the power where each net changes `activity` times per clock.
+std::string sta_script(const std::string& liberty, const std::string& netlist, const std::string& top, double period,
+                       double activity);
+
 // A 16 x 4 LUT memory of ECP5 as the LUTs that its read side is. Verilog.
 std::string read_side_module();
 

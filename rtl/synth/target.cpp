@@ -2,7 +2,10 @@
 #include "rtl/synth/target.h"
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <map>
+#include <regex>
 
 #include "model/error.h"
 #include "model/spelling.h"
@@ -10,9 +13,9 @@
 namespace cuboct::synth {
 namespace {
 
-constexpr Counts lut(uint64_t n) { return {{n, 0, 0, 0}}; }
-constexpr Counts ff(uint64_t n) { return {{0, n, 0, 0}}; }
-constexpr Counts dsp(uint64_t n) { return {{0, 0, n, 0}}; }
+constexpr Counts lut(uint64_t n) { return {{n}}; }
+constexpr Counts ff(uint64_t n) { return {{0, n}}; }
+constexpr Counts dsp(uint64_t n) { return {{0, 0, n}}; }
 constexpr Counts bram(uint64_t n) { return {{0, 0, 0, n}}; }
 
 using Costs = std::map<std::string, Counts>;
@@ -49,8 +52,16 @@ const char* to_string(Resource resource) {
     case Resource::ff: return "FF";
     case Resource::dsp: return "DSP";
     case Resource::bram: return "BRAM";
+    case Resource::gates: return "gates";
+    case Resource::area: return "um^2";
   }
   return "";
+}
+
+const std::vector<Resource>& resources_of(Family family) {
+  static const std::vector<Resource> fpga = {Resource::lut, Resource::ff, Resource::dsp, Resource::bram};
+  static const std::vector<Resource> silicon = {Resource::gates, Resource::ff, Resource::area};
+  return family == Family::asic ? silicon : fpga;
 }
 
 Counts& Counts::operator+=(const Counts& other) {
@@ -87,19 +98,51 @@ double planned_share(const Target& target, Resource resource) {
   return target.family == Family::ecp5 && resource == Resource::dsp ? 0.75 : 1.0;
 }
 
-std::optional<Counts> cost_of(Family family, const std::string& cell_type) {
-  if (family == Family::ice40 && cell_type.starts_with("SB_DFF")) return ff(1);
+CostOf costs_of(Family family) {
   const Costs& costs = family == Family::ice40 ? kIce40 : family == Family::ecp5 ? kEcp5 : kXc7;
-  const auto found = costs.find(cell_type);
-  if (found == costs.end()) return std::nullopt;
-  return found->second;
+  return [family, &costs](const std::string& type) -> std::optional<Counts> {
+    if (family == Family::ice40 && type.starts_with("SB_DFF")) return ff(1);
+    const auto found = costs.find(type);
+    if (found == costs.end()) return std::nullopt;
+    return found->second;
+  };
+}
+
+CostOf costs_of_liberty(const std::string& file) {
+  // cell (NAME) { ... area : A; ... ff (...) or latch (...) ... }: the one level of the format that is needed here.
+  static const std::regex cell_form(R"re(^\s*cell\s*\(\s*"?([A-Za-z0-9_]+)"?\s*\))re"),
+      area_form(R"re(^\s*area\s*:\s*([0-9.eE+-]+))re"), register_form(R"re(^\s*(ff|latch)(_bank)?\s*\()re");
+  std::ifstream in(file);
+  if (!in) throw InputError(file + ": cannot be read");
+  Costs costs;
+  Counts* cell = nullptr;
+  std::smatch m;
+  for (std::string line; std::getline(in, line);) {
+    if (line.size() > 300) continue;  // tables; the forms are short
+    if (std::regex_search(line, m, cell_form)) {
+      cell = &(costs[m[1]] = {});
+      (*cell)[Resource::gates] = 1;
+    } else if (cell && std::regex_search(line, m, area_form)) {
+      (*cell)[Resource::area] = static_cast<uint64_t>(std::llround(std::stod(m[1])));
+    } else if (cell && std::regex_search(line, m, register_form)) {
+      (*cell)[Resource::gates] = 0;
+      (*cell)[Resource::ff] = 1;
+    }
+  }
+  if (costs.empty()) throw InputError(file + ": describes no cell", "a liberty file is needed");
+  return [costs](const std::string& type) -> std::optional<Counts> {
+    const auto found = costs.find(type);
+    if (found == costs.end()) return std::nullopt;
+    return found->second;
+  };
 }
 
 const Target* nearest_that_holds(const Counts& used, const Target& except) {
   const Target* best = nullptr;
   for (const Target& t : targets()) {
     if (t.family == Family::asic || t.name == except.name) continue;
-    const bool room = std::all_of(kResources.begin(), kResources.end(), [&](Resource r) {
+    const auto& resources = resources_of(t.family);
+    const bool room = std::all_of(resources.begin(), resources.end(), [&](Resource r) {
       return static_cast<double>(used[r]) <= planned_share(t, r) * static_cast<double>(t.holds[r]);
     });
     if (room && (!best || t.holds[Resource::lut] < best->holds[Resource::lut])) best = &t;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,13 +14,14 @@ namespace cuboct::synth {
 enum class Family { ice40, ecp5, xc7, asic };
 
 // LUTs: sites with four inputs (six in xc7), those that serve as carries or memory too. BRAM: blocks of 4 kbit
-// (ice40) or 18 kbit.
-enum class Resource { lut, ff, dsp, bram };
-inline constexpr std::array kResources = {Resource::lut, Resource::ff, Resource::dsp, Resource::bram};
+// (ice40) or 18 kbit. Gates and area, in um^2: of standard cells.
+enum class Resource { lut, ff, dsp, bram, gates, area };
 const char* to_string(Resource resource);
+// Those of a family, in the order in which tables show them.
+const std::vector<Resource>& resources_of(Family family);
 
 struct Counts {
-  std::array<uint64_t, 4> of{};  // by Resource
+  std::array<uint64_t, 6> of{};  // by Resource
 
   uint64_t operator[](Resource r) const { return of[static_cast<size_t>(r)]; }
   uint64_t& operator[](Resource r) { return of[static_cast<size_t>(r)]; }
@@ -43,8 +45,11 @@ const Target& target_of(const std::string& name);
 // The share of a resource that a plan should use. ECP5 at 100 % of its DSPs loses four tenths of its clock.
 double planned_share(const Target& target, Resource resource);
 
-// What a cell of a family's netlist occupies; nothing where the type is not known.
-std::optional<Counts> cost_of(Family family, const std::string& cell_type);
+// What a cell of a netlist occupies; nothing where the type is not known.
+using CostOf = std::function<std::optional<Counts>(const std::string& cell_type)>;
+CostOf costs_of(Family family);  // of an FPGA
+// Of the cells of a liberty file. Throws InputError where it cannot be read or describes no cell.
+CostOf costs_of_liberty(const std::string& file);
 
 // The least target that has room for what another's netlist uses, or null. DSPs have no place on a device without
 // them, as what multipliers made of LUTs take is not known before.

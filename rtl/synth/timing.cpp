@@ -73,6 +73,21 @@ std::optional<double> read_icetime(const std::string& log) {
   return std::stod(m[1]);
 }
 
+std::optional<Analysed> read_sta(const std::string& log) {
+  static const std::regex slack_form(R"(^\s*(-?[0-9.]+)\s+slack \()"),
+      power_form(R"(^Total\s+\S+\s+\S+\s+\S+\s+([0-9.eE+-]+)\s)");
+  std::optional<double> slack, power;
+  std::istringstream lines(log);
+  std::smatch m;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() > 200) continue;  // names of cells
+    if (!slack && std::regex_search(line, m, slack_form)) slack = std::stod(m[1]);
+    if (std::regex_search(line, m, power_form)) power = std::stod(m[1]);
+  }
+  if (!slack || !power) return std::nullopt;
+  return Analysed{*slack, *power};
+}
+
 std::optional<uint64_t> read_depth(const std::string& log) {
   // std::regex would recurse over the whole log. `ltp` tells of each module.
   const std::string title = "Longest topological path", key = "(length=";

@@ -30,6 +30,12 @@ std::map<std::string, Use> read_utilisation(const std::string& log);
 // MHz of icetime's "Total path delay: 19.68 ns (50.81 MHz)".
 std::optional<double> read_icetime(const std::string& log);
 
+// OpenSTA's "slack" of the longest path, ns, and "Total" power, W; nothing where it did not get so far.
+struct Analysed {
+  double slack = 0, power = 0;
+};
+std::optional<Analysed> read_sta(const std::string& log);
+
 // Length of the longest path of yosys's `ltp -noff`: cells between registers.
 std::optional<uint64_t> read_depth(const std::string& log);
 

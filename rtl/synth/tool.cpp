@@ -23,18 +23,6 @@ const std::map<std::string, std::string> kPackages = {
     {"icetime", "fpga-icestorm"}, {"sta", "opensta"},
 };
 
-// The line in which a tool says what it dislikes: the last that begins with "ERROR" or has "Error:".
-std::string complaint_of(const std::string& log) {
-  std::string last, complaint;
-  std::ifstream in(log);
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty()) continue;
-    last = line;
-    if (line.find("ERROR") != std::string::npos || line.find("Error:") != std::string::npos) complaint = line;
-  }
-  return complaint.empty() ? last : complaint;
-}
-
 }  // namespace
 
 ToolFailed::ToolFailed(const std::string& tool, const std::string& log_name, const std::string& complaint)
@@ -67,7 +55,7 @@ void Runner::run(const std::string& what, const std::string& name, const std::st
   if (interrupted()) throw Interrupted();
   if (status != 0) {
     const std::string complaint =
-        status < 0 ? fmt::format("ended by signal {}", -status) : complaint_of(out);
+        status < 0 ? fmt::format("ended by signal {}", -status) : complaint_of(read_text(out));
     throw ToolFailed(program, name + ".log", complaint);
   }
 }
@@ -85,6 +73,17 @@ std::string first_line(const std::string& program, const std::string& argument) 
     if (std::getline(text, line) && !line.empty()) return line;
   }
   return "";
+}
+
+std::string complaint_of(const std::string& log) {
+  std::string last, complaint;
+  std::istringstream in(log);
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty()) continue;
+    last = line;
+    if (line.find("ERROR") != std::string::npos || line.find("Error:") != std::string::npos) complaint = line;
+  }
+  return complaint.empty() ? last : complaint;
 }
 
 std::string read_text(const std::string& file) {
