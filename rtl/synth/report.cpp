@@ -75,6 +75,18 @@ double steps_per_second(const Report& report, double mhz) {
 
 }  // namespace
 
+void Report::take(const Placed& placed, const std::string& from) {
+  fmax = placed.fmax;
+  fmax_from = from;
+  critical = placed.critical;
+  pack(placed.use);
+}
+
+void Report::pack(const std::map<std::string, Use>& use) {
+  if (const auto packed = use.find("ICESTORM_LC"); packed != use.end())
+    cells = packed->second.used - std::min(packed->second.used, harness);
+}
+
 std::optional<Fit> fit_of(const Report& report) {
   const Target& target = target_of(report.target);
   std::optional<Fit> fit;
@@ -84,6 +96,10 @@ std::optional<Fit> fit_of(const Report& report) {
     const uint64_t units = room / report.block.counts[r];
     if (!fit || units < fit->units) fit = {units, r};
   }
+  // A LUT and a flip-flop share a logic cell only where the one feeds the other.
+  if (fit && report.cells && *report.cells > 0)
+    if (const uint64_t units = report.holds[Resource::lut] / *report.cells; units < fit->units)
+      fit = {units, Resource::cell};
   return fit;
 }
 
@@ -106,7 +122,7 @@ std::string print_table(const Report& report) {
     line("fit the device", fmt::format("{} of {}, limited by {}{}", fit->units, report.unit, to_string(fit->limit),
                                        share < 1 ? fmt::format(" (planned to {:.0f} %)", 100 * share) : ""));
   }
-  if (report.cells) line("logic cells, packed", fmt::format("{} with the harness", *report.cells));
+  if (report.cells) line("logic cells, packed", fmt::format("{}, and {} of the harness", *report.cells, report.harness));
   if (report.depth) line("longest path", fmt::format("{} cells between registers", *report.depth));
   if (report.silicon) {
     const Silicon& s = *report.silicon;
@@ -141,6 +157,7 @@ nlohmann::ordered_json to_json(const Report& report) {
                {"holds", to_json(report.holds, family)}};
   if (const auto fit = fit_of(report)) json["fit"] = {{"units", fit->units}, {"limit", to_string(fit->limit)}};
   if (report.cells) json["logic_cells"] = *report.cells;
+  json["harness_flip_flops"] = report.harness;
   if (report.depth) json["depth"] = *report.depth;
   if (report.fmax) {
     json["fmax_mhz"] = *report.fmax;
@@ -182,6 +199,7 @@ Report read_report(const std::string& file) {
     if (json.contains("icetime_mhz")) report.icetime = json.at("icetime_mhz").get<double>();
     optional("fmax_from", report.fmax_from);
     optional("critical_path", report.critical);
+    report.harness = json.at("harness_flip_flops");
     report.tools = json.at("tools");
     report.files = json.at("files");
     report.block = block_of(json.at("block"));

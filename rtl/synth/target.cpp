@@ -54,6 +54,7 @@ const char* to_string(Resource resource) {
     case Resource::bram: return "BRAM";
     case Resource::gates: return "gates";
     case Resource::area: return "um^2";
+    case Resource::cell: return "logic cells";
   }
   return "";
 }

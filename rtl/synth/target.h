@@ -14,14 +14,14 @@ namespace cuboct::synth {
 enum class Family { ice40, ecp5, xc7, asic };
 
 // LUTs: sites with four inputs (six in xc7), those that serve as carries or memory too. BRAM: blocks of 4 kbit
-// (ice40) or 18 kbit. Gates and area, in um^2: of standard cells.
-enum class Resource { lut, ff, dsp, bram, gates, area };
+// (ice40) or 18 kbit. Cells: of ice40, a LUT and a flip-flop. Gates and area, in um^2: of standard cells.
+enum class Resource { lut, ff, dsp, bram, gates, area, cell };
 const char* to_string(Resource resource);
 // Those of a family, in the order in which tables show them.
 const std::vector<Resource>& resources_of(Family family);
 
 struct Counts {
-  std::array<uint64_t, 6> of{};  // by Resource
+  std::array<uint64_t, 7> of{};  // by Resource
 
   uint64_t operator[](Resource r) const { return of[static_cast<size_t>(r)]; }
   uint64_t& operator[](Resource r) { return of[static_cast<size_t>(r)]; }
