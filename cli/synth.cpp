@@ -32,6 +32,7 @@ void add_synth(CLI::App& app, int& exit_code) {
   command->add_option("--freq", request.frequency, "MHz that placing aims at; default: the target's")
       ->check(CLI::Range(1.0, 1000.0))
       ->type_name("F");
+  command->add_flag("!--no-place", request.place, "stop at the netlist: resources without Fmax and bitstream");
   command->add_option("--timing", request.timing, "nextpnr's report, made elsewhere from the netlist that is here")
       ->type_name("FILE");
   command->add_option("--liberty", request.liberty, "asic: standard cells; default: Debian's osu018")

@@ -189,7 +189,7 @@ class Flow {
     tools_.write("place.sh", place_script(target_, top_, frequency(), request_.seed, pins_));
     fs::permissions(tools_.path("place.sh"), fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                     fs::perm_options::add);
-    if (!in_path("nextpnr-ecp5") || !in_path("ecppack")) return;
+    if (!request_.place || !in_path("nextpnr-ecp5") || !in_path("ecppack")) return;
     report_.tools.push_back(first_line("nextpnr-ecp5", "--version"));
     tools_.run("nextpnr-ecp5 places and routes", "place", "sh",
                {"-c", "cd \"$1\" && exec ./place.sh", "sh", fs::absolute(out_).string()});
@@ -301,7 +301,7 @@ Report synthesise(const Request& request) {
     flow.synthesise();
     try {
       flow.check_room();
-      if (target.family == Family::ice40) flow.place_ice40();
+      if (target.family == Family::ice40 && request.place) flow.place_ice40();
       if (target.family == Family::ecp5) flow.place_ecp5();
       if (target.family == Family::asic) flow.time_asic();
     } catch (const InputError&) {

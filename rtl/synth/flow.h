@@ -14,6 +14,7 @@ struct Request {
   std::string unit = "node";  // node, lattice, board, or any block: "pipe", "fifo#2"
   int seed = 1;               // of the placer
   double frequency = 0;       // MHz that placing aims at; 0: the target's
+  bool place = true;          // else the netlist is all: seconds instead of minutes
   std::string timing;         // a report of nextpnr, made elsewhere from the netlist that a run before this one left
   std::string liberty;        // asic: standard cells; empty: osu018 of Debian's qflow-tech-osu018
   double activity = 0.1;      // asic: changes of each net per clock, for power
