@@ -98,7 +98,7 @@ std::string read_side_module() {
   std::string luts;
   for (int b = 0; b < 4; ++b)
     luts += fmt::format("  LUT4 u_{0} (.A(RAD[0]), .B(RAD[1]), .C(RAD[2]), .D(RAD[3]), .Z(DO[{0}]));\n", b);
-  return "module TRELLIS_DPR16X4 (\n  input [3:0] DI, WAD, RAD, input WRE, WCK, output [3:0] DO\n);\n" + luts +
+  return "module TRELLIS_DPR16X4 #(\n  parameter WCKMUX = \"WCK\", parameter WREMUX = \"WRE\", parameter INITVAL = 0\n) (\n  input [3:0] DI, WAD, RAD, input WRE, WCK, output [3:0] DO\n);\n" + luts +
          "endmodule\n";
 }
 
