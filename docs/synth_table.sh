@@ -11,7 +11,8 @@ root=$(dirname "${BASH_SOURCE[0]}")/..
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for target in "${targets[@]}"; do
-  printf '| node of, on %s | nodes | cycles per step | LUT | FF | DSP | BRAM | fit | longest path, cells |\n' "$target"
+  columns='nodes | cycles per step | LUT | FF | DSP | BRAM | fit | longest path, cells'
+  printf '| node of, on %s | %s |\n' "$target" "$columns"
   printf '|---|---|---|---|---|---|---|---|---|\n'
   for scene in coupon undamped_block lj_block sheet two_types; do
     [ -d "$work/$scene" ] || "$cuboct" emit "$root/scenes/$scene.toml" --out "$work/$scene" > "$work/emit.log"
@@ -21,7 +22,8 @@ import json, sys
 r = json.load(open(sys.argv[1]))
 uses = r["block"]["uses"]
 fit = f'{r["fit"]["units"]}, by {r["fit"]["limit"]}' if "fit" in r else "-"
-row = [sys.argv[2], r["nodes"], r["cycles_per_step"], *(uses[k] for k in ("LUT", "FF", "DSP", "BRAM")), fit, r.get("depth", "-")]
+counts = [uses[k] for k in ("LUT", "FF", "DSP", "BRAM")]
+row = [sys.argv[2], r["nodes"], r["cycles_per_step"], *counts, fit, r.get("depth", "-")]
 print("| " + " | ".join(str(cell) for cell in row) + " |")
 PYTHON
   done

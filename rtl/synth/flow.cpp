@@ -84,7 +84,10 @@ InputError no_room(const Report& report, const Target& target, const std::string
 class Flow {
  public:
   Flow(const Request& request, const Target& target, Project project, const std::string& out)
-      : request_(request), target_(target), project_(std::move(project)), out_(out),
+      : request_(request),
+        target_(target),
+        project_(std::move(project)),
+        out_(out),
         tools_(out, [](const std::string& what) { say(what); }) {
     report_.plan = project_.plan;
     report_.nodes = project_.nodes;
@@ -128,7 +131,8 @@ class Flow {
       s.harness = false;
       const auto& ports = design.modules.at(s.module).ports;
       if (std::none_of(ports.begin(), ports.end(), [](const Port& p) { return p.name == "clk_i"; }))
-        throw InputError(fmt::format("the block '{}' has no clock, so no time can be told of it", request_.unit));
+        throw InputError(
+            fmt::format("the block '{}' has no clock, so no time can be told of it", request_.unit));
     }
     if (s.harness) {
       const Harness harness = make_harness(s.unit, design.modules.at(s.module).ports);
@@ -155,10 +159,22 @@ class Flow {
 
   void place_ice40() {
     const std::string asc = tools_.path("unit.asc"), timing = tools_.path("timing.json");
-    std::vector<std::string> arguments = {
-        "--" + target_.name, "--package", target_.package, "--json", tools_.path("netlist.json"), "--top", top_,
-        "--freq", fmt::format("{:g}", frequency()), "--seed", std::to_string(request_.seed), "--timing-allow-fail",
-        "--asc", asc, "--report", timing};
+    std::vector<std::string> arguments = {"--" + target_.name,
+                                          "--package",
+                                          target_.package,
+                                          "--json",
+                                          tools_.path("netlist.json"),
+                                          "--top",
+                                          top_,
+                                          "--freq",
+                                          fmt::format("{:g}", frequency()),
+                                          "--seed",
+                                          std::to_string(request_.seed),
+                                          "--timing-allow-fail",
+                                          "--asc",
+                                          asc,
+                                          "--report",
+                                          timing};
     if (!pins_.empty()) arguments.insert(arguments.end(), {"--pcf", pins_});
     report_.tools.push_back(first_line("nextpnr-ice40", "--version"));
     try {
@@ -187,13 +203,15 @@ class Flow {
   void place_ecp5() {
     if (!pins_.empty()) fs::copy_file(pins_, tools_.path("pins.lpf"));
     tools_.write("place.sh", place_script(target_, top_, frequency(), request_.seed, pins_));
-    fs::permissions(tools_.path("place.sh"), fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
+    fs::permissions(tools_.path("place.sh"),
+                    fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                     fs::perm_options::add);
     if (!request_.place || !in_path("nextpnr-ecp5") || !in_path("ecppack")) return;
     report_.tools.push_back(first_line("nextpnr-ecp5", "--version"));
     tools_.run("nextpnr-ecp5 places and routes", "place", "sh",
                {"-c", "cd \"$1\" && exec ./place.sh", "sh", fs::absolute(out_).string()});
-    report_.take(read_nextpnr_report(tools_.path("timing.json")), fmt::format("nextpnr-ecp5, seed {}", request_.seed));
+    report_.take(read_nextpnr_report(tools_.path("timing.json")),
+                 fmt::format("nextpnr-ecp5, seed {}", request_.seed));
   }
 
   // Once for the time, once for the power at the clock that this allows.
@@ -209,7 +227,8 @@ class Flow {
       const std::string log = read_text(tools_.path("sta.log"));
       const auto analysed = read_sta(log);
       // It goes on after an error, with exit status 0.
-      if (!analysed || log.find("\nError:") != std::string::npos) throw ToolFailed("sta", "sta.log", complaint_of(log));
+      if (!analysed || log.find("\nError:") != std::string::npos)
+        throw ToolFailed("sta", "sta.log", complaint_of(log));
       return *analysed;
     };
     s.delay = kFirst - sta(kFirst).slack;
@@ -246,8 +265,9 @@ void store(Pending& pending, Report& report) {
 
 // Whether a placer saw the netlist that the report is of.
 void check_same(const Placed& placed, const Report& report, const std::string& file) {
-  for (const auto& [kind, resource] : {std::pair{"TRELLIS_FF", Resource::ff}, std::pair{"MULT18X18D", Resource::dsp},
-                                       std::pair{"DP16KD", Resource::bram}}) {
+  for (const auto& [kind, resource] :
+       {std::pair{"TRELLIS_FF", Resource::ff}, std::pair{"MULT18X18D", Resource::dsp},
+        std::pair{"DP16KD", Resource::bram}}) {
     const auto use = placed.use.find(kind);
     const uint64_t used = use == placed.use.end() ? 0 : use->second.used;
     if (used != report.used[resource])
@@ -261,10 +281,12 @@ void check_same(const Placed& placed, const Report& report, const std::string& f
 Report add_timing(const Request& request, const Target& target, const Project& project) {
   const std::string results = results_directory(request);
   if (target.family != Family::ecp5)
-    throw InputError(fmt::format("--timing is for ecp5-25 and ecp5-85: {} is placed here or not at all", target.name));
+    throw InputError(
+        fmt::format("--timing is for ecp5-25 and ecp5-85: {} is placed here or not at all", target.name));
   const Placed placed = read_nextpnr_report(request.timing);
   if (!fs::exists(results + "/report.json"))
-    throw InputError(fmt::format("{}: holds no synthesis yet", results), "run the command without --timing first");
+    throw InputError(fmt::format("{}: holds no synthesis yet", results),
+                     "run the command without --timing first");
   Report report = read_report(results + "/report.json");
   if (report.plan != project.plan)
     throw InputError(fmt::format("{}: is of plan {}, the project of {}", results, report.plan, project.plan),
@@ -273,7 +295,8 @@ Report add_timing(const Request& request, const Target& target, const Project& p
   report.take(placed, "nextpnr-ecp5, elsewhere");
   Pending pending(results);
   const fs::copy_options over = fs::copy_options::overwrite_existing;
-  for (const auto& entry : fs::directory_iterator(results)) fs::copy_file(entry, fs::path(pending.path()) / entry.path().filename(), over);
+  for (const auto& entry : fs::directory_iterator(results))
+    fs::copy_file(entry, fs::path(pending.path()) / entry.path().filename(), over);
   fs::copy_file(request.timing, pending.path() + "/timing.json", over);
   store(pending, report);
   pending.done();
@@ -296,7 +319,8 @@ Report synthesise(const Request& request) {
   Pending pending(results_directory(request));
   Flow flow(request, target, std::move(project), pending.path());
   if (target.family == Family::asic && request.liberty.empty() && !fs::exists(kOsu018))
-    throw InputError(fmt::format("{} is not there", kOsu018), "apt-get install qflow-tech-osu018, or --liberty FILE");
+    throw InputError(fmt::format("{} is not there", kOsu018),
+                     "apt-get install qflow-tech-osu018, or --liberty FILE");
   try {
     flow.synthesise();
     try {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The whole flow for an iCE40UP5K on the pipe of a narrow machine; a wider one is refused; an interrupt leaves nothing.
+# The whole flow for an iCE40UP5K on the pipe of a narrow machine; a wider one is refused; an interrupt leaves
+# nothing.
 # usage: ice40.sh CUBOCT SOURCES WORK
 set -euo pipefail
 cuboct=$1 here=$2 work=$3
@@ -34,7 +35,8 @@ assert uses["BRAM"] >= 1 and uses["LUT"] > 100 and uses["FF"] > 100, uses
 assert r["used"]["FF"] == uses["FF"] + r["harness_flip_flops"], r["used"]
 assert uses["FF"] <= r["logic_cells"] <= uses["LUT"] + uses["FF"] + 200, r["logic_cells"]
 # Two tools that know the device's delays.
-assert 25 < r["fmax_mhz"] < 120 and abs(r["icetime_mhz"] / r["fmax_mhz"] - 1) < 0.2, (r["fmax_mhz"], r["icetime_mhz"])
+fmax = r["fmax_mhz"]
+assert 25 < fmax < 120 and abs(r["icetime_mhz"] / fmax - 1) < 0.2, (fmax, r["icetime_mhz"])
 assert r["critical_path"] and "steps_per_second" not in r
 assert r["files"] == sorted(os.listdir(os.path.dirname(sys.argv[1]))), r["files"]
 PYTHON

@@ -111,22 +111,26 @@ TEST_F(Parse, Depth) {
 }
 
 TEST_F(Parse, ComplaintOfALog) {
-  EXPECT_EQ(complaint_of("Info: one\nERROR: No such command: foo\nEnd of script.\n"), "ERROR: No such command: foo");
+  EXPECT_EQ(complaint_of("Info: one\nERROR: No such command: foo\nEnd of script.\n"),
+            "ERROR: No such command: foo");
   EXPECT_EQ(complaint_of("Info: one\nkilled\n\n"), "killed");
 }
 
 TEST_F(Parse, BaseNames) {
   EXPECT_EQ(base_name("cuboct_node"), "cuboct_node");
   EXPECT_EQ(base_name("$paramod$20d3a3fa280534516d5231e0c6e1621bd7469740\\cuboct_mult"), "cuboct_mult");
-  EXPECT_EQ(base_name("$paramod\\cuboct_link_tx\\LinkBits=s32'00000000000000000000000001000000"), "cuboct_link_tx");
+  EXPECT_EQ(base_name("$paramod\\cuboct_link_tx\\LinkBits=s32'00000000000000000000000001000000"),
+            "cuboct_link_tx");
 }
 
 // top: two fifos of different depth, and a block that has one of the first kind.
 Design small_design() {
   Design design;
   design.top = "cuboct_top";
-  design.modules["cuboct_top"] = {"cuboct_top", {}, {{"u_a", "$paramod$a\\cuboct_fifo"}, {"u_block", "cuboct_block"}}};
-  design.modules["cuboct_block"] = {"cuboct_block", {}, {{"u_f", "$paramod$a\\cuboct_fifo"}, {"u_g", "$paramod$b\\cuboct_fifo"}}};
+  design.modules["cuboct_top"] = {
+      "cuboct_top", {}, {{"u_a", "$paramod$a\\cuboct_fifo"}, {"u_block", "cuboct_block"}}};
+  design.modules["cuboct_block"] = {
+      "cuboct_block", {}, {{"u_f", "$paramod$a\\cuboct_fifo"}, {"u_g", "$paramod$b\\cuboct_fifo"}}};
   design.modules["$paramod$a\\cuboct_fifo"] = {"cuboct_fifo", {}, {}};
   design.modules["$paramod$b\\cuboct_fifo"] = {"cuboct_fifo", {}, {}};
   return design;
@@ -148,7 +152,8 @@ TEST_F(Parse, BlocksByName) {
             "the project has no block 'memories'\n  hint: there are block, fifo, top");
 }
 
-// Cells as yosys names them, each to the deepest instance of which it has the path; a kept module's below its own.
+// Cells as yosys names them, each to the deepest instance of which it has the path; a kept module's below its
+// own.
 TEST_F(Parse, CellsGoToTheirBlocks) {
   const std::string netlist = file("netlist.json", R"({"modules": {
     "cuboct_top": {"attributes": {}, "cells": {
@@ -182,9 +187,10 @@ TEST_F(Parse, CellsGoToTheirBlocks) {
 }
 
 TEST_F(Parse, CellsOfALibrary) {
-  const CostOf cost = costs_of_liberty(file("a.lib",
-                                            "library(x) {\n cell (NAND2X1) {\n  area : 24;\n  pin(A) {}\n }\n"
-                                            " cell (\"DFFPOSX1\") {\n  area : 95.6;\n  ff (\"IQ\", \"IQN\") {}\n }\n}\n"));
+  const CostOf cost =
+      costs_of_liberty(file("a.lib",
+                            "library(x) {\n cell (NAND2X1) {\n  area : 24;\n  pin(A) {}\n }\n"
+                            " cell (\"DFFPOSX1\") {\n  area : 95.6;\n  ff (\"IQ\", \"IQN\") {}\n }\n}\n"));
   EXPECT_EQ((*cost("NAND2X1"))[Resource::area], 24u);
   EXPECT_EQ((*cost("NAND2X1"))[Resource::gates], 1u);
   EXPECT_EQ((*cost("DFFPOSX1"))[Resource::area], 96u);
@@ -196,14 +202,17 @@ TEST_F(Parse, CellsOfALibrary) {
 }
 
 TEST_F(Parse, Harness) {
-  const Harness harness = make_harness("cuboct_x", {{"clk_i", true, 1}, {"a_i", true, 3}, {"b_i", true, 1}, {"y_o", false, 4}});
+  const Harness harness =
+      make_harness("cuboct_x", {{"clk_i", true, 1}, {"a_i", true, 3}, {"b_i", true, 1}, {"y_o", false, 4}});
   EXPECT_EQ(harness.flip_flops, 4u + 4 + 2);  // 4 in, 4 out, 2 that fold these
   EXPECT_NE(harness.text.find("    .\\clk_i (clk_i),\n    .\\a_i (in_q[2:0]),\n    .\\b_i (in_q[3:3]),\n"
                               "    .\\y_o (out[3:0])\n"),
             std::string::npos)
       << harness.text;
   EXPECT_NE(harness.text.find("assign out[5:4] = 0;"), std::string::npos);
-  EXPECT_EQ(refusal([&] { make_harness("cuboct_x", {{"a_i", true, 3}}); }),
+  EXPECT_EQ(refusal([&] {
+              make_harness("cuboct_x", {{"a_i", true, 3}});
+            }),
             "the block 'cuboct_x' has no output\n  hint: there is nothing to keep of it");
 }
 

@@ -43,7 +43,9 @@ class Refuse : public ::testing::Test {
     r.target = target;
     return r;
   }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(dir_ + "/" + name) << text; }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(dir_ + "/" + name) << text;
+  }
 
   Scratch scratch_;
   std::string dir_ = scratch_.path("project");
@@ -75,8 +77,9 @@ TEST_F(Refuse, WhatIsNoProject) {
   EXPECT_EQ(refusal(request()), "DIR/project.json: is not JSON, at byte 9" + hint);
   write("project.json", "{\"plan\": \"x\", \"nodes\": \"many\"}");
   EXPECT_EQ(refusal(request()), "DIR/project.json: no 'nodes' as cuboct emit writes it" + hint);
-  write("project.json",
-        R"({"plan": "x", "nodes": 1, "particles": 1, "arch": {"capacity": 4}, "cycles_per_step": {"expected": 9},
+  write(
+      "project.json",
+      R"({"plan": "x", "nodes": 1, "particles": 1, "arch": {"capacity": 4}, "cycles_per_step": {"expected": 9},
             "files": ["rtl/a.sv"]})");
   EXPECT_EQ(refusal(request()),
             "DIR/project.json: names rtl/a.sv, which is not there\n  hint: emit the project again");
@@ -84,7 +87,8 @@ TEST_F(Refuse, WhatIsNoProject) {
 
 TEST_F(Refuse, UnknownTargets) {
   EXPECT_EQ(refusal(request("xc6")),
-            "unknown target 'xc6'\n  hint: did you mean 'xc7'? there are up5k, hx8k, ecp5-25, ecp5-85, xc7 and asic");
+            "unknown target 'xc6'\n  hint: did you mean 'xc7'? there are up5k, hx8k, ecp5-25, ecp5-85, xc7 "
+            "and asic");
   EXPECT_EQ(refusal(request("stratix")),
             "unknown target 'stratix'\n  hint: there are up5k, hx8k, ecp5-25, ecp5-85, xc7 and asic");
 }
