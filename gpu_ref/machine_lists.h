@@ -20,10 +20,7 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
   const Geometry& g = setup.geometry;
   for (int a = 0; a < 3; ++a) {
     per_plane[a].assign(static_cast<size_t>(g.total[a]), 0);
-    for (const CellAt& c : state.cell) {
-      const int p = (c.c[a] - g.low[a]) % g.total[a];
-      ++per_plane[a][static_cast<size_t>(p < 0 ? p + g.total[a] : p)];
-    }
+    for (const CellAt& c : state.cell) ++per_plane[a][static_cast<size_t>(modulo(c.c[a] - g.low[a], g.total[a]))];
   }
   cells_ = make_cells(g, per_plane, slabs);
   uint64_t cells = 0;
