@@ -32,6 +32,7 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
     Slab& slab = *slabs_.back();
     const SlabCells& of = cells_.slabs[static_cast<size_t>(s)];
     slab.rule = make_rule(slab.stream);
+    require_tables(options, slab.rule->cache_words() * 4);
     slab.rank.set(slab.stream, of.rank);
     for (auto* array : {&slab.count, &slab.first, &slab.taken, &slab.occupancy}) array->resize(of.ranks);
     slab.notes.resize(8);
