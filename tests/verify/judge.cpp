@@ -96,11 +96,13 @@ std::string build_node(const Plan& plan, const NodeBuild& choice, const std::str
                      "    model->final();\n    cuboct_write_coverage(context);\n");
       }
   }
-  if (!choice.changed.empty())
+  if (!choice.changed.empty()) {
+    build.verilator_flags += " -Wno-ENUMVALUE";  // of a state that is stuck
     build.emit = [emit = build.emit, &choice](const std::string& dir) {
       emit(dir);
       put_over(choice.changed, dir);
     };
+  }
   return emu::compile(build, cache);
 }
 
@@ -145,6 +147,8 @@ Judgement Judge::judge(const std::shared_ptr<const emu::Library>& library) const
     try {
       run = run_plain(plan, case_.setup.initial,
                       keep_all(case_.steps, runs_[k].stall_rate, runs_[k].stall_seed), factory, "rtl");
+    } catch (const std::bad_alloc&) {
+      throw;
     } catch (const std::exception& e) {
       result.text = e.what();
       result.verdict = result.text.starts_with("stuck") ? Verdict::stuck

@@ -54,6 +54,7 @@ class Judge {
   };
   // Runs golden and the native node once per run.
   Judge(Case c, std::vector<Run> runs);
+  // Throws std::bad_alloc where the run shows more and more.
   Judgement judge(const std::shared_ptr<const emu::Library>& library) const;
 
   const Case& of() const { return case_; }

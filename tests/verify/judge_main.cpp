@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <map>
 
@@ -21,8 +22,10 @@ namespace {
 using namespace cuboct;
 using namespace cuboct::test;
 
-// CPU seconds that a mutant may take: some hundred times what the RTL takes.
-constexpr rlim_t kPatience = 60;
+// A mutant's run that shows steps or particles without end is not stuck for the bench. It may take this many
+// times the CPU time of the RTL, and a second; and this much memory.
+constexpr double kPatience = 10;
+constexpr rlim_t kMemory = rlim_t{2} << 30;
 
 struct Request {
   std::string name, cache, mutants, out;
@@ -42,16 +45,23 @@ void write_line(int file, int mutant, const std::string& name, const std::string
   if (::write(file, line.data(), line.size()) != static_cast<ssize_t>(line.size())) std::abort();
 }
 
-void judge_one(const Judge& judge, const std::shared_ptr<const emu::Library>& library, int mutant, int file) {
-  const rlimit limit{kPatience, kPatience + 5};
-  setrlimit(RLIMIT_CPU, &limit);
-  const rlimit no_core{0, 0};
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+void judge_one(const Judge& judge, const std::shared_ptr<const emu::Library>& library, int mutant,
+               rlim_t seconds, int file) {
+  const rlimit time{seconds, seconds + 1}, memory{kMemory, kMemory}, no_core{0, 0};
+  setrlimit(RLIMIT_CPU, &time);
+  setrlimit(RLIMIT_AS, &memory);
   setrlimit(RLIMIT_CORE, &no_core);
   if (std::freopen("/dev/null", "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
     std::abort();  // of Verilator's own words
   setenv("CUBOCT_MUTANT", std::to_string(mutant).c_str(), 1);
-  const Judgement j = judge.judge(library);
-  write_line(file, mutant, judge.of().name, to_string(j.verdict), j.text);
+  try {
+    const Judgement j = judge.judge(library);
+    write_line(file, mutant, judge.of().name, to_string(j.verdict), j.text);
+  } catch (const std::bad_alloc&) {
+    write_line(file, mutant, judge.of().name, "stuck", "out of memory");
+  }
   _exit(0);
 }
 
@@ -62,7 +72,9 @@ int run(const Request& r) {
   const auto library =
       std::make_shared<const emu::Library>(build_node(judge.of().setup.plan, r.build, r.cache));
   setenv("CUBOCT_MUTANT", "0", 1);
+  const double begin = cpu_seconds();
   const Judgement as_is = judge.judge(library);
+  const auto seconds = static_cast<rlim_t>(1 + kPatience * (cpu_seconds() - begin));
   fmt::print("{}: {}{}{}; {} steps, {} particles, {} phases compared\n", r.name, to_string(as_is.verdict),
              as_is.text.empty() ? "" : ": ", as_is.text, as_is.steps, as_is.particles, as_is.spans);
   std::fflush(stdout);
@@ -89,7 +101,7 @@ int run(const Request& r) {
     while (static_cast<int>(running.size()) >= r.jobs) reap();
     const pid_t child = fork();
     if (child < 0) throw std::runtime_error("cannot fork");
-    if (child == 0) judge_one(judge, library, mutant, file);
+    if (child == 0) judge_one(judge, library, mutant, seconds, file);
     running[child] = mutant;
   }
   while (!running.empty()) reap();
