@@ -8,6 +8,7 @@
 #include <map>
 
 #include "hw/rtl_bench.h"
+#include "hw/rtl_board.h"
 #include "hw/rtl_design.h"
 #include "hw/rtl_library.h"
 #include "model/output.h"
@@ -77,14 +78,21 @@ void emit_node(const Plan& plan, const std::string& dir) {
   write(dir, files);
 }
 
-void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps) {
+void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
+              const BoardChoice& board) {
   const RtlDesign design = decide(plan);
   legalise(design, true);
+  if (!board.name.empty()) legalise_board(plan, board);
   Files files;
   add_node(files, design);
   files["rtl/cuboct_lattice.sv"] = print_lattice(design);
   add_list(files);
   for (auto& [path, text] : print_bench(plan, design, initial, vector_steps)) files[path] = std::move(text);
+  if (!board.name.empty()) {
+    for (auto& [path, text] : print_board(plan, design, board)) files[path] = std::move(text);
+    files["board/files.f"] = board_list(files["files.f"], files);
+    files["README.md"] += print_board_readme(plan, board);
+  }
   write(dir, files);
 }
 
