@@ -14,6 +14,7 @@ void add_emit(CLI::App& app, int&) {
     std::string out;
     uint64_t vector_steps = 8;
     BoardChoice board;
+    bool fixed_velocities = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("emit", "write the scene's machine as a self-contained RTL project");
@@ -32,7 +33,11 @@ void add_emit(CLI::App& app, int&) {
       ->needs(board)
       ->capture_default_str()
       ->type_name("N");
+  command->add_flag("--fixed-velocities", options->fixed_velocities,
+                     "the host cannot set the velocities of held and moved types: less area")
+      ->needs(board);
   command->callback([options] {
+    options->board.velocities = !options->fixed_velocities;
     if (!options->board.name.empty()) bit_clocks16(board_of(options->board.name), options->board.baud);
     const Loaded loaded = load(options->input);
     const Plan& plan = loaded.setup.plan;

@@ -28,6 +28,7 @@ const Board& board_of(const std::string& name);
 struct BoardChoice {
   std::string name;
   int baud = 1000000;
+  bool velocities = true;  // a host may set those of moved_types()
 };
 
 // Length of a bit on the serial line in 1/16 clocks of the board; at least 4 clocks, or InputError.
@@ -35,7 +36,7 @@ int bit_clocks16(const Board& board, int baud);
 
 // The types, ascending, whose velocity a host may set between runs: those held or moved, by place or by force.
 std::vector<int> moved_types(const FixedRule& rule);
-// The plan's hash with the velocities of these types zero: equal for plans that one bitstream can run.
+// The plan's hash with the velocities of these types zero: equal for plans that a bitstream with such velocities can run.
 uint64_t machine_hash(const Plan& plan);
 
 }  // namespace cuboct

@@ -12,19 +12,22 @@ constexpr int kLargest = 65535;  // 16 bits for a node's number, and for a count
 
 std::string print_package(const Plan& plan, const RtlDesign& design, const BoardChoice& choice) {
   const Board& board = board_of(choice.name);
+  const size_t bits = design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits);
+  std::string velocities = fmt::format("  localparam int          MovedTypes  = {};\n", design.moved.size());
+  if (bits > 0) velocities += fmt::format("  localparam logic [{}:0] Velocities = {};\n", bits - 1, print_velocities(design));
   return fmt::format(
       "// SPDX-License-Identifier: MIT\n"
       "// {}\n"
       "// What the host link knows of the plan, and its line: {} baud at {} MHz.\n"
       "package cuboct_board_pkg;\n"
       "  localparam int          Nodes       = {};\n"
-      "  localparam int          MovedTypes  = {};\n"
+      "{}"
       "  localparam logic [63:0] PlanHash    = 64'h{:016x};\n"
       "  localparam logic [63:0] MachineHash = 64'h{:016x};\n"
       "  localparam int          ClockHz     = {};\n"
       "  localparam int          BitClocks16 = {};  // length of a bit in 1/16 clocks\n"
       "endpackage\n",
-      design.maker, choice.baud, board.clock_hz / 1e6, plan.lattice.size(), moved_types(plan.rule).size(),
+      design.maker, choice.baud, board.clock_hz / 1e6, plan.lattice.size(), velocities,
       plan.hash, machine_hash(plan), board.clock_hz, bit_clocks16(board, choice.baud));
 }
 

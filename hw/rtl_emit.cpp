@@ -80,9 +80,12 @@ void emit_node(const Plan& plan, const std::string& dir) {
 
 void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
               const BoardChoice& board) {
-  const RtlDesign design = decide(plan);
+  RtlDesign design = decide(plan);
   legalise(design, true);
-  if (!board.name.empty()) legalise_board(plan, board);
+  if (!board.name.empty()) {
+    legalise_board(plan, board);
+    if (board.velocities) design.moved = moved_types(plan.rule);
+  }
   Files files;
   add_node(files, design);
   files["rtl/cuboct_lattice.sv"] = print_lattice(design);
@@ -93,6 +96,9 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
     files["board/files.f"] = board_list(files["files.f"], files);
     files["README.md"] += print_board_readme(plan, board);
   }
+  if (!design.moved.empty())
+    for (const char* path : {"rtl/cuboct_node_core.sv", "rtl/cuboct_update.sv", "board/cuboct_board.sv"})
+      files[path] = "`define CUBOCT_HOST_VELOCITY  // velocities of held and moved types are set by a host\n" + files[path];
   write(dir, files);
 }
 

@@ -25,12 +25,12 @@ using Clock = std::chrono::steady_clock;
 class Session {
  public:
   Session(Host& host, const Plan& plan) : host_(host), plan_(plan), info_(host.info()) {
-    if (info_.machine_hash != machine_hash(plan))
+    const bool settable = info_.moved_types > 0 && info_.machine_hash == machine_hash(plan);
+    if (info_.plan_hash != plan.hash && !settable)
       throw InputError(fmt::format("port {}: the board holds plan {:016x}, the scene is plan {:016x}", host.port(),
                                    info_.plan_hash, plan.hash),
                        "emit the scene with --board, build and flash it; or run the scene that the board was made from");
-    if (info_.nodes != static_cast<int>(plan.lattice.size()) || info_.particle_bits != plan.words.particle_bits ||
-        info_.moved_types != static_cast<int>(moved_types(plan.rule).size()))
+    if (info_.nodes != static_cast<int>(plan.lattice.size()) || info_.particle_bits != plan.words.particle_bits)
       throw std::runtime_error(fmt::format("port {}: {} nodes, {} bits per particle do not fit plan {:016x}", host.port(),
                                            info_.nodes, info_.particle_bits, plan.hash));
     check_words(plan);

@@ -78,7 +78,7 @@ std::string compile_board(const std::string& project, const std::string& build_d
     if (!path.empty()) files.push_back(path);
   return compile({.top = "cuboct_board_top",
                   .verilator_flags = "--cc",
-                  .compiler_flags = "-O2 -fno-semantic-interposition",
+                  .compiler_flags = "-O1 -fno-semantic-interposition",
                   .constants = {},
                   .sources = with_headers("shim_board.cpp"),
                   .emit =

@@ -38,7 +38,24 @@ module cuboct_board (
     .velocity_valid_o(velocity_valid), .velocity_type_o(velocity_type), .velocity_axis_o(velocity_axis),
     .velocity_data_o(velocity_data), .busy_o, .fault_o
   );
+`ifdef CUBOCT_HOST_VELOCITY
+  localparam int AllBits = cuboct_board_pkg::MovedTypes * cuboct_pkg::Axes * VelocityBits;
+  logic [AllBits-1:0] velocities;
+  cuboct_velocities #(
+    .Types(cuboct_board_pkg::MovedTypes), .Axes(cuboct_pkg::Axes), .Bits(VelocityBits),
+    .Initial(cuboct_board_pkg::Velocities)
+  ) u_velocities (
+    .clk_i, .reset_i(velocity_reset), .valid_i(velocity_valid), .type_i(velocity_type), .axis_i(velocity_axis),
+    .data_i(velocity_data), .velocity_o(velocities)
+  );
+`else
+  logic unused_velocities;
+  assign unused_velocities = ^{velocity_reset, velocity_valid, velocity_type, velocity_axis, velocity_data};
+`endif
   cuboct_lattice u_lattice (
+`ifdef CUBOCT_HOST_VELOCITY
+    .velocity_i(velocities),
+`endif
     .clk_i, .rst_ni(lattice_rst_n), .start_i(start), .steps_i(steps), .load_valid_i(load_valid),
     .load_node_i(load_node), .load_data_i(load_data), .phase_start_o(phase_start), .phase_end_o(phase_end),
     .observe_valid_o(observe_valid), .observe_data_o(observe_data), .fault_valid_o(fault_valid),
@@ -46,6 +63,4 @@ module cuboct_board (
   );
   logic unused_phases;
   assign unused_phases = ^{phase_start, phase_end};
-  logic unused_velocities;
-  assign unused_velocities = ^{velocity_reset, velocity_valid, velocity_type, velocity_axis, velocity_data};
 endmodule
