@@ -13,7 +13,8 @@ module cuboct_uart_rx #(
   localparam int TimerBits = $clog2(BitClocks16 + 16);
   localparam int Clock     = 16;
   localparam logic [TimerBits-1:0] One  = Clock[TimerBits-1:0];
-  localparam logic [TimerBits-1:0] Half = BitClocks16[TimerBits:1];
+  localparam int HalfBit = BitClocks16 / 2 - Clock / 2;
+  localparam logic [TimerBits-1:0] Half = HalfBit[TimerBits-1:0];
   localparam logic [TimerBits-1:0] Next = BitClocks16[TimerBits-1:0] - One;
 
   logic [1:0] sync_q;
@@ -30,7 +31,8 @@ module cuboct_uart_rx #(
   logic level;
   assign level = (sync_q[1] && past_q[0]) || (sync_q[1] && past_q[1]) || (past_q[0] && past_q[1]);
 
-  // The edge is seen in cycle t; a timer of half a bit, one cycle later, runs out when the sample after the middle is here.
+  // The start bit began up to a clock before the cycle t that sees it. A timer of half a bit less half a clock, set in t,
+  // runs out in the cycle whose three samples lie about its middle, at most one clock early.
   logic                 busy_d, busy_q, tick;
   logic [TimerBits-1:0] timer_d, timer_q;
   logic [3:0]           count_d, count_q;  // bits taken, the start bit included
@@ -45,7 +47,7 @@ module cuboct_uart_rx #(
     if (!busy_q) begin
       timer_d = Half;
       count_d = '0;
-      busy_d  = !sync_q[1] && past_q[0];
+      busy_d  = !sync_q[1];
     end else if (tick) begin
       timer_d = timer_q + Next;
       count_d = count_q + 4'd1;
