@@ -58,7 +58,7 @@ TEST(Board, HoldsGoldensBitsAndTheModelsCycles) {
   EXPECT_EQ(few.steps(), 24u);
   EXPECT_EQ(host.count().retries, 0u);
 
-  host.reset(0);
+  host.reset();
   const auto nodes = emu::by_node(setup.plan, setup.initial);
   uint16_t index = 0;
   for (uint16_t n = 0; n < nodes.size(); ++n)
@@ -117,7 +117,7 @@ TEST(Board, RequestsMayBeRepeated) {
   const Trace golden = golden_trace(setup, 7);
   emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
   const int bits = setup.plan.words.particle_bits;
-  host.reset(0);
+  host.reset();
   const auto nodes = emu::by_node(setup.plan, setup.initial);
   uint16_t index = 0;
   for (uint16_t n = 0; n < nodes.size(); ++n)
