@@ -226,6 +226,7 @@ A lattice of @NODES@ particle processors in SystemVerilog, self-contained.
 | `rtl/cuboct_lattice.sv` | the nodes and their links: the top module |
 | other files of `rtl/` | the library that they use |
 | `files.f` | all of them, in the order to read |
+| `project.json` | the plan for other programs: hash, nodes, widths, cycles per step, files; `cuboct synth` reads it |
 | `bench/` | a bench that loads @LOADS@ particles, runs @STEPS@ steps and compares each observed particle with golden's |
 
     cd bench && make verilator     # or: icarus, lint, yosys

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "emu/verilated/compile.h"
 #include "emu/verilated/sources.h"
 #include "hw/rtl_emit.h"
 
@@ -41,17 +40,19 @@ std::string default_build_directory() {
                    "give one with --build-dir");
 }
 
+Build node_build(const Plan& plan) {
+  return {.top = "cuboct_node",
+          .verilator_flags = "--cc",
+          .compiler_flags = "-O2 -fno-semantic-interposition -flto",
+          .constants = {{"FACES", 2 * plan.rule.axes},
+                        {"LINK_BITS", plan.words.link_bits},
+                        {"PARTICLE_BITS", plan.words.particle_bits}},
+          .sources = with_headers("shim_node.cpp"),
+          .emit = [&plan](const std::string& dir) { emit_node(plan, dir); }};
+}
+
 std::string compile_node(const Plan& plan, const std::string& build_directory) {
-  return compile(
-      {.top = "cuboct_node",
-       .verilator_flags = "--cc",
-       .compiler_flags = "-O2 -fno-semantic-interposition -flto",
-       .constants = {{"FACES", 2 * plan.rule.axes},
-                     {"LINK_BITS", plan.words.link_bits},
-                     {"PARTICLE_BITS", plan.words.particle_bits}},
-       .sources = with_headers("shim_node.cpp"),
-       .emit = [&](const std::string& dir) { emit_node(plan, dir); }},
-      build_directory);
+  return compile(node_build(plan), build_directory);
 }
 
 // All ports of more than one bit become sc_bv.

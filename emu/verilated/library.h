@@ -7,6 +7,7 @@
 #include <string>
 
 #include "emu/verilated/abi.h"
+#include "emu/verilated/compile.h"
 #include "hw/plan.h"
 
 namespace cuboct::emu {
@@ -19,6 +20,9 @@ std::string default_build_directory();
 // loads it elaborates it, so once, and links with SystemC). Throws InputError, see compile.h.
 std::string compile_node(const Plan& plan, const std::string& build_directory);
 std::string compile_lattice(const Plan& plan, const State& initial, const std::string& build_directory);
+
+// What compile_node builds, for those who change it: other sources of the RTL, other flags. Refers to `plan`.
+Build node_build(const Plan& plan);
 
 // The path of the compiled top of the board that `project`, a directory of `cuboct emit --board`, holds.
 std::string compile_board(const std::string& project, const std::string& build_directory);

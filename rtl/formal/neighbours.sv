@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// Two whole nodes side by side, all of cuboct_node_core but the datapath: what the pair finder, the pipes, their sums
+// and the update give is any value, at any time that the cycle contract allows. Any loads, any number of steps, any
+// stalls of the two links. Order is kept (docs/reference/node.md, section Order), nothing overflows, neighbours are
+// never more than a step apart, and there is no state in which both wait for ever.
+module neighbours_formal #(
+  parameter int Axis     = 0,  // the nodes are neighbours along x or y
+  parameter int Capacity = 1,
+  parameter int LinkBits = 8
+) (
+  input logic        clk_i,
+  input logic        start_i,
+  input logic [31:0] steps_i,
+  input logic [1:0]  load_i,        // by node
+  input logic [13:0] load_data_i,
+  input logic [1:0]  stall_i        // of the link to the second, to the first
+);
+  localparam int Faces        = 4;
+  localparam int Below        = 2 * Axis;      // the face of the second node towards the first
+  localparam int Above        = 2 * Axis + 1;  // of the first towards the second
+  localparam int CountBits    = $clog2(3 * Capacity) + 1;
+  localparam int Room         = ((Axis == 0) ? 1 : 3) * Capacity;  // of the face's halo memory
+  localparam int ParticleBits = 7;             // x y away_y v id: 1 1 2 1 1 1
+
+  logic running_q = 1'b0;  // reset in the first cycle only
+  always_ff @(posedge clk_i) running_q <= 1'b1;
+
+  logic [1:0]              valid, ends, ready, idle, step;
+  logic [2*LinkBits-1:0]   data;
+  logic [2*Faces-1:0]      all_valid, all_ready;
+  logic [15:0]             phase_start, phase_end;
+  logic                    start;
+  assign start = running_q && start_i && idle == 2'b11 && load_i == 2'b00;
+  for (genvar n = 0; n < 2; n++) begin : gen_node
+    localparam int Face = (n == 0) ? Above : Below;
+    logic [Faces-1:0]          link_valid, link_end, link_ready_in, link_valid_in, link_end_in, link_ready, has_link;
+    logic [Faces*LinkBits-1:0] link_data, link_data_in;
+    logic                      observe, fault;
+    logic [ParticleBits-1:0]   observed;
+    logic [3:0]                code;
+    logic                      id;
+    logic [63:0]               number;
+    always_comb begin
+      has_link             = '0;
+      has_link[Face]       = 1'b1;
+      link_valid_in        = '0;
+      link_valid_in[Face]  = valid[1-n] && !stall_i[n];
+      link_end_in          = '0;
+      link_end_in[Face]    = ends[1-n];
+      link_data_in         = '0;
+      link_data_in[Face*LinkBits +: LinkBits] = data[(1-n)*LinkBits +: LinkBits];
+      link_ready_in        = '0;
+      link_ready_in[Face]  = ready[1-n] && !stall_i[1-n];
+    end
+    assign valid[n] = link_valid[Face];
+    assign ends[n]  = link_end[Face];
+    assign ready[n] = link_ready[Face];
+    assign data[n*LinkBits +: LinkBits]   = link_data[Face*LinkBits +: LinkBits];
+    assign all_valid[n*Faces +: Faces]    = link_valid;
+    assign all_ready[n*Faces +: Faces]    = link_ready;
+    cuboct_node_core #(
+      .Axes(2), .Capacity(Capacity), .FilterLanes(1), .ForcePipes(1), .QueueDepth(1), .LinkBits(LinkBits), .IdBits(1),
+      .PositionFrac(1), .Guard(1), .VelocityBits(1), .RelativeVelocityBits(1), .DifferenceShift(0), .Overlap(1)
+    ) u_node (
+      .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link),
+      .load_valid_i(running_q && load_i[n]), .load_data_i(load_data_i[n*7 +: 7]),
+      .link_valid_o(link_valid), .link_end_o(link_end), .link_data_o(link_data), .link_ready_i(link_ready_in),
+      .link_valid_i(link_valid_in), .link_end_i(link_end_in), .link_data_i(link_data_in), .link_ready_o(link_ready),
+      .phase_start_o(phase_start[8*n +: 8]), .phase_end_o(phase_end[8*n +: 8]), .observe_valid_o(observe),
+      .observe_data_o(observed), .fault_valid_o(fault), .fault_code_o(code), .fault_id_o(id),
+      .fault_number_o(number), .idle_o(idle[n])
+    );
+    assign step[n] = phase_end[8*n+6];  // MIGRATE_Y is the last of a step
+
+    // What the contract says of the units that are cut out: the finder is done only in FORCE, as the last segment is
+    // there only then (proof `streamer`); the update writes a slot two cycles after it was read.
+    (* keep *) logic       tap_finder_done, tap_take, tap_update_write, tap_update_fault, tap_pipe_fault;
+    (* keep *) logic [1:0] tap_past_exchange;
+    (* keep *) logic       tap_tick_slot, tap_update_slot;
+    logic                  take_1_q, take_2_q, slot_1_q, slot_2_q;
+    always_ff @(posedge clk_i) begin
+      take_1_q <= running_q && tap_take;
+      take_2_q <= running_q && take_1_q;
+      slot_1_q <= tap_tick_slot;
+      slot_2_q <= slot_1_q;
+    end
+    always_comb begin
+      assume (!tap_finder_done || tap_past_exchange[1]);
+      assume (tap_update_write == take_2_q && (!take_2_q || tap_update_slot == slot_2_q));
+      assume (!tap_pipe_fault && !tap_update_fault);
+    end
+  end
+
+  // Where a node is, and what comes in.
+  (* keep *) logic [3:0] tap_state_0, tap_state_1;
+  (* keep *) logic       tap_sent_0, tap_sent_1;        // of the relay
+  (* keep *) logic [2:0] tap_migrate_0, tap_migrate_1;  // state of the migration
+  (* keep *) logic [1:0] tap_axis_halo_0, tap_axis_halo_1;
+  (* keep *) logic [1:0] tap_axis_empty_0, tap_axis_empty_1, tap_axis_ended_0, tap_axis_ended_1;
+  (* keep *) logic [3:0] tap_halo_0, tap_halo_1, tap_halo_end_0, tap_halo_end_1;  // by face: a record, an end comes
+  (* keep *) logic [3:0] tap_arrival_0, tap_arrival_1, tap_arrival_end_0, tap_arrival_end_1;
+  (* keep *) logic [3:0] tap_full_0, tap_full_1;
+  (* keep *) logic [Faces*CountBits-1:0] tap_count_0, tap_count_1;
+  (* keep *) logic [3:0] tap_halo_ended_0, tap_halo_ended_1, tap_migrate_ended_0, tap_migrate_ended_1;
+  localparam logic [3:0] Force = 4'd3, Update = 4'd4, MigrateX = 4'd5, MigrateY = 4'd6, Dump = 4'd8;
+  localparam logic [2:0] TakeLow = 3'd3, TakeHigh = 3'd4;
+
+  // A node that does nothing until something comes.
+  logic [1:0] waits;
+  function automatic logic waiting(input logic [3:0] state, input logic sent, input logic [2:0] migrate,
+                                   input logic [1:0] none, input logic [1:0] ended, input logic [1:0] halo_ended,
+                                   input logic idle_now);
+    begin
+      waiting = idle_now;
+      if (state == 4'd0 || state == 4'd1) waiting = sent && (halo_ended != 2'b11);
+      if (state == MigrateX || state == MigrateY) begin
+        waiting = (migrate == TakeLow && none[0] && !ended[0]) || (migrate == TakeHigh && none[1] && !ended[1]);
+      end
+    end
+  endfunction
+  assign waits[0] = waiting(tap_state_0, tap_sent_0, tap_migrate_0, tap_axis_empty_0, tap_axis_ended_0, tap_axis_halo_0, idle[0]);
+  assign waits[1] = waiting(tap_state_1, tap_sent_1, tap_migrate_1, tap_axis_empty_1, tap_axis_ended_1, tap_axis_halo_1, idle[1]);
+
+  logic signed [2:0] ahead_q;  // steps that the first has done more than the second
+  logic              apart_q;
+  always_ff @(posedge clk_i) begin
+    if (!running_q || start) ahead_q <= '0;
+    else ahead_q <= ahead_q + ((step == 2'b01) ? 3'sd1 : (step == 2'b10) ? -3'sd1 : 3'sd0);
+    apart_q <= running_q && (apart_q || (ahead_q == 3'sd1 && tap_state_0 == 4'd1));
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (running_q) begin
+      // Halos of the next step never meet those of this one, nor arrivals.
+      if (tap_halo_0[Above] || tap_halo_end_0[Above]) a_halo_0: assert (tap_state_0 != Force && !tap_halo_ended_0[Above]);
+      if (tap_halo_1[Below] || tap_halo_end_1[Below]) a_halo_1: assert (tap_state_1 != Force && !tap_halo_ended_1[Below]);
+      if (tap_arrival_0[Above] || tap_arrival_end_0[Above]) a_arrival_0: assert (!tap_migrate_ended_0[Above]);
+      if (tap_arrival_1[Below] || tap_arrival_end_1[Below]) a_arrival_1: assert (!tap_migrate_ended_1[Below]);
+      if (tap_halo_0[Above]) a_room_0: assert (tap_count_0[Above*CountBits +: CountBits] != Room[CountBits-1:0]);
+      if (tap_halo_1[Below]) a_room_1: assert (tap_count_1[Below*CountBits +: CountBits] != Room[CountBits-1:0]);
+      if (tap_arrival_0[Above]) a_fifo_0: assert (!tap_full_0[Above]);
+      if (tap_arrival_1[Below]) a_fifo_1: assert (!tap_full_1[Below]);
+      a_ready:    assert (all_ready == '1);
+      a_step:     assert (ahead_q >= -3'sd1 && ahead_q <= 3'sd1);
+      a_deadlock: assert (!(waits == 2'b11 && idle != 2'b11 && valid == 2'b00));
+      a_stop:     assert (idle != 2'b11 || valid == 2'b00);
+      c_apart:    cover (apart_q);
+      c_waits:    cover (waits[0] && tap_state_0 == 4'd1 && tap_state_1 == Force);
+    end
+  end
+endmodule
