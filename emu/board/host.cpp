@@ -143,18 +143,16 @@ BoardState Host::status() {
   return state_of(reply);
 }
 
-void Host::reset(uint32_t steps) {
-  Bytes arguments;
-  put(arguments, steps, 4);
-  const BoardState state = short_answer(kReset, arguments);
-  if (state.loaded != 0 || state.steps != steps) throw std::runtime_error(fmt::format("port {}: the reset had no effect", port()));
+void Host::reset() {
+  const BoardState state = short_answer(kReset, {});
+  if (state.loaded != 0 || state.steps != 0) throw std::runtime_error(fmt::format("port {}: the reset had no effect", port()));
 }
 
 void Host::load(uint16_t index, uint16_t node, const Bits& word, int word_bits) {
   Bytes arguments;
   put(arguments, index, 2);
-  put(arguments, node, 2);
   for (int at = 0; at < word_bits; at += 8) put(arguments, word.get(at, std::min(8, word_bits - at)), 1);
+  put(arguments, node, 2);
   const BoardState state = short_answer(kLoad, arguments);
   // Refused, but loaded: the reply to an earlier attempt was lost.
   if (state.loaded != index + 1)
@@ -176,9 +174,9 @@ std::vector<Bits> Host::read(uint16_t node, int word_bits) {
   for (int tries = 0;; ++tries) {
     if (tries > kAttempts) throw std::runtime_error(fmt::format("port {}: node {} cannot be read", port(), node));
     Bytes arguments;
-    put(arguments, node, 2);
     put(arguments, words.size(), 2);
     put(arguments, static_cast<uint64_t>(words_), 1);
+    put(arguments, node, 2);
     // Long replies are hit more often: fewer words at once after one that was lost.
     const Bytes reply = ask(kRead, arguments, 3 + static_cast<size_t>(words_) * word_bytes, 2);
     if (reply.empty()) {

@@ -26,7 +26,7 @@ struct BoardState {
   bool fault = false;    // some node met one since RESET
   bool refused = false;  // the request could not be done
   uint16_t loaded = 0;   // particles since RESET
-  uint32_t steps = 0;    // that the state has behind it once the run is over
+  uint32_t steps = 0;    // since RESET, once the run is over
   uint64_t cycles = 0;   // of runs since RESET; of status() alone
 };
 
@@ -54,12 +54,11 @@ class Host {
   // Throws InputError where nothing that speaks the protocol answers.
   BoardInfo info();
   BoardState status();
-  // Empties the lattice, also in the midst of a run; `steps`: what its next state has behind it. Velocities become
-  // those of the board's plan.
-  void reset(uint32_t steps);
+  // Empties the lattice, also in the midst of a run. Velocities become those of the board's plan.
+  void reset();
   // The particle with number `index` since the reset.
   void load(uint16_t index, uint16_t node, const Bits& word, int word_bits);
-  // Starts a run.
+  // Starts a run; `from`: steps done since the reset.
   void run(uint32_t from, uint32_t steps);
   // All particles of a node, in the order of its slots.
   std::vector<Bits> read(uint16_t node, int word_bits);

@@ -38,7 +38,8 @@ class Session {
 
   // Makes `state` the board's.
   void load(const State& state) {
-    host_.reset(static_cast<uint32_t>(state.step));
+    host_.reset();
+    base_ = state.step;
     cycles_before_ += cycles_;
     cycles_ = 0;
     if (info_.plan_hash != plan_.hash) set_velocities();
@@ -51,7 +52,7 @@ class Session {
 
   // Waits for the end. False: some node met a fault.
   bool run(uint64_t from, uint64_t steps) {
-    host_.run(static_cast<uint32_t>(from), static_cast<uint32_t>(steps));
+    host_.run(static_cast<uint32_t>(from - base_), static_cast<uint32_t>(steps));
     for (int pause = 0;; pause = std::min(20, 2 * pause + 1)) {
       const BoardState state = host_.status();
       if (!state.busy) {
@@ -135,6 +136,7 @@ class Session {
   Host& host_;
   const Plan& plan_;
   BoardInfo info_;
+  uint64_t base_ = 0;                        // step of the state that was loaded
   uint64_t cycles_before_ = 0, cycles_ = 0;  // of runs without a fault
 };
 

@@ -93,7 +93,6 @@ module cuboct_host_link #(
   logic [IndexBits-1:0] arg_bytes;
   always_comb begin
     unique case (command_q)
-      Reset:    arg_bytes = 4;
       Load:     arg_bytes = 4 + WordBytes[IndexBits-1:0];
       Run:      arg_bytes = 8;
       Read:     arg_bytes = 5;
@@ -102,23 +101,28 @@ module cuboct_host_link #(
       default:  arg_bytes = 0;
     endcase
   end
-  logic [31:0] reset_steps, run_from, run_steps;
-  logic [15:0] load_index, load_node, read_node, read_first, fault_node;
+  logic [31:0] run_from, run_steps;
+  logic [15:0] load_index, node, read_first;
   logic [7:0]  read_words;
   localparam int LoadAt = ArgBits - 8 * (WordBytes + 4);
-  assign reset_steps     = word_q[ArgBits-32 +: 32];
+  assign node            = word_q[ArgBits-16 +: 16];  // of LOAD, READ and FAULT
   assign load_index      = word_q[LoadAt +: 16];
-  assign load_node       = word_q[LoadAt+16 +: 16];
-  assign load_data_o     = word_q[LoadAt+32 +: ParticleBits];
+  assign load_data_o     = word_q[LoadAt+16 +: ParticleBits];
   assign run_from        = word_q[ArgBits-64 +: 32];
   assign run_steps       = word_q[ArgBits-32 +: 32];
-  assign read_node       = word_q[ArgBits-40 +: 16];
-  assign read_first      = word_q[ArgBits-24 +: 16];
-  assign read_words      = word_q[ArgBits-8 +: 8];
-  assign fault_node      = word_q[ArgBits-16 +: 16];
+  assign read_first      = word_q[ArgBits-40 +: 16];
+  assign read_words      = word_q[ArgBits-24 +: 8];
   assign velocity_type_o = word_q[ArgBits-80 +: 8];
   assign velocity_axis_o = word_q[ArgBits-72 +: 8];
   assign velocity_data_o = word_q[ArgBits-64 +: VelocityBits];
+  // Comparisons of the bits that matter alone: a wide one costs a carry chain.
+  logic is_node_number;
+  localparam int UsedBits = $clog2(Nodes);
+  if (Nodes == 2 ** UsedBits) begin : gen_all_numbers
+    assign is_node_number = (node[15:UsedBits] == '0);
+  end else begin : gen_some_numbers
+    assign is_node_number = (node[15:UsedBits] == '0) && (node[UsedBits-1:0] < Nodes[UsedBits-1:0]);
+  end
   logic is_moved;
   if (MovedTypes > 0) begin : gen_moved
     assign is_moved = (velocity_type_o < MovedTypes[7:0]);
@@ -128,7 +132,7 @@ module cuboct_host_link #(
 
   // The lattice.
   logic [15:0]         loaded_d, loaded_q;  // particles since RESET
-  logic [31:0]         steps_d, steps_q;    // that the state will have behind it when no run is under way
+  logic [31:0]         steps_d, steps_q;    // since RESET, once no run is under way
   logic [47:0]         cycles_d, cycles_q;  // of runs since RESET
   logic                run_d, run_q;        // under way
   logic                reset_d, reset_q;
@@ -140,7 +144,7 @@ module cuboct_host_link #(
   assign settled        = all_idle && !run_q;
   assign lattice_rst_no = rst_ni && !reset_q;
   assign load_valid_o   = load;
-  assign load_node_o    = {16'd0, load_node};
+  assign load_node_o    = {16'd0, node};
   assign busy_o         = run_q;
   assign fault_o        = fault_any;
 
@@ -162,7 +166,7 @@ module cuboct_host_link #(
   logic [Nodes*FaultBits-1:0] faults_q;
   for (genvar k = 0; k < Nodes; k++) begin : gen_node
     localparam int Node = k;
-    assign is_node[k] = (node_q == Node[NodeBits-1:0]);
+    assign is_node[k] = (Nodes == 1) || (node_q == Node[NodeBits-1:0]);
     always_ff @(posedge clk_i) begin
       if (!lattice_rst_no) faulty_q[k] <= 1'b0;
       else if (fault_valid_i[k]) faulty_q[k] <= 1'b1;
@@ -177,8 +181,10 @@ module cuboct_host_link #(
   always_comb begin
     fault_data = '0;
     for (f = 0; f < Nodes; f = f + 1)
-      fault_data = fault_data | (faults_q[f*FaultBits +: FaultBits] & {FaultBits{is_node[f] && faulty_q[f]}});
+      fault_data = fault_data | (faults_q[f*FaultBits +: FaultBits] & {FaultBits{is_node[f]}});
   end
+  logic [3:0] fault_code;
+  assign fault_code = ((faulty_q & is_node) != '0) ? fault_data[3:0] : 4'd0;
   assign fault_any = (faulty_q != '0);
 
   // Replies: number, command, status, then what the command asks for, least significant byte first.
@@ -198,7 +204,7 @@ module cuboct_host_link #(
   logic [IndexBits-1:0]    body_index, body_bytes;
   logic [7:0]              status, head_data;
   assign state_data  = {cycles_q, steps_q, loaded_q};
-  assign fault_reply = {fault_data[4+IdBits +: 64], {(32-IdBits){1'b0}}, fault_data[4 +: IdBits], 4'd0, fault_data[3:0]};
+  assign fault_reply = {fault_data[4+IdBits +: 64], {(32-IdBits){1'b0}}, fault_data[4 +: IdBits], 4'd0, fault_code};
   assign count_data  = {{(16-SlotBits){1'b0}}, seen_q};
   assign status      = {5'd0, refused_q, fault_any, run_q};
   assign body_index  = index_q - HeadBytes[IndexBits-1:0] - 1'b1;
@@ -287,12 +293,12 @@ module cuboct_host_link #(
           Reset: begin
             reset_d  = 1'b1;
             loaded_d = '0;
-            steps_d  = reset_steps;
+            steps_d  = '0;
             cycles_d = '0;
             run_d    = 1'b0;
           end
           Load: begin
-            load      = settled && load_index == loaded_q && load_node < Nodes[15:0];
+            load      = settled && load_index == loaded_q && is_node_number;
             refused_d = !load;
             if (load) loaded_d = loaded_q + 16'd1;
           end
@@ -302,16 +308,16 @@ module cuboct_host_link #(
             if (run) begin
               start_o = 1'b1;
               steps_o = run_steps;
-              steps_d = run_from + run_steps;
+              steps_d = steps_q + run_steps;
               run_d   = 1'b1;
             end
           end
           Read: begin
-            node_d    = read_node[NodeBits-1:0];
+            node_d    = node[NodeBits-1:0];
             slot_d    = read_first[SlotBits-1:0];
             words_d   = read_words;
             seen_d    = '0;
-            refused_d = !settled || read_node >= Nodes[15:0] || read_first > Capacity[15:0];
+            refused_d = !settled || !is_node_number || read_first[15:SlotBits] != '0;
             if (!refused_d) state_d = DumpStart;
           end
           Velocity: begin
@@ -319,8 +325,8 @@ module cuboct_host_link #(
             refused_d        = !velocity_valid_o;
           end
           Fault: begin
-            node_d    = fault_node[NodeBits-1:0];
-            refused_d = fault_node >= Nodes[15:0];
+            node_d    = node[NodeBits-1:0];
+            refused_d = !is_node_number;
           end
           default: refused_d = 1'b1;
         endcase

@@ -58,7 +58,7 @@ TEST(Board, HoldsGoldensBitsAndTheModelsCycles) {
   EXPECT_EQ(few.steps(), 24u);
   EXPECT_EQ(host.count().retries, 0u);
 
-  host.reset(0);
+  host.reset();
   const auto nodes = emu::by_node(setup.plan, setup.initial);
   uint16_t index = 0;
   for (uint16_t n = 0; n < nodes.size(); ++n)
@@ -78,19 +78,23 @@ TEST(Board, TakesOtherVelocitiesAndFindsAFault) {
   emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
   const Trace golden = golden_trace(thrown, 24);
   ASSERT_TRUE(golden.stop);
-  EXPECT_EQ(golden.stop->step, 11u);
+  EXPECT_EQ(golden.stop->step, 6u);
   const Trace stepped = emu::run_on_board(host, thrown.plan, thrown.initial, {.steps = 24, .frames = up_to(24)});
   EXPECT_EQ(difference(thrown.plan, golden, stepped), "");
-  EXPECT_EQ(stepped.frames.size(), 12u);
+  EXPECT_EQ(stepped.frames.size(), 7u);
   // The step is found where the board was not read after each.
-  for (const uint64_t steps : {12, 16, 24}) {
+  for (const uint64_t steps : {7, 9, 24}) {
     const Trace whole = emu::run_on_board(host, thrown.plan, thrown.initial, {.steps = steps, .frames = {0, steps}, .hash_every = 0});
     ASSERT_TRUE(whole.stop);
     EXPECT_EQ(*whole.stop, *golden.stop);
-    EXPECT_EQ(whole.steps(), 11u);
+    EXPECT_EQ(whole.steps(), 6u);
     ASSERT_EQ(whole.frames.size(), 2u);
-    EXPECT_EQ(whole.frames[1], golden.frames[11]);
+    EXPECT_EQ(whole.frames[1], golden.frames[6]);
   }
+  // Both nodes met one in that step; the second node's is the run's, by the particle's id.
+  EXPECT_EQ(host.fault(0).particle, 4u);
+  EXPECT_EQ(host.fault(1).particle, 1u);
+  EXPECT_EQ(golden.stop->particle, 1u);
   // What was set does not outlive the reset.
   const Trace again = emu::run_on_board(host, grips.plan, grips.initial, {.steps = 24, .frames = {}});
   EXPECT_EQ(difference(grips.plan, golden_trace(grips, 24), again), "");
@@ -117,7 +121,7 @@ TEST(Board, RequestsMayBeRepeated) {
   const Trace golden = golden_trace(setup, 7);
   emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
   const int bits = setup.plan.words.particle_bits;
-  host.reset(0);
+  host.reset();
   const auto nodes = emu::by_node(setup.plan, setup.initial);
   uint16_t index = 0;
   for (uint16_t n = 0; n < nodes.size(); ++n)
@@ -159,7 +163,7 @@ TEST(Board, TheCommandDrivesIt) {
   EXPECT_EQ(matched.code, 0);
   const Answer stopped = with({"crosscheck", board_file("thrown.toml"), "--engines", "fpga,lattice"});
   EXPECT_EQ(stopped.out,
-            "matched 88 updates over 11 steps in 2 engines\nall stopped: step 11, node 0 at cell (0, 0, 0), particle 4: "
+            "matched 48 updates over 6 steps in 2 engines\nall stopped: step 6, node 1 at cell (1, 0, 0), particle 1: "
             "left the lattice along y (0)\n");
   EXPECT_EQ(stopped.code, 1);
   const Answer run = with({"run", board_file("grips.toml"), "--engine", "fpga"});

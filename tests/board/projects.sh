@@ -9,8 +9,8 @@ mkdir -p "$dir"
 check() {  # NAME ARGUMENTS...
   local project=$dir/$1
   shift
-  "$cuboct" emit "$root/tests/board/grips.toml" --arch "$root/tests/board/small.toml" --out "$project" --vector-steps 2 "$@" >/dev/null
-  "$cuboct" emit "$root/tests/board/grips.toml" --arch "$root/tests/board/small.toml" --out "$dir/again" --vector-steps 2 "$@" >/dev/null
+  "$cuboct" emit "$root/scenes/boards/grips.toml" --arch "$root/scenes/boards/small.toml" --out "$project" --vector-steps 2 "$@" >/dev/null
+  "$cuboct" emit "$root/scenes/boards/grips.toml" --arch "$root/scenes/boards/small.toml" --out "$dir/again" --vector-steps 2 "$@" >/dev/null
   diff -r "$project" "$dir/again"
   (cd "$project" && verilator --lint-only -Wall --top-module cuboct_board_top -f board/files.f)
   (cd "$project" && yosys -q -p "read_verilog -sv $(tr '\n' ' ' < board/files.f); hierarchy -check -top cuboct_board_top; proc; check -assert" > yosys.log)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// cuboct-board-sim on the project of tests/board/grips.toml, and what tests ask of it.
+// cuboct-board-sim on the project of scenes/boards/grips.toml, and what tests ask of it.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@
 
 namespace cuboct::test {
 
-std::string board_file(const std::string& name);  // below tests/board
-Setup board_setup(const std::string& scene);      // of tests/board, on small.toml
+std::string board_file(const std::string& name);  // of scenes/boards or tests/board
+Setup board_setup(const std::string& scene);      // likewise, on small.toml
 
 struct Answer {
   int code;  // exit code
