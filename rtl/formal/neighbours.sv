@@ -6,7 +6,8 @@
 module neighbours_formal #(
   parameter int Axis     = 0,  // the nodes are neighbours along x or y
   parameter int Capacity = 1,
-  parameter int LinkBits = 8
+  parameter int LinkBits = 8,
+  parameter int Steps    = 3   // of a run, at most
 ) (
   input logic        clk_i,
   input logic        start_i,
@@ -30,6 +31,8 @@ module neighbours_formal #(
   logic [2*Faces-1:0]      all_valid, all_ready;
   logic [15:0]             phase_start, phase_end;
   logic                    start;
+  // A node does not know a step's number, only whether it is the last one.
+  always_comb assume (steps_i <= Steps);
   assign start = running_q && start_i && idle == 2'b11 && load_i == 2'b00;
   for (genvar n = 0; n < 2; n++) begin : gen_node
     localparam int Face = (n == 0) ? Above : Below;
