@@ -30,6 +30,11 @@ struct Port {
   const char* name;
 };
 
+// All velocities that come from outside: type by type, axis 0 in the least significant place.
+std::string velocity_range(const RtlDesign& design) {
+  return fmt::format("[{}:0]", design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits) - 1);
+}
+
 // The ports of cuboct_node, or of its cuboct_node_core, in order.
 std::vector<Port> node_ports(const RtlDesign& design, bool core) {
   const bool checked = design.checked && !core;
@@ -68,6 +73,7 @@ std::vector<Port> node_ports(const RtlDesign& design, bool core) {
                              {"output", "[cuboct_pkg::IdBits-1:0]", "fault_id_o"},
                              {"output", "[63:0]", "fault_number_o"},
                              {"output", "", "idle_o"}});
+  if (!design.moved.empty()) ports.insert(ports.begin() + 7, {"input ", velocity_range(design), "velocity_i"});
   return ports;
 }
 
@@ -147,6 +153,15 @@ std::string print_scale(const RtlDesign& design) {
   return text + "      default: scale_o = '0;\n    endcase\n  end\nendmodule\n";
 }
 
+std::string print_velocities(const RtlDesign& design) {
+  std::string text;
+  for (const int k : design.moved) {
+    const FixedType& type = design.types[static_cast<size_t>(k)];
+    text = concatenated(type.velocity, design.velocity_bits, design.axes) + (text.empty() ? "" : ", ") + text;
+  }
+  return "{" + text + "}";
+}
+
 std::string print_types(const RtlDesign& design) {
   const int t = std::max(1, design.type_bits), v = design.velocity_bits, axes = design.axes;
   std::string text = head(design);
@@ -155,7 +170,7 @@ std::string print_types(const RtlDesign& design) {
       "or of the\n"
       "// anchor), gravity, whether held by force, gains. Combinational.\n"
       "module cuboct_type_rom (\n"
-      "  input  logic [{}:0] type_i,\n"
+      "{}  input  logic [{}:0] type_i,\n"
       "  output logic [{}:0] imposed_o,\n"
       "  output logic [{}:0] velocity_o,\n"
       "  output logic [{}:0] gravity_o,\n"
@@ -163,13 +178,19 @@ std::string print_types(const RtlDesign& design) {
       "  output logic [17:0] kp_o,\n"
       "  output logic [17:0] kd_o\n"
       ");\n",
-      t - 1, axes - 1, axes * v - 1, axes * v - 1);
-  const auto assigns = [&](const FixedType& type, const std::string& indent) {
+      design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n", t - 1, axes - 1,
+      axes * v - 1, axes * v - 1);
+  const auto velocity = [&](const FixedType& type, int number) {
+    const auto at = std::find(design.moved.begin(), design.moved.end(), number);
+    if (at == design.moved.end()) return concatenated(type.velocity, v, axes);
+    return fmt::format("velocity_i[{} +: {}]", (at - design.moved.begin()) * axes * v, axes * v);
+  };
+  const auto assigns = [&](const FixedType& type, int number, const std::string& indent) {
     std::string lines;
     std::string imposed;
     for (int a = axes - 1; a >= 0; --a) imposed += type.imposed[a] ? '1' : '0';
     lines += fmt::format("{}imposed_o  = {}'b{};\n", indent, axes, imposed);
-    lines += fmt::format("{}velocity_o = {};\n", indent, concatenated(type.velocity, v, axes));
+    lines += fmt::format("{}velocity_o = {};\n", indent, velocity(type, number));
     lines += fmt::format("{}gravity_o  = {};\n", indent, concatenated(type.gravity, v, axes));
     lines += fmt::format("{}pd_o       = 1'b{};\n", indent, type.pd ? 1 : 0);
     lines += fmt::format("{}kp_o       = {};\n", indent, literal(type.kp, 18));
@@ -178,11 +199,11 @@ std::string print_types(const RtlDesign& design) {
   };
   if (design.types.size() == 1)
     return text + "  logic unused_type;\n  assign unused_type = ^type_i;\n" +
-           assigns(design.types[0], "  assign ") + "endmodule\n";
-  text += "  always_comb begin\n" + assigns(FixedType{}, "    ") + "    unique case (type_i)\n";
+           assigns(design.types[0], 0, "  assign ") + "endmodule\n";
+  text += "  always_comb begin\n" + assigns(FixedType{}, -1, "    ") + "    unique case (type_i)\n";
   for (size_t k = 0; k < design.types.size(); ++k)
     text += fmt::format("      {}: begin\n{}      end\n", literal(static_cast<int64_t>(k), t),
-                        assigns(design.types[k], "        "));
+                        assigns(design.types[k], static_cast<int>(k), "        "));
   return text + "      default: imposed_o = '0;\n    endcase\n  end\nendmodule\n";
 }
 
@@ -209,6 +230,7 @@ std::string print_node(const RtlDesign& design) {
   }
   for (const RtlConstant& c : design.constants)
     if (c.core) core.push_back(fmt::format("    .{0}(cuboct_pkg::{0})", c.name));
+  if (!design.moved.empty()) core.push_back(fmt::format("    .MovedTypes({})", design.moved.size()));
   text += fmt::format("  cuboct_node_core #(\n{}\n  ) u_core (\n{}\n  );\n", fmt::join(core, ",\n"),
                       fmt::join(connected, ",\n"));
   if (design.checked)
@@ -257,6 +279,7 @@ std::string print_lattice(const RtlDesign& design) {
       "  input  logic load_valid_i,\n"
       "  input  logic [31:0] load_node_i,\n"
       "  input  logic [cuboct_pkg::ParticleBits-1:0] load_data_i,\n"
+      "@VELOCITY_PORT@"
       "  output logic [8*Nodes-1:0] phase_start_o,\n"
       "  output logic [8*Nodes-1:0] phase_end_o,\n"
       "  output logic [Nodes-1:0] observe_valid_o,\n"
@@ -272,6 +295,9 @@ std::string print_lattice(const RtlDesign& design) {
       "  localparam int LinkBits = cuboct_pkg::{};\n{}\n",
       design.checked ? "WireBits" : "LinkBits",
       design.checked ? "  localparam int AckBits = cuboct_pkg::AckBits;\n" : "");
+  const std::string velocity_port = "@VELOCITY_PORT@";
+  text.replace(text.find(velocity_port), velocity_port.size(),
+               design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n");
   text.replace(text.find("@NODES@"), 7, std::to_string(nodes));
   for (size_t n = 0; n < nodes; ++n)
     text +=
@@ -307,14 +333,14 @@ std::string print_lattice(const RtlDesign& design) {
         "\n  // Cell ({1}, {2}, {3}).\n"
         "  cuboct_node u_node_{0} (\n"
         "    .clk_i, .rst_ni, .start_i, .steps_i, .has_link_i({9}'b{4}),\n"
-        "    .load_valid_i(load_valid_i && load_node_i == 32'd{0}), .load_data_i,\n"
+        "    .load_valid_i(load_valid_i && load_node_i == 32'd{0}), .load_data_i,{10}\n"
         "    .link_valid_o(valid_{0}), .link_end_o(end_{0}), .link_data_o(data_{0}),\n"
         "    .link_ready_i({{{7}}}),\n"
         "    .link_valid_i({{{5}}}),\n"
         "    .link_end_i({{{6}}}),\n"
         "    .link_data_i({{{8}}}),\n"
         "    .link_ready_o(ready_{0}),\n"
-        "{10}"
+        "{11}"
         "    .phase_start_o(phase_start_o[8*{0} +: 8]), .phase_end_o(phase_end_o[8*{0} +: 8]),\n"
         "    .observe_valid_o(observe_valid_o[{0}]),\n"
         "    .observe_data_o(observe_data_o[{0}*cuboct_pkg::ParticleBits +: cuboct_pkg::ParticleBits]),\n"
@@ -323,6 +349,7 @@ std::string print_lattice(const RtlDesign& design) {
         "    .fault_number_o(fault_number_o[64*{0} +: 64]), .idle_o(idle_o[{0}])\n"
         "  );\n",
         n, cell[0], cell[1], cell[2], has, valid, end, ready, data, faces,
+        design.moved.empty() ? "" : " .velocity_i,",
         design.checked ? fmt::format("    .link_ack_i({{{0}}}),\n"
                                      "    .link_ack_o(ack_{1}), .link_error_o(link_error_o[{2}*{1} +: {2}]),\n",
                                      ack, n, 2 * faces)
