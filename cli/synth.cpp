@@ -16,13 +16,17 @@ void add_synth(CLI::App& app, int& exit_code) {
   };
   auto options = std::make_shared<Options>();
   synth::Request& request = options->request;
-  CLI::App* command = app.add_subcommand("synth", "what an emitted project takes on an FPGA or in standard cells");
-  command->add_option("project", request.directory, "directory that cuboct emit wrote")->required()->type_name("DIR");
+  CLI::App* command =
+      app.add_subcommand("synth", "what an emitted project takes on an FPGA or in standard cells");
+  command->add_option("project", request.directory, "directory that cuboct emit wrote")
+      ->required()
+      ->type_name("DIR");
   command->add_option("--target", request.target, "up5k, hx8k, ecp5-25, ecp5-85, xc7 or asic")
       ->required()
       ->type_name("T");
   command
-      ->add_option("--unit", request.unit, "node, lattice, board, or one block by its name: pipe, update, fifo#1, ...")
+      ->add_option("--unit", request.unit,
+                   "node, lattice, board, or one block by its name: pipe, update, fifo#1, ...")
       ->type_name("UNIT")
       ->capture_default_str();
   command->add_option("--seed", request.seed, "of the placer")
@@ -32,7 +36,11 @@ void add_synth(CLI::App& app, int& exit_code) {
   command->add_option("--freq", request.frequency, "MHz that placing aims at; default: the target's")
       ->check(CLI::Range(1.0, 1000.0))
       ->type_name("F");
-  command->add_option("--timing", request.timing, "nextpnr's report, made elsewhere from the netlist that is here")
+  command->add_flag("!--no-place", request.place,
+                    "stop at the netlist: resources without Fmax and bitstream");
+  command
+      ->add_option("--timing", request.timing,
+                   "nextpnr's report, made elsewhere from the netlist that is here")
       ->type_name("FILE");
   command->add_option("--liberty", request.liberty, "asic: standard cells; default: Debian's osu018")
       ->type_name("FILE");
@@ -51,8 +59,8 @@ void add_synth(CLI::App& app, int& exit_code) {
         fmt::print("{}{:<22} {}\n", synth::print_table(report), "files", synth::results_directory(asked));
       }
     } catch (const synth::ToolFailed& error) {
-      fmt::print(stderr, "{}\n  hint: its log is {}.failed/{}\n", error.what(), synth::results_directory(asked),
-                 error.log);
+      fmt::print(stderr, "{}\n  hint: its log is {}.failed/{}\n", error.what(),
+                 synth::results_directory(asked), error.log);
       exit_code = 1;
     } catch (const synth::Interrupted&) {
       fmt::print(stderr, "interrupted; nothing was written\n");

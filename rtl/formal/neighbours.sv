@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Two whole nodes side by side, all of cuboct_node_core but the datapath: what the pair finder, the pipes, their sums
-// and the update give is any value, at any time that the cycle contract allows. Any loads, any number of steps, any
+// Two whole nodes side by side, all of cuboct_node_core that controls: what the pair finder, the pipes, their sums, the
+// update and the slots give, and what the beats carry, is any value, at any time that the cycle contract allows, so that
+// any number of particles goes anywhere. Any loads, any number of steps, any
 // stalls of the two links. Order is kept (docs/reference/node.md, section Order), nothing overflows, neighbours are
 // never more than a step apart, and there is no state in which both wait for ever.
 module neighbours_formal #(
   parameter int Axis     = 0,  // the nodes are neighbours along x or y
   parameter int Capacity = 1,
-  parameter int LinkBits = 8
+  parameter int LinkBits = 8,
+  parameter int Steps    = 3   // of a run, at most
 ) (
   input logic        clk_i,
   input logic        start_i,
   input logic [31:0] steps_i,
   input logic [1:0]  load_i,        // by node
-  input logic [13:0] load_data_i,
+  input logic [2*LinkBits-1:0] wire_i,  // what the links carry; only ends and counts matter here
   input logic [1:0]  stall_i        // of the link to the second, to the first
 );
   localparam int Faces        = 4;
@@ -26,10 +28,11 @@ module neighbours_formal #(
   always_ff @(posedge clk_i) running_q <= 1'b1;
 
   logic [1:0]              valid, ends, ready, idle, step;
-  logic [2*LinkBits-1:0]   data;
   logic [2*Faces-1:0]      all_valid, all_ready;
   logic [15:0]             phase_start, phase_end;
   logic                    start;
+  // A node does not know a step's number, only whether it is the last one.
+  always_comb assume (steps_i <= Steps);
   assign start = running_q && start_i && idle == 2'b11 && load_i == 2'b00;
   for (genvar n = 0; n < 2; n++) begin : gen_node
     localparam int Face = (n == 0) ? Above : Below;
@@ -48,14 +51,13 @@ module neighbours_formal #(
       link_end_in          = '0;
       link_end_in[Face]    = ends[1-n];
       link_data_in         = '0;
-      link_data_in[Face*LinkBits +: LinkBits] = data[(1-n)*LinkBits +: LinkBits];
+      link_data_in[Face*LinkBits +: LinkBits] = wire_i[n*LinkBits +: LinkBits];
       link_ready_in        = '0;
       link_ready_in[Face]  = ready[1-n] && !stall_i[1-n];
     end
     assign valid[n] = link_valid[Face];
     assign ends[n]  = link_end[Face];
     assign ready[n] = link_ready[Face];
-    assign data[n*LinkBits +: LinkBits]   = link_data[Face*LinkBits +: LinkBits];
     assign all_valid[n*Faces +: Faces]    = link_valid;
     assign all_ready[n*Faces +: Faces]    = link_ready;
     cuboct_node_core #(
@@ -63,7 +65,7 @@ module neighbours_formal #(
       .PositionFrac(1), .Guard(1), .VelocityBits(1), .RelativeVelocityBits(1), .DifferenceShift(0), .Overlap(1)
     ) u_node (
       .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link),
-      .load_valid_i(running_q && load_i[n]), .load_data_i(load_data_i[n*7 +: 7]),
+      .load_valid_i(running_q && load_i[n]), .load_data_i(7'd0),
       .link_valid_o(link_valid), .link_end_o(link_end), .link_data_o(link_data), .link_ready_i(link_ready_in),
       .link_valid_i(link_valid_in), .link_end_i(link_end_in), .link_data_i(link_data_in), .link_ready_o(link_ready),
       .phase_start_o(phase_start[8*n +: 8]), .phase_end_o(phase_end[8*n +: 8]), .observe_valid_o(observe),
@@ -129,6 +131,52 @@ module neighbours_formal #(
     apart_q <= running_q && (apart_q || (ahead_q == 3'sd1 && tap_state_0 == 4'd1));
   end
 
+  // What makes it provable: streams are counted, modulo 8, where they are sent, where they are told, and where they are
+  // used up; each is what the node's phase says.
+  (* keep *) logic [3:0]  tap_load_0, tap_load_1;          // by face: a beat is loaded,
+  (* keep *) logic        tap_send_end_0, tap_send_end_1;  // it is an end
+  (* keep *) logic [3:0]  tap_next_0, tap_next_1;          // by face: the stream that comes next is a migration
+  (* keep *) logic [31:0] tap_steps_0, tap_steps_1;        // steps to do
+  logic [2:0] sent_0_q, sent_1_q, told_0_q, told_1_q, step_0_q, step_1_q;
+  always_ff @(posedge clk_i) begin
+    if (!running_q) begin
+      {sent_0_q, sent_1_q, told_0_q, told_1_q, step_0_q, step_1_q} <= '0;
+    end else begin
+      if (tap_load_0[Above] && tap_send_end_0) sent_0_q <= sent_0_q + 1'b1;
+      if (tap_load_1[Below] && tap_send_end_1) sent_1_q <= sent_1_q + 1'b1;
+      if (tap_halo_end_0[Above] || tap_arrival_end_0[Above]) told_0_q <= told_0_q + 1'b1;
+      if (tap_halo_end_1[Below] || tap_arrival_end_1[Below]) told_1_q <= told_1_q + 1'b1;
+      if (step[0]) step_0_q <= step_0_q + 1'b1;
+      if (step[1]) step_1_q <= step_1_q + 1'b1;
+    end
+  end
+  // Streams of this step that a node has sent, and has used up, along the axis.
+  function automatic logic [2:0] sent_of(input logic [3:0] state, input logic sent, input logic [2:0] migrate);
+    begin
+      sent_of = 3'd1;
+      if (state == 4'd8 || state == 4'd9 || state < Axis) sent_of = 3'd0;
+      if (state == Axis) sent_of = {2'b00, sent};
+      if (state == 4'd5 + Axis) sent_of = (migrate == TakeLow || migrate == TakeHigh) ? 3'd2 : 3'd1;
+      if (state > 4'd5 + Axis && state < 4'd8) sent_of = 3'd2;
+    end
+  endfunction
+  // It is between a stream's first beat and its end, if it has begun.
+  function automatic logic sending(input logic [3:0] state, input logic sent, input logic [2:0] migrate);
+    begin
+      sending = (state == Axis && !sent) || (state == 4'd5 + Axis && migrate < TakeLow);
+    end
+  endfunction
+  function automatic logic [2:0] used_of(input logic [3:0] state);
+    begin
+      used_of = 3'd0;
+      if (state >= Update && state <= 4'd5 + Axis) used_of = 3'd1;
+      if (state > 4'd5 + Axis && state < 4'd8) used_of = 3'd2;
+    end
+  endfunction
+  logic [2:0] ready_0, ready_1;  // streams told and not yet used up
+  assign ready_0 = {2'b00, tap_halo_ended_0[Above]} + {2'b00, tap_migrate_ended_0[Above]};
+  assign ready_1 = {2'b00, tap_halo_ended_1[Below]} + {2'b00, tap_migrate_ended_1[Below]};
+
   always_ff @(posedge clk_i) begin
     if (running_q) begin
       // Halos of the next step never meet those of this one, nor arrivals.
@@ -144,6 +192,33 @@ module neighbours_formal #(
       a_step:     assert (ahead_q >= -3'sd1 && ahead_q <= 3'sd1);
       a_deadlock: assert (!(waits == 2'b11 && idle != 2'b11 && valid == 2'b00));
       a_stop:     assert (idle != 2'b11 || valid == 2'b00);
+      i_sent_0: assert (sent_0_q == {step_0_q[1:0], 1'b0} + sent_of(tap_state_0, tap_sent_0, tap_migrate_0));
+      i_sent_1: assert (sent_1_q == {step_1_q[1:0], 1'b0} + sent_of(tap_state_1, tap_sent_1, tap_migrate_1));
+      i_told_0: assert (told_0_q + {2'b00, valid[1] && ends[1]} == sent_1_q);
+      i_told_1: assert (told_1_q + {2'b00, valid[0] && ends[0]} == sent_0_q);
+      i_used_0: assert (told_0_q == {step_0_q[1:0], 1'b0} + used_of(tap_state_0) + ready_0);
+      i_used_1: assert (told_1_q == {step_1_q[1:0], 1'b0} + used_of(tap_state_1) + ready_1);
+      i_beat_0: assert (!valid[0] || ends[0] || sending(tap_state_0, tap_sent_0, tap_migrate_0));
+      i_beat_1: assert (!valid[1] || ends[1] || sending(tap_state_1, tap_sent_1, tap_migrate_1));
+      i_high:   assert ((tap_migrate_0 != TakeHigh || tap_axis_ended_0[0]) && (tap_migrate_1 != TakeHigh || tap_axis_ended_1[0]));
+      i_past_0: assert (!(tap_state_0 > Axis && tap_state_0 <= Force) || tap_halo_ended_0[Above]);
+      i_past_1: assert (!(tap_state_1 > Axis && tap_state_1 <= Force) || tap_halo_ended_1[Below]);
+      i_next_0: assert (tap_next_0[Above] == told_0_q[0]);
+      i_next_1: assert (tap_next_1[Below] == told_1_q[0]);
+      i_flags_0: assert ((used_of(tap_state_0) == 3'd1) ? (tap_migrate_ended_0[Above] || !tap_halo_ended_0[Above])
+                                                       : (tap_halo_ended_0[Above] || !tap_migrate_ended_0[Above]));
+      i_flags_1: assert ((used_of(tap_state_1) == 3'd1) ? (tap_migrate_ended_1[Below] || !tap_halo_ended_1[Below])
+                                                       : (tap_halo_ended_1[Below] || !tap_migrate_ended_1[Below]));
+      i_state:  assert (tap_state_0 != 4'd2 && tap_state_1 != 4'd2 && tap_state_0 != 4'd7 && tap_state_1 != 4'd7
+                        && tap_state_0 <= 4'd9 && tap_state_1 <= 4'd9);
+      i_steps:  assert (tap_steps_0 <= Steps && tap_steps_1 <= Steps
+                        && tap_steps_0[2:0] + step_0_q == tap_steps_1[2:0] + step_1_q);
+      i_run:    assert ((tap_state_0 < 4'd8) == (tap_steps_0 != '0) && (tap_state_1 < 4'd8) == (tap_steps_1 != '0));
+      i_sent:   assert ((!tap_sent_0 || tap_state_0 <= 4'd1) && (!tap_sent_1 || tap_state_1 <= 4'd1));
+      i_phase:  assert ((tap_migrate_0 == 3'd0 || tap_state_0 == MigrateX || tap_state_0 == MigrateY)
+                        && (tap_migrate_1 == 3'd0 || tap_state_1 == MigrateX || tap_state_1 == MigrateY)
+                        && tap_migrate_0 <= TakeHigh && tap_migrate_1 <= TakeHigh);
+      i_ahead:  assert (ahead_q == $signed(step_0_q - step_1_q));
       c_apart:    cover (apart_q);
       c_waits:    cover (waits[0] && tap_state_0 == 4'd1 && tap_state_1 == Force);
     end

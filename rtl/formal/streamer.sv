@@ -5,8 +5,7 @@
 module streamer_formal #(
   parameter int Axes        = 2,
   parameter int FilterLanes = 2,
-  parameter int AddrBits    = 1,  // a segment holds up to 2^AddrBits records, a node as many particles
-  parameter int Stall       = 1   // longest pause that the bound on progress supposes
+  parameter int AddrBits    = 1   // a segment holds up to 2^AddrBits records, a node as many particles
 ) (
   input logic          clk_i,
   input logic          stall_i,
@@ -20,7 +19,6 @@ module streamer_formal #(
   localparam int Most      = 1 << AddrBits;
   localparam int Rows      = (Most + FilterLanes - 1) / FilterLanes;
   localparam int RowBits   = (Rows > 1) ? $clog2(Rows) : 1;
-  localparam int Longest   = Segments * Most * Rows * (Stall + 1);
 
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
@@ -56,6 +54,9 @@ module streamer_formal #(
     .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .available_i(available_q), .counts_i(counts_q),
     .segment_o(segment), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .past_o(past)
   );
+
+  logic [2:0] half;  // which axis the segment belongs to, 0 for own
+  assign half = (segment + 3'd1) >> 1;
 
   // The least (segment, record, row) not yet presented.
   logic [2:0]           due_segment_q, next_segment;
@@ -93,30 +94,24 @@ module streamer_formal #(
     end
   end
 
-  logic [7:0] cycles_q;
-  logic [3:0] paused_q;
-  logic       fair_q;
+  // Progress: a cycle that is not stalled and whose segment is there moves (segment, record, row) upwards.
+  logic [AddrBits+RowBits+2:0] rank, rank_q;
+  logic                        moves_q;
+  assign rank = {segment, addr, row};
   always_ff @(posedge clk_i) begin
-    if (!running_q || !run_q || restart) begin
-      cycles_q <= '0;
-      paused_q <= '0;
-      fair_q   <= 1'b1;
-    end else begin
-      if (!past && available_q == '1) cycles_q <= cycles_q + 1'b1;
-      paused_q <= stall_i ? paused_q + 1'b1 : '0;
-      fair_q   <= fair_q && (!stall_i || paused_q < Stall[3:0]);
-    end
+    rank_q  <= rank;
+    moves_q <= running_q && run_q && !stall_i && !past && available_q[half];
   end
 
   always_ff @(posedge clk_i) begin
     if (running_q) begin
       if (present) begin
-        a_may:  assert (run_q && !stall_i && available_q[(segment+1)/2]);
+        a_may:  assert (run_q && !stall_i && available_q[half]);
         a_next: assert (!all && segment == next_segment && {1'b0, addr} == next_record
                         && {{(CountBits + 1 - RowBits) {1'b0}}, row} == next_row && slot == addr);
       end
       if (past) a_past: assert (all && available_q == '1);
-      if (fair_q) a_progress: assert (cycles_q <= Longest[7:0]);
+      if (moves_q) a_progress: assert (rank > rank_q);
       c_empty: cover (restart && counts_q == '0);
       c_full:  cover (past && counts_q[(Segments-1)*CountBits +: CountBits] == Most[CountBits-1:0] && due_segment_q == Segments[2:0] - 3'd1);
       c_rows:  cover (present && next_row != '0 && next_record != '0);

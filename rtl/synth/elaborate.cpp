@@ -71,8 +71,9 @@ std::string module_of(const Design& design, const std::string& unit) {
   const std::vector<std::string>& keys = found->second;
   if (unit.find('#') == std::string::npos) {
     if (keys.size() == 1) return keys[0];
-    throw InputError(fmt::format("the block '{}' stands in the project with {} sets of parameters", source, keys.size()),
-                     fmt::format("--unit {0}#1 ... {0}#{1} names one", source, keys.size()));
+    throw InputError(
+        fmt::format("the block '{}' stands in the project with {} sets of parameters", source, keys.size()),
+        fmt::format("--unit {0}#1 ... {0}#{1} names one", source, keys.size()));
   }
   const std::string number = unit.substr(unit.find('#') + 1);
   size_t k = 0;
@@ -98,14 +99,17 @@ Harness make_harness(const std::string& unit, const std::vector<Port>& ports) {
     connect(p, fmt::format("{}[{}:{}]", p.input ? "in_q" : "out", next + p.bits - 1, next));
     next += p.bits;
   }
-  if (outputs == 0) throw InputError(fmt::format("the block '{}' has no output", unit), "there is nothing to keep of it");
+  if (outputs == 0)
+    throw InputError(fmt::format("the block '{}' has no output", unit), "there is nothing to keep of it");
   inputs = std::max<uint64_t>(inputs, 1);
   const uint64_t folded = (outputs + 2) / 3;
   Harness harness;
   harness.flip_flops = inputs + outputs + folded;
   harness.text = fmt::format(
-      "// Inputs come out of a shift register; outputs go into registers, and three of these and the bit before them\n"
-      "// into each bit of a second shift register. So nothing of the unit is idle, and every path in it ends in\n"
+      "// Inputs come out of a shift register; outputs go into registers, and three of these and the bit "
+      "before them\n"
+      "// into each bit of a second shift register. So nothing of the unit is idle, and every path in it "
+      "ends in\n"
       "// registers.\n"
       "module {0} (\n"
       "  input  wire clk_i,\n"
@@ -129,7 +133,8 @@ Harness make_harness(const std::string& unit, const std::vector<Port>& ports) {
       "  {7} u_unit (\n{8}\n  );\n"
       "endmodule\n",
       kHarness, inputs - 1, 3 * folded - 1, 3 * folded - 1, folded - 1, folded,
-      3 * folded > outputs ? fmt::format("  assign out[{}:{}] = 0;\n", 3 * folded - 1, outputs) : "", unit, connections);
+      3 * folded > outputs ? fmt::format("  assign out[{}:{}] = 0;\n", 3 * folded - 1, outputs) : "", unit,
+      connections);
   return harness;
 }
 

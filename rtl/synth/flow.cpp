@@ -84,14 +84,17 @@ InputError no_room(const Report& report, const Target& target, const std::string
 class Flow {
  public:
   Flow(const Request& request, const Target& target, Project project, const std::string& out)
-      : request_(request), target_(target), project_(std::move(project)), out_(out),
+      : request_(request),
+        target_(target),
+        project_(std::move(project)),
+        out_(out),
         tools_(out, [](const std::string& what) { say(what); }) {
     report_.plan = project_.plan;
     report_.nodes = project_.nodes;
     report_.particles = project_.particles;
     report_.cycles_per_step = project_.cycles_per_step;
     report_.target = target.name;
-    report_.device = target.device;
+    report_.device = target.family == Family::asic ? fs::path(liberty()).stem().string() : target.device;
     report_.unit = request.unit;
     report_.holds = target.holds;
   }
@@ -128,9 +131,14 @@ class Flow {
       s.harness = false;
       const auto& ports = design.modules.at(s.module).ports;
       if (std::none_of(ports.begin(), ports.end(), [](const Port& p) { return p.name == "clk_i"; }))
-        throw InputError(fmt::format("the block '{}' has no clock, so no time can be told of it", request_.unit));
+        throw InputError(
+            fmt::format("the block '{}' has no clock, so no time can be told of it", request_.unit));
     }
-    if (s.harness) tools_.write("harness.v", make_harness(s.unit, design.modules.at(s.module).ports).text);
+    if (s.harness) {
+      const Harness harness = make_harness(s.unit, design.modules.at(s.module).ports);
+      tools_.write("harness.v", harness.text);
+      report_.harness = harness.flip_flops;
+    }
     top_ = s.harness ? kHarness : s.unit;
     if (target_.family == Family::ecp5) tools_.write("read_side.v", read_side_module());
     if (asic) tools_.write("abc.constr", "set_load 0.02 [all_outputs]\n");  // pF: one or two inputs
@@ -151,10 +159,22 @@ class Flow {
 
   void place_ice40() {
     const std::string asc = tools_.path("unit.asc"), timing = tools_.path("timing.json");
-    std::vector<std::string> arguments = {
-        "--" + target_.name, "--package", target_.package, "--json", tools_.path("netlist.json"), "--top", top_,
-        "--freq", fmt::format("{:g}", frequency()), "--seed", std::to_string(request_.seed), "--timing-allow-fail",
-        "--asc", asc, "--report", timing};
+    std::vector<std::string> arguments = {"--" + target_.name,
+                                          "--package",
+                                          target_.package,
+                                          "--json",
+                                          tools_.path("netlist.json"),
+                                          "--top",
+                                          top_,
+                                          "--freq",
+                                          fmt::format("{:g}", frequency()),
+                                          "--seed",
+                                          std::to_string(request_.seed),
+                                          "--timing-allow-fail",
+                                          "--asc",
+                                          asc,
+                                          "--report",
+                                          timing};
     if (!pins_.empty()) arguments.insert(arguments.end(), {"--pcf", pins_});
     report_.tools.push_back(first_line("nextpnr-ice40", "--version"));
     try {
@@ -162,15 +182,19 @@ class Flow {
     } catch (const ToolFailed&) {
       std::string why;
       bool full = false;
-      for (const auto& [kind, use] : read_utilisation(read_text(tools_.path("nextpnr.log")))) {
-        if (use.used == 0) continue;
+      const auto packed = read_utilisation(read_text(tools_.path("nextpnr.log")));
+      for (const auto& [kind, use] : packed) {
+        if (use.used == 0 || !kind.starts_with("ICESTORM_")) continue;
         full = full || use.used > use.available;
         why += fmt::format("{}{} {}/{}", why.empty() ? "" : ", ", kind, use.used, use.available);
       }
-      if (full) throw no_room(report_, target_, why);
+      if (full) {
+        report_.pack(packed);
+        throw no_room(report_, target_, why);
+      }
       throw;
     }
-    take(read_nextpnr_report(timing), fmt::format("nextpnr-ice40, seed {}", request_.seed));
+    report_.take(read_nextpnr_report(timing), fmt::format("nextpnr-ice40, seed {}", request_.seed));
     tools_.run("icepack writes the bitstream", "icepack", "icepack", {asc, tools_.path("unit.bin")});
     tools_.run("icetime looks again", "icetime", "icetime", {"-m", "-t", "-d", target_.name, asc});
     report_.icetime = read_icetime(read_text(tools_.path("icetime.log")));
@@ -179,13 +203,15 @@ class Flow {
   void place_ecp5() {
     if (!pins_.empty()) fs::copy_file(pins_, tools_.path("pins.lpf"));
     tools_.write("place.sh", place_script(target_, top_, frequency(), request_.seed, pins_));
-    fs::permissions(tools_.path("place.sh"), fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
+    fs::permissions(tools_.path("place.sh"),
+                    fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                     fs::perm_options::add);
-    if (!in_path("nextpnr-ecp5") || !in_path("ecppack")) return;
+    if (!request_.place || !in_path("nextpnr-ecp5") || !in_path("ecppack")) return;
     report_.tools.push_back(first_line("nextpnr-ecp5", "--version"));
     tools_.run("nextpnr-ecp5 places and routes", "place", "sh",
                {"-c", "cd \"$1\" && exec ./place.sh", "sh", fs::absolute(out_).string()});
-    take(read_nextpnr_report(tools_.path("timing.json")), fmt::format("nextpnr-ecp5, seed {}", request_.seed));
+    report_.take(read_nextpnr_report(tools_.path("timing.json")),
+                 fmt::format("nextpnr-ecp5, seed {}", request_.seed));
   }
 
   // Once for the time, once for the power at the clock that this allows.
@@ -201,7 +227,8 @@ class Flow {
       const std::string log = read_text(tools_.path("sta.log"));
       const auto analysed = read_sta(log);
       // It goes on after an error, with exit status 0.
-      if (!analysed || log.find("\nError:") != std::string::npos) throw ToolFailed("sta", "sta.log", complaint_of(log));
+      if (!analysed || log.find("\nError:") != std::string::npos)
+        throw ToolFailed("sta", "sta.log", complaint_of(log));
       return *analysed;
     };
     s.delay = kFirst - sta(kFirst).slack;
@@ -210,14 +237,6 @@ class Flow {
     report_.silicon = s;
     report_.fmax = s.frequency;
     report_.fmax_from = "OpenSTA, without wires";
-  }
-
-  void take(const Placed& placed, const std::string& from) {
-    report_.fmax = placed.fmax;
-    report_.fmax_from = from;
-    report_.critical = placed.critical;
-    if (const auto cells = placed.use.find("ICESTORM_LC"); cells != placed.use.end())
-      report_.cells = cells->second.used;
   }
 
  private:
@@ -239,10 +258,49 @@ class Flow {
 
 void store(Pending& pending, Report& report) {
   write_text(pending.path() + "/table.txt", print_table(report));
+  write_text(pending.path() + "/report.json", "");  // so that it is among its files
   report.files = pending.files();
-  report.files.push_back("report.json");
-  std::sort(report.files.begin(), report.files.end());
   write_text(pending.path() + "/report.json", to_json(report).dump(2) + "\n");
+}
+
+// Whether a placer saw the netlist that the report is of.
+void check_same(const Placed& placed, const Report& report, const std::string& file) {
+  for (const auto& [kind, resource] :
+       {std::pair{"TRELLIS_FF", Resource::ff}, std::pair{"MULT18X18D", Resource::dsp},
+        std::pair{"DP16KD", Resource::bram}}) {
+    const auto use = placed.use.find(kind);
+    const uint64_t used = use == placed.use.end() ? 0 : use->second.used;
+    if (used != report.used[resource])
+      throw InputError(fmt::format("{}: is of another netlist: {} {} there, {} here", file, used, kind,
+                                   report.used[resource]),
+                       "place the netlist.json that is here");
+  }
+}
+
+// What a run before this one left, with what a placer said of it elsewhere.
+Report add_timing(const Request& request, const Target& target, const Project& project) {
+  const std::string results = results_directory(request);
+  if (target.family != Family::ecp5)
+    throw InputError(
+        fmt::format("--timing is for ecp5-25 and ecp5-85: {} is placed here or not at all", target.name));
+  const Placed placed = read_nextpnr_report(request.timing);
+  if (!fs::exists(results + "/report.json"))
+    throw InputError(fmt::format("{}: holds no synthesis yet", results),
+                     "run the command without --timing first");
+  Report report = read_report(results + "/report.json");
+  if (report.plan != project.plan)
+    throw InputError(fmt::format("{}: is of plan {}, the project of {}", results, report.plan, project.plan),
+                     "run the command without --timing first");
+  check_same(placed, report, request.timing);
+  report.take(placed, "nextpnr-ecp5, elsewhere");
+  Pending pending(results);
+  const fs::copy_options over = fs::copy_options::overwrite_existing;
+  for (const auto& entry : fs::directory_iterator(results))
+    fs::copy_file(entry, fs::path(pending.path()) / entry.path().filename(), over);
+  fs::copy_file(request.timing, pending.path() + "/timing.json", over);
+  store(pending, report);
+  pending.done();
+  return report;
 }
 
 }  // namespace
@@ -256,16 +314,18 @@ std::string results_directory(const Request& request) {
 Report synthesise(const Request& request) {
   const Target& target = target_of(request.target);
   Project project = read_project(request.directory);
+  if (!request.timing.empty()) return add_timing(request, target, project);
   catch_interrupts();
   Pending pending(results_directory(request));
   Flow flow(request, target, std::move(project), pending.path());
   if (target.family == Family::asic && request.liberty.empty() && !fs::exists(kOsu018))
-    throw InputError(fmt::format("{} is not there", kOsu018), "apt-get install qflow-tech-osu018, or --liberty FILE");
+    throw InputError(fmt::format("{} is not there", kOsu018),
+                     "apt-get install qflow-tech-osu018, or --liberty FILE");
   try {
     flow.synthesise();
     try {
       flow.check_room();
-      if (target.family == Family::ice40) flow.place_ice40();
+      if (target.family == Family::ice40 && request.place) flow.place_ice40();
       if (target.family == Family::ecp5) flow.place_ecp5();
       if (target.family == Family::asic) flow.time_asic();
     } catch (const InputError&) {

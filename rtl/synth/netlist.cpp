@@ -104,7 +104,8 @@ Block read_netlist(const std::string& file, const std::string& netlist_module, c
 
 Counts count_all(const std::string& file, const std::string& top, const CostOf& cost_of) {
   Counts all;
-  walk(read_modules(file), top, "", cost_of, [&](const std::string&, const Counts& counts) { all += counts; });
+  walk(read_modules(file), top, "", cost_of,
+       [&](const std::string&, const Counts& counts) { all += counts; });
   return all;
 }
 

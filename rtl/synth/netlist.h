@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a netlist takes, by block. Synthesis flattens the hierarchy, as logic and memories are shared across its
-// borders, but yosys names each cell after the instance whose net it drives; so every cell belongs to one block, and the
-// blocks sum up to the whole.
+// What a netlist takes, by block. Synthesis flattens the hierarchy, as logic and memories are shared across
+// its borders, but yosys names each cell after the instance whose net it drives; so every cell belongs to one
+// block, and the blocks sum up to the whole.
 #pragma once
 
 #include <map>
@@ -15,9 +15,9 @@ namespace cuboct::synth {
 
 // A block and those in it. Blocks of one source in one block are one row.
 struct Block {
-  std::string module;          // source name
-  uint64_t instances = 1;      // in all of the unit
-  Counts counts;               // with all below it
+  std::string module;           // source name
+  uint64_t instances = 1;       // in all of the unit
+  Counts counts;                // with all below it
   std::vector<Block> children;  // in the order of names
 };
 

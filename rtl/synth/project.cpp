@@ -44,7 +44,8 @@ Project read_project(const std::string& directory) {
   const std::string file = (dir / "project.json").string();
   std::ifstream in(file);
   if (!in)
-    throw InputError(fmt::format("{}: is no project of cuboct emit: it has no project.json", directory), kHint);
+    throw InputError(fmt::format("{}: is no project of cuboct emit: it has no project.json", directory),
+                     kHint);
   Json json;
   try {
     json = Json::parse(in);

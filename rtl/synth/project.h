@@ -13,12 +13,12 @@ struct Project {
   std::string plan;  // hash, 16 hexadecimal digits
   uint64_t nodes = 0, particles = 0;
   int capacity = 0;
-  uint64_t cycles_per_step = 0;     // expected, of the busiest node (hw/cycles.h)
-  std::vector<std::string> files;   // below the directory, in the order to read
+  uint64_t cycles_per_step = 0;    // expected, of the busiest node (hw/cycles.h)
+  std::vector<std::string> files;  // below the directory, in the order to read
 };
 
-// Throws InputError: no such directory, no project, an entry that is missing or of another kind, a file that is not
-// there.
+// Throws InputError: no such directory, no project, an entry that is missing or of another kind, a file that
+// is not there.
 Project read_project(const std::string& directory);
 
 // The files, top module and pins of DIR/board.

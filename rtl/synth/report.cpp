@@ -44,7 +44,8 @@ Json to_json(const Counts& counts, Family family) {
 }
 
 Json to_json(const Block& block, Family family) {
-  Json json = {{"module", block.module}, {"instances", block.instances}, {"uses", to_json(block.counts, family)}};
+  Json json = {
+      {"module", block.module}, {"instances", block.instances}, {"uses", to_json(block.counts, family)}};
   if (!block.children.empty()) {
     json["blocks"] = Json::array();
     for (const Block& child : block.children) json["blocks"].push_back(to_json(child, family));
@@ -54,7 +55,8 @@ Json to_json(const Block& block, Family family) {
 
 Counts counts_of(const nlohmann::json& json) {
   Counts counts;
-  for (const Resource r : {Resource::lut, Resource::ff, Resource::dsp, Resource::bram, Resource::gates, Resource::area})
+  for (const Resource r :
+       {Resource::lut, Resource::ff, Resource::dsp, Resource::bram, Resource::gates, Resource::area})
     counts[r] = json.value(to_string(r), uint64_t{0});
   return counts;
 }
@@ -75,6 +77,18 @@ double steps_per_second(const Report& report, double mhz) {
 
 }  // namespace
 
+void Report::take(const Placed& placed, const std::string& from) {
+  fmax = placed.fmax;
+  fmax_from = from;
+  critical = placed.critical;
+  pack(placed.use);
+}
+
+void Report::pack(const std::map<std::string, Use>& use) {
+  if (const auto packed = use.find("ICESTORM_LC"); packed != use.end())
+    cells = packed->second.used - std::min(packed->second.used, harness);
+}
+
 std::optional<Fit> fit_of(const Report& report) {
   const Target& target = target_of(report.target);
   std::optional<Fit> fit;
@@ -84,12 +98,17 @@ std::optional<Fit> fit_of(const Report& report) {
     const uint64_t units = room / report.block.counts[r];
     if (!fit || units < fit->units) fit = {units, r};
   }
+  // A LUT and a flip-flop share a logic cell only where the one feeds the other.
+  if (fit && report.cells && *report.cells > 0)
+    if (const uint64_t units = report.holds[Resource::lut] / *report.cells; units < fit->units)
+      fit = {units, Resource::cell};
   return fit;
 }
 
 std::string print_table(const Report& report) {
   const Target& target = target_of(report.target);
-  std::string text = fmt::format("{} of plan {} on {} ({})\n\n", report.unit, report.plan, report.target, report.device);
+  std::string text =
+      fmt::format("{} of plan {} on {} ({})\n\n", report.unit, report.plan, report.target, report.device);
   text += fmt::format("{:<34} {:>5}", "block", "x");
   for (const Resource r : resources_of(target.family)) text += fmt::format(" {:>8}", to_string(r));
   text += "\n";
@@ -100,21 +119,26 @@ std::string print_table(const Report& report) {
     text += "\n";
   }
   text += "\n";
-  const auto line = [&](const char* what, const std::string& value) { text += fmt::format("{:<22} {}\n", what, value); };
+  const auto line = [&](const char* what, const std::string& value) {
+    text += fmt::format("{:<22} {}\n", what, value);
+  };
   if (const auto fit = fit_of(report)) {
     const double share = planned_share(target, fit->limit);
-    line("fit the device", fmt::format("{} of {}, limited by {}{}", fit->units, report.unit, to_string(fit->limit),
-                                       share < 1 ? fmt::format(" (planned to {:.0f} %)", 100 * share) : ""));
+    line("fit the device",
+         fmt::format("{} of {}, limited by {}{}", fit->units, report.unit, to_string(fit->limit),
+                     share < 1 ? fmt::format(" (planned to {:.0f} %)", 100 * share) : ""));
   }
-  if (report.cells) line("logic cells, packed", fmt::format("{} with the harness", *report.cells));
+  if (report.cells)
+    line("logic cells, packed", fmt::format("{}, and {} of the harness", *report.cells, report.harness));
   if (report.depth) line("longest path", fmt::format("{} cells between registers", *report.depth));
   if (report.silicon) {
     const Silicon& s = *report.silicon;
     line("standard cells", s.library);
     line("area", fmt::format("{:.4g} mm^2", s.area * 1e-6));
     line("longest path", fmt::format("{:.2f} ns", s.delay));
-    line("power", fmt::format("{:.4g} W at {:.1f} MHz, {:.3g} nJ per cycle; each net changing {:.2g} times per clock",
-                              s.power, s.frequency, s.power / s.frequency * 1e3, s.activity));
+    line("power",
+         fmt::format("{:.4g} W at {:.1f} MHz, {:.3g} nJ per cycle; each net changing {:.2g} times per clock",
+                     s.power, s.frequency, s.power / s.frequency * 1e3, s.activity));
   }
   if (report.fmax) {
     line("Fmax", fmt::format("{:.2f} MHz ({})", *report.fmax, report.fmax_from));
@@ -139,8 +163,10 @@ nlohmann::ordered_json to_json(const Report& report) {
                {"cycles_per_step", report.cycles_per_step},
                {"used", to_json(report.used, family)},
                {"holds", to_json(report.holds, family)}};
-  if (const auto fit = fit_of(report)) json["fit"] = {{"units", fit->units}, {"limit", to_string(fit->limit)}};
+  if (const auto fit = fit_of(report))
+    json["fit"] = {{"units", fit->units}, {"limit", to_string(fit->limit)}};
   if (report.cells) json["logic_cells"] = *report.cells;
+  json["harness_flip_flops"] = report.harness;
   if (report.depth) json["depth"] = *report.depth;
   if (report.fmax) {
     json["fmax_mhz"] = *report.fmax;
@@ -151,8 +177,8 @@ nlohmann::ordered_json to_json(const Report& report) {
   if (report.icetime) json["icetime_mhz"] = *report.icetime;
   if (report.silicon) {
     const Silicon& s = *report.silicon;
-    json["silicon"] = {{"library", s.library},   {"area_um2", s.area},         {"delay_ns", s.delay},
-                       {"power_w", s.power},     {"activity", s.activity},     {"at_mhz", s.frequency}};
+    json["silicon"] = {{"library", s.library}, {"area_um2", s.area},     {"delay_ns", s.delay},
+                       {"power_w", s.power},   {"activity", s.activity}, {"at_mhz", s.frequency}};
   }
   json["tools"] = report.tools;
   json["files"] = report.files;
@@ -182,6 +208,7 @@ Report read_report(const std::string& file) {
     if (json.contains("icetime_mhz")) report.icetime = json.at("icetime_mhz").get<double>();
     optional("fmax_from", report.fmax_from);
     optional("critical_path", report.critical);
+    report.harness = json.at("harness_flip_flops");
     report.tools = json.at("tools");
     report.files = json.at("files");
     report.block = block_of(json.at("block"));

@@ -19,24 +19,34 @@ std::string read_all(const std::vector<std::string>& files, const std::string& t
 
 std::string synth_command(const Target& target) {
   switch (target.family) {
-    case Family::ice40: return target.holds[Resource::dsp] > 0 ? "synth_ice40 -dsp" : "synth_ice40";
-    case Family::ecp5: return "synth_ecp5";
-    case Family::xc7: return "synth_xilinx -family xc7 -flatten";
-    case Family::asic: break;
+    case Family::ice40:
+      return target.holds[Resource::dsp] > 0 ? "synth_ice40 -dsp" : "synth_ice40";
+    case Family::ecp5:
+      return "synth_ecp5";
+    case Family::xc7:
+      return "synth_xilinx -family xc7 -flatten";
+    case Family::asic:
+      break;
   }
   return "";
 }
 
-// The longest path between registers, in cells: all that can be said of speed before placing. Cells whose outputs come
-// from registers go; a LUT memory stays as what it is on its read side, LUTs, or each write would be a path.
+// The longest path between registers, in cells: all that can be said of speed before placing. Cells whose
+// outputs come from registers go; a LUT memory stays as what it is on its read side, LUTs, or each write
+// would be a path.
 std::string depth_commands(Family family, const std::string& out) {
   const std::string flat = "setattr -mod -unset keep_hierarchy *\nflatten\n", end = "ltp\n";
   switch (family) {
     case Family::ecp5:
-      return flat + fmt::format("delete t:TRELLIS_FF t:DP16KD t:PDPW16KD\ntechmap -map {}\n", quoted(out + "/read_side.v")) + end;
-    case Family::xc7: return flat + "delete t:FD?E t:RAM* t:SRL* t:DSP48E1\n" + end;
+      return flat +
+             fmt::format("delete t:TRELLIS_FF t:DP16KD t:PDPW16KD\ntechmap -map {}\n",
+                         quoted(out + "/read_side.v")) +
+             end;
+    case Family::xc7:
+      return flat + "delete t:FD?E t:RAM* t:SRL* t:DSP48E1\n" + end;
     case Family::ice40:  // nextpnr says more
-    case Family::asic: break;
+    case Family::asic:
+      break;
   }
   return "";
 }
@@ -52,10 +62,11 @@ std::string fpga_script(const Synthesis& s, const Target& target) {
   std::string text = read_all(s.files, s.top);
   if (s.module != s.unit) text += fmt::format("rename {} {}\n", s.module, s.unit);
   if (s.harness)
-    text += fmt::format("read_verilog {}\nsetattr -mod -set keep_hierarchy 1 {}\n", quoted(s.out + "/harness.v"), s.unit);
+    text += fmt::format("read_verilog {}\nsetattr -mod -set keep_hierarchy 1 {}\n",
+                        quoted(s.out + "/harness.v"), s.unit);
   if (!s.kept.empty()) text += fmt::format("setattr -mod -set keep_hierarchy 1 {}\n", s.kept);
-  text += fmt::format("{} -top {}\nautoname\nwrite_json {}\n", synth_command(target), s.harness ? kHarness : s.unit,
-                      quoted(s.out + "/netlist.json"));
+  text += fmt::format("{} -top {}\nautoname\nwrite_json {}\n", synth_command(target),
+                      s.harness ? kHarness : s.unit, quoted(s.out + "/netlist.json"));
   text += fmt::format("write_verilog -noattr {}\n", quoted(s.out + "/netlist.v"));
   text += depth_commands(target.family, s.out);
   return text;
@@ -80,8 +91,8 @@ std::string asic_script(const Synthesis& s, const std::string& liberty) {
                     quoted(s.out + "/netlist.v"));
 }
 
-std::string sta_script(const std::string& liberty, const std::string& netlist, const std::string& top, double period,
-                       double activity) {
+std::string sta_script(const std::string& liberty, const std::string& netlist, const std::string& top,
+                       double period, double activity) {
   return fmt::format(
       "read_liberty {{{0}}}\n"
       "set_cmd_units -time ns -power W\n"
@@ -98,15 +109,17 @@ std::string read_side_module() {
   std::string luts;
   for (int b = 0; b < 4; ++b)
     luts += fmt::format("  LUT4 u_{0} (.A(RAD[0]), .B(RAD[1]), .C(RAD[2]), .D(RAD[3]), .Z(DO[{0}]));\n", b);
-  return "module TRELLIS_DPR16X4 (\n  input [3:0] DI, WAD, RAD, input WRE, WCK, output [3:0] DO\n);\n" + luts +
-         "endmodule\n";
+  return "module TRELLIS_DPR16X4 #(\n  parameter WCKMUX = \"WCK\", parameter WREMUX = \"WRE\", parameter "
+         "INITVAL = 0\n) (\n  input [3:0] DI, WAD, RAD, input WRE, WCK, output [3:0] DO\n);\n" +
+         luts + "endmodule\n";
 }
 
 std::string place_script(const Target& target, const std::string& top, double frequency, int seed,
                          const std::string& pins) {
   return fmt::format(
       "#!/bin/sh\n"
-      "# Places and routes netlist.json: run it in this directory, where nextpnr-ecp5 and ecppack are in PATH.\n"
+      "# Places and routes netlist.json: run it in this directory, where nextpnr-ecp5 and ecppack are in "
+      "PATH.\n"
       "# Then, in the project's directory: cuboct synth . --target {0} --unit UNIT --timing timing.json\n"
       "set -eu\n"
       "nextpnr-ecp5 --{1} --package {2} --speed 6 --json netlist.json --top {3} --freq {4:g} --seed {5} \\\n"

@@ -21,39 +21,68 @@ constexpr Counts bram(uint64_t n) { return {{0, 0, 0, n}}; }
 using Costs = std::map<std::string, Counts>;
 
 // A carry shares its logic cell with a LUT; nextpnr counts the few that do not.
-const Costs kIce40 = {{"SB_LUT4", lut(1)},     {"SB_CARRY", {}},          {"SB_MAC16", dsp(1)},
-                      {"SB_RAM40_4K", bram(1)}, {"SB_RAM40_4KNR", bram(1)}, {"SB_RAM40_4KNW", bram(1)},
-                      {"SB_RAM40_4KNRNW", bram(1)}, {"SB_IO", {}},           {"SB_GB", {}},
-                      {"SB_GB_IO", {}},         {"SB_HFOSC", {}},           {"SB_PLL40_PAD", {}},
-                      {"SB_PLL40_CORE", {}},    {"SB_RGBA_DRV", {}}};
+const Costs kIce40 = {{"SB_LUT4", lut(1)},
+                      {"SB_CARRY", {}},
+                      {"SB_MAC16", dsp(1)},
+                      {"SB_RAM40_4K", bram(1)},
+                      {"SB_RAM40_4KNR", bram(1)},
+                      {"SB_RAM40_4KNW", bram(1)},
+                      {"SB_RAM40_4KNRNW", bram(1)},
+                      {"SB_IO", {}},
+                      {"SB_GB", {}},
+                      {"SB_GB_IO", {}},
+                      {"SB_HFOSC", {}},
+                      {"SB_PLL40_PAD", {}},
+                      {"SB_PLL40_CORE", {}},
+                      {"SB_RGBA_DRV", {}}};
 
 // nextpnr's count of TRELLIS_COMB: a CCU2C takes two, a 16 x 4 memory four.
-const Costs kEcp5 = {{"LUT4", lut(1)},          {"CCU2C", lut(2)},      {"TRELLIS_DPR16X4", lut(4)},
-                     {"PFUMX", {}},             {"L6MUX21", {}},        {"TRELLIS_FF", ff(1)},
-                     {"MULT18X18D", dsp(1)},    {"ALU54B", {}},         {"DP16KD", bram(1)},
-                     {"PDPW16KD", bram(1)},     {"TRELLIS_IO", {}},     {"EHXPLLL", {}},
-                     {"DCCA", {}},              {"GSR", {}},            {"SGSR", {}},
-                     {"BB", {}},                {"IB", {}},             {"OB", {}}};
+const Costs kEcp5 = {{"LUT4", lut(1)},
+                     {"CCU2C", lut(2)},
+                     {"TRELLIS_DPR16X4", lut(4)},
+                     {"PFUMX", {}},
+                     {"L6MUX21", {}},
+                     {"TRELLIS_FF", ff(1)},
+                     {"MULT18X18D", dsp(1)},
+                     {"ALU54B", {}},
+                     {"DP16KD", bram(1)},
+                     {"PDPW16KD", bram(1)},
+                     {"TRELLIS_IO", {}},
+                     {"EHXPLLL", {}},
+                     {"DCCA", {}},
+                     {"GSR", {}},
+                     {"SGSR", {}},
+                     {"BB", {}},
+                     {"IB", {}},
+                     {"OB", {}}};
 
-const Costs kXc7 = {{"LUT1", lut(1)},       {"LUT2", lut(1)},       {"LUT3", lut(1)},      {"LUT4", lut(1)},
-                    {"LUT5", lut(1)},       {"LUT6", lut(1)},       {"INV", lut(1)},       {"MUXF7", {}},
-                    {"MUXF8", {}},          {"CARRY4", {}},         {"SRL16E", lut(1)},    {"SRLC16E", lut(1)},
-                    {"SRLC32E", lut(1)},    {"RAM32X1D", lut(2)},   {"RAM64X1D", lut(2)},  {"RAM128X1D", lut(4)},
-                    {"RAM32M", lut(4)},     {"RAM64M", lut(4)},     {"RAM32X1S", lut(1)},  {"RAM64X1S", lut(1)},
-                    {"FDRE", ff(1)},        {"FDSE", ff(1)},        {"FDCE", ff(1)},       {"FDPE", ff(1)},
-                    {"DSP48E1", dsp(1)},    {"RAMB18E1", bram(1)},  {"RAMB36E1", bram(2)}, {"IBUF", {}},
-                    {"OBUF", {}},           {"BUFG", {}},           {"IBUFG", {}}};
+const Costs kXc7 = {{"LUT1", lut(1)},    {"LUT2", lut(1)},      {"LUT3", lut(1)},      {"LUT4", lut(1)},
+                    {"LUT5", lut(1)},    {"LUT6", lut(1)},      {"INV", lut(1)},       {"MUXF7", {}},
+                    {"MUXF8", {}},       {"CARRY4", {}},        {"SRL16E", lut(1)},    {"SRLC16E", lut(1)},
+                    {"SRLC32E", lut(1)}, {"RAM32X1D", lut(2)},  {"RAM64X1D", lut(2)},  {"RAM128X1D", lut(4)},
+                    {"RAM32M", lut(4)},  {"RAM64M", lut(4)},    {"RAM32X1S", lut(1)},  {"RAM64X1S", lut(1)},
+                    {"FDRE", ff(1)},     {"FDSE", ff(1)},       {"FDCE", ff(1)},       {"FDPE", ff(1)},
+                    {"DSP48E1", dsp(1)}, {"RAMB18E1", bram(1)}, {"RAMB36E1", bram(2)}, {"IBUF", {}},
+                    {"OBUF", {}},        {"BUFG", {}},          {"IBUFG", {}}};
 
 }  // namespace
 
 const char* to_string(Resource resource) {
   switch (resource) {
-    case Resource::lut: return "LUT";
-    case Resource::ff: return "FF";
-    case Resource::dsp: return "DSP";
-    case Resource::bram: return "BRAM";
-    case Resource::gates: return "gates";
-    case Resource::area: return "um^2";
+    case Resource::lut:
+      return "LUT";
+    case Resource::ff:
+      return "FF";
+    case Resource::dsp:
+      return "DSP";
+    case Resource::bram:
+      return "BRAM";
+    case Resource::gates:
+      return "gates";
+    case Resource::area:
+      return "um^2";
+    case Resource::cell:
+      return "logic cells";
   }
   return "";
 }
@@ -90,8 +119,8 @@ const Target& target_of(const std::string& name) {
   }
   const std::string near = did_you_mean(name, names);
   throw InputError("unknown target '" + name + "'",
-                   (near.empty() ? "" : near + " ") + "there are " + list_of(names).replace(
-                       list_of(names).rfind(" or "), 4, " and "));
+                   (near.empty() ? "" : near + " ") + "there are " +
+                       list_of(names).replace(list_of(names).rfind(" or "), 4, " and "));
 }
 
 double planned_share(const Target& target, Resource resource) {
@@ -109,7 +138,8 @@ CostOf costs_of(Family family) {
 }
 
 CostOf costs_of_liberty(const std::string& file) {
-  // cell (NAME) { ... area : A; ... ff (...) or latch (...) ... }: the one level of the format that is needed here.
+  // cell (NAME) { ... area : A; ... ff (...) or latch (...) ... }: the one level of the format that is needed
+  // here.
   static const std::regex cell_form(R"re(^\s*cell\s*\(\s*"?([A-Za-z0-9_]+)"?\s*\))re"),
       area_form(R"re(^\s*area\s*:\s*([0-9.eE+-]+))re"), register_form(R"re(^\s*(ff|latch)(_bank)?\s*\()re");
   std::ifstream in(file);

@@ -35,13 +35,15 @@ Placed read_nextpnr_report(const std::string& file) {
     // The path from register to register that takes longest.
     double longest = 0;
     for (const auto& path : json.value("critical_paths", nlohmann::json::array())) {
-      if (path.at("from") != path.at("to") || !path.at("from").get<std::string>().starts_with("posedge")) continue;
+      if (path.at("from") != path.at("to") || !path.at("from").get<std::string>().starts_with("posedge"))
+        continue;
       double total = 0;
       std::vector<std::string> parts;
       for (const auto& part : path.at("path")) {
         total += part.at("delay").get<double>();
         parts.push_back(fmt::format("{:.2f} ns {} {}", part.at("delay").get<double>(),
-                                    part.at("type").get<std::string>(), part.at("to").at("cell").get<std::string>()));
+                                    part.at("type").get<std::string>(),
+                                    part.at("to").at("cell").get<std::string>()));
       }
       if (total > longest) {
         longest = total;

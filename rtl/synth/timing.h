@@ -16,15 +16,16 @@ struct Use {
 
 // nextpnr's JSON report (--report).
 struct Placed {
-  double fmax = 0;                     // MHz, of the slowest clock
-  std::map<std::string, Use> use;      // by kind of cell: "ICESTORM_LC", "TRELLIS_COMB", ...
-  std::vector<std::string> critical;   // "0.54 ns logic NET" parts of the critical path, as source and sink names
+  double fmax = 0;                 // MHz, of the slowest clock
+  std::map<std::string, Use> use;  // by kind of cell: "ICESTORM_LC", "TRELLIS_COMB", ...
+  std::vector<std::string>
+      critical;  // "0.54 ns logic NET" parts of the critical path, as source and sink names
 };
 // Throws InputError: no such file, no JSON, no report of nextpnr (no clock was found).
 Placed read_nextpnr_report(const std::string& file);
 
-// "Info: \t ICESTORM_LC: 900/ 5280 17%" lines, which nextpnr prints before it places: where placing failed there is no
-// report.
+// "Info: \t ICESTORM_LC: 900/ 5280 17%" lines, which nextpnr prints before it places: where placing failed
+// there is no report.
 std::map<std::string, Use> read_utilisation(const std::string& log);
 
 // MHz of icetime's "Total path delay: 19.68 ns (50.81 MHz)".

@@ -19,8 +19,9 @@ namespace {
 
 // Where Debian 12 has none, the hint says so.
 const std::map<std::string, std::string> kPackages = {
-    {"yosys", "yosys"},           {"nextpnr-ice40", "nextpnr-ice40"}, {"icepack", "fpga-icestorm"},
-    {"icetime", "fpga-icestorm"}, {"sta", "opensta"},
+    {"yosys", "yosys"},           {"nextpnr-ice40", "nextpnr-ice40"},
+    {"icepack", "fpga-icestorm"}, {"icetime", "fpga-icestorm"},
+    {"sta", "opensta"},
 };
 
 }  // namespace

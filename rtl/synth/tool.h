@@ -42,7 +42,8 @@ class Runner {
 // First line of what `program argument` prints, or empty: a version.
 std::string first_line(const std::string& program, const std::string& argument);
 
-// The line of a log in which a tool says what it dislikes: the last with "ERROR" or "Error:", or the last of all.
+// The line of a log in which a tool says what it dislikes: the last with "ERROR" or "Error:", or the last of
+// all.
 std::string complaint_of(const std::string& log);
 
 // A file as text. Throws std::runtime_error.
