@@ -321,7 +321,7 @@ module migrate_formal #(
         c_crowded: cover (fault_full || full_q != '0);
         c_swap:    cover (down_q != '0 && came_w_q && room && count_q == Capacity[CountBits-1:0]);
         c_left:    cover (left_q != '0);
-        c_kept:    cover (stays_watched && place != watched[CountBits-1:0]);
+        c_kept:    cover (stays_watched && (Capacity == 1 || place != watched[CountBits-1:0]));
         c_again:   cover (again_q && up_q != '0 && axis_q == 2'd1);
       end
       a_progress: assert (!(quiet && quiet_q));

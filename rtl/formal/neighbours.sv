@@ -128,7 +128,7 @@ module neighbours_formal #(
   always_ff @(posedge clk_i) begin
     if (!running_q || start) ahead_q <= '0;
     else ahead_q <= ahead_q + ((step == 2'b01) ? 3'sd1 : (step == 2'b10) ? -3'sd1 : 3'sd0);
-    apart_q <= running_q && (apart_q || (ahead_q == 3'sd1 && tap_state_0 == 4'd1));
+    apart_q <= running_q && (apart_q || (ahead_q == 3'sd1 && tap_state_0 == Axis));
   end
 
   // What makes it provable: streams are counted, modulo 8, where they are sent, where they are told, and where they are
@@ -220,7 +220,7 @@ module neighbours_formal #(
                         && tap_migrate_0 <= TakeHigh && tap_migrate_1 <= TakeHigh);
       i_ahead:  assert (ahead_q == $signed(step_0_q - step_1_q));
       c_apart:    cover (apart_q);
-      c_waits:    cover (waits[0] && tap_state_0 == 4'd1 && tap_state_1 == Force);
+      c_waits:    cover (waits[0] && tap_state_0 == Axis && tap_state_1 == Force);
     end
   end
 endmodule
