@@ -14,6 +14,7 @@ void add_check(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_crosscheck(CLI::App& app, int& exit_code);
 void add_emit(CLI::App& app, int& exit_code);
+void add_synth(CLI::App& app, int& exit_code);
 void add_explore(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 void add_picture(CLI::App& app, int& exit_code);

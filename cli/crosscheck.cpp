@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/crosscheck_real.h"
 #include "cli/engines.h"
+#include "cli/run_fpga.h"
 #include "cli/run_gpu.h"
 #include "cli/run_lattice.h"
 #include "model/interrupt.h"
@@ -16,6 +17,7 @@
 #include "model/compare.h"
 #include "model/output.h"
 #include "model/process.h"
+#include "model/progress.h"
 
 namespace cuboct {
 namespace {
@@ -25,6 +27,7 @@ struct Options {
   std::vector<std::string> engines{"golden", "lattice", "systemc", "rtl"};
   LatticeChoice lattice;
   GpuChoice gpu;
+  FpgaChoice fpga;
   std::string precision;
   std::string out;
   uint64_t steps = 0;
@@ -49,6 +52,8 @@ std::vector<Trace> run_all(const std::vector<std::string>& engines, const Option
       gpu.hash_every = 1;
       gpu.energies = false;
       programs[i].emplace(start_gpu(input, options.gpu, gpu, std::move(path), false));
+    } else if (engines[i] == "fpga") {
+      programs[i].emplace(start_fpga(input, options.fpga, request, 1, std::move(path), stderr_is_terminal()));
     } else {
       programs[i].emplace(engines[i], input, request, std::move(path), false);
     }
@@ -114,7 +119,7 @@ int crosscheck(Options options) {
   for (const std::string& engine : options.engines) {
     if (engine == "reference")
       throw InputError("engine 'reference' computes in doubles and has no bits to compare",
-                       "one of golden, lattice, systemc, rtl or gpu");
+                       "one of golden, lattice, systemc, rtl, fpga or gpu");
     check_engine(engine, fixed_engines());
   }
   std::vector<std::string> sorted = options.engines;
@@ -122,6 +127,10 @@ int crosscheck(Options options) {
   if (std::unique(sorted.begin(), sorted.end()) != sorted.end() || sorted.size() < 2)
     throw InputError("a crosscheck needs two or more different engines",
                      "--engines golden,lattice,systemc,rtl");
+  if (std::find(sorted.begin(), sorted.end(), "fpga") == sorted.end())
+    options.fpga.check_unused(fmt::format("{}", fmt::join(options.engines, ",")));
+  else
+    options.fpga.check_used();
   const Loaded loaded = load(options.input);
   catch_interrupts();
   const Setup& setup = loaded.setup;
@@ -191,6 +200,7 @@ void add_crosscheck(CLI::App& app, int& exit_code) {
   options->input.add_stalls_to(*command);
   options->lattice.add_to(*command);
   options->gpu.add_to(*command);
+  options->fpga.add_to(*command);
   command->add_option("--engines", options->engines, "which ones; default: golden,lattice,systemc,rtl")
       ->delimiter(',')
       ->type_name("A,B,...");

@@ -40,6 +40,7 @@ struct RtlDesign {
   std::vector<RtlConstant> constants;
   std::vector<RtlTable> tables;
   std::vector<FixedType> types;
+  std::vector<int> moved;  // types whose velocities come from outside (hw/board.h); decide() leaves it empty
   std::vector<std::vector<int32_t>> scale;  // types x types; empty where the plan has none
   int axes = 3;
   int type_bits = 0;
@@ -60,6 +61,7 @@ std::string print_package(const RtlDesign& design);
 std::string print_table(const RtlDesign& design, const RtlTable& table);
 std::string print_scale(const RtlDesign& design);  // cuboct_scale_rom
 std::string print_types(const RtlDesign& design);  // cuboct_type_rom
+std::string print_velocities(const RtlDesign& design);  // of design.moved, as one vector
 std::string print_node(const RtlDesign& design);   // cuboct_node
 std::string print_lattice(const RtlDesign& design);
 

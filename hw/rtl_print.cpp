@@ -30,12 +30,17 @@ struct Port {
   const char* name;
 };
 
+// All velocities that come from outside: type by type, axis 0 in the least significant place.
+std::string velocity_range(const RtlDesign& design) {
+  return fmt::format("[{}:0]", design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits) - 1);
+}
+
 // The ports of cuboct_node in order; `p` stands before each constant's name.
 std::vector<Port> node_ports(const RtlDesign& design) {
   const int faces = 2 * design.axes;
   const std::string link = fmt::format("[{}*cuboct_pkg::LinkBits-1:0]", faces),
                     particle = "[cuboct_pkg::ParticleBits-1:0]", face = fmt::format("[{}:0]", faces - 1);
-  return {{"input ", "", "clk_i"},
+  std::vector<Port> ports{{"input ", "", "clk_i"},
           {"input ", "", "rst_ni"},
           {"input ", "", "start_i"},
           {"input ", "[31:0]", "steps_i"},
@@ -59,6 +64,8 @@ std::vector<Port> node_ports(const RtlDesign& design) {
           {"output", "[cuboct_pkg::IdBits-1:0]", "fault_id_o"},
           {"output", "[63:0]", "fault_number_o"},
           {"output", "", "idle_o"}};
+  if (!design.moved.empty()) ports.insert(ports.begin() + 7, {"input ", velocity_range(design), "velocity_i"});
+  return ports;
 }
 
 std::string print_ports(const std::vector<Port>& ports) {
@@ -137,6 +144,15 @@ std::string print_scale(const RtlDesign& design) {
   return text + "      default: scale_o = '0;\n    endcase\n  end\nendmodule\n";
 }
 
+std::string print_velocities(const RtlDesign& design) {
+  std::string text;
+  for (const int k : design.moved) {
+    const FixedType& type = design.types[static_cast<size_t>(k)];
+    text = concatenated(type.velocity, design.velocity_bits, design.axes) + (text.empty() ? "" : ", ") + text;
+  }
+  return "{" + text + "}";
+}
+
 std::string print_types(const RtlDesign& design) {
   const int t = std::max(1, design.type_bits), v = design.velocity_bits, axes = design.axes;
   std::string text = head(design);
@@ -145,7 +161,7 @@ std::string print_types(const RtlDesign& design) {
       "or of the\n"
       "// anchor), gravity, whether held by force, gains. Combinational.\n"
       "module cuboct_type_rom (\n"
-      "  input  logic [{}:0] type_i,\n"
+      "{}  input  logic [{}:0] type_i,\n"
       "  output logic [{}:0] imposed_o,\n"
       "  output logic [{}:0] velocity_o,\n"
       "  output logic [{}:0] gravity_o,\n"
@@ -153,13 +169,19 @@ std::string print_types(const RtlDesign& design) {
       "  output logic [17:0] kp_o,\n"
       "  output logic [17:0] kd_o\n"
       ");\n",
-      t - 1, axes - 1, axes * v - 1, axes * v - 1);
-  const auto assigns = [&](const FixedType& type, const std::string& indent) {
+      design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n", t - 1, axes - 1,
+      axes * v - 1, axes * v - 1);
+  const auto velocity = [&](const FixedType& type, int number) {
+    const auto at = std::find(design.moved.begin(), design.moved.end(), number);
+    if (at == design.moved.end()) return concatenated(type.velocity, v, axes);
+    return fmt::format("velocity_i[{} +: {}]", (at - design.moved.begin()) * axes * v, axes * v);
+  };
+  const auto assigns = [&](const FixedType& type, int number, const std::string& indent) {
     std::string lines;
     std::string imposed;
     for (int a = axes - 1; a >= 0; --a) imposed += type.imposed[a] ? '1' : '0';
     lines += fmt::format("{}imposed_o  = {}'b{};\n", indent, axes, imposed);
-    lines += fmt::format("{}velocity_o = {};\n", indent, concatenated(type.velocity, v, axes));
+    lines += fmt::format("{}velocity_o = {};\n", indent, velocity(type, number));
     lines += fmt::format("{}gravity_o  = {};\n", indent, concatenated(type.gravity, v, axes));
     lines += fmt::format("{}pd_o       = 1'b{};\n", indent, type.pd ? 1 : 0);
     lines += fmt::format("{}kp_o       = {};\n", indent, literal(type.kp, 18));
@@ -168,11 +190,11 @@ std::string print_types(const RtlDesign& design) {
   };
   if (design.types.size() == 1)
     return text + "  logic unused_type;\n  assign unused_type = ^type_i;\n" +
-           assigns(design.types[0], "  assign ") + "endmodule\n";
-  text += "  always_comb begin\n" + assigns(FixedType{}, "    ") + "    unique case (type_i)\n";
+           assigns(design.types[0], 0, "  assign ") + "endmodule\n";
+  text += "  always_comb begin\n" + assigns(FixedType{}, -1, "    ") + "    unique case (type_i)\n";
   for (size_t k = 0; k < design.types.size(); ++k)
     text += fmt::format("      {}: begin\n{}      end\n", literal(static_cast<int64_t>(k), t),
-                        assigns(design.types[k], "        "));
+                        assigns(design.types[k], static_cast<int>(k), "        "));
   return text + "      default: imposed_o = '0;\n    endcase\n  end\nendmodule\n";
 }
 
@@ -183,6 +205,7 @@ std::string print_node(const RtlDesign& design) {
   std::vector<std::string> core;
   for (const RtlConstant& c : design.constants)
     if (c.core) core.push_back(fmt::format("    .{0}(cuboct_pkg::{0})", c.name));
+  if (!design.moved.empty()) core.push_back(fmt::format("    .MovedTypes({})", design.moved.size()));
   text += fmt::format("{}\n  ) u_core (\n", fmt::join(core, ",\n"));
   std::vector<std::string> ports;
   for (const Port& p : node_ports(design)) ports.push_back(fmt::format("    .{}", p.name));
@@ -207,6 +230,7 @@ std::string print_lattice(const RtlDesign& design) {
       "  input  logic load_valid_i,\n"
       "  input  logic [31:0] load_node_i,\n"
       "  input  logic [cuboct_pkg::ParticleBits-1:0] load_data_i,\n"
+      "@VELOCITY_PORT@"
       "  output logic [8*Nodes-1:0] phase_start_o,\n"
       "  output logic [8*Nodes-1:0] phase_end_o,\n"
       "  output logic [Nodes-1:0] observe_valid_o,\n"
@@ -218,6 +242,9 @@ std::string print_lattice(const RtlDesign& design) {
       "  output logic [Nodes-1:0] idle_o\n"
       ");\n"
       "  localparam int LinkBits = cuboct_pkg::LinkBits;\n\n";
+  const std::string velocity_port = "@VELOCITY_PORT@";
+  text.replace(text.find(velocity_port), velocity_port.size(),
+               design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n");
   text.replace(text.find("@NODES@"), 7, std::to_string(nodes));
   for (size_t n = 0; n < nodes; ++n)
     text +=
@@ -247,7 +274,7 @@ std::string print_lattice(const RtlDesign& design) {
         "\n  // Cell ({1}, {2}, {3}).\n"
         "  cuboct_node u_node_{0} (\n"
         "    .clk_i, .rst_ni, .start_i, .steps_i, .has_link_i({9}'b{4}),\n"
-        "    .load_valid_i(load_valid_i && load_node_i == 32'd{0}), .load_data_i,\n"
+        "    .load_valid_i(load_valid_i && load_node_i == 32'd{0}), .load_data_i,{10}\n"
         "    .link_valid_o(valid_{0}), .link_end_o(end_{0}), .link_data_o(data_{0}),\n"
         "    .link_ready_i({{{7}}}),\n"
         "    .link_valid_i({{{5}}}),\n"
@@ -261,7 +288,8 @@ std::string print_lattice(const RtlDesign& design) {
         "    .fault_id_o(fault_id_o[{0}*cuboct_pkg::IdBits +: cuboct_pkg::IdBits]),\n"
         "    .fault_number_o(fault_number_o[64*{0} +: 64]), .idle_o(idle_o[{0}])\n"
         "  );\n",
-        n, cell[0], cell[1], cell[2], has, valid, end, ready, data, faces);
+        n, cell[0], cell[1], cell[2], has, valid, end, ready, data, faces,
+        design.moved.empty() ? "" : " .velocity_i,");
   }
   if (!unused_ends.empty())
     text += "\n  logic unused_faces;\n  assign unused_faces = ^{\n" + unused_ends + "\n  };\n";
