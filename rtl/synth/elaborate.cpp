@@ -38,8 +38,7 @@ std::string base_name(const std::string& yosys_name) {
 }
 
 Design read_design(const std::string& file) {
-  // Nets, and what cells are connected to, would be most of the file.
-  const nlohmann::json json = read_json(file, {"netnames", "connections", "parameters", "memories"});
+  const nlohmann::json json = read_json(file);
   Design design;
   for (const auto& [name, module] : json.at("modules").items()) {
     Module& m = design.modules[name];

@@ -88,9 +88,7 @@ void walk(const json& modules, const std::string& module, const std::string& pat
   }
 }
 
-json read_modules(const std::string& file) {
-  return read_json(file, {"netnames", "connections", "port_directions", "parameters", "ports"}).at("modules");
-}
+json read_modules(const std::string& file) { return read_json(file).at("modules"); }
 
 }  // namespace
 
