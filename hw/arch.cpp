@@ -26,6 +26,7 @@ void read_widths(const ConfigTable& table, Widths& w) {
   set(table, "position_frac", 8, 30, w.position_frac);
   set(table, "guard", 1, 20, w.guard);
   set(table, "difference_frac", 6, 24, w.difference_frac);
+  set(table, "filter_frac", 2, 16, w.filter_frac);
   set(table, "velocity_bits", 8, 51, w.velocity_bits);
   set(table, "relative_velocity_frac", 4, 50, w.relative_velocity_frac);
   set(table, "relative_velocity_bits", 4, 27, w.relative_velocity_bits);

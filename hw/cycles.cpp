@@ -76,7 +76,7 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
             Int3 x_j;
             for (int a = 0; a < 3; ++a)
               x_j[a] = j->x[a] + (int64_t{offset[a]} << plan.rule.widths.position_frac);
-            pairs += i != j && may_interact(plan.rule, difference(plan.rule, i->x, x_j));
+            pairs += i != j && may_interact(plan.rule, i->x, x_j);
           }
     const uint64_t busy = std::max(candidates, ceil_div(pairs, static_cast<uint64_t>(plan.arch.force_pipes)));
     expected.ideal = std::max(expected.ideal, busy);

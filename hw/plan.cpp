@@ -60,6 +60,7 @@ uint64_t hash_of(const Plan& plan) {
       .add(arch.force_pipes)
       .add(arch.queue_depth)
       .add(arch.overlap);
+  if (w.filter_frac != Widths{}.filter_frac) hash.add(w.filter_frac);
   hash.add(plan.words.link_bits).add(plan.particles);
   for (const int32_t p : plan.lattice.period()) hash.add(p);
   for (uint32_t n = 0; n < plan.lattice.size(); ++n)
@@ -89,7 +90,7 @@ Latency latency_of(const FixedRule& r) {
   Latency latency;
   latency.pipe = 11 + (r.force.shape == TableShape::octaves ? 1 : 0) + (r.force.degree == 2 ? 2 : 0) +
                  (r.damped ? 2 : 0) + (r.scaled ? 2 : 0);
-  latency.update = r.pd ? 6 : 3;
+  latency.update = r.pd ? 7 : 4;
   return latency;
 }
 

@@ -9,8 +9,8 @@ namespace cuboct::emu {
 namespace {
 
 // From the cycle that loads a record's last beat to that in which the receiver sees it: the sender's
-// register, the receiver's.
-constexpr int32_t kOnTheWay = 2;
+// register, the receiver's memory, the answer of that.
+constexpr int32_t kOnTheWay = 3;
 
 constexpr size_t at(int axis) { return static_cast<size_t>(axis); }
 

@@ -47,8 +47,8 @@ void ForceEngine::filter(Stream& stream) const {
   stream.mask.clear();
   stream.passes = (n + lanes - 1) / lanes;
   stream.own.clear();
-  for (const Slot& s : own_) stream.own.add(s.body.x);
   const PlanarTest test(plan_.rule);
+  for (const Slot& s : own_) stream.own.add(s.body.x, test.shift());
   const uint64_t lane_mask = ~uint64_t{0} >> (64 - lanes);
   for (int segment = 0; segment < segments_; ++segment) {
     const auto one = [&](const Candidate& c, uint32_t self) {

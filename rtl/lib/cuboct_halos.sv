@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The receiving side of the six links: assembly, halo memories in the node's own frame, migrate FIFOs, and the flags
-// that say which streams have ended.
+// The receiving side of the six links: assembly, one memory per face for halos in the node's own frame and for
+// migrating particles, and the flags that say which streams have ended.
 module cuboct_halos #(
   parameter int Axes          = 3,    // 2 or 3
   parameter int PositionFrac  = 20,   // P
@@ -24,11 +24,13 @@ module cuboct_halos #(
   input  logic                       halo_clear_i,
   output logic [Faces-1:0]           halo_end_o,     // complete; always where there is no link
   output logic [Faces*CountBits-1:0] halo_count_o,
-  input  logic [AddrBits-1:0]        stream_addr_i,  // read by the streamer
-  output logic [Faces*CandidateBits-1:0] stream_data_o,  // by face
-  input  logic [AddrBits-1:0]        relay_addr_i,   // read by the relay, faces of all axes but the last
+  input  logic                       stream_read_i,
+  input  logic [AddrBits-1:0]        stream_addr_i,  // read by the streamer: what it gets is there in the next cycle,
+  output logic [Faces*CandidateBits-1:0] stream_data_o,  // by face, and stays until it reads again
+  input  logic [AddrBits-1:0]        relay_addr_i,   // of the next cycle's relay_data_o, faces of all axes but the last
   output logic [(Faces-2)*CandidateBits-1:0] relay_data_o,
   // Migrating particles.
+  input  logic                       migrating_i,    // a migration phase
   input  logic [Faces-1:0]           migrate_clear_i,
   output logic [Faces-1:0]           migrate_end_o,  // complete; always where there is no link
   output logic [Faces-1:0]           migrate_empty_o,
@@ -88,11 +90,15 @@ module cuboct_halos #(
       assign local_halo = moved;
     end
 
-    cuboct_halo_mem #(.Bits(CandidateBits), .Depth(Depth), .AddrBits(AddrBits), .CountBits(CountBits)) u_halos (
-      .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(halo_valid), .data_i(local_halo),
-      .count_o(halo_count_o[f*CountBits +: CountBits]),
-      .addr_a_i(stream_addr_i), .data_a_o(stream_data_o[f*CandidateBits +: CandidateBits]),
-      .addr_b_i(relay_addr_i), .data_b_o(relay_data)
+    cuboct_inbox #(
+      .HaloBits(CandidateBits), .ParticleBits(ParticleBits), .HaloDepth(Depth), .Capacity(Capacity),
+      .Relayed((Axis < Axes - 1) ? 1 : 0), .AddrBits(AddrBits), .CountBits(CountBits)
+    ) u_inbox (
+      .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(halo_valid), .halo_i(local_halo),
+      .count_o(halo_count_o[f*CountBits +: CountBits]), .read_i(stream_read_i), .addr_i(stream_addr_i),
+      .halo_o(stream_data_o[f*CandidateBits +: CandidateBits]), .relay_addr_i, .relay_halo_o(relay_data),
+      .migrating_i, .push_i(migrate_valid), .particle_i(particle), .full_o(migrate_full), .pop_i(migrate_pop_i[f]),
+      .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .empty_o(migrate_empty_o[f])
     );
     if (Axis < Axes - 1) begin : gen_relay
       assign relay_data_o[f*CandidateBits +: CandidateBits] = relay_data;
@@ -100,12 +106,6 @@ module cuboct_halos #(
       logic unused_relay;
       assign unused_relay = ^relay_data;
     end
-
-    cuboct_fifo #(.Bits(ParticleBits), .Depth(Capacity)) u_arrived (
-      .clk_i, .rst_ni, .push_i(migrate_valid), .data_i(particle), .full_o(migrate_full),
-      .pop_i(migrate_pop_i[f]), .data_o(migrate_data_o[f*ParticleBits +: ParticleBits]),
-      .empty_o(migrate_empty_o[f])
-    );
 
 `ifndef SYNTHESIS
     always_ff @(posedge clk_i) begin

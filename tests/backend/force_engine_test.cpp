@@ -37,8 +37,9 @@ Outcome stepped(const Plan& plan, const Engine& engine) {
       const int slot = e.pass * lanes + l;
       if (slot >= n || slot == e.self) continue;
       const auto at = [](const emu::Candidate& c) { return Int3{c.x[0], c.x[1], c.x[2]}; };
-      const Int3 d = difference(plan.rule, at(engine.own[static_cast<size_t>(slot)].body), at(*e.record));
-      mask |= uint64_t{may_interact(plan.rule, d)} << l;
+      const bool meets =
+          may_interact(plan.rule, at(engine.own[static_cast<size_t>(slot)].body), at(*e.record));
+      mask |= uint64_t{meets} << l;
     }
     return mask;
   };
