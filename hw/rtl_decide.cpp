@@ -65,6 +65,7 @@ RtlDesign decide(const Plan& plan) {
   constant("Capacity", arch.capacity, "particles per node");
   constant("FilterLanes", arch.filter_lanes, "own particles that a candidate meets per cycle");
   constant("ForcePipes", arch.force_pipes, "pairs per cycle");
+  constant("Shared", arch.shared_multipliers, "1: one multiplier serves the axes in turn");
   constant("QueueDepth", arch.queue_depth, "entries between filter and pipes");
   constant("Overlap", arch.overlap, "1: the force engine starts with the exchange");
   constant("LinkBits", plan.words.link_bits, "payload of a beat");

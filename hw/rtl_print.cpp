@@ -52,6 +52,7 @@ std::vector<Port> node_ports(const RtlDesign& design) {
           {"output", face, "link_ready_o"},
           {"output", "[7:0]", "phase_start_o"},
           {"output", "[7:0]", "phase_end_o"},
+          {"output", "[3:0]", "force_event_o"},
           {"output", "", "observe_valid_o"},
           {"output", particle, "observe_data_o"},
           {"output", "", "fault_valid_o"},
@@ -223,7 +224,9 @@ std::string print_lattice(const RtlDesign& design) {
     text +=
         fmt::format("  logic [{1}:0] valid_{0}, end_{0}, ready_{0};\n  logic [{2}*LinkBits-1:0] data_{0};\n",
                     n, faces - 1, faces);
-  std::string unused_ends;
+  std::string unused_ends, events;
+  for (size_t n = 0; n < nodes; ++n) events += fmt::format("{}event_{}", n == 0 ? "" : ", ", n);
+  text += fmt::format("  logic [3:0] {};\n  logic unused_events;\n  assign unused_events = ^{{{}}};\n", events, events);
   for (size_t n = 0; n < nodes; ++n) {
     const Cell& cell = design.cells[n];
     std::string has, valid, end, ready, data;
@@ -255,7 +258,7 @@ std::string print_lattice(const RtlDesign& design) {
         "    .link_data_i({{{8}}}),\n"
         "    .link_ready_o(ready_{0}),\n"
         "    .phase_start_o(phase_start_o[8*{0} +: 8]), .phase_end_o(phase_end_o[8*{0} +: 8]),\n"
-        "    .observe_valid_o(observe_valid_o[{0}]),\n"
+        "    .force_event_o(event_{0}), .observe_valid_o(observe_valid_o[{0}]),\n"
         "    .observe_data_o(observe_data_o[{0}*cuboct_pkg::ParticleBits +: cuboct_pkg::ParticleBits]),\n"
         "    .fault_valid_o(fault_valid_o[{0}]), .fault_code_o(fault_code_o[4*{0} +: 4]),\n"
         "    .fault_id_o(fault_id_o[{0}*cuboct_pkg::IdBits +: cuboct_pkg::IdBits]),\n"

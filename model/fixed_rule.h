@@ -20,7 +20,7 @@ struct Widths {
   int velocity_bits = 29;           // v, signed; at most P+G+1, which is one cell edge per step
   int relative_velocity_frac = 20;  // W: w
   int relative_velocity_bits = 18;  // w, signed
-  int filter_frac = 8;              // B: leading bits of a position that the planar test sees
+  int filter_frac = 10;             // B: leading bits of a position that the planar test sees, all if it has fewer
   int strength_bits = 0;            // s and the entries of the tables, signed; 0: chosen, see quantise.h
   int sum_bits = 29;                // a particle's summed kick, signed, P+G fractional bits
   int displacement_bits = 29;       // u, signed, P+G fractional bits

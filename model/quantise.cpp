@@ -152,7 +152,7 @@ void check_widths(const Widths& w, const TableChoice& table) {
   check_range("position_frac", w.position_frac, 8, 30);
   check_range("guard", w.guard, 1, 20);
   check_range("difference_frac", w.difference_frac, 6, std::min(w.position_frac, 24));
-  check_range("filter_frac", w.filter_frac, 2, std::min(w.position_frac, 16));
+  check_range("filter_frac", w.filter_frac, 2, 16);
   check_range("velocity_bits", w.velocity_bits, 8, w.velocity_frac() + 1);
   check_range("relative_velocity_frac", w.relative_velocity_frac, 4, w.velocity_frac());
   check_range("relative_velocity_bits", w.relative_velocity_bits, 4, 27);
@@ -227,6 +227,7 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
         fmt::format("the cutoff, {:.6g} m, is longer than a cell edge, {:.6g} m", cutoff, cell_edge));
   FixedRule fixed;
   fixed.widths = widths;
+  fixed.widths.filter_frac = std::min(widths.filter_frac, widths.position_frac);
   fixed.cell_edge = cell_edge;
   fixed.dt = rule.dt;
   fixed.mass = rule.mass;

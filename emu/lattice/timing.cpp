@@ -89,7 +89,7 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       axes_(plan.rule.axes),
       threads_(threads > 0 ? threads : omp_get_num_procs()),
       halo_beats_(plan.words.halo_beats),
-      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes},
+      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval},
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       neighbour_(nodes_ + 1),
       migration_(plan.lattice, plan.words.migrate_beats),

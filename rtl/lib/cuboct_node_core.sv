@@ -84,6 +84,7 @@ module cuboct_node_core #(
   output logic [Faces-1:0]        link_ready_o,
   output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
   output logic [7:0]              phase_end_o,
+  output logic [3:0]              force_event_o,  // engine runs, stalled, presents a candidate, issues; in this cycle
   output logic                    observe_valid_o,
   output logic [ParticleBits-1:0] observe_data_o,
   output logic                    fault_valid_o,
@@ -117,6 +118,15 @@ module cuboct_node_core #(
   localparam int KickFull    = SBits + PositionFrac - DifferenceShift + 1 - KickShift;
   localparam int KickBits    = (KickFull > 2) ? KickFull : 2;
   localparam int PipeSumBits = KickBits + $clog2(((Axes == 3) ? 27 : 9) * Capacity);
+  // No number that a fault tells is longer: w, s before their checks; sums, v, u; the capacity.
+  localparam int SFullBits   = ((DampBits + RelativeVelocityBits > ForceBits) ? DampBits + RelativeVelocityBits : ForceBits)
+                               + 2;
+  localparam int PullBits    = (Pd != 0) ? GainBits + DisplacementBits + 6 : 10;
+  localparam int VFullBits   = ((VelocityBits > SumBits) ? VelocityBits : SumBits) + 4;
+  localparam int LongPull    = (PullBits > VFullBits) ? PullBits : VFullBits;
+  localparam int LongKick    = (PipeSumBits + ForcePipes > SFullBits) ? PipeSumBits + ForcePipes : SFullBits;
+  localparam int LongNumber  = (LongPull > LongKick) ? LongPull : LongKick;
+  localparam int NumberBits  = (LongNumber < 64) ? LongNumber : 64;
   // Update.
   localparam int UpdateLatency = (Pd != 0) ? 7 : 4;  // a cycle after the last one is written MIGRATE may read it
   localparam int UpdateTail    = UpdateLatency - 2;
@@ -234,8 +244,8 @@ module cuboct_node_core #(
         axis_empty    = migrate_empty[2*b +: 2];
         axis_ended    = migrate_end[2*b +: 2];
         axis_leaving  = leaving_q[b];
-        axis_arrived  = arrived[2*b*ParticleBits +: 2*ParticleBits];
       end
+      axis_arrived = axis_arrived | (arrived[2*b*ParticleBits +: 2*ParticleBits] & {2 * ParticleBits{axis_onehot[b]}});
     end
   end
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
@@ -266,9 +276,10 @@ module cuboct_node_core #(
   logic [HaloBits-1:0]      relay_record;
   integer h;
   always_comb begin
-    relay_candidate = relay_own;
+    relay_candidate = relay_own & {CandidateBits{relay_segment == 3'd0}};
     for (h = 0; h < Faces - 2; h = h + 1) begin
-      if (relay_segment == h[2:0] + 3'd1) relay_candidate = relay_halos[h*CandidateBits +: CandidateBits];
+      relay_candidate = relay_candidate | (relay_halos[h*CandidateBits +: CandidateBits]
+                                           & {CandidateBits{relay_segment == h[2:0] + 3'd1}});
     end
   end
   // On the link the last axis has no sign: what is sent lies in this node's layer.
@@ -294,7 +305,7 @@ module cuboct_node_core #(
   logic [CandidateBits-1:0]     issue_candidate;
   logic [ForcePipes-1:0]        issue, pipe_busy, kick_valid, pipe_fault, pipe_fault_strength;
   logic [ForcePipes*64-1:0]     pipe_fault_number;
-  logic                         finder_done;
+  logic                         finder_done, force_stall;
   logic [ForcePipes*Axes*PipeSumBits-1:0] sums;
   logic [Axes*PipeSumBits-1:0]  total;
   logic [SlotBits-1:0]          tick_slot, tick_next;
@@ -307,8 +318,9 @@ module cuboct_node_core #(
     .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .available_i({past_exchange, 1'b1}),
     .counts_i({halo_count, own_count_q}), .read_o(stream_read), .slot_o(stream_slot), .addr_o(stream_addr), .own_i(own_candidate),
     .halos_i(stream_halos), .row_o(row), .row_data_i(row_data), .candidate_o(issue_candidate),
-    .issue_o(issue), .issue_slot_o(issue_slot), .done_o(finder_done)
+    .issue_o(issue), .issue_slot_o(issue_slot), .stall_o(force_stall), .done_o(finder_done)
   );
+  assign force_event_o = {issue != '0, stream_read, force_stall, engine_runs};
   assign force_done = engine_runs && finder_done && (pipe_busy == '0);
 
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
@@ -502,7 +514,7 @@ module cuboct_node_core #(
     end
   end
   logic some_fault;
-  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(IdBits)) u_fault (
+  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(IdBits), .NumberBits(NumberBits)) u_fault (
     .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
     .number_i(fault_number), .valid_o(some_fault), .code_o(fault_code_o), .id_o(fault_id_o),
     .number_o(fault_number_o)

@@ -37,9 +37,11 @@ module cuboct_pair_finder #(
   output logic [CandidateBits-1:0]              candidate_o,
   output logic [ForcePipes-1:0]                 issue_o,
   output logic [ForcePipes*SlotBits-1:0]        issue_slot_o,
+  output logic                                  stall_o,      // a full queue holds the filter
   output logic                                  done_o        // no candidate is left anywhere
 );
-  logic [2:0]               segment, segment_q;  // of the streamer, of what the memories answer
+  logic [2:0]               segment;
+  logic [2*Axes:0]          answer_q;  // which memory's answer is the candidate, one bit each
   logic [RowBits-1:0]       row, row_f1, row_head;
   logic                     present, past, stall, filter_busy, issue_busy;
   logic [CandidateBits-1:0] candidate, candidate_f1, candidate_head;
@@ -55,13 +57,13 @@ module cuboct_pair_finder #(
   );
 
   always_ff @(posedge clk_i) begin
-    if (present) segment_q <= segment;
+    if (present) answer_q <= {{(2 * Axes) {1'b0}}, 1'b1} << segment;
   end
   integer f;
   always_comb begin
-    candidate = own_i;
+    candidate = own_i & {CandidateBits{answer_q[0]}};
     for (f = 0; f < 2 * Axes; f = f + 1) begin
-      if (segment_q == f[2:0] + 3'd1) candidate = halos_i[f*CandidateBits +: CandidateBits];
+      candidate = candidate | (halos_i[f*CandidateBits +: CandidateBits] & {CandidateBits{answer_q[f+1]}});
     end
   end
 
@@ -89,6 +91,7 @@ module cuboct_pair_finder #(
     .pop_o(pop), .candidate_o, .valid_o(issue_o), .slot_o(issue_slot_o), .busy_o(issue_busy)
   );
 
+  assign stall_o = stall;
   assign read_o = present;
   assign row_o  = row;
   assign done_o = past && !filter_busy && empty && !issue_busy;

@@ -16,15 +16,28 @@ module cuboct_ram #(
 );
   localparam int IndexBits = (Depth > 1) ? $clog2(Depth) : 1;
 
-  (* no_rw_check *) logic [Bits-1:0] mem_q [0:Depth-1];
-  logic [Bits-1:0] read_q;
-  always_ff @(posedge clk_i) begin
-    if (write_i) mem_q[write_addr_i[IndexBits-1:0]] <= write_data_i;
+  // Small ones may lie in distributed memory; the tools' own limit between the two spares blocks, not logic.
+  if (Depth > 16) begin : gen_block
+    (* no_rw_check, ram_style = "block" *) logic [Bits-1:0] mem_q [0:Depth-1];
+    logic [Bits-1:0] read_q;
+    always_ff @(posedge clk_i) begin
+      if (write_i) mem_q[write_addr_i[IndexBits-1:0]] <= write_data_i;
+    end
+    always_ff @(posedge clk_i) begin
+      if (read_i) read_q <= mem_q[read_addr_i[IndexBits-1:0]];
+    end
+    assign read_data_o = read_q;
+  end else begin : gen_any
+    (* no_rw_check *) logic [Bits-1:0] mem_q [0:Depth-1];
+    logic [Bits-1:0] read_q;
+    always_ff @(posedge clk_i) begin
+      if (write_i) mem_q[write_addr_i[IndexBits-1:0]] <= write_data_i;
+    end
+    always_ff @(posedge clk_i) begin
+      if (read_i) read_q <= mem_q[read_addr_i[IndexBits-1:0]];
+    end
+    assign read_data_o = read_q;
   end
-  always_ff @(posedge clk_i) begin
-    if (read_i) read_q <= mem_q[read_addr_i[IndexBits-1:0]];
-  end
-  assign read_data_o = read_q;
 
   logic unused_addr;
   assign unused_addr = ^{write_addr_i, read_addr_i};
