@@ -67,7 +67,9 @@ TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
         return -1.0;
       };
       EXPECT_EQ(count(*a), count(*b)) << name;
-      if (std::string(name) != "queue_stalls") EXPECT_GT(count(*b), 0) << name;
+      if (std::string(name) != "queue_stalls") {
+        EXPECT_GT(count(*b), 0) << name;
+      }
     }
 }
 
