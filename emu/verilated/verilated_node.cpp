@@ -55,7 +55,8 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
     ++*cycle_;
 
   read_outputs(out_, out);
-  for (size_t e = 0; e < events_.size(); ++e) events_[e] += out_.force_event >> e & 1;
+  if (host.reset_n)  // what registers hold before is no event
+    for (size_t e = 0; e < events_.size(); ++e) events_[e] += out_.force_event >> e & 1;
   out.valid = out.loaded = out_.link_valid & has_link_;
   out.ready = out_.link_ready & has_link_;
   for (uint8_t left = out.loaded; left != 0; left &= static_cast<uint8_t>(left - 1)) {
@@ -69,7 +70,10 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
 
 Counters VerilatedNode::counters() const {
   const auto count = [this](size_t event) { return static_cast<double>(events_[event]); };
-  return {{"candidates", count(2)}, {"queue_stalls", count(1)}, {"issue_cycles", count(3)}, {"force_cycles", count(0)}};
+  return {{"candidates", count(2)},
+          {"queue_stalls", count(1)},
+          {"issue_cycles", count(3)},
+          {"force_cycles", count(0)}};
 }
 
 std::string VerilatedNode::doing() const {
