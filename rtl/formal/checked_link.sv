@@ -128,11 +128,11 @@ module checked_link_formal #(
       if (Wire == 1) a_told: assert (since_q <= ToldIn[7:0]);
       if (Wire == 1 && Retry != 0) a_heals: assert (waits_q <= HealedIn[7:0]);
       c_run: cover (came_q == 8'd4 && !fault_q);
-      // Where the wire only stalls there is nothing to be told.
-      c_silent:   cover (silent || Wire == 2);
-      c_order:    cover (order || Wire == 2);
-      c_wrong:    cover (wrong || Wire == 2);
-      c_repaired: cover (repaired_q || Wire == 2 || Retry == 0);
+      // Where the wire only stalls there is nothing to be told: some beat instead.
+      c_silent:   cover (silent || (Wire == 2 && sent_q == 8'd1));
+      c_order:    cover (order || (Wire == 2 && sent_q == 8'd2));
+      c_wrong:    cover (wrong || (Wire == 2 && came_q == 8'd1));
+      c_repaired: cover (repaired_q || ((Wire == 2 || Retry == 0) && came_q == 8'd2));
     end
   end
 
