@@ -27,14 +27,17 @@ void add_emit(CLI::App& app, int&) {
       ->check(whole_number())
       ->type_name("N")
       ->capture_default_str();
-  auto* board = command->add_option("--board", options->board.name, "add a top module, pins and a host link: icebreaker or ulx3s")
+  auto* board = command
+                    ->add_option("--board", options->board.name,
+                                 "add a top module, pins and a host link: icebreaker or ulx3s")
                     ->type_name("B");
   command->add_option("--baud", options->board.baud, "bits per second of the board's serial line")
       ->needs(board)
       ->capture_default_str()
       ->type_name("N");
-  command->add_flag("--fixed-velocities", options->fixed_velocities,
-                     "the host cannot set the velocities of held and moved types: less area")
+  command
+      ->add_flag("--fixed-velocities", options->fixed_velocities,
+                 "the host cannot set the velocities of held and moved types: less area")
       ->needs(board);
   command->callback([options] {
     options->board.velocities = !options->fixed_velocities;

@@ -142,8 +142,9 @@ int run(Options options) {
     RunMeter meter(loaded, probe_steps, !options.no_watch);
     if (fpga) {
       const Scratch scratch;
-      trace = start_fpga(options.input, options.fpga, request, options.hashes_given ? options.lattice.hash_every : 0,
-                         scratch.path("fpga.h5"), stderr_is_terminal())
+      trace = start_fpga(options.input, options.fpga, request,
+                         options.hashes_given ? options.lattice.hash_every : 0, scratch.path("fpga.h5"),
+                         stderr_is_terminal())
                   .finish();
       for (const State& frame : trace.frames) meter.see(frame);
     } else {

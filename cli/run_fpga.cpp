@@ -11,7 +11,8 @@ void FpgaChoice::add_to(CLI::App& command) {
       ->check(CLI::Range(300, 12000000))
       ->type_name("N");
   command
-      .add_option("--port-timeout", timeout, "seconds without an answer after which fpga asks the board again; default: 0.3")
+      .add_option("--port-timeout", timeout,
+                  "seconds without an answer after which fpga asks the board again; default: 0.3")
       ->check(CLI::Range(0.001, 60.0))
       ->type_name("T");
 }
@@ -27,11 +28,12 @@ void FpgaChoice::check_unused(const std::string& engine) const {
 
 void FpgaChoice::check_used() const {
   if (port.empty())
-    throw InputError("the fpga engine needs --port, where the board is", "--port /dev/ttyUSB0, or what cuboct-board-sim prints");
+    throw InputError("the fpga engine needs --port, where the board is",
+                     "--port /dev/ttyUSB0, or what cuboct-board-sim prints");
 }
 
-RunningEngine start_fpga(const Input& input, const FpgaChoice& choice, const Request& request, uint64_t hash_every,
-                         std::string path, bool progress) {
+RunningEngine start_fpga(const Input& input, const FpgaChoice& choice, const Request& request,
+                         uint64_t hash_every, std::string path, bool progress) {
   choice.check_used();
   std::vector<std::string> more{"--port", choice.port, "--hash-every", std::to_string(hash_every)};
   if (choice.baud > 0) more.insert(more.end(), {"--baud", std::to_string(choice.baud)});

@@ -24,7 +24,7 @@ struct FpgaChoice {
 };
 
 // The engine at work; see RunningEngine. `hash_every`: steps between two hashes of the state, 0: none.
-RunningEngine start_fpga(const Input& input, const FpgaChoice& choice, const Request& request, uint64_t hash_every,
-                         std::string path, bool progress);
+RunningEngine start_fpga(const Input& input, const FpgaChoice& choice, const Request& request,
+                         uint64_t hash_every, std::string path, bool progress);
 
 }  // namespace cuboct

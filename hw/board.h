@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// FPGA boards that hold a plan's lattice behind a serial line: what they are, and what host and board must agree on.
+// FPGA boards that hold a plan's lattice behind a serial line: what they are, and what host and board must
+// agree on.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,7 @@ struct Board {
   std::string title;   // with the FPGA
   int clock_hz = 0;    // of the board's oscillator, and of the lattice
   std::string pins;    // file name
+  std::string target;  // of `cuboct synth`
   std::string build;   // commands from board/files.f to a bitstream, run in the project's directory
   std::string flash;   // commands that load it
 };
@@ -34,9 +36,11 @@ struct BoardChoice {
 // Length of a bit on the serial line in 1/16 clocks of the board; at least 4 clocks, or InputError.
 int bit_clocks16(const Board& board, int baud);
 
-// The types, ascending, whose velocity a host may set between runs: those held or moved, by place or by force.
+// The types, ascending, whose velocity a host may set between runs: those held or moved, by place or by
+// force.
 std::vector<int> moved_types(const FixedRule& rule);
-// The plan's hash with the velocities of these types zero: equal for plans that a bitstream with such velocities can run.
+// The plan's hash with the velocities of these types zero: equal for plans that a bitstream with such
+// velocities can run.
 uint64_t machine_hash(const Plan& plan);
 
 }  // namespace cuboct

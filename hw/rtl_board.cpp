@@ -14,7 +14,9 @@ std::string print_package(const Plan& plan, const RtlDesign& design, const Board
   const Board& board = board_of(choice.name);
   const size_t bits = design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits);
   std::string velocities = fmt::format("  localparam int          MovedTypes  = {};\n", design.moved.size());
-  if (bits > 0) velocities += fmt::format("  localparam logic [{}:0] Velocities = {};\n", bits - 1, print_velocities(design));
+  if (bits > 0)
+    velocities +=
+        fmt::format("  localparam logic [{}:0] Velocities = {};\n", bits - 1, print_velocities(design));
   return fmt::format(
       "// SPDX-License-Identifier: MIT\n"
       "// {}\n"
@@ -27,8 +29,8 @@ std::string print_package(const Plan& plan, const RtlDesign& design, const Board
       "  localparam int          ClockHz     = {};\n"
       "  localparam int          BitClocks16 = {};  // length of a bit in 1/16 clocks\n"
       "endpackage\n",
-      design.maker, choice.baud, board.clock_hz / 1e6, plan.lattice.size(), velocities,
-      plan.hash, machine_hash(plan), board.clock_hz, bit_clocks16(board, choice.baud));
+      design.maker, choice.baud, board.clock_hz / 1e6, plan.lattice.size(), velocities, plan.hash,
+      machine_hash(plan), board.clock_hz, bit_clocks16(board, choice.baud));
 }
 
 }  // namespace
@@ -70,6 +72,7 @@ std::string board_list(const std::string& lattice_list, const std::map<std::stri
 
 std::string print_board_readme(const Plan& plan, const BoardChoice& choice) {
   const Board& board = board_of(choice.name);
+  const bool settable = choice.velocities && !moved_types(plan.rule).empty();
   return fmt::format(
       R"(
 ## The board: {0}
@@ -77,7 +80,7 @@ std::string print_board_readme(const Plan& plan, const BoardChoice& choice) {
 `board/` holds what makes a bitstream of the lattice: `cuboct_board_top.sv` (the top module), `cuboct_host_link.sv` (takes a
 host's requests from a serial line), `{1}`, and `files.f` (every module, in the order to read; paths are from here).
 
-Build, in this directory:
+Build, in this directory (or: `cuboct synth . --target {6} --unit board`):
 
 ```
 {2}```
@@ -93,10 +96,11 @@ Run, with the scene that this project was made from:
 cuboct run SCENE --engine fpga --port /dev/ttyUSB0 --baud {4}
 ```
 
-The board answers for plan {5:016x} alone, or for one that differs in the velocities of held and moved types. Without a
-board: `cuboct-board-sim .` runs these files under Verilator behind a pseudo-terminal, and prints its name.
+The board answers for plan {5:016x}{7}. Without a board: `cuboct-board-sim .` runs
+these files under Verilator behind a pseudo-terminal, and prints its name.
 )",
-      board.title, board.pins, board.build, board.flash, choice.baud, plan.hash);
+      board.title, board.pins, board.build, board.flash, choice.baud, plan.hash, board.target,
+      settable ? ", or for one that differs in the velocities of held and moved types alone" : " alone");
 }
 
 }  // namespace cuboct

@@ -109,7 +109,9 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
   }
   if (!design.moved.empty())
     for (const char* path : {"rtl/cuboct_node_core.sv", "rtl/cuboct_update.sv", "board/cuboct_board.sv"})
-      files[path] = "`define CUBOCT_HOST_VELOCITY  // velocities of held and moved types are set by a host\n" + files[path];
+      files[path] =
+          "`define CUBOCT_HOST_VELOCITY  // velocities of held and moved types are set by a host\n" +
+          files[path];
   write(dir, files);
 }
 

@@ -32,7 +32,8 @@ struct Port {
 
 // All velocities that come from outside: type by type, axis 0 in the least significant place.
 std::string velocity_range(const RtlDesign& design) {
-  return fmt::format("[{}:0]", design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits) - 1);
+  return fmt::format("[{}:0]",
+                     design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits) - 1);
 }
 
 // The ports of cuboct_node, or of its cuboct_node_core, in order.
@@ -73,7 +74,8 @@ std::vector<Port> node_ports(const RtlDesign& design, bool core) {
                              {"output", "[cuboct_pkg::IdBits-1:0]", "fault_id_o"},
                              {"output", "[63:0]", "fault_number_o"},
                              {"output", "", "idle_o"}});
-  if (!design.moved.empty()) ports.insert(ports.begin() + 7, {"input ", velocity_range(design), "velocity_i"});
+  if (!design.moved.empty())
+    ports.insert(ports.begin() + 7, {"input ", velocity_range(design), "velocity_i"});
   return ports;
 }
 
@@ -178,8 +180,8 @@ std::string print_types(const RtlDesign& design) {
       "  output logic [17:0] kp_o,\n"
       "  output logic [17:0] kd_o\n"
       ");\n",
-      design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n", t - 1, axes - 1,
-      axes * v - 1, axes * v - 1);
+      design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n", t - 1,
+      axes - 1, axes * v - 1, axes * v - 1);
   const auto velocity = [&](const FixedType& type, int number) {
     const auto at = std::find(design.moved.begin(), design.moved.end(), number);
     if (at == design.moved.end()) return concatenated(type.velocity, v, axes);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Frames on a board's serial line: 7e, bytes with 7e and 7d escaped, their CRC-32, 7e. docs/reference/board.md.
+// Frames on a board's serial line: 7e, bytes with 7e and 7d escaped, their CRC-32, 7e.
+// docs/reference/board.md.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +18,8 @@ Bytes to_line(const Bytes& frame);
 class FrameReader {
  public:
   enum class Found : uint8_t { nothing, frame, damaged };
-  // One byte. `frame`: frame() holds the bytes of a frame whose check sum is right, without it. `damaged`: one ended
-  // whose check sum is wrong, or that is longer than any of ours.
+  // One byte. `frame`: frame() holds the bytes of a frame whose check sum is right, without it. `damaged`:
+  // one ended whose check sum is wrong, or that is longer than any of ours.
   Found take(uint8_t byte);
   const Bytes& frame() const { return frame_; }
 

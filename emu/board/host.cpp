@@ -57,7 +57,8 @@ Bytes Host::attempt(const Bytes& line, uint8_t number, uint8_t command, size_t l
   };
   port_.write(line);
   count_.bytes += line.size();
-  // Each byte may need an escape. A port that never falls silent must not hold us longer than a slow board may.
+  // Each byte may need an escape. A port that never falls silent must not hold us longer than a slow board
+  // may.
   const double on_line = 10.0 * static_cast<double>(line.size() + 2 * (longest + kFrameBytes)) / port_.baud();
   const auto start = Clock::now(), end = start + seconds(10 * (timeout_ + on_line));
   auto deadline = start + seconds(timeout_ + 10.0 * static_cast<double>(line.size()) / port_.baud());
@@ -104,14 +105,15 @@ Bytes Host::ask(uint8_t command, const Bytes& arguments, size_t longest, int att
 Bytes Host::answer(uint8_t command, const Bytes& arguments, size_t longest) {
   Bytes reply = ask(command, arguments, longest, kAttempts);
   if (reply.empty())
-    throw std::runtime_error(fmt::format("port {}: no answer to {} attempts ({} damaged, {} silent in all)", port(), kAttempts,
-                                         count_.damaged, count_.silent));
+    throw std::runtime_error(fmt::format("port {}: no answer to {} attempts ({} damaged, {} silent in all)",
+                                         port(), kAttempts, count_.damaged, count_.silent));
   return reply;
 }
 
 BoardState Host::short_answer(uint8_t command, const Bytes& arguments) {
   const Bytes reply = answer(command, arguments, 7);
-  if (reply.size() < 7) throw std::runtime_error(fmt::format("port {}: a reply of {} bytes", port(), reply.size()));
+  if (reply.size() < 7)
+    throw std::runtime_error(fmt::format("port {}: a reply of {} bytes", port(), reply.size()));
   return state_of(reply);
 }
 
@@ -119,15 +121,17 @@ BoardInfo Host::info() {
   const Bytes reply = ask(kInfo, {}, 27, kFirstAttempts);
   if (reply.empty()) {
     const std::string what = count_.damaged > 0 ? "what comes is not what a board says" : "no board answers";
-    throw InputError(fmt::format("port {}: {} ({} attempts at {} baud)", port(), what, kFirstAttempts, port_.baud()),
-                     "is it flashed with a project of 'cuboct emit --board', and is --baud that of the project?");
+    throw InputError(
+        fmt::format("port {}: {} ({} attempts at {} baud)", port(), what, kFirstAttempts, port_.baud()),
+        "is it flashed with a project of 'cuboct emit --board', and is --baud that of the project?");
   }
   BoardInfo info;
   info.version = reply.size() > 1 ? reply[1] : 0;
   if (info.version != kVersion || reply.size() != 27)
-    throw InputError(fmt::format("port {}: the board speaks version {} of the protocol, this program version {}", port(),
-                                 info.version, int{kVersion}),
-                     "emit the project again and flash the board");
+    throw InputError(
+        fmt::format("port {}: the board speaks version {} of the protocol, this program version {}", port(),
+                    info.version, int{kVersion}),
+        "emit the project again and flash the board");
   info.plan_hash = get(reply, 2, 8);
   info.machine_hash = get(reply, 10, 8);
   info.nodes = static_cast<int>(get(reply, 18, 2));
@@ -139,13 +143,15 @@ BoardInfo Host::info() {
 
 BoardState Host::status() {
   const Bytes reply = answer(kStatus, {}, 13);
-  if (reply.size() != 13) throw std::runtime_error(fmt::format("port {}: a reply of {} bytes", port(), reply.size()));
+  if (reply.size() != 13)
+    throw std::runtime_error(fmt::format("port {}: a reply of {} bytes", port(), reply.size()));
   return state_of(reply);
 }
 
 void Host::reset() {
   const BoardState state = short_answer(kReset, {});
-  if (state.loaded != 0 || state.steps != 0) throw std::runtime_error(fmt::format("port {}: the reset had no effect", port()));
+  if (state.loaded != 0 || state.steps != 0)
+    throw std::runtime_error(fmt::format("port {}: the reset had no effect", port()));
 }
 
 void Host::load(uint16_t index, uint16_t node, const Bits& word, int word_bits) {
@@ -156,7 +162,8 @@ void Host::load(uint16_t index, uint16_t node, const Bits& word, int word_bits) 
   const BoardState state = short_answer(kLoad, arguments);
   // Refused, but loaded: the reply to an earlier attempt was lost.
   if (state.loaded != index + 1)
-    throw std::runtime_error(fmt::format("port {}: the board did not take particle {}: it holds {}", port(), index, state.loaded));
+    throw std::runtime_error(
+        fmt::format("port {}: the board did not take particle {}: it holds {}", port(), index, state.loaded));
 }
 
 void Host::run(uint32_t from, uint32_t steps) {
@@ -165,14 +172,16 @@ void Host::run(uint32_t from, uint32_t steps) {
   put(arguments, steps, 4);
   const BoardState state = short_answer(kRun, arguments);
   if (state.steps != from + steps)
-    throw std::runtime_error(fmt::format("port {}: the board did not start step {}: it is at {}", port(), from, state.steps));
+    throw std::runtime_error(
+        fmt::format("port {}: the board did not start step {}: it is at {}", port(), from, state.steps));
 }
 
 std::vector<Bits> Host::read(uint16_t node, int word_bits) {
   const size_t word_bytes = (static_cast<size_t>(word_bits) + 7) / 8;
   std::vector<Bits> words;
   for (int tries = 0;; ++tries) {
-    if (tries > kAttempts) throw std::runtime_error(fmt::format("port {}: node {} cannot be read", port(), node));
+    if (tries > kAttempts)
+      throw std::runtime_error(fmt::format("port {}: node {} cannot be read", port(), node));
     Bytes arguments;
     put(arguments, words.size(), 2);
     put(arguments, static_cast<uint64_t>(words_), 1);
@@ -186,7 +195,8 @@ std::vector<Bits> Host::read(uint16_t node, int word_bits) {
     const size_t count = reply.size() >= 3 ? get(reply, 1, 2) : 0;
     const size_t expected = std::min(count - std::min(count, words.size()), static_cast<size_t>(words_));
     if ((reply[0] & (kBusy | kRefused)) != 0 || reply.size() != 3 + expected * word_bytes)
-      throw std::runtime_error(fmt::format("port {}: node {}: a reply of {} bytes, status {}", port(), node, reply.size(), reply[0]));
+      throw std::runtime_error(fmt::format("port {}: node {}: a reply of {} bytes, status {}", port(), node,
+                                           reply.size(), reply[0]));
     for (size_t k = 0; k < expected; ++k) {
       Bits word;
       for (int at = 0; at < word_bits; at += 8)
@@ -211,7 +221,8 @@ BoardFault Host::fault(uint16_t node) {
   const Bytes reply = answer(kFault, arguments, 14);
   if (reply.size() != 14 || (reply[0] & kRefused) != 0)
     throw std::runtime_error(fmt::format("port {}: the fault of node {} cannot be read", port(), node));
-  return {static_cast<Fault>(reply[1]), static_cast<uint32_t>(get(reply, 2, 4)), static_cast<int64_t>(get(reply, 6, 8))};
+  return {static_cast<Fault>(reply[1]), static_cast<uint32_t>(get(reply, 2, 4)),
+          static_cast<int64_t>(get(reply, 6, 8))};
 }
 
 }  // namespace cuboct::emu

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The host's end of a board: requests, one at a time, each repeated until its reply comes. docs/reference/board.md.
+// The host's end of a board: requests, one at a time, each repeated until its reply comes.
+// docs/reference/board.md.
 #pragma once
 
 #include <cstdint>
@@ -70,8 +71,8 @@ class Host {
   const std::string& port() const { return port_.path(); }
 
  private:
-  // The reply's bytes after number and command, or nothing where none came in `attempts`. `longest`: bytes that the
-  // reply may have.
+  // The reply's bytes after number and command, or nothing where none came in `attempts`. `longest`: bytes
+  // that the reply may have.
   Bytes ask(uint8_t command, const Bytes& arguments, size_t longest, int attempts);
   Bytes answer(uint8_t command, const Bytes& arguments, size_t longest);
   BoardState short_answer(uint8_t command, const Bytes& arguments);

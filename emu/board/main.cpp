@@ -41,8 +41,9 @@ int run(Request request) {
   const Trace trace = run_on_board(host, setup.plan, setup.initial, options);
   write_trace(request.out, trace);
   const LinkCount& count = host.count();
-  fmt::print("{} steps of {} particles on {} nodes in {:.0f} cycles; {} requests, {} sent again\n", trace.steps(),
-             setup.plan.particles, trace.nodes, trace.counters.front().second, count.requests, count.retries);
+  fmt::print("{} steps of {} particles on {} nodes in {:.0f} cycles; {} requests, {} sent again\n",
+             trace.steps(), setup.plan.particles, trace.nodes, trace.counters.front().second, count.requests,
+             count.retries);
   if (!trace.stop) return 0;
   fmt::print(stderr, "{}: {}\n", request.scene, trace.stop->text);
   return 1;
@@ -60,11 +61,12 @@ int main_of(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--steps", request.steps, "Steps to run; the scene's own number without it");
   app.add_option("--out", request.out, "Trace file to write (HDF5)")->required();
-  CLI::Option* const frames =
-      app.add_option("--frames", request.frames, "Steps whose states are kept; the first and the last without it")
-          ->delimiter(',');
+  CLI::Option* const frames = app.add_option("--frames", request.frames,
+                                             "Steps whose states are kept; the first and the last without it")
+                                  ->delimiter(',');
   const CLI::Option* const frames_file =
-      app.add_option("--frames-file", request.frames_file, "The same, one step per line of this file")->excludes(frames);
+      app.add_option("--frames-file", request.frames_file, "The same, one step per line of this file")
+          ->excludes(frames);
   app.add_option("--hash-every", request.run.hash_every, "Steps between two hashes of the state; 0: none")
       ->capture_default_str();
   app.add_flag("--progress", request.run.progress, "A line per second on standard error");

@@ -21,15 +21,17 @@ namespace cuboct::emu {
 namespace {
 
 speed_t speed_of(int baud) {
-  static const std::map<int, speed_t> speeds{
-      {9600, B9600},       {19200, B19200},     {38400, B38400},     {57600, B57600},     {115200, B115200},
-      {230400, B230400},   {460800, B460800},   {500000, B500000},   {576000, B576000},   {921600, B921600},
-      {1000000, B1000000}, {1500000, B1500000}, {2000000, B2000000}, {3000000, B3000000}, {4000000, B4000000}};
+  static const std::map<int, speed_t> speeds{{9600, B9600},       {19200, B19200},     {38400, B38400},
+                                             {57600, B57600},     {115200, B115200},   {230400, B230400},
+                                             {460800, B460800},   {500000, B500000},   {576000, B576000},
+                                             {921600, B921600},   {1000000, B1000000}, {1500000, B1500000},
+                                             {2000000, B2000000}, {3000000, B3000000}, {4000000, B4000000}};
   const auto at = speeds.find(baud);
   if (at != speeds.end()) return at->second;
   std::vector<int> known;
   for (const auto& [rate, speed] : speeds) known.push_back(rate);
-  throw InputError(fmt::format("{} baud is no rate of serial ports", baud), fmt::format("one of {}", fmt::join(known, ", ")));
+  throw InputError(fmt::format("{} baud is no rate of serial ports", baud),
+                   fmt::format("one of {}", fmt::join(known, ", ")));
 }
 
 [[noreturn]] void refuse(const std::string& path, int error) {
@@ -37,8 +39,9 @@ speed_t speed_of(int baud) {
     throw InputError(fmt::format("there is no port {}", path),
                      "is the board plugged in? 'ls /dev/ttyUSB* /dev/ttyACM*' lists serial ports");
   if (error == EACCES || error == EPERM)
-    throw InputError(fmt::format("no permission for port {}", path),
-                     "'ls -l' shows whose it is: often group dialout ('sudo usermod -aG dialout $USER', log in again)");
+    throw InputError(
+        fmt::format("no permission for port {}", path),
+        "'ls -l' shows whose it is: often group dialout ('sudo usermod -aG dialout $USER', log in again)");
   if (error == EBUSY || error == EWOULDBLOCK)
     throw InputError(fmt::format("port {} is in use by another program", path), "end that one first");
   throw InputError(fmt::format("cannot open port {}: {}", path, std::strerror(error)));
@@ -67,7 +70,8 @@ SerialPort::SerialPort(const std::string& path, int baud) : path_(path), baud_(b
   cfsetospeed(&line, speed);
   if (tcsetattr(file_, TCSANOW, &line) != 0) give_up(errno);
   ioctl(file_, TIOCEXCL);
-  // USB adapters keep what came for up to 16 ms unless asked not to; ports that know nothing of that are as good.
+  // USB adapters keep what came for up to 16 ms unless asked not to; ports that know nothing of that are as
+  // good.
   serial_struct serial{};
   if (ioctl(file_, TIOCGSERIAL, &serial) == 0) {
     serial.flags |= ASYNC_LOW_LATENCY;
@@ -98,7 +102,8 @@ void SerialPort::write(const Bytes& bytes) {
 Bytes SerialPort::read(Clock::time_point deadline) {
   Bytes bytes(4096);
   for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count() + 1;
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count() + 1;
     pollfd waiting{file_, POLLIN, 0};
     const int ready = left <= 0 ? 0 : poll(&waiting, 1, static_cast<int>(left));
     if (ready == 0) return {};

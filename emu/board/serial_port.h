@@ -24,8 +24,8 @@ class SerialPort {
 
   // All of it, or std::runtime_error where the port does not take it within 10 s or is gone.
   void write(const Bytes& bytes);
-  // What has come, waiting until `deadline` for the first byte; empty: nothing came. std::runtime_error where the port
-  // is gone.
+  // What has come, waiting until `deadline` for the first byte; empty: nothing came. std::runtime_error where
+  // the port is gone.
   Bytes read(Clock::time_point deadline);
 
  private:

@@ -27,12 +27,14 @@ class Session {
   Session(Host& host, const Plan& plan) : host_(host), plan_(plan), info_(host.info()) {
     const bool settable = info_.moved_types > 0 && info_.machine_hash == machine_hash(plan);
     if (info_.plan_hash != plan.hash && !settable)
-      throw InputError(fmt::format("port {}: the board holds plan {:016x}, the scene is plan {:016x}", host.port(),
-                                   info_.plan_hash, plan.hash),
-                       "emit the scene with --board, build and flash it; or run the scene that the board was made from");
-    if (info_.nodes != static_cast<int>(plan.lattice.size()) || info_.particle_bits != plan.words.particle_bits)
-      throw std::runtime_error(fmt::format("port {}: {} nodes, {} bits per particle do not fit plan {:016x}", host.port(),
-                                           info_.nodes, info_.particle_bits, plan.hash));
+      throw InputError(
+          fmt::format("port {}: the board holds plan {:016x}, the scene is plan {:016x}", host.port(),
+                      info_.plan_hash, plan.hash),
+          "emit the scene with --board, build and flash it; or run the scene that the board was made from");
+    if (info_.nodes != static_cast<int>(plan.lattice.size()) ||
+        info_.particle_bits != plan.words.particle_bits)
+      throw std::runtime_error(fmt::format("port {}: {} nodes, {} bits per particle do not fit plan {:016x}",
+                                           host.port(), info_.nodes, info_.particle_bits, plan.hash));
     check_words(plan);
   }
 
@@ -82,8 +84,9 @@ class Session {
               [](const Particle& a, const Particle& b) { return a.id < b.id; });
     for (size_t k = 0; k < state.particles.size(); ++k)
       if (state.particles[k].id != k || state.particles.size() != plan_.particles)
-        throw std::runtime_error(fmt::format("port {}: after step {} the board holds {} particles of {}, or one twice",
-                                             host_.port(), step, state.particles.size(), plan_.particles));
+        throw std::runtime_error(
+            fmt::format("port {}: after step {} the board holds {} particles of {}, or one twice",
+                        host_.port(), step, state.particles.size(), plan_.particles));
     return state;
   }
 
@@ -117,7 +120,8 @@ class Session {
       }
     }
     if (run(known.step, 1))
-      throw std::runtime_error(fmt::format("port {}: a fault of step {} is gone when run again", host_.port(), known.step));
+      throw std::runtime_error(
+          fmt::format("port {}: a fault of step {} is gone when run again", host_.port(), known.step));
     return stop(known.step);
   }
 
@@ -158,7 +162,8 @@ Trace run_on_board(Host& host, const Plan& plan, const State& initial, const Boa
     for (uint64_t step = 0; step < run.steps; step += run.hash_every) stops.insert(step);
   if (run.hash_every > 0 || !run.frames.empty()) stops.insert(run.steps);
   const auto record = [&](const State& state) {
-    if (run.hash_every > 0 && trace.hashes(state.step, run.steps)) trace.state_hash.push_back(hash_of(plan.lattice, state));
+    if (run.hash_every > 0 && trace.hashes(state.step, run.steps))
+      trace.state_hash.push_back(hash_of(plan.lattice, state));
     if (std::binary_search(run.frames.begin(), run.frames.end(), state.step)) trace.frames.push_back(state);
   };
 
@@ -196,7 +201,8 @@ Trace run_on_board(Host& host, const Plan& plan, const State& initial, const Boa
                     {"requests", static_cast<double>(count.requests)},
                     {"retries", static_cast<double>(count.retries)},
                     {"bytes on the line", static_cast<double>(count.bytes)}};
-  trace.notes = {{"port", host.port()}, {"board clock", fmt::format("{} MHz", session.info().clock_hz / 1e6)}};
+  trace.notes = {{"port", host.port()},
+                 {"board clock", fmt::format("{} MHz", session.info().clock_hz / 1e6)}};
   return trace;
 }
 

@@ -19,8 +19,8 @@ struct BoardRun {
 };
 
 // Throws InputError where the board holds another machine than `plan`, or the lattice cannot hold `initial`;
-// std::runtime_error where the line or the board fails. A fault is a trace with a stop reason. Ctrl-C gives the trace so
-// far.
+// std::runtime_error where the line or the board fails. A fault is a trace with a stop reason. Ctrl-C gives
+// the trace so far.
 Trace run_on_board(Host& host, const Plan& plan, const State& initial, const BoardRun& run);
 
 }  // namespace cuboct::emu

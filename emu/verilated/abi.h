@@ -38,8 +38,8 @@ struct CuboctOut {
 // or, of a whole lattice, whose host loads one particle of node `load_node` per cycle; `out` has an element
 // per node
 //   const char* cuboct_clock_lattice(void* model, const CuboctIn* host, uint32_t load_node, CuboctOut* out);
-// or, of the top of a board, `cycles` long: the levels of the line to it and from it, and whether the lamp that says idle
-// is lit in the end
+// or, of the top of a board, `cycles` long: the levels of the line to it and from it, and whether the lamp
+// that says idle is lit in the end
 //   const char* cuboct_clock_board(void* model, const uint8_t* rx, uint8_t* tx, int cycles, uint8_t* idle);
 // They return null, or "file:line" of the first assertion of the RTL that failed: then the model is of no
 // further use but to be destroyed.

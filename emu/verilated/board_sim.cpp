@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct-board-sim: the top of an emitted board, Verilated, behind a pseudo-terminal: a board for whoever has none.
+// cuboct-board-sim: the top of an emitted board, Verilated, behind a pseudo-terminal: a board for whoever has
+// none.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -63,8 +64,9 @@ struct Terminal {
 
 int simulate(const Request& request) {
   const double clocks = constant_of(request.project, "BitClocks16") / 16 * (1 + request.skew / 100);
-  const Library library(
-      compile_board(request.project, request.build_directory.empty() ? default_build_directory() : request.build_directory));
+  const Library library(compile_board(request.project, request.build_directory.empty()
+                                                           ? default_build_directory()
+                                                           : request.build_directory));
   if (library.clock_board == nullptr) throw InputError("the compiled library is not that of a board");
   void* model = library.create(1);
   Terminal terminal;
@@ -109,8 +111,9 @@ int simulate(const Request& request) {
     }
   }
   const NoiseCount &a = to_board.count(), &b = from_board.count();
-  fmt::print(stderr, "{} cycles; to the board {} bytes, {} flips, {} drops, {} inserts; from it {}, {}, {}, {}\n", cycles,
-             a.bytes, a.flips, a.drops, a.inserts, b.bytes, b.flips, b.drops, b.inserts);
+  fmt::print(stderr,
+             "{} cycles; to the board {} bytes, {} flips, {} drops, {} inserts; from it {}, {}, {}, {}\n",
+             cycles, a.bytes, a.flips, a.drops, a.inserts, b.bytes, b.flips, b.drops, b.inserts);
   library.destroy(model);
   return 0;
 }
@@ -118,10 +121,15 @@ int simulate(const Request& request) {
 int main_of(int argc, char** argv) {
   Request request;
   CLI::App app{"Simulates an emitted board behind a pseudo-terminal and prints its name", "cuboct-board-sim"};
-  app.add_option("project", request.project, "Directory of 'cuboct emit SCENE --board B --out DIR'")->required()->type_name("DIR");
-  app.add_option("--flip-rate", request.noise.flip, "Chance that a bit on the line is wrong")->check(CLI::Range(0.0, 1.0));
-  app.add_option("--drop-rate", request.noise.drop, "Chance that a byte is lost")->check(CLI::Range(0.0, 1.0));
-  app.add_option("--insert-rate", request.noise.insert, "Chance that a byte comes after a byte")->check(CLI::Range(0.0, 1.0));
+  app.add_option("project", request.project, "Directory of 'cuboct emit SCENE --board B --out DIR'")
+      ->required()
+      ->type_name("DIR");
+  app.add_option("--flip-rate", request.noise.flip, "Chance that a bit on the line is wrong")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--drop-rate", request.noise.drop, "Chance that a byte is lost")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--insert-rate", request.noise.insert, "Chance that a byte comes after a byte")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--seed", request.noise.seed, "Of the noise")->capture_default_str();
   app.add_option("--skew", request.skew, "Per cent by which the host's bits are longer than the board's")
       ->check(CLI::Range(-10.0, 10.0));

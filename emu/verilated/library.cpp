@@ -29,6 +29,20 @@ void find_symbol(void* handle, const char* name, F& function) {
   function = reinterpret_cast<F>(dlsym(handle, name));
 }
 
+// The project's files, all below rtl/, which is what the library's name stands for.
+void copy_board(const fs::path& project, const std::vector<std::string>& files, const fs::path& dir) {
+  fs::create_directories(dir / "rtl");
+  std::ofstream list(dir / "files.f");
+  for (const std::string& path : files) {
+    const std::string name = fs::path(path).filename().string();
+    std::error_code error;
+    fs::copy_file(project / path, dir / "rtl" / name, error);
+    if (error)
+      throw InputError(fmt::format("{}: cannot be read: {}", (project / path).string(), error.message()));
+    list << "rtl/" << name << "\n";
+  }
+}
+
 }  // namespace
 
 std::string default_build_directory() {
@@ -70,10 +84,10 @@ std::string compile_lattice(const Plan& plan, const State& initial, const std::s
 }
 
 std::string compile_board(const std::string& project, const std::string& build_directory) {
-  const fs::path from = project;
-  std::ifstream list(from / "board" / "files.f");
+  const fs::path from = project, names = from / "board" / "files.f";
+  std::ifstream list(names);
   if (!list)
-    throw InputError(fmt::format("{} holds no board: there is no {}", project, (from / "board" / "files.f").string()),
+    throw InputError(fmt::format("{} holds no board: there is no {}", project, names.string()),
                      "make one with 'cuboct emit SCENE --board icebreaker --out DIR'");
   std::vector<std::string> files;
   for (std::string path; std::getline(list, path);)
@@ -83,19 +97,7 @@ std::string compile_board(const std::string& project, const std::string& build_d
                   .compiler_flags = "-O1 -fno-semantic-interposition",
                   .constants = {},
                   .sources = with_headers("shim_board.cpp"),
-                  .emit =
-                      [&](const std::string& dir) {
-                        // All below rtl/, which is what the library's name stands for.
-                        std::ofstream copied((fs::create_directories(fs::path(dir) / "rtl"), fs::path(dir) / "files.f"));
-                        for (const std::string& path : files) {
-                          const std::string name = fs::path(path).filename().string();
-                          std::error_code error;
-                          fs::copy_file(from / path, fs::path(dir) / "rtl" / name, error);
-                          if (error)
-                            throw InputError(fmt::format("{}: cannot be read: {}", (from / path).string(), error.message()));
-                          copied << "rtl/" << name << "\n";
-                        }
-                      }},
+                  .emit = [&](const std::string& dir) { copy_board(from, files, dir); }},
                  build_directory);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A serial line to and from a simulated board, as levels per clock cycle, and the noise on it. Shares no code with the
-// board's receiver or with the host's driver.
+// A serial line to and from a simulated board, as levels per clock cycle, and the noise on it. Shares no code
+// with the board's receiver or with the host's driver.
 #pragma once
 
 #include <cstdint>

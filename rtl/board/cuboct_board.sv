@@ -32,9 +32,10 @@ module cuboct_board (
     .ClockHz(cuboct_board_pkg::ClockHz), .BitClocks16(cuboct_board_pkg::BitClocks16)
   ) u_link (
     .clk_i, .rst_ni, .rx_i, .tx_o, .lattice_rst_no(lattice_rst_n), .start_o(start), .steps_o(steps),
-    .load_valid_o(load_valid), .load_node_o(load_node), .load_data_o(load_data), .observe_valid_i(observe_valid),
-    .observe_data_i(observe_data), .fault_valid_i(fault_valid), .fault_code_i(fault_code), .fault_id_i(fault_id),
-    .fault_number_i(fault_number), .idle_i(idle), .velocity_reset_o(velocity_reset),
+    .load_valid_o(load_valid), .load_node_o(load_node), .load_data_o(load_data),
+    .observe_valid_i(observe_valid), .observe_data_i(observe_data), .fault_valid_i(fault_valid),
+    .fault_code_i(fault_code), .fault_id_i(fault_id), .fault_number_i(fault_number), .idle_i(idle),
+    .velocity_reset_o(velocity_reset),
     .velocity_valid_o(velocity_valid), .velocity_type_o(velocity_type), .velocity_axis_o(velocity_axis),
     .velocity_data_o(velocity_data), .busy_o, .fault_o
   );
@@ -45,8 +46,8 @@ module cuboct_board (
     .Types(cuboct_board_pkg::MovedTypes), .Axes(cuboct_pkg::Axes), .Bits(VelocityBits),
     .Initial(cuboct_board_pkg::Velocities)
   ) u_velocities (
-    .clk_i, .reset_i(velocity_reset), .valid_i(velocity_valid), .type_i(velocity_type), .axis_i(velocity_axis),
-    .data_i(velocity_data), .velocity_o(velocities)
+    .clk_i, .reset_i(velocity_reset), .valid_i(velocity_valid), .type_i(velocity_type),
+    .axis_i(velocity_axis), .data_i(velocity_data), .velocity_o(velocities)
   );
 `else
   logic unused_velocities;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A reset that is synchronous, lasts 16 cycles after the bitstream's load, and as long as a button is pressed. It relies
-// on registers that the bitstream's load sets to zero.
+// A synchronous reset: 16 cycles after the bitstream's load, and as long as a button is pressed. It relies on
+// registers that the bitstream's load sets to zero.
 module cuboct_board_reset (
   input  logic clk_i,
   input  logic reset_i,  // the button; not synchronous

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// CRC-32 of IEEE 802.3, one bit per cycle, least significant bit of a byte first. A byte given in cycle t is in the register
-// from t+9 on. Bytes come at least 10 cycles apart: a serial line needs more than that for each.
+// CRC-32 of IEEE 802.3, one bit per cycle, least significant bit of a byte first. A byte given in cycle t is
+// in the register from t+9 on. Bytes come at least 10 cycles apart: a serial line needs more than that for
+// each.
 module cuboct_crc32 (
   input  logic       clk_i,
   input  logic       clear_i,  // to the register's initial value
@@ -11,7 +12,7 @@ module cuboct_crc32 (
   output logic       good_o    // what was fed ends with its own check sum
 );
   localparam logic [31:0] Poly    = 32'hedb88320;
-  localparam logic [31:0] Residue = 32'hdebb20e3;  // of any bytes followed by the complement of their register
+  localparam logic [31:0] Residue = 32'hdebb20e3;  // of bytes followed by the complement of their register
 
   logic [31:0] crc_d, crc_q;
   logic [7:0]  data_d, data_q;

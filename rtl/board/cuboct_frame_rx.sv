@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From the line's bytes to a frame's: 7e ends a frame (and begins the next), 7d says that the next byte has its bit 5
-// inverted. After `enable_i` was low, bytes count from the next 7e on. Combinational but for its two states.
+// From the line's bytes to a frame's: 7e ends a frame (and begins the next), 7d says that the next byte has
+// its bit 5 inverted. After `enable_i` was low, bytes count from the next 7e on. Combinational but for its
+// two states.
 module cuboct_frame_rx (
   input  logic       clk_i,
   input  logic       rst_ni,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The host's end of a lattice: takes requests from a serial line, does them, replies. The frames and commands are those of
-// docs/reference/board.md. One request at a time: what comes while a reply is sent is not heard.
+// The host's end of a lattice: takes requests from a serial line, does them, replies. The frames and commands
+// are those of docs/reference/board.md. One request at a time: what comes while a reply is sent is not heard.
 //
-// Particles travel through one register, `word`: shifted in for LOAD; for READ taken from a dump (a run of no steps) and
-// shifted out. A dump shows all particles of a node, so there is one for each particle that is read.
+// Particles travel through one register, `word`: shifted in for LOAD; for READ taken from a dump (a run of no
+// steps) and shifted out. A dump shows all particles of a node, so there is one for each particle that is
+// read.
 module cuboct_host_link #(
   parameter int          Nodes        = 1,      // 1 to 65535
   parameter int          Axes         = 3,      // 2 or 3
@@ -60,8 +61,8 @@ module cuboct_host_link #(
   localparam int FaultBits = 4 + IdBits + 64;
 
   // The line.
-  logic       line_valid, byte_valid, frame_end, crc_clear, crc_valid, crc_shift, crc_good, send_valid, send_flag, send_ready;
-  logic       raw_valid, raw_ready, hears;
+  logic       line_valid, byte_valid, frame_end, crc_clear, crc_valid, crc_shift, crc_good;
+  logic       send_valid, send_flag, send_ready, raw_valid, raw_ready, hears;
   logic [7:0] line_data, byte_data, crc_sum, send_data, raw_data;
   cuboct_uart_rx #(.BitClocks16(BitClocks16)) u_uart_rx (
     .clk_i, .rst_ni, .rx_i, .valid_o(line_valid), .data_o(line_data)
@@ -82,7 +83,9 @@ module cuboct_host_link #(
     .clk_i, .rst_ni, .valid_i(raw_valid), .data_i(raw_data), .ready_o(raw_ready), .tx_o
   );
 
-  typedef enum logic [3:0] {Hear, Execute, DumpStart, Dump, SendStart, SendHead, SendWord, SendSum, SendEnd} state_t;
+  typedef enum logic [3:0] {
+    Hear, Execute, DumpStart, Dump, SendStart, SendHead, SendWord, SendSum, SendEnd
+  } state_t;
   state_t               state_d, state_q;
   logic [IndexBits-1:0] index_d, index_q;  // of a byte in a request, a reply's head, a word, the check sum
   logic [7:0]           number_d, number_q, command_d, command_q;
@@ -101,6 +104,8 @@ module cuboct_host_link #(
       default:  arg_bytes = 0;
     endcase
   end
+  logic [IndexBits-1:0] all_bytes;
+  assign all_bytes = arg_bytes + HeadBytes[IndexBits-1:0] + SumBytes[IndexBits-1:0];
   logic [31:0] run_from, run_steps;
   logic [15:0] load_index, node, read_first;
   logic [7:0]  read_words;
@@ -157,7 +162,8 @@ module cuboct_host_link #(
   always_comb begin
     observe_data = '0;
     for (n = 0; n < Nodes; n = n + 1)
-      observe_data = observe_data | (observe_data_i[n*ParticleBits +: ParticleBits] & {ParticleBits{is_node[n]}});
+      observe_data = observe_data
+                   | (observe_data_i[n*ParticleBits +: ParticleBits] & {ParticleBits{is_node[n]}});
   end
   assign observe_valid = ((observe_valid_i & is_node) != '0);
 
@@ -204,7 +210,9 @@ module cuboct_host_link #(
   logic [IndexBits-1:0]    body_index, body_bytes;
   logic [7:0]              status, head_data;
   assign state_data  = {cycles_q, steps_q, loaded_q};
-  assign fault_reply = {fault_data[4+IdBits +: 64], {(32-IdBits){1'b0}}, fault_data[4 +: IdBits], 4'd0, fault_code};
+  assign fault_reply = {
+    fault_data[4+IdBits +: 64], {(32-IdBits){1'b0}}, fault_data[4 +: IdBits], 4'd0, fault_code
+  };
   assign count_data  = {{(16-SlotBits){1'b0}}, seen_q};
   assign status      = {5'd0, refused_q, fault_any, run_q};
   assign body_index  = index_q - HeadBytes[IndexBits-1:0] - 1'b1;
@@ -282,7 +290,7 @@ module cuboct_host_link #(
         if (frame_end) begin
           crc_clear = 1'b1;
           index_d   = '0;
-          if (crc_good && index_q == arg_bytes + HeadBytes[IndexBits-1:0] + SumBytes[IndexBits-1:0]) state_d = Execute;
+          if (crc_good && index_q == all_bytes) state_d = Execute;
         end
       end
       Execute: begin

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A serial line in: 8 data bits, least significant first, no parity, one stop bit. The line is sampled every clock; a bit is
-// the majority of the three samples about its middle. A byte whose stop bit is low is dropped.
+// A serial line in: 8 data bits, least significant first, no parity, one stop bit. The line is sampled every
+// clock; a bit is the majority of the three samples about its middle. A byte whose stop bit is low is
+// dropped.
 module cuboct_uart_rx #(
   parameter int BitClocks16 = 192  // length of a bit in 1/16 clocks, >= 64
 ) (
@@ -31,8 +32,8 @@ module cuboct_uart_rx #(
   logic level;
   assign level = (sync_q[1] && past_q[0]) || (sync_q[1] && past_q[1]) || (past_q[0] && past_q[1]);
 
-  // The start bit began up to a clock before the cycle t that sees it. A timer of half a bit less half a clock, set in t,
-  // runs out in the cycle whose three samples lie about its middle, at most one clock early.
+  // The start bit began up to a clock before the cycle t that sees it. A timer of half a bit less half a
+  // clock, set in t, runs out in the cycle whose three samples lie about its middle, at most one clock early.
   logic                 busy_d, busy_q, tick;
   logic [TimerBits-1:0] timer_d, timer_q;
   logic [3:0]           count_d, count_q;  // bits taken, the start bit included

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The velocities of held and moved types, one register per type and axis: axis 0 of type 0 in the least significant place.
+// The velocities of held and moved types, one register per type and axis: axis 0 of type 0 in the least
+// significant place.
 module cuboct_velocities #(
   parameter int Types = 1,
   parameter int Axes  = 3,

@@ -21,7 +21,8 @@ std::vector<uint64_t> up_to(uint64_t steps) {
   return all;
 }
 
-// From the first cycle of EXCHANGE_X to the last of DUMP, as docs/reference/board.md says, by the native nodes.
+// From the first cycle of EXCHANGE_X to the last of DUMP, as docs/reference/board.md says, by the native
+// nodes.
 uint64_t cycles_of(const cuboct::Setup& setup, uint64_t steps) {
   emu::RunOptions options;
   options.steps = steps;
@@ -51,7 +52,8 @@ TEST(Board, HoldsGoldensBitsAndTheModelsCycles) {
   EXPECT_EQ(difference(setup.plan, golden, steps), "");
   EXPECT_EQ(steps.frames.size(), 25u);
   EXPECT_EQ(steps.state_hash.size(), 25u);
-  const Trace few = emu::run_on_board(host, setup.plan, setup.initial, {.steps = 24, .frames = {7, 24}, .hash_every = 0});
+  const Trace few =
+      emu::run_on_board(host, setup.plan, setup.initial, {.steps = 24, .frames = {7, 24}, .hash_every = 0});
   ASSERT_EQ(few.frames.size(), 2u);
   EXPECT_EQ(few.frames[0], golden.frames[7]);
   EXPECT_EQ(few.frames[1], golden.frames[24]);
@@ -79,12 +81,14 @@ TEST(Board, TakesOtherVelocitiesAndFindsAFault) {
   const Trace golden = golden_trace(thrown, 24);
   ASSERT_TRUE(golden.stop);
   EXPECT_EQ(golden.stop->step, 6u);
-  const Trace stepped = emu::run_on_board(host, thrown.plan, thrown.initial, {.steps = 24, .frames = up_to(24)});
+  const Trace stepped =
+      emu::run_on_board(host, thrown.plan, thrown.initial, {.steps = 24, .frames = up_to(24)});
   EXPECT_EQ(difference(thrown.plan, golden, stepped), "");
   EXPECT_EQ(stepped.frames.size(), 7u);
   // The step is found where the board was not read after each.
   for (const uint64_t steps : {7, 9, 24}) {
-    const Trace whole = emu::run_on_board(host, thrown.plan, thrown.initial, {.steps = steps, .frames = {0, steps}, .hash_every = 0});
+    const Trace whole = emu::run_on_board(host, thrown.plan, thrown.initial,
+                                          {.steps = steps, .frames = {0, steps}, .hash_every = 0});
     ASSERT_TRUE(whole.stop);
     EXPECT_EQ(*whole.stop, *golden.stop);
     EXPECT_EQ(whole.steps(), 6u);
@@ -137,7 +141,8 @@ TEST(Board, RequestsMayBeRepeated) {
   for (uint16_t n = 0; n < nodes.size(); ++n)
     for (const emu::Bits& word : host.read(n, bits)) {
       const emu::Slot slot = emu::unpack_particle(setup.plan, word);
-      Particle p{slot.id, slot.body.type, n, {slot.body.x[0], slot.body.x[1], slot.body.x[2]}, slot.body.v, slot.u};
+      Particle p{slot.id,     slot.body.type, n, {slot.body.x[0], slot.body.x[1], slot.body.x[2]},
+                 slot.body.v, slot.u};
       hash += hash_of(setup.plan.lattice, p);
     }
   EXPECT_EQ(hash, golden.state_hash[7]);
@@ -153,7 +158,8 @@ TEST(Board, RequestsMayBeRepeated) {
 TEST(Board, TheCommandDrivesIt) {
   const SimulatedBoard board;
   const std::string baud = std::to_string(SimulatedBoard::kBaud);
-  const std::vector<std::string> end{"--arch", board_file("small.toml"), "--port", board.port(), "--baud", baud};
+  const std::vector<std::string> end{"--arch", board_file("small.toml"), "--port", board.port(), "--baud",
+                                     baud};
   const auto with = [&](std::vector<std::string> words) {
     words.insert(words.end(), end.begin(), end.end());
     return command(words);
@@ -163,7 +169,8 @@ TEST(Board, TheCommandDrivesIt) {
   EXPECT_EQ(matched.code, 0);
   const Answer stopped = with({"crosscheck", board_file("thrown.toml"), "--engines", "fpga,lattice"});
   EXPECT_EQ(stopped.out,
-            "matched 48 updates over 6 steps in 2 engines\nall stopped: step 6, node 1 at cell (1, 0, 0), particle 1: "
+            "matched 48 updates over 6 steps in 2 engines\nall stopped: step 6, node 1 at cell (1, 0, 0), "
+            "particle 1: "
             "left the lattice along y (0)\n");
   EXPECT_EQ(stopped.code, 1);
   const Answer run = with({"run", board_file("grips.toml"), "--engine", "fpga"});
@@ -171,10 +178,12 @@ TEST(Board, TheCommandDrivesIt) {
   EXPECT_NE(run.out.find("\nretries            0\n"), std::string::npos) << run.out;
   const Answer wrong = with({"run", board_file("other.toml"), "--engine", "fpga"});
   EXPECT_EQ(wrong.code, 2);
-  EXPECT_EQ(wrong.err, "port " + board.port() +
-                           ": the board holds plan a8f00e943993f6a1, the scene is plan 9586ec283f3544ae\n"
-                           "  hint: emit the scene with --board, build and flash it; or run the scene that the board was made "
-                           "from\n");
+  EXPECT_EQ(
+      wrong.err,
+      "port " + board.port() +
+          ": the board holds plan a8f00e943993f6a1, the scene is plan 9586ec283f3544ae\n"
+          "  hint: emit the scene with --board, build and flash it; or run the scene that the board was made "
+          "from\n");
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ TEST(Frame, ReturnsWhatWasSent) {
   for (int k = 0; k < 200; ++k) {
     Bytes frame(1 + random() % 40);
     // A third of all bytes are marks.
-    for (uint8_t& byte : frame) byte = static_cast<uint8_t>(random() % 3 == 0 ? 0x7d + random() % 2 : random());
+    for (uint8_t& byte : frame)
+      byte = static_cast<uint8_t>(random() % 3 == 0 ? 0x7d + random() % 2 : random());
     const Bytes sent = to_line(frame);
     line.insert(line.end(), sent.begin(), sent.end());
     frames.push_back(frame);
@@ -53,7 +54,8 @@ TEST(Frame, ReturnsWhatWasSent) {
   EXPECT_EQ(heard.damaged, 0);
 }
 
-// Every single bit, every lost byte, every byte too many: no frame, or another number of frames, never a wrong one.
+// Every single bit, every lost byte, every byte too many: no frame, or another number of frames, never a
+// wrong one.
 TEST(Frame, IsNeverTakenForAnother) {
   const Bytes frame{3, 4, 0x7e, 0x7d, 0, 0xff, 0x11, 0x22, 0x33};
   const Bytes line = to_line(frame);

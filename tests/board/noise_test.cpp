@@ -24,7 +24,8 @@ TEST_P(Noise, CostsTimeAlone) {
     emu::Host host(board.port(), SimulatedBoard::kBaud, 0.05);
     for (const char* scene : {"grips.toml", "thrown.toml"}) {
       const auto setup = board_setup(scene);
-      const Trace run = emu::run_on_board(host, setup.plan, setup.initial, {.steps = 12, .frames = {0, 5, 11}});
+      const Trace run =
+          emu::run_on_board(host, setup.plan, setup.initial, {.steps = 12, .frames = {0, 5, 11}});
       EXPECT_EQ(difference(setup.plan, golden_trace(setup, 12), run), "") << scene;
     }
     retries = host.count().retries;
@@ -32,12 +33,14 @@ TEST_P(Noise, CostsTimeAlone) {
   EXPECT_GE(retries, 5u) << board.end();
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Lines, Noise,
-    testing::Values(Line{"flips", {"--flip-rate", "0.0005", "--seed", "1"}}, Line{"drops", {"--drop-rate", "0.004", "--seed", "2"}},
-                    Line{"inserts", {"--insert-rate", "0.004", "--seed", "3"}},
-                    Line{"all", {"--flip-rate", "0.0002", "--drop-rate", "0.002", "--insert-rate", "0.002", "--seed", "4"}}),
-    [](const auto& p) { return std::string(p.param.name); });
+INSTANTIATE_TEST_SUITE_P(Lines, Noise,
+                         testing::Values(Line{"flips", {"--flip-rate", "0.0005", "--seed", "1"}},
+                                         Line{"drops", {"--drop-rate", "0.004", "--seed", "2"}},
+                                         Line{"inserts", {"--insert-rate", "0.004", "--seed", "3"}},
+                                         Line{"all",
+                                              {"--flip-rate", "0.0002", "--drop-rate", "0.002",
+                                               "--insert-rate", "0.002", "--seed", "4"}}),
+                         [](const auto& p) { return std::string(p.param.name); });
 
 // A crystal and a USB adapter never agree exactly.
 TEST(Skew, OfTwoPercentIsNoNoise) {

@@ -38,8 +38,8 @@ struct Pty {
 };
 
 Answer run_at(const std::string& port, const std::string& timeout = "0.05") {
-  return command({"run", board_file("grips.toml"), "--arch", board_file("small.toml"), "--engine", "fpga", "--port", port,
-                  "--port-timeout", timeout});
+  return command({"run", board_file("grips.toml"), "--arch", board_file("small.toml"), "--engine", "fpga",
+                  "--port", port, "--port-timeout", timeout});
 }
 
 void expect_refusal(const Answer& answer, const std::string& text) {
@@ -53,7 +53,8 @@ const std::string kIsItFlashed =
 
 TEST(Port, ThatIsSilent) {
   const Pty pty;
-  expect_refusal(run_at(pty.name), "port " + pty.name + ": no board answers (5 attempts at 1000000 baud)\n" + kIsItFlashed);
+  expect_refusal(run_at(pty.name),
+                 "port " + pty.name + ": no board answers (5 attempts at 1000000 baud)\n" + kIsItFlashed);
 }
 
 // A device that never stops talking must not hold the command.
@@ -66,7 +67,8 @@ TEST(Port, ThatSpeaksSomethingElse) {
     while (!stop) {
       uint8_t bytes[64];
       for (uint8_t& byte : bytes) byte = static_cast<uint8_t>(random());
-      if (write(pty.master, bytes, sizeof bytes) < 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      if (write(pty.master, bytes, sizeof bytes) < 0)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   });
   const auto start = std::chrono::steady_clock::now();
@@ -74,7 +76,8 @@ TEST(Port, ThatSpeaksSomethingElse) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
   stop = true;
   babble.join();
-  expect_refusal(answer, "port " + pty.name + ": what comes is not what a board says (5 attempts at 1000000 baud)\n" +
+  expect_refusal(answer, "port " + pty.name +
+                             ": what comes is not what a board says (5 attempts at 1000000 baud)\n" +
                              kIsItFlashed);
 }
 
@@ -94,7 +97,8 @@ TEST(Port, ThatEchoes) {
   const Answer answer = run_at(pty.name);
   stop = true;
   echo.join();
-  expect_refusal(answer, "port " + pty.name + ": no board answers (5 attempts at 1000000 baud)\n" + kIsItFlashed);
+  expect_refusal(answer,
+                 "port " + pty.name + ": no board answers (5 attempts at 1000000 baud)\n" + kIsItFlashed);
 }
 
 TEST(Port, ThatIsNone) {
@@ -115,18 +119,20 @@ TEST(Port, ThatMayNotBeOpened) {
   if (geteuid() == 0) GTEST_SKIP() << "root may open every port";
   const Pty pty;
   chmod(pty.name.c_str(), 0);
-  expect_refusal(run_at(pty.name),
-                 "no permission for port " + pty.name +
-                     "\n  hint: 'ls -l' shows whose it is: often group dialout ('sudo usermod -aG dialout $USER', log in "
-                     "again)\n");
+  expect_refusal(run_at(pty.name), "no permission for port " + pty.name +
+                                       "\n  hint: 'ls -l' shows whose it is: often group dialout ('sudo "
+                                       "usermod -aG dialout $USER', log in "
+                                       "again)\n");
 }
 
 TEST(Port, HasKnownRates) {
   const Pty pty;
-  expect_refusal(command({"run", board_file("grips.toml"), "--engine", "fpga", "--port", pty.name, "--baud", "1234"}),
-                 "1234 baud is no rate of serial ports\n"
-                 "  hint: one of 9600, 19200, 38400, 57600, 115200, 230400, 460800, 500000, 576000, 921600, 1000000, 1500000, "
-                 "2000000, 3000000, 4000000\n");
+  expect_refusal(
+      command({"run", board_file("grips.toml"), "--engine", "fpga", "--port", pty.name, "--baud", "1234"}),
+      "1234 baud is no rate of serial ports\n"
+      "  hint: one of 9600, 19200, 38400, 57600, 115200, 230400, 460800, 500000, 576000, 921600, 1000000, "
+      "1500000, "
+      "2000000, 3000000, 4000000\n");
 }
 
 TEST(Command, SaysWhatAnEngineNeeds) {

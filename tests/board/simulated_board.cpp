@@ -45,13 +45,15 @@ SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options) {
   emit_rtl(setup.plan, setup.initial, project, 1, {.name = "icebreaker", .baud = kBaud});
   std::vector<std::string> arguments{project, "--build-dir", CUBOCT_TEST_CACHE};
   arguments.insert(arguments.end(), options.begin(), options.end());
-  process_ = std::make_unique<Process>(CUBOCT_BOARD_SIM, arguments, false, Streams{out, scratch_.path("err")});
+  process_ =
+      std::make_unique<Process>(CUBOCT_BOARD_SIM, arguments, false, Streams{out, scratch_.path("err")});
   // The board may have to be compiled.
   for (int k = 0; k < 5000 && port_.find('\n') == std::string::npos; ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     port_ = contents(out);
   }
-  if (port_.empty()) throw std::runtime_error("cuboct-board-sim did not start: " + contents(scratch_.path("err")));
+  if (port_.empty())
+    throw std::runtime_error("cuboct-board-sim did not start: " + contents(scratch_.path("err")));
   port_.pop_back();
 }
 
