@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "cli/real_bounds.h"
 #include "model/interrupt.h"
@@ -48,8 +47,7 @@ bool tell(const std::string& what, const std::vector<Vec3>& got, const std::vect
 RealOptions options_of(const Scene& scene, Precision precision) {
   RealOptions options;
   options.precision = precision;
-  options.threads = static_cast<int>(
-      std::clamp<size_t>(scene.body.size() / 2000, 1, std::max(1u, std::thread::hardware_concurrency())));
+  options.threads = reference_threads(scene.body.size());
   return options;
 }
 

@@ -16,7 +16,7 @@
 namespace cuboct {
 
 const std::vector<std::string>& fixed_engines() {
-  static const std::vector<std::string> names{"golden", "lattice", "systemc", "rtl", "gpu"};
+  static const std::vector<std::string> names{"golden", "lattice", "systemc", "rtl", "fpga", "gpu"};
   return names;
 }
 
@@ -25,6 +25,14 @@ void check_engine(const std::string& name, const std::vector<std::string>& allow
   const std::string near = did_you_mean(name, allowed);
   throw InputError(fmt::format("unknown engine '{}'", name),
                    near.empty() ? "one of " + list_of(allowed) : near);
+}
+
+void check_faults(const Input& input, const std::vector<std::string>& engines) {
+  if (input.faults.empty()) return;
+  read_fault_share(input.faults);
+  const auto has_links = [](const std::string& engine) { return engine == "systemc" || engine == "rtl"; };
+  if (std::none_of(engines.begin(), engines.end(), has_links))
+    throw InputError("--inject-faults needs an engine that has links", "systemc or rtl");
 }
 
 struct RunningEngine::State {
@@ -40,6 +48,7 @@ RunningEngine::RunningEngine(const std::string& engine, const Input& input, cons
     throw InputError(
         fmt::format("the {} engine is not built: no program cuboct-{} beside cuboct", engine, engine),
         engine == "systemc" ? "install libsystemc-dev and build again"
+        : engine == "fpga"  ? "install zlib1g-dev and build again"
         : engine == "gpu"   ? "install the CUDA toolkit (nvcc), configure and build again"
                             : "install verilator and libsystemc-dev and build again");
   std::vector<std::string> arguments{input.scene, "--steps", std::to_string(request.steps), "--out", path};
@@ -47,15 +56,19 @@ RunningEngine::RunningEngine(const std::string& engine, const Input& input, cons
   // A few on the command line, where they can be read; it holds no more than some ten thousand.
   constexpr size_t kListed = 1000;
   // An empty list in a file asks for none, as the list of no program does.
-  if (request.frames.size() > kListed || (request.frames.empty() && engine == "gpu")) {
+  const bool none_by_file = engine == "gpu" || engine == "fpga";
+  if (request.frames.size() > kListed || (request.frames.empty() && none_by_file)) {
     write_text(path + ".steps", fmt::format("{}\n", fmt::join(request.frames, "\n")));
     arguments.insert(arguments.end(), {"--frames-file", path + ".steps"});
   } else if (!request.frames.empty()) {
     arguments.insert(arguments.end(), {"--frames", fmt::format("{}", fmt::join(request.frames, ","))});
   }
-  if (input.stall_rate > 0 && engine != "gpu")  // it has no links that could stall
+  if (input.stall_rate > 0 && engine != "gpu" && engine != "fpga")  // they have no links that could stall
     arguments.insert(arguments.end(), {"--stall-rate", fmt::format("{}", input.stall_rate), "--stall-seed",
                                        std::to_string(input.stall_seed)});
+  if (!input.faults.empty() && engine != "gpu")
+    arguments.insert(arguments.end(),
+                     {"--inject-faults", input.faults, "--fault-seed", std::to_string(input.fault_seed)});
   if (progress) arguments.push_back("--progress");
   arguments.insert(arguments.end(), more.begin(), more.end());
   std::filesystem::remove(path);  // what is found there afterwards is this run's

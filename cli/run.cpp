@@ -7,12 +7,15 @@
 #include "cli/command.h"
 #include "cli/engines.h"
 #include "cli/outputs.h"
+#include "cli/run_fpga.h"
 #include "cli/run_gpu.h"
 #include "cli/run_lattice.h"
 #include "cli/run_reference.h"
 #include "cli/summary.h"
 #include "model/interrupt.h"
 #include "model/output.h"
+#include "model/process.h"
+#include "model/progress.h"
 #include "model/steps.h"
 
 namespace cuboct {
@@ -24,6 +27,7 @@ struct Options {
   LatticeChoice lattice;
   RealChoice real;
   GpuChoice gpu;
+  FpgaChoice fpga;
   std::string out;
   uint64_t steps = 0;
   uint64_t frames_every = 0;
@@ -79,7 +83,13 @@ int run(Options options) {
   const bool gpu = options.engine == "gpu";
   if (!lattice) options.lattice.check_unused(options.engine);
   if (!gpu) options.gpu.check_unused(options.engine);
+  const bool fpga = options.engine == "fpga";
+  if (fpga)
+    options.fpga.check_used();
+  else
+    options.fpga.check_unused(options.engine);
   options.real.check_used(options.engine);
+  check_faults(options.input, {options.engine});
   const Loaded loaded = lattice || gpu ? load_plan(options.input) : load(options.input);
   catch_interrupts();
   if (!options.out.empty()) prepare_directory(options.out);
@@ -130,8 +140,17 @@ int run(Options options) {
                    std::back_inserter(request.frames));
     if (options.engine == "golden") request.frames = frame_steps;
     RunMeter meter(loaded, probe_steps, !options.no_watch);
-    trace = run_fixed(options.engine, options.input, loaded.setup, request,
-                      [&](const State& state) { meter.see(state); });
+    if (fpga) {
+      const Scratch scratch;
+      trace = start_fpga(options.input, options.fpga, request,
+                         options.hashes_given ? options.lattice.hash_every : 0, scratch.path("fpga.h5"),
+                         stderr_is_terminal())
+                  .finish();
+      for (const State& frame : trace.frames) meter.see(frame);
+    } else {
+      trace = run_fixed(options.engine, options.input, loaded.setup, request,
+                        [&](const State& state) { meter.see(state); });
+    }
     const RunFacts facts = meter.finish();
     trace.curves = facts.curves;
     std::erase_if(trace.frames, [&](const State& frame) {
@@ -162,7 +181,7 @@ void add_run(CLI::App& app, int& exit_code) {
   options->input.add_stalls_to(*command);
   command
       ->add_option("--engine", options->engine,
-                   "lattice, golden, systemc, rtl, gpu or reference (doubles or floats)")
+                   "lattice, golden, systemc, rtl, fpga, gpu or reference (doubles or floats)")
       ->capture_default_str();
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
                     ->check(whole_number())
@@ -176,11 +195,12 @@ void add_run(CLI::App& app, int& exit_code) {
   lattice.add_to(*command);
   options->real.add_to(*command);
   options->gpu.add_to(*command);
+  options->fpga.add_to(*command);
   command->add_flag("--joules", options->gpu.joules,
                     "measure the energy of gpu's devices, which rest for two seconds first");
   auto* hashes = command
                      ->add_option("--hash-every", lattice.hash_every,
-                                  "steps between two hashes of lattice's or gpu's state")
+                                  "steps between two hashes of lattice's, gpu's or fpga's state")
                      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))
                      ->capture_default_str()
                      ->type_name("K");

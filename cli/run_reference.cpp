@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <thread>
 
 #include "cli/outputs.h"
 #include "cli/summary.h"
@@ -17,13 +16,6 @@
 #include "model/strain.h"
 
 namespace cuboct {
-namespace {
-
-// A thread of its own for this many particles.
-constexpr size_t kParticlesPerThread = 2000;
-
-}  // namespace
-
 void RealChoice::add_to(CLI::App& command) {
   command
       .add_option(
@@ -59,9 +51,7 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
                            bool watch) {
   using Clock = std::chrono::steady_clock;
   const Scene& scene = loaded.scene;
-  if (options.threads == 0)
-    options.threads = static_cast<int>(std::clamp<size_t>(scene.body.size() / kParticlesPerThread, 1,
-                                                          std::max(1u, std::thread::hardware_concurrency())));
+  if (options.threads == 0) options.threads = reference_threads(scene.body.size());
   Reference reference(scene.rule, scene.body, scene.periodic, options);
   ReferenceRun run;
   run.trace.engine = "reference";

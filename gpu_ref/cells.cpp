@@ -12,7 +12,6 @@
 namespace cuboct::gpu {
 namespace {
 
-int modulo(int a, int n) { return (a % n + n) % n; }
 
 // Neighbours in space are near in memory: bricks of this many cells a side.
 constexpr int kBrick = 4;

@@ -10,12 +10,19 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/fixed_math.h"
 #include "model/lattice.h"
 #include "model/vec.h"
 
 namespace cuboct::gpu {
 
 inline constexpr uint32_t kNoCell = 0xffffffffu;
+
+// In [0, n).
+CUBOCT_HD constexpr int modulo(int a, int n) {
+  const int rest = a % n;
+  return rest < 0 ? rest + n : rest;
+}
 
 struct Geometry {
   Cell low{};    // lowest cell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// gpu_ref/device.h on the host: a device is the machine itself, a stream runs each call at once.
+// gpu_ref/device.h on the host: a device is the machine itself, a kernel a loop.
 #pragma once
 
 #include <algorithm>
@@ -9,23 +9,11 @@
 #include <new>
 #include <vector>
 
+#include "gpu_ref/host_stream.h"
+
 namespace cuboct::gpu {
 
 inline constexpr bool kHasGraphs = false;
-
-class Event {};
-
-class Stream {
- public:
-  explicit Stream(int device = 0, bool = false) : device_(device) {}
-  int device() const { return device_; }
-  void record(Event&) {}
-  void wait(const Event&) {}
-  void synchronize() {}
-
- private:
-  int device_;
-};
 
 class Graph {
  public:
@@ -40,11 +28,25 @@ inline void* allocate(int, size_t bytes) {
   if (void* memory = std::malloc(bytes)) return memory;
   throw std::bad_alloc();
 }
-inline void release(int, void* memory) { std::free(memory); }
-inline void copy(Stream&, void* to, int, const void* from, int, size_t bytes) { std::memcpy(to, from, bytes); }
-inline void upload(Stream&, void* to, const void* from, size_t bytes) { std::memcpy(to, from, bytes); }
-inline void download(Stream&, void* to, const void* from, size_t bytes) { std::memcpy(to, from, bytes); }
-inline void clear(Stream&, void* memory, size_t bytes) { std::memset(memory, 0, bytes); }
+// Waits for the device, as cudaFree does.
+inline void release(int device, void* memory) {
+  if (memory) Stream::finish(device);
+  std::free(memory);
+}
+inline void copy(Stream& stream, void* to, int, const void* from, int, size_t bytes) {
+  stream.later([=] { std::memcpy(to, from, bytes); });
+}
+inline void upload(Stream& stream, void* to, const void* from, size_t bytes) {
+  stream.synchronize();
+  std::memcpy(to, from, bytes);
+}
+inline void download(Stream& stream, void* to, const void* from, size_t bytes) {
+  stream.synchronize();
+  std::memcpy(to, from, bytes);
+}
+inline void clear(Stream& stream, void* memory, size_t bytes) {
+  stream.later([=] { std::memset(memory, 0, bytes); });
+}
 inline void share(const std::vector<int>&) {}
 
 template <typename T>
@@ -65,26 +67,36 @@ const T& load(const T* at) {
 }
 
 template <class F>
-void for_each(Stream&, uint32_t begin, uint32_t end, int, const F& f) {
-  for (uint32_t i = begin; i < end; ++i) f(i);
+void for_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f) {
+  stream.later([=] {
+    for (uint32_t i = begin; i < end; ++i) f(i);
+  });
 }
 template <class F>
-void for_each_cached(Stream&, uint32_t begin, uint32_t end, int, const void* cache, size_t, const F& f) {
-  if (f.idle()) return;
-  for (uint32_t i = begin; i < end; ++i) f(i, cache);
+void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int, const void* cache, size_t, const F& f) {
+  stream.later([=] {
+    if (f.idle()) return;
+    for (uint32_t i = begin; i < end; ++i) f(i, cache);
+  });
 }
 template <class F>
-void sum_each(Stream&, uint32_t begin, uint32_t end, int, const F& f, uint64_t* out) {
-  if (f.idle()) return;
-  for (uint32_t i = begin; i < end; ++i) *out += f(i);
+void sum_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f, uint64_t* out) {
+  stream.later([=] {
+    if (f.idle()) return;
+    for (uint32_t i = begin; i < end; ++i) *out += f(i);
+  });
 }
 template <class F>
-void max_each(Stream&, uint32_t begin, uint32_t end, int, const F& f, uint32_t* out) {
-  for (uint32_t i = begin; i < end; ++i) *out = std::max(*out, f(i));
+void max_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f, uint32_t* out) {
+  stream.later([=] {
+    for (uint32_t i = begin; i < end; ++i) *out = std::max(*out, f(i));
+  });
 }
-inline void exclusive_sums(Stream&, const uint32_t* in, uint32_t* out, uint32_t count) {
-  uint32_t sum = 0;
-  for (uint32_t k = 0; k < count; ++k) out[k] = sum, sum += in[k];
+inline void exclusive_sums(Stream& stream, const uint32_t* in, uint32_t* out, uint32_t count) {
+  stream.later([=] {
+    uint32_t sum = 0;
+    for (uint32_t k = 0; k < count; ++k) out[k] = sum, sum += in[k];
+  });
 }
 
 }  // namespace cuboct::gpu

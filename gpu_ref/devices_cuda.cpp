@@ -2,9 +2,8 @@
 #include <cuda_runtime_api.h>
 #include <dlfcn.h>
 
-#include <array>
-
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 
@@ -40,6 +39,7 @@ std::vector<Device> find_devices(std::string* why) {
     cudaSetDevice(k);
     cudaMemGetInfo(&free, &total);
     device.memory = total, device.free = free;
+    device.block_memory = properties.sharedMemPerBlockOptin;
     devices.push_back(std::move(device));
   }
   return devices;

@@ -98,6 +98,7 @@ struct Device {
   std::string bus;             // PCI bus id, as NVML wants it
   int multiprocessors = 0;
   uint64_t memory = 0, free = 0;  // bytes
+  uint64_t block_memory = 0;      // bytes that threads of a block may share
 };
 // Empty where there is no driver, or no device; `why` then says which.
 std::vector<Device> find_devices(std::string* why = nullptr);

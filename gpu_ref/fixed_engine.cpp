@@ -75,7 +75,7 @@ class FixedEngine final : public Engine {
       Cell cell;
       for (int a = 0; a < 3; ++a) {
         cell[a] = loose.cell[i].c[a] + (loose.x[i].at[a] >> P);
-        if (const int period = lattice.period()[a]; period > 0) cell[a] = (cell[a] % period + period) % period;
+        if (const int period = lattice.period()[a]; period > 0) cell[a] = modulo(cell[a], period);
         p.x[a] = loose.x[i].at[a] & ((int64_t{1} << P) - 1);
         p.v[a] = loose.v[i].at[a];
         if (!loose.u.empty()) p.u[a] = loose.u[i].at[a];

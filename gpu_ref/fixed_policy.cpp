@@ -29,7 +29,6 @@ FixedRuleOnDevice::FixedRuleOnDevice(Stream& stream, const FixedRule& rule)
   if (rule.damped) view_.damp = put(rule.damp, cache);
   cache_.set(stream, cache);
   view_.scaled = rule.scaled;
-  view_.pd = rule.pd;
   view_.type_count = static_cast<int>(rule.types.size());
   if (rule.scaled) {
     std::vector<int32_t> scale;

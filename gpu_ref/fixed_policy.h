@@ -32,7 +32,7 @@ struct FixedView {
   Widths widths;
   uint64_t cutoff2;
   DeviceTable force, damp;
-  bool damped, scaled, pd;
+  bool damped, scaled;
   const int32_t* scale;  // types x types
   int type_count;
   const DeviceType* types;
@@ -112,7 +112,7 @@ template <typename VelocityNumber>
 struct FixedPolicy {
   static constexpr bool kFixed = true;
   static constexpr int kReach = 2;     // cells that a list may span along an axis
-  static constexpr int kUnrolled = 2;  // pairs in flight
+  static constexpr int kTogether = 1;  // partners loaded at once
   using Position = Four<int32_t, uint32_t>;          // P fractional bits; type and thin anchor
   using Velocity = Four<VelocityNumber, VelocityNumber>;  // P+G fractional bits; anchor (storage.h)
   using Extra = Three<int64_t>;                      // u, P+G fractional bits

@@ -9,8 +9,10 @@
 
 #ifdef __CUDACC__
 #define CUBOCT_DEVICE __device__
+#define CUBOCT_UNROLL _Pragma("unroll")
 #else
 #define CUBOCT_DEVICE
+#define CUBOCT_UNROLL
 #endif
 
 namespace cuboct::gpu {
@@ -33,7 +35,7 @@ struct GridView {
       at[a] = cell[a] - low[a];
       if (at[a] < 0 || at[a] >= total[a]) {
         if (!wraps[a] && !folds) return kNoCell;
-        at[a] = (at[a] % total[a] + total[a]) % total[a];
+        at[a] = modulo(at[a], total[a]);
       }
     }
     at[axis] -= local_first;
@@ -80,6 +82,9 @@ struct Entry<2> {
 template <int kReach>
 inline constexpr uint32_t kPlaceMask = (1u << Entry<kReach>::kPlaceBits) - 1;
 
+inline constexpr int kNearBits = 16;
+inline constexpr uint32_t kNearMask = (1u << kNearBits) - 1;
+
 // A particle's partners: those that were near when the list was made stand in the first rows of `entries`, the further
 // ones in the last.
 struct List {
@@ -87,13 +92,21 @@ struct List {
   const uint32_t* count;    // near ones, and above kNearBits further ones
   size_t stride;
   uint32_t width;
+
+  CUBOCT_DEVICE uint32_t near(uint32_t i) const { return count[i] & kNearMask; }
+  CUBOCT_DEVICE uint32_t further(uint32_t i) const { return count[i] >> kNearBits; }
+  // Of further ones.
+  CUBOCT_DEVICE uint32_t first_row(uint32_t i) const { return width - further(i); }
+  // Calls use(entry) for all, near ones first.
+  template <class Use>
+  CUBOCT_DEVICE void each(uint32_t i, const Use& use) const {
+    const uint32_t near_ones = near(i), gap = first_row(i) - near_ones, all = near_ones + further(i);
+    for (uint32_t k = 0; k < all; ++k) use(entries[(k < near_ones ? k : k + gap) * stride + i]);
+  }
 };
 // Those of them that were within a thin skin at a later step, in the list's order: most steps go over these alone.
 struct ThinList {
   uint32_t* entries;  // as List's, without further ones
   uint32_t* count;
 };
-inline constexpr int kNearBits = 16;
-inline constexpr uint32_t kNearMask = (1u << kNearBits) - 1;
-
 }  // namespace cuboct::gpu

@@ -2,11 +2,12 @@
 // The engine of both arithmetics on one or more devices.
 //
 // Space is cut into slabs, one per device or more. Particles are stored by cell; a pair list with a skin holds each
-// one's partners until some particle has moved half the skin, and a thin list those of them that are near now (step.h). One kernel does a step of a particle, from one of two
-// copies of the state to the other. Steps go in batches without the host: kernels note up to which step all was
-// good, and those beyond it do nothing. A slab's borders have a stream of their own: they are written into the neighbours'
-// memory as well, while the inner particles are computed. A slab that has to stop tells the others, which may then be
-// one step ahead: the state that all have reached is still in one of their two copies.
+// one's partners until some particle has moved half the skin, and a thin list those of them that are near now
+// (step.h). One kernel does a step of a particle, from one of two copies of the state to the other. Steps go in
+// batches without the host: kernels note up to which step all was good, and those beyond it do nothing. A slab's
+// borders have a stream of their own: they are written into the neighbours' memory as well, while the inner particles
+// are computed. A slab that has to stop tells the others, which may then be one step ahead: the state that all have
+// reached is still in one of their two copies.
 #pragma once
 
 #include <array>
@@ -36,7 +37,6 @@ constexpr double bytes_per_particle(bool pd, double listed) {
   const double order = 2 * (sizeof(CellAt) + 4) + 8 + (Policy::kFixed ? 8 : 0) + 4;
   return 2 * state + order + 8 * listed + 8;
 }
-
 
 // A state on the host, in the numbers of the devices; in no order.
 template <class Policy>

@@ -20,10 +20,7 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
   const Geometry& g = setup.geometry;
   for (int a = 0; a < 3; ++a) {
     per_plane[a].assign(static_cast<size_t>(g.total[a]), 0);
-    for (const CellAt& c : state.cell) {
-      const int p = (c.c[a] - g.low[a]) % g.total[a];
-      ++per_plane[a][static_cast<size_t>(p < 0 ? p + g.total[a] : p)];
-    }
+    for (const CellAt& c : state.cell) ++per_plane[a][static_cast<size_t>(modulo(c.c[a] - g.low[a], g.total[a]))];
   }
   cells_ = make_cells(g, per_plane, slabs);
   uint64_t cells = 0;
@@ -35,6 +32,7 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
     Slab& slab = *slabs_.back();
     const SlabCells& of = cells_.slabs[static_cast<size_t>(s)];
     slab.rule = make_rule(slab.stream);
+    require_tables(options, slab.rule->cache_words() * 4);
     slab.rank.set(slab.stream, of.rank);
     for (auto* array : {&slab.count, &slab.first, &slab.taken, &slab.occupancy}) array->resize(of.ranks);
     slab.notes.resize(8);

@@ -26,7 +26,8 @@ void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
     const auto fill_and_run = [&](auto f) {
       f.view = s.rule->view(), f.grid = grid(s), f.from = at(s, at_), f.to = at(s, 1 - at_), f.list = list(s);
       f.thin = {s.thin_entries.data(), s.thin_counts.data()};
-      f.thin2 = square(reach_of(thin_skin())), f.range = static_cast<float>(range()), f.thin_skin = static_cast<float>(thin_ways());
+      f.thin2 = square(reach_of(thin_skin())), f.inside2 = square(reach_of(0));
+      f.range = static_cast<float>(range()), f.thin_skin = static_cast<float>(thin_ways());
       if (const Slab* lower = beside(s, 0))
         f.copies[0] = {lower->x[1 - at_].data(), setup_.damped ? lower->v[1 - at_].data() : nullptr, 0, s.low_end,
                        int64_t{lower->lower_copy_end}};

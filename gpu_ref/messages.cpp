@@ -73,4 +73,12 @@ void require_memory(const Options& options, uint64_t particles, uint64_t cells, 
   }
 }
 
+void require_tables(const Options& options, uint64_t bytes) {
+  for (const Device& device : find_devices())
+    if (std::count(options.devices.begin(), options.devices.end(), device.ordinal) > 0 && bytes > device.block_memory)
+      throw InputError(fmt::format("the rule's tables take {} bytes, and a block of device {} ({}) holds {}", bytes,
+                                   device.ordinal, device.name, device.block_memory),
+                       "fewer of the arch's table.index_bits");
+}
+
 }  // namespace cuboct::gpu

@@ -18,6 +18,8 @@ namespace cuboct::gpu {
 void require_devices(const Options& options);
 // InputError where the devices cannot hold a scene: `cells` bytes/4 of tables on each.
 void require_memory(const Options& options, uint64_t particles, uint64_t cells, double bytes_per_particle);
+// InputError where a block of a device cannot hold a rule's tables.
+void require_tables(const Options& options, uint64_t bytes);
 // std::runtime_error: in the step after `step`.
 [[noreturn]] void throw_not_finite(uint64_t step, uint32_t fastest, double speed);
 

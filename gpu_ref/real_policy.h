@@ -19,7 +19,6 @@ template <class Real>
 struct RealView {
   RealRule<Real> rule;
   Real edge[3];  // of a cell, cutoffs
-  bool damped, pd;
 };
 
 // Owns what a RealView points to.
@@ -32,8 +31,6 @@ class RealRuleOnDevice {
     strength_.set(stream, tables.strength);
     types_.set(stream, tables.types);
     view_.rule = tables.rule(cache_.data(), strength_.data(), types_.data());
-    view_.damped = view_.rule.damped;
-    view_.pd = view_.rule.pd;
     for (int a = 0; a < 3; ++a) view_.edge[a] = static_cast<Real>(edge[a]);
   }
   const RealView<Real>& view() const { return view_; }
@@ -50,7 +47,7 @@ template <class Real>
 struct RealPolicy {
   static constexpr bool kFixed = false;
   static constexpr int kReach = 1;     // cells that a list may span along an axis
-  static constexpr int kUnrolled = 4;  // pairs in flight
+  static constexpr int kTogether = 3;  // partners loaded at once
   static constexpr bool kSingle = sizeof(Real) == 4;
   using Position = Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs; type and thin anchor
   using Velocity = Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs per step; anchor

@@ -8,8 +8,8 @@
 #include <memory>
 #include <numeric>
 #include <optional>
-#include <thread>
 
+#include "model/energy_curves.h"
 #include "model/interrupt.h"
 #include "model/progress.h"
 #include "model/reference.h"
@@ -30,12 +30,6 @@ bool among(const std::vector<uint64_t>& ascending, uint64_t step) {
 uint64_t sooner(const std::vector<uint64_t>& ascending, uint64_t step, uint64_t next) {
   const auto at = std::upper_bound(ascending.begin(), ascending.end(), step);
   return at == ascending.end() ? next : std::min(*at, next);
-}
-
-// A thread of its own for some 2000 particles.
-int threads_for(size_t particles) {
-  return static_cast<int>(
-      std::clamp<size_t>(particles / 2000, 1, std::max(1u, std::thread::hardware_concurrency())));
 }
 
 class Loop {
@@ -66,8 +60,7 @@ class Loop {
   const std::vector<uint64_t> looks_;
   const std::vector<uint32_t> ids_;  // probed particles
   ProbeMeter probes_;
-  std::vector<Curve> energy_;  // and the pressure
-  double volume_ = 0;          // m^3, of a box that repeats along all axes; else 0
+  EnergyCurves energy_;
   std::optional<Watch> watch_;
   std::unique_ptr<Engine> engine_;
   Int3 momentum_{};           // fixed, of the initial state
@@ -84,7 +77,7 @@ Loop::Loop(const Scene& scene, const Plan& plan, const GpuRun& request)
       looks_(request.watch ? looks_of(request.probes, scene.body.size()) : std::vector<uint64_t>()),
       ids_(probed_ids(scene.probes)),
       probes_(placed(scene.probes, ids_), scene.periodic, initial_positions()),
-      volume_(scene.periodic.extent.prod()),
+      energy_(request.energies, scene.periodic.extent.prod()),
       trace_(result_.trace) {
   trace_.engine = "gpu";
   trace_.plan_hash = plan.hash;
@@ -92,9 +85,6 @@ Loop::Loop(const Scene& scene, const Plan& plan, const GpuRun& request)
   trace_.hash_every = fixed() ? request.hash_every : 1;
   trace_.notes.emplace_back("precision", to_string(request.arithmetic));
   if (!request.energies) return;
-  for (const char* part : {"kinetic", "potential", "gravity", "total"})
-    energy_.push_back({std::string("energy.") + part, "J", {}, {}});
-  if (volume_ > 0) energy_.push_back({"pressure", "Pa", {}, {}});
   if (request.watch) watch_.emplace(scene, fixed() ? plan.rule.error.worst_force : 0);
 }
 
@@ -151,7 +141,7 @@ void Loop::look_at(const State& state) {
 void Loop::look_at(const Body& body) {
   RealOptions options;
   options.precision = request_.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
-  options.threads = threads_for(body.size());
+  options.threads = reference_threads(body.size());
   const Reference here(scene_.rule, body, scene_.periodic, options);
   watch_->see(engine_->step_count(), body, here.forces(), engine_->read(true).energies);
 }
@@ -186,15 +176,8 @@ void Loop::take(bool look, bool keep_it) {
 void Loop::sample(const Reading& reading) {
   largest_speed_ = std::max(largest_speed_, reading.largest_speed);
   if (!scene_.probes.empty()) probes_.add({engine_->step_count(), reading.x, reading.force});
-  if (energy_.empty()) return;
-  const Energies& e = reading.energies;
-  std::vector<double> values{e.kinetic, e.potential, e.gravity, e.total()};
-  if (volume_ > 0)
-    values.push_back(pressure(e, Mat3(Mat3::Identity() * (-reading.virial / (3 * volume_))), volume_));
-  for (size_t k = 0; k < values.size(); ++k) {
-    energy_[k].step.push_back(engine_->step_count());
-    energy_[k].value.push_back(values[k]);
-  }
+  energy_.add(engine_->step_count(), reading.energies,
+              [&] { return Mat3(Mat3::Identity() * (-reading.virial / (3 * energy_.volume()))); });
 }
 
 void Loop::record() {
@@ -230,13 +213,13 @@ void Loop::finish() {
   if (request_.energies && !among(request_.probes, last)) sample(engine_->read(true));
   take(request_.watch && !among(looks_, last), !request_.frames.empty() && !among(request_.frames, last));
   trace_.curves = probes_.curves();
-  trace_.curves.insert(trace_.curves.end(), energy_.begin(), energy_.end());
+  trace_.curves.insert(trace_.curves.end(), energy_.curves().begin(), energy_.curves().end());
   if (watch_) {
     trace_.findings = watch_->findings();
     trace_.watched = watch_->last_step();
   }
   if (request_.totals) {
-    largest_speed_ = std::max(largest_speed_, engine_->read(true).largest_speed);
+    if (!request_.energies) largest_speed_ = std::max(largest_speed_, engine_->read(true).largest_speed);
     double change = 0;
     if (fixed()) {
       const bool kept = !trace_.frames.empty() && trace_.frames.back().step == last;
@@ -262,9 +245,7 @@ void Loop::count() {
   const Counters& counters = engine_->counters();
   const auto add = [&](const char* name, double value) { trace_.counters.emplace_back(name, value); };
   add("list_builds", static_cast<double>(counters.list_builds));
-  if (fixed()) {
-    add("golden_steps", static_cast<double>(counters.golden_steps));
-  }
+  if (fixed()) add("golden_steps", static_cast<double>(counters.golden_steps));
   add("longest_list", static_cast<double>(counters.longest_list));
   add("listed_pairs", counters.listed_pairs);
   add("halo_particles", static_cast<double>(counters.halo_particles));

@@ -18,7 +18,7 @@ struct Control {
   uint32_t doubt;    // the first step that may not be possible
   uint32_t crowded;  // the first step in which a node may be too full
   uint32_t old;      // the first step after which the list serves no longer
-  uint32_t thin;     // the step after which the thin lists serve no longer
+  uint32_t thin;     // the first step after which the thin lists serve no longer
 };
 inline constexpr uint32_t kNever = 0xffffffffu;
 
@@ -72,32 +72,54 @@ struct Pairs {
   typename Policy::Sum sum{};
   bool sound = true;
 
-  CUBOCT_DEVICE void add(const typename Policy::Position& other, uint32_t place, const int (&away)[3]) {
-    auto w = v;
-    if constexpr (Variant::kDamped) w = load(from.v + place);
+  // Calls use(entry, partner, its velocity) for `count` entries, one in each row of `stride`. Some are loaded at once, and
+  // with them the entries that follow: memory's latency is what a step waits for.
+  template <class Use>
+  CUBOCT_DEVICE void over(const uint32_t* at, size_t stride, uint32_t count, const Use& use) const {
+    constexpr int kTogether = Policy::kTogether;
+    uint32_t coming[kTogether];
+    const auto fetch = [&](uint32_t first) {
+      CUBOCT_UNROLL
+      for (int k = 0; k < kTogether; ++k) coming[k] = first + k < count ? at[(first + k) * stride] : 0;
+    };
+    fetch(0);
+    for (uint32_t first = 0; first < count; first += kTogether) {
+      uint32_t entry[kTogether];
+      typename Policy::Position x_of[kTogether];
+      typename Policy::Velocity v_of[kTogether];
+      CUBOCT_UNROLL
+      for (int k = 0; k < kTogether; ++k) {
+        entry[k] = coming[k];
+        const uint32_t place = entry[k] & kPlaceMask<Policy::kReach>;  // of none: 0, which there is
+        x_of[k] = load(from.x + place);
+        if constexpr (Variant::kDamped) v_of[k] = load(from.v + place);
+      }
+      fetch(first + kTogether);
+      CUBOCT_UNROLL
+      for (int k = 0; k < kTogether; ++k)
+        if (first + k < count) use(entry[k], x_of[k], v_of[k]);
+    }
+  }
+  template <class Use>
+  CUBOCT_DEVICE void over(const List& list, uint32_t i, const Use& use) const {
+    over(list.entries + i, list.stride, list.near(i), use);
+    over(list.entries + i + list.stride * list.first_row(i), list.stride, list.further(i), use);
+  }
+  CUBOCT_DEVICE void add(uint32_t entry, const typename Policy::Position& other, const typename Policy::Velocity& w) {
+    int away[3];
+    Entry<Policy::kReach>::away(entry, away);
     sound &= Policy::add_pair(rule, grid, x, v, other, w, away, sum);
   }
-  CUBOCT_DEVICE void add(uint32_t entry) {
-    const uint32_t place = entry & kPlaceMask<Policy::kReach>;
+  CUBOCT_DEVICE float distance2(uint32_t entry, const typename Policy::Position& other) const {
     int away[3];
     Entry<Policy::kReach>::away(entry, away);
-    add(load(from.x + place), place, away);
-  }
-  // Whether it was nearer than the root of `thin2`.
-  CUBOCT_DEVICE bool add_near(uint32_t entry, float thin2) {
-    const uint32_t place = entry & kPlaceMask<Policy::kReach>;
-    int away[3];
-    Entry<Policy::kReach>::away(entry, away);
-    const auto other = load(from.x + place);
     float square = 0;
     for (int a = 0; a < 3; ++a) {
       const float d = Policy::along(view, grid, other, a) - Policy::along(view, grid, x, a) +
                       static_cast<float>(away[a]) * grid.edge[a];
       square += d * d;
     }
-    if (square > thin2) return false;
-    add(other, place, away);
-    return true;
+    return square;
   }
 };
 
@@ -107,9 +129,7 @@ CUBOCT_DEVICE inline typename Policy::Sum kick_of(const typename Policy::View& v
                                                   const List& list, uint32_t i, const typename Policy::Position& x,
                                                   const typename Policy::Velocity& v) {
   Pairs<Policy, Variant> pairs{view, grid, from, Variant::cached(view, cache), x, v};
-  const uint32_t near = list.count[i] & kNearMask, further = list.count[i] >> kNearBits;
-  for (uint32_t k = 0; k < near; ++k) pairs.add(list.entries[k * list.stride + i]);
-  for (uint32_t k = 0; k < further; ++k) pairs.add(list.entries[(list.width - 1 - k) * list.stride + i]);
+  pairs.over(list, i, [&](uint32_t entry, const auto& other, const auto& w) { pairs.add(entry, other, w); });
   return pairs.sum;
 }
 
@@ -122,6 +142,7 @@ struct Step {
   List list;
   ThinList thin;
   float thin2;      // square of what the thin list reaches
+  float inside2;    // square of what no interaction reaches, roundings included
   float range;      // of thin anchors
   float thin_skin;  // the ways of two that it allows together
   Copies<Policy> copies[2];
@@ -199,22 +220,17 @@ struct Step {
   // Whether a pair that no thin list holds may have come near: two that together have moved as far as the thin skin.
   // One of them has moved half of that; few have, and they look at their partners.
   CUBOCT_DEVICE bool meets_a_stranger(uint32_t i, float way) const {
-    const uint32_t near = list.count[i] & kNearMask, further = list.count[i] >> kNearBits;
-    for (uint32_t k = 0; k < near + further; ++k) {
-      const uint32_t row = k < near ? k : list.width - 1 - (k - near);
-      const uint32_t place = list.entries[row * list.stride + i] & kPlaceMask<Policy::kReach>;
-      if (way + thin_way(load(from.x + place), load(from.v + place)) > thin_skin) return true;
-    }
-    return false;
+    bool meets = false;
+    list.each(i, [&](uint32_t entry) {
+      const uint32_t place = entry & kPlaceMask<Policy::kReach>;
+      meets = meets || way + thin_way(load(from.x + place), load(from.v + place)) > thin_skin;
+    });
+    return meets;
   }
 
   CUBOCT_DEVICE void go_over(uint32_t i, Pairs<Policy, Variant>& pairs) const {
-    const uint32_t count = thin.count[i];
-    const uint32_t* at = thin.entries + i;
-#ifdef __CUDACC__
-#pragma unroll Policy::kUnrolled
-#endif
-    for (uint32_t k = 0; k < count; ++k, at += list.stride) pairs.add(*at);
+    pairs.over(thin.entries + i, list.stride, thin.count[i],
+               [&](uint32_t entry, const auto& other, const auto& w) { pairs.add(entry, other, w); });
   }
 
   CUBOCT_DEVICE void thin_out(uint32_t i, typename Policy::Position& x, const typename Policy::Velocity& v,
@@ -223,21 +239,13 @@ struct Step {
     moved_since<Policy>(view, grid, x, v, moved);
     using Last = decltype(x.last);
     x.last = static_cast<Last>(type_in(x.last)) | static_cast<Last>(thin_anchor_of(moved, range)) << kTypeBits;
-    const uint32_t near = list.count[i] & kNearMask, further = list.count[i] >> kNearBits;
     uint32_t kept = 0;
-    const auto keep = [&](uint32_t entry) {
-      if (pairs.add_near(entry, thin2)) thin.entries[kept++ * list.stride + i] = entry;
-    };
-    const uint32_t* at = list.entries + i;
-#ifdef __CUDACC__
-#pragma unroll Policy::kUnrolled
-#endif
-    for (uint32_t k = 0; k < near; ++k, at += list.stride) keep(*at);
-    at = list.entries + i + list.stride * (list.width - further);
-#ifdef __CUDACC__
-#pragma unroll Policy::kUnrolled
-#endif
-    for (uint32_t k = 0; k < further; ++k, at += list.stride) keep(*at);
+    pairs.over(list, i, [&](uint32_t entry, const auto& other, const auto& w) {
+      const float square = pairs.distance2(entry, other);
+      if (square > thin2) return;
+      thin.entries[kept++ * list.stride + i] = entry;
+      if (square <= inside2) pairs.add(entry, other, w);
+    });
     thin.count[i] = kept;
   }
 
@@ -301,8 +309,7 @@ struct HashEach {
       const int off = Policy::cells_off(view, grid, x, a);
       Policy::take_off(view, grid, x, a, off);
       int c = home.c[a] + off;
-      if (grid.wraps[a])
-        c = grid.low[a] + ((c - grid.low[a]) % grid.total[a] + grid.total[a]) % grid.total[a];
+      if (grid.wraps[a]) c = grid.low[a] + modulo(c - grid.low[a], grid.total[a]);
       hash.add(c);
     }
     for (int a = 0; a < 3; ++a) hash.add(x.at[a]).add(v.at[a]).add(at.u ? at.u[i].at[a] : 0);
@@ -373,10 +380,7 @@ struct ReadEnergies {
       typename Policy::Sum kick{};
       double place[3];
       for (int a = 0; a < 3; ++a) place[a] = static_cast<double>(x.at[a]) * unit;
-      const uint32_t near = list.count[i] & kNearMask, further = list.count[i] >> kNearBits;
-      for (uint32_t k = 0; k < near + further; ++k) {
-        const uint32_t row = k < near ? k : list.width - 1 - (k - near);
-        const uint32_t entry = list.entries[row * list.stride + i];
+      list.each(i, [&](uint32_t entry) {
         int away[3];
         Entry<Policy::kReach>::away(entry, away);
         const uint32_t from = entry & kPlaceMask<Policy::kReach>;
@@ -394,7 +398,7 @@ struct ReadEnergies {
           sum.virial -= energy.kinetic * velocity_unit * static_cast<double>(one.at[a]) * d;
         }
         sum.potential += pair_energy(energy, s, type_in(x.last), type_in(other.last)) / 2;
-      }
+      });
       const double scene[3] = {origin[0] + cell[i].c[0] * edge[0] + place[0],
                                origin[1] + cell[i].c[1] * edge[1] + place[1],
                                origin[2] + cell[i].c[2] * edge[2] + place[2]};

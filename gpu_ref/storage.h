@@ -99,16 +99,14 @@ struct Resettle {
       Policy::take_off(view, grid, x, a, off);
       c.c[a] += off;
       if (Policy::kFixed && grid.wraps[a])
-        c.c[a] = grid.low[a] + ((c.c[a] - grid.low[a]) % grid.total[a] + grid.total[a]) % grid.total[a];
+        c.c[a] = grid.low[a] + modulo(c.c[a] - grid.low[a], grid.total[a]);
     }
     at.x[i] = x;
     cell[i] = c;
     rank[i] = 0;
     if (alone) return;
     const int axis = grid.axis;
-    int plane = c.c[axis] - grid.low[axis];
-    if (plane < 0 || plane >= grid.total[axis])
-      plane = (plane % grid.total[axis] + grid.total[axis]) % grid.total[axis];
+    const int plane = modulo(c.c[axis] - grid.low[axis], grid.total[axis]);
     if (own.has(plane)) return;
     rank[i] = kGone;
     const int side = beside[0].has(plane) ? 0 : beside[1].has(plane) ? 1 : -1;

@@ -85,7 +85,7 @@ module cuboct_bench;
 
   cuboct_lattice u_lattice (
     .clk_i(clk), .rst_ni(rst_n), .start_i(start), .steps_i(Steps), .load_valid_i(load_valid),
-    .load_node_i(load_node), .load_data_i(load_data), .phase_start_o(phase_start), .phase_end_o(phase_end),
+    .load_node_i(load_node), .load_data_i(load_data),@VELOCITY@ .phase_start_o(phase_start), .phase_end_o(phase_end),
     .observe_valid_o(observe_valid), .observe_data_o(observe_data), .fault_valid_o(fault_valid),
     .fault_code_o(fault_code), .fault_id_o(fault_id), .fault_number_o(fault_number), .idle_o(idle)
   );
@@ -226,6 +226,7 @@ A lattice of @NODES@ particle processors in SystemVerilog, self-contained.
 | `rtl/cuboct_lattice.sv` | the nodes and their links: the top module |
 | other files of `rtl/` | the library that they use |
 | `files.f` | all of them, in the order to read |
+| `project.json` | the plan for other programs: hash, nodes, widths, cycles per step, files; `cuboct synth` reads it |
 | `bench/` | a bench that loads @LOADS@ particles, runs @STEPS@ steps and compares each observed particle with golden's |
 
     cd bench && make verilator     # or: icarus, lint, yosys
@@ -327,6 +328,8 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
     replace(text, "@FIELDS@", fields);
     replace(text, "@LAST@", std::to_string(static_cast<int>(last_phase(plan.rule.axes))));
     replace(text, "@IDLSB@", std::to_string(id_lsb));
+    replace(text, "@VELOCITY@",
+            design.moved.empty() ? "" : fmt::format(" .velocity_i({}),\n   ", print_velocities(design)));
     replace(text, "@PLAN@", describe(plan));
     return text;
   };

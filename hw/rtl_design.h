@@ -40,11 +40,13 @@ struct RtlDesign {
   std::vector<RtlConstant> constants;
   std::vector<RtlTable> tables;
   std::vector<FixedType> types;
+  std::vector<int> moved;  // types whose velocities come from outside (hw/board.h); decide() leaves it empty
   std::vector<std::vector<int32_t>> scale;  // types x types; empty where the plan has none
   int axes = 3;
   int type_bits = 0;
   int velocity_bits = 0;
   int particle_bits = 0, link_bits = 0;
+  bool checked = false;     // links have a check: cuboct_link_guard, and the ports of link_ack and link_error
   int pair_sum_bits = 0;    // of a pipe's exact sum
   std::vector<Cell> cells;  // of the nodes
   std::vector<std::array<uint32_t, kFaces>> neighbour;
@@ -58,9 +60,10 @@ void legalise(const RtlDesign& design, bool with_lattice);
 
 std::string print_package(const RtlDesign& design);
 std::string print_table(const RtlDesign& design, const RtlTable& table);
-std::string print_scale(const RtlDesign& design);  // cuboct_scale_rom
-std::string print_types(const RtlDesign& design);  // cuboct_type_rom
-std::string print_node(const RtlDesign& design);   // cuboct_node
+std::string print_scale(const RtlDesign& design);       // cuboct_scale_rom
+std::string print_types(const RtlDesign& design);       // cuboct_type_rom
+std::string print_velocities(const RtlDesign& design);  // of design.moved, as one vector
+std::string print_node(const RtlDesign& design);        // cuboct_node
 std::string print_lattice(const RtlDesign& design);
 
 }  // namespace cuboct

@@ -6,10 +6,14 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
+#include <vector>
 
 #include "hw/rtl_bench.h"
+#include "hw/rtl_board.h"
 #include "hw/rtl_design.h"
 #include "hw/rtl_library.h"
+#include "hw/rtl_project.h"
 #include "model/output.h"
 
 namespace cuboct {
@@ -23,7 +27,12 @@ using Files = std::map<std::string, std::string>;  // path in the project: text
 constexpr const char* kMarker = ".cuboct-emit";
 
 void add_node(Files& files, const RtlDesign& design) {
-  for (const RtlSource& source : rtl_library()) files["rtl/" + std::string(source.name)] = source.text;
+  // What checks links goes only where links are checked.
+  const std::set<std::string_view> checks{"cuboct_link_crc.sv", "cuboct_link_guard.sv", "cuboct_link_send.sv",
+                                          "cuboct_link_take.sv"};
+  for (const RtlSource& source : rtl_library())
+    if (design.checked || !checks.contains(source.name))
+      files["rtl/" + std::string(source.name)] = source.text;
   files["rtl/cuboct_pkg.sv"] = print_package(design);
   for (const RtlTable& table : design.tables)
     files["rtl/" + table.module + ".sv"] = print_table(design, table);
@@ -33,12 +42,14 @@ void add_node(Files& files, const RtlDesign& design) {
 }
 
 // The package first: the others refer to it.
-void add_list(Files& files) {
-  std::string list = "rtl/cuboct_pkg.sv\n";
+std::vector<std::string> modules_of(const Files& files) {
+  std::vector<std::string> list{"rtl/cuboct_pkg.sv"};
   for (const auto& [path, text] : files)
-    if (path.ends_with(".sv") && path.starts_with("rtl/") && path != "rtl/cuboct_pkg.sv") list += path + "\n";
-  files["files.f"] = list;
+    if (path.ends_with(".sv") && path.starts_with("rtl/") && path != list[0]) list.push_back(path);
+  return list;
 }
+
+void add_list(Files& files) { files["files.f"] = fmt::format("{}\n", fmt::join(modules_of(files), "\n")); }
 
 // Whether a path of the marker file, which anyone may have edited, names something below the project.
 bool stays_inside(const std::string& path) {
@@ -77,14 +88,30 @@ void emit_node(const Plan& plan, const std::string& dir) {
   write(dir, files);
 }
 
-void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps) {
-  const RtlDesign design = decide(plan);
+void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
+              const BoardChoice& board) {
+  RtlDesign design = decide(plan);
   legalise(design, true);
+  if (!board.name.empty()) {
+    legalise_board(plan, board);
+    if (board.velocities) design.moved = moved_types(plan.rule);
+  }
   Files files;
   add_node(files, design);
   files["rtl/cuboct_lattice.sv"] = print_lattice(design);
   add_list(files);
+  files["project.json"] = print_project(plan, initial, modules_of(files));
   for (auto& [path, text] : print_bench(plan, design, initial, vector_steps)) files[path] = std::move(text);
+  if (!board.name.empty()) {
+    for (auto& [path, text] : print_board(plan, design, board)) files[path] = std::move(text);
+    files["board/files.f"] = board_list(files["files.f"], files);
+    files["README.md"] += print_board_readme(plan, board);
+  }
+  if (!design.moved.empty())
+    for (const char* path : {"rtl/cuboct_node_core.sv", "rtl/cuboct_update.sv", "board/cuboct_board.sv"})
+      files[path] =
+          "`define CUBOCT_HOST_VELOCITY  // velocities of held and moved types are set by a host\n" +
+          files[path];
   write(dir, files);
 }
 

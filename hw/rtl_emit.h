@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "hw/board.h"
 #include "hw/plan.h"
 #include "model/state.h"
 
@@ -12,8 +13,11 @@ namespace cuboct {
 
 // Writes into `dir` (created; must be empty or hold an earlier emission): rtl/ (library modules and what is
 // generated: cuboct_pkg.sv, tables, cuboct_node.sv, cuboct_lattice.sv), bench/ with vectors of `vector_steps`
-// steps from golden, files.f, README.md. Same plan, same bytes. Throws InputError.
-void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps);
+// steps from golden, files.f, project.json, README.md. With a board also board/: its top module
+// cuboct_board_top, what that needs beside the lattice, pins, and files.f of all. Same plan, same bytes.
+// Throws InputError.
+void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
+              const BoardChoice& board = {});
 
 // The node alone (rtl/ without lattice and bench), for the Verilated engine.
 void emit_node(const Plan& plan, const std::string& dir);

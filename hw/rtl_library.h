@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The hand-written SystemVerilog modules of rtl/lib, embedded at build time.
+// The hand-written SystemVerilog modules of rtl/lib, and those of rtl/board with the boards' pins, embedded at
+// build time.
 #pragma once
 
 #include <string_view>
@@ -14,5 +15,7 @@ struct RtlSource {
 
 // In the order of names.
 const std::vector<RtlSource>& rtl_library();
+// Those of one board alone are called "BOARD/name".
+const std::vector<RtlSource>& rtl_board_library();
 
 }  // namespace cuboct

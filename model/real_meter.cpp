@@ -9,18 +9,13 @@ RealMeter::RealMeter(const Scene& scene, Integrator integrator, bool probes, boo
     : scene_(scene),
       late_(integrator == Integrator::semi_implicit_euler ? scene.rule.dt / 2 : 0),
       probes_(probes ? scene.probes : std::vector<Probe>(), scene.periodic, scene.body.x),
-      volume_(scene.periodic.extent.prod()) {
-  if (!energies) return;
-  for (const char* part : {"kinetic", "potential", "gravity", "total"})
-    energy_.push_back({std::string("energy.") + part, "J", {}, {}});
-  if (volume_ > 0) energy_.push_back({"pressure", "Pa", {}, {}});
-}
+      energy_(energies, scene.periodic.extent.prod()) {}
 
 void RealMeter::add(const Reference& reference, Watch* watch) {
   const Body& body = reference.body();
   const std::vector<Vec3> force = reference.forces();
   probes_.add({reference.step_count(), body.x, force});
-  if (energy_.empty()) return;
+  if (!energy_.wanted()) return;
   const Rule& rule = scene_.rule;
   Energies e;
   for (size_t i = 0; i < body.size(); ++i) {
@@ -30,20 +25,15 @@ void RealMeter::add(const Reference& reference, Watch* watch) {
   }
   e.potential = reference.potential_energy();
   if (watch) watch->see(reference.step_count(), body, force, e);
-  std::vector<double> values{e.kinetic, e.potential, e.gravity, e.total()};
-  if (volume_ > 0) {
-    const std::vector<Mat3> stress = reference.virial_stress(volume_);
-    values.push_back(pressure(e, std::accumulate(stress.begin(), stress.end(), Mat3(Mat3::Zero())), volume_));
-  }
-  for (size_t k = 0; k < values.size(); ++k) {
-    energy_[k].step.push_back(reference.step_count());
-    energy_[k].value.push_back(values[k]);
-  }
+  energy_.add(reference.step_count(), e, [&] {
+    const std::vector<Mat3> stress = reference.virial_stress(energy_.volume());
+    return std::accumulate(stress.begin(), stress.end(), Mat3(Mat3::Zero()));
+  });
 }
 
 std::vector<Curve> RealMeter::curves() const {
   std::vector<Curve> all = probes_.curves();
-  all.insert(all.end(), energy_.begin(), energy_.end());
+  all.insert(all.end(), energy_.curves().begin(), energy_.curves().end());
   return all;
 }
 

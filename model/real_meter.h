@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "model/energy_curves.h"
 #include "model/measure.h"
 #include "model/reference.h"
 #include "model/watch.h"
@@ -28,8 +29,7 @@ class RealMeter {
   const Scene& scene_;
   double late_;  // s, from the time of the velocities to that of the positions
   ProbeMeter probes_;
-  std::vector<Curve> energy_;  // and the pressure
-  double volume_ = 0;          // m^3, of a box that repeats along all axes; else 0
+  EnergyCurves energy_;
 };
 
 }  // namespace cuboct

@@ -3,12 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
+#include <thread>
 
 #include "model/error.h"
 #include "model/real_engine.h"
 
 namespace cuboct {
+
+int reference_threads(size_t particles) {
+  constexpr size_t kEach = 2000;
+  return static_cast<int>(std::clamp<size_t>(particles / kEach, 1, std::max(1u, std::thread::hardware_concurrency())));
+}
 
 Reference::Reference(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options)
     : rule_(rule), threads_(options.threads), body_(body) {

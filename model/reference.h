@@ -37,6 +37,9 @@ struct RealOptions {
   uint64_t order_seed = 0;
 };
 
+// Threads that pay for themselves on this machine.
+int reference_threads(size_t particles);
+
 class RealEngine;
 
 // A particle's sum runs over its own pairs by ascending id of the other, each rounded in the same way

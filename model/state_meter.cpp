@@ -17,19 +17,15 @@ StateMeter::StateMeter(const Scene& scene, const FixedRule& rule, const Lattice&
                 for (const uint32_t id : ids_) x.push_back(position_of(rule, lattice, origin, initial(id)));
                 return x;
               }()),
+      energy_(energies, scene.periodic.extent.prod()),
       threads_(threads) {
   for (const Probe& probe : scene.probes) forces_ |= probe.kind != Probe::Kind::displacement;
-  if (energies)
-    for (const char* part : {"kinetic", "potential", "gravity", "total"})
-      energy_.push_back({std::string("energy.") + part, "J", {}, {}});
-  volume_ = scene.periodic.extent.prod();
-  if (energies && volume_ > 0) energy_.push_back({"pressure", "Pa", {}, {}});
   if (energies && watch) watch_.emplace(scene, rule.error.worst_force, threads);
 }
 
 void StateMeter::add(const State& state) {
   std::vector<Int3> kicks;
-  if (forces_ || !energy_.empty()) kicks = summed_kicks(rule_, lattice_, state, threads_);
+  if (forces_ || energy_.wanted()) kicks = summed_kicks(rule_, lattice_, state, threads_);
   if (!scene_.probes.empty()) {
     Sample sample{state.step, {}, {}};
     for (const uint32_t id : ids_) {
@@ -38,38 +34,32 @@ void StateMeter::add(const State& state) {
     }
     probes_.add(sample);
   }
-  if (energy_.empty()) return;
+  if (!energy_.wanted()) return;
   ClosestPair closest;
   const Energies e = energies(scene_.rule, rule_, lattice_, origin_, state, kicks, threads_, &closest);
   if (watch_) watch_->see(rule_, lattice_, origin_, state, kicks, e, closest);
-  std::vector<double> values{e.kinetic, e.potential, e.gravity, e.total()};
-  if (volume_ > 0)
-    values.push_back(pressure(e, virial_stress(rule_, lattice_, state, volume_, threads_), volume_));
-  for (size_t i = 0; i < values.size(); ++i) {
-    energy_[i].step.push_back(state.step);
-    energy_[i].value.push_back(values[i]);
-  }
+  energy_.add(state.step, e, [&] { return virial_stress(rule_, lattice_, state, energy_.volume(), threads_); });
 }
 
 std::vector<Curve> StateMeter::curves() const {
   std::vector<Curve> all = probes_.curves();
-  all.insert(all.end(), energy_.begin(), energy_.end());
+  all.insert(all.end(), energy_.curves().begin(), energy_.curves().end());
   return all;
 }
 
 std::vector<double> StateMeter::latest() const {
   std::vector<double> values;
-  for (const std::vector<Curve>* part : {&probes_.curves(), &energy_})
+  for (const std::vector<Curve>* part : {&probes_.curves(), &energy_.curves()})
     for (const Curve& curve : *part) values.push_back(curve.value.back());
   return values;
 }
 
 void StateMeter::restore(ProbeMeter::Memory memory, const std::vector<Curve>& curves) {
-  const auto energies = curves.end() - static_cast<ptrdiff_t>(energy_.size());
+  const auto energies = curves.end() - static_cast<ptrdiff_t>(energy_.curves().size());
   probes_.restore(std::move(memory), {curves.begin(), energies});
-  energy_.assign(energies, curves.end());
-  if (watch_ && !energy_.front().value.empty())
-    watch_->remember({energy_[0].value[0], energy_[1].value[0], energy_[2].value[0]});
+  energy_.restore({energies, curves.end()});
+  if (watch_ && !energies->value.empty())
+    watch_->remember({energies[0].value[0], energies[1].value[0], energies[2].value[0]});
 }
 
 std::vector<uint64_t> probe_steps_of(const Scene& scene, uint64_t last) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "model/energy_curves.h"
 #include "model/measure.h"
 #include "model/watch.h"
 
@@ -45,9 +46,8 @@ class StateMeter {
   Vec3 origin_;
   std::vector<uint32_t> ids_;  // particles in any probe's set, ascending: the probes' ids index this list
   ProbeMeter probes_;
-  std::vector<Curve> energy_;  // and the pressure
+  EnergyCurves energy_;
   bool forces_ = false;  // some probe needs them
-  double volume_ = 0;    // m^3, of a box that repeats along all axes; else 0
   int threads_;
   std::optional<Watch> watch_;
 };

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: MIT
-# cmake -D OUT=file.cpp -D DIR=rtl/lib -P embed.cmake: the hand-written modules as a C++ table, in the order of names.
-file(GLOB sources RELATIVE ${DIR} ${DIR}/*.sv)
+# cmake -D OUT=file.cpp -D DIR=rtl/lib [-D FUNCTION=name] -P embed.cmake: the hand-written modules, and pins of boards, as a
+# C++ table, in the order of names; rtl_library() unless said.
+if(NOT FUNCTION)
+  set(FUNCTION rtl_library)
+endif()
+file(GLOB_RECURSE sources RELATIVE ${DIR} ${DIR}/*.sv ${DIR}/*.pcf ${DIR}/*.lpf)
 list(SORT sources)
 set(text "// SPDX-License-Identifier: MIT\n#include \"hw/rtl_library.h\"\n\nnamespace cuboct {\n\n")
-string(APPEND text "const std::vector<RtlSource>& rtl_library() {\n  static const std::vector<RtlSource> sources{\n")
+string(APPEND text "const std::vector<RtlSource>& ${FUNCTION}() {\n  static const std::vector<RtlSource> sources{\n")
 foreach(source ${sources})
   file(READ ${DIR}/${source} body)
   string(APPEND text "{\"${source}\", R\"sv~(${body})sv~\"},\n")

@@ -134,7 +134,13 @@ struct Store::Impl {
     return row.bind(name).next() ? row.text() : "";
   }
 
+  // Of rows that do not name theirs: empty where it is the one that began the results.
+  std::string machine_of(const std::string& named) const {
+    return named.empty() && here != meta("machine") ? here : named;
+  }
+
   const Study& study;
+  const std::string here = this_machine();
   Database database;
   int lock = -1;
   mutable std::mutex mutex;
@@ -151,7 +157,7 @@ void Store::Impl::check() {
   Query put(database, "INSERT OR REPLACE INTO meta VALUES('format', ?), ('study', ?), ('title', ?), ('scene', ?)");
   put.bind(kFormat).bind(hash).bind(study.title).bind(study.base.scene_path).done();
   Query machine(database, "INSERT OR IGNORE INTO meta VALUES('machine', ?)");
-  machine.bind(this_machine()).done();
+  machine.bind(here).done();
 }
 
 void Store::Impl::read_figures(Outcome& outcome, const std::string& numbers) const {
@@ -227,7 +233,7 @@ void Store::put_errors(const Outcome& outcome) {
   put.bind(static_cast<int64_t>(outcome.steps)).bind(outcome.cost).bind(int64_t{outcome.halo_bits});
   put.bind(int64_t{outcome.table_bits}).bind(e.force_median).bind(e.force_999).bind(e.force_max);
   put.bind(e.trajectory).bind(e.drift_per_step).bind(e.drift_per_oscillation).bind(e.momentum);
-  put.bind(outcome.machine).done();
+  put.bind(impl_->machine_of(outcome.machine)).done();
   for (size_t k = 0; k < e.figures.size(); ++k) {
     Query row(impl_->database, "INSERT OR REPLACE INTO figures VALUES(?, ?, ?, ?, ?)");
     row.bind(numbers).bind(static_cast<int64_t>(k)).bind(impl_->study.figures[k].name);
@@ -256,7 +262,8 @@ void Store::put_speed(const Settings& settings, const Speed& speed) {
   const std::lock_guard guard(impl_->mutex);
   Query put(impl_->database, insert("INSERT OR REPLACE", "speeds", kSpeedColumns));
   put.bind(settings.key()).bind(settings.numbers_key()).bind(text_of(settings)).bind(speed.particle_steps);
-  put.bind(speed.simulated_seconds).bind(speed.spread).bind(int64_t{speed.repeats}).bind(speed.machine).done();
+  put.bind(speed.simulated_seconds).bind(speed.spread).bind(int64_t{speed.repeats});
+  put.bind(impl_->machine_of(speed.machine)).done();
 }
 
 std::optional<Speed> Store::speed(const Settings& settings) const {

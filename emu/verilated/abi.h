@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-enum { kCuboctAbi = 3, kCuboctFaces = 6, kCuboctWords = 8 };
+enum { kCuboctAbi = 4, kCuboctFaces = 6, kCuboctWords = 8 };
 
 // Inputs of one node during one cycle. `link_data[f]` is read where bit f of `link_valid` is set.
 struct CuboctIn {
@@ -14,6 +14,7 @@ struct CuboctIn {
   uint32_t steps;
   const uint64_t* load_data;
   const uint64_t* link_data[kCuboctFaces];
+  uint16_t link_ack[kCuboctFaces];  // where links are checked
 };
 
 // Outputs of one node: `link_*` after the edge that ends the cycle, the others of the cycle.
@@ -21,6 +22,8 @@ struct CuboctOut {
   uint8_t phase_start, phase_end, observe_valid, fault_valid, fault_code, idle;
   uint8_t link_valid, link_end, link_ready;
   uint8_t force_event;  // of a node alone: engine runs, stalled, presents a candidate, issues
+  uint8_t beat_errors, ack_errors;  // of the cycle; these and link_ack where links are checked
+  uint16_t link_ack[kCuboctFaces];
   uint32_t fault_id;
   int64_t fault_number;
   uint64_t observe_data[kCuboctWords];             // where observe_valid
@@ -36,7 +39,10 @@ struct CuboctOut {
 // or, of a whole lattice, whose host loads one particle of node `load_node` per cycle; `out` has an element
 // per node
 //   const char* cuboct_clock_lattice(void* model, const CuboctIn* host, uint32_t load_node, CuboctOut* out);
-// Both return null, or "file:line" of the first assertion of the RTL that failed: then the model is of no
+// or, of the top of a board, `cycles` long: the levels of the line to it and from it, and whether the lamp
+// that says idle is lit in the end
+//   const char* cuboct_clock_board(void* model, const uint8_t* rx, uint8_t* tx, int cycles, uint8_t* idle);
+// They return null, or "file:line" of the first assertion of the RTL that failed: then the model is of no
 // further use but to be destroyed.
 
 #endif

@@ -6,8 +6,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
-#include "emu/verilated/compile.h"
 #include "emu/verilated/sources.h"
 #include "hw/rtl_emit.h"
 
@@ -29,6 +29,20 @@ void find_symbol(void* handle, const char* name, F& function) {
   function = reinterpret_cast<F>(dlsym(handle, name));
 }
 
+// The project's files, all below rtl/, which is what the library's name stands for.
+void copy_board(const fs::path& project, const std::vector<std::string>& files, const fs::path& dir) {
+  fs::create_directories(dir / "rtl");
+  std::ofstream list(dir / "files.f");
+  for (const std::string& path : files) {
+    const std::string name = fs::path(path).filename().string();
+    std::error_code error;
+    fs::copy_file(project / path, dir / "rtl" / name, error);
+    if (error)
+      throw InputError(fmt::format("{}: cannot be read: {}", (project / path).string(), error.message()));
+    list << "rtl/" << name << "\n";
+  }
+}
+
 }  // namespace
 
 std::string default_build_directory() {
@@ -40,17 +54,20 @@ std::string default_build_directory() {
                    "give one with --build-dir");
 }
 
+Build node_build(const Plan& plan) {
+  return {.top = "cuboct_node",
+          .verilator_flags = "--cc",
+          .compiler_flags = "-O2 -fno-semantic-interposition -flto",
+          .constants = {{"FACES", 2 * plan.rule.axes},
+                        {"LINK_BITS", plan.link.wire_bits},
+                        {"ACK_BITS", plan.link.ack_bits},
+                        {"PARTICLE_BITS", plan.words.particle_bits}},
+          .sources = with_headers("shim_node.cpp"),
+          .emit = [&plan](const std::string& dir) { emit_node(plan, dir); }};
+}
+
 std::string compile_node(const Plan& plan, const std::string& build_directory) {
-  return compile(
-      {.top = "cuboct_node",
-       .verilator_flags = "--cc",
-       .compiler_flags = "-O2 -fno-semantic-interposition -flto",
-       .constants = {{"FACES", 2 * plan.rule.axes},
-                     {"LINK_BITS", plan.words.link_bits},
-                     {"PARTICLE_BITS", plan.words.particle_bits}},
-       .sources = with_headers("shim_node.cpp"),
-       .emit = [&](const std::string& dir) { emit_node(plan, dir); }},
-      build_directory);
+  return compile(node_build(plan), build_directory);
 }
 
 // All ports of more than one bit become sc_bv.
@@ -66,6 +83,24 @@ std::string compile_lattice(const Plan& plan, const State& initial, const std::s
                  build_directory);
 }
 
+std::string compile_board(const std::string& project, const std::string& build_directory) {
+  const fs::path from = project, names = from / "board" / "files.f";
+  std::ifstream list(names);
+  if (!list)
+    throw InputError(fmt::format("{} holds no board: there is no {}", project, names.string()),
+                     "make one with 'cuboct emit SCENE --board icebreaker --out DIR'");
+  std::vector<std::string> files;
+  for (std::string path; std::getline(list, path);)
+    if (!path.empty()) files.push_back(path);
+  return compile({.top = "cuboct_board_top",
+                  .verilator_flags = "--cc",
+                  .compiler_flags = "-O1 -fno-semantic-interposition",
+                  .constants = {},
+                  .sources = with_headers("shim_board.cpp"),
+                  .emit = [&](const std::string& dir) { copy_board(from, files, dir); }},
+                 build_directory);
+}
+
 Library::Library(const std::string& path) : handle_(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
   if (handle_ == nullptr) throw InputError(fmt::format("cannot load {}: {}", path, dlerror()));
   int (*abi)() = nullptr;
@@ -74,8 +109,9 @@ Library::Library(const std::string& path) : handle_(dlopen(path.c_str(), RTLD_NO
   find_symbol(handle_, "cuboct_destroy", destroy);
   find_symbol(handle_, "cuboct_clock", clock);
   find_symbol(handle_, "cuboct_clock_lattice", clock_lattice);
+  find_symbol(handle_, "cuboct_clock_board", clock_board);
   if (abi == nullptr || abi() != kCuboctAbi || create == nullptr || destroy == nullptr ||
-      (clock == nullptr && clock_lattice == nullptr)) {
+      (clock == nullptr && clock_lattice == nullptr && clock_board == nullptr)) {
     dlclose(handle_);
     throw InputError(fmt::format("{} is not a library of this version", path),
                      "remove it: it will be built anew");

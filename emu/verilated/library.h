@@ -7,6 +7,7 @@
 #include <string>
 
 #include "emu/verilated/abi.h"
+#include "emu/verilated/compile.h"
 #include "hw/plan.h"
 
 namespace cuboct::emu {
@@ -20,6 +21,12 @@ std::string default_build_directory();
 std::string compile_node(const Plan& plan, const std::string& build_directory);
 std::string compile_lattice(const Plan& plan, const State& initial, const std::string& build_directory);
 
+// What compile_node builds, for those who change it: other sources of the RTL, other flags. Refers to `plan`.
+Build node_build(const Plan& plan);
+
+// The path of the compiled top of the board that `project`, a directory of `cuboct emit --board`, holds.
+std::string compile_board(const std::string& project, const std::string& build_directory);
+
 // A loaded library.
 class Library {
  public:
@@ -30,9 +37,10 @@ class Library {
 
   void* (*create)(uint32_t seed) = nullptr;
   void (*destroy)(void*) = nullptr;
-  // Of a node's library, of a lattice's library; null, or the assertion of the RTL that failed.
+  // Of a node's library, of a lattice's, of a board's; null, or the assertion of the RTL that failed.
   const char* (*clock)(void*, const CuboctIn*, CuboctOut*) = nullptr;
   const char* (*clock_lattice)(void*, const CuboctIn*, uint32_t, CuboctOut*) = nullptr;
+  const char* (*clock_board)(void*, const uint8_t*, uint8_t*, int, uint8_t*) = nullptr;
 
  private:
   void* handle_ = nullptr;

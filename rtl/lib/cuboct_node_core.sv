@@ -58,6 +58,9 @@ module cuboct_node_core #(
   parameter int          DampBits             = 18,     // of any value of the damping table
   parameter int          Scaled               = 0,      // 0, 1
   parameter int          Pd                   = 0,      // 0, 1
+`ifdef CUBOCT_HOST_VELOCITY
+  parameter int          MovedTypes           = 1,      // types whose velocities come from outside
+`endif
   // Derived; do not set.
   localparam int         Faces                = 2 * Axes,
   localparam int         HaloType             = (Scaled != 0) ? TypeBits : 0,
@@ -74,6 +77,9 @@ module cuboct_node_core #(
   input  logic [Faces-1:0]        has_link_i,     // constant; faces -x, +x, -y, +y, -z, +z
   input  logic                    load_valid_i,   // in IDLE: append a particle
   input  logic [ParticleBits-1:0] load_data_i,
+`ifdef CUBOCT_HOST_VELOCITY
+  input  logic [MovedTypes*Axes*VelocityBits-1:0] velocity_i,  // changes in IDLE alone
+`endif
   output logic [Faces-1:0]        link_valid_o,
   output logic [Faces-1:0]        link_end_o,
   output logic [Faces*LinkBits-1:0] link_data_o,
@@ -419,8 +425,14 @@ module cuboct_node_core #(
   cuboct_update #(
     .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
     .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .DisplacementBits(DisplacementBits), .GainBits(GainBits),
+`ifdef CUBOCT_HOST_VELOCITY
+    .MovedTypes(MovedTypes),
+`endif
     .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(SlotBits), .IdBits(IdBits)
   ) u_update (
+`ifdef CUBOCT_HOST_VELOCITY
+    .velocity_i,
+`endif
     .clk_i, .rst_ni, .valid_i(take), .slot_i(tick_slot), .sum_i(total),
     .x_i(main_data[PosBits-1:0]), .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
     .id_i(main_data[IdLsb +: IdBits]), .u_i(old_u), .valid_o(update_write), .slot_o(update_slot), .x_o(new_x),

@@ -20,11 +20,17 @@ module cuboct_update #(
   parameter int GainBits         = 18,
   parameter int GainFrac         = 16,
   parameter int ConstantBits     = 29,  // of V and g
+`ifdef CUBOCT_HOST_VELOCITY
+  parameter int MovedTypes       = 1,   // types whose V comes from outside
+`endif
   parameter int SlotBits         = 4,
   parameter int IdBits           = 8
 ) (
   input  logic                          clk_i,
   input  logic                          rst_ni,
+`ifdef CUBOCT_HOST_VELOCITY
+  input  logic [MovedTypes*Axes*ConstantBits-1:0] velocity_i,
+`endif
   input  logic                          valid_i,
   input  logic [SlotBits-1:0]           slot_i,
   input  logic [Axes*TotalBits-1:0]     sum_i,
@@ -76,6 +82,9 @@ module cuboct_update #(
   logic                      held;
   logic [GainBits-1:0]       kp, kd;
   cuboct_type_rom u_type_rom (
+`ifdef CUBOCT_HOST_VELOCITY
+    .velocity_i,
+`endif
     .type_i(type_1), .imposed_o(imposed), .velocity_o(to_go), .gravity_o(gravity), .pd_o(held), .kp_o(kp),
     .kd_o(kd)
   );

@@ -39,8 +39,8 @@ TEST(Command, RefusesWrongValues) {
                  "--steps: '99999999999999999999' is not a whole number below 2^63\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "goldn"},
                  "unknown engine 'goldn'\n  hint: did you mean 'golden'?\n");
-  expect_refusal({"run", "scenes/lj_block.toml", "--engine", "fpga"},
-                 "unknown engine 'fpga'\n  hint: one of golden, lattice, systemc, rtl, gpu or reference\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--engine", "quantum"},
+                 "unknown engine 'quantum'\n  hint: one of golden, lattice, systemc, rtl, fpga, gpu or reference\n");
   expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden"},
                  "a crosscheck needs two or more different engines\n  hint: --engines golden,lattice,systemc,rtl\n");
   expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden,golden"},
@@ -48,7 +48,7 @@ TEST(Command, RefusesWrongValues) {
   expect_refusal(
       {"crosscheck", "scenes/lj_block.toml", "--engines", "golden,reference"},
       "engine 'reference' computes in doubles and has no bits to compare\n  hint: one of golden, lattice, "
-      "systemc, rtl or gpu\n");
+      "systemc, rtl, fpga or gpu\n");
 }
 
 TEST(Command, RefusesOptionsOfAnotherEngine) {

@@ -233,6 +233,14 @@ TEST(GpuRefusals, OfDevicesAndBlocks) {
   EXPECT_EQ(text(std::vector<int>(17, 0), 128), "17 slabs\n  hint: from 1 to 16");
 }
 
+TEST(GpuRefusals, OfTablesThatNoBlockHolds) {
+  const auto text = [](uint64_t bytes) { return refusal([&] { require_tables({{2}, 128}, bytes); }); };
+  EXPECT_EQ(text(232448), "accepted");
+  EXPECT_EQ(text(232449),
+            "the rule's tables take 232449 bytes, and a block of device 2 (host) holds 232448\n"
+            "  hint: fewer of the arch's table.index_bits");
+}
+
 // The host's free memory changes from call to call: words and proportions are what is compared.
 TEST(GpuRefusals, OfMemoryBeforeItIsAskedFor) {
   const auto text = [](std::vector<int> devices, uint64_t particles, uint64_t cells) {

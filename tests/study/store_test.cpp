@@ -200,5 +200,28 @@ TEST(Store, RowsKeepTheirMachine) {
   EXPECT_EQ(results.outcomes[3].measured_on(), "a third machine");
 }
 
+// Results that another machine began, and that are gone on with here.
+TEST(Store, WhoGoesOnElsewhereIsNamed) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  const std::string path = files.path("results.db");
+  const auto put = [&](size_t point) {
+    Store store(path, study);
+    Outcome outcome;
+    outcome.settings = study.points[point];
+    outcome.errors.figures = outcome.errors.values = {0.5};
+    store.put_errors(outcome);
+    store.put_speed(outcome.settings, {1e6, 1, 0.01, 3});
+  };
+  put(0);
+  rows(path, "update meta set value = 'another machine' where name = 'machine'");
+  put(2);
+  const Results results = Store(path, study).results();
+  EXPECT_EQ(results.machine, "another machine");
+  ASSERT_EQ(results.outcomes.size(), 4U);
+  EXPECT_EQ(results.outcomes[0].measured_on(), "");
+  EXPECT_EQ(results.outcomes[2].measured_on(), this_machine());
+}
+
 }  // namespace
 }  // namespace cuboct::study

@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: MIT
-// In the place of gpu_ref/device_host.h: streams that do nothing until somebody waits, and then in an order that is
+// In the place of gpu_ref/host_stream.h: streams that do nothing until somebody waits, and then in an order that is
 // drawn among all that events allow. Whatever an engine only expects to come first comes last here some time.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <deque>
 #include <functional>
-#include <new>
 #include <random>
 #include <stdexcept>
 #include <vector>
 
 namespace cuboct::gpu {
-
-inline constexpr bool kHasGraphs = false;
 
 class Stream;
 
@@ -105,87 +99,5 @@ class Stream {
   int device_;
   std::deque<Call> queue_;
 };
-
-class Graph {
- public:
-  void begin(Stream&) {}
-  void end(Stream&) {}
-  void launch(Stream&) {}
-  bool ready() const { return false; }
-  void drop() {}
-};
-
-inline void* allocate(int, size_t bytes) {
-  if (void* memory = std::malloc(bytes)) return memory;
-  throw std::bad_alloc();
-}
-// Waits for the device, as cudaFree does.
-inline void release(int device, void* memory) {
-  if (memory) Stream::finish(device);
-  std::free(memory);
-}
-inline void copy(Stream& stream, void* to, int, const void* from, int, size_t bytes) {
-  stream.later([=] { std::memcpy(to, from, bytes); });
-}
-inline void upload(Stream& stream, void* to, const void* from, size_t bytes) {
-  stream.synchronize();
-  std::memcpy(to, from, bytes);
-}
-inline void download(Stream& stream, void* to, const void* from, size_t bytes) {
-  stream.synchronize();
-  std::memcpy(to, from, bytes);
-}
-inline void clear(Stream& stream, void* memory, size_t bytes) {
-  stream.later([=] { std::memset(memory, 0, bytes); });
-}
-inline void share(const std::vector<int>&) {}
-
-template <typename T>
-T atomic_add(T* at, T value) {
-  const T before = *at;
-  *at += value;
-  return before;
-}
-template <typename T>
-void atomic_min(T* at, T value) {
-  *at = std::min(*at, value);
-}
-template <typename T>
-const T& load(const T* at) {
-  return *at;
-}
-
-template <class F>
-void for_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f) {
-  stream.later([=] {
-    for (uint32_t i = begin; i < end; ++i) f(i);
-  });
-}
-template <class F>
-void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int, const void* cache, size_t, const F& f) {
-  stream.later([=] {
-    if (f.idle()) return;
-    for (uint32_t i = begin; i < end; ++i) f(i, cache);
-  });
-}
-template <class F>
-void sum_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f, uint64_t* out) {
-  stream.later([=] {
-    if (f.idle()) return;
-    for (uint32_t i = begin; i < end; ++i) *out += f(i);
-  });
-}
-template <class F>
-void max_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f, uint32_t* out) {
-  stream.later([=] {
-    for (uint32_t i = begin; i < end; ++i) *out = std::max(*out, f(i));
-  });
-}
-inline void exclusive_sums(Stream& stream, const uint32_t* in, uint32_t* out, uint32_t count) {
-  stream.later([=] {
-    uint32_t sum = 0;
-    for (uint32_t k = 0; k < count; ++k) out[k] = sum, sum += in[k];
-  });
-}
 
 }  // namespace cuboct::gpu

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "hw/rtl_board.h"
+
+#include <fmt/format.h>
+
+#include "hw/rtl_library.h"
+
+namespace cuboct {
+namespace {
+
+constexpr int kLargest = 65535;  // 16 bits for a node's number, and for a count of particles
+
+std::string print_package(const Plan& plan, const RtlDesign& design, const BoardChoice& choice) {
+  const Board& board = board_of(choice.name);
+  const size_t bits = design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits);
+  std::string velocities = fmt::format("  localparam int          MovedTypes  = {};\n", design.moved.size());
+  if (bits > 0)
+    velocities +=
+        fmt::format("  localparam logic [{}:0] Velocities = {};\n", bits - 1, print_velocities(design));
+  return fmt::format(
+      "// SPDX-License-Identifier: MIT\n"
+      "// {}\n"
+      "// What the host link knows of the plan, and its line: {} baud at {} MHz.\n"
+      "package cuboct_board_pkg;\n"
+      "  localparam int          Nodes       = {};\n"
+      "{}"
+      "  localparam logic [63:0] PlanHash    = 64'h{:016x};\n"
+      "  localparam logic [63:0] MachineHash = 64'h{:016x};\n"
+      "  localparam int          ClockHz     = {};\n"
+      "  localparam int          BitClocks16 = {};  // length of a bit in 1/16 clocks\n"
+      "endpackage\n",
+      design.maker, choice.baud, board.clock_hz / 1e6, plan.lattice.size(), velocities, plan.hash,
+      machine_hash(plan), board.clock_hz, bit_clocks16(board, choice.baud));
+}
+
+}  // namespace
+
+void legalise_board(const Plan& plan, const BoardChoice& choice) {
+  bit_clocks16(board_of(choice.name), choice.baud);
+  const auto at_most = [](const char* what, uint64_t value, uint64_t limit) {
+    if (value > limit)
+      throw InputError(fmt::format("board: {} is {}: at most {} can be emitted", what, value, limit));
+  };
+  at_most("the number of nodes", plan.lattice.size(), kLargest);
+  at_most("the number of particles", plan.particles, kLargest);
+  at_most("the width of a velocity", static_cast<uint64_t>(plan.rule.widths.velocity_bits), 64);
+  at_most("the number of held and moved types", moved_types(plan.rule).size(), 255);
+}
+
+std::map<std::string, std::string> print_board(const Plan& plan, const RtlDesign& design,
+                                               const BoardChoice& choice) {
+  std::map<std::string, std::string> files;
+  files["board/cuboct_board_pkg.sv"] = print_package(plan, design, choice);
+  for (const RtlSource& source : rtl_board_library()) {
+    const std::string name(source.name);
+    const size_t slash = name.find('/');
+    if (slash == std::string::npos)
+      files["board/" + name] = source.text;
+    else if (name.substr(0, slash) == choice.name)
+      files["board/" + name.substr(slash + 1)] = source.text;
+  }
+  return files;
+}
+
+std::string board_list(const std::string& lattice_list, const std::map<std::string, std::string>& files) {
+  std::string list = lattice_list + "board/cuboct_board_pkg.sv\n";
+  for (const auto& [path, text] : files)
+    if (path.starts_with("board/") && path.ends_with(".sv") && path != "board/cuboct_board_pkg.sv")
+      list += path + "\n";
+  return list;
+}
+
+std::string print_board_readme(const Plan& plan, const BoardChoice& choice) {
+  const Board& board = board_of(choice.name);
+  const bool settable = choice.velocities && !moved_types(plan.rule).empty();
+  return fmt::format(
+      R"(
+## The board: {0}
+
+`board/` holds what makes a bitstream of the lattice: `cuboct_board_top.sv` (the top module), `cuboct_host_link.sv` (takes a
+host's requests from a serial line), `{1}`, and `files.f` (every module, in the order to read; paths are from here).
+
+Build, in this directory (or: `cuboct synth . --target {6} --unit board`):
+
+```
+{2}```
+
+Load:
+
+```
+{3}```
+
+Run, with the scene that this project was made from:
+
+```
+cuboct run SCENE --engine fpga --port /dev/ttyUSB0 --baud {4}
+```
+
+The board answers for plan {5:016x}{7}. Without a board: `cuboct-board-sim .` runs
+these files under Verilator behind a pseudo-terminal, and prints its name.
+)",
+      board.title, board.pins, board.build, board.flash, choice.baud, plan.hash, board.target,
+      settable ? ", or for one that differs in the velocities of held and moved types alone" : " alone");
+}
+
+}  // namespace cuboct

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "hw/rtl_project.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "hw/cycles.h"
+
+namespace cuboct {
+
+std::string print_project(const Plan& plan, const State& initial, const std::vector<std::string>& files) {
+  using Json = nlohmann::ordered_json;
+  const FixedRule& rule = plan.rule;
+  const Widths& w = rule.widths;
+  const ExpectedCycles cycles = expected_cycles(plan, initial);
+  const Json json = {
+      {"plan", fmt::format("{:016x}", plan.hash)},
+      {"nodes", plan.lattice.size()},
+      {"particles", plan.particles},
+      {"axes", rule.axes},
+      {"rule",
+       {{"types", rule.types.size()},
+        {"damped", rule.damped},
+        {"scaled", rule.scaled},
+        {"force_held", rule.pd}}},
+      {"arch",
+       {{"capacity", plan.arch.capacity},
+        {"filter_lanes", plan.arch.filter_lanes},
+        {"force_pipes", plan.arch.force_pipes},
+        {"queue_depth", plan.arch.queue_depth},
+        {"overlap", plan.arch.overlap}}},
+      {"bits",
+       {{"position_frac", w.position_frac},
+        {"difference_frac", w.difference_frac},
+        {"velocity", w.velocity_bits},
+        {"relative_velocity", w.relative_velocity_bits},
+        {"strength", w.strength_bits},
+        {"sum", w.sum_bits},
+        {"id", plan.words.id_bits},
+        {"type", rule.type_bits},
+        {"particle", plan.words.particle_bits},
+        {"halo_record", plan.words.halo_bits},
+        {"link", plan.words.link_bits}}},
+      {"latency",
+       {{"filter", plan.latency.filter}, {"pipe", plan.latency.pipe}, {"update", plan.latency.update}}},
+      {"cycles_per_step", {{"expected", cycles.step}, {"at_full_use", cycles.ideal}}},
+      {"node", "cuboct_node"},
+      {"lattice", "cuboct_lattice"},
+      {"files", files},
+  };
+  return json.dump(2) + "\n";
+}
+
+}  // namespace cuboct

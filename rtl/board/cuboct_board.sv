@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// A lattice with its host's end: what the tops of all boards hold.
+module cuboct_board (
+  input  logic clk_i,
+  input  logic rst_ni,   // synchronous
+  input  logic rx_i,     // not synchronous
+  output logic tx_o,
+  output logic busy_o,   // a run is under way
+  output logic fault_o   // some node met a fault since the host's last RESET
+);
+  localparam int Nodes        = cuboct_board_pkg::Nodes;
+  localparam int ParticleBits = cuboct_pkg::ParticleBits;
+  localparam int IdBits       = cuboct_pkg::IdBits;
+  localparam int VelocityBits = cuboct_pkg::VelocityBits;
+
+  logic                          lattice_rst_n, start, load_valid;
+  logic [31:0]                   steps, load_node;
+  logic [ParticleBits-1:0]       load_data;
+  logic [8*Nodes-1:0]            phase_start, phase_end;
+  logic [Nodes-1:0]              observe_valid, fault_valid, idle;
+  logic [Nodes*ParticleBits-1:0] observe_data;
+  logic [4*Nodes-1:0]            fault_code;
+  logic [Nodes*IdBits-1:0]       fault_id;
+  logic [64*Nodes-1:0]           fault_number;
+  logic                          velocity_reset, velocity_valid;
+  logic [7:0]                    velocity_type, velocity_axis;
+  logic [VelocityBits-1:0]       velocity_data;
+  cuboct_host_link #(
+    .Nodes(Nodes), .Axes(cuboct_pkg::Axes), .Capacity(cuboct_pkg::Capacity), .ParticleBits(ParticleBits),
+    .IdBits(IdBits), .VelocityBits(VelocityBits), .MovedTypes(cuboct_board_pkg::MovedTypes),
+    .PlanHash(cuboct_board_pkg::PlanHash), .MachineHash(cuboct_board_pkg::MachineHash),
+    .ClockHz(cuboct_board_pkg::ClockHz), .BitClocks16(cuboct_board_pkg::BitClocks16)
+  ) u_link (
+    .clk_i, .rst_ni, .rx_i, .tx_o, .lattice_rst_no(lattice_rst_n), .start_o(start), .steps_o(steps),
+    .load_valid_o(load_valid), .load_node_o(load_node), .load_data_o(load_data),
+    .observe_valid_i(observe_valid), .observe_data_i(observe_data), .fault_valid_i(fault_valid),
+    .fault_code_i(fault_code), .fault_id_i(fault_id), .fault_number_i(fault_number), .idle_i(idle),
+    .velocity_reset_o(velocity_reset),
+    .velocity_valid_o(velocity_valid), .velocity_type_o(velocity_type), .velocity_axis_o(velocity_axis),
+    .velocity_data_o(velocity_data), .busy_o, .fault_o
+  );
+`ifdef CUBOCT_HOST_VELOCITY
+  localparam int AllBits = cuboct_board_pkg::MovedTypes * cuboct_pkg::Axes * VelocityBits;
+  logic [AllBits-1:0] velocities;
+  cuboct_velocities #(
+    .Types(cuboct_board_pkg::MovedTypes), .Axes(cuboct_pkg::Axes), .Bits(VelocityBits),
+    .Initial(cuboct_board_pkg::Velocities)
+  ) u_velocities (
+    .clk_i, .reset_i(velocity_reset), .valid_i(velocity_valid), .type_i(velocity_type),
+    .axis_i(velocity_axis), .data_i(velocity_data), .velocity_o(velocities)
+  );
+`else
+  logic unused_velocities;
+  assign unused_velocities = ^{velocity_reset, velocity_valid, velocity_type, velocity_axis, velocity_data};
+`endif
+  cuboct_lattice u_lattice (
+`ifdef CUBOCT_HOST_VELOCITY
+    .velocity_i(velocities),
+`endif
+    .clk_i, .rst_ni(lattice_rst_n), .start_i(start), .steps_i(steps), .load_valid_i(load_valid),
+    .load_node_i(load_node), .load_data_i(load_data), .phase_start_o(phase_start), .phase_end_o(phase_end),
+    .observe_valid_o(observe_valid), .observe_data_o(observe_data), .fault_valid_o(fault_valid),
+    .fault_code_o(fault_code), .fault_id_o(fault_id), .fault_number_o(fault_number), .idle_o(idle)
+  );
+  logic unused_phases;
+  assign unused_phases = ^{phase_start, phase_end};
+endmodule

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// cuboct_filter with its lanes: each presented candidate reaches the queue once, in order and unchanged, with
+// the mask of the own slots of its row that exist, are not itself and pass the planar test; or not at all if
+// there is none. A full queue stalls it and loses nothing. The test is told here by integers and rounding by
+// magnitude.
+module filter_formal #(
+  parameter int Axes            = 2,
+  parameter int PositionFrac    = 3,
+  parameter int DifferenceShift = 1,
+  parameter int FilterLanes     = 2,
+  parameter int PlanarOne       = 4,
+  parameter int PlanarTwo       = 6,
+  parameter int PlanarThree     = 7
+) (
+  input logic                               clk_i,
+  input logic                               present_i,
+  input logic [Axes*(PositionFrac+2):0]     candidate_i,  // and one bit of the rest
+  input logic                               row_i,
+  input logic                               own_i,
+  input logic [2:0]                         slot_i,
+  input logic                               full_i,
+  input logic                               watch_i       // the watched candidate is the one presented now
+);
+  localparam int PosBits       = Axes * PositionFrac;
+  localparam int CandidateBits = Axes * (PositionFrac + 2) + 1;
+  localparam int Slots         = 2 * FilterLanes;  // two rows
+  localparam int Bits          = PositionFrac + 6;
+
+  logic running_q = 1'b0;  // reset in the first cycle only
+  always_ff @(posedge clk_i) running_q <= 1'b1;
+
+  // Own particles do not change while candidates stream past.
+  (* anyconst *) logic [Slots*PosBits-1:0] own;
+  (* anyconst *) logic [3:0]               own_count;
+  logic                                    row, stall, push, row_f1, busy;
+  logic [CandidateBits-1:0]                candidate;
+  logic [FilterLanes-1:0]                  mask;
+  always_comb begin
+    assume (own_count <= Slots[3:0]);
+    if (present_i) assume (running_q);
+  end
+  cuboct_filter #(
+    .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne),
+    .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits),
+        .FilterLanes(FilterLanes),
+    .RowBits(1), .SlotBits(3), .CountBits(4)
+  ) u_dut (
+    .clk_i, .rst_ni(running_q), .present_i, .candidate_i, .row_i, .own_i, .slot_i, .own_count_i(own_count),
+    .row_o(row), .row_data_i(row
+        ? own[FilterLanes*PosBits +: FilterLanes*PosBits] : own[0 +: FilterLanes*PosBits]),
+    .full_i, .stall_o(stall), .push_o(push), .candidate_o(candidate), .row_f1_o(row_f1), .mask_o(mask),
+        .busy_o(busy)
+  );
+
+  // The planar test of the candidate that is presented, against each slot of its row.
+  logic signed [Bits-1:0] difference;
+  logic [Bits-1:0]        size, most, sum;
+  logic [Bits-1:0]        sizes [0:2];
+  logic [FilterLanes-1:0] passes;
+  logic [2:0]             other;
+  integer                 l, a;
+  always_comb begin
+    passes     = '0;
+    difference = '0;
+    size       = '0;
+    sizes[0]   = '0;
+    sizes[1]   = '0;
+    sizes[2]   = '0;
+    other      = '0;
+    for (l = 0; l < FilterLanes; l = l + 1) begin
+      other = row_i ? FilterLanes[2:0] + l[2:0] : l[2:0];
+      for (a = 0; a < Axes; a = a + 1) begin
+        difference = $signed({{(Bits - PositionFrac - 2) {candidate_i[a*(PositionFrac+2)+PositionFrac+1]}},
+                              candidate_i[a*(PositionFrac+2) +: PositionFrac+2]})
+                   - $signed({{(Bits - PositionFrac) {1'b0}}, row_i
+                       ? own[(FilterLanes+l)*PosBits+a*PositionFrac +: PositionFrac]
+                                                                  : own[l*PosBits+a*PositionFrac +: PositionFrac]});
+        size = (difference < 0) ? -difference : difference;
+        sizes[a] = (DifferenceShift == 0) ? size : (size + (1 << (DifferenceShift - 1))) >> DifferenceShift;
+      end
+      passes[l] = {1'b0, other} < own_count && !(own_i && other == slot_i)
+                && sizes[0] <= PlanarOne && sizes[1] <= PlanarOne && sizes[2] <= PlanarOne
+                && sizes[0] + sizes[1] <= PlanarTwo && sizes[1] + sizes[2] <= PlanarTwo
+                    && sizes[2] + sizes[0] <= PlanarTwo
+                && sizes[0] + sizes[1] + sizes[2] <= PlanarThree;
+    end
+  end
+
+  // The watched candidate: in the first register, in the second, gone. Both move unless the queue stalls
+  // them.
+  logic [1:0]               place_q;  // 0: not there
+  logic                     watched_q, row_q;
+  logic [CandidateBits-1:0] candidate_q;
+  logic [FilterLanes-1:0]   passes_q;
+  logic                     second_q;  // the second register holds something, watched or not
+  logic                     first_q;
+  always_ff @(posedge clk_i) begin
+    if (!running_q) begin
+      place_q   <= '0;
+      watched_q <= 1'b0;
+      first_q   <= 1'b0;
+      second_q  <= 1'b0;
+    end else if (!stall) begin
+      first_q  <= present_i;
+      second_q <= first_q;
+      place_q  <= (place_q == 2'd1) ? 2'd2 : 2'd0;
+      if (present_i && watch_i && !watched_q) begin
+        place_q     <= 2'd1;
+        watched_q   <= 1'b1;
+        candidate_q <= candidate_i;
+        row_q       <= row_i;
+        passes_q    <= passes;
+      end
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (running_q) begin
+      a_busy: assert (busy == (first_q || second_q));
+      if (push) a_push: assert (second_q && !full_i);
+      if (stall) a_stall: assert (full_i && second_q);
+      if (place_q == 2'd2) begin
+        a_once: assert (push == (passes_q != '0 && !full_i) && stall == (passes_q != '0 && full_i));
+        if (push) a_same: assert (candidate == candidate_q && row_f1 == row_q);
+        if (push) a_mask: assert (mask == passes_q);
+      end
+      c_all:   cover (push && place_q == 2'd2 && passes_q == '1);
+      c_none:  cover (place_q == 2'd2 && passes_q == '0 && own_count == Slots[3:0]);
+      c_stall: cover (stall && place_q == 2'd1 && present_i);
+    end
+  end
+endmodule

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// cuboct_streamer through any number of steps, with any counts, segments that come when they like and any
+// stalls: each record of each segment is presented once with each row of own slots, in order; `past` comes
+// after the last one and only when every segment was there.
+module streamer_formal #(
+  parameter int Axes        = 2,
+  parameter int FilterLanes = 2,
+  parameter int AddrBits    = 1   // a segment holds up to 2^AddrBits records, a node as many particles
+) (
+  input logic          clk_i,
+  input logic          stall_i,
+  input logic          begin_i,
+  input logic          over_i,
+  input logic [Axes:0] come_i,     // a segment's records are complete
+  input logic [(2*Axes+1)*(AddrBits+1)-1:0] counts_i
+);
+  localparam int CountBits = AddrBits + 1;
+  localparam int Segments  = 2 * Axes + 1;
+  localparam int Most      = 1 << AddrBits;
+  localparam int Rows      = (Most + FilterLanes - 1) / FilterLanes;
+  localparam int RowBits   = (Rows > 1) ? $clog2(Rows) : 1;
+
+  logic running_q = 1'b0;  // reset in the first cycle only
+  always_ff @(posedge clk_i) running_q <= 1'b1;
+
+  // A step: the engine runs from begin to the restart in its last cycle, which comes after `past`. Own
+  // particles are there at once; a segment's count is final when it is available.
+  logic                          run_q, past, restart;
+  logic [Axes:0]                 available_q;
+  logic [Segments*CountBits-1:0] counts_q;
+  assign restart = run_q && past && over_i;
+  always_ff @(posedge clk_i) begin
+    if (!running_q) run_q <= 1'b0;
+    else run_q <= run_q ? (!restart || begin_i) : begin_i;
+    if (!running_q || restart) available_q <= {{Axes{1'b0}}, 1'b1};
+    else if (run_q) available_q <= available_q | come_i;
+    if (!run_q || restart) counts_q <= counts_i;
+  end
+  integer a;
+  always_comb begin
+    for (a = 0; a < Segments; a = a + 1) begin
+      assume (counts_i[a*CountBits +: CountBits] <= Most[CountBits-1:0]);
+      assume (counts_q[a*CountBits +: CountBits] <= Most[CountBits-1:0]);
+    end
+  end
+
+  logic [2:0]          segment;
+  logic [AddrBits-1:0] addr, slot;
+  logic [RowBits-1:0]  row;
+  logic                present;
+  cuboct_streamer #(
+    .Axes(Axes), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(AddrBits), .AddrBits(AddrBits),
+        .CountBits(CountBits)
+  ) u_dut (
+    .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .available_i(available_q),
+        .counts_i(counts_q),
+    .segment_o(segment), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .past_o(past)
+  );
+
+  logic [2:0] half;  // which axis the segment belongs to, 0 for own
+  assign half = (segment + 3'd1) >> 1;
+
+  // The least (segment, record, row) not yet presented.
+  logic [2:0]           due_segment_q, next_segment;
+  logic [CountBits-1:0] due_record_q, next_record, own;
+  logic [CountBits:0]   due_row_q, next_row, rows;
+  logic                 all;
+  integer               s, r;
+  always_comb begin
+    own  = counts_q[0 +: CountBits];
+    rows = '0;
+    for (r = 0; r < Rows; r = r + 1) begin
+      if ({{(32 - CountBits) {1'b0}}, own} > r * FilterLanes) rows = rows + 1'b1;
+    end
+    next_segment = due_segment_q;
+    all          = 1'b1;
+    for (s = Segments - 1; s >= 0; s = s - 1) begin
+      if (own != '0 && s[2:0] >= due_segment_q && counts_q[s*CountBits +: CountBits] != '0
+          && !(s[2:0] == due_segment_q && due_record_q == counts_q[s*CountBits +: CountBits])) begin
+        next_segment = s[2:0];
+        all          = 1'b0;
+      end
+    end
+    next_record = (next_segment == due_segment_q) ? due_record_q : '0;
+    next_row    = (next_segment == due_segment_q) ? due_row_q : '0;
+  end
+  always_ff @(posedge clk_i) begin
+    if (!running_q || !run_q || restart) begin
+      due_segment_q <= '0;
+      due_record_q  <= '0;
+      due_row_q     <= '0;
+    end else if (present) begin
+      due_segment_q <= next_segment;
+      due_record_q  <= (next_row + 1'b1 == rows) ? next_record + 1'b1 : next_record;
+      due_row_q     <= (next_row + 1'b1 == rows) ? '0 : next_row + 1'b1;
+    end
+  end
+
+  // Progress: a cycle that is not stalled and whose segment is there moves (segment, record, row) upwards.
+  logic [AddrBits+RowBits+2:0] rank, rank_q;
+  logic                        moves_q;
+  assign rank = {segment, addr, row};
+  always_ff @(posedge clk_i) begin
+    rank_q  <= rank;
+    moves_q <= running_q && run_q && !stall_i && !past && available_q[half];
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (running_q) begin
+      if (present) begin
+        a_may:  assert (run_q && !stall_i && available_q[half]);
+        a_next: assert (!all && segment == next_segment && {1'b0, addr} == next_record
+                        && {{(CountBits + 1 - RowBits) {1'b0}}, row} == next_row && slot == addr);
+      end
+      if (past) a_past: assert (all && available_q == '1);
+      if (moves_q) a_progress: assert (rank > rank_q);
+      c_empty: cover (restart && counts_q == '0);
+      c_full:  cover (past && counts_q[(Segments-1)*CountBits +: CountBits] == Most[CountBits-1:0]
+          && due_segment_q == Segments[2:0] - 3'd1);
+      c_rows:  cover (present && next_row != '0 && next_record != '0);
+      c_again: cover (restart && begin_i && due_segment_q != '0);
+    end
+  end
+endmodule

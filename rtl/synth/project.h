@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// An emitted RTL project, as its project.json describes it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cuboct::synth {
+
+struct Project {
+  std::string directory;
+  std::string plan;  // hash, 16 hexadecimal digits
+  uint64_t nodes = 0, particles = 0;
+  int capacity = 0;
+  uint64_t cycles_per_step = 0;    // expected, of the busiest node (hw/cycles.h)
+  std::vector<std::string> files;  // below the directory, in the order to read
+};
+
+// Throws InputError: no such directory, no project, an entry that is missing or of another kind, a file that
+// is not there.
+Project read_project(const std::string& directory);
+
+// The files, top module and pins of DIR/board.
+struct Board {
+  std::vector<std::string> files;  // below the project's directory, all that the top needs
+  std::string top;
+  std::string pins;  // "board/pins.pcf", "board/pins.lpf"
+};
+Board read_board(const Project& project);
+
+}  // namespace cuboct::synth

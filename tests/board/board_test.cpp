@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// The emitted board, Verilated, driven over its serial line: golden's bits, faults and cycles.
+#include <gtest/gtest.h>
+
+#include "emu/board/session.h"
+#include "emu/systemc/collector.h"
+#include "emu/systemc/node.h"
+#include "emu/systemc/plain.h"
+#include "emu/systemc/words.h"
+#include "hw/board.h"
+#include "tests/board/simulated_board.h"
+
+namespace cuboct::test {
+namespace {
+
+constexpr double kTimeout = 2;  // s; on a line without noise nothing is late but by the machine's load
+
+std::vector<uint64_t> up_to(uint64_t steps) {
+  std::vector<uint64_t> all;
+  for (uint64_t k = 0; k <= steps; ++k) all.push_back(k);
+  return all;
+}
+
+// From the first cycle of EXCHANGE_X to the last of DUMP, as docs/reference/board.md says, by the native
+// nodes.
+uint64_t cycles_of(const cuboct::Setup& setup, uint64_t steps) {
+  emu::RunOptions options;
+  options.steps = steps;
+  options.frames = {steps};
+  const Trace trace =
+      emu::run_plain(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
+  std::vector<uint64_t> dumped(trace.nodes);
+  for (const Particle& p : trace.frames.back().particles) ++dumped[p.node];
+  uint64_t last = 0;
+  for (uint64_t n = 0; n < trace.nodes; ++n) {
+    const size_t row = ((steps - 1) * trace.nodes + n) * kPhases;
+    uint64_t end = 0;
+    for (int p = 0; p < kPhases; ++p) end = std::max(end, trace.cycles[row + static_cast<size_t>(p)].end);
+    last = std::max(last, end + 1 + std::max<uint64_t>(1, dumped[n]));
+  }
+  return last;
+}
+
+TEST(Board, HoldsGoldensBitsAndTheModelsCycles) {
+  const SimulatedBoard board;
+  const auto setup = board_setup("grips.toml");
+  emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
+  const Trace golden = golden_trace(setup, 24);
+
+  // Step by step, then in one go.
+  const Trace steps = emu::run_on_board(host, setup.plan, setup.initial, {.steps = 24, .frames = up_to(24)});
+  EXPECT_EQ(difference(setup.plan, golden, steps), "");
+  EXPECT_EQ(steps.frames.size(), 25u);
+  EXPECT_EQ(steps.state_hash.size(), 25u);
+  const Trace few =
+      emu::run_on_board(host, setup.plan, setup.initial, {.steps = 24, .frames = {7, 24}, .hash_every = 0});
+  ASSERT_EQ(few.frames.size(), 2u);
+  EXPECT_EQ(few.frames[0], golden.frames[7]);
+  EXPECT_EQ(few.frames[1], golden.frames[24]);
+  EXPECT_EQ(few.steps(), 24u);
+  EXPECT_EQ(host.count().retries, 0u);
+
+  host.reset();
+  const auto nodes = emu::by_node(setup.plan, setup.initial);
+  uint16_t index = 0;
+  for (uint16_t n = 0; n < nodes.size(); ++n)
+    for (const Particle& p : nodes[n])
+      host.load(index++, n, emu::load_word(setup.plan, p), setup.plan.words.particle_bits);
+  host.run(0, 24);
+  while (host.status().busy) continue;
+  EXPECT_EQ(host.status().cycles, cycles_of(setup, 24));
+}
+
+// thrown.toml has other velocities of its grips: the machine is the same, the plan is not.
+TEST(Board, TakesOtherVelocitiesAndFindsAFault) {
+  const SimulatedBoard board;
+  const auto grips = board_setup("grips.toml"), thrown = board_setup("thrown.toml");
+  ASSERT_NE(grips.plan.hash, thrown.plan.hash);
+  ASSERT_EQ(machine_hash(grips.plan), machine_hash(thrown.plan));
+  emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
+  const Trace golden = golden_trace(thrown, 24);
+  ASSERT_TRUE(golden.stop);
+  EXPECT_EQ(golden.stop->step, 6u);
+  const Trace stepped =
+      emu::run_on_board(host, thrown.plan, thrown.initial, {.steps = 24, .frames = up_to(24)});
+  EXPECT_EQ(difference(thrown.plan, golden, stepped), "");
+  EXPECT_EQ(stepped.frames.size(), 7u);
+  // The step is found where the board was not read after each.
+  for (const uint64_t steps : {7, 9, 24}) {
+    const Trace whole = emu::run_on_board(host, thrown.plan, thrown.initial,
+                                          {.steps = steps, .frames = {0, steps}, .hash_every = 0});
+    ASSERT_TRUE(whole.stop);
+    EXPECT_EQ(*whole.stop, *golden.stop);
+    EXPECT_EQ(whole.steps(), 6u);
+    ASSERT_EQ(whole.frames.size(), 2u);
+    EXPECT_EQ(whole.frames[1], golden.frames[6]);
+  }
+  // Both nodes met one in that step; the second node's is the run's, by the particle's id.
+  EXPECT_EQ(host.fault(0).particle, 4u);
+  EXPECT_EQ(host.fault(1).particle, 1u);
+  EXPECT_EQ(golden.stop->particle, 1u);
+  // What was set does not outlive the reset.
+  const Trace again = emu::run_on_board(host, grips.plan, grips.initial, {.steps = 24, .frames = {}});
+  EXPECT_EQ(difference(grips.plan, golden_trace(grips, 24), again), "");
+}
+
+TEST(Board, IsResetInTheMidstOfARun) {
+  const SimulatedBoard board;
+  const auto setup = board_setup("grips.toml");
+  const Trace golden = golden_trace(setup, 5);
+  emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
+  for (const uint32_t steps : {1000000u, 2000000u, 3000000u}) {
+    emu::run_on_board(host, setup.plan, setup.initial, {.steps = 2, .frames = {}, .hash_every = 0});
+    host.run(2, steps);
+    EXPECT_TRUE(host.status().busy);
+    const Trace after = emu::run_on_board(host, setup.plan, setup.initial, {.steps = 5, .frames = {5}});
+    EXPECT_EQ(difference(setup.plan, golden, after), "");
+  }
+}
+
+// What a host that lost a reply does, and what only a confused one does.
+TEST(Board, RequestsMayBeRepeated) {
+  const SimulatedBoard board;
+  const auto setup = board_setup("grips.toml");
+  const Trace golden = golden_trace(setup, 7);
+  emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
+  const int bits = setup.plan.words.particle_bits;
+  host.reset();
+  const auto nodes = emu::by_node(setup.plan, setup.initial);
+  uint16_t index = 0;
+  for (uint16_t n = 0; n < nodes.size(); ++n)
+    for (const Particle& p : nodes[n]) {
+      for (int k = 0; k < 2; ++k) host.load(index, n, emu::load_word(setup.plan, p), bits);
+      ++index;
+    }
+  for (int k = 0; k < 2; ++k) host.run(0, 7);
+  while (host.status().busy) continue;
+  const uint64_t cycles = host.status().cycles;
+  EXPECT_EQ(cycles, cycles_of(setup, 7));
+  uint64_t hash = 0;
+  for (uint16_t n = 0; n < nodes.size(); ++n)
+    for (const emu::Bits& word : host.read(n, bits)) {
+      const emu::Slot slot = emu::unpack_particle(setup.plan, word);
+      Particle p{slot.id,     slot.body.type, n, {slot.body.x[0], slot.body.x[1], slot.body.x[2]},
+                 slot.body.v, slot.u};
+      hash += hash_of(setup.plan.lattice, p);
+    }
+  EXPECT_EQ(hash, golden.state_hash[7]);
+  EXPECT_THROW(host.run(3, 1), std::runtime_error);
+  EXPECT_THROW(host.load(index + 1, 0, {}, bits), std::runtime_error);
+  EXPECT_THROW(host.load(index, 2, {}, bits), std::runtime_error);
+  EXPECT_THROW(host.set_velocity(2, 0, 0), std::runtime_error);
+  EXPECT_THROW(host.set_velocity(0, 3, 0), std::runtime_error);
+  EXPECT_THROW(host.fault(2), std::runtime_error);
+  EXPECT_EQ(host.status().cycles, cycles);
+}
+
+TEST(Board, TheCommandDrivesIt) {
+  const SimulatedBoard board;
+  const std::string baud = std::to_string(SimulatedBoard::kBaud);
+  const std::vector<std::string> end{"--arch", board_file("small.toml"), "--port", board.port(), "--baud",
+                                     baud};
+  const auto with = [&](std::vector<std::string> words) {
+    words.insert(words.end(), end.begin(), end.end());
+    return command(words);
+  };
+  const Answer matched = with({"crosscheck", board_file("grips.toml"), "--engines", "golden,fpga"});
+  EXPECT_EQ(matched.out, "matched 192 updates over 24 steps in 2 engines\n");
+  EXPECT_EQ(matched.code, 0);
+  const Answer stopped = with({"crosscheck", board_file("thrown.toml"), "--engines", "fpga,lattice"});
+  EXPECT_EQ(stopped.out,
+            "matched 48 updates over 6 steps in 2 engines\nall stopped: step 6, node 1 at cell (1, 0, 0), "
+            "particle 1: "
+            "left the lattice along y (0)\n");
+  EXPECT_EQ(stopped.code, 1);
+  const Answer run = with({"run", board_file("grips.toml"), "--engine", "fpga"});
+  EXPECT_EQ(run.code, 0);
+  EXPECT_NE(run.out.find("\nretries            0\n"), std::string::npos) << run.out;
+  const Answer wrong = with({"run", board_file("other.toml"), "--engine", "fpga"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_EQ(
+      wrong.err,
+      "port " + board.port() +
+          ": the board holds plan a8f00e943993f6a1, the scene is plan 9586ec283f3544ae\n"
+          "  hint: emit the scene with --board, build and flash it; or run the scene that the board was made "
+          "from\n");
+}
+
+}  // namespace
+}  // namespace cuboct::test

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# projects.sh CUBOCT ROOT DIR: the emitted projects of both boards, with velocities that a host may set and without: no
+# lint, no inferred latch, the same bytes twice, and the bench of the lattice passes.
+set -euo pipefail
+cuboct=$1 root=$2 dir=$3
+rm -rf "$dir"
+mkdir -p "$dir"
+check() {  # NAME ARGUMENTS...
+  local project=$dir/$1
+  shift
+  "$cuboct" emit "$root/scenes/boards/grips.toml" --arch "$root/scenes/boards/small.toml" --out "$project" --vector-steps 2 "$@" >/dev/null
+  "$cuboct" emit "$root/scenes/boards/grips.toml" --arch "$root/scenes/boards/small.toml" --out "$dir/again" --vector-steps 2 "$@" >/dev/null
+  diff -r "$project" "$dir/again"
+  (cd "$project" && verilator --lint-only -Wall --top-module cuboct_board_top -f board/files.f)
+  (cd "$project" && yosys -q -p "read_verilog -sv $(tr '\n' ' ' < board/files.f); hierarchy -check -top cuboct_board_top; proc; check -assert" > yosys.log)
+  ! grep -i latch "$project/yosys.log"
+  local port
+  for port in $(sed -nE 's/^  (in|out)put +logic +([a-z0-9_]+).*/\2/p' "$project/board/cuboct_board_top.sv"); do
+    grep -q "[ \"]$port[ \"]" "$project"/board/pins.* || { echo "no pin for $port"; exit 1; }
+  done
+}
+check icebreaker --board icebreaker
+check ulx3s --board ulx3s --baud 3000000
+check fixed --board ulx3s --fixed-velocities
+! grep -rq velocity_i "$dir/fixed/rtl/cuboct_lattice.sv"
+make -s -C "$dir/icebreaker/bench" icarus 2>&1 | grep '^PASS [1-9][0-9]* comparisons'

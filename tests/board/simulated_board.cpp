@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "tests/board/simulated_board.h"
+
+#include <fmt/format.h>
+#include <chrono>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "hw/rtl_emit.h"
+#include "model/compare.h"
+#include "model/golden.h"
+
+namespace cuboct::test {
+namespace {
+
+std::string contents(const std::string& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+std::string board_file(const std::string& name) {
+  const bool shown = name == "grips.toml" || name == "small.toml";  // as docs/user/board.md does
+  return std::string(CUBOCT_SOURCE_DIR) + (shown ? "/scenes/boards/" : "/tests/board/") + name;
+}
+
+Setup board_setup(const std::string& scene) {
+  return make_setup(read_scene(board_file(scene)), read_arch(board_file("small.toml")));
+}
+
+Answer command(const std::vector<std::string>& arguments) {
+  const Scratch scratch;
+  const Streams streams{scratch.path("out"), scratch.path("err")};
+  const int code = Process(CUBOCT_PROGRAM, arguments, false, streams).wait();
+  return {code, contents(streams.out), contents(streams.err)};
+}
+
+SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options) {
+  const Setup setup = board_setup("grips.toml");
+  const std::string project = scratch_.path("project"), out = scratch_.path("out");
+  emit_rtl(setup.plan, setup.initial, project, 1, {.name = "icebreaker", .baud = kBaud});
+  std::vector<std::string> arguments{project, "--build-dir", CUBOCT_TEST_CACHE};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  process_ =
+      std::make_unique<Process>(CUBOCT_BOARD_SIM, arguments, false, Streams{out, scratch_.path("err")});
+  // The board may have to be compiled.
+  for (int k = 0; k < 5000 && port_.find('\n') == std::string::npos; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    port_ = contents(out);
+  }
+  if (port_.empty())
+    throw std::runtime_error("cuboct-board-sim did not start: " + contents(scratch_.path("err")));
+  port_.pop_back();
+}
+
+std::string SimulatedBoard::end() {
+  process_.reset();
+  return contents(scratch_.path("err"));
+}
+
+Trace golden_trace(const Setup& setup, uint64_t steps) {
+  Trace trace;
+  trace.plan_hash = setup.plan.hash;
+  trace.nodes = setup.plan.lattice.size();
+  Golden golden(setup.plan.rule, setup.plan.lattice, setup.plan.arch.capacity, setup.initial);
+  try {
+    for (uint64_t step = 0;; ++step) {
+      trace.frames.push_back(golden.state());
+      trace.state_hash.push_back(hash_of(setup.plan.lattice, trace.frames.back()));
+      if (step == steps) break;
+      golden.step();
+    }
+  } catch (const RunError& e) {
+    trace.stop = StopReason{e.fault, e.step, e.node, e.particle, e.number, e.what()};
+  }
+  return trace;
+}
+
+std::string difference(const Plan& plan, const Trace& golden, const Trace& run) {
+  if (const auto found = compare(golden, run)) return found->text("golden", "fpga", plan.lattice);
+  for (const State& state : run.frames) {
+    const State* expected = frame_at(golden, state.step);
+    if (expected == nullptr) return fmt::format("a state of step {}", state.step);
+    if (const auto found = compare(*expected, state)) return found->text("golden", "fpga", plan.lattice);
+  }
+  return {};
+}
+
+}  // namespace cuboct::test

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// cuboct-board-sim on the project of scenes/boards/grips.toml, and what tests ask of it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hw/setup.h"
+#include "model/process.h"
+#include "model/trace.h"
+
+namespace cuboct::test {
+
+std::string board_file(const std::string& name);  // of scenes/boards or tests/board
+Setup board_setup(const std::string& scene);      // likewise, on small.toml
+
+struct Answer {
+  int code;  // exit code
+  std::string out, err;
+};
+// Runs to its end.
+Answer command(const std::vector<std::string>& arguments);
+
+class SimulatedBoard {
+ public:
+  // `options`: further ones of cuboct-board-sim.
+  explicit SimulatedBoard(const std::vector<std::string>& options = {});
+
+  const std::string& port() const { return port_; }
+  static constexpr int kBaud = 3000000;  // four clocks per bit
+  // Ends it; what it told: "... cycles; to the board N bytes, ...".
+  std::string end();
+
+ private:
+  Scratch scratch_;
+  std::unique_ptr<Process> process_;
+  std::string port_;
+};
+
+// Golden's trace with every state.
+Trace golden_trace(const Setup& setup, uint64_t steps);
+// The first difference in hashes, stops, and each state that `run` kept; empty where there is none.
+std::string difference(const Plan& plan, const Trace& golden, const Trace& run);
+
+}  // namespace cuboct::test

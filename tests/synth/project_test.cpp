@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// What a request must have: a project, a target, a tool, a report to add to.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "hw/rtl_emit.h"
+#include "hw/setup.h"
+#include "model/error.h"
+#include "model/process.h"
+#include "rtl/synth/flow.h"
+#include "rtl/synth/project.h"
+
+namespace cuboct::synth {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Refuse : public ::testing::Test {
+ protected:
+  // Emits the small sheet.
+  void emit() {
+    const std::string here = CUBOCT_SOURCE_DIR "/tests/synth/";
+    const cuboct::Setup setup = make_setup(read_scene(here + "sheet.toml"), read_arch(here + "narrow.toml"));
+    emit_rtl(setup.plan, setup.initial, dir_, 1);
+    plan_ = setup.plan;
+  }
+  std::string refusal(const Request& request) const {
+    try {
+      synthesise(request);
+    } catch (const InputError& error) {
+      std::string text = error.what();
+      for (size_t at; (at = text.find(dir_)) != std::string::npos;) text.replace(at, dir_.size(), "DIR");
+      return text;
+    }
+    return "";
+  }
+  Request request(const std::string& target = "up5k") const {
+    Request r;
+    r.directory = dir_;
+    r.target = target;
+    return r;
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(dir_ + "/" + name) << text;
+  }
+
+  Scratch scratch_;
+  std::string dir_ = scratch_.path("project");
+  Plan plan_;
+};
+
+TEST_F(Refuse, TellsOfTheProject) {
+  emit();
+  const Project project = read_project(dir_);
+  EXPECT_EQ(project.nodes, plan_.lattice.size());
+  EXPECT_EQ(project.particles, plan_.particles);
+  EXPECT_EQ(project.plan.size(), 16u);
+  EXPECT_EQ(std::stoull(project.plan, nullptr, 16), plan_.hash);
+  EXPECT_EQ(project.capacity, 3);
+  EXPECT_GT(project.cycles_per_step, 20u);
+  EXPECT_EQ(project.files[0], "rtl/cuboct_pkg.sv");
+  std::ifstream list(dir_ + "/files.f");
+  std::vector<std::string> files;
+  for (std::string line; std::getline(list, line);) files.push_back(line);
+  EXPECT_EQ(project.files, files);
+}
+
+TEST_F(Refuse, WhatIsNoProject) {
+  const std::string hint = "\n  hint: cuboct emit SCENE --out DIR makes a project";
+  EXPECT_EQ(refusal(request()), "DIR: no such directory" + hint);
+  fs::create_directory(dir_);
+  EXPECT_EQ(refusal(request()), "DIR: is no project of cuboct emit: it has no project.json" + hint);
+  write("project.json", "{\"plan\":");
+  EXPECT_EQ(refusal(request()), "DIR/project.json: is not JSON, at byte 9" + hint);
+  write("project.json", "{\"plan\": \"x\", \"nodes\": \"many\"}");
+  EXPECT_EQ(refusal(request()), "DIR/project.json: no 'nodes' as cuboct emit writes it" + hint);
+  write(
+      "project.json",
+      R"({"plan": "x", "nodes": 1, "particles": 1, "arch": {"capacity": 4},
+            "cycles_per_step": {"expected": 9},
+            "files": ["rtl/a.sv"]})");
+  EXPECT_EQ(refusal(request()),
+            "DIR/project.json: names rtl/a.sv, which is not there\n  hint: emit the project again");
+}
+
+TEST_F(Refuse, UnknownTargets) {
+  EXPECT_EQ(refusal(request("xc6")),
+            "unknown target 'xc6'\n  hint: did you mean 'xc7'? there are up5k, hx8k, ecp5-25, ecp5-85, xc7 "
+            "and asic");
+  EXPECT_EQ(refusal(request("stratix")),
+            "unknown target 'stratix'\n  hint: there are up5k, hx8k, ecp5-25, ecp5-85, xc7 and asic");
+}
+
+TEST_F(Refuse, ABoardThatIsNotThere) {
+  emit();
+  Request r = request();
+  r.unit = "board";
+  EXPECT_EQ(refusal(r), "DIR: has no board/\n  hint: cuboct emit SCENE --out DIR --board BOARD writes one");
+  EXPECT_TRUE(fs::is_empty(dir_ + "/synth/up5k"));
+}
+
+TEST_F(Refuse, MissingToolsWithTheirPackages) {
+  emit();
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", scratch_.path("").c_str(), 1);
+  const std::string yosys = refusal(request());
+  // A yosys that is there and an OpenSTA that is not.
+  std::ofstream(scratch_.path("yosys")) << "#!/bin/sh\n";
+  fs::permissions(scratch_.path("yosys"), fs::perms::owner_all);
+  const std::string sta = refusal(request("asic"));
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(yosys, "yosys is not in PATH\n  hint: apt-get install yosys");
+  EXPECT_EQ(sta, "sta is not in PATH\n  hint: apt-get install opensta");
+  EXPECT_TRUE(fs::is_empty(dir_ + "/synth/up5k"));
+}
+
+TEST_F(Refuse, TimingWithoutWhatItIsOf) {
+  emit();
+  write("timing.json", R"({"fmax": {"clk": {"achieved": 99.0}}, "utilization": {}})");
+  Request r = request();
+  r.timing = dir_ + "/timing.json";
+  EXPECT_EQ(refusal(r), "--timing is for ecp5-25 and ecp5-85: up5k is placed here or not at all");
+  r.target = "ecp5-85";
+  EXPECT_EQ(refusal(r),
+            "DIR/synth/ecp5-85/node: holds no synthesis yet\n  hint: run the command without --timing first");
+  fs::create_directories(dir_ + "/synth/ecp5-85/node");
+  write("synth/ecp5-85/node/report.json", R"({"plan": "0123"})");
+  EXPECT_EQ(refusal(r), "DIR/synth/ecp5-85/node/report.json: is no report of cuboct synth");
+  Report other;
+  other.plan = "0123";
+  other.target = "ecp5-85";
+  write("synth/ecp5-85/node/report.json", to_json(other).dump());
+  EXPECT_EQ(refusal(r), "DIR/synth/ecp5-85/node: is of plan 0123, the project of " + read_project(dir_).plan +
+                            "\n  hint: run the command without --timing first");
+}
+
+}  // namespace
+}  // namespace cuboct::synth
