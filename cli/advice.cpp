@@ -40,6 +40,10 @@ std::string what_happened(const StopReason& stop, const Plan& plan) {
     case Fault::left_y:
     case Fault::left_z:
       return fmt::format("particle {} went where no node is", stop.particle);
+    case Fault::link_check:
+    case Fault::link_order:
+    case Fault::link_silent:
+      return "the link lost or changed what it carries";
     case Fault::none:
       break;
   }
@@ -68,6 +72,10 @@ const char* what_helps(Fault fault) {
     case Fault::left_y:
     case Fault::left_z:
       return "raise reach.margin, or give reach.min and reach.max";
+    case Fault::link_check:
+    case Fault::link_order:
+    case Fault::link_silent:
+      return "mend it, or use link.check = \"retry\" in the arch";
     case Fault::none:
       break;
   }

@@ -20,6 +20,11 @@ void Input::add_stalls_to(CLI::App& command) {
       ->check(CLI::Range(0.0, 0.99))
       ->type_name("R");
   command.add_option("--stall-seed", stall_seed, "seed of the stalls")->check(whole_number())->type_name("N");
+  command
+      .add_option("--inject-faults", faults,
+                  "change, lose or repeat beats on the links of systemc or rtl: their share, or their number")
+      ->type_name("X");
+  command.add_option("--fault-seed", fault_seed, "seed of the faults")->check(whole_number())->type_name("N");
 }
 
 CLI::Validator whole_number() {

@@ -38,7 +38,7 @@ bool runs_here(const std::string& engine) { return engine == "golden" || engine 
 bool counts_cycles(const std::string& engine) { return engine == "systemc" || engine == "rtl"; }
 
 // Programs run beside golden and lattice, which run here. Lattice counts cycles where another engine does,
-// but for links that stall.
+// but for links that stall or fail.
 std::vector<Trace> run_all(const std::vector<std::string>& engines, const Options& options,
                            const Loaded& loaded, const Request& request, const std::string& directory) {
   const Input& input = options.input;
@@ -66,7 +66,7 @@ std::vector<Trace> run_all(const std::vector<std::string>& engines, const Option
     emu::LatticeRun run;
     run.steps = request.steps;
     run.frames = request.frames;
-    run.cycles = input.stall_rate == 0 && options.lattice.ranks == 1 &&
+    run.cycles = input.stall_rate == 0 && input.faults.empty() && options.lattice.ranks == 1 &&
                  std::any_of(engines.begin(), engines.end(), counts_cycles);
     traces[i] = run_on_lattice(input, loaded.scene, setup.plan, options.lattice, std::move(run)).trace;
   }
@@ -106,6 +106,22 @@ bool of_real_numbers(const Options& options) {
   return real;
 }
 
+bool by_link(const Trace& trace) { return trace.stop && is_of_link(trace.stop->fault); }
+
+// What became of the faults that were injected.
+void tell_faults(const std::string& engine, const Trace& trace) {
+  const auto counted = [&](const std::string& name) -> std::optional<double> {
+    for (const auto& [counter, value] : trace.counters)
+      if (counter == "faults_" + name) return value;
+    return std::nullopt;
+  };
+  if (!counted("injected")) return;
+  fmt::print("{}: {:.0f} faults injected ({:.0f} flipped, {:.0f} dropped, {:.0f} repeated, {:.0f} in "
+             "acknowledgements), {:.0f} detected, {:.0f} healed\n",
+             engine, *counted("injected"), *counted("flipped"), *counted("dropped"), *counted("repeated"),
+             *counted("in_acks"), *counted("detected"), *counted("healed"));
+}
+
 int crosscheck(Options options) {
   if (of_real_numbers(options)) {
     if (!options.out.empty()) {
@@ -127,6 +143,7 @@ int crosscheck(Options options) {
   if (std::unique(sorted.begin(), sorted.end()) != sorted.end() || sorted.size() < 2)
     throw InputError("a crosscheck needs two or more different engines",
                      "--engines golden,lattice,systemc,rtl");
+  check_faults(options.input, options.engines);
   if (std::find(sorted.begin(), sorted.end(), "fpga") == sorted.end())
     options.fpga.check_unused(fmt::format("{}", fmt::join(options.engines, ",")));
   else
@@ -161,11 +178,17 @@ int crosscheck(Options options) {
     }
   }
   uint64_t phase_times = 0;
+  bool link_failed = false;
   for (size_t a = 0; a < traces.size(); ++a) {
     for (size_t b = a + 1; b < traces.size(); ++b) {
       const auto mismatch = compare(traces[a], traces[b]);
       if (!mismatch) {
         if (!traces[a].cycles.empty() && !traces[b].cycles.empty()) phase_times = traces[a].cycles.size();
+        continue;
+      }
+      // All that a run held before one of its links failed is equal, and the run says so.
+      if ((by_link(traces[a]) || by_link(traces[b])) && mismatch->kind != Mismatch::Kind::state) {
+        link_failed = true;
         continue;
       }
       fmt::print("mismatch: {}\n", mismatch->text(options.engines[a], options.engines[b], plan.lattice));
@@ -180,9 +203,19 @@ int crosscheck(Options options) {
       return 1;
     }
   }
+  if (link_failed) {
+    for (size_t i = 0; i < traces.size(); ++i) {
+      tell_faults(options.engines[i], traces[i]);
+      if (by_link(traces[i]))
+        fmt::print("{} stopped after {} matched steps: {}\n", options.engines[i], traces[i].steps(),
+                   traces[i].stop->text);
+    }
+    return 1;
+  }
   fmt::print("matched {} updates over {} steps in {} engines\n", updates_compared(traces[0], plan.particles),
              traces[0].steps(), traces.size());
   if (phase_times > 0) fmt::print("matched {} phase times\n", phase_times);
+  for (size_t i = 0; i < traces.size(); ++i) tell_faults(options.engines[i], traces[i]);
   if (traces[0].stop) {
     fmt::print("all stopped: {}\n", traces[0].stop->text);
     return 1;

@@ -27,6 +27,14 @@ void check_engine(const std::string& name, const std::vector<std::string>& allow
                    near.empty() ? "one of " + list_of(allowed) : near);
 }
 
+void check_faults(const Input& input, const std::vector<std::string>& engines) {
+  if (input.faults.empty()) return;
+  read_fault_share(input.faults);
+  const auto has_links = [](const std::string& engine) { return engine == "systemc" || engine == "rtl"; };
+  if (std::none_of(engines.begin(), engines.end(), has_links))
+    throw InputError("--inject-faults needs an engine that has links", "systemc or rtl");
+}
+
 struct RunningEngine::State {
   std::string program;
   std::string path;
@@ -58,6 +66,9 @@ RunningEngine::RunningEngine(const std::string& engine, const Input& input, cons
   if (input.stall_rate > 0 && engine != "gpu" && engine != "fpga")  // they have no links that could stall
     arguments.insert(arguments.end(), {"--stall-rate", fmt::format("{}", input.stall_rate), "--stall-seed",
                                        std::to_string(input.stall_seed)});
+  if (!input.faults.empty() && engine != "gpu")
+    arguments.insert(arguments.end(),
+                     {"--inject-faults", input.faults, "--fault-seed", std::to_string(input.fault_seed)});
   if (progress) arguments.push_back("--progress");
   arguments.insert(arguments.end(), more.begin(), more.end());
   std::filesystem::remove(path);  // what is found there afterwards is this run's

@@ -23,6 +23,9 @@ const std::vector<std::string>& fixed_engines();
 // InputError with the nearest spelling where `name` is not in `allowed`.
 void check_engine(const std::string& name, const std::vector<std::string>& allowed);
 
+// InputError where faults are asked for wrongly, or of engines that have no links.
+void check_faults(const Input& input, const std::vector<std::string>& engines);
+
 // Golden runs here. A run that has to stop is a trace with a stop reason; Ctrl-C gives the trace so far.
 // `watch` is called with each state, step 0 included.
 Trace run_golden(const Setup& setup, const Request& request,

@@ -89,6 +89,7 @@ int run(Options options) {
   else
     options.fpga.check_unused(options.engine);
   options.real.check_used(options.engine);
+  check_faults(options.input, {options.engine});
   const Loaded loaded = lattice || gpu ? load_plan(options.input) : load(options.input);
   catch_interrupts();
   if (!options.out.empty()) prepare_directory(options.out);

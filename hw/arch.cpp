@@ -66,6 +66,9 @@ Arch arch_of(const ConfigTable& root) {
       arch.link_bits = bits->is_string() && bits->choice("link width", {"record"}) == 0
                            ? 0
                            : static_cast<int>(bits->integer(1, 1024));
+    if (const auto check = link->find("check"))
+      arch.link_check =
+          static_cast<LinkCheck>(check->choice("link check", {"none", "detect", "retry"}));
     link->done();
   }
   if (const auto widths = root.table_at("widths")) read_widths(*widths, arch.widths);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hw/carry.h"
+#include "hw/link_code.h"
 #include "model/fixed_rule.h"
 #include "model/quantise.h"
 
@@ -19,6 +20,7 @@ struct Arch {
   int queue_depth = 16;  // (candidate, mask) entries between filter and pipes
   bool overlap = true;   // candidates are filtered while the exchange still runs
   int link_bits = 0;     // payload bits per beat; 0: one halo record per beat
+  LinkCheck link_check = LinkCheck::none;
   Widths widths;
   TableChoice table;
   Carry carry;

@@ -13,8 +13,6 @@ uint64_t ceil_div(uint64_t a, uint64_t b) { return (a + b - 1) / b; }
 // From the load of an end beat to the cycle in which the receiver's phase can end: output register,
 // receiver's register.
 constexpr uint64_t kEndBeat = 2;
-// A migrate phase in which nothing moves: end beats, their way, one cycle to leave each face's FIFO.
-constexpr uint64_t kQuietMigrate = 1 + kEndBeat + 2;
 
 // Records that a node sends in each exchange, and the empty segments that it passes, a cycle each.
 struct Sends {
@@ -44,6 +42,9 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
   }
 
   const auto beats = static_cast<uint64_t>(plan.words.halo_beats);
+  const uint64_t end_beat = kEndBeat + static_cast<uint64_t>(plan.link.latency);
+  // A migrate phase in which nothing moves: end beats, their way, one cycle to leave each face's FIFO.
+  const uint64_t quiet_migrate = 1 + end_beat + 2;
   const auto send_time = [&](uint32_t n, int axis) {
     return sends[n].records[axis] * beats + sends[n].empty[axis] + 1;
   };
@@ -58,7 +59,7 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
       for (int face = 2 * axis; face < 2 * axis + 2; ++face)
         if (lattice.neighbour(n, face) != kNoNode)
           longest = std::max(longest, send_time(lattice.neighbour(n, face), axis));
-      exchanged[axis] = now += longest + kEndBeat;
+      exchanged[axis] = now += longest + end_beat;
     }
     uint64_t streamed = plan.arch.overlap ? 0 : now;
     uint64_t candidates = 0;
@@ -84,7 +85,7 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
     const uint64_t force = std::max(streamed + static_cast<uint64_t>(plan.latency.filter), pairs) +
                            (own > 0 ? 2 + static_cast<uint64_t>(plan.latency.pipe) : 0);
     const uint64_t update = own > 0 ? own - 1 + static_cast<uint64_t>(plan.latency.update) : 1;
-    expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * kQuietMigrate);
+    expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * quiet_migrate);
   }
   return expected;
 }

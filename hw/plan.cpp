@@ -61,6 +61,7 @@ uint64_t hash_of(const Plan& plan) {
       .add(arch.queue_depth)
       .add(arch.overlap);
   hash.add(plan.words.link_bits).add(plan.particles);
+  if (plan.link.checked()) hash.add(static_cast<int>(plan.link.check));
   for (const int32_t p : plan.lattice.period()) hash.add(p);
   for (uint32_t n = 0; n < plan.lattice.size(); ++n)
     for (const int32_t c : plan.lattice.cell(n)) hash.add(c);
@@ -117,6 +118,7 @@ Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, u
 
   plan.words = words_of(plan.rule, plan.arch, particles);
   plan.latency = latency_of(plan.rule);
+  plan.link = link_code(plan.arch.link_check, plan.words.link_bits);
   plan.hash = hash_of(plan);
   return plan;
 }
@@ -148,6 +150,11 @@ std::string describe(const Plan& plan) {
                                   plan.words.halo_beats == 1 ? "" : "s", plan.words.link_bits));
   line("particle word", fmt::format("{} bits in {} beat{}", plan.words.particle_bits,
                                     plan.words.migrate_beats, plan.words.migrate_beats == 1 ? "" : "s"));
+  if (const LinkCode& code = plan.link; code.checked())
+    line("link check",
+         fmt::format("{}: {} bits of sequence and {} of check (0x{:x}, distance {}) per beat, {} cycles more",
+                     to_string(code.check), code.sequence_bits, code.beat.width, code.beat.polynomial,
+                     code.distance, code.latency));
   line("filter lanes, pipes",
        fmt::format("{}, {}, queue of {}{}", plan.arch.filter_lanes, plan.arch.force_pipes,
                    plan.arch.queue_depth, plan.arch.overlap ? ", force overlaps the exchange" : ""));

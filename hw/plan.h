@@ -43,6 +43,7 @@ struct Plan {
   Vec3 origin = Vec3::Zero();  // m, lower corner of cell (0,0,0)
   Words words;
   Latency latency;
+  LinkCode link;
   uint32_t particles = 0;
   uint64_t hash = 0;  // of everything above that an engine can see
 };

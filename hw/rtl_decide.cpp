@@ -115,6 +115,24 @@ RtlDesign decide(const Plan& plan) {
   constant("Pd", rule.pd, "some type is held by force");
   design.constants.push_back(
       {"ParticleBits", plan.words.particle_bits, false, false, "of the words to load and observe"});
+  if (const LinkCode& code = plan.link; code.checked()) {
+    const auto guard = [&](const char* name, int64_t value, const char* comment, bool wide_one = false) {
+      design.constants.push_back({name, value, wide_one, false, comment});
+    };
+    guard("LinkRetry", code.check == LinkCheck::retry, "1: lost beats are sent again; 0: they are a fault");
+    guard("LinkSequence", code.sequence_bits, "bits of a beat's number");
+    guard("LinkWindow", code.window, "beats that may be unacknowledged");
+    guard("LinkPatience", code.patience, "cycles without an acknowledgement");
+    guard("LinkCrc", code.beat.width, "bits of a beat's check");
+    guard("LinkPolynomial", code.beat.polynomial, "", true);
+    guard("LinkStart", code.beat.start, "", true);
+    guard("AckCrc", code.ack.width, "bits of an acknowledgement's check");
+    guard("AckPolynomial", code.ack.polynomial, "", true);
+    guard("AckStart", code.ack.start, "", true);
+    guard("WireBits", code.wire_bits, "of link_data");
+    guard("AckBits", code.ack_bits, "of link_ack");
+    design.checked = true;
+  }
 
   add_table(design, "cuboct_force_rom", rule.force, w.strength_bits);
   if (rule.damped) add_table(design, "cuboct_damp_rom", rule.damp, w.strength_bits);

@@ -46,6 +46,7 @@ struct RtlDesign {
   int type_bits = 0;
   int velocity_bits = 0;
   int particle_bits = 0, link_bits = 0;
+  bool checked = false;     // links have a check: cuboct_link_guard, and the ports of link_ack and link_error
   int pair_sum_bits = 0;    // of a pipe's exact sum
   std::vector<Cell> cells;  // of the nodes
   std::vector<std::array<uint32_t, kFaces>> neighbour;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "hw/rtl_bench.h"
@@ -26,7 +27,12 @@ using Files = std::map<std::string, std::string>;  // path in the project: text
 constexpr const char* kMarker = ".cuboct-emit";
 
 void add_node(Files& files, const RtlDesign& design) {
-  for (const RtlSource& source : rtl_library()) files["rtl/" + std::string(source.name)] = source.text;
+  // What checks links goes only where links are checked.
+  const std::set<std::string_view> checks{"cuboct_link_crc.sv", "cuboct_link_guard.sv", "cuboct_link_send.sv",
+                                          "cuboct_link_take.sv"};
+  for (const RtlSource& source : rtl_library())
+    if (design.checked || !checks.contains(source.name))
+      files["rtl/" + std::string(source.name)] = source.text;
   files["rtl/cuboct_pkg.sv"] = print_package(design);
   for (const RtlTable& table : design.tables)
     files["rtl/" + table.module + ".sv"] = print_table(design, table);

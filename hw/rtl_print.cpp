@@ -36,39 +36,44 @@ std::string velocity_range(const RtlDesign& design) {
                      design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits) - 1);
 }
 
-// The ports of cuboct_node in order but for velocities.
-std::vector<Port> plain_node_ports(const RtlDesign& design) {
+// The ports of cuboct_node, or of its cuboct_node_core, in order.
+std::vector<Port> node_ports(const RtlDesign& design, bool core) {
+  const bool checked = design.checked && !core;
   const int faces = 2 * design.axes;
-  const std::string link = fmt::format("[{}*cuboct_pkg::LinkBits-1:0]", faces),
+  const auto by_face = [&](const char* bits) {
+    return fmt::format("[{}*cuboct_pkg::{}-1:0]", faces, bits);
+  };
+  const std::string link = by_face(checked ? "WireBits" : "LinkBits"),
                     particle = "[cuboct_pkg::ParticleBits-1:0]", face = fmt::format("[{}:0]", faces - 1);
-  return {{"input ", "", "clk_i"},
-          {"input ", "", "rst_ni"},
-          {"input ", "", "start_i"},
-          {"input ", "[31:0]", "steps_i"},
-          {"input ", face, "has_link_i"},
-          {"input ", "", "load_valid_i"},
-          {"input ", particle, "load_data_i"},
-          {"output", face, "link_valid_o"},
-          {"output", face, "link_end_o"},
-          {"output", link, "link_data_o"},
-          {"input ", face, "link_ready_i"},
-          {"input ", face, "link_valid_i"},
-          {"input ", face, "link_end_i"},
-          {"input ", link, "link_data_i"},
-          {"output", face, "link_ready_o"},
-          {"output", "[7:0]", "phase_start_o"},
-          {"output", "[7:0]", "phase_end_o"},
-          {"output", "", "observe_valid_o"},
-          {"output", particle, "observe_data_o"},
-          {"output", "", "fault_valid_o"},
-          {"output", "[3:0]", "fault_code_o"},
-          {"output", "[cuboct_pkg::IdBits-1:0]", "fault_id_o"},
-          {"output", "[63:0]", "fault_number_o"},
-          {"output", "", "idle_o"}};
-}
-
-std::vector<Port> node_ports(const RtlDesign& design) {
-  std::vector<Port> ports = plain_node_ports(design);
+  std::vector<Port> ports{{"input ", "", "clk_i"},
+                          {"input ", "", "rst_ni"},
+                          {"input ", "", "start_i"},
+                          {"input ", "[31:0]", "steps_i"},
+                          {"input ", face, "has_link_i"},
+                          {"input ", "", "load_valid_i"},
+                          {"input ", particle, "load_data_i"},
+                          {"output", face, "link_valid_o"},
+                          {"output", face, "link_end_o"},
+                          {"output", link, "link_data_o"},
+                          {"input ", face, "link_ready_i"}};
+  if (checked) ports.push_back({"input ", by_face("AckBits"), "link_ack_i"});
+  ports.insert(ports.end(), {{"input ", face, "link_valid_i"},
+                             {"input ", face, "link_end_i"},
+                             {"input ", link, "link_data_i"},
+                             {"output", face, "link_ready_o"}});
+  if (checked) {
+    ports.push_back({"output", by_face("AckBits"), "link_ack_o"});
+    ports.push_back({"output", fmt::format("[{}:0]", 2 * faces - 1), "link_error_o"});
+  }
+  ports.insert(ports.end(), {{"output", "[7:0]", "phase_start_o"},
+                             {"output", "[7:0]", "phase_end_o"},
+                             {"output", "", "observe_valid_o"},
+                             {"output", particle, "observe_data_o"},
+                             {"output", "", "fault_valid_o"},
+                             {"output", "[3:0]", "fault_code_o"},
+                             {"output", "[cuboct_pkg::IdBits-1:0]", "fault_id_o"},
+                             {"output", "[63:0]", "fault_number_o"},
+                             {"output", "", "idle_o"}});
   if (!design.moved.empty())
     ports.insert(ports.begin() + 7, {"input ", velocity_range(design), "velocity_i"});
   return ports;
@@ -206,16 +211,56 @@ std::string print_types(const RtlDesign& design) {
 
 std::string print_node(const RtlDesign& design) {
   std::string text = head(design);
-  text += "// One node of the plan: cuboct_node_core with the plan's constants.\nmodule cuboct_node (\n" +
-          print_ports(node_ports(design)) + ");\n  cuboct_node_core #(\n";
-  std::vector<std::string> core;
+  text += fmt::format(
+      "// One node of the plan: cuboct_node_core with the plan's constants{}.\nmodule cuboct_node (\n{});\n",
+      design.checked ? ", and the checks of its links" : "", print_ports(node_ports(design, false)));
+  const std::vector<Port> ports = node_ports(design, true);
+  // What stands between the core's links and the node's: the core's port `x_o` is the wire `core_x`, `x_i`
+  // the wire `wire_x`.
+  const auto guarded = [&](const std::string& name) {
+    return design.checked && ((name.starts_with("link_")) || name.starts_with("fault_"));
+  };
+  const auto inner = [](const std::string& name) {
+    return (name.ends_with("_o") ? "core_" : "wire_") + name.substr(0, name.size() - 2);
+  };
+  std::vector<std::string> core, connected;
+  for (const Port& p : ports) {
+    if (guarded(p.name))
+      text += fmt::format("  logic {}{}{};\n", p.range, p.range.empty() ? "" : " ", inner(p.name));
+    connected.push_back(guarded(p.name) ? fmt::format("    .{}({})", p.name, inner(p.name))
+                                        : fmt::format("    .{}", p.name));
+  }
   for (const RtlConstant& c : design.constants)
     if (c.core) core.push_back(fmt::format("    .{0}(cuboct_pkg::{0})", c.name));
   if (!design.moved.empty()) core.push_back(fmt::format("    .MovedTypes({})", design.moved.size()));
-  text += fmt::format("{}\n  ) u_core (\n", fmt::join(core, ",\n"));
-  std::vector<std::string> ports;
-  for (const Port& p : node_ports(design)) ports.push_back(fmt::format("    .{}", p.name));
-  return text + fmt::format("{}\n  );\nendmodule\n", fmt::join(ports, ",\n"));
+  text += fmt::format("  cuboct_node_core #(\n{}\n  ) u_core (\n{}\n  );\n", fmt::join(core, ",\n"),
+                      fmt::join(connected, ",\n"));
+  if (design.checked)
+    text += fmt::format(
+        "  logic unused_core_ready;\n  assign unused_core_ready = ^core_link_ready;\n"
+        "  cuboct_link_guard #(\n"
+        "    .Faces({}),\n    .LinkBits(cuboct_pkg::LinkBits),\n"
+        "    .SequenceBits(cuboct_pkg::LinkSequence),\n    .Window(cuboct_pkg::LinkWindow),\n"
+        "    .Patience(cuboct_pkg::LinkPatience),\n    .Retry(cuboct_pkg::LinkRetry),\n"
+        "    .CrcBits(cuboct_pkg::LinkCrc),\n    .CrcPolynomial(cuboct_pkg::LinkPolynomial[31:0]),\n"
+        "    .CrcStart(cuboct_pkg::LinkStart[31:0]),\n    .AckCrcBits(cuboct_pkg::AckCrc),\n"
+        "    .AckPolynomial(cuboct_pkg::AckPolynomial[31:0]),\n    .AckStart(cuboct_pkg::AckStart[31:0]),\n"
+        "    .IdBits(cuboct_pkg::IdBits)\n"
+        "  ) u_guard (\n"
+        "    .clk_i,\n    .rst_ni,\n    .has_link_i,\n"
+        "    .node_valid_i(core_link_valid),\n    .node_end_i(core_link_end),\n"
+        "    .node_data_i(core_link_data),\n    .node_ready_o(wire_link_ready),\n"
+        "    .node_valid_o(wire_link_valid),\n    .node_end_o(wire_link_end),\n"
+        "    .node_data_o(wire_link_data),\n    .node_fault_valid_i(core_fault_valid),\n"
+        "    .node_fault_code_i(core_fault_code),\n    .node_fault_id_i(core_fault_id),\n"
+        "    .node_fault_number_i(core_fault_number),\n"
+        "    .link_valid_o,\n    .link_end_o,\n    .link_data_o,\n    .link_ready_i,\n    .link_ack_i,\n"
+        "    .link_valid_i,\n    .link_end_i,\n    .link_data_i,\n    .link_ready_o,\n    .link_ack_o,\n"
+        "    .link_error_o,\n"
+        "    .fault_valid_o,\n    .fault_code_o,\n    .fault_id_o,\n    .fault_number_o\n"
+        "  );\n",
+        2 * design.axes);
+  return text + "endmodule\n";
 }
 
 std::string print_lattice(const RtlDesign& design) {
@@ -244,10 +289,14 @@ std::string print_lattice(const RtlDesign& design) {
       "  output logic [Nodes-1:0] fault_valid_o,\n"
       "  output logic [4*Nodes-1:0] fault_code_o,\n"
       "  output logic [Nodes*cuboct_pkg::IdBits-1:0] fault_id_o,\n"
-      "  output logic [64*Nodes-1:0] fault_number_o,\n"
+      "  output logic [64*Nodes-1:0] fault_number_o,\n";
+  if (design.checked) text += fmt::format("  output logic [{}*Nodes-1:0] link_error_o,\n", 2 * faces);
+  text += fmt::format(
       "  output logic [Nodes-1:0] idle_o\n"
       ");\n"
-      "  localparam int LinkBits = cuboct_pkg::LinkBits;\n\n";
+      "  localparam int LinkBits = cuboct_pkg::{};\n{}\n",
+      design.checked ? "WireBits" : "LinkBits",
+      design.checked ? "  localparam int AckBits = cuboct_pkg::AckBits;\n" : "");
   const std::string velocity_port = "@VELOCITY_PORT@";
   text.replace(text.find(velocity_port), velocity_port.size(),
                design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n");
@@ -256,10 +305,12 @@ std::string print_lattice(const RtlDesign& design) {
     text +=
         fmt::format("  logic [{1}:0] valid_{0}, end_{0}, ready_{0};\n  logic [{2}*LinkBits-1:0] data_{0};\n",
                     n, faces - 1, faces);
+  if (design.checked)
+    for (size_t n = 0; n < nodes; ++n) text += fmt::format("  logic [{}*AckBits-1:0] ack_{};\n", faces, n);
   std::string unused_ends;
   for (size_t n = 0; n < nodes; ++n) {
     const Cell& cell = design.cells[n];
-    std::string has, valid, end, ready, data;
+    std::string has, valid, end, ready, data, ack;
     for (int f = faces - 1; f >= 0; --f) {
       const uint32_t to = design.neighbour[n][f];
       const int back = f ^ 1;  // the face of the neighbour that looks here
@@ -271,6 +322,10 @@ std::string print_lattice(const RtlDesign& design) {
       ready += (linked ? fmt::format("ready_{}[{}]", to, back) : "1'b0") + comma;
       data +=
           (linked ? fmt::format("data_{}[{}*LinkBits +: LinkBits]", to, back) : "{LinkBits{1'b0}}") + comma;
+      ack += (linked ? fmt::format("ack_{}[{}*AckBits +: AckBits]", to, back) : "{AckBits{1'b0}}") + comma;
+      if (!linked && design.checked)
+        unused_ends += fmt::format("{}^ack_{}[{}*AckBits +: AckBits]", unused_ends.empty() ? "    " : ",\n    ",
+                                   n, f);
       if (!linked)
         unused_ends +=
             fmt::format("{}valid_{}[{}], end_{}[{}], ready_{}[{}], ^data_{}[{}*LinkBits +: LinkBits]",
@@ -287,6 +342,7 @@ std::string print_lattice(const RtlDesign& design) {
         "    .link_end_i({{{6}}}),\n"
         "    .link_data_i({{{8}}}),\n"
         "    .link_ready_o(ready_{0}),\n"
+        "{11}"
         "    .phase_start_o(phase_start_o[8*{0} +: 8]), .phase_end_o(phase_end_o[8*{0} +: 8]),\n"
         "    .observe_valid_o(observe_valid_o[{0}]),\n"
         "    .observe_data_o(observe_data_o[{0}*cuboct_pkg::ParticleBits +: cuboct_pkg::ParticleBits]),\n"
@@ -295,7 +351,11 @@ std::string print_lattice(const RtlDesign& design) {
         "    .fault_number_o(fault_number_o[64*{0} +: 64]), .idle_o(idle_o[{0}])\n"
         "  );\n",
         n, cell[0], cell[1], cell[2], has, valid, end, ready, data, faces,
-        design.moved.empty() ? "" : " .velocity_i,");
+        design.moved.empty() ? "" : " .velocity_i,",
+        design.checked ? fmt::format("    .link_ack_i({{{0}}}),\n"
+                                     "    .link_ack_o(ack_{1}), .link_error_o(link_error_o[{2}*{1} +: {2}]),\n",
+                                     ack, n, 2 * faces)
+                       : "");
   }
   if (!unused_ends.empty())
     text += "\n  logic unused_faces;\n  assign unused_faces = ^{\n" + unused_ends + "\n  };\n";

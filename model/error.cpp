@@ -45,14 +45,33 @@ const char* to_string(Fault fault) {
       return "left the lattice along z";
     case Fault::full_z:
       return "node full after moving along z";
+    case Fault::link_check:
+      return "wrong check of a beat";
+    case Fault::link_order:
+      return "beat lost or repeated";
+    case Fault::link_silent:
+      return "beats not acknowledged";
   }
   return "?";
 }
 
+namespace {
+
+std::string text_of(Fault fault, uint64_t step, uint32_t node, uint32_t particle, int64_t number,
+                    const std::string& where) {
+  constexpr const char* kFace[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
+  if (is_of_link(fault))
+    return fmt::format("step {}, node {}{}, link {}: {}", step, node, where,
+                       number >= 0 && number < 6 ? kFace[number] : "?", to_string(fault));
+  return fmt::format("step {}, node {}{}, particle {}: {} ({})", step, node, where, particle,
+                     to_string(fault), number);
+}
+
+}  // namespace
+
 RunError::RunError(Fault fault, uint64_t step, uint32_t node, uint32_t particle, int64_t number,
                    const std::string& where)
-    : std::runtime_error(fmt::format("step {}, node {}{}, particle {}: {} ({})", step, node, where, particle,
-                                     to_string(fault), number)),
+    : std::runtime_error(text_of(fault, step, node, particle, number, where)),
       fault(fault),
       step(step),
       node(node),

@@ -36,7 +36,14 @@ enum class Fault : uint8_t {
   full_y,
   left_z,
   full_z,
+  // Of a link whose beats are checked (docs/reference/links.md), in engines that have links. `number` is the
+  // face, and no particle is meant.
+  link_check,   // a beat, or an acknowledgement, whose check is wrong
+  link_order,   // a beat that does not follow the one before it
+  link_silent,  // beats whose acknowledgement does not come
 };
+
+constexpr bool is_of_link(Fault fault) { return fault >= Fault::link_check; }
 
 const char* to_string(Fault fault);
 

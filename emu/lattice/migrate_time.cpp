@@ -8,16 +8,12 @@
 namespace cuboct::emu {
 namespace {
 
-// From the cycle that loads a record's last beat to that in which the receiver sees it: the sender's
-// register, the receiver's.
-constexpr int32_t kOnTheWay = 2;
-
 constexpr size_t at(int axis) { return static_cast<size_t>(axis); }
 
 }  // namespace
 
-Migration::Migration(const Lattice& lattice, int beats)
-    : lattice_(lattice), beats_(beats), leaving_bits_(lattice.size()) {
+Migration::Migration(const Lattice& lattice, int beats, int on_the_way)
+    : lattice_(lattice), beats_(beats), on_the_way_(on_the_way), leaving_bits_(lattice.size()) {
   for (auto& scan : scan_) scan.resize(lattice.size());
   for (auto& group : group_) group.assign(lattice.size(), -1);
 }
@@ -100,7 +96,7 @@ void Migration::depart(int axis, std::span<uint32_t> count) {
                          way > 0 ? 0u : 1u,
                          static_cast<uint32_t>(landings_.size()),
                          m.away,
-                         {node, last_beat + kOnTheWay}});
+                         {node, last_beat + on_the_way_}});
     --count[node];
     scan_[at(axis)][node] += beats_ - 1;
   }

@@ -15,8 +15,9 @@ namespace cuboct::emu {
 
 class Migration {
  public:
-  // `beats`: of a migrate record. Keeps a reference to `lattice`.
-  Migration(const Lattice& lattice, int beats);
+  // `beats`: of a migrate record. `on_the_way`: cycles from the one that loads a record's last beat to that in
+  // which the receiver sees it. Keeps a reference to `lattice`.
+  Migration(const Lattice& lattice, int beats, int on_the_way);
 
   // A particle that comes over a face: in the receiver's FIFO `after` cycles after the start of the sender's
   // phase.
@@ -57,7 +58,7 @@ class Migration {
   void set_leaving(uint32_t node, int axis);
 
   const Lattice& lattice_;
-  const int beats_;
+  const int beats_, on_the_way_;
   bool any_ = false;
   std::vector<Mover> movers_;  // by node, then slot
   std::vector<Landing> landings_;

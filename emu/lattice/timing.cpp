@@ -15,7 +15,7 @@ namespace cuboct::emu {
 namespace {
 
 // An end beat loaded in cycle t is seen by its sender (`sent`) in t + 1, by its receiver in t + 2: through
-// the sender's output register and the receiver's.
+// the sender's output register and the receiver's; `LinkCode::latency` comes to the latter.
 constexpr int64_t kSent = 1, kReceived = 2;
 // The end beat of a face without link: seen since long before.
 constexpr int64_t kLongAgo = INT64_MIN / 4;
@@ -59,7 +59,7 @@ struct TimingModel::Impl {
   const uint32_t nodes_;
   const int axes_;
   const int threads_;
-  const int64_t halo_beats_;
+  const int64_t halo_beats_, received_;
   const ForceShape shape_;
   const Filter filter_;
   std::vector<std::array<uint32_t, 6>> neighbour_;  // nodes + 1; number `nodes_` where there is none
@@ -89,10 +89,11 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       axes_(plan.rule.axes),
       threads_(threads > 0 ? threads : omp_get_num_procs()),
       halo_beats_(plan.words.halo_beats),
+      received_(kReceived + plan.link.latency),
       shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes},
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       neighbour_(nodes_ + 1),
-      migration_(plan.lattice, plan.words.migrate_beats),
+      migration_(plan.lattice, plan.words.migrate_beats, static_cast<int>(received_)),
       first_(nodes_ + 2),
       old_first_(nodes_ + 2),
       count_(nodes_ + 1),
@@ -163,7 +164,7 @@ int64_t TimingModel::Impl::exchanged(int axis, uint32_t n) const {
   const Cycles& end = halo_end_[at(axis)];
   const auto& near = neighbour_[n];
   return std::max(
-      {end[n] + kSent, end[near[at(2 * axis)]] + kReceived, end[near[at(2 * axis + 1)]] + kReceived});
+      {end[n] + kSent, end[near[at(2 * axis)]] + received_, end[near[at(2 * axis + 1)]] + received_});
 }
 
 void TimingModel::Impl::exchange_x(const NodeSlots& slots, uint32_t n) {
@@ -171,7 +172,7 @@ void TimingModel::Impl::exchange_x(const NodeSlots& slots, uint32_t n) {
   const uint32_t own = count_[n], low = neighbour_[n][0], high = neighbour_[n][1];
   sent_y_[n] = own + count_[low] + count_[high];
   const auto halo_end = [this](uint32_t of) { return start_[of] + stream(count_[of]); };
-  const int64_t end = std::max({halo_end(n) + kSent, halo_end(low) + kReceived, halo_end(high) + kReceived});
+  const int64_t end = std::max({halo_end(n) + kSent, halo_end(low) + received_, halo_end(high) + received_});
   end_[at(Phase::exchange_x)][n] = end;
   halo_end_[1][n] = end + 1 + stream(own) + stream(count_[low]) + stream(count_[high]);
 }
@@ -223,7 +224,7 @@ int64_t TimingModel::Impl::taken(int axis, uint32_t n, int side, int64_t now) co
     for (const auto& arrival : migration_.arrivals(axis, n, side))
       now = std::max(now, migrate_start_[at(axis)][arrival.from] + arrival.after) + 1;
   const uint32_t near = neighbour_[n][at(2 * axis + side)];
-  return std::max(now, migrate_end_[at(axis)][near] + kReceived) + 1;
+  return std::max(now, migrate_end_[at(axis)][near] + received_) + 1;
 }
 
 void TimingModel::Impl::take_particles(int axis, uint32_t n) {

@@ -20,8 +20,13 @@ double now() {
 }  // namespace
 
 NodeModule::NodeModule(const sc_core::sc_module_name& name, uint32_t node, uint8_t has_link,
-                       std::unique_ptr<NodeModel> model)
-    : sc_module(name), node_(node), has_link_(has_link), model_(std::move(model)) {
+                       std::unique_ptr<NodeModel> model, bool checked, bool faults)
+    : sc_module(name),
+      node_(node),
+      has_link_(has_link),
+      model_(std::move(model)),
+      checked_(checked),
+      faults_(faults) {
   for (int f = 0; f < kFaces; ++f)
     if (has_link >> f & 1) faces_.push_back(f);
   SC_HAS_PROCESS(NodeModule);
@@ -59,6 +64,23 @@ void NodeModule::sleep(uint64_t until) {
   pins_.wake.notify(sc_core::sc_time::from_value((until - timeline_->edge) * period - period / 2));
 }
 
+// What the node's ends of faulty wires show.
+const NodeInputs& NodeModule::seen() {
+  seen_ = pins_.inputs;
+  for (const int f : faces_) {
+    const uint8_t bit = static_cast<uint8_t>(1u << f);
+    if (const FaultyWire::View* in = in_link_[f]->faulty()) {
+      seen_.valid = static_cast<uint8_t>((seen_.valid & ~bit) | (in->valid ? bit : 0));
+      seen_.beat[f] = in->beat;
+    }
+    if (const FaultyWire::View* out = out_link_[f]->faulty()) {
+      seen_.ready = static_cast<uint8_t>((seen_.ready & ~bit) | (out->ready ? bit : 0));
+      seen_.ack[f] = out->ack;
+    }
+  }
+  return seen_;
+}
+
 void NodeModule::cycle() {
   // The wake event comes between two edges, or one delta after the edge at which a link or the control
   // changed: the change belongs to the next cycle, and the static sensitivity is back.
@@ -84,7 +106,7 @@ void NodeModule::cycle() {
   }
   // SystemC would wrap the text of an exception that leaves a process.
   try {
-    model_->clock(in, out);
+    model_->clock(faults_ ? seen() : in, out);
   } catch (const std::runtime_error& e) {
     monitor_o->fail(node_, e.what());
     sleep(kNever);
@@ -92,7 +114,7 @@ void NodeModule::cycle() {
   }
   if (timeline_->running()) {
     ++calls_;
-    if (Collector::shows(out)) monitor_o->report(node_, out);
+    if (Collector::shows(out) || (out.beat_errors | out.ack_errors) != 0) monitor_o->report(node_, out);
   }
 
   const uint8_t emptied = valid_ & static_cast<uint8_t>(~out.valid);
@@ -108,6 +130,11 @@ void NodeModule::cycle() {
   }
   valid_ = out.valid;
   ready_ = out.ready;
+  if (checked_)
+    for (const int f : faces_)
+      if (ack_[f] != out.ack[f]) in_link_[f]->set_ack(ack_[f] = out.ack[f]);
+  if (faults_ && std::any_of(faces_.begin(), faces_.end(), [&](int f) { return in_link_[f]->repeats(); }))
+    return;
   if (model_->wakes_at() > in.now + 1 && valid_ == 0 && (pins_.held & ~taken) == 0) sleep(model_->wakes_at());
 }
 
@@ -120,6 +147,8 @@ Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State&
       particles_(by_node(plan, initial)),
       patience_(options.patience != 0 ? options.patience : patience_of(plan, options.stall_rate)),
       stalls_(options.stall_rate, options.stall_seed),
+      faults_(plan, options.faults, initial, options.steps),
+      aftermath_(options.faults.enabled() ? kAftermath : 0),
       collector_(plan, options),
       control_("control", plan.lattice.size()) {
   const Lattice& lattice = plan.lattice;
@@ -127,7 +156,8 @@ Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State&
   for (uint32_t n = 0; n < lattice.size(); ++n) {
     const uint8_t has_link = links_of(lattice, n);
     nodes_.push_back(
-        std::make_unique<NodeModule>(fmt::format("node_{}", n).c_str(), n, has_link, factory(n, has_link)));
+        std::make_unique<NodeModule>(fmt::format("node_{}", n).c_str(), n, has_link, factory(n, has_link),
+                                     plan.link.checked(), options.faults.enabled()));
     nodes_[n]->clk_i(clk_i);
     nodes_[n]->control_i(control_[n]);
     nodes_[n]->monitor_o(*this);
@@ -137,7 +167,7 @@ Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State&
       const uint32_t other = lattice.neighbour(n, f);
       if (other == kNoNode) continue;
       links_.push_back(std::make_unique<Link>(fmt::format("link_{}_{}", n, f).c_str(), timeline_, stalls_,
-                                              n * kFaces + static_cast<uint32_t>(f)));
+                                              n * kFaces + static_cast<uint32_t>(f), faults_.at(n, f)));
       nodes_[n]->link_o[static_cast<size_t>(f)](*links_.back());
       nodes_[other]->link_i[static_cast<size_t>(f ^ 1)](*links_.back());
     }
@@ -154,11 +184,18 @@ Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State&
 Bench::~Bench() = default;
 
 void Bench::report(uint32_t node, const NodeOutputs& out) {
-  if (!timeline_.over) collector_.collect(node, timeline_.cycle(), out);
+  if (timeline_.over) return;
+  faults_.heed(plan_.lattice, node, out);
+  if (collector_.done()) return;
+  try {
+    if (Collector::shows(out)) collector_.collect(node, timeline_.cycle(), out);
+  } catch (const std::runtime_error& e) {
+    fail(node, e.what());
+  }
 }
 
 void Bench::fail(uint32_t node, const std::string& text) {
-  if (timeline_.over) return;
+  if (timeline_.over || collector_.done()) return;
   stuck_ = node_text(plan_.lattice, node) + ", " + text;
   timeline_.over = true;
 }
@@ -194,8 +231,9 @@ void Bench::host() {
         for (auto& c : control_) c.write(control);
       if (!timeline_.running()) return;
       if (collector_.done()) {
-        timeline_.over = true;
         seconds_ = now() - begin_;
+        faults_.source.close();
+        timeline_.over = aftermath_-- == 0;
       } else if (timeline_.cycle() > collector_.last_event() + patience_) {
         std::vector<std::string> doing;
         for (const auto& n : nodes_) doing.push_back(n->model().doing());
@@ -226,6 +264,10 @@ RunResult Bench::take_result() {
     calls += static_cast<double>(n->calls());
   }
   counters.emplace_back("node_calls", calls);
+  if (options_.faults.enabled())
+    for (const auto& counter : faults_.source.counters()) counters.push_back(counter);
+  result.faults = faults_.source.counts();
+  result.first_fault = faults_.source.first();
   result.trace = collector_.take_trace();
   result.order = collector_.order();
   result.trace.engine = engine_;

@@ -43,7 +43,7 @@ class NodeModule : public sc_core::sc_module {
                                                                                              kFaces};
 
   NodeModule(const sc_core::sc_module_name& name, uint32_t node, uint8_t has_link,
-             std::unique_ptr<NodeModel> model);
+             std::unique_ptr<NodeModel> model, bool checked, bool faults);
   NodeModel& model() { return *model_; }
   uint64_t calls() const { return calls_; }  // of the model, in cycles that count
 
@@ -52,6 +52,7 @@ class NodeModule : public sc_core::sc_module {
   void cycle();
   void heed_control();
   void sleep(uint64_t until);
+  const NodeInputs& seen();
 
   const uint32_t node_;
   const uint8_t has_link_;
@@ -61,9 +62,12 @@ class NodeModule : public sc_core::sc_module {
   std::array<LinkSender*, kFaces> out_link_{};
   const Timeline* timeline_ = nullptr;
   bool stalls_ = false;
+  const bool checked_, faults_;  // links are checked; wires have faults
   LinkPins pins_;
   uint64_t calls_ = 0;
   uint8_t valid_ = 0, ready_ = 0;  // the link registers as the node left them
+  std::array<uint16_t, kFaces> ack_{};
+  NodeInputs seen_;  // of wires with faults
 };
 
 class Bench : public sc_core::sc_module, private Monitor {
@@ -96,6 +100,8 @@ class Bench : public sc_core::sc_module, private Monitor {
   const uint64_t patience_;
   Timeline timeline_;
   const StallSource stalls_;
+  FaultyWires faults_;
+  int aftermath_;  // cycles to go on after the run
   Collector collector_;
   sc_core::sc_vector<sc_core::sc_signal<Control>> control_;
   std::vector<std::unique_ptr<Link>> links_;

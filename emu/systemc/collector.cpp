@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <tuple>
 
 #include "emu/systemc/words.h"
@@ -74,6 +75,8 @@ Collector::Snapshot& Collector::snapshot(uint64_t step) {
 
 void Collector::observe(uint32_t node, const Bits& word) {
   const Slot slot = unpack_particle(plan_, word);
+  if (slot.id >= plan_.particles)
+    throw std::runtime_error(fmt::format("step {}: holds particle {}, of {}", step_[node], slot.id, plan_.particles));
   const uint64_t step = step_[node];
   Particle p;
   p.id = slot.id;
@@ -110,9 +113,16 @@ void Collector::close(uint64_t cycle) {
 }
 
 void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
-  if (done_ || stopped_[node]) return;
-  last_event_ = cycle;
+  if (done_) return;
   const uint64_t step = step_[node];
+  // The nodes around a link that failed wait for ever; the node that tells may be idle already.
+  if (out.fault && is_of_link(static_cast<Fault>(out.fault_code))) {
+    stop_ = {static_cast<Fault>(out.fault_code), step, node, out.fault_id, out.fault_number, {}};
+    close(cycle);
+    return;
+  }
+  if (stopped_[node]) return;
+  last_event_ = cycle;
   const auto span = [&](int phase) -> PhaseSpan& {
     return trace_.cycles[(step * nodes_ + node) * kPhases + static_cast<size_t>(phase)];
   };
@@ -154,8 +164,9 @@ Trace Collector::take_trace() {
                           place_of(plan_.lattice, stop_.node))
                      .what();
     trace_.stop = stop_;
-    trace_.state_hash.resize(stop_.step + 1);
-    if (options_.keep_order) order_.resize(stop_.step + 1);
+    // Where a link failed, not every node may have come so far.
+    if (trace_.state_hash.size() > stop_.step + 1) trace_.state_hash.resize(stop_.step + 1);
+    if (options_.keep_order) order_.resize(trace_.state_hash.size());
     std::erase_if(trace_.frames, [&](const State& s) { return s.step > stop_.step; });
   }
   trace_.cycles.resize(steps_done() * nodes_ * kPhases);

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "emu/systemc/node_model.h"
+#include "emu/systemc/wire_faults.h"
 #include "hw/plan.h"
 #include "model/trace.h"
 
@@ -17,6 +17,7 @@ struct RunOptions {
   std::vector<uint64_t> frames;  // steps whose states are kept, in any order; those beyond `steps` never come
   double stall_rate = 0;         // share of cycles in which a link passes nothing, [0, 1)
   uint64_t stall_seed = 1;
+  FaultOptions faults;      // on the wires
   bool progress = false;    // a line per second on standard error
   bool keep_order = false;  // keep the ids in the order of the slots, per step and node
   uint64_t patience =
@@ -44,9 +45,11 @@ class Collector {
   }
   // One cycle of one node; cycles count from the start of the run. To be called for each cycle of a node in
   // order, and for all nodes with a cycle before the next one.
+  // Throws std::runtime_error for a particle that the plan does not have, as an unchecked link may make one.
   void collect(uint32_t node, uint64_t cycle, const NodeOutputs& out);
 
-  // All steps are complete, or all nodes have finished the first step with a fault.
+  // All steps are complete, or all nodes have finished the first step with a fault, or a link has failed:
+  // then the nodes around it wait for ever. Nothing may be collected any more.
   bool done() const { return done_; }
   uint64_t steps_done() const { return trace_.state_hash.empty() ? 0 : trace_.state_hash.size() - 1; }
   uint64_t last_event() const { return last_event_; }  // cycle

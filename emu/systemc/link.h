@@ -7,6 +7,7 @@
 
 #include "emu/systemc/node_model.h"
 #include "emu/systemc/stall.h"
+#include "emu/systemc/wire_faults.h"
 
 namespace cuboct::emu {
 
@@ -38,20 +39,26 @@ class LinkSender : public virtual sc_core::sc_interface {
   virtual void clear() = 0;  // the register is empty from the next cycle on
   virtual bool gated() const = 0;   // in this cycle neither side sees the other
   virtual bool stalls() const = 0;  // whether it ever is
+  // What the two ends see of a wire with faults; nothing where there are none.
+  virtual const FaultyWire::View* faulty() = 0;
 };
 
 class LinkReceiver : public virtual sc_core::sc_interface {
  public:
   virtual void attach_receiver(LinkPins& pins, int face) = 0;
   virtual void set_ready(bool ready) = 0;  // from the next cycle on
+  virtual void set_ack(uint16_t ack) = 0;  // likewise
   virtual bool gated() const = 0;          // as LinkSender's
+  virtual const FaultyWire::View* faulty() = 0;
+  virtual bool repeats() const = 0;  // the next cycle shows a beat that the register does not hold
 };
 
 class Link final : public sc_core::sc_prim_channel, public LinkSender, public LinkReceiver {
  public:
-  // `number` seeds this link's stalls: sender * 6 + face.
-  Link(const char* name, const Timeline& timeline, const StallSource& stalls, uint32_t number)
-      : sc_prim_channel(name), timeline_(timeline), stalls_(stalls), number_(number) {}
+  // `number` seeds this link's stalls: sender * 6 + face. `faults`: of its wire, or none.
+  Link(const char* name, const Timeline& timeline, const StallSource& stalls, uint32_t number,
+       FaultyWire* faults)
+      : sc_prim_channel(name), timeline_(timeline), stalls_(stalls), number_(number), faults_(faults) {}
 
   void attach_sender(LinkPins& pins, int face) override {
     sender_ = &pins;
@@ -74,6 +81,17 @@ class Link final : public sc_core::sc_prim_channel, public LinkSender, public Li
     next_ready_ = ready;
     request_update();
   }
+  void set_ack(uint16_t ack) override {
+    next_ack_ = ack;
+    request_update();
+  }
+  const FaultyWire::View* faulty() override {
+    if (faults_ == nullptr || !timeline_.running()) return nullptr;
+    const bool passes = !gated();
+    return &faults_->look(timeline_.cycle(),
+                          {passes && valid_, &buffer_[spare_ ^ 1], passes && ready_, ack_});
+  }
+  bool repeats() const override { return faults_ != nullptr && faults_->repeats(); }
   bool stalls() const override { return stalls_.enabled(); }
   bool gated() const override {
     return stalls_.enabled() && timeline_.running() && stalls_.stalled(number_, timeline_.cycle());
@@ -92,11 +110,17 @@ class Link final : public sc_core::sc_prim_channel, public LinkSender, public Li
       sender_->outputs.beat[static_cast<size_t>(out_face_)] = &buffer_[spare_];
       if (receiver_->asleep) receiver_->wake.notify(sc_core::SC_ZERO_TIME);
     }
-    set(receiver_->held, in_face_, next_valid_);
-    set(sender_->ready, out_face_, next_ready_);
+    valid_ = next_valid_;
+    ready_ = next_ready_;
+    ack_ = next_ack_;
+    set(receiver_->held, in_face_, valid_);
+    set(sender_->ready, out_face_, ready_);
+    sender_->inputs.ack[static_cast<size_t>(out_face_)] = ack_;
   }
 
   bool flip_ = false, next_valid_ = false, next_ready_ = false;
+  bool valid_ = false, ready_ = false;  // current
+  uint16_t next_ack_ = 0, ack_ = 0;
   uint8_t spare_ = 0;  // the buffer that the sender writes
   int out_face_ = 0, in_face_ = 0;
   LinkPins* sender_ = nullptr;
@@ -105,6 +129,7 @@ class Link final : public sc_core::sc_prim_channel, public LinkSender, public Li
   const Timeline& timeline_;
   const StallSource& stalls_;
   const uint32_t number_;
+  FaultyWire* const faults_;
 };
 
 }  // namespace cuboct::emu

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "emu/systemc/link_guard.h"
 #include "model/fixed_math.h"
 
 namespace cuboct::emu {
@@ -407,7 +408,8 @@ Counters Node::counters() const {
 
 NodeFactory native_nodes(const Plan& plan) {
   check_words(plan);
-  return [&plan](uint32_t, uint8_t has_link) { return std::make_unique<Node>(plan, has_link); };
+  return guarded(plan,
+                 [&plan](uint32_t, uint8_t has_link) { return std::make_unique<Node>(plan, has_link); });
 }
 
 }  // namespace cuboct::emu

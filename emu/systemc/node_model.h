@@ -44,6 +44,7 @@ struct NodeInputs {
   uint8_t valid = 0;                       // link_valid_i
   uint8_t ready = 0;                       // link_ready_i
   std::array<const Beat*, kFaces> beat{};  // where `valid`
+  std::array<uint16_t, kFaces> ack{};      // link_ack_i, where links are checked
 };
 
 // What a node shows of one cycle, and its link registers after the edge that ends the cycle.
@@ -55,10 +56,12 @@ struct NodeOutputs {
   uint8_t fault_code = 0;  // these three where `fault`
   uint32_t fault_id = 0;
   int64_t fault_number = 0;
+  uint8_t beat_errors = 0, ack_errors = 0;  // link_error_o: of arriving beats, of acknowledgements
   // After the edge.
   uint8_t valid = 0;   // link_valid_o
   uint8_t loaded = 0;  // faces whose register is new; a subset of `valid`
   uint8_t ready = 0;   // link_ready_o
+  std::array<uint16_t, kFaces> ack{};  // link_ack_o, where links are checked
   // Where the node writes link_end_o and link_data_o of the loaded faces: the caller's, who may put another
   // place here between calls. None where there is no link.
   std::array<Beat*, kFaces> beat{};

@@ -11,6 +11,8 @@ namespace cuboct::emu {
 struct RunResult {
   Trace trace;
   std::vector<std::vector<std::vector<uint32_t>>> order;  // [step][node] ids in slot order, if kept
+  FaultCounts faults;
+  FaultPlace first_fault;
 };
 
 // Throws RunError for an initial state beyond a capacity, std::runtime_error for a run that is stuck

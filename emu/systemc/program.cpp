@@ -16,7 +16,7 @@ namespace cuboct::emu {
 namespace {
 
 struct Request {
-  std::string scene, arch, out, frames_file;
+  std::string scene, arch, out, frames_file, faults;
   std::optional<uint64_t> steps;
   std::vector<uint64_t> frames;
   bool frames_given = false, bench = false;
@@ -48,6 +48,11 @@ int run(const Program& program, Request request) {
   const Arch arch = read_arch(request.arch);
   const Setup setup = make_setup(scene, arch);
   RunOptions& options = request.run;
+  if (!request.faults.empty()) {
+    const FaultShare share = read_fault_share(request.faults);
+    options.faults.rate = share.rate;
+    options.faults.count = share.count;
+  }
   options.steps = request.steps.value_or(scene.steps);
   if (options.steps > std::numeric_limits<uint32_t>::max())
     throw InputError(fmt::format("{} steps: a node counts at most {}", options.steps,
@@ -95,6 +100,9 @@ int run_program(int argc, char** argv, const Program& program) {
   app.add_option("--stall-rate", request.run.stall_rate, "Share of cycles in which a link passes nothing")
       ->check(CLI::Range(0.0, 0.99));
   app.add_option("--stall-seed", request.run.stall_seed, "Seed of the stalls")->capture_default_str();
+  app.add_option("--inject-faults", request.faults,
+                 "Faults on the wires: their share of all beats, or their number in the run");
+  app.add_option("--fault-seed", request.run.faults.seed, "Seed of the faults")->capture_default_str();
   app.add_flag("--progress", request.run.progress, "A line per second on standard error");
   app.add_flag("--bench", request.bench, "Print the speed of the simulation alone, as 'name value unit'");
   program.add_options(app);

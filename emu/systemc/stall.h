@@ -7,6 +7,14 @@
 
 namespace cuboct::emu {
 
+// The finaliser of splitmix64 (Steele, Lea, Flood, OOPSLA 2014).
+inline uint64_t mix(uint64_t z) {
+  z += 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
 class StallSource {
  public:
   StallSource() = default;
@@ -20,13 +28,6 @@ class StallSource {
   }
 
  private:
-  // The finaliser of splitmix64 (Steele, Lea, Flood, OOPSLA 2014).
-  static uint64_t mix(uint64_t z) {
-    z += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
   uint64_t threshold_ = 0, seed_ = 0;
 };
 

@@ -19,6 +19,10 @@ void check_words(const Plan& plan) {
   if (widest > Bits::kWidth)
     throw InputError(fmt::format("a record of {} bits: the cycle-accurate engines hold at most {}", widest,
                                  int{Bits::kWidth}));
+  if (plan.link.checked() && plan.link.wire_bits + 1 > Bits::kWidth)
+    throw InputError(fmt::format("a checked beat of {} bits: the cycle-accurate engines hold at most {}",
+                                 plan.link.wire_bits + 1, int{Bits::kWidth}),
+                     "use fewer link.bits");
 }
 
 void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out) {

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-enum { kCuboctAbi = 2, kCuboctFaces = 6, kCuboctWords = 8 };
+enum { kCuboctAbi = 3, kCuboctFaces = 6, kCuboctWords = 8 };
 
 // Inputs of one node during one cycle. `link_data[f]` is read where bit f of `link_valid` is set.
 struct CuboctIn {
@@ -14,12 +14,15 @@ struct CuboctIn {
   uint32_t steps;
   const uint64_t* load_data;
   const uint64_t* link_data[kCuboctFaces];
+  uint16_t link_ack[kCuboctFaces];  // where links are checked
 };
 
 // Outputs of one node: `link_*` after the edge that ends the cycle, the others of the cycle.
 struct CuboctOut {
   uint8_t phase_start, phase_end, observe_valid, fault_valid, fault_code, idle;
   uint8_t link_valid, link_end, link_ready;
+  uint8_t beat_errors, ack_errors;  // of the cycle; these and link_ack where links are checked
+  uint16_t link_ack[kCuboctFaces];
   uint32_t fault_id;
   int64_t fault_number;
   uint64_t observe_data[kCuboctWords];             // where observe_valid

@@ -59,7 +59,8 @@ Build node_build(const Plan& plan) {
           .verilator_flags = "--cc",
           .compiler_flags = "-O2 -fno-semantic-interposition -flto",
           .constants = {{"FACES", 2 * plan.rule.axes},
-                        {"LINK_BITS", plan.words.link_bits},
+                        {"LINK_BITS", plan.link.wire_bits},
+                        {"ACK_BITS", plan.link.ack_bits},
                         {"PARTICLE_BITS", plan.words.particle_bits}},
           .sources = with_headers("shim_node.cpp"),
           .emit = [&plan](const std::string& dir) { emit_node(plan, dir); }};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One Verilated node. FACES, LINK_BITS and PARTICLE_BITS come from the command line.
+// One Verilated node. FACES, LINK_BITS (of link_data), ACK_BITS (0 where links are not checked) and PARTICLE_BITS
+// come from the command line.
 #include <type_traits>
 
 #include "Vcuboct_node.h"
@@ -29,6 +30,7 @@ struct Node : Instance<Vcuboct_node> {
   uint32_t shown_for = ~0u;  // the inputs that the outputs were last settled for
   uint64_t link_in[words_of(FACES * LINK_BITS)] = {}, link_out[words_of(FACES * LINK_BITS)] = {};
   uint64_t particle[words_of(PARTICLE_BITS)] = {};
+  uint64_t ack[words_of(FACES * ACK_BITS)] = {};
 };
 
 }  // namespace
@@ -57,6 +59,13 @@ const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
         copy_bits(n.link_in, f * LINK_BITS, in->link_data[f], 0, held_bits(LINK_BITS));
     set_port(m.link_data_i, n.link_in);
   }
+#if ACK_BITS > 0
+  for (int f = 0; f < FACES; ++f) {
+    const uint64_t ack = in->link_ack[f];
+    copy_bits(n.ack, f * ACK_BITS, &ack, 0, ACK_BITS);
+  }
+  set_port(m.link_ack_i, n.ack);
+#endif
   // What a node shows of a cycle depends on nothing but state and these (docs/reference/node.md); the last
   // edge settled it for the inputs of then.
   const uint32_t shown_for =
@@ -80,6 +89,10 @@ const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
     out->fault_id = static_cast<uint32_t>(m.fault_id_o);
     out->fault_number = static_cast<int64_t>(m.fault_number_o);
   }
+#if ACK_BITS > 0
+  out->beat_errors = static_cast<uint8_t>(m.link_error_o & ((1u << FACES) - 1));
+  out->ack_errors = static_cast<uint8_t>(m.link_error_o >> FACES);
+#endif
   m.clk_i = 1;
   m.eval();
   out->link_valid = m.link_valid_o;
@@ -91,6 +104,14 @@ const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
       if (m.link_valid_o >> f & 1)
         copy_bits(out->link_data[f], 0, n.link_out, f * LINK_BITS, held_bits(LINK_BITS));
   }
+#if ACK_BITS > 0
+  get_port(m.link_ack_o, n.ack);
+  for (int f = 0; f < FACES; ++f) {
+    uint64_t ack[2] = {};
+    copy_bits(ack, 0, n.ack, f * ACK_BITS, ACK_BITS);
+    out->link_ack[f] = static_cast<uint16_t>(ack[0]);
+  }
+#endif
   return n.failure();
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -21,6 +22,8 @@ void read_outputs(const CuboctOut& from, NodeOutputs& out) {
   out.fault_code = from.fault_code;
   out.fault_id = from.fault_id;
   out.fault_number = from.fault_number;
+  out.beat_errors = from.beat_errors;
+  out.ack_errors = from.ack_errors;
 }
 
 VerilatedNode::VerilatedNode(std::shared_ptr<const Library> library, uint8_t has_link, uint32_t seed)
@@ -39,6 +42,7 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
   ports.has_link = has_link_;
   ports.link_valid = in.valid;
   ports.link_ready = in.ready;
+  std::copy(in.ack.begin(), in.ack.end(), ports.link_ack);
   for (uint8_t left = in.valid; left != 0; left &= static_cast<uint8_t>(left - 1)) {
     const int f = __builtin_ctz(left);
     ports.link_end |= static_cast<uint8_t>(in.beat[f]->end << f);
@@ -57,6 +61,7 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
   read_outputs(out_, out);
   out.valid = out.loaded = out_.link_valid & has_link_;
   out.ready = out_.link_ready & has_link_;
+  std::copy(out_.link_ack, out_.link_ack + kFaces, out.ack.begin());
   for (uint8_t left = out.loaded; left != 0; left &= static_cast<uint8_t>(left - 1)) {
     const int f = __builtin_ctz(left);
     out.beat[f]->end = out_.link_end >> f & 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_fifo under any pushes and pops that its contract allows: a watched entry, any of those pushed, comes out
-// once, after those before it and before those after it, as it went in.
+// cuboct_fifo under any pushes and pops that its contract allows: a watched entry, any of those pushed, comes
+// out once, after those before it and before those after it, as it went in.
 module fifo_formal #(
   parameter int Depth = 3,
   parameter int Bits  = 2
@@ -63,7 +63,8 @@ module fifo_formal #(
     end
   end
 
-  // What makes it inductive: the counters agree, and the watched entry lies where its place in the queue says.
+  // What makes it inductive: the counters agree, and the watched entry lies where its place in the queue
+  // says.
   (* keep *) logic [PtrBits-1:0]    tap_write, tap_read;
   (* keep *) logic [CountBits-1:0]  tap_count;
   (* keep *) logic [Depth*Bits-1:0] tap_mem;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// cuboct_filter with its lanes: each presented candidate reaches the queue once, in order and unchanged, with the mask
-// of the own slots of its row that exist, are not itself and pass the planar test; or not at all if there is none. A
-// full queue stalls it and loses nothing. The test is told here by integers and rounding by magnitude.
+// cuboct_filter with its lanes: each presented candidate reaches the queue once, in order and unchanged, with
+// the mask of the own slots of its row that exist, are not itself and pass the planar test; or not at all if
+// there is none. A full queue stalls it and loses nothing. The test is told here by integers and rounding by
+// magnitude.
 module filter_formal #(
   parameter int Axes            = 2,
   parameter int PositionFrac    = 3,
@@ -40,12 +41,15 @@ module filter_formal #(
   end
   cuboct_filter #(
     .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne),
-    .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes),
+    .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits),
+        .FilterLanes(FilterLanes),
     .RowBits(1), .SlotBits(3), .CountBits(4)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .present_i, .candidate_i, .row_i, .own_i, .slot_i, .own_count_i(own_count),
-    .row_o(row), .row_data_i(row ? own[FilterLanes*PosBits +: FilterLanes*PosBits] : own[0 +: FilterLanes*PosBits]),
-    .full_i, .stall_o(stall), .push_o(push), .candidate_o(candidate), .row_f1_o(row_f1), .mask_o(mask), .busy_o(busy)
+    .row_o(row), .row_data_i(row
+        ? own[FilterLanes*PosBits +: FilterLanes*PosBits] : own[0 +: FilterLanes*PosBits]),
+    .full_i, .stall_o(stall), .push_o(push), .candidate_o(candidate), .row_f1_o(row_f1), .mask_o(mask),
+        .busy_o(busy)
   );
 
   // The planar test of the candidate that is presented, against each slot of its row.
@@ -68,19 +72,22 @@ module filter_formal #(
       for (a = 0; a < Axes; a = a + 1) begin
         difference = $signed({{(Bits - PositionFrac - 2) {candidate_i[a*(PositionFrac+2)+PositionFrac+1]}},
                               candidate_i[a*(PositionFrac+2) +: PositionFrac+2]})
-                   - $signed({{(Bits - PositionFrac) {1'b0}}, row_i ? own[(FilterLanes+l)*PosBits+a*PositionFrac +: PositionFrac]
+                   - $signed({{(Bits - PositionFrac) {1'b0}}, row_i
+                       ? own[(FilterLanes+l)*PosBits+a*PositionFrac +: PositionFrac]
                                                                   : own[l*PosBits+a*PositionFrac +: PositionFrac]});
         size = (difference < 0) ? -difference : difference;
         sizes[a] = (DifferenceShift == 0) ? size : (size + (1 << (DifferenceShift - 1))) >> DifferenceShift;
       end
       passes[l] = {1'b0, other} < own_count && !(own_i && other == slot_i)
                 && sizes[0] <= PlanarOne && sizes[1] <= PlanarOne && sizes[2] <= PlanarOne
-                && sizes[0] + sizes[1] <= PlanarTwo && sizes[1] + sizes[2] <= PlanarTwo && sizes[2] + sizes[0] <= PlanarTwo
+                && sizes[0] + sizes[1] <= PlanarTwo && sizes[1] + sizes[2] <= PlanarTwo
+                    && sizes[2] + sizes[0] <= PlanarTwo
                 && sizes[0] + sizes[1] + sizes[2] <= PlanarThree;
     end
   end
 
-  // The watched candidate: in the first register, in the second, gone. Both move unless the queue stalls them.
+  // The watched candidate: in the first register, in the second, gone. Both move unless the queue stalls
+  // them.
   logic [1:0]               place_q;  // 0: not there
   logic                     watched_q, row_q;
   logic [CandidateBits-1:0] candidate_q;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_halo_mem: the k-th record since the clear, k any, is what both ports read at address k while it counts.
+// cuboct_halo_mem: the k-th record since the clear, k any, is what both ports read at address k while it
+// counts.
 module halo_mem_formal #(
   parameter int Depth = 3,
   parameter int Bits  = 2
@@ -16,8 +17,8 @@ module halo_mem_formal #(
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
 
-  // Halos come only where there is room and never in the cycle of the clear: cuboct_halos asserts the one, the proof
-  // `neighbours` shows both.
+  // Halos come only where there is room and never in the cycle of the clear: cuboct_halos asserts the one,
+  // the proof `neighbours` shows both.
   logic [CountBits-1:0] count, count_q;
   always_comb begin
     if (append_i) assume (running_q && !clear_i && count_q != Depth[CountBits-1:0]);

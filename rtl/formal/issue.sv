@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_issue behind any queue: each bit of each entry's mask is issued once, with its candidate and its slot, lowest
-// first, within ceil(FilterLanes / ForcePipes) cycles; no other pair is.
+// cuboct_issue behind any queue: each bit of each entry's mask is issued once, with its candidate and its
+// slot, lowest first, within ceil(FilterLanes / ForcePipes) cycles; no other pair is.
 module issue_formal #(
   parameter int FilterLanes = 4,
   parameter int ForcePipes  = 1,
@@ -28,7 +28,8 @@ module issue_formal #(
   logic [ForcePipes-1:0]          valid;
   logic [ForcePipes*SlotBits-1:0] slot;
   cuboct_issue #(
-    .CandidateBits(2), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits), .ForcePipes(ForcePipes)
+    .CandidateBits(2), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits),
+        .ForcePipes(ForcePipes)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .empty_i, .candidate_i, .row_i, .mask_i, .pop_o(pop), .candidate_o(candidate),
     .valid_o(valid), .slot_o(slot), .busy_o(busy)
@@ -53,7 +54,8 @@ module issue_formal #(
     mask_slot = '0;
     for (l = 0; l < FilterLanes; l = l + 1) begin
       if (mask_i[l]) bits = bits + 1'b1;
-      if (lane == l[3:0]) mask_slot = {{(SlotBits - RowBits) {1'b0}}, row_i} * FilterLanes[SlotBits-1:0] + l[SlotBits-1:0];
+      if (lane == l[3:0]) mask_slot = {{(SlotBits - RowBits) {1'b0}},
+          row_i} * FilterLanes[SlotBits-1:0] + l[SlotBits-1:0];
     end
   end
   always_ff @(posedge clk_i) begin
@@ -82,7 +84,8 @@ module issue_formal #(
       a_once:  assert (times <= (due_q ? 4'd1 : 4'd0));
       if (pop) a_all: assert (!empty_i && (!due_q || times == 4'd1) && left_q == issued);
       if (left_q != '0) a_candidate: assert (candidate == candidate_q);
-      if (ForcePipes > 1 && valid[ForcePipes-1]) a_ascending: assert (valid == '1 && slot[0 +: SlotBits] < slot[(ForcePipes-1)*SlotBits +: SlotBits]);
+      if (ForcePipes > 1 && valid[ForcePipes-1]) a_ascending: assert (valid == '1
+          && slot[0 +: SlotBits] < slot[(ForcePipes-1)*SlotBits +: SlotBits]);
       if (busy) a_progress: assert (cycles_q < Longest[3:0]);
       if (left_q == issued && !empty_i) a_no_gap: assert (pop);
       c_all:   cover (left_q == FilterLanes[3:0] && due_q);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_least_fault: what is shown is the least of all faults since the clear, by code, id and signed number.
+// cuboct_least_fault: what is shown is the least of all faults since the clear, by code, id and signed
+// number.
 module least_fault_formal #(
   parameter int Sources = 2,
   parameter int IdBits  = 3

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One link: a sender that cuts records into beats as cuboct_relay and cuboct_migrate do, cuboct_link_tx, a wire that
-// stalls when it likes, cuboct_link_rx. What was sent is told once, in order, as it was sent, in its own stream.
+// One link: a sender that cuts records into beats as cuboct_relay and cuboct_migrate do, cuboct_link_tx, a
+// wire that stalls when it likes, cuboct_link_rx. What was sent is told once, in order, as it was sent, in
+// its own stream.
 module link_formal #(
   parameter int LinkBits    = 2,
   parameter int HaloBits    = 5,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// cuboct_migrate with the slots, two link registers and two FIFOs of arrivals, through any number of phases, each from
-// any slots and count, under any stalls and any arrivals. A watched own particle, any, stays once in its place, or is
-// sent once, in its place, on the link of its direction, or is told once as a fault where that link does not exist. A
-// watched arrival, any, is appended once in its place or told once as a fault where no slot is free.
+// cuboct_migrate with the slots, two link registers and two FIFOs of arrivals, through any number of phases,
+// each from any slots and count, under any stalls and any arrivals. A watched own particle, any, stays once
+// in its place, or is sent once, in its place, on the link of its direction, or is told once as a fault where
+// that link does not exist. A watched arrival, any, is appended once in its place or told once as a fault
+// where no slot is free.
 module migrate_formal #(
   parameter int Axes     = 2,
   parameter int Capacity = 2,
@@ -81,7 +82,8 @@ module migrate_formal #(
   logic [2*CountBits-1:0]    came_q;
   assign ended = ended_q | ~has_link;
   for (genvar f = 0; f < 2; f++) begin : gen_fifo
-    assign push[f] = running_q && arrive_i[f] && !ended[f] && came_q[f*CountBits +: CountBits] != Capacity[CountBits-1:0];
+    assign push[f] = running_q && arrive_i[f] && !ended[f]
+        && came_q[f*CountBits +: CountBits] != Capacity[CountBits-1:0];
     cuboct_fifo #(.Bits(ParticleBits), .Depth(Capacity)) u_fifo (
       .clk_i, .rst_ni(running_q), .push_i(push[f]), .data_i(arrive_data_i[f*ParticleBits +: ParticleBits]),
       .full_o(full[f]), .pop_i(pop[f]), .data_o(arrived[f*ParticleBits +: ParticleBits]), .empty_o(empty[f])
@@ -106,12 +108,14 @@ module migrate_formal #(
   for (genvar f = 0; f < 2; f++) begin : gen_tx
     cuboct_link_tx #(.LinkBits(LinkBits)) u_tx (
       .clk_i, .rst_ni(running_q), .has_link_i(has_link[f]), .load_i(load[f]), .end_i(is_end), .data_i(data),
-      .can_load_o(can_load[f]), .valid_o(valid[f]), .end_o(sent_end[f]), .data_o(sent_data[f*LinkBits +: LinkBits]),
+      .can_load_o(can_load[f]), .valid_o(valid[f]), .end_o(sent_end[f]),
+          .data_o(sent_data[f*LinkBits +: LinkBits]),
       .ready_i(ready_i[f])
     );
   end
   cuboct_migrate #(
-    .Axes(Axes), .ParticleBits(ParticleBits), .PositionBits(PositionBits), .LinkBits(LinkBits), .Capacity(Capacity),
+    .Axes(Axes), .ParticleBits(ParticleBits), .PositionBits(PositionBits), .LinkBits(LinkBits),
+        .Capacity(Capacity),
     .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_o(done), .has_link_i(has_link),
@@ -122,8 +126,8 @@ module migrate_formal #(
     .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
   );
 
-  // What each slot's particle wants when the phase begins: 0 stays, 1 goes down, 2 goes up; how many before the watched
-  // one want the same, and how many of all.
+  // What each slot's particle wants when the phase begins: 0 stays, 1 goes down, 2 goes up; how many before
+  // the watched one want the same, and how many of all.
   (* anyconst *) logic [3:0] watched;
   logic [1:0]                want, want_w;
   logic [SlotWidth-1:0]      slot;
@@ -181,7 +185,8 @@ module migrate_formal #(
   assign lefts  = first_q ? left_n : lefts_q;
   logic leaves_w;  // where no link is
   assign leaves_w = (want_w == 2'd1) ? !has_link[0] : (want_w == 2'd2) && !has_link[1];
-  assign place    = first_q ? (leaves_w ? left_w : (want_w == 2'd0) ? stay_w : (want_w == 2'd1) ? down_w : up_w) : place_q;
+  assign place    = first_q ? (leaves_w ? left_w : (want_w == 2'd0) ? stay_w : (want_w == 2'd1)
+      ? down_w : up_w) : place_q;
   logic linked;
   assign linked = (wanted == 2'd1) ? has_link[0] : has_link[1];
   always_ff @(posedge clk_i) begin
@@ -240,13 +245,15 @@ module migrate_formal #(
   always_ff @(posedge clk_i) begin
     if (!running_q || done) begin
       came_w_q <= 1'b0;
-    end else if (push[above] && (above ? came_q[CountBits +: CountBits] : came_q[0 +: CountBits]) == number) begin
+    end else if (push[above] && (above ? came_q[CountBits +: CountBits] : came_q[0 +: CountBits])
+        == number) begin
       came_w_q  <= 1'b1;
       arrival_q <= above ? arrive_data_i[ParticleBits +: ParticleBits] : arrive_data_i[0 +: ParticleBits];
     end
   end
   assign arrival_place = {2'b00, stays} + {2'b00, number} + (above ? {2'b00, came_q[0 +: CountBits]} : '0);
-  assign total         = {2'b00, stays} + {2'b00, came_q[0 +: CountBits]} + {2'b00, came_q[CountBits +: CountBits]};
+  assign total         = {2'b00, stays} + {2'b00, came_q[0 +: CountBits]} + {2'b00,
+      came_q[CountBits +: CountBits]};
   always_comb begin
     kept_as = arrival_q;  // it has arrived along this axis and those before
     for (c = 1; c < Axes; c = c + 1) begin
@@ -266,8 +273,8 @@ module migrate_formal #(
   logic room;
   assign room = (arrival_place < Capacity[CountBits+1:0]);
 
-  // Progress: while both links can load and all has arrived, no two cycles after one another do nothing; what can be
-  // done is bounded by slots and arrivals.
+  // Progress: while both links can load and all has arrived, no two cycles after one another do nothing; what
+  // can be done is bounded by slots and arrivals.
   logic quiet, quiet_q;
   assign quiet = active_q && can_load == 2'b11 && ended == 2'b11 && load == 2'b00 && !write && !count_set
                  && pop == 2'b00 && !fault_left && !done;
@@ -282,12 +289,14 @@ module migrate_formal #(
   always_comb begin
     arrival_goes_on = 1'b1;  // each later axis that it goes on along was told
     for (g = 1; g < Axes; g = g + 1) begin
-      if (axis_q < g[1:0] && arrival_q[PositionBits+2*(g-1) +: 2] != 2'b00 && !more_q[g]) arrival_goes_on = 1'b0;
+      if (axis_q < g[1:0] && arrival_q[PositionBits+2*(g-1) +: 2] != 2'b00
+          && !more_q[g]) arrival_goes_on = 1'b0;
     end
   end
   always_ff @(posedge clk_i) begin
     if (running_q) begin
-      a_idle:  assert (active_q || (!write && !count_set && load == 2'b00 && pop == 2'b00 && !fault_left && !fault_full));
+      a_idle:  assert (active_q || (!write && !count_set && load == 2'b00 && pop == 2'b00 && !fault_left
+          && !fault_full));
       a_may:   assert ((load & ~can_load) == 2'b00);
       a_one:   assert (!is_end ? (load != 2'b11) : (load == 2'b11));
       a_pop:   assert ((pop & empty) == 2'b00);
@@ -302,14 +311,16 @@ module migrate_formal #(
       if (fault_left && is && wanted != 2'd0 && !linked && left_q == place) begin
         a_left: assert (fault_particle == value[ParticleBits-1:0]);
       end
-      if (is_end) a_end: assert (data == '0 && beat_q == '0 && !ended_both_q && down_q == downs && up_q == ups);
+      if (is_end) a_end: assert (data == '0 && beat_q == '0 && !ended_both_q && down_q == downs && up_q
+          == ups);
       if (ended_both_q && load != 2'b00) a_after: assert (0);
       if (fault_full && came_w_q && !room && {2'b00, full_q} == arrival_place - Capacity[CountBits+1:0]) begin
         a_full: assert (fault_particle == arrival_q && above == pop[1]);
       end
       if (done) begin
         a_done:   assert (active_q && ended_both_q && ended == 2'b11 && empty == 2'b11);
-        a_count:  assert ({2'b00, count_q} == ((total < Capacity[CountBits+1:0]) ? total : Capacity[CountBits+1:0]));
+        a_count:  assert ({2'b00, count_q} == ((total < Capacity[CountBits+1:0])
+            ? total : Capacity[CountBits+1:0]));
         a_lefts:  assert (left_q == lefts && down_q == downs && up_q == ups);
         a_fulls:  assert ({2'b00, full_q} == total - {2'b00, count_q});
         if (stays_watched) a_kept: assert (at_place == value);
@@ -321,7 +332,7 @@ module migrate_formal #(
         c_crowded: cover (fault_full || full_q != '0);
         c_swap:    cover (down_q != '0 && came_w_q && room && count_q == Capacity[CountBits-1:0]);
         c_left:    cover (left_q != '0);
-        c_kept:    cover (stays_watched && place != watched[CountBits-1:0]);
+        c_kept:    cover (stays_watched && (Capacity == 1 || place != watched[CountBits-1:0]));
         c_again:   cover (again_q && up_q != '0 && axis_q == 2'd1);
       end
       a_progress: assert (!(quiet && quiet_q));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Two whole nodes side by side, all of cuboct_node_core that controls: what the pair finder, the pipes, their sums, the
-// update and the slots give, and what the beats carry, is any value, at any time that the cycle contract allows, so that
-// any number of particles goes anywhere. Any loads, any number of steps, any
-// stalls of the two links. Order is kept (docs/reference/node.md, section Order), nothing overflows, neighbours are
+// Two whole nodes side by side, all of cuboct_node_core that controls: what the pair finder, the pipes, their
+// sums, the update and the slots give, and what the beats carry, is any value, at any time that the cycle
+// contract allows, so that any number of particles goes anywhere. Any loads, any number of steps, any stalls
+// of the two links. Order is kept (docs/reference/node.md, section Order), nothing overflows, neighbours are
 // never more than a step apart, and there is no state in which both wait for ever.
 module neighbours_formal #(
   parameter int Axis     = 0,  // the nodes are neighbours along x or y
@@ -36,7 +36,8 @@ module neighbours_formal #(
   assign start = running_q && start_i && idle == 2'b11 && load_i == 2'b00;
   for (genvar n = 0; n < 2; n++) begin : gen_node
     localparam int Face = (n == 0) ? Above : Below;
-    logic [Faces-1:0]          link_valid, link_end, link_ready_in, link_valid_in, link_end_in, link_ready, has_link;
+    logic [Faces-1:0]          link_valid, link_end, link_ready_in, link_valid_in, link_end_in, link_ready,
+        has_link;
     logic [Faces*LinkBits-1:0] link_data, link_data_in;
     logic                      observe, fault;
     logic [ParticleBits-1:0]   observed;
@@ -61,21 +62,24 @@ module neighbours_formal #(
     assign all_valid[n*Faces +: Faces]    = link_valid;
     assign all_ready[n*Faces +: Faces]    = link_ready;
     cuboct_node_core #(
-      .Axes(2), .Capacity(Capacity), .FilterLanes(1), .ForcePipes(1), .QueueDepth(1), .LinkBits(LinkBits), .IdBits(1),
-      .PositionFrac(1), .Guard(1), .VelocityBits(1), .RelativeVelocityBits(1), .DifferenceShift(0), .Overlap(1)
+      .Axes(2), .Capacity(Capacity), .FilterLanes(1), .ForcePipes(1), .QueueDepth(1), .LinkBits(LinkBits),
+          .IdBits(1),
+      .PositionFrac(1), .Guard(1), .VelocityBits(1), .RelativeVelocityBits(1), .DifferenceShift(0),
+          .Overlap(1)
     ) u_node (
       .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link),
       .load_valid_i(running_q && load_i[n]), .load_data_i(7'd0),
       .link_valid_o(link_valid), .link_end_o(link_end), .link_data_o(link_data), .link_ready_i(link_ready_in),
-      .link_valid_i(link_valid_in), .link_end_i(link_end_in), .link_data_i(link_data_in), .link_ready_o(link_ready),
+      .link_valid_i(link_valid_in), .link_end_i(link_end_in), .link_data_i(link_data_in),
+          .link_ready_o(link_ready),
       .phase_start_o(phase_start[8*n +: 8]), .phase_end_o(phase_end[8*n +: 8]), .observe_valid_o(observe),
       .observe_data_o(observed), .fault_valid_o(fault), .fault_code_o(code), .fault_id_o(id),
       .fault_number_o(number), .idle_o(idle[n])
     );
     assign step[n] = phase_end[8*n+6];  // MIGRATE_Y is the last of a step
 
-    // What the contract says of the units that are cut out: the finder is done only in FORCE, as the last segment is
-    // there only then (proof `streamer`); the update writes a slot two cycles after it was read.
+    // What the contract says of the units that are cut out: the finder is done only in FORCE, as the last
+    // segment is there only then (proof `streamer`); the update writes a slot two cycles after it was read.
     (* keep *) logic       tap_finder_done, tap_take, tap_update_write, tap_update_fault, tap_pipe_fault;
     (* keep *) logic [1:0] tap_past_exchange;
     (* keep *) logic       tap_tick_slot, tap_update_slot;
@@ -99,7 +103,8 @@ module neighbours_formal #(
   (* keep *) logic [2:0] tap_migrate_0, tap_migrate_1;  // state of the migration
   (* keep *) logic [1:0] tap_axis_halo_0, tap_axis_halo_1;
   (* keep *) logic [1:0] tap_axis_empty_0, tap_axis_empty_1, tap_axis_ended_0, tap_axis_ended_1;
-  (* keep *) logic [3:0] tap_halo_0, tap_halo_1, tap_halo_end_0, tap_halo_end_1;  // by face: a record, an end comes
+  // by face: a record, an end comes
+  (* keep *) logic [3:0] tap_halo_0, tap_halo_1, tap_halo_end_0, tap_halo_end_1;
   (* keep *) logic [3:0] tap_arrival_0, tap_arrival_1, tap_arrival_end_0, tap_arrival_end_1;
   (* keep *) logic [3:0] tap_full_0, tap_full_1;
   (* keep *) logic [Faces*CountBits-1:0] tap_count_0, tap_count_1;
@@ -110,32 +115,37 @@ module neighbours_formal #(
   // A node that does nothing until something comes.
   logic [1:0] waits;
   function automatic logic waiting(input logic [3:0] state, input logic sent, input logic [2:0] migrate,
-                                   input logic [1:0] none, input logic [1:0] ended, input logic [1:0] halo_ended,
+                                   input logic [1:0] none, input logic [1:0] ended,
+                                       input logic [1:0] halo_ended,
                                    input logic idle_now);
     begin
       waiting = idle_now;
       if (state == 4'd0 || state == 4'd1) waiting = sent && (halo_ended != 2'b11);
       if (state == MigrateX || state == MigrateY) begin
-        waiting = (migrate == TakeLow && none[0] && !ended[0]) || (migrate == TakeHigh && none[1] && !ended[1]);
+        waiting = (migrate == TakeLow && none[0] && !ended[0]) || (migrate == TakeHigh && none[1]
+            && !ended[1]);
       end
     end
   endfunction
-  assign waits[0] = waiting(tap_state_0, tap_sent_0, tap_migrate_0, tap_axis_empty_0, tap_axis_ended_0, tap_axis_halo_0, idle[0]);
-  assign waits[1] = waiting(tap_state_1, tap_sent_1, tap_migrate_1, tap_axis_empty_1, tap_axis_ended_1, tap_axis_halo_1, idle[1]);
+  assign waits[0] = waiting(tap_state_0, tap_sent_0, tap_migrate_0, tap_axis_empty_0, tap_axis_ended_0,
+      tap_axis_halo_0, idle[0]);
+  assign waits[1] = waiting(tap_state_1, tap_sent_1, tap_migrate_1, tap_axis_empty_1, tap_axis_ended_1,
+      tap_axis_halo_1, idle[1]);
 
   logic signed [2:0] ahead_q;  // steps that the first has done more than the second
   logic              apart_q;
   always_ff @(posedge clk_i) begin
     if (!running_q || start) ahead_q <= '0;
     else ahead_q <= ahead_q + ((step == 2'b01) ? 3'sd1 : (step == 2'b10) ? -3'sd1 : 3'sd0);
-    apart_q <= running_q && (apart_q || (ahead_q == 3'sd1 && tap_state_0 == 4'd1));
+    apart_q <= running_q && (apart_q || (ahead_q == 3'sd1 && tap_state_0 == Axis));
   end
 
-  // What makes it provable: streams are counted, modulo 8, where they are sent, where they are told, and where they are
-  // used up; each is what the node's phase says.
+  // What makes it provable: streams are counted, modulo 8, where they are sent, where they are told, and
+  // where they are used up; each is what the node's phase says.
   (* keep *) logic [3:0]  tap_load_0, tap_load_1;          // by face: a beat is loaded,
   (* keep *) logic        tap_send_end_0, tap_send_end_1;  // it is an end
-  (* keep *) logic [3:0]  tap_next_0, tap_next_1;          // by face: the stream that comes next is a migration
+  // by face: the stream that comes next is a migration
+  (* keep *) logic [3:0]  tap_next_0, tap_next_1;
   (* keep *) logic [31:0] tap_steps_0, tap_steps_1;        // steps to do
   logic [2:0] sent_0_q, sent_1_q, told_0_q, told_1_q, step_0_q, step_1_q;
   always_ff @(posedge clk_i) begin
@@ -151,7 +161,8 @@ module neighbours_formal #(
     end
   end
   // Streams of this step that a node has sent, and has used up, along the axis.
-  function automatic logic [2:0] sent_of(input logic [3:0] state, input logic sent, input logic [2:0] migrate);
+  function automatic logic [2:0] sent_of(input logic [3:0] state, input logic sent,
+      input logic [2:0] migrate);
     begin
       sent_of = 3'd1;
       if (state == 4'd8 || state == 4'd9 || state < Axis) sent_of = 3'd0;
@@ -180,8 +191,10 @@ module neighbours_formal #(
   always_ff @(posedge clk_i) begin
     if (running_q) begin
       // Halos of the next step never meet those of this one, nor arrivals.
-      if (tap_halo_0[Above] || tap_halo_end_0[Above]) a_halo_0: assert (tap_state_0 != Force && !tap_halo_ended_0[Above]);
-      if (tap_halo_1[Below] || tap_halo_end_1[Below]) a_halo_1: assert (tap_state_1 != Force && !tap_halo_ended_1[Below]);
+      if (tap_halo_0[Above] || tap_halo_end_0[Above]) a_halo_0: assert (tap_state_0 != Force
+          && !tap_halo_ended_0[Above]);
+      if (tap_halo_1[Below] || tap_halo_end_1[Below]) a_halo_1: assert (tap_state_1 != Force
+          && !tap_halo_ended_1[Below]);
       if (tap_arrival_0[Above] || tap_arrival_end_0[Above]) a_arrival_0: assert (!tap_migrate_ended_0[Above]);
       if (tap_arrival_1[Below] || tap_arrival_end_1[Below]) a_arrival_1: assert (!tap_migrate_ended_1[Below]);
       if (tap_halo_0[Above]) a_room_0: assert (tap_count_0[Above*CountBits +: CountBits] != Room[CountBits-1:0]);
@@ -200,27 +213,34 @@ module neighbours_formal #(
       i_used_1: assert (told_1_q == {step_1_q[1:0], 1'b0} + used_of(tap_state_1) + ready_1);
       i_beat_0: assert (!valid[0] || ends[0] || sending(tap_state_0, tap_sent_0, tap_migrate_0));
       i_beat_1: assert (!valid[1] || ends[1] || sending(tap_state_1, tap_sent_1, tap_migrate_1));
-      i_high:   assert ((tap_migrate_0 != TakeHigh || tap_axis_ended_0[0]) && (tap_migrate_1 != TakeHigh || tap_axis_ended_1[0]));
+      i_high:   assert ((tap_migrate_0 != TakeHigh || tap_axis_ended_0[0]) && (tap_migrate_1 != TakeHigh
+          || tap_axis_ended_1[0]));
       i_past_0: assert (!(tap_state_0 > Axis && tap_state_0 <= Force) || tap_halo_ended_0[Above]);
       i_past_1: assert (!(tap_state_1 > Axis && tap_state_1 <= Force) || tap_halo_ended_1[Below]);
       i_next_0: assert (tap_next_0[Above] == told_0_q[0]);
       i_next_1: assert (tap_next_1[Below] == told_1_q[0]);
-      i_flags_0: assert ((used_of(tap_state_0) == 3'd1) ? (tap_migrate_ended_0[Above] || !tap_halo_ended_0[Above])
-                                                       : (tap_halo_ended_0[Above] || !tap_migrate_ended_0[Above]));
-      i_flags_1: assert ((used_of(tap_state_1) == 3'd1) ? (tap_migrate_ended_1[Below] || !tap_halo_ended_1[Below])
-                                                       : (tap_halo_ended_1[Below] || !tap_migrate_ended_1[Below]));
-      i_state:  assert (tap_state_0 != 4'd2 && tap_state_1 != 4'd2 && tap_state_0 != 4'd7 && tap_state_1 != 4'd7
+      i_flags_0: assert ((used_of(tap_state_0) == 3'd1) ? (tap_migrate_ended_0[Above]
+          || !tap_halo_ended_0[Above])
+                                                       : (tap_halo_ended_0[Above]
+                                                           || !tap_migrate_ended_0[Above]));
+      i_flags_1: assert ((used_of(tap_state_1) == 3'd1) ? (tap_migrate_ended_1[Below]
+          || !tap_halo_ended_1[Below])
+                                                       : (tap_halo_ended_1[Below]
+                                                           || !tap_migrate_ended_1[Below]));
+      i_state:  assert (tap_state_0 != 4'd2 && tap_state_1 != 4'd2 && tap_state_0 != 4'd7
+          && tap_state_1 != 4'd7
                         && tap_state_0 <= 4'd9 && tap_state_1 <= 4'd9);
       i_steps:  assert (tap_steps_0 <= Steps && tap_steps_1 <= Steps
                         && tap_steps_0[2:0] + step_0_q == tap_steps_1[2:0] + step_1_q);
-      i_run:    assert ((tap_state_0 < 4'd8) == (tap_steps_0 != '0) && (tap_state_1 < 4'd8) == (tap_steps_1 != '0));
+      i_run:    assert ((tap_state_0 < 4'd8) == (tap_steps_0 != '0) && (tap_state_1 < 4'd8)
+          == (tap_steps_1 != '0));
       i_sent:   assert ((!tap_sent_0 || tap_state_0 <= 4'd1) && (!tap_sent_1 || tap_state_1 <= 4'd1));
       i_phase:  assert ((tap_migrate_0 == 3'd0 || tap_state_0 == MigrateX || tap_state_0 == MigrateY)
                         && (tap_migrate_1 == 3'd0 || tap_state_1 == MigrateX || tap_state_1 == MigrateY)
                         && tap_migrate_0 <= TakeHigh && tap_migrate_1 <= TakeHigh);
       i_ahead:  assert (ahead_q == $signed(step_0_q - step_1_q));
       c_apart:    cover (apart_q);
-      c_waits:    cover (waits[0] && tap_state_0 == 4'd1 && tap_state_1 == Force);
+      c_waits:    cover (waits[0] && tap_state_0 == Axis && tap_state_1 == Force);
     end
   end
 endmodule

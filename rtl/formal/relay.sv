@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// cuboct_relay through any number of exchange phases, with any counts and any pauses of the links: each record of each
-// segment is sent once, segments and records in order, then one end beat, then nothing until the phase is over. A
-// record's content is its own name, (segment, number), so what is sent tells where it was read.
+// cuboct_relay through any number of exchange phases, with any counts and any pauses of the links: each
+// record of each segment is sent once, segments and records in order, then one end beat, then nothing until
+// the phase is over. A record's content is its own name, (segment, number), so what is sent tells where it
+// was read.
 module relay_formal #(
   parameter int Axes     = 3,
   parameter int AddrBits = 2,   // a segment holds up to 2^AddrBits records
@@ -51,14 +52,16 @@ module relay_formal #(
   logic                load, is_end, first_own;
   logic [LinkBits-1:0] data;
   cuboct_relay #(
-    .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(AddrBits), .AddrBits(AddrBits), .CountBits(CountBits)
+    .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(AddrBits), .AddrBits(AddrBits),
+        .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_i(done), .counts_i(counts_q),
     .segment_o(segment), .addr_o(addr), .slot_o(slot), .record_i({segment, addr}), .can_load_i, .load_o(load),
     .end_o(is_end), .data_o(data), .first_own_o(first_own), .sent_o(sent)
   );
 
-  // What must come: the next record is the least (segment, number) not yet sent, of those that the axis sends.
+  // What must come: the next record is the least (segment, number) not yet sent, of those that the axis
+  // sends.
   logic [2:0]            due_segment_q, next_segment, sends;
   logic [CountBits-1:0]  due_record_q, count;
   logic [Beats*LinkBits-1:0] due, parts_q, whole;
@@ -79,7 +82,8 @@ module relay_formal #(
       end
     end
     due               = '0;
-    due[HaloBits-1:0] = {next_segment, (next_segment == due_segment_q) ? due_record_q[AddrBits-1:0] : {AddrBits{1'b0}}};
+    due[HaloBits-1:0] = {next_segment, (next_segment == due_segment_q)
+        ? due_record_q[AddrBits-1:0] : {AddrBits{1'b0}}};
     whole             = parts_q;
     for (b = 0; b < Beats; b = b + 1) begin
       if (beat_q == b[3:0]) whole[b*LinkBits +: LinkBits] = data;
@@ -104,8 +108,8 @@ module relay_formal #(
     end
   end
 
-  // Progress: a cycle in which the links can load moves (sent, segment, record, beat) upwards, so that a phase takes no
-  // more such cycles than there are values.
+  // Progress: a cycle in which the links can load moves (sent, segment, record, beat) upwards, so that a
+  // phase takes no more such cycles than there are values.
   logic [AddrBits+7:0] rank, rank_q;
   logic                moves_q;
   assign rank = {sent, segment, addr, beat_q};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_round_odd against its meaning, for every input: |a| / 2^Shift rounded to nearest, halves up, with a's sign;
-// so it is odd. Combinational: one cycle is all of it.
+// cuboct_round_odd against its meaning, for every input: |a| / 2^Shift rounded to nearest, halves up, with
+// a's sign; so it is odd. Combinational: one cycle is all of it.
 module round_odd_formal #(
   parameter int InBits  = 8,
   parameter int Shift   = 3,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// cuboct_sequencer with units that end their phases when they like: phases come in order, as many steps as asked for,
-// each phase starts in the cycle after the one before it ended, and one unit is told to work at a time; the force
-// engine beside the exchange if it overlaps.
+// cuboct_sequencer with units that end their phases when they like: phases come in order, as many steps as
+// asked for, each phase starts in the cycle after the one before it ended, and one unit is told to work at a
+// time; the force engine beside the exchange if it overlaps.
 module sequencer_formal #(
   parameter int Axes    = 3,
   parameter int Overlap = 1,
@@ -26,13 +26,17 @@ module sequencer_formal #(
   logic [7:0]      starts, ends;
   cuboct_sequencer #(.Axes(Axes), .Overlap(Overlap)) u_dut (
     .clk_i, .rst_ni(running_q), .start_i, .steps_i, .exchange_done_i(exchange_i), .force_done_i(force_i),
-    .update_done_i(update_i), .migrate_done_i(migrate_i), .dump_done_i(dump_i), .idle_o(idle), .exchange_o(exchange),
-    .update_o(update), .migrate_o(migrate), .dump_o(dump), .axis_o(axis), .engine_o(engine), .past_exchange_o(past),
+    .update_done_i(update_i), .migrate_done_i(migrate_i), .dump_done_i(dump_i), .idle_o(idle),
+        .exchange_o(exchange),
+    .update_o(update), .migrate_o(migrate), .dump_o(dump), .axis_o(axis), .engine_o(engine),
+        .past_exchange_o(past),
     .step_end_o(step_end), .phase_start_o(starts), .phase_end_o(ends)
   );
 
-  // The phase that the machine must be in: 0 to Axes-1 exchange, then force, update, migrate; then dump, idle.
-  localparam logic [3:0] Force = Axes, Update = Axes + 1, Migrate = Axes + 2, Dump = 2 * Axes + 2, Idle = 2 * Axes + 3;
+  // The phase that the machine must be in: 0 to Axes-1 exchange, then force, update, migrate; then dump,
+  // idle.
+  localparam logic [3:0] Force = Axes, Update = Axes + 1, Migrate = Axes + 2, Dump = 2 * Axes + 2,
+      Idle = 2 * Axes + 3;
   logic [3:0]  phase_q, phase_d;
   logic [31:0] left_q;   // steps still to end
   logic        first_q, in_exchange, in_migrate;
@@ -88,7 +92,8 @@ module sequencer_formal #(
 
   always_ff @(posedge clk_i) begin
     if (running_q) begin
-      a_where:  assert ({idle, exchange, update, migrate, dump} == {phase_q == Idle, in_exchange, phase_q == Update, in_migrate, phase_q == Dump});
+      a_where:  assert ({idle, exchange, update, migrate, dump} == {phase_q == Idle, in_exchange,
+          phase_q == Update, in_migrate, phase_q == Dump});
       a_axis:   assert (axis == axis_due);
       a_engine: assert (engine == (phase_q == Force || (Overlap != 0 && in_exchange)));
       if (engine) a_past: assert (past_right);

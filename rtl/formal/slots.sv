@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_slots: every read port shows what was written last; the position that a filter lane reads in its row is that
-// of the particle that the other ports show in the same slot.
+// cuboct_slots: every read port shows what was written last; the position that a filter lane reads in its row
+// is that of the particle that the other ports show in the same slot.
 module slots_formal #(
   parameter int Capacity    = 3,
   parameter int FilterLanes = 2,
@@ -40,10 +40,12 @@ module slots_formal #(
     fault_slot[(ForcePipes-1)*SlotBits +: SlotBits] = pipe_i[SlotBits-1:0];
   end
   cuboct_slots #(
-    .Bits(5), .PosBits(2), .IdLsb(2), .IdBits(2), .Capacity(Capacity), .SlotBits(SlotBits), .FilterLanes(FilterLanes),
+    .Bits(5), .PosBits(2), .IdLsb(2), .IdBits(2), .Capacity(Capacity), .SlotBits(SlotBits),
+        .FilterLanes(FilterLanes),
     .RowBits(RowBits), .ForcePipes(ForcePipes)
   ) u_dut (
-    .clk_i, .write_i, .write_slot_i(slot_i[SlotBits-1:0]), .write_data_i(data_i), .main_slot_i(watched[SlotBits-1:0]),
+    .clk_i, .write_i, .write_slot_i(slot_i[SlotBits-1:0]), .write_data_i(data_i),
+        .main_slot_i(watched[SlotBits-1:0]),
     .main_data_o(main_data), .stream_slot_i(watched[SlotBits-1:0]), .stream_data_o(stream_data),
     .pipe_slot_i(pipe_slot), .pipe_data_o(pipe_data), .fault_slot_i(fault_slot), .fault_id_o(fault_id),
     .row_i(row_i[RowBits-1:0]), .row_data_o(row_data)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// cuboct_streamer through any number of steps, with any counts, segments that come when they like and any stalls: each
-// record of each segment is presented once with each row of own slots, in order; `past` comes after the last one and
-// only when every segment was there.
+// cuboct_streamer through any number of steps, with any counts, segments that come when they like and any
+// stalls: each record of each segment is presented once with each row of own slots, in order; `past` comes
+// after the last one and only when every segment was there.
 module streamer_formal #(
   parameter int Axes        = 2,
   parameter int FilterLanes = 2,
@@ -23,8 +23,8 @@ module streamer_formal #(
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
 
-  // A step: the engine runs from begin to the restart in its last cycle, which comes after `past`. Own particles are
-  // there at once; a segment's count is final when it is available.
+  // A step: the engine runs from begin to the restart in its last cycle, which comes after `past`. Own
+  // particles are there at once; a segment's count is final when it is available.
   logic                          run_q, past, restart;
   logic [Axes:0]                 available_q;
   logic [Segments*CountBits-1:0] counts_q;
@@ -49,9 +49,11 @@ module streamer_formal #(
   logic [RowBits-1:0]  row;
   logic                present;
   cuboct_streamer #(
-    .Axes(Axes), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(AddrBits), .AddrBits(AddrBits), .CountBits(CountBits)
+    .Axes(Axes), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(AddrBits), .AddrBits(AddrBits),
+        .CountBits(CountBits)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .available_i(available_q), .counts_i(counts_q),
+    .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .available_i(available_q),
+        .counts_i(counts_q),
     .segment_o(segment), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .past_o(past)
   );
 
@@ -113,7 +115,8 @@ module streamer_formal #(
       if (past) a_past: assert (all && available_q == '1);
       if (moves_q) a_progress: assert (rank > rank_q);
       c_empty: cover (restart && counts_q == '0);
-      c_full:  cover (past && counts_q[(Segments-1)*CountBits +: CountBits] == Most[CountBits-1:0] && due_segment_q == Segments[2:0] - 3'd1);
+      c_full:  cover (past && counts_q[(Segments-1)*CountBits +: CountBits] == Most[CountBits-1:0]
+          && due_segment_q == Segments[2:0] - 3'd1);
       c_rows:  cover (present && next_row != '0 && next_record != '0);
       c_again: cover (restart && begin_i && due_segment_q != '0);
     end

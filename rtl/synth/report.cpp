@@ -27,14 +27,12 @@ void add_rows(const Block& block, int depth, Family family, std::string& text) {
   const std::string name = block.module.starts_with("cuboct_") ? block.module.substr(7) : block.module;
   text += row(std::string(static_cast<size_t>(2 * depth), ' ') + name, block.instances, block.counts, family);
   if (depth >= kShownDepth) return;
-  // A shell around one block says nothing of its own.
-  const bool shell = block.children.size() == 1 && block.children[0].counts == block.counts &&
-                     block.children[0].instances == block.instances;
-  if (shell) {
-    for (const Block& child : block.children[0].children) add_rows(child, depth + 1, family, text);
-  } else {
-    for (const Block& child : block.children) add_rows(child, depth + 1, family, text);
-  }
+  // A shell around one block says nothing of its own, nor does that block.
+  const Block* inner = &block;
+  while (inner->children.size() == 1 && inner->children[0].counts == inner->counts &&
+         inner->children[0].instances == inner->instances)
+    inner = &inner->children[0];
+  for (const Block& child : inner->children) add_rows(child, depth + 1, family, text);
 }
 
 Json to_json(const Counts& counts, Family family) {

@@ -198,7 +198,14 @@ def changed_number(word):
     return [(text, f"{word} to {text}")]
 
 
-def changes(region, text, code, registers):
+def reset_branches(code):
+    """Spans of what `if (!rst_ni)` guards."""
+    for m in re.finditer(r"if \(!rst_ni\) (begin)?", code):
+        end = re.compile(r"\bend\b" if m.group(1) else ";").search(code, m.end()).end()
+        yield m.end(), end
+
+
+def changes(region, text, code, resets):
     """(kind, replacement) of a region; `text` with comments, `code` without."""
     start, end = region.start, region.end
     inside = code[start:end]
@@ -224,8 +231,6 @@ def changes(region, text, code, registers):
             binary = before is not None and re.fullmatch(r"[\w$'.]+|\)|\]|\}", before)
             if not binary:
                 options = [] if word != "~" else options
-        if word == "?":  # the condition of a choice turned round: both branches change places
-            pass
         options = options + changed_number(word)
         for other, kind in options:
             found.append((kind, text[start:a] + other + text[b:end]))
@@ -235,7 +240,6 @@ def changes(region, text, code, registers):
     if region.role == "if":
         found.append(("if always", " 1'b1"))
         found.append(("if never", " 1'b0"))
-        # `if (valid) register <= ...` for data: see `always`.
     else:
         if whole not in ("'0", "1'b0") and not re.fullmatch(r"\d+'[bd]0+", whole):
             found.append(("stuck at 0", " " + ZERO))
@@ -243,20 +247,21 @@ def changes(region, text, code, registers):
             found.append(("stuck at 1", " " + ONES))
     if region.role == "ff":
         target = code[region.target[0]:region.target[1]].strip().rstrip("<=").strip()
-        found.append(("never loaded", " " + target))
+        in_reset = any(a <= region.start < b for a, b in resets)
+        found.append(("reset left out" if in_reset else "never loaded", " " + target))
     return found
 
 
 def mutants_of(module, text, first):
     """Mutants of a module's text, numbered from `first`: (list, places). places: (start, end, [(number, text)])."""
     code = blank(text)
-    result, places, number = [], [], first
+    result, places, number, resets = [], [], first, list(reset_branches(code))
     for region in sorted(regions_of(code), key=lambda r: r.start):
         target = code[region.target[0]:region.target[1]] if region.target else ""
         if "unused_" in target:
             continue
         here = []
-        for kind, other in changes(region, text, code, None):
+        for kind, other in changes(region, text, code, resets):
             if " ".join(other.split()) == " ".join(code[region.start:region.end].split()):
                 continue
             line = text.count("\n", 0, region.start) + 1

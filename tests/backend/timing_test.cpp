@@ -32,6 +32,7 @@ struct Seen {
   uint64_t crowds = 0;                          // node-steps in which several particles leave one node
   uint64_t emptied = 0;                         // nodes that hold particles before a step and none after
   uint64_t busy = 0, filtered = 0, walked = 0;  // TimingCounters
+  uint64_t checked = 0;
   uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, damped = 0, rings_of_3 = 0, lone_nodes = 0,
            flat = 0;
 };
@@ -143,6 +144,7 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   for (const auto& [name, value] : trace.counters)
     if (name == "queue_stalls") seen.stalls += static_cast<uint64_t>(value);
   seen.no_overlap += !plan.arch.overlap;
+  seen.checked += plan.link.checked();
   seen.queue_of_one += plan.arch.queue_depth == 1;
   seen.pipes += plan.arch.force_pipes > 1;
   seen.pd += plan.rule.pd;
@@ -177,6 +179,8 @@ Case rebuilt(Case c, uint64_t seed) {
   arch.overlap = draw(0, 3) > 0;
   arch.link_bits = std::array{0, draw(1, 8), draw(9, 200), 1024}[static_cast<size_t>(draw(0, 3))];
   if (draw(0, 2) == 0) arch.capacity = crowd_of(c);
+  // The clocked node holds checked beats of 512 bits.
+  if (arch.link_bits <= 200) arch.link_check = static_cast<LinkCheck>(draw(0, 2));
   plan = make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
   c.name += " rebuilt";
   return c;
@@ -222,6 +226,7 @@ TEST(TimingRandom, EqualsTheClockedNode) {
                                                              {"leave_thrice", seen.leave_thrice},
                                                              {"crowds", seen.crowds},
                                                              {"emptied", seen.emptied},
+                                                             {"checked", seen.checked},
                                                              {"no_overlap", seen.no_overlap},
                                                              {"queue_of_one", seen.queue_of_one},
                                                              {"pipes", seen.pipes},

@@ -185,7 +185,10 @@ std::vector<std::string> case_names() {
 
 Case make_case(const std::string& name) {
   Recipe recipe;
-  recipes().at(name)(recipe);
+  const size_t dot = name.find('.');
+  recipes().at(name.substr(0, dot))(recipe);
+  if (dot != std::string::npos)
+    recipe.arch.link_check = name.substr(dot) == ".retry" ? LinkCheck::retry : LinkCheck::detect;
   return cook(name, recipe);
 }
 

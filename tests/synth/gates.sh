@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The netlist of a node, with the models of its cells, in the project's bench: as yosys may misbuild silently. Then
-# with a multiplier that takes its operands for unsigned, which the bench has to see.
+# The netlist of a node, with the models of its cells, in the bench of the project: yosys may misbuild silently.
+# Then with a multiplier that takes its operands for unsigned, which the bench has to see.
 # usage: gates.sh CUBOCT SOURCES WORK
 set -euo pipefail
 cuboct=$1 here=$2 work=$3

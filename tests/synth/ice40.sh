@@ -43,7 +43,8 @@ PYTHON
 
 # Products of 18 bits take four multipliers each.
 sed 's/^position_frac = .*/position_frac = 20/; s/^difference_frac = .*/difference_frac = 17/;
-     s/^velocity_bits = .*/velocity_bits = 23/; s/^sum_bits = .*/sum_bits = 23/' "$here/narrow.toml" > wide.toml
+     s/^velocity_bits = .*/velocity_bits = 23/; s/^sum_bits = .*/sum_bits = 23/' \
+  "$here/narrow.toml" > wide.toml
 "$cuboct" emit "$here/sheet.toml" --arch wide.toml --out wide --vector-steps 1
 code=0
 "$cuboct" synth wide --target up5k --unit pipe > printed 2> said || code=$?

@@ -43,12 +43,14 @@ TEST_F(Parse, NextpnrReport) {
   const Placed placed = read_nextpnr_report(file("timing.json", R"({
     "critical_paths": [
       {"from": "posedge clk$SB_IO_IN_$glb_clk", "to": "posedge clk$SB_IO_IN_$glb_clk", "path": [
-        {"delay": 1.39, "type": "clk-to-q", "from": {"cell": "a_LC", "port": "O"}, "to": {"cell": "a_LC", "port": "O"}},
-        {"delay": 2.5, "type": "routing", "from": {"cell": "a_LC", "port": "O"}, "to": {"cell": "b_LC", "port": "I0"}}]},
+        {"delay": 1.39, "type": "clk-to-q", "from": {"cell": "a_LC"}, "to": {"cell": "a_LC", "port": "O"}},
+        {"delay": 2.5, "type": "routing", "from": {"cell": "a_LC"}, "to": {"cell": "b_LC", "port": "I0"}}]},
       {"from": "<async>", "to": "posedge clk$SB_IO_IN_$glb_clk", "path": [
-        {"delay": 99, "type": "routing", "from": {"cell": "x", "port": "O"}, "to": {"cell": "y", "port": "I0"}}]}],
-    "fmax": {"clk$SB_IO_IN_$glb_clk": {"achieved": 47.09, "constraint": 48}, "fast": {"achieved": 90, "constraint": 48}},
-    "utilization": {"ICESTORM_LC": {"available": 5280, "used": 703}, "ICESTORM_DSP": {"available": 8, "used": 5}}})"));
+        {"delay": 99, "type": "routing", "from": {"cell": "x"}, "to": {"cell": "y", "port": "I0"}}]}],
+    "fmax": {"clk$SB_IO_IN_$glb_clk": {"achieved": 47.09, "constraint": 48},
+             "fast": {"achieved": 90, "constraint": 48}},
+    "utilization": {"ICESTORM_LC": {"available": 5280, "used": 703},
+                    "ICESTORM_DSP": {"available": 8, "used": 5}}})"));
   EXPECT_DOUBLE_EQ(placed.fmax, 47.09);
   EXPECT_EQ(placed.use.at("ICESTORM_LC").used, 703u);
   EXPECT_EQ(placed.use.at("ICESTORM_DSP").available, 8u);
@@ -232,6 +234,42 @@ TEST_F(Parse, Fit) {
   report.pack({{"ICESTORM_LC", {2000, 5280}}});
   EXPECT_EQ(fit_of(report)->units, 2u);
   EXPECT_EQ(fit_of(report)->limit, Resource::cell);
+}
+
+// A shell (node around core) is one row; blocks without a cell are none; a block alone takes no steps.
+TEST_F(Parse, Table) {
+  Report report;
+  report.plan = "0123456789abcdef";
+  report.target = "ecp5-25";
+  report.device = "LFE5U-25F";
+  report.unit = "node";
+  report.cycles_per_step = 200;
+  report.holds = target_of("ecp5-25").holds;
+  const Block pipe{"cuboct_pipe", 2, {{700, 600, 6, 1}}, {}}, wires{"cuboct_resize", 4, {}, {}};
+  const Block core{"cuboct_node_core", 1, {{1000, 900, 6, 3}}, {pipe, wires}};
+  report.block = {"cuboct_node", 1, core.counts, {core}};
+  report.depth = 31;
+  const std::string head =
+      "node of plan 0123456789abcdef on ecp5-25 (LFE5U-25F)\n"
+      "\n"
+      "block                                  x      LUT       FF      DSP     BRAM\n"
+      "node                                   1     1000      900        6        3\n"
+      "  pipe                                 2      700      600        6        1\n"
+      "device holds                                24288    24288       28       56\n"
+      "\n"
+      "fit the device         3 of node, limited by DSP (planned to 75 %)\n"
+      "longest path           31 cells between registers\n";
+  EXPECT_EQ(print_table(report), head + "Fmax                   not known: not placed\n");
+  report.take({125, {}, {}}, "nextpnr-ecp5, seed 1");
+  EXPECT_EQ(
+      print_table(report),
+      head +
+          "Fmax                   125.00 MHz (nextpnr-ecp5, seed 1)\n"
+          "steps per second       6.25e+05 at Fmax: 200 cycles per step expected of the busiest node\n");
+  const Report again = read_report(file("report.json", to_json(report).dump()));
+  EXPECT_EQ(print_table(again), print_table(report));
+  report.unit = "pipe";
+  EXPECT_EQ(print_table(report).find("steps per second"), std::string::npos);
 }
 
 TEST_F(Parse, NearestTargetThatHolds) {

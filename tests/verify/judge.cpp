@@ -8,6 +8,7 @@
 
 #include "emu/systemc/node.h"
 #include "emu/verilated/verilated_node.h"
+#include "tests/verify/small_case.h"
 
 namespace cuboct::test {
 namespace {
@@ -77,6 +78,7 @@ Verdict kind_of(const std::string& difference) {
 Case case_of(const std::string& name) {
   if (name.starts_with("random_flat_")) return random_flat_case(std::stoull(name.substr(12)));
   if (name.starts_with("random_")) return random_case(std::stoull(name.substr(7)));
+  if (name.starts_with("small_")) return small_case(name.substr(6));
   if (name.starts_with("fault_")) return fault_case(static_cast<Fault>(std::stoi(name.substr(6))));
   return make_case(name);
 }

@@ -13,7 +13,8 @@
 
 namespace cuboct::test {
 
-// `name` of make_case, random_<seed>, random_flat_<seed> or fault_<code>. Throws std::out_of_range.
+// `name` of make_case, random_<seed>, random_flat_<seed>, fault_<code> or small_<name of small_case>. Throws
+// std::out_of_range.
 Case case_of(const std::string& name);
 
 struct NodeBuild {

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// rtl_small_case NAME DIR: emits the project of a small case. Exit status 0, or 2.
+#include <cstdio>
+#include <exception>
+
+#include "hw/rtl_emit.h"
+#include "tests/verify/small_case.h"
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: rtl_small_case plain|damped|pd|flat DIR\n");
+    return 2;
+  }
+  try {
+    const auto c = cuboct::test::small_case(argv[1]);
+    cuboct::emit_rtl(c.setup.plan, c.setup.initial, argv[2], c.steps);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "rtl_small_case: %s\n", e.what());
+    return 2;
+  }
+  return 0;
+}
