@@ -17,6 +17,8 @@ void read_node(const ConfigTable& node, Arch& arch) {
   set(node, "capacity", 1, 256, arch.capacity);
   set(node, "filter_lanes", 1, 64, arch.filter_lanes);
   set(node, "force_pipes", 1, 64, arch.force_pipes);
+  if (const auto m = node.find("multipliers"))
+    arch.shared_multipliers = m->choice("use of multipliers", {"parallel", "shared"}) == 1;
   set(node, "queue_depth", 1, 1024, arch.queue_depth);
   arch.overlap = node.boolean_or("overlap", arch.overlap);
   node.done();
@@ -26,6 +28,7 @@ void read_widths(const ConfigTable& table, Widths& w) {
   set(table, "position_frac", 8, 30, w.position_frac);
   set(table, "guard", 1, 20, w.guard);
   set(table, "difference_frac", 6, 24, w.difference_frac);
+  set(table, "filter_frac", 2, 16, w.filter_frac);
   set(table, "velocity_bits", 8, 51, w.velocity_bits);
   set(table, "relative_velocity_frac", 4, 50, w.relative_velocity_frac);
   set(table, "relative_velocity_bits", 4, 27, w.relative_velocity_bits);

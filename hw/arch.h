@@ -17,6 +17,7 @@ struct Arch {
   int capacity = 16;     // particles that a node holds
   int filter_lanes = 8;  // own particles that a candidate meets per cycle
   int force_pipes = 1;   // pairs per cycle
+  bool shared_multipliers = false;  // one multiplier serves the axes in turn: a pair every `axes` cycles
   int queue_depth = 16;  // (candidate, mask) entries between filter and pipes
   bool overlap = true;   // candidates are filtered while the exchange still runs
   int link_bits = 0;     // payload bits per beat; 0: one halo record per beat

@@ -77,12 +77,14 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
             Int3 x_j;
             for (int a = 0; a < 3; ++a)
               x_j[a] = j->x[a] + (int64_t{offset[a]} << plan.rule.widths.position_frac);
-            pairs += i != j && may_interact(plan.rule, difference(plan.rule, i->x, x_j));
+            pairs += i != j && may_interact(plan.rule, i->x, x_j);
           }
-    const uint64_t busy = std::max(candidates, ceil_div(pairs, static_cast<uint64_t>(plan.arch.force_pipes)));
+    const uint64_t issues = ceil_div(pairs, static_cast<uint64_t>(plan.arch.force_pipes)) *
+                            static_cast<uint64_t>(plan.latency.interval);
+    const uint64_t busy = std::max(candidates, issues);
     expected.ideal = std::max(expected.ideal, busy);
     // The last candidate's pairs pass F1, the queue and `current`, then the pipe.
-    const uint64_t force = std::max(streamed + static_cast<uint64_t>(plan.latency.filter), pairs) +
+    const uint64_t force = std::max(streamed + static_cast<uint64_t>(plan.latency.filter), issues) +
                            (own > 0 ? 2 + static_cast<uint64_t>(plan.latency.pipe) : 0);
     const uint64_t update = own > 0 ? own - 1 + static_cast<uint64_t>(plan.latency.update) : 1;
     expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * quiet_migrate);

@@ -60,6 +60,8 @@ uint64_t hash_of(const Plan& plan) {
       .add(arch.force_pipes)
       .add(arch.queue_depth)
       .add(arch.overlap);
+  if (arch.shared_multipliers) hash.add(plan.latency.interval);
+  if (w.filter_frac != Widths{}.filter_frac) hash.add(w.filter_frac);
   hash.add(plan.words.link_bits).add(plan.particles);
   if (plan.link.checked()) hash.add(static_cast<int>(plan.link.check));
   for (const int32_t p : plan.lattice.period()) hash.add(p);
@@ -86,11 +88,12 @@ Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles) {
   return words;
 }
 
-Latency latency_of(const FixedRule& r) {
+Latency latency_of(const FixedRule& r, const Arch& arch) {
   Latency latency;
   latency.pipe = 11 + (r.force.shape == TableShape::octaves ? 1 : 0) + (r.force.degree == 2 ? 2 : 0) +
-                 (r.damped ? 2 : 0) + (r.scaled ? 2 : 0);
-  latency.update = r.pd ? 6 : 3;
+                 (r.damped ? 2 : 0) + (r.scaled ? 2 : 0) + (arch.shared_multipliers ? 2 * (r.axes - 1) : 0);
+  latency.interval = arch.shared_multipliers ? r.axes : 1;
+  latency.update = r.pd ? 7 : 4;
   return latency;
 }
 
@@ -117,7 +120,7 @@ Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, u
   plan.particles = particles;
 
   plan.words = words_of(plan.rule, plan.arch, particles);
-  plan.latency = latency_of(plan.rule);
+  plan.latency = latency_of(plan.rule, plan.arch);
   plan.link = link_code(plan.arch.link_check, plan.words.link_bits);
   plan.hash = hash_of(plan);
   return plan;
@@ -158,7 +161,10 @@ std::string describe(const Plan& plan) {
   line("filter lanes, pipes",
        fmt::format("{}, {}, queue of {}{}", plan.arch.filter_lanes, plan.arch.force_pipes,
                    plan.arch.queue_depth, plan.arch.overlap ? ", force overlaps the exchange" : ""));
-  line("latency", fmt::format("pipe {}, update {} cycles", plan.latency.pipe, plan.latency.update));
+  line("latency", fmt::format("pipe {}, update {} cycles{}", plan.latency.pipe, plan.latency.update,
+                              plan.latency.interval > 1
+                                  ? fmt::format(", a pair every {}", plan.latency.interval)
+                                  : std::string()));
   std::string out;
   for (const auto& [used, name] : {std::pair{r.damped, "damping"}, std::pair{r.scaled, "pair scales"},
                                    std::pair{r.pd, "force-held types"}, std::pair{r.type_bits > 0, "types"},

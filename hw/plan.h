@@ -29,11 +29,13 @@ struct Words {
   int link_bits = 0;      // as built: arch.link_bits, or halo_bits
 };
 
-// Fixed latencies of the datapath, in cycles; they depend only on what the rule uses. docs/reference/node.md.
+// Fixed latencies of the datapath, in cycles; they depend only on what the rule uses and on whether the axes
+// share a multiplier. docs/reference/node.md.
 struct Latency {
   int filter = 2;  // from the candidate's read to its push into the queue
   int pipe = 0;    // from a pair's issue to its sum
-  int update = 0;  // from a particle's read to its write-back
+  int update = 0;  // from a particle's read to the cycle in which MIGRATE may read it
+  int interval = 1;  // from one issue of pairs to the next
 };
 
 struct Plan {
@@ -50,7 +52,7 @@ struct Plan {
 
 // What make_plan derives: words of records, latencies.
 Words words_of(const FixedRule& rule, const Arch& arch, uint32_t particles);
-Latency latency_of(const FixedRule& rule);
+Latency latency_of(const FixedRule& rule, const Arch& arch);
 // Cells of the smallest box that holds the lattice.
 uint64_t bounding_cells(const Lattice& lattice);
 

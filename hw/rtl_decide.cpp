@@ -65,6 +65,7 @@ RtlDesign decide(const Plan& plan) {
   constant("Capacity", arch.capacity, "particles per node");
   constant("FilterLanes", arch.filter_lanes, "own particles that a candidate meets per cycle");
   constant("ForcePipes", arch.force_pipes, "pairs per cycle");
+  constant("Shared", arch.shared_multipliers, "1: one multiplier serves the axes in turn");
   constant("QueueDepth", arch.queue_depth, "entries between filter and pipes");
   constant("Overlap", arch.overlap, "1: the force engine starts with the exchange");
   constant("LinkBits", plan.words.link_bits, "payload of a beat");
@@ -82,13 +83,14 @@ RtlDesign decide(const Plan& plan) {
   constant("GainBits", 18, "");
   constant("ScaleBits", 18, "");
   constant("ConstantBits", w.velocity_bits, "imposed velocities and gravity");
+  constant("FilterFrac", w.filter_frac, "leading bits of a position that the filter tests");
   constant("DifferenceShift", rule.difference_shift, "");
   constant("WShift", rule.w_shift, "");
   constant("QShift", rule.q_shift, "");
   constant("DampShift", rule.damp_shift, "");
   constant("KickShift", rule.kick_shift, "");
   wide("Cutoff2", rule.cutoff2, "in units of r2");
-  wide("PlanarOne", static_cast<uint64_t>(rule.planar[0]), "in units of d");
+  wide("PlanarOne", static_cast<uint64_t>(rule.planar[0]), "FilterFrac fractional bits");
   wide("PlanarTwo", static_cast<uint64_t>(rule.planar[1]), "");
   wide("PlanarThree", static_cast<uint64_t>(rule.planar[2]), "");
   const auto table = [&](const std::string& prefix, const FixedTable& t, const char* what) {

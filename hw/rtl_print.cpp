@@ -67,6 +67,7 @@ std::vector<Port> node_ports(const RtlDesign& design, bool core) {
   }
   ports.insert(ports.end(), {{"output", "[7:0]", "phase_start_o"},
                              {"output", "[7:0]", "phase_end_o"},
+                             {"output", "[3:0]", "force_event_o"},
                              {"output", "", "observe_valid_o"},
                              {"output", particle, "observe_data_o"},
                              {"output", "", "fault_valid_o"},
@@ -290,7 +291,6 @@ std::string print_lattice(const RtlDesign& design) {
       "  output logic [4*Nodes-1:0] fault_code_o,\n"
       "  output logic [Nodes*cuboct_pkg::IdBits-1:0] fault_id_o,\n"
       "  output logic [64*Nodes-1:0] fault_number_o,\n";
-  if (design.checked) text += fmt::format("  output logic [{}*Nodes-1:0] link_error_o,\n", 2 * faces);
   text += fmt::format(
       "  output logic [Nodes-1:0] idle_o\n"
       ");\n"
@@ -306,8 +306,18 @@ std::string print_lattice(const RtlDesign& design) {
         fmt::format("  logic [{1}:0] valid_{0}, end_{0}, ready_{0};\n  logic [{2}*LinkBits-1:0] data_{0};\n",
                     n, faces - 1, faces);
   if (design.checked)
-    for (size_t n = 0; n < nodes; ++n) text += fmt::format("  logic [{}*AckBits-1:0] ack_{};\n", faces, n);
+    for (size_t n = 0; n < nodes; ++n) {
+      text += fmt::format("  logic [{}*AckBits-1:0] ack_{};\n", faces, n);
+      text += fmt::format("  logic [{}:0] error_{};\n", 2 * faces - 1, n);
+    }
   std::string unused_ends;
+  // The nodes' link errors are there for whoever counts them; the faults reach the host without.
+  if (design.checked)
+    for (size_t n = 0; n < nodes; ++n)
+      unused_ends += fmt::format("{}^error_{}", unused_ends.empty() ? "    " : ",\n    ", n);
+  std::string events;
+  for (size_t n = 0; n < nodes; ++n) events += fmt::format("{}event_{}", n == 0 ? "" : ", ", n);
+  text += fmt::format("  logic [3:0] {};\n  logic unused_events;\n  assign unused_events = ^{{{}}};\n", events, events);
   for (size_t n = 0; n < nodes; ++n) {
     const Cell& cell = design.cells[n];
     std::string has, valid, end, ready, data, ack;
@@ -344,7 +354,7 @@ std::string print_lattice(const RtlDesign& design) {
         "    .link_ready_o(ready_{0}),\n"
         "{11}"
         "    .phase_start_o(phase_start_o[8*{0} +: 8]), .phase_end_o(phase_end_o[8*{0} +: 8]),\n"
-        "    .observe_valid_o(observe_valid_o[{0}]),\n"
+        "    .force_event_o(event_{0}), .observe_valid_o(observe_valid_o[{0}]),\n"
         "    .observe_data_o(observe_data_o[{0}*cuboct_pkg::ParticleBits +: cuboct_pkg::ParticleBits]),\n"
         "    .fault_valid_o(fault_valid_o[{0}]), .fault_code_o(fault_code_o[4*{0} +: 4]),\n"
         "    .fault_id_o(fault_id_o[{0}*cuboct_pkg::IdBits +: cuboct_pkg::IdBits]),\n"
@@ -353,8 +363,8 @@ std::string print_lattice(const RtlDesign& design) {
         n, cell[0], cell[1], cell[2], has, valid, end, ready, data, faces,
         design.moved.empty() ? "" : " .velocity_i,",
         design.checked ? fmt::format("    .link_ack_i({{{0}}}),\n"
-                                     "    .link_ack_o(ack_{1}), .link_error_o(link_error_o[{2}*{1} +: {2}]),\n",
-                                     ack, n, 2 * faces)
+                                     "    .link_ack_o(ack_{1}), .link_error_o(error_{1}),\n",
+                                     ack, n)
                        : "");
   }
   if (!unused_ends.empty())

@@ -20,6 +20,7 @@ struct Widths {
   int velocity_bits = 29;           // v, signed; at most P+G+1, which is one cell edge per step
   int relative_velocity_frac = 20;  // W: w
   int relative_velocity_bits = 18;  // w, signed
+  int filter_frac = 10;             // B: leading bits of a position that the planar test sees, all if it has fewer
   int strength_bits = 0;            // s and the entries of the tables, signed; 0: chosen, see quantise.h
   int sum_bits = 29;                // a particle's summed kick, signed, P+G fractional bits
   int displacement_bits = 29;       // u, signed, P+G fractional bits
@@ -74,8 +75,9 @@ struct FixedRule {
   double mass = 0;       // kg
 
   uint64_t cutoff2 = 0;  // 2D fractional bits; r2 >= cutoff2: no interaction
-  // Adder-only test that no interacting pair fails: |d_a| <= [0], |d_a|+|d_b| <= [1], |d_x|+|d_y|+|d_z| <=
-  // [2] (cutoff * {1, sqrt 2, sqrt 3} rounded up). D fractional bits.
+  // Adder-only test that no interacting pair fails, on the leading bits of the positions: with e_a the
+  // difference of floor(x_a / 2^(P-B)) and size_a = e_a, or -e_a - 1 where e_a < 0, each size <= [0], each sum
+  // of two <= [1], the sum of all <= [2]. B fractional bits. See set_planar.
   std::array<int64_t, 3> planar{};
 
   FixedTable force;  // f(r)/r * dt^2/m, times the largest pair scale
@@ -120,8 +122,12 @@ PairResult pair_kick(const FixedRule& rule, const Int3& x_i, const Int3& v_i, in
 
 // d of the contract, D fractional bits.
 Int3 difference(const FixedRule& rule, const Int3& x_i, const Int3& x_j);
-// The planar test on d.
-bool may_interact(const FixedRule& rule, const Int3& d);
+// The bounds of the planar test, from cutoff2 and the widths. Inside the cutoff the sum over m axes of |d| is at
+// most f = floor(sqrt(m (cutoff2 - 1))); d is rounded by at most half of its unit, and e differs from the exact
+// difference by less than one of its own; size <= |e|. So the sum of sizes is below (f + m/2) 2^(B-D) + m.
+void set_planar(FixedRule& rule);
+// The planar test; x_i, x_j as for pair_kick.
+bool may_interact(const FixedRule& rule, const Int3& x_i, const Int3& x_j);
 
 // Kick, constraints and drift of one particle. `x` may leave [0, 2^P) by less than one cell.
 struct FinishResult {

@@ -19,14 +19,6 @@ constexpr double kHalfUnit =
 
 using Real = std::function<double(double)>;  // of r2 in cell edges squared
 
-// floor(sqrt(a)) for a < 2^52, where the double square root is off by less than one.
-int64_t integer_sqrt(uint64_t a) {
-  auto root = static_cast<int64_t>(std::sqrt(static_cast<double>(a)));
-  while (static_cast<uint64_t>(root * root) > a) --root;
-  while (static_cast<uint64_t>((root + 1) * (root + 1)) <= a) ++root;
-  return root;
-}
-
 int64_t quantised(double value, int frac, int bits, const char* what) {
   const double scaled = std::ldexp(value, frac);
   if (!(std::abs(scaled) < std::ldexp(1.0, bits - 1) - 0.5))
@@ -160,6 +152,7 @@ void check_widths(const Widths& w, const TableChoice& table) {
   check_range("position_frac", w.position_frac, 8, 30);
   check_range("guard", w.guard, 1, 20);
   check_range("difference_frac", w.difference_frac, 6, std::min(w.position_frac, 24));
+  check_range("filter_frac", w.filter_frac, 2, 16);
   check_range("velocity_bits", w.velocity_bits, 8, w.velocity_frac() + 1);
   check_range("relative_velocity_frac", w.relative_velocity_frac, 4, w.velocity_frac());
   check_range("relative_velocity_bits", w.relative_velocity_bits, 4, 27);
@@ -234,6 +227,7 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
         fmt::format("the cutoff, {:.6g} m, is longer than a cell edge, {:.6g} m", cutoff, cell_edge));
   FixedRule fixed;
   fixed.widths = widths;
+  fixed.widths.filter_frac = std::min(widths.filter_frac, widths.position_frac);
   fixed.cell_edge = cell_edge;
   fixed.dt = rule.dt;
   fixed.mass = rule.mass;
@@ -242,7 +236,7 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   const int D = widths.difference_frac;
   const double ratio = std::min(1.0, cutoff / cell_edge);
   fixed.cutoff2 = static_cast<uint64_t>(std::llround(std::ldexp(ratio * ratio, 2 * D)));
-  for (uint64_t k = 1; k <= 3; ++k) fixed.planar[k - 1] = integer_sqrt(k * (fixed.cutoff2 - 1));
+  set_planar(fixed);
 
   double scale = 0;
   for (const auto& row : rule.strength) scale = std::max(scale, *std::max_element(row.begin(), row.end()));

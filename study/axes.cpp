@@ -86,6 +86,7 @@ constexpr Key kKeys[] = {
     {"sum_bits", "arch.widths.sum_bits"},
     {"displacement_bits", "arch.widths.displacement_bits"},
     {"scale_frac", "arch.widths.scale_frac"},
+    {"filter_frac", "arch.widths.filter_frac"},
     {"gain_frac", "arch.widths.gain_frac"},
     {"table_shape", "arch.table.shape"},
     {"degree", "arch.table.degree"},

@@ -14,6 +14,7 @@ constexpr int64_t kLongAgo = INT64_MIN / 4;
 int64_t force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
                    std::vector<int64_t>& popped) {
   const auto depth = static_cast<size_t>(shape.queue_depth);
+  const int64_t interval = shape.interval;
   const size_t entries = work.entries.size();
   if (popped.size() < entries + depth) popped.resize(entries + depth);
   // pop[0] is the cycle at which the entry Q before the next one leaves the queue; the first Q wait for none.
@@ -23,7 +24,7 @@ int64_t force_time(const ForceShape& shape, const ForceWork& work, const Availab
   int64_t left = 1;  // cycle in which the item before leaves F1
   int64_t next = 0;  // first cycle in which the streamer may present
   int64_t issued =
-      kLongAgo;          // last cycle that issues of the entries so far: the next may move to `current` in it
+      kLongAgo;          // last cycle that the entries so far keep `current`: the next may move there in it
   int64_t streamed = 0;  // cycle of the last presentation
   int64_t filtered = kLongAgo;  // cycle in which the last real item leaves F1
   const uint32_t* entry = work.entries.data();
@@ -49,7 +50,7 @@ int64_t force_time(const ForceShape& shape, const ForceWork& work, const Availab
     int64_t base = left + 1 - first_item;
     for (; entry != last_entry && *entry < last; ++entry) {
       const int64_t item = *entry >> ForceWork::kCycleBits,
-                    cycles = *entry & ((1 << ForceWork::kCycleBits) - 1);
+                    cycles = (*entry & ((1 << ForceWork::kCycleBits) - 1)) * interval;
       base = std::max(base, *pop + 1 - item);
       const int64_t moved = std::max(issued, base + item + 1);
       pop[depth] = moved;
@@ -62,13 +63,13 @@ int64_t force_time(const ForceShape& shape, const ForceWork& work, const Availab
       const int64_t moved = std::max(issued, base + end_item);
       pop[depth] = moved;
       ++pop;
-      issued = moved + (*entry & ((1 << ForceWork::kCycleBits) - 1));
+      issued = moved + (*entry & ((1 << ForceWork::kCycleBits) - 1)) * interval;
       ++entry;
     }
     left = filtered = base + end_item - 1;
     first_item = end_item;
   }
-  return std::max({streamed + 1, filtered + 1, issued + shape.pipe});
+  return std::max({streamed + 1, filtered + 1, issued - (interval - 1) + shape.pipe});
 }
 
 }  // namespace cuboct::emu

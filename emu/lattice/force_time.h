@@ -18,13 +18,14 @@ struct ForceShape {
   int queue_depth = 1;
   int pipe = 1;  // cycles from a pair's issue to its sum
   int axes = 3;
+  int interval = 1;  // cycles from one issue to the next
 };
 
 // What the streamer walks. An item is a (record, pass); it becomes an entry of the queue if it has hits, and
-// then takes ceil(hits / force_pipes) cycles of the pipes. A segment without items takes a cycle.
+// then takes ceil(hits / force_pipes) issues, one every `interval` cycles. A segment without items takes a cycle.
 struct ForceWork {
-  // An entry: its item, counted from the first segment's first, and its cycles. At most 27 * 256 * 256 items,
-  // 64 cycles.
+  // An entry: its item, counted from the first segment's first, and its issues. At most 27 * 256 * 256 items,
+  // 64 issues.
   static constexpr int kCycleBits = 7;
   static constexpr uint32_t entry(size_t item, uint32_t cycles) {
     return static_cast<uint32_t>(item) << kCycleBits | cycles;

@@ -25,6 +25,10 @@ size_t gather(const PlanarTest& test, const Places& places, uint32_t node, HitSc
   const size_t step = hn::Lanes(d);
   const V zero = hn::Zero(d), cell = hn::Set(d, int32_t{1} << test.position_frac);
   const V shift[3] = {zero, hn::Sub(zero, cell), cell};
+  // x + shift lies in [-2^P, 2^(P+1)).
+  const auto coarse = [&](const int32_t* x, V by) HWY_ATTR {
+    return hn::ShiftRightSame(hn::Add(hn::LoadU(d, x), by), test.shift);
+  };
   int32_t* const to[3] = {scratch.x[0].data(), scratch.x[1].data(), scratch.x[2].data()};
   const auto near = [&](uint32_t of, size_t axis, size_t way) {
     return way == 0 ? of : places.neighbour[of][2 * axis + way - 1];
@@ -40,9 +44,9 @@ size_t gather(const PlanarTest& test, const Places& places, uint32_t node, HitSc
         const uint32_t first = places.first[at], size = places.first[at + 1] - first;
         // Whole vectors: what lies beyond `size` is overwritten by what follows.
         for (size_t k = 0; k < size; k += step) {
-          hn::StoreU(hn::Add(hn::LoadU(d, places.x[0] + first + k), shift[wx]), d, to[0] + count + k);
-          hn::StoreU(hn::Add(hn::LoadU(d, places.x[1] + first + k), shift[wy]), d, to[1] + count + k);
-          hn::StoreU(hn::Add(hn::LoadU(d, places.x[2] + first + k), shift[wz]), d, to[2] + count + k);
+          hn::StoreU(coarse(places.x[0] + first + k, shift[wx]), d, to[0] + count + k);
+          hn::StoreU(coarse(places.x[1] + first + k, shift[wy]), d, to[1] + count + k);
+          hn::StoreU(coarse(places.x[2] + first + k, shift[wz]), d, to[2] + count + k);
         }
         count += size;
         records[wz != 0 ? 4 + wz : wy != 0 ? 2 + wy : wx] += size;
@@ -56,16 +60,13 @@ size_t gather(const PlanarTest& test, const Places& places, uint32_t node, HitSc
 void count(const PlanarTest& test, const Places& places, uint32_t node, uint32_t from, uint32_t to,
            const HitScratch& scratch, size_t candidates, uint8_t* hits) {
   const D d;
-  const hn::RebindToUnsigned<D> u;
   const hn::Rebind<uint8_t, D> bytes;
   const int shift = test.shift;
-  const auto half = hn::Set(u, shift == 0 ? 0u : 1u << (shift - 1));
   const V one = hn::Set(d, test.planar[0]), two = hn::Set(d, test.planar[1]),
           three = hn::Set(d, test.planar[2]);
-  // round_odd is odd, so that the difference's sign can go first.
-  const auto distance = [&](V candidate, int32_t own) HWY_ATTR {
-    const auto away = hn::BitCast(u, hn::Abs(hn::Sub(candidate, hn::Set(d, own))));
-    return hn::BitCast(d, hn::ShiftRightSame(hn::Add(away, half), shift));
+  const auto size = [&](V candidate, int32_t own) HWY_ATTR {
+    const V e = hn::Sub(candidate, hn::Set(d, own >> shift));
+    return hn::Xor(e, hn::ShiftRight<31>(e));
   };
   const uint32_t first = places.first[node];
   const int32_t* const x_i = places.x[0] + first;
@@ -76,7 +77,7 @@ void count(const PlanarTest& test, const Places& places, uint32_t node, uint32_t
             z_j = hn::LoadU(d, scratch.x[2].data() + k);
     V sum = hn::Set(d, static_cast<int32_t>(to - from));
     for (uint32_t i = from; i < to; ++i) {
-      const V x = distance(x_j, x_i[i]), y = distance(y_j, y_i[i]), z = distance(z_j, z_i[i]);
+      const V x = size(x_j, x_i[i]), y = size(y_j, y_i[i]), z = size(z_j, z_i[i]);
       const V all = hn::Add(hn::Add(x, y), z);
       const V most = hn::Max(hn::Max(x, y), z), pair = hn::Sub(all, hn::Min(hn::Min(x, y), z));
       const V room = hn::Min(hn::Min(hn::Sub(one, most), hn::Sub(two, pair)), hn::Sub(three, all));
@@ -158,7 +159,9 @@ namespace cuboct::emu {
 HWY_EXPORT(filter_node);
 
 PlanarTest::PlanarTest(const FixedRule& rule)
-    : position_frac(rule.widths.position_frac), shift(rule.difference_shift), layers(rule.axes == 3 ? 3 : 1) {
+    : position_frac(rule.widths.position_frac),
+      shift(rule.widths.position_frac - rule.widths.filter_frac),
+      layers(rule.axes == 3 ? 3 : 1) {
   for (size_t k = 0; k < planar.size(); ++k) planar[k] = static_cast<int32_t>(rule.planar[k]);
 }
 

@@ -11,15 +11,14 @@
 
 namespace cuboct::emu {
 
-// `difference` and `may_interact` of model/fixed_rule.h in 32 bits. They suffice for all formats: P <= 30, so
-// that candidates lie in [-2^30, 2^31) and differences in (-2^31, 2^31); |d| <= 2^(D+1) with D <= 24, and a
-// sum of three is below 2^27.
+// `may_interact` of model/fixed_rule.h in 32 bits. They suffice for all formats: P <= 30, so that candidates
+// lie in [-2^30, 2^31); sizes are below 2^(B+1) with B <= 16.
 struct PlanarTest {
   explicit PlanarTest(const FixedRule& rule);
   int position_frac;                // P
-  int shift;                        // P - D
+  int shift;                        // P - B
   size_t layers;                    // of cells around a node's along z: 3, or 1 in a flat plan
-  std::array<int32_t, 3> planar{};  // D fractional bits
+  std::array<int32_t, 3> planar{};  // B fractional bits
 };
 
 struct Filter {
@@ -40,7 +39,7 @@ struct Places {
 
 struct HitScratch {
   HitScratch(int capacity, int lanes);
-  std::array<std::vector<int32_t>, 3> x;  // candidates in the frame of the node
+  std::array<std::vector<int32_t>, 3> x;  // candidates in the frame of the node, B fractional bits
   size_t row;                             // candidates, and room for a vector
   std::vector<uint8_t> hits;              // [pass][candidate], rows of `row`
   std::vector<uint8_t> items;             // hits by item

@@ -17,6 +17,8 @@ namespace {
 // An end beat loaded in cycle t is seen by its sender (`sent`) in t + 1, by its receiver in t + 2: through
 // the sender's output register and the receiver's; `LinkCode::latency` comes to the latter.
 constexpr int64_t kSent = 1, kReceived = 2;
+// A particle is seen a cycle later: its memory answers then.
+constexpr int64_t kAnswered = 1;
 // The end beat of a face without link: seen since long before.
 constexpr int64_t kLongAgo = INT64_MIN / 4;
 // A step costs about 50 ns per node and 100 ns per particle. A thread must have enough of it beside the
@@ -90,10 +92,10 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       threads_(threads > 0 ? threads : omp_get_num_procs()),
       halo_beats_(plan.words.halo_beats),
       received_(kReceived + plan.link.latency),
-      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes},
+      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval},
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       neighbour_(nodes_ + 1),
-      migration_(plan.lattice, plan.words.migrate_beats, static_cast<int>(received_)),
+      migration_(plan.lattice, plan.words.migrate_beats, static_cast<int>(received_ + kAnswered)),
       first_(nodes_ + 2),
       old_first_(nodes_ + 2),
       count_(nodes_ + 1),

@@ -47,8 +47,8 @@ void ForceEngine::filter(Stream& stream) const {
   stream.mask.clear();
   stream.passes = (n + lanes - 1) / lanes;
   stream.own.clear();
-  for (const Slot& s : own_) stream.own.add(s.body.x);
   const PlanarTest test(plan_.rule);
+  for (const Slot& s : own_) stream.own.add(s.body.x, test.shift());
   const uint64_t lane_mask = ~uint64_t{0} >> (64 - lanes);
   for (int segment = 0; segment < segments_; ++segment) {
     const auto one = [&](const Candidate& c, uint32_t self) {
@@ -96,12 +96,13 @@ uint64_t ForceEngine::run() {
   uint32_t f0 = 0, f1 = 0, current = 0;
   uint64_t current_mask = 0;
   uint32_t head = 0, count = 0;  // queue
+  int hold = 0;                  // cycles until the next pair may be issued
   int drain = 0;                 // cycles until the last issued pair is in its sum
 
   const auto from = [&](int s) { return available_[(s + 1) / 2]; };
   uint64_t cycle = available_[0];
   for (;; ++cycle) {
-    if (!f0_valid && !f1_valid && count == 0 && current_mask == 0) {
+    if (!f0_valid && !f1_valid && count == 0 && current_mask == 0 && hold == 0) {
       // Nothing moves but the pipes: on to where the streamer may go on, or the pipes are empty.
       if (segment == segments_) {
         cycle += static_cast<uint64_t>(drain);
@@ -113,8 +114,12 @@ uint64_t ForceEngine::run() {
       }
     }
     const uint32_t held = count;  // at the start of the cycle
-    if (current_mask != 0) {
+    if (hold > 0) {
+      --hold;
+      drain = std::max(0, drain - 1);
+    } else if (current_mask != 0) {
       issue(stream, current, current_mask);
+      hold = plan_.latency.interval - 1;
       ++counts_.issue_cycles;
       // Issued in cycle t, in the sum from t + pipe on: the pipe is empty in cycle t + pipe, and this edge
       // ends cycle t.
@@ -122,7 +127,7 @@ uint64_t ForceEngine::run() {
     } else if (drain > 0) {
       --drain;
     }
-    if (current_mask == 0 && held > 0) {
+    if (hold == 0 && current_mask == 0 && held > 0) {
       current = stream.queue[head];
       current_mask = stream.mask[current];
       head = head + 1 == depth ? 0 : head + 1;

@@ -259,6 +259,7 @@ void Node::take(int face, Migrate next, bool last) {
   const int a = axis();
   Receiver& r = receiver_[face];
   if (r.popped < r.fifo.size()) {
+    if (r.popped + 1 == r.fifo.size() && r.came + 1 == now_) return;  // the memory has not answered yet
     Slot s = r.fifo[r.popped++];
     if (r.popped == r.fifo.size()) r.fifo.clear(), r.popped = 0;
     s.away[a] = 0;
@@ -320,6 +321,7 @@ void Node::receive(int face, const Beat& beat) {
   }
   if (migrating) {
     receiver_[face].fifo.push_back(unpack_particle(plan_, *record));
+    receiver_[face].came = now_;
     return;
   }
   const int64_t cell = int64_t{1} << plan_.rule.widths.position_frac;

@@ -44,6 +44,7 @@ class Node : public NodeModel {
     Bits partial;
     std::vector<Slot> fifo;  // particles not yet popped, oldest at `popped`
     size_t popped = 0;
+    uint64_t came = 0;       // cycle in which the last one of `fifo` came
   };
 
   void reset();

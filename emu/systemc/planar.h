@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The planar test of one candidate against all slots of a node, four slots per operation: the same answer as
-// `may_interact(difference(...))` of model/fixed_rule.h.
+// `may_interact` of model/fixed_rule.h.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -14,14 +13,15 @@ namespace cuboct::emu {
 
 constexpr int kPlanarSlots = 256;  // the most that a node holds (hw/plan.h)
 
-// The slots' positions, P fractional bits.
+// The slots' positions, B fractional bits: the leading ones of P.
 struct PlanarSlots {
   std::array<std::array<int32_t, kPlanarSlots>, 3> x;
   int count = 0;
 
   void clear() { count = 0; }
-  void add(const std::array<int32_t, 3>& at) {
-    for (size_t a = 0; a < 3; ++a) x[a][static_cast<size_t>(count)] = at[a];
+  // `shift` is P - B.
+  void add(const std::array<int32_t, 3>& at, int shift) {
+    for (size_t a = 0; a < 3; ++a) x[a][static_cast<size_t>(count)] = at[a] >> shift;
     ++count;
   }
 };
@@ -42,17 +42,19 @@ struct PlanarMask {
 class PlanarTest {
  public:
   explicit PlanarTest(const FixedRule& rule)
-      : shift_(rule.difference_shift), half_(shift_ == 0 ? 0 : 1u << (shift_ - 1)) {
-    // Magnitudes, at most 2^(D+1) each with D <= 24, and their sums lie below 2^28.
-    for (size_t k = 0; k < 3; ++k)
-      limit_[k] = static_cast<int32_t>(std::min(rule.planar[k], int64_t{1} << 28));
+      : shift_(rule.widths.position_frac - rule.widths.filter_frac) {
+    // Sizes, below 2^(B+1) each with B <= 16, and their sums fit.
+    for (size_t k = 0; k < 3; ++k) limit_[k] = static_cast<int32_t>(rule.planar[k]);
   }
+
+  int shift() const { return shift_; }
 
   PlanarMask operator()(const PlanarSlots& slots, const std::array<int32_t, 3>& candidate) const {
     PlanarMask mask;
     for (int k = 0; k < slots.count; k += kLanes) {
-      const Lanes dx = distance(slots.x[0], k, candidate[0]), dy = distance(slots.x[1], k, candidate[1]),
-                  dz = distance(slots.x[2], k, candidate[2]);
+      const Lanes dx = size(slots.x[0], k, candidate[0] >> shift_),
+                  dy = size(slots.x[1], k, candidate[1] >> shift_),
+                  dz = size(slots.x[2], k, candidate[2] >> shift_);
       const Lanes xy = dx + dy;
       // The sign of limit - value says that a limit is passed; one sign is enough.
       const Lanes far = (limit_[0] - dx) | (limit_[0] - dy) | (limit_[0] - dz) | (limit_[1] - xy) |
@@ -70,18 +72,12 @@ class PlanarTest {
   static constexpr int kLanes = 4;
   typedef int32_t Lanes __attribute__((vector_size(4 * kLanes)));
   typedef float Floats __attribute__((vector_size(4 * kLanes)));
-  typedef uint32_t Magnitudes __attribute__((vector_size(4 * kLanes)));
 
-  // |round_odd(candidate - slot, shift)| = (|candidate - slot| + half) >> shift, as round_odd is odd. The
-  // difference of a P+2 bit and a P bit number fits 32 bits, and its magnitude plus half fits 32 without
-  // sign.
-  Lanes distance(const std::array<int32_t, kPlanarSlots>& x, int slot, int32_t candidate) const {
+  Lanes size(const std::array<int32_t, kPlanarSlots>& x, int slot, int32_t candidate) const {
     Lanes own;
     std::memcpy(&own, &x[static_cast<size_t>(slot)], sizeof own);
-    const Lanes d = candidate - own;
-    const Lanes sign = d >> 31;
-    const auto magnitude = reinterpret_cast<Magnitudes>((d ^ sign) - sign);
-    return reinterpret_cast<Lanes>((magnitude + half_) >> shift_);
+    const Lanes e = candidate - own;
+    return e ^ (e >> 31);
   }
   static unsigned signs(Lanes v) {
 #ifdef __SSE__
@@ -93,8 +89,7 @@ class PlanarTest {
 #endif
   }
 
-  const int shift_;
-  const uint32_t half_;
+  const int shift_;  // P - B
   std::array<int32_t, 3> limit_{};
 };
 

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-enum { kCuboctAbi = 3, kCuboctFaces = 6, kCuboctWords = 8 };
+enum { kCuboctAbi = 4, kCuboctFaces = 6, kCuboctWords = 8 };
 
 // Inputs of one node during one cycle. `link_data[f]` is read where bit f of `link_valid` is set.
 struct CuboctIn {
@@ -21,6 +21,7 @@ struct CuboctIn {
 struct CuboctOut {
   uint8_t phase_start, phase_end, observe_valid, fault_valid, fault_code, idle;
   uint8_t link_valid, link_end, link_ready;
+  uint8_t force_event;  // of a node alone: engine runs, stalled, presents a candidate, issues
   uint8_t beat_errors, ack_errors;  // of the cycle; these and link_ack where links are checked
   uint16_t link_ack[kCuboctFaces];
   uint32_t fault_id;

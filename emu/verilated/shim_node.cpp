@@ -78,6 +78,7 @@ const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
   out->phase_start = m.phase_start_o;
   out->phase_end = m.phase_end_o;
   out->idle = m.idle_o;
+  out->force_event = m.force_event_o;
   out->observe_valid = m.observe_valid_o;
   if (m.observe_valid_o) {
     get_port(m.observe_data_o, n.particle);

@@ -59,6 +59,8 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
     ++*cycle_;
 
   read_outputs(out_, out);
+  if (host.reset_n)  // what registers hold before is no event
+    for (size_t e = 0; e < events_.size(); ++e) events_[e] += out_.force_event >> e & 1;
   out.valid = out.loaded = out_.link_valid & has_link_;
   out.ready = out_.link_ready & has_link_;
   std::copy(out_.link_ack, out_.link_ack + kFaces, out.ack.begin());
@@ -69,6 +71,14 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
   }
   phases_ = static_cast<uint8_t>((phases_ | out.phase_start) & ~out.phase_end);
   idle_ = out.idle;
+}
+
+Counters VerilatedNode::counters() const {
+  const auto count = [this](size_t event) { return static_cast<double>(events_[event]); };
+  return {{"candidates", count(2)},
+          {"queue_stalls", count(1)},
+          {"issue_cycles", count(3)},
+          {"force_cycles", count(0)}};
 }
 
 std::string VerilatedNode::doing() const {

@@ -2,6 +2,8 @@
 // The emitted RTL as a NodeModel: the Verilated node behind the same bench as the native one.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +24,7 @@ class VerilatedNode : public NodeModel {
   // Throws std::runtime_error with cycle, file and line where an assertion of the RTL fails.
   void clock(const NodeInputs& in, NodeOutputs& out) override;
   std::string doing() const override;
+  Counters counters() const override;
 
  private:
   const std::shared_ptr<const Library> library_;
@@ -29,6 +32,7 @@ class VerilatedNode : public NodeModel {
   void* const model_;
   CuboctOut out_{};
   uint8_t phases_ = 0;  // that run
+  std::array<uint64_t, 4> events_{};  // cycles of each bit of force_event_o
   bool idle_ = true;
   std::optional<uint64_t> cycle_;  // of the run, once it was started
 };

@@ -1,4 +1,5 @@
 rtl/cuboct_pkg.sv
+rtl/cuboct_axis_mults.sv
 rtl/cuboct_beat.sv
 rtl/cuboct_candidate.sv
 rtl/cuboct_delay.sv
@@ -6,8 +7,8 @@ rtl/cuboct_fifo.sv
 rtl/cuboct_filter.sv
 rtl/cuboct_filter_lane.sv
 rtl/cuboct_force_rom.sv
-rtl/cuboct_halo_mem.sv
 rtl/cuboct_halos.sv
+rtl/cuboct_inbox.sv
 rtl/cuboct_issue.sv
 rtl/cuboct_lattice.sv
 rtl/cuboct_least_fault.sv
@@ -20,6 +21,7 @@ rtl/cuboct_node_core.sv
 rtl/cuboct_pair_finder.sv
 rtl/cuboct_pair_table.sv
 rtl/cuboct_pipe.sv
+rtl/cuboct_ram.sv
 rtl/cuboct_relay.sv
 rtl/cuboct_resize.sv
 rtl/cuboct_round_odd.sv

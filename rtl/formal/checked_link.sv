@@ -24,7 +24,7 @@ module checked_link_formal #(
   localparam int AckBits  = SequenceBits + 8;
   localparam int Entry    = CrcBits + 1 + LinkBits;
   localparam int ToldIn   = Patience + 3;
-  localparam int HealedIn = Patience + 9;
+  localparam int HealedIn = Window * (Patience + 2) + 5;
 
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
@@ -128,10 +128,11 @@ module checked_link_formal #(
       if (Wire == 1) a_told: assert (since_q <= ToldIn[7:0]);
       if (Wire == 1 && Retry != 0) a_heals: assert (waits_q <= HealedIn[7:0]);
       c_run: cover (came_q == 8'd4 && !fault_q);
-      if (Wire != 2) c_silent: cover (silent);
-      if (Wire != 2) c_order:  cover (order);
-      if (Wire != 2) c_wrong:  cover (wrong);
-      if (Wire != 2 && Retry != 0) c_repaired: cover (repaired_q);
+      // Where the wire only stalls there is nothing to be told: some beat instead.
+      c_silent:   cover (silent || (Wire == 2 && sent_q == 8'd1));
+      c_order:    cover (order || (Wire == 2 && sent_q == 8'd2));
+      c_wrong:    cover (wrong || (Wire == 2 && came_q == 8'd1));
+      c_repaired: cover (repaired_q || ((Wire == 2 || Retry == 0) && came_q == 8'd2));
     end
   end
 

@@ -20,6 +20,7 @@ module neighbours_formal #(
   localparam int Faces        = 4;
   localparam int Below        = 2 * Axis;      // the face of the second node towards the first
   localparam int Above        = 2 * Axis + 1;  // of the first towards the second
+  localparam int SlotBits     = (Capacity > 1) ? $clog2(Capacity) : 1;
   localparam int CountBits    = $clog2(3 * Capacity) + 1;
   localparam int Room         = ((Axis == 0) ? 1 : 3) * Capacity;  // of the face's halo memory
   localparam int ParticleBits = 7;             // x y away_y v id: 1 1 2 1 1 1
@@ -82,8 +83,9 @@ module neighbours_formal #(
     // segment is there only then (proof `streamer`); the update writes a slot two cycles after it was read.
     (* keep *) logic       tap_finder_done, tap_take, tap_update_write, tap_update_fault, tap_pipe_fault;
     (* keep *) logic [1:0] tap_past_exchange;
-    (* keep *) logic       tap_tick_slot, tap_update_slot;
-    logic                  take_1_q, take_2_q, slot_1_q, slot_2_q;
+    (* keep *) logic [SlotBits-1:0] tap_tick_slot, tap_update_slot;
+    logic [SlotBits-1:0]            slot_1_q, slot_2_q;
+    logic                  take_1_q, take_2_q;
     always_ff @(posedge clk_i) begin
       take_1_q <= running_q && tap_take;
       take_2_q <= running_q && take_1_q;

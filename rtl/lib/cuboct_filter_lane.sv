@@ -1,34 +1,28 @@
 // SPDX-License-Identifier: MIT
-// One filter lane: may the candidate interact with the particle of this lane's slot? Adders and comparators only: each
-// |d_a|, each sum of two and, of three axes, the sum of all against bounds that no pair inside the cutoff exceeds.
-// Combinational.
+// One filter lane: may the candidate interact with the particle of this lane's slot? Adders and comparators only, on
+// the leading FilterFrac bits of the positions. With e the difference of these, size = e, or -e - 1 if e < 0; each
+// size, each sum of two and, of three axes, the sum of all stand against bounds that no pair inside the cutoff exceeds
+// (model/fixed_rule.h). Combinational.
 module cuboct_filter_lane #(
-  parameter int          Axes            = 3,      // 2 or 3
-  parameter int          PositionFrac    = 20,     // P
-  parameter int          DifferenceShift = 4,      // P - D, >= 0
-  parameter logic [63:0] PlanarOne       = 64'd0,  // D fractional bits
-  parameter logic [63:0] PlanarTwo       = 64'd0,
-  parameter logic [63:0] PlanarThree     = 64'd0
+  parameter int          Axes        = 3,      // 2 or 3
+  parameter int          FilterFrac  = 8,      // B
+  parameter logic [63:0] PlanarOne   = 64'd0,  // B fractional bits
+  parameter logic [63:0] PlanarTwo   = 64'd0,
+  parameter logic [63:0] PlanarThree = 64'd0
 ) (
-  input  logic                          test_i,       // the lane's slot exists and is not the candidate itself
-  input  logic [Axes*PositionFrac-1:0]  own_i,        // x, y, z, unsigned
-  input  logic [Axes*(PositionFrac+2)-1:0] candidate_i,  // x, y, z, signed
-  output logic                          pass_o
+  input  logic                           test_i,       // the lane's slot exists and is not the candidate itself
+  input  logic [Axes*FilterFrac-1:0]     own_i,        // x, y, z, unsigned
+  input  logic [Axes*(FilterFrac+2)-1:0] candidate_i,  // x, y, z, signed
+  output logic                           pass_o
 );
-  // |x_j - x_i| <= 2^(P+1), so |d| <= 2^(D+1), and a sum of three takes D+4 bits with the sign; one to spare.
-  localparam int Bits = PositionFrac - DifferenceShift + 5;
+  // |e| < 2^(B+1), and a sum of three sizes, or a bound, lies below 2^(B+3).
+  localparam int Bits = FilterFrac + 3;
 
   logic [Bits-1:0] size [0:Axes-1];
   for (genvar a = 0; a < Axes; a++) begin : gen_axis
-    logic signed [PositionFrac+2:0] difference;
-    logic signed [Bits-1:0]         d;
-    assign difference = $signed({candidate_i[(a+1)*(PositionFrac+2)-1],
-                                 candidate_i[a*(PositionFrac+2) +: PositionFrac+2]})
-                      - $signed({3'b000, own_i[a*PositionFrac +: PositionFrac]});
-    cuboct_round_odd #(.InBits(PositionFrac + 3), .Shift(DifferenceShift), .OutBits(Bits)) u_round (
-      .a_i(difference), .y_o(d)
-    );
-    assign size[a] = d[Bits-1] ? -d : d;
+    logic [FilterFrac+1:0] e;
+    assign e       = candidate_i[a*(FilterFrac+2) +: FilterFrac+2] - {2'b00, own_i[a*FilterFrac +: FilterFrac]};
+    assign size[a] = {2'b00, e[FilterFrac:0] ^ {(FilterFrac + 1) {e[FilterFrac+1]}}};
   end
 
   logic [Bits-1:0] xy;

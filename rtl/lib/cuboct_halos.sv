@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The receiving side of the six links: assembly, halo memories in the node's own frame, migrate FIFOs, and the flags
-// that say which streams have ended.
+// The receiving side of the six links: assembly, one memory per face for halos in the node's own frame and for
+// migrating particles, and the flags that say which streams have ended.
 module cuboct_halos #(
   parameter int Axes          = 3,    // 2 or 3
   parameter int PositionFrac  = 20,   // P
   parameter int Capacity      = 16,
   parameter int LinkBits      = 32,
   parameter int HaloBits      = 62,   // of a halo record: x[P+2] y[P+2] z[P] rest; with two axes x[P+2] y[P] rest
-  parameter int CandidateBits = 64,   // of a halo in memory: all axes of P+2 bits, rest; HaloBits + 2
+  parameter int CandidateBits = 64,   // of a halo as it is read: all axes of P+2 bits, rest; HaloBits + 2
   parameter int ParticleBits  = 128,
   parameter int AddrBits      = 8,    // of a record's number in any segment
   parameter int CountBits     = 9,    // of a segment's count
@@ -24,11 +24,13 @@ module cuboct_halos #(
   input  logic                       halo_clear_i,
   output logic [Faces-1:0]           halo_end_o,     // complete; always where there is no link
   output logic [Faces*CountBits-1:0] halo_count_o,
-  input  logic [AddrBits-1:0]        stream_addr_i,  // read by the streamer
-  output logic [Faces*CandidateBits-1:0] stream_data_o,  // by face
-  input  logic [AddrBits-1:0]        relay_addr_i,   // read by the relay, faces of all axes but the last
+  input  logic                       stream_read_i,
+  input  logic [AddrBits-1:0]        stream_addr_i,  // read by the streamer: what it gets is there in the next cycle,
+  output logic [Faces*CandidateBits-1:0] stream_data_o,  // by face, and stays until it reads again
+  input  logic [AddrBits-1:0]        relay_addr_i,   // of the next cycle's relay_data_o, faces of all axes but the last
   output logic [(Faces-2)*CandidateBits-1:0] relay_data_o,
   // Migrating particles.
+  input  logic                       migrating_i,    // a migration phase
   input  logic [Faces-1:0]           migrate_clear_i,
   output logic [Faces-1:0]           migrate_end_o,  // complete; always where there is no link
   output logic [Faces-1:0]           migrate_empty_o,
@@ -36,6 +38,7 @@ module cuboct_halos #(
   input  logic [Faces-1:0]           migrate_pop_i
 );
   localparam int RestBits = HaloBits - Axes * PositionFrac - 2 * (Axes - 1);
+  localparam int CandPos  = Axes * (PositionFrac + 2);
   localparam int LastLsb  = (Axes - 1) * (PositionFrac + 2);  // of the last axis, which has no sign on the link
 
   logic [Faces-1:0] halo_end_d, halo_end_q, migrate_end_d, migrate_end_q, halo_end, migrate_end;
@@ -59,7 +62,6 @@ module cuboct_halos #(
 
     logic                     halo_valid, migrate_valid, migrate_full;
     logic [HaloBits-1:0]      halo;
-    logic [CandidateBits-1:0] local_halo, relay_data;
     logic [ParticleBits-1:0]  particle;
     cuboct_link_rx #(.LinkBits(LinkBits), .HaloBits(HaloBits), .MigrateBits(ParticleBits)) u_rx (
       .clk_i, .rst_ni, .valid_i(link_valid_i[f] && has_link_i[f]), .end_i(link_end_i[f]),
@@ -68,44 +70,45 @@ module cuboct_halos #(
       .migrate_valid_o(migrate_valid), .migrate_o(particle), .migrate_end_o(migrate_end[f])
     );
 
-    // One node further along the axis: -2^P from below, +2^P from above.
-    logic [Axes*(PositionFrac+2)-1:0] sent, moved;
-    assign sent = {2'b00, halo[LastLsb +: PositionFrac], halo[LastLsb-1:0]};
-    for (genvar a = 0; a < Axes; a++) begin : gen_axis
-      localparam int Lsb = a * (PositionFrac + 2);
-      assign moved[Lsb +: PositionFrac] = sent[Lsb +: PositionFrac];
-      if (a != Axis) begin : gen_same
-        assign moved[Lsb+PositionFrac +: 2] = sent[Lsb+PositionFrac +: 2];
-      end else if (f % 2 == 0) begin : gen_below
-        assign moved[Lsb+PositionFrac +: 2] = sent[Lsb+PositionFrac +: 2] - 2'd1;
-      end else begin : gen_above
-        assign moved[Lsb+PositionFrac +: 2] = sent[Lsb+PositionFrac +: 2] + 2'd1;
+    // One node further along the axis: -2^P from below, +2^P from above. The memory holds records as they are on the
+    // link; the sign of the last axis, which is not sent, is the same for all records of a face.
+    localparam logic [1:0] LastSign = (Axis < Axes - 1) ? 2'b00 : (f % 2 == 0) ? 2'b11 : 2'b01;
+    logic [HaloBits-1:0] moved, streamed, relayed;
+    for (genvar b = 0; b < HaloBits; b++) begin : gen_bit
+      localparam int SignLsb = Axis * (PositionFrac + 2) + PositionFrac;
+      if (Axis < Axes - 1 && b == SignLsb + 1) begin : gen_sign
+        // From 00, 01, 11: one less from below, one more from above.
+        assign moved[b] = (f % 2 == 0) ? (halo[b] ~^ halo[b-1]) : (halo[b] ^ halo[b-1]);
+      end else if (Axis < Axes - 1 && b == SignLsb) begin : gen_unit
+        assign moved[b] = !halo[b];
+      end else begin : gen_same
+        assign moved[b] = halo[b];
       end
     end
-    if (RestBits > 0) begin : gen_rest
-      assign local_halo = {halo[HaloBits-1 -: RestBits], moved};
-    end else begin : gen_bare
-      assign local_halo = moved;
-    end
 
-    cuboct_halo_mem #(.Bits(CandidateBits), .Depth(Depth), .AddrBits(AddrBits), .CountBits(CountBits)) u_halos (
-      .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(halo_valid), .data_i(local_halo),
-      .count_o(halo_count_o[f*CountBits +: CountBits]),
-      .addr_a_i(stream_addr_i), .data_a_o(stream_data_o[f*CandidateBits +: CandidateBits]),
-      .addr_b_i(relay_addr_i), .data_b_o(relay_data)
+    cuboct_inbox #(
+      .HaloBits(HaloBits), .ParticleBits(ParticleBits), .HaloDepth(Depth), .Capacity(Capacity),
+      .Relayed((Axis < Axes - 1) ? 1 : 0), .AddrBits(AddrBits), .CountBits(CountBits)
+    ) u_inbox (
+      .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(halo_valid), .halo_i(moved),
+      .count_o(halo_count_o[f*CountBits +: CountBits]), .read_i(stream_read_i), .addr_i(stream_addr_i),
+      .halo_o(streamed), .relay_addr_i, .relay_halo_o(relayed),
+      .migrating_i, .push_i(migrate_valid), .particle_i(particle), .full_o(migrate_full), .pop_i(migrate_pop_i[f]),
+      .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .empty_o(migrate_empty_o[f])
     );
+    assign stream_data_o[f*CandidateBits +: CandPos] = {LastSign, streamed[LastLsb+PositionFrac-1:0]};
+    if (RestBits > 0) begin : gen_rest
+      assign stream_data_o[f*CandidateBits+CandPos +: RestBits] = streamed[HaloBits-1 -: RestBits];
+    end
     if (Axis < Axes - 1) begin : gen_relay
-      assign relay_data_o[f*CandidateBits +: CandidateBits] = relay_data;
+      assign relay_data_o[f*CandidateBits +: CandPos] = {LastSign, relayed[LastLsb+PositionFrac-1:0]};
+      if (RestBits > 0) begin : gen_relay_rest
+        assign relay_data_o[f*CandidateBits+CandPos +: RestBits] = relayed[HaloBits-1 -: RestBits];
+      end
     end else begin : gen_no_relay
       logic unused_relay;
-      assign unused_relay = ^relay_data;
+      assign unused_relay = ^relayed;
     end
-
-    cuboct_fifo #(.Bits(ParticleBits), .Depth(Capacity)) u_arrived (
-      .clk_i, .rst_ni, .push_i(migrate_valid), .data_i(particle), .full_o(migrate_full),
-      .pop_i(migrate_pop_i[f]), .data_o(migrate_data_o[f*ParticleBits +: ParticleBits]),
-      .empty_o(migrate_empty_o[f])
-    );
 
 `ifndef SYNTHESIS
     always_ff @(posedge clk_i) begin

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Between queue and pipes: the register `current` holds one queue entry; each cycle the ForcePipes lowest bits of its
-// mask are issued, the lowest to pipe 0. When no bit remains the oldest entry of the queue follows without a gap.
+// Between queue and pipes: the register `current` holds one queue entry; every Interval cycles the ForcePipes lowest
+// bits of its mask are issued, the lowest to pipe 0. When no bit remains the oldest entry of the queue follows without
+// a gap.
 module cuboct_issue #(
   parameter int CandidateBits = 66,
   parameter int FilterLanes   = 8,  // bits of the mask
   parameter int RowBits       = 1,
   parameter int SlotBits      = 4,
-  parameter int ForcePipes    = 1
+  parameter int ForcePipes    = 1,
+  parameter int Interval      = 1   // cycles from one issue to the next, >= 1
 ) (
   input  logic                           clk_i,
   input  logic                           rst_ni,
@@ -27,6 +29,7 @@ module cuboct_issue #(
   logic [FilterLanes-1:0]   mask_d, mask_q;
   logic [FilterLanes-1:0]   rest, lowest;  // what the pipes before leave; its lowest bit
   logic [SlotBits-1:0]      row_base;
+  logic                     first, last;   // cycle of an interval
 
   // The lane whose bit is set. A slot's number needs no more bits: lanes beyond the last slot never pass.
   function automatic logic [SlotBits-1:0] lane_of(input logic [FilterLanes-1:0] onehot);
@@ -48,14 +51,30 @@ module cuboct_issue #(
     slot_o  = '0;
     for (f = 0; f < ForcePipes; f = f + 1) begin
       lowest                          = rest & (~rest + 1'b1);
-      valid_o[f]                      = (rest != '0);
+      valid_o[f]                      = first && (rest != '0);
       slot_o[f*SlotBits +: SlotBits] = row_base + lane_of(lowest);
       rest                            = rest & ~lowest;
     end
   end
 
-  assign pop_o  = (rest == '0) && !empty_i;
-  assign mask_d = pop_o ? mask_i : rest;
+  if (Interval == 1) begin : gen_every_cycle
+    assign first = 1'b1;
+    assign last  = 1'b1;
+  end else begin : gen_interval
+    localparam int PhaseBits = $clog2(Interval);
+    localparam int Last      = Interval - 1;
+    logic [PhaseBits-1:0] phase_d, phase_q;
+    assign first   = (phase_q == '0);
+    assign last    = (phase_q == Last[PhaseBits-1:0]) || (mask_q == '0);
+    assign phase_d = last ? '0 : phase_q + 1'b1;
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) phase_q <= '0;
+      else phase_q <= phase_d;
+    end
+  end
+
+  assign pop_o  = last && (rest == '0) && !empty_i;
+  assign mask_d = pop_o ? mask_i : last ? rest : mask_q;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) mask_q <= '0;
     else mask_q <= mask_d;

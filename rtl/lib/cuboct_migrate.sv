@@ -21,7 +21,7 @@ module cuboct_migrate #(
   input  logic [CountBits-1:0]      count_i,
   output logic                      count_set_o,
   output logic [CountBits-1:0]      count_o,
-  output logic [SlotBits-1:0]       read_slot_o,
+  output logic [SlotBits-1:0]       read_slot_o,      // of the next cycle's read_data_i
   input  logic [ParticleBits+1:0]   read_data_i,
   output logic                      write_o,
   output logic [SlotBits-1:0]       write_slot_o,
@@ -184,7 +184,7 @@ module cuboct_migrate #(
     end
   end
 
-  assign read_slot_o      = read_q[SlotBits-1:0];
+  assign read_slot_o      = read_d[SlotBits-1:0];
   assign fault_particle_o = fault_left_o ? read_data_i[ParticleBits-1:0] : candidate;
 
   logic [LinkBits-1:0] beat;

@@ -10,6 +10,7 @@ module cuboct_node_core #(
   parameter int          Capacity             = 16,     // particles, >= 1
   parameter int          FilterLanes          = 8,      // >= 1
   parameter int          ForcePipes           = 1,      // >= 1
+  parameter int          Shared               = 0,      // 0, 1: one multiplier serves the axes in turn
   parameter int          QueueDepth           = 16,     // entries, >= 1
   parameter int          Overlap              = 1,      // 0, 1
   parameter int          LinkBits             = 66,     // payload of a beat, >= 1
@@ -29,6 +30,7 @@ module cuboct_node_core #(
   parameter int          ScaleBits            = 18,
   parameter int          ConstantBits         = 29,     // imposed velocities and gravity
   // Shifts.
+  parameter int          FilterFrac           = 8,      // leading bits of a position that the filter tests
   parameter int          DifferenceShift      = 4,
   parameter int          WShift               = 8,
   parameter int          QShift               = 17,
@@ -88,6 +90,7 @@ module cuboct_node_core #(
   output logic [Faces-1:0]        link_ready_o,
   output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
   output logic [7:0]              phase_end_o,
+  output logic [3:0]              force_event_o,  // engine runs, stalled, presents a candidate, issues; in this cycle
   output logic                    observe_valid_o,
   output logic [ParticleBits-1:0] observe_data_o,
   output logic                    fault_valid_o,
@@ -106,6 +109,7 @@ module cuboct_node_core #(
   localparam int IdLsb      = TypeLsb + TypeBits;
   localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
   localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}
+  localparam int SeenBits   = (HaloVelocity + HaloType > 0) ? IdLsb : PosBits;  // what others see of it
   // Fields of a candidate: a halo record with all axes of one width.
   localparam int CandPos       = Axes * (PositionFrac + 2);
   localparam int CandidateBits = CandPos + HaloType + HaloVelocity;
@@ -120,8 +124,17 @@ module cuboct_node_core #(
   localparam int KickFull    = SBits + PositionFrac - DifferenceShift + 1 - KickShift;
   localparam int KickBits    = (KickFull > 2) ? KickFull : 2;
   localparam int PipeSumBits = KickBits + $clog2(((Axes == 3) ? 27 : 9) * Capacity);
+  // No number that a fault tells is longer: w, s before their checks; sums, v, u; the capacity.
+  localparam int SFullBits   = ((DampBits + RelativeVelocityBits > ForceBits) ? DampBits + RelativeVelocityBits : ForceBits)
+                               + 2;
+  localparam int PullBits    = (Pd != 0) ? GainBits + DisplacementBits + 6 : 10;
+  localparam int VFullBits   = ((VelocityBits > SumBits) ? VelocityBits : SumBits) + 4;
+  localparam int LongPull    = (PullBits > VFullBits) ? PullBits : VFullBits;
+  localparam int LongKick    = (PipeSumBits + ForcePipes > SFullBits) ? PipeSumBits + ForcePipes : SFullBits;
+  localparam int LongNumber  = (LongPull > LongKick) ? LongPull : LongKick;
+  localparam int NumberBits  = (LongNumber < 64) ? LongNumber : 64;
   // Update.
-  localparam int UpdateLatency = (Pd != 0) ? 6 : 3;
+  localparam int UpdateLatency = (Pd != 0) ? 7 : 4;  // a cycle after the last one is written MIGRATE may read it
   localparam int UpdateTail    = UpdateLatency - 2;
   localparam int TickBits      = $clog2(Capacity + UpdateLatency + 1);
 
@@ -141,12 +154,14 @@ module cuboct_node_core #(
   logic [CountBits-1:0]           own_count_d, own_count_q, migrate_count;
   logic                           own_write, load, update_write, migrate_write, migrate_count_set;
   logic [SlotBits-1:0]            own_write_slot, update_slot, migrate_write_slot, main_slot, stream_slot;
-  logic [OwnBits-1:0]             own_write_data, update_data, migrate_write_data, main_data, stream_data;
-  logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot;
-  logic [ForcePipes*OwnBits-1:0]  pipe_data;
+  logic [OwnBits-1:0]             own_write_data, update_data, migrate_write_data, main_data;
+  logic [SeenBits-1:0]            stream_data;
+  logic                           stream_read;
+  logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot, kick_slot_next;
+  logic [ForcePipes*SeenBits-1:0] pipe_data;
   logic [ForcePipes*IdBits-1:0]   kick_id;
   logic [RowBits-1:0]             row;
-  logic [FilterLanes*PosBits-1:0] row_data;
+  logic [FilterLanes*Axes*FilterFrac-1:0] row_data;
 
   assign load = idle_o && load_valid_i && (own_count_q != Capacity[CountBits-1:0]);
   always_comb begin
@@ -171,13 +186,14 @@ module cuboct_node_core #(
     end
   end
   cuboct_slots #(
-    .Bits(OwnBits), .PosBits(PosBits), .IdLsb(IdLsb), .IdBits(IdBits), .Capacity(Capacity), .SlotBits(SlotBits),
-    .FilterLanes(FilterLanes), .RowBits(RowBits), .ForcePipes(ForcePipes)
+    .Axes(Axes), .Bits(OwnBits), .SeenBits(SeenBits), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
+    .IdLsb(IdLsb), .IdBits(IdBits), .Capacity(Capacity), .SlotBits(SlotBits), .FilterLanes(FilterLanes),
+    .RowBits(RowBits), .ForcePipes(ForcePipes)
   ) u_slots (
     .clk_i, .write_i(own_write), .write_slot_i(own_write_slot), .write_data_i(own_write_data),
-    .main_slot_i(main_slot), .main_data_o(main_data), .stream_slot_i(stream_slot), .stream_data_o(stream_data),
-    .pipe_slot_i(issue_slot), .pipe_data_o(pipe_data), .fault_slot_i(kick_slot), .fault_id_o(kick_id),
-    .row_i(row), .row_data_o(row_data)
+    .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read), .stream_slot_i(stream_slot),
+    .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data), .pipe_slot_i(issue_slot),
+    .pipe_data_o(pipe_data), .fault_slot_i(kick_slot_next), .fault_id_o(kick_id)
   );
 
   // Links: receivers.
@@ -193,8 +209,8 @@ module cuboct_node_core #(
   ) u_halos (
     .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
     .halo_clear_i(force_done), .halo_end_o(halo_end), .halo_count_o(halo_count),
-    .stream_addr_i(stream_addr), .stream_data_o(stream_halos), .relay_addr_i(relay_addr),
-    .relay_data_o(relay_halos), .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end),
+    .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
+    .relay_addr_i(relay_addr), .relay_data_o(relay_halos), .migrating_i(in_migrate), .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end),
     .migrate_empty_o(migrate_empty), .migrate_data_o(arrived), .migrate_pop_i(migrate_pop)
   );
 
@@ -234,8 +250,8 @@ module cuboct_node_core #(
         axis_empty    = migrate_empty[2*b +: 2];
         axis_ended    = migrate_end[2*b +: 2];
         axis_leaving  = leaving_q[b];
-        axis_arrived  = arrived[2*b*ParticleBits +: 2*ParticleBits];
       end
+      axis_arrived = axis_arrived | (arrived[2*b*ParticleBits +: 2*ParticleBits] & {2 * ParticleBits{axis_onehot[b]}});
     end
   end
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
@@ -251,7 +267,7 @@ module cuboct_node_core #(
   logic [CandidateBits-1:0] own_candidate, relay_own;
   cuboct_candidate #(
     .Axes(Axes), .PositionFrac(PositionFrac), .VelLsb(VelLsb), .VelBits(HaloVelocity), .TypeLsb(TypeLsb),
-    .TypeBits(HaloType), .OwnBits(OwnBits), .CandidateBits(CandidateBits)
+    .TypeBits(HaloType), .OwnBits(SeenBits), .CandidateBits(CandidateBits)
   ) u_stream_candidate (.own_i(stream_data), .candidate_o(own_candidate));
   cuboct_candidate #(
     .Axes(Axes), .PositionFrac(PositionFrac), .VelLsb(VelLsb), .VelBits(HaloVelocity), .TypeLsb(TypeLsb),
@@ -266,9 +282,10 @@ module cuboct_node_core #(
   logic [HaloBits-1:0]      relay_record;
   integer h;
   always_comb begin
-    relay_candidate = relay_own;
+    relay_candidate = relay_own & {CandidateBits{relay_segment == 3'd0}};
     for (h = 0; h < Faces - 2; h = h + 1) begin
-      if (relay_segment == h[2:0] + 3'd1) relay_candidate = relay_halos[h*CandidateBits +: CandidateBits];
+      relay_candidate = relay_candidate | (relay_halos[h*CandidateBits +: CandidateBits]
+                                           & {CandidateBits{relay_segment == h[2:0] + 3'd1}});
     end
   end
   // On the link the last axis has no sign: what is sent lies in this node's layer.
@@ -294,29 +311,30 @@ module cuboct_node_core #(
   logic [CandidateBits-1:0]     issue_candidate;
   logic [ForcePipes-1:0]        issue, pipe_busy, kick_valid, pipe_fault, pipe_fault_strength;
   logic [ForcePipes*64-1:0]     pipe_fault_number;
-  logic                         finder_done;
+  logic                         finder_done, force_stall;
   logic [ForcePipes*Axes*PipeSumBits-1:0] sums;
   logic [Axes*PipeSumBits-1:0]  total;
-  logic [SlotBits-1:0]          tick_slot;
+  logic [SlotBits-1:0]          tick_slot, tick_next;
   logic                         take;
   cuboct_pair_finder #(
-    .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne),
+    .Axes(Axes), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne),
     .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .ForcePipes(ForcePipes),
-    .QueueDepth(QueueDepth), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
+    .Interval((Shared != 0) ? Axes : 1), .QueueDepth(QueueDepth), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_finder (
     .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .available_i({past_exchange, 1'b1}),
-    .counts_i({halo_count, own_count_q}), .slot_o(stream_slot), .addr_o(stream_addr), .own_i(own_candidate),
+    .counts_i({halo_count, own_count_q}), .read_o(stream_read), .slot_o(stream_slot), .addr_o(stream_addr), .own_i(own_candidate),
     .halos_i(stream_halos), .row_o(row), .row_data_i(row_data), .candidate_o(issue_candidate),
-    .issue_o(issue), .issue_slot_o(issue_slot), .done_o(finder_done)
+    .issue_o(issue), .issue_slot_o(issue_slot), .stall_o(force_stall), .done_o(finder_done)
   );
+  assign force_event_o = {issue != '0, stream_read, force_stall, engine_runs};
   assign force_done = engine_runs && finder_done && (pipe_busy == '0);
 
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
     logic [Axes*KickBits-1:0] kick;
-    logic [OwnBits-1:0]       own;
+    logic [SeenBits-1:0]      own;
     logic [SomeType-1:0]      own_type, other_type;
-    logic [VelBits-1:0]       other_v;
-    assign own = pipe_data[f*OwnBits +: OwnBits];
+    logic [VelBits-1:0]       own_v, other_v;
+    assign own = pipe_data[f*SeenBits +: SeenBits];
     if (HaloType > 0) begin : gen_type
       assign own_type   = own[TypeLsb +: SomeType];
       assign other_type = issue_candidate[CandPos +: SomeType];
@@ -325,8 +343,10 @@ module cuboct_node_core #(
       assign other_type = '0;
     end
     if (HaloVelocity > 0) begin : gen_velocity
+      assign own_v   = own[VelLsb +: VelBits];
       assign other_v = issue_candidate[CandPos + HaloType +: VelBits];
     end else begin : gen_no_velocity
+      assign own_v   = '0;
       assign other_v = '0;
     end
     cuboct_pipe #(
@@ -337,12 +357,13 @@ module cuboct_node_core #(
       .DampIndexBits(DampIndexBits), .DampOctaves(DampOctaves), .DampDegree(DampDegree), .DampBinBits(DampBinBits),
       .DampFirstOctave(DampFirstOctave), .DampFractionBits(DampFractionBits), .DampBits(DampBits),
       .StrengthBits(StrengthBits), .Scaled(Scaled), .TypeBits(SomeType), .ScaleBits(ScaleBits),
-      .ScaleFrac(ScaleFrac), .KickShift(KickShift), .KickBits(KickBits), .SlotBits(SlotBits)
+      .ScaleFrac(ScaleFrac), .KickShift(KickShift), .KickBits(KickBits), .SlotBits(SlotBits), .Shared(Shared)
     ) u_pipe (
       .clk_i, .rst_ni, .valid_i(issue[f]), .slot_i(issue_slot[f*SlotBits +: SlotBits]),
-      .own_x_i(own[PosBits-1:0]), .own_v_i(own[VelLsb +: VelBits]), .own_type_i(own_type),
+      .own_x_i(own[PosBits-1:0]), .own_v_i(own_v), .own_type_i(own_type),
       .other_x_i(issue_candidate[CandPos-1:0]), .other_v_i(other_v), .other_type_i(other_type),
-      .valid_o(kick_valid[f]), .slot_o(kick_slot[f*SlotBits +: SlotBits]), .kick_o(kick),
+      .valid_o(kick_valid[f]), .slot_next_o(kick_slot_next[f*SlotBits +: SlotBits]),
+      .slot_o(kick_slot[f*SlotBits +: SlotBits]), .kick_o(kick),
       .fault_o(pipe_fault[f]), .fault_strength_o(pipe_fault_strength[f]),
       .fault_number_o(pipe_fault_number[f*64 +: 64]), .busy_o(pipe_busy[f])
     );
@@ -381,6 +402,7 @@ module cuboct_node_core #(
   assign dump_done   = in_dump && ((own_count_q == '0) || (tick_wide + 1'b1 == count_wide));
   assign take        = in_update && (tick_wide < count_wide);
   assign tick_slot   = tick_q[SlotBits-1:0];
+  assign tick_next   = tick_d[SlotBits-1:0];
   always_comb begin
     tick_d = tick_q;
     if (in_update || in_dump) tick_d = tick_q + 1'b1;
@@ -471,12 +493,9 @@ module cuboct_node_core #(
     .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
   );
 
-  // The main read port of the slots, and what is observed through it.
-  always_comb begin
-    main_slot = tick_slot;
-    if (in_exchange) main_slot = relay_slot;
-    else if (in_migrate) main_slot = migrate_read_slot;
-  end
+  // The main read port of the slots, asked a cycle ahead, and what is observed through it. Outside its phases each of
+  // the three rests at slot 0, where its next phase begins.
+  assign main_slot       = relay_slot | tick_next | migrate_read_slot;
   assign observe_valid_o = (relay_first_own && (axis == 2'd0)) || (in_dump && (own_count_q != '0));
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
@@ -507,7 +526,7 @@ module cuboct_node_core #(
     end
   end
   logic some_fault;
-  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(IdBits)) u_fault (
+  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(IdBits), .NumberBits(NumberBits)) u_fault (
     .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
     .number_i(fault_number), .valid_o(some_fault), .code_o(fault_code_o), .id_o(fault_id_o),
     .number_o(fault_number_o)

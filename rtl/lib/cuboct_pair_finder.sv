@@ -4,13 +4,14 @@
 module cuboct_pair_finder #(
   parameter int          Axes            = 3,   // 2 or 3
   parameter int          PositionFrac    = 20,
-  parameter int          DifferenceShift = 4,
+  parameter int          FilterFrac      = 8,
   parameter logic [63:0] PlanarOne       = 64'd0,
   parameter logic [63:0] PlanarTwo       = 64'd0,
   parameter logic [63:0] PlanarThree     = 64'd0,
   parameter int          CandidateBits   = 66,  // its position is least significant
   parameter int          FilterLanes     = 8,
   parameter int          ForcePipes      = 1,
+  parameter int          Interval        = 1,   // cycles from one issue to the next
   parameter int          QueueDepth      = 16,
   parameter int          RowBits         = 1,
   parameter int          SlotBits        = 4,
@@ -23,21 +24,24 @@ module cuboct_pair_finder #(
   input  logic                                  restart_i,
   input  logic [Axes:0]                         available_i,
   input  logic [(2*Axes+1)*CountBits-1:0]       counts_i,
-  // Where the candidate is read: own slot, and record of the faces' halos; same cycle.
+  // Where the candidate is read: own slot, and record of the faces' halos, and a row of own positions. The memories
+  // answer in the next cycle, and keep the answer until the next read.
+  output logic                                  read_o,
   output logic [SlotBits-1:0]                   slot_o,
   output logic [AddrBits-1:0]                   addr_o,
   input  logic [CandidateBits-1:0]              own_i,
   input  logic [2*Axes*CandidateBits-1:0]       halos_i,
-  // A row of own positions.
   output logic [RowBits-1:0]                    row_o,
-  input  logic [FilterLanes*Axes*PositionFrac-1:0] row_data_i,
+  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,
   // Pairs.
   output logic [CandidateBits-1:0]              candidate_o,
   output logic [ForcePipes-1:0]                 issue_o,
   output logic [ForcePipes*SlotBits-1:0]        issue_slot_o,
+  output logic                                  stall_o,      // a full queue holds the filter
   output logic                                  done_o        // no candidate is left anywhere
 );
   logic [2:0]               segment;
+  logic [2*Axes:0]          answer_q;  // which memory's answer is the candidate, one bit each
   logic [RowBits-1:0]       row, row_f1, row_head;
   logic                     present, past, stall, filter_busy, issue_busy;
   logic [CandidateBits-1:0] candidate, candidate_f1, candidate_head;
@@ -52,21 +56,24 @@ module cuboct_pair_finder #(
     .segment_o(segment), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
   );
 
+  always_ff @(posedge clk_i) begin
+    if (present) answer_q <= {{(2 * Axes) {1'b0}}, 1'b1} << segment;
+  end
   integer f;
   always_comb begin
-    candidate = own_i;
+    candidate = own_i & {CandidateBits{answer_q[0]}};
     for (f = 0; f < 2 * Axes; f = f + 1) begin
-      if (segment == f[2:0] + 3'd1) candidate = halos_i[f*CandidateBits +: CandidateBits];
+      candidate = candidate | (halos_i[f*CandidateBits +: CandidateBits] & {CandidateBits{answer_q[f+1]}});
     end
   end
 
   cuboct_filter #(
-    .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne),
+    .Axes(Axes), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne),
     .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .RowBits(RowBits),
     .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_filter (
-    .clk_i, .rst_ni, .present_i(present), .candidate_i(candidate), .row_i(row), .own_i(segment == 3'd0),
-    .slot_i(slot_o), .own_count_i(counts_i[0 +: CountBits]), .row_o, .row_data_i,
+    .clk_i, .rst_ni, .present_i(present), .row_i(row), .own_i(segment == 3'd0),
+    .slot_i(slot_o), .own_count_i(counts_i[0 +: CountBits]), .candidate_i(candidate), .row_data_i,
     .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_f1), .row_f1_o(row_f1),
     .mask_o(mask_f1), .busy_o(filter_busy)
   );
@@ -78,11 +85,14 @@ module cuboct_pair_finder #(
 
   cuboct_issue #(
     .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits),
-    .ForcePipes(ForcePipes)
+    .ForcePipes(ForcePipes), .Interval(Interval)
   ) u_issue (
     .clk_i, .rst_ni, .empty_i(empty), .candidate_i(candidate_head), .row_i(row_head), .mask_i(mask_head),
     .pop_o(pop), .candidate_o, .valid_o(issue_o), .slot_o(issue_slot_o), .busy_o(issue_busy)
   );
 
+  assign stall_o = stall;
+  assign read_o = present;
+  assign row_o  = row;
   assign done_o = past && !filter_busy && empty && !issue_busy;
 endmodule

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The force pipe: one pair per cycle, from operands to the kick on the own particle. It never stalls.
+// The force pipe: from operands to the kick on the own particle. It takes one pair per cycle, or with Shared, where one
+// multiplier serves the axes in turn, one every Axes cycles. It never stalls.
 //   d = round_odd(x_j - x_i), r2 = d.d, s = force(r2)
 //   s -= round_odd(damp(r2) * round_odd(w.d))    with Damped; w = round_odd(v_j - v_i)
 //   s = round_odd(s * scale[type_i][type_j])     with Scaled
 //   kick = -round_odd(s * d)                     nothing where r2 >= Cutoff2
 // The kick of a pair accepted in cycle t is at the outputs in cycle t + Stages, Stages = 10 (+1 octaves, +2 degree 2,
-// +2 damped, +2 scaled). Operands are those of a pair that passed the planar test: |d_a| < 2^D.
+// +2 damped, +2 scaled, +2 (Axes-1) shared).
 module cuboct_pipe #(
   parameter int          Axes                 = 3,      // 2 or 3
   parameter int          PositionFrac         = 20,     // P
@@ -39,19 +40,23 @@ module cuboct_pipe #(
   parameter int          ScaleFrac            = 16,
   parameter int          KickShift            = 4,
   parameter int          KickBits             = 18,
-  parameter int          SlotBits             = 4
+  parameter int          SlotBits             = 4,
+  parameter int          Shared               = 0       // 0, 1
 ) (
   input  logic                            clk_i,
   input  logic                            rst_ni,
   input  logic                            valid_i,
   input  logic [SlotBits-1:0]             slot_i,       // the own particle
+  // The own particle, in the cycle after valid_i: a memory's answer.
   input  logic [Axes*PositionFrac-1:0]    own_x_i,      // unsigned
   input  logic [Axes*VelocityBits-1:0]    own_v_i,
   input  logic [TypeBits-1:0]             own_type_i,
+  // The other one, with valid_i.
   input  logic [Axes*(PositionFrac+2)-1:0] other_x_i,    // signed, in the own frame
   input  logic [Axes*VelocityBits-1:0]    other_v_i,
   input  logic [TypeBits-1:0]             other_type_i,
   output logic                            valid_o,      // a pair inside the cutoff
+  output logic [SlotBits-1:0]             slot_next_o,  // slot_o of the next cycle
   output logic [SlotBits-1:0]             slot_o,
   output logic [Axes*KickBits-1:0]        kick_o,       // signed, P+G fractional bits
   output logic                            fault_o,      // that pair does not fit:
@@ -66,18 +71,20 @@ module cuboct_pipe #(
   localparam int SquareStages = (Degree == 2 || (DampDegree == 2 && Damped != 0)) ? 1 : 0;
   localparam int DampStages   = (Damped != 0) ? 2 : 0;
   localparam int ScaleStages  = (Scaled != 0) ? 2 : 0;
-  localparam int StageValue   = 8 + OctaveStage + 2 * SquareStages;  // the tables' values
+  localparam int TurnStages   = (Shared != 0) ? Axes - 1 : 0;        // of the axes' products beyond one
+  localparam int StageR2      = 4 + TurnStages;
+  localparam int StageValue   = StageR2 + 4 + OctaveStage + 2 * SquareStages;  // the tables' values
   localparam int StageDamped  = StageValue + DampStages;             // s after damping
   localparam int StageS       = StageDamped + ScaleStages;           // s
-  localparam int Stages       = StageS + 2;                          // the kick
+  localparam int Stages       = StageS + 2 + TurnStages;                          // the kick
   localparam int SBits        = (Damped != 0) ? StrengthBits : ForceBits;
 
-  // valid[k]: stage k holds a pair; hit[k], from stage 5 on: one inside the cutoff.
+  // valid[k]: stage k holds a pair; hit[k], from the stage after r2 on: one inside the cutoff.
   logic [Stages:1] valid_d, valid_q;
-  logic [Stages:5] hit_d, hit_q;
+  logic [Stages:StageR2+1] hit_d, hit_q;
   logic            near;
   assign valid_d = {valid_q[Stages-1:1], valid_i};
-  assign hit_d   = {hit_q[Stages-1:5], valid_q[4] && near};
+  assign hit_d   = {hit_q[Stages-1:StageR2+1], valid_q[StageR2] && near};
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       valid_q <= '0;
@@ -89,50 +96,56 @@ module cuboct_pipe #(
   end
   assign busy_o  = (valid_q != '0);
   assign valid_o = hit_q[Stages];
-  cuboct_delay #(.Bits(SlotBits), .Depth(Stages)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_o));
+  cuboct_delay #(.Bits(SlotBits), .Depth(Stages - 1)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_next_o));
+  cuboct_delay #(.Bits(SlotBits), .Depth(1)) u_slot_last (.clk_i, .d_i(slot_next_o), .q_o(slot_o));
 
-  // Stages 1 ... 4: operands, d, its squares, r2.
+  // Stages 1 ... StageR2: operands, d, its squares, r2.
   logic [Axes*DBits-1:0] d_q;         // stage 2
   logic [Axes*DBits-1:0] d_s;         // stage StageS
+  logic [Axes-1:0]       outside;     // d has more bits: the planar test is coarse
+  logic                  outside_r2;  // stage StageR2
   logic [R2Bits-1:0]     square [0:Axes-1];
-  logic [R2Bits-1:0]     r2_d, r2_q;  // stage 4
+  logic [R2Bits-1:0]     r2_d, r2_q;  // stage StageR2
+  logic [Axes*2*DBits-1:0] products;
   for (genvar a = 0; a < Axes; a++) begin : gen_d
-    logic [PositionFrac-1:0]        own_q;
     logic [PositionFrac+1:0]        other_q;
     logic signed [PositionFrac+2:0] difference;
+    logic signed [DBits+1:0]        d_full;
     logic signed [DBits-1:0]        d_d;
     logic signed [2*DBits-1:0]      product;
     always_ff @(posedge clk_i) begin
       if (valid_i) begin
-        own_q   <= own_x_i[a*PositionFrac +: PositionFrac];
         other_q <= other_x_i[a*(PositionFrac+2) +: PositionFrac+2];
       end
       if (valid_q[1]) d_q[a*DBits +: DBits] <= d_d;
     end
-    assign difference = $signed({other_q[PositionFrac+1], other_q}) - $signed({3'b000, own_q});
-    cuboct_round_odd #(.InBits(PositionFrac + 3), .Shift(DifferenceShift), .OutBits(DBits)) u_round (
-      .a_i(difference), .y_o(d_d)
+    assign difference = $signed({other_q[PositionFrac+1], other_q}) - $signed({3'b000, own_x_i[a*PositionFrac +: PositionFrac]});
+    cuboct_round_odd #(.InBits(PositionFrac + 3), .Shift(DifferenceShift), .OutBits(DBits + 2)) u_round (
+      .a_i(difference), .y_o(d_full)
     );
-    cuboct_mult #(.ABits(DBits), .BBits(DBits)) u_square (
-      .clk_i, .en_i(valid_q[2]), .a_i($signed(d_q[a*DBits +: DBits])), .b_i($signed(d_q[a*DBits +: DBits])),
-      .p_o(product)
-    );
+    assign d_d        = d_full[DBits-1:0];
+    assign outside[a] = (d_full[DBits+1:DBits] != {2{d_full[DBits-1]}});
+    assign product   = $signed(products[a*2*DBits +: 2*DBits]);
     assign square[a] = product[R2Bits-1:0];
     logic unused_high;
     assign unused_high = ^product;
   end
+  cuboct_axis_mults #(.Axes(Axes), .Shared(Shared), .ABits(DBits), .BBits(DBits)) u_squares (
+    .clk_i, .rst_ni, .en_i(valid_q[2]), .a_i(d_q), .b_i(d_q), .p_o(products)
+  );
   if (Axes == 3) begin : gen_space
     assign r2_d = square[0] + square[1] + square[2];
   end else begin : gen_plane
     assign r2_d = square[0] + square[1];
   end
   always_ff @(posedge clk_i) begin
-    if (valid_q[3]) r2_q <= r2_d;
+    if (valid_q[StageR2-1]) r2_q <= r2_d;
   end
-  assign near = (r2_q < Cutoff2[R2Bits-1:0]);
+  cuboct_delay #(.Bits(1), .Depth(StageR2 - 1)) u_outside (.clk_i, .d_i(outside != '0), .q_o(outside_r2));
+  assign near = (r2_q < Cutoff2[R2Bits-1:0]) && !outside_r2;
   cuboct_delay #(.Bits(Axes * DBits), .Depth(StageS - 2)) u_d (.clk_i, .d_i(d_q), .q_o(d_s));
 
-  // Stages 5 ... StageValue: the force table.
+  // The stages up to StageValue: the force table.
   logic [IndexBits-1:0]        index;
   logic signed [EntryBits-1:0] c0, c1, c2;
   logic signed [ForceBits-1:0] force_value;
@@ -158,10 +171,12 @@ module cuboct_pipe #(
     logic [Axes-1:0]                        misfit;
     logic [Axes*WFullBits-1:0]              w_full;
     logic [Axes*(WdBits+2)-1:0]             wd;
-    logic signed [WdBits+1:0]               wd_d, wd_q;    // stage 4
-    logic signed [RelativeVelocityBits-1:0] q_d, q_q, q;   // stage 5, stage StageValue
+    logic signed [WdBits+1:0]               wd_d, wd_q;    // stage StageR2
+    logic [Axes*WdBits-1:0]                 wd_products;
+    logic [Axes*RelativeVelocityBits-1:0]   w_all;
+    logic signed [RelativeVelocityBits-1:0] q_d, q_q, q;   // the one after, stage StageValue
     for (genvar a = 0; a < Axes; a++) begin : gen_w
-      logic [VelocityBits-1:0]                own_q, other_q;
+      logic [VelocityBits-1:0]                own, other_q;
       logic signed [VelocityBits:0]           difference;
       logic signed [WFullBits-1:0]            w_d, w_q;     // stage 2
       logic signed [RelativeVelocityBits-1:0] w_used;
@@ -169,12 +184,12 @@ module cuboct_pipe #(
       logic signed [WdBits-1:0]               product;
       always_ff @(posedge clk_i) begin
         if (valid_i) begin
-          own_q   <= own_v_i[a*VelocityBits +: VelocityBits];
           other_q <= other_v_i[a*VelocityBits +: VelocityBits];
         end
         if (valid_q[1]) w_q <= w_d;
       end
-      assign difference = $signed({other_q[VelocityBits-1], other_q}) - $signed({own_q[VelocityBits-1], own_q});
+      assign own        = own_v_i[a*VelocityBits +: VelocityBits];
+      assign difference = $signed({other_q[VelocityBits-1], other_q}) - $signed({own[VelocityBits-1], own});
       cuboct_round_odd #(.InBits(VelocityBits + 1), .Shift(WShift), .OutBits(WFullBits)) u_round (
         .a_i(difference), .y_o(w_d)
       );
@@ -182,11 +197,13 @@ module cuboct_pipe #(
       cuboct_resize #(.InBits(RelativeVelocityBits), .OutBits(WFullBits)) u_again (.a_i(w_used), .y_o(w_again));
       assign misfit[a] = (w_again != w_q);
       assign w_full[a*WFullBits +: WFullBits] = w_q;
-      cuboct_mult #(.ABits(RelativeVelocityBits), .BBits(DBits)) u_wd (
-        .clk_i, .en_i(valid_q[2]), .a_i(w_used), .b_i($signed(d_q[a*DBits +: DBits])), .p_o(product)
-      );
+      assign w_all[a*RelativeVelocityBits +: RelativeVelocityBits] = w_used;
+      assign product = $signed(wd_products[a*WdBits +: WdBits]);
       assign wd[a*(WdBits+2) +: WdBits+2] = {{2{product[WdBits-1]}}, product};
     end
+    cuboct_axis_mults #(.Axes(Axes), .Shared(Shared), .ABits(RelativeVelocityBits), .BBits(DBits)) u_wd (
+      .clk_i, .rst_ni, .en_i(valid_q[2]), .a_i(w_all), .b_i(d_q), .p_o(wd_products)
+    );
     if (Axes == 3) begin : gen_space_wd
       assign wd_d = wd[0 +: WdBits+2] + wd[WdBits+2 +: WdBits+2] + wd[2*(WdBits+2) +: WdBits+2];
     end else begin : gen_plane_wd
@@ -197,10 +214,10 @@ module cuboct_pipe #(
       .a_i(wd_q), .y_o(q_d)
     );
     always_ff @(posedge clk_i) begin
-      if (valid_q[3]) wd_q <= wd_d;
-      if (valid_q[4]) q_q <= q_d;
+      if (valid_q[StageR2-1]) wd_q <= wd_d;
+      if (valid_q[StageR2]) q_q <= q_d;
     end
-    cuboct_delay #(.Bits(RelativeVelocityBits), .Depth(StageValue - 5)) u_q_late (.clk_i, .d_i(q_q), .q_o(q));
+    cuboct_delay #(.Bits(RelativeVelocityBits), .Depth(StageValue - StageR2 - 1)) u_q_late (.clk_i, .d_i(q_q), .q_o(q));
 
     // A w that does not fit: known at stage 2, told with the kick. The first axis gives the number.
     logic signed [WFullBits-1:0] w_first, w_late;
@@ -272,11 +289,13 @@ module cuboct_pipe #(
   logic signed [SBits-1:0] s;  // stage StageS
   if (Scaled != 0) begin : gen_scale
     logic [2*TypeBits-1:0]            types;
+    logic [TypeBits-1:0]              other_type;
     logic signed [ScaleBits-1:0]      scale;
     logic signed [SBits+ScaleBits-1:0] product;
     logic signed [SBits-1:0]          s_d, s_q;
-    cuboct_delay #(.Bits(2 * TypeBits), .Depth(StageDamped)) u_types (
-      .clk_i, .d_i({other_type_i, own_type_i}), .q_o(types)
+    cuboct_delay #(.Bits(TypeBits), .Depth(1)) u_other_type (.clk_i, .d_i(other_type_i), .q_o(other_type));
+    cuboct_delay #(.Bits(2 * TypeBits), .Depth(StageDamped - 1)) u_types (
+      .clk_i, .d_i({other_type, own_type_i}), .q_o(types)
     );
     cuboct_scale_rom u_scale_rom (
       .own_type_i(types[TypeBits-1:0]), .other_type_i(types[2*TypeBits-1:TypeBits]), .scale_o(scale)
@@ -297,19 +316,21 @@ module cuboct_pipe #(
     assign s = s_damped;
   end
 
-  // Last two stages: times d, rounded once, with the sign of the reaction.
+  // The last stages: times d, rounded once, with the sign of the reaction.
+  logic [Axes*(SBits+DBits)-1:0] kick_products;
+  cuboct_axis_mults #(.Axes(Axes), .Shared(Shared), .ABits(SBits), .BBits(DBits)) u_kicks (
+    .clk_i, .rst_ni, .en_i(hit_q[StageS]), .a_i({Axes{s}}), .b_i(d_s), .p_o(kick_products)
+  );
   for (genvar a = 0; a < Axes; a++) begin : gen_kick
     logic signed [SBits+DBits-1:0] product;
     logic signed [KickBits-1:0]    push, kick_d, kick_q;
-    cuboct_mult #(.ABits(SBits), .BBits(DBits)) u_mult (
-      .clk_i, .en_i(hit_q[StageS]), .a_i(s), .b_i($signed(d_s[a*DBits +: DBits])), .p_o(product)
-    );
+    assign product = $signed(kick_products[a*(SBits+DBits) +: SBits+DBits]);
     cuboct_round_odd #(.InBits(SBits + DBits), .Shift(KickShift), .OutBits(KickBits)) u_round (
       .a_i(product), .y_o(push)
     );
     assign kick_d = -push;
     always_ff @(posedge clk_i) begin
-      if (hit_q[StageS+1]) kick_q <= kick_d;
+      if (hit_q[Stages-1]) kick_q <= kick_d;
     end
     assign kick_o[a*KickBits +: KickBits] = kick_q;
   end

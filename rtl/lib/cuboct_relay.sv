@@ -17,9 +17,9 @@ module cuboct_relay #(
   // Segments: 0 own, then the halos of -x, +x and, with three axes, -y, +y; their counts, and where to read.
   input  logic [(2*Axes-1)*CountBits-1:0] counts_i,
   output logic [2:0]             segment_o,
-  output logic [AddrBits-1:0]    addr_o,
+  output logic [AddrBits-1:0]    addr_o,      // of the next cycle's record
   output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles
-  input  logic [HaloBits-1:0]    record_i,    // at segment_o, addr_o; same cycle
+  input  logic [HaloBits-1:0]    record_i,    // of segment_o, at addr_o of the cycle before
   // To the link registers.
   input  logic                   can_load_i,  // both links can
   output logic                   load_o,
@@ -95,8 +95,8 @@ module cuboct_relay #(
   end
 
   assign segment_o   = segment_q;
-  assign addr_o      = record_q;
-  assign slot_o      = record_q[SlotBits-1:0];
+  assign addr_o      = record_d;
+  assign slot_o      = record_d[SlotBits-1:0];
   assign sent_o      = sent_q;
   assign first_own_o = load_o && !past && (segment_q == 3'd0) && (beat_q == '0);
 

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
-// The node's own particles: one write port; read ports without latency for the main machine, the streamer, each force
-// pipe and each pipe's fault; and the positions once more in one bank per filter lane, so that a row of FilterLanes
-// neighbouring slots is read at once. What is written in cycle t is read from t+1 on.
+// The node's own particles: one write port; read ports for the main machine, the streamer, each force pipe and each
+// pipe's fault, each a memory of its own; and the leading bits of the positions once more in one bank per filter lane,
+// so that a row of FilterLanes neighbouring slots is read at once. All answer in the cycle after the question. What is
+// written in cycle t can be asked for from t+1 on.
 module cuboct_slots #(
-  parameter int Bits        = 128,  // width of a particle
-  parameter int PosBits     = 60,   // of its position, which is least significant
-  parameter int IdLsb       = 64,   // where its id starts
-  parameter int IdBits      = 8,    // width of the id, >= 1
-  parameter int Capacity    = 16,   // slots, >= 1
-  parameter int SlotBits    = 4,    // of a slot's number, >= clog2(Capacity)
-  parameter int FilterLanes = 8,    // >= 1
-  parameter int RowBits     = 1,    // of a row's number, >= clog2(rows)
-  parameter int ForcePipes  = 1     // >= 1
+  parameter int Axes         = 3,    // 2 or 3
+  parameter int Bits         = 128,  // width of a particle
+  parameter int SeenBits     = 128,  // of these, from the least significant, what the streamer and the pipes need
+  parameter int PositionFrac = 20,   // of a position, per axis; positions are least significant
+  parameter int FilterFrac   = 8,    // of these, the leading ones that the filter tests
+  parameter int IdLsb        = 64,   // where its id starts
+  parameter int IdBits       = 8,    // width of the id, >= 1
+  parameter int Capacity     = 16,   // slots, >= 1
+  parameter int SlotBits     = 4,    // of a slot's number, >= clog2(Capacity)
+  parameter int FilterLanes  = 8,    // >= 1
+  parameter int RowBits      = 1,    // of a row's number, >= clog2(rows)
+  parameter int ForcePipes   = 1,    // >= 1
+  localparam int CoarseBits  = Axes * FilterFrac
 ) (
   input  logic                           clk_i,
   input  logic                           write_i,
@@ -19,54 +24,67 @@ module cuboct_slots #(
   input  logic [Bits-1:0]                write_data_i,
   input  logic [SlotBits-1:0]            main_slot_i,
   output logic [Bits-1:0]                main_data_o,
+  input  logic                           stream_read_i,  // without it stream_data_o and row_data_o stay
   input  logic [SlotBits-1:0]            stream_slot_i,
-  output logic [Bits-1:0]                stream_data_o,
-  input  logic [ForcePipes*SlotBits-1:0] pipe_slot_i,
-  output logic [ForcePipes*Bits-1:0]     pipe_data_o,
-  input  logic [ForcePipes*SlotBits-1:0] fault_slot_i,
-  output logic [ForcePipes*IdBits-1:0]   fault_id_o,
+  output logic [SeenBits-1:0]            stream_data_o,
   input  logic [RowBits-1:0]             row_i,
-  output logic [FilterLanes*PosBits-1:0] row_data_o
+  output logic [FilterLanes*CoarseBits-1:0] row_data_o,
+  input  logic [ForcePipes*SlotBits-1:0] pipe_slot_i,
+  output logic [ForcePipes*SeenBits-1:0] pipe_data_o,
+  input  logic [ForcePipes*SlotBits-1:0] fault_slot_i,
+  output logic [ForcePipes*IdBits-1:0]   fault_id_o
 );
-  localparam int IndexBits = (Capacity > 1) ? $clog2(Capacity) : 1;
-  localparam int Rows      = (Capacity + FilterLanes - 1) / FilterLanes;
+  localparam int Rows = (Capacity + FilterLanes - 1) / FilterLanes;
 
-  logic [Bits-1:0] mem_q [0:Capacity-1];
-  always_ff @(posedge clk_i) begin
-    if (write_i) mem_q[write_slot_i[IndexBits-1:0]] <= write_data_i;
-  end
-  assign main_data_o   = mem_q[main_slot_i[IndexBits-1:0]];
-  assign stream_data_o = mem_q[stream_slot_i[IndexBits-1:0]];
-
-  logic [IdBits-1:0] id_q [0:Capacity-1];
-  always_ff @(posedge clk_i) begin
-    if (write_i) id_q[write_slot_i[IndexBits-1:0]] <= write_data_i[IdLsb +: IdBits];
-  end
+  cuboct_ram #(.Bits(Bits), .Depth(Capacity), .AddrBits(SlotBits)) u_main (
+    .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i, .read_i(1'b1), .read_addr_i(main_slot_i),
+    .read_data_o(main_data_o)
+  );
+  cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_stream (
+    .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i),
+    .read_addr_i(stream_slot_i), .read_data_o(stream_data_o)
+  );
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
-    assign pipe_data_o[f*Bits +: Bits]    = mem_q[pipe_slot_i[f*SlotBits +: IndexBits]];
-    assign fault_id_o[f*IdBits +: IdBits] = id_q[fault_slot_i[f*SlotBits +: IndexBits]];
+    cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_pipe (
+      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(1'b1),
+      .read_addr_i(pipe_slot_i[f*SlotBits +: SlotBits]), .read_data_o(pipe_data_o[f*SeenBits +: SeenBits])
+    );
+    cuboct_ram #(.Bits(IdBits), .Depth(Capacity), .AddrBits(SlotBits)) u_id (
+      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[IdLsb +: IdBits]), .read_i(1'b1),
+      .read_addr_i(fault_slot_i[f*SlotBits +: SlotBits]), .read_data_o(fault_id_o[f*IdBits +: IdBits])
+    );
   end
 
+  logic [CoarseBits-1:0] coarse;
+  for (genvar a = 0; a < Axes; a++) begin : gen_coarse
+    assign coarse[a*FilterFrac +: FilterFrac] = write_data_i[a*PositionFrac+PositionFrac-FilterFrac +: FilterFrac];
+  end
   for (genvar l = 0; l < FilterLanes; l++) begin : gen_bank
     // Slot s lies in bank s % FilterLanes, row s / FilterLanes.
-    logic [PosBits-1:0] bank_q [0:Rows-1];
+    logic [CoarseBits-1:0] bank_q [0:Rows-1];
+    logic [CoarseBits-1:0] row, row_q;
     for (genvar r = 0; r < Rows; r++) begin : gen_row
       localparam int Slot = r * FilterLanes + l;
       if (Slot < Capacity) begin : gen_slot
         always_ff @(posedge clk_i) begin
-          if (write_i && write_slot_i == Slot[SlotBits-1:0]) bank_q[r] <= write_data_i[PosBits-1:0];
+          if (write_i && write_slot_i == Slot[SlotBits-1:0]) bank_q[r] <= coarse;
         end
       end else begin : gen_none
         always_ff @(posedge clk_i) bank_q[r] <= '0;
       end
     end
     if (Rows > 1) begin : gen_read
-      assign row_data_o[l*PosBits +: PosBits] = bank_q[row_i[$clog2(Rows)-1:0]];
+      assign row = bank_q[row_i[$clog2(Rows)-1:0]];
+      always_ff @(posedge clk_i) begin
+        if (stream_read_i) row_q <= row;
+      end
     end else begin : gen_only
-      assign row_data_o[l*PosBits +: PosBits] = bank_q[0];
+      assign row   = bank_q[0];
+      assign row_q = row;
     end
+    assign row_data_o[l*CoarseBits +: CoarseBits] = row_q;
   end
 
-  logic unused_addr;
-  assign unused_addr = ^{row_i, main_slot_i, stream_slot_i, pipe_slot_i, fault_slot_i};
+  logic unused_row;
+  assign unused_row = ^row_i;
 endmodule

@@ -58,6 +58,8 @@ module cuboct_update #(
   localparam int MaxVs    = (VelocityBits > SumBits) ? VelocityBits : SumBits;
   localparam int MaxCp    = (ConstantBits > PullBits) ? ConstantBits : PullBits;
   localparam int WideBits = ((MaxVs > MaxCp) ? MaxVs : MaxCp) + 4;
+  localparam int LongBits = (WideBits > TotalBits) ? WideBits : TotalBits;
+  localparam int NumberBits = (LongBits < 64) ? LongBits : 64;  // of a fault's number
 
   logic [VStage:1] valid_d, valid_q;
   assign valid_d = {valid_q[VStage-1:1], valid_i};
@@ -88,7 +90,8 @@ module cuboct_update #(
   );
 
   logic [Axes-1:0]    bad_sum, bad_u, bad_v;                       // with the outputs
-  logic [Axes*64-1:0] sum_number, u_number, v_number;
+  logic [Axes*NumberBits-1:0] sum_number, u_number, v_number;
+  logic signed [NumberBits-1:0] number;
 
   for (genvar a = 0; a < Axes; a++) begin : gen_axis
     // Check of the sum.
@@ -181,7 +184,9 @@ module cuboct_update #(
       cuboct_resize #(.InBits(DisplacementBits), .OutBits(WideBits)) u_u_back (.a_i(u_new), .y_o(u_back));
       assign u_o[a*DisplacementBits +: DisplacementBits] = held_last ? u_new : u_last;
       assign bad_u[a] = held_last && (u_back != u_full);
-      cuboct_resize #(.InBits(WideBits), .OutBits(64)) u_u_number (.a_i(u_full), .y_o(u_number[a*64 +: 64]));
+      cuboct_resize #(.InBits(WideBits), .OutBits(NumberBits)) u_u_number (
+        .a_i(u_full), .y_o(u_number[a*NumberBits +: NumberBits])
+      );
     end else begin : gen_free
       assign v_free    = plain;
       assign imposed_v = imposed_1;
@@ -189,7 +194,7 @@ module cuboct_update #(
       assign sum_v     = sum_1;
       assign v_imposed = to_go_wide;
       assign bad_u[a]  = 1'b0;
-      assign u_number[a*64 +: 64] = '0;
+      assign u_number[a*NumberBits +: NumberBits] = '0;
       assign u_o[a*DisplacementBits +: DisplacementBits] = '0;
       logic unused_pd;
       assign unused_pd = ^{u_i[a*DisplacementBits +: DisplacementBits], held, kp, kd};
@@ -215,8 +220,12 @@ module cuboct_update #(
     end
     assign bad_sum[a] = bad_sum_q;
     assign bad_v[a]   = bad_v_q;
-    cuboct_resize #(.InBits(TotalBits), .OutBits(64)) u_sum_number (.a_i(sum_q), .y_o(sum_number[a*64 +: 64]));
-    cuboct_resize #(.InBits(WideBits), .OutBits(64)) u_v_number (.a_i(v_wide_q), .y_o(v_number[a*64 +: 64]));
+    cuboct_resize #(.InBits(TotalBits), .OutBits(NumberBits)) u_sum_number (
+      .a_i(sum_q), .y_o(sum_number[a*NumberBits +: NumberBits])
+    );
+    cuboct_resize #(.InBits(WideBits), .OutBits(NumberBits)) u_v_number (
+      .a_i(v_wide_q), .y_o(v_number[a*NumberBits +: NumberBits])
+    );
 
     cuboct_round_odd #(.InBits(VelocityBits), .Shift(Guard), .OutBits(PositionFrac + 2)) u_drift (
       .a_i(v_q), .y_o(drift)
@@ -232,11 +241,12 @@ module cuboct_update #(
   always_comb begin
     fault_o        = valid_o && ((bad_sum | bad_u | bad_v) != '0);
     fault_code_o   = (bad_sum != '0) ? 4'd3 : (bad_u != '0) ? 4'd4 : 4'd5;
-    fault_number_o = '0;
+    number         = '0;
     for (b = Axes - 1; b >= 0; b = b - 1) begin
-      if (fault_code_o == 4'd3 && bad_sum[b]) fault_number_o = sum_number[b*64 +: 64];
-      if (fault_code_o == 4'd4 && bad_u[b]) fault_number_o = u_number[b*64 +: 64];
-      if (fault_code_o == 4'd5 && bad_v[b]) fault_number_o = v_number[b*64 +: 64];
+      if (fault_code_o == 4'd3 && bad_sum[b]) number = sum_number[b*NumberBits +: NumberBits];
+      if (fault_code_o == 4'd4 && bad_u[b]) number = u_number[b*NumberBits +: NumberBits];
+      if (fault_code_o == 4'd5 && bad_v[b]) number = v_number[b*NumberBits +: NumberBits];
     end
   end
+  cuboct_resize #(.InBits(NumberBits), .OutBits(64)) u_told (.a_i(number), .y_o(fault_number_o));
 endmodule

@@ -37,8 +37,9 @@ Outcome stepped(const Plan& plan, const Engine& engine) {
       const int slot = e.pass * lanes + l;
       if (slot >= n || slot == e.self) continue;
       const auto at = [](const emu::Candidate& c) { return Int3{c.x[0], c.x[1], c.x[2]}; };
-      const Int3 d = difference(plan.rule, at(engine.own[static_cast<size_t>(slot)].body), at(*e.record));
-      mask |= uint64_t{may_interact(plan.rule, d)} << l;
+      const bool meets =
+          may_interact(plan.rule, at(engine.own[static_cast<size_t>(slot)].body), at(*e.record));
+      mask |= uint64_t{meets} << l;
     }
     return mask;
   };
@@ -47,23 +48,27 @@ Outcome stepped(const Plan& plan, const Engine& engine) {
   std::optional<uint64_t> f1;  // the mask
   std::deque<uint64_t> queue;
   uint64_t current = 0;
+  int hold = 0;  // cycles of the interval that are left
   std::optional<uint64_t> issued;  // cycle of the last pair
   size_t segment = 0, record = 0;
   int pass = 0;
   for (uint64_t cycle = engine.available[0];; ++cycle) {
     const auto pipe = static_cast<uint64_t>(plan.latency.pipe);
     const bool pipes_empty = !issued || cycle >= *issued + pipe;
-    if (segment == 7 && !f0 && !f1 && queue.empty() && current == 0 && pipes_empty) {
+    if (segment == 7 && !f0 && !f1 && queue.empty() && current == 0 && hold == 0 && pipes_empty) {
       out.last = cycle;
       return out;
     }
     const size_t held = queue.size();
-    if (current != 0) {
+    if (hold > 0) {
+      --hold;
+    } else if (current != 0) {
+      hold = plan.latency.interval - 1;
       for (int p = 0; p < plan.arch.force_pipes && current != 0; ++p) current &= current - 1, ++out.pairs;
       issued = cycle;
       ++out.issue_cycles;
     }
-    if (current == 0 && held > 0) {
+    if (current == 0 && hold == 0 && held > 0) {
       current = queue.front();
       queue.pop_front();
     }
@@ -106,7 +111,8 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
     plan.arch.filter_lanes = static_cast<int>(draw(0, 3) == 0 ? draw(1, 64) : draw(1, 8));
     plan.arch.force_pipes = static_cast<int>(draw(1, std::min(3, plan.arch.filter_lanes)));
     plan.arch.queue_depth = static_cast<int>(draw(0, 1) ? draw(1, 3) : draw(1, 20));
-    plan.latency.pipe = static_cast<int>(draw(1, 14));
+    plan.latency.interval = static_cast<int>(draw(0, 1) ? 1 : draw(2, 4));
+    plan.latency.pipe = static_cast<int>(draw(plan.latency.interval, 14));
     Engine engine;
     engine.own.resize(static_cast<size_t>(draw(0, 5) == 0 ? draw(0, 80) : draw(0, 9)));
     const int64_t spread = cell >> draw(0, 3);  // the nearer they lie the more pairs meet

@@ -135,12 +135,12 @@ TEST(NativePlanar, EqualsMayInteract) {
   };
   static emu::PlanarSlots slots;
   uint64_t met = 0, passed = 0, edges = 0;
-  for (const auto& [p, d] : {std::pair{20, 16}, {30, 24}, {30, 6}, {8, 8}, {12, 6}})
+  for (const auto& [p, b] : {std::pair{20, 8}, {30, 16}, {30, 6}, {8, 8}, {12, 2}})
     for (int run = 0; run < 200; ++run) {
       FixedRule rule;
       rule.widths.position_frac = p;
-      rule.difference_shift = p - d;
-      const int64_t cell = int64_t{1} << p, cutoff = draw(1, int64_t{1} << d);
+      rule.widths.filter_frac = b;
+      const int64_t cell = int64_t{1} << p, cutoff = draw(1, int64_t{1} << b);
       rule.planar = {cutoff, cutoff * 1414214 / 1000000 + 1, cutoff * 1732051 / 1000000 + 1};
       const emu::PlanarTest test(rule);
       std::array<int32_t, 3> candidate{};
@@ -155,21 +155,20 @@ TEST(NativePlanar, EqualsMayInteract) {
         for (size_t a = 0; a < 3; ++a) {
           // Half of them a plane's distance away, or one unit more.
           const int64_t near =
-              candidate[a] + (draw(0, 1) ? 1 : -1) * (rule.planar[0] << rule.difference_shift) + draw(-1, 1);
+              candidate[a] + (draw(0, 1) ? 1 : -1) * (rule.planar[0] << (p - b)) + draw(-1, 1) * (int64_t{1} << (p - b));
           const bool on_plane = draw(0, 1) && near >= 0 && near < cell;
           edges += on_plane;
           x[a] = static_cast<int32_t>(on_plane ? near : draw(0, 3) == 0 ? cell - 1 : draw(0, cell - 1));
         }
-        slots.add(x);
+        slots.add(x, test.shift());
         own.push_back({x[0], x[1], x[2]});
       }
       const emu::PlanarMask mask = test(slots, candidate);
       for (int k = 0; k < emu::kPlanarSlots; ++k) {
         const bool got = mask.from(static_cast<uint32_t>(k)) & 1;
         const bool expected =
-            k < count && may_interact(rule, difference(rule, own[static_cast<size_t>(k)],
-                                                       {candidate[0], candidate[1], candidate[2]}));
-        ASSERT_EQ(got, expected) << "P " << p << " D " << d << " run " << run << " slot " << k;
+            k < count && may_interact(rule, own[static_cast<size_t>(k)], {candidate[0], candidate[1], candidate[2]});
+        ASSERT_EQ(got, expected) << "P " << p << " B " << b << " run " << run << " slot " << k;
         met += k < count;
         passed += expected;
       }

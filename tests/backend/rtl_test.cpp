@@ -21,7 +21,7 @@ constexpr const char* kCache = CUBOCT_TEST_CACHE;
 // Cases that between them need few compiled nodes: the first four share one.
 std::vector<std::string> rtl_cases() {
   return {"undamped_2x2x2", "lattice_3x2x1",   "hot_gas",  "lone_diagonal",
-          "rich_damped",    "rich_force_held", "rich_ring", "flat", "flat_rich_damped",
+          "rich_damped",    "rich_force_held", "rich_ring", "rich_shared", "flat", "flat_rich_damped",
           "flat_rich_force_held", "flat_ring"};
 }
 
@@ -58,6 +58,19 @@ TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
     EXPECT_EQ(compared.spans, spans);
   }
   EXPECT_FALSE(rf.trace.cycles == rs.trace.cycles);
+  // What the RTL's force engines did: each count is the native nodes'.
+  for (const auto& [a, b] : {std::pair{&nf, &rf}, std::pair{&ns, &rs}})
+    for (const char* name : {"candidates", "queue_stalls", "issue_cycles", "force_cycles"}) {
+      const auto count = [&](const emu::RunResult& run) {
+        for (const auto& [key, value] : run.trace.counters)
+          if (key == name) return value;
+        return -1.0;
+      };
+      EXPECT_EQ(count(*a), count(*b)) << name;
+      if (std::string(name) != "queue_stalls") {
+        EXPECT_GT(count(*b), 0) << name;
+      }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Rtl, testing::ValuesIn(rtl_cases()), [](const auto& p) { return p.param; });

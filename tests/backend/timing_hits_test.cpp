@@ -18,21 +18,15 @@ struct Stimuli {
   uint64_t items = 0, entries = 0, on_plane = 0, next_to_plane = 0, several_passes = 0, wide = 0;
 };
 
-int64_t integer_sqrt(uint64_t a) {
-  auto root = static_cast<uint64_t>(std::sqrt(static_cast<double>(a)));
-  while (root * root > a) --root;
-  while ((root + 1) * (root + 1) <= a) ++root;
-  return static_cast<int64_t>(root);
-}
-
-FixedRule rule_of(int p, int d, double cutoff) {
+FixedRule rule_of(int p, int d, int b, double cutoff) {
   FixedRule rule;
   rule.widths.position_frac = p;
   rule.widths.difference_frac = d;
   rule.difference_shift = p - d;
   rule.cutoff2 = static_cast<uint64_t>(cutoff * cutoff * std::ldexp(1.0, 2 * d));
   rule.cutoff2 = std::max<uint64_t>(rule.cutoff2, 1);
-  for (uint64_t k = 1; k <= 3; ++k) rule.planar[k - 1] = integer_sqrt(k * (rule.cutoff2 - 1));
+  rule.widths.filter_frac = b;
+  set_planar(rule);
   return rule;
 }
 
@@ -67,8 +61,9 @@ void check(uint64_t seed, Stimuli& seen) {
   const auto draw = [&random](int low, int high) {
     return low + static_cast<int>(random() % static_cast<uint64_t>(high - low + 1));
   };
-  const int p = seed % 5 == 0 ? 30 : draw(8, 30), d = draw(6, std::min(24, p));
-  const FixedRule rule = rule_of(p, d, draw(0, 3) == 0 ? 1.0 : 0.01 * draw(1, 100));
+  const int p = seed % 5 == 0 ? 30 : draw(8, 30), d = draw(6, std::min(24, p)),
+            b = draw(0, 2) == 0 ? 8 : draw(2, std::min(16, p));
+  const FixedRule rule = rule_of(p, d, b, draw(0, 3) == 0 ? 1.0 : 0.01 * draw(1, 100));
   const bool ring = draw(0, 1) == 1;
   std::vector<Cell> cells;
   const int rows = draw(1, 3);
@@ -90,10 +85,10 @@ void check(uint64_t seed, Stimuli& seen) {
                        cell - 1}[static_cast<size_t>(std::max(0, draw(-4, 2)))];
       if (!node.empty() && draw(0, 1) == 1) {
         x = node.back();
-        const size_t axes = static_cast<size_t>(draw(1, 3)), rest = (rule.planar[axes - 1] << (p - d));
+        const size_t axes = static_cast<size_t>(draw(1, 3)), rest = (rule.planar[axes - 1] << (p - b));
         for (size_t a = 0; a < axes; ++a)
           x[a] =
-              (x[a] + static_cast<int64_t>(rest / axes) + draw(-1, 1) * (int64_t{1} << (p - d))) & (cell - 1);
+              (x[a] + static_cast<int64_t>(rest / axes) + draw(-1, 1) * (int64_t{1} << (p - b))) & (cell - 1);
       }
       node.push_back(x);
     }
@@ -128,12 +123,16 @@ void check(uint64_t seed, Stimuli& seen) {
         for (int pass = 0; pass < passes; ++pass, ++item, ++items[s]) {
           uint32_t hits = 0;
           for (int i = pass * lanes; i < std::min(own, (pass + 1) * lanes); ++i) {
-            const Int3 diff = difference(rule, nodes[n][static_cast<size_t>(i)], segments[s][k]);
-            const int64_t sum = std::abs(diff[0]) + std::abs(diff[1]) + std::abs(diff[2]);
+            const Int3 &x_i = nodes[n][static_cast<size_t>(i)], &x_j = segments[s][k];
+            int64_t sum = 0;
+            for (size_t a = 0; a < 3; ++a) {
+              const int64_t e = (x_j[a] >> (p - b)) - (x_i[a] >> (p - b));
+              sum += e < 0 ? -e - 1 : e;
+            }
             seen.on_plane += sum == rule.planar[2];
             seen.next_to_plane += sum == rule.planar[2] + 1;
             if (s == 0 && k == static_cast<size_t>(i)) continue;
-            hits += may_interact(rule, diff);
+            hits += may_interact(rule, x_i, x_j);
           }
           const auto f = static_cast<uint32_t>(pipes);
           if (hits > 0) entries.push_back(emu::ForceWork::entry(item, (hits + f - 1) / f));
@@ -141,7 +140,7 @@ void check(uint64_t seed, Stimuli& seen) {
     const emu::ForceWork work = emu::filter_node(filter, places, n, scratch);
     ASSERT_EQ(work.items, items) << "seed " << seed << ", node " << n;
     ASSERT_TRUE(std::equal(entries.begin(), entries.end(), work.entries.begin(), work.entries.end()))
-        << "seed " << seed << ", node " << n << ": P " << p << ", D " << d << ", " << lanes << " lanes, "
+        << "seed " << seed << ", node " << n << ": P " << p << ", B " << b << ", " << lanes << " lanes, "
         << pipes << " pipes";
     seen.items += item;
     seen.entries += entries.size();

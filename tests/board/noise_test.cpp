@@ -48,7 +48,7 @@ TEST(Skew, OfTwoPercentIsNoNoise) {
   const Trace golden = golden_trace(setup, 6);
   for (const char* skew : {"-2", "2"}) {
     const SimulatedBoard board({"--skew", skew});
-    emu::Host host(board.port(), SimulatedBoard::kBaud, 2);
+    emu::Host host(board.port(), SimulatedBoard::kBaud, 20);
     const Trace run = emu::run_on_board(host, setup.plan, setup.initial, {.steps = 6, .frames = {}});
     EXPECT_EQ(difference(setup.plan, golden, run), "") << skew;
     EXPECT_EQ(host.count().retries, 0u) << skew;

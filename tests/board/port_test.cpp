@@ -72,8 +72,8 @@ TEST(Port, ThatSpeaksSomethingElse) {
     }
   });
   const auto start = std::chrono::steady_clock::now();
-  const Answer answer = run_at(pty.name);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  const Answer answer = run_at(pty.name, "0.5");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
   stop = true;
   babble.join();
   expect_refusal(answer, "port " + pty.name +

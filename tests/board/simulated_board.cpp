@@ -47,8 +47,8 @@ SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options) {
   arguments.insert(arguments.end(), options.begin(), options.end());
   process_ =
       std::make_unique<Process>(CUBOCT_BOARD_SIM, arguments, false, Streams{out, scratch_.path("err")});
-  // The board may have to be compiled.
-  for (int k = 0; k < 5000 && port_.find('\n') == std::string::npos; ++k) {
+  // The board may have to be compiled, on a busy machine for minutes.
+  for (int k = 0; k < 25000 && port_.find('\n') == std::string::npos; ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     port_ = contents(out);
   }

@@ -15,10 +15,10 @@ std::string given(std::initializer_list<const char*> names) {
 }
 
 // A port of `bits` bits from a lane, or three, axis 0 in the least significant place.
-std::string from(const char* port, int lane, const char* bits, int axes = 1) {
+std::string from(const char* port, int lane, const char* bits, int axes = 1, const char* in = "in_i") {
   std::string text;
   for (int a = axes - 1; a >= 0; --a)
-    text += fmt::format("in_i[64*{} +: {}]{}", lane + a, bits, a > 0 ? ", " : "");
+    text += fmt::format("{}[64*{} +: {}]{}", in, lane + a, bits, a > 0 ? ", " : "");
   return fmt::format("    .{}({{{}}}),\n", port, text);
 }
 
@@ -80,8 +80,10 @@ std::string print_blocks(const Plan& plan) {
       "  localparam int U = cuboct_pkg::DisplacementBits, Id = cuboct_pkg::IdBits;\n\n",
       static_cast<int>(in::count), static_cast<int>(out::count));
 
+  // The pipe gets its own particle from a memory, a cycle later.
+  text += fmt::format("  logic [64*{}-1:0] in_q;\n  always_ff @(posedge clk_i) in_q <= in_i;\n", static_cast<int>(in::count));
   text += "  logic pipe_valid, pipe_fault, pipe_strength, pipe_busy;\n";
-  text += fmt::format("  logic [{}:0] pipe_slot, new_slot;\n", kSlotBits - 1);
+  text += fmt::format("  logic [{}:0] pipe_slot, pipe_slot_next, new_slot;\n", kSlotBits - 1);
   text += "  logic [3*K-1:0] kick;\n  logic signed [63:0] pipe_number;\n";
   text += "  cuboct_pipe #(\n    " + given({"PositionFrac",
                                             "DifferenceShift",
@@ -113,11 +115,11 @@ std::string print_blocks(const Plan& plan) {
       kSlotBits);
   text += from("valid_i", in::pipe_valid, "1") +
           from("slot_i", in::pipe_slot, fmt::format("{}", kSlotBits).c_str()) +
-          from("own_x_i", in::own_x, "P", 3) + from("own_v_i", in::own_v, "V", 3) +
-          from("own_type_i", in::own_type, "T") + from("other_x_i", in::other_x, "(P+2)", 3) +
+          from("own_x_i", in::own_x, "P", 3, "in_q") + from("own_v_i", in::own_v, "V", 3, "in_q") +
+          from("own_type_i", in::own_type, "T", 1, "in_q") + from("other_x_i", in::other_x, "(P+2)", 3) +
           from("other_v_i", in::other_v, "V", 3) + from("other_type_i", in::other_type, "T");
   text +=
-      "    .valid_o(pipe_valid), .slot_o(pipe_slot), .kick_o(kick), .fault_o(pipe_fault),\n"
+      "    .valid_o(pipe_valid), .slot_next_o(pipe_slot_next), .slot_o(pipe_slot), .kick_o(kick), .fault_o(pipe_fault),\n"
       "    .fault_strength_o(pipe_strength), .fault_number_o(pipe_number), .busy_o(pipe_busy)\n  );\n";
   text += to_axes(out::d, "u_pipe.d_q", "D+1") + to(out::r2, "u_pipe.r2_q") +
           to(out::q, damped ? "u_pipe.gen_damp.q_q" : "1'b0", damped) +

@@ -60,6 +60,9 @@ uint64_t root(uint64_t a) {
   return r;
 }
 
+// The longest d of one axis inside the cutoff.
+int64_t cutoff_of(const FixedRule& rule) { return static_cast<int64_t>(root(rule.cutoff2 - 1)); }
+
 // The first r2 of an entry.
 uint64_t entry_start(const FixedTable& table, uint32_t k) {
   if (table.shape == TableShape::uniform)
@@ -93,7 +96,9 @@ class PairSource {
     return with_difference({either(x), either(y), either(z)}, p);
   }
   bool any(PairStimulus& p) {
-    const int64_t reach = draw_.chance(10) ? 3 : rule_.planar[0];
+    // What the planar test lets pass may lie a little beyond the cutoff.
+    const int finer = std::max(0, rule_.widths.difference_frac - rule_.widths.filter_frac);
+    const int64_t reach = draw_.chance(10) ? 3 : cutoff_of(rule_) + (int64_t{2} << finer);
     Int3 d{draw_(-reach, reach), draw_(-reach, reach), draw_(-reach, reach)};
     if (draw_.chance(10)) d[static_cast<size_t>(draw_(0, 2))] = 0;
     if (draw_.chance(2)) d = {};
@@ -103,7 +108,6 @@ class PairSource {
 
  private:
   bool with_difference(const Int3& d, PairStimulus& p) {
-    if (!may_interact(rule_, d)) return false;
     const Widths& w = rule_.widths;
     const int64_t last = (int64_t{1} << w.position_frac) - 1;
     const bool close = draw_.chance(85);
@@ -125,6 +129,10 @@ class PairSource {
       }
       if (!fits(p.v_j[a], w.velocity_bits)) p.v_j[a] = 0;
     }
+    const int64_t cell = int64_t{1} << w.position_frac;
+    for (const int64_t x : p.x_j)
+      if (x < -cell || x >= 2 * cell) return false;
+    if (!may_interact(rule_, p.x_i, p.x_j)) return false;
     if (rule_.damped && draw_.chance(15)) almost_too_strong(d, p);
     const auto types = static_cast<int64_t>(rule_.types.size());
     p.type_i = static_cast<int>(draw_(0, types - 1));
@@ -176,10 +184,16 @@ std::vector<std::string> look(const FixedRule& rule, PairStimulus& p) {
   note(p.r2 + 1 == rule.cutoff2, "r2 = cutoff2 - 1");
   note(p.r2 == rule.cutoff2, "r2 = cutoff2");
   note(p.r2 == 0, "d = 0");
+  // What the planar test lets pass may be longer than the pipe's d, which wraps; such a pair is outside.
+  const int bits = w.difference_frac + 1;
+  bool beyond = false;
+  for (int64_t& d : p.d) beyond = beyond || !fits(d, bits), d = wrap(d, bits);
+  note(beyond, "d beyond its bits");
+  p.r2 = static_cast<uint64_t>(p.d[0] * p.d[0] + p.d[1] * p.d[1] + p.d[2] * p.d[2]);
   const int64_t last = (int64_t{1} << w.position_frac) - 1;
   bool extreme = false;
   for (size_t a = 0; a < 3; ++a)
-    extreme = extreme || ((p.x_i[a] == 0 || p.x_i[a] == last) && std::abs(p.d[a]) >= rule.planar[0] * 9 / 10);
+    extreme = extreme || ((p.x_i[a] == 0 || p.x_i[a] == last) && std::abs(p.d[a]) >= cutoff_of(rule) * 9 / 10);
   note(extreme, "x at an end, d long");
   for (size_t a = 0; a < 3; ++a) note(negative_half(p.x_j[a] - p.x_i[a], rule.difference_shift), "half of d");
   if (!p.result.inside) return seen;
@@ -242,6 +256,7 @@ std::set<std::string> pair_classes(const FixedRule& rule) {
   // At a cutoff of one cell edge, 2^D, the integers below and at cutoff2 are of the form 4^a (8b + 7), or the
   // squares of one axis alone, which the planar test stops.
   const bool whole = rule.cutoff2 == uint64_t{1} << (2 * rule.widths.difference_frac);
+  if (whole) names.insert("d beyond its bits");
   if (three_squares(rule.cutoff2 - 1)) names.insert("r2 = cutoff2 - 1");
   if (three_squares(rule.cutoff2) && !whole) names.insert("r2 = cutoff2");
   // t is not negative, so a negative product takes a negative coefficient.

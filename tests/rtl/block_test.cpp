@@ -315,7 +315,8 @@ void compare_pairs(const Plan& plan, const Stimuli& s, const Schedule& schedule,
 
 void compare_updates(const Plan& plan, const Stimuli& s, const Schedule& schedule,
                      const std::vector<OutLanes>& trace, Outcome& outcome) {
-  const auto last = static_cast<size_t>(plan.latency.update - 1);
+  // UPDATE ends a cycle after the last particle is written, which is a cycle after it is at the outputs.
+  const auto last = static_cast<size_t>(plan.latency.update - 2);
   const int64_t cell = int64_t{1} << plan.rule.widths.position_frac;
   Comparison compare(trace, outcome.difference);
   for (size_t c = 0; c + last < trace.size(); ++c) {

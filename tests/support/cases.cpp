@@ -115,7 +115,26 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.arch.link_bits = 24;
          r.arch.overlap = false;
        }},
+      {"flat_shared",
+       [](R r) {
+         r.features.flat = true;
+         r.features.size = {3, 3, 1};
+         r.features.damping = 0.2;
+         r.arch.shared_multipliers = true;
+         r.arch.queue_depth = 2;
+       }},
       // Rich ones, of which the RTL is built.
+      {"rich_shared",
+       [](R r) {
+         r.features.damping = 0.2;
+         r.features.speed = 0.3;
+         r.features.two_materials = r.features.held = true;
+         r.arch.shared_multipliers = true;
+         r.arch.widths.filter_frac = 5;
+         r.arch.filter_lanes = 3;
+         r.arch.queue_depth = 2;
+         r.arch.link_bits = 40;
+       }},
       {"rich_damped",
        [](R r) {
          r.features.damping = 0.2;
@@ -223,6 +242,8 @@ Case random_recipe(uint64_t seed, bool flat) {
     r.arch.cell_edge = 0;
     r.arch.capacity = 24;
   }
+  r.arch.shared_multipliers = dice.chance(25);
+  if (dice.chance(30)) r.arch.widths.filter_frac = dice.draw(2, 14);
   return cook((flat ? "random_flat_" : "random_") + std::to_string(seed), r);
 }
 

@@ -47,7 +47,7 @@ struct TwoParticles {
     fixed.mass = 3;
     const Widths& w = fixed.widths;
     fixed.cutoff2 = static_cast<uint64_t>(0.95 * 0.95 * std::ldexp(1.0, 2 * w.difference_frac));
-    fixed.planar = {int64_t{1} << 17, int64_t{1} << 18, int64_t{1} << 18};
+    set_planar(fixed);
     fixed.force.value_frac = 16;  // E
     fixed.force.c0.assign(512, -(1 << 12));
     fixed.force.c1.assign(512, 0);

@@ -403,6 +403,8 @@ TEST(Examples, DefaultArchIsTheDefault) {
   EXPECT_EQ(file.force_pipes, none.force_pipes);
   EXPECT_EQ(file.queue_depth, none.queue_depth);
   EXPECT_EQ(file.overlap, none.overlap);
+  EXPECT_EQ(file.shared_multipliers, none.shared_multipliers);
+  EXPECT_EQ(file.widths.filter_frac, none.widths.filter_frac);
   EXPECT_EQ(file.link_bits, none.link_bits);
   EXPECT_EQ(file.widths.position_frac, none.widths.position_frac);
   EXPECT_EQ(file.widths.guard, none.widths.guard);
@@ -431,6 +433,11 @@ TEST(Examples, ArchValuesArrive) {
   const Arch fast = read_arch(kRoot + "/scenes/archs/fast.toml");
   EXPECT_EQ(fast.force_pipes, 2);
   EXPECT_EQ(fast.table.degree, 2);
+  const Arch ice40 = read_arch(kRoot + "/scenes/archs/ice40.toml");
+  EXPECT_TRUE(ice40.shared_multipliers);
+  EXPECT_FALSE(fast.shared_multipliers);
+  EXPECT_EQ(ice40.widths.filter_frac, 8);
+  EXPECT_EQ(ice40.widths.difference_frac, 15);
 }
 
 }  // namespace

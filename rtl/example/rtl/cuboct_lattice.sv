@@ -28,6 +28,9 @@ module cuboct_lattice #(
   logic [6*LinkBits-1:0] data_0;
   logic [5:0] valid_1, end_1, ready_1;
   logic [6*LinkBits-1:0] data_1;
+  logic [3:0] event_0, event_1;
+  logic unused_events;
+  assign unused_events = ^{event_0, event_1};
 
   // Cell (0, 0, 0).
   cuboct_node u_node_0 (
@@ -40,7 +43,7 @@ module cuboct_lattice #(
     .link_data_i({{LinkBits{1'b0}}, {LinkBits{1'b0}}, {LinkBits{1'b0}}, {LinkBits{1'b0}}, data_1[0*LinkBits +: LinkBits], {LinkBits{1'b0}}}),
     .link_ready_o(ready_0),
     .phase_start_o(phase_start_o[8*0 +: 8]), .phase_end_o(phase_end_o[8*0 +: 8]),
-    .observe_valid_o(observe_valid_o[0]),
+    .force_event_o(event_0), .observe_valid_o(observe_valid_o[0]),
     .observe_data_o(observe_data_o[0*cuboct_pkg::ParticleBits +: cuboct_pkg::ParticleBits]),
     .fault_valid_o(fault_valid_o[0]), .fault_code_o(fault_code_o[4*0 +: 4]),
     .fault_id_o(fault_id_o[0*cuboct_pkg::IdBits +: cuboct_pkg::IdBits]),
@@ -58,7 +61,7 @@ module cuboct_lattice #(
     .link_data_i({{LinkBits{1'b0}}, {LinkBits{1'b0}}, {LinkBits{1'b0}}, {LinkBits{1'b0}}, {LinkBits{1'b0}}, data_0[1*LinkBits +: LinkBits]}),
     .link_ready_o(ready_1),
     .phase_start_o(phase_start_o[8*1 +: 8]), .phase_end_o(phase_end_o[8*1 +: 8]),
-    .observe_valid_o(observe_valid_o[1]),
+    .force_event_o(event_1), .observe_valid_o(observe_valid_o[1]),
     .observe_data_o(observe_data_o[1*cuboct_pkg::ParticleBits +: cuboct_pkg::ParticleBits]),
     .fault_valid_o(fault_valid_o[1]), .fault_code_o(fault_code_o[4*1 +: 4]),
     .fault_id_o(fault_id_o[1*cuboct_pkg::IdBits +: cuboct_pkg::IdBits]),

@@ -6,6 +6,7 @@ package cuboct_pkg;
   localparam int          Capacity             = 8;             // particles per node
   localparam int          FilterLanes          = 4;             // own particles that a candidate meets per cycle
   localparam int          ForcePipes           = 1;             // pairs per cycle
+  localparam int          Shared               = 0;             // 1: one multiplier serves the axes in turn
   localparam int          QueueDepth           = 4;             // entries between filter and pipes
   localparam int          Overlap              = 1;             // 1: the force engine starts with the exchange
   localparam int          LinkBits             = 64;            // payload of a beat
@@ -23,15 +24,16 @@ package cuboct_pkg;
   localparam int          GainBits             = 18;
   localparam int          ScaleBits            = 18;
   localparam int          ConstantBits         = 29;            // imposed velocities and gravity
+  localparam int          FilterFrac           = 10;            // leading bits of a position that the filter tests
   localparam int          DifferenceShift      = 4;
   localparam int          WShift               = 8;
   localparam int          QShift               = 17;
   localparam int          DampShift            = 0;
   localparam int          KickShift            = 11;
   localparam logic [63:0] Cutoff2              = 64'h100000000;  // in units of r2
-  localparam logic [63:0] PlanarOne            = 64'hffff;      // in units of d
-  localparam logic [63:0] PlanarTwo            = 64'h16a09;
-  localparam logic [63:0] PlanarThree          = 64'h1bb67;
+  localparam logic [63:0] PlanarOne            = 64'h400;       // FilterFrac fractional bits
+  localparam logic [63:0] PlanarTwo            = 64'h5aa;
+  localparam logic [63:0] PlanarThree          = 64'h6f0;
   localparam int          Octaves              = 0;             // force table: 0 uniform, 1 by octaves
   localparam int          Degree               = 1;
   localparam int          IndexBits            = 4;
