@@ -3,7 +3,8 @@
 // number.
 module least_fault_formal #(
   parameter int Sources = 2,
-  parameter int IdBits  = 3
+  parameter int IdBits  = 3,
+  parameter int NumberBits = 64
 ) (
   input logic                      clk_i,
   input logic                      clear_i,
@@ -17,12 +18,20 @@ module least_fault_formal #(
   always_comb begin
     if (clear_i || !running_q) assume (valid_i == '0);
   end
+  // Every number fits NumberBits.
+  integer n, m;
+  always_comb begin
+    for (n = 0; n < Sources; n = n + 1) begin
+      for (m = NumberBits; m < 64; m = m + 1) assume (number_i[n*64+m] == number_i[n*64+63]);
+      assume (number_i[n*64+NumberBits-1] == number_i[n*64+63]);
+    end
+  end
 
   logic               valid;
   logic [3:0]         code;
   logic [IdBits-1:0]  id;
   logic signed [63:0] number;
-  cuboct_least_fault #(.Sources(Sources), .IdBits(IdBits)) u_dut (
+  cuboct_least_fault #(.Sources(Sources), .IdBits(IdBits), .NumberBits(NumberBits)) u_dut (
     .clk_i, .rst_ni(running_q), .clear_i, .valid_i, .code_i, .id_i, .number_i,
     .valid_o(valid), .code_o(code), .id_o(id), .number_o(number)
   );

@@ -2,7 +2,7 @@
 // cuboct_relay through any number of exchange phases, with any counts and any pauses of the links: each
 // record of each segment is sent once, segments and records in order, then one end beat, then nothing until
 // the phase is over. A record's content is its own name, (segment, number), so what is sent tells where it
-// was read.
+// was read; the memories answer in the cycle after the question.
 module relay_formal #(
   parameter int Axes     = 3,
   parameter int AddrBits = 2,   // a segment holds up to 2^AddrBits records
@@ -48,7 +48,7 @@ module relay_formal #(
   end
 
   logic [2:0]          segment;
-  logic [AddrBits-1:0] addr, slot;
+  logic [AddrBits-1:0] addr, slot, addr_q, slot_q;  // asked for in the cycle before
   logic                load, is_end, first_own;
   logic [LinkBits-1:0] data;
   cuboct_relay #(
@@ -56,9 +56,13 @@ module relay_formal #(
         .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_i(done), .counts_i(counts_q),
-    .segment_o(segment), .addr_o(addr), .slot_o(slot), .record_i({segment, addr}), .can_load_i, .load_o(load),
+    .segment_o(segment), .addr_o(addr), .slot_o(slot), .record_i({segment, addr_q}), .can_load_i, .load_o(load),
     .end_o(is_end), .data_o(data), .first_own_o(first_own), .sent_o(sent)
   );
+  always_ff @(posedge clk_i) begin
+    addr_q <= addr;
+    slot_q <= slot;
+  end
 
   // What must come: the next record is the least (segment, number) not yet sent, of those that the axis
   // sends.
@@ -112,7 +116,7 @@ module relay_formal #(
   // phase takes no more such cycles than there are values.
   logic [AddrBits+7:0] rank, rank_q;
   logic                moves_q;
-  assign rank = {sent, segment, addr, beat_q};
+  assign rank = {sent, segment, addr_q, beat_q};
   always_ff @(posedge clk_i) begin
     rank_q  <= rank;
     moves_q <= running_q && active_q && can_load_i && !sent;
@@ -126,10 +130,10 @@ module relay_formal #(
       if (is_end) a_end: assert (load && all && data == '0 && beat_q == '0);
       a_sent: assert (sent == (active_q && ended_q));
       if (first_own) a_first: assert (load && !is_end && beat_q == '0 && next_segment == 3'd0);
-      if (load && !is_end && beat_q == '0 && next_segment == 3'd0) a_told: assert (first_own && slot == addr);
+      if (load && !is_end && beat_q == '0 && next_segment == 3'd0) a_told: assert (first_own && slot_q == addr_q);
       if (moves_q) a_progress: assert (rank > rank_q);
       c_nothing: cover (is_end && axis_q == Axes[1:0] - 2'd1 && counts_q == '0);
-      c_full:    cover (record && counts_q[CountBits-1:0] == Most[CountBits-1:0] && addr == '1);
+      c_full:    cover (record && counts_q[CountBits-1:0] == Most[CountBits-1:0] && addr_q == '1);
       c_last:    cover (record && next_segment == Segments[2:0] - 3'd1 && counts_q[0 +: CountBits] == '0);
       c_again:   cover (done && begin_i && due_record_q != '0);
     end
