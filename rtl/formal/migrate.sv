@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// cuboct_migrate with the slots, two link registers and two FIFOs of arrivals, through any number of phases,
-// each from any slots and count, under any stalls and any arrivals. A watched own particle, any, stays once
+// cuboct_migrate with the slots, two link registers and two inboxes of arrivals, through any number of phases,
+// each from any slots and count, under any stalls and any arrivals. The slots answer in the cycle after the
+// question, and with anything if asked for in the cycle in which it is written. A watched own particle stays once
 // in its place, or is sent once, in its place, on the link of its direction, or is told once as a fault where
 // that link does not exist. A watched arrival, any, is appended once in its place or told once as a fault
 // where no slot is free.
@@ -18,6 +19,7 @@ module migrate_formal #(
   input logic [3:0]              set_slot_i,
   input logic [1+2*Axes+TagBits-1:0] set_data_i,
   input logic [3:0]              set_count_i,
+  input logic [1+2*Axes+TagBits-1:0] torn_i, // what a slot answers that is written
   input logic [1:0]              ready_i,    // of the neighbours
   input logic [1:0]              arrive_i,   // a particle comes from below, above
   input logic [1:0]              arrived_all_i,
@@ -60,11 +62,15 @@ module migrate_formal #(
   logic [SlotWidth-1:0]          read_data, write_data;
   logic                          count_set, write;
   integer                        r, w;
-  always_comb begin
-    read_data = '0;
+  always_ff @(posedge clk_i) begin
     for (r = 0; r < Capacity; r = r + 1) begin
-      if (read_slot == r[SlotBits-1:0]) read_data = slots_q[r*SlotWidth +: SlotWidth];
+      if (read_slot == r[SlotBits-1:0]) read_data <= slots_q[r*SlotWidth +: SlotWidth];
     end
+    if (write && write_slot == read_slot) read_data <= torn_i;
+  end
+  // Slots are set before the phase begins: what is asked for in the cycle before it is no longer written.
+  always_comb begin
+    if (!active_q && begin_i) assume (!set_i);
   end
   always_ff @(posedge clk_i) begin
     if (!running_q) count_q <= '0;
@@ -76,17 +82,23 @@ module migrate_formal #(
     end
   end
 
-  // FIFOs, and what came since the clear. Where there is no link nothing comes and the end counts as seen.
+  // Inboxes, and what came since the clear: a record or an end in one cycle, as the link brings them. Where
+  // there is no link nothing comes and the end counts as seen.
   logic [1:0]                empty, pop, full, ended, ended_q, push;
   logic [2*ParticleBits-1:0] arrived;
   logic [2*CountBits-1:0]    came_q;
   assign ended = ended_q | ~has_link;
-  for (genvar f = 0; f < 2; f++) begin : gen_fifo
+  for (genvar f = 0; f < 2; f++) begin : gen_inbox
     assign push[f] = running_q && arrive_i[f] && !ended[f]
         && came_q[f*CountBits +: CountBits] != Capacity[CountBits-1:0];
-    cuboct_fifo #(.Bits(ParticleBits), .Depth(Capacity)) u_fifo (
-      .clk_i, .rst_ni(running_q), .push_i(push[f]), .data_i(arrive_data_i[f*ParticleBits +: ParticleBits]),
-      .full_o(full[f]), .pop_i(pop[f]), .data_o(arrived[f*ParticleBits +: ParticleBits]), .empty_o(empty[f])
+    cuboct_inbox #(
+      .HaloBits(1), .ParticleBits(ParticleBits), .HaloDepth(1), .Capacity(Capacity), .Relayed(0),
+      .AddrBits(1), .CountBits(CountBits)
+    ) u_inbox (
+      .clk_i, .rst_ni(running_q), .clear_i(1'b0), .append_i(1'b0), .halo_i(1'b0), .read_i(1'b0),
+      .addr_i(1'b0), .relay_addr_i(1'b0), .migrating_i(active_q), .push_i(push[f]),
+      .particle_i(arrive_data_i[f*ParticleBits +: ParticleBits]), .full_o(full[f]), .pop_i(pop[f]),
+      .particle_o(arrived[f*ParticleBits +: ParticleBits]), .empty_o(empty[f])
     );
     always_ff @(posedge clk_i) begin
       if (!running_q || done) begin
@@ -94,7 +106,7 @@ module migrate_formal #(
         ended_q[f]                       <= 1'b0;
       end else begin
         if (push[f]) came_q[f*CountBits +: CountBits] <= came_q[f*CountBits +: CountBits] + 1'b1;
-        if (arrived_all_i[f]) ended_q[f] <= 1'b1;
+        if (arrived_all_i[f] && !push[f]) ended_q[f] <= 1'b1;
       end
     end
   end

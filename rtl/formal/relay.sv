@@ -56,7 +56,8 @@ module relay_formal #(
         .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_i(done), .counts_i(counts_q),
-    .segment_o(segment), .addr_o(addr), .slot_o(slot), .record_i({segment, addr_q}), .can_load_i, .load_o(load),
+    .segment_o(segment), .addr_o(addr), .slot_o(slot), .record_i({segment, addr_q}), .can_load_i,
+    .load_o(load),
     .end_o(is_end), .data_o(data), .first_own_o(first_own), .sent_o(sent)
   );
   always_ff @(posedge clk_i) begin
@@ -130,7 +131,8 @@ module relay_formal #(
       if (is_end) a_end: assert (load && all && data == '0 && beat_q == '0);
       a_sent: assert (sent == (active_q && ended_q));
       if (first_own) a_first: assert (load && !is_end && beat_q == '0 && next_segment == 3'd0);
-      if (load && !is_end && beat_q == '0 && next_segment == 3'd0) a_told: assert (first_own && slot_q == addr_q);
+      if (load && !is_end && beat_q == '0 && next_segment == 3'd0)
+        a_told: assert (first_own && slot_q == addr_q);
       if (moves_q) a_progress: assert (rank > rank_q);
       c_nothing: cover (is_end && axis_q == Axes[1:0] - 2'd1 && counts_q == '0);
       c_full:    cover (record && counts_q[CountBits-1:0] == Most[CountBits-1:0] && addr_q == '1);
