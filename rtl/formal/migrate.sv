@@ -340,7 +340,7 @@ module migrate_formal #(
           a_appended: assert (at_arrival == {2'b00, kept_as});
           a_goes_on:  assert (arrival_goes_on);
         end
-        c_still:   cover (quiet_q && stays != '0);
+        c_still:   cover (quiet_q && stays != '0 && came_w_q);
         c_crowded: cover (fault_full || full_q != '0);
         c_swap:    cover (down_q != '0 && came_w_q && room && count_q == Capacity[CountBits-1:0]);
         c_left:    cover (left_q != '0);
