@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// cuboct_inbox: the k-th halo since the clear, k any, is what both ports answer in the cycle after they asked for
+// address k; the streamer's answer stays until the memory is read for someone else. A watched particle, any of
+// those pushed, comes out once, after those before it and before those after it, unchanged; it counts from the
+// second cycle after its push on. Each stream keeps its own however the other one goes on at the same time.
+module inbox_formal #(
+  parameter int HaloDepth    = 2,
+  parameter int Capacity     = 2,
+  parameter int HaloBits     = 2,
+  parameter int ParticleBits = 1,
+  parameter int Relayed      = 1
+) (
+  input logic                    clk_i,
+  input logic                    clear_i,
+  input logic                    append_i,
+  input logic [HaloBits-1:0]     halo_i,
+  input logic                    read_i,
+  input logic [7:0]              addr_i, relay_addr_i,
+  input logic                    migrating_i,
+  input logic                    push_i,
+  input logic                    pop_i,
+  input logic [ParticleBits-1:0] particle_i,
+  input logic                    watch_i        // the particle pushed in this cycle is the one watched; any may be
+);
+  localparam int Depth     = HaloDepth + Capacity;
+  localparam int AddrBits  = (HaloDepth > 1) ? $clog2(HaloDepth) : 1;
+  localparam int CountBits = $clog2(Depth + 1) + 1;  // one to spare, as where depths differ by face
+
+  logic running_q = 1'b0;  // reset in the first cycle only
+  always_ff @(posedge clk_i) running_q <= 1'b1;
+
+  logic [CountBits-1:0]    count;
+  logic [HaloBits-1:0]     halo, relay_halo;
+  logic                    full, empty;
+  logic [ParticleBits-1:0] particle;
+  cuboct_inbox #(
+    .HaloBits(HaloBits), .ParticleBits(ParticleBits), .HaloDepth(HaloDepth), .Capacity(Capacity),
+    .Relayed(Relayed), .AddrBits(AddrBits), .CountBits(CountBits)
+  ) u_dut (
+    .clk_i, .rst_ni(running_q), .clear_i, .append_i, .halo_i, .count_o(count), .read_i,
+    .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_addr_i(relay_addr_i[AddrBits-1:0]),
+    .relay_halo_o(relay_halo), .migrating_i, .push_i, .particle_i, .full_o(full), .pop_i, .particle_o(particle),
+    .empty_o(empty)
+  );
+
+  // Halos come only where there is room and never in the cycle of the clear: cuboct_halos asserts the one, the
+  // proof `neighbours` shows both. A link brings one record at a time (proof `link`).
+  logic [CountBits-1:0] count_q, held_q, before_q;
+  always_comb begin
+    if (append_i) assume (running_q && !clear_i && !push_i && count_q != HaloDepth[CountBits-1:0]);
+    if (push_i) assume (running_q && !full);
+    if (pop_i) assume (running_q && !empty);
+  end
+
+  // The watched halo, by its number, and what is known of the answers.
+  (* anyconst *) logic [AddrBits-1:0] number;
+  logic                               counts, cleared_q, asked_q, relayed_q, kept_q;
+  logic [HaloBits-1:0]                value_q, answer_q, relay_answer_q;
+  assign counts = ({{(CountBits - AddrBits) {1'b0}}, number} < count_q);
+  always_ff @(posedge clk_i) begin
+    if (!running_q) begin
+      count_q   <= '0;
+      cleared_q <= 1'b0;
+      asked_q   <= 1'b0;
+      relayed_q <= 1'b0;
+      kept_q    <= 1'b0;
+    end else begin
+      if (clear_i) count_q <= '0;
+      else if (append_i) count_q <= count_q + 1'b1;
+      cleared_q <= cleared_q || (clear_i && count_q == HaloDepth[CountBits-1:0]);
+      if (read_i || migrating_i) asked_q <= !migrating_i && counts && addr_i[AddrBits-1:0] == number;
+      kept_q    <= asked_q && !read_i && !migrating_i;  // the answer stays
+      relayed_q <= counts && relay_addr_i[AddrBits-1:0] == number;
+    end
+    if (append_i && count_q == {{(CountBits - AddrBits) {1'b0}}, number}) value_q <= halo_i;
+    if (read_i) answer_q <= value_q;
+    relay_answer_q <= value_q;
+  end
+
+  // The watched particle: how many are inside, of which the last may not count yet; how many stand before it.
+  logic                    pushed_q, watched_q, inside_q, shown_q, migrating_q;
+  logic [ParticleBits-1:0] particle_q;
+  always_ff @(posedge clk_i) begin
+    migrating_q <= running_q && migrating_i;
+    if (!running_q) begin
+      held_q    <= '0;
+      pushed_q  <= 1'b0;
+      watched_q <= 1'b0;
+      inside_q  <= 1'b0;
+      shown_q   <= 1'b0;
+    end else begin
+      held_q   <= held_q + {{(CountBits - 1) {1'b0}}, push_i} - {{(CountBits - 1) {1'b0}}, pop_i};
+      pushed_q <= push_i;
+      shown_q  <= inside_q;
+      if (push_i && watch_i && !watched_q) begin
+        watched_q  <= 1'b1;
+        inside_q   <= 1'b1;
+        particle_q <= particle_i;
+        before_q   <= held_q - {{(CountBits - 1) {1'b0}}, pop_i};
+      end else if (inside_q && pop_i) begin
+        before_q <= before_q - 1'b1;
+        if (before_q == '0) inside_q <= 1'b0;
+      end
+    end
+  end
+
+  // A word that is asked for in the cycle in which it is written has no defined answer: no one looks at it.
+  (* keep *) logic                 tap_write, tap_read;
+  (* keep *) logic [CountBits-1:0] tap_write_addr, tap_read_addr;
+  logic                            torn_q;
+  always_ff @(posedge clk_i) begin
+    if (!running_q) torn_q <= 1'b0;
+    else if (tap_read) torn_q <= tap_write && tap_write_addr == tap_read_addr;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (running_q) begin
+      a_count: assert (count == count_q && count_q <= HaloDepth[CountBits-1:0]);
+      if (asked_q) a_halo: assert (halo == answer_q && !torn_q);
+      if (relayed_q && Relayed != 0) a_relay: assert (relay_halo == relay_answer_q);
+      a_full:  assert (full == (held_q == Capacity[CountBits-1:0]));
+      a_empty: assert (empty == (held_q == {{(CountBits - 1) {1'b0}}, pushed_q}));
+      if (inside_q && shown_q) a_held: assert (!empty);
+      if (inside_q && shown_q && before_q == '0 && migrating_q) begin
+        a_particle: assert (particle == particle_q && !torn_q);
+      end
+      c_all:     cover (count == HaloDepth[CountBits-1:0] && full && asked_q && relayed_q && value_q == '1);
+      c_cleared: cover (cleared_q && count == '0);
+      c_again:   cover (cleared_q && counts && asked_q && value_q == '1);
+      c_kept:    cover (kept_q && asked_q && count == '0 && answer_q == '1);
+      c_drained: cover (empty && watched_q && !inside_q && held_q == '0 && !pushed_q && count != '0);
+      c_wrapped: cover (full && watched_q && !inside_q);
+      c_both:    cover (migrating_q && inside_q && shown_q && before_q == '0 && pop_i && (Capacity == 1 || push_i));
+      c_torn:    cover (torn_q);
+    end
+  end
+endmodule
