@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// cuboct_inbox: the k-th halo since the clear, k any, is what both ports answer in the cycle after they asked for
-// address k; the streamer's answer stays until the memory is read for someone else. A watched particle, any of
-// those pushed, comes out once, after those before it and before those after it, unchanged; it counts from the
-// second cycle after its push on. Each stream keeps its own however the other one goes on at the same time.
+// cuboct_inbox: the k-th halo since the clear, k any, is what both ports answer in the cycle after they asked
+// for address k; the streamer's answer stays until the memory is read for someone else. A watched particle,
+// any of those pushed, comes out once, after those before it and before those after it, unchanged; it counts
+// from the second cycle after its push on. Neither stream touches what the other one keeps.
 module inbox_formal #(
   parameter int HaloDepth    = 2,
   parameter int Capacity     = 2,
@@ -20,7 +20,7 @@ module inbox_formal #(
   input logic                    push_i,
   input logic                    pop_i,
   input logic [ParticleBits-1:0] particle_i,
-  input logic                    watch_i        // the particle pushed in this cycle is the one watched; any may be
+  input logic                    watch_i  // the particle pushed in this cycle is the one watched; any may be
 );
   localparam int Depth     = HaloDepth + Capacity;
   localparam int AddrBits  = (HaloDepth > 1) ? $clog2(HaloDepth) : 1;
@@ -39,12 +39,12 @@ module inbox_formal #(
   ) u_dut (
     .clk_i, .rst_ni(running_q), .clear_i, .append_i, .halo_i, .count_o(count), .read_i,
     .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_addr_i(relay_addr_i[AddrBits-1:0]),
-    .relay_halo_o(relay_halo), .migrating_i, .push_i, .particle_i, .full_o(full), .pop_i, .particle_o(particle),
-    .empty_o(empty)
+    .relay_halo_o(relay_halo), .migrating_i, .push_i, .particle_i, .full_o(full), .pop_i,
+    .particle_o(particle), .empty_o(empty)
   );
 
-  // Halos come only where there is room and never in the cycle of the clear: cuboct_halos asserts the one, the
-  // proof `neighbours` shows both. A link brings one record at a time (proof `link`).
+  // Halos come only where there is room and never in the cycle of the clear: cuboct_halos asserts the one,
+  // the proof `neighbours` shows both. A link brings one record at a time (proof `link`).
   logic [CountBits-1:0] count_q, held_q, before_q;
   always_comb begin
     if (append_i) assume (running_q && !clear_i && !push_i && count_q != HaloDepth[CountBits-1:0]);
@@ -130,7 +130,8 @@ module inbox_formal #(
       c_kept:    cover (kept_q && asked_q && count == '0 && answer_q == '1);
       c_drained: cover (empty && watched_q && !inside_q && held_q == '0 && !pushed_q && count != '0);
       c_wrapped: cover (full && watched_q && !inside_q);
-      c_both:    cover (migrating_q && inside_q && shown_q && before_q == '0 && pop_i && (Capacity == 1 || push_i));
+      c_both:    cover (migrating_q && inside_q && shown_q && before_q == '0 && pop_i
+                        && (Capacity == 1 || push_i));
       c_torn:    cover (torn_q);
     end
   end

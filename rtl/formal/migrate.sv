@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// cuboct_migrate with the slots, two link registers and two inboxes of arrivals, through any number of phases,
-// each from any slots and count, under any stalls and any arrivals. The slots answer in the cycle after the
-// question, and with anything if asked for in the cycle in which it is written. A watched own particle stays once
-// in its place, or is sent once, in its place, on the link of its direction, or is told once as a fault where
-// that link does not exist. A watched arrival, any, is appended once in its place or told once as a fault
-// where no slot is free.
+// cuboct_migrate with the slots, two link registers and two inboxes of arrivals, through any number of
+// phases, each from any slots and count, under any stalls and any arrivals. The slots answer in the cycle
+// after the question; who asks for one in the cycle in which it is written gets anything. A watched own
+// particle, any, stays once in its place, or is sent once, in its place, on the link of its direction, or is
+// told once as a fault where that link does not exist. A watched arrival, any, is appended once in its place or
+// told once as a fault where no slot is free.
 module migrate_formal #(
   parameter int Axes     = 2,
   parameter int Capacity = 2,

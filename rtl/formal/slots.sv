@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// cuboct_slots: every read port answers in the cycle after the question, with what was written last before it;
-// the position that a filter lane reads in its row has the leading bits of that of the particle which the other
-// ports show in the same slot. Of the answer to who asks for a slot in the cycle in which it is written nothing
-// is said. Answers of the streamer and of the lanes stay until the next question; those of the lanes, where
-// there is only one row, until their slot is written.
+// cuboct_slots: every read port answers in the cycle after the question, with what was written last before
+// it; the position that a filter lane reads in its row has the leading bits of that of the particle which the
+// other ports show in the same slot. What is answered to a question for a slot in the cycle in which it is
+// written is left open. Answers of the streamer and of the lanes stay until the next question; those of the
+// lanes, where there is only one row, until their slot is written.
 module slots_formal #(
   parameter int Capacity    = 3,
   parameter int FilterLanes = 2,
@@ -49,7 +49,8 @@ module slots_formal #(
   end
   cuboct_slots #(
     .Axes(2), .Bits(8), .SeenBits(5), .PositionFrac(2), .FilterFrac(1), .IdLsb(5), .IdBits(2),
-    .Capacity(Capacity), .SlotBits(SlotBits), .FilterLanes(FilterLanes), .RowBits(RowBits), .ForcePipes(ForcePipes)
+    .Capacity(Capacity), .SlotBits(SlotBits), .FilterLanes(FilterLanes), .RowBits(RowBits),
+    .ForcePipes(ForcePipes)
   ) u_dut (
     .clk_i, .write_i, .write_slot_i(slot_i[SlotBits-1:0]), .write_data_i(data_i),
     .main_slot_i(main_i[SlotBits-1:0]), .main_data_o(main_data), .stream_read_i,
