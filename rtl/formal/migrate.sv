@@ -68,9 +68,9 @@ module migrate_formal #(
     end
     if (write && write_slot == read_slot) read_data <= torn_i;
   end
-  // Slots are set before the phase begins: what is asked for in the cycle before it is no longer written.
+  // The slot that is asked for in the cycle before the phase is not written in that cycle.
   always_comb begin
-    if (!active_q && begin_i) assume (!set_i);
+    if (!active_q && begin_i && set_i) assume (set_slot_i != {{(4 - SlotBits) {1'b0}}, read_slot});
   end
   always_ff @(posedge clk_i) begin
     if (!running_q) count_q <= '0;
