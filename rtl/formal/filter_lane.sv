@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// cuboct_filter_lane against the planar test told by magnitudes, for every pair of positions (of their leading bits):
-// with e the difference, |e|, less one where e < 0; each, each sum of two and the sum of all within its bound.
-// Combinational: one cycle is all of it.
+// cuboct_filter_lane against the planar test told by magnitudes, for every pair of leading bits of positions:
+// with e their difference, size = |e|, less one where e < 0; each size, each sum of two and the sum of all
+// within its bound. Combinational: one cycle is all of it.
 module filter_lane_formal #(
   parameter int Axes            = 3,
   parameter int FilterFrac      = 8,
@@ -18,7 +18,8 @@ module filter_lane_formal #(
 
   logic pass;
   cuboct_filter_lane #(
-    .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree)
+    .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo),
+    .PlanarThree(PlanarThree)
   ) u_dut (.test_i, .own_i, .candidate_i, .pass_o(pass));
 
   logic [3*Bits-1:0] sizes;  // by axis; nothing along one that is not there
