@@ -7,6 +7,7 @@
 module main_port_formal #(
   parameter int Capacity = 2,
   parameter int LinkBits = 8,
+  parameter int Pd       = 0,  // 0, 1: types held by force only, an update of three cycles more
   parameter int Steps    = 2   // of a run, at most
 ) (
   input logic                  clk_i,
@@ -17,6 +18,7 @@ module main_port_formal #(
   input logic [4*LinkBits-1:0] link_data_i
 );
   localparam int Faces     = 4;
+  localparam int Taken     = (Pd != 0) ? 5 : 2;  // cycles from take to write
   localparam int SlotBits  = (Capacity > 1) ? $clog2(Capacity) : 1;
   localparam int CountBits = $clog2(3 * Capacity) + 1;
   localparam int AddrBits  = $clog2(3 * Capacity);
@@ -30,7 +32,7 @@ module main_port_formal #(
   logic [7:0]                phase_start, phase_end;
   logic [3:0]                event_now, code;
   logic                      observe, fault, id, idle;
-  logic [6:0]                observed;
+  logic [6+2*Pd:0]           observed;
   logic [63:0]               number;
   always_comb begin
     assume (steps_i <= Steps);
@@ -40,35 +42,34 @@ module main_port_formal #(
   cuboct_node_core #(
     .Axes(2), .Capacity(Capacity), .FilterLanes(1), .ForcePipes(1), .QueueDepth(1), .LinkBits(LinkBits),
     .IdBits(1), .PositionFrac(1), .Guard(1), .VelocityBits(1), .RelativeVelocityBits(1), .DifferenceShift(0),
-    .FilterFrac(1), .Overlap(1)
+    .FilterFrac(1), .Pd(Pd), .DisplacementBits(1), .Overlap(1)
   ) u_node (
     .clk_i, .rst_ni(running_q), .start_i, .steps_i, .has_link_i(has_link), .load_valid_i(load_i),
-    .load_data_i(7'd0), .link_valid_o(link_valid), .link_end_o(link_end), .link_data_o(link_data),
+    .load_data_i({(7 + 2 * Pd) {1'b0}}), .link_valid_o(link_valid), .link_end_o(link_end), .link_data_o(link_data),
     .link_ready_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o(link_ready),
     .phase_start_o(phase_start), .phase_end_o(phase_end), .force_event_o(event_now), .observe_valid_o(observe), .observe_data_o(observed),
     .fault_valid_o(fault), .fault_code_o(code), .fault_id_o(id), .fault_number_o(number), .idle_o(idle)
   );
 
   // What the contract says of what is cut out, and of the links: the finder is done only in FORCE; the update
-  // writes a slot two cycles after it took it; no halo after the end of its stream (`neighbours`), no record
+  // writes a slot so many cycles after it took it; no halo after the end of its stream (`neighbours`), no record
   // beyond the room of its memory (`neighbours_room`).
   (* keep *) logic                       tap_finder_done, tap_take, tap_update_write;
   (* keep *) logic [1:0]                 tap_past_exchange;
   (* keep *) logic [SlotBits-1:0]        tap_tick_slot, tap_update_slot;
   (* keep *) logic [Faces-1:0]           tap_halo, tap_halo_end, tap_halo_ended, tap_arrival, tap_full;
   (* keep *) logic [Faces*CountBits-1:0] tap_count;
-  logic [SlotBits-1:0]                   slot_1_q, slot_2_q;
-  logic                                  take_1_q, take_2_q;
+  logic [Taken*SlotBits-1:0]             slots_q;  // taken before, the last one lowest
+  logic [Taken-1:0]                      takes_q;
   integer                                f;
   always_ff @(posedge clk_i) begin
-    take_1_q <= running_q && tap_take;
-    take_2_q <= running_q && take_1_q;
-    slot_1_q <= tap_tick_slot;
-    slot_2_q <= slot_1_q;
+    takes_q <= running_q ? {takes_q[Taken-2:0], tap_take} : '0;
+    slots_q <= {slots_q[(Taken-1)*SlotBits-1:0], tap_tick_slot};
   end
   always_comb begin
     assume (!tap_finder_done || tap_past_exchange[1]);
-    assume (tap_update_write == take_2_q && (!take_2_q || tap_update_slot == slot_2_q));
+    assume (tap_update_write == takes_q[Taken-1]);
+    if (takes_q[Taken-1]) assume (tap_update_slot == slots_q[(Taken-1)*SlotBits +: SlotBits]);
     assume (((tap_halo | tap_halo_end) & tap_halo_ended) == '0);
     assume ((tap_arrival & tap_full) == '0);
     for (f = 0; f < Faces; f = f + 1) begin
