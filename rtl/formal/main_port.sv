@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The one read port of a node's own slots that relay, update, migration and dump share: each of them asks a
-// cycle ahead, the addresses are put together by OR, and the memory says nothing of a word that is asked for
-// in the cycle in which it is written. Whenever one of them looks at the answer, it is that of the slot
-// meant, and what was written last. And an arrival is taken only if its inbox was asked in the cycle before. All of
-// cuboct_node_core that controls; the rest is any value, as are the four links.
+// cycle ahead, the addresses are put together by OR, and the memory says nothing of a word that is asked
+// for in the cycle in which it is written. Whenever one of them looks at the answer, it is that of the slot
+// meant, and what was written last. And an arrival is taken only if its inbox was asked in the cycle
+// before. All of cuboct_node_core that controls; the rest is any value, as are the four links.
 module main_port_formal #(
   parameter int Capacity = 2,
   parameter int LinkBits = 8,
@@ -45,10 +45,11 @@ module main_port_formal #(
     .FilterFrac(1), .Pd(Pd), .DisplacementBits(1), .Overlap(1)
   ) u_node (
     .clk_i, .rst_ni(running_q), .start_i, .steps_i, .has_link_i(has_link), .load_valid_i(load_i),
-    .load_data_i({(7 + 2 * Pd) {1'b0}}), .link_valid_o(link_valid), .link_end_o(link_end),
-    .link_data_o(link_data), .link_ready_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o(link_ready),
-    .phase_start_o(phase_start), .phase_end_o(phase_end), .force_event_o(event_now),
-    .observe_valid_o(observe), .observe_data_o(observed), .fault_valid_o(fault), .fault_code_o(code), .fault_id_o(id), .fault_number_o(number), .idle_o(idle)
+    .load_data_i({(7+2*Pd) {1'b0}}), .link_valid_o(link_valid), .link_end_o(link_end),
+    .link_data_o(link_data), .link_ready_i, .link_valid_i, .link_end_i, .link_data_i,
+    .link_ready_o(link_ready), .phase_start_o(phase_start), .phase_end_o(phase_end),
+    .force_event_o(event_now), .observe_valid_o(observe), .observe_data_o(observed), .fault_valid_o(fault),
+    .fault_code_o(code), .fault_id_o(id), .fault_number_o(number), .idle_o(idle)
   );
 
   // What the contract says of what is cut out, and of the links: the finder is done only in FORCE; the update
