@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // cuboct_filter with its lanes: each presented candidate reaches the queue once, in order and unchanged, with
 // the mask of the own slots of its row that exist, are not itself and pass the planar test; or not at all if
-// there is none. A full queue stalls it and loses nothing. The test is told here by integers and rounding by
-// magnitude.
+// there is none. A full queue stalls it and loses nothing. The memories answer a cycle after the presentation
+// and keep the answer while it stalls. The test is told here by integers.
 module filter_formal #(
   parameter int Axes            = 2,
   parameter int PositionFrac    = 3,
-  parameter int DifferenceShift = 1,
+  parameter int FilterFrac      = 2,
   parameter int FilterLanes     = 2,
   parameter int PlanarOne       = 4,
   parameter int PlanarTwo       = 6,
@@ -21,48 +21,54 @@ module filter_formal #(
   input logic                               full_i,
   input logic                               watch_i       // the watched candidate is the one presented now
 );
-  localparam int PosBits       = Axes * PositionFrac;
+  localparam int CoarseBits    = Axes * FilterFrac;
   localparam int CandidateBits = Axes * (PositionFrac + 2) + 1;
   localparam int Slots         = 2 * FilterLanes;  // two rows
   localparam int Bits          = PositionFrac + 6;
+  localparam int RowBits       = FilterLanes * CoarseBits;
 
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
 
-  // Own particles do not change while candidates stream past.
-  (* anyconst *) logic [Slots*PosBits-1:0] own;
-  (* anyconst *) logic [3:0]               own_count;
-  logic                                    row, stall, push, row_f1, busy;
-  logic [CandidateBits-1:0]                candidate;
-  logic [FilterLanes-1:0]                  mask;
+  // Own particles do not change while candidates stream past; of their positions the leading bits are kept.
+  (* anyconst *) logic [Slots*CoarseBits-1:0] own;
+  (* anyconst *) logic [3:0]                  own_count;
+  logic                                       stall, push, row_f1, busy;
+  logic [CandidateBits-1:0]                   candidate;
+  logic [FilterLanes-1:0]                     mask;
   always_comb begin
     assume (own_count <= Slots[3:0]);
     if (present_i) assume (running_q);
   end
+  // The memories' output registers. In a stalled cycle the streamer reads nothing (proof `streamer`).
+  logic [CandidateBits-1:0] answer_q;
+  logic [RowBits-1:0]       answer_row_q;
+  always_ff @(posedge clk_i) begin
+    if (present_i && !stall) begin
+      answer_q     <= candidate_i;
+      answer_row_q <= row_i ? own[RowBits +: RowBits] : own[0 +: RowBits];
+    end
+  end
   cuboct_filter #(
-    .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne),
+    .Axes(Axes), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne),
     .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits),
-        .FilterLanes(FilterLanes),
-    .RowBits(1), .SlotBits(3), .CountBits(4)
+    .FilterLanes(FilterLanes), .RowBits(1), .SlotBits(3), .CountBits(4)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .present_i, .candidate_i, .row_i, .own_i, .slot_i, .own_count_i(own_count),
-    .row_o(row), .row_data_i(row
-        ? own[FilterLanes*PosBits +: FilterLanes*PosBits] : own[0 +: FilterLanes*PosBits]),
-    .full_i, .stall_o(stall), .push_o(push), .candidate_o(candidate), .row_f1_o(row_f1), .mask_o(mask),
-        .busy_o(busy)
+    .clk_i, .rst_ni(running_q), .present_i, .row_i, .own_i, .slot_i, .own_count_i(own_count),
+    .candidate_i(answer_q), .row_data_i(answer_row_q), .full_i, .stall_o(stall), .push_o(push),
+    .candidate_o(candidate), .row_f1_o(row_f1), .mask_o(mask), .busy_o(busy)
   );
 
   // The planar test of the candidate that is presented, against each slot of its row.
-  logic signed [Bits-1:0] difference;
-  logic [Bits-1:0]        size, most, sum;
+  logic signed [Bits-1:0] position, difference;
   logic [Bits-1:0]        sizes [0:2];
   logic [FilterLanes-1:0] passes;
   logic [2:0]             other;
   integer                 l, a;
   always_comb begin
     passes     = '0;
+    position   = '0;
     difference = '0;
-    size       = '0;
     sizes[0]   = '0;
     sizes[1]   = '0;
     sizes[2]   = '0;
@@ -70,13 +76,14 @@ module filter_formal #(
     for (l = 0; l < FilterLanes; l = l + 1) begin
       other = row_i ? FilterLanes[2:0] + l[2:0] : l[2:0];
       for (a = 0; a < Axes; a = a + 1) begin
-        difference = $signed({{(Bits - PositionFrac - 2) {candidate_i[a*(PositionFrac+2)+PositionFrac+1]}},
-                              candidate_i[a*(PositionFrac+2) +: PositionFrac+2]})
-                   - $signed({{(Bits - PositionFrac) {1'b0}}, row_i
-                       ? own[(FilterLanes+l)*PosBits+a*PositionFrac +: PositionFrac]
-                                                                  : own[l*PosBits+a*PositionFrac +: PositionFrac]});
-        size = (difference < 0) ? -difference : difference;
-        sizes[a] = (DifferenceShift == 0) ? size : (size + (1 << (DifferenceShift - 1))) >> DifferenceShift;
+        // Leading bits: of 4 * 2^P + x, which is positive, what is left of the shift, less that of 4 * 2^P.
+        position = $signed({{(Bits - PositionFrac - 2) {candidate_i[a*(PositionFrac+2)+PositionFrac+1]}},
+                            candidate_i[a*(PositionFrac+2) +: PositionFrac+2]}) + (4 << PositionFrac);
+        difference = (position >> (PositionFrac - FilterFrac)) - (4 << FilterFrac)
+                   - $signed({{(Bits - FilterFrac) {1'b0}}, row_i
+                       ? own[(FilterLanes+l)*CoarseBits+a*FilterFrac +: FilterFrac]
+                       : own[l*CoarseBits+a*FilterFrac +: FilterFrac]});
+        sizes[a] = (difference < 0) ? -difference - 1 : difference;
       end
       passes[l] = {1'b0, other} < own_count && !(own_i && other == slot_i)
                 && sizes[0] <= PlanarOne && sizes[1] <= PlanarOne && sizes[2] <= PlanarOne

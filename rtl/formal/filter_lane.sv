@@ -1,38 +1,36 @@
 // SPDX-License-Identifier: MIT
-// cuboct_filter_lane against the planar test told by magnitudes, for every pair of positions: each |d|, each sum of two
-// and the sum of all within its bound. Combinational: one cycle is all of it.
+// cuboct_filter_lane against the planar test told by magnitudes, for every pair of leading bits of positions:
+// with e their difference, size = |e|, less one where e < 0; each size, each sum of two and the sum of all
+// within its bound. Combinational: one cycle is all of it.
 module filter_lane_formal #(
   parameter int Axes            = 3,
-  parameter int PositionFrac    = 8,
-  parameter int DifferenceShift = 2,
-  parameter int PlanarOne       = 50,
-  parameter int PlanarTwo       = 70,
-  parameter int PlanarThree     = 80
+  parameter int FilterFrac      = 8,
+  parameter int PlanarOne       = 200,
+  parameter int PlanarTwo       = 280,
+  parameter int PlanarThree     = 320
 ) (
   input logic                             clk_i,
   input logic                             test_i,
-  input logic [Axes*PositionFrac-1:0]     own_i,
-  input logic [Axes*(PositionFrac+2)-1:0] candidate_i
+  input logic [Axes*FilterFrac-1:0]       own_i,
+  input logic [Axes*(FilterFrac+2)-1:0]   candidate_i
 );
-  localparam int Bits = PositionFrac + 6;
+  localparam int Bits = FilterFrac + 6;
 
   logic pass;
   cuboct_filter_lane #(
-    .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .PlanarOne(PlanarOne),
-    .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree)
+    .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo),
+    .PlanarThree(PlanarThree)
   ) u_dut (.test_i, .own_i, .candidate_i, .pass_o(pass));
 
-  logic [3*Bits-1:0] sizes;  // |d| by axis; nothing along one that is not there
+  logic [3*Bits-1:0] sizes;  // by axis; nothing along one that is not there
   for (genvar a = 0; a < 3; a++) begin : gen_axis
     if (a < Axes) begin : gen_size
-      logic [PositionFrac+1:0] other;
-      logic [Bits-1:0]         difference, size;
-      assign other      = candidate_i[a*(PositionFrac+2) +: PositionFrac+2];
-      assign difference = {{(Bits - PositionFrac - 2) {other[PositionFrac+1]}}, other}
-                        - {{(Bits - PositionFrac) {1'b0}}, own_i[a*PositionFrac +: PositionFrac]};
-      assign size       = difference[Bits-1] ? -difference : difference;
-      assign sizes[a*Bits +: Bits] = (DifferenceShift == 0) ? size
-                                     : (size + ({{(Bits - 1) {1'b0}}, 1'b1} << DifferenceShift >> 1)) >> DifferenceShift;
+      logic [FilterFrac+1:0] other;
+      logic [Bits-1:0]       difference;
+      assign other      = candidate_i[a*(FilterFrac+2) +: FilterFrac+2];
+      assign difference = {{(Bits - FilterFrac - 2) {other[FilterFrac+1]}}, other}
+                        - {{(Bits - FilterFrac) {1'b0}}, own_i[a*FilterFrac +: FilterFrac]};
+      assign sizes[a*Bits +: Bits] = difference[Bits-1] ? -difference - 1'b1 : difference;
     end else begin : gen_none
       assign sizes[a*Bits +: Bits] = '0;
     end

@@ -66,7 +66,7 @@ module neighbours_formal #(
       .Axes(2), .Capacity(Capacity), .FilterLanes(1), .ForcePipes(1), .QueueDepth(1), .LinkBits(LinkBits),
           .IdBits(1),
       .PositionFrac(1), .Guard(1), .VelocityBits(1), .RelativeVelocityBits(1), .DifferenceShift(0),
-          .Overlap(1)
+          .FilterFrac(1), .Overlap(1)
     ) u_node (
       .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link),
       .load_valid_i(running_q && load_i[n]), .load_data_i(7'd0),

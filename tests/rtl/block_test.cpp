@@ -483,7 +483,7 @@ std::vector<Mutation> mutations() {
        "update: v."},
       {"negative_half",
        "plain",
-       {{"cuboct_round_odd.sv", "{FullBits{a_i[InBits-1]}}", "{FullBits{1'b0}}"}},
+       {{"cuboct_round_odd.sv", "(!full[FullBits-1] || rest)", "(!full[FullBits-1] || full[FullBits-1] || rest)"}},
        "pipe: stage 2, d."},
       {"every_second_pair",
        "plain",
