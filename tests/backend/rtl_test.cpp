@@ -148,7 +148,7 @@ TEST(RtlAssertion, EndsThePlainRunWithNodeCycleAndLine) {
     FAIL() << "no assertion failed";
   } catch (const std::runtime_error& e) {
     EXPECT_STREQ(e.what(),
-                 "node 1 (1,0,0), cycle 60: the assertion of the RTL at cuboct_halos.sv:113 failed");
+                 "node 1 (1,0,0), cycle 60: the assertion of the RTL at cuboct_halos.sv:116 failed");
   }
 }
 
@@ -164,7 +164,7 @@ TEST(RtlAssertion, EndsTheProgramWithOne) {
                        {.name = "cuboct-rtl", .description = "", .engine = "rtl", .nodes = one_flooded});
   EXPECT_EQ(code, 1);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "cuboct-rtl: node 1 (1,0,0), cycle 17: the assertion of the RTL at cuboct_halos.sv:112 failed\n");
+            "cuboct-rtl: node 1 (1,0,0), cycle 17: the assertion of the RTL at cuboct_halos.sv:115 failed\n");
 }
 
 // The emitted lattice as one SystemC module: its wiring is the generator's, not the bench's.

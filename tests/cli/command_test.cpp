@@ -16,10 +16,10 @@ void expect_refusal(const std::vector<std::string>& arguments, const std::string
 
 TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
   expect_refusal({},
-                 "no command\n  hint: one of check, run, crosscheck, emit, explore, stability, bench, picture or report; see 'cuboct --help'\n");
+                 "no command\n  hint: one of check, run, crosscheck, emit, synth, explore, stability, bench, picture or report; see 'cuboct --help'\n");
   expect_refusal({"chek"}, "unknown command 'chek'\n  hint: did you mean 'check'?\n");
   expect_refusal({"simulate"},
-                 "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit, explore, stability, bench, picture or report\n");
+                 "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit, synth, explore, stability, bench, picture or report\n");
   expect_refusal({"--version"}, "unknown option '--version'\n  hint: see 'cuboct --help'\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--stepz", "3"},
                  "unknown option '--stepz' of 'cuboct run'\n  hint: did you mean '--steps'?\n");

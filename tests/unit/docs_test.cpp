@@ -202,7 +202,7 @@ TEST(Docs, ArchRangesAreThoseOfTheReader) {
       ++rows;
     }
   }
-  EXPECT_EQ(rows, 18);
+  EXPECT_EQ(rows, 19);
   std::filesystem::remove(path);
 }
 
