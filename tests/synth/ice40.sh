@@ -28,7 +28,8 @@ def sums(block):
 uses = sums(r["block"])
 # Two squares, the table's slope, two products of the strength: one multiplier each.
 assert uses["DSP"] == 5, uses
-mult = [b for b in r["block"]["blocks"] if b["module"] == "cuboct_mult"][0]
+axes = [b for b in r["block"]["blocks"] if b["module"] == "cuboct_axis_mults"][0]
+mult = [b for b in axes["blocks"] if b["module"] == "cuboct_mult"][0]
 assert mult["instances"] == 4 and mult["uses"]["DSP"] == 4, mult
 assert uses["BRAM"] >= 1 and uses["LUT"] > 100 and uses["FF"] > 100, uses
 # The harness is flip-flops, and one LUT for three outputs.
