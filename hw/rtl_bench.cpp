@@ -202,7 +202,7 @@ icarus: icarus/cuboct_bench.vvp
 	vvp -n icarus/cuboct_bench.vvp
 icarus/cuboct_bench.vvp: $(RTL) cuboct_bench.sv
 	mkdir -p icarus
-	for f in $(notdir $(RTL)); do sed 's/always_comb/always @*/' ../rtl/$$f > icarus/$$f; done
+	for f in $(notdir $(RTL)); do sed 's/always_comb/always @*/;s/always_ff/always/' ../rtl/$$f > icarus/$$f; done
 	$(IVERILOG) -g2012 -DSYNTHESIS -o $@ -s cuboct_bench $(addprefix icarus/,$(notdir $(RTL))) cuboct_bench.sv \
 	  2> icarus/log || { cat icarus/log; exit 1; }
 

@@ -32,11 +32,11 @@ module cuboct_axis_mults #(
     logic [(Axes-1)*BBits-1:0] b_d, b_q;
     logic [(Axes-1)*Bits-1:0]  p_d, p_q;
     logic [Axes-1:1]           turn_d, turn_q;  // [k]: the cycle k after en_i
-    logic [ABits-1:0]          a;
-    logic [BBits-1:0]          b;
+    logic signed [ABits-1:0]   a;
+    logic signed [BBits-1:0]   b;
     logic [Bits-1:0]           p;
-    assign a      = en_i ? a_i[ABits-1:0] : a_q[ABits-1:0];
-    assign b      = en_i ? b_i[BBits-1:0] : b_q[BBits-1:0];
+    assign a = en_i ? a_i[ABits-1:0] : a_q[ABits-1:0];
+    assign b = en_i ? b_i[BBits-1:0] : b_q[BBits-1:0];
     if (Axes == 3) begin : gen_three
       assign turn_d = {turn_q[1], en_i};
       assign a_d = en_i ? a_i[Axes*ABits-1:ABits] : {a_q[ABits-1:0], a_q[(Axes-1)*ABits-1:ABits]};
@@ -58,7 +58,7 @@ module cuboct_axis_mults #(
       if (turn_q != '0) p_q <= p_d;
     end
     cuboct_mult #(.ABits(ABits), .BBits(BBits)) u_mult (
-      .clk_i, .en_i(en_i || (turn_q != '0)), .a_i($signed(a)), .b_i($signed(b)), .p_o(p)
+      .clk_i, .en_i(en_i || (turn_q != '0)), .a_i(a), .b_i(b), .p_o(p)
     );
     assign p_o = {p, p_q};
   end

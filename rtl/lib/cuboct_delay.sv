@@ -12,15 +12,11 @@ module cuboct_delay #(
     logic unused_clk;
     assign unused_clk = clk_i;
     assign q_o = d_i;
-  end else begin : gen_stages
-    logic [Bits-1:0] stage_q [0:Depth-1];
-    for (genvar s = 0; s < Depth; s++) begin : gen_stage
-      if (s == 0) begin : gen_first
-        always_ff @(posedge clk_i) stage_q[s] <= d_i;
-      end else begin : gen_next
-        always_ff @(posedge clk_i) stage_q[s] <= stage_q[s-1];
-      end
-    end
-    assign q_o = stage_q[Depth-1];
+  end else if (Depth == 1) begin : gen_one
+    always_ff @(posedge clk_i) q_o <= d_i;
+  end else begin : gen_more
+    logic [Depth*Bits-1:0] stages_q;  // the newest lowest
+    always_ff @(posedge clk_i) stages_q <= {stages_q[(Depth-1)*Bits-1:0], d_i};
+    assign q_o = stages_q[Depth*Bits-1 -: Bits];
   end
 endmodule

@@ -74,16 +74,13 @@ module cuboct_halos #(
     // link; the sign of the last axis, which is not sent, is the same for all records of a face.
     localparam logic [1:0] LastSign = (Axis < Axes - 1) ? 2'b00 : (f % 2 == 0) ? 2'b11 : 2'b01;
     logic [HaloBits-1:0] moved, streamed, relayed;
-    for (genvar b = 0; b < HaloBits; b++) begin : gen_bit
+    if (Axis < Axes - 1) begin : gen_moved
+      // From 00, 01, 11: one less from below, one more from above.
       localparam int SignLsb = Axis * (PositionFrac + 2) + PositionFrac;
-      if (Axis < Axes - 1 && b == SignLsb + 1) begin : gen_sign
-        // From 00, 01, 11: one less from below, one more from above.
-        assign moved[b] = (f % 2 == 0) ? (halo[b] ~^ halo[b-1]) : (halo[b] ^ halo[b-1]);
-      end else if (Axis < Axes - 1 && b == SignLsb) begin : gen_unit
-        assign moved[b] = !halo[b];
-      end else begin : gen_same
-        assign moved[b] = halo[b];
-      end
+      localparam logic Below = (f % 2 == 0);
+      assign moved = halo ^ ({{(HaloBits - 2) {1'b0}}, halo[SignLsb] ^ Below, 1'b1} << SignLsb);
+    end else begin : gen_last
+      assign moved = halo;
     end
 
     cuboct_inbox #(

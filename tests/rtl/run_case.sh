@@ -16,7 +16,7 @@ case $mutation in
   # The lowest bit of c0 in each entry of the force table.
   table) edit "$rtl/cuboct_force_rom.sv" 's/assign c0_o = data_q\[\([0-9]*\):0\];/assign c0_o = data_q[\1:0] ^ 1;/' ;;
   # Truncation in place of rounding.
-  rounding) edit "$rtl/cuboct_round_odd.sv" 's/ + Half$/ + Half - Half/' ;;
+  rounding) edit "$rtl/cuboct_round_odd.sv" 's/{{(HighBits - 1) {1.b0}}, carry}/{HighBits{1'"'"'b0}}/' ;;
   # The second record of each halo memory is not kept.
   record) edit "$rtl/cuboct_inbox.sv" 's/write_i(append_i || push_i), .write_addr/write_i((append_i \&\& count_q != 1) || push_i), .write_addr/' ;;
   # A node hears its neighbour below x where it should hear the one above.
