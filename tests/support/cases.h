@@ -26,6 +26,13 @@ Case random_case(uint64_t seed);
 // The same without a third axis.
 Case random_flat_case(uint64_t seed);
 
+// The same on nodes that serve bricks of cells.
+Case with_brick(Case c, const Cell& brick);
+// Bricks that this lattice can be cut into: thin ones, cubes, ones that leave a rest, the whole of it.
+std::vector<Cell> bricks_for(const Lattice& lattice);
+// A random case, of three axes or two, with a random brick.
+Case random_brick_case(uint64_t seed);
+
 // A case of this fault, which golden must meet within `steps`. Those that need narrow formats share one rule
 // and arch.
 Case fault_case(Fault fault);
