@@ -182,6 +182,18 @@ uint8_t Bricks::links(uint32_t node) const {
   return faces;
 }
 
+HeldWords held_words(const Cell& brick, int axes) {
+  const BrickGrid grid(brick);
+  HeldWords held;
+  held.sums = cells_of(brick);
+  held.particles = held.sums > 1 ? 2 * held.sums : 1;
+  for (int a = 0; a < axes; ++a) {
+    held.particles += 2 * grid.migrate_tags(a);
+    held.halos += 2 * grid.halo_tags(a);
+  }
+  return held;
+}
+
 BrickMap::BrickMap(const Bricks& bricks, int axes) : grid_(bricks.shape()) {
   using Key = std::tuple<int32_t, int32_t, int32_t, uint8_t>;
   std::map<Key, std::shared_ptr<const BrickWalk>> walks;

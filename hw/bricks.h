@@ -103,6 +103,15 @@ class Bricks {
   std::vector<uint32_t> place_;  // [cell]: node * cells + local
 };
 
+// What a node's memories hold, in units of its capacity. A node of one cell: 7 particles (own slots and six
+// inboxes), 26 halo records, one sum per pipe.
+struct HeldWords {
+  uint32_t particles = 0;  // own slots, those between cells of the brick, inboxes of the faces
+  uint32_t halos = 0;      // records of the cells around
+  uint32_t sums = 0;       // of each pipe
+};
+HeldWords held_words(const Cell& brick, int axes);
+
 // The walks of all nodes, and which cell of the lattice stands where in their halos.
 class BrickMap {
  public:

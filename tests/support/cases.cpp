@@ -2,10 +2,12 @@
 #include "tests/support/cases.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <stdexcept>
 
+#include "model/golden.h"
 #include "tests/support/block.h"
 #include "tests/support/dice.h"
 
@@ -275,6 +277,41 @@ Cell length_of(const Lattice& lattice) {
 }
 
 }  // namespace
+
+namespace {
+
+// The same on a lattice of only those cells that hold a particle at some step, and those on the ways.
+Case hollowed(Case c) {
+  Plan& plan = c.setup.plan;
+  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
+  std::vector<bool> held(plan.lattice.size());
+  const auto note = [&] {
+    for (uint32_t n = 0; n < held.size(); ++n) held[n] = held[n] || !golden.nodes()[n].empty();
+  };
+  note();
+  for (uint64_t step = 0; step < c.steps; ++step) golden.step(), note();
+  std::vector<Cell> cells;
+  for (uint32_t n = 0; n < held.size(); ++n)
+    if (held[n]) cells.push_back(plan.lattice.cell(n));
+  Lattice lattice(cells, plan.lattice.period());
+  for (Particle& p : c.setup.initial.particles) p.node = lattice.find(plan.lattice.cell(p.node));
+  plan = make_plan(plan.rule, plan.arch, std::move(lattice), plan.origin, plan.particles);
+  return c;
+}
+
+}  // namespace
+
+Case lumps(const Vec3& apart) {
+  Scene scene = block_scene({.size = {4, 2, 2}, .jitter = 0.08, .speed = 0.4, .margin = 4.0});
+  scene.steps = 10;
+  const double edge = make_setup(scene, Arch{}).plan.rule.cell_edge;
+  double low = INFINITY, high = -INFINITY;
+  for (const Vec3& x : scene.body.x) low = std::min(low, x[0]), high = std::max(high, x[0]);
+  const double middle = 0.5 * (low + high);
+  for (Vec3& x : scene.body.x)
+    if (x[0] > middle) x += edge * apart;
+  return hollowed({"lumps", make_setup(scene, Arch{}), scene.steps, scene});
+}
 
 std::vector<Cell> bricks_for(const Lattice& lattice) {
   const Cell length = length_of(lattice);
