@@ -209,8 +209,10 @@ Case make_case(const std::string& name) {
   Recipe recipe;
   const size_t dot = name.find('.');
   recipes().at(name.substr(0, dot))(recipe);
-  if (dot != std::string::npos)
-    recipe.arch.link_check = name.substr(dot) == ".retry" ? LinkCheck::retry : LinkCheck::detect;
+  const std::string variant = dot == std::string::npos ? "" : name.substr(dot);
+  if (variant == ".snug") recipe.features.margin = 0;
+  if (variant == ".retry") recipe.arch.link_check = LinkCheck::retry;
+  if (variant == ".detect") recipe.arch.link_check = LinkCheck::detect;
   return cook(name, recipe);
 }
 

@@ -18,7 +18,7 @@ struct Case {
 
 // One feature or awkward size each.
 std::vector<std::string> case_names();
-// `name` with ".detect" or ".retry": the same with checked links.
+// `name` with ".detect" or ".retry": the same with checked links; with ".snug": in the fewest nodes, for a few steps.
 Case make_case(const std::string& name);
 
 // Features, sizes and initial state drawn from `seed`.
