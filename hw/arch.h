@@ -8,6 +8,7 @@
 #include "hw/link_code.h"
 #include "model/fixed_rule.h"
 #include "model/quantise.h"
+#include "model/vec.h"
 
 namespace cuboct {
 
@@ -20,6 +21,7 @@ struct Arch {
   bool shared_multipliers = false;  // one multiplier serves the axes in turn: a pair every `axes` cycles
   int queue_depth = 16;  // (candidate, mask) entries between filter and pipes
   bool overlap = true;   // candidates are filtered while the exchange still runs
+  Cell brick{1, 1, 1};   // cells that a node serves, along x, y, z
   int link_bits = 0;     // payload bits per beat; 0: one halo record per beat
   LinkCheck link_check = LinkCheck::none;
   Widths widths;
