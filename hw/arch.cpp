@@ -18,9 +18,12 @@ void read_node(const ConfigTable& node, Arch& arch) {
   set(node, "filter_lanes", 1, 64, arch.filter_lanes);
   set(node, "force_pipes", 1, 64, arch.force_pipes);
   if (const auto m = node.find("multipliers"))
-    arch.shared_multipliers = m->choice("use of multipliers", {"parallel", "shared"}) == 1;
+    arch.multipliers =
+        static_cast<Multipliers>(m->choice("use of multipliers", {"parallel", "shared", "serial"}));
   set(node, "queue_depth", 1, 1024, arch.queue_depth);
   arch.overlap = node.boolean_or("overlap", arch.overlap);
+  if (const auto m = node.find("memories"))
+    arch.narrow_memories = m->choice("kind of memories", {"wide", "narrow"}) == 1;
   node.done();
 }
 
