@@ -21,7 +21,8 @@ void read_node(const ConfigTable& node, Arch& arch) {
   set(node, "filter_lanes", 1, 64, arch.filter_lanes);
   set(node, "force_pipes", 1, 64, arch.force_pipes);
   if (const auto m = node.find("multipliers"))
-    arch.shared_multipliers = m->choice("use of multipliers", {"parallel", "shared"}) == 1;
+    arch.multipliers =
+        static_cast<Multipliers>(m->choice("use of multipliers", {"parallel", "shared", "serial"}));
   set(node, "queue_depth", 1, 1024, arch.queue_depth);
   arch.overlap = node.boolean_or("overlap", arch.overlap);
   if (const auto brick = node.find("brick")) {
@@ -32,6 +33,8 @@ void read_node(const ConfigTable& node, Arch& arch) {
     for (int a = 0; a < 3; ++a)
       arch.brick[a] = static_cast<int32_t>(cells[static_cast<size_t>(a)].integer(1, kMostBrickCells));
   }
+  if (const auto m = node.find("memories"))
+    arch.narrow_memories = m->choice("kind of memories", {"wide", "narrow"}) == 1;
   node.done();
 }
 

@@ -114,6 +114,14 @@ void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
   expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * (1 + end_beat));
 }
 
+// What narrow memories add to a candidate: its words are read one by one, then the first slot's answer and
+// test pass before the second's.
+uint64_t walked(const std::array<uint64_t, 7>& segment, int axes, uint64_t beats) {
+  uint64_t cycles = segment[0] * 3;
+  for (int s = 1; s < 1 + 2 * axes; ++s) cycles += segment[static_cast<size_t>(s)] * (beats + 2);
+  return cycles;
+}
+
 }  // namespace
 
 ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
@@ -165,6 +173,7 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
       streamed += std::max<uint64_t>(work, 1);
       candidates += work;
     }
+    if (plan.arch.narrow_memories && own > 0) streamed += walked(segment[n], axes, beats);
     uint64_t pairs = 0;
     if (own > 0)
       for (const auto& [other, offset] : lattice.neighbourhood(n))
@@ -175,6 +184,7 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
               x_j[a] = j->x[a] + (int64_t{offset[a]} << plan.rule.widths.position_frac);
             pairs += i != j && may_interact(plan.rule, i->x, x_j);
           }
+    if (plan.arch.narrow_memories) streamed += pairs;  // the port is the pipe's then
     const uint64_t issues = ceil_div(pairs, static_cast<uint64_t>(plan.arch.force_pipes)) *
                             static_cast<uint64_t>(plan.latency.interval);
     const uint64_t busy = std::max(candidates, issues);
@@ -182,7 +192,9 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
     // The last candidate's pairs pass F1, the queue and `current`, then the pipe.
     const uint64_t force = std::max(streamed + static_cast<uint64_t>(plan.latency.filter), issues) +
                            (own > 0 ? 2 + static_cast<uint64_t>(plan.latency.pipe) : 0);
-    const uint64_t update = own > 0 ? own - 1 + static_cast<uint64_t>(plan.latency.update) : 1;
+    const uint64_t update = own > 0 ? (own - 1) * static_cast<uint64_t>(plan.latency.stride) +
+                                          static_cast<uint64_t>(plan.latency.update)
+                                    : 1;
     expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * quiet_migrate);
   }
   return expected;

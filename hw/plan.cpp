@@ -15,6 +15,7 @@ namespace {
 // Cells of a brick, times slots, times passes of the lanes; 27 times that are a node's items in a step, which
 // the timing model counts in 25 bits.
 constexpr uint64_t kMostBrickWork = 1 << 20;
+constexpr int kScaleBits = 18;  // of a pair's scale
 
 int ceil_div(int a, int b) { return (a + b - 1) / b; }
 
@@ -40,6 +41,14 @@ void check_arch(const Arch& arch) {
                                  fmt::join(arch.brick, ", "), cells, arch.capacity, arch.filter_lanes,
                                  ceil_div(arch.capacity, arch.filter_lanes), visits, kMostBrickWork),
                      "use a smaller brick or more filter_lanes");
+  if (arch.narrow_memories) {
+    const auto want = [](bool is, const char* what) {
+      if (!is) throw InputError(fmt::format("memories = \"narrow\" have one port to read: set {}", what));
+    };
+    want(arch.filter_lanes == 1, "filter_lanes = 1");
+    want(!arch.overlap, "overlap = false");
+    want(cells == 1, "brick = [1, 1, 1]");
+  }
   if (arch.link_bits < 0 || arch.link_bits > 1024)
     throw InputError(fmt::format("link bits = {} is out of range: 1 to 1024, or 0 for one record per beat",
                                  arch.link_bits));
@@ -78,7 +87,8 @@ uint64_t hash_of(const Plan& plan) {
       .add(arch.force_pipes)
       .add(arch.queue_depth)
       .add(arch.overlap);
-  if (arch.shared_multipliers) hash.add(plan.latency.interval);
+  if (arch.multipliers != Multipliers::parallel) hash.add(plan.latency.interval);
+  if (arch.narrow_memories) hash.add(-1);
   if (w.filter_frac != Widths{}.filter_frac) hash.add(w.filter_frac);
   hash.add(plan.words.link_bits).add(plan.particles);
   if (plan.link.checked()) hash.add(static_cast<int>(plan.link.check));
@@ -88,6 +98,14 @@ uint64_t hash_of(const Plan& plan) {
   for (uint32_t n = 0; n < plan.lattice.size(); ++n)
     for (const int32_t c : plan.lattice.cell(n)) hash.add(c);
   return hash.value();
+}
+
+// A bit of the shorter operand per cycle, after one that loads it: d, t with a sign, q, the pair's scale.
+int product_cycles(const FixedRule& r) {
+  int bits = std::max(r.widths.difference_frac + 1, r.force.fraction_bits + 1);
+  if (r.damped) bits = std::max({bits, r.damp.fraction_bits + 1, r.widths.relative_velocity_bits});
+  if (r.scaled) bits = std::max(bits, kScaleBits);
+  return bits + 1;
 }
 
 }  // namespace
@@ -120,10 +138,17 @@ Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles) {
 
 Latency latency_of(const FixedRule& r, const Arch& arch) {
   Latency latency;
-  latency.pipe = 11 + (r.force.shape == TableShape::octaves ? 1 : 0) + (r.force.degree == 2 ? 2 : 0) +
-                 (r.damped ? 2 : 0) + (r.scaled ? 2 : 0) + (arch.shared_multipliers ? 2 * (r.axes - 1) : 0);
-  latency.interval = arch.shared_multipliers ? r.axes : 1;
+  const int table = (r.force.degree == 2 ? 1 : 0), used = (r.damped ? 1 : 0) + (r.scaled ? 1 : 0);
+  const bool serial = arch.multipliers == Multipliers::serial, shared = arch.multipliers == Multipliers::shared;
+  if (serial) latency.product = product_cycles(r);
+  // Squares, slope, kick, and what else is multiplied: each waits for the one before.
+  latency.pipe = 8 + (r.force.shape == TableShape::octaves ? 1 : 0) + table + used +
+                 latency.product * (3 + table + used) + (shared ? 2 * (r.axes - 1) : 0);
+  // A product stays for a cycle in which it is looked at. Beside narrow memories, which bring candidates slowly, a
+  // pair that is alone in the pipe needs no registers to wait in.
+  latency.interval = serial ? latency.product + 1 : !shared ? 1 : arch.narrow_memories ? latency.pipe - 2 : r.axes;
   latency.update = r.pd ? 7 : 4;
+  if (arch.narrow_memories) latency.stride = latency.update - 1;
   return latency;
 }
 
@@ -194,8 +219,10 @@ std::string describe(const Plan& plan) {
                      to_string(code.check), code.sequence_bits, code.beat.width, code.beat.polynomial,
                      code.distance, code.latency));
   line("filter lanes, pipes",
-       fmt::format("{}, {}, queue of {}{}", plan.arch.filter_lanes, plan.arch.force_pipes,
-                   plan.arch.queue_depth, plan.arch.overlap ? ", force overlaps the exchange" : ""));
+       plan.arch.narrow_memories
+           ? "1, 1, narrow memories"
+           : fmt::format("{}, {}, queue of {}{}", plan.arch.filter_lanes, plan.arch.force_pipes,
+                         plan.arch.queue_depth, plan.arch.overlap ? ", force overlaps the exchange" : ""));
   line("latency", fmt::format("pipe {}, update {} cycles{}", plan.latency.pipe, plan.latency.update,
                               plan.latency.interval > 1
                                   ? fmt::format(", a pair every {}", plan.latency.interval)

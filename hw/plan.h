@@ -35,13 +35,15 @@ struct Words {
   int link_bits = 0;      // as built: arch.link_bits, or halo_bits
 };
 
-// Fixed latencies of the datapath, in cycles; they depend only on what the rule uses and on whether the axes
-// share a multiplier. docs/reference/node.md.
+// Fixed latencies of the datapath, in cycles; they depend only on what the rule uses and on the kind of
+// multipliers. docs/reference/node.md.
 struct Latency {
   int filter = 2;  // from the candidate's read to its push into the queue
   int pipe = 0;    // from a pair's issue to its sum
   int update = 0;  // from a particle's read to the cycle in which MIGRATE may read it
+  int stride = 1;  // from one particle's read to the next in UPDATE: narrow memories keep each until it is written
   int interval = 1;  // from one issue of pairs to the next
+  int product = 1;   // of the pipe's multipliers; more than 1 where they are serial
 };
 
 struct Plan {
@@ -76,7 +78,8 @@ Latency latency_of(const FixedRule& rule, const Arch& arch);
 // Cells of the smallest box that holds the lattice.
 uint64_t bounding_cells(const Lattice& lattice);
 
-// Derives words, latency and hash. Throws InputError where the arch cannot work (a capacity below 1, ...).
+// Derives words, latency and hash. Throws InputError where the arch cannot work (a capacity below 1, narrow
+// memories with more than one lane or pipe, or with overlap, ...).
 Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, uint32_t particles);
 
 // The plan as text, for people and for diffs; no dates, no addresses.

@@ -67,9 +67,12 @@ RtlDesign decide(const Plan& plan) {
   constant("Capacity", arch.capacity, "particles per node");
   constant("FilterLanes", arch.filter_lanes, "own particles that a candidate meets per cycle");
   constant("ForcePipes", arch.force_pipes, "pairs per cycle");
-  constant("Shared", arch.shared_multipliers, "1: one multiplier serves the axes in turn");
+  constant("Shared", arch.multipliers == Multipliers::shared, "1: one multiplier serves the axes in turn");
+  constant("Product", plan.latency.product, "cycles of a multiplier");
+  constant("Interval", plan.latency.interval, "cycles from one pair to the next");
   constant("QueueDepth", arch.queue_depth, "entries between filter and pipes");
   constant("Overlap", arch.overlap, "1: the force engine starts with the exchange");
+  constant("Narrow", arch.narrow_memories, "1: memories of words of LinkBits, one port to read");
   constant("LinkBits", plan.words.link_bits, "payload of a beat");
   constant("IdBits", plan.words.id_bits, "");
   constant("TypeBits", rule.type_bits, "0 with one type");

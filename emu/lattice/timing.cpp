@@ -18,7 +18,7 @@ namespace {
 // An end beat loaded in cycle t is seen by its sender (`sent`) in t + 1, by its receiver in t + 2: through
 // the sender's output register and the receiver's; `LinkCode::latency` comes to the latter.
 constexpr int64_t kSent = 1, kReceived = 2;
-// A particle is seen a cycle later: its memory answers then.
+// A particle is seen a cycle later: its memory answers then. Of a narrow memory it is read word by word.
 constexpr int64_t kAnswered = 1;
 // The end beat of a face without link: seen since long before.
 constexpr int64_t kLongAgo = INT64_MIN / 4;
@@ -66,6 +66,7 @@ struct TimingModel::Impl {
   const ForceShape shape_;
   const Filter filter_;
   std::vector<std::array<uint32_t, 6>> neighbour_;  // nodes + 1; number `nodes_` where there is none
+  const int64_t take_;  // cycles of TAKE per particle
   Migration migration_;
 
   // Of the step, nodes + 1 each: the one that does not exist is empty.
@@ -93,10 +94,13 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       threads_(threads > 0 ? threads : omp_get_num_procs()),
       halo_beats_(plan.words.halo_beats),
       received_(kReceived + plan.link.latency),
-      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval},
+      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval,
+             plan.arch.narrow_memories ? plan.words.halo_beats : 0},
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       neighbour_(nodes_ + 1),
-      migration_(plan.lattice, plan.words.migrate_beats, static_cast<int>(received_ + kAnswered)),
+      take_(plan.arch.narrow_memories ? plan.words.migrate_beats + 2 : 1),
+      migration_(plan.lattice, plan.words.migrate_beats,
+                 static_cast<int>(received_ + (plan.arch.narrow_memories ? 0 : kAnswered))),
       first_(nodes_ + 2),
       old_first_(nodes_ + 2),
       count_(nodes_ + 1),
@@ -211,7 +215,7 @@ int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
 void TimingModel::Impl::exchange_z_to_update(uint32_t n, Scratch& scratch) {
   end_[at(Phase::exchange_z)][n] = axes_ == 3 ? exchanged(2, n) : end_[at(Phase::exchange_y)][n];
   const int64_t force_end = end_[at(Phase::force)][n] = force(n, scratch);
-  const int64_t update = count_[n] == 0 ? 1 : int64_t{count_[n]} - 1 + plan_.latency.update;
+  const int64_t update = count_[n] == 0 ? 1 : (int64_t{count_[n]} - 1) * plan_.latency.stride + plan_.latency.update;
   const int64_t end = end_[at(Phase::update)][n] = force_end + update;
   send_particles(0, n, end + 1);
 }
@@ -225,7 +229,7 @@ void TimingModel::Impl::send_particles(int axis, uint32_t n, int64_t start) {
 int64_t TimingModel::Impl::taken(int axis, uint32_t n, int side, int64_t now) const {
   if (migration_.any())
     for (const auto& arrival : migration_.arrivals(axis, n, side))
-      now = std::max(now, migrate_start_[at(axis)][arrival.from] + arrival.after) + 1;
+      now = std::max(now, migrate_start_[at(axis)][arrival.from] + arrival.after) + take_;
   const uint32_t near = neighbour_[n][at(2 * axis + side)];
   return std::max(now, migrate_end_[at(axis)][near] + received_) + 1;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 
 #include "emu/systemc/planar.h"
 
@@ -60,24 +61,70 @@ void ForceEngine::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
   const uint32_t record = stream.passes == 1 ? entry : entry / stream.passes;
   const int first_slot = static_cast<int>(entry - record * stream.passes) * lanes_;
   const Candidate& j = *stream.record[record];
-  const Int3 x_j{j.x[0], j.x[1], j.x[2]};
   for (int pipe = 0; pipe < pipes_ && mask != 0; ++pipe) {
     const int slot = first_slot + std::countr_zero(mask);
     mask &= mask - 1;
-    const Candidate& i = own_[slot].body;
-    const PairResult pair = pair_kick(plan_.rule, {i.x[0], i.x[1], i.x[2]}, i.v, i.type, x_j, j.v, j.type);
-    ++counts_.pairs_issued;
-    counts_.pairs_inside += pair.inside;
-    if (pair.fault != Fault::none) fault_.add(pair.fault, own_[slot].id, pair.number);
-    for (int a = 0; a < 3; ++a) sum_[slot][a] += pair.kick[a];
+    meet(j, slot);
   }
 }
 
-uint64_t ForceEngine::run() {
+// The pair's kick on a slot.
+void ForceEngine::meet(const Candidate& j, int slot) {
+  const Candidate& i = own_[slot].body;
+  const PairResult pair = pair_kick(plan_.rule, {i.x[0], i.x[1], i.x[2]}, i.v, i.type,
+                                    {j.x[0], j.x[1], j.x[2]}, j.v, j.type);
+  ++counts_.pairs_issued;
+  counts_.pairs_inside += pair.inside;
+  if (pair.fault != Fault::none) fault_.add(pair.fault, own_[slot].id, pair.number);
+  for (int a = 0; a < 3; ++a) sum_[slot][a] += pair.kick[a];
+}
+
+uint64_t ForceEngine::stream() {
   static thread_local Stream stream;  // of the node that runs: a lattice of nodes shares the cache lines
   filter(stream);
   return clock_force(plan_, stream, segments_, available_, counts_,
                      [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
+}
+
+// One candidate at a time: read, then walked past the slots by way of the registers T and R.
+uint64_t ForceEngine::walk() {
+  static thread_local Stream stream;
+  filter(stream);
+  const uint32_t n = static_cast<uint32_t>(own_.size());
+  const auto interval = static_cast<uint64_t>(plan_.latency.interval);
+  uint64_t cycle = available_[0], ready = cycle, empty = cycle;  // the pipe takes a pair; holds none
+  uint32_t entry = 0;
+  for (int segment = 0; segment < segments_; ++segment) {
+    if (entry == stream.segment_end[segment]) ++cycle;
+    for (; entry < stream.segment_end[segment]; entry += n) {
+      cycle += 1 + (segment == 0 ? 1 : static_cast<uint64_t>(plan_.words.halo_beats));
+      std::optional<uint32_t> tested = 0, result;  // T, R
+      for (uint32_t next = 1, done = 0; done < n; ++cycle) {
+        if (result && stream.mask[entry + *result] != 0) {
+          if (cycle < ready) {
+            ++counts_.stalls;
+            continue;
+          }
+          uint64_t mask = 1;
+          issue(stream, entry + *result, mask);
+          ++counts_.issue_cycles;
+          ready = cycle + interval;
+          empty = cycle + static_cast<uint64_t>(plan_.latency.pipe);
+          ++done;
+          result = tested;
+          tested.reset();  // the pipe's own particle was asked for
+          continue;
+        }
+        done += result.has_value();
+        result = tested;
+        tested = next < n ? std::optional(next++) : std::nullopt;
+      }
+      counts_.candidates += n;
+    }
+  }
+  cycle = std::max(cycle, empty);
+  counts_.busy += cycle - available_[0] + 1;
+  return cycle;
 }
 
 Int3 ForceEngine::take_sum(int slot) {

@@ -32,7 +32,7 @@ class ForceEngine {
   // The cycle from which on the halos of `axis` may be read; in the order of the axes.
   void available(int axis, uint64_t cycle) { available_[axis + 1] = cycle; }
   // All cycles of the step, once all axes are available; the engine's last cycle.
-  uint64_t run();
+  uint64_t run() { return plan_.arch.narrow_memories ? walk() : stream(); }
 
   // A slot's sum over the pipes, and clears it.
   Int3 take_sum(int slot);
@@ -40,8 +40,11 @@ class ForceEngine {
 
  private:
   struct Stream;
+  uint64_t stream();
+  uint64_t walk();  // with narrow memories
   void filter(Stream& stream) const;
   void issue(const Stream& stream, uint32_t entry, uint64_t& mask);
+  void meet(const Candidate& j, int slot);
 
   const Plan& plan_;
   const std::vector<Slot>& own_;

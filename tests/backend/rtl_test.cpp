@@ -22,9 +22,9 @@ constexpr const char* kCache = CUBOCT_TEST_CACHE;
 
 // Cases that between them need few compiled nodes: the first four share one.
 std::vector<std::string> rtl_cases() {
-  return {"undamped_2x2x2",       "lattice_3x2x1", "hot_gas",     "lone_diagonal", "rich_damped",
-          "rich_force_held",      "rich_ring",     "rich_shared", "flat",          "flat_rich_damped",
-          "flat_rich_force_held", "flat_ring"};
+  return {"undamped_2x2x2", "lattice_3x2x1",   "hot_gas",  "lone_diagonal",
+          "rich_damped",    "rich_force_held", "rich_ring", "rich_shared", "rich_narrow", "flat", "flat_rich_damped",
+          "flat_rich_force_held", "flat_ring", "flat_narrow"};
 }
 
 class Rtl : public testing::TestWithParam<std::string> {};

@@ -34,7 +34,7 @@ struct Seen {
   uint64_t busy = 0, filtered = 0, walked = 0;  // TimingCounters
   uint64_t checked = 0;
   uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, damped = 0, rings_of_3 = 0, lone_nodes = 0,
-           flat = 0, shared = 0, coarse = 0, bricks = 0;
+           flat = 0, shared = 0, coarse = 0, narrow = 0, serial = 0, bricks = 0;
 };
 
 emu::NodeSlots slots_of(const Golden& golden) {
@@ -147,7 +147,9 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   seen.checked += plan.link.checked();
   seen.queue_of_one += plan.arch.queue_depth == 1;
   seen.pipes += plan.arch.force_pipes > 1;
-  seen.shared += plan.arch.shared_multipliers;
+  seen.shared += plan.arch.multipliers == Multipliers::shared;
+  seen.serial += plan.arch.multipliers == Multipliers::serial;
+  seen.narrow += plan.arch.narrow_memories;
   seen.bricks += !plan.bricks.single();
   seen.coarse += plan.rule.widths.filter_frac != Widths{}.filter_frac;
   seen.pd += plan.rule.pd;
@@ -179,11 +181,13 @@ Case rebuilt(Case c, uint64_t seed) {
   arch.filter_lanes = std::array{draw(1, 4), draw(5, 20), draw(21, 64)}[static_cast<size_t>(draw(0, 2))];
   arch.force_pipes = draw(1, std::min(arch.filter_lanes, draw(1, 8)));
   arch.queue_depth = std::array{1, draw(2, 4), draw(5, 30), 1024}[static_cast<size_t>(draw(0, 3))];
-  arch.shared_multipliers = draw(0, 2) == 0;
+  arch.multipliers = static_cast<Multipliers>(draw(0, 2));
   arch.overlap = draw(0, 3) > 0;
+  arch.narrow_memories = draw(0, 3) == 0;
+  if (arch.narrow_memories) arch.filter_lanes = arch.force_pipes = 1, arch.overlap = false;
   arch.link_bits = std::array{0, draw(1, 8), draw(9, 200), 1024}[static_cast<size_t>(draw(0, 3))];
   if (draw(0, 2) == 0) arch.capacity = crowd_of(c);
-  if (draw(0, 2) == 0) {
+  if (draw(0, 2) == 0 && !arch.narrow_memories) {
     const std::vector<Cell> bricks = bricks_for(plan.lattice);
     if (!bricks.empty())
       arch.brick = bricks[static_cast<size_t>(draw(0, static_cast<int>(bricks.size()) - 1))];
@@ -240,6 +244,8 @@ TEST(TimingRandom, EqualsTheClockedNode) {
                                                              {"queue_of_one", seen.queue_of_one},
                                                              {"pipes", seen.pipes},
                                                              {"shared", seen.shared},
+                                                             {"narrow", seen.narrow},
+                                                             {"serial", seen.serial},
                                                              {"coarse", seen.coarse},
                                                              {"bricks", seen.bricks},
                                                              {"pd", seen.pd},

@@ -22,6 +22,12 @@ struct Recipe {
   uint64_t steps = 30;
 };
 
+void narrow(Arch& arch) {
+  arch.narrow_memories = true;
+  arch.filter_lanes = arch.force_pipes = 1;
+  arch.overlap = false;
+}
+
 const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
   using R = Recipe&;
   static const std::map<std::string, std::function<void(R)>> all{
@@ -123,16 +129,36 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.features.flat = true;
          r.features.size = {3, 3, 1};
          r.features.damping = 0.2;
-         r.arch.shared_multipliers = true;
+         r.arch.multipliers = Multipliers::shared;
          r.arch.queue_depth = 2;
        }},
+      {"flat_narrow",
+       [](R r) {
+         r.features.flat = true;
+         r.features.size = {4, 3, 1};
+         r.features.speed = 0.5;
+         r.features.margin = 3;
+         r.arch.link_bits = 11;
+         r.arch.multipliers = Multipliers::shared;
+         r.arch.table = {.shape = TableChoice::Shape::octaves, .degree = 2, .index_bits = 7};
+         narrow(r.arch);
+       }},
       // Rich ones, of which the RTL is built.
+      {"rich_narrow",
+       [](R r) {
+         r.features.damping = 0.2;
+         r.features.speed = 0.5;
+         r.features.two_materials = r.features.held = true;
+         r.arch.multipliers = Multipliers::serial;
+         r.arch.link_bits = 21;  // the sign of x lies in two words
+         narrow(r.arch);
+       }},
       {"rich_shared",
        [](R r) {
          r.features.damping = 0.2;
          r.features.speed = 0.3;
          r.features.two_materials = r.features.held = true;
-         r.arch.shared_multipliers = true;
+         r.arch.multipliers = Multipliers::shared;
          r.arch.widths.filter_frac = 5;
          r.arch.filter_lanes = 3;
          r.arch.queue_depth = 2;
@@ -247,8 +273,9 @@ Case random_recipe(uint64_t seed, bool flat) {
     r.arch.cell_edge = 0;
     r.arch.capacity = 24;
   }
-  r.arch.shared_multipliers = dice.chance(25);
+  if (dice.chance(30)) r.arch.multipliers = dice.chance(60) ? Multipliers::shared : Multipliers::serial;
   if (dice.chance(30)) r.arch.widths.filter_frac = dice.draw(2, 14);
+  if (dice.chance(20)) narrow(r.arch);
   return cook((flat ? "random_flat_" : "random_") + std::to_string(seed), r);
 }
 
@@ -260,6 +287,7 @@ Case with_brick(Case c, const Cell& brick) {
   Plan& plan = c.setup.plan;
   Arch arch = plan.arch;
   arch.brick = brick;
+  arch.narrow_memories = false;
   plan = make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
   return c;
 }
