@@ -82,8 +82,9 @@ Items resolve(const Loaded& loaded) {
   items.add("particle types", static_cast<uint64_t>(rule.types.size()));
   items.add("nodes", plan.nodes());
   if (!plan.bricks.single())
-    items.add("cells per node", cells_of(plan.bricks.shape()), "",
-              fmt::format("bricks of {}; {} cells", fmt::join(plan.bricks.shape(), " x "), plan.lattice.size()));
+    items.add(
+        "cells per node", cells_of(plan.bricks.shape()), "",
+        fmt::format("bricks of {}; {} cells", fmt::join(plan.bricks.shape(), " x "), plan.lattice.size()));
   items.add("capacity", plan.arch.capacity, plan.bricks.single() ? "particles/node" : "particles/cell");
   items.add("steps", scene.steps);
   if (scene.pitch > 0) items.add("pitch", scene.pitch, "m");
@@ -114,7 +115,8 @@ Items resolve(const Loaded& loaded) {
   items.add("link", plan.words.link_bits, "bit");
   if (!plan.bricks.single()) {
     const double bits = study::memory_bits(plan), cells = cells_of(plan.bricks.shape());
-    items.add("node memory", bits, "bit", fmt::format("particles, halos, queue, sums; {:.0f} per cell", bits / cells));
+    items.add("node memory", bits, "bit",
+              fmt::format("particles, halos, queue, sums; {:.0f} per cell", bits / cells));
   }
   items.add("filter lanes", plan.arch.filter_lanes);
   items.add("force pipes", plan.arch.force_pipes);

@@ -135,9 +135,10 @@ Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
   }
   for (int a = 0; a < 3; ++a)
     if (shape[a] > length[a])
-      throw InputError(fmt::format("brick = [{}] is larger than the lattice: it has {} cell{} along {}",
-                                   fmt::join(shape, ", "), length[a], length[a] == 1 ? "" : "s", "xyz"[a]),
-                       fmt::format("set node.brick to at most [{}] in the arch file", fmt::join(largest, ", ")));
+      throw InputError(
+          fmt::format("brick = [{}] is larger than the lattice: it has {} cell{} along {}",
+                      fmt::join(shape, ", "), length[a], length[a] == 1 ? "" : "s", "xyz"[a]),
+          fmt::format("set node.brick to at most [{}] in the arch file", fmt::join(largest, ", ")));
 
   const BrickGrid grid(shape);
   std::map<std::tuple<int32_t, int32_t, int32_t>, std::vector<uint32_t>> bricks;  // cells by (z, y, x)

@@ -29,7 +29,8 @@ void check_arch(const Arch& arch) {
   positive("force_pipes", arch.force_pipes, arch.filter_lanes);
   positive("queue_depth", arch.queue_depth, 1024);
   for (const int32_t cells : arch.brick) positive("brick", cells, kMostBrickCells);
-  const uint64_t cells = uint64_t{cells_of({arch.brick[0], 1, 1})} * cells_of({1, arch.brick[1], arch.brick[2]});
+  const uint64_t cells =
+      uint64_t{cells_of({arch.brick[0], 1, 1})} * cells_of({1, arch.brick[1], arch.brick[2]});
   if (cells > kMostBrickCells)
     throw InputError(fmt::format("brick = [{}] has {} cells: a node serves at most {}",
                                  fmt::join(arch.brick, ", "), cells, kMostBrickCells));
@@ -125,8 +126,8 @@ Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles) {
       words.migrate_cell_bits = std::max(words.migrate_cell_bits, bits(grid.migrate_tags(a)));
     }
   }
-  words.halo_bits =
-      (bricks ? r.axes * P + words.halo_cell_bits : position) + (r.scaled ? r.type_bits : 0) + (r.damped ? r.axes * r.widths.velocity_bits : 0);
+  words.halo_bits = (bricks ? r.axes * P + words.halo_cell_bits : position) + (r.scaled ? r.type_bits : 0) +
+                    (r.damped ? r.axes * r.widths.velocity_bits : 0);
   words.particle_bits = position + r.axes * r.widths.velocity_bits + r.type_bits + words.id_bits +
                         (r.pd ? r.axes * r.widths.displacement_bits : 0);
   words.migrate_bits = words.particle_bits + words.migrate_cell_bits;

@@ -164,8 +164,9 @@ RtlDesign decide(const Plan& plan) {
 
 void refuse_bricks(const Plan& plan) {
   if (!plan.bricks.single())
-    throw InputError(fmt::format("brick = [{}]: a node in RTL serves one cell", fmt::join(plan.arch.brick, ", ")),
-                     "take node.brick out of the arch file; --engine systemc runs it");
+    throw InputError(
+        fmt::format("brick = [{}]: a node in RTL serves one cell", fmt::join(plan.arch.brick, ", ")),
+        "take node.brick out of the arch file; --engine systemc runs it");
 }
 
 void legalise(const RtlDesign& design, bool with_lattice) {

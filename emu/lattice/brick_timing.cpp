@@ -126,8 +126,7 @@ void BrickTiming::begin(const NodeSlots& slots, std::span<const Leaving> leaving
       throw std::invalid_argument("a node does not hold what the step before left there");
   }
   for (const Leaving& l : leaving)
-    if (l.node >= cells || l.slot >= count_[l.node])
-      throw std::invalid_argument("no such particle leaves");
+    if (l.node >= cells || l.slot >= count_[l.node]) throw std::invalid_argument("no such particle leaves");
   final_count_ = count_;
   migration_.plan(final_count_, leaving, map_);
 }
@@ -162,7 +161,8 @@ void BrickTiming::send(int axis, uint32_t n) {
     const bool linked = plan_.neighbour(n, face) != kNoNode;
     if (thin) {  // both at once
       if (linked) halo_end_[n][at(face)] = now + layer(face, n);
-      sent_[n][at(axis)] = std::max(side == 0 ? now : sent_[n][at(axis)], linked ? halo_end_[n][at(face)] : now);
+      sent_[n][at(axis)] =
+          std::max(side == 0 ? now : sent_[n][at(axis)], linked ? halo_end_[n][at(face)] : now);
       continue;
     }
     if (linked) now += layer(face, n);

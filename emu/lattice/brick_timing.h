@@ -81,13 +81,13 @@ class BrickTiming {
   const Filter filter_;
   BrickMigration migration_;
 
-  std::vector<uint32_t> count_, final_count_;            // by cell: at the step's start, at its end
-  std::vector<int64_t> start_;                           // by node: the step's first cycle
-  std::array<std::vector<int64_t>, kPhases> end_;        // by node: the phases' last cycles
-  std::vector<std::array<int64_t, kFaces>> halo_end_;    // by node and face: the cycle that loads the end beat
-  std::vector<std::array<int64_t, 3>> sent_;             // ... the last of them, by axis
-  std::array<std::vector<int64_t>, 3> migrate_end_;      // [axis][node]
-  std::vector<Scratch> scratch_;                         // by thread
+  std::vector<uint32_t> count_, final_count_;          // by cell: at the step's start, at its end
+  std::vector<int64_t> start_;                         // by node: the step's first cycle
+  std::array<std::vector<int64_t>, kPhases> end_;      // by node: the phases' last cycles
+  std::vector<std::array<int64_t, kFaces>> halo_end_;  // by node and face: the cycle that loads the end beat
+  std::vector<std::array<int64_t, 3>> sent_;           // ... the last of them, by axis
+  std::array<std::vector<int64_t>, 3> migrate_end_;    // [axis][node]
+  std::vector<Scratch> scratch_;                       // by thread
   uint64_t steps_ = 0;
   TimingCounters counters_;
 };

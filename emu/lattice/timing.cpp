@@ -325,8 +325,6 @@ void TimingModel::resume(std::span<const uint64_t> starts) {
   impl_->steps_ = 0;  // the next step's particles are not those of the last one
 }
 
-const TimingCounters& TimingModel::counters() const {
-  return brick_ ? brick_->counters() : impl_->counters_;
-}
+const TimingCounters& TimingModel::counters() const { return brick_ ? brick_->counters() : impl_->counters_; }
 
 }  // namespace cuboct::emu

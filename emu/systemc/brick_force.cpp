@@ -48,8 +48,7 @@ void BrickForce::meet(Stream& stream, uint32_t own, const BrickWalk::Near& near)
     if (same) met.clear(static_cast<uint32_t>(k));
     for (size_t p = 0; p < passes; ++p) {
       stream.mask.push_back(met.from(static_cast<uint32_t>(p * lanes_)) & lane_mask);
-      stream.item.push_back(
-          {static_cast<uint32_t>(stream.candidate.size()), own, static_cast<uint32_t>(p)});
+      stream.item.push_back({static_cast<uint32_t>(stream.candidate.size()), own, static_cast<uint32_t>(p)});
     }
     stream.candidate.push_back(c);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The force engine of a node with a brick: one streamer walks the own cells and the candidates of each; lanes,
-// queue, issue and pipes are those of any node. docs/reference/node.md, "Bricks".
+// The force engine of a node with a brick: one streamer walks the own cells and the candidates of each;
+// lanes, queue, issue and pipes are those of any node. docs/reference/node.md, "Bricks".
 #pragma once
 
 #include <array>

@@ -419,8 +419,8 @@ void BrickNode::receive(int face, const Beat& beat) {
   const int a = face / 2;
   const bool high = face % 2 == 1;
   if (migrating) {
-    const auto tag = static_cast<uint32_t>(
-        record->get(plan_.words.particle_bits, plan_.words.migrate_cell_bits));
+    const auto tag =
+        static_cast<uint32_t>(record->get(plan_.words.particle_bits, plan_.words.migrate_cell_bits));
     const Cell at = grid_.of_migrate_tag(a, tag % grid_.migrate_tags(a), high ? extent_[a] - 1 : 0);
     r.fifo.push_back({grid_.local(at), unpack_particle(plan_, *record)});
     r.fifo.back().slot.away[static_cast<size_t>(a)] = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The cycle-accurate node that serves a brick of cells: docs/reference/node.md, "Bricks", to the letter. As in
-// node.h, values that only become visible later are computed at once where nothing can see them in between.
+// The cycle-accurate node that serves a brick of cells: docs/reference/node.md, "Bricks", to the letter. As
+// in node.h, values that only become visible later are computed at once where nothing can see them in
+// between.
 #pragma once
 
 #include <array>
@@ -106,11 +107,11 @@ class BrickNode : public NodeModel {
   size_t record_ = 0;     // ... and a record in it
   int beat_ = 0;
   bool sent_ = false;
-  Bits word_;                // the record that is being sent
-  uint64_t now_ = 0;         // the cycle that runs
-  uint64_t phase_last_ = 0;  // the last cycle of FORCE or UPDATE
-  uint64_t wakes_at_ = 0;    // as wakes_at()
-  size_t kept_ = 0;          // slots of the cell that SCAN has moved down
+  Bits word_;                     // the record that is being sent
+  uint64_t now_ = 0;              // the cycle that runs
+  uint64_t phase_last_ = 0;       // the last cycle of FORCE or UPDATE
+  uint64_t wakes_at_ = 0;         // as wakes_at()
+  size_t kept_ = 0;               // slots of the cell that SCAN has moved down
   std::vector<uint8_t> leaving_;  // [local] bit a: `leaving_a`
   uint8_t valid_ = 0, can_load_ = 0;
   NodeOutputs* out_ = nullptr;  // of the cycle that runs, as is `control_`

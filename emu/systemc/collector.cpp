@@ -110,7 +110,8 @@ void Collector::observe(uint32_t node, const NodeOutputs& out) {
   s.hash += hash_of(plan_.lattice, p);
   if (s.kept) s.state.particles.push_back(p);
   if (options_.keep_order) {
-    if (order_.size() <= step) order_.resize(step + 1, std::vector<std::vector<uint32_t>>(plan_.lattice.size()));
+    if (order_.size() <= step)
+      order_.resize(step + 1, std::vector<std::vector<uint32_t>>(plan_.lattice.size()));
     order_[step][p.node].push_back(p.id);
   }
 }

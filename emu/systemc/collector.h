@@ -45,9 +45,9 @@ class Collector {
   static bool shows(const NodeOutputs& out) {
     return (out.phase_start | out.phase_end) != 0 || out.observe || out.fault || out.idle;
   }
-  // One cycle of one physical node; cycles count from the start of the run. To be called for each cycle of a node in
-  // order, and for all nodes with a cycle before the next one.
-  // Throws std::runtime_error for a particle that the plan does not have, as an unchecked link may make one.
+  // One cycle of one physical node; cycles count from the start of the run. To be called for each cycle of a
+  // node in order, and for all nodes with a cycle before the next one. Throws std::runtime_error for a
+  // particle that the plan does not have, as an unchecked link may make one.
   void collect(uint32_t node, uint64_t cycle, const NodeOutputs& out);
 
   // All steps are complete, or all nodes have finished the first step with a fault, or a link has failed:

@@ -13,7 +13,8 @@
 
 namespace cuboct::emu {
 
-inline constexpr int kForceSegments = 1 + kFaces;  // own, -x, +x, -y, +y, -z, +z; of a flat plan without -z, +z
+inline constexpr int kForceSegments =
+    1 + kFaces;  // own, -x, +x, -y, +y, -z, +z; of a flat plan without -z, +z
 
 // The least (code, id, number) of a step, and in which of the node's cells it was found.
 struct FaultKeeper {
@@ -36,9 +37,9 @@ struct ForceCounts {
 
 // What the streamer presents in a step, in order, and the engine's queue.
 struct ForceStream {
-  std::vector<uint64_t> mask;                   // by entry: what the filter makes of it
+  std::vector<uint64_t> mask;                        // by entry: what the filter makes of it
   std::array<uint32_t, kForceSegments> segment_end;  // entries
-  std::vector<uint32_t> queue;                  // a ring of entries
+  std::vector<uint32_t> queue;                       // a ring of entries
 };
 
 // Steps all cycles of the engine, register by register; its last one. `available`: the cycle from which on

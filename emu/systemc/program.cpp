@@ -76,8 +76,8 @@ int run(const Program& program, Request request) {
   if (request.bench)
     fmt::print("{}.node_cycles {:.4g} 1/s\n", program.engine, node_cycles);
   else
-    fmt::print("{} steps of {} particles on {} nodes{} in {:.0f} cycles, {:.3g} node-cycles/s\n", trace.steps(),
-               setup.plan.particles, trace.nodes,
+    fmt::print("{} steps of {} particles on {} nodes{} in {:.0f} cycles, {:.3g} node-cycles/s\n",
+               trace.steps(), setup.plan.particles, trace.nodes,
                setup.plan.bricks.single()
                    ? std::string()
                    : fmt::format(" of {} cells", fmt::join(setup.plan.bricks.shape(), " x ")),

@@ -22,14 +22,14 @@ emu::RunResult run(const Case& c, double stall_rate = 0, uint64_t stall_seed = 1
 // What the stimuli contained.
 struct Seen {
   uint64_t particles = 0, faults = 0;
-  uint64_t nodes_of_one = 0;  // runs: the brick is the whole lattice
-  uint64_t rings = 0;         // a node that is its own neighbour
-  uint64_t pairs = 0;         // a node whose neighbours along an axis are one
-  uint64_t ragged = 0;        // a node with fewer cells than its brick along an axis
-  uint64_t absent = 0;        // a cell that the lattice has not
-  uint64_t thin = 0, thick = 0;  // bricks of one, of more than three cells along an axis
+  uint64_t nodes_of_one = 0;      // runs: the brick is the whole lattice
+  uint64_t rings = 0;             // a node that is its own neighbour
+  uint64_t pairs = 0;             // a node whose neighbours along an axis are one
+  uint64_t ragged = 0;            // a node with fewer cells than its brick along an axis
+  uint64_t absent = 0;            // a cell that the lattice has not
+  uint64_t thin = 0, thick = 0;   // bricks of one, of more than three cells along an axis
   uint64_t inner = 0, outer = 0;  // particles that went to a cell of the same, of another node
-  uint64_t crowded = 0;  // cells to which several particles went in a step
+  uint64_t crowded = 0;           // cells to which several particles went in a step
 };
 
 void note(Seen& seen, const Plan& plan, const GoldenRun& golden) {

@@ -122,9 +122,10 @@ TEST(BrickPlans, RefuseWhatDoesNotFit) {
             "  hint: set node.brick to at most [2, 2, 1] in the arch file");
   EXPECT_EQ(refusal(two, {0, 1, 1}), "brick = 0 is out of range: 1 to 512");
   EXPECT_EQ(refusal(two, {9, 9, 9}), "brick = [9, 9, 9] has 729 cells: a node serves at most 512");
-  EXPECT_EQ(refusal(two, {8, 8, 8}, 256, 1),
-            "brick = [8, 8, 8]: 512 cells of 256 slots, met by 1 lanes in 256 passes, are 33554432 visits; a node "
-            "makes at most 1048576\n  hint: use a smaller brick or more filter_lanes");
+  EXPECT_EQ(
+      refusal(two, {8, 8, 8}, 256, 1),
+      "brick = [8, 8, 8]: 512 cells of 256 slots, met by 1 lanes in 256 passes, are 33554432 visits; a node "
+      "makes at most 1048576\n  hint: use a smaller brick or more filter_lanes");
 }
 
 std::string of_arch(const std::string& brick) {
