@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "tests/verify/small_case.h"
 
-#include <stdexcept>
+#include <functional>
+#include <map>
 
 #include "tests/support/block.h"
 
 namespace cuboct::test {
+namespace {
 
-Case small_case(const std::string& name) {
-  Features f{.size = {2, 1, 1}, .cutoff = 1.4, .jitter = 0.05, .speed = 0.3, .margin = 0};
+struct Small {
+  Features features{.size = {2, 1, 1}, .cutoff = 1.4, .jitter = 0.05, .speed = 0.3, .margin = 0};
+  Arch arch;
+  uint64_t steps = 6;
+  std::function<void(Setup&)> place{};  // changes where particles start
+};
+
+Arch small_arch() {
   Arch arch;
   arch.capacity = 7;
   arch.filter_lanes = 2;
@@ -20,23 +28,142 @@ Case small_case(const std::string& name) {
   w.strength_bits = 12, w.sum_bits = 17, w.displacement_bits = 18;
   w.scale_frac = 8;
   arch.table = {.shape = TableChoice::Shape::uniform, .degree = 1, .index_bits = 5};
-  Case c{"small_" + name, {}, 6};
-  if (name == "damped") {
-    f.damping = 0.2;
-    f.two_materials = f.held = true;
-    arch.force_pipes = 2;
-  } else if (name == "pd") {
-    f.force_held = true;
-    arch.overlap = false;
-    arch.table.degree = 2;
-  } else if (name == "flat") {
-    f.flat = true;
-    f.size = {2, 2, 1};
-  } else if (name != "plain") {
-    throw std::out_of_range("no small case " + name);
+  return arch;
+}
+
+// A particle of the neighbour node in each direction gets the offset of one of node 0: where the cell's edge is the
+// cutoff, r2 of the two is cutoff2, at which nothing acts, and each size of the planar test is its bound.
+void at_the_cutoff(Setup& setup) {
+  auto& particles = setup.initial.particles;
+  const auto first_of = [&](uint32_t node) -> Particle& {
+    for (Particle& p : particles)
+      if (p.node == node) return p;
+    throw std::logic_error("a node of the case is empty");
+  };
+  const Particle from = first_of(0);
+  for (const int face : {1, 3, 5})
+    if (const uint32_t other = setup.plan.lattice.neighbour(0, face); other != kNoNode) first_of(other).x = from.x;
+}
+
+// Two particles of node 0 a few places of the position apart.
+void close_together(Setup& setup) {
+  auto& particles = setup.initial.particles;
+  Particle* first = nullptr;
+  for (Particle& p : particles) {
+    if (p.node != 0) continue;
+    if (first == nullptr) {
+      first = &p;
+      continue;
+    }
+    p.x = first->x;
+    p.x[0] += p.x[0] > 3 ? -3 : 3;
+    return;
   }
-  c.scene = block_scene(f);
-  c.setup = make_setup(c.scene, arch);
+}
+
+using Recipe = std::function<void(Small&)>;
+const std::map<std::string, Recipe>& recipes() {
+  using Shape = TableChoice::Shape;
+  using S = Small&;
+  static const std::map<std::string, Recipe> all{
+      {"plain", [](S) {}},
+      {"damped",
+       [](S s) {
+         s.features.damping = 0.2;
+         s.features.two_materials = s.features.held = true;
+         s.arch.force_pipes = 2;
+       }},
+      {"pd",
+       [](S s) {
+         s.features.force_held = true;
+         s.arch.overlap = false;
+         s.arch.table.degree = 2;
+       }},
+      {"flat",
+       [](S s) {
+         s.features.flat = true;
+         s.features.size = {2, 2, 1};
+       }},
+      {"detect", [](S s) { s.arch.link_check = LinkCheck::detect; }},
+      {"retry", [](S s) { s.arch.link_check = LinkCheck::retry; }},
+      // As many lanes as pipes, a row that is not full, differences that are not rounded.
+      {"octaves",
+       [](S s) {
+         s.arch.table = {.shape = Shape::octaves, .degree = 1, .index_bits = 6};
+         s.arch.widths.difference_frac = 12;
+         s.arch.force_pipes = s.arch.filter_lanes = 3;
+         s.arch.capacity = 8;
+         s.place = close_together;
+       }},
+      // One row, one beat per record.
+      {"shared",
+       [](S s) {
+         s.features.damping = 0.2;
+         s.arch.table = {.shape = Shape::octaves, .degree = 2, .index_bits = 7};
+         s.arch.shared_multipliers = true;
+         s.arch.capacity = s.arch.filter_lanes = 8;
+         s.arch.queue_depth = 1;
+         s.arch.link_bits = 0;
+         s.place = close_together;
+       }},
+      {"flat_shared",
+       [](S s) {
+         s.features.flat = s.features.two_materials = true;
+         s.features.size = {2, 2, 1};
+         s.features.damping = 0.2;
+         s.arch.shared_multipliers = true;
+         s.arch.force_pipes = 2;
+         s.arch.table.degree = 2;
+       }},
+      {"flat_pd",
+       [](S s) {
+         s.features.flat = s.features.force_held = true;
+         s.features.size = {2, 2, 1};
+         s.arch.table = {.shape = Shape::octaves, .degree = 1, .index_bits = 6};
+         s.arch.filter_lanes = 3;
+       }},
+      // Eight nodes, pairs at the cutoff, a coarse planar test.
+      {"edge",
+       [](S s) {
+         s.features.size = {2, 2, 2};
+         s.features.jitter = 0.2;
+         s.arch.widths.filter_frac = 4;
+         s.arch.capacity = 8;
+         s.arch.queue_depth = 3;
+         s.steps = 3;
+         s.place = at_the_cutoff;
+       }},
+      // Particles go everywhere, along several axes in a step; nodes fill up.
+      {"hot",
+       [](S s) {
+         s.features.size = {2, 2, 2};
+         s.features.jitter = 0.1;
+         s.features.speed = 0.5;
+         s.features.gravity = true;
+         s.arch.widths.guard = 8;
+         s.arch.widths.velocity_bits = s.arch.widths.sum_bits = 21;
+         s.steps = 12;
+       }},
+  };
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> small_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, recipe] : recipes()) names.push_back(name);
+  return names;
+}
+
+Case small_case(const std::string& name) {
+  Small s;
+  s.arch = small_arch();
+  recipes().at(name)(s);
+  Case c{"small_" + name, {}, s.steps};
+  c.scene = block_scene(s.features);
+  c.setup = make_setup(c.scene, s.arch);
+  if (s.place) s.place(c.setup);
   return c;
 }
 

@@ -8,7 +8,9 @@
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fprintf(stderr, "usage: rtl_small_case plain|damped|pd|flat DIR\n");
+    std::fprintf(stderr, "usage: rtl_small_case NAME DIR\nNAME:");
+    for (const auto& name : cuboct::test::small_names()) std::fprintf(stderr, " %s", name.c_str());
+    std::fprintf(stderr, "\n");
     return 2;
   }
   try {
