@@ -79,6 +79,7 @@ int run(const Request& r) {
   fmt::print("{}: {}{}{}; {} runs: {} steps, {} particles, {} phases, {} cycles of nodes compared\n", r.name,
              to_string(as_is.verdict), as_is.text.empty() ? "" : ": ", as_is.text, judge.runs(), as_is.steps,
              as_is.particles, as_is.spans, as_is.cycles);
+  if (judge.golden().fault) fmt::print("{}: golden stops: {}\n", r.name, judge.golden().fault->what());
   std::fflush(stdout);
   if (as_is.verdict != Verdict::passed) return 1;
   if (r.mutants.empty()) return 0;

@@ -13,7 +13,8 @@ struct Small {
   Features features{.size = {2, 1, 1}, .cutoff = 1.4, .jitter = 0.05, .speed = 0.3, .margin = 0};
   Arch arch;
   uint64_t steps = 6;
-  std::function<void(Setup&)> place{};  // changes where particles start
+  std::function<void(Scene&)> change{};  // the scene, before it is quantised
+  std::function<void(Setup&)> place{};   // where particles start
 };
 
 Arch small_arch() {
@@ -43,6 +44,35 @@ void at_the_cutoff(Setup& setup) {
   const Particle from = first_of(0);
   for (const int face : {1, 3, 5})
     if (const uint32_t other = setup.plan.lattice.neighbour(0, face); other != kNoNode) first_of(other).x = from.x;
+}
+
+// One particle of the first node goes to the last node, and one the other way, over all three axes in one step.
+void cross_the_corner(Setup& setup) {
+  const int p = setup.plan.rule.widths.position_frac;
+  const int64_t most = (int64_t{1} << (setup.plan.rule.widths.velocity_bits - 4)) - 1;
+  const uint32_t last = setup.plan.lattice.size() - 1;
+  bool up = false, down = false;
+  for (Particle& q : setup.initial.particles) {
+    if (q.node == 0 && !up) {
+      up = true;
+      q.x = {(1 << p) - 9, (1 << p) - 7, (1 << p) - 5};
+      q.v = {most, most - 77, most / 2};
+    } else if (q.node == last && !down) {
+      down = true;
+      q.x = {3, 5, 8};
+      q.v = {-most, 55 - most, -most / 2};
+    }
+  }
+}
+
+// Half of the particles drift up, half down, all the time: inboxes go round.
+void drift(Scene& scene) {
+  for (size_t k = 0; k < scene.body.size(); ++k)
+    scene.body.v[k] += (k % 2 == 0 ? 1 : -1) * Vec3(1.6, 1.1, 0);
+  for (int a = 0; a < 2; ++a) {
+    scene.periodic.origin[a] = -0.3;
+    scene.periodic.extent[a] = 4 * std::sqrt(2.0);
+  }
 }
 
 // Two particles of node 0 a few places of the position apart.
@@ -143,6 +173,17 @@ const std::map<std::string, Recipe>& recipes() {
          s.arch.widths.guard = 8;
          s.arch.widths.velocity_bits = s.arch.widths.sum_bits = 21;
          s.steps = 12;
+         s.place = cross_the_corner;
+       }},
+      {"drift",
+       [](S s) {
+         s.features.flat = true;
+         s.features.size = {4, 4, 1};
+         s.arch.overlap = false;
+         s.arch.queue_depth = 1;
+         s.arch.filter_lanes = 3;
+         s.steps = 30;
+         s.change = drift;
        }},
   };
   return all;
@@ -162,6 +203,7 @@ Case small_case(const std::string& name) {
   recipes().at(name)(s);
   Case c{"small_" + name, {}, s.steps};
   c.scene = block_scene(s.features);
+  if (s.change) s.change(c.scene);
   c.setup = make_setup(c.scene, s.arch);
   if (s.place) s.place(c.setup);
   return c;
