@@ -75,20 +75,33 @@ void drift(Scene& scene) {
   }
 }
 
-// Two particles of node 0 a few places of the position apart.
+// A particle of node 0 a few places of the position beside another, below a table's first octave, and one at 0.3 of
+// the cell's edge, where r2 has fewer bits than the table's address.
 void close_together(Setup& setup) {
-  auto& particles = setup.initial.particles;
   Particle* first = nullptr;
-  for (Particle& p : particles) {
-    if (p.node != 0) continue;
+  int moved = 0;
+  const int edge = 1 << setup.plan.rule.widths.position_frac;
+  for (Particle& p : setup.initial.particles) {
+    if (p.node != 0 || moved == 2) continue;
     if (first == nullptr) {
       first = &p;
       continue;
     }
+    const int d = moved++ == 0 ? 3 : 3 * edge / 10;
     p.x = first->x;
-    p.x[0] += p.x[0] > 3 ? -3 : 3;
-    return;
+    p.x[0] += p.x[0] > edge / 2 ? -d : d;
   }
+}
+
+// Two particles alone, one above the other: the candidate that acts is the last one of a step.
+void one_pair(Scene& scene) {
+  Body body;
+  for (const double z : {0.5, 1.6}) {
+    body.x.emplace_back(0.5, 0.5, z);
+    body.v.emplace_back(0.01, -0.02, 0.03);
+    body.type.push_back(0);
+  }
+  scene.body = body;
 }
 
 using Recipe = std::function<void(Small&)>;
@@ -151,7 +164,9 @@ const std::map<std::string, Recipe>& recipes() {
          s.features.size = {2, 2, 1};
          s.arch.table = {.shape = Shape::octaves, .degree = 1, .index_bits = 6};
          s.arch.filter_lanes = 3;
+         s.arch.widths.difference_frac = 11;
        }},
+      {"pair", [](S s) { s.change = one_pair; }},
       // Eight nodes, pairs at the cutoff, a coarse planar test.
       {"edge",
        [](S s) {
