@@ -176,6 +176,10 @@ std::vector<Judge::Run> usual_runs(const Plan& plan) {
       runs.push_back({.stall_rate = 0.2, .register_seed = 5});
       runs.back().faults.rate = rate;
     }
+    for (const double stalls : {0.5, 0.75}) runs.push_back({.stall_rate = stalls, .stall_seed = 2});
+    // Acknowledgements that stay away so long that beats which came are sent again.
+    runs.push_back({.stall_rate = 0.2});
+    runs.back().faults = {.rate = 0.9, .target = {}, .seed = 3, .flips = 0, .drops = 0, .repeats = 0};
   } else {
     using emu::FaultKind;
     // Of node 0, over +x: an early beat and one of a later step; the wire the other way.

@@ -104,6 +104,25 @@ void one_pair(Scene& scene) {
   scene.body = body;
 }
 
+// Velocities by turns +v, -v, so that pairs meet; less on the later axes, and a little different for each particle.
+void set_velocities(Setup& setup, int64_t v, bool by_turns) {
+  for (Particle& p : setup.initial.particles)
+    for (int a = 0; a < 3; ++a)
+      p.v[a] = (by_turns && (p.id + static_cast<uint32_t>(a)) % 2 == 0 ? -1 : 1) * (v - 200 * a - 7 * int64_t{p.id});
+}
+
+// One rule and machine with damping and PD, of which every number is near its limit; what a scene sets is what it
+// makes fail, of several particles, pairs and axes in one step.
+void failing(Small& s) {
+  s.features.damping = 8;
+  s.features.force_held = true;
+  s.features.speed = 0;
+  s.arch.force_pipes = 2;
+  s.arch.widths.sum_bits = 11;
+  s.steps = 3;
+}
+constexpr int64_t kMostV = (1 << 16) - 1, kMostU = (1 << 17) - 1;
+
 using Recipe = std::function<void(Small&)>;
 const std::map<std::string, Recipe>& recipes() {
   using Shape = TableChoice::Shape;
@@ -127,8 +146,19 @@ const std::map<std::string, Recipe>& recipes() {
          s.features.flat = true;
          s.features.size = {2, 2, 1};
        }},
-      {"detect", [](S s) { s.arch.link_check = LinkCheck::detect; }},
-      {"retry", [](S s) { s.arch.link_check = LinkCheck::retry; }},
+      // Both end where a particle leaves: a node's own fault passes the checks of its links.
+      {"detect",
+       [](S s) {
+         s.arch.link_check = LinkCheck::detect;
+         s.features.speed = 0.45;
+         s.steps = 20;
+       }},
+      {"retry",
+       [](S s) {
+         s.arch.link_check = LinkCheck::retry;
+         s.features.speed = 0.45;
+         s.steps = 20;
+       }},
       // As many lanes as pipes, a row that is not full, differences that are not rounded.
       {"octaves",
        [](S s) {
@@ -167,6 +197,50 @@ const std::map<std::string, Recipe>& recipes() {
          s.arch.widths.difference_frac = 11;
        }},
       {"pair", [](S s) { s.change = one_pair; }},
+      {"fails_w",
+       [](S s) {
+         failing(s);
+         s.place = [](Setup& setup) { set_velocities(setup, 30000, true); };
+       }},
+      {"fails_s",
+       [](S s) {
+         failing(s);
+         s.place = [](Setup& setup) {
+           set_velocities(setup, 15000, true);
+           close_together(setup);
+         };
+       }},
+      {"fails_sum",
+       [](S s) {
+         failing(s);
+         s.place = [](Setup& setup) { set_velocities(setup, 2500, true); };
+       }},
+      {"fails_u",
+       [](S s) {
+         failing(s);
+         s.place = [](Setup& setup) {
+           set_velocities(setup, 30000, false);
+           for (Particle& p : setup.initial.particles)
+             if (setup.plan.rule.types[p.type].pd)
+               for (int a = 0; a < 3; ++a) p.u[a] = (p.id + static_cast<uint32_t>(a)) % 3 == 0 ? 5 : kMostU - 3 * a;
+         };
+       }},
+      {"fails_v",
+       [](S s) {
+         failing(s);
+         s.place = [](Setup& setup) {
+           for (Particle& p : setup.initial.particles)
+             for (int a = 0; a < 3; ++a) p.v[a] = kMostV - (p.id * 7 + static_cast<uint32_t>(a) * 5) % 13;
+         };
+       }},
+      {"fails_low_v",
+       [](S s) {
+         failing(s);
+         s.place = [](Setup& setup) {
+           for (Particle& p : setup.initial.particles)
+             for (int a = 0; a < 3; ++a) p.v[a] = -kMostV + (p.id * 7 + static_cast<uint32_t>(a) * 5) % 13;
+         };
+       }},
       // Eight nodes, pairs at the cutoff, a coarse planar test.
       {"edge",
        [](S s) {
