@@ -36,6 +36,8 @@ SWAPS = {
     "!": [("", "! left out")], "~": [("", "~ left out")],
     "$signed": [("$unsigned", "signed to unsigned")],
 }
+# Kinds that leave nothing of the expression.
+WHOLE = ("stuck at 0", "stuck at 1", "never loaded", "reset left out", "if always", "if never")
 TOKEN = re.compile(r"\$?[A-Za-z_][\w$]*|\d*'[sS]?[bdh][0-9a-fA-F_xz]+|'[01]|\d+|&&|\|\||==|!=|<=|>=|<<<|>>>|<<|>>|::|"
                    r"\+:|-:|[-+*/&|^~!<>?:(){}\[\],.;=#@%]|\S")
 
@@ -279,6 +281,8 @@ def mutants_of(module, text, first):
                 shown = f"if ({shown})"
             if region.role == "port":
                 shown = f"{' '.join(target.split())}({' '.join(blank(other).split())})"
+            if kind in WHOLE:  # what it was tells such mutants of a module apart
+                shown += " for " + " ".join(code[region.start:region.end].split())
             result.append(Mutant(number, module, line, kind, shown, region.constant))
             here.append((number, other.strip()))
             number += 1

@@ -20,7 +20,7 @@ void add(Hash& hash, const emu::Bits& bits) {
 
 class Watcher : public NodeModel {
  public:
-  explicit Watcher(std::unique_ptr<NodeModel> node) : node_(std::move(node)) {}
+  Watcher(std::unique_ptr<NodeModel> node, uint8_t has_link) : node_(std::move(node)), has_link_(has_link) {}
 
   void clock(const NodeInputs& in, NodeOutputs& out) override {
     node_->clock(in, out);
@@ -63,19 +63,22 @@ class Watcher : public NodeModel {
     at(PortGroup::links) = links.value();
     Hash acks;
     acks.add(static_cast<uint64_t>(out.beat_errors << 8 | out.ack_errors));
-    for (const uint16_t ack : out.ack) acks.add(uint64_t{ack});
+    // A flat node has no ports along z.
+    for (size_t f = 0; f < out.ack.size(); ++f)
+      if (has_link_ >> f & 1) acks.add(uint64_t{out.ack[f]});
     at(PortGroup::acks) = acks.value();
     return s;
   }
 
   const std::unique_ptr<NodeModel> node_;
+  const uint8_t has_link_;
   std::array<emu::Beat, kFaces> held_{};  // the link registers
 };
 
 class Recorder final : public Watcher {
  public:
-  Recorder(std::unique_ptr<NodeModel> node, std::vector<Shown>& record)
-      : Watcher(std::move(node)), record_(record) {}
+  Recorder(std::unique_ptr<NodeModel> node, uint8_t has_link, std::vector<Shown>& record)
+      : Watcher(std::move(node), has_link), record_(record) {}
 
  private:
   void see(const Shown& shown) override { record_.push_back(shown); }
@@ -84,8 +87,9 @@ class Recorder final : public Watcher {
 
 class Comparer final : public Watcher {
  public:
-  Comparer(std::unique_ptr<NodeModel> node, const std::vector<Shown>& expected, uint64_t& cycles)
-      : Watcher(std::move(node)), expected_(expected), cycles_(cycles) {}
+  Comparer(std::unique_ptr<NodeModel> node, uint8_t has_link, const std::vector<Shown>& expected,
+           uint64_t& cycles)
+      : Watcher(std::move(node), has_link), expected_(expected), cycles_(cycles) {}
 
  private:
   void see(const Shown& shown) override {
@@ -113,13 +117,13 @@ const char* to_string(PortGroup group) {
 
 emu::NodeFactory recorded(emu::NodeFactory factory, PortRecord& record) {
   return [factory = std::move(factory), &record](uint32_t node, uint8_t has_link) {
-    return std::make_unique<Recorder>(factory(node, has_link), record.at(node));
+    return std::make_unique<Recorder>(factory(node, has_link), has_link, record.at(node));
   };
 }
 
 emu::NodeFactory watched(emu::NodeFactory factory, const PortRecord& expected, uint64_t& cycles) {
   return [factory = std::move(factory), &expected, &cycles](uint32_t node, uint8_t has_link) {
-    return std::make_unique<Comparer>(factory(node, has_link), expected.at(node), cycles);
+    return std::make_unique<Comparer>(factory(node, has_link), has_link, expected.at(node), cycles);
   };
 }
 
