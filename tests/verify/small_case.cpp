@@ -159,6 +159,18 @@ const std::map<std::string, Recipe>& recipes() {
          s.features.speed = 0.45;
          s.steps = 20;
        }},
+      // Nodes of 2^k slots that are full from the start, until one more comes.
+      {"full",
+       [](S s) {
+         s.arch.link_check = LinkCheck::retry;
+         s.arch.capacity = 4;
+         s.features.speed = 0.45;
+         s.steps = 20;
+         s.change = [](Scene& scene) {
+           for (size_t k = 0; k < scene.body.size(); ++k)
+             scene.body.v[k] = Vec3(scene.body.x[k].x() < 1.3 ? 0.5 : 0, 0, 0);
+         };
+       }},
       // As many lanes as pipes, a row that is not full, differences that are not rounded.
       {"octaves",
        [](S s) {
