@@ -105,9 +105,10 @@ void one_pair(Scene& scene) {
 }
 
 // Velocities by turns +v, -v, so that pairs meet; less on the later axes, and a little different for each particle.
-void set_velocities(Setup& setup, int64_t v, bool by_turns) {
+// Nothing before the axis `first`.
+void set_velocities(Setup& setup, int64_t v, bool by_turns, int first = 0) {
   for (Particle& p : setup.initial.particles)
-    for (int a = 0; a < 3; ++a)
+    for (int a = first; a < 3; ++a)
       p.v[a] = (by_turns && (p.id + static_cast<uint32_t>(a)) % 2 == 0 ? -1 : 1) * (v - 200 * a - 7 * int64_t{p.id});
 }
 
@@ -214,6 +215,11 @@ const std::map<std::string, Recipe>& recipes() {
          failing(s);
          s.place = [](Setup& setup) { set_velocities(setup, 30000, true); };
        }},
+      {"fails_w_z",
+       [](S s) {
+         failing(s);
+         s.place = [](Setup& setup) { set_velocities(setup, 30000, true, 2); };
+       }},
       {"fails_s",
        [](S s) {
          failing(s);
@@ -225,6 +231,18 @@ const std::map<std::string, Recipe>& recipes() {
       {"fails_sum",
        [](S s) {
          failing(s);
+         s.place = [](Setup& setup) { set_velocities(setup, 2500, true); };
+       }},
+      {"fails_sum_y",
+       [](S s) {
+         failing(s);
+         s.place = [](Setup& setup) { set_velocities(setup, 2500, true, 1); };
+       }},
+      // One pipe, no PD.
+      {"fails_free",
+       [](S s) {
+         s.features.damping = 8;
+         s.arch.widths.sum_bits = 11;
          s.place = [](Setup& setup) { set_velocities(setup, 2500, true); };
        }},
       {"fails_u",
