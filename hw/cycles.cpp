@@ -114,14 +114,6 @@ void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
   expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * (1 + end_beat));
 }
 
-// What narrow memories add to a candidate: its words are read one by one, then the first slot's answer and
-// test pass before the second's.
-uint64_t walked(const std::array<uint64_t, 7>& segment, int axes, uint64_t beats) {
-  uint64_t cycles = segment[0] * 3;
-  for (int s = 1; s < 1 + 2 * axes; ++s) cycles += segment[static_cast<size_t>(s)] * (beats + 2);
-  return cycles;
-}
-
 }  // namespace
 
 ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
@@ -173,18 +165,26 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
       streamed += std::max<uint64_t>(work, 1);
       candidates += work;
     }
-    if (plan.arch.narrow_memories && own > 0) streamed += walked(segment[n], axes, beats);
-    uint64_t pairs = 0;
+    // With narrow memories a candidate's words are read, then it meets one slot after the other, and waits for the
+    // pipe where it has hits.
+    const bool narrow = plan.arch.narrow_memories;
+    const auto interval = static_cast<uint64_t>(plan.latency.interval);
+    uint64_t pairs = 0, walk = 0, ready = 0;
     if (own > 0)
       for (const auto& [other, offset] : lattice.neighbourhood(n))
         for (const Particle* j : nodes[other])
           for (const Particle* i : nodes[n]) {
+            if (narrow) walk += i == nodes[n].front() ? 3 + (other == n ? 1 : beats) : 1;
             Int3 x_j;
             for (int a = 0; a < 3; ++a)
               x_j[a] = j->x[a] + (int64_t{offset[a]} << plan.rule.widths.position_frac);
-            pairs += i != j && may_interact(plan.rule, i->x, x_j);
+            const bool hit = i != j && may_interact(plan.rule, i->x, x_j);
+            pairs += hit;
+            if (!narrow || !hit) continue;
+            walk = std::max(walk + 1, ready);
+            ready = walk + interval;
           }
-    if (plan.arch.narrow_memories) streamed += pairs;  // the port is the pipe's then
+    if (narrow) streamed = std::max(streamed, now + walk);
     const uint64_t issues = ceil_div(pairs, static_cast<uint64_t>(plan.arch.force_pipes)) *
                             static_cast<uint64_t>(plan.latency.interval);
     const uint64_t busy = std::max(candidates, issues);
