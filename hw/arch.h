@@ -9,6 +9,7 @@
 #include "hw/link_code.h"
 #include "model/fixed_rule.h"
 #include "model/quantise.h"
+#include "model/vec.h"
 
 namespace cuboct {
 
@@ -28,6 +29,7 @@ struct Arch {
   Multipliers multipliers = Multipliers::parallel;
   int queue_depth = 16;  // (candidate, mask) entries between filter and pipes
   bool overlap = true;   // candidates are filtered while the exchange still runs
+  Cell brick{1, 1, 1};   // cells that a node serves, along x, y, z
   bool narrow_memories = false;  // words of a beat's width, one port to read: hw/plan.h says what that asks
   int link_bits = 0;     // payload bits per beat; 0: one halo record per beat
   LinkCheck link_check = LinkCheck::none;

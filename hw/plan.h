@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hw/arch.h"
+#include "hw/bricks.h"
 #include "model/fixed_rule.h"
 #include "model/lattice.h"
 #include "model/state.h"
@@ -20,12 +21,17 @@ namespace cuboct {
 // All but the last axis of a halo record are signed, in the frame of the sender's node (see
 // docs/reference/node.md); `away` is two's complement: -1, 0, +1. The particle word is the migrate record and
 // the word of the load and observe ports.
+// With bricks a halo record's coordinates are those in its own cell, x[P] y[P] z[P], and its last field says
+// which cell that is: cell[halo_cell_bits]. A migrate record is a particle and then the cell that it goes to,
+// cell[migrate_cell_bits]. hw/bricks.h numbers both.
 struct Words {
   int id_bits = 0;
   int halo_bits = 0;
   int particle_bits = 0;
   int halo_beats = 0;     // ceil(halo_bits / link_bits)
-  int migrate_beats = 0;  // ceil(particle_bits / link_bits)
+  int migrate_beats = 0;  // ceil(migrate_bits / link_bits)
+  int migrate_bits = 0;   // particle_bits + migrate_cell_bits
+  int halo_cell_bits = 0, migrate_cell_bits = 0;  // 0 without bricks
   int link_bits = 0;      // as built: arch.link_bits, or halo_bits
 };
 
@@ -43,13 +49,27 @@ struct Latency {
 struct Plan {
   FixedRule rule;
   Arch arch;
-  Lattice lattice;
+  Lattice lattice;  // of cells
+  Bricks bricks;    // of these: what each physical node serves
   Vec3 origin = Vec3::Zero();  // m, lower corner of cell (0,0,0)
   Words words;
   Latency latency;
   LinkCode link;
   uint32_t particles = 0;
   uint64_t hash = 0;  // of everything above that an engine can see
+
+  // Physical nodes, and the neighbour of one over a face, or kNoNode.
+  uint32_t nodes() const { return bricks.single() ? lattice.size() : bricks.size(); }
+  uint32_t neighbour(uint32_t node, int face) const {
+    return bricks.single() ? lattice.neighbour(node, face)
+                           : bricks.node(node).neighbour[static_cast<size_t>(face)];
+  }
+  uint32_t node_of(uint32_t cell) const { return bricks.single() ? cell : bricks.node_of(cell); }
+  uint32_t local_of(uint32_t cell) const { return bricks.single() ? 0 : bricks.local_of(cell); }
+  // The lattice's cell number `local` of a node, or kNoNode.
+  uint32_t cell_of(uint32_t node, uint32_t local) const {
+    return bricks.single() ? node : bricks.cell(node, local);
+  }
 };
 
 // What make_plan derives: words of records, latencies.

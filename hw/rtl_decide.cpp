@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
@@ -49,6 +50,7 @@ ValueRange table_range(const FixedTable& table) {
 }
 
 RtlDesign decide(const Plan& plan) {
+  refuse_bricks(plan);
   const FixedRule& rule = plan.rule;
   const Widths& w = rule.widths;
   const Arch& arch = plan.arch;
@@ -158,6 +160,13 @@ RtlDesign decide(const Plan& plan) {
     for (int f = 0; f < kFaces; ++f) faces[f] = plan.lattice.neighbour(n, f);
   }
   return design;
+}
+
+void refuse_bricks(const Plan& plan) {
+  if (!plan.bricks.single())
+    throw InputError(
+        fmt::format("brick = [{}]: a node in RTL serves one cell", fmt::join(plan.arch.brick, ", ")),
+        "take node.brick out of the arch file; --engine systemc runs it");
 }
 
 void legalise(const RtlDesign& design, bool with_lattice) {

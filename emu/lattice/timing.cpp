@@ -7,6 +7,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "emu/lattice/brick_timing.h"
 #include "emu/lattice/force_time.h"
 #include "emu/lattice/hits.h"
 #include "emu/lattice/migrate_time.h"
@@ -254,10 +255,16 @@ void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
   start_[n] = end_[at(Phase::migrate_z)][n] + 1;
 }
 
-TimingModel::TimingModel(const Plan& plan, int threads) : impl_(std::make_unique<Impl>(plan, threads)) {}
+TimingModel::TimingModel(const Plan& plan, int threads) {
+  if (plan.bricks.single())
+    impl_ = std::make_unique<Impl>(plan, threads);
+  else
+    brick_ = std::make_unique<BrickTiming>(plan, threads);
+}
 TimingModel::~TimingModel() = default;
 
 void TimingModel::step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
+  if (brick_) return brick_->step(slots, leaving, spans);
   Impl& m = *impl_;
   if (!spans.empty() && spans.size() != size_t{m.nodes_} * kPhases)
     throw std::invalid_argument("spans of another lattice");
@@ -296,6 +303,7 @@ void TimingModel::step(const NodeSlots& slots, std::span<const Leaving> leaving,
 }
 
 uint64_t TimingModel::cycles(const NodeSlots& slots) const {
+  if (brick_) return brick_->cycles(slots);
   const Impl& m = *impl_;
   if (slots.first.size() != m.nodes_ + 1) throw std::invalid_argument("slots of another lattice");
   uint64_t idle = 0;  // the last node's first cycle of IDLE
@@ -305,14 +313,18 @@ uint64_t TimingModel::cycles(const NodeSlots& slots) const {
   return idle + 1;
 }
 
-std::vector<uint64_t> TimingModel::starts() const { return {impl_->start_.begin(), impl_->start_.end() - 1}; }
+std::vector<uint64_t> TimingModel::starts() const {
+  if (brick_) return brick_->starts();
+  return {impl_->start_.begin(), impl_->start_.end() - 1};
+}
 
 void TimingModel::resume(std::span<const uint64_t> starts) {
+  if (brick_) return brick_->resume(starts);
   if (starts.size() != impl_->nodes_) throw std::invalid_argument("starts of another lattice");
   std::copy(starts.begin(), starts.end(), impl_->start_.begin());
   impl_->steps_ = 0;  // the next step's particles are not those of the last one
 }
 
-const TimingCounters& TimingModel::counters() const { return impl_->counters_; }
+const TimingCounters& TimingModel::counters() const { return brick_ ? brick_->counters() : impl_->counters_; }
 
 }  // namespace cuboct::emu

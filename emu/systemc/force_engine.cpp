@@ -4,27 +4,17 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
-#include <tuple>
 
 #include "emu/systemc/planar.h"
 
 namespace cuboct::emu {
 
-// What the streamer presents in a step, in order, and the engine's queue. An entry is a (record, pass).
-struct ForceEngine::Stream {
-  std::vector<const Candidate*> record;         // of all segments
-  std::vector<uint64_t> mask;                   // by entry: what the filter makes of it
-  std::array<uint32_t, kSegments> segment_end;  // entries
+// An entry is a (record, pass).
+struct ForceEngine::Stream : ForceStream {
+  std::vector<const Candidate*> record;  // of all segments
   uint32_t passes = 1;
   PlanarSlots own;
-  std::vector<uint32_t> queue;  // a ring of entries
 };
-
-void FaultKeeper::add(Fault new_code, uint32_t new_id, int64_t new_number) {
-  if (new_code == Fault::none) return;
-  if (code == Fault::none || std::tie(new_code, new_id, new_number) < std::tie(code, id, number))
-    code = new_code, id = new_id, number = new_number;
-}
 
 ForceEngine::ForceEngine(const Plan& plan, const std::vector<Slot>& own,
                          const std::array<std::vector<Candidate>, kFaces>& halo, FaultKeeper& fault)
@@ -92,77 +82,8 @@ void ForceEngine::meet(const Candidate& j, int slot) {
 uint64_t ForceEngine::stream() {
   static thread_local Stream stream;  // of the node that runs: a lattice of nodes shares the cache lines
   filter(stream);
-  const uint32_t depth = static_cast<uint32_t>(plan_.arch.queue_depth);
-  stream.queue.resize(depth);
-
-  // The registers. `mask` of F1 and of `current` is that of their entry, less what was issued.
-  int segment = 0;
-  uint32_t next = 0;  // the streamer's entry
-  bool f0_valid = false, f1_valid = false;
-  uint32_t f0 = 0, f1 = 0, current = 0;
-  uint64_t current_mask = 0;
-  uint32_t head = 0, count = 0;  // queue
-  int hold = 0;                  // cycles until the next pair may be issued
-  int drain = 0;                 // cycles until the last issued pair is in its sum
-
-  const auto from = [&](int s) { return available_[(s + 1) / 2]; };
-  uint64_t cycle = available_[0];
-  for (;; ++cycle) {
-    if (!f0_valid && !f1_valid && count == 0 && current_mask == 0 && hold == 0) {
-      // Nothing moves but the pipes: on to where the streamer may go on, or the pipes are empty.
-      if (segment == segments_) {
-        cycle += static_cast<uint64_t>(drain);
-        break;
-      }
-      if (from(segment) > cycle) {
-        drain = static_cast<int>(std::max<int64_t>(0, drain - static_cast<int64_t>(from(segment) - cycle)));
-        cycle = from(segment);
-      }
-    }
-    const uint32_t held = count;  // at the start of the cycle
-    if (hold > 0) {
-      --hold;
-      drain = std::max(0, drain - 1);
-    } else if (current_mask != 0) {
-      issue(stream, current, current_mask);
-      hold = plan_.latency.interval - 1;
-      ++counts_.issue_cycles;
-      // Issued in cycle t, in the sum from t + pipe on: the pipe is empty in cycle t + pipe, and this edge
-      // ends cycle t.
-      drain = plan_.latency.pipe - 1;
-    } else if (drain > 0) {
-      --drain;
-    }
-    if (hold == 0 && current_mask == 0 && held > 0) {
-      current = stream.queue[head];
-      current_mask = stream.mask[current];
-      head = head + 1 == depth ? 0 : head + 1;
-      --count;
-    }
-    if (f1_valid && stream.mask[f1] != 0) {
-      if (held == depth) {
-        ++counts_.stalls;
-        continue;
-      }
-      const uint32_t tail = head + count;
-      stream.queue[tail < depth ? tail : tail - depth] = f1;
-      ++count;
-    }
-    f1_valid = f0_valid;
-    f1 = f0;
-    f0_valid = false;
-    if (segment == segments_ || from(segment) > cycle) continue;
-    if (next == stream.segment_end[segment]) {  // no record, or no slot to meet it
-      ++segment;
-      continue;
-    }
-    f0_valid = true;
-    f0 = next++;
-    ++counts_.candidates;
-    if (next == stream.segment_end[segment]) ++segment;
-  }
-  counts_.busy += cycle - available_[0] + 1;
-  return cycle;
+  return clock_force(plan_, stream, segments_, available_, counts_,
+                     [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
 }
 
 // One candidate at a time: read, then walked past the slots by way of the registers T and R.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "emu/systemc/brick_node.h"
 #include "emu/systemc/link_guard.h"
 #include "model/fixed_math.h"
 
@@ -416,8 +417,10 @@ Counters Node::counters() const {
 
 NodeFactory native_nodes(const Plan& plan) {
   check_words(plan);
-  return guarded(plan,
-                 [&plan](uint32_t, uint8_t has_link) { return std::make_unique<Node>(plan, has_link); });
+  return guarded(plan, [&plan](uint32_t node, uint8_t has_link) -> std::unique_ptr<NodeModel> {
+    if (plan.bricks.single()) return std::make_unique<Node>(plan, has_link);
+    return std::make_unique<BrickNode>(plan, node, has_link);
+  });
 }
 
 }  // namespace cuboct::emu

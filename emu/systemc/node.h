@@ -102,6 +102,7 @@ class Node : public NodeModel {
   uint64_t link_waits_ = 0, beats_ = 0;
 };
 
+// Nodes of one cell, or with the plan's brick (brick_node.h).
 NodeFactory native_nodes(const Plan& plan);
 
 }  // namespace cuboct::emu

@@ -7,6 +7,9 @@ Untch, Offutt, Harrold, ISSTA 1993). In E7 one token of E is another, or E7 is a
 its context's width and sign on to its branches, and constants are written as $signed(1'b0), which changes neither;
 so with asked == 0 the module is what it was.
 
+A function that is not automatic computes constants, while the hardware is made: its mutants cannot be asked for in a run. They
+are marked `constant` and left out of the schemata; `one` gives the text with one of them.
+
 Left alone: declarations, parameters, generate conditions, loop headers, ranges in brackets, replication counts,
 assertions, `unused_*`.
 """
@@ -33,13 +36,16 @@ SWAPS = {
     "!": [("", "! left out")], "~": [("", "~ left out")],
     "$signed": [("$unsigned", "signed to unsigned")],
 }
+# Kinds that leave nothing of the expression.
+WHOLE = ("stuck at 0", "stuck at 1", "never loaded", "reset left out", "if always", "if never")
 TOKEN = re.compile(r"\$?[A-Za-z_][\w$]*|\d*'[sS]?[bdh][0-9a-fA-F_xz]+|'[01]|\d+|&&|\|\||==|!=|<=|>=|<<<|>>>|<<|>>|::|"
                    r"\+:|-:|[-+*/&|^~!<>?:(){}\[\],.;=#@%]|\S")
 
 
 class Mutant:
-    def __init__(self, number, module, line, kind, text):
+    def __init__(self, number, module, line, kind, text, constant):
         self.number, self.module, self.line, self.kind, self.text = number, module, line, kind, text
+        self.constant = constant  # is made by a compilation of its own
 
 
 def blank(text):
@@ -71,9 +77,9 @@ def matching(tokens, k):
 
 
 class Region:
-    """An expression that is evaluated while the hardware runs: code[start:end]."""
-    def __init__(self, start, end, role, target):
-        self.start, self.end, self.role, self.target = start, end, role, target
+    """An expression that is evaluated while the hardware runs, or `constant` while it is made: code[start:end]."""
+    def __init__(self, start, end, role, target, constant=False):
+        self.start, self.end, self.role, self.target, self.constant = start, end, role, target, constant
 
 
 def statements(tokens, k, stop, regions, in_ff):
@@ -147,7 +153,11 @@ def regions_of(code):
                 begin = k
                 while tokens[begin][0] != "begin":
                     begin += 1
-                statements(tokens, begin, j, regions, False)
+                inside = []
+                statements(tokens, begin, j, inside, False)
+                for region in inside:
+                    region.constant = tokens[k + 1][0] != "automatic"
+                regions += inside
                 k = j + 1
                 continue
             if tokens[j][0] == "begin":
@@ -271,21 +281,34 @@ def mutants_of(module, text, first):
                 shown = f"if ({shown})"
             if region.role == "port":
                 shown = f"{' '.join(target.split())}({' '.join(blank(other).split())})"
-            result.append(Mutant(number, module, line, kind, shown))
+            if kind in WHOLE:  # what it was tells such mutants of a module apart
+                shown += " for " + " ".join(code[region.start:region.end].split())
+            result.append(Mutant(number, module, line, kind, shown, region.constant))
             here.append((number, other.strip()))
             number += 1
         if here:
-            places.append((region.start, region.end, here))
+            places.append((region.start, region.end, here, region.constant))
     return result, places
 
 
 def schemata(text, places, wanted):
     """The text with every wanted mutant in it."""
-    for start, end, here in sorted(places, reverse=True):
+    for start, end, here, constant in sorted(places, reverse=True):
         chosen = [(n, other) for n, other in here if n in wanted]
-        if not chosen:
+        if not chosen or constant:
             continue
         original = text[start:end].strip()
         whole = "".join(f"({ASKED} == {n}) ? ({other}) : " for n, other in chosen) + f"({original})"
         text = text[:start] + (" " if text[start - 1] != "(" else "") + whole + text[end:]
     return text
+
+
+def one(text, places, number):
+    """The text with one mutant in the place of what it changes."""
+    for start, end, here, _ in places:
+        for n, other in here:
+            if n == number:
+                # Outside a schema an unsized constant takes its context's width.
+                other = other.replace(ONES, "'1").replace(ZERO, "'0") if other in (ONES, ZERO) else other
+                return text[:start] + (" " if text[start - 1] != "(" else "") + other + text[end:]
+    raise ValueError(f"no mutant {number}")

@@ -68,15 +68,18 @@ void judge_one(const Judge& judge, const std::shared_ptr<const emu::Library>& li
 int run(const Request& r) {
   Case c = case_of(r.name);
   c.name = r.name;
-  const Judge judge(std::move(c), usual_runs());
+  std::vector<Judge::Run> runs = usual_runs(c.setup.plan);
+  const Judge judge(std::move(c), std::move(runs));
   const auto library =
       std::make_shared<const emu::Library>(build_node(judge.of().setup.plan, r.build, r.cache));
   setenv("CUBOCT_MUTANT", "0", 1);
   const double begin = cpu_seconds();
   const Judgement as_is = judge.judge(library);
   const auto seconds = static_cast<rlim_t>(1 + kPatience * (cpu_seconds() - begin));
-  fmt::print("{}: {}{}{}; {} steps, {} particles, {} phases compared\n", r.name, to_string(as_is.verdict),
-             as_is.text.empty() ? "" : ": ", as_is.text, as_is.steps, as_is.particles, as_is.spans);
+  fmt::print("{}: {}{}{}; {} runs: {} steps, {} particles, {} phases, {} cycles of nodes compared\n", r.name,
+             to_string(as_is.verdict), as_is.text.empty() ? "" : ": ", as_is.text, judge.runs(), as_is.steps,
+             as_is.particles, as_is.spans, as_is.cycles);
+  if (judge.golden().fault) fmt::print("{}: golden stops: {}\n", r.name, judge.golden().fault->what());
   std::fflush(stdout);
   if (as_is.verdict != Verdict::passed) return 1;
   if (r.mutants.empty()) return 0;

@@ -27,34 +27,52 @@ RandomScene random_scene(uint64_t seed) {
   Arch arch = base.setup.plan.arch;
   if (dice.chance(15)) arch.queue_depth = 1, arch.filter_lanes = std::max(arch.filter_lanes, 8);
   if (dice.chance(10)) arch.link_bits = dice.draw(1, 8);
+  if (dice.chance(40)) arch.table.shape = TableChoice::Shape::uniform;
   const double speed = dice.chance(30) ? 1 + 0.5 * dice.draw(0, 6) : 1;
   for (Vec3& v : scene.body.v) v *= speed;
-  if (dice.chance(25)) {
-    Widths& w = arch.widths;
-    switch (dice.draw(0, 3)) {
-      case 0:
-        w.velocity_bits -= dice.draw(0, 3);
-        break;
-      case 1:
-        w.relative_velocity_bits -= dice.draw(1, 4);
-        break;
-      case 2:
-        w.sum_bits -= dice.draw(3, 7);
-        break;
-      default:
-        w.displacement_bits -= dice.draw(1, 6);
-    }
+  // One trouble in three seeds of four: what each makes likely is in all_faults().
+  enum class Trouble { none, w, s, sum, u, v, leave, full, link };
+  const Trouble trouble = static_cast<Trouble>(std::max(0, dice.draw(-2, 8)));
+  Widths& w = arch.widths;
+  const bool damped = scene.rule.damping.coefficient > 0;
+  const int more = dice.draw(0, 2);
+  if (trouble == Trouble::w && damped) w.relative_velocity_bits -= 2 + more;
+  if (trouble == Trouble::s && damped) scene.rule.damping.coefficient *= 40 << more;
+  if (trouble == Trouble::sum) w.sum_bits -= 6 + 2 * more;
+  if (trouble == Trouble::u) w.displacement_bits -= 4 + 2 * more;
+  if (trouble == Trouble::v) w.velocity_bits -= 3 + more;
+  if (trouble == Trouble::leave) scene.reach_margin = Vec3::Zero();
+  if (trouble == Trouble::leave || trouble == Trouble::full)
+    for (Vec3& v : scene.body.v) v *= 1 + more;
+  if (trouble == Trouble::link || dice.chance(10)) {
+    arch.link_check = dice.chance(50) ? LinkCheck::detect : LinkCheck::retry;
+    if (arch.link_bits > 400) arch.link_bits = 400;
   }
-  if (dice.chance(15)) scene.reach_margin = Vec3::Zero();  // particles soon leave
   Setup setup = make_setup(scene, arch);
-  if (dice.chance(25)) {
+  if (trouble == Trouble::full || dice.chance(10)) {
     arch.capacity = fullest(setup) + dice.draw(0, 1);
     setup = make_setup(scene, arch);
   }
-  RandomScene result{{"seed " + std::to_string(seed), std::move(setup), base.steps, std::move(scene)}, {}, {}};
-  result.stalled = {.stall_rate = 0.05 * dice.draw(1, 17),
-                    .stall_seed = static_cast<uint64_t>(dice.draw(1, 1000000)),
-                    .register_seed = static_cast<uint32_t>(dice.draw(1, 1000000))};
+  const LinkCheck check = arch.link_check;
+  RandomScene result{{"seed " + std::to_string(seed), std::move(setup), base.steps, std::move(scene)}, {{}}};
+  const auto stalled = [&dice] {
+    return Judge::Run{.stall_rate = 0.05 * dice.draw(1, 17),
+                      .stall_seed = static_cast<uint64_t>(dice.draw(1, 1000000)),
+                      .register_seed = static_cast<uint32_t>(dice.draw(1, 1000000))};
+  };
+  for (int k = 0; k < 2; ++k) result.runs.push_back(stalled());
+  if (check == LinkCheck::none) return result;
+  result.runs.push_back({.mixed = true});
+  for (int k = 0; k < 3; ++k) {
+    Judge::Run run = stalled();
+    run.stall_rate *= 0.5;
+    run.faults.seed = static_cast<uint64_t>(dice.draw(1, 1000000));
+    if (check == LinkCheck::retry)
+      run.faults.rate = 0.01 * dice.draw(1, 10);
+    else
+      run.faults.count = 1;
+    result.runs.push_back(run);
+  }
   return result;
 }
 
@@ -93,17 +111,33 @@ std::map<std::string, uint64_t> stimuli_of(const RandomScene& scene, const Judge
       if (key == "link_waits") return uint64_t{value > 0};
     return uint64_t{0};
   }();
-  uint64_t moves = 0;
+  uint64_t moves = 0, diagonal = 0;
   const auto& states = judge.golden().states;
   for (size_t s = 1; s < states.size(); ++s)
-    for (size_t k = 0; k < states[s].particles.size(); ++k)
-      moves += states[s].particles[k].node != states[s - 1].particles[k].node;
+    for (size_t k = 0; k < states[s].particles.size(); ++k) {
+      const uint32_t now = states[s].particles[k].node, before = states[s - 1].particles[k].node;
+      moves += now != before;
+      const Cell &to = plan.lattice.cell(now), &from = plan.lattice.cell(before);
+      diagonal += (to[0] != from[0]) + (to[1] != from[1]) + (to[2] != from[2]) > 1;
+    }
+  n["several axes in a step"] = diagonal;
   n["migrations"] = moves;
   n["pairs inside the cutoff"] = counter("pairs_inside");
   uint64_t full = 0;
   for (const auto& step : judge.golden().order)
     for (const auto& node : step) full += static_cast<int>(node.size()) == arch.capacity;
   n["nodes filled to the last slot"] = full;
+  n["checked links: detect"] = arch.link_check == LinkCheck::detect;
+  n["checked links: retry"] = arch.link_check == LinkCheck::retry;
+  n["shared multipliers"] = arch.shared_multipliers;
+  for (const Fault fault : {Fault::link_check, Fault::link_order, Fault::link_silent})
+    for (size_t k = 0; k < judge.runs(); ++k)
+      n[std::string("fault: ") + to_string(fault)] +=
+          judge.native(k).trace.stop && judge.native(k).trace.stop->fault == fault;
+  for (size_t k = 0; k < judge.runs(); ++k) {
+    n["faults on wires"] += judge.native(k).faults.injected();
+    n["faults on wires healed"] += judge.native(k).faults.healed;
+  }
   for (const Fault fault : all_faults())
     n[std::string("fault: ") + to_string(fault)] =
         judge.golden().fault && judge.native(0).trace.stop && judge.native(0).trace.stop->fault == fault;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Random scenes on random machines with random stalls, for the RTL: those of tests/support/cases.h, and beside
-// them what runs into trouble: narrow formats, full nodes, fast particles, short queues.
+// them what runs into trouble: narrow formats, full nodes, fast particles, short queues, links that fail.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@ namespace cuboct::test {
 
 struct RandomScene {
   Case c;
-  Judge::Run free, stalled;
+  std::vector<Judge::Run> runs;  // the first without stalls, the second with
 };
 // Throws InputError where what was drawn is refused.
 RandomScene random_scene(uint64_t seed);

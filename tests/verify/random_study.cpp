@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// rtl_random_study --seeds A-B --out FILE --cache DIR [--minutes N] [--changed DIR]
+// rtl_random_study --seeds A-B --out FILE --cache DIR [--minutes N] [--changed DIR] [--draw]
 // Random scenes, machines and stalls (random_scene.h), each judged in bits and cycles. A line per seed goes to
 // --out; seeds that stand there already are not run again. The sum of all that the file holds is printed at the
 // end. Exit status: 0, 1 where a seed failed, 2 where the command line is wrong.
@@ -22,6 +22,7 @@ using namespace cuboct::test;
 struct Request {
   std::string seeds, out, cache;
   double minutes = 0;
+  bool draw = false;
   NodeBuild build{.changed = {}, .optimise = "-O0", .coverage = false};
 };
 
@@ -54,8 +55,12 @@ Row judge_seed(uint64_t seed, const Request& r) {
   Row row;
   try {
     RandomScene scene = random_scene(seed);
-    const Judge judge(scene.c, {scene.free, scene.stalled});
+    const Judge judge(scene.c, scene.runs);
     row.counts = stimuli_of(scene, judge);
+    if (r.draw) {
+      row.verdict = "drawn";
+      return row;
+    }
     const std::string path = build_node(scene.c.setup.plan, r.build, r.cache);
     const Judgement j = judge.judge(std::make_shared<const emu::Library>(path));
     std::filesystem::remove(path);  // no other seed needs it
@@ -64,6 +69,8 @@ Row judge_seed(uint64_t seed, const Request& r) {
     row.counts["steps compared"] = j.steps;
     row.counts["particles compared"] = j.particles;
     row.counts["phases compared"] = j.spans;
+    row.counts["cycles of nodes compared"] = j.cycles;
+    row.counts["runs"] = judge.runs();
   } catch (const InputError& e) {
     row.verdict = "refused";
     row.text = e.what();
@@ -89,7 +96,7 @@ int run(const Request& r) {
     file << seed << '\t' << row.verdict << '\t' << row.text << '\t';
     for (const auto& [name, count] : row.counts) file << name << '=' << count << ';';
     file << std::endl;
-    if (row.verdict != "passed" && row.verdict != "refused")
+    if (row.verdict != "passed" && row.verdict != "refused" && !r.draw)
       fmt::print("seed {} fails: {}: {}\n  again: rtl_random_study --seeds {} --out NEW_FILE --cache {}\n", seed,
                  row.verdict, row.text, seed, r.cache);
   }
@@ -97,7 +104,7 @@ int run(const Request& r) {
   uint64_t passed = 0, failed = 0, refused = 0;
   std::map<std::string, std::pair<uint64_t, uint64_t>> sums;  // seeds with some, and how many in all
   for (const auto& [seed, row] : rows) {
-    (row.verdict == "passed" ? passed : row.verdict == "refused" ? refused : failed) += 1;
+    (row.verdict == "passed" || row.verdict == "drawn" ? passed : row.verdict == "refused" ? refused : failed) += 1;
     for (const auto& [name, count] : row.counts) {
       sums[name].first += count > 0;
       sums[name].second += count;
@@ -124,6 +131,7 @@ int main(int argc, char** argv) {
   app.add_option("--out", r.out, "A line per seed is added to this file")->required();
   app.add_option("--cache", r.cache, "Where nodes are compiled")->required();
   app.add_option("--minutes", r.minutes, "No further seed is begun after these");
+  app.add_flag("--draw", r.draw, "Golden and the native node only: what the seeds are stimuli of");
   app.add_option("--changed", r.build.changed, "Modules in place of the library's");
   CLI11_PARSE(app, argc, argv);
   try {
