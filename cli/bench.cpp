@@ -154,7 +154,7 @@ void run_lattice_block(benchmark::State& state, const std::string& name, const B
   state.counters["particle_steps"] = rate(done * bed.lattice->size());
   if (bed.timing) state.counters["node_cycles"] = rate((node_cycles() - before) * share);
   state.SetLabel(fmt::format("{} particles on {} nodes, {}, {}, {} steps per repeat", scene.particles(),
-                             bed.loaded->setup.plan.lattice.size(), counted(bed.lattice->threads()),
+                             bed.loaded->setup.plan.nodes(), counted(bed.lattice->threads()),
                              bed.lattice->simd(), bed.timed->steps()));
 }
 

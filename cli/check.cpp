@@ -2,11 +2,13 @@
 #include "cli/check.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <memory>
 
 #include "hw/cycles.h"
+#include "study/cost.h"
 
 namespace cuboct {
 namespace {
@@ -78,8 +80,12 @@ Items resolve(const Loaded& loaded) {
   items.add("arch", plan.arch.name);
   items.add("particles", plan.particles);
   items.add("particle types", static_cast<uint64_t>(rule.types.size()));
-  items.add("nodes", plan.lattice.size());
-  items.add("capacity", plan.arch.capacity, "particles/node");
+  items.add("nodes", plan.nodes());
+  if (!plan.bricks.single())
+    items.add(
+        "cells per node", cells_of(plan.bricks.shape()), "",
+        fmt::format("bricks of {}; {} cells", fmt::join(plan.bricks.shape(), " x "), plan.lattice.size()));
+  items.add("capacity", plan.arch.capacity, plan.bricks.single() ? "particles/node" : "particles/cell");
   items.add("steps", scene.steps);
   if (scene.pitch > 0) items.add("pitch", scene.pitch, "m");
   items.add("cutoff", scene.rule.law->cutoff(), "m");
@@ -107,6 +113,11 @@ Items resolve(const Loaded& loaded) {
   items.add("particle record", plan.words.particle_bits, "bit",
             fmt::format("{} beats", plan.words.migrate_beats));
   items.add("link", plan.words.link_bits, "bit");
+  if (!plan.bricks.single()) {
+    const double bits = study::memory_bits(plan), cells = cells_of(plan.bricks.shape());
+    items.add("node memory", bits, "bit",
+              fmt::format("particles, halos, queue, sums; {:.0f} per cell", bits / cells));
+  }
   items.add("filter lanes", plan.arch.filter_lanes);
   items.add("force pipes", plan.arch.force_pipes);
   items.add("filter latency", plan.latency.filter, "cycles");

@@ -229,7 +229,7 @@ void report(const std::string& directory, std::string out) {
       "h1>\n"
       "<p class=\"lead\">{2} particles on {3} nodes, {4} steps of {5:.4g} s in the {6} engine.</p>\n",
       escaped(loaded.scene.title.empty() ? record.scene : loaded.scene.title), kStyle, plan.particles,
-      plan.lattice.size(), trace.frames.empty() ? trace.steps() : trace.frames.back().step, plan.rule.dt,
+      plan.nodes(), trace.frames.empty() ? trace.steps() : trace.frames.back().step, plan.rule.dt,
       escaped(trace.engine));
   std::vector<size_t> chosen;
   if (!trace.frames.empty()) {

@@ -15,7 +15,7 @@ Trace run_golden(const Setup& setup, const Request& request, const std::function
   Trace trace;
   trace.engine = "golden";
   trace.plan_hash = plan.hash;
-  trace.nodes = plan.lattice.size();
+  trace.nodes = plan.nodes();
   Progress progress("golden", request.steps, plan.particles);
   const auto record = [&](const State& state) {
     trace.state_hash.push_back(hash_of(plan.lattice, state));

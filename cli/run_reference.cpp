@@ -56,7 +56,7 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
   ReferenceRun run;
   run.trace.engine = "reference";
   run.trace.plan_hash = loaded.setup.plan.hash;
-  run.trace.nodes = loaded.setup.plan.lattice.size();
+  run.trace.nodes = loaded.setup.plan.nodes();
   RealMeter meter(scene, options.integrator, true, true);
   const StrainMeter strains = strain_meter(scene, scene.body.x);
   const int axis = strain_axis(scene);

@@ -90,7 +90,8 @@ Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts)
   for (const auto& [name, text] : trace.notes) items.add(name, text);
   items.add("scene", loaded.scene.path);
   items.add("particles", plan.particles);
-  items.add("nodes", plan.lattice.size());
+  items.add("nodes", plan.nodes());
+  if (!plan.bricks.single()) items.add("cells per node", cells_of(plan.bricks.shape()));
   items.add("steps", trace.steps());
   items.add("simulated time", static_cast<double>(trace.steps()) * plan.rule.dt, "s");
   items.add("host time", trace.seconds, "s");

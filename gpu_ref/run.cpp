@@ -81,7 +81,7 @@ Loop::Loop(const Scene& scene, const Plan& plan, const GpuRun& request)
       trace_(result_.trace) {
   trace_.engine = "gpu";
   trace_.plan_hash = plan.hash;
-  trace_.nodes = plan.lattice.size();
+  trace_.nodes = plan.nodes();
   trace_.hash_every = fixed() ? request.hash_every : 1;
   trace_.notes.emplace_back("precision", to_string(request.arithmetic));
   if (!request.energies) return;

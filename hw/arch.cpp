@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "hw/arch.h"
 
+#include <fmt/format.h>
+
+#include "hw/bricks.h"
 #include "model/config.h"
 
 namespace cuboct {
@@ -18,9 +21,20 @@ void read_node(const ConfigTable& node, Arch& arch) {
   set(node, "filter_lanes", 1, 64, arch.filter_lanes);
   set(node, "force_pipes", 1, 64, arch.force_pipes);
   if (const auto m = node.find("multipliers"))
-    arch.shared_multipliers = m->choice("use of multipliers", {"parallel", "shared"}) == 1;
+    arch.multipliers =
+        static_cast<Multipliers>(m->choice("use of multipliers", {"parallel", "shared", "serial"}));
   set(node, "queue_depth", 1, 1024, arch.queue_depth);
   arch.overlap = node.boolean_or("overlap", arch.overlap);
+  if (const auto brick = node.find("brick")) {
+    const std::vector<ConfigValue> cells = brick->items();
+    if (cells.size() != 3)
+      brick->fail(fmt::format("a brick has three numbers of cells, along x, y and z: got {}", cells.size()),
+                  "such as [2, 2, 2]; in a flat scene [2, 2, 1]");
+    for (int a = 0; a < 3; ++a)
+      arch.brick[a] = static_cast<int32_t>(cells[static_cast<size_t>(a)].integer(1, kMostBrickCells));
+  }
+  if (const auto m = node.find("memories"))
+    arch.narrow_memories = m->choice("kind of memories", {"wide", "narrow"}) == 1;
   node.done();
 }
 

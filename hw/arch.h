@@ -2,14 +2,23 @@
 // A machine description: what an arch file (TOML) says, with the defaults that serve without one.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "hw/carry.h"
 #include "hw/link_code.h"
 #include "model/fixed_rule.h"
 #include "model/quantise.h"
+#include "model/vec.h"
 
 namespace cuboct {
+
+// Of the force pipe's products.
+enum class Multipliers : uint8_t {
+  parallel,  // each has its own: a pair per cycle
+  shared,    // one serves the axes in turn: a pair every `axes` cycles
+  serial     // each has its own, a bit per cycle, of logic alone: a pair every 15 to 28 cycles
+};
 
 struct Arch {
   std::string name = "default";
@@ -17,9 +26,11 @@ struct Arch {
   int capacity = 16;     // particles that a node holds
   int filter_lanes = 8;  // own particles that a candidate meets per cycle
   int force_pipes = 1;   // pairs per cycle
-  bool shared_multipliers = false;  // one multiplier serves the axes in turn: a pair every `axes` cycles
+  Multipliers multipliers = Multipliers::parallel;
   int queue_depth = 16;  // (candidate, mask) entries between filter and pipes
   bool overlap = true;   // candidates are filtered while the exchange still runs
+  Cell brick{1, 1, 1};   // cells that a node serves, along x, y, z
+  bool narrow_memories = false;  // words of a beat's width, one port to read: hw/plan.h says what that asks
   int link_bits = 0;     // payload bits per beat; 0: one halo record per beat
   LinkCheck link_check = LinkCheck::none;
   Widths widths;

@@ -19,9 +19,105 @@ struct Sends {
   std::array<uint64_t, 3> records{}, empty{};
 };
 
+// Nodes that serve bricks: the same way through their phases.
+class BrickCycles {
+ public:
+  BrickCycles(const Plan& plan, const State& state)
+      : plan_(plan), map_(plan.bricks, plan.rule.axes), held_(plan.lattice.size()) {
+    for (const Particle& p : state.particles) held_[p.node].push_back(&p);
+  }
+  ExpectedCycles expected() const {
+    ExpectedCycles expected;
+    for (uint32_t n = 0; n < plan_.nodes(); ++n) add(n, expected);
+    return expected;
+  }
+
+ private:
+  uint64_t held(uint32_t n, uint32_t place) const {
+    const uint32_t cell = map_.cell(n, place);
+    return cell == kNoNode ? 0 : held_[cell].size();
+  }
+  // Cycles, from the start of an exchange, after which the end beat that goes over `face` has been loaded.
+  uint64_t sent(uint32_t n, int face) const {
+    const auto layer = [&](int f) {
+      uint64_t cycles = 1;
+      if (plan_.neighbour(n, f) != kNoNode)
+        for (const BrickWalk::Sent& s : map_.walk(n).sent[static_cast<size_t>(f)])
+          cycles += std::max<uint64_t>(held(n, s.grid) * static_cast<uint64_t>(plan_.words.halo_beats), 1);
+      return cycles;
+    };
+    const bool second = face % 2 == 1 && plan_.bricks.shape()[face / 2] > 1;
+    return second ? layer(face - 1) + layer(face) : layer(face);
+  }
+  void add(uint32_t n, ExpectedCycles& expected) const;
+  uint64_t pairs(uint32_t own, uint32_t other, const std::array<int8_t, 3>& offset) const;
+
+  const Plan& plan_;
+  const BrickMap map_;
+  std::vector<std::vector<const Particle*>> held_;  // by cell
+};
+
+uint64_t BrickCycles::pairs(uint32_t own, uint32_t other, const std::array<int8_t, 3>& offset) const {
+  uint64_t pairs = 0;
+  for (const Particle* j : held_[other]) {
+    Int3 x_j;
+    for (size_t a = 0; a < 3; ++a) x_j[a] = j->x[a] + (int64_t{offset[a]} << plan_.rule.widths.position_frac);
+    for (const Particle* i : held_[own]) pairs += i != j && may_interact(plan_.rule, i->x, x_j);
+  }
+  return pairs;
+}
+
+void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
+  const int axes = plan_.rule.axes;
+  const BrickWalk& walk = map_.walk(n);
+  const uint64_t end_beat = kEndBeat + static_cast<uint64_t>(plan_.link.latency);
+  std::array<uint64_t, 3> exchanged{};
+  uint64_t now = 0;
+  for (int axis = 0; axis < axes; ++axis) {
+    uint64_t longest = sent(n, 2 * axis + 1) + 1;
+    for (int face = 2 * axis; face < 2 * axis + 2; ++face)
+      if (const uint32_t near = plan_.neighbour(n, face); near != kNoNode)
+        longest = std::max(longest, sent(near, face ^ 1) + end_beat);
+    exchanged[static_cast<size_t>(axis)] = now += longest;
+  }
+  uint64_t streamed = plan_.arch.overlap ? 0 : now, candidates = 0, met = 0, own = 0, slots = 0;
+  for (const uint32_t local : walk.own) {
+    const uint32_t cell = plan_.cell_of(n, local);
+    const uint64_t count = cell == kNoNode ? 0 : held_[cell].size();
+    own += count;
+    slots += std::max<uint64_t>(count, 1);
+  }
+  for (size_t s = 0; s < 1 + 2 * static_cast<size_t>(axes); ++s) {
+    if (s > 0 && plan_.arch.overlap) streamed = std::max(streamed, exchanged[(s - 1) / 2]);
+    uint64_t items = 0;
+    for (const BrickWalk::Visit& visit : walk.visits[s]) {
+      const uint32_t cell = plan_.cell_of(n, visit.own);
+      const uint64_t passes =
+          cell == kNoNode ? 0 : ceil_div(held_[cell].size(), static_cast<uint64_t>(plan_.arch.filter_lanes));
+      items += passes == 0;
+      if (passes == 0) continue;
+      for (uint32_t k = visit.first; k < visit.end; ++k) {
+        const uint64_t work = held(n, walk.near[k].grid) * passes;
+        items += std::max<uint64_t>(work, 1);
+        candidates += work;
+        if (work > 0) met += pairs(cell, map_.cell(n, walk.near[k].grid), walk.near[k].offset);
+      }
+    }
+    streamed += std::max<uint64_t>(items, 1);
+  }
+  const uint64_t issues = ceil_div(met, static_cast<uint64_t>(plan_.arch.force_pipes)) *
+                          static_cast<uint64_t>(plan_.latency.interval);
+  expected.ideal = std::max(expected.ideal, std::max(candidates, issues));
+  const uint64_t force = std::max(streamed + static_cast<uint64_t>(plan_.latency.filter), issues) +
+                         (own > 0 ? 2 + static_cast<uint64_t>(plan_.latency.pipe) : 0);
+  const uint64_t update = own > 0 ? slots - 1 + static_cast<uint64_t>(plan_.latency.update) : 1;
+  expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * (1 + end_beat));
+}
+
 }  // namespace
 
 ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
+  if (!plan.bricks.single()) return BrickCycles(plan, state).expected();
   const Lattice& lattice = plan.lattice;
   const int axes = plan.rule.axes;
   std::vector<std::array<uint64_t, 7>> segment(lattice.size());  // particles: own, then the halos by face
@@ -69,16 +165,26 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
       streamed += std::max<uint64_t>(work, 1);
       candidates += work;
     }
-    uint64_t pairs = 0;
+    // With narrow memories a candidate's words are read, then it meets one slot after the other, and waits for the
+    // pipe where it has hits.
+    const bool narrow = plan.arch.narrow_memories;
+    const auto interval = static_cast<uint64_t>(plan.latency.interval);
+    uint64_t pairs = 0, walk = 0, ready = 0;
     if (own > 0)
       for (const auto& [other, offset] : lattice.neighbourhood(n))
         for (const Particle* j : nodes[other])
           for (const Particle* i : nodes[n]) {
+            if (narrow) walk += i == nodes[n].front() ? 3 + (other == n ? 1 : beats) : 1;
             Int3 x_j;
             for (int a = 0; a < 3; ++a)
               x_j[a] = j->x[a] + (int64_t{offset[a]} << plan.rule.widths.position_frac);
-            pairs += i != j && may_interact(plan.rule, i->x, x_j);
+            const bool hit = i != j && may_interact(plan.rule, i->x, x_j);
+            pairs += hit;
+            if (!narrow || !hit) continue;
+            walk = std::max(walk + 1, ready);
+            ready = walk + interval;
           }
+    if (narrow) streamed = std::max(streamed, now + walk);
     const uint64_t issues = ceil_div(pairs, static_cast<uint64_t>(plan.arch.force_pipes)) *
                             static_cast<uint64_t>(plan.latency.interval);
     const uint64_t busy = std::max(candidates, issues);
@@ -86,7 +192,9 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
     // The last candidate's pairs pass F1, the queue and `current`, then the pipe.
     const uint64_t force = std::max(streamed + static_cast<uint64_t>(plan.latency.filter), issues) +
                            (own > 0 ? 2 + static_cast<uint64_t>(plan.latency.pipe) : 0);
-    const uint64_t update = own > 0 ? own - 1 + static_cast<uint64_t>(plan.latency.update) : 1;
+    const uint64_t update = own > 0 ? (own - 1) * static_cast<uint64_t>(plan.latency.stride) +
+                                          static_cast<uint64_t>(plan.latency.update)
+                                    : 1;
     expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * quiet_migrate);
   }
   return expected;

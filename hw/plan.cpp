@@ -2,6 +2,7 @@
 #include "hw/plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
@@ -10,6 +11,11 @@
 
 namespace cuboct {
 namespace {
+
+// Cells of a brick, times slots, times passes of the lanes; 27 times that are a node's items in a step, which
+// the timing model counts in 25 bits.
+constexpr uint64_t kMostBrickWork = 1 << 20;
+constexpr int kScaleBits = 18;  // of a pair's scale
 
 int ceil_div(int a, int b) { return (a + b - 1) / b; }
 
@@ -22,6 +28,28 @@ void check_arch(const Arch& arch) {
   positive("filter_lanes", arch.filter_lanes, 64);
   positive("force_pipes", arch.force_pipes, arch.filter_lanes);
   positive("queue_depth", arch.queue_depth, 1024);
+  for (const int32_t cells : arch.brick) positive("brick", cells, kMostBrickCells);
+  const uint64_t cells =
+      uint64_t{cells_of({arch.brick[0], 1, 1})} * cells_of({1, arch.brick[1], arch.brick[2]});
+  if (cells > kMostBrickCells)
+    throw InputError(fmt::format("brick = [{}] has {} cells: a node serves at most {}",
+                                 fmt::join(arch.brick, ", "), cells, kMostBrickCells));
+  const uint64_t visits =
+      cells * static_cast<uint64_t>(arch.capacity * ceil_div(arch.capacity, arch.filter_lanes));
+  if (cells > 1 && visits > kMostBrickWork)
+    throw InputError(fmt::format("brick = [{}]: {} cells of {} slots, met by {} lanes in {} passes, are {} "
+                                 "visits; a node makes at most {}",
+                                 fmt::join(arch.brick, ", "), cells, arch.capacity, arch.filter_lanes,
+                                 ceil_div(arch.capacity, arch.filter_lanes), visits, kMostBrickWork),
+                     "use a smaller brick or more filter_lanes");
+  if (arch.narrow_memories) {
+    const auto want = [](bool is, const char* what) {
+      if (!is) throw InputError(fmt::format("memories = \"narrow\" have one port to read: set {}", what));
+    };
+    want(arch.filter_lanes == 1, "filter_lanes = 1");
+    want(!arch.overlap, "overlap = false");
+    want(cells == 1, "brick = [1, 1, 1]");
+  }
   if (arch.link_bits < 0 || arch.link_bits > 1024)
     throw InputError(fmt::format("link bits = {} is out of range: 1 to 1024, or 0 for one record per beat",
                                  arch.link_bits));
@@ -60,14 +88,25 @@ uint64_t hash_of(const Plan& plan) {
       .add(arch.force_pipes)
       .add(arch.queue_depth)
       .add(arch.overlap);
-  if (arch.shared_multipliers) hash.add(plan.latency.interval);
+  if (arch.multipliers != Multipliers::parallel) hash.add(plan.latency.interval);
+  if (arch.narrow_memories) hash.add(-1);
   if (w.filter_frac != Widths{}.filter_frac) hash.add(w.filter_frac);
   hash.add(plan.words.link_bits).add(plan.particles);
   if (plan.link.checked()) hash.add(static_cast<int>(plan.link.check));
+  if (!plan.bricks.single())
+    for (const int32_t c : arch.brick) hash.add(c);
   for (const int32_t p : plan.lattice.period()) hash.add(p);
   for (uint32_t n = 0; n < plan.lattice.size(); ++n)
     for (const int32_t c : plan.lattice.cell(n)) hash.add(c);
   return hash.value();
+}
+
+// A bit of the shorter operand per cycle, after one that loads it: d, t with a sign, q, the pair's scale.
+int product_cycles(const FixedRule& r) {
+  int bits = std::max(r.widths.difference_frac + 1, r.force.fraction_bits + 1);
+  if (r.damped) bits = std::max({bits, r.damp.fraction_bits + 1, r.widths.relative_velocity_bits});
+  if (r.scaled) bits = std::max(bits, kScaleBits);
+  return bits + 1;
 }
 
 }  // namespace
@@ -78,22 +117,39 @@ Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles) {
   words.id_bits = std::max(1, static_cast<int>(std::bit_width(particles > 0 ? particles - 1 : 0u)));
   // Signs of a halo's position, `away` of a particle: 2 bits for all axes but one.
   const int position = r.axes * P + 2 * (r.axes - 1);
-  words.halo_bits =
-      position + (r.scaled ? r.type_bits : 0) + (r.damped ? r.axes * r.widths.velocity_bits : 0);
+  const bool bricks = cells_of(arch.brick) > 1;
+  if (bricks) {
+    const BrickGrid grid(arch.brick);
+    const auto bits = [](uint32_t numbers) { return static_cast<int>(std::bit_width(numbers - 1)); };
+    for (int a = 0; a < r.axes; ++a) {
+      words.halo_cell_bits = std::max(words.halo_cell_bits, bits(grid.halo_tags(a)));
+      words.migrate_cell_bits = std::max(words.migrate_cell_bits, bits(grid.migrate_tags(a)));
+    }
+  }
+  words.halo_bits = (bricks ? r.axes * P + words.halo_cell_bits : position) + (r.scaled ? r.type_bits : 0) +
+                    (r.damped ? r.axes * r.widths.velocity_bits : 0);
   words.particle_bits = position + r.axes * r.widths.velocity_bits + r.type_bits + words.id_bits +
                         (r.pd ? r.axes * r.widths.displacement_bits : 0);
+  words.migrate_bits = words.particle_bits + words.migrate_cell_bits;
   words.link_bits = arch.link_bits > 0 ? arch.link_bits : words.halo_bits;
   words.halo_beats = ceil_div(words.halo_bits, words.link_bits);
-  words.migrate_beats = ceil_div(words.particle_bits, words.link_bits);
+  words.migrate_beats = ceil_div(words.migrate_bits, words.link_bits);
   return words;
 }
 
 Latency latency_of(const FixedRule& r, const Arch& arch) {
   Latency latency;
-  latency.pipe = 11 + (r.force.shape == TableShape::octaves ? 1 : 0) + (r.force.degree == 2 ? 2 : 0) +
-                 (r.damped ? 2 : 0) + (r.scaled ? 2 : 0) + (arch.shared_multipliers ? 2 * (r.axes - 1) : 0);
-  latency.interval = arch.shared_multipliers ? r.axes : 1;
+  const int table = (r.force.degree == 2 ? 1 : 0), used = (r.damped ? 1 : 0) + (r.scaled ? 1 : 0);
+  const bool serial = arch.multipliers == Multipliers::serial, shared = arch.multipliers == Multipliers::shared;
+  if (serial) latency.product = product_cycles(r);
+  // Squares, slope, kick, and what else is multiplied: each waits for the one before.
+  latency.pipe = 8 + (r.force.shape == TableShape::octaves ? 1 : 0) + table + used +
+                 latency.product * (3 + table + used) + (shared ? 2 * (r.axes - 1) : 0);
+  // A product stays for a cycle in which it is looked at. Beside narrow memories, which bring candidates slowly, a
+  // pair that is alone in the pipe needs no registers to wait in.
+  latency.interval = serial ? latency.product + 1 : !shared ? 1 : arch.narrow_memories ? latency.pipe - 2 : r.axes;
   latency.update = r.pd ? 7 : 4;
+  if (arch.narrow_memories) latency.stride = latency.update - 1;
   return latency;
 }
 
@@ -116,6 +172,7 @@ Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, u
   plan.rule = std::move(rule);
   plan.arch = std::move(arch);
   plan.lattice = std::move(lattice);
+  plan.bricks = Bricks(plan.lattice, plan.arch.brick);
   plan.origin = origin;
   plan.particles = particles;
 
@@ -137,8 +194,12 @@ std::string describe(const Plan& plan) {
   line("plan hash", fmt::format("{:016x}", plan.hash));
   line("particles",
        fmt::format("{} of {} type{}", plan.particles, r.types.size(), r.types.size() == 1 ? "" : "s"));
-  line("nodes", fmt::format("{} of {} slots, cell edge {:.6g} m", plan.lattice.size(), plan.arch.capacity,
-                            r.cell_edge));
+  const std::string slots = fmt::format("{} slots, cell edge {:.6g} m", plan.arch.capacity, r.cell_edge);
+  if (plan.bricks.single())
+    line("nodes", fmt::format("{} of {}", plan.lattice.size(), slots));
+  else
+    line("nodes", fmt::format("{} with bricks of {} cells; {} cells of {}", plan.nodes(),
+                              fmt::join(plan.arch.brick, " x "), plan.lattice.size(), slots));
   line("time step", fmt::format("{:.6g} s", r.dt));
   line("position", fmt::format("{} fractional bits, differences {}", w.position_frac, w.difference_frac));
   line("velocity", fmt::format("{} bits, {} fractional", w.velocity_bits, w.velocity_frac()));
@@ -159,8 +220,10 @@ std::string describe(const Plan& plan) {
                      to_string(code.check), code.sequence_bits, code.beat.width, code.beat.polynomial,
                      code.distance, code.latency));
   line("filter lanes, pipes",
-       fmt::format("{}, {}, queue of {}{}", plan.arch.filter_lanes, plan.arch.force_pipes,
-                   plan.arch.queue_depth, plan.arch.overlap ? ", force overlaps the exchange" : ""));
+       plan.arch.narrow_memories
+           ? "1, 1, narrow memories"
+           : fmt::format("{}, {}, queue of {}{}", plan.arch.filter_lanes, plan.arch.force_pipes,
+                         plan.arch.queue_depth, plan.arch.overlap ? ", force overlaps the exchange" : ""));
   line("latency", fmt::format("pipe {}, update {} cycles{}", plan.latency.pipe, plan.latency.update,
                               plan.latency.interval > 1
                                   ? fmt::format(", a pair every {}", plan.latency.interval)

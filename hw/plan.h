@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hw/arch.h"
+#include "hw/bricks.h"
 #include "model/fixed_rule.h"
 #include "model/lattice.h"
 #include "model/state.h"
@@ -20,34 +21,55 @@ namespace cuboct {
 // All but the last axis of a halo record are signed, in the frame of the sender's node (see
 // docs/reference/node.md); `away` is two's complement: -1, 0, +1. The particle word is the migrate record and
 // the word of the load and observe ports.
+// With bricks a halo record's coordinates are those in its own cell, x[P] y[P] z[P], and its last field says
+// which cell that is: cell[halo_cell_bits]. A migrate record is a particle and then the cell that it goes to,
+// cell[migrate_cell_bits]. hw/bricks.h numbers both.
 struct Words {
   int id_bits = 0;
   int halo_bits = 0;
   int particle_bits = 0;
   int halo_beats = 0;     // ceil(halo_bits / link_bits)
-  int migrate_beats = 0;  // ceil(particle_bits / link_bits)
+  int migrate_beats = 0;  // ceil(migrate_bits / link_bits)
+  int migrate_bits = 0;   // particle_bits + migrate_cell_bits
+  int halo_cell_bits = 0, migrate_cell_bits = 0;  // 0 without bricks
   int link_bits = 0;      // as built: arch.link_bits, or halo_bits
 };
 
-// Fixed latencies of the datapath, in cycles; they depend only on what the rule uses and on whether the axes
-// share a multiplier. docs/reference/node.md.
+// Fixed latencies of the datapath, in cycles; they depend only on what the rule uses and on the kind of
+// multipliers. docs/reference/node.md.
 struct Latency {
   int filter = 2;  // from the candidate's read to its push into the queue
   int pipe = 0;    // from a pair's issue to its sum
   int update = 0;  // from a particle's read to the cycle in which MIGRATE may read it
+  int stride = 1;  // from one particle's read to the next in UPDATE: narrow memories keep each until it is written
   int interval = 1;  // from one issue of pairs to the next
+  int product = 1;   // of the pipe's multipliers; more than 1 where they are serial
 };
 
 struct Plan {
   FixedRule rule;
   Arch arch;
-  Lattice lattice;
+  Lattice lattice;  // of cells
+  Bricks bricks;    // of these: what each physical node serves
   Vec3 origin = Vec3::Zero();  // m, lower corner of cell (0,0,0)
   Words words;
   Latency latency;
   LinkCode link;
   uint32_t particles = 0;
   uint64_t hash = 0;  // of everything above that an engine can see
+
+  // Physical nodes, and the neighbour of one over a face, or kNoNode.
+  uint32_t nodes() const { return bricks.single() ? lattice.size() : bricks.size(); }
+  uint32_t neighbour(uint32_t node, int face) const {
+    return bricks.single() ? lattice.neighbour(node, face)
+                           : bricks.node(node).neighbour[static_cast<size_t>(face)];
+  }
+  uint32_t node_of(uint32_t cell) const { return bricks.single() ? cell : bricks.node_of(cell); }
+  uint32_t local_of(uint32_t cell) const { return bricks.single() ? 0 : bricks.local_of(cell); }
+  // The lattice's cell number `local` of a node, or kNoNode.
+  uint32_t cell_of(uint32_t node, uint32_t local) const {
+    return bricks.single() ? node : bricks.cell(node, local);
+  }
 };
 
 // What make_plan derives: words of records, latencies.
@@ -56,7 +78,8 @@ Latency latency_of(const FixedRule& rule, const Arch& arch);
 // Cells of the smallest box that holds the lattice.
 uint64_t bounding_cells(const Lattice& lattice);
 
-// Derives words, latency and hash. Throws InputError where the arch cannot work (a capacity below 1, ...).
+// Derives words, latency and hash. Throws InputError where the arch cannot work (a capacity below 1, narrow
+// memories with more than one lane or pipe, or with overlap, ...).
 Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, uint32_t particles);
 
 // The plan as text, for people and for diffs; no dates, no addresses.

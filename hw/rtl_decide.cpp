@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
@@ -49,6 +50,7 @@ ValueRange table_range(const FixedTable& table) {
 }
 
 RtlDesign decide(const Plan& plan) {
+  refuse_bricks(plan);
   const FixedRule& rule = plan.rule;
   const Widths& w = rule.widths;
   const Arch& arch = plan.arch;
@@ -65,9 +67,12 @@ RtlDesign decide(const Plan& plan) {
   constant("Capacity", arch.capacity, "particles per node");
   constant("FilterLanes", arch.filter_lanes, "own particles that a candidate meets per cycle");
   constant("ForcePipes", arch.force_pipes, "pairs per cycle");
-  constant("Shared", arch.shared_multipliers, "1: one multiplier serves the axes in turn");
+  constant("Shared", arch.multipliers == Multipliers::shared, "1: one multiplier serves the axes in turn");
+  constant("Product", plan.latency.product, "cycles of a multiplier");
+  constant("Interval", plan.latency.interval, "cycles from one pair to the next");
   constant("QueueDepth", arch.queue_depth, "entries between filter and pipes");
   constant("Overlap", arch.overlap, "1: the force engine starts with the exchange");
+  constant("Narrow", arch.narrow_memories, "1: memories of words of LinkBits, one port to read");
   constant("LinkBits", plan.words.link_bits, "payload of a beat");
   constant("IdBits", plan.words.id_bits, "");
   constant("TypeBits", rule.type_bits, "0 with one type");
@@ -155,6 +160,13 @@ RtlDesign decide(const Plan& plan) {
     for (int f = 0; f < kFaces; ++f) faces[f] = plan.lattice.neighbour(n, f);
   }
   return design;
+}
+
+void refuse_bricks(const Plan& plan) {
+  if (!plan.bricks.single())
+    throw InputError(
+        fmt::format("brick = [{}]: a node in RTL serves one cell", fmt::join(plan.arch.brick, ", ")),
+        "take node.brick out of the arch file; --engine systemc runs it");
 }
 
 void legalise(const RtlDesign& design, bool with_lattice) {

@@ -54,6 +54,8 @@ struct RtlDesign {
 
 ValueRange table_range(const FixedTable& table);
 
+// Throws InputError for a plan whose nodes serve more than a cell: the RTL has none such.
+void refuse_bricks(const Plan& plan);
 RtlDesign decide(const Plan& plan);
 // Throws InputError with the numbers.
 void legalise(const RtlDesign& design, bool with_lattice);

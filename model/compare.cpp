@@ -42,6 +42,7 @@ std::optional<Mismatch> compare_cycles(const Trace& a, const Trace& b) {
     Mismatch mismatch = found(Mismatch::Kind::cycles, std::to_string(value_a), std::to_string(value_b));
     mismatch.step = i / kPhases / a.nodes;
     mismatch.node = static_cast<uint32_t>(i / kPhases % a.nodes);
+    mismatch.nodes = a.nodes;
     mismatch.field = fmt::format("{} {}", to_string(static_cast<Phase>(i % kPhases)), edge);
     return mismatch;
   };
@@ -101,7 +102,9 @@ std::string Mismatch::text(const std::string& engine_a, const std::string& engin
       where = "stop, " + field;
       break;
     case Kind::cycles:
-      where = fmt::format("step {}{}, {}", step, place(lattice, node), field);
+      where = node != kNoNode && nodes != lattice.size()
+                  ? fmt::format("step {}, node {}, {}", step, node, field)
+                  : fmt::format("step {}{}, {}", step, place(lattice, node), field);
       break;
     case Kind::particle:
       where = fmt::format("step {}{}, particle {}, {}", step, place(lattice, node), particle, field);

@@ -25,7 +25,8 @@ struct Mismatch {
   Kind kind = Kind::plan;
   uint64_t step = 0;             // state, cycles, particle. In cycles: the step that begins with state `step`
   uint64_t equal_at = 0;         // state: the latest step before it at which both hashes are there and equal
-  uint32_t node = kNoNode;       // cycles, particle (where a has it)
+  uint32_t node = kNoNode;       // cycles (a physical node), particle (where a has it)
+  uint64_t nodes = 0;            // cycles: of the machine; as many as cells, but where nodes serve several
   uint32_t particle = 0;         // particle
   std::string field;             // stop, cycles, particle: "fault", "force end", "v.y", ...
   std::string value_a, value_b;  // as text

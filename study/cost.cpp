@@ -48,12 +48,14 @@ double table_bits(const FixedTable& table, int entry_bits) {
 }
 
 // Slots, a FIFO of arrivals per face, halos of C, C, 3C, 3C, 9C, 9C records, the queue of candidates, and a
-// sum per slot and pipe.
-double particle_memory(const Arch& arch, double particle_bits, double halo_bits, double sum_bits) {
+// sum per slot and pipe; or those of a brick. A halo record lies where its cell is: without the cell's
+// number.
+double particle_memory(const Arch& arch, const HeldWords& held, double particle_bits, double halo_bits,
+                       double sum_bits) {
   const double capacity = arch.capacity;
-  return kMemoryBit *
-         (7 * capacity * particle_bits + 26 * capacity * halo_bits +
-          arch.queue_depth * (halo_bits + arch.filter_lanes) + arch.force_pipes * capacity * 3 * sum_bits);
+  return kMemoryBit * (held.particles * capacity * particle_bits + held.halos * capacity * halo_bits +
+                       arch.queue_depth * (halo_bits + arch.filter_lanes) +
+                       arch.force_pipes * held.sums * capacity * 3 * sum_bits);
 }
 
 }  // namespace
@@ -92,9 +94,13 @@ NodeArea area_of(const Plan& plan) {
   area.multipliers = kBitProduct * (arch.force_pipes * products + update_products);
   area.tables = kMemoryBit * arch.force_pipes * memory;
   area.adders = kAdderBit * (arch.force_pipes * adders + arch.filter_lanes * lane + update_adders);
-  area.particles = particle_memory(arch, plan.words.particle_bits, plan.words.halo_bits, sum);
+  area.particles =
+      particle_memory(arch, held_words(arch.brick, plan.bricks.single() ? 3 : rule.axes),
+                      plan.words.particle_bits, plan.words.halo_bits - plan.words.halo_cell_bits, sum);
   return area;
 }
+
+double memory_bits(const Plan& plan) { return area_of(plan).particles / kMemoryBit; }
 
 NodeArea area_of(const Rule& rule, const Arch& arch, int mantissa, int bits) {
   const bool damped = rule.damping.coefficient > 0;
@@ -105,7 +111,8 @@ NodeArea area_of(const Rule& rule, const Arch& arch, int mantissa, int bits) {
   NodeArea area;
   area.multipliers = kBitProduct * arch.force_pipes * products * mantissa * mantissa;
   area.adders = kAdderBit * 3 * mantissa * (arch.force_pipes * adders + arch.filter_lanes * lane + update);
-  area.particles = particle_memory(arch, 6.0 * bits, (damped ? 6.0 : 3.0) * bits, bits);
+  area.particles =
+      particle_memory(arch, held_words(arch.brick, 3), 6.0 * bits, (damped ? 6.0 : 3.0) * bits, bits);
   return area;
 }
 

@@ -20,6 +20,8 @@ struct NodeArea {
   double transistors() const { return multipliers + tables + adders + particles; }
 };
 NodeArea area_of(const Plan& plan);
+// Bits of a node's memories of particles, halos, queue and sums: NodeArea::particles over a cell's 6.
+double memory_bits(const Plan& plan);
 // The same node with all numbers as floats of `mantissa` bits (53, 24) and `bits` of storage (64, 32): a law
 // by a cubic in r, so with a square root and a division, each counted as one product; an adder of floats as
 // three of its mantissa's (align, add, normalise).

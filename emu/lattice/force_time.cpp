@@ -2,6 +2,7 @@
 #include "emu/lattice/force_time.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cuboct::emu {
 namespace {
@@ -9,10 +10,55 @@ namespace {
 // Long before the engine's first cycle.
 constexpr int64_t kLongAgo = INT64_MIN / 4;
 
+// One candidate after the other: read, then walked past the slots.
+int64_t walk_time(const ForceShape& shape, const ForceWork& work) {
+  const uint32_t* entry = work.entries.data();
+  const uint32_t* const last_entry = entry + work.entries.size();
+  const int64_t own = std::lround(std::sqrt(work.items[0]));
+  int64_t cycle = 0, ready = 0, empty = 0;
+  int64_t item = 0;
+  const size_t segments = 1 + 2 * static_cast<size_t>(shape.axes);
+  for (size_t segment = 0; segment < segments; ++segment) {
+    if (work.items[segment] == 0) ++cycle;
+    for (const int64_t end = item + work.items[segment]; item < end; item += own) {
+      cycle += 1 + (segment == 0 ? 1 : shape.read);
+      // `result` is the cycle in which R holds `slot`; `tested`: T holds the next one then.
+      int64_t slot = 0, result = cycle + 1;
+      bool tested = true;
+      const auto go_on = [&](int64_t to) {  // no hit from `slot` on until `to`
+        if (to == slot) return;
+        result += to - slot + (tested ? 0 : 1);
+        slot = to;
+        tested = true;
+      };
+      for (; entry != last_entry && *entry >> ForceWork::kCycleBits < item + own; ++entry) {
+        go_on((*entry >> ForceWork::kCycleBits) - item);
+        const int64_t issued = std::max(result, ready);
+        ready = issued + shape.interval;
+        empty = issued + shape.pipe;
+        // The next slot follows at once where T held it; else it is asked for anew.
+        result = issued + (tested ? 1 : 3);
+        tested = !tested;
+        ++slot;
+      }
+      if (slot < own) {
+        go_on(own - 1);
+        ++slot, ++result;
+      } else {
+        // The last slot was a hit: the next candidate follows its issue.
+        result = ready - shape.interval + 1;
+      }
+      cycle = result;
+    }
+  }
+  return std::max(cycle, empty);
+}
+
 }  // namespace
 
 int64_t force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
                    std::vector<int64_t>& popped) {
+  if (shape.read > 0) return walk_time(shape, work);
   const auto depth = static_cast<size_t>(shape.queue_depth);
   const int64_t interval = shape.interval;
   const size_t entries = work.entries.size();

@@ -19,6 +19,7 @@ struct ForceShape {
   int pipe = 1;  // cycles from a pair's issue to its sum
   int axes = 3;
   int interval = 1;  // cycles from one issue to the next
+  int read = 0;      // narrow memories: cycles to read a halo, its beats; 0: wide ones
 };
 
 // What the streamer walks. An item is a (record, pass); it becomes an entry of the queue if it has hits, and
@@ -39,7 +40,8 @@ struct ForceWork {
 // where that is so from the start.
 using Available = std::array<int64_t, 3>;
 
-// The engine's last cycle, counted from its first (0). `popped` is scratch, any content.
+// The engine's last cycle, counted from its first (0). `popped` is scratch, any content. With narrow memories a
+// record's items, its passes, are the own particles.
 int64_t force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
                    std::vector<int64_t>& popped);
 

@@ -100,7 +100,7 @@ Loop::Loop(const Scene& scene, const Plan& plan, const LatticeRun& request)
       trace_(result_.trace) {
   trace_.engine = "lattice";
   trace_.plan_hash = plan.hash;
-  trace_.nodes = plan.lattice.size();
+  trace_.nodes = plan.nodes();
   trace_.hash_every = request.hash_every;
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "emu/lattice/brick_timing.h"
 #include "emu/lattice/force_time.h"
 #include "emu/lattice/hits.h"
 #include "emu/lattice/migrate_time.h"
@@ -17,7 +18,7 @@ namespace {
 // An end beat loaded in cycle t is seen by its sender (`sent`) in t + 1, by its receiver in t + 2: through
 // the sender's output register and the receiver's; `LinkCode::latency` comes to the latter.
 constexpr int64_t kSent = 1, kReceived = 2;
-// A particle is seen a cycle later: its memory answers then.
+// A particle is seen a cycle later: its memory answers then. Of a narrow memory it is read word by word.
 constexpr int64_t kAnswered = 1;
 // The end beat of a face without link: seen since long before.
 constexpr int64_t kLongAgo = INT64_MIN / 4;
@@ -65,6 +66,7 @@ struct TimingModel::Impl {
   const ForceShape shape_;
   const Filter filter_;
   std::vector<std::array<uint32_t, 6>> neighbour_;  // nodes + 1; number `nodes_` where there is none
+  const int64_t take_;  // cycles of TAKE per particle
   Migration migration_;
 
   // Of the step, nodes + 1 each: the one that does not exist is empty.
@@ -92,10 +94,13 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       threads_(threads > 0 ? threads : omp_get_num_procs()),
       halo_beats_(plan.words.halo_beats),
       received_(kReceived + plan.link.latency),
-      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval},
+      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval,
+             plan.arch.narrow_memories ? plan.words.halo_beats : 0},
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       neighbour_(nodes_ + 1),
-      migration_(plan.lattice, plan.words.migrate_beats, static_cast<int>(received_ + kAnswered)),
+      take_(plan.arch.narrow_memories ? plan.words.migrate_beats + 2 : 1),
+      migration_(plan.lattice, plan.words.migrate_beats,
+                 static_cast<int>(received_ + (plan.arch.narrow_memories ? 0 : kAnswered))),
       first_(nodes_ + 2),
       old_first_(nodes_ + 2),
       count_(nodes_ + 1),
@@ -210,7 +215,7 @@ int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
 void TimingModel::Impl::exchange_z_to_update(uint32_t n, Scratch& scratch) {
   end_[at(Phase::exchange_z)][n] = axes_ == 3 ? exchanged(2, n) : end_[at(Phase::exchange_y)][n];
   const int64_t force_end = end_[at(Phase::force)][n] = force(n, scratch);
-  const int64_t update = count_[n] == 0 ? 1 : int64_t{count_[n]} - 1 + plan_.latency.update;
+  const int64_t update = count_[n] == 0 ? 1 : (int64_t{count_[n]} - 1) * plan_.latency.stride + plan_.latency.update;
   const int64_t end = end_[at(Phase::update)][n] = force_end + update;
   send_particles(0, n, end + 1);
 }
@@ -224,7 +229,7 @@ void TimingModel::Impl::send_particles(int axis, uint32_t n, int64_t start) {
 int64_t TimingModel::Impl::taken(int axis, uint32_t n, int side, int64_t now) const {
   if (migration_.any())
     for (const auto& arrival : migration_.arrivals(axis, n, side))
-      now = std::max(now, migrate_start_[at(axis)][arrival.from] + arrival.after) + 1;
+      now = std::max(now, migrate_start_[at(axis)][arrival.from] + arrival.after) + take_;
   const uint32_t near = neighbour_[n][at(2 * axis + side)];
   return std::max(now, migrate_end_[at(axis)][near] + received_) + 1;
 }
@@ -250,10 +255,16 @@ void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
   start_[n] = end_[at(Phase::migrate_z)][n] + 1;
 }
 
-TimingModel::TimingModel(const Plan& plan, int threads) : impl_(std::make_unique<Impl>(plan, threads)) {}
+TimingModel::TimingModel(const Plan& plan, int threads) {
+  if (plan.bricks.single())
+    impl_ = std::make_unique<Impl>(plan, threads);
+  else
+    brick_ = std::make_unique<BrickTiming>(plan, threads);
+}
 TimingModel::~TimingModel() = default;
 
 void TimingModel::step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
+  if (brick_) return brick_->step(slots, leaving, spans);
   Impl& m = *impl_;
   if (!spans.empty() && spans.size() != size_t{m.nodes_} * kPhases)
     throw std::invalid_argument("spans of another lattice");
@@ -292,6 +303,7 @@ void TimingModel::step(const NodeSlots& slots, std::span<const Leaving> leaving,
 }
 
 uint64_t TimingModel::cycles(const NodeSlots& slots) const {
+  if (brick_) return brick_->cycles(slots);
   const Impl& m = *impl_;
   if (slots.first.size() != m.nodes_ + 1) throw std::invalid_argument("slots of another lattice");
   uint64_t idle = 0;  // the last node's first cycle of IDLE
@@ -301,14 +313,18 @@ uint64_t TimingModel::cycles(const NodeSlots& slots) const {
   return idle + 1;
 }
 
-std::vector<uint64_t> TimingModel::starts() const { return {impl_->start_.begin(), impl_->start_.end() - 1}; }
+std::vector<uint64_t> TimingModel::starts() const {
+  if (brick_) return brick_->starts();
+  return {impl_->start_.begin(), impl_->start_.end() - 1};
+}
 
 void TimingModel::resume(std::span<const uint64_t> starts) {
+  if (brick_) return brick_->resume(starts);
   if (starts.size() != impl_->nodes_) throw std::invalid_argument("starts of another lattice");
   std::copy(starts.begin(), starts.end(), impl_->start_.begin());
   impl_->steps_ = 0;  // the next step's particles are not those of the last one
 }
 
-const TimingCounters& TimingModel::counters() const { return impl_->counters_; }
+const TimingCounters& TimingModel::counters() const { return brick_ ? brick_->counters() : impl_->counters_; }
 
 }  // namespace cuboct::emu

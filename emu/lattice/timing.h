@@ -16,6 +16,8 @@
 
 namespace cuboct::emu {
 
+class BrickTiming;
+
 class TimingModel {
  public:
   // `threads`: 0 for one per core that the process may use. `plan` must outlive the model.
@@ -24,11 +26,12 @@ class TimingModel {
   TimingModel(const TimingModel&) = delete;
   TimingModel& operator=(const TimingModel&) = delete;
 
-  // The next step: `slots` are the particles at its start, `leaving` those that leave their node in it, in
-  // any order. The step must be one that ends without a fault. spans[node * kPhases + phase] gets first and
-  // last cycle, cycle 0 being the first of the run; empty where nobody wants them. Throws
-  // std::invalid_argument, and is of no use after, where sizes do not fit the plan, a node holds more than
-  // its capacity or not what the step before left there, or a particle leaves the lattice.
+  // The next step: `slots` are the particles at its start by cell of the lattice, `leaving` those that leave
+  // their cell in it, in any order. The step must be one that ends without a fault. spans[node * kPhases +
+  // phase], of physical nodes, gets first and last cycle, cycle 0 being the first of the run; empty where
+  // nobody wants them. Throws std::invalid_argument, and is of no use after, where sizes do not fit the plan,
+  // a node holds more than its capacity or not what the step before left there, or a particle leaves the
+  // lattice.
   void step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans);
 
   // Cycles of the run if it ends after the steps so far, DUMP and the last node's first cycle of IDLE
@@ -45,6 +48,7 @@ class TimingModel {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  std::unique_ptr<BrickTiming> brick_;  // in its place where nodes serve bricks
 };
 
 }  // namespace cuboct::emu

@@ -150,11 +150,10 @@ Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State&
       faults_(plan, options.faults, initial, options.steps),
       aftermath_(options.faults.enabled() ? kAftermath : 0),
       collector_(plan, options),
-      control_("control", plan.lattice.size()) {
-  const Lattice& lattice = plan.lattice;
+      control_("control", plan.nodes()) {
   for (const auto& list : particles_) most_ = std::max(most_, list.size());
-  for (uint32_t n = 0; n < lattice.size(); ++n) {
-    const uint8_t has_link = links_of(lattice, n);
+  for (uint32_t n = 0; n < plan.nodes(); ++n) {
+    const uint8_t has_link = links_of(plan, n);
     nodes_.push_back(
         std::make_unique<NodeModule>(fmt::format("node_{}", n).c_str(), n, has_link, factory(n, has_link),
                                      plan.link.checked(), options.faults.enabled()));
@@ -162,9 +161,9 @@ Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State&
     nodes_[n]->control_i(control_[n]);
     nodes_[n]->monitor_o(*this);
   }
-  for (uint32_t n = 0; n < lattice.size(); ++n)
+  for (uint32_t n = 0; n < plan.nodes(); ++n)
     for (int f = 0; f < kFaces; ++f) {
-      const uint32_t other = lattice.neighbour(n, f);
+      const uint32_t other = plan.neighbour(n, f);
       if (other == kNoNode) continue;
       links_.push_back(std::make_unique<Link>(fmt::format("link_{}_{}", n, f).c_str(), timeline_, stalls_,
                                               n * kFaces + static_cast<uint32_t>(f), faults_.at(n, f)));
@@ -185,7 +184,7 @@ Bench::~Bench() = default;
 
 void Bench::report(uint32_t node, const NodeOutputs& out) {
   if (timeline_.over) return;
-  faults_.heed(plan_.lattice, node, out);
+  faults_.heed(plan_, node, out);
   if (collector_.done()) return;
   try {
     if (Collector::shows(out)) collector_.collect(node, timeline_.cycle(), out);
@@ -196,7 +195,7 @@ void Bench::report(uint32_t node, const NodeOutputs& out) {
 
 void Bench::fail(uint32_t node, const std::string& text) {
   if (timeline_.over || collector_.done()) return;
-  stuck_ = node_text(plan_.lattice, node) + ", " + text;
+  stuck_ = node_text(plan_, node) + ", " + text;
   timeline_.over = true;
 }
 
@@ -212,8 +211,7 @@ void Bench::host() {
       return;
     case Host::load:
       for (uint32_t n = 0; n < nodes_.size(); ++n) {
-        control.load_valid = loaded_ < particles_[n].size();
-        control.load_data = control.load_valid ? load_word(plan_, particles_[n][loaded_]) : Bits{};
+        load(plan_, particles_[n], loaded_, control);
         control_[n].write(control);
       }
       if (++loaded_ > most_) state_ = Host::start;
@@ -237,7 +235,7 @@ void Bench::host() {
       } else if (timeline_.cycle() > collector_.last_event() + patience_) {
         std::vector<std::string> doing;
         for (const auto& n : nodes_) doing.push_back(n->model().doing());
-        stuck_ = stuck_text(plan_.lattice, timeline_.cycle(), patience_, doing);
+        stuck_ = stuck_text(plan_, timeline_.cycle(), patience_, doing);
         timeline_.over = true;
       } else if (options_.progress && timeline_.cycle() % 1024 == 0) {
         show_progress();

@@ -23,25 +23,32 @@ uint64_t patience_of(const Plan& plan, double stall_rate) {
   // The longest phase is FORCE, where each of the 27 C candidates passes ceil(C / L) times and each of its 27
   // C^2 pairs may take a cycle; an exchange sends at most 9 C records and waits for a neighbour that may be a
   // step behind.
-  const uint64_t c = static_cast<uint64_t>(plan.arch.capacity);
-  const uint64_t force = 27 * c * (c + 1) + 1000;
+  // A brick does so for each of its cells, and sends no more than all that it and those around hold.
+  const uint64_t c = static_cast<uint64_t>(plan.arch.capacity), cells = cells_of(plan.arch.brick);
+  const uint64_t force = cells * 27 * c * (c + 1) + 1000;
   const uint64_t beats =
-      16 * c * static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
+      16 * c * cells * static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
   return 4 * force + static_cast<uint64_t>(64.0 * static_cast<double>(beats) / (1.0 - stall_rate));
 }
 
 std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initial) {
-  std::vector<std::vector<Particle>> nodes(plan.lattice.size());
-  const Particle* first = nullptr;  // that found its node full; `initial` ascends in id
+  std::vector<std::vector<Particle>> cells(plan.lattice.size());
+  const Particle* first = nullptr;  // that found its cell full; `initial` ascends in id
   for (const Particle& p : initial.particles) {
-    if (static_cast<int>(nodes[p.node].size()) < plan.arch.capacity)
-      nodes[p.node].push_back(p);
+    if (static_cast<int>(cells[p.node].size()) < plan.arch.capacity)
+      cells[p.node].push_back(p);
     else if (first == nullptr)
       first = &p;
   }
   if (first != nullptr)
     throw RunError(Fault::full_x, initial.step, first->node, first->id, plan.arch.capacity,
                    place_of(plan.lattice, first->node));
+  if (plan.bricks.single()) return cells;
+  std::vector<std::vector<Particle>> nodes(plan.nodes());
+  for (uint32_t n = 0; n < plan.nodes(); ++n)
+    for (uint32_t local = 0; local < cells_of(plan.bricks.shape()); ++local)
+      if (const uint32_t cell = plan.cell_of(n, local); cell != kNoNode)
+        nodes[n].insert(nodes[n].end(), cells[cell].begin(), cells[cell].end());
   return nodes;
 }
 
@@ -55,10 +62,17 @@ Bits load_word(const Plan& plan, const Particle& particle) {
   return pack_particle(plan, slot);
 }
 
+void load(const Plan& plan, const std::vector<Particle>& particles, size_t k, Control& control) {
+  control.load_valid = k < particles.size();
+  control.load_data = control.load_valid ? load_word(plan, particles[k]) : Bits{};
+  control.load_cell = control.load_valid ? plan.local_of(particles[k].node) : 0;
+}
+
 Collector::Collector(const Plan& plan, const RunOptions& options)
     : plan_(plan),
       options_(options),
-      nodes_(plan.lattice.size()),
+      nodes_(plan.nodes()),
+      shown_phase_(plan.bricks.single() ? Phase::exchange_x : Phase::update),
       last_phase_(last_phase(plan.rule.axes)),
       step_(nodes_),
       stopped_(nodes_) {
@@ -73,15 +87,22 @@ Collector::Snapshot& Collector::snapshot(uint64_t step) {
   return at->second;
 }
 
-void Collector::observe(uint32_t node, const Bits& word) {
-  const Slot slot = unpack_particle(plan_, word);
+// The lattice's cell; a brick's first one where a damaged word names a cell that is not there.
+uint32_t Collector::cell_of(uint32_t node, uint32_t local) const {
+  if (const uint32_t cell = plan_.cell_of(node, local); cell != kNoNode) return cell;
+  for (local = 0; plan_.cell_of(node, local) == kNoNode;) ++local;
+  return plan_.cell_of(node, local);
+}
+
+void Collector::observe(uint32_t node, const NodeOutputs& out) {
+  const Slot slot = unpack_particle(plan_, out.observe_data);
   if (slot.id >= plan_.particles)
     throw std::runtime_error(fmt::format("step {}: holds particle {}, of {}", step_[node], slot.id, plan_.particles));
   const uint64_t step = step_[node];
   Particle p;
   p.id = slot.id;
   p.type = slot.body.type;
-  p.node = node;
+  p.node = cell_of(node, out.observe_cell);
   for (int a = 0; a < 3; ++a) p.x[a] = slot.body.x[a];
   p.v = slot.body.v;
   p.u = slot.u;
@@ -89,8 +110,9 @@ void Collector::observe(uint32_t node, const Bits& word) {
   s.hash += hash_of(plan_.lattice, p);
   if (s.kept) s.state.particles.push_back(p);
   if (options_.keep_order) {
-    if (order_.size() <= step) order_.resize(step + 1, std::vector<std::vector<uint32_t>>(nodes_));
-    order_[step][node].push_back(p.id);
+    if (order_.size() <= step)
+      order_.resize(step + 1, std::vector<std::vector<uint32_t>>(plan_.lattice.size()));
+    order_[step][p.node].push_back(p.id);
   }
 }
 
@@ -117,7 +139,7 @@ void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
   const uint64_t step = step_[node];
   // The nodes around a link that failed wait for ever; the node that tells may be idle already.
   if (out.fault && is_of_link(static_cast<Fault>(out.fault_code))) {
-    stop_ = {static_cast<Fault>(out.fault_code), step, node, out.fault_id, out.fault_number, {}};
+    stop_ = {static_cast<Fault>(out.fault_code), step, cell_of(node, 0), out.fault_id, out.fault_number, {}};
     close(cycle);
     return;
   }
@@ -130,17 +152,21 @@ void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
     trace_.cycles.resize((step + 1) * nodes_ * kPhases);
   for (int p = 0; p < kPhases; ++p)
     if (out.phase_start >> p & 1) span(p).start = cycle;
-  if (out.observe) observe(node, out.observe_data);
+  if (out.observe) observe(node, out);
   for (int p = 0; p < kPhases; ++p)
     if (out.phase_end >> p & 1) span(p).end = cycle;
   // What a flat plan does not have lies, empty, after what comes before it.
   if (last_phase_ != Phase::migrate_z)
     for (const Phase y : {Phase::exchange_y, Phase::migrate_y})
       if (out.phase_end >> static_cast<int>(y) & 1) span(static_cast<int>(y) + 1) = {cycle + 1, cycle};
-  if (out.phase_end & 1u << static_cast<int>(Phase::exchange_x)) complete(step);
+  if (out.phase_end & 1u << static_cast<int>(shown_phase_)) complete(step);
   if (out.fault) {
-    const StopReason found{
-        static_cast<Fault>(out.fault_code), step, node, out.fault_id, out.fault_number, {}};
+    const StopReason found{static_cast<Fault>(out.fault_code),
+                           step,
+                           cell_of(node, out.fault_cell),
+                           out.fault_id,
+                           out.fault_number,
+                           {}};
     const auto key = [](const StopReason& r) { return std::tie(r.step, r.fault, r.particle, r.number); };
     if (stop_.fault == Fault::none || key(found) < key(stop_)) stop_ = found;
   }

@@ -27,12 +27,14 @@ struct RunOptions {
 // More cycles than any phase of this plan can take, stalls included.
 uint64_t patience_of(const Plan& plan, double stall_rate);
 
-// The particles by node, sorted by id within a node: the order in which they are loaded. Throws RunError
-// where a node would hold more than its capacity.
+// The particles by physical node, in the order in which they are loaded: by cell, within a cell by id. Throws
+// RunError where a cell would hold more than its capacity.
 std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initial);
 
 // The word of the load port.
 Bits load_word(const Plan& plan, const Particle& particle);
+// The host's control of a cycle that loads number `k` of a node's particles, or nothing more.
+void load(const Plan& plan, const std::vector<Particle>& particles, size_t k, Control& control);
 
 class Collector {
  public:
@@ -43,9 +45,9 @@ class Collector {
   static bool shows(const NodeOutputs& out) {
     return (out.phase_start | out.phase_end) != 0 || out.observe || out.fault || out.idle;
   }
-  // One cycle of one node; cycles count from the start of the run. To be called for each cycle of a node in
-  // order, and for all nodes with a cycle before the next one.
-  // Throws std::runtime_error for a particle that the plan does not have, as an unchecked link may make one.
+  // One cycle of one physical node; cycles count from the start of the run. To be called for each cycle of a
+  // node in order, and for all nodes with a cycle before the next one. Throws std::runtime_error for a
+  // particle that the plan does not have, as an unchecked link may make one.
   void collect(uint32_t node, uint64_t cycle, const NodeOutputs& out);
 
   // All steps are complete, or all nodes have finished the first step with a fault, or a link has failed:
@@ -54,7 +56,7 @@ class Collector {
   uint64_t steps_done() const { return trace_.state_hash.empty() ? 0 : trace_.state_hash.size() - 1; }
   uint64_t last_event() const { return last_event_; }  // cycle
   uint64_t last_cycle() const { return last_cycle_; }  // of the run, once done
-  // [step][node]: ids in the order of the slots, if asked for.
+  // [step][cell]: ids in the order of the slots, if asked for.
   const std::vector<std::vector<std::vector<uint32_t>>>& order() const { return order_; }
   // Valid once done. `engine`, `seconds` and the counters are the caller's.
   Trace take_trace();
@@ -67,14 +69,16 @@ class Collector {
     uint32_t complete = 0;  // nodes that have shown all of it
   };
   Snapshot& snapshot(uint64_t step);
-  void observe(uint32_t node, const Bits& word);
+  void observe(uint32_t node, const NodeOutputs& out);
+  uint32_t cell_of(uint32_t node, uint32_t local) const;
   void complete(uint64_t step);
   void close(uint64_t cycle);
 
   const Plan& plan_;
   RunOptions options_;  // frames ascending
   const uint32_t nodes_;
-  const Phase last_phase_;  // of a step
+  const Phase shown_phase_;  // with whose end a node has shown its particles
+  const Phase last_phase_;   // of a step
   Trace trace_;
   std::vector<uint64_t> step_;             // per node: the step it is in
   std::vector<bool> stopped_;              // per node: back in IDLE

@@ -3,27 +3,18 @@
 
 #include <algorithm>
 #include <bit>
-#include <tuple>
+#include <optional>
 
 #include "emu/systemc/planar.h"
 
 namespace cuboct::emu {
 
-// What the streamer presents in a step, in order, and the engine's queue. An entry is a (record, pass).
-struct ForceEngine::Stream {
-  std::vector<const Candidate*> record;         // of all segments
-  std::vector<uint64_t> mask;                   // by entry: what the filter makes of it
-  std::array<uint32_t, kSegments> segment_end;  // entries
+// An entry is a (record, pass).
+struct ForceEngine::Stream : ForceStream {
+  std::vector<const Candidate*> record;  // of all segments
   uint32_t passes = 1;
   PlanarSlots own;
-  std::vector<uint32_t> queue;  // a ring of entries
 };
-
-void FaultKeeper::add(Fault new_code, uint32_t new_id, int64_t new_number) {
-  if (new_code == Fault::none) return;
-  if (code == Fault::none || std::tie(new_code, new_id, new_number) < std::tie(code, id, number))
-    code = new_code, id = new_id, number = new_number;
-}
 
 ForceEngine::ForceEngine(const Plan& plan, const std::vector<Slot>& own,
                          const std::array<std::vector<Candidate>, kFaces>& halo, FaultKeeper& fault)
@@ -70,91 +61,68 @@ void ForceEngine::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
   const uint32_t record = stream.passes == 1 ? entry : entry / stream.passes;
   const int first_slot = static_cast<int>(entry - record * stream.passes) * lanes_;
   const Candidate& j = *stream.record[record];
-  const Int3 x_j{j.x[0], j.x[1], j.x[2]};
   for (int pipe = 0; pipe < pipes_ && mask != 0; ++pipe) {
     const int slot = first_slot + std::countr_zero(mask);
     mask &= mask - 1;
-    const Candidate& i = own_[slot].body;
-    const PairResult pair = pair_kick(plan_.rule, {i.x[0], i.x[1], i.x[2]}, i.v, i.type, x_j, j.v, j.type);
-    ++counts_.pairs_issued;
-    counts_.pairs_inside += pair.inside;
-    if (pair.fault != Fault::none) fault_.add(pair.fault, own_[slot].id, pair.number);
-    for (int a = 0; a < 3; ++a) sum_[slot][a] += pair.kick[a];
+    meet(j, slot);
   }
 }
 
-uint64_t ForceEngine::run() {
+// The pair's kick on a slot.
+void ForceEngine::meet(const Candidate& j, int slot) {
+  const Candidate& i = own_[slot].body;
+  const PairResult pair = pair_kick(plan_.rule, {i.x[0], i.x[1], i.x[2]}, i.v, i.type,
+                                    {j.x[0], j.x[1], j.x[2]}, j.v, j.type);
+  ++counts_.pairs_issued;
+  counts_.pairs_inside += pair.inside;
+  if (pair.fault != Fault::none) fault_.add(pair.fault, own_[slot].id, pair.number);
+  for (int a = 0; a < 3; ++a) sum_[slot][a] += pair.kick[a];
+}
+
+uint64_t ForceEngine::stream() {
   static thread_local Stream stream;  // of the node that runs: a lattice of nodes shares the cache lines
   filter(stream);
-  const uint32_t depth = static_cast<uint32_t>(plan_.arch.queue_depth);
-  stream.queue.resize(depth);
+  return clock_force(plan_, stream, segments_, available_, counts_,
+                     [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
+}
 
-  // The registers. `mask` of F1 and of `current` is that of their entry, less what was issued.
-  int segment = 0;
-  uint32_t next = 0;  // the streamer's entry
-  bool f0_valid = false, f1_valid = false;
-  uint32_t f0 = 0, f1 = 0, current = 0;
-  uint64_t current_mask = 0;
-  uint32_t head = 0, count = 0;  // queue
-  int hold = 0;                  // cycles until the next pair may be issued
-  int drain = 0;                 // cycles until the last issued pair is in its sum
-
-  const auto from = [&](int s) { return available_[(s + 1) / 2]; };
-  uint64_t cycle = available_[0];
-  for (;; ++cycle) {
-    if (!f0_valid && !f1_valid && count == 0 && current_mask == 0 && hold == 0) {
-      // Nothing moves but the pipes: on to where the streamer may go on, or the pipes are empty.
-      if (segment == segments_) {
-        cycle += static_cast<uint64_t>(drain);
-        break;
+// One candidate at a time: read, then walked past the slots by way of the registers T and R.
+uint64_t ForceEngine::walk() {
+  static thread_local Stream stream;
+  filter(stream);
+  const uint32_t n = static_cast<uint32_t>(own_.size());
+  const auto interval = static_cast<uint64_t>(plan_.latency.interval);
+  uint64_t cycle = available_[0], ready = cycle, empty = cycle;  // the pipe takes a pair; holds none
+  uint32_t entry = 0;
+  for (int segment = 0; segment < segments_; ++segment) {
+    if (entry == stream.segment_end[segment]) ++cycle;
+    for (; entry < stream.segment_end[segment]; entry += n) {
+      cycle += 1 + (segment == 0 ? 1 : static_cast<uint64_t>(plan_.words.halo_beats));
+      std::optional<uint32_t> tested = 0, result;  // T, R
+      for (uint32_t next = 1, done = 0; done < n; ++cycle) {
+        if (result && stream.mask[entry + *result] != 0) {
+          if (cycle < ready) {
+            ++counts_.stalls;
+            continue;
+          }
+          uint64_t mask = 1;
+          issue(stream, entry + *result, mask);
+          ++counts_.issue_cycles;
+          ready = cycle + interval;
+          empty = cycle + static_cast<uint64_t>(plan_.latency.pipe);
+          ++done;
+          result = tested;
+          tested.reset();  // the pipe's own particle was asked for
+          continue;
+        }
+        done += result.has_value();
+        result = tested;
+        tested = next < n ? std::optional(next++) : std::nullopt;
       }
-      if (from(segment) > cycle) {
-        drain = static_cast<int>(std::max<int64_t>(0, drain - static_cast<int64_t>(from(segment) - cycle)));
-        cycle = from(segment);
-      }
+      counts_.candidates += n;
     }
-    const uint32_t held = count;  // at the start of the cycle
-    if (hold > 0) {
-      --hold;
-      drain = std::max(0, drain - 1);
-    } else if (current_mask != 0) {
-      issue(stream, current, current_mask);
-      hold = plan_.latency.interval - 1;
-      ++counts_.issue_cycles;
-      // Issued in cycle t, in the sum from t + pipe on: the pipe is empty in cycle t + pipe, and this edge
-      // ends cycle t.
-      drain = plan_.latency.pipe - 1;
-    } else if (drain > 0) {
-      --drain;
-    }
-    if (hold == 0 && current_mask == 0 && held > 0) {
-      current = stream.queue[head];
-      current_mask = stream.mask[current];
-      head = head + 1 == depth ? 0 : head + 1;
-      --count;
-    }
-    if (f1_valid && stream.mask[f1] != 0) {
-      if (held == depth) {
-        ++counts_.stalls;
-        continue;
-      }
-      const uint32_t tail = head + count;
-      stream.queue[tail < depth ? tail : tail - depth] = f1;
-      ++count;
-    }
-    f1_valid = f0_valid;
-    f1 = f0;
-    f0_valid = false;
-    if (segment == segments_ || from(segment) > cycle) continue;
-    if (next == stream.segment_end[segment]) {  // no record, or no slot to meet it
-      ++segment;
-      continue;
-    }
-    f0_valid = true;
-    f0 = next++;
-    ++counts_.candidates;
-    if (next == stream.segment_end[segment]) ++segment;
   }
+  cycle = std::max(cycle, empty);
   counts_.busy += cycle - available_[0] + 1;
   return cycle;
 }

@@ -12,32 +12,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "emu/systemc/force_clock.h"
 #include "emu/systemc/words.h"
 #include "hw/plan.h"
 
 namespace cuboct::emu {
 
-// The least (code, id, number) of a step.
-struct FaultKeeper {
-  Fault code = Fault::none;
-  uint32_t id = 0;
-  int64_t number = 0;
-
-  void add(Fault new_code, uint32_t new_id, int64_t new_number);
-};
-
 class ForceEngine {
  public:
-  static constexpr int kSegments = 1 + kFaces;  // own, -x, +x, -y, +y, -z, +z; of a flat plan without -z, +z
-
-  struct Counts {
-    uint64_t candidates = 0;    // (record, pass) presented to the filter
-    uint64_t pairs_issued = 0;  // that passed the planar test
-    uint64_t pairs_inside = 0;  // of these, nearer than the cutoff
-    uint64_t stalls = 0;        // cycles in which a full queue held the streamer
-    uint64_t issue_cycles = 0;  // cycles that issued a pair
-    uint64_t busy = 0;          // cycles from the engine's first to its last
-  };
+  using Counts = ForceCounts;
 
   // The engine reads `own` and `halo` and writes `fault`; all three stay the node's.
   ForceEngine(const Plan& plan, const std::vector<Slot>& own,
@@ -49,7 +32,7 @@ class ForceEngine {
   // The cycle from which on the halos of `axis` may be read; in the order of the axes.
   void available(int axis, uint64_t cycle) { available_[axis + 1] = cycle; }
   // All cycles of the step, once all axes are available; the engine's last cycle.
-  uint64_t run();
+  uint64_t run() { return plan_.arch.narrow_memories ? walk() : stream(); }
 
   // A slot's sum over the pipes, and clears it.
   Int3 take_sum(int slot);
@@ -57,8 +40,11 @@ class ForceEngine {
 
  private:
   struct Stream;
+  uint64_t stream();
+  uint64_t walk();  // with narrow memories
   void filter(Stream& stream) const;
   void issue(const Stream& stream, uint32_t entry, uint64_t& mask);
+  void meet(const Candidate& j, int slot);
 
   const Plan& plan_;
   const std::vector<Slot>& own_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "emu/systemc/brick_node.h"
 #include "emu/systemc/link_guard.h"
 #include "model/fixed_math.h"
 
@@ -45,6 +46,7 @@ void Node::reset() {
   main_ = Main::idle;
   fault_ = {};
   starting_ = valid_ = 0;
+  taking_ = 0;
 }
 
 int Node::axis() const {
@@ -97,7 +99,7 @@ void Node::enter(Main next) {
     starting_ |= bit(static_cast<int>(next));
   if (next == Main::update) {
     const int n = static_cast<int>(own_.size());
-    phase_last_ = now_ + static_cast<uint64_t>(n == 0 ? 1 : n - 1 + plan_.latency.update);
+    phase_last_ = now_ + static_cast<uint64_t>(n == 0 ? 1 : (n - 1) * plan_.latency.stride + plan_.latency.update);
   }
   if (next >= Main::migrate_x)
     migrate_ = (leaving_ & bit(axis())) != 0 && !own_.empty() ? Migrate::scan : Migrate::end;
@@ -259,7 +261,12 @@ void Node::take(int face, Migrate next, bool last) {
   const int a = axis();
   Receiver& r = receiver_[face];
   if (r.popped < r.fifo.size()) {
-    if (r.popped + 1 == r.fifo.size() && r.came + 1 == now_) return;  // the memory has not answered yet
+    if (plan_.arch.narrow_memories) {  // word by word
+      if (taking_ == 0) taking_ = plan_.words.migrate_beats + 2;
+      if (--taking_ > 0) return;
+    } else if (r.popped + 1 == r.fifo.size() && r.came + 1 == now_) {
+      return;  // the memory has not answered yet
+    }
     Slot s = r.fifo[r.popped++];
     if (r.popped == r.fifo.size()) r.fifo.clear(), r.popped = 0;
     s.away[a] = 0;
@@ -410,8 +417,10 @@ Counters Node::counters() const {
 
 NodeFactory native_nodes(const Plan& plan) {
   check_words(plan);
-  return guarded(plan,
-                 [&plan](uint32_t, uint8_t has_link) { return std::make_unique<Node>(plan, has_link); });
+  return guarded(plan, [&plan](uint32_t node, uint8_t has_link) -> std::unique_ptr<NodeModel> {
+    if (plan.bricks.single()) return std::make_unique<Node>(plan, has_link);
+    return std::make_unique<BrickNode>(plan, node, has_link);
+  });
 }
 
 }  // namespace cuboct::emu

@@ -93,6 +93,7 @@ class Node : public NodeModel {
   uint64_t now_ = 0;         // the cycle that runs
   uint64_t phase_last_ = 0;  // the last cycle of FORCE or UPDATE, known from its start
   uint64_t wakes_at_ = 0;    // as wakes_at()
+  int taking_ = 0;           // narrow memories: cycles until the particle is read that TAKE waits for
   size_t kept_ = 0;          // slots that SCAN has moved down
   uint8_t leaving_ = 0;      // bit a: `leaving_a`
   uint8_t valid_ = 0, can_load_ = 0;
@@ -101,6 +102,7 @@ class Node : public NodeModel {
   uint64_t link_waits_ = 0, beats_ = 0;
 };
 
+// Nodes of one cell, or with the plan's brick (brick_node.h).
 NodeFactory native_nodes(const Plan& plan);
 
 }  // namespace cuboct::emu

@@ -29,6 +29,7 @@ struct Control {
   bool start = false;
   uint32_t steps = 0;
   bool load_valid = false;
+  uint32_t load_cell = 0;  // of a brick
   Bits load_data;
   bool operator==(const Control&) const = default;
 };
@@ -53,6 +54,7 @@ struct NodeOutputs {
   uint8_t phase_start = 0, phase_end = 0;  // bit p: Phase p
   bool observe = false, fault = false, idle = false;
   Bits observe_data;       // where `observe`
+  uint32_t observe_cell = 0, fault_cell = 0;  // of a brick: where `observe`, where `fault`
   uint8_t fault_code = 0;  // these three where `fault`
   uint32_t fault_id = 0;
   int64_t fault_number = 0;
@@ -92,7 +94,7 @@ class NodeModel {
   virtual Counters counters() const { return {}; }
 };
 
-// `node` is an index into the lattice; `has_link` the faces that have a neighbour.
+// `node` counts the plan's physical nodes; `has_link` the faces that have a neighbour.
 using NodeFactory = std::function<std::unique_ptr<NodeModel>(uint32_t node, uint8_t has_link)>;
 
 }  // namespace cuboct::emu

@@ -26,12 +26,12 @@ struct Place {
 class Machine {
  public:
   Machine(const Plan& plan, const State& initial, const RunOptions& options, const NodeFactory& factory)
-      : places(plan.lattice.size()),
+      : places(plan.nodes()),
         faults(plan, options.faults, initial, options.steps),
-        lattice_(plan.lattice),
+        plan_(plan),
         stalls_(options.stall_rate, options.stall_seed) {
     for (uint32_t n = 0; n < places.size(); ++n) {
-      places[n].model = factory(n, links_of(lattice_, n));
+      places[n].model = factory(n, links_of(plan_, n));
       for (size_t f = 0; f < kFaces; ++f) places[n].out.beat[f] = &places[n].next[f];
     }
   }
@@ -43,7 +43,7 @@ class Machine {
       Place& p = places[n];
       p.in = {now_, &p.control, 0, 0, {}, {}};
       for (int f = 0; f < kFaces; ++f) {
-        const uint32_t other = lattice_.neighbour(n, f);
+        const uint32_t other = plan_.neighbour(n, f);
         if (other == kNoNode) continue;
         const uint8_t bit = static_cast<uint8_t>(1u << f);
         const FaultyWire::View out = look(n, f, other, cycle), in = look(other, f ^ 1, n, cycle);
@@ -55,9 +55,9 @@ class Machine {
       try {
         p.model->clock(p.in, p.out);
       } catch (const std::runtime_error& e) {
-        throw std::runtime_error(node_text(lattice_, n) + ", " + e.what());
+        throw std::runtime_error(node_text(plan_, n) + ", " + e.what());
       }
-      faults.heed(lattice_, n, p.out);
+      faults.heed(plan_, n, p.out);
     }
     for (Place& p : places) {
       p.valid = p.out.valid;
@@ -84,33 +84,33 @@ class Machine {
     return wire != nullptr ? wire->look(*cycle, truth) : truth;
   }
 
-  const Lattice& lattice_;
+  const Plan& plan_;
   const StallSource stalls_;
   uint64_t now_ = 0;
 };
 
 }  // namespace
 
-uint8_t links_of(const Lattice& lattice, uint32_t node) {
+uint8_t links_of(const Plan& plan, uint32_t node) {
   uint8_t mask = 0;
   for (int f = 0; f < kFaces; ++f)
-    if (lattice.neighbour(node, f) != kNoNode) mask |= static_cast<uint8_t>(1u << f);
+    if (plan.neighbour(node, f) != kNoNode) mask |= static_cast<uint8_t>(1u << f);
   return mask;
 }
 
-std::string node_text(const Lattice& lattice, uint32_t node) {
-  const Cell& c = lattice.cell(node);
+std::string node_text(const Plan& plan, uint32_t node) {
+  const Cell& c = plan.bricks.single() ? plan.lattice.cell(node) : plan.bricks.node(node).low;
   return fmt::format("node {} ({},{},{})", node, c[0], c[1], c[2]);
 }
 
-std::string stuck_text(const Lattice& lattice, uint64_t cycle, uint64_t patience,
+std::string stuck_text(const Plan& plan, uint64_t cycle, uint64_t patience,
                        const std::vector<std::string>& doing) {
   std::string text =
       fmt::format("stuck: no node has begun or ended a phase in {} cycles before cycle {}", patience, cycle);
   size_t told = 0;
   for (uint32_t n = 0; n < doing.size() && told < 16; ++n) {
     if (doing[n] == "idle") continue;
-    text += fmt::format("\n  {}: {}", node_text(lattice, n), doing[n]);
+    text += fmt::format("\n  {}: {}", node_text(plan, n), doing[n]);
     ++told;
   }
   return text;
@@ -120,7 +120,7 @@ RunResult run_plain(const Plan& plan, const State& initial, const RunOptions& op
                     const NodeFactory& factory, const std::string& engine) {
   const auto particles = by_node(plan, initial);
   Collector collector(plan, options);
-  const uint32_t nodes = plan.lattice.size();
+  const uint32_t nodes = plan.nodes();
   Machine machine(plan, initial, options, factory);
   std::vector<Place>& places = machine.places;
   machine.clock({});  // in reset
@@ -130,8 +130,7 @@ RunResult run_plain(const Plan& plan, const State& initial, const RunOptions& op
   for (size_t k = 0; k < most; ++k) {
     for (uint32_t n = 0; n < nodes; ++n) {
       Control& c = places[n].control;
-      c.load_valid = k < particles[n].size();
-      if (c.load_valid) c.load_data = load_word(plan, particles[n][k]);
+      load(plan, particles[n], k, c);
     }
     machine.clock({});
   }
@@ -153,13 +152,13 @@ RunResult run_plain(const Plan& plan, const State& initial, const RunOptions& op
       try {
         collector.collect(n, cycle, places[n].out);
       } catch (const std::runtime_error& e) {
-        throw std::runtime_error(node_text(plan.lattice, n) + ", " + e.what());
+        throw std::runtime_error(node_text(plan, n) + ", " + e.what());
       }
     }
     if (cycle - collector.last_event() > patience) {
       std::vector<std::string> doing;
       for (const Place& p : places) doing.push_back(p.model->doing());
-      throw std::runtime_error(stuck_text(plan.lattice, cycle, patience, doing));
+      throw std::runtime_error(stuck_text(plan, cycle, patience, doing));
     }
   }
   if (options.faults.enabled()) {

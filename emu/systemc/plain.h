@@ -20,14 +20,14 @@ struct RunResult {
 RunResult run_plain(const Plan& plan, const State& initial, const RunOptions& options,
                     const NodeFactory& factory, const std::string& engine);
 
-// Faces of `node` that have a neighbour.
-uint8_t links_of(const Lattice& lattice, uint32_t node);
+// Faces of a physical node that have a neighbour.
+uint8_t links_of(const Plan& plan, uint32_t node);
 
-// "node 3 (1,0,1)".
-std::string node_text(const Lattice& lattice, uint32_t node);
+// "node 3 (1,0,1)": with its cell, or the lowest one of its brick.
+std::string node_text(const Plan& plan, uint32_t node);
 
 // The text that names the waiting nodes; `doing` by node.
-std::string stuck_text(const Lattice& lattice, uint64_t cycle, uint64_t patience,
+std::string stuck_text(const Plan& plan, uint64_t cycle, uint64_t patience,
                        const std::vector<std::string>& doing);
 
 }  // namespace cuboct::emu

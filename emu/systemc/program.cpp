@@ -2,6 +2,7 @@
 #include "emu/systemc/program.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
@@ -75,8 +76,12 @@ int run(const Program& program, Request request) {
   if (request.bench)
     fmt::print("{}.node_cycles {:.4g} 1/s\n", program.engine, node_cycles);
   else
-    fmt::print("{} steps of {} particles on {} nodes in {:.0f} cycles, {:.3g} node-cycles/s\n", trace.steps(),
-               setup.plan.particles, trace.nodes, cycles, node_cycles);
+    fmt::print("{} steps of {} particles on {} nodes{} in {:.0f} cycles, {:.3g} node-cycles/s\n",
+               trace.steps(), setup.plan.particles, trace.nodes,
+               setup.plan.bricks.single()
+                   ? std::string()
+                   : fmt::format(" of {} cells", fmt::join(setup.plan.bricks.shape(), " x ")),
+               cycles, node_cycles);
   if (!trace.stop) return 0;
   fmt::print(stderr, "{}: {}\n", request.scene, trace.stop->text);
   return 1;

@@ -19,9 +19,27 @@ uint64_t threshold_of(double rate) {
 // fewer than the check's distance, or this many where there is none.
 constexpr int kBurst = 16, kScattered = 3;
 
+// With bricks: what the layers hold that go over the faces.
+uint64_t brick_beats_per_step(const Plan& plan, const State& state) {
+  const BrickMap map(plan.bricks, plan.rule.axes);
+  std::vector<uint64_t> held(plan.lattice.size());
+  for (const Particle& p : state.particles) ++held[p.node];
+  uint64_t beats = 0;
+  for (uint32_t n = 0; n < plan.nodes(); ++n)
+    for (int f = 0; f < 2 * plan.rule.axes; ++f) {
+      if (plan.neighbour(n, f) == kNoNode) continue;
+      beats += 2;
+      for (const BrickWalk::Sent& s : map.walk(n).sent[static_cast<size_t>(f)])
+        if (const uint32_t cell = map.cell(n, s.grid); cell != kNoNode)
+          beats += held[cell] * static_cast<uint64_t>(plan.words.halo_beats);
+    }
+  return beats;
+}
+
 }  // namespace
 
 uint64_t beats_per_step(const Plan& plan, const State& state) {
+  if (!plan.bricks.single()) return brick_beats_per_step(plan, state);
   const Lattice& lattice = plan.lattice;
   std::vector<uint64_t> records(lattice.size());  // that a node sends along the axis
   for (const Particle& p : state.particles) ++records[p.node];
@@ -209,15 +227,15 @@ void FaultyWire::detected() {
 FaultyWires::FaultyWires(const Plan& plan, const FaultOptions& options, const State& initial, uint64_t steps)
     : source(plan, options, initial, steps) {
   if (!options.enabled()) return;
-  for (uint32_t n = 0; n < plan.lattice.size(); ++n)
+  for (uint32_t n = 0; n < plan.nodes(); ++n)
     for (int f = 0; f < kFaces; ++f) wires.push_back(std::make_unique<FaultyWire>(source, n, f));
 }
 
-void FaultyWires::heed(const Lattice& lattice, uint32_t node, const NodeOutputs& out) {
+void FaultyWires::heed(const Plan& plan, uint32_t node, const NodeOutputs& out) {
   if (wires.empty() || (out.beat_errors | out.ack_errors) == 0) return;
   for (int f = 0; f < kFaces; ++f) {
     if (out.ack_errors >> f & 1) at(node, f)->detected();
-    const uint32_t other = lattice.neighbour(node, f);
+    const uint32_t other = plan.neighbour(node, f);
     if ((out.beat_errors >> f & 1) && other != kNoNode) at(other, f ^ 1)->detected();
   }
 }

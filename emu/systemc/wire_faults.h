@@ -126,7 +126,7 @@ struct FaultyWires {
     return wires.empty() ? nullptr : wires[node * kFaces + static_cast<uint32_t>(face)].get();
   }
   // What a node told of a cycle.
-  void heed(const Lattice& lattice, uint32_t node, const NodeOutputs& out);
+  void heed(const Plan& plan, uint32_t node, const NodeOutputs& out);
   FaultSource source;
   std::vector<std::unique_ptr<FaultyWire>> wires;
 };

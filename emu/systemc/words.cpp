@@ -15,7 +15,7 @@ __extension__ typedef unsigned __int128 Wide;
 }  // namespace
 
 void check_words(const Plan& plan) {
-  const int widest = std::max(plan.words.halo_bits, plan.words.particle_bits);
+  const int widest = std::max(plan.words.halo_bits, plan.words.migrate_bits);
   if (widest > Bits::kWidth)
     throw InputError(fmt::format("a record of {} bits: the cycle-accurate engines hold at most {}", widest,
                                  int{Bits::kWidth}));
@@ -71,6 +71,31 @@ void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Ca
   out.type = plan.rule.scaled ? static_cast<uint8_t>(take(plan.rule.type_bits)) : 0;
   if (plan.rule.damped)
     for (int a = 0; a < axes; ++a) out.v[a] = take_signed(w.velocity_bits);
+}
+
+void pack_cell_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out) {
+  const Widths& w = plan.rule.widths;
+  int at = 0;
+  const auto field = [&](int width, int64_t value) { out.put(at, width, value), at += width; };
+  const auto axes = static_cast<size_t>(plan.rule.axes);
+  for (size_t a = 0; a < axes; ++a) field(w.position_frac, candidate.x[a]);
+  if (plan.rule.scaled) field(plan.rule.type_bits, candidate.type);
+  if (plan.rule.damped)
+    for (size_t a = 0; a < axes; ++a) field(w.velocity_bits, candidate.v[a]);
+  field(plan.words.halo_cell_bits, cell);
+}
+
+uint32_t unpack_cell_halo(const Plan& plan, const Bits& bits, Candidate& out) {
+  const Widths& w = plan.rule.widths;
+  int at = 0;
+  const auto take = [&](int width) { return at += width, bits.get(at - width, width); };
+  const auto axes = static_cast<size_t>(plan.rule.axes);
+  for (size_t a = 0; a < axes; ++a) out.x[a] = static_cast<int32_t>(take(w.position_frac));
+  out.type = plan.rule.scaled ? static_cast<uint8_t>(take(plan.rule.type_bits)) : 0;
+  if (plan.rule.damped)
+    for (size_t a = 0; a < axes; ++a)
+      at += w.velocity_bits, out.v[a] = bits.get_signed(at - w.velocity_bits, w.velocity_bits);
+  return static_cast<uint32_t>(take(plan.words.halo_cell_bits));
 }
 
 Bits pack_particle(const Plan& plan, const Slot& slot) {

@@ -32,6 +32,10 @@ void check_words(const Plan& plan);
 void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out);
 // In the frame of the receiver: `shift` is added to the coordinate `axis`, in P+2 bits.
 void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Candidate& out);
+// The same of a plan with bricks: coordinates in the record's own cell, and which cell that is, as
+// hw/bricks.h numbers it.
+void pack_cell_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out);
+uint32_t unpack_cell_halo(const Plan& plan, const Bits& bits, Candidate& out);
 Bits pack_particle(const Plan& plan, const Slot& slot);
 Slot unpack_particle(const Plan& plan, const Bits& bits);
 

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "model/error.h"
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr const char* kVerilatorFlags = "-O3 -fno-const-bit-op-tree --assert -Wno-fatal";
 // VL_USER_STOP: the sources say what happens where an assertion of the RTL fails (shim.h).
 constexpr const char* kCompilerFlags =
-    "-std=c++17 -fPIC -shared -fno-gnu-unique -w -DVM_COVERAGE=0 -DVM_TRACE=0 -DVM_TIMING=0 -DVL_USER_STOP";
+    "-std=c++17 -fPIC -fno-gnu-unique -w -DVM_COVERAGE=0 -DVM_TRACE=0 -DVM_TIMING=0 -DVL_USER_STOP";
 
 // For the shell: 'it'\''s'.
 std::string quoted(const std::string& text) {
@@ -91,7 +92,7 @@ uint64_t key_of(const Build& build, const fs::path& dir, const std::string& tool
   for (const auto& [name, text] : build.sources) add_code(hash, "file " + name + "\n" + text);
   for (const auto& [name, value] : build.constants) add_code(hash, fmt::format("{}={}", name, value));
   add_code(hash, fmt::format("{}\n{} {}\n{} {}\n{}", build.top, kVerilatorFlags, build.verilator_flags,
-                             kCompilerFlags, build.compiler_flags, tools));
+                             kCompilerFlags, build.compiler_flags + build.libraries, tools));
   return hash.value();
 }
 
@@ -119,6 +120,26 @@ struct Scratch {
   Scratch& operator=(const Scratch&) = delete;
 };
 
+// Two units, as most of the compiler's time would go into Verilator's headers: what runs in each cycle, with the
+// sources; and what runs once, as the settling of a new model and the filling of its tables, where the compiler is
+// not to spend time.
+struct Units {
+  std::string each_cycle, once;
+};
+
+Units units_of(const Build& build, const fs::path& model) {
+  std::set<std::string> files;
+  for (const auto& entry : fs::directory_iterator(model))
+    if (entry.path().extension() == ".cpp") files.insert(entry.path().filename().string());
+  Units units;
+  for (const std::string& name : files)
+    (name.ends_with("Slow.cpp") ? units.once : units.each_cycle) += fmt::format("#include \"{}\"\n", name);
+  for (const auto& [name, text] : build.sources)
+    if (name.ends_with(".cpp")) units.each_cycle += fmt::format("#include \"{}\"\n", name);
+  units.once += "#include \"verilated.cpp\"\n#include \"verilated_threads.cpp\"\n";
+  return units;
+}
+
 }  // namespace
 
 std::string compile(const Build& build, const std::string& directory) {
@@ -143,17 +164,20 @@ std::string compile(const Build& build, const std::string& directory) {
                          kVerilatorFlags, build.verilator_flags, build.top, build.top,
                          quoted((dir / "model").string())),
              rtl, log);
+  for (const auto& [name_of_source, text] : build.sources) write_file(dir / name_of_source, text);
   std::string arguments;
-  for (const auto& [name_of_source, text] : build.sources) {
-    write_file(dir / name_of_source, text);
-    if (name_of_source.ends_with(".cpp")) arguments += " " + name_of_source;
-  }
   for (const auto& [constant, value] : build.constants) arguments += fmt::format(" -D{}={}", constant, value);
+  const Units units = units_of(build, dir / "model");
+  write_file(dir / "each_cycle.cpp", units.each_cycle);
+  write_file(dir / "once.cpp", units.once);
+  const std::string compiled =
+      fmt::format("{} {}{} -I. -Imodel -I\"$root/include\" -I\"$root/include/vltstd\" {}", compiler(),
+                  kCompilerFlags, arguments, build.compiler_flags);
   run_logged("the C++ compiler",
-             fmt::format("root=$(verilator --getenv VERILATOR_ROOT) && {} {} -I. -Imodel -I\"$root/include\" "
-                         "-I\"$root/include/vltstd\" {} model/*.cpp \"$root/include/verilated.cpp\" "
-                         "\"$root/include/verilated_threads.cpp\" -o library.so -pthread {}",
-                         compiler(), kCompilerFlags, arguments, build.compiler_flags),
+             fmt::format("root=$(verilator --getenv VERILATOR_ROOT) && {{ {0} -O0 -c once.cpp & }} && "
+                         "once=$! && {0} -c each_cycle.cpp && wait $once && "
+                         "{1} -shared -pthread -o library.so each_cycle.o once.o {2}",
+                         compiled, compiler(), build.libraries),
              dir, log);
   fs::rename(dir / "library.so", result);
   fs::remove(log, error);

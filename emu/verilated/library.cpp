@@ -57,7 +57,7 @@ std::string default_build_directory() {
 Build node_build(const Plan& plan) {
   return {.top = "cuboct_node",
           .verilator_flags = "--cc",
-          .compiler_flags = "-O2 -fno-semantic-interposition -flto",
+          .compiler_flags = "-O2 -fno-semantic-interposition",
           .constants = {{"FACES", 2 * plan.rule.axes},
                         {"LINK_BITS", plan.link.wire_bits},
                         {"ACK_BITS", plan.link.ack_bits},
@@ -74,7 +74,8 @@ std::string compile_node(const Plan& plan, const std::string& build_directory) {
 std::string compile_lattice(const Plan& plan, const State& initial, const std::string& build_directory) {
   return compile({.top = "cuboct_lattice",
                   .verilator_flags = "--sc --pins-bv 2",
-                  .compiler_flags = "-O1 -lsystemc",
+                  .compiler_flags = "-O1",
+                  .libraries = "-lsystemc",
                   .constants = {{"NODES", static_cast<int>(plan.lattice.size())},
                                 {"PARTICLE_BITS", plan.words.particle_bits},
                                 {"ID_BITS", plan.words.id_bits}},

@@ -8,6 +8,7 @@ rtl/cuboct_filter.sv
 rtl/cuboct_filter_lane.sv
 rtl/cuboct_force_rom.sv
 rtl/cuboct_halos.sv
+rtl/cuboct_hold.sv
 rtl/cuboct_inbox.sv
 rtl/cuboct_issue.sv
 rtl/cuboct_lattice.sv
@@ -20,6 +21,7 @@ rtl/cuboct_node.sv
 rtl/cuboct_node_core.sv
 rtl/cuboct_pair_finder.sv
 rtl/cuboct_pair_table.sv
+rtl/cuboct_pair_walk.sv
 rtl/cuboct_pipe.sv
 rtl/cuboct_ram.sv
 rtl/cuboct_relay.sv
@@ -31,3 +33,5 @@ rtl/cuboct_streamer.sv
 rtl/cuboct_sums.sv
 rtl/cuboct_type_rom.sv
 rtl/cuboct_update.sv
+rtl/cuboct_word_halos.sv
+rtl/cuboct_word_inbox.sv

@@ -53,7 +53,7 @@ module slots_formal #(
     .ForcePipes(ForcePipes)
   ) u_dut (
     .clk_i, .write_i, .write_slot_i(slot_i[SlotBits-1:0]), .write_data_i(data_i),
-    .main_slot_i(main_i[SlotBits-1:0]), .main_data_o(main_data), .stream_read_i,
+    .main_read_i(1'b1), .main_slot_i(main_i[SlotBits-1:0]), .main_data_o(main_data), .stream_read_i,
     .stream_slot_i(stream_i[SlotBits-1:0]), .stream_data_o(stream_data), .row_i(row_i[RowBits-1:0]),
     .row_data_o(row_data), .pipe_slot_i(pipe_slot), .pipe_data_o(pipe_data), .fault_slot_i(fault_slot),
     .fault_id_o(fault_id)

@@ -33,6 +33,7 @@ module cuboct_migrate #(
   output logic                      end_o,
   output logic [LinkBits-1:0]       data_o,
   // FIFOs of the axis: below, above.
+  output logic [1:0]                take_o,           // TAKE_LOW, TAKE_HIGH
   input  logic [1:0]                empty_i,
   input  logic [1:0]                ended_i,          // the end beat came
   input  logic [2*ParticleBits-1:0] arrived_i,
@@ -184,6 +185,7 @@ module cuboct_migrate #(
     end
   end
 
+  assign take_o           = {active_i && state == TakeHigh, active_i && state == TakeLow};
   assign read_slot_o      = read_d[SlotBits-1:0];
   assign fault_particle_o = fault_left_o ? read_data_i[ParticleBits-1:0] : candidate;
 

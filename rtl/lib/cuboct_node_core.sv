@@ -11,8 +11,11 @@ module cuboct_node_core #(
   parameter int          FilterLanes          = 8,      // >= 1
   parameter int          ForcePipes           = 1,      // >= 1
   parameter int          Shared               = 0,      // 0, 1: one multiplier serves the axes in turn
+  parameter int          Product              = 1,      // cycles of a multiplier of the pipe; 1 if Shared
+  parameter int          Interval             = 1,      // cycles from one pair to the next
   parameter int          QueueDepth           = 16,     // entries, >= 1
   parameter int          Overlap              = 1,      // 0, 1
+  parameter int          Narrow               = 0,      // 1: memories of words, one port; one lane and pipe, no overlap
   parameter int          LinkBits             = 66,     // payload of a beat, >= 1
   parameter int          IdBits               = 8,      // >= 1
   parameter int          TypeBits             = 0,      // 0 with one type
@@ -119,6 +122,9 @@ module cuboct_node_core #(
   localparam int RowBits   = (Rows > 1) ? $clog2(Rows) : 1;
   localparam int AddrBits  = $clog2(((Axes == 3) ? 9 : 3) * Capacity);
   localparam int CountBits = AddrBits + 1;
+  localparam int HaloBeats = (HaloBits + LinkBits - 1) / LinkBits;
+  localparam int FirstWord = Capacity * ((ParticleBits + LinkBits - 1) / LinkBits);  // of the halos in a face's memory
+  localparam int WordBits  = $clog2(FirstWord + ((Axes == 3) ? 9 : 3) * Capacity * HaloBeats + 1);
   // |s| <= 2^(SBits-1) and |d| <= 2^D; a node sees at most 3^Axes * Capacity kicks.
   localparam int SBits       = (Damped != 0) ? StrengthBits : ForceBits;
   localparam int KickFull    = SBits + PositionFrac - DifferenceShift + 1 - KickShift;
@@ -156,7 +162,7 @@ module cuboct_node_core #(
   logic [SlotBits-1:0]            own_write_slot, update_slot, migrate_write_slot, main_slot, stream_slot;
   logic [OwnBits-1:0]             own_write_data, update_data, migrate_write_data, main_data;
   logic [SeenBits-1:0]            stream_data;
-  logic                           stream_read;
+  logic                           stream_read, main_hold;
   logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot, kick_slot_next;
   logic [ForcePipes*SeenBits-1:0] pipe_data;
   logic [ForcePipes*IdBits-1:0]   kick_id;
@@ -188,10 +194,10 @@ module cuboct_node_core #(
   cuboct_slots #(
     .Axes(Axes), .Bits(OwnBits), .SeenBits(SeenBits), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
     .IdLsb(IdLsb), .IdBits(IdBits), .Capacity(Capacity), .SlotBits(SlotBits), .FilterLanes(FilterLanes),
-    .RowBits(RowBits), .ForcePipes(ForcePipes)
+    .RowBits(RowBits), .ForcePipes(ForcePipes), .Narrow(Narrow)
   ) u_slots (
     .clk_i, .write_i(own_write), .write_slot_i(own_write_slot), .write_data_i(own_write_data),
-    .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read), .stream_slot_i(stream_slot),
+    .main_read_i(!main_hold), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read), .stream_slot_i(stream_slot),
     .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data), .pipe_slot_i(issue_slot),
     .pipe_data_o(pipe_data), .fault_slot_i(kick_slot_next), .fault_id_o(kick_id)
   );
@@ -203,19 +209,60 @@ module cuboct_node_core #(
   logic [Faces*CandidateBits-1:0]     stream_halos;
   logic [(Faces-2)*CandidateBits-1:0] relay_halos;
   logic [Faces*ParticleBits-1:0]      arrived;
-  cuboct_halos #(
-    .Axes(Axes), .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits),
-    .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .AddrBits(AddrBits), .CountBits(CountBits)
-  ) u_halos (
-    .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
-    .halo_clear_i(force_done), .halo_end_o(halo_end), .halo_count_o(halo_count),
-    .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
-    .relay_addr_i(relay_addr), .relay_data_o(relay_halos), .migrating_i(in_migrate), .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end),
-    .migrate_empty_o(migrate_empty), .migrate_data_o(arrived), .migrate_pop_i(migrate_pop)
-  );
+  // Narrow: the word read, whose it is, and the record register.
+  logic [WordBits-1:0]  relay_word, walk_word;
+  logic [2:0]           relay_segment, walk_segment;
+  logic [LinkBits-1:0]  halo_word;
+  logic                 record_shift, record_set;
+  logic [HaloBits-1:0]  own_record, record;
+  logic [1:0]           migrate_take;
+  logic [Axes-1:0]      axis_onehot;
+  if (Narrow != 0) begin : gen_narrow
+    logic [Faces-1:0]        face;
+    logic                    shown;
+    logic [ParticleBits-1:0] particle;
+    for (genvar f = 0; f < Faces; f++) begin : gen_face
+      localparam int Segment = f + 1;
+      assign face[f] = in_exchange ? (relay_segment == Segment[2:0]) :
+                       in_migrate ? (axis_onehot[f/2] && migrate_take[f%2]) : (walk_segment == Segment[2:0]);
+    end
+    cuboct_word_halos #(
+      .Axes(Axes), .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits),
+      .ParticleBits(ParticleBits), .CountBits(CountBits), .WordBits(WordBits)
+    ) u_halos (
+      .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
+      .halo_clear_i(force_done), .halo_end_o(halo_end), .halo_count_o(halo_count),
+      .word_i(in_exchange ? relay_word : walk_word), .face_i(face), .word_o(halo_word), .shift_i(record_shift),
+      .set_i(record_set), .halo_i(own_record), .halo_o(record), .migrating_i(in_migrate),
+      .taking_i(migrate_take != 2'b00), .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end),
+      .particle_valid_o(shown), .particle_o(particle), .pop_i(migrate_pop != '0)
+    );
+    assign migrate_empty = {Faces{!shown}};
+    assign arrived       = {Faces{particle}};
+    assign stream_halos  = '0;
+    assign relay_halos   = '0;
+    logic unused_addr;
+    assign unused_addr = ^{stream_addr, relay_addr};
+  end else begin : gen_wide
+    cuboct_halos #(
+      .Axes(Axes), .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits),
+      .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .AddrBits(AddrBits), .CountBits(CountBits)
+    ) u_halos (
+      .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
+      .halo_clear_i(force_done), .halo_end_o(halo_end), .halo_count_o(halo_count),
+      .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
+      .relay_addr_i(relay_addr), .relay_data_o(relay_halos), .migrating_i(in_migrate),
+      .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty),
+      .migrate_data_o(arrived), .migrate_pop_i(migrate_pop)
+    );
+    assign halo_word = '0;
+    assign record    = '0;
+    logic unused_narrow;
+    assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, migrate_take};
+  end
 
   // leaving[a]: some own particle has to go along axis a.
-  logic [Axes-1:0] leaving_d, leaving_q, leaving_more, axis_onehot, away_axes;
+  logic [Axes-1:0] leaving_d, leaving_q, leaving_more, away_axes;
 
   // Links: senders. One axis speaks at a time: the relay in EXCHANGE, the migration in MIGRATE.
   logic [Faces-1:0]    can_load, load_link;
@@ -275,7 +322,6 @@ module cuboct_node_core #(
   ) u_relay_candidate (.own_i(main_data), .candidate_o(relay_own));
 
   // Exchange.
-  logic [2:0]               relay_segment;
   logic [SlotBits-1:0]      relay_slot;
   logic                     relay_first_own, relay_sent;
   logic [CandidateBits-1:0] relay_candidate;
@@ -298,11 +344,11 @@ module cuboct_node_core #(
   assign unused_relay_sign = ^relay_candidate[CandPos-1:CandPos-2];
   cuboct_relay #(
     .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .AddrBits(AddrBits),
-    .CountBits(CountBits)
+    .CountBits(CountBits), .Narrow(Narrow), .FirstWord(FirstWord), .WordBits(WordBits)
   ) u_relay (
     .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
     .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_q}), .segment_o(relay_segment), .addr_o(relay_addr),
-    .slot_o(relay_slot), .record_i(relay_record), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load),
+    .slot_o(relay_slot), .record_i(relay_record), .word_o(relay_word), .word_i(halo_word), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load),
     .end_o(relay_end), .data_o(relay_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
   );
   assign exchange_done = in_exchange && relay_sent && (axis_halo_end == 2'b11);
@@ -316,21 +362,65 @@ module cuboct_node_core #(
   logic [Axes*PipeSumBits-1:0]  total;
   logic [SlotBits-1:0]          tick_slot, tick_next;
   logic                         take;
-  cuboct_pair_finder #(
-    .Axes(Axes), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne),
-    .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .ForcePipes(ForcePipes),
-    .Interval((Shared != 0) ? Axes : 1), .QueueDepth(QueueDepth), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
-  ) u_finder (
-    .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .available_i({past_exchange, 1'b1}),
-    .counts_i({halo_count, own_count_q}), .read_o(stream_read), .slot_o(stream_slot), .addr_o(stream_addr), .own_i(own_candidate),
-    .halos_i(stream_halos), .row_o(row), .row_data_i(row_data), .candidate_o(issue_candidate),
-    .issue_o(issue), .issue_slot_o(issue_slot), .stall_o(force_stall), .done_o(finder_done)
-  );
+  if (CandidateBits > CandPos) begin : gen_own_record
+    assign own_record = {own_candidate[CandidateBits-1:CandPos], own_candidate[CandPos-3:0]};
+  end else begin : gen_bare_own_record
+    assign own_record = own_candidate[CandPos-3:0];
+  end
+  logic unused_own_sign;
+  assign unused_own_sign = ^own_candidate[CandPos-1:CandPos-2];
+  logic [SlotBits-1:0] walk_slot;  // 0 at rest
+  if (Narrow != 0) begin : gen_walk
+    // The sign of the last axis, as cuboct_halos puts it.
+    logic [1:0] last_sign;
+    assign last_sign = {walk_segment == Faces[2:0] - 3'd1, walk_segment >= Faces[2:0] - 3'd1};
+    if (CandidateBits > CandPos) begin : gen_rest
+      assign issue_candidate = {record[HaloBits-1:CandPos-2], last_sign, record[CandPos-3:0]};
+    end else begin : gen_bare
+      assign issue_candidate = {last_sign, record};
+    end
+    cuboct_pair_walk #(
+      .Axes(Axes), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo),
+      .PlanarThree(PlanarThree), .Interval(Interval), .HaloBeats(HaloBeats), .SlotBits(SlotBits),
+      .FirstWord(FirstWord), .WordBits(WordBits), .CountBits(CountBits)
+    ) u_finder (
+      .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .counts_i({halo_count, own_count_q}),
+      .word_o(walk_word), .segment_o(walk_segment), .shift_o(record_shift), .set_o(record_set), .slot_o(walk_slot),
+      .hold_o(main_hold), .own_i(main_data[PosBits-1:0]), .candidate_i(issue_candidate[CandPos-1:0]),
+      .issue_o(issue[0]), .issue_slot_o(issue_slot[SlotBits-1:0]), .present_o(stream_read), .stall_o(force_stall),
+      .done_o(finder_done)
+    );
+    assign stream_slot = '0;
+    assign stream_addr = '0;
+    assign row         = '0;
+    logic unused_streams;
+    assign unused_streams = ^{past_exchange, row_data, stream_halos};
+  end else begin : gen_stream
+    cuboct_pair_finder #(
+      .Axes(Axes), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne),
+      .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes),
+      .ForcePipes(ForcePipes), .Interval(Interval), .QueueDepth(QueueDepth), .RowBits(RowBits), .SlotBits(SlotBits),
+      .AddrBits(AddrBits), .CountBits(CountBits)
+    ) u_finder (
+      .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .available_i({past_exchange, 1'b1}),
+      .counts_i({halo_count, own_count_q}), .read_o(stream_read), .slot_o(stream_slot), .addr_o(stream_addr),
+      .own_i(own_candidate), .halos_i(stream_halos), .row_o(row), .row_data_i(row_data), .candidate_o(issue_candidate),
+      .issue_o(issue), .issue_slot_o(issue_slot), .stall_o(force_stall), .done_o(finder_done)
+    );
+    assign walk_slot    = '0;
+    assign walk_word    = '0;
+    assign walk_segment = 3'd0;
+    assign record_shift = 1'b0;
+    assign record_set   = 1'b0;
+    assign main_hold    = 1'b0;
+    logic unused_record;
+    assign unused_record = ^record;
+  end
   assign force_event_o = {issue != '0, stream_read, force_stall, engine_runs};
   assign force_done = engine_runs && finder_done && (pipe_busy == '0);
 
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
-    logic [Axes*KickBits-1:0] kick;
+    logic [Axes*KickBits-1:0] push;
     logic [SeenBits-1:0]      own;
     logic [SomeType-1:0]      own_type, other_type;
     logic [VelBits-1:0]       own_v, other_v;
@@ -357,21 +447,24 @@ module cuboct_node_core #(
       .DampIndexBits(DampIndexBits), .DampOctaves(DampOctaves), .DampDegree(DampDegree), .DampBinBits(DampBinBits),
       .DampFirstOctave(DampFirstOctave), .DampFractionBits(DampFractionBits), .DampBits(DampBits),
       .StrengthBits(StrengthBits), .Scaled(Scaled), .TypeBits(SomeType), .ScaleBits(ScaleBits),
-      .ScaleFrac(ScaleFrac), .KickShift(KickShift), .KickBits(KickBits), .SlotBits(SlotBits), .Shared(Shared)
+      .ScaleFrac(ScaleFrac), .KickShift(KickShift), .KickBits(KickBits), .SlotBits(SlotBits), .Shared(Shared),
+      .Product(Product), .Interval(Interval)
     ) u_pipe (
       .clk_i, .rst_ni, .valid_i(issue[f]), .slot_i(issue_slot[f*SlotBits +: SlotBits]),
       .own_x_i(own[PosBits-1:0]), .own_v_i(own_v), .own_type_i(own_type),
       .other_x_i(issue_candidate[CandPos-1:0]), .other_v_i(other_v), .other_type_i(other_type),
       .valid_o(kick_valid[f]), .slot_next_o(kick_slot_next[f*SlotBits +: SlotBits]),
-      .slot_o(kick_slot[f*SlotBits +: SlotBits]), .kick_o(kick),
+      .slot_o(kick_slot[f*SlotBits +: SlotBits]), .push_o(push),
       .fault_o(pipe_fault[f]), .fault_strength_o(pipe_fault_strength[f]),
       .fault_number_o(pipe_fault_number[f*64 +: 64]), .busy_o(pipe_busy[f])
     );
     cuboct_sums #(
-      .Axes(Axes), .KickBits(KickBits), .SumBits(PipeSumBits), .Capacity(Capacity), .SlotBits(SlotBits)
+      .Axes(Axes), .KickBits(KickBits), .SumBits(PipeSumBits), .Capacity(Capacity),
+      .Spaced((Interval > 1) ? 1 : 0), .SlotBits(SlotBits)
     ) u_sums (
       .clk_i, .rst_ni, .kick_valid_i(kick_valid[f]), .kick_slot_i(kick_slot[f*SlotBits +: SlotBits]),
-      .kick_i(kick), .take_i(take), .take_slot_i(tick_slot), .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
+      .push_i(push), .next_slot_i(pipe_busy[f] ? kick_slot_next[f*SlotBits +: SlotBits] : tick_next),
+      .show_i(in_update), .take_i((Narrow != 0) ? update_write : take), .take_slot_i(tick_slot), .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
     );
     logic unused_own;
     assign unused_own = ^own;
@@ -397,15 +490,23 @@ module cuboct_node_core #(
   logic [CountBits+TickBits-1:0] tick_wide, count_wide;
   assign tick_wide  = {{CountBits{1'b0}}, tick_q};
   assign count_wide = {{TickBits{1'b0}}, own_count_q};
-  assign update_done = in_update && ((own_count_q == '0)
-                       || (tick_wide == count_wide + UpdateTail[CountBits+TickBits-1:0]));
+  // Narrow: one after the other, so that the memories' answers stay for the update.
+  logic update_step, taken_d, taken_q;
+  assign taken_d     = (take || taken_q) && !update_write;
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) taken_q <= 1'b0;
+    else taken_q <= taken_d;
+  end
+  localparam int Tail = (Narrow != 0) ? 0 : UpdateTail;
+  assign update_step = in_update && (Narrow == 0 || update_write);
+  assign update_done = in_update && ((own_count_q == '0) || (tick_wide == count_wide + Tail[CountBits+TickBits-1:0]));
   assign dump_done   = in_dump && ((own_count_q == '0) || (tick_wide + 1'b1 == count_wide));
-  assign take        = in_update && (tick_wide < count_wide);
+  assign take        = in_update && (tick_wide < count_wide) && (Narrow == 0 || !taken_q);
   assign tick_slot   = tick_q[SlotBits-1:0];
   assign tick_next   = tick_d[SlotBits-1:0];
   always_comb begin
     tick_d = tick_q;
-    if (in_update || in_dump) tick_d = tick_q + 1'b1;
+    if (update_step || in_dump) tick_d = tick_q + 1'b1;
     if (update_done || dump_done) tick_d = '0;
   end
   always_ff @(posedge clk_i) begin
@@ -424,7 +525,7 @@ module cuboct_node_core #(
   logic [63:0]         update_fault_number;
   cuboct_update #(
     .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
-    .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .DisplacementBits(DisplacementBits), .GainBits(GainBits),
+    .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .Held(Narrow), .DisplacementBits(DisplacementBits), .GainBits(GainBits),
 `ifdef CUBOCT_HOST_VELOCITY
     .MovedTypes(MovedTypes),
 `endif
@@ -489,13 +590,13 @@ module cuboct_node_core #(
     .read_slot_o(migrate_read_slot), .read_data_i(main_data), .write_o(migrate_write),
     .write_slot_o(migrate_write_slot), .write_data_o(migrate_write_data), .leaving_more_o(leaving_more),
     .can_load_i(axis_can_load), .load_o(migrate_load), .end_o(migrate_send_end), .data_o(migrate_beat),
-    .empty_i(axis_empty), .ended_i(axis_ended), .arrived_i(axis_arrived), .pop_o(axis_pop),
+    .take_o(migrate_take), .empty_i(axis_empty), .ended_i(axis_ended), .arrived_i(axis_arrived), .pop_o(axis_pop),
     .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
   );
 
   // The main read port of the slots, asked a cycle ahead, and what is observed through it. Outside its phases each of
-  // the three rests at slot 0, where its next phase begins.
-  assign main_slot       = relay_slot | tick_next | migrate_read_slot;
+  // the four rests at slot 0, where its next phase begins.
+  assign main_slot       = relay_slot | tick_next | migrate_read_slot | walk_slot;
   assign observe_valid_o = (relay_first_own && (axis == 2'd0)) || (in_dump && (own_count_q != '0));
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
@@ -505,19 +606,35 @@ module cuboct_node_core #(
   logic [ForcePipes*IdBits-1:0] fault_id;
   logic [ForcePipes*64-1:0]     fault_number;
   logic [3:0]                   migrate_fault_code;
+  // Narrow: those of the pipe and the update a cycle later; MIGRATE comes later still.
+  logic [ForcePipes*(5+IdBits+64)-1:0] force_fault, force_fault_told;
+  if (Narrow != 0) begin : gen_fault_late
+    logic [ForcePipes*(5+IdBits+64)-1:0] force_fault_q;
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) force_fault_q <= '0;
+      else force_fault_q <= force_fault;
+    end
+    assign force_fault_told = force_fault_q;
+  end else begin : gen_fault_now
+    assign force_fault_told = force_fault;
+  end
   assign migrate_fault_code = 4'd6 + {1'b0, axis, 1'b0} + {3'b000, fault_full};  // left, full: 6 7, 8 9, 10 11
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_fault
+    localparam int Lsb = f * (5 + IdBits + 64);
     always_comb begin
-      fault_valid[f]                   = pipe_fault[f];
-      fault_code[f*4 +: 4]             = pipe_fault_strength[f] ? 4'd2 : 4'd1;
-      fault_id[f*IdBits +: IdBits]     = kick_id[f*IdBits +: IdBits];
-      fault_number[f*64 +: 64]         = pipe_fault_number[f*64 +: 64];
+      force_fault[Lsb +: 64]           = pipe_fault_number[f*64 +: 64];
+      force_fault[Lsb+64 +: IdBits]    = kick_id[f*IdBits +: IdBits];
+      force_fault[Lsb+64+IdBits +: 5]  = {pipe_fault[f], pipe_fault_strength[f] ? 4'd2 : 4'd1};
       if (f == 0 && update_fault) begin
-        fault_valid[f]                 = 1'b1;
-        fault_code[f*4 +: 4]           = update_fault_code;
-        fault_id[f*IdBits +: IdBits]   = new_id;
-        fault_number[f*64 +: 64]       = update_fault_number;
-      end else if (f == 0 && in_migrate) begin
+        force_fault[Lsb +: 64]          = update_fault_number;
+        force_fault[Lsb+64 +: IdBits]   = new_id;
+        force_fault[Lsb+64+IdBits +: 5] = {1'b1, update_fault_code};
+      end
+      fault_number[f*64 +: 64]         = force_fault_told[Lsb +: 64];
+      fault_id[f*IdBits +: IdBits]     = force_fault_told[Lsb+64 +: IdBits];
+      fault_code[f*4 +: 4]             = force_fault_told[Lsb+64+IdBits +: 4];
+      fault_valid[f]                   = force_fault_told[Lsb+64+IdBits+4];
+      if (f == 0 && in_migrate) begin
         fault_valid[f]                 = fault_left || fault_full;
         fault_code[f*4 +: 4]           = migrate_fault_code;
         fault_id[f*IdBits +: IdBits]   = fault_particle[IdLsb +: IdBits];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A function of r2 as a piecewise polynomial. The memory stands outside (generated); this is its address, and the
-// interpolation of what it answers one cycle later. Latency 4 cycles, +1 with OctaveStage, +2 with SquareStages.
+// interpolation of what it answers one cycle later. Latency 3 + Product cycles, +1 with OctaveStage, +1 + Product with SquareStages.
 //   uniform: index = the top IndexBits of r2, t = the next FractionBits.
 //   octaves: with o = floor(log2 r2): index = (o - FirstOctave) * 2^BinBits + the BinBits below the leading one,
 //            t = the next FractionBits, zeros where r2 has no more; r2 < 2^FirstOctave has index 0, t 0.
@@ -16,9 +16,14 @@ module cuboct_pair_table #(
   parameter int EntryBits      = 18,  // of c0, c1, c2, signed
   parameter int ValueBits      = 18,  // of the value; the generator proves that every value fits
   parameter int OctaveStage    = 0,   // 1 if this or another table of the pipe is by octaves
-  parameter int SquareStages   = 0    // 1 if this or another table of the pipe has degree 2
+  parameter int SquareStages   = 0,   // 1 if this or another table of the pipe has degree 2
+  parameter int Product        = 1,   // cycles of a multiplier
+  parameter int Interval       = 1,   // cycles from one pair to the next, above Product unless 1
+  localparam int Cycles        = OctaveStage + 3 + Product + SquareStages * (1 + Product)  // to the value
 ) (
   input  logic                        clk_i,
+  input  logic                        rst_ni,
+  input  logic [Cycles:0]             valid_i,  // [k]: the pair whose r2_i came k cycles ago is there
   input  logic [2*DifferenceFrac-1:0] r2_i,
   // The memory: synchronous read, c0, c1, c2 in the cycle after index_o.
   output logic [IndexBits-1:0]        index_o,
@@ -93,53 +98,65 @@ module cuboct_pair_table #(
   end
   assign index_o = index_q;
 
-  // While the memory answers t waits one cycle.
-  logic [FractionBits-1:0]     t_read_q, t_slope;
-  logic signed [EntryBits-1:0] c0_slope;
+  // While the memory answers t waits one cycle: stage Read.
+  localparam int Read  = OctaveStage + 2;
+  localparam int Slope = Read + SquareStages * (1 + Product);  // the slope's stage
+  logic [FractionBits-1:0]     t_slope;
   logic signed [SlopeBits-1:0] slope;
-  always_ff @(posedge clk_i) t_read_q <= t_q;
 
   if (Degree == 2) begin : gen_square
     logic signed [EntryBits+FractionBits:0] product;
     logic signed [EntryBits-1:0]            c1;
     logic signed [SlopeBits-1:0]            rounded, slope_d, slope_q;
-    cuboct_mult #(.ABits(EntryBits), .BBits(FractionBits + 1)) u_square (
-      .clk_i, .en_i(1'b1), .a_i(c2_i), .b_i($signed({1'b0, t_read_q})), .p_o(product)
+    logic [FractionBits-1:0] t_read;
+    cuboct_hold #(.Bits(FractionBits), .Depth(1), .Interval(Interval)) u_t_read (
+      .clk_i, .valid_i(valid_i[Read:Read-1]), .d_i(t_q), .q_o(t_read)
     );
-    cuboct_delay #(.Bits(EntryBits), .Depth(1)) u_c1 (.clk_i, .d_i(c1_i), .q_o(c1));
+    cuboct_mult #(.ABits(EntryBits), .BBits(FractionBits + 1), .Cycles(Product)) u_square (
+      .clk_i, .rst_ni, .en_i(valid_i[Read]), .a_i(c2_i), .b_i($signed({1'b0, t_read})), .p_o(product)
+    );
+    cuboct_hold #(.Bits(EntryBits), .Depth(Product), .Interval(Interval)) u_c1 (
+      .clk_i, .valid_i(valid_i[Read+Product:Read]), .d_i(c1_i), .q_o(c1)
+    );
     cuboct_round_odd #(.InBits(EntryBits + FractionBits + 1), .Shift(FractionBits), .OutBits(SlopeBits)) u_round (
       .a_i(product), .y_o(rounded)
     );
     assign slope_d = $signed({c1[EntryBits-1], c1}) + rounded;
-    always_ff @(posedge clk_i) slope_q <= slope_d;
+    always_ff @(posedge clk_i) begin
+      if (valid_i[Slope-1]) slope_q <= slope_d;
+    end
     assign slope = slope_q;
-    cuboct_delay #(.Bits(EntryBits), .Depth(2)) u_c0 (.clk_i, .d_i(c0_i), .q_o(c0_slope));
-    cuboct_delay #(.Bits(FractionBits), .Depth(2)) u_t (.clk_i, .d_i(t_read_q), .q_o(t_slope));
   end else begin : gen_line
-    logic [2*EntryBits-1:0] late;
-    cuboct_delay #(.Bits(2 * EntryBits), .Depth(2 * SquareStages)) u_c (
-      .clk_i, .d_i({c1_i, c0_i}), .q_o(late)
+    logic [EntryBits-1:0] late;
+    cuboct_hold #(.Bits(EntryBits), .Depth(Slope - Read), .Interval(Interval)) u_c1 (
+      .clk_i, .valid_i(valid_i[Slope:Read]), .d_i(c1_i), .q_o(late)
     );
-    cuboct_delay #(.Bits(FractionBits), .Depth(2 * SquareStages)) u_t (.clk_i, .d_i(t_read_q), .q_o(t_slope));
-    assign c0_slope = $signed(late[EntryBits-1:0]);
-    assign slope    = $signed(late[2*EntryBits-1:EntryBits]);
+    assign slope = $signed(late);
     logic unused_c2;
     assign unused_c2 = ^c2_i;
   end
 
+  cuboct_hold #(.Bits(FractionBits), .Depth(Slope - Read + 1), .Interval(Interval)) u_t (
+    .clk_i, .valid_i(valid_i[Slope:Read-1]), .d_i(t_q), .q_o(t_slope)
+  );
+
   logic signed [SlopeBits+FractionBits:0] product;
   logic signed [EntryBits-1:0]            c0;
   logic signed [ValueBits-1:0]            rise, base, value_d, value_q;
-  cuboct_mult #(.ABits(SlopeBits), .BBits(FractionBits + 1)) u_slope (
-    .clk_i, .en_i(1'b1), .a_i(slope), .b_i($signed({1'b0, t_slope})), .p_o(product)
+  cuboct_mult #(.ABits(SlopeBits), .BBits(FractionBits + 1), .Cycles(Product)) u_slope (
+    .clk_i, .rst_ni, .en_i(valid_i[Slope]), .a_i(slope), .b_i($signed({1'b0, t_slope})), .p_o(product)
   );
-  cuboct_delay #(.Bits(EntryBits), .Depth(1)) u_c0 (.clk_i, .d_i(c0_slope), .q_o(c0));
+  cuboct_hold #(.Bits(EntryBits), .Depth(Slope - Read + Product), .Interval(Interval)) u_c0 (
+    .clk_i, .valid_i(valid_i[Slope+Product:Read]), .d_i(c0_i), .q_o(c0)
+  );
   cuboct_round_odd #(.InBits(SlopeBits + FractionBits + 1), .Shift(FractionBits), .OutBits(ValueBits)) u_round (
     .a_i(product), .y_o(rise)
   );
   // Modulo 2^ValueBits: rise alone may wrap, the sum is right because the value fits.
   cuboct_resize #(.InBits(EntryBits), .OutBits(ValueBits)) u_base (.a_i(c0), .y_o(base));
   assign value_d = base + rise;
-  always_ff @(posedge clk_i) value_q <= value_d;
+  always_ff @(posedge clk_i) begin
+    if (valid_i[Cycles-1]) value_q <= value_d;
+  end
   assign value_o = value_q;
 endmodule

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The force pipe: from operands to the kick on the own particle. It takes one pair per cycle, or with Shared, where one
-// multiplier serves the axes in turn, one every Axes cycles. It never stalls.
+// The force pipe: from operands to the kick on the own particle. It takes one pair every Interval cycles: 1; Axes or more
+// with Shared, where one multiplier serves the axes in turn; Product + 1 or more where a product takes Product cycles. It
+// never stalls.
 //   d = round_odd(x_j - x_i), r2 = d.d, s = force(r2)
 //   s -= round_odd(damp(r2) * round_odd(w.d))    with Damped; w = round_odd(v_j - v_i)
 //   s = round_odd(s * scale[type_i][type_j])     with Scaled
-//   kick = -round_odd(s * d)                     nothing where r2 >= Cutoff2
-// The kick of a pair accepted in cycle t is at the outputs in cycle t + Stages, Stages = 10 (+1 octaves, +2 degree 2,
-// +2 damped, +2 scaled, +2 (Axes-1) shared).
+//   push = round_odd(s * d), the kick's negative  nothing where r2 >= Cutoff2
+// The kick of a pair accepted in cycle t is at the outputs in cycle t + Stages: 7 (+1 octaves, +1 degree 2, +1 damped,
+// +1 scaled) and Product for each product after one another: 3 (+1 degree 2, +1 damped, +1 scaled); +2 (Axes-1) shared.
 module cuboct_pipe #(
   parameter int          Axes                 = 3,      // 2 or 3
   parameter int          PositionFrac         = 20,     // P
@@ -41,7 +42,9 @@ module cuboct_pipe #(
   parameter int          KickShift            = 4,
   parameter int          KickBits             = 18,
   parameter int          SlotBits             = 4,
-  parameter int          Shared               = 0       // 0, 1
+  parameter int          Shared               = 0,      // 0, 1
+  parameter int          Product              = 1,      // cycles of a multiplier; 1 if Shared
+  parameter int          Interval             = 1       // cycles from one pair to the next
 ) (
   input  logic                            clk_i,
   input  logic                            rst_ni,
@@ -58,7 +61,7 @@ module cuboct_pipe #(
   output logic                            valid_o,      // a pair inside the cutoff
   output logic [SlotBits-1:0]             slot_next_o,  // slot_o of the next cycle
   output logic [SlotBits-1:0]             slot_o,
-  output logic [Axes*KickBits-1:0]        kick_o,       // signed, P+G fractional bits
+  output logic [Axes*KickBits-1:0]        push_o,       // signed, P+G fractional bits: minus the kick
   output logic                            fault_o,      // that pair does not fit:
   output logic                            fault_strength_o,  // s, else w
   output logic signed [63:0]              fault_number_o,
@@ -69,14 +72,15 @@ module cuboct_pipe #(
   localparam int R2Bits       = 2 * D + Axes - 1;  // so many squares of at most 2^(2D)
   localparam int OctaveStage  = ((Octaves != 0) || (DampOctaves != 0 && Damped != 0)) ? 1 : 0;
   localparam int SquareStages = (Degree == 2 || (DampDegree == 2 && Damped != 0)) ? 1 : 0;
-  localparam int DampStages   = (Damped != 0) ? 2 : 0;
-  localparam int ScaleStages  = (Scaled != 0) ? 2 : 0;
-  localparam int TurnStages   = (Shared != 0) ? Axes - 1 : 0;        // of the axes' products beyond one
-  localparam int StageR2      = 4 + TurnStages;
-  localparam int StageValue   = StageR2 + 4 + OctaveStage + 2 * SquareStages;  // the tables' values
+  localparam int DampStages   = (Damped != 0) ? 1 + Product : 0;
+  localparam int ScaleStages  = (Scaled != 0) ? 1 + Product : 0;
+  localparam int AxisProduct  = (Shared != 0) ? Axes : Product;      // of the axes' products
+  localparam int StageR2      = 3 + AxisProduct;
+  localparam int TableStages  = 3 + Product + OctaveStage + (1 + Product) * SquareStages;
+  localparam int StageValue   = StageR2 + TableStages;               // the tables' values
   localparam int StageDamped  = StageValue + DampStages;             // s after damping
   localparam int StageS       = StageDamped + ScaleStages;           // s
-  localparam int Stages       = StageS + 2 + TurnStages;                          // the kick
+  localparam int Stages       = StageS + 1 + AxisProduct;            // the kick
   localparam int SBits        = (Damped != 0) ? StrengthBits : ForceBits;
 
   // valid[k]: stage k holds a pair; hit[k], from the stage after r2 on: one inside the cutoff.
@@ -96,7 +100,13 @@ module cuboct_pipe #(
   end
   assign busy_o  = (valid_q != '0);
   assign valid_o = hit_q[Stages];
-  cuboct_delay #(.Bits(SlotBits), .Depth(Stages - 1)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_next_o));
+  logic [SlotBits-1:0] slot_q;  // stage 1
+  always_ff @(posedge clk_i) begin
+    if (valid_i) slot_q <= slot_i;
+  end
+  cuboct_hold #(.Bits(SlotBits), .Depth(Stages - 2), .Interval(Interval)) u_slot (
+    .clk_i, .valid_i(valid_q[Stages-1:1]), .d_i(slot_q), .q_o(slot_next_o)
+  );
   cuboct_delay #(.Bits(SlotBits), .Depth(1)) u_slot_last (.clk_i, .d_i(slot_next_o), .q_o(slot_o));
 
   // Stages 1 ... StageR2: operands, d, its squares, r2.
@@ -130,7 +140,7 @@ module cuboct_pipe #(
     logic unused_high;
     assign unused_high = ^product;
   end
-  cuboct_axis_mults #(.Axes(Axes), .Shared(Shared), .ABits(DBits), .BBits(DBits)) u_squares (
+  cuboct_axis_mults #(.Axes(Axes), .Shared(Shared), .ABits(DBits), .BBits(DBits), .Product(Product), .Held(Shared)) u_squares (
     .clk_i, .rst_ni, .en_i(valid_q[2]), .a_i(d_q), .b_i(d_q), .p_o(products)
   );
   if (Axes == 3) begin : gen_space
@@ -141,9 +151,17 @@ module cuboct_pipe #(
   always_ff @(posedge clk_i) begin
     if (valid_q[StageR2-1]) r2_q <= r2_d;
   end
-  cuboct_delay #(.Bits(1), .Depth(StageR2 - 1)) u_outside (.clk_i, .d_i(outside != '0), .q_o(outside_r2));
+  logic outside_q;  // stage 2
+  always_ff @(posedge clk_i) begin
+    if (valid_q[1]) outside_q <= (outside != '0);
+  end
+  cuboct_hold #(.Bits(1), .Depth(StageR2 - 2), .Interval(Interval)) u_outside (
+    .clk_i, .valid_i(valid_q[StageR2:2]), .d_i(outside_q), .q_o(outside_r2)
+  );
   assign near = (r2_q < Cutoff2[R2Bits-1:0]) && !outside_r2;
-  cuboct_delay #(.Bits(Axes * DBits), .Depth(StageS - 2)) u_d (.clk_i, .d_i(d_q), .q_o(d_s));
+  cuboct_hold #(.Bits(Axes * DBits), .Depth(StageS - 2), .Interval(Interval)) u_d (
+    .clk_i, .valid_i(valid_q[StageS:2]), .d_i(d_q), .q_o(d_s)
+  );
 
   // The stages up to StageValue: the force table.
   logic [IndexBits-1:0]        index;
@@ -152,9 +170,9 @@ module cuboct_pipe #(
   cuboct_pair_table #(
     .DifferenceFrac(D), .Octaves(Octaves), .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits),
     .FirstOctave(FirstOctave), .FractionBits(FractionBits), .EntryBits(EntryBits), .ValueBits(ForceBits),
-    .OctaveStage(OctaveStage), .SquareStages(SquareStages)
+    .OctaveStage(OctaveStage), .SquareStages(SquareStages), .Product(Product), .Interval(Interval)
   ) u_force (
-    .clk_i, .r2_i(r2_q[2*D-1:0]), .index_o(index), .c0_i(c0), .c1_i(c1), .c2_i(c2), .value_o(force_value)
+    .clk_i, .rst_ni, .valid_i(valid_q[StageValue:StageR2]), .r2_i(r2_q[2*D-1:0]), .index_o(index), .c0_i(c0), .c1_i(c1), .c2_i(c2), .value_o(force_value)
   );
   cuboct_force_rom u_force_rom (.clk_i, .index_i(index), .c0_o(c0), .c1_o(c1), .c2_o(c2));
 
@@ -201,7 +219,9 @@ module cuboct_pipe #(
       assign product = $signed(wd_products[a*WdBits +: WdBits]);
       assign wd[a*(WdBits+2) +: WdBits+2] = {{2{product[WdBits-1]}}, product};
     end
-    cuboct_axis_mults #(.Axes(Axes), .Shared(Shared), .ABits(RelativeVelocityBits), .BBits(DBits)) u_wd (
+    cuboct_axis_mults #(
+      .Axes(Axes), .Shared(Shared), .ABits(RelativeVelocityBits), .BBits(DBits), .Product(Product), .Held(Shared)
+    ) u_wd (
       .clk_i, .rst_ni, .en_i(valid_q[2]), .a_i(w_all), .b_i(d_q), .p_o(wd_products)
     );
     if (Axes == 3) begin : gen_space_wd
@@ -217,7 +237,9 @@ module cuboct_pipe #(
       if (valid_q[StageR2-1]) wd_q <= wd_d;
       if (valid_q[StageR2]) q_q <= q_d;
     end
-    cuboct_delay #(.Bits(RelativeVelocityBits), .Depth(StageValue - StageR2 - 1)) u_q_late (.clk_i, .d_i(q_q), .q_o(q));
+    cuboct_hold #(.Bits(RelativeVelocityBits), .Depth(StageValue - StageR2 - 1), .Interval(Interval)) u_q_late (
+      .clk_i, .valid_i(valid_q[StageValue:StageR2+1]), .d_i(q_q), .q_o(q)
+    );
 
     // A w that does not fit: known at stage 2, told with the kick. The first axis gives the number.
     logic signed [WFullBits-1:0] w_first, w_late;
@@ -228,8 +250,8 @@ module cuboct_pipe #(
         if (misfit[first]) w_first = w_full[first*WFullBits +: WFullBits];
       end
     end
-    cuboct_delay #(.Bits(WFullBits + 1), .Depth(Stages - 2)) u_w_late (
-      .clk_i, .d_i({misfit != '0, w_first}), .q_o({w_fault, w_late})
+    cuboct_hold #(.Bits(WFullBits + 1), .Depth(Stages - 2), .Interval(Interval)) u_w_late (
+      .clk_i, .valid_i(valid_q[Stages:2]), .d_i({misfit != '0, w_first}), .q_o({w_fault, w_late})
     );
     cuboct_resize #(.InBits(WFullBits), .OutBits(64)) u_w_number (.a_i(w_late), .y_o(w_number));
 
@@ -245,15 +267,18 @@ module cuboct_pipe #(
     cuboct_pair_table #(
       .DifferenceFrac(D), .Octaves(DampOctaves), .Degree(DampDegree), .IndexBits(DampIndexBits),
       .BinBits(DampBinBits), .FirstOctave(DampFirstOctave), .FractionBits(DampFractionBits),
-      .EntryBits(EntryBits), .ValueBits(DampBits), .OctaveStage(OctaveStage), .SquareStages(SquareStages)
+      .EntryBits(EntryBits), .ValueBits(DampBits), .OctaveStage(OctaveStage), .SquareStages(SquareStages),
+      .Product(Product), .Interval(Interval)
     ) u_damp (
-      .clk_i, .r2_i(r2_q[2*D-1:0]), .index_o(damp_index), .c0_i(e0), .c1_i(e1), .c2_i(e2), .value_o(damp_value)
+      .clk_i, .rst_ni, .valid_i(valid_q[StageValue:StageR2]), .r2_i(r2_q[2*D-1:0]), .index_o(damp_index), .c0_i(e0), .c1_i(e1), .c2_i(e2), .value_o(damp_value)
     );
     cuboct_damp_rom u_damp_rom (.clk_i, .index_i(damp_index), .c0_o(e0), .c1_o(e1), .c2_o(e2));
-    cuboct_mult #(.ABits(DampBits), .BBits(RelativeVelocityBits)) u_friction (
-      .clk_i, .en_i(hit_q[StageValue]), .a_i(damp_value), .b_i(q), .p_o(product)
+    cuboct_mult #(.ABits(DampBits), .BBits(RelativeVelocityBits), .Cycles(Product)) u_friction (
+      .clk_i, .rst_ni, .en_i(hit_q[StageValue]), .a_i(damp_value), .b_i(q), .p_o(product)
     );
-    cuboct_delay #(.Bits(ForceBits), .Depth(1)) u_force_late (.clk_i, .d_i(force_value), .q_o(force_late));
+    cuboct_hold #(.Bits(ForceBits), .Depth(Product), .Interval(Interval)) u_force_late (
+      .clk_i, .valid_i(valid_q[StageValue+Product:StageValue]), .d_i(force_value), .q_o(force_late)
+    );
     cuboct_round_odd #(.InBits(ProductBits), .Shift(DampShift), .OutBits(DampedBits)) u_round (
       .a_i(product), .y_o(friction)
     );
@@ -261,15 +286,15 @@ module cuboct_pipe #(
     cuboct_resize #(.InBits(DampedBits), .OutBits(StrengthBits)) u_wrap (.a_i(s_full), .y_o(s_wrapped));
     cuboct_resize #(.InBits(StrengthBits), .OutBits(DampedBits)) u_again (.a_i(s_wrapped), .y_o(s_again));
     always_ff @(posedge clk_i) begin
-      if (hit_q[StageValue+1]) begin
+      if (hit_q[StageValue+Product]) begin
         s_q        <= s_wrapped;
         s_full_q   <= s_full;
         s_misfit_q <= (s_again != s_full);
       end
     end
     assign s_damped = s_q;
-    cuboct_delay #(.Bits(DampedBits + 1), .Depth(Stages - StageDamped)) u_s_late (
-      .clk_i, .d_i({s_misfit_q, s_full_q}), .q_o({s_fault, s_last})
+    cuboct_hold #(.Bits(DampedBits + 1), .Depth(Stages - StageDamped), .Interval(Interval)) u_s_late (
+      .clk_i, .valid_i(valid_q[Stages:StageDamped]), .d_i({s_misfit_q, s_full_q}), .q_o({s_fault, s_last})
     );
     cuboct_resize #(.InBits(DampedBits), .OutBits(64)) u_s_number (.a_i(s_last), .y_o(s_number));
   end else begin : gen_undamped
@@ -293,21 +318,25 @@ module cuboct_pipe #(
     logic signed [ScaleBits-1:0]      scale;
     logic signed [SBits+ScaleBits-1:0] product;
     logic signed [SBits-1:0]          s_d, s_q;
+    logic [2*TypeBits-1:0]            types_q;  // stage 2
     cuboct_delay #(.Bits(TypeBits), .Depth(1)) u_other_type (.clk_i, .d_i(other_type_i), .q_o(other_type));
-    cuboct_delay #(.Bits(2 * TypeBits), .Depth(StageDamped - 1)) u_types (
-      .clk_i, .d_i({other_type, own_type_i}), .q_o(types)
+    always_ff @(posedge clk_i) begin
+      if (valid_q[1]) types_q <= {other_type, own_type_i};
+    end
+    cuboct_hold #(.Bits(2 * TypeBits), .Depth(StageDamped - 2), .Interval(Interval)) u_types (
+      .clk_i, .valid_i(valid_q[StageDamped:2]), .d_i(types_q), .q_o(types)
     );
     cuboct_scale_rom u_scale_rom (
       .own_type_i(types[TypeBits-1:0]), .other_type_i(types[2*TypeBits-1:TypeBits]), .scale_o(scale)
     );
-    cuboct_mult #(.ABits(SBits), .BBits(ScaleBits)) u_mult (
-      .clk_i, .en_i(hit_q[StageDamped]), .a_i(s_damped), .b_i(scale), .p_o(product)
+    cuboct_mult #(.ABits(SBits), .BBits(ScaleBits), .Cycles(Product)) u_mult (
+      .clk_i, .rst_ni, .en_i(hit_q[StageDamped]), .a_i(s_damped), .b_i(scale), .p_o(product)
     );
     cuboct_round_odd #(.InBits(SBits + ScaleBits), .Shift(ScaleFrac), .OutBits(SBits)) u_round (
       .a_i(product), .y_o(s_d)
     );
     always_ff @(posedge clk_i) begin
-      if (hit_q[StageDamped+1]) s_q <= s_d;
+      if (hit_q[StageDamped+Product]) s_q <= s_d;
     end
     assign s = s_q;
   end else begin : gen_unscaled
@@ -316,22 +345,24 @@ module cuboct_pipe #(
     assign s = s_damped;
   end
 
-  // The last stages: times d, rounded once, with the sign of the reaction.
+  // The last stages: times d, rounded once.
   logic [Axes*(SBits+DBits)-1:0] kick_products;
-  cuboct_axis_mults #(.Axes(Axes), .Shared(Shared), .ABits(SBits), .BBits(DBits)) u_kicks (
+  cuboct_axis_mults #(
+    .Axes(Axes), .Shared(Shared), .ABits(SBits), .BBits(DBits), .Product(Product),
+    .Held((Shared != 0 && (StageS - 2) % Interval + Axes <= Interval) ? 1 : 0)
+  ) u_kicks (
     .clk_i, .rst_ni, .en_i(hit_q[StageS]), .a_i({Axes{s}}), .b_i(d_s), .p_o(kick_products)
   );
   for (genvar a = 0; a < Axes; a++) begin : gen_kick
     logic signed [SBits+DBits-1:0] product;
-    logic signed [KickBits-1:0]    push, kick_d, kick_q;
+    logic signed [KickBits-1:0]    push_d, push_q;
     assign product = $signed(kick_products[a*(SBits+DBits) +: SBits+DBits]);
     cuboct_round_odd #(.InBits(SBits + DBits), .Shift(KickShift), .OutBits(KickBits)) u_round (
-      .a_i(product), .y_o(push)
+      .a_i(product), .y_o(push_d)
     );
-    assign kick_d = -push;
     always_ff @(posedge clk_i) begin
-      if (hit_q[Stages-1]) kick_q <= kick_d;
+      if (hit_q[Stages-1]) push_q <= push_d;
     end
-    assign kick_o[a*KickBits +: KickBits] = kick_q;
+    assign push_o[a*KickBits +: KickBits] = push_q;
   end
 endmodule

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The sender of the exchange phases: own records, then the halos that the axes before this one brought, to both links
-// of the axis in lock step. One thing per cycle: an empty segment is left, or a beat is loaded, or it waits.
+// of the axis in lock step. One thing per cycle: an empty segment is left, or a beat is loaded, or it waits. From narrow
+// memories halos come word by word, a beat each.
 module cuboct_relay #(
   parameter int Axes      = 3,   // 2 or 3
   parameter int LinkBits  = 32,  // payload of a beat
   parameter int HaloBits  = 32,  // bits of a record
   parameter int SlotBits  = 4,   // of an own slot's number
   parameter int AddrBits  = 8,   // of a record's number in any segment
-  parameter int CountBits = 8    // of a segment's count
+  parameter int CountBits = 8,   // of a segment's count
+  parameter int Narrow    = 0,   // 0, 1
+  parameter int FirstWord = 0,   // of a face's halos; Narrow only
+  parameter int WordBits  = 1    // of a word's number; Narrow only
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
@@ -19,7 +23,9 @@ module cuboct_relay #(
   output logic [2:0]             segment_o,
   output logic [AddrBits-1:0]    addr_o,      // of the next cycle's record
   output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles
-  input  logic [HaloBits-1:0]    record_i,    // of segment_o, at addr_o of the cycle before
+  input  logic [HaloBits-1:0]    record_i,    // of segment_o, at addr_o of the cycle before; Narrow: own ones only
+  output logic [WordBits-1:0]    word_o,      // Narrow: number of the next cycle's halo word
+  input  logic [LinkBits-1:0]    word_i,      // Narrow: of segment_o, word_o of the cycle before
   // To the link registers.
   input  logic                   can_load_i,  // both links can
   output logic                   load_o,
@@ -104,5 +110,23 @@ module cuboct_relay #(
   cuboct_beat #(.Bits(HaloBits), .LinkBits(LinkBits), .BeatBits(BeatBits)) u_beat (
     .word_i(record_i), .beat_i(beat_q), .data_o(beat)
   );
-  assign data_o = past ? '0 : beat;
+  if (Narrow != 0) begin : gen_words
+    logic [WordBits-1:0] word_d, word_q;
+    always_comb begin
+      word_d = word_q;
+      if (load_o && segment_q != 3'd0) word_d = word_q + 1'b1;
+      if (segment_d != segment_q) word_d = FirstWord[WordBits-1:0];
+    end
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) word_q <= FirstWord[WordBits-1:0];
+      else word_q <= word_d;
+    end
+    assign word_o = word_d;
+    assign data_o = past ? '0 : (segment_q == 3'd0) ? beat : word_i;
+  end else begin : gen_records
+    logic unused_word;
+    assign unused_word = ^word_i;
+    assign word_o      = '0;
+    assign data_o      = past ? '0 : beat;
+  end
 endmodule

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The node's own particles: one write port; read ports for the main machine, the streamer, each force pipe and each
 // pipe's fault, each a memory of its own; and the leading bits of the positions once more in one bank per filter lane,
-// so that a row of FilterLanes neighbouring slots is read at once. All answer in the cycle after the question. What is
+// so that a row of FilterLanes neighbouring slots is read at once. Narrow has the main port alone, for all, and no
+// banks. All answer in the cycle after the question. What is
 // written in cycle t can be asked for from t+1 on.
 module cuboct_slots #(
   parameter int Axes         = 3,    // 2 or 3
@@ -16,12 +17,14 @@ module cuboct_slots #(
   parameter int FilterLanes  = 8,    // >= 1
   parameter int RowBits      = 1,    // of a row's number, >= clog2(rows)
   parameter int ForcePipes   = 1,    // >= 1
+  parameter int Narrow       = 0,    // 0, 1
   localparam int CoarseBits  = Axes * FilterFrac
 ) (
   input  logic                           clk_i,
   input  logic                           write_i,
   input  logic [SlotBits-1:0]            write_slot_i,
   input  logic [Bits-1:0]                write_data_i,
+  input  logic                           main_read_i,    // without it main_data_o stays
   input  logic [SlotBits-1:0]            main_slot_i,
   output logic [Bits-1:0]                main_data_o,
   input  logic                           stream_read_i,  // without it stream_data_o and row_data_o stay
@@ -37,52 +40,64 @@ module cuboct_slots #(
   localparam int Rows = (Capacity + FilterLanes - 1) / FilterLanes;
 
   cuboct_ram #(.Bits(Bits), .Depth(Capacity), .AddrBits(SlotBits)) u_main (
-    .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i, .read_i(1'b1), .read_addr_i(main_slot_i),
+    .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i, .read_i(main_read_i), .read_addr_i(main_slot_i),
     .read_data_o(main_data_o)
   );
-  cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_stream (
-    .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i),
-    .read_addr_i(stream_slot_i), .read_data_o(stream_data_o)
-  );
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
-    cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_pipe (
-      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(1'b1),
-      .read_addr_i(pipe_slot_i[f*SlotBits +: SlotBits]), .read_data_o(pipe_data_o[f*SeenBits +: SeenBits])
+  if (Narrow != 0) begin : gen_one_port
+    assign stream_data_o = main_data_o[SeenBits-1:0];
+    assign pipe_data_o   = {ForcePipes{main_data_o[SeenBits-1:0]}};
+    assign row_data_o    = '0;
+    logic unused_ports;
+    assign unused_ports = ^{stream_read_i, stream_slot_i, pipe_slot_i};
+  end else begin : gen_ports
+    cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_stream (
+      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i),
+      .read_addr_i(stream_slot_i), .read_data_o(stream_data_o)
     );
+    for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
+      cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_pipe (
+        .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(1'b1),
+        .read_addr_i(pipe_slot_i[f*SlotBits +: SlotBits]), .read_data_o(pipe_data_o[f*SeenBits +: SeenBits])
+      );
+    end
+  end
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_id
     cuboct_ram #(.Bits(IdBits), .Depth(Capacity), .AddrBits(SlotBits)) u_id (
       .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[IdLsb +: IdBits]), .read_i(1'b1),
       .read_addr_i(fault_slot_i[f*SlotBits +: SlotBits]), .read_data_o(fault_id_o[f*IdBits +: IdBits])
     );
   end
 
-  logic [CoarseBits-1:0] coarse;
-  for (genvar a = 0; a < Axes; a++) begin : gen_coarse
-    assign coarse[a*FilterFrac +: FilterFrac] = write_data_i[a*PositionFrac+PositionFrac-FilterFrac +: FilterFrac];
-  end
-  for (genvar l = 0; l < FilterLanes; l++) begin : gen_bank
-    // Slot s lies in bank s % FilterLanes, row s / FilterLanes.
-    logic [CoarseBits-1:0] bank_q [0:Rows-1];
-    logic [CoarseBits-1:0] row, row_q;
-    for (genvar r = 0; r < Rows; r++) begin : gen_row
-      localparam int Slot = r * FilterLanes + l;
-      if (Slot < Capacity) begin : gen_slot
-        always_ff @(posedge clk_i) begin
-          if (write_i && write_slot_i == Slot[SlotBits-1:0]) bank_q[r] <= coarse;
+  if (Narrow == 0) begin : gen_banks
+    logic [CoarseBits-1:0] coarse;
+    for (genvar a = 0; a < Axes; a++) begin : gen_coarse
+      assign coarse[a*FilterFrac +: FilterFrac] = write_data_i[a*PositionFrac+PositionFrac-FilterFrac +: FilterFrac];
+    end
+    for (genvar l = 0; l < FilterLanes; l++) begin : gen_bank
+      // Slot s lies in bank s % FilterLanes, row s / FilterLanes.
+      logic [CoarseBits-1:0] bank_q [0:Rows-1];
+      logic [CoarseBits-1:0] row, row_q;
+      for (genvar r = 0; r < Rows; r++) begin : gen_row
+        localparam int Slot = r * FilterLanes + l;
+        if (Slot < Capacity) begin : gen_slot
+          always_ff @(posedge clk_i) begin
+            if (write_i && write_slot_i == Slot[SlotBits-1:0]) bank_q[r] <= coarse;
+          end
+        end else begin : gen_none
+          always_ff @(posedge clk_i) bank_q[r] <= '0;
         end
-      end else begin : gen_none
-        always_ff @(posedge clk_i) bank_q[r] <= '0;
       end
-    end
-    if (Rows > 1) begin : gen_read
-      assign row = bank_q[row_i[$clog2(Rows)-1:0]];
-      always_ff @(posedge clk_i) begin
-        if (stream_read_i) row_q <= row;
+      if (Rows > 1) begin : gen_read
+        assign row = bank_q[row_i[$clog2(Rows)-1:0]];
+        always_ff @(posedge clk_i) begin
+          if (stream_read_i) row_q <= row;
+        end
+      end else begin : gen_only
+        assign row   = bank_q[0];
+        assign row_q = row;
       end
-    end else begin : gen_only
-      assign row   = bank_q[0];
-      assign row_q = row;
+      assign row_data_o[l*CoarseBits +: CoarseBits] = row_q;
     end
-    assign row_data_o[l*CoarseBits +: CoarseBits] = row_q;
   end
 
   logic unused_row;

@@ -1,37 +1,40 @@
 // SPDX-License-Identifier: MIT
 // The summed kicks of the node's particles, of one pipe. Exact: a sum holds every kick that a node can see. A kick
-// accepted in cycle t counts from t+1 on. Taking a sum clears it.
+// accepted in cycle t counts from t+1 on. Taking a sum clears it. Where kicks never come in two cycles after one another
+// (Spaced) the sums lie in a memory whose word is asked for a cycle ahead.
 module cuboct_sums #(
   parameter int Axes     = 3,   // 2 or 3
   parameter int KickBits = 18,  // of one axis of a kick
   parameter int SumBits  = 28,  // of one axis of a sum, >= KickBits + clog2(3^Axes * Capacity)
   parameter int Capacity = 16,
+  parameter int Spaced   = 0,   // 0, 1
   parameter int SlotBits = 4    // of a slot's number, >= clog2(Capacity)
 ) (
   input  logic                  clk_i,
   input  logic                  rst_ni,
   input  logic                  kick_valid_i,
   input  logic [SlotBits-1:0]   kick_slot_i,
-  input  logic [Axes*KickBits-1:0] kick_i,
-  input  logic                  take_i,       // never in a cycle with a kick
+  input  logic [Axes*KickBits-1:0] push_i,     // minus the kick
+  input  logic [SlotBits-1:0]   next_slot_i,  // of the next cycle's kick or take
+  input  logic                  show_i,       // never in a cycle with a kick, nor, if Spaced, in the one after
+  input  logic                  take_i,       // with show_i: clears
   input  logic [SlotBits-1:0]   take_slot_i,
-  output logic [Axes*SumBits-1:0] sum_o         // of take_slot_i, without latency, in a cycle with take_i
+  output logic [Axes*SumBits-1:0] sum_o         // of take_slot_i, without latency, in a cycle with show_i
 );
   localparam int IndexBits = (Capacity > 1) ? $clog2(Capacity) : 1;
 
   logic [Capacity-1:0]  held_d, held_q;  // slots whose sum is not zero by default
   logic [SlotBits-1:0]  slot;
-  logic [Axes*SumBits-1:0] mem_q [0:Capacity-1];
-  logic [Axes*SumBits-1:0] old, added;
+  logic [Axes*SumBits-1:0] word, old, added;
 
-  assign slot = take_i ? take_slot_i : kick_slot_i;
-  assign old  = held_q[slot[IndexBits-1:0]] ? mem_q[slot[IndexBits-1:0]] : '0;
+  assign slot = show_i ? take_slot_i : kick_slot_i;
+  assign old  = held_q[slot[IndexBits-1:0]] ? word : '0;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis
-    logic signed [SumBits-1:0] kick;
-    cuboct_resize #(.InBits(KickBits), .OutBits(SumBits)) u_kick (
-      .a_i($signed(kick_i[a*KickBits +: KickBits])), .y_o(kick)
+    logic signed [SumBits-1:0] push;
+    cuboct_resize #(.InBits(KickBits), .OutBits(SumBits)) u_push (
+      .a_i($signed(push_i[a*KickBits +: KickBits])), .y_o(push)
     );
-    assign added[a*SumBits +: SumBits] = old[a*SumBits +: SumBits] + kick;
+    assign added[a*SumBits +: SumBits] = old[a*SumBits +: SumBits] - push;
   end
 
   always_comb begin
@@ -43,8 +46,19 @@ module cuboct_sums #(
     if (!rst_ni) held_q <= '0;
     else held_q <= held_d;
   end
-  always_ff @(posedge clk_i) begin
-    if (kick_valid_i) mem_q[slot[IndexBits-1:0]] <= added;
+  if (Spaced != 0) begin : gen_memory
+    cuboct_ram #(.Bits(Axes * SumBits), .Depth(Capacity), .AddrBits(SlotBits)) u_words (
+      .clk_i, .write_i(kick_valid_i), .write_addr_i(kick_slot_i), .write_data_i(added), .read_i(1'b1),
+      .read_addr_i(next_slot_i), .read_data_o(word)
+    );
+  end else begin : gen_registers
+    logic [Axes*SumBits-1:0] mem_q [0:Capacity-1];
+    logic                    unused_next;
+    assign unused_next = ^next_slot_i;
+    assign word = mem_q[slot[IndexBits-1:0]];
+    always_ff @(posedge clk_i) begin
+      if (kick_valid_i) mem_q[slot[IndexBits-1:0]] <= added;
+    end
   end
   assign sum_o = old;
 endmodule

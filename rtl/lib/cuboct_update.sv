@@ -6,7 +6,8 @@
 //   u   += v - V, which must fit DisplacementBits             types held by force only
 //   x   += round_odd(v, Guard)
 // A particle accepted in cycle t is at the outputs in cycle t + Latency - 1, Latency = 3, or 6 with Pd: it is written
-// back at the edge of that cycle.
+// back at the edge of that cycle. With Held the inputs stay until that cycle, and the next particle comes after it:
+// nothing of them has to be kept here.
 module cuboct_update #(
   parameter int Axes             = 3,   // 2 or 3
   parameter int PositionFrac     = 20,
@@ -16,6 +17,7 @@ module cuboct_update #(
   parameter int SumBits          = 29,  // that it must fit
   parameter int TypeBits         = 1,   // >= 1
   parameter int Pd               = 0,
+  parameter int Held             = 0,   // 0, 1
   parameter int DisplacementBits = 29,
   parameter int GainBits         = 18,
   parameter int GainFrac         = 16,
@@ -71,11 +73,12 @@ module cuboct_update #(
 
   logic [Axes*PositionFrac-1:0] x_last;
   logic [TypeBits-1:0]       type_1;
-  cuboct_delay #(.Bits(SlotBits), .Depth(VStage)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_o));
-  cuboct_delay #(.Bits(IdBits), .Depth(VStage)) u_id (.clk_i, .d_i(id_i), .q_o(id_o));
-  cuboct_delay #(.Bits(Axes*PositionFrac), .Depth(VStage)) u_x (.clk_i, .d_i(x_i), .q_o(x_last));
-  cuboct_delay #(.Bits(TypeBits), .Depth(1)) u_type (.clk_i, .d_i(type_i), .q_o(type_1));
-  cuboct_delay #(.Bits(TypeBits), .Depth(VStage - 1)) u_type_late (.clk_i, .d_i(type_1), .q_o(type_o));
+  localparam int Delay = (Held != 0) ? 0 : 1;  // of what only waits
+  cuboct_delay #(.Bits(SlotBits), .Depth(Delay * VStage)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_o));
+  cuboct_delay #(.Bits(IdBits), .Depth(Delay * VStage)) u_id (.clk_i, .d_i(id_i), .q_o(id_o));
+  cuboct_delay #(.Bits(Axes*PositionFrac), .Depth(Delay * VStage)) u_x (.clk_i, .d_i(x_i), .q_o(x_last));
+  cuboct_delay #(.Bits(TypeBits), .Depth(Delay)) u_type (.clk_i, .d_i(type_i), .q_o(type_1));
+  cuboct_delay #(.Bits(TypeBits), .Depth(Delay * (VStage - 1))) u_type_late (.clk_i, .d_i(type_1), .q_o(type_o));
 
   logic [Axes-1:0]              imposed;  // of type_1
   logic [Axes*ConstantBits-1:0] to_go, gravity;
@@ -100,10 +103,10 @@ module cuboct_update #(
     logic                        imposed_1, bad_1;
     logic signed [WideBits-1:0]  dv_wide, g_wide, to_go_wide, v_wide_1;
     logic signed [VelocityBits-1:0] v_1;
-    cuboct_delay #(.Bits(TotalBits), .Depth(1)) u_sum (
+    cuboct_delay #(.Bits(TotalBits), .Depth(Delay)) u_sum (
       .clk_i, .d_i(sum_i[a*TotalBits +: TotalBits]), .q_o(sum_1)
     );
-    cuboct_delay #(.Bits(VelocityBits), .Depth(1)) u_v (
+    cuboct_delay #(.Bits(VelocityBits), .Depth(Delay)) u_v (
       .clk_i, .d_i(v_i[a*VelocityBits +: VelocityBits]), .q_o(v_1)
     );
     cuboct_resize #(.InBits(TotalBits), .OutBits(SumBits)) u_dv (.a_i(sum_1), .y_o(dv_1));
@@ -142,39 +145,39 @@ module cuboct_update #(
       logic                        held_3;
       logic signed [WideBits-1:0]  plain_3, to_go_last;
       logic                        held_last;
-      cuboct_delay #(.Bits(DisplacementBits), .Depth(2)) u_u2 (
+      cuboct_delay #(.Bits(DisplacementBits), .Depth(Delay * 2)) u_u2 (
         .clk_i, .d_i(u_i[a*DisplacementBits +: DisplacementBits]), .q_o(u_2)
       );
-      cuboct_delay #(.Bits(DisplacementBits), .Depth(3)) u_u_last (.clk_i, .d_i(u_2), .q_o(u_last));
+      cuboct_delay #(.Bits(DisplacementBits), .Depth(Delay * 3)) u_u_last (.clk_i, .d_i(u_2), .q_o(u_last));
       cuboct_resize #(.InBits(WideBits), .OutBits(ErrorBits)) u_error (.a_i(v_wide_1 - to_go_wide), .y_o(error_d));
       cuboct_delay #(.Bits(ErrorBits), .Depth(1)) u_error2 (.clk_i, .d_i(error_d), .q_o(error_2));
       cuboct_delay #(.Bits(2 * GainBits), .Depth(1)) u_gain2 (.clk_i, .d_i({kd, kp}), .q_o({kd_2, kp_2}));
       cuboct_mult #(.ABits(GainBits), .BBits(DisplacementBits)) u_spring (
-        .clk_i, .en_i(valid_q[2]), .a_i(kp_2), .b_i(u_2), .p_o(spring)
+        .clk_i, .rst_ni, .en_i(valid_q[2]), .a_i(kp_2), .b_i(u_2), .p_o(spring)
       );
       cuboct_mult #(.ABits(GainBits), .BBits(ErrorBits)) u_drag (
-        .clk_i, .en_i(valid_q[2]), .a_i(kd_2), .b_i(error_2), .p_o(drag)
+        .clk_i, .rst_ni, .en_i(valid_q[2]), .a_i(kd_2), .b_i(error_2), .p_o(drag)
       );
       assign pull_sum = $signed({{(SpringBits - KpBits) {spring[KpBits-1]}}, spring})
                       + $signed({{(SpringBits - KdBits) {drag[KdBits-1]}}, drag});
       cuboct_round_odd #(.InBits(SpringBits), .Shift(GainFrac), .OutBits(WideBits)) u_pull (
         .a_i(pull_sum), .y_o(pull)
       );
-      cuboct_delay #(.Bits(WideBits + 1), .Depth(2)) u_plain3 (
+      cuboct_delay #(.Bits(WideBits + 1), .Depth(Delay * 2)) u_plain3 (
         .clk_i, .d_i({held, plain}), .q_o({held_3, plain_3})
       );
       assign v_d = plain_3 - (held_3 ? pull : '0);
       always_ff @(posedge clk_i) v_q <= v_d;
       assign v_free = v_q;
-      cuboct_delay #(.Bits(TotalBits + WideBits + 2), .Depth(3)) u_rest (
+      cuboct_delay #(.Bits(TotalBits + WideBits + 2), .Depth(Delay * 3)) u_rest (
         .clk_i, .d_i({imposed_1, bad_1, sum_1, to_go_wide}), .q_o({imposed_v, bad_sum_v, sum_v, v_imposed})
       );
 
       // The displacement, with the outputs.
       logic signed [WideBits-1:0]         u_wide, u_full, u_back, v_out_wide;
       logic signed [DisplacementBits-1:0] u_new;
-      cuboct_delay #(.Bits(WideBits), .Depth(1)) u_to_go_last (.clk_i, .d_i(v_imposed), .q_o(to_go_last));
-      cuboct_delay #(.Bits(1), .Depth(2)) u_held_last (.clk_i, .d_i(held_3), .q_o(held_last));
+      cuboct_delay #(.Bits(WideBits), .Depth(Delay)) u_to_go_last (.clk_i, .d_i(v_imposed), .q_o(to_go_last));
+      cuboct_delay #(.Bits(1), .Depth(Delay * 2)) u_held_last (.clk_i, .d_i(held_3), .q_o(held_last));
       cuboct_resize #(.InBits(DisplacementBits), .OutBits(WideBits)) u_u_wide (.a_i(u_last), .y_o(u_wide));
       cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_out (
         .a_i($signed(v_o[a*VelocityBits +: VelocityBits])), .y_o(v_out_wide)
@@ -204,8 +207,9 @@ module cuboct_update #(
     logic signed [WideBits-1:0]     v_new_wide, v_back, v_wide_q;
     logic signed [VelocityBits-1:0] v_new, v_q;
     logic                           bad_v_q, bad_sum_q;
-    logic signed [TotalBits-1:0]    sum_q;
+    logic signed [TotalBits-1:0]    sum_last;
     logic signed [PositionFrac+1:0] drift, moved;
+    cuboct_delay #(.Bits(TotalBits), .Depth(Delay)) u_sum_last (.clk_i, .d_i(sum_v), .q_o(sum_last));
     assign v_new_wide = imposed_v ? v_imposed : v_free;
     cuboct_resize #(.InBits(WideBits), .OutBits(VelocityBits)) u_v_new (.a_i(v_new_wide), .y_o(v_new));
     cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_back (.a_i(v_new), .y_o(v_back));
@@ -215,13 +219,12 @@ module cuboct_update #(
         v_wide_q  <= v_new_wide;
         bad_v_q   <= !imposed_v && (v_back != v_new_wide);
         bad_sum_q <= bad_sum_v;
-        sum_q     <= sum_v;
       end
     end
     assign bad_sum[a] = bad_sum_q;
     assign bad_v[a]   = bad_v_q;
     cuboct_resize #(.InBits(TotalBits), .OutBits(NumberBits)) u_sum_number (
-      .a_i(sum_q), .y_o(sum_number[a*NumberBits +: NumberBits])
+      .a_i(sum_last), .y_o(sum_number[a*NumberBits +: NumberBits])
     );
     cuboct_resize #(.InBits(WideBits), .OutBits(NumberBits)) u_v_number (
       .a_i(v_wide_q), .y_o(v_number[a*NumberBits +: NumberBits])

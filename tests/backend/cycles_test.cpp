@@ -41,5 +41,28 @@ TEST(ExpectedCycles, AreWithinTwelvePerCentOfTheMachine) {
   EXPECT_EQ(compared, 6);
 }
 
+// The same of nodes that serve bricks, up to one node that has it all.
+TEST(ExpectedCycles, OfBricksAreWithinTwelvePerCentOfTheMachine) {
+  for (const Cell& brick : {Cell{2, 2, 2}, Cell{1, 3, 2}, Cell{5, 5, 5}, Cell{6, 6, 6}})
+    for (const bool overlap : {true, false}) {
+      Arch arch;
+      arch.brick = brick;
+      arch.overlap = overlap;
+      arch.filter_lanes = overlap ? 8 : 3;
+      const auto setup = block({.size = {5, 5, 5}, .jitter = 0.01, .speed = 0.001}, arch);
+      const ExpectedCycles expected = expected_cycles(setup.plan, setup.initial);
+      emu::RunOptions options;
+      options.steps = 8;
+      const Trace trace =
+          run_plain(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
+      uint64_t last = 0;
+      for (const PhaseSpan& span : trace.cycles) last = std::max(last, span.end);
+      const double actual = static_cast<double>(last + 1) / 8;
+      EXPECT_NEAR(static_cast<double>(expected.step) / actual, 1, 0.12) << actual;
+      EXPECT_LE(static_cast<double>(expected.ideal), actual);
+      EXPECT_LE(actual, 1.5 * static_cast<double>(expected.ideal));
+    }
+}
+
 }  // namespace
 }  // namespace cuboct::test

@@ -98,6 +98,58 @@ Outcome stepped(const Plan& plan, const Engine& engine) {
   }
 }
 
+// With narrow memories: the port's questions and the registers T and R, cycle by cycle.
+Outcome walked(const Plan& plan, const Engine& engine) {
+  const size_t n = engine.own.size();
+  Outcome out;
+  uint64_t cycle = engine.available[0], pipe_free = 0, pipe_empty = 0;
+  for (size_t segment = 0; segment < 7; ++segment) {
+    const size_t size = segment == 0 ? n : engine.halo[segment - 1].size();
+    if (n == 0 || size == 0) {
+      ++cycle;
+      continue;
+    }
+    for (size_t record = 0; record < size; ++record) {
+      const emu::Candidate& j = segment == 0 ? engine.own[record].body : engine.halo[segment - 1][record];
+      const auto at = [](const emu::Candidate& c) { return Int3{c.x[0], c.x[1], c.x[2]}; };
+      const auto meets = [&](size_t slot) {
+        return (segment > 0 || slot != record) && may_interact(plan.rule, at(engine.own[slot].body), at(j));
+      };
+      cycle += segment == 0 ? 1 : static_cast<uint64_t>(plan.words.halo_beats);  // words; the first slot in the last
+      std::optional<size_t> asked = 0, t, r;
+      size_t next = 1;
+      bool first = true;
+      for (;; ++cycle, first = false) {
+        if (first) {
+          ++out.candidates;
+          continue;
+        }
+        t = asked ? asked : t;
+        asked.reset();
+        const bool hit = r && meets(*r);
+        if (hit && cycle < pipe_free) {
+          ++out.stalls;
+          continue;
+        }
+        if (hit) {
+          ++out.issue_cycles, ++out.pairs;
+          pipe_free = cycle + static_cast<uint64_t>(plan.latency.interval);
+          pipe_empty = cycle + static_cast<uint64_t>(plan.latency.pipe);
+        } else if (next < n) {
+          asked = next++;
+          ++out.candidates;
+        }
+        r = t;
+        t.reset();
+        if (!r && !asked && next == n) break;
+      }
+      ++cycle;
+    }
+  }
+  out.last = std::max(cycle, pipe_empty);
+  return out;
+}
+
 TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
   std::mt19937_64 random(11);
   const auto draw = [&](int64_t low, int64_t high) {
@@ -105,7 +157,7 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
   };
   Plan plan = make_case("undamped_2x2x2").setup.plan;
   const int64_t cell = int64_t{1} << plan.rule.widths.position_frac;
-  uint64_t stalled = 0, empty = 0, waited = 0, passes = 0;
+  uint64_t stalled = 0, empty = 0, waited = 0, passes = 0, narrow = 0;
   for (int run = 0; run < 3000; ++run) {
     plan.arch.capacity = 80;
     plan.arch.filter_lanes = static_cast<int>(draw(0, 3) == 0 ? draw(1, 64) : draw(1, 8));
@@ -113,6 +165,9 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
     plan.arch.queue_depth = static_cast<int>(draw(0, 1) ? draw(1, 3) : draw(1, 20));
     plan.latency.interval = static_cast<int>(draw(0, 1) ? 1 : draw(2, 4));
     plan.latency.pipe = static_cast<int>(draw(plan.latency.interval, 14));
+    plan.arch.narrow_memories = draw(0, 3) == 0;
+    if (plan.arch.narrow_memories) plan.arch.filter_lanes = plan.arch.force_pipes = 1;
+    plan.words.halo_beats = static_cast<int>(draw(1, 9));
     Engine engine;
     engine.own.resize(static_cast<size_t>(draw(0, 5) == 0 ? draw(0, 80) : draw(0, 9)));
     const int64_t spread = cell >> draw(0, 3);  // the nearer they lie the more pairs meet
@@ -128,7 +183,8 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
     engine.available[0] = static_cast<uint64_t>(draw(0, 1000));
     for (size_t a = 1; a < 4; ++a)
       engine.available[a] =
-          engine.available[a - 1] + static_cast<uint64_t>(draw(0, 2) == 0 ? 0 : draw(1, 60));
+          engine.available[a - 1] +
+          static_cast<uint64_t>(plan.arch.narrow_memories || draw(0, 2) == 0 ? 0 : draw(1, 60));
 
     emu::FaultKeeper fault;
     emu::ForceEngine tested(plan, engine.own, engine.halo, fault);
@@ -136,7 +192,7 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
     for (int a = 0; a < 3; ++a) tested.available(a, engine.available[static_cast<size_t>(a) + 1]);
     const uint64_t last = tested.run();
     const emu::ForceEngine::Counts& counts = tested.counts();
-    const Outcome expected = stepped(plan, engine);
+    const Outcome expected = plan.arch.narrow_memories ? walked(plan, engine) : stepped(plan, engine);
     const Outcome got{last, counts.stalls, counts.issue_cycles, counts.candidates, counts.pairs_issued};
     ASSERT_TRUE(got == expected) << "run " << run << ": last cycle " << got.last << ", expected "
                                  << expected.last << "; stalls " << got.stalls << ", expected "
@@ -146,11 +202,13 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
     empty += engine.own.empty();
     waited += engine.available[3] > engine.available[2] + 20;
     passes += static_cast<int>(engine.own.size()) > plan.arch.filter_lanes;
+    narrow += plan.arch.narrow_memories && expected.stalls > 0;
   }
   EXPECT_GT(stalled, 300u);
   EXPECT_GT(empty, 100u);
   EXPECT_GT(waited, 300u);
   EXPECT_GT(passes, 300u);
+  EXPECT_GT(narrow, 100u);
 }
 
 }  // namespace

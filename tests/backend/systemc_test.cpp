@@ -44,6 +44,41 @@ TEST_P(SystemC, EqualsGoldenAndThePlainLoop) {
 INSTANTIATE_TEST_SUITE_P(Cases, SystemC, testing::ValuesIn(case_names()),
                          [](const auto& p) { return p.param; });
 
+// Bricks in one simulation: a node linked to itself, two nodes linked twice, ragged ones, checked links; each
+// without and with stalls.
+TEST(SystemCBricks, EqualGoldenAndThePlainLoop) {
+  const std::vector<std::pair<std::string, Cell>> bricks{{"periodic_27", {3, 2, 1}},
+                                                         {"flat_ring", {2, 2, 1}},
+                                                         {"hot_gas", {3, 4, 2}},
+                                                         {"rich_damped.retry", {2, 2, 2}},
+                                                         {"undamped_2x2x2", {2, 2, 2}}};
+  std::vector<std::unique_ptr<Case>> cases;
+  std::vector<std::unique_ptr<emu::Bench>> benches;
+  std::vector<emu::Bench*> all;
+  for (const auto& [name, brick] : bricks)
+    for (const double rate : {0.0, 0.3}) {
+      const Case& c = *cases.emplace_back(std::make_unique<Case>(with_brick(make_case(name), brick)));
+      benches.push_back(std::make_unique<emu::Bench>(
+          ("bench" + std::to_string(benches.size())).c_str(), c.setup.plan, c.setup.initial,
+          keep_all(c.steps, rate, 7), emu::native_nodes(c.setup.plan), "systemc"));
+      all.push_back(benches.back().get());
+    }
+  emu::simulate(all);
+  for (size_t k = 0; k < cases.size(); ++k) {
+    const Case& c = *cases[k];
+    const Plan& plan = c.setup.plan;
+    const emu::RunResult run = benches[k]->take_result();
+    const Compared compared = compare(plan, run_golden(c.setup, c.steps), run);
+    EXPECT_EQ(compared.difference, "") << c.name;
+    EXPECT_EQ(compared.steps, c.steps + 1);
+    const Compared with_plain =
+        compare_cycles(run, run_plain(plan, c.setup.initial, keep_all(c.steps, k % 2 == 0 ? 0.0 : 0.3, 7),
+                                      emu::native_nodes(plan), "plain"));
+    EXPECT_EQ(with_plain.difference, "") << c.name;
+    EXPECT_EQ(with_plain.spans, c.steps * plan.nodes() * kPhases);
+  }
+}
+
 // A native node that is called in every cycle.
 class Restless : public emu::NodeModel {
  public:

@@ -34,7 +34,7 @@ struct Seen {
   uint64_t busy = 0, filtered = 0, walked = 0;  // TimingCounters
   uint64_t checked = 0;
   uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, damped = 0, rings_of_3 = 0, lone_nodes = 0,
-           flat = 0, shared = 0, coarse = 0;
+           flat = 0, shared = 0, coarse = 0, narrow = 0, serial = 0, bricks = 0;
 };
 
 emu::NodeSlots slots_of(const Golden& golden) {
@@ -105,7 +105,7 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   emu::RunOptions options;
   options.steps = c.steps;
   const Trace trace = run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
-  const uint32_t nodes = plan.lattice.size();
+  const uint32_t nodes = plan.nodes();
 
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
   auto model = std::make_unique<emu::TimingModel>(plan, threads);
@@ -147,7 +147,10 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   seen.checked += plan.link.checked();
   seen.queue_of_one += plan.arch.queue_depth == 1;
   seen.pipes += plan.arch.force_pipes > 1;
-  seen.shared += plan.arch.shared_multipliers;
+  seen.shared += plan.arch.multipliers == Multipliers::shared;
+  seen.serial += plan.arch.multipliers == Multipliers::serial;
+  seen.narrow += plan.arch.narrow_memories;
+  seen.bricks += !plan.bricks.single();
   seen.coarse += plan.rule.widths.filter_frac != Widths{}.filter_frac;
   seen.pd += plan.rule.pd;
   seen.damped += plan.rule.damped;
@@ -178,10 +181,17 @@ Case rebuilt(Case c, uint64_t seed) {
   arch.filter_lanes = std::array{draw(1, 4), draw(5, 20), draw(21, 64)}[static_cast<size_t>(draw(0, 2))];
   arch.force_pipes = draw(1, std::min(arch.filter_lanes, draw(1, 8)));
   arch.queue_depth = std::array{1, draw(2, 4), draw(5, 30), 1024}[static_cast<size_t>(draw(0, 3))];
-  arch.shared_multipliers = draw(0, 2) == 0;
+  arch.multipliers = static_cast<Multipliers>(draw(0, 2));
   arch.overlap = draw(0, 3) > 0;
+  arch.narrow_memories = draw(0, 3) == 0;
+  if (arch.narrow_memories) arch.filter_lanes = arch.force_pipes = 1, arch.overlap = false;
   arch.link_bits = std::array{0, draw(1, 8), draw(9, 200), 1024}[static_cast<size_t>(draw(0, 3))];
   if (draw(0, 2) == 0) arch.capacity = crowd_of(c);
+  if (draw(0, 2) == 0 && !arch.narrow_memories) {
+    const std::vector<Cell> bricks = bricks_for(plan.lattice);
+    if (!bricks.empty())
+      arch.brick = bricks[static_cast<size_t>(draw(0, static_cast<int>(bricks.size()) - 1))];
+  }
   // The clocked node holds checked beats of 512 bits.
   if (arch.link_bits <= 200) arch.link_check = static_cast<LinkCheck>(draw(0, 2));
   plan = make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
@@ -234,7 +244,10 @@ TEST(TimingRandom, EqualsTheClockedNode) {
                                                              {"queue_of_one", seen.queue_of_one},
                                                              {"pipes", seen.pipes},
                                                              {"shared", seen.shared},
+                                                             {"narrow", seen.narrow},
+                                                             {"serial", seen.serial},
                                                              {"coarse", seen.coarse},
+                                                             {"bricks", seen.bricks},
                                                              {"pd", seen.pd},
                                                              {"damped", seen.damped},
                                                              {"rings_of_3", seen.rings_of_3},
@@ -245,6 +258,30 @@ TEST(TimingRandom, EqualsTheClockedNode) {
     RecordProperty(name, static_cast<int>(count));
     EXPECT_GT(count, 0u) << name;
   }
+}
+
+// Nodes that serve bricks: random plans, all features on lattices with holes, and a scene of many nodes.
+TEST(TimingBricks, EqualTheClockedNode) {
+  Seen seen;
+  for (uint64_t seed = 1; seed <= 100; ++seed) ASSERT_EQ(difference(random_brick_case(seed), seen), "");
+  EXPECT_EQ(seen.bricks, seen.runs);
+  for (const std::string& name : case_names()) {
+    const Case c = make_case(name);
+    for (const Cell& brick : bricks_for(c.setup.plan.lattice))
+      ASSERT_EQ(difference(with_brick(c, brick), seen), "");
+  }
+  for (const Case& c : {lumps({4.1, 4.3, -3.7}), lumps({-5.4, 3.6, 4.5}), make_case("hot_gas.detect"),
+                        make_case("flat_gas.retry")}) {
+    for (const Cell& brick : bricks_for(c.setup.plan.lattice))
+      ASSERT_EQ(difference(with_brick(c, brick), seen), "");
+  }
+  const Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/coupon.toml");
+  ASSERT_EQ(difference(with_brick({"coupon", make_setup(scene, Arch{}), 4}, {4, 2, 3}), seen, 3), "");
+  EXPECT_GT(seen.leave_twice, 20u);
+  EXPECT_GT(seen.crowds, 20u);
+  EXPECT_GT(seen.stalls, 100u);
+  EXPECT_GT(seen.checked, 5u);
+  EXPECT_GT(seen.multi_beat, 20u);
 }
 
 // Runs that a fault stops: the steps before it are as always.

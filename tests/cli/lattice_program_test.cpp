@@ -53,6 +53,18 @@ TEST_F(LatticeProgram, NoBitDependsOnItsOptions) {
   EXPECT_EQ(traced("--energies").curves.size(), 5u);  // four energies and, in a periodic box, the pressure
 }
 
+// Bricks change the nodes and cycles of the machine, and no bit.
+TEST_F(LatticeProgram, CountsTheCyclesOfBricks) {
+  std::ofstream(path("arch")) << "name = \"bricks\"\n[node]\nbrick = [2, 2, 1]\n";
+  const std::string arch = "--arch '" + path("arch") + "'";
+  const Trace plain = traced("--cycles"), bricks = traced("--cycles " + arch);
+  EXPECT_EQ(bricks.state_hash, plain.state_hash);
+  EXPECT_EQ(bricks.frames, plain.frames);
+  EXPECT_LT(bricks.nodes, plain.nodes / 2);
+  EXPECT_EQ(bricks.cycles.size(), 25 * bricks.nodes * kPhases);
+  EXPECT_GT(bricks.counters.at(0).second, 2 * plain.counters.at(0).second);
+}
+
 TEST_F(LatticeProgram, HashesAsOftenAsAsked) {
   const Trace every = traced(""), some = traced("--hash-every 10");
   EXPECT_EQ(some.steps(), 25u);

@@ -44,14 +44,16 @@ TEST(CheckedLinks, CostTwoCyclesPerBeatAndNoBits) {
 // Every beat of every wire of a small lattice, in each way.
 class EachBeat : public testing::TestWithParam<FaultKind> {
  protected:
+  void is_found_and_named(const Case& c);
+  void is_healed(const Case& c);
   // Calls see(target, result) for each beat of the run; how many there were.
   template <typename See>
   uint64_t for_each_beat(const Case& c, See see) {
-    const Lattice& lattice = c.setup.plan.lattice;
+    const Plan& plan = c.setup.plan;
     uint64_t beats = 0;
-    for (uint32_t n = 0; n < lattice.size(); ++n)
+    for (uint32_t n = 0; n < plan.nodes(); ++n)
       for (int f = 0; f < kFaces; ++f) {
-        if (lattice.neighbour(n, f) == kNoNode) continue;
+        if (plan.neighbour(n, f) == kNoNode) continue;
         for (uint64_t beat = 0;; ++beat, ++beats) {
           emu::RunOptions options = keep_all(2);
           options.faults.target = {n, f, beat, GetParam()};
@@ -69,8 +71,8 @@ class EachBeat : public testing::TestWithParam<FaultKind> {
   }
 };
 
-TEST_P(EachBeat, IsFoundAndNamed) {
-  const Case c = make_case("lattice_3x2x1.detect");
+// A link that fails stops the run at a node; a brick is told by its first cell.
+void EachBeat::is_found_and_named(const Case& c) {
   const Plan& plan = c.setup.plan;
   const GoldenRun golden = run_golden(c.setup, 2);
   uint64_t silent = 0, stopped = 0;
@@ -86,9 +88,9 @@ TEST_P(EachBeat, IsFoundAndNamed) {
     ++stopped;
     const StopReason& stop = *got.trace.stop;
     EXPECT_EQ(before_stop(plan, golden, got), "");
-    const uint32_t receiver = plan.lattice.neighbour(t.node, t.face);
+    const uint32_t receiver = plan.neighbour(t.node, t.face);
     const bool by_sender = t.kind == FaultKind::ack || stop.fault == Fault::link_silent;
-    EXPECT_EQ(stop.node, by_sender ? t.node : receiver);
+    EXPECT_EQ(stop.node, plan.cell_of(by_sender ? t.node : receiver, 0));
     EXPECT_EQ(stop.number, by_sender ? t.face : t.face ^ 1);
     EXPECT_LE(stop.step, 2u);
     const Fault expected = t.kind == FaultKind::flip || t.kind == FaultKind::ack ? Fault::link_check
@@ -103,8 +105,13 @@ TEST_P(EachBeat, IsFoundAndNamed) {
   EXPECT_EQ(silent > 0, GetParam() == FaultKind::drop);
 }
 
-TEST_P(EachBeat, IsHealed) {
-  const Case c = make_case("lattice_3x2x1.retry");
+TEST_P(EachBeat, IsFoundAndNamed) { is_found_and_named(make_case("lattice_3x2x1.detect")); }
+
+TEST_P(EachBeat, IsFoundAndNamedBetweenBricks) {
+  is_found_and_named(with_brick(make_case("lattice_3x2x1.detect"), {2, 1, 1}));
+}
+
+void EachBeat::is_healed(const Case& c) {
   const GoldenRun golden = run_golden(c.setup, 2);
   const uint64_t beats = for_each_beat(c, [&](const emu::FaultTarget&, const emu::RunResult& got) {
     EXPECT_EQ(got.faults.detected, 1u);
@@ -112,6 +119,12 @@ TEST_P(EachBeat, IsHealed) {
     EXPECT_EQ(compare(c.setup.plan, golden, got).difference, "");
   });
   EXPECT_GT(beats, 100u);
+}
+
+TEST_P(EachBeat, IsHealed) { is_healed(make_case("lattice_3x2x1.retry")); }
+
+TEST_P(EachBeat, IsHealedBetweenBricks) {
+  is_healed(with_brick(make_case("lattice_3x2x1.retry"), {2, 1, 1}));
 }
 
 constexpr const char* kKind[] = {"none", "flip", "drop", "repeat", "ack"};

@@ -49,7 +49,9 @@ std::string table(const std::string& prefix, const char* rom, const char* name, 
              "    .EntryBits(cuboct_pkg::StrengthBits), .ValueBits(cuboct_pkg::{2}),\n"
              "    .OctaveStage(cuboct_pkg::{0}Octaves), .SquareStages(cuboct_pkg::{0}Degree == 2 ? 1 : 0)\n"
              "  ) u_{1} (\n"
-             "    .clk_i, .r2_i(in_i[64*{4} +: 2*D]), .index_o({1}_index), .c0_i({1}_c0), .c1_i({1}_c1), "
+             "    .clk_i, .rst_ni, "
+             ".valid_i({{(cuboct_pkg::{0}Octaves + (cuboct_pkg::{0}Degree == 2 ? 7 : 5)){{1'b1}}}}),\n"
+             "    .r2_i(in_i[64*{4} +: 2*D]), .index_o({1}_index), .c0_i({1}_c0), .c1_i({1}_c1), "
              ".c2_i({1}_c2),\n"
              "    .value_o({1}_value)\n"
              "  );\n"
@@ -84,7 +86,9 @@ std::string print_blocks(const Plan& plan) {
   text += fmt::format("  logic [64*{}-1:0] in_q;\n  always_ff @(posedge clk_i) in_q <= in_i;\n", static_cast<int>(in::count));
   text += "  logic pipe_valid, pipe_fault, pipe_strength, pipe_busy;\n";
   text += fmt::format("  logic [{}:0] pipe_slot, pipe_slot_next, new_slot;\n", kSlotBits - 1);
-  text += "  logic [3*K-1:0] kick;\n  logic signed [63:0] pipe_number;\n";
+  text +=
+      "  logic [3*K-1:0] push, kick;\n  logic signed [63:0] pipe_number;\n"
+      "  assign kick = {-push[2*K +: K], -push[K +: K], -push[0 +: K]};\n";
   text += "  cuboct_pipe #(\n    " + given({"PositionFrac",
                                             "DifferenceShift",
                                             "Cutoff2",
@@ -119,7 +123,7 @@ std::string print_blocks(const Plan& plan) {
           from("own_type_i", in::own_type, "T", 1, "in_q") + from("other_x_i", in::other_x, "(P+2)", 3) +
           from("other_v_i", in::other_v, "V", 3) + from("other_type_i", in::other_type, "T");
   text +=
-      "    .valid_o(pipe_valid), .slot_next_o(pipe_slot_next), .slot_o(pipe_slot), .kick_o(kick), .fault_o(pipe_fault),\n"
+      "    .valid_o(pipe_valid), .slot_next_o(pipe_slot_next), .slot_o(pipe_slot), .push_o(push), .fault_o(pipe_fault),\n"
       "    .fault_strength_o(pipe_strength), .fault_number_o(pipe_number), .busy_o(pipe_busy)\n  );\n";
   text += to_axes(out::d, "u_pipe.d_q", "D+1") + to(out::r2, "u_pipe.r2_q") +
           to(out::q, damped ? "u_pipe.gen_damp.q_q" : "1'b0", damped) +

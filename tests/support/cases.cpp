@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/cases.h"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <stdexcept>
 
+#include "model/golden.h"
 #include "tests/support/block.h"
 #include "tests/support/dice.h"
 
@@ -18,6 +21,12 @@ struct Recipe {
   bool lone = false;  // particle 0 flies alone along the diagonal, and crosses three faces in one step
   uint64_t steps = 30;
 };
+
+void narrow(Arch& arch) {
+  arch.narrow_memories = true;
+  arch.filter_lanes = arch.force_pipes = 1;
+  arch.overlap = false;
+}
 
 const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
   using R = Recipe&;
@@ -120,16 +129,36 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.features.flat = true;
          r.features.size = {3, 3, 1};
          r.features.damping = 0.2;
-         r.arch.shared_multipliers = true;
+         r.arch.multipliers = Multipliers::shared;
          r.arch.queue_depth = 2;
        }},
+      {"flat_narrow",
+       [](R r) {
+         r.features.flat = true;
+         r.features.size = {4, 3, 1};
+         r.features.speed = 0.5;
+         r.features.margin = 3;
+         r.arch.link_bits = 11;
+         r.arch.multipliers = Multipliers::shared;
+         r.arch.table = {.shape = TableChoice::Shape::octaves, .degree = 2, .index_bits = 7};
+         narrow(r.arch);
+       }},
       // Rich ones, of which the RTL is built.
+      {"rich_narrow",
+       [](R r) {
+         r.features.damping = 0.2;
+         r.features.speed = 0.5;
+         r.features.two_materials = r.features.held = true;
+         r.arch.multipliers = Multipliers::serial;
+         r.arch.link_bits = 21;  // the sign of x lies in two words
+         narrow(r.arch);
+       }},
       {"rich_shared",
        [](R r) {
          r.features.damping = 0.2;
          r.features.speed = 0.3;
          r.features.two_materials = r.features.held = true;
-         r.arch.shared_multipliers = true;
+         r.arch.multipliers = Multipliers::shared;
          r.arch.widths.filter_frac = 5;
          r.arch.filter_lanes = 3;
          r.arch.queue_depth = 2;
@@ -206,8 +235,10 @@ Case make_case(const std::string& name) {
   Recipe recipe;
   const size_t dot = name.find('.');
   recipes().at(name.substr(0, dot))(recipe);
-  if (dot != std::string::npos)
-    recipe.arch.link_check = name.substr(dot) == ".retry" ? LinkCheck::retry : LinkCheck::detect;
+  const std::string variant = dot == std::string::npos ? "" : name.substr(dot);
+  if (variant == ".snug") recipe.features.margin = 0;
+  if (variant == ".retry") recipe.arch.link_check = LinkCheck::retry;
+  if (variant == ".detect") recipe.arch.link_check = LinkCheck::detect;
   return cook(name, recipe);
 }
 
@@ -242,14 +273,97 @@ Case random_recipe(uint64_t seed, bool flat) {
     r.arch.cell_edge = 0;
     r.arch.capacity = 24;
   }
-  r.arch.shared_multipliers = dice.chance(25);
+  if (dice.chance(30)) r.arch.multipliers = dice.chance(60) ? Multipliers::shared : Multipliers::serial;
   if (dice.chance(30)) r.arch.widths.filter_frac = dice.draw(2, 14);
+  if (dice.chance(20)) narrow(r.arch);
   return cook((flat ? "random_flat_" : "random_") + std::to_string(seed), r);
 }
 
 Case random_case(uint64_t seed) { return random_recipe(seed, false); }
 
 Case random_flat_case(uint64_t seed) { return random_recipe(seed, true); }
+
+Case with_brick(Case c, const Cell& brick) {
+  Plan& plan = c.setup.plan;
+  Arch arch = plan.arch;
+  arch.brick = brick;
+  arch.narrow_memories = false;
+  plan = make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
+  return c;
+}
+
+namespace {
+
+Cell length_of(const Lattice& lattice) {
+  Cell low = lattice.cell(0), high = low, length;
+  for (uint32_t n = 1; n < lattice.size(); ++n)
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], lattice.cell(n)[a]);
+      high[a] = std::max(high[a], lattice.cell(n)[a]);
+    }
+  for (int a = 0; a < 3; ++a)
+    length[a] = lattice.period()[a] > 0 ? lattice.period()[a] : high[a] - low[a] + 1;
+  return length;
+}
+
+}  // namespace
+
+namespace {
+
+// The same on a lattice of only those cells that hold a particle at some step, and those on the ways.
+Case hollowed(Case c) {
+  Plan& plan = c.setup.plan;
+  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
+  std::vector<bool> held(plan.lattice.size());
+  const auto note = [&] {
+    for (uint32_t n = 0; n < held.size(); ++n) held[n] = held[n] || !golden.nodes()[n].empty();
+  };
+  note();
+  for (uint64_t step = 0; step < c.steps; ++step) golden.step(), note();
+  std::vector<Cell> cells;
+  for (uint32_t n = 0; n < held.size(); ++n)
+    if (held[n]) cells.push_back(plan.lattice.cell(n));
+  Lattice lattice(cells, plan.lattice.period());
+  for (Particle& p : c.setup.initial.particles) p.node = lattice.find(plan.lattice.cell(p.node));
+  plan = make_plan(plan.rule, plan.arch, std::move(lattice), plan.origin, plan.particles);
+  return c;
+}
+
+}  // namespace
+
+Case lumps(const Vec3& apart) {
+  Scene scene = block_scene({.size = {4, 2, 2}, .jitter = 0.08, .speed = 0.4, .margin = 4.0});
+  scene.steps = 10;
+  const double edge = make_setup(scene, Arch{}).plan.rule.cell_edge;
+  double low = INFINITY, high = -INFINITY;
+  for (const Vec3& x : scene.body.x) low = std::min(low, x[0]), high = std::max(high, x[0]);
+  const double middle = 0.5 * (low + high);
+  for (Vec3& x : scene.body.x)
+    if (x[0] > middle) x += edge * apart;
+  return hollowed({"lumps", make_setup(scene, Arch{}), scene.steps, scene});
+}
+
+std::vector<Cell> bricks_for(const Lattice& lattice) {
+  const Cell length = length_of(lattice);
+  std::vector<Cell> bricks{length};
+  for (const Cell& shape : {Cell{2, 2, 2}, Cell{3, 3, 3}, Cell{1, 2, 3}, Cell{4, 1, 2}, Cell{2, 4, 1}}) {
+    Cell brick;
+    for (int a = 0; a < 3; ++a) brick[a] = std::min(shape[a], length[a]);
+    if (std::find(bricks.begin(), bricks.end(), brick) == bricks.end()) bricks.push_back(brick);
+  }
+  std::erase_if(bricks, [](const Cell& b) { return cells_of(b) == 1 || cells_of(b) > kMostBrickCells; });
+  return bricks;
+}
+
+Case random_brick_case(uint64_t seed) {
+  Case c = seed % 4 == 0 ? random_flat_case(seed) : random_case(seed);
+  Dice dice(seed * 31 + 7);
+  const Cell length = length_of(c.setup.plan.lattice);
+  Cell brick{1, 1, 1};
+  for (int a = 0; a < 3; ++a) brick[a] = dice.draw(1, std::min(length[a], 5));
+  if (cells_of(brick) == 1) brick = bricks_for(c.setup.plan.lattice).front();
+  return with_brick(std::move(c), brick);
+}
 
 std::vector<Fault> all_faults() {
   return {Fault::relative_velocity,

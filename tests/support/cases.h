@@ -18,13 +18,24 @@ struct Case {
 
 // One feature or awkward size each.
 std::vector<std::string> case_names();
-// `name` with ".detect" or ".retry": the same with checked links.
+// `name` with ".detect" or ".retry": the same with checked links; with ".snug": in the fewest nodes, for a
+// few steps.
 Case make_case(const std::string& name);
 
 // Features, sizes and initial state drawn from `seed`.
 Case random_case(uint64_t seed);
 // The same without a third axis.
 Case random_flat_case(uint64_t seed);
+
+// The same on nodes that serve bricks of cells.
+Case with_brick(Case c, const Cell& brick);
+// Two hot blocks, the second beyond the first by these many cells (signed) along each axis, on a lattice of
+// only those cells that ever hold a particle: what lies between them has none.
+Case lumps(const Vec3& apart);
+// Bricks that this lattice can be cut into: thin ones, cubes, ones that leave a rest, the whole of it.
+std::vector<Cell> bricks_for(const Lattice& lattice);
+// A random case, of three axes or two, with a random brick.
+Case random_brick_case(uint64_t seed);
 
 // A case of this fault, which golden must meet within `steps`. Those that need narrow formats share one rule
 // and arch.

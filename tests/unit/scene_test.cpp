@@ -403,7 +403,8 @@ TEST(Examples, DefaultArchIsTheDefault) {
   EXPECT_EQ(file.force_pipes, none.force_pipes);
   EXPECT_EQ(file.queue_depth, none.queue_depth);
   EXPECT_EQ(file.overlap, none.overlap);
-  EXPECT_EQ(file.shared_multipliers, none.shared_multipliers);
+  EXPECT_EQ(file.multipliers, none.multipliers);
+  EXPECT_EQ(file.narrow_memories, none.narrow_memories);
   EXPECT_EQ(file.widths.filter_frac, none.widths.filter_frac);
   EXPECT_EQ(file.link_bits, none.link_bits);
   EXPECT_EQ(file.widths.position_frac, none.widths.position_frac);
@@ -434,8 +435,13 @@ TEST(Examples, ArchValuesArrive) {
   EXPECT_EQ(fast.force_pipes, 2);
   EXPECT_EQ(fast.table.degree, 2);
   const Arch ice40 = read_arch(kRoot + "/scenes/archs/ice40.toml");
-  EXPECT_TRUE(ice40.shared_multipliers);
-  EXPECT_FALSE(fast.shared_multipliers);
+  EXPECT_EQ(ice40.multipliers, Multipliers::shared);
+  EXPECT_EQ(fast.multipliers, Multipliers::parallel);
+  EXPECT_TRUE(ice40.narrow_memories);
+  EXPECT_FALSE(fast.narrow_memories);
+  const Arch serial = read_arch(kRoot + "/scenes/archs/ice40_serial.toml");
+  EXPECT_EQ(serial.multipliers, Multipliers::serial);
+  EXPECT_TRUE(serial.narrow_memories);
   EXPECT_EQ(ice40.widths.filter_frac, 8);
   EXPECT_EQ(ice40.widths.difference_frac, 15);
 }

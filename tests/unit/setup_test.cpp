@@ -58,6 +58,14 @@ TEST(Setup, BothWaysRefuseAlike) {
   arch.capacity = 300;
   EXPECT_EQ(error_of([&] { plan_of(scene, arch); }), "capacity = 300 is out of range: 1 to 256");
   EXPECT_EQ(error_of([&] { make_setup(scene, arch); }), error_of([&] { plan_of(scene, arch); }));
+  arch.capacity = 16;
+  arch.narrow_memories = true;
+  const std::string port = "memories = \"narrow\" have one port to read: set ";
+  EXPECT_EQ(error_of([&] { plan_of(scene, arch); }), port + "filter_lanes = 1");
+  arch.filter_lanes = 1;
+  EXPECT_EQ(error_of([&] { plan_of(scene, arch); }), port + "overlap = false");
+  arch.overlap = false;
+  EXPECT_NO_THROW(plan_of(scene, arch));
   scene.body.v[7][1] = 1e6;
   const std::string fast = error_of([&] { plan_of(scene, {}); });
   EXPECT_TRUE(fast.starts_with("particle 7 moves at 1e+06 m/s: more than the ")) << fast;

@@ -7,8 +7,11 @@ package cuboct_pkg;
   localparam int          FilterLanes          = 4;             // own particles that a candidate meets per cycle
   localparam int          ForcePipes           = 1;             // pairs per cycle
   localparam int          Shared               = 0;             // 1: one multiplier serves the axes in turn
+  localparam int          Product              = 1;             // cycles of a multiplier
+  localparam int          Interval             = 1;             // cycles from one pair to the next
   localparam int          QueueDepth           = 4;             // entries between filter and pipes
   localparam int          Overlap              = 1;             // 1: the force engine starts with the exchange
+  localparam int          Narrow               = 0;             // 1: memories of words of LinkBits, one port to read
   localparam int          LinkBits             = 64;            // payload of a beat
   localparam int          IdBits               = 3;
   localparam int          TypeBits             = 0;             // 0 with one type

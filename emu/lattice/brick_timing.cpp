@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: MIT
+#include "emu/lattice/brick_timing.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "emu/lattice/force_time.h"
+
+namespace cuboct::emu {
+namespace {
+
+// As in timing.cpp: an end beat loaded in cycle t is seen by its sender in t + 1, by its receiver in t + 2.
+constexpr int64_t kSent = 1, kReceived = 2;
+constexpr int64_t kWorkPerThread = 1000;
+
+constexpr size_t at(int index) { return static_cast<size_t>(index); }
+constexpr size_t at(Phase phase) { return static_cast<size_t>(phase); }
+constexpr uint8_t bit(int axis) { return static_cast<uint8_t>(1u << axis); }
+
+int64_t ceil_div(int64_t a, int64_t b) { return (a + b - 1) / b; }
+
+}  // namespace
+
+BrickMigration::BrickMigration(const Plan& plan)
+    : plan_(plan), leaving_(plan.lattice.size()), arrived_(plan.lattice.size()) {
+  for (auto* cycles : {&scan_, &land_})
+    for (auto& of_axis : *cycles) of_axis.resize(plan.nodes());
+}
+
+// Whether the way over this face of a cell leaves its brick.
+bool BrickMigration::crosses(uint32_t cell, int face) const {
+  const Bricks::Node& node = plan_.bricks.node(plan_.node_of(cell));
+  const int axis = face / 2;
+  const int32_t inside = plan_.lattice.cell(cell)[axis] - node.low[axis];
+  return inside == (face % 2 == 1 ? node.extent[axis] - 1 : 0);
+}
+
+void BrickMigration::plan(std::vector<uint32_t>& count, std::span<const Leaving> leaving,
+                          const BrickMap& map) {
+  any_ = !leaving.empty();
+  if (!any_) return;
+  movers_.clear();
+  std::fill(leaving_.begin(), leaving_.end(), 0);
+  for (const Leaving& l : leaving) {
+    movers_.push_back({l.node, l.away});
+    for (int a = 0; a < 3; ++a)
+      if (l.away[at(a)] != 0) leaving_[l.node] |= bit(a);
+  }
+  for (int axis = 0; axis < plan_.rule.axes; ++axis) move(axis, count, map);
+}
+
+void BrickMigration::move(int axis, std::vector<uint32_t>& count, const BrickMap& map) {
+  auto &scan = scan_[at(axis)], &land = land_[at(axis)];
+  for (uint32_t n = 0; n < plan_.nodes(); ++n) {
+    bool any = false;
+    int64_t cycles = 0;
+    for (const uint32_t local : map.walk(n).own) {
+      const uint32_t cell = plan_.cell_of(n, local);
+      const bool leaves = cell != kNoNode && (leaving_[cell] & bit(axis)) != 0;
+      any = any || leaves;
+      cycles += leaves ? std::max<int64_t>(count[cell], 1) : 1;
+    }
+    scan[n] = any ? cycles : 0;
+    land[n] = 0;
+  }
+  std::fill(arrived_.begin(), arrived_.end(), 0);
+  for (Mover& m : movers_) {
+    const int way = m.away[at(axis)];
+    if (way == 0) continue;
+    const int face = 2 * axis + (way > 0);
+    const uint32_t to = plan_.lattice.neighbour(m.cell, face);
+    if (to == kNoNode) throw std::invalid_argument("a particle leaves the lattice");
+    if (crosses(m.cell, face)) scan[plan_.node_of(m.cell)] += plan_.words.migrate_beats - 1;
+    --count[m.cell];
+    ++arrived_[to];
+    land[plan_.node_of(to)] = 1;
+    m.cell = to;
+    m.away[at(axis)] = 0;
+    for (int later = axis + 1; later < 3; ++later)
+      if (m.away[at(later)] != 0) leaving_[to] |= bit(later);
+  }
+  for (uint32_t n = 0; n < plan_.nodes(); ++n) {
+    if (land[n] == 0) continue;
+    land[n] = 0;
+    for (const uint32_t local : map.walk(n).own) {
+      const uint32_t cell = plan_.cell_of(n, local);
+      const uint32_t come = cell == kNoNode ? 0 : arrived_[cell];
+      land[n] += std::max<int64_t>(come, 1);
+      if (come > 0) count[cell] += come;
+    }
+  }
+}
+
+BrickTiming::BrickTiming(const Plan& plan, int threads)
+    : plan_(plan),
+      map_(plan.bricks, plan.rule.axes),
+      nodes_(plan.nodes()),
+      axes_(plan.rule.axes),
+      threads_(threads > 0 ? threads : omp_get_num_procs()),
+      halo_beats_(plan.words.halo_beats),
+      received_(kReceived + plan.link.latency),
+      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval},
+      filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
+      migration_(plan),
+      count_(plan.lattice.size()),
+      start_(nodes_),
+      halo_end_(nodes_),
+      sent_(nodes_),
+      scratch_(static_cast<size_t>(threads_)) {
+  for (auto& cycles : end_) cycles.resize(nodes_);
+  for (auto& cycles : migrate_end_) cycles.resize(nodes_);
+}
+
+void BrickTiming::begin(const NodeSlots& slots, std::span<const Leaving> leaving) {
+  const uint32_t cells = plan_.lattice.size();
+  if (slots.first.size() != cells + 1) throw std::invalid_argument("slots of another lattice");
+  for (const auto& x : slots.x)
+    if (x.size() < slots.first[cells]) throw std::invalid_argument("slots without positions");
+  for (uint32_t c = 0; c < cells; ++c) {
+    count_[c] = slots.first[c + 1] - slots.first[c];
+    if (count_[c] > static_cast<uint32_t>(plan_.arch.capacity))
+      throw std::invalid_argument("a node holds more than its capacity");
+    if (steps_ > 0 && count_[c] != final_count_[c])
+      throw std::invalid_argument("a node does not hold what the step before left there");
+  }
+  for (const Leaving& l : leaving)
+    if (l.node >= cells || l.slot >= count_[l.node]) throw std::invalid_argument("no such particle leaves");
+  final_count_ = count_;
+  migration_.plan(final_count_, leaving, map_);
+}
+
+// Cycles of a walk over the node's own cells.
+int64_t BrickTiming::walk(uint32_t n, const uint32_t* first) const {
+  int64_t cycles = 0;
+  for (const uint32_t local : map_.walk(n).own) {
+    const uint32_t cell = plan_.cell_of(n, local);
+    cycles += cell == kNoNode ? 1 : std::max<int64_t>(first[cell + 1] - first[cell], 1);
+  }
+  return cycles;
+}
+
+// Cycles of the layer that goes over a face.
+int64_t BrickTiming::layer(int face, uint32_t n) const {
+  int64_t cycles = 0;
+  for (const BrickWalk::Sent& s : map_.walk(n).sent[at(face)]) {
+    const uint32_t cell = map_.cell(n, s.grid);
+    const int64_t records = cell == kNoNode ? 0 : count_[cell];
+    cycles += records == 0 ? 1 : records * halo_beats_;
+  }
+  return cycles;
+}
+
+// The cycles in which the end beats of EXCHANGE_a are loaded.
+void BrickTiming::send(int axis, uint32_t n) {
+  int64_t now = axis == 0 ? start_[n] : end_[at(axis - 1)][n] + 1;
+  const bool thin = plan_.bricks.shape()[axis] == 1;
+  for (int side = 0; side < 2; ++side) {
+    const int face = 2 * axis + side;
+    const bool linked = plan_.neighbour(n, face) != kNoNode;
+    if (thin) {  // both at once
+      if (linked) halo_end_[n][at(face)] = now + layer(face, n);
+      sent_[n][at(axis)] =
+          std::max(side == 0 ? now : sent_[n][at(axis)], linked ? halo_end_[n][at(face)] : now);
+      continue;
+    }
+    if (linked) now += layer(face, n);
+    halo_end_[n][at(face)] = sent_[n][at(axis)] = now++;
+  }
+}
+
+// The last cycle of EXCHANGE_a.
+int64_t BrickTiming::exchanged(int axis, uint32_t n) const {
+  int64_t last = sent_[n][at(axis)] + kSent;
+  for (int face = 2 * axis; face < 2 * axis + 2; ++face)
+    if (const uint32_t near = plan_.neighbour(n, face); near != kNoNode)
+      last = std::max(last, halo_end_[near][at(face ^ 1)] + received_);
+  return last;
+}
+
+// The items of a cell's candidates before the own slots that lie in `scratch`: `planar` of hits.h.
+void BrickTiming::meet(const NodeSlots& slots, uint32_t cell, const std::array<int8_t, 3>& offset, bool same,
+                       uint32_t& item, Scratch& scratch) const {
+  const PlanarTest& test = filter_.test;
+  const auto own = static_cast<uint32_t>(scratch.own[0].size());
+  for (uint32_t k = slots.first[cell]; k < slots.first[cell + 1]; ++k) {
+    std::array<int32_t, 3> x;
+    for (size_t a = 0; a < 3; ++a)
+      x[a] = static_cast<int32_t>(slots.x[a][k] + (int64_t{offset[a]} << test.position_frac)) >> test.shift;
+    for (uint32_t from = 0; from < own; from += filter_.lanes, ++item) {
+      const uint32_t to = std::min(own, from + filter_.lanes);
+      int32_t hits = 0;
+      for (uint32_t i = from; i < to; ++i) {
+        const auto size = [&](size_t a) {
+          const int32_t e = x[a] - scratch.own[a][i];
+          return e ^ (e >> 31);
+        };
+        const int32_t dx = size(0), dy = size(1), dz = size(2);
+        const int32_t all = dx + dy + dz;
+        const int32_t most = std::max({dx, dy, dz}), least = std::min({dx, dy, dz});
+        hits += most <= test.planar[0] && all - least <= test.planar[1] && all <= test.planar[2];
+      }
+      const uint32_t slot = k - slots.first[cell];
+      if (same && slot >= from && slot < to) --hits;
+      if (hits > 0)
+        scratch.entries.push_back(
+            ForceWork::entry(item, static_cast<uint32_t>(ceil_div(hits, int64_t{filter_.pipes}))));
+    }
+  }
+}
+
+// The engine's last cycle. A visit at which nobody meets is an item without hits.
+int64_t BrickTiming::force(const NodeSlots& slots, uint32_t n, Scratch& scratch) const {
+  const int64_t begin = plan_.arch.overlap ? start_[n] : end_[at(Phase::exchange_z)][n] + 1;
+  Available available;
+  for (int a = 0; a < 3; ++a) available[at(a)] = end_[at(a)][n] + 1 - begin;
+  const BrickWalk& walk = map_.walk(n);
+  ForceWork work;
+  scratch.entries.clear();
+  uint32_t item = 0;
+  for (size_t segment = 0; segment < work.items.size(); ++segment) {
+    const uint32_t first = item;
+    for (const BrickWalk::Visit& visit : walk.visits[segment]) {
+      const uint32_t own = plan_.cell_of(n, visit.own);
+      if (own == kNoNode || count_[own] == 0) {
+        ++item;
+        continue;
+      }
+      for (size_t a = 0; a < 3; ++a) {
+        scratch.own[a].clear();
+        for (uint32_t k = slots.first[own]; k < slots.first[own + 1]; ++k)
+          scratch.own[a].push_back(slots.x[a][k] >> filter_.test.shift);
+      }
+      for (uint32_t k = visit.first; k < visit.end; ++k) {
+        const BrickWalk::Near& near = walk.near[k];
+        const uint32_t cell = map_.cell(n, near.grid);
+        if (cell == kNoNode || count_[cell] == 0)
+          ++item;
+        else
+          meet(slots, cell, near.offset, near.offset == std::array<int8_t, 3>{}, item, scratch);
+      }
+    }
+    work.items[segment] = item - first;
+  }
+  work.entries = scratch.entries;
+  for (int64_t& from : available) from = std::max<int64_t>(from, 0);
+  return begin + force_time(shape_, work, available, scratch.popped);
+}
+
+void BrickTiming::exchange_to_update(const NodeSlots& slots, uint32_t n, Scratch& scratch) {
+  end_[at(Phase::exchange_z)][n] = axes_ == 3 ? exchanged(2, n) : end_[at(Phase::exchange_y)][n];
+  const int64_t force_end = end_[at(Phase::force)][n] = force(slots, n, scratch);
+  int64_t held = 0;
+  for (const uint32_t local : map_.walk(n).own)
+    if (const uint32_t cell = plan_.cell_of(n, local); cell != kNoNode) held += count_[cell];
+  const int64_t end = end_[at(Phase::update)][n] =
+      force_end + (held == 0 ? 1 : walk(n, slots.first.data()) - 1 + plan_.latency.update);
+  migrate_end_[0][n] = end + 1 + migration_.scan(0, n);
+}
+
+void BrickTiming::take_particles(int axis, uint32_t n) {
+  int64_t last = migrate_end_[at(axis)][n] + 1;
+  for (int face = 2 * axis; face < 2 * axis + 2; ++face)
+    if (const uint32_t near = plan_.neighbour(n, face); near != kNoNode)
+      last = std::max(last, migrate_end_[at(axis)][near] + received_);
+  last += migration_.land(axis, n);
+  end_[at(Phase::migrate_x) + at(axis)][n] = last;
+  if (axis + 1 < axes_) migrate_end_[at(axis + 1)][n] = last + 1 + migration_.scan(axis + 1, n);
+}
+
+// Where an axis does not exist its phases end with those before them.
+void BrickTiming::finish(uint32_t n, std::span<PhaseSpan> spans) {
+  if (axes_ == 2) end_[at(Phase::migrate_z)][n] = end_[at(Phase::migrate_y)][n];
+  if (!spans.empty()) {
+    PhaseSpan* const span = spans.data() + size_t{n} * kPhases;
+    const auto begin = static_cast<uint64_t>(start_[n]);
+    uint64_t start = begin;
+    for (size_t p = 0; p < kPhases; ++p) {
+      const auto end = static_cast<uint64_t>(end_[p][n]);
+      span[p] = {p == at(Phase::force) && plan_.arch.overlap ? begin : start, end};
+      start = end + 1;
+    }
+  }
+  start_[n] = end_[at(Phase::migrate_z)][n] + 1;
+}
+
+void BrickTiming::step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
+  if (!spans.empty() && spans.size() != size_t{nodes_} * kPhases)
+    throw std::invalid_argument("spans of another lattice");
+  begin(slots, leaving);
+  const auto work = int64_t{plan_.lattice.size()} + 2 * int64_t{slots.first.back()};
+  const int threads = static_cast<int>(
+      std::clamp<int64_t>(work / kWorkPerThread, 1, std::min<int64_t>(threads_, int64_t{nodes_})));
+#pragma omp parallel num_threads(threads)
+  {
+    Scratch& scratch = scratch_[at(omp_get_thread_num())];
+    const auto for_all = [this](const auto& part) {
+#pragma omp for schedule(dynamic)
+      for (int64_t n = 0; n < int64_t{nodes_}; ++n) part(static_cast<uint32_t>(n));
+    };
+    for_all([&](uint32_t n) { send(0, n); });
+    for (int axis = 0; axis + 1 < axes_; ++axis) {
+      for_all([&](uint32_t n) { end_[at(axis)][n] = exchanged(axis, n); });
+      for_all([&](uint32_t n) { send(axis + 1, n); });
+    }
+    if (axes_ == 2) for_all([&](uint32_t n) { end_[at(Phase::exchange_y)][n] = exchanged(1, n); });
+    for_all([&](uint32_t n) { exchange_to_update(slots, n, scratch); });
+    for (int axis = 0; axis < axes_; ++axis) for_all([&](uint32_t n) { take_particles(axis, n); });
+    for_all([&](uint32_t n) { finish(n, spans); });
+  }
+  ++steps_;
+  for (uint32_t n = 0; n < nodes_; ++n) {
+    const bool busy = std::any_of(map_.walk(n).own.begin(), map_.walk(n).own.end(), [&](uint32_t local) {
+      const uint32_t cell = plan_.cell_of(n, local);
+      return cell != kNoNode && count_[cell] > 0;
+    });
+    counters_.busy += busy, counters_.filtered += busy, counters_.walked += busy;
+  }
+}
+
+uint64_t BrickTiming::cycles(const NodeSlots& slots) const {
+  if (slots.first.size() != plan_.lattice.size() + 1) throw std::invalid_argument("slots of another lattice");
+  int64_t idle = 0;  // the last node's first cycle of IDLE
+  for (uint32_t n = 0; n < nodes_; ++n) idle = std::max(idle, start_[n] + walk(n, slots.first.data()));
+  return static_cast<uint64_t>(idle) + 1;
+}
+
+void BrickTiming::resume(std::span<const uint64_t> starts) {
+  if (starts.size() != nodes_) throw std::invalid_argument("starts of another lattice");
+  std::copy(starts.begin(), starts.end(), start_.begin());
+  steps_ = 0;
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// The cycles of a force engine, whatever its streamer walks: filter registers, queue, issue, pipes.
+// docs/reference/node.md, "Force engine".
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "emu/systemc/words.h"
+#include "hw/plan.h"
+
+namespace cuboct::emu {
+
+inline constexpr int kForceSegments =
+    1 + kFaces;  // own, -x, +x, -y, +y, -z, +z; of a flat plan without -z, +z
+
+// The least (code, id, number) of a step, and in which of the node's cells it was found.
+struct FaultKeeper {
+  Fault code = Fault::none;
+  uint32_t id = 0;
+  int64_t number = 0;
+  uint32_t cell = 0;
+
+  void add(Fault new_code, uint32_t new_id, int64_t new_number, uint32_t in_cell = 0);
+};
+
+struct ForceCounts {
+  uint64_t candidates = 0;    // (record, pass) presented to the filter
+  uint64_t pairs_issued = 0;  // that passed the planar test
+  uint64_t pairs_inside = 0;  // of these, nearer than the cutoff
+  uint64_t stalls = 0;        // cycles in which a full queue held the streamer
+  uint64_t issue_cycles = 0;  // cycles that issued a pair
+  uint64_t busy = 0;          // cycles from the engine's first to its last
+};
+
+// What the streamer presents in a step, in order, and the engine's queue.
+struct ForceStream {
+  std::vector<uint64_t> mask;                        // by entry: what the filter makes of it
+  std::array<uint32_t, kForceSegments> segment_end;  // entries
+  std::vector<uint32_t> queue;                       // a ring of entries
+};
+
+// Steps all cycles of the engine, register by register; its last one. `available`: the cycle from which on
+// the own cells, and the halos of each axis, may be read; the first is the engine's first cycle.
+// issue(entry, mask) issues the lowest bits of `mask`, one per pipe, and clears them.
+template <typename Issue>
+uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
+                     const std::array<uint64_t, 4>& available, ForceCounts& counts, Issue issue) {
+  const uint32_t depth = static_cast<uint32_t>(plan.arch.queue_depth);
+  stream.queue.resize(depth);
+
+  // The registers. `mask` of F1 and of `current` is that of their entry, less what was issued.
+  int segment = 0;
+  uint32_t next = 0;  // the streamer's entry
+  bool f0_valid = false, f1_valid = false;
+  uint32_t f0 = 0, f1 = 0, current = 0;
+  uint64_t current_mask = 0;
+  uint32_t head = 0, count = 0;  // queue
+  int hold = 0;                  // cycles until the next pair may be issued
+  int drain = 0;                 // cycles until the last issued pair is in its sum
+
+  const auto from = [&](int s) { return available[(s + 1) / 2]; };
+  uint64_t cycle = available[0];
+  for (;; ++cycle) {
+    if (!f0_valid && !f1_valid && count == 0 && current_mask == 0 && hold == 0) {
+      // Nothing moves but the pipes: on to where the streamer may go on, or the pipes are empty.
+      if (segment == segments) {
+        cycle += static_cast<uint64_t>(drain);
+        break;
+      }
+      if (from(segment) > cycle) {
+        drain = static_cast<int>(std::max<int64_t>(0, drain - static_cast<int64_t>(from(segment) - cycle)));
+        cycle = from(segment);
+      }
+    }
+    const uint32_t held = count;  // at the start of the cycle
+    if (hold > 0) {
+      --hold;
+      drain = std::max(0, drain - 1);
+    } else if (current_mask != 0) {
+      issue(current, current_mask);
+      hold = plan.latency.interval - 1;
+      ++counts.issue_cycles;
+      // Issued in cycle t, in the sum from t + pipe on: the pipe is empty in cycle t + pipe, and this edge
+      // ends cycle t.
+      drain = plan.latency.pipe - 1;
+    } else if (drain > 0) {
+      --drain;
+    }
+    if (hold == 0 && current_mask == 0 && held > 0) {
+      current = stream.queue[head];
+      current_mask = stream.mask[current];
+      head = head + 1 == depth ? 0 : head + 1;
+      --count;
+    }
+    if (f1_valid && stream.mask[f1] != 0) {
+      if (held == depth) {
+        ++counts.stalls;
+        continue;
+      }
+      const uint32_t tail = head + count;
+      stream.queue[tail < depth ? tail : tail - depth] = f1;
+      ++count;
+    }
+    f1_valid = f0_valid;
+    f1 = f0;
+    f0_valid = false;
+    if (segment == segments || from(segment) > cycle) continue;
+    if (next == stream.segment_end[segment]) {  // no record, or no slot to meet it
+      ++segment;
+      continue;
+    }
+    f0_valid = true;
+    f0 = next++;
+    ++counts.candidates;
+    if (next == stream.segment_end[segment]) ++segment;
+  }
+  counts.busy += cycle - available[0] + 1;
+  return cycle;
+}
+
+}  // namespace cuboct::emu

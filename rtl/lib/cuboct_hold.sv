@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// What belongs to a pair, Depth cycles later, where pairs come at least Interval cycles after one another and the input
+// stays for Interval cycles: a register per Interval then does what a chain of Depth would. With Interval 1 it is that
+// chain.
+module cuboct_hold #(
+  parameter int Bits     = 8,  // >= 1
+  parameter int Depth    = 1,  // cycles, >= 0
+  parameter int Interval = 1   // cycles, >= 1
+) (
+  input  logic            clk_i,
+  input  logic [Depth:0]  valid_i,  // [k]: the pair whose input came k cycles ago is there
+  input  logic [Bits-1:0] d_i,
+  output logic [Bits-1:0] q_o       // of that pair in a cycle with valid_i[Depth], and until the next one's
+);
+  localparam int Registers = Depth / Interval;
+  logic unused_valid;
+  assign unused_valid = ^valid_i;
+  if (Interval == 1 || Registers == 0) begin : gen_chain
+    cuboct_delay #(.Bits(Bits), .Depth(Registers)) u_delay (.clk_i, .d_i, .q_o);
+  end else begin : gen_hold
+    logic [(Registers+1)*Bits-1:0] stages;
+    assign stages[Bits-1:0] = d_i;
+    for (genvar r = 0; r < Registers; r++) begin : gen_register
+      logic [Bits-1:0] held_q;
+      always_ff @(posedge clk_i) begin
+        if (valid_i[(r+1)*Interval-1]) held_q <= stages[r*Bits +: Bits];
+      end
+      assign stages[(r+1)*Bits +: Bits] = held_q;
+    end
+    assign q_o = stages[Registers*Bits +: Bits];
+  end
+endmodule
