@@ -606,7 +606,7 @@ module cuboct_node_core #(
   logic [ForcePipes*IdBits-1:0] fault_id;
   logic [ForcePipes*64-1:0]     fault_number;
   logic [3:0]                   migrate_fault_code;
-  // Narrow: those of the pipe and the update a cycle later; MIGRATE comes later still.
+  // Narrow: all but `full`, of which the step's last cycle may be the next one, come a cycle later.
   logic [ForcePipes*(5+IdBits+64)-1:0] force_fault, force_fault_told;
   if (Narrow != 0) begin : gen_fault_late
     logic [ForcePipes*(5+IdBits+64)-1:0] force_fault_q;
@@ -629,16 +629,20 @@ module cuboct_node_core #(
         force_fault[Lsb +: 64]          = update_fault_number;
         force_fault[Lsb+64 +: IdBits]   = new_id;
         force_fault[Lsb+64+IdBits +: 5] = {1'b1, update_fault_code};
+      end else if (f == 0 && in_migrate) begin
+        force_fault[Lsb +: 64]          = 64'd0;
+        force_fault[Lsb+64 +: IdBits]   = fault_particle[IdLsb +: IdBits];
+        force_fault[Lsb+64+IdBits +: 5] = {fault_left, migrate_fault_code};
       end
       fault_number[f*64 +: 64]         = force_fault_told[Lsb +: 64];
       fault_id[f*IdBits +: IdBits]     = force_fault_told[Lsb+64 +: IdBits];
       fault_code[f*4 +: 4]             = force_fault_told[Lsb+64+IdBits +: 4];
       fault_valid[f]                   = force_fault_told[Lsb+64+IdBits+4];
-      if (f == 0 && in_migrate) begin
-        fault_valid[f]                 = fault_left || fault_full;
+      if (f == 0 && fault_full) begin
+        fault_valid[f]                 = 1'b1;
         fault_code[f*4 +: 4]           = migrate_fault_code;
         fault_id[f*IdBits +: IdBits]   = fault_particle[IdLsb +: IdBits];
-        fault_number[f*64 +: 64]       = fault_full ? {32'd0, Capacity} : 64'd0;
+        fault_number[f*64 +: 64]       = {32'd0, Capacity};
       end
     end
   end
