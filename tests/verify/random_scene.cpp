@@ -129,7 +129,8 @@ std::map<std::string, uint64_t> stimuli_of(const RandomScene& scene, const Judge
   n["nodes filled to the last slot"] = full;
   n["checked links: detect"] = arch.link_check == LinkCheck::detect;
   n["checked links: retry"] = arch.link_check == LinkCheck::retry;
-  n["shared multipliers"] = arch.shared_multipliers;
+  n["shared multipliers"] = arch.multipliers == Multipliers::shared;
+  n["serial multipliers"] = arch.multipliers == Multipliers::serial;
   for (const Fault fault : {Fault::link_check, Fault::link_order, Fault::link_silent})
     for (size_t k = 0; k < judge.runs(); ++k)
       n[std::string("fault: ") + to_string(fault)] +=

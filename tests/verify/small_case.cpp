@@ -186,7 +186,7 @@ const std::map<std::string, Recipe>& recipes() {
        [](S s) {
          s.features.damping = 0.2;
          s.arch.table = {.shape = Shape::octaves, .degree = 2, .index_bits = 7};
-         s.arch.shared_multipliers = true;
+         s.arch.multipliers = Multipliers::shared;
          s.arch.capacity = s.arch.filter_lanes = 8;
          s.arch.queue_depth = 1;
          s.arch.link_bits = 0;
@@ -197,7 +197,7 @@ const std::map<std::string, Recipe>& recipes() {
          s.features.flat = s.features.two_materials = true;
          s.features.size = {2, 2, 1};
          s.features.damping = 0.2;
-         s.arch.shared_multipliers = true;
+         s.arch.multipliers = Multipliers::shared;
          s.arch.force_pipes = 2;
          s.arch.table.degree = 2;
        }},
