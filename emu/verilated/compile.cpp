@@ -129,7 +129,8 @@ struct Units {
 
 Units units_of(const Build& build, const fs::path& model) {
   std::set<std::string> files;
-  for (const auto& entry : fs::directory_iterator(model))
+  std::error_code none;  // then the compiler misses the model's headers, and says so
+  for (const auto& entry : fs::directory_iterator(model, none))
     if (entry.path().extension() == ".cpp") files.insert(entry.path().filename().string());
   Units units;
   for (const std::string& name : files)
@@ -174,8 +175,8 @@ std::string compile(const Build& build, const std::string& directory) {
       fmt::format("{} {}{} -I. -Imodel -I\"$root/include\" -I\"$root/include/vltstd\" {}", compiler(),
                   kCompilerFlags, arguments, build.compiler_flags);
   run_logged("the C++ compiler",
-             fmt::format("root=$(verilator --getenv VERILATOR_ROOT) && {{ {0} -O0 -c once.cpp & }} && "
-                         "once=$! && {0} -c each_cycle.cpp && wait $once && "
+             fmt::format("root=$(verilator --getenv VERILATOR_ROOT) || exit; {0} -O0 -c once.cpp & once=$!; "
+                         "{0} -c each_cycle.cpp; each=$?; wait $once && test $each = 0 && "
                          "{1} -shared -pthread -o library.so each_cycle.o once.o {2}",
                          compiled, compiler(), build.libraries),
              dir, log);
