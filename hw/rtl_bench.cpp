@@ -193,7 +193,7 @@ lint:
 verilator: obj_dir/cuboct_bench
 	./obj_dir/cuboct_bench
 obj_dir/cuboct_bench: $(RTL) cuboct_bench.sv
-	$(VERILATOR) --binary --timing -fno-const-bit-op-tree -Wno-fatal -O3 -CFLAGS -O2 --Mdir obj_dir -o cuboct_bench \
+	$(VERILATOR) --binary --timing -fno-const-bit-op-tree -Wno-fatal -O3 -MAKEFLAGS OPT_FAST=-O1 --Mdir obj_dir -o cuboct_bench \
 	  --top-module cuboct_bench $(RTL) cuboct_bench.sv
 
 # With always_comb Icarus 11 hangs in this design: time stands still at 445. The cause is not known. With always @* the
