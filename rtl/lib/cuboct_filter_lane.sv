@@ -29,11 +29,14 @@ module cuboct_filter_lane #(
   logic            near;
   assign xy = size[0] + size[1];
   if (Axes == 3) begin : gen_space
+    // Of three sizes: one sum with the bound, so that no adder waits for another; negative is near.
     logic [Bits-1:0] yz, zx;
+    logic [Bits:0]   xyz;
     assign yz   = size[1] + size[2];
     assign zx   = size[2] + size[0];
+    assign xyz  = {1'b0, size[0]} + {1'b0, size[1]} + {1'b0, size[2]} - (PlanarThree[Bits:0] + 1'b1);
     assign near = (size[2] <= PlanarOne[Bits-1:0]) && (yz <= PlanarTwo[Bits-1:0]) && (zx <= PlanarTwo[Bits-1:0])
-               && (xy + size[2] <= PlanarThree[Bits-1:0]);
+               && xyz[Bits];
   end else begin : gen_plane
     assign near = 1'b1;  // PlanarTwo <= PlanarThree
   end

@@ -606,48 +606,30 @@ module cuboct_node_core #(
   logic [ForcePipes*IdBits-1:0] fault_id;
   logic [ForcePipes*64-1:0]     fault_number;
   logic [3:0]                   migrate_fault_code;
-  // Narrow: all but `full`, of which the step's last cycle may be the next one, come a cycle later.
-  logic [ForcePipes*(5+IdBits+64)-1:0] force_fault, force_fault_told;
-  if (Narrow != 0) begin : gen_fault_late
-    logic [ForcePipes*(5+IdBits+64)-1:0] force_fault_q;
-    always_ff @(posedge clk_i) begin
-      if (!rst_ni) force_fault_q <= '0;
-      else force_fault_q <= force_fault;
-    end
-    assign force_fault_told = force_fault_q;
-  end else begin : gen_fault_now
-    assign force_fault_told = force_fault;
-  end
   assign migrate_fault_code = 4'd6 + {1'b0, axis, 1'b0} + {3'b000, fault_full};  // left, full: 6 7, 8 9, 10 11
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_fault
-    localparam int Lsb = f * (5 + IdBits + 64);
     always_comb begin
-      force_fault[Lsb +: 64]           = pipe_fault_number[f*64 +: 64];
-      force_fault[Lsb+64 +: IdBits]    = kick_id[f*IdBits +: IdBits];
-      force_fault[Lsb+64+IdBits +: 5]  = {pipe_fault[f], pipe_fault_strength[f] ? 4'd2 : 4'd1};
+      fault_valid[f]               = pipe_fault[f];
+      fault_code[f*4 +: 4]         = pipe_fault_strength[f] ? 4'd2 : 4'd1;
+      fault_id[f*IdBits +: IdBits] = kick_id[f*IdBits +: IdBits];
+      fault_number[f*64 +: 64]     = pipe_fault_number[f*64 +: 64];
       if (f == 0 && update_fault) begin
-        force_fault[Lsb +: 64]          = update_fault_number;
-        force_fault[Lsb+64 +: IdBits]   = new_id;
-        force_fault[Lsb+64+IdBits +: 5] = {1'b1, update_fault_code};
+        fault_valid[f]               = 1'b1;
+        fault_code[f*4 +: 4]         = update_fault_code;
+        fault_id[f*IdBits +: IdBits] = new_id;
+        fault_number[f*64 +: 64]     = update_fault_number;
       end else if (f == 0 && in_migrate) begin
-        force_fault[Lsb +: 64]          = 64'd0;
-        force_fault[Lsb+64 +: IdBits]   = fault_particle[IdLsb +: IdBits];
-        force_fault[Lsb+64+IdBits +: 5] = {fault_left, migrate_fault_code};
-      end
-      fault_number[f*64 +: 64]         = force_fault_told[Lsb +: 64];
-      fault_id[f*IdBits +: IdBits]     = force_fault_told[Lsb+64 +: IdBits];
-      fault_code[f*4 +: 4]             = force_fault_told[Lsb+64+IdBits +: 4];
-      fault_valid[f]                   = force_fault_told[Lsb+64+IdBits+4];
-      if (f == 0 && fault_full) begin
-        fault_valid[f]                 = 1'b1;
-        fault_code[f*4 +: 4]           = migrate_fault_code;
-        fault_id[f*IdBits +: IdBits]   = fault_particle[IdLsb +: IdBits];
-        fault_number[f*64 +: 64]       = {32'd0, Capacity};
+        fault_valid[f]               = fault_left || fault_full;
+        fault_code[f*4 +: 4]         = migrate_fault_code;
+        fault_id[f*IdBits +: IdBits] = fault_particle[IdLsb +: IdBits];
+        fault_number[f*64 +: 64]     = fault_full ? {32'd0, Capacity} : 64'd0;
       end
     end
   end
   logic some_fault;
-  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(IdBits), .NumberBits(NumberBits)) u_fault (
+  cuboct_least_fault #(
+    .Sources(ForcePipes), .IdBits(IdBits), .NumberBits(NumberBits), .Late(Narrow)
+  ) u_fault (
     .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
     .number_i(fault_number), .valid_o(some_fault), .code_o(fault_code_o), .id_o(fault_id_o),
     .number_o(fault_number_o)

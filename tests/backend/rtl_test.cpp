@@ -79,8 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Rtl, testing::ValuesIn(rtl_cases()), [](const au
 
 class RtlFaults : public testing::TestWithParam<Fault> {};
 
-TEST_P(RtlFaults, ArisesAsInGolden) {
-  const Case c = fault_case(GetParam());
+void expect_as_in_golden(const Case& c, Fault fault) {
   const Plan& plan = c.setup.plan;
   const GoldenRun golden = run_golden(c.setup, c.steps);
   for (const double rate : {0.0, 0.4}) {
@@ -89,10 +88,16 @@ TEST_P(RtlFaults, ArisesAsInGolden) {
     const auto native = run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain");
     EXPECT_EQ(compare(plan, golden, rtl).difference, "");
     ASSERT_TRUE(rtl.trace.stop);
-    EXPECT_EQ(rtl.trace.stop->fault, GetParam());
+    EXPECT_EQ(rtl.trace.stop->fault, fault);
     EXPECT_EQ(rtl.trace.stop->number, golden.fault->number);
     EXPECT_EQ(compare_cycles(native, rtl).difference, "");
   }
+}
+
+TEST_P(RtlFaults, ArisesAsInGolden) { expect_as_in_golden(fault_case(GetParam()), GetParam()); }
+
+TEST_P(RtlFaults, ArisesInNarrowNodesToo) {
+  expect_as_in_golden(with_narrow_memories(fault_case(GetParam())), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RtlFaults, testing::ValuesIn(all_faults()),

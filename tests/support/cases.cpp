@@ -283,6 +283,14 @@ Case random_case(uint64_t seed) { return random_recipe(seed, false); }
 
 Case random_flat_case(uint64_t seed) { return random_recipe(seed, true); }
 
+Case with_narrow_memories(Case c) {
+  Plan& plan = c.setup.plan;
+  Arch arch = plan.arch;
+  narrow(arch);
+  plan = make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
+  return c;
+}
+
 Case with_brick(Case c, const Cell& brick) {
   Plan& plan = c.setup.plan;
   Arch arch = plan.arch;

@@ -41,5 +41,7 @@ Case random_brick_case(uint64_t seed);
 // and arch.
 Case fault_case(Fault fault);
 std::vector<Fault> all_faults();
+// The case with narrow memories.
+Case with_narrow_memories(Case c);
 
 }  // namespace cuboct::test
