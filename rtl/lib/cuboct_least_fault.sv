@@ -60,7 +60,8 @@ module cuboct_least_fault #(
     key   = key_q;
     for (s = 0; s < Sources; s = s + 1) begin
       if (valid[s]) begin
-        key = {code[s*4 +: 4], id[s*IdBits +: IdBits], !number_in[s*64+63], number_in[s*64 +: NumberBits-1]};
+        key = {code[s*4 +: 4], id[s*IdBits +: IdBits], !number_in[s*64+63],
+               number_in[s*64 +: NumberBits-1]};
         if (!seen || key < key_d) key_d = key;
         seen = 1'b1;
       end
