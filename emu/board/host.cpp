@@ -22,7 +22,7 @@ enum Command : uint8_t {
 enum StatusBit : uint8_t { kBusy = 1, kFaulty = 2, kRefused = 4 };
 
 constexpr int kAttempts = 200;      // until the line counts as broken
-constexpr int kFirstAttempts = 5;   // until a port counts as none of a board
+constexpr int kFirstAttempts = 10;  // until a port counts as none of a board
 constexpr size_t kFrameBytes = 12;  // flags, check sum and escapes of it
 
 void put(Bytes& to, uint64_t value, int bytes) {

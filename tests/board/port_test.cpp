@@ -54,7 +54,7 @@ const std::string kIsItFlashed =
 TEST(Port, ThatIsSilent) {
   const Pty pty;
   expect_refusal(run_at(pty.name),
-                 "port " + pty.name + ": no board answers (5 attempts at 1000000 baud)\n" + kIsItFlashed);
+                 "port " + pty.name + ": no board answers (10 attempts at 1000000 baud)\n" + kIsItFlashed);
 }
 
 // A device that never stops talking must not hold the command.
@@ -77,7 +77,7 @@ TEST(Port, ThatSpeaksSomethingElse) {
   stop = true;
   babble.join();
   expect_refusal(answer, "port " + pty.name +
-                             ": what comes is not what a board says (5 attempts at 1000000 baud)\n" +
+                             ": what comes is not what a board says (10 attempts at 1000000 baud)\n" +
                              kIsItFlashed);
 }
 
@@ -98,7 +98,7 @@ TEST(Port, ThatEchoes) {
   stop = true;
   echo.join();
   expect_refusal(answer,
-                 "port " + pty.name + ": no board answers (5 attempts at 1000000 baud)\n" + kIsItFlashed);
+                 "port " + pty.name + ": no board answers (10 attempts at 1000000 baud)\n" + kIsItFlashed);
 }
 
 TEST(Port, ThatIsNone) {
