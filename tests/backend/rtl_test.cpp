@@ -31,8 +31,7 @@ class Rtl : public testing::TestWithParam<std::string> {};
 
 // Native and Verilated nodes, without and with stalls: four lattices in one simulation. The Verilated
 // registers start as random bits in one of them: nothing may hang on what reset leaves alone.
-TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
-  const Case c = make_case(GetParam());
+void expect_golden(const Case& c) {
   const Plan& plan = c.setup.plan;
   const emu::NodeFactory native = emu::native_nodes(plan), verilated = emu::verilated_nodes(plan, kCache),
                          random = emu::verilated_nodes(plan, kCache, 17);
@@ -53,7 +52,7 @@ TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
     EXPECT_EQ(compared.particles, (c.steps + 1) * c.setup.initial.particles.size());
     EXPECT_EQ(compared.slots, compared.particles);
   }
-  const uint64_t spans = c.steps * plan.lattice.size() * kPhases;
+  const uint64_t spans = c.steps * plan.nodes() * kPhases;
   for (const auto& [a, b] : {std::pair{&nf, &rf}, std::pair{&ns, &rs}}) {
     const Compared compared = compare_cycles(*a, *b);
     EXPECT_EQ(compared.difference, "");
@@ -75,7 +74,29 @@ TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
     }
 }
 
+TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) { expect_golden(make_case(GetParam())); }
+
 INSTANTIATE_TEST_SUITE_P(Cases, Rtl, testing::ValuesIn(rtl_cases()), [](const auto& p) { return p.param; });
+
+struct BrickOf {
+  const char* name;
+  Cell brick;
+};
+
+void PrintTo(const BrickOf& b, std::ostream* out) { *out << b.name; }
+
+class RtlBrick : public testing::TestWithParam<BrickOf> {};
+
+TEST_P(RtlBrick, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
+  expect_golden(with_brick(make_case(GetParam().name), GetParam().brick));
+}
+
+// Thin and thick ones, ragged ones, a node that is its own neighbour, flat ones, several lanes and pipes.
+INSTANTIATE_TEST_SUITE_P(Cases, RtlBrick,
+                         testing::Values(BrickOf{"undamped_2x2x2", {2, 1, 1}}, BrickOf{"hot_gas", {2, 2, 2}},
+                                         BrickOf{"rich_ring", {3, 1, 2}}, BrickOf{"rich_force_held", {2, 2, 1}},
+                                         BrickOf{"flat_ring", {2, 2, 1}}, BrickOf{"periodic_27", {2, 3, 2}}),
+                         [](const auto& p) { return std::string(p.param.name); });
 
 class RtlFaults : public testing::TestWithParam<Fault> {};
 
