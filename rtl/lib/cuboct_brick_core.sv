@@ -322,7 +322,12 @@ module cuboct_brick_core #(
   logic                      any_leaving, axis_leaving;
   logic [2*2*CountBits-1:0]  axis_land_count;
   logic [2*ParticleBits-1:0] axis_arrived;
+  logic [Axes-1:0]           some_leaving;
   integer                    b, c;
+  always_comb begin
+    some_leaving = '0;
+    for (c = 0; c < Cells; c = c + 1) some_leaving = some_leaving | leaving_q[c*Axes +: Axes];
+  end
   always_comb begin
     axis_can_load   = 2'b00;
     axis_halo_end   = 2'b00;
@@ -340,7 +345,7 @@ module cuboct_brick_core #(
         axis_ended      = migrate_end[2*b +: 2];
         axis_leaving    = here_leaving[b];
         axis_land_count = land_count[4*b*CountBits +: 4*CountBits];
-        for (c = 0; c < Cells; c = c + 1) any_leaving = any_leaving || leaving_q[c*Axes+b];
+        any_leaving     = some_leaving[b];
       end
       axis_arrived = axis_arrived | (arrived[2*b*ParticleBits +: 2*ParticleBits] & {2 * ParticleBits{axis_onehot[b]}});
     end

@@ -102,4 +102,6 @@ module cuboct_brick_halos #(
       .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .none_o(migrate_none_o[f])
     );
   end
+  logic unused_axis;  // with two axes, the third
+  assign unused_axis = ^{stream_cell_i, stream_addr_i, relay_cell_i, relay_addr_i, land_cell_i};
 endmodule

@@ -86,7 +86,10 @@ module cuboct_brick_migrate #(
 
   always_comb begin
     state = state_q;
-    if (state_q == Enter) state = any_leaving_i ? Scan : End;
+    if (state_q == Enter) begin
+      state = End;
+      if (any_leaving_i) state = Scan;
+    end
   end
 
   // Where the slot that SCAN looks at wants to go; where the cell lies along the axis.

@@ -40,6 +40,7 @@ module cuboct_brick_slots #(
 );
   localparam int Rows  = (Capacity + FilterLanes - 1) / FilterLanes;  // of a cell
   localparam int Depth = Cells * Capacity;
+  localparam int IndexBits = $clog2(Cells * Rows);
 
   // The last particle to land may be the first that the next phase reads.
   logic            same_q;
@@ -89,15 +90,15 @@ module cuboct_brick_slots #(
     write_row = write_row + {{(RowAddrBits - CellBits) {1'b0}}, write_cell_i} * Rows[RowAddrBits-1:0];
   end
   logic unused_row;
-  assign unused_row = ^row;
+  assign unused_row = ^{row, write_row, row_i};
   for (genvar l = 0; l < FilterLanes; l++) begin : gen_bank
     (* no_rw_check *) logic [CoarseBits-1:0] bank_q [0:Cells*Rows-1];
     logic [CoarseBits-1:0] row_q;
     always_ff @(posedge clk_i) begin
-      if (write_i && lane[l]) bank_q[write_row] <= coarse;
+      if (write_i && lane[l]) bank_q[write_row[IndexBits-1:0]] <= coarse;
     end
     always_ff @(posedge clk_i) begin
-      if (stream_read_i) row_q <= bank_q[row_i];
+      if (stream_read_i) row_q <= bank_q[row_i[IndexBits-1:0]];
     end
     assign row_data_o[l*CoarseBits +: CoarseBits] = row_q;
   end
