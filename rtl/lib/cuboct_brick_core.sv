@@ -221,16 +221,6 @@ module cuboct_brick_core #(
   logic [RowAddrBits-1:0]         row;
   logic [FilterLanes*Axes*FilterFrac-1:0] row_data;
 
-  // cell * Capacity + slot.
-  function automatic logic [AddrBits-1:0] address(input logic [PlaceBits-1:0] place);
-    logic [PlaceBits-1:0] sum;
-    begin
-      sum     = {{SlotBits{1'b0}}, place[SlotBits +: CellBits]} * Capacity[PlaceBits-1:0]
-              + {{CellBits{1'b0}}, place[SlotBits-1:0]};
-      address = sum;
-    end
-  endfunction
-
   assign here = idle_o ? load_cell_i : main_own;
   assign load = idle_o && load_valid_i && (main_count != Capacity[CountBits-1:0]);
   cuboct_brick_counts #(.Cells(Cells), .AddrBits(CellBits), .Bits(CountBits), .Reads(3)) u_counts (
@@ -253,14 +243,32 @@ module cuboct_brick_core #(
       write_data = migrate_write_data;
     end
   end
-  assign write_addr  = address({write_cell, write_slot});
+  cuboct_brick_addr #(
+    .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+  ) u_write_addr (.cell_i(write_cell), .slot_i(write_slot), .addr_o(write_addr));
   // The main read port is asked a cycle ahead. Outside its phases each of the three rests at record 0.
   assign main_record = relay_record | tick_record | migrate_read;
-  assign main_addr   = address({next_own, main_record});
+  cuboct_brick_addr #(
+    .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+  ) u_main_addr (.cell_i(next_own), .slot_i(main_record), .addr_o(main_addr));
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_addr
-    assign pipe_addr[f*AddrBits +: AddrBits]      = address({issue_cell, issue_slot[f*SlotBits +: SlotBits]});
-    assign kick_addr[f*AddrBits +: AddrBits]      = address(kick_place[f*PlaceBits +: PlaceBits]);
-    assign kick_addr_next[f*AddrBits +: AddrBits] = address(kick_place_next[f*PlaceBits +: PlaceBits]);
+    cuboct_brick_addr #(
+      .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+    ) u_pipe_addr (
+      .cell_i(issue_cell), .slot_i(issue_slot[f*SlotBits +: SlotBits]), .addr_o(pipe_addr[f*AddrBits +: AddrBits])
+    );
+    cuboct_brick_addr #(
+      .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+    ) u_kick_addr (
+      .cell_i(kick_place[f*PlaceBits+SlotBits +: CellBits]), .slot_i(kick_place[f*PlaceBits +: SlotBits]),
+      .addr_o(kick_addr[f*AddrBits +: AddrBits])
+    );
+    cuboct_brick_addr #(
+      .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+    ) u_kick_addr_next (
+      .cell_i(kick_place_next[f*PlaceBits+SlotBits +: CellBits]), .slot_i(kick_place_next[f*PlaceBits +: SlotBits]),
+      .addr_o(kick_addr_next[f*AddrBits +: AddrBits])
+    );
   end
   cuboct_brick_slots #(
     .Axes(Axes), .Bits(OwnBits), .SeenBits(SeenBits), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
@@ -282,9 +290,12 @@ module cuboct_brick_core #(
   logic [Faces*2*CountBits-1:0]  land_count;
   logic [Faces*ParticleBits-1:0] arrived;
   for (genvar a = 0; a < 3; a++) begin : gen_relay_addr
-    assign relay_halo_addr[a*HaloAddrBits +: HaloAddrBits]
-      = {{(HaloAddrBits - TagBits) {1'b0}}, next_layer[a*TagBits +: TagBits]} * Capacity[HaloAddrBits-1:0]
-      + {{(HaloAddrBits - SlotBits) {1'b0}}, relay_record};
+    cuboct_brick_addr #(
+      .Factor(Capacity), .CellBits(TagBits), .SlotBits(SlotBits), .AddrBits(HaloAddrBits)
+    ) u_addr (
+      .cell_i(next_layer[a*TagBits +: TagBits]), .slot_i(relay_record),
+      .addr_o(relay_halo_addr[a*HaloAddrBits +: HaloAddrBits])
+    );
   end
   cuboct_brick_halos #(
     .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .Capacity(Capacity), .LinkBits(LinkBits),
@@ -497,7 +508,9 @@ module cuboct_brick_core #(
   assign take         = ticking && in_update && (main_count != '0);
   assign update_done  = in_update && (!any_held || (past_q && {{(32 - TailBits) {1'b0}}, tail_q} == UpdateTail));
   assign dump_done    = in_dump && tick_over && last_cell;
-  assign tick_addr    = address({main_own, tick_q});
+  cuboct_brick_addr #(
+    .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+  ) u_tick_addr (.cell_i(main_own), .slot_i(tick_q), .addr_o(tick_addr));
   assign tick_record  = tick_d;
   always_comb begin
     tick_d = tick_q;

@@ -88,18 +88,19 @@ module cuboct_brick_finder #(
     .row_o(row), .offset_o(offset), .same_o(same), .present_o(present), .nobody_o(nobody), .past_o(past)
   );
 
-  localparam int AddrBits = (OwnAddrBits > HaloAddrBits) ? OwnAddrBits : HaloAddrBits;
-  logic [AddrBits-1:0] record_wide;
-  assign record_wide = {{(AddrBits - SlotBits) {1'b0}}, record};
-  assign own_addr_o = {{(OwnAddrBits - CellBits) {1'b0}}, near_cell_o} * Capacity[OwnAddrBits-1:0]
-                    + record_wide[OwnAddrBits-1:0];
+  cuboct_brick_addr #(
+    .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(OwnAddrBits)
+  ) u_own_addr (.cell_i(near_cell_o), .slot_i(record), .addr_o(own_addr_o));
   for (genvar a = 0; a < 3; a++) begin : gen_addr
-    assign halo_addr_o[a*HaloAddrBits +: HaloAddrBits]
-      = {{(HaloAddrBits - TagBits) {1'b0}}, near_layer_o[a*TagBits +: TagBits]} * Capacity[HaloAddrBits-1:0]
-      + record_wide[HaloAddrBits-1:0];
+    cuboct_brick_addr #(
+      .Factor(Capacity), .CellBits(TagBits), .SlotBits(SlotBits), .AddrBits(HaloAddrBits)
+    ) u_halo_addr (
+      .cell_i(near_layer_o[a*TagBits +: TagBits]), .slot_i(record), .addr_o(halo_addr_o[a*HaloAddrBits +: HaloAddrBits])
+    );
   end
-  assign row_o = {{(RowAddrBits - CellBits) {1'b0}}, own_cell_o} * Rows[RowAddrBits-1:0]
-               + {{(RowAddrBits - RowBits) {1'b0}}, row};
+  cuboct_brick_addr #(
+    .Factor(Rows), .CellBits(CellBits), .SlotBits(RowBits), .AddrBits(RowAddrBits)
+  ) u_row_addr (.cell_i(own_cell_o), .slot_i(row), .addr_o(row_o));
   always_ff @(posedge clk_i) begin
     if (present) begin
       answer_q <= {{Faces{1'b0}}, 1'b1} << segment;

@@ -90,8 +90,9 @@ module cuboct_brick_inbox #(
   end
 
   logic [Wide-1:0] halo_at, particle_at, shown_at, streamed_at;
-  assign halo_at     = {{(Wide - TagBits) {1'b0}}, halo_cell_i} * Capacity[Wide-1:0]
-                     + {{(Wide - CountBits) {1'b0}}, halo_count};
+  cuboct_brick_addr #(
+    .Factor(Capacity), .CellBits(TagBits), .SlotBits(CountBits), .AddrBits(Wide)
+  ) u_halo_at (.cell_i(halo_cell_i), .slot_i(halo_count), .addr_o(halo_at));
   assign particle_at = First[Wide-1:0] + {{(Wide - TotalBits) {1'b0}}, write_q};
   assign shown_at    = First[Wide-1:0] + {{(Wide - TotalBits) {1'b0}}, read_d};
   assign streamed_at = {{(Wide - AddrBits) {1'b0}}, addr_i};

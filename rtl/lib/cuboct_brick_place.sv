@@ -16,6 +16,7 @@ module cuboct_brick_place #(
   output logic [3*TagBits-1:0]  face_o    // by axis
 );
   localparam int Bits = CellBits + 5;
+  localparam int RowX = BrickX + 2;
   // x, y, z counted from the brick's first cell, and from the one below it.
   logic [Bits-1:0] in   [0:2];
   logic [Bits-1:0] grid [0:2];
@@ -24,13 +25,24 @@ module cuboct_brick_place #(
     assign in[a]   = grid[a] - 1'b1;
   end
   logic [Bits-1:0] own, layer_x, layer_y, layer_z, face_y, face_z;
-  localparam int RowX = BrickX + 2;
-  assign own     = in[0] + BrickX[Bits-1:0] * layer_x;
-  assign layer_x = in[1] + BrickY[Bits-1:0] * in[2];
-  assign layer_y = grid[0] + RowX[Bits-1:0] * in[2];
-  assign layer_z = grid[0] + RowX[Bits-1:0] * grid[1];
-  assign face_y  = in[0] + BrickX[Bits-1:0] * in[2];
-  assign face_z  = in[0] + BrickX[Bits-1:0] * in[1];
+  cuboct_brick_addr #(.Factor(BrickY), .CellBits(Bits), .SlotBits(Bits), .AddrBits(Bits)) u_layer_x (
+    .cell_i(in[2]), .slot_i(in[1]), .addr_o(layer_x)
+  );
+  cuboct_brick_addr #(.Factor(BrickX), .CellBits(Bits), .SlotBits(Bits), .AddrBits(Bits)) u_own (
+    .cell_i(layer_x), .slot_i(in[0]), .addr_o(own)
+  );
+  cuboct_brick_addr #(.Factor(RowX), .CellBits(Bits), .SlotBits(Bits), .AddrBits(Bits)) u_layer_y (
+    .cell_i(in[2]), .slot_i(grid[0]), .addr_o(layer_y)
+  );
+  cuboct_brick_addr #(.Factor(RowX), .CellBits(Bits), .SlotBits(Bits), .AddrBits(Bits)) u_layer_z (
+    .cell_i(grid[1]), .slot_i(grid[0]), .addr_o(layer_z)
+  );
+  cuboct_brick_addr #(.Factor(BrickX), .CellBits(Bits), .SlotBits(Bits), .AddrBits(Bits)) u_face_y (
+    .cell_i(in[2]), .slot_i(in[0]), .addr_o(face_y)
+  );
+  cuboct_brick_addr #(.Factor(BrickX), .CellBits(Bits), .SlotBits(Bits), .AddrBits(Bits)) u_face_z (
+    .cell_i(in[1]), .slot_i(in[0]), .addr_o(face_z)
+  );
   assign own_o   = own[CellBits-1:0];
   assign layer_o = {layer_z[TagBits-1:0], layer_y[TagBits-1:0], layer_x[TagBits-1:0]};
   assign face_o  = {face_z[TagBits-1:0], face_y[TagBits-1:0], layer_x[TagBits-1:0]};

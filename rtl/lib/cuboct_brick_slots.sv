@@ -71,7 +71,7 @@ module cuboct_brick_slots #(
   // Slot s of a cell lies in bank s % FilterLanes, row s / FilterLanes.
   logic [CoarseBits-1:0]  coarse;
   logic [FilterLanes-1:0] lane;
-  logic [RowAddrBits-1:0] write_row;
+  logic [RowAddrBits-1:0] cell_row, write_row;
   for (genvar a = 0; a < Axes; a++) begin : gen_coarse
     assign coarse[a*FilterFrac +: FilterFrac] = write_data_i[a*PositionFrac+PositionFrac-FilterFrac +: FilterFrac];
   end
@@ -79,16 +79,18 @@ module cuboct_brick_slots #(
   always_comb begin
     lane      = '0;
     row       = 0;
-    write_row = '0;
+    cell_row  = '0;
     for (s = 0; s < Capacity; s = s + 1) begin
       if (write_slot_i == s[SlotBits-1:0]) begin
         lane[s%FilterLanes] = 1'b1;
         row                 = s / FilterLanes;
-        write_row           = row[RowAddrBits-1:0];
+        cell_row            = row[RowAddrBits-1:0];
       end
     end
-    write_row = write_row + {{(RowAddrBits - CellBits) {1'b0}}, write_cell_i} * Rows[RowAddrBits-1:0];
   end
+  cuboct_brick_addr #(
+    .Factor(Rows), .CellBits(CellBits), .SlotBits(RowAddrBits), .AddrBits(RowAddrBits)
+  ) u_write_row (.cell_i(write_cell_i), .slot_i(cell_row), .addr_o(write_row));
   logic unused_row;
   assign unused_row = ^{row, write_row, row_i};
   for (genvar l = 0; l < FilterLanes; l++) begin : gen_bank
