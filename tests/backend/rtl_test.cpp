@@ -247,7 +247,8 @@ TEST_P(RtlLattice, EqualsTheWiredNodes) {
   EXPECT_EQ(with_wired.spans, c.steps * plan.lattice.size() * kPhases);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice, testing::Values("undamped_2x2x2", "lattice_3x2x1", "flat"),
+INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice,
+                         testing::Values("undamped_2x2x2", "lattice_3x2x1", "flat", "rich_narrow", "flat_narrow"),
                          [](const auto& p) { return p.param; });
 
 }  // namespace
