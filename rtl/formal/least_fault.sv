@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // cuboct_least_fault: what is shown is the least of all faults since the clear, by code, id and signed
-// number.
+// number; with Direct one of this cycle counts, and may come with the clear.
 module least_fault_formal #(
   parameter int Sources = 2,
   parameter int IdBits  = 3,
   parameter int NumberBits = 64,
-  parameter int Late = 0
+  parameter int Late = 0,
+  parameter int Direct = 0
 ) (
   input logic                      clk_i,
   input logic                      clear_i,
@@ -17,7 +18,7 @@ module least_fault_formal #(
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
   always_comb begin
-    if (clear_i || !running_q) assume (valid_i == '0);
+    if ((clear_i && Direct == 0) || !running_q) assume (valid_i == '0);
   end
   // Every number fits NumberBits.
   integer n, m;
@@ -32,12 +33,12 @@ module least_fault_formal #(
   logic [3:0]         code;
   logic [IdBits-1:0]  id;
   logic signed [63:0] number;
-  cuboct_least_fault #(.Sources(Sources), .IdBits(IdBits), .NumberBits(NumberBits), .Late(Late)) u_dut (
+  cuboct_least_fault #(.Sources(Sources), .IdBits(IdBits), .NumberBits(NumberBits), .Late(Late), .Direct(Direct)) u_dut (
     .clk_i, .rst_ni(running_q), .clear_i, .valid_i, .code_i, .id_i, .number_i,
     .valid_o(valid), .code_o(code), .id_o(id), .number_o(number)
   );
 
-  logic               some_d, some_q, less;
+  logic               some_d, some_q, some_now, less;
   logic [3:0]         code_d, code_q, new_code;
   logic [IdBits-1:0]  id_d, id_q, new_id;
   logic signed [63:0] number_d, number_q, new_number;
@@ -64,6 +65,7 @@ module least_fault_formal #(
       end
       some_d = some_d || valid_i[s];
     end
+    some_now = some_d;
     if (clear_i) some_d = 1'b0;
   end
   always_ff @(posedge clk_i) begin
@@ -73,13 +75,23 @@ module least_fault_formal #(
     number_q <= number_d;
   end
 
+  // What is to be shown.
+  logic               some;
+  logic [3:0]         least_code;
+  logic [IdBits-1:0]  least_id;
+  logic signed [63:0] least_number;
+  assign some         = (Direct != 0) ? some_now : some_q;
+  assign least_code   = (Direct != 0) ? code_d : code_q;
+  assign least_id     = (Direct != 0) ? id_d : id_q;
+  assign least_number = (Direct != 0) ? number_d : number_q;
+
   logic cleared_q;  // a fault was shown before the clear
   always_ff @(posedge clk_i) cleared_q <= running_q && (cleared_q || (clear_i && valid));
   always_ff @(posedge clk_i) begin
     if (running_q) begin
-      a_valid: assert (valid == some_q);
-      if (some_q) a_least: assert (code == code_q && id == id_q && number == number_q);
-      if (!some_q) a_none: assert (code == '0 && id == '0 && number == '0);
+      a_valid: assert (valid == some);
+      if (some) a_least: assert (code == least_code && id == least_id && number == least_number);
+      if (!some) a_none: assert (code == '0 && id == '0 && number == '0);
       c_negative: cover (cleared_q && valid && number < 64'sd0);
       c_all:      cover (valid_i == '1 && valid);
     end

@@ -204,7 +204,7 @@ emu::RunOptions Judge::options_of(const Run& run) const {
 Judge::Judge(Case c, std::vector<Run> runs)
     : case_(std::move(c)), runs_(std::move(runs)), golden_(run_golden(case_.setup, case_.steps)) {
   const Plan& plan = case_.setup.plan;
-  ports_.assign(runs_.size(), PortRecord(plan.lattice.size()));
+  ports_.assign(runs_.size(), PortRecord(plan.nodes()));
   for (size_t k = 0; k < runs_.size(); ++k)
     native_.push_back(run_plain(plan, case_.setup.initial, options_of(runs_[k]),
                                 recorded(emu::native_nodes(plan), ports_[k]), "native"));
@@ -216,10 +216,10 @@ Judgement Judge::judge(const std::shared_ptr<const emu::Library>& library) const
   const emu::NodeFactory native = emu::native_nodes(plan);
   for (size_t k = 0; k < runs_.size(); ++k) {
     const auto emitted = [&](uint32_t node, uint8_t has_link) -> std::unique_ptr<emu::NodeModel> {
-      const Cell& cell = plan.lattice.cell(node);
+      const Cell& cell = plan.bricks.single() ? plan.lattice.cell(node) : plan.bricks.node(node).low;
       if (runs_[k].mixed && (cell[0] + cell[1] + cell[2]) % 2 == 0) return native(node, has_link);
       const uint32_t seed = runs_[k].register_seed;
-      return std::make_unique<emu::VerilatedNode>(library, has_link, seed == 0 ? 0 : seed + node);
+      return std::make_unique<emu::VerilatedNode>(library, plan, node, has_link, seed == 0 ? 0 : seed + node);
     };
     emu::RunResult run;
     try {

@@ -44,12 +44,14 @@ class Watcher : public NodeModel {
     if (out.observe) {
       Hash hash;
       add(hash, out.observe_data);
+      hash.add(uint64_t{out.observe_cell});
       at(PortGroup::observe) = hash.value();
     }
     if (out.fault) {
       Hash hash;
       hash.add(uint64_t{out.fault_code});
       hash.add(uint64_t{out.fault_id});
+      hash.add(uint64_t{out.fault_cell});
       hash.add(static_cast<uint64_t>(out.fault_number));
       at(PortGroup::fault) = hash.value();
     }

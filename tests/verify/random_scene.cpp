@@ -56,6 +56,15 @@ RandomScene random_scene(uint64_t seed) {
     arch.capacity = fullest(setup) + dice.draw(0, 1);
     setup = make_setup(scene, arch);
   }
+  // Drawn apart, so that the other scenes stay what they were.
+  Dice bricks(seed * 0x2545f4914f6cdd1du + 3);
+  if (setup.plan.lattice.size() > 1 && !arch.narrow_memories && bricks.chance(35)) {
+    const std::vector<Cell> shapes = bricks_for(setup.plan.lattice);
+    Cell brick = shapes[static_cast<size_t>(bricks.draw(0, static_cast<int>(shapes.size()) - 1))];
+    while (cells_of(brick) > 27) *std::max_element(brick.begin(), brick.end()) -= 1;
+    arch.brick = brick;
+    setup = make_setup(scene, arch);
+  }
   const LinkCheck check = arch.link_check;
   RandomScene result{{"seed " + std::to_string(seed), std::move(setup), base.steps, std::move(scene)}, {{}}};
   const auto stalled = [&dice] {
@@ -100,7 +109,8 @@ std::map<std::string, uint64_t> stimuli_of(const RandomScene& scene, const Judge
   n["PD"] = rule.pd;
   n["flat"] = rule.axes == 2;
   n["periodic"] = scene.c.scene.periodic.extent.maxCoeff() > 0;
-  n["one node"] = plan.lattice.size() == 1;
+  n["one node"] = plan.nodes() == 1;
+  n["bricks"] = !plan.bricks.single();
   n["octaves"] = rule.force.shape == TableShape::octaves;
   n["degree 2"] = rule.force.degree == 2;
   n["several pipes"] = arch.force_pipes > 1;

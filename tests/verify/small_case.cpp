@@ -130,6 +130,18 @@ void narrow(Arch& arch) {
   arch.overlap = false;
 }
 
+// Another case's scene and machine in nodes of several cells.
+const std::map<std::string, std::pair<const char*, Cell>>& bricks() {
+  static const std::map<std::string, std::pair<const char*, Cell>> all{
+      {"brick_hot", {"hot", {2, 2, 1}}},      {"brick_thin", {"hot", {1, 2, 1}}},
+      {"brick_whole", {"hot", {2, 2, 2}}},
+      {"brick_drift", {"drift", {2, 3, 1}}},  {"brick_full", {"full", {2, 1, 1}}},
+      {"brick_pd", {"pd", {2, 1, 1}}},        {"brick_edge", {"edge", {2, 1, 2}}},
+      {"brick_retry", {"retry", {2, 1, 1}}},  {"brick_fails_sum", {"fails_sum", {2, 1, 1}}},
+      {"brick_fails_v", {"fails_v", {2, 1, 1}}}};
+  return all;
+}
+
 constexpr int64_t kMostV = (1 << 16) - 1, kMostU = (1 << 17) - 1;
 
 using Recipe = std::function<void(Small&)>;
@@ -415,13 +427,16 @@ const std::map<std::string, Recipe>& recipes() {
 std::vector<std::string> small_names() {
   std::vector<std::string> names;
   for (const auto& [name, recipe] : recipes()) names.push_back(name);
+  for (const auto& [name, brick] : bricks()) names.push_back(name);
   return names;
 }
 
 Case small_case(const std::string& name) {
   Small s;
   s.arch = small_arch();
-  recipes().at(name)(s);
+  const auto brick = bricks().find(name);
+  recipes().at(brick == bricks().end() ? name : brick->second.first)(s);
+  if (brick != bricks().end()) s.arch.brick = brick->second.second;
   Case c{"small_" + name, {}, s.steps};
   c.scene = block_scene(s.features);
   if (s.change) s.change(c.scene);
