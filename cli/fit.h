@@ -57,6 +57,7 @@ class Fitter {
   uint64_t cells_that_fit();
   void add_row(std::vector<Row>& rows, const std::optional<FitChoice>& plan);
   std::string numbers(const FitAmounts& uses) const;
+  std::string excess(const FitAmounts& uses) const;
   std::string verdict(const FitAmounts& uses) const;
 
   Input input_;

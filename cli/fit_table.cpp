@@ -49,6 +49,21 @@ std::string Fitter::numbers(const FitAmounts& uses) const {
   return text;
 }
 
+// The same, what is too much first.
+std::string Fitter::excess(const FitAmounts& uses) const {
+  std::string over, rest;
+  for (size_t r = 0; r < kFitted.size(); ++r) {
+    if (!shows(target_, kFitted[r]) || uses[r] == 0 || (kFitted[r] == Resource::cell && model_.empty())) continue;
+    const bool much = uses[r] > room_[r];
+    std::string& text = much ? over : rest;
+    text += fmt::format("{}{} {}/{}", text.empty() ? "" : ", ", to_string(kFitted[r]), uses[r],
+                        holds_of(target_, kFitted[r]));
+    if (much && room_[r] > 0)
+      text += fmt::format(" ({:.3g} times)", static_cast<double>(uses[r]) / static_cast<double>(room_[r]));
+  }
+  return over.empty() || rest.empty() ? over + rest : over + ", " + rest;
+}
+
 std::string Fitter::verdict(const FitAmounts& uses) const {
   if (has_room(uses, room_)) return "fits";
   const size_t r = worst_share(uses, room_).resource;
@@ -185,16 +200,14 @@ void Fitter::refuse() {
   quick.cycles = quick.least_cycles;
   const auto nearest = nearest_to_fit(all, room_, quick);
   const FitShape shape{nearest->point.brick, count_bricks(lattice, nearest->point.brick)};
-  const FitAmounts used = measured(nearest->point) ? measured_.at(nearest->point) : quick.uses(shape, 1, 1);
-  std::string over;
-  for (size_t r = 0; r < kFitted.size(); ++r)
-    if (used[r] > room_[r])
-      over += fmt::format("{}{} {} too many", over.empty() ? "" : ", ", used[r] - room_[r], to_string(kFitted[r]));
+  const FitAmounts used = measured(nearest->point) ? measured_.at(nearest->point) : quick.uses(shape, nearest->point.lanes, nearest->point.pipes);
   const std::string what = fmt::format(
-      "{}: its {} do not fit {}{}: the nearest plan, {} of {} cells with 1 lane and 1 pipe, takes {}{}: {}",
-      input_.scene, count_text(lattice.size(), "cell"), target_.name,
-      arch_.narrow_memories ? " with narrow memories" : "", count_text(shape.nodes, "node"),
-      cells_text(shape.brick), model_.empty() ? "for its memories alone " : "", numbers(used), over);
+      "{}: its {} do not fit {}{}: the nearest plan, {} of {} cells with {} and {}, takes {}{}", input_.scene,
+      count_text(lattice.size(), "cell"), target_.name, arch_.narrow_memories ? " with narrow memories" : "",
+      count_text(shape.nodes, "node"), cells_text(shape.brick),
+      count_text(static_cast<uint64_t>(nearest->point.lanes), "lane"),
+      count_text(static_cast<uint64_t>(nearest->point.pipes), "pipe"), excess(used),
+      model_.empty() ? ", for its memories alone" : "");
   std::string hint;
   if (const Target* other = other_device())
     hint = fmt::format("--fit {} has room by these numbers", other->name);

@@ -54,7 +54,8 @@ void add_code(Hash& hash, const std::string& text) {
 // Nodes below a module that is flat but for them: each is a cell of its own.
 uint64_t nodes_in(const std::string& netlist, const std::string& module) {
   uint64_t count = 0;
-  for (const auto& [name, cell] : read_json(netlist).at("modules").at(module).at("cells").items())
+  const nlohmann::json json = read_json(netlist);
+  for (const auto& [name, cell] : json.at("modules").at(module).at("cells").items())
     count += cell.at("type") == "cuboct_node";
   return count;
 }

@@ -125,6 +125,9 @@ std::string print_table(const Report& report) {
     line("fit the device",
          fmt::format("{} of {}, limited by {}{}", fit->units, report.unit, to_string(fit->limit),
                      share < 1 ? fmt::format(" (planned to {:.0f} %)", 100 * share) : ""));
+    if (report.unit == "node" && report.nodes > fit->units)
+      line("the scene's nodes", fmt::format("{}: cuboct emit SCENE --fit {} looks for a machine that fits",
+                                            report.nodes, report.target));
   }
   if (report.cells)
     line("logic cells, packed", fmt::format("{}, and {} of the harness", *report.cells, report.harness));
