@@ -21,6 +21,8 @@ using synth::Target;
 constexpr int kManyLanes = 8;
 // Syntheses after which the best that was measured has to do.
 constexpr size_t kMostSyntheses = 16;
+// Bricks that cannot be emitted, after which no other is tried.
+constexpr size_t kMostRefused = 4;
 
 void say(const std::string& what) {
   if (stderr_is_terminal()) fmt::print(stderr, "\r\033[K{}", what.empty() ? "" : "fit: " + what + " ...");
@@ -37,13 +39,13 @@ Arch least(Arch arch) {
   return arch;
 }
 
+}  // namespace
+
 int fullest(const PairCensus& census, uint32_t cells) {
   uint64_t most = 1;
   for (uint32_t n = 0; n < cells; ++n) most = std::max(most, census.particles(n));
   return static_cast<int>(most);
 }
-
-}  // namespace
 
 const Target& fit_target(const std::string& name, const BoardChoice& board) {
   const Target& target = synth::target_of(name);
@@ -187,6 +189,7 @@ void Fitter::choose() {
         for (const FitPoint& p : {FitPoint{point.brick, 1, 1}, FitPoint{point.brick, many, 1},
                                   FitPoint{point.brick, many, std::min(2, many)}})
           measure(p);
+        lines = true;
       } else if (measured_.size() >= kMostSyntheses) {
         // Only what was measured counts from here on.
         FitCosts known = costs();
@@ -202,10 +205,12 @@ void Fitter::choose() {
       }
     } catch (const InputError& error) {
       if (cells_of(point.brick) == 1) throw;
-      no_bricks_ = error.what();
-      find_shapes();
+      refused_[point.brick] = error.what();
+      if (refused_.size() >= kMostRefused) no_bricks_ = error.what();
+      std::erase_if(space_.shapes, [&](const FitShape& s) {
+        return cells_of(s.brick) > 1 && (!no_bricks_.empty() || s.brick == point.brick);
+      });
     }
-    lines = true;
     choice_ = fastest_that_fits(space_, room_, costs());
   }
   say("");

@@ -21,6 +21,9 @@ namespace cuboct {
 // board's.
 const synth::Target& fit_target(const std::string& target, const BoardChoice& board);
 
+// Particles in the cell that has most, at least 1.
+int fullest(const PairCensus& census, uint32_t cells);
+
 class Fitter {
  public:
   // Reads scene and arch. Throws InputError; a tool that is missing is told first.
@@ -50,6 +53,7 @@ class Fitter {
   void find_shapes();
   void measure(const FitPoint& point);
   bool measured(const FitPoint& point) const { return measured_.contains(point); }
+  FitAmounts least_uses(const Cell& brick, uint64_t nodes);
   bool fit_memories(const synth::Target& target, const Cell& brick, uint64_t nodes);
   // No plan of the space fits.
   [[noreturn]] void refuse();
@@ -77,7 +81,8 @@ class Fitter {
   std::array<double, 5> around_{};           // per node, as last measured
   std::map<std::pair<Cell, int>, std::array<FitAmounts, 2>> memory_amounts_;  // of one pipe, of each more
   std::map<FitPoint, std::optional<uint64_t>> cycles_;
-  std::string no_bricks_;  // why bricks cannot be emitted
+  std::map<Cell, std::string> refused_;  // bricks that cannot be emitted, and why
+  std::string no_bricks_;                // why none can
   std::optional<FitChoice> choice_;
   std::map<FitPoint, FitAmounts> estimates_;  // of what was measured after the lines were drawn, before it was
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <tuple>
 
@@ -166,6 +167,14 @@ const Target* Fitter::other_device() {
   return nullptr;
 }
 
+// Of so many nodes with one lane and one pipe.
+FitAmounts Fitter::least_uses(const Cell& brick, uint64_t nodes) {
+  if (const auto known = measured_.find({brick, 1, 1}); known != measured_.end()) return known->second;
+  FitAmounts all = times(model_.predict({brick, 1, 1}, memories(brick, 1, 1, target_.family)), nodes);
+  for (size_t r = 0; r < all.size(); ++r) all[r] += static_cast<uint64_t>(around_[r] * static_cast<double>(nodes));
+  return all;
+}
+
 // The most cells that the device has room for, in bricks of any shape, with one lane and one pipe.
 uint64_t Fitter::cells_that_fit() {
   const bool flat = base_.plan.rule.axes == 2, single = arch_.narrow_memories || !no_bricks_.empty();
@@ -187,26 +196,31 @@ uint64_t Fitter::cells_that_fit() {
 
 void Fitter::refuse() {
   const Lattice& lattice = base_.plan.lattice;
-  FitSpace all;
+  // By the least number of nodes, which no count is below; counted until none of the rest can be nearer.
+  std::vector<std::pair<double, Cell>> bricks;
   for (const Cell& brick : possible_bricks(lattice)) {
     if (cells_of(brick) > 1 && (arch_.narrow_memories || !no_bricks_.empty())) break;
-    all.shapes.push_back({brick, static_cast<uint32_t>((lattice.size() + cells_of(brick) - 1) / cells_of(brick))});
+    const uint64_t nodes = (lattice.size() + cells_of(brick) - 1) / cells_of(brick);
+    bricks.emplace_back(worst_share(least_uses(brick, nodes), room_).share, brick);
   }
-  FitCosts quick = costs();
-  quick.uses = [this](const FitShape& s, int lanes, int pipes) {
-    const FitAmounts own = memories(s.brick, lanes, pipes, target_.family);
-    return times(model_.predict({s.brick, lanes, pipes}, own), s.nodes);
-  };
-  quick.cycles = quick.least_cycles;
-  const auto nearest = nearest_to_fit(all, room_, quick);
-  const FitShape shape{nearest->point.brick, count_bricks(lattice, nearest->point.brick)};
-  const FitAmounts used = measured(nearest->point) ? measured_.at(nearest->point) : quick.uses(shape, nearest->point.lanes, nearest->point.pipes);
+  std::ranges::stable_sort(bricks, {}, &std::pair<double, Cell>::first);
+  FitShape shape;
+  FitAmounts used;
+  double share = std::numeric_limits<double>::infinity();
+  for (const auto& [bound, brick] : bricks) {
+    if (bound >= share) break;
+    const uint32_t nodes = count_bricks(lattice, brick);
+    const FitAmounts uses = least_uses(brick, nodes);
+    if (const double here = worst_share(uses, room_).share; here < share || shape.nodes == 0) {
+      share = here;
+      shape = {brick, nodes};
+      used = uses;
+    }
+  }
   const std::string what = fmt::format(
-      "{}: its {} do not fit {}{}: the nearest plan, {} of {} cells with {} and {}, takes {}{}", input_.scene,
+      "{}: its {} do not fit {}{}: the nearest plan, {} of {} cells with 1 lane and 1 pipe, takes {}{}", input_.scene,
       count_text(lattice.size(), "cell"), target_.name, arch_.narrow_memories ? " with narrow memories" : "",
-      count_text(shape.nodes, "node"), cells_text(shape.brick),
-      count_text(static_cast<uint64_t>(nearest->point.lanes), "lane"),
-      count_text(static_cast<uint64_t>(nearest->point.pipes), "pipe"), excess(used),
+      count_text(shape.nodes, "node"), cells_text(shape.brick), excess(used),
       model_.empty() ? ", for its memories alone" : "");
   std::string hint;
   if (const Target* other = other_device())
@@ -220,6 +234,8 @@ void Fitter::refuse() {
                                    count_text(std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(
                                                   static_cast<double>(cells) * base_.plan.particles / lattice.size()))),
                                               "particle"));
+  if (const int most = fullest(census_, lattice.size()); 2 * most <= arch_.capacity && !arch_.narrow_memories)
+    hint += fmt::format("; the fullest cell holds {} at the start, node.capacity is {}", most, arch_.capacity);
   if (arch_.narrow_memories) hint += "; memories = \"wide\" have bricks";
   if (!no_bricks_.empty()) hint += "; without bricks: " + no_bricks_.substr(0, no_bricks_.find('\n'));
   throw InputError(what, hint);
