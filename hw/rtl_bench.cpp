@@ -75,7 +75,7 @@ module cuboct_bench;
 
   logic clk, rst_n, start, load_valid;
   logic [31:0] load_node;
-  logic [ParticleBits-1:0] load_data;
+@CELLS@  logic [ParticleBits-1:0] load_data;
   logic [8*Nodes-1:0] phase_start, phase_end;
   logic [Nodes-1:0] observe_valid, fault_valid, idle;
   logic [Nodes*ParticleBits-1:0] observe_data;
@@ -85,21 +85,21 @@ module cuboct_bench;
 
   cuboct_lattice u_lattice (
     .clk_i(clk), .rst_ni(rst_n), .start_i(start), .steps_i(Steps), .load_valid_i(load_valid),
-    .load_node_i(load_node), .load_data_i(load_data),@VELOCITY@ .phase_start_o(phase_start), .phase_end_o(phase_end),
+    .load_node_i(load_node), .load_data_i(load_data),@VELOCITY@@CELL_PORTS@ .phase_start_o(phase_start), .phase_end_o(phase_end),
     .observe_valid_o(observe_valid), .observe_data_o(observe_data), .fault_valid_o(fault_valid),
     .fault_code_o(fault_code), .fault_id_o(fault_id), .fault_number_o(fault_number), .idle_o(idle)
   );
 
-  // Words are {node, particle}; {step, slot, particle}, all of node 0 in the order of time, then of node 1, ...;
+  // Words are {@CELL_WORD@node, particle}; {step, @CELL_WORD@slot, particle}, all of node 0 in the order of time, then of node 1, ...;
   // and where each node's begin, with the end.
-  logic [ParticleBits+31:0] loads [0:Loads-1];
+  logic [ParticleBits+@LOAD_TOP@:0] loads [0:Loads-1];
   logic [ParticleBits+63:0] expected [0:Expected-1];
   logic [31:0] first [0:Nodes];
 
   integer next [0:Nodes-1];
   integer n, k, cycle, compared, phases;
   logic [ParticleBits-1:0] got, want;
-  logic [31:0] step, slot;
+  logic [31:0] step@SLOT@;
   logic running;
 
   initial clk = 1'b0;
@@ -120,7 +120,7 @@ module cuboct_bench;
     tick       <= tick + 1;
     rst_n      <= (tick >= 4);
     load_valid <= (tick >= 6 && tick < 6 + Loads);
-    if (tick >= 6 && tick < 6 + Loads) {load_node, load_data} <= loads[tick-6];
+    if (tick >= 6 && tick < 6 + Loads) {@LOAD_CELL@load_node, load_data} <= loads[tick-6];
     start      <= (tick == 6 + Loads);
     if (tick == 7 + Loads) running <= 1'b1;
   end
@@ -144,15 +144,15 @@ module cuboct_bench;
           $display("FAIL node %0d: observes a particle more than golden has", k);
           $fatal(1, "more");
         end
-        {step, slot, want} = expected[next[k]];
-@FIELDS@        compared = compared + 1;
+        {step, @OWN_CELL@slot, want} = expected[next[k]];
+@CELL_CHECK@@FIELDS@        compared = compared + 1;
         next[k] = next[k] + 1;
       end
       if (phase_end[8*k+@LAST@]) phases = phases + 1;
     end
     if (cycle > 1 && (&idle)) begin
       for (k = 0; k < Nodes; k = k + 1) if (next[k] != first[k+1]) begin
-        {step, slot, want} = expected[next[k]];
+        {step, @OWN_CELL@slot, want} = expected[next[k]];
         $display("FAIL step %0d node %0d slot %0d: particle %0d was not observed", step, k, slot,
                  want[@IDLSB@ +: IdBits]);
         $fatal(1, "less");
@@ -284,17 +284,28 @@ std::string print_fields(const Plan& plan, int& id_lsb) {
 
 std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign& design,
                                                const State& initial, uint64_t steps) {
-  const auto nodes = plan.lattice.size();
+  const uint32_t nodes = plan.nodes();
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity, initial);
   std::string loads;
+  const bool bricks = design.bricks();
+  const auto of_node = [&](uint32_t n) {
+    std::vector<std::pair<uint32_t, uint32_t>> cells;  // of the lattice, and which one of the node's
+    if (!bricks) return cells.emplace_back(n, 0), cells;
+    for (uint32_t local = 0; local < cells_of(plan.bricks.shape()); ++local)
+      if (const uint32_t cell = plan.bricks.cell(n, local); cell != kNoNode) cells.emplace_back(cell, local);
+    return cells;
+  };
   for (uint32_t n = 0; n < nodes; ++n)
-    for (const Particle& p : golden.nodes()[n]) loads += particle_hex(plan, p, {n});
+    for (const auto& [cell, local] : of_node(n))
+      for (const Particle& p : golden.nodes()[cell])
+        loads += bricks ? particle_hex(plan, p, {n, local}) : particle_hex(plan, p, {n});
   std::vector<std::string> expected(nodes);
   std::vector<uint64_t> count(nodes);
   for (uint64_t step = 0;; ++step) {
     for (uint32_t n = 0; n < nodes; ++n)
-      for (size_t slot = 0; slot < golden.nodes()[n].size(); ++slot, ++count[n])
-        expected[n] += particle_hex(plan, golden.nodes()[n][slot], {slot, step});
+      for (const auto& [cell, local] : of_node(n))
+        for (size_t slot = 0; slot < golden.nodes()[cell].size(); ++slot, ++count[n])
+          expected[n] += particle_hex(plan, golden.nodes()[cell][slot], {uint64_t{local} << 16 | slot, step});
     if (step == steps) break;
     golden.step();
   }
@@ -313,7 +324,8 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
   const auto c = static_cast<uint64_t>(plan.arch.capacity);
   const uint64_t records = std::min<uint64_t>(27 * c, initial.particles.size());
   const auto beats = static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
-  const uint64_t limit = (steps + 2) * (4 * records * beats + 2 * c * records + 300);
+  const uint64_t cells = cells_of(plan.bricks.shape());
+  const uint64_t limit = (steps + 2) * (4 * records * beats + 2 * c * records + 300) * cells;
 
   std::map<std::string, std::string> files;
   const auto filled = [&](std::string text) {
@@ -327,9 +339,30 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
     replace(text, "@LIMIT@", std::to_string(limit));
     replace(text, "@FIELDS@", fields);
     replace(text, "@LAST@", std::to_string(static_cast<int>(last_phase(plan.rule.axes))));
-    replace(text, "@IDLSB@", std::to_string(id_lsb));
     replace(text, "@VELOCITY@",
             design.moved.empty() ? "" : fmt::format(" .velocity_i({}),\n   ", print_velocities(design)));
+    const auto of_bricks = [&](const char* key, const char* with, const char* without = "") {
+      replace(text, key, bricks ? with : without);
+    };
+    of_bricks("@CELLS@",
+              "  localparam int CellBits = cuboct_pkg::CellBits;\n"
+              "  logic [CellBits-1:0] load_cell;\n"
+              "  logic [31-CellBits:0] unused_load;\n"
+              "  logic [Nodes*CellBits-1:0] observe_cell, unused_fault_cell;\n");
+    of_bricks("@CELL_PORTS@",
+              "\n    .load_cell_i(load_cell), .observe_cell_o(observe_cell), .fault_cell_o(unused_fault_cell),");
+    of_bricks("@CELL_WORD@", "cell, ");
+    of_bricks("@SLOT@", ";\n  logic [15:0] slot, own_cell", ", slot");
+    of_bricks("@OWN_CELL@", "own_cell, ");
+    of_bricks("@LOAD_TOP@", "63", "31");
+    of_bricks("@LOAD_CELL@", "unused_load, load_cell, ");
+    of_bricks("@CELL_CHECK@", R"(        if (observe_cell[CellBits*k +: CellBits] !== own_cell[CellBits-1:0]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: cell is %0d, golden has %0d", step, k, slot,
+                   want[@IDLSB@ +: IdBits], observe_cell[CellBits*k +: CellBits], own_cell);
+          $fatal(1, "differs");
+        end
+)");
+    replace(text, "@IDLSB@", std::to_string(id_lsb));
     replace(text, "@PLAN@", describe(plan));
     return text;
   };

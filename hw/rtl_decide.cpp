@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "hw/rtl_design.h"
@@ -19,6 +19,13 @@ int bits_for(const ValueRange& range) {
 }
 
 int clog2(uint64_t n) { return n <= 1 ? 0 : std::bit_width(n - 1); }
+
+// A sized literal, the first bit last.
+std::string binary(const std::vector<bool>& bits) {
+  std::string text;
+  for (const bool bit : bits) text.insert(text.begin(), bit ? '1' : '0');
+  return fmt::format("{}'b{}", bits.size(), text);
+}
 
 void add_table(RtlDesign& design, const std::string& module, const FixedTable& table, int entry_bits) {
   design.tables.push_back({module, entry_bits, table.index_bits, table.c0, table.c1, table.c2});
@@ -50,7 +57,6 @@ ValueRange table_range(const FixedTable& table) {
 }
 
 RtlDesign decide(const Plan& plan) {
-  refuse_bricks(plan);
   const FixedRule& rule = plan.rule;
   const Widths& w = rule.widths;
   const Arch& arch = plan.arch;
@@ -64,7 +70,12 @@ RtlDesign decide(const Plan& plan) {
     design.constants.push_back({name, static_cast<int64_t>(value), true, true, comment});
   };
   constant("Axes", rule.axes, "3, or 2 where nothing happens along z");
-  constant("Capacity", arch.capacity, "particles per node");
+  const bool bricks = !plan.bricks.single();
+  if (bricks)
+    for (size_t a = 0; a < 3; ++a)
+      constant(std::array{"BrickX", "BrickY", "BrickZ"}[a], arch.brick[static_cast<int>(a)],
+               a == 0 ? "cells of a node" : "");
+  constant("Capacity", arch.capacity, bricks ? "particles per cell" : "particles per node");
   constant("FilterLanes", arch.filter_lanes, "own particles that a candidate meets per cycle");
   constant("ForcePipes", arch.force_pipes, "pairs per cycle");
   constant("Shared", arch.multipliers == Multipliers::shared, "1: one multiplier serves the axes in turn");
@@ -72,7 +83,7 @@ RtlDesign decide(const Plan& plan) {
   constant("Interval", plan.latency.interval, "cycles from one pair to the next");
   constant("QueueDepth", arch.queue_depth, "entries between filter and pipes");
   constant("Overlap", arch.overlap, "1: the force engine starts with the exchange");
-  constant("Narrow", arch.narrow_memories, "1: memories of words of LinkBits, one port to read");
+  if (!bricks) constant("Narrow", arch.narrow_memories, "1: memories of words of LinkBits, one port to read");
   constant("LinkBits", plan.words.link_bits, "payload of a beat");
   constant("IdBits", plan.words.id_bits, "");
   constant("TypeBits", rule.type_bits, "0 with one type");
@@ -154,19 +165,42 @@ RtlDesign decide(const Plan& plan) {
   const int kick_bits = std::max(2, s_bits + w.difference_frac + 1 - rule.kick_shift);
   design.pair_sum_bits =
       kick_bits + clog2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(arch.capacity));
-  for (uint32_t n = 0; n < plan.lattice.size(); ++n) {
-    design.cells.push_back(plan.lattice.cell(n));
+  for (uint32_t n = 0; n < plan.nodes(); ++n) {
+    design.cells.push_back(bricks ? plan.bricks.node(n).low : plan.lattice.cell(n));
     auto& faces = design.neighbour.emplace_back();
-    for (int f = 0; f < kFaces; ++f) faces[f] = plan.lattice.neighbour(n, f);
+    for (int f = 0; f < kFaces; ++f) faces[f] = plan.neighbour(n, f);
+    if (!bricks) continue;
+    design.extents.push_back(binary(extent_bits(plan, n)));
+    design.exits.push_back(binary(exit_bits(plan, n)));
+  }
+  if (bricks) {
+    design.brick_cells = static_cast<int>(cells_of(arch.brick));
+    design.cell_bits = clog2(cells_of(arch.brick));
+    design.constants.push_back({"CellBits", design.cell_bits, false, false, "of a cell's number in its node"});
   }
   return design;
 }
 
-void refuse_bricks(const Plan& plan) {
-  if (!plan.bricks.single())
-    throw InputError(
-        fmt::format("brick = [{}]: a node in RTL serves one cell", fmt::join(plan.arch.brick, ", ")),
-        "take node.brick out of the arch file; --engine systemc runs it");
+int grid_bits(const Cell& brick) {
+  return clog2(static_cast<uint64_t>(std::max({brick[0], brick[1], brick[2]})) + 2);
+}
+
+std::vector<bool> extent_bits(const Plan& plan, uint32_t node) {
+  const int width = grid_bits(plan.bricks.shape());
+  std::vector<bool> bits;
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < width; ++b) bits.push_back(plan.bricks.node(node).extent[a] >> b & 1);
+  return bits;
+}
+
+std::vector<bool> exit_bits(const Plan& plan, uint32_t node) {
+  std::vector<bool> bits;
+  for (uint32_t local = 0; local < cells_of(plan.bricks.shape()); ++local) {
+    const uint32_t cell = plan.bricks.cell(node, local);
+    for (int f = 0; f < 2 * plan.rule.axes; ++f)
+      bits.push_back(cell != kNoNode && plan.lattice.neighbour(cell, f) != kNoNode);
+  }
+  return bits;
 }
 
 void legalise(const RtlDesign& design, bool with_lattice) {

@@ -18,7 +18,7 @@ struct RtlConstant {
   std::string name;
   int64_t value = 0;
   bool wide = false;
-  bool core = false;    // a parameter of cuboct_node_core
+  bool core = false;    // a parameter of cuboct_node_core, or of cuboct_brick_core
   std::string comment;  // unit or meaning
 };
 
@@ -48,14 +48,24 @@ struct RtlDesign {
   int particle_bits = 0, link_bits = 0;
   bool checked = false;     // links have a check: cuboct_link_guard, and the ports of link_ack and link_error
   int pair_sum_bits = 0;    // of a pipe's exact sum
-  std::vector<Cell> cells;  // of the nodes
+  std::vector<Cell> cells;  // of the nodes; of bricks their lowest ones
   std::vector<std::array<uint32_t, kFaces>> neighbour;
+  int cell_bits = 0;             // of a cell's number in its brick; 0: nodes of one cell
+  int brick_cells = 1;
+  std::vector<std::string> extents;  // of bricks, by node: constants of extent_i and exit_i
+  std::vector<std::string> exits;
+
+  bool bricks() const { return cell_bits > 0; }
 };
+
+// Inputs of a node with a brick that never change: its cells along x, y, z, grid_bits(brick) each, and, by cell and
+// face, whether the lattice has a cell there. Least significant bit first.
+int grid_bits(const Cell& brick);
+std::vector<bool> extent_bits(const Plan& plan, uint32_t node);
+std::vector<bool> exit_bits(const Plan& plan, uint32_t node);
 
 ValueRange table_range(const FixedTable& table);
 
-// Throws InputError for a plan whose nodes serve more than a cell: the RTL has none such.
-void refuse_bricks(const Plan& plan);
 RtlDesign decide(const Plan& plan);
 // Throws InputError with the numbers.
 void legalise(const RtlDesign& design, bool with_lattice);

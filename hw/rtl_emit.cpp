@@ -27,12 +27,20 @@ using Files = std::map<std::string, std::string>;  // path in the project: text
 constexpr const char* kMarker = ".cuboct-emit";
 
 void add_node(Files& files, const RtlDesign& design) {
-  // What checks links goes only where links are checked.
+  // What checks links goes only where links are checked; of the two kinds of node one is there.
   const std::set<std::string_view> checks{"cuboct_link_crc.sv", "cuboct_link_guard.sv", "cuboct_link_send.sv",
                                           "cuboct_link_take.sv"};
+  const std::set<std::string_view> single{
+      "cuboct_node_core.sv", "cuboct_candidate.sv",   "cuboct_halos.sv",      "cuboct_inbox.sv",
+      "cuboct_migrate.sv",   "cuboct_pair_finder.sv", "cuboct_pair_walk.sv",  "cuboct_relay.sv",
+      "cuboct_slots.sv",     "cuboct_streamer.sv",    "cuboct_sums.sv",       "cuboct_word_halos.sv",
+      "cuboct_word_inbox.sv"};
+  const auto used = [&](std::string_view name) {
+    if (checks.contains(name)) return design.checked;
+    return design.bricks() ? !single.contains(name) : !name.starts_with("cuboct_brick_");
+  };
   for (const RtlSource& source : rtl_library())
-    if (design.checked || !checks.contains(source.name))
-      files["rtl/" + std::string(source.name)] = source.text;
+    if (used(source.name)) files["rtl/" + std::string(source.name)] = source.text;
   files["rtl/cuboct_pkg.sv"] = print_package(design);
   for (const RtlTable& table : design.tables)
     files["rtl/" + table.module + ".sv"] = print_table(design, table);
@@ -116,7 +124,8 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
     files["README.md"] += print_board_readme(plan, board);
   }
   if (!design.moved.empty())
-    for (const char* path : {"rtl/cuboct_node_core.sv", "rtl/cuboct_update.sv", "board/cuboct_board.sv"})
+    for (const char* path : {design.bricks() ? "rtl/cuboct_brick_core.sv" : "rtl/cuboct_node_core.sv",
+                             "rtl/cuboct_update.sv", "board/cuboct_board.sv"})
       files[path] =
           "`define CUBOCT_HOST_VELOCITY  // velocities of held and moved types are set by a host\n" +
           files[path];

@@ -36,6 +36,9 @@ std::string velocity_range(const RtlDesign& design) {
                      design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits) - 1);
 }
 
+// Of a sized literal.
+int width_of(const std::string& literal) { return std::stoi(literal); }
+
 // The ports of cuboct_node, or of its cuboct_node_core, in order.
 std::vector<Port> node_ports(const RtlDesign& design, bool core) {
   const bool checked = design.checked && !core;
@@ -75,8 +78,19 @@ std::vector<Port> node_ports(const RtlDesign& design, bool core) {
                              {"output", "[cuboct_pkg::IdBits-1:0]", "fault_id_o"},
                              {"output", "[63:0]", "fault_number_o"},
                              {"output", "", "idle_o"}});
-  if (!design.moved.empty())
-    ports.insert(ports.begin() + 7, {"input ", velocity_range(design), "velocity_i"});
+  const auto add_after = [&](const char* name, std::vector<Port> more) {
+    const auto at = std::find_if(ports.begin(), ports.end(), [&](const Port& p) { return p.name == std::string(name); });
+    ports.insert(at + 1, more.begin(), more.end());
+  };
+  if (design.bricks()) {
+    const std::string cell = "[cuboct_pkg::CellBits-1:0]";
+    add_after("has_link_i", {{"input ", fmt::format("[{}:0]", width_of(design.extents[0]) - 1), "extent_i"},
+                             {"input ", fmt::format("[{}:0]", width_of(design.exits[0]) - 1), "exit_i"}});
+    add_after("load_valid_i", {{"input ", cell, "load_cell_i"}});
+    add_after("observe_valid_o", {{"output", cell, "observe_cell_o"}});
+    add_after("fault_id_o", {{"output", cell, "fault_cell_o"}});
+  }
+  if (!design.moved.empty()) add_after("load_data_i", {{"input ", velocity_range(design), "velocity_i"}});
   return ports;
 }
 
@@ -211,9 +225,10 @@ std::string print_types(const RtlDesign& design) {
 }
 
 std::string print_node(const RtlDesign& design) {
+  const char* core_name = design.bricks() ? "cuboct_brick_core" : "cuboct_node_core";
   std::string text = head(design);
   text += fmt::format(
-      "// One node of the plan: cuboct_node_core with the plan's constants{}.\nmodule cuboct_node (\n{});\n",
+      "// One node of the plan: {} with the plan's constants{}.\nmodule cuboct_node (\n{});\n", core_name,
       design.checked ? ", and the checks of its links" : "", print_ports(node_ports(design, false)));
   const std::vector<Port> ports = node_ports(design, true);
   // What stands between the core's links and the node's: the core's port `x_o` is the wire `core_x`, `x_i`
@@ -234,7 +249,7 @@ std::string print_node(const RtlDesign& design) {
   for (const RtlConstant& c : design.constants)
     if (c.core) core.push_back(fmt::format("    .{0}(cuboct_pkg::{0})", c.name));
   if (!design.moved.empty()) core.push_back(fmt::format("    .MovedTypes({})", design.moved.size()));
-  text += fmt::format("  cuboct_node_core #(\n{}\n  ) u_core (\n{}\n  );\n", fmt::join(core, ",\n"),
+  text += fmt::format("  {} #(\n{}\n  ) u_core (\n{}\n  );\n", core_name, fmt::join(core, ",\n"),
                       fmt::join(connected, ",\n"));
   if (design.checked)
     text += fmt::format(
@@ -261,6 +276,10 @@ std::string print_node(const RtlDesign& design) {
         "    .fault_valid_o,\n    .fault_code_o,\n    .fault_id_o,\n    .fault_number_o\n"
         "  );\n",
         2 * design.axes);
+  if (design.checked && design.bricks())
+    text +=
+        "  // A link's fault is told by the first cell.\n"
+        "  assign fault_cell_o = core_fault_valid ? core_fault_cell : '0;\n";
   return text + "endmodule\n";
 }
 
@@ -281,15 +300,18 @@ std::string print_lattice(const RtlDesign& design) {
       "  input  logic [31:0] steps_i,\n"
       "  input  logic load_valid_i,\n"
       "  input  logic [31:0] load_node_i,\n"
+      "@LOAD_CELL_PORT@"
       "  input  logic [cuboct_pkg::ParticleBits-1:0] load_data_i,\n"
       "@VELOCITY_PORT@"
       "  output logic [8*Nodes-1:0] phase_start_o,\n"
       "  output logic [8*Nodes-1:0] phase_end_o,\n"
       "  output logic [Nodes-1:0] observe_valid_o,\n"
+      "@OBSERVE_CELL_PORT@"
       "  output logic [Nodes*cuboct_pkg::ParticleBits-1:0] observe_data_o,\n"
       "  output logic [Nodes-1:0] fault_valid_o,\n"
       "  output logic [4*Nodes-1:0] fault_code_o,\n"
       "  output logic [Nodes*cuboct_pkg::IdBits-1:0] fault_id_o,\n"
+      "@FAULT_CELL_PORT@"
       "  output logic [64*Nodes-1:0] fault_number_o,\n";
   text += fmt::format(
       "  output logic [Nodes-1:0] idle_o\n"
@@ -297,10 +319,16 @@ std::string print_lattice(const RtlDesign& design) {
       "  localparam int LinkBits = cuboct_pkg::{};\n{}\n",
       design.checked ? "WireBits" : "LinkBits",
       design.checked ? "  localparam int AckBits = cuboct_pkg::AckBits;\n" : "");
-  const std::string velocity_port = "@VELOCITY_PORT@";
-  text.replace(text.find(velocity_port), velocity_port.size(),
-               design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n");
-  text.replace(text.find("@NODES@"), 7, std::to_string(nodes));
+  const auto put = [&](const std::string& key, const std::string& value) {
+    text.replace(text.find(key), key.size(), value);
+  };
+  const auto of_bricks = [&](const char* port) { return std::string(design.bricks() ? port : ""); };
+  put("@VELOCITY_PORT@",
+      design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n");
+  put("@LOAD_CELL_PORT@", of_bricks("  input  logic [cuboct_pkg::CellBits-1:0] load_cell_i,\n"));
+  put("@OBSERVE_CELL_PORT@", of_bricks("  output logic [Nodes*cuboct_pkg::CellBits-1:0] observe_cell_o,\n"));
+  put("@FAULT_CELL_PORT@", of_bricks("  output logic [Nodes*cuboct_pkg::CellBits-1:0] fault_cell_o,\n"));
+  put("@NODES@", std::to_string(nodes));
   for (size_t n = 0; n < nodes; ++n)
     text +=
         fmt::format("  logic [{1}:0] valid_{0}, end_{0}, ready_{0};\n  logic [{2}*LinkBits-1:0] data_{0};\n",
@@ -342,7 +370,7 @@ std::string print_lattice(const RtlDesign& design) {
                         unused_ends.empty() ? "    " : ",\n    ", n, f, n, f, n, f, n, f);
     }
     text += fmt::format(
-        "\n  // Cell ({1}, {2}, {3}).\n"
+        "\n  // {13} ({1}, {2}, {3}).\n"
         "  cuboct_node u_node_{0} (\n"
         "    .clk_i, .rst_ni, .start_i, .steps_i, .has_link_i({9}'b{4}),\n"
         "    .load_valid_i(load_valid_i && load_node_i == 32'd{0}), .load_data_i,{10}\n"
@@ -358,14 +386,21 @@ std::string print_lattice(const RtlDesign& design) {
         "    .observe_data_o(observe_data_o[{0}*cuboct_pkg::ParticleBits +: cuboct_pkg::ParticleBits]),\n"
         "    .fault_valid_o(fault_valid_o[{0}]), .fault_code_o(fault_code_o[4*{0} +: 4]),\n"
         "    .fault_id_o(fault_id_o[{0}*cuboct_pkg::IdBits +: cuboct_pkg::IdBits]),\n"
-        "    .fault_number_o(fault_number_o[64*{0} +: 64]), .idle_o(idle_o[{0}])\n"
+        "    .fault_number_o(fault_number_o[64*{0} +: 64]), .idle_o(idle_o[{0}]){12}\n"
         "  );\n",
         n, cell[0], cell[1], cell[2], has, valid, end, ready, data, faces,
         design.moved.empty() ? "" : " .velocity_i,",
         design.checked ? fmt::format("    .link_ack_i({{{0}}}),\n"
                                      "    .link_ack_o(ack_{1}), .link_error_o(error_{1}),\n",
                                      ack, n)
-                       : "");
+                       : "",
+        design.bricks()
+            ? fmt::format(",\n    .extent_i({1}), .exit_i({2}), .load_cell_i,\n"
+                          "    .observe_cell_o(observe_cell_o[{0}*cuboct_pkg::CellBits +: cuboct_pkg::CellBits]),\n"
+                          "    .fault_cell_o(fault_cell_o[{0}*cuboct_pkg::CellBits +: cuboct_pkg::CellBits])",
+                          n, design.extents[n], design.exits[n])
+            : "",
+        design.bricks() ? "Cells from" : "Cell");
   }
   if (!unused_ends.empty())
     text += "\n  logic unused_faces;\n  assign unused_faces = ^{\n" + unused_ends + "\n  };\n";

@@ -16,7 +16,8 @@ std::string print_project(const Plan& plan, const State& initial, const std::vec
   const ExpectedCycles cycles = expected_cycles(plan, initial);
   const Json json = {
       {"plan", fmt::format("{:016x}", plan.hash)},
-      {"nodes", plan.lattice.size()},
+      {"nodes", plan.nodes()},
+      {"cells", plan.lattice.size()},
       {"particles", plan.particles},
       {"axes", rule.axes},
       {"rule",
@@ -25,7 +26,8 @@ std::string print_project(const Plan& plan, const State& initial, const std::vec
         {"scaled", rule.scaled},
         {"force_held", rule.pd}}},
       {"arch",
-       {{"capacity", plan.arch.capacity},
+       {{"brick", {plan.arch.brick[0], plan.arch.brick[1], plan.arch.brick[2]}},
+        {"capacity", plan.arch.capacity},
         {"filter_lanes", plan.arch.filter_lanes},
         {"force_pipes", plan.arch.force_pipes},
         {"queue_depth", plan.arch.queue_depth},

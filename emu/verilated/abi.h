@@ -6,12 +6,12 @@
 
 #include <cstdint>
 
-enum { kCuboctAbi = 4, kCuboctFaces = 6, kCuboctWords = 8 };
+enum { kCuboctAbi = 5, kCuboctFaces = 6, kCuboctWords = 8 };
 
 // Inputs of one node during one cycle. `link_data[f]` is read where bit f of `link_valid` is set.
 struct CuboctIn {
   uint8_t reset_n, start, load_valid, has_link, link_valid, link_ready, link_end;
-  uint32_t steps;
+  uint32_t steps, load_cell;  // load_cell: of a brick
   const uint64_t* load_data;
   const uint64_t* link_data[kCuboctFaces];
   uint16_t link_ack[kCuboctFaces];  // where links are checked
@@ -24,7 +24,7 @@ struct CuboctOut {
   uint8_t force_event;  // of a node alone: engine runs, stalled, presents a candidate, issues
   uint8_t beat_errors, ack_errors;  // of the cycle; these and link_ack where links are checked
   uint16_t link_ack[kCuboctFaces];
-  uint32_t fault_id;
+  uint32_t fault_id, observe_cell, fault_cell;  // the cells of a brick
   int64_t fault_number;
   uint64_t observe_data[kCuboctWords];             // where observe_valid
   uint64_t link_data[kCuboctFaces][kCuboctWords];  // where link_valid
@@ -36,6 +36,7 @@ struct CuboctOut {
 //   void cuboct_destroy(void* model);
 // and, of a node,
 //   const char* cuboct_clock(void* model, const CuboctIn*, CuboctOut*);
+//   void cuboct_place(void* model, const uint64_t* extent, const uint64_t* exits);   of a brick: before the first clock
 // or, of a whole lattice, whose host loads one particle of node `load_node` per cycle; `out` has an element
 // per node
 //   const char* cuboct_clock_lattice(void* model, const CuboctIn* host, uint32_t load_node, CuboctOut* out);

@@ -159,7 +159,7 @@ std::string compile(const Build& build, const std::string& directory) {
 
   fs::remove(log, error);
   // One copy of the node's code serves all nodes of a lattice; inlined, the build takes minutes.
-  write_file(dir / "keep.vlt", "`verilator_config\nno_inline -module \"cuboct_node_core\"\n");
+  write_file(dir / "keep.vlt", "`verilator_config\nno_inline -module \"cuboct_node_core\"\nno_inline -module \"cuboct_brick_core\"\n");
   run_logged("verilator",
              fmt::format("verilator {} {} --top-module {} --prefix V{} -Mdir {} ../keep.vlt -f files.f",
                          kVerilatorFlags, build.verilator_flags, build.top, build.top,

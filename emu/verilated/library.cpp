@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <bit>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -43,6 +44,11 @@ void copy_board(const fs::path& project, const std::vector<std::string>& files, 
   }
 }
 
+// Of a cell's number in its brick; 0: nodes of one cell.
+int cell_bits(const Plan& plan) {
+  return plan.bricks.single() ? 0 : static_cast<int>(std::bit_width(cells_of(plan.bricks.shape()) - 1));
+}
+
 }  // namespace
 
 std::string default_build_directory() {
@@ -61,7 +67,8 @@ Build node_build(const Plan& plan) {
           .constants = {{"FACES", 2 * plan.rule.axes},
                         {"LINK_BITS", plan.link.wire_bits},
                         {"ACK_BITS", plan.link.ack_bits},
-                        {"PARTICLE_BITS", plan.words.particle_bits}},
+                        {"PARTICLE_BITS", plan.words.particle_bits},
+                        {"BRICK", plan.bricks.single() ? 0 : 1}},
           .sources = with_headers("shim_node.cpp"),
           .emit = [&plan](const std::string& dir) { emit_node(plan, dir); }};
 }
@@ -76,9 +83,10 @@ std::string compile_lattice(const Plan& plan, const State& initial, const std::s
                   .verilator_flags = "--sc --pins-bv 2",
                   .compiler_flags = "-O1",
                   .libraries = "-lsystemc",
-                  .constants = {{"NODES", static_cast<int>(plan.lattice.size())},
+                  .constants = {{"NODES", static_cast<int>(plan.nodes())},
                                 {"PARTICLE_BITS", plan.words.particle_bits},
-                                {"ID_BITS", plan.words.id_bits}},
+                                {"ID_BITS", plan.words.id_bits},
+                                {"CELL_BITS", cell_bits(plan)}},
                   .sources = with_headers("shim_lattice.cpp"),
                   .emit = [&](const std::string& dir) { emit_rtl(plan, initial, dir, 1); }},
                  build_directory);
@@ -109,6 +117,7 @@ Library::Library(const std::string& path) : handle_(dlopen(path.c_str(), RTLD_NO
   find_symbol(handle_, "cuboct_create", create);
   find_symbol(handle_, "cuboct_destroy", destroy);
   find_symbol(handle_, "cuboct_clock", clock);
+  find_symbol(handle_, "cuboct_place", place);
   find_symbol(handle_, "cuboct_clock_lattice", clock_lattice);
   find_symbol(handle_, "cuboct_clock_board", clock_board);
   if (abi == nullptr || abi() != kCuboctAbi || create == nullptr || destroy == nullptr ||

@@ -39,6 +39,7 @@ class Library {
   void (*destroy)(void*) = nullptr;
   // Of a node's library, of a lattice's, of a board's; null, or the assertion of the RTL that failed.
   const char* (*clock)(void*, const CuboctIn*, CuboctOut*) = nullptr;
+  void (*place)(void*, const uint64_t* extent, const uint64_t* exits) = nullptr;  // of a node with a brick
   const char* (*clock_lattice)(void*, const CuboctIn*, uint32_t, CuboctOut*) = nullptr;
   const char* (*clock_board)(void*, const uint8_t*, uint8_t*, int, uint8_t*) = nullptr;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The whole emitted lattice as one SystemC module, and a host that clocks it. NODES, PARTICLE_BITS and
-// ID_BITS come from the command line. Each clock function advances SystemC's time by one period.
+// The whole emitted lattice as one SystemC module, and a host that clocks it. NODES, PARTICLE_BITS,
+// ID_BITS and CELL_BITS (0: nodes of one cell) come from the command line. Each clock function advances SystemC's time by one period.
 #include <systemc>
 
 #include "Vcuboct_lattice.h"
@@ -23,6 +23,14 @@ struct Lattice : Instance<Vcuboct_lattice> {
   Vector<4 * NODES> fault_code;
   Vector<NODES * ID_BITS> fault_id;
   Vector<64 * NODES> fault_number;
+#if CELL_BITS > 1
+  Vector<CELL_BITS> load_cell;
+#elif CELL_BITS == 1
+  Signal<bool> load_cell;
+#endif
+#if CELL_BITS > 0
+  Vector<NODES * CELL_BITS> observe_cell, fault_cell;
+#endif
 
   explicit Lattice(uint32_t seed) : Instance(seed, "lattice") {
     model->clk_i(clk);
@@ -41,6 +49,11 @@ struct Lattice : Instance<Vcuboct_lattice> {
     model->fault_id_o(fault_id);
     model->fault_number_o(fault_number);
     model->idle_o(idle);
+#if CELL_BITS > 0
+    model->load_cell_i(load_cell);
+    model->observe_cell_o(observe_cell);
+    model->fault_cell_o(fault_cell);
+#endif
   }
 };
 
@@ -87,6 +100,9 @@ const char* cuboct_clock_lattice(void* handle, const CuboctIn* host, uint32_t lo
   l.load_valid.write(host->load_valid);
   l.load_node.write(load_node);
   if (host->load_valid) write(l.load_data, host->load_data);
+#if CELL_BITS > 0
+  l.load_cell.write(host->load_cell);
+#endif
   half_period(l, false);
   for (int n = 0; n < NODES; ++n) {
     CuboctOut& o = out[n];
@@ -102,6 +118,10 @@ const char* cuboct_clock_lattice(void* handle, const CuboctIn* host, uint32_t lo
     o.fault_code = static_cast<uint8_t>(field(l.fault_code, 4 * n, 4));
     o.fault_id = static_cast<uint32_t>(field(l.fault_id, n * ID_BITS, ID_BITS));
     o.fault_number = static_cast<int64_t>(field(l.fault_number, 64 * n, 64));
+#if CELL_BITS > 0
+    o.observe_cell = static_cast<uint32_t>(field(l.observe_cell, n * CELL_BITS, CELL_BITS));
+    o.fault_cell = static_cast<uint32_t>(field(l.fault_cell, n * CELL_BITS, CELL_BITS));
+#endif
   }
   half_period(l, true);
   return l.failure();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One Verilated node. FACES, LINK_BITS (of link_data), ACK_BITS (0 where links are not checked) and PARTICLE_BITS
-// come from the command line.
+// One Verilated node. FACES, LINK_BITS (of link_data), ACK_BITS (0 where links are not checked), PARTICLE_BITS and
+// BRICK (1: of a brick) come from the command line.
 #include <type_traits>
 
 #include "Vcuboct_node.h"
@@ -41,6 +41,14 @@ int cuboct_abi() { return kCuboctAbi; }
 void* cuboct_create(uint32_t seed) { return new Node(seed); }
 void cuboct_destroy(void* handle) { delete static_cast<Node*>(handle); }
 
+#if BRICK
+void cuboct_place(void* handle, const uint64_t* extent, const uint64_t* exits) {
+  Vcuboct_node& m = *static_cast<Node*>(handle)->model;
+  set_port(m.extent_i, extent);
+  set_port(m.exit_i, exits);
+}
+#endif
+
 const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
   Node& n = *static_cast<Node*>(handle);
   Vcuboct_node& m = *n.model;
@@ -50,6 +58,10 @@ const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
   m.has_link_i = in->has_link;
   m.load_valid_i = in->load_valid;
   if (in->load_valid) set_port(m.load_data_i, in->load_data);
+#if BRICK
+  const uint64_t load_cell[] = {in->load_cell};
+  set_port(m.load_cell_i, load_cell);
+#endif
   m.link_ready_i = in->link_ready;
   m.link_valid_i = in->link_valid;
   m.link_end_i = in->link_end;
@@ -83,12 +95,18 @@ const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
   if (m.observe_valid_o) {
     get_port(m.observe_data_o, n.particle);
     copy_bits(out->observe_data, 0, n.particle, 0, PARTICLE_BITS);
+#if BRICK
+    out->observe_cell = m.observe_cell_o;
+#endif
   }
   out->fault_valid = m.fault_valid_o;
   if (m.fault_valid_o) {
     out->fault_code = m.fault_code_o;
     out->fault_id = static_cast<uint32_t>(m.fault_id_o);
     out->fault_number = static_cast<int64_t>(m.fault_number_o);
+#if BRICK
+    out->fault_cell = m.fault_cell_o;
+#endif
   }
 #if ACK_BITS > 0
   out->beat_errors = static_cast<uint8_t>(m.link_error_o & ((1u << FACES) - 1));

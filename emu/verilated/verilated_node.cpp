@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "emu/systemc/words.h"
+#include "hw/rtl_design.h"
 #include "model/trace.h"
 
 namespace cuboct::emu {
@@ -21,13 +22,24 @@ void read_outputs(const CuboctOut& from, NodeOutputs& out) {
   out.fault = from.fault_valid != 0;
   out.fault_code = from.fault_code;
   out.fault_id = from.fault_id;
+  out.observe_cell = from.observe_cell;
+  out.fault_cell = from.fault_cell;
   out.fault_number = from.fault_number;
   out.beat_errors = from.beat_errors;
   out.ack_errors = from.ack_errors;
 }
 
-VerilatedNode::VerilatedNode(std::shared_ptr<const Library> library, uint8_t has_link, uint32_t seed)
-    : library_(std::move(library)), has_link_(has_link), model_(library_->create(seed)) {}
+VerilatedNode::VerilatedNode(std::shared_ptr<const Library> library, const Plan& plan, uint32_t node,
+                             uint8_t has_link, uint32_t seed)
+    : library_(std::move(library)), has_link_(has_link), model_(library_->create(seed)) {
+  if (plan.bricks.single()) return;
+  const auto words = [](const std::vector<bool>& bits) {
+    std::vector<uint64_t> packed(bits.size() / 64 + 2);
+    for (size_t k = 0; k < bits.size(); ++k) packed[k / 64] |= uint64_t{bits[k]} << k % 64;
+    return packed;
+  };
+  library_->place(model_, words(extent_bits(plan, node)).data(), words(exit_bits(plan, node)).data());
+}
 
 VerilatedNode::~VerilatedNode() { library_->destroy(model_); }
 
@@ -39,6 +51,7 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
   ports.steps = host.steps;
   ports.load_valid = host.load_valid;
   ports.load_data = host.load_data.word.data();
+  ports.load_cell = host.load_cell;
   ports.has_link = has_link_;
   ports.link_valid = in.valid;
   ports.link_ready = in.ready;
@@ -92,8 +105,8 @@ std::string VerilatedNode::doing() const {
 NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed) {
   check_words(plan);
   auto library = std::make_shared<const Library>(compile_node(plan, build_directory));
-  return [library, seed](uint32_t node, uint8_t has_link) {
-    return std::make_unique<VerilatedNode>(library, has_link, seed == 0 ? 0 : seed + node);
+  return [library, &plan, seed](uint32_t node, uint8_t has_link) {
+    return std::make_unique<VerilatedNode>(library, plan, node, has_link, seed == 0 ? 0 : seed + node);
   };
 }
 

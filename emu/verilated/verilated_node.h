@@ -16,7 +16,8 @@ namespace cuboct::emu {
 class VerilatedNode : public NodeModel {
  public:
   // `seed`: 0, or what the registers hold before reset is drawn from it.
-  VerilatedNode(std::shared_ptr<const Library> library, uint8_t has_link, uint32_t seed);
+  VerilatedNode(std::shared_ptr<const Library> library, const Plan& plan, uint32_t node, uint8_t has_link,
+                uint32_t seed);
   ~VerilatedNode() override;
   VerilatedNode(const VerilatedNode&) = delete;
   VerilatedNode& operator=(const VerilatedNode&) = delete;

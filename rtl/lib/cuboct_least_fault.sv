@@ -4,11 +4,12 @@ module cuboct_least_fault #(
   parameter int Sources = 1,  // that may speak in one cycle, >= 1
   parameter int IdBits  = 8,
   parameter int NumberBits = 64,  // that hold every number, <= 64
-  parameter int Late    = 0   // 1: what speaks is compared a cycle later, and the outputs count it already
+  parameter int Late    = 0,  // 1: what speaks is compared a cycle later, and the outputs count it already
+  parameter int Direct  = 0   // 1: the outputs count what speaks in this cycle, even one with clear_i
 ) (
   input  logic                      clk_i,
   input  logic                      rst_ni,
-  input  logic                      clear_i,   // never in a cycle with a fault
+  input  logic                      clear_i,   // not in a cycle with a fault, unless Direct
   input  logic [Sources-1:0]        valid_i,
   input  logic [Sources*4-1:0]      code_i,
   input  logic [Sources*IdBits-1:0] id_i,
@@ -78,8 +79,8 @@ module cuboct_least_fault #(
   end
 
   logic [KeyBits-1:0] least;
-  assign valid_o = (Late != 0) ? seen : valid_q;
-  assign least   = (Late != 0) ? key_d : key_q;
+  assign valid_o = (Late != 0 || Direct != 0) ? seen : valid_q;
+  assign least   = (Late != 0 || Direct != 0) ? key_d : key_q;
   assign code_o  = valid_o ? least[NumberBits+IdBits +: 4] : 4'd0;
   assign id_o    = valid_o ? least[NumberBits +: IdBits] : '0;
   logic signed [NumberBits-1:0] number;

@@ -31,8 +31,7 @@ class Rtl : public testing::TestWithParam<std::string> {};
 
 // Native and Verilated nodes, without and with stalls: four lattices in one simulation. The Verilated
 // registers start as random bits in one of them: nothing may hang on what reset leaves alone.
-TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
-  const Case c = make_case(GetParam());
+void expect_golden(const Case& c) {
   const Plan& plan = c.setup.plan;
   const emu::NodeFactory native = emu::native_nodes(plan), verilated = emu::verilated_nodes(plan, kCache),
                          random = emu::verilated_nodes(plan, kCache, 17);
@@ -53,7 +52,7 @@ TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
     EXPECT_EQ(compared.particles, (c.steps + 1) * c.setup.initial.particles.size());
     EXPECT_EQ(compared.slots, compared.particles);
   }
-  const uint64_t spans = c.steps * plan.lattice.size() * kPhases;
+  const uint64_t spans = c.steps * plan.nodes() * kPhases;
   for (const auto& [a, b] : {std::pair{&nf, &rf}, std::pair{&ns, &rs}}) {
     const Compared compared = compare_cycles(*a, *b);
     EXPECT_EQ(compared.difference, "");
@@ -75,7 +74,16 @@ TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
     }
 }
 
+TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) { expect_golden(make_case(GetParam())); }
+
 INSTANTIATE_TEST_SUITE_P(Cases, Rtl, testing::ValuesIn(rtl_cases()), [](const auto& p) { return p.param; });
+
+// Thin and thick ones, ragged ones, a node that is its own neighbour, flat ones, several lanes and pipes.
+INSTANTIATE_TEST_SUITE_P(Bricks, Rtl,
+                         testing::Values("undamped_2x2x2.brick_2x1x1", "hot_gas.brick_2x2x2",
+                                         "rich_ring.brick_3x1x2", "rich_force_held.brick_2x2x1",
+                                         "flat_ring.brick_2x2x1", "periodic_27.brick_2x3x2"),
+                         [](const auto& p) { return p.param.substr(0, p.param.find('.')); });
 
 class RtlFaults : public testing::TestWithParam<Fault> {};
 
@@ -99,6 +107,17 @@ TEST_P(RtlFaults, ArisesAsInGolden) { expect_as_in_golden(fault_case(GetParam())
 TEST_P(RtlFaults, ArisesInNarrowNodesToo) {
   expect_as_in_golden(with_narrow_memories(fault_case(GetParam())), GetParam());
 }
+
+// In pipe, update, on the way out, on arrival; the cell of the brick is told as SystemC's node tells it.
+class RtlBrickFaults : public testing::TestWithParam<Fault> {};
+
+TEST_P(RtlBrickFaults, AriseAsInGolden) {
+  const Case c = fault_case(GetParam());
+  expect_as_in_golden(with_brick(c, bricks_for(c.setup.plan.lattice).back()), GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, RtlBrickFaults, testing::ValuesIn(all_faults()),
+                         [](const auto& p) { return "fault_" + std::to_string(static_cast<int>(p.param)); });
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RtlFaults, testing::ValuesIn(all_faults()),
                          [](const auto& p) { return "fault_" + std::to_string(static_cast<int>(p.param)); });
@@ -192,7 +211,7 @@ emu::RunResult run_lattice(const Case& c) {
   const emu::Library library(emu::compile_lattice(plan, c.setup.initial, kCache));
   void* model = library.create(5);
   const auto particles = emu::by_node(plan, c.setup.initial);
-  const uint32_t nodes = plan.lattice.size();
+  const uint32_t nodes = plan.nodes();
   emu::Collector collector(plan, keep_all(c.steps));
   std::vector<CuboctOut> outs(nodes);
   CuboctIn host{};
@@ -206,6 +225,7 @@ emu::RunResult run_lattice(const Case& c) {
     for (const Particle& p : particles[n]) {
       const emu::Bits word = emu::load_word(plan, p);
       host.load_data = word.word.data();
+      host.load_cell = plan.local_of(p.node);
       clock(n);
     }
   host.load_valid = 0;
@@ -233,8 +253,7 @@ emu::RunResult run_lattice(const Case& c) {
 
 class RtlLattice : public testing::TestWithParam<std::string> {};
 
-TEST_P(RtlLattice, EqualsTheWiredNodes) {
-  const Case c = make_case(GetParam());
+void expect_equal_to_wired_nodes(const Case& c) {
   const Plan& plan = c.setup.plan;
   const emu::RunResult whole = run_lattice(c);
   const Compared with_golden = compare(plan, run_golden(c.setup, c.steps), whole);
@@ -244,7 +263,13 @@ TEST_P(RtlLattice, EqualsTheWiredNodes) {
       run_plain(plan, c.setup.initial, keep_all(c.steps), emu::verilated_nodes(plan, kCache), "rtl");
   const Compared with_wired = compare_cycles(wired, whole);
   EXPECT_EQ(with_wired.difference, "");
-  EXPECT_EQ(with_wired.spans, c.steps * plan.lattice.size() * kPhases);
+  EXPECT_EQ(with_wired.spans, c.steps * plan.nodes() * kPhases);
+}
+
+TEST_P(RtlLattice, EqualsTheWiredNodes) { expect_equal_to_wired_nodes(make_case(GetParam())); }
+
+TEST(RtlBrickLattice, EqualsTheWiredNodes) {
+  expect_equal_to_wired_nodes(make_case("lattice_3x2x1.brick_2x1x1"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice, testing::Values("undamped_2x2x2", "lattice_3x2x1", "flat"),

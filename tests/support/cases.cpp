@@ -2,6 +2,7 @@
 #include "tests/support/cases.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -232,6 +233,14 @@ std::vector<std::string> case_names() {
 }
 
 Case make_case(const std::string& name) {
+  if (const size_t at = name.find(".brick_"); at != std::string::npos) {
+    Cell brick;
+    if (std::sscanf(name.c_str() + at, ".brick_%dx%dx%d", &brick[0], &brick[1], &brick[2]) != 3)
+      throw std::invalid_argument(name);
+    Case c = with_brick(make_case(name.substr(0, at)), brick);
+    c.name = name;
+    return c;
+  }
   Recipe recipe;
   const size_t dot = name.find('.');
   recipes().at(name.substr(0, dot))(recipe);

@@ -19,7 +19,7 @@ struct Case {
 // One feature or awkward size each.
 std::vector<std::string> case_names();
 // `name` with ".detect" or ".retry": the same with checked links; with ".snug": in the fewest nodes, for a
-// few steps.
+// few steps. Behind either, ".brick_2x1x2": on nodes that serve such bricks of cells.
 Case make_case(const std::string& name);
 
 // Features, sizes and initial state drawn from `seed`.

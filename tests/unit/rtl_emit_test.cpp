@@ -32,22 +32,5 @@ TEST(RtlEmit, ClearsItsOwnFilesAlone) {
   fs::remove_all(root);
 }
 
-// Before anything is written.
-TEST(RtlEmit, RefusesBricks) {
-  const fs::path root = fs::temp_directory_path() / ("cuboct-emit-" + std::to_string(getpid()));
-  Arch arch;
-  arch.brick = {2, 1, 2};
-  const auto setup = test::block({.size = {2, 2, 2}}, arch);
-  try {
-    emit_node(setup.plan, (root / "project").string());
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_STREQ(e.what(),
-                 "brick = [2, 1, 2]: a node in RTL serves one cell\n"
-                 "  hint: take node.brick out of the arch file; --engine systemc runs it");
-  }
-  EXPECT_FALSE(fs::exists(root / "project"));
-}
-
 }  // namespace
 }  // namespace cuboct

@@ -1,0 +1,669 @@
+// SPDX-License-Identifier: MIT
+// A particle processor that serves a brick of cells in turn: cuboct_node_core for several cells. The contract, cycle by
+// cycle, is docs/reference/node.md, "Bricks"; a particle's word is that of cuboct_node_core, the others are
+//   particle on a link: particle, number of the cell in the face
+//   halo record:        x[P] y[P] z[P] type[TypeBits, Scaled] v[3 x VelocityBits, Damped], number of the cell in the layer
+module cuboct_brick_core #(
+  // Machine.
+  parameter int          Axes                 = 3,      // 2 or 3
+  parameter int          BrickX               = 2,      // cells that the node serves; two at least
+  parameter int          BrickY               = 2,
+  parameter int          BrickZ               = 2,      // 1 with two axes
+  parameter int          Capacity             = 16,     // particles of a cell, >= 1
+  parameter int          FilterLanes          = 8,      // >= 1
+  parameter int          ForcePipes           = 1,      // >= 1
+  parameter int          Shared               = 0,      // 0, 1: one multiplier serves the axes in turn
+  parameter int          Product              = 1,      // cycles of a multiplier of the pipe; 1 if Shared
+  parameter int          Interval             = 1,      // cycles from one pair to the next
+  parameter int          QueueDepth           = 16,     // entries, >= 1
+  parameter int          Overlap              = 1,      // 0, 1
+  parameter int          LinkBits             = 66,     // payload of a beat, >= 1
+  parameter int          IdBits               = 8,      // >= 1
+  parameter int          TypeBits             = 0,      // 0 with one type
+  // Formats: model/fixed_rule.h, Widths.
+  parameter int          PositionFrac         = 20,
+  parameter int          Guard                = 8,
+  parameter int          VelocityBits         = 29,
+  parameter int          RelativeVelocityBits = 18,
+  parameter int          StrengthBits         = 18,
+  parameter int          SumBits              = 29,
+  parameter int          DisplacementBits     = 29,
+  parameter int          ScaleFrac            = 16,
+  parameter int          GainFrac             = 16,
+  parameter int          GainBits             = 18,
+  parameter int          ScaleBits            = 18,
+  parameter int          ConstantBits         = 29,     // imposed velocities and gravity
+  // Shifts.
+  parameter int          FilterFrac           = 8,      // leading bits of a position that the filter tests
+  parameter int          DifferenceShift      = 4,
+  parameter int          WShift               = 8,
+  parameter int          QShift               = 17,
+  parameter int          DampShift            = 0,
+  parameter int          KickShift            = 0,
+  // Law.
+  parameter logic [63:0] Cutoff2              = 64'd0,
+  parameter logic [63:0] PlanarOne            = 64'd0,
+  parameter logic [63:0] PlanarTwo            = 64'd0,
+  parameter logic [63:0] PlanarThree          = 64'd0,
+  parameter int          Octaves              = 0,      // force table: 0 uniform, 1 octaves
+  parameter int          Degree               = 1,
+  parameter int          IndexBits            = 9,
+  parameter int          BinBits              = 0,
+  parameter int          FirstOctave          = 0,
+  parameter int          FractionBits         = 17,
+  parameter int          ForceBits            = 18,     // of any value of the force table
+  parameter int          Damped               = 0,      // 0, 1
+  parameter int          DampOctaves          = 0,
+  parameter int          DampDegree           = 1,
+  parameter int          DampIndexBits        = 9,
+  parameter int          DampBinBits          = 0,
+  parameter int          DampFirstOctave      = 0,
+  parameter int          DampFractionBits     = 17,
+  parameter int          DampBits             = 18,     // of any value of the damping table
+  parameter int          Scaled               = 0,      // 0, 1
+  parameter int          Pd                   = 0,      // 0, 1
+`ifdef CUBOCT_HOST_VELOCITY
+  parameter int          MovedTypes           = 1,      // types whose velocities come from outside
+`endif
+  // Derived; do not set.
+  localparam int         Faces                = 2 * Axes,
+  localparam int         Cells                = BrickX * BrickY * BrickZ,
+  localparam int         CellBits             = $clog2(Cells),
+  localparam int         Longest              = (BrickX > BrickY) ? ((BrickX > BrickZ) ? BrickX : BrickZ)
+                                                                  : ((BrickY > BrickZ) ? BrickY : BrickZ),
+  localparam int         GridBits             = $clog2(Longest + 2),  // of a coordinate: cuboct_brick_walk
+  localparam int         HaloType             = (Scaled != 0) ? TypeBits : 0,
+  localparam int         HaloVelocity         = (Damped != 0) ? Axes * VelocityBits : 0,
+  localparam int         HaloBits             = Axes * PositionFrac + HaloType + HaloVelocity,
+  localparam int         ParticleBits         = Axes * PositionFrac + 2 * (Axes - 1) + Axes * VelocityBits + TypeBits
+                                                + IdBits
+                                                + ((Pd != 0) ? Axes * DisplacementBits : 0)
+) (
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    start_i,        // in IDLE: run steps_i steps
+  input  logic [31:0]             steps_i,
+  input  logic [Faces-1:0]        has_link_i,     // constant; faces -x, +x, -y, +y, -z, +z
+  input  logic [3*GridBits-1:0]   extent_i,       // constant; cells along x, y, z: those of the brick, or fewer
+  input  logic [Cells*Faces-1:0]  exit_i,         // constant; by own cell and face: the lattice has a cell there
+  input  logic                    load_valid_i,   // in IDLE: append a particle
+  input  logic [CellBits-1:0]     load_cell_i,    // to this cell
+  input  logic [ParticleBits-1:0] load_data_i,
+`ifdef CUBOCT_HOST_VELOCITY
+  input  logic [MovedTypes*Axes*VelocityBits-1:0] velocity_i,  // changes in IDLE alone
+`endif
+  output logic [Faces-1:0]        link_valid_o,
+  output logic [Faces-1:0]        link_end_o,
+  output logic [Faces*LinkBits-1:0] link_data_o,
+  input  logic [Faces-1:0]        link_ready_i,
+  input  logic [Faces-1:0]        link_valid_i,
+  input  logic [Faces-1:0]        link_end_i,
+  input  logic [Faces*LinkBits-1:0] link_data_i,
+  output logic [Faces-1:0]        link_ready_o,
+  output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
+  output logic [7:0]              phase_end_o,
+  output logic [3:0]              force_event_o,  // engine runs, stalled, presents a candidate, issues; in this cycle
+  output logic                    observe_valid_o,
+  output logic [CellBits-1:0]     observe_cell_o,
+  output logic [ParticleBits-1:0] observe_data_o,
+  output logic                    fault_valid_o,
+  output logic [3:0]              fault_code_o,
+  output logic [IdBits-1:0]       fault_id_o,
+  output logic [CellBits-1:0]     fault_cell_o,
+  output logic [63:0]             fault_number_o,
+  output logic                    idle_o
+);
+  // Fields of a particle.
+  localparam int PosBits    = Axes * PositionFrac;
+  localparam int VelBits    = Axes * VelocityBits;
+  localparam int DispBits   = Axes * DisplacementBits;
+  localparam int AwayBits   = 2 * (Axes - 1);
+  localparam int VelLsb     = PosBits + AwayBits;
+  localparam int TypeLsb    = VelLsb + VelBits;
+  localparam int IdLsb      = TypeLsb + TypeBits;
+  localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
+  localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}
+  localparam int SeenBits   = (HaloVelocity + HaloType > 0) ? IdLsb : PosBits;  // what others see of it
+  // A candidate is a halo record with signs.
+  localparam int CandPos       = Axes * (PositionFrac + 2);
+  localparam int CandidateBits = CandPos + HaloType + HaloVelocity;
+  // Cells of the layers over the axes, of the faces; what a number of theirs takes on a link.
+  localparam int LayerX    = BrickY * BrickZ;
+  localparam int LayerY    = (BrickX + 2) * BrickZ;
+  localparam int LayerZ    = (Axes == 3) ? (BrickX + 2) * (BrickY + 2) : 1;
+  localparam int LayerXY   = (LayerX > LayerY) ? LayerX : LayerY;
+  localparam int Layer     = (LayerXY > LayerZ) ? LayerXY : LayerZ;
+  localparam int TagBits   = $clog2(Layer);
+  localparam int FaceY     = BrickX * BrickZ;
+  localparam int FaceZ     = (Axes == 3) ? BrickX * BrickY : 1;
+  localparam int FaceXY    = (LayerX > FaceY) ? LayerX : FaceY;
+  localparam int FaceBits  = $clog2((FaceXY > FaceZ) ? FaceXY : FaceZ);
+  // Numbers of slots and rows in a cell, and addresses; counts have a bit to spare over slots.
+  localparam int SlotBits    = (Capacity > 1) ? $clog2(Capacity) : 1;
+  localparam int CountBits   = SlotBits + 1;
+  localparam int PlaceBits   = CellBits + SlotBits;  // {cell, slot}
+  localparam int AddrBits    = PlaceBits;            // cell * Capacity + slot
+  localparam int Rows        = (Capacity + FilterLanes - 1) / FilterLanes;
+  localparam int RowBits     = (Rows > 1) ? $clog2(Rows) : 1;
+  localparam int RowAddrBits = CellBits + RowBits;
+  localparam int HaloAddrBits = TagBits + SlotBits;
+  // |s| <= 2^(SBits-1) and |d| <= 2^D; a cell sees at most 3^Axes * Capacity kicks.
+  localparam int SBits       = (Damped != 0) ? StrengthBits : ForceBits;
+  localparam int KickFull    = SBits + PositionFrac - DifferenceShift + 1 - KickShift;
+  localparam int KickBits    = (KickFull > 2) ? KickFull : 2;
+  localparam int PipeSumBits = KickBits + $clog2(((Axes == 3) ? 27 : 9) * Capacity);
+  // No number that a fault tells is longer: w, s before their checks; sums, v, u; the capacity.
+  localparam int SFullBits   = ((DampBits + RelativeVelocityBits > ForceBits) ? DampBits + RelativeVelocityBits : ForceBits)
+                               + 2;
+  localparam int PullBits    = (Pd != 0) ? GainBits + DisplacementBits + 6 : 10;
+  localparam int VFullBits   = ((VelocityBits > SumBits) ? VelocityBits : SumBits) + 4;
+  localparam int LongPull    = (PullBits > VFullBits) ? PullBits : VFullBits;
+  localparam int LongKick    = (PipeSumBits + ForcePipes > SFullBits) ? PipeSumBits + ForcePipes : SFullBits;
+  localparam int LongNumber  = (LongPull > LongKick) ? LongPull : LongKick;
+  localparam int NumberBits  = (LongNumber < 64) ? LongNumber : 64;
+  // Update.
+  localparam int UpdateLatency = (Pd != 0) ? 7 : 4;  // a cycle after the last one is written MIGRATE may read it
+  localparam int UpdateTail    = UpdateLatency - 2;
+  localparam int TailBits      = $clog2(UpdateLatency);
+
+  // The main machine.
+  logic       in_exchange, in_update, in_migrate, in_dump, engine_runs, step_end;
+  logic [1:0] axis;
+  logic [Axes-1:0] past_exchange, axis_onehot;
+  logic       exchange_done, force_done, update_done, migrate_done, dump_done;
+  cuboct_sequencer #(.Axes(Axes), .Overlap(Overlap)) u_sequencer (
+    .clk_i, .rst_ni, .start_i, .steps_i, .exchange_done_i(exchange_done), .force_done_i(force_done),
+    .update_done_i(update_done), .migrate_done_i(migrate_done), .dump_done_i(dump_done), .idle_o,
+    .exchange_o(in_exchange), .update_o(in_update), .migrate_o(in_migrate), .dump_o(in_dump), .axis_o(axis),
+    .engine_o(engine_runs), .past_exchange_o(past_exchange), .step_end_o(step_end), .phase_start_o, .phase_end_o
+  );
+
+  // Its walk over cells.
+  logic [3*GridBits-1:0] relay_low, relay_high, relay_first, low, high, first, main_cell, after_cell, next_cell;
+  logic                  relay_advance, relay_restart, migrate_advance, tick_advance, last_cell;
+  logic [CellBits-1:0]   main_own, after_own, next_own, here;
+  logic [3*TagBits-1:0]  main_layer, main_face, after_layer, after_face, next_layer, next_face;
+  localparam logic [GridBits-1:0] One = 1;
+  assign low   = in_exchange ? relay_low : {3{One}};
+  assign high  = in_exchange ? relay_high : extent_i;
+  assign first = in_exchange ? relay_first : {3{One}};
+  cuboct_brick_walk #(.GridBits(GridBits)) u_walk (
+    .clk_i, .rst_ni, .low_i(low), .high_i(high), .advance_i(relay_advance || migrate_advance || tick_advance),
+    .restart_i(relay_restart || update_done || dump_done), .first_i(first), .cell_o(main_cell), .after_o(after_cell),
+    .next_o(next_cell), .last_o(last_cell)
+  );
+  cuboct_brick_place #(
+    .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+  ) u_main_place (.cell_i(main_cell), .own_o(main_own), .layer_o(main_layer), .face_o(main_face));
+  cuboct_brick_place #(
+    .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+  ) u_after_place (.cell_i(after_cell), .own_o(after_own), .layer_o(after_layer), .face_o(after_face));
+  cuboct_brick_place #(
+    .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+  ) u_next_place (.cell_i(next_cell), .own_o(next_own), .layer_o(next_layer), .face_o(next_face));
+
+  // Own particles: how many, and where they are written and read.
+  logic [CountBits-1:0]           main_count, stream_own_count, stream_near_count, count_set, migrate_count;
+  logic [CellBits-1:0]            stream_own, stream_near, write_cell;
+  logic                           own_write, load, update_write, migrate_write, migrate_count_set, migrate_land, any_held;
+  logic [SlotBits-1:0]            write_slot, migrate_write_slot, relay_record, migrate_read, tick_record, main_record;
+  logic [PlaceBits-1:0]           update_place;
+  logic [AddrBits-1:0]            write_addr, main_addr, stream_addr, tick_addr;
+  logic [OwnBits-1:0]             write_data, update_data, migrate_write_data, main_data;
+  logic [SeenBits-1:0]            stream_data;
+  logic                           stream_read;
+  logic [ForcePipes*SlotBits-1:0] issue_slot;
+  logic [ForcePipes*PlaceBits-1:0] kick_place, kick_place_next;
+  logic [ForcePipes*AddrBits-1:0] pipe_addr, kick_addr, kick_addr_next;
+  logic [ForcePipes*SeenBits-1:0] pipe_data;
+  logic [ForcePipes*IdBits-1:0]   kick_id;
+  logic [CellBits-1:0]            issue_cell;
+  logic [RowAddrBits-1:0]         row;
+  logic [FilterLanes*Axes*FilterFrac-1:0] row_data;
+
+  assign here = idle_o ? load_cell_i : main_own;
+  assign load = idle_o && load_valid_i && (main_count != Capacity[CountBits-1:0]);
+  cuboct_brick_counts #(.Cells(Cells), .AddrBits(CellBits), .Bits(CountBits), .Reads(3)) u_counts (
+    .clk_i, .rst_ni, .clear_i(1'b0), .write_i(load || migrate_count_set), .write_addr_i(here), .count_i(count_set),
+    .addr_i({stream_near, stream_own, here}), .count_o({stream_near_count, stream_own_count, main_count}),
+    .any_o(any_held)
+  );
+  always_comb begin
+    count_set  = idle_o ? main_count + 1'b1 : migrate_count;
+    own_write  = load || update_write || migrate_write;
+    write_cell = here;
+    write_slot = main_count[SlotBits-1:0];
+    write_data = {2'b00, load_data_i};
+    if (update_write) begin
+      write_cell = update_place[SlotBits +: CellBits];
+      write_slot = update_place[SlotBits-1:0];
+      write_data = update_data;
+    end else if (migrate_write) begin
+      write_slot = migrate_write_slot;
+      write_data = migrate_write_data;
+    end
+  end
+  cuboct_brick_addr #(
+    .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+  ) u_write_addr (.cell_i(write_cell), .slot_i(write_slot), .addr_o(write_addr));
+  // The main read port is asked a cycle ahead. Outside its phases each of the three rests at record 0.
+  assign main_record = relay_record | tick_record | migrate_read;
+  cuboct_brick_addr #(
+    .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+  ) u_main_addr (.cell_i(next_own), .slot_i(main_record), .addr_o(main_addr));
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_addr
+    cuboct_brick_addr #(
+      .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+    ) u_pipe_addr (
+      .cell_i(issue_cell), .slot_i(issue_slot[f*SlotBits +: SlotBits]), .addr_o(pipe_addr[f*AddrBits +: AddrBits])
+    );
+    cuboct_brick_addr #(
+      .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+    ) u_kick_addr (
+      .cell_i(kick_place[f*PlaceBits+SlotBits +: CellBits]), .slot_i(kick_place[f*PlaceBits +: SlotBits]),
+      .addr_o(kick_addr[f*AddrBits +: AddrBits])
+    );
+    cuboct_brick_addr #(
+      .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+    ) u_kick_addr_next (
+      .cell_i(kick_place_next[f*PlaceBits+SlotBits +: CellBits]), .slot_i(kick_place_next[f*PlaceBits +: SlotBits]),
+      .addr_o(kick_addr_next[f*AddrBits +: AddrBits])
+    );
+  end
+  cuboct_brick_slots #(
+    .Axes(Axes), .Bits(OwnBits), .SeenBits(SeenBits), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
+    .IdLsb(IdLsb), .IdBits(IdBits), .Cells(Cells), .CellBits(CellBits), .Capacity(Capacity), .SlotBits(SlotBits),
+    .AddrBits(AddrBits), .FilterLanes(FilterLanes), .RowAddrBits(RowAddrBits), .ForcePipes(ForcePipes)
+  ) u_slots (
+    .clk_i, .write_i(own_write), .write_cell_i(write_cell), .write_slot_i(write_slot), .write_addr_i(write_addr),
+    .write_data_i(write_data), .main_addr_i(main_addr), .main_data_o(main_data), .stream_read_i(stream_read),
+    .stream_addr_i(stream_addr), .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data),
+    .pipe_addr_i(pipe_addr), .pipe_data_o(pipe_data), .fault_addr_i(kick_addr_next), .fault_id_o(kick_id)
+  );
+
+  // Links: receivers.
+  logic [Faces-1:0]              halo_end, migrate_end, migrate_none, migrate_pop, migrate_clear;
+  logic [3*TagBits-1:0]          stream_layer;
+  logic [Faces*CountBits-1:0]    stream_halo_count, relay_halo_count;
+  logic [3*HaloAddrBits-1:0]     stream_halo_addr, relay_halo_addr;
+  logic [Faces*HaloBits-1:0]     stream_halos, relay_halos;
+  logic [Faces*2*CountBits-1:0]  land_count;
+  logic [Faces*ParticleBits-1:0] arrived;
+  for (genvar a = 0; a < 3; a++) begin : gen_relay_addr
+    cuboct_brick_addr #(
+      .Factor(Capacity), .CellBits(TagBits), .SlotBits(SlotBits), .AddrBits(HaloAddrBits)
+    ) u_addr (
+      .cell_i(next_layer[a*TagBits +: TagBits]), .slot_i(relay_record),
+      .addr_o(relay_halo_addr[a*HaloAddrBits +: HaloAddrBits])
+    );
+  end
+  cuboct_brick_halos #(
+    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .Capacity(Capacity), .LinkBits(LinkBits),
+    .HaloBits(HaloBits), .ParticleBits(ParticleBits), .TagBits(TagBits), .FaceBits(FaceBits), .CountBits(CountBits),
+    .AddrBits(HaloAddrBits)
+  ) u_halos (
+    .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
+    .halo_clear_i(force_done), .halo_end_o(halo_end), .stream_cell_i(stream_layer),
+    .stream_count_o(stream_halo_count), .stream_read_i(stream_read), .stream_addr_i(stream_halo_addr),
+    .stream_data_o(stream_halos), .relay_cell_i(main_layer), .relay_count_o(relay_halo_count),
+    .relay_addr_i(relay_halo_addr), .relay_data_o(relay_halos), .migrating_i(in_migrate),
+    .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end), .migrate_none_o(migrate_none),
+    .land_cell_i({after_face, main_face}), .land_count_o(land_count), .migrate_data_o(arrived),
+    .migrate_pop_i(migrate_pop)
+  );
+
+  // Links: senders. One axis speaks at a time: the relay in EXCHANGE, the migration in MIGRATE.
+  logic [Faces-1:0]    can_load, load_link;
+  logic [1:0]          axis_can_load, axis_load, relay_load, migrate_load;
+  logic                relay_end, migrate_send_end, send_end;
+  logic [LinkBits-1:0] relay_beat, migrate_beat, send_data;
+  for (genvar f = 0; f < Faces; f++) begin : gen_tx
+    cuboct_link_tx #(.LinkBits(LinkBits)) u_tx (
+      .clk_i, .rst_ni, .has_link_i(has_link_i[f]), .load_i(load_link[f]), .end_i(send_end), .data_i(send_data),
+      .can_load_o(can_load[f]), .valid_o(link_valid_o[f]), .end_o(link_end_o[f]),
+      .data_o(link_data_o[f*LinkBits +: LinkBits]), .ready_i(link_ready_i[f])
+    );
+  end
+  // leaving[cell][a]: some particle of the cell has to go along axis a.
+  logic [Cells*Axes-1:0]     leaving_d, leaving_q;
+  logic [Axes-1:0]           leaving_more, away_axes, here_leaving;
+  logic [2*Axes-1:0]         here_exits;
+  // What belongs to the axis of the present phase.
+  logic [1:0]                axis_halo_end, axis_none, axis_ended;
+  logic                      any_leaving, axis_leaving;
+  logic [2*2*CountBits-1:0]  axis_land_count;
+  logic [2*ParticleBits-1:0] axis_arrived;
+  logic [Axes-1:0]           some_leaving;
+  integer                    b, c;
+  always_comb begin
+    some_leaving = '0;
+    for (c = 0; c < Cells; c = c + 1) some_leaving = some_leaving | leaving_q[c*Axes +: Axes];
+  end
+  always_comb begin
+    axis_can_load   = 2'b00;
+    axis_halo_end   = 2'b00;
+    axis_none       = 2'b00;
+    axis_ended      = 2'b00;
+    axis_leaving    = 1'b0;
+    any_leaving     = 1'b0;
+    axis_land_count = '0;
+    axis_arrived    = '0;
+    for (b = 0; b < Axes; b = b + 1) begin
+      if (axis_onehot[b]) begin
+        axis_can_load   = can_load[2*b +: 2];
+        axis_halo_end   = halo_end[2*b +: 2];
+        axis_none       = migrate_none[2*b +: 2];
+        axis_ended      = migrate_end[2*b +: 2];
+        axis_leaving    = here_leaving[b];
+        axis_land_count = land_count[4*b*CountBits +: 4*CountBits];
+        any_leaving     = some_leaving[b];
+      end
+      axis_arrived = axis_arrived | (arrived[2*b*ParticleBits +: 2*ParticleBits] & {2 * ParticleBits{axis_onehot[b]}});
+    end
+  end
+  integer e;
+  always_comb begin
+    here_leaving = '0;
+    here_exits   = '0;
+    for (e = 0; e < Cells; e = e + 1) begin
+      if (main_own == e[CellBits-1:0]) begin
+        here_leaving = leaving_q[e*Axes +: Axes];
+        here_exits   = exit_i[e*Faces +: Faces];
+      end
+    end
+  end
+  assign axis_load = in_migrate ? migrate_load : relay_load;
+  assign send_end  = in_migrate ? migrate_send_end : relay_end;
+  assign send_data = in_migrate ? migrate_beat : relay_beat;
+  for (genvar a = 0; a < Axes; a++) begin : gen_axis_link
+    localparam int Axis = a;
+    assign axis_onehot[a]      = (axis == Axis[1:0]);
+    assign load_link[2*a +: 2] = axis_load & {2{axis_onehot[a]}};
+  end
+
+  // A particle as a record: x, y, z, then what the rule needs of type and v.
+  logic [HaloBits-1:0] stream_record, main_seen;
+  assign stream_record[PosBits-1:0] = stream_data[PosBits-1:0];
+  assign main_seen[PosBits-1:0]     = main_data[PosBits-1:0];
+  if (HaloType > 0) begin : gen_type_seen
+    assign stream_record[PosBits +: HaloType] = stream_data[TypeLsb +: HaloType];
+    assign main_seen[PosBits +: HaloType]     = main_data[TypeLsb +: HaloType];
+  end
+  if (HaloVelocity > 0) begin : gen_velocity_seen
+    assign stream_record[PosBits+HaloType +: HaloVelocity] = stream_data[VelLsb +: HaloVelocity];
+    assign main_seen[PosBits+HaloType +: HaloVelocity]     = main_data[VelLsb +: HaloVelocity];
+  end
+
+  // Exchange.
+  logic relay_sent;
+  cuboct_brick_relay #(
+    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .TagBits(TagBits),
+    .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .CountBits(CountBits)
+  ) u_relay (
+    .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done), .has_link_i, .extent_i,
+    .low_o(relay_low), .high_o(relay_high), .advance_o(relay_advance), .restart_o(relay_restart),
+    .first_o(relay_first), .cell_i(main_cell), .last_i(last_cell), .layer_i(main_layer), .own_count_i(main_count),
+    .halo_count_i(relay_halo_count[(Faces-2)*CountBits-1:0]), .record_o(relay_record), .own_i(main_seen),
+    .halo_i(relay_halos[(Faces-2)*HaloBits-1:0]), .can_load_i(axis_can_load), .load_o(relay_load), .end_o(relay_end),
+    .data_o(relay_beat), .sent_o(relay_sent)
+  );
+  assign exchange_done = in_exchange && relay_sent && (axis_halo_end == 2'b11);
+
+  // Force engine.
+  logic [CandidateBits-1:0]     issue_candidate;
+  logic [ForcePipes-1:0]        issue, pipe_busy, kick_valid, pipe_fault, pipe_fault_strength;
+  logic [ForcePipes*64-1:0]     pipe_fault_number;
+  logic                         finder_done, force_stall, meet;
+  logic [ForcePipes*Axes*PipeSumBits-1:0] sums;
+  logic [Axes*PipeSumBits-1:0]  total;
+  logic                         take;
+  cuboct_brick_finder #(
+    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits),
+    .TagBits(TagBits), .Capacity(Capacity), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
+    .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .HaloBits(HaloBits),
+    .FilterLanes(FilterLanes), .ForcePipes(ForcePipes), .Interval(Interval), .QueueDepth(QueueDepth),
+    .RowBits(RowBits), .RowAddrBits(RowAddrBits), .SlotBits(SlotBits), .OwnAddrBits(AddrBits),
+    .HaloAddrBits(HaloAddrBits), .CountBits(CountBits)
+  ) u_finder (
+    .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .available_i({past_exchange, 1'b1}), .has_link_i,
+    .extent_i, .own_cell_o(stream_own), .own_count_i(stream_own_count), .near_cell_o(stream_near),
+    .near_count_i(stream_near_count), .near_layer_o(stream_layer), .layer_count_i(stream_halo_count),
+    .read_o(stream_read), .own_addr_o(stream_addr), .halo_addr_o(stream_halo_addr), .own_i(stream_record),
+    .halos_i(stream_halos), .row_o(row), .row_data_i(row_data), .candidate_o(issue_candidate), .cell_o(issue_cell),
+    .issue_o(issue), .issue_slot_o(issue_slot), .meet_o(meet), .stall_o(force_stall), .done_o(finder_done)
+  );
+  assign force_event_o = {issue != '0, meet, force_stall, engine_runs};
+  assign force_done = engine_runs && finder_done && (pipe_busy == '0);
+
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
+    logic [Axes*KickBits-1:0] push;
+    logic [SeenBits-1:0]      own;
+    logic [SomeType-1:0]      own_type, other_type;
+    logic [VelBits-1:0]       own_v, other_v;
+    assign own = pipe_data[f*SeenBits +: SeenBits];
+    if (HaloType > 0) begin : gen_type
+      assign own_type   = own[TypeLsb +: SomeType];
+      assign other_type = issue_candidate[CandPos +: SomeType];
+    end else begin : gen_no_type
+      assign own_type   = '0;
+      assign other_type = '0;
+    end
+    if (HaloVelocity > 0) begin : gen_velocity
+      assign own_v   = own[VelLsb +: VelBits];
+      assign other_v = issue_candidate[CandPos + HaloType +: VelBits];
+    end else begin : gen_no_velocity
+      assign own_v   = '0;
+      assign other_v = '0;
+    end
+    cuboct_pipe #(
+      .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .Cutoff2(Cutoff2),
+      .EntryBits(StrengthBits), .IndexBits(IndexBits), .Octaves(Octaves), .Degree(Degree), .BinBits(BinBits), .FirstOctave(FirstOctave),
+      .FractionBits(FractionBits), .ForceBits(ForceBits), .Damped(Damped), .VelocityBits(VelocityBits),
+      .RelativeVelocityBits(RelativeVelocityBits), .WShift(WShift), .QShift(QShift), .DampShift(DampShift),
+      .DampIndexBits(DampIndexBits), .DampOctaves(DampOctaves), .DampDegree(DampDegree), .DampBinBits(DampBinBits),
+      .DampFirstOctave(DampFirstOctave), .DampFractionBits(DampFractionBits), .DampBits(DampBits),
+      .StrengthBits(StrengthBits), .Scaled(Scaled), .TypeBits(SomeType), .ScaleBits(ScaleBits),
+      .ScaleFrac(ScaleFrac), .KickShift(KickShift), .KickBits(KickBits), .SlotBits(PlaceBits), .Shared(Shared),
+      .Product(Product), .Interval(Interval)
+    ) u_pipe (
+      .clk_i, .rst_ni, .valid_i(issue[f]), .slot_i({issue_cell, issue_slot[f*SlotBits +: SlotBits]}),
+      .own_x_i(own[PosBits-1:0]), .own_v_i(own_v), .own_type_i(own_type),
+      .other_x_i(issue_candidate[CandPos-1:0]), .other_v_i(other_v), .other_type_i(other_type),
+      .valid_o(kick_valid[f]), .slot_next_o(kick_place_next[f*PlaceBits +: PlaceBits]),
+      .slot_o(kick_place[f*PlaceBits +: PlaceBits]), .push_o(push),
+      .fault_o(pipe_fault[f]), .fault_strength_o(pipe_fault_strength[f]),
+      .fault_number_o(pipe_fault_number[f*64 +: 64]), .busy_o(pipe_busy[f])
+    );
+    cuboct_brick_sums #(
+      .Axes(Axes), .KickBits(KickBits), .SumBits(PipeSumBits), .Depth(Cells * Capacity), .AddrBits(AddrBits)
+    ) u_sums (
+      .clk_i, .kick_valid_i(kick_valid[f]), .kick_addr_i(kick_addr[f*AddrBits +: AddrBits]), .push_i(push),
+      .zero_i(take || load || migrate_land), .zero_addr_i(take ? tick_addr : write_addr),
+      .next_addr_i(pipe_busy[f] ? kick_addr_next[f*AddrBits +: AddrBits] : main_addr),
+      .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
+    );
+    logic unused_own;
+    assign unused_own = ^own;
+  end
+  // One after the other: of pipe f and those before it.
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_total
+    logic [Axes*PipeSumBits-1:0] so_far;
+    for (genvar a = 0; a < Axes; a++) begin : gen_axis
+      if (f == 0) begin : gen_first
+        assign so_far[a*PipeSumBits +: PipeSumBits] = sums[a*PipeSumBits +: PipeSumBits];
+      end else begin : gen_more
+        assign so_far[a*PipeSumBits +: PipeSumBits] = gen_total[f-1].so_far[a*PipeSumBits +: PipeSumBits]
+                                                    + sums[(Axes*f+a)*PipeSumBits +: PipeSumBits];
+      end
+    end
+  end
+  assign total = gen_total[ForcePipes-1].so_far;
+  // Update and dump walk the cells and their slots.
+  logic [SlotBits-1:0] tick_d, tick_q;
+  logic                past_d, past_q, ticking, tick_over;  // past: no cell is left
+  logic [TailBits-1:0] tail_d, tail_q;
+  assign ticking      = (in_update && !past_q) || in_dump;
+  assign tick_over    = (main_count <= {{(CountBits - SlotBits) {1'b0}}, tick_q} + 1'b1);  // the cell is
+  assign tick_advance = ticking && tick_over;
+  assign take         = ticking && in_update && (main_count != '0);
+  assign update_done  = in_update && (!any_held || (past_q && {{(32 - TailBits) {1'b0}}, tail_q} == UpdateTail));
+  assign dump_done    = in_dump && tick_over && last_cell;
+  cuboct_brick_addr #(
+    .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+  ) u_tick_addr (.cell_i(main_own), .slot_i(tick_q), .addr_o(tick_addr));
+  assign tick_record  = tick_d;
+  always_comb begin
+    tick_d = tick_q;
+    past_d = past_q;
+    tail_d = tail_q;
+    if (ticking) tick_d = tick_over ? '0 : tick_q + 1'b1;
+    if (tick_advance && last_cell && in_update) past_d = 1'b1;
+    if (past_q) tail_d = tail_q + 1'b1;
+    if (update_done) begin
+      past_d = 1'b0;
+      tail_d = '0;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      tick_q <= '0;
+      past_q <= 1'b0;
+      tail_q <= '0;
+    end else begin
+      tick_q <= tick_d;
+      past_q <= past_d;
+      tail_q <= tail_d;
+    end
+  end
+
+  logic [PosBits-1:0]  new_x;
+  logic [2*Axes-1:0]   new_away;
+  logic [VelBits-1:0]  new_v;
+  logic [SomeType-1:0] old_type, new_type;
+  logic [IdBits-1:0]   new_id;
+  logic [DispBits-1:0] old_u, new_u;
+  logic                update_fault;
+  logic [3:0]          update_fault_code;
+  logic [63:0]         update_fault_number;
+  cuboct_update #(
+    .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
+    .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .DisplacementBits(DisplacementBits), .GainBits(GainBits),
+`ifdef CUBOCT_HOST_VELOCITY
+    .MovedTypes(MovedTypes),
+`endif
+    .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(PlaceBits), .IdBits(IdBits)
+  ) u_update (
+`ifdef CUBOCT_HOST_VELOCITY
+    .velocity_i,
+`endif
+    .clk_i, .rst_ni, .valid_i(take), .slot_i({main_own, tick_q}), .sum_i(total),
+    .x_i(main_data[PosBits-1:0]), .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
+    .id_i(main_data[IdLsb +: IdBits]), .u_i(old_u), .valid_o(update_write), .slot_o(update_place), .x_o(new_x),
+    .away_o(new_away), .v_o(new_v), .type_o(new_type), .id_o(new_id), .u_o(new_u), .fault_o(update_fault),
+    .fault_code_o(update_fault_code), .fault_number_o(update_fault_number)
+  );
+  assign update_data[PosBits-1:0]         = new_x;
+  assign update_data[PosBits +: AwayBits] = new_away[2*Axes-1:2];
+  assign update_data[VelLsb +: VelBits]   = new_v;
+  assign update_data[IdLsb +: IdBits]     = new_id;
+  assign update_data[ParticleBits +: 2]   = new_away[1:0];
+  if (TypeBits > 0) begin : gen_types
+    assign old_type                         = main_data[TypeLsb +: SomeType];
+    assign update_data[TypeLsb +: SomeType] = new_type;
+  end else begin : gen_one_type
+    logic unused_new_type;
+    assign unused_new_type = ^new_type;
+    assign old_type        = '0;
+  end
+  if (Pd != 0) begin : gen_displacement
+    assign old_u                                       = main_data[IdLsb + IdBits +: DispBits];
+    assign update_data[IdLsb + IdBits +: DispBits] = new_u;
+  end else begin : gen_no_displacement
+    logic unused_new_u;
+    assign unused_new_u = ^new_u;
+    assign old_u        = '0;
+  end
+  // Migration.
+  logic                    fault_left, fault_full;
+  logic [1:0]              axis_pop;
+  logic [ParticleBits-1:0] fault_particle;
+  for (genvar a = 0; a < Axes; a++) begin : gen_axis_migrate
+    assign away_axes[a]            = (new_away[2*a +: 2] != 2'b00);
+    assign migrate_pop[2*a +: 2]   = axis_pop & {2{axis_onehot[a]}};
+    assign migrate_clear[2*a +: 2] = {2{axis_onehot[a] && migrate_done}};
+  end
+  integer g;
+  always_comb begin
+    leaving_d = leaving_q;
+    for (g = 0; g < Cells; g = g + 1) begin
+      if (update_write && write_cell == g[CellBits-1:0]) leaving_d[g*Axes +: Axes] = leaving_q[g*Axes +: Axes] | away_axes;
+      if (migrate_land && main_own == g[CellBits-1:0]) leaving_d[g*Axes +: Axes] = leaving_q[g*Axes +: Axes] | leaving_more;
+    end
+    if (step_end) leaving_d = '0;
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) leaving_q <= '0;
+    else leaving_q <= leaving_d;
+  end
+  cuboct_brick_migrate #(
+    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits),
+    .TagBits(TagBits), .FaceBits(FaceBits), .ParticleBits(ParticleBits), .PositionBits(PosBits), .LinkBits(LinkBits),
+    .Capacity(Capacity), .SlotBits(SlotBits), .CountBits(CountBits)
+  ) u_migrate (
+    .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .extent_i,
+    .advance_o(migrate_advance), .cell_i(main_cell), .last_i(last_cell), .own_i(main_own), .own_after_i(after_own),
+    .after_i(after_cell), .face_i(main_face), .any_leaving_i(any_leaving), .leaving_i(axis_leaving),
+    .exit_i(here_exits), .count_i(main_count), .count_set_o(migrate_count_set), .count_o(migrate_count),
+    .read_slot_o(migrate_read), .read_data_i(main_data), .write_o(migrate_write), .land_o(migrate_land),
+    .write_slot_o(migrate_write_slot), .write_data_o(migrate_write_data), .leaving_more_o(leaving_more),
+    .can_load_i(axis_can_load), .load_o(migrate_load), .end_o(migrate_send_end), .data_o(migrate_beat),
+    .none_i(axis_none), .ended_i(axis_ended), .land_count_i(axis_land_count), .arrived_i(axis_arrived),
+    .pop_o(axis_pop), .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
+  );
+
+  assign observe_valid_o = take || (in_dump && main_count != '0);
+  assign observe_cell_o  = main_own;
+  assign observe_data_o  = main_data[ParticleBits-1:0];
+
+  // Faults: source 0 is pipe 0, the update, or the migration, which never speak in one cycle. A particle is in one cell,
+  // so the cell below its id changes no order.
+  localparam int TellBits = IdBits + CellBits;
+  logic [ForcePipes-1:0]          fault_valid;
+  logic [ForcePipes*4-1:0]        fault_code;
+  logic [ForcePipes*TellBits-1:0] fault_id;
+  logic [ForcePipes*64-1:0]       fault_number;
+  logic [3:0]                     migrate_fault_code;
+  assign migrate_fault_code = 4'd6 + {1'b0, axis, 1'b0} + {3'b000, fault_full};  // left, full: 6 7, 8 9, 10 11
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_fault
+    always_comb begin
+      fault_valid[f]                   = pipe_fault[f];
+      fault_code[f*4 +: 4]             = pipe_fault_strength[f] ? 4'd2 : 4'd1;
+      fault_id[f*TellBits +: TellBits] = {kick_id[f*IdBits +: IdBits], kick_place[f*PlaceBits+SlotBits +: CellBits]};
+      fault_number[f*64 +: 64]         = pipe_fault_number[f*64 +: 64];
+      if (f == 0 && update_fault) begin
+        fault_valid[f]                   = 1'b1;
+        fault_code[f*4 +: 4]             = update_fault_code;
+        fault_id[f*TellBits +: TellBits] = {new_id, update_place[SlotBits +: CellBits]};
+        fault_number[f*64 +: 64]         = update_fault_number;
+      end else if (f == 0 && in_migrate) begin
+        fault_valid[f]                   = fault_left || fault_full;
+        fault_code[f*4 +: 4]             = migrate_fault_code;
+        fault_id[f*TellBits +: TellBits] = {fault_particle[IdLsb +: IdBits], main_own};
+        fault_number[f*64 +: 64]         = fault_full ? {32'd0, Capacity} : 64'd0;
+      end
+    end
+  end
+  logic                some_fault;
+  logic [TellBits-1:0] told;
+  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(TellBits), .NumberBits(NumberBits), .Direct(1)) u_fault (
+    .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
+    .number_i(fault_number), .valid_o(some_fault), .code_o(fault_code_o), .id_o(told), .number_o(fault_number_o)
+  );
+  assign fault_valid_o = some_fault && step_end;
+  assign fault_id_o    = told[CellBits +: IdBits];
+  assign fault_cell_o  = told[CellBits-1:0];
+
+  logic unused_fields;
+  assign unused_fields = ^{main_data, stream_data, fault_particle, main_face, after_layer, next_face, issue_candidate,
+                           relay_halo_count, relay_halos};
+endmodule

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: MIT
+// The migration phases of a brick. SCAN walks the own cells: who leaves over a face of the brick is sent, who goes to
+// another cell of it is stored, and the gaps are closed; END closes the streams, WAIT until all that comes has come, LAND
+// walks the cells and appends to each what came to it, from below before from above. SCAN and LAND are left out where
+// no one leaves, no one came.
+module cuboct_brick_migrate #(
+  parameter int Axes         = 3,    // 2 or 3
+  parameter int BrickX       = 2,
+  parameter int BrickY       = 2,
+  parameter int BrickZ       = 2,
+  parameter int GridBits     = 2,
+  parameter int CellBits     = 3,    // of an own cell's number
+  parameter int TagBits      = 4,
+  parameter int FaceBits     = 2,    // of a cell's number in a face, on the link
+  parameter int ParticleBits = 128,  // the word that travels
+  parameter int PositionBits = 60,   // its least significant field; away of y and z follow, 2 bits each
+  parameter int LinkBits     = 32,
+  parameter int Capacity     = 16,   // of a cell
+  parameter int SlotBits     = 4,    // of a slot's number in its cell
+  parameter int CountBits    = 5
+) (
+  input  logic                      clk_i,
+  input  logic                      rst_ni,
+  input  logic                      active_i,         // the machine is in a migration phase
+  input  logic [1:0]                axis_i,           // below Axes
+  output logic                      done_o,           // last cycle of the phase
+  input  logic [3*GridBits-1:0]     extent_i,
+  // The walk over the own cells: cuboct_brick_walk.
+  output logic                      advance_o,
+  input  logic [3*GridBits-1:0]     cell_i,
+  input  logic                      last_i,
+  input  logic [CellBits-1:0]       own_i,            // the cell's number,
+  input  logic [CellBits-1:0]       own_after_i,      // that of the cell after it
+  input  logic [3*GridBits-1:0]     after_i,          // and where this lies
+  input  logic [3*TagBits-1:0]      face_i,           // the cell's numbers in the faces
+  // Own particles of the cell: a slot is {away_x, particle}.
+  input  logic                      any_leaving_i,    // some particle of the brick leaves its cell along the axis,
+  input  logic                      leaving_i,        // one of this cell
+  input  logic [2*Axes-1:0]         exit_i,           // faces of the cell over which the lattice has a cell
+  input  logic [CountBits-1:0]      count_i,
+  output logic                      count_set_o,
+  output logic [CountBits-1:0]      count_o,
+  output logic [SlotBits-1:0]       read_slot_o,      // of the next cycle's read_data_i
+  input  logic [ParticleBits+1:0]   read_data_i,
+  output logic                      write_o,
+  output logic                      land_o,           // write_o: of a particle that came
+  output logic [SlotBits-1:0]       write_slot_o,
+  output logic [ParticleBits+1:0]   write_data_o,
+  output logic [Axes-1:0]           leaving_more_o,   // axes along which an arrived particle goes on
+  // Links of the axis: below, above.
+  input  logic [1:0]                can_load_i,
+  output logic [1:0]                load_o,
+  output logic                      end_o,
+  output logic [LinkBits-1:0]       data_o,
+  // What came over the faces of the axis: below, above; particles that go to the cell, to the one after it.
+  input  logic [1:0]                none_i,
+  input  logic [1:0]                ended_i,          // the end beat came
+  input  logic [2*2*CountBits-1:0]  land_count_i,
+  input  logic [2*ParticleBits-1:0] arrived_i,
+  output logic [1:0]                pop_o,
+  // Faults, of the particle in fault_particle_o.
+  output logic                      fault_left_o,
+  output logic                      fault_full_o,
+  output logic [ParticleBits-1:0]   fault_particle_o
+);
+  localparam int Cells    = BrickX * BrickY * BrickZ;
+  localparam int AwayBits = 2 * (Axes - 1);  // in a particle's word
+  localparam int SentBits = ParticleBits + FaceBits;
+  localparam int Beats    = (SentBits + LinkBits - 1) / LinkBits;
+  localparam int BeatBits = (Beats > 1) ? $clog2(Beats) : 1;
+  localparam int LastBeat = Beats - 1;
+  localparam int Store    = Cells * Capacity;  // particles between two cells of the brick
+  localparam int StoreBits = $clog2(Store + 1);
+  localparam int TopStore = Store - 1;
+  localparam logic [GridBits-1:0] One = 1;
+
+  typedef enum logic [2:0] {Enter, Scan, End, Wait, Land} state_t;
+
+  state_t               state_d, state_q, state;
+  logic [CountBits-1:0] read_d, read_q, write_d, write_q;  // Scan: slots read, slots kept; of the cell
+  logic [CountBits:0]   landed_d, landed_q;                // Land: particles of the cell
+  logic [BeatBits-1:0]  beat_d, beat_q;
+  logic [1:0]           away;
+  logic                 visit, stays, up, exists, at_low, at_high, outer, loadable, last_beat, slot_done, last_slot;
+  logic                 moves;  // to another cell of the brick
+
+  always_comb begin
+    state = state_q;
+    if (state_q == Enter) begin
+      state = End;
+      if (any_leaving_i) state = Scan;
+    end
+  end
+
+  // Where the slot that SCAN looks at wants to go; where the cell lies along the axis.
+  integer b;
+  logic   after_low;
+  logic [CellBits-1:0] stride;
+  logic [TagBits-1:0]  face;
+  logic [1:0]          exits;
+  localparam int StrideZ = BrickX * BrickY;
+  always_comb begin
+    away       = read_data_i[ParticleBits +: 2];
+    at_low     = (cell_i[0 +: GridBits] == One);
+    at_high    = (cell_i[0 +: GridBits] == extent_i[0 +: GridBits]);
+    after_low  = (after_i[0 +: GridBits] == One);
+    exits      = exit_i[1:0];
+    face       = face_i[0 +: TagBits];
+    for (b = 1; b < Axes; b = b + 1) begin
+      if (axis_i == b[1:0]) begin
+        away       = read_data_i[PositionBits+2*(b-1) +: 2];
+        at_low     = (cell_i[b*GridBits +: GridBits] == One);
+        at_high    = (cell_i[b*GridBits +: GridBits] == extent_i[b*GridBits +: GridBits]);
+        after_low  = (after_i[b*GridBits +: GridBits] == One);
+        exits      = exit_i[2*b +: 2];
+        face       = face_i[b*TagBits +: TagBits];
+      end
+    end
+    stride = 1;
+    if (axis_i == 2'd1) stride = BrickX[CellBits-1:0];
+    if (axis_i == 2'd2) stride = StrideZ[CellBits-1:0];
+  end
+  assign visit     = leaving_i && (count_i != '0);
+  assign stays     = (away == 2'b00);
+  assign up        = !away[1];
+  assign exists    = up ? exits[1] : exits[0];
+  assign outer     = up ? at_high : at_low;
+  assign loadable  = up ? can_load_i[1] : can_load_i[0];
+  assign last_beat = (beat_q == LastBeat[BeatBits-1:0]);
+  assign slot_done = stays || !exists || !outer || (loadable && last_beat);
+  assign last_slot = (read_q + 1'b1 == count_i);
+
+  // The store of those that stay in the brick: upward ones from its bottom on, downward ones from its top; with counts
+  // by the cell that they go to.
+  logic [StoreBits-1:0] ups_d, ups_q, downs_d, downs_q, up_read_d, up_read_q, down_read_d, down_read_q;
+  logic [StoreBits-1:0] store_write, store_read;
+  logic [CellBits-1:0]  target;
+  logic [CountBits-1:0] up_count, down_count, up_here, up_after, down_here, down_after;
+  logic                 none_moved, some_up, some_down, pop_up, pop_down;
+  logic [ParticleBits-1:0] stored;
+  assign target = up ? own_i + stride : own_i - stride;
+  cuboct_brick_counts #(.Cells(Cells), .AddrBits(CellBits), .Bits(CountBits), .Reads(3)) u_ups (
+    .clk_i, .rst_ni, .clear_i(done_o), .write_i(moves && up), .write_addr_i(target), .count_i(up_count + 1'b1),
+    .addr_i({own_after_i, own_i, target}), .count_o({up_after, up_here, up_count}), .any_o(some_up)
+  );
+  cuboct_brick_counts #(.Cells(Cells), .AddrBits(CellBits), .Bits(CountBits), .Reads(3)) u_downs (
+    .clk_i, .rst_ni, .clear_i(done_o), .write_i(moves && !up), .write_addr_i(target), .count_i(down_count + 1'b1),
+    .addr_i({own_after_i, own_i, target}), .count_o({down_after, down_here, down_count}), .any_o(some_down)
+  );
+  assign none_moved = !some_up && !some_down;
+  assign store_write = up ? ups_q : TopStore[StoreBits-1:0] - downs_q;
+  cuboct_ram #(.Bits(ParticleBits), .Depth(Store), .AddrBits(StoreBits)) u_store (
+    .clk_i, .write_i(moves), .write_addr_i(store_write), .write_data_i(read_data_i[ParticleBits-1:0]), .read_i(1'b1),
+    .read_addr_i(store_read), .read_data_o(stored)
+  );
+
+  // Landing: from below over the face if the cell is at it, else out of the store; so from above.
+  logic [CountBits-1:0] below, above, below_after;
+  logic [CountBits:0]   landing;
+  logic                 landing_now, last_landing, from_above, from_face, has_room, next_above;
+  assign below        = at_low ? land_count_i[0 +: CountBits] : up_here;
+  assign above        = at_high ? land_count_i[2*CountBits +: CountBits] : down_here;
+  assign below_after  = after_low ? land_count_i[CountBits +: CountBits] : up_after;
+  assign landing      = {1'b0, below} + {1'b0, above};
+  assign landing_now  = active_i && (state == Land) && (landing != '0);
+  assign last_landing = (landed_q + 1'b1 >= landing);
+  assign from_above   = (landed_q >= {1'b0, below});
+  assign from_face    = from_above ? at_high : at_low;
+  assign has_room     = (count_i != Capacity[CountBits-1:0]);
+  // Whose turn is next, to ask for it.
+  always_comb begin
+    if (state != Land) next_above = (below == '0);
+    else if (last_landing) next_above = (below_after == '0);
+    else next_above = (landed_q + 1'b1 >= {1'b0, below});
+  end
+  assign pop_up     = landing_now && !from_above && !at_low;
+  assign pop_down   = landing_now && from_above && !at_high;
+  assign store_read = next_above ? TopStore[StoreBits-1:0] - down_read_d : up_read_d;
+  always_comb begin
+    ups_d       = ups_q;
+    downs_d     = downs_q;
+    up_read_d   = up_read_q;
+    down_read_d = down_read_q;
+    if (moves && up) ups_d = ups_q + 1'b1;
+    if (moves && !up) downs_d = downs_q + 1'b1;
+    if (pop_up) up_read_d = up_read_q + 1'b1;
+    if (pop_down) down_read_d = down_read_q + 1'b1;
+    if (done_o) begin
+      ups_d       = '0;
+      downs_d     = '0;
+      up_read_d   = '0;
+      down_read_d = '0;
+    end
+  end
+
+  // An arrived particle has come to where it goes on this axis.
+  logic [ParticleBits-1:0] candidate;
+  logic [AwayBits-1:0]     away_on;
+  logic [Axes-1:0]         goes_on;
+  integer                  a;
+  assign candidate = !from_face ? stored : from_above ? arrived_i[ParticleBits +: ParticleBits]
+                                                      : arrived_i[0 +: ParticleBits];
+  always_comb begin
+    away_on = candidate[PositionBits +: AwayBits];
+    goes_on = '0;
+    for (a = 1; a < Axes; a = a + 1) begin
+      if (axis_i >= a[1:0]) away_on[2*(a-1) +: 2] = 2'b00;
+      goes_on[a] = (away_on[2*(a-1) +: 2] != 2'b00);
+    end
+  end
+
+  always_comb begin
+    state_d        = state_q;
+    read_d         = read_q;
+    write_d        = write_q;
+    landed_d       = landed_q;
+    beat_d         = beat_q;
+    done_o         = 1'b0;
+    advance_o      = 1'b0;
+    load_o         = 2'b00;
+    end_o          = 1'b0;
+    moves          = 1'b0;
+    write_o        = 1'b0;
+    land_o         = 1'b0;
+    write_slot_o   = write_q[SlotBits-1:0];
+    write_data_o   = read_data_i;
+    count_set_o    = 1'b0;
+    count_o        = write_q;
+    leaving_more_o = '0;
+    pop_o          = 2'b00;
+    fault_left_o   = 1'b0;
+    fault_full_o   = 1'b0;
+    if (active_i) begin
+      unique case (state)
+        Scan: begin
+          state_d = Scan;
+          if (!visit) begin
+            advance_o = 1'b1;
+          end else begin
+            if (stays) begin
+              write_o = 1'b1;
+              write_d = write_q + 1'b1;
+            end else if (!exists) begin
+              fault_left_o = 1'b1;
+            end else if (!outer) begin
+              moves = 1'b1;
+            end else if (loadable) begin
+              load_o = {up, !up};
+              beat_d = last_beat ? '0 : beat_q + 1'b1;
+            end
+            if (slot_done) read_d = read_q + 1'b1;
+            if (slot_done && last_slot) begin
+              read_d      = '0;
+              write_d     = '0;
+              count_set_o = 1'b1;
+              count_o     = stays ? write_q + 1'b1 : write_q;
+              advance_o   = 1'b1;
+            end
+          end
+          if (advance_o && last_i) state_d = End;
+        end
+        End: begin
+          state_d = End;
+          if (can_load_i == 2'b11) begin
+            load_o  = 2'b11;
+            end_o   = 1'b1;
+            state_d = Wait;
+          end
+        end
+        Wait: begin
+          if (ended_i == 2'b11) begin
+            state_d = Land;
+            if (none_moved && none_i == 2'b11) begin
+              state_d = Enter;
+              done_o  = 1'b1;
+            end
+          end
+        end
+        Land: begin
+          if (landing_now) begin
+            pop_o        = {from_above && at_high, !from_above && at_low};
+            landed_d     = landed_q + 1'b1;
+            land_o       = has_room;
+            write_o      = has_room;
+            write_slot_o = count_i[SlotBits-1:0];
+            write_data_o = {2'b00, candidate[ParticleBits-1:PositionBits+AwayBits], away_on,
+                            candidate[PositionBits-1:0]};
+            count_set_o  = has_room;
+            count_o      = count_i + 1'b1;
+            fault_full_o = !has_room;
+            if (has_room) leaving_more_o = goes_on;
+          end
+          if (last_landing) begin
+            landed_d  = '0;
+            advance_o = 1'b1;
+            if (last_i) begin
+              state_d = Enter;
+              done_o  = 1'b1;
+            end
+          end
+        end
+        default: state_d = Enter;
+      endcase
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      state_q     <= Enter;
+      read_q      <= '0;
+      write_q     <= '0;
+      landed_q    <= '0;
+      beat_q      <= '0;
+      ups_q       <= '0;
+      downs_q     <= '0;
+      up_read_q   <= '0;
+      down_read_q <= '0;
+    end else begin
+      state_q     <= state_d;
+      read_q      <= read_d;
+      write_q     <= write_d;
+      landed_q    <= landed_d;
+      beat_q      <= beat_d;
+      ups_q       <= ups_d;
+      downs_q     <= downs_d;
+      up_read_q   <= up_read_d;
+      down_read_q <= down_read_d;
+    end
+  end
+
+  assign read_slot_o      = read_d[SlotBits-1:0];
+  assign fault_particle_o = fault_left_o ? read_data_i[ParticleBits-1:0] : candidate;
+
+  logic [LinkBits-1:0] beat;
+  cuboct_beat #(.Bits(SentBits), .LinkBits(LinkBits), .BeatBits(BeatBits)) u_beat (
+    .word_i({face[FaceBits-1:0], read_data_i[ParticleBits-1:0]}), .beat_i(beat_q), .data_o(beat)
+  );
+  assign data_o = end_o ? '0 : beat;
+  logic unused;
+  assign unused = ^{face, land_count_i[3*CountBits +: CountBits], down_after};
+endmodule
