@@ -59,8 +59,10 @@ std::string Fitter::excess(const FitAmounts& uses) const {
     std::string& text = much ? over : rest;
     text += fmt::format("{}{} {}/{}", text.empty() ? "" : ", ", to_string(kFitted[r]), uses[r],
                         holds_of(target_, kFitted[r]));
-    if (much && room_[r] > 0)
-      text += fmt::format(" ({:.3g} times)", static_cast<double>(uses[r]) / static_cast<double>(room_[r]));
+    if (much && room_[r] > 0) {
+      const double ratio = static_cast<double>(uses[r]) / static_cast<double>(room_[r]);
+      text += fmt::format(" ({:.{}f} times)", ratio, ratio < 10 ? 2 : 0);
+    }
   }
   return over.empty() || rest.empty() ? over + rest : over + ", " + rest;
 }
@@ -150,7 +152,10 @@ const Target* Fitter::other_device() {
   std::vector<const Target*> others;
   for (const Target& t : synth::targets())
     if (t.family != Family::asic && t.name != target_.name) others.push_back(&t);
-  std::ranges::stable_sort(others, {}, [](const Target* t) { return t->holds[Resource::lut]; });
+  // Numbers of the same family first: those of another one are nearly these.
+  std::ranges::stable_sort(others, {}, [&](const Target* t) {
+    return std::pair{t->family != target_.family, t->holds[Resource::lut]};
+  });
   const auto fits = [&](const Target& t, const Cell& brick, uint64_t nodes) {
     const FitAmounts own = memories(brick, 1, 1, t.family);
     FitAmounts all = times(model_.predict({brick, 1, 1}, own), nodes);

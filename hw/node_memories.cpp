@@ -45,33 +45,46 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
                         : position;
   const int candidate = rule.axes * (rule.widths.position_frac + 2) + (rule.scaled ? rule.type_bits : 0) +
                         (rule.damped ? rule.axes * rule.widths.velocity_bits : 0);
-  const int rows = (arch.capacity + lanes - 1) / lanes;
-  std::vector<NodeMemory> memories{
-      {"own particles", cells * capacity, own_bits, 1, true},
-      {"own particles, for the streamer", cells * capacity, seen, 1, true},
-      {"own particles, for the pipes", cells * capacity, seen, pipes, true},
-      {"ids, for the pipes' faults", cells * capacity, words.id_bits, pipes, true},
-      {"sums", cells * capacity, rule.axes * sum_bits_, pipes, cells > 1},
-      {"queue", static_cast<uint64_t>(arch.queue_depth), candidate + std::max(1, clog2(static_cast<uint64_t>(rows))) + lanes,
-       1, false}};
-  for (int a = 0; a < rule.axes; ++a) {
-    const bool relayed = a < rule.axes - 1;
-    const uint64_t halos = grid.halo_tags(a) * capacity, inbox = grid.migrate_tags(a) * capacity;
-    if (cells > 1) {
-      memories.push_back({"halos", halos, words.halo_bits, relayed ? 4 : 2, true});
-      memories.push_back({"particles from a face", inbox, words.migrate_bits, 2, true});
-    } else {
+  const uint64_t rows = (capacity + static_cast<uint64_t>(lanes) - 1) / static_cast<uint64_t>(lanes);
+  using Kind = NodeMemory::Kind;
+  std::vector<NodeMemory> memories;
+  // cuboct_ram asks for a block above 16 words.
+  const auto ram = [&](const char* holds, uint64_t depth, int bits, int copies) {
+    memories.push_back({holds, depth, bits, copies, depth > 16 ? Kind::block : Kind::late});
+  };
+  ram("own particles", cells * capacity, own_bits, 1);
+  ram("own particles, for the streamer", cells * capacity, seen, 1);
+  ram("own particles, for the pipes", cells * capacity, seen, pipes);
+  ram("ids, for the pipes' faults", cells * capacity, words.id_bits, pipes);
+  const int cell_bits = clog2(cells), queue_bits = candidate + cell_bits + std::max(1, clog2(rows)) + lanes;
+  memories.push_back({"queue", static_cast<uint64_t>(arch.queue_depth), queue_bits, 1, Kind::prompt});
+  if (cells == 1) {
+    memories.push_back({"sums", capacity, rule.axes * sum_bits_, pipes, Kind::prompt});
+    for (int a = 0; a < rule.axes; ++a) {
       // One cell's halos are 1, 3, 9 cells; particles lie behind them.
       const uint64_t depth = (a == 0 ? 1u : a == 1 ? 3u : 9u) * capacity;
-      memories.push_back(
-          {"halos, particles from a face", depth + capacity, std::max(words.halo_bits, words.particle_bits), 2, true});
-      if (relayed) memories.push_back({"halos, for the relay", depth, words.halo_bits, 2, true});
+      ram("halos, particles from a face", depth + capacity, std::max(words.halo_bits, words.particle_bits), 2);
+      if (a < rule.axes - 1) ram("halos, for the relay", depth, words.halo_bits, 2);
     }
+    return memories;
   }
-  if (cells > 1) {
-    memories.push_back({"particles between cells", cells * capacity, words.migrate_bits, 1, true});
-    memories.push_back({"leading bits of positions", cells * static_cast<uint64_t>(rows),
-                        rule.axes * std::min(rule.widths.filter_frac, rule.widths.position_frac), lanes, true});
+  ram("sums", cells * capacity, rule.axes * sum_bits_, pipes);
+  ram("particles between cells", cells * capacity, words.particle_bits, 1);
+  memories.push_back({"leading bits of positions", cells * rows,
+                      rule.axes * std::min(rule.widths.filter_frac, rule.widths.position_frac), lanes, Kind::late});
+  const int count_bits = std::max(1, clog2(capacity)) + 1;
+  // Of own cells, and of those that particles go to from below, from above.
+  const auto counts = [&](uint64_t depth, int copies) {
+    memories.push_back({"counts", depth, count_bits, copies, Kind::prompt, 3});
+  };
+  counts(cells, 3);
+  const int halo_bits = words.halo_bits - words.halo_cell_bits;
+  for (int a = 0; a < rule.axes; ++a) {
+    const uint64_t layer = grid.halo_tags(a), face = grid.migrate_tags(a);
+    ram("halos, particles from a face", (layer + face) * capacity, std::max(halo_bits, words.particle_bits), 2);
+    if (a < rule.axes - 1) ram("halos, for the relay", layer * capacity, halo_bits, 2);
+    counts(layer, 2);
+    counts(face, 2);
   }
   return memories;
 }

@@ -15,7 +15,12 @@ struct NodeMemory {
   uint64_t words = 0;  // >= 1
   int bits = 0;        // of a word
   int copies = 1;
-  bool answers_late = true;  // in the cycle after the question: what blocks of memory do; else at once
+  enum class Kind : uint8_t {
+    block,  // answers in the cycle after the question, and asks for a block of memory
+    late,   // the same, but any memory will do
+    prompt  // answers at once
+  } kind = Kind::block;
+  int reads = 1;  // ports
 
   bool operator==(const NodeMemory&) const = default;
 };

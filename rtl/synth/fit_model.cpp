@@ -50,38 +50,47 @@ FitAmounts room_of(const Target& target) {
   return room;
 }
 
-Counts memory_counts(Family family, const NodeMemory& m) {
-  Counts one;
-  const auto bits = static_cast<uint64_t>(m.bits);
-  const bool small = m.words <= 16 || !m.answers_late;
+// What yosys' memory_libmap weighs: a block, and the LUTs that hold so many bits of so many words, for each port to
+// read; without such, a bit in a flip-flop costs 1. From its share/*/brams.txt, lutrams.txt.
+struct Weights {
+  std::span<const BlockShape> blocks;
+  uint64_t block;
+  uint64_t bits, words, luts, lut_memory;  // 0: LUTs hold none
+};
+
+Weights weights_of(Family family) {
   switch (family) {
     case Family::ice40:
-      if (m.answers_late) {
-        one[Resource::bram] = blocks(kRam40, m);
-      } else {
-        // A flip-flop per bit, and a multiplexer of as many.
-        one[Resource::ff] = one[Resource::lut] = bits * m.words;
-        one[Resource::cell] = 2 * bits * m.words;
-      }
-      break;
+      return {kRam40, 64, 0, 0, 0, 0};
     case Family::ecp5:
-      if (small)
-        one[Resource::lut] = 4 * ceil_div(bits, 4) * ceil_div(m.words, 16);
-      else
-        one[Resource::bram] = blocks(kDp16, m);
-      break;
+      return {kDp16, 128, 4, 16, 4, 4};
     case Family::xc7:
-      if (small)
-        one[Resource::lut] = 4 * ceil_div(bits, 6) * ceil_div(m.words, 32);
-      else
-        one[Resource::bram] = blocks(kDp16, m);  // 18 kbit, as many bits wide
-      break;
+      return {kDp16, 129, 6, 32, 4, 8};  // blocks of 18 kbit
     case Family::asic:
       break;
   }
-  Counts all;
-  for (int k = 0; k < m.copies; ++k) all += one;
-  return all;
+  return {{}, 0, 0, 0, 0, 0};
+}
+
+Counts memory_counts(Family family, const NodeMemory& m) {
+  const Weights w = weights_of(family);
+  const auto bits = static_cast<uint64_t>(m.bits), copies = static_cast<uint64_t>(m.copies),
+             reads = static_cast<uint64_t>(m.reads);
+  const uint64_t in_blocks = reads * blocks(w.blocks, m);
+  const uint64_t pieces = w.bits == 0 ? 0 : reads * ceil_div(bits, w.bits) * ceil_div(m.words, w.words);
+  const uint64_t soft = w.bits == 0 ? bits * m.words : pieces * w.lut_memory;
+  Counts counts;
+  if (m.kind == NodeMemory::Kind::block || (m.kind == NodeMemory::Kind::late && in_blocks * w.block <= soft)) {
+    counts[Resource::bram] = copies * in_blocks;
+  } else if (w.bits > 0) {
+    counts[Resource::lut] = copies * pieces * w.luts;
+  } else {
+    // Each bit has a flip-flop; for each port that is at once there, a LUT chooses among some of them.
+    counts[Resource::ff] = copies * soft;
+    counts[Resource::lut] = copies * soft * reads;
+    counts[Resource::cell] = counts[Resource::ff] + counts[Resource::lut];
+  }
+  return counts;
 }
 
 void FitModel::add(const FitPoint& point, const FitAmounts& memories, const FitAmounts& measured) {

@@ -21,6 +21,7 @@
 namespace cuboct::synth {
 namespace {
 
+using Kind = NodeMemory::Kind;
 using Shapes = std::map<std::pair<uint64_t, int>, int>;  // words, bits: how many
 
 // The memories below the node as yosys reads the RTL, but for tables and delays.
@@ -78,22 +79,33 @@ TEST(FitMemories, AreThoseOfTheRtl) {
   EXPECT_EQ(text_of(counted(plain)), text_of(elaborated(plain)));
 }
 
+TEST(FitMemories, AreThoseOfBricks) {
+  const Plan cube = plan_of_scene("two_types", [](Arch& a) { a.brick = {2, 2, 2}, a.capacity = 6; });
+  EXPECT_EQ(text_of(counted(cube)), text_of(elaborated(cube)));
+  const Plan flat = plan_of_scene("sheet", [](Arch& a) { a.brick = {3, 1, 1}, a.filter_lanes = 3, a.force_pipes = 2; });
+  EXPECT_EQ(text_of(counted(flat)), text_of(elaborated(flat)));
+}
+
 TEST(FitMemories, InBlocksOfTheDevice) {
   const auto bram = [](Family family, uint64_t words, int bits) {
-    return memory_counts(family, {"", words, bits, 1, true})[Resource::bram];
+    return memory_counts(family, {"", words, bits, 1, Kind::block})[Resource::bram];
   };
   EXPECT_EQ(bram(Family::ecp5, 512, 36), 1u);
   EXPECT_EQ(bram(Family::ecp5, 513, 36), 2u);
   EXPECT_EQ(bram(Family::ecp5, 160, 165), 5u);
   EXPECT_EQ(bram(Family::ecp5, 16384, 1), 1u);
-  EXPECT_EQ(bram(Family::ecp5, 16, 165), 0u);
-  EXPECT_EQ(memory_counts(Family::ecp5, {"", 16, 165, 2, true})[Resource::lut], 2u * 4 * 42);
+  EXPECT_EQ(memory_counts(Family::ecp5, {"", 16, 165, 2, Kind::late})[Resource::lut], 2u * 4 * 42);
+  // A block costs as much as 32 pieces of LUT memory.
+  EXPECT_EQ(memory_counts(Family::ecp5, {"", 32, 30, 1, Kind::late})[Resource::bram], 0u);
+  EXPECT_EQ(memory_counts(Family::ecp5, {"", 64, 30, 1, Kind::late})[Resource::bram], 1u);
+  EXPECT_EQ(memory_counts(Family::ecp5, {"", 20, 5, 1, Kind::prompt, 3})[Resource::lut], 3u * 4 * 2 * 2);
+  EXPECT_EQ(memory_counts(Family::ice40, {"", 3, 12, 1, Kind::late})[Resource::bram], 0u);
   EXPECT_EQ(bram(Family::ice40, 256, 16), 1u);
   EXPECT_EQ(bram(Family::ice40, 257, 16), 2u);
   EXPECT_EQ(bram(Family::ice40, 3, 17), 2u);
-  EXPECT_EQ(memory_counts(Family::ice40, {"", 4, 10, 1, false})[Resource::ff], 40u);
-  EXPECT_EQ(memory_counts(Family::ice40, {"", 4, 10, 1, false})[Resource::bram], 0u);
-  EXPECT_EQ(memory_counts(Family::xc7, {"", 32, 12, 1, false})[Resource::lut], 8u);
+  EXPECT_EQ(memory_counts(Family::ice40, {"", 4, 10, 1, Kind::prompt})[Resource::ff], 40u);
+  EXPECT_EQ(memory_counts(Family::ice40, {"", 4, 10, 1, Kind::prompt})[Resource::bram], 0u);
+  EXPECT_EQ(memory_counts(Family::xc7, {"", 32, 12, 1, Kind::prompt})[Resource::lut], 8u);
 }
 
 TEST(FitModel, DrawsLinesAndKeepsWhatWasMeasured) {

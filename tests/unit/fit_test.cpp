@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <limits>
+#include <map>
 #include <optional>
-#include <set>
 #include <tuple>
 
 #include "hw/fit.h"
@@ -174,6 +176,35 @@ TEST(Fit, CountsBricksAsTheyAreCut) {
     }
   }
   EXPECT_GT(compared, 500);
+}
+
+// Each pair of particles, one after the other.
+TEST(Fit, TheCensusCountsAllPairs) {
+  const cuboct::Setup setup = make_setup(read_scene(CUBOCT_SOURCE_DIR "/scenes/undamped_block.toml"), Arch());
+  const Plan& plan = setup.plan;
+  const PairCensus census(plan.rule, plan.lattice, setup.initial);
+  std::map<std::pair<uint32_t, std::array<int8_t, 3>>, uint64_t> pairs;
+  uint64_t all = 0, counted = 0, particles = 0;
+  for (const Particle& i : setup.initial.particles)
+    for (const Particle& j : setup.initial.particles) {
+      std::array<int8_t, 3> offset{};
+      Int3 x_j = j.x;
+      bool near = &i != &j;
+      for (int a = 0; a < 3; ++a) {
+        const int32_t apart = plan.lattice.cell(j.node)[static_cast<size_t>(a)] - plan.lattice.cell(i.node)[static_cast<size_t>(a)];
+        near = near && std::abs(apart) <= 1;
+        offset[static_cast<size_t>(a)] = static_cast<int8_t>(apart);
+        x_j[a] += int64_t{apart} << plan.rule.widths.position_frac;
+      }
+      if (!near || !may_interact(plan.rule, i.x, x_j)) continue;
+      ++pairs[{i.node, offset}];
+      ++all;
+    }
+  for (const auto& [where, count] : pairs) EXPECT_EQ(census.pairs(where.first, where.second), count);
+  for (uint32_t n = 0; n < plan.lattice.size(); ++n) counted += census.pairs(n), particles += census.particles(n);
+  EXPECT_EQ(counted, all);
+  EXPECT_EQ(particles, plan.particles);
+  EXPECT_GT(all, 2000u);
 }
 
 TEST(Fit, TheBoundIsBelowTheCycles) {
