@@ -229,9 +229,9 @@ void Fitter::refuse() {
       model_.empty() ? ", for its memories alone" : "");
   std::string hint;
   if (const Target* other = other_device())
-    hint = fmt::format("--fit {} has room by these numbers", other->name);
+    hint = fmt::format("--fit {} has room {}", other->name, model_.empty() ? "for these" : "by these numbers");
   else
-    hint = "no device that is known has room by these numbers";
+    hint = fmt::format("no device that is known has room {}", model_.empty() ? "for these" : "by these numbers");
   const uint64_t cells = cells_that_fit();
   hint += cells == 0 ? fmt::format("; not one cell fits {}", target_.name)
                      : fmt::format("; about {} would fit {}, some {} of this scene", count_text(cells, "cell"),

@@ -55,6 +55,22 @@ tools=$work/tools refused "nextpnr-ice40 is not in PATH
 rm tools/yosys
 tools=$work/tools refused "yosys is not in PATH
   hint: apt-get install yosys" lone.toml --fit xc7
+# Memories that have no room are told without a synthesis: how many words and bits there are, in blocks of 16 bits.
+refused "sheet.toml: its 4 cells do not fit up5k: the nearest plan, 1 node of 2 x 2 x 1 cells with 1 lane and 1 pipe, \
+takes BRAM 32/30 (1.07 times), LUT 593/5280, FF 401/5280, for its memories alone
+  hint: --fit hx8k has room for these; about 2 cells would fit up5k, some 4 particles of this scene" \
+  sheet.toml --arch narrow.toml --fit up5k
+[ "$(ls cache/cuboct/fit | wc -l)" = 1 ] || fail "a synthesis for what was known"
+# Narrow memories have no other plan than their own, which is measured.
+sed 's/capacity = 3/capacity = 3\nmemories = "narrow"/' narrow.toml > one_port.toml
+code=0
+"$cuboct" emit sheet.toml --arch one_port.toml --fit up5k --out refused > printed 2> said || code=$?
+[ $code = 2 ] && [ ! -s printed ] && [ ! -e refused ] || fail "narrow memories: $code"
+diff <(sed -E 's/[0-9.]+( times|\/)/N\1/g' said) - <<'SAID'
+sheet.toml: its 4 cells do not fit up5k with narrow memories: the nearest plan, 4 nodes of 1 x 1 x 1 cells with 1 lane and 1 pipe, takes LUT N/5280 (N times), DSP N/8 (N times), logic cells N/5280 (N times), FF N/5280, BRAM N/30
+  hint: --fit ecp5-25 has room by these numbers; about 1 cell would fit up5k, some 2 particles of this scene; memories = "wide" have bricks
+SAID
+rm cache/cuboct/fit/*
 mkdir refused.dir && touch refused.dir/mine
 code=0
 "$cuboct" emit lone.toml --fit xc7 --out refused.dir > printed 2> said || code=$?
@@ -73,4 +89,4 @@ code=0
 wait $child || code=$?
 [ $code = 1 ] || fail "an interrupt: exit $code"
 grep -qx 'interrupted; nothing was written' said || fail "an interrupt: $(cat said)"
-[ ! -e stopped ] && [ "$(ls cache/cuboct/fit | wc -l)" = 1 ] || fail "an interrupt leaves something"
+[ ! -e stopped ] && [ -z "$(ls cache/cuboct/fit)" ] || fail "an interrupt leaves something"
