@@ -62,9 +62,10 @@ void add_emit(CLI::App& app, int& exit_code) {
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option("--fit", options->fit,
-                   "choose brick, lanes and pipes so that the scene fits this device in the fewest cycles: up5k, "
-                   "hx8k, ecp5-25, ecp5-85 or xc7")
+      ->add_option(
+          "--fit", options->fit,
+          "choose brick, lanes and pipes so that the scene fits this device in the fewest cycles: up5k, "
+          "hx8k, ecp5-25, ecp5-85 or xc7")
       ->type_name("TARGET");
   auto* board = command
                     ->add_option("--board", options->board.name,
@@ -82,7 +83,8 @@ void add_emit(CLI::App& app, int& exit_code) {
     options->board.velocities = !options->fixed_velocities;
     if (!options->board.name.empty()) bit_clocks16(board_of(options->board.name), options->board.baud);
     if (!options->fit.empty()) {
-      exit_code = emit_fitted(options->input, options->fit, options->out, options->vector_steps, options->board);
+      exit_code =
+          emit_fitted(options->input, options->fit, options->out, options->vector_steps, options->board);
       return;
     }
     const Loaded loaded = load(options->input);

@@ -83,7 +83,8 @@ FitAmounts Fitter::memories(const Cell& brick, int lanes, int pipes, Family fami
   if (arch_.narrow_memories) return {};
   const auto count = [&](int of_pipes) {
     synth::Counts counts;
-    for (const NodeMemory& m : memories_.of(brick, lanes, of_pipes)) counts += synth::memory_counts(family, m);
+    for (const NodeMemory& m : memories_.of(brick, lanes, of_pipes))
+      counts += synth::memory_counts(family, m);
     return synth::amounts_of(counts);
   };
   if (family != target_.family) return count(pipes);
@@ -130,7 +131,9 @@ FitCosts Fitter::costs() {
           [this](const FitShape& s, int lanes, int pipes) {
             return arch_.narrow_memories ? 0 : loads_.least_cycles(s.brick, lanes, pipes);
           },
-          [this](const FitShape& s, int lanes, int pipes) { return cycles({s.brick, lanes, pipes}); }};
+          [this](const FitShape& s, int lanes, int pipes) {
+            return cycles({s.brick, lanes, pipes});
+          }};
 }
 
 // Whether the memories of so many nodes, of the fewest lanes and pipes, find room.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `cuboct emit --fit`: the brick, lanes and pipes with which a whole scene fits a device and takes the fewest cycles.
-// docs/reference/synth.md, "Fitting a device".
+// `cuboct emit --fit`: the brick, lanes and pipes with which a whole scene fits a device and takes the fewest
+// cycles. docs/reference/synth.md, "Fitting a device".
 #pragma once
 
 #include <map>
@@ -17,8 +17,8 @@
 
 namespace cuboct {
 
-// Throws InputError where nothing can be fitted to `target`: an unknown one, standard cells, another device than the
-// board's.
+// Throws InputError where nothing can be fitted to `target`: an unknown one, standard cells, another device
+// than the board's.
 const synth::Target& fit_target(const std::string& target, const BoardChoice& board);
 
 // Particles in the cell that has most, at least 1.
@@ -29,8 +29,8 @@ class Fitter {
   // Reads scene and arch. Throws InputError; a tool that is missing is told first.
   Fitter(const Input& input, const synth::Target& target, const BoardChoice& board);
 
-  // Searches, measures, and searches again until the best plan is one that was measured. Throws InputError with the
-  // numbers of the nearest where none fits, synth::ToolFailed, synth::Interrupted.
+  // Searches, measures, and searches again until the best plan is one that was measured. Throws InputError
+  // with the numbers of the nearest where none fits, synth::ToolFailed, synth::Interrupted.
   void choose();
 
   // What was considered, the choice marked.
@@ -77,14 +77,15 @@ class Fitter {
   FitAmounts room_;
   FitSpace space_;
   synth::FitModel model_;
-  std::map<FitPoint, FitAmounts> measured_;  // whole
-  std::array<double, 5> around_{};           // per node, as last measured
+  std::map<FitPoint, FitAmounts> measured_;                                   // whole
+  std::array<double, 5> around_{};                                            // per node, as last measured
   std::map<std::pair<Cell, int>, std::array<FitAmounts, 2>> memory_amounts_;  // of one pipe, of each more
   std::map<FitPoint, std::optional<uint64_t>> cycles_;
   std::map<Cell, std::string> refused_;  // bricks that cannot be emitted, and why
   std::string no_bricks_;                // why none can
   std::optional<FitChoice> choice_;
-  std::map<FitPoint, FitAmounts> estimates_;  // of what was measured after the lines were drawn, before it was
+  std::map<FitPoint, FitAmounts>
+      estimates_;  // of what was measured after the lines were drawn, before it was
 };
 
 }  // namespace cuboct

@@ -21,7 +21,9 @@ using synth::Target;
 // Rows on either side of the choice, by numbers of nodes.
 constexpr size_t kShownAround = 4;
 
-std::string cells_text(const Cell& brick) { return fmt::format("{} x {} x {}", brick[0], brick[1], brick[2]); }
+std::string cells_text(const Cell& brick) {
+  return fmt::format("{} x {} x {}", brick[0], brick[1], brick[2]);
+}
 
 std::string count_text(uint64_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -54,7 +56,8 @@ std::string Fitter::numbers(const FitAmounts& uses) const {
 std::string Fitter::excess(const FitAmounts& uses) const {
   std::string over, rest;
   for (size_t r = 0; r < kFitted.size(); ++r) {
-    if (!shows(target_, kFitted[r]) || uses[r] == 0 || (kFitted[r] == Resource::cell && model_.empty())) continue;
+    if (!shows(target_, kFitted[r]) || uses[r] == 0 || (kFitted[r] == Resource::cell && model_.empty()))
+      continue;
     const bool much = uses[r] > room_[r];
     std::string& text = much ? over : rest;
     text += fmt::format("{}{} {}/{}", text.empty() ? "" : ", ", to_string(kFitted[r]), uses[r],
@@ -112,16 +115,19 @@ std::string Fitter::table() {
     const auto s = std::ranges::find(space_.shapes, point.brick, &FitShape::brick);
     if (c && s != space_.shapes.end()) add_row(rows, FitChoice{point, s->nodes, *c, all});
   }
-  std::ranges::sort(rows, {}, [](const Row& r) { return std::tuple{r.plan.cycles, r.plan.nodes, r.plan.point}; });
+  std::ranges::sort(rows, {}, [](const Row& r) {
+    return std::tuple{r.plan.cycles, r.plan.nodes, r.plan.point};
+  });
 
-  std::string text = fmt::format("  {:<14} {:>6} {:>6} {:>6} {:>12}", "brick", "nodes", "lanes", "pipes", "cycles/step");
+  std::string text =
+      fmt::format("  {:<14} {:>6} {:>6} {:>6} {:>12}", "brick", "nodes", "lanes", "pipes", "cycles/step");
   for (const Resource r : kFitted)
     if (shows(target_, r)) text += fmt::format(" {:>{}}", to_string(r), r == Resource::cell ? 11 : 6);
   text += "\n";
   for (const Row& row : rows) {
     const FitChoice& p = row.plan;
-    text += fmt::format("{} {:<14} {:>6} {:>6} {:>6} {:>12}", row.chosen ? ">" : " ", cells_text(p.point.brick),
-                        p.nodes, p.point.lanes, p.point.pipes, p.cycles);
+    text += fmt::format("{} {:<14} {:>6} {:>6} {:>6} {:>12}", row.chosen ? ">" : " ",
+                        cells_text(p.point.brick), p.nodes, p.point.lanes, p.point.pipes, p.cycles);
     for (size_t r = 0; r < kFitted.size(); ++r)
       if (shows(target_, kFitted[r]))
         text += fmt::format(" {:>{}}", share_text(p.uses[r], holds_of(target_, kFitted[r])),
@@ -136,17 +142,20 @@ std::string Fitter::table() {
   if (const auto estimate = estimates_.find(choice_->point); estimate != estimates_.end())
     for (size_t r = 0; r < kFitted.size(); ++r)
       if (shows(target_, kFitted[r]) && choice_->uses[r] > 0)
-        errors += fmt::format("{}{} {:+.1f} %", errors.empty() ? "" : ", ", to_string(kFitted[r]),
-                              100 * (static_cast<double>(estimate->second[r]) / static_cast<double>(choice_->uses[r]) - 1));
+        errors += fmt::format(
+            "{}{} {:+.1f} %", errors.empty() ? "" : ", ", to_string(kFitted[r]),
+            100 * (static_cast<double>(estimate->second[r]) / static_cast<double>(choice_->uses[r]) - 1));
   if (!errors.empty()) text += fmt::format("{:<14} {}\n", "estimate's error", errors);
   if (arch_.narrow_memories)
     text += fmt::format("{:<14} {}\n", "note", "memories = \"narrow\" have one lane, one pipe and no bricks");
   if (!no_bricks_.empty())
-    text += fmt::format("{:<14} {}\n", "note", "without bricks: " + no_bricks_.substr(0, no_bricks_.find('\n')));
+    text +=
+        fmt::format("{:<14} {}\n", "note", "without bricks: " + no_bricks_.substr(0, no_bricks_.find('\n')));
   return text;
 }
 
-// The least FPGA whose room the numbers of this one's synthesis do not exceed; of the memories as that one has them.
+// The least FPGA whose room the numbers of this one's synthesis do not exceed; of the memories as that one
+// has them.
 const Target* Fitter::other_device() {
   const Lattice& lattice = base_.plan.lattice;
   std::vector<const Target*> others;
@@ -162,8 +171,8 @@ const Target* Fitter::other_device() {
     if (t.family != Family::ice40) all[4] = 0;
     return has_room(all, synth::room_of(t));
   };
-  std::vector<Cell> bricks = arch_.narrow_memories || !no_bricks_.empty() ? std::vector<Cell>{{1, 1, 1}}
-                                                                          : possible_bricks(lattice);
+  std::vector<Cell> bricks =
+      arch_.narrow_memories || !no_bricks_.empty() ? std::vector<Cell>{{1, 1, 1}} : possible_bricks(lattice);
   for (const Target* t : others)
     for (const Cell& brick : bricks)
       if (fits(*t, brick, (lattice.size() + cells_of(brick) - 1) / cells_of(brick)) &&
@@ -176,7 +185,8 @@ const Target* Fitter::other_device() {
 FitAmounts Fitter::least_uses(const Cell& brick, uint64_t nodes) {
   if (const auto known = measured_.find({brick, 1, 1}); known != measured_.end()) return known->second;
   FitAmounts all = times(model_.predict({brick, 1, 1}, memories(brick, 1, 1, target_.family)), nodes);
-  for (size_t r = 0; r < all.size(); ++r) all[r] += static_cast<uint64_t>(around_[r] * static_cast<double>(nodes));
+  for (size_t r = 0; r < all.size(); ++r)
+    all[r] += static_cast<uint64_t>(around_[r] * static_cast<double>(nodes));
   return all;
 }
 
@@ -223,24 +233,30 @@ void Fitter::refuse() {
     }
   }
   const std::string what = fmt::format(
-      "{}: its {} do not fit {}{}: the nearest plan, {} of {} cells with 1 lane and 1 pipe, takes {}{}", input_.scene,
-      count_text(lattice.size(), "cell"), target_.name, arch_.narrow_memories ? " with narrow memories" : "",
-      count_text(shape.nodes, "node"), cells_text(shape.brick), excess(used),
-      model_.empty() ? ", for its memories alone" : "");
+      "{}: its {} do not fit {}{}: the nearest plan, {} of {} cells with 1 lane and 1 pipe, takes {}{}",
+      input_.scene, count_text(lattice.size(), "cell"), target_.name,
+      arch_.narrow_memories ? " with narrow memories" : "", count_text(shape.nodes, "node"),
+      cells_text(shape.brick), excess(used), model_.empty() ? ", for its memories alone" : "");
   std::string hint;
   if (const Target* other = other_device())
-    hint = fmt::format("--fit {} has room {}", other->name, model_.empty() ? "for these" : "by these numbers");
+    hint =
+        fmt::format("--fit {} has room {}", other->name, model_.empty() ? "for these" : "by these numbers");
   else
-    hint = fmt::format("no device that is known has room {}", model_.empty() ? "for these" : "by these numbers");
+    hint =
+        fmt::format("no device that is known has room {}", model_.empty() ? "for these" : "by these numbers");
   const uint64_t cells = cells_that_fit();
-  hint += cells == 0 ? fmt::format("; not one cell fits {}", target_.name)
-                     : fmt::format("; about {} would fit {}, some {} of this scene", count_text(cells, "cell"),
-                                   target_.name,
-                                   count_text(std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(
-                                                  static_cast<double>(cells) * base_.plan.particles / lattice.size()))),
-                                              "particle"));
+  hint +=
+      cells == 0
+          ? fmt::format("; not one cell fits {}", target_.name)
+          : fmt::format(
+                "; about {} would fit {}, some {} of this scene", count_text(cells, "cell"), target_.name,
+                count_text(std::max<uint64_t>(
+                               1, static_cast<uint64_t>(std::llround(static_cast<double>(cells) *
+                                                                     base_.plan.particles / lattice.size()))),
+                           "particle"));
   if (const int most = fullest(census_, lattice.size()); 2 * most <= arch_.capacity && !arch_.narrow_memories)
-    hint += fmt::format("; the fullest cell holds {} at the start, node.capacity is {}", most, arch_.capacity);
+    hint +=
+        fmt::format("; the fullest cell holds {} at the start, node.capacity is {}", most, arch_.capacity);
   if (arch_.narrow_memories) hint += "; memories = \"wide\" have bricks";
   if (!no_bricks_.empty()) hint += "; without bricks: " + no_bricks_.substr(0, no_bricks_.find('\n'));
   throw InputError(what, hint);

@@ -81,7 +81,9 @@ void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
     for (const BrickWalk::Visit& visit : walk.visits[s]) {
       const uint32_t cell = plan_.cell_of(n, visit.own);
       const uint64_t passes =
-          cell == kNoNode ? 0 : ceil_div(census_.particles(cell), static_cast<uint64_t>(plan_.arch.filter_lanes));
+          cell == kNoNode
+              ? 0
+              : ceil_div(census_.particles(cell), static_cast<uint64_t>(plan_.arch.filter_lanes));
       items += passes == 0;
       if (passes == 0) continue;
       for (uint32_t k = visit.first; k < visit.end; ++k) {
@@ -126,8 +128,8 @@ uint32_t count_pairs(const FixedRule& rule, const std::vector<const Particle*>& 
   return count;
 }
 
-// Cycles that a node with narrow memories takes to bring its candidates and walk its slots: a candidate's words
-// are read, then it meets one slot after the other, and waits for the pipe where it has hits.
+// Cycles that a node with narrow memories takes to bring its candidates and walk its slots: a candidate's
+// words are read, then it meets one slot after the other, and waits for the pipe where it has hits.
 uint64_t narrow_walk(const Plan& plan, const Held& held, uint32_t n) {
   const auto beats = static_cast<uint64_t>(plan.words.halo_beats);
   const auto interval = static_cast<uint64_t>(plan.latency.interval);

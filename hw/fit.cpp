@@ -109,7 +109,8 @@ std::optional<FitChoice> fastest_that_fits(const FitSpace& space, const FitAmoun
   return FitChoice{point_of(space, *best), space.shapes[best->shape].nodes, best_cycles, best->uses};
 }
 
-std::optional<FitChoice> nearest_to_fit(const FitSpace& space, const FitAmounts& room, const FitCosts& costs) {
+std::optional<FitChoice> nearest_to_fit(const FitSpace& space, const FitAmounts& room,
+                                        const FitCosts& costs) {
   std::vector<Candidate> all;
   for (size_t s = 0; s < space.shapes.size(); ++s)
     for (int lanes = 1; lanes <= space.most_lanes; ++lanes)
@@ -160,7 +161,8 @@ const FitLoads::Load& FitLoads::load(const Cell& brick) {
       for (size_t l = 0; l < lanes; ++l) candidates[l] += (own + l) / (l + 1) * near_[n];
     }
     load.pairs = std::max(load.pairs, pairs);
-    for (size_t l = 0; l < lanes; ++l) load.streamed[l] = std::max(load.streamed[l], candidates[l] + slots - 1);
+    for (size_t l = 0; l < lanes; ++l)
+      load.streamed[l] = std::max(load.streamed[l], candidates[l] + slots - 1);
     first = last;
   }
   return load;

@@ -79,17 +79,17 @@ struct FitChoice {
   FitAmounts uses{};
 };
 
-// The plan with the fewest cycles per step among those that fit; of equals the one that leaves most room (by its
-// worst share), then the least by brick, lanes, pipes. Nothing where none fits.
+// The plan with the fewest cycles per step among those that fit; of equals the one that leaves most room (by
+// its worst share), then the least by brick, lanes, pipes. Nothing where none fits.
 std::optional<FitChoice> fastest_that_fits(const FitSpace& space, const FitAmounts& room,
                                            const FitCosts& costs);
 
-// The plan whose worst share of the room is least, whether it fits or not; of equals the one with fewer cycles. Nothing
-// where no plan can be made.
+// The plan whose worst share of the room is least, whether it fits or not; of equals the one with fewer
+// cycles. Nothing where no plan can be made.
 std::optional<FitChoice> nearest_to_fit(const FitSpace& space, const FitAmounts& room, const FitCosts& costs);
 
-// least_cycles of the shapes of one scene: what lanes and pipes of the busiest node have to do, and what every node
-// passes beside that. No more than expected_cycles (hw/cycles.h) of the same plan.
+// least_cycles of the shapes of one scene: what lanes and pipes of the busiest node have to do, and what
+// every node passes beside that. No more than expected_cycles (hw/cycles.h) of the same plan.
 class FitLoads {
  public:
   // Refers to all; `plan`: of any brick, lanes and pipes, without narrow memories.

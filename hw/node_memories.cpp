@@ -41,8 +41,9 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
   const int position = rule.axes * rule.widths.position_frac;
   const bool more = rule.damped || (rule.scaled && rule.type_bits > 0);
   // What others see of a particle: its position, or all below its id.
-  const int seen = more ? position + 2 * (rule.axes - 1) + rule.axes * rule.widths.velocity_bits + rule.type_bits
-                        : position;
+  const int seen =
+      more ? position + 2 * (rule.axes - 1) + rule.axes * rule.widths.velocity_bits + rule.type_bits
+           : position;
   const int candidate = rule.axes * (rule.widths.position_frac + 2) + (rule.scaled ? rule.type_bits : 0) +
                         (rule.damped ? rule.axes * rule.widths.velocity_bits : 0);
   const uint64_t rows = (capacity + static_cast<uint64_t>(lanes) - 1) / static_cast<uint64_t>(lanes);
@@ -63,7 +64,8 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
     for (int a = 0; a < rule.axes; ++a) {
       // One cell's halos are 1, 3, 9 cells; particles lie behind them.
       const uint64_t depth = (a == 0 ? 1u : a == 1 ? 3u : 9u) * capacity;
-      ram("halos, particles from a face", depth + capacity, std::max(words.halo_bits, words.particle_bits), 2);
+      ram("halos, particles from a face", depth + capacity, std::max(words.halo_bits, words.particle_bits),
+          2);
       if (a < rule.axes - 1) ram("halos, for the relay", depth, words.halo_bits, 2);
     }
     return memories;
@@ -71,7 +73,8 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
   ram("sums", cells * capacity, rule.axes * sum_bits_, pipes);
   ram("particles between cells", cells * capacity, words.particle_bits, 1);
   memories.push_back({"leading bits of positions", cells * rows,
-                      rule.axes * std::min(rule.widths.filter_frac, rule.widths.position_frac), lanes, Kind::late});
+                      rule.axes * std::min(rule.widths.filter_frac, rule.widths.position_frac), lanes,
+                      Kind::late});
   const int count_bits = std::max(1, clog2(capacity)) + 1;
   // Of own cells, and of those that particles go to from below, from above.
   const auto counts = [&](uint64_t depth, int copies) {
@@ -81,7 +84,8 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
   const int halo_bits = words.halo_bits - words.halo_cell_bits;
   for (int a = 0; a < rule.axes; ++a) {
     const uint64_t layer = grid.halo_tags(a), face = grid.migrate_tags(a);
-    ram("halos, particles from a face", (layer + face) * capacity, std::max(halo_bits, words.particle_bits), 2);
+    ram("halos, particles from a face", (layer + face) * capacity, std::max(halo_bits, words.particle_bits),
+        2);
     if (a < rule.axes - 1) ram("halos, for the relay", layer * capacity, halo_bits, 2);
     counts(layer, 2);
     counts(face, 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The memories of a node in RTL that grow with its brick, its lanes or its pipes: words, widths, how many of each. What
-// does not is left to measurement: tables, registers, delays.
+// The memories of a node in RTL that grow with its brick, its lanes or its pipes: words, widths, how many of
+// each. What does not is left to measurement: tables, registers, delays.
 #pragma once
 
 #include <cstdint>

@@ -121,7 +121,8 @@ Measured Meter::run(const std::string& directory, bool board) const {
   for (const Resource r : kKept) m.around[r] = all[r] - m.nodes * m.node[r];
   if (target_.family == Family::ice40) {
     runner.run("nextpnr-ice40", "pack", "nextpnr-ice40",
-               {"--" + target_.name, "--package", target_.package, "--json", netlist, "--top", s.unit, "--pack-only"});
+               {"--" + target_.name, "--package", target_.package, "--json", netlist, "--top", s.unit,
+                "--pack-only"});
     const auto use = read_utilisation(read_text(out + "/pack.log"));
     const auto packed = use.find("ICESTORM_LC");
     if (packed == use.end())

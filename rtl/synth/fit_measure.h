@@ -23,9 +23,10 @@ class Meter {
   // `begins` hears of each tool before it runs. Throws InputError where a tool is missing.
   Meter(const Target& target, std::function<void(const std::string& what)> begins);
 
-  // `emit` writes a project into the directory that it is given; `board`: with board/. Results are kept in the user's
-  // cache directory, by the text of the RTL, the script and the versions of the tools. On ice40 a node's logic
-  // cells are those that nextpnr packs. Throws what `emit` throws, ToolFailed (whose log is gone), Interrupted.
+  // `emit` writes a project into the directory that it is given; `board`: with board/. Results are kept in
+  // the user's cache directory, by the text of the RTL, the script and the versions of the tools. On ice40 a
+  // node's logic cells are those that nextpnr packs. Throws what `emit` throws, ToolFailed (whose log is
+  // gone), Interrupted.
   Measured measure(const std::function<void(const std::string& directory)>& emit, bool board) const;
 
   const std::vector<std::string>& tools() const { return tools_; }  // versions

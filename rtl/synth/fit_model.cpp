@@ -23,7 +23,8 @@ uint64_t blocks(std::span<const BlockShape> shapes, const NodeMemory& m) {
 
 // From the makers' data sheets.
 constexpr std::array<BlockShape, 4> kRam40{{{16, 256}, {8, 512}, {4, 1024}, {2, 2048}}};
-constexpr std::array<BlockShape, 6> kDp16{{{36, 512}, {18, 1024}, {9, 2048}, {4, 4096}, {2, 8192}, {1, 16384}}};
+constexpr std::array<BlockShape, 6> kDp16{
+    {{36, 512}, {18, 1024}, {9, 2048}, {4, 4096}, {2, 8192}, {1, 16384}}};
 
 bool is_brick(const FitPoint& p) { return cells_of(p.brick) > 1; }
 
@@ -50,8 +51,8 @@ FitAmounts room_of(const Target& target) {
   return room;
 }
 
-// What yosys' memory_libmap weighs: a block, and the LUTs that hold so many bits of so many words, for each port to
-// read; without such, a bit in a flip-flop costs 1. From its share/*/brams.txt, lutrams.txt.
+// What yosys' memory_libmap weighs: a block, and the LUTs that hold so many bits of so many words, for each
+// port to read; without such, a bit in a flip-flop costs 1. From its share/*/brams.txt, lutrams.txt.
 struct Weights {
   std::span<const BlockShape> blocks;
   uint64_t block;
@@ -80,7 +81,8 @@ Counts memory_counts(Family family, const NodeMemory& m) {
   const uint64_t pieces = w.bits == 0 ? 0 : reads * ceil_div(bits, w.bits) * ceil_div(m.words, w.words);
   const uint64_t soft = w.bits == 0 ? bits * m.words : pieces * w.lut_memory;
   Counts counts;
-  if (m.kind == NodeMemory::Kind::block || (m.kind == NodeMemory::Kind::late && in_blocks * w.block <= soft)) {
+  if (m.kind == NodeMemory::Kind::block ||
+      (m.kind == NodeMemory::Kind::late && in_blocks * w.block <= soft)) {
     counts[Resource::bram] = copies * in_blocks;
   } else if (w.bits > 0) {
     counts[Resource::lut] = copies * pieces * w.luts;
@@ -101,8 +103,8 @@ void FitModel::add(const FitPoint& point, const FitAmounts& memories, const FitA
   for (const bool bricks : {false, true}) lines_[bricks] = line_through(bricks);
 }
 
-// Slopes: between the first two points that differ in lanes alone, in pipes alone. Nodes that nobody measured are
-// taken for the other kind.
+// Slopes: between the first two points that differ in lanes alone, in pipes alone. Nodes that nobody measured
+// are taken for the other kind.
 FitModel::Line FitModel::line_through(bool bricks) const {
   std::vector<const Point*> kind;
   for (const Point& p : points_)
@@ -151,7 +153,8 @@ FitAmounts FitModel::predict(const FitPoint& point, const FitAmounts& memories) 
   }
   FitAmounts amounts;
   for (size_t r = 0; r < value.size(); ++r)
-    amounts[r] = static_cast<uint64_t>(std::llround(std::max(0.0, value[r] + static_cast<double>(memories[r]))));
+    amounts[r] =
+        static_cast<uint64_t>(std::llround(std::max(0.0, value[r] + static_cast<double>(memories[r]))));
   return amounts;
 }
 

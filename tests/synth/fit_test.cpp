@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What --fit takes a node for: its memories against the RTL's, memories in blocks, lines through what was measured.
+// What --fit takes a node for: its memories against the RTL's, memories in blocks, lines through what was
+// measured.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -82,7 +83,9 @@ TEST(FitMemories, AreThoseOfTheRtl) {
 TEST(FitMemories, AreThoseOfBricks) {
   const Plan cube = plan_of_scene("two_types", [](Arch& a) { a.brick = {2, 2, 2}, a.capacity = 6; });
   EXPECT_EQ(text_of(counted(cube)), text_of(elaborated(cube)));
-  const Plan flat = plan_of_scene("sheet", [](Arch& a) { a.brick = {3, 1, 1}, a.filter_lanes = 3, a.force_pipes = 2; });
+  const Plan flat = plan_of_scene("sheet", [](Arch& a) {
+    a.brick = {3, 1, 1}, a.filter_lanes = 3, a.force_pipes = 2;
+  });
   EXPECT_EQ(text_of(counted(flat)), text_of(elaborated(flat)));
 }
 

@@ -70,8 +70,9 @@ struct Drawn {
           double share = 0;
           for (size_t r = 0; r < room.size(); ++r)
             if (c.uses[r] > 0)
-              share = std::max(share, room[r] > 0 ? static_cast<double>(c.uses[r]) / static_cast<double>(room[r])
-                                                  : std::numeric_limits<double>::infinity());
+              share =
+                  std::max(share, room[r] > 0 ? static_cast<double>(c.uses[r]) / static_cast<double>(room[r])
+                                              : std::numeric_limits<double>::infinity());
           if (!c.cycles || (must_fit && share > 1)) continue;
           const auto cycles = static_cast<double>(*c.cycles);
           const Rank rank = must_fit ? Rank{cycles, share, at} : Rank{share, cycles, at};
@@ -191,7 +192,8 @@ TEST(Fit, TheCensusCountsAllPairs) {
       Int3 x_j = j.x;
       bool near = &i != &j;
       for (int a = 0; a < 3; ++a) {
-        const int32_t apart = plan.lattice.cell(j.node)[static_cast<size_t>(a)] - plan.lattice.cell(i.node)[static_cast<size_t>(a)];
+        const int32_t apart = plan.lattice.cell(j.node)[static_cast<size_t>(a)] -
+                              plan.lattice.cell(i.node)[static_cast<size_t>(a)];
         near = near && std::abs(apart) <= 1;
         offset[static_cast<size_t>(a)] = static_cast<int8_t>(apart);
         x_j[a] += int64_t{apart} << plan.rule.widths.position_frac;
@@ -201,7 +203,8 @@ TEST(Fit, TheCensusCountsAllPairs) {
       ++all;
     }
   for (const auto& [where, count] : pairs) EXPECT_EQ(census.pairs(where.first, where.second), count);
-  for (uint32_t n = 0; n < plan.lattice.size(); ++n) counted += census.pairs(n), particles += census.particles(n);
+  for (uint32_t n = 0; n < plan.lattice.size(); ++n)
+    counted += census.pairs(n), particles += census.particles(n);
   EXPECT_EQ(counted, all);
   EXPECT_EQ(particles, plan.particles);
   EXPECT_GT(all, 2000u);
@@ -220,7 +223,8 @@ TEST(Fit, TheBoundIsBelowTheCycles) {
       const PairCensus census(base.plan.rule, base.plan.lattice, base.initial);
       FitLoads loads(base.plan, census);
       for (const Cell& brick : {Cell{1, 1, 1}, Cell{2, 1, 1}, Cell{2, 2, 2}, Cell{3, 3, 3}})
-        for (const auto& [lanes, pipes] : {std::pair{1, 1}, std::pair{3, 1}, std::pair{8, 2}, std::pair{16, 8}}) {
+        for (const auto& [lanes, pipes] :
+             {std::pair{1, 1}, std::pair{3, 1}, std::pair{8, 2}, std::pair{16, 8}}) {
           Arch changed = arch;
           changed.brick = brick;
           changed.filter_lanes = lanes;
