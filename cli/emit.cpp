@@ -28,7 +28,7 @@ int emit_fitted(const Input& input, const std::string& target, const std::string
     const Setup setup = fitter.setup();
     const std::string table = fitter.table();
     emit_rtl(setup.plan, setup.initial, out, vector_steps, board, fitter.arch_text());
-    fmt::print("{}{:<14} {}/arch.toml\n", table, "arch", out);
+    fmt::print("{}{:<16} {}/arch.toml\n", table, "arch", out);
     say_done(out, setup.plan);
   } catch (const synth::ToolFailed& error) {
     fmt::print(stderr, "{}\n", error.what());

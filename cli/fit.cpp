@@ -100,15 +100,20 @@ FitAmounts Fitter::memories(const Cell& brick, int lanes, int pipes, Family fami
   return amounts;
 }
 
-FitAmounts Fitter::uses(const FitShape& shape, int lanes, int pipes) {
+FitAmounts Fitter::estimate(const FitShape& shape, int lanes, int pipes) {
   const FitPoint point{shape.brick, lanes, pipes};
   if (const auto known = measured_.find(point); known != measured_.end()) return known->second;
-  const FitAmounts own = memories(shape.brick, lanes, pipes, target_.family);
-  const FitAmounts least = times(own, shape.nodes);
-  if (model_.empty() || !has_room(least, room_)) return least;
-  FitAmounts all = times(model_.predict(point, own), shape.nodes);
+  FitAmounts all =
+      times(model_.predict(point, memories(shape.brick, lanes, pipes, target_.family)), shape.nodes);
   for (size_t r = 0; r < all.size(); ++r) all[r] += static_cast<uint64_t>(around_[r] * shape.nodes);
   return all;
+}
+
+// Where the memories alone have no room, they are all that is told: the search asks for very many.
+FitAmounts Fitter::uses(const FitShape& shape, int lanes, int pipes) {
+  const FitAmounts least = times(memories(shape.brick, lanes, pipes, target_.family), shape.nodes);
+  return has_room(least, room_) || measured({shape.brick, lanes, pipes}) ? estimate(shape, lanes, pipes)
+                                                                         : least;
 }
 
 std::optional<uint64_t> Fitter::cycles(const FitPoint& point) {

@@ -47,6 +47,7 @@ class Fitter {
 
   Plan plan_at(const FitPoint& point) const;
   FitAmounts memories(const Cell& brick, int lanes, int pipes, synth::Family family);
+  FitAmounts estimate(const FitShape& shape, int lanes, int pipes);
   FitAmounts uses(const FitShape& shape, int lanes, int pipes);
   std::optional<uint64_t> cycles(const FitPoint& point);
   FitCosts costs();

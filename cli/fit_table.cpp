@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -20,6 +21,8 @@ using synth::Target;
 
 // Rows on either side of the choice, by numbers of nodes.
 constexpr size_t kShownAround = 4;
+// Numbers of nodes that have no room for their memories.
+constexpr size_t kShownWithoutRoom = 2;
 
 std::string cells_text(const Cell& brick) {
   return fmt::format("{} x {} x {}", brick[0], brick[1], brick[2]);
@@ -84,7 +87,8 @@ void Fitter::add_row(std::vector<Row>& rows, const std::optional<FitChoice>& pla
 }
 
 std::string Fitter::table() {
-  const FitCosts cost = costs();
+  FitCosts cost = costs();
+  cost.uses = [this](const FitShape& s, int lanes, int pipes) { return estimate(s, lanes, pipes); };
   std::vector<Row> rows;
   add_row(rows, choice_);
   // The best of each number of nodes around the choice's.
@@ -102,12 +106,33 @@ std::string Fitter::table() {
     const auto fitting = fastest_that_fits(same, room_, cost);
     add_row(rows, fitting ? fitting : nearest_to_fit(same, room_, cost));
   }
+  // More nodes, whose memories have no room: the nearest of each number.
+  std::map<uint32_t, FitSpace> without_room;
+  if (!arch_.narrow_memories)
+    for (const Cell& brick : possible_bricks(base_.plan.lattice)) {
+      const bool known = std::ranges::find(space_.shapes, brick, &FitShape::brick) != space_.shapes.end();
+      const uint32_t nodes = known ? 0 : count_bricks(base_.plan.lattice, brick);
+      if (nodes > choice_->nodes) without_room[nodes].shapes.push_back({brick, nodes});
+    }
+  size_t told = 0;
+  for (auto& [nodes, space] : without_room) {
+    if (++told > kShownWithoutRoom) break;
+    // With the lanes and pipes of the choice, as fewer would be slow for another reason.
+    const auto lanes = choice_->point.lanes, pipes = choice_->point.pipes;
+    FitCosts same = cost;
+    same.uses = [&](const FitShape& s, int, int) { return estimate(s, lanes, pipes); };
+    same.cycles = [&](const FitShape& s, int, int) { return cycles({s.brick, lanes, pipes}); };
+    auto nearest = nearest_to_fit(space, room_, same);
+    if (nearest) nearest->point.lanes = lanes, nearest->point.pipes = pipes;
+    add_row(rows, nearest);
+  }
   // A lane more, a pipe more.
   const FitShape shape{choice_->point.brick, choice_->nodes};
   for (const auto& [lanes, pipes] : {std::pair{1, 0}, std::pair{0, 1}}) {
     const FitPoint p{shape.brick, choice_->point.lanes + lanes, choice_->point.pipes + pipes};
     if (p.lanes > space_.most_lanes || p.pipes > std::min(p.lanes, space_.most_pipes)) continue;
-    if (const auto c = cycles(p)) add_row(rows, FitChoice{p, shape.nodes, *c, uses(shape, p.lanes, p.pipes)});
+    if (const auto c = cycles(p))
+      add_row(rows, FitChoice{p, shape.nodes, *c, estimate(shape, p.lanes, p.pipes)});
   }
   // Every plan that was synthesised.
   for (const auto& [point, all] : measured_) {
@@ -136,8 +161,8 @@ std::string Fitter::table() {
                         measured(p.point) ? "" : ", estimated");
   }
   text += "\n";
-  text += fmt::format("{:<14} {}\n", "device", target_.name + ", " + target_.device);
-  text += fmt::format("{:<14} {}\n", "synthesised", numbers(choice_->uses));
+  text += fmt::format("{:<16} {}\n", "device", target_.name + ", " + target_.device);
+  text += fmt::format("{:<16} {}\n", "synthesised", numbers(choice_->uses));
   std::string errors;
   if (const auto estimate = estimates_.find(choice_->point); estimate != estimates_.end())
     for (size_t r = 0; r < kFitted.size(); ++r)
@@ -145,12 +170,12 @@ std::string Fitter::table() {
         errors += fmt::format(
             "{}{} {:+.1f} %", errors.empty() ? "" : ", ", to_string(kFitted[r]),
             100 * (static_cast<double>(estimate->second[r]) / static_cast<double>(choice_->uses[r]) - 1));
-  if (!errors.empty()) text += fmt::format("{:<14} {}\n", "estimate's error", errors);
+  if (!errors.empty()) text += fmt::format("{:<16} {}\n", "estimate's error", errors);
   if (arch_.narrow_memories)
-    text += fmt::format("{:<14} {}\n", "note", "memories = \"narrow\" have one lane, one pipe and no bricks");
+    text += fmt::format("{:<16} {}\n", "note", "memories = \"narrow\" have one lane, one pipe and no bricks");
   if (!no_bricks_.empty())
     text +=
-        fmt::format("{:<14} {}\n", "note", "without bricks: " + no_bricks_.substr(0, no_bricks_.find('\n')));
+        fmt::format("{:<16} {}\n", "note", "without bricks: " + no_bricks_.substr(0, no_bricks_.find('\n')));
   return text;
 }
 
