@@ -103,6 +103,16 @@ std::optional<Fit> fit_of(const Report& report) {
   return fit;
 }
 
+std::string elsewhere(const Report& report) {
+  const Target* other = nearest_that_holds(report.used, target_of(report.target));
+  std::string hint = other ? fmt::format("{} has room for what it takes here", other->name)
+                           : "no target that is known has room for it";
+  // What is no block alone has other bricks, lanes and pipes.
+  if (whole(report.unit))
+    hint += fmt::format("; cuboct emit SCENE --fit {} looks for a machine that fits", report.target);
+  return hint;
+}
+
 std::string print_table(const Report& report) {
   const Target& target = target_of(report.target);
   std::string text =
