@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <tuple>
 
@@ -175,6 +176,8 @@ Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
     }
   }
 }
+
+int Bricks::cell_bits() const { return single() ? 0 : static_cast<int>(std::bit_width(cells_of(shape_) - 1)); }
 
 uint8_t Bricks::links(uint32_t node) const {
   uint8_t faces = 0;

@@ -86,6 +86,7 @@ class Bricks {
   Bricks(const Lattice& lattice, const Cell& shape);
 
   bool single() const { return nodes_.empty(); }
+  int cell_bits() const;  // of a cell's number in its node; 0 if that is the only one
   // What follows is not for single cells.
   uint32_t size() const { return static_cast<uint32_t>(nodes_.size()); }
   const Cell& shape() const { return shape_; }

@@ -23,13 +23,16 @@ std::string print_package(const Plan& plan, const RtlDesign& design, const Board
       "// What the host link knows of the plan, and its line: {} baud at {} MHz.\n"
       "package cuboct_board_pkg;\n"
       "  localparam int          Nodes       = {};\n"
+      "  localparam int          CellBits    = {};  // of a cell's number in its node\n"
+      "  localparam int          Slots       = {};  // of a node\n"
       "{}"
       "  localparam logic [63:0] PlanHash    = 64'h{:016x};\n"
       "  localparam logic [63:0] MachineHash = 64'h{:016x};\n"
       "  localparam int          ClockHz     = {};\n"
       "  localparam int          BitClocks16 = {};  // length of a bit in 1/16 clocks\n"
       "endpackage\n",
-      design.maker, choice.baud, board.clock_hz / 1e6, plan.lattice.size(), velocities, plan.hash,
+      design.maker, choice.baud, board.clock_hz / 1e6, plan.nodes(), plan.bricks.cell_bits(),
+      cells_of(plan.bricks.shape()) * static_cast<uint32_t>(plan.arch.capacity), velocities, plan.hash,
       machine_hash(plan), board.clock_hz, bit_clocks16(board, choice.baud));
 }
 
@@ -41,7 +44,8 @@ void legalise_board(const Plan& plan, const BoardChoice& choice) {
     if (value > limit)
       throw InputError(fmt::format("board: {} is {}: at most {} can be emitted", what, value, limit));
   };
-  at_most("the number of nodes", plan.lattice.size(), kLargest);
+  at_most("the number of nodes", plan.nodes(), kLargest);
+  at_most("the width of a particle's id and of its cell", static_cast<uint64_t>(plan.words.id_bits + plan.bricks.cell_bits()), 32);
   at_most("the number of particles", plan.particles, kLargest);
   at_most("the width of a velocity", static_cast<uint64_t>(plan.rule.widths.velocity_bits), 64);
   at_most("the number of held and moved types", moved_types(plan.rule).size(), 255);

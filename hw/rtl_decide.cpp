@@ -175,7 +175,7 @@ RtlDesign decide(const Plan& plan) {
   }
   if (bricks) {
     design.brick_cells = static_cast<int>(cells_of(arch.brick));
-    design.cell_bits = clog2(cells_of(arch.brick));
+    design.cell_bits = plan.bricks.cell_bits();
     design.constants.push_back({"CellBits", design.cell_bits, false, false, "of a cell's number in its node"});
   }
   return design;

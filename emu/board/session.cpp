@@ -31,8 +31,7 @@ class Session {
           fmt::format("port {}: the board holds plan {:016x}, the scene is plan {:016x}", host.port(),
                       info_.plan_hash, plan.hash),
           "emit the scene with --board, build and flash it; or run the scene that the board was made from");
-    if (info_.nodes != static_cast<int>(plan.lattice.size()) ||
-        info_.particle_bits != plan.words.particle_bits)
+    if (info_.nodes != static_cast<int>(plan.nodes()) || info_.particle_bits != word_bits())
       throw std::runtime_error(fmt::format("port {}: {} nodes, {} bits per particle do not fit plan {:016x}",
                                            host.port(), info_.nodes, info_.particle_bits, plan.hash));
     check_words(plan);
@@ -48,8 +47,11 @@ class Session {
     const auto nodes = by_node(plan_, state);
     uint16_t index = 0;
     for (uint32_t n = 0; n < nodes.size(); ++n)
-      for (const Particle& p : nodes[n])
-        host_.load(index++, static_cast<uint16_t>(n), load_word(plan_, p), plan_.words.particle_bits);
+      for (const Particle& p : nodes[n]) {
+        Bits word = load_word(plan_, p);
+        word.put(plan_.words.particle_bits, plan_.bricks.cell_bits(), plan_.local_of(p.node));
+        host_.load(index++, static_cast<uint16_t>(n), word, word_bits());
+      }
   }
 
   // Waits for the end. False: some node met a fault.
@@ -68,13 +70,13 @@ class Session {
   State read(uint64_t step) {
     State state;
     state.step = step;
-    for (uint32_t n = 0; n < plan_.lattice.size(); ++n)
-      for (const Bits& word : host_.read(static_cast<uint16_t>(n), plan_.words.particle_bits)) {
+    for (uint32_t n = 0; n < plan_.nodes(); ++n)
+      for (const Bits& word : host_.read(static_cast<uint16_t>(n), word_bits())) {
         const Slot slot = unpack_particle(plan_, word);
         Particle p;
         p.id = slot.id;
         p.type = slot.body.type;
-        p.node = n;
+        p.node = cell_of(n, word.get(plan_.words.particle_bits, plan_.bricks.cell_bits()));
         for (size_t a = 0; a < 3; ++a) p.x[a] = slot.body.x[a];
         p.v = slot.body.v;
         p.u = slot.u;
@@ -93,10 +95,14 @@ class Session {
   // The least fault of the one step that the board has run since it held a state after `step`.
   StopReason stop(uint64_t step) {
     StopReason least;
-    for (uint32_t n = 0; n < plan_.lattice.size(); ++n) {
+    // Above the particle's id is the cell.
+    const int id_bits = plan_.words.id_bits;
+    for (uint32_t n = 0; n < plan_.nodes(); ++n) {
       const BoardFault found = host_.fault(static_cast<uint16_t>(n));
       if (found.fault == Fault::none) continue;
-      const StopReason reason{found.fault, step, n, found.particle, found.number, {}};
+      const uint64_t told = found.particle;
+      const StopReason reason{found.fault,  step, cell_of(n, told >> id_bits),
+                              static_cast<uint32_t>(told & ((uint64_t{1} << id_bits) - 1)), found.number, {}};
       const auto key = [](const StopReason& r) { return std::tie(r.fault, r.particle, r.number); };
       if (least.fault == Fault::none || key(reason) < key(least)) least = reason;
     }
@@ -129,6 +135,18 @@ class Session {
   const BoardInfo& info() const { return info_; }
 
  private:
+  // A particle on the line: its word, and above it the number of its cell in the node.
+  int word_bits() const { return plan_.words.particle_bits + plan_.bricks.cell_bits(); }
+
+  uint32_t cell_of(uint32_t node, uint64_t local) const {
+    const bool within = plan_.bricks.single() ? local == 0 : local < cells_of(plan_.bricks.shape());
+    const uint32_t cell = within ? plan_.cell_of(node, static_cast<uint32_t>(local)) : kNoNode;
+    if (cell == kNoNode)
+      throw std::runtime_error(
+          fmt::format("port {}: node {} tells of a cell {} that it has not", host_.port(), node, local));
+    return cell;
+  }
+
   void set_velocities() {
     const std::vector<int> moved = moved_types(plan_.rule);
     for (size_t k = 0; k < moved.size(); ++k)
@@ -154,7 +172,7 @@ Trace run_on_board(Host& host, const Plan& plan, const State& initial, const Boa
   Trace trace;
   trace.engine = "fpga";
   trace.plan_hash = plan.hash;
-  trace.nodes = plan.lattice.size();
+  trace.nodes = plan.nodes();
   trace.hash_every = std::max<uint64_t>(1, run.hash_every);
 
   std::set<uint64_t> stops(run.frames.begin(), run.frames.end());

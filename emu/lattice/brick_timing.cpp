@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "emu/lattice/force_time.h"
+#include "emu/lattice/phase_spans.h"
 
 namespace cuboct::emu {
 namespace {
@@ -272,16 +273,7 @@ void BrickTiming::take_particles(int axis, uint32_t n) {
 // Where an axis does not exist its phases end with those before them.
 void BrickTiming::finish(uint32_t n, std::span<PhaseSpan> spans) {
   if (axes_ == 2) end_[at(Phase::migrate_z)][n] = end_[at(Phase::migrate_y)][n];
-  if (!spans.empty()) {
-    PhaseSpan* const span = spans.data() + size_t{n} * kPhases;
-    const auto begin = static_cast<uint64_t>(start_[n]);
-    uint64_t start = begin;
-    for (size_t p = 0; p < kPhases; ++p) {
-      const auto end = static_cast<uint64_t>(end_[p][n]);
-      span[p] = {p == at(Phase::force) && plan_.arch.overlap ? begin : start, end};
-      start = end + 1;
-    }
-  }
+  if (!spans.empty()) write_spans(spans, n, start_[n], end_, plan_.arch.overlap);
   start_[n] = end_[at(Phase::migrate_z)][n] + 1;
 }
 

@@ -11,6 +11,7 @@
 #include "emu/lattice/force_time.h"
 #include "emu/lattice/hits.h"
 #include "emu/lattice/migrate_time.h"
+#include "emu/lattice/phase_spans.h"
 
 namespace cuboct::emu {
 namespace {
@@ -242,16 +243,7 @@ void TimingModel::Impl::take_particles(int axis, uint32_t n) {
 }
 
 void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
-  if (!spans.empty()) {
-    PhaseSpan* const span = spans.data() + size_t{n} * kPhases;
-    const auto begin = static_cast<uint64_t>(start_[n]);
-    uint64_t start = begin;
-    for (size_t p = 0; p < kPhases; ++p) {
-      const auto end = static_cast<uint64_t>(end_[p][n]);
-      span[p] = {p == at(Phase::force) && plan_.arch.overlap ? begin : start, end};
-      start = end + 1;
-    }
-  }
+  if (!spans.empty()) write_spans(spans, n, start_[n], end_, plan_.arch.overlap);
   start_[n] = end_[at(Phase::migrate_z)][n] + 1;
 }
 

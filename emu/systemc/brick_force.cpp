@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <utility>
 
 #include "emu/systemc/planar.h"
 
@@ -21,19 +20,8 @@ struct BrickForce::Stream : ForceStream {
   uint64_t idle = 0;  // items at which nobody met
 };
 
-BrickForce::BrickForce(const Plan& plan, const BrickWalk& walk, const BrickCells& cells, FaultKeeper& fault)
-    : plan_(plan),
-      walk_(walk),
-      cells_(cells),
-      fault_(fault),
-      lanes_(static_cast<size_t>(plan.arch.filter_lanes)),
-      capacity_(static_cast<size_t>(plan.arch.capacity)),
-      sum_(cells.own.size() * capacity_) {}
-
-void BrickForce::reset() { std::fill(sum_.begin(), sum_.end(), Int3{}); }
-
 // The candidates of one cell before the slots of another.
-void BrickForce::meet(Stream& stream, uint32_t own, const BrickWalk::Near& near) const {
+void BrickForce::present(Stream& stream, uint32_t own, const BrickWalk::Near& near) const {
   const auto local = static_cast<size_t>(near.local);
   const size_t count = near.local >= 0 ? cells_.own[local].size() : cells_.halo[near.grid].size();
   const size_t slots = cells_.own[own].size(), passes = (slots + lanes_ - 1) / lanes_;
@@ -76,7 +64,7 @@ void BrickForce::filter(Stream& stream) const {
       for (const Slot& s : slots) stream.own.add(s.body.x, test.shift());
       for (uint32_t k = visit.first; k < visit.end; ++k) {
         const size_t before = stream.item.size();
-        meet(stream, visit.own, walk_.near[k]);
+        present(stream, visit.own, walk_.near[k]);
         if (stream.item.size() == before) nobody();
       }
     }
@@ -86,33 +74,21 @@ void BrickForce::filter(Stream& stream) const {
 
 void BrickForce::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
   const Stream::Item& item = stream.item[entry];
-  const Candidate& j = stream.candidate[item.candidate];
-  const Int3 x_j{j.x[0], j.x[1], j.x[2]};
+  const Candidate& other = stream.candidate[item.candidate];
   for (int pipe = 0; pipe < plan_.arch.force_pipes && mask != 0; ++pipe) {
     const size_t slot = item.pass * lanes_ + static_cast<size_t>(std::countr_zero(mask));
     mask &= mask - 1;
-    const Slot& own = cells_.own[item.own][slot];
-    const Candidate& i = own.body;
-    const PairResult pair = pair_kick(plan_.rule, {i.x[0], i.x[1], i.x[2]}, i.v, i.type, x_j, j.v, j.type);
-    ++counts_.pairs_issued;
-    counts_.pairs_inside += pair.inside;
-    fault_.add(pair.fault, own.id, pair.number, item.own);
-    Int3& sum = sum_[item.own * capacity_ + slot];
-    for (size_t a = 0; a < 3; ++a) sum[a] += pair.kick[a];
+    meet(cells_.own[item.own][slot], item.own, slot, other);
   }
 }
 
 uint64_t BrickForce::run() {
   static thread_local Stream stream;
   filter(stream);
-  const uint64_t last = clock_force(plan_, stream, 1 + 2 * plan_.rule.axes, available_, counts_,
+  const uint64_t last = clock_force(plan_, stream, segments_, available_, counts_,
                                     [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
   counts_.candidates -= stream.idle;
   return last;
-}
-
-Int3 BrickForce::take_sum(uint32_t local, size_t slot) {
-  return std::exchange(sum_[local * capacity_ + slot], Int3{});
 }
 
 }  // namespace cuboct::emu

@@ -16,16 +16,6 @@ namespace cuboct::emu {
 inline constexpr int kForceSegments =
     1 + kFaces;  // own, -x, +x, -y, +y, -z, +z; of a flat plan without -z, +z
 
-// The least (code, id, number) of a step, and in which of the node's cells it was found.
-struct FaultKeeper {
-  Fault code = Fault::none;
-  uint32_t id = 0;
-  int64_t number = 0;
-  uint32_t cell = 0;
-
-  void add(Fault new_code, uint32_t new_id, int64_t new_number, uint32_t in_cell = 0);
-};
-
 struct ForceCounts {
   uint64_t candidates = 0;    // (record, pass) presented to the filter
   uint64_t pairs_issued = 0;  // that passed the planar test

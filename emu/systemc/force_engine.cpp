@@ -18,35 +18,24 @@ struct ForceEngine::Stream : ForceStream {
 
 ForceEngine::ForceEngine(const Plan& plan, const std::vector<Slot>& own,
                          const std::array<std::vector<Candidate>, kFaces>& halo, FaultKeeper& fault)
-    : plan_(plan),
-      own_(own),
-      halo_(halo),
-      fault_(fault),
-      lanes_(plan.arch.filter_lanes),
-      pipes_(plan.arch.force_pipes),
-      segments_(1 + 2 * plan.rule.axes),
-      sum_(plan.arch.capacity) {}
-
-void ForceEngine::reset() { std::fill(sum_.begin(), sum_.end(), Int3{}); }
-
-void ForceEngine::begin(uint64_t cycle) { available_.fill(cycle); }
+    : ForceMachine(plan, 1, fault), own_(own), halo_(halo) {}
 
 // Lists the records and tests each against all own slots.
 void ForceEngine::filter(Stream& stream) const {
-  const uint32_t n = static_cast<uint32_t>(own_.size()), lanes = static_cast<uint32_t>(lanes_);
+  const uint32_t n = static_cast<uint32_t>(own_.size());
   stream.record.clear();
   stream.mask.clear();
-  stream.passes = (n + lanes - 1) / lanes;
+  stream.passes = (n + lanes_ - 1) / lanes_;
   stream.own.clear();
   const PlanarTest test(plan_.rule);
   for (const Slot& s : own_) stream.own.add(s.body.x, test.shift());
-  const uint64_t lane_mask = ~uint64_t{0} >> (64 - lanes);
+  const uint64_t lane_mask = ~uint64_t{0} >> (64 - lanes_);
   for (int segment = 0; segment < segments_; ++segment) {
     const auto one = [&](const Candidate& c, uint32_t self) {
       stream.record.push_back(&c);
       PlanarMask met = test(stream.own, c.x);
       if (self < n) met.clear(self);
-      for (uint32_t p = 0; p < stream.passes; ++p) stream.mask.push_back(met.from(p * lanes) & lane_mask);
+      for (uint32_t p = 0; p < stream.passes; ++p) stream.mask.push_back(met.from(p * lanes_) & lane_mask);
     };
     if (segment > 0)
       for (const Candidate& c : halo_[segment - 1]) one(c, n);
@@ -59,24 +48,13 @@ void ForceEngine::filter(Stream& stream) const {
 // Issues the lowest bits of `mask`, one per pipe, and clears them.
 void ForceEngine::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
   const uint32_t record = stream.passes == 1 ? entry : entry / stream.passes;
-  const int first_slot = static_cast<int>(entry - record * stream.passes) * lanes_;
-  const Candidate& j = *stream.record[record];
-  for (int pipe = 0; pipe < pipes_ && mask != 0; ++pipe) {
-    const int slot = first_slot + std::countr_zero(mask);
+  const uint32_t first_slot = (entry - record * stream.passes) * lanes_;
+  const Candidate& other = *stream.record[record];
+  for (int pipe = 0; pipe < plan_.arch.force_pipes && mask != 0; ++pipe) {
+    const size_t slot = first_slot + static_cast<size_t>(std::countr_zero(mask));
     mask &= mask - 1;
-    meet(j, slot);
+    meet(own_[slot], 0, slot, other);
   }
-}
-
-// The pair's kick on a slot.
-void ForceEngine::meet(const Candidate& j, int slot) {
-  const Candidate& i = own_[slot].body;
-  const PairResult pair = pair_kick(plan_.rule, {i.x[0], i.x[1], i.x[2]}, i.v, i.type,
-                                    {j.x[0], j.x[1], j.x[2]}, j.v, j.type);
-  ++counts_.pairs_issued;
-  counts_.pairs_inside += pair.inside;
-  if (pair.fault != Fault::none) fault_.add(pair.fault, own_[slot].id, pair.number);
-  for (int a = 0; a < 3; ++a) sum_[slot][a] += pair.kick[a];
 }
 
 uint64_t ForceEngine::stream() {
@@ -125,12 +103,6 @@ uint64_t ForceEngine::walk() {
   cycle = std::max(cycle, empty);
   counts_.busy += cycle - available_[0] + 1;
   return cycle;
-}
-
-Int3 ForceEngine::take_sum(int slot) {
-  const Int3 sum = sum_[slot];
-  sum_[slot] = {};
-  return sum;
 }
 
 }  // namespace cuboct::emu

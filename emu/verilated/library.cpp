@@ -4,7 +4,6 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <bit>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -44,11 +43,6 @@ void copy_board(const fs::path& project, const std::vector<std::string>& files, 
   }
 }
 
-// Of a cell's number in its brick; 0: nodes of one cell.
-int cell_bits(const Plan& plan) {
-  return plan.bricks.single() ? 0 : static_cast<int>(std::bit_width(cells_of(plan.bricks.shape()) - 1));
-}
-
 }  // namespace
 
 std::string default_build_directory() {
@@ -86,7 +80,7 @@ std::string compile_lattice(const Plan& plan, const State& initial, const std::s
                   .constants = {{"NODES", static_cast<int>(plan.nodes())},
                                 {"PARTICLE_BITS", plan.words.particle_bits},
                                 {"ID_BITS", plan.words.id_bits},
-                                {"CELL_BITS", cell_bits(plan)}},
+                                {"CELL_BITS", plan.bricks.cell_bits()}},
                   .sources = with_headers("shim_lattice.cpp"),
                   .emit = [&](const std::string& dir) { emit_rtl(plan, initial, dir, 1); }},
                  build_directory);

@@ -4,7 +4,8 @@
 module least_fault_formal #(
   parameter int Sources = 2,
   parameter int IdBits  = 3,
-  parameter int NumberBits = 64
+  parameter int NumberBits = 64,
+  parameter int Late = 0
 ) (
   input logic                      clk_i,
   input logic                      clear_i,
@@ -31,7 +32,7 @@ module least_fault_formal #(
   logic [3:0]         code;
   logic [IdBits-1:0]  id;
   logic signed [63:0] number;
-  cuboct_least_fault #(.Sources(Sources), .IdBits(IdBits), .NumberBits(NumberBits)) u_dut (
+  cuboct_least_fault #(.Sources(Sources), .IdBits(IdBits), .NumberBits(NumberBits), .Late(Late)) u_dut (
     .clk_i, .rst_ni(running_q), .clear_i, .valid_i, .code_i, .id_i, .number_i,
     .valid_o(valid), .code_o(code), .id_o(id), .number_o(number)
   );

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One signed product per axis. With Shared one multiplier serves the axes in turn: operands are taken in the cycle
-// with en_i, the products are there Axes cycles later, and stay until Axes cycles after the next en_i, which comes no
-// sooner than Axes cycles after this one. Without, each axis has its own, of latency Product.
+// with en_i, the products are there Axes cycles later, and stay up to the next en_i, which comes no sooner than Axes
+// cycles after this one. Without, each axis has its own, of latency Product.
 module cuboct_axis_mults #(
   parameter int Axes   = 3,   // 2 or 3
   parameter int Shared = 0,   // 0, 1

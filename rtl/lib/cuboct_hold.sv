@@ -10,7 +10,9 @@ module cuboct_hold #(
   input  logic            clk_i,
   input  logic [Depth:0]  valid_i,  // [k]: the pair whose input came k cycles ago is there
   input  logic [Bits-1:0] d_i,
-  output logic [Bits-1:0] q_o       // of that pair in a cycle with valid_i[Depth], and until the next one's
+  // Of that pair in a cycle with valid_i[Depth]; where registers hold it, N of them, from valid_i[N Interval] on until
+  // the next pair's.
+  output logic [Bits-1:0] q_o
 );
   localparam int Registers = Depth / Interval;
   logic unused_valid;

@@ -6,7 +6,7 @@
 (* keep_hierarchy *)
 module cuboct_mult #(
   parameter int ABits  = 18,  // >= 1
-  parameter int BBits  = 18,  // >= 1
+  parameter int BBits  = 18,  // >= 1; >= 2 if Cycles > 1
   parameter int Cycles = 1    // 1, or > BBits
 ) (
   input  logic                          clk_i,

@@ -628,7 +628,7 @@ module cuboct_node_core #(
   end
   logic some_fault;
   cuboct_least_fault #(
-    .Sources(ForcePipes), .IdBits(IdBits), .NumberBits(NumberBits), .Late(Narrow)
+    .Sources(ForcePipes), .IdBits(IdBits), .NumberBits(NumberBits), .Late(1)
   ) u_fault (
     .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
     .number_i(fault_number), .valid_o(some_fault), .code_o(fault_code_o), .id_o(fault_id_o),

@@ -133,17 +133,19 @@ module cuboct_update #(
       localparam int KpBits    = GainBits + DisplacementBits;
       localparam int KdBits    = GainBits + ErrorBits;
       localparam int SpringBits = ((KpBits > KdBits) ? KpBits : KdBits) + 1;
+      localparam int MaxVu     = (VelocityBits > DisplacementBits) ? VelocityBits : DisplacementBits;
+      localparam int UBits     = ((MaxVu > ConstantBits) ? MaxVu : ConstantBits) + 2;  // three terms
 
-      // Stage 2: the error of the velocity. 3: products. 4: their rounded sum is subtracted.
+      // Stage 2: the error of the velocity. 3: products. 4: their sum; rounded, it is subtracted before the check of v.
       logic signed [DisplacementBits-1:0] u_2, u_last;
       logic signed [ErrorBits-1:0] error_d, error_2;
       logic signed [KpBits-1:0]    spring;
       logic signed [KdBits-1:0]    drag;
-      logic signed [SpringBits-1:0]  pull_sum;
-      logic signed [WideBits-1:0]  pull, v_d, v_q;
+      logic signed [SpringBits-1:0]  pull_sum_d, pull_sum_q;
+      logic signed [WideBits-1:0]  pull;
       logic signed [GainBits-1:0]  kp_2, kd_2;
-      logic                        held_3;
-      logic signed [WideBits-1:0]  plain_3, to_go_last;
+      logic                        held_4;
+      logic signed [WideBits-1:0]  plain_4;
       logic                        held_last;
       cuboct_delay #(.Bits(DisplacementBits), .Depth(Delay * 2)) u_u2 (
         .clk_i, .d_i(u_i[a*DisplacementBits +: DisplacementBits]), .q_o(u_2)
@@ -158,36 +160,37 @@ module cuboct_update #(
       cuboct_mult #(.ABits(GainBits), .BBits(ErrorBits)) u_drag (
         .clk_i, .rst_ni, .en_i(valid_q[2]), .a_i(kd_2), .b_i(error_2), .p_o(drag)
       );
-      assign pull_sum = $signed({{(SpringBits - KpBits) {spring[KpBits-1]}}, spring})
+      assign pull_sum_d = $signed({{(SpringBits - KpBits) {spring[KpBits-1]}}, spring})
                       + $signed({{(SpringBits - KdBits) {drag[KdBits-1]}}, drag});
+      always_ff @(posedge clk_i) pull_sum_q <= pull_sum_d;
       cuboct_round_odd #(.InBits(SpringBits), .Shift(GainFrac), .OutBits(WideBits)) u_pull (
-        .a_i(pull_sum), .y_o(pull)
+        .a_i(pull_sum_q), .y_o(pull)
       );
-      cuboct_delay #(.Bits(WideBits + 1), .Depth(Delay * 2)) u_plain3 (
-        .clk_i, .d_i({held, plain}), .q_o({held_3, plain_3})
+      cuboct_delay #(.Bits(WideBits + 1), .Depth(Delay * 3)) u_plain4 (
+        .clk_i, .d_i({held, plain}), .q_o({held_4, plain_4})
       );
-      assign v_d = plain_3 - (held_3 ? pull : '0);
-      always_ff @(posedge clk_i) v_q <= v_d;
-      assign v_free = v_q;
+      assign v_free = plain_4 - (held_4 ? pull : '0);
       cuboct_delay #(.Bits(TotalBits + WideBits + 2), .Depth(Delay * 3)) u_rest (
         .clk_i, .d_i({imposed_1, bad_1, sum_1, to_go_wide}), .q_o({imposed_v, bad_sum_v, sum_v, v_imposed})
       );
 
       // The displacement, with the outputs.
-      logic signed [WideBits-1:0]         u_wide, u_full, u_back, v_out_wide;
+      logic signed [UBits-1:0]            u_wide, u_full, u_back, v_last, to_go_4, to_go_last;
       logic signed [DisplacementBits-1:0] u_new;
-      cuboct_delay #(.Bits(WideBits), .Depth(Delay)) u_to_go_last (.clk_i, .d_i(v_imposed), .q_o(to_go_last));
-      cuboct_delay #(.Bits(1), .Depth(Delay * 2)) u_held_last (.clk_i, .d_i(held_3), .q_o(held_last));
-      cuboct_resize #(.InBits(DisplacementBits), .OutBits(WideBits)) u_u_wide (.a_i(u_last), .y_o(u_wide));
-      cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_out (
-        .a_i($signed(v_o[a*VelocityBits +: VelocityBits])), .y_o(v_out_wide)
+      cuboct_resize #(.InBits(WideBits), .OutBits(UBits)) u_to_go4 (.a_i(v_imposed), .y_o(to_go_4));
+      cuboct_delay #(.Bits(UBits + 1), .Depth(Delay)) u_held_last (
+        .clk_i, .d_i({held_4, to_go_4}), .q_o({held_last, to_go_last})
       );
-      assign u_full = u_wide + v_out_wide - to_go_last;
-      cuboct_resize #(.InBits(WideBits), .OutBits(DisplacementBits)) u_u_new (.a_i(u_full), .y_o(u_new));
-      cuboct_resize #(.InBits(DisplacementBits), .OutBits(WideBits)) u_u_back (.a_i(u_new), .y_o(u_back));
+      cuboct_resize #(.InBits(DisplacementBits), .OutBits(UBits)) u_u_wide (.a_i(u_last), .y_o(u_wide));
+      cuboct_resize #(.InBits(VelocityBits), .OutBits(UBits)) u_v_last (
+        .a_i($signed(v_o[a*VelocityBits +: VelocityBits])), .y_o(v_last)
+      );
+      assign u_full = u_wide + v_last - to_go_last;
+      cuboct_resize #(.InBits(UBits), .OutBits(DisplacementBits)) u_u_new (.a_i(u_full), .y_o(u_new));
+      cuboct_resize #(.InBits(DisplacementBits), .OutBits(UBits)) u_u_back (.a_i(u_new), .y_o(u_back));
       assign u_o[a*DisplacementBits +: DisplacementBits] = held_last ? u_new : u_last;
       assign bad_u[a] = held_last && (u_back != u_full);
-      cuboct_resize #(.InBits(WideBits), .OutBits(NumberBits)) u_u_number (
+      cuboct_resize #(.InBits(UBits), .OutBits(NumberBits)) u_u_number (
         .a_i(u_full), .y_o(u_number[a*NumberBits +: NumberBits])
       );
     end else begin : gen_free

@@ -39,7 +39,7 @@ module cuboct_word_halos #(
   output logic [Faces-1:0]           migrate_end_o,  // complete, and all were popped; always where there is no link
   output logic                       particle_valid_o,
   output logic [ParticleBits-1:0]    particle_o,
-  input  logic                       pop_i           // in a cycle with particle_valid_o
+  input  logic                       pop_i           // in each cycle with particle_valid_o, in no other
 );
   localparam int HaloBeats    = (HaloBits + LinkBits - 1) / LinkBits;
   localparam int MigrateBeats = (ParticleBits + LinkBits - 1) / LinkBits;

@@ -10,35 +10,42 @@
 namespace cuboct::test {
 namespace {
 
-// The estimate lets neighbours begin each phase together; the machine's nodes drift apart by what they save
-// by not waiting, up to a tenth of a step. It never does better than its lanes and pipes.
+// Expects the estimate of a step within twelve per cent of what the machine takes, which never does better
+// than its lanes and pipes at full use. Returns how many times their cycles it takes.
+double machine_over_ideal(const Setup& setup, uint32_t steps) {
+  const ExpectedCycles expected = expected_cycles(setup.plan, setup.initial);
+  emu::RunOptions options;
+  options.steps = steps;
+  const Trace trace =
+      run_plain(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
+  uint64_t last = 0;
+  for (const PhaseSpan& span : trace.cycles) last = std::max(last, span.end);
+  const double actual = static_cast<double>(last + 1) / steps;
+  EXPECT_NEAR(static_cast<double>(expected.step) / actual, 1, 0.12) << actual;
+  EXPECT_LE(static_cast<double>(expected.ideal), actual);
+  return actual / static_cast<double>(expected.ideal);
+}
+
+// Neighbours begin each phase together in the estimate; the machine's nodes drift apart by what they save by
+// not waiting, up to a tenth of a step.
 TEST(ExpectedCycles, AreWithinTwelvePerCentOfTheMachine) {
   Arch slow, narrow;
   slow.overlap = false;
   slow.filter_lanes = 4;
   narrow.link_bits = 24;
-  int compared = 0;
   for (const Arch& arch : {Arch{}, slow, narrow})
     for (const bool rich : {false, true}) {
-      const auto setup = block(
-          {.size = {4, 4, 4}, .jitter = 0.01, .speed = 0.001, .damping = rich ? 0.1 : 0, .force_held = rich},
-          arch);
-      const ExpectedCycles expected = expected_cycles(setup.plan, setup.initial);
-      emu::RunOptions options;
-      options.steps = 20;
-      const Trace trace =
-          run_plain(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
-      uint64_t last = 0;
-      for (const PhaseSpan& span : trace.cycles) last = std::max(last, span.end);
-      const double actual = static_cast<double>(last + 1) / 20;
-      EXPECT_NEAR(static_cast<double>(expected.step) / actual, 1, 0.12) << actual;
-      EXPECT_LE(static_cast<double>(expected.ideal), actual);
-      if (compared == 0) {
-        EXPECT_LE(actual, 2 * static_cast<double>(expected.ideal));  // the default machine's promise
+      const double over = machine_over_ideal(block({.size = {4, 4, 4},
+                                                    .jitter = 0.01,
+                                                    .speed = 0.001,
+                                                    .damping = rich ? 0.1 : 0,
+                                                    .force_held = rich},
+                                                   arch),
+                                             20);
+      if (arch.link_bits != narrow.link_bits) {  // those that wait for no links
+        EXPECT_LE(over, 1.5);
       }
-      ++compared;
     }
-  EXPECT_EQ(compared, 6);
 }
 
 // The same of nodes that serve bricks, up to one node that has it all.
@@ -49,18 +56,7 @@ TEST(ExpectedCycles, OfBricksAreWithinTwelvePerCentOfTheMachine) {
       arch.brick = brick;
       arch.overlap = overlap;
       arch.filter_lanes = overlap ? 8 : 3;
-      const auto setup = block({.size = {5, 5, 5}, .jitter = 0.01, .speed = 0.001}, arch);
-      const ExpectedCycles expected = expected_cycles(setup.plan, setup.initial);
-      emu::RunOptions options;
-      options.steps = 8;
-      const Trace trace =
-          run_plain(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
-      uint64_t last = 0;
-      for (const PhaseSpan& span : trace.cycles) last = std::max(last, span.end);
-      const double actual = static_cast<double>(last + 1) / 8;
-      EXPECT_NEAR(static_cast<double>(expected.step) / actual, 1, 0.12) << actual;
-      EXPECT_LE(static_cast<double>(expected.ideal), actual);
-      EXPECT_LE(actual, 1.5 * static_cast<double>(expected.ideal));
+      EXPECT_LE(machine_over_ideal(block({.size = {5, 5, 5}, .jitter = 0.01, .speed = 0.001}, arch), 8), 1.5);
     }
 }
 

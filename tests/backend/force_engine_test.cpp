@@ -191,7 +191,7 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
     tested.begin(engine.available[0]);
     for (int a = 0; a < 3; ++a) tested.available(a, engine.available[static_cast<size_t>(a) + 1]);
     const uint64_t last = tested.run();
-    const emu::ForceEngine::Counts& counts = tested.counts();
+    const emu::ForceCounts& counts = tested.counts();
     const Outcome expected = plan.arch.narrow_memories ? walked(plan, engine) : stepped(plan, engine);
     const Outcome got{last, counts.stalls, counts.issue_cycles, counts.candidates, counts.pairs_issued};
     ASSERT_TRUE(got == expected) << "run " << run << ": last cycle " << got.last << ", expected "

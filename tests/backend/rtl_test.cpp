@@ -272,7 +272,8 @@ TEST(RtlBrickLattice, EqualsTheWiredNodes) {
   expect_equal_to_wired_nodes(make_case("lattice_3x2x1.brick_2x1x1"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice, testing::Values("undamped_2x2x2", "lattice_3x2x1", "flat"),
+INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice,
+                         testing::Values("undamped_2x2x2", "lattice_3x2x1", "flat", "rich_narrow"),
                          [](const auto& p) { return p.param; });
 
 }  // namespace

@@ -104,6 +104,26 @@ TEST(Board, TakesOtherVelocitiesAndFindsAFault) {
   EXPECT_EQ(difference(grips.plan, golden_trace(grips, 24), again), "");
 }
 
+// One node serves both cells: what goes over the line names them.
+TEST(Board, OfABrickHoldsGoldensBitsAndFindsTheFaultsCell) {
+  const SimulatedBoard board({}, "one_node.toml");
+  const auto grips = board_setup("grips.toml", "one_node.toml"), thrown = board_setup("thrown.toml", "one_node.toml");
+  ASSERT_EQ(grips.plan.nodes(), 1u);
+  emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
+  const Trace held = emu::run_on_board(host, grips.plan, grips.initial, {.steps = 24, .frames = up_to(24)});
+  EXPECT_EQ(difference(grips.plan, golden_trace(grips, 24), held), "");
+  EXPECT_EQ(held.frames.size(), 25u);
+  const Trace golden = golden_trace(thrown, 24);
+  ASSERT_TRUE(golden.stop);
+  EXPECT_EQ(golden.stop->node, 1u);
+  for (const uint64_t steps : {7, 24}) {
+    const Trace whole = emu::run_on_board(host, thrown.plan, thrown.initial,
+                                          {.steps = steps, .frames = {0, steps}, .hash_every = 0});
+    ASSERT_TRUE(whole.stop);
+    EXPECT_EQ(*whole.stop, *golden.stop);
+  }
+}
+
 TEST(Board, IsResetInTheMidstOfARun) {
   const SimulatedBoard board;
   const auto setup = board_setup("grips.toml");

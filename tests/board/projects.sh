@@ -9,8 +9,8 @@ mkdir -p "$dir"
 check() {  # NAME ARGUMENTS...
   local project=$dir/$1
   shift
-  "$cuboct" emit "$root/scenes/boards/grips.toml" --arch "$root/scenes/boards/small.toml" --out "$project" --vector-steps 2 "$@" >/dev/null
-  "$cuboct" emit "$root/scenes/boards/grips.toml" --arch "$root/scenes/boards/small.toml" --out "$dir/again" --vector-steps 2 "$@" >/dev/null
+  "$cuboct" emit "$root/scenes/boards/grips.toml" --arch "$arch" --out "$project" --vector-steps 2 "$@" >/dev/null
+  "$cuboct" emit "$root/scenes/boards/grips.toml" --arch "$arch" --out "$dir/again" --vector-steps 2 "$@" >/dev/null
   diff -r "$project" "$dir/again"
   (cd "$project" && verilator --lint-only -Wall --top-module cuboct_board_top -f board/files.f)
   (cd "$project" && yosys -q -p "read_verilog -sv $(tr '\n' ' ' < board/files.f); hierarchy -check -top cuboct_board_top; proc; check -assert" > yosys.log)
@@ -20,8 +20,11 @@ check() {  # NAME ARGUMENTS...
     grep -q "[ \"]$port[ \"]" "$project"/board/pins.* || { echo "no pin for $port"; exit 1; }
   done
 }
+arch=$root/scenes/boards/small.toml
 check icebreaker --board icebreaker
 check ulx3s --board ulx3s --baud 3000000
 check fixed --board ulx3s --fixed-velocities
 ! grep -rq velocity_i "$dir/fixed/rtl/cuboct_lattice.sv"
+arch=$root/tests/board/one_node.toml
+check brick --board ulx3s
 make -s -C "$dir/icebreaker/bench" icarus 2>&1 | grep '^PASS [1-9][0-9]* comparisons'

@@ -28,8 +28,8 @@ std::string board_file(const std::string& name) {
   return std::string(CUBOCT_SOURCE_DIR) + (shown ? "/scenes/boards/" : "/tests/board/") + name;
 }
 
-Setup board_setup(const std::string& scene) {
-  return make_setup(read_scene(board_file(scene)), read_arch(board_file("small.toml")));
+Setup board_setup(const std::string& scene, const std::string& arch) {
+  return make_setup(read_scene(board_file(scene)), read_arch(board_file(arch)));
 }
 
 Answer command(const std::vector<std::string>& arguments) {
@@ -39,8 +39,8 @@ Answer command(const std::vector<std::string>& arguments) {
   return {code, contents(streams.out), contents(streams.err)};
 }
 
-SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options) {
-  const Setup setup = board_setup("grips.toml");
+SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options, const std::string& arch) {
+  const Setup setup = board_setup("grips.toml", arch);
   const std::string project = scratch_.path("project"), out = scratch_.path("out");
   emit_rtl(setup.plan, setup.initial, project, 1, {.name = "icebreaker", .baud = kBaud});
   std::vector<std::string> arguments{project, "--build-dir", CUBOCT_TEST_CACHE};
@@ -65,7 +65,7 @@ std::string SimulatedBoard::end() {
 Trace golden_trace(const Setup& setup, uint64_t steps) {
   Trace trace;
   trace.plan_hash = setup.plan.hash;
-  trace.nodes = setup.plan.lattice.size();
+  trace.nodes = setup.plan.nodes();
   Golden golden(setup.plan.rule, setup.plan.lattice, setup.plan.arch.capacity, setup.initial);
   try {
     for (uint64_t step = 0;; ++step) {

@@ -13,7 +13,7 @@
 namespace cuboct::test {
 
 std::string board_file(const std::string& name);  // of scenes/boards or tests/board
-Setup board_setup(const std::string& scene);      // likewise, on small.toml
+Setup board_setup(const std::string& scene, const std::string& arch = "small.toml");  // likewise
 
 struct Answer {
   int code;  // exit code
@@ -25,7 +25,7 @@ Answer command(const std::vector<std::string>& arguments);
 class SimulatedBoard {
  public:
   // `options`: further ones of cuboct-board-sim.
-  explicit SimulatedBoard(const std::vector<std::string>& options = {});
+  explicit SimulatedBoard(const std::vector<std::string>& options = {}, const std::string& arch = "small.toml");
 
   const std::string& port() const { return port_; }
   static constexpr int kBaud = 3000000;  // four clocks per bit

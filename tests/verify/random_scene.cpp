@@ -25,7 +25,10 @@ RandomScene random_scene(uint64_t seed) {
   Case base = flat ? random_flat_case(seed) : random_case(seed);
   Scene scene = base.scene;
   Arch arch = base.setup.plan.arch;
-  if (dice.chance(15)) arch.queue_depth = 1, arch.filter_lanes = std::max(arch.filter_lanes, 8);
+  if (dice.chance(15)) {
+    arch.queue_depth = 1;
+    if (!arch.narrow_memories) arch.filter_lanes = std::max(arch.filter_lanes, 8);
+  }
   if (dice.chance(10)) arch.link_bits = dice.draw(1, 8);
   if (dice.chance(40)) arch.table.shape = TableChoice::Shape::uniform;
   const double speed = dice.chance(30) ? 1 + 0.5 * dice.draw(0, 6) : 1;
@@ -103,6 +106,7 @@ std::map<std::string, uint64_t> stimuli_of(const RandomScene& scene, const Judge
   n["several pipes"] = arch.force_pipes > 1;
   n["several passes"] = arch.filter_lanes < arch.capacity;
   n["no overlap"] = !arch.overlap;
+  n["narrow memories"] = arch.narrow_memories;
   n["several beats per record"] = plan.words.halo_beats > 1;
   n["queue was full"] = counter("queue_stalls") > 0;
   n["cycles with a full queue"] = counter("queue_stalls");

@@ -122,6 +122,14 @@ void failing(Small& s) {
   s.arch.widths.sum_bits = 11;
   s.steps = 3;
 }
+
+// Memories of words of a beat. With the 13 bits of small_arch the sign of x lies in two words, that of y in one.
+void narrow(Arch& arch) {
+  arch.narrow_memories = true;
+  arch.filter_lanes = arch.force_pipes = 1;
+  arch.overlap = false;
+}
+
 constexpr int64_t kMostV = (1 << 16) - 1, kMostU = (1 << 17) - 1;
 
 using Recipe = std::function<void(Small&)>;
@@ -303,6 +311,100 @@ const std::map<std::string, Recipe>& recipes() {
          s.arch.filter_lanes = 3;
          s.steps = 30;
          s.change = drift;
+       }},
+      // Pairs that wait for one another in two pipes of serial multipliers, behind a queue.
+      {"serial",
+       [](S s) {
+         s.features.damping = 0.2;
+         s.arch.table.degree = 2;
+         s.arch.multipliers = Multipliers::serial;
+         s.arch.force_pipes = 2;
+       }},
+      {"narrow",
+       [](S s) {
+         s.features.force_held = true;
+         s.arch.multipliers = Multipliers::shared;
+         s.arch.table = {.shape = Shape::octaves, .degree = 2, .index_bits = 7};
+         narrow(s.arch);
+         s.place = close_together;
+       }},
+      // One word per record.
+      {"narrow_serial",
+       [](S s) {
+         s.features.damping = 0.2;
+         s.features.two_materials = s.features.held = true;
+         s.arch.multipliers = Multipliers::serial;
+         s.arch.link_bits = 0;
+         narrow(s.arch);
+       }},
+      // A pair may follow another in the next cycle; nodes fill up, and some are empty.
+      {"narrow_hot",
+       [](S s) {
+         s.features.size = {2, 2, 2};
+         s.features.jitter = 0.1;
+         s.features.speed = 0.5;
+         s.features.gravity = true;
+         s.arch.widths.guard = 8;
+         s.arch.widths.velocity_bits = s.arch.widths.sum_bits = 21;
+         s.arch.link_bits = 9;
+         narrow(s.arch);
+         s.steps = 12;
+         s.place = cross_the_corner;
+       }},
+      {"narrow_flat",
+       [](S s) {
+         s.features.flat = true;
+         s.features.size = {4, 4, 1};
+         s.arch.multipliers = Multipliers::serial;
+         narrow(s.arch);
+         s.steps = 30;
+         s.change = drift;
+       }},
+      // A candidate at the cutoff, a coarse planar test, words that are longer than a halo record.
+      {"narrow_edge",
+       [](S s) {
+         s.features.size = {2, 2, 2};
+         s.features.jitter = 0.2;
+         s.arch.widths.filter_frac = 4;
+         s.arch.capacity = 8;
+         s.arch.link_bits = 50;
+         s.arch.multipliers = Multipliers::shared;
+         narrow(s.arch);
+         s.steps = 3;
+         s.place = at_the_cutoff;
+       }},
+      {"narrow_full",
+       [](S s) {
+         s.arch.link_check = LinkCheck::retry;
+         s.arch.capacity = 4;
+         narrow(s.arch);
+         s.features.speed = 0.45;
+         s.steps = 20;
+         s.change = [](Scene& scene) {
+           for (size_t k = 0; k < scene.body.size(); ++k)
+             scene.body.v[k] = Vec3(scene.body.x[k].x() < 1.3 ? 0.5 : 0, 0, 0);
+         };
+       }},
+      {"narrow_fails_sum",
+       [](S s) {
+         failing(s);
+         narrow(s.arch);
+         s.place = [](Setup& setup) { set_velocities(setup, 2500, true); };
+       }},
+      {"narrow_fails_u",
+       [](S s) {
+         recipes().at("fails_u")(s);
+         narrow(s.arch);
+       }},
+      {"narrow_fails_v",
+       [](S s) {
+         recipes().at("fails_v")(s);
+         narrow(s.arch);
+       }},
+      {"narrow_fails_w",
+       [](S s) {
+         recipes().at("fails_w")(s);
+         narrow(s.arch);
        }},
   };
   return all;

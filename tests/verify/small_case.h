@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two to eight small nodes, narrow formats, short tables, records of several beats: netlists and changed
+// Two to sixteen small nodes, narrow formats, short tables, records of several beats: netlists and changed
 // modules of them are made and simulated in seconds. Between them they use every path of rtl/lib.
 #pragma once
 

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// What all cycle-accurate nodes with native state have in common, whatever they hold: the walk through the
+// phases, link registers, streams, faults. docs/reference/node.md to the letter, the datapath by the
+// functions of model/fixed_rule.h. Values that only become visible later (sums, written-back slots) are
+// computed at once where nothing can see them in between; the cycles are the specified ones.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "emu/systemc/fault_keeper.h"
+#include "emu/systemc/force_machine.h"
+#include "emu/systemc/node_model.h"
+#include "model/trace.h"
+
+namespace cuboct::emu {
+
+class NodeMachine : public NodeModel {
+ public:
+  void clock(const NodeInputs& in, NodeOutputs& out) final;
+  uint64_t wakes_at() const final { return wakes_at_; }
+  std::string doing() const final;
+  Counters counters() const final;
+
+ protected:
+  enum class Main : uint8_t {  // the first eight are those of Phase
+    exchange_x,
+    exchange_y,
+    exchange_z,
+    force,
+    update,
+    migrate_x,
+    migrate_y,
+    migrate_z,
+    dump,
+    idle
+  };
+
+  // Keeps a reference to `plan`. The constructor that calls this one makes `engine_`.
+  NodeMachine(const Plan& plan, uint8_t has_link);
+
+  static constexpr uint8_t bit(int i) { return static_cast<uint8_t>(1u << i); }
+  // `left_x` and `full_x` for another axis.
+  static constexpr Fault along(Fault x, int axis) {
+    return static_cast<Fault>(static_cast<int>(x) + 2 * axis);
+  }
+  int axis() const { return static_cast<int>(main_) % 5; }  // exchange_* are 0...2, migrate_* are 5...7
+  bool linked(int face) const { return has_link_ >> face & 1; }
+  bool migrates() const { return main_ >= Main::migrate_x && main_ <= Main::migrate_z; }
+  // The linked ones.
+  uint8_t faces_of(int axis) const { return static_cast<uint8_t>(has_link_ & 3u << 2 * axis); }
+
+  // Whether all these faces can load in this cycle; if not, it counts as one of waiting.
+  bool can_load(uint8_t faces);
+  // The register of a linked face, for what is loaded in this cycle; zeros.
+  Bits& load(int face, bool end);
+  // Loads beat `beat_` of `word_`, where there is a link.
+  void load_slice(int face);
+  // Loads end beats, if all the faces can; whether it did.
+  bool load_ends(uint8_t faces);
+
+  void enter(Main next);
+  void finish_phase(Main next);
+  // The last cycle of MIGRATE_a.
+  void finish_migration();
+  // Takes the sum of slot `index` of an own cell and puts the results of UPDATE there.
+  void finish_slot(Slot& slot, uint32_t cell, size_t index);
+
+  // What the nodes differ in. The first clears all that the node holds; a derived one calls the base's.
+  virtual void reset();
+  virtual void append(uint32_t cell, const Slot& slot) = 0;  // by the host
+  // Prepares the node's own registers for the phase `main_`, whose first cycle is the next one. Of UPDATE it
+  // sets `phase_last_`.
+  virtual void begin() = 0;
+  // A cycle of the phase; of EXCHANGE_a until `sent_`.
+  virtual void exchange() = 0;
+  virtual void update() = 0;
+  virtual void migrate() = 0;
+  virtual void dump() = 0;
+  virtual void clear_halos() = 0;
+  // A record that has come over a face in this cycle: a particle, or one of its halo.
+  virtual void take_particle(int face, const Bits& record) = 0;
+  virtual void take_halo(int face, const Bits& record) = 0;
+  // Faces whose particles MIGRATE_a waits for, for doing().
+  virtual uint8_t awaited() const = 0;
+
+  const Plan& plan_;
+  const uint8_t has_link_;
+  const int axes_, capacity_;
+  FaultKeeper fault_;
+  std::unique_ptr<ForceMachine> engine_;
+  Main main_ = Main::idle;
+  uint8_t halo_end_ = 0, migrate_end_ = 0;  // by face
+  int beat_ = 0;                            // of `word_`, the record that is being sent
+  Bits word_;
+  bool sent_ = false;        // EXCHANGE_a has loaded its end beats
+  uint64_t now_ = 0;         // the cycle that runs
+  uint64_t phase_last_ = 0;  // the last cycle of FORCE or UPDATE, known from its start
+  uint64_t wakes_at_ = 0;    // as wakes_at()
+  NodeOutputs* out_ = nullptr;  // of the cycle that runs
+
+ private:
+  // A record of several beats on its way in.
+  struct Assembly {
+    int beat = 0;  // that have come
+    Bits partial;
+  };
+
+  Main after(Main phase) const;
+  void idle(const Control& host);
+  void await_halos();
+  void force();
+  void receive(int face, const Beat& beat);
+
+  const int link_words_;
+  std::array<Assembly, kFaces> assembly_;
+  uint8_t migrating_ = 0;  // by face. Streams alternate: halo, migrate, halo, ...
+  uint8_t starting_ = 0;   // phases whose first cycle is the next one to run
+  uint8_t valid_ = 0, can_load_ = 0;
+  uint32_t steps_ = 0, step_ = 0;
+  uint64_t link_waits_ = 0, beats_ = 0;
+};
+
+}  // namespace cuboct::emu
