@@ -4,14 +4,48 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "cli/fit.h"
 #include "hw/rtl_emit.h"
+#include "model/interrupt.h"
+#include "rtl/synth/tool.h"
 
 namespace cuboct {
+namespace {
 
-void add_emit(CLI::App& app, int&) {
+void say_done(const std::string& out, const Plan& plan) {
+  fmt::print("{}: {} nodes, {} particles, plan {:016x}\n", out, plan.nodes(), plan.particles, plan.hash);
+}
+
+// 0, or 1 where a tool failed or somebody interrupted.
+int emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
+                const BoardChoice& board) {
+  const synth::Target& device = fit_target(target, board);
+  check_emit_directory(out);
+  catch_interrupts();
+  try {
+    Fitter fitter(input, device, board);
+    fitter.choose();
+    const Setup setup = fitter.setup();
+    const std::string table = fitter.table();
+    emit_rtl(setup.plan, setup.initial, out, vector_steps, board, fitter.arch_text());
+    fmt::print("{}{:<16} {}/arch.toml\n", table, "arch", out);
+    say_done(out, setup.plan);
+  } catch (const synth::ToolFailed& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  } catch (const synth::Interrupted&) {
+    fmt::print(stderr, "interrupted; nothing was written\n");
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_emit(CLI::App& app, int& exit_code) {
   struct Options {
     Input input;
-    std::string out;
+    std::string out, fit;
     uint64_t vector_steps = 8;
     BoardChoice board;
     bool fixed_velocities = false;
@@ -27,6 +61,12 @@ void add_emit(CLI::App& app, int&) {
       ->check(whole_number())
       ->type_name("N")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--fit", options->fit,
+          "choose brick, lanes and pipes so that the scene fits this device in the fewest cycles: up5k, "
+          "hx8k, ecp5-25, ecp5-85 or xc7")
+      ->type_name("TARGET");
   auto* board = command
                     ->add_option("--board", options->board.name,
                                  "add a top module, pins and a host link: icebreaker or ulx3s")
@@ -39,14 +79,18 @@ void add_emit(CLI::App& app, int&) {
       ->add_flag("--fixed-velocities", options->fixed_velocities,
                  "the host cannot set the velocities of held and moved types: less area")
       ->needs(board);
-  command->callback([options] {
+  command->callback([options, &exit_code] {
     options->board.velocities = !options->fixed_velocities;
     if (!options->board.name.empty()) bit_clocks16(board_of(options->board.name), options->board.baud);
+    if (!options->fit.empty()) {
+      exit_code =
+          emit_fitted(options->input, options->fit, options->out, options->vector_steps, options->board);
+      return;
+    }
     const Loaded loaded = load(options->input);
     const Plan& plan = loaded.setup.plan;
     emit_rtl(plan, loaded.setup.initial, options->out, options->vector_steps, options->board);
-    fmt::print("{}: {} nodes, {} particles, plan {:016x}\n", options->out, plan.lattice.size(),
-               plan.particles, plan.hash);
+    say_done(options->out, plan);
   });
 }
 

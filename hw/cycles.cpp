@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <vector>
 
 namespace cuboct {
@@ -22,10 +23,8 @@ struct Sends {
 // Nodes that serve bricks: the same way through their phases.
 class BrickCycles {
  public:
-  BrickCycles(const Plan& plan, const State& state)
-      : plan_(plan), map_(plan.bricks, plan.rule.axes), held_(plan.lattice.size()) {
-    for (const Particle& p : state.particles) held_[p.node].push_back(&p);
-  }
+  BrickCycles(const Plan& plan, const PairCensus& census)
+      : plan_(plan), map_(plan.bricks, plan.rule.axes), census_(census) {}
   ExpectedCycles expected() const {
     ExpectedCycles expected;
     for (uint32_t n = 0; n < plan_.nodes(); ++n) add(n, expected);
@@ -35,7 +34,7 @@ class BrickCycles {
  private:
   uint64_t held(uint32_t n, uint32_t place) const {
     const uint32_t cell = map_.cell(n, place);
-    return cell == kNoNode ? 0 : held_[cell].size();
+    return cell == kNoNode ? 0 : census_.particles(cell);
   }
   // Cycles, from the start of an exchange, after which the end beat that goes over `face` has been loaded.
   uint64_t sent(uint32_t n, int face) const {
@@ -50,22 +49,11 @@ class BrickCycles {
     return second ? layer(face - 1) + layer(face) : layer(face);
   }
   void add(uint32_t n, ExpectedCycles& expected) const;
-  uint64_t pairs(uint32_t own, uint32_t other, const std::array<int8_t, 3>& offset) const;
 
   const Plan& plan_;
   const BrickMap map_;
-  std::vector<std::vector<const Particle*>> held_;  // by cell
+  const PairCensus& census_;
 };
-
-uint64_t BrickCycles::pairs(uint32_t own, uint32_t other, const std::array<int8_t, 3>& offset) const {
-  uint64_t pairs = 0;
-  for (const Particle* j : held_[other]) {
-    Int3 x_j;
-    for (size_t a = 0; a < 3; ++a) x_j[a] = j->x[a] + (int64_t{offset[a]} << plan_.rule.widths.position_frac);
-    for (const Particle* i : held_[own]) pairs += i != j && may_interact(plan_.rule, i->x, x_j);
-  }
-  return pairs;
-}
 
 void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
   const int axes = plan_.rule.axes;
@@ -83,7 +71,7 @@ void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
   uint64_t streamed = plan_.arch.overlap ? 0 : now, candidates = 0, met = 0, own = 0, slots = 0;
   for (const uint32_t local : walk.own) {
     const uint32_t cell = plan_.cell_of(n, local);
-    const uint64_t count = cell == kNoNode ? 0 : held_[cell].size();
+    const uint64_t count = cell == kNoNode ? 0 : census_.particles(cell);
     own += count;
     slots += std::max<uint64_t>(count, 1);
   }
@@ -93,14 +81,16 @@ void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
     for (const BrickWalk::Visit& visit : walk.visits[s]) {
       const uint32_t cell = plan_.cell_of(n, visit.own);
       const uint64_t passes =
-          cell == kNoNode ? 0 : ceil_div(held_[cell].size(), static_cast<uint64_t>(plan_.arch.filter_lanes));
+          cell == kNoNode
+              ? 0
+              : ceil_div(census_.particles(cell), static_cast<uint64_t>(plan_.arch.filter_lanes));
       items += passes == 0;
       if (passes == 0) continue;
       for (uint32_t k = visit.first; k < visit.end; ++k) {
         const uint64_t work = held(n, walk.near[k].grid) * passes;
         items += std::max<uint64_t>(work, 1);
         candidates += work;
-        if (work > 0) met += pairs(cell, map_.cell(n, walk.near[k].grid), walk.near[k].offset);
+        if (work > 0) met += census_.pairs(cell, walk.near[k].offset);
       }
     }
     streamed += std::max<uint64_t>(items, 1);
@@ -114,17 +104,57 @@ void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
   expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * (1 + end_beat));
 }
 
-}  // namespace
+Int3 moved(const FixedRule& rule, const Particle& j, const Cell& offset) {
+  Int3 x;
+  for (int a = 0; a < 3; ++a) x[a] = j.x[a] + (int64_t{offset[a]} << rule.widths.position_frac);
+  return x;
+}
 
-ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
-  if (!plan.bricks.single()) return BrickCycles(plan, state).expected();
+using Held = std::vector<std::vector<const Particle*>>;  // by cell
+
+Held held_by(const Lattice& lattice, const State& state) {
+  Held held(lattice.size());
+  for (const Particle& p : state.particles) held[p.node].push_back(&p);
+  return held;
+}
+
+uint32_t count_pairs(const FixedRule& rule, const std::vector<const Particle*>& own,
+                     const std::vector<const Particle*>& near, const Cell& offset) {
+  uint32_t count = 0;
+  for (const Particle* j : near) {
+    const Int3 x_j = moved(rule, *j, offset);
+    for (const Particle* i : own) count += i != j && may_interact(rule, i->x, x_j);
+  }
+  return count;
+}
+
+// Cycles that a node with narrow memories takes to bring its candidates and walk its slots: a candidate's
+// words are read, then it meets one slot after the other, and waits for the pipe where it has hits.
+uint64_t narrow_walk(const Plan& plan, const Held& held, uint32_t n) {
+  const auto beats = static_cast<uint64_t>(plan.words.halo_beats);
+  const auto interval = static_cast<uint64_t>(plan.latency.interval);
+  uint64_t walk = 0, ready = 0;
+  for (const auto& [other, offset] : plan.lattice.neighbourhood(n))
+    for (const Particle* j : held[other]) {
+      if (!held[n].empty()) walk += 3 + (other == n ? 1 : beats);
+      for (const Particle* i : held[n]) {
+        if (i != held[n].front()) ++walk;
+        if (i == j || !may_interact(plan.rule, i->x, moved(plan.rule, *j, offset))) continue;
+        walk = std::max(walk + 1, ready);
+        ready = walk + interval;
+      }
+    }
+  return walk;
+}
+
+// Nodes of one cell. particles(n); pairs(n): with all cells around; walk(n): narrow_walk, or 0.
+template <typename Particles, typename Pairs, typename Walk>
+ExpectedCycles single_cycles(const Plan& plan, Particles particles, Pairs pairs_of, Walk walk) {
   const Lattice& lattice = plan.lattice;
   const int axes = plan.rule.axes;
   std::vector<std::array<uint64_t, 7>> segment(lattice.size());  // particles: own, then the halos by face
   std::vector<Sends> sends(lattice.size());
-  std::vector<std::vector<const Particle*>> nodes(lattice.size());
-  for (const Particle& p : state.particles) nodes[p.node].push_back(&p);
-  for (uint32_t n = 0; n < lattice.size(); ++n) segment[n][0] = nodes[n].size();
+  for (uint32_t n = 0; n < lattice.size(); ++n) segment[n][0] = particles(n);
   for (int axis = 0; axis < axes; ++axis) {
     for (uint32_t n = 0; n < lattice.size(); ++n)
       for (int s = 0; s < 1 + 2 * axis; ++s) {
@@ -165,26 +195,8 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
       streamed += std::max<uint64_t>(work, 1);
       candidates += work;
     }
-    // With narrow memories a candidate's words are read, then it meets one slot after the other, and waits for the
-    // pipe where it has hits.
-    const bool narrow = plan.arch.narrow_memories;
-    const auto interval = static_cast<uint64_t>(plan.latency.interval);
-    uint64_t pairs = 0, walk = 0, ready = 0;
-    if (own > 0)
-      for (const auto& [other, offset] : lattice.neighbourhood(n))
-        for (const Particle* j : nodes[other])
-          for (const Particle* i : nodes[n]) {
-            if (narrow) walk += i == nodes[n].front() ? 3 + (other == n ? 1 : beats) : 1;
-            Int3 x_j;
-            for (int a = 0; a < 3; ++a)
-              x_j[a] = j->x[a] + (int64_t{offset[a]} << plan.rule.widths.position_frac);
-            const bool hit = i != j && may_interact(plan.rule, i->x, x_j);
-            pairs += hit;
-            if (!narrow || !hit) continue;
-            walk = std::max(walk + 1, ready);
-            ready = walk + interval;
-          }
-    if (narrow) streamed = std::max(streamed, now + walk);
+    const uint64_t pairs = own > 0 ? pairs_of(n) : 0;
+    streamed = std::max(streamed, now + walk(n));
     const uint64_t issues = ceil_div(pairs, static_cast<uint64_t>(plan.arch.force_pipes)) *
                             static_cast<uint64_t>(plan.latency.interval);
     const uint64_t busy = std::max(candidates, issues);
@@ -198,6 +210,45 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
     expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * quiet_migrate);
   }
   return expected;
+}
+
+}  // namespace
+
+PairCensus::PairCensus(const FixedRule& rule, const Lattice& lattice, const State& state)
+    : particles_(lattice.size()), pairs_(lattice.size()) {
+  const Held held = held_by(lattice, state);
+  for (uint32_t n = 0; n < lattice.size(); ++n) {
+    particles_[n] = held[n].size();
+    if (held[n].empty()) continue;
+    for (const auto& [other, offset] : lattice.neighbourhood(n))
+      pairs_[n][place({static_cast<int8_t>(offset[0]), static_cast<int8_t>(offset[1]),
+                       static_cast<int8_t>(offset[2])})] = count_pairs(rule, held[n], held[other], offset);
+  }
+}
+
+uint64_t PairCensus::pairs(uint32_t cell) const {
+  return std::accumulate(pairs_[cell].begin(), pairs_[cell].end(), uint64_t{0});
+}
+
+ExpectedCycles expected_cycles(const Plan& plan, const PairCensus& census) {
+  if (!plan.bricks.single()) return BrickCycles(plan, census).expected();
+  return single_cycles(
+      plan, [&](uint32_t n) { return census.particles(n); }, [&](uint32_t n) { return census.pairs(n); },
+      [](uint32_t) { return uint64_t{0}; });
+}
+
+ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
+  if (!plan.bricks.single()) return expected_cycles(plan, PairCensus(plan.rule, plan.lattice, state));
+  const Held held = held_by(plan.lattice, state);
+  return single_cycles(
+      plan, [&](uint32_t n) { return held[n].size(); },
+      [&](uint32_t n) {
+        uint64_t pairs = 0;
+        for (const auto& [other, offset] : plan.lattice.neighbourhood(n))
+          pairs += count_pairs(plan.rule, held[n], held[other], offset);
+        return pairs;
+      },
+      [&](uint32_t n) { return plan.arch.narrow_memories ? narrow_walk(plan, held, n) : uint64_t{0}; });
 }
 
 }  // namespace cuboct

@@ -69,9 +69,7 @@ void write(const std::string& dir, const Files& files) {
   std::error_code error;
   fs::create_directories(dir, error);
   if (error) throw InputError(fmt::format("{}: cannot create the directory: {}", dir, error.message()));
-  if (!fs::is_empty(dir) && !fs::exists(fs::path(dir) / kMarker))
-    throw InputError(fmt::format("{}: is not empty and holds no earlier emission", dir),
-                     "give an empty or a new directory");
+  check_emit_directory(dir);
   // What an earlier emission wrote and this one does not would be read by a later build.
   std::ifstream earlier(fs::path(dir) / kMarker);
   for (std::string path; std::getline(earlier, path);)
@@ -87,6 +85,15 @@ void write(const std::string& dir, const Files& files) {
 
 }  // namespace
 
+void check_emit_directory(const std::string& dir) {
+  std::error_code error;
+  if (!fs::exists(dir, error)) return;
+  if (!fs::is_directory(dir, error)) throw InputError(fmt::format("{}: is no directory", dir));
+  if (!fs::is_empty(dir, error) && !fs::exists(fs::path(dir) / kMarker, error))
+    throw InputError(fmt::format("{}: is not empty and holds no earlier emission", dir),
+                     "give an empty or a new directory");
+}
+
 void emit_node(const Plan& plan, const std::string& dir) {
   const RtlDesign design = decide(plan);
   legalise(design, false);
@@ -97,7 +104,7 @@ void emit_node(const Plan& plan, const std::string& dir) {
 }
 
 void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
-              const BoardChoice& board) {
+              const BoardChoice& board, const std::string& arch) {
   RtlDesign design = decide(plan);
   legalise(design, true);
   if (!board.name.empty()) {
@@ -108,6 +115,7 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
   add_node(files, design);
   files["rtl/cuboct_lattice.sv"] = print_lattice(design);
   add_list(files);
+  if (!arch.empty()) files["arch.toml"] = arch;
   files["project.json"] = print_project(plan, initial, modules_of(files));
   for (auto& [path, text] : print_bench(plan, design, initial, vector_steps)) files[path] = std::move(text);
   if (!board.name.empty()) {

@@ -16,8 +16,11 @@ namespace cuboct {
 // steps from golden, files.f, project.json, README.md. With a board also board/: its top module
 // cuboct_board_top, what that needs beside the lattice, pins, and files.f of all. Same plan, same bytes.
 // Throws InputError.
+// `arch`, where it is not empty, is the text of arch.toml.
 void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
-              const BoardChoice& board = {});
+              const BoardChoice& board = {}, const std::string& arch = "");
+// Throws InputError where emit_rtl would refuse the directory as another's.
+void check_emit_directory(const std::string& dir);
 
 // The node alone (rtl/ without lattice and bench), for the Verilated engine.
 void emit_node(const Plan& plan, const std::string& dir);

@@ -75,10 +75,7 @@ std::string numbers(const Target& target, const Counts& used) {
 }
 
 InputError no_room(const Report& report, const Target& target, const std::string& why) {
-  const Target* other = nearest_that_holds(report.used, target);
-  return InputError(fmt::format("{} does not fit {}: {}", report.unit, target.name, why),
-                    other ? fmt::format("{} has room for what it takes here", other->name)
-                          : "no target that is known has room for it");
+  return InputError(fmt::format("{} does not fit {}: {}", report.unit, target.name, why), elsewhere(report));
 }
 
 class Flow {

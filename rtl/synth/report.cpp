@@ -103,6 +103,16 @@ std::optional<Fit> fit_of(const Report& report) {
   return fit;
 }
 
+std::string elsewhere(const Report& report) {
+  const Target* other = nearest_that_holds(report.used, target_of(report.target));
+  std::string hint = other ? fmt::format("{} has room for what it takes here", other->name)
+                           : "no target that is known has room for it";
+  // What is no block alone has other bricks, lanes and pipes.
+  if (whole(report.unit))
+    hint += fmt::format("; cuboct emit SCENE --fit {} looks for a machine that fits", report.target);
+  return hint;
+}
+
 std::string print_table(const Report& report) {
   const Target& target = target_of(report.target);
   std::string text =
@@ -125,6 +135,9 @@ std::string print_table(const Report& report) {
     line("fit the device",
          fmt::format("{} of {}, limited by {}{}", fit->units, report.unit, to_string(fit->limit),
                      share < 1 ? fmt::format(" (planned to {:.0f} %)", 100 * share) : ""));
+    if (report.unit == "node" && report.nodes > fit->units)
+      line("the scene's nodes", fmt::format("{}: cuboct emit SCENE --fit {} looks for a machine that fits",
+                                            report.nodes, report.target));
   }
   if (report.cells)
     line("logic cells, packed", fmt::format("{}, and {} of the harness", *report.cells, report.harness));

@@ -52,6 +52,9 @@ struct Fit {
 };
 std::optional<Fit> fit_of(const Report& report);
 
+// Where what does not fit its target has room: a hint.
+std::string elsewhere(const Report& report);
+
 std::string print_table(const Report& report);
 nlohmann::ordered_json to_json(const Report& report);
 // Reads back what to_json gave. Throws InputError where the file is another's.

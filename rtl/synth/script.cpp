@@ -65,8 +65,9 @@ std::string fpga_script(const Synthesis& s, const Target& target) {
     text += fmt::format("read_verilog {}\nsetattr -mod -set keep_hierarchy 1 {}\n",
                         quoted(s.out + "/harness.v"), s.unit);
   if (!s.kept.empty()) text += fmt::format("setattr -mod -set keep_hierarchy 1 {}\n", s.kept);
-  text += fmt::format("{} -top {}\nautoname\nwrite_json {}\n", synth_command(target),
-                      s.harness ? kHarness : s.unit, quoted(s.out + "/netlist.json"));
+  text += fmt::format("{} -top {}\n{}write_json {}\n", synth_command(target), s.harness ? kHarness : s.unit,
+                      s.counts_only ? "" : "autoname\n", quoted(s.out + "/netlist.json"));
+  if (s.counts_only) return text;
   text += fmt::format("write_verilog -noattr {}\n", quoted(s.out + "/netlist.v"));
   text += depth_commands(target.family, s.out);
   return text;

@@ -19,6 +19,7 @@ struct Synthesis {
   std::string module, unit;  // yosys's name of the unit's module, and the one it gets in the netlist
   std::string kept;          // a module to keep in the hierarchy, or empty
   bool harness = true;       // out/harness.v is around the unit
+  bool counts_only = false;  // cells without names of blocks, no netlist.v, no path
   std::string out;           // directory
 };
 // yosys: netlist.json and netlist.v, and the longest path to the log. It reads harness.v and, for ecp5,

@@ -236,6 +236,23 @@ TEST_F(Parse, Fit) {
   EXPECT_EQ(fit_of(report)->limit, Resource::cell);
 }
 
+TEST_F(Parse, WhatDoesNotFitHasRoomElsewhere) {
+  Report report;
+  report.target = "ecp5-25";
+  report.unit = "pipe";
+  report.used = {{30000, 500, 5, 2}};
+  EXPECT_EQ(elsewhere(report), "xc7 has room for what it takes here");
+  report.unit = "node";
+  EXPECT_EQ(
+      elsewhere(report),
+      "xc7 has room for what it takes here; cuboct emit SCENE --fit ecp5-25 looks for a machine that fits");
+  report.unit = "board";
+  report.used = {{30000, 500, 500, 2}};
+  EXPECT_EQ(elsewhere(report),
+            "no target that is known has room for it; cuboct emit SCENE --fit ecp5-25 looks for a machine "
+            "that fits");
+}
+
 // A shell (node around core) is one row; blocks without a cell are none; a block alone takes no steps.
 TEST_F(Parse, Table) {
   Report report;
@@ -270,6 +287,14 @@ TEST_F(Parse, Table) {
   EXPECT_EQ(print_table(again), print_table(report));
   report.unit = "pipe";
   EXPECT_EQ(print_table(report).find("steps per second"), std::string::npos);
+  report.unit = "node";
+  report.nodes = 4;
+  EXPECT_NE(print_table(report).find("limited by DSP (planned to 75 %)\n"
+                                     "the scene's nodes      4: cuboct emit SCENE --fit ecp5-25 looks for a "
+                                     "machine that fits\n"),
+            std::string::npos);
+  report.nodes = 3;
+  EXPECT_EQ(print_table(report).find("--fit"), std::string::npos);
 }
 
 TEST_F(Parse, NearestTargetThatHolds) {
