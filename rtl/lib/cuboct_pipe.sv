@@ -112,7 +112,7 @@ module cuboct_pipe #(
   // Stages 1 ... StageR2: operands, d, its squares, r2.
   logic [Axes*DBits-1:0] d_q;         // stage 2
   logic [Axes*DBits-1:0] d_s;         // stage StageS
-  logic [Axes-1:0]       outside;     // d has more bits: the planar test is coarse
+  logic [Axes-1:0]       outside;     // stage 2; d has more bits: the planar test is coarse
   logic                  outside_r2;  // stage StageR2
   logic [R2Bits-1:0]     square [0:Axes-1];
   logic [R2Bits-1:0]     r2_d, r2_q;  // stage StageR2
@@ -121,20 +121,19 @@ module cuboct_pipe #(
     logic [PositionFrac+1:0]        other_q;
     logic signed [PositionFrac+2:0] difference;
     logic signed [DBits+1:0]        d_full;
-    logic signed [DBits-1:0]        d_d;
+    logic [1:0]                     d_high_q;
     logic signed [2*DBits-1:0]      product;
     always_ff @(posedge clk_i) begin
       if (valid_i) begin
         other_q <= other_x_i[a*(PositionFrac+2) +: PositionFrac+2];
       end
-      if (valid_q[1]) d_q[a*DBits +: DBits] <= d_d;
+      if (valid_q[1]) {d_high_q, d_q[a*DBits +: DBits]} <= d_full;
     end
     assign difference = $signed({other_q[PositionFrac+1], other_q}) - $signed({3'b000, own_x_i[a*PositionFrac +: PositionFrac]});
     cuboct_round_odd #(.InBits(PositionFrac + 3), .Shift(DifferenceShift), .OutBits(DBits + 2)) u_round (
       .a_i(difference), .y_o(d_full)
     );
-    assign d_d        = d_full[DBits-1:0];
-    assign outside[a] = (d_full[DBits+1:DBits] != {2{d_full[DBits-1]}});
+    assign outside[a] = (d_high_q != {2{d_q[a*DBits+DBits-1]}});
     assign product   = $signed(products[a*2*DBits +: 2*DBits]);
     assign square[a] = product[R2Bits-1:0];
     logic unused_high;
@@ -151,12 +150,8 @@ module cuboct_pipe #(
   always_ff @(posedge clk_i) begin
     if (valid_q[StageR2-1]) r2_q <= r2_d;
   end
-  logic outside_q;  // stage 2
-  always_ff @(posedge clk_i) begin
-    if (valid_q[1]) outside_q <= (outside != '0);
-  end
   cuboct_hold #(.Bits(1), .Depth(StageR2 - 2), .Interval(Interval)) u_outside (
-    .clk_i, .valid_i(valid_q[StageR2:2]), .d_i(outside_q), .q_o(outside_r2)
+    .clk_i, .valid_i(valid_q[StageR2:2]), .d_i(outside != '0), .q_o(outside_r2)
   );
   assign near = (r2_q < Cutoff2[R2Bits-1:0]) && !outside_r2;
   cuboct_hold #(.Bits(Axes * DBits), .Depth(StageS - 2), .Interval(Interval)) u_d (

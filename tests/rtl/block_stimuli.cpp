@@ -63,6 +63,9 @@ uint64_t root(uint64_t a) {
 // The longest d of one axis inside the cutoff.
 int64_t cutoff_of(const FixedRule& rule) { return static_cast<int64_t>(root(rule.cutoff2 - 1)); }
 
+// Whether the cutoff is one cell edge, 2^D, so that a d may be longer than the pipe's.
+bool whole(const FixedRule& rule) { return rule.cutoff2 == uint64_t{1} << (2 * rule.widths.difference_frac); }
+
 // The first r2 of an entry.
 uint64_t entry_start(const FixedTable& table, uint32_t k) {
   if (table.shape == TableShape::uniform)
@@ -102,6 +105,16 @@ class PairSource {
     Int3 d{draw_(-reach, reach), draw_(-reach, reach), draw_(-reach, reach)};
     if (draw_.chance(10)) d[static_cast<size_t>(draw_(0, 2))] = 0;
     if (draw_.chance(2)) d = {};
+    return with_difference(d, p);
+  }
+  // A little longer than the pipe's d along one axis, and short along the others: what is left of it after it
+  // wraps is inside the cutoff.
+  bool beyond(PairStimulus& p) {
+    const int finer = std::max(0, rule_.widths.difference_frac - rule_.widths.filter_frac);
+    const int64_t step = int64_t{1} << finer;
+    Int3 d{draw_(-step, step), draw_(-step, step), draw_(-step, step)};
+    const int64_t length = (int64_t{1} << rule_.widths.difference_frac) + draw_(1, step);
+    d[static_cast<size_t>(draw_(0, 2))] = draw_.chance(50) ? length : -length;
     return with_difference(d, p);
   }
   Draw& draw() { return draw_; }
@@ -190,6 +203,7 @@ std::vector<std::string> look(const FixedRule& rule, PairStimulus& p) {
   for (int64_t& d : p.d) beyond = beyond || !fits(d, bits), d = wrap(d, bits);
   note(beyond, "d beyond its bits");
   p.r2 = static_cast<uint64_t>(p.d[0] * p.d[0] + p.d[1] * p.d[1] + p.d[2] * p.d[2]);
+  note(beyond && p.r2 < rule.cutoff2, "d beyond its bits, wrapped inside");
   const int64_t last = (int64_t{1} << w.position_frac) - 1;
   bool extreme = false;
   for (size_t a = 0; a < 3; ++a)
@@ -255,10 +269,9 @@ std::set<std::string> pair_classes(const FixedRule& rule) {
       "half of d", "half of slope t, force", "half of the kick"};
   // At a cutoff of one cell edge, 2^D, the integers below and at cutoff2 are of the form 4^a (8b + 7), or the
   // squares of one axis alone, which the planar test stops.
-  const bool whole = rule.cutoff2 == uint64_t{1} << (2 * rule.widths.difference_frac);
-  if (whole) names.insert("d beyond its bits");
+  if (whole(rule)) names.merge(std::set<std::string>{"d beyond its bits", "d beyond its bits, wrapped inside"});
   if (three_squares(rule.cutoff2 - 1)) names.insert("r2 = cutoff2 - 1");
-  if (three_squares(rule.cutoff2) && !whole) names.insert("r2 = cutoff2");
+  if (three_squares(rule.cutoff2) && !whole(rule)) names.insert("r2 = cutoff2");
   // t is not negative, so a negative product takes a negative coefficient.
   const auto bends_down = [](const FixedTable& t) {
     return std::any_of(t.c2.begin(), t.c2.end(), [](int32_t c) { return c < 0; });
@@ -325,6 +338,7 @@ PairStimuli pair_stimuli(const FixedRule& rule, uint64_t seed) {
     const bool made = which == 0
                           ? source.exactly(rule.cutoff2 - static_cast<uint64_t>(source.draw()(0, 1)), p)
                       : which == 1 ? source.near_target(rule.cutoff2, p)
+                      : which == 2 && whole(rule) ? source.beyond(p)
                                    : source.any(p);
     if (made) offer(p, k % (kCandidates / kOrdinary) == 0);
   }
