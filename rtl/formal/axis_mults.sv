@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_axis_mults: every axis' product is there after en_i, Axes cycles later where one multiplier serves them in turn, else
-// Product cycles later, and stays up to the next en_i.
+// cuboct_axis_mults: every axis' product is there after en_i, Axes cycles later where one multiplier serves them in
+// turn, else Product cycles later, and stays up to the next en_i.
 module axis_mults_formal #(
   parameter int Axes    = 3,
   parameter int Shared  = 1,

@@ -8,7 +8,8 @@ module neighbours_formal #(
   parameter int Axis     = 0,  // the nodes are neighbours along x or y
   parameter int Capacity = 1,
   parameter int LinkBits = 8,
-  parameter int Steps    = 3   // of a run, at most
+  parameter int Steps    = 3,  // of a run, at most
+  parameter int Narrow   = 0   // narrow memories
 ) (
   input logic        clk_i,
   input logic        start_i,
@@ -66,7 +67,7 @@ module neighbours_formal #(
       .Axes(2), .Capacity(Capacity), .FilterLanes(1), .ForcePipes(1), .QueueDepth(1), .LinkBits(LinkBits),
           .IdBits(1),
       .PositionFrac(1), .Guard(1), .VelocityBits(1), .RelativeVelocityBits(1), .DifferenceShift(0),
-          .FilterFrac(1), .Overlap(1)
+          .FilterFrac(1), .Overlap((Narrow != 0) ? 0 : 1), .Narrow(Narrow)
     ) u_node (
       .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link),
       .load_valid_i(running_q && load_i[n]), .load_data_i(7'd0),

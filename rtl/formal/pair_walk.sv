@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// cuboct_pair_walk: over any number of force phases each pair of a record of a segment and an own slot, any of them, is
-// issued once in a phase if the planar test, on the particles that memory and record register show, lets it through and the
-// slot is not the candidate itself; else never. At an issue the register holds that record, the port asks for that own
-// particle, and the last issue was Interval cycles ago or more. The phase's walk is over only when all pairs were met.
+// cuboct_pair_walk: over any number of force phases each pair of a record of a segment and an own slot, any of them,
+// is issued once in a phase if the planar test, on the particles that memory and record register show, lets it
+// through and the slot is not the candidate itself; else never. At an issue the register holds that record, the port
+// asks for that own particle, and the last issue was Interval cycles ago or more. The phase's walk is over only when
+// all pairs were met.
 module pair_walk_formal #(
   parameter int Axes      = 2,
   parameter int Interval  = 1,
@@ -25,8 +26,8 @@ module pair_walk_formal #(
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
 
-  // A phase lasts from a start to a restart, which comes when no candidate is left; counts do not change within one, and
-  // there are no more own particles than slots.
+  // A phase lasts from a start to a restart, which comes when no candidate is left; counts do not change within one,
+  // and there are no more own particles than slots.
   logic                            run, run_q, done;
   logic [(2*Axes+1)*CountBits-1:0] counts_q;
   assign run = running_q && (run_q || start_i);
@@ -64,8 +65,8 @@ module pair_walk_formal #(
   (* anyconst *) logic [Axes*4-1:0]    watched_candidate;
   always_comb assume (watched < Segments[2:0]);
 
-  // The memories: a slot, or a word of a segment, that was asked for is there a cycle later; a slot's answer stays on hold.
-  // The record register has the watched record once all its words came one after the other.
+  // The memories: a slot, or a word of a segment, that was asked for is there a cycle later; a slot's answer stays on
+  // hold. The record register has the watched record once all its words came one after the other.
   logic [SlotBits-1:0] shown_q;
   logic [WordBits-1:0] word_q, next_word;
   logic [2:0]          segment_q, beats_d, beats_q;
@@ -136,7 +137,8 @@ module pair_walk_formal #(
     done_q    <= running_q && done && !restart_i;
   end
 
-  // In each cycle of a phase that is not stalled a rank rises: segment, record, words or slots asked for, what is under way.
+  // In each cycle of a phase that is not stalled a rank rises: segment, record, words or slots asked for, what is
+  // under way.
   (* keep *) logic                 tap_walk, tap_t_valid, tap_r_valid, tap_r_hit;
   (* keep *) logic                 tap_ready;
   (* keep *) logic [SlotBits-1:0]  tap_t_slot, tap_r_slot;

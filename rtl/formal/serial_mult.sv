@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_mult with more than one cycle: the product of every pair of operands, signed, is there Cycles cycles after en_i and
-// stays up to the next en_i. Between the two it holds the product by those bits of b that were added up.
+// cuboct_mult with more than one cycle: the product of every pair of operands, signed, is there Cycles cycles after
+// en_i and stays up to the next en_i. Between the two it holds the product by those bits of b that were added up.
 module serial_mult_formal #(
   parameter int ABits  = 3,
   parameter int BBits  = 4,
@@ -43,15 +43,16 @@ module serial_mult_formal #(
     end
   end
 
-  // Helper: after n bits, 0 to BBits, the register's upper ABits + n bits are a times the lower n bits of b (all of them:
-  // signed), its lower ones are what is left of b.
+  // Helper: after n bits, 0 to BBits, the register's upper ABits + n bits are a times the lower n bits of b (all of
+  // them: signed), its lower ones are what is left of b.
   (* keep *) logic [CountBits-1:0] tap_left;
   logic [4:0]                      bits;
   logic signed [Bits-1:0]          part;
   logic [BBits-1:0]                low;
   assign bits = BBits[4:0] - {{(5 - CountBits) {1'b0}}, tap_left};
   assign low  = b_q & ~({BBits {1'b1}} << bits);
-  assign part = (bits == BBits[4:0]) ? a_q * b_q : $signed({{BBits {a_q[ABits-1]}}, a_q}) * $signed({{ABits {1'b0}}, low});
+  assign part = (bits == BBits[4:0]) ? a_q * b_q
+              : $signed({{BBits {a_q[ABits-1]}}, a_q}) * $signed({{ABits {1'b0}}, low});
   always_ff @(posedge clk_i) begin
     if (running_q && some_q) begin
       a_product: assert (age_q != Cycles[4:0] || product == a_q * b_q);
@@ -60,7 +61,8 @@ module serial_mult_formal #(
       i_part:    assert ((product >>> tap_left) == part
                          && (product & ~({Bits {1'b1}} << tap_left)) == ({{ABits {1'b0}}, b_q} >> bits
                                                                         & ~({Bits {1'b1}} << tap_left)));
-      c_least: cover (age_q == Cycles[4:0] && a_q == {1'b1, {(ABits - 1) {1'b0}}} && b_q == {1'b1, {(BBits - 1) {1'b0}}});
+      c_least: cover (age_q == Cycles[4:0] && a_q == {1'b1, {(ABits - 1) {1'b0}}}
+                      && b_q == {1'b1, {(BBits - 1) {1'b0}}});
       c_again: cover (age_q == Cycles[4:0] && en_i && product != '0 && a_i != a_q);
     end
   end

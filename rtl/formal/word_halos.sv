@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// cuboct_word_halos, the two faces of one axis linked: a halo of either, any of those there, is in the record register, its
-// sign moved on, once its words were asked for one after the other and shifted in. In TAKE each particle of a face is shown
-// once, in order, whole, in the cycle MigrateBeats + 2 of its reading, never another. Ends are told from the cycle
-// after they came until they are cleared, of particles only when all were shown; counts are exact.
+// cuboct_word_halos, the two faces of one axis linked: a halo of either, any of those there, is in the record
+// register, its sign moved on, once its words were asked for one after the other and shifted in. In TAKE each
+// particle of a face is shown once, in order, whole, in the cycle MigrateBeats + 2 of its reading, never another.
+// Ends are told from the cycle after they came until they are cleared, of particles only when all were shown; counts
+// are exact.
 module word_halos_formal #(
   parameter int Axis         = 0,
   parameter int Capacity     = 1,
@@ -58,8 +59,8 @@ module word_halos_formal #(
   logic [CountBits-1:0] here_halos, turn_held, turn_popped;
   assign here_halos  = high ? halos[CountBits +: CountBits] : halos[0 +: CountBits];
 
-  // Reading a halo: its words one after the other, each shifted in a cycle later; FORCE and EXCHANGE do. Taking of a face,
-  // until all that came was shown. Not both; and a halo may be read again before the clear.
+  // Reading a halo: its words one after the other, each shifted in a cycle later; FORCE and EXCHANGE do. Taking of a
+  // face, until all that came was shown. Not both; and a halo may be read again before the clear.
   logic [3:0] step_q, step;  // words asked for, 0 where nothing is read
   logic       reads, last_word, has_q, set_q, taking, taking_q, turn, turn_q, take_over, shift;
   logic [HaloBits-1:0] set_halo_q;
@@ -107,13 +108,15 @@ module word_halos_formal #(
   logic [3:0]              ready;
   logic [LinkBits-1:0]     word_o;
   cuboct_word_halos #(
-    .Axes(2), .PositionFrac(1), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits), .ParticleBits(ParticleBits),
-    .CountBits(CountBits), .WordBits(WordBits)
+    .Axes(2), .PositionFrac(1), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits),
+    .ParticleBits(ParticleBits), .CountBits(CountBits), .WordBits(WordBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .has_link_i((Axis == 0) ? 4'b0011 : 4'b1100), .link_valid_i({2{valid_i}}),
-    .link_end_i({2{end_i}}), .link_data_i({2{data_i}}), .link_ready_o(ready), .halo_clear_i(clear_i), .halo_end_o(halo_end),
+    .link_end_i({2{end_i}}), .link_data_i({2{data_i}}), .link_ready_o(ready), .halo_clear_i(clear_i),
+    .halo_end_o(halo_end),
     .halo_count_o(count), .word_i(word), .face_i(face), .word_o(word_o), .shift_i(shift), .set_i, .halo_i(set_halo_i),
-    .halo_o(record), .migrating_i, .taking_i(taking), .migrate_clear_i({2{migrate_clear_i}}), .migrate_end_o(migrate_end),
+    .halo_o(record), .migrating_i, .taking_i(taking), .migrate_clear_i({2{migrate_clear_i}}),
+    .migrate_end_o(migrate_end),
     .particle_valid_o(valid), .particle_o(shown), .pop_i(valid)
   );
 
@@ -150,12 +153,13 @@ module word_halos_formal #(
       a_ready:    assert (ready == 4'b1111);
       i_step:     assert ({{(4 - StepBits) {1'b0}}, tap_step} == reading_q && (taking_q || reading_q == '0));
       i_read:     assert (tap_read == (taking_q ? turn_popped * ParticleBeats[WordBits-1:0]
-                                                  + {{(WordBits - StepBits) {1'b0}}, (tap_step > ParticleBeats[StepBits-1:0])
+                                                  + {{(WordBits - StepBits) {1'b0}},
+                                                     (tap_step > ParticleBeats[StepBits-1:0])
                                                      ? ParticleBeats[StepBits-1:0] : tap_step} : '0));
       c_halo:     cover (has_q && number == Depth[CountBits-1:0] - 1'b1 && high && moved != '0);
       c_low:      cover (has_q && !high && moved == '1);
-      c_particle: cover (valid && turn == high && high && turn_popped == number && number == Capacity[CountBits-1:0] - 1'b1
-                         && shown == '1);
+      c_particle: cover (valid && turn == high && high && turn_popped == number
+                         && number == Capacity[CountBits-1:0] - 1'b1 && shown == '1);
       c_other:    cover (valid && turn != high && particles_ended == 2'b00);
       c_waits:    cover (taking_q && !some && turn_popped != '0 && !take_over);
       c_next:     cover (taking_q && some && halos != '0 && has_q == 1'b0 && halo_ended == 2'b11);
@@ -164,8 +168,8 @@ module word_halos_formal #(
   end
 endmodule
 
-// What came over a face, and what may come: as in the proof `word_inbox`; a stream of particles after the clear of the last
-// one's end. The watched records are put together again.
+// What came over a face, and what may come: as in the proof `word_inbox`; a stream of particles after the clear of
+// the last one's end. The watched records are put together again.
 module word_stream #(
   parameter int LinkBits     = 2,
   parameter int HaloBits     = 4,

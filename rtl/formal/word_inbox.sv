@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// cuboct_word_inbox: word b of halo record r since the clear, any of them, is what the port answers in the cycle after
-// it was asked for, the record's sign moved on by one node; so is word b of the p-th particle of a stream, from the cycle
-// after its last beat until it is popped. Counts, full and empty exact; the ends told once, in their streams. Neither
-// stream touches what the other one keeps, and a word that is asked for while it is written is not looked at.
+// cuboct_word_inbox: word b of halo record r since the clear, any of them, is what the port answers in the cycle
+// after it was asked for, the record's sign moved on by one node; so is word b of the p-th particle of a stream, from
+// the cycle after its last beat until it is popped. Counts, full and empty exact; the ends told once, in their
+// streams. Neither stream touches what the other one keeps, and a word that is asked for while it is written is not
+// looked at.
 module word_inbox_formal #(
   parameter int LinkBits     = 2,
   parameter int HaloBits     = 3,
@@ -39,12 +40,13 @@ module word_inbox_formal #(
     .LinkBits(LinkBits), .HaloBits(HaloBits), .ParticleBits(ParticleBits), .HaloDepth(HaloDepth), .Capacity(Capacity),
     .CountBits(CountBits), .WordBits(WordBits), .Signed(Signed), .SignLsb(SignLsb), .Below(Below)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .valid_i, .end_i, .data_i, .halo_end_o(halo_end), .migrate_end_o(particle_end), .clear_i,
+    .clk_i, .rst_ni(running_q), .valid_i, .end_i, .data_i, .halo_end_o(halo_end), .migrate_end_o(particle_end),
+    .clear_i,
     .count_o(count), .pop_i, .empty_o(empty), .full_o(full), .word_i(word_i[WordBits-1:0]), .data_o(data)
   );
 
   // What came: the stream, beats of a record, halos since the clear, particles of the stream, those that were popped.
-  logic                 particles_q, cleared_q, first_q;  // first: nothing of this stream of particles, not even its end
+  logic                 particles_q, cleared_q, first_q;  // first: nothing of these particles came, nor their end
   logic [2:0]           beat_q;
   logic [CountBits-1:0] halos_q, came_q, popped_q, held;
   logic                 beat, last, halo_done, particle_done;
@@ -149,10 +151,12 @@ module word_inbox_formal #(
       a_count: assert (count == halos_q);
       a_full:  assert (full == (held == Capacity[CountBits-1:0]));
       a_empty: assert (empty == (held == '0));
-      a_ends:  assert (halo_end == (valid_i && end_i && !particles_q) && particle_end == (valid_i && end_i && particles_q));
+      a_ends:  assert (halo_end == (valid_i && end_i && !particles_q)
+                       && particle_end == (valid_i && end_i && particles_q));
       if (halo_asked_q) a_halo: assert (data == halo_word_q && !torn_q);
       if (particle_asked_q) a_particle: assert (data == particle_word_q && !torn_q);
-      c_all:   cover (halo_asked_q && count == HaloDepth[CountBits-1:0] && full && number == HaloDepth[CountBits-1:0] - 1'b1);
+      c_all:   cover (halo_asked_q && count == HaloDepth[CountBits-1:0] && full
+                      && number == HaloDepth[CountBits-1:0] - 1'b1);
       c_moved: cover (halo_asked_q && halo_q[SignLsb +: 2] == 2'b01 && (Signed == 0 || moved[SignLsb +: 2] != 2'b01));
       c_kept:  cover (particle_asked_q && beat && !particles_q && (HaloDepth == 1 || halos_q != '0));
       c_ahead: cover (particle_asked_q && particles_q && first_q && halos_q != '0);

@@ -30,7 +30,7 @@ module MULT18X18D (
 endmodule
 
 // 1,024 words of 18 bits. Port A writes, port B reads, both of 36, 18 or 9 bits; or two ports of 18 or 9 bits that do
-// either. In 36 bits port A's data go on to port B's pins.
+// either, and where it says so answer a write with the word before it. In 36 bits port A's data go on to port B's pins.
 module DP16KD (
   input DIA17, DIA16, DIA15, DIA14, DIA13, DIA12, DIA11, DIA10, DIA9, DIA8, DIA7, DIA6, DIA5, DIA4, DIA3, DIA2, DIA1,
   DIA0,
@@ -137,8 +137,11 @@ module DP16KD (
   initial begin
     for (w = 0; w < 1024; w = w + 1) mem[w] = initial_words[20*w +: 18];
   end
-  generate if (REGMODE_A != "NOREG" || REGMODE_B != "NOREG" || WRITEMODE_A != "NORMAL" || WRITEMODE_B != "NORMAL"
-               || CLKAMUX != "CLKA" || CLKBMUX != "CLKB" || CSDECODE_A != "0b000" || CSDECODE_B != "0b000"
+  localparam before_a = (WRITEMODE_A == "READBEFOREWRITE");
+  localparam before_b = (WRITEMODE_B == "READBEFOREWRITE");
+  generate if (REGMODE_A != "NOREG" || REGMODE_B != "NOREG" || (WRITEMODE_A != "NORMAL" && !before_a)
+               || (WRITEMODE_B != "NORMAL" && !before_b) || (before_a && DATA_WIDTH_A == 36)
+               || (before_b && DATA_WIDTH_B == 36) || CLKAMUX != "CLKA" || CLKBMUX != "CLKB" || CSDECODE_A != "0b000" || CSDECODE_B != "0b000"
                || (DATA_WIDTH_A != 36 && DATA_WIDTH_A != 18 && DATA_WIDTH_A != 9)
                || (DATA_WIDTH_B != 36 && DATA_WIDTH_B != 18 && DATA_WIDTH_B != 9)) begin : gen_bad
     dp16kd_mode_not_modelled u_bad ();
@@ -175,10 +178,10 @@ module DP16KD (
     end
   end
   reg [17:0] low_b;  // of 36 bits
-  always @(posedge CLKA) if (on_a && (RSTA || !WEA)) begin
+  always @(posedge CLKA) if (on_a && (RSTA || !WEA || before_a)) begin
     out_a <= RSTA ? 18'd0 : (DATA_WIDTH_A == 9) ? {9'd0, mem[ada[13:4]][9*ada[3] +: 9]} : mem[ada[13:4]];
   end
-  always @(posedge CLKB) if (on_b && (RSTB || !WEB)) begin
+  always @(posedge CLKB) if (on_b && (RSTB || !WEB || before_b)) begin
     low_b <= RSTB ? 18'd0 : mem[{adb[13:5], 1'b0}];
     out_b <= RSTB ? 18'd0 : (DATA_WIDTH_B == 9) ? {9'd0, mem[adb[13:4]][9*adb[3] +: 9]}
                           : (DATA_WIDTH_B == 18) ? mem[adb[13:4]] : mem[{adb[13:5], 1'b1}];

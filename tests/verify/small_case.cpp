@@ -303,6 +303,22 @@ const std::map<std::string, Recipe>& recipes() {
          s.place = at_the_cutoff;
        }},
       // Particles go everywhere, along several axes in a step; nodes fill up.
+      // One multiplier for the axes, pairs as close as it lets them come, many of them beyond the cutoff; one that fails.
+      {"shared_edge",
+       [](S s) {
+         recipes().at("edge")(s);
+         s.arch.multipliers = Multipliers::shared;
+       }},
+      {"fails_shared_w",
+       [](S s) {
+         recipes().at("fails_w")(s);
+         s.arch.multipliers = Multipliers::shared;
+       }},
+      {"fails_shared_s",
+       [](S s) {
+         recipes().at("fails_s")(s);
+         s.arch.multipliers = Multipliers::shared;
+       }},
       {"hot",
        [](S s) {
          s.features.size = {2, 2, 2};
