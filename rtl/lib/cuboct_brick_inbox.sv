@@ -5,7 +5,7 @@
 // from t+2 on.
 module cuboct_brick_inbox #(
   parameter int HaloBits     = 60,  // of a halo record without its cell, >= 1
-  parameter int ParticleBits = 128,
+  parameter int ParticleBits = 128,  // > HaloBits: a particle has an id too
   parameter int Capacity     = 16,  // of a cell
   parameter int HaloCells    = 4,   // of the layer
   parameter int FaceCells    = 4,
@@ -43,7 +43,6 @@ module cuboct_brick_inbox #(
   output logic [ParticleBits-1:0] particle_o,
   output logic                    none_o           // none came
 );
-  localparam int Bits      = (HaloBits > ParticleBits) ? HaloBits : ParticleBits;
   localparam int First     = HaloCells * Capacity;  // halos lie below, particles from here on
   localparam int Depth     = First + FaceCells * Capacity;
   localparam int WordBits  = $clog2(Depth + 1);
@@ -97,24 +96,15 @@ module cuboct_brick_inbox #(
   assign shown_at    = First[Wide-1:0] + {{(Wide - TotalBits) {1'b0}}, read_d};
   assign streamed_at = {{(Wide - AddrBits) {1'b0}}, addr_i};
 
-  logic [Bits-1:0] halo_word, particle_word, word;
-  if (Bits > HaloBits) begin : gen_short_halo
-    assign halo_word = {{(Bits - HaloBits) {1'b0}}, halo_i};
-  end else begin : gen_long_halo
-    assign halo_word = halo_i;
-  end
-  if (Bits > ParticleBits) begin : gen_short_particle
-    assign particle_word = {{(Bits - ParticleBits) {1'b0}}, particle_i};
-  end else begin : gen_long_particle
-    assign particle_word = particle_i;
-  end
-  cuboct_ram #(.Bits(Bits), .Depth(Depth), .AddrBits(Wide)) u_words (
+  logic [ParticleBits-1:0] halo_word, word;
+  assign halo_word = {{(ParticleBits - HaloBits) {1'b0}}, halo_i};
+  cuboct_ram #(.Bits(ParticleBits), .Depth(Depth), .AddrBits(Wide)) u_words (
     .clk_i, .write_i(append_i || push_i), .write_addr_i(push_i ? particle_at : halo_at),
-    .write_data_i(push_i ? particle_word : halo_word), .read_i(read_i || migrating_i),
+    .write_data_i(push_i ? particle_i : halo_word), .read_i(read_i || migrating_i),
     .read_addr_i(migrating_i ? shown_at : streamed_at), .read_data_o(word)
   );
   assign halo_o     = word[HaloBits-1:0];
-  assign particle_o = word[ParticleBits-1:0];
+  assign particle_o = word;
   if (Relayed != 0) begin : gen_relay
     cuboct_ram #(.Bits(HaloBits), .Depth(First), .AddrBits(Wide)) u_halos (
       .clk_i, .write_i(append_i), .write_addr_i(halo_at), .write_data_i(halo_i), .read_i(1'b1),

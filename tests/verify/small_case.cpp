@@ -75,6 +75,21 @@ void drift(Scene& scene) {
   }
 }
 
+// Two alone in a ring of three cells along each axis, one along a diagonal through the cells' corners, up, one down:
+// cells, and nodes, become empty, and an empty one gets a particle that goes on along the next axis.
+void fly(Scene& scene) {
+  Body body;
+  const double edge = std::sqrt(2.0);
+  for (int k = 0; k < 2; ++k) {
+    body.x.push_back(Vec3(0.5 + k * edge, 0.5, 0.5));
+    body.v.push_back((k == 0 ? 1 : -1) * Vec3(1.7, 1.7, 1.7));
+    body.type.push_back(0);
+  }
+  scene.body = body;
+  for (int a = 0; a < 3; ++a) scene.periodic.origin[a] = 0, scene.periodic.extent[a] = 3 * edge;
+  scene.reach_margin = Vec3::Constant(3 * edge);
+}
+
 // A particle of node 0 a few places of the position beside another, below a table's first octave, and one at 0.3 of
 // the cell's edge, where r2 has fewer bits than the table's address.
 void close_together(Setup& setup) {
@@ -138,7 +153,8 @@ const std::map<std::string, std::pair<const char*, Cell>>& bricks() {
       {"brick_drift", {"drift", {2, 3, 1}}},  {"brick_full", {"full", {2, 1, 1}}},
       {"brick_pd", {"pd", {2, 1, 1}}},        {"brick_edge", {"edge", {2, 1, 2}}},
       {"brick_retry", {"retry", {2, 1, 1}}},  {"brick_fails_sum", {"fails_sum", {2, 1, 1}}},
-      {"brick_fails_v", {"fails_v", {2, 1, 1}}}};
+      {"brick_fails_v", {"fails_v", {2, 1, 1}}},  {"brick_fly", {"fly", {2, 2, 2}}},
+      {"brick_fails_w", {"fails_w", {2, 1, 1}}},  {"brick_fails_free", {"fails_free", {2, 1, 1}}}};
   return all;
 }
 
@@ -339,6 +355,12 @@ const std::map<std::string, Recipe>& recipes() {
          s.arch.filter_lanes = 3;
          s.steps = 30;
          s.change = drift;
+       }},
+      {"fly",
+       [](S s) {
+         s.arch.capacity = 3;
+         s.steps = 60;
+         s.change = fly;
        }},
       // Pairs that wait for one another in two pipes of serial multipliers, behind a queue.
       {"serial",
