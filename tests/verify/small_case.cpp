@@ -358,8 +358,8 @@ const std::map<std::string, Recipe>& recipes() {
        }},
       {"fly",
        [](S s) {
-         s.arch.capacity = 3;
-         s.steps = 60;
+         s.arch.capacity = 2;
+         s.steps = 300;
          s.change = fly;
        }},
       // Pairs that wait for one another in two pipes of serial multipliers, behind a queue.
