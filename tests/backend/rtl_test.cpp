@@ -273,7 +273,7 @@ TEST(RtlBrickLattice, EqualsTheWiredNodes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice,
-                         testing::Values("undamped_2x2x2", "lattice_3x2x1", "flat", "rich_narrow"),
+                         testing::Values("undamped_2x2x2", "lattice_3x2x1", "flat", "flat_narrow"),
                          [](const auto& p) { return p.param; });
 
 }  // namespace
