@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 
 #include "cli/command.h"
@@ -38,6 +41,14 @@ int emit_fitted(const Input& input, const std::string& target, const std::string
     return 1;
   }
   return 0;
+}
+
+// The text of the arch where it is the one that an earlier --fit left in the project: it stays there.
+std::string chosen_before(const std::string& arch, const std::string& out) {
+  std::error_code none;
+  if (arch.empty() || !std::filesystem::equivalent(arch, std::filesystem::path(out) / "arch.toml", none)) return {};
+  std::ifstream in(arch);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
@@ -89,7 +100,8 @@ void add_emit(CLI::App& app, int& exit_code) {
     }
     const Loaded loaded = load(options->input);
     const Plan& plan = loaded.setup.plan;
-    emit_rtl(plan, loaded.setup.initial, options->out, options->vector_steps, options->board);
+    emit_rtl(plan, loaded.setup.initial, options->out, options->vector_steps, options->board,
+             chosen_before(options->input.arch, options->out));
     say_done(options->out, plan);
   });
 }

@@ -28,6 +28,11 @@ void say(const std::string& what) {
   if (stderr_is_terminal()) fmt::print(stderr, "\r\033[K{}", what.empty() ? "" : "fit: " + what + " ...");
 }
 
+// A plan that has no RTL; another brick may have. What else goes wrong in a synthesis goes wrong for all.
+struct NotEmitted : InputError {
+  explicit NotEmitted(const InputError& error) : InputError(error) {}
+};
+
 std::string text_of(const std::string& arch) {
   return arch.empty() ? "name = \"default\"\n" : synth::read_text(arch);
 }
@@ -171,7 +176,13 @@ void Fitter::measure(const FitPoint& point) {
                   point.brick[1], point.brick[2], point.lanes, point.pipes, measured_.size()));
   const Plan plan = plan_at(point);
   const synth::Measured m = meter_.measure(
-      [&](const std::string& directory) { emit_rtl(plan, base_.initial, directory, 1, board_); },
+      [&](const std::string& directory) {
+        try {
+          emit_rtl(plan, base_.initial, directory, 1, board_);
+        } catch (const InputError& error) {
+          throw NotEmitted(error);
+        }
+      },
       !board_.name.empty());
   const FitAmounts node = synth::amounts_of(m.node), around = synth::amounts_of(m.around);
   model_.add(point, memories(point.brick, point.lanes, point.pipes, target_.family), node);
@@ -211,7 +222,7 @@ void Fitter::choose() {
         estimates_[point] = choice_->uses;
         measure(point);
       }
-    } catch (const InputError& error) {
+    } catch (const NotEmitted& error) {
       if (cells_of(point.brick) == 1) throw;
       refused_[point.brick] = error.what();
       if (refused_.size() >= kMostRefused) no_bricks_ = error.what();

@@ -325,7 +325,8 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
   const uint64_t records = std::min<uint64_t>(27 * c, initial.particles.size());
   const auto beats = static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
   const uint64_t cells = cells_of(plan.bricks.shape());
-  const uint64_t limit = (steps + 2) * (4 * records * beats + 2 * c * records + 300) * cells;
+  const uint64_t longest = (steps + 2) * (4 * records * beats + 2 * c * records + 300) * cells;
+  const uint64_t limit = std::min<uint64_t>(longest, INT32_MAX);  // what an int holds
 
   std::map<std::string, std::string> files;
   const auto filled = [&](std::string text) {

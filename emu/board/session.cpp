@@ -101,7 +101,7 @@ class Session {
       const BoardFault found = host_.fault(static_cast<uint16_t>(n));
       if (found.fault == Fault::none) continue;
       const uint64_t told = found.particle;
-      const StopReason reason{found.fault,  step, cell_of(n, told >> id_bits),
+      const StopReason reason{found.fault,  step, faulty_cell(n, found.fault, told >> id_bits),
                               static_cast<uint32_t>(told & ((uint64_t{1} << id_bits) - 1)), found.number, {}};
       const auto key = [](const StopReason& r) { return std::tie(r.fault, r.particle, r.number); };
       if (least.fault == Fault::none || key(reason) < key(least)) least = reason;
@@ -145,6 +145,14 @@ class Session {
       throw std::runtime_error(
           fmt::format("port {}: node {} tells of a cell {} that it has not", host_.port(), node, local));
     return cell;
+  }
+
+  // A link's fault is told with the number 0: of a brick without that cell it is the first one that it has.
+  uint32_t faulty_cell(uint32_t node, Fault fault, uint64_t local) const {
+    if (!is_of_link(fault) || plan_.bricks.single()) return cell_of(node, local);
+    uint32_t first = 0;
+    while (plan_.cell_of(node, first) == kNoNode) ++first;
+    return plan_.cell_of(node, first);
   }
 
   void set_velocities() {

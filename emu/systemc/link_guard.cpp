@@ -136,6 +136,7 @@ void LinkGuard::show_fault(NodeOutputs& out) {
   out.fault = true;
   out.fault_code = static_cast<uint8_t>(told_);
   out.fault_id = 0;
+  out.fault_cell = 0;
   out.fault_number = told_face_;
   shown_ = true;
 }

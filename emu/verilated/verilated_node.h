@@ -41,7 +41,7 @@ class VerilatedNode : public NodeModel {
 // The outputs that belong to the cycle, without the link registers.
 void read_outputs(const CuboctOut& from, NodeOutputs& out);
 
-// Compiles (or finds) the plan's node; throws InputError.
+// Compiles (or finds) the plan's node; keeps a reference to `plan`. Throws InputError.
 NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed = 0);
 
 }  // namespace cuboct::emu

@@ -141,7 +141,8 @@ Measured Meter::measure(const std::function<void(const std::string& directory)>&
   emit(directory);
   const std::string cache = cache_directory();
   const std::string file = cache.empty() ? "" : cache + "/fit/" + key_of(directory, board) + ".json";
-  if (!file.empty() && fs::is_regular_file(file)) {
+  std::error_code none;
+  if (!file.empty() && fs::is_regular_file(file, none)) {
     try {
       const nlohmann::json json = read_json(file);
       return {counts_of(json.at("node")), counts_of(json.at("around")), json.at("nodes"), true};
@@ -151,10 +152,14 @@ Measured Meter::measure(const std::function<void(const std::string& directory)>&
   }
   const Measured m = run(directory, board);
   if (!file.empty()) {
-    make_directory(cache + "/fit");
-    const nlohmann::ordered_json json = {
-        {"nodes", m.nodes}, {"node", to_json(m.node)}, {"around", to_json(m.around)}, {"tools", tools_}};
-    write_text(file, json.dump(2) + "\n");
+    try {
+      make_directory(cache + "/fit");
+      const nlohmann::ordered_json json = {
+          {"nodes", m.nodes}, {"node", to_json(m.node)}, {"around", to_json(m.around)}, {"tools", tools_}};
+      write_text(file, json.dump(2) + "\n");
+    } catch (const InputError&) {
+      // What cannot be kept is measured again another time.
+    }
   }
   return m;
 }
