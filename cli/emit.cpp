@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "cli/command.h"
@@ -47,8 +45,7 @@ int emit_fitted(const Input& input, const std::string& target, const std::string
 std::string chosen_before(const std::string& arch, const std::string& out) {
   std::error_code none;
   if (arch.empty() || !std::filesystem::equivalent(arch, std::filesystem::path(out) / "arch.toml", none)) return {};
-  std::ifstream in(arch);
-  return {std::istreambuf_iterator<char>(in), {}};
+  return synth::read_text(arch);
 }
 
 }  // namespace
