@@ -173,20 +173,15 @@ RtlDesign decide(const Plan& plan) {
     design.extents.push_back(binary(extent_bits(plan, n)));
     design.exits.push_back(binary(exit_bits(plan, n)));
   }
-  if (bricks) {
-    design.brick_cells = static_cast<int>(cells_of(arch.brick));
-    design.cell_bits = plan.bricks.cell_bits();
+  design.cell_bits = plan.bricks.cell_bits();
+  if (bricks)
     design.constants.push_back({"CellBits", design.cell_bits, false, false, "of a cell's number in its node"});
-  }
   return design;
 }
 
-int grid_bits(const Cell& brick) {
-  return clog2(static_cast<uint64_t>(std::max({brick[0], brick[1], brick[2]})) + 2);
-}
-
 std::vector<bool> extent_bits(const Plan& plan, uint32_t node) {
-  const int width = grid_bits(plan.bricks.shape());
+  const Cell& brick = plan.bricks.shape();
+  const int width = clog2(static_cast<uint64_t>(std::max({brick[0], brick[1], brick[2]})) + 2);
   std::vector<bool> bits;
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < width; ++b) bits.push_back(plan.bricks.node(node).extent[a] >> b & 1);
