@@ -193,13 +193,13 @@ module cuboct_brick_core #(
     .next_o(next_cell), .last_o(last_cell)
   );
   cuboct_brick_place #(
-    .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
   ) u_main_place (.cell_i(main_cell), .own_o(main_own), .layer_o(main_layer), .face_o(main_face));
   cuboct_brick_place #(
-    .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
   ) u_after_place (.cell_i(after_cell), .own_o(after_own), .layer_o(after_layer), .face_o(after_face));
   cuboct_brick_place #(
-    .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
   ) u_next_place (.cell_i(next_cell), .own_o(next_own), .layer_o(next_layer), .face_o(next_face));
 
   // Own particles: how many, and where they are written and read.
@@ -418,7 +418,7 @@ module cuboct_brick_core #(
   logic [Axes*PipeSumBits-1:0]  total;
   logic                         take;
   cuboct_brick_finder #(
-    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits),
+    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits),
     .TagBits(TagBits), .Capacity(Capacity), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
     .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .HaloBits(HaloBits),
     .FilterLanes(FilterLanes), .ForcePipes(ForcePipes), .Interval(Interval), .QueueDepth(QueueDepth),

@@ -5,7 +5,6 @@ module cuboct_brick_finder #(
   parameter int          Axes            = 3,   // 2 or 3
   parameter int          BrickX          = 2,
   parameter int          BrickY          = 2,
-  parameter int          BrickZ          = 2,
   parameter int          GridBits        = 2,
   parameter int          CellBits        = 3,
   parameter int          TagBits         = 4,
@@ -80,7 +79,7 @@ module cuboct_brick_finder #(
   logic                     push, pop, full, empty;
 
   cuboct_brick_streamer #(
-    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits),
+    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits),
     .TagBits(TagBits), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_streamer (
     .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .available_i, .has_link_i, .extent_i, .own_cell_o,

@@ -5,7 +5,6 @@
 module cuboct_brick_place #(
   parameter int BrickX   = 2,
   parameter int BrickY   = 2,
-  parameter int BrickZ   = 2,
   parameter int GridBits = 2,  // of a coordinate
   parameter int CellBits = 3,  // of an own cell's number
   parameter int TagBits  = 4   // of a number in a layer or face, <= CellBits + 4
@@ -46,7 +45,6 @@ module cuboct_brick_place #(
   assign own_o   = own[CellBits-1:0];
   assign layer_o = {layer_z[TagBits-1:0], layer_y[TagBits-1:0], layer_x[TagBits-1:0]};
   assign face_o  = {face_z[TagBits-1:0], face_y[TagBits-1:0], layer_x[TagBits-1:0]};
-  localparam int unused_z = BrickZ;
   logic unused_bits;
-  assign unused_bits = ^{own, layer_x, layer_y, layer_z, face_y, face_z, unused_z[0]};
+  assign unused_bits = ^{own, layer_x, layer_y, layer_z, face_y, face_z};
 endmodule

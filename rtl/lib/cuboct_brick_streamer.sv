@@ -7,7 +7,6 @@ module cuboct_brick_streamer #(
   parameter int Axes        = 3,  // 2 or 3
   parameter int BrickX      = 2,
   parameter int BrickY      = 2,
-  parameter int BrickZ      = 2,
   parameter int GridBits    = 2,  // of a coordinate: cuboct_brick_walk
   parameter int CellBits    = 3,  // of an own cell's number
   parameter int TagBits     = 4,  // of a number in a layer
@@ -173,10 +172,10 @@ module cuboct_brick_streamer #(
   end
   logic [3*TagBits-1:0] own_layer, own_face, near_face;
   cuboct_brick_place #(
-    .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
   ) u_own (.cell_i(here), .own_o(own_cell_o), .layer_o(own_layer), .face_o(own_face));
   cuboct_brick_place #(
-    .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
   ) u_near (.cell_i(near), .own_o(near_cell_o), .layer_o(near_layer_o), .face_o(near_face));
 
   assign segment_o = segment_q;
