@@ -70,6 +70,12 @@ struct Plan {
   uint32_t cell_of(uint32_t node, uint32_t local) const {
     return bricks.single() ? node : bricks.cell(node, local);
   }
+  // The first of the lattice's cells that a node has.
+  uint32_t first_cell_of(uint32_t node) const {
+    uint32_t local = 0;
+    while (cell_of(node, local) == kNoNode) ++local;
+    return cell_of(node, local);
+  }
 };
 
 // What make_plan derives: words of records, latencies.

@@ -149,10 +149,7 @@ class Session {
 
   // A link's fault is told with the number 0: of a brick without that cell it is the first one that it has.
   uint32_t faulty_cell(uint32_t node, Fault fault, uint64_t local) const {
-    if (!is_of_link(fault) || plan_.bricks.single()) return cell_of(node, local);
-    uint32_t first = 0;
-    while (plan_.cell_of(node, first) == kNoNode) ++first;
-    return plan_.cell_of(node, first);
+    return is_of_link(fault) ? plan_.first_cell_of(node) : cell_of(node, local);
   }
 
   void set_velocities() {

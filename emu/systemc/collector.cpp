@@ -89,9 +89,8 @@ Collector::Snapshot& Collector::snapshot(uint64_t step) {
 
 // The lattice's cell; a brick's first one where a damaged word names a cell that is not there.
 uint32_t Collector::cell_of(uint32_t node, uint32_t local) const {
-  if (const uint32_t cell = plan_.cell_of(node, local); cell != kNoNode) return cell;
-  for (local = 0; plan_.cell_of(node, local) == kNoNode;) ++local;
-  return plan_.cell_of(node, local);
+  const uint32_t cell = plan_.cell_of(node, local);
+  return cell != kNoNode ? cell : plan_.first_cell_of(node);
 }
 
 void Collector::observe(uint32_t node, const NodeOutputs& out) {
