@@ -10,18 +10,18 @@ module cuboct_host_link #(
   parameter int          Axes         = 3,      // 2 or 3
   parameter int          Capacity     = 16,     // of a node
   parameter int          ParticleBits = 154,    // >= 1
-  parameter int          IdBits       = 8,
+  parameter int          IdBits       = 8,      // of a particle's id
   parameter int          VelocityBits = 29,     // at most 64
   parameter int          MovedTypes   = 0,      // types whose velocities can be set
-  parameter logic [63:0] PlanHash     = 64'd0,
+  parameter logic [63:0] PlanHash     = 64'd0,  // told by INFO
   parameter logic [63:0] MachineHash  = 64'd0,  // of the plan with all these velocities zero
-  parameter int          ClockHz      = 12000000,
+  parameter int          ClockHz      = 12000000,  // told by INFO
   parameter int          BitClocks16  = 192     // length of a bit in 1/16 clocks, >= 64
 ) (
   input  logic                          clk_i,
   input  logic                          rst_ni,
-  input  logic                          rx_i,
-  output logic                          tx_o,
+  input  logic                          rx_i,        // the serial line, not synchronous
+  output logic                          tx_o,        // the serial line
   // To the lattice.
   output logic                          lattice_rst_no,
   output logic                          start_o,

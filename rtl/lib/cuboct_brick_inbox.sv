@@ -8,7 +8,7 @@ module cuboct_brick_inbox #(
   parameter int ParticleBits = 128,  // > HaloBits: a particle has an id too
   parameter int Capacity     = 16,  // of a cell
   parameter int HaloCells    = 4,   // of the layer
-  parameter int FaceCells    = 4,
+  parameter int FaceCells    = 4,   // of the own face
   parameter int Relayed      = 1,   // 1: a second read port for the relay
   parameter int TagBits      = 2,   // of a cell's number
   parameter int CountBits    = 5,   // >= clog2(Capacity + 1)

@@ -20,7 +20,7 @@ module cuboct_brick_streamer #(
   input  logic                  rst_ni,
   input  logic                  run_i,        // the force engine's phase
   input  logic                  restart_i,    // its last cycle
-  input  logic                  stall_i,
+  input  logic                  stall_i,      // nothing moves
   input  logic [Axes:0]         available_i,  // own; x, y, z halos complete
   input  logic [Faces-1:0]      has_link_i,
   input  logic [3*GridBits-1:0] extent_i,

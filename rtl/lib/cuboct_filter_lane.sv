@@ -6,14 +6,14 @@
 module cuboct_filter_lane #(
   parameter int          Axes        = 3,      // 2 or 3
   parameter int          FilterFrac  = 8,      // B
-  parameter logic [63:0] PlanarOne   = 64'd0,  // B fractional bits
-  parameter logic [63:0] PlanarTwo   = 64'd0,
-  parameter logic [63:0] PlanarThree = 64'd0
+  parameter logic [63:0] PlanarOne   = 64'd0,  // B fractional bits; bound of a size
+  parameter logic [63:0] PlanarTwo   = 64'd0,  // of a sum of two sizes
+  parameter logic [63:0] PlanarThree = 64'd0   // of the sum of all
 ) (
   input  logic                           test_i,       // the lane's slot exists and is not the candidate itself
   input  logic [Axes*FilterFrac-1:0]     own_i,        // x, y, z, unsigned
   input  logic [Axes*(FilterFrac+2)-1:0] candidate_i,  // x, y, z, signed
-  output logic                           pass_o
+  output logic                           pass_o        // may interact
 );
   // |e| < 2^(B+1), and a sum of three sizes, or a bound, lies below 2^(B+3).
   localparam int Bits = FilterFrac + 3;

@@ -3,7 +3,7 @@
 // bits of its mask are issued, the lowest to pipe 0. When no bit remains the oldest entry of the queue follows without
 // a gap.
 module cuboct_issue #(
-  parameter int CandidateBits = 66,
+  parameter int CandidateBits = 66, // of a candidate
   parameter int FilterLanes   = 8,  // bits of the mask
   parameter int RowBits       = 1,
   parameter int SlotBits      = 4,

@@ -2,7 +2,7 @@
 // Keeps the least fault of a step, by (code, id, number); number is signed, code 0 is none.
 module cuboct_least_fault #(
   parameter int Sources = 1,  // that may speak in one cycle, >= 1
-  parameter int IdBits  = 8,
+  parameter int IdBits  = 8,  // of an id, >= 1
   parameter int NumberBits = 64,  // that hold every number, <= 64
   parameter int Late    = 0,  // 1: what speaks is compared a cycle later, and the outputs count it already
   parameter int Direct  = 0   // 1: the outputs count what speaks in this cycle, even one with clear_i
@@ -10,14 +10,14 @@ module cuboct_least_fault #(
   input  logic                      clk_i,
   input  logic                      rst_ni,
   input  logic                      clear_i,   // not in a cycle with a fault, unless Direct
-  input  logic [Sources-1:0]        valid_i,
-  input  logic [Sources*4-1:0]      code_i,
-  input  logic [Sources*IdBits-1:0] id_i,
-  input  logic [Sources*64-1:0]     number_i,
-  output logic                      valid_o,
-  output logic [3:0]                code_o,
-  output logic [IdBits-1:0]         id_o,
-  output logic signed [63:0]        number_o
+  input  logic [Sources-1:0]        valid_i,   // per source: a fault
+  input  logic [Sources*4-1:0]      code_i,    // 1 to 15
+  input  logic [Sources*IdBits-1:0] id_i,      // of the particle
+  input  logic [Sources*64-1:0]     number_i,  // signed
+  output logic                      valid_o,   // there was one since clear_i
+  output logic [3:0]                code_o,    // of the least; 0 where there is none
+  output logic [IdBits-1:0]         id_o,      // 0 where there is none
+  output logic signed [63:0]        number_o   // 0 where there is none
 );
   localparam int KeyBits = 4 + IdBits + NumberBits;
 

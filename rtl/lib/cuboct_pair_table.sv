@@ -24,7 +24,7 @@ module cuboct_pair_table #(
   input  logic                        clk_i,
   input  logic                        rst_ni,
   input  logic [Cycles:0]             valid_i,  // [k]: the pair whose r2_i came k cycles ago is there
-  input  logic [2*DifferenceFrac-1:0] r2_i,
+  input  logic [2*DifferenceFrac-1:0] r2_i,     // with valid_i[0]
   // The memory: synchronous read, c0, c1, c2 in the cycle after index_o.
   output logic [IndexBits-1:0]        index_o,
   input  logic signed [EntryBits-1:0] c0_i,

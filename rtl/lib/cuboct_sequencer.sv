@@ -6,8 +6,8 @@ module cuboct_sequencer #(
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
-  input  logic        start_i,
-  input  logic [31:0] steps_i,
+  input  logic        start_i,          // in IDLE: begins a run
+  input  logic [31:0] steps_i,          // with start_i; 0 goes to DUMP
   // Last cycles.
   input  logic        exchange_done_i,  // of the present exchange phase
   input  logic        force_done_i,

@@ -12,13 +12,13 @@ module cuboct_sums #(
 ) (
   input  logic                  clk_i,
   input  logic                  rst_ni,
-  input  logic                  kick_valid_i,
-  input  logic [SlotBits-1:0]   kick_slot_i,
+  input  logic                  kick_valid_i, // a kick is added
+  input  logic [SlotBits-1:0]   kick_slot_i,  // its slot
   input  logic [Axes*KickBits-1:0] push_i,     // minus the kick
   input  logic [SlotBits-1:0]   next_slot_i,  // of the next cycle's kick or take
   input  logic                  show_i,       // never in a cycle with a kick, nor, if Spaced, in the one after
   input  logic                  take_i,       // with show_i: clears
-  input  logic [SlotBits-1:0]   take_slot_i,
+  input  logic [SlotBits-1:0]   take_slot_i,  // with show_i
   output logic [Axes*SumBits-1:0] sum_o         // of take_slot_i, without latency, in a cycle with show_i
 );
   localparam int IndexBits = (Capacity > 1) ? $clog2(Capacity) : 1;
