@@ -3,15 +3,16 @@
 when it was simulated (Icarus):
 
     cuboct_fifo Bits=8 Depth=2            the module and its parameters
+    parameters A=1 B=2                    more of them
     project CASE                          modules that are generated are those of this case (emit_case)
     constant has_link_i=3f                inputs that no column holds and that are not 0
     with assign a_i = b_o;                SystemVerilog beside the module: what stands around it
-    where left = counts_i[4:0]            a column's name for a part of a port, or for any expression
+    where own = counts_i[4:0]; x = ...    a column's name for a part of a port, or for any expression
     show data_o when valid_o              `-` in cycles in which valid_o is not 1
     changes 300                           run until cycle 300; a row for each cycle that differs from the one before
     cycle | push_i data_i | full_o count:d
 
-Left of the second bar are inputs, right of it outputs. A column is hexadecimal, with :d decimal, :s signed, :b binary.
+Left of the second bar are inputs, right of it outputs; a column's name may leave out _i or _o. A column is hexadecimal, with :d decimal, :s signed, :b binary.
 One-bit columns show `.` for 0; `x` is unknown. A row holds until the next one: cycles between them are run, not shown.
 Before cycle 0 two cycles are spent in reset, all inputs 0. An input set in a row changes after that cycle's first edge;
 outputs are read before its last."""
@@ -24,7 +25,7 @@ import tempfile
 
 from library import InputError
 
-KEYS = ("project", "constant", "with", "where", "show", "changes")
+KEYS = ("parameters", "project", "constant", "with", "where", "show", "changes")
 FORMATS = {"": 16, "d": 10, "s": 10, "b": 2}
 
 
@@ -71,15 +72,18 @@ def read_table(lines, where):
         key, _, rest = line.partition(" ")
         if columns is None and key in KEYS:
             table.head.append(line)
-            if key == "project":
+            if key == "parameters":
+                table.parameters |= split_pairs(rest.split(), where)
+            elif key == "project":
                 table.project = rest.strip()
             elif key == "constant":
                 table.constants |= split_pairs(rest.split(), where)
             elif key == "with":
                 table.around.append(rest)
             elif key == "where":
-                name, _, expression = rest.partition(" = ")
-                names[name.strip()] = expression.strip()
+                for part in rest.split(";"):
+                    name, _, expression = part.partition(" = ")
+                    names[name.strip()] = expression.strip()
             elif key == "show":
                 shown, _, condition = rest.partition(" when ")
                 whens |= {name: condition.strip() for name in shown.split()}
@@ -126,6 +130,10 @@ def bench(table, module):
     """A module around the block that drives the rows and writes what is seen: per cycle the number, then each value in
     binary, a value that is not to be shown as `-`."""
     names = {port.name for port in module.ports}
+    for columns, suffix in ((table.inputs, "_i"), (table.outputs, "_o")):
+        for column in columns:
+            if column.expression not in names and column.expression + suffix in names:
+                column.expression += suffix
     around = set(re.findall(r"\w+", re.sub(r"\.\w+", "", " ".join(table.around))))
     driven = {re.match(r"\w+", column.expression)[0] for column in table.inputs}
     held = {port.name: "'0" for port in module.ports if port.kind == "in"}
@@ -184,7 +192,7 @@ def simulate(table, module, folders):
     with tempfile.TemporaryDirectory() as work:
         source, program = pathlib.Path(work) / "bench.sv", pathlib.Path(work) / "bench.vvp"
         source.write_text(bench(table, module))
-        command = ["iverilog", "-g2012", "-s", "block_top", "-o", program, "-Y", ".sv"]
+        command = ["iverilog", "-g2012", "-DSYNTHESIS", "-s", "block_top", "-o", program, "-Y", ".sv"]
         for folder in folders:
             command += ["-y", folder]
             packages = sorted(pathlib.Path(folder).glob("*_pkg.sv"))
