@@ -26,6 +26,7 @@ import tempfile
 from library import InputError
 
 KEYS = ("parameters", "project", "constant", "with", "where", "show", "changes")
+LIMIT = 60  # seconds of a simulation
 FORMATS = {"": 16, "d": 10, "s": 10, "b": 2}
 
 
@@ -93,12 +94,12 @@ def read_table(lines, where):
             columns = line.split("|")
             if columns[0].strip() != "cycle" or len(columns) != 3:
                 raise InputError(f"{where}: '{line}' is none of {', '.join(KEYS)}, nor 'cycle | inputs | outputs'")
-            for text, into in zip(columns[1:], (table.inputs, table.outputs)):
+            for text, into, shows in zip(columns[1:], (table.inputs, table.outputs), ({}, whens)):
                 for title in text.split():
                     name, _, form = title.partition(":")
                     if form not in FORMATS:
                         raise InputError(f"{where}: column '{title}': the format '{form}' is none of d, s, b")
-                    into.append(Column(title, names.get(name, name), form, whens.get(name, "")))
+                    into.append(Column(title, names.get(name, name), form, shows.get(name, "")))
         else:
             cells = line.split("|")
             values = cells[1].split() if len(cells) > 1 else []
@@ -136,7 +137,7 @@ def bench(table, module):
                 column.expression += suffix
     around = set(re.findall(r"\w+", re.sub(r"\.\w+", "", " ".join(table.around))))
     driven = {re.match(r"\w+", column.expression)[0] for column in table.inputs}
-    held = {port.name: "'0" for port in module.ports if port.kind == "in"}
+    held = {port.name: "'0" for port in module.ports if port.kind == "in" and not port.define}
     for name in list(table.constants) + sorted(driven):
         if name not in held and name not in around:
             raise InputError(f"{table.where}: '{name}' is no input of {table.module}")
@@ -184,7 +185,16 @@ def bench(table, module):
     return "\n".join(lines) + "\n"
 
 
-def simulate(table, module, folders):
+def copy_for_icarus(sources, folder):
+    """Copies of the modules as Icarus 11 can simulate them: in its code for always_comb all blocks wait for one and the same
+    event that nobody defines, so that a block which wakes any wakes all, for ever. The emitted bench does the same."""
+    folder.mkdir()
+    for source in sources:
+        (folder / source.name).write_text(source.read_text().replace("always_comb", "always @*"))
+    return folder
+
+
+def simulate(table, module, folder):
     """What the bench writes: a list of (cycle, [values])."""
     for tool in ("iverilog", "vvp"):
         if not shutil.which(tool):
@@ -193,14 +203,16 @@ def simulate(table, module, folders):
         source, program = pathlib.Path(work) / "bench.sv", pathlib.Path(work) / "bench.vvp"
         source.write_text(bench(table, module))
         command = ["iverilog", "-g2012", "-DSYNTHESIS", "-s", "block_top", "-o", program, "-Y", ".sv"]
-        for folder in folders:
-            command += ["-y", folder]
-            packages = sorted(pathlib.Path(folder).glob("*_pkg.sv"))
-            command += packages
+        command += ["-y", folder, *sorted(folder.glob("*_pkg.sv"))]
         run = subprocess.run([*command, source], capture_output=True, text=True, check=False)
         if run.returncode != 0:
             raise InputError(f"{table.where}: Icarus refuses the table's bench:\n{run.stdout}{run.stderr}")
-        run = subprocess.run(["vvp", "-n", program], cwd=work, capture_output=True, text=True, check=False)
+        try:
+            run = subprocess.run(["vvp", "-n", program], cwd=work, capture_output=True, text=True, check=False,
+                                 timeout=LIMIT)
+        except subprocess.TimeoutExpired as error:
+            raise InputError(f"{table.where}: the simulation did not end in {LIMIT} s: the code around the module "
+                             f"oscillates, or the bench is too long") from error
     found = []
     for line in run.stdout.splitlines():
         words = line.split()
