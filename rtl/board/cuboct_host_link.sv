@@ -351,7 +351,8 @@ module cuboct_host_link #(
         end
         if (all_idle) begin
           // The first dump of a reply comes before its head.
-          state_d = (index_q == '0) ? SendStart : SendWord;
+          state_d = SendWord;
+          if (index_q == '0) state_d = SendStart;
           index_d = '0;
         end
       end
@@ -368,7 +369,8 @@ module cuboct_host_link #(
           index_d   = index_q + 1'b1;
           if (body_index == body_bytes - 1'b1) begin
             index_d = '0;
-            state_d = (command_q == Read && more_words) ? SendWord : SendSum;
+            state_d = SendSum;
+            if (command_q == Read && more_words) state_d = SendWord;
           end
         end
       end
