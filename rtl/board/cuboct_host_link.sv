@@ -23,28 +23,28 @@ module cuboct_host_link #(
   input  logic                          rx_i,        // the serial line, not synchronous
   output logic                          tx_o,        // the serial line
   // To the lattice.
-  output logic                          lattice_rst_no,
-  output logic                          start_o,
-  output logic [31:0]                   steps_o,
-  output logic                          load_valid_o,
-  output logic [31:0]                   load_node_o,
-  output logic [ParticleBits-1:0]       load_data_o,
-  input  logic [Nodes-1:0]              observe_valid_i,
-  input  logic [Nodes*ParticleBits-1:0] observe_data_i,
-  input  logic [Nodes-1:0]              fault_valid_i,
-  input  logic [4*Nodes-1:0]            fault_code_i,
-  input  logic [Nodes*IdBits-1:0]       fault_id_i,
-  input  logic [64*Nodes-1:0]           fault_number_i,
-  input  logic [Nodes-1:0]              idle_i,
+  output logic                          lattice_rst_no,  // its reset, active low
+  output logic                          start_o,     // in IDLE only
+  output logic [31:0]                   steps_o,     // with start_o
+  output logic                          load_valid_o,  // in IDLE only
+  output logic [31:0]                   load_node_o, // with load_valid_o
+  output logic [ParticleBits-1:0]       load_data_o, // with load_valid_o
+  input  logic [Nodes-1:0]              observe_valid_i,  // by node: a particle is shown
+  input  logic [Nodes*ParticleBits-1:0] observe_data_i,  // by node: its word
+  input  logic [Nodes-1:0]              fault_valid_i,  // by node: a fault
+  input  logic [4*Nodes-1:0]            fault_code_i,  // by node, with fault_valid_i
+  input  logic [Nodes*IdBits-1:0]       fault_id_i,  // by node, with fault_valid_i
+  input  logic [64*Nodes-1:0]           fault_number_i,  // by node, with fault_valid_i
+  input  logic [Nodes-1:0]              idle_i,      // by node
   // To the velocities of moved types.
-  output logic                          velocity_reset_o,
-  output logic                          velocity_valid_o,
-  output logic [7:0]                    velocity_type_o,
-  output logic [7:0]                    velocity_axis_o,
-  output logic [VelocityBits-1:0]       velocity_data_o,
+  output logic                          velocity_reset_o,  // to the plan's
+  output logic                          velocity_valid_o,  // one is set
+  output logic [7:0]                    velocity_type_o,  // with velocity_valid_o
+  output logic [7:0]                    velocity_axis_o,  // with velocity_valid_o
+  output logic [VelocityBits-1:0]       velocity_data_o,  // with velocity_valid_o
   // For lamps.
-  output logic                          busy_o,
-  output logic                          fault_o
+  output logic                          busy_o,      // a run is under way
+  output logic                          fault_o      // a node met a fault since RESET
 );
   localparam logic [7:0] Info = 8'h01, Status = 8'h02, Reset = 8'h03, Load = 8'h04, Run = 8'h05, Read = 8'h06,
                          Velocity = 8'h07, Fault = 8'h08;

@@ -52,15 +52,15 @@ module cuboct_pipe #(
   input  logic [SlotBits-1:0]             slot_i,       // the own particle
   // The own particle, in the cycle after valid_i: a memory's answer.
   input  logic [Axes*PositionFrac-1:0]    own_x_i,      // unsigned
-  input  logic [Axes*VelocityBits-1:0]    own_v_i,
-  input  logic [TypeBits-1:0]             own_type_i,
+  input  logic [Axes*VelocityBits-1:0]    own_v_i,      // signed; Damped
+  input  logic [TypeBits-1:0]             own_type_i,   // Scaled
   // The other one, with valid_i.
   input  logic [Axes*(PositionFrac+2)-1:0] other_x_i,    // signed, in the own frame
-  input  logic [Axes*VelocityBits-1:0]    other_v_i,
-  input  logic [TypeBits-1:0]             other_type_i,
+  input  logic [Axes*VelocityBits-1:0]    other_v_i,    // signed; Damped
+  input  logic [TypeBits-1:0]             other_type_i, // Scaled
   output logic                            valid_o,      // a pair inside the cutoff
   output logic [SlotBits-1:0]             slot_next_o,  // slot_o of the next cycle
-  output logic [SlotBits-1:0]             slot_o,
+  output logic [SlotBits-1:0]             slot_o,       // with valid_o: its own slot
   output logic [Axes*KickBits-1:0]        push_o,       // signed, P+G fractional bits: minus the kick
   output logic                            fault_o,      // that pair does not fit:
   output logic                            fault_strength_o,  // s, else w
