@@ -12,7 +12,8 @@ when it was simulated (Icarus):
     changes 300                           run until cycle 300; a row for each cycle that differs from the one before
     cycle | push_i data_i | full_o count:d
 
-Left of the second bar are inputs, right of it outputs; a column's name may leave out _i or _o. A column is hexadecimal, with :d decimal, :s signed, :b binary.
+Left of the second bar are inputs, right of it outputs; a column's name may leave out _i or _o. A column is hexadecimal,
+with :d decimal, :s signed, :b binary.
 One-bit columns show `.` for 0; `x` is unknown. A row holds until the next one: cycles between them are run, not shown.
 Before cycle 0 two cycles are spent in reset, all inputs 0. An input set in a row changes after that cycle's first edge;
 outputs are read before its last."""
@@ -127,67 +128,95 @@ def literal(text, form, where):
     return str(value) if form == "s" else f"'h{value:x}"
 
 
+BENCH = """`timescale 1ns/1ns
+module block_bench{header};
+{declarations}
+  {module} {passed}dut ({ports});
+  integer cycle;
+  task step(input integer shown);
+    begin
+      #3;
+      if (shown != 0) begin
+        $write("%0d", cycle);
+{writes}
+        $write("\\n");
+      end
+      #1 clk_i = 1'b1;
+      #4 clk_i = 1'b0;
+      cycle = cycle + 1;
+    end
+  endtask
+  initial begin
+    clk_i = 1'b0;
+    rst_ni = 1'b0;
+{start}
+    repeat (2) begin
+      #4 clk_i = 1'b1;
+      #4 clk_i = 1'b0;
+    end
+    rst_ni = 1'b1;
+    cycle = 0;
+{rows}
+    $finish;
+  end
+endmodule
+module block_top;
+  block_bench {overrides}bench ();
+endmodule
+"""
+
+
 def bench(table, module):
     """A module around the block that drives the rows and writes what is seen: per cycle the number, then each value in
     binary, a value that is not to be shown as `-`."""
-    names = {port.name for port in module.ports}
+    ports = [port for port in module.ports if not port.define]
+    parameters = [item for item in module.parameters if not item.define]
+    names = {port.name for port in ports}
     for columns, suffix in ((table.inputs, "_i"), (table.outputs, "_o")):
         for column in columns:
             if column.expression not in names and column.expression + suffix in names:
                 column.expression += suffix
     around = set(re.findall(r"\w+", re.sub(r"\.\w+", "", " ".join(table.around))))
     driven = {re.match(r"\w+", column.expression)[0] for column in table.inputs}
-    held = {port.name: "'0" for port in module.ports if port.kind == "in" and not port.define}
+    held = {port.name: "'0" for port in ports if port.kind == "in"}
     for name in list(table.constants) + sorted(driven):
         if name not in held and name not in around:
             raise InputError(f"{table.where}: '{name}' is no input of {table.module}")
     for name, value in table.constants.items():
         held[name] = literal(value, "", table.where)
     # An input that the code around the module speaks of, and no column nor constant, is driven there.
-    tied = around - driven - set(table.constants)
-    set_at_start = [f"{name} = {value};" for name, value in held.items() if name not in tied]
-    headers = ",\n  ".join(item.text for item in module.parameters if not item.define)
-    passed = [item.name for item in module.parameters if item.kind != "derived" and not item.define]
-    lines = ["`timescale 1ns/1ns", "module block_bench" + (f" #(\n  {headers}\n)" if headers else "") + ";"]
-    lines += [f"  {port.text};" for port in module.ports if not port.define]
-    if "clk_i" not in names:
-        lines += ["  logic clk_i;"]
-    if "rst_ni" not in names:
-        lines += ["  logic rst_ni;"]
-    lines += [f"  {line}" for line in table.around]
-    parameters = ", ".join(f".{name}({name})" for name in passed)
-    ports = ", ".join(f".{port.name}" for port in module.ports if not port.define)
-    lines += [f"  {table.module} " + (f"#({parameters}) " if passed else "") + f"dut ({ports});"]
-    lines += ["  integer cycle;", "  task step(input integer shown);", "    begin", "      #3;",
-              "      if (shown != 0) begin", '        $write("%0d", cycle);']
+    tied = around - driven - set(table.constants) | {"clk_i", "rst_ni"}
+
+    connect = lambda pairs: ", ".join(f".{name}({value})" for name, value in pairs)
+    writes = []
     for column in table.inputs + table.outputs:
         show = f'$write(" %b", {column.expression});'
-        if column.when:
-            show = f'if (({column.when}) === 1\'b1) {show} else $write(" -");'
-        lines.append(f"        {show}")
-    lines += ['        $write("\\n");', "      end", "      #1 clk_i = 1'b1;", "      #4 clk_i = 1'b0;",
-              "      cycle = cycle + 1;", "    end", "  endtask", "  initial begin", "    clk_i = 1'b0;", "    rst_ni = 1'b0;"]
-    lines += [f"    {text}" for text in set_at_start if not text.startswith(("clk_i", "rst_ni"))]
-    lines += ["    repeat (2) begin", "      #4 clk_i = 1'b1;", "      #4 clk_i = 1'b0;", "    end",
-              "    rst_ni = 1'b1;", "    cycle = 0;"]
-    reached = 0
+        writes.append(f"if (({column.when}) === 1'b1) {show} else $write(\" -\");" if column.when else show)
+    rows = []
     for cycle, values in table.rows:
-        lines.append(f"    while (cycle < {cycle}) step({1 if table.changes else 0});")
-        lines += [f"    {column.expression} = {literal(value, column.form, table.where)};"
-                  for column, value in zip(table.inputs, values)]
-        lines.append("    step(1);")
-        reached = cycle
-    if table.changes > reached:
-        lines.append(f"    while (cycle <= {table.changes}) step(1);")
-    overrides = ", ".join(f".{name}({value})" for name, value in table.parameters.items())
-    lines += ["    $finish;", "  end", "endmodule", "module block_top;",
-              "  block_bench " + (f"#({overrides}) " if overrides else "") + "bench ();", "endmodule"]
-    return "\n".join(lines) + "\n"
+        rows.append(f"while (cycle < {cycle}) step({int(table.changes > 0)});")
+        rows += [f"{column.expression} = {literal(value, column.form, table.where)};"
+                 for column, value in zip(table.inputs, values)]
+        rows.append("step(1);")
+    if table.changes:
+        rows.append(f"while (cycle <= {table.changes}) step(1);")
+    passed = connect((item.name, item.name) for item in parameters if item.kind != "derived")
+    header = ",\n  ".join(item.text for item in parameters)
+    overrides = connect(table.parameters.items())
+    lines = lambda indent, texts: "\n".join(indent + text for text in texts)
+    return BENCH.format(
+        module=table.module, header=f" #(\n  {header}\n)" if header else "", passed=f"#({passed}) " if passed else "",
+        declarations=lines("  ", [f"{port.text};" for port in ports]
+                           + [f"logic {name};" for name in ("clk_i", "rst_ni") if name not in names] + table.around),
+        ports=", ".join(f".{port.name}" for port in ports), writes=lines("        ", writes),
+        start=lines("    ", [f"{name} = {value};" for name, value in held.items() if name not in tied]),
+        rows=lines("    ", rows), overrides=f"#({overrides}) " if overrides else "")
 
 
 def copy_for_icarus(sources, folder):
-    """Copies of the modules as Icarus 11 can simulate them: in its code for always_comb all blocks wait for one and the same
-    event that nobody defines, so that a block which wakes any wakes all, for ever. The emitted bench does the same."""
+    """Copies of the modules as Icarus 11 can simulate them: in its code for always_comb all blocks wait for one and the
+    same event that nobody defines, so that a block which wakes any wakes all, for ever. The emitted bench has such
+    copies too."""
     folder.mkdir()
     for source in sources:
         (folder / source.name).write_text(source.read_text().replace("always_comb", "always @*"))
