@@ -6,9 +6,9 @@
 module cuboct_filter_lane #(
   parameter int          Axes        = 3,      // 2 or 3
   parameter int          FilterFrac  = 8,      // B
-  parameter logic [63:0] PlanarOne   = 64'd0,  // B fractional bits
-  parameter logic [63:0] PlanarTwo   = 64'd0,
-  parameter logic [63:0] PlanarThree = 64'd0,
+  parameter logic [63:0] PlanarOne   = 64'd0,  // B fractional bits; bound of a size
+  parameter logic [63:0] PlanarTwo   = 64'd0,  // of a sum of two sizes
+  parameter logic [63:0] PlanarThree = 64'd0,  // of the sum of all
   // Derived; do not set.
   localparam int         Tests       = (Axes == 3) ? 5 : 2
 ) (

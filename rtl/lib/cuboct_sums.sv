@@ -12,11 +12,11 @@ module cuboct_sums #(
 ) (
   input  logic                  clk_i,
   input  logic                  rst_ni,
-  input  logic                  kick_valid_i,
+  input  logic                  kick_valid_i, // a kick is added to the sum of slot next_slot_i of the cycle before
   input  logic [Axes*KickBits-1:0] push_i,     // minus the kick
-  input  logic [SlotBits-1:0]   next_slot_i,  // whose kick or sum the next cycle is about
-  input  logic                  take_i,       // clears; never with a kick
-  output logic [Axes*SumBits-1:0] sum_o         // of that slot; if Spaced, not in the cycle after a kick
+  input  logic [SlotBits-1:0]   next_slot_i,  // the slot that the next cycle's kick or take is about
+  input  logic                  take_i,       // clears that sum; never with a kick
+  output logic [Axes*SumBits-1:0] sum_o         // of the slot of the cycle before; if Spaced, not in the cycle after a kick
 );
   localparam int IndexBits = (Capacity > 1) ? $clog2(Capacity) : 1;
 
