@@ -71,11 +71,11 @@ module cuboct_brick_finder #(
   logic [Faces:0]           answer_q;  // which memory's answer is the candidate, one bit each
   logic [CellBits-1:0]      cell_q;
   logic [CountBits-1:0]     count_q;   // of the own cell; 0 where nobody meets
-  logic [RowBits-1:0]       row, row_f1, row_head;
+  logic [RowBits-1:0]       row, row_out, row_head;
   logic                     present, nobody, same, past, stall, filter_busy, issue_busy;
   logic [HaloBits-1:0]      record_word;
-  logic [AllBits-1:0]       candidate, candidate_f1, candidate_head, candidate_now;
-  logic [FilterLanes-1:0]   mask_f1, mask_head;
+  logic [AllBits-1:0]       candidate, candidate_out, candidate_head, candidate_now;
+  logic [FilterLanes-1:0]   mask_out, mask_head;
   logic                     push, pop, full, empty;
 
   cuboct_brick_streamer #(
@@ -130,12 +130,12 @@ module cuboct_brick_finder #(
     .RowBits(RowBits), .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_filter (
     .clk_i, .rst_ni, .present_i(present), .row_i(row), .own_i(same), .slot_i(record), .own_count_i(count_q),
-    .candidate_i(candidate), .row_data_i, .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_f1),
-    .row_f1_o(row_f1), .mask_o(mask_f1), .busy_o(filter_busy)
+    .candidate_i(candidate), .row_data_i, .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_out),
+    .row_o(row_out), .mask_o(mask_out), .busy_o(filter_busy)
   );
 
   cuboct_fifo #(.Bits(AllBits + RowBits + FilterLanes), .Depth(QueueDepth)) u_queue (
-    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_f1, row_f1, mask_f1}), .full_o(full),
+    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_out, row_out, mask_out}), .full_o(full),
     .pop_i(pop), .data_o({candidate_head, row_head, mask_head}), .empty_o(empty)
   );
 

@@ -42,10 +42,10 @@ module cuboct_pair_finder #(
 );
   logic [2:0]               segment;
   logic [2*Axes:0]          answer_q;  // which memory's answer is the candidate, one bit each
-  logic [RowBits-1:0]       row, row_f1, row_head;
+  logic [RowBits-1:0]       row, row_out, row_head;
   logic                     present, past, stall, filter_busy, issue_busy;
-  logic [CandidateBits-1:0] candidate, candidate_f1, candidate_head;
-  logic [FilterLanes-1:0]   mask_f1, mask_head;
+  logic [CandidateBits-1:0] candidate, candidate_out, candidate_head;
+  logic [FilterLanes-1:0]   mask_out, mask_head;
   logic                     push, pop, full, empty;
 
   cuboct_streamer #(
@@ -74,12 +74,12 @@ module cuboct_pair_finder #(
   ) u_filter (
     .clk_i, .rst_ni, .present_i(present), .row_i(row), .own_i(segment == 3'd0),
     .slot_i(slot_o), .own_count_i(counts_i[0 +: CountBits]), .candidate_i(candidate), .row_data_i,
-    .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_f1), .row_f1_o(row_f1),
-    .mask_o(mask_f1), .busy_o(filter_busy)
+    .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_out), .row_o(row_out),
+    .mask_o(mask_out), .busy_o(filter_busy)
   );
 
   cuboct_fifo #(.Bits(CandidateBits + RowBits + FilterLanes), .Depth(QueueDepth)) u_queue (
-    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_f1, row_f1, mask_f1}), .full_o(full),
+    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_out, row_out, mask_out}), .full_o(full),
     .pop_i(pop), .data_o({candidate_head, row_head, mask_head}), .empty_o(empty)
   );
 

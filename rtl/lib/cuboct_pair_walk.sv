@@ -172,8 +172,8 @@ module cuboct_pair_walk #(
   cuboct_filter_lane #(
     .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree)
   ) u_lane (
-    .test_i(segment_q != 3'd0 || t_slot_q != record_q[SlotBits-1:0]), .own_i(coarse_own), .candidate_i(coarse),
-    .near_o(near)
+    .clk_i, .en_i(1'b0), .test_i(segment_q != 3'd0 || t_slot_q != record_q[SlotBits-1:0]), .own_i(coarse_own),
+    .candidate_i(coarse), .near_o(near)
   );
 
   assign word_o       = word_q;

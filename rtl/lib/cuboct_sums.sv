@@ -34,10 +34,11 @@ module cuboct_sums #(
     assign added[a*SumBits +: SumBits] = old[a*SumBits +: SumBits] - push;
   end
 
-  always_comb begin
-    held_d = held_q;
-    if (take_i) held_d[slot_q[IndexBits-1:0]] = 1'b0;
-    else if (kick_valid_i) held_d[slot_q[IndexBits-1:0]] = 1'b1;
+  // Each slot by itself: a kick and a take never come in one cycle.
+  for (genvar h = 0; h < Capacity; h++) begin : gen_held
+    localparam int Slot = h;
+    assign held_d[h] = (held_q[h] || (kick_valid_i && slot_q == Slot[SlotBits-1:0]))
+                    && !(take_i && slot_q == Slot[SlotBits-1:0]);
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) held_q <= '0;
