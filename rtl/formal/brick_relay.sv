@@ -40,6 +40,7 @@ module brick_relay_formal #(
   localparam int BeatBits  = (Beats > 1) ? $clog2(Beats) : 1;
   localparam logic [GridBits-1:0] One = 1;
   localparam logic [2:0]          Own = 3'd7;
+  localparam logic [GridBits-1:0] FullX = BrickX, FullY = BrickY, FullZ = BrickZ;
 
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
@@ -152,12 +153,13 @@ module brick_relay_formal #(
   logic [SlotBits-1:0]       sent_record;
   logic [2:0]                sent_source;
   logic [TagBits-1:0]        sent_tag, tag;
-  logic [31:0]               x, y, z;
+  logic [7:0]                x, y, z;
+  localparam logic [7:0]     X = BrickX, Y = BrickY;
   integer                    b, l, e;
   assign {sent_tag, sent_source, sent_cell, sent_record} = whole[Bits-1:0];
-  assign x = {{(32 - GridBits) {1'b0}}, sent_cell[0 +: GridBits]};
-  assign y = {{(32 - GridBits) {1'b0}}, sent_cell[GridBits +: GridBits]};
-  assign z = {{(32 - GridBits) {1'b0}}, sent_cell[2*GridBits +: GridBits]};
+  assign x = {{(8 - GridBits) {1'b0}}, sent_cell[0 +: GridBits]};
+  assign y = {{(8 - GridBits) {1'b0}}, sent_cell[GridBits +: GridBits]};
+  assign z = {{(8 - GridBits) {1'b0}}, sent_cell[2*GridBits +: GridBits]};
   always_comb begin
     whole = parts_q;
     for (b = 0; b < Beats; b = b + 1) if (beat_q == b[3:0]) whole[b*LinkBits +: LinkBits] = data;
@@ -167,9 +169,9 @@ module brick_relay_formal #(
     if (axis_q == 2'd0) thin = (BrickX == 1);
     if (axis_q == 2'd1) thin = (BrickY == 1);
     if (axis_q == 2'd2) thin = (BrickZ == 1);
-    tag = y - 1 + BrickY * (z - 1);
-    if (axis_q == 2'd1) tag = x + (BrickX + 2) * (z - 1);
-    if (axis_q == 2'd2) tag = x + (BrickX + 2) * y;
+    tag = y - 8'd1 + Y * (z - 8'd1);
+    if (axis_q == 2'd1) tag = x + (X + 8'd2) * (z - 8'd1);
+    if (axis_q == 2'd2) tag = x + (X + 8'd2) * y;
     want[0]   = linked[0] && in_layer(watched, axis_q, 1'b0, extent, has_link);
     want[1]   = linked[1] && in_layer(watched, axis_q, 1'b1, extent, has_link);
     whole_now = (!is_end && beat_q == LastBeat) ? load : 2'b00;
@@ -228,9 +230,9 @@ module brick_relay_formal #(
       a_progress: assert (!moves_q || rank > rank_q);
       c_corner:  cover (whole_now == 2'b10 && watched_q == 2'b00 && axis_q == Axes - 1 && sent_source == 3'd0
                         && sent_cell == watched && sent_record == Most - 1);
-      c_ragged:  cover (sent && again_q && axis_q == 2'd0 && some_q == 2'b11 && extent[0 +: GridBits] != BrickX);
+      c_ragged:  cover (sent && again_q && axis_q == 2'd0 && some_q != 2'b00 && extent != {FullZ, FullY, FullX});
       c_nothing: cover (sent && axis_q == Axes - 1 && linked == 2'b11 && some_q == 2'b00);
-      c_all:     cover (is_end && axis_q == Axes - 1 && has_link == '1 && want[1] && watched_q[1] && again_q);
+      c_all:     cover (is_end && axis_q == Axes - 1 && has_link == '1 && want[1] && watched_q[1]);
     end
   end
 endmodule
