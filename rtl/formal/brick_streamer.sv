@@ -219,7 +219,7 @@ module brick_streamer_formal #(
                        && row == Rows - 1 && offset[1:0] == 2'b11 && own_cell == '0);
       c_ragged: cover (past && again_q && some_q && extent != {FullZ, FullY, FullX} && seen_q && watch);
       c_empty:  cover (past && !met_q && has_link == '1);
-      c_across: cover (present && !nobody && segment == 3'd0 && !same && at_watched && row != '0);
+      c_across: cover (present && !nobody && segment == 3'd0 && !same && at_watched && row == Rows - 1);
     end
   end
 endmodule
