@@ -82,6 +82,8 @@ module cuboct_filter #(
     localparam int Lane = l;
     logic [RowSlots-1:0] slot;
     logic                exists, itself;
+    logic [((Axes == 3) ? 5 : 2)-1:0] near;
+    assign mask[l] = (near == '1);
     assign slot   = {{(RowSlots - RowBits) {1'b0}}, f0_row_q} * FilterLanes[RowSlots-1:0] + Lane[RowSlots-1:0];
     assign exists = (slot < {{(RowSlots - CountBits) {1'b0}}, own_count_i});
     assign itself = f0_own_q && (slot == {{(RowSlots - SlotBits) {1'b0}}, f0_slot_q});
@@ -89,7 +91,7 @@ module cuboct_filter #(
       .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree)
     ) u_lane (
       .test_i(exists && !itself), .own_i(row_data_i[l*Axes*FilterFrac +: Axes*FilterFrac]), .candidate_i(coarse),
-      .pass_o(mask[l])
+      .near_o(near)
     );
   end
 

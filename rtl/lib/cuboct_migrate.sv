@@ -110,7 +110,10 @@ module cuboct_migrate #(
     end_o          = 1'b0;
     write_o        = 1'b0;
     write_slot_o   = write_q[SlotBits-1:0];
-    write_data_o   = read_data_i;
+    // Chosen by the state: what arrives comes late in the cycle.
+    write_data_o   = (state_q == TakeLow || state_q == TakeHigh)
+                   ? {2'b00, candidate[ParticleBits-1:PositionBits+AwayBits], away_on, candidate[PositionBits-1:0]}
+                   : read_data_i;
     count_set_o    = 1'b0;
     count_o        = write_q;
     leaving_more_o = '0;
@@ -161,7 +164,6 @@ module cuboct_migrate #(
       if (taking) begin
         pop_o        = {side, !side};
         write_slot_o = count_i[SlotBits-1:0];
-        write_data_o = {2'b00, candidate[ParticleBits-1:PositionBits+AwayBits], away_on, candidate[PositionBits-1:0]};
         write_o      = has_room;
         count_set_o  = has_room;
         count_o      = count_i + 1'b1;
