@@ -84,7 +84,9 @@ def read_table(lines, where):
                 table.around.append(rest)
             elif key == "where":
                 for part in rest.split(";"):
-                    name, _, expression = part.partition(" = ")
+                    name, equals, expression = part.partition(" = ")
+                    if not equals:
+                        raise InputError(f"{where}: '{line}' is not NAME = EXPRESSION; NAME = EXPRESSION ...")
                     names[name.strip()] = expression.strip()
             elif key == "show":
                 shown, _, condition = rest.partition(" when ")

@@ -15,7 +15,7 @@ module cuboct_filter_lane #(
 ) (
   input  logic                           clk_i,
   input  logic                           en_i,         // Registered: takes the positions
-  input  logic                           test_i,       // with pass_o: the slot exists and is not the candidate itself
+  input  logic                           test_i,       // with near_o: the slot exists and is not the candidate itself
   input  logic [Axes*FilterFrac-1:0]     own_i,        // x, y, z, unsigned
   input  logic [Axes*(FilterFrac+2)-1:0] candidate_i,  // x, y, z, signed
   output logic [Tests-1:0]               near_o        // it may if all are set
