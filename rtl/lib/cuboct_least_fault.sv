@@ -16,7 +16,7 @@ module cuboct_least_fault #(
   input  logic [Sources*64-1:0]     number_i,      // signed
   input  logic                      move_valid_i,  // a fault of migration
   input  logic [3:0]                move_code_i,   // 6 to 11, none below an earlier one of the step
-  input  logic [IdBits-1:0]         move_id_i,
+  input  logic [IdBits-1:0]         move_id_i,     // of the particle
   input  logic [63:0]               move_number_i, // one for each code, >= 0
   output logic                      valid_o,       // with clear_i: there was one in the step
   output logic [3:0]                code_o,        // of the least; 0 where there is none
