@@ -62,10 +62,10 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
   if (cells == 1) {
     memories.push_back({"sums", capacity, rule.axes * sum_bits_, pipes, Kind::prompt});
     for (int a = 0; a < rule.axes; ++a) {
-      // One cell's halos are 1, 3, 9 cells; particles lie behind them.
+      // One cell's halos are 1, 3, 9 cells.
       const uint64_t depth = (a == 0 ? 1u : a == 1 ? 3u : 9u) * capacity;
-      ram("halos, particles from a face", depth + capacity, std::max(words.halo_bits, words.particle_bits),
-          2);
+      ram("halos from a face", depth, words.halo_bits, 2);
+      ram("particles from a face", capacity, words.particle_bits, 2);
       if (a < rule.axes - 1) ram("halos, for the relay", depth, words.halo_bits, 2);
     }
     return memories;

@@ -149,7 +149,10 @@ Latency latency_of(const FixedRule& r, const Arch& arch) {
   // pair that is alone in the pipe needs no registers to wait in.
   latency.interval = serial ? latency.product + 1 : !shared ? 1 : arch.narrow_memories ? latency.pipe - 2 : r.axes;
   latency.update = r.pd ? 7 : 4;
-  if (arch.narrow_memories) latency.stride = latency.update - 1;
+  if (arch.narrow_memories) {
+    latency.filter = 2;
+    latency.stride = latency.update - 1;
+  }
   return latency;
 }
 

@@ -35,10 +35,13 @@ struct Words {
   int link_bits = 0;      // as built: arch.link_bits, or halo_bits
 };
 
+// Registers of the filter with wide memories: a candidate's answer, the one chosen, sizes, masks.
+inline constexpr int kFilterStages = 4;
+
 // Fixed latencies of the datapath, in cycles; they depend only on what the rule uses and on the kind of
 // multipliers. docs/reference/node.md.
 struct Latency {
-  int filter = 2;  // from the candidate's read to its push into the queue
+  int filter = kFilterStages;  // from the candidate's read to its push into the queue
   int pipe = 0;    // from a pair's issue to its sum
   int update = 0;  // from a particle's read to the cycle in which MIGRATE may read it
   int stride = 1;  // from one particle's read to the next in UPDATE: narrow memories keep each until it is written

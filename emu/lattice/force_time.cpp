@@ -2,7 +2,10 @@
 #include "emu/lattice/force_time.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "hw/plan.h"
 
 namespace cuboct::emu {
 namespace {
@@ -67,52 +70,55 @@ int64_t force_time(const ForceShape& shape, const ForceWork& work, const Availab
   int64_t* pop = popped.data();
   std::fill(pop, pop + depth, kLongAgo);
 
-  int64_t left = 1;  // cycle in which the item before leaves F1
-  int64_t next = 0;  // first cycle in which the streamer may present
+  // The streamer's positions are its items and the cycles in which it presents nothing. All registers of the
+  // filter move together, so that it acts again when the position kFilterStages before leaves them: the
+  // cycles in which the last so many do, the oldest first.
+  std::array<int64_t, kFilterStages> leaves;
+  for (size_t k = 0; k < leaves.size(); ++k) leaves[k] = static_cast<int64_t>(k);
+  const auto leave = [&](int64_t cycle) {
+    std::copy(leaves.begin() + 1, leaves.end(), leaves.begin());
+    leaves.back() = cycle;
+  };
   int64_t issued =
       kLongAgo;          // last cycle that the entries so far keep `current`: the next may move there in it
   int64_t streamed = 0;  // cycle of the last presentation
-  int64_t filtered = kLongAgo;  // cycle in which the last real item leaves F1
+  int64_t filtered = kLongAgo;  // cycle in which the last item leaves the filter
   const uint32_t* entry = work.entries.data();
   const uint32_t* const last_entry = entry + entries;
-  uint32_t first_item = 0;
+  int64_t first_item = 0;
   const size_t segments = 1 + 2 * static_cast<size_t>(shape.axes);
   for (size_t segment = 0; segment < segments; ++segment) {
     const int64_t from = segment == 0 ? 0 : available[(segment - 1) / 2];
-    streamed = next;
-    if (from > next) {  // bubbles follow the item before through F0 and F1
-      streamed = std::max(from, left);
-      left = streamed + 1;
-    }
+    // Nothing is presented until then. Once the filter holds nothing else, one leaves it in each cycle.
+    for (int k = 0; k < kFilterStages && from > leaves.front(); ++k) leave(leaves.back() + 1);
+    if (const int64_t wait = from - leaves.front(); wait > 0)
+      for (int64_t& cycle : leaves) cycle += wait;
+    streamed = leaves.front();
     const uint32_t count = work.items[segment];
     if (count == 0) {
-      next = left++;
+      leave(leaves.back() + 1);
       continue;
     }
-    // Item k of the segment leaves F1 in cycle base + k, unless an entry waits for room: then base grows. The
-    // last item but one leaves it in the cycle in which the streamer may begin the next segment.
-    const uint32_t end_item = first_item + count;
-    const uint32_t last = ForceWork::entry(end_item - 1, 0);
-    int64_t base = left + 1 - first_item;
-    for (; entry != last_entry && *entry < last; ++entry) {
+    // Item k leaves in cycle base + k, unless an entry waits for room: then base grows from that item on.
+    const int64_t end_item = first_item + count;
+    int64_t base = leaves.back() + 1 - first_item, left = first_item;
+    const auto leave_until = [&](int64_t item) {
+      for (left = std::max(left, item - kFilterStages); left < item; ++left) leave(base + left);
+    };
+    for (; entry != last_entry && *entry >> ForceWork::kCycleBits < end_item; ++entry) {
       const int64_t item = *entry >> ForceWork::kCycleBits,
                     cycles = (*entry & ((1 << ForceWork::kCycleBits) - 1)) * interval;
-      base = std::max(base, *pop + 1 - item);
+      if (const int64_t room = *pop + 1 - item; room > base) {
+        leave_until(item);
+        base = room;
+      }
       const int64_t moved = std::max(issued, base + item + 1);
       pop[depth] = moved;
       ++pop;
       issued = moved + cycles;
     }
-    next = base + end_item - 2;
-    if (entry != last_entry && *entry >> ForceWork::kCycleBits == end_item - 1) {
-      base = std::max(base, *pop + 1 - (int64_t{end_item} - 1));
-      const int64_t moved = std::max(issued, base + end_item);
-      pop[depth] = moved;
-      ++pop;
-      issued = moved + (*entry & ((1 << ForceWork::kCycleBits) - 1)) * interval;
-      ++entry;
-    }
-    left = filtered = base + end_item - 1;
+    leave_until(end_item);
+    filtered = leaves.back();
     first_item = end_item;
   }
   return std::max({streamed + 1, filtered + 1, issued - (interval - 1) + shape.pipe});

@@ -41,11 +41,14 @@ uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
   const uint32_t depth = static_cast<uint32_t>(plan.arch.queue_depth);
   stream.queue.resize(depth);
 
-  // The registers. `mask` of F1 and of `current` is that of their entry, less what was issued.
+  // The registers. `mask` of the filter's last and of `current` is that of their entry, less what was issued.
   int segment = 0;
   uint32_t next = 0;  // the streamer's entry
-  bool f0_valid = false, f1_valid = false;
-  uint32_t f0 = 0, f1 = 0, current = 0;
+  constexpr uint32_t kNone = ~uint32_t{0};
+  std::array<uint32_t, kFilterStages> filter;  // F0, F1, ...: entries
+  filter.fill(kNone);
+  int filtering = 0;  // of these, those that are not empty
+  uint32_t current = 0;
   uint64_t current_mask = 0;
   uint32_t head = 0, count = 0;  // queue
   int hold = 0;                  // cycles until the next pair may be issued
@@ -54,7 +57,7 @@ uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
   const auto from = [&](int s) { return available[(s + 1) / 2]; };
   uint64_t cycle = available[0];
   for (;; ++cycle) {
-    if (!f0_valid && !f1_valid && count == 0 && current_mask == 0 && hold == 0) {
+    if (filtering == 0 && count == 0 && current_mask == 0 && hold == 0) {
       // Nothing moves but the pipes: on to where the streamer may go on, or the pipes are empty.
       if (segment == segments) {
         cycle += static_cast<uint64_t>(drain);
@@ -85,25 +88,26 @@ uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
       head = head + 1 == depth ? 0 : head + 1;
       --count;
     }
-    if (f1_valid && stream.mask[f1] != 0) {
+    const uint32_t last = filter.back();
+    if (last != kNone && stream.mask[last] != 0) {
       if (held == depth) {
         ++counts.stalls;
         continue;
       }
       const uint32_t tail = head + count;
-      stream.queue[tail < depth ? tail : tail - depth] = f1;
+      stream.queue[tail < depth ? tail : tail - depth] = last;
       ++count;
     }
-    f1_valid = f0_valid;
-    f1 = f0;
-    f0_valid = false;
+    filtering -= last != kNone;
+    std::move_backward(filter.begin(), filter.end() - 1, filter.end());
+    filter[0] = kNone;
     if (segment == segments || from(segment) > cycle) continue;
     if (next == stream.segment_end[segment]) {  // no record, or no slot to meet it
       ++segment;
       continue;
     }
-    f0_valid = true;
-    f0 = next++;
+    filter[0] = next++;
+    ++filtering;
     ++counts.candidates;
     if (next == stream.segment_end[segment]) ++segment;
   }

@@ -33,7 +33,7 @@ module filter_formal #(
   // Own particles do not change while candidates stream past; of their positions the leading bits are kept.
   (* anyconst *) logic [Slots*CoarseBits-1:0] own;
   (* anyconst *) logic [3:0]                  own_count;
-  logic                                       stall, push, row_f1, busy;
+  logic                                       stall, push, row, busy;
   logic [CandidateBits-1:0]                   candidate;
   logic [FilterLanes-1:0]                     mask;
   always_comb begin
@@ -56,7 +56,7 @@ module filter_formal #(
   ) u_dut (
     .clk_i, .rst_ni(running_q), .present_i, .row_i, .own_i, .slot_i, .own_count_i(own_count),
     .candidate_i(answer_q), .row_data_i(answer_row_q), .full_i, .stall_o(stall), .push_o(push),
-    .candidate_o(candidate), .row_f1_o(row_f1), .mask_o(mask), .busy_o(busy)
+    .candidate_o(candidate), .row_o(row), .mask_o(mask), .busy_o(busy)
   );
 
   // The planar test of the candidate that is presented, against each slot of its row.
@@ -93,26 +93,22 @@ module filter_formal #(
     end
   end
 
-  // The watched candidate: in the first register, in the second, gone. Both move unless the queue stalls
-  // them.
-  logic [1:0]               place_q;  // 0: not there
+  // The watched candidate's register, the first ... the fourth, or gone. All move unless the queue stalls them.
+  logic [2:0]               place_q;  // 0: not there
   logic                     watched_q, row_q;
   logic [CandidateBits-1:0] candidate_q;
   logic [FilterLanes-1:0]   passes_q;
-  logic                     second_q;  // the second register holds something, watched or not
-  logic                     first_q;
+  logic [3:0]               held_q;   // registers that hold something, watched or not
   always_ff @(posedge clk_i) begin
     if (!running_q) begin
       place_q   <= '0;
       watched_q <= 1'b0;
-      first_q   <= 1'b0;
-      second_q  <= 1'b0;
+      held_q    <= '0;
     end else if (!stall) begin
-      first_q  <= present_i;
-      second_q <= first_q;
-      place_q  <= (place_q == 2'd1) ? 2'd2 : 2'd0;
+      held_q  <= {held_q[2:0], present_i};
+      place_q <= (place_q == 3'd0 || place_q == 3'd4) ? 3'd0 : place_q + 3'd1;
       if (present_i && watch_i && !watched_q) begin
-        place_q     <= 2'd1;
+        place_q     <= 3'd1;
         watched_q   <= 1'b1;
         candidate_q <= candidate_i;
         row_q       <= row_i;
@@ -122,17 +118,17 @@ module filter_formal #(
   end
   always_ff @(posedge clk_i) begin
     if (running_q) begin
-      a_busy: assert (busy == (first_q || second_q));
-      if (push) a_push: assert (second_q && !full_i);
-      if (stall) a_stall: assert (full_i && second_q);
-      if (place_q == 2'd2) begin
+      a_busy: assert (busy == (held_q != '0));
+      if (push) a_push: assert (held_q[3] && !full_i);
+      if (stall) a_stall: assert (full_i && held_q[3]);
+      if (place_q == 3'd4) begin
         a_once: assert (push == (passes_q != '0 && !full_i) && stall == (passes_q != '0 && full_i));
-        if (push) a_same: assert (candidate == candidate_q && row_f1 == row_q);
+        if (push) a_same: assert (candidate == candidate_q && row == row_q);
         if (push) a_mask: assert (mask == passes_q);
       end
-      c_all:   cover (push && place_q == 2'd2 && passes_q == '1);
-      c_none:  cover (place_q == 2'd2 && passes_q == '0 && own_count == Slots[3:0]);
-      c_stall: cover (stall && place_q == 2'd1 && present_i);
+      c_all:   cover (push && place_q == 3'd4 && passes_q == '1);
+      c_none:  cover (place_q == 3'd4 && passes_q == '0 && own_count == Slots[3:0]);
+      c_stall: cover (stall && place_q == 3'd3 && present_i);
     end
   end
 endmodule

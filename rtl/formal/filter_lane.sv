@@ -22,7 +22,7 @@ module filter_lane_formal #(
   cuboct_filter_lane #(
     .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo),
     .PlanarThree(PlanarThree)
-  ) u_dut (.test_i, .own_i, .candidate_i, .near_o(tests));
+  ) u_dut (.clk_i, .en_i(1'b0), .test_i, .own_i, .candidate_i, .near_o(tests));
 
   logic [3*Bits-1:0] sizes;  // by axis; nothing along one that is not there
   for (genvar a = 0; a < 3; a++) begin : gen_axis

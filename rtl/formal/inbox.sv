@@ -68,8 +68,8 @@ module inbox_formal #(
       if (clear_i) count_q <= '0;
       else if (append_i) count_q <= count_q + 1'b1;
       cleared_q <= cleared_q || (clear_i && count_q == HaloDepth[CountBits-1:0]);
-      if (read_i || migrating_i) asked_q <= !migrating_i && counts && addr_i[AddrBits-1:0] == number;
-      kept_q    <= asked_q && !read_i && !migrating_i;  // the answer stays
+      if (read_i) asked_q <= counts && addr_i[AddrBits-1:0] == number;
+      kept_q    <= asked_q && !read_i;  // the answer stays
       relayed_q <= counts && relay_addr_i[AddrBits-1:0] == number;
     end
     if (append_i && count_q == {{(CountBits - AddrBits) {1'b0}}, number}) value_q <= halo_i;
@@ -105,12 +105,19 @@ module inbox_formal #(
   end
 
   // A word that is asked for in the cycle in which it is written has no defined answer: no one looks at it.
-  (* keep *) logic                 tap_write, tap_read;
-  (* keep *) logic [CountBits-1:0] tap_write_addr, tap_read_addr;
-  logic                            torn_q;
+  localparam int PlaceBits = (Capacity > 1) ? $clog2(Capacity) : 1;
+  (* keep *) logic                 tap_write, tap_read, tap_push, tap_show;
+  (* keep *) logic [AddrBits-1:0]  tap_write_addr, tap_read_addr;
+  (* keep *) logic [PlaceBits-1:0] tap_push_place, tap_show_place;
+  logic                            torn_q, torn_particle_q;
   always_ff @(posedge clk_i) begin
-    if (!running_q) torn_q <= 1'b0;
-    else if (tap_read) torn_q <= tap_write && tap_write_addr == tap_read_addr;
+    if (!running_q) begin
+      torn_q          <= 1'b0;
+      torn_particle_q <= 1'b0;
+    end else begin
+      if (tap_read) torn_q <= tap_write && tap_write_addr == tap_read_addr;
+      if (tap_show) torn_particle_q <= tap_push && tap_push_place == tap_show_place;
+    end
   end
 
   always_ff @(posedge clk_i) begin
@@ -122,7 +129,7 @@ module inbox_formal #(
       a_empty: assert (empty == (held_q == {{(CountBits - 1) {1'b0}}, pushed_q}));
       if (inside_q && shown_q) a_held: assert (!empty);
       if (inside_q && shown_q && before_q == '0 && migrating_q) begin
-        a_particle: assert (particle == particle_q && !torn_q);
+        a_particle: assert (particle == particle_q && !torn_particle_q);
       end
       c_all:     cover (count == HaloDepth[CountBits-1:0] && full && asked_q && relayed_q && value_q == '1);
       c_cleared: cover (cleared_q && count == '0);
@@ -132,7 +139,7 @@ module inbox_formal #(
       c_wrapped: cover (full && watched_q && !inside_q);
       c_both:    cover (migrating_q && inside_q && shown_q && before_q == '0 && pop_i
                         && (Capacity == 1 || push_i));
-      c_torn:    cover (torn_q);
+      c_torn:    cover (torn_q && torn_particle_q);
     end
   end
 endmodule

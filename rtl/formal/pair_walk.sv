@@ -114,7 +114,7 @@ module pair_walk_formal #(
   logic [((Axes == 3) ? 5 : 2)-1:0] tests;
   assign pass = (tests == '1);
   cuboct_filter_lane #(.Axes(Axes), .FilterFrac(1), .PlanarOne(One), .PlanarTwo(Two), .PlanarThree(Three)) u_test (
-    .test_i(1'b1), .own_i(coarse_own), .candidate_i(coarse), .near_o(tests)
+    .clk_i, .en_i(1'b0), .test_i(1'b1), .own_i(coarse_own), .candidate_i(coarse), .near_o(tests)
   );
   integer s;
   always_comb begin

@@ -36,26 +36,26 @@ module cuboct_brick_finder #(
   input  logic [Faces-1:0]                      has_link_i,
   input  logic [3*GridBits-1:0]                 extent_i,
   // Counts, without latency.
-  output logic [CellBits-1:0]                   own_cell_o,
-  input  logic [CountBits-1:0]                  own_count_i,
-  output logic [CellBits-1:0]                   near_cell_o,
-  input  logic [CountBits-1:0]                  near_count_i,
-  output logic [3*TagBits-1:0]                  near_layer_o,
-  input  logic [Faces*CountBits-1:0]            layer_count_i,
+  output logic [CellBits-1:0]                   own_cell_o,   // own cell
+  input  logic [CountBits-1:0]                  own_count_i,  // its particles
+  output logic [CellBits-1:0]                   near_cell_o,  // cell around, if an own one
+  input  logic [CountBits-1:0]                  near_count_i, // its particles
+  output logic [3*TagBits-1:0]                  near_layer_o, // the same in the layers over x, y, z
+  input  logic [Faces*CountBits-1:0]            layer_count_i,  // by face, its records
   // Where the record is read: own ones, halos by axis; and a row of own positions. The memories answer in the next
   // cycle, and keep the answer until the next read.
-  output logic                                  read_o,
-  output logic [OwnAddrBits-1:0]                own_addr_o,
-  output logic [3*HaloAddrBits-1:0]             halo_addr_o,
-  input  logic [HaloBits-1:0]                   own_i,
-  input  logic [Faces*HaloBits-1:0]             halos_i,
-  output logic [RowAddrBits-1:0]                row_o,
-  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,
+  output logic                                  read_o,       // a record and a row are asked for
+  output logic [OwnAddrBits-1:0]                own_addr_o,   // with read_o
+  output logic [3*HaloAddrBits-1:0]             halo_addr_o,  // by axis, with read_o
+  input  logic [HaloBits-1:0]                   own_i,        // an own particle
+  input  logic [Faces*HaloBits-1:0]             halos_i,      // by face
+  output logic [RowAddrBits-1:0]                row_o,        // with read_o
+  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,  // by lane, x lowest
   // Pairs.
-  output logic [CandidateBits-1:0]              candidate_o,
+  output logic [CandidateBits-1:0]              candidate_o,  // with issue_o
   output logic [CellBits-1:0]                   cell_o,       // the own cell
-  output logic [ForcePipes-1:0]                 issue_o,
-  output logic [ForcePipes*SlotBits-1:0]        issue_slot_o,
+  output logic [ForcePipes-1:0]                 issue_o,      // per pipe: a pair
+  output logic [ForcePipes*SlotBits-1:0]        issue_slot_o, // per pipe, with issue_o: its own slot
   output logic                                  meet_o,       // a candidate is presented
   output logic                                  stall_o,      // a full queue holds the filter
   output logic                                  done_o        // no candidate is left anywhere
@@ -71,11 +71,11 @@ module cuboct_brick_finder #(
   logic [Faces:0]           answer_q;  // which memory's answer is the candidate, one bit each
   logic [CellBits-1:0]      cell_q;
   logic [CountBits-1:0]     count_q;   // of the own cell; 0 where nobody meets
-  logic [RowBits-1:0]       row, row_f1, row_head;
+  logic [RowBits-1:0]       row, row_out, row_head;
   logic                     present, nobody, same, past, stall, filter_busy, issue_busy;
   logic [HaloBits-1:0]      record_word;
-  logic [AllBits-1:0]       candidate, candidate_f1, candidate_head, candidate_now;
-  logic [FilterLanes-1:0]   mask_f1, mask_head;
+  logic [AllBits-1:0]       candidate, candidate_out, candidate_head, candidate_now;
+  logic [FilterLanes-1:0]   mask_out, mask_head;
   logic                     push, pop, full, empty;
 
   cuboct_brick_streamer #(
@@ -130,12 +130,12 @@ module cuboct_brick_finder #(
     .RowBits(RowBits), .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_filter (
     .clk_i, .rst_ni, .present_i(present), .row_i(row), .own_i(same), .slot_i(record), .own_count_i(count_q),
-    .candidate_i(candidate), .row_data_i, .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_f1),
-    .row_f1_o(row_f1), .mask_o(mask_f1), .busy_o(filter_busy)
+    .candidate_i(candidate), .row_data_i, .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_out),
+    .row_o(row_out), .mask_o(mask_out), .busy_o(filter_busy)
   );
 
   cuboct_fifo #(.Bits(AllBits + RowBits + FilterLanes), .Depth(QueueDepth)) u_queue (
-    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_f1, row_f1, mask_f1}), .full_o(full),
+    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_out, row_out, mask_out}), .full_o(full),
     .pop_i(pop), .data_o({candidate_head, row_head, mask_head}), .empty_o(empty)
   );
 

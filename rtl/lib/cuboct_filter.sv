@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The filter: register F0 holds a candidate (in the memories' output registers) and a row, FilterLanes lanes test the
-// candidate against the row's slots, register F1 holds the mask of those that may interact. Both keep their contents
-// in a stalled cycle.
+// The filter: register F0 holds a candidate (in the memories' output registers) and a row, F1 holds both once more, so
+// that a memory's answer is chosen in one cycle and compared in the next; FilterLanes lanes test the candidate against
+// the row's slots, through registers of their sizes, F2; register F3 holds the mask of those that may interact. All keep
+// their contents in a stalled cycle.
 module cuboct_filter #(
   parameter int          Axes            = 3,   // 2 or 3
   parameter int          PositionFrac    = 20,
@@ -18,64 +19,66 @@ module cuboct_filter #(
   input  logic                                clk_i,
   input  logic                                rst_ni,
   // From the streamer.
-  input  logic                                present_i,
-  input  logic [RowBits-1:0]                  row_i,
+  input  logic                                present_i,     // a candidate is asked for
+  input  logic [RowBits-1:0]                  row_i,         // to meet this row of own slots
   input  logic                                own_i,         // the candidate is an own particle,
   input  logic [SlotBits-1:0]                 slot_i,        // of this slot
-  input  logic [CountBits-1:0]                own_count_i,
+  input  logic [CountBits-1:0]                own_count_i,   // own particles
   // Beside F0, from the memories: the candidate, and the row of own positions.
-  input  logic [CandidateBits-1:0]            candidate_i,
-  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,
+  input  logic [CandidateBits-1:0]            candidate_i,   // P+2 bits per axis, rest
+  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i, // by lane, x lowest
   // To the queue.
-  input  logic                                full_i,
-  output logic                                stall_o,
-  output logic                                push_o,
-  output logic [CandidateBits-1:0]            candidate_o,
-  output logic [RowBits-1:0]                  row_f1_o,
-  output logic [FilterLanes-1:0]              mask_o,
-  output logic                                busy_o         // F0 or F1 holds something
+  input  logic                                full_i,        // the queue can take nothing
+  output logic                                stall_o,       // F0 ... F3 stay; so must the streamer
+  output logic                                push_o,        // an entry goes to the queue
+  output logic [CandidateBits-1:0]            candidate_o,   // with push_o
+  output logic [RowBits-1:0]                  row_o,         // with push_o
+  output logic [FilterLanes-1:0]              mask_o,        // with push_o: lanes that may interact
+  output logic                                busy_o         // one of the registers holds something
 );
   localparam int RowSlots = CountBits + $clog2(FilterLanes + 1);
 
-  logic                     f0_valid_d, f0_valid_q, f0_own_q, f1_valid_d, f1_valid_q;
-  logic [CandidateBits-1:0] f1_candidate_q;
-  logic [RowBits-1:0]       f0_row_q, f1_row_q;
+  logic [3:0]               valid_d, valid_q;  // F0 ... F3
+  logic                     f0_own_q;
+  logic [RowBits-1:0]       f0_row_q, f1_row_q, f2_row_q, f3_row_q;
   logic [SlotBits-1:0]      f0_slot_q;
-  logic [FilterLanes-1:0]   mask, f1_mask_q;
+  logic [CandidateBits-1:0] f1_candidate_q, f2_candidate_q, f3_candidate_q;
+  logic [FilterLanes*Axes*FilterFrac-1:0] f1_row_data_q;
+  logic [FilterLanes-1:0]   test, f1_test_q, f2_test_q;  // lanes whose slot exists and is not the candidate itself
+  logic [FilterLanes-1:0]   mask, f3_mask_q;
   logic                     wants_push;
 
-  assign wants_push = f1_valid_q && (f1_mask_q != '0);
+  assign wants_push = valid_q[3] && (f3_mask_q != '0);
   assign stall_o    = wants_push && full_i;
   assign push_o     = wants_push && !full_i;
-  assign f0_valid_d = stall_o ? f0_valid_q : present_i;
-  assign f1_valid_d = stall_o ? f1_valid_q : f0_valid_q;
+  assign valid_d    = stall_o ? valid_q : {valid_q[2:0], present_i};
 
   always_ff @(posedge clk_i) begin
-    if (!rst_ni) begin
-      f0_valid_q <= 1'b0;
-      f1_valid_q <= 1'b0;
-    end else begin
-      f0_valid_q <= f0_valid_d;
-      f1_valid_q <= f1_valid_d;
-    end
+    if (!rst_ni) valid_q <= '0;
+    else valid_q <= valid_d;
   end
   always_ff @(posedge clk_i) begin
-    if (present_i && !stall_o) begin
-      f0_row_q  <= row_i;
-      f0_own_q  <= own_i;
-      f0_slot_q <= slot_i;
-    end
-    if (f0_valid_q && !stall_o) begin
-      f1_candidate_q <= candidate_i;
+    if (!stall_o) begin
+      f0_row_q       <= row_i;
+      f0_own_q       <= own_i;
+      f0_slot_q      <= slot_i;
       f1_row_q       <= f0_row_q;
-      f1_mask_q      <= mask;
+      f1_test_q      <= test;
+      f1_candidate_q <= candidate_i;
+      f1_row_data_q  <= row_data_i;
+      f2_row_q       <= f1_row_q;
+      f2_test_q      <= f1_test_q;
+      f2_candidate_q <= f1_candidate_q;
+      f3_row_q       <= f2_row_q;
+      f3_mask_q      <= mask;
+      f3_candidate_q <= f2_candidate_q;
     end
   end
 
   logic [Axes*(FilterFrac+2)-1:0] coarse;
   for (genvar a = 0; a < Axes; a++) begin : gen_coarse
     assign coarse[a*(FilterFrac+2) +: FilterFrac+2]
-      = candidate_i[a*(PositionFrac+2)+PositionFrac-FilterFrac +: FilterFrac+2];
+      = f1_candidate_q[a*(PositionFrac+2)+PositionFrac-FilterFrac +: FilterFrac+2];
   end
 
   for (genvar l = 0; l < FilterLanes; l++) begin : gen_lane
@@ -87,16 +90,18 @@ module cuboct_filter #(
     assign slot   = {{(RowSlots - RowBits) {1'b0}}, f0_row_q} * FilterLanes[RowSlots-1:0] + Lane[RowSlots-1:0];
     assign exists = (slot < {{(RowSlots - CountBits) {1'b0}}, own_count_i});
     assign itself = f0_own_q && (slot == {{(RowSlots - SlotBits) {1'b0}}, f0_slot_q});
+    assign test[l] = exists && !itself;
     cuboct_filter_lane #(
-      .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree)
+      .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree),
+      .Registered(1)
     ) u_lane (
-      .test_i(exists && !itself), .own_i(row_data_i[l*Axes*FilterFrac +: Axes*FilterFrac]), .candidate_i(coarse),
-      .near_o(near)
+      .clk_i, .en_i(!stall_o), .test_i(f2_test_q[l]), .own_i(f1_row_data_q[l*Axes*FilterFrac +: Axes*FilterFrac]),
+      .candidate_i(coarse), .near_o(near)
     );
   end
 
-  assign candidate_o = f1_candidate_q;
-  assign row_f1_o    = f1_row_q;
-  assign mask_o      = f1_mask_q;
-  assign busy_o      = f0_valid_q || f1_valid_q;
+  assign candidate_o = f3_candidate_q;
+  assign row_o       = f3_row_q;
+  assign mask_o      = f3_mask_q;
+  assign busy_o      = (valid_q != '0);
 endmodule

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What came over one face in this step: its halo records, and the particles that migrate, in one memory, as the two
-// streams share a link and are never read in the same phase. A halo that is appended in cycle t counts, and can be
-// asked for, from t+1 on; a particle counts from t+2 on, when the memory can have answered.
+// What came over one face in this step: its halo records, and the particles that migrate, each in a memory of their own.
+// The particles' is small, so that it may lie in distributed memory: an arrival goes through many choices in the cycle in
+// which it is read. A halo that is appended in cycle t counts, and can be asked for, from t+1 on; a particle counts from
+// t+2 on, when the memory can have answered.
 module cuboct_inbox #(
   parameter int HaloBits     = 66,   // of a halo record, >= 1
   parameter int ParticleBits = 128,  // >= 1
@@ -14,31 +15,30 @@ module cuboct_inbox #(
   input  logic                    clk_i,
   input  logic                    rst_ni,
   // Halos.
-  input  logic                    clear_i,
-  input  logic                    append_i,
-  input  logic [HaloBits-1:0]     halo_i,
-  output logic [CountBits-1:0]    count_o,
+  input  logic                    clear_i,       // the step's halos are read
+  input  logic                    append_i,      // a halo record came
+  input  logic [HaloBits-1:0]     halo_i,        // with append_i
+  output logic [CountBits-1:0]    count_o,       // records that came in this step
   input  logic                    read_i,        // the streamer asks; without it the answer stays
-  input  logic [AddrBits-1:0]     addr_i,
-  output logic [HaloBits-1:0]     halo_o,        // from the next cycle on
+  input  logic [AddrBits-1:0]     addr_i,        // with read_i
+  output logic [HaloBits-1:0]     halo_o,        // from the next cycle on; a migration phase leaves it
   input  logic [AddrBits-1:0]     relay_addr_i,  // the relay asks in every cycle
-  output logic [HaloBits-1:0]     relay_halo_o,
+  output logic [HaloBits-1:0]     relay_halo_o,  // from the next cycle on
   // Particles, first in, first out.
   input  logic                    migrating_i,   // a migration phase: the oldest particle is shown, one cycle later on
   input  logic                    push_i,        // only when not full
-  input  logic [ParticleBits-1:0] particle_i,
-  output logic                    full_o,
+  input  logic [ParticleBits-1:0] particle_i,    // with push_i
+  output logic                    full_o,        // Capacity particles are held
   input  logic                    pop_i,         // only when not empty
-  output logic [ParticleBits-1:0] particle_o,
-  output logic                    empty_o
+  output logic [ParticleBits-1:0] particle_o,    // the oldest, without empty_o
+  output logic                    empty_o        // no particle counts yet
 );
-  localparam int Bits      = (HaloBits > ParticleBits) ? HaloBits : ParticleBits;
-  localparam int Depth     = HaloDepth + Capacity;  // below 2^CountBits
   localparam int LevelBits = $clog2(Capacity + 1);
-  localparam int First     = HaloDepth;             // halos lie below, particles from here on
-  localparam int Last      = Depth - 1;
+  localparam int PlaceBits = (Capacity > 1) ? $clog2(Capacity) : 1;
+  localparam int Last      = Capacity - 1;  // place of a particle
 
-  logic [CountBits-1:0] count_d, count_q, write_d, write_q, read_d, read_q;
+  logic [CountBits-1:0] count_d, count_q;
+  logic [PlaceBits-1:0] write_d, write_q, read_d, read_q;
   logic [LevelBits-1:0] held_d, held_q;    // particles in the memory
   logic [LevelBits-1:0] shown_d, shown_q;  // of these, those that count
   logic                 pushed_q;
@@ -50,8 +50,8 @@ module cuboct_inbox #(
     shown_d = shown_q;
     if (append_i) count_d = count_q + 1'b1;
     if (clear_i) count_d = '0;
-    if (push_i) write_d = (write_q == Last[CountBits-1:0]) ? First[CountBits-1:0] : write_q + 1'b1;
-    if (pop_i) read_d = (read_q == Last[CountBits-1:0]) ? First[CountBits-1:0] : read_q + 1'b1;
+    if (push_i) write_d = (write_q == Last[PlaceBits-1:0]) ? '0 : write_q + 1'b1;
+    if (pop_i) read_d = (read_q == Last[PlaceBits-1:0]) ? '0 : read_q + 1'b1;
     if (push_i && !pop_i) held_d = held_q + 1'b1;
     if (pop_i && !push_i) held_d = held_q - 1'b1;
     if (pushed_q && !pop_i) shown_d = shown_q + 1'b1;
@@ -60,8 +60,8 @@ module cuboct_inbox #(
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       count_q  <= '0;
-      write_q  <= First[CountBits-1:0];
-      read_q   <= First[CountBits-1:0];
+      write_q  <= '0;
+      read_q   <= '0;
       held_q   <= '0;
       shown_q  <= '0;
       pushed_q <= 1'b0;
@@ -75,21 +75,13 @@ module cuboct_inbox #(
     end
   end
 
-  logic [Bits-1:0] halo_word, particle_word, word;
-  if (Bits > HaloBits) begin : gen_short_halo
-    assign halo_word = {{(Bits - HaloBits) {1'b0}}, halo_i};
-  end else begin : gen_long_halo
-    assign halo_word = halo_i;
-  end
-  if (Bits > ParticleBits) begin : gen_short_particle
-    assign particle_word = {{(Bits - ParticleBits) {1'b0}}, particle_i};
-  end else begin : gen_long_particle
-    assign particle_word = particle_i;
-  end
-  cuboct_ram #(.Bits(Bits), .Depth(Depth), .AddrBits(CountBits)) u_words (
-    .clk_i, .write_i(append_i || push_i), .write_addr_i(push_i ? write_q : count_q),
-    .write_data_i(push_i ? particle_word : halo_word), .read_i(read_i || migrating_i),
-    .read_addr_i(migrating_i ? read_d : {{(CountBits - AddrBits) {1'b0}}, addr_i}), .read_data_o(word)
+  cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_words (
+    .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i), .read_i(read_i),
+    .read_addr_i(addr_i), .read_data_o(halo_o)
+  );
+  cuboct_ram #(.Bits(ParticleBits), .Depth(Capacity), .AddrBits(PlaceBits)) u_particles (
+    .clk_i, .write_i(push_i), .write_addr_i(write_q), .write_data_i(particle_i), .read_i(migrating_i),
+    .read_addr_i(read_d), .read_data_o(particle_o)
   );
   if (Relayed != 0) begin : gen_relay
     cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_halos (
@@ -103,8 +95,6 @@ module cuboct_inbox #(
   end
 
   assign count_o    = count_q;
-  assign halo_o     = word[HaloBits-1:0];
-  assign particle_o = word[ParticleBits-1:0];
   assign full_o     = (held_q == Capacity[LevelBits-1:0]);
   assign empty_o    = (shown_q == '0);
 endmodule

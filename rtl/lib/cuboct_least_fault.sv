@@ -4,24 +4,24 @@
 // above theirs and never fall within a step, so that its id alone is compared, and that with faults of the same code.
 module cuboct_least_fault #(
   parameter int Sources    = 1,  // pipes, that may speak in one cycle; the update in place of the first; >= 1
-  parameter int IdBits     = 8,
+  parameter int IdBits     = 8,  // of an id, >= 1
   parameter int NumberBits = 64  // that hold every number, <= 64
 ) (
   input  logic                      clk_i,
   input  logic                      rst_ni,
-  input  logic                      clear_i,      // the step's last cycle: no source spoke in it or in the one before
-  input  logic [Sources-1:0]        valid_i,
-  input  logic [Sources*4-1:0]      code_i,
-  input  logic [Sources*IdBits-1:0] id_i,
-  input  logic [Sources*64-1:0]     number_i,
-  input  logic                      move_valid_i, // migration
-  input  logic [3:0]                move_code_i,
-  input  logic [IdBits-1:0]         move_id_i,
+  input  logic                      clear_i,       // the step's last cycle: no source spoke in it or in the one before
+  input  logic [Sources-1:0]        valid_i,       // per source: a fault
+  input  logic [Sources*4-1:0]      code_i,        // 1 to 5
+  input  logic [Sources*IdBits-1:0] id_i,          // of the particle
+  input  logic [Sources*64-1:0]     number_i,      // signed
+  input  logic                      move_valid_i,  // a fault of migration
+  input  logic [3:0]                move_code_i,   // 6 to 11, none below an earlier one of the step
+  input  logic [IdBits-1:0]         move_id_i,     // of the particle
   input  logic [63:0]               move_number_i, // one for each code, >= 0
-  output logic                      valid_o,      // with clear_i
-  output logic [3:0]                code_o,
-  output logic [IdBits-1:0]         id_o,
-  output logic signed [63:0]        number_o
+  output logic                      valid_o,       // with clear_i: there was one in the step
+  output logic [3:0]                code_o,        // of the least; 0 where there is none
+  output logic [IdBits-1:0]         id_o,          // 0 where there is none
+  output logic signed [63:0]        number_o       // 0 where there is none
 );
   localparam int KeyBits = 4 + IdBits + NumberBits;
 

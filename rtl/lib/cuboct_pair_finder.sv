@@ -26,26 +26,26 @@ module cuboct_pair_finder #(
   input  logic [(2*Axes+1)*CountBits-1:0]       counts_i,
   // Where the candidate is read: own slot, and record of the faces' halos, and a row of own positions. The memories
   // answer in the next cycle, and keep the answer until the next read.
-  output logic                                  read_o,
-  output logic [SlotBits-1:0]                   slot_o,
-  output logic [AddrBits-1:0]                   addr_o,
-  input  logic [CandidateBits-1:0]              own_i,
-  input  logic [2*Axes*CandidateBits-1:0]       halos_i,
-  output logic [RowBits-1:0]                    row_o,
-  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,
+  output logic                                  read_o,       // a candidate and a row are asked for
+  output logic [SlotBits-1:0]                   slot_o,       // own, with read_o
+  output logic [AddrBits-1:0]                   addr_o,       // of halos, with read_o
+  input  logic [CandidateBits-1:0]              own_i,        // an own particle as a candidate
+  input  logic [2*Axes*CandidateBits-1:0]       halos_i,      // by face
+  output logic [RowBits-1:0]                    row_o,        // row of own slots, with read_o
+  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,  // by lane, x lowest
   // Pairs.
-  output logic [CandidateBits-1:0]              candidate_o,
-  output logic [ForcePipes-1:0]                 issue_o,
-  output logic [ForcePipes*SlotBits-1:0]        issue_slot_o,
+  output logic [CandidateBits-1:0]              candidate_o,  // with issue_o
+  output logic [ForcePipes-1:0]                 issue_o,      // per pipe: a pair
+  output logic [ForcePipes*SlotBits-1:0]        issue_slot_o, // per pipe, with issue_o: its own slot
   output logic                                  stall_o,      // a full queue holds the filter
   output logic                                  done_o        // no candidate is left anywhere
 );
   logic [2:0]               segment;
   logic [2*Axes:0]          answer_q;  // which memory's answer is the candidate, one bit each
-  logic [RowBits-1:0]       row, row_f1, row_head;
+  logic [RowBits-1:0]       row, row_out, row_head;
   logic                     present, past, stall, filter_busy, issue_busy;
-  logic [CandidateBits-1:0] candidate, candidate_f1, candidate_head;
-  logic [FilterLanes-1:0]   mask_f1, mask_head;
+  logic [CandidateBits-1:0] candidate, candidate_out, candidate_head;
+  logic [FilterLanes-1:0]   mask_out, mask_head;
   logic                     push, pop, full, empty;
 
   cuboct_streamer #(
@@ -74,12 +74,12 @@ module cuboct_pair_finder #(
   ) u_filter (
     .clk_i, .rst_ni, .present_i(present), .row_i(row), .own_i(segment == 3'd0),
     .slot_i(slot_o), .own_count_i(counts_i[0 +: CountBits]), .candidate_i(candidate), .row_data_i,
-    .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_f1), .row_f1_o(row_f1),
-    .mask_o(mask_f1), .busy_o(filter_busy)
+    .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_out), .row_o(row_out),
+    .mask_o(mask_out), .busy_o(filter_busy)
   );
 
   cuboct_fifo #(.Bits(CandidateBits + RowBits + FilterLanes), .Depth(QueueDepth)) u_queue (
-    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_f1, row_f1, mask_f1}), .full_o(full),
+    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_out, row_out, mask_out}), .full_o(full),
     .pop_i(pop), .data_o({candidate_head, row_head, mask_head}), .empty_o(empty)
   );
 

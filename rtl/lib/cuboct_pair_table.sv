@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A function of r2 as a piecewise polynomial. The memory stands outside (generated); this is its address, and the
-// interpolation of what it answers one cycle later. Latency 3 + Product cycles, +1 with OctaveStage, +1 + Product with SquareStages.
+// interpolation of what it answers one cycle after that. Latency 3 + Product cycles, +1 with OctaveStage, +1 + Product with SquareStages.
 //   uniform: index = the top IndexBits of r2, t = the next FractionBits.
 //   octaves: with o = floor(log2 r2): index = (o - FirstOctave) * 2^BinBits + the BinBits below the leading one,
 //            t = the next FractionBits, zeros where r2 has no more; r2 < 2^FirstOctave has index 0, t 0.
@@ -24,19 +24,19 @@ module cuboct_pair_table #(
   input  logic                        clk_i,
   input  logic                        rst_ni,
   input  logic [Cycles:0]             valid_i,  // [k]: the pair whose r2_i came k cycles ago is there
-  input  logic [2*DifferenceFrac-1:0] r2_i,
+  input  logic [2*DifferenceFrac-1:0] r2_i,     // with valid_i[0]
   // The memory: synchronous read, c0, c1, c2 in the cycle after index_o.
-  output logic [IndexBits-1:0]        index_o,
-  input  logic signed [EntryBits-1:0] c0_i,
-  input  logic signed [EntryBits-1:0] c1_i,
-  input  logic signed [EntryBits-1:0] c2_i,  // unused at degree 1
-  output logic signed [ValueBits-1:0] value_o
+  output logic [IndexBits-1:0]        index_o,  // address
+  input  logic signed [EntryBits-1:0] c0_i,     // value at t = 0
+  input  logic signed [EntryBits-1:0] c1_i,     // slope at t = 0
+  input  logic signed [EntryBits-1:0] c2_i,  // of no use at degree 1
+  output logic signed [ValueBits-1:0] value_o   // of the pair with valid_i[Cycles]
 );
   localparam int R2Bits    = 2 * DifferenceFrac;
   localparam int SlopeBits = (Degree == 2) ? EntryBits + 1 : EntryBits;
 
   // Address.
-  logic [IndexBits-1:0]    index_d, index_q;
+  logic [IndexBits-1:0]    index_d;
   logic [FractionBits-1:0] t_d, t_q;
   if (Octaves != 0) begin : gen_octaves
     localparam int OctaveBits = $clog2(R2Bits + 1);
@@ -92,11 +92,29 @@ module cuboct_pair_table #(
     logic unused_r2;
     assign unused_r2 = ^r2_i;
   end
-  always_ff @(posedge clk_i) begin
-    index_q <= index_d;
-    t_q     <= t_d;
+  always_ff @(posedge clk_i) t_q <= t_d;
+  // A pair in each cycle: the register stands behind the memory, as a product that waits for a block's read would be the
+  // longest path. With pairs further apart the entry needs no register, and the index is shorter.
+  logic signed [EntryBits-1:0] c0_read, c1_read, c2_read;
+  if (Interval == 1) begin : gen_entry
+    logic signed [EntryBits-1:0] c0_q, c1_q, c2_q;
+    always_ff @(posedge clk_i) begin
+      c0_q <= c0_i;
+      c1_q <= c1_i;
+      c2_q <= c2_i;
+    end
+    assign index_o = index_d;
+    assign c0_read = c0_q;
+    assign c1_read = c1_q;
+    assign c2_read = c2_q;
+  end else begin : gen_index
+    logic [IndexBits-1:0] index_q;
+    always_ff @(posedge clk_i) index_q <= index_d;
+    assign index_o = index_q;
+    assign c0_read = c0_i;
+    assign c1_read = c1_i;
+    assign c2_read = c2_i;
   end
-  assign index_o = index_q;
 
   // While the memory answers t waits one cycle: stage Read.
   localparam int Read  = OctaveStage + 2;
@@ -113,10 +131,10 @@ module cuboct_pair_table #(
       .clk_i, .valid_i(valid_i[Read:Read-1]), .d_i(t_q), .q_o(t_read)
     );
     cuboct_mult #(.ABits(EntryBits), .BBits(FractionBits + 1), .Cycles(Product)) u_square (
-      .clk_i, .rst_ni, .en_i(valid_i[Read]), .a_i(c2_i), .b_i($signed({1'b0, t_read})), .p_o(product)
+      .clk_i, .rst_ni, .en_i(valid_i[Read]), .a_i(c2_read), .b_i($signed({1'b0, t_read})), .p_o(product)
     );
     cuboct_hold #(.Bits(EntryBits), .Depth(Product), .Interval(Interval)) u_c1 (
-      .clk_i, .valid_i(valid_i[Read+Product:Read]), .d_i(c1_i), .q_o(c1)
+      .clk_i, .valid_i(valid_i[Read+Product:Read]), .d_i(c1_read), .q_o(c1)
     );
     cuboct_round_odd #(.InBits(EntryBits + FractionBits + 1), .Shift(FractionBits), .OutBits(SlopeBits)) u_round (
       .a_i(product), .y_o(rounded)
@@ -129,11 +147,11 @@ module cuboct_pair_table #(
   end else begin : gen_line
     logic [EntryBits-1:0] late;
     cuboct_hold #(.Bits(EntryBits), .Depth(Slope - Read), .Interval(Interval)) u_c1 (
-      .clk_i, .valid_i(valid_i[Slope:Read]), .d_i(c1_i), .q_o(late)
+      .clk_i, .valid_i(valid_i[Slope:Read]), .d_i(c1_read), .q_o(late)
     );
     assign slope = $signed(late);
     logic unused_c2;
-    assign unused_c2 = ^c2_i;
+    assign unused_c2 = ^c2_read;
   end
 
   cuboct_hold #(.Bits(FractionBits), .Depth(Slope - Read + 1), .Interval(Interval)) u_t (
@@ -147,7 +165,7 @@ module cuboct_pair_table #(
     .clk_i, .rst_ni, .en_i(valid_i[Slope]), .a_i(slope), .b_i($signed({1'b0, t_slope})), .p_o(product)
   );
   cuboct_hold #(.Bits(EntryBits), .Depth(Slope - Read + Product), .Interval(Interval)) u_c0 (
-    .clk_i, .valid_i(valid_i[Slope+Product:Read]), .d_i(c0_i), .q_o(c0)
+    .clk_i, .valid_i(valid_i[Slope+Product:Read]), .d_i(c0_read), .q_o(c0)
   );
   cuboct_round_odd #(.InBits(SlopeBits + FractionBits + 1), .Shift(FractionBits), .OutBits(ValueBits)) u_round (
     .a_i(product), .y_o(rise)

@@ -22,19 +22,19 @@ module cuboct_pair_walk #(
   input  logic                            restart_i,    // its last cycle
   input  logic [(2*Axes+1)*CountBits-1:0] counts_i,     // by segment
   // Words of halos: the one asked for; its segment.
-  output logic [WordBits-1:0]             word_o,
-  output logic [2:0]                      segment_o,
+  output logic [WordBits-1:0]             word_o,       // in every cycle
+  output logic [2:0]                      segment_o,    // 0 own, then -x, +x, -y, +y, -z, +z
   // The record register takes a halo's word, or the own particle that the memory shows.
-  output logic                            shift_o,
-  output logic                            set_o,
+  output logic                            shift_o,      // a word
+  output logic                            set_o,        // the own particle
   // Own particles: the slot asked for, 0 at rest; unless the answer has to stay.
-  output logic [SlotBits-1:0]             slot_o,
-  output logic                            hold_o,
+  output logic [SlotBits-1:0]             slot_o,       // in every cycle
+  output logic                            hold_o,       // the answer stays
   input  logic [Axes*PositionFrac-1:0]    own_i,        // the memory's answer
   input  logic [Axes*(PositionFrac+2)-1:0] candidate_i, // the record's position
   // Pairs.
-  output logic                            issue_o,
-  output logic [SlotBits-1:0]             issue_slot_o,
+  output logic                            issue_o,      // a pair
+  output logic [SlotBits-1:0]             issue_slot_o, // with issue_o: its own slot
   output logic                            present_o,    // a slot is asked for to be tested
   output logic                            stall_o,      // a pair waits for the pipe
   output logic                            done_o        // no candidate is left
@@ -172,8 +172,8 @@ module cuboct_pair_walk #(
   cuboct_filter_lane #(
     .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree)
   ) u_lane (
-    .test_i(segment_q != 3'd0 || t_slot_q != record_q[SlotBits-1:0]), .own_i(coarse_own), .candidate_i(coarse),
-    .near_o(near)
+    .clk_i, .en_i(1'b0), .test_i(segment_q != 3'd0 || t_slot_q != record_q[SlotBits-1:0]), .own_i(coarse_own),
+    .candidate_i(coarse), .near_o(near)
   );
 
   assign word_o       = word_q;

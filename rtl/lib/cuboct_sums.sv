@@ -12,11 +12,11 @@ module cuboct_sums #(
 ) (
   input  logic                  clk_i,
   input  logic                  rst_ni,
-  input  logic                  kick_valid_i,
+  input  logic                  kick_valid_i, // a kick is added to the sum of slot next_slot_i of the cycle before
   input  logic [Axes*KickBits-1:0] push_i,     // minus the kick
-  input  logic [SlotBits-1:0]   next_slot_i,  // whose kick or sum the next cycle is about
-  input  logic                  take_i,       // clears; never with a kick
-  output logic [Axes*SumBits-1:0] sum_o         // of that slot; if Spaced, not in the cycle after a kick
+  input  logic [SlotBits-1:0]   next_slot_i,  // the slot that the next cycle's kick or take is about
+  input  logic                  take_i,       // clears that sum; never with a kick
+  output logic [Axes*SumBits-1:0] sum_o         // of the slot of the cycle before; if Spaced, not in the cycle after a kick
 );
   localparam int IndexBits = (Capacity > 1) ? $clog2(Capacity) : 1;
 
@@ -34,10 +34,11 @@ module cuboct_sums #(
     assign added[a*SumBits +: SumBits] = old[a*SumBits +: SumBits] - push;
   end
 
-  always_comb begin
-    held_d = held_q;
-    if (take_i) held_d[slot_q[IndexBits-1:0]] = 1'b0;
-    else if (kick_valid_i) held_d[slot_q[IndexBits-1:0]] = 1'b1;
+  // Each slot by itself: a kick and a take never come in one cycle.
+  for (genvar h = 0; h < Capacity; h++) begin : gen_held
+    localparam int Slot = h;
+    assign held_d[h] = (held_q[h] || (kick_valid_i && slot_q == Slot[SlotBits-1:0]))
+                    && !(take_i && slot_q == Slot[SlotBits-1:0]);
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) held_q <= '0;

@@ -16,7 +16,7 @@ module cuboct_update #(
   parameter int TotalBits        = 30,  // of the exact sum over all pipes
   parameter int SumBits          = 29,  // that it must fit
   parameter int TypeBits         = 1,   // >= 1
-  parameter int Pd               = 0,
+  parameter int Pd               = 0,   // 0, 1
   parameter int Held             = 0,   // 0, 1
   parameter int DisplacementBits = 29,
   parameter int GainBits         = 18,
@@ -31,27 +31,27 @@ module cuboct_update #(
   input  logic                          clk_i,
   input  logic                          rst_ni,
 `ifdef CUBOCT_HOST_VELOCITY
-  input  logic [MovedTypes*Axes*ConstantBits-1:0] velocity_i,
+  input  logic [MovedTypes*Axes*ConstantBits-1:0] velocity_i,  // V by type and axis; constant in a run
 `endif
-  input  logic                          valid_i,
-  input  logic [SlotBits-1:0]           slot_i,
-  input  logic [Axes*TotalBits-1:0]     sum_i,
-  input  logic [Axes*PositionFrac-1:0]  x_i,
-  input  logic [Axes*VelocityBits-1:0]  v_i,
-  input  logic [TypeBits-1:0]           type_i,
-  input  logic [IdBits-1:0]             id_i,
+  input  logic                          valid_i,       // a particle is taken
+  input  logic [SlotBits-1:0]           slot_i,        // its slot
+  input  logic [Axes*TotalBits-1:0]     sum_i,         // its sum over all pipes, signed
+  input  logic [Axes*PositionFrac-1:0]  x_i,           // unsigned
+  input  logic [Axes*VelocityBits-1:0]  v_i,           // signed
+  input  logic [TypeBits-1:0]           type_i,        // 0 with one type
+  input  logic [IdBits-1:0]             id_i,          // of the particle
   input  logic [Axes*DisplacementBits-1:0] u_i,        // Pd only
-  output logic                          valid_o,
-  output logic [SlotBits-1:0]           slot_o,
-  output logic [Axes*PositionFrac-1:0]  x_o,
+  output logic                          valid_o,       // a particle is written back
+  output logic [SlotBits-1:0]           slot_o,        // its slot
+  output logic [Axes*PositionFrac-1:0]  x_o,           // in the node that away_o says
   output logic [2*Axes-1:0]             away_o,        // per axis 2 bits, -1, 0, +1: the node that x is in
-  output logic [Axes*VelocityBits-1:0]  v_o,
-  output logic [TypeBits-1:0]           type_o,
-  output logic [IdBits-1:0]             id_o,
-  output logic [Axes*DisplacementBits-1:0] u_o,
-  output logic                          fault_o,
+  output logic [Axes*VelocityBits-1:0]  v_o,           // signed
+  output logic [TypeBits-1:0]           type_o,        // as it came
+  output logic [IdBits-1:0]             id_o,          // as it came
+  output logic [Axes*DisplacementBits-1:0] u_o,        // signed; 0 without Pd
+  output logic                          fault_o,       // with valid_o: a value does not fit
   output logic [3:0]                    fault_code_o,  // 3 sum, 4 displacement, 5 velocity
-  output logic signed [63:0]            fault_number_o
+  output logic signed [63:0]            fault_number_o // that value
 );
   // Stage 1: operands. Stage VStage-1 holds what v is made of; v at VStage; the outputs are made in stage VStage.
   localparam int VStage   = (Pd != 0) ? 5 : 2;
@@ -142,7 +142,11 @@ module cuboct_update #(
       logic signed [KpBits-1:0]    spring;
       logic signed [KdBits-1:0]    drag;
       logic signed [SpringBits-1:0]  pull_sum_d, pull_sum_q;
-      logic signed [WideBits-1:0]  pull;
+      localparam int HighBits = SpringBits - GainFrac;
+      logic signed [HighBits-1:0]  high;   // of the pull, rounded: high + carry
+      logic signed [WideBits-1:0]  high_wide;
+      logic                        carry;
+      logic signed [WideBits:0]    both;
       logic signed [GainBits-1:0]  kp_2, kd_2;
       logic                        held_4;
       logic signed [WideBits-1:0]  plain_4;
@@ -163,13 +167,18 @@ module cuboct_update #(
       assign pull_sum_d = $signed({{(SpringBits - KpBits) {spring[KpBits-1]}}, spring})
                       + $signed({{(SpringBits - KdBits) {drag[KdBits-1]}}, drag});
       always_ff @(posedge clk_i) pull_sum_q <= pull_sum_d;
-      cuboct_round_odd #(.InBits(SpringBits), .Shift(GainFrac), .OutBits(WideBits)) u_pull (
-        .a_i(pull_sum_q), .y_o(pull)
-      );
+      // round_odd and the subtraction in one adder: v - (high + carry) = v + ~high + !carry, as cuboct_round_odd has
+      // it; nothing is subtracted where no force holds.
+      assign high  = pull_sum_q[SpringBits-1:GainFrac];
+      assign carry = pull_sum_q[GainFrac-1] && (!pull_sum_q[SpringBits-1] || pull_sum_q[GainFrac-2:0] != '0);
+      cuboct_resize #(.InBits(HighBits), .OutBits(WideBits)) u_high (.a_i(high), .y_o(high_wide));
       cuboct_delay #(.Bits(WideBits + 1), .Depth(Delay * 3)) u_plain4 (
         .clk_i, .d_i({held, plain}), .q_o({held_4, plain_4})
       );
-      assign v_free = plain_4 - (held_4 ? pull : '0);
+      assign both   = $signed({plain_4, 1'b1}) + $signed({held_4 ? ~high_wide : '0, held_4 && !carry});
+      assign v_free = both[WideBits:1];
+      logic unused_carry;
+      assign unused_carry = both[0];
       cuboct_delay #(.Bits(TotalBits + WideBits + 2), .Depth(Delay * 3)) u_rest (
         .clk_i, .d_i({imposed_1, bad_1, sum_1, to_go_wide}), .q_o({imposed_v, bad_sum_v, sum_v, v_imposed})
       );
@@ -209,23 +218,24 @@ module cuboct_update #(
     // Stage VStage: v, checked; then the drift.
     logic signed [WideBits-1:0]     v_new_wide, v_back, v_wide_q;
     logic signed [VelocityBits-1:0] v_new, v_q;
-    logic                           bad_v_q, bad_sum_q;
+    logic                           checked_q, bad_sum_q;
     logic signed [TotalBits-1:0]    sum_last;
     logic signed [PositionFrac+1:0] drift, moved;
     cuboct_delay #(.Bits(TotalBits), .Depth(Delay)) u_sum_last (.clk_i, .d_i(sum_v), .q_o(sum_last));
     assign v_new_wide = imposed_v ? v_imposed : v_free;
     cuboct_resize #(.InBits(WideBits), .OutBits(VelocityBits)) u_v_new (.a_i(v_new_wide), .y_o(v_new));
-    cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_back (.a_i(v_new), .y_o(v_back));
+    // The check waits for the register: with the sums before it it would be too much for a cycle.
+    cuboct_resize #(.InBits(VelocityBits), .OutBits(WideBits)) u_v_back (.a_i(v_q), .y_o(v_back));
     always_ff @(posedge clk_i) begin
       if (valid_q[VStage-1]) begin
         v_q       <= v_new;
         v_wide_q  <= v_new_wide;
-        bad_v_q   <= !imposed_v && (v_back != v_new_wide);
+        checked_q <= !imposed_v;
         bad_sum_q <= bad_sum_v;
       end
     end
     assign bad_sum[a] = bad_sum_q;
-    assign bad_v[a]   = bad_v_q;
+    assign bad_v[a]   = checked_q && (v_back != v_wide_q);
     cuboct_resize #(.InBits(TotalBits), .OutBits(NumberBits)) u_sum_number (
       .a_i(sum_last), .y_o(sum_number[a*NumberBits +: NumberBits])
     );

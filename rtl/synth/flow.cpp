@@ -13,6 +13,7 @@
 #include "model/output.h"
 #include "model/process.h"
 #include "model/progress.h"
+#include "rtl/synth/estimate.h"
 #include "rtl/synth/script.h"
 #include "rtl/synth/tool.h"
 
@@ -152,6 +153,25 @@ class Flow {
     if (target_.family == Family::asic) return;
     for (const Resource r : resources_of(target_.family))
       if (report_.used[r] > target_.holds[r]) throw no_room(report_, target_, numbers(target_, report_.used));
+  }
+
+  // The clock before anything is placed, where OpenSTA is installed.
+  void estimate() {
+    const Delays* delays = delays_of(target_);
+    if (!delays || !in_path("sta")) return;
+    constexpr size_t kEnds = 500;  // registers whose longest path is looked at
+    const Timer timer(tools_.path("netlist.json"), top_, *delays);
+    if (timer.clocks().empty()) return;
+    tools_.write("cells.lib", timer.library());
+    tools_.write("timed.v", timer.netlist());
+    tools_.write("wires.sdf", timer.wires());
+    tools_.write("estimate.tcl", Timer::script(out_, timer.clocks(), kEnds));
+    tools_.run("sta looks for the longest path", "estimate", "sta",
+               {"-no_splash", "-exit", tools_.path("estimate.tcl")});
+    const std::string log = read_text(tools_.path("estimate.log"));
+    if (log.find("\nError:") != std::string::npos) throw ToolFailed("sta", "estimate.log", complaint_of(log));
+    report_.estimate = summary(timer.read(log), *delays);
+    for (const char* file : {"cells.lib", "timed.v", "wires.sdf"}) fs::remove(tools_.path(file));
   }
 
   void place_ice40() {
@@ -322,6 +342,7 @@ Report synthesise(const Request& request) {
     flow.synthesise();
     try {
       flow.check_room();
+      flow.estimate();
       if (target.family == Family::ice40 && request.place) flow.place_ice40();
       if (target.family == Family::ecp5) flow.place_ecp5();
       if (target.family == Family::asic) flow.time_asic();

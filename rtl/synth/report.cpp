@@ -142,6 +142,14 @@ std::string print_table(const Report& report) {
   if (report.cells)
     line("logic cells, packed", fmt::format("{}, and {} of the harness", *report.cells, report.harness));
   if (report.depth) line("longest path", fmt::format("{} cells between registers", *report.depth));
+  if (report.estimate) {
+    const Estimate& e = *report.estimate;
+    line("clock, estimated",
+         fmt::format("{:.1f} MHz before placement, to {:.0f} %: {:.2f} ns, {:.2f} of them wires", e.mhz(),
+                     100 * e.error, e.ns, e.wires));
+    for (const std::string& block : e.blocks) line("", block);
+    if (report.fmax) line("estimate's error", fmt::format("{:+.1f} %", 100 * (e.mhz() / *report.fmax - 1)));
+  }
   if (report.silicon) {
     const Silicon& s = *report.silicon;
     line("standard cells", s.library);
@@ -179,6 +187,15 @@ nlohmann::ordered_json to_json(const Report& report) {
   if (report.cells) json["logic_cells"] = *report.cells;
   json["harness_flip_flops"] = report.harness;
   if (report.depth) json["depth"] = *report.depth;
+  if (report.estimate) {
+    const Estimate& e = *report.estimate;
+    Json ends = Json::array();
+    for (const Estimate::End& end : e.ends)
+      ends.push_back({{"from", end.from}, {"to", end.to}, {"ns", end.ns}});
+    json["estimate"] = {{"mhz", e.mhz()},     {"ns", e.ns},     {"wires_ns", e.wires}, {"to_share", e.error},
+                        {"blocks", e.blocks}, {"path", e.path}, {"ends", ends}};
+    if (report.fmax) json["estimate"]["error"] = e.mhz() / *report.fmax - 1;
+  }
   if (report.fmax) {
     json["fmax_mhz"] = *report.fmax;
     json["fmax_from"] = report.fmax_from;
@@ -215,6 +232,16 @@ Report read_report(const std::string& file) {
     report.holds = counts_of(json.at("holds"));
     if (json.contains("logic_cells")) report.cells = json.at("logic_cells").get<uint64_t>();
     if (json.contains("depth")) report.depth = json.at("depth").get<uint64_t>();
+    if (json.contains("estimate")) {
+      const auto& from = json.at("estimate");
+      Estimate& e = report.estimate.emplace();
+      e.ns = from.at("ns");
+      e.wires = from.at("wires_ns");
+      e.error = from.at("to_share");
+      e.blocks = from.at("blocks");
+      e.path = from.at("path");
+      for (const auto& end : from.at("ends")) e.ends.push_back({end.at("from"), end.at("to"), end.at("ns")});
+    }
     if (json.contains("fmax_mhz")) report.fmax = json.at("fmax_mhz").get<double>();
     if (json.contains("icetime_mhz")) report.icetime = json.at("icetime_mhz").get<double>();
     optional("fmax_from", report.fmax_from);

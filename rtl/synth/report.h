@@ -24,6 +24,22 @@ struct Silicon {
   double frequency = 0;  // MHz that the power is of
 };
 
+// Of a netlist before it is placed: estimate.h.
+struct Estimate {
+  // The slowest of the paths that end in registers of one block.
+  struct End {
+    std::string from, to;  // blocks, by the names of their instances
+    double ns = 0;
+  };
+  double ns = 0, wires = 0;         // of the longest path, and of its wires
+  double error = 0;                 // largest share by which such an estimate is known to have missed
+  std::vector<std::string> path;    // "1.50 ns wire", "0.24 ns LUT4 u_core.u_x.y_LUT4_Z", ...
+  std::vector<std::string> blocks;  // those that it goes through: "5.83 ns u_core.u_x"
+  std::vector<End> ends;            // the longest first; of the paths that were looked at
+
+  double mhz() const { return 1000 / ns; }
+};
+
 struct Report {
   std::string plan, target, device, unit;
   uint64_t nodes = 0, particles = 0, cycles_per_step = 0;
@@ -33,6 +49,7 @@ struct Report {
   std::optional<uint64_t> cells;  // logic cells of the unit as packed, without the harness (ice40)
   uint64_t harness = 0;           // flip-flops of the harness: on ice40, its logic cells
   std::optional<uint64_t> depth;  // cells of the longest path between registers
+  std::optional<Estimate> estimate;
   std::optional<double> fmax;     // MHz, as placed and routed
   std::string fmax_from;          // "nextpnr-ice40, seed 1"
   std::optional<double> icetime;  // MHz, by icetime

@@ -44,18 +44,19 @@ Outcome stepped(const Plan& plan, const Engine& engine) {
     return mask;
   };
   Outcome out;
-  std::optional<Entry> f0;
-  std::optional<uint64_t> f1;  // the mask
+  std::array<std::optional<uint64_t>, 4> filter;  // F0 ... F3: what the mask will be
   std::deque<uint64_t> queue;
   uint64_t current = 0;
-  int hold = 0;  // cycles of the interval that are left
+  int hold = 0;                    // cycles of the interval that are left
   std::optional<uint64_t> issued;  // cycle of the last pair
   size_t segment = 0, record = 0;
   int pass = 0;
   for (uint64_t cycle = engine.available[0];; ++cycle) {
     const auto pipe = static_cast<uint64_t>(plan.latency.pipe);
     const bool pipes_empty = !issued || cycle >= *issued + pipe;
-    if (segment == 7 && !f0 && !f1 && queue.empty() && current == 0 && hold == 0 && pipes_empty) {
+    const bool filter_empty =
+        std::none_of(filter.begin(), filter.end(), [](const auto& f) { return f.has_value(); });
+    if (segment == 7 && filter_empty && queue.empty() && current == 0 && hold == 0 && pipes_empty) {
       out.last = cycle;
       return out;
     }
@@ -72,23 +73,23 @@ Outcome stepped(const Plan& plan, const Engine& engine) {
       current = queue.front();
       queue.pop_front();
     }
-    if (f1 && *f1 != 0) {
+    if (filter[3] && *filter[3] != 0) {
       if (held == static_cast<size_t>(plan.arch.queue_depth)) {
         ++out.stalls;
         continue;
       }
-      queue.push_back(*f1);
+      queue.push_back(*filter[3]);
     }
-    f1 = f0 ? std::optional(mask_of(*f0)) : std::nullopt;
-    f0.reset();
+    for (size_t f = 3; f > 0; --f) filter[f] = filter[f - 1];
+    filter[0].reset();
     if (segment == 7 || cycle < engine.available[(segment + 1) / 2]) continue;
     const size_t size = segment == 0 ? engine.own.size() : engine.halo[segment - 1].size();
     if (n == 0 || size == 0) {
       ++segment;
       continue;
     }
-    f0 = segment == 0 ? Entry{&engine.own[record].body, static_cast<int>(record), pass}
-                      : Entry{&engine.halo[segment - 1][record], -1, pass};
+    filter[0] = mask_of(segment == 0 ? Entry{&engine.own[record].body, static_cast<int>(record), pass}
+                                     : Entry{&engine.halo[segment - 1][record], -1, pass});
     ++out.candidates;
     if (++pass * lanes < n) continue;
     pass = 0;
@@ -115,7 +116,9 @@ Outcome walked(const Plan& plan, const Engine& engine) {
       const auto meets = [&](size_t slot) {
         return (segment > 0 || slot != record) && may_interact(plan.rule, at(engine.own[slot].body), at(j));
       };
-      cycle += segment == 0 ? 1 : static_cast<uint64_t>(plan.words.halo_beats);  // words; the first slot in the last
+      cycle += segment == 0
+                   ? 1
+                   : static_cast<uint64_t>(plan.words.halo_beats);  // words; the first slot in the last
       std::optional<size_t> asked = 0, t, r;
       size_t next = 1;
       bool first = true;

@@ -425,7 +425,7 @@ TEST(TimingModel, CountsTheDump) {
 
 // Hand-made: one node without neighbours and n particles, all of which see one another. EXCHANGE_X sends n
 // records and an end beat and sees `sent` in the next cycle; y and z pass two and four empty segments as
-// well. The streamer's n items begin to issue 4 cycles after the engine's first: F0, F1, queue, `current`.
+// well. The streamer's n items begin to issue 6 cycles after the engine's first: F0 ... F3, queue, `current`.
 TEST(TimingModel, OneNodeByHand) {
   Scene scene = block_scene({.size = {1, 1, 1}, .jitter = 0, .speed = 0, .margin = 0.1});
   Arch arch;
@@ -443,8 +443,8 @@ TEST(TimingModel, OneNodeByHand) {
   EXPECT_EQ(spans[0], (PhaseSpan{0, x}));
   EXPECT_EQ(spans[1], (PhaseSpan{x + 1, y}));
   EXPECT_EQ(spans[2], (PhaseSpan{y + 1, z}));
-  // 12 pairs, one per cycle from cycle 4 on, pass long before the last two segments are streamed after z.
-  const uint64_t force = std::max(z + 1 + 2, 4 + n * (n - 1) - 1 + static_cast<uint64_t>(plan.latency.pipe));
+  // 12 pairs, one per cycle from cycle 6 on, pass long before the last two segments are streamed after z.
+  const uint64_t force = std::max(z + 1 + 2, 6 + n * (n - 1) - 1 + static_cast<uint64_t>(plan.latency.pipe));
   EXPECT_EQ(spans[3], (PhaseSpan{0, force}));
   const uint64_t update = force + n - 1 + static_cast<uint64_t>(plan.latency.update);
   EXPECT_EQ(spans[4], (PhaseSpan{force + 1, update}));

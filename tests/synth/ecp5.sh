@@ -41,6 +41,11 @@ assert r["tools"][1] == '"nextpnr-ecp5" -- stand-in', r["tools"]
 assert r["block"]["uses"]["DSP"] == 5, r["block"]
 assert r["fit"] == {"units": 4, "limit": "DSP"}, r["fit"]  # 75 % of 28 are 21
 assert 3 < r["depth"] < 100, r["depth"]
+# Register, multiplier, register: no pipe of products is faster.
+e = r["estimate"]
+assert 40 < e["mhz"] < 1000 / (0.525 + 4.041), e
+assert abs(e["error"] - (e["mhz"] / 123.5 - 1)) < 1e-6 and 0 < e["wires_ns"] < e["ns"], e
+assert e["path"][0].endswith("_Q") or "DP16KD" in e["path"][0], e["path"]
 used = r["used"]
 def report(ffs):
     clocks = {"fast": {"achieved": 140.25, "constraint": 150}, "slow": {"achieved": 133.5, "constraint": 150}}

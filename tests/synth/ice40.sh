@@ -38,6 +38,9 @@ assert uses["FF"] <= r["logic_cells"] <= uses["LUT"] + uses["FF"] + 200, r["logi
 # Two tools that know the device's delays.
 fmax = r["fmax_mhz"]
 assert 25 < fmax < 120 and abs(r["icetime_mhz"] / fmax - 1) < 0.2, (fmax, r["icetime_mhz"])
+# What was estimated before placing.
+assert abs(r["estimate"]["error"]) < 0.25, r["estimate"]
+assert abs(r["estimate"]["mhz"] / fmax - 1 - r["estimate"]["error"]) < 1e-6
 assert r["critical_path"] and "steps_per_second" not in r
 assert r["files"] == sorted(os.listdir(os.path.dirname(sys.argv[1]))), r["files"]
 PYTHON

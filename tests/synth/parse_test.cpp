@@ -277,6 +277,24 @@ TEST_F(Parse, Table) {
       "fit the device         3 of node, limited by DSP (planned to 75 %)\n"
       "longest path           31 cells between registers\n";
   EXPECT_EQ(print_table(report), head + "Fmax                   not known: not placed\n");
+  report.estimate = {
+      8.33, 5.5, 0.2, {"2.00 ns wire", "6.33 ns LUT4 u_x.y"}, {" 8.33 ns u_x"}, {{"u_x", "u_z", 8.33}}};
+  EXPECT_EQ(print_table(report),
+            head +
+                "clock, estimated       120.0 MHz before placement, to 20 %: 8.33 ns, 5.50 of them wires\n"
+                "                        8.33 ns u_x\n"
+                "Fmax                   not known: not placed\n");
+  // A placed clock stands beside it, with how far it missed.
+  report.take({125, {}, {}}, "nextpnr-ecp5, seed 1");
+  EXPECT_NE(print_table(report).find("                        8.33 ns u_x\n"
+                                     "estimate's error       -4.0 %\n"
+                                     "Fmax                   125.00 MHz"),
+            std::string::npos)
+      << print_table(report);
+  const Report estimated = read_report(file("report.json", to_json(report).dump()));
+  EXPECT_EQ(print_table(estimated), print_table(report));
+  EXPECT_EQ(to_json(estimated).dump(), to_json(report).dump());
+  report.estimate.reset();
   report.take({125, {}, {}}, "nextpnr-ecp5, seed 1");
   EXPECT_EQ(
       print_table(report),

@@ -77,9 +77,8 @@ TEST_F(Refuse, WhatIsNoProject) {
   EXPECT_EQ(refusal(request()), "DIR/project.json: is not JSON, at byte 9" + hint);
   write("project.json", "{\"plan\": \"x\", \"nodes\": \"many\"}");
   EXPECT_EQ(refusal(request()), "DIR/project.json: no 'nodes' as cuboct emit writes it" + hint);
-  write(
-      "project.json",
-      R"({"plan": "x", "nodes": 1, "particles": 1, "arch": {"capacity": 4},
+  write("project.json",
+        R"({"plan": "x", "nodes": 1, "particles": 1, "arch": {"capacity": 4},
             "cycles_per_step": {"expected": 9},
             "files": ["rtl/a.sv"]})");
   EXPECT_EQ(refusal(request()),
