@@ -27,46 +27,46 @@ module cuboct_sequencer #(
   output logic [7:0]  phase_start_o,    // first cycle of exchange x y z, force, update, migrate x y z
   output logic [7:0]  phase_end_o
 );
-  typedef enum logic [3:0] {
-    ExchangeX, ExchangeY, ExchangeZ, Force, Update, MigrateX, MigrateY, MigrateZ, Dump, Idle
-  } state_t;
+  // One bit each: what depends on the machine's state depends on a register, and the way from a phase's last cycle to the
+  // next state is two choices long.
+  localparam int ExchangeX = 0;
+  localparam int ExchangeY = 1;
+  localparam int ExchangeZ = 2;
+  localparam int Force     = 3;
+  localparam int Update    = 4;
+  localparam int MigrateX  = 5;
+  localparam int MigrateY  = 6;
+  localparam int MigrateZ  = 7;
+  localparam int Dump      = 8;
+  localparam int Idle      = 9;
+  localparam int LastExchange = (Axes == 3) ? ExchangeZ : ExchangeY;
+  localparam int LastMigrate  = (Axes == 3) ? MigrateZ : MigrateY;
 
-  state_t      state_d, state_q;
-  logic        first_d, first_q;  // first cycle of a state
-  logic [31:0] steps_d, steps_q;  // still to do, this one included
+  logic [Idle:0] state_d, state_q, enter;
+  logic          first_d, first_q;  // first cycle of a state
+  logic [31:0]   steps_d, steps_q;  // still to do, this one included
+  logic          start, last_step, none;
 
-  always_comb begin
-    state_d = state_q;
-    steps_d = steps_q;
-    unique case (state_q)
-      ExchangeX: if (exchange_done_i) state_d = ExchangeY;
-      ExchangeY: if (exchange_done_i) state_d = (Axes == 3) ? ExchangeZ : Force;
-      ExchangeZ: if (exchange_done_i) state_d = Force;
-      Force:     if (force_done_i) state_d = Update;
-      Update:    if (update_done_i) state_d = MigrateX;
-      MigrateX:  if (migrate_done_i) state_d = MigrateY;
-      MigrateY:  if (migrate_done_i) state_d = MigrateZ;
-      MigrateZ:  state_d = MigrateZ;
-      Dump:      if (dump_done_i) state_d = Idle;
-      default: begin
-        if (start_i) begin
-          steps_d = steps_i;
-          state_d = ExchangeX;
-          if (steps_i == 32'd0) state_d = Dump;
-        end
-      end
-    endcase
-    if (step_end_o) begin
-      steps_d = steps_q - 32'd1;
-      state_d = ExchangeX;
-      if (steps_q == 32'd1) state_d = Dump;
-    end
-  end
-  assign first_d = (state_d != state_q);
+  assign start     = state_q[Idle] && start_i;
+  assign last_step = (steps_q == 32'd1);
+  assign none      = (steps_i == 32'd0);
+  assign enter[ExchangeX] = (start && !none) || (step_end_o && !last_step);
+  assign enter[ExchangeY] = state_q[ExchangeX] && exchange_done_i;
+  assign enter[ExchangeZ] = (Axes == 3) && state_q[ExchangeY] && exchange_done_i;
+  assign enter[Force]     = state_q[LastExchange] && exchange_done_i;
+  assign enter[Update]    = state_q[Force] && force_done_i;
+  assign enter[MigrateX]  = state_q[Update] && update_done_i;
+  assign enter[MigrateY]  = state_q[MigrateX] && migrate_done_i;
+  assign enter[MigrateZ]  = (Axes == 3) && state_q[MigrateY] && migrate_done_i;
+  assign enter[Dump]      = (start && none) || (step_end_o && last_step);
+  assign enter[Idle]      = state_q[Dump] && dump_done_i;
+  assign first_d          = (enter != '0);
+  assign state_d          = first_d ? enter : state_q;
+  assign steps_d          = start ? steps_i : step_end_o ? steps_q - 32'd1 : steps_q;
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
-      state_q <= Idle;
+      state_q <= {1'b1, {Idle {1'b0}}};
       first_q <= 1'b0;
       steps_q <= '0;
     end else begin
@@ -77,36 +77,36 @@ module cuboct_sequencer #(
   end
 
   logic in_force, engine_first;
-  assign in_force     = (state_q == Force);
-  assign engine_first = first_q && ((Overlap != 0) ? (state_q == ExchangeX) : in_force);
+  assign in_force     = state_q[Force];
+  assign engine_first = first_q && ((Overlap != 0) ? state_q[ExchangeX] : in_force);
 
-  assign idle_o          = (state_q == Idle);
-  assign exchange_o      = (state_q == ExchangeX) || (state_q == ExchangeY) || (state_q == ExchangeZ);
-  assign update_o        = (state_q == Update);
-  assign migrate_o       = (state_q == MigrateX) || (state_q == MigrateY) || (state_q == MigrateZ);
-  assign dump_o          = (state_q == Dump);
+  assign idle_o          = state_q[Idle];
+  assign exchange_o      = state_q[ExchangeX] || state_q[ExchangeY] || state_q[ExchangeZ];
+  assign update_o        = state_q[Update];
+  assign migrate_o       = state_q[MigrateX] || state_q[MigrateY] || state_q[MigrateZ];
+  assign dump_o          = state_q[Dump];
   assign engine_o        = in_force || ((Overlap != 0) && exchange_o);
-  assign past_exchange_o[0]      = in_force || (state_q == ExchangeZ) || (state_q == ExchangeY);
+  assign past_exchange_o[0]      = in_force || state_q[ExchangeZ] || state_q[ExchangeY];
   assign past_exchange_o[Axes-1] = in_force;
   if (Axes == 3) begin : gen_middle
-    assign past_exchange_o[1] = in_force || (state_q == ExchangeZ);
+    assign past_exchange_o[1] = in_force || state_q[ExchangeZ];
   end
-  assign step_end_o = (state_q == ((Axes == 3) ? MigrateZ : MigrateY)) && migrate_done_i;
-  always_comb begin
-    axis_o = 2'd0;
-    unique case (state_q)
-      ExchangeY, MigrateY: axis_o = 2'd1;
-      ExchangeZ, MigrateZ: axis_o = 2'd2;
-      default:             axis_o = 2'd0;
-    endcase
-  end
+  assign step_end_o = state_q[LastMigrate] && migrate_done_i;
+  assign axis_o = {state_q[ExchangeZ] || state_q[MigrateZ], state_q[ExchangeY] || state_q[MigrateY]};
 
-  assign phase_start_o = {first_q && (state_q == MigrateZ), first_q && (state_q == MigrateY),
-                          first_q && (state_q == MigrateX), first_q && update_o, engine_first,
-                          first_q && (state_q == ExchangeZ), first_q && (state_q == ExchangeY),
-                          first_q && (state_q == ExchangeX)};
-  assign phase_end_o   = {(state_q == MigrateZ) && migrate_done_i, (state_q == MigrateY) && migrate_done_i,
-                          (state_q == MigrateX) && migrate_done_i, update_o && update_done_i,
-                          in_force && force_done_i, (state_q == ExchangeZ) && exchange_done_i,
-                          (state_q == ExchangeY) && exchange_done_i, (state_q == ExchangeX) && exchange_done_i};
+  assign phase_start_o = {first_q && state_q[MigrateZ], first_q && state_q[MigrateY],
+                          first_q && state_q[MigrateX], first_q && update_o, engine_first,
+                          first_q && state_q[ExchangeZ], first_q && state_q[ExchangeY],
+                          first_q && state_q[ExchangeX]};
+  assign phase_end_o   = {state_q[MigrateZ] && migrate_done_i, state_q[MigrateY] && migrate_done_i,
+                          state_q[MigrateX] && migrate_done_i, update_o && update_done_i,
+                          in_force && force_done_i, state_q[ExchangeZ] && exchange_done_i,
+                          state_q[ExchangeY] && exchange_done_i, state_q[ExchangeX] && exchange_done_i};
+
+  // The state's number, for proofs.
+  logic [3:0] unused_number;
+  assign unused_number = {state_q[Dump] || state_q[Idle],
+                          state_q[Update] || state_q[MigrateX] || state_q[MigrateY] || state_q[MigrateZ],
+                          state_q[ExchangeZ] || state_q[Force] || state_q[MigrateY] || state_q[MigrateZ],
+                          state_q[ExchangeY] || state_q[Force] || state_q[MigrateX] || state_q[MigrateZ] || state_q[Idle]};
 endmodule
