@@ -231,16 +231,18 @@ module cuboct_brick_core #(
   always_comb begin
     count_set  = idle_o ? main_count + 1'b1 : migrate_count;
     own_write  = load || update_write || migrate_write;
-    write_cell = here;
-    write_slot = main_count[SlotBits-1:0];
-    write_data = {2'b00, load_data_i};
-    if (update_write) begin
-      write_cell = update_place[SlotBits +: CellBits];
-      write_slot = update_place[SlotBits-1:0];
-      write_data = update_data;
-    end else if (migrate_write) begin
+    // Chosen by the state, which is there before the writes are.
+    write_cell = update_place[SlotBits +: CellBits];
+    write_slot = update_place[SlotBits-1:0];
+    write_data = update_data;
+    if (in_migrate) begin
+      write_cell = here;
       write_slot = migrate_write_slot;
       write_data = migrate_write_data;
+    end else if (idle_o) begin
+      write_cell = here;
+      write_slot = main_count[SlotBits-1:0];
+      write_data = {2'b00, load_data_i};
     end
   end
   cuboct_brick_addr #(
