@@ -25,10 +25,17 @@ module cuboct_sums #(
 
   logic [Capacity-1:0]  held_d, held_q;  // slots whose sum is not zero by default
   logic [SlotBits-1:0]  slot;
-  logic [Axes*SumBits-1:0] word, old, added;
+  logic [Axes*SumBits-1:0] word, old, added;  // word: of slot; old: the sum before a kick
 
   assign slot = show_i ? take_slot_i : kick_slot_i;
-  assign old  = held_q[slot[IndexBits-1:0]] ? word : '0;
+  if (Spaced != 0) begin : gen_one_look
+    assign old   = held_q[slot[IndexBits-1:0]] ? word : '0;
+    assign sum_o = old;
+  end else begin : gen_two_looks
+    // Whether a slot is held is known without waiting for whose turn it is.
+    assign old   = held_q[kick_slot_i[IndexBits-1:0]] ? word : '0;
+    assign sum_o = held_q[take_slot_i[IndexBits-1:0]] ? word : '0;
+  end
   for (genvar a = 0; a < Axes; a++) begin : gen_axis
     logic signed [SumBits-1:0] push;
     cuboct_resize #(.InBits(KickBits), .OutBits(SumBits)) u_push (
@@ -61,5 +68,4 @@ module cuboct_sums #(
       if (kick_valid_i) mem_q[slot[IndexBits-1:0]] <= added;
     end
   end
-  assign sum_o = old;
 endmodule
