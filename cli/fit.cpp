@@ -7,6 +7,7 @@
 
 #include "hw/rtl_emit.h"
 #include "model/changes.h"
+#include "model/config.h"
 #include "model/interrupt.h"
 #include "model/progress.h"
 #include "rtl/synth/tool.h"
@@ -19,14 +20,19 @@ using synth::Target;
 
 // Of lanes, between which the lines of the model are drawn.
 constexpr int kManyLanes = 8;
-// Syntheses after which the best that was measured has to do.
-constexpr size_t kMostSyntheses = 16;
 // Bricks that cannot be emitted, after which no other is tried.
 constexpr size_t kMostRefused = 4;
+
+constexpr const char* kHeading = "# Brick, lanes and pipes as cuboct emit --fit ";
 
 void say(const std::string& what) {
   if (stderr_is_terminal()) fmt::print(stderr, "\r\033[K{}", what.empty() ? "" : "fit: " + what + " ...");
 }
+
+// Nothing of the progress is left where a search ends, however it does.
+struct Said {
+  ~Said() { say(""); }
+};
 
 // A plan that has no RTL; another brick may have. What else goes wrong in a synthesis goes wrong for all.
 struct NotEmitted : InputError {
@@ -34,7 +40,14 @@ struct NotEmitted : InputError {
 };
 
 std::string text_of(const std::string& arch) {
-  return arch.empty() ? "name = \"default\"\n" : synth::read_text(arch);
+  return arch.empty() ? "name = \"default\"\n" : read_config_text(arch);
+}
+
+std::string with_choice(const std::string& text, const std::string& path, const FitPoint& p) {
+  return with_changes(text, path,
+                      {{"node.brick", fmt::format("[{}, {}, {}]", p.brick[0], p.brick[1], p.brick[2])},
+                       {"node.filter_lanes", std::to_string(p.lanes)},
+                       {"node.force_pipes", std::to_string(p.pipes)}});
 }
 
 // With the least brick, lanes and pipes: those of the file are not what is asked for.
@@ -68,12 +81,15 @@ Fitter::Fitter(const Input& input, const Target& target, const BoardChoice& boar
       board_(board),
       meter_(target, [](const std::string&) {}),
       scene_(read_scene(input.scene)),
-      arch_(least(read_arch(input.arch))),
+      arch_text_(text_of(input.arch)),
+      arch_(least(parse_arch(arch_text_, input.arch))),
       base_(make_setup(scene_, arch_)),
       census_(base_.plan.rule, base_.plan.lattice, base_.initial),
       loads_(base_.plan, census_),
       memories_(base_.plan.rule, arch_, base_.plan.particles),
-      room_(synth::room_of(target)) {}
+      room_(synth::room_of(target)) {
+  if (!arch_.narrow_memories) with_choice(arch_text_, input.arch, {{1, 1, 1}, 1, 1});  // can take a choice
+}
 
 Plan Fitter::plan_at(const FitPoint& point) const {
   Arch arch = arch_;
@@ -194,6 +210,7 @@ void Fitter::measure(const FitPoint& point) {
 }
 
 void Fitter::choose() {
+  const Said said;
   say("looks for bricks");
   find_shapes();
   choice_ = fastest_that_fits(space_, room_, costs());
@@ -232,19 +249,14 @@ void Fitter::choose() {
     }
     choice_ = fastest_that_fits(space_, room_, costs());
   }
-  say("");
   if (!choice_) refuse();
 }
 
 std::string Fitter::arch_text() const {
-  const FitPoint& p = choice_->point;
-  std::string text = text_of(input_.arch);
-  if (!arch_.narrow_memories)
-    text = with_changes(text, input_.arch,
-                        {{"node.brick", fmt::format("[{}, {}, {}]", p.brick[0], p.brick[1], p.brick[2])},
-                         {"node.filter_lanes", std::to_string(p.lanes)},
-                         {"node.force_pipes", std::to_string(p.pipes)}});
-  return fmt::format("# Brick, lanes and pipes as cuboct emit --fit {} chose them.\n{}", target_.name, text);
+  std::string text =
+      arch_.narrow_memories ? arch_text_ : with_choice(arch_text_, input_.arch, choice_->point);
+  if (text.starts_with(kHeading)) text.erase(0, text.find('\n') + 1);  // of an earlier choice
+  return fmt::format("{}{} chose them.\n{}", kHeading, target_.name, text);
 }
 
 Setup Fitter::setup() const { return make_setup(scene_, parse_arch(arch_text(), "arch.toml")); }

@@ -24,6 +24,9 @@ const synth::Target& fit_target(const std::string& target, const BoardChoice& bo
 // Particles in the cell that has most, at least 1.
 int fullest(const PairCensus& census, uint32_t cells);
 
+// Syntheses after which the best that was measured has to do.
+inline constexpr size_t kMostSyntheses = 16;
+
 class Fitter {
  public:
   // Reads scene and arch. Throws InputError; a tool that is missing is told first.
@@ -70,6 +73,7 @@ class Fitter {
   BoardChoice board_;
   synth::Meter meter_;
   Scene scene_;
+  std::string arch_text_;
   Arch arch_;  // one cell, lane and pipe
   Setup base_;
   PairCensus census_;

@@ -106,14 +106,22 @@ std::string Fitter::table() {
     const auto fitting = fastest_that_fits(same, room_, cost);
     add_row(rows, fitting ? fitting : nearest_to_fit(same, room_, cost));
   }
-  // More nodes, whose memories have no room: the nearest of each number.
+  // More nodes, whose memories have no room: the nearest of each number. A brick of so many cells makes no
+  // fewer nodes than this, so that few have to be counted.
+  const auto least_nodes = [size = base_.plan.lattice.size()](const Cell& b) {
+    return (size + cells_of(b) - 1) / cells_of(b);
+  };
+  std::vector<Cell> bricks;
+  if (!arch_.narrow_memories) bricks = possible_bricks(base_.plan.lattice);
+  std::ranges::stable_sort(bricks, {}, least_nodes);
   std::map<uint32_t, FitSpace> without_room;
-  if (!arch_.narrow_memories)
-    for (const Cell& brick : possible_bricks(base_.plan.lattice)) {
-      const bool known = std::ranges::find(space_.shapes, brick, &FitShape::brick) != space_.shapes.end();
-      const uint32_t nodes = known ? 0 : count_bricks(base_.plan.lattice, brick);
-      if (nodes > choice_->nodes) without_room[nodes].shapes.push_back({brick, nodes});
-    }
+  for (const Cell& brick : bricks) {
+    if (without_room.size() > kShownWithoutRoom) without_room.erase(std::prev(without_room.end()));
+    if (without_room.size() == kShownWithoutRoom && least_nodes(brick) > without_room.rbegin()->first) break;
+    const bool known = std::ranges::find(space_.shapes, brick, &FitShape::brick) != space_.shapes.end();
+    const uint32_t nodes = known ? 0 : count_bricks(base_.plan.lattice, brick);
+    if (nodes > choice_->nodes) without_room[nodes].shapes.push_back({brick, nodes});
+  }
   size_t told = 0;
   for (auto& [nodes, space] : without_room) {
     if (++told > kShownWithoutRoom) break;
@@ -236,6 +244,17 @@ uint64_t Fitter::cells_that_fit() {
 
 void Fitter::refuse() {
   const Lattice& lattice = base_.plan.lattice;
+  if (measured_.size() >= kMostSyntheses) {
+    const auto& [point, uses] = *std::ranges::min_element(
+        measured_, {}, [this](const auto& m) { return worst_share(m.second, room_).share; });
+    throw InputError(fmt::format("{}: none of the {} plans for {} that were synthesised fits; the nearest, "
+                                 "nodes of {} cells with {} and {}, takes {}",
+                                 input_.scene, measured_.size(), target_.name, cells_text(point.brick),
+                                 count_text(static_cast<uint64_t>(point.lanes), "lane"),
+                                 count_text(static_cast<uint64_t>(point.pipes), "pipe"), excess(uses)),
+                     "each was estimated to fit, so the device is nearly full: give a shorter node.capacity "
+                     "or node.queue_depth, or a larger device");
+  }
   // By the least number of nodes, which no count is below; counted until none of the rest can be nearer.
   std::vector<std::pair<double, Cell>> bricks;
   for (const Cell& brick : possible_bricks(lattice)) {

@@ -2,6 +2,7 @@
 #include "hw/rtl_emit.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -87,7 +88,15 @@ void write(const std::string& dir, const Files& files) {
 
 void check_emit_directory(const std::string& dir) {
   std::error_code error;
-  if (!fs::exists(dir, error)) return;
+  if (!fs::exists(dir, error)) {
+    fs::path nearest = fs::absolute(dir).parent_path();
+    while (!fs::exists(nearest, error) && nearest.has_relative_path()) nearest = nearest.parent_path();
+    if (!fs::is_directory(nearest, error))
+      throw InputError(fmt::format("{}: cannot be made, as {} is no directory", dir, nearest.string()));
+    if (access(nearest.c_str(), W_OK | X_OK) != 0)
+      throw InputError(fmt::format("{}: cannot be made, as {} cannot be written to", dir, nearest.string()));
+    return;
+  }
   if (!fs::is_directory(dir, error)) throw InputError(fmt::format("{}: is no directory", dir));
   if (!fs::is_empty(dir, error) && !fs::exists(fs::path(dir) / kMarker, error))
     throw InputError(fmt::format("{}: is not empty and holds no earlier emission", dir),

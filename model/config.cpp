@@ -371,13 +371,15 @@ ConfigTable parse_config(const std::string& text, const std::string& path) {
   return root;
 }
 
-ConfigTable read_config(const std::string& path) {
+std::string read_config_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   // A directory opens and then fails to read.
   if (!in || !(text << in.rdbuf())) throw InputError(fmt::format("{}: cannot read this file", path));
-  return parse_config(text.str(), path);
+  return text.str();
 }
+
+ConfigTable read_config(const std::string& path) { return parse_config(read_config_text(path), path); }
 
 void record_config_keys(std::set<std::string>* keys) { recorder = keys; }
 

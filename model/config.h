@@ -116,6 +116,8 @@ class ConfigTable : public ConfigValue {
 // Parses a file. The top-level key `units` ("SI", or "reduced": all quantities are plain numbers) is read
 // here.
 ConfigTable read_config(const std::string& path);
+// Its text alone.
+std::string read_config_text(const std::string& path);
 // The same for text in memory; `path` stands in messages.
 ConfigTable parse_config(const std::string& text, const std::string& path);
 

@@ -4,7 +4,7 @@
 module cuboct_board_reset (
   input  logic clk_i,
   input  logic reset_i,  // the button; not synchronous
-  output logic rst_no
+  output logic rst_no    // active low
 );
   logic [1:0] sync_q = 2'b00;
   logic [4:0] count_q = 5'd0;

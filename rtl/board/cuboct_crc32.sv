@@ -5,8 +5,8 @@
 module cuboct_crc32 (
   input  logic       clk_i,
   input  logic       clear_i,  // to the register's initial value
-  input  logic       valid_i,
-  input  logic [7:0] data_i,
+  input  logic       valid_i,  // a byte is fed
+  input  logic [7:0] data_i,   // with valid_i
   output logic [7:0] sum_o,    // the check sum's next byte; it is complete when fed four times with shift_i
   input  logic       shift_i,  // with valid_i: feed the register's own byte, which moves it out
   output logic       good_o    // what was fed ends with its own check sum

@@ -5,11 +5,11 @@
 module cuboct_frame_rx (
   input  logic       clk_i,
   input  logic       rst_ni,
-  input  logic       enable_i,
-  input  logic       valid_i,
-  input  logic [7:0] data_i,
+  input  logic       enable_i, // low: out of frame
+  input  logic       valid_i,  // a byte of the line
+  input  logic [7:0] data_i,   // with valid_i
   output logic       valid_o,  // a byte of a frame
-  output logic [7:0] data_o,
+  output logic [7:0] data_o,   // with valid_o
   output logic       end_o     // the frame's end; also of empty ones
 );
   localparam logic [7:0] Flag   = 8'h7e;

@@ -3,13 +3,13 @@
 module cuboct_frame_tx (
   input  logic       clk_i,
   input  logic       rst_ni,
-  input  logic       valid_i,
+  input  logic       valid_i,  // stays until ready_o
   input  logic       flag_i,   // a frame's first or last mark instead of data_i
-  input  logic [7:0] data_i,
+  input  logic [7:0] data_i,   // of a frame
   output logic       ready_o,  // a byte is taken in a cycle with valid_i and ready_o
-  output logic       valid_o,
-  output logic [7:0] data_o,
-  input  logic       ready_i
+  output logic       valid_o,  // a byte for the line
+  output logic [7:0] data_o,   // with valid_o
+  input  logic       ready_i   // the line takes it
 );
   localparam logic [7:0] Flag   = 8'h7e;
   localparam logic [7:0] Escape = 8'h7d;

@@ -10,41 +10,41 @@ module cuboct_host_link #(
   parameter int          Axes         = 3,      // 2 or 3
   parameter int          Capacity     = 16,     // of a node
   parameter int          ParticleBits = 154,    // >= 1
-  parameter int          IdBits       = 8,
+  parameter int          IdBits       = 8,      // of a particle's id
   parameter int          VelocityBits = 29,     // at most 64
   parameter int          MovedTypes   = 0,      // types whose velocities can be set
-  parameter logic [63:0] PlanHash     = 64'd0,
+  parameter logic [63:0] PlanHash     = 64'd0,  // told by INFO
   parameter logic [63:0] MachineHash  = 64'd0,  // of the plan with all these velocities zero
-  parameter int          ClockHz      = 12000000,
+  parameter int          ClockHz      = 12000000,  // told by INFO
   parameter int          BitClocks16  = 192     // length of a bit in 1/16 clocks, >= 64
 ) (
   input  logic                          clk_i,
   input  logic                          rst_ni,
-  input  logic                          rx_i,
-  output logic                          tx_o,
+  input  logic                          rx_i,        // the serial line, not synchronous
+  output logic                          tx_o,        // the serial line
   // To the lattice.
-  output logic                          lattice_rst_no,
-  output logic                          start_o,
-  output logic [31:0]                   steps_o,
-  output logic                          load_valid_o,
-  output logic [31:0]                   load_node_o,
-  output logic [ParticleBits-1:0]       load_data_o,
-  input  logic [Nodes-1:0]              observe_valid_i,
-  input  logic [Nodes*ParticleBits-1:0] observe_data_i,
-  input  logic [Nodes-1:0]              fault_valid_i,
-  input  logic [4*Nodes-1:0]            fault_code_i,
-  input  logic [Nodes*IdBits-1:0]       fault_id_i,
-  input  logic [64*Nodes-1:0]           fault_number_i,
-  input  logic [Nodes-1:0]              idle_i,
+  output logic                          lattice_rst_no,  // its reset, active low
+  output logic                          start_o,     // in IDLE only
+  output logic [31:0]                   steps_o,     // with start_o
+  output logic                          load_valid_o,  // in IDLE only
+  output logic [31:0]                   load_node_o, // with load_valid_o
+  output logic [ParticleBits-1:0]       load_data_o, // with load_valid_o
+  input  logic [Nodes-1:0]              observe_valid_i,  // by node: a particle is shown
+  input  logic [Nodes*ParticleBits-1:0] observe_data_i,  // by node: its word
+  input  logic [Nodes-1:0]              fault_valid_i,  // by node: a fault
+  input  logic [4*Nodes-1:0]            fault_code_i,  // by node, with fault_valid_i
+  input  logic [Nodes*IdBits-1:0]       fault_id_i,  // by node, with fault_valid_i
+  input  logic [64*Nodes-1:0]           fault_number_i,  // by node, with fault_valid_i
+  input  logic [Nodes-1:0]              idle_i,      // by node
   // To the velocities of moved types.
-  output logic                          velocity_reset_o,
-  output logic                          velocity_valid_o,
-  output logic [7:0]                    velocity_type_o,
-  output logic [7:0]                    velocity_axis_o,
-  output logic [VelocityBits-1:0]       velocity_data_o,
+  output logic                          velocity_reset_o,  // to the plan's
+  output logic                          velocity_valid_o,  // one is set
+  output logic [7:0]                    velocity_type_o,  // with velocity_valid_o
+  output logic [7:0]                    velocity_axis_o,  // with velocity_valid_o
+  output logic [VelocityBits-1:0]       velocity_data_o,  // with velocity_valid_o
   // For lamps.
-  output logic                          busy_o,
-  output logic                          fault_o
+  output logic                          busy_o,      // a run is under way
+  output logic                          fault_o      // a node met a fault since RESET
 );
   localparam logic [7:0] Info = 8'h01, Status = 8'h02, Reset = 8'h03, Load = 8'h04, Run = 8'h05, Read = 8'h06,
                          Velocity = 8'h07, Fault = 8'h08;
@@ -351,7 +351,8 @@ module cuboct_host_link #(
         end
         if (all_idle) begin
           // The first dump of a reply comes before its head.
-          state_d = (index_q == '0) ? SendStart : SendWord;
+          state_d = SendWord;
+          if (index_q == '0) state_d = SendStart;
           index_d = '0;
         end
       end
@@ -368,7 +369,8 @@ module cuboct_host_link #(
           index_d   = index_q + 1'b1;
           if (body_index == body_bytes - 1'b1) begin
             index_d = '0;
-            state_d = (command_q == Read && more_words) ? SendWord : SendSum;
+            state_d = SendSum;
+            if (command_q == Read && more_words) state_d = SendWord;
           end
         end
       end

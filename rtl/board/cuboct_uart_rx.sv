@@ -9,7 +9,7 @@ module cuboct_uart_rx #(
   input  logic       rst_ni,
   input  logic       rx_i,     // not synchronous
   output logic       valid_o,  // for one cycle
-  output logic [7:0] data_o
+  output logic [7:0] data_o    // with valid_o
 );
   localparam int TimerBits = $clog2(BitClocks16 + 16);
   localparam int Clock     = 16;

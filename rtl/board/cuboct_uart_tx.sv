@@ -5,10 +5,10 @@ module cuboct_uart_tx #(
 ) (
   input  logic       clk_i,
   input  logic       rst_ni,
-  input  logic       valid_i,
-  input  logic [7:0] data_i,
+  input  logic       valid_i,  // a byte
+  input  logic [7:0] data_i,   // with valid_i
   output logic       ready_o,  // a byte is taken in a cycle with valid_i and ready_o
-  output logic       tx_o
+  output logic       tx_o      // the line, high at rest
 );
   localparam int TimerBits = $clog2(BitClocks16 + 16);
   localparam int Clock     = 16;

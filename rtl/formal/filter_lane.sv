@@ -16,11 +16,13 @@ module filter_lane_formal #(
 );
   localparam int Bits = FilterFrac + 6;
 
-  logic pass;
+  logic                             pass;
+  logic [((Axes == 3) ? 5 : 2)-1:0] tests;
+  assign pass = (tests == '1);
   cuboct_filter_lane #(
     .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo),
     .PlanarThree(PlanarThree)
-  ) u_dut (.clk_i, .en_i(1'b0), .test_i, .own_i, .candidate_i, .pass_o(pass));
+  ) u_dut (.clk_i, .en_i(1'b0), .test_i, .own_i, .candidate_i, .near_o(tests));
 
   logic [3*Bits-1:0] sizes;  // by axis; nothing along one that is not there
   for (genvar a = 0; a < 3; a++) begin : gen_axis

@@ -111,8 +111,10 @@ module pair_walk_formal #(
     assign coarse[a*3 +: 3]   = watched_candidate[a*4+1 +: 3];
     assign unused_own[a]      = watched_own[a*2] ^ watched_candidate[a*4];
   end
+  logic [((Axes == 3) ? 5 : 2)-1:0] tests;
+  assign pass = (tests == '1);
   cuboct_filter_lane #(.Axes(Axes), .FilterFrac(1), .PlanarOne(One), .PlanarTwo(Two), .PlanarThree(Three)) u_test (
-    .test_i(1'b1), .own_i(coarse_own), .candidate_i(coarse), .pass_o(pass)
+    .clk_i, .en_i(1'b0), .test_i(1'b1), .own_i(coarse_own), .candidate_i(coarse), .near_o(tests)
   );
   integer s;
   always_comb begin
@@ -139,15 +141,16 @@ module pair_walk_formal #(
 
   // In each cycle of a phase that is not stalled a rank rises: segment, record, words or slots asked for, what is
   // under way.
-  (* keep *) logic                 tap_walk, tap_t_valid, tap_r_valid, tap_r_hit;
+  (* keep *) logic                 tap_walk, tap_t_valid, tap_r_valid;
   (* keep *) logic                 tap_ready;
+  (* keep *) logic [((Axes == 3) ? 5 : 2)-1:0] tap_r_near;
   (* keep *) logic [SlotBits-1:0]  tap_t_slot, tap_r_slot;
   (* keep *) logic [CountBits-1:0] tap_record, tap_next;
   (* keep *) logic [$clog2(HaloBeats+1)-1:0] tap_step;
   logic [2*CountBits+8:0]          rank, rank_q;
   logic                            moves_q;
   logic [1:0]                      under_way;
-  assign under_way = {tap_t_valid, tap_r_valid && tap_r_hit};
+  assign under_way = {tap_t_valid, tap_r_valid && (tap_r_near == '1)};
   assign rank      = {segment, tap_record, tap_walk, tap_walk ? tap_next : {CountBits {1'b0}},
                       tap_walk ? {1'b0, ~under_way} : {{(3 - $clog2(HaloBeats + 1)) {1'b0}}, tap_step}};
   always_ff @(posedge clk_i) begin
@@ -192,7 +195,7 @@ module pair_walk_formal #(
       i_t:     assert (!tap_t_valid || shown_t);
       i_r:     assert (!tap_r_valid || (tap_next > {{(CountBits - 1) {1'b0}}, tap_t_valid}
                                         && {{(CountBits - SlotBits) {1'b0}}, tap_r_slot} == past_r));
-      i_hit:   assert (!(tap_r_valid && is_watched && tap_r_slot == number) || tap_r_hit == due);
+      i_hit:   assert (!(tap_r_valid && is_watched && tap_r_slot == number) || (tap_r_near == '1) == due);
       i_word:  assert (word == word_now && (!reads || segment == 3'd0
                                             || (segment_q == segment && word_q == word - 1'b1)));
       i_own:   assert (!(reads && segment == 3'd0) || {{(CountBits - SlotBits) {1'b0}}, shown_q} == tap_record);

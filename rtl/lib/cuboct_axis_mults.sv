@@ -12,7 +12,7 @@ module cuboct_axis_mults #(
 ) (
   input  logic                            clk_i,
   input  logic                            rst_ni,
-  input  logic                            en_i,
+  input  logic                            en_i,  // takes operands
   input  logic [Axes*ABits-1:0]           a_i,   // signed
   input  logic [Axes*BBits-1:0]           b_i,   // signed
   output logic [Axes*(ABits+BBits)-1:0]   p_o    // signed

@@ -5,9 +5,9 @@ module cuboct_beat #(
   parameter int LinkBits = 32,  // of a beat, >= 1
   parameter int BeatBits = 2    // of a beat's number, >= clog2(beats)
 ) (
-  input  logic [Bits-1:0]     word_i,
-  input  logic [BeatBits-1:0] beat_i,
-  output logic [LinkBits-1:0] data_o
+  input  logic [Bits-1:0]     word_i,  // the record
+  input  logic [BeatBits-1:0] beat_i,  // which beat of it
+  output logic [LinkBits-1:0] data_o   // that beat
 );
   localparam int Beats = (Bits + LinkBits - 1) / LinkBits;
 

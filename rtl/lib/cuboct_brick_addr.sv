@@ -2,13 +2,13 @@
 // cell * Factor + slot, by adders: no multiplier is spent on an address. Combinational.
 module cuboct_brick_addr #(
   parameter int Factor   = 16,  // >= 1
-  parameter int CellBits = 3,
-  parameter int SlotBits = 4,
+  parameter int CellBits = 3,   // of cell_i
+  parameter int SlotBits = 4,   // of slot_i
   parameter int AddrBits = 7    // >= both
 ) (
-  input  logic [CellBits-1:0] cell_i,
-  input  logic [SlotBits-1:0] slot_i,
-  output logic [AddrBits-1:0] addr_o
+  input  logic [CellBits-1:0] cell_i,  // at most (2^AddrBits - 1) / Factor
+  input  logic [SlotBits-1:0] slot_i,  // added
+  output logic [AddrBits-1:0] addr_o   // modulo 2^AddrBits
 );
   logic [AddrBits+CellBits-1:0] wide;
   logic [AddrBits+SlotBits-1:0] sum;

@@ -231,16 +231,18 @@ module cuboct_brick_core #(
   always_comb begin
     count_set  = idle_o ? main_count + 1'b1 : migrate_count;
     own_write  = load || update_write || migrate_write;
-    write_cell = here;
-    write_slot = main_count[SlotBits-1:0];
-    write_data = {2'b00, load_data_i};
-    if (update_write) begin
-      write_cell = update_place[SlotBits +: CellBits];
-      write_slot = update_place[SlotBits-1:0];
-      write_data = update_data;
-    end else if (migrate_write) begin
+    // Chosen by the state, which is there before the writes are.
+    write_cell = update_place[SlotBits +: CellBits];
+    write_slot = update_place[SlotBits-1:0];
+    write_data = update_data;
+    if (in_migrate) begin
+      write_cell = here;
       write_slot = migrate_write_slot;
       write_data = migrate_write_data;
+    end else if (idle_o) begin
+      write_cell = here;
+      write_slot = main_count[SlotBits-1:0];
+      write_data = {2'b00, load_data_i};
     end
   end
   cuboct_brick_addr #(
@@ -625,8 +627,8 @@ module cuboct_brick_core #(
   assign observe_cell_o  = main_own;
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
-  // Faults: source 0 is pipe 0, the update, or the migration, which never speak in one cycle. A particle is in one cell,
-  // so the cell below its id changes no order.
+  // Faults: source 0 is pipe 0 or the update, which never speak in one cycle. A particle is in one cell, so the cell
+  // below its id changes no order.
   localparam int TellBits = IdBits + CellBits;
   logic [ForcePipes-1:0]          fault_valid;
   logic [ForcePipes*4-1:0]        fault_code;
@@ -645,19 +647,17 @@ module cuboct_brick_core #(
         fault_code[f*4 +: 4]             = update_fault_code;
         fault_id[f*TellBits +: TellBits] = {new_id, update_place[SlotBits +: CellBits]};
         fault_number[f*64 +: 64]         = update_fault_number;
-      end else if (f == 0 && in_migrate) begin
-        fault_valid[f]                   = fault_left || fault_full;
-        fault_code[f*4 +: 4]             = migrate_fault_code;
-        fault_id[f*TellBits +: TellBits] = {fault_particle[IdLsb +: IdBits], main_own};
-        fault_number[f*64 +: 64]         = fault_full ? {32'd0, Capacity} : 64'd0;
       end
     end
   end
   logic                some_fault;
   logic [TellBits-1:0] told;
-  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(TellBits), .NumberBits(NumberBits), .Direct(1)) u_fault (
+  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(TellBits), .NumberBits(NumberBits)) u_fault (
     .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
-    .number_i(fault_number), .valid_o(some_fault), .code_o(fault_code_o), .id_o(told), .number_o(fault_number_o)
+    .number_i(fault_number), .move_valid_i(fault_left || fault_full), .move_code_i(migrate_fault_code),
+    .move_id_i({fault_particle[IdLsb +: IdBits], main_own}),
+    .move_number_i(fault_full ? {32'd0, Capacity} : 64'd0), .valid_o(some_fault), .code_o(fault_code_o),
+    .id_o(told), .number_o(fault_number_o)
   );
   assign fault_valid_o = some_fault && step_end;
   assign fault_id_o    = told[CellBits +: IdBits];

@@ -10,11 +10,11 @@ module cuboct_brick_counts #(
   input  logic                      clk_i,
   input  logic                      rst_ni,
   input  logic                      clear_i,   // not in a cycle with write_i
-  input  logic                      write_i,
-  input  logic [AddrBits-1:0]       write_addr_i,
-  input  logic [Bits-1:0]           count_i,
-  input  logic [Reads*AddrBits-1:0] addr_i,
-  output logic [Reads*Bits-1:0]     count_o,
+  input  logic                      write_i,   // a cell gets a number
+  input  logic [AddrBits-1:0]       write_addr_i,  // which cell
+  input  logic [Bits-1:0]           count_i,   // which number
+  input  logic [Reads*AddrBits-1:0] addr_i,    // per port, a cell
+  output logic [Reads*Bits-1:0]     count_o,   // per port, its number
   output logic                      any_o      // some number is not zero
 );
   localparam int IndexBits = (Cells > 1) ? $clog2(Cells) : 1;

@@ -36,26 +36,26 @@ module cuboct_brick_finder #(
   input  logic [Faces-1:0]                      has_link_i,
   input  logic [3*GridBits-1:0]                 extent_i,
   // Counts, without latency.
-  output logic [CellBits-1:0]                   own_cell_o,
-  input  logic [CountBits-1:0]                  own_count_i,
-  output logic [CellBits-1:0]                   near_cell_o,
-  input  logic [CountBits-1:0]                  near_count_i,
-  output logic [3*TagBits-1:0]                  near_layer_o,
-  input  logic [Faces*CountBits-1:0]            layer_count_i,
+  output logic [CellBits-1:0]                   own_cell_o,   // own cell
+  input  logic [CountBits-1:0]                  own_count_i,  // its particles
+  output logic [CellBits-1:0]                   near_cell_o,  // cell around, if an own one
+  input  logic [CountBits-1:0]                  near_count_i, // its particles
+  output logic [3*TagBits-1:0]                  near_layer_o, // the same in the layers over x, y, z
+  input  logic [Faces*CountBits-1:0]            layer_count_i,  // by face, its records
   // Where the record is read: own ones, halos by axis; and a row of own positions. The memories answer in the next
   // cycle, and keep the answer until the next read.
-  output logic                                  read_o,
-  output logic [OwnAddrBits-1:0]                own_addr_o,
-  output logic [3*HaloAddrBits-1:0]             halo_addr_o,
-  input  logic [HaloBits-1:0]                   own_i,
-  input  logic [Faces*HaloBits-1:0]             halos_i,
-  output logic [RowAddrBits-1:0]                row_o,
-  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,
+  output logic                                  read_o,       // a record and a row are asked for
+  output logic [OwnAddrBits-1:0]                own_addr_o,   // with read_o
+  output logic [3*HaloAddrBits-1:0]             halo_addr_o,  // by axis, with read_o
+  input  logic [HaloBits-1:0]                   own_i,        // an own particle
+  input  logic [Faces*HaloBits-1:0]             halos_i,      // by face
+  output logic [RowAddrBits-1:0]                row_o,        // with read_o
+  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,  // by lane, x lowest
   // Pairs.
-  output logic [CandidateBits-1:0]              candidate_o,
+  output logic [CandidateBits-1:0]              candidate_o,  // with issue_o
   output logic [CellBits-1:0]                   cell_o,       // the own cell
-  output logic [ForcePipes-1:0]                 issue_o,
-  output logic [ForcePipes*SlotBits-1:0]        issue_slot_o,
+  output logic [ForcePipes-1:0]                 issue_o,      // per pipe: a pair
+  output logic [ForcePipes*SlotBits-1:0]        issue_slot_o, // per pipe, with issue_o: its own slot
   output logic                                  meet_o,       // a candidate is presented
   output logic                                  stall_o,      // a full queue holds the filter
   output logic                                  done_o        // no candidate is left anywhere

@@ -24,26 +24,26 @@ module cuboct_brick_halos #(
   input  logic [Faces*LinkBits-1:0]  link_data_i,
   output logic [Faces-1:0]           link_ready_o,
   // Halos: by face, at an address by axis, as in cuboct_brick_inbox.
-  input  logic                       halo_clear_i,
+  input  logic                       halo_clear_i,    // the step's halos are read; with the last cycle of FORCE
   output logic [Faces-1:0]           halo_end_o,      // complete; always where there is no link
-  input  logic [3*TagBits-1:0]       stream_cell_i,
-  output logic [Faces*CountBits-1:0] stream_count_o,
-  input  logic                       stream_read_i,
-  input  logic [3*AddrBits-1:0]      stream_addr_i,
-  output logic [Faces*HaloBits-1:0]  stream_data_o,
-  input  logic [3*TagBits-1:0]       relay_cell_i,
-  output logic [Faces*CountBits-1:0] relay_count_o,
-  input  logic [3*AddrBits-1:0]      relay_addr_i,
+  input  logic [3*TagBits-1:0]       stream_cell_i,   // by axis: cell of the streamer
+  output logic [Faces*CountBits-1:0] stream_count_o,  // that cell's records, without latency
+  input  logic                       stream_read_i,   // the streamer asks
+  input  logic [3*AddrBits-1:0]      stream_addr_i,   // with stream_read_i
+  output logic [Faces*HaloBits-1:0]  stream_data_o,   // from the next cycle on; stays
+  input  logic [3*TagBits-1:0]       relay_cell_i,    // by axis: cell of the relay
+  output logic [Faces*CountBits-1:0] relay_count_o,   // its records, without latency
+  input  logic [3*AddrBits-1:0]      relay_addr_i,    // in every cycle
   output logic [Faces*HaloBits-1:0]  relay_data_o,    // not of the last axis
   // Migrating particles.
   input  logic                       migrating_i,     // a migration phase
-  input  logic [Faces-1:0]           migrate_clear_i,
+  input  logic [Faces-1:0]           migrate_clear_i, // by face: last cycle of its axis's migration
   output logic [Faces-1:0]           migrate_end_o,   // complete; always where there is no link
-  output logic [Faces-1:0]           migrate_none_o,
+  output logic [Faces-1:0]           migrate_none_o,  // none came in this phase
   input  logic [2*3*TagBits-1:0]     land_cell_i,     // two cells
-  output logic [Faces*2*CountBits-1:0] land_count_o,
-  output logic [Faces*ParticleBits-1:0] migrate_data_o,
-  input  logic [Faces-1:0]           migrate_pop_i
+  output logic [Faces*2*CountBits-1:0] land_count_o,  // by face, particles that came to each of them
+  output logic [Faces*ParticleBits-1:0] migrate_data_o,  // by face: the oldest particle
+  input  logic [Faces-1:0]           migrate_pop_i    // by face: it is taken
 );
   logic [Faces-1:0] halo_end_d, halo_end_q, migrate_end_d, migrate_end_q, halo_end, migrate_end;
   assign halo_end_d    = (halo_end_q | halo_end) & ~{Faces{halo_clear_i}};

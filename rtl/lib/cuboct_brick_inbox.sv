@@ -8,7 +8,7 @@ module cuboct_brick_inbox #(
   parameter int ParticleBits = 128,  // > HaloBits: a particle has an id too
   parameter int Capacity     = 16,  // of a cell
   parameter int HaloCells    = 4,   // of the layer
-  parameter int FaceCells    = 4,
+  parameter int FaceCells    = 4,   // of the own face
   parameter int Relayed      = 1,   // 1: a second read port for the relay
   parameter int TagBits      = 2,   // of a cell's number
   parameter int CountBits    = 5,   // >= clog2(Capacity + 1)
@@ -18,29 +18,29 @@ module cuboct_brick_inbox #(
   input  logic                    clk_i,
   input  logic                    rst_ni,
   // Halos.
-  input  logic                    clear_i,
-  input  logic                    append_i,
-  input  logic [TagBits-1:0]      halo_cell_i,
-  input  logic [HaloBits-1:0]     halo_i,
-  input  logic [TagBits-1:0]      stream_cell_i,
+  input  logic                    clear_i,         // the step's halos are read
+  input  logic                    append_i,        // a halo record came
+  input  logic [TagBits-1:0]      halo_cell_i,     // its cell
+  input  logic [HaloBits-1:0]     halo_i,          // with append_i
+  input  logic [TagBits-1:0]      stream_cell_i,   // cell of the streamer
   output logic [CountBits-1:0]    stream_count_o,  // records of that cell, without latency
   input  logic                    read_i,          // the streamer asks; without it the answer stays
   input  logic [AddrBits-1:0]     addr_i,          // cell * Capacity + record
   output logic [HaloBits-1:0]     halo_o,          // from the next cycle on
-  input  logic [TagBits-1:0]      relay_cell_i,
-  output logic [CountBits-1:0]    relay_count_o,
+  input  logic [TagBits-1:0]      relay_cell_i,    // cell of the relay
+  output logic [CountBits-1:0]    relay_count_o,   // its records, without latency
   input  logic [AddrBits-1:0]     relay_addr_i,    // the relay asks in every cycle
-  output logic [HaloBits-1:0]     relay_halo_o,
+  output logic [HaloBits-1:0]     relay_halo_o,    // from the next cycle on
   // Particles.
   input  logic                    migrating_i,     // a migration phase: the oldest particle is shown, one cycle later on
   input  logic                    forget_i,        // the phase's end: all have landed
-  input  logic                    push_i,
-  input  logic [TagBits-1:0]      particle_cell_i,
-  input  logic [ParticleBits-1:0] particle_i,
+  input  logic                    push_i,          // a particle came
+  input  logic [TagBits-1:0]      particle_cell_i, // the cell that it goes to
+  input  logic [ParticleBits-1:0] particle_i,      // with push_i
   input  logic [2*TagBits-1:0]    land_cell_i,     // of two cells
   output logic [2*CountBits-1:0]  land_count_o,    // the particles that came to them in this phase, without latency
-  input  logic                    pop_i,
-  output logic [ParticleBits-1:0] particle_o,
+  input  logic                    pop_i,           // the oldest is taken
+  output logic [ParticleBits-1:0] particle_o,      // the oldest
   output logic                    none_o           // none came
 );
   localparam int First     = HaloCells * Capacity;  // halos lie below, particles from here on

@@ -26,9 +26,9 @@ module cuboct_brick_migrate #(
   output logic                      done_o,           // last cycle of the phase
   input  logic [3*GridBits-1:0]     extent_i,
   // The walk over the own cells: cuboct_brick_walk.
-  output logic                      advance_o,
-  input  logic [3*GridBits-1:0]     cell_i,
-  input  logic                      last_i,
+  output logic                      advance_o,        // to the next cell
+  input  logic [3*GridBits-1:0]     cell_i,           // where the walk is
+  input  logic                      last_i,           // at its last cell
   input  logic [CellBits-1:0]       own_i,            // the cell's number,
   input  logic [CellBits-1:0]       own_after_i,      // that of the cell after it
   input  logic [3*GridBits-1:0]     after_i,          // and where this lies
@@ -37,31 +37,31 @@ module cuboct_brick_migrate #(
   input  logic                      any_leaving_i,    // some particle of the brick leaves its cell along the axis,
   input  logic                      leaving_i,        // one of this cell
   input  logic [2*Axes-1:0]         exit_i,           // faces of the cell over which the lattice has a cell
-  input  logic [CountBits-1:0]      count_i,
-  output logic                      count_set_o,
-  output logic [CountBits-1:0]      count_o,
+  input  logic [CountBits-1:0]      count_i,          // particles of the cell
+  output logic                      count_set_o,      // they are count_o from the next cycle on
+  output logic [CountBits-1:0]      count_o,          // with count_set_o
   output logic [SlotBits-1:0]       read_slot_o,      // of the next cycle's read_data_i
-  input  logic [ParticleBits+1:0]   read_data_i,
-  output logic                      write_o,
+  input  logic [ParticleBits+1:0]   read_data_i,      // the slot of the cycle before's read_slot_o
+  output logic                      write_o,          // a slot is written
   output logic                      land_o,           // write_o: of a particle that came
-  output logic [SlotBits-1:0]       write_slot_o,
-  output logic [ParticleBits+1:0]   write_data_o,
+  output logic [SlotBits-1:0]       write_slot_o,     // with write_o
+  output logic [ParticleBits+1:0]   write_data_o,     // with write_o
   output logic [Axes-1:0]           leaving_more_o,   // axes along which an arrived particle goes on
   // Links of the axis: below, above.
-  input  logic [1:0]                can_load_i,
-  output logic [1:0]                load_o,
-  output logic                      end_o,
-  output logic [LinkBits-1:0]       data_o,
+  input  logic [1:0]                can_load_i,       // whether each link register can take a beat in this cycle
+  output logic [1:0]                load_o,           // which link registers take a beat
+  output logic                      end_o,            // with load_o: an end beat
+  output logic [LinkBits-1:0]       data_o,           // with load_o: payload
   // What came over the faces of the axis: below, above; particles that go to the cell, to the one after it.
-  input  logic [1:0]                none_i,
+  input  logic [1:0]                none_i,           // no particle came in this phase
   input  logic [1:0]                ended_i,          // the end beat came
-  input  logic [2*2*CountBits-1:0]  land_count_i,
-  input  logic [2*ParticleBits-1:0] arrived_i,
-  output logic [1:0]                pop_o,
+  input  logic [2*2*CountBits-1:0]  land_count_i,     // by face: to the cell, to the one after it
+  input  logic [2*ParticleBits-1:0] arrived_i,        // the oldest particle of each face
+  output logic [1:0]                pop_o,            // it is taken
   // Faults, of the particle in fault_particle_o.
-  output logic                      fault_left_o,
-  output logic                      fault_full_o,
-  output logic [ParticleBits-1:0]   fault_particle_o
+  output logic                      fault_left_o,     // there is no link: it is dropped
+  output logic                      fault_full_o,     // no slot is free: it is dropped
+  output logic [ParticleBits-1:0]   fault_particle_o  // with either
 );
   localparam int Cells    = BrickX * BrickY * BrickZ;
   localparam int AwayBits = 2 * (Axes - 1);  // in a particle's word

@@ -9,8 +9,8 @@ module cuboct_brick_place #(
   parameter int CellBits = 3,  // of an own cell's number
   parameter int TagBits  = 4   // of a number in a layer or face, <= CellBits + 4
 ) (
-  input  logic [3*GridBits-1:0] cell_i,
-  output logic [CellBits-1:0]   own_o,
+  input  logic [3*GridBits-1:0] cell_i,   // x, y, z
+  output logic [CellBits-1:0]   own_o,    // in the brick, x first
   output logic [3*TagBits-1:0]  layer_o,  // by axis: along x y, z; along y x, z with x from below the brick; along z x, y
   output logic [3*TagBits-1:0]  face_o    // by axis
 );

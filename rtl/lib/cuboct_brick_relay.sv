@@ -23,25 +23,25 @@ module cuboct_brick_relay #(
   input  logic [Faces-1:0]      has_link_i,
   input  logic [3*GridBits-1:0] extent_i,
   // The walk over the layer's cells: cuboct_brick_walk.
-  output logic [3*GridBits-1:0] low_o,
-  output logic [3*GridBits-1:0] high_o,
-  output logic                  advance_o,
-  output logic                  restart_o,
+  output logic [3*GridBits-1:0] low_o,       // the box of this walk
+  output logic [3*GridBits-1:0] high_o,      // the box of this walk
+  output logic                  advance_o,   // to the next cell
+  output logic                  restart_o,   // to first_o
   output logic [3*GridBits-1:0] first_o,     // of the walk after this one
-  input  logic [3*GridBits-1:0] cell_i,
-  input  logic                  last_i,
+  input  logic [3*GridBits-1:0] cell_i,      // where the walk is
+  input  logic                  last_i,      // at its last cell
   input  logic [3*TagBits-1:0]  layer_i,     // the cell's numbers
   // The cell's records: of each face but those of the last axis, and own ones.
-  input  logic [CountBits-1:0]  own_count_i,
-  input  logic [(Faces-2)*CountBits-1:0] halo_count_i,
+  input  logic [CountBits-1:0]  own_count_i, // own particles
+  input  logic [(Faces-2)*CountBits-1:0] halo_count_i,  // by face
   output logic [SlotBits-1:0]   record_o,    // of the next cycle
   input  logic [HaloBits-1:0]   own_i,       // at record_o of the cycle before
-  input  logic [(Faces-2)*HaloBits-1:0] halo_i,
+  input  logic [(Faces-2)*HaloBits-1:0] halo_i,  // by face, at record_o of the cycle before
   // To the link registers of the axis: below, above.
-  input  logic [1:0]            can_load_i,
-  output logic [1:0]            load_o,
-  output logic                  end_o,
-  output logic [LinkBits-1:0]   data_o,
+  input  logic [1:0]            can_load_i,  // whether each link register can take a beat in this cycle
+  output logic [1:0]            load_o,      // which link registers take a beat
+  output logic                  end_o,       // with load_o: an end beat
+  output logic [LinkBits-1:0]   data_o,      // with load_o: payload
   output logic                  sent_o       // the end beats were loaded
 );
   localparam int Bits     = HaloBits + TagBits;

@@ -9,8 +9,8 @@ module cuboct_brick_slots #(
   parameter int PositionFrac = 20,   // of a position, per axis; positions are least significant
   parameter int FilterFrac   = 8,    // of these, the leading ones that the filter tests
   parameter int IdLsb        = 64,   // where its id starts
-  parameter int IdBits       = 8,
-  parameter int Cells        = 8,
+  parameter int IdBits       = 8,    // width of the id, >= 1
+  parameter int Cells        = 8,    // >= 1
   parameter int CellBits     = 3,    // of a cell's number
   parameter int Capacity     = 16,   // slots of a cell
   parameter int SlotBits     = 4,    // of a slot's number in its cell
@@ -21,22 +21,22 @@ module cuboct_brick_slots #(
   localparam int CoarseBits  = Axes * FilterFrac
 ) (
   input  logic                           clk_i,
-  input  logic                           write_i,
-  input  logic [CellBits-1:0]            write_cell_i,
-  input  logic [SlotBits-1:0]            write_slot_i,
+  input  logic                           write_i,        // a slot is written
+  input  logic [CellBits-1:0]            write_cell_i,   // which cell
+  input  logic [SlotBits-1:0]            write_slot_i,   // which slot of it
   input  logic [AddrBits-1:0]            write_addr_i,   // of these two
-  input  logic [Bits-1:0]                write_data_i,
-  input  logic [AddrBits-1:0]            main_addr_i,
-  output logic [Bits-1:0]                main_data_o,
+  input  logic [Bits-1:0]                write_data_i,   // the particle
+  input  logic [AddrBits-1:0]            main_addr_i,    // in every cycle
+  output logic [Bits-1:0]                main_data_o,    // of the question before
   input  logic                           stream_read_i,  // without it stream_data_o and row_data_o stay
-  input  logic [AddrBits-1:0]            stream_addr_i,
-  output logic [SeenBits-1:0]            stream_data_o,
-  input  logic [RowAddrBits-1:0]         row_i,
-  output logic [FilterLanes*CoarseBits-1:0] row_data_o,
-  input  logic [ForcePipes*AddrBits-1:0] pipe_addr_i,
-  output logic [ForcePipes*SeenBits-1:0] pipe_data_o,
-  input  logic [ForcePipes*AddrBits-1:0] fault_addr_i,
-  output logic [ForcePipes*IdBits-1:0]   fault_id_o
+  input  logic [AddrBits-1:0]            stream_addr_i,  // with stream_read_i
+  output logic [SeenBits-1:0]            stream_data_o,  // leading fields of that slot
+  input  logic [RowAddrBits-1:0]         row_i,          // with stream_read_i
+  output logic [FilterLanes*CoarseBits-1:0] row_data_o,  // by lane, x lowest
+  input  logic [ForcePipes*AddrBits-1:0] pipe_addr_i,    // per pipe, in every cycle
+  output logic [ForcePipes*SeenBits-1:0] pipe_data_o,    // per pipe, leading fields
+  input  logic [ForcePipes*AddrBits-1:0] fault_addr_i,   // per pipe, in every cycle
+  output logic [ForcePipes*IdBits-1:0]   fault_id_o      // per pipe, the id
 );
   localparam int Rows  = (Capacity + FilterLanes - 1) / FilterLanes;  // of a cell
   localparam int Depth = Cells * Capacity;

@@ -20,21 +20,21 @@ module cuboct_brick_streamer #(
   input  logic                  rst_ni,
   input  logic                  run_i,        // the force engine's phase
   input  logic                  restart_i,    // its last cycle
-  input  logic                  stall_i,
+  input  logic                  stall_i,      // nothing moves
   input  logic [Axes:0]         available_i,  // own; x, y, z halos complete
   input  logic [Faces-1:0]      has_link_i,
   input  logic [3*GridBits-1:0] extent_i,
   // Counts of the cells that are asked for, without latency: own, around as an own one, around in the layers.
-  output logic [CellBits-1:0]   own_cell_o,
-  input  logic [CountBits-1:0]  own_count_i,
-  output logic [CellBits-1:0]   near_cell_o,
-  input  logic [CountBits-1:0]  near_count_i,
-  output logic [3*TagBits-1:0]  near_layer_o,
-  input  logic [Faces*CountBits-1:0] layer_count_i,
+  output logic [CellBits-1:0]   own_cell_o,   // own cell
+  input  logic [CountBits-1:0]  own_count_i,  // its particles
+  output logic [CellBits-1:0]   near_cell_o,  // cell around, if an own one
+  input  logic [CountBits-1:0]  near_count_i, // its particles
+  output logic [3*TagBits-1:0]  near_layer_o, // the same in the layers over x, y, z
+  input  logic [Faces*CountBits-1:0] layer_count_i,  // by face, its records
   // What goes to the filter.
-  output logic [2:0]            segment_o,
-  output logic [SlotBits-1:0]   record_o,
-  output logic [RowBits-1:0]    row_o,
+  output logic [2:0]            segment_o,    // 0 the brick, then -x, +x, -y, +y, -z, +z
+  output logic [SlotBits-1:0]   record_o,     // number in its cell
+  output logic [RowBits-1:0]    row_o,        // of the own cell's slots
   output logic [2*Axes-1:0]     offset_o,     // of the record's cell from the own one, per axis -1, 0, 1
   output logic                  same_o,       // both are one
   output logic                  present_o,    // in this cycle

@@ -10,11 +10,11 @@ module cuboct_brick_sums #(
   parameter int AddrBits = 7    // >= clog2(Depth)
 ) (
   input  logic                     clk_i,
-  input  logic                     kick_valid_i,
-  input  logic [AddrBits-1:0]      kick_addr_i,
+  input  logic                     kick_valid_i, // a kick is added
+  input  logic [AddrBits-1:0]      kick_addr_i,  // its slot: the cycle before's next_addr_i
   input  logic [Axes*KickBits-1:0] push_i,       // minus the kick
   input  logic                     zero_i,       // never in a cycle with a kick
-  input  logic [AddrBits-1:0]      zero_addr_i,
+  input  logic [AddrBits-1:0]      zero_addr_i,  // with zero_i
   input  logic [AddrBits-1:0]      next_addr_i,  // of the next cycle's kick, or of what is to be seen then
   output logic [Axes*SumBits-1:0]  sum_o         // of the cycle before's next_addr_i
 );

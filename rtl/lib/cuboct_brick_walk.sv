@@ -8,13 +8,13 @@ module cuboct_brick_walk #(
   input  logic                  rst_ni,
   input  logic [3*GridBits-1:0] low_i,      // of the box, which may change from walk to walk
   input  logic [3*GridBits-1:0] high_i,     // >= low_i
-  input  logic                  advance_i,
+  input  logic                  advance_i,  // the next cycle has the cell after this one
   input  logic                  restart_i,  // the next cycle's cell is first_i, whatever advance_i says
-  input  logic [3*GridBits-1:0] first_i,
-  output logic [3*GridBits-1:0] cell_o,
+  input  logic [3*GridBits-1:0] first_i,    // with restart_i
+  output logic [3*GridBits-1:0] cell_o,     // where the walk is
   output logic [3*GridBits-1:0] after_o,    // the one after it
   output logic [3*GridBits-1:0] next_o,     // the next cycle's
-  output logic                  last_o
+  output logic                  last_o      // cell_o is high_i
 );
   logic [3*GridBits-1:0] cell_d, cell_q, after;
   logic [2:0]            at_high;

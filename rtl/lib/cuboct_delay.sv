@@ -5,8 +5,8 @@ module cuboct_delay #(
   parameter int Depth = 1   // cycles, >= 0
 ) (
   input  logic            clk_i,
-  input  logic [Bits-1:0] d_i,
-  output logic [Bits-1:0] q_o
+  input  logic [Bits-1:0] d_i,  // in cycle t
+  output logic [Bits-1:0] q_o   // in cycle t + Depth
 );
   if (Depth == 0) begin : gen_wire
     logic unused_clk;

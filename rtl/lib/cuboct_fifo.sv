@@ -7,12 +7,12 @@ module cuboct_fifo #(
 ) (
   input  logic            clk_i,
   input  logic            rst_ni,
-  input  logic            push_i,
-  input  logic [Bits-1:0] data_i,
-  output logic            full_o,
-  input  logic            pop_i,
-  output logic [Bits-1:0] data_o,
-  output logic            empty_o
+  input  logic            push_i,  // only in a cycle without full_o
+  input  logic [Bits-1:0] data_i,  // with push_i
+  output logic            full_o,  // Depth entries are held
+  input  logic            pop_i,   // only in a cycle without empty_o
+  output logic [Bits-1:0] data_o,  // the head, in a cycle without empty_o
+  output logic            empty_o  // no entry is held
 );
   localparam int PtrBits   = (Depth > 1) ? $clog2(Depth) : 1;
   localparam int CountBits = $clog2(Depth + 1);

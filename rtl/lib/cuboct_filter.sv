@@ -19,21 +19,21 @@ module cuboct_filter #(
   input  logic                                clk_i,
   input  logic                                rst_ni,
   // From the streamer.
-  input  logic                                present_i,
-  input  logic [RowBits-1:0]                  row_i,
+  input  logic                                present_i,     // a candidate is asked for
+  input  logic [RowBits-1:0]                  row_i,         // to meet this row of own slots
   input  logic                                own_i,         // the candidate is an own particle,
   input  logic [SlotBits-1:0]                 slot_i,        // of this slot
-  input  logic [CountBits-1:0]                own_count_i,
+  input  logic [CountBits-1:0]                own_count_i,   // own particles
   // Beside F0, from the memories: the candidate, and the row of own positions.
-  input  logic [CandidateBits-1:0]            candidate_i,
-  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,
+  input  logic [CandidateBits-1:0]            candidate_i,   // P+2 bits per axis, rest
+  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i, // by lane, x lowest
   // To the queue.
-  input  logic                                full_i,
-  output logic                                stall_o,
-  output logic                                push_o,
-  output logic [CandidateBits-1:0]            candidate_o,
-  output logic [RowBits-1:0]                  row_o,
-  output logic [FilterLanes-1:0]              mask_o,
+  input  logic                                full_i,        // the queue can take nothing
+  output logic                                stall_o,       // F0 ... F3 stay; so must the streamer
+  output logic                                push_o,        // an entry goes to the queue
+  output logic [CandidateBits-1:0]            candidate_o,   // with push_o
+  output logic [RowBits-1:0]                  row_o,         // with push_o
+  output logic [FilterLanes-1:0]              mask_o,        // with push_o: lanes that may interact
   output logic                                busy_o         // one of the registers holds something
 );
   localparam int RowSlots = CountBits + $clog2(FilterLanes + 1);
@@ -85,6 +85,8 @@ module cuboct_filter #(
     localparam int Lane = l;
     logic [RowSlots-1:0] slot;
     logic                exists, itself;
+    logic [((Axes == 3) ? 5 : 2)-1:0] near;
+    assign mask[l] = (near == '1);
     assign slot   = {{(RowSlots - RowBits) {1'b0}}, f0_row_q} * FilterLanes[RowSlots-1:0] + Lane[RowSlots-1:0];
     assign exists = (slot < {{(RowSlots - CountBits) {1'b0}}, own_count_i});
     assign itself = f0_own_q && (slot == {{(RowSlots - SlotBits) {1'b0}}, f0_slot_q});
@@ -94,7 +96,7 @@ module cuboct_filter #(
       .Registered(1)
     ) u_lane (
       .clk_i, .en_i(!stall_o), .test_i(f2_test_q[l]), .own_i(f1_row_data_q[l*Axes*FilterFrac +: Axes*FilterFrac]),
-      .candidate_i(coarse), .pass_o(mask[l])
+      .candidate_i(coarse), .near_o(near)
     );
   end
 

@@ -21,21 +21,21 @@ module cuboct_halos #(
   input  logic [Faces*LinkBits-1:0]  link_data_i,
   output logic [Faces-1:0]           link_ready_o,
   // Halos.
-  input  logic                       halo_clear_i,
+  input  logic                       halo_clear_i,   // the step's halos are read; with the last cycle of FORCE
   output logic [Faces-1:0]           halo_end_o,     // complete; always where there is no link
-  output logic [Faces*CountBits-1:0] halo_count_o,
-  input  logic                       stream_read_i,
+  output logic [Faces*CountBits-1:0] halo_count_o,   // by face: records that came in this step
+  input  logic                       stream_read_i,  // the streamer asks
   input  logic [AddrBits-1:0]        stream_addr_i,  // read by the streamer: what it gets is there in the next cycle,
   output logic [Faces*CandidateBits-1:0] stream_data_o,  // by face, and stays until it reads again
   input  logic [AddrBits-1:0]        relay_addr_i,   // of the next cycle's relay_data_o, faces of all axes but the last
-  output logic [(Faces-2)*CandidateBits-1:0] relay_data_o,
+  output logic [(Faces-2)*CandidateBits-1:0] relay_data_o,  // by face
   // Migrating particles.
   input  logic                       migrating_i,    // a migration phase
-  input  logic [Faces-1:0]           migrate_clear_i,
+  input  logic [Faces-1:0]           migrate_clear_i,  // by face: last cycle of its axis's migration
   output logic [Faces-1:0]           migrate_end_o,  // complete; always where there is no link
-  output logic [Faces-1:0]           migrate_empty_o,
-  output logic [Faces*ParticleBits-1:0] migrate_data_o,
-  input  logic [Faces-1:0]           migrate_pop_i
+  output logic [Faces-1:0]           migrate_empty_o,  // by face: no particle waits
+  output logic [Faces*ParticleBits-1:0] migrate_data_o,  // by face: the oldest particle
+  input  logic [Faces-1:0]           migrate_pop_i   // by face: it is taken
 );
   localparam int RestBits = HaloBits - Axes * PositionFrac - 2 * (Axes - 1);
   localparam int CandPos  = Axes * (PositionFrac + 2);

@@ -9,7 +9,7 @@ module cuboct_hold #(
 ) (
   input  logic            clk_i,
   input  logic [Depth:0]  valid_i,  // [k]: the pair whose input came k cycles ago is there
-  input  logic [Bits-1:0] d_i,
+  input  logic [Bits-1:0] d_i,      // of the pair with valid_i[0]
   // Of that pair in a cycle with valid_i[Depth]; where registers hold it, N of them, from valid_i[N Interval] on until
   // the next pair's.
   output logic [Bits-1:0] q_o

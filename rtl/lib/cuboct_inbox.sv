@@ -15,23 +15,23 @@ module cuboct_inbox #(
   input  logic                    clk_i,
   input  logic                    rst_ni,
   // Halos.
-  input  logic                    clear_i,
-  input  logic                    append_i,
-  input  logic [HaloBits-1:0]     halo_i,
-  output logic [CountBits-1:0]    count_o,
+  input  logic                    clear_i,       // the step's halos are read
+  input  logic                    append_i,      // a halo record came
+  input  logic [HaloBits-1:0]     halo_i,        // with append_i
+  output logic [CountBits-1:0]    count_o,       // records that came in this step
   input  logic                    read_i,        // the streamer asks; without it the answer stays
-  input  logic [AddrBits-1:0]     addr_i,
+  input  logic [AddrBits-1:0]     addr_i,        // with read_i
   output logic [HaloBits-1:0]     halo_o,        // from the next cycle on; a migration phase leaves it
   input  logic [AddrBits-1:0]     relay_addr_i,  // the relay asks in every cycle
-  output logic [HaloBits-1:0]     relay_halo_o,
+  output logic [HaloBits-1:0]     relay_halo_o,  // from the next cycle on
   // Particles, first in, first out.
   input  logic                    migrating_i,   // a migration phase: the oldest particle is shown, one cycle later on
   input  logic                    push_i,        // only when not full
-  input  logic [ParticleBits-1:0] particle_i,
-  output logic                    full_o,
+  input  logic [ParticleBits-1:0] particle_i,    // with push_i
+  output logic                    full_o,        // Capacity particles are held
   input  logic                    pop_i,         // only when not empty
-  output logic [ParticleBits-1:0] particle_o,
-  output logic                    empty_o
+  output logic [ParticleBits-1:0] particle_o,    // the oldest, without empty_o
+  output logic                    empty_o        // no particle counts yet
 );
   localparam int LevelBits = $clog2(Capacity + 1);
   localparam int PlaceBits = (Capacity > 1) ? $clog2(Capacity) : 1;

@@ -3,7 +3,7 @@
 // bits of its mask are issued, the lowest to pipe 0. When no bit remains the oldest entry of the queue follows without
 // a gap.
 module cuboct_issue #(
-  parameter int CandidateBits = 66,
+  parameter int CandidateBits = 66, // of a candidate
   parameter int FilterLanes   = 8,  // bits of the mask
   parameter int RowBits       = 1,
   parameter int SlotBits      = 4,
@@ -13,16 +13,16 @@ module cuboct_issue #(
   input  logic                           clk_i,
   input  logic                           rst_ni,
   // The head of the queue.
-  input  logic                           empty_i,
-  input  logic [CandidateBits-1:0]       candidate_i,
-  input  logic [RowBits-1:0]             row_i,
-  input  logic [FilterLanes-1:0]         mask_i,
-  output logic                           pop_o,
+  input  logic                           empty_i,                           // there is none
+  input  logic [CandidateBits-1:0]       candidate_i,                       // without empty_i
+  input  logic [RowBits-1:0]             row_i,                             // without empty_i
+  input  logic [FilterLanes-1:0]         mask_i,                            // without empty_i; not 0
+  output logic                           pop_o,                             // it is taken
   // To the pipes: the candidate, and per pipe the own slot that it meets.
-  output logic [CandidateBits-1:0]       candidate_o,
-  output logic [ForcePipes-1:0]          valid_o,
-  output logic [ForcePipes*SlotBits-1:0] slot_o,
-  output logic                           busy_o
+  output logic [CandidateBits-1:0]       candidate_o,                       // with valid_o
+  output logic [ForcePipes-1:0]          valid_o,                           // per pipe: a pair
+  output logic [ForcePipes*SlotBits-1:0] slot_o,                            // with valid_o
+  output logic                           busy_o                             // current holds an entry
 );
   logic [CandidateBits-1:0] candidate_q;
   logic [RowBits-1:0]       row_q;

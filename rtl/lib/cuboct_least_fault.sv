@@ -1,73 +1,65 @@
 // SPDX-License-Identifier: MIT
-// Keeps the least fault of a step, by (code, id, number); number is signed, code 0 is none.
+// Keeps the least fault of a step, by (code, id, number); number is signed, code 0 is none. What pipes and update say
+// is compared a cycle later. Migration speaks in the step's last cycle too, so what it says is shown at once: its codes are
+// above theirs and never fall within a step, so that its id alone is compared, and that with faults of the same code.
 module cuboct_least_fault #(
-  parameter int Sources = 1,  // that may speak in one cycle, >= 1
-  parameter int IdBits  = 8,
-  parameter int NumberBits = 64,  // that hold every number, <= 64
-  parameter int Late    = 0,  // 1: what speaks is compared a cycle later, and the outputs count it already
-  parameter int Direct  = 0   // 1: the outputs count what speaks in this cycle, even one with clear_i
+  parameter int Sources    = 1,  // pipes, that may speak in one cycle; the update in place of the first; >= 1
+  parameter int IdBits     = 8,  // of an id, >= 1
+  parameter int NumberBits = 64  // that hold every number, <= 64
 ) (
   input  logic                      clk_i,
   input  logic                      rst_ni,
-  input  logic                      clear_i,   // not in a cycle with a fault, unless Direct
-  input  logic [Sources-1:0]        valid_i,
-  input  logic [Sources*4-1:0]      code_i,
-  input  logic [Sources*IdBits-1:0] id_i,
-  input  logic [Sources*64-1:0]     number_i,
-  output logic                      valid_o,
-  output logic [3:0]                code_o,
-  output logic [IdBits-1:0]         id_o,
-  output logic signed [63:0]        number_o
+  input  logic                      clear_i,       // the step's last cycle: no source spoke in it or in the one before
+  input  logic [Sources-1:0]        valid_i,       // per source: a fault
+  input  logic [Sources*4-1:0]      code_i,        // 1 to 5
+  input  logic [Sources*IdBits-1:0] id_i,          // of the particle
+  input  logic [Sources*64-1:0]     number_i,      // signed
+  input  logic                      move_valid_i,  // a fault of migration
+  input  logic [3:0]                move_code_i,   // 6 to 11, none below an earlier one of the step
+  input  logic [IdBits-1:0]         move_id_i,     // of the particle
+  input  logic [63:0]               move_number_i, // one for each code, >= 0
+  output logic                      valid_o,       // with clear_i: there was one in the step
+  output logic [3:0]                code_o,        // of the least; 0 where there is none
+  output logic [IdBits-1:0]         id_o,          // 0 where there is none
+  output logic signed [63:0]        number_o       // 0 where there is none
 );
   localparam int KeyBits = 4 + IdBits + NumberBits;
 
-  logic [Sources-1:0]        valid;
-  logic [Sources*4-1:0]      code;
-  logic [Sources*IdBits-1:0] id;
-  logic [Sources*64-1:0]     number_in;
-  if (Late != 0) begin : gen_late
-    logic [Sources-1:0]        valid_in_q;
-    logic [Sources*4-1:0]      code_q;
-    logic [Sources*IdBits-1:0] id_q;
-    logic [Sources*64-1:0]     number_q;
-    always_ff @(posedge clk_i) begin
-      if (!rst_ni) valid_in_q <= '0;
-      else valid_in_q <= valid_i;
-    end
-    always_ff @(posedge clk_i) begin
-      code_q   <= code_i;
-      id_q     <= id_i;
-      number_q <= number_i;
-    end
-    assign valid     = valid_in_q;
-    assign code      = code_q;
-    assign id        = id_q;
-    assign number_in = number_q;
-  end else begin : gen_now
-    assign valid     = valid_i;
-    assign code      = code_i;
-    assign id        = id_i;
-    assign number_in = number_i;
+  logic [Sources-1:0]        late_valid_q;
+  logic [Sources*4-1:0]      code_q;
+  logic [Sources*IdBits-1:0] id_q;
+  logic [Sources*64-1:0]     number_q;
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) late_valid_q <= '0;
+    else late_valid_q <= valid_i;
+  end
+  always_ff @(posedge clk_i) begin
+    code_q   <= code_i;
+    id_q     <= id_i;
+    number_q <= number_i;
   end
 
   // With its sign inverted, number orders as an unsigned value.
-  logic                seen, valid_d, valid_q;
-  logic [KeyBits-1:0]  key_d, key_q;
-  logic [KeyBits-1:0]  key;
+  logic                seen, valid_d, valid_q, moved;
+  logic [KeyBits-1:0]  key_d, key_q, key, move_key;
   integer              s;
+  assign move_key = {move_code_i, move_id_i, !move_number_i[NumberBits-1], move_number_i[NumberBits-2:0]};
+  assign moved    = move_valid_i
+                 && ((!valid_q && late_valid_q == '0)
+                     || (valid_q && key_q[NumberBits+IdBits +: 4] == move_code_i && move_id_i < key_q[NumberBits +: IdBits]));
   always_comb begin
     seen  = valid_q;
     key_d = key_q;
     key   = key_q;
     for (s = 0; s < Sources; s = s + 1) begin
-      if (valid[s]) begin
-        key = {code[s*4 +: 4], id[s*IdBits +: IdBits], !number_in[s*64+63],
-               number_in[s*64 +: NumberBits-1]};
+      if (late_valid_q[s]) begin
+        key = {code_q[s*4 +: 4], id_q[s*IdBits +: IdBits], !number_q[s*64+63], number_q[s*64 +: NumberBits-1]};
         if (!seen || key < key_d) key_d = key;
         seen = 1'b1;
       end
     end
-    valid_d = seen && !clear_i;
+    if (moved) key_d = move_key;
+    valid_d = (seen || move_valid_i) && !clear_i;
   end
 
   always_ff @(posedge clk_i) begin
@@ -75,17 +67,17 @@ module cuboct_least_fault #(
     else valid_q <= valid_d;
   end
   always_ff @(posedge clk_i) begin
-    if (valid != '0) key_q <= key_d;
+    if (late_valid_q != '0 || moved) key_q <= key_d;
   end
 
   logic [KeyBits-1:0] least;
-  assign valid_o = (Late != 0 || Direct != 0) ? seen : valid_q;
-  assign least   = (Late != 0 || Direct != 0) ? key_d : key_q;
+  assign valid_o = valid_q || move_valid_i;
+  assign least   = moved ? move_key : key_q;
   assign code_o  = valid_o ? least[NumberBits+IdBits +: 4] : 4'd0;
   assign id_o    = valid_o ? least[NumberBits +: IdBits] : '0;
   logic signed [NumberBits-1:0] number;
   assign number = valid_o ? $signed({!least[NumberBits-1], least[NumberBits-2:0]}) : '0;
   cuboct_resize #(.InBits(NumberBits), .OutBits(64)) u_number (.a_i(number), .y_o(number_o));
   logic unused_numbers;
-  assign unused_numbers = ^number_in;
+  assign unused_numbers = ^{number_q, move_number_i};
 endmodule

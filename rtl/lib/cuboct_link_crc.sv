@@ -7,8 +7,8 @@ module cuboct_link_crc #(
   parameter logic [31:0] Polynomial = 32'h00003d65,  // without the leading term
   parameter logic [31:0] Start      = 32'h0000ffff   // the remainder before the first bit
 ) (
-  input  logic [Bits-1:0]  data_i,
-  output logic [Width-1:0] crc_o
+  input  logic [Bits-1:0]  data_i,  // the message
+  output logic [Width-1:0] crc_o    // its check
 );
   // The polynomial with its highest coefficient in bit 0.
   function [Width-1:0] reversed(input integer unused);

@@ -23,31 +23,31 @@ module cuboct_link_guard #(
   input  logic                      rst_ni,
   input  logic [Faces-1:0]          has_link_i,
   // The node.
-  input  logic [Faces-1:0]          node_valid_i,
-  input  logic [Faces-1:0]          node_end_i,
-  input  logic [Faces*LinkBits-1:0] node_data_i,
-  output logic [Faces-1:0]          node_ready_o,
-  output logic [Faces-1:0]          node_valid_o,
-  output logic [Faces-1:0]          node_end_o,
-  output logic [Faces*LinkBits-1:0] node_data_o,
-  input  logic                      node_fault_valid_i,
-  input  logic [3:0]                node_fault_code_i,
-  input  logic [IdBits-1:0]         node_fault_id_i,
-  input  logic [63:0]               node_fault_number_i,
+  input  logic [Faces-1:0]          node_valid_i,         // by face: from its link register
+  input  logic [Faces-1:0]          node_end_i,           // by face: an end beat
+  input  logic [Faces*LinkBits-1:0] node_data_i,          // by face: payload
+  output logic [Faces-1:0]          node_ready_o,         // by face: it is taken
+  output logic [Faces-1:0]          node_valid_o,         // by face: a good beat
+  output logic [Faces-1:0]          node_end_o,           // by face: an end beat
+  output logic [Faces*LinkBits-1:0] node_data_o,          // by face: payload
+  input  logic                      node_fault_valid_i,   // the node's own fault
+  input  logic [3:0]                node_fault_code_i,    // with node_fault_valid_i
+  input  logic [IdBits-1:0]         node_fault_id_i,      // with node_fault_valid_i
+  input  logic [63:0]               node_fault_number_i,  // with node_fault_valid_i
   // The wires.
   output logic [Faces-1:0]          link_valid_o,
   output logic [Faces-1:0]          link_end_o,
   output logic [Faces*WireBits-1:0] link_data_o,
   input  logic [Faces-1:0]          link_ready_i,
-  input  logic [Faces*AckBits-1:0]  link_ack_i,
+  input  logic [Faces*AckBits-1:0]  link_ack_i,           // by face: from the neighbour
   input  logic [Faces-1:0]          link_valid_i,
   input  logic [Faces-1:0]          link_end_i,
   input  logic [Faces*WireBits-1:0] link_data_i,
   output logic [Faces-1:0]          link_ready_o,
-  output logic [Faces*AckBits-1:0]  link_ack_o,
+  output logic [Faces*AckBits-1:0]  link_ack_o,           // by face: to the neighbour
   // Faces at which something was found wrong, one cycle later, for counters: {acknowledgements, arriving beats}.
-  output logic [2*Faces-1:0]        link_error_o,
-  output logic                      fault_valid_o,
+  output logic [2*Faces-1:0]        link_error_o,         // one bit per face each
+  output logic                      fault_valid_o,        // a fault, once: of the node, or of a link
   output logic [3:0]                fault_code_o,
   output logic [IdBits-1:0]         fault_id_o,
   output logic [63:0]               fault_number_o

@@ -9,17 +9,17 @@ module cuboct_link_rx #(
   input  logic                   clk_i,
   input  logic                   rst_ni,
   // From the neighbour. There always is room (docs/reference/node.md, section Order), so ready is constant.
-  input  logic                   valid_i,
-  input  logic                   end_i,
-  input  logic [LinkBits-1:0]    data_i,
-  output logic                   ready_o,
+  input  logic                   valid_i,          // a beat is there
+  input  logic                   end_i,            // an end beat
+  input  logic [LinkBits-1:0]    data_i,           // payload
+  output logic                   ready_o,          // it is taken
   // Pulses, and what they are about.
-  output logic                   halo_valid_o,
-  output logic [HaloBits-1:0]    halo_o,
-  output logic                   halo_end_o,
-  output logic                   migrate_valid_o,
-  output logic [MigrateBits-1:0] migrate_o,
-  output logic                   migrate_end_o
+  output logic                   halo_valid_o,     // last beat of a halo record
+  output logic [HaloBits-1:0]    halo_o,           // with halo_valid_o
+  output logic                   halo_end_o,       // end of the halo stream
+  output logic                   migrate_valid_o,  // last beat of a particle
+  output logic [MigrateBits-1:0] migrate_o,        // with migrate_valid_o
+  output logic                   migrate_end_o     // end of the migration stream
 );
   localparam int HaloBeats    = (HaloBits + LinkBits - 1) / LinkBits;
   localparam int MigrateBeats = (MigrateBits + LinkBits - 1) / LinkBits;

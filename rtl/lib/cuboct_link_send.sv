@@ -21,15 +21,15 @@ module cuboct_link_send #(
   input  logic                rst_ni,
   input  logic                has_link_i,  // constant
   // From the node's link register.
-  input  logic                valid_i,
-  input  logic                end_i,
-  input  logic [LinkBits-1:0] data_i,
+  input  logic                valid_i,     // a beat waits
+  input  logic                end_i,       // an end beat
+  input  logic [LinkBits-1:0] data_i,      // payload
   output logic                ready_o,     // depends on ready_i
   // The wire: {crc, sequence, payload}, end beside it.
-  output logic                valid_o,
-  output logic                end_o,
-  output logic [WireBits-1:0] data_o,
-  input  logic                ready_i,
+  output logic                valid_o,     // a beat is on the wire
+  output logic                end_o,       // an end beat
+  output logic [WireBits-1:0] data_o,      // stays until ready_i
+  input  logic                ready_i,     // it is taken in this cycle
   // What the receiver expects next: {crc, sequence}, in every cycle.
   input  logic [AckBits-1:0]  ack_i,
   // In the cycle that finds it.

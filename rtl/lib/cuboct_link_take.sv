@@ -18,15 +18,15 @@ module cuboct_link_take #(
   input  logic                clk_i,
   input  logic                rst_ni,
   // The wire. A node always has room, so ready is constant.
-  input  logic                valid_i,
-  input  logic                end_i,
-  input  logic [WireBits-1:0] data_i,
-  output logic                ready_o,
-  output logic [AckBits-1:0]  ack_o,
+  input  logic                valid_i,  // a beat is on the wire
+  input  logic                end_i,    // an end beat
+  input  logic [WireBits-1:0] data_i,   // {crc, sequence, payload}
+  output logic                ready_o,  // it is taken
+  output logic [AckBits-1:0]  ack_o,    // {crc, sequence}: the number that is expected
   // To the node, one cycle later.
-  output logic                valid_o,
-  output logic                end_o,
-  output logic [LinkBits-1:0] data_o,
+  output logic                valid_o,  // a good beat, once
+  output logic                end_o,    // with valid_o: an end beat
+  output logic [LinkBits-1:0] data_o,   // with valid_o: payload
   // In the cycle that finds it.
   output logic                wrong_o,  // a beat whose check is wrong
   output logic                order_o   // a beat that is not the next one

@@ -8,15 +8,15 @@ module cuboct_link_tx #(
   input  logic                rst_ni,
   input  logic                has_link_i,  // constant
   // From the senders; load_i only in a cycle with can_load_o.
-  input  logic                load_i,
-  input  logic                end_i,
-  input  logic [LinkBits-1:0] data_i,
+  input  logic                load_i,      // loads a beat
+  input  logic                end_i,       // an end beat
+  input  logic [LinkBits-1:0] data_i,      // payload, 0 of an end beat
   output logic                can_load_o,  // depends on ready_i
   // To the neighbour.
-  output logic                valid_o,
-  output logic                end_o,
-  output logic [LinkBits-1:0] data_o,
-  input  logic                ready_i
+  output logic                valid_o,     // a beat waits
+  output logic                end_o,       // an end beat
+  output logic [LinkBits-1:0] data_o,      // payload; stays until ready_i
+  input  logic                ready_i      // it is taken in this cycle
 );
   logic                valid_d, valid_q, take, end_q;
   logic [LinkBits-1:0] data_q;

@@ -18,30 +18,30 @@ module cuboct_migrate #(
   input  logic [1:0]                has_link_i,       // of the axis: below, above
   // Own particles: a slot is {away_x, particle}.
   input  logic                      leaving_i,        // some particle leaves along the axis
-  input  logic [CountBits-1:0]      count_i,
-  output logic                      count_set_o,
-  output logic [CountBits-1:0]      count_o,
+  input  logic [CountBits-1:0]      count_i,          // how many there are
+  output logic                      count_set_o,      // they are count_o from the next cycle on
+  output logic [CountBits-1:0]      count_o,          // with count_set_o
   output logic [SlotBits-1:0]       read_slot_o,      // of the next cycle's read_data_i
-  input  logic [ParticleBits+1:0]   read_data_i,
-  output logic                      write_o,
-  output logic [SlotBits-1:0]       write_slot_o,
-  output logic [ParticleBits+1:0]   write_data_o,
+  input  logic [ParticleBits+1:0]   read_data_i,      // the slot of the cycle before's read_slot_o
+  output logic                      write_o,          // a slot is written
+  output logic [SlotBits-1:0]       write_slot_o,     // with write_o
+  output logic [ParticleBits+1:0]   write_data_o,     // with write_o
   output logic [Axes-1:0]           leaving_more_o,   // axes along which an arrived particle goes on
   // Links of the axis: below, above.
-  input  logic [1:0]                can_load_i,
-  output logic [1:0]                load_o,
-  output logic                      end_o,
-  output logic [LinkBits-1:0]       data_o,
+  input  logic [1:0]                can_load_i,       // whether each link register can take a beat in this cycle
+  output logic [1:0]                load_o,           // which link registers take a beat
+  output logic                      end_o,            // with load_o: an end beat
+  output logic [LinkBits-1:0]       data_o,           // with load_o: payload
   // FIFOs of the axis: below, above.
   output logic [1:0]                take_o,           // TAKE_LOW, TAKE_HIGH
-  input  logic [1:0]                empty_i,
+  input  logic [1:0]                empty_i,          // no particle waits
   input  logic [1:0]                ended_i,          // the end beat came
-  input  logic [2*ParticleBits-1:0] arrived_i,
-  output logic [1:0]                pop_o,
+  input  logic [2*ParticleBits-1:0] arrived_i,        // the oldest particle of each
+  output logic [1:0]                pop_o,            // with arrived_i: taken
   // Faults, of the particle in fault_particle_o.
-  output logic                      fault_left_o,
-  output logic                      fault_full_o,
-  output logic [ParticleBits-1:0]   fault_particle_o
+  output logic                      fault_left_o,     // there is no link: it is dropped
+  output logic                      fault_full_o,     // no slot is free: it is dropped
+  output logic [ParticleBits-1:0]   fault_particle_o  // with either
 );
   localparam int AwayBits = 2 * (Axes - 1);  // in a particle's word
   localparam int Beats    = (ParticleBits + LinkBits - 1) / LinkBits;
@@ -112,7 +112,10 @@ module cuboct_migrate #(
     end_o          = 1'b0;
     write_o        = 1'b0;
     write_slot_o   = write_q[SlotBits-1:0];
-    write_data_o   = read_data_i;
+    // Chosen by the state: what arrives comes late in the cycle.
+    write_data_o   = (state_q == TakeLow || state_q == TakeHigh)
+                   ? {2'b00, candidate[ParticleBits-1:PositionBits+AwayBits], away_on, candidate[PositionBits-1:0]}
+                   : read_data_i;
     count_set_o    = 1'b0;
     count_o        = write_q;
     leaving_more_o = '0;
@@ -167,7 +170,6 @@ module cuboct_migrate #(
       if (taking) begin
         pop_o        = {side, !side};
         write_slot_o = count_i[SlotBits-1:0];
-        write_data_o = {2'b00, candidate[ParticleBits-1:PositionBits+AwayBits], away_on, candidate[PositionBits-1:0]};
         write_o      = has_room;
         count_set_o  = has_room;
         count_o      = count_i + 1'b1;

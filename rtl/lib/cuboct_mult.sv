@@ -12,9 +12,9 @@ module cuboct_mult #(
   input  logic                          clk_i,
   input  logic                          rst_ni,  // used if Cycles > 1
   input  logic                          en_i,    // p_o keeps its value in a cycle without
-  input  logic signed [ABits-1:0]       a_i,
-  input  logic signed [BBits-1:0]       b_i,
-  output logic signed [ABits+BBits-1:0] p_o
+  input  logic signed [ABits-1:0]       a_i,     // stays while a serial product is made
+  input  logic signed [BBits-1:0]       b_i,     // with en_i
+  output logic signed [ABits+BBits-1:0] p_o      // the product
 );
   if (Cycles == 1) begin : gen_parallel
     logic signed [ABits+BBits-1:0] p_d, p_q;

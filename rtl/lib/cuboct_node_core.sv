@@ -179,16 +179,17 @@ module cuboct_node_core #(
     if (!rst_ni) own_count_q <= '0;
     else own_count_q <= own_count_d;
   end
+  // Chosen by the state, which is there before the writes are.
   always_comb begin
     own_write      = load || update_write || migrate_write;
-    own_write_slot = own_count_q[SlotBits-1:0];
-    own_write_data = {2'b00, load_data_i};
-    if (update_write) begin
-      own_write_slot = update_slot;
-      own_write_data = update_data;
-    end else if (migrate_write) begin
+    own_write_slot = update_slot;
+    own_write_data = update_data;
+    if (in_migrate) begin
       own_write_slot = migrate_write_slot;
       own_write_data = migrate_write_data;
+    end else if (idle_o) begin
+      own_write_slot = own_count_q[SlotBits-1:0];
+      own_write_data = {2'b00, load_data_i};
     end
   end
   cuboct_slots #(
@@ -462,12 +463,12 @@ module cuboct_node_core #(
       .Axes(Axes), .KickBits(KickBits), .SumBits(PipeSumBits), .Capacity(Capacity),
       .Spaced((Interval > 1) ? 1 : 0), .SlotBits(SlotBits)
     ) u_sums (
-      .clk_i, .rst_ni, .kick_valid_i(kick_valid[f]), .kick_slot_i(kick_slot[f*SlotBits +: SlotBits]),
-      .push_i(push), .next_slot_i(pipe_busy[f] ? kick_slot_next[f*SlotBits +: SlotBits] : tick_next),
-      .show_i(in_update), .take_i((Narrow != 0) ? update_write : take), .take_slot_i(tick_slot), .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
+      .clk_i, .rst_ni, .kick_valid_i(kick_valid[f]), .push_i(push),
+      .next_slot_i(pipe_busy[f] ? kick_slot_next[f*SlotBits +: SlotBits] : tick_next),
+      .take_i((Narrow != 0) ? update_write : take), .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
     );
     logic unused_own;
-    assign unused_own = ^own;
+    assign unused_own = ^{own, kick_slot[f*SlotBits +: SlotBits]};
   end
   // One after the other: of pipe f and those before it.
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_total
@@ -600,7 +601,7 @@ module cuboct_node_core #(
   assign observe_valid_o = (relay_first_own && (axis == 2'd0)) || (in_dump && (own_count_q != '0));
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
-  // Faults: source 0 is pipe 0, the update, or the migration, which never speak in one cycle.
+  // Faults: source 0 is pipe 0 or the update, which never speak in one cycle.
   logic [ForcePipes-1:0]        fault_valid;
   logic [ForcePipes*4-1:0]      fault_code;
   logic [ForcePipes*IdBits-1:0] fault_id;
@@ -618,21 +619,28 @@ module cuboct_node_core #(
         fault_code[f*4 +: 4]         = update_fault_code;
         fault_id[f*IdBits +: IdBits] = new_id;
         fault_number[f*64 +: 64]     = update_fault_number;
-      end else if (f == 0 && in_migrate) begin
-        fault_valid[f]               = fault_left || fault_full;
-        fault_code[f*4 +: 4]         = migrate_fault_code;
-        fault_id[f*IdBits +: IdBits] = fault_particle[IdLsb +: IdBits];
-        fault_number[f*64 +: 64]     = fault_full ? {32'd0, Capacity} : 64'd0;
       end
     end
   end
+  // A cycle later, too: a step's last cycle is one in which nothing moves.
+  logic              move_fault_q, move_full_q;
+  logic [3:0]        move_code_q;
+  logic [IdBits-1:0] move_id_q;
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) move_fault_q <= 1'b0;
+    else move_fault_q <= fault_left || fault_full;
+  end
+  always_ff @(posedge clk_i) begin
+    move_full_q <= fault_full;
+    move_code_q <= migrate_fault_code;
+    move_id_q   <= fault_particle[IdLsb +: IdBits];
+  end
   logic some_fault;
-  cuboct_least_fault #(
-    .Sources(ForcePipes), .IdBits(IdBits), .NumberBits(NumberBits), .Late(1)
-  ) u_fault (
+  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(IdBits), .NumberBits(NumberBits)) u_fault (
     .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
-    .number_i(fault_number), .valid_o(some_fault), .code_o(fault_code_o), .id_o(fault_id_o),
-    .number_o(fault_number_o)
+    .number_i(fault_number), .move_valid_i(move_fault_q), .move_code_i(move_code_q), .move_id_i(move_id_q),
+    .move_number_i(move_full_q ? {32'd0, Capacity} : 64'd0), .valid_o(some_fault), .code_o(fault_code_o),
+    .id_o(fault_id_o), .number_o(fault_number_o)
   );
   assign fault_valid_o = some_fault && step_end;
 

@@ -26,17 +26,17 @@ module cuboct_pair_finder #(
   input  logic [(2*Axes+1)*CountBits-1:0]       counts_i,
   // Where the candidate is read: own slot, and record of the faces' halos, and a row of own positions. The memories
   // answer in the next cycle, and keep the answer until the next read.
-  output logic                                  read_o,
-  output logic [SlotBits-1:0]                   slot_o,
-  output logic [AddrBits-1:0]                   addr_o,
-  input  logic [CandidateBits-1:0]              own_i,
-  input  logic [2*Axes*CandidateBits-1:0]       halos_i,
-  output logic [RowBits-1:0]                    row_o,
-  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,
+  output logic                                  read_o,       // a candidate and a row are asked for
+  output logic [SlotBits-1:0]                   slot_o,       // own, with read_o
+  output logic [AddrBits-1:0]                   addr_o,       // of halos, with read_o
+  input  logic [CandidateBits-1:0]              own_i,        // an own particle as a candidate
+  input  logic [2*Axes*CandidateBits-1:0]       halos_i,      // by face
+  output logic [RowBits-1:0]                    row_o,        // row of own slots, with read_o
+  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,  // by lane, x lowest
   // Pairs.
-  output logic [CandidateBits-1:0]              candidate_o,
-  output logic [ForcePipes-1:0]                 issue_o,
-  output logic [ForcePipes*SlotBits-1:0]        issue_slot_o,
+  output logic [CandidateBits-1:0]              candidate_o,  // with issue_o
+  output logic [ForcePipes-1:0]                 issue_o,      // per pipe: a pair
+  output logic [ForcePipes*SlotBits-1:0]        issue_slot_o, // per pipe, with issue_o: its own slot
   output logic                                  stall_o,      // a full queue holds the filter
   output logic                                  done_o        // no candidate is left anywhere
 );

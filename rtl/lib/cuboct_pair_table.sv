@@ -24,13 +24,13 @@ module cuboct_pair_table #(
   input  logic                        clk_i,
   input  logic                        rst_ni,
   input  logic [Cycles:0]             valid_i,  // [k]: the pair whose r2_i came k cycles ago is there
-  input  logic [2*DifferenceFrac-1:0] r2_i,
+  input  logic [2*DifferenceFrac-1:0] r2_i,     // with valid_i[0]
   // The memory: synchronous read, c0, c1, c2 in the cycle after index_o.
-  output logic [IndexBits-1:0]        index_o,
-  input  logic signed [EntryBits-1:0] c0_i,
-  input  logic signed [EntryBits-1:0] c1_i,
+  output logic [IndexBits-1:0]        index_o,  // address
+  input  logic signed [EntryBits-1:0] c0_i,     // value at t = 0
+  input  logic signed [EntryBits-1:0] c1_i,     // slope at t = 0
   input  logic signed [EntryBits-1:0] c2_i,  // of no use at degree 1
-  output logic signed [ValueBits-1:0] value_o
+  output logic signed [ValueBits-1:0] value_o   // of the pair with valid_i[Cycles]
 );
   localparam int R2Bits    = 2 * DifferenceFrac;
   localparam int SlopeBits = (Degree == 2) ? EntryBits + 1 : EntryBits;

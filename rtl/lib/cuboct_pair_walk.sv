@@ -22,19 +22,19 @@ module cuboct_pair_walk #(
   input  logic                            restart_i,    // its last cycle
   input  logic [(2*Axes+1)*CountBits-1:0] counts_i,     // by segment
   // Words of halos: the one asked for; its segment.
-  output logic [WordBits-1:0]             word_o,
-  output logic [2:0]                      segment_o,
+  output logic [WordBits-1:0]             word_o,       // in every cycle
+  output logic [2:0]                      segment_o,    // 0 own, then -x, +x, -y, +y, -z, +z
   // The record register takes a halo's word, or the own particle that the memory shows.
-  output logic                            shift_o,
-  output logic                            set_o,
+  output logic                            shift_o,      // a word
+  output logic                            set_o,        // the own particle
   // Own particles: the slot asked for, 0 at rest; unless the answer has to stay.
-  output logic [SlotBits-1:0]             slot_o,
-  output logic                            hold_o,
+  output logic [SlotBits-1:0]             slot_o,       // in every cycle
+  output logic                            hold_o,       // the answer stays
   input  logic [Axes*PositionFrac-1:0]    own_i,        // the memory's answer
   input  logic [Axes*(PositionFrac+2)-1:0] candidate_i, // the record's position
   // Pairs.
-  output logic                            issue_o,
-  output logic [SlotBits-1:0]             issue_slot_o,
+  output logic                            issue_o,      // a pair
+  output logic [SlotBits-1:0]             issue_slot_o, // with issue_o: its own slot
   output logic                            present_o,    // a slot is asked for to be tested
   output logic                            stall_o,      // a pair waits for the pipe
   output logic                            done_o        // no candidate is left
@@ -42,6 +42,7 @@ module cuboct_pair_walk #(
   localparam int Segments = 2 * Axes + 1;
   localparam int StepBits = $clog2(HaloBeats + 1);
   localparam int Beats    = HaloBeats;
+  localparam int Tests    = (Axes == 3) ? 5 : 2;
 
   logic                 walk_d, walk_q;        // reads a record, or walks
   logic [2:0]           segment_d, segment_q;
@@ -49,10 +50,11 @@ module cuboct_pair_walk #(
   logic [WordBits-1:0]  word_d, word_q;        // the next one to ask for
   logic [StepBits-1:0]  step_d, step_q;        // words asked for
   logic [CountBits-1:0] next_d, next_q;        // slots asked for
-  logic                 t_valid_d, t_valid_q, r_valid_d, r_valid_q, r_hit_d, r_hit_q;
+  logic                 t_valid_d, t_valid_q, r_valid_d, r_valid_q;
+  logic [Tests-1:0]     r_near_d, r_near_q, near;  // the lane's tests
   logic [SlotBits-1:0]  t_slot_d, t_slot_q, r_slot_d, r_slot_q;
   logic [CountBits-1:0] count, own;
-  logic                 past, empty, ready, hit, blocked, ask, read_done, last, pass, more;
+  logic                 past, empty, ready, hit, blocked, ask, read_done, last, more;
 
   integer s;
   always_comb begin
@@ -66,7 +68,7 @@ module cuboct_pair_walk #(
   assign empty     = (own == '0) || (count == '0);
   assign more      = (next_q != own);
   assign read_done = !walk_q && ((segment_q == 3'd0) ? (step_q != '0) : (step_q == Beats[StepBits-1:0]));
-  assign hit       = r_valid_q && r_hit_q;
+  assign hit       = r_valid_q && (r_near_q == '1);
   assign blocked   = hit && !ready;
   assign issue_o   = hit && ready;
   assign ask       = read_done || (walk_q && !hit && more);
@@ -82,7 +84,7 @@ module cuboct_pair_walk #(
     t_valid_d = t_valid_q;
     t_slot_d  = t_slot_q;
     r_valid_d = r_valid_q;
-    r_hit_d   = r_hit_q;
+    r_near_d  = r_near_q;
     r_slot_d  = r_slot_q;
     if (run_i && !past && !walk_q) begin
       if (step_q == '0 && empty) begin
@@ -102,7 +104,7 @@ module cuboct_pair_walk #(
     end
     if (walk_q && !blocked) begin
       r_valid_d = t_valid_q;
-      r_hit_d   = pass;
+      r_near_d  = near;
       r_slot_d  = t_slot_q;
       if (!ask) t_valid_d = 1'b0;
     end
@@ -142,7 +144,7 @@ module cuboct_pair_walk #(
   always_ff @(posedge clk_i) begin
     t_slot_q <= t_slot_d;
     r_slot_q <= r_slot_d;
-    r_hit_q  <= r_hit_d;
+    r_near_q <= r_near_d;
   end
 
   if (Interval == 1) begin : gen_every_cycle
@@ -170,8 +172,8 @@ module cuboct_pair_walk #(
   cuboct_filter_lane #(
     .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree)
   ) u_lane (
-    .clk_i, .en_i(1'b0), .test_i(segment_q != 3'd0 || t_slot_q != record_q[SlotBits-1:0]), .own_i(coarse_own), .candidate_i(coarse),
-    .pass_o(pass)
+    .clk_i, .en_i(1'b0), .test_i(segment_q != 3'd0 || t_slot_q != record_q[SlotBits-1:0]), .own_i(coarse_own),
+    .candidate_i(coarse), .near_o(near)
   );
 
   assign word_o       = word_q;

@@ -15,52 +15,52 @@ module cuboct_pipe #(
   parameter logic [63:0] Cutoff2              = 64'd0,  // 2D fractional bits, <= 2^(2D)
   parameter int          EntryBits            = 18,     // of a table entry
   parameter int          IndexBits            = 9,      // of the force table
-  parameter int          Octaves              = 0,
+  parameter int          Octaves              = 0,      // force table: 0 uniform, 1 octaves
   parameter int          Degree               = 1,
   parameter int          BinBits              = 0,
   parameter int          FirstOctave          = 0,
   parameter int          FractionBits         = 17,
   parameter int          ForceBits            = 18,     // of any value of the force table
-  parameter int          Damped               = 0,
+  parameter int          Damped               = 0,      // 0, 1
   parameter int          VelocityBits         = 29,
   parameter int          RelativeVelocityBits = 18,
   parameter int          WShift               = 8,
   parameter int          QShift               = 17,
   parameter int          DampShift            = 17,
   parameter int          DampIndexBits        = 9,
-  parameter int          DampOctaves          = 0,
+  parameter int          DampOctaves          = 0,      // as Octaves, of the damping table
   parameter int          DampDegree           = 1,
   parameter int          DampBinBits          = 0,
   parameter int          DampFirstOctave      = 0,
   parameter int          DampFractionBits     = 17,
   parameter int          DampBits             = 18,     // of any value of the damping table
   parameter int          StrengthBits         = 18,     // of s after damping, checked; only if Damped
-  parameter int          Scaled               = 0,
+  parameter int          Scaled               = 0,      // 0, 1
   parameter int          TypeBits             = 1,      // >= 1; used if Scaled
   parameter int          ScaleBits            = 18,
   parameter int          ScaleFrac            = 16,
   parameter int          KickShift            = 4,
-  parameter int          KickBits             = 18,
-  parameter int          SlotBits             = 4,
+  parameter int          KickBits             = 18,     // of one axis of a kick
+  parameter int          SlotBits             = 4,      // of a slot's number
   parameter int          Shared               = 0,      // 0, 1
   parameter int          Product              = 1,      // cycles of a multiplier; 1 if Shared
   parameter int          Interval             = 1       // cycles from one pair to the next
 ) (
   input  logic                            clk_i,
   input  logic                            rst_ni,
-  input  logic                            valid_i,
+  input  logic                            valid_i,      // a pair is taken
   input  logic [SlotBits-1:0]             slot_i,       // the own particle
   // The own particle, in the cycle after valid_i: a memory's answer.
   input  logic [Axes*PositionFrac-1:0]    own_x_i,      // unsigned
-  input  logic [Axes*VelocityBits-1:0]    own_v_i,
-  input  logic [TypeBits-1:0]             own_type_i,
+  input  logic [Axes*VelocityBits-1:0]    own_v_i,      // signed; Damped
+  input  logic [TypeBits-1:0]             own_type_i,   // Scaled
   // The other one, with valid_i.
   input  logic [Axes*(PositionFrac+2)-1:0] other_x_i,    // signed, in the own frame
-  input  logic [Axes*VelocityBits-1:0]    other_v_i,
-  input  logic [TypeBits-1:0]             other_type_i,
+  input  logic [Axes*VelocityBits-1:0]    other_v_i,    // signed; Damped
+  input  logic [TypeBits-1:0]             other_type_i, // Scaled
   output logic                            valid_o,      // a pair inside the cutoff
   output logic [SlotBits-1:0]             slot_next_o,  // slot_o of the next cycle
-  output logic [SlotBits-1:0]             slot_o,
+  output logic [SlotBits-1:0]             slot_o,       // with valid_o: its own slot
   output logic [Axes*KickBits-1:0]        push_o,       // signed, P+G fractional bits: minus the kick
   output logic                            fault_o,      // that pair does not fit:
   output logic                            fault_strength_o,  // s, else w

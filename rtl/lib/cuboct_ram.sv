@@ -7,11 +7,11 @@ module cuboct_ram #(
   parameter int AddrBits = 4    // >= clog2(Depth), >= 1
 ) (
   input  logic                clk_i,
-  input  logic                write_i,
-  input  logic [AddrBits-1:0] write_addr_i,
-  input  logic [Bits-1:0]     write_data_i,
+  input  logic                write_i,      // a word is written
+  input  logic [AddrBits-1:0] write_addr_i, // with write_i
+  input  logic [Bits-1:0]     write_data_i, // with write_i
   input  logic                read_i,       // without it the answer stays
-  input  logic [AddrBits-1:0] read_addr_i,
+  input  logic [AddrBits-1:0] read_addr_i,  // with read_i
   output logic [Bits-1:0]     read_data_o   // from the next cycle on
 );
   localparam int IndexBits = (Depth > 1) ? $clog2(Depth) : 1;

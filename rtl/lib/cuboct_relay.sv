@@ -20,7 +20,7 @@ module cuboct_relay #(
   input  logic                   done_i,      // last cycle of the phase
   // Segments: 0 own, then the halos of -x, +x and, with three axes, -y, +y; their counts, and where to read.
   input  logic [(2*Axes-1)*CountBits-1:0] counts_i,
-  output logic [2:0]             segment_o,
+  output logic [2:0]             segment_o,   // which one
   output logic [AddrBits-1:0]    addr_o,      // of the next cycle's record
   output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles
   input  logic [HaloBits-1:0]    record_i,    // of segment_o, at addr_o of the cycle before; Narrow: own ones only
@@ -28,9 +28,9 @@ module cuboct_relay #(
   input  logic [LinkBits-1:0]    word_i,      // Narrow: of segment_o, word_o of the cycle before
   // To the link registers.
   input  logic                   can_load_i,  // both links can
-  output logic                   load_o,
-  output logic                   end_o,
-  output logic [LinkBits-1:0]    data_o,
+  output logic                   load_o,      // both load this beat
+  output logic                   end_o,       // it is an end beat
+  output logic [LinkBits-1:0]    data_o,      // with load_o: payload
   output logic                   first_own_o, // the first beat of an own record is loaded
   output logic                   sent_o       // the end beat was loaded
 );

@@ -4,8 +4,8 @@ module cuboct_resize #(
   parameter int InBits  = 8,  // >= 1
   parameter int OutBits = 8   // >= 1
 ) (
-  input  logic signed [InBits-1:0]  a_i,
-  output logic signed [OutBits-1:0] y_o
+  input  logic signed [InBits-1:0]  a_i,  // any value
+  output logic signed [OutBits-1:0] y_o   // a_i modulo 2^OutBits
 );
   if (OutBits > InBits) begin : gen_extend
     assign y_o = {{(OutBits - InBits) {a_i[InBits-1]}}, a_i};

@@ -7,8 +7,8 @@ module cuboct_round_odd #(
   parameter int Shift   = 1,  // >= 0; 0 passes a_i
   parameter int OutBits = 8   // width of y_o; the result is sign-extended or wrapped to it
 ) (
-  input  logic signed [InBits-1:0]  a_i,
-  output logic signed [OutBits-1:0] y_o
+  input  logic signed [InBits-1:0]  a_i,  // any value
+  output logic signed [OutBits-1:0] y_o   // the rounded value modulo 2^OutBits
 );
   if (Shift == 0) begin : gen_pass
     cuboct_resize #(.InBits(InBits), .OutBits(OutBits)) u_resize (.a_i, .y_o);

@@ -6,25 +6,25 @@ module cuboct_sequencer #(
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
-  input  logic        start_i,
-  input  logic [31:0] steps_i,
+  input  logic        start_i,          // in IDLE: begins a run
+  input  logic [31:0] steps_i,          // with start_i; 0 goes to DUMP
   // Last cycles.
   input  logic        exchange_done_i,  // of the present exchange phase
-  input  logic        force_done_i,
-  input  logic        update_done_i,
+  input  logic        force_done_i,     // of the force engine's phase
+  input  logic        update_done_i,    // of UPDATE
   input  logic        migrate_done_i,   // of the present migration phase
-  input  logic        dump_done_i,
+  input  logic        dump_done_i,      // of DUMP
   // Where the machine is.
   output logic        idle_o,
-  output logic        exchange_o,
-  output logic        update_o,
-  output logic        migrate_o,
-  output logic        dump_o,
+  output logic        exchange_o,       // in an exchange phase
+  output logic        update_o,         // in UPDATE
+  output logic        migrate_o,        // in a migration phase
+  output logic        dump_o,           // in DUMP
   output logic [1:0]  axis_o,           // of exchange or migration
   output logic        engine_o,         // the force engine runs
   output logic [Axes-1:0] past_exchange_o,  // EXCHANGE_X, _Y, _Z of this step is over; only while the engine runs
   output logic        step_end_o,       // last cycle of the last migration phase
-  output logic [7:0]  phase_start_o,
+  output logic [7:0]  phase_start_o,    // first cycle of exchange x y z, force, update, migrate x y z
   output logic [7:0]  phase_end_o
 );
   // One bit each: what depends on the machine's state depends on a register, and the way from a phase's last cycle to the

@@ -21,21 +21,21 @@ module cuboct_slots #(
   localparam int CoarseBits  = Axes * FilterFrac
 ) (
   input  logic                           clk_i,
-  input  logic                           write_i,
-  input  logic [SlotBits-1:0]            write_slot_i,
-  input  logic [Bits-1:0]                write_data_i,
+  input  logic                           write_i,        // a slot is written
+  input  logic [SlotBits-1:0]            write_slot_i,   // which
+  input  logic [Bits-1:0]                write_data_i,   // the particle
   input  logic                           main_read_i,    // without it main_data_o stays
-  input  logic [SlotBits-1:0]            main_slot_i,
-  output logic [Bits-1:0]                main_data_o,
+  input  logic [SlotBits-1:0]            main_slot_i,    // with main_read_i
+  output logic [Bits-1:0]                main_data_o,    // of the question before
   input  logic                           stream_read_i,  // without it stream_data_o and row_data_o stay
-  input  logic [SlotBits-1:0]            stream_slot_i,
-  output logic [SeenBits-1:0]            stream_data_o,
-  input  logic [RowBits-1:0]             row_i,
-  output logic [FilterLanes*CoarseBits-1:0] row_data_o,
-  input  logic [ForcePipes*SlotBits-1:0] pipe_slot_i,
-  output logic [ForcePipes*SeenBits-1:0] pipe_data_o,
-  input  logic [ForcePipes*SlotBits-1:0] fault_slot_i,
-  output logic [ForcePipes*IdBits-1:0]   fault_id_o
+  input  logic [SlotBits-1:0]            stream_slot_i,  // with stream_read_i
+  output logic [SeenBits-1:0]            stream_data_o,  // leading fields of that slot
+  input  logic [RowBits-1:0]             row_i,          // with stream_read_i
+  output logic [FilterLanes*CoarseBits-1:0] row_data_o,  // by lane, x lowest
+  input  logic [ForcePipes*SlotBits-1:0] pipe_slot_i,    // per pipe, in every cycle
+  output logic [ForcePipes*SeenBits-1:0] pipe_data_o,    // per pipe, leading fields
+  input  logic [ForcePipes*SlotBits-1:0] fault_slot_i,   // per pipe, in every cycle
+  output logic [ForcePipes*IdBits-1:0]   fault_id_o      // per pipe, the id
 );
   localparam int Rows = (Capacity + FilterLanes - 1) / FilterLanes;
 

@@ -13,13 +13,13 @@ module cuboct_streamer #(
   input  logic                   rst_ni,
   input  logic                   run_i,        // the force engine's phase
   input  logic                   restart_i,    // its last cycle
-  input  logic                   stall_i,
+  input  logic                   stall_i,      // nothing moves
   input  logic [Axes:0]          available_i,  // own; x, y, z halos complete
   input  logic [(2*Axes+1)*CountBits-1:0] counts_i,     // by segment
-  output logic [2:0]             segment_o,
-  output logic [AddrBits-1:0]    addr_o,
+  output logic [2:0]             segment_o,    // 0 own, then -x, +x, -y, +y, -z, +z
+  output logic [AddrBits-1:0]    addr_o,       // the record's number in its segment
   output logic [SlotBits-1:0]    slot_o,       // addr_o, for the own particles
-  output logic [RowBits-1:0]     row_o,
+  output logic [RowBits-1:0]     row_o,        // of own slots
   output logic                   present_o,    // (segment, addr, row) goes to the filter
   output logic                   past_o        // all segments are done
 );

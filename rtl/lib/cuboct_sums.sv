@@ -12,30 +12,20 @@ module cuboct_sums #(
 ) (
   input  logic                  clk_i,
   input  logic                  rst_ni,
-  input  logic                  kick_valid_i,
-  input  logic [SlotBits-1:0]   kick_slot_i,
+  input  logic                  kick_valid_i, // a kick is added to the sum of slot next_slot_i of the cycle before
   input  logic [Axes*KickBits-1:0] push_i,     // minus the kick
-  input  logic [SlotBits-1:0]   next_slot_i,  // of the next cycle's kick or take
-  input  logic                  show_i,       // never in a cycle with a kick, nor, if Spaced, in the one after
-  input  logic                  take_i,       // with show_i: clears
-  input  logic [SlotBits-1:0]   take_slot_i,
-  output logic [Axes*SumBits-1:0] sum_o         // of take_slot_i, without latency, in a cycle with show_i
+  input  logic [SlotBits-1:0]   next_slot_i,  // the slot that the next cycle's kick or take is about
+  input  logic                  take_i,       // clears that sum; never with a kick
+  output logic [Axes*SumBits-1:0] sum_o         // of the slot of the cycle before; if Spaced, not in the cycle after a kick
 );
   localparam int IndexBits = (Capacity > 1) ? $clog2(Capacity) : 1;
 
   logic [Capacity-1:0]  held_d, held_q;  // slots whose sum is not zero by default
-  logic [SlotBits-1:0]  slot;
-  logic [Axes*SumBits-1:0] word, old, added;  // word: of slot; old: the sum before a kick
+  logic [SlotBits-1:0]  slot_q;
+  logic [Axes*SumBits-1:0] word, old, added;
 
-  assign slot = show_i ? take_slot_i : kick_slot_i;
-  if (Spaced != 0) begin : gen_one_look
-    assign old   = held_q[slot[IndexBits-1:0]] ? word : '0;
-    assign sum_o = old;
-  end else begin : gen_two_looks
-    // Whether a slot is held is known without waiting for whose turn it is.
-    assign old   = held_q[kick_slot_i[IndexBits-1:0]] ? word : '0;
-    assign sum_o = held_q[take_slot_i[IndexBits-1:0]] ? word : '0;
-  end
+  always_ff @(posedge clk_i) slot_q <= next_slot_i;
+  assign old = held_q[slot_q[IndexBits-1:0]] ? word : '0;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis
     logic signed [SumBits-1:0] push;
     cuboct_resize #(.InBits(KickBits), .OutBits(SumBits)) u_push (
@@ -44,11 +34,11 @@ module cuboct_sums #(
     assign added[a*SumBits +: SumBits] = old[a*SumBits +: SumBits] - push;
   end
 
-  // Each slot by itself: no kick comes in a cycle with show_i.
+  // Each slot by itself: a kick and a take never come in one cycle.
   for (genvar h = 0; h < Capacity; h++) begin : gen_held
     localparam int Slot = h;
-    assign held_d[h] = (held_q[h] || (kick_valid_i && kick_slot_i == Slot[SlotBits-1:0]))
-                    && !(take_i && take_slot_i == Slot[SlotBits-1:0]);
+    assign held_d[h] = (held_q[h] || (kick_valid_i && slot_q == Slot[SlotBits-1:0]))
+                    && !(take_i && slot_q == Slot[SlotBits-1:0]);
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) held_q <= '0;
@@ -56,16 +46,15 @@ module cuboct_sums #(
   end
   if (Spaced != 0) begin : gen_memory
     cuboct_ram #(.Bits(Axes * SumBits), .Depth(Capacity), .AddrBits(SlotBits)) u_words (
-      .clk_i, .write_i(kick_valid_i), .write_addr_i(kick_slot_i), .write_data_i(added), .read_i(1'b1),
+      .clk_i, .write_i(kick_valid_i), .write_addr_i(slot_q), .write_data_i(added), .read_i(1'b1),
       .read_addr_i(next_slot_i), .read_data_o(word)
     );
   end else begin : gen_registers
     logic [Axes*SumBits-1:0] mem_q [0:Capacity-1];
-    logic                    unused_next;
-    assign unused_next = ^next_slot_i;
-    assign word = mem_q[slot[IndexBits-1:0]];
+    assign word = mem_q[slot_q[IndexBits-1:0]];
     always_ff @(posedge clk_i) begin
-      if (kick_valid_i) mem_q[slot[IndexBits-1:0]] <= added;
+      if (kick_valid_i) mem_q[slot_q[IndexBits-1:0]] <= added;
     end
   end
+  assign sum_o = old;
 endmodule

@@ -16,7 +16,7 @@ module cuboct_update #(
   parameter int TotalBits        = 30,  // of the exact sum over all pipes
   parameter int SumBits          = 29,  // that it must fit
   parameter int TypeBits         = 1,   // >= 1
-  parameter int Pd               = 0,
+  parameter int Pd               = 0,   // 0, 1
   parameter int Held             = 0,   // 0, 1
   parameter int DisplacementBits = 29,
   parameter int GainBits         = 18,
@@ -31,27 +31,27 @@ module cuboct_update #(
   input  logic                          clk_i,
   input  logic                          rst_ni,
 `ifdef CUBOCT_HOST_VELOCITY
-  input  logic [MovedTypes*Axes*ConstantBits-1:0] velocity_i,
+  input  logic [MovedTypes*Axes*ConstantBits-1:0] velocity_i,  // V by type and axis; constant in a run
 `endif
-  input  logic                          valid_i,
-  input  logic [SlotBits-1:0]           slot_i,
-  input  logic [Axes*TotalBits-1:0]     sum_i,
-  input  logic [Axes*PositionFrac-1:0]  x_i,
-  input  logic [Axes*VelocityBits-1:0]  v_i,
-  input  logic [TypeBits-1:0]           type_i,
-  input  logic [IdBits-1:0]             id_i,
+  input  logic                          valid_i,       // a particle is taken
+  input  logic [SlotBits-1:0]           slot_i,        // its slot
+  input  logic [Axes*TotalBits-1:0]     sum_i,         // its sum over all pipes, signed
+  input  logic [Axes*PositionFrac-1:0]  x_i,           // unsigned
+  input  logic [Axes*VelocityBits-1:0]  v_i,           // signed
+  input  logic [TypeBits-1:0]           type_i,        // 0 with one type
+  input  logic [IdBits-1:0]             id_i,          // of the particle
   input  logic [Axes*DisplacementBits-1:0] u_i,        // Pd only
-  output logic                          valid_o,
-  output logic [SlotBits-1:0]           slot_o,
-  output logic [Axes*PositionFrac-1:0]  x_o,
+  output logic                          valid_o,       // a particle is written back
+  output logic [SlotBits-1:0]           slot_o,        // its slot
+  output logic [Axes*PositionFrac-1:0]  x_o,           // in the node that away_o says
   output logic [2*Axes-1:0]             away_o,        // per axis 2 bits, -1, 0, +1: the node that x is in
-  output logic [Axes*VelocityBits-1:0]  v_o,
-  output logic [TypeBits-1:0]           type_o,
-  output logic [IdBits-1:0]             id_o,
-  output logic [Axes*DisplacementBits-1:0] u_o,
-  output logic                          fault_o,
+  output logic [Axes*VelocityBits-1:0]  v_o,           // signed
+  output logic [TypeBits-1:0]           type_o,        // as it came
+  output logic [IdBits-1:0]             id_o,          // as it came
+  output logic [Axes*DisplacementBits-1:0] u_o,        // signed; 0 without Pd
+  output logic                          fault_o,       // with valid_o: a value does not fit
   output logic [3:0]                    fault_code_o,  // 3 sum, 4 displacement, 5 velocity
-  output logic signed [63:0]            fault_number_o
+  output logic signed [63:0]            fault_number_o // that value
 );
   // Stage 1: operands. Stage VStage-1 holds what v is made of; v at VStage; the outputs are made in stage VStage.
   localparam int VStage   = (Pd != 0) ? 5 : 2;

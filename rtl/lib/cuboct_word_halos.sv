@@ -20,25 +20,25 @@ module cuboct_word_halos #(
   input  logic [Faces*LinkBits-1:0]  link_data_i,
   output logic [Faces-1:0]           link_ready_o,
   // Halos.
-  input  logic                       halo_clear_i,
+  input  logic                       halo_clear_i,   // the step's halos are read; with the last cycle of FORCE
   output logic [Faces-1:0]           halo_end_o,     // complete; always where there is no link
-  output logic [Faces*CountBits-1:0] halo_count_o,
+  output logic [Faces*CountBits-1:0] halo_count_o,   // by face: records that came in this step
   // The port: a word of the next cycle's word_o, and of which face that is, one hot.
   input  logic [WordBits-1:0]        word_i,         // not in MIGRATE
-  input  logic [Faces-1:0]           face_i,
-  output logic [LinkBits-1:0]        word_o,
+  input  logic [Faces-1:0]           face_i,         // one hot
+  output logic [LinkBits-1:0]        word_o,         // of the question before
   // The record: takes word_o as its last word, or as a whole what is given.
-  input  logic                       shift_i,
-  input  logic                       set_i,
-  input  logic [HaloBits-1:0]        halo_i,
-  output logic [HaloBits-1:0]        halo_o,
+  input  logic                       shift_i,        // takes word_o
+  input  logic                       set_i,          // takes halo_i
+  input  logic [HaloBits-1:0]        halo_i,         // with set_i
+  output logic [HaloBits-1:0]        halo_o,         // once all its words were shifted in
   // Migrating particles of face_i.
   input  logic                       migrating_i,    // a migration phase
   input  logic                       taking_i,       // who waits for one
-  input  logic [Faces-1:0]           migrate_clear_i,
+  input  logic [Faces-1:0]           migrate_clear_i,  // by face: last cycle of its axis's migration
   output logic [Faces-1:0]           migrate_end_o,  // complete, and all were popped; always where there is no link
-  output logic                       particle_valid_o,
-  output logic [ParticleBits-1:0]    particle_o,
+  output logic                       particle_valid_o,  // one is put together
+  output logic [ParticleBits-1:0]    particle_o,     // with particle_valid_o
   input  logic                       pop_i           // in each cycle with particle_valid_o, in no other
 );
   localparam int HaloBeats    = (HaloBits + LinkBits - 1) / LinkBits;

@@ -19,20 +19,20 @@ module cuboct_word_inbox #(
   input  logic                 clk_i,
   input  logic                 rst_ni,
   // From the neighbour. There always is room (docs/reference/node.md, section Order).
-  input  logic                 valid_i,
-  input  logic                 end_i,
-  input  logic [LinkBits-1:0]  data_i,
+  input  logic                 valid_i,        // a beat is there
+  input  logic                 end_i,          // an end beat
+  input  logic [LinkBits-1:0]  data_i,         // payload: a word
   output logic                 halo_end_o,     // pulse
   output logic                 migrate_end_o,  // pulse
   // Halos.
-  input  logic                 clear_i,
-  output logic [CountBits-1:0] count_o,
+  input  logic                 clear_i,        // the step's halos are read
+  output logic [CountBits-1:0] count_o,        // records that came in this step
   // Particles.
   input  logic                 pop_i,          // the oldest particle is done with
-  output logic                 empty_o,
-  output logic                 full_o,
+  output logic                 empty_o,        // no particle waits
+  output logic                 full_o,         // Capacity particles wait
   // The port.
-  input  logic [WordBits-1:0]  word_i,
+  input  logic [WordBits-1:0]  word_i,         // asked for in every cycle
   output logic [LinkBits-1:0]  data_o          // from the next cycle on
 );
   localparam int HaloBeats    = (HaloBits + LinkBits - 1) / LinkBits;

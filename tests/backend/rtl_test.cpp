@@ -78,11 +78,12 @@ TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) { expect_golden(make_cas
 
 INSTANTIATE_TEST_SUITE_P(Cases, Rtl, testing::ValuesIn(rtl_cases()), [](const auto& p) { return p.param; });
 
-// Thin and thick ones, ragged ones, a node that is its own neighbour, flat ones, several lanes and pipes.
+// Thin and thick ones, ragged ones, a node that is its own neighbour, flat ones, several lanes and pipes, serial and
+// shared multipliers.
 INSTANTIATE_TEST_SUITE_P(Bricks, Rtl,
                          testing::Values("undamped_2x2x2.brick_2x1x1", "hot_gas.brick_2x2x2",
                                          "rich_ring.brick_3x1x2", "rich_force_held.brick_2x2x1",
-                                         "flat_ring.brick_2x2x1", "periodic_27.brick_2x3x2"),
+                                         "flat_ring.brick_2x2x1", "periodic_27.brick_2x3x2", "brick_serial", "brick_shared"),
                          [](const auto& p) { return p.param.substr(0, p.param.find('.')); });
 
 class RtlFaults : public testing::TestWithParam<Fault> {};

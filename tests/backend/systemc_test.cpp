@@ -31,14 +31,14 @@ TEST_P(SystemC, EqualsGoldenAndThePlainLoop) {
     EXPECT_EQ(compared.steps, c.steps + 1);
     EXPECT_EQ(compared.slots, (c.steps + 1) * c.setup.initial.particles.size());
   }
-  const uint64_t spans = c.steps * plan.lattice.size() * kPhases;
+  const uint64_t spans = c.steps * plan.nodes() * kPhases;
   const Compared with_plain = compare_cycles(a, run_plain(plan, c.setup.initial, free, nodes, "plain"));
   EXPECT_EQ(with_plain.difference, "");
   EXPECT_EQ(with_plain.spans, spans);
   const Compared with_stalled = compare_cycles(b, run_plain(plan, c.setup.initial, stalled, nodes, "plain"));
   EXPECT_EQ(with_stalled.difference, "");
   EXPECT_EQ(with_stalled.spans, spans);
-  EXPECT_EQ(a.trace.cycles == b.trace.cycles, plan.lattice.size() == 1);
+  EXPECT_EQ(a.trace.cycles == b.trace.cycles, plan.nodes() == 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, SystemC, testing::ValuesIn(case_names()),

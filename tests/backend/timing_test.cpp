@@ -184,7 +184,7 @@ Case rebuilt(Case c, uint64_t seed) {
   arch.multipliers = static_cast<Multipliers>(draw(0, 2));
   arch.overlap = draw(0, 3) > 0;
   arch.narrow_memories = draw(0, 3) == 0;
-  if (arch.narrow_memories) arch.filter_lanes = arch.force_pipes = 1, arch.overlap = false;
+  if (arch.narrow_memories) arch.filter_lanes = arch.force_pipes = 1, arch.overlap = false, arch.brick = {1, 1, 1};
   arch.link_bits = std::array{0, draw(1, 8), draw(9, 200), 1024}[static_cast<size_t>(draw(0, 3))];
   if (draw(0, 2) == 0) arch.capacity = crowd_of(c);
   if (draw(0, 2) == 0 && !arch.narrow_memories) {
@@ -205,7 +205,7 @@ TEST_P(Timing, EqualsTheClockedNode) {
   Seen seen;
   const Case c = make_case(GetParam());
   EXPECT_EQ(difference(c, seen), "");
-  EXPECT_EQ(seen.spans, c.steps * c.setup.plan.lattice.size() * kPhases);
+  EXPECT_EQ(seen.spans, c.steps * c.setup.plan.nodes() * kPhases);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Timing, testing::ValuesIn(case_names()),

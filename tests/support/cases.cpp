@@ -144,6 +144,30 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.arch.table = {.shape = TableChoice::Shape::octaves, .degree = 2, .index_bits = 7};
          narrow(r.arch);
        }},
+      // Several cells a node, whose pairs wait for multipliers.
+      {"brick_serial",
+       [](R r) {
+         r.features.damping = 0.2;
+         r.features.speed = 0.5;
+         r.features.two_materials = r.features.held = true;
+         r.arch.multipliers = Multipliers::serial;
+         r.arch.force_pipes = 2;
+         r.arch.queue_depth = 2;
+         r.arch.brick = {2, 1, 2};
+         r.steps = 12;
+       }},
+      {"brick_shared",
+       [](R r) {
+         r.features.flat = true;
+         r.features.size = {4, 3, 1};
+         r.features.damping = 0.2;
+         r.features.speed = 0.5;
+         r.features.margin = 3;
+         r.arch.multipliers = Multipliers::shared;
+         r.arch.filter_lanes = 3;
+         r.arch.queue_depth = 1;
+         r.arch.brick = {2, 2, 1};
+       }},
       // Rich ones, of which the RTL is built.
       {"rich_narrow",
        [](R r) {

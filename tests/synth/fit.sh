@@ -35,6 +35,10 @@ printf '#!/bin/sh\n[ "$1" = -V ] && exec "%s" -V\nexit 9\n' "$(command -v yosys)
 chmod +x none/yosys
 PATH=$work/none:$PATH "$cuboct" emit lone.toml --arch narrow.toml --fit up5k --out fitted > printed.again || fail "measured again"
 cmp printed printed.again
+# The choice of an earlier time is chosen anew, and said once.
+cp fitted/arch.toml before.toml
+"$cuboct" emit lone.toml --arch before.toml --fit up5k --out fitted > printed.again
+cmp fitted/arch.toml before.toml
 # An emission without --fit leaves no arch that is not its own.
 "$cuboct" emit lone.toml --arch narrow.toml --out fitted > again.printed
 [ ! -e fitted/arch.toml ] || fail "a stale arch.toml"
@@ -76,6 +80,11 @@ code=0
 "$cuboct" emit lone.toml --fit xc7 --out refused.dir > printed 2> said || code=$?
 [ $code = 2 ] && [ "$(ls refused.dir)" = mine ] || fail "somebody's directory: $code"
 grep -qx 'refused.dir: is not empty and holds no earlier emission' said || fail "$(cat said)"
+
+code=0
+"$cuboct" emit lone.toml --fit xc7 --out refused.dir/mine/fit > printed 2> said || code=$?
+[ $code = 2 ] || fail "a directory within a file: $code"
+grep -qx "refused.dir/mine/fit: cannot be made, as $work/refused.dir/mine is no directory" said || fail "$(cat said)"
 
 # An interrupt while yosys works.
 "$cuboct" emit lone.toml --arch narrow.toml --fit hx8k --out stopped > printed 2> said &

@@ -154,7 +154,8 @@ const std::map<std::string, std::pair<const char*, Cell>>& bricks() {
       {"brick_pd", {"pd", {2, 1, 1}}},        {"brick_edge", {"edge", {2, 1, 2}}},
       {"brick_retry", {"retry", {2, 1, 1}}},  {"brick_fails_sum", {"fails_sum", {2, 1, 1}}},
       {"brick_fails_v", {"fails_v", {2, 1, 1}}},  {"brick_fly", {"fly", {2, 2, 2}}},
-      {"brick_fails_w", {"fails_w", {2, 1, 1}}},  {"brick_fails_free", {"fails_free", {2, 1, 1}}}};
+      {"brick_fails_w", {"fails_w", {2, 1, 1}}},  {"brick_fails_free", {"fails_free", {2, 1, 1}}},
+      {"brick_shared", {"flat_shared", {1, 2, 1}}}, {"brick_serial", {"flat_serial", {2, 1, 1}}}};
   return all;
 }
 
@@ -369,6 +370,16 @@ const std::map<std::string, Recipe>& recipes() {
          s.arch.table.degree = 2;
          s.arch.multipliers = Multipliers::serial;
          s.arch.force_pipes = 2;
+       }},
+      {"flat_serial",
+       [](S s) {
+         s.features.flat = s.features.two_materials = true;
+         s.features.size = {2, 2, 1};
+         s.features.damping = 0.2;
+         s.arch.table = {.shape = Shape::octaves, .degree = 2, .index_bits = 7};
+         s.arch.multipliers = Multipliers::serial;
+         s.arch.force_pipes = 2;
+         s.arch.queue_depth = 1;
        }},
       {"narrow",
        [](S s) {
