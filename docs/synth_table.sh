@@ -11,9 +11,9 @@ root=$(dirname "${BASH_SOURCE[0]}")/..
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for target in "${targets[@]}"; do
-  columns='nodes | cycles per step | LUT | FF | DSP | BRAM | fit | longest path, cells'
+  columns='nodes | cycles per step | LUT | FF | DSP | BRAM | fit | longest path, cells | clock, estimated, MHz'
   printf '| node of, on %s | %s |\n' "$target" "$columns"
-  printf '|---|---|---|---|---|---|---|---|---|\n'
+  printf '|---|---|---|---|---|---|---|---|---|---|\n'
   for scene in coupon undamped_block lj_block sheet two_types; do
     [ -d "$work/$scene" ] || "$cuboct" emit "$root/scenes/$scene.toml" --out "$work/$scene" > "$work/emit.log"
     "$cuboct" synth "$work/$scene" --target "$target" --no-place --json > "$work/report.json"
@@ -23,7 +23,8 @@ r = json.load(open(sys.argv[1]))
 uses = r["block"]["uses"]
 fit = f'{r["fit"]["units"]}, by {r["fit"]["limit"]}' if "fit" in r else "-"
 counts = [uses[k] for k in ("LUT", "FF", "DSP", "BRAM")]
-row = [sys.argv[2], r["nodes"], r["cycles_per_step"], *counts, fit, r.get("depth", "-")]
+row = [sys.argv[2], r["nodes"], r["cycles_per_step"], *counts, fit, r.get("depth", "-"),
+       f'{r["estimate"]["mhz"]:.0f}' if "estimate" in r else "-"]
 print("| " + " | ".join(str(cell) for cell in row) + " |")
 PYTHON
   done

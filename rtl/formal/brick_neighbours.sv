@@ -95,6 +95,8 @@ module brick_neighbours_formal #(
 
   // Where a node is, and what comes in.
   (* keep *) logic [3:0] tap_state_0, tap_state_1;
+  (* keep *) logic [9:0] tap_states_0, tap_states_1;
+  (* keep *) logic       tap_exchange_0, tap_exchange_1, tap_migrating_0, tap_migrating_1;
   (* keep *) logic       tap_sent_0, tap_sent_1, tap_pass_1;  // of the relay
   (* keep *) logic [2:0] tap_migrate_0, tap_migrate_1;        // state of the migration
   (* keep *) logic [1:0] tap_axis_halo_0, tap_axis_halo_1, tap_axis_ended_0, tap_axis_ended_1;
@@ -204,6 +206,10 @@ module brick_neighbours_formal #(
                                                         : (tap_halo_ended_0[Above] || !tap_migrate_ended_0[Above]));
       i_flags_1: assert ((used_of(tap_state_1) == 3'd1) ? (tap_migrate_ended_1[Below] || !tap_halo_ended_1[Below])
                                                         : (tap_halo_ended_1[Below] || !tap_migrate_ended_1[Below]));
+      i_groups: assert (tap_exchange_0 == (tap_states_0[2:0] != '0) && tap_migrating_0 == (tap_states_0[7:5] != '0)
+                        && tap_exchange_1 == (tap_states_1[2:0] != '0) && tap_migrating_1 == (tap_states_1[7:5] != '0));
+      i_states: assert (tap_states_0 != '0 && (tap_states_0 & (tap_states_0 - 1'b1)) == '0
+                        && tap_states_1 != '0 && (tap_states_1 & (tap_states_1 - 1'b1)) == '0);
       i_state:  assert (tap_state_0 != 4'd2 && tap_state_1 != 4'd2 && tap_state_0 != 4'd7 && tap_state_1 != 4'd7
                         && tap_state_0 <= 4'd9 && tap_state_1 <= 4'd9);
       i_steps:  assert (tap_steps_0 <= Steps && tap_steps_1 <= Steps

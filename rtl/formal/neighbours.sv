@@ -103,6 +103,7 @@ module neighbours_formal #(
   // Where a node is, and what comes in.
   (* keep *) logic [3:0] tap_state_0, tap_state_1;
   (* keep *) logic [9:0] tap_states_0, tap_states_1;
+  (* keep *) logic       tap_exchange_0, tap_exchange_1, tap_migrating_0, tap_migrating_1;
   (* keep *) logic       tap_sent_0, tap_sent_1;        // of the relay
   (* keep *) logic [2:0] tap_migrate_0, tap_migrate_1;  // state of the migration
   (* keep *) logic [1:0] tap_axis_halo_0, tap_axis_halo_1;
@@ -231,6 +232,8 @@ module neighbours_formal #(
           || !tap_halo_ended_1[Below])
                                                        : (tap_halo_ended_1[Below]
                                                            || !tap_migrate_ended_1[Below]));
+      i_groups: assert (tap_exchange_0 == (tap_states_0[2:0] != '0) && tap_migrating_0 == (tap_states_0[7:5] != '0)
+                        && tap_exchange_1 == (tap_states_1[2:0] != '0) && tap_migrating_1 == (tap_states_1[7:5] != '0));
       i_states: assert (tap_states_0 != '0 && (tap_states_0 & (tap_states_0 - 1'b1)) == '0
                         && tap_states_1 != '0 && (tap_states_1 & (tap_states_1 - 1'b1)) == '0);
       i_state:  assert (tap_state_0 != 4'd2 && tap_state_1 != 4'd2 && tap_state_0 != 4'd7

@@ -52,6 +52,7 @@ module cuboct_migrate #(
 
   state_t               state_d, state_q, state;
   logic [CountBits-1:0] read_d, read_q, write_d, write_q;  // Scan: slots read, slots kept
+  logic [CountBits-1:0] next_d, next_q;                    // read_q and 1
   logic [BeatBits-1:0]  beat_d, beat_q;
   logic [1:0]           away;
   logic                 stays, up, linked, loadable, last_beat, advance, last_slot, taking, side, has_room;
@@ -80,7 +81,7 @@ module cuboct_migrate #(
   assign loadable  = up ? can_load_i[1] : can_load_i[0];
   assign last_beat = (beat_q == LastBeat[BeatBits-1:0]);
   assign advance   = stays || !linked || (loadable && last_beat);  // SCAN is done with the slot
-  assign last_slot = (read_q + 1'b1 == count_i);
+  assign last_slot = (next_q == count_i);
 
   assign side      = (state == TakeHigh);
   assign taking    = active_i && (state == TakeLow || state == TakeHigh) && !(side ? empty_i[1] : empty_i[0]);
@@ -103,6 +104,7 @@ module cuboct_migrate #(
   always_comb begin
     state_d        = state_q;
     read_d         = read_q;
+    next_d         = next_q;
     write_d        = write_q;
     beat_d         = beat_q;
     done_o         = 1'b0;
@@ -133,9 +135,13 @@ module cuboct_migrate #(
             load_o = {up, !up};
             beat_d = last_beat ? '0 : beat_q + 1'b1;
           end
-          if (advance) read_d = read_q + 1'b1;
+          if (advance) begin
+            read_d = next_q;
+            next_d = next_q + 1'b1;
+          end
           if (advance && last_slot) begin
             read_d      = '0;
+            next_d      = {{(CountBits - 1) {1'b0}}, 1'b1};
             write_d     = '0;
             count_set_o = 1'b1;
             count_o     = stays ? write_q + 1'b1 : write_q;
@@ -177,11 +183,13 @@ module cuboct_migrate #(
     if (!rst_ni) begin
       state_q <= Enter;
       read_q  <= '0;
+      next_q  <= {{(CountBits - 1) {1'b0}}, 1'b1};
       write_q <= '0;
       beat_q  <= '0;
     end else begin
       state_q <= state_d;
       read_q  <= read_d;
+      next_q  <= next_d;
       write_q <= write_d;
       beat_q  <= beat_d;
     end

@@ -44,6 +44,7 @@ module cuboct_sequencer #(
 
   logic [Idle:0] state_d, state_q, enter;
   logic          first_d, first_q;  // first cycle of a state
+  logic          exchange_d, exchange_q, migrate_d, migrate_q;  // any of their states
   logic [31:0]   steps_d, steps_q;  // still to do, this one included
   logic          start, last_step, none;
 
@@ -62,17 +63,23 @@ module cuboct_sequencer #(
   assign enter[Idle]      = state_q[Dump] && dump_done_i;
   assign first_d          = (enter != '0);
   assign state_d          = first_d ? enter : state_q;
+  assign exchange_d       = enter[ExchangeX] || (exchange_q && !enter[Force]);
+  assign migrate_d        = enter[MigrateX] || (migrate_q && !step_end_o);
   assign steps_d          = start ? steps_i : step_end_o ? steps_q - 32'd1 : steps_q;
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
-      state_q <= {1'b1, {Idle {1'b0}}};
-      first_q <= 1'b0;
-      steps_q <= '0;
+      state_q    <= {1'b1, {Idle {1'b0}}};
+      first_q    <= 1'b0;
+      steps_q    <= '0;
+      exchange_q <= 1'b0;
+      migrate_q  <= 1'b0;
     end else begin
-      state_q <= state_d;
-      first_q <= first_d;
-      steps_q <= steps_d;
+      state_q    <= state_d;
+      first_q    <= first_d;
+      steps_q    <= steps_d;
+      exchange_q <= exchange_d;
+      migrate_q  <= migrate_d;
     end
   end
 
@@ -81,9 +88,9 @@ module cuboct_sequencer #(
   assign engine_first = first_q && ((Overlap != 0) ? state_q[ExchangeX] : in_force);
 
   assign idle_o          = state_q[Idle];
-  assign exchange_o      = state_q[ExchangeX] || state_q[ExchangeY] || state_q[ExchangeZ];
+  assign exchange_o      = exchange_q;
   assign update_o        = state_q[Update];
-  assign migrate_o       = state_q[MigrateX] || state_q[MigrateY] || state_q[MigrateZ];
+  assign migrate_o       = migrate_q;
   assign dump_o          = state_q[Dump];
   assign engine_o        = in_force || ((Overlap != 0) && exchange_o);
   assign past_exchange_o[0]      = in_force || state_q[ExchangeZ] || state_q[ExchangeY];
