@@ -155,6 +155,7 @@ const std::map<std::string, std::pair<const char*, Cell>>& bricks() {
       {"brick_retry", {"retry", {2, 1, 1}}},  {"brick_fails_sum", {"fails_sum", {2, 1, 1}}},
       {"brick_fails_v", {"fails_v", {2, 1, 1}}},  {"brick_fly", {"fly", {2, 2, 2}}},
       {"brick_fails_w", {"fails_w", {2, 1, 1}}},  {"brick_fails_free", {"fails_free", {2, 1, 1}}},
+      {"brick_fails_s", {"fails_s", {2, 1, 1}}},
       {"brick_shared", {"flat_shared", {1, 2, 1}}}, {"brick_serial", {"flat_serial", {2, 1, 1}}}};
   return all;
 }
