@@ -18,7 +18,7 @@ case $mutation in
   # Truncation in place of rounding.
   rounding) edit "$rtl/cuboct_round_odd.sv" 's/{{(HighBits - 1) {1.b0}}, carry}/{HighBits{1'"'"'b0}}/' ;;
   # The second record of each halo memory is not kept.
-  record) edit "$rtl/cuboct_inbox.sv" 's/write_i(append_i || push_i), .write_addr/write_i((append_i \&\& count_q != 1) || push_i), .write_addr/' ;;
+  record) edit "$rtl/cuboct_inbox.sv" 's/write_i(append_i), \(.*read_i(read_i)\)/write_i(append_i \&\& count_q != 1), \1/' ;;
   # A node hears its neighbour below x where it should hear the one above.
   link) edit "$rtl/cuboct_lattice.sv" 's/\.link_valid_i({\(.*\), valid_\([0-9]*\)\[0\], 1.b0})/.link_valid_i({\1, 1'"'"'b0, valid_\2[0]})/' ;;
   *) echo "no mutation $mutation"; exit 2 ;;

@@ -21,7 +21,7 @@ refused() {  # expected text; arguments of emit
 cp "$here/lone.toml" "$here/narrow.toml" "$here/sheet.toml" .
 "$cuboct" emit lone.toml --arch narrow.toml --fit up5k --out fitted > printed 2> said || fail "$(cat said)"
 [ ! -s said ] || fail "not quiet in a pipe: $(cat said)"
-grep -qE '^> 1 x 1 x 1 +1 +1 +1 +48 +[0-9]+ % +[0-9]+ % +[0-9]+ % +[0-9]+ % +[0-9]+ %  chosen$' printed || fail "$(cat printed)"
+grep -qE '^> 1 x 1 x 1 +1 +1 +1 +50 +[0-9]+ % +[0-9]+ % +[0-9]+ % +[0-9]+ % +[0-9]+ %  chosen$' printed || fail "$(cat printed)"
 grep -qE '^synthesised      LUT [0-9]+/5280, FF [0-9]+/5280, DSP 5/8, BRAM [0-9]+/30, logic cells [0-9]+/5280$' printed ||
   fail "$(cat printed)"
 grep -qx 'arch             fitted/arch.toml' printed || fail "$(cat printed)"
