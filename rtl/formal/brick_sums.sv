@@ -31,7 +31,7 @@ module brick_sums_formal #(
   cuboct_brick_sums #(
     .Axes(Axes), .KickBits(KickBits), .SumBits(SumBits), .Depth(Depth), .AddrBits(AddrBits)
   ) u_dut (
-    .clk_i, .kick_valid_i(kick_i), .kick_addr_i(asked_q), .push_i, .zero_i, .zero_addr_i, .next_addr_i, .sum_o(sum)
+    .clk_i, .kick_valid_i(kick_i), .push_i, .zero_i, .zero_addr_i, .next_addr_i, .sum_o(sum)
   );
 
   logic                    known_q = 1'b0, twice_q;

@@ -214,7 +214,7 @@ module cuboct_brick_core #(
   logic                           stream_read;
   logic [ForcePipes*SlotBits-1:0] issue_slot;
   logic [ForcePipes*PlaceBits-1:0] kick_place, kick_place_next;
-  logic [ForcePipes*AddrBits-1:0] pipe_addr, kick_addr, kick_addr_next;
+  logic [ForcePipes*AddrBits-1:0] pipe_addr, kick_addr_next;
   logic [ForcePipes*SeenBits-1:0] pipe_data;
   logic [ForcePipes*IdBits-1:0]   kick_id;
   logic [CellBits-1:0]            issue_cell;
@@ -258,12 +258,6 @@ module cuboct_brick_core #(
       .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
     ) u_pipe_addr (
       .cell_i(issue_cell), .slot_i(issue_slot[f*SlotBits +: SlotBits]), .addr_o(pipe_addr[f*AddrBits +: AddrBits])
-    );
-    cuboct_brick_addr #(
-      .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
-    ) u_kick_addr (
-      .cell_i(kick_place[f*PlaceBits+SlotBits +: CellBits]), .slot_i(kick_place[f*PlaceBits +: SlotBits]),
-      .addr_o(kick_addr[f*AddrBits +: AddrBits])
     );
     cuboct_brick_addr #(
       .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
@@ -479,13 +473,13 @@ module cuboct_brick_core #(
     cuboct_brick_sums #(
       .Axes(Axes), .KickBits(KickBits), .SumBits(PipeSumBits), .Depth(Cells * Capacity), .AddrBits(AddrBits)
     ) u_sums (
-      .clk_i, .kick_valid_i(kick_valid[f]), .kick_addr_i(kick_addr[f*AddrBits +: AddrBits]), .push_i(push),
+      .clk_i, .kick_valid_i(kick_valid[f]), .push_i(push),
       .zero_i(take || load || migrate_land), .zero_addr_i(take ? tick_addr : write_addr),
       .next_addr_i(pipe_busy[f] ? kick_addr_next[f*AddrBits +: AddrBits] : main_addr),
       .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
     );
     logic unused_own;
-    assign unused_own = ^own;
+    assign unused_own = ^{own, kick_place[f*PlaceBits +: SlotBits]};
   end
   // One after the other: of pipe f and those before it.
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_total

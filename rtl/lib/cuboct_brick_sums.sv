@@ -10,8 +10,7 @@ module cuboct_brick_sums #(
   parameter int AddrBits = 7    // >= clog2(Depth)
 ) (
   input  logic                     clk_i,
-  input  logic                     kick_valid_i, // a kick is added
-  input  logic [AddrBits-1:0]      kick_addr_i,  // its slot: the cycle before's next_addr_i
+  input  logic                     kick_valid_i, // a kick is added to the sum of the cycle before's next_addr_i
   input  logic [Axes*KickBits-1:0] push_i,       // minus the kick
   input  logic                     zero_i,       // never in a cycle with a kick
   input  logic [AddrBits-1:0]      zero_addr_i,  // with zero_i
@@ -20,7 +19,7 @@ module cuboct_brick_sums #(
 );
   logic [Axes*SumBits-1:0] word, old, added, written_q;
   logic                    same_q, write;
-  logic [AddrBits-1:0]     write_addr;
+  logic [AddrBits-1:0]     addr_q, write_addr;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis
     logic signed [SumBits-1:0] push;
     cuboct_resize #(.InBits(KickBits), .OutBits(SumBits)) u_push (
@@ -29,9 +28,10 @@ module cuboct_brick_sums #(
     assign added[a*SumBits +: SumBits] = old[a*SumBits +: SumBits] - push;
   end
   assign write      = kick_valid_i || zero_i;
-  assign write_addr = zero_i ? zero_addr_i : kick_addr_i;
+  assign write_addr = zero_i ? zero_addr_i : addr_q;
   always_ff @(posedge clk_i) begin
-    same_q <= kick_valid_i && (kick_addr_i == next_addr_i);
+    addr_q <= next_addr_i;
+    same_q <= kick_valid_i && (addr_q == next_addr_i);
     if (kick_valid_i) written_q <= added;
   end
   cuboct_ram #(.Bits(Axes * SumBits), .Depth(Depth), .AddrBits(AddrBits)) u_words (
