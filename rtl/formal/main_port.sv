@@ -80,7 +80,8 @@ module main_port_formal #(
 
   // Who looks at the answer now, and of which slot it shall be.
   (* keep *) logic                tap_relay_load, tap_relay_end, tap_in_migrate, tap_in_dump;
-  (* keep *) logic [2:0]          tap_segment, tap_migrate_state;
+  (* keep *) logic [2:0]          tap_migrate_state;
+  (* keep *) logic [2:0]          tap_pick;  // what the relay sends
   (* keep *) logic [CountBits-1:0] tap_own_count;
   (* keep *) logic [AddrBits-1:0] tap_relay_slot;
   (* keep *) logic [CountBits-1:0] tap_migrate_slot;
@@ -89,7 +90,7 @@ module main_port_formal #(
   (* keep *) logic [1:0]          tap_pop;
   logic                           relays, scans, dumps, together_q, migrated_q;
   logic [SlotBits-1:0]            asked_q;
-  assign relays = tap_relay_load && !tap_relay_end && tap_segment == 3'd0;
+  assign relays = tap_relay_load && !tap_relay_end && tap_pick[0];
   assign scans  = tap_in_migrate && tap_migrate_state == 3'd1;
   assign dumps  = tap_in_dump && tap_own_count != '0;
   always_ff @(posedge clk_i) begin

@@ -47,7 +47,9 @@ module relay_formal #(
     end
   end
 
-  logic [2:0]          segment;
+  logic [Segments-1:0] pick;
+  logic [HaloBits-1:0] asked;
+  logic [2:0]          segment;  // picked; beyond all if none is
   logic [AddrBits-1:0] addr, slot, addr_q, slot_q;  // asked for in the cycle before
   logic                load, is_end, first_own;
   logic [LinkBits-1:0] data;
@@ -56,10 +58,18 @@ module relay_formal #(
         .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_i(done), .counts_i(counts_q),
-    .segment_o(segment), .addr_o(addr), .slot_o(slot), .record_i({segment, addr_q}), .can_load_i,
+    .pick_o(pick), .addr_o(addr), .slot_o(slot), .record_i(asked), .can_load_i,
     .load_o(load),
     .end_o(is_end), .data_o(data), .first_own_o(first_own), .sent_o(sent)
   );
+  assign asked = (pick == '0) ? '0 : {segment, addr_q};
+  integer p;
+  always_comb begin
+    segment = (pick == '0) ? '1 : '0;  // beyond all
+    for (p = 0; p < Segments; p = p + 1) begin
+      if (pick[p]) segment = segment | p[2:0];
+    end
+  end
   always_ff @(posedge clk_i) begin
     addr_q <= addr;
     slot_q <= slot;

@@ -540,6 +540,9 @@ module cuboct_brick_core #(
   logic [DispBits-1:0] old_u, new_u;
   logic                update_fault;
   logic [3:0]          update_fault_code;
+  localparam int TellBits = IdBits + CellBits;
+  logic [CellBits-1:0] unused_new_cell;
+  logic [TellBits-1:0] update_fault_id;
   logic [63:0]         update_fault_number;
   cuboct_update #(
     .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
@@ -547,16 +550,17 @@ module cuboct_brick_core #(
 `ifdef CUBOCT_HOST_VELOCITY
     .MovedTypes(MovedTypes),
 `endif
-    .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(PlaceBits), .IdBits(IdBits)
+    .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(PlaceBits), .IdBits(TellBits)
   ) u_update (
 `ifdef CUBOCT_HOST_VELOCITY
     .velocity_i,
 `endif
     .clk_i, .rst_ni, .valid_i(take), .slot_i({main_own, tick_q}), .sum_i(total),
     .x_i(main_data[PosBits-1:0]), .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
-    .id_i(main_data[IdLsb +: IdBits]), .u_i(old_u), .valid_o(update_write), .slot_o(update_place), .x_o(new_x),
-    .away_o(new_away), .v_o(new_v), .type_o(new_type), .id_o(new_id), .u_o(new_u), .fault_o(update_fault),
-    .fault_code_o(update_fault_code), .fault_number_o(update_fault_number)
+    .id_i({main_data[IdLsb +: IdBits], main_own}), .u_i(old_u), .valid_o(update_write), .slot_o(update_place),
+    .x_o(new_x), .away_o(new_away), .v_o(new_v), .type_o(new_type), .id_o({new_id, unused_new_cell}), .u_o(new_u),
+    .fault_o(update_fault), .fault_code_o(update_fault_code), .fault_id_o(update_fault_id),
+    .fault_number_o(update_fault_number)
   );
   assign update_data[PosBits-1:0]         = new_x;
   assign update_data[PosBits +: AwayBits] = new_away[2*Axes-1:2];
@@ -623,7 +627,6 @@ module cuboct_brick_core #(
 
   // Faults: source 0 is pipe 0 or the update, which never speak in one cycle. A particle is in one cell, so the cell
   // below its id changes no order.
-  localparam int TellBits = IdBits + CellBits;
   logic [ForcePipes-1:0]          fault_valid;
   logic [ForcePipes*4-1:0]        fault_code;
   logic [ForcePipes*TellBits-1:0] fault_id;
@@ -639,7 +642,7 @@ module cuboct_brick_core #(
       if (f == 0 && update_fault) begin
         fault_valid[f]                   = 1'b1;
         fault_code[f*4 +: 4]             = update_fault_code;
-        fault_id[f*TellBits +: TellBits] = {new_id, update_place[SlotBits +: CellBits]};
+        fault_id[f*TellBits +: TellBits] = update_fault_id;
         fault_number[f*64 +: 64]         = update_fault_number;
       end
     end

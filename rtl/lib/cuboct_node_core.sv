@@ -207,12 +207,13 @@ module cuboct_node_core #(
   logic [Faces-1:0]           halo_end, migrate_end, migrate_empty, migrate_pop, migrate_clear;
   logic [Faces*CountBits-1:0] halo_count;
   logic [AddrBits-1:0]        stream_addr, relay_addr;
+  logic [Faces-2:0]           relay_pick;
   logic [Faces*CandidateBits-1:0]     stream_halos;
   logic [(Faces-2)*CandidateBits-1:0] relay_halos;
   logic [Faces*ParticleBits-1:0]      arrived;
   // Narrow: the word read, whose it is, and the record register.
   logic [WordBits-1:0]  relay_word, walk_word;
-  logic [2:0]           relay_segment, walk_segment;
+  logic [2:0]           walk_segment;
   logic [LinkBits-1:0]  halo_word;
   logic                 record_shift, record_set;
   logic [HaloBits-1:0]  own_record, record;
@@ -224,7 +225,13 @@ module cuboct_node_core #(
     logic [ParticleBits-1:0] particle;
     for (genvar f = 0; f < Faces; f++) begin : gen_face
       localparam int Segment = f + 1;
-      assign face[f] = in_exchange ? (relay_segment == Segment[2:0]) :
+      logic relayed;
+      if (f < Faces - 2) begin : gen_relayed
+        assign relayed = relay_pick[f+1];
+      end else begin : gen_not_relayed
+        assign relayed = 1'b0;
+      end
+      assign face[f] = in_exchange ? relayed :
                        in_migrate ? (axis_onehot[f/2] && migrate_take[f%2]) : (walk_segment == Segment[2:0]);
     end
     cuboct_word_halos #(
@@ -329,10 +336,10 @@ module cuboct_node_core #(
   logic [HaloBits-1:0]      relay_record;
   integer h;
   always_comb begin
-    relay_candidate = relay_own & {CandidateBits{relay_segment == 3'd0}};
+    relay_candidate = relay_own & {CandidateBits{relay_pick[0]}};
     for (h = 0; h < Faces - 2; h = h + 1) begin
       relay_candidate = relay_candidate | (relay_halos[h*CandidateBits +: CandidateBits]
-                                           & {CandidateBits{relay_segment == h[2:0] + 3'd1}});
+                                           & {CandidateBits{relay_pick[h+1]}});
     end
   end
   // On the link the last axis has no sign: what is sent lies in this node's layer.
@@ -348,7 +355,7 @@ module cuboct_node_core #(
     .CountBits(CountBits), .Narrow(Narrow), .FirstWord(FirstWord), .WordBits(WordBits)
   ) u_relay (
     .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
-    .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_q}), .segment_o(relay_segment), .addr_o(relay_addr),
+    .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_q}), .pick_o(relay_pick), .addr_o(relay_addr),
     .slot_o(relay_slot), .record_i(relay_record), .word_o(relay_word), .word_i(halo_word), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load),
     .end_o(relay_end), .data_o(relay_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
   );
@@ -486,34 +493,25 @@ module cuboct_node_core #(
   logic unused_candidate;
   assign unused_candidate = ^issue_candidate;
 
-  // Update and dump walk the slots.
-  logic [TickBits-1:0] tick_d, tick_q;
-  logic [CountBits+TickBits-1:0] tick_wide, count_wide;
-  assign tick_wide  = {{CountBits{1'b0}}, tick_q};
-  assign count_wide = {{TickBits{1'b0}}, own_count_q};
-  // Narrow: one after the other, so that the memories' answers stay for the update.
-  logic update_step, taken_d, taken_q;
-  assign taken_d     = (take || taken_q) && !update_write;
+  // Update and dump walk the slots. Narrow: one after the other, so that the memories' answers stay for the update.
+  localparam int Tail = (Narrow != 0) ? 0 : UpdateTail;
+  logic [TickBits-1:0] tick, tick_after;
+  logic                more, taken_d, taken_q;
+  cuboct_tick #(.Tail(Tail), .CountBits(CountBits), .TickBits(TickBits)) u_tick (
+    .clk_i, .rst_ni, .update_i(in_update), .dump_i(in_dump), .step_i(Narrow == 0 || update_write),
+    .count_i(own_count_q), .tick_o(tick), .next_o(tick_after), .more_o(more), .update_done_o(update_done),
+    .dump_done_o(dump_done)
+  );
+  assign taken_d = (take || taken_q) && !update_write;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) taken_q <= 1'b0;
     else taken_q <= taken_d;
   end
-  localparam int Tail = (Narrow != 0) ? 0 : UpdateTail;
-  assign update_step = in_update && (Narrow == 0 || update_write);
-  assign update_done = in_update && ((own_count_q == '0) || (tick_wide == count_wide + Tail[CountBits+TickBits-1:0]));
-  assign dump_done   = in_dump && ((own_count_q == '0) || (tick_wide + 1'b1 == count_wide));
-  assign take        = in_update && (tick_wide < count_wide) && (Narrow == 0 || !taken_q);
-  assign tick_slot   = tick_q[SlotBits-1:0];
-  assign tick_next   = tick_d[SlotBits-1:0];
-  always_comb begin
-    tick_d = tick_q;
-    if (update_step || in_dump) tick_d = tick_q + 1'b1;
-    if (update_done || dump_done) tick_d = '0;
-  end
-  always_ff @(posedge clk_i) begin
-    if (!rst_ni) tick_q <= '0;
-    else tick_q <= tick_d;
-  end
+  assign take      = in_update && more && (Narrow == 0 || !taken_q);
+  assign tick_slot = tick[SlotBits-1:0];
+  assign tick_next = tick_after[SlotBits-1:0];
+  logic unused_tick;
+  assign unused_tick = ^{tick, tick_after};
 
   logic [PosBits-1:0]  new_x;
   logic [2*Axes-1:0]   new_away;
@@ -523,6 +521,7 @@ module cuboct_node_core #(
   logic [DispBits-1:0] old_u, new_u;
   logic                update_fault;
   logic [3:0]          update_fault_code;
+  logic [IdBits-1:0]   update_fault_id;
   logic [63:0]         update_fault_number;
   cuboct_update #(
     .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
@@ -539,7 +538,7 @@ module cuboct_node_core #(
     .x_i(main_data[PosBits-1:0]), .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
     .id_i(main_data[IdLsb +: IdBits]), .u_i(old_u), .valid_o(update_write), .slot_o(update_slot), .x_o(new_x),
     .away_o(new_away), .v_o(new_v), .type_o(new_type), .id_o(new_id), .u_o(new_u), .fault_o(update_fault),
-    .fault_code_o(update_fault_code), .fault_number_o(update_fault_number)
+    .fault_code_o(update_fault_code), .fault_id_o(update_fault_id), .fault_number_o(update_fault_number)
   );
   assign update_data[PosBits-1:0]         = new_x;
   assign update_data[PosBits +: AwayBits] = new_away[2*Axes-1:2];
@@ -617,7 +616,7 @@ module cuboct_node_core #(
       if (f == 0 && update_fault) begin
         fault_valid[f]               = 1'b1;
         fault_code[f*4 +: 4]         = update_fault_code;
-        fault_id[f*IdBits +: IdBits] = new_id;
+        fault_id[f*IdBits +: IdBits] = update_fault_id;
         fault_number[f*64 +: 64]     = update_fault_number;
       end
     end

@@ -20,12 +20,12 @@ module cuboct_relay #(
   input  logic                   done_i,      // last cycle of the phase
   // Segments: 0 own, then the halos of -x, +x and, with three axes, -y, +y; their counts, and where to read.
   input  logic [(2*Axes-1)*CountBits-1:0] counts_i,
-  output logic [2:0]             segment_o,   // which one
+  output logic [2*Axes-2:0]      pick_o,      // which one, one bit each; none for the end beat
   output logic [AddrBits-1:0]    addr_o,      // of the next cycle's record
   output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles
-  input  logic [HaloBits-1:0]    record_i,    // of segment_o, at addr_o of the cycle before; Narrow: own ones only
+  input  logic [HaloBits-1:0]    record_i,    // of pick_o, at addr_o of the cycle before; of none 0; Narrow: own ones only
   output logic [WordBits-1:0]    word_o,      // Narrow: number of the next cycle's halo word
-  input  logic [LinkBits-1:0]    word_i,      // Narrow: of segment_o, word_o of the cycle before
+  input  logic [LinkBits-1:0]    word_i,      // Narrow: of pick_o, word_o of the cycle before; of none 0
   // To the link registers.
   input  logic                   can_load_i,  // both links can
   output logic                   load_o,      // both load this beat
@@ -37,8 +37,10 @@ module cuboct_relay #(
   localparam int Beats    = (HaloBits + LinkBits - 1) / LinkBits;
   localparam int BeatBits = (Beats > 1) ? $clog2(Beats) : 1;
   localparam int LastBeat = Beats - 1;
+  localparam int Segments = 2 * Axes - 1;
 
   logic [2:0]           segment_d, segment_q, segments;
+  logic [Segments-1:0]  pick_d, pick_q;  // from registers: what is picked comes late in the cycle
   logic [AddrBits-1:0]  record_d, record_q;
   logic [BeatBits-1:0]  beat_d, beat_q;
   logic                 sent_d, sent_q;
@@ -48,14 +50,15 @@ module cuboct_relay #(
   assign segments = {axis_i, 1'b1};  // one more than two per axis before this one
   integer s;
   always_comb begin
-    count = counts_i[0 +: CountBits];
-    for (s = 1; s < 2 * Axes - 1; s = s + 1) begin
-      if (segment_q == s[2:0]) count = counts_i[s*CountBits +: CountBits];
+    count = '0;
+    for (s = 0; s < Segments; s = s + 1) begin
+      count     = count | (counts_i[s*CountBits +: CountBits] & {CountBits{pick_q[s]}});
+      pick_d[s] = (segment_d == s[2:0]) && (segment_d != segments);
     end
   end
 
   assign working     = active_i && !sent_q;
-  assign past        = (segment_q == segments);
+  assign past        = (pick_q == '0);
   assign empty       = (count == '0);
   assign last_record = (count == {{(CountBits - AddrBits) {1'b0}}, record_q} + 1'b1);
   assign end_o       = working && past && can_load_i;
@@ -89,22 +92,24 @@ module cuboct_relay #(
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       segment_q <= 3'd0;
+      pick_q    <= {{(Segments - 1) {1'b0}}, 1'b1};
       record_q  <= '0;
       beat_q    <= '0;
       sent_q    <= 1'b0;
     end else begin
       segment_q <= segment_d;
+      pick_q    <= pick_d;
       record_q  <= record_d;
       beat_q    <= beat_d;
       sent_q    <= sent_d;
     end
   end
 
-  assign segment_o   = segment_q;
+  assign pick_o      = pick_q;
   assign addr_o      = record_d;
   assign slot_o      = record_d[SlotBits-1:0];
   assign sent_o      = sent_q;
-  assign first_own_o = load_o && !past && (segment_q == 3'd0) && (beat_q == '0);
+  assign first_own_o = load_o && pick_q[0] && (beat_q == '0);
 
   logic [LinkBits-1:0] beat;
   cuboct_beat #(.Bits(HaloBits), .LinkBits(LinkBits), .BeatBits(BeatBits)) u_beat (
@@ -114,7 +119,7 @@ module cuboct_relay #(
     logic [WordBits-1:0] word_d, word_q;
     always_comb begin
       word_d = word_q;
-      if (load_o && segment_q != 3'd0) word_d = word_q + 1'b1;
+      if (load_o && !pick_q[0]) word_d = word_q + 1'b1;
       if (segment_d != segment_q) word_d = FirstWord[WordBits-1:0];
     end
     always_ff @(posedge clk_i) begin
@@ -122,11 +127,11 @@ module cuboct_relay #(
       else word_q <= word_d;
     end
     assign word_o = word_d;
-    assign data_o = past ? '0 : (segment_q == 3'd0) ? beat : word_i;
+    assign data_o = pick_q[0] ? beat : word_i;
   end else begin : gen_records
     logic unused_word;
     assign unused_word = ^word_i;
     assign word_o      = '0;
-    assign data_o      = past ? '0 : beat;
+    assign data_o      = beat;
   end
 endmodule

@@ -49,8 +49,10 @@ module cuboct_update #(
   output logic [TypeBits-1:0]           type_o,        // as it came
   output logic [IdBits-1:0]             id_o,          // as it came
   output logic [Axes*DisplacementBits-1:0] u_o,        // signed; 0 without Pd
-  output logic                          fault_o,       // with valid_o: a value does not fit
+  // With valid_o, with Pd a cycle later.
+  output logic                          fault_o,       // a value does not fit
   output logic [3:0]                    fault_code_o,  // 3 sum, 4 displacement, 5 velocity
+  output logic [IdBits-1:0]             fault_id_o,    // of the particle
   output logic signed [63:0]            fault_number_o // that value
 );
   // Stage 1: operands. Stage VStage-1 holds what v is made of; v at VStage; the outputs are made in stage VStage.
@@ -63,8 +65,9 @@ module cuboct_update #(
   localparam int LongBits = (WideBits > TotalBits) ? WideBits : TotalBits;
   localparam int NumberBits = (LongBits < 64) ? LongBits : 64;  // of a fault's number
 
-  logic [VStage:1] valid_d, valid_q;
-  assign valid_d = {valid_q[VStage-1:1], valid_i};
+  localparam int Told = VStage + Pd;  // a displacement's check and the choice among faults have a cycle each
+  logic [Told:1] valid_d, valid_q;
+  assign valid_d = {valid_q[Told-1:1], valid_i};
   always_ff @(posedge clk_i) begin
     if (!rst_ni) valid_q <= '0;
     else valid_q <= valid_d;
@@ -253,15 +256,20 @@ module cuboct_update #(
   end
 
   // The least fault; of one kind, that of the first axis.
-  integer b;
+  logic [3*Axes-1:0]            bad, bad_told;
+  logic [3*Axes*NumberBits-1:0] numbers, numbers_told;
+  integer                       b;
+  assign bad     = {bad_v, bad_u, bad_sum};
+  assign numbers = {v_number, u_number, sum_number};
+  cuboct_delay #(.Bits(IdBits), .Depth(Pd)) u_id_told (.clk_i, .d_i(id_o), .q_o(fault_id_o));
+  cuboct_delay #(.Bits(3 * Axes), .Depth(Pd)) u_bad (.clk_i, .d_i(bad), .q_o(bad_told));
+  cuboct_delay #(.Bits(3 * Axes * NumberBits), .Depth(Pd)) u_numbers (.clk_i, .d_i(numbers), .q_o(numbers_told));
+  assign fault_o = valid_q[Told] && (bad_told != '0);
   always_comb begin
-    fault_o        = valid_o && ((bad_sum | bad_u | bad_v) != '0);
-    fault_code_o   = (bad_sum != '0) ? 4'd3 : (bad_u != '0) ? 4'd4 : 4'd5;
-    number         = '0;
-    for (b = Axes - 1; b >= 0; b = b - 1) begin
-      if (fault_code_o == 4'd3 && bad_sum[b]) number = sum_number[b*NumberBits +: NumberBits];
-      if (fault_code_o == 4'd4 && bad_u[b]) number = u_number[b*NumberBits +: NumberBits];
-      if (fault_code_o == 4'd5 && bad_v[b]) number = v_number[b*NumberBits +: NumberBits];
+    fault_code_o = (bad_told[0 +: Axes] != '0) ? 4'd3 : (bad_told[Axes +: Axes] != '0) ? 4'd4 : 4'd5;
+    number       = '0;
+    for (b = 3 * Axes - 1; b >= 0; b = b - 1) begin
+      if (bad_told[b]) number = numbers_told[b*NumberBits +: NumberBits];
     end
   end
   cuboct_resize #(.InBits(NumberBits), .OutBits(64)) u_told (.a_i(number), .y_o(fault_number_o));

@@ -55,8 +55,10 @@ void Runner::run(const std::string& what, const std::string& name, const std::st
   std::filesystem::remove(err);
   if (interrupted()) throw Interrupted();
   if (status != 0) {
-    const std::string complaint =
+    std::string complaint =
         status < 0 ? fmt::format("ended by signal {}", -status) : complaint_of(read_text(out));
+    // icetime's data are a package of their own, which the tool's only recommends.
+    if (complaint.find("chipdb") != std::string::npos) complaint += "; apt-get install fpga-icestorm-chipdb";
     throw ToolFailed(program, name + ".log", complaint);
   }
 }

@@ -116,6 +116,21 @@ TEST_F(Refuse, MissingToolsWithTheirPackages) {
   EXPECT_TRUE(fs::is_empty(dir_ + "/synth/up5k"));
 }
 
+TEST_F(Refuse, AToolWithoutItsData) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (scratch_.path("") + ":" + path).c_str(), 1);
+  std::ofstream(scratch_.path("icetime")) << "#!/bin/sh\necho \"Can't find chipdb file for device 5k\" >&2\nexit 1\n";
+  fs::permissions(scratch_.path("icetime"), fs::perms::owner_all);
+  std::string told;
+  try {
+    Runner(scratch_.path(""), [](const std::string&) {}).run("", "icetime", "icetime", {"-d", "up5k"});
+  } catch (const ToolFailed& error) {
+    told = error.what();
+  }
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(told, "icetime failed: Can't find chipdb file for device 5k; apt-get install fpga-icestorm-chipdb");
+}
+
 TEST_F(Refuse, TimingWithoutWhatItIsOf) {
   emit();
   write("timing.json", R"({"fmax": {"clk": {"achieved": 99.0}}, "utilization": {}})");

@@ -7,16 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <numeric>
-#include <sstream>
 
 #include "hw/setup.h"
-#include "model/changes.h"
 #include "model/golden.h"
 #include "model/reference.h"
 #include "model/scene.h"
+#include "tests/golden/scene_with.h"
 
 namespace cuboct {
 namespace {
@@ -32,14 +30,9 @@ std::string scene_path(const std::string& name) {
 
 // The block of far_origin_healthy.toml, moved by `pitches` along each axis.
 Scene block_at(double pitches) {
-  std::ifstream in(scene_path("far_origin_healthy"));
-  std::stringstream text;
-  text << in.rdbuf();
   const auto vector = [](double x) { return fmt::format("[{0:.2f}, {0:.2f}, {0:.2f}]", x); };
-  const std::string path = testing::TempDir() + "/cuboct_block_at.toml";
-  std::ofstream(path) << with_changes(
-      text.str(), path, {{"packing.offset", vector(pitches + 0.25)}, {"box.origin", vector(pitches)}});
-  return read_scene(path);
+  return test::scene_with(scene_path("far_origin_healthy"),
+                          {{"packing.offset", vector(pitches + 0.25)}, {"box.origin", vector(pitches)}});
 }
 
 double energy(const Reference& run) { return run.kinetic_energy() + run.potential_energy(); }
