@@ -16,6 +16,8 @@ module inbox_formal #(
   input logic [HaloBits-1:0]     halo_i,
   input logic                    read_i,
   input logic [7:0]              addr_i, relay_addr_i,
+  input logic                    relay_read_i,
+  input logic                    relay_clear_i,
   input logic                    migrating_i,
   input logic                    push_i,
   input logic                    pop_i,
@@ -38,7 +40,7 @@ module inbox_formal #(
     .Relayed(Relayed), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .clear_i, .append_i, .halo_i, .count_o(count), .read_i,
-    .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_addr_i(relay_addr_i[AddrBits-1:0]),
+    .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_read_i, .relay_clear_i, .relay_addr_i(relay_addr_i[AddrBits-1:0]),
     .relay_halo_o(relay_halo), .migrating_i, .push_i, .particle_i, .full_o(full), .pop_i,
     .particle_o(particle), .empty_o(empty)
   );
@@ -70,11 +72,13 @@ module inbox_formal #(
       cleared_q <= cleared_q || (clear_i && count_q == HaloDepth[CountBits-1:0]);
       if (read_i) asked_q <= counts && addr_i[AddrBits-1:0] == number;
       kept_q    <= asked_q && !read_i;  // the answer stays
-      relayed_q <= counts && relay_addr_i[AddrBits-1:0] == number;
+      if (relay_read_i) relayed_q <= counts && relay_addr_i[AddrBits-1:0] == number;
+      if (relay_clear_i) relayed_q <= 1'b1;
     end
     if (append_i && count_q == {{(CountBits - AddrBits) {1'b0}}, number}) value_q <= halo_i;
     if (read_i) answer_q <= value_q;
-    relay_answer_q <= value_q;
+    if (relay_read_i) relay_answer_q <= value_q;
+    if (relay_clear_i) relay_answer_q <= '0;
   end
 
   // The watched particle: how many are inside, of which the last may not count yet; how many stand before it.

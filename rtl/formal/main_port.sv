@@ -80,33 +80,41 @@ module main_port_formal #(
 
   // Who looks at the answer now, and of which slot it shall be.
   (* keep *) logic                tap_relay_load, tap_relay_end, tap_in_migrate, tap_in_dump;
+  (* keep *) logic                tap_scans;
+  // Whether a particle leaves: what migration kept of it in the cycle before its phase, and what there is to know.
   (* keep *) logic [2:0]          tap_migrate_state;
+  (* keep *) logic                tap_knows;
+  (* keep *) logic [1:0]          tap_leaving, tap_axis;
   (* keep *) logic [2:0]          tap_pick;  // what the relay sends
   (* keep *) logic [CountBits-1:0] tap_own_count;
-  (* keep *) logic [AddrBits-1:0] tap_relay_slot;
-  (* keep *) logic [CountBits-1:0] tap_migrate_slot;
-  (* keep *) logic                tap_write;
+  (* keep *) logic [CountBits-1:0] tap_relay_next;  // and 1
+  (* keep *) logic [CountBits-1:0] tap_migrate_next;
+  (* keep *) logic                tap_write, tap_main_read;
   (* keep *) logic [SlotBits-1:0] tap_write_slot, tap_main_slot;
-  (* keep *) logic [1:0]          tap_pop;
+  (* keep *) logic                tap_pop;
+  (* keep *) logic [3:0]          tap_face;
   logic                           relays, scans, dumps, together_q, migrated_q;
   logic [SlotBits-1:0]            asked_q;
   assign relays = tap_relay_load && !tap_relay_end && tap_pick[0];
-  assign scans  = tap_in_migrate && tap_migrate_state == 3'd1;
+  assign scans  = tap_in_migrate && tap_scans;
   assign dumps  = tap_in_dump && tap_own_count != '0;
   always_ff @(posedge clk_i) begin
-    asked_q    <= tap_main_slot;
+    if (tap_main_read) asked_q <= tap_main_slot;
     migrated_q <= tap_in_migrate;
-    together_q <= tap_write && tap_write_slot == tap_main_slot;
+    // As it was asked for, or since.
+    together_q <= tap_write && tap_write_slot == (tap_main_read ? tap_main_slot : asked_q) || (together_q && !tap_main_read);
   end
   always_ff @(posedge clk_i) begin
     if (running_q) begin
-      if (relays) a_relay: assert (asked_q == tap_relay_slot[SlotBits-1:0]);
+      if (relays) a_relay: assert (asked_q == tap_relay_next[SlotBits-1:0] - 1'b1);
       if (tap_take) a_update: assert (asked_q == tap_tick_slot);
-      if (scans) a_migrate: assert (asked_q == tap_migrate_slot[SlotBits-1:0]);
+      if (scans) a_migrate: assert (asked_q == tap_migrate_next[SlotBits-1:0] - 1'b1);
       if (dumps) a_dump: assert (asked_q == tap_tick_slot);
       if (relays || tap_take || scans || dumps) a_fresh: assert (!together_q);
-      if (tap_pop != '0) a_take: assert (migrated_q);
-      c_take:    cover (tap_pop == 2'd2);
+      if (tap_in_migrate && tap_migrate_state == 3'd0)
+        a_leaving: assert (tap_knows == ((tap_leaving & tap_axis) != '0 && tap_own_count != '0));
+      if (tap_pop) a_take: assert (migrated_q);
+      c_take:    cover (tap_pop && (tap_face & 4'b1010) != '0);
       c_relay:   cover (relays && asked_q == Capacity - 1);
       c_update:  cover (tap_take && asked_q == Capacity - 1);
       c_migrate: cover (scans && asked_q == Capacity - 1);

@@ -60,25 +60,27 @@ module migrate_formal #(
   logic [Capacity*SlotWidth-1:0] slots_q;
   logic [SlotBits-1:0]           read_slot, write_slot;
   logic [SlotWidth-1:0]          read_data, write_data;
-  logic                          count_set, write;
+  logic                          count_set, new_full, write, read;
   integer                        r, w;
   always_ff @(posedge clk_i) begin
     for (r = 0; r < Capacity; r = r + 1) begin
-      if (read_slot == r[SlotBits-1:0]) read_data <= slots_q[r*SlotWidth +: SlotWidth];
+      if (read && read_slot == r[SlotBits-1:0]) read_data <= slots_q[r*SlotWidth +: SlotWidth];
     end
-    if (write && write_slot == read_slot) read_data <= torn_i;
+    if (read && write && write_slot == read_slot) read_data <= torn_i;
   end
-  // The slot that is asked for in the cycle before the phase is not written in that cycle.
+  // The slot that is asked for in the cycle before the phase is not written in that cycle, nor does the count change.
+  logic sets;
+  assign sets = !active_q && set_i;
   always_comb begin
-    if (!active_q && begin_i && set_i) assume (set_slot_i != {{(4 - SlotBits) {1'b0}}, read_slot});
+    if (sets && begin_i) assume (set_slot_i != {{(4 - SlotBits) {1'b0}}, read_slot} && set_count_i[CountBits-1:0] == count_q);
   end
   always_ff @(posedge clk_i) begin
     if (!running_q) count_q <= '0;
     else if (count_set) count_q <= new_count;
-    else if (!active_q && set_i) count_q <= set_count_i[CountBits-1:0];
+    else if (sets) count_q <= set_count_i[CountBits-1:0];
     for (w = 0; w < Capacity; w = w + 1) begin
       if (write && write_slot == w[SlotBits-1:0]) slots_q[w*SlotWidth +: SlotWidth] <= write_data;
-      else if (!active_q && set_i && set_slot_i == w[3:0]) slots_q[w*SlotWidth +: SlotWidth] <= set_data_i;
+      else if (sets && set_slot_i == w[3:0]) slots_q[w*SlotWidth +: SlotWidth] <= set_data_i;
     end
   end
 
@@ -86,6 +88,15 @@ module migrate_formal #(
   // there is no link nothing comes and the end counts as seen.
   logic [1:0]                empty, pop, full, ended, ended_q, push;
   logic [2*ParticleBits-1:0] arrived;
+  logic [2*Axes-1:0]         face;  // taken from
+  logic [1:0]                side;
+  logic [2*Axes+1:0]         faces;
+  logic [ParticleBits-1:0]   taken;
+  logic                      pops;
+  assign faces = {2'b00, face};
+  assign side  = faces[2*axis_q +: 2];
+  assign taken = side[1] ? arrived[ParticleBits +: ParticleBits] : arrived[0 +: ParticleBits];
+  assign pop   = side & {2{pops}};
   logic [2*CountBits-1:0]    came_q;
   assign ended = ended_q | ~has_link;
   for (genvar f = 0; f < 2; f++) begin : gen_inbox
@@ -131,10 +142,12 @@ module migrate_formal #(
     .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_o(done), .has_link_i(has_link),
-    .leaving_i(leaving_q), .count_i(count_q), .count_set_o(count_set), .count_o(new_count),
-    .read_slot_o(read_slot), .read_data_i(read_data), .write_o(write), .write_slot_o(write_slot),
+    .leaving_i, .count_i(count_q), .full_i(count_q == Capacity[CountBits-1:0]), .count_set_o(count_set),
+    .count_o(new_count), .full_o(new_full),
+    .read_o(read), .read_slot_o(read_slot), .read_data_i(read_data), .write_o(write), .write_slot_o(write_slot),
     .write_data_o(write_data), .leaving_more_o(more), .can_load_i(can_load), .load_o(load), .end_o(is_end),
-    .data_o(data), .empty_i(empty), .ended_i(ended), .arrived_i(arrived), .pop_o(pop),
+    .data_o(data), .face_o(face), .some_i((side & ~empty) != 2'b00), .ended_i((side & ended) != 2'b00),
+    .arrived_i(taken), .pop_o(pops),
     .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
   );
 
@@ -311,8 +324,10 @@ module migrate_formal #(
           && !fault_full));
       a_may:   assert ((load & ~can_load) == 2'b00);
       a_one:   assert (!is_end ? (load != 2'b11) : (load == 2'b11));
+      a_face:  assert ((face & ~({{(2 * Axes - 2) {1'b0}}, 2'b11} << {axis_q, 1'b0})) == '0 && side != 2'b11 && (active_q || face == '0));
       a_pop:   assert ((pop & empty) == 2'b00);
       a_fifo:  assert ((push & full) == 2'b00);
+      a_full_set: assert (!count_set || new_full == (new_count == Capacity[CountBits-1:0]));
       a_range: assert (!count_set || new_count <= Capacity[CountBits-1:0]);
       if (record && is && wanted == 2'd1 && load[0] && down_q == place) begin
         a_sent_down: assert (whole[ParticleBits-1:0] == value[ParticleBits-1:0]);

@@ -104,17 +104,24 @@ module neighbours_formal #(
   (* keep *) logic [3:0] tap_state_0, tap_state_1;
   (* keep *) logic [9:0] tap_states_0, tap_states_1;
   (* keep *) logic       tap_exchange_0, tap_exchange_1, tap_migrating_0, tap_migrating_1;
+  (* keep *) logic [2:0] tap_axis_0, tap_axis_1;        // of the sequencer
   (* keep *) logic       tap_sent_0, tap_sent_1;        // of the relay
   (* keep *) logic [2:0] tap_migrate_0, tap_migrate_1;  // state of the migration
   (* keep *) logic [1:0] tap_axis_halo_0, tap_axis_halo_1;
-  (* keep *) logic [1:0] tap_axis_empty_0, tap_axis_empty_1, tap_axis_ended_0, tap_axis_ended_1;
+  (* keep *) logic [3:0] tap_empty_0, tap_empty_1, tap_ended_0, tap_ended_1;  // by face, of particles
+  (* keep *) logic [3:0] tap_face_0, tap_face_1;  // that migration takes from
+  logic [1:0]            axis_empty_0, axis_empty_1, axis_ended_0, axis_ended_1;
+  assign axis_empty_0 = tap_axis_0[1] ? tap_empty_0[3:2] : tap_empty_0[1:0];
+  assign axis_empty_1 = tap_axis_1[1] ? tap_empty_1[3:2] : tap_empty_1[1:0];
+  assign axis_ended_0 = tap_axis_0[1] ? tap_ended_0[3:2] : tap_ended_0[1:0];
+  assign axis_ended_1 = tap_axis_1[1] ? tap_ended_1[3:2] : tap_ended_1[1:0];
   // by face: a record, an end comes
   (* keep *) logic [3:0] tap_halo_0, tap_halo_1, tap_halo_end_0, tap_halo_end_1;
   (* keep *) logic [3:0] tap_arrival_0, tap_arrival_1, tap_arrival_end_0, tap_arrival_end_1;
   (* keep *) logic [3:0] tap_full_0, tap_full_1;
   (* keep *) logic [Faces*CountBits-1:0] tap_count_0, tap_count_1;
   (* keep *) logic [3:0] tap_halo_ended_0, tap_halo_ended_1, tap_migrate_ended_0, tap_migrate_ended_1;
-  localparam logic [3:0] Force = 4'd3, Update = 4'd4, MigrateX = 4'd5, MigrateY = 4'd6, Dump = 4'd8;
+  localparam logic [3:0] ExchangeY = 4'd1, Force = 4'd3, Update = 4'd4, MigrateX = 4'd5, MigrateY = 4'd6, Dump = 4'd8;
   localparam logic [2:0] TakeLow = 3'd3, TakeHigh = 3'd4;
 
   // A node that does nothing until something comes.
@@ -132,9 +139,9 @@ module neighbours_formal #(
       end
     end
   endfunction
-  assign waits[0] = waiting(tap_state_0, tap_sent_0, tap_migrate_0, tap_axis_empty_0, tap_axis_ended_0,
+  assign waits[0] = waiting(tap_state_0, tap_sent_0, tap_migrate_0, axis_empty_0, axis_ended_0,
       tap_axis_halo_0, idle[0]);
-  assign waits[1] = waiting(tap_state_1, tap_sent_1, tap_migrate_1, tap_axis_empty_1, tap_axis_ended_1,
+  assign waits[1] = waiting(tap_state_1, tap_sent_1, tap_migrate_1, axis_empty_1, axis_ended_1,
       tap_axis_halo_1, idle[1]);
 
   logic signed [2:0] ahead_q;  // steps that the first has done more than the second
@@ -218,8 +225,8 @@ module neighbours_formal #(
       i_used_1: assert (told_1_q == {step_1_q[1:0], 1'b0} + used_of(tap_state_1) + ready_1);
       i_beat_0: assert (!valid[0] || ends[0] || sending(tap_state_0, tap_sent_0, tap_migrate_0));
       i_beat_1: assert (!valid[1] || ends[1] || sending(tap_state_1, tap_sent_1, tap_migrate_1));
-      i_high:   assert ((tap_migrate_0 != TakeHigh || tap_axis_ended_0[0]) && (tap_migrate_1 != TakeHigh
-          || tap_axis_ended_1[0]));
+      i_high:   assert ((tap_migrate_0 != TakeHigh || axis_ended_0[0]) && (tap_migrate_1 != TakeHigh
+          || axis_ended_1[0]));
       i_past_0: assert (!(tap_state_0 > Axis && tap_state_0 <= Force) || tap_halo_ended_0[Above]);
       i_past_1: assert (!(tap_state_1 > Axis && tap_state_1 <= Force) || tap_halo_ended_1[Below]);
       i_next_0: assert (tap_next_0[Above] == told_0_q[0]);
@@ -244,6 +251,10 @@ module neighbours_formal #(
       i_run:    assert ((tap_state_0 < 4'd8) == (tap_steps_0 != '0) && (tap_state_1 < 4'd8)
           == (tap_steps_1 != '0));
       i_sent:   assert ((!tap_sent_0 || tap_state_0 <= 4'd1) && (!tap_sent_1 || tap_state_1 <= 4'd1));
+      i_axis_0: assert (tap_axis_0 == ((tap_state_0 == ExchangeY || tap_state_0 == MigrateY) ? 3'b010 : 3'b001));
+      i_axis_1: assert (tap_axis_1 == ((tap_state_1 == ExchangeY || tap_state_1 == MigrateY) ? 3'b010 : 3'b001));
+      i_face_0: assert (tap_face_0 == ({2'b00, tap_migrate_0 == TakeHigh, tap_migrate_0 == TakeLow} << {tap_axis_0[1], 1'b0}));
+      i_face_1: assert (tap_face_1 == ({2'b00, tap_migrate_1 == TakeHigh, tap_migrate_1 == TakeLow} << {tap_axis_1[1], 1'b0}));
       i_phase:  assert ((tap_migrate_0 == 3'd0 || tap_state_0 == MigrateX || tap_state_0 == MigrateY)
                         && (tap_migrate_1 == 3'd0 || tap_state_1 == MigrateX || tap_state_1 == MigrateY)
                         && tap_migrate_0 <= TakeHigh && tap_migrate_1 <= TakeHigh);

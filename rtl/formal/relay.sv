@@ -48,7 +48,13 @@ module relay_formal #(
   end
 
   logic [Segments-1:0] pick;
-  logic [HaloBits-1:0] asked;
+  logic [HaloBits-1:0] halo;
+  logic [LinkBits-1:0] own_data, halo_data;
+  assign data = own_data | halo_data;
+  // Of own ones the next cycle's.
+  logic [Segments*CountBits-1:0] counts;
+  assign counts = {counts_q[Segments*CountBits-1:CountBits],
+                   (!active_q || done) ? counts_i[0 +: CountBits] : counts_q[0 +: CountBits]};
   logic [2:0]          segment;  // picked; beyond all if none is
   logic [AddrBits-1:0] addr, slot, addr_q, slot_q;  // asked for in the cycle before
   logic                load, is_end, first_own;
@@ -57,12 +63,27 @@ module relay_formal #(
     .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(AddrBits), .AddrBits(AddrBits),
         .CountBits(CountBits)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_i(done), .counts_i(counts_q),
-    .pick_o(pick), .addr_o(addr), .slot_o(slot), .record_i(asked), .can_load_i,
+    .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_i(done), .counts_i(counts),
+    .pick_o(pick), .clear_o(clear), .read_o(read), .addr_o(addr), .slot_o(slot), .record_i(answers_q[0 +: HaloBits]), .halo_i(halo), .can_load_i,
     .load_o(load),
-    .end_o(is_end), .data_o(data), .first_own_o(first_own), .sent_o(sent)
+    .end_o(is_end), .data_o(own_data), .halo_data_o(halo_data), .first_own_o(first_own), .sent_o(sent)
   );
-  assign asked = (pick == '0) ? '0 : {segment, addr_q};
+  // The memories' answers; that of own particles is taken when they are picked, of the others the relay clears.
+  logic [Segments-1:0]          clear;
+  logic                         read;
+  logic [Segments*HaloBits-1:0] answers_q;
+  for (genvar m = 0; m < Segments; m++) begin : gen_memory
+    localparam logic [2:0] Memory = m;
+    always_ff @(posedge clk_i) begin
+      if (m > 0 && clear[m]) answers_q[m*HaloBits +: HaloBits] <= '0;
+      else if (read) answers_q[m*HaloBits +: HaloBits] <= {Memory, addr};
+    end
+  end
+  integer h;
+  always_comb begin
+    halo = '0;
+    for (h = 1; h < Segments; h = h + 1) halo = halo | answers_q[h*HaloBits +: HaloBits];
+  end
   integer p;
   always_comb begin
     segment = (pick == '0) ? '1 : '0;  // beyond all
@@ -71,8 +92,8 @@ module relay_formal #(
     end
   end
   always_ff @(posedge clk_i) begin
-    addr_q <= addr;
-    slot_q <= slot;
+    if (read) addr_q <= addr;
+    if (read) slot_q <= slot;
   end
 
   // What must come: the next record is the least (segment, number) not yet sent, of those that the axis

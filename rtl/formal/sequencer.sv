@@ -22,13 +22,13 @@ module sequencer_formal #(
 
   logic            idle, exchange, update, migrate, dump, engine, step_end;
   logic [1:0]      axis;
-  logic [Axes-1:0] past;
+  logic [Axes-1:0] past, onehot;
   logic [7:0]      starts, ends;
   cuboct_sequencer #(.Axes(Axes), .Overlap(Overlap)) u_dut (
     .clk_i, .rst_ni(running_q), .start_i, .steps_i, .exchange_done_i(exchange_i), .force_done_i(force_i),
     .update_done_i(update_i), .migrate_done_i(migrate_i), .dump_done_i(dump_i), .idle_o(idle),
         .exchange_o(exchange),
-    .update_o(update), .migrate_o(migrate), .dump_o(dump), .axis_o(axis), .engine_o(engine),
+    .update_o(update), .migrate_o(migrate), .dump_o(dump), .axis_o(axis), .onehot_o(onehot), .engine_o(engine),
         .past_exchange_o(past),
     .step_end_o(step_end), .phase_start_o(starts), .phase_end_o(ends)
   );
@@ -95,6 +95,7 @@ module sequencer_formal #(
       a_where:  assert ({idle, exchange, update, migrate, dump} == {phase_q == Idle, in_exchange,
           phase_q == Update, in_migrate, phase_q == Dump});
       a_axis:   assert (axis == axis_due);
+      a_onehot: assert (onehot == ({{(Axes - 1) {1'b0}}, 1'b1} << axis_due));
       a_engine: assert (engine == (phase_q == Force || (Overlap != 0 && in_exchange)));
       if (engine) a_past: assert (past_right);
       a_start:  assert (starts == starting);

@@ -44,7 +44,15 @@ module streamer_formal #(
     end
   end
 
-  logic [2:0]          segment;
+  logic [Segments-1:0] pick;
+  logic [2:0]          segment;  // picked; beyond all if none is
+  integer              p;
+  always_comb begin
+    segment = (pick == '0) ? '1 : '0;
+    for (p = 0; p < Segments; p = p + 1) begin
+      if (pick[p]) segment = segment | p[2:0];
+    end
+  end
   logic [AddrBits-1:0] addr, slot;
   logic [RowBits-1:0]  row;
   logic                present;
@@ -54,7 +62,7 @@ module streamer_formal #(
   ) u_dut (
     .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .available_i(available_q),
         .counts_i(counts_q),
-    .segment_o(segment), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .past_o(past)
+    .pick_o(pick), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .past_o(past)
   );
 
   logic [2:0] half;  // which axis the segment belongs to, 0 for own

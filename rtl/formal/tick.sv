@@ -41,13 +41,14 @@ module tick_formal #(
   logic [WideBits-1:0] steps_q, count, last;
   assign count = {{TickBits{1'b0}}, count_q};
   assign last  = dump_q ? count - 1'b1 : count + Tail[WideBits-1:0];
-  logic over, asked_q;
+  logic over, over_q, asked_q;  // over_q: an UPDATE with particles
   assign over = (count_q == '0) || (steps_q == last);
   always_ff @(posedge clk_i) begin
     if (!running_q || free) steps_q <= '0;
     else if (dump_q || step_i) steps_q <= steps_q + 1'b1;
     next_q  <= next;
     asked_q <= running_q;
+    over_q  <= running_q && update_done && count_q != '0;
   end
 
   always_ff @(posedge clk_i) begin
@@ -57,7 +58,8 @@ module tick_formal #(
       a_more:   assert (!update_q || more == (steps_q < count));
       a_update: assert (update_done == (update_q && over));
       a_dump:   assert (dump_done == (dump_q && over));
-      a_next:   assert (!asked_q || tick == next_q);
+      a_next:   assert (!asked_q || !(update_q || dump_q) || count_q == '0 || steps_q == '0 || tick == next_q);
+      a_over:   assert (!over_q || next_q == '0);
       c_update: cover (update_done && count_q == Capacity[CountBits-1:0] && update_i);
       c_dump:   cover (dump_done && count_q == Capacity[CountBits-1:0]);
       c_none:   cover (update_done && count_q == '0);

@@ -10,6 +10,7 @@ module cuboct_ram #(
   input  logic [AddrBits-1:0] write_addr_i,
   input  logic [Bits-1:0]     write_data_i,
   input  logic                read_i,
+  input  logic                clear_i,
   input  logic [AddrBits-1:0] read_addr_i,
   output logic [Bits-1:0]     read_data_o
 );
@@ -29,6 +30,9 @@ module cuboct_ram #(
     end
     if (write_i && write_addr_i == read_addr_i) word = torn;
   end
-  always_ff @(posedge clk_i) if (read_i) read_q <= word;
+  always_ff @(posedge clk_i) begin
+    if (clear_i) read_q <= '0;
+    else if (read_i) read_q <= word;
+  end
   assign read_data_o = read_q;
 endmodule

@@ -175,6 +175,7 @@ module cuboct_brick_core #(
     .clk_i, .rst_ni, .start_i, .steps_i, .exchange_done_i(exchange_done), .force_done_i(force_done),
     .update_done_i(update_done), .migrate_done_i(migrate_done), .dump_done_i(dump_done), .idle_o,
     .exchange_o(in_exchange), .update_o(in_update), .migrate_o(in_migrate), .dump_o(in_dump), .axis_o(axis),
+    .onehot_o(axis_onehot),
     .engine_o(engine_runs), .past_exchange_o(past_exchange), .step_end_o(step_end), .phase_start_o, .phase_end_o
   );
 
@@ -372,8 +373,6 @@ module cuboct_brick_core #(
   assign send_end  = in_migrate ? migrate_send_end : relay_end;
   assign send_data = in_migrate ? migrate_beat : relay_beat;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_link
-    localparam int Axis = a;
-    assign axis_onehot[a]      = (axis == Axis[1:0]);
     assign load_link[2*a +: 2] = axis_load & {2{axis_onehot[a]}};
   end
 

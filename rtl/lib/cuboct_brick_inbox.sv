@@ -100,14 +100,14 @@ module cuboct_brick_inbox #(
   assign halo_word = {{(ParticleBits - HaloBits) {1'b0}}, halo_i};
   cuboct_ram #(.Bits(ParticleBits), .Depth(Depth), .AddrBits(Wide)) u_words (
     .clk_i, .write_i(append_i || push_i), .write_addr_i(push_i ? particle_at : halo_at),
-    .write_data_i(push_i ? particle_i : halo_word), .read_i(read_i || migrating_i),
+    .write_data_i(push_i ? particle_i : halo_word), .read_i(read_i || migrating_i), .clear_i(1'b0),
     .read_addr_i(migrating_i ? shown_at : streamed_at), .read_data_o(word)
   );
   assign halo_o     = word[HaloBits-1:0];
   assign particle_o = word;
   if (Relayed != 0) begin : gen_relay
     cuboct_ram #(.Bits(HaloBits), .Depth(First), .AddrBits(Wide)) u_halos (
-      .clk_i, .write_i(append_i), .write_addr_i(halo_at), .write_data_i(halo_i), .read_i(1'b1),
+      .clk_i, .write_i(append_i), .write_addr_i(halo_at), .write_data_i(halo_i), .read_i(1'b1), .clear_i(1'b0),
       .read_addr_i({{(Wide - AddrBits) {1'b0}}, relay_addr_i}), .read_data_o(relay_halo_o)
     );
   end else begin : gen_no_relay

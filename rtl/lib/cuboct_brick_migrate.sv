@@ -150,7 +150,7 @@ module cuboct_brick_migrate #(
   assign none_moved = !some_up && !some_down;
   assign store_write = up ? ups_q : TopStore[StoreBits-1:0] - downs_q;
   cuboct_ram #(.Bits(ParticleBits), .Depth(Store), .AddrBits(StoreBits)) u_store (
-    .clk_i, .write_i(moves), .write_addr_i(store_write), .write_data_i(read_data_i[ParticleBits-1:0]), .read_i(1'b1),
+    .clk_i, .write_i(moves), .write_addr_i(store_write), .write_data_i(read_data_i[ParticleBits-1:0]), .read_i(1'b1), .clear_i(1'b0),
     .read_addr_i(store_read), .read_data_o(stored)
   );
 

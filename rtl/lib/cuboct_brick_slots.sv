@@ -50,20 +50,20 @@ module cuboct_brick_slots #(
     if (write_i) written_q <= write_data_i;
   end
   cuboct_ram #(.Bits(Bits), .Depth(Depth), .AddrBits(AddrBits)) u_main (
-    .clk_i, .write_i, .write_addr_i, .write_data_i, .read_i(1'b1), .read_addr_i(main_addr_i), .read_data_o(main_data)
+    .clk_i, .write_i, .write_addr_i, .write_data_i, .read_i(1'b1), .clear_i(1'b0), .read_addr_i(main_addr_i), .read_data_o(main_data)
   );
   assign main_data_o = same_q ? written_q : main_data;
   cuboct_ram #(.Bits(SeenBits), .Depth(Depth), .AddrBits(AddrBits)) u_stream (
-    .clk_i, .write_i, .write_addr_i, .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i),
+    .clk_i, .write_i, .write_addr_i, .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i), .clear_i(1'b0),
     .read_addr_i(stream_addr_i), .read_data_o(stream_data_o)
   );
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
     cuboct_ram #(.Bits(SeenBits), .Depth(Depth), .AddrBits(AddrBits)) u_pipe (
-      .clk_i, .write_i, .write_addr_i, .write_data_i(write_data_i[SeenBits-1:0]), .read_i(1'b1),
+      .clk_i, .write_i, .write_addr_i, .write_data_i(write_data_i[SeenBits-1:0]), .read_i(1'b1), .clear_i(1'b0),
       .read_addr_i(pipe_addr_i[f*AddrBits +: AddrBits]), .read_data_o(pipe_data_o[f*SeenBits +: SeenBits])
     );
     cuboct_ram #(.Bits(IdBits), .Depth(Depth), .AddrBits(AddrBits)) u_id (
-      .clk_i, .write_i, .write_addr_i, .write_data_i(write_data_i[IdLsb +: IdBits]), .read_i(1'b1),
+      .clk_i, .write_i, .write_addr_i, .write_data_i(write_data_i[IdLsb +: IdBits]), .read_i(1'b1), .clear_i(1'b0),
       .read_addr_i(fault_addr_i[f*AddrBits +: AddrBits]), .read_data_o(fault_id_o[f*IdBits +: IdBits])
     );
   end

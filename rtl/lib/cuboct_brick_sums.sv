@@ -35,7 +35,7 @@ module cuboct_brick_sums #(
     if (kick_valid_i) written_q <= added;
   end
   cuboct_ram #(.Bits(Axes * SumBits), .Depth(Depth), .AddrBits(AddrBits)) u_words (
-    .clk_i, .write_i(write), .write_addr_i(write_addr), .write_data_i(zero_i ? '0 : added), .read_i(1'b1),
+    .clk_i, .write_i(write), .write_addr_i(write_addr), .write_data_i(zero_i ? '0 : added), .read_i(1'b1), .clear_i(1'b0),
     .read_addr_i(next_addr_i), .read_data_o(word)
   );
   assign old   = same_q ? written_q : word;

@@ -27,8 +27,11 @@ module cuboct_halos #(
   input  logic                       stream_read_i,  // the streamer asks
   input  logic [AddrBits-1:0]        stream_addr_i,  // read by the streamer: what it gets is there in the next cycle,
   output logic [Faces*CandidateBits-1:0] stream_data_o,  // by face, and stays until it reads again
-  input  logic [AddrBits-1:0]        relay_addr_i,   // of the next cycle's relay_data_o, faces of all axes but the last
-  output logic [(Faces-2)*CandidateBits-1:0] relay_data_o,  // by face
+  // For the relay, of all axes but the last.
+  input  logic                       relay_read_i,   // it asks; without it the answers stay
+  input  logic [Faces-3:0]           relay_clear_i,  // by face: the answer becomes 0
+  input  logic [AddrBits-1:0]        relay_addr_i,   // with relay_read_i
+  output logic [(Faces-2)*CandidateBits-1:0] relay_data_o,  // by face, from the next cycle on
   // Migrating particles.
   input  logic                       migrating_i,    // a migration phase
   input  logic [Faces-1:0]           migrate_clear_i,  // by face: last cycle of its axis's migration
@@ -74,6 +77,7 @@ module cuboct_halos #(
     // link; the sign of the last axis, which is not sent, is the same for all records of a face.
     localparam logic [1:0] LastSign = (Axis < Axes - 1) ? 2'b00 : (f % 2 == 0) ? 2'b11 : 2'b01;
     logic [HaloBits-1:0] moved, streamed, relayed;
+    logic                relay_clear;
     if (Axis < Axes - 1) begin : gen_moved
       // From 00, 01, 11: one less from below, one more from above.
       localparam int SignLsb = Axis * (PositionFrac + 2) + PositionFrac;
@@ -89,7 +93,8 @@ module cuboct_halos #(
     ) u_inbox (
       .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(halo_valid), .halo_i(moved),
       .count_o(halo_count_o[f*CountBits +: CountBits]), .read_i(stream_read_i), .addr_i(stream_addr_i),
-      .halo_o(streamed), .relay_addr_i, .relay_halo_o(relayed),
+      .halo_o(streamed), .relay_read_i,
+      .relay_clear_i(relay_clear), .relay_addr_i, .relay_halo_o(relayed),
       .migrating_i, .push_i(migrate_valid), .particle_i(particle), .full_o(migrate_full), .pop_i(migrate_pop_i[f]),
       .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .empty_o(migrate_empty_o[f])
     );
@@ -98,12 +103,14 @@ module cuboct_halos #(
       assign stream_data_o[f*CandidateBits+CandPos +: RestBits] = streamed[HaloBits-1 -: RestBits];
     end
     if (Axis < Axes - 1) begin : gen_relay
+      assign relay_clear = relay_clear_i[f];
       assign relay_data_o[f*CandidateBits +: CandPos] = {LastSign, relayed[LastLsb+PositionFrac-1:0]};
       if (RestBits > 0) begin : gen_relay_rest
         assign relay_data_o[f*CandidateBits+CandPos +: RestBits] = relayed[HaloBits-1 -: RestBits];
       end
     end else begin : gen_no_relay
       logic unused_relay;
+      assign relay_clear  = 1'b0;
       assign unused_relay = ^relayed;
     end
 

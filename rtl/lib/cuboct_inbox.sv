@@ -22,7 +22,9 @@ module cuboct_inbox #(
   input  logic                    read_i,        // the streamer asks; without it the answer stays
   input  logic [AddrBits-1:0]     addr_i,        // with read_i
   output logic [HaloBits-1:0]     halo_o,        // from the next cycle on; a migration phase leaves it
-  input  logic [AddrBits-1:0]     relay_addr_i,  // the relay asks in every cycle
+  input  logic                    relay_read_i,  // the relay asks; without it the answer stays
+  input  logic                    relay_clear_i, // the answer is 0
+  input  logic [AddrBits-1:0]     relay_addr_i,  // with relay_read_i
   output logic [HaloBits-1:0]     relay_halo_o,  // from the next cycle on
   // Particles, first in, first out.
   input  logic                    migrating_i,   // a migration phase: the oldest particle is shown, one cycle later on
@@ -41,7 +43,7 @@ module cuboct_inbox #(
   logic [PlaceBits-1:0] write_d, write_q, read_d, read_q;
   logic [LevelBits-1:0] held_d, held_q;    // particles in the memory
   logic [LevelBits-1:0] shown_d, shown_q;  // of these, those that count
-  logic                 pushed_q;
+  logic                 pushed_q, empty_d, empty_q;  // empty: shown is 0
   always_comb begin
     count_d = count_q;
     write_d = write_q;
@@ -56,6 +58,7 @@ module cuboct_inbox #(
     if (pop_i && !push_i) held_d = held_q - 1'b1;
     if (pushed_q && !pop_i) shown_d = shown_q + 1'b1;
     if (pop_i && !pushed_q) shown_d = shown_q - 1'b1;
+    empty_d = !pushed_q && (empty_q || (pop_i && shown_q == {{(LevelBits - 1) {1'b0}}, 1'b1}));
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
@@ -65,6 +68,7 @@ module cuboct_inbox #(
       held_q   <= '0;
       shown_q  <= '0;
       pushed_q <= 1'b0;
+      empty_q  <= 1'b1;
     end else begin
       count_q  <= count_d;
       write_q  <= write_d;
@@ -72,29 +76,31 @@ module cuboct_inbox #(
       held_q   <= held_d;
       shown_q  <= shown_d;
       pushed_q <= push_i;
+      empty_q  <= empty_d;
     end
   end
 
   cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_words (
-    .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i), .read_i(read_i),
+    .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i), .read_i(read_i), .clear_i(1'b0),
     .read_addr_i(addr_i), .read_data_o(halo_o)
   );
   cuboct_ram #(.Bits(ParticleBits), .Depth(Capacity), .AddrBits(PlaceBits)) u_particles (
-    .clk_i, .write_i(push_i), .write_addr_i(write_q), .write_data_i(particle_i), .read_i(migrating_i),
+    .clk_i, .write_i(push_i), .write_addr_i(write_q), .write_data_i(particle_i), .read_i(migrating_i), .clear_i(1'b0),
     .read_addr_i(read_d), .read_data_o(particle_o)
   );
   if (Relayed != 0) begin : gen_relay
     cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_halos (
-      .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i), .read_i(1'b1),
+      .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i),
+      .read_i(relay_read_i), .clear_i(relay_clear_i),
       .read_addr_i(relay_addr_i), .read_data_o(relay_halo_o)
     );
   end else begin : gen_no_relay
     logic unused_relay;
-    assign unused_relay = ^relay_addr_i;
+    assign unused_relay = ^{relay_read_i, relay_clear_i, relay_addr_i};
     assign relay_halo_o = '0;
   end
 
   assign count_o    = count_q;
   assign full_o     = (held_q == Capacity[LevelBits-1:0]);
-  assign empty_o    = (shown_q == '0);
+  assign empty_o    = empty_q;
 endmodule

@@ -27,7 +27,7 @@ module cuboct_issue #(
   logic [CandidateBits-1:0] candidate_q;
   logic [RowBits-1:0]       row_q;
   logic [FilterLanes-1:0]   mask_d, mask_q;
-  logic [FilterLanes-1:0]   rest, lowest;  // what the pipes before leave; its lowest bit
+  logic [FilterLanes-1:0]   rest, below, lowest;  // what the pipes before leave; bits above its lowest; that
   logic [SlotBits-1:0]      row_base;
   logic                     first, last;   // cycle of an interval
 
@@ -43,17 +43,19 @@ module cuboct_issue #(
   endfunction
 
   assign row_base = {{(SlotBits - RowBits) {1'b0}}, row_q} * FilterLanes[SlotBits-1:0];
-  integer f;
+  integer f, k;
   always_comb begin
     rest    = mask_q;
     lowest  = '0;
+    below   = '0;
     valid_o = '0;
     slot_o  = '0;
     for (f = 0; f < ForcePipes; f = f + 1) begin
-      lowest                          = rest & (~rest + 1'b1);
+      for (k = 1; k < FilterLanes; k = k + 1) below[k] = below[k-1] || rest[k-1];
+      lowest                          = rest & ~below;
       valid_o[f]                      = first && (rest != '0);
       slot_o[f*SlotBits +: SlotBits] = row_base + lane_of(lowest);
-      rest                            = rest & ~lowest;
+      rest                            = rest & below;
     end
   end
 

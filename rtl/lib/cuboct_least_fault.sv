@@ -39,6 +39,15 @@ module cuboct_least_fault #(
     number_q <= number_i;
   end
 
+  // Bit by bit: tools that build it from a carry chain take the chain's end to come early, and put the choices behind.
+  function automatic logic below(input logic [IdBits-1:0] a, input logic [IdBits-1:0] b);
+    integer i;
+    begin
+      below = 1'b0;
+      for (i = 0; i < IdBits; i = i + 1) below = (!a[i] && b[i]) || (a[i] == b[i] && below);
+    end
+  endfunction
+
   // With its sign inverted, number orders as an unsigned value.
   logic                seen, valid_d, valid_q, moved;
   logic [KeyBits-1:0]  key_d, key_q, key, move_key;
@@ -46,7 +55,7 @@ module cuboct_least_fault #(
   assign move_key = {move_code_i, move_id_i, !move_number_i[NumberBits-1], move_number_i[NumberBits-2:0]};
   assign moved    = move_valid_i
                  && ((!valid_q && late_valid_q == '0)
-                     || (valid_q && key_q[NumberBits+IdBits +: 4] == move_code_i && move_id_i < key_q[NumberBits +: IdBits]));
+                     || (valid_q && key_q[NumberBits+IdBits +: 4] == move_code_i && below(move_id_i, key_q[NumberBits +: IdBits])));
   always_comb begin
     seen  = valid_q;
     key_d = key_q;

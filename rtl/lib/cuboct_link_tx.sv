@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The output register of one link. It may load when it is empty or its beat is taken in this cycle; where there is no
-// link it may always load, and what is loaded vanishes.
+// link it is always empty: what is loaded vanishes.
 module cuboct_link_tx #(
   parameter int LinkBits = 32  // payload of a beat, >= 1
 ) (
@@ -21,7 +21,7 @@ module cuboct_link_tx #(
   logic                valid_d, valid_q, take, end_q;
   logic [LinkBits-1:0] data_q;
 
-  assign can_load_o = !valid_q || ready_i || !has_link_i;
+  assign can_load_o = !valid_q || ready_i;
   assign take       = load_i && has_link_i;
   assign valid_d    = take || (valid_q && !ready_i);
 
@@ -30,7 +30,8 @@ module cuboct_link_tx #(
     else valid_q <= valid_d;
   end
   always_ff @(posedge clk_i) begin
-    if (take) begin
+    // Whatever it holds while no beat waits, no one takes it.
+    if (can_load_o) begin
       end_q  <= end_i;
       data_q <= data_i;
     end

@@ -118,6 +118,7 @@ module cuboct_node_core #(
   localparam int CandidateBits = CandPos + HaloType + HaloVelocity;
   // Numbers of slots, rows, records; counts have a bit to spare over addresses.
   localparam int SlotBits  = (Capacity > 1) ? $clog2(Capacity) : 1;
+  localparam int LastSlot  = Capacity - 1;
   localparam int Rows      = (Capacity + FilterLanes - 1) / FilterLanes;
   localparam int RowBits   = (Rows > 1) ? $clog2(Rows) : 1;
   localparam int AddrBits  = $clog2(((Axes == 3) ? 9 : 3) * Capacity);
@@ -153,31 +154,44 @@ module cuboct_node_core #(
     .clk_i, .rst_ni, .start_i, .steps_i, .exchange_done_i(exchange_done), .force_done_i(force_done),
     .update_done_i(update_done), .migrate_done_i(migrate_done), .dump_done_i(dump_done), .idle_o,
     .exchange_o(in_exchange), .update_o(in_update), .migrate_o(in_migrate), .dump_o(in_dump), .axis_o(axis),
+    .onehot_o(axis_onehot),
     .engine_o(engine_runs), .past_exchange_o(past_exchange), .step_end_o(step_end), .phase_start_o, .phase_end_o
   );
 
   // Own particles: how many, and where they are written and read.
   logic [CountBits-1:0]           own_count_d, own_count_q, migrate_count;
+  logic                           full_d, full_q, migrate_full;  // Capacity particles
   logic                           own_write, load, update_write, migrate_write, migrate_count_set;
   logic [SlotBits-1:0]            own_write_slot, update_slot, migrate_write_slot, main_slot, stream_slot;
   logic [OwnBits-1:0]             own_write_data, update_data, migrate_write_data, main_data;
   logic [SeenBits-1:0]            stream_data;
-  logic                           stream_read, main_hold;
+  logic                           stream_read, main_read, main_hold, migrate_read;
   logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot, kick_slot_next;
   logic [ForcePipes*SeenBits-1:0] pipe_data;
   logic [ForcePipes*IdBits-1:0]   kick_id;
   logic [RowBits-1:0]             row;
   logic [FilterLanes*Axes*FilterFrac-1:0] row_data;
 
-  assign load = idle_o && load_valid_i && (own_count_q != Capacity[CountBits-1:0]);
+  assign load = idle_o && load_valid_i && !full_q;
   always_comb begin
     own_count_d = own_count_q;
-    if (load) own_count_d = own_count_q + 1'b1;
-    else if (migrate_count_set) own_count_d = migrate_count;
+    full_d      = full_q;
+    if (load) begin
+      own_count_d = own_count_q + 1'b1;
+      full_d      = (own_count_q == LastSlot[CountBits-1:0]);
+    end else if (migrate_count_set) begin
+      own_count_d = migrate_count;
+      full_d      = migrate_full;
+    end
   end
   always_ff @(posedge clk_i) begin
-    if (!rst_ni) own_count_q <= '0;
-    else own_count_q <= own_count_d;
+    if (!rst_ni) begin
+      own_count_q <= '0;
+      full_q      <= 1'b0;
+    end else begin
+      own_count_q <= own_count_d;
+      full_q      <= full_d;
+    end
   end
   // Chosen by the state, which is there before the writes are.
   always_comb begin
@@ -198,26 +212,27 @@ module cuboct_node_core #(
     .RowBits(RowBits), .ForcePipes(ForcePipes), .Narrow(Narrow)
   ) u_slots (
     .clk_i, .write_i(own_write), .write_slot_i(own_write_slot), .write_data_i(own_write_data),
-    .main_read_i(!main_hold), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read), .stream_slot_i(stream_slot),
+    .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read), .stream_slot_i(stream_slot),
     .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data), .pipe_slot_i(issue_slot),
     .pipe_data_o(pipe_data), .fault_slot_i(kick_slot_next), .fault_id_o(kick_id)
   );
 
   // Links: receivers.
-  logic [Faces-1:0]           halo_end, migrate_end, migrate_empty, migrate_pop, migrate_clear;
+  logic [Faces-1:0]           halo_end, migrate_end, migrate_empty, migrate_face, migrate_clear;
   logic [Faces*CountBits-1:0] halo_count;
   logic [AddrBits-1:0]        stream_addr, relay_addr;
-  logic [Faces-2:0]           relay_pick;
+  logic                       relay_read;
+  logic [Faces-2:0]           relay_pick, relay_clear;
   logic [Faces*CandidateBits-1:0]     stream_halos;
   logic [(Faces-2)*CandidateBits-1:0] relay_halos;
-  logic [Faces*ParticleBits-1:0]      arrived;
+  logic [ParticleBits-1:0]    arrived;  // the oldest of the face that migration takes from
   // Narrow: the word read, whose it is, and the record register.
   logic [WordBits-1:0]  relay_word, walk_word;
   logic [2:0]           walk_segment;
   logic [LinkBits-1:0]  halo_word;
   logic                 record_shift, record_set;
   logic [HaloBits-1:0]  own_record, record;
-  logic [1:0]           migrate_take;
+  logic                 migrate_some, migrate_pop;
   logic [Axes-1:0]      axis_onehot;
   if (Narrow != 0) begin : gen_narrow
     logic [Faces-1:0]        face;
@@ -232,7 +247,7 @@ module cuboct_node_core #(
         assign relayed = 1'b0;
       end
       assign face[f] = in_exchange ? relayed :
-                       in_migrate ? (axis_onehot[f/2] && migrate_take[f%2]) : (walk_segment == Segment[2:0]);
+                       in_migrate ? migrate_face[f] : (walk_segment == Segment[2:0]);
     end
     cuboct_word_halos #(
       .Axes(Axes), .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits),
@@ -242,16 +257,18 @@ module cuboct_node_core #(
       .halo_clear_i(force_done), .halo_end_o(halo_end), .halo_count_o(halo_count),
       .word_i(in_exchange ? relay_word : walk_word), .face_i(face), .word_o(halo_word), .shift_i(record_shift),
       .set_i(record_set), .halo_i(own_record), .halo_o(record), .migrating_i(in_migrate),
-      .taking_i(migrate_take != 2'b00), .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end),
-      .particle_valid_o(shown), .particle_o(particle), .pop_i(migrate_pop != '0)
+      .taking_i(migrate_face != '0), .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end),
+      .particle_valid_o(shown), .particle_o(particle), .pop_i(migrate_pop)
     );
     assign migrate_empty = {Faces{!shown}};
-    assign arrived       = {Faces{particle}};
+    assign migrate_some  = shown;
+    assign arrived       = particle;
     assign stream_halos  = '0;
     assign relay_halos   = '0;
     logic unused_addr;
-    assign unused_addr = ^{stream_addr, relay_addr};
+    assign unused_addr = ^{stream_addr, relay_addr, relay_clear};
   end else begin : gen_wide
+    logic [Faces*ParticleBits-1:0] particles;
     cuboct_halos #(
       .Axes(Axes), .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits),
       .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .AddrBits(AddrBits), .CountBits(CountBits)
@@ -259,14 +276,24 @@ module cuboct_node_core #(
       .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
       .halo_clear_i(force_done), .halo_end_o(halo_end), .halo_count_o(halo_count),
       .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
-      .relay_addr_i(relay_addr), .relay_data_o(relay_halos), .migrating_i(in_migrate),
-      .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty),
-      .migrate_data_o(arrived), .migrate_pop_i(migrate_pop)
+      .relay_read_i(relay_read), .relay_clear_i(relay_clear[Faces-2:1]), .relay_addr_i(relay_addr),
+      .relay_data_o(relay_halos), .migrating_i(in_migrate), .migrate_clear_i(migrate_clear),
+      .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty), .migrate_data_o(particles),
+      .migrate_pop_i(migrate_face & {Faces{migrate_pop}})
     );
+    integer f;
+    always_comb begin
+      arrived = '0;
+      for (f = 0; f < Faces; f = f + 1) begin
+        arrived = arrived | (particles[f*ParticleBits +: ParticleBits]
+                             & {ParticleBits{migrate_face[f]}});
+      end
+    end
+    assign migrate_some = ((migrate_face & ~migrate_empty) != '0);
     assign halo_word = '0;
     assign record    = '0;
     logic unused_narrow;
-    assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, migrate_take};
+    assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, relay_clear[0]};
   end
 
   // leaving[a]: some own particle has to go along axis a.
@@ -276,7 +303,7 @@ module cuboct_node_core #(
   logic [Faces-1:0]    can_load, load_link;
   logic [1:0]          axis_can_load, axis_load, migrate_load, axis_has_link;
   logic                relay_load, relay_end, migrate_send_end, send_end;
-  logic [LinkBits-1:0] relay_beat, migrate_beat, send_data;
+  logic [LinkBits-1:0] relay_beat, relay_halo_beat, migrate_beat, send_data;
   for (genvar f = 0; f < Faces; f++) begin : gen_tx
     cuboct_link_tx #(.LinkBits(LinkBits)) u_tx (
       .clk_i, .rst_ni, .has_link_i(has_link_i[f]), .load_i(load_link[f]), .end_i(send_end), .data_i(send_data),
@@ -285,36 +312,28 @@ module cuboct_node_core #(
     );
   end
   // What belongs to the axis of the present phase.
-  logic [1:0]                axis_halo_end, axis_empty, axis_ended;
-  logic                      axis_leaving;
-  logic [2*ParticleBits-1:0] axis_arrived;
+  logic [1:0]                axis_halo_end;
+  logic                      next_leaving;  // along the axis of the next migration phase
   integer                    b;
   always_comb begin
     axis_can_load = 2'b00;
     axis_has_link = 2'b00;
     axis_halo_end = 2'b00;
-    axis_empty    = 2'b00;
-    axis_ended    = 2'b00;
-    axis_leaving  = 1'b0;
-    axis_arrived  = '0;
+    next_leaving  = leaving_q[0] && !in_migrate;
     for (b = 0; b < Axes; b = b + 1) begin
       if (axis_onehot[b]) begin
         axis_can_load = can_load[2*b +: 2];
         axis_has_link = has_link_i[2*b +: 2];
         axis_halo_end = halo_end[2*b +: 2];
-        axis_empty    = migrate_empty[2*b +: 2];
-        axis_ended    = migrate_end[2*b +: 2];
-        axis_leaving  = leaving_q[b];
       end
-      axis_arrived = axis_arrived | (arrived[2*b*ParticleBits +: 2*ParticleBits] & {2 * ParticleBits{axis_onehot[b]}});
+      if (b > 0 && in_migrate && axis_onehot[b-1]) next_leaving = leaving_q[b];
     end
   end
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
   assign send_end  = in_migrate ? migrate_send_end : relay_end;
-  assign send_data = in_migrate ? migrate_beat : relay_beat;
+  // Of the three all but one are 0.
+  cuboct_late #(.Bits(LinkBits)) u_send (.early_i(migrate_beat | relay_beat), .late_i(relay_halo_beat), .or_o(send_data));
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_link
-    localparam int Axis = a;
-    assign axis_onehot[a]      = (axis == Axis[1:0]);
     assign load_link[2*a +: 2] = axis_load & {2{axis_onehot[a]}};
   end
 
@@ -332,32 +351,32 @@ module cuboct_node_core #(
   // Exchange.
   logic [SlotBits-1:0]      relay_slot;
   logic                     relay_first_own, relay_sent;
-  logic [CandidateBits-1:0] relay_candidate;
-  logic [HaloBits-1:0]      relay_record;
+  logic [CandidateBits-1:0] relay_halo;
+  logic [HaloBits-1:0]      relay_record, relay_halo_record;
   integer h;
   always_comb begin
-    relay_candidate = relay_own & {CandidateBits{relay_pick[0]}};
-    for (h = 0; h < Faces - 2; h = h + 1) begin
-      relay_candidate = relay_candidate | (relay_halos[h*CandidateBits +: CandidateBits]
-                                           & {CandidateBits{relay_pick[h+1]}});
-    end
+    relay_halo = '0;
+    for (h = 0; h < Faces - 2; h = h + 1) relay_halo = relay_halo | relay_halos[h*CandidateBits +: CandidateBits];
   end
   // On the link the last axis has no sign: what is sent lies in this node's layer.
   if (CandidateBits > CandPos) begin : gen_record
-    assign relay_record = {relay_candidate[CandidateBits-1:CandPos], relay_candidate[CandPos-3:0]};
+    assign relay_record      = {relay_own[CandidateBits-1:CandPos], relay_own[CandPos-3:0]};
+    assign relay_halo_record = {relay_halo[CandidateBits-1:CandPos], relay_halo[CandPos-3:0]};
   end else begin : gen_bare_record
-    assign relay_record = relay_candidate[CandPos-3:0];
+    assign relay_record      = relay_own[CandPos-3:0];
+    assign relay_halo_record = relay_halo[CandPos-3:0];
   end
   logic unused_relay_sign;
-  assign unused_relay_sign = ^relay_candidate[CandPos-1:CandPos-2];
+  assign unused_relay_sign = ^{relay_own[CandPos-1:CandPos-2], relay_halo[CandPos-1:CandPos-2]};
   cuboct_relay #(
     .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .AddrBits(AddrBits),
     .CountBits(CountBits), .Narrow(Narrow), .FirstWord(FirstWord), .WordBits(WordBits)
   ) u_relay (
     .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
-    .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_q}), .pick_o(relay_pick), .addr_o(relay_addr),
-    .slot_o(relay_slot), .record_i(relay_record), .word_o(relay_word), .word_i(halo_word), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load),
-    .end_o(relay_end), .data_o(relay_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
+    .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_d}), .pick_o(relay_pick), .clear_o(relay_clear),
+    .read_o(relay_read), .addr_o(relay_addr), .slot_o(relay_slot), .record_i(relay_record), .halo_i(relay_halo_record), .word_o(relay_word),
+    .word_i(halo_word), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load), .end_o(relay_end),
+    .data_o(relay_beat), .halo_data_o(relay_halo_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
   );
   assign exchange_done = in_exchange && relay_sent && (axis_halo_end == 2'b11);
 
@@ -365,7 +384,7 @@ module cuboct_node_core #(
   logic [CandidateBits-1:0]     issue_candidate;
   logic [ForcePipes-1:0]        issue, pipe_busy, kick_valid, pipe_fault, pipe_fault_strength;
   logic [ForcePipes*64-1:0]     pipe_fault_number;
-  logic                         finder_done, force_stall;
+  logic                         finder_done, present, force_stall;
   logic [ForcePipes*Axes*PipeSumBits-1:0] sums;
   logic [Axes*PipeSumBits-1:0]  total;
   logic [SlotBits-1:0]          tick_slot, tick_next;
@@ -395,9 +414,10 @@ module cuboct_node_core #(
       .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .counts_i({halo_count, own_count_q}),
       .word_o(walk_word), .segment_o(walk_segment), .shift_o(record_shift), .set_o(record_set), .slot_o(walk_slot),
       .hold_o(main_hold), .own_i(main_data[PosBits-1:0]), .candidate_i(issue_candidate[CandPos-1:0]),
-      .issue_o(issue[0]), .issue_slot_o(issue_slot[SlotBits-1:0]), .present_o(stream_read), .stall_o(force_stall),
+      .issue_o(issue[0]), .issue_slot_o(issue_slot[SlotBits-1:0]), .present_o(present), .stall_o(force_stall),
       .done_o(finder_done)
     );
+    assign stream_read = 1'b0;
     assign stream_slot = '0;
     assign stream_addr = '0;
     assign row         = '0;
@@ -413,7 +433,7 @@ module cuboct_node_core #(
       .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .available_i({past_exchange, 1'b1}),
       .counts_i({halo_count, own_count_q}), .read_o(stream_read), .slot_o(stream_slot), .addr_o(stream_addr),
       .own_i(own_candidate), .halos_i(stream_halos), .row_o(row), .row_data_i(row_data), .candidate_o(issue_candidate),
-      .issue_o(issue), .issue_slot_o(issue_slot), .stall_o(force_stall), .done_o(finder_done)
+      .issue_o(issue), .issue_slot_o(issue_slot), .present_o(present), .stall_o(force_stall), .done_o(finder_done)
     );
     assign walk_slot    = '0;
     assign walk_word    = '0;
@@ -424,7 +444,7 @@ module cuboct_node_core #(
     logic unused_record;
     assign unused_record = ^record;
   end
-  assign force_event_o = {issue != '0, stream_read, force_stall, engine_runs};
+  assign force_event_o = {issue != '0, present, force_stall, engine_runs};
   assign force_done = engine_runs && finder_done && (pipe_busy == '0);
 
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
@@ -565,11 +585,9 @@ module cuboct_node_core #(
   // Migration.
   logic [SlotBits-1:0]     migrate_read_slot;
   logic                    fault_left, fault_full;
-  logic [1:0]              axis_pop;
   logic [ParticleBits-1:0] fault_particle;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_migrate
     assign away_axes[a]            = (new_away[2*a +: 2] != 2'b00);
-    assign migrate_pop[2*a +: 2]   = axis_pop & {2{axis_onehot[a]}};
     assign migrate_clear[2*a +: 2] = {2{axis_onehot[a] && migrate_done}};
   end
   always_comb begin
@@ -586,17 +604,20 @@ module cuboct_node_core #(
     .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_migrate (
     .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .has_link_i(axis_has_link),
-    .leaving_i(axis_leaving), .count_i(own_count_q), .count_set_o(migrate_count_set), .count_o(migrate_count),
-    .read_slot_o(migrate_read_slot), .read_data_i(main_data), .write_o(migrate_write),
+    .leaving_i(next_leaving), .count_i(own_count_q), .full_i(full_q), .count_set_o(migrate_count_set), .count_o(migrate_count),
+    .full_o(migrate_full),
+    .read_o(migrate_read), .read_slot_o(migrate_read_slot), .read_data_i(main_data), .write_o(migrate_write),
     .write_slot_o(migrate_write_slot), .write_data_o(migrate_write_data), .leaving_more_o(leaving_more),
     .can_load_i(axis_can_load), .load_o(migrate_load), .end_o(migrate_send_end), .data_o(migrate_beat),
-    .take_o(migrate_take), .empty_i(axis_empty), .ended_i(axis_ended), .arrived_i(axis_arrived), .pop_o(axis_pop),
+    .face_o(migrate_face), .some_i(migrate_some), .ended_i((migrate_face & migrate_end) != '0), .arrived_i(arrived),
+    .pop_o(migrate_pop),
     .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
   );
 
   // The main read port of the slots, asked a cycle ahead, and what is observed through it. Outside its phases each of
-  // the four rests at slot 0, where its next phase begins.
+  // the four rests at slot 0, where its next phase begins. The port asks in every cycle in which none of them waits.
   assign main_slot       = relay_slot | tick_next | migrate_read_slot | walk_slot;
+  assign main_read       = relay_read && migrate_read && !main_hold;
   assign observe_valid_o = (relay_first_own && (axis == 2'd0)) || (in_dump && (own_count_q != '0));
   assign observe_data_o  = main_data[ParticleBits-1:0];
 

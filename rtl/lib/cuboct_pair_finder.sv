@@ -26,7 +26,7 @@ module cuboct_pair_finder #(
   input  logic [(2*Axes+1)*CountBits-1:0]       counts_i,
   // Where the candidate is read: own slot, and record of the faces' halos, and a row of own positions. The memories
   // answer in the next cycle, and keep the answer until the next read.
-  output logic                                  read_o,       // a candidate and a row are asked for
+  output logic                                  read_o,       // the memories are asked
   output logic [SlotBits-1:0]                   slot_o,       // own, with read_o
   output logic [AddrBits-1:0]                   addr_o,       // of halos, with read_o
   input  logic [CandidateBits-1:0]              own_i,        // an own particle as a candidate
@@ -37,10 +37,11 @@ module cuboct_pair_finder #(
   output logic [CandidateBits-1:0]              candidate_o,  // with issue_o
   output logic [ForcePipes-1:0]                 issue_o,      // per pipe: a pair
   output logic [ForcePipes*SlotBits-1:0]        issue_slot_o, // per pipe, with issue_o: its own slot
+  output logic                                  present_o,    // a candidate and a row are asked for
   output logic                                  stall_o,      // a full queue holds the filter
   output logic                                  done_o        // no candidate is left anywhere
 );
-  logic [2:0]               segment;
+  logic [2*Axes:0]          pick;
   logic [2*Axes:0]          answer_q;  // which memory's answer is the candidate, one bit each
   logic [RowBits-1:0]       row, row_out, row_head;
   logic                     present, past, stall, filter_busy, issue_busy;
@@ -53,11 +54,11 @@ module cuboct_pair_finder #(
     .CountBits(CountBits)
   ) u_streamer (
     .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .available_i, .counts_i,
-    .segment_o(segment), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
+    .pick_o(pick), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
   );
 
   always_ff @(posedge clk_i) begin
-    if (present) answer_q <= {{(2 * Axes) {1'b0}}, 1'b1} << segment;
+    if (read_o) answer_q <= pick;
   end
   integer f;
   always_comb begin
@@ -72,7 +73,7 @@ module cuboct_pair_finder #(
     .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .RowBits(RowBits),
     .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_filter (
-    .clk_i, .rst_ni, .present_i(present), .row_i(row), .own_i(segment == 3'd0),
+    .clk_i, .rst_ni, .present_i(present), .row_i(row), .own_i(pick[0]),
     .slot_i(slot_o), .own_count_i(counts_i[0 +: CountBits]), .candidate_i(candidate), .row_data_i,
     .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_out), .row_o(row_out),
     .mask_o(mask_out), .busy_o(filter_busy)
@@ -91,8 +92,10 @@ module cuboct_pair_finder #(
     .pop_o(pop), .candidate_o, .valid_o(issue_o), .slot_o(issue_slot_o), .busy_o(issue_busy)
   );
 
-  assign stall_o = stall;
-  assign read_o = present;
-  assign row_o  = row;
+  assign stall_o   = stall;
+  assign present_o = present;
+  // Whatever they answer where no candidate is asked for, the filter does not take it; a stall is known earlier.
+  assign read_o    = run_i && !stall;
+  assign row_o     = row;
   assign done_o = past && !filter_busy && empty && !issue_busy;
 endmodule

@@ -19,18 +19,22 @@ module cuboct_relay #(
   input  logic [1:0]             axis_i,      // below Axes
   input  logic                   done_i,      // last cycle of the phase
   // Segments: 0 own, then the halos of -x, +x and, with three axes, -y, +y; their counts, and where to read.
-  input  logic [(2*Axes-1)*CountBits-1:0] counts_i,
+  input  logic [(2*Axes-1)*CountBits-1:0] counts_i,  // constant in a phase; of own ones the next cycle's
   output logic [2*Axes-2:0]      pick_o,      // which one, one bit each; none for the end beat
-  output logic [AddrBits-1:0]    addr_o,      // of the next cycle's record
-  output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles
-  input  logic [HaloBits-1:0]    record_i,    // of pick_o, at addr_o of the cycle before; of none 0; Narrow: own ones only
+  output logic [2*Axes-2:0]      clear_o,     // by segment: its memory's answer becomes 0, as it is not picked next
+  output logic                   read_o,      // asks all for what comes next; without it the answers stay
+  output logic [AddrBits-1:0]    addr_o,      // with read_o: of the record
+  output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles; 0 outside of a phase
+  input  logic [HaloBits-1:0]    record_i,    // an own one, as asked for
+  input  logic [HaloBits-1:0]    halo_i,      // of the segment picked, as asked for; 0 if own or none; not Narrow
   output logic [WordBits-1:0]    word_o,      // Narrow: number of the next cycle's halo word
   input  logic [LinkBits-1:0]    word_i,      // Narrow: of pick_o, word_o of the cycle before; of none 0
   // To the link registers.
   input  logic                   can_load_i,  // both links can
   output logic                   load_o,      // both load this beat
   output logic                   end_o,       // it is an end beat
-  output logic [LinkBits-1:0]    data_o,      // with load_o: payload
+  output logic [LinkBits-1:0]    data_o,      // with load_o: payload but for halos; 0 outside of a phase
+  output logic [LinkBits-1:0]    halo_data_o, // with load_o: payload of halos, or 0; late in the cycle
   output logic                   first_own_o, // the first beat of an own record is loaded
   output logic                   sent_o       // the end beat was loaded
 );
@@ -38,76 +42,76 @@ module cuboct_relay #(
   localparam int BeatBits = (Beats > 1) ? $clog2(Beats) : 1;
   localparam int LastBeat = Beats - 1;
   localparam int Segments = 2 * Axes - 1;
+  localparam logic [CountBits-1:0] One = 1;
 
-  logic [2:0]           segment_d, segment_q, segments;
-  logic [Segments-1:0]  pick_d, pick_q;  // from registers: what is picked comes late in the cycle
-  logic [AddrBits-1:0]  record_d, record_q;
+  // What is asked for next depends on registers alone, whether it is asked for on the links.
+  logic [Segments-1:0]  pick_d, pick_q, pick_next;
   logic [BeatBits-1:0]  beat_d, beat_q;
   logic                 sent_d, sent_q;
-  logic [CountBits-1:0] count;
-  logic                 past, empty, working, last_record;
+  logic [CountBits-1:0] count_d, count_q, next_count;  // of this segment, of the one after it
+  logic [CountBits-1:0] next_d, next_q;                // the record's number and 1
+  logic                 past, empty, working, leaves, last_segment, stays, moves;
 
-  assign segments = {axis_i, 1'b1};  // one more than two per axis before this one
   integer s;
   always_comb begin
-    count = '0;
-    for (s = 0; s < Segments; s = s + 1) begin
-      count     = count | (counts_i[s*CountBits +: CountBits] & {CountBits{pick_q[s]}});
-      pick_d[s] = (segment_d == s[2:0]) && (segment_d != segments);
+    next_count   = '0;
+    last_segment = pick_q[0] && (axis_i == 2'd0);
+    for (s = 1; s < Segments; s = s + 1) begin
+      next_count = next_count | (counts_i[s*CountBits +: CountBits] & {CountBits{pick_q[s-1]}});
+      if (pick_q[s] && {axis_i, 1'b0} == s[2:0]) last_segment = 1'b1;
     end
   end
-
-  assign working     = active_i && !sent_q;
-  assign past        = (pick_q == '0);
-  assign empty       = (count == '0);
-  assign last_record = (count == {{(CountBits - AddrBits) {1'b0}}, record_q} + 1'b1);
-  assign end_o       = working && past && can_load_i;
-  assign load_o      = working && can_load_i && (past || !empty);
+  assign working = active_i && !sent_q;
+  assign past    = (pick_q == '0);
+  assign empty   = (count_q == '0);
+  assign end_o   = working && past && can_load_i;
+  assign load_o  = working && can_load_i && (past || !empty);
+  // To the next record, or to the next segment, or past them all.
+  assign leaves    = active_i && (empty || count_q == next_q);
+  assign stays     = active_i && !past && !empty;  // but for the last beat
+  assign read_o    = !stays || (can_load_i && beat_q == LastBeat[BeatBits-1:0]);
+  assign moves     = working && !past && read_o;
+  assign pick_next = !leaves ? pick_q : last_segment ? '0 : pick_q << 1;
 
   always_comb begin
-    segment_d = segment_q;
-    record_d  = record_q;
-    beat_d    = beat_q;
-    sent_d    = sent_q;
-    if (working && !past && empty) begin
-      segment_d = segment_q + 3'd1;
-    end else if (end_o) begin
-      sent_d = 1'b1;
-    end else if (load_o) begin
-      beat_d = beat_q + 1'b1;
-      if (beat_q == LastBeat[BeatBits-1:0]) begin
-        beat_d   = '0;
-        record_d = record_q + 1'b1;
-        if (last_record) begin
-          record_d  = '0;
-          segment_d = segment_q + 3'd1;
-        end
-      end
+    pick_d  = pick_q;
+    count_d = count_q;
+    next_d  = next_q;
+    beat_d  = beat_q;
+    sent_d  = sent_q || end_o;
+    if (load_o && !past) beat_d = beat_q + 1'b1;
+    if (moves) begin
+      pick_d = pick_next;
+      beat_d = '0;
+      next_d = leaves ? One : next_q + 1'b1;
+      if (leaves) count_d = next_count;
     end
-    if (done_i) begin
-      segment_d = 3'd0;
-      sent_d    = 1'b0;
+    if (!active_i || done_i) begin
+      pick_d  = {{(Segments - 1) {1'b0}}, 1'b1};
+      count_d = counts_i[0 +: CountBits];
+      sent_d  = 1'b0;
     end
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
-      segment_q <= 3'd0;
-      pick_q    <= {{(Segments - 1) {1'b0}}, 1'b1};
-      record_q  <= '0;
-      beat_q    <= '0;
-      sent_q    <= 1'b0;
+      pick_q  <= {{(Segments - 1) {1'b0}}, 1'b1};
+      count_q <= '0;
+      next_q  <= One;
+      beat_q  <= '0;
+      sent_q  <= 1'b0;
     end else begin
-      segment_q <= segment_d;
-      pick_q    <= pick_d;
-      record_q  <= record_d;
-      beat_q    <= beat_d;
-      sent_q    <= sent_d;
+      pick_q  <= pick_d;
+      count_q <= count_d;
+      next_q  <= next_d;
+      beat_q  <= beat_d;
+      sent_q  <= sent_d;
     end
   end
 
   assign pick_o      = pick_q;
-  assign addr_o      = record_d;
-  assign slot_o      = record_d[SlotBits-1:0];
+  assign clear_o     = ~pick_next & {Segments{read_o}};
+  assign addr_o      = (active_i && !past && !leaves) ? next_q[AddrBits-1:0] : '0;
+  assign slot_o      = addr_o[SlotBits-1:0];
   assign sent_o      = sent_q;
   assign first_own_o = load_o && pick_q[0] && (beat_q == '0);
 
@@ -120,18 +124,24 @@ module cuboct_relay #(
     always_comb begin
       word_d = word_q;
       if (load_o && !pick_q[0]) word_d = word_q + 1'b1;
-      if (segment_d != segment_q) word_d = FirstWord[WordBits-1:0];
+      if ((moves && leaves) || done_i) word_d = FirstWord[WordBits-1:0];
     end
     always_ff @(posedge clk_i) begin
       if (!rst_ni) word_q <= FirstWord[WordBits-1:0];
       else word_q <= word_d;
     end
-    assign word_o = word_d;
-    assign data_o = pick_q[0] ? beat : word_i;
+    assign word_o      = word_d;
+    assign data_o      = !active_i ? '0 : pick_q[0] ? beat : word_i;
+    assign halo_data_o = '0;
+    logic unused_halo;
+    assign unused_halo = ^halo_i;
   end else begin : gen_records
     logic unused_word;
     assign unused_word = ^word_i;
     assign word_o      = '0;
-    assign data_o      = beat;
+    assign data_o      = (active_i && pick_q[0]) ? beat : '0;
+    cuboct_beat #(.Bits(HaloBits), .LinkBits(LinkBits), .BeatBits(BeatBits)) u_halo_beat (
+      .word_i(halo_i), .beat_i(beat_q), .data_o(halo_data_o)
+    );
   end
 endmodule

@@ -20,7 +20,8 @@ module cuboct_sequencer #(
   output logic        update_o,         // in UPDATE
   output logic        migrate_o,        // in a migration phase
   output logic        dump_o,           // in DUMP
-  output logic [1:0]  axis_o,           // of exchange or migration
+  output logic [1:0]  axis_o,           // of exchange or migration, else 0
+  output logic [Axes-1:0] onehot_o,     // axis_o, one bit each
   output logic        engine_o,         // the force engine runs
   output logic [Axes-1:0] past_exchange_o,  // EXCHANGE_X, _Y, _Z of this step is over; only while the engine runs
   output logic        step_end_o,       // last cycle of the last migration phase
@@ -42,9 +43,11 @@ module cuboct_sequencer #(
   localparam int LastExchange = (Axes == 3) ? ExchangeZ : ExchangeY;
   localparam int LastMigrate  = (Axes == 3) ? MigrateZ : MigrateY;
 
-  logic [Idle:0] state_d, state_q, enter;
+  logic [Idle:0] state_d, state_q, enter, leave;  // leave: of the states that the machine is not in, anything
   logic          first_d, first_q;  // first cycle of a state
   logic          exchange_d, exchange_q, migrate_d, migrate_q;  // any of their states
+  logic          y_d, z_d;
+  logic [2:0]    axis_q;  // as onehot_o
   logic [31:0]   steps_d, steps_q;  // still to do, this one included
   logic          start, last_step, none;
 
@@ -61,8 +64,11 @@ module cuboct_sequencer #(
   assign enter[MigrateZ]  = (Axes == 3) && state_q[MigrateY] && migrate_done_i;
   assign enter[Dump]      = (start && none) || (step_end_o && last_step);
   assign enter[Idle]      = state_q[Dump] && dump_done_i;
+  assign leave            = {start, dump_done_i, {3{migrate_done_i}}, update_done_i, force_done_i, {3{exchange_done_i}}};
   assign first_d          = (enter != '0);
-  assign state_d          = first_d ? enter : state_q;
+  assign state_d          = enter | (state_q & ~leave);
+  assign z_d              = enter[ExchangeZ] || enter[MigrateZ] || (axis_q[2] && !enter[Force] && !step_end_o);
+  assign y_d              = enter[ExchangeY] || enter[MigrateY] || (axis_q[1] && !z_d && !enter[Force] && !step_end_o);
   assign exchange_d       = enter[ExchangeX] || (exchange_q && !enter[Force]);
   assign migrate_d        = enter[MigrateX] || (migrate_q && !step_end_o);
   assign steps_d          = start ? steps_i : step_end_o ? steps_q - 32'd1 : steps_q;
@@ -74,12 +80,14 @@ module cuboct_sequencer #(
       steps_q    <= '0;
       exchange_q <= 1'b0;
       migrate_q  <= 1'b0;
+      axis_q     <= 3'b001;
     end else begin
       state_q    <= state_d;
       first_q    <= first_d;
       steps_q    <= steps_d;
       exchange_q <= exchange_d;
       migrate_q  <= migrate_d;
+      axis_q     <= {z_d, y_d, !z_d && !y_d};
     end
   end
 
@@ -99,7 +107,8 @@ module cuboct_sequencer #(
     assign past_exchange_o[1] = in_force || state_q[ExchangeZ];
   end
   assign step_end_o = state_q[LastMigrate] && migrate_done_i;
-  assign axis_o = {state_q[ExchangeZ] || state_q[MigrateZ], state_q[ExchangeY] || state_q[MigrateY]};
+  assign axis_o     = axis_q[2:1];
+  assign onehot_o   = axis_q[Axes-1:0];
 
   assign phase_start_o = {first_q && state_q[MigrateZ], first_q && state_q[MigrateY],
                           first_q && state_q[MigrateX], first_q && update_o, engine_first,

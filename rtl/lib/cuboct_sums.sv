@@ -22,10 +22,14 @@ module cuboct_sums #(
 
   logic [Capacity-1:0]  held_d, held_q;  // slots whose sum is not zero by default
   logic [SlotBits-1:0]  slot_q;
+  logic                 counts_q;          // held_q of slot_q
   logic [Axes*SumBits-1:0] word, old, added;
 
-  always_ff @(posedge clk_i) slot_q <= next_slot_i;
-  assign old = held_q[slot_q[IndexBits-1:0]] ? word : '0;
+  always_ff @(posedge clk_i) begin
+    slot_q   <= next_slot_i;
+    counts_q <= held_d[next_slot_i[IndexBits-1:0]];
+  end
+  assign old = counts_q ? word : '0;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis
     logic signed [SumBits-1:0] push;
     cuboct_resize #(.InBits(KickBits), .OutBits(SumBits)) u_push (
@@ -46,7 +50,7 @@ module cuboct_sums #(
   end
   if (Spaced != 0) begin : gen_memory
     cuboct_ram #(.Bits(Axes * SumBits), .Depth(Capacity), .AddrBits(SlotBits)) u_words (
-      .clk_i, .write_i(kick_valid_i), .write_addr_i(slot_q), .write_data_i(added), .read_i(1'b1),
+      .clk_i, .write_i(kick_valid_i), .write_addr_i(slot_q), .write_data_i(added), .read_i(1'b1), .clear_i(1'b0),
       .read_addr_i(next_slot_i), .read_data_o(word)
     );
   end else begin : gen_registers

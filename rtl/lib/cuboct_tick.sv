@@ -14,6 +14,7 @@ module cuboct_tick #(
   input  logic                 step_i,         // with update_i: the next step follows; DUMP steps in every cycle
   input  logic [CountBits-1:0] count_i,        // own particles; stays in both phases
   output logic [TickBits-1:0]  tick_o,         // the slot of this step, 0 at rest
+  // In a phase with particles; after the last cycle of UPDATE, too.
   output logic [TickBits-1:0]  next_o,         // tick_o of the next cycle
   output logic                 more_o,         // tick_o < count_i, in UPDATE
   output logic                 update_done_o,  // last cycle of UPDATE
@@ -44,6 +45,7 @@ module cuboct_tick #(
       past_d    = past_q << 1;
       past_d[0] = past_q[0] || last_q || few;
     end
+    next_o = past_q[Tail] ? '0 : tick_d;  // from registers
     if (done) begin
       tick_d = '0;
       last_d = 1'b0;
@@ -63,7 +65,6 @@ module cuboct_tick #(
   end
 
   assign tick_o        = tick_q;
-  assign next_o        = tick_d;
   assign more_o        = !none && !past_q[0];
   assign update_done_o = update_i && (none || past_q[Tail]);
   assign dump_done_o   = dump_i && (few || last_q);

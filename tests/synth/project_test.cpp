@@ -12,6 +12,7 @@
 #include "model/process.h"
 #include "rtl/synth/flow.h"
 #include "rtl/synth/project.h"
+#include "rtl/synth/tool.h"
 
 namespace cuboct::synth {
 namespace {
