@@ -11,6 +11,7 @@ rtl/cuboct_halos.sv
 rtl/cuboct_hold.sv
 rtl/cuboct_inbox.sv
 rtl/cuboct_issue.sv
+rtl/cuboct_late.sv
 rtl/cuboct_lattice.sv
 rtl/cuboct_least_fault.sv
 rtl/cuboct_link_rx.sv
@@ -31,6 +32,7 @@ rtl/cuboct_sequencer.sv
 rtl/cuboct_slots.sv
 rtl/cuboct_streamer.sv
 rtl/cuboct_sums.sv
+rtl/cuboct_tick.sv
 rtl/cuboct_type_rom.sv
 rtl/cuboct_update.sv
 rtl/cuboct_word_halos.sv

@@ -293,7 +293,7 @@ module cuboct_node_core #(
     assign halo_word = '0;
     assign record    = '0;
     logic unused_narrow;
-    assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, relay_clear[0]};
+    assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, relay_pick, relay_clear[0]};
   end
 
   // leaving[a]: some own particle has to go along axis a.

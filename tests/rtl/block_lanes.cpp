@@ -136,7 +136,7 @@ std::string print_blocks(const Plan& plan) {
   text +=
       "\n  logic new_valid, fault;\n  logic [3:0] code;\n  logic signed [63:0] number;\n"
       "  logic [3*P-1:0] new_x;\n  logic [5:0] away;\n  logic [3*V-1:0] new_v;\n  logic [T-1:0] new_type;\n"
-      "  logic [Id-1:0] new_id;\n  logic [3*U-1:0] new_u;\n  cuboct_update #(\n    " +
+      "  logic [Id-1:0] new_id, fault_id;\n  logic [3*U-1:0] new_u;\n  cuboct_update #(\n    " +
       given({"PositionFrac", "Guard", "VelocityBits", "SumBits", "Pd", "DisplacementBits", "GainBits",
              "GainFrac", "ConstantBits", "IdBits"}) +
       fmt::format(
@@ -149,11 +149,12 @@ std::string print_blocks(const Plan& plan) {
   text +=
       "    .valid_o(new_valid), .slot_o(new_slot), .x_o(new_x), .away_o(away), .v_o(new_v), "
       ".type_o(new_type),\n"
-      "    .id_o(new_id), .u_o(new_u), .fault_o(fault), .fault_code_o(code), .fault_number_o(number)\n  );\n";
+      "    .id_o(new_id), .u_o(new_u), .fault_o(fault), .fault_code_o(code),\n"
+      "    .fault_id_o(fault_id), .fault_number_o(number)\n  );\n";
   text += to(out::update_valid, "new_valid") + to(out::update_slot, "new_slot") +
           to_axes(out::x, "new_x", "P", false) + to_axes(out::away, "away", "2") +
           to_axes(out::v, "new_v", "V") + to(out::type, "new_type") + to(out::id, "new_id") +
-          to_axes(out::u, "new_u", "U") + to(out::fault, "fault") + to(out::code, "code") +
+          to_axes(out::u, "new_u", "U") + to(out::fault, "fault") + to(out::fault_id, "fault_id") + to(out::code, "code") +
           to(out::number, "number", true);
 
   text += "\n";

@@ -61,6 +61,7 @@ enum Lane : int {
   id,
   u,
   fault = u + 3,
+  fault_id,
   code,
   number,
   // The tables alone.

@@ -315,14 +315,16 @@ void compare_pairs(const Plan& plan, const Stimuli& s, const Schedule& schedule,
 
 void compare_updates(const Plan& plan, const Stimuli& s, const Schedule& schedule,
                      const std::vector<OutLanes>& trace, Outcome& outcome) {
-  // UPDATE ends a cycle after the last particle is written, which is a cycle after it is at the outputs.
+  // UPDATE ends a cycle after the last particle is written, which is a cycle after it is at the outputs. With types held by
+  // force a fault is told a cycle later than the particle is there.
   const auto last = static_cast<size_t>(plan.latency.update - 2);
+  const size_t told = last + (plan.rule.pd ? 1 : 0);
   const int64_t cell = int64_t{1} << plan.rule.widths.position_frac;
   Comparison compare(trace, outcome.difference);
-  for (size_t c = 0; c + last < trace.size(); ++c) {
+  for (size_t c = 0; c + told < trace.size(); ++c) {
     if (c >= schedule.size() || schedule[c] == kNothing) {
       compare.lane("no particle", "update: valid", c + last, out::update_valid, 0);
-      compare.lane("no particle", "update: fault", c + last, out::fault, 0);
+      compare.lane("no particle", "update: fault", c + told, out::fault, 0);
       continue;
     }
     const size_t k = schedule[c], at = c + last;
@@ -344,11 +346,12 @@ void compare_updates(const Plan& plan, const Stimuli& s, const Schedule& schedul
     compare.axes(place, "update: away", at, out::away, away);
     if (plan.rule.pd) compare.axes(place, "update: u", at, out::u, u.result.u);
     const bool fault = u.result.fault != Fault::none;
-    compare.lane(place, "update: fault", at, out::fault, fault);
+    compare.lane(place, "update: fault", c + told, out::fault, fault);
     if (!fault) continue;
     ++outcome.update_faults;
-    compare.lane(place, "update: fault code", at, out::code, static_cast<int64_t>(u.result.fault));
-    compare.lane(place, "update: fault number", at, out::number, u.result.number);
+    compare.lane(place, "update: fault code", c + told, out::code, static_cast<int64_t>(u.result.fault));
+    compare.lane(place, "update: fault id", c + told, out::fault_id, id);
+    compare.lane(place, "update: fault number", c + told, out::number, u.result.number);
   }
 }
 
