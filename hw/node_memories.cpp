@@ -77,18 +77,20 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
                       Kind::late});
   const int count_bits = std::max(1, clog2(capacity)) + 1;
   // Of own cells, and of those that particles go to from below, from above.
-  const auto counts = [&](uint64_t depth, int copies) {
-    memories.push_back({"counts", depth, count_bits, copies, Kind::prompt, 3});
+  const auto counts = [&](uint64_t depth, int copies, int reads) {
+    memories.push_back({"counts", depth, count_bits, copies, Kind::prompt, reads});
   };
-  counts(cells, 3);
+  counts(cells, 1, 4);
+  counts(cells, 2, 1);
+  memories.push_back({"where own particles go", cells * capacity, 2 * rule.axes, 1, Kind::prompt});
   const int halo_bits = words.halo_bits - words.halo_cell_bits;
   for (int a = 0; a < rule.axes; ++a) {
     const uint64_t layer = grid.halo_tags(a), face = grid.migrate_tags(a);
     ram("halos, particles from a face", (layer + face) * capacity, std::max(halo_bits, words.particle_bits),
         2);
     if (a < rule.axes - 1) ram("halos, for the relay", layer * capacity, halo_bits, 2);
-    counts(layer, 2);
-    counts(face, 2);
+    counts(layer, 2, 3);
+    counts(face, 2, 2);
   }
   return memories;
 }

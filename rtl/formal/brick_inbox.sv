@@ -19,7 +19,7 @@ module brick_inbox_formal #(
   input logic [HaloBits-1:0]     halo_i,
   input logic                    read_i,
   input logic [5:0]              addr_i, relay_addr_i,
-  input logic [2:0]              stream_cell_i, relay_cell_i, land_low_i, land_high_i,
+  input logic [2:0]              stream_cell_i, relay_cell_i, land_cell_i,
   input logic                    migrating_i,
   input logic                    forget_i,
   input logic                    push_i,
@@ -39,8 +39,7 @@ module brick_inbox_formal #(
   always_ff @(posedge clk_i) running_q <= 1'b1;
   (* anyconst *) logic [2:0] cell_at, face_at;  // the watched cell of the layer, of the face
 
-  logic [CountBits-1:0]    stream_count, relay_count;
-  logic [2*CountBits-1:0]  land_count;
+  logic [CountBits-1:0]    stream_count, relay_count, land_count;
   logic [HaloBits-1:0]     halo, relay_halo;
   logic                    none;
   logic [ParticleBits-1:0] particle;
@@ -53,7 +52,7 @@ module brick_inbox_formal #(
     .halo_o(halo), .relay_cell_i(relay_cell_i[TagBits-1:0]), .relay_count_o(relay_count),
     .relay_addr_i(relay_addr_i[AddrBits-1:0]), .relay_halo_o(relay_halo), .migrating_i, .forget_i, .push_i,
     .particle_cell_i(particle_cell_i[TagBits-1:0]), .particle_i,
-    .land_cell_i({land_high_i[TagBits-1:0], land_low_i[TagBits-1:0]}), .land_count_o(land_count), .pop_i,
+    .land_cell_i(land_cell_i[TagBits-1:0]), .land_count_o(land_count), .pop_i,
     .particle_o(particle), .none_o(none)
   );
 
@@ -181,8 +180,7 @@ module brick_inbox_formal #(
       i_stored: assert (!there || stored[HaloBits-1:0] == value_q);
       a_count:    assert (stream_cell_i != cell_at || stream_count == halos);
       a_relays:   assert (relay_cell_i != cell_at || relay_count == halos);
-      a_land:     assert ((land_low_i != face_at || land_count[0 +: CountBits] == came)
-                          && (land_high_i != face_at || land_count[CountBits +: CountBits] == came));
+      a_land:     assert (land_cell_i != face_at || land_count == came);
       a_none:     assert (none == (came_q == '0));
       a_halo:     assert (!asked_q || halo == answer_q);
       a_relay:    assert (!relayed_q || Relayed == 0 || relay_halo == relay_answer_q);

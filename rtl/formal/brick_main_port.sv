@@ -3,7 +3,8 @@
 // for a slot of the next cycle's cell, the numbers are put together by OR. Whenever one of them looks at the answer, it is
 // that of the slot and cell meant, and no update writes then; what the relay looks at of a halo is of its cell's place in
 // its layer; the sums were asked for the slot that is taken, and are never set to zero while a pipe is busy; an arrival is
-// taken only if its inbox was asked in the cycle before. All of cuboct_brick_core that controls; the rest is any value, as
+// taken only if its inbox was asked in the cycle before. Where a particle goes is asked of the slot that the migration
+// looks at, and what is written in the cycle of a question is told to be. All of cuboct_brick_core that controls; the rest is any value, as
 // are the four links.
 module brick_main_port_formal #(
   parameter int BrickX   = 2,
@@ -94,19 +95,25 @@ module brick_main_port_formal #(
   (* keep *) logic [1:0]                tap_relay_load, tap_pop;
   (* keep *) logic [2:0]                tap_migrate_state;
   (* keep *) logic [3*GridBits-1:0]     tap_cell;
-  (* keep *) logic [CellBits-1:0]       tap_own;
+  (* keep *) logic [CellBits-1:0]       tap_own, tap_relay_own;
   (* keep *) logic [3*TagBits-1:0]      tap_layer;
   (* keep *) logic [CountBits-1:0]      tap_count, tap_migrate_slot;
   (* keep *) logic [SlotBits-1:0]       tap_relay_slot, tap_tick_slot;
-  (* keep *) logic [AddrBits-1:0]       tap_main_addr, tap_sums_addr;
+  (* keep *) logic [AddrBits-1:0]       tap_main_addr, tap_sums_addr, tap_away_addr, tap_write_addr;
+  (* keep *) logic [AddrBits-1:0]       tap_update_place;
+  (* keep *) logic                      tap_leave, tap_own_write, tap_main_written, tap_away_written;
   (* keep *) logic [3*HaloAddrBits-1:0] tap_halo_addr;
   logic                      relays, scans, dumps, below, above, migrated_q;
-  logic [AddrBits-1:0]       asked_q, summed_q;
+  logic [AddrBits-1:0]       asked_q, summed_q, away_next, away_q;
+  logic [Taken*AddrBits-1:0] places_q;
   logic [3*HaloAddrBits-1:0] halo_q;
   logic [GridBits-1:0]       x;
   assign x      = tap_cell[0 +: GridBits];
   assign below  = (x == '0);  // along x the relay of y walks halos too
   assign above  = (x > extent[0 +: GridBits]);
+  assign away_next = tap_leave ? tap_away_addr : away_q;
+  // The update writes where it took.
+  always_comb assume (!tap_update_write || tap_update_place == places_q[(Taken-1)*AddrBits +: AddrBits]);
   assign relays = (tap_relay_load != 2'b00) && !tap_relay_end;
   assign scans  = tap_in_migrate && tap_migrate_state == 3'd1 && tap_visit;
   assign dumps  = tap_in_dump && tap_count != '0;
@@ -114,6 +121,8 @@ module brick_main_port_formal #(
     asked_q    <= tap_main_addr;
     summed_q   <= tap_sums_addr;
     halo_q     <= tap_halo_addr;
+    away_q     <= running_q ? away_next : '0;
+    places_q   <= {places_q[(Taken-1)*AddrBits-1:0], tap_own, tap_tick_slot};
     migrated_q <= running_q && tap_in_migrate;
   end
   function automatic logic [AddrBits-1:0] place(input logic [CellBits-1:0] at, input logic [SlotBits-1:0] slot);
@@ -127,12 +136,15 @@ module brick_main_port_formal #(
   assign halo_place = {{(8 - TagBits) {1'b0}}, tap_layer[0 +: TagBits]} * Capacity[7:0] + {{(8 - SlotBits) {1'b0}}, tap_relay_slot};
   always_ff @(posedge clk_i) begin
     if (running_q) begin
-      a_relay:   assert (!relays || below || above || asked_q == place(tap_own, tap_relay_slot));
+      a_relay:   assert (!relays || below || above || asked_q == place(tap_relay_own, tap_relay_slot));
       a_halo:    assert (!relays || !(below || above) || halo_q[0 +: HaloAddrBits] == halo_place[HaloAddrBits-1:0]);
       a_update:  assert (!tap_take || asked_q == place(tap_own, tap_tick_slot));
       a_sums:    assert (!tap_take || summed_q == place(tap_own, tap_tick_slot));
       a_zero:    assert (!(tap_take || tap_load || tap_land) || !tap_pipe_busy);
       a_migrate: assert (!scans || asked_q == place(tap_own, tap_migrate_slot[SlotBits-1:0]));
+      a_away:    assert (!scans || away_q == place(tap_own, tap_migrate_slot[SlotBits-1:0]));
+      a_written: assert (!tap_own_write || (tap_main_written == (tap_write_addr == tap_main_addr)
+                                            && tap_away_written == (tap_write_addr == away_next)));
       a_dump:    assert (!dumps || asked_q == place(tap_own, tap_tick_slot));
       a_fresh:   assert (!(relays || scans || dumps) || !tap_update_write);
       a_take:    assert (tap_pop == 2'b00 || migrated_q);

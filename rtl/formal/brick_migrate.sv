@@ -25,7 +25,7 @@ module brick_migrate_formal #(
   input logic [1:0]  end_i,       // all has come
   input logic [2*Axes+1:0] data_i,                     // of a slot that is not the watched one
   input logic [4*Axes-1:0] came_i,                     // arrivals that are not the watched one
-  input logic [4*$clog2(Capacity+1)-1:0] stray_i,      // counts that say nothing
+  input logic [2*$clog2(Capacity+1)-1:0] stray_i,      // counts that say nothing
   input logic [1:0]  none_i
 );
   localparam int PositionBits = 1;
@@ -52,7 +52,6 @@ module brick_migrate_formal #(
   localparam int Beats     = (SentBits + LinkBits - 1) / LinkBits;
   localparam int LastBeat  = Beats - 1;
   localparam int SumBits   = $clog2(Cells * Capacity + 1) + 1;
-  localparam logic [GridBits-1:0] One = 1;
 
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
@@ -94,22 +93,17 @@ module brick_migrate_formal #(
   assign ended = ended_q | end_i | ~has_link;
 
   logic [CellBits-1:0]     own_cell, after_cell, next_cell;
-  logic [3*GridBits-1:0]   at, after, next;
-  logic [3*TagBits-1:0]    face, layer, other_layer, other_face, next_layer, next_face;
-  logic                    advance, last;
-  cuboct_brick_walk #(.GridBits(GridBits)) u_walk (
-    .clk_i, .rst_ni(running_q), .low_i({3{One}}), .high_i(extent), .advance_i(advance), .restart_i(1'b0),
-    .first_i({3{One}}), .cell_o(at), .after_o(after), .next_o(next), .last_o(last)
+  logic [3*TagBits-1:0]    face, after_face;
+  logic [2:0]              lows, highs, after_lows, after_highs;
+  logic                    advance;
+  cuboct_brick_cells #(
+    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+  ) u_cells (
+    .clk_i, .rst_ni(running_q), .extent_i(extent), .advance_i(advance), .own_o(own_cell), .face_o(face), .low_o(lows),
+    .high_o(highs), .after_own_o(after_cell), .after_face_o(after_face), .after_low_o(after_lows),
+    .after_high_o(after_highs)
   );
-  cuboct_brick_place #(
-    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
-  ) u_place (.cell_i(at), .own_o(own_cell), .layer_o(layer), .face_o(face));
-  cuboct_brick_place #(
-    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
-  ) u_after (.cell_i(after), .own_o(after_cell), .layer_o(other_layer), .face_o(other_face));
-  cuboct_brick_place #(
-    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
-  ) u_next (.cell_i(next), .own_o(next_cell), .layer_o(next_layer), .face_o(next_face));
+  assign next_cell = advance ? after_cell : own_cell;
 
   // Where each cell lies along the axis of the phase, and whether it is there.
   logic [Cells-1:0]    there, at_low, at_high;
@@ -137,15 +131,15 @@ module brick_migrate_formal #(
 
   // Counts, what comes, exits: what is said of the cell that the walk is in.
   logic [Cells*CountBits-1:0] counts_q;
-  logic [CountBits-1:0]       count, new_count, low_here, high_here, low_after, high_after, w_count;
-  logic                       count_set, leaving, here_low, here_high, after_low, after_high;
+  logic [CountBits-1:0]       count, new_count, low_asked, high_asked, w_count;
+  logic                       count_set, leaving, here_low, here_high, asked_low, asked_high, of_after;
   logic [1:0]                 exit_here;
   logic [CountBits-1:0]       low_target, high_target;
   logic [SumBits-1:0]         low_all, high_all, low_before, high_before;
   integer                     k;
   always_comb begin
-    {count, low_here, high_here, low_after, high_after, w_count, low_target, high_target} = '0;
-    {leaving, here_low, here_high, after_low, after_high, exit_here} = '0;
+    {count, low_asked, high_asked, w_count, low_target, high_target} = '0;
+    {leaving, here_low, here_high, asked_low, asked_high, exit_here} = '0;
     {low_all, high_all, low_before, high_before} = '0;
     for (k = 0; k < Cells; k = k + 1) begin
       if (own_cell == k) begin
@@ -153,15 +147,13 @@ module brick_migrate_formal #(
         leaving   = leaving_q[k];
         here_low  = at_low[k];
         here_high = at_high[k];
-        low_here  = low_q[k*Held +: Held];
-        high_here = high_q[k*Held +: Held];
         exit_here = exits[2*k +: 2];
       end
-      if (after_cell == k) begin
-        after_low  = at_low[k];
-        after_high = at_high[k];
-        low_after  = low_q[k*Held +: Held];
-        high_after = high_q[k*Held +: Held];
+      if ((of_after ? after_cell : own_cell) == k) begin
+        asked_low  = at_low[k];
+        asked_high = at_high[k];
+        low_asked  = low_q[k*Held +: Held];
+        high_asked = high_q[k*Held +: Held];
       end
       if (w_cell == k) w_count = counts_q[k*CountBits +: CountBits];
       if (w_target == k) begin
@@ -185,7 +177,8 @@ module brick_migrate_formal #(
   end
 
   // Slots answer in the cycle after the question; an answer stays while the question does.
-  logic [SlotBits-1:0]     read_slot, slot_q, held_slot_q, write_slot;
+  logic [SlotBits-1:0]     slot_q, held_slot_q, write_slot;
+  logic                    leave, cell_ends;
   logic [CellBits-1:0]     asked_q, held_cell_q;
   logic                    held_q, is_watched;
   logic [ParticleBits+1:0] read_data, data_q, write_data;
@@ -197,7 +190,8 @@ module brick_migrate_formal #(
   end
   always_ff @(posedge clk_i) begin
     asked_q     <= next_cell;
-    slot_q      <= read_slot;
+    if (!running_q) slot_q <= '0;
+    else if (leave) slot_q <= cell_ends ? '0 : slot_q + 1'b1;
     held_cell_q <= asked_q;
     held_slot_q <= slot_q;
     held_q      <= active_q;
@@ -208,7 +202,7 @@ module brick_migrate_formal #(
   logic [SumBits-1:0]        popped_low_q, popped_high_q;
   logic [1:0]                pop, none;
   logic [2*ParticleBits-1:0] arrived;
-  logic [4*CountBits-1:0]    land;
+  logic [2*CountBits-1:0]    land;
   localparam int Pad = CountBits - Held;
   function automatic logic [CountBits-1:0] wide(input logic [Held-1:0] a);
     wide = a;
@@ -218,10 +212,8 @@ module brick_migrate_formal #(
     if (watch_q && !own && !w_above && popped_low_q == low_before + w_number) arrived[0 +: ParticleBits] = w_value;
     if (watch_q && !own && w_above && popped_high_q == high_before + w_number) arrived[ParticleBits +: ParticleBits] = w_value;
     // What is not final, or of a cell that is not at the face, says nothing.
-    land[0 +: CountBits]           = (ended[0] && here_low) ? low_here : wide(stray_i[0 +: Held]);
-    land[CountBits +: CountBits]   = (ended[0] && after_low) ? low_after : wide(stray_i[Held +: Held]);
-    land[2*CountBits +: CountBits] = (ended[1] && here_high) ? high_here : wide(stray_i[2*Held +: Held]);
-    land[3*CountBits +: CountBits] = (ended[1] && after_high) ? high_after : wide(stray_i[3*Held +: Held]);
+    land[0 +: CountBits]         = (ended[0] && asked_low) ? low_asked : wide(stray_i[0 +: Held]);
+    land[CountBits +: CountBits] = (ended[1] && asked_high) ? high_asked : wide(stray_i[Held +: Held]);
     none = {ended[1] ? high_all == '0 : none_i[1], ended[0] ? low_all == '0 : none_i[0]};
   end
   always_ff @(posedge clk_i) begin
@@ -235,22 +227,25 @@ module brick_migrate_formal #(
   logic [1:0]              load;
   logic [LinkBits-1:0]     data;
   logic [Axes-1:0]         more;
-  logic [ParticleBits-1:0] told;
+  logic [ParticleBits-1:0] told, stored;
+  logic                    from_above_said;
   logic [2*Axes-1:0]       all_exits;
   integer                  q;
   always_comb for (q = 0; q < Axes; q = q + 1) all_exits[2*q +: 2] = (axis_q == q) ? exit_here : stray_i[1:0];
   cuboct_brick_migrate #(
-    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits),
+    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .CellBits(CellBits),
     .TagBits(TagBits), .FaceBits(FaceBits), .ParticleBits(ParticleBits), .PositionBits(PositionBits),
     .LinkBits(LinkBits), .Capacity(Capacity), .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_o(done), .extent_i(extent),
-    .advance_o(advance), .cell_i(at), .last_i(last), .own_i(own_cell), .own_after_i(after_cell), .after_i(after),
-    .face_i(face), .any_leaving_i(some_leaving), .leaving_i(leaving), .exit_i(all_exits), .count_i(count),
-    .count_set_o(count_set), .count_o(new_count), .read_slot_o(read_slot), .read_data_i(read_data), .write_o(write),
-    .land_o(lands), .write_slot_o(write_slot), .write_data_o(write_data), .leaving_more_o(more), .can_load_i,
-    .load_o(load), .end_o(is_end), .data_o(data), .none_i(none), .ended_i(ended), .land_count_i(land),
-    .arrived_i(arrived), .pop_o(pop), .fault_left_o(left), .fault_full_o(full), .fault_particle_o(told)
+    .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_o(done), .advance_o(advance),
+    .own_i(own_cell), .face_i(face), .low_i(lows), .high_i(highs), .after_own_i(after_cell), .after_low_i(after_lows),
+    .after_high_i(after_highs), .any_leaving_i(some_leaving), .leaving_i(leaving), .exit_i(all_exits), .count_i(count),
+    .count_set_o(count_set), .count_o(new_count), .leave_o(leave), .ends_o(cell_ends),
+    .away_i({read_data[PositionBits +: AwayBits], read_data[ParticleBits +: 2]}), .read_data_i(read_data),
+    .write_o(write), .land_o(lands), .write_slot_o(write_slot), .write_data_o(write_data), .leaving_more_o(more),
+    .can_load_i, .load_o(load), .end_o(is_end), .data_o(data), .none_i(none), .ended_i(ended), .of_after_o(of_after),
+    .land_count_i(land), .arrived_i(arrived), .pop_o(pop), .fault_left_o(left), .fault_full_o(full),
+    .fault_particle_o(told), .from_above_o(from_above_said), .stored_o(stored)
   );
   (* keep *) logic tap_moves;  // a particle goes to another cell
 
@@ -448,8 +443,9 @@ module brick_migrate_formal #(
       a_appended: assert (!landed_w_q || dropped_q || !write || own_cell != w_target || write_slot != place_q);
       a_there: assert (!done || !is_kept || {1'b0, place_q} < w_slots);
       a_done:  assert (!done || (active_q && (scanned_q || is_end) && ended == 2'b11
-                       && popped_low_q + pop[0] == low_all && popped_high_q + pop[1] == high_all && next == {3{One}}));
-      a_home:  assert (active_q || at == {3{One}});
+                       && popped_low_q + pop[0] == low_all && popped_high_q + pop[1] == high_all && next_cell == '0));
+      a_home:  assert (active_q || own_cell == '0);
+      a_leave: assert (advance == (leave && cell_ends));
       a_progress: assert (!(quiet && quiet_q));
       c_stays:  cover (done && is_kept && kept_w_q && again_q && (Capacity == 1 || place_q != w_slot));
       c_moved:  cover (done && landed_w_q && own && !dropped_q);

@@ -67,10 +67,10 @@ module brick_relay_formal #(
   end
 
   logic [PlaceBits-1:0]     low, high, first, at, after, next, asked_q;
-  logic                     advance, restart, last, is_end;
+  logic                     advance, restart, step, last, is_end;
   logic [CellBits-1:0]      own, own_asked;
   logic [3*TagBits-1:0]     layer, face;
-  logic [SlotBits-1:0]      record, record_q;  // asked for in the cycle before
+  logic [SlotBits-1:0]      record_q;          // asked for in the cycle before
   logic [1:0]               load;
   logic [LinkBits-1:0]      data;
   logic [2:0]               source;            // of the cell that the walk is in
@@ -91,12 +91,13 @@ module brick_relay_formal #(
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_i(done), .has_link_i(has_link),
     .extent_i(extent), .low_o(low), .high_o(high), .advance_o(advance), .restart_o(restart), .first_o(first),
     .cell_i(at), .last_i(last), .layer_i(layer), .own_count_i((source == Own) ? count_q : stray_i),
-    .halo_count_i(halo_count), .record_o(record), .own_i({Own, asked_q, record_q}), .halo_i(halos), .can_load_i,
+    .halo_count_i(halo_count), .step_o(step), .own_i({Own, asked_q, record_q}), .halo_i(halos), .can_load_i,
     .load_o(load), .end_o(is_end), .data_o(data), .sent_o(sent)
   );
   always_ff @(posedge clk_i) begin
     asked_q  <= next;
-    record_q <= record;
+    if (!running_q || advance || restart) record_q <= '0;
+    else if (step) record_q <= record_q + 1'b1;
   end
   integer f;
   always_comb begin

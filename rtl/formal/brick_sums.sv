@@ -11,27 +11,29 @@ module brick_sums_formal #(
   parameter int AddrBits = 2
 ) (
   input logic                     clk_i,
-  input logic                     kick_i, zero_i,
+  input logic                     kick_i, zero_i, busy_i,
   input logic [Axes*KickBits-1:0] push_i,
-  input logic [AddrBits-1:0]      zero_addr_i, next_addr_i
+  input logic [AddrBits-1:0]      zero_addr_i, kick_addr_i, look_addr_i
 );
   (* anyconst *) logic [AddrBits-1:0] watched;
-  logic [AddrBits-1:0]     asked_q;
+  logic [AddrBits-1:0]     next_addr, asked_q;
+  assign next_addr = busy_i ? kick_addr_i : look_addr_i;
   logic                    torn_q = 1'b1;
   logic [Axes*SumBits-1:0] sum;
   always_comb begin
     assume (watched < Depth);
-    assume (next_addr_i < Depth && zero_addr_i < Depth);
-    if (kick_i) assume (!zero_i && !torn_q);  // the sum was asked for in the cycle before
+    assume (kick_addr_i < Depth && look_addr_i < Depth && zero_addr_i < Depth);
+    if (kick_i) assume (busy_i && !zero_i && !torn_q);  // the sum was asked for in the cycle before
   end
   always_ff @(posedge clk_i) begin
-    asked_q <= next_addr_i;
-    torn_q  <= zero_i && zero_addr_i == next_addr_i;
+    asked_q <= next_addr;
+    torn_q  <= zero_i && zero_addr_i == next_addr;
   end
   cuboct_brick_sums #(
     .Axes(Axes), .KickBits(KickBits), .SumBits(SumBits), .Depth(Depth), .AddrBits(AddrBits)
   ) u_dut (
-    .clk_i, .kick_valid_i(kick_i), .push_i, .zero_i, .zero_addr_i, .next_addr_i, .sum_o(sum)
+    .clk_i, .kick_valid_i(kick_i), .push_i, .zero_i, .zero_addr_i, .busy_i, .kick_addr_i, .look_addr_i,
+    .sum_o(sum)
   );
 
   logic                    known_q = 1'b0, twice_q;

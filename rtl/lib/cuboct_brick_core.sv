@@ -179,38 +179,68 @@ module cuboct_brick_core #(
     .engine_o(engine_runs), .past_exchange_o(past_exchange), .step_end_o(step_end), .phase_start_o, .phase_end_o
   );
 
-  // Its walk over cells.
-  logic [3*GridBits-1:0] relay_low, relay_high, relay_first, low, high, first, main_cell, after_cell, next_cell;
-  logic                  relay_advance, relay_restart, migrate_advance, tick_advance, last_cell;
-  logic [CellBits-1:0]   main_own, after_own, next_own, here;
-  logic [3*TagBits-1:0]  main_layer, main_face, after_layer, after_face, next_layer, next_face;
-  localparam logic [GridBits-1:0] One = 1;
-  assign low   = in_exchange ? relay_low : {3{One}};
-  assign high  = in_exchange ? relay_high : extent_i;
-  assign first = in_exchange ? relay_first : {3{One}};
+  // Its walk over the own cells, in UPDATE, MIGRATE and DUMP; that of the relay over layers of cells.
+  logic                  ticking, tick_over, migrate_advance, migrate_leave, migrate_ends, tick_advance, advance, last_cell;
+  logic [CellBits-1:0]   main_own, after_own, asked_own, here;
+  logic [3*TagBits-1:0]  main_face, after_face;
+  logic [2:0]            main_low, main_high, after_low, after_high;
+  assign advance   = migrate_advance || tick_advance;
+  assign last_cell = (main_high == 3'b111);
+  cuboct_brick_cells #(
+    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+  ) u_cells (
+    .clk_i, .rst_ni, .extent_i, .advance_i(advance), .own_o(main_own), .face_o(main_face), .low_o(main_low),
+    .high_o(main_high), .after_own_o(after_own), .after_face_o(after_face), .after_low_o(after_low),
+    .after_high_o(after_high)
+  );
+  logic [3*GridBits-1:0] relay_low, relay_high, relay_first, relay_cell, relay_after, relay_next;
+  logic                  relay_advance, relay_restart, relay_step, relay_last;
+  logic [CellBits-1:0]   relay_own, relay_own_d, first_own, next_own;
+  logic [3*TagBits-1:0]  relay_layer, relay_layer_d, first_layer, first_face, next_layer, next_face;
   cuboct_brick_walk #(.GridBits(GridBits)) u_walk (
-    .clk_i, .rst_ni, .low_i(low), .high_i(high), .advance_i(relay_advance || migrate_advance || tick_advance),
-    .restart_i(relay_restart || update_done || dump_done), .first_i(first), .cell_o(main_cell), .after_o(after_cell),
-    .next_o(next_cell), .last_o(last_cell)
+    .clk_i, .rst_ni, .low_i(relay_low), .high_i(relay_high), .advance_i(relay_advance), .restart_i(relay_restart),
+    .first_i(relay_first), .cell_o(relay_cell), .after_o(relay_after), .next_o(relay_next), .last_o(relay_last)
   );
   cuboct_brick_place #(
     .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
-  ) u_main_place (.cell_i(main_cell), .own_o(main_own), .layer_o(main_layer), .face_o(main_face));
+  ) u_first_place (.cell_i(relay_first), .own_o(first_own), .layer_o(first_layer), .face_o(first_face));
   cuboct_brick_place #(
     .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
-  ) u_after_place (.cell_i(after_cell), .own_o(after_own), .layer_o(after_layer), .face_o(after_face));
-  cuboct_brick_place #(
-    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
-  ) u_next_place (.cell_i(next_cell), .own_o(next_own), .layer_o(next_layer), .face_o(next_face));
+  ) u_next_place (.cell_i(relay_after), .own_o(next_own), .layer_o(next_layer), .face_o(next_face));
+  always_comb begin
+    relay_own_d   = relay_own;
+    relay_layer_d = relay_layer;
+    if (relay_restart) begin
+      relay_own_d   = first_own;
+      relay_layer_d = first_layer;
+    end else if (relay_advance) begin
+      relay_own_d   = next_own;
+      relay_layer_d = next_layer;
+    end
+  end
+  localparam int HomeZ = BrickX + 3;
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      relay_own   <= '0;
+      relay_layer <= {HomeZ[TagBits-1:0], {(TagBits - 1) {1'b0}}, 1'b1, {TagBits{1'b0}}};
+    end else begin
+      relay_own   <= relay_own_d;
+      relay_layer <= relay_layer_d;
+    end
+  end
 
   // Own particles: how many, and where they are written and read.
-  logic [CountBits-1:0]           main_count, stream_own_count, stream_near_count, count_set, migrate_count;
+  logic [CountBits-1:0]           main_count, main_count_d, asked_count, stream_own_count, stream_near_count, count_set;
+  logic [CountBits-1:0]           migrate_count, relay_own_count;
   logic [CellBits-1:0]            stream_own, stream_near, write_cell;
   logic                           own_write, load, update_write, migrate_write, migrate_count_set, migrate_land, any_held;
-  logic [SlotBits-1:0]            write_slot, migrate_write_slot, relay_record, migrate_read, tick_record, main_record;
+  logic                           count_write, alone, leave, main_written, away_written;
+  logic [SlotBits-1:0]            write_slot, migrate_write_slot;
   logic [PlaceBits-1:0]           update_place;
-  logic [AddrBits-1:0]            write_addr, main_addr, stream_addr, tick_addr;
+  logic [AddrBits-1:0]            write_addr, main_addr, stream_addr, after_addr, leave_addr, away_addr, first_addr, next_addr;
+  logic [AddrBits-1:0]            own_addr_d, own_addr_q, relay_addr_d, relay_addr_q;
   logic [OwnBits-1:0]             write_data, update_data, migrate_write_data, main_data;
+  logic [2*Axes-1:0]              main_away;
   logic [SeenBits-1:0]            stream_data;
   logic                           stream_read;
   logic [ForcePipes*SlotBits-1:0] issue_slot;
@@ -222,15 +252,32 @@ module cuboct_brick_core #(
   logic [RowAddrBits-1:0]         row;
   logic [FilterLanes*Axes*FilterFrac-1:0] row_data;
 
-  assign here = idle_o ? load_cell_i : main_own;
-  assign load = idle_o && load_valid_i && (main_count != Capacity[CountBits-1:0]);
-  cuboct_brick_counts #(.Cells(Cells), .AddrBits(CellBits), .Bits(CountBits), .Reads(3)) u_counts (
-    .clk_i, .rst_ni, .clear_i(1'b0), .write_i(load || migrate_count_set), .write_addr_i(here), .count_i(count_set),
-    .addr_i({stream_near, stream_own, here}), .count_o({stream_near_count, stream_own_count, main_count}),
-    .any_o(any_held)
+  // The present cell's count is in a register; the counts are asked for that of the cell after it.
+  assign here        = idle_o ? load_cell_i : main_own;
+  assign asked_own   = idle_o ? load_cell_i : after_own;
+  assign load        = idle_o && load_valid_i && (asked_count != Capacity[CountBits-1:0]);
+  assign count_write = load || migrate_count_set;
+  cuboct_brick_counts #(.Cells(Cells), .AddrBits(CellBits), .Bits(CountBits), .Reads(4)) u_counts (
+    .clk_i, .rst_ni, .clear_i(1'b0), .write_i(count_write), .write_addr_i(here), .count_i(count_set),
+    .addr_i({relay_own, stream_near, stream_own, asked_own}),
+    .count_o({relay_own_count, stream_near_count, stream_own_count, asked_count}), .any_o(any_held)
   );
+  assign alone = (after_own == main_own);  // a ragged brick of one cell
   always_comb begin
-    count_set  = idle_o ? main_count + 1'b1 : migrate_count;
+    main_count_d = main_count;
+    if (migrate_land || (load && here == main_own)) main_count_d = main_count + 1'b1;
+    if (advance && alone) begin
+      if (migrate_count_set) main_count_d = migrate_count;
+    end else if (advance) begin
+      main_count_d = asked_count;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) main_count <= '0;
+    else main_count <= main_count_d;
+  end
+  always_comb begin
+    count_set  = idle_o ? asked_count + 1'b1 : migrate_count;
     own_write  = load || update_write || migrate_write;
     // Chosen by the state, which is there before the writes are.
     write_cell = update_place[SlotBits +: CellBits];
@@ -242,18 +289,48 @@ module cuboct_brick_core #(
       write_data = migrate_write_data;
     end else if (idle_o) begin
       write_cell = here;
-      write_slot = main_count[SlotBits-1:0];
+      write_slot = asked_count[SlotBits-1:0];
       write_data = {2'b00, load_data_i};
     end
   end
   cuboct_brick_addr #(
     .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
   ) u_write_addr (.cell_i(write_cell), .slot_i(write_slot), .addr_o(write_addr));
-  // The main read port is asked a cycle ahead. Outside its phases each of the three rests at record 0.
-  assign main_record = relay_record | tick_record | migrate_read;
+  // The main read port is asked a cycle ahead: by the relay, else for a slot of the own cell, the next one, the first
+  // one of the cell after it, or the same again.
   cuboct_brick_addr #(
     .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
-  ) u_main_addr (.cell_i(next_own), .slot_i(main_record), .addr_o(main_addr));
+  ) u_first_addr (.cell_i(first_own), .slot_i({SlotBits{1'b0}}), .addr_o(first_addr));
+  cuboct_brick_addr #(
+    .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+  ) u_next_addr (.cell_i(next_own), .slot_i({SlotBits{1'b0}}), .addr_o(next_addr));
+  always_comb begin
+    relay_addr_d = relay_addr_q;
+    if (relay_step) relay_addr_d = relay_addr_q + 1'b1;
+    if (relay_advance) relay_addr_d = next_addr;
+    if (relay_restart) relay_addr_d = first_addr;
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) relay_addr_q <= '0;
+    else relay_addr_q <= relay_addr_d;
+  end
+  cuboct_brick_addr #(
+    .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
+  ) u_after_addr (.cell_i(after_own), .slot_i({SlotBits{1'b0}}), .addr_o(after_addr));
+  assign leave        = migrate_leave || ticking;
+  assign leave_addr   = (in_migrate ? migrate_ends : tick_over) ? after_addr : own_addr_q + 1'b1;
+  assign own_addr_d   = leave ? leave_addr : own_addr_q;
+  assign main_addr    = leave ? leave_addr : in_exchange ? relay_addr_d : own_addr_q;
+  // Before MIGRATE only the first cell's first slot matters of where a particle goes: it is asked for with the last one.
+  assign away_addr    = (!in_migrate || migrate_ends) ? after_addr : own_addr_q + 1'b1;
+  // No phase asks for a next slot of the cell in the cycle in which this is written.
+  assign main_written = own_write && (leave ? advance && write_addr == after_addr : write_addr == own_addr_q);
+  assign away_written = own_write && (leave ? (!in_migrate || migrate_ends) && write_addr == after_addr
+                                            : write_addr == own_addr_q);
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) own_addr_q <= '0;
+    else own_addr_q <= own_addr_d;
+  end
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_addr
     cuboct_brick_addr #(
       .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
@@ -273,8 +350,8 @@ module cuboct_brick_core #(
     .AddrBits(AddrBits), .FilterLanes(FilterLanes), .RowAddrBits(RowAddrBits), .ForcePipes(ForcePipes)
   ) u_slots (
     .clk_i, .write_i(own_write), .write_cell_i(write_cell), .write_slot_i(write_slot), .write_addr_i(write_addr),
-    .write_data_i(write_data), .main_addr_i(main_addr), .main_data_o(main_data), .stream_read_i(stream_read),
-    .stream_addr_i(stream_addr), .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data),
+    .write_data_i(write_data), .main_addr_i(main_addr), .main_written_i(main_written), .main_data_o(main_data),
+    .away_read_i(leave), .away_addr_i(away_addr), .away_written_i(away_written), .away_o(main_away), .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data),
     .pipe_addr_i(pipe_addr), .pipe_data_o(pipe_data), .fault_addr_i(kick_addr_next), .fault_id_o(kick_id)
   );
 
@@ -284,15 +361,28 @@ module cuboct_brick_core #(
   logic [Faces*CountBits-1:0]    stream_halo_count, relay_halo_count;
   logic [3*HaloAddrBits-1:0]     stream_halo_addr, relay_halo_addr;
   logic [Faces*HaloBits-1:0]     stream_halos, relay_halos;
-  logic [Faces*2*CountBits-1:0]  land_count;
+  logic                          of_after;
+  logic [Faces*CountBits-1:0]    land_count;
   logic [Faces*ParticleBits-1:0] arrived;
   for (genvar a = 0; a < 3; a++) begin : gen_relay_addr
+    logic [HaloAddrBits-1:0] first_at, next_at, at_d, at_q;
     cuboct_brick_addr #(
       .Factor(Capacity), .CellBits(TagBits), .SlotBits(SlotBits), .AddrBits(HaloAddrBits)
-    ) u_addr (
-      .cell_i(next_layer[a*TagBits +: TagBits]), .slot_i(relay_record),
-      .addr_o(relay_halo_addr[a*HaloAddrBits +: HaloAddrBits])
-    );
+    ) u_first (.cell_i(first_layer[a*TagBits +: TagBits]), .slot_i({SlotBits{1'b0}}), .addr_o(first_at));
+    cuboct_brick_addr #(
+      .Factor(Capacity), .CellBits(TagBits), .SlotBits(SlotBits), .AddrBits(HaloAddrBits)
+    ) u_next (.cell_i(next_layer[a*TagBits +: TagBits]), .slot_i({SlotBits{1'b0}}), .addr_o(next_at));
+    always_comb begin
+      at_d = at_q;
+      if (relay_step) at_d = at_q + 1'b1;
+      if (relay_advance) at_d = next_at;
+      if (relay_restart) at_d = first_at;
+    end
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) at_q <= '0;  // of no use until the walk comes to a halo
+      else at_q <= at_d;
+    end
+    assign relay_halo_addr[a*HaloAddrBits +: HaloAddrBits] = at_d;
   end
   cuboct_brick_halos #(
     .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .Capacity(Capacity), .LinkBits(LinkBits),
@@ -302,10 +392,10 @@ module cuboct_brick_core #(
     .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
     .halo_clear_i(force_done), .halo_end_o(halo_end), .stream_cell_i(stream_layer),
     .stream_count_o(stream_halo_count), .stream_read_i(stream_read), .stream_addr_i(stream_halo_addr),
-    .stream_data_o(stream_halos), .relay_cell_i(main_layer), .relay_count_o(relay_halo_count),
+    .stream_data_o(stream_halos), .relay_cell_i(relay_layer), .relay_count_o(relay_halo_count),
     .relay_addr_i(relay_halo_addr), .relay_data_o(relay_halos), .migrating_i(in_migrate),
     .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end), .migrate_none_o(migrate_none),
-    .land_cell_i({after_face, main_face}), .land_count_o(land_count), .migrate_data_o(arrived),
+    .land_cell_i(of_after ? after_face : main_face), .land_count_o(land_count), .migrate_data_o(arrived),
     .migrate_pop_i(migrate_pop)
   );
 
@@ -328,7 +418,7 @@ module cuboct_brick_core #(
   // What belongs to the axis of the present phase.
   logic [1:0]                axis_halo_end, axis_none, axis_ended;
   logic                      any_leaving, axis_leaving;
-  logic [2*2*CountBits-1:0]  axis_land_count;
+  logic [2*CountBits-1:0]    axis_land_count;
   logic [2*ParticleBits-1:0] axis_arrived;
   logic [Axes-1:0]           some_leaving;
   integer                    b, c;
@@ -352,7 +442,7 @@ module cuboct_brick_core #(
         axis_none       = migrate_none[2*b +: 2];
         axis_ended      = migrate_end[2*b +: 2];
         axis_leaving    = here_leaving[b];
-        axis_land_count = land_count[4*b*CountBits +: 4*CountBits];
+        axis_land_count = land_count[2*b*CountBits +: 2*CountBits];
         any_leaving     = some_leaving[b];
       end
       axis_arrived = axis_arrived | (arrived[2*b*ParticleBits +: 2*ParticleBits] & {2 * ParticleBits{axis_onehot[b]}});
@@ -397,8 +487,8 @@ module cuboct_brick_core #(
   ) u_relay (
     .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done), .has_link_i, .extent_i,
     .low_o(relay_low), .high_o(relay_high), .advance_o(relay_advance), .restart_o(relay_restart),
-    .first_o(relay_first), .cell_i(main_cell), .last_i(last_cell), .layer_i(main_layer), .own_count_i(main_count),
-    .halo_count_i(relay_halo_count[(Faces-2)*CountBits-1:0]), .record_o(relay_record), .own_i(main_seen),
+    .first_o(relay_first), .cell_i(relay_cell), .last_i(relay_last), .layer_i(relay_layer), .own_count_i(relay_own_count),
+    .halo_count_i(relay_halo_count[(Faces-2)*CountBits-1:0]), .step_o(relay_step), .own_i(main_seen),
     .halo_i(relay_halos[(Faces-2)*HaloBits-1:0]), .can_load_i(axis_can_load), .load_o(relay_load), .end_o(relay_end),
     .data_o(relay_beat), .sent_o(relay_sent)
   );
@@ -473,8 +563,8 @@ module cuboct_brick_core #(
       .Axes(Axes), .KickBits(KickBits), .SumBits(PipeSumBits), .Depth(Cells * Capacity), .AddrBits(AddrBits)
     ) u_sums (
       .clk_i, .kick_valid_i(kick_valid[f]), .push_i(push),
-      .zero_i(take || load || migrate_land), .zero_addr_i(take ? tick_addr : write_addr),
-      .next_addr_i(pipe_busy[f] ? kick_addr_next[f*AddrBits +: AddrBits] : main_addr),
+      .zero_i(take || load || migrate_land), .zero_addr_i(take ? own_addr_q : write_addr),
+      .busy_i(pipe_busy[f]), .kick_addr_i(kick_addr_next[f*AddrBits +: AddrBits]), .look_addr_i(own_addr_d),
       .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
     );
     logic unused_own;
@@ -495,18 +585,14 @@ module cuboct_brick_core #(
   assign total = gen_total[ForcePipes-1].so_far;
   // Update and dump walk the cells and their slots.
   logic [SlotBits-1:0] tick_d, tick_q;
-  logic                past_d, past_q, ticking, tick_over;  // past: no cell is left
+  logic                past_d, past_q;  // past: no cell is left
   logic [TailBits-1:0] tail_d, tail_q;
-  assign ticking      = (in_update && !past_q) || in_dump;
+  assign ticking      = (in_update && !past_q && any_held) || in_dump;
   assign tick_over    = (main_count <= {{(CountBits - SlotBits) {1'b0}}, tick_q} + 1'b1);  // the cell is
   assign tick_advance = ticking && tick_over;
   assign take         = ticking && in_update && (main_count != '0);
   assign update_done  = in_update && (!any_held || (past_q && {{(32 - TailBits) {1'b0}}, tail_q} == UpdateTail));
   assign dump_done    = in_dump && tick_over && last_cell;
-  cuboct_brick_addr #(
-    .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
-  ) u_tick_addr (.cell_i(main_own), .slot_i(tick_q), .addr_o(tick_addr));
-  assign tick_record  = tick_d;
   always_comb begin
     tick_d = tick_q;
     past_d = past_q;
@@ -585,7 +671,8 @@ module cuboct_brick_core #(
   // Migration.
   logic                    fault_left, fault_full;
   logic [1:0]              axis_pop;
-  logic [ParticleBits-1:0] fault_particle;
+  logic                    from_above;
+  logic [ParticleBits-1:0] fault_particle, stored;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_migrate
     assign away_axes[a]            = (new_away[2*a +: 2] != 2'b00);
     assign migrate_pop[2*a +: 2]   = axis_pop & {2{axis_onehot[a]}};
@@ -605,19 +692,21 @@ module cuboct_brick_core #(
     else leaving_q <= leaving_d;
   end
   cuboct_brick_migrate #(
-    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .GridBits(GridBits), .CellBits(CellBits),
-    .TagBits(TagBits), .FaceBits(FaceBits), .ParticleBits(ParticleBits), .PositionBits(PosBits), .LinkBits(LinkBits),
-    .Capacity(Capacity), .SlotBits(SlotBits), .CountBits(CountBits)
+    .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(BrickZ), .CellBits(CellBits), .TagBits(TagBits),
+    .FaceBits(FaceBits), .ParticleBits(ParticleBits), .PositionBits(PosBits), .LinkBits(LinkBits), .Capacity(Capacity),
+    .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_migrate (
-    .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .extent_i,
-    .advance_o(migrate_advance), .cell_i(main_cell), .last_i(last_cell), .own_i(main_own), .own_after_i(after_own),
-    .after_i(after_cell), .face_i(main_face), .any_leaving_i(any_leaving), .leaving_i(axis_leaving),
+    .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .advance_o(migrate_advance),
+    .own_i(main_own), .face_i(main_face), .low_i(main_low), .high_i(main_high), .after_own_i(after_own),
+    .after_low_i(after_low), .after_high_i(after_high), .any_leaving_i(any_leaving), .leaving_i(axis_leaving),
     .exit_i(here_exits), .count_i(main_count), .count_set_o(migrate_count_set), .count_o(migrate_count),
-    .read_slot_o(migrate_read), .read_data_i(main_data), .write_o(migrate_write), .land_o(migrate_land),
+    .leave_o(migrate_leave), .ends_o(migrate_ends), .away_i(main_away), .read_data_i(main_data),
+    .write_o(migrate_write), .land_o(migrate_land),
     .write_slot_o(migrate_write_slot), .write_data_o(migrate_write_data), .leaving_more_o(leaving_more),
     .can_load_i(axis_can_load), .load_o(migrate_load), .end_o(migrate_send_end), .data_o(migrate_beat),
-    .none_i(axis_none), .ended_i(axis_ended), .land_count_i(axis_land_count), .arrived_i(axis_arrived),
-    .pop_o(axis_pop), .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
+    .none_i(axis_none), .ended_i(axis_ended), .of_after_o(of_after), .land_count_i(axis_land_count),
+    .arrived_i(axis_arrived), .pop_o(axis_pop), .fault_left_o(fault_left), .fault_full_o(fault_full),
+    .fault_particle_o(fault_particle), .from_above_o(from_above), .stored_o(stored)
   );
 
   assign observe_valid_o = take || (in_dump && main_count != '0);
@@ -631,7 +720,7 @@ module cuboct_brick_core #(
   logic [ForcePipes*TellBits-1:0] fault_id;
   logic [ForcePipes*64-1:0]       fault_number;
   logic [3:0]                     migrate_fault_code;
-  assign migrate_fault_code = 4'd6 + {1'b0, axis, 1'b0} + {3'b000, fault_full};  // left, full: 6 7, 8 9, 10 11
+  assign migrate_fault_code = 4'd6 + {1'b0, axis, 1'b0} + {3'b000, of_after};  // left, full: 6 7, 8 9, 10 11
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_fault
     always_comb begin
       fault_valid[f]                   = pipe_fault[f];
@@ -646,20 +735,42 @@ module cuboct_brick_core #(
       end
     end
   end
-  logic                some_fault;
-  logic [TellBits-1:0] told;
+  // What the migration says is compared a cycle later, but for a full cell in the step's last cycle. Its code is the
+  // highest one there is, its cell the last one, highest along the axis; so who comes from above comes over the face.
+  localparam int LastAxis = Axes - 1;
+  localparam int LastFull = 7 + 2 * LastAxis;
+  logic                    move_fault_q, move_full_q;
+  logic [3:0]              move_code_q, kept_code;
+  logic [TellBits-1:0]     move_id_q, kept_id, last_id;
+  logic [ParticleBits-1:0] last_low, last_high, last_particle;
+  logic                    kept_fault, last_first;
+  logic [63:0]             kept_number;
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) move_fault_q <= 1'b0;
+    else move_fault_q <= (fault_left || fault_full) && !step_end;
+  end
+  always_ff @(posedge clk_i) begin
+    move_full_q <= of_after;
+    move_code_q <= migrate_fault_code;
+    move_id_q   <= {fault_particle[IdLsb +: IdBits], main_own};
+  end
   cuboct_least_fault #(.Sources(ForcePipes), .IdBits(TellBits), .NumberBits(NumberBits)) u_fault (
     .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
-    .number_i(fault_number), .move_valid_i(fault_left || fault_full), .move_code_i(migrate_fault_code),
-    .move_id_i({fault_particle[IdLsb +: IdBits], main_own}),
-    .move_number_i(fault_full ? {32'd0, Capacity} : 64'd0), .valid_o(some_fault), .code_o(fault_code_o),
-    .id_o(told), .number_o(fault_number_o)
+    .number_i(fault_number), .move_valid_i(move_fault_q), .move_code_i(move_code_q), .move_id_i(move_id_q),
+    .move_number_i(move_full_q ? {32'd0, Capacity} : 64'd0), .valid_o(kept_fault), .code_o(kept_code),
+    .id_o(kept_id), .number_o(kept_number)
   );
-  assign fault_valid_o = some_fault && step_end;
-  assign fault_id_o    = told[CellBits +: IdBits];
-  assign fault_cell_o  = told[CellBits-1:0];
+  assign last_low       = arrived[2*LastAxis*ParticleBits +: ParticleBits];
+  assign last_high      = arrived[(2*LastAxis+1)*ParticleBits +: ParticleBits];
+  assign last_particle  = from_above ? last_high : main_low[LastAxis] ? last_low : stored;
+  assign last_id        = {last_particle[IdLsb +: IdBits], main_own};
+  assign last_first     = fault_full && (!kept_fault || (kept_code == LastFull[3:0] && last_id < kept_id));
+  assign fault_valid_o  = (kept_fault || fault_full) && step_end;
+  assign fault_code_o   = kept_fault ? kept_code : LastFull[3:0];
+  assign {fault_id_o, fault_cell_o} = last_first ? last_id : kept_id;
+  assign fault_number_o = kept_fault ? kept_number : {32'd0, Capacity};
 
   logic unused_fields;
-  assign unused_fields = ^{main_data, stream_data, fault_particle, main_face, after_layer, next_face, issue_candidate,
+  assign unused_fields = ^{main_data, stream_data, fault_particle, last_particle, relay_next, first_face, next_face, issue_candidate,
                            relay_halo_count, relay_halos};
 endmodule

@@ -20,9 +20,12 @@ module cuboct_brick_counts #(
   localparam int IndexBits = (Cells > 1) ? $clog2(Cells) : 1;
 
   logic [Cells-1:0] held_d, held_q;  // cells whose number is not zero
+  integer           c;
   always_comb begin
     held_d = held_q;
-    if (write_i) held_d[write_addr_i[IndexBits-1:0]] = (count_i != '0);
+    for (c = 0; c < Cells; c = c + 1) begin
+      if (write_i && write_addr_i[IndexBits-1:0] == c[IndexBits-1:0]) held_d[c] = (count_i != '0);
+    end
     if (clear_i) held_d = '0;
   end
   always_ff @(posedge clk_i) begin

@@ -40,8 +40,8 @@ module cuboct_brick_halos #(
   input  logic [Faces-1:0]           migrate_clear_i, // by face: last cycle of its axis's migration
   output logic [Faces-1:0]           migrate_end_o,   // complete; always where there is no link
   output logic [Faces-1:0]           migrate_none_o,  // none came in this phase
-  input  logic [2*3*TagBits-1:0]     land_cell_i,     // two cells
-  output logic [Faces*2*CountBits-1:0] land_count_o,  // by face, particles that came to each of them
+  input  logic [3*TagBits-1:0]       land_cell_i,     // by axis: a cell of the own face
+  output logic [Faces*CountBits-1:0] land_count_o,    // by face, particles that came to it, without latency
   output logic [Faces*ParticleBits-1:0] migrate_data_o,  // by face: the oldest particle
   input  logic [Faces-1:0]           migrate_pop_i    // by face: it is taken
 );
@@ -97,8 +97,8 @@ module cuboct_brick_halos #(
       .relay_addr_i(relay_addr_i[Axis*AddrBits +: AddrBits]), .relay_halo_o(relay_data_o[f*HaloBits +: HaloBits]),
       .migrating_i, .forget_i(migrate_clear_i[f]), .push_i(particle_valid), .particle_cell_i(particle_cell),
       .particle_i(particle[ParticleBits-1:0]),
-      .land_cell_i({land_cell_i[(3+Axis)*TagBits +: TagBits], land_cell_i[Axis*TagBits +: TagBits]}),
-      .land_count_o(land_count_o[f*2*CountBits +: 2*CountBits]), .pop_i(migrate_pop_i[f]),
+      .land_cell_i(land_cell_i[Axis*TagBits +: TagBits]), .land_count_o(land_count_o[f*CountBits +: CountBits]),
+      .pop_i(migrate_pop_i[f]),
       .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .none_o(migrate_none_o[f])
     );
   end

@@ -37,8 +37,8 @@ module cuboct_brick_inbox #(
   input  logic                    push_i,          // a particle came
   input  logic [TagBits-1:0]      particle_cell_i, // the cell that it goes to
   input  logic [ParticleBits-1:0] particle_i,      // with push_i
-  input  logic [2*TagBits-1:0]    land_cell_i,     // of two cells
-  output logic [2*CountBits-1:0]  land_count_o,    // the particles that came to them in this phase, without latency
+  input  logic [TagBits-1:0]      land_cell_i,     // of a cell
+  output logic [CountBits-1:0]    land_count_o,    // the particles that came to it in this phase, without latency
   input  logic                    pop_i,           // the oldest is taken
   output logic [ParticleBits-1:0] particle_o,      // the oldest
   output logic                    none_o           // none came
@@ -60,7 +60,7 @@ module cuboct_brick_inbox #(
   logic [CountBits-1:0] landing;
   assign landing = particle_count + 1'b1;
   logic any_particle;
-  cuboct_brick_counts #(.Cells(FaceCells), .AddrBits(TagBits), .Bits(CountBits), .Reads(3)) u_particle_counts (
+  cuboct_brick_counts #(.Cells(FaceCells), .AddrBits(TagBits), .Bits(CountBits), .Reads(2)) u_particle_counts (
     .clk_i, .rst_ni, .clear_i(forget_i), .write_i(push_i), .write_addr_i(particle_cell_i), .count_i(landing),
     .addr_i({land_cell_i, particle_cell_i}), .count_o({land_count_o, particle_count}), .any_o(any_particle)
   );

@@ -8,7 +8,6 @@ module cuboct_brick_migrate #(
   parameter int BrickX       = 2,
   parameter int BrickY       = 2,
   parameter int BrickZ       = 2,
-  parameter int GridBits     = 2,
   parameter int CellBits     = 3,    // of an own cell's number
   parameter int TagBits      = 4,
   parameter int FaceBits     = 2,    // of a cell's number in a face, on the link
@@ -24,15 +23,15 @@ module cuboct_brick_migrate #(
   input  logic                      active_i,         // the machine is in a migration phase
   input  logic [1:0]                axis_i,           // below Axes
   output logic                      done_o,           // last cycle of the phase
-  input  logic [3*GridBits-1:0]     extent_i,
-  // The walk over the own cells: cuboct_brick_walk.
+  // The walk over the own cells: cuboct_brick_cells.
   output logic                      advance_o,        // to the next cell
-  input  logic [3*GridBits-1:0]     cell_i,           // where the walk is
-  input  logic                      last_i,           // at its last cell
   input  logic [CellBits-1:0]       own_i,            // the cell's number,
-  input  logic [CellBits-1:0]       own_after_i,      // that of the cell after it
-  input  logic [3*GridBits-1:0]     after_i,          // and where this lies
-  input  logic [3*TagBits-1:0]      face_i,           // the cell's numbers in the faces
+  input  logic [3*TagBits-1:0]      face_i,           // those in the faces
+  input  logic [2:0]                low_i,            // whether it is the lowest along x, y, z
+  input  logic [2:0]                high_i,           // whether it is the highest: with all three, the last cell
+  input  logic [CellBits-1:0]       after_own_i,      // of the cell after it: its number,
+  input  logic [2:0]                after_low_i,      // whether it is the lowest,
+  input  logic [2:0]                after_high_i,     // the highest
   // Own particles of the cell: a slot is {away_x, particle}.
   input  logic                      any_leaving_i,    // some particle of the brick leaves its cell along the axis,
   input  logic                      leaving_i,        // one of this cell
@@ -40,8 +39,12 @@ module cuboct_brick_migrate #(
   input  logic [CountBits-1:0]      count_i,          // particles of the cell
   output logic                      count_set_o,      // they are count_o from the next cycle on
   output logic [CountBits-1:0]      count_o,          // with count_set_o
-  output logic [SlotBits-1:0]       read_slot_o,      // of the next cycle's read_data_i
-  input  logic [ParticleBits+1:0]   read_data_i,      // the slot of the cycle before's read_slot_o
+  // The next cycle's read_data_i is the first slot of the cell after this one with leave_o and ends_o, the next slot with
+  // leave_o alone, else the same again.
+  output logic                      leave_o,          // the slot is left
+  output logic                      ends_o,           // advance_o, with leave_o
+  input  logic [2*Axes-1:0]         away_i,           // where the particle of read_data_i goes, by axis
+  input  logic [ParticleBits+1:0]   read_data_i,      // as the phase begins, the first cell's first slot
   output logic                      write_o,          // a slot is written
   output logic                      land_o,           // write_o: of a particle that came
   output logic [SlotBits-1:0]       write_slot_o,     // with write_o
@@ -52,16 +55,20 @@ module cuboct_brick_migrate #(
   output logic [1:0]                load_o,           // which link registers take a beat
   output logic                      end_o,            // with load_o: an end beat
   output logic [LinkBits-1:0]       data_o,           // with load_o: payload
-  // What came over the faces of the axis: below, above; particles that go to the cell, to the one after it.
+  // What came over the faces of the axis: below, above.
   input  logic [1:0]                none_i,           // no particle came in this phase
   input  logic [1:0]                ended_i,          // the end beat came
-  input  logic [2*2*CountBits-1:0]  land_count_i,     // by face: to the cell, to the one after it
+  output logic                      of_after_o,       // asks for the count of the cell after the present one, else of this
+  input  logic [2*CountBits-1:0]    land_count_i,     // by face: particles that go to the cell asked for
   input  logic [2*ParticleBits-1:0] arrived_i,        // the oldest particle of each face
   output logic [1:0]                pop_o,            // it is taken
   // Faults, of the particle in fault_particle_o.
   output logic                      fault_left_o,     // there is no link: it is dropped
   output logic                      fault_full_o,     // no slot is free: it is dropped
-  output logic [ParticleBits-1:0]   fault_particle_o  // with either
+  output logic [ParticleBits-1:0]   fault_particle_o, // with either
+  // Whence a particle lands: a face of the axis, or out of the brick's store.
+  output logic                      from_above_o,     // else from below
+  output logic [ParticleBits-1:0]   stored_o          // the oldest one there
 );
   localparam int Cells    = BrickX * BrickY * BrickZ;
   localparam int AwayBits = 2 * (Axes - 1);  // in a particle's word
@@ -72,16 +79,15 @@ module cuboct_brick_migrate #(
   localparam int Store    = Cells * Capacity;  // particles between two cells of the brick
   localparam int StoreBits = $clog2(Store + 1);
   localparam int TopStore = Store - 1;
-  localparam logic [GridBits-1:0] One = 1;
 
   typedef enum logic [2:0] {Enter, Scan, End, Wait, Land} state_t;
 
   state_t               state_d, state_q, state;
-  logic [CountBits-1:0] read_d, read_q, write_d, write_q;  // Scan: slots read, slots kept; of the cell
-  logic [CountBits:0]   landed_d, landed_q;                // Land: particles of the cell
+  logic [CountBits-1:0] read_d, read_q, write_d, write_q;    // Scan: slots read, slots kept; of the cell
+  logic [CountBits-1:0] below_d, below_q, above_d, above_q;  // Land: particles that still come to the cell
   logic [BeatBits-1:0]  beat_d, beat_q;
   logic [1:0]           away;
-  logic                 visit, stays, up, exists, at_low, at_high, outer, loadable, last_beat, slot_done, last_slot;
+  logic                 visit, stays, up, exists, at_low, at_high, outer, loadable, last_beat, slot_done, last_slot, last_cell;
   logic                 moves;  // to another cell of the brick
 
   always_comb begin
@@ -94,24 +100,26 @@ module cuboct_brick_migrate #(
 
   // Where the slot that SCAN looks at wants to go; where the cell lies along the axis.
   integer b;
-  logic   after_low;
+  logic   asked_low, asked_high;
   logic [CellBits-1:0] stride;
   logic [TagBits-1:0]  face;
   logic [1:0]          exits;
   localparam int StrideZ = BrickX * BrickY;
   always_comb begin
-    away       = read_data_i[ParticleBits +: 2];
-    at_low     = (cell_i[0 +: GridBits] == One);
-    at_high    = (cell_i[0 +: GridBits] == extent_i[0 +: GridBits]);
-    after_low  = (after_i[0 +: GridBits] == One);
+    away       = away_i[1:0];
+    at_low     = low_i[0];
+    at_high    = high_i[0];
+    asked_low  = of_after_o ? after_low_i[0] : low_i[0];
+    asked_high = of_after_o ? after_high_i[0] : high_i[0];
     exits      = exit_i[1:0];
     face       = face_i[0 +: TagBits];
     for (b = 1; b < Axes; b = b + 1) begin
       if (axis_i == b[1:0]) begin
-        away       = read_data_i[PositionBits+2*(b-1) +: 2];
-        at_low     = (cell_i[b*GridBits +: GridBits] == One);
-        at_high    = (cell_i[b*GridBits +: GridBits] == extent_i[b*GridBits +: GridBits]);
-        after_low  = (after_i[b*GridBits +: GridBits] == One);
+        away       = away_i[2*b +: 2];
+        at_low     = low_i[b];
+        at_high    = high_i[b];
+        asked_low  = of_after_o ? after_low_i[b] : low_i[b];
+        asked_high = of_after_o ? after_high_i[b] : high_i[b];
         exits      = exit_i[2*b +: 2];
         face       = face_i[b*TagBits +: TagBits];
       end
@@ -129,67 +137,89 @@ module cuboct_brick_migrate #(
   assign last_beat = (beat_q == LastBeat[BeatBits-1:0]);
   assign slot_done = stays || !exists || !outer || (loadable && last_beat);
   assign last_slot = (read_q + 1'b1 == count_i);
+  assign last_cell = (high_i == 3'b111);
+  assign leave_o   = active_i && (state == Scan ? !visit || slot_done : state == Land && last_landing);
+  assign ends_o    = (state == Land) || !visit || last_slot;
+  assign advance_o = leave_o && ends_o;
 
   // The store of those that stay in the brick: upward ones from its bottom on, downward ones from its top; with counts
-  // by the cell that they go to.
+  // by the cell that they go to, all of which come from one cell.
   logic [StoreBits-1:0] ups_d, ups_q, downs_d, downs_q, up_read_d, up_read_q, down_read_d, down_read_q;
   logic [StoreBits-1:0] store_write, store_read;
-  logic [CellBits-1:0]  target;
-  logic [CountBits-1:0] up_count, down_count, up_here, up_after, down_here, down_after;
+  logic [CountBits-1:0] up_count_d, up_count_q, down_count_d, down_count_q, up_asked, down_asked;
+  logic [CellBits-1:0]  asked;
   logic                 none_moved, some_up, some_down, pop_up, pop_down;
   logic [ParticleBits-1:0] stored;
-  assign target = up ? own_i + stride : own_i - stride;
-  cuboct_brick_counts #(.Cells(Cells), .AddrBits(CellBits), .Bits(CountBits), .Reads(3)) u_ups (
-    .clk_i, .rst_ni, .clear_i(done_o), .write_i(moves && up), .write_addr_i(target), .count_i(up_count + 1'b1),
-    .addr_i({own_after_i, own_i, target}), .count_o({up_after, up_here, up_count}), .any_o(some_up)
+  assign of_after_o = (state_q == Land);
+  assign asked      = of_after_o ? after_own_i : own_i;
+  cuboct_brick_counts #(.Cells(Cells), .AddrBits(CellBits), .Bits(CountBits), .Reads(1)) u_ups (
+    .clk_i, .rst_ni, .clear_i(done_o), .write_i(moves && up), .write_addr_i(own_i + stride),
+    .count_i(up_count_q + 1'b1), .addr_i(asked), .count_o(up_asked), .any_o(some_up)
   );
-  cuboct_brick_counts #(.Cells(Cells), .AddrBits(CellBits), .Bits(CountBits), .Reads(3)) u_downs (
-    .clk_i, .rst_ni, .clear_i(done_o), .write_i(moves && !up), .write_addr_i(target), .count_i(down_count + 1'b1),
-    .addr_i({own_after_i, own_i, target}), .count_o({down_after, down_here, down_count}), .any_o(some_down)
+  cuboct_brick_counts #(.Cells(Cells), .AddrBits(CellBits), .Bits(CountBits), .Reads(1)) u_downs (
+    .clk_i, .rst_ni, .clear_i(done_o), .write_i(moves && !up), .write_addr_i(own_i - stride),
+    .count_i(down_count_q + 1'b1), .addr_i(asked), .count_o(down_asked), .any_o(some_down)
   );
-  assign none_moved = !some_up && !some_down;
-  assign store_write = up ? ups_q : TopStore[StoreBits-1:0] - downs_q;
+  assign none_moved  = !some_up && !some_down;
+  assign store_write = up ? ups_q : downs_q;
   cuboct_ram #(.Bits(ParticleBits), .Depth(Store), .AddrBits(StoreBits)) u_store (
     .clk_i, .write_i(moves), .write_addr_i(store_write), .write_data_i(read_data_i[ParticleBits-1:0]), .read_i(1'b1), .clear_i(1'b0),
     .read_addr_i(store_read), .read_data_o(stored)
   );
 
   // Landing: from below over the face if the cell is at it, else out of the store; so from above.
-  logic [CountBits-1:0] below, above, below_after;
-  logic [CountBits:0]   landing;
+  logic [CountBits-1:0] below, above;  // to the cell asked for
   logic                 landing_now, last_landing, from_above, from_face, has_room, next_above;
-  assign below        = at_low ? land_count_i[0 +: CountBits] : up_here;
-  assign above        = at_high ? land_count_i[2*CountBits +: CountBits] : down_here;
-  assign below_after  = after_low ? land_count_i[CountBits +: CountBits] : up_after;
-  assign landing      = {1'b0, below} + {1'b0, above};
-  assign landing_now  = active_i && (state == Land) && (landing != '0);
-  assign last_landing = (landed_q + 1'b1 >= landing);
-  assign from_above   = (landed_q >= {1'b0, below});
+  assign below        = asked_low ? land_count_i[0 +: CountBits] : up_asked;
+  assign above        = asked_high ? land_count_i[CountBits +: CountBits] : down_asked;
+  assign from_above   = (below_q == '0);
+  assign landing_now  = active_i && (state_q == Land) && !(from_above && above_q == '0);
+  assign last_landing = from_above ? (above_q[CountBits-1:1] == '0) : (below_q[CountBits-1:1] == '0 && above_q == '0);
   assign from_face    = from_above ? at_high : at_low;
   assign has_room     = (count_i != Capacity[CountBits-1:0]);
-  // Whose turn is next, to ask for it.
-  always_comb begin
-    if (state != Land) next_above = (below == '0);
-    else if (last_landing) next_above = (below_after == '0);
-    else next_above = (landed_q + 1'b1 >= {1'b0, below});
-  end
+  // Whose turn is next, to ask for it. To a cell at the low end nothing comes out of the store from below: nothing was
+  // counted for it, and what the store is asked for is looked at only from above.
+  assign next_above = last_landing ? (up_asked == '0) : (below_q[CountBits-1:1] == '0);
   assign pop_up     = landing_now && !from_above && !at_low;
   assign pop_down   = landing_now && from_above && !at_high;
-  assign store_read = next_above ? TopStore[StoreBits-1:0] - down_read_d : up_read_d;
+  assign store_read = (state_q != Land || next_above) ? down_read_d : up_read_d;
   always_comb begin
     ups_d       = ups_q;
     downs_d     = downs_q;
     up_read_d   = up_read_q;
     down_read_d = down_read_q;
     if (moves && up) ups_d = ups_q + 1'b1;
-    if (moves && !up) downs_d = downs_q + 1'b1;
+    if (moves && !up) downs_d = downs_q - 1'b1;
     if (pop_up) up_read_d = up_read_q + 1'b1;
-    if (pop_down) down_read_d = down_read_q + 1'b1;
+    if (pop_down) down_read_d = down_read_q - 1'b1;
     if (done_o) begin
       ups_d       = '0;
-      downs_d     = '0;
+      downs_d     = TopStore[StoreBits-1:0];
       up_read_d   = '0;
-      down_read_d = '0;
+      down_read_d = TopStore[StoreBits-1:0];
+    end
+  end
+  always_comb begin
+    up_count_d   = up_count_q;
+    down_count_d = down_count_q;
+    if (moves && up) up_count_d = up_count_q + 1'b1;
+    if (moves && !up) down_count_d = down_count_q + 1'b1;
+    if (advance_o) begin
+      up_count_d   = '0;
+      down_count_d = '0;
+    end
+  end
+  // Those that come to the cell; until LAND, to the first one.
+  always_comb begin
+    below_d = below_q;
+    above_d = above_q;
+    if (state_q != Land || advance_o) begin
+      below_d = below;
+      above_d = above;
+    end else if (from_above) begin
+      above_d = above_q - 1'b1;
+    end else begin
+      below_d = below_q - 1'b1;
     end
   end
 
@@ -213,10 +243,8 @@ module cuboct_brick_migrate #(
     state_d        = state_q;
     read_d         = read_q;
     write_d        = write_q;
-    landed_d       = landed_q;
     beat_d         = beat_q;
     done_o         = 1'b0;
-    advance_o      = 1'b0;
     load_o         = 2'b00;
     end_o          = 1'b0;
     moves          = 1'b0;
@@ -234,9 +262,7 @@ module cuboct_brick_migrate #(
       unique case (state)
         Scan: begin
           state_d = Scan;
-          if (!visit) begin
-            advance_o = 1'b1;
-          end else begin
+          if (visit) begin
             if (stays) begin
               write_o = 1'b1;
               write_d = write_q + 1'b1;
@@ -254,10 +280,9 @@ module cuboct_brick_migrate #(
               write_d     = '0;
               count_set_o = 1'b1;
               count_o     = stays ? write_q + 1'b1 : write_q;
-              advance_o   = 1'b1;
             end
           end
-          if (advance_o && last_i) state_d = End;
+          if (advance_o && last_cell) state_d = End;
         end
         End: begin
           state_d = End;
@@ -279,7 +304,6 @@ module cuboct_brick_migrate #(
         Land: begin
           if (landing_now) begin
             pop_o        = {from_above && at_high, !from_above && at_low};
-            landed_d     = landed_q + 1'b1;
             land_o       = has_room;
             write_o      = has_room;
             write_slot_o = count_i[SlotBits-1:0];
@@ -290,13 +314,9 @@ module cuboct_brick_migrate #(
             fault_full_o = !has_room;
             if (has_room) leaving_more_o = goes_on;
           end
-          if (last_landing) begin
-            landed_d  = '0;
-            advance_o = 1'b1;
-            if (last_i) begin
-              state_d = Enter;
-              done_o  = 1'b1;
-            end
+          if (last_landing && last_cell) begin
+            state_d = Enter;
+            done_o  = 1'b1;
           end
         end
         default: state_d = Enter;
@@ -306,30 +326,35 @@ module cuboct_brick_migrate #(
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
-      state_q     <= Enter;
-      read_q      <= '0;
-      write_q     <= '0;
-      landed_q    <= '0;
-      beat_q      <= '0;
-      ups_q       <= '0;
-      downs_q     <= '0;
-      up_read_q   <= '0;
-      down_read_q <= '0;
+      state_q      <= Enter;
+      read_q       <= '0;
+      write_q      <= '0;
+      beat_q       <= '0;
+      ups_q        <= '0;
+      downs_q      <= TopStore[StoreBits-1:0];
+      up_read_q    <= '0;
+      down_read_q  <= TopStore[StoreBits-1:0];
+      up_count_q   <= '0;
+      down_count_q <= '0;
     end else begin
-      state_q     <= state_d;
-      read_q      <= read_d;
-      write_q     <= write_d;
-      landed_q    <= landed_d;
-      beat_q      <= beat_d;
-      ups_q       <= ups_d;
-      downs_q     <= downs_d;
-      up_read_q   <= up_read_d;
-      down_read_q <= down_read_d;
+      state_q      <= state_d;
+      read_q       <= read_d;
+      write_q      <= write_d;
+      beat_q       <= beat_d;
+      ups_q        <= ups_d;
+      downs_q      <= downs_d;
+      up_read_q    <= up_read_d;
+      down_read_q  <= down_read_d;
+      up_count_q   <= up_count_d;
+      down_count_q <= down_count_d;
     end
+    below_q <= below_d;
+    above_q <= above_d;
   end
 
-  assign read_slot_o      = read_d[SlotBits-1:0];
-  assign fault_particle_o = fault_left_o ? read_data_i[ParticleBits-1:0] : candidate;
+  assign from_above_o     = from_above;
+  assign stored_o         = stored;
+  assign fault_particle_o = (state_q == Land) ? candidate : read_data_i[ParticleBits-1:0];
 
   logic [LinkBits-1:0] beat;
   cuboct_beat #(.Bits(SentBits), .LinkBits(LinkBits), .BeatBits(BeatBits)) u_beat (
@@ -337,5 +362,5 @@ module cuboct_brick_migrate #(
   );
   assign data_o = end_o ? '0 : beat;
   logic unused;
-  assign unused = ^{face, land_count_i[3*CountBits +: CountBits], down_after};
+  assign unused = ^face;
 endmodule

@@ -34,9 +34,9 @@ module cuboct_brick_relay #(
   // The cell's records: of each face but those of the last axis, and own ones.
   input  logic [CountBits-1:0]  own_count_i, // own particles
   input  logic [(Faces-2)*CountBits-1:0] halo_count_i,  // by face
-  output logic [SlotBits-1:0]   record_o,    // of the next cycle
-  input  logic [HaloBits-1:0]   own_i,       // at record_o of the cycle before
-  input  logic [(Faces-2)*HaloBits-1:0] halo_i,  // by face, at record_o of the cycle before
+  output logic                  step_o,      // the next cycle's record is the next one of the cell; a cell's first one comes first
+  input  logic [HaloBits-1:0]   own_i,       // the record
+  input  logic [(Faces-2)*HaloBits-1:0] halo_i,  // by face
   // To the link registers of the axis: below, above.
   input  logic [1:0]            can_load_i,  // whether each link register can take a beat in this cycle
   output logic [1:0]            load_o,      // which link registers take a beat
@@ -125,6 +125,7 @@ module cuboct_brick_relay #(
     record_d  = record_q;
     beat_d    = beat_q;
     advance_o = 1'b0;
+    step_o    = 1'b0;
     if (over) begin
       past_d = 1'b0;
       pass_d = next_pass;
@@ -137,6 +138,7 @@ module cuboct_brick_relay #(
         beat_d    = '0;
         record_d  = last_record ? '0 : record_q + 1'b1;
         advance_o = last_record;
+        step_o    = !last_record;
       end
     end
     if (advance_o && last_i) past_d = 1'b1;
@@ -169,6 +171,5 @@ module cuboct_brick_relay #(
     .word_i({tag, record}), .beat_i(beat_q), .data_o(beat)
   );
   assign data_o   = end_o ? '0 : beat;
-  assign record_o = record_d;
   assign sent_o   = sent_q;
 endmodule

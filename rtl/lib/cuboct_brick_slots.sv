@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The particles of a brick, Capacity slots for each cell; ports as in cuboct_slots. An address is cell * Capacity +
 // slot, that of a row of lanes cell * rows + row. All answer in the cycle after the question. What is written in cycle
-// t can be asked for from t+1 on, but over the main port in t already.
+// t can be asked for from t+1 on, but over the main port in t already, as main_written_i says.
 module cuboct_brick_slots #(
   parameter int Axes         = 3,    // 2 or 3
   parameter int Bits         = 128,  // width of a particle
@@ -27,7 +27,12 @@ module cuboct_brick_slots #(
   input  logic [AddrBits-1:0]            write_addr_i,   // of these two
   input  logic [Bits-1:0]                write_data_i,   // the particle
   input  logic [AddrBits-1:0]            main_addr_i,    // in every cycle
+  input  logic                           main_written_i, // write_i, of that slot
   output logic [Bits-1:0]                main_data_o,    // of the question before
+  input  logic                           away_read_i,    // without it away_o's slot stays
+  input  logic [AddrBits-1:0]            away_addr_i,    // with away_read_i
+  input  logic                           away_written_i, // write_i, of the slot that away_o is of in the next cycle
+  output logic [2*Axes-1:0]              away_o,         // where a slot's particle goes, by axis
   input  logic                           stream_read_i,  // without it stream_data_o and row_data_o stay
   input  logic [AddrBits-1:0]            stream_addr_i,  // with stream_read_i
   output logic [SeenBits-1:0]            stream_data_o,  // leading fields of that slot
@@ -46,13 +51,30 @@ module cuboct_brick_slots #(
   logic            same_q;
   logic [Bits-1:0] written_q, main_data;
   always_ff @(posedge clk_i) begin
-    same_q <= write_i && (write_addr_i == main_addr_i);
+    same_q <= main_written_i;
     if (write_i) written_q <= write_data_i;
   end
   cuboct_ram #(.Bits(Bits), .Depth(Depth), .AddrBits(AddrBits)) u_main (
     .clk_i, .write_i, .write_addr_i, .write_data_i, .read_i(1'b1), .clear_i(1'b0), .read_addr_i(main_addr_i), .read_data_o(main_data)
   );
   assign main_data_o = same_q ? written_q : main_data;
+  // The migration does not wait for the block's answer.
+  (* no_rw_check, ram_style = "distributed" *) logic [2*Axes-1:0] away_mem_q [0:Depth-1];
+  localparam int DepthBits = $clog2(Depth);
+  logic [2*Axes-1:0] away_d, away_q, write_away;
+  assign write_away = {write_data_i[Axes*PositionFrac +: 2*(Axes-1)], write_data_i[Bits-1 -: 2]};
+  always_comb begin
+    away_d = away_q;
+    if (away_read_i) away_d = away_mem_q[away_addr_i[DepthBits-1:0]];
+    if (away_written_i) away_d = write_away;
+  end
+  always_ff @(posedge clk_i) begin
+    away_q <= away_d;
+  end
+  always_ff @(posedge clk_i) begin
+    if (write_i) away_mem_q[write_addr_i[DepthBits-1:0]] <= write_away;
+  end
+  assign away_o = away_q;
   cuboct_ram #(.Bits(SeenBits), .Depth(Depth), .AddrBits(AddrBits)) u_stream (
     .clk_i, .write_i, .write_addr_i, .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i), .clear_i(1'b0),
     .read_addr_i(stream_addr_i), .read_data_o(stream_data_o)

@@ -44,15 +44,15 @@ module cuboct_brick_streamer #(
   localparam int Segments = Faces + 1;
   localparam int RowSlots = CountBits + $clog2(FilterLanes + 1);  // bits of a slot number beyond the last row
 
-  logic [2:0]            segment_d, segment_q;
+  logic [2:0]            segment_d, segment_q, other_segment;
   logic [5:0]            offset_d, offset_q, first_offset, next_offset, high_offset, low_offset;
   logic [SlotBits-1:0]   record_d, record_q;
   logic [RowBits-1:0]    row_d, row_q;
   logic [RowSlots-1:0]   next_slot_d, next_slot_q;  // first slot of the next row
   logic [CountBits-1:0]  count;
   logic                  available, linked, go, last_row, last_record, last_near, last_cell;
-  logic                  leave_near, leave_visit, leave_segment;
-  logic [3*GridBits-1:0] here, after, next, low, high, first, near;
+  logic                  leave_near, leave_visit, turns, enter;
+  logic [3*GridBits-1:0] here, after, next, low, high, first, other, near, other_near;
   localparam logic [GridBits-1:0] One = 1;
 
   integer s;
@@ -77,8 +77,12 @@ module cuboct_brick_streamer #(
   assign last_near     = (offset_q == high_offset);
   assign leave_near    = present_o && (nobody_o || (last_row && last_record));
   assign leave_visit   = leave_near && (last_near || own_count_i == '0);
-  assign leave_segment = (leave_visit && last_cell) || (go && !linked);
-  assign segment_d     = restart_i ? 3'd0 : leave_segment ? segment_q + 3'd1 : segment_q;
+  // The other visit is that of the cell after this one, or the first one of the segment after this one. Which one it is,
+  // and all that is known of it, is there before it is known whether this visit ends.
+  assign turns         = past_o || last_cell || !linked;
+  assign other_segment = past_o ? 3'd0 : turns ? segment_q + 3'd1 : segment_q;
+  assign enter         = leave_visit || (go && !linked) || restart_i;
+  assign segment_d     = enter ? other_segment : segment_q;
 
   // The own cells of a segment: all, or those at the face.
   integer a;
@@ -89,13 +93,14 @@ module cuboct_brick_streamer #(
     for (a = 0; a < Axes; a = a + 1) begin
       if ({29'd0, segment_q} == 2 * a + 1) high[a*GridBits +: GridBits] = One;
       if ({29'd0, segment_q} == 2 * a + 2) low[a*GridBits +: GridBits] = extent_i[a*GridBits +: GridBits];
-      if ({29'd0, segment_d} == 2 * a + 2) first[a*GridBits +: GridBits] = extent_i[a*GridBits +: GridBits];
+      if ({29'd0, other_segment} == 2 * a + 2) first[a*GridBits +: GridBits] = extent_i[a*GridBits +: GridBits];
     end
   end
   cuboct_brick_walk #(.GridBits(GridBits)) u_walk (
-    .clk_i, .rst_ni, .low_i(low), .high_i(high), .advance_i(leave_visit), .restart_i(leave_segment || restart_i),
-    .first_i(first), .cell_o(here), .after_o(after), .next_o(next), .last_o(last_cell)
+    .clk_i, .rst_ni, .low_i(low), .high_i(high), .advance_i(enter), .restart_i(enter && turns), .first_i(first),
+    .cell_o(here), .after_o(after), .next_o(next), .last_o(last_cell)
   );
+  assign other = turns ? first : after;
 
   // The cells around: one step along each axis, where the brick, or a halo that the segment's axis has, goes on; over
   // the segment's face always one step.
@@ -114,7 +119,7 @@ module cuboct_brick_streamer #(
       end
     end
   endfunction
-  assign first_offset = reach(next, extent_i, has_link_i, segment_d, 1'b0);
+  assign first_offset = reach(other, extent_i, has_link_i, other_segment, 1'b0);
   assign low_offset   = reach(here, extent_i, has_link_i, segment_q, 1'b0);
   assign high_offset  = reach(here, extent_i, has_link_i, segment_q, 1'b1);
   logic   carry;
@@ -131,7 +136,7 @@ module cuboct_brick_streamer #(
     end
     offset_d = offset_q;
     if (leave_near) offset_d = next_offset;
-    if (leave_visit || leave_segment || restart_i) offset_d = first_offset;
+    if (enter) offset_d = first_offset;
   end
 
   always_comb begin
@@ -167,16 +172,52 @@ module cuboct_brick_streamer #(
     end
   end
 
+  // Numbers of the own cell and of the one around, in registers: of the next one around, of the other visit, or the same.
+  logic [CellBits-1:0]  own_d, own_q, near_d, near_q, other_own, next_near_own, other_near_own;
+  logic [3*TagBits-1:0] layer_d, layer_q, next_layer, other_layer, own_layer, own_face, next_face, other_face;
   for (genvar b = 0; b < 3; b++) begin : gen_near
-    assign near[b*GridBits +: GridBits] = here[b*GridBits +: GridBits] + {{(GridBits - 1) {offset_q[2*b+1]}}, offset_q[2*b]};
+    assign near[b*GridBits +: GridBits] = here[b*GridBits +: GridBits]
+                                        + {{(GridBits - 1) {next_offset[2*b+1]}}, next_offset[2*b]};
+    assign other_near[b*GridBits +: GridBits] = other[b*GridBits +: GridBits]
+                                              + {{(GridBits - 1) {first_offset[2*b+1]}}, first_offset[2*b]};
   end
-  logic [3*TagBits-1:0] own_layer, own_face, near_face;
   cuboct_brick_place #(
     .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
-  ) u_own (.cell_i(here), .own_o(own_cell_o), .layer_o(own_layer), .face_o(own_face));
+  ) u_own (.cell_i(other), .own_o(other_own), .layer_o(own_layer), .face_o(own_face));
   cuboct_brick_place #(
     .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
-  ) u_near (.cell_i(near), .own_o(near_cell_o), .layer_o(near_layer_o), .face_o(near_face));
+  ) u_near (.cell_i(near), .own_o(next_near_own), .layer_o(next_layer), .face_o(next_face));
+  cuboct_brick_place #(
+    .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
+  ) u_other (.cell_i(other_near), .own_o(other_near_own), .layer_o(other_layer), .face_o(other_face));
+  always_comb begin
+    own_d   = own_q;
+    near_d  = near_q;
+    layer_d = layer_q;
+    if (leave_near) begin
+      near_d  = next_near_own;
+      layer_d = next_layer;
+    end
+    if (enter) begin
+      own_d   = other_own;
+      near_d  = other_near_own;
+      layer_d = other_layer;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      own_q   <= '0;
+      near_q  <= '0;
+      layer_q <= '0;  // of no use in the brick
+    end else begin
+      own_q   <= own_d;
+      near_q  <= near_d;
+      layer_q <= layer_d;
+    end
+  end
+  assign own_cell_o   = own_q;
+  assign near_cell_o  = near_q;
+  assign near_layer_o = layer_q;
 
   assign segment_o = segment_q;
   assign record_o  = record_q;
@@ -185,5 +226,5 @@ module cuboct_brick_streamer #(
   assign same_o    = (segment_q == 3'd0) && (offset_q == '0);
   assign past_o    = (segment_q == Segments[2:0]);
   logic unused_places;
-  assign unused_places = ^{after, own_layer, own_face, near_face};
+  assign unused_places = ^{next, own_layer, own_face, next_face, other_face};
 endmodule
