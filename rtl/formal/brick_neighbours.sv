@@ -98,13 +98,14 @@ module brick_neighbours_formal #(
   (* keep *) logic [9:0] tap_states_0, tap_states_1;
   (* keep *) logic       tap_exchange_0, tap_exchange_1, tap_migrating_0, tap_migrating_1;
   (* keep *) logic       tap_sent_0, tap_sent_1, tap_pass_1;  // of the relay
+  (* keep *) logic [2:0] tap_axis_0, tap_axis_1;              // of the sequencer
   (* keep *) logic [2:0] tap_migrate_0, tap_migrate_1;        // state of the migration
   (* keep *) logic [1:0] tap_axis_halo_0, tap_axis_halo_1, tap_axis_ended_0, tap_axis_ended_1;
   // by face: a record, an end comes
   (* keep *) logic [3:0] tap_halo_0, tap_halo_1, tap_halo_end_0, tap_halo_end_1;
   (* keep *) logic [3:0] tap_arrival_0, tap_arrival_1, tap_arrival_end_0, tap_arrival_end_1;
   (* keep *) logic [3:0] tap_halo_ended_0, tap_halo_ended_1, tap_migrate_ended_0, tap_migrate_ended_1;
-  localparam logic [3:0] Force = 4'd3, Update = 4'd4, MigrateX = 4'd5, MigrateY = 4'd6;
+  localparam logic [3:0] ExchangeY = 4'd1, Force = 4'd3, Update = 4'd4, MigrateX = 4'd5, MigrateY = 4'd6;
   localparam logic [2:0] Wait = 3'd3, Land = 3'd4;
 
   // A node that does nothing until something comes.
@@ -196,6 +197,8 @@ module brick_neighbours_formal #(
       i_used_1: assert (told_1_q == {step_1_q[1:0], 1'b0} + used_of(tap_state_1) + ready_1);
       i_beat_0: assert (!valid[0] || ends[0] || sending(tap_state_0, tap_sent_0, tap_migrate_0));
       i_beat_1: assert (!valid[1] || ends[1] || sending(tap_state_1, over_1, tap_migrate_1));
+      i_axis_0: assert (tap_axis_0 == ((tap_state_0 == ExchangeY || tap_state_0 == MigrateY) ? 3'b010 : 3'b001));
+      i_axis_1: assert (tap_axis_1 == ((tap_state_1 == ExchangeY || tap_state_1 == MigrateY) ? 3'b010 : 3'b001));
       i_land:   assert ((tap_migrate_0 != Land || tap_axis_ended_0 == 2'b11)
                         && (tap_migrate_1 != Land || tap_axis_ended_1 == 2'b11));
       i_past_0: assert (!(tap_state_0 > Axis && tap_state_0 <= Force) || tap_halo_ended_0[Above]);
