@@ -61,7 +61,7 @@ tools=$work/tools refused "yosys is not in PATH
   hint: apt-get install yosys" lone.toml --fit xc7
 # Memories that have no room are told without a synthesis: how many words and bits there are, in blocks of 16 bits.
 refused "sheet.toml: its 4 cells do not fit up5k: the nearest plan, 1 node of 2 x 2 x 1 cells with 1 lane and 1 pipe, \
-takes BRAM 32/30 (1.07 times), LUT 593/5280, FF 401/5280, for its memories alone
+takes BRAM 32/30 (1.07 times), LUT 581/5280, FF 449/5280, for its memories alone
   hint: --fit hx8k has room for these; about 2 cells would fit up5k, some 4 particles of this scene" \
   sheet.toml --arch narrow.toml --fit up5k
 [ "$(ls cache/cuboct/fit | wc -l)" = 1 ] || fail "a synthesis for what was known"
