@@ -3,6 +3,7 @@
 #include "emu/lattice/kernel.h"
 
 #include <algorithm>
+#include <iterator>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "emu/lattice/kernel.cpp"
@@ -408,14 +409,16 @@ Kernels scalar_kernels();
 std::vector<Kernels> kernels_here(const KernelRule& rule) {
   std::vector<Kernels> kernels;
   if (rule.fits) {
-    // Every vector unit of this machine, the widest first.
-    for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
-      hwy::GetChosenTarget().Update(target);
-      HWY_DYNAMIC_DISPATCH(vector_kernels)(rule, kernels);
+    // Every vector unit of this machine, by its place in the table: the choice that HWY_DYNAMIC_DISPATCH
+    // reads is the whole process's, and threads beside this one rely on it.
+    static const std::vector<int64_t> targets = hwy::SupportedAndGeneratedTargets();
+    const auto& table = HWY_DISPATCH_TABLE(vector_kernels);
+    for (const int64_t target : targets) {
+      hwy::ChosenTarget choice;
+      choice.Update(target);
+      // A program compiled for one target alone has a table of one.
+      table[std::size(table) == 1 ? 0 : choice.GetIndex()](rule, kernels);
     }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     std::stable_sort(kernels.begin(), kernels.end(),
                      [](const Kernels& a, const Kernels& b) { return a.name.size() > b.name.size(); });
   }
