@@ -25,9 +25,10 @@ module cuboct_sums #(
   logic                 counts_q;          // held_q of slot_q
   logic [Axes*SumBits-1:0] word, old, added;
 
+  always_ff @(posedge clk_i) slot_q <= next_slot_i;
   always_ff @(posedge clk_i) begin
-    slot_q   <= next_slot_i;
-    counts_q <= held_d[next_slot_i[IndexBits-1:0]];
+    if (!rst_ni) counts_q <= 1'b0;
+    else counts_q <= held_d[next_slot_i[IndexBits-1:0]];
   end
   assign old = counts_q ? word : '0;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis
