@@ -40,7 +40,7 @@ void read_node(const ConfigTable& node, Arch& arch) {
 
 void read_widths(const ConfigTable& table, Widths& w) {
   set(table, "position_frac", 8, 30, w.position_frac);
-  set(table, "guard", 1, 20, w.guard);
+  set(table, "guard", 1, 30, w.guard);
   set(table, "difference_frac", 6, 24, w.difference_frac);
   set(table, "filter_frac", 2, 16, w.filter_frac);
   set(table, "velocity_bits", 8, 51, w.velocity_bits);

@@ -105,8 +105,8 @@ void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
 }
 
 Int3 moved(const FixedRule& rule, const Particle& j, const Cell& offset) {
-  Int3 x;
-  for (int a = 0; a < 3; ++a) x[a] = j.x[a] + (int64_t{offset[a]} << rule.widths.position_frac);
+  Int3 x = visible(rule, j.x);
+  for (int a = 0; a < 3; ++a) x[a] += int64_t{offset[a]} << rule.widths.position_frac;
   return x;
 }
 
@@ -123,7 +123,7 @@ uint32_t count_pairs(const FixedRule& rule, const std::vector<const Particle*>& 
   uint32_t count = 0;
   for (const Particle* j : near) {
     const Int3 x_j = moved(rule, *j, offset);
-    for (const Particle* i : own) count += i != j && may_interact(rule, i->x, x_j);
+    for (const Particle* i : own) count += i != j && may_interact(rule, visible(rule, i->x), x_j);
   }
   return count;
 }
@@ -139,7 +139,7 @@ uint64_t narrow_walk(const Plan& plan, const Held& held, uint32_t n) {
       if (!held[n].empty()) walk += 3 + (other == n ? 1 : beats);
       for (const Particle* i : held[n]) {
         if (i != held[n].front()) ++walk;
-        if (i == j || !may_interact(plan.rule, i->x, moved(plan.rule, *j, offset))) continue;
+        if (i == j || !may_interact(plan.rule, visible(plan.rule, i->x), moved(plan.rule, *j, offset))) continue;
         walk = std::max(walk + 1, ready);
         ready = walk + interval;
       }

@@ -15,6 +15,8 @@ namespace {
 // Cells of a brick, times slots, times passes of the lanes; 27 times that are a node's items in a step, which
 // the timing model counts in 25 bits.
 constexpr uint64_t kMostBrickWork = 1 << 20;
+// Of docs/reference/numeric.md: 2 since positions keep the guard bits. Bits of another contract are another plan's.
+constexpr int kNumericContract = 2;
 constexpr int kScaleBits = 18;  // of a pair's scale
 
 int ceil_div(int a, int b) { return (a + b - 1) / b; }
@@ -64,6 +66,7 @@ void add(Hash& hash, const FixedTable& table) {
 
 uint64_t hash_of(const Plan& plan) {
   Hash hash;
+  hash.add(kNumericContract);
   const FixedRule& rule = plan.rule;
   const Widths& w = rule.widths;
   for (const int value : {w.position_frac, w.guard, w.difference_frac, w.velocity_bits,

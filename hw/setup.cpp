@@ -44,14 +44,13 @@ bool is_flat(const Scene& scene, const FixedRule& rule, double lowest) {
   if (scene.periodic.extent[2] > 0 || scene.body.size() == 0) return false;
   for (const FixedType& type : rule.types)
     if (type.velocity[2] != 0 || type.gravity[2] != 0) return false;
-  const double position = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
-  const double moved = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
+  const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
   const Body& body = scene.body;
   for (size_t id = 0; id < body.size(); ++id) {
-    if (std::llround((body.x[id][2] - lowest) / position) != 0) return false;
-    if (!rule.types[body.type[id]].imposed[2] && std::llround(body.v[id][2] * rule.dt / moved) != 0)
+    if (std::llround((body.x[id][2] - lowest) / unit) != 0) return false;
+    if (!rule.types[body.type[id]].imposed[2] && std::llround(body.v[id][2] * rule.dt / unit) != 0)
       return false;
-    if (!body.u.empty() && std::llround(body.u[id][2] / moved) != 0) return false;
+    if (!body.u.empty() && std::llround(body.u[id][2] / unit) != 0) return false;
   }
   return true;
 }
@@ -99,6 +98,9 @@ Plan plan_with(const Scene& scene, const Arch& arch, See see) {
       origin[a] = scene.periodic.origin[a];
     }
 
+  // And half a unit of a visible position lower: a particle on a multiple of the unit stands in the middle of
+  // the range that looks the same.
+  origin.array() -= std::ldexp(0.5 * edge, -rule.widths.position_frac);
   if (flat) origin[2] = lowest;
   rule.axes = flat ? 2 : 3;
   std::vector<Cell> cells = reachable_cells(scene, edge, origin, period, rule.axes);

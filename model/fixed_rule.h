@@ -14,8 +14,8 @@ namespace cuboct {
 
 // Formats of the datapath; an arch file may set each of them.
 struct Widths {
-  int position_frac = 20;           // P: x in [0, 2^P)
-  int guard = 8;                    // G: v has P+G fractional bits
+  int position_frac = 20;           // P: what forces and neighbours see of a position, in [0, 2^P)
+  int guard = 8;                    // G: x, which its owner keeps, and v have P+G fractional bits
   int difference_frac = 16;         // D: d
   int velocity_bits = 29;           // v, signed; at most P+G+1, which is one cell edge per step
   int relative_velocity_frac = 20;  // W: w
@@ -116,11 +116,14 @@ struct PairResult {
   Int3 kick{};
 };
 
-// x_i, x_j in the frame of i's node, P fractional bits (x_j may lie in [-2^P, 2^(P+1))); v with P+G.
+// What forces and neighbours see of a position of P+G fractional bits: its leading P, rounded down.
+Int3 visible(const FixedRule& rule, const Int3& x);
+
+// x_i, x_j: visible positions in the frame of i's node (x_j may lie in [-2^P, 2^(P+1))); v with P+G.
 PairResult pair_kick(const FixedRule& rule, const Int3& x_i, const Int3& v_i, int type_i, const Int3& x_j,
                      const Int3& v_j, int type_j);
 
-// d of the contract, D fractional bits.
+// d of the contract, D fractional bits, of visible positions.
 Int3 difference(const FixedRule& rule, const Int3& x_i, const Int3& x_j);
 // The bounds of the planar test, from cutoff2 and the widths. Inside the cutoff the sum over m axes of |d| is at
 // most f = floor(sqrt(m (cutoff2 - 1))); d is rounded by at most half of its unit, and e differs from the exact
@@ -129,7 +132,7 @@ void set_planar(FixedRule& rule);
 // The planar test; x_i, x_j as for pair_kick.
 bool may_interact(const FixedRule& rule, const Int3& x_i, const Int3& x_j);
 
-// Kick, constraints and drift of one particle. `x` may leave [0, 2^P) by less than one cell.
+// Kick, constraints and drift of one particle. `x`, P+G fractional bits, may leave [0, 2^(P+G)) by less than one cell.
 struct FinishResult {
   Fault fault = Fault::none;
   int64_t number = 0;

@@ -50,7 +50,7 @@ CUBOCT_HD int64_t table_value(const Table& table, uint64_t r2) {
   return table.c0[k] + round_odd(slope * t, table.fraction_bits);
 }
 
-// One pair's part of the kick, as PairResult holds it. `x_j` in the frame of i's node.
+// One pair's part of the kick, as PairResult holds it. x_i, x_j: visible positions, `x_j` in the frame of i's node.
 template <class Result, class Rule, class Triple>
 CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple& v_i, int type_i,
                               const Triple& x_j, const Triple& v_j, int type_j) {
@@ -82,7 +82,8 @@ CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple&
   return result;
 }
 
-// Kick, constraints and drift of one particle, as FinishResult holds it.
+// Kick, constraints and drift of one particle, as FinishResult holds it. The drift is exact: x has the
+// fractional bits of v.
 template <class Result, class Rule, class Triple>
 CUBOCT_HD Result finish_of(const Rule& rule, const Triple& sum, const Triple& x, const Triple& v,
                            const Triple& u, int type) {
@@ -108,7 +109,7 @@ CUBOCT_HD Result finish_of(const Rule& rule, const Triple& sum, const Triple& x,
     }
     if (kind.pd)
       result.u[a] = check(u[a] + result.v[a] - to_go, widths.displacement_bits, FaultType::displacement);
-    result.x[a] = x[a] + round_odd(result.v[a], widths.guard);
+    result.x[a] = x[a] + result.v[a];
   }
   return result;
 }

@@ -45,7 +45,7 @@ void Golden::fail_if_any(const std::vector<RunError>& faults) const {
 }
 
 void Golden::step() {
-  const int P = rule_.widths.position_frac;
+  const int P = rule_.widths.position_frac, frac = rule_.widths.velocity_frac();
   std::vector<RunError> faults;
 
   // Force: every particle against every other of its own and the neighbour nodes.
@@ -55,12 +55,12 @@ void Golden::step() {
     if (nodes_[n].empty()) continue;
     for (const auto& [other, offset] : lattice_.neighbourhood(n))
       for (const Particle& j : nodes_[other]) {
-        Int3 x_j;
-        for (int a = 0; a < 3; ++a) x_j[a] = j.x[a] + (int64_t{offset[a]} << P);
+        Int3 x_j = visible(rule_, j.x);
+        for (int a = 0; a < 3; ++a) x_j[a] += int64_t{offset[a]} << P;
         for (size_t k = 0; k < nodes_[n].size(); ++k) {
           const Particle& i = nodes_[n][k];
           if (i.id == j.id) continue;
-          const PairResult pair = pair_kick(rule_, i.x, i.v, i.type, x_j, j.v, j.type);
+          const PairResult pair = pair_kick(rule_, visible(rule_, i.x), i.v, i.type, x_j, j.v, j.type);
           if (pair.fault != Fault::none) faults.push_back(fault_of(pair.fault, n, i.id, pair.number));
           for (int a = 0; a < 3; ++a) sums[n][k][a] += pair.kick[a];
         }
@@ -79,8 +79,8 @@ void Golden::step() {
       p.v = result.v;
       p.u = result.u;
       for (int a = 0; a < 3; ++a) {
-        m.away[a] = static_cast<int>(result.x[a] >> P);
-        p.x[a] = result.x[a] & ((int64_t{1} << P) - 1);
+        m.away[a] = static_cast<int>(result.x[a] >> frac);
+        p.x[a] = result.x[a] & ((int64_t{1} << frac) - 1);
       }
       moving[n].push_back(m);
     }

@@ -28,12 +28,12 @@ struct ByNode {
   std::vector<uint32_t> first, order;
 };
 
-// Calls visit(i, j, x_j in the frame of i's node) for each particle i of the nodes and each other one in
+// Calls visit(i, j, x_j in the frame of i's node, P+G fractional bits) for each particle i of the nodes and each other one in
 // reach.
 template <typename Visit>
 void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, const ByNode& by_node,
                    uint32_t begin, uint32_t end, Visit visit) {
-  const int64_t edge = int64_t{1} << rule.widths.position_frac;
+  const int64_t edge = int64_t{1} << rule.widths.velocity_frac();
   for (uint32_t node = begin; node < end; ++node) {
     if (by_node.at(node).empty()) continue;
     for (const Lattice::Near& near : lattice.neighbourhood(node))
@@ -70,7 +70,12 @@ T sum_over_pairs(const FixedRule& rule, const Lattice& lattice, const State& sta
   return sum;
 }
 
-// x_j - x_i, P fractional bits.
+// What x_j, P+G fractional bits, does to i.
+PairResult kick_on(const FixedRule& rule, const Particle& i, const Int3& x_j, const Particle& j) {
+  return pair_kick(rule, visible(rule, i.x), i.v, i.type, visible(rule, x_j), j.v, j.type);
+}
+
+// x_j - x_i, P+G fractional bits.
 Vec3 between(const Particle& i, const Int3& x_j) {
   return {static_cast<double>(x_j[0] - i.x[0]), static_cast<double>(x_j[1] - i.x[1]),
           static_cast<double>(x_j[2] - i.x[2])};
@@ -100,7 +105,7 @@ std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, co
     for_each_pair(rule, lattice, state, by_node, static_cast<uint32_t>(begin), static_cast<uint32_t>(end),
                   [&](uint32_t i, uint32_t j, const Int3& x_j) {
                     const Particle &a = state.particles[i], &b = state.particles[j];
-                    const PairResult pair = pair_kick(rule, a.x, a.v, a.type, x_j, b.v, b.type);
+                    const PairResult pair = kick_on(rule, a, x_j, b);
                     if (!pair.inside) return;
                     for (int axis = 0; axis < 3; ++axis) sums[i][axis] += pair.kick[axis];
                   });
@@ -118,7 +123,7 @@ Vec3 force_of(const FixedRule& rule, const Int3& kick) {
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                   const State& state, const std::vector<Int3>& kicks, int threads, ClosestPair* closest) {
   Energies sum;
-  const double length = std::ldexp(fixed.cell_edge, -fixed.widths.position_frac);
+  const double length = std::ldexp(fixed.cell_edge, -fixed.widths.velocity_frac());
   const double velocity = velocity_unit(fixed);
   for (size_t i = 0; i < state.particles.size(); ++i) {
     const Particle& particle = state.particles[i];
@@ -166,11 +171,11 @@ Vec3 acceleration(const Rule& rule, const Body& body, size_t i, const Vec3& forc
 
 Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,
                    int threads) {
-  const double length = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
+  const double length = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
   const Mat3 sum = sum_over_pairs(
       rule, lattice, state, Mat3(Mat3::Zero()), threads, [&](uint32_t i, uint32_t j, const Int3& x_j) -> Mat3 {
         const Particle &a = state.particles[i], &b = state.particles[j];
-        const PairResult pair = pair_kick(rule, a.x, a.v, a.type, x_j, b.v, b.type);
+        const PairResult pair = kick_on(rule, a, x_j, b);
         if (!pair.inside) return Mat3::Zero();
         return force_of(rule, pair.kick) * between(a, x_j).transpose();
       });
@@ -208,7 +213,7 @@ double largest_speed(const FixedRule& rule, const State& state) {
 
 Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
                  const Particle& particle) {
-  const double unit = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
+  const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
   const Cell& cell = lattice.cell(particle.node);
   Vec3 x;
   for (int a = 0; a < 3; ++a)

@@ -14,6 +14,7 @@ namespace cuboct {
 namespace {
 
 constexpr int kLeastStrength = 18, kWidestStrength = 27;
+constexpr int kMostVelocityFrac = 50;  // of a double's 53 bits (emu/lattice/kernel_rule.h)
 constexpr double kHalfUnit =
     1.7e-4;  // of the strongest pull: where the elastic constants of Lennard-Jones are right to 1 %
 
@@ -150,7 +151,8 @@ void check_range(const char* what, int value, int low, int high) {
 
 void check_widths(const Widths& w, const TableChoice& table) {
   check_range("position_frac", w.position_frac, 8, 30);
-  check_range("guard", w.guard, 1, 20);
+  check_range("guard", w.guard, 1, 30);
+  check_range("position_frac + guard", w.velocity_frac(), 9, kMostVelocityFrac);
   check_range("difference_frac", w.difference_frac, 6, std::min(w.position_frac, 24));
   check_range("filter_frac", w.filter_frac, 2, 16);
   check_range("velocity_bits", w.velocity_bits, 8, w.velocity_frac() + 1);

@@ -32,9 +32,9 @@ Int3 momentum(const State& state) {
 
 Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, const Lattice& lattice,
                         const Vec3& origin) {
-  const int P = rule.widths.position_frac;
-  const double position_unit = std::ldexp(rule.cell_edge, -P);
-  const double velocity_unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac()) / rule.dt;
+  const int frac = rule.widths.velocity_frac();
+  const double position_unit = std::ldexp(rule.cell_edge, -frac);
+  const double velocity_unit = position_unit / rule.dt;
   Particle p;
   p.id = id;
   p.type = body.type[id];
@@ -42,10 +42,10 @@ Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, co
   Cell cell;
   for (int a = 0; a < 3; ++a) {
     const int64_t whole = std::llround((body.x[id][a] - origin[a]) / position_unit);
-    cell[a] = static_cast<int32_t>(whole >> P);
-    p.x[a] = whole & ((int64_t{1} << P) - 1);
+    cell[a] = static_cast<int32_t>(whole >> frac);
+    p.x[a] = whole & ((int64_t{1} << frac) - 1);
     p.v[a] = type.imposed[a] ? type.velocity[a] : std::llround(body.v[id][a] / velocity_unit);
-    if (!body.u.empty()) p.u[a] = std::llround(body.u[id][a] / (velocity_unit * rule.dt));
+    if (!body.u.empty()) p.u[a] = std::llround(body.u[id][a] / position_unit);
     if (!fits(p.v[a], rule.widths.velocity_bits))
       throw InputError(
           fmt::format("particle {} moves at {:.4g} m/s: more than the {:.4g} m/s that {} velocity bits hold",
@@ -75,16 +75,15 @@ Body to_real(const State& state, const FixedRule& rule, const Lattice& lattice, 
   body.v.resize(n);
   body.type.resize(n);
   if (rule.pd) body.u.resize(n);
-  const double position_unit = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
-  const double displacement_unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
+  const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
   for (size_t k = 0; k < n; ++k) {
     const Particle& p = state.particles[k];
     const Cell& cell = lattice.cell(p.node);
     body.type[k] = p.type;
     for (int a = 0; a < 3; ++a) {
-      body.x[k][a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(p.x[a]) * position_unit;
-      body.v[k][a] = static_cast<double>(p.v[a]) * displacement_unit / rule.dt;
-      if (rule.pd) body.u[k][a] = static_cast<double>(p.u[a]) * displacement_unit;
+      body.x[k][a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(p.x[a]) * unit;
+      body.v[k][a] = static_cast<double>(p.v[a]) * unit / rule.dt;
+      if (rule.pd) body.u[k][a] = static_cast<double>(p.u[a]) * unit;
     }
   }
   return body;

@@ -14,7 +14,7 @@ struct Particle {
   uint32_t id = 0;
   uint8_t type = 0;
   uint32_t node = 0;  // index into the lattice
-  Int3 x{};           // P fractional bits, in [0, 2^P)
+  Int3 x{};           // P+G fractional bits, in [0, 2^(P+G)); forces see its leading P (visible)
   Int3 v{};           // P+G fractional bits, at half steps
   Int3 u{};           // P+G fractional bits; zero unless the type is held by force
 

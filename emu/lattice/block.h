@@ -32,8 +32,10 @@ inline constexpr uint8_t kNoShift = 13;
 
 // Structure of arrays over all particles of this process, its ghosts behind them.
 struct Particles {
-  std::array<PaddedArray<double>, 3> x;  // P fractional bits, from the corner of cell (0, 0, 0); unwrapped
-                                         // since the last list was built
+  std::array<PaddedArray<double>, 3> x;  // visible: P fractional bits, from the corner of cell (0, 0, 0);
+                                         // unwrapped since the last list was built
+  std::array<PaddedArray<int32_t>, 3> residue;  // the G bits of a position below those, in [0, 2^G); not of
+                                                // ghosts
   std::array<PaddedArray<double>, 3> v;  // P+G fractional bits
   std::array<PaddedArray<double>, 3> u;  // P+G fractional bits; empty unless the rule has PD
   PaddedArray<uint32_t> id;  // empty where a particle's index is its id; else kNoParticle where a block's
@@ -51,6 +53,14 @@ struct Particles {
   std::array<std::array<double, 3>, 27> shift{};
 };
 inline constexpr uint32_t kNoParticle = 0xffffffffu;
+
+// P+G fractional bits, from the corner of cell (0, 0, 0).
+inline Int3 exact_position(const Particles& particles, uint32_t p, int guard) {
+  Int3 x;
+  for (size_t a = 0; a < 3; ++a)
+    x[a] = (static_cast<int64_t>(particles.x[a][p]) << guard) + particles.residue[a][p];
+  return x;
+}
 
 // Something that did not fit; the node is found from the particle.
 struct Found {

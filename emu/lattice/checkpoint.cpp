@@ -13,7 +13,7 @@ namespace cuboct::emu {
 namespace {
 
 constexpr uint64_t kMagic = 0x5450434854424355;  // "UCBTHCPT"
-constexpr uint64_t kVersion = 1;
+constexpr uint64_t kVersion = 2;
 
 void put(WordWriter& out, const std::vector<Vec3>& list) {
   out.word(list.size());

@@ -80,12 +80,14 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
     if (!members_.append(p.node, p.id))
       faults.push_back(error(Fault::full_x, p.node, p.id, plan_.arch.capacity));
   };
+  const int guard = plan_.rule.widths.guard;
   const auto put = [&](const Particle& p, uint32_t at) {
     if (particles_.id.size() > 0) particles_.id[at] = p.id;
     if (p.type != 0) particles_.type[at] = p.type;  // zeros are there, and take no memory
     const Cell& cell = lattice_.cell(p.node);
     for (int a = 0; a < 3; ++a) {
-      particles_.x[a][at] = static_cast<double>(p.x[a]) + cell[a] * rule_.cell;
+      particles_.x[a][at] = static_cast<double>(p.x[a] >> guard) + cell[a] * rule_.cell;
+      particles_.residue[a][at] = static_cast<int32_t>(p.x[a] & ((int64_t{1} << guard) - 1));
       particles_.v[a][at] = static_cast<double>(p.v[a]);
       if (plan_.rule.pd) particles_.u[a][at] = static_cast<double>(p.u[a]);
     }
@@ -131,9 +133,11 @@ Particle LatticeEngine::Impl::particle(uint32_t index) const {
   p.id = particles_.id_of(index);
   p.type = particles_.type[index];
   p.node = members_.nodes()[p.id];
-  const int64_t mask = (int64_t{1} << plan_.rule.widths.position_frac) - 1;
+  const Widths& widths = plan_.rule.widths;
+  const int64_t mask = (int64_t{1} << widths.velocity_frac()) - 1;
+  const Int3 x = exact_position(particles_, index, widths.guard);
   for (int a = 0; a < 3; ++a) {
-    p.x[a] = static_cast<int64_t>(particles_.x[a][index]) & mask;
+    p.x[a] = x[a] & mask;
     p.v[a] = static_cast<int64_t>(particles_.v[a][index]);
     if (plan_.rule.pd) p.u[a] = static_cast<int64_t>(particles_.u[a][index]);
   }
@@ -193,7 +197,7 @@ uint64_t LatticeEngine::hash() const {
 #pragma omp parallel for schedule(static, 1) num_threads(impl.threads_) reduction(+ : sum)
   for (size_t b = 0; b < impl.blocks_.size(); ++b)
     sum += hash_particles(impl.particles_, impl.lattice_, impl.members_.nodes(),
-                          impl.plan_.rule.widths.position_frac, impl.blocks_[b].begin, impl.blocks_[b].end);
+                          impl.plan_.rule.widths, impl.blocks_[b].begin, impl.blocks_[b].end);
   if (impl_->shared()) impl_->options_.ranks->sum({&sum, 1});
   return sum;
 }

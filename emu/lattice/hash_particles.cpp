@@ -44,9 +44,10 @@ HWY_INLINE V integer(hn::Vec<D> whole) {
 }
 
 uint64_t hash_particles(const Particles& particles, const Lattice& lattice, const uint32_t* node,
-                        int position_frac, uint32_t begin, uint32_t end) {
-  const auto cell = hn::Set(d, std::ldexp(1.0, position_frac)),
-             inverse = hn::Set(d, std::ldexp(1.0, -position_frac));
+                        const Widths& widths, uint32_t begin, uint32_t end) {
+  const auto cell = hn::Set(d, std::ldexp(1.0, widths.position_frac)),
+             inverse = hn::Set(d, std::ldexp(1.0, -widths.position_frac)),
+             guard = hn::Set(d, std::ldexp(1.0, widths.guard));
   const bool pd = particles.u[0].size() > 0;
   V sum = hn::Zero(u);
   for (uint32_t i = begin; i < end; i += kStride) {
@@ -68,10 +69,15 @@ uint64_t hash_particles(const Particles& particles, const Lattice& lattice, cons
       const uint32_t at = i + w * kLanes;  // what is beyond the end does not count
       return hn::LoadU(d, field.data() + (at < end ? at : i));
     };
+    const auto residue = [&](const PaddedArray<int32_t>& field, uint32_t w) {
+      const uint32_t at = i + w * kLanes;
+      return hn::PromoteTo(d, hn::LoadU(hn::Rebind<int32_t, D>(), field.data() + (at < end ? at : i)));
+    };
     for (int a = 0; a < 3; ++a) {
       for (uint32_t w = 0; w < kWays; ++w) {
         const auto x = load(particles.x[a], w);
-        value[w] = integer(hn::Sub(x, hn::Mul(hn::Floor(hn::Mul(x, inverse)), cell)));
+        const auto visible = hn::Sub(x, hn::Mul(hn::Floor(hn::Mul(x, inverse)), cell));
+        value[w] = integer(hn::MulAdd(visible, guard, residue(particles.residue[a], w)));
       }
       add(hash, value);
       for (uint32_t w = 0; w < kWays; ++w) value[w] = integer(load(particles.v[a], w));
@@ -94,8 +100,8 @@ HWY_AFTER_NAMESPACE();
 namespace cuboct::emu {
 HWY_EXPORT(hash_particles);
 uint64_t hash_particles(const Particles& particles, const Lattice& lattice, const uint32_t* node,
-                        int position_frac, uint32_t begin, uint32_t end) {
-  return HWY_DYNAMIC_DISPATCH(hash_particles)(particles, lattice, node, position_frac, begin, end);
+                        const Widths& widths, uint32_t begin, uint32_t end) {
+  return HWY_DYNAMIC_DISPATCH(hash_particles)(particles, lattice, node, widths, begin, end);
 }
 }  // namespace cuboct::emu
 #endif

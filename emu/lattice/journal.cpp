@@ -9,15 +9,15 @@ namespace cuboct::emu {
 namespace {
 
 constexpr uint64_t kMagic = 0x4c4e524a54424355;  // "UCBTJRNL"
-constexpr uint64_t kVersion = 1;
+constexpr uint64_t kVersion = 2;
 enum Kind : uint64_t { kHash = 1, kSample, kCycles, kFrame };
 
 }  // namespace
 
 void put(WordWriter& out, const Particle& p, bool displaced) {
   out.word(p.id | uint64_t{p.node} << 32);
-  out.word(static_cast<uint64_t>(p.x[0]) | static_cast<uint64_t>(p.x[1]) << 32);
-  out.word(static_cast<uint64_t>(p.x[2]) | uint64_t{p.type} << 32);
+  for (size_t a = 0; a < 3; ++a)  // a position has at most 50 bits
+    out.word(static_cast<uint64_t>(p.x[a]) | (a == 2 ? uint64_t{p.type} << 56 : 0));
   for (const int64_t v : p.v) out.word(static_cast<uint64_t>(v));
   if (displaced)
     for (const int64_t u : p.u) out.word(static_cast<uint64_t>(u));
@@ -25,11 +25,12 @@ void put(WordWriter& out, const Particle& p, bool displaced) {
 
 Particle take_particle(WordReader& in, bool displaced) {
   Particle p;
-  const uint64_t place = in.word(), xy = in.word(), z_type = in.word();
+  const uint64_t place = in.word();
   p.id = static_cast<uint32_t>(place);
   p.node = static_cast<uint32_t>(place >> 32);
-  p.x = {static_cast<uint32_t>(xy), static_cast<uint32_t>(xy >> 32), static_cast<uint32_t>(z_type)};
-  p.type = static_cast<uint8_t>(z_type >> 32);
+  for (int64_t& x : p.x) x = static_cast<int64_t>(in.word());
+  p.type = static_cast<uint8_t>(static_cast<uint64_t>(p.x[2]) >> 56);
+  p.x[2] &= (int64_t{1} << 56) - 1;
   for (int64_t& v : p.v) v = static_cast<int64_t>(in.word());
   if (displaced)
     for (int64_t& u : p.u) u = static_cast<int64_t>(in.word());
@@ -111,7 +112,7 @@ void Journal::cycles(uint64_t step, std::span<const PhaseSpan> spans) {
 void Journal::frame(const State& state) {
   frame_steps_.push_back(state.step);
   frame_places_.push_back(out_->mark().words);
-  head(kFrame, state.step, state.particles.size() * (displaced_ ? 9 : 6));
+  head(kFrame, state.step, state.particles.size() * (displaced_ ? 10 : 7));
   for (const Particle& p : state.particles) put(*out_, p, displaced_);
 }
 
@@ -127,7 +128,7 @@ std::vector<State> Journal::frames() {
   for (size_t k = 0; k < frames.size(); ++k) {
     frames[k].step = frame_steps_[k];
     in.seek(frame_places_[k] + 2);
-    frames[k].particles.resize(in.word() / (displaced_ ? 9 : 6));
+    frames[k].particles.resize(in.word() / (displaced_ ? 10 : 7));
     for (Particle& p : frames[k].particles) p = take_particle(in, displaced_);
   }
   return frames;

@@ -23,6 +23,7 @@ using I = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 constexpr D d;
+constexpr hn::Rebind<int32_t, D> half;  // as many lanes of 32 bits
 constexpr uint32_t kLanes = hn::MaxLanes(d);
 static_assert(kGroup % kLanes == 0);
 
@@ -279,15 +280,21 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
   for (int a = 0; a < 3; ++a) {
     const V x = hn::Load(d, particles.x[a].data() + i);
     const V old_v = hn::Load(d, particles.v[a].data() + i);
-    const V step = rounded(v[a], rule.drift_factor);
+    // The drift is exact: what the residue and v make together of visible units goes to x.
+    int32_t* const residue = particles.residue[a].data() + i;
+    const V old_residue = hn::PromoteTo(d, hn::LoadU(half, residue));
+    const V exact = hn::Add(old_residue, v[a]);
+    const V step = hn::Floor(hn::Mul(exact, hn::Set(d, rule.inverse_guard)));
+    const V left = hn::NegMulAdd(step, hn::Set(d, rule.guard), exact);
     const V new_x = hn::Add(x, step);
     before[a] = hn::Floor(hn::Mul(x, hn::Set(d, rule.inverse_cell)));
     after[a] = hn::Floor(hn::Mul(new_x, hn::Set(d, rule.inverse_cell)));
     crossed = hn::Or(crossed, hn::Ne(before[a], after[a]));
     if (active.changed != nullptr)
-      changed = hn::Or(changed, hn::Or(hn::Ne(step, hn::Zero(d)), hn::Ne(v[a], old_v)));
+      changed = hn::Or(changed, hn::Or(hn::Ne(v[a], hn::Zero(d)), hn::Ne(old_v, hn::Zero(d))));
     hn::Store(hn::IfThenElse(mask, new_x, x), d, particles.x[a].data() + i);
     hn::Store(hn::IfThenElse(mask, v[a], old_v), d, particles.v[a].data() + i);
+    hn::StoreU(hn::DemoteTo(half, hn::IfThenElse(mask, left, old_residue)), half, residue);
   }
   const V speed2 = hn::MulAdd(v[2], v[2], hn::MulAdd(v[1], v[1], hn::Mul(v[0], v[0])));
   fastest2 = hn::Max(fastest2, hn::IfThenElseZero(mask, speed2));

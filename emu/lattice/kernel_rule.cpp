@@ -68,7 +68,8 @@ KernelRule kernel_rule(const FixedRule& rule, int capacity) {
   if (rule.scaled)
     for (const auto& row : rule.scale) k.scale.insert(k.scale.end(), row.begin(), row.end());
   k.scale_factor = rounding_factor(w.scale_frac);
-  k.drift_factor = rounding_factor(w.guard);
+  k.guard = std::ldexp(1.0, w.guard);
+  k.inverse_guard = std::ldexp(1.0, -w.guard);
   k.sum_limit = std::ldexp(1.0, w.sum_bits - 1);
   k.v_limit = std::ldexp(1.0, w.velocity_bits - 1);
   for (const FixedType& type : rule.types)

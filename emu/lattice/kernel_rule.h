@@ -66,7 +66,7 @@ struct KernelRule {
   int types = 1;
   std::vector<double> scale;  // types x types
   double scale_factor = 0;
-  double drift_factor = 0;
+  double guard = 0, inverse_guard = 0;  // 2^G, 2^-G
   double sum_limit = 0, v_limit = 0;  // |value| from here on may not fit
   std::vector<uint8_t> plain;         // by type: neither imposed nor held by force
 };

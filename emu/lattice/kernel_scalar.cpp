@@ -141,19 +141,20 @@ void report_pair(const KernelRule& rule, const Particles& particles, uint32_t i,
 
 void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const Int3& sum,
                 const Active& active, Block& block) {
-  const Int3 x = whole(particles.x, p), v = whole(particles.v, p);
+  const int G = rule.rule->widths.guard, frac = rule.rule->widths.velocity_frac();
+  const Int3 x = exact_position(particles, p, G), v = whole(particles.v, p);
   const bool pd = particles.u[0].size() > 0;
   const Int3 u = pd ? whole(particles.u, p) : Int3{};
   const FinishResult done = finish(*rule.rule, sum, x, v, u, particles.type[p]);
   if (done.fault != Fault::none) block.update_faults.push_back({done.fault, p, done.number});
-  const int P = rule.rule->widths.position_frac;
   Crossing crossing{p, {}};
   bool changed = false;
   double speed2 = 0;
   for (int a = 0; a < 3; ++a) {
-    crossing.away[a] = static_cast<int8_t>((done.x[a] >> P) - (x[a] >> P));
+    crossing.away[a] = static_cast<int8_t>((done.x[a] >> frac) - (x[a] >> frac));
     changed |= done.x[a] != x[a] || done.v[a] != v[a] || done.u[a] != u[a];
-    particles.x[a][p] = static_cast<double>(done.x[a]);
+    particles.x[a][p] = static_cast<double>(done.x[a] >> G);
+    particles.residue[a][p] = static_cast<int32_t>(done.x[a] & ((int64_t{1} << G) - 1));
     particles.v[a][p] = static_cast<double>(done.v[a]);
     if (pd) particles.u[a][p] = static_cast<double>(done.u[a]);
     speed2 += static_cast<double>(done.v[a]) * static_cast<double>(done.v[a]);

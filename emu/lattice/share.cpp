@@ -17,6 +17,7 @@ namespace {
 // All of a particle that moves to another rank.
 struct Moving {
   uint32_t id, type;
+  int32_t residue[3];
   double x[3], v[3], u[3];
 };
 
@@ -42,6 +43,7 @@ void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
   stored_ = stored;
   const uint32_t room = stored + ghosts;
   for (auto& x : particles_.x) x = PaddedArray<double>(room);
+  for (auto& residue : particles_.residue) residue = PaddedArray<int32_t>(stored);
   for (auto& v : particles_.v) v = PaddedArray<double>(room);
   if (plan_.rule.pd)
     for (auto& u : particles_.u) u = PaddedArray<double>(room);
@@ -93,6 +95,7 @@ void LatticeEngine::Impl::store_by_node() {
   };
   for (int a = 0; a < 3; ++a) {
     reorder(particles_.x[a]);
+    reorder(particles_.residue[a]);
     reorder(particles_.v[a]);
     if (plan_.rule.pd) reorder(particles_.u[a]);
   }
@@ -136,9 +139,10 @@ void LatticeEngine::Impl::redistribute() {
     const uint32_t id = particles_.id_of(p);
     const int owner = owner_[members_.nodes()[id]];
     if (owner == me) return;
-    Moving moving{id, particles_.type[p], {}, {}, {}};
+    Moving moving{id, particles_.type[p], {}, {}, {}, {}};
     for (int a = 0; a < 3; ++a) {
       moving.x[a] = particles_.x[a][p];
+      moving.residue[a] = particles_.residue[a][p];
       moving.v[a] = particles_.v[a][p];
       if (plan_.rule.pd) moving.u[a] = particles_.u[a][p];
     }
@@ -192,6 +196,7 @@ void LatticeEngine::Impl::redistribute() {
         particles_.type[begin] = old.type[p];
         for (int a = 0; a < 3; ++a) {
           particles_.x[a][begin] = old.x[a][p];
+          particles_.residue[a][begin] = old.residue[a][p];
           particles_.v[a][begin] = old.v[a][p];
           if (plan_.rule.pd) particles_.u[a][begin] = old.u[a][p];
         }
@@ -207,6 +212,7 @@ void LatticeEngine::Impl::redistribute() {
       particles_.type[p] = static_cast<uint8_t>(moving.type);
       for (int a = 0; a < 3; ++a) {
         particles_.x[a][p] = moving.x[a];
+        particles_.residue[a][p] = moving.residue[a];
         particles_.v[a][p] = moving.v[a];
         if (plan_.rule.pd) particles_.u[a][p] = moving.u[a];
       }
