@@ -8,6 +8,8 @@
 #include <memory>
 
 #include "hw/cycles.h"
+#include "model/motion.h"
+#include "model/quantise.h"
 #include "study/cost.h"
 
 namespace cuboct {
@@ -67,6 +69,39 @@ void add_not_built(Items& items, const Plan& plan) {
             fmt::format("{} as built", plan.words.particle_bits));
 }
 
+// Why a format is what it is.
+std::string reason_of(const Plan& plan, const std::string& key) {
+  for (const WidthReason& reason : plan.reasons)
+    if (reason.key == key)
+      return !reason.asked                    ? reason.why
+             : reason.wanted != reason.bits ? fmt::format("by the arch file; \"auto\": {}, {}", reason.wanted, reason.why)
+                                              : "by the arch file";
+  return {};
+}
+
+// What a tenth of the accuracy would take.
+void add_cheaper(Items& items, const Scene& scene, const Plan& plan) {
+  Widths asked = automatic_widths();
+  const FixedRule& rule = plan.rule;
+  for (const WidthReason& reason : plan.reasons)
+    if (reason.asked) return;  // formats that are chosen are no matter of accuracy
+  Scene loose = scene;
+  loose.accuracy *= 10;
+  const AutoWidths chosen = auto_widths(loose, rule.cell_edge, asked);
+  FixedRule other = quantise(loose.rule, rule.cell_edge, chosen.widths, plan.arch.table, chosen.half_unit);
+  other.axes = rule.axes;
+  other = carrying(std::move(other), plan.arch.carry);
+  const Words words = words_of(other, plan.arch, plan.particles);
+  if (words.halo_bits == plan.words.halo_bits && words.particle_bits == plan.words.particle_bits &&
+      other.widths.difference_frac == rule.widths.difference_frac &&
+      other.widths.strength_bits == rule.widths.strength_bits)
+    return;
+  items.add(fmt::format("with accuracy {:.2g}", loose.accuracy), words.halo_bits, "bit",
+            fmt::format("of a halo record, {} of a particle record; differences {}, strength {}, velocities {} bits",
+                        words.particle_bits, other.widths.difference_frac, other.widths.strength_bits,
+                        other.widths.velocity_bits));
+}
+
 }  // namespace
 
 Items resolve(const Loaded& loaded) {
@@ -96,19 +131,25 @@ Items resolve(const Loaded& loaded) {
     items.add("dt limit", scene.dt_limit, "s", "largest stable step of " + scene.dt_limit_of);
     items.add("dt safety", scene.dt_safety, "", "dt over its limit");
   }
-  items.add("position bits", w.position_frac);
-  items.add("guard bits", w.guard);
-  items.add("difference bits", w.difference_frac);
-  items.add("velocity bits", w.velocity_bits);
+  items.add("accuracy", scene.accuracy, "", "of imposed velocities, gravity, gains and the expected strain");
+  if (const Motion motion = motion_of(scene); motion.strain > 0)
+    items.add("expected strain", motion.strain, "", "by " + motion.strain_of);
+  items.add("position bits", w.position_frac, "", reason_of(plan, "position_frac"));
+  items.add("guard bits", w.guard, "", reason_of(plan, "guard"));
+  items.add("difference bits", w.difference_frac, "", reason_of(plan, "difference_frac"));
+  items.add("velocity bits", w.velocity_bits, "", reason_of(plan, "velocity_bits"));
   items.add("strength bits", w.strength_bits);
-  items.add("sum bits", w.sum_bits);
+  items.add("sum bits", w.sum_bits, "", reason_of(plan, "sum_bits"));
   add_table(items, "force table", rule.force);
   if (rule.damped) {
     add_table(items, "damping table", rule.damp);
-    items.add("relative velocity bits", w.relative_velocity_bits);
+    items.add("relative velocity bits", w.relative_velocity_bits, "", reason_of(plan, "relative_velocity_bits"));
+    items.add("relative velocity fraction", w.relative_velocity_frac, "", reason_of(plan, "relative_velocity_frac"));
   }
   items.add("worst force error", rule.error.worst_force, "N",
             fmt::format("at {:.4g} m; {:.2g} of the largest force", rule.error.at, rule.error.relative));
+  add_cheaper(items, scene, plan);
+  for (const std::string& warning : plan.warnings) items.add("warning", warning);
   items.add("halo record", plan.words.halo_bits, "bit", fmt::format("{} beats", plan.words.halo_beats));
   items.add("particle record", plan.words.particle_bits, "bit",
             fmt::format("{} beats", plan.words.migrate_beats));

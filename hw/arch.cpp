@@ -13,11 +13,19 @@ void set(const ConfigTable& table, const char* key, int low, int high, int& valu
   value = static_cast<int>(table.integer_or(key, low, high, value));
 }
 
+// A format that may be "auto".
+void set_automatic(const ConfigTable& table, const char* key, int low, int high, int& value) {
+  const auto found = table.find(key);
+  if (!found) return;
+  value = found->is_string() && found->choice("width", {"auto"}) == 0 ? kAutomatic
+                                                                      : static_cast<int>(found->integer(low, high));
+}
+
 void read_node(const ConfigTable& node, Arch& arch) {
   if (const auto edge = node.find("cell_edge"))
     arch.cell_edge =
         edge->is_string() && edge->string() == "auto" ? 0 : edge->number(quantity::length, Range::positive());
-  set(node, "capacity", 1, 256, arch.capacity);
+  set_automatic(node, "capacity", 1, 256, arch.capacity);
   set(node, "filter_lanes", 1, 64, arch.filter_lanes);
   set(node, "force_pipes", 1, 64, arch.force_pipes);
   if (const auto m = node.find("multipliers"))
@@ -39,21 +47,18 @@ void read_node(const ConfigTable& node, Arch& arch) {
 }
 
 void read_widths(const ConfigTable& table, Widths& w) {
-  set(table, "position_frac", 8, 30, w.position_frac);
-  set(table, "guard", 1, 30, w.guard);
-  set(table, "difference_frac", 6, 24, w.difference_frac);
-  set(table, "filter_frac", 2, 16, w.filter_frac);
-  set(table, "velocity_bits", 8, 51, w.velocity_bits);
-  set(table, "relative_velocity_frac", 4, 50, w.relative_velocity_frac);
-  set(table, "relative_velocity_bits", 4, 27, w.relative_velocity_bits);
-  if (const auto bits = table.find("strength_bits"))
-    w.strength_bits = bits->is_string() && bits->choice("table width", {"auto"}) == 0
-                          ? 0
-                          : static_cast<int>(bits->integer(8, 27));
-  set(table, "sum_bits", 8, 48, w.sum_bits);
-  set(table, "displacement_bits", 8, 40, w.displacement_bits);
-  set(table, "scale_frac", 4, 16, w.scale_frac);
-  set(table, "gain_frac", 4, 24, w.gain_frac);
+  set_automatic(table, "position_frac", 8, 30, w.position_frac);
+  set_automatic(table, "guard", 1, 30, w.guard);
+  set_automatic(table, "difference_frac", 6, 24, w.difference_frac);
+  set_automatic(table, "filter_frac", 2, 16, w.filter_frac);
+  set_automatic(table, "velocity_bits", 8, 51, w.velocity_bits);
+  set_automatic(table, "relative_velocity_frac", 4, 50, w.relative_velocity_frac);
+  set_automatic(table, "relative_velocity_bits", 4, 27, w.relative_velocity_bits);
+  set_automatic(table, "strength_bits", 8, 27, w.strength_bits);
+  set_automatic(table, "sum_bits", 8, 48, w.sum_bits);
+  set_automatic(table, "displacement_bits", 8, 44, w.displacement_bits);
+  set_automatic(table, "scale_frac", 4, 16, w.scale_frac);
+  set_automatic(table, "gain_frac", 4, 24, w.gain_frac);
   table.done();
 }
 
@@ -96,6 +101,15 @@ Arch arch_of(const ConfigTable& root) {
 }
 
 }  // namespace
+
+Widths automatic_widths() {
+  Widths w;
+  for (int* bits : {&w.position_frac, &w.guard, &w.difference_frac, &w.velocity_bits, &w.relative_velocity_frac,
+                    &w.relative_velocity_bits, &w.filter_frac, &w.strength_bits, &w.sum_bits, &w.displacement_bits,
+                    &w.scale_frac, &w.gain_frac})
+    *bits = kAutomatic;
+  return w;
+}
 
 Arch read_arch(const std::string& path) { return path.empty() ? Arch() : arch_of(read_config(path)); }
 

@@ -20,10 +20,14 @@ enum class Multipliers : uint8_t {
   serial     // each has its own, a bit per cycle, of logic alone: a pair every 15 to 28 cycles
 };
 
+// Of a format or a capacity: chosen by what the scene asks for (hw/auto_widths.h).
+inline constexpr int kAutomatic = 0;
+Widths automatic_widths();  // every one of them
+
 struct Arch {
   std::string name = "default";
   double cell_edge = 0;  // m; 0: the pair law's cutoff, or the next length that divides a periodic box
-  int capacity = 16;     // particles that a node holds
+  int capacity = kAutomatic;  // particles that a cell holds
   int filter_lanes = 8;  // own particles that a candidate meets per cycle
   int force_pipes = 1;   // pairs per cycle
   Multipliers multipliers = Multipliers::parallel;
@@ -33,7 +37,7 @@ struct Arch {
   bool narrow_memories = false;  // words of a beat's width, one port to read: hw/plan.h says what that asks
   int link_bits = 0;     // payload bits per beat; 0: one halo record per beat
   LinkCheck link_check = LinkCheck::none;
-  Widths widths;
+  Widths widths = automatic_widths();
   TableChoice table;
   Carry carry;
 };

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hw/arch.h"
+#include "hw/auto_widths.h"
 #include "hw/bricks.h"
 #include "model/fixed_rule.h"
 #include "model/lattice.h"
@@ -51,7 +52,7 @@ struct Latency {
 
 struct Plan {
   FixedRule rule;
-  Arch arch;
+  Arch arch;  // as built: nothing in it is automatic
   Lattice lattice;  // of cells
   Bricks bricks;    // of these: what each physical node serves
   Vec3 origin = Vec3::Zero();  // m, lower corner of cell (0,0,0)
@@ -60,6 +61,9 @@ struct Plan {
   LinkCode link;
   uint32_t particles = 0;
   uint64_t hash = 0;  // of everything above that an engine can see
+  // For people: why formats and capacity are what they are, and what they cannot do.
+  std::vector<WidthReason> reasons;
+  std::vector<std::string> warnings;
 
   // Physical nodes, and the neighbour of one over a face, or kNoNode.
   uint32_t nodes() const { return bricks.single() ? lattice.size() : bricks.size(); }

@@ -55,6 +55,53 @@ bool is_flat(const Scene& scene, const FixedRule& rule, double lowest) {
   return true;
 }
 
+// What cells may come to hold, at the least: 4 of an FCC packing's cubic cell, four times over.
+constexpr int kLeastCapacity = 16;
+// Particles that stand closer to a face than this share of the distance at rest may come in.
+constexpr double kMayComeIn = 0.2;
+
+// Particles that the fullest cell may hold with those that may come in through its faces, and a quarter more: a multiple
+// of four.
+int capacity_for(const Scene& scene, const Lattice& lattice, double edge, const Vec3& origin) {
+  const double pitch = scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff();
+  const double reach = kMayComeIn * pitch / edge;
+  std::vector<uint32_t> count(lattice.size(), 0);
+  for (const Vec3& x : scene.body.x) {
+    std::array<std::array<int32_t, 2>, 3> near;
+    for (int a = 0; a < 3; ++a) {
+      const double at = (x[a] - origin[a]) / edge;
+      near[a] = {static_cast<int32_t>(std::floor(at - reach)), static_cast<int32_t>(std::floor(at + reach))};
+    }
+    for (int32_t cz = near[2][0]; cz <= near[2][1]; ++cz)
+      for (int32_t cy = near[1][0]; cy <= near[1][1]; ++cy)
+        for (int32_t cx = near[0][0]; cx <= near[0][1]; ++cx)
+          if (const uint32_t cell = lattice.find({cx, cy, cz}); cell != kNoNode) ++count[cell];
+  }
+  const double fullest = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
+  return std::clamp(4 * static_cast<int>(std::ceil(1.25 * fullest / 4)), kLeastCapacity, 256);
+}
+
+// The rule in integers. Where formats that the arch file sets cannot hold it, the hint names those that can.
+FixedRule fixed_rule(const Scene& scene, const Arch& arch, double edge, const AutoWidths& chosen) {
+  try {
+    return quantise(scene.rule, edge, chosen.widths, arch.table, chosen.half_unit);
+  } catch (const InputError& error) {
+    const AutoWidths free = auto_widths(scene, edge, automatic_widths());
+    std::string changes;
+    for (const WidthReason& reason : chosen.reasons)
+      for (const WidthReason& other : free.reasons)
+        if (reason.key == other.key && reason.asked && other.bits != reason.bits)
+          changes += fmt::format("{}{} = {}", changes.empty() ? "" : ", ", other.key, other.bits);
+    if (changes.empty()) throw;
+    try {
+      quantise(scene.rule, edge, free.widths, arch.table, free.half_unit);
+    } catch (const InputError&) {
+      throw error;
+    }
+    throw error.with(fmt::format("widths that hold it: {}; or leave them to \"auto\"", changes));
+  }
+}
+
 // Every cell of the box around `cells`.
 std::vector<Cell> filled_box(const std::vector<Cell>& cells) {
   Cell low = cells.front(), high = low;
@@ -76,18 +123,15 @@ std::vector<Cell> filled_box(const std::vector<Cell>& cells) {
 
 // `see` is given each particle of the initial state once, in the order of ids.
 template <typename See>
-Plan plan_with(const Scene& scene, const Arch& arch, See see) {
-  const double cutoff = scene.rule.law->cutoff();
-  if (arch.cell_edge > 0 && arch.cell_edge < cutoff)
-    throw InputError(fmt::format("cell_edge = {:.6g} m is shorter than the pair law's cutoff, {:.6g} m",
-                                 arch.cell_edge, cutoff));
-  const double edge = periodic_edge(scene.periodic.extent, std::max(cutoff, arch.cell_edge));
-
+Plan plan_with(const Scene& scene, Arch arch, See see) {
+  const double edge = cell_edge_of(scene, arch);
   // Cells start a quarter of an edge below the body, so that the planes of an aligned crystal do not lie on
   // faces; along z a flat body's only plane does.
   Vec3 origin = Vec3::Constant(INFINITY);
   for (const Vec3& x : scene.body.x) origin = origin.cwiseMin(x);
-  FixedRule rule = quantise(scene.rule, edge, arch.widths, arch.table);
+  const AutoWidths chosen = auto_widths(scene, edge, arch.widths);
+  FixedRule rule = fixed_rule(scene, arch, edge, chosen);
+  arch.widths = rule.widths;
   const double lowest = origin[2];
   const bool flat = is_flat(scene, rule, lowest);
   origin.array() -= 0.25 * edge;
@@ -107,6 +151,7 @@ Plan plan_with(const Scene& scene, const Arch& arch, See see) {
   if (arch.carry.empty_nodes) cells = filled_box(cells);
   Lattice lattice(std::move(cells), period);
   rule = carrying(std::move(rule), arch.carry);
+  if (arch.capacity == kAutomatic) arch.capacity = capacity_for(scene, lattice, edge, origin);
   std::vector<uint32_t> count(lattice.size(), 0);
   uint32_t fullest = 0;
   for (uint32_t id = 0; id < scene.body.size(); ++id) {
@@ -118,8 +163,12 @@ Plan plan_with(const Scene& scene, const Arch& arch, See see) {
     throw InputError(
         fmt::format("a node would hold {} particles: its capacity is {}", fullest, arch.capacity),
         fmt::format("set node.capacity to at least {} in the arch file", fullest));
-  return make_plan(std::move(rule), arch, std::move(lattice), origin,
-                   static_cast<uint32_t>(scene.body.size()));
+  std::vector<std::string> warnings = width_warnings(scene, edge, chosen, rule);
+  Plan plan = make_plan(std::move(rule), std::move(arch), std::move(lattice), origin,
+                        static_cast<uint32_t>(scene.body.size()));
+  plan.reasons = chosen.reasons;
+  plan.warnings = std::move(warnings);
+  return plan;
 }
 
 // Gives the whole pages among a vector's elements [first, last) back to the system; those elements become
@@ -144,6 +193,19 @@ Particle InitialParticles::operator()(uint32_t id) {
     if (!body_.u.empty()) give_back(body_.u, id - kBlock, id);
   }
   return fixed_particle(body_, id, plan_.rule, plan_.lattice, plan_.origin);
+}
+
+double cell_edge_of(const Scene& scene, const Arch& arch) {
+  const double cutoff = scene.rule.law->cutoff();
+  if (arch.cell_edge > 0 && arch.cell_edge < cutoff)
+    throw InputError(fmt::format("cell_edge = {:.6g} m is shorter than the pair law's cutoff, {:.6g} m",
+                                 arch.cell_edge, cutoff));
+  return periodic_edge(scene.periodic.extent, std::max(cutoff, arch.cell_edge));
+}
+
+Arch settled(const Scene& scene, Arch arch) {
+  arch.widths = auto_widths(scene, cell_edge_of(scene, arch), arch.widths).widths;
+  return arch;
 }
 
 Plan plan_of(const Scene& scene, const Arch& arch) {

@@ -6,8 +6,10 @@
 namespace cuboct {
 namespace {
 
+constexpr const char* kHint = "\n  hint: ";
+
 std::string with_hint(std::string text, const std::string& hint) {
-  return hint.empty() ? text : text + "\n  hint: " + hint;
+  return hint.empty() ? text : text + kHint + hint;
 }
 
 }  // namespace
@@ -18,6 +20,11 @@ InputError::InputError(const std::string& message, const std::string& hint)
 InputError::InputError(const std::string& file, int line, int column, const std::string& message,
                        const std::string& hint)
     : std::runtime_error(with_hint(fmt::format("{}:{}:{}: {}", file, line, column, message), hint)) {}
+
+InputError InputError::with(const std::string& hint) const {
+  const std::string text = what();
+  return InputError(text.substr(0, text.find(kHint)), hint);
+}
 
 const char* to_string(Fault fault) {
   switch (fault) {

@@ -19,6 +19,9 @@ class InputError : public std::runtime_error {
   // line and column count from 1.
   InputError(const std::string& file, int line, int column, const std::string& message,
              const std::string& hint = {});
+
+  // The same error with another hint.
+  InputError with(const std::string& hint) const;
 };
 
 // The checks that every fixed engine makes, in the order in which a step makes them. When several particles

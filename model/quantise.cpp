@@ -20,7 +20,8 @@ constexpr double kHalfUnit =
 
 using Real = std::function<double(double)>;  // of r2 in cell edges squared
 
-int64_t quantised(double value, int frac, int bits, const char* what) {
+// `whole`: the length of the vector that the value is a component of; a component is as exact as the vector asks for.
+int64_t quantised(double value, double whole, int frac, int bits, const char* what) {
   const double scaled = std::ldexp(value, frac);
   if (!(std::abs(scaled) < std::ldexp(1.0, bits - 1) - 0.5))
     throw InputError(
@@ -30,7 +31,7 @@ int64_t quantised(double value, int frac, int bits, const char* what) {
         "a smaller dt helps, or a wider format in the arch file");
   const auto result = std::llround(scaled);
   // One per cent: coarser, and the run would be of another scene.
-  if (std::abs(static_cast<double>(result) - scaled) > 0.01 * std::abs(scaled))
+  if (std::abs(static_cast<double>(result) - scaled) > 0.01 * std::abs(std::ldexp(whole, frac)))
     throw InputError(
         fmt::format("{} is {:.6g} in units of the lattice: {} fractional bits round it to {:.6g}", what,
                     value, frac, std::ldexp(static_cast<double>(result), -frac)),
@@ -160,7 +161,7 @@ void check_widths(const Widths& w, const TableChoice& table) {
   check_range("relative_velocity_bits", w.relative_velocity_bits, 4, 27);
   if (w.strength_bits != 0) check_range("strength_bits", w.strength_bits, 8, kWidestStrength);
   check_range("sum_bits", w.sum_bits, 8, 48);
-  check_range("displacement_bits", w.displacement_bits, 8, 40);
+  check_range("displacement_bits", w.displacement_bits, 8, 44);
   check_range("scale_frac", w.scale_frac, 4, 16);
   check_range("gain_frac", w.gain_frac, 4, 24);
   check_range("table index_bits", table.index_bits, 2, std::min(16, 2 * w.difference_frac - 1));
@@ -221,7 +222,8 @@ FixedRule with_tables(const FixedRule& fixed, const Rule& rule, const TableChoic
 
 }  // namespace
 
-FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& choice) {
+FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& choice,
+                   double most_half_unit) {
   check_widths(widths, choice);
   const double cutoff = rule.law->cutoff();
   if (cutoff > cell_edge * (1 + 1e-12))
@@ -262,7 +264,8 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
       const FixedRule tried = with_tables(fixed, rule, choice, scale, fits_octaves);
       const double half_unit =
           std::ldexp(0.5, -tried.force.value_frac) * rule.mass / (rule.dt * rule.dt) / scale * cutoff;
-      if (half_unit <= kHalfUnit * pull) break;
+      const bool kicks = tried.force.value_frac + D >= widths.velocity_frac();
+      if (kicks && half_unit <= std::min(kHalfUnit * pull, most_half_unit)) break;
     }
   }
   fixed = with_tables(fixed, rule, choice, scale, fits_octaves);
@@ -292,14 +295,16 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
     t.imposed = type.imposed;
     t.pd = type.pd;
     for (int a = 0; a < 3; ++a) {
-      t.velocity[a] =
-          quantised(type.velocity[a] * rule.dt / length, frac, widths.velocity_bits, "an imposed velocity");
-      t.gravity[a] =
-          quantised(type.gravity[a] * rule.dt * rule.dt / length, frac, widths.velocity_bits, "gravity");
+      const double velocity = rule.dt / length, gravity = velocity * rule.dt;
+      t.velocity[a] = quantised(type.velocity[a] * velocity, type.velocity.norm() * velocity, frac,
+                                widths.velocity_bits, "an imposed velocity");
+      t.gravity[a] = quantised(type.gravity[a] * gravity, type.gravity.norm() * gravity, frac,
+                               widths.velocity_bits, "gravity");
     }
     if (type.pd) {
-      t.kp = quantised(type.kp * rule.dt * rule.dt / rule.mass, widths.gain_frac, 18, "the gain kp");
-      t.kd = quantised(type.kd * rule.dt / rule.mass, widths.gain_frac, 18, "the gain kd");
+      const double kp = type.kp * rule.dt * rule.dt / rule.mass, kd = type.kd * rule.dt / rule.mass;
+      t.kp = quantised(kp, kp, widths.gain_frac, 18, "the gain kp");
+      t.kd = quantised(kd, kd, widths.gain_frac, 18, "the gain kd");
       fixed.pd = true;
     }
     fixed.types.push_back(t);
@@ -308,10 +313,11 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   if (fixed.scaled)
     for (size_t i = 0; i < rule.types.size(); ++i) {
       fixed.scale.emplace_back();
-      for (size_t j = 0; j < rule.types.size(); ++j)
+      for (size_t j = 0; j < rule.types.size(); ++j) {
+        const double strength = rule.strength_of(static_cast<int>(i), static_cast<int>(j)) / scale;
         fixed.scale[i].push_back(
-            static_cast<int32_t>(quantised(rule.strength_of(static_cast<int>(i), static_cast<int>(j)) / scale,
-                                           widths.scale_frac, 18, "a pair strength")));
+            static_cast<int32_t>(quantised(strength, strength, widths.scale_frac, 18, "a pair strength")));
+      }
     }
   return fixed;
 }

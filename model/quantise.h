@@ -2,6 +2,8 @@
 // From a rule in doubles to one in integers.
 #pragma once
 
+#include <limits>
+
 #include "model/fixed_rule.h"
 #include "model/rule.h"
 
@@ -17,11 +19,13 @@ struct TableChoice {
 };
 
 // `widths.strength_bits` = 0 takes the least width from 18 (a multiplier of small FPGAs) to 27 at which half a unit of
-// the force table is worth at most 1.7e-4 of the law's strongest pull: laws with a steep core, as Lennard-Jones, need
-// more than soft ones. The result says which.
+// the force table, at the cutoff, is worth at most 1.7e-4 of the law's strongest pull and at most `half_unit` N, and at
+// which kicks have no fewer fractional bits than velocities: laws with a steep core, as Lennard-Jones, need more than
+// soft ones, small strains more than large ones. 27 is taken where none will do. The result says which.
 //
 // Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative
 // shift, a velocity, gain or scale out of its width.
-FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table);
+FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table,
+                   double half_unit = std::numeric_limits<double>::infinity());
 
 }  // namespace cuboct

@@ -154,6 +154,10 @@ void read_time(const ConfigTable& root, Scene& scene) {
   scene.probe_every =
       every("probe_every", scene.probes.empty() ? 0 : std::max<uint64_t>(1, scene.steps / 500));
   scene.frame_every = every("frame_every", 0);
+  if (const auto accuracy = run.find("accuracy"))
+    scene.accuracy = accuracy->number(quantity::number, {.low = 1e-6, .high = 0.1});
+  if (const auto strain = run.find("expected_strain"))
+    scene.expected_strain = strain->number(quantity::number, {.low = 0, .high = 1, .low_open = true});
   run.done();
 }
 

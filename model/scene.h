@@ -52,6 +52,10 @@ struct Scene {
       Vec3::Constant(-1);  // m, space around the body that particles may reach; negative: one cell edge
   std::array<Vec3, 2> reach{Vec3::Zero(),
                             Vec3::Zero()};  // m, an extra box that particles may reach; empty if equal
+  // What the formats of a fixed rule are chosen by: no imposed velocity, gravity or gain may be off by more, and the
+  // strain that is expected has so many units of a difference.
+  double accuracy = 1e-3;
+  double expected_strain = 0;  // 0: what the scene's motion tells (model/motion.h)
   std::vector<Probe> probes;
   uint64_t steps = 0;
   uint64_t probe_every = 0;  // 0: never

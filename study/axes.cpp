@@ -39,10 +39,12 @@ std::optional<int> whole(const std::vector<Change>& changes, const std::string& 
 // Positions or velocities of another format: what counts in their bits keeps its range, so that one width can be
 // swept by itself.
 void fit_widths(Settings& settings, const Widths& base) {
+  if (base.position_frac == kAutomatic || base.guard == kAutomatic) return;  // as are those that count in their bits
   const auto now = [&](const char* key, int otherwise) {
     return whole(settings.arch, std::string("widths.") + key).value_or(otherwise);
   };
   const auto follow = [&](const char* key, int from, int to) {
+    if (from == kAutomatic) return;
     std::erase_if(settings.arch, [&](const Change& c) { return c.key == std::string("widths.") + key; });
     if (to != from) settings.arch.push_back({std::string("widths.") + key, std::to_string(to)});
   };

@@ -148,7 +148,7 @@ Trial try_reference(const Scene& scene, const Method& method, const Judge& judge
 Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolution, double seed,
                   uint64_t steps) {
   // A body under pressure has more particles in a node than the machine may be built for; no bit depends on it.
-  arch.capacity = std::max(arch.capacity, 32);
+  if (arch.capacity != kAutomatic) arch.capacity = std::max(arch.capacity, 32);
   // Forces that hold a stretched body still, where the format of gravity would round them to less than 1 %: they
   // are less than a difference's rounding does.
   const double unit = std::ldexp(scene.rule.law->cutoff(), -arch.widths.velocity_frac()) / (scene.rule.dt * scene.rule.dt);
