@@ -186,10 +186,9 @@ TEST(LatticeWidths, SumsBeyondDoublesStayExact) {
   const Case c{"squeezed", make_setup(scene, arch), 6};
   ASSERT_FALSE(fits(c.setup.plan));
   const FixedRule& rule = c.setup.plan.rule;
-  const auto kick = pair_kick(rule, c.setup.initial.particles[8].x, {}, 0,
-                              {c.setup.initial.particles[8].x[0] - (int64_t{1} << 29),
-                               c.setup.initial.particles[8].x[1], c.setup.initial.particles[8].x[2]},
-                              {}, 1);
+  const Int3 middle = visible(rule, c.setup.initial.particles[8].x);
+  const auto kick =
+      pair_kick(rule, middle, {}, 0, {middle[0] - (int64_t{1} << 29), middle[1], middle[2]}, {}, 1);
   ASSERT_GT(8 * kick.kick[0], int64_t{1} << 51);
   compare_both(c, dice, count);
   EXPECT_EQ(count.faults, 0u);

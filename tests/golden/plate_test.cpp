@@ -33,7 +33,9 @@ std::vector<size_t> pieces(const std::vector<Vec3>& x, double reach) {
 }
 
 // A twentieth of plate_5m's length and width: 6 mm x 3 mm. The curve rises to a peak; at the end no pair across the
-// crack attracts (the law does up to 1.137 pitches), and what the grip feels is the ringing of its half.
+// crack attracts (the law does up to 1.137 pitches), and what the grip feels is the ringing of its half. The stress is
+// gone at 45 us. When the last pair parts is chance: between 49 and 66 us in doubles by either integrator and in five
+// fixed formats. By 70 us the grip went 1.5 pitches on.
 TEST(Plate, BreaksInTwo) {
   const Scene scene = scene_with(
       CUBOCT_SOURCE_DIR "/scenes/bench/plate_50k.toml",
@@ -45,7 +47,7 @@ TEST(Plate, BreaksInTwo) {
        {"regions.upper_mark", "{ shape = \"box\", min = \"[4.3, -1, -1] mm\", max = \"[4.7, 4, 1] mm\" }"},
        {"probe.0.area", "\"1.47 mm^2\""},
        {"constraint.1.velocity", "\"[6, 0, 0] m/s\""},
-       {"run.duration", "\"50 us\""}});
+       {"run.duration", "\"70 us\""}});
   ASSERT_GT(scene.body.size(), 12'000U);
   EXPECT_EQ(pieces(scene.body.x, 1.137 * scene.pitch).size(), 1U);
   const Plan plan = plan_of(scene, {});
@@ -64,7 +66,7 @@ TEST(Plate, BreaksInTwo) {
   const auto peak = std::max_element(stress.begin(), stress.end());
   EXPECT_GT(*peak, 25e6);
   EXPECT_LT(*peak, 60e6);
-  // Over the last third, which is longer than a period of the half: 4 x 2.7 mm at 1588 m/s, 7 us.
+  // Over the last third, which is three periods of the half: 4 x 2.7 mm at 1588 m/s, 7 us.
   const auto last = stress.end() - static_cast<ptrdiff_t>(stress.size() / 3);
   const double mean = std::accumulate(last, stress.end(), 0.0) / static_cast<double>(stress.end() - last);
   EXPECT_LT(std::abs(mean), 0.05 * *peak);

@@ -189,7 +189,7 @@ TEST(Fit, TheCensusCountsAllPairs) {
   for (const Particle& i : setup.initial.particles)
     for (const Particle& j : setup.initial.particles) {
       std::array<int8_t, 3> offset{};
-      Int3 x_j = j.x;
+      Int3 x_j = visible(plan.rule, j.x);
       bool near = &i != &j;
       for (int a = 0; a < 3; ++a) {
         const int32_t apart = plan.lattice.cell(j.node)[static_cast<size_t>(a)] -
@@ -198,7 +198,7 @@ TEST(Fit, TheCensusCountsAllPairs) {
         offset[static_cast<size_t>(a)] = static_cast<int8_t>(apart);
         x_j[a] += int64_t{apart} << plan.rule.widths.position_frac;
       }
-      if (!near || !may_interact(plan.rule, i.x, x_j)) continue;
+      if (!near || !may_interact(plan.rule, visible(plan.rule, i.x), x_j)) continue;
       ++pairs[{i.node, offset}];
       ++all;
     }

@@ -40,7 +40,7 @@ Mat3 stress(const Mat3& strain) {
   const auto setup = make_setup(scene, arch);
   const FixedRule& rule = setup.plan.rule;
   const int P = rule.widths.position_frac;
-  const double length = rule.cell_edge, position = std::ldexp(length, -P);
+  const double length = rule.cell_edge, position = std::ldexp(length, -P);  // of a visible unit
   const double newton = std::ldexp(length, -rule.widths.velocity_frac()) * rule.mass / (rule.dt * rule.dt);
   std::vector<std::vector<const Particle*>> nodes(setup.plan.lattice.size());
   for (const Particle& p : setup.initial.particles) nodes[p.node].push_back(&p);
@@ -55,12 +55,13 @@ Mat3 stress(const Mat3& strain) {
       ++bulk;
       for (const auto& [other, offset] : setup.plan.lattice.neighbourhood(n))
         for (const Particle* j : nodes[other]) {
-          Int3 x_j;
-          for (int a = 0; a < 3; ++a) x_j[a] = j->x[a] + (int64_t{offset[a]} << P);
-          const Int3 kick = pair_kick(rule, i->x, i->v, 0, x_j, j->v, 0).kick;
+          const Int3 x_i = visible(rule, i->x);
+          Int3 x_j = visible(rule, j->x);
+          for (int a = 0; a < 3; ++a) x_j[a] += int64_t{offset[a]} << P;
+          const Int3 kick = pair_kick(rule, x_i, i->v, 0, x_j, j->v, 0).kick;
           for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b)
-              sum(a, b) += 0.5 * static_cast<double>(x_j[a] - i->x[a]) * position *
+              sum(a, b) += 0.5 * static_cast<double>(x_j[a] - x_i[a]) * position *
                            static_cast<double>(kick[b]) * newton;
         }
     }

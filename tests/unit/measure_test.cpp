@@ -55,7 +55,7 @@ struct TwoParticles {
     fixed.kick_shift = fixed.force.value_frac + w.difference_frac - w.velocity_frac();
     fixed.types.resize(1);
 
-    const int64_t edge = int64_t{1} << w.position_frac;
+    const int64_t edge = int64_t{1} << w.velocity_frac();
     state.particles.push_back({0, 0, 0, {edge * 3 / 4, edge / 2, edge / 4}, {}, {}});
     state.particles.push_back({1, 0, 1, {edge / 4, edge / 2, edge / 4}, {}, {}});
   }

@@ -27,8 +27,8 @@ int axes_after(const std::function<void(Scene&)>& change) {
 
 TEST(FlatPlan, NeedsThatNothingHappensAlongZ) {
   EXPECT_EQ(axes_after([](Scene&) {}), 2);
-  // Rounding errors of a packing are below the unit of position; a whole unit is not.
-  const double unit = plan_of(sheet(), Arch{}).rule.cell_edge * 0x1p-20;
+  // Rounding errors of a packing are below the unit of a position with its owner; a whole unit is not.
+  const double unit = plan_of(sheet(), Arch{}).rule.cell_edge * 0x1p-28;
   EXPECT_EQ(axes_after([&](Scene& s) { s.body.x[4].z() += 0.4 * unit; }), 2);
   EXPECT_EQ(axes_after([&](Scene& s) { s.body.x[4].z() += unit; }), 3);
   EXPECT_EQ(axes_after([&](Scene& s) { s.body.x[4].z() -= unit; }), 3);
