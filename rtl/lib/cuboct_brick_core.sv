@@ -122,7 +122,7 @@ module cuboct_brick_core #(
   localparam int TypeLsb    = VelLsb + VelBits;
   localparam int IdLsb      = TypeLsb + TypeBits;
   localparam int ResidueLsb = IdLsb + IdBits;
-  localparam int ResidueBits = Axes * Guard;  // what no one but the update and the next owner sees of x
+  localparam int ResidueBits = Axes * Guard;
   localparam int DispLsb    = ResidueLsb + ResidueBits;
   localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
   localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}

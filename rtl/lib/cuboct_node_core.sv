@@ -4,7 +4,9 @@
 //   particle:    x[P] y[P] z[P] away_y[2] away_z[2] v[3 x VelocityBits] type[TypeBits] id[IdBits] residue[3 x Guard]
 //                u[3 x DisplacementBits, Pd]
 //   halo record: x[P+2] y[P+2] z[P] type[TypeBits, Scaled] v[3 x VelocityBits, Damped]
-// least significant field first; with two axes nothing of z, and y[P] in the halo record. The modules cuboct_force_rom, _damp_rom, _scale_rom and _type_rom are generated.
+// least significant field first; with two axes nothing of z, and y[P] in the halo record. A residue is what a position
+// has below its P visible bits: only the update and the next owner read it, so it stands above all that others see. The
+// modules cuboct_force_rom, _damp_rom, _scale_rom and _type_rom are generated.
 module cuboct_node_core #(
   // Machine.
   parameter int          Axes                 = 3,      // 2 or 3
@@ -112,7 +114,7 @@ module cuboct_node_core #(
   localparam int TypeLsb    = VelLsb + VelBits;
   localparam int IdLsb      = TypeLsb + TypeBits;
   localparam int ResidueLsb = IdLsb + IdBits;
-  localparam int ResidueBits = Axes * Guard;  // what no one but the update and the next owner sees of x
+  localparam int ResidueBits = Axes * Guard;
   localparam int DispLsb    = ResidueLsb + ResidueBits;
   localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
   localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}

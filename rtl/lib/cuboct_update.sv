@@ -4,7 +4,7 @@
 //   dv  -= round_odd(kp * u + kd * (v - V), GainFrac)         types held by force only (Pd)
 //   v   += dv + g, which must fit VelocityBits; or v = V      where imposed
 //   u   += v - V, which must fit DisplacementBits             types held by force only
-//   x   += v, exactly: the residue is x's Guard bits below the PositionFrac that others see
+//   x   += v, exactly: x and its residue, the Guard bits below, are one number
 // A particle accepted in cycle t is at the outputs in cycle t + Latency - 1, Latency = 3, or 6 with Pd: it is written
 // back at the edge of that cycle. With Held the inputs stay until that cycle, and the next particle comes after it:
 // nothing of them has to be kept here.
