@@ -19,8 +19,8 @@ struct Candidate {
 
 // A particle in a slot.
 struct Slot {
-  Candidate body;                    // x: the leading P bits
-  std::array<int32_t, 3> residue{};  // the G bits of the position below body.x, unsigned
+  Candidate body;                    // x: visible
+  std::array<int32_t, 3> residue{};  // the G bits of the position below those
   Int3 u{};
   uint32_t id = 0;
   std::array<int8_t, 3> away{};  // per axis: nodes still to go, -1, 0, +1
