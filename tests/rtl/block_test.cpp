@@ -491,7 +491,7 @@ std::vector<Mutation> mutations() {
        "plain",
        {{"cuboct_update.sv", "residue_last[a*Guard +: Guard]}) + drift;",
          "residue_last[a*Guard +: Guard]}) + $signed({drift[MovedBits-1:Guard], {Guard{1'b0}}});"}},
-       "update: residue."},
+       "update: x."},
       {"residue_stays",
        "rich",
        {{"cuboct_update.sv", "= moved[Guard-1:0];", "= residue_last[a*Guard +: Guard];"}},
