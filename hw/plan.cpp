@@ -131,7 +131,8 @@ Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles) {
   }
   words.halo_bits = (bricks ? r.axes * P + words.halo_cell_bits : position) + (r.scaled ? r.type_bits : 0) +
                     (r.damped ? r.axes * r.widths.velocity_bits : 0);
-  words.particle_bits = position + r.axes * r.widths.velocity_bits + r.type_bits + words.id_bits +
+  words.particle_bits = position + r.axes * (r.widths.velocity_bits + r.widths.guard) + r.type_bits +
+                        words.id_bits +
                         (r.pd ? r.axes * r.widths.displacement_bits : 0);
   words.migrate_bits = words.particle_bits + words.migrate_cell_bits;
   words.link_bits = arch.link_bits > 0 ? arch.link_bits : words.halo_bits;

@@ -17,8 +17,10 @@ namespace cuboct {
 // Bits of the words that travel and of the fields in them, least significant field first.
 //   halo record:    x[P+2] y[P+2] z[P] type[type_bits, if scaled] v[3 x velocity_bits, if damped]
 //   particle:       x[P] y[P] z[P] away_y[2] away_z[2] v[3 x velocity_bits] type[type_bits] id[id_bits]
-//                   u[3 x displacement_bits, if pd]
-// A flat plan (rule.axes 2) has nothing of z: x[P+2] y[P] ..., x[P] y[P] away_y[2] v[2 x velocity_bits] ...
+//                   residue[3 x G] u[3 x displacement_bits, if pd]
+// x[P] are the visible bits of a position, those that forces and links see; residue[G] are the G bits below
+// them. What the force engine reads of a particle lies below its id, so that its memories hold no residue.
+// A flat plan (rule.axes 2) has nothing of z: x[P+2] y[P] ..., x[P] y[P] away_y[2] v[2 x velocity_bits] ... residue[2 x G] ...
 // All but the last axis of a halo record are signed, in the frame of the sender's node (see
 // docs/reference/node.md); `away` is two's complement: -1, 0, +1. The particle word is the migrate record and
 // the word of the load and observe ports.

@@ -55,6 +55,7 @@ std::vector<Field> fields_of(const Plan& plan) {
   for (int a = 0; a < axes; ++a) add(fmt::format("v_{}", axis[a]), w.velocity_bits, true);
   add("type", plan.rule.type_bits, false);
   add("id", plan.words.id_bits, false);
+  for (int a = 0; a < axes; ++a) add(fmt::format("residue_{}", axis[a]), w.guard, false);
   if (plan.rule.pd)
     for (int a = 0; a < axes; ++a) add(fmt::format("u_{}", axis[a]), w.displacement_bits, true);
   return fields;
@@ -242,11 +243,12 @@ std::string particle_hex(const Plan& plan, const Particle& particle, std::initia
   const Widths& w = plan.rule.widths;
   BitWord word;
   const int axes = plan.rule.axes;
-  for (int a = 0; a < axes; ++a) word.add(particle.x[a], w.position_frac);
+  for (int a = 0; a < axes; ++a) word.add(particle.x[a] >> w.guard, w.position_frac);
   word.add(0, 2 * (axes - 1));  // away
   for (int a = 0; a < axes; ++a) word.add(particle.v[a], w.velocity_bits);
   word.add(particle.type, plan.rule.type_bits);
   word.add(particle.id, plan.words.id_bits);
+  for (int a = 0; a < axes; ++a) word.add(particle.x[a], w.guard);
   if (plan.rule.pd)
     for (int a = 0; a < axes; ++a) word.add(particle.u[a], w.displacement_bits);
   for (const uint64_t more : above) word.add(static_cast<int64_t>(more), 32);

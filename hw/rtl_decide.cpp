@@ -87,8 +87,8 @@ RtlDesign decide(const Plan& plan) {
   constant("LinkBits", plan.words.link_bits, "payload of a beat");
   constant("IdBits", plan.words.id_bits, "");
   constant("TypeBits", rule.type_bits, "0 with one type");
-  constant("PositionFrac", w.position_frac, "fractional bits of x");
-  constant("Guard", w.guard, "v has PositionFrac + Guard fractional bits");
+  constant("PositionFrac", w.position_frac, "fractional bits of x that forces and links see");
+  constant("Guard", w.guard, "v and the owner's x have PositionFrac + Guard fractional bits");
   constant("VelocityBits", w.velocity_bits, "");
   constant("RelativeVelocityBits", w.relative_velocity_bits, "");
   constant("StrengthBits", w.strength_bits, "s, and the entries of the tables");

@@ -83,8 +83,8 @@ NodeArea area_of(const Plan& plan) {
 
   // A lane: differences, their rounding and sizes; three sums of two, one of three; seven comparisons.
   const double lane = 3 * (P + 3) + 6 * (d + 4) + 4 * (d + 4) + 7 * (d + 4);
-  // Update, per axis: two adders of v, the rounding of the drift, x.
-  double update_adders = 3 * (2 * V + 2 * (P + 2)), update_products = 0;
+  // Update, per axis: two adders of v, and x with its residue.
+  double update_adders = 3 * (2 * V + P + w.guard + 2), update_products = 0;
   if (rule.pd) {
     update_products = 3 * kGainBits * (w.displacement_bits + V + 1);
     update_adders += 3 * (2 * V + 2 * w.displacement_bits + kGainBits);

@@ -77,7 +77,7 @@ class Session {
         p.id = slot.id;
         p.type = slot.body.type;
         p.node = cell_of(n, word.get(plan_.words.particle_bits, plan_.bricks.cell_bits()));
-        for (size_t a = 0; a < 3; ++a) p.x[a] = slot.body.x[a];
+        p.x = position_of(plan_.rule.widths, slot);
         p.v = slot.body.v;
         p.u = slot.u;
         state.particles.push_back(p);

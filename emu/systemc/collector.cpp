@@ -54,7 +54,7 @@ std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initia
 
 Bits load_word(const Plan& plan, const Particle& particle) {
   Slot slot;
-  for (int a = 0; a < 3; ++a) slot.body.x[a] = static_cast<int32_t>(particle.x[a]);
+  put_position(plan.rule.widths, particle.x, slot);
   slot.body.v = particle.v;
   slot.body.type = particle.type;
   slot.u = particle.u;
@@ -102,7 +102,7 @@ void Collector::observe(uint32_t node, const NodeOutputs& out) {
   p.id = slot.id;
   p.type = slot.body.type;
   p.node = cell_of(node, out.observe_cell);
-  for (int a = 0; a < 3; ++a) p.x[a] = slot.body.x[a];
+  p.x = position_of(plan_.rule.widths, slot);
   p.v = slot.body.v;
   p.u = slot.u;
   Snapshot& s = snapshot(step);

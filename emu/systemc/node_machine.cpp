@@ -101,17 +101,16 @@ void NodeMachine::finish_migration() {
 }
 
 void NodeMachine::finish_slot(Slot& slot, uint32_t cell, size_t index) {
-  const int p = plan_.rule.widths.position_frac;
-  const FinishResult r =
-      finish(plan_.rule, engine_->take_sum(cell, index), {slot.body.x[0], slot.body.x[1], slot.body.x[2]},
-             slot.body.v, slot.u, slot.body.type);
+  const Widths& w = plan_.rule.widths;
+  const FinishResult r = finish(plan_.rule, engine_->take_sum(cell, index), position_of(w, slot), slot.body.v,
+                                slot.u, slot.body.type);
   fault_.add(r.fault, slot.id, r.number, cell);
   slot.u = r.u;
   for (size_t a = 0; a < 3; ++a) {
-    slot.body.v[a] = wrap(r.v[a], plan_.rule.widths.velocity_bits);
-    slot.away[a] = static_cast<int8_t>(wrap(r.x[a] >> p, 2));
-    slot.body.x[a] = static_cast<int32_t>(r.x[a] & ((int64_t{1} << p) - 1));
+    slot.body.v[a] = wrap(r.v[a], w.velocity_bits);
+    slot.away[a] = static_cast<int8_t>(wrap(r.x[a] >> w.velocity_frac(), 2));
   }
+  put_position(w, r.x, slot);
 }
 
 void NodeMachine::idle(const Control& host) {

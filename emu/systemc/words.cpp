@@ -109,6 +109,7 @@ Bits pack_particle(const Plan& plan, const Slot& slot) {
   for (size_t a = 0; a < axes; ++a) field(w.velocity_bits, slot.body.v[a]);
   field(plan.rule.type_bits, slot.body.type);
   field(plan.words.id_bits, slot.id);
+  for (size_t a = 0; a < axes; ++a) field(w.guard, slot.residue[a]);
   if (plan.rule.pd)
     for (size_t a = 0; a < axes; ++a) field(w.displacement_bits, slot.u[a]);
   return out;
@@ -126,9 +127,23 @@ Slot unpack_particle(const Plan& plan, const Bits& bits) {
   for (size_t a = 0; a < axes; ++a) out.body.v[a] = take_signed(w.velocity_bits);
   out.body.type = static_cast<uint8_t>(take(plan.rule.type_bits));
   out.id = static_cast<uint32_t>(take(plan.words.id_bits));
+  for (size_t a = 0; a < axes; ++a) out.residue[a] = static_cast<int32_t>(take(w.guard));
   if (plan.rule.pd)
     for (size_t a = 0; a < axes; ++a) out.u[a] = take_signed(w.displacement_bits);
   return out;
+}
+
+Int3 position_of(const Widths& w, const Slot& slot) {
+  Int3 x{};
+  for (size_t a = 0; a < 3; ++a) x[a] = int64_t{slot.body.x[a]} << w.guard | slot.residue[a];
+  return x;
+}
+
+void put_position(const Widths& w, const Int3& x, Slot& slot) {
+  for (size_t a = 0; a < 3; ++a) {
+    slot.body.x[a] = static_cast<int32_t>(x[a] >> w.guard & ((int64_t{1} << w.position_frac) - 1));
+    slot.residue[a] = static_cast<int32_t>(x[a] & ((int64_t{1} << w.guard) - 1));
+  }
 }
 
 }  // namespace cuboct::emu

@@ -19,11 +19,16 @@ struct Candidate {
 
 // A particle in a slot.
 struct Slot {
-  Candidate body;
+  Candidate body;                    // x: visible
+  std::array<int32_t, 3> residue{};  // the G bits of the position below those
   Int3 u{};
   uint32_t id = 0;
   std::array<int8_t, 3> away{};  // per axis: nodes still to go, -1, 0, +1
 };
+
+// A particle's position with all its P+G fractional bits; put_position drops whole cells.
+Int3 position_of(const Widths& widths, const Slot& slot);
+void put_position(const Widths& widths, const Int3& x, Slot& slot);
 
 // Throws InputError where a word is wider than Bits.
 void check_words(const Plan& plan);

@@ -10,7 +10,7 @@ module brick_main_port_formal #(
   parameter int BrickX   = 2,
   parameter int BrickY   = 1,
   parameter int Capacity = 1,
-  parameter int LinkBits = 8,
+  parameter int LinkBits = 10,
   parameter int Pd       = 0,  // 0, 1: types held by force only, an update of three cycles more
   parameter int Steps    = 2   // of a run, at most
 ) (
@@ -47,7 +47,7 @@ module brick_main_port_formal #(
   logic [3:0]                events, code;
   logic                      observe, fault, id, idle;
   logic [CellBits-1:0]       observed_cell, fault_cell, load_cell;
-  logic [6+2*Pd:0]           observed, loaded;
+  logic [8+2*Pd:0]           observed, loaded;
   logic [63:0]               number;
   always_comb begin
     assume (extent[0 +: GridBits] >= 1 && extent[0 +: GridBits] <= BrickX);

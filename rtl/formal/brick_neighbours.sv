@@ -8,7 +8,7 @@ module brick_neighbours_formal #(
   parameter int BrickX   = 2,
   parameter int BrickY   = 1,
   parameter int Capacity = 1,
-  parameter int LinkBits = 8,
+  parameter int LinkBits = 10,
   parameter int Steps    = 2   // of a run, at most
 ) (
   input logic        clk_i,
@@ -26,7 +26,7 @@ module brick_neighbours_formal #(
   localparam int CellBits     = $clog2(Cells);
   localparam int Longest      = (BrickX > BrickY) ? BrickX : BrickY;
   localparam int GridBits     = $clog2(Longest + 2);
-  localparam int ParticleBits = 7;             // x y away_y v id: 1 1 2 1 1 1
+  localparam int ParticleBits = 9;             // x y away_y v id residue: 1 1 2 1 1 1 1 1
   localparam int Thin         = (((Axis == 0) ? BrickX : BrickY) == 1) ? 1 : 0;
   localparam logic [GridBits-1:0] One = 1;
 
@@ -78,7 +78,7 @@ module brick_neighbours_formal #(
       .RelativeVelocityBits(1), .DifferenceShift(0), .FilterFrac(1), .Overlap(1)
     ) u_node (
       .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link), .extent_i(extent), .exit_i(exits),
-      .load_valid_i(load), .load_cell_i(load_cell), .load_data_i(7'd0), .link_valid_o(link_valid), .link_end_o(link_end),
+      .load_valid_i(load), .load_cell_i(load_cell), .load_data_i(9'd0), .link_valid_o(link_valid), .link_end_o(link_end),
       .link_data_o(link_data), .link_ready_i(link_ready_in), .link_valid_i(link_valid_in), .link_end_i(link_end_in),
       .link_data_i(link_data_in), .link_ready_o(link_ready), .phase_start_o(phase_start[8*n +: 8]),
       .phase_end_o(phase_end[8*n +: 8]), .force_event_o(events), .observe_valid_o(observe), .observe_cell_o(observed_cell),

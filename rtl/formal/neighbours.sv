@@ -7,7 +7,7 @@
 module neighbours_formal #(
   parameter int Axis     = 0,  // the nodes are neighbours along x or y
   parameter int Capacity = 1,
-  parameter int LinkBits = 8,
+  parameter int LinkBits = 10,
   parameter int Steps    = 3,  // of a run, at most
   parameter int Narrow   = 0   // narrow memories
 ) (
@@ -24,7 +24,7 @@ module neighbours_formal #(
   localparam int SlotBits     = (Capacity > 1) ? $clog2(Capacity) : 1;
   localparam int CountBits    = $clog2(3 * Capacity) + 1;
   localparam int Room         = ((Axis == 0) ? 1 : 3) * Capacity;  // of the face's halo memory
-  localparam int ParticleBits = 7;             // x y away_y v id: 1 1 2 1 1 1
+  localparam int ParticleBits = 9;             // x y away_y v id residue: 1 1 2 1 1 1 1 1
 
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
@@ -70,7 +70,7 @@ module neighbours_formal #(
           .FilterFrac(1), .Overlap((Narrow != 0) ? 0 : 1), .Narrow(Narrow)
     ) u_node (
       .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link),
-      .load_valid_i(running_q && load_i[n]), .load_data_i(7'd0),
+      .load_valid_i(running_q && load_i[n]), .load_data_i(9'd0),
       .link_valid_o(link_valid), .link_end_o(link_end), .link_data_o(link_data), .link_ready_i(link_ready_in),
       .link_valid_i(link_valid_in), .link_end_i(link_end_in), .link_data_i(link_data_in),
           .link_ready_o(link_ready),

@@ -76,7 +76,7 @@ module cuboct_brick_core #(
   localparam int         HaloVelocity         = (Damped != 0) ? Axes * VelocityBits : 0,
   localparam int         HaloBits             = Axes * PositionFrac + HaloType + HaloVelocity,
   localparam int         ParticleBits         = Axes * PositionFrac + 2 * (Axes - 1) + Axes * VelocityBits + TypeBits
-                                                + IdBits
+                                                + IdBits + Axes * Guard
                                                 + ((Pd != 0) ? Axes * DisplacementBits : 0)
 ) (
   input  logic                    clk_i,
@@ -121,6 +121,9 @@ module cuboct_brick_core #(
   localparam int VelLsb     = PosBits + AwayBits;
   localparam int TypeLsb    = VelLsb + VelBits;
   localparam int IdLsb      = TypeLsb + TypeBits;
+  localparam int ResidueLsb = IdLsb + IdBits;
+  localparam int ResidueBits = Axes * Guard;
+  localparam int DispLsb    = ResidueLsb + ResidueBits;
   localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
   localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}
   localparam int SeenBits   = (HaloVelocity + HaloType > 0) ? IdLsb : PosBits;  // what others see of it
@@ -618,6 +621,7 @@ module cuboct_brick_core #(
   end
 
   logic [PosBits-1:0]  new_x;
+  logic [ResidueBits-1:0] new_residue;
   logic [2*Axes-1:0]   new_away;
   logic [VelBits-1:0]  new_v;
   logic [SomeType-1:0] old_type, new_type;
@@ -641,17 +645,20 @@ module cuboct_brick_core #(
     .velocity_i,
 `endif
     .clk_i, .rst_ni, .valid_i(take), .slot_i({main_own, tick_q}), .sum_i(total),
-    .x_i(main_data[PosBits-1:0]), .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
+    .x_i(main_data[PosBits-1:0]), .residue_i(main_data[ResidueLsb +: ResidueBits]),
+    .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
     .id_i({main_data[IdLsb +: IdBits], main_own}), .u_i(old_u), .valid_o(update_write), .slot_o(update_place),
-    .x_o(new_x), .away_o(new_away), .v_o(new_v), .type_o(new_type), .id_o({new_id, unused_new_cell}), .u_o(new_u),
+    .x_o(new_x), .residue_o(new_residue), .away_o(new_away), .v_o(new_v), .type_o(new_type),
+    .id_o({new_id, unused_new_cell}), .u_o(new_u),
     .fault_o(update_fault), .fault_code_o(update_fault_code), .fault_id_o(update_fault_id),
     .fault_number_o(update_fault_number)
   );
-  assign update_data[PosBits-1:0]         = new_x;
-  assign update_data[PosBits +: AwayBits] = new_away[2*Axes-1:2];
-  assign update_data[VelLsb +: VelBits]   = new_v;
-  assign update_data[IdLsb +: IdBits]     = new_id;
-  assign update_data[ParticleBits +: 2]   = new_away[1:0];
+  assign update_data[PosBits-1:0]               = new_x;
+  assign update_data[PosBits +: AwayBits]       = new_away[2*Axes-1:2];
+  assign update_data[VelLsb +: VelBits]         = new_v;
+  assign update_data[IdLsb +: IdBits]           = new_id;
+  assign update_data[ResidueLsb +: ResidueBits] = new_residue;
+  assign update_data[ParticleBits +: 2]         = new_away[1:0];
   if (TypeBits > 0) begin : gen_types
     assign old_type                         = main_data[TypeLsb +: SomeType];
     assign update_data[TypeLsb +: SomeType] = new_type;
@@ -661,8 +668,8 @@ module cuboct_brick_core #(
     assign old_type        = '0;
   end
   if (Pd != 0) begin : gen_displacement
-    assign old_u                                       = main_data[IdLsb + IdBits +: DispBits];
-    assign update_data[IdLsb + IdBits +: DispBits] = new_u;
+    assign old_u                            = main_data[DispLsb +: DispBits];
+    assign update_data[DispLsb +: DispBits] = new_u;
   end else begin : gen_no_displacement
     logic unused_new_u;
     assign unused_new_u = ^new_u;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // One particle processor. It knows no coordinates: has_link_i says which faces have a neighbour. The contract, cycle by
 // cycle, is docs/reference/node.md; the words are
-//   particle:    x[P] y[P] z[P] away_y[2] away_z[2] v[3 x VelocityBits] type[TypeBits] id[IdBits] u[3 x DisplacementBits, Pd]
+//   particle:    x[P] y[P] z[P] away_y[2] away_z[2] v[3 x VelocityBits] type[TypeBits] id[IdBits] residue[3 x Guard]
+//                u[3 x DisplacementBits, Pd]
 //   halo record: x[P+2] y[P+2] z[P] type[TypeBits, Scaled] v[3 x VelocityBits, Damped]
-// least significant field first; with two axes nothing of z, and y[P] in the halo record. The modules cuboct_force_rom, _damp_rom, _scale_rom and _type_rom are generated.
+// least significant field first; with two axes nothing of z, and y[P] in the halo record. A residue is what a position
+// has below its P visible bits: only the update and the next owner read it, so it stands above all that others see. The
+// modules cuboct_force_rom, _damp_rom, _scale_rom and _type_rom are generated.
 module cuboct_node_core #(
   // Machine.
   parameter int          Axes                 = 3,      // 2 or 3
@@ -70,7 +73,7 @@ module cuboct_node_core #(
   localparam int         HaloVelocity         = (Damped != 0) ? Axes * VelocityBits : 0,
   localparam int         HaloBits             = Axes * PositionFrac + 2 * (Axes - 1) + HaloType + HaloVelocity,
   localparam int         ParticleBits         = Axes * PositionFrac + 2 * (Axes - 1) + Axes * VelocityBits + TypeBits
-                                                + IdBits
+                                                + IdBits + Axes * Guard
                                                 + ((Pd != 0) ? Axes * DisplacementBits : 0)
 ) (
   input  logic                    clk_i,
@@ -110,6 +113,9 @@ module cuboct_node_core #(
   localparam int VelLsb     = PosBits + AwayBits;
   localparam int TypeLsb    = VelLsb + VelBits;
   localparam int IdLsb      = TypeLsb + TypeBits;
+  localparam int ResidueLsb = IdLsb + IdBits;
+  localparam int ResidueBits = Axes * Guard;
+  localparam int DispLsb    = ResidueLsb + ResidueBits;
   localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
   localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}
   localparam int SeenBits   = (HaloVelocity + HaloType > 0) ? IdLsb : PosBits;  // what others see of it
@@ -534,6 +540,7 @@ module cuboct_node_core #(
   assign unused_tick = ^{tick, tick_after};
 
   logic [PosBits-1:0]  new_x;
+  logic [ResidueBits-1:0] new_residue;
   logic [2*Axes-1:0]   new_away;
   logic [VelBits-1:0]  new_v;
   logic [SomeType-1:0] old_type, new_type;
@@ -555,16 +562,18 @@ module cuboct_node_core #(
     .velocity_i,
 `endif
     .clk_i, .rst_ni, .valid_i(take), .slot_i(tick_slot), .sum_i(total),
-    .x_i(main_data[PosBits-1:0]), .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
+    .x_i(main_data[PosBits-1:0]), .residue_i(main_data[ResidueLsb +: ResidueBits]),
+    .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
     .id_i(main_data[IdLsb +: IdBits]), .u_i(old_u), .valid_o(update_write), .slot_o(update_slot), .x_o(new_x),
-    .away_o(new_away), .v_o(new_v), .type_o(new_type), .id_o(new_id), .u_o(new_u), .fault_o(update_fault),
+    .residue_o(new_residue), .away_o(new_away), .v_o(new_v), .type_o(new_type), .id_o(new_id), .u_o(new_u), .fault_o(update_fault),
     .fault_code_o(update_fault_code), .fault_id_o(update_fault_id), .fault_number_o(update_fault_number)
   );
-  assign update_data[PosBits-1:0]         = new_x;
-  assign update_data[PosBits +: AwayBits] = new_away[2*Axes-1:2];
-  assign update_data[VelLsb +: VelBits]   = new_v;
-  assign update_data[IdLsb +: IdBits]     = new_id;
-  assign update_data[ParticleBits +: 2]   = new_away[1:0];
+  assign update_data[PosBits-1:0]               = new_x;
+  assign update_data[PosBits +: AwayBits]       = new_away[2*Axes-1:2];
+  assign update_data[VelLsb +: VelBits]         = new_v;
+  assign update_data[IdLsb +: IdBits]           = new_id;
+  assign update_data[ResidueLsb +: ResidueBits] = new_residue;
+  assign update_data[ParticleBits +: 2]         = new_away[1:0];
   if (TypeBits > 0) begin : gen_types
     assign old_type                         = main_data[TypeLsb +: SomeType];
     assign update_data[TypeLsb +: SomeType] = new_type;
@@ -574,8 +583,8 @@ module cuboct_node_core #(
     assign old_type        = '0;
   end
   if (Pd != 0) begin : gen_displacement
-    assign old_u                                       = main_data[IdLsb + IdBits +: DispBits];
-    assign update_data[IdLsb + IdBits +: DispBits] = new_u;
+    assign old_u                            = main_data[DispLsb +: DispBits];
+    assign update_data[DispLsb +: DispBits] = new_u;
   end else begin : gen_no_displacement
     logic unused_new_u;
     assign unused_new_u = ^new_u;

@@ -4,7 +4,7 @@
 //   dv  -= round_odd(kp * u + kd * (v - V), GainFrac)         types held by force only (Pd)
 //   v   += dv + g, which must fit VelocityBits; or v = V      where imposed
 //   u   += v - V, which must fit DisplacementBits             types held by force only
-//   x   += round_odd(v, Guard)
+//   x   += v, exactly: x and its residue, the Guard bits below, are one number
 // A particle accepted in cycle t is at the outputs in cycle t + Latency - 1, Latency = 3, or 6 with Pd: it is written
 // back at the edge of that cycle. With Held the inputs stay until that cycle, and the next particle comes after it:
 // nothing of them has to be kept here.
@@ -37,6 +37,7 @@ module cuboct_update #(
   input  logic [SlotBits-1:0]           slot_i,        // its slot
   input  logic [Axes*TotalBits-1:0]     sum_i,         // its sum over all pipes, signed
   input  logic [Axes*PositionFrac-1:0]  x_i,           // unsigned
+  input  logic [Axes*Guard-1:0]         residue_i,     // unsigned; of x, below x_i
   input  logic [Axes*VelocityBits-1:0]  v_i,           // signed
   input  logic [TypeBits-1:0]           type_i,        // 0 with one type
   input  logic [IdBits-1:0]             id_i,          // of the particle
@@ -44,6 +45,7 @@ module cuboct_update #(
   output logic                          valid_o,       // a particle is written back
   output logic [SlotBits-1:0]           slot_o,        // its slot
   output logic [Axes*PositionFrac-1:0]  x_o,           // in the node that away_o says
+  output logic [Axes*Guard-1:0]         residue_o,     // of x, below x_o
   output logic [2*Axes-1:0]             away_o,        // per axis 2 bits, -1, 0, +1: the node that x is in
   output logic [Axes*VelocityBits-1:0]  v_o,           // signed
   output logic [TypeBits-1:0]           type_o,        // as it came
@@ -75,11 +77,15 @@ module cuboct_update #(
   assign valid_o = valid_q[VStage];
 
   logic [Axes*PositionFrac-1:0] x_last;
+  logic [Axes*Guard-1:0]     residue_last;
   logic [TypeBits-1:0]       type_1;
   localparam int Delay = (Held != 0) ? 0 : 1;  // of what only waits
   cuboct_delay #(.Bits(SlotBits), .Depth(Delay * VStage)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_o));
   cuboct_delay #(.Bits(IdBits), .Depth(Delay * VStage)) u_id (.clk_i, .d_i(id_i), .q_o(id_o));
   cuboct_delay #(.Bits(Axes*PositionFrac), .Depth(Delay * VStage)) u_x (.clk_i, .d_i(x_i), .q_o(x_last));
+  cuboct_delay #(.Bits(Axes*Guard), .Depth(Delay * VStage)) u_residue (
+    .clk_i, .d_i(residue_i), .q_o(residue_last)
+  );
   cuboct_delay #(.Bits(TypeBits), .Depth(Delay)) u_type (.clk_i, .d_i(type_i), .q_o(type_1));
   cuboct_delay #(.Bits(TypeBits), .Depth(Delay * (VStage - 1))) u_type_late (.clk_i, .d_i(type_1), .q_o(type_o));
 
@@ -223,7 +229,8 @@ module cuboct_update #(
     logic signed [VelocityBits-1:0] v_new, v_q;
     logic                           checked_q, bad_sum_q;
     logic signed [TotalBits-1:0]    sum_last;
-    logic signed [PositionFrac+1:0] drift, moved;
+    localparam int MovedBits = PositionFrac + Guard + 2;
+    logic signed [MovedBits-1:0]    drift, moved;
     cuboct_delay #(.Bits(TotalBits), .Depth(Delay)) u_sum_last (.clk_i, .d_i(sum_v), .q_o(sum_last));
     assign v_new_wide = imposed_v ? v_imposed : v_free;
     cuboct_resize #(.InBits(WideBits), .OutBits(VelocityBits)) u_v_new (.a_i(v_new_wide), .y_o(v_new));
@@ -246,12 +253,11 @@ module cuboct_update #(
       .a_i(v_wide_q), .y_o(v_number[a*NumberBits +: NumberBits])
     );
 
-    cuboct_round_odd #(.InBits(VelocityBits), .Shift(Guard), .OutBits(PositionFrac + 2)) u_drift (
-      .a_i(v_q), .y_o(drift)
-    );
-    assign moved = $signed({2'b00, x_last[a*PositionFrac +: PositionFrac]}) + drift;
-    assign x_o[a*PositionFrac +: PositionFrac]    = moved[PositionFrac-1:0];
-    assign away_o[a*2 +: 2]                       = moved[PositionFrac+1:PositionFrac];
+    cuboct_resize #(.InBits(VelocityBits), .OutBits(MovedBits)) u_drift (.a_i(v_q), .y_o(drift));
+    assign moved = $signed({2'b00, x_last[a*PositionFrac +: PositionFrac], residue_last[a*Guard +: Guard]}) + drift;
+    assign residue_o[a*Guard +: Guard]         = moved[Guard-1:0];
+    assign x_o[a*PositionFrac +: PositionFrac] = moved[Guard +: PositionFrac];
+    assign away_o[a*2 +: 2]                    = moved[MovedBits-1 -: 2];
     assign v_o[a*VelocityBits +: VelocityBits] = v_q;
   end
 

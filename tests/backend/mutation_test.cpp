@@ -82,6 +82,35 @@ TEST(Mutation, ADroppedParticle) {
   EXPECT_EQ(text, "step 14: 31 particles, golden has 32");
 }
 
+// The first particle that migrates comes without what its position has below X.
+TEST(Mutation, AResidueLostInMigration) {
+  const Case c = make_case("wide_links");
+  const Plan& plan = c.setup.plan;
+  const int bits = plan.rule.axes * plan.rule.widths.guard;
+  const int lsb = plan.words.particle_bits - bits;  // it is the last field, as no type is held by force
+  ASSERT_FALSE(plan.rule.pd);
+  std::map<std::pair<uint32_t, unsigned>, int> ends;
+  int changed = 0;
+  emu::Beat wrong;
+  const std::string text = sabotage(c, [&](uint32_t node, emu::NodeInputs& in) {
+    for (unsigned f = 0; f < kFaces; ++f) {
+      if (!(in.valid >> f & 1)) continue;
+      int& seen = ends[{node, f}];
+      if (in.beat[f]->end) {
+        ++seen;
+      } else if (seen % 2 == 1 && changed == 0) {
+        ASSERT_NE(in.beat[f]->payload.get(lsb, bits), 0u);
+        wrong = *in.beat[f];
+        wrong.payload = wrong.payload.slice(0, lsb);
+        in.beat[f] = &wrong;
+        ++changed;
+      }
+    }
+  });
+  EXPECT_EQ(changed, 1);
+  EXPECT_EQ(text.substr(0, 18), "step 14: particle ") << text;
+}
+
 TEST(Mutation, ASwappedLink) {
   const std::string text = sabotage(make_case("lattice_3x2x1"), [](uint32_t node, emu::NodeInputs& in) {
     if (node != 1) return;  // in the middle of x: both faces have a link

@@ -37,12 +37,14 @@ struct Seen {
            flat = 0, shared = 0, coarse = 0, narrow = 0, serial = 0, bricks = 0;
 };
 
-emu::NodeSlots slots_of(const Golden& golden) {
+emu::NodeSlots slots_of(const FixedRule& rule, const Golden& golden) {
   emu::NodeSlots slots;
   for (const auto& node : golden.nodes()) {
     slots.first.push_back(static_cast<uint32_t>(slots.x[0].size()));
-    for (const Particle& p : node)
-      for (size_t a = 0; a < 3; ++a) slots.x[a].push_back(static_cast<int32_t>(p.x[a]));
+    for (const Particle& p : node) {
+      const Int3 x = visible(rule, p.x);
+      for (size_t a = 0; a < 3; ++a) slots.x[a].push_back(static_cast<int32_t>(x[a]));
+    }
   }
   slots.first.push_back(static_cast<uint32_t>(slots.x[0].size()));
   return slots;
@@ -111,7 +113,7 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   auto model = std::make_unique<emu::TimingModel>(plan, threads);
   std::vector<PhaseSpan> spans(size_t{nodes} * kPhases);
   for (uint64_t step = 0; step < trace.steps(); ++step) {
-    const auto slots = slots_of(golden);
+    const auto slots = slots_of(plan.rule, golden);
     const auto before = places_of(golden);
     const Golden old = golden;
     golden.step();
@@ -135,7 +137,7 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   }
   if (!trace.stop) {
     const auto counted = static_cast<uint64_t>(trace.counters.at(0).second);
-    const uint64_t cycles = model->cycles(slots_of(golden));
+    const uint64_t cycles = model->cycles(slots_of(plan.rule, golden));
     if (cycles != counted) return fmt::format("{}: {} cycles, expected {}", c.name, cycles, counted);
   }
   count_work(seen, *model);
@@ -376,7 +378,7 @@ TEST(TimingModel, RefusesWhatDoesNotFit) {
   const Case c = make_case("tight_capacity");
   const Plan& plan = c.setup.plan;
   const Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
-  const auto slots = slots_of(golden);
+  const auto slots = slots_of(plan.rule, golden);
   std::vector<PhaseSpan> spans(size_t{plan.lattice.size()} * kPhases);
   const auto refusal = [&](const emu::NodeSlots& given, const std::vector<emu::Leaving>& leaving,
                            std::span<PhaseSpan> into, int times = 1) -> std::string {
@@ -419,7 +421,7 @@ TEST(TimingModel, CountsTheDump) {
   const Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
   emu::RunOptions options;
   const Trace trace = run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
-  EXPECT_EQ(static_cast<double>(emu::TimingModel(plan, 1).cycles(slots_of(golden))),
+  EXPECT_EQ(static_cast<double>(emu::TimingModel(plan, 1).cycles(slots_of(plan.rule, golden))),
             trace.counters.at(0).second);
 }
 
@@ -438,7 +440,7 @@ TEST(TimingModel, OneNodeByHand) {
   ASSERT_EQ(n, 4u);
   std::vector<PhaseSpan> spans(kPhases);
   emu::TimingModel model(plan, 1);
-  model.step(slots_of(golden), {}, spans);
+  model.step(slots_of(plan.rule, golden), {}, spans);
   const uint64_t x = n + 1, y = x + 1 + n + 2 + 1, z = y + 1 + n + 4 + 1;
   EXPECT_EQ(spans[0], (PhaseSpan{0, x}));
   EXPECT_EQ(spans[1], (PhaseSpan{x + 1, y}));

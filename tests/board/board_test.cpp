@@ -161,8 +161,8 @@ TEST(Board, RequestsMayBeRepeated) {
   for (uint16_t n = 0; n < nodes.size(); ++n)
     for (const emu::Bits& word : host.read(n, bits)) {
       const emu::Slot slot = emu::unpack_particle(setup.plan, word);
-      Particle p{slot.id,     slot.body.type, n, {slot.body.x[0], slot.body.x[1], slot.body.x[2]},
-                 slot.body.v, slot.u};
+      const Int3 x = emu::position_of(setup.plan.rule.widths, slot);
+      const Particle p{slot.id, slot.body.type, n, x, slot.body.v, slot.u};
       hash += hash_of(setup.plan.lattice, p);
     }
   EXPECT_EQ(hash, golden.state_hash[7]);

@@ -72,7 +72,7 @@ std::string print_blocks(const Plan& plan) {
       "  input  logic [64*{}-1:0] in_i,\n"
       "  output logic [64*{}-1:0] out_o\n"
       ");\n"
-      "  localparam int P = cuboct_pkg::PositionFrac, V = cuboct_pkg::VelocityBits;\n"
+      "  localparam int P = cuboct_pkg::PositionFrac, G = cuboct_pkg::Guard, V = cuboct_pkg::VelocityBits;\n"
       "  localparam int D = P - cuboct_pkg::DifferenceShift;\n"
       "  localparam int T = cuboct_pkg::TypeBits > 0 ? cuboct_pkg::TypeBits : 1;\n"
       "  localparam int SBits = cuboct_pkg::Damped != 0 ? cuboct_pkg::StrengthBits : cuboct_pkg::ForceBits;\n"
@@ -135,7 +135,7 @@ std::string print_blocks(const Plan& plan) {
 
   text +=
       "\n  logic new_valid, fault;\n  logic [3:0] code;\n  logic signed [63:0] number;\n"
-      "  logic [3*P-1:0] new_x;\n  logic [5:0] away;\n  logic [3*V-1:0] new_v;\n  logic [T-1:0] new_type;\n"
+      "  logic [3*P-1:0] new_x;\n  logic [3*G-1:0] new_residue;\n  logic [5:0] away;\n  logic [3*V-1:0] new_v;\n  logic [T-1:0] new_type;\n"
       "  logic [Id-1:0] new_id, fault_id;\n  logic [3*U-1:0] new_u;\n  cuboct_update #(\n    " +
       given({"PositionFrac", "Guard", "VelocityBits", "SumBits", "Pd", "DisplacementBits", "GainBits",
              "GainFrac", "ConstantBits", "IdBits"}) +
@@ -144,15 +144,17 @@ std::string print_blocks(const Plan& plan) {
           kSlotBits);
   text += from("valid_i", in::update_valid, "1") +
           from("slot_i", in::update_slot, fmt::format("{}", kSlotBits).c_str()) +
-          from("sum_i", in::sum, "Sum", 3) + from("x_i", in::x, "P", 3) + from("v_i", in::v, "V", 3) +
+          from("sum_i", in::sum, "Sum", 3) + from("x_i", in::x, "P", 3) +
+          from("residue_i", in::residue, "G", 3) + from("v_i", in::v, "V", 3) +
           from("type_i", in::type, "T") + from("id_i", in::id, "Id") + from("u_i", in::u, "U", 3);
   text +=
-      "    .valid_o(new_valid), .slot_o(new_slot), .x_o(new_x), .away_o(away), .v_o(new_v), "
+      "    .valid_o(new_valid), .slot_o(new_slot), .x_o(new_x), .residue_o(new_residue), .away_o(away), .v_o(new_v), "
       ".type_o(new_type),\n"
       "    .id_o(new_id), .u_o(new_u), .fault_o(fault), .fault_code_o(code),\n"
       "    .fault_id_o(fault_id), .fault_number_o(number)\n  );\n";
   text += to(out::update_valid, "new_valid") + to(out::update_slot, "new_slot") +
-          to_axes(out::x, "new_x", "P", false) + to_axes(out::away, "away", "2") +
+          to_axes(out::x, "new_x", "P", false) +
+          to_axes(out::residue, "new_residue", "G", false) + to_axes(out::away, "away", "2") +
           to_axes(out::v, "new_v", "V") + to(out::type, "new_type") + to(out::id, "new_id") +
           to_axes(out::u, "new_u", "U") + to(out::fault, "fault") + to(out::fault_id, "fault_id") + to(out::code, "code") +
           to(out::number, "number", true);

@@ -354,6 +354,7 @@ std::vector<std::string> look(const FixedRule& rule, UpdateStimulus& s) {
   };
   const Widths& w = rule.widths;
   const FixedType& kind = rule.types[static_cast<size_t>(s.type)];
+  for (size_t a = 0; a < 3; ++a) s.seen[a] = s.x[a] >> w.guard;
   s.result = finish(rule, s.sum, s.x, s.v, s.u, s.type);
   const FinishResult& r = s.result;
   std::set<Fault> faults;
@@ -386,11 +387,14 @@ std::vector<std::string> look(const FixedRule& rule, UpdateStimulus& s) {
       note(beyond(u, w.displacement_bits), "u one beyond");
       if (!fits(u, w.displacement_bits)) faults.insert(Fault::displacement);
     }
-    note(negative_half(r.v[a], w.guard), "half of the drift");
+    const bool slow = std::abs(r.v[a]) < int64_t{1} << w.guard, seen_to_move = r.x[a] >> w.guard != s.seen[a];
+    note(slow && r.v[a] != 0 && !seen_to_move, "slow, seen to rest");
+    note(slow && r.v[a] > 0 && seen_to_move, "slow, seen to rise");
+    note(slow && r.v[a] < 0 && seen_to_move, "slow, seen to fall");
     note(r.x[a] < 0, "to the node below");
-    note(r.x[a] >> w.position_frac == 1, "to the node above");
+    note(r.x[a] >> w.velocity_frac() == 1, "to the node above");
     note(s.x[a] == 0, "x = 0");
-    note(s.x[a] == (int64_t{1} << w.position_frac) - 1, "x at its end");
+    note(s.x[a] == (int64_t{1} << w.velocity_frac()) - 1, "x at its end");
   }
   note(r.fault == Fault::none, "no fault");
   note(r.fault == Fault::sum, "fault of the sum");
@@ -410,10 +414,11 @@ UpdateStimuli update_stimuli(const FixedRule& rule, int sum_bits, uint64_t seed)
     pd = pd || t.pd;
     for (const bool axis : t.imposed) imposed = imposed || axis;
   }
-  std::set<std::string> names{"sum at a limit",    "sum one beyond",    "v at a limit",      "v one beyond",
-                              "half of the drift", "to the node below", "to the node above", "x = 0",
-                              "x at its end",      "no fault",          "fault of the sum",  "fault of v",
-                              "several faults"};
+  std::set<std::string> names{
+      "sum at a limit",    "sum one beyond",     "v at a limit",       "v one beyond",
+      "to the node below", "to the node above",  "x = 0",              "x at its end",
+      "no fault",          "fault of the sum",   "fault of v",         "several faults",
+      "slow, seen to rest", "slow, seen to rise", "slow, seen to fall"};
   if (imposed) names.insert("imposed, sum of any size");
   if (pd)
     names.merge(std::set<std::string>{"half of the pull", "u at a limit", "u one beyond", "fault of u"});
@@ -424,7 +429,7 @@ UpdateStimuli update_stimuli(const FixedRule& rule, int sum_bits, uint64_t seed)
     UpdateStimulus s;
     s.type = static_cast<int>(draw(0, static_cast<int64_t>(rule.types.size()) - 1));
     const FixedType& kind = rule.types[static_cast<size_t>(s.type)];
-    const int64_t last = (int64_t{1} << w.position_frac) - 1;
+    const int64_t last = (int64_t{1} << w.velocity_frac()) - 1;
     const bool calm = draw.chance(60);  // no sum out of its width
     const int64_t step = int64_t{1} << (w.velocity_bits - 1);
     for (size_t a = 0; a < 3; ++a) {
@@ -437,9 +442,12 @@ UpdateStimuli update_stimuli(const FixedRule& rule, int sum_bits, uint64_t seed)
         s.sum[a] = (draw.chance(50) ? 1 : -1) * (int64_t{1} << (w.sum_bits - 1)) - draw(0, 1);
       if (kind.pd) s.u[a] = draw.edgy(w.displacement_bits);
     }
-    // One axis where v, or u, meets its limit exactly, or misses it by one.
+    // One axis where v, or u, meets its limit exactly, or misses it by one; or where v is less than a unit of X.
     const auto a = static_cast<size_t>(draw(0, 2));
-    const int64_t end = draw.chance(50) ? step - draw(0, 1) : -step - draw(0, 1);
+    const int64_t slow = (int64_t{1} << w.guard) - 1;
+    const int64_t end = draw.chance(30) ? draw(-slow, slow)
+                        : draw.chance(50) ? step - draw(0, 1)
+                                          : -step - draw(0, 1);
     if (draw.chance(30) && !kind.imposed[a]) {
       const int64_t pull =
           kind.pd ? round_odd(kind.kp * s.u[a] + kind.kd * (s.v[a] - kind.velocity[a]), w.gain_frac) : 0;

@@ -24,6 +24,7 @@ struct PairStimulus {
 
 struct UpdateStimulus {
   Int3 sum{}, x{}, v{}, u{};
+  Int3 seen{};  // the leading P bits of x
   int type = 0;
   FinishResult result;
 };

@@ -234,7 +234,7 @@ std::vector<OutLanes> drive(Blocks& blocks, const Stimuli& s, const std::vector<
       const UpdateStimulus& u = s.updates.list[updates[c]];
       lanes[in::update_slot] = slot_of(updates[c]);
       lanes[in::id] = updates[c];
-      put(in::sum, u.sum), put(in::x, u.x), put(in::v, u.v), put(in::u, u.u);
+      put(in::sum, u.sum), put(in::x, u.seen), put(in::residue, u.x), put(in::v, u.v), put(in::u, u.u);
       lanes[in::type] = static_cast<uint64_t>(u.type);
     }
     if (c < r2.size()) lanes[in::r2] = r2[c];
@@ -319,7 +319,8 @@ void compare_updates(const Plan& plan, const Stimuli& s, const Schedule& schedul
   // force a fault is told a cycle later than the particle is there.
   const auto last = static_cast<size_t>(plan.latency.update - 2);
   const size_t told = last + (plan.rule.pd ? 1 : 0);
-  const int64_t cell = int64_t{1} << plan.rule.widths.position_frac;
+  const Widths& w = plan.rule.widths;
+  const int64_t cell = int64_t{1} << w.velocity_frac(), below = int64_t{1} << w.guard;
   Comparison compare(trace, outcome.difference);
   for (size_t c = 0; c + told < trace.size(); ++c) {
     if (c >= schedule.size() || schedule[c] == kNothing) {
@@ -336,13 +337,16 @@ void compare_updates(const Plan& plan, const Stimuli& s, const Schedule& schedul
     const int64_t id = static_cast<int64_t>(k) & ((int64_t{1} << plan.words.id_bits) - 1);
     compare.lane(place, "update: id", at, out::id, id);
     compare.lane(place, "update: type", at, out::type, u.type);
-    Int3 x = u.result.x, away{};
+    Int3 x = u.result.x, residue{}, away{};
     for (size_t a = 0; a < 3; ++a) {
       away[a] = x[a] < 0 ? -1 : x[a] >= cell ? 1 : 0;
       x[a] -= away[a] * cell;
+      residue[a] = x[a] % below;
+      x[a] /= below;
     }
     compare.axes(place, "update: v", at, out::v, u.result.v);
     compare.axes(place, "update: x", at, out::x, x);
+    compare.axes(place, "update: residue", at, out::residue, residue);
     compare.axes(place, "update: away", at, out::away, away);
     if (plan.rule.pd) compare.axes(place, "update: u", at, out::u, u.result.u);
     const bool fault = u.result.fault != Fault::none;
@@ -483,6 +487,15 @@ std::vector<Mutation> mutations() {
        "rich",
        {{"cuboct_update.sv", "carry = pull_sum_q[GainFrac-1] &&", "carry = 1'b0 && pull_sum_q[GainFrac-1] &&"}},
        "update: v."},
+      {"drift_truncated",
+       "plain",
+       {{"cuboct_update.sv", "residue_last[a*Guard +: Guard]}) + drift;",
+         "residue_last[a*Guard +: Guard]}) + $signed({drift[MovedBits-1:Guard], {Guard{1'b0}}});"}},
+       "update: x."},
+      {"residue_stays",
+       "rich",
+       {{"cuboct_update.sv", "= moved[Guard-1:0];", "= residue_last[a*Guard +: Guard];"}},
+       "update: residue."},
       {"negative_half",
        "plain",
        {{"cuboct_round_odd.sv", "(!full[FullBits-1] || rest)", "(!full[FullBits-1] || full[FullBits-1] || rest)"}},

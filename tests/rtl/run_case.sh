@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # run_case.sh EMIT_CASE CASE STEPS DIR [MUTATION] TARGET...: emits a case, breaks it in one way if asked, runs the targets
 # of its Makefile. A mutation must turn the bench red and name a place: then the exit status is 0.
-#   mutations: table, rounding, record, link
+#   mutations: table, rounding, drift, residue, record, link
 set -u
 emit=$1 case=$2 steps=$3 dir=$4 mutation=$5
 shift 5
@@ -17,6 +17,12 @@ case $mutation in
   table) edit "$rtl/cuboct_force_rom.sv" 's/assign c0_o = data_q\[\([0-9]*\):0\];/assign c0_o = data_q[\1:0] ^ 1;/' ;;
   # Truncation in place of rounding.
   rounding) edit "$rtl/cuboct_round_odd.sv" 's/{{(HighBits - 1) {1.b0}}, carry}/{HighBits{1'"'"'b0}}/' ;;
+  # What v has below a unit of X is left out of the drift.
+  drift) edit "$rtl/cuboct_update.sv" 's/) + drift;/) + $signed({drift[MovedBits-1:Guard], {Guard{1'"'"'b0}}});/' ;;
+  # A particle that comes from another node has lost its residue.
+  residue)
+    edit "$rtl/cuboct_node_core.sv" \
+      's/\.arrived_i(arrived)/.arrived_i(arrived \& ~({{(ParticleBits-ResidueBits){1'"'"'b0}}, {ResidueBits{1'"'"'b1}}} << ResidueLsb))/' ;;
   # The second record of each halo memory is not kept.
   record) edit "$rtl/cuboct_inbox.sv" 's/write_i(append_i), \(.*read_i(read_i)\)/write_i(append_i \&\& count_q != 1), \1/' ;;
   # A node hears its neighbour below x where it should hear the one above.

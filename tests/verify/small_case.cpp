@@ -48,14 +48,14 @@ void at_the_cutoff(Setup& setup) {
 
 // One particle of the first node goes to the last node, and one the other way, over all three axes in one step.
 void cross_the_corner(Setup& setup) {
-  const int p = setup.plan.rule.widths.position_frac;
+  const int64_t edge = int64_t{1} << setup.plan.rule.widths.velocity_frac();
   const int64_t most = (int64_t{1} << (setup.plan.rule.widths.velocity_bits - 4)) - 1;
   const uint32_t last = setup.plan.lattice.size() - 1;
   bool up = false, down = false;
   for (Particle& q : setup.initial.particles) {
     if (q.node == 0 && !up) {
       up = true;
-      q.x = {(1 << p) - 9, (1 << p) - 7, (1 << p) - 5};
+      q.x = {edge - 9, edge - 7, edge - 5};
       q.v = {most, most - 77, most / 2};
     } else if (q.node == last && !down) {
       down = true;
@@ -95,14 +95,15 @@ void fly(Scene& scene) {
 void close_together(Setup& setup) {
   Particle* first = nullptr;
   int moved = 0;
-  const int edge = 1 << setup.plan.rule.widths.position_frac;
+  const Widths& w = setup.plan.rule.widths;
+  const int64_t edge = int64_t{1} << w.velocity_frac();
   for (Particle& p : setup.initial.particles) {
     if (p.node != 0 || moved == 2) continue;
     if (first == nullptr) {
       first = &p;
       continue;
     }
-    const int d = moved++ == 0 ? 3 : 3 * edge / 10;
+    const int64_t d = moved++ == 0 ? int64_t{3} << w.guard : 3 * edge / 10;
     p.x = first->x;
     p.x[0] += p.x[0] > edge / 2 ? -d : d;
   }

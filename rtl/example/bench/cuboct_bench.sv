@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Made by cuboct emit from plan 51d72f21d7820c0e; do not edit.
+// Made by cuboct emit from plan 5290aa12107ad825; do not edit.
 // Loads the lattice, runs Steps steps and compares every particle that a node observes with golden's.
 `timescale 1ns / 1ns
 module cuboct_bench;
@@ -126,6 +126,21 @@ module cuboct_bench;
         if (got[151 +: 3] !== want[151 +: 3]) begin
           $display("FAIL step %0d node %0d slot %0d particle %0d: id is %0d, golden has %0d", step, k,
                    slot, want[151 +: IdBits], got[151 +: 3], want[151 +: 3]);
+          $fatal(1, "differs");
+        end
+        if (got[154 +: 8] !== want[154 +: 8]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: residue_x is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], got[154 +: 8], want[154 +: 8]);
+          $fatal(1, "differs");
+        end
+        if (got[162 +: 8] !== want[162 +: 8]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: residue_y is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], got[162 +: 8], want[162 +: 8]);
+          $fatal(1, "differs");
+        end
+        if (got[170 +: 8] !== want[170 +: 8]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: residue_z is %0d, golden has %0d", step, k,
+                   slot, want[151 +: IdBits], got[170 +: 8], want[170 +: 8]);
           $fatal(1, "differs");
         end
         compared = compared + 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Made by cuboct emit from plan 51d72f21d7820c0e; do not edit.
+// Made by cuboct emit from plan 5290aa12107ad825; do not edit.
 // 16 entries of {c1, c0}, 21 bits each. Synchronous read.
 module cuboct_force_rom (
   input  logic                clk_i,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Made by cuboct emit from plan 51d72f21d7820c0e; do not edit.
+// Made by cuboct emit from plan 5290aa12107ad825; do not edit.
 // All nodes and their links. Node n's part of a vector over nodes has n times the part's width below it.
 // load_valid_i appends load_data_i to node load_node_i; start_i starts all nodes.
 module cuboct_lattice #(

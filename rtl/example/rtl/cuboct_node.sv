@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Made by cuboct emit from plan 51d72f21d7820c0e; do not edit.
+// Made by cuboct emit from plan 5290aa12107ad825; do not edit.
 // One node of the plan: cuboct_node_core with the plan's constants.
 module cuboct_node (
   input  logic                                clk_i,

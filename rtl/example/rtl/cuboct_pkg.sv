@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Made by cuboct emit from plan 51d72f21d7820c0e; do not edit.
+// Made by cuboct emit from plan 5290aa12107ad825; do not edit.
 // The constants of the plan; docs/reference/node.md says what each is.
 package cuboct_pkg;
   localparam int          Axes                 = 3;             // 3, or 2 where nothing happens along z
@@ -15,8 +15,8 @@ package cuboct_pkg;
   localparam int          LinkBits             = 64;            // payload of a beat
   localparam int          IdBits               = 3;
   localparam int          TypeBits             = 0;             // 0 with one type
-  localparam int          PositionFrac         = 20;            // fractional bits of x
-  localparam int          Guard                = 8;             // v has PositionFrac + Guard fractional bits
+  localparam int          PositionFrac         = 20;            // fractional bits of x that forces and links see
+  localparam int          Guard                = 8;             // v and the owner's x have PositionFrac + Guard fractional bits
   localparam int          VelocityBits         = 29;
   localparam int          RelativeVelocityBits = 18;
   localparam int          StrengthBits         = 21;            // s, and the entries of the tables
@@ -47,5 +47,5 @@ package cuboct_pkg;
   localparam int          Damped               = 0;
   localparam int          Scaled               = 0;             // pair scales differ
   localparam int          Pd                   = 0;             // some type is held by force
-  localparam int          ParticleBits         = 154;           // of the words to load and observe
+  localparam int          ParticleBits         = 178;           // of the words to load and observe
 endpackage

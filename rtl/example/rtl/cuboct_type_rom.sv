@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Made by cuboct emit from plan 51d72f21d7820c0e; do not edit.
+// Made by cuboct emit from plan 5290aa12107ad825; do not edit.
 // What sets the types apart, axis 0 in the least significant place: imposed axes, velocity (imposed, or of the
 // anchor), gravity, whether held by force, gains. Combinational.
 module cuboct_type_rom (
