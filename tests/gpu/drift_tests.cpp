@@ -47,9 +47,9 @@ struct Row {
   std::vector<Int3> first;  // from the corner of cell (0, 0, 0), P+G fractional bits
 
   explicit Row(int guard) {
-    constexpr int kLength = 17, kFast = 8;
+    constexpr int kLength = 16, kFast = 8;
     constexpr double kEdge = 4;  // three cutoffs and more
-    of.scene = block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .dt = 1e-3, .jitter = 0, .speed = 0, .margin = 2 * kEdge});
+    of.scene = block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .dt = 1e-3, .jitter = 0, .speed = 0, .margin = kEdge});
     of.scene.body = {};
     for (int k = 0; k < kLength; ++k) of.scene.body.x.push_back(Vec3(kEdge * k, 0, 0));
     of.scene.body.v.assign(kLength, Vec3::Zero());
@@ -66,8 +66,8 @@ struct Row {
       // Most of what such a speed is lies in its last bits.
       const int64_t slow = std::max<int64_t>(1, unit * (3 + 2 * k) / 40 | 1) * (k % 2 == 0 ? 1 : -1);
       p.v = {slow, -slow, slow};
-      p.x = {slow > 0 ? edge - 20 * unit : 20 * unit, edge / (k % 4 < 2 ? 4 : 2), edge / 2};
-      if (k == kFast) p.x = {edge / 2, 0, 0}, p.v = {0, edge / 250, -edge / 300};
+      p.x = {slow > 0 ? edge - 20 * unit : 20 * unit, (k % 2 == 0 ? 1 : 3) * edge / 4, edge / 2};
+      if (k == kFast) p.x = {edge / 2, 0, edge - 1}, p.v = {0, edge / 400, -edge / 400};
       Int3 from;
       for (int a = 0; a < 3; ++a) from[a] = of.setup.plan.lattice.cell(p.node)[a] * edge + p.x[a];
       first.push_back(from);
