@@ -45,11 +45,12 @@ class FixedEngine final : public Engine {
     Reading reading;
     reading.step = step_;
     const FixedRule& rule = plan_.rule;
-    const double position = std::ldexp(rule.cell_edge, -rule.widths.position_frac);
+    const double position = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
     for (const Found<Policy>& found : machine_->read_probed()) {
       Vec3 x;
       for (int a = 0; a < 3; ++a)
-        x[a] = plan_.origin[a] + found.cell.c[a] * rule.cell_edge + found.x.at[a] * position;
+        x[a] = plan_.origin[a] + found.cell.c[a] * rule.cell_edge +
+               static_cast<double>(Policy::whole(rule.widths, found.x, found.residue, a)) * position;
       reading.x.push_back(x);
       reading.force.push_back(force_of(rule, {found.kick.at[0], found.kick.at[1], found.kick.at[2]}));
     }
@@ -66,7 +67,7 @@ class FixedEngine final : public Engine {
   State state() override {
     const Loose<Policy> loose = machine_->download();
     State state{step_, std::vector<Particle>(loose.size())};
-    const int P = plan_.rule.widths.position_frac;
+    const Widths& widths = plan_.rule.widths;
     const Lattice& lattice = plan_.lattice;
     for (size_t i = 0; i < loose.size(); ++i) {
       Particle& p = state.particles[loose.id[i]];
@@ -74,9 +75,9 @@ class FixedEngine final : public Engine {
       p.type = static_cast<uint8_t>(type_in(loose.x[i].last));
       Cell cell;
       for (int a = 0; a < 3; ++a) {
-        cell[a] = loose.cell[i].c[a] + (loose.x[i].at[a] >> P);
+        cell[a] = loose.cell[i].c[a] + (loose.x[i].at[a] >> widths.position_frac);
         if (const int period = lattice.period()[a]; period > 0) cell[a] = modulo(cell[a], period);
-        p.x[a] = loose.x[i].at[a] & ((int64_t{1} << P) - 1);
+        p.x[a] = Policy::whole(widths, loose.x[i], loose.residue[i], a) & ((int64_t{1} << widths.velocity_frac()) - 1);
         p.v[a] = loose.v[i].at[a];
         if (!loose.u.empty()) p.u[a] = loose.u[i].at[a];
       }
@@ -121,26 +122,28 @@ class FixedEngine final : public Engine {
     setup.largest_skin = 0.2 * setup.radius;
     setup.capacity = static_cast<uint32_t>(plan.arch.capacity);
     setup.pd = rule.pd, setup.damped = rule.damped;
+    setup.residue_bits = rule.widths.guard;
     const double cutoff = scene.rule.law->cutoff();
     for (int a = 0; a < 3; ++a) {
       setup.edge[a] = rule.cell_edge / cutoff;
       setup.origin[a] = plan.origin[a] / cutoff;
     }
-    setup.unit = std::ldexp(rule.cell_edge / cutoff, -rule.widths.position_frac);
-    setup.velocity_unit = std::ldexp(rule.cell_edge / cutoff, -rule.widths.velocity_frac());
+    setup.unit = std::ldexp(rule.cell_edge / cutoff, -rule.widths.velocity_frac());
     return setup;
   }
 
   Loose<Policy> loose(const State& state) const {
     Loose<Policy> loose;
     const size_t n = state.particles.size();
-    loose.x.resize(n), loose.v.resize(n), loose.cell.resize(n), loose.id.resize(n);
+    loose.x.resize(n), loose.v.resize(n), loose.residue.resize(n), loose.cell.resize(n), loose.id.resize(n);
+    const int guard = plan_.rule.widths.guard;
     if (plan_.rule.pd) loose.u.resize(n);
     for (size_t i = 0; i < n; ++i) {
       const Particle& p = state.particles[i];
       const Cell& cell = plan_.lattice.cell(p.node);
       for (int a = 0; a < 3; ++a) {
-        loose.x[i].at[a] = static_cast<int32_t>(p.x[a]);
+        loose.x[i].at[a] = static_cast<int32_t>(p.x[a] >> guard);
+        loose.residue[i].at[a] = static_cast<uint32_t>(p.x[a] & ((int64_t{1} << guard) - 1));
         loose.v[i].at[a] = static_cast<Number>(p.v[a]);
         loose.cell[i].c[a] = cell[a];
         if (plan_.rule.pd) loose.u[i].at[a] = p.u[a];
@@ -178,6 +181,7 @@ class FixedEngine final : public Engine {
 
 std::unique_ptr<Engine> make_fixed_engine(const Scene& scene, const Plan& plan, const State& initial,
                                           const Options& options) {
+  require_widths(plan.rule.widths);
   if (plan.rule.widths.velocity_bits <= 32)
     return std::make_unique<FixedEngine<int32_t>>(scene, plan, initial, options);
   return std::make_unique<FixedEngine<int64_t>>(scene, plan, initial, options);

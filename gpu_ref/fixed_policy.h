@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The fixed rule for the engine of gpu_ref/machine.h. Cells are nodes; a position counts from the corner of the node
-// in which its particle stood when the list was made, P fractional bits, so that no list changes when a particle
-// crosses a face.
+// in which its particle stood when the list was made, so that no list changes when a particle crosses a face. Its
+// leading P fractional bits, which pairs see, stand apart from the G bits below, its residue.
 #pragma once
 
 #include <cstdint>
@@ -152,6 +152,14 @@ struct FixedPolicy {
       use(Variant<false>());
   }
 
+  // Both parts of a position, P+G fractional bits.
+  CUBOCT_DEVICE static int64_t whole(const Widths& widths, const Position& x, const Three<uint32_t>& residue, int axis) {
+    return x.at[axis] * (int64_t{1} << widths.guard) + residue.at[axis];
+  }
+  CUBOCT_DEVICE static int64_t whole(const View& view, const Position& x, const Three<uint32_t>& residue, int axis) {
+    return whole(view.widths, x, residue, axis);
+  }
+
   CUBOCT_DEVICE static Triple triple(const int32_t (&at)[3]) { return {{at[0], at[1], at[2]}}; }
   template <typename Number>
   CUBOCT_DEVICE static Triple triple(const Four<Number, Number>& four) {
@@ -171,14 +179,18 @@ struct FixedPolicy {
 
   // One step of the particle. False: golden would refuse.
   template <class Cached>
-  CUBOCT_DEVICE static bool finish(const Cached& rule, const Sum& sum, Position& x, Velocity& v, Extra* u) {
+  CUBOCT_DEVICE static bool finish(const Cached& rule, const Sum& sum, Position& x, Three<uint32_t>& residue, Velocity& v,
+                                   Extra* u) {
     Triple displacement{};
     if (u)
       for (int a = 0; a < 3; ++a) displacement[a] = u->at[a];
     const Triple sums{{sum.at[0], sum.at[1], sum.at[2]}};
-    const auto result = finish_of<FinishOutcome>(rule, sums, triple(x.at), triple(v), displacement, type_in(x.last));
+    Triple position;
+    for (int a = 0; a < 3; ++a) position[a] = whole(rule.widths, x, residue, a);
+    const auto result = finish_of<FinishOutcome>(rule, sums, position, triple(v), displacement, type_in(x.last));
     for (int a = 0; a < 3; ++a) {
-      x.at[a] = static_cast<int32_t>(result.x[a]);
+      x.at[a] = static_cast<int32_t>(result.x[a] >> rule.widths.guard);
+      residue.at[a] = static_cast<uint32_t>(result.x[a] & ((int64_t{1} << rule.widths.guard) - 1));
       v.at[a] = static_cast<VelocityNumber>(result.v[a]);
     }
     if (u)

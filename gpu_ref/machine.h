@@ -31,8 +31,9 @@ namespace cuboct::gpu {
 
 // Bytes of device memory for a particle, about: what a card must hold is known before it is asked for.
 template <class Policy>
-constexpr double bytes_per_particle(bool pd, double listed) {
+constexpr double bytes_per_particle(bool pd, int residue_bits, double listed) {
   const double state = sizeof(typename Policy::Position) + sizeof(typename Policy::Velocity) +
+                       4 * static_cast<double>(Residues<Policy::kFixed>::words_for(residue_bits)) +
                        (pd ? sizeof(typename Policy::Extra) : 0);
   const double order = 2 * (sizeof(CellAt) + 4) + 8 + (Policy::kFixed ? 8 : 0) + 4;
   return 2 * state + order + 8 * listed + 8;
@@ -44,6 +45,7 @@ struct Loose {
   std::vector<typename Policy::Position> x;
   std::vector<typename Policy::Velocity> v;
   std::vector<typename Policy::Extra> u;  // empty unless the rule has PD types
+  std::vector<Three<uint32_t>> residue;   // empty in real engines
   std::vector<CellAt> cell;
   std::vector<uint32_t> id;
   size_t size() const { return x.size(); }
@@ -62,9 +64,10 @@ class Machine {
     double largest_skin = 0;  // what the reach of the cells leaves room for
     uint32_t capacity = kNever;  // of a node (fixed)
     bool pd = false, damped = false;
+    int residue_bits = 0;  // of a position (fixed)
     // Of energies: see ReadEnergies.
     std::array<double, 3> edge{}, origin{};
-    double unit = 1, velocity_unit = 1;
+    double unit = 1;
   };
   // `make_rule(stream)` puts the rule on a stream's device.
   template <class MakeRule>
@@ -101,7 +104,7 @@ class Machine {
       for (auto* a : {&x[0], &x[1]}) *a = Array<typename Policy::Position>(device, account);
       for (auto* a : {&v[0], &v[1]}) *a = Array<typename Policy::Velocity>(device, account);
       for (auto* a : {&u[0], &u[1]}) *a = Array<typename Policy::Extra>(device, account);
-      for (auto* a : {&id, &spare_id, &rank_of, &order, &entered, &rank, &count, &first, &taken, &occupancy, &entries,
+      for (auto* a : {&residue[0], &residue[1], &id, &spare_id, &rank_of, &order, &entered, &rank, &count, &first, &taken, &occupancy, &entries,
                       &counts, &thin_entries, &thin_counts, &notes, &slot, &found_here})
         *a = Array<uint32_t>(device, account);
       for (auto* a : {&cell, &spare_cell}) *a = Array<CellAt>(device, account);
@@ -120,6 +123,7 @@ class Machine {
     Array<typename Policy::Position> x[2];
     Array<typename Policy::Velocity> v[2];
     Array<typename Policy::Extra> u[2];
+    Array<uint32_t> residue[2];
     Array<uint32_t> id, spare_id, rank_of, order, entered;
     Array<CellAt> cell, spare_cell;
     Array<uint32_t> rank, count, first, taken, occupancy;  // of cells
@@ -158,8 +162,10 @@ class Machine {
   }
   GridView grid(const Slab& slab) const;
   ParticlesView<Policy> at(Slab& slab, int copy) const {
-    return {slab.x[copy].data(), slab.v[copy].data(), setup_.pd ? slab.u[copy].data() : nullptr};
+    return {slab.x[copy].data(), slab.v[copy].data(), setup_.pd ? slab.u[copy].data() : nullptr,
+            {slab.residue[copy].data(), setup_.residue_bits}};
   }
+  size_t residue_words() const { return Residues<Policy::kFixed>::words_for(setup_.residue_bits); }
   // How far a particle may move before a new list is due: what an anchor does not tell is taken off.
   double farthest() const {
     const auto& edge = setup_.geometry.edge;
@@ -185,6 +191,7 @@ class Machine {
   void resettle();
   void sort();
   void mirror();
+  void mirror_residues();
   void list_pairs();
   void list_pairs(Slab& slab);
   void scatter(const Loose<Policy>& state);

@@ -25,7 +25,7 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
   cells_ = make_cells(g, per_plane, slabs);
   uint64_t cells = 0;
   for (const SlabCells& slab : cells_.slabs) cells = std::max<uint64_t>(cells, slab.rank.size() + 4ull * slab.ranks);
-  require_memory(options, particles_, cells, bytes_per_particle<Policy>(setup.pd, entries_expected(state.cell)));
+  require_memory(options, particles_, cells, bytes_per_particle<Policy>(setup.pd, setup.residue_bits, entries_expected(state.cell)));
   share(options.devices);
   for (int s = 0; s < slabs; ++s) {
     slabs_.push_back(std::make_unique<Slab>(options.devices[static_cast<size_t>(s)], s, &counters.device_bytes));
@@ -93,6 +93,7 @@ void Machine<Policy>::make_room(Slab& slab, size_t particles) {
     slab.x[k].grow(slab.stream, room, kept);
     slab.v[k].grow(slab.stream, room, kept);
     if (setup_.pd) slab.u[k].grow(slab.stream, room, kept);
+    slab.residue[k].grow(slab.stream, room * residue_words(), kept * residue_words());
     slab.graph[k].drop();
   }
   for (auto* array : {&slab.id, &slab.spare_id, &slab.rank_of, &slab.order}) array->grow(slab.stream, room, kept);
@@ -121,6 +122,12 @@ void Machine<Policy>::scatter(const Loose<Policy>& state) {
     slab.x[at_].put(slab.stream, 0, some(state.x, of[s]));
     slab.v[at_].put(slab.stream, 0, some(state.v, of[s]));
     if (setup_.pd) slab.u[at_].put(slab.stream, 0, some(state.u, of[s]));
+    if constexpr (Policy::kFixed) {
+      std::vector<uint32_t> words(of[s].size() * residue_words());
+      const Residues<true> packed{words.data(), setup_.residue_bits};
+      for (size_t k = 0; k < of[s].size(); ++k) packed.store(k, state.residue[of[s][k]]);
+      slab.residue[at_].put(slab.stream, 0, words);
+    }
     slab.cell.put(slab.stream, 0, some(state.cell, of[s]));
     slab.id.put(slab.stream, 0, some(state.id, of[s]));
   }
@@ -140,6 +147,11 @@ Loose<Policy> Machine<Policy>::download() {
     append(state.x, slab->x[at_].host(slab->stream, 0, slab->own));
     append(state.v, slab->v[at_].host(slab->stream, 0, slab->own));
     if (setup_.pd) append(state.u, slab->u[at_].host(slab->stream, 0, slab->own));
+    if constexpr (Policy::kFixed) {
+      std::vector<uint32_t> words = slab->residue[at_].host(slab->stream, 0, slab->own * residue_words());
+      const Residues<true> packed{words.data(), setup_.residue_bits};
+      for (size_t k = 0; k < slab->own; ++k) state.residue.push_back(packed.load(k));
+    }
     append(state.cell, slab->cell.host(slab->stream, 0, slab->own));
     append(state.id, slab->id.host(slab->stream, 0, slab->own));
   }
@@ -275,6 +287,25 @@ void Machine<Policy>::mirror() {
     }
   }
   wait_for_all();
+}
+
+// What steps do not send, for energies between what devices own.
+template <class Policy>
+void Machine<Policy>::mirror_residues() {
+  const size_t words = residue_words();
+  wait_for_all();
+  for (auto& slab : slabs_) {
+    Slab& s = *slab;
+    for (int side = 0; side < 2; ++side) {
+      const Slab* other = beside(s, side);
+      if (!other) continue;
+      const uint32_t to = side == 0 ? s.own : s.lower_copy_end;
+      const uint32_t from = side == 0 ? other->high_begin : 0;
+      const size_t count = (side == 0 ? s.lower_copy_end : s.all) - to;
+      copy(s.stream, s.residue[at_].data() + to * words, s.device, other->residue[at_].data() + from * words,
+           other->device, count * words * sizeof(uint32_t));
+    }
+  }
 }
 
 template <class Policy>

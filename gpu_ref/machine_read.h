@@ -55,6 +55,7 @@ std::vector<Found<Policy>> Machine<Policy>::read_probed() {
 template <class Policy>
 Sums Machine<Policy>::read_energies() {
   Sums all{};
+  if (Policy::kFixed) mirror_residues();
   for (auto& slab : slabs_) {
     Slab& s = *slab;
     const uint32_t chunks = (s.own + kSummed - 1) / kSummed;
@@ -64,7 +65,7 @@ Sums Machine<Policy>::read_energies() {
       f.view = s.rule->view(), f.grid = grid(s), f.at = at(s, at_), f.list = list(s), f.cell = s.cell.data();
       f.energy = s.energy;
       for (int a = 0; a < 3; ++a) f.edge[a] = setup_.edge[a], f.origin[a] = setup_.origin[a];
-      f.unit = setup_.unit, f.velocity_unit = setup_.velocity_unit, f.count = s.own, f.sums = s.sums.data();
+      f.unit = setup_.unit, f.count = s.own, f.sums = s.sums.data();
       for_each_cached(s.stream, 0, chunks, options_.block, s.rule->cache(), s.rule->cache_words(), f);
     });
     for (const Sums& part : s.sums.host(s.stream, 0, chunks)) {

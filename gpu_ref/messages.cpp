@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "gpu_ref/particle.h"
 #include "model/error.h"
 
 namespace cuboct::gpu {
@@ -51,6 +52,15 @@ void require_devices(const Options& options) {
                        devices.size() == 1 ? "this machine has one: 0"
                                            : fmt::format("this machine has {}: 0 to {}", devices.size(),
                                                          devices.size() - 1));
+}
+
+void require_widths(const Widths& widths) {
+  if (widths.position_frac > kMostVisibleBits)
+    throw InputError(fmt::format("position_frac = {}: the gpu engine's positions hold {} bits of a cell at most",
+                                 widths.position_frac, kMostVisibleBits));
+  if (widths.guard > kMostResidueBits)
+    throw InputError(fmt::format("guard = {}: the gpu engine keeps {} bits of a position beside those at most",
+                                 widths.guard, kMostResidueBits));
 }
 
 void require_memory(const Options& options, uint64_t particles, uint64_t cells, double bytes_per_particle) {

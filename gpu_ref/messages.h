@@ -16,6 +16,8 @@ namespace cuboct::gpu {
 [[noreturn]] void throw_too_dense(uint64_t others);
 // InputError where an ordinal is not there, or a block is no multiple of 32 up to 256.
 void require_devices(const Options& options);
+// InputError where a rule's positions are wider than the fixed engine's numbers.
+void require_widths(const Widths& widths);
 // InputError where the devices cannot hold a scene: `cells` bytes/4 of tables on each.
 void require_memory(const Options& options, uint64_t particles, uint64_t cells, double bytes_per_particle);
 // InputError where a block of a device cannot hold a rule's tables.

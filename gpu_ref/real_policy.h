@@ -93,7 +93,8 @@ struct RealPolicy {
 
   // One step of the particle. False: a position is not finite.
   template <class Cached>
-  CUBOCT_DEVICE static bool finish(const Cached& rule, const Sum& sum, Position& x, Velocity& v, Extra* u) {
+  CUBOCT_DEVICE static bool finish(const Cached& rule, const Sum& sum, Position& x, Three<uint32_t>&, Velocity& v,
+                                   Extra* u) {
     gpu::finish(rule.rule, sum.at, x.at, v.at, u ? u->at : nullptr, type_in(x.last));
     // Cells are counted in 32 bits; what goes beyond in one step is on its way to infinity.
     bool sound = true;
@@ -109,6 +110,10 @@ struct RealPolicy {
     for (int a = 0; a < 3; ++a)
       gain[a] = of.imposed[a] ? 0
                               : static_cast<double>(velocity_gain(of, sum.at[a], v.at[a], u ? u->at : nullptr, a));
+  }
+
+  CUBOCT_DEVICE static Real whole(const View&, const Position& x, const Three<uint32_t>&, int axis) {
+    return x.at[axis];
   }
 
   // In cutoffs.

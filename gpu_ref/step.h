@@ -176,15 +176,17 @@ struct Step {
     bool sound = pairs.sound;
     const auto& rule = pairs.rule;
     const auto& sum = pairs.sum;
+    auto residue = from.residue.load(i);
     if (from.u) {
       auto u = from.u[i];
-      sound &= Policy::finish(rule, sum, x, v, &u);
+      sound &= Policy::finish(rule, sum, x, residue, v, &u);
       to.u[i] = u;
     } else {
-      sound &= Policy::finish(rule, sum, x, v, nullptr);
+      sound &= Policy::finish(rule, sum, x, residue, v, nullptr);
     }
     to.x[i] = x;
     to.v[i] = v;
+    to.residue.store(i, residue);
     for (const Copies<Policy>& copy : copies)
       if (copy.x && i >= copy.first && i < copy.end) {
         copy.x[i + copy.shift] = x;
@@ -301,6 +303,7 @@ struct HashEach {
   CUBOCT_DEVICE bool idle() const { return control->limit < number; }
   CUBOCT_DEVICE uint64_t operator()(uint32_t i) const {
     auto x = at.x[i];
+    const auto residue = at.residue.load(i);
     const auto v = at.v[i];
     const CellAt home = cell[i];
     Hash hash;
@@ -312,7 +315,8 @@ struct HashEach {
       if (grid.wraps[a]) c = grid.low[a] + modulo(c - grid.low[a], grid.total[a]);
       hash.add(c);
     }
-    for (int a = 0; a < 3; ++a) hash.add(x.at[a]).add(v.at[a]).add(at.u ? at.u[i].at[a] : 0);
+    for (int a = 0; a < 3; ++a)
+      hash.add(Policy::whole(view, x, residue, a)).add(v.at[a]).add(at.u ? at.u[i].at[a] : 0);
     return hash.value();
   }
 };
@@ -321,6 +325,7 @@ struct HashEach {
 template <class Policy>
 struct Found {
   typename Policy::Position x;
+  Three<uint32_t> residue;
   typename Policy::Sum kick;
   CellAt cell;
 };
@@ -341,7 +346,8 @@ struct ReadProbed {
     const uint32_t to = slot[id[i]];
     if (to == kNever) return;
     const auto x = load(at.x + i);
-    found[to] = {x, kick_of<Policy, Variant>(view, cache, grid, at, list, i, x, load(at.v + i)), cell[i]};
+    found[to] = {x, at.residue.load(i), kick_of<Policy, Variant>(view, cache, grid, at, list, i, x, load(at.v + i)),
+                 cell[i]};
     here[to] = 1;
   }
 };
@@ -364,8 +370,7 @@ struct ReadEnergies {
   EnergyRule energy;
   double edge[3];         // of a cell, cutoffs
   double origin[3];       // of cell (0,0,0), cutoffs in the scene's coordinates
-  double unit;            // cutoffs per unit of a position
-  double velocity_unit;   // cutoffs per step per unit of a velocity
+  double unit;            // cutoffs per unit of a whole position; cutoffs per step, of a velocity
   uint32_t count;
   Sums* sums;
 
@@ -379,23 +384,26 @@ struct ReadEnergies {
       const auto v = load(at.v + i);
       typename Policy::Sum kick{};
       double place[3];
-      for (int a = 0; a < 3; ++a) place[a] = static_cast<double>(x.at[a]) * unit;
+      const auto residue = at.residue.load(i);
+      for (int a = 0; a < 3; ++a) place[a] = static_cast<double>(Policy::whole(view, x, residue, a)) * unit;
       list.each(i, [&](uint32_t entry) {
         int away[3];
         Entry<Policy::kReach>::away(entry, away);
         const uint32_t from = entry & kPlaceMask<Policy::kReach>;
         const auto other = load(at.x + from);
+        const auto below = at.residue.load(from);
         auto w = v;
         if constexpr (Variant::kDamped) w = load(at.v + from);
         typename Policy::Sum one{};
         Policy::add_pair(rule, grid, x, v, other, w, away, one);
         double s = 0;
         for (int a = 0; a < 3; ++a) {
-          const double d = static_cast<double>(other.at[a]) * unit - place[a] + away[a] * edge[a];
+          const double d =
+              static_cast<double>(Policy::whole(view, other, below, a)) * unit - place[a] + away[a] * edge[a];
           s += d * d;
           kick.at[a] += one.at[a];
           // Each pair is met from both sides, and mass (cutoff/dt)^2 is twice energy.kinetic.
-          sum.virial -= energy.kinetic * velocity_unit * static_cast<double>(one.at[a]) * d;
+          sum.virial -= energy.kinetic * unit * static_cast<double>(one.at[a]) * d;
         }
         sum.potential += pair_energy(energy, s, type_in(x.last), type_in(other.last)) / 2;
       });
@@ -405,7 +413,7 @@ struct ReadEnergies {
       double gain[3];
       Policy::gains(rule, kick, v, at.u ? &at.u[i] : nullptr, type_in(x.last), gain);
       for (int a = 0; a < 3; ++a) {
-        const double now = (static_cast<double>(v.at[a]) + gain[a] / 2) * velocity_unit;
+        const double now = (static_cast<double>(v.at[a]) + gain[a] / 2) * unit;
         sum.kinetic += energy.kinetic * now * now;
         sum.gravity -= energy.weight[3 * type_in(x.last) + a] * scene[a];
         const double speed = v.at[a] < 0 ? -static_cast<double>(v.at[a]) : static_cast<double>(v.at[a]);

@@ -56,6 +56,7 @@ struct ParticlesView {
   typename Policy::Position* x;
   typename Policy::Velocity* v;
   typename Policy::Extra* u;  // null unless the rule has PD types
+  Residues<Policy::kFixed> residue;
 };
 
 // What leaves a slab for the one beside it.
@@ -64,6 +65,7 @@ struct Traveller {
   typename Policy::Position x;
   typename Policy::Velocity v;
   typename Policy::Extra u;
+  Three<uint32_t> residue;
   CellAt cell;
   uint32_t id;
 };
@@ -114,7 +116,7 @@ struct Resettle {
       const uint32_t k = atomic_add(leaving_count + side, 1u);
       if (k < room) {
         Traveller<Policy> t;
-        t.x = x, t.v = at.v[i], t.cell = c, t.id = id[i];
+        t.x = x, t.v = at.v[i], t.residue = at.residue.load(i), t.cell = c, t.id = id[i];
         if (at.u) t.u = at.u[i];
         leaving[side][k] = t;
         return;
@@ -140,6 +142,7 @@ struct Arrive {
     const Traveller<Policy> t = from[k];
     const uint32_t i = first + k;
     at.x[i] = t.x, at.v[i] = t.v, cell[i] = t.cell, id[i] = t.id, rank[i] = 0;
+    at.residue.store(i, t.residue);
     if (at.u) at.u[i] = t.u;
   }
 };
@@ -209,6 +212,7 @@ struct Gather {
     using Anchor = decltype(v.last);
     v.last = static_cast<Anchor>(anchor_of(place, grid.edge));
     to.x[k] = x, to.v[k] = v, new_cell[k] = cell[i], new_id[k] = id[i];
+    to.residue.store(k, from.residue.load(i));
     if (from.u) to.u[k] = from.u[i];
     if (entered) entered[k] = 1u << 13;  // its own cell (step.h)
   }

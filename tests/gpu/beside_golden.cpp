@@ -150,7 +150,7 @@ Case random_bar(uint64_t seed) {
   Arch arch;
   Widths& w = arch.widths;
   w.position_frac = dice.draw(8, 30);
-  w.guard = dice.draw(1, 20);
+  w.guard = dice.draw(1, std::min(30, 50 - w.position_frac));
   w.difference_frac = dice.draw(6, std::min(w.position_frac, 24));
   w.velocity_bits = std::max(8, w.velocity_frac() + 1 - (dice.chance(30) ? dice.draw(1, 2) : 0));
   w.relative_velocity_frac = dice.draw(4, std::min(50, w.velocity_frac()));
