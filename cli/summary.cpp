@@ -30,6 +30,7 @@ RunFacts RunMeter::finish() {
   if (any_ && !measured_) meter_.add(last_);
   facts_.momentum_after = momentum(last_);
   facts_.curves = meter_.curves();
+  meter_.conclude();
   if (const Watch* watch = meter_.watch()) {
     facts_.watch = true;
     facts_.findings = watch->findings();

@@ -215,6 +215,7 @@ void Loop::finish() {
   trace_.curves = probes_.curves();
   trace_.curves.insert(trace_.curves.end(), energy_.curves().begin(), energy_.curves().end());
   if (watch_) {
+    watch_->conclude();
     trace_.findings = watch_->findings();
     trace_.watched = watch_->last_step();
   }

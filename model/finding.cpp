@@ -23,6 +23,8 @@ const char* to_string(Failure failure) {
       return "creep";
     case Failure::far_origin:
       return "far origin";
+    case Failure::resolution:
+      return "resolution";
   }
   return "?";
 }

@@ -20,8 +20,9 @@ enum class Failure : uint8_t {
   heating,          // a run that should keep its energy does not: too few value bits make steps
   creep,            // a body at rest moves by itself
   far_origin,       // float32 positions whose spacing is not small beside the pitch
+  resolution,       // motion or strain that the engine's formats cannot show
 };
-inline constexpr int kFailures = static_cast<int>(Failure::far_origin) + 1;
+inline constexpr int kFailures = static_cast<int>(Failure::resolution) + 1;
 const char* to_string(Failure failure);  // as in docs: "time step", ...
 
 struct Finding {

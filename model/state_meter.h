@@ -31,6 +31,10 @@ class StateMeter {
   // The last value of each curve, once there is one.
   std::vector<double> latest() const;
 
+  // After the last state, before findings are read.
+  void conclude() {
+    if (watch_) watch_->conclude();
+  }
   // Null where nobody watches.
   const Watch* watch() const { return watch_ ? &*watch_ : nullptr; }
 

@@ -74,7 +74,7 @@ std::string place_text(const Vec3& x) { return fmt::format("({:.4g}, {:.4g}, {:.
 }  // namespace
 
 Watch::Watch(const Scene& scene, double table_error, int threads)
-    : scene_(scene), table_error_(table_error), threads_(threads), type_(scene.body.type) {
+    : scene_(scene), resolution_(scene), table_error_(table_error), threads_(threads), type_(scene.body.type) {
   const Rule& rule = scene.rule;
   const PairLaw& law = *rule.law;
   pull_ = strongest_pull(law);
@@ -203,7 +203,21 @@ void Watch::see(const Moment& moment) {
   see_core(moment, motion);
   see_driven(moment);
   see_rest(moment);
+  take(moment.step, resolution_.see(moment));
   see_energy(moment, motion);
+}
+
+void Watch::take(uint64_t step, std::optional<Resolution::Lack> lack) {
+  if (!lack || found(Failure::resolution)) return;
+  Finding finding{Failure::resolution, step, lack->particle, lack->place, lack->number, lack->limit, {}};
+  const std::string where =
+      lack->particle ? fmt::format("particle {} at {}: ", *lack->particle, place_text(lack->place)) : "";
+  finding.text = fmt::format("step {}: {}: {}{}", step, to_string(finding.failure), where, lack->text);
+  findings_.push_back(std::move(finding));
+}
+
+void Watch::conclude() {
+  if (last_step_) take(*last_step_, resolution_.conclude());
 }
 
 // Where a mode is unstable, z < -1: its velocity turns over in each step. A mode at 0.2 of the limit turns
@@ -321,12 +335,16 @@ void Watch::see_energy(const Moment& moment, const Motion& motion) {
                        "apart",
                        fed, held));
   }
-  if (!(thermal_ > faint_) || !(keeps_energy_ || (only_loses_ && change > 0))) return;
+  if (!(keeps_energy_ || (only_loses_ && change > 0))) return;
+  if (!(thermal_ > faint_)) {
+    take(moment.step, resolution_.see_energy(moment, change, thermal_));
+    return;
+  }
   const double share = std::abs(change) / thermal_;
   if (!(share > energy_limit_) || found(Failure::force_jump) || found(Failure::heating)) return;
   // What comes of another failure is told as that.
   for (const Failure cause :
-       {Failure::time_step, Failure::damping, Failure::stiff_hold, Failure::creep, Failure::tunnelling})
+       {Failure::time_step, Failure::damping, Failure::stiff_hold, Failure::creep, Failure::tunnelling, Failure::resolution})
     if (found(cause)) return;
   if (prove_unstable(moment, motion, Suspicion::energy)) return;
   const std::string what = fmt::format(
@@ -373,6 +391,8 @@ void Watch::see(const FixedRule& rule, const Lattice& lattice, const Vec3& origi
     return real(finish(rule, kicks[id], p.x, p.v, p.u, p.type).v);
   };
   moment.force = [&](uint32_t id) { return force_of(rule, kicks[id]); };
+  moment.u = [&](uint32_t id) -> Vec3 { return rule.dt * real(state.particles[id].u); };
+  moment.fixed = &rule;
   // Four units of a position per step: below, kicks are those of rounded positions.
   moment.noise = 4 * std::ldexp(speed, rule.widths.guard);
   moment.energies = energies;
@@ -393,6 +413,7 @@ void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force,
       if (type.imposed[a]) v[a] = type.velocity[a];
     return v;
   };
+  if (!body.u.empty()) moment.u = [&](uint32_t id) { return body.u[id]; };
   moment.force = [&](uint32_t id) { return force[id]; };
   moment.energies = energies;
   CellList cells(rule.law->cutoff(), scene_.periodic);

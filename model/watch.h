@@ -6,30 +6,17 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "model/finding.h"
-#include "model/measure.h"
+#include "model/moment.h"
+#include "model/resolution.h"
 #include "model/scene.h"
 
 namespace cuboct {
-
-// What detectors see of a run at one step, in SI units. Functions take an id and are called only for what a
-// detector needs.
-struct Moment {
-  uint64_t step = 0;
-  std::function<Vec3(uint32_t)> x;       // m
-  std::function<Vec3(uint32_t)> v;       // m/s, before the kick of this step
-  std::function<Vec3(uint32_t)> v_next;  // m/s, after it
-  std::function<Vec3(uint32_t)> force;   // N, of the pairs
-  double noise = 0;                      // m/s: slower motion is rounding
-  Energies energies;
-  ClosestPair closest;
-};
 
 class Watch {
  public:
@@ -44,6 +31,9 @@ class Watch {
            const std::vector<Int3>& kicks, const Energies& energies, const ClosestPair& closest);
   // A state of the reference in doubles; `force`: Reference::forces(). Finds the closest pair itself.
   void see(uint64_t step, const Body& body, const std::vector<Vec3>& force, const Energies& energies);
+
+  // After the last look: what only a whole run shows.
+  void conclude();
 
   // A run that goes on from a checkpoint: its first energies.
   void remember(const Energies& first) { first_ = first; }
@@ -74,8 +64,10 @@ class Watch {
   void see_core(const Moment& moment, const Motion& motion);
   void see_driven(const Moment& moment);
   void see_rest(const Moment& moment);
+  void take(uint64_t step, std::optional<Resolution::Lack> lack);
 
   const Scene& scene_;
+  Resolution resolution_;
   double table_error_;
   int threads_;
   double pull_ = 0, jump_ = 0;  // N, of the law: strongest pull, force at the cutoff

@@ -316,6 +316,7 @@ void Loop::finish() {
   const bool kept = lost && !sample && !hash && has_frame;  // the engine's state is still lost
   result_.momentum_after = kept ? momentum(trace_.frames.back()) : engine_->momentum();
   trace_.curves = meter_.curves();
+  meter_.conclude();
   if (const Watch* watch = meter_.watch()) {
     result_.findings = watch->findings();
     result_.watched = watch->last_step();

@@ -71,7 +71,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Pair{"tunnelling", "tunnelling", "tunnelling_healthy", "", "", 5, 15},
                     Pair{"constraint work", "constraint_work", "constraint_work_healthy", "", "", 150, 300},
                     Pair{"heating", "heating", "heating", "heating", "heating_healthy", 20, 500},
-                    Pair{"creep", "creep", "creep", "creep", "creep_healthy", 10, 20}),
+                    Pair{"creep", "creep", "creep", "creep", "creep_healthy", 10, 20},
+                    Pair{"resolution", "resolution", "resolution", "resolution", "resolution_healthy", 1, 1000}),
     [](const auto& info) { return info.param.sick; });
 
 TEST(Watch, ExamplesAreSilent) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hw/setup.h"
+#include "model/expected_strain.h"
 #include "model/golden.h"
 #include "model/law.h"
 #include "model/measure.h"
@@ -125,6 +126,108 @@ TEST(Watch, TakesTheEndOfASwingForNoFailure) {
       EXPECT_EQ(watch.findings()[0].failure, Failure::time_step);
       EXPECT_GT(watch.findings()[0].number, 4);
       EXPECT_LT(watch.findings()[0].number, 8 * (1 + 1e-9));
+    }
+  }
+}
+
+// A row of five bonds of stiffness 3, its end led by 0.02: each stretches by 0.004 and holds 3 0.004^2/2.
+TEST(ExpectedStrain, OfARowIsThatOfSprings) {
+  Scene scene;
+  scene.rule = spring(0.1);
+  scene.rule.types.resize(3, scene.rule.types[0]);
+  scene.rule.types[1].imposed = scene.rule.types[2].imposed = {true, true, true};
+  scene.rule.types[2].velocity = {0.002, 0, 0};
+  for (int i = 0; i < 6; ++i) scene.body.x.emplace_back(i, 0, 0);
+  const std::vector<uint8_t> type{1, 0, 0, 0, 0, 2};
+  const double k = slope_at_rest(scene.rule);
+  const ExpectedStrain strain = expected_strain(scene, scene.body.x, type, 10);
+  EXPECT_NEAR(strain.stretch, 0.004, 1e-9);
+  EXPECT_NEAR(strain.energy, 5 * 0.5 * k * 0.004 * 0.004, 1e-9);
+  // Nothing strains what is led as a whole, nor what falls with nothing to hold it.
+  EXPECT_EQ(expected_strain(scene, scene.body.x, std::vector<uint8_t>{0, 0, 0, 0, 0, 2}, 10).stretch, 0);
+  for (ParticleType& t : scene.rule.types) t.gravity = {0.1, 0, 0};
+  EXPECT_EQ(expected_strain(scene, scene.body.x, std::vector<uint8_t>(6, 0), 10).stretch, 0);
+  // Hung up at one end, the bond there carries the weight of five particles of mass 2.
+  EXPECT_NEAR(expected_strain(scene, scene.body.x, std::vector<uint8_t>{1, 0, 0, 0, 0, 0}, 10).stretch,
+              5 * 2 * 0.1 / k, 1e-9);
+}
+
+// A block with one end held and the other led, by golden, with so many guard bits.
+std::vector<Finding> found_in_a_pull(double speed, int guard, uint64_t steps) {
+  Scene scene;
+  scene.rule = test::simple_rule(preset_law("elastic", 1, 1), 1, 0.1);
+  scene.body = test::fcc_block(3, 1);
+  scene.pitch = 1;
+  scene.steps = steps;
+  scene.rule.types.resize(3, scene.rule.types[0]);
+  scene.rule.types[1].imposed = scene.rule.types[2].imposed = {true, true, true};
+  scene.rule.types[2].velocity = {speed, 0, 0};
+  double end = 0;
+  for (const Vec3& x : scene.body.x) end = std::max(end, x.x());
+  for (uint32_t id = 0; id < scene.body.size(); ++id)
+    scene.body.type[id] = scene.body.x[id].x() < 0.8 ? 1 : scene.body.x[id].x() > end - 0.8 ? 2 : 0;
+  Arch arch;
+  arch.widths.guard = guard;
+  const Setup setup = make_setup(scene, arch);
+  const Plan& plan = setup.plan;
+  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, setup.initial);
+  Watch watch(scene, 0);
+  for (uint64_t step = 0; step <= steps; step += 10) {
+    while (golden.step_count() < step) golden.step();
+    const State state = golden.state();
+    watch.see(plan.rule, plan.lattice, plan.origin, state, summed_kicks(plan.rule, plan.lattice, state), {}, {});
+  }
+  watch.conclude();
+  return watch.findings();
+}
+
+// 62.62 units of 2^-28 cells per step, at a cell edge of sqrt(2), are rounded to 63: 0.6 % too fast. Eight more guard
+// bits, as the finding says, leave nothing. Half of the speed is rounded to 31 of 31.31, 1 % too slow, and refused.
+TEST(Watch, TellsImposedMotionThatIsRounded) {
+  const double speed = 62.62 * std::ldexp(std::sqrt(2.0), -28) / 0.1;
+  const std::vector<Finding> found = found_in_a_pull(speed, 8, 2000);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].failure, Failure::resolution);
+  EXPECT_NEAR(found[0].number, 63 / 62.62 - 1, 1e-4);
+  EXPECT_EQ(found[0].limit, 5e-3);
+  EXPECT_NE(found[0].text.find("guard = 13 would do"), std::string::npos) << found[0].text;
+}
+
+// Bonds that are to stretch by a fraction of a difference's unit: told at the end alone. Hundred times the speed and
+// no bond is told.
+TEST(Watch, TellsStrainBelowTheUnitOfADifference) {
+  const double speed = 64 * std::ldexp(std::sqrt(2.0), -28) / 0.1;
+  const std::vector<Finding> found = found_in_a_pull(speed, 8, 2000);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].failure, Failure::resolution);
+  EXPECT_EQ(found[0].step, 2000u);
+  EXPECT_LT(found[0].number, found[0].limit);
+  EXPECT_NE(found[0].text.find("difference_frac = 2"), std::string::npos) << found[0].text;
+  EXPECT_TRUE(found_in_a_pull(100 * speed, 8, 2000).empty());
+}
+
+// What never moves by itself has nothing to show.
+TEST(Watch, IsSilentAboutABodyAtRest) { EXPECT_TRUE(found_in_a_pull(0, 8, 200).empty()); }
+
+// An engine that lost what a velocity has below half a unit of position in each step.
+TEST(Watch, TellsADriftThatLosesMotion) {
+  Scene scene;
+  scene.rule = test::simple_rule(preset_law("elastic", 1, 1), 1, 0.1);
+  scene.body = test::fcc_block(2, 1);
+  scene.pitch = 1;
+  scene.rule.types[0].imposed = {true, true, true};
+  scene.rule.types[0].velocity = {1e-3, 0, 0};
+  for (const bool lost : {true, false}) {
+    Watch watch(scene, 0);
+    Moment moment;
+    moment.step = 1000;
+    moment.x = [&](uint32_t id) -> Vec3 { return scene.body.x[id] + Vec3(lost ? 0.09 : 0.1, 0, 0); };
+    moment.v = moment.v_next = [](uint32_t) { return Vec3(1e-3, 0, 0); };
+    moment.force = [](uint32_t) { return Vec3::Zero(); };
+    watch.see(moment);
+    ASSERT_EQ(watch.findings().size(), lost ? 1u : 0u);
+    if (lost) {
+      EXPECT_NEAR(watch.findings()[0].number, 0.1, 1e-9);
     }
   }
 }
