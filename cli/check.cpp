@@ -7,6 +7,7 @@
 #include <array>
 #include <memory>
 
+#include "cli/summary.h"
 #include "hw/cycles.h"
 #include "model/motion.h"
 #include "model/quantise.h"
@@ -149,10 +150,10 @@ Items resolve(const Loaded& loaded) {
   items.add("worst force error", rule.error.worst_force, "N",
             fmt::format("at {:.4g} m; {:.2g} of the largest force", rule.error.at, rule.error.relative));
   add_cheaper(items, scene, plan);
-  for (const std::string& warning : plan.warnings) items.add("warning", warning);
-  items.add("halo record", plan.words.halo_bits, "bit", fmt::format("{} beats", plan.words.halo_beats));
-  items.add("particle record", plan.words.particle_bits, "bit",
-            fmt::format("{} beats", plan.words.migrate_beats));
+  if (!plan.warnings.empty()) add_warnings(items, plan.warnings, {});
+  const auto beats = [](int count) { return fmt::format("{} beat{}", count, count == 1 ? "" : "s"); };
+  items.add("halo record", plan.words.halo_bits, "bit", beats(plan.words.halo_beats));
+  items.add("particle record", plan.words.particle_bits, "bit", beats(plan.words.migrate_beats));
   items.add("link", plan.words.link_bits, "bit");
   if (!plan.bricks.single()) {
     const double bits = study::memory_bits(plan), cells = cells_of(plan.bricks.shape());

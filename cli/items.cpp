@@ -9,8 +9,8 @@
 
 namespace cuboct {
 
-void Items::add(const std::string& name, const std::string& text) {
-  items_.push_back({name, text, study::json(text), "", "", false});
+void Items::add(const std::string& name, const std::string& text, const std::string& note) {
+  items_.push_back({name, text, study::json(text), "", note, false});
 }
 
 void Items::add(const std::string& name, uint64_t value, const std::string& unit, const std::string& note) {
@@ -23,6 +23,13 @@ void Items::add(const std::string& name, int64_t value, const std::string& unit,
 
 void Items::add(const std::string& name, double value, const std::string& unit, const std::string& note) {
   items_.push_back({name, fmt::format("{:.6g}", value), study::json(value), unit, note, false});
+}
+
+void Items::add_range(const std::string& name, double last, double smallest, double largest,
+                      const std::string& unit) {
+  add(name, last, unit == "1" ? "" : unit, fmt::format("{:.4g} to {:.4g}", smallest, largest));
+  items_.back().more =
+      fmt::format(", \"smallest\": {}, \"largest\": {}", study::json(smallest), study::json(largest));
 }
 
 void Items::add_list(const std::string& name, const std::string& line, const std::vector<Items>& list) {
@@ -70,7 +77,7 @@ std::string Items::json() const {
     out += fmt::format("{}  {}: {{\"value\": {}", separator, study::json(name), item.json);
     if (!item.unit.empty()) out += ", \"unit\": " + study::json(item.unit);
     if (!item.note.empty()) out += ", \"note\": " + study::json(item.note);
-    out += "}";
+    out += item.more + "}";
     separator = ",\n";
   }
   return out + "\n}\n";

@@ -10,7 +10,7 @@ namespace cuboct {
 
 class Items {
  public:
-  void add(const std::string& name, const std::string& text);
+  void add(const std::string& name, const std::string& text, const std::string& note = {});
   void add(const std::string& name, const char* text) { add(name, std::string(text)); }
   void add(const std::string& name, uint64_t value, const std::string& unit = {},
            const std::string& note = {});
@@ -25,6 +25,9 @@ class Items {
   }
   void add(const std::string& name, double value, const std::string& unit = {}, const std::string& note = {});
 
+  // A number that changed: its last value, and between which it was. In JSON "smallest" and "largest" beside "value".
+  void add_range(const std::string& name, double last, double smallest, double largest, const std::string& unit);
+
   // Several findings of one kind: in the text a line "line: <text>" each, where <text> is the value of its
   // item "text"; in JSON {"value": [{"step": 1, ...}, ...]}, values alone.
   void add_list(const std::string& name, const std::string& line, const std::vector<Items>& list);
@@ -38,6 +41,7 @@ class Items {
   struct Item {
     std::string name, text, json, unit, note;  // `json`: the value as JSON
     bool list = false;                         // `text` is whole lines
+    std::string more = {};                     // further members of the JSON object, each after a comma
   };
   const std::vector<Item>& all() const { return items_; }
 

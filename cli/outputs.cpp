@@ -67,6 +67,13 @@ FrameStyle frame_style(const Scene& scene) {
   return style;
 }
 
+TraceHead head_of(const Loaded& loaded, bool real, bool si) {
+  const Plan& plan = loaded.setup.plan;
+  TraceHead head{loaded.scene, nullptr, nullptr, plan.origin, plan.arch.text, si};
+  if (!real) head.rule = &plan.rule, head.lattice = &plan.lattice;
+  return head;
+}
+
 Rasters rasters_of(const Scene& scene, const std::vector<Frame>& frames, uint32_t across) {
   const double radius = frame_style(scene).radius;
   Rasters rasters{scene.title, strain_axis(scene), 2 * radius, raster_grid(frames, radius, across), {}};

@@ -10,6 +10,7 @@
 #include "model/raster.h"
 #include "model/strain.h"
 #include "model/trace.h"
+#include "model/trace_head.h"
 
 namespace cuboct {
 
@@ -22,6 +23,10 @@ StrainMeter strain_meter(const Scene& scene, const std::vector<Vec3>& initial);
 // Frames in real units, with each particle's axial strain against the initial state.
 std::vector<Frame> real_frames(const Loaded& loaded, const std::vector<State>& states);
 FrameStyle frame_style(const Scene& scene);
+
+// What the trace of such a run says of itself. References to `loaded`.
+// `real`: of a run in real numbers, of which the plan says nothing.
+TraceHead head_of(const Loaded& loaded, bool real, bool si);
 
 // `across`: pixels along the body (raster_grid).
 Rasters rasters_of(const Scene& scene, const std::vector<Frame>& frames, uint32_t across);

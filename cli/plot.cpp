@@ -32,9 +32,9 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
   static const char* const kColours[] = {"#1f5fa8", "#c8501e", "#2a8a55", "#7a4fa0"};
   const Scratch scratch;
   std::string script = fmt::format(
-      "set terminal svg size 900,420 dynamic font 'Helvetica,14' background '#ffffff'\n"
+      "set terminal svg size 640,360 dynamic font 'Helvetica,15' background '#ffffff'\n"
       "set output '{}'\n"
-      "set border 3 lc '#444444'\nset tics nomirror\nset grid lc '#dddddd' lt 1\nset key top right\n"
+      "set border 3 lc '#444444'\nset tics nomirror\nset grid lc '#dddddd' lt 1\nset key above\n"
       "set xlabel '{}'\nset ylabel '{}'\nplot ",
       scratch.path("plot.svg"), x_label, y_label);
   for (size_t i = 0; i < series.size(); ++i) {

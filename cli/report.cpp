@@ -27,23 +27,31 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-const Curve* find_curve(const Trace& trace, const std::string& ending) {
+const Curve* find_curve(const Trace& trace, const std::string& name) {
   for (const Curve& curve : trace.curves)
-    if (curve.name.ends_with(ending) && curve.value.size() > 1) return &curve;
+    if (curve.name == name && curve.value.size() > 1) return &curve;
   return nullptr;
 }
 
-// The stress-strain curve of a trace, where it has one.
+// A stress-strain curve of a trace, where it has one.
 struct Tension {
+  std::string name;  // the probe's
   const Curve *strain = nullptr, *stress = nullptr;
   size_t peak = 0;  // sample of the largest stress
 };
-std::optional<Tension> tension_of(const Trace& trace) {
-  Tension tension{find_curve(trace, ".strain"), find_curve(trace, ".stress"), 0};
+std::optional<Tension> tension_of(const Trace& trace, const std::string& name) {
+  Tension tension{name, find_curve(trace, name + ".strain"), find_curve(trace, name + ".stress"), 0};
   if (!tension.strain || !tension.stress) return std::nullopt;
   const auto& value = tension.stress->value;
   tension.peak = static_cast<size_t>(std::max_element(value.begin(), value.end()) - value.begin());
   return tension;
+}
+// The first.
+std::optional<Tension> tension_of(const Scene& scene, const Trace& trace) {
+  for (const Probe& probe : scene.probes)
+    if (probe.kind == Probe::Kind::stress_strain)
+      if (auto tension = tension_of(trace, probe.name)) return tension;
+  return std::nullopt;
 }
 
 size_t nearest_frame(const Trace& trace, uint64_t step) {
@@ -58,10 +66,10 @@ size_t nearest_frame(const Trace& trace, uint64_t step) {
 
 // Four frames that tell the story: the start, the largest stress, a quarter of the way from there to the end,
 // the end; where those fall together or no stress was measured, evenly spread ones.
-std::vector<size_t> choose_frames(const Trace& trace) {
+std::vector<size_t> choose_frames(const Scene& scene, const Trace& trace) {
   const size_t last = trace.frames.size() - 1;
   std::set<size_t> chosen{0, last};
-  if (const auto tension = tension_of(trace)) {
+  if (const auto tension = tension_of(scene, trace)) {
     const size_t peak = nearest_frame(trace, tension->stress->step[tension->peak]);
     chosen.insert(peak);
     chosen.insert(peak + (last - peak) / 4);
@@ -123,34 +131,113 @@ size_t sample_at(const Curve& curve, uint64_t step) {
                           static_cast<ptrdiff_t>(curve.step.size()) - 1));
 }
 
-std::string curve_section(const Loaded& loaded, const Trace& trace, const std::vector<size_t>& chosen) {
-  if (const auto tension = tension_of(trace)) {
-    Series series;
-    for (size_t k = 0; k < tension->strain->value.size(); ++k) {
-      series.x.push_back(100 * tension->strain->value[k]);
-      series.y.push_back(1e-6 * tension->stress->value[k]);
-    }
-    for (const size_t k : chosen) {
-      const size_t at = sample_at(*tension->strain, trace.frames[k].step);
-      series.marks.emplace_back(series.x[at], series.y[at]);
-    }
-    return fmt::format(
-        "<h2>Stress and strain</h2>\n<figure>{}</figure>\n<p>Largest stress {:.4g} MPa at a strain of {:.3g} "
-        "%.</p>\n",
-        plot_lines({series}, "strain of the gauge length, %", "stress, MPa"), series.y[tension->peak],
-        series.x[tension->peak]);
+std::string figure(const std::vector<Series>& series, const std::string& x, const std::string& y) {
+  return "<figure>" + plot_lines(series, x, y) + "</figure>\n";
+}
+
+// `marks`: the frames that are pictured.
+std::string stress_strain(const Trace& trace, const Tension& tension, const std::vector<size_t>& marks) {
+  Series series;
+  for (size_t k = 0; k < tension.strain->value.size(); ++k) {
+    series.x.push_back(100 * tension.strain->value[k]);
+    series.y.push_back(1e-6 * tension.stress->value[k]);
   }
-  std::vector<Series> energies;
-  for (const char* part : {"energy.kinetic", "energy.potential", "energy.total"})
-    if (const Curve* curve = find_curve(trace, part)) {
-      Series series{std::string(part).substr(7), {}, curve->value, {}};
-      for (const uint64_t step : curve->step)
-        series.x.push_back(static_cast<double>(step) * loaded.setup.plan.rule.dt);
-      energies.push_back(std::move(series));
+  for (const size_t k : marks) {
+    const size_t at = sample_at(*tension.strain, trace.frames[k].step);
+    series.marks.emplace_back(series.x[at], series.y[at]);
+  }
+  return figure({series}, "strain of the gauge length, %", "stress, MPa") +
+         fmt::format("<p>Largest stress {:.4g} MPa at a strain of {:.3g} %.</p>\n", series.y[tension.peak],
+                     series.x[tension.peak]);
+}
+
+// Numbers up to `largest` of an SI unit, in the multiple of it that makes them 1 to 1000.
+struct Multiple {
+  double unit;  // SI units in one
+  std::string name;
+};
+Multiple multiple_of(double largest, const std::string& unit) {
+  static const std::string kPrefixes[] = {"f", "p", "n", "µ", "m", "", "k", "M", "G", "T"};
+  const int last = static_cast<int>(std::size(kPrefixes)) - 1;
+  const int thousands =
+      largest > 0 && unit.size() < 3 ? static_cast<int>(std::floor(std::log10(largest) / 3 + 1e-9)) : 0;
+  if (thousands < -5 || thousands + 5 > last) return {1, unit};
+  return {std::pow(1000.0, thousands), kPrefixes[thousands + 5] + unit};
+}
+
+// Curves over time, in one figure; `names`: with what the key calls them. `change`: since the first sample.
+std::string over_time(const Trace& trace, double dt, const std::vector<std::pair<std::string, std::string>>& names,
+                      const std::string& label, bool change = false) {
+  std::vector<Series> all;
+  std::string unit;
+  double latest = 0, largest = 0;
+  for (const auto& [name, key] : names) {
+    const Curve* curve = find_curve(trace, name);
+    if (!curve) continue;
+    unit = curve->unit;
+    Series& series = all.emplace_back(Series{key, {}, curve->value, {}});
+    for (const uint64_t step : curve->step) series.x.push_back(static_cast<double>(step) * dt);
+    for (double& value : series.y) {
+      if (change) value -= curve->value.front();
+      largest = std::max(largest, std::abs(value));
     }
-  return energies.empty()
-             ? ""
-             : "<h2>Energy</h2>\n<figure>" + plot_lines(energies, "time, s", "energy, J") + "</figure>\n";
+    latest = std::max(latest, series.x.back());
+  }
+  if (all.empty()) return "";
+  const Multiple time = multiple_of(latest, "s"), number = multiple_of(largest, unit);
+  for (Series& series : all) {
+    for (double& x : series.x) x /= time.unit;
+    for (double& y : series.y) y /= number.unit;
+  }
+  return figure(all, "time, " + time.name, label + ", " + number.name);
+}
+
+// Every curve that has more than one sample.
+std::string curve_section(const Loaded& loaded, const Trace& trace, const std::vector<size_t>& chosen) {
+  const double dt = loaded.scene.rule.dt;
+  const auto first = tension_of(loaded.scene, trace);
+  std::string out;
+  const auto section = [&](const std::string& title, const std::string& figure) {
+    if (!figure.empty()) out += "<h2>" + escaped(title) + "</h2>\n" + figure;
+  };
+  for (const Probe& probe : loaded.scene.probes) {
+    const std::string of = probe.name + ".";
+    switch (probe.kind) {
+      case Probe::Kind::stress_strain:
+        if (const auto tension = tension_of(trace, probe.name))
+          section("Stress and strain: " + probe.name,
+                  stress_strain(trace, *tension, tension->name == first->name ? chosen : std::vector<size_t>()));
+        break;
+      case Probe::Kind::force:
+        section("Force: " + probe.name,
+                over_time(trace, dt, {{of + "force_x", "x"}, {of + "force_y", "y"}, {of + "force_z", "z"}}, "force"));
+        break;
+      case Probe::Kind::displacement:
+        section("Displacement: " + probe.name,
+                over_time(trace, dt, {{of + "x", "x"}, {of + "y", "y"}, {of + "z", "z"}}, "displacement"));
+        break;
+    }
+  }
+  section("Energy, since the start",
+          over_time(trace, dt,
+                    {{"energy.kinetic", "kinetic"},
+                     {"energy.potential", "potential"},
+                     {"energy.gravity", "gravity"},
+                     {"energy.total", "total"}},
+                    "change of energy", true));
+  section("Temperature", over_time(trace, dt, {{"temperature", ""}}, "temperature"));
+  section("Pressure", over_time(trace, dt, {{"pressure", ""}}, "pressure"));
+  return out;
+}
+
+// `of_plan`: as `cuboct check` tells them.
+std::string warning_section(const std::vector<std::string>& of_plan, const Trace& trace) {
+  if (of_plan.empty() && trace.findings.empty() && !trace.stop) return "";
+  std::string out = "<h2>Warnings</h2>\n<ul class=\"bad\">\n";
+  for (const std::string& text : of_plan) out += "<li>warning: " + escaped(text) + "</li>\n";
+  for (const Finding& finding : trace.findings) out += "<li>warning: " + escaped(finding.text) + "</li>\n";
+  if (trace.stop) out += "<li>stopped: " + escaped(trace.stop->text) + "</li>\n";
+  return out + "</ul>\n";
 }
 
 std::string engine_row(const Loaded& loaded, const Trace& trace, const std::string& equal) {
@@ -173,8 +260,20 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
     for (const auto& entry : fs::directory_iterator(checks))
       if (entry.path().extension() == ".h5") files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
-  std::vector<Trace> traces;
-  for (const std::string& file : files) traces.push_back(read_trace(file));
+  std::vector<Trace> traces;  // of this plan, with hashes
+  for (const std::string& file : files) {
+    Trace trace = read_trace(file);
+    const bool other = trace.plan_hash != loaded.setup.plan.hash;
+    if (!other && !trace.state_hash.empty()) {
+      traces.push_back(std::move(trace));
+      continue;
+    }
+    rows += engine_row(loaded, trace,
+                       other ? fmt::format("<b class=\"bad\">not compared: {} is of another scene or arch, plan "
+                                           "{:016x}</b>",
+                                           escaped(fs::path(file).filename().string()), trace.plan_hash)
+                             : "no state hashes to compare");
+  }
   for (const Trace& trace : traces) {
     // Every engine against the first, and its cycles against each that counts them.
     std::string verdict;
@@ -185,20 +284,36 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
                     escaped(mismatch->text(other.engine, trace.engine, loaded.setup.plan.lattice)) + "</b>";
     const uint64_t bits = trace.steps() * loaded.setup.plan.particles *
                           static_cast<uint64_t>(loaded.setup.plan.words.particle_bits);
-    if (verdict.empty()) verdict = traces.size() < 2 ? "alone" : fmt::format("{} bits equal", bits);
+    if (verdict.empty()) verdict = traces.size() < 2 ? "no other trace to compare" : fmt::format("{} bits equal", bits);
     rows += engine_row(loaded, trace, verdict);
   }
-  return "<h2>Engines</h2>\n<table>\n<tr><th></th><th>steps</th><th>particle updates</th><th>state bits</th>"
-         "<th>cycles per step, mean</th><th>max</th><th>host time, s</th><th>particle-steps/s</th></tr>\n" +
-         rows + "</table>\n";
+  return "<h2>Engines</h2>\n<div class=\"wide\"><table>\n<tr><th></th><th>steps</th><th>particle updates</th><th>state bits</th>"
+         "<th>mean cycles per step</th><th>most</th><th>host time, s</th><th>particle-steps/s</th></tr>\n" +
+         rows + "</table></div>\n";
 }
 
-std::string table_of(const Items& items) {
-  std::string out = "<table class=\"plain\">\n";
+// `without`: an item that is left out.
+std::string table_of(const Items& items, const std::string& without = {}) {
+  std::string out = "<div class=\"wide\"><table class=\"plain\">\n";
   for (const Items::Item& item : items.all())
-    out += fmt::format("<tr><th>{}</th><td>{} {}</td><td class=\"note\">{}</td></tr>\n", escaped(item.name),
-                       escaped(item.text), escaped(item.unit), escaped(item.note));
-  return out + "</table>\n";
+    if (!item.list && item.name != without)  // lists are warnings, which have a section
+      out += fmt::format("<tr><th>{}</th><td>{}{}{} <span class=\"note\">{}</span></td></tr>\n",
+                         escaped(item.name), escaped(item.text), item.unit.empty() ? "" : " ", escaped(item.unit),
+                         escaped(item.note));
+  return out + "</table></div>\n";
+}
+
+// What the run did, from its trace alone.
+Items facts_of(const Loaded& loaded, const Trace& trace) {
+  Items items;
+  items.add("engine", trace.engine);
+  for (const auto& [name, text] : trace.notes) items.add(name, text);
+  items.add("steps", trace.steps());
+  items.add("simulated time", static_cast<double>(trace.steps()) * loaded.scene.rule.dt, "s");
+  items.add("host time", trace.seconds, "s");
+  add_curves(items, loaded.scene, trace.curves);
+  if (trace.asked) add_end(items, trace);
+  return items;
 }
 
 constexpr char kStyle[] =
@@ -206,11 +321,11 @@ constexpr char kStyle[] =
     "auto;padding:0 "
     "1rem}"
     "h1{font-size:1.7rem;margin:0}h2{font-size:1.15rem;margin:2.4rem 0 .6rem;border-bottom:1px solid #ddd}"
-    ".lead{color:#555;margin:.2rem 0 "
-    "1.5rem}figure{margin:0}img,svg{max-width:100%;height:auto;display:block;margin:auto}"
+    ".lead{color:#555;margin:.2rem 0 1.5rem}figure{margin:0}.wide{overflow-x:auto}"
+    "img,svg{max-width:100%;height:auto;display:block;margin:auto}svg{width:720px}"
     "table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.92rem}"
     "th,td{padding:.25rem .8rem .25rem 0;text-align:left;border-bottom:1px solid #eee;vertical-align:top}"
-    "th{font-weight:600}.note{color:#777}.bad{color:#b00020}";
+    "td{overflow-wrap:anywhere}th{font-weight:600}.note{color:#777}.bad{color:#b00020}";
 
 void report(const std::string& directory, std::string out) {
   if (out.empty()) out = directory + "/report.html";
@@ -227,13 +342,17 @@ void report(const std::string& directory, std::string out) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</"
       "h1>\n"
-      "<p class=\"lead\">{2} particles on {3} nodes, {4} steps of {5:.4g} s in the {6} engine.</p>\n",
+      "<p class=\"lead\">{2} particles on {3} nodes, {4} steps of {5:.4g} s in the {6} engine{7}.</p>\n",
       escaped(loaded.scene.title.empty() ? record.scene : loaded.scene.title), kStyle, plan.particles,
-      plan.nodes(), trace.frames.empty() ? trace.steps() : trace.frames.back().step, plan.rule.dt,
-      escaped(trace.engine));
+      plan.nodes(), trace.steps(), plan.rule.dt, escaped(trace.engine),
+      trace.asked && trace.steps() != trace.asked
+          ? fmt::format(", <b class=\"bad\">{} after {} of {} steps</b>", trace.ended(), trace.steps(), *trace.asked)
+          : "");
+  // A run in real numbers, which has no hashes, needs no widths.
+  html += warning_section(trace.state_hash.empty() ? std::vector<std::string>() : plan.warnings, trace);
   std::vector<size_t> chosen;
   if (!trace.frames.empty()) {
-    chosen = choose_frames(trace);
+    chosen = choose_frames(loaded.scene, trace);
     html += fmt::format(
         "<figure><img alt=\"The particles, coloured by axial strain\" "
         "src=\"data:image/png;base64,{}\"></figure>\n",
@@ -241,8 +360,8 @@ void report(const std::string& directory, std::string out) {
   }
   html += curve_section(loaded, trace, chosen);
   html += engine_section(loaded, trace, directory);
-  if (trace.stop) html += "<p class=\"bad\">The run stopped: " + escaped(trace.stop->text) + "</p>\n";
-  html += "<h2>Plan</h2>\n" + table_of(resolve(loaded));
+  html += "<h2>Run</h2>\n" + table_of(facts_of(loaded, trace));
+  html += "<h2>Plan</h2>\n" + table_of(resolve(loaded), "steps");  // the scene's, which need not be the run's
   html += "</body>\n</html>\n";
   write_text(out, html);
   fmt::print("{}\n", out);

@@ -33,7 +33,7 @@ struct Options {
   uint64_t frames_every = 0;
   uint32_t raster = 800;
   bool steps_given = false, frames_given = false, hashes_given = false, json = false, no_watch = false,
-       no_states = false;
+       no_states = false, si = false;
 };
 
 void write_outputs(const Options& options, const Loaded& loaded, Trace& trace,
@@ -44,7 +44,8 @@ void write_outputs(const Options& options, const Loaded& loaded, Trace& trace,
     trace.frames.clear();
     trace.bodies.clear();
   }
-  write_trace(out + "/trace.h5", trace);
+  const TraceHead head = head_of(loaded, options.real.is_real(options.engine), options.si);
+  write_trace(out + "/trace.h5", trace, true, &head);
   if (!frames.empty()) write_rasters(out + "/rasters.h5", rasters_of(loaded.scene, frames, options.raster));
   if (!options.no_states) {
     write_extended_xyz(out + "/frames.xyz", frames, style);
@@ -70,11 +71,15 @@ RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::Latti
   emu::LatticeResult result =
       run_on_lattice(options.input, loaded.scene, loaded.setup.plan, options.lattice, std::move(request));
   trace = std::move(result.trace);
+  trace.findings = result.findings;
+  trace.watched = result.watched;
   return {result.momentum_before,     result.momentum_after,      result.largest_speed, trace.curves,
           result.watched.has_value(), std::move(result.findings), result.watched};
 }
 
 int run(Options options) {
+  if (options.si && options.out.empty())
+    throw InputError("--si needs --out DIR: without it nothing of the run is kept");
   std::vector<std::string> allowed = fixed_engines();
   allowed.push_back("reference");
   check_engine(options.engine, allowed);
@@ -153,6 +158,8 @@ int run(Options options) {
     }
     const RunFacts facts = meter.finish();
     trace.curves = facts.curves;
+    trace.findings = facts.findings;
+    trace.watched = facts.watched;
     std::erase_if(trace.frames, [&](const State& frame) {
       return frame.step != trace.steps() &&
              !std::binary_search(frame_steps.begin(), frame_steps.end(), frame.step);
@@ -161,6 +168,8 @@ int run(Options options) {
     failed = !facts.findings.empty();
     if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   }
+  trace.asked = steps;
+  add_end(summary, trace);
   if (!options.out.empty()) write_outputs(options, loaded, trace, frames, summary);
   fmt::print("{}", options.json ? summary.json() : summary.text());
   const bool kept = options.lattice.keeps_checkpoints();
@@ -220,6 +229,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->type_name("PX");
   command->add_flag("--no-states", options->no_states,
                     "of the frames, DIR keeps rasters.h5 alone: for bodies of millions of particles");
+  command->add_flag("--si", options->si, "the trace in DIR holds positions and velocities in m and m/s as well");
   command->add_flag("--no-watch", options->no_watch,
                     "do not look for what makes a run wrong (docs/reference/failures.md)");
   command->add_flag("--json", options->json, "print the summary as JSON");

@@ -55,10 +55,10 @@ Items summarise_real(const Loaded& loaded, const Trace& trace, double momentum_c
               "particle-steps/s");
   items.add("momentum change", momentum_change, "kg m/s",
             keeps_momentum(scene.rule) ? "" : "held or driven from outside");
-  add_energy(items, scene, trace.curves);
+  add_curves(items, scene, trace.curves);
   items.add("largest speed", largest_speed, "node/step");
   for (const auto& [name, value] : trace.counters) items.add(name, value);
-  if (trace.watched) add_findings(items, trace.findings);
+  if (trace.watched) add_warnings(items, {}, trace.findings);
   if (trace.stop) items.add("stopped", trace.stop->text);
   return items;
 }

@@ -40,6 +40,10 @@ void RealChoice::check_used(const std::string& engine) const {
     throw InputError(fmt::format("--integrator is an option of the reference engine, not of {}", engine));
 }
 
+bool RealChoice::is_real(const std::string& engine) const {
+  return engine == "reference" || (engine == "gpu" && !precision.empty() && precision != "fixed");
+}
+
 RealOptions RealChoice::options() const {
   return {
       .integrator = integrator == "verlet" ? Integrator::velocity_verlet : Integrator::semi_implicit_euler,
@@ -69,6 +73,7 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
     if (probed) meter.add(reference, watch ? &detectors : nullptr);
     if (kept) {
       const Body& body = reference.body();
+      run.trace.bodies.push_back({step, body.x, body.v, {}});
       Frame frame{step, static_cast<double>(step) * scene.rule.dt, body.x, body.v, body.type, {}};
       for (const LocalStrain& strain : strains.measure(body.x)) frame.strain.push_back(strain.axial(axis));
       run.frames.push_back(std::move(frame));
@@ -89,6 +94,7 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
     progress.at(step);
   }
   run.trace.curves = meter.curves();
+  run.trace.steps_done = step;
 
   Items& items = run.summary;
   items.add("engine", "reference");
@@ -105,15 +111,19 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
     items.add("speed", static_cast<double>(step * scene.body.size()) / run.trace.seconds, "particle-steps/s");
   items.add("momentum change", (reference.momentum() - before).norm(), "kg m/s",
             keeps_momentum(scene.rule) ? "" : "held or driven from outside");
-  add_energy(items, scene, run.trace.curves);
+  add_curves(items, scene, run.trace.curves);
   items.add("largest speed", reference.largest_speed() * scene.rule.dt / loaded.setup.plan.rule.cell_edge,
             "node/step");
   detectors.conclude();
   std::vector<Finding> findings = detectors.findings();
   if (const auto far = options.precision == Precision::float32 ? find_far_origin(scene) : std::nullopt)
     findings.insert(findings.begin(), *far);
-  if (watch) add_findings(items, findings);
+  if (watch) add_warnings(items, {}, findings);
   run.failed = watch && !findings.empty();
+  if (watch) {
+    run.trace.findings = std::move(findings);
+    run.trace.watched = detectors.last_step();
+  }
   return run;
 }
 

@@ -21,6 +21,8 @@ struct RealChoice {
   void add_to(CLI::App& command);  // --precision and --integrator
   // Throws InputError where an option is given that this engine does not have, or not so.
   void check_used(const std::string& engine) const;
+  // Whether the engine then computes in real numbers.
+  bool is_real(const std::string& engine) const;
   RealOptions options() const;  // of the reference
 };
 

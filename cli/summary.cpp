@@ -55,20 +55,50 @@ std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
   return result;
 }
 
-void add_energy(Items& items, const Scene& scene, const std::vector<Curve>& curves) {
+namespace {
+
+bool is_energy(const Curve& curve) { return curve.name.starts_with("energy."); }
+
+// Sums of many doubles: what is this small beside the largest energy that went into them is their rounding.
+constexpr double kRounding = 1e-13;
+
+double largest_energy(const std::vector<Curve>& curves) {
+  double largest = 0;
   for (const Curve& curve : curves)
-    if (curve.name == "energy.total" && curve.value.size() > 1) {
-      const auto [low, high] = std::minmax_element(curve.value.begin(), curve.value.end());
-      if (keeps_energy(scene.rule, scene.periodic))
-        items.add("energy drift", *high - *low, "J", "largest minus smallest total");
-      else
-        items.add("energy change", curve.value.back() - curve.value.front(), "J", "driven or damped");
-      items.add("energy", curve.value.back(), "J");
-    }
+    if (is_energy(curve))
+      for (const double value : curve.value) largest = std::max(largest, std::abs(value));
+  return largest;
 }
 
-void add_findings(Items& items, const std::vector<Finding>& findings) {
+}  // namespace
+
+void add_curves(Items& items, const Scene& scene, const std::vector<Curve>& curves) {
+  const double rounding = kRounding * largest_energy(curves);
+  const auto energy = [&](const char* name, double value, const char* note = "") {
+    items.add(name, std::abs(value) <= rounding ? 0.0 : value, "J", note);
+  };
+  for (const Curve& curve : curves) {
+    if (curve.value.empty()) continue;
+    const auto [low, high] = std::minmax_element(curve.value.begin(), curve.value.end());
+    if (!is_energy(curve)) items.add_range(curve.name, curve.value.back(), *low, *high, curve.unit);
+    if (curve.name != "energy.total" || curve.value.size() < 2) continue;
+    if (keeps_energy(scene.rule, scene.periodic))
+      energy("energy drift", *high - *low, "largest minus smallest total");
+    else
+      energy("energy change", curve.value.back() - curve.value.front(), "driven or damped");
+    energy("energy", curve.value.back());
+  }
+}
+
+void add_end(Items& items, const Trace& trace) {
+  const bool whole = trace.steps() == trace.asked;
+  items.add("ended", trace.ended(),
+            whole ? "" : fmt::format("after {} of {} steps", trace.steps(), *trace.asked));
+}
+
+void add_warnings(Items& items, const std::vector<std::string>& of_plan, const std::vector<Finding>& findings) {
   std::vector<Items> list;
+  for (const std::string& text : of_plan) list.emplace_back().add("text", text);
   for (const Finding& f : findings) {
     Items& item = list.emplace_back();
     item.add("failure", to_string(f.failure));
@@ -107,16 +137,16 @@ Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts)
   items.add("momentum change", change, "LSB",
             keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside");
 
-  add_energy(items, loaded.scene, facts.curves);
+  add_curves(items, loaded.scene, facts.curves);
   items.add("largest speed", facts.largest_speed, "node/step");
   if (const auto cycles = cycles_per_step(trace)) {
-    items.add("cycles per step, mean", cycles->mean);
-    items.add("cycles per step, max", cycles->max);
+    items.add("mean cycles per step", cycles->mean);
+    items.add("most cycles per step", cycles->max);
   }
   for (const auto& [name, value] : trace.counters) items.add(name, value);
   items.add("plan hash", fmt::format("{:016x}", trace.plan_hash));
   if (!trace.state_hash.empty()) items.add("state hash", fmt::format("{:016x}", trace.state_hash.back()));
-  if (facts.watch) add_findings(items, facts.findings);
+  if (facts.watch || !plan.warnings.empty()) add_warnings(items, plan.warnings, facts.findings);
   if (trace.stop) {
     if (facts.watched)
       items.add("last look", fmt::format("step {}: {}", *facts.watched,

@@ -50,11 +50,14 @@ struct CyclesPerStep {
 };
 std::optional<CyclesPerStep> cycles_per_step(const Trace& trace);
 
-// How much the total energy changed, and the last, where there are two values of it.
-void add_energy(Items& items, const Scene& scene, const std::vector<Curve>& curves);
+// Every curve's last value, and its smallest and largest; of the energies, how much the total changed and its last.
+void add_curves(Items& items, const Scene& scene, const std::vector<Curve>& curves);
 
-// "warning: ..." lines and the array "warnings", where someone watched.
-void add_findings(Items& items, const std::vector<Finding>& findings);
+// How the run ended, and where if that was too soon.
+void add_end(Items& items, const Trace& trace);
+
+// "warning: ..." lines and the array "warnings". `of_plan`: what the scene or the arch asks for in vain.
+void add_warnings(Items& items, const std::vector<std::string>& of_plan, const std::vector<Finding>& findings);
 
 Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts);
 

@@ -28,7 +28,10 @@ EnergyTables::EnergyTables(const Rule& rule) {
   rule_.type_count = static_cast<int>(rule.types.size());
   for (int i = 0; i < rule_.type_count; ++i) {
     for (int j = 0; j < rule_.type_count; ++j) strength.push_back(rule.strength_of(i, j));
-    for (int axis = 0; axis < 3; ++axis) weight.push_back(rule.mass * rule.types[i].gravity[axis] * cutoff);
+    for (int axis = 0; axis < 3; ++axis) {
+      weight.push_back(rule.mass * rule.types[i].gravity[axis] * cutoff);
+      free.push_back(is_free(rule.types[i], axis) ? 1 : 0);
+    }
   }
   const double velocity = cutoff / rule.dt;
   rule_.kinetic = rule.mass * velocity * velocity / 2;

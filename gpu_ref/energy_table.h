@@ -25,6 +25,7 @@ struct EnergyRule {
   const double* strength = nullptr;                   // type_count x type_count
   int type_count = 1;
   const double* weight = nullptr;  // three per type, J per cutoff: mass * gravity * cutoff
+  const double* free = nullptr;    // three per type: 1 along axes that nothing imposes or steers, else 0
   double kinetic = 0;              // J: mass/2 (cutoff/dt)^2
 };
 
@@ -70,14 +71,16 @@ CUBOCT_HD void add_particle_energy(const RealRule<Real>& rule, const EnergyRule&
 struct EnergyTables {
   explicit EnergyTables(const Rule& rule);
 
-  std::vector<double> node, strength, weight;
+  std::vector<double> node, strength, weight, free;
 
-  EnergyRule rule() const { return rule(node.data(), strength.data(), weight.data()); }
-  EnergyRule rule(const double* node_copy, const double* strength_copy, const double* weight_copy) const {
+  EnergyRule rule() const { return rule(node.data(), strength.data(), weight.data(), free.data()); }
+  EnergyRule rule(const double* node_copy, const double* strength_copy, const double* weight_copy,
+                  const double* free_copy) const {
     EnergyRule view = rule_;
     view.node = node_copy;
     view.strength = strength_copy;
     view.weight = weight_copy;
+    view.free = free_copy;
     return view;
   }
 

@@ -56,9 +56,10 @@ class FixedEngine final : public Engine {
     }
     if (energies) {
       const Sums sums = machine_->read_energies();
-      reading.energies = {sums.kinetic, sums.potential, sums.gravity};
+      const double velocity = std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
+      reading.energies = energies_of(sums, velocity);
       reading.virial = sums.virial;
-      reading.largest_speed = sums.speed * std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
+      reading.largest_speed = sums.speed * velocity;
     }
     return reading;
   }

@@ -41,7 +41,9 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
     slab.energy_node.set(slab.stream, energies.node);
     slab.energy_strength.set(slab.stream, energies.strength);
     slab.energy_weight.set(slab.stream, energies.weight);
-    slab.energy = energies.rule(slab.energy_node.data(), slab.energy_strength.data(), slab.energy_weight.data());
+    slab.energy_free.set(slab.stream, energies.free);
+    slab.energy = energies.rule(slab.energy_node.data(), slab.energy_strength.data(), slab.energy_weight.data(),
+                                slab.energy_free.data());
   }
   upload(state);
 }

@@ -52,6 +52,12 @@ std::vector<Found<Policy>> Machine<Policy>::read_probed() {
   return all;
 }
 
+// `velocity`: m/s per unit of a velocity.
+inline Energies energies_of(const Sums& sums, double velocity) {
+  const Vec3 flow(sums.flow[0], sums.flow[1], sums.flow[2]);
+  return {sums.kinetic, sums.potential, sums.gravity, {sums.free_kinetic, velocity * flow}};
+}
+
 template <class Policy>
 Sums Machine<Policy>::read_energies() {
   Sums all{};
@@ -70,7 +76,8 @@ Sums Machine<Policy>::read_energies() {
     });
     for (const Sums& part : s.sums.host(s.stream, 0, chunks)) {
       all.kinetic += part.kinetic, all.potential += part.potential, all.gravity += part.gravity;
-      all.virial += part.virial;
+      all.virial += part.virial, all.free_kinetic += part.free_kinetic;
+      for (int a = 0; a < 3; ++a) all.flow[a] += part.flow[a];
       all.speed = std::max(all.speed, part.speed);
     }
   }

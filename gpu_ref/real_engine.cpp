@@ -67,7 +67,7 @@ class RealEngine final : public Engine {
     }
     if (energies) {
       const Sums sums = machine_->read_energies();
-      reading.energies = {sums.kinetic, sums.potential, sums.gravity};
+      reading.energies = energies_of(sums, tables_.velocity);
       reading.virial = sums.virial;
       reading.largest_speed = sums.speed * tables_.velocity;
     }

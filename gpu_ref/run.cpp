@@ -77,7 +77,7 @@ Loop::Loop(const Scene& scene, const Plan& plan, const GpuRun& request)
       looks_(request.watch ? looks_of(request.probes, scene.body.size()) : std::vector<uint64_t>()),
       ids_(probed_ids(scene.probes)),
       probes_(placed(scene.probes, ids_), scene.periodic, initial_positions()),
-      energy_(request.energies, scene.periodic.extent.prod()),
+      energy_(request.energies, scene),
       trace_(result_.trace) {
   trace_.engine = "gpu";
   trace_.plan_hash = plan.hash;

@@ -356,6 +356,7 @@ struct ReadProbed {
 struct Sums {
   double kinetic, potential, gravity;  // J
   double virial;                       // J, see Reading::virial
+  double free_kinetic, flow[3];        // J, and velocities in their unit: FreeMotion of model/measure.h
   double speed;                        // largest, along an axis, in the unit of velocities
 };
 inline constexpr uint32_t kSummed = 64;  // particles of one Sums
@@ -413,8 +414,11 @@ struct ReadEnergies {
       double gain[3];
       Policy::gains(rule, kick, v, at.u ? &at.u[i] : nullptr, type_in(x.last), gain);
       for (int a = 0; a < 3; ++a) {
-        const double now = (static_cast<double>(v.at[a]) + gain[a] / 2) * unit;
-        sum.kinetic += energy.kinetic * now * now;
+        const double late = static_cast<double>(v.at[a]) + gain[a] / 2, now = late * unit;
+        const double kinetic = energy.kinetic * now * now, free = energy.free[3 * type_in(x.last) + a];
+        sum.kinetic += kinetic;
+        sum.free_kinetic += free * kinetic;
+        sum.flow[a] += free * late;
         sum.gravity -= energy.weight[3 * type_in(x.last) + a] * scene[a];
         const double speed = v.at[a] < 0 ? -static_cast<double>(v.at[a]) : static_cast<double>(v.at[a]);
         if (speed > sum.speed) sum.speed = speed;

@@ -111,10 +111,14 @@ Widths automatic_widths() {
   return w;
 }
 
-Arch read_arch(const std::string& path) { return path.empty() ? Arch() : arch_of(read_config(path)); }
+Arch read_arch(const std::string& path) {
+  return path.empty() ? Arch() : parse_arch(read_config_text(path), path);
+}
 
 Arch parse_arch(const std::string& text, const std::string& path) {
-  return arch_of(parse_config(text, path));
+  Arch arch = arch_of(parse_config(text, path));
+  arch.text = text;
+  return arch;
 }
 
 }  // namespace cuboct

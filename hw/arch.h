@@ -26,6 +26,7 @@ Widths automatic_widths();  // every one of them
 
 struct Arch {
   std::string name = "default";
+  std::string text;      // of the file; empty: the defaults
   double cell_edge = 0;  // m; 0: the pair law's cutoff, or the next length that divides a periodic box
   int capacity = kAutomatic;  // particles that a cell holds
   int filter_lanes = 8;  // own particles that a candidate meets per cycle

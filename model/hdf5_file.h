@@ -52,6 +52,10 @@ inline hid_t type_in_memory<uint32_t>() {
   return H5T_NATIVE_UINT32;
 }
 template <>
+inline hid_t type_in_memory<int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+template <>
 inline hid_t type_in_memory<uint8_t>() {
   return H5T_NATIVE_UINT8;
 }
@@ -79,6 +83,10 @@ inline hid_t type_in_file<int64_t>() {
 template <>
 inline hid_t type_in_file<uint32_t>() {
   return H5T_STD_U32LE;
+}
+template <>
+inline hid_t type_in_file<int32_t>() {
+  return H5T_STD_I32LE;
 }
 template <>
 inline hid_t type_in_file<uint8_t>() {
@@ -141,6 +149,16 @@ class Writer {
     Handle attribute(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT),
                      H5Aclose, error_ + "attribute '" + name + "'");
     check(H5Awrite(attribute, type_in_memory<T>(), &value), name);
+  }
+
+  // A short list as an attribute.
+  template <typename T>
+  void numbers(hid_t where, const std::string& name, const std::vector<T>& values) const {
+    const hsize_t count = values.size();
+    Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose, error_ + name);
+    Handle attribute(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT),
+                     H5Aclose, error_ + "attribute '" + name + "'");
+    check(H5Awrite(attribute, type_in_memory<T>(), values.data()), name);
   }
 
   // `what` says the meaning of the rows and columns, `unit` the unit of a value.

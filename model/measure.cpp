@@ -141,7 +141,9 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
       const double v = (static_cast<double>(particle.v[axis]) + gain / 2) * velocity;
       const double x =
           origin[axis] + cell[axis] * fixed.cell_edge + static_cast<double>(particle.x[axis]) * length;
-      sum.kinetic += 0.5 * fixed.mass * v * v;
+      const double kinetic = 0.5 * fixed.mass * v * v;
+      sum.kinetic += kinetic;
+      if (is_free(rule.types[particle.type], axis)) sum.free.kinetic += kinetic, sum.free.velocities[axis] += v;
       sum.gravity -= fixed.mass * gravity[axis] * x;
     }
   }
@@ -219,6 +221,11 @@ Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& orig
   for (int a = 0; a < 3; ++a)
     x[a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(particle.x[a]) * unit;
   return x;
+}
+
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle) {
+  return velocity_unit(rule) * Vec3(static_cast<double>(particle.v[0]), static_cast<double>(particle.v[1]),
+                                    static_cast<double>(particle.v[2]));
 }
 
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,

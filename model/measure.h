@@ -26,11 +26,18 @@ std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, co
 double newtons_per_kick(const FixedRule& rule);
 Vec3 force_of(const FixedRule& rule, const Int3& kick);  // N
 
+// The particles along the axes that nothing imposes or steers, at the time of the positions.
+struct FreeMotion {
+  double kinetic = 0;              // J
+  Vec3 velocities = Vec3::Zero();  // m/s, summed
+};
+
 struct Energies {
   double kinetic = 0;    // J, at the time of the positions: v + dv/2 with all that the step adds to v, which
                          // lives half a step earlier
   double potential = 0;  // J, of the pairs, by the pair law in doubles at the fixed positions
   double gravity = 0;    // J, -m g.x summed, from the origin of the scene's coordinates
+  FreeMotion free = {};  // a part of `kinetic`
   double total() const { return kinetic + potential + gravity; }
 };
 
@@ -77,6 +84,9 @@ struct Sample {
 
 // Position of a particle, m.
 Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const Particle& particle);
+
+// Velocity of a particle, m/s.
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle);
 
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
                  const std::vector<Int3>& kicks);

@@ -9,7 +9,7 @@ RealMeter::RealMeter(const Scene& scene, Integrator integrator, bool probes, boo
     : scene_(scene),
       late_(integrator == Integrator::semi_implicit_euler ? scene.rule.dt / 2 : 0),
       probes_(probes ? scene.probes : std::vector<Probe>(), scene.periodic, scene.body.x),
-      energy_(energies, scene.periodic.extent.prod()) {}
+      energy_(energies, scene) {}
 
 void RealMeter::add(const Reference& reference, Watch* watch) {
   const Body& body = reference.body();
@@ -20,8 +20,11 @@ void RealMeter::add(const Reference& reference, Watch* watch) {
   Energies e;
   for (size_t i = 0; i < body.size(); ++i) {
     const Vec3 v = body.v[i] + late_ * acceleration(rule, body, i, force[i]);
+    const ParticleType& type = rule.types[body.type[i]];
     e.kinetic += rule.mass * v.squaredNorm() / 2;
-    e.gravity -= rule.mass * rule.types[body.type[i]].gravity.dot(body.x[i]);
+    e.gravity -= rule.mass * type.gravity.dot(body.x[i]);
+    for (int a = 0; a < 3; ++a)
+      if (is_free(type, a)) e.free.kinetic += rule.mass * v[a] * v[a] / 2, e.free.velocities[a] += v[a];
   }
   e.potential = reference.potential_energy();
   if (watch) watch->see(reference.step_count(), body, force, e);

@@ -22,7 +22,7 @@ class RealMeter {
   void add(const Reference& reference, Watch* watch = nullptr);
 
   // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where
-  // all three axes of the box repeat, pressure in Pa.
+  // the scene has them, temperature in K and pressure in Pa.
   std::vector<Curve> curves() const;
 
  private:

@@ -53,6 +53,9 @@ struct ParticleType {
   double kd = 0;                 // kg/s
 };
 
+// Whether nothing imposes or steers the motion of such a particle along the axis.
+inline bool is_free(const ParticleType& type, int axis) { return !type.imposed[axis] && !type.pd; }
+
 struct Rule {
   std::shared_ptr<const PairLaw> law;
   Damping damping;

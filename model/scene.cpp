@@ -240,10 +240,12 @@ Scene scene_of(const ConfigTable& root, const std::string& path) {
 
 }  // namespace
 
-Scene read_scene(const std::string& path) { return scene_of(read_config(path), path); }
+Scene read_scene(const std::string& path) { return parse_scene(read_config_text(path), path); }
 
 Scene parse_scene(const std::string& text, const std::string& path) {
-  return scene_of(parse_config(text, path), path);
+  Scene scene = scene_of(parse_config(text, path), path);
+  scene.text = text;
+  return scene;
 }
 
 }  // namespace cuboct

@@ -37,12 +37,14 @@ struct Probe {
 
 struct Scene {
   std::string path;  // as given
+  std::string text;  // of the file
   std::string title;
   Rule rule;
   Body body;
   Periodic periodic;
   double pitch = 0;  // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
   Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates
+  bool thermal = false;                 // some velocities are drawn
   double density = 0;                   // kg/m^3, 0 if the mass was given
   double dt_limit = 0;                  // s, largest stable dt: of the perfect packing, and of the vibrations of
                                         // particles that are listed (docs/user/scene.md, [run]); 0 if unknown

@@ -213,8 +213,10 @@ void read_velocities(const ConfigTable& root, const Regions& regions, Scene& sce
     if (table.has("thermal_energy"))
       speed = std::sqrt(table.number("thermal_energy", quantity::energy, Range::not_negative()) /
                         scene.rule.mass);
-    if (table.has("thermal_speed") || table.has("thermal_energy"))
+    if (table.has("thermal_speed") || table.has("thermal_energy")) {
+      scene.thermal |= speed > 0;
       add_thermal(body.v, ids, speed, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)));
+    }
     table.done();
   }
 }

@@ -17,7 +17,7 @@ StateMeter::StateMeter(const Scene& scene, const FixedRule& rule, const Lattice&
                 for (const uint32_t id : ids_) x.push_back(position_of(rule, lattice, origin, initial(id)));
                 return x;
               }()),
-      energy_(energies, scene.periodic.extent.prod()),
+      energy_(energies, scene),
       threads_(threads) {
   for (const Probe& probe : scene.probes) forces_ |= probe.kind != Probe::Kind::displacement;
   if (energies && watch) watch_.emplace(scene, rule.error.worst_force, threads);

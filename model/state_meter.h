@@ -24,8 +24,8 @@ class StateMeter {
   // States come in the order of steps, sorted by id.
   void add(const State& state);
 
-  // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where all
-  // three axes of the box repeat, pressure in Pa.
+  // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where
+  // the scene has them, temperature in K and pressure in Pa.
   std::vector<Curve> curves() const;
 
   // The last value of each curve, once there is one.

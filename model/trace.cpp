@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <stdexcept>
 #include <utility>
 
 #include "model/hdf5_file.h"
+#include "model/measure.h"
 #include "model/output.h"
+#include "model/trace_head.h"
 
 namespace cuboct {
 namespace {
@@ -18,7 +21,7 @@ using hdf5::Reader;
 using hdf5::Writer;
 
 constexpr char kFormat[] = "cuboct trace";
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 
 // The particles of all frames, one after another.
 template <typename States>
@@ -35,7 +38,7 @@ class Rows {
   size_t frame_ = 0, at_ = 0;
 };
 
-void write_frames(const Writer& out, const std::vector<State>& frames) {
+void write_frames(const Writer& out, const std::vector<State>& frames, const TraceHead* head) {
   std::vector<uint64_t> step;
   std::vector<int64_t> first{0};  // signed: NumPy makes a float of an unsigned 64-bit number plus 1
   for (const State& frame : frames) {
@@ -58,11 +61,23 @@ void write_frames(const Writer& out, const std::vector<State>& frames) {
                       });
   };
   number("id", &Particle::id, "[row]");
-  number("type", &Particle::type, "[row] index into the rule's types");
-  number("node", &Particle::node, "[row] index into the lattice");
-  triple("x", &Particle::x, "cell edge / 2^P", "[row][axis] offset in the node");
+  number("type", &Particle::type, "[row] index into `types`");
+  number("node", &Particle::node, "[row] index into lattice/cell");
+  triple("x", &Particle::x, "cell edge / 2^(P+G)", "[row][axis] offset in the node's cell");
   triple("v", &Particle::v, "cell edge / step / 2^(P+G)", "[row][axis] velocity, half a step earlier");
   triple("u", &Particle::u, "cell edge / 2^(P+G)", "[row][axis] displacement from the anchor");
+  if (!head || !head->si) return;
+  const auto real = [&](const char* name, const char* unit, const char* what, auto value) {
+    out.rows<double>(group, name, count, 3, unit, what, [&, rows = Rows(frames)](double* values) mutable {
+      const Vec3 one = value(rows.next());
+      std::copy_n(one.data(), 3, values);
+    });
+  };
+  const FixedRule& rule = *head->rule;
+  real("x_si", "m", "[row][axis] position",
+       [&](const Particle& p) { return position_of(rule, *head->lattice, head->origin, p); });
+  real("v_si", "m/s", "[row][axis] velocity, half a step earlier",
+       [&](const Particle& p) { return velocity_of(rule, p); });
 }
 
 std::vector<State> read_frames(const Reader& in) {
@@ -97,7 +112,7 @@ std::vector<State> read_frames(const Reader& in) {
   return frames;
 }
 
-void write_bodies(const Writer& out, const std::vector<RealFrame>& frames) {
+void write_bodies(const Writer& out, const std::vector<RealFrame>& frames, const TraceHead* head) {
   if (frames.empty()) return;
   const Handle group = out.group(out.root(), "bodies");
   const size_t particles = frames.front().x.size();
@@ -119,6 +134,7 @@ void write_bodies(const Writer& out, const std::vector<RealFrame>& frames) {
   triple("x", &RealFrame::x, "m");
   triple("v", &RealFrame::v, "m/s");
   if (!frames.front().force.empty()) triple("force", &RealFrame::force, "N");
+  if (head) out.array(group, "type", {particles}, head->scene.body.type, "", "[id] index into `types`");
 }
 
 std::vector<RealFrame> read_bodies(const Reader& in) {
@@ -276,7 +292,20 @@ const char* to_string(Phase phase) {
   return "?";
 }
 
+const char* Trace::ended() const {
+  return !asked ? "" : stop ? "stopped" : steps() < *asked ? "interrupted" : "finished";
+}
+
 namespace {
+
+uint64_t hash_in(const Reader& in) {
+  const std::string text = in.text(in.root(), "plan_hash");
+  uint64_t hash = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
+  if (error != std::errc() || end != text.data() + text.size() || text.size() != 16)
+    throw InputError(in.missing("hash of 16 hexadecimal digits", "plan_hash"));
+  return hash;
+}
 
 // Whether the number of hashes is one that steps and hash_every allow.
 bool hashes_fit(const Trace& trace) {
@@ -289,7 +318,7 @@ bool hashes_fit(const Trace& trace) {
 
 }  // namespace
 
-void write_trace(const std::string& path, const Trace& trace, bool packed) {
+void write_trace(const std::string& path, const Trace& trace, bool packed, const TraceHead* head) {
   if (!hashes_fit(trace)) throw std::logic_error("a trace's hashes do not fit its steps and hash_every");
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
   check_writable(path);
@@ -298,15 +327,20 @@ void write_trace(const std::string& path, const Trace& trace, bool packed) {
     out.text(out.root(), "format", kFormat);
     out.number<uint32_t>(out.root(), "version", kVersion);
     out.text(out.root(), "engine", trace.engine);
-    out.number<uint64_t>(out.root(), "plan_hash", trace.plan_hash);
+    out.text(out.root(), "plan_hash", fmt::format("{:016x}", trace.plan_hash));
     out.number<uint64_t>(out.root(), "nodes", trace.nodes);
     out.number<double>(out.root(), "seconds", trace.seconds);
     out.number<uint64_t>(out.root(), "steps", trace.steps());
     out.number<uint64_t>(out.root(), "hash_every", trace.hash_every);
+    if (trace.asked) {
+      out.number<uint64_t>(out.root(), "steps_asked", *trace.asked);
+      out.text(out.root(), "ended", trace.ended());
+    }
+    if (head) write_head(out, *head, !trace.frames.empty() || !trace.cycles.empty());
     out.array(out.root(), "state_hash", {trace.state_hash.size()}, trace.state_hash, "",
               trace.hash_every == 1 ? "[step]" : "[step / hash_every], then of the last step");
-    write_frames(out, trace.frames);
-    write_bodies(out, trace.bodies);
+    write_frames(out, trace.frames, head);
+    write_bodies(out, trace.bodies, head);
     write_curves(out, trace.curves);
     write_cycles(out, trace);
     {
@@ -349,16 +383,15 @@ Trace read_trace(const std::string& path) {
         fmt::format("{} is a trace of version {}; this program reads version {}", path, version, kVersion));
   Trace trace;
   trace.engine = in.text(in.root(), "engine");
-  trace.plan_hash = in.number<uint64_t>(in.root(), "plan_hash");
+  trace.plan_hash = hash_in(in);
   trace.nodes = in.number<uint64_t>(in.root(), "nodes");
   trace.seconds = in.number<double>(in.root(), "seconds");
   trace.state_hash = in.array<uint64_t>(in.root(), "state_hash");
-  if (in.has_attribute(in.root(), "hash_every")) {
-    trace.hash_every = in.number<uint64_t>(in.root(), "hash_every");
-    const auto steps = in.number<uint64_t>(in.root(), "steps");
-    if (trace.hash_every != 1 || trace.state_hash.empty()) trace.steps_done = steps;
-    in.same_length(trace.hash_every > 0 && trace.steps() == steps, "steps and state hashes");
-  }  // else the file is from before hashes could be left out
+  trace.hash_every = in.number<uint64_t>(in.root(), "hash_every");
+  const auto steps = in.number<uint64_t>(in.root(), "steps");
+  if (trace.hash_every != 1 || trace.state_hash.empty()) trace.steps_done = steps;
+  in.same_length(trace.hash_every > 0 && trace.steps() == steps, "steps and state hashes");
+  if (in.has_attribute(in.root(), "steps_asked")) trace.asked = in.number<uint64_t>(in.root(), "steps_asked");
   trace.frames = read_frames(in);
   trace.bodies = read_bodies(in);
   trace.curves = read_curves(in);

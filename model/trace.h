@@ -61,6 +61,8 @@ struct StopReason {
   bool operator==(const StopReason&) const = default;
 };
 
+struct TraceHead;
+
 struct Trace {
   std::string engine;  // "golden", "systemc", ...
   uint64_t plan_hash = 0;
@@ -77,6 +79,7 @@ struct Trace {
   std::vector<PhaseSpan>
       cycles;  // [(step * nodes + node) * kPhases + phase]; empty where the engine counts none
   std::optional<StopReason> stop;  // the run had to stop: after the last complete step
+  std::optional<uint64_t> asked;   // steps that the run was to do, where the file says so
   // Of an engine that watches its own run (model/watch.h):
   std::vector<Finding> findings;    // in the order in which they came
   std::optional<uint64_t> watched;  // the last step that was looked at; nothing where nobody watched
@@ -90,14 +93,19 @@ struct Trace {
   }
   // Of state_hash[k].
   uint64_t hashed_step(size_t k) const { return std::min(k * hash_every, steps()); }
+  // How the run ended: "finished", "interrupted" before its last step, or "stopped" by a fault. Nothing where
+  // nobody said how long it was to be.
+  const char* ended() const;
   // Whether state_hash should hold the state after `step` in a run that ends with step `last`.
   bool hashes(uint64_t step, uint64_t last) const { return step % hash_every == 0 || step == last; }
 };
 
 // HDF5; layout in docs/reference/trace.md. Written to a temporary name beside `path`, then renamed: never
 // half a file. Same trace, same bytes. `packed`: compressed; a trace that one program hands to another is not, as
-// packing millions of particles takes longer than many steps of theirs.
-void write_trace(const std::string& path, const Trace& trace, bool packed = true);
+// packing millions of particles takes longer than many steps of theirs. `head`: what makes metres and seconds of
+// its numbers (model/trace_head.h).
+void write_trace(const std::string& path, const Trace& trace, bool packed = true,
+                 const TraceHead* head = nullptr);
 Trace read_trace(const std::string& path);
 
 }  // namespace cuboct

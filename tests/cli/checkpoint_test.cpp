@@ -119,7 +119,7 @@ TEST_F(Checkpoint, AHundredKillsLeaveNoTrace) {
   const Trace trace = read_trace(path("whole.h5"));
   ASSERT_EQ(trace.steps(), 300u);
   ASSERT_EQ(trace.frames.size(), 5u);
-  ASSERT_EQ(trace.curves.size(), 10u);
+  ASSERT_EQ(trace.curves.size(), 11u);
   ASSERT_FALSE(trace.cycles.empty());
 
   ASSERT_EQ(lattice(with_checkpoint()), 0);

@@ -231,35 +231,58 @@ TEST(Run, PrintsJson) {
   EXPECT_NE(answer.out.find("\n  \"steps\": {\"value\": 3},\n"), std::string::npos) << answer.out;
 }
 
-TEST(Report, IsOneFileWithoutOutsideResources) {
+TEST(Run, TellsEveryCurveAndHowItEnded) {
+  const Bench bench(false);
+  const Answer answer = bench.cuboct({"run", "scenes/coupon.toml", "--steps", "50"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  EXPECT_TRUE(std::regex_match(value_of(answer.out, "tension.stress"),
+                               std::regex("[-0-9.e+]+ Pa \\([-0-9.e+]+ to [-0-9.e+]+\\)")))
+      << answer.out;
+  EXPECT_TRUE(std::regex_match(value_of(answer.out, "tension.strain"),
+                               std::regex("[-0-9.e+]+ \\([-0-9.e+]+ to [-0-9.e+]+\\)")))
+      << answer.out;
+  EXPECT_EQ(value_of(answer.out, "ended"), "finished");
+}
+
+TEST(Run, SaysInItsDirectoryThatItWasInterrupted) {
+  const Bench bench(false);
+  const Answer answer = bench.cuboct(
+      {"run", "scenes/lj_block.toml", "--steps", "100000000", "--out", bench.path("out_dir")}, 1.0);
+  EXPECT_EQ(answer.code, 1);
+  const Trace trace = read_trace(bench.path("out_dir/trace.h5"));
+  EXPECT_STREQ(trace.ended(), "interrupted");
+  EXPECT_EQ(trace.asked, 100000000u);
+  const std::string after = "after " + std::to_string(trace.steps()) + " of 100000000 steps";
+  EXPECT_EQ(value_of(answer.out, "ended"), "interrupted (" + after + ")");
+  EXPECT_NE(contents(bench.path("out_dir/summary.json"))
+                .find("\n  \"ended\": {\"value\": \"interrupted\", \"note\": \"" + after + "\"}"),
+            std::string::npos);
+  ASSERT_EQ(bench.cuboct({"report", bench.path("out_dir")}).code, 0);
+  EXPECT_NE(contents(bench.path("out_dir/report.html")).find("<b class=\"bad\">interrupted " + after + "</b>"),
+            std::string::npos);
+}
+
+// A key of JSON is words joined by '_'.
+TEST(Run, GivesKeysThatScriptsCanName) {
   const Bench bench(true);
-  const std::string out = bench.path("run");
-  ASSERT_EQ(
-      bench.cuboct({"run", "scenes/coupon.toml", "--steps", "100", "--frames-every", "25", "--out", out})
-          .code,
-      0);
-  ASSERT_EQ(bench
-                .cuboct({"crosscheck", "scenes/coupon.toml", "--steps", "5", "--engines",
-                         "golden,systemc,rtl", "--out", out + "/crosscheck"})
-                .code,
-            0);
-  const Answer answer = bench.cuboct({"report", out});
-  EXPECT_EQ(answer.code, 0) << answer.err;
-  EXPECT_EQ(answer.out, out + "/report.html\n");
-  const std::string html = contents(out + "/report.html");
-  EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
-  EXPECT_NE(html.find("<svg"), std::string::npos);
-  EXPECT_NE(html.find("Largest stress"), std::string::npos);
-  EXPECT_EQ(html.find("href=\"http"), std::string::npos);
-  EXPECT_EQ(html.find("src=\"http"), std::string::npos);
-  std::smatch found;
-  std::string rest = html;
-  int equal = 0;
-  while (std::regex_search(rest, found, std::regex("bits equal"))) {
-    ++equal;
-    rest = found.suffix();
+  for (std::vector<std::string> more :
+       {std::vector<std::string>{"scenes/lj_block.toml", "--cycles"}, {"scenes/coupon.toml"}}) {
+    more.insert(more.end(), {"--steps", "3", "--json"});
+    more.insert(more.begin(), "run");
+    const std::string json = bench.cuboct(more).out;
+    const std::regex key("\n  \"([^\"]*)\": ");
+    int keys = 0;
+    for (std::sregex_iterator at(json.begin(), json.end(), key), end; at != end; ++at, ++keys)
+      EXPECT_TRUE(std::regex_match((*at)[1].str(), std::regex("[A-Za-z0-9_.]+"))) << (*at)[1];
+    EXPECT_GT(keys, 10);
   }
-  EXPECT_EQ(equal, 3);  // golden, systemc, rtl
+}
+
+// The trace's positions in metres are asked for, and mean nothing without a trace.
+TEST(Run, RefusesSiWithoutADirectory) {
+  const Answer answer = Bench(false).cuboct({"run", "scenes/lj_block.toml", "--steps", "1", "--si"});
+  EXPECT_EQ(answer.code, 2) << answer.out;
+  EXPECT_EQ(answer.err, "--si needs --out DIR: without it nothing of the run is kept\n");
 }
 
 }  // namespace

@@ -56,6 +56,7 @@ void expect_equal(const Trace& a, const Trace& b) {
   EXPECT_EQ(a.state_hash, b.state_hash);
   EXPECT_EQ(a.hash_every, b.hash_every);
   EXPECT_EQ(a.steps(), b.steps());
+  EXPECT_EQ(a.asked, b.asked);
   ASSERT_EQ(a.frames.size(), b.frames.size());
   for (size_t k = 0; k < a.frames.size(); ++k) {
     EXPECT_EQ(a.frames[k].step, b.frames[k].step);
@@ -170,15 +171,30 @@ TEST_F(TraceFile, KeepsHashesWithStepsLeftOut) {
   expect_equal(trace, read_trace(path("t.h5")));
 }
 
-// As written before hashes could be left out.
-TEST_F(TraceFile, ReadsAFileWithoutAStepCount) {
+// A file of an older format says so.
+TEST_F(TraceFile, RefusesAnotherVersion) {
   write_trace(path("t.h5"), made_trace());
   const hid_t file = H5Fopen(path("t.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  ASSERT_GE(H5Adelete(file, "steps"), 0);
-  ASSERT_GE(H5Adelete(file, "hash_every"), 0);
-  H5Fclose(file);
-  expect_equal(made_trace(), read_trace(path("t.h5")));
-  EXPECT_EQ(read_trace(path("t.h5")).steps(), 2u);
+  const hid_t version = H5Aopen(file, "version", H5P_DEFAULT);
+  const uint32_t old = 1;
+  ASSERT_GE(H5Awrite(version, H5T_NATIVE_UINT32, &old), 0);
+  H5Aclose(version), H5Fclose(file);
+  EXPECT_EQ(error_of([&] { read_trace(path("t.h5")); }),
+            path("t.h5") + " is a trace of version 1; this program reads version 2");
+}
+
+TEST_F(TraceFile, SaysHowTheRunEnded) {
+  Trace trace = made_trace();
+  trace.stop.reset();
+  EXPECT_STREQ(trace.ended(), "");
+  trace.asked = 2;
+  EXPECT_STREQ(trace.ended(), "finished");
+  trace.asked = 3;
+  EXPECT_STREQ(trace.ended(), "interrupted");
+  trace.stop = StopReason{};
+  EXPECT_STREQ(trace.ended(), "stopped");
+  write_trace(path("t.h5"), trace);
+  expect_equal(trace, read_trace(path("t.h5")));
 }
 
 TEST_F(TraceFile, RefusesAStepCountThatItsHashesContradict) {

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "model/trace_head.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "model/hdf5_file.h"
+
+namespace cuboct {
+namespace {
+
+using hdf5::Handle;
+using hdf5::Writer;
+
+std::vector<double> triple(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+void write_widths(const Writer& out, const Widths& w) {
+  const auto number = [&](const char* name, int value) { out.number<int32_t>(out.root(), name, value); };
+  number("position_frac", w.position_frac);
+  number("guard", w.guard);
+  number("difference_frac", w.difference_frac);
+  number("velocity_bits", w.velocity_bits);
+  number("relative_velocity_frac", w.relative_velocity_frac);
+  number("relative_velocity_bits", w.relative_velocity_bits);
+  number("filter_frac", w.filter_frac);
+  number("strength_bits", w.strength_bits);
+  number("sum_bits", w.sum_bits);
+  number("displacement_bits", w.displacement_bits);
+  number("scale_frac", w.scale_frac);
+  number("gain_frac", w.gain_frac);
+}
+
+void write_lattice(const Writer& out, const Lattice& lattice) {
+  const Handle group = out.group(out.root(), "lattice");
+  out.numbers<int32_t>(group, "period", {lattice.period().begin(), lattice.period().end()});
+  out.rows<int32_t>(group, "cell", lattice.size(), 3, "cell edge", "[node][axis] coordinates of the node's cell",
+                    [&, node = uint32_t{0}](int32_t* values) mutable {
+                      const Cell& cell = lattice.cell(node++);
+                      std::copy(cell.begin(), cell.end(), values);
+                    });
+}
+
+}  // namespace
+
+const char* program_version() { return CUBOCT_VERSION; }
+
+void write_head(const Writer& out, const TraceHead& head, bool cells) {
+  const Scene& scene = head.scene;
+  const hid_t root = out.root();
+  out.text(root, "program_version", program_version());
+  out.text(root, "units", "SI (m, kg, s, N, J, Pa, K), but for integers, whose datasets say their unit");
+  out.text(root, "title", scene.title);
+  out.number<double>(root, "dt", scene.rule.dt);
+  out.number<double>(root, "mass", scene.rule.mass);
+  out.numbers<double>(root, "periodic_origin", triple(scene.periodic.origin));
+  out.numbers<double>(root, "periodic_extent", triple(scene.periodic.extent));
+  std::vector<std::string> types;
+  for (const ParticleType& type : scene.rule.types) types.push_back(type.name);
+  out.names(root, "types", types);
+  {
+    // Datasets: HDF5 holds no attribute above 64 KiB.
+    const Handle source = out.group(root, "source");
+    out.text(source, "scene_path", scene.path);
+    out.names(source, "scene", {scene.text});
+    out.names(source, "arch", {head.arch});
+  }
+  if (!head.rule) return;
+  out.number<double>(root, "cell_edge", head.rule->cell_edge);
+  out.numbers<double>(root, "origin", triple(head.origin));
+  write_widths(out, head.rule->widths);
+  if (cells) write_lattice(out, *head.lattice);
+}
+
+}  // namespace cuboct

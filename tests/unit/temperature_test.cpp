@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "model/temperature.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "hw/setup.h"
+#include "model/real_meter.h"
+#include "model/state_meter.h"
+
+namespace cuboct {
+namespace {
+
+constexpr double kRounding = 2e-5;  // of a velocity of 1 m/s: 1e5 units of the default widths
+
+// Particles of 2 kg too far from one another for any force; `particles`: positions and velocities.
+std::string scene_of(const std::string& particles, const std::string& more = "") {
+  return "title = \"gas\"\nunits = \"reduced\"\nmass = 2.0\n" + more +
+         "[law]\nkind = \"lj\"\nepsilon = 1.0\nsigma = 1.0\ncutoff = 2.5\nsmooth = \"linear\"\n"
+         "[run]\ndt = 0.001\nsteps = 1\n" +
+         particles;
+}
+std::string particle(const std::string& position, const std::string& velocity) {
+  return "[[particle]]\nposition = " + position + "\nvelocity = " + velocity + "\n";
+}
+
+struct Measured {
+  const Curve* curve(const std::string& name) const {
+    for (const Curve& one : curves)
+      if (one.name == name) return &one;
+    return nullptr;
+  }
+  std::vector<Curve> curves;
+};
+Measured in_doubles(const Scene& scene) {
+  RealMeter meter(scene, Integrator::semi_implicit_euler, false, true);
+  meter.add(Reference(scene.rule, scene.body, scene.periodic));
+  return {meter.curves()};
+}
+Measured in_integers(const Scene& scene) {
+  Arch arch;
+  const Setup setup = make_setup(scene, arch);
+  StateMeter meter(
+      scene, setup.plan.rule, setup.plan.lattice, setup.plan.origin,
+      [&](uint32_t id) { return setup.initial.particles[id]; }, true);
+  meter.add(setup.initial);
+  return {meter.curves()};
+}
+
+// About the mean (2, 0, 0) m/s: (1, 0, 0), (-1, 0, 0), (0, 3, 0), (0, -3, 0), so K = 2/2 (1 + 1 + 9 + 9) = 20 J, and 3
+// (4 - 1) degrees of freedom, as the places differ along z: T = 40/(9 k_B).
+TEST(Temperature, IsThatOfTheMotionAboutTheMean) {
+  const Scene scene = parse_scene(
+      scene_of(particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]") +
+               particle("[0, 10, 0]", "[2, 3, 0]") + particle("[0, 0, 10]", "[2, -3, 0]")),
+      "gas.toml");
+  EXPECT_EQ(Thermometer(scene).degrees(), 9);
+  for (const Measured& measured : {in_doubles(scene), in_integers(scene)}) {
+    const Curve* curve = measured.curve("temperature");
+    ASSERT_NE(curve, nullptr);
+    EXPECT_EQ(curve->unit, "K");
+    EXPECT_NEAR(curve->value[0], 40 / (9 * kBoltzmann), kRounding * curve->value[0]);
+  }
+}
+
+// In the plane z = 0 nothing moves along z: 2 (4 - 1) degrees.
+TEST(Temperature, CountsNoAxisAlongWhichNothingCanMove) {
+  const Scene scene = parse_scene(
+      scene_of(particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]") +
+               particle("[0, 10, 0]", "[2, 3, 0]") + particle("[10, 10, 0]", "[2, -3, 0]")),
+      "gas.toml");
+  EXPECT_EQ(Thermometer(scene).degrees(), 6);
+  EXPECT_NEAR(in_integers(scene).curve("temperature")->value[0] * kBoltzmann, 40.0 / 6, kRounding * 40 / 6);
+}
+
+// A particle that is held along x, and one that a controller moves: the three others make 2 + 3 + 3 - 3 degrees, two of
+// them along x with +-1 m/s about their mean.
+TEST(Temperature, LeavesOutWhatIsHeldOrSteered) {
+  const std::string hold =
+      "[[constraint]]\nname = \"held\"\nkind = \"held\"\naxes = \"x\"\nregion = { shape = \"sphere\", radius = 1.0 }\n"
+      "[[constraint]]\nname = \"led\"\nkind = \"moved_by_force\"\nvelocity = [7, 0, 0]\nkp = 1e4\nkd = 10.0\n"
+      "region = { shape = \"sphere\", radius = 1.0, centre = [0, 0, 10] }\n";
+  const Scene scene = parse_scene(
+      scene_of(particle("[0, 0, 0]", "[0, 0, 0]") + particle("[10, 0, 0]", "[3, 0, 0]") +
+               particle("[0, 10, 0]", "[1, 0, 0]") + particle("[0, 0, 10]", "[9, 9, 9]")) + hold,
+      "gas.toml");
+  EXPECT_EQ(Thermometer(scene).degrees(), 5);
+  for (const Measured& measured : {in_doubles(scene), in_integers(scene)})
+    EXPECT_NEAR(measured.curve("temperature")->value[0] * kBoltzmann, 2.0 * 2 / 5, kRounding);
+}
+
+TEST(Temperature, IsMeasuredInUndampedAndInHotScenesAlone) {
+  const std::string two = particle("[0, 0, 0]", "[1, 0, 0]") + particle("[10, 0, 0]", "[0, 0, 0]");
+  const std::string damped = "[damping]\ncoefficient = 0.1\n";
+  const std::string hot = "[[velocity]]\nthermal_energy = 0.5\nseed = 1\n";
+  EXPECT_TRUE(Thermometer(parse_scene(scene_of(two), "s.toml")).wanted());
+  EXPECT_FALSE(Thermometer(parse_scene(scene_of(two + damped), "s.toml")).wanted());
+  EXPECT_TRUE(Thermometer(parse_scene(scene_of(two + damped + hot), "s.toml")).wanted());
+  EXPECT_FALSE(Thermometer(parse_scene(scene_of(particle("[0, 0, 0]", "[1, 0, 0]")), "s.toml")).wanted());
+  EXPECT_EQ(in_doubles(parse_scene(scene_of(two + damped), "s.toml")).curve("temperature"), nullptr);
+}
+
+// 256 particles of kT = 0.2 J have 765 degrees: T is 0.2/k_B but for sqrt(2/765) = 5 % of scatter.
+TEST(Temperature, OfADrawIsThatOfItsThermalEnergy) {
+  const Scene scene = read_scene(std::string(CUBOCT_SOURCE_DIR) + "/scenes/lj_block.toml");
+  EXPECT_EQ(Thermometer(scene).degrees(), 765);
+  EXPECT_NEAR(in_integers(scene).curve("temperature")->value[0] * kBoltzmann, 0.2, 4 * 0.05 * 0.2);
+}
+
+}  // namespace
+}  // namespace cuboct
