@@ -250,13 +250,13 @@ TEST_F(Checkpoint, RefusesWhatItsNumbersDoNotAllow) {
     EXPECT_EQ(lattice(with_checkpoint({"--resume"})), 2) << at;
     return contents(path("lattice.err"));
   };
-  // The number of probed particles; then, of the last particle, node and id, and its type above its z.
-  const size_t probed = 18, last = words.size() - 1 - 9;
+  // The number of probed particles; then, of the last particle of ten words, node and id, and its type above its z.
+  const size_t probed = 18, last = words.size() - 1 - 10;
   for (const uint64_t count : {uint64_t{1} << 40, ~uint64_t{0}})
     EXPECT_NE(said(probed, count).find(" things of 3 words do not fit behind its word 19\n"), std::string::npos);
   EXPECT_NE(said(last, uint64_t{1} << 63).find(": cell 2147483648 is not below "), std::string::npos);
   EXPECT_NE(said(last, words[last] | 0xffffffff).find("particle 4294967295: id 4294967295 is not below "), std::string::npos);
-  EXPECT_NE(said(last + 2, words[last + 2] | uint64_t{77} << 32).find(": type 77 is not below 2\n"), std::string::npos);
+  EXPECT_NE(said(last + 3, words[last + 3] | uint64_t{77} << 56).find(": type 77 is not below 2\n"), std::string::npos);
 }
 
 TEST_F(Checkpoint, RefusesAnotherRun) {

@@ -2,7 +2,6 @@
 // Results on disk: what was put comes back to the last bit, rows of other machines come in, those of other studies
 // do not; a runner computes what lacks and nothing else.
 #include "study/store.h"
-#include "study/truth_bytes.h"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +11,7 @@
 #include "model/error.h"
 #include "study/measure_errors.h"
 #include "study/runner.h"
+#include "study/truth_bytes.h"
 #include "tests/study/rows.h"
 #include "tests/study/small_study.h"
 
