@@ -10,6 +10,7 @@
 #include "model/error.h"
 #include "model/output.h"
 #include "model/spelling.h"
+#include "model/text.h"
 #include "study/budget.h"
 
 namespace cuboct {
@@ -42,12 +43,12 @@ std::string in_columns(const std::vector<std::vector<std::string>>& rows) {
   for (const auto& row : rows)
     for (size_t k = 0; k < row.size(); ++k) {
       if (k == width.size()) width.push_back(0);
-      width[k] = std::max(width[k], row[k].size());
+      width[k] = std::max(width[k], line_text(row[k]).size());
     }
   std::string text;
   for (const auto& row : rows) {
     std::string line;
-    for (size_t k = 0; k < row.size(); ++k) line += fmt::format("{:<{}}", row[k], width[k] + 2);
+    for (size_t k = 0; k < row.size(); ++k) line += fmt::format("{:<{}}", line_text(row[k]), width[k] + 2);
     text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
   }
   return text;
@@ -94,19 +95,20 @@ std::string settings_of(const BudgetAnswer& answer, const study::Notches& at) {
 
 std::string command_of(const study::Settings& settings, const std::string& out) {
   if (settings.arithmetic == study::Arithmetic::fixed)
-    return fmt::format("cuboct run {0}/cheapest.toml --arch {0}/cheapest_arch.toml", out);
-  return fmt::format("cuboct run {}/cheapest.toml --engine reference{}{}", out,
+    return fmt::format("cuboct run {} --arch {}", shell_word(out + "/cheapest.toml"),
+                       shell_word(out + "/cheapest_arch.toml"));
+  return fmt::format("cuboct run {} --engine reference{}{}", shell_word(out + "/cheapest.toml"),
                      settings.arithmetic == study::Arithmetic::float32 ? " --precision float" : "",
                      settings.integrator == Integrator::velocity_verlet ? " --integrator verlet" : "");
 }
 
 void print_failure(const BudgetAnswer& answer, const std::string& figure, const std::string& error) {
   const study::SearchResult& result = answer.result;
-  fmt::print("no settings of [search] keep '{}' within {}\n", figure, error);
+  fmt::print("no settings of [search] keep '{}' within {}\n", line_text(figure), line_text(error));
   fmt::print("the best: {} with {}\n",
-             std::isnan(result.best.error) ? "cannot be run (" + answer.chosen.why + ")"
+             std::isnan(result.best.error) ? "cannot be run (" + line_text(answer.chosen.why) + ")"
                                            : signed_percent(result.best.error),
-             settings_of(answer, result.best.at));
+             line_text(settings_of(answer, result.best.at)));
   if (result.accident)
     fmt::print("  by accident: with a notch finer next to it the error is above the budget\n");
   const double size = std::abs(result.best.error);
@@ -115,10 +117,10 @@ void print_failure(const BudgetAnswer& answer, const std::string& figure, const 
   else if (result.limit_change < 0.1 * size)
     fmt::print(
         "what limits is none of these settings: a notch of {}, which matters most, changes the error by {}\n",
-        answer.axes[static_cast<size_t>(result.limit)].name, percent(result.limit_change));
+        line_text(answer.axes[static_cast<size_t>(result.limit)].name), percent(result.limit_change));
   else
     fmt::print("what limits is {}: the notch next to it still changes the error by {}\n",
-               answer.axes[static_cast<size_t>(result.limit)].name, percent(result.limit_change));
+               line_text(answer.axes[static_cast<size_t>(result.limit)].name), percent(result.limit_change));
 }
 
 }  // namespace
@@ -170,16 +172,19 @@ int run_budget(const study::Study& study, const study::Truth& truth, const Budge
   const std::string& figure = study.figures[question.figure].name;
   const study::SearchResult& result = answer.result;
   const std::string& unit = study.figure_units[question.figure];
-  fmt::print("figure '{}': {:.6g} {} by the truth\n", figure, truth.figures[question.figure], unit);
+  fmt::print("figure '{}': {:.6g} {} by the truth\n", line_text(figure), truth.figures[question.figure],
+             unit);
   if (!result.met) {
     print_failure(answer, figure, options.error);
     return 1;
   }
-  fmt::print("the cheapest settings within {}\n\n{}\n", options.error, table(answer, question.budget));
+  fmt::print("the cheapest settings within {}\n\n{}\n", line_text(options.error),
+             block_text(table(answer, question.budget)));
   fmt::print("as measured: {:.6g} {}, {}\n", answer.chosen.value, unit, signed_percent(answer.chosen.error));
   fmt::print("cost: {:.3g} transistors x pairs/s, {:.3g} of that of the study's own settings ({:.3g}, {})\n",
              answer.chosen.cost, answer.chosen.cost / answer.standard.cost, answer.standard.cost,
-             std::isnan(answer.standard.error) ? answer.standard.why : signed_percent(answer.standard.error));
+             std::isnan(answer.standard.error) ? line_text(answer.standard.why)
+                                               : signed_percent(answer.standard.error));
   fmt::print("time step: {:.6g} s, {} to a sample\n", answer.chosen.dt,
              truth.grid.steps_per_sample(answer.chosen.dt));
   fmt::print("points: {} of {}\n", result.measured, [&] {
@@ -189,12 +194,14 @@ int run_budget(const study::Study& study, const study::Truth& truth, const Budge
   }());
   study::Written texts = study::written(study, truth, answer.chosen.settings);
   const std::string head =
-      fmt::format("# Chosen by `cuboct explore {} --error {}{}`: {} of '{}' by parts, cost {:.3g}.\n",
-                  study.path, options.error, options.figure.empty() ? "" : " --figure " + options.figure,
-                  percent(result.best.sum), figure, answer.chosen.cost);
+      line_text(fmt::format("# Chosen by `cuboct explore {} --error {}{}`: {} of '{}' by parts, cost {:.3g}.",
+                            study.path, options.error,
+                            options.figure.empty() ? "" : " --figure " + options.figure,
+                            percent(result.best.sum), figure, answer.chosen.cost)) +
+      "\n";
   write_text(options.out + "/cheapest.toml", head + texts.scene);
   write_text(options.out + "/cheapest_arch.toml", head + texts.arch);
-  fmt::print("{}\n", command_of(answer.chosen.settings, options.out));
+  fmt::print("{}\n", line_text(command_of(answer.chosen.settings, options.out)));
   return 0;
 }
 

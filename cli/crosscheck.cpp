@@ -18,6 +18,7 @@
 #include "model/output.h"
 #include "model/process.h"
 #include "model/progress.h"
+#include "model/text.h"
 
 namespace cuboct {
 namespace {
@@ -199,7 +200,8 @@ int crosscheck(Options options) {
       }
       if (mismatch->kind == Mismatch::Kind::length || mismatch->kind == Mismatch::Kind::stop)
         for (const size_t i : {a, b})
-          fmt::print("{}: {}\n", options.engines[i], traces[i].stop ? traces[i].stop->text : "not stopped");
+          fmt::print("{}: {}\n", options.engines[i],
+                     traces[i].stop ? line_text(traces[i].stop->text) : "not stopped");
       return 1;
     }
   }
@@ -208,7 +210,7 @@ int crosscheck(Options options) {
       tell_faults(options.engines[i], traces[i]);
       if (by_link(traces[i]))
         fmt::print("{} stopped after {} matched steps: {}\n", options.engines[i], traces[i].steps(),
-                   traces[i].stop->text);
+                   line_text(traces[i].stop->text));
     }
     return 1;
   }
@@ -217,7 +219,7 @@ int crosscheck(Options options) {
   if (phase_times > 0) fmt::print("matched {} phase times\n", phase_times);
   for (size_t i = 0; i < traces.size(); ++i) tell_faults(options.engines[i], traces[i]);
   if (traces[0].stop) {
-    fmt::print("all stopped: {}\n", traces[0].stop->text);
+    fmt::print("all stopped: {}\n", line_text(traces[0].stop->text));
     return 1;
   }
   return 0;

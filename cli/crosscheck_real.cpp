@@ -11,6 +11,7 @@
 #include "model/process.h"
 #include "model/reference.h"
 #include "model/steps.h"
+#include "model/text.h"
 
 namespace cuboct {
 namespace {
@@ -121,7 +122,8 @@ int crosscheck_real(const Input& input, const GpuChoice& choice, const std::stri
     return 1;
   }
   if (trace.stop || trace.steps() != last) {
-    fmt::print("gpu: {}\n", trace.stop ? trace.stop->text : fmt::format("ended at step {}", trace.steps()));
+    fmt::print("gpu: {}\n",
+               trace.stop ? line_text(trace.stop->text) : fmt::format("ended at step {}", trace.steps()));
     return 1;
   }
   bool within = check_forces(scene, trace.bodies.front(), floats, "at the start");

@@ -8,13 +8,15 @@
 #include "cli/fit.h"
 #include "hw/rtl_emit.h"
 #include "model/interrupt.h"
+#include "model/text.h"
 #include "rtl/synth/tool.h"
 
 namespace cuboct {
 namespace {
 
 void say_done(const std::string& out, const Plan& plan) {
-  fmt::print("{}: {} nodes, {} particles, plan {:016x}\n", out, plan.nodes(), plan.particles, plan.hash);
+  fmt::print("{}: {} nodes, {} particles, plan {:016x}\n", line_text(out), plan.nodes(), plan.particles,
+             plan.hash);
 }
 
 // 0, or 1 where a tool failed or somebody interrupted.
@@ -29,10 +31,10 @@ int emit_fitted(const Input& input, const std::string& target, const std::string
     const Setup setup = fitter.setup();
     const std::string table = fitter.table();
     emit_rtl(setup.plan, setup.initial, out, vector_steps, board, fitter.arch_text());
-    fmt::print("{}{:<16} {}/arch.toml\n", table, "arch", out);
+    fmt::print("{}{:<16} {}/arch.toml\n", block_text(table), "arch", line_text(out));
     say_done(out, setup.plan);
   } catch (const synth::ToolFailed& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}\n", line_text(error.what()));
     return 1;
   } catch (const synth::Interrupted&) {
     fmt::print(stderr, "interrupted; nothing was written\n");

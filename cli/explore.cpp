@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "model/interrupt.h"
 #include "model/output.h"
+#include "model/text.h"
 #include "study/measure_run.h"
 #include "study/page.h"
 #include "study/runner.h"
@@ -28,7 +29,8 @@ std::string default_directory(const std::string& study) {
 }
 
 void print_table(const study::Results& results) {
-  fmt::print("{}\n{}", study::describe(results.truth, results), study::cheapest_per_decade(results));
+  fmt::print("{}\n{}", block_text(study::describe(results.truth, results)),
+             block_text(study::cheapest_per_decade(results)));
   size_t refused = 0, unstable = 0;
   for (const study::Outcome& outcome : results.outcomes) {
     refused += outcome.status == study::Status::refused;
@@ -41,10 +43,10 @@ void print_table(const study::Results& results) {
 void report(const study::Results& results, const std::string& out) {
   print_table(results);
   study::write_page(results, out + "/page.html");
-  fmt::print("page: {}/page.html\n", out);
+  fmt::print("page: {}/page.html\n", line_text(out));
   try {
     const size_t charts = study::write_charts(results, out + "/charts").size();
-    fmt::print("charts: {} in {}/charts\n", charts, out);
+    fmt::print("charts: {} in {}/charts\n", charts, line_text(out));
   } catch (const InputError& error) {
     fmt::print(stderr, "no charts: {}\n", error.what());
   }
@@ -59,7 +61,8 @@ int explore(const Options& options) {
   make_directory(out);
   study::Store store(out + "/results.db", study);
   catch_interrupts();
-  for (const std::string& file : options.add) fmt::print("{} rows from {}\n", store.add(file), file);
+  for (const std::string& file : options.add)
+    fmt::print("{} rows from {}\n", store.add(file), line_text(file));
   study::Runner runner(study, store, {.jobs = options.jobs, .speed = !options.no_speed});
   try {
     if (budget) return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs});
@@ -72,7 +75,8 @@ int explore(const Options& options) {
     return 1;
   }
   if (!runner.left_out().empty())
-    fmt::print("{}\n  hint: --add FILE takes them from another machine's results.db\n", runner.left_out());
+    fmt::print("{}\n  hint: --add FILE takes them from another machine's results.db\n",
+               line_text(runner.left_out()));
   report(store.results(), out);
   return 0;
 }

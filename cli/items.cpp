@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "model/text.h"
 #include "study/json.h"
 
 namespace cuboct {
@@ -39,7 +40,7 @@ void Items::add_list(const std::string& name, const std::string& line, const std
     item.json += fmt::format("{}\n    {{", separator);
     const char* inner = "";
     for (const Item& part : one.all()) {
-      if (part.name == "text") item.text += fmt::format("{}: {}\n", line, part.text);
+      if (part.name == "text") item.text += fmt::format("{}: {}\n", line, line_text(part.text));
       item.json += fmt::format("{}{}: {}", inner, study::json(part.name), part.json);
       inner = ", ";
     }
@@ -60,9 +61,9 @@ std::string Items::text() const {
       out += item.text;
       continue;
     }
-    out += fmt::format("{:<{}}  {}", item.name, width, item.text);
-    if (!item.unit.empty()) out += " " + item.unit;
-    if (!item.note.empty()) out += " (" + item.note + ")";
+    out += fmt::format("{:<{}}  {}", line_text(item.name), width, line_text(item.text));
+    if (!item.unit.empty()) out += fmt::format(" {}", line_text(item.unit));
+    if (!item.note.empty()) out += fmt::format(" ({})", line_text(item.note));
     out += '\n';
   }
   return out;

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/engines.h"
 #include "model/spelling.h"
+#include "model/text.h"
 
 namespace cuboct {
 namespace {
@@ -31,6 +32,15 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
                      near.empty() ? "one of " + list_of(commands) : near);
   }
   const CLI::App* command = app.get_subcommand(words[0]);
+  // An empty value is a variable of a script that was never set; an empty path would mean none.
+  for (size_t i = 1; i < words.size(); ++i)
+    if (words[i].empty() || (words[i].starts_with("--") && words[i].ends_with('='))) {
+      const std::string option = words[i].empty() ? words[i - 1] : words[i].substr(0, words[i].size() - 1);
+      throw InputError(option.starts_with("--")
+                           ? fmt::format("the value of '{}' is empty", option)
+                           : fmt::format("argument {} of 'cuboct {}' is empty", i, words[0]),
+                       fmt::format("leave it out, or see 'cuboct {} --help'", words[0]));
+    }
   std::vector<std::string> options;
   for (const CLI::Option* option : command->get_options())
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
@@ -67,7 +77,7 @@ int main_of(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}\n", block_text(error.what()));
     return 2;
   } catch (const AlreadyTold& told) {
     return told.exit_code;
@@ -75,7 +85,7 @@ int main_of(int argc, char** argv) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}\n", block_text(error.what()));
     return 1;
   }
   return exit_code;

@@ -101,7 +101,13 @@ RunRecord read_record(const std::string& directory) {
       const std::string value = table[key].value_or(std::string());
       return value.empty() ? value : (fs::path(directory) / value).lexically_normal().string();
     };
-    return {from("scene"), from("arch"), table["engine"].value_or(std::string())};
+    const RunRecord record{from("scene"), from("arch"), table["engine"].value_or(std::string())};
+    // A stranger's record may name what never ends, as a device.
+    for (const auto& [key, file] : {std::pair{"scene", record.scene}, {"arch", record.arch}})
+      if ((key[0] == 's' || !file.empty()) && !fs::is_regular_file(file))
+        throw InputError(fmt::format("{}: '{}' names no file: '{}'", path, key, file),
+                         "paths count from the directory of run.toml");
+    return record;
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
     throw InputError(path, static_cast<int>(at.line), static_cast<int>(at.column),

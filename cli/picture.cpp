@@ -2,12 +2,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
 #include "cli/command.h"
 #include "cli/raster_plot.h"
 #include "model/output.h"
+#include "model/text.h"
 
 namespace cuboct {
 namespace {
@@ -35,6 +38,19 @@ std::vector<size_t> frames_of(const Rasters& rasters, const std::vector<uint64_t
   return frames;
 }
 
+// CLI::PositiveNumber takes "nan".
+CLI::Validator above_zero() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool fine =
+            error == std::errc() && end == text.data() + text.size() && std::isfinite(value) && value > 0;
+        return fine ? std::string() : fmt::format("'{}' is not a number above 0", text);
+      },
+      "");
+}
+
 void draw(const Options& options) {
   const Field field = field_of(options.field);
   const std::string out = options.out.empty() ? options.directory + "/picture.png" : options.out;
@@ -48,7 +64,7 @@ void draw(const Options& options) {
   check_writable(out);
   const std::string png = plot_rasters(rasters, picture);
   write_text(out, png);
-  fmt::print("{}\n", out);
+  fmt::print("{}\n", line_text(out));
 }
 
 }  // namespace
@@ -66,7 +82,7 @@ void add_picture(CLI::App& app, int&) {
   command
       ->add_option("--limit", options->limit,
                    "where the colours end: strain (0.01 is 1 %), m/s or m; default: the 90th percentile")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("V");
   command->add_option("--width", options->width, "pixels of the picture")
       ->check(CLI::Range(400, 16384))

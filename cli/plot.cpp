@@ -9,6 +9,7 @@
 
 #include "model/output.h"
 #include "model/process.h"
+#include "model/text.h"
 #include "study/gnuplot.h"
 
 namespace cuboct {
@@ -33,10 +34,10 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
   const Scratch scratch;
   std::string script = fmt::format(
       "set terminal svg size 640,360 dynamic font 'Helvetica,15' background '#ffffff'\n"
-      "set output '{}'\n"
+      "set output {}\n"
       "set border 3 lc '#444444'\nset tics nomirror\nset grid lc '#dddddd' lt 1\nset key above\n"
-      "set xlabel '{}'\nset ylabel '{}'\nplot ",
-      scratch.path("plot.svg"), x_label, y_label);
+      "set xlabel {}\nset ylabel {}\nplot ",
+      gnuplot_file(scratch.path("plot.svg")), gnuplot_label(x_label), gnuplot_label(y_label));
   for (size_t i = 0; i < series.size(); ++i) {
     std::string points, marks;
     for (size_t k = 0; k < series[i].x.size(); ++k)
@@ -44,12 +45,13 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
     for (const auto& [x, y] : series[i].marks) marks += fmt::format("{:.9g} {:.9g}\n", x, y);
     const std::string name = scratch.path(fmt::format("series{}", i));
     write_text(name, points);
-    script += fmt::format("{}'{}' with lines lw 2 lc '{}' {}", i > 0 ? ", " : "", name, kColours[i % 4],
-                          series[i].title.empty() ? "notitle" : "title '" + series[i].title + "'");
+    script += fmt::format(
+        "{}{} with lines lw 2 lc '{}' {}", i > 0 ? ", " : "", gnuplot_file(name), kColours[i % 4],
+        series[i].title.empty() ? "notitle" : fmt::format("title {}", gnuplot_label(series[i].title)));
     if (!marks.empty()) {
       write_text(name + ".marks", marks);
-      script += fmt::format(", '{}.marks' with points pt 7 ps 0.8 lc '{}' title 'pictures above'", name,
-                            kColours[1]);
+      script += fmt::format(", {} with points pt 7 ps 0.8 lc '{}' title 'pictures above'",
+                            gnuplot_file(name + ".marks"), kColours[1]);
     }
   }
   study::run_gnuplot(scratch, script + "\n");
@@ -67,9 +69,9 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
   const int height = static_cast<int>(pictures.size()) * row + kBar;
   const auto y = [&](int from_top) { return 1 - static_cast<double>(from_top) / height; };
   std::string script = fmt::format(
-      "set terminal pngcairo size {},{} font 'Helvetica,13' background '#ffffff'\nset output '{}'\n"
+      "set terminal pngcairo size {},{} font 'Helvetica,13' background '#ffffff'\nset output {}\n"
       "set multiplot\nunset key\nunset border\nunset tics\n",
-      width, height, scratch.path("plot.png"));
+      width, height, gnuplot_file(scratch.path("plot.png")));
   for (size_t i = 0; i < pictures.size(); ++i) {
     const std::string name = scratch.path(fmt::format("picture{}", i));
     write_raw(name, pictures[i]);
@@ -77,11 +79,11 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
     script += fmt::format(
         "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen {:.6f}\nset bmargin at "
         "screen {:.6f}\n"
-        "set label 1 '{}' at screen 0.012,{:.6f} front\n"
+        "set label 1 {} at screen 0.012,{:.6f} front\n"
         "set xrange [0:{}]\nset yrange [0:{}]\n"
-        "plot '{}' binary array=({},{}) flipy format='%uchar' using 1:2:3 with rgbimage\n",
-        y(top + kLabel), y(top + row), labels[i], y(top + kLabel / 2), width - 1, pictures[i].height - 1,
-        name, width, pictures[i].height);
+        "plot {} binary array=({},{}) flipy format='%uchar' using 1:2:3 with rgbimage\n",
+        y(top + kLabel), y(top + row), gnuplot_label(labels[i]), y(top + kLabel / 2), width - 1,
+        pictures[i].height - 1, gnuplot_file(name), width, pictures[i].height);
   }
   Image bar{256, 2, {}};  // gnuplot draws no image of one row
   for (int k = 0; k < 512; ++k) bar.pixels.push_back(viridis(k % 256 / 255.0));
@@ -89,13 +91,13 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
   script += fmt::format(
       "unset label 1\nset lmargin at screen 0.25\nset rmargin at screen 0.75\n"
       "set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\n"
-      "set border 15 lc '#444444'\nset xtics out nomirror\nset xlabel '{}'\n"
+      "set border 15 lc '#444444'\nset xtics out nomirror\nset xlabel {}\n"
       "set xrange [{:.9g}:{:.9g}]\nset yrange [0:1]\n"
-      "plot '{}' binary array=(256,2) format='%uchar' dx={:.9g} dy=1 origin=({:.9g},0) using 1:2:3 with "
+      "plot {} binary array=(256,2) format='%uchar' dx={:.9g} dy=1 origin=({:.9g},0) using 1:2:3 with "
       "rgbimage\n"
       "unset multiplot\n",
-      y(height - kBar + 14), y(height - kBar + 32), bar_label, low, high, scratch.path("bar"),
-      (high - low) / 255, low);
+      y(height - kBar + 14), y(height - kBar + 32), gnuplot_label(bar_label), low, high,
+      gnuplot_file(scratch.path("bar")), (high - low) / 255, low);
   study::run_gnuplot(scratch, script);
   return contents(scratch.path("plot.png"));
 }
@@ -108,8 +110,8 @@ std::string gnuplot(const std::string& data, const std::string& plot, const std:
       kind == "svg" ? fmt::format("svg size {},{} dynamic font 'Helvetica,14'", width, height)
                     : fmt::format("pngcairo size {},{} font 'Helvetica,13'", width, height);
   study::run_gnuplot(
-      scratch, fmt::format("{}set encoding utf8\nset terminal {} background '#ffffff'\nset output '{}'\n{}", data,
-                           terminal, out, plot));
+      scratch, fmt::format("{}set encoding utf8\nset terminal {} background '#ffffff'\nset output {}\n{}",
+                           data, terminal, gnuplot_file(out), plot));
   return contents(out);
 }
 

@@ -15,6 +15,7 @@
 #include "model/output.h"
 #include "model/process.h"
 #include "model/spelling.h"
+#include "model/text.h"
 #include "study/gnuplot.h"
 
 namespace cuboct {
@@ -52,7 +53,8 @@ double usual_limit(const Rasters& rasters, const RasterPicture& picture, std::ve
   for (const size_t k : picture.frames) {
     const Raster& frame = rasters.frames[k];
     for (size_t pixel = 0; pixel < rasters.grid.pixels(); ++pixel)
-      if (is_seen(rasters, frame, pixel)) all.push_back(std::abs((frame.*values)[pixel]));
+      if (is_seen(rasters, frame, pixel) && std::isfinite((frame.*values)[pixel]))
+        all.push_back(std::abs((frame.*values)[pixel]));
   }
   if (all.empty()) return 0;
   const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 90 / 100);
@@ -99,7 +101,8 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
   // A tall body gets narrower panels, so that the picture is at most twice as high as wide.
   const double shape = static_cast<double>(grid.rows) / grid.columns;
   const int most = (2 * picture.width - kTitle - kBar) / down - kLabel - kTics;
-  const int wide = static_cast<int>(std::min<double>(picture.width / across - kLeft - kRight, most / shape));
+  const int wide =
+      std::max(1, static_cast<int>(std::min<double>(picture.width / across - kLeft - kRight, most / shape)));
   const int high = std::max(1, static_cast<int>(std::lround(wide * shape)));
   const int row = kLabel + high + kTics, height = kTitle + down * row + kBar;
   const double px = grid.pixel * length.factor;
@@ -108,19 +111,20 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
   const Scratch scratch;
   const auto x = [&](int pixel) { return static_cast<double>(pixel) / picture.width; };
   const auto y = [&](int from_top) { return 1 - static_cast<double>(from_top) / height; };
-  std::string title;
-  for (const char c : rasters.title) title += c == '\'' ? "''" : std::string(1, c);
   std::string script = fmt::format(
       "set encoding utf8\nset terminal pngcairo size {},{} font 'Helvetica,13' background '#ffffff'\n"
-      "set output '{}'\nset multiplot\nunset key\nunset colorbox\n"
-      "set label 2 '{}' at screen 0.5,{:.6f} center font 'Helvetica,16' noenhanced\n"
+      "set output {}\nset multiplot\nunset key\nunset colorbox\n"
+      "set label 2 {} at screen 0.5,{:.6f} center font 'Helvetica,16'\n"
       "set palette defined ({})\nset cbrange [{:.9g}:{:.9g}]\n"
-      "set border 15 lc '#888888'\nset tics out nomirror\nset xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n",
-      picture.width, height, scratch.path("plot.png"), title, y(kTitle / 2),
-      picture.field == Field::strain
-          ? "-1 '#08306b', -0.6 '#2171b5', -0.25 '#9ecae1', 0 '#e8e8e8', 0.25 '#fdae6b', 0.6 '#e6550d', 1 '#7f0000'"
-          : "0 '#440154', 1 '#472c7a', 2 '#3b518b', 3 '#2c718e', 4 '#21908d', 5 '#27ad81', 6 '#5cc863', 7 '#aadc32', "
-            "8 '#fde725'",
+      "set border 15 lc '#888888'\nset tics out nomirror\nset xrange [{:.9g}:{:.9g}]\nset yrange "
+      "[{:.9g}:{:.9g}]\n",
+      picture.width, height, gnuplot_file(scratch.path("plot.png")), gnuplot_label(rasters.title),
+      y(kTitle / 2),
+      picture.field == Field::strain ? "-1 '#08306b', -0.6 '#2171b5', -0.25 '#9ecae1', 0 '#e8e8e8', 0.25 "
+                                       "'#fdae6b', 0.6 '#e6550d', 1 '#7f0000'"
+                                     : "0 '#440154', 1 '#472c7a', 2 '#3b518b', 3 '#2c718e', 4 '#21908d', 5 "
+                                       "'#27ad81', 6 '#5cc863', 7 '#aadc32', "
+                                       "8 '#fde725'",
       picture.field == Field::strain ? -limit : 0, limit, left, left + grid.columns * px, bottom,
       bottom + grid.rows * px);
   for (int n = 0; n < panels; ++n) {
@@ -139,12 +143,12 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
         "set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\nset tmargin at screen {:.6f}\n"
         "set bmargin at screen {:.6f}\nset label 1 'step {},  t = {:.4g} {}' at screen {:.6f},{:.6f} front\n"
         "set ylabel '{}, {}' offset 1.5\nset label 3 '{}, {}' at screen {:.6f},{:.6f} right front\n"
-        "plot '{}' binary array=({},{}) format='%float' dx={:.9g} dy={:.9g} origin=({:.9g},{:.9g}) with image\n"
+        "plot {} binary array=({},{}) format='%float' dx={:.9g} dy={:.9g} origin=({:.9g},{:.9g}) with image\n"
         "unset label 2\n",
-        x(from_left), x(from_left + wide), y(from_top), y(from_top + high), frame.step, frame.time * time.factor,
-        time.name, x(from_left), y(from_top - kLabel / 2), "xyz"[grid.up], length.name, "xyz"[grid.right],
-        length.name, x(from_left + wide), y(from_top - kLabel / 2), name, grid.columns, grid.rows, px, px,
-        left + px / 2, bottom + px / 2);
+        x(from_left), x(from_left + wide), y(from_top), y(from_top + high), frame.step,
+        frame.time * time.factor, time.name, x(from_left), y(from_top - kLabel / 2), "xyz"[grid.up],
+        length.name, "xyz"[grid.right], length.name, x(from_left + wide), y(from_top - kLabel / 2),
+        gnuplot_file(name), grid.columns, grid.rows, px, px, left + px / 2, bottom + px / 2);
   }
   // The bar: a raster of the same palette.
   std::vector<float> bar;
@@ -153,13 +157,14 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
   write_text(scratch.path("bar"),
              std::string(reinterpret_cast<const char*>(bar.data()), bar.size() * sizeof(float)));
   script += fmt::format(
-      "unset label 1\nunset label 3\nunset ylabel\nunset ytics\nset lmargin at screen 0.25\nset rmargin at screen "
-      "0.75\nset tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\nset xlabel '{}'\n"
+      "unset label 1\nunset label 3\nunset ylabel\nunset ytics\nset lmargin at screen 0.25\nset rmargin at "
+      "screen "
+      "0.75\nset tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\nset xlabel {}\n"
       "set xrange [{:.9g}:{:.9g}]\nset yrange [0:1]\n"
-      "plot '{}' binary array=(256,2) format='%float' dx={:.9g} dy=1 origin=({:.9g},0) with image\n"
+      "plot {} binary array=(256,2) format='%float' dx={:.9g} dy=1 origin=({:.9g},0) with image\n"
       "unset multiplot\n",
-      y(height - kBar + 10), y(height - kBar + 28), shown.label, low, limit, scratch.path("bar"),
-      (limit - low) / 255, low);
+      y(height - kBar + 10), y(height - kBar + 28), gnuplot_label(shown.label), low, limit,
+      gnuplot_file(scratch.path("bar")), (limit - low) / 255, low);
   study::run_gnuplot(scratch, script);
   std::ifstream in(scratch.path("plot.png"), std::ios::binary);
   std::ostringstream bytes;

@@ -11,21 +11,16 @@
 #include "cli/outputs.h"
 #include "cli/plot.h"
 #include "cli/summary.h"
+#include "hw/state_bounds.h"
 #include "model/base64.h"
 #include "model/compare.h"
 #include "model/output.h"
+#include "model/text.h"
 
 namespace cuboct {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
-}
 
 const Curve* find_curve(const Trace& trace, const std::string& name) {
   for (const Curve& curve : trace.curves)
@@ -41,7 +36,7 @@ struct Tension {
 };
 std::optional<Tension> tension_of(const Trace& trace, const std::string& name) {
   Tension tension{name, find_curve(trace, name + ".strain"), find_curve(trace, name + ".stress"), 0};
-  if (!tension.strain || !tension.stress) return std::nullopt;
+  if (!tension.strain || !tension.stress || tension.strain->step != tension.stress->step) return std::nullopt;
   const auto& value = tension.stress->value;
   tension.peak = static_cast<size_t>(std::max_element(value.begin(), value.end()) - value.begin());
   return tension;
@@ -100,10 +95,12 @@ std::string pictures(const Loaded& loaded, const Trace& trace, const std::vector
   }
   // The scale ends at the 98th percentile: the few pairs that a crack parts would else take all of it.
   std::vector<float> all;
-  for (const auto& strain : strains) all.insert(all.end(), strain.begin(), strain.end());
+  for (const auto& strain : strains)
+    std::copy_if(strain.begin(), strain.end(), std::back_inserter(all),
+                 [](float s) { return std::isfinite(s); });
   const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 98 / 100);
   std::nth_element(all.begin(), end, all.end());
-  const double low = 0, high = std::max(double{*end}, 1e-4);
+  const double low = 0, high = std::max(all.empty() ? 0.0 : double{*end}, 1e-4);
   all = {};
   int height = 0;
   constexpr int kWidth = 1100;
@@ -246,7 +243,7 @@ std::string engine_row(const Loaded& loaded, const Trace& trace, const std::stri
   return fmt::format(
       "<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.3g}</td><td>{}</td></"
       "tr>\n",
-      escaped(trace.engine), trace.steps(), updates, equal,
+      html_text(trace.engine), trace.steps(), updates, equal,
       cycles ? fmt::format("{:.1f}", cycles->mean) : "–", cycles ? std::to_string(cycles->max) : "–",
       trace.seconds,
       trace.seconds > 0 ? fmt::format("{:.3g}", static_cast<double>(updates) / trace.seconds) : "–");
@@ -281,7 +278,7 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
       if (&other != &trace && verdict.empty())
         if (const auto mismatch = compare(other, trace))
           verdict = "<b class=\"bad\">" +
-                    escaped(mismatch->text(other.engine, trace.engine, loaded.setup.plan.lattice)) + "</b>";
+                    html_text(mismatch->text(other.engine, trace.engine, loaded.setup.plan.lattice)) + "</b>";
     const uint64_t bits = trace.steps() * loaded.setup.plan.particles *
                           static_cast<uint64_t>(loaded.setup.plan.words.particle_bits);
     if (verdict.empty()) verdict = traces.size() < 2 ? "no other trace to compare" : fmt::format("{} bits equal", bits);
@@ -298,8 +295,8 @@ std::string table_of(const Items& items, const std::string& without = {}) {
   for (const Items::Item& item : items.all())
     if (!item.list && item.name != without)  // lists are warnings, which have a section
       out += fmt::format("<tr><th>{}</th><td>{}{}{} <span class=\"note\">{}</span></td></tr>\n",
-                         escaped(item.name), escaped(item.text), item.unit.empty() ? "" : " ", escaped(item.unit),
-                         escaped(item.note));
+                         html_text(item.name), html_text(item.text), item.unit.empty() ? "" : " ",
+                         html_text(item.unit), html_text(item.note));
   return out + "</table></div>\n";
 }
 
@@ -338,13 +335,17 @@ void report(const std::string& directory, std::string out) {
     throw InputError(fmt::format("{}/trace.h5 was made by plan {:016x}, but {} now gives plan {:016x}",
                                  directory, trace.plan_hash, record.scene, plan.hash),
                      "run the scene again");
+  check_frames(trace, bounds_of(plan), directory + "/trace.h5");
   std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      // The policy lets a browser run nothing and load nothing.
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+      "http-equiv=\"Content-Security-Policy\" "
+      "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">\n<meta name=\"viewport\" "
       "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</"
       "h1>\n"
       "<p class=\"lead\">{2} particles on {3} nodes, {4} steps of {5:.4g} s in the {6} engine{7}.</p>\n",
-      escaped(loaded.scene.title.empty() ? record.scene : loaded.scene.title), kStyle, plan.particles,
-      plan.nodes(), trace.steps(), plan.rule.dt, escaped(trace.engine),
+      html_text(loaded.scene.title.empty() ? record.scene : loaded.scene.title), kStyle, plan.particles,
+      plan.nodes(), trace.steps(), plan.rule.dt, html_text(trace.engine),
       trace.asked && trace.steps() != trace.asked
           ? fmt::format(", <b class=\"bad\">{} after {} of {} steps</b>", trace.ended(), trace.steps(), *trace.asked)
           : "");
@@ -364,7 +365,7 @@ void report(const std::string& directory, std::string out) {
   html += "<h2>Plan</h2>\n" + table_of(resolve(loaded), "steps");  // the scene's, which need not be the run's
   html += "</body>\n</html>\n";
   write_text(out, html);
-  fmt::print("{}\n", out);
+  fmt::print("{}\n", line_text(out));
 }
 
 }  // namespace

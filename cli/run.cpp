@@ -33,7 +33,19 @@ struct Options {
   uint64_t frames_every = 0;
   uint32_t raster = 800;
   bool steps_given = false, frames_given = false, hashes_given = false, json = false, no_watch = false,
-       no_states = false, si = false;
+       no_states = false, si = false, raster_given = false;
+
+  // Options of what is kept say nothing where nothing is.
+  void check_kept() const {
+    const auto needs_out = [&](bool given, const char* option) {
+      if (given && out.empty())
+        throw InputError(fmt::format("{} needs --out DIR: without it nothing of the run is kept", option));
+    };
+    needs_out(frames_given, "--frames-every");
+    needs_out(raster_given, "--raster");
+    needs_out(no_states, "--no-states");
+    needs_out(si, "--si");
+  }
 };
 
 void write_outputs(const Options& options, const Loaded& loaded, Trace& trace,
@@ -78,8 +90,7 @@ RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::Latti
 }
 
 int run(Options options) {
-  if (options.si && options.out.empty())
-    throw InputError("--si needs --out DIR: without it nothing of the run is kept");
+  options.check_kept();
   std::vector<std::string> allowed = fixed_engines();
   allowed.push_back("reference");
   check_engine(options.engine, allowed);
@@ -221,21 +232,22 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--resume", lattice.resume, "go on from the checkpoint in DIR");
   command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
       ->type_name("DIR");
-  command
-      ->add_option("--raster", options->raster,
-                   "pixels along the body of the pictures that DIR keeps of its frames")
-      ->check(CLI::Range(16u, 16384u))
-      ->capture_default_str()
-      ->type_name("PX");
+  auto* raster = command
+                     ->add_option("--raster", options->raster,
+                                  "pixels along the body of the pictures that DIR keeps of its frames")
+                     ->check(CLI::Range(16u, 16384u))
+                     ->capture_default_str()
+                     ->type_name("PX");
   command->add_flag("--no-states", options->no_states,
                     "of the frames, DIR keeps rasters.h5 alone: for bodies of millions of particles");
   command->add_flag("--si", options->si, "the trace in DIR holds positions and velocities in m and m/s as well");
   command->add_flag("--no-watch", options->no_watch,
                     "do not look for what makes a run wrong (docs/reference/failures.md)");
   command->add_flag("--json", options->json, "print the summary as JSON");
-  command->callback([options, steps, frames, hashes, &exit_code] {
+  command->callback([options, steps, frames, hashes, raster, &exit_code] {
     options->hashes_given = hashes->count() > 0;
     options->steps_given = steps->count() > 0;
+    options->raster_given = raster->count() > 0;
     options->frames_given = frames->count() > 0;
     exit_code = run(*options);
   });

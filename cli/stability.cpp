@@ -15,6 +15,7 @@
 #include "model/interrupt.h"
 #include "model/output.h"
 #include "model/progress.h"
+#include "model/text.h"
 #include "study/json.h"
 #include "study/stability.h"
 
@@ -201,7 +202,7 @@ int stability(const Options& options) {
   std::vector<std::string> drawn;
   const auto print = [&] {
     status.clear();
-    fmt::print("{}", options.json ? json_of(scene, rows) : text_of(scene, rows));
+    fmt::print("{}", options.json ? json_of(scene, rows) : block_text(text_of(scene, rows)));
   };
   try {
     if (scene.pitch > 0) {
@@ -246,7 +247,7 @@ int stability(const Options& options) {
   }
   print();
   if (!options.json)
-    for (const std::string& path : drawn) fmt::print("{}\n", path);
+    for (const std::string& path : drawn) fmt::print("{}\n", line_text(path));
   return 0;
 }
 

@@ -7,6 +7,7 @@
 
 #include "cli/plot.h"
 #include "model/output.h"
+#include "model/text.h"
 
 namespace cuboct {
 
@@ -35,14 +36,14 @@ std::vector<std::string> draw(const study::StabilityMap& map, const std::string&
   // As rectangles an SVG has no file inside; a PNG would show their seams.
   const auto plot = [&](const std::string& kind) {
     return fmt::format(
-      "set border 3 lc '#444444'\nset tics nomirror out\nset key tmargin center horizontal samplen 2\n"
-      "set title '{}'\nset xlabel '{}' noenhanced\nset ylabel 'dt over 2/ω_{{max}} of the free, undamped body'\n"
-      "set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n"
-      "set palette defined ({})\nset cbrange [0:3]\nunset colorbox\n"
-      "plot $cells using 1:2:3 with image {} notitle{}, $theory with lines lw 3 lc rgb '#111111' title "
-      "'theory'\n",
-      map.title, map.x_label, map.x.front() - dx, map.x.back() + dx, map.y.front() - dy, map.y.back() + dy, colours,
-      kind == "svg" ? "pixels" : "", keys);
+        "set border 3 lc '#444444'\nset tics nomirror out\nset key tmargin center horizontal samplen 2\n"
+        "set title {}\nset xlabel {}\nset ylabel 'dt over 2/ω_{{max}} of the free, undamped body'\n"
+        "set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n"
+        "set palette defined ({})\nset cbrange [0:3]\nunset colorbox\n"
+        "plot $cells using 1:2:3 with image {} notitle{}, $theory with lines lw 3 lc rgb '#111111' title "
+        "'theory'\n",
+        gnuplot_label(map.title), gnuplot_label(map.x_label), map.x.front() - dx, map.x.back() + dx,
+        map.y.front() - dy, map.y.back() + dy, colours, kind == "svg" ? "pixels" : "", keys);
   };
   std::vector<std::string> names;
   for (const char* kind : {"png", "svg"}) {

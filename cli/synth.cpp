@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "model/text.h"
 #include "rtl/synth/flow.h"
 #include "rtl/synth/tool.h"
 
@@ -54,13 +55,14 @@ void add_synth(CLI::App& app, int& exit_code) {
     try {
       const synth::Report report = synth::synthesise(asked);
       if (options->json) {
-        fmt::print("{}\n", synth::to_json(report).dump(2));
+        fmt::print("{}\n", synth::report_json(report));
       } else {
-        fmt::print("{}{:<22} {}\n", synth::print_table(report), "files", synth::results_directory(asked));
+        fmt::print("{}{:<22} {}\n", block_text(synth::print_table(report)), "files",
+                   line_text(synth::results_directory(asked)));
       }
     } catch (const synth::ToolFailed& error) {
-      fmt::print(stderr, "{}\n  hint: its log is {}.failed/{}\n", error.what(),
-                 synth::results_directory(asked), error.log);
+      fmt::print(stderr, "{}\n  hint: its log is {}.failed/{}\n", line_text(error.what()),
+                 line_text(synth::results_directory(asked)), line_text(error.log));
       exit_code = 1;
     } catch (const synth::Interrupted&) {
       fmt::print(stderr, "interrupted; nothing was written\n");

@@ -18,6 +18,7 @@
 #include "model/output.h"
 #include "model/state_meter.h"
 #include "model/steps.h"
+#include "model/text.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -185,9 +186,9 @@ int run(Request request) {
     fmt::print("{} steps of {} particles on {}, {:.3g} particle-steps/s\n", trace.steps(), plan.particles,
                fmt::join(names, ", "),
                static_cast<double>(trace.steps()) * plan.particles / std::max(trace.seconds, 1e-9));
-  for (const Finding& finding : trace.findings) fmt::print("warning: {}\n", finding.text);
+  for (const Finding& finding : trace.findings) fmt::print("warning: {}\n", line_text(finding.text));
   if (result.interrupted && !trace.stop) fmt::print("interrupted after step {}\n", trace.steps());
-  if (trace.stop) fmt::print(stderr, "{}: {}\n", request.scene, trace.stop->text);
+  if (trace.stop) fmt::print(stderr, "{}: {}\n", line_text(request.scene), line_text(trace.stop->text));
   return result.interrupted || trace.stop || !trace.findings.empty() ? 1 : 0;
 }
 
@@ -249,7 +250,7 @@ int run_gpu_program(int argc, char** argv) {
     fmt::print(stderr, "{}\n", e.what());
     return 2;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "cuboct-gpu: {}\n", e.what());
+    fmt::print(stderr, "cuboct-gpu: {}\n", block_text(e.what()));
     return 1;
   }
 }

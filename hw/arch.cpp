@@ -5,6 +5,7 @@
 
 #include "hw/bricks.h"
 #include "model/config.h"
+#include "model/name.h"
 
 namespace cuboct {
 namespace {
@@ -81,7 +82,7 @@ void read_plan(const ConfigTable& table, Carry& carry) {
 
 Arch arch_of(const ConfigTable& root) {
   Arch arch;
-  arch.name = root.at("name").string();
+  arch.name = read_name(root.at("name"));
   if (const auto node = root.table_at("node")) read_node(*node, arch);
   if (const auto link = root.table_at("link")) {
     if (const auto bits = link->find("bits"))

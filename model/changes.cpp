@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "model/error.h"
+#include "model/text.h"
 
 namespace cuboct {
 namespace {
@@ -46,6 +47,18 @@ std::vector<std::string> parts_of(const std::string& key) {
       parts.back() += c;
   }
   return parts;
+}
+
+// A part of a key as TOML has it: bare where it may be.
+std::string key_text(const std::string& part) {
+  const bool bare =
+      part.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+      std::string::npos;
+  return bare && !part.empty() ? part : toml_string(part);
+}
+
+std::string joined(const std::string& above, const std::string& part) {
+  return above.empty() ? key_text(part) : fmt::format("{}.{}", above, key_text(part));
 }
 
 void check_value(const std::string& path, const Change& change) {
@@ -113,17 +126,18 @@ std::string with_change(std::string text, const std::string& path, const Change&
     if (next == nullptr) {
       if (change.value.empty()) return text;
       std::string name = above;
-      for (size_t rest = k; rest + 1 < parts.size(); ++rest) name += (name.empty() ? "" : ".") + parts[rest];
+      for (size_t rest = k; rest + 1 < parts.size(); ++rest) name = joined(name, parts[rest]);
       if (!text.empty() && text.back() != '\n') text += '\n';
-      return text + fmt::format("\n[{}]\n{} = {}\n", name, parts.back(), change.value);
+      return text + fmt::format("\n[{}]\n{} = {}\n", name, key_text(parts.back()), change.value);
     }
-    above += (above.empty() ? "" : ".") + parts[k];
+    above = joined(above, parts[k]);
     node = next;
   }
   toml::node* value = child(*node, parts.back(), path, change);
   if (value == nullptr) {
     if (change.value.empty()) return text;
-    return with_added(std::move(text), *node->as_table(), node == &root, parts.back() + " = " + change.value);
+    return with_added(std::move(text), *node->as_table(), node == &root,
+                      key_text(parts.back()) + " = " + change.value);
   }
   if (change.value.empty()) {
     if (!node->is_table())

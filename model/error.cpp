@@ -3,13 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
+
+#include "model/error_parts.h"
+#include "model/text.h"
+
 namespace cuboct {
 namespace {
 
-constexpr const char* kHint = "\n  hint: ";
+constexpr std::string_view kHint = "\n  hint: ";
 
-std::string with_hint(std::string text, const std::string& hint) {
-  return hint.empty() ? text : text + kHint + hint;
+std::string with_hint(const std::string& message, const std::string& hint) {
+  return hint.empty() ? line_text(message) : line_text(message) + std::string(kHint) + line_text(hint);
 }
 
 }  // namespace
@@ -21,9 +26,13 @@ InputError::InputError(const std::string& file, int line, int column, const std:
                        const std::string& hint)
     : std::runtime_error(with_hint(fmt::format("{}:{}:{}: {}", file, line, column, message), hint)) {}
 
-InputError InputError::with(const std::string& hint) const {
-  const std::string text = what();
-  return InputError(text.substr(0, text.find(kHint)), hint);
+InputError InputError::with(const std::string& hint) const { return InputError(parts_of(*this).message, hint); }
+
+ErrorParts parts_of(const InputError& error) {
+  const std::string text = error.what();
+  const size_t at = text.find(kHint);
+  return at == std::string::npos ? ErrorParts{text, ""}
+                                 : ErrorParts{text.substr(0, at), text.substr(at + kHint.size())};
 }
 
 const char* to_string(Fault fault) {

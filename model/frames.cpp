@@ -13,16 +13,13 @@
 
 #include "model/base64.h"
 #include "model/output.h"
+#include "model/text.h"
 
 namespace cuboct {
 namespace {
 
-// OVITO splits species at blanks.
 std::string species(const FrameStyle& style, uint8_t type) {
-  std::string name = type < style.types.size() ? style.types[type] : fmt::format("type{}", type);
-  for (char& c : name)
-    if (c == ' ' || c == '\t') c = '_';
-  return name;
+  return xyz_word(type < style.types.size() ? style.types[type] : fmt::format("type{}", type));
 }
 
 struct Box {
@@ -180,7 +177,7 @@ void write_vtk(const std::string& stem, const FrameSource& frames, const FrameSt
   for (const Frame* frame = frames(true); frame; frame = frames(false), ++k) {
     write_text(file(k), [&](TextFile& out) { write_vtp(out, *frame, style); });
     list += fmt::format("    <DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}_{:06}.vtp\"/>\n", frame->time,
-                        name, k);
+                        html_text(name), k);
   }
   for (; std::filesystem::remove(file(k)); ++k) {  // of an earlier, longer run
   }

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <hdf5.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -259,11 +261,13 @@ class Writer {
   Handle file_;
 };
 
+// Reads files of a stranger: what a file says of its own lengths is held against the bytes that it has before
+// any memory is taken, and nothing is read from another file.
 class Reader {
  public:
   // `kind` of cuboct's files, for errors.
   explicit Reader(const std::string& path, std::string kind = "trace")
-      : path_(path), kind_(std::move(kind)), file_(open(path)) {}
+      : path_(path), kind_(std::move(kind)), file_(open(path)), bytes_(std::filesystem::file_size(path)) {}
 
   hid_t root() const { return file_; }
   std::string missing(const std::string& kind, const std::string& name) const {
@@ -279,13 +283,16 @@ class Reader {
   }
 
   Handle group(hid_t where, const std::string& name) const {
+    check_link(where, name, "group");
     return Handle(H5Gopen2(where, name.c_str(), H5P_DEFAULT), H5Gclose, missing("group", name));
   }
 
   std::string text(hid_t where, const std::string& name) const {
     Handle attribute(H5Aopen(where, name.c_str(), H5P_DEFAULT), H5Aclose, missing("attribute", name));
     Handle type(H5Aget_type(attribute), H5Tclose, missing("attribute", name));
-    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
+    Handle space(H5Aget_space(attribute), H5Sclose, missing("attribute", name));
+    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 ||
+        H5Sget_simple_extent_npoints(space) != 1 || H5Tget_size(type) > bytes_)
       throw InputError(missing("text attribute", name));
     std::string value(H5Tget_size(type), '\0');
     if (H5Aread(attribute, type, value.data()) < 0) throw InputError(missing("text attribute", name));
@@ -310,7 +317,7 @@ class Reader {
     if (Shape(shape.begin() + 1, shape.end()) != columns)
       throw InputError(fmt::format("{} is not a cuboct {}: the shape of '{}' is wrong", path_, kind_, name));
     size_t count = 1;
-    for (const hsize_t extent : shape) count *= extent;
+    for (const hsize_t extent : shape) count *= extent;  // dataset() has seen that it fits
     std::vector<T> values(count);
     if (count > 0 && H5Dread(data, type_in_memory<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
       throw InputError(fmt::format("cannot read '{}' of {}", name, path_));
@@ -345,7 +352,7 @@ class Reader {
     Handle data = dataset(where, name);
     const Shape shape = shape_of(data, name);
     Handle type(H5Dget_type(data), H5Tclose, missing("dataset", name));
-    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
+    if (shape.size() != 1 || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
       throw InputError(missing("list of names", name));
     const size_t width = H5Tget_size(type);
     std::string flat(width * shape[0], '\0');
@@ -366,14 +373,43 @@ class Reader {
 
  private:
   static Handle open(const std::string& path) {
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (!file) throw InputError(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+    std::error_code none;
+    const bool special = std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none);
+    std::FILE* file = special ? nullptr : std::fopen(path.c_str(), "rb");  // a pipe would wait for a writer
+    if (!file)
+      throw InputError(
+          fmt::format("cannot read {}: {}", path, special ? "it is no file" : std::strerror(errno)));
     std::fclose(file);
+    H5PLset_loading_state(0);  // a file may ask for a filter, and a filter is code
     return Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
                   fmt::format("{} is not an HDF5 file", path));
   }
   Handle dataset(hid_t where, const std::string& name) const {
-    return Handle(H5Dopen2(where, name.c_str(), H5P_DEFAULT), H5Dclose, missing("dataset", name));
+    check_link(where, name, "dataset");
+    Handle data(H5Dopen2(where, name.c_str(), H5P_DEFAULT), H5Dclose, missing("dataset", name));
+    const Handle properties(H5Dget_create_plist(data), H5Pclose, missing("dataset", name));
+    if (H5Pget_layout(properties) == H5D_VIRTUAL || H5Pget_external_count(properties) != 0)
+      throw InputError(fmt::format("{}: '{}' takes its values from another file", path_, name),
+                       "a trace of cuboct holds all of its values");
+    // Deflate packs 1032 bytes into one at most, and a value that was never written takes none.
+    constexpr hsize_t kMostPacked = 1100;
+    const hsize_t stored = std::min<hsize_t>(H5Dget_storage_size(data), bytes_) * kMostPacked;
+    const Handle type(H5Dget_type(data), H5Tclose, missing("dataset", name));
+    hsize_t left = stored / std::max<size_t>(H5Tget_size(type), 1);
+    const Shape shape = shape_of(data, name);
+    const bool empty = std::find(shape.begin(), shape.end(), 0) != shape.end();
+    for (const hsize_t extent : shape)
+      if (!empty) left /= extent;
+    if (!empty && left == 0)
+      throw InputError(
+          fmt::format("{} is damaged: '{}' says that it has {} values, and the file does not hold them",
+                      path_, name, fmt::join(shape, " x ")));
+    return data;
+  }
+  void check_link(hid_t where, const std::string& name, const std::string& kind) const {
+    H5L_info_t info;
+    if (H5Lget_info(where, name.c_str(), &info, H5P_DEFAULT) < 0 || info.type != H5L_TYPE_HARD)
+      throw InputError(missing(kind, name));
   }
   Shape shape_of(hid_t data, const std::string& name) const {
     Handle space(H5Dget_space(data), H5Sclose, missing("dataset", name));
@@ -386,6 +422,7 @@ class Reader {
 
   std::string path_, kind_;
   Handle file_;
+  hsize_t bytes_ = 0;  // of the file
 };
 
 }  // namespace cuboct::hdf5

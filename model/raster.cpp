@@ -17,6 +17,8 @@ namespace {
 
 constexpr char kFormat[] = "cuboct rasters";
 constexpr uint32_t kVersion = 1;
+// Along an axis, of what is read; twice what a run writes of its longest, whose ends may fly apart.
+constexpr hsize_t kMostPixels = 1 << 16;
 
 struct Extent {
   Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
@@ -162,11 +164,20 @@ Rasters read_rasters(const std::string& path) {
   grid.bottom = in.number<double>(in.root(), "bottom");
   grid.pixel = in.number<double>(in.root(), "pixel");
   rasters.particle = in.number<double>(in.root(), "particle");
+  for (const auto& [name, value] : {std::pair{"pixel", grid.pixel}, {"particle", rasters.particle}})
+    if (!(value > 0) || !std::isfinite(value))
+      throw InputError(fmt::format("{}: '{}' must be a length above 0, not {}", path, name, value));
+  for (const auto& [name, value] : {std::pair{"left", grid.left}, {"bottom", grid.bottom}})
+    if (!std::isfinite(value))
+      throw InputError(fmt::format("{}: '{}' must be finite, not {}", path, name, value));
   const auto step = in.array<uint64_t>(in.root(), "step"), outside = in.array<uint64_t>(in.root(), "outside");
   const auto time = in.array<double>(in.root(), "time");
   rasters.frames.resize(step.size());
   const hdf5::Shape shape = in.shape(in.root(), "thickness");
   if (shape.size() != 3) throw InputError(fmt::format("{}: 'thickness' has no rows and columns", path));
+  if (shape[0] == 0 || shape[1] == 0 || shape[2] == 0 || std::max(shape[1], shape[2]) > kMostPixels)
+    throw InputError(fmt::format("{}: there is no picture in {} frames of {} x {} pixels", path, shape[0],
+                                 shape[2], shape[1]));
   grid.rows = static_cast<uint32_t>(shape[1]);
   grid.columns = static_cast<uint32_t>(shape[2]);
   const auto field = [&](const char* name, std::vector<float> Raster::*values) {

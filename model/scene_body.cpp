@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "model/error.h"
+#include "model/name.h"
 #include "model/scene_parts.h"
 #include "model/spelling.h"
 
@@ -118,7 +119,7 @@ struct Material {
 std::vector<Material> read_materials(const ConfigTable& root) {
   std::vector<Material> materials;
   for (const ConfigTable& table : root.tables("material")) {
-    Material material{table.at("name").string(),
+    Material material{read_name(table.at("name")),
                       table.number_or("strength", quantity::number, 1, Range::positive())};
     for (const Material& other : materials)
       if (other.name == material.name)
@@ -301,7 +302,7 @@ void read_body(const ConfigTable& root, const Regions& regions, const PackingCho
   std::vector<ParticleType> constraints;
   for (const ConfigTable& table : root.tables("constraint")) {
     ParticleType type = read_constraint(table, scene.rule, scene.pitch);
-    type.name = table.at("name").string();
+    type.name = read_name(table.at("name"));
     for (const ParticleType& other : constraints)
       if (other.name == type.name)
         table.at("name").fail(fmt::format("constraint '{}' is there twice", type.name));

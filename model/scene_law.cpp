@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "model/dynamical_matrix.h"
-#include "model/error.h"
+#include "model/error_parts.h"
 #include "model/law.h"
 #include "model/scene_parts.h"
 #include "model/spelling.h"
@@ -50,7 +50,8 @@ auto placed(const ConfigTable& table, Make make) {
   try {
     return make();
   } catch (const InputError& error) {
-    table.fail(error.what());
+    const ErrorParts parts = parts_of(error);
+    table.fail(parts.message, parts.hint);
   }
 }
 

@@ -2,6 +2,7 @@
 // The [[probe]] tables of a scene.
 #include <fmt/format.h>
 
+#include "model/name.h"
 #include "model/scene_parts.h"
 
 namespace cuboct {
@@ -21,7 +22,7 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
     Probe probe;
     const std::vector<std::string> kinds = {"force", "displacement", "stress_strain"};
     probe.kind = static_cast<Probe::Kind>(table.at("kind").choice("probe", kinds));
-    probe.name = table.at("name").string();
+    probe.name = read_name(table.at("name"));
     for (const Probe& other : scene.probes)
       if (other.name == probe.name)
         table.at("name").fail(fmt::format("probe '{}' is there twice", probe.name));

@@ -89,6 +89,8 @@ std::vector<State> read_frames(const Reader& in) {
                      first.back() == static_cast<int64_t>(count) &&
                      std::is_sorted(first.begin(), first.end()),
                  "the frames' fields");
+  for (const char* field : {"type", "node", "x", "v", "u"})
+    in.same_length(in.length(group, field) == count, "the frames' fields");
   std::vector<State> frames(step.size());
   for (size_t k = 0; k < frames.size(); ++k) {
     frames[k].step = step[k];
@@ -218,7 +220,7 @@ void write_curves(const Writer& out, const std::vector<Curve>& curves) {
   const Handle group = out.group(out.root(), "curves");
   uint32_t index = 0;
   for (const Curve& curve : curves) {
-    if (curve.name.empty() || curve.name.find('/') != std::string::npos)
+    if (curve.name.empty() || curve.name == "." || curve.name.find('/') != std::string::npos)
       throw InputError(fmt::format(
           "a curve cannot be called '{}' in a trace: a name needs characters, none of them '/'", curve.name));
     const Handle one = out.group(group, curve.name);

@@ -8,7 +8,8 @@
 #include <functional>
 #include <optional>
 
-#include "model/error.h"
+#include "model/error_parts.h"
+#include "model/text.h"
 
 namespace cuboct::study {
 namespace {
@@ -148,9 +149,8 @@ void try_alone(const ConfigValue& value, const Set& set, const Base& base) {
   try {
     resolve(base, settings);
   } catch (const InputError& error) {
-    const std::string text = without_place(error.what());
-    const size_t hint = text.find("\n  hint: ");
-    value.fail(text.substr(0, hint), hint == std::string::npos ? "" : text.substr(hint + 9));
+    const ErrorParts parts = parts_of(error);
+    value.fail(without_place(parts.message), parts.hint);
   }
 }
 
@@ -201,19 +201,10 @@ void add_leaves(const ConfigTable& table, const std::string& prefix, std::vector
   }
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c == '\n' || c == '\t' ? ' ' : c;
-  }
-  return out + "\"";
-}
-
 }  // namespace
 
 std::string toml_text(const ConfigValue& value) {
-  if (value.is_string()) return quoted(value.string());
+  if (value.is_string()) return toml_string(value.string());
   if (value.is_number()) return fmt::format("{}", value.number(quantity::number));
   if (!value.is_array()) return value.boolean() ? "true" : "false";
   std::string text;

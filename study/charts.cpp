@@ -8,6 +8,7 @@
 #include <set>
 
 #include "model/output.h"
+#include "model/text.h"
 #include "study/gnuplot.h"
 #include "study/measures.h"
 #include "study/page.h"
@@ -21,12 +22,6 @@ constexpr size_t kLongName = 24;  // letters
 
 // gnuplot's point types that look like the page's symbols.
 constexpr int kPointTypes[kSymbols] = {7, 5, 9, 13, 11, 15};
-
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? "''" : c == '\n' ? " " : std::string(1, c);
-  return out + "'";
-}
 
 // Whole decades that hold all values; where one of them is 0, a decade below stands for it.
 struct LogRange {
@@ -71,7 +66,7 @@ class Script {
 
   // `reversed`: less is better, and better is to the right.
   void log_axis(char axis, const std::string& label, const LogRange& range, bool reversed = false) {
-    set(fmt::format("{}label {} noenhanced", axis, quoted(label)));
+    set(fmt::format("{}label {}", axis, gnuplot_label(label)));
     set(fmt::format("logscale {}", axis));
     set(fmt::format("format {} '10^{{%T}}'", axis));
     set(fmt::format("{}range [{}:{}]", axis, reversed ? range.high : range.low,
@@ -98,7 +93,7 @@ class Script {
     for (const auto& [x, y] : points) data_ += fmt::format("{} {}\n", x, y);
     data_ += "END\n";
     plots_.push_back(fmt::format("{} using 1:2 with {} {}", block, style,
-                                 title.empty() ? "notitle" : "title " + quoted(title)));
+                                 title.empty() ? "notitle" : fmt::format("title {}", gnuplot_label(title))));
   }
   void end() {
     if (plots_.empty()) return;
@@ -117,7 +112,7 @@ class Script {
   std::string output(const std::string& terminal, const std::string& ending) {
     files_.push_back(name_ + ending);
     return fmt::format("set terminal {}\nset output {}\n", terminal,
-                       quoted(directory_ + "/" + files_.back()));
+                       gnuplot_file(directory_ + "/" + files_.back()));
   }
 
   std::string directory_, name_, settings_, data_, text_;
@@ -182,18 +177,18 @@ void draw_parameter(const Results& results, const Parameter& parameter, const Me
   const LogRange y = log_range(ys);
   std::string name = parameter.id;
   std::replace(name.begin(), name.end(), '.', '-');
-  script.begin(fmt::format("{}_by_{}", error.id, name));
+  script.begin(fmt::format("{}_by_{}", error.id, file_word(name)));
   script.key_of(series_of(results));
   if (parameter.logarithmic) {
     script.log_axis('x', parameter.label, log_range(xs));
   } else {
     const auto [low, high] = std::minmax_element(xs.begin(), xs.end());
     const double margin = *high > *low ? 0.06 * (*high - *low) : 1;
-    script.set(fmt::format("xlabel {} noenhanced", quoted(parameter.label)));
+    script.set(fmt::format("xlabel {}", gnuplot_label(parameter.label)));
     script.set(fmt::format("xrange [{}:{}]", *low - margin, *high + margin));
     std::string tics;
     for (size_t k = 0; k < parameter.names.size(); ++k)
-      tics += fmt::format("{}{} {}", k > 0 ? ", " : "", quoted(parameter.names[k]), k);
+      tics += fmt::format("{}{} {}", k > 0 ? ", " : "", gnuplot_text(parameter.names[k]), k);
     if (!tics.empty()) script.set("xtics noenhanced (" + tics + ")");
   }
   script.log_axis('y', error.label, y);

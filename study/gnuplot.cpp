@@ -14,7 +14,7 @@ void run_gnuplot(const Scratch& scratch, const std::string& script) {
   write_text(scratch.path("script.gp"), script);
   int code = 0;
   try {
-    code = Process("gnuplot", {scratch.path("script.gp")}).wait();
+    code = Process("gnuplot", {"-d", scratch.path("script.gp")}).wait();
   } catch (const InputError& error) {
     throw InputError(error.what(), "install gnuplot-nox");
   }

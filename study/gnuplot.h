@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures by gnuplot, from scripts.
+// Pictures by gnuplot, from scripts, in which all text is quoted by model/text.h.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace cuboct::study {
 
-// Runs a script, written into `scratch`. Throws InputError where gnuplot is not there, std::runtime_error
-// where it ends with an error (its own text is on stderr).
+// Runs a script, written into `scratch`, without the user's own settings of gnuplot. Throws InputError where
+// gnuplot is not there, std::runtime_error where it ends with an error (its own text is on stderr).
 void run_gnuplot(const Scratch& scratch, const std::string& script);
 
 }  // namespace cuboct::study

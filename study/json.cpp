@@ -5,20 +5,11 @@
 
 #include <cmath>
 
+#include "model/text.h"
+
 namespace cuboct::study {
 
-std::string json(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      out += {'\\', c};
-    else if (c == '<' || static_cast<unsigned char>(c) < 0x20)
-      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-    else
-      out += c;
-  }
-  return out + '"';
-}
+std::string json(const std::string& text) { return json_text(text); }
 
 std::string json(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 

@@ -45,9 +45,19 @@ double quantile(std::vector<double> values, double part) {
   return *nth;
 }
 
+// A truth may come from another's results: its bodies must be the case's.
+void check_body(const Body& body, const Scene& scene) {
+  const bool alike = body.x.size() == scene.body.size() && body.v.size() == scene.body.size() &&
+                     body.type == scene.body.type &&
+                     std::ranges::all_of(body.x, [](const Vec3& x) { return x.allFinite(); });
+  if (!alike)
+    throw InputError("a truth in the results is of another scene", "remove the results and begin again");
+}
+
 void compare_forces(const Case& c, const Plan* plan, const Truth& own, Outcome& outcome) {
   std::vector<double> errors;
   for (const KeptState& state : own.states) {
+    check_body(state.body, c.scene);
     Body body = state.body;
     body.u.clear();  // pair forces do not depend on the anchors
     const std::vector<Vec3> truth = Reference(c.scene.rule, body, c.scene.periodic, RealOptions{}).forces();
@@ -118,6 +128,7 @@ void measure_run(const Study& study, const Truth& truth, const Truth& own, const
     add_reason(outcome, run.stop);
   }
   if (!run.kept.empty()) {
+    check_body(own.horizon.body, c.scene);
     outcome.errors.trajectory =
         rms_distance(run.kept[0].x, own.horizon.body.x, c.scene.periodic) / length_unit(c.scene);
     if (!(outcome.errors.trajectory <= 1)) {

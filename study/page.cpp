@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "model/output.h"
+#include "model/text.h"
 #include "study/json.h"
 #include "study/measures.h"
 #include "study/parameters.h"
@@ -175,22 +176,15 @@ std::string data_of(const Results& results) {
       .text();
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
-}
-
 }  // namespace
 
 // The frame's places "@name@", in their order.
 std::string page_of(const Results& results) {
-  const std::string title = escaped(results.title.empty() ? "A study" : results.title);
+  const std::string title = html_text(results.title.empty() ? "A study" : results.title);
   const std::pair<const char*, std::string> parts[] = {{"@title@", title},
                                                        {"@style@", std::string(web_style())},
                                                        {"@title@", title},
-                                                       {"@licences@", escaped(std::string(web_licences()))},
+                                                       {"@licences@", html_text(std::string(web_licences()))},
                                                        {"@data@", data_of(results)},
                                                        {"@library@", std::string(web_library())},
                                                        {"@script@", std::string(web_script())}};

@@ -33,7 +33,8 @@ const Truth& Runner::truth() {
   const auto [at, fresh] = truths_.try_emplace("");
   if (!fresh) return at->second;
   try {
-    if (auto kept = store_.truth("")) return at->second = std::move(*kept);
+    if (auto kept = store_.truth(""); kept && kept->figures.size() == study_.figures.size())
+      return at->second = std::move(*kept);
     const auto compute = [&] {
       at->second = make_truth(study_, options_.jobs, store_.truth(kBegun).value_or(Truth()),
                               [&](const Truth& so_far) { store_.put_truth(kBegun, so_far); });

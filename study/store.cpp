@@ -6,13 +6,16 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <mutex>
 #include <set>
 #include <sstream>
 #include <thread>
 
-#include "model/error.h"
+#include "model/error_parts.h"
+#include "model/text.h"
 #include "study/sqlite.h"
 #include "study/truth_bytes.h"
 
@@ -69,6 +72,14 @@ std::string text_of(const Settings& settings) {
   return text;
 }
 
+int whole_number(const std::string& text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw InputError(fmt::format("results with '{}' for a whole number", text));
+  return value;
+}
+
 Settings settings_of(const std::string& text) {
   Settings settings;
   std::istringstream lines(text);
@@ -82,7 +93,7 @@ Settings settings_of(const std::string& text) {
     else if (key == "integrator")
       settings.integrator = named<Integrator>(kIntegrators, value);
     else if (key == "threads")
-      settings.threads = std::stoi(value);
+      settings.threads = whole_number(value);
     else if (key.starts_with("scene."))
       settings.scene.push_back({key.substr(6), value});
     else if (key.starts_with("arch."))
@@ -120,6 +131,20 @@ Speed read_speed(Query& row) {
   speed.repeats = static_cast<int>(row.integer());
   speed.machine = row.text();
   return speed;
+}
+
+// Of a file that may be another's: what is kept must be of the study.
+void check_truth(const Truth& truth, const Study& study) {
+  const size_t figures = study.figures.size();
+  const auto fits = [&](const std::vector<double>& values) {
+    return values.empty() || values.size() == figures;
+  };
+  const bool whole = !truth.rungs.empty() && fits(truth.figures) &&
+                     truth.grid.samples == study.grid.samples && truth.grid.sample == study.grid.sample &&
+                     truth.grid.horizon <= truth.grid.samples &&
+                     std::ranges::all_of(truth.rungs, [&](const Rung& rung) { return fits(rung.figures); });
+  if (!whole)
+    throw InputError("a truth in the results is not of this study", "remove the results and begin again");
 }
 
 }  // namespace
@@ -186,8 +211,9 @@ Store::Store(const std::string& path, const Study& study) {
     impl_->check();
   } catch (const InputError& error) {
     close(lock);
-    const std::string text = error.what();
-    throw text.find(path) == std::string::npos ? InputError(fmt::format("{}: {}", path, text)) : error;
+    const ErrorParts parts = parts_of(error);
+    if (parts.message.find(line_text(path)) != std::string::npos) throw;
+    throw InputError(fmt::format("{}: {}", path, parts.message), parts.hint);
   }
 }
 
@@ -213,7 +239,9 @@ std::optional<Truth> Store::truth(const std::string& physics) const {
   const std::lock_guard guard(impl_->mutex);
   Query row(impl_->database, "SELECT truth FROM truths WHERE physics = ?");
   if (!row.bind(physics).next()) return std::nullopt;
-  return truth_of(row.blob());
+  Truth truth = truth_of(row.blob());
+  check_truth(truth, impl_->study);
+  return truth;
 }
 
 void Store::drop_truth(const std::string& physics) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/text.h"
 #include "study/front.h"
 #include "study/measures.h"
 
@@ -22,14 +23,15 @@ double error_of(const Results& results, const Outcome& outcome) {
 
 std::string short_name(const Settings& settings) {
   std::string text = name_of(settings.arithmetic);
-  if (settings.engine != "lattice" && settings.engine != "reference") text = settings.engine + " " + text;
+  if (settings.engine != "lattice" && settings.engine != "reference")
+    text = line_text(settings.engine) + " " + text;
   if (settings.arithmetic != Arithmetic::fixed)
     text += settings.integrator == Integrator::velocity_verlet ? " verlet" : " euler";
   const auto add = [&](const Change& change) {
     if (change.value.empty() || change.value == "\"auto\"") return;
     std::string value = change.value;
     std::erase(value, '"');
-    text += fmt::format(" {} {}", change.key.substr(change.key.rfind('.') + 1), value);
+    text += line_text(fmt::format(" {} {}", change.key.substr(change.key.rfind('.') + 1), value));
   };
   for (const Change& change : settings.scene) add(change);
   for (const Change& change : settings.arch) add(change);
@@ -53,17 +55,18 @@ std::string cheapest_per_decade(const Results& results) {
   text += row("at most", "error", "cost", "steps/s", "s/s", "settings");
   for (const Cheapest& best : cheapest_by_decade(results.outcomes, error, speed)) {
     const Outcome& outcome = results.outcomes[best.point];
-    text += row(best.exponent == Cheapest::kExact ? "0" : fmt::format("1e{}", best.exponent), number(error(outcome)),
-                number(outcome.cost), number(outcome.speed.particle_steps), number(outcome.speed.simulated_seconds),
-                short_name(outcome.settings) +
-                    (outcome.measured_on().empty() ? "" : fmt::format(" ({})", outcome.measured_on())));
+    text += row(
+        best.exponent == Cheapest::kExact ? "0" : fmt::format("1e{}", best.exponent), number(error(outcome)),
+        number(outcome.cost), number(outcome.speed.particle_steps), number(outcome.speed.simulated_seconds),
+        short_name(outcome.settings) +
+            (outcome.measured_on().empty() ? "" : fmt::format(" ({})", line_text(outcome.measured_on()))));
   }
   return text;
 }
 
 std::string describe(const Truth& truth, const Results& results) {
   std::string text = fmt::format("{:>10}  {:>10}  {:>10}  {:>9}", "dt", "cutoff", "trajectory", "change");
-  for (const std::string& name : results.figure_names) text += fmt::format("  {:>14}", name);
+  for (const std::string& name : results.figure_names) text += fmt::format("  {:>14}", line_text(name));
   text += '\n';
   for (const Rung& rung : truth.rungs) {
     text += fmt::format("{:>10.4g}  {:>10.4g}  {:>10}  {:>9}", rung.dt, rung.cutoff, number(rung.trajectory),
@@ -73,7 +76,7 @@ std::string describe(const Truth& truth, const Results& results) {
   }
   text += fmt::format("horizon {:.4g} s, Lyapunov time {:.4g} s, the truth's own error there {:.2g}\n",
                       truth.grid.horizon_time(), truth.lyapunov_time, truth.floor);
-  for (const std::string& note : truth.notes) text += note + "\n";
+  for (const std::string& note : truth.notes) text += line_text(note) + "\n";
   return text;
 }
 

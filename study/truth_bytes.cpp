@@ -35,7 +35,7 @@ class In {
   size_t count(size_t) {
     uint64_t n = 0;
     raw(n);
-    if (n > bytes_.size()) throw InputError("a truth in the results is cut short");
+    if (n > bytes_.size() - at_) throw InputError("a truth in the results is cut short");
     return n;
   }
 
@@ -50,6 +50,12 @@ template <class Way>
 void field(Way& way, uint8_t& value) { way.raw(value); }
 template <class Way>
 void field(Way& way, char& value) { way.raw(value); }
+template <class Way>
+void field(Way& way, bool& value) {
+  uint8_t byte = value;
+  way.raw(byte);
+  value = byte != 0;
+}
 template <class Way>
 void field(Way& way, Vec3& value) {
   for (int a = 0; a < 3; ++a) way.raw(value[a]);
@@ -87,7 +93,7 @@ template <class Way>
 void all(Way& way, Truth& truth) {
   field(way, truth.rungs), field(way, truth.figures), field(way, truth.states), field(way, truth.horizon);
   field(way, truth.lyapunov_time), field(way, truth.floor), field(way, truth.largest_frequency);
-  way.raw(truth.converged);
+  field(way, truth.converged);
   way.raw(truth.grid.sample), way.raw(truth.grid.samples), way.raw(truth.grid.horizon);
   field(way, truth.notes);
 }

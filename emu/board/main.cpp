@@ -11,6 +11,7 @@
 #include "model/interrupt.h"
 #include "model/output.h"
 #include "model/steps.h"
+#include "model/text.h"
 
 namespace cuboct::emu {
 namespace {
@@ -45,7 +46,7 @@ int run(Request request) {
              trace.steps(), setup.plan.particles, trace.nodes, trace.counters.front().second, count.requests,
              count.retries);
   if (!trace.stop) return 0;
-  fmt::print(stderr, "{}: {}\n", request.scene, trace.stop->text);
+  fmt::print(stderr, "{}: {}\n", line_text(request.scene), line_text(trace.stop->text));
   return 1;
 }
 
@@ -82,7 +83,7 @@ int main_of(int argc, char** argv) {
     fmt::print(stderr, "{}\n", e.what());
     return 2;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "cuboct-fpga: {}\n", e.what());
+    fmt::print(stderr, "cuboct-fpga: {}\n", block_text(e.what()));
     return 1;
   }
 }

@@ -22,7 +22,7 @@ void put(WordWriter& out, const std::vector<Vec3>& list) {
 }
 
 std::vector<Vec3> take_vectors(WordReader& in) {
-  std::vector<Vec3> list(in.word());
+  std::vector<Vec3> list(in.count(3));
   for (Vec3& v : list)
     for (int axis = 0; axis < 3; ++axis) v[axis] = in.number();
   return list;
@@ -94,7 +94,7 @@ CheckpointReader::CheckpointReader(const std::string& path, uint64_t plan_hash, 
   head_.journal.hash = in_.word();
   head_.probes.latest = take_vectors(in_);
   head_.probes.moved = take_vectors(in_);
-  head_.timing.resize(in_.word());
+  head_.timing.resize(in_.count(1));
   in_.words(head_.timing);
   first_ = in_.mark().words;
 }

@@ -57,12 +57,14 @@ Journal::Journal(const std::string& path, uint64_t plan_hash, bool displaced, co
   if (in.word() != kMagic || in.word() != kVersion || in.word() != plan_hash)
     throw InputError(fmt::format("{} is not the journal of this plan", path));
   while (in.mark().words < end.words) {
-    const uint64_t place = in.mark().words, kind = in.word(), step = in.word(), words = in.word();
+    const uint64_t place = in.mark().words, kind = in.word(), step = in.word(), words = in.count(1);
     switch (kind) {
       case kHash:
         trace.state_hash.push_back(in.word());
         break;
       case kSample:
+        if (!trace.curves.empty() && trace.curves.size() != words)
+          throw InputError(fmt::format("{} is damaged: its samples differ in length", path));
         trace.curves.resize(words);
         for (Curve& curve : trace.curves) {
           curve.step.push_back(step);
@@ -128,7 +130,7 @@ std::vector<State> Journal::frames() {
   for (size_t k = 0; k < frames.size(); ++k) {
     frames[k].step = frame_steps_[k];
     in.seek(frame_places_[k] + 2);
-    frames[k].particles.resize(in.word() / (displaced_ ? 10 : 7));
+    frames[k].particles.resize(in.count(1) / (displaced_ ? 10 : 7));
     for (Particle& p : frames[k].particles) p = take_particle(in, displaced_);
   }
   return frames;

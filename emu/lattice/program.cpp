@@ -14,6 +14,7 @@
 #include "model/output.h"
 #include "model/state_meter.h"
 #include "model/steps.h"
+#include "model/text.h"
 
 namespace cuboct::emu {
 namespace {
@@ -83,7 +84,7 @@ int run(Request request) {
   }
   remove_checkpoint(run.checkpoint.path);
   if (!trace.stop) return 0;
-  fmt::print(stderr, "{}: {}\n", request.scene, trace.stop->text);
+  fmt::print(stderr, "{}: {}\n", line_text(request.scene), line_text(trace.stop->text));
   return 1;
 }
 
@@ -141,7 +142,7 @@ int run_lattice_program(int argc, char** argv, Ranks* ranks) {
     if (!ranks || ranks->rank() == 0) fmt::print(stderr, "{}\n", e.what());
     return 2;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "cuboct-lattice: {}\n", e.what());
+    fmt::print(stderr, "cuboct-lattice: {}\n", block_text(e.what()));
     return 1;
   }
 }

@@ -18,6 +18,7 @@
 #include "emu/lattice/journal.h"
 #include "emu/lattice/timing.h"
 #include "hw/setup.h"
+#include "hw/state_bounds.h"
 #include "model/interrupt.h"
 #include "model/output.h"
 #include "model/progress.h"
@@ -38,6 +39,13 @@ int cores() {
 
 bool among(const std::vector<uint64_t>& ascending, uint64_t step) {
   return std::binary_search(ascending.begin(), ascending.end(), step);
+}
+
+// A particle of a checkpoint, which may be a stranger's.
+Particle checked(const Particle& particle, const Plan& plan, const std::string& path) {
+  const std::string wrong = out_of_bounds(particle, bounds_of(plan));
+  if (wrong.empty()) return particle;
+  throw InputError(fmt::format("{} is damaged: particle {}: {}", path, particle.id, wrong));
 }
 
 class Loop {
@@ -118,7 +126,7 @@ void Loop::make_engine(CheckpointReader* from) {
       sum = {};
       if (from) from->rewind();
     }
-    if (from) return from->next();
+    if (from) return checked(from->next(), plan_, save_plan_.path);
     const Particle p = shrinking ? (*shrinking)(k) : particle_(k);
     for (int a = 0; a < 3; ++a) sum[a] += p.v[a];
     return p;

@@ -116,6 +116,14 @@ uint64_t WordReader::word() {
   return value;
 }
 
+uint64_t WordReader::count(uint64_t words_each) {
+  const uint64_t said = word();
+  if (said > (size_ - std::min(size_, read_)) / words_each)
+    throw InputError(fmt::format("{} is damaged: {} things of {} words do not fit behind its word {}", path_,
+                                 said, words_each, read_));
+  return said;
+}
+
 void WordReader::words(std::span<uint64_t> values) {
   for (uint64_t& value : values) value = word();
 }

@@ -66,6 +66,9 @@ class WordReader {
   // Throws InputError ("... is damaged: ...") behind the end.
   uint64_t word();
   double number() { return std::bit_cast<double>(word()); }
+  // The number of things that follow, of at least `words_each`: InputError where the file is too short for
+  // them.
+  uint64_t count(uint64_t words_each);
   void words(std::span<uint64_t> values);
   void seek(uint64_t word);  // the running hash goes on as if the words between were not there
 

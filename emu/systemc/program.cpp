@@ -12,6 +12,7 @@
 #include "model/output.h"
 #include "model/state_meter.h"
 #include "model/steps.h"
+#include "model/text.h"
 
 namespace cuboct::emu {
 namespace {
@@ -83,7 +84,7 @@ int run(const Program& program, Request request) {
                    : fmt::format(" of {} cells", fmt::join(setup.plan.bricks.shape(), " x ")),
                cycles, node_cycles);
   if (!trace.stop) return 0;
-  fmt::print(stderr, "{}: {}\n", request.scene, trace.stop->text);
+  fmt::print(stderr, "{}: {}\n", line_text(request.scene), line_text(trace.stop->text));
   return 1;
 }
 
@@ -124,7 +125,7 @@ int run_program(int argc, char** argv, const Program& program) {
     fmt::print(stderr, "{}\n", e.what());
     return 2;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "{}: {}\n", program.name, e.what());
+    fmt::print(stderr, "{}: {}\n", program.name, block_text(e.what()));
     return 1;
   }
 }

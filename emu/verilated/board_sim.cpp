@@ -19,6 +19,7 @@
 #include "emu/verilated/serial_line.h"
 #include "model/error.h"
 #include "model/interrupt.h"
+#include "model/text.h"
 
 namespace cuboct::emu {
 namespace {
@@ -144,7 +145,7 @@ int main_of(int argc, char** argv) {
     fmt::print(stderr, "{}\n", e.what());
     return 2;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "cuboct-board-sim: {}\n", e.what());
+    fmt::print(stderr, "cuboct-board-sim: {}\n", block_text(e.what()));
     return 1;
   }
 }

@@ -16,6 +16,7 @@
 
 #include "model/error.h"
 #include "model/hash.h"
+#include "model/text.h"
 
 namespace cuboct::emu {
 namespace {
@@ -28,13 +29,6 @@ constexpr const char* kVerilatorFlags = "-O3 -fno-const-bit-op-tree --assert -Wn
 constexpr const char* kCompilerFlags =
     "-std=c++17 -fPIC -fno-gnu-unique -w -DVM_COVERAGE=0 -DVM_TRACE=0 -DVM_TIMING=0 -DVL_USER_STOP";
 
-// For the shell: 'it'\''s'.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
-  return out + "'";
-}
-
 bool succeeds(const std::string& command) {
   const int status = std::system(command.c_str());
   return status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
@@ -42,11 +36,11 @@ bool succeeds(const std::string& command) {
 
 // What the tool says of itself.
 std::string version_of(const std::string& tool, const std::string& package) {
-  if (!succeeds("command -v " + quoted(tool) + " > /dev/null 2>&1"))
+  if (!succeeds("command -v " + shell_word(tool) + " > /dev/null 2>&1"))
     throw InputError(fmt::format(
         "{} is missing: the emitted hardware is compiled with it (Debian package {})", tool, package));
   std::string text;
-  if (FILE* pipe = popen((quoted(tool) + " --version 2>&1").c_str(), "r"); pipe != nullptr) {
+  if (FILE* pipe = popen((shell_word(tool) + " --version 2>&1").c_str(), "r"); pipe != nullptr) {
     std::array<char, 256> part;
     while (std::fgets(part.data(), part.size(), pipe) != nullptr) text += part.data();
     if (pclose(pipe) == 0) return text;
@@ -99,7 +93,7 @@ uint64_t key_of(const Build& build, const fs::path& dir, const std::string& tool
 void run_logged(const std::string& what, const std::string& command, const fs::path& dir,
                 const fs::path& log) {
   const std::string line =
-      fmt::format("cd {} && ({}) >> {} 2>&1", quoted(dir.string()), command, quoted(log.string()));
+      fmt::format("cd {} && ({}) >> {} 2>&1", shell_word(dir.string()), command, shell_word(log.string()));
   if (!succeeds(line)) throw InputError(fmt::format("{} failed: see {}", what, log.string()));
 }
 
@@ -163,7 +157,7 @@ std::string compile(const Build& build, const std::string& directory) {
   run_logged("verilator",
              fmt::format("verilator {} {} --top-module {} --prefix V{} -Mdir {} ../keep.vlt -f files.f",
                          kVerilatorFlags, build.verilator_flags, build.top, build.top,
-                         quoted((dir / "model").string())),
+                         shell_word((dir / "model").string())),
              rtl, log);
   for (const auto& [name_of_source, text] : build.sources) write_file(dir / name_of_source, text);
   std::string arguments;

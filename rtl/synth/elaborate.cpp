@@ -7,6 +7,7 @@
 #include <charconv>
 #include <functional>
 #include <set>
+#include <string_view>
 
 #include "model/error.h"
 #include "model/spelling.h"
@@ -37,12 +38,26 @@ std::string base_name(const std::string& yosys_name) {
   return yosys_name.substr(from, yosys_name.find('\\', from) - from);
 }
 
+// Names go into scripts of yosys, Tcl and a shell.
+void check_name(const std::string& name, const std::string& base) {
+  const auto plain = [](const std::string& text, std::string_view also) {
+    return !text.empty() && std::ranges::all_of(text, [&](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             also.find(c) != also.npos;
+    });
+  };
+  if (plain(base, "_") && plain(name, "_$\\='.:-+")) return;
+  throw InputError(fmt::format("the project has a module called '{}'", name),
+                   "cuboct synth takes modules of letters, digits and '_'");
+}
+
 Design read_design(const std::string& file) {
   const nlohmann::json json = read_json(file);
   Design design;
   for (const auto& [name, module] : json.at("modules").items()) {
     Module& m = design.modules[name];
     m.base = base_name(name);
+    check_name(name, m.base);
     if (module.at("attributes").contains("top")) design.top = name;
     for (const auto& [port, what] : module.at("ports").items())
       m.ports.push_back({port, what.at("direction") == "input", what.at("bits").size()});

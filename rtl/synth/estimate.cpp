@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "model/text.h"
 #include "rtl/synth/json_file.h"
 
 namespace cuboct::synth {
@@ -228,9 +229,9 @@ std::string Timer::wires() const {
 
 std::string Timer::script(const std::string& out, const std::vector<std::string>& clocks, size_t ends) {
   std::string text = fmt::format(
-      "read_liberty {{{0}/cells.lib}}\nread_verilog {{{0}/timed.v}}\nlink_design timed\nset_cmd_units -time "
+      "read_liberty {0}/cells.lib\nread_verilog {0}/timed.v\nlink_design timed\nset_cmd_units -time "
       "ns\n",
-      out);
+      tcl_word(out));
   // 1 us: longer than any path.
   for (const std::string& c : clocks)
     text += fmt::format("create_clock -name {0} -period 1000 [get_ports {0}]\n", c);
@@ -241,9 +242,9 @@ std::string Timer::script(const std::string& out, const std::vector<std::string>
   }
   return text +
          fmt::format(
-             "read_sdf {{{0}/wires.sdf}}\n"
+             "read_sdf {0}/wires.sdf\n"
              "report_checks -path_delay max -fields input_pin -format full -digits 3 -group_count {1}\n",
-             out, ends);
+             tcl_word(out), ends);
 }
 
 std::vector<std::string> Timer::clocks() const {

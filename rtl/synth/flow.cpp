@@ -277,7 +277,7 @@ void store(Pending& pending, Report& report) {
   write_text(pending.path() + "/table.txt", print_table(report));
   write_text(pending.path() + "/report.json", "");  // so that it is among its files
   report.files = pending.files();
-  write_text(pending.path() + "/report.json", to_json(report).dump(2) + "\n");
+  write_text(pending.path() + "/report.json", report_json(report) + "\n");
 }
 
 // Whether a placer saw the netlist that the report is of.

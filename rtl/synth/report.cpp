@@ -171,6 +171,10 @@ std::string print_table(const Report& report) {
   return text;
 }
 
+std::string report_json(const Report& report) {
+  return to_json(report).dump(2, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 nlohmann::ordered_json to_json(const Report& report) {
   const Family family = target_of(report.target).family;
   Json json = {{"plan", report.plan},

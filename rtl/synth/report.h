@@ -74,6 +74,8 @@ std::string elsewhere(const Report& report);
 
 std::string print_table(const Report& report);
 nlohmann::ordered_json to_json(const Report& report);
+// As text that a terminal can show too, whatever names a project has.
+std::string report_json(const Report& report);
 // Reads back what to_json gave. Throws InputError where the file is another's.
 Report read_report(const std::string& file);
 

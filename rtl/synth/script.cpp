@@ -3,17 +3,15 @@
 
 #include <fmt/format.h>
 
+#include "model/text.h"
 #include "rtl/synth/elaborate.h"
 
 namespace cuboct::synth {
 namespace {
 
-// A file name as yosys takes it.
-std::string quoted(const std::string& path) { return "\"" + path + "\""; }
-
 std::string read_all(const std::vector<std::string>& files, const std::string& top) {
   std::string text;
-  for (const std::string& f : files) text += fmt::format("read_verilog -sv {}\n", quoted(f));
+  for (const std::string& f : files) text += fmt::format("read_verilog -sv {}\n", yosys_file(f));
   return text + fmt::format("hierarchy -check -top {}\n", top);
 }
 
@@ -40,7 +38,7 @@ std::string depth_commands(Family family, const std::string& out) {
     case Family::ecp5:
       return flat +
              fmt::format("delete t:TRELLIS_FF t:DP16KD t:PDPW16KD\ntechmap -map {}\n",
-                         quoted(out + "/read_side.v")) +
+                         yosys_file(out + "/read_side.v")) +
              end;
     case Family::xc7:
       return flat + "delete t:FD?E t:RAM* t:SRL* t:DSP48E1\n" + end;
@@ -55,7 +53,7 @@ std::string depth_commands(Family family, const std::string& out) {
 
 std::string elaborate_script(const std::vector<std::string>& files, const std::string& top,
                              const std::string& out) {
-  return read_all(files, top) + fmt::format("proc\nwrite_json {}\n", quoted(out + "/elaborated.json"));
+  return read_all(files, top) + fmt::format("proc\nwrite_json {}\n", yosys_file(out + "/elaborated.json"));
 }
 
 std::string fpga_script(const Synthesis& s, const Target& target) {
@@ -63,12 +61,12 @@ std::string fpga_script(const Synthesis& s, const Target& target) {
   if (s.module != s.unit) text += fmt::format("rename {} {}\n", s.module, s.unit);
   if (s.harness)
     text += fmt::format("read_verilog {}\nsetattr -mod -set keep_hierarchy 1 {}\n",
-                        quoted(s.out + "/harness.v"), s.unit);
+                        yosys_file(s.out + "/harness.v"), s.unit);
   if (!s.kept.empty()) text += fmt::format("setattr -mod -set keep_hierarchy 1 {}\n", s.kept);
   text += fmt::format("{} -top {}\n{}write_json {}\n", synth_command(target), s.harness ? kHarness : s.unit,
-                      s.counts_only ? "" : "autoname\n", quoted(s.out + "/netlist.json"));
+                      s.counts_only ? "" : "autoname\n", yosys_file(s.out + "/netlist.json"));
   if (s.counts_only) return text;
-  text += fmt::format("write_verilog -noattr {}\n", quoted(s.out + "/netlist.v"));
+  text += fmt::format("write_verilog -noattr {}\n", yosys_file(s.out + "/netlist.v"));
   text += depth_commands(target.family, s.out);
   return text;
 }
@@ -88,22 +86,22 @@ std::string asic_script(const Synthesis& s, const std::string& liberty) {
                     "autoname\n"
                     "write_json {3}\n"
                     "write_verilog -noattr {4}\n",
-                    s.unit, quoted(liberty), quoted(s.out + "/abc.constr"), quoted(s.out + "/netlist.json"),
-                    quoted(s.out + "/netlist.v"));
+                    s.unit, yosys_file(liberty), yosys_file(s.out + "/abc.constr"),
+                    yosys_file(s.out + "/netlist.json"), yosys_file(s.out + "/netlist.v"));
 }
 
 std::string sta_script(const std::string& liberty, const std::string& netlist, const std::string& top,
                        double period, double activity) {
   return fmt::format(
-      "read_liberty {{{0}}}\n"
+      "read_liberty {0}\n"
       "set_cmd_units -time ns -power W\n"
-      "read_verilog {{{1}}}\n"
+      "read_verilog {1}\n"
       "link_design {2}\n"
       "create_clock -name clk -period {3:.4f} [get_ports clk_i]\n"
       "report_checks -path_delay max\n"
       "set_power_activity -global -activity {4:g}\n"
       "report_power\n",
-      liberty, netlist, top, period, activity);
+      tcl_word(liberty), tcl_word(netlist), tcl_word(top), period, activity);
 }
 
 std::string read_side_module() {
@@ -126,7 +124,7 @@ std::string place_script(const Target& target, const std::string& top, double fr
       "nextpnr-ecp5 --{1} --package {2} --speed 6 --json netlist.json --top {3} --freq {4:g} --seed {5} \\\n"
       "  --timing-allow-fail {6}--textcfg unit.config --report timing.json --log nextpnr.log\n"
       "ecppack --compress unit.config unit.bit\n",
-      target.name, target.name == "ecp5-25" ? "25k" : "85k", target.package, top, frequency, seed,
+      target.name, target.name == "ecp5-25" ? "25k" : "85k", target.package, shell_word(top), frequency, seed,
       pins.empty() ? "--lpf-allow-unconstrained " : "--lpf pins.lpf ");
 }
 

@@ -15,6 +15,7 @@
 #include <random>
 #include <thread>
 
+#include "model/hash.h"
 #include "model/trace.h"
 #include "tests/cli/shell.h"
 
@@ -231,6 +232,31 @@ TEST_F(Checkpoint, RefusesWhatIsDamaged) {
   EXPECT_TRUE(refused(".journal is damaged: its words hash to "));
   write("state.journal", journal);
   EXPECT_EQ(lattice(with_checkpoint({"--resume"})), 0) << contents(path("lattice.err"));
+}
+
+// Of a stranger, who can make its hash right.
+TEST_F(Checkpoint, RefusesWhatItsNumbersDoNotAllow) {
+  leave_checkpoint();
+  const std::string good = contents(path("state"));
+  std::vector<uint64_t> words(good.size() / 8);
+  std::memcpy(words.data(), good.data(), good.size());
+  const auto said = [&](size_t at, uint64_t value) {
+    std::vector<uint64_t> bad = words;
+    bad[at] = value;
+    Hash hash;
+    for (size_t k = 0; k + 1 < bad.size(); ++k) hash.add(static_cast<int64_t>(bad[k]));
+    bad.back() = hash.value();
+    std::ofstream(path("state"), std::ios::binary).write(reinterpret_cast<const char*>(bad.data()), good.size());
+    EXPECT_EQ(lattice(with_checkpoint({"--resume"})), 2) << at;
+    return contents(path("lattice.err"));
+  };
+  // The number of probed particles; then, of the last particle of ten words, node and id, and its type above its z.
+  const size_t probed = 18, last = words.size() - 1 - 10;
+  for (const uint64_t count : {uint64_t{1} << 40, ~uint64_t{0}})
+    EXPECT_NE(said(probed, count).find(" things of 3 words do not fit behind its word 19\n"), std::string::npos);
+  EXPECT_NE(said(last, uint64_t{1} << 63).find(": cell 2147483648 is not below "), std::string::npos);
+  EXPECT_NE(said(last, words[last] | 0xffffffff).find("particle 4294967295: id 4294967295 is not below "), std::string::npos);
+  EXPECT_NE(said(last + 3, words[last + 3] | uint64_t{77} << 56).find(": type 77 is not below 2\n"), std::string::npos);
 }
 
 TEST_F(Checkpoint, RefusesAnotherRun) {

@@ -75,6 +75,33 @@ TEST(Command, RefusesOptionsOfAnotherEngine) {
                  "--checkpoint-every needs --out DIR, where the checkpoint lies\n");
 }
 
+// A script's variable that was never set.
+TEST(Command, RefusesAnEmptyValue) {
+  const std::string hint = "  hint: leave it out, or see 'cuboct run --help'\n";
+  expect_refusal({"run", "scenes/lj_block.toml", "--out", ""}, "the value of '--out' is empty\n" + hint);
+  expect_refusal({"run", "scenes/lj_block.toml", "--out="}, "the value of '--out' is empty\n" + hint);
+  expect_refusal({"run", "scenes/lj_block.toml", "--arch", ""}, "the value of '--arch' is empty\n" + hint);
+  expect_refusal({"run", ""}, "argument 1 of 'cuboct run' is empty\n" + hint);
+  expect_refusal(
+      {"picture", ""},
+      "argument 1 of 'cuboct picture' is empty\n  hint: leave it out, or see 'cuboct picture --help'\n");
+}
+
+TEST(Command, RefusesOptionsOfWhatIsNotKept) {
+  for (const std::vector<std::string>& option :
+       std::vector<std::vector<std::string>>{{"--frames-every", "5"}, {"--raster", "100"}, {"--no-states"}}) {
+    std::vector<std::string> arguments{"run", "scenes/lj_block.toml"};
+    arguments.insert(arguments.end(), option.begin(), option.end());
+    expect_refusal(arguments, option[0] + " needs --out DIR: without it nothing of the run is kept\n");
+  }
+}
+
+TEST(Command, RefusesALimitThatIsNoLength) {
+  for (const char* limit : {"0", "nan", "-1", "inf", "1x"})
+    expect_refusal({"picture", "scenes", "--limit", limit},
+                   std::string("--limit: '") + limit + "' is not a number above 0\n");
+}
+
 TEST(Command, RefusesRanksThatItCannotStart) {
   expect_refusal({"run", "scenes/lj_block.toml", "--ranks", "2"},
                  "--ranks 2: no program cuboct-lattice beside cuboct\n");

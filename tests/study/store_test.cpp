@@ -6,10 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "model/error.h"
 #include "study/measure_errors.h"
 #include "study/runner.h"
+#include "study/truth_bytes.h"
 #include "tests/study/rows.h"
 #include "tests/study/small_study.h"
 
@@ -73,6 +75,45 @@ TEST(Store, KeepsEverythingToTheLastBit) {
   EXPECT_EQ(kept->states.size(), truth.states.size());
   EXPECT_EQ(kept->rungs.back().figures, truth.rungs.back().figures);
   EXPECT_EQ(kept->notes, truth.notes);
+}
+
+// Results of a stranger: what they keep must be of the study, as it is indexed by the study's.
+TEST(Store, ATruthOfAnotherStudyIsRefused) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  Store store(files.path("results.db"), study);
+  Truth truth;
+  truth.grid = study.grid;
+  truth.rungs = {{.dt = 1, .cutoff = 1, .figures = {1}}};
+  truth.figures = {1};
+  store.put_truth(truth);
+  EXPECT_EQ(store.truth("")->figures, truth.figures);
+  const auto refused = [&](const std::function<void(Truth&)>& change) {
+    Truth other = truth;
+    change(other);
+    store.put_truth(other);
+    EXPECT_THROW(store.truth(""), InputError);
+  };
+  refused([](Truth& t) { t.figures = {1, 2}; });
+  refused([](Truth& t) { t.rungs.clear(); });
+  refused([](Truth& t) { t.rungs[0].figures = {1, 2, 3}; });
+  refused([](Truth& t) { t.grid.samples = uint64_t{1} << 60; });
+  refused([](Truth& t) { t.grid.sample *= 2; });
+  refused([](Truth& t) { t.grid.horizon = t.grid.samples + 1; });
+  // Bodies of other particles.
+  KeptState kept;
+  kept.body.x = kept.body.v = {Vec3::Zero()};
+  kept.body.type = {200};
+  Truth other = truth;
+  other.states = {kept};
+  other.horizon = kept;
+  EXPECT_EQ(measure_errors(study, other, other, study.points[0]).status, Status::refused);
+  // Bytes that say more than there are.
+  std::string bytes = bytes_of(truth);
+  bytes[0] = 127;
+  EXPECT_THROW(truth_of(bytes), InputError);
+  bytes[7] = 127;
+  EXPECT_THROW(truth_of(bytes), InputError);
 }
 
 TEST(Store, ARunnerComputesWhatLacks) {

@@ -10,8 +10,10 @@
 #include "hw/setup.h"
 #include "model/error.h"
 #include "model/process.h"
+#include "rtl/synth/elaborate.h"
 #include "rtl/synth/flow.h"
 #include "rtl/synth/project.h"
+#include "rtl/synth/script.h"
 #include "rtl/synth/tool.h"
 
 namespace cuboct::synth {
@@ -52,6 +54,42 @@ class Refuse : public ::testing::Test {
   std::string dir_ = scratch_.path("project");
   Plan plan_;
 };
+
+// A project of a stranger: names of files and modules go into scripts of yosys, Tcl and a shell.
+TEST_F(Refuse, NamesThatAScriptWouldRun) {
+  emit();
+  write("a\";!touch loot.sv", "module x; endmodule\n");
+  write(
+      "project.json",
+      R"({"plan": "x", "nodes": 1, "particles": 1, "arch": {"capacity": 1}, "cycles_per_step": {"expected": 1},
+    "files": ["a\";!touch loot.sv"]})");
+  EXPECT_EQ(refusal(request()).substr(0, 60),
+            "yosys cannot be given a file called 'DIR/a\";!touch loot.sv'\n");
+  const std::string design = scratch_.path("elaborated.json");
+  const auto with_module = [&](const std::string& name) {
+    std::ofstream(design) << R"({"modules": {")" << name
+                          << R"(": {"attributes": {"top": "1"}, "ports": {}, "cells": {}}}})";
+    try {
+      read_design(design);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(with_module("cuboct_node"), "accepted");
+  EXPECT_EQ(with_module("$paramod$1f\\\\cuboct_fifo"), "accepted");
+  for (const char* name :
+       {"x;!touch loot", "x\\n!touch loot", "$(touch loot)", "`touch loot`", "x\\u0000y", "$paramod\\\\x y"})
+    EXPECT_NE(with_module(name).find("the project has a module called"), std::string::npos) << name;
+}
+
+TEST_F(Refuse, ScriptsHoldPathsAsOneWord) {
+  EXPECT_NE(sta_script("a} ; exec touch x", "n", "top", 1, 0.1)
+                .find("read_liberty a\\}\\ \\;\\ exec\\ touch\\ x\n"),
+            std::string::npos);
+  EXPECT_NE(place_script(target_of("ecp5-25"), "$(touch x)", 1, 1, "").find("--top '$(touch x)' "),
+            std::string::npos);
+}
 
 TEST_F(Refuse, TellsOfTheProject) {
   emit();

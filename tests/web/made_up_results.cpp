@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/support/dice.h"
+#include "tests/support/hostile.h"
 
 namespace cuboct::test {
 namespace {
@@ -154,6 +155,25 @@ study::Results made_up_results() {
   for (const double safety : {0.12, 0.25, 0.5, 1.1})
     maker.point(settings_of("fpga", Arithmetic::fixed, safety), safety, 1.2e-4, 9e8, 1100, 9);
   return std::move(results);
+}
+
+study::Results hostile_results() {
+  const std::string evil = hostile_text();
+  Results results = made_up_results();
+  results.outcomes.resize(24);
+  results.title = results.scene = results.machine = evil;
+  results.figure_names = {evil, "strength"};
+  results.figure_units = {evil, evil};
+  results.truth.notes = {evil};
+  for (size_t n = 0; n < results.outcomes.size(); ++n) {
+    Outcome& o = results.outcomes[n];
+    o.why = evil;
+    // Names of directories, quotes and a template of the charts' library.
+    o.settings.scene.push_back({"regions.../../" + evil + ".size", n % 2 ? evil : "{b}" + evil});
+    o.settings.arch.push_back({"\" onload=\"alert(3)", n % 3 ? "1 " + evil : "2 " + evil});
+    if (n % 4 == 3) o.settings.engine = evil, o.speed.machine = evil;
+  }
+  return results;
 }
 
 }  // namespace cuboct::test

@@ -11,4 +11,7 @@ namespace cuboct::test {
 // momentum; points of two engines, "gpu" and "fpga", that cuboct's own studies do not have.
 study::Results made_up_results();
 
+// A few of them in which each text is tests/support/hostile.h's.
+study::Results hostile_results();
+
 }  // namespace cuboct::test

@@ -7,14 +7,14 @@ import {pathToFileURL} from "node:url";
 
 const [path, chromium_path, study_web] = process.argv.slice(2);
 const {chromium} = createRequire(study_web + "/")("playwright-core");
-const address = pathToFileURL(path).href;
+const own_address = pathToFileURL(path).href;
 const flags = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync"];
 
 const problems = [];
 let requests = 0, hovers = 0;
 
-async function open(browser, width, height) {
+async function open(browser, width, height, address = own_address) {
   const context = await browser.newContext({viewport: {width, height}, offline: true});
   const page = await context.newPage();
   page.on("console", (message) => problems.push(`console ${message.type()}: ${message.text()}`));
@@ -232,6 +232,34 @@ async function prints(page) {
   await page.emulateMedia({media: "screen"});
 }
 
+// Whatever the results say is text: no element comes of it, nothing runs, and what a mark tells is no markup.
+async function hostile_text_is_text(browser) {
+  const before = problems.length;
+  const page = await open(browser, 1280, 900, pathToFileURL(path.replace(/page\.html$/, "hostile.html")).href);
+  page.on("dialog", (dialog) => { problems.push(`dialog: ${dialog.message()}`); dialog.dismiss(); });
+  const study = await page.$eval("#data", (data) => JSON.parse(data.textContent));
+  assert.ok(study.title.includes("<script>alert(1)</script>") && study.title.includes("\u001b]0;"));
+  // A title of a document is shown with the controls' escapes.
+  assert.ok((await page.textContent("h1")).startsWith("x\nsystem("));
+  for (const [n, point] of study.points.entries()) await page.evaluate((n) => document.body.insertAdjacentHTML("beforeend", `<div class="probe">${tip(n)}</div>`), n);
+  const [mark] = await (await bring(page, "error-speed"), lone_marks(page, "error-speed"));
+  assert.ok((await hover(page, "error-speed", mark)).includes("<script>alert(1)</script>"));
+  for (const unwanted of ["img", "body script:not(#data) ~ script ~ script", "[onload]", "[onerror]", ".tip script"])
+    assert.equal((await page.$$(unwanted)).length, 0, `the page has a '${unwanted}'`);
+  assert.ok((await page.textContent("#points")).includes("<img src=x onerror=alert(2)>"));
+  assert.ok((await texts(page, "error-speed")).some((text) => text.includes("{/Symbol s}")));
+  // The policy: what is put in by force does not load.
+  assert.equal(await page.evaluate(() => new Promise((done) => {
+    const image = new Image();
+    image.onload = () => done("loaded");
+    image.onerror = () => done("refused");
+    image.src = "file:///usr/share/pixmaps/none.png";
+  })), "refused");
+  assert.equal(problems.length - before, 1, problems.slice(before));
+  assert.match(problems.pop(), /Content Security Policy/);
+  await page.context().close();
+}
+
 const browser = await chromium.launch({executablePath: chromium_path, args: flags});
 try {
   const page = await open(browser, 1280, 900);
@@ -244,6 +272,7 @@ try {
   await zooms_and_comes_back(page);
   await prints(page);
   await fits_a_phone(browser);
+  await hostile_text_is_text(browser);
   assert.deepEqual(problems, []);
   // The page itself, twice: the listener hears.
   assert.ok(requests >= 2);

@@ -16,6 +16,7 @@
 #include "study/page.h"
 #include "study/parameters.h"
 #include "study/series.h"
+#include "tests/support/hostile.h"
 #include "tests/web/made_up_results.h"
 
 namespace cuboct::test {
@@ -268,6 +269,31 @@ TEST(Charts, PicturesOfEachChartTwiceTheSame) {
   const std::string svg = bytes(scratch.path("a/trajectory_by_dt.svg"));
   EXPECT_NE(svg.find("it's new, fixed"), std::string::npos);
   EXPECT_NE(svg.find("dt^2"), std::string::npos);
+}
+
+// Titles, settings and directories are data: nothing is run, no name leaves the directory.
+TEST(Charts, HostileTextIsDrawn) {
+  const Scratch scratch;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(scratch.path(""));
+  const std::string directory = std::string("| touch ") + kLoot + "; #";
+  const auto names = study::write_charts(hostile_results(), directory);
+  const bool loot = std::filesystem::exists(kLoot);
+  std::filesystem::current_path(before);
+  EXPECT_FALSE(loot);
+  EXPECT_FALSE(std::filesystem::exists(kLoot));
+  size_t drawn = 0, hostile_keys = 0;
+  for (const std::string& name : names) {
+    EXPECT_EQ(name.find('/'), std::string::npos) << name;
+    hostile_keys += name.find("regions") != std::string::npos;
+    const std::string picture = bytes(scratch.path(directory + "/" + name));
+    EXPECT_GT(picture.size(), 1000U) << name;
+    if (!name.ends_with(".svg")) continue;
+    EXPECT_EQ(picture.find("<script"), std::string::npos) << name;
+    drawn += picture.find("{/Symbol s}_2^3&lt;/title") != std::string::npos;
+  }
+  EXPECT_GT(hostile_keys, 0U);
+  EXPECT_GT(drawn, 0U);
 }
 
 // The chart keeps its width, of which its axis' name tells the middle: beside short names and above long ones.

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+// Traces and rasters that say of themselves what is not so: refused in one line, before memory is taken.
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "model/error.h"
+#include "model/process.h"
+#include "model/raster.h"
+#include "model/state_check.h"
+#include "model/trace.h"
+#include "tests/unit/made_trace.h"
+
+namespace cuboct {
+namespace {
+
+class HostileFile : public testing::Test {
+ protected:
+  HostileFile() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+  // What is said to a file that `change` was at.
+  std::string of_trace(const std::function<void(hid_t)>& change) {
+    write_trace(path_, made_trace());
+    edit(change);
+    return error([&] { read_trace(path_); });
+  }
+  std::string of_rasters(const std::function<void(hid_t)>& change) {
+    Rasters rasters{"title", 0, 1e-3, {0, 1, 0, 0, 1e-4, 3, 2}, {}};
+    Raster& frame = rasters.frames.emplace_back();
+    frame.thickness = frame.strain = frame.speed = std::vector<float>(6, 1);
+    write_rasters(path_, rasters);
+    edit(change);
+    return error([&] { read_rasters(path_); });
+  }
+
+  static void put_number(hid_t file, const char* name, hid_t type, const void* value) {
+    const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT);
+    ASSERT_GE(H5Awrite(attribute, type, value), 0);
+    H5Aclose(attribute);
+  }
+  static void put_double(hid_t file, const char* name, double value) {
+    put_number(file, name, H5T_NATIVE_DOUBLE, &value);
+  }
+  // In the place of a dataset one of this shape, of which nothing is stored.
+  static void put_empty(hid_t file, const char* name, std::vector<hsize_t> shape, hid_t type) {
+    H5Ldelete(file, name, H5P_DEFAULT);
+    const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    const std::vector<hsize_t> chunk(shape.size(), 16);
+    H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data());
+    const hid_t data = H5Dcreate2(file, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+    ASSERT_GE(data, 0);
+    H5Dclose(data), H5Pclose(properties), H5Sclose(space);
+  }
+  std::string name() const { return path_; }
+
+  const Scratch scratch_;
+  const std::string path_ = scratch_.path("file.h5");
+
+ private:
+  void edit(const std::function<void(hid_t)>& change) {
+    const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    change(file);
+    H5Fclose(file);
+  }
+  static std::string error(const std::function<void()>& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+};
+
+TEST_F(HostileFile, IsAcceptedAsItIs) {
+  EXPECT_EQ(of_trace([](hid_t) {}), "accepted");
+  EXPECT_EQ(of_rasters([](hid_t) {}), "accepted");
+}
+
+TEST_F(HostileFile, ShapesAreHeldAgainstTheBytes) {
+  const auto damaged = [&](const std::string& what, const std::string& shape) {
+    return path_ + " is damaged: '" + what + "' says that it has " + shape +
+           " values, and the file does not hold them";
+  };
+  // 8 TB; a number of values that wraps around to 0; particles that are in no other field.
+  EXPECT_EQ(of_trace([](hid_t f) { put_empty(f, "state_hash", {hsize_t{1} << 40}, H5T_STD_U64LE); }),
+            damaged("state_hash", "1099511627776"));
+  EXPECT_EQ(of_trace([](hid_t f) {
+              put_empty(f, "cycles", {hsize_t{1} << 62, 2, 8, 2}, H5T_STD_U64LE);
+            }),
+            damaged("cycles", "4611686018427387904 x 2 x 8 x 2"));
+  EXPECT_EQ(of_trace([](hid_t f) { put_empty(f, "frames/id", {hsize_t{1} << 33}, H5T_STD_U32LE); }),
+            damaged("id", "8589934592"));
+  EXPECT_EQ(of_rasters([](hid_t f) {
+              put_empty(f, "strain", {1, 1 << 20, 1 << 20}, H5T_IEEE_F32LE);
+            }),
+            damaged("strain", "1 x 1048576 x 1048576"));
+}
+
+TEST_F(HostileFile, AListOfTextsIsNoText) {
+  // Read as one it would run over its memory.
+  const auto lists = [](hid_t file, const char* name) {
+    H5Adelete(file, name);
+    const hsize_t many = 1000;
+    const hid_t space = H5Screate_simple(1, &many, nullptr), type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, 60);
+    const hid_t attribute = H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    ASSERT_GE(attribute, 0);
+    H5Awrite(attribute, type, std::string(60000, 'x').data());
+    H5Aclose(attribute), H5Tclose(type), H5Sclose(space);
+  };
+  EXPECT_EQ(of_rasters([&](hid_t f) { lists(f, "title"); }),
+            path_ + " is not a cuboct rasters file: no text attribute 'title'");
+  EXPECT_EQ(of_trace([&](hid_t f) { lists(f, "engine"); }),
+            path_ + " is not a cuboct trace: no text attribute 'engine'");
+}
+
+TEST_F(HostileFile, ATableOfNamesIsNoList) {
+  EXPECT_EQ(of_trace([](hid_t f) {
+              H5Ldelete(f, "notes/name", H5P_DEFAULT);
+              const hsize_t shape[] = {3, 1000};
+              const hid_t space = H5Screate_simple(2, shape, nullptr), type = H5Tcopy(H5T_C_S1);
+              H5Tset_size(type, 9);
+              const hid_t data =
+                  H5Dcreate2(f, "notes/name", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+              H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, std::string(27000, 'x').data());
+              H5Dclose(data), H5Tclose(type), H5Sclose(space);
+            }),
+            path_ + " is not a cuboct trace: no list of names 'name'");
+}
+
+TEST_F(HostileFile, NothingIsReadFromOtherFiles) {
+  write_trace(scratch_.path("other.h5"), made_trace());
+  EXPECT_EQ(of_trace([&](hid_t f) {
+              H5Ldelete(f, "state_hash", H5P_DEFAULT);
+              H5Lcreate_external(scratch_.path("other.h5").c_str(), "state_hash", f, "state_hash",
+                                 H5P_DEFAULT, H5P_DEFAULT);
+            }),
+            path_ + " is not a cuboct trace: no dataset 'state_hash'");
+  EXPECT_EQ(of_trace([&](hid_t f) {
+              H5Ldelete(f, "frames", H5P_DEFAULT);
+              H5Lcreate_external(scratch_.path("other.h5").c_str(), "frames", f, "frames", H5P_DEFAULT,
+                                 H5P_DEFAULT);
+            }),
+            path_ + " is not a cuboct trace: no group 'frames'");
+  std::ofstream(scratch_.path("secret")) << std::string(24, 's');
+  EXPECT_EQ(
+      of_trace([&](hid_t f) {
+        H5Ldelete(f, "state_hash", H5P_DEFAULT);
+        const hsize_t count = 3;
+        const hid_t space = H5Screate_simple(1, &count, nullptr), properties = H5Pcreate(H5P_DATASET_CREATE);
+        H5Pset_external(properties, scratch_.path("secret").c_str(), 0, 24);
+        H5Dclose(H5Dcreate2(f, "state_hash", H5T_STD_U64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT));
+        H5Pclose(properties), H5Sclose(space);
+      }),
+      path_ +
+          ": 'state_hash' takes its values from another file\n  hint: a trace of cuboct holds all of its "
+          "values");
+}
+
+TEST_F(HostileFile, RastersAreAPicture) {
+  EXPECT_EQ(of_rasters([](hid_t f) { put_double(f, "pixel", 0); }),
+            path_ + ": 'pixel' must be a length above 0, not 0");
+  EXPECT_EQ(of_rasters([](hid_t f) { put_double(f, "particle", NAN); }),
+            path_ + ": 'particle' must be a length above 0, not nan");
+  EXPECT_EQ(of_rasters([](hid_t f) { put_double(f, "left", -INFINITY); }),
+            path_ + ": 'left' must be finite, not -inf");
+  EXPECT_EQ(of_rasters([](hid_t f) {
+              put_empty(f, "thickness", {0, 2, 3}, H5T_IEEE_F32LE);
+            }),
+            path_ + ": there is no picture in 0 frames of 3 x 2 pixels");
+}
+
+TEST(StateCheck, NumbersAreWithinTheScene) {
+  Trace trace;
+  trace.frames = {made_state(0)};
+  trace.frames[0].particles[2].id = 2;
+  trace.frames[0].particles[2].v[2] = 1;
+  const StateBounds bounds{.particles = 3, .types = 2, .cells = 2, .position_bits = 8, .velocity_bits = 20};
+  const auto error = [&](const std::function<void(Trace&)>& change) -> std::string {
+    Trace changed = trace;
+    change(changed);
+    try {
+      check_frames(changed, bounds, "t.h5");
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  const std::string at = "t.h5 is no trace of this scene: frame of step 0, particle 1: ";
+  EXPECT_EQ(error([](Trace&) {}), "accepted");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].node = 2; }), at + "cell 2 is not below 2");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].type = 2; }), at + "type 2 is not below 2");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].id = 3; }), at + "id 3 is not below 3");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].id = 2; }), at + "id 2 stands in row 1");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].x[1] = 256; }),
+            at + "position 256 is outside its cell");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].x[1] = -1; }),
+            at + "position -1 is outside its cell");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].v[1] = 1 << 19; }),
+            at + "velocity 524288 is out of 20 bits");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles.pop_back(); }),
+            "t.h5 is no trace of this scene: the frame of step 0 has 2 particles, the scene 3");
+  EXPECT_EQ(error([](Trace& t) {
+              t.bodies.push_back({7, {{0, 0, 0}}, {{0, 0, 0}}, {}});
+            }),
+            "t.h5 is no trace of this scene: the frame of step 7 has 1 particles, the scene 3");
+}
+
+}  // namespace
+}  // namespace cuboct
