@@ -195,7 +195,7 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
   const auto first = tension_of(loaded.scene, trace);
   std::string out;
   const auto section = [&](const std::string& title, const std::string& figure) {
-    if (!figure.empty()) out += "<h2>" + escaped(title) + "</h2>\n" + figure;
+    if (!figure.empty()) out += "<h2>" + html_text(title) + "</h2>\n" + figure;
   };
   for (const Probe& probe : loaded.scene.probes) {
     const std::string of = probe.name + ".";
@@ -231,9 +231,9 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
 std::string warning_section(const std::vector<std::string>& of_plan, const Trace& trace) {
   if (of_plan.empty() && trace.findings.empty() && !trace.stop) return "";
   std::string out = "<h2>Warnings</h2>\n<ul class=\"bad\">\n";
-  for (const std::string& text : of_plan) out += "<li>warning: " + escaped(text) + "</li>\n";
-  for (const Finding& finding : trace.findings) out += "<li>warning: " + escaped(finding.text) + "</li>\n";
-  if (trace.stop) out += "<li>stopped: " + escaped(trace.stop->text) + "</li>\n";
+  for (const std::string& text : of_plan) out += "<li>warning: " + html_text(text) + "</li>\n";
+  for (const Finding& finding : trace.findings) out += "<li>warning: " + html_text(finding.text) + "</li>\n";
+  if (trace.stop) out += "<li>stopped: " + html_text(trace.stop->text) + "</li>\n";
   return out + "</ul>\n";
 }
 
@@ -268,7 +268,7 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
     rows += engine_row(loaded, trace,
                        other ? fmt::format("<b class=\"bad\">not compared: {} is of another scene or arch, plan "
                                            "{:016x}</b>",
-                                           escaped(fs::path(file).filename().string()), trace.plan_hash)
+                                           html_text(fs::path(file).filename().string()), trace.plan_hash)
                              : "no state hashes to compare");
   }
   for (const Trace& trace : traces) {
