@@ -68,7 +68,7 @@ void read_table(const ConfigTable& table, TableChoice& choice) {
     choice.shape =
         static_cast<TableChoice::Shape>(shape->choice("table shape", {"automatic", "uniform", "octaves"}));
   set(table, "degree", 1, 2, choice.degree);
-  set(table, "index_bits", 2, 16, choice.index_bits);
+  set_automatic(table, "index_bits", 2, 16, choice.index_bits);
   set(table, "fraction_bits", 1, 24, choice.fraction_bits);
   table.done();
 }

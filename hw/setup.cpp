@@ -132,6 +132,7 @@ Plan plan_with(const Scene& scene, Arch arch, See see) {
   const AutoWidths chosen = auto_widths(scene, edge, arch.widths);
   FixedRule rule = fixed_rule(scene, arch, edge, chosen);
   arch.widths = rule.widths;
+  arch.table.index_bits = rule.force.index_bits;
   const double lowest = origin[2];
   const bool flat = is_flat(scene, rule, lowest);
   origin.array() -= 0.25 * edge;

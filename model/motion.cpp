@@ -33,6 +33,7 @@ void read_bond(const Scene& scene, Motion& motion) {
 // Root mean squares of the free particles' velocities: all, that of the rotation as a rigid body, and what is left.
 struct Speeds {
   double all = 0, rotation = 0, left = 0;
+  Vec3 mean = Vec3::Zero();
 };
 
 Speeds speeds_of(const Scene& scene) {
@@ -60,7 +61,7 @@ Speeds speeds_of(const Scene& scene) {
     rotation += rigid.squaredNorm();
     left += (v - mean - rigid).squaredNorm();
   });
-  return {std::sqrt(all / count), std::sqrt(rotation / count), std::sqrt(left / count)};
+  return {std::sqrt(all / count), std::sqrt(rotation / count), std::sqrt(left / count), mean};
 }
 
 double longest_side(const Scene& scene) {
@@ -101,6 +102,9 @@ Motion motion_of(const Scene& scene) {
   motion.initial_speed = speeds.all;
   // What rounding leaves of a fit is no motion.
   if (speeds.left > 1e-9 * speeds.all) strains(speeds.left / c, "the initial velocities");
+  if (speeds.all > 0)
+    for (const ParticleType& type : rule.types)
+      if (driven(type)) strains((speeds.mean - type.velocity).norm() / c, "the initial velocities");
   if (speeds.rotation > 1e-9 * speeds.all) strains(std::pow(speeds.rotation / c, 2), "the initial rotation");
   if (scene.expected_strain > 0) motion.strain = scene.expected_strain, motion.strain_of = "run.expected_strain";
   return motion;

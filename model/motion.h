@@ -22,7 +22,8 @@ struct Motion {
   //                      a wave carries V/c, and each time it crosses the body as much is added
   //   gravity            min(g T/c, g L/c^2): of a body under its own weight, before and after a wave crossed it.
   //                      Bending makes more
-  //   initial motion     V/c, V the root mean square about the motion of a rigid body
+  //   initial motion     V/c, V the root mean square about the motion of a rigid body, or the mean against what is held
+  //                      or moved
   //   initial rotation   (V/c)^2, V the root mean square of the rotation
   double strain = 0;
   std::string strain_of;  // which of them, "the velocity imposed on 'pulled'"

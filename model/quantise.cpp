@@ -9,11 +9,14 @@
 #include <functional>
 
 #include "model/fixed_math.h"
+#include "model/scene_parts.h"
 
 namespace cuboct {
 namespace {
 
 constexpr int kLeastStrength = 18, kWidestStrength = 27;
+constexpr int kLeastIndex = 9, kMostIndex = 13;
+constexpr double kBondsFrom = 0.8;  // of the distance at rest: nearer, particles collide
 constexpr int kMostVelocityFrac = 50;  // of a double's 53 bits (emu/lattice/kernel_rule.h)
 constexpr double kHalfUnit =
     1.7e-4;  // of the strongest pull: where the elastic constants of Lennard-Jones are right to 1 %
@@ -120,7 +123,8 @@ FixedTable shaped(TableShape shape, const TableChoice& choice, int difference_fr
   return table;
 }
 
-FixedRule::Error error_of(const FixedRule& fixed, const Rule& rule, double scale) {
+// Over the distances from `nearest` m on.
+FixedRule::Error error_of(const FixedRule& fixed, const Rule& rule, double scale, double nearest) {
   FixedRule::Error error;
   const FixedTable& table = fixed.force;
   const double unit = std::ldexp(1.0, -table.value_frac) * rule.mass / (rule.dt * rule.dt) / scale;
@@ -134,7 +138,7 @@ FixedRule::Error error_of(const FixedRule& fixed, const Rule& rule, double scale
       if (r2 == 0 || r2 >= fixed.cutoff2) continue;
       const double r =
           std::sqrt(std::ldexp(static_cast<double>(r2), -2 * table.difference_frac)) * fixed.cell_edge;
-      if (r < rule.law->core()) continue;
+      if (r < nearest) continue;
       const double exact = rule.law->force(std::min(r, rule.law->cutoff() * (1 - 1e-12)));
       const double off = std::abs(static_cast<double>(table.at(r2)) * unit * r - exact);
       largest = std::max(largest, std::abs(exact));
@@ -193,7 +197,7 @@ void make_tables(FixedRule& fixed, const Rule& rule, TableShape shape, const Tab
         },
         end, fixed.widths.strength_bits, 0);
   }
-  fixed.error = error_of(fixed, rule, scale);
+  fixed.error = error_of(fixed, rule, scale, core);
 }
 
 // Strongest pull of the law in newtons; its strongest push if it never pulls.
@@ -222,8 +226,22 @@ FixedRule with_tables(const FixedRule& fixed, const Rule& rule, const TableChoic
 
 }  // namespace
 
-FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& choice,
+FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table,
                    double most_half_unit) {
+  if (table.index_bits == 0) {
+    TableChoice choice = table;
+    const double rest = stiffest_rest_distance(*rule.law);
+    const double nearest = std::max(rule.law->core(), kBondsFrom * rest);
+    for (choice.index_bits = kLeastIndex;; ++choice.index_bits) {
+      FixedRule fixed = quantise(rule, cell_edge, widths, choice, most_half_unit);
+      if (choice.index_bits == std::min(kMostIndex, 2 * widths.difference_frac - 1) || std::isinf(most_half_unit))
+        return fixed;
+      double scale = 0;
+      for (const auto& row : rule.strength) scale = std::max(scale, *std::max_element(row.begin(), row.end()));
+      if (error_of(fixed, rule, scale, nearest).worst_force <= 2 * most_half_unit) return fixed;
+    }
+  }
+  const TableChoice& choice = table;
   check_widths(widths, choice);
   const double cutoff = rule.law->cutoff();
   if (cutoff > cell_edge * (1 + 1e-12))

@@ -14,7 +14,7 @@ struct TableChoice {
   enum class Shape : uint8_t { automatic, uniform, octaves };
   Shape shape = Shape::automatic;  // automatic: the shape with the smaller worst force error
   int degree = 1;                  // 1 or 2
-  int index_bits = 9;              // 2^index_bits entries
+  int index_bits = 0;              // 2^index_bits entries; 0: chosen, see quantise
   int fraction_bits = 17;
 };
 
@@ -22,6 +22,9 @@ struct TableChoice {
 // the force table, at the cutoff, is worth at most 1.7e-4 of the law's strongest pull and at most `half_unit` N, and at
 // which kicks have no fewer fractional bits than velocities: laws with a steep core, as Lennard-Jones, need more than
 // soft ones, small strains more than large ones. 27 is taken where none will do. The result says which.
+//
+// `table.index_bits` = 0 takes the least from 9 to 13 at which the table's force is within 2 half_unit of the law's,
+// where bonds are: from 0.8 of the distance at rest to the cutoff. 13 is taken where none will do.
 //
 // Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative
 // shift, a velocity, gain or scale out of its width.
