@@ -22,6 +22,13 @@ State run(const Setup& setup, const State& from, int steps) {
   return golden.state();
 }
 
+// P = 20, G = 8, D = 16, whatever the scene would have.
+Arch plain() {
+  Arch arch;
+  arch.widths = {};
+  return arch;
+}
+
 Features hot() { return {.size = {3, 2, 2}, .speed = 0.12, .margin = 4}; }
 
 // How often a particle changed node between two states of the same particles.
@@ -190,7 +197,7 @@ TEST(Golden, SlowParticlesMoveByTheirVelocityExactly) {
     scene.body.x = {Vec3(0, 0, 0)};
     scene.body.v = {Vec3::Zero()};
     scene.body.type = {0};
-    auto setup = make_setup(scene, {});
+    auto setup = make_setup(scene, plain());
     ASSERT_EQ(setup.plan.rule.widths.guard, 8);
     const auto drive = [&](Particle& p, const Int3& v) {
       p.v = v;
@@ -225,9 +232,9 @@ double middle_over_reference(double units) {
   scene.body.type.front() = 1, scene.body.type.back() = 2;
   scene.rule.types.resize(3, scene.rule.types[0]);
   scene.rule.types[1].imposed = scene.rule.types[2].imposed = {true, true, true};
-  const double edge = make_setup(scene, {}).plan.rule.cell_edge;
+  const double edge = make_setup(scene, plain()).plan.rule.cell_edge;
   scene.rule.types[2].velocity.x() = units * edge * 0x1p-20 / scene.rule.dt;
-  const auto setup = make_setup(scene, {});
+  const auto setup = make_setup(scene, plain());
   const int steps = 20000;
   Reference reference(scene.rule, scene.body, {}, Integrator::semi_implicit_euler);
   reference.step(steps);

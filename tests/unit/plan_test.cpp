@@ -2,6 +2,7 @@
 // What a plan leaves out: when a scene is flat, what a plan can carry all the same, and that no bit changes.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "hw/arch.h"
@@ -28,7 +29,8 @@ int axes_after(const std::function<void(Scene&)>& change) {
 TEST(FlatPlan, NeedsThatNothingHappensAlongZ) {
   EXPECT_EQ(axes_after([](Scene&) {}), 2);
   // Rounding errors of a packing are below the unit of a position with its owner; a whole unit is not.
-  const double unit = plan_of(sheet(), Arch{}).rule.cell_edge * 0x1p-28;
+  const FixedRule rule = plan_of(sheet(), Arch{}).rule;
+  const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
   EXPECT_EQ(axes_after([&](Scene& s) { s.body.x[4].z() += 0.4 * unit; }), 2);
   EXPECT_EQ(axes_after([&](Scene& s) { s.body.x[4].z() += unit; }), 3);
   EXPECT_EQ(axes_after([&](Scene& s) { s.body.x[4].z() -= unit; }), 3);
