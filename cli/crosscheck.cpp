@@ -15,6 +15,7 @@
 #include "model/interrupt.h"
 
 #include "model/compare.h"
+#include "model/directory_lock.h"
 #include "model/output.h"
 #include "model/process.h"
 #include "model/progress.h"
@@ -124,9 +125,10 @@ void tell_faults(const std::string& engine, const Trace& trace) {
 }
 
 int crosscheck(Options options) {
+  std::optional<DirectoryLock> lock;
   if (of_real_numbers(options)) {
     if (!options.out.empty()) {
-      make_directory(options.out);
+      lock.emplace(options.out, "cuboct crosscheck");
       check_writable(options.out + "/gpu.h5");
     }
     return crosscheck_real(options.input, options.gpu,
@@ -156,7 +158,7 @@ int crosscheck(Options options) {
   const Scratch scratch;
   std::string directory = scratch.path("");
   if (!options.out.empty()) {
-    make_directory(options.out);
+    lock.emplace(options.out, "cuboct crosscheck");
     for (const std::string& engine : options.engines) check_writable(options.out + "/" + engine + ".h5");
     directory = options.out;
   }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "model/interrupt.h"
 #include "model/output.h"
 #include "model/process.h"
 #include "model/progress.h"
@@ -76,26 +77,26 @@ RunningEngine::RunningEngine(const std::string& engine, const Input& input, cons
 }
 
 Trace RunningEngine::finish() {
+  wait();
+  return read_trace(state_->path);
+}
+
+std::unique_ptr<TraceReader> RunningEngine::finish_reading() {
+  wait();
+  return std::make_unique<TraceReader>(state_->path);
+}
+
+void RunningEngine::wait() {
   const int code = state_->process.wait();
   std::filesystem::remove(state_->path + ".steps");
   const std::string name = std::filesystem::path(state_->program).filename().string();
   if (code == 2) throw AlreadyTold(2);
   // Exit code 1 with a trace: the run had to stop, and the trace says why.
-  if (code == 1 && std::filesystem::exists(state_->path)) return read_trace(state_->path);
+  if (code == 1 && std::filesystem::exists(state_->path)) return;
+  if (code < 0 && interrupted()) throw std::runtime_error(fmt::format("interrupted before {} began", name));
   if (code < 0)
     throw std::runtime_error(fmt::format("{} was ended by signal {} ({})", name, -code, strsignal(-code)));
   if (code != 0) throw std::runtime_error(fmt::format("{} ended with exit code {}", name, code));
-  return read_trace(state_->path);
-}
-
-Trace run_fixed(const std::string& engine, const Input& input, const Setup& setup, const Request& request,
-                const std::function<void(const State&)>& watch) {
-  if (engine == "golden") return run_golden(setup, request, watch);
-  const Scratch scratch;
-  Trace trace =
-      RunningEngine(engine, input, request, scratch.path(engine + ".h5"), stderr_is_terminal()).finish();
-  for (const State& frame : trace.frames) watch(frame);
-  return trace;
 }
 
 }  // namespace cuboct

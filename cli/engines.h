@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "model/trace.h"
+#include "model/trace_file.h"
 
 namespace cuboct {
 
@@ -27,9 +27,11 @@ void check_engine(const std::string& name, const std::vector<std::string>& allow
 void check_faults(const Input& input, const std::vector<std::string>& engines);
 
 // Golden runs here. A run that has to stop is a trace with a stop reason; Ctrl-C gives the trace so far.
-// `watch` is called with each state, step 0 included.
+// `watch` is called with each state, step 0 included; `keep` takes the frames as they come, which the trace holds where
+// nobody does.
 Trace run_golden(const Setup& setup, const Request& request,
-                 const std::function<void(const State&)>& watch = {});
+                 const std::function<void(const State&)>& watch = {},
+                 const std::function<void(const State&)>& keep = {});
 
 // An engine at work in a program of its own; its trace goes to `path`.
 class RunningEngine {
@@ -40,8 +42,12 @@ class RunningEngine {
   // Waits. Exit code 2 throws InputError (the program told the text already), any other failure
   // std::runtime_error.
   Trace finish();
+  // The same, for a trace of which no two frames are to be in memory at once.
+  std::unique_ptr<TraceReader> finish_reading();
 
  private:
+  void wait();
+
   struct State;
   std::shared_ptr<State> state_;
 };
@@ -53,8 +59,5 @@ class AlreadyTold : public std::exception {
   int exit_code;
 };
 
-// Any fixed engine, waited for. `watch` sees every state of golden, and the recorded frames of the others.
-Trace run_fixed(const std::string& engine, const Input& input, const Setup& setup, const Request& request,
-                const std::function<void(const State&)>& watch);
 
 }  // namespace cuboct

@@ -6,8 +6,8 @@
 
 #include "cli/budget.h"
 #include "cli/command.h"
+#include "model/directory_lock.h"
 #include "model/interrupt.h"
-#include "model/output.h"
 #include "model/text.h"
 #include "study/measure_run.h"
 #include "study/page.h"
@@ -58,7 +58,7 @@ int explore(const Options& options) {
   if (budget) check_budget(study, options.error, options.figure);
   if (!budget && !options.figure.empty()) throw InputError("--figure names the figure of --error E");
   const std::string out = options.out.empty() ? default_directory(options.study) : options.out;
-  make_directory(out);
+  const DirectoryLock lock(out, "cuboct explore");
   study::Store store(out + "/results.db", study);
   catch_interrupts();
   for (const std::string& file : options.add)

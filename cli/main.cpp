@@ -9,6 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/engines.h"
+#include "model/output.h"
 #include "model/spelling.h"
 #include "model/text.h"
 
@@ -57,6 +58,7 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
 }
 
 int main_of(int argc, char** argv) {
+  survive_file_limit();
   int exit_code = 0;
   CLI::App app("Particle matter and the hardware that computes it: one rule, the same bits everywhere.",
                "cuboct");

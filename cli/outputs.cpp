@@ -37,26 +37,36 @@ StrainMeter strain_meter(const Scene& scene, const std::vector<Vec3>& initial) {
   return {initial, scene.periodic, scene.pitch > 0 ? 1.207 * scene.pitch : scene.rule.law->cutoff()};
 }
 
-std::vector<Frame> real_frames(const Loaded& loaded, const std::vector<State>& states) {
-  const Plan& plan = loaded.setup.plan;
-  const auto real = [&](const State& state) { return to_real(state, plan.rule, plan.lattice, plan.origin); };
-  const Scene& scene = loaded.scene;
+FrameMaker::FrameMaker(const Loaded& loaded) : loaded_(loaded), axis_(strain_axis(loaded.scene)) {}
+
+const StrainMeter& FrameMaker::meter(bool fixed) const {
+  std::optional<StrainMeter>& meter = fixed ? fixed_ : real_;
+  if (meter) return *meter;
+  const Scene& scene = loaded_.scene;
+  const Plan& plan = loaded_.setup.plan;
+  if (!fixed) return meter.emplace(strain_meter(scene, scene.body.x));
   std::vector<Vec3> initial;  // without a State: see load_plan
   initial.reserve(scene.body.size());
   for (uint32_t id = 0; id < scene.body.size(); ++id)
     initial.push_back(
         position_of(plan.rule, plan.lattice, plan.origin,
                     fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin)));
-  const StrainMeter meter = strain_meter(scene, initial);
-  const int axis = strain_axis(scene);
-  std::vector<Frame> frames;
-  for (const State& state : states) {
-    Body body = real(state);
-    std::vector<double> strain = meter.axial(body.x, axis);
-    frames.push_back({state.step, static_cast<double>(state.step) * plan.rule.dt, std::move(body.x),
-                      std::move(body.v), std::move(body.type), std::move(strain)});
-  }
-  return frames;
+  return meter.emplace(strain_meter(scene, initial));
+}
+
+Frame FrameMaker::make(const State& state) const {
+  const Plan& plan = loaded_.setup.plan;
+  Body body = to_real(state, plan.rule, plan.lattice, plan.origin);
+  std::vector<double> strain = meter(true).axial(body.x, axis_);
+  return {state.step, static_cast<double>(state.step) * plan.rule.dt, std::move(body.x), std::move(body.v),
+          std::move(body.type), std::move(strain)};
+}
+
+Frame FrameMaker::make(uint64_t step, std::vector<Vec3> x, std::vector<Vec3> v) const {
+  const Scene& scene = loaded_.scene;
+  std::vector<double> strain = meter(false).axial(x, axis_);
+  return {step, static_cast<double>(step) * scene.rule.dt, std::move(x), std::move(v), scene.body.type,
+          std::move(strain)};
 }
 
 FrameStyle frame_style(const Scene& scene) {
@@ -74,17 +84,11 @@ TraceHead head_of(const Loaded& loaded, bool real, bool si) {
   return head;
 }
 
-Rasters rasters_of(const Scene& scene, const std::vector<Frame>& frames, uint32_t across) {
-  const double radius = frame_style(scene).radius;
-  Rasters rasters{scene.title, strain_axis(scene), 2 * radius, raster_grid(frames, radius, across), {}};
-  for (const Frame& frame : frames) rasters.frames.push_back(rasterise(frame, rasters.grid, radius));
-  return rasters;
-}
-
 void write_record(const std::string& directory, const RunRecord& record) {
   toml::table table{{"scene", relative_to(directory, record.scene)},
                     {"arch", relative_to(directory, record.arch)},
-                    {"engine", record.engine}};
+                    {"engine", record.engine},
+                    {"state", record.state}};
   std::ostringstream text;
   text << table << '\n';
   write_text(directory + "/run.toml", text.str());
@@ -101,7 +105,9 @@ RunRecord read_record(const std::string& directory) {
       const std::string value = table[key].value_or(std::string());
       return value.empty() ? value : (fs::path(directory) / value).lexically_normal().string();
     };
-    const RunRecord record{from("scene"), from("arch"), table["engine"].value_or(std::string())};
+    // A directory of before there were states holds a run that came to its end.
+    const RunRecord record{from("scene"), from("arch"), table["engine"].value_or(std::string()),
+                           table["state"].value_or(std::string("finished"))};
     // A stranger's record may name what never ends, as a device.
     for (const auto& [key, file] : {std::pair{"scene", record.scene}, {"arch", record.arch}})
       if ((key[0] == 's' || !file.empty()) && !fs::is_regular_file(file))
@@ -115,10 +121,6 @@ RunRecord read_record(const std::string& directory) {
   }
 }
 
-void prepare_directory(const std::string& directory) {
-  make_directory(directory);
-  for (const char* name : {"trace.h5", "run.toml", "summary.json", "plan.txt", "frames.xyz", "frames.pvd", "rasters.h5"})
-    check_writable(directory + "/" + name);
-}
+bool is_over(const RunRecord& record) { return record.state == "finished" || record.state == "stopped"; }
 
 }  // namespace cuboct

@@ -2,12 +2,12 @@
 // The files of a run's directory.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
 #include "model/frames.h"
-#include "model/raster.h"
 #include "model/strain.h"
 #include "model/trace.h"
 #include "model/trace_head.h"
@@ -20,26 +20,38 @@ int strain_axis(const Scene& scene);
 // Strain against `initial`, over the nearest neighbours.
 StrainMeter strain_meter(const Scene& scene, const std::vector<Vec3>& initial);
 
-// Frames in real units, with each particle's axial strain against the initial state.
-std::vector<Frame> real_frames(const Loaded& loaded, const std::vector<State>& states);
 FrameStyle frame_style(const Scene& scene);
 
 // What the trace of such a run says of itself. References to `loaded`.
 // `real`: of a run in real numbers, of which the plan says nothing.
 TraceHead head_of(const Loaded& loaded, bool real, bool si);
 
-// `across`: pixels along the body (raster_grid).
-Rasters rasters_of(const Scene& scene, const std::vector<Frame>& frames, uint32_t across);
+// Frames in real units, with each particle's axial strain against the initial state.
+class FrameMaker {
+ public:
+  explicit FrameMaker(const Loaded& loaded);
+  Frame make(const State& state) const;
+  Frame make(uint64_t step, std::vector<Vec3> x, std::vector<Vec3> v) const;  // in real numbers, types the scene's
 
-// What a report needs to find its way back: run.toml in the directory, its paths relative to the directory.
+ private:
+  // Against what the engine begins with: positions of the fixed rule, or the scene's own.
+  const StrainMeter& meter(bool fixed) const;
+
+  const Loaded& loaded_;
+  int axis_;
+  mutable std::optional<StrainMeter> fixed_, real_;
+};
+
+// What a report needs to find its way back, and a run to know whose directory it is: run.toml in the directory,
+// its paths relative to the directory.
 struct RunRecord {
   std::string scene, arch, engine;
+  std::string state = "finished";  // or "running" (or killed), "interrupted", "stopped" (a fault), "incomplete"
 };
 void write_record(const std::string& directory, const RunRecord& record);
 // Paths as they are to be opened now. InputError where the directory holds no run.
 RunRecord read_record(const std::string& directory);
-
-// Throws InputError where the run's files could not be written.
-void prepare_directory(const std::string& directory);
+// Whether a directory's run has come to its end, and all that it left is there.
+bool is_over(const RunRecord& record);
 
 }  // namespace cuboct

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "cli/command.h"
 #include "cli/raster_plot.h"
+#include "model/directory_lock.h"
 #include "model/output.h"
 #include "model/text.h"
 
@@ -58,6 +60,8 @@ void draw(const Options& options) {
   if (!std::filesystem::exists(path))
     throw InputError(fmt::format("{} holds no pictures: no file rasters.h5", options.directory),
                      "'cuboct run SCENE --out DIR' makes one");
+  std::optional<DirectoryLock> lock;
+  if (options.out.empty()) lock.emplace(options.directory, "cuboct picture");
   const Rasters rasters = read_rasters(path);
   RasterPicture picture{field, frames_of(rasters, options.steps), options.limit, options.width};
   if (options.steps.empty()) picture.frames = spread_frames(rasters.frames.size());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "cli/check.h"
@@ -14,6 +15,7 @@
 #include "hw/state_bounds.h"
 #include "model/base64.h"
 #include "model/compare.h"
+#include "model/directory_lock.h"
 #include "model/output.h"
 #include "model/text.h"
 
@@ -325,8 +327,12 @@ constexpr char kStyle[] =
     "td{overflow-wrap:anywhere}th{font-weight:600}.note{color:#777}.bad{color:#b00020}";
 
 void report(const std::string& directory, std::string out) {
-  if (out.empty()) out = directory + "/report.html";
+  std::optional<DirectoryLock> lock;
   const RunRecord record = read_record(directory);
+  if (out.empty()) {
+    lock.emplace(directory, "cuboct report");
+    out = directory + "/report.html";
+  }
   check_writable(out);
   const Loaded loaded = load({record.scene, record.arch});
   const Trace trace = read_trace(directory + "/trace.h5");

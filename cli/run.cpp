@@ -2,18 +2,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
 #include <memory>
+#include <optional>
+#include <system_error>
 
 #include "cli/command.h"
 #include "cli/engines.h"
-#include "cli/outputs.h"
+#include "cli/recorder.h"
 #include "cli/run_fpga.h"
 #include "cli/run_gpu.h"
 #include "cli/run_lattice.h"
 #include "cli/run_reference.h"
 #include "cli/summary.h"
 #include "model/interrupt.h"
-#include "model/output.h"
 #include "model/process.h"
 #include "model/progress.h"
 #include "model/steps.h"
@@ -33,7 +37,7 @@ struct Options {
   uint64_t frames_every = 0;
   uint32_t raster = 800;
   bool steps_given = false, frames_given = false, hashes_given = false, json = false, no_watch = false,
-       no_states = false, si = false, raster_given = false;
+       no_states = false, si = false, raster_given = false, force = false;
 
   // Options of what is kept say nothing where nothing is.
   void check_kept() const {
@@ -48,28 +52,19 @@ struct Options {
   }
 };
 
-void write_outputs(const Options& options, const Loaded& loaded, Trace& trace,
-                   const std::vector<Frame>& frames, const Items& summary) {
-  const std::string& out = options.out;
-  const FrameStyle style = frame_style(loaded.scene);
-  if (options.no_states) {
-    trace.frames.clear();
-    trace.bodies.clear();
-  }
-  const TraceHead head = head_of(loaded, options.real.is_real(options.engine), options.si);
-  write_trace(out + "/trace.h5", trace, true, &head);
-  if (!frames.empty()) write_rasters(out + "/rasters.h5", rasters_of(loaded.scene, frames, options.raster));
-  if (!options.no_states) {
-    write_extended_xyz(out + "/frames.xyz", frames, style);
-    write_vtk(out + "/frames", frames, style);
-  }
-  write_text(out + "/plan.txt", describe(loaded.setup.plan));
-  write_text(out + "/summary.json", summary.json());
-  write_record(out, {options.input.scene, options.input.arch, options.engine});
+// Bytes of a trace besides its frames, at most.
+uint64_t rest_of(const Options& options, const Loaded& loaded, uint64_t steps, uint64_t samples) {
+  const bool lattice = options.engine == "lattice" || options.engine == "gpu" || options.engine == "fpga";
+  const uint64_t hashes = options.engine == "reference" ? 0 : steps / (lattice ? options.lattice.hash_every : 1) + 2;
+  const bool cycles = options.lattice.cycles || options.engine == "systemc" || options.engine == "rtl";
+  const uint64_t spans = cycles ? steps * loaded.setup.plan.nodes() * kPhases : 0;
+  const uint64_t curves = 6 + 3 * loaded.scene.probes.size();
+  return 16 * (hashes + spans + curves * (samples + (1 << 10)));
 }
 
 // A run of the lattice engine measures itself: the states in between stay where they are.
-RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::LatticeRun request, Trace& trace) {
+RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::LatticeRun request, Trace& trace,
+                        bool& left_checkpoint, std::string& trouble) {
   if (options.out.empty() && options.lattice.keeps_checkpoints())
     throw InputError(fmt::format("{} needs --out DIR, where the checkpoint lies",
                                  options.lattice.resume ? "--resume" : "--checkpoint-every"));
@@ -80,11 +75,13 @@ RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::Latti
   request.watch = !options.no_watch;
   request.cycles = options.lattice.cycles;
   request.hash_every = options.lattice.hash_every;
-  emu::LatticeResult result =
+  LatticeAnswer result =
       run_on_lattice(options.input, loaded.scene, loaded.setup.plan, options.lattice, std::move(request));
   trace = std::move(result.trace);
   trace.findings = result.findings;
   trace.watched = result.watched;
+  left_checkpoint = result.left_checkpoint;
+  trouble = std::move(result.trouble);
   return {result.momentum_before,     result.momentum_after,      result.largest_speed, trace.curves,
           result.watched.has_value(), std::move(result.findings), result.watched};
 }
@@ -108,24 +105,40 @@ int run(Options options) {
   check_faults(options.input, {options.engine});
   const Loaded loaded = lattice || gpu ? load_plan(options.input) : load(options.input);
   catch_interrupts();
-  if (!options.out.empty()) prepare_directory(options.out);
   const Scene& scene = loaded.scene;
   const uint64_t steps = options.steps_given ? options.steps : scene.steps;
   const uint64_t every = options.frames_given ? options.frames_every : scene.frame_every;
   const std::vector<uint64_t> frame_steps = every_so_often(every, steps);
   const std::vector<uint64_t> probe_steps = every_so_often(scene.probe_every, steps);
+  std::optional<Recorder> recorder;
+  if (!options.out.empty())
+    recorder.emplace(RecorderOptions{options.out,
+                                     {options.input.scene, options.input.arch, options.engine},
+                                     options.lattice.resume,
+                                     options.force,
+                                     options.no_states,
+                                     options.raster,
+                                     options.real.is_real(options.engine),
+                                     options.si,
+                                     options.lattice.cycles || options.engine == "systemc" || options.engine == "rtl",
+                                     rest_of(options, loaded, steps, probe_steps.size())},
+                     loaded);
+  const auto keep = [&](const State& state) {
+    if (recorder) recorder->keep(state);
+  };
 
   Trace trace;
-  std::vector<Frame> frames;
   Items summary;
+  std::string trouble;  // what could not be written, but for the recorder's
+  bool left_checkpoint = false;
   bool failed = false;  // in the sense of model/watch.h
   if (reference) {
     RealOptions real = options.real.options();
     real.threads = options.lattice.threads;
-    ReferenceRun run = run_reference(loaded, real, steps, frame_steps, probe_steps, !options.no_watch);
+    ReferenceRun run = run_reference(loaded, real, steps, frame_steps, probe_steps, !options.no_watch,
+                                     recorder ? &*recorder : nullptr);
     failed = run.failed;
     trace = std::move(run.trace);
-    frames = std::move(run.frames);
     summary = std::move(run.summary);
   } else if (gpu) {
     GpuRequest request;
@@ -135,61 +148,73 @@ int run(Options options) {
     request.watch = !options.no_watch;
     request.passes = true;
     if (options.hashes_given || request.precision == "fixed") request.hash_every = options.lattice.hash_every;
-    GpuAnswer answer = run_on_gpu(options.input, loaded, options.gpu, request);
+    GpuAnswer answer = run_on_gpu(options.input, loaded, options.gpu, request, recorder ? &*recorder : nullptr);
     failed = answer.failed;
     trace = std::move(answer.trace);
-    frames = std::move(answer.frames);
     summary = std::move(answer.summary);
   } else if (lattice) {
     emu::LatticeRun request;
     request.steps = steps;
     request.frames = frame_steps;
     request.probes = probe_steps;
-    const RunFacts facts = run_by_lattice(options, loaded, std::move(request), trace);
+    request.keep = keep;
+    const RunFacts facts = run_by_lattice(options, loaded, std::move(request), trace, left_checkpoint, trouble);
     summary = summarise(loaded, trace, facts);
     failed = !facts.findings.empty();
-    if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   } else {
     // Engines know nothing of probes: they record states, and one meter reads them.
-    Request request{steps, {}};
-    std::set_union(frame_steps.begin(), frame_steps.end(), probe_steps.begin(), probe_steps.end(),
-                   std::back_inserter(request.frames));
-    if (options.engine == "golden") request.frames = frame_steps;
+    Request request{steps, frame_steps};
     RunMeter meter(loaded, probe_steps, !options.no_watch);
-    if (fpga) {
-      const Scratch scratch;
-      trace = start_fpga(options.input, options.fpga, request,
-                         options.hashes_given ? options.lattice.hash_every : 0, scratch.path("fpga.h5"),
-                         stderr_is_terminal())
-                  .finish();
-      for (const State& frame : trace.frames) meter.see(frame);
+    if (options.engine == "golden") {
+      trace = run_golden(loaded.setup, request, [&](const State& state) { meter.see(state); }, keep);
     } else {
-      trace = run_fixed(options.engine, options.input, loaded.setup, request,
-                        [&](const State& state) { meter.see(state); });
+      request.frames.clear();
+      std::set_union(frame_steps.begin(), frame_steps.end(), probe_steps.begin(), probe_steps.end(),
+                     std::back_inserter(request.frames));
+      const Scratch scratch;
+      const std::string path = scratch.path(options.engine + ".h5");
+      RunningEngine engine =
+          fpga ? start_fpga(options.input, options.fpga, request,
+                            options.hashes_given ? options.lattice.hash_every : 0, path, stderr_is_terminal())
+               : RunningEngine(options.engine, options.input, request, path, stderr_is_terminal());
+      const auto reader = engine.finish_reading();
+      trace = reader->rest();
+      reader->frames([&](const State& state) {
+        meter.see(state);
+        if (state.step == trace.steps() || std::binary_search(frame_steps.begin(), frame_steps.end(), state.step))
+          keep(state);
+      });
     }
     const RunFacts facts = meter.finish();
     trace.curves = facts.curves;
     trace.findings = facts.findings;
     trace.watched = facts.watched;
-    std::erase_if(trace.frames, [&](const State& frame) {
-      return frame.step != trace.steps() &&
-             !std::binary_search(frame_steps.begin(), frame_steps.end(), frame.step);
-    });
     summary = summarise(loaded, trace, facts);
     failed = !facts.findings.empty();
-    if (!options.out.empty()) frames = real_frames(loaded, trace.frames);
   }
   trace.asked = steps;
   add_end(summary, trace);
-  if (!options.out.empty()) write_outputs(options, loaded, trace, frames, summary);
-  fmt::print("{}", options.json ? summary.json() : summary.text());
-  const bool kept = options.lattice.keeps_checkpoints();
-  if (interrupted())
+  // Run to its end, or to a fault, it has nothing left to do.
+  const bool unfinished = interrupted() && !trace.stop && trace.steps() < steps;
+  const char* state = !trouble.empty() ? "incomplete" : trace.stop ? "stopped" : unfinished ? "interrupted" : "finished";
+  if (recorder) std::signal(SIGPIPE, SIG_IGN);  // a reader that went away costs the summary's lines, not the files
+  try {
+    fmt::print("{}", options.json ? summary.json() : summary.text());
+    if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
+  } catch (const std::system_error& error) {
+    if (trouble.empty()) trouble = fmt::format("cannot print the summary: {}", error.code().message());
+  }
+  if (recorder) {
+    recorder->finish(trace, summary, state);
+    if (!recorder->trouble().empty()) trouble = recorder->trouble();
+  }
+  if (unfinished)
     fmt::print(stderr, "interrupted{}\n",
-               kept ? fmt::format("; the same command with --resume goes on at step {}", trace.steps()) : "");
-  else if (kept)
+               left_checkpoint ? fmt::format("; the same command with --resume goes on at step {}", trace.steps()) : "");
+  else if (options.lattice.keeps_checkpoints() && trouble.empty())  // else it is what writes all of it once more
     emu::remove_checkpoint(options.out + "/checkpoint");
-  return trace.stop || failed || interrupted() ? 1 : 0;
+  if (!trouble.empty()) throw InputError(trouble);
+  return trace.stop || failed || unfinished ? 1 : 0;
 }
 
 }  // namespace
@@ -232,6 +257,7 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--resume", lattice.resume, "go on from the checkpoint in DIR");
   command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
       ->type_name("DIR");
+  command->add_flag("--force", options->force, "begin anew in a DIR whose run did not end, in its place");
   auto* raster = command
                      ->add_option("--raster", options->raster,
                                   "pixels along the body of the pictures that DIR keeps of its frames")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "cli/engines.h"
 #include "model/interrupt.h"
@@ -9,7 +10,8 @@
 
 namespace cuboct {
 
-Trace run_golden(const Setup& setup, const Request& request, const std::function<void(const State&)>& watch) {
+Trace run_golden(const Setup& setup, const Request& request, const std::function<void(const State&)>& watch,
+                 const std::function<void(const State&)>& keep) {
   using Clock = std::chrono::steady_clock;
   const Plan& plan = setup.plan;
   Trace trace;
@@ -17,10 +19,17 @@ Trace run_golden(const Setup& setup, const Request& request, const std::function
   trace.plan_hash = plan.hash;
   trace.nodes = plan.nodes();
   Progress progress("golden", request.steps, plan.particles);
+  std::optional<uint64_t> given;
+  const auto give = [&](const State& state) {
+    given = state.step;
+    if (keep)
+      keep(state);
+    else
+      trace.frames.push_back(state);
+  };
   const auto record = [&](const State& state) {
     trace.state_hash.push_back(hash_of(plan.lattice, state));
-    if (std::binary_search(request.frames.begin(), request.frames.end(), state.step))
-      trace.frames.push_back(state);
+    if (std::binary_search(request.frames.begin(), request.frames.end(), state.step)) give(state);
     if (watch) watch(state);
   };
   State state = setup.initial;
@@ -39,8 +48,7 @@ Trace run_golden(const Setup& setup, const Request& request, const std::function
     trace.stop = StopReason{error.fault, error.step, error.node, error.particle, error.number, error.what()};
   }
   // The last state is part of every answer, also of a run that ended early.
-  if (!trace.state_hash.empty() && !request.frames.empty() && trace.frames.back().step != state.step)
-    trace.frames.push_back(state);
+  if (!trace.state_hash.empty() && !request.frames.empty() && given != state.step) give(state);
   return trace;
 }
 

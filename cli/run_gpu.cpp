@@ -8,7 +8,6 @@
 #include <cmath>
 #include <optional>
 
-#include "cli/outputs.h"
 #include "cli/summary.h"
 #include "model/process.h"
 #include "model/progress.h"
@@ -24,18 +23,6 @@ std::optional<double> take(Trace& trace, const char* name) {
   const double value = at->second;
   trace.counters.erase(at);
   return value;
-}
-
-std::vector<Frame> frames_of(const Scene& scene, std::vector<RealFrame> bodies) {
-  const StrainMeter meter = strain_meter(scene, scene.body.x);
-  const int axis = strain_axis(scene);
-  std::vector<Frame> frames;
-  for (RealFrame& body : bodies) {
-    std::vector<double> strain = meter.axial(body.x, axis);
-    frames.push_back({body.step, static_cast<double>(body.step) * scene.rule.dt, std::move(body.x),
-                      std::move(body.v), scene.body.type, std::move(strain)});
-  }
-  return frames;
 }
 
 // As that of the reference (cli/run_reference.cpp).
@@ -126,14 +113,18 @@ RunningEngine start_gpu(const Input& input, const GpuChoice& choice, const GpuRe
 }
 
 GpuAnswer run_on_gpu(const Input& input, const Loaded& loaded, const GpuChoice& choice,
-                     const GpuRequest& request) {
+                     const GpuRequest& request, Recorder* recorder) {
   const Scratch scratch;
+  const auto reader =
+      start_gpu(input, choice, request, scratch.path("gpu.h5"), stderr_is_terminal()).finish_reading();
   GpuAnswer answer;
-  answer.trace = start_gpu(input, choice, request, scratch.path("gpu.h5"), stderr_is_terminal()).finish();
+  answer.trace = reader->rest();
   answer.summary = summarise_gpu(loaded, answer.trace, request.precision);
   answer.failed = !answer.trace.findings.empty();
-  if (!answer.trace.frames.empty()) answer.frames = real_frames(loaded, answer.trace.frames);
-  if (!answer.trace.bodies.empty()) answer.frames = frames_of(loaded.scene, answer.trace.bodies);
+  if (recorder) {
+    reader->frames([&](const State& state) { recorder->keep(state); });
+    reader->bodies([&](const RealFrame& frame) { recorder->keep(frame); });
+  }
   return answer;
 }
 

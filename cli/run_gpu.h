@@ -8,7 +8,7 @@
 #include "cli/command.h"
 #include "cli/engines.h"
 #include "cli/items.h"
-#include "model/frames.h"
+#include "cli/recorder.h"
 #include "model/trace.h"
 
 namespace cuboct {
@@ -38,14 +38,13 @@ RunningEngine start_gpu(const Input& input, const GpuChoice& choice, const GpuRe
                         std::string path, bool progress);
 
 struct GpuAnswer {
-  Trace trace;
-  std::vector<Frame> frames;
+  Trace trace;  // without frames
   Items summary;
   bool failed = false;  // the watch found something
 };
 
-// Waits for the run. Ctrl-C gives the run so far.
+// Waits for the run. Ctrl-C gives the run so far. Frames go to the recorder where there is one.
 GpuAnswer run_on_gpu(const Input& input, const Loaded& loaded, const GpuChoice& choice,
-                     const GpuRequest& request);
+                     const GpuRequest& request, Recorder* recorder);
 
 }  // namespace cuboct

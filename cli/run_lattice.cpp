@@ -9,15 +9,17 @@
 
 #include "cli/engines.h"
 #include "emu/lattice/program.h"
+#include "model/interrupt.h"
 #include "model/measure.h"
 #include "model/output.h"
 #include "model/process.h"
 #include "model/progress.h"
+#include "model/trace_file.h"
 
 namespace cuboct {
 namespace {
 
-emu::LatticeResult run_over_mpi(const Input& input, const Plan& plan, const LatticeChoice& choice,
+LatticeAnswer run_over_mpi(const Input& input, const Plan& plan, const LatticeChoice& choice,
                                 const emu::LatticeRun& request) {
   if (access((program_directory() + "/cuboct-lattice").c_str(), X_OK) != 0)
     throw InputError(fmt::format("--ranks {}: no program cuboct-lattice beside cuboct", choice.ranks));
@@ -27,7 +29,7 @@ emu::LatticeResult run_over_mpi(const Input& input, const Plan& plan, const Latt
   if (!in_path("mpirun"))
     throw InputError(fmt::format("--ranks {}: no program mpirun", choice.ranks), "install openmpi-bin");
   const Scratch scratch;
-  const std::string out = scratch.path("lattice.h5"), frames = scratch.path("frames");
+  const std::string out = scratch.path("lattice.h5"), frames = scratch.path("frames"), begun = scratch.path("begun");
   write_text(frames, fmt::format("{}\n", fmt::join(request.frames, "\n")));
   std::vector<std::string> arguments{"--quiet",
                                      "--oversubscribe",
@@ -44,7 +46,9 @@ emu::LatticeResult run_over_mpi(const Input& input, const Plan& plan, const Latt
                                      "--frames-file",
                                      frames,
                                      "--out",
-                                     out};
+                                     out,
+                                     "--begun",
+                                     begun};
   const auto add = [&](bool wanted, std::initializer_list<std::string> words) {
     if (wanted) arguments.insert(arguments.end(), words);
   };
@@ -59,18 +63,29 @@ emu::LatticeResult run_over_mpi(const Input& input, const Plan& plan, const Latt
   add(stderr_is_terminal(), {"--progress"});
   // Open MPI warns root, who in a container is everyone.
   if (geteuid() == 0) arguments.insert(arguments.begin(), "--allow-run-as-root");
-  emu::LatticeResult result;
+  LatticeAnswer result;
   Process process("mpirun", arguments, true);
-  const int code = process.wait();
-  if (code == 2) throw AlreadyTold(2);
-  if (!std::filesystem::exists(out)) throw std::runtime_error(fmt::format("mpirun ended with code {}", code));
-  result.trace = read_trace(out);
+  const int code = process.wait([&] { return std::filesystem::exists(begun); });
+  if (!std::filesystem::exists(out)) {
+    if (code == 2) throw AlreadyTold(2);
+    if (interrupted()) throw std::runtime_error("interrupted before the ranks began");
+    throw std::runtime_error(code < 0 ? fmt::format("mpirun was ended by signal {}", -code)
+                                      : fmt::format("mpirun ended with exit code {}", code));
+  }
+  if (code == 2) result.trouble = "the ranks could not write all of it";  // they said more
+  const TraceReader reader(out);
+  result.trace = reader.rest();
   result.interrupted = result.trace.steps() < request.steps && !result.trace.stop;
-  for (const State& state : result.trace.frames) {
+  result.left_checkpoint = result.interrupted && std::filesystem::exists(checkpoint.path);
+  reader.frames([&](State state) {
     if (state.step == 0) result.momentum_before = momentum(state);
     result.momentum_after = momentum(state);
     result.largest_speed = std::max(result.largest_speed, largest_speed(plan.rule, state));
-  }
+    if (request.keep)
+      request.keep(state);
+    else
+      result.trace.frames.push_back(std::move(state));
+  });
   return result;
 }
 
@@ -99,13 +114,13 @@ void LatticeChoice::check_unused(const std::string& engine) const {
   refuse(resume, "--resume");
 }
 
-emu::LatticeResult run_on_lattice(const Input& input, const Scene& scene, const Plan& plan,
+LatticeAnswer run_on_lattice(const Input& input, const Scene& scene, const Plan& plan,
                                   const LatticeChoice& choice, emu::LatticeRun request) {
   request.engine.threads = choice.threads;
   if (!choice.checkpoint_every.empty()) emu::read_interval(choice.checkpoint_every, request.checkpoint);
   request.checkpoint.resume = choice.resume;
   if (choice.ranks > 1) return run_over_mpi(input, plan, choice, request);
-  return emu::run_lattice(scene, plan, request);
+  return {emu::run_lattice(scene, plan, request), {}};
 }
 
 }  // namespace cuboct

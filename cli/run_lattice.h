@@ -24,9 +24,13 @@ struct LatticeChoice {
   void check_unused(const std::string& engine) const;
 };
 
+struct LatticeAnswer : emu::LatticeResult {
+  std::string trouble;  // what ranks could not write
+};
+
 // `request` with the choice's threads, on one or more ranks. Throws InputError where ranks are asked for that
 // this build or machine does not have.
-emu::LatticeResult run_on_lattice(const Input& input, const Scene& scene, const Plan& plan,
+LatticeAnswer run_on_lattice(const Input& input, const Scene& scene, const Plan& plan,
                                   const LatticeChoice& choice, emu::LatticeRun request);
 
 }  // namespace cuboct

@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <chrono>
 
-#include "cli/outputs.h"
 #include "cli/summary.h"
 #include "model/error.h"
 #include "model/interrupt.h"
 #include "model/measure.h"
 #include "model/progress.h"
 #include "model/real_meter.h"
-#include "model/strain.h"
 
 namespace cuboct {
 void RealChoice::add_to(CLI::App& command) {
@@ -52,7 +50,7 @@ RealOptions RealChoice::options() const {
 
 ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t steps,
                            const std::vector<uint64_t>& frame_steps, const std::vector<uint64_t>& probe_steps,
-                           bool watch) {
+                           bool watch, Recorder* recorder) {
   using Clock = std::chrono::steady_clock;
   const Scene& scene = loaded.scene;
   if (options.threads == 0) options.threads = reference_threads(scene.body.size());
@@ -62,8 +60,6 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
   run.trace.plan_hash = loaded.setup.plan.hash;
   run.trace.nodes = loaded.setup.plan.nodes();
   RealMeter meter(scene, options.integrator, true, true);
-  const StrainMeter strains = strain_meter(scene, scene.body.x);
-  const int axis = strain_axis(scene);
   Watch detectors(scene, 0);
 
   const auto record = [&](uint64_t step, bool last) {
@@ -71,13 +67,7 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
     const bool kept = last || std::binary_search(frame_steps.begin(), frame_steps.end(), step);
     if (!probed && !kept) return;
     if (probed) meter.add(reference, watch ? &detectors : nullptr);
-    if (kept) {
-      const Body& body = reference.body();
-      run.trace.bodies.push_back({step, body.x, body.v, {}});
-      Frame frame{step, static_cast<double>(step) * scene.rule.dt, body.x, body.v, body.type, {}};
-      for (const LocalStrain& strain : strains.measure(body.x)) frame.strain.push_back(strain.axial(axis));
-      run.frames.push_back(std::move(frame));
-    }
+    if (kept && recorder) recorder->keep(RealFrame{step, reference.body().x, reference.body().v, {}});
   };
 
   Progress progress("reference", steps, scene.body.size());
@@ -89,12 +79,13 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
     reference.step();
     run.trace.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
     ++step;
-    record(step, step == steps || interrupted());
-    if (interrupted()) break;
+    const bool last = step == steps || interrupted();
+    record(step, last);
+    if (last) break;
     progress.at(step);
   }
-  run.trace.curves = meter.curves();
   run.trace.steps_done = step;
+  run.trace.curves = meter.curves();
 
   Items& items = run.summary;
   items.add("engine", "reference");

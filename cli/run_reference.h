@@ -7,7 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/items.h"
-#include "model/frames.h"
+#include "cli/recorder.h"
 #include "model/reference.h"
 #include "model/trace.h"
 
@@ -28,14 +28,13 @@ struct RealChoice {
 
 struct ReferenceRun {
   Trace trace;  // curves, no hashes
-  std::vector<Frame> frames;
   Items summary;
   bool failed = false;  // the watch found something
 };
 
-// Ctrl-C gives the run so far. `threads` of `options` may be 0: as many as suit the scene.
+// Ctrl-C gives the run so far. Frames go to the recorder where there is one. `threads` of `options` may be 0: as many as suit the scene.
 ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t steps,
                            const std::vector<uint64_t>& frame_steps, const std::vector<uint64_t>& probe_steps,
-                           bool watch);
+                           bool watch, Recorder* recorder);
 
 }  // namespace cuboct

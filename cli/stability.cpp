@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/stability_maps.h"
+#include "model/directory_lock.h"
 #include "model/dynamical_matrix.h"
 #include "model/error.h"
 #include "model/interrupt.h"
@@ -191,9 +192,10 @@ int stability(const Options& options) {
     throw InputError(fmt::format("{} particles: 'cuboct stability' builds the matrix of at most {}",
                                  scene.body.size(), kMostParticles),
                      "a smaller piece of the same body has the same limit");
+  std::optional<DirectoryLock> lock;
   if (!options.maps.empty()) {
     study::check_maps(scene);
-    make_directory(options.maps);
+    lock.emplace(options.maps, "cuboct stability");
     check_writable(options.maps + "/damping.png");
   }
   catch_interrupts();

@@ -195,6 +195,7 @@ int run(Request request) {
 }  // namespace
 
 int run_gpu_program(int argc, char** argv) {
+  survive_file_limit();
   Request request;
   GpuRun& run = request.run;
   CLI::App app{"Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers",

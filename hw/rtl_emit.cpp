@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "hw/rtl_design.h"
 #include "hw/rtl_library.h"
 #include "hw/rtl_project.h"
+#include "model/directory_lock.h"
 #include "model/output.h"
 
 namespace cuboct {
@@ -67,10 +70,9 @@ bool stays_inside(const std::string& path) {
 }
 
 void write(const std::string& dir, const Files& files) {
-  std::error_code error;
-  fs::create_directories(dir, error);
-  if (error) throw InputError(fmt::format("{}: cannot create the directory: {}", dir, error.message()));
   check_emit_directory(dir);
+  const DirectoryLock lock(dir, "cuboct emit");
+  std::error_code error;
   // What an earlier emission wrote and this one does not would be read by a later build.
   std::ifstream earlier(fs::path(dir) / kMarker);
   for (std::string path; std::getline(earlier, path);)
@@ -98,7 +100,10 @@ void check_emit_directory(const std::string& dir) {
     return;
   }
   if (!fs::is_directory(dir, error)) throw InputError(fmt::format("{}: is no directory", dir));
-  if (!fs::is_empty(dir, error) && !fs::exists(fs::path(dir) / kMarker, error))
+  const auto nothing = [](const fs::directory_entry& entry) { return entry.path().filename() == ".lock"; };
+  const fs::directory_iterator entries(dir, error);
+  if (!std::all_of(entries, fs::directory_iterator(), nothing) &&
+      !fs::exists(fs::path(dir) / kMarker, error))
     throw InputError(fmt::format("{}: is not empty and holds no earlier emission", dir),
                      "give an empty or a new directory");
 }

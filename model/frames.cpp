@@ -26,15 +26,14 @@ struct Box {
   Vec3 lower, extent;
 };
 
-Box box_of(const FrameSource& frames, const FrameStyle& style) {
+Box box_of(const Frame& frame, const FrameStyle& style) {
   Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
   bool any = false;
-  for (const Frame* frame = frames(true); frame; frame = frames(false))
-    for (const Vec3& x : frame->x) {
-      lower = any ? Vec3(lower.cwiseMin(x)) : x;
-      upper = any ? Vec3(upper.cwiseMax(x)) : x;
-      any = true;
-    }
+  for (const Vec3& x : frame.x) {
+    lower = any ? Vec3(lower.cwiseMin(x)) : x;
+    upper = any ? Vec3(upper.cwiseMax(x)) : x;
+    any = true;
+  }
   Box box{lower - Vec3::Constant(style.radius), upper - lower + Vec3::Constant(2 * style.radius)};
   for (int axis = 0; axis < 3; ++axis)
     if (style.periodic.extent[axis] > 0) {
@@ -42,13 +41,6 @@ Box box_of(const FrameSource& frames, const FrameStyle& style) {
       box.extent[axis] = style.periodic.extent[axis];
     }
   return box;
-}
-
-FrameSource source_of(const std::vector<Frame>& frames) {
-  return [&frames, next = size_t{0}](bool restart) mutable {
-    if (restart) next = 0;
-    return next < frames.size() ? &frames[next++] : nullptr;
-  };
 }
 
 template <typename T>
@@ -133,59 +125,58 @@ void write_vtp(TextFile& out, const Frame& frame, const FrameStyle& style) {
 
 }  // namespace
 
-void write_extended_xyz(const std::string& path, const FrameSource& frames, const FrameStyle& style) {
-  const Box box = box_of(frames, style);
-  const auto flag = [&](int axis) { return style.periodic.extent[axis] > 0 ? 'T' : 'F'; };
-  std::vector<std::string> names;
-  for (int type = 0; type < 256; ++type) names.push_back(species(style, static_cast<uint8_t>(type)));
-  const std::string radius = fmt::format("{:.6g}", style.radius);
-  write_text(path, [&](TextFile& file) {
-    fmt::memory_buffer out;
-    const auto to = std::back_inserter(out);
-    for (const Frame* frame = frames(true); frame; frame = frames(false)) {
-      fmt::format_to(
-          to,
-          "{}\nLattice=\"{:.9g} 0 0 0 {:.9g} 0 0 0 {:.9g}\" Origin=\"{:.9g} {:.9g} {:.9g}\" "
-          "pbc=\"{} {} {}\" "
-          "Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1 Step={} Time={:.9g}\n",
-          frame->x.size(), box.extent[0], box.extent[1], box.extent[2], box.lower[0], box.lower[1],
-          box.lower[2], flag(0), flag(1), flag(2), frame->step, frame->time);
-      for (size_t i = 0; i < frame->x.size(); ++i) {
-        const Vec3 &x = frame->x[i], &v = frame->v[i];
-        fmt::format_to(to, FMT_COMPILE("{} {} {:.9g} {:.9g} {:.9g} {:.6g} {:.6g} {:.6g} {} {:.6g}\n"), i,
-                       names[frame->type[i]], x[0], x[1], x[2], v[0], v[1], v[2], radius, frame->strain[i]);
-        if (out.size() < size_t{1} << 16) continue;
-        file.write(out.data(), out.size());
-        out.clear();
-      }
-    }
-    file.write(out.data(), out.size());
-  });
+XyzWriter::XyzWriter(const std::string& path, const FrameStyle& style) : style_(style), file_(path) {
+  for (int type = 0; type < 256; ++type) names_.push_back(species(style, static_cast<uint8_t>(type)));
 }
 
-void write_extended_xyz(const std::string& path, const std::vector<Frame>& frames, const FrameStyle& style) {
-  write_extended_xyz(path, source_of(frames), style);
-}
-
-void write_vtk(const std::string& stem, const FrameSource& frames, const FrameStyle& style) {
-  const std::string name = std::filesystem::path(stem).filename().string();
-  std::string list =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
-      "  <Collection>\n";
-  const auto file = [&stem](size_t k) { return fmt::format("{}_{:06}.vtp", stem, k); };
-  size_t k = 0;
-  for (const Frame* frame = frames(true); frame; frame = frames(false), ++k) {
-    write_text(file(k), [&](TextFile& out) { write_vtp(out, *frame, style); });
-    list += fmt::format("    <DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}_{:06}.vtp\"/>\n", frame->time,
-                        html_text(name), k);
+void XyzWriter::add(const Frame& frame) {
+  const Box box = box_of(frame, style_);
+  const auto flag = [&](int axis) { return style_.periodic.extent[axis] > 0 ? 'T' : 'F'; };
+  const std::string radius = fmt::format("{:.6g}", style_.radius);
+  fmt::memory_buffer out;
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to,
+                 "{}\nLattice=\"{:.9g} 0 0 0 {:.9g} 0 0 0 {:.9g}\" Origin=\"{:.9g} {:.9g} {:.9g}\" "
+                 "pbc=\"{} {} {}\" "
+                 "Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1 Step={} Time={:.9g}\n",
+                 frame.x.size(), box.extent[0], box.extent[1], box.extent[2], box.lower[0], box.lower[1],
+                 box.lower[2], flag(0), flag(1), flag(2), frame.step, frame.time);
+  for (size_t i = 0; i < frame.x.size(); ++i) {
+    const Vec3 &x = frame.x[i], &v = frame.v[i];
+    fmt::format_to(to, FMT_COMPILE("{} {} {:.9g} {:.9g} {:.9g} {:.6g} {:.6g} {:.6g} {} {:.6g}\n"), i,
+                   names_[frame.type[i]], x[0], x[1], x[2], v[0], v[1], v[2], radius, frame.strain[i]);
+    if (out.size() < size_t{1} << 16) continue;
+    file_.write(out.data(), out.size());
+    out.clear();
   }
-  for (; std::filesystem::remove(file(k)); ++k) {  // of an earlier, longer run
-  }
-  write_text(stem + ".pvd", list + "  </Collection>\n</VTKFile>\n");
+  file_.write(out.data(), out.size());
+  file_.commit();
 }
 
-void write_vtk(const std::string& stem, const std::vector<Frame>& frames, const FrameStyle& style) {
-  write_vtk(stem, source_of(frames), style);
+namespace {
+
+std::string vtp_name(const std::string& stem, size_t k) { return fmt::format("{}_{:06}.vtp", stem, k); }
+
+}  // namespace
+
+VtkWriter::VtkWriter(const std::string& stem, const FrameStyle& style)
+    : stem_(stem),
+      style_(style),
+      list_(stem + ".pvd",
+            "<?xml version=\"1.0\"?>\n"
+            "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n",
+            "  </Collection>\n</VTKFile>\n") {
+  for (size_t k = 0; std::filesystem::remove(vtp_name(stem_, k)); ++k) {
+  }
+}
+
+void VtkWriter::add(const Frame& frame) {
+  const std::string path = vtp_name(stem_, count_);
+  write_text(path, [&](TextFile& out) { write_vtp(out, frame, style_); });
+  list_.write(fmt::format("    <DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}\"/>\n", frame.time,
+                          html_text(std::filesystem::path(path).filename().string())));
+  list_.commit();
+  ++count_;
 }
 
 }  // namespace cuboct

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "model/output.h"
 #include "model/rule.h"
 
 namespace cuboct {
@@ -26,19 +26,33 @@ struct FrameStyle {
   std::vector<std::string> types;  // names, by type index
 };
 
-// Frames one after another: null after the last. A frame need live only until the next is asked for, so that
-// millions of particles are held once. Asked from the first again where it is called with `restart`.
-using FrameSource = std::function<const Frame*(bool restart)>;
-
 // All frames in one file, one after another; each has a Lattice, Properties and Time entry as OVITO reads
-// them: id, species, pos (m), velo (m/s), Radius (m), AxialStrain. An axis without a period gets the extent
-// of all frames, so the source is walked twice.
-void write_extended_xyz(const std::string& path, const FrameSource& frames, const FrameStyle& style);
-void write_extended_xyz(const std::string& path, const std::vector<Frame>& frames, const FrameStyle& style);
+// them: id, species, pos (m), velo (m/s), Radius (m), AxialStrain. An axis without a period has the extent of the frame.
+class XyzWriter {
+ public:
+  XyzWriter(const std::string& path, const FrameStyle& style);  // the file is empty then
+  // Throws InputError where the disk has no room: the frame is then left out.
+  void add(const Frame& frame);
 
-// <stem>.pvd lists <stem>_000000.vtp, ... (left-overs of a longer run are removed): one file per frame with
-// velocity, type, id, strain and radius per point. Positions are doubles, the rest floats.
-void write_vtk(const std::string& stem, const FrameSource& frames, const FrameStyle& style);
-void write_vtk(const std::string& stem, const std::vector<Frame>& frames, const FrameStyle& style);
+ private:
+  FrameStyle style_;
+  std::vector<std::string> names_;
+  GrowingFile file_;
+};
+
+// <stem>.pvd lists <stem>_000000.vtp, ...: one file per frame with velocity, type, id, strain and radius per point.
+// Positions are doubles, the rest floats.
+class VtkWriter {
+ public:
+  VtkWriter(const std::string& stem, const FrameStyle& style);  // removes the files of an earlier run
+  // Throws InputError where the disk has no room: the frame is then left out.
+  void add(const Frame& frame);
+
+ private:
+  std::string stem_;
+  FrameStyle style_;
+  GrowingFile list_;
+  size_t count_ = 0;
+};
 
 }  // namespace cuboct

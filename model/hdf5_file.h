@@ -16,20 +16,33 @@
 #include <utility>
 #include <vector>
 
+#include <unistd.h>
+
 #include "model/error.h"
+#include "model/output.h"
 
 namespace cuboct::hdf5 {
+
+// To be called before the library's first use. Errors are ours to tell. The library's work at the program's exit is to
+// close what is open: files that were abandoned, which ends in a segmentation fault; all others are closed by then.
+inline void start() {
+  static const bool once = (H5dont_atexit(), H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr), true);
+  static_cast<void>(once);
+}
 
 // An HDF5 identifier that closes itself; a call that failed throws the error of the file at hand.
 class Handle {
  public:
-  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& error) : id_(id), close_(close) {
+  // `broken`: where it is true in the end, the identifier stays open (Writer).
+  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& error, const bool* broken = nullptr)
+      : id_(id), close_(close), broken_(broken) {
     if (id < 0) throw InputError(error);
   }
   ~Handle() {
-    if (id_ >= 0) close_(id_);
+    if (id_ >= 0 && !(broken_ && *broken_)) close_(id_);
   }
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle(Handle&& other) noexcept
+      : id_(std::exchange(other.id_, -1)), close_(other.close_), broken_(other.broken_) {}
   Handle& operator=(Handle&&) = delete;
   operator hid_t() const { return id_; }
   herr_t close() { return close_(std::exchange(id_, -1)); }
@@ -37,6 +50,7 @@ class Handle {
  private:
   hid_t id_;
   herr_t (*close_)(hid_t);
+  const bool* broken_;
 };
 
 template <typename T>
@@ -105,51 +119,79 @@ inline hid_t type_in_file<float>() {
 
 using Shape = std::vector<hsize_t>;
 
-// Rows first ... first + size - 1 of a dataset, and the memory for them.
+// The block of a dataset that begins at `start`, and the memory for it.
 struct Slab {
-  Slab(hid_t data, Shape shape, hsize_t first, hsize_t size, const std::string& error)
-      : file(H5Dget_space(data), H5Sclose, error), memory(space_of(shape, size), H5Sclose, error) {
-    Shape start(shape.size(), 0);
-    start[0] = first;
-    shape[0] = size;
+  Slab(hid_t data, const Shape& start, const Shape& shape, const std::string& error)
+      : file(H5Dget_space(data), H5Sclose, error),
+        memory(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose, error) {
     if (H5Sselect_hyperslab(file, H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr) < 0)
       throw InputError(error);
   }
-  static hid_t space_of(Shape shape, hsize_t size) {
-    shape[0] = size;
-    return H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
-  }
+  // Rows first ... first + size - 1.
+  Slab(hid_t data, const Shape& shape, hsize_t first, hsize_t size, const std::string& error)
+      : Slab(data, first_row(shape.size(), first), rows(shape, size), error) {}
   Handle file, memory;
+
+ private:
+  static Shape first_row(size_t axes, hsize_t first) {
+    Shape start(axes, 0);
+    start[0] = first;
+    return start;
+  }
+  static Shape rows(Shape shape, hsize_t size) {
+    shape[0] = size;
+    return shape;
+  }
 };
 
+// What was written up to the last flush() is in the file if the program dies. A call of the library that fails
+// leaves the file broken: HDF5 cannot go on with it, nor close it, so it is abandoned. reserve() prevents that
+// where the disk is full.
 class Writer {
  public:
   // `packed`: datasets are compressed.
   Writer(const std::string& temporary, const std::string& path, bool packed = true)
-      : error_(fmt::format("cannot write {}: ", path)), packed_(packed), file_(create(temporary)) {}
+      : temporary_(temporary),
+        error_(fmt::format("cannot write {}: ", path)),
+        packed_(packed),
+        file_(create(temporary)) {}
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
 
   hid_t root() const { return file_; }
+  bool packed() const { return packed_; }
+
+  // Takes so many bytes of the disk for what comes next. Throws InputError where there are not as many, and leaves
+  // the file as it was.
+  void reserve(uint64_t bytes) const {
+    hsize_t end = 0;
+    check(H5Fget_filesize(file_, &end), "size");
+    if (const int error = cuboct::reserve(temporary_, end, bytes)) throw InputError(error_ + std::strerror(error));
+  }
+
+  void flush() const { check(H5Fflush(file_, H5F_SCOPE_LOCAL), "flush"); }
 
   Handle group(hid_t where, const std::string& name) const {
     Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, error_ + "HDF5 property list");
     check(H5Pset_obj_track_times(properties, false), name);
-    return Handle(H5Gcreate2(where, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose,
-                  error_ + "group '" + name + "'");
+    return handle(H5Gcreate2(where, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose,
+                  "group '" + name + "'");
   }
 
   void text(hid_t where, const std::string& name, const std::string& value) const {
     Handle type = string_type(value.size());
     Handle space(H5Screate(H5S_SCALAR), H5Sclose, error_ + name);
-    Handle attribute(H5Acreate2(where, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                     error_ + "attribute '" + name + "'");
+    const Handle attribute = handle(H5Acreate2(where, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+                                    H5Aclose, "attribute '" + name + "'");
     check(H5Awrite(attribute, type, value.empty() ? "" : value.c_str()), name);
   }
 
   template <typename T>
   void number(hid_t where, const std::string& name, T value) const {
     Handle space(H5Screate(H5S_SCALAR), H5Sclose, error_ + name);
-    Handle attribute(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Aclose, error_ + "attribute '" + name + "'");
+    const Handle attribute =
+        handle(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+               "attribute '" + name + "'");
     check(H5Awrite(attribute, type_in_memory<T>(), &value), name);
   }
 
@@ -158,8 +200,9 @@ class Writer {
   void numbers(hid_t where, const std::string& name, const std::vector<T>& values) const {
     const hsize_t count = values.size();
     Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose, error_ + name);
-    Handle attribute(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Aclose, error_ + "attribute '" + name + "'");
+    const Handle attribute =
+        handle(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+               "attribute '" + name + "'");
     check(H5Awrite(attribute, type_in_memory<T>(), values.data()), name);
   }
 
@@ -170,21 +213,26 @@ class Writer {
     write(where, name, shape, type_in_file<T>(), type_in_memory<T>(), values.data(), unit, what);
   }
 
-  // The same in pieces of one chunk, for what is nowhere in memory as an array: next(values) is asked for one
-  // row of `columns` values after another.
-  template <typename T, typename Next>
-  void rows(hid_t where, const std::string& name, hsize_t count, hsize_t columns, const std::string& unit,
-            const std::string& what, Next next) const {
-    const Shape shape = columns == 1 ? Shape{count} : Shape{count, columns};
-    const Handle data = dataset(where, name, shape, type_in_file<T>(), unit, what);
-    const hsize_t block = chunk_rows(shape);
-    std::vector<T> values(block * columns);
-    for (hsize_t first = 0; first < count; first += block) {
-      const hsize_t size = std::min(block, count - first);
-      for (hsize_t row = 0; row < size; ++row) next(&values[row * columns]);
-      const Slab slab(data, shape, first, size, error_ + name);
-      check(H5Dwrite(data, type_in_memory<T>(), slab.memory, slab.file, H5P_DEFAULT, values.data()), name);
-    }
+  // A dataset whose first axis grows by write_block, in chunks of this shape. `shape[0]` is 0.
+  template <typename T>
+  Handle growing(hid_t where, const std::string& name, const Shape& shape, const Shape& chunk, bool packed,
+                 const std::string& unit, const std::string& what) const {
+    Shape most = shape;
+    most[0] = H5S_UNLIMITED;
+    return dataset(where, name, shape, most, chunk, packed, type_in_file<T>(), unit, what);
+  }
+
+  void extend(const Handle& data, const std::string& name, const Shape& extent) const {
+    check(H5Dset_extent(data, extent.data()), name);
+  }
+
+  // Writes a block of a growing dataset, which has this extent then.
+  template <typename T>
+  void write_block(const Handle& data, const std::string& name, const Shape& extent, const Shape& start,
+                   const Shape& shape, const T* values) const {
+    extend(data, name, extent);
+    const Slab slab(data, start, shape, error_ + name);
+    check(H5Dwrite(data, type_in_memory<T>(), slab.memory, slab.file, H5P_DEFAULT, values), name);
   }
 
   void names(hid_t where, const std::string& name, const std::vector<std::string>& values) const {
@@ -196,16 +244,28 @@ class Writer {
     write(where, name, {values.size()}, type, type, flat.data(), "", "name");
   }
 
-  // Closing writes the last blocks: a full disk shows here.
-  void close() { check(file_.close(), "close"); }
+  // Closing writes the last blocks: a full disk shows here. What was reserved in vain goes back.
+  void close() {
+    flush();
+    hsize_t end = 0;
+    check(H5Fget_filesize(file_, &end), "size");
+    check(file_.close(), "close");
+    if (truncate(temporary_.c_str(), static_cast<off_t>(end)) != 0) throw InputError(error_ + std::strerror(errno));
+  }
 
  private:
+  Handle handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) const {
+    if (id < 0) broken_ = true;
+    return {id, close, error_ + what, &broken_};
+  }
+
   Handle create(const std::string& temporary) const {
+    start();
     Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose, error_ + "HDF5 property list");
     check(H5Pset_obj_track_times(properties, false), "file");
     errno = 0;
     const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, properties, H5P_DEFAULT);
-    return Handle(id, H5Fclose, error_ + std::strerror(errno));
+    return Handle(id, H5Fclose, error_ + std::strerror(errno), &broken_);
   }
 
   Handle string_type(size_t size) const {
@@ -224,23 +284,22 @@ class Writer {
     return count > 0 ? std::clamp<hsize_t>((hsize_t{1} << 15) * shape[0] / count, 1, shape[0]) : 0;
   }
 
-  Handle dataset(hid_t where, const std::string& name, const Shape& shape, hid_t in_file,
-                 const std::string& unit, const std::string& what) const {
+  Handle dataset(hid_t where, const std::string& name, const Shape& shape, const Shape& most,
+                 const Shape& chunk, bool packed, hid_t in_file, const std::string& unit,
+                 const std::string& what) const {
     Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, error_ + "HDF5 property list");
     check(H5Pset_obj_track_times(properties, false), name);
-    Shape chunk = shape;
-    chunk[0] = chunk_rows(shape);
     if (chunk[0] > 0) {
       check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), name);
-      if (packed_) {
+      if (packed) {
         check(H5Pset_shuffle(properties), name);
         check(H5Pset_deflate(properties, 4), name);
       }
     }
-    Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose,
+    Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), most.data()), H5Sclose,
                  error_ + name);
-    Handle data(H5Dcreate2(where, name.c_str(), in_file, space, H5P_DEFAULT, properties, H5P_DEFAULT),
-                H5Dclose, error_ + "dataset '" + name + "'");
+    Handle data = handle(H5Dcreate2(where, name.c_str(), in_file, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+                         H5Dclose, "dataset '" + name + "'");
     text(data, "unit", unit);
     text(data, "what", what);
     return data;
@@ -248,17 +307,63 @@ class Writer {
 
   void write(hid_t where, const std::string& name, const Shape& shape, hid_t in_file, hid_t in_memory,
              const void* values, const std::string& unit, const std::string& what) const {
-    const Handle data = dataset(where, name, shape, in_file, unit, what);
-    if (chunk_rows(shape) > 0) check(H5Dwrite(data, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
+    Shape chunk = shape;
+    chunk[0] = chunk_rows(shape);
+    const Handle data = dataset(where, name, shape, shape, chunk, packed_, in_file, unit, what);
+    if (chunk[0] > 0) check(H5Dwrite(data, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
   }
 
   void check(herr_t result, const std::string& name) const {
-    if (result < 0) throw InputError(fmt::format("{}HDF5 failed at '{}'", error_, name));
+    if (result >= 0) return;
+    broken_ = true;
+    throw InputError(fmt::format("{}HDF5 failed at '{}'", error_, name));
   }
 
-  std::string error_;
+  std::string temporary_, error_;
   bool packed_;
+  mutable bool broken_ = false;
   Handle file_;
+};
+
+// A dataset that grows by rows of `columns` values. Whole chunks go to the file as they fill, the rest in the end:
+// so a chunk is written and packed once.
+template <typename T>
+class Growing {
+ public:
+  Growing(const Writer& out, hid_t where, std::string name, hsize_t chunk, hsize_t columns,
+          const std::string& unit, const std::string& what)
+      : out_(out),
+        name_(std::move(name)),
+        columns_(columns),
+        chunk_(chunk),
+        data_(out.growing<T>(where, name_, shape(0), shape(chunk), out.packed(), unit, what)) {
+    buffer_.reserve(chunk * columns);
+  }
+
+  void add(const T* row) {
+    buffer_.insert(buffer_.end(), row, row + columns_);
+    if (buffer_.size() == chunk_ * columns_) write();
+  }
+  void finish() {
+    if (!buffer_.empty()) write();
+  }
+  uint64_t chunk_bytes() const { return chunk_ * columns_ * sizeof(T); }
+
+ private:
+  Shape shape(hsize_t rows) const { return columns_ == 1 ? Shape{rows} : Shape{rows, columns_}; }
+  void write() {
+    const hsize_t rows = buffer_.size() / columns_;
+    out_.write_block(data_, name_, shape(written_ + rows), columns_ == 1 ? Shape{written_} : Shape{written_, 0},
+                     shape(rows), buffer_.data());
+    written_ += rows;
+    buffer_.clear();
+  }
+
+  const Writer& out_;
+  std::string name_;
+  hsize_t columns_, chunk_, written_ = 0;
+  Handle data_;
+  std::vector<T> buffer_;
 };
 
 // Reads files of a stranger: what a file says of its own lengths is held against the bytes that it has before
@@ -324,24 +429,51 @@ class Reader {
     return values;
   }
 
+  // The shape of a dataset of which no more than blocks are read.
+  Shape extent(hid_t where, const std::string& name) const { return shape_of(opened(where, name), name); }
+  // InputError where the file cannot hold so many values of it. What was never written takes no bytes: some are let
+  // pass whatever the file holds.
+  void check_stored(hid_t where, const std::string& name, const Shape& shape, hsize_t spare = 1 << 24) const {
+    check_stored(opened(where, name), name, shape, spare);
+  }
+
+  // The block that begins at `start`; check_stored() before, where the file is not to be trusted.
+  template <typename T>
+  std::vector<T> block(hid_t where, const std::string& name, const Shape& start, const Shape& shape) const {
+    const Handle data = opened(where, name);
+    const Shape found = shape_of(data, name);
+    bool inside = found.size() == shape.size();
+    size_t count = 1;
+    for (size_t axis = 0; inside && axis < shape.size(); ++axis) {
+      inside = start[axis] <= found[axis] && shape[axis] <= found[axis] - start[axis];
+      count *= shape[axis];
+    }
+    same_length(inside, "the fields");
+    std::vector<T> values(count);
+    const std::string error = fmt::format("cannot read '{}' of {}", name, path_);
+    const Slab slab(data, start, shape, error);
+    if (count > 0 && H5Dread(data, type_in_memory<T>(), slab.memory, slab.file, H5P_DEFAULT, values.data()) < 0)
+      throw InputError(error);
+    return values;
+  }
+
   Shape shape(hid_t where, const std::string& name) const { return shape_of(dataset(where, name), name); }
   hsize_t length(hid_t where, const std::string& name) const { return shape(where, name)[0]; }
 
-  // The same in pieces, next(values) for one row of `columns` values after another; there must be `count`.
+  // Rows first ... first + count - 1 in pieces: next(values) for one row of `columns` values after another.
   template <typename T, typename Next>
-  void rows(hid_t where, const std::string& name, hsize_t count, hsize_t columns, Next next) const {
+  void rows(hid_t where, const std::string& name, hsize_t first, hsize_t count, hsize_t columns, Next next) const {
     const Handle data = dataset(where, name);
-    const Shape shape = columns == 1 ? Shape{count} : Shape{count, columns};
     const Shape found = shape_of(data, name);
-    if (found.size() != shape.size() || (columns > 1 && found[1] != columns))
+    if (found.size() != (columns == 1 ? 1 : 2) || (columns > 1 && found[1] != columns))
       throw InputError(fmt::format("{} is not a cuboct {}: the shape of '{}' is wrong", path_, kind_, name));
-    same_length(found[0] == count, "the frames' fields");
+    same_length(found[0] >= first + count, "the frames' fields");
     const hsize_t block = std::min<hsize_t>(count, 1 << 15);
     std::vector<T> values(block * columns);
-    for (hsize_t first = 0; first < count; first += block) {
-      const hsize_t size = std::min(block, count - first);
+    for (hsize_t done = 0; done < count; done += block) {
+      const hsize_t size = std::min(block, count - done);
       const std::string error = fmt::format("cannot read '{}' of {}", name, path_);
-      const Slab slab(data, shape, first, size, error);
+      const Slab slab(data, found, first + done, size, error);
       if (H5Dread(data, type_in_memory<T>(), slab.memory, slab.file, H5P_DEFAULT, values.data()) < 0)
         throw InputError(error);
       for (hsize_t row = 0; row < size; ++row) next(&values[row * columns]);
@@ -373,6 +505,7 @@ class Reader {
 
  private:
   static Handle open(const std::string& path) {
+    start();
     std::error_code none;
     const bool special = std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none);
     std::FILE* file = special ? nullptr : std::fopen(path.c_str(), "rb");  // a pipe would wait for a writer
@@ -384,19 +517,26 @@ class Reader {
     return Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
                   fmt::format("{} is not an HDF5 file", path));
   }
-  Handle dataset(hid_t where, const std::string& name) const {
+  Handle opened(hid_t where, const std::string& name) const {
     check_link(where, name, "dataset");
     Handle data(H5Dopen2(where, name.c_str(), H5P_DEFAULT), H5Dclose, missing("dataset", name));
     const Handle properties(H5Dget_create_plist(data), H5Pclose, missing("dataset", name));
     if (H5Pget_layout(properties) == H5D_VIRTUAL || H5Pget_external_count(properties) != 0)
       throw InputError(fmt::format("{}: '{}' takes its values from another file", path_, name),
                        "a trace of cuboct holds all of its values");
+    return data;
+  }
+  Handle dataset(hid_t where, const std::string& name) const {
+    Handle data = opened(where, name);
+    check_stored(data, name, shape_of(data, name), 0);
+    return data;
+  }
+  void check_stored(const Handle& data, const std::string& name, const Shape& shape, hsize_t spare) const {
     // Deflate packs 1032 bytes into one at most, and a value that was never written takes none.
     constexpr hsize_t kMostPacked = 1100;
     const hsize_t stored = std::min<hsize_t>(H5Dget_storage_size(data), bytes_) * kMostPacked;
     const Handle type(H5Dget_type(data), H5Tclose, missing("dataset", name));
-    hsize_t left = stored / std::max<size_t>(H5Tget_size(type), 1);
-    const Shape shape = shape_of(data, name);
+    hsize_t left = stored / std::max<size_t>(H5Tget_size(type), 1) + spare;
     const bool empty = std::find(shape.begin(), shape.end(), 0) != shape.end();
     for (const hsize_t extent : shape)
       if (!empty) left /= extent;
@@ -404,7 +544,6 @@ class Reader {
       throw InputError(
           fmt::format("{} is damaged: '{}' says that it has {} values, and the file does not hold them",
                       path_, name, fmt::join(shape, " x ")));
-    return data;
   }
   void check_link(hid_t where, const std::string& name, const std::string& kind) const {
     H5L_info_t info;

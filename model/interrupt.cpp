@@ -35,6 +35,9 @@ void catch_interrupts() {
   struct sigaction action {};
   action.sa_handler = handle;  // no SA_RESTART: a wait for an engine must return
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaction(signal, &action, nullptr);
+  // nohup has it ignored, and means it.
+  struct sigaction before {};
+  if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
 bool interrupted() { return asked_to_stop != 0; }

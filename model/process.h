@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@ struct Streams {
 
 class Process {
  public:
-  // Starts `program` (looked for in PATH unless it has a slash) with these arguments, without a shell; by
+  // Starts `program` (looked for in PATH unless it has a slash) with these arguments, without a shell. It dies with
+  // the thread that starts it, however that ends. By
   // default its stderr is ours, its stdout is dropped (results travel in files). Throws InputError where it
   // cannot be started.
   // `apart`: in a process group of its own, where Ctrl-C does not reach it, and an interrupt of ours is
@@ -27,13 +29,18 @@ class Process {
   Process(Process&& other) noexcept;
   Process& operator=(Process&&) = delete;
 
-  // Exit code, or -N where signal N ended it. An interrupt of ours is passed on once, whichever thread met it.
-  int wait();
+  // Exit code, or -N where signal N ended it. An interrupt of ours is passed on once, whichever thread met it; where
+  // `begun` says that there is nothing to save yet, the program is ended instead.
+  int wait(const std::function<bool()>& begun = {});
 
  private:
   pid_t pid_;
   int passed_on_ = 0;  // the signal that stands for an interrupt
 };
+
+// To be called first by a program that another one starts for a program that uses Process, as mpirun does: it dies
+// with the one in between. Nothing happens where nobody used Process.
+void end_with_starter();
 
 // Directory of the running program: engines with heavy needs are programs of their own, beside it.
 std::string program_directory();

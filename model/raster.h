@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -46,17 +47,45 @@ struct Rasters {
 // pixels and packing lie, and sums to the volume of all particles.
 constexpr double particle_thickness(double edge) { return edge / 1.4142135623730951; }
 
-// For frames of one body: right is the longest axis of the first, up the next (the lower where equal). `across` pixels
-// span the first frame's longest axis, or fewer, so that no pixel is below a quarter of a particle. The grid holds
-// all frames' particles, but for those farther than half that longest axis from the first frame's box: one that flew off
-// does not make the picture small. InputError where there are no particles.
-RasterGrid raster_grid(const std::vector<Frame>& frames, double radius, uint32_t across);
+// For frames of one body that begins as `first`: right is its longest axis, up the next (the lower where equal). `across`
+// pixels span the longest axis, or fewer, so that no pixel is below a quarter of a particle. The grid reaches half that
+// axis beyond the body on all sides: one particle that flew off does not make the picture small. InputError where there
+// are no particles.
+RasterGrid raster_grid(const Frame& first, double radius, uint32_t across);
+
+// Pixels column ... column + columns - 1 of rows row ... row + rows - 1 of a grid.
+struct RasterWindow {
+  uint32_t column = 0, row = 0, columns = 0, rows = 0;
+};
+// What the frame's particles touch.
+RasterWindow window_of(const Frame& frame, const RasterGrid& grid, double radius);
+RasterWindow join(const RasterWindow& a, const RasterWindow& b);  // the smallest that holds both
+RasterGrid part_of(const RasterGrid& grid, const RasterWindow& window);
 
 Raster rasterise(const Frame& frame, const RasterGrid& grid, double radius);
 
-// HDF5; layout in docs/reference/trace.md. Values are rounded to 11 significant bits, so that they pack well. Same
-// rasters, same bytes; never half a file.
-void write_rasters(const std::string& path, const Rasters& rasters);
+// HDF5; layout in docs/reference/trace.md. Frames go to the file as they come. Values are rounded to 11 significant bits,
+// so that they pack well. Same rasters, same bytes.
+class RasterWriter {
+ public:
+  // Writes to `temporary`; finish() renames it to `path`. `head` has no frames and no grid: the first frame, which
+  // may not be empty, lays it out for `across` pixels along the body.
+  RasterWriter(const std::string& path, const std::string& temporary, const Rasters& head, uint32_t across);
+  ~RasterWriter();  // removes the temporary file where finish() was not reached
+  RasterWriter(const RasterWriter&) = delete;
+  RasterWriter& operator=(const RasterWriter&) = delete;
+
+  // Throws InputError where the disk has no room: the frame is then left out, and the next one may fit.
+  void add(const Frame& frame);
+  void finish();  // of one frame or more
+  void leave();   // leaves the temporary file as it is
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// Of the grid what the frames touch.
 Rasters read_rasters(const std::string& path);
 
 }  // namespace cuboct

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "model/trace.h"
 
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "model/hdf5_file.h"
 #include "model/measure.h"
 #include "model/output.h"
+#include "model/trace_file.h"
 #include "model/trace_head.h"
 
 namespace cuboct {
@@ -23,143 +28,203 @@ using hdf5::Writer;
 constexpr char kFormat[] = "cuboct trace";
 constexpr uint32_t kVersion = 2;
 
-// The particles of all frames, one after another.
-template <typename States>
-class Rows {
+// Of a group's datasets that grow frame by frame.
+constexpr uint64_t kSlack = 1 << 16;  // bytes of the disk for a frame's share of indices and headers
+
+// Rows per chunk: of 2^15 values, but no more than a frame has, so that frames reach the disk as they come.
+hsize_t chunk_of(size_t particles, hsize_t columns) {
+  return std::clamp<hsize_t>(particles, 1 << 10, (hsize_t{1} << 15) / columns);
+}
+
+// Numbers of which one comes with each frame: in place, so that a program that dies leaves them.
+template <typename T>
+class PerFrame {
  public:
-  explicit Rows(States& frames) : frames_(frames) {}
-  auto& next() {
-    while (at_ == frames_[frame_].particles.size()) ++frame_, at_ = 0;
-    return frames_[frame_].particles[at_++];
+  PerFrame(const Writer& out, hid_t where, const char* name, const char* unit, const char* what)
+      : out_(out), name_(name), data_(out.growing<T>(where, name, {0}, {1 << 10}, false, unit, what)) {}
+  void add(T value) {
+    out_.write_block(data_, name_, {count_ + 1}, {count_}, {1}, &value);
+    ++count_;
   }
 
  private:
-  States& frames_;
-  size_t frame_ = 0, at_ = 0;
+  const Writer& out_;
+  std::string name_;
+  Handle data_;
+  hsize_t count_ = 0;
 };
 
-void write_frames(const Writer& out, const std::vector<State>& frames, const TraceHead* head) {
-  std::vector<uint64_t> step;
-  std::vector<int64_t> first{0};  // signed: NumPy makes a float of an unsigned 64-bit number plus 1
-  for (const State& frame : frames) {
-    step.push_back(frame.step);
-    first.push_back(first.back() + static_cast<int64_t>(frame.particles.size()));
-  }
-  const Handle group = out.group(out.root(), "frames");
-  out.array(group, "step", {step.size()}, step, "step", "[frame]");
-  out.array(group, "first", {first.size()}, first, "", "[frame]: rows first[k] to first[k+1]-1 are frame k");
-  const auto count = static_cast<hsize_t>(first.back());
-  const auto number = [&]<typename T>(const char* name, T Particle::*field, const char* what) {
-    out.rows<T>(group, name, count, 1, "", what,
-                [rows = Rows(frames), field](T* value) mutable { *value = rows.next().*field; });
-  };
-  const auto triple = [&](const char* name, Int3 Particle::*field, const char* unit, const char* what) {
-    out.rows<int64_t>(group, name, count, 3, unit, what,
-                      [rows = Rows(frames), field](int64_t* values) mutable {
-                        const Int3& from = rows.next().*field;
-                        std::copy(from.begin(), from.end(), values);
-                      });
-  };
-  number("id", &Particle::id, "[row]");
-  number("type", &Particle::type, "[row] index into `types`");
-  number("node", &Particle::node, "[row] index into lattice/cell");
-  triple("x", &Particle::x, "cell edge / 2^(P+G)", "[row][axis] offset in the node's cell");
-  triple("v", &Particle::v, "cell edge / step / 2^(P+G)", "[row][axis] velocity, half a step earlier");
-  triple("u", &Particle::u, "cell edge / 2^(P+G)", "[row][axis] displacement from the anchor");
-  if (!head || !head->si) return;
-  const auto real = [&](const char* name, const char* unit, const char* what, auto value) {
-    out.rows<double>(group, name, count, 3, unit, what, [&, rows = Rows(frames)](double* values) mutable {
-      const Vec3 one = value(rows.next());
-      std::copy_n(one.data(), 3, values);
-    });
-  };
-  const FixedRule& rule = *head->rule;
-  real("x_si", "m", "[row][axis] position",
-       [&](const Particle& p) { return position_of(rule, *head->lattice, head->origin, p); });
-  real("v_si", "m/s", "[row][axis] velocity, half a step earlier",
-       [&](const Particle& p) { return velocity_of(rule, p); });
-}
+constexpr const char* kOfRow = "[row]";
 
-std::vector<State> read_frames(const Reader& in) {
+class FrameRows {
+ public:
+  // `head`: may be null.
+  FrameRows(const Writer& out, size_t particles, const TraceHead* head)
+      : out_(out),
+        head_(head && head->si && head->rule ? head : nullptr),
+        group_(out.group(out.root(), "frames")),
+        step_(out, group_, "step", "step", "[frame]"),
+        // Signed: NumPy makes a float of an unsigned 64-bit number plus 1.
+        first_(out, group_, "first", "", "[frame]: rows first[k] to first[k+1]-1 are frame k"),
+        id_(out, group_, "id", chunk_of(particles, 1), 1, "", kOfRow),
+        type_(out, group_, "type", chunk_of(particles, 1), 1, "", "[row] index into `types`"),
+        node_(out, group_, "node", chunk_of(particles, 1), 1, "", "[row] index into lattice/cell"),
+        x_(out, group_, "x", chunk_of(particles, 3), 3, "cell edge / 2^(P+G)",
+           "[row][axis] offset in the node's cell"),
+        v_(out, group_, "v", chunk_of(particles, 3), 3, "cell edge / step / 2^(P+G)",
+           "[row][axis] velocity, half a step earlier"),
+        u_(out, group_, "u", chunk_of(particles, 3), 3, "cell edge / 2^(P+G)",
+           "[row][axis] displacement from the anchor") {
+    first_.add(0);
+    if (!head_) return;
+    x_si_.emplace(out, group_, "x_si", chunk_of(particles, 3), 3, "m", "[row][axis] position");
+    v_si_.emplace(out, group_, "v_si", chunk_of(particles, 3), 3, "m/s",
+                  "[row][axis] velocity, half a step earlier");
+  }
+
+  void add(const State& frame) {
+    const uint64_t bytes = frame.particles.size() * (2 * sizeof(uint32_t) + 1 + (head_ ? 15 : 9) * sizeof(int64_t));
+    out_.reserve(bytes + bytes / 100 + pending() + kSlack);
+    for (const Particle& p : frame.particles) {
+      id_.add(&p.id);
+      type_.add(&p.type);
+      node_.add(&p.node);
+      x_.add(p.x.data());
+      v_.add(p.v.data());
+      u_.add(p.u.data());
+      if (!head_) continue;
+      x_si_->add(position_of(*head_->rule, *head_->lattice, head_->origin, p).data());
+      v_si_->add(velocity_of(*head_->rule, p).data());
+    }
+    rows_ += static_cast<int64_t>(frame.particles.size());
+    step_.add(frame.step);
+    first_.add(rows_);
+    out_.flush();
+  }
+  // At most what finish() writes.
+  uint64_t pending() const {
+    return id_.chunk_bytes() + type_.chunk_bytes() + node_.chunk_bytes() + (head_ ? 5 : 3) * x_.chunk_bytes();
+  }
+  void finish() {
+    id_.finish(), type_.finish(), node_.finish(), x_.finish(), v_.finish(), u_.finish();
+    if (head_) x_si_->finish(), v_si_->finish();
+  }
+
+ private:
+  const Writer& out_;
+  const TraceHead* const head_;  // where positions are wanted in metres too
+  Handle group_;
+  PerFrame<uint64_t> step_;
+  PerFrame<int64_t> first_;
+  hdf5::Growing<uint32_t> id_;
+  hdf5::Growing<uint8_t> type_;
+  hdf5::Growing<uint32_t> node_;
+  hdf5::Growing<int64_t> x_, v_, u_;
+  std::optional<hdf5::Growing<double>> x_si_, v_si_;
+  int64_t rows_ = 0;
+};
+
+class BodyRows {
+ public:
+  BodyRows(const Writer& out, const RealFrame& first, const TraceHead* head)
+      : out_(out),
+        particles_(first.x.size()),
+        group_(out.group(out.root(), "bodies")),
+        step_(out, group_, "step", "step", "[frame]"),
+        x_(out, group_, "x", chunk_of(particles_, 3), 3, "m", kRows),
+        v_(out, group_, "v", chunk_of(particles_, 3), 3, "m/s", kRows) {
+    if (head) out.array(group_, "type", {particles_}, head->scene.body.type, "", "[id] index into `types`");
+    if (!first.force.empty()) force_.emplace(out, group_, "force", chunk_of(particles_, 3), 3, "N", kRows);
+  }
+
+  void add(const RealFrame& frame) {
+    if (frame.x.size() != particles_ || frame.v.size() != particles_ ||
+        frame.force.size() != (force_ ? particles_ : 0))
+      throw std::logic_error("the frames of a trace differ in their number of particles");
+    const uint64_t bytes = particles_ * 9 * sizeof(double);
+    out_.reserve(bytes + bytes / 100 + pending() + kSlack);
+    for (size_t k = 0; k < particles_; ++k) {
+      x_.add(frame.x[k].data());
+      v_.add(frame.v[k].data());
+      if (force_) force_->add(frame.force[k].data());
+    }
+    step_.add(frame.step);
+    out_.flush();
+  }
+  uint64_t pending() const { return 3 * x_.chunk_bytes(); }
+  void finish() {
+    x_.finish(), v_.finish();
+    if (force_) force_->finish();
+  }
+
+ private:
+  static constexpr const char* kRows = "[row][axis] row frame * particles + id";
+  const Writer& out_;
+  size_t particles_;
+  Handle group_;
+  PerFrame<uint64_t> step_;
+  hdf5::Growing<double> x_, v_;
+  std::optional<hdf5::Growing<double>> force_;
+};
+
+void read_frames(const Reader& in, const std::function<void(State)>& see) {
   const Handle group = in.group(in.root(), "frames");
   const auto step = in.array<uint64_t>(group, "step");
   const auto first = in.array<int64_t>(group, "first");
-  const hsize_t count = in.length(group, "id");
   in.same_length(first.size() == step.size() + 1 && first.front() == 0 &&
-                     first.back() == static_cast<int64_t>(count) &&
                      std::is_sorted(first.begin(), first.end()),
                  "the frames' fields");
-  for (const char* field : {"type", "node", "x", "v", "u"})
-    in.same_length(in.length(group, field) == count, "the frames' fields");
-  std::vector<State> frames(step.size());
-  for (size_t k = 0; k < frames.size(); ++k) {
-    frames[k].step = step[k];
-    frames[k].particles.resize(static_cast<size_t>(first[k + 1] - first[k]));
+  for (const char* name : {"id", "type", "node", "x", "v", "u"})
+    in.same_length(first.back() == static_cast<int64_t>(in.length(group, name)), "the frames' fields");
+  for (size_t k = 0; k < step.size(); ++k) {
+    const auto begin = static_cast<hsize_t>(first[k]), count = static_cast<hsize_t>(first[k + 1] - first[k]);
+    State frame;
+    frame.step = step[k];
+    frame.particles.resize(count);
+    const auto number = [&]<typename T>(const char* name, T Particle::*field) {
+      in.rows<T>(group, name, begin, count, 1,
+                 [&, row = size_t{0}](const T* value) mutable { frame.particles[row++].*field = *value; });
+    };
+    const auto triple = [&](const char* name, Int3 Particle::*field) {
+      in.rows<int64_t>(group, name, begin, count, 3, [&, row = size_t{0}](const int64_t* values) mutable {
+        std::copy_n(values, 3, (frame.particles[row++].*field).begin());
+      });
+    };
+    number("id", &Particle::id);
+    number("type", &Particle::type);
+    number("node", &Particle::node);
+    triple("x", &Particle::x);
+    triple("v", &Particle::v);
+    triple("u", &Particle::u);
+    see(std::move(frame));
   }
-  const auto number = [&]<typename T>(const char* name, T Particle::*field) {
-    in.rows<T>(group, name, count, 1,
-               [rows = Rows(frames), field](const T* value) mutable { rows.next().*field = *value; });
-  };
-  const auto triple = [&](const char* name, Int3 Particle::*field) {
-    in.rows<int64_t>(group, name, count, 3, [rows = Rows(frames), field](const int64_t* values) mutable {
-      std::copy_n(values, 3, (rows.next().*field).begin());
-    });
-  };
-  number("id", &Particle::id);
-  number("type", &Particle::type);
-  number("node", &Particle::node);
-  triple("x", &Particle::x);
-  triple("v", &Particle::v);
-  triple("u", &Particle::u);
-  return frames;
 }
 
-void write_bodies(const Writer& out, const std::vector<RealFrame>& frames, const TraceHead* head) {
-  if (frames.empty()) return;
-  const Handle group = out.group(out.root(), "bodies");
-  const size_t particles = frames.front().x.size();
-  std::vector<uint64_t> step;
-  for (const RealFrame& frame : frames) step.push_back(frame.step);
-  out.array(group, "step", {step.size()}, step, "step", "[frame]");
-  const auto triple = [&](const char* name, std::vector<Vec3> RealFrame::*field, const char* unit) {
-    for (const RealFrame& frame : frames)
-      if ((frame.*field).size() != particles)
-        throw std::logic_error("the frames of a trace differ in their number of particles");
-    out.rows<double>(group, name, frames.size() * particles, 3, unit,
-                     "[row][axis] row frame * particles + id",
-                     [&frames, particles, field, row = size_t{0}](double* values) mutable {
-                       const Vec3& from = (frames[row / particles].*field)[row % particles];
-                       std::copy_n(from.data(), 3, values);
-                       ++row;
-                     });
-  };
-  triple("x", &RealFrame::x, "m");
-  triple("v", &RealFrame::v, "m/s");
-  if (!frames.front().force.empty()) triple("force", &RealFrame::force, "N");
-  if (head) out.array(group, "type", {particles}, head->scene.body.type, "", "[id] index into `types`");
-}
-
-std::vector<RealFrame> read_bodies(const Reader& in) {
-  if (!in.has(in.root(), "bodies")) return {};
+void read_bodies(const Reader& in, const std::function<void(RealFrame)>& see) {
+  if (!in.has(in.root(), "bodies")) return;
   const Handle group = in.group(in.root(), "bodies");
   const auto step = in.array<uint64_t>(group, "step");
   const hsize_t rows = in.length(group, "x");
   in.same_length(!step.empty() && rows % step.size() == 0, "the bodies' fields");
+  const bool forces = in.has(group, "force");
+  in.same_length(in.length(group, "v") == rows && (!forces || in.length(group, "force") == rows),
+                 "the bodies' fields");
   const size_t particles = rows / step.size();
-  std::vector<RealFrame> frames(step.size());
-  for (size_t k = 0; k < frames.size(); ++k) frames[k].step = step[k];
-  const auto triple = [&](const char* name, std::vector<Vec3> RealFrame::*field) {
-    for (RealFrame& frame : frames) (frame.*field).resize(particles);
-    in.rows<double>(group, name, rows, 3,
-                    [&frames, particles, field, row = size_t{0}](const double* values) mutable {
-                      std::copy_n(values, 3, (frames[row / particles].*field)[row % particles].data());
-                      ++row;
-                    });
-  };
-  triple("x", &RealFrame::x);
-  triple("v", &RealFrame::v);
-  if (in.has(group, "force")) triple("force", &RealFrame::force);
-  return frames;
+  for (size_t k = 0; k < step.size(); ++k) {
+    RealFrame frame;
+    frame.step = step[k];
+    const auto triple = [&](const char* name, std::vector<Vec3> RealFrame::*field) {
+      (frame.*field).resize(particles);
+      in.rows<double>(group, name, k * particles, particles, 3,
+                      [&, row = size_t{0}](const double* values) mutable {
+                        std::copy_n(values, 3, (frame.*field)[row++].data());
+                      });
+    };
+    triple("x", &RealFrame::x);
+    triple("v", &RealFrame::v);
+    if (forces) triple("force", &RealFrame::force);
+    see(std::move(frame));
+  }
 }
 
 void write_findings(const Writer& out, const Trace& trace) {
@@ -309,6 +374,20 @@ uint64_t hash_in(const Reader& in) {
   return hash;
 }
 
+// At most what all but frames takes of the disk.
+uint64_t bytes_of(const Trace& trace) {
+  uint64_t values = 2 * trace.state_hash.size() + 2 * trace.cycles.size(), texts = 0, parts = 16;
+  for (const Curve& curve : trace.curves) {
+    values += 2 * curve.value.size();
+    parts += 2;
+  }
+  for (const auto& [name, value] : trace.counters) texts = std::max(texts, 2 * name.size() * trace.counters.size());
+  for (const auto& [name, text] : trace.notes) texts += 2 * (name.size() + text.size()) * trace.notes.size();
+  for (const Finding& finding : trace.findings) texts += (finding.text.size() + 64) * trace.findings.size();
+  const uint64_t bytes = 8 * values + texts;
+  return bytes + bytes / 100 + parts * (1 << 13) + kSlack;
+}
+
 // Whether the number of hashes is one that steps and hash_every allow.
 bool hashes_fit(const Trace& trace) {
   if (trace.hash_every == 0) return false;
@@ -320,12 +399,47 @@ bool hashes_fit(const Trace& trace) {
 
 }  // namespace
 
-void write_trace(const std::string& path, const Trace& trace, bool packed, const TraceHead* head) {
+struct TraceWriter::Impl {
+  Impl(const std::string& path, const std::string& temporary, bool packed, const TraceHead* head)
+      : path(path), temporary(temporary), out(temporary, path, packed), head(head) {}
+
+  std::string path, temporary;
+  Writer out;
+  const TraceHead* const head;
+  std::optional<FrameRows> frames;
+  std::optional<BodyRows> bodies;
+};
+
+TraceWriter::TraceWriter(const std::string& path, const std::string& temporary, bool packed, const TraceHead* head)
+    : impl_(std::make_unique<Impl>(path, temporary, packed, head)) {
+  if (head) write_head(impl_->out, *head);
+}
+
+TraceWriter::~TraceWriter() {
+  if (!impl_) return;
+  const std::string temporary = impl_->temporary;
+  impl_.reset();
+  discard(temporary);
+}
+
+void TraceWriter::leave() { impl_.reset(); }
+
+void TraceWriter::add(const State& frame) {
+  if (!impl_->frames) impl_->frames.emplace(impl_->out, frame.particles.size(), impl_->head);
+  impl_->frames->add(frame);
+}
+
+void TraceWriter::add(const RealFrame& frame) {
+  if (!impl_->bodies) impl_->bodies.emplace(impl_->out, frame, impl_->head);
+  impl_->bodies->add(frame);
+}
+
+void TraceWriter::finish(const Trace& trace) {
   if (!hashes_fit(trace)) throw std::logic_error("a trace's hashes do not fit its steps and hash_every");
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
-  check_writable(path);
-  write_whole(path, [&](const std::string& temporary) {
-    Writer out(temporary, path, packed);
+  Writer& out = impl_->out;
+  {
+    out.reserve(bytes_of(trace) + (impl_->frames ? impl_->frames->pending() : 0) +
+                (impl_->bodies ? impl_->bodies->pending() : 0));
     out.text(out.root(), "format", kFormat);
     out.number<uint32_t>(out.root(), "version", kVersion);
     out.text(out.root(), "engine", trace.engine);
@@ -338,11 +452,13 @@ void write_trace(const std::string& path, const Trace& trace, bool packed, const
       out.number<uint64_t>(out.root(), "steps_asked", *trace.asked);
       out.text(out.root(), "ended", trace.ended());
     }
-    if (head) write_head(out, *head, !trace.frames.empty() || !trace.cycles.empty());
     out.array(out.root(), "state_hash", {trace.state_hash.size()}, trace.state_hash, "",
               trace.hash_every == 1 ? "[step]" : "[step / hash_every], then of the last step");
-    write_frames(out, trace.frames, head);
-    write_bodies(out, trace.bodies, head);
+    if (!impl_->frames) impl_->frames.emplace(out, 0, nullptr);
+    impl_->frames->finish();
+    impl_->frames.reset();
+    if (impl_->bodies) impl_->bodies->finish();
+    impl_->bodies.reset();
     write_curves(out, trace.curves);
     write_cycles(out, trace);
     {
@@ -372,12 +488,23 @@ void write_trace(const std::string& path, const Trace& trace, bool packed, const
       out.text(stop, "text", trace.stop->text);
     }
     out.close();
-  });
+  }
+  rename_whole(impl_->temporary, impl_->path);
+  impl_.reset();
 }
 
-Trace read_trace(const std::string& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const Reader in(path);
+void write_trace(const std::string& path, const Trace& trace, bool packed) {
+  check_writable(path);
+  TraceWriter out(path, temporary_beside(path), packed);
+  for (const State& frame : trace.frames) out.add(frame);
+  for (const RealFrame& frame : trace.bodies) out.add(frame);
+  out.finish(trace);
+}
+
+namespace {
+
+Trace read_rest(const Reader& in) {
+  const std::string& path = in.path();
   if (in.text(in.root(), "format") != kFormat) throw InputError(in.missing("attribute", "format"));
   const auto version = in.number<uint32_t>(in.root(), "version");
   if (version != kVersion)
@@ -394,8 +521,6 @@ Trace read_trace(const std::string& path) {
   if (trace.hash_every != 1 || trace.state_hash.empty()) trace.steps_done = steps;
   in.same_length(trace.hash_every > 0 && trace.steps() == steps, "steps and state hashes");
   if (in.has_attribute(in.root(), "steps_asked")) trace.asked = in.number<uint64_t>(in.root(), "steps_asked");
-  trace.frames = read_frames(in);
-  trace.bodies = read_bodies(in);
   trace.curves = read_curves(in);
   if (in.has(in.root(), "cycles")) {
     const auto flat = in.array<uint64_t>(in.root(), "cycles", {trace.nodes, hsize_t{kPhases}, 2});
@@ -423,6 +548,28 @@ Trace read_trace(const std::string& path) {
                             in.text(stop, "text")};
   }
   in.same_length(hashes_fit(trace), "steps and state hashes");
+  return trace;
+}
+
+}  // namespace
+
+struct TraceReader::Impl {
+  explicit Impl(const std::string& path) : in(path), rest(read_rest(in)) {}
+  Reader in;
+  Trace rest;
+};
+
+TraceReader::TraceReader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+TraceReader::~TraceReader() = default;
+const Trace& TraceReader::rest() const { return impl_->rest; }
+void TraceReader::frames(const std::function<void(State)>& see) const { read_frames(impl_->in, see); }
+void TraceReader::bodies(const std::function<void(RealFrame)>& see) const { read_bodies(impl_->in, see); }
+
+Trace read_trace(const std::string& path) {
+  const TraceReader in(path);
+  Trace trace = in.rest();
+  in.frames([&](State frame) { trace.frames.push_back(std::move(frame)); });
+  in.bodies([&](RealFrame frame) { trace.bodies.push_back(std::move(frame)); });
   return trace;
 }
 

@@ -102,10 +102,8 @@ struct Trace {
 
 // HDF5; layout in docs/reference/trace.md. Written to a temporary name beside `path`, then renamed: never
 // half a file. Same trace, same bytes. `packed`: compressed; a trace that one program hands to another is not, as
-// packing millions of particles takes longer than many steps of theirs. `head`: what makes metres and seconds of
-// its numbers (model/trace_head.h).
-void write_trace(const std::string& path, const Trace& trace, bool packed = true,
-                 const TraceHead* head = nullptr);
+// packing millions of particles takes longer than many steps of theirs.
+void write_trace(const std::string& path, const Trace& trace, bool packed = true);
 Trace read_trace(const std::string& path);
 
 }  // namespace cuboct

@@ -33,18 +33,27 @@ void write_widths(const Writer& out, const Widths& w) {
 void write_lattice(const Writer& out, const Lattice& lattice) {
   const Handle group = out.group(out.root(), "lattice");
   out.numbers<int32_t>(group, "period", {lattice.period().begin(), lattice.period().end()});
-  out.rows<int32_t>(group, "cell", lattice.size(), 3, "cell edge", "[node][axis] coordinates of the node's cell",
-                    [&, node = uint32_t{0}](int32_t* values) mutable {
-                      const Cell& cell = lattice.cell(node++);
-                      std::copy(cell.begin(), cell.end(), values);
-                    });
+  const hsize_t chunk = std::clamp<hsize_t>(lattice.size(), 1 << 10, (1 << 15) / 3);
+  hdf5::Growing<int32_t> cells(out, group, "cell", chunk, 3, "cell edge",
+                               "[node][axis] coordinates of the node's cell");
+  for (uint32_t node = 0; node < lattice.size(); ++node) cells.add(lattice.cell(node).data());
+  cells.finish();
+}
+
+// At most what the head takes of the disk.
+uint64_t bytes_of(const TraceHead& head) {
+  uint64_t bytes = (uint64_t{1} << 18) + 2 * (head.scene.text.size() + head.arch.size());
+  for (const ParticleType& type : head.scene.rule.types) bytes += 2 * type.name.size();
+  if (head.rule && head.cells) bytes += 13 * uint64_t{head.lattice->size()};
+  return bytes;
 }
 
 }  // namespace
 
 const char* program_version() { return CUBOCT_VERSION; }
 
-void write_head(const Writer& out, const TraceHead& head, bool cells) {
+void write_head(const Writer& out, const TraceHead& head) {
+  out.reserve(bytes_of(head));
   const Scene& scene = head.scene;
   const hid_t root = out.root();
   out.text(root, "program_version", program_version());
@@ -64,11 +73,12 @@ void write_head(const Writer& out, const TraceHead& head, bool cells) {
     out.names(source, "scene", {scene.text});
     out.names(source, "arch", {head.arch});
   }
-  if (!head.rule) return;
+  if (!head.rule) return out.flush();
   out.number<double>(root, "cell_edge", head.rule->cell_edge);
   out.numbers<double>(root, "origin", triple(head.origin));
   write_widths(out, head.rule->widths);
-  if (cells) write_lattice(out, *head.lattice);
+  if (head.cells) write_lattice(out, *head.lattice);
+  out.flush();
 }
 
 }  // namespace cuboct

@@ -23,12 +23,13 @@ struct TraceHead {
   Vec3 origin = Vec3::Zero();  // m, lower corner of cell (0,0,0)
   std::string arch;            // text of its file; empty: the defaults
   bool si = false;             // states in SI as well, as frames/x_si and frames/v_si
+  bool cells = true;           // the lattice's cells too, of use where something counts by them
 };
 
 // Of the program: "0.1.0".
 const char* program_version();
 
-// `cells`: the lattice's cells too, of use where something counts by them.
-void write_head(const hdf5::Writer& out, const TraceHead& head, bool cells);
+// Throws InputError where the disk has no room, and leaves the file as it was.
+void write_head(const hdf5::Writer& out, const TraceHead& head);
 
 }  // namespace cuboct

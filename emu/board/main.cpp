@@ -45,12 +45,13 @@ int run(Request request) {
   fmt::print("{} steps of {} particles on {} nodes in {:.0f} cycles; {} requests, {} sent again\n",
              trace.steps(), setup.plan.particles, trace.nodes, trace.counters.front().second, count.requests,
              count.retries);
-  if (!trace.stop) return 0;
+  if (!trace.stop) return trace.steps() < options.steps ? 1 : 0;  // interrupted
   fmt::print(stderr, "{}: {}\n", line_text(request.scene), line_text(trace.stop->text));
   return 1;
 }
 
 int main_of(int argc, char** argv) {
+  survive_file_limit();
   Request request;
   CLI::App app{"Runs a scene on the board behind a serial port", "cuboct-fpga"};
   app.add_option("scene", request.scene, "Scene file (TOML)")->required();

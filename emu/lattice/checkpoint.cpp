@@ -6,8 +6,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 
 #include "emu/lattice/journal.h"
+#include "model/error.h"
+#include "model/output.h"
 
 namespace cuboct::emu {
 namespace {
@@ -33,24 +36,41 @@ std::vector<Vec3> take_vectors(WordReader& in) {
 void write_checkpoint(const std::string& path, const CheckpointHead& head, const LatticeEngine& engine,
                       bool displaced) {
   const std::string temporary = path + ".tmp";
-  {
-    WordWriter out(temporary);
+  // Ranks send their particles: to the end, even where the disk is full.
+  std::optional<WordWriter> out;
+  std::optional<InputError> refused;
+  const auto attempt = [&](const auto& write) {
+    try {
+      if (!refused) write();
+    } catch (const InputError& error) {
+      refused = error;
+    }
+  };
+  attempt([&] {
+    out.emplace(temporary);
     for (const uint64_t value : {kMagic, kVersion, head.plan_hash, head.step, uint64_t{head.particles},
                                  head.hash_every, uint64_t{head.cycles}, uint64_t{head.energies}})
-      out.word(value);
-    out.number(head.seconds);
-    out.number(head.largest_speed);
-    for (const int64_t p : head.momentum) out.word(static_cast<uint64_t>(p));
+      out->word(value);
+    out->number(head.seconds);
+    out->number(head.largest_speed);
+    for (const int64_t p : head.momentum) out->word(static_cast<uint64_t>(p));
     for (const uint64_t value : {head.counters.list_builds, head.counters.node_steps,
                                  head.counters.quiet_node_steps, head.journal.words, head.journal.hash})
-      out.word(value);
-    put(out, head.probes.latest);
-    put(out, head.probes.moved);
-    out.word(head.timing.size());
-    out.words(head.timing);
-    engine.for_each_slot([&](const Particle& p) { put(out, p, displaced); });
-    out.word(out.mark().hash);
-    out.sync();
+      out->word(value);
+    put(*out, head.probes.latest);
+    put(*out, head.probes.moved);
+    out->word(head.timing.size());
+    out->words(head.timing);
+  });
+  engine.for_each_slot([&](const Particle& p) { attempt([&] { put(*out, p, displaced); }); });
+  attempt([&] {
+    out->word(out->mark().hash);
+    out->sync();
+  });
+  out.reset();
+  if (refused) {
+    discard(temporary);
+    throw InputError(*refused);
   }
   if (std::rename(temporary.c_str(), path.c_str()) != 0)
     throw InputError(fmt::format("cannot write {}: {}", path, std::strerror(errno)));

@@ -123,17 +123,17 @@ WordMark Journal::sync() {
   return out_->mark();
 }
 
-std::vector<State> Journal::frames() {
+void Journal::for_each_frame(const std::function<void(State)>& see) {
   sync();
-  std::vector<State> frames(frame_steps_.size());
   WordReader in(path_);
-  for (size_t k = 0; k < frames.size(); ++k) {
-    frames[k].step = frame_steps_[k];
+  for (size_t k = 0; k < frame_steps_.size(); ++k) {
+    State frame;
+    frame.step = frame_steps_[k];
     in.seek(frame_places_[k] + 2);
-    frames[k].particles.resize(in.count(1) / (displaced_ ? 10 : 7));
-    for (Particle& p : frames[k].particles) p = take_particle(in, displaced_);
+    frame.particles.resize(in.count(1) / (displaced_ ? 10 : 7));
+    for (Particle& p : frame.particles) p = take_particle(in, displaced_);
+    see(std::move(frame));
   }
-  return frames;
 }
 
 }  // namespace cuboct::emu

@@ -3,6 +3,7 @@
 // never written again. A checkpoint says how far the journal holds.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -36,7 +37,7 @@ class Journal {
   WordMark sync();
 
   const std::vector<uint64_t>& frame_steps() const { return frame_steps_; }
-  std::vector<State> frames();  // read back
+  void for_each_frame(const std::function<void(State)>& see);  // read back
 
  private:
   void head(uint64_t kind, uint64_t step, uint64_t words);

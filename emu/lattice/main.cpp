@@ -5,11 +5,13 @@
 #include <cstdlib>
 
 #include "emu/lattice/mpi_ranks.h"
+#include "model/process.h"
 
 // Alone, without mpirun (Open MPI, MPICH, Slurm), MPI is not even started.
 int main(int argc, char** argv) {
   for (const char* launcher : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
     if (std::getenv(launcher)) {
+      cuboct::end_with_starter();  // mpirun's end is ours, before anything can wait for other ranks
       cuboct::emu::MpiRanks ranks(&argc, &argv);
       const int code = cuboct::emu::run_lattice_program(argc, argv, &ranks);
       // A rank that failed alone (a full disk) would leave the others waiting for it.

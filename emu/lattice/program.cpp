@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "emu/lattice/run.h"
 #include "hw/setup.h"
@@ -15,12 +16,13 @@
 #include "model/state_meter.h"
 #include "model/steps.h"
 #include "model/text.h"
+#include "model/trace_file.h"
 
 namespace cuboct::emu {
 namespace {
 
 struct Request {
-  std::string scene, arch, out, frames_file, interval;
+  std::string scene, arch, out, frames_file, begun, interval;
   std::optional<uint64_t> steps;
   std::vector<uint64_t> frames;
   bool frames_given = false, no_quiescence = false, bench = false;
@@ -66,20 +68,34 @@ int run(Request request) {
   // A benchmark times steps: its one hash is the last state's.
   if (request.bench) run.hash_every = std::max<uint64_t>(run.steps, 1);
 
+  std::optional<TraceWriter> writer;
+  std::string trouble;
+  if (!request.out.empty() && leads) {
+    writer.emplace(request.out, temporary_beside(request.out));
+    run.keep = [&](const State& frame) {
+      if (!request.begun.empty()) write_text(std::exchange(request.begun, {}), "");
+      try {
+        writer->add(frame);
+      } catch (const InputError& error) {
+        if (trouble.empty()) trouble = fmt::format("{}; frames are left out from step {} on", error.what(), frame.step);
+      }
+    };
+  }
   catch_interrupts();
   const LatticeResult result = run_lattice(scene, plan, run);
   const Trace& trace = result.trace;
   if (!leads) return trace.stop || result.interrupted ? 1 : 0;
-  if (!request.out.empty()) write_trace(request.out, trace);
+  if (writer) writer->finish(trace);
   if (request.bench)
     print_bench(result, plan.particles);
   else
     fmt::print("{} steps of {} particles on {} nodes, {:.3g} particle-steps/s\n", trace.steps(),
                plan.particles, trace.nodes,
                static_cast<double>(trace.steps()) * plan.particles / std::max(trace.seconds, 1e-9));
+  if (!trouble.empty()) throw InputError(trouble);
   if (result.interrupted) {
     fmt::print("interrupted after step {}{}\n", trace.steps(),
-               run.checkpoint.path.empty() ? "" : "; the same command with --resume goes on");
+               !result.left_checkpoint ? "" : "; the same command with --resume goes on");
     return 1;
   }
   remove_checkpoint(run.checkpoint.path);
@@ -99,6 +115,7 @@ bool lattice_has_mpi() {
 }
 
 int run_lattice_program(int argc, char** argv, Ranks* ranks) {
+  survive_file_limit();
   Request request;
   request.run.engine.ranks = ranks;
   LatticeRun& run = request.run;
@@ -114,6 +131,7 @@ int run_lattice_program(int argc, char** argv, Ranks* ranks) {
   auto* frames_file =
       app.add_option("--frames-file", request.frames_file, "The same from a file, one step per line")
           ->excludes(frames);
+  app.add_option("--begun", request.begun, "File that is made when the steps begin");
   app.add_option("--threads", run.engine.threads, "Threads; one per core without it")
       ->check(CLI::Range(1, 4096));
   app.add_flag("--no-quiescence", request.no_quiescence, "Do not skip nodes at rest; no bit changes");

@@ -67,7 +67,10 @@ class Loop {
   void record();
   void measure(const State& state);
   void keep(State state);
+  void give(State state);
+  void journal(const std::function<void(Journal&)>& write);
   void save();
+  bool write_state();
   bool save_is_due() const;
   void go_back_to(uint64_t step);
   void finish();
@@ -90,6 +93,7 @@ class Loop {
   NodeSlots slots_;
   std::vector<PhaseSpan> spans_;
   std::vector<uint64_t> sample_steps_;
+  Int3 kept_momentum_{};  // of the last state that was kept
   LatticeResult result_;
   Trace& trace_;
 };
@@ -202,6 +206,7 @@ void Loop::resume_trace(const CheckpointHead& head) {
       trace_.curves[k].name = fresh[k].name, trace_.curves[k].unit = fresh[k].unit;
     meter_.restore(head.probes, trace_.curves);
   }
+  journal_->for_each_frame([&](State state) { give(std::move(state)); });
 }
 
 // A state is made only where a frame or a sample asks for one.
@@ -210,7 +215,7 @@ void Loop::record() {
   trace_.steps_done = step;
   if (step % request_.hash_every == 0) {
     trace_.state_hash.push_back(engine_->hash());
-    if (journal_) journal_->hash(step, trace_.state_hash.back());
+    journal([&](Journal& to) { to.hash(step, trace_.state_hash.back()); });
   }
   const bool measured = among(request_.probes, step), kept = among(request_.frames, step);
   if (!measured && !kept) return;
@@ -218,10 +223,8 @@ void Loop::record() {
   if (!leads()) return;
   if (measured) {
     measure(state);
-    if (journal_) {
-      const std::vector<double> values = meter_.latest();
-      if (!values.empty()) journal_->sample(step, values);
-    }
+    const std::vector<double> values = meter_.latest();
+    if (!values.empty()) journal([&](Journal& to) { to.sample(step, values); });
   }
   if (kept) keep(std::move(state));
 }
@@ -234,10 +237,27 @@ void Loop::measure(const State& state) {
 
 void Loop::keep(State state) {
   result_.largest_speed = std::max(result_.largest_speed, largest_speed(plan_.rule, state));
-  if (journal_)
-    journal_->frame(state);
+  journal([&](Journal& to) { to.frame(state); });
+  give(std::move(state));
+}
+
+void Loop::give(State state) {
+  kept_momentum_ = momentum(state);
+  if (request_.keep)
+    request_.keep(state);
   else
     trace_.frames.push_back(std::move(state));
+}
+
+// A journal that cannot be written ends the checkpoints, not the run; the last checkpoint holds.
+void Loop::journal(const std::function<void(Journal&)>& write) {
+  if (!journal_) return;
+  try {
+    write(*journal_);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "warning: {}; no checkpoint from step {} on\n", error.what(), step_count());
+    journal_.reset();
+  }
 }
 
 void Loop::step() {
@@ -248,7 +268,7 @@ void Loop::step() {
   trace_.seconds += since(begin);
   if (!timing_) return;
   trace_.cycles.insert(trace_.cycles.end(), spans_.begin(), spans_.end());
-  if (journal_) journal_->cycles(engine_->step_count() - 1, spans_);
+  journal([&](Journal& to) { to.cycles(engine_->step_count() - 1, spans_); });
 }
 
 bool Loop::save_is_due() const {
@@ -264,11 +284,17 @@ std::pair<bool, bool> Loop::agreed(bool stop, bool save) const {
 }
 
 void Loop::save() {
-  saved_ = true;
-  if (!leads()) {
+  bool failed = false;
+  if (leads())
+    failed = !write_state();
+  else
     engine_->for_each_slot([](const Particle&) {});  // they are gathered where they are written
-    return;
-  }
+  result_.left_checkpoint = !agreed(failed, false).first;
+  saved_ = saved_ || result_.left_checkpoint;
+}
+
+// Whether the checkpoint is there.
+bool Loop::write_state() {
   CheckpointHead head;
   head.plan_hash = plan_.hash;
   head.step = engine_->step_count();
@@ -286,10 +312,20 @@ void Loop::save() {
   head.counters.quiet_node_steps += now.quiet_node_steps;
   head.probes = meter_.memory();
   if (timing_) head.timing = timing_->starts();
-  head.journal = journal_->sync();
-  write_checkpoint(save_plan_.path, head, *engine_, displaced_);
+  journal([&](Journal& to) { head.journal = to.sync(); });
   saved_step_ = head.step;
   saved_time_ = Clock::now();
+  if (!journal_) {
+    engine_->for_each_slot([](const Particle&) {});  // the other ranks send theirs
+    return false;
+  }
+  try {
+    write_checkpoint(save_plan_.path, head, *engine_, displaced_);
+    return true;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "warning: {}; no checkpoint of step {}\n", error.what(), head.step);
+    return false;
+  }
 }
 
 // The state after `step` once more, where the engine has lost it.
@@ -307,7 +343,6 @@ void Loop::go_back_to(uint64_t step) {
 void Loop::finish() {
   if (trace_.state_hash.empty()) return;  // not even the initial state could be held
   const uint64_t last = step_count();
-  if (journal_) trace_.frames = journal_->frames();
   const bool has_frame = among(request_.frames, last);
   const bool frame = !request_.frames.empty() && !has_frame;
   const bool sample = request_.energies && !among(request_.probes, last);
@@ -319,10 +354,10 @@ void Loop::finish() {
     State state = engine_->state();
     result_.largest_speed = std::max(result_.largest_speed, largest_speed(plan_.rule, state));
     if (sample && leads()) measure(state);
-    if (frame) trace_.frames.push_back(std::move(state));
+    if (frame && leads()) give(std::move(state));
   }
   const bool kept = lost && !sample && !hash && has_frame;  // the engine's state is still lost
-  result_.momentum_after = kept ? momentum(trace_.frames.back()) : engine_->momentum();
+  result_.momentum_after = kept ? kept_momentum_ : engine_->momentum();
   trace_.curves = meter_.curves();
   meter_.conclude();
   if (const Watch* watch = meter_.watch()) {

@@ -28,6 +28,8 @@ struct LatticeRun {
   uint64_t steps = 0;
   std::vector<uint64_t> frames;  // steps whose states are kept, ascending; the last one too where any are
   std::vector<uint64_t> probes;  // steps at which the scene's probes are read, ascending
+  // Takes the kept states as they come, those before a checkpoint again; without one the trace holds them.
+  std::function<void(const State&)> keep;
   bool energies = false;         // and the energies; the last state is then measured too
   bool watch = false;            // look for what fails wherever energies are read (model/watch.h)
   bool cycles = false;           // run the timing model
@@ -46,6 +48,7 @@ struct LatticeResult {
   double largest_speed = 0;                  // nodes per step, over the states that were kept or measured
   uint64_t resumed_at = 0;                   // step of the checkpoint
   bool interrupted = false;
+  bool left_checkpoint = false;  // of the last state, of an interrupted run
   std::vector<Finding> findings;             // of the watch
   std::optional<uint64_t> watched;           // the last step that it looked at
 };

@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <ostream>
 
+#include "model/interrupt.h"
+
 namespace cuboct::emu {
 
 namespace {
@@ -228,6 +230,7 @@ void Bench::host() {
       if (timeline_.edge + 1 == timeline_.base)
         for (auto& c : control_) c.write(control);
       if (!timeline_.running()) return;
+      if (interrupted()) collector_.break_off(timeline_.cycle());
       if (collector_.done()) {
         seconds_ = now() - begin_;
         faults_.source.close();

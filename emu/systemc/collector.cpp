@@ -133,6 +133,12 @@ void Collector::close(uint64_t cycle) {
   last_cycle_ = cycle;
 }
 
+void Collector::break_off(uint64_t cycle) {
+  if (done_) return;
+  stop_ = {};  // a fault that some nodes may yet precede
+  close(cycle);
+}
+
 void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
   if (done_) return;
   const uint64_t step = step_[node];

@@ -53,6 +53,8 @@ class Collector {
   // All steps are complete, or all nodes have finished the first step with a fault, or a link has failed:
   // then the nodes around it wait for ever. Nothing may be collected any more.
   bool done() const { return done_; }
+  // The run ends here: the trace is that of the steps that all nodes have done.
+  void break_off(uint64_t cycle);
   uint64_t steps_done() const { return trace_.state_hash.empty() ? 0 : trace_.state_hash.size() - 1; }
   uint64_t last_event() const { return last_event_; }  // cycle
   uint64_t last_cycle() const { return last_cycle_; }  // of the run, once done

@@ -9,6 +9,7 @@
 
 #include "emu/systemc/bench.h"
 #include "hw/setup.h"
+#include "model/interrupt.h"
 #include "model/output.h"
 #include "model/state_meter.h"
 #include "model/steps.h"
@@ -67,6 +68,7 @@ int run(const Program& program, Request request) {
   std::sort(options.frames.begin(), options.frames.end());
 
   Bench bench("bench", setup.plan, setup.initial, options, program.nodes(setup.plan), program.engine);
+  catch_interrupts();
   simulate({&bench});
   Trace trace = bench.take_result().trace;
   measure(scene, setup, probes, request.frames, trace);
@@ -83,6 +85,10 @@ int run(const Program& program, Request request) {
                    ? std::string()
                    : fmt::format(" of {} cells", fmt::join(setup.plan.bricks.shape(), " x ")),
                cycles, node_cycles);
+  if (!trace.stop && trace.steps() < options.steps) {
+    fmt::print("interrupted after step {}\n", trace.steps());
+    return 1;
+  }
   if (!trace.stop) return 0;
   fmt::print(stderr, "{}: {}\n", line_text(request.scene), line_text(trace.stop->text));
   return 1;
@@ -91,6 +97,7 @@ int run(const Program& program, Request request) {
 }  // namespace
 
 int run_program(int argc, char** argv, const Program& program) {
+  survive_file_limit();
   Request request;
   CLI::App app{program.description, program.name};
   app.add_option("scene", request.scene, "Scene file (TOML)")->required();

@@ -11,6 +11,7 @@
 #include "gpu_ref/run.h"
 #include "model/trace.h"
 #include "tests/cli/shell.h"
+#include "tests/support/file_limit.h"
 
 namespace cuboct {
 namespace {
@@ -229,6 +230,22 @@ TEST_F(GpuProgram, EndsEarlyWhenItIsAsked) {
   EXPECT_EQ(trace.frames.back().step, trace.steps());
   EXPECT_EQ(trace.curves.back().step.back(), trace.steps());
   EXPECT_FALSE(trace.stop);
+}
+
+// One line, and the directory as it was: what the engine hands over did not fit.
+TEST_F(GpuProgram, AFullDiskFailsCleanly) {
+  run("out", {kBlock, "--engine", "gpu", "--steps", "3"});
+  const std::string before = contents(bench_.path("out/summary.json"));
+  for (const std::string precision : {"fixed", "float"}) {
+    const FileLimit limit(900 << 10);
+    const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--precision", precision, "--steps", "80",
+                                         "--frames-every", "1", "--out", bench_.path("out")});
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_TRUE(answer.err.starts_with("cannot write ") && answer.err.ends_with("/gpu.h5: File too large\n")) << answer.err;
+    EXPECT_EQ(answer.out, "");
+  }
+  EXPECT_EQ(contents(bench_.path("out/summary.json")), before);
+  run("out", {kBlock, "--engine", "gpu", "--steps", "4"});
 }
 
 TEST_F(GpuProgram, RefusesWhatItCannotDo) {

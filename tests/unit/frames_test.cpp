@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "model/base64.h"
+#include "model/error.h"
+#include "tests/support/file_limit.h"
 
 namespace cuboct {
 namespace {
@@ -21,6 +24,16 @@ std::string text_of(const fs::path& path) {
   std::stringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+void write_extended_xyz(const fs::path& path, const std::vector<Frame>& frames, const FrameStyle& style) {
+  XyzWriter out(path, style);
+  for (const Frame& frame : frames) out.add(frame);
+}
+
+void write_vtk(const fs::path& stem, const std::vector<Frame>& frames, const FrameStyle& style) {
+  VtkWriter out(stem, style);
+  for (const Frame& frame : frames) out.add(frame);
 }
 
 class Frames : public testing::Test {
@@ -51,14 +64,17 @@ class Frames : public testing::Test {
 
 TEST_F(Frames, ExtendedXyzHoldsBoxColumnsAndTimes) {
   write_extended_xyz(directory_ / "f.xyz", frames_, style_);
-  const std::string head =
-      "2\nLattice=\"4 0 0 0 4 0 0 0 4\" Origin=\"-1 -0.5 -0.5\" pbc=\"T F F\" "
-      "Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1 ";
-  EXPECT_EQ(text_of(directory_ / "f.xyz"), head +
+  // Along y, which has no period, the second frame reaches farther.
+  const auto head = [](const std::string& y) {
+    return "2\nLattice=\"4 0 0 0 " + y +
+           " 0 0 0 4\" Origin=\"-1 -0.5 -0.5\" pbc=\"T F F\" "
+           "Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1 ";
+  };
+  EXPECT_EQ(text_of(directory_ / "f.xyz"), head("3") +
                                                "Step=0 Time=0\n"
                                                "0 delrin 0 0 0 0 0 0 0.5 0\n"
                                                "1 delrin/top_grip 1 2 3 0 0.5 0 0.5 0\n" +
-                                               head +
+                                               head("4") +
                                                "Step=10 Time=0.5\n"
                                                "0 delrin 0 0 0 0 0 0 0.5 0\n"
                                                "1 delrin/top_grip 1 3 3 0 0.5 0 0.5 0.125\n");
@@ -126,6 +142,49 @@ TEST_F(Frames, VtkLeavesNoFilesOfALongerRun) {
   const auto file = [&](size_t k) { return directory_ / ("f_00000" + std::to_string(k) + ".vtp"); };
   EXPECT_TRUE(std::filesystem::exists(file(before - 2)));
   EXPECT_FALSE(std::filesystem::exists(file(before - 1)));
+}
+
+// Each is whole before the next one comes: a run that dies leaves them.
+TEST_F(Frames, AreThereAsTheyCome) {
+  XyzWriter xyz(directory_ / "f.xyz", style_);
+  VtkWriter vtk(directory_ / "f", style_);
+  EXPECT_EQ(text_of(directory_ / "f.xyz"), "");
+  for (size_t k = 0; k < frames_.size(); ++k) {
+    xyz.add(frames_[k]);
+    vtk.add(frames_[k]);
+    const std::string text = text_of(directory_ / "f.xyz"), list = text_of(directory_ / "f.pvd");
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), static_cast<ptrdiff_t>(4 * (k + 1)));
+    EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), static_cast<ptrdiff_t>(6 + k));
+    EXPECT_TRUE(list.ends_with("</VTKFile>\n"));
+  }
+}
+
+// A frame that does not fit is left out whole, one that fits behind it is there.
+TEST_F(Frames, ThatDoNotFitAreLeftOut) {
+  Frame large;
+  large.x.resize(100'000, Vec3::Zero());
+  large.v = large.x;
+  large.type.resize(large.x.size());
+  large.strain.resize(large.x.size());
+  XyzWriter xyz(directory_ / "f.xyz", style_);
+  VtkWriter vtk(directory_ / "f", style_);
+  xyz.add(frames_[0]);
+  vtk.add(frames_[0]);
+  {
+    const FileLimit limit(1 << 20);
+    EXPECT_THROW(xyz.add(large), InputError);
+    EXPECT_THROW(vtk.add(large), InputError);
+    xyz.add(frames_[1]);
+    vtk.add(frames_[1]);
+  }
+  const std::string text = text_of(directory_ / "f.xyz"), list = text_of(directory_ / "f.pvd");
+  write_extended_xyz(directory_ / "g.xyz", frames_, style_);
+  write_vtk(directory_ / "f", frames_, style_);
+  EXPECT_EQ(text, text_of(directory_ / "g.xyz"));
+  EXPECT_EQ(list, text_of(directory_ / "f.pvd"));
+  size_t files = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(directory_)) ++files;
+  EXPECT_EQ(files, 5u);
 }
 
 // The vectors of RFC 4648, section 10.

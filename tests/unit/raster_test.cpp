@@ -28,6 +28,14 @@ Frame frame_of(std::vector<Vec3> x) {
   return frame;
 }
 
+// What the frames touch of the first one's grid.
+RasterGrid grid_of(const std::vector<Frame>& frames, double radius, uint32_t across) {
+  const RasterGrid grid = raster_grid(frames[0], radius, across);
+  RasterWindow used;
+  for (const Frame& frame : frames) used = join(used, window_of(frame, grid, radius));
+  return part_of(grid, used);
+}
+
 // Four pixels of edge 1, one particle of edge 1 whose middle lies a quarter right of and above the middle: it has
 // 1/4 * 1/4, 3/4 * 1/4, ... of its square in them, and the thickness 1/sqrt(2).
 TEST(Raster, AParticleIsSpreadByArea) {
@@ -61,7 +69,7 @@ TEST(Raster, ThicknessIsThatOfThePlate) {
   const Fcc fcc{.pitch = 1};
   const auto plate = box(Vec3::Zero(), Vec3(40, 80, 6) * fcc.cell() / 2);
   const auto x = pack(fcc, plate.get(), {});
-  const RasterGrid grid = raster_grid({frame_of(x)}, 0.5, 37);
+  const RasterGrid grid = grid_of({frame_of(x)}, 0.5, 37);
   EXPECT_EQ(grid.right, 1);
   EXPECT_EQ(grid.up, 0);
   EXPECT_EQ(grid.columns, 37u);
@@ -76,8 +84,8 @@ TEST(Raster, ThicknessIsThatOfThePlate) {
 }
 
 TEST(Raster, PixelsAreNoFinerThanAQuarterOfAParticle) {
-  EXPECT_DOUBLE_EQ(raster_grid({frame_of({{0, 0, 0}, {9, 0, 0}})}, 0.5, 1000).pixel, 0.25);
-  EXPECT_THROW(raster_grid({}, 0.5, 100), InputError);
+  EXPECT_DOUBLE_EQ(raster_grid(frame_of({{0, 0, 0}, {9, 0, 0}}), 0.5, 1000).pixel, 0.25);
+  EXPECT_THROW(raster_grid(Frame{}, 0.5, 100), InputError);
 }
 
 // A particle that flies off may widen the picture by half the body's length on each side; beyond, it is counted.
@@ -85,7 +93,7 @@ TEST(Raster, OneThatFliesOffIsLeftOut) {
   const Frame first = frame_of({{0, 0, 0}, {9, 4, 0}});
   for (const auto& [to, outside] : {std::pair{13.5, 0u}, {14.5, 1u}, {1e30, 1u}, {NAN, 1u}}) {
     const Frame later = frame_of({{0, 0, 0}, {to, 4, 0}});
-    const RasterGrid grid = raster_grid({first, later}, 0.5, 20);
+    const RasterGrid grid = grid_of({first, later}, 0.5, 20);
     EXPECT_LE(grid.columns, 31u) << to;
     EXPECT_EQ(rasterise(first, grid, 0.5).outside, 0u) << to;
     EXPECT_EQ(rasterise(later, grid, 0.5).outside, outside) << to;
@@ -101,11 +109,16 @@ TEST(Raster, AFileHoldsElevenBits) {
   for (size_t k = 0; k < x.size(); ++k) frame.strain[k] = std::cos(static_cast<double>(k)) / 3;
   frame.step = 70;
   frame.time = 1e-6;
-  Rasters rasters{"it's a title", 2, 1, raster_grid({frame}, 0.5, 100), {}};
+  Rasters rasters{"it's a title", 2, 1, grid_of({frame}, 0.5, 100), {}};
   rasters.frames = {rasterise(frame, rasters.grid, 0.5), rasterise(frame_of(x), rasters.grid, 0.5)};
   const std::string a = directory / "a.h5", b = directory / "b.h5";
-  write_rasters(a, rasters);
-  write_rasters(b, rasters);
+  for (const std::string& path : {a, b}) {
+    RasterWriter out(path, path + ".part", {rasters.title, rasters.strain_axis, rasters.particle, {}, {}}, 100);
+    out.add(frame);
+    out.add(frame_of(x));
+    EXPECT_FALSE(fs::exists(path));
+    out.finish();
+  }
   const auto bytes = [](const std::string& path) {
     std::stringstream text;
     text << std::ifstream(path, std::ios::binary).rdbuf();

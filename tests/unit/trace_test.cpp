@@ -5,13 +5,18 @@
 #include <hdf5.h>
 #include <unistd.h>
 
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
+#include "model/hdf5_file.h"
 #include "model/output.h"
+#include "model/trace_file.h"
+#include "tests/support/file_limit.h"
 #include "tests/unit/made_trace.h"
 
 namespace cuboct {
@@ -213,6 +218,101 @@ TEST_F(TraceFile, SameTraceSameBytes) {
   sleep(1);  // a time of the clock inside the file would show
   write_trace(path("b.h5"), made_trace());
   EXPECT_EQ(bytes_of(path("a.h5")), bytes_of(path("b.h5")));
+}
+
+// Frame by frame, or at once: the same bytes. A reader gets one after another.
+TEST_F(TraceFile, ComesFrameByFrame) {
+  const Trace trace = made_trace();
+  ASSERT_GE(trace.frames.size(), 2u);
+  {
+    TraceWriter out(path("t.h5"), path("part.h5"));
+    for (const State& frame : trace.frames) {
+      out.add(frame);
+      EXPECT_GT(H5Fis_hdf5(path("part.h5").c_str()), 0);
+    }
+    for (const RealFrame& frame : trace.bodies) out.add(frame);
+    EXPECT_FALSE(fs::exists(path("t.h5")));
+    out.finish(trace);
+  }
+  write_trace(path("whole.h5"), trace);
+  EXPECT_EQ(bytes_of(path("t.h5")), bytes_of(path("whole.h5")));
+  EXPECT_FALSE(fs::exists(path("part.h5")));
+  size_t frames = 0, bodies = 0;
+  const TraceReader in(path("t.h5"));
+  EXPECT_TRUE(in.rest().frames.empty() && in.rest().bodies.empty());
+  in.frames([&](const State& frame) { EXPECT_EQ(frame.particles, trace.frames.at(frames++).particles); });
+  in.bodies([&](const RealFrame& frame) { EXPECT_EQ(frame.x, trace.bodies.at(bodies++).x); });
+  EXPECT_EQ(frames, trace.frames.size());
+  EXPECT_EQ(bodies, trace.bodies.size());
+}
+
+State large_frame(uint64_t step) {
+  State frame;
+  frame.step = step;
+  for (uint32_t id = 0; id < 20'000; ++id) {
+    const int64_t n = static_cast<int64_t>((id + step) * 0x9e3779b97f4a7c15u >> 8);
+    frame.particles.push_back({id, 0, id, {n, n, n}, {n, -n, n}, {}});
+  }
+  return frame;
+}
+
+// A full disk costs the frames that do not fit, and no more.
+TEST_F(TraceFile, HoldsWhatFits) {
+  Trace trace = made_trace();
+  TraceWriter out(path("t.h5"), path("part.h5"));
+  trace.frames.clear();
+  trace.bodies.clear();
+  {
+    const FileLimit limit(12 << 20);
+    for (uint64_t step = 0; step < 20; ++step) try {
+        out.add(large_frame(step));
+        trace.frames.push_back(large_frame(step));
+      } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()), "cannot write " + path("t.h5") + ": File too large");
+      }
+  }
+  EXPECT_GE(trace.frames.size(), 4u);
+  EXPECT_LT(trace.frames.size(), 20u);
+  out.add(large_frame(30));  // there is room again
+  trace.frames.push_back(large_frame(30));
+  out.finish(trace);
+  expect_equal(trace, read_trace(path("t.h5")));
+  EXPECT_LT(fs::file_size(path("t.h5")), 12u << 20);
+}
+
+// What the program has flushed is there when it dies; what finish() was not reached for goes with the writer.
+TEST_F(TraceFile, LeavesItsFramesWhereTheProgramDies) {
+  EXPECT_EXIT(
+      {
+        TraceWriter out(path("t.h5"), path("part.h5"));
+        for (uint64_t step = 0; step < 3; ++step) out.add(large_frame(step));
+        kill(getpid(), SIGKILL);
+      },
+      testing::KilledBySignal(SIGKILL), "");
+  hdf5::Reader in(path("part.h5"));
+  const auto frames = in.group(in.root(), "frames");
+  EXPECT_EQ(in.array<int64_t>(frames, "first"), (std::vector<int64_t>{0, 20'000, 40'000, 60'000}));
+  EXPECT_GT(in.length(frames, "x"), 50'000u);
+  EXPECT_GE(in.length(frames, "id"), 60'000u);
+  { TraceWriter out(path("t.h5"), path("part.h5")); }
+  EXPECT_FALSE(fs::exists(path("part.h5")));
+}
+
+// HDF5 cannot close a file that it failed to write. The program's end must not try.
+TEST_F(TraceFile, AFailureOfHdf5EndsTheProgramCleanly) {
+  EXPECT_EXIT(
+      {
+        const FileLimit limit(1 << 20);
+        try {
+          hdf5::Writer out(path("part.h5"), path("t.h5"), false);
+          out.array(out.root(), "values", {1 << 20}, std::vector<double>(1 << 20, 1.5), "", "");
+          out.close();
+        } catch (const InputError& error) {
+          std::fprintf(stderr, "%s", error.what());
+          std::exit(2);
+        }
+      },
+      testing::ExitedWithCode(2), "cannot write .*t.h5: HDF5 failed at 'values'");
 }
 
 TEST_F(TraceFile, LeavesNoTemporaryFile) {

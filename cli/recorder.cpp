@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "cli/recorder.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "model/directory_lock.h"
+#include "model/frames.h"
+#include "model/output.h"
+#include "model/raster.h"
+#include "model/trace_file.h"
+
+namespace cuboct {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Besides what the trace holds: summary, record, the head of each file.
+constexpr uint64_t kLeast = 1 << 19;
+constexpr uint64_t kMost =
+    1 << 28;  // a run of so many steps that its hashes take more may well be ended early
+
+void refuse_unfinished(const RecorderOptions& options) {
+  const std::string& directory = options.directory;
+  const bool checkpoint = fs::exists(directory + "/checkpoint");
+  const bool unfinished = checkpoint || fs::exists(directory + "/checkpoint.journal") ||
+                          (fs::exists(directory + "/run.toml") && !is_over(read_record(directory)));
+  if (!unfinished || options.resume) return;
+  if (!options.force)
+    throw InputError(fmt::format("{} holds a run that did not end", directory),
+                     checkpoint ? "--resume goes on with it; --force begins anew in its place"
+                                : "another --out keeps it; --force begins anew in its place");
+}
+
+// A file of the run, or files of a kind, and how many frames they hold.
+template <typename Writer>
+struct Output {
+  std::string name;
+  std::optional<Writer> writer{};
+  uint64_t frames = 0;
+};
+
+}  // namespace
+
+struct Recorder::Impl {
+  Impl(RecorderOptions of, const Loaded& loaded)
+      : options(std::move(of)),
+        loaded(loaded),
+        lock(options.directory, "cuboct run"),
+        style(frame_style(loaded.scene)),
+        maker(loaded),
+        head(head_of(loaded, options.real, options.si)) {
+    head.cells = !options.no_states || options.cycles;
+    refuse_unfinished(options);
+    if (!options.resume)
+      for (const char* name : {"checkpoint", "checkpoint.journal", "checkpoint.tmp"}) fs::remove(path(name));
+    for (const char* name :
+         {"trace.h5", "run.toml", "summary.json", "plan.txt", "frames.xyz", "frames.pvd", "rasters.h5"})
+      check_writable(path(name));
+  }
+
+  std::string path(const std::string& name) const { return options.directory + "/" + name; }
+
+  // Old files go, so that no directory holds parts of two runs.
+  void begin() {
+    if (begun) return;
+    begun = true;
+    for (const char* name : {"run.toml", "summary.json", "trace.h5", "trace.part.h5", "rasters.h5",
+                             "rasters.part.h5", "frames.xyz", "frames.pvd"})
+      fs::remove(path(name));
+    write_text(path(kBallast), "");
+    const uint64_t bytes = std::min(options.rest, kMost) + kLeast;
+    if (const int error = reserve(path(kBallast), 0, bytes)) {
+      fs::remove(path(kBallast));
+      throw InputError(fmt::format("cannot write into {}: {}", options.directory, std::strerror(error)),
+                       fmt::format("hashes, curves and summary alone may take {:.3g} MB",
+                                   1e-6 * static_cast<double>(bytes)));
+    }
+    write_state("running");
+    write_text(path("plan.txt"), describe(loaded.setup.plan));
+    trace.writer.emplace(path("trace.h5"), path("trace.part.h5"), true, &head);
+    rasters.writer.emplace(path("rasters.h5"), path("rasters.part.h5"),
+                           Rasters{loaded.scene.title, strain_axis(loaded.scene), 2 * style.radius, {}, {}},
+                           options.raster);
+    if (options.no_states) return;
+    vtk.writer.emplace(path("frames"), style);
+    xyz.writer.emplace(path("frames.xyz"), style);
+  }
+
+  void write_state(const std::string& state) {
+    options.record.state = state;
+    write_record(options.directory, options.record);
+  }
+
+  // Remembers what goes wrong, and tells it once: the run is not to end for it.
+  bool attempt(const std::function<void()>& write) {
+    try {
+      write();
+      return true;
+    } catch (const InputError& error) {
+      if (first_error.empty()) {
+        first_error = error.what();
+        fmt::print(stderr, "warning: {}; the run goes on\n", first_error);
+      }
+      return false;
+    }
+  }
+  template <typename Writer, typename Kept>
+  void add(Output<Writer>& output, const Kept& frame) {
+    if (output.writer && attempt([&] { output.writer->add(frame); })) ++output.frames;
+  }
+
+  void draw(const Frame& frame) {
+    add(rasters, frame);
+    add(vtk, frame);
+    add(xyz, frame);
+    ++frames;
+  }
+
+  template <typename Writer>
+  void tell(std::string& text, const Output<Writer>& output, bool wanted) const {
+    if (wanted) text += fmt::format("{}{} has {}", text.empty() ? "" : ", ", output.name, output.frames);
+  }
+
+  static constexpr const char* kBallast = ".reserved";
+
+  RecorderOptions options;
+  const Loaded& loaded;
+  DirectoryLock lock;
+  FrameStyle style;
+  FrameMaker maker;
+  TraceHead head;
+  bool begun = false, states = false;  // states: the trace holds frames
+  uint64_t frames = 0;
+  std::string first_error;
+  std::vector<std::string> missing;
+  Output<TraceWriter> trace{"trace.h5"};
+  Output<RasterWriter> rasters{"rasters.h5"};
+  Output<VtkWriter> vtk{"frames.pvd"};
+  Output<XyzWriter> xyz{"frames.xyz"};
+};
+
+Recorder::Recorder(RecorderOptions options, const Loaded& loaded)
+    : impl_(std::make_unique<Impl>(std::move(options), loaded)) {}
+
+Recorder::~Recorder() {
+  if (impl_->trace.writer) impl_->trace.writer->leave();
+  if (impl_->rasters.writer) impl_->rasters.writer->leave();
+  unlink(impl_->path(Impl::kBallast).c_str());
+}
+
+void Recorder::keep(const State& state) {
+  Impl& to = *impl_;
+  to.begin();
+  if (!to.options.no_states) to.states = true, to.add(to.trace, state);
+  to.draw(to.maker.make(state));
+}
+
+void Recorder::keep(const RealFrame& frame) {
+  Impl& to = *impl_;
+  to.begin();
+  if (!to.options.no_states) to.states = true, to.add(to.trace, frame);
+  to.draw(to.maker.make(frame.step, frame.x, frame.v));
+}
+
+void Recorder::finish(const Trace& trace, const Items& summary, const std::string& state) {
+  Impl& to = *impl_;
+  to.begin();
+  fs::remove(to.path(Impl::kBallast));
+  const auto whole = [&](const char* name, const std::function<void()>& write) {
+    if (!to.attempt(write)) to.missing.emplace_back(name);
+  };
+  if (to.rasters.frames > 0)
+    whole("rasters.h5", [&] {
+      to.rasters.writer->finish();
+      to.rasters.writer.reset();
+    });
+  whole("trace.h5", [&] {
+    to.trace.writer->finish(trace);
+    to.trace.writer.reset();
+  });
+  to.vtk.writer.reset();
+  to.xyz.writer.reset();
+  whole("summary.json", [&] { write_text(to.path("summary.json"), summary.json()); });
+  whole("run.toml", [&] { to.write_state(to.first_error.empty() ? state : "incomplete"); });
+}
+
+std::string Recorder::trouble() const {
+  const Impl& of = *impl_;
+  if (of.first_error.empty()) return {};
+  std::string text, missing;
+  of.tell(text, of.trace, of.states);
+  of.tell(text, of.rasters, true);
+  of.tell(text, of.vtk, !of.options.no_states);
+  of.tell(text, of.xyz, !of.options.no_states);
+  for (const std::string& name : of.missing) missing += fmt::format("; {} is missing", name);
+  return fmt::format("{}; of {} frames {}{}", of.first_error, of.frames, text, missing);
+}
+
+}  // namespace cuboct
