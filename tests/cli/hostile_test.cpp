@@ -3,7 +3,6 @@
 // it is done.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <hdf5.h>
 
 #include <fstream>
 #include <functional>
