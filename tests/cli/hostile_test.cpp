@@ -150,7 +150,7 @@ TEST_F(Hostile, LinesOfAReportAreDrawnAsTheyRead) {
 }
 
 TEST_F(Hostile, PicturesOfAReportHaveTheirLabels) {
-  const Image image{2, 2, std::vector<unsigned char>(12, 100)};
+  const Image image{2, 2, std::vector<Colour>(4, Colour{100, 100, 100})};
   const auto drawn = [&](const std::string& label) { return plot_pictures({image}, {label}, label, 0, 1); };
   EXPECT_NE(drawn("x"), drawn("{x}"));
   drawn(hostile_text());
@@ -169,9 +169,10 @@ TEST_F(Hostile, ReportHoldsTextAlone) {
 
 TEST_F(Hostile, EmittedProjectsHoldNothingOfIt) {
   expect({"emit", scene(), "--out", out(), "--board", "ulx3s"});
-  for (const auto& entry : fs::recursive_directory_iterator(out()))
-    if (entry.is_regular_file())
-      EXPECT_EQ(contents(entry.path().string()).find("cuboct_was_here"), std::string::npos) << entry.path();
+  for (const auto& entry : fs::recursive_directory_iterator(out())) {
+    if (!entry.is_regular_file()) continue;
+    EXPECT_EQ(contents(entry.path().string()).find("cuboct_was_here"), std::string::npos) << entry.path();
+  }
 }
 
 TEST_F(Hostile, StudyPagesAndTablesHoldTextAlone) {
