@@ -83,7 +83,7 @@ void expect_error(const std::vector<Change>& changes, const std::string& text) {
 TEST(Changes, RefuseWhatMakesNoSense) {
   expect_error({{"run.dt", "1 2"}}, "a.toml: 'run.dt' cannot become 1 2: that is no TOML value");
   expect_error({{"run.dt", "1\nsteps = 2"}},
-               "a.toml: 'run.dt' cannot become 1\nsteps = 2: that is no TOML value");
+               "a.toml: 'run.dt' cannot become 1\\nsteps = 2: that is no TOML value");
   expect_error({{"run.dt.x", "1"}}, "a.toml: 'run.dt.x' runs through a value that is no table");
   expect_error({{"constraint.2.kp", "1"}},
                "a.toml: 'constraint.2.kp': there are 2 of these, counted from 0, and no '2'");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -49,7 +50,8 @@ class HostileFile : public testing::Test {
     H5Ldelete(file, name, H5P_DEFAULT);
     const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
     const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
-    const std::vector<hsize_t> chunk(shape.size(), 16);
+    std::vector<hsize_t> chunk;
+    for (const hsize_t extent : shape) chunk.push_back(std::clamp<hsize_t>(extent, 1, 16));
     H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data());
     const hid_t data = H5Dcreate2(file, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
     ASSERT_GE(data, 0);

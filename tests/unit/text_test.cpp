@@ -83,7 +83,7 @@ TEST(Text, GnuplotOpensAFileAndNoPipe) {
 TEST(Text, AShellTakesAWordForAWord) {
   EXPECT_EQ(shell_word("out/a-1.toml"), "out/a-1.toml");
   EXPECT_EQ(shell_word(""), "''");
-  for (const std::string text :
+  for (const std::string& text :
        {hostile_text(), std::string("a b"), std::string("it's"), std::string("$x;`y`")}) {
     std::array<char, 4096> read{};
     FILE* pipe = popen(("printf %s " + shell_word(text)).c_str(), "r");
