@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "cli/engines.h"
+#include "cli/estimate.h"
 #include "emu/lattice/program.h"
 #include "model/measure.h"
 #include "model/output.h"
@@ -101,6 +102,7 @@ void LatticeChoice::check_unused(const std::string& engine) const {
 
 emu::LatticeResult run_on_lattice(const Input& input, const Scene& scene, const Plan& plan,
                                   const LatticeChoice& choice, emu::LatticeRun request) {
+  check_workers(choice.threads, choice.ranks, plan);
   request.engine.threads = choice.threads;
   if (!choice.checkpoint_every.empty()) emu::read_interval(choice.checkpoint_every, request.checkpoint);
   request.checkpoint.resume = choice.resume;
