@@ -16,17 +16,17 @@ namespace {
 
 constexpr double kProgram = 20e6;  // bytes, of a process before it has read anything
 
-// Of one engine: the time that a pair's two particles take together per step, bytes per particle, neighbour and cell.
-// Measured on one thread of a Xeon (Sapphire Rapids), scenes/bench: 18 neighbours in a crystal, 55 in a liquid.
+// Of one engine: the time per particle, neighbour and step, and bytes per particle, neighbour and cell. Measured on one
+// thread of an idle Xeon (Sapphire Rapids) with scenes/bench: 18 neighbours in a crystal, 55 in a liquid.
 struct Rates {
   const char* engine;
-  double pair;  // s; 0: not known
+  double neighbour_time;  // s; 0: not known
   bool threads;
   double particle, neighbour, cell;  // bytes
 };
 constexpr Rates kRates[] = {
-    {"lattice", 15e-9, true, 240, 1.5, 70},   {"reference", 20e-9, true, 700, 6, 70},
-    {"golden", 300e-9, false, 600, 10, 100},  {"systemc", 0, false, 600, 0, 50e3},
+    {"lattice", 3e-9, true, 240, 1.5, 70},   {"reference", 2.5e-9, true, 700, 6, 70},
+    {"golden", 40e-9, false, 600, 10, 100},  {"systemc", 0, false, 600, 0, 50e3},
     {"rtl", 0, false, 600, 0, 15e3},          {"gpu", 0, false, 250, 0, 70},
     {"fpga", 0, false, 600, 0, 70},
 };
@@ -99,14 +99,14 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
   const double particles = plan.particles, cells = plan.lattice.size(), steps = static_cast<double>(size.steps);
   Estimate e;
   e.particle_steps = particles * steps;
-  if (rates.pair > 0) {
+  if (rates.neighbour_time > 0) {
     constexpr double kEach = 1000;  // fewer particles are not worth a thread
     e.threads = rates.threads ? std::clamp(size.threads > 0 ? size.threads : static_cast<int>(particles / kEach), 1,
                                            usable_cores())
                               : 1;
     if (size.ranks > 1) e.threads = std::min(size.ranks * std::max(1, size.threads), usable_cores());
-    // A pair costs something however few a particle has.
-    e.rate = 1 / (rates.pair * std::max(4.0, extent.neighbours));
+    // A particle costs something however few neighbours it has.
+    e.rate = 1 / (rates.neighbour_time * std::max(4.0, extent.neighbours));
     e.seconds = e.particle_steps / (e.rate * e.threads);
   }
 
@@ -137,8 +137,8 @@ void add_estimate(Items& items, const Estimate& e) {
     items.add("time", e.seconds, "s",
               fmt::format("an estimate: {:.2g} particle-steps/s on {} thread{}; what rests costs less", e.rate * e.threads,
                           e.threads, e.threads == 1 ? "" : "s"));
-  items.add("memory", std::round(e.memory), "B", fmt::format("an estimate: {}", in_bytes(e.memory)));
-  items.add("disk", std::round(e.disk), "B",
+  items.add("memory", static_cast<uint64_t>(e.memory), "B", fmt::format("an estimate: {}", in_bytes(e.memory)));
+  items.add("disk", static_cast<uint64_t>(std::min(e.disk, 9e18)), "B",
             fmt::format("an estimate: {} in the directory of a run, {:.6g} frames of {}", in_bytes(e.disk), e.frames,
                         in_bytes(e.frame)));
 }

@@ -38,28 +38,30 @@ void check_size(const ConfigTable& geometry, const Bounds& bounds, double pitch)
 }
 
 // Before anything is made: what stops a packing that this machine cannot hold, or that takes hours.
-void check_packing(const ConfigValue& at, const Fcc& fcc, const Shape* shape, const Periodic& box) {
+// `by_cells`: the box is so many cells of the crystal, whatever their size.
+void check_packing(const ConfigValue& at, const Fcc& fcc, const Shape* shape, const Periodic& box, bool by_cells) {
   constexpr double kMostTests = 4e10;  // some minutes
   const PackingSize size = packing_size(fcc, shape, box);
   if (size.farthest > 1e6) at.fail("the geometry is beyond a million pitches");
   const size_t parts = shape != nullptr ? shape->parts() : 1;
   const double tests = size.tested * static_cast<double>(parts);
-  // By as much as that the pitch has to grow.
-  const auto pitch = [&](double times) {
-    return fmt::format("a pitch of {:.2g} m, or a smaller geometry", fcc.pitch * std::cbrt(times) * 1.05);
+  // Where there are `times` too many.
+  const auto hint = [&](double times) {
+    if (by_cells) return fmt::format("'cells' whose product is smaller by a factor of {:.2g}", 1.1 * times);
+    return fmt::format("a pitch of {:.2g} m, or a smaller geometry", fcc.pitch * std::cbrt(times) * 1.06);
   };
   if (tests > kMostTests)
     at.fail(fmt::format("{:.3g} sites of the packing, held against {} parts of the geometry: at most {:.3g} "
                         "tests are made",
                         size.tested, parts, kMostTests),
-            pitch(tests / kMostTests) + (parts > 100 ? ", or fewer points" : ""));
+            hint(tests / kMostTests) + (parts > 100 ? ", or fewer points" : ""));
   const double bytes = size.sites * kBytesToRead, free = static_cast<double>(free_memory());
   const double most = std::min(kMostParticles, free / kBytesToRead);
   if (size.sites > most)
     at.fail(fmt::format("about {:.3g} particles, {} to read them: {}", size.sites, in_bytes(bytes),
                         most < kMostParticles ? in_bytes(free) + " are free"
                                               : fmt::format("a scene holds at most {:.3g}", kMostParticles)),
-            pitch(size.sites / most));
+            hint(size.sites / most));
 }
 
 void pack_geometry(const ConfigTable& root, const PackingChoice& packing, Scene& scene) {
@@ -83,7 +85,7 @@ void pack_geometry(const ConfigTable& root, const PackingChoice& packing, Scene&
     check_size(*geometry, bounds, scene.pitch);
   }
   const ConfigValue box = geometry ? ConfigValue(*geometry) : root.at("box");
-  check_packing(box, packing.fcc, shape.get(), boxed);
+  check_packing(box, packing.fcc, shape.get(), boxed, !geometry && root.at("box").table().has("cells"));
   scene.body.x = pack(packing.fcc, shape.get(), boxed);
   if (scene.body.x.empty())
     box.fail("no particle: no site of the packing lies inside");

@@ -7,7 +7,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <filesystem>
 #include <thread>
+#include <vector>
 
 #include "tests/cli/shell.h"
 
@@ -22,8 +25,7 @@ class Busy {
       const pid_t child = fork();
       if (child == 0) {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        for (volatile uint64_t n = 0;; n = n + 1) {
-        }
+        for (std::atomic<uint64_t> n = 0;;) ++n;
       }
       children_.push_back(child);
     }
