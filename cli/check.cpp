@@ -7,6 +7,7 @@
 #include <array>
 #include <memory>
 
+#include "cli/estimate.h"
 #include "cli/summary.h"
 #include "hw/cycles.h"
 #include "model/motion.h"
@@ -168,6 +169,7 @@ Items resolve(const Loaded& loaded) {
   const ExpectedCycles cycles = expected_cycles(plan, loaded.setup.initial);
   items.add("expected cycles", cycles.step, "cycles/step",
             fmt::format("at the start; filter lanes and force pipes alone: {}", cycles.ideal));
+  add_estimate(items, estimate(scene, plan, run_size(scene)));
   add_not_built(items, plan);
   items.add("plan hash", fmt::format("{:016x}", plan.hash));
   return items;

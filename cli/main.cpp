@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <new>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
 #include "cli/engines.h"
 #include "model/output.h"
+#include "model/resources.h"
 #include "model/spelling.h"
 #include "model/text.h"
 
@@ -86,6 +88,9 @@ int main_of(int argc, char** argv) {
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "out of memory: {} are free now\n", in_bytes(static_cast<double>(free_memory())));
+    return 1;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", block_text(error.what()));
     return 1;

@@ -11,6 +11,7 @@
 
 #include "cli/command.h"
 #include "cli/engines.h"
+#include "cli/estimate.h"
 #include "cli/recorder.h"
 #include "cli/run_fpga.h"
 #include "cli/run_gpu.h"
@@ -37,7 +38,7 @@ struct Options {
   uint64_t frames_every = 0;
   uint32_t raster = 800;
   bool steps_given = false, frames_given = false, hashes_given = false, json = false, no_watch = false,
-       no_states = false, si = false, raster_given = false, force = false;
+       no_states = false, si = false, raster_given = false, force = false, anyway = false;
 
   // Options of what is kept say nothing where nothing is.
   void check_kept() const {
@@ -86,6 +87,25 @@ RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::Latti
           result.watched.has_value(), std::move(result.findings), result.watched};
 }
 
+// Before the first step: what this machine cannot hold.
+void check_size(const Options& options, const Loaded& loaded, uint64_t steps, uint64_t frame_every) {
+  const LatticeChoice& lattice = options.lattice;
+  check_workers(lattice.threads, lattice.ranks, loaded.setup.plan);
+  if (options.anyway) return;
+  RunSize size = run_size(loaded.scene);
+  size.engine = options.engine;
+  size.steps = steps;
+  size.frame_every = frame_every;
+  size.hash_every = lattice.hash_every;
+  size.cycles = lattice.cycles;
+  size.states = !options.no_states;
+  size.raster = options.raster;
+  size.threads = lattice.threads;
+  size.ranks = lattice.ranks;
+  check_lists(loaded.scene, size, options.frames_given);
+  check_fits(loaded.scene, size, estimate(loaded.scene, loaded.setup.plan, size), options.out);
+}
+
 int run(Options options) {
   options.check_kept();
   std::vector<std::string> allowed = fixed_engines();
@@ -108,6 +128,7 @@ int run(Options options) {
   const Scene& scene = loaded.scene;
   const uint64_t steps = options.steps_given ? options.steps : scene.steps;
   const uint64_t every = options.frames_given ? options.frames_every : scene.frame_every;
+  check_size(options, loaded, steps, every);
   const std::vector<uint64_t> frame_steps = every_so_often(every, steps);
   const std::vector<uint64_t> probe_steps = every_so_often(scene.probe_every, steps);
   std::optional<Recorder> recorder;
@@ -269,6 +290,7 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--si", options->si, "the trace in DIR holds positions and velocities in m and m/s as well");
   command->add_flag("--no-watch", options->no_watch,
                     "do not look for what makes a run wrong (docs/reference/failures.md)");
+  command->add_flag("--anyway", options->anyway, "run although it needs more memory or disk than is free");
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->callback([options, steps, frames, hashes, raster, &exit_code] {
     options->hashes_given = hashes->count() > 0;

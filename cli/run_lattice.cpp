@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "cli/engines.h"
+#include "cli/estimate.h"
 #include "emu/lattice/program.h"
 #include "model/interrupt.h"
 #include "model/measure.h"
@@ -116,6 +117,7 @@ void LatticeChoice::check_unused(const std::string& engine) const {
 
 LatticeAnswer run_on_lattice(const Input& input, const Scene& scene, const Plan& plan,
                                   const LatticeChoice& choice, emu::LatticeRun request) {
+  check_workers(choice.threads, choice.ranks, plan);
   request.engine.threads = choice.threads;
   if (!choice.checkpoint_every.empty()) emu::read_interval(choice.checkpoint_every, request.checkpoint);
   request.checkpoint.resume = choice.resume;

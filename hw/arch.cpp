@@ -82,6 +82,7 @@ void read_plan(const ConfigTable& table, Carry& carry) {
 
 Arch arch_of(const ConfigTable& root) {
   Arch arch;
+  arch.places = root.places();
   arch.name = read_name(root.at("name"));
   if (const auto node = root.table_at("node")) read_node(*node, arch);
   if (const auto link = root.table_at("link")) {

@@ -8,6 +8,7 @@
 #include "hw/carry.h"
 #include "hw/link_code.h"
 #include "model/fixed_rule.h"
+#include "model/places.h"
 #include "model/quantise.h"
 #include "model/vec.h"
 
@@ -41,6 +42,7 @@ struct Arch {
   Widths widths = automatic_widths();
   TableChoice table;
   Carry carry;
+  Places places;  // of the file's keys
 };
 
 // Throws InputError with file:line:column. An empty path gives the defaults.

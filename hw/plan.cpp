@@ -22,9 +22,9 @@ constexpr int kScaleBits = 18;  // of a pair's scale
 int ceil_div(int a, int b) { return (a + b - 1) / b; }
 
 void check_arch(const Arch& arch) {
-  const auto positive = [](const char* what, int value, int high) {
+  const auto positive = [&](const char* what, int value, int high) {
     if (value < 1 || value > high)
-      throw InputError(fmt::format("{} = {} is out of range: 1 to {}", what, value, high));
+      arch.places.fail({fmt::format("node.{}", what)}, fmt::format("{} = {} is out of range: 1 to {}", what, value, high));
   };
   positive("capacity", arch.capacity, 256);
   positive("filter_lanes", arch.filter_lanes, 64);
@@ -34,19 +34,19 @@ void check_arch(const Arch& arch) {
   const uint64_t cells =
       uint64_t{cells_of({arch.brick[0], 1, 1})} * cells_of({1, arch.brick[1], arch.brick[2]});
   if (cells > kMostBrickCells)
-    throw InputError(fmt::format("brick = [{}] has {} cells: a node serves at most {}",
+    arch.places.fail({"node.brick"}, fmt::format("brick = [{}] has {} cells: a node serves at most {}",
                                  fmt::join(arch.brick, ", "), cells, kMostBrickCells));
   const uint64_t visits =
       cells * static_cast<uint64_t>(arch.capacity * ceil_div(arch.capacity, arch.filter_lanes));
   if (cells > 1 && visits > kMostBrickWork)
-    throw InputError(fmt::format("brick = [{}]: {} cells of {} slots, met by {} lanes in {} passes, are {} "
+    arch.places.fail({"node.brick"}, fmt::format("brick = [{}]: {} cells of {} slots, met by {} lanes in {} passes, are {} "
                                  "visits; a node makes at most {}",
                                  fmt::join(arch.brick, ", "), cells, arch.capacity, arch.filter_lanes,
                                  ceil_div(arch.capacity, arch.filter_lanes), visits, kMostBrickWork),
                      "use a smaller brick or more filter_lanes");
   if (arch.narrow_memories) {
-    const auto want = [](bool is, const char* what) {
-      if (!is) throw InputError(fmt::format("memories = \"narrow\" have one port to read: set {}", what));
+    const auto want = [&](bool is, const char* what) {
+      if (!is) arch.places.fail({"node.memories"}, fmt::format("memories = \"narrow\" have one port to read: set {}", what));
     };
     want(arch.filter_lanes == 1, "filter_lanes = 1");
     want(!arch.overlap, "overlap = false");

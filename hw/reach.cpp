@@ -6,9 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "model/error.h"
 #include "model/hash.h"
@@ -62,30 +66,33 @@ class Reach {
   Reach(double edge, const Vec3& origin, const Cell& period)
       : edge_(edge), origin_(origin), period_(period) {}
 
-  // Every cell that the box touches.
-  void add(const Vec3& low, const Vec3& high) {
+  // Every cell that the box touches. 0, or how many those would be: more than can be built, infinite beyond all numbers.
+  double add(const Vec3& low, const Vec3& high) {
     double count = 1;
-    for (int a = 0; a < 3; ++a) count *= (high[a] - low[a]) / edge_ + 1;
-    if (!(count < kMostCells) || !((high - origin_).cwiseAbs().maxCoeff() < 1e9 * edge_) ||
-        !((low - origin_).cwiseAbs().maxCoeff() < 1e9 * edge_))
-      throw InputError(fmt::format("the reach spans {:.3g} cells of {:.4g} m: at most {:.3g} can be built",
-                                   count, edge_, kMostCells),
-                       "a smaller reach.margin or reach box");
     std::array<Span, 3> box;
     for (int a = 0; a < 3; ++a) {
-      box[a] = {static_cast<int32_t>(std::floor((low[a] - origin_[a]) / edge_)),
-                static_cast<int32_t>(std::floor((high[a] - origin_[a]) / edge_))};
-      if (const int32_t ring = period_[a]; ring > 0) {
-        const int32_t first = (box[a].first % ring + ring) % ring;
-        box[a] = {first, first + std::min(box[a].last - box[a].first, ring - 1)};
+      const double first = std::floor((low[a] - origin_[a]) / edge_), last = std::floor((high[a] - origin_[a]) / edge_);
+      const int32_t ring = period_[a];
+      count *= ring > 0 ? std::min(last - first + 1, static_cast<double>(ring)) : last - first + 1;
+      if (ring > 0 && last - first + 1 >= ring) {
+        box[a] = {0, ring - 1};
+      } else if (ring > 0) {
+        const auto begin = static_cast<int32_t>(first - std::floor(first / ring) * ring);
+        box[a] = {begin, begin + static_cast<int32_t>(last - first)};
+      } else {
+        if (!(std::max(std::abs(first), std::abs(last)) < 1e9)) return std::numeric_limits<double>::infinity();
+        box[a] = {static_cast<int32_t>(first), static_cast<int32_t>(last)};
       }
     }
+    if (!(count < kMostCells)) return count;
     const Rows rows{box[2].first, box[2].last, box[1].first, box[1].last};
     if (latest_ == nullptr || rows != latest_->first) latest_ = &*boxes_.try_emplace(rows).first;
     latest_->second.add(box[0]);
+    return 0;
   }
 
-  std::vector<Cell> cells() {
+  // None where there would be more than can be built; `count` of them.
+  std::optional<std::vector<Cell>> cells(uint64_t& count) {
     std::vector<RowSpan> spans;
     size_t kept = size_t{1} << 20;
     for (auto& [rows, along_x] : boxes_)
@@ -94,10 +101,12 @@ class Reach {
           for (int32_t y = rows[2]; y <= rows[3]; ++y) {
             add(spans, z, y, span);
             if (spans.size() < kept) continue;
-            settle(spans);
+            count = settle(spans);
+            if (static_cast<double>(count) > kMostCells) return std::nullopt;
             kept = std::max(kept, 2 * spans.size());
           }
-    const uint64_t count = settle(spans);
+    count = settle(spans);
+    if (static_cast<double>(count) > kMostCells) return std::nullopt;
     boxes_.clear();
     latest_ = nullptr;
     std::vector<Cell> cells;
@@ -154,9 +163,6 @@ class Reach {
       }
     }
     spans.resize(n);
-    if (static_cast<double>(count) > kMostCells)
-      throw InputError(fmt::format("the body can reach {} cells of {:.4g} m: at most {:.3g} can be built",
-                                   count, edge_, kMostCells));
     return count;
   }
 
@@ -166,6 +172,38 @@ class Reach {
   std::unordered_map<Rows, Spans, HashOfRows> boxes_;
   std::pair<const Rows, Spans>* latest_ = nullptr;
 };
+
+double stops_of(const Vec3& way, double edge) { return 1 + std::ceil(way.norm() / (0.5 * edge)); }
+
+// Whether a box that moves by `way` touches all of the box around its first and its last place.
+bool sweeps_a_box(const Vec3& way) { return (way.array() != 0).count() <= 1; }
+
+// Refuses paths that take too long to follow. Whether there are paths.
+bool check_paths(const Scene& scene, double edge, const Cell& period) {
+  constexpr double kMostStops = 5e6;  // some seconds
+  const double duration = static_cast<double>(scene.steps) * scene.rule.dt;
+  std::vector<double> moved(scene.rule.types.size(), 0);  // by type, its particles
+  for (const uint8_t type : scene.body.type) ++moved[type];
+  double stops = 0;
+  bool any = false;
+  for (size_t t = 0; t < moved.size(); ++t) {
+    const Vec3 way = scene.rule.types[t].velocity * duration;
+    Vec3 open = way;
+    for (int a = 0; a < 3; ++a)
+      if (period[a] > 0) open[a] = 0;
+    if (moved[t] == 0 || way.isZero(0)) continue;
+    any = true;
+    if (!sweeps_a_box(way)) stops += moved[t] * stops_of(way, edge);
+    if (open.norm() / edge > kMostCells || stops > kMostStops)
+      scene.places.fail(
+          {"run.duration", "run.steps"},
+          fmt::format("a body moved at {:.4g} m/s goes {:.4g} m in {:.4g} s, through {:.3g} cells of {:.4g} m: more "
+                      "than can be built",
+                      scene.rule.types[t].velocity.norm(), way.norm(), duration, way.norm() / edge, edge),
+          "a shorter run, or one in which bodies are moved less far");
+  }
+  return any;
+}
 
 }  // namespace
 
@@ -180,22 +218,43 @@ std::vector<Cell> reachable_cells(const Scene& scene, double edge, const Vec3& o
   if (axes == 2) margin.z() = 0;
   const double duration = static_cast<double>(scene.steps) * scene.rule.dt;
   Reach reach(edge, origin, period);
+  const auto refuse = [&](const std::vector<std::string>& causes, const std::string& what, double count,
+                          const std::string& hint) {
+    if (std::isinf(count))
+      scene.places.fail(causes, fmt::format("{} more than 1e+09 cells of {:.4g} m away", what, edge), hint);
+    scene.places.fail(causes,
+                      fmt::format("{} {:.3g} cells of {:.4g} m: at most {:.3g} can be built", what, count, edge, kMostCells),
+                      hint);
+  };
+  const std::vector<std::string> run{"run.duration", "run.steps"};
+  const std::string shorter = "a shorter run, or one in which bodies are moved less far";
+  const bool moved = check_paths(scene, edge, period);
   for (size_t id = 0; id < scene.body.size(); ++id) {
     const Vec3& x = scene.body.x[id];
-    const Vec3& velocity = scene.rule.types[scene.body.type[id]].velocity;
-    if (velocity.isZero(0)) {
-      reach.add(layer(x - margin), layer(x + margin));
-      continue;
-    }
-    const Vec3 way = velocity * duration;
-    const int stops = 1 + static_cast<int>(std::ceil(way.norm() / (0.5 * edge)));
-    for (int k = 0; k <= (way.norm() > 0 ? stops : 0); ++k) {
-      const Vec3 at = x + way * k / stops;
-      reach.add(layer(at - margin), layer(at + margin));
+    const Vec3 way = scene.rule.types[scene.body.type[id]].velocity * duration;
+    // Along one axis all between the ends is touched.
+    const bool swept = sweeps_a_box(way);
+    const auto stops = swept ? int64_t{1} : static_cast<int64_t>(stops_of(way, edge));
+    for (int64_t k = swept ? 1 : 0; k <= stops; ++k) {
+      const Vec3 at = swept ? x : Vec3(x + way * static_cast<double>(k) / static_cast<double>(stops));
+      const Vec3 to = swept ? Vec3(x + way) : at;
+      const double count = reach.add(layer(at.cwiseMin(to) - margin), layer(at.cwiseMax(to) + margin));
+      if (count == 0) continue;
+      if (way.isZero(0))
+        refuse({std::isinf(count) ? "particle" : "reach.margin"}, std::isinf(count) ? fmt::format("particle {} is", id) : "the reach of a particle spans", count,
+               std::isinf(count) ? "particles nearer to one another" : "a smaller reach.margin");
+      refuse(run, fmt::format("a body that is moved by {:.4g} m reaches", way.norm()), count, shorter);
     }
   }
-  if (scene.reach[0] != scene.reach[1]) reach.add(layer(scene.reach[0]), layer(scene.reach[1]));
-  return reach.cells();
+  if (scene.reach[0] != scene.reach[1])
+    if (const double count = reach.add(layer(scene.reach[0]), layer(scene.reach[1])); count > 0)
+      refuse({"reach.max", "reach.min"}, "the reach box spans", count, "a smaller reach box");
+  uint64_t count = 0;
+  auto cells = reach.cells(count);
+  if (!cells)
+    refuse(moved ? run : std::vector<std::string>{"reach.margin", "geometry", "box"}, "the body can reach",
+           static_cast<double>(count), moved ? shorter : "a smaller body, or a smaller reach.margin");
+  return std::move(*cells);
 }
 
 }  // namespace cuboct

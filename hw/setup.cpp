@@ -16,9 +16,15 @@ namespace {
 
 // A periodic axis must be a ring of whole cells, all of one edge: the shortest edge, not below `least`, that
 // divides every periodic extent. Without periodic axes it is `least`.
-double periodic_edge(const Vec3& extent, double least) {
+double periodic_edge(const Scene& scene, double least) {
+  constexpr double kMostInRow = 1e7;
+  const Vec3& extent = scene.periodic.extent;
   const double longest = extent.maxCoeff();
   if (longest <= 0) return least;
+  const std::vector<std::string> causes{"box.size", "box.cells", "box"};
+  if (longest / least > kMostInRow)
+    scene.places.fail(causes, fmt::format("the periodic box is {:.3g} cells of {:.4g} m long: at most {:.3g} can be built",
+                                          longest / least, least, kMostInRow));
   for (int n = static_cast<int>(std::floor(longest / least * (1 + 1e-12))); n >= 3; --n) {
     const double edge = longest / n;
     bool fits = true;
@@ -29,7 +35,8 @@ double periodic_edge(const Vec3& extent, double least) {
     }
     if (fits) return edge;
   }
-  throw InputError(
+  scene.places.fail(
+      causes,
       fmt::format(
           "no cell edge of at least {:.6g} m divides the periodic box {:.6g} x {:.6g} x {:.6g} m into 3 "
           "or more cells per axis",
@@ -103,14 +110,14 @@ FixedRule fixed_rule(const Scene& scene, const Arch& arch, double edge, const Au
 }
 
 // Every cell of the box around `cells`.
-std::vector<Cell> filled_box(const std::vector<Cell>& cells) {
+std::vector<Cell> filled_box(const std::vector<Cell>& cells, const Arch& arch) {
   Cell low = cells.front(), high = low;
   for (const Cell& cell : cells)
     for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], cell[a]), high[a] = std::max(high[a], cell[a]);
   double count = 1;
   for (int a = 0; a < 3; ++a) count *= high[a] - low[a] + 1.0;
   if (count > kMostCells)
-    throw InputError(fmt::format(
+    arch.places.fail({"plan.carry"}, fmt::format(
         "plan.carry = [\"empty_nodes\"]: the bounding box has {:.4g} cells, at most {:.3g} can be built",
         count, kMostCells));
   std::vector<Cell> box;
@@ -149,7 +156,7 @@ Plan plan_with(const Scene& scene, Arch arch, See see) {
   if (flat) origin[2] = lowest;
   rule.axes = flat ? 2 : 3;
   std::vector<Cell> cells = reachable_cells(scene, edge, origin, period, rule.axes);
-  if (arch.carry.empty_nodes) cells = filled_box(cells);
+  if (arch.carry.empty_nodes) cells = filled_box(cells, arch);
   Lattice lattice(std::move(cells), period);
   rule = carrying(std::move(rule), arch.carry);
   if (arch.capacity == kAutomatic) arch.capacity = capacity_for(scene, lattice, edge, origin);
@@ -161,7 +168,8 @@ Plan plan_with(const Scene& scene, Arch arch, See see) {
     see(particle);
   }
   if (static_cast<int64_t>(fullest) > arch.capacity)
-    throw InputError(
+    arch.places.fail(
+        {"node.capacity"},
         fmt::format("a node would hold {} particles: its capacity is {}", fullest, arch.capacity),
         fmt::format("set node.capacity to at least {} in the arch file", fullest));
   std::vector<std::string> warnings = width_warnings(scene, edge, chosen, rule);
@@ -199,9 +207,10 @@ Particle InitialParticles::operator()(uint32_t id) {
 double cell_edge_of(const Scene& scene, const Arch& arch) {
   const double cutoff = scene.rule.law->cutoff();
   if (arch.cell_edge > 0 && arch.cell_edge < cutoff)
-    throw InputError(fmt::format("cell_edge = {:.6g} m is shorter than the pair law's cutoff, {:.6g} m",
+    arch.places.fail({"node.cell_edge"},
+                     fmt::format("cell_edge = {:.6g} m is shorter than the pair law's cutoff, {:.6g} m",
                                  arch.cell_edge, cutoff));
-  return periodic_edge(scene.periodic.extent, std::max(cutoff, arch.cell_edge));
+  return periodic_edge(scene, std::max(cutoff, arch.cell_edge));
 }
 
 Arch settled(const Scene& scene, Arch arch) {

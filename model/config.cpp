@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "model/error.h"
@@ -27,6 +29,7 @@ struct ConfigNode {
   double real = 0;
   std::string text;
   std::vector<ConfigNode> items;  // elements of an array, or the fields of a table in the order of the file
+  std::map<std::string, size_t> by_key;  // of a table, the indices of its items
   mutable std::string alias;      // instead of the path, for the recorder
   mutable std::set<std::string> asked;
   mutable bool opened = false;  // a table that someone reads
@@ -80,6 +83,7 @@ ConfigNode convert(const toml::node& from, const std::string& key, const std::st
     }
     std::ranges::sort(node.items, {},
                       [](const ConfigNode& n) { return std::pair(n.key_line, n.key_column); });
+    for (size_t k = 0; k < node.items.size(); ++k) node.by_key.emplace(node.items[k].key, k);
   } else if (const auto* array = from.as_array()) {
     node.kind = Kind::array;
     for (const auto& value : *array) node.items.push_back(convert(value, key, path));
@@ -102,8 +106,45 @@ ConfigNode convert(const toml::node& from, const std::string& key, const std::st
 }
 
 const ConfigNode* field(const ConfigNode& table, const std::string& key) {
-  const auto found = std::ranges::find(table.items, key, &ConfigNode::key);
-  return found == table.items.end() ? nullptr : &*found;
+  const auto found = table.by_key.find(key);
+  return found == table.by_key.end() ? nullptr : &table.items[found->second];
+}
+
+// Of arrays the first element stands for all: of a million particles none is looked for by its place.
+void add_places(const ConfigNode& node, Places& places) {
+  if (!node.path.empty()) places.add(node.path, node.line, node.column);
+  for (const ConfigNode& item : node.items) {
+    add_places(item, places);
+    if (node.kind == Kind::array) return;
+  }
+}
+
+// toml++ and all that reads its tables go as deep as a key is long: a.b.c makes three tables.
+void check_keys(std::string_view text, const std::string& path) {
+  constexpr int kMostParts = 64;
+  int line = 1, parts = 1;
+  size_t line_begin = 0;
+  std::string_view quote;  // what ends the string at hand
+  for (size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (c == '\n') ++line, line_begin = k + 1, parts = 1;
+    if (!quote.empty()) {
+      if (c == '\\' && quote[0] == '"')
+        ++k;
+      else if (text.substr(k).starts_with(quote))
+        k += quote.size() - 1, quote = {};
+    } else if (c == '"' || c == '\'') {
+      quote = text.substr(k, 1);
+      if (text.substr(k, 3) == std::string(3, c)) quote = text.substr(k, 3), k += 2;
+    } else if (c == '#') {
+      k = std::min(text.find('\n', k), text.size()) - 1;
+    } else if (c == '.' && ++parts > kMostParts) {
+      throw InputError(path, line, static_cast<int>(k - line_begin) + 1,
+                       fmt::format("a key of more than {} parts", kMostParts));
+    } else if (c == '=' || c == ',' || c == '[' || c == '{') {
+      parts = 1;
+    }
+  }
 }
 
 void check_asked(const ConfigFile& file, const ConfigNode& node) {
@@ -352,11 +393,18 @@ void ConfigTable::not_both(const std::string& a, const std::string& b) const {
 
 void ConfigTable::record_as(const std::string& name) const { node_->alias = name; }
 
+Places ConfigTable::places() const {
+  Places places(file_->path);
+  add_places(*node_, places);
+  return places;
+}
+
 void ConfigTable::done() const { check_asked(*file_, *node_); }
 
 ConfigTable parse_config(const std::string& text, const std::string& path) {
   auto file = std::make_shared<ConfigFile>();
   file->path = path;
+  check_keys(text, path);
   try {
     file->root = convert(toml::parse(text, path), "", "");
   } catch (const toml::parse_error& error) {

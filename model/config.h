@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "model/places.h"
 #include "model/units.h"
 #include "model/vec.h"
 
@@ -109,6 +110,8 @@ class ConfigTable : public ConfigValue {
   void not_both(const std::string& a, const std::string& b) const;
   // The name under which record_config_keys notes this table, where tables of one kind stand in many places.
   void record_as(const std::string& name) const;
+  // Of all keys within this table.
+  Places places() const;
   // Error at the first key that no one asked for, in this table and the tables within that were opened.
   void done() const;
 };

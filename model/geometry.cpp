@@ -108,23 +108,31 @@ struct Extrusion final : Shape {
   double distance(const Vec3& x) const override {
     return corner_distance<Eigen::Vector2d>({in_plane(x[0], x[1]), std::abs(x[2]) - half});
   }
+  size_t parts() const override { return px.size(); }
   Bounds bounds() const override {
     return {{std::ranges::min(px), std::ranges::min(py), -half},
             {std::ranges::max(px), std::ranges::max(py), half}};
   }
 };
 
+size_t parts_of(const std::vector<ShapePtr>& shapes) {
+  size_t sum = 0;
+  for (const ShapePtr& shape : shapes) sum += shape->parts();
+  return sum;
+}
+
 struct Union final : Shape {
-  std::vector<ShapePtr> parts;
-  explicit Union(std::vector<ShapePtr> p) : parts(std::move(p)) {}
+  std::vector<ShapePtr> parts_;
+  explicit Union(std::vector<ShapePtr> p) : parts_(std::move(p)) {}
   double distance(const Vec3& x) const override {
     double least = kInfinity;
-    for (const auto& part : parts) least = std::min(least, part->distance(x));
+    for (const auto& part : parts_) least = std::min(least, part->distance(x));
     return least;
   }
+  size_t parts() const override { return parts_of(parts_); }
   Bounds bounds() const override {
     Bounds b{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
-    for (const auto& part : parts) {
+    for (const auto& part : parts_) {
       const Bounds p = part->bounds();
       b.low = b.low.cwiseMin(p.low);
       b.high = b.high.cwiseMax(p.high);
@@ -134,16 +142,17 @@ struct Union final : Shape {
 };
 
 struct Intersection final : Shape {
-  std::vector<ShapePtr> parts;
-  explicit Intersection(std::vector<ShapePtr> p) : parts(std::move(p)) {}
+  std::vector<ShapePtr> parts_;
+  explicit Intersection(std::vector<ShapePtr> p) : parts_(std::move(p)) {}
   double distance(const Vec3& x) const override {
     double most = -kInfinity;
-    for (const auto& part : parts) most = std::max(most, part->distance(x));
+    for (const auto& part : parts_) most = std::max(most, part->distance(x));
     return most;
   }
+  size_t parts() const override { return parts_of(parts_); }
   Bounds bounds() const override {
     Bounds b;
-    for (const auto& part : parts) {
+    for (const auto& part : parts_) {
       const Bounds p = part->bounds();
       b.low = b.low.cwiseMax(p.low);
       b.high = b.high.cwiseMin(p.high);
@@ -156,6 +165,7 @@ struct Complement final : Shape {
   ShapePtr shape;
   explicit Complement(ShapePtr s) : shape(std::move(s)) {}
   double distance(const Vec3& x) const override { return -shape->distance(x); }
+  size_t parts() const override { return shape->parts(); }
   Bounds bounds() const override { return {}; }
 };
 
@@ -169,6 +179,7 @@ struct Transformed final : Shape {
   double distance(const Vec3& x) const override {
     return scale * shape->distance(rotation.transpose() * (x - translation) / scale);
   }
+  size_t parts() const override { return shape->parts(); }
   // Interval arithmetic: each output axis is a sum of scaled input intervals; 0 * infinity counts 0.
   Bounds bounds() const override {
     const Bounds inner = shape->bounds();

@@ -26,6 +26,8 @@ class Shape {
   virtual double distance(const Vec3& x) const = 0;
   // Holds the solid; need not be the smallest such box.
   virtual Bounds bounds() const = 0;
+  // Primitives and edges that one distance looks at.
+  virtual size_t parts() const { return 1; }
 };
 
 using ShapePtr = std::shared_ptr<const Shape>;

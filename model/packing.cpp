@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,8 +14,6 @@
 
 namespace cuboct {
 namespace {
-
-constexpr double kMostSites = 2e9;  // minutes of testing, 50 GB if all were inside
 
 constexpr double kTolerance = 1e-6;  // of the pitch
 
@@ -42,7 +41,9 @@ double particle_mass(double density, double pitch) {
   return density * pitch * pitch * pitch / std::numbers::sqrt2;
 }
 
-std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) {
+namespace {
+
+Bounds bounds_of(const Shape* shape, const Periodic& box) {
   Bounds bounds = shape != nullptr ? shape->bounds() : Bounds{};
   for (int a = 0; a < 3; ++a) {
     if (box.extent[a] == 0) continue;
@@ -50,33 +51,64 @@ std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) 
     bounds.high[a] = std::min(bounds.high[a], box.origin[a] + box.extent[a]);
   }
   if (!bounds.low.allFinite() || !bounds.high.allFinite()) throw InputError("the geometry has no end");
-  const double tolerance = kTolerance * fcc.pitch;
-  const double half = fcc.cell() / 2;
+  return bounds;
+}
 
-  // Corners of the bounds in units of half cells of the crystal give the range of h, k and l.
+// Corners of the bounds in units of half cells of the crystal give the range of h, k and l.
+struct Range3 {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+};
+Range3 range_of(const Fcc& fcc, const Bounds& bounds) {
+  Range3 range;
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 x;
     for (int a = 0; a < 3; ++a) x[a] = (corner >> a & 1) != 0 ? bounds.high[a] : bounds.low[a];
-    const Vec3 c = fcc.orientation.transpose() * (x - fcc.offset) / half;
-    low = low.cwiseMin(c);
-    high = high.cwiseMax(c);
+    const Vec3 c = fcc.orientation.transpose() * (x - fcc.offset) / (fcc.cell() / 2);
+    range.low = range.low.cwiseMin(c);
+    range.high = range.high.cwiseMax(c);
   }
+  return range;
+}
+
+}  // namespace
+
+PackingSize packing_size(const Fcc& fcc, const Shape* shape, const Periodic& box) {
+  const Bounds bounds = bounds_of(shape, box);
+  const Range3 range = range_of(fcc, bounds);
+  PackingSize size;
+  size.farthest = std::max(range.low.cwiseAbs().maxCoeff(), range.high.cwiseAbs().maxCoeff());
+  size.tested = 0.5;  // every other (h, k, l) is a site
+  for (int a = 0; a < 3; ++a) size.tested *= std::ceil(range.high[a]) - std::floor(range.low[a]) + 3;
+  // A site stands for pitch^3/sqrt(2). Along an axis both faces may hold a plane of sites.
+  const Vec3 extent = bounds.high - bounds.low;
+  size.sites = std::numbers::sqrt2 / std::pow(fcc.pitch, 3);
+  for (int a = 0; a < 3; ++a) size.sites *= extent[a] + (box.extent[a] == 0 ? fcc.pitch / 2 : 0);
+  size.sites = std::min(size.sites, size.tested);
+  if (shape == nullptr) return size;
+  constexpr double kSamples = 32768, kMostWork = 3e7;
+  const int along =
+      static_cast<int>(std::cbrt(std::clamp(kMostWork / static_cast<double>(shape->parts()), 8.0, kSamples)));
+  int inside = 0;
+  for (int l = 0; l < along; ++l)
+    for (int k = 0; k < along; ++k)
+      for (int h = 0; h < along; ++h) {
+        const Vec3 x = bounds.low + (Vec3(h, k, l).array() + 0.5).matrix().cwiseProduct(extent) / along;
+        inside += shape->distance(x) <= kTolerance * fcc.pitch ? 1 : 0;
+      }
+  size.sites *= inside / std::pow(along, 3);
+  return size;
+}
+
+std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) {
+  const Bounds bounds = bounds_of(shape, box);
+  const double tolerance = kTolerance * fcc.pitch;
+  const double half = fcc.cell() / 2;
+  const Range3 range = range_of(fcc, bounds);
   std::array<int64_t, 3> first, last;
   for (int a = 0; a < 3; ++a) {
-    if (std::max(std::abs(low[a]), std::abs(high[a])) > 1e6)
-      throw InputError("the geometry is beyond a million pitches");
-    first[a] = std::llround(std::floor(low[a])) - 1;
-    last[a] = std::llround(std::ceil(high[a])) + 1;
+    first[a] = std::llround(std::floor(range.low[a])) - 1;
+    last[a] = std::llround(std::ceil(range.high[a])) + 1;
   }
-
-  double tested = 0.5;  // every other (h, k, l) is a site
-  for (int a = 0; a < 3; ++a) tested *= static_cast<double>(last[a] - first[a] + 1);
-  if (tested > kMostSites)
-    throw InputError(
-        fmt::format("the geometry's bounds hold {:.3g} sites of the packing: at most {:.3g} are tested",
-                    tested, kMostSites),
-        "a larger pitch, or a smaller geometry");
 
   std::vector<Vec3> sites;
   for (int64_t l = first[2]; l <= last[2]; ++l) {

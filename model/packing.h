@@ -26,8 +26,16 @@ double particle_mass(double density, double pitch);
 // The sites in `shape` (surface included, with a tolerance of 1e-6 of the pitch, so that rounding cannot drop
 // a face of sites), ascending in (l, k, h). Along axes on which `box` has an extent, sites stand in [origin,
 // origin + extent), and `shape` may be null if all three have one. The bounds of what is packed must be
-// finite.
+// finite, and few enough for numbers of 64 bits.
 std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box);
+
+// What packing would take, told before it starts.
+struct PackingSize {
+  double farthest = 0;  // corner of the bounds from site 0, in half cells of the crystal
+  double tested = 0;    // sites, each held against the shape
+  double sites = 0;     // of them inside: a sample of the bounds tells, to a few percent in a body of many pitches
+};
+PackingSize packing_size(const Fcc& fcc, const Shape* shape, const Periodic& box);
 
 // Whether moving by `shift` maps the sites on themselves (within 1e-6 of the pitch).
 bool is_period(const Fcc& fcc, const Vec3& shift);

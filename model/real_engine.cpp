@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <stdexcept>
+
+#include "model/parallel.h"
 
 namespace cuboct {
 namespace {
@@ -122,8 +125,9 @@ class Engine final : public RealEngine {
 
   void sum(std::vector<Real>& f) const {
     const std::vector<PairRows>& parts = list_.parts();
-#pragma omp parallel for num_threads(threads_) schedule(static, 1)
-    for (size_t p = 0; p < parts.size(); ++p) pair_forces(force_, parts[p], x_.data(), v_.data(), f.data());
+    for_each_part(parts.size(), threads_, [&](size_t p, int) {
+      pair_forces(force_, parts[p], x_.data(), v_.data(), f.data());
+    });
   }
   void evaluate(uint64_t number) {
     if (options_.order_seed != 0) shuffle(number);
@@ -132,13 +136,17 @@ class Engine final : public RealEngine {
     if (pd_) add_holds();
   }
   void add_holds() {
-#pragma omp parallel for num_threads(threads_) schedule(static)
-    for (size_t s = 0; s < particles_; ++s) {
-      const Push<Real>& push = pushes_[type_[s]];
-      if (!push.pd) continue;
-      for (size_t k = 4 * s; k < 4 * s + 3; ++k)
-        f_[k] -= push.kp * u_[k] + push.kd * (v_[k] - push.velocity[k - 4 * s]);
-    }
+    for_each_range(
+        particles_, 1,
+        [&](size_t begin, size_t end) {
+          for (size_t s = begin; s < end; ++s) {
+            const Push<Real>& push = pushes_[type_[s]];
+            if (!push.pd) continue;
+            for (size_t k = 4 * s; k < 4 * s + 3; ++k)
+              f_[k] -= push.kp * u_[k] + push.kd * (v_[k] - push.velocity[k - 4 * s]);
+          }
+        },
+        threads_);
   }
 
   // Fisher and Yates, lane by lane; what fills a lane's rows is shuffled among them.
@@ -165,31 +173,37 @@ class Engine final : public RealEngine {
     const Real kick_dt = static_cast<Real>(kick), drift_dt = static_cast<Real>(drift);
     Real farthest2 = 0, fastest = fastest_;
     bool lost = false;
-#pragma omp parallel for num_threads(threads_) schedule(static) reduction(max                   \
-                                                                          : farthest2, fastest) \
-    reduction(||                                                                                \
-              : lost)
-    for (size_t s = 0; s < particles_; ++s) {
-      const Push<Real>& push = pushes_[type_[s]];
-      Real* const x = &x_[4 * s];
-      Real* const v = &v_[4 * s];
-      const Real* const f = &f_[4 * s];
-      Real moved2 = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        const Real a = f[axis] / mass_ + push.gravity[axis];
-        const Real free = v[axis] + a * kick_dt;
-        v[axis] = push.imposed[axis] ? push.velocity[axis] : free;
-        fastest = std::max(fastest, std::abs(v[axis]));
+    std::mutex joining;
+    const auto move_range = [&](size_t begin, size_t end) {
+      Real farthest2_here = 0, fastest_here = 0;
+      bool lost_here = false;
+      for (size_t s = begin; s < end; ++s) {
+        const Push<Real>& push = pushes_[type_[s]];
+        Real* const x = &x_[4 * s];
+        Real* const v = &v_[4 * s];
+        const Real* const f = &f_[4 * s];
+        Real moved2 = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+          const Real a = f[axis] / mass_ + push.gravity[axis];
+          const Real free = v[axis] + a * kick_dt;
+          v[axis] = push.imposed[axis] ? push.velocity[axis] : free;
+          fastest_here = std::max(fastest_here, std::abs(v[axis]));
+          if (!kDrifts) continue;
+          if (push.pd) u_[4 * s + axis] += (v[axis] - push.velocity[axis]) * drift_dt;
+          x[axis] += v[axis] * drift_dt;
+          const Real moved = x[axis] - listed_[4 * s + axis];
+          moved2 += moved * moved;
+        }
         if (!kDrifts) continue;
-        if (push.pd) u_[4 * s + axis] += (v[axis] - push.velocity[axis]) * drift_dt;
-        x[axis] += v[axis] * drift_dt;
-        const Real moved = x[axis] - listed_[4 * s + axis];
-        moved2 += moved * moved;
+        farthest2_here = std::max(farthest2_here, moved2);
+        lost_here = lost_here || !std::isfinite(moved2);
       }
-      if (!kDrifts) continue;
-      farthest2 = std::max(farthest2, moved2);
-      lost = lost || !std::isfinite(moved2);
-    }
+      const std::lock_guard lock(joining);
+      farthest2 = std::max(farthest2, farthest2_here);
+      fastest = std::max(fastest, fastest_here);
+      lost = lost || lost_here;
+    };
+    for_each_range(particles_, 1, move_range, threads_);
     fastest_ = fastest;
     if (!kDrifts) return;
     ++steps_on_list_;

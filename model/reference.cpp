@@ -5,16 +5,16 @@
 
 #include <algorithm>
 #include <numeric>
-#include <thread>
 
 #include "model/error.h"
+#include "model/parallel.h"
 #include "model/real_engine.h"
 
 namespace cuboct {
 
 int reference_threads(size_t particles) {
   constexpr size_t kEach = 2000;
-  return static_cast<int>(std::clamp<size_t>(particles / kEach, 1, std::max(1u, std::thread::hardware_concurrency())));
+  return static_cast<int>(std::clamp<size_t>(particles / kEach, 1, static_cast<size_t>(usable_cores())));
 }
 
 Reference::Reference(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options)
@@ -67,8 +67,7 @@ void Reference::for_each_neighbour(On&& on) const {
   const size_t groups = parts.back().first_group + parts.back().begin.size() - 1;
   const size_t lanes = groups == 0 ? 1 : list.slots() / groups;
   const double cutoff2 = rule_.law->cutoff() * rule_.law->cutoff();
-#pragma omp parallel for num_threads(threads_) schedule(static, 1)
-  for (size_t p = 0; p < parts.size(); ++p) {
+  for_each_part(parts.size(), threads_, [&](size_t p, int) {
     const PairRows& part = parts[p];
     for (size_t g = 0; g + 1 < part.begin.size(); ++g) {
       for (size_t lane = 0; lane < lanes; ++lane) {
@@ -82,7 +81,7 @@ void Reference::for_each_neighbour(On&& on) const {
         }
       }
     }
-  }
+  });
 }
 
 double Reference::potential_energy() const {

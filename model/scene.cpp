@@ -219,6 +219,7 @@ namespace {
 Scene scene_of(const ConfigTable& root, const std::string& path) {
   Scene scene;
   scene.path = path;
+  scene.places = root.places();
   scene.title = root.string_or("title", "");
   auto packing = read_packing(root);
   PackingChoice* choice = packing ? &*packing : nullptr;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "model/places.h"
 #include "model/rule.h"
 
 namespace cuboct {
@@ -62,6 +63,7 @@ struct Scene {
   uint64_t steps = 0;
   uint64_t probe_every = 0;  // 0: never
   uint64_t frame_every = 0;  // 0: first and last only
+  Places places;             // of the file's keys
 };
 
 // Throws InputError with file:line:column.

@@ -10,6 +10,7 @@
 
 #include "model/error.h"
 #include "model/name.h"
+#include "model/resources.h"
 #include "model/scene_parts.h"
 #include "model/spelling.h"
 
@@ -18,6 +19,8 @@ namespace {
 
 constexpr double kTolerance = 1e-6;  // of the pitch, as in packing.h
 constexpr size_t kMaxTypes = 256;
+constexpr double kMostParticles = 4e9;  // ids have 32 bits
+constexpr double kBytesToRead = 64;     // a particle while it is read: position, velocity, type, two numbers
 
 // Particles on a region's surface count as inside; where there is no packing the law's cutoff sets the scale.
 double tolerance_of(const Scene& scene) {
@@ -33,6 +36,33 @@ void check_size(const ConfigTable& geometry, const Bounds& bounds, double pitch)
       geometry.fail(fmt::format("the geometry is {:.6g} m along {}, less than the pitch {:.6g} m",
                                 std::max(size, 0.0), axis, pitch));
   }
+}
+
+// Before anything is made: what stops a packing that this machine cannot hold, or that takes hours.
+// `by_cells`: the box is so many cells of the crystal, whatever their size.
+void check_packing(const ConfigValue& at, const Fcc& fcc, const Shape* shape, const Periodic& box, bool by_cells) {
+  constexpr double kMostTests = 4e10;  // some minutes
+  const PackingSize size = packing_size(fcc, shape, box);
+  if (size.farthest > 1e6) at.fail("the geometry is beyond a million pitches");
+  const size_t parts = shape != nullptr ? shape->parts() : 1;
+  const double tests = size.tested * static_cast<double>(parts);
+  // Where there are `times` too many.
+  const auto hint = [&](double times) {
+    if (by_cells) return fmt::format("'cells' whose product is smaller by a factor of {:.2g}", 1.1 * times);
+    return fmt::format("a pitch of {:.2g} m, or a smaller geometry", fcc.pitch * std::cbrt(times) * 1.06);
+  };
+  if (tests > kMostTests)
+    at.fail(fmt::format("{:.3g} sites of the packing, held against {} parts of the geometry: at most {:.3g} "
+                        "tests are made",
+                        size.tested, parts, kMostTests),
+            hint(tests / kMostTests) + (parts > 100 ? ", or fewer points" : ""));
+  const double bytes = size.sites * kBytesToRead, free = static_cast<double>(free_memory());
+  const double most = std::min(kMostParticles, free / kBytesToRead);
+  if (size.sites > most)
+    at.fail(fmt::format("about {:.3g} particles, {} to read them: {}", size.sites, in_bytes(bytes),
+                        most < kMostParticles ? in_bytes(free) + " are free"
+                                              : fmt::format("a scene holds at most {:.3g}", kMostParticles)),
+            hint(size.sites / most));
 }
 
 void pack_geometry(const ConfigTable& root, const PackingChoice& packing, Scene& scene) {
@@ -55,9 +85,11 @@ void pack_geometry(const ConfigTable& root, const PackingChoice& packing, Scene&
     }
     check_size(*geometry, bounds, scene.pitch);
   }
+  const ConfigValue box = geometry ? ConfigValue(*geometry) : root.at("box");
+  check_packing(box, packing.fcc, shape.get(), boxed, !geometry && root.at("box").table().has("cells"));
   scene.body.x = pack(packing.fcc, shape.get(), boxed);
   if (scene.body.x.empty())
-    (geometry ? *geometry : root.at("box").table()).fail("no particle: no site of the packing lies inside");
+    box.fail("no particle: no site of the packing lies inside");
   scene.body.v.assign(scene.body.x.size(), Vec3::Zero());
 }
 
@@ -119,6 +151,8 @@ struct Material {
 std::vector<Material> read_materials(const ConfigTable& root) {
   std::vector<Material> materials;
   for (const ConfigTable& table : root.tables("material")) {
+    if (materials.size() == kMaxTypes)
+      table.fail(fmt::format("more than {} materials", kMaxTypes));
     Material material{read_name(table.at("name")),
                       table.number_or("strength", quantity::number, 1, Range::positive())};
     for (const Material& other : materials)
@@ -243,6 +277,11 @@ ShapePtr Regions::read(const ConfigValue& value) const {
 std::vector<uint32_t> Regions::select(const ConfigValue& value, const std::vector<Vec3>& x,
                                       double tolerance) const {
   const ShapePtr shape = read(value);
+  constexpr double kMostTests = 4e10;  // of one scene: some minutes
+  tests_ += static_cast<double>(x.size()) * static_cast<double>(shape->parts());
+  if (tests_ > kMostTests)
+    value.fail(fmt::format("{:.3g} tests of particles against regions: at most {:.3g} are made", tests_, kMostTests),
+               "fewer regions, or shapes of fewer points");
   std::vector<uint32_t> ids;
   for (uint32_t id = 0; id < x.size(); ++id)
     if (shape->distance(x[id]) <= tolerance) ids.push_back(id);
@@ -301,6 +340,7 @@ void read_body(const ConfigTable& root, const Regions& regions, const PackingCho
   std::vector<int> constraint(body.size(), -1);
   std::vector<ParticleType> constraints;
   for (const ConfigTable& table : root.tables("constraint")) {
+    if (constraints.size() == kMaxTypes) table.fail(fmt::format("more than {} constraints", kMaxTypes));
     ParticleType type = read_constraint(table, scene.rule, scene.pitch);
     type.name = read_name(table.at("name"));
     for (const ParticleType& other : constraints)

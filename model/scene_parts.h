@@ -28,6 +28,7 @@ class Regions {
  private:
   std::vector<std::string> names_;
   std::vector<ShapePtr> shapes_;
+  mutable double tests_ = 0;  // of particles, by select()
 };
 
 // [packing]. Absent where all particles are listed.

@@ -98,7 +98,7 @@ class Parser {
     Unit unit;
     skip_space();
     if (at_ < text_.size()) unit = product();
-    if (at_ < text_.size()) fail(fmt::format("unexpected '{}'", rest()));
+    if (at_ < text_.size()) fail(fmt::format("unexpected '{}'", shown(rest())));
     for (std::string_view digits : numbers)
       result.values.push_back(scaled(digits, unit.decimal) * unit.factor);
     result.dimension = unit.dimension;
@@ -106,8 +106,17 @@ class Parser {
   }
 
  private:
+  static constexpr int kDeepest = 64;
+  static constexpr size_t kShown = 60;  // bytes of a text in a message
+
   [[noreturn]] void fail(const std::string& what, const std::string& hint = {}) const {
-    throw UnitError{fmt::format("{} in \"{}\"", what, text_), hint};
+    throw UnitError{fmt::format("{} in \"{}\"", what, shown(text_)), hint};
+  }
+  static std::string shown(std::string_view text) {
+    if (text.size() <= kShown) return std::string(text);
+    size_t end = kShown;
+    while (end > 0 && (text[end] & 0xc0) == 0x80) --end;  // whole characters
+    return std::string(text.substr(0, end)) + "...";
   }
   std::string_view rest() const { return text_.substr(at_); }
   void skip_space() {
@@ -182,7 +191,9 @@ class Parser {
   Unit power() {
     Unit base;
     if (eat('(')) {
+      if (++depth_ > kDeepest) fail(fmt::format("more than {} parentheses within one another", kDeepest));
       base = product();
+      --depth_;
       if (!eat(')')) fail("expected ')'");
     } else if (!eat('1')) {
       base = named();
@@ -213,11 +224,12 @@ class Parser {
       if (const NamedUnit* unit = find_unit(name.substr(prefix.name.size())))
         return {unit->decimal + prefix.decimal, unit->factor, unit->dimension};
     }
-    fail(fmt::format("unknown unit '{}'", name), did_you_mean(std::string(name), common_spellings()));
+    fail(fmt::format("unknown unit '{}'", shown(name)), did_you_mean(std::string(name), common_spellings()));
   }
 
   std::string_view text_;
   size_t at_ = 0;
+  int depth_ = 0;
 };
 
 }  // namespace

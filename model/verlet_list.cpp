@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "model/parallel.h"
+
 namespace cuboct {
 namespace {
 
@@ -68,11 +70,10 @@ void VerletList::build(std::span<const Vec3> x) {
   for (size_t s = 0; s < order_.size(); ++s) sorted[s] = x[order_[s]];
   const size_t count = static_cast<size_t>(threads_);
   parts_.resize(count);
-#pragma omp parallel for num_threads(threads_) schedule(static, 1)
-  for (size_t p = 0; p < count; ++p) {
+  for_each_part(count, threads_, [&](size_t p, int) {
     parts_[p].first_group = groups_ * p / count;
     fill(cells, sorted, order_, parts_[p], groups_ * (p + 1) / count);
-  }
+  });
 }
 
 void VerletList::fill(const CellList& cells, const std::vector<Vec3>& x, const std::vector<uint32_t>& ids,

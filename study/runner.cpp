@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <mutex>
 #include <set>
-#include <thread>
 
 #include "model/error.h"
+#include "model/resources.h"
 #include "study/gpu_program.h"
 #include "study/measure_errors.h"
 #include "study/measure_run.h"
@@ -25,8 +25,7 @@ constexpr const char* kBegun = "(begun)";
 
 Runner::Runner(const Study& study, Store& store, const RunnerOptions& options)
     : study_(study), store_(store), options_(options) {
-  if (options_.jobs <= 0)
-    options_.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  if (options_.jobs <= 0) options_.jobs = usable_cores();
 }
 
 const Truth& Runner::truth() {

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "model/progress.h"
+#include "model/resources.h"
 
 namespace cuboct::study {
 namespace {
@@ -65,7 +66,7 @@ void work_off(std::vector<Piece> pieces, int jobs, const std::string& label, boo
   double size = 0;
   for (const Piece& piece : pieces) size += piece.size;
   Board board;
-  const size_t most = jobs > 0 ? static_cast<size_t>(jobs) : std::max(1u, std::thread::hardware_concurrency());
+  const size_t most = jobs > 0 ? static_cast<size_t>(jobs) : static_cast<size_t>(usable_cores());
   std::vector<std::thread> threads;
   board.running = std::min(most, pieces.size());
   for (size_t k = 0, count = board.running; k < count; ++k)

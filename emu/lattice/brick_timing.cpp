@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "emu/lattice/brick_timing.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <stdexcept>
 
 #include "emu/lattice/force_time.h"
 #include "emu/lattice/phase_spans.h"
+#include "model/parallel.h"
 
 namespace cuboct::emu {
 namespace {
@@ -99,7 +98,7 @@ BrickTiming::BrickTiming(const Plan& plan, int threads)
       map_(plan.bricks, plan.rule.axes),
       nodes_(plan.nodes()),
       axes_(plan.rule.axes),
-      threads_(threads > 0 ? threads : omp_get_num_procs()),
+      threads_(threads > 0 ? threads : usable_cores()),
       halo_beats_(plan.words.halo_beats),
       received_(kReceived + plan.link.latency),
       shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval},
@@ -284,23 +283,20 @@ void BrickTiming::step(const NodeSlots& slots, std::span<const Leaving> leaving,
   const auto work = int64_t{plan_.lattice.size()} + 2 * int64_t{slots.first.back()};
   const int threads = static_cast<int>(
       std::clamp<int64_t>(work / kWorkPerThread, 1, std::min<int64_t>(threads_, int64_t{nodes_})));
-#pragma omp parallel num_threads(threads)
-  {
-    Scratch& scratch = scratch_[at(omp_get_thread_num())];
-    const auto for_all = [this](const auto& part) {
-#pragma omp for schedule(dynamic)
-      for (int64_t n = 0; n < int64_t{nodes_}; ++n) part(static_cast<uint32_t>(n));
-    };
-    for_all([&](uint32_t n) { send(0, n); });
-    for (int axis = 0; axis + 1 < axes_; ++axis) {
-      for_all([&](uint32_t n) { end_[at(axis)][n] = exchanged(axis, n); });
-      for_all([&](uint32_t n) { send(axis + 1, n); });
-    }
-    if (axes_ == 2) for_all([&](uint32_t n) { end_[at(Phase::exchange_y)][n] = exchanged(1, n); });
-    for_all([&](uint32_t n) { exchange_to_update(slots, n, scratch); });
-    for (int axis = 0; axis < axes_; ++axis) for_all([&](uint32_t n) { take_particles(axis, n); });
-    for_all([&](uint32_t n) { finish(n, spans); });
+  const auto for_all = [&](const auto& part) {
+    for_each_part(nodes_, threads, [&](size_t n, int) { part(static_cast<uint32_t>(n)); });
+  };
+  for_all([&](uint32_t n) { send(0, n); });
+  for (int axis = 0; axis + 1 < axes_; ++axis) {
+    for_all([&](uint32_t n) { end_[at(axis)][n] = exchanged(axis, n); });
+    for_all([&](uint32_t n) { send(axis + 1, n); });
   }
+  if (axes_ == 2) for_all([&](uint32_t n) { end_[at(Phase::exchange_y)][n] = exchanged(1, n); });
+  for_each_part(nodes_, threads, [&](size_t n, int member) {
+    exchange_to_update(slots, static_cast<uint32_t>(n), scratch_[at(member)]);
+  });
+  for (int axis = 0; axis < axes_; ++axis) for_all([&](uint32_t n) { take_particles(axis, n); });
+  for_all([&](uint32_t n) { finish(n, spans); });
   ++steps_;
   for (uint32_t n = 0; n < nodes_; ++n) {
     const bool busy = std::any_of(map_.walk(n).own.begin(), map_.walk(n).own.end(), [&](uint32_t local) {

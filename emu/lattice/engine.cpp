@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "emu/lattice/hash_particles.h"
@@ -17,7 +18,7 @@ constexpr uint32_t kLeastPerThread = 1000;
 int thread_count(const LatticeOptions& options, uint32_t particles) {
   if (options.threads > 0) return options.threads;
   if (options.ranks != nullptr && options.ranks->size() > 1) return 1;
-  return std::clamp(static_cast<int>(particles / kLeastPerThread), 1, omp_get_num_procs());
+  return std::clamp(static_cast<int>(particles / kLeastPerThread), 1, usable_cores());
 }
 
 // A double holds every position, a period more or less, as a whole number of 2^-P cells.
@@ -193,11 +194,12 @@ void LatticeEngine::for_each_slot(const std::function<void(const Particle&)>& se
 
 uint64_t LatticeEngine::hash() const {
   const Impl& impl = *impl_;
-  uint64_t sum = 0;
-#pragma omp parallel for schedule(static, 1) num_threads(impl.threads_) reduction(+ : sum)
-  for (size_t b = 0; b < impl.blocks_.size(); ++b)
-    sum += hash_particles(impl.particles_, impl.lattice_, impl.members_.nodes(),
-                          impl.plan_.rule.widths, impl.blocks_[b].begin, impl.blocks_[b].end);
+  std::atomic<uint64_t> all = 0;
+  for_each_part(impl.blocks_.size(), impl.threads_, [&](size_t b, int) {
+    all += hash_particles(impl.particles_, impl.lattice_, impl.members_.nodes(), impl.plan_.rule.widths,
+                          impl.blocks_[b].begin, impl.blocks_[b].end);
+  });
+  uint64_t sum = all;
   if (impl_->shared()) impl_->options_.ranks->sum({&sum, 1});
   return sum;
 }
@@ -226,16 +228,18 @@ void LatticeEngine::slots(NodeSlots& out) const {
   out.first[nodes] = at;
   for (auto& x : out.x) x.resize(at);
   const int64_t mask = (int64_t{1} << impl_->plan_.rule.widths.position_frac) - 1;
-#pragma omp parallel for num_threads(impl_->threads_)
-  for (uint32_t n = 0; n < nodes; ++n) {
-    uint32_t k = out.first[n];
-    impl_->members_.for_each(n, [&](uint32_t id) {
-      const uint32_t p = impl_->index_(id);
-      for (int a = 0; a < 3; ++a)
-        out.x[a][k] = static_cast<int32_t>(static_cast<int64_t>(impl_->particles_.x[a][p]) & mask);
-      ++k;
-    });
-  }
+  const auto write = [&](size_t begin, size_t end) {
+    for (auto n = static_cast<uint32_t>(begin); n < end; ++n) {
+      uint32_t k = out.first[n];
+      impl_->members_.for_each(n, [&](uint32_t id) {
+        const uint32_t p = impl_->index_(id);
+        for (int a = 0; a < 3; ++a)
+          out.x[a][k] = static_cast<int32_t>(static_cast<int64_t>(impl_->particles_.x[a][p]) & mask);
+        ++k;
+      });
+    }
+  };
+  for_each_range(nodes, 1, write, impl_->threads_);
 }
 
 }  // namespace cuboct::emu

@@ -3,9 +3,6 @@
 // share.cpp (what each rank stores).
 #pragma once
 
-#include <omp.h>
-
-#include <exception>
 #include <optional>
 
 #include "emu/lattice/engine.h"
@@ -14,6 +11,7 @@
 #include "emu/lattice/pair_list.h"
 #include "emu/lattice/quiet.h"
 #include "emu/lattice/ranks.h"
+#include "model/parallel.h"
 
 namespace cuboct::emu {
 
@@ -26,20 +24,9 @@ struct LatticeEngine::Impl {
     for (const Block& block : blocks_)
       for (uint32_t p = block.begin; p < block.end; ++p) see(p);
   }
-  // An exception may not leave a thread: the first one is thrown behind the loop.
   template <typename Work>
   void for_each_block(const Work& work) {
-    std::exception_ptr thrown;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
-    for (size_t b = 0; b < blocks_.size(); ++b) {
-      try {
-        work(blocks_[b]);
-      } catch (...) {
-#pragma omp critical(cuboct_lattice_thrown)
-        if (!thrown) thrown = std::current_exception();
-      }
-    }
-    if (thrown) std::rethrow_exception(thrown);
+    for_each_part(blocks_.size(), threads_, [&](size_t b, int) { work(blocks_[b]); });
   }
   std::vector<Particle> everyone() const;  // sorted by id; of all ranks, on rank 0
 

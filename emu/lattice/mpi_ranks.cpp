@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "emu/lattice/mpi_ranks.h"
 
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 
 namespace cuboct::emu {
 namespace {
@@ -27,40 +33,77 @@ struct Layout {
   }
 };
 
+// Until all are done. Most waits are short and spin; one that is not sleeps between looks, as the rank that it waits for may
+// want this core.
+void wait(std::span<MPI_Request> requests) {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kSpin = std::chrono::microseconds(50);
+  constexpr auto kShortest = std::chrono::microseconds(20), kLongest = std::chrono::microseconds(200);
+  const auto begin = Clock::now();
+  auto sleep = kShortest;
+  for (int done = 0;;) {
+    MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
+    if (done != 0) return;
+    if (Clock::now() - begin < kSpin) continue;
+    std::this_thread::sleep_for(sleep);
+    sleep = std::min(2 * sleep, kLongest);
+  }
+}
+
+void wait(MPI_Request request) { wait({&request, 1}); }
+
 }  // namespace
 
 MpiRanks::MpiRanks(int* argc, char*** argv) {
   int provided = 0;
+  // Open MPI would yield at each look of wait() where it takes the machine for full: on a busy one who yields has lost
+  // its turn for milliseconds, who sleeps is soon back. What a user sets stays.
+  setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
+  prctl(PR_SET_TIMERSLACK, 1000);  // ns; by default sleeps are 50 us longer than asked for
   // Threads compute; only the first one talks.
   MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
 }
 
-MpiRanks::~MpiRanks() { MPI_Finalize(); }
+MpiRanks::~MpiRanks() {
+  // MPI's own wait for the last rank, which may be writing files, takes a core.
+  MPI_Request request;
+  if (MPI_Ibarrier(MPI_COMM_WORLD, &request) == MPI_SUCCESS) wait(request);
+  MPI_Finalize();
+}
 
 void MpiRanks::sum(std::span<uint64_t> values) {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+  MPI_Request request;
+  MPI_Iallreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD, &request);
+  wait(request);
 }
 
 void MpiRanks::most(std::span<double> values) {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+  MPI_Request request;
+  MPI_Iallreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD, &request);
+  wait(request);
 }
 
 void MpiRanks::any(std::span<uint8_t> flags) {
-  MPI_Allreduce(MPI_IN_PLACE, flags.data(), checked(flags.size()), MPI_UINT8_T, MPI_BOR, MPI_COMM_WORLD);
+  MPI_Request request;
+  MPI_Iallreduce(MPI_IN_PLACE, flags.data(), checked(flags.size()), MPI_UINT8_T, MPI_BOR, MPI_COMM_WORLD, &request);
+  wait(request);
 }
 
 std::vector<Bytes> MpiRanks::exchange(const std::vector<Bytes>& to) {
   std::vector<int> out(to.size()), in(to.size());
   for (size_t q = 0; q < to.size(); ++q) out[q] = checked(to[q].size());
-  MPI_Alltoall(out.data(), 1, MPI_INT, in.data(), 1, MPI_INT, MPI_COMM_WORLD);
+  MPI_Request request;
+  MPI_Ialltoall(out.data(), 1, MPI_INT, in.data(), 1, MPI_INT, MPI_COMM_WORLD, &request);
+  wait(request);
   const Layout send(out), receive(in);
   Bytes sent, received(static_cast<size_t>(receive.total));
   sent.reserve(static_cast<size_t>(send.total));
   for (const Bytes& b : to) sent.insert(sent.end(), b.begin(), b.end());
-  MPI_Alltoallv(sent.data(), send.count.data(), send.at.data(), MPI_BYTE, received.data(),
-                receive.count.data(), receive.at.data(), MPI_BYTE, MPI_COMM_WORLD);
+  MPI_Ialltoallv(sent.data(), send.count.data(), send.at.data(), MPI_BYTE, received.data(), receive.count.data(),
+                 receive.at.data(), MPI_BYTE, MPI_COMM_WORLD, &request);
+  wait(request);
   std::vector<Bytes> from(to.size());
   for (size_t q = 0; q < to.size(); ++q)
     from[q].assign(received.begin() + receive.at[q], received.begin() + receive.at[q] + receive.count[q]);
@@ -70,11 +113,14 @@ std::vector<Bytes> MpiRanks::exchange(const std::vector<Bytes>& to) {
 Bytes MpiRanks::all(const Bytes& mine) {
   const int count = checked(mine.size());
   std::vector<int> counts(static_cast<size_t>(size_));
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD);
+  MPI_Request request;
+  MPI_Iallgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD, &request);
+  wait(request);
   const Layout layout(counts);
   Bytes received(static_cast<size_t>(layout.total));
-  MPI_Allgatherv(mine.data(), count, MPI_BYTE, received.data(), layout.count.data(), layout.at.data(),
-                 MPI_BYTE, MPI_COMM_WORLD);
+  MPI_Iallgatherv(mine.data(), count, MPI_BYTE, received.data(), layout.count.data(), layout.at.data(), MPI_BYTE,
+                  MPI_COMM_WORLD, &request);
+  wait(request);
   return received;
 }
 
@@ -91,7 +137,7 @@ void MpiRanks::start(const std::vector<std::span<const double>>& to,
 }
 
 void MpiRanks::finish() {
-  MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+  wait(requests_);
   requests_.clear();
 }
 

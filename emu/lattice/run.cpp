@@ -2,7 +2,6 @@
 #include "emu/lattice/run.h"
 
 #include <fmt/format.h>
-#include <sched.h>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +21,7 @@
 #include "model/interrupt.h"
 #include "model/output.h"
 #include "model/progress.h"
+#include "model/resources.h"
 #include "model/state_meter.h"
 
 namespace cuboct::emu {
@@ -30,12 +30,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-// Cores that this process may use.
-int cores() {
-  cpu_set_t set;
-  return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
-}
 
 bool among(const std::vector<uint64_t>& ascending, uint64_t step) {
   return std::binary_search(ascending.begin(), ascending.end(), step);
@@ -108,7 +102,7 @@ Loop::Loop(const Scene& scene, const Plan& plan, const LatticeRun& request)
       ranks_(request.engine.ranks),
       displaced_(plan.rule.pd),
       meter_(scene, plan.rule, plan.lattice, plan.origin, particle_, request.energies,
-             request.engine.threads > 0 ? request.engine.threads : cores(), request.watch),
+             request.engine.threads > 0 ? request.engine.threads : usable_cores(), request.watch),
       trace_(result_.trace) {
   trace_.engine = "lattice";
   trace_.plan_hash = plan.hash;

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+
+#include "model/parallel.h"
 
 namespace cuboct::emu {
 
@@ -29,8 +32,15 @@ double Snapshot::moved(const Particles& particles, uint32_t particle) const {
 
 double Snapshot::displacement(const Particles& particles, uint32_t begin, uint32_t end) const {
   double most = 0;
-#pragma omp parallel for reduction(max : most) num_threads(threads)
-  for (uint32_t p = begin; p < end; ++p) most = std::max(most, moved2(particles, p));
+  std::mutex joining;
+  const auto look = [&](size_t first, size_t last) {
+    double most_here = 0;
+    for (size_t p = begin + first; p < begin + last; ++p)
+      most_here = std::max(most_here, moved2(particles, static_cast<uint32_t>(p)));
+    const std::lock_guard lock(joining);
+    most = std::max(most, most_here);
+  };
+  for_each_range(end - begin, 1, look, threads);
   return std::ldexp(std::sqrt(most) + 2, -kCoarse);
 }
 
@@ -62,14 +72,16 @@ Bins::Bins(const Lattice& lattice, const Members& members, const Index& index, c
   first[lattice.size()] = count;
   for (auto& array : at) array = PaddedArray<int32_t>(count);
   particle = PaddedArray<uint32_t>(count);
-#pragma omp parallel for num_threads(threads)
-  for (uint32_t n = 0; n < lattice.size(); ++n) {
-    uint32_t k = first[n];
-    for_each_here(n, [&](uint32_t p) {
-      for (int a = 0; a < 3; ++a) at[a][k] = coarse(particles.x[a][p], position_frac);
-      particle[k++] = p;
-    });
-  }
+  const auto take = [&](size_t begin, size_t end) {
+    for (auto n = static_cast<uint32_t>(begin); n < end; ++n) {
+      uint32_t k = first[n];
+      for_each_here(n, [&](uint32_t p) {
+        for (int a = 0; a < 3; ++a) at[a][k] = coarse(particles.x[a][p], position_frac);
+        particle[k++] = p;
+      });
+    }
+  };
+  for_each_range(lattice.size(), 1, take, threads);
 }
 
 void Bins::release_to(Snapshot& snapshot) {

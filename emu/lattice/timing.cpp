@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "emu/lattice/timing.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -12,6 +10,7 @@
 #include "emu/lattice/hits.h"
 #include "emu/lattice/migrate_time.h"
 #include "emu/lattice/phase_spans.h"
+#include "model/parallel.h"
 
 namespace cuboct::emu {
 namespace {
@@ -92,7 +91,7 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
     : plan_(plan),
       nodes_(plan.lattice.size()),
       axes_(plan.rule.axes),
-      threads_(threads > 0 ? threads : omp_get_num_procs()),
+      threads_(threads > 0 ? threads : usable_cores()),
       halo_beats_(plan.words.halo_beats),
       received_(kReceived + plan.link.latency),
       shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval,
@@ -266,25 +265,26 @@ void TimingModel::step(const NodeSlots& slots, std::span<const Leaving> leaving,
   const int threads = static_cast<int>(std::clamp<int64_t>(work / kWorkPerThread, 1, m.threads_));
   // Busy nodes cost many times what empty ones do: small shares, on demand.
   const int64_t share = std::clamp<int64_t>(nodes / (16 * threads), 1, 64);
-#pragma omp parallel num_threads(threads)
-  {
-    Scratch& scratch = m.scratch_[at(omp_get_thread_num())];
-    const auto for_all = [nodes](const auto& part) {
-#pragma omp for schedule(static)
-      for (int64_t n = 0; n < nodes; ++n) part(static_cast<uint32_t>(n));
+  const auto for_all = [&](const auto& part) {
+    const auto range = [&](size_t begin, size_t end) {
+      for (size_t n = begin; n < end; ++n) part(static_cast<uint32_t>(n));
     };
-    for_all([&](uint32_t n) { m.exchange_x(slots, n); });
-    for_all([&](uint32_t n) { m.exchange_y(n); });
-#pragma omp for schedule(dynamic, share)
-    for (int64_t n = 0; n < nodes; ++n) m.exchange_z_to_update(static_cast<uint32_t>(n), scratch);
-    const int last = m.axes_ - 1;
-    for (int axis = 0; axis < last; ++axis) for_all([&](uint32_t n) { m.take_particles(axis, n); });
-    for_all([&](uint32_t n) {
-      m.take_particles(last, n);
-      if (last < 2) m.end_[at(Phase::migrate_z)][n] = m.end_[at(Phase::migrate_y)][n];
-      m.finish(n, spans);
-    });
-  }
+    for_each_range(m.nodes_, 1, range, threads);
+  };
+  for_all([&](uint32_t n) { m.exchange_x(slots, n); });
+  for_all([&](uint32_t n) { m.exchange_y(n); });
+  for_each_part(static_cast<size_t>((nodes + share - 1) / share), threads, [&](size_t k, int member) {
+    const auto first = static_cast<int64_t>(k) * share;
+    for (int64_t n = first; n < std::min(nodes, first + share); ++n)
+      m.exchange_z_to_update(static_cast<uint32_t>(n), m.scratch_[at(member)]);
+  });
+  const int last = m.axes_ - 1;
+  for (int axis = 0; axis < last; ++axis) for_all([&](uint32_t n) { m.take_particles(axis, n); });
+  for_all([&](uint32_t n) {
+    m.take_particles(last, n);
+    if (last < 2) m.end_[at(Phase::migrate_z)][n] = m.end_[at(Phase::migrate_y)][n];
+    m.finish(n, spans);
+  });
   ++m.steps_;
   for (Scratch& s : m.scratch_) {
     m.counters_.busy += s.counters.busy;

@@ -2,7 +2,9 @@
 #include "tests/cli/shell.h"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -40,7 +42,29 @@ Bench::~Bench() {
   fs::remove_all(directory_, none);
 }
 
-Answer Bench::cuboct(const std::vector<std::string>& arguments, double interrupt_after) const {
+namespace {
+
+void obey(const Limits& limits) {
+  const auto limit = [](int resource, uint64_t most) {
+    const rlimit both{most, most};
+    if (most > 0) setrlimit(static_cast<__rlimit_resource>(resource), &both);
+  };
+  limit(RLIMIT_AS, limits.memory);
+  limit(RLIMIT_CPU, limits.cpu_seconds);
+  if (limits.cores == 0) return;
+  cpu_set_t have, set;
+  CPU_ZERO(&set);
+  sched_getaffinity(0, sizeof have, &have);
+  for (int c = 0, left = limits.cores; c < CPU_SETSIZE && left > 0; ++c)
+    if (CPU_ISSET(c, &have)) CPU_SET(c, &set), --left;
+  sched_setaffinity(0, sizeof set, &set);
+}
+
+double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
+
+}  // namespace
+
+Answer Bench::cuboct(const std::vector<std::string>& arguments, double interrupt_after, const Limits& limits) const {
   const std::string program = path("bin/cuboct");
   std::vector<char*> argv{const_cast<char*>("cuboct")};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -54,6 +78,7 @@ Answer Bench::cuboct(const std::vector<std::string>& arguments, double interrupt
     redirect(0, "/dev/null", O_RDONLY);
     redirect(1, path("out"), O_WRONLY | O_CREAT | O_TRUNC);
     redirect(2, path("err"), O_WRONLY | O_CREAT | O_TRUNC);
+    obey(limits);
     if (chdir(CUBOCT_SOURCE_DIR) == 0) execv(program.c_str(), argv.data());
     _exit(127);
   }
@@ -62,9 +87,10 @@ Answer Bench::cuboct(const std::vector<std::string>& arguments, double interrupt
     kill(child, SIGINT);
   }
   int status = 0;
-  waitpid(child, &status, 0);
+  rusage used{};
+  wait4(child, &status, 0, &used);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), contents(path("out")),
-          contents(path("err"))};
+          contents(path("err")), seconds(used.ru_utime) + seconds(used.ru_stime), used.ru_maxrss};
 }
 
 }  // namespace cuboct::test

@@ -61,6 +61,7 @@ Scene random_scene(std::mt19937_64& random) {
   scene.rule.dt = 0.1;
   scene.rule.types.resize(2);
   if (random() % 3 == 0) scene.rule.types[1].velocity = Vec3(uniform(-4, 4), uniform(-4, 4), uniform(-4, 4));
+  if (random() % 3 == 0) scene.rule.types[1].velocity = uniform(-9, 9) * Vec3::Unit(static_cast<int>(random() % 3));
   if (random() % 2 == 0)
     scene.reach_margin = Vec3(uniform(0, 2), uniform(0, 2), random() % 2 == 0 ? 0 : uniform(0, 2));
   if (random() % 3 == 0) scene.reach = {Vec3(-2, -1.5, -1), Vec3(uniform(0, 3), 1, 2)};
@@ -108,13 +109,15 @@ TEST(Reach, RefusesWhatCannotBeBuilt) {
   };
   scene.reach_margin = Vec3::Constant(500);
   EXPECT_EQ(error(),
-            "the reach spans 1e+09 cells of 1 m: at most 3e+07 can be built\n"
-            "  hint: a smaller reach.margin or reach box");
+            "the reach of a particle spans 1e+09 cells of 1 m: at most 3e+07 can be built\n"
+            "  hint: a smaller reach.margin");
   scene.reach_margin = Vec3::Constant(140);
   EXPECT_EQ(error(), "no error");
   scene.body.type.push_back(0);
   scene.body.x.push_back(Vec3::Constant(281));  // beside the other: 2 x 281^3
-  EXPECT_EQ(error(), "the body can reach 44376082 cells of 1 m: at most 3e+07 can be built");
+  EXPECT_EQ(error(),
+            "the body can reach 4.44e+07 cells of 1 m: at most 3e+07 can be built\n"
+            "  hint: a smaller body, or a smaller reach.margin");
 }
 
 }  // namespace

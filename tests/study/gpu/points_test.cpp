@@ -95,7 +95,7 @@ TEST(GpuPoints, RunsThatStopAreUnstableWithTheirReason) {
   EXPECT_EQ(m.outcomes[1].why, m.outcomes[0].why);
   EXPECT_EQ(m.outcomes[1].steps, m.outcomes[0].steps);
   EXPECT_EQ(m.outcomes[2].status, Status::refused);
-  EXPECT_EQ(m.outcomes[2].why, "cell_edge = 0.0006 m is shorter than the pair law's cutoff, 0.000707107 m");
+  EXPECT_TRUE(m.outcomes[2].why.ends_with("cell_edge = 0.0006 m is shorter than the pair law's cutoff, 0.000707107 m")) << m.outcomes[2].why;
   EXPECT_TRUE(std::isnan(measure_speed(m.study, m.study.points[1]).particle_steps));
   EXPECT_TRUE(std::isnan(measure_speed(m.study, m.study.points[2]).particle_steps));
 }

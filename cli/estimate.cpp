@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "cli/estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "model/resources.h"
+#include "model/trace.h"
+
+namespace cuboct {
+namespace {
+
+constexpr double kProgram = 20e6;  // bytes, of a process before it has read anything
+
+// Of one engine: the time per particle, neighbour and step, and bytes per particle, neighbour and cell. Measured on one
+// thread of an idle Xeon (Sapphire Rapids) with scenes/bench: 18 neighbours in a crystal, 55 in a liquid.
+struct Rates {
+  const char* engine;
+  double neighbour_time;  // s; 0: not known
+  bool threads;
+  double particle, neighbour, cell;  // bytes
+};
+constexpr Rates kRates[] = {
+    {"lattice", 3e-9, true, 240, 1.5, 70},   {"reference", 2.5e-9, true, 700, 6, 70},
+    {"golden", 40e-9, false, 600, 10, 100},  {"systemc", 0, false, 600, 0, 50e3},
+    {"rtl", 0, false, 600, 0, 15e3},          {"gpu", 0, false, 250, 0, 70},
+    {"fpga", 0, false, 600, 0, 70},
+};
+
+const Rates& rates_of(const std::string& engine) {
+  const auto* found = std::ranges::find(kRates, engine, &Rates::engine);
+  return found == std::end(kRates) ? kRates[0] : *found;
+}
+
+struct Extent {
+  Vec3 size = Vec3::Zero();  // m, of the box around all particles
+  double neighbours = 0;     // of a particle within the cutoff, in the mean
+};
+
+// Neighbours by density, in a box that is half a pitch or so larger than its particles' centres on either side; none are beyond
+// the particles that there are.
+Extent extent_of(const Scene& scene, const FixedRule& rule) {
+  Extent extent;
+  Vec3 low = scene.body.x.front(), high = low;
+  for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  extent.size = high - low;
+  const double cutoff = scene.rule.law->cutoff();
+  const double others = static_cast<double>(scene.body.size()) - 1;
+  double volume = 1;
+  for (int a = 0; a < 3; ++a) volume *= extent.size[a] + 0.6 * cutoff;
+  // A packing has its own density, however hollow the body is.
+  if (scene.pitch > 0) volume = std::pow(scene.pitch, 3) / std::numbers::sqrt2 * (others + 1);
+  double sphere = 4 * std::numbers::pi / 3 * std::pow(cutoff, 3);
+  if (rule.axes == 2 && scene.pitch == 0)
+    volume /= extent.size[2] + 0.6 * cutoff, sphere = std::numbers::pi * cutoff * cutoff;
+  extent.neighbours = std::min(others, (others + 1) * sphere / volume);
+  return extent;
+}
+
+// Of a picture of the body, as raster_grid cuts it.
+double pixels_of(const Scene& scene, const Extent& extent, uint32_t across) {
+  std::array<double, 3> sides{extent.size[0], extent.size[1], extent.size[2]};
+  std::ranges::sort(sides);
+  const double radius = (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff()) / 2;
+  const double pixel = std::max((sides[2] + 2 * radius) / across, radius / 2);
+  return ((sides[2] + 2 * radius) / pixel) * ((sides[1] + 2 * radius) / pixel);
+}
+
+// As every_so_often lists them.
+double count_every(uint64_t every, uint64_t steps) {
+  if (every == 0 || steps <= every) return steps > 0 ? 2 : 1;
+  return 1 + std::ceil(static_cast<double>(steps) / static_cast<double>(every));
+}
+
+// A number of steps between two of something, in one or two digits, that makes at most `most` of them.
+uint64_t round_interval(uint64_t steps, double most) {
+  const double least = static_cast<double>(steps) / std::max(1.0, most - 2);
+  const double ten = std::pow(10, std::floor(std::log10(std::max(1.0, least))));
+  return static_cast<uint64_t>(std::ceil(least / ten) * ten);
+}
+
+}  // namespace
+
+RunSize run_size(const Scene& scene) {
+  RunSize size;
+  size.steps = scene.steps;
+  size.frame_every = scene.frame_every;
+  size.probe_every = scene.probe_every;
+  return size;
+}
+
+Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
+  const Rates& rates = rates_of(size.engine);
+  const Extent extent = extent_of(scene, plan.rule);
+  const double particles = plan.particles, cells = plan.lattice.size(), steps = static_cast<double>(size.steps);
+  Estimate e;
+  e.particle_steps = particles * steps;
+  if (rates.neighbour_time > 0) {
+    constexpr double kEach = 1000;  // fewer particles are not worth a thread
+    e.threads = rates.threads ? std::clamp(size.threads > 0 ? size.threads : static_cast<int>(particles / kEach), 1,
+                                           usable_cores())
+                              : 1;
+    if (size.ranks > 1) e.threads = std::min(size.ranks * std::max(1, size.threads), usable_cores());
+    // A particle costs something however few neighbours it has.
+    e.rate = 1 / (rates.neighbour_time * std::max(4.0, extent.neighbours));
+    e.seconds = e.particle_steps / (e.rate * e.threads);
+  }
+
+  constexpr double kCurvePoint = sizeof(uint64_t) + sizeof(double), kEnergies = 6, kOfProbe = 3;
+  const double samples = size.probe_every > 0 ? count_every(size.probe_every, size.steps) : 0;
+  const bool hashes_all = size.engine == "golden" || size.engine == "systemc" || size.engine == "rtl";
+  const double hashes = size.engine == "reference" ? 0 : count_every(hashes_all ? 1 : size.hash_every, size.steps);
+  e.hashes = hashes * sizeof(uint64_t);
+  e.samples = samples * (kEnergies + kOfProbe * static_cast<double>(scene.probes.size())) * kCurvePoint;
+  const bool cycles = size.cycles || size.engine == "systemc" || size.engine == "rtl";
+  e.spans = cycles ? steps * plan.nodes() * kPhases * sizeof(PhaseSpan) : 0;
+  // Each rank reads the scene and keeps its lattice.
+  constexpr double kRead = 64, kRank = 40e6;
+  e.memory = kProgram + particles * (rates.particle + rates.neighbour * extent.neighbours) + cells * rates.cell +
+             (size.ranks > 1 ? size.ranks * (kRank + kRead * particles + 70 * cells) : 0) + e.hashes + e.samples + e.spans;
+
+  // Per particle a line of XYZ, a record of VTK and, packed, of the trace.
+  constexpr double kXyz = 95, kVtk = 76, kState = 15, kPixel = 1, kSpan = 1.5;
+  e.frames = count_every(size.frame_every, size.steps);
+  e.frame = kPixel * pixels_of(scene, extent, size.raster) + (size.states ? particles * (kXyz + kVtk + kState) : 0);
+  e.disk = e.frames * e.frame + e.hashes + e.samples + e.spans / sizeof(PhaseSpan) * kSpan;
+  return e;
+}
+
+void add_estimate(Items& items, const Estimate& e) {
+  items.add("particle-steps", e.particle_steps);
+  if (e.seconds > 0)
+    items.add("time", e.seconds, "s",
+              fmt::format("an estimate: {:.2g} particle-steps/s on {} thread{}; what rests costs less", e.rate * e.threads,
+                          e.threads, e.threads == 1 ? "" : "s"));
+  items.add("memory", static_cast<uint64_t>(e.memory), "B", fmt::format("an estimate: {}", in_bytes(e.memory)));
+  items.add("disk", static_cast<uint64_t>(std::min(e.disk, 9e18)), "B",
+            fmt::format("an estimate: {} in the directory of a run, {:.6g} frames of {}", in_bytes(e.disk), e.frames,
+                        in_bytes(e.frame)));
+}
+
+void check_lists(const Scene& scene, const RunSize& size, bool frames_given) {
+  constexpr double kMost = 1e7;
+  const auto refuse = [&](bool option, const char* key, uint64_t every) {
+    if (every == 0 || count_every(every, size.steps) <= kMost) return;
+    const uint64_t would_do = round_interval(size.steps, 0.5 * kMost);
+    const std::string text =
+        fmt::format("every {} of {} steps are {:.3g}: at most {:.3g} can be kept", every, size.steps,
+                    count_every(every, size.steps), kMost);
+    if (option) throw InputError("--frames-every: " + text, fmt::format("--frames-every {}", would_do));
+    scene.places.fail({fmt::format("run.{}", key), "run.duration", "run.steps"}, fmt::format("{}: {}", key, text),
+                      fmt::format("{} = {}", key, would_do));
+  };
+  refuse(frames_given, "frame_every", size.frame_every);
+  refuse(false, "probe_every", size.probe_every);
+}
+
+void check_fits(const Scene& scene, const RunSize& size, const Estimate& e, const std::string& out) {
+  const double free = static_cast<double>(free_memory());
+  if (e.memory > free) {
+    const std::string text = fmt::format("the run takes about {} of memory: {} are free", in_bytes(e.memory), in_bytes(free));
+    const double rest = e.memory - e.hashes - e.spans - e.samples;
+    const double left = std::max(0.0, free - rest);
+    const std::string anyway = "; --anyway runs it all the same";
+    if (rest < free && e.spans >= std::max(e.hashes, e.samples))
+      throw InputError(fmt::format("{}, {} of it for the cycles of {} steps", text, in_bytes(e.spans), size.steps),
+                       fmt::format("--steps {:.0f}{}",
+                                   std::floor(0.9 * static_cast<double>(size.steps) * left / e.spans), anyway));
+    if (rest < free && e.hashes >= e.samples)
+      throw InputError(
+          fmt::format("{}, {} of it for a hash every {} steps of {}", text, in_bytes(e.hashes), size.hash_every, size.steps),
+          fmt::format("--hash-every {}{}", round_interval(size.steps, 0.5 * left / sizeof(uint64_t)), anyway));
+    if (rest < free)
+      scene.places.fail({"run.probe_every", "run.duration", "run.steps"},
+                        fmt::format("{}, {} of it for curves", text, in_bytes(e.samples)),
+                        "a larger probe_every" + anyway);
+    scene.places.fail({"packing.pitch", "box.cells", "geometry", "particle"}, text,
+                      (size.ranks > 1 ? std::string("fewer ranks, ") : std::string()) +
+                          "a larger pitch or a smaller geometry" + anyway);
+  }
+  const double disk = static_cast<double>(free_disk(out.empty() ? "." : out));
+  if (out.empty() || e.disk <= disk) return;
+  const std::string text = fmt::format("the run takes about {} of disk, {:.6g} frames of {} each: {} are free in {}",
+                                       in_bytes(e.disk), e.frames, in_bytes(e.frame), in_bytes(disk), out);
+  const double most = 0.9 * (disk - (e.disk - e.frames * e.frame)) / e.frame;
+  const std::string hint =
+      most >= 3 && size.steps > 2
+          ? fmt::format("{} {}", size.frame_every == scene.frame_every ? "frame_every =" : "--frames-every",
+                        round_interval(size.steps, most))
+          : std::string("--no-states keeps pictures alone");
+  // The command line's own wish has no place in the file.
+  if (size.frame_every != scene.frame_every) throw InputError(text, hint + "; --anyway runs it all the same");
+  scene.places.fail({"run.frame_every", "packing.pitch", "geometry", "box"}, text, hint + "; --anyway runs it all the same");
+}
+
+void check_workers(int threads, int ranks, const Plan& plan) {
+  // Some more than cores do no harm, and show that no bit depends on them.
+  constexpr int kPerCore = 4, kAlways = 16;
+  const int cores = usable_cores(), most = std::max(kAlways, kPerCore * cores);
+  const std::string here = fmt::format("this machine has {} core{} to use", cores, cores == 1 ? "" : "s");
+  if (threads > most) throw InputError(fmt::format("--threads {}: {}", threads, here), fmt::format("--threads {}", cores));
+  // Under a scheduler of jobs, or with a list of hosts, ranks run elsewhere too.
+  const auto set = [](const char* name) { return std::getenv(name) != nullptr; };
+  const bool elsewhere =
+      set("SLURM_JOB_ID") || set("PBS_JOBID") || set("LSB_JOBID") || set("OMPI_MCA_orte_default_hostfile");
+  const auto nodes = static_cast<int>(std::min<uint32_t>(plan.nodes(), 1 << 30));  // a rank has whole ones
+  if (ranks <= nodes && (ranks <= most || elsewhere)) return;
+  throw InputError(fmt::format("--ranks {}: {}, and the scene {} node{}", ranks, here, nodes, nodes == 1 ? "" : "s"),
+                   fmt::format("--ranks {}", std::min(cores, nodes)));
+}
+
+}  // namespace cuboct

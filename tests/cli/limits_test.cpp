@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+// Input that asks for more than a machine has is refused before anything is made: within seconds of CPU time and
+// little memory, which limits of the process hold.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+
+#include "tests/cli/shell.h"
+
+namespace cuboct::test {
+namespace {
+
+constexpr Limits kSmall{.memory = uint64_t{3} << 30, .cpu_seconds = 20};
+
+class LimitsTest : public testing::Test {
+ protected:
+  std::string file(const std::string& name, const std::string& text) const {
+    std::ofstream(bench_.path(name)) << text;
+    return bench_.path(name);
+  }
+  Answer check(const std::string& text) const {
+    return bench_.cuboct({"check", file("scene.toml", text)}, 0, kSmall);
+  }
+  // The message of a refused scene, its path left out.
+  std::string refusal(const std::string& text) const {
+    const Answer answer = check(text);
+    EXPECT_EQ(answer.code, 2) << answer.err;
+    EXPECT_EQ(answer.out, "");
+    const std::string path = bench_.path("scene.toml");
+    EXPECT_TRUE(answer.err.starts_with(path)) << answer.err;
+    return answer.err.substr(std::min(answer.err.size(), path.size()));
+  }
+  const Bench bench_{false};
+};
+
+const std::string kHead =
+    "mass = 1.0\nunits = \"reduced\"\n[law]\nkind = \"lj\"\nepsilon = 1.0\nsigma = 1.0\ncutoff = 2.5\n";
+const std::string kPair = "[[particle]]\nposition = [0, 0, 0]\n[[particle]]\nposition = [1.1, 0, 0]\n";
+
+TEST_F(LimitsTest, APathThatIsTooLong) {
+  const std::string moved =
+      "[[constraint]]\nname = \"pull\"\nkind = \"moved\"\nregion = { shape = \"sphere\", radius = 0.1 }\n";
+  const std::string run = "[run]\ndt = 0.001\nsteps = 1000000000000\n";
+  EXPECT_EQ(refusal(kHead + kPair + moved + "velocity = [1, 0, 0]\n" + run),
+            ":19:9: a body moved at 1 m/s goes 1e+09 m in 1e+09 s, through 4e+08 cells of 2.5 m: more than can be built\n"
+            "  hint: a shorter run, or one in which bodies are moved less far\n");
+  EXPECT_EQ(refusal(kHead + kPair + moved + "velocity = [0.02, 0.01, 0]\n" + run).substr(0, 6), ":19:9:");
+}
+
+// Along a ring cells repeat: such a path is long and reaches little.
+TEST_F(LimitsTest, APathAroundARingIsNotTooLong) {
+  const Answer answer = check(kHead + kPair +
+                              "[box]\nsize = [10, 10, 10]\nperiodic = \"xyz\"\n"
+                              "[[constraint]]\nname = \"pull\"\nkind = \"moved\"\nvelocity = [1, 0, 0]\n"
+                              "region = { shape = \"sphere\", radius = 0.1 }\n"
+                              "[run]\ndt = 0.001\nsteps = 1000000000000\n");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+}
+
+std::string block(const std::string& cells, const std::string& rest = "") {
+  return kHead + "[packing]\npitch = 1.1\n[box]\n" + cells + "\nperiodic = \"xyz\"\n[run]\ndt = 0.001\nsteps = 10\n" + rest;
+}
+
+TEST_F(LimitsTest, MoreParticlesThanMemory) {
+  const std::string text = refusal(block("cells = [700, 700, 700]"));
+  EXPECT_TRUE(std::regex_match(text, std::regex(":10:1: about 1.37e\\+09 particles, 87.8 GB to read them: [0-9.]+ [MG]B are "
+                                                "free\n  hint: 'cells' whose product is smaller by a factor of [0-9.]+\n")))
+      << text;
+}
+
+TEST_F(LimitsTest, ABeamOfTooFineAPitch) {
+  const std::string text = refusal(
+      "density = \"7800 kg/m^3\"\n[packing]\npitch = \"0.05 mm\"\n[geometry]\nshape = \"box\"\n"
+      "size = \"[200, 20, 20] mm\"\n[law]\nkind = \"ductile\"\nyoungs_modulus = \"200 GPa\"\n"
+      "direction = [1, 0, 0]\n[run]\nduration = \"1 ms\"\n");
+  EXPECT_TRUE(std::regex_search(text, std::regex("^:4:1: about 9\\.[0-9]+e\\+08 particles, [0-9.]+ GB to read them: "))) << text;
+}
+
+TEST_F(LimitsTest, APolygonOfTooManyPoints) {
+  std::string x, y;
+  for (int k = 0; k < 100'000; ++k) {
+    x += fmt::format("{}{:.6f}", k > 0 ? "," : "", 50 * std::cos(k * 2e-5 * 3.14159265));
+    y += fmt::format("{}{:.6f}", k > 0 ? "," : "", 50 * std::sin(k * 2e-5 * 3.14159265));
+  }
+  const std::string text =
+      refusal(kHead + "[packing]\npitch = 1.1\n[geometry]\nshape = \"extrude\"\nx = [" + x + "]\ny = [" + y +
+              "]\nthickness = 100.0\n[run]\ndt = 0.001\nsteps = 10\n");
+  EXPECT_NE(text.find("held against 100000 parts of the geometry: at most 4e+10 tests are made"), std::string::npos) << text;
+  EXPECT_NE(text.find("or fewer points"), std::string::npos) << text;
+}
+
+TEST_F(LimitsTest, TooManyMaterials) {
+  std::string many;
+  for (int k = 0; k < 30'000; ++k) many += fmt::format("[[material]]\nname = \"m{}\"\n", k);
+  EXPECT_EQ(refusal(kHead + many + kPair + "[run]\ndt = 0.001\nsteps = 10\n"), ":520:1: more than 256 materials\n");
+}
+
+TEST_F(LimitsTest, ManyRegionsAreFound) {
+  std::string many = "[regions]\n";
+  for (int k = 0; k < 20'000; ++k) many += fmt::format("r{} = {{ shape = \"sphere\", radius = 1.0 }}\n", k);
+  const Answer answer = check(kHead + many + kPair + "[run]\ndt = 0.001\nsteps = 10\n");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+}
+
+TEST_F(LimitsTest, Parentheses) {
+  const std::string deep(200'000, '(');
+  EXPECT_EQ(refusal("[packing]\npitch = \"1 " + deep + "m" + std::string(200'000, ')') + "\"\n"),
+            ":2:9: more than 64 parentheses within one another in \"1 " + std::string(58, '(') + "...\"\n");
+}
+
+TEST_F(LimitsTest, TablesWithinTables) {
+  const auto repeated = [](const std::string& part) {
+    std::string text;
+    for (int k = 0; k < 200'000; ++k) text += part;
+    return text;
+  };
+  EXPECT_EQ(refusal("title = \"...........\"\n" + repeated("a.") + "a = 1\n"), ":2:128: a key of more than 64 parts\n");
+  EXPECT_EQ(refusal("[" + repeated("a.") + "a]\n"), ":1:129: a key of more than 64 parts\n");
+  for (const char* open : {"[", "{a="})
+    EXPECT_NE(refusal("a = " + repeated(open)).find("exceeded maximum nested value depth"), std::string::npos) << open;
+}
+
+TEST_F(LimitsTest, ParticlesBeyondAllNumbers) {
+  EXPECT_EQ(refusal(kHead + "[[particle]]\nposition = [0, 0, 0]\n[[particle]]\nposition = [1e300, 0, 0]\n"
+                            "[run]\ndt = 0.001\nsteps = 10\n"),
+            ":8:1: particle 1 is more than 1e+09 cells of 2.5 m away\n  hint: particles nearer to one another\n");
+}
+
+TEST_F(LimitsTest, ABoxOfTooManyCells) {
+  EXPECT_EQ(refusal(kHead + kPair + "[box]\nsize = [1e12, 10, 10]\nperiodic = \"x\"\n[run]\ndt = 0.001\nsteps = 10\n"),
+            ":13:8: the periodic box is 4e+11 cells of 2.5 m long: at most 1e+07 can be built\n");
+}
+
+TEST_F(LimitsTest, ListsOfSteps) {
+  const std::string scene = kHead + kPair + "[run]\ndt = 0.001\nsteps = 1000000000000\n";
+  const auto run = [&](const std::string& text, std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", file("scene.toml", text)});
+    return bench_.cuboct(more, 0, kSmall);
+  };
+  const std::string path = bench_.path("scene.toml");
+  Answer answer = run(scene + "frame_every = 1\n", {});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(answer.err, path + ":15:15: frame_every: every 1 of 1000000000000 steps are 1e+12: at most 1e+07 can be kept\n"
+                               "  hint: frame_every = 300000\n");
+  answer = run(scene, {"--frames-every", "7"});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(answer.err, "--frames-every: every 7 of 1000000000000 steps are 1.43e+11: at most 1e+07 can be kept\n"
+                        "  hint: --frames-every 300000\n");
+  answer = run(scene, {"--hash-every", "1"});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_NE(answer.err.find("8 TB of it for a hash every 1 steps of 1000000000000\n  hint: --hash-every "), std::string::npos)
+      << answer.err;
+  answer = run(scene, {"--cycles", "--hash-every", "1000000000"});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_NE(answer.err.find(" of it for the cycles of 1000000000000 steps\n  hint: --steps "), std::string::npos)
+      << answer.err;
+}
+
+TEST_F(LimitsTest, FramesBeyondTheDisk) {
+  const std::string out = bench_.path("results");
+  const Answer answer = bench_.cuboct(
+      {"run", "scenes/plate.toml", "--steps", "1000000", "--frames-every", "1", "--out", out}, 0, kSmall);
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(std::regex_match(answer.err, std::regex("the run takes about [0-9.]+ TB of disk, 1e\\+06 frames of [0-9.]+ MB "
+                                                      "each: [0-9.]+ .B are free in .*\n  hint: --frames-every [0-9]+; "
+                                                      "--anyway runs it all the same\n")))
+      << answer.err;
+  EXPECT_FALSE(std::filesystem::exists(out + "/trace.h5"));
+}
+
+TEST_F(LimitsTest, ThreadsAndRanksBeyondTheMachine) {
+  const auto run = [&](const char* option, const char* count) {
+    return bench_.cuboct({"run", "scenes/lj_block.toml", "--steps", "2", option, count}, 0, {.cpu_seconds = 20});
+  };
+  Answer answer = run("--ranks", "1000");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(std::regex_match(answer.err, std::regex("--ranks 1000: this machine has [0-9]+ cores? to use, and the scene 27 "
+                                                      "nodes\n  hint: --ranks [0-9]+\n")))
+      << answer.err;
+  answer = run("--threads", "4096");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(std::regex_match(
+      answer.err, std::regex("--threads 4096: this machine has [0-9]+ cores? to use\n  hint: --threads [0-9]+\n")))
+      << answer.err;
+}
+
+// The estimates of `check` against what a run takes.
+class EstimateTest : public LimitsTest {
+ protected:
+  static double value(const std::string& json, const std::string& name) {
+    std::smatch found;
+    const std::regex item("\"" + name + "\": \\{\"value\": ([0-9.e+]+)");
+    EXPECT_TRUE(std::regex_search(json, found, item)) << name << " in " << json;
+    return found.empty() ? 0 : std::stod(found[1]);
+  }
+  static double size_of(const std::string& directory) {
+    uintmax_t sum = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
+      if (entry.is_regular_file()) sum += entry.file_size();
+    return static_cast<double>(sum);
+  }
+};
+
+TEST_F(EstimateTest, HoldWithinAFactorOfTwo) {
+  for (const char* scene : {"scenes/coupon.toml", "scenes/sheet.toml", "scenes/bench/block_32k.toml"}) {
+    std::string text = std::regex_replace(contents(CUBOCT_SOURCE_DIR "/" + std::string(scene)),
+                                          std::regex("\n(steps|duration|frame_every|probe_every) *=[^\n]*"), "");
+    text = std::regex_replace(text, std::regex("\n\\[run\\]"), "\n[run]\nsteps = 60\nframe_every = 10\nprobe_every = 5");
+    const std::string path = file("scene.toml", text), out = bench_.path("results");
+    const std::string told = bench_.cuboct({"check", path, "--json"}).out;
+    const Answer ran = bench_.cuboct({"run", path, "--threads", "1", "--out", out, "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(value(told, "particles"), value(ran.out, "particles")) << scene;
+    EXPECT_EQ(value(told, "particle-steps"), 60 * value(ran.out, "particles")) << scene;
+    const double disk = value(told, "disk") / size_of(out);
+    EXPECT_GT(disk, 0.5) << scene;
+    EXPECT_LT(disk, 2) << scene;
+    // kB; smaller runs are all program.
+    const double memory = value(told, "memory") / (1024 * static_cast<double>(ran.peak_kb));
+    EXPECT_GT(memory, 0.5) << scene;
+    EXPECT_LT(memory, 2) << scene;
+    EXPECT_GT(value(told, "time"), 0) << scene;
+    std::filesystem::remove_all(out);
+  }
+}
+
+}  // namespace
+}  // namespace cuboct::test
