@@ -26,6 +26,8 @@ constexpr int kMostPosition = 30, kMostGuard = 30, kMostDifference = 24, kMostVe
               kMostVelocityWithGains = 43, kMostRelativeBits = 25;
 constexpr int kRelativeRange = -3;  // 1/8 of a cell per step
 // Units per 1/accuracy below which a run is warned of: half a unit of so many is five times the accuracy.
+// More than this off, and quantise() refuses an imposed velocity or gravity.
+constexpr double kWorst = 0.01;
 constexpr double kFewest = 0.1;
 constexpr int kGainBits = 18, kScale = 16, kFilter = 10, kGain = 16, kMostGain = 24;
 
@@ -83,7 +85,7 @@ class Chooser {
 
   void velocity() {
     Widths& w = result_.widths;
-    const double dt = scene_.rule.dt, twice = 2 * scene_.accuracy;
+    const double dt = scene_.rule.dt, twice = 2 * std::min(scene_.accuracy, kWorst);
     int wanted = w.position_frac + kLeastGuard;
     std::string why = "the least that is taken";
     const auto want = [&](int bits, std::string reason) {
@@ -99,7 +101,10 @@ class Chooser {
       want(w.difference_frac + bits_for(kick_) + kKickUnits,
            fmt::format("a unit of a difference kicks by {} units of a velocity", 1 << kKickUnits));
     const int most = gains_ ? kMostVelocityWithGains : kMostVelocity;
-    const int guard = std::clamp(std::min(wanted, most) - w.position_frac, 1, kMostGuard);
+    // A width that the arch file sets keeps the range that it has with the least guard.
+    const int guard = asked_.velocity_bits != kAutomatic
+                          ? kLeastGuard
+                          : std::clamp(std::min(wanted, most) - w.position_frac, 1, kMostGuard);
     w.guard = take("guard", asked_.guard, std::max(1, wanted - w.position_frac), guard, why);
     const int frac = w.velocity_frac();
     const std::string range = "up to one cell per step";

@@ -125,6 +125,7 @@ Case faulty_gas(uint64_t seed) {
   }
   Arch arch;
   arch.capacity = 60;
+  arch.widths.relative_velocity_bits = 18;  // 1/8 of a cell per step: less than some pairs have
   return {"faulty gas " + std::to_string(seed), make_setup(scene, arch), 100};
 }
 

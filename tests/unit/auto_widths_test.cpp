@@ -128,7 +128,7 @@ stiffness = 1.0
   const Motion flying = moving("uniform = [0.01, 0, 0]"), turning = moving("spin = [0, 0, 0.001]"),
                hot = moving("thermal_speed = 0.01\nseed = 1");
   EXPECT_EQ(flying.strain, 0);
-  EXPECT_DOUBLE_EQ(flying.initial_speed, 0.01);
+  EXPECT_NEAR(flying.initial_speed, 0.01, 1e-12);
   EXPECT_NEAR(hot.strain, std::sqrt(3.0) * 0.01, 0.1 * hot.strain);  // c = 1; three components
   EXPECT_NEAR(turning.strain, turning.initial_speed * turning.initial_speed, 1e-9 * turning.strain);
   EXPECT_EQ(turning.strain_of, "the initial rotation");
@@ -157,11 +157,11 @@ TEST(AutoWidths, WhatTheArchSaysWinsAndIsWarnedOf) {
   EXPECT_EQ(plan.rule.widths.difference_frac, 14);
   ASSERT_EQ(plan.warnings.size(), 1u);
   EXPECT_EQ(plan.warnings[0],
-            "a strain of 0.00065, by the velocity imposed on 'matter/pulled', has 7.6 units of a difference: "
-            "difference_frac = 22 would do, or \"auto\"");
+            "a strain of 0.0007, by the velocity imposed on 'matter/pulled', has 8.1 units of a difference: "
+            "difference_frac = 21 would do, or \"auto\"");
   const WidthReason& r = reason(plan.reasons, "difference_frac");
   EXPECT_TRUE(r.asked);
-  EXPECT_EQ(r.wanted, 22);
+  EXPECT_EQ(r.wanted, 21);
 }
 
 // The widths that a refusal names work.
@@ -190,7 +190,7 @@ TEST(AutoWidths, ARefusalNamesWidthsThatHold) {
 
 // Gains that the usual 16 fractional bits would round by more than the accuracy, and ones that they cannot hold.
 TEST(AutoWidths, GainsAreRightToTheAccuracy) {
-  for (const char* gains : {"kp = \"1 N/m\"\nkd = \"1 mg/s\"\n", "kp = \"1e5 N/m\"\n"}) {
+  for (const char* gains : {"kp = \"1e3 N/m\"\nkd = \"1 g/s\"\n", "kp = \"1e5 N/m\"\n"}) {
     const Scene scene = parse_scene(std::string(R"(
 density = "1.41 g/cm^3"
 [packing]

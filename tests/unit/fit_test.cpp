@@ -225,7 +225,7 @@ TEST(Fit, TheBoundIsBelowTheCycles) {
       for (const Cell& brick : {Cell{1, 1, 1}, Cell{2, 1, 1}, Cell{2, 2, 2}, Cell{3, 3, 3}})
         for (const auto& [lanes, pipes] :
              {std::pair{1, 1}, std::pair{3, 1}, std::pair{8, 2}, std::pair{16, 8}}) {
-          Arch changed = arch;
+          Arch changed = base.plan.arch;
           changed.brick = brick;
           changed.filter_lanes = lanes;
           changed.force_pipes = pipes;

@@ -60,9 +60,9 @@ TEST(FlatPlan, HasOneLayerAndShortRecords) {
     EXPECT_EQ(plan.lattice.cell(n)[2], 0);
     EXPECT_LE(plan.lattice.neighbourhood(n).size(), 9u);
   }
-  const int P = 20, v = 29;
+  const int P = 20, G = 8, v = 29;
   EXPECT_EQ(plan.words.halo_bits, 2 * P + 2);
-  EXPECT_EQ(plan.words.particle_bits, 2 * P + 2 + 2 * v + plan.rule.type_bits + plan.words.id_bits);
+  EXPECT_EQ(plan.words.particle_bits, 2 * P + 2 + 2 * v + plan.rule.type_bits + plan.words.id_bits + 2 * G);
 }
 
 // Golden knows three axes: in a flat scene nothing leaves z = 0 of the layer.
