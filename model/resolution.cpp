@@ -68,14 +68,16 @@ Resolution::Resolution(const Scene& scene) : scene_(scene), type_(scene.body.typ
     speed2 += body.v[id].squaredNorm();
     moving += body.v[id].isZero(0) ? 0 : 1;
   }
-  if (moving > 0) speed_ = std::sqrt(speed2 / moving);
-  if (moving > 0) vibration_ = 0.5 * rule.mass * (speed2 - mean.squaredNorm() / free);
+  if (moving > 0) {
+    speed_ = std::sqrt(speed2 / moving);
+    vibration_ = 0.5 * rule.mass * (held ? speed2 : speed2 - mean.squaredNorm() / free);
+  }
   if (loaded_ || vibration_ > 0) choose_bonds();
   shown_ = bonds_.empty() || !(loaded_ || vibration_ > 0);
 }
 
 // All bonds of some particles, and whether initial velocities stretch them: a body that moves or turns as a
-// whole is not strained by that.
+// whole is not strained by that, unless something holds it.
 void Resolution::choose_bonds() {
   const Rule& rule = scene_.rule;
   const Body& body = scene_.body;
@@ -98,7 +100,7 @@ void Resolution::choose_bonds() {
           const double length = d.norm();
           if (length == 0 || length >= range) continue;
           bonds_.push_back({i, j, length});
-          if (!leads(rule.types[type_[i]]) && !leads(rule.types[type_[j]]))
+          if (!leads(rule.types[type_[i]]) || !leads(rule.types[type_[j]]))
             apart = std::max(apart, std::abs((body.v[j] - body.v[i]).dot(d)) / length);
         }
       });

@@ -152,8 +152,8 @@ TEST(ExpectedStrain, OfARowIsThatOfSprings) {
               5 * 2 * 0.1 / k, 1e-9);
 }
 
-// A block with one end held and the other led, by golden, with so many guard bits.
-std::vector<Finding> found_in_a_pull(double speed, int guard, uint64_t steps) {
+// A block with one end held and the other led, by golden, with so many guard bits. `thrown`: m/s, of all that is free.
+std::vector<Finding> found_in_a_pull(double speed, int guard, uint64_t steps, double thrown = 0) {
   Scene scene;
   scene.rule = test::simple_rule(preset_law("elastic", 1, 1), 1, 0.1);
   scene.body = test::fcc_block(3, 1);
@@ -166,8 +166,12 @@ std::vector<Finding> found_in_a_pull(double speed, int guard, uint64_t steps) {
   for (const Vec3& x : scene.body.x) end = std::max(end, x.x());
   for (uint32_t id = 0; id < scene.body.size(); ++id)
     scene.body.type[id] = scene.body.x[id].x() < 0.8 ? 1 : scene.body.x[id].x() > end - 0.8 ? 2 : 0;
+  for (uint32_t id = 0; id < scene.body.size(); ++id)
+    if (scene.body.type[id] == 0) scene.body.v[id].x() = thrown;
   Arch arch;
+  arch.widths.position_frac = 20;
   arch.widths.guard = guard;
+  arch.widths.difference_frac = 16;
   const Setup setup = make_setup(scene, arch);
   const Plan& plan = setup.plan;
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity, setup.initial);
@@ -205,6 +209,14 @@ TEST(Watch, TellsStrainBelowTheUnitOfADifference) {
   EXPECT_NEAR(found[0].number, 2, 1.5);
   EXPECT_NE(found[0].text.find("difference_frac = 2"), std::string::npos) << found[0].text;
   EXPECT_TRUE(found_in_a_pull(100 * speed, 8, 500).empty());
+}
+
+// A body thrown against its hold at 2e-5 of the speed of sound, about 1: bonds stretch by a unit.
+TEST(Watch, TellsAnImpactBelowResolution) {
+  const std::vector<Finding> found = found_in_a_pull(0, 8, 500, -2e-5);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].failure, Failure::resolution);
+  EXPECT_TRUE(found_in_a_pull(0, 8, 500, -2e-3).empty());
 }
 
 // What never moves by itself has nothing to show.
