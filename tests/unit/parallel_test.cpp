@@ -36,6 +36,25 @@ TEST(Parallel, DoesEachPartOnceInAMemberOfItsOwn) {
   EXPECT_GT(shared, 0u);
 }
 
+// Members 1, 2, ... have the slow parts: all others help them, and two reach for the same part again and again.
+TEST(Parallel, DoesNoPartTwiceWhereManyReachForIt) {
+  size_t helped = 0;
+  for (int round = 0; round < 3'000; ++round) {
+    const int threads = 2 + round % 3;
+    std::vector<std::atomic<int>> done(100);
+    std::atomic<size_t> by_others = 0;
+    for_each_part(done.size(), threads, [&](size_t part, int member) {
+      const int owner = static_cast<int>(part % static_cast<size_t>(threads));
+      for (volatile int k = 0; k < (owner > 0 ? 100 : 0);) k = k + 1;
+      by_others += member != owner ? 1 : 0;
+      ++done[part];
+    });
+    for (size_t part = 0; part < done.size(); ++part) ASSERT_EQ(done[part], 1) << "round " << round << ", part " << part;
+    helped += by_others;
+  }
+  EXPECT_GT(helped, 1000u);
+}
+
 TEST(Parallel, CoversRanges) {
   for (const int threads : {1, 2, 7}) {
     std::vector<int> done(1000, 0);
