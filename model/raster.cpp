@@ -297,7 +297,8 @@ Rasters read_rasters(const std::string& path) {
     throw InputError(fmt::format("{}: there is no picture in {} frames of {} x {} pixels", path, shape[0],
                                  used.columns, used.rows));
   in.same_length(shape[0] == step.size(), "the frames");
-  in.check_stored(in.root(), "thickness", {shape[0], used.rows, used.columns});
+  for (const char* name : {"thickness", "strain", "speed"})
+    in.check_stored(in.root(), name, {shape[0], used.rows, used.columns});
   grid = part_of(grid, used);
   const auto field = [&](const char* name, std::vector<float> Raster::*values) {
     for (size_t k = 0; k < step.size(); ++k)

@@ -214,8 +214,9 @@ region = { shape = "half_space", point = "[0.1, 0, 0] mm", normal = [1, 0, 0] }
       if (!type.pd) continue;
       const double unit = std::ldexp(1.0, -plan.rule.widths.gain_frac), step = scene.rule.dt / scene.rule.mass;
       EXPECT_NEAR(static_cast<double>(plan.rule.types[k].kp) * unit / (type.kp * step * scene.rule.dt), 1, 0.01);
-      if (type.kd > 0)
+      if (type.kd > 0) {
         EXPECT_NEAR(static_cast<double>(plan.rule.types[k].kd) * unit / (type.kd * step), 1, 0.01);
+      }
     }
   }
 }
@@ -223,7 +224,7 @@ region = { shape = "half_space", point = "[0.1, 0, 0] mm", normal = [1, 0, 0] }
 // A warm crystal in a box whose cells are a little longer than the cutoff: planes of sites near faces come in.
 TEST(AutoWidths, ACellHoldsWhatComesIn) {
   Scene scene = read_scene(std::string(CUBOCT_SOURCE_DIR) + "/scenes/validation/crystal.toml");
-  const Setup setup = make_setup(scene, {});
+  const cuboct::Setup setup = make_setup(scene, {});
   uint32_t fullest = 0;
   std::vector<uint32_t> count(setup.plan.lattice.size());
   for (const Particle& p : setup.initial.particles) fullest = std::max(fullest, ++count[p.node]);
@@ -234,7 +235,7 @@ TEST(AutoWidths, ACellHoldsWhatComesIn) {
   });
   Arch tight;
   tight.capacity = static_cast<int>(fullest);
-  const Setup full = make_setup(scene, tight);
+  const cuboct::Setup full = make_setup(scene, tight);
   Golden stopped(full.plan.rule, full.plan.lattice, tight.capacity, full.initial);
   EXPECT_THROW(
       {
