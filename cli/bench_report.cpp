@@ -2,18 +2,14 @@
 #include "cli/bench_report.h"
 
 #include <fmt/format.h>
-#include <sched.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
 
-namespace cuboct {
+#include "model/resources.h"
 
-int usable_cores() {
-  cpu_set_t set;
-  return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
-}
+namespace cuboct {
 
 std::string machine() {
   std::string model = "processor unknown";

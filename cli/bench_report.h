@@ -23,7 +23,6 @@ class LineReporter : public benchmark::BenchmarkReporter {
 
 // "AMD EPYC 9B14, 4 cores, 24 GB of memory".
 std::string machine();
-int usable_cores();
 
 // What a benchmark says where it does not run, and why: no failure.
 inline constexpr char kSkipped[] = "skipped: ";

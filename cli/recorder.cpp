@@ -74,8 +74,9 @@ struct Recorder::Impl {
     if (begun) return;
     begun = true;
     for (const char* name : {"run.toml", "summary.json", "trace.h5", "trace.part.h5", "rasters.h5",
-                             "rasters.part.h5", "frames.xyz", "frames.pvd"})
+                             "rasters.part.h5", "frames.xyz"})
       fs::remove(path(name));
+    remove_vtk(path("frames"));
     write_text(path(kBallast), "");
     const uint64_t bytes = std::min(options.rest, kMost) + kLeast;
     if (const int error = reserve(path(kBallast), 0, bytes)) {

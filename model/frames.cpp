@@ -157,6 +157,11 @@ namespace {
 
 std::string vtp_name(const std::string& stem, size_t k) { return fmt::format("{}_{:06}.vtp", stem, k); }
 
+void remove_vtp(const std::string& stem) {
+  for (size_t k = 0; std::filesystem::remove(vtp_name(stem, k)); ++k) {
+  }
+}
+
 }  // namespace
 
 VtkWriter::VtkWriter(const std::string& stem, const FrameStyle& style)
@@ -166,8 +171,12 @@ VtkWriter::VtkWriter(const std::string& stem, const FrameStyle& style)
             "<?xml version=\"1.0\"?>\n"
             "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n",
             "  </Collection>\n</VTKFile>\n") {
-  for (size_t k = 0; std::filesystem::remove(vtp_name(stem_, k)); ++k) {
-  }
+  remove_vtp(stem);
+}
+
+void remove_vtk(const std::string& stem) {
+  std::filesystem::remove(stem + ".pvd");
+  remove_vtp(stem);
 }
 
 void VtkWriter::add(const Frame& frame) {

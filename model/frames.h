@@ -44,7 +44,7 @@ class XyzWriter {
 // Positions are doubles, the rest floats.
 class VtkWriter {
  public:
-  VtkWriter(const std::string& stem, const FrameStyle& style);  // removes the files of an earlier run
+  VtkWriter(const std::string& stem, const FrameStyle& style);
   // Throws InputError where the disk has no room: the frame is then left out.
   void add(const Frame& frame);
 
@@ -54,5 +54,8 @@ class VtkWriter {
   GrowingFile list_;
   size_t count_ = 0;
 };
+
+// The files of an earlier run.
+void remove_vtk(const std::string& stem);
 
 }  // namespace cuboct

@@ -353,6 +353,17 @@ TEST_F(NothingLost, NoCommandWritesIntoADirectoryInUse) {
   EXPECT_EQ(bench_.cuboct({"report", dir()}).code, 0);
 }
 
+// No directory holds files of two runs.
+TEST_F(NothingLost, TheFilesOfTheRunBeforeGo) {
+  ASSERT_EQ(bench_.cuboct(run({"--steps", "4", "--frames-every", "1"})).code, 0);
+  ASSERT_TRUE(fs::exists(dir() + "/frames_000004.vtp"));
+  ASSERT_EQ(bench_.cuboct(run({"--steps", "3", "--no-states"})).code, 0);
+  Strings names;
+  for (const auto& entry : fs::directory_iterator(dir())) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (Strings{"plan.txt", "rasters.h5", "run.toml", "summary.json", "trace.h5"}));
+}
+
 // A lock is its process's: it goes with it, whatever stays on the disk.
 TEST_F(NothingLost, ADeadProcessLocksNothing) {
   fs::create_directory(dir());

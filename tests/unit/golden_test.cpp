@@ -221,9 +221,10 @@ TEST(Golden, SlowParticlesMoveByTheirVelocityExactly) {
   }
 }
 
-// How far the middle of a chain of 13 goes in 20,000 steps in which one end is held and the other moved by
-// `units` of position per step, over what doubles say.
-double middle_over_reference(double units) {
+// How far, in units of position, the middle of a chain of 13 gets where one end is held and the other moved
+// by `units` per step: in fixed numbers, in doubles. Means over the steps 10,000 to 20,000, as the chain
+// rings from the start on, with a phase that the formats' stiffness decides.
+std::pair<double, double> middle_of_a_chain(double units) {
   Scene scene = test::block_scene({.size = {1, 1, 1}, .jitter = 0, .speed = 0, .margin = 1});
   scene.body = {};
   for (int k = 0; k < 13; ++k) scene.body.x.push_back(Vec3(k, 0, 0));
@@ -232,23 +233,34 @@ double middle_over_reference(double units) {
   scene.body.type.front() = 1, scene.body.type.back() = 2;
   scene.rule.types.resize(3, scene.rule.types[0]);
   scene.rule.types[1].imposed = scene.rule.types[2].imposed = {true, true, true};
-  const double edge = make_setup(scene, plain()).plan.rule.cell_edge;
-  scene.rule.types[2].velocity.x() = units * edge * 0x1p-20 / scene.rule.dt;
+  const double unit = make_setup(scene, plain()).plan.rule.cell_edge * 0x1p-20;
+  // A whole number of 2^-G units: the formats hold it exactly.
+  scene.rule.types[2].velocity.x() = std::round(units * 256) / 256 * unit / scene.rule.dt;
   const auto setup = make_setup(scene, plain());
-  const int steps = 20000;
+  const Plan& plan = setup.plan;
+  const int64_t from = place(plan, setup.initial.particles[6])[0];
   Reference reference(scene.rule, scene.body, {}, Integrator::semi_implicit_euler);
-  reference.step(steps);
-  const double expected = reference.body().x[6].x() - 6;
-  const Int3 from = place(setup.plan, setup.initial.particles[6]),
-             to = place(setup.plan, run(setup, setup.initial, steps).particles[6]);
-  return static_cast<double>(to[0] - from[0]) * edge * 0x1p-28 / expected;
+  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, setup.initial);
+  double got = 0, expected = 0;
+  int samples = 0;
+  for (int step = 1; step <= 20000; ++step) {
+    reference.step();
+    golden.step();
+    if (step < 10000 || step % 10 != 0) continue;
+    got += static_cast<double>(place(plan, golden.state().particles[6])[0] - from) / 256;
+    expected += (reference.body().x[6].x() - 6) / unit;
+    ++samples;
+  }
+  return {got / samples, expected / samples};
 }
 
+// Not a unit of position is lost on the way, 1/16 of the unit of a difference.
 TEST(Golden, SlowMotionGoesThroughAChain) {
   for (const double units : {0.33, 0.7, 1.3, 5.2}) {
-    const double ratio = middle_over_reference(units);
-    std::printf("%.2f units per step: %.5f\n", units, ratio);
-    EXPECT_NEAR(ratio, 1, 0.005) << units;
+    const auto [got, expected] = middle_of_a_chain(units);
+    std::printf("%.2f units per step: %.2f of %.2f units, %.5f\n", units, got, expected, got / expected);
+    EXPECT_GT(expected, 2000);
+    EXPECT_NEAR(got, expected, 1) << units;
   }
 }
 
