@@ -25,6 +25,7 @@
 #include "model/output.h"
 #include "model/process.h"
 #include "model/reference.h"
+#include "model/resources.h"
 #include "model/spelling.h"
 
 namespace cuboct {
