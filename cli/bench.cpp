@@ -21,11 +21,11 @@
 #include "emu/lattice/program.h"
 #include "emu/lattice/timing.h"
 #include "gpu_ref/bench_rows.h"
+#include "model/resources.h"
 #include "model/golden.h"
 #include "model/output.h"
 #include "model/process.h"
 #include "model/reference.h"
-#include "model/resources.h"
 #include "model/spelling.h"
 
 namespace cuboct {
