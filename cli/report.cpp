@@ -324,7 +324,7 @@ constexpr char kStyle[] =
     "img,svg{max-width:100%;height:auto;display:block;margin:auto}svg{width:720px}"
     "table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.92rem}"
     "th,td{padding:.25rem .8rem .25rem 0;text-align:left;border-bottom:1px solid #eee;vertical-align:top}"
-    "td{overflow-wrap:anywhere}th{font-weight:600}.note{color:#777}.bad{color:#b00020}";
+    ".plain td{overflow-wrap:anywhere}th{font-weight:600}.note{color:#777}.bad{color:#b00020}";
 
 void report(const std::string& directory, std::string out) {
   std::optional<DirectoryLock> lock;

@@ -119,7 +119,7 @@ TEST_F(LimitsTest, TablesWithinTables) {
     return text;
   };
   EXPECT_EQ(refusal("title = \"...........\"\n" + repeated("a.") + "a = 1\n"), ":2:128: a key of more than 64 parts\n");
-  EXPECT_EQ(refusal("[" + repeated("a.") + "a]\n"), ":1:129: a key of more than 64 parts\n");
+  EXPECT_EQ(refusal(std::string("[") + repeated("a.") + "a]\n"), ":1:129: a key of more than 64 parts\n");
   for (const char* open : {"[", "{a="})
     EXPECT_NE(refusal("a = " + repeated(open)).find("exceeded maximum nested value depth"), std::string::npos) << open;
 }

@@ -234,18 +234,18 @@ TEST_F(GpuProgram, EndsEarlyWhenItIsAsked) {
 
 // One line, and the directory as it was: what the engine hands over did not fit.
 TEST_F(GpuProgram, AFullDiskFailsCleanly) {
-  run("out", {kBlock, "--engine", "gpu", "--steps", "3"});
-  const std::string before = contents(bench_.path("out/summary.json"));
+  run("kept", {kBlock, "--engine", "gpu", "--steps", "3"});
+  const std::string before = contents(bench_.path("kept/summary.json"));
   for (const std::string precision : {"fixed", "float"}) {
     const FileLimit limit(900 << 10);
     const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--precision", precision, "--steps", "80",
-                                         "--frames-every", "1", "--out", bench_.path("out")});
+                                         "--frames-every", "1", "--out", bench_.path("kept")});
     EXPECT_EQ(answer.code, 2);
     EXPECT_TRUE(answer.err.starts_with("cannot write ") && answer.err.ends_with("/gpu.h5: File too large\n")) << answer.err;
     EXPECT_EQ(answer.out, "");
   }
-  EXPECT_EQ(contents(bench_.path("out/summary.json")), before);
-  run("out", {kBlock, "--engine", "gpu", "--steps", "4"});
+  EXPECT_EQ(contents(bench_.path("kept/summary.json")), before);
+  run("kept", {kBlock, "--engine", "gpu", "--steps", "4"});
 }
 
 TEST_F(GpuProgram, RefusesWhatItCannotDo) {

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <sstream>
 #include <stdexcept>
 
@@ -249,8 +250,9 @@ TEST_F(TraceFile, ComesFrameByFrame) {
 State large_frame(uint64_t step) {
   State frame;
   frame.step = step;
+  std::mt19937_64 random(step);  // what does not pack
   for (uint32_t id = 0; id < 20'000; ++id) {
-    const int64_t n = static_cast<int64_t>((id + step) * 0x9e3779b97f4a7c15u >> 8);
+    const auto n = static_cast<int64_t>(random() >> 8);
     frame.particles.push_back({id, 0, id, {n, n, n}, {n, -n, n}, {}});
   }
   return frame;
@@ -263,7 +265,7 @@ TEST_F(TraceFile, HoldsWhatFits) {
   trace.frames.clear();
   trace.bodies.clear();
   {
-    const FileLimit limit(12 << 20);
+    const FileLimit limit(6 << 20);
     for (uint64_t step = 0; step < 20; ++step) try {
         out.add(large_frame(step));
         trace.frames.push_back(large_frame(step));
@@ -277,7 +279,7 @@ TEST_F(TraceFile, HoldsWhatFits) {
   trace.frames.push_back(large_frame(30));
   out.finish(trace);
   expect_equal(trace, read_trace(path("t.h5")));
-  EXPECT_LT(fs::file_size(path("t.h5")), 12u << 20);
+  EXPECT_LT(fs::file_size(path("t.h5")), 6u << 20);
 }
 
 // What the program has flushed is there when it dies; what finish() was not reached for goes with the writer.
@@ -289,11 +291,13 @@ TEST_F(TraceFile, LeavesItsFramesWhereTheProgramDies) {
         kill(getpid(), SIGKILL);
       },
       testing::KilledBySignal(SIGKILL), "");
-  hdf5::Reader in(path("part.h5"));
-  const auto frames = in.group(in.root(), "frames");
-  EXPECT_EQ(in.array<int64_t>(frames, "first"), (std::vector<int64_t>{0, 20'000, 40'000, 60'000}));
-  EXPECT_GT(in.length(frames, "x"), 50'000u);
-  EXPECT_GE(in.length(frames, "id"), 60'000u);
+  {
+    const hdf5::Reader in(path("part.h5"));  // HDF5 makes no file anew that is open
+    const auto frames = in.group(in.root(), "frames");
+    EXPECT_EQ(in.array<int64_t>(frames, "first"), (std::vector<int64_t>{0, 20'000, 40'000, 60'000}));
+    EXPECT_GT(in.length(frames, "x"), 50'000u);
+    EXPECT_GE(in.length(frames, "id"), 60'000u);
+  }
   { TraceWriter out(path("t.h5"), path("part.h5")); }
   EXPECT_FALSE(fs::exists(path("part.h5")));
 }
