@@ -29,7 +29,10 @@ constexpr uint64_t kSeed = 20231;
 double seed_size(Arithmetic arithmetic, const Arch& arch) {
   if (arithmetic == Arithmetic::float64) return 1e-6;
   if (arithmetic == Arithmetic::float32) return 1e-4;
-  return std::max(2e-4, std::ldexp(8.0, -std::min(arch.widths.position_frac, arch.widths.difference_frac)));
+  // Automatic formats are as wide as these, or wider.
+  const auto bits = [](int asked, int least) { return asked == kAutomatic ? least : asked; };
+  return std::max(2e-4, std::ldexp(8.0, -std::min(bits(arch.widths.position_frac, 20),
+                                                  bits(arch.widths.difference_frac, 16))));
 }
 
 // The same everywhere: uniform in [-1, 1].
@@ -149,6 +152,11 @@ Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolutio
                   uint64_t steps) {
   // A body under pressure has more particles in a node than the machine may be built for; no bit depends on it.
   if (arch.capacity != kAutomatic) arch.capacity = std::max(arch.capacity, 32);
+  // The formats are those of the scene without the forces that hold a stretched body still.
+  std::vector<Vec3> holding;
+  for (ParticleType& type : scene.rule.types) holding.push_back(std::exchange(type.gravity, Vec3::Zero()));
+  arch = settled(scene, arch);
+  for (size_t k = 0; k < holding.size(); ++k) scene.rule.types[k].gravity = holding[k];
   // Forces that hold a stretched body still, where the format of gravity would round them to less than 1 %: they
   // are less than a difference's rounding does.
   const double unit = std::ldexp(scene.rule.law->cutoff(), -arch.widths.velocity_frac()) / (scene.rule.dt * scene.rule.dt);

@@ -155,6 +155,7 @@ std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, i
         Column column{bare, arch};
         Widths& w = column.arch.widths;
         w.position_frac = static_cast<int>(bits);
+        if (w.guard == kAutomatic) w.guard = 8;
         w.difference_frac = std::min(w.position_frac, 16);
         w.relative_velocity_frac = std::min(20, w.velocity_frac());
         w.velocity_bits = w.sum_bits = w.velocity_frac() + 1;

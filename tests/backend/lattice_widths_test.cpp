@@ -261,6 +261,7 @@ TEST(LatticeSpan, BodiesFarApartHoldGoldensBits) {
         Arch arch;
         arch.capacity = 40;
         arch.widths.position_frac = frac;
+        arch.widths.guard = 8;
         arch.widths.velocity_bits = arch.widths.sum_bits = frac + arch.widths.guard + 1;
         Count count;
         compare_both({"far apart", far_apart(cells, arch, axis), 30}, dice, count);

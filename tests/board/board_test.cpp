@@ -201,7 +201,7 @@ TEST(Board, TheCommandDrivesIt) {
   EXPECT_EQ(
       wrong.err,
       "port " + board.port() +
-          ": the board holds plan a8f00e943993f6a1, the scene is plan 9586ec283f3544ae\n"
+          ": the board holds plan 0b68a86656dcd33f, the scene is plan c84fbfe54025609e\n"
           "  hint: emit the scene with --board, build and flash it; or run the scene that the board was made "
           "from\n");
 }

@@ -125,7 +125,8 @@ TEST(ErrorBudget, TheChosenFilesRun) {
   EXPECT_NE(answer.out.find("cuboct run " + out + "/cheapest.toml --arch " + out + "/cheapest_arch.toml\n"),
             std::string::npos);
   const Answer run = s.bench.cuboct(
-      {"run", out + "/cheapest.toml", "--arch", out + "/cheapest_arch.toml", "--out", s.bench.path("run")});
+      {"run", out + "/cheapest.toml", "--arch", out + "/cheapest_arch.toml", "--out", s.bench.path("run"),
+       "--no-watch"});  // which warns of formats with few units
   ASSERT_EQ(run.code, 0) << run.err;
   const Trace trace = read_trace(s.bench.path("run") + "/trace.h5");
   Figure figure;

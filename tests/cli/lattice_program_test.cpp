@@ -50,7 +50,7 @@ TEST_F(LatticeProgram, NoBitDependsOnItsOptions) {
     EXPECT_EQ(other.frames, plain.frames) << options;
   }
   EXPECT_EQ(traced("--cycles").cycles.size(), 25 * plain.nodes * kPhases);
-  EXPECT_EQ(traced("--energies").curves.size(), 5u);  // four energies and, in a periodic box, the pressure
+  EXPECT_EQ(traced("--energies").curves.size(), 6u);  // four energies, the temperature and, in a periodic box, the pressure
 }
 
 // Bricks change the nodes and cycles of the machine, and no bit.

@@ -146,7 +146,7 @@ TEST_F(LimitsTest, ListsOfSteps) {
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.err, path + ":15:15: frame_every: every 1 of 1000000000000 steps are 1e+12: at most 1e+07 can be kept\n"
                                "  hint: frame_every = 300000\n");
-  answer = run(scene, {"--frames-every", "7"});
+  answer = run(scene, {"--frames-every", "7", "--out", bench_.path("out")});
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.err, "--frames-every: every 7 of 1000000000000 steps are 1.43e+11: at most 1e+07 can be kept\n"
                         "  hint: --frames-every 300000\n");
