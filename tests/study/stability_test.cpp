@@ -125,8 +125,10 @@ TEST(Stability, HeldByForce) {
   const Subject slowed = subject_of(with_kd);
   EXPECT_LT(slowed.limit.dt, 0.97 * subject.limit.dt);
   expect_as_predicted(slowed, wide);
-  // With the default format gains are below 2: it ends before stability does, and says so.
-  const MeasuredLimit refused = measured_limit(subject, Arch{}, {Arithmetic::fixed}, 0.005);
+  // With 16 fractional bits gains are below 2: it ends before stability does, and says so.
+  Arch narrow;
+  narrow.widths.gain_frac = 16;
+  const MeasuredLimit refused = measured_limit(subject, narrow, {Arithmetic::fixed}, 0.005);
   EXPECT_TRUE(refused.refused);
   EXPECT_NE(refused.sign.find("the gain kp"), std::string::npos) << refused.sign;
   EXPECT_LT(refused.unstable, 0.95 * subject.limit.dt);
@@ -200,7 +202,9 @@ TEST(Stability, VerdictsFarFromTheLimit) {
 TEST(Stability, MapsAgreeWithTheTheory) {
   const Scene scene = block(2, preset_law("elastic", 1, kStiffness));
   int cells = 0, refused = 0, unstable_bodies = 0;
-  const std::vector<StabilityMap> maps = stability_maps(scene, Arch{}, 0, 4, [](const std::string&, double) {});
+  Arch narrow;  // whose gains end before stability does
+  narrow.widths.gain_frac = 16;
+  const std::vector<StabilityMap> maps = stability_maps(scene, narrow, 0, 4, [](const std::string&, double) {});
   ASSERT_EQ(maps.size(), 6U);
   for (const StabilityMap& map : maps)
     for (size_t k = 0; k < map.y.size(); ++k)

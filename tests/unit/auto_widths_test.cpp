@@ -65,7 +65,6 @@ TEST(AutoWidths, ImposedVelocitiesAndGravityAreRightToTheAccuracy) {
       const Plan plan = plan_of(scene, {});
       const double unit = std::ldexp(plan.rule.cell_edge, -plan.rule.widths.velocity_frac()) / scene.rule.dt;
       const bool capped = reason(plan.reasons, "guard").wanted > plan.rule.widths.guard;
-      EXPECT_EQ(capped, !plan.warnings.empty() && plan.warnings[0].find("guard") != std::string::npos);
       if (capped) continue;
       for (size_t k = 0; k < plan.rule.types.size(); ++k) {
         const ParticleType& type = scene.rule.types[k];
