@@ -14,13 +14,13 @@ struct ExpectedStrain {
   double energy = 0;      // J, of all bonds
 };
 
-// Distance below which a pair is a bond of the body, m: between the first and the second shell of the packing,
-// or of a crystal of bonds at rest.
+// Distance below which a pair is a bond of the body, m: between the first and the second shell of the
+// packing, or of a crystal of bonds at rest.
 double bond_range(const Scene& scene);
 
 // Loads: gravity, and what is moved, by position or by force, over `time` s. Linear about the positions `x`,
-// so only small strains are right. Parts of the body that nothing holds or leads carry no load: they fall, and
-// are not strained. `x`, `type`: by id.
+// so only small strains are right. Parts of the body that nothing holds or leads carry no load: they fall,
+// and are not strained. `x`, `type`: by id.
 ExpectedStrain expected_strain(const Scene& scene, std::span<const Vec3> x, std::span<const uint8_t> type,
                                double time);
 

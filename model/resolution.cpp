@@ -84,7 +84,8 @@ void Resolution::choose_bonds() {
   const double range = bond_range(scene_);
   rest_ = scene_.pitch > 0 ? scene_.pitch : stiffest_rest_distance(*rule.law);
   double strongest = 0;
-  for (const auto& row : rule.strength) strongest = std::max(strongest, *std::max_element(row.begin(), row.end()));
+  for (const auto& row : rule.strength)
+    strongest = std::max(strongest, *std::max_element(row.begin(), row.end()));
   if (range > 0 && rest_ > 0) stiffness_ = -rule.law->slope(rest_) * strongest;
   double apart = 0;
   if (stiffness_ > 0) {
@@ -142,7 +143,8 @@ std::string Resolution::remedy(double stretch) const {
             position = std::max(difference, now.position_frac + more_bits(unit(1), wanted)),
             most_guard = kMostVelocityFrac - position,
             guard = std::max(now.guard, now.velocity_frac() + more_bits(unit(2), wanted) - position);
-  // A kick is no coarser than velocities: an entry and a difference have P + G fractional bits together, or more.
+  // A kick is no coarser than velocities: an entry and a difference have P + G fractional bits together, or
+  // more.
   const int strength =
       now.strength_bits +
       std::max(more_bits(unit(3), wanted), position + std::min(guard, most_guard) - difference - value_frac_);
@@ -201,18 +203,21 @@ std::optional<Resolution::Lack> Resolution::see_led(const Moment& moment) const 
       lack.text += "; the numbers of this engine do not hold such short steps, doubles do";
       return lack;
     }
-    // The velocity is a whole number of units; so many guard bits round it by less than the tenth of the limit.
+    // The velocity is a whole number of units; so many guard bits round it by less than the tenth of the
+    // limit.
     const FixedRule& rule = *moment.fixed;
     double error = 0, least = 0;
     for (int a = 0; a < 3; ++a) {
-      const double units = std::ldexp(type.velocity[a] * rule.dt / rule.cell_edge, rule.widths.velocity_frac());
+      const double units =
+          std::ldexp(type.velocity[a] * rule.dt / rule.cell_edge, rule.widths.velocity_frac());
       error = std::hypot(error, units - static_cast<double>(rule.types[led.type].velocity[a]));
       least = std::hypot(least, units);
     }
     const int more = more_bits(0.5, 0.1 * kAchieved * least);
     if (error > 0.5 * lack.number * least)
       lack.text += fmt::format(
-          "; its velocity is {:.4g} units of 2^-(position_frac + guard) cells per step, rounded to whole ones; "
+          "; its velocity is {:.4g} units of 2^-(position_frac + guard) cells per step, rounded to whole "
+          "ones; "
           "guard = {} would do, velocity_bits, sum_bits and displacement_bits {} wider",
           least, rule.widths.guard + more, more);
     else
@@ -226,10 +231,11 @@ std::optional<Resolution::Lack> Resolution::see_speed(const FixedRule& rule) con
   const double unit = std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
   if (!(speed_ > 0) || speed_ >= kFew * unit) return std::nullopt;
   const int more = more_bits(unit, speed_ / kEnough);
-  return Lack{std::nullopt, Vec3::Zero(), speed_ / unit, kFew,
-              fmt::format("initial velocities of {:.3g} m/s are {:.2g} units of a velocity, {:.3g} m/s at guard "
-                          "= {}; guard = {} would do, velocity_bits and sum_bits {} wider",
-                          speed_, speed_ / unit, unit, rule.widths.guard, rule.widths.guard + more, more)};
+  return Lack{
+      std::nullopt, Vec3::Zero(), speed_ / unit, kFew,
+      fmt::format("initial velocities of {:.3g} m/s are {:.2g} units of a velocity, {:.3g} m/s at guard "
+                  "= {}; guard = {} would do, velocity_bits and sum_bits {} wider",
+                  speed_, speed_ / unit, unit, rule.widths.guard, rule.widths.guard + more, more)};
 }
 
 void Resolution::see_stretch(const Moment& moment) {
@@ -249,8 +255,9 @@ void Resolution::see_stretch(const Moment& moment) {
 
 const ExpectedStrain& Resolution::expected(const std::vector<Vec3>& x) {
   if (!expected_)
-    expected_ = loaded_ ? expected_strain(scene_, x, type_, static_cast<double>(scene_.steps) * scene_.rule.dt)
-                        : ExpectedStrain{};
+    expected_ = loaded_
+                    ? expected_strain(scene_, x, type_, static_cast<double>(scene_.steps) * scene_.rule.dt)
+                    : ExpectedStrain{};
   return *expected_;
 }
 
@@ -268,13 +275,15 @@ std::optional<Resolution::Lack> Resolution::see_energy(const Moment& moment, dou
   // The energy of a staircase goes as the square of its unit.
   const double wanted =
       std::min(stretch, kEnough * unit.stretch * std::sqrt(0.1 * kEnergy * held / std::abs(change)));
-  return Lack{std::nullopt, Vec3::Zero(), std::abs(change) / held, kEnergy,
-              fmt::format("the energy is off by {:.3g} J, the scene's motion has {:.3g} J: bonds shake by {:.3g} m, "
-                          "and the scene stretches them by {:.3g} m at most; they are told apart by {:.3g} m, of {} = "
-                          "{}; {}",
-                          change, std::max(expected_->energy, vibration_),
-                          std::sqrt(2 * std::abs(change) / (bond_count_ * stiffness_)), stretch, unit.stretch,
-                          unit.key, unit.bits, remedy(wanted))};
+  return Lack{
+      std::nullopt, Vec3::Zero(), std::abs(change) / held, kEnergy,
+      fmt::format(
+          "the energy is off by {:.3g} J, the scene's motion has {:.3g} J: bonds shake by {:.3g} m, "
+          "and the scene stretches them by {:.3g} m at most; they are told apart by {:.3g} m, of {} = "
+          "{}; {}",
+          change, std::max(expected_->energy, vibration_),
+          std::sqrt(2 * std::abs(change) / (bond_count_ * stiffness_)), stretch, unit.stretch, unit.key,
+          unit.bits, remedy(wanted))};
 }
 
 std::optional<Resolution::Lack> Resolution::conclude() {
@@ -286,7 +295,8 @@ std::optional<Resolution::Lack> Resolution::conclude() {
   Lack lack{std::nullopt, Vec3::Zero(), stretch / unit.stretch, kFew, {}};
   if (load.stretch >= vibrated_) lack.particle = load.particle, lack.place = latest_[load.particle];
   lack.text = fmt::format(
-      "bonds are to stretch by {:.3g} m and have stretched by {:.3g} m: {:.2g} units of what is told apart, {:.3g} m "
+      "bonds are to stretch by {:.3g} m and have stretched by {:.3g} m: {:.2g} units of what is told apart, "
+      "{:.3g} m "
       "of {} = {}; {}",
       stretch, stretched_, stretch / unit.stretch, unit.stretch, unit.key, unit.bits, remedy(stretch));
   return lack;

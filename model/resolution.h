@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Motion and strain that the formats of an engine cannot show: what the watch (model/watch.h) asks at each look.
-// docs/reference/failures.md, "Below resolution", has the reasons.
+// Motion and strain that the formats of an engine cannot show: what the watch (model/watch.h) asks at each
+// look. docs/reference/failures.md, "Below resolution", has the reasons.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ class Resolution {
   // What was found; `text` names the width that is too small and the number that would do.
   struct Lack {
     std::optional<uint32_t> particle;
-    Vec3 place = Vec3::Zero();      // m, of the particle
+    Vec3 place = Vec3::Zero();     // m, of the particle
     double number = 0, limit = 0;  // as in Finding
     std::string text;
   };
@@ -29,7 +29,8 @@ class Resolution {
   // Imposed against achieved motion, and initial velocities. Remembers how far bonds have stretched.
   std::optional<Lack> see(const Moment& moment);
   // In runs that should keep their energy: its `change` since the start, J, against what the bonds would hold
-  // if each stretched as far as the scene stretches any. `kinetic`: J, the most so far, about the mean motion.
+  // if each stretched as far as the scene stretches any. `kinetic`: J, the most so far, about the mean
+  // motion.
   std::optional<Lack> see_energy(const Moment& moment, double change, double kinetic);
   // After the last look: strains that stayed below what the formats show, and would to the scene's end.
   std::optional<Lack> conclude();
@@ -75,7 +76,7 @@ class Resolution {
   double stretched_ = 0;             // m, the most of them so far
   std::optional<ExpectedStrain> expected_;
   Widths widths_;
-  int value_frac_ = 0;  // of the force table
+  int value_frac_ = 0;        // of the force table
   std::vector<Unit> units_;   // of an engine of integers
   std::vector<Vec3> latest_;  // m, at the last look at which nothing was shown yet
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Twelve scenes of different kinds and speeds, none with an arch file: what the fixed rule's probes say beside those of
-// doubles, of the same integrator and the same steps. With CUBOCT_VERBOSE set it prints the table of
-// docs/reference/accuracy.md.
+// Twelve scenes of different kinds and speeds, none with an arch file: what the fixed rule's probes say
+// beside those of doubles, of the same integrator and the same steps. With CUBOCT_VERBOSE set it prints the
+// table of docs/reference/accuracy.md.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@
 namespace cuboct {
 namespace {
 
-// How a curve counts. A run that is chaotic parts from any other in the end, so that only its means can agree.
+// How a curve counts. A run that is chaotic parts from any other in the end, so that only its means can
+// agree.
 enum class By : uint8_t { curve, mean };
 
 struct Case {
@@ -29,7 +30,8 @@ void PrintTo(const Case& one, std::ostream* out) { *out << one.scene; }
 
 std::vector<uint64_t> looks(const Scene& scene) {
   std::vector<uint64_t> at;
-  for (uint64_t step = 0; step <= scene.steps; step += std::max<uint64_t>(1, scene.probe_every)) at.push_back(step);
+  for (uint64_t step = 0; step <= scene.steps; step += std::max<uint64_t>(1, scene.probe_every))
+    at.push_back(step);
   if (at.back() != scene.steps) at.push_back(scene.steps);
   return at;
 }
@@ -65,7 +67,8 @@ double root_mean_square(const std::vector<double>& values) {
 
 class Accuracy : public testing::TestWithParam<Case> {};
 
-// One per cent: what docs/reference/accuracy.md promises of the widths that are taken where no arch file gives any.
+// One per cent: what docs/reference/accuracy.md promises of the widths that are taken where no arch file
+// gives any.
 TEST_P(Accuracy, IsThatOfDoublesToOnePerCent) {
   const Case& one = GetParam();
   const Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/accuracy/" + one.scene + ".toml");
@@ -86,8 +89,8 @@ TEST_P(Accuracy, IsThatOfDoublesToOnePerCent) {
     std::vector<double> off;
     for (size_t k = 0; k < fixed.size(); ++k) off.push_back(fixed[k] - doubles[k]);
     const bool by_curve = one.by == By::curve;
-    const double error = by_curve ? root_mean_square(off) / root_mean_square(doubles)
-                                  : std::abs(mean(off) / mean(doubles));
+    const double error =
+        by_curve ? root_mean_square(off) / root_mean_square(doubles) : std::abs(mean(off) / mean(doubles));
     if (std::getenv("CUBOCT_VERBOSE")) {
       const Widths& w = plan.rule.widths;
       fmt::print("| `{}` | {}{} | {:.5g} | {:.5g} | {:.2g} | {}, {}, {}, {} |\n", one.scene,
@@ -103,11 +106,13 @@ TEST_P(Accuracy, IsThatOfDoublesToOnePerCent) {
 INSTANTIATE_TEST_SUITE_P(Each, Accuracy,
                          testing::Values(Case{"slow_pull", {"middle.x", "grip.force_x"}},
                                          Case{"fast_pull", {"middle.x", "grip.force_x"}},
-                                         Case{"cantilever", {"tip.z"}}, Case{"drop", {"ball.z", "floor.force_z"}},
+                                         Case{"cantilever", {"tip.z"}},
+                                         Case{"drop", {"ball.z", "floor.force_z"}},
                                          Case{"lj_copper", {"energy.kinetic", "pressure"}, By::mean},
                                          Case{"sheet", {"pull.force_x", "notch.y"}},
                                          Case{"gas", {"energy.kinetic", "pressure"}, By::mean},
-                                         Case{"creep", {"end.x", "grip.force_x"}}, Case{"vibration", {"middle.z"}},
+                                         Case{"creep", {"end.x", "grip.force_x"}},
+                                         Case{"vibration", {"middle.z"}},
                                          Case{"impact_wave", {"wall.force_x", "middle.x"}},
                                          Case{"rotation", {"corner.x", "corner.y", "corner.z"}},
                                          Case{"two_materials", {"border.x", "grip.force_x"}}),
