@@ -97,16 +97,16 @@ guard = [4, 8]
 )"));
   ASSERT_EQ(study.points.size(), 2U);
   const auto& coarse = study.points[0].arch;
-  EXPECT_EQ(value_of_key(coarse, "widths.velocity_bits"), "23");   // 14 + 8 + 1: one cell per step, as before
-  EXPECT_EQ(value_of_key(coarse, "widths.difference_frac"), "14");  // no finer than positions
-  EXPECT_EQ(value_of_key(coarse, "widths.relative_velocity_frac"), "");  // 20 of 22: as it was
+  EXPECT_EQ(value_of_key(coarse, "widths.velocity_bits"), "");  // automatic: it follows by itself
+  EXPECT_EQ(value_of_key(coarse, "widths.difference_frac"), "");
+  EXPECT_EQ(value_of_key(coarse, "widths.relative_velocity_frac"), "");
   EXPECT_EQ(value_of_key(study.points[1].arch, "widths.velocity_bits"), "20");
   ASSERT_EQ(study.search.size(), 1U);
   EXPECT_EQ(study.search[0].name, "guard");
   EXPECT_EQ(study.search[0].labels, (std::vector<std::string>{"4", "8"}));
   Settings settings;
   study.search[0].sets[0](settings);
-  EXPECT_EQ(value_of_key(settings.arch, "widths.velocity_bits"), "25");
+  EXPECT_EQ(value_of_key(settings.arch, "widths.velocity_bits"), "");
   study.search[0].sets[1](settings);
   EXPECT_EQ(value_of_key(settings.arch, "widths.velocity_bits"), "");
 }
