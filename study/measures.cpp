@@ -19,6 +19,8 @@ std::string id_of(const std::string& name, size_t n) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
     id += capital ? static_cast<char>(c - 'A' + 'a') : plain ? c : '_';
   }
+  constexpr size_t kLongest = 60;  // it is part of a file's name
+  id.resize(std::min(id.size(), kLongest));
   return id;
 }
 
