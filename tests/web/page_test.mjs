@@ -241,9 +241,11 @@ async function hostile_text_is_text(browser) {
   assert.ok(study.title.includes("<script>alert(1)</script>") && study.title.includes("\u001b]0;"));
   // A title of a document is shown with the controls' escapes.
   assert.ok((await page.textContent("h1")).startsWith("x\nsystem("));
-  for (const [n, point] of study.points.entries()) await page.evaluate((n) => document.body.insertAdjacentHTML("beforeend", `<div class="probe">${tip(n)}</div>`), n);
-  const [mark] = await (await bring(page, "error-speed"), lone_marks(page, "error-speed"));
-  assert.ok((await hover(page, "error-speed", mark)).includes("<script>alert(1)</script>"));
+  await page.evaluate(() => study.points.forEach((_, n) => document.body.insertAdjacentHTML("beforeend", tip(n))));
+  await page.evaluate(() => echarts.getInstanceByDom(document.getElementById("error-speed"))
+    .dispatchAction({type: "showTip", seriesIndex: 0, dataIndex: 0}));
+  await page.waitForSelector("#error-speed .tip", {state: "visible", timeout: 20000});
+  assert.ok((await page.$eval("#error-speed .tip", (tip) => tip.textContent)).includes("<script>alert(1)</script>"));
   for (const unwanted of ["img", "body script:not(#data) ~ script ~ script", "[onload]", "[onerror]", ".tip script"])
     assert.equal((await page.$$(unwanted)).length, 0, `the page has a '${unwanted}'`);
   assert.ok((await page.textContent("#points")).includes("<img src=x onerror=alert(2)>"));
@@ -255,8 +257,9 @@ async function hostile_text_is_text(browser) {
     image.onerror = () => done("refused");
     image.src = "file:///usr/share/pixmaps/none.png";
   })), "refused");
-  assert.equal(problems.length - before, 1, problems.slice(before));
-  assert.match(problems.pop(), /Content Security Policy/);
+  const forced = problems.splice(before);
+  assert.ok(forced.every((problem) => problem.includes("none.png")), String(forced));
+  assert.ok(forced.some((problem) => problem.includes("Content Security Policy")), String(forced));
   await page.context().close();
 }
 
