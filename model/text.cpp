@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "model/error.h"
+#include "model/hash.h"
 
 namespace cuboct {
 namespace {
@@ -211,7 +212,11 @@ std::string file_word(const std::string& text) {
   for (const char c : text)
     out += is_plain(c) || c == '_' || c == '-' ? std::string(1, c)
                                                : fmt::format("%{:02x}", static_cast<unsigned char>(c));
-  return out;
+  constexpr size_t kMost = 80, kHash = 16;
+  if (out.size() <= kMost) return out;
+  Hash hash;
+  for (const char c : text) hash.add(c);
+  return fmt::format("{}-{:016x}", out.substr(0, kMost - kHash - 1), hash.value());
 }
 
 }  // namespace cuboct

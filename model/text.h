@@ -38,7 +38,8 @@ std::string yosys_file(const std::string& path);
 
 // One column of extended XYZ, which readers split at any blank that Unicode knows. Never empty.
 std::string xyz_word(const std::string& text);
-// Part of a file's name: letters, digits, '_' and '-'; other bytes as %2f.
+// Part of a file's name: letters, digits, '_' and '-'; other bytes as %2f. At most 80 characters: the end of a longer
+// one is a hash of all of it.
 std::string file_word(const std::string& text);
 
 }  // namespace cuboct

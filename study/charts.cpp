@@ -136,7 +136,7 @@ void draw_error_speed(const Results& results, const Measure& error, const Measur
   const auto place = [&](size_t n) {
     return std::pair{speed.value(outcomes[n]), y.placed(error.value(outcomes[n]))};
   };
-  script.begin(fmt::format("{}_{}", error.id, speed.id));
+  script.begin(fmt::format("{}_{}", file_word(error.id), speed.id));
   script.key_of(series_of(results));
   script.log_axis('x', speed.label, x, speed.less_is_better);
   script.log_axis('y', error.label, y);
@@ -177,7 +177,7 @@ void draw_parameter(const Results& results, const Parameter& parameter, const Me
   const LogRange y = log_range(ys);
   std::string name = parameter.id;
   std::replace(name.begin(), name.end(), '.', '-');
-  script.begin(fmt::format("{}_by_{}", error.id, file_word(name)));
+  script.begin(fmt::format("{}_by_{}", file_word(error.id), file_word(name)));
   script.key_of(series_of(results));
   if (parameter.logarithmic) {
     script.log_axis('x', parameter.label, log_range(xs));

@@ -4,12 +4,18 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
 
 namespace cuboct::test {
 
 // Every attempt that succeeds makes a file of this name in the working directory.
 inline constexpr const char* kLoot = "cuboct_was_here";
+// Whether one is there, and no longer.
+inline bool take_loot(const std::filesystem::path& directory = ".") {
+  std::error_code none;
+  return std::filesystem::remove(directory / kLoot, none);
+}
 
 // A line's end and a command of gnuplot, quotes, command substitution, a macro, a variable of make, markup of
 // gnuplot, tags, the end of a script element, entities, a terminal's title and colours (C0 and C1), a mark

@@ -70,7 +70,7 @@ TEST(Text, GnuplotTakesAStringForAString) {
   EXPECT_EQ(gnuplot_label("a_1"), "'a_1' noenhanced");
   EXPECT_EQ(by_gnuplot(scratch, "print " + gnuplot_text(hostile_text()) + "\n"),
             line_text(hostile_text()) + "\n");
-  EXPECT_FALSE(std::filesystem::exists(test::kLoot));
+  EXPECT_FALSE(test::take_loot());
 }
 
 TEST(Text, GnuplotOpensAFileAndNoPipe) {
@@ -91,7 +91,7 @@ TEST(Text, AShellTakesAWordForAWord) {
     EXPECT_EQ(pclose(pipe), 0);
     EXPECT_EQ(std::string(read.data(), size), text);
   }
-  EXPECT_FALSE(std::filesystem::exists(test::kLoot));
+  EXPECT_FALSE(test::take_loot());
 }
 
 TEST(Text, TclAndYosys) {
@@ -121,6 +121,10 @@ TEST(Text, AWordOfXyzHasNoBlanks) {
 TEST(Text, FileNamesHaveNoDirectories) {
   EXPECT_EQ(file_word("scene-run-dt_1"), "scene-run-dt_1");
   EXPECT_EQ(file_word("../a b"), "%2e%2e%2fa%20b");
+  // No file system takes more than 255 bytes.
+  const std::string end(300, 'x');
+  EXPECT_EQ(file_word(end).size(), 80U);
+  EXPECT_NE(file_word(end + "a"), file_word(end + "b"));
 }
 
 TEST(Text, ErrorsAreTwoLinesAtMost) {

@@ -160,19 +160,21 @@ study::Results made_up_results() {
 study::Results hostile_results() {
   const std::string evil = hostile_text();
   Results results = made_up_results();
-  results.outcomes.resize(24);
   results.title = results.scene = results.machine = evil;
   results.figure_names = {evil, "strength"};
   results.figure_units = {evil, evil};
   results.truth.notes = {evil};
-  for (size_t n = 0; n < results.outcomes.size(); ++n) {
-    Outcome& o = results.outcomes[n];
-    o.why = evil;
-    // Names of directories, quotes and a template of the charts' library.
-    o.settings.scene.push_back({"regions.../../" + evil + ".size", n % 2 ? evil : "{b}" + evil});
-    o.settings.arch.push_back({"\" onload=\"alert(3)", n % 3 ? "1 " + evil : "2 " + evil});
-    if (n % 4 == 3) o.settings.engine = evil, o.speed.machine = evil;
-  }
+  std::vector<Outcome> outcomes;
+  for (size_t n = 0; n < 8; ++n)
+    // A name and a number's unit, each swept by itself: directories, quotes, a template of the charts' library.
+    for (const auto& [name, number] : {std::pair{evil, "1 "}, {"{b}" + evil, "1 "}, {evil, "2 "}}) {
+      Outcome& o = outcomes.emplace_back(results.outcomes[n]);
+      o.why = evil;
+      o.settings.scene.push_back({"regions.../../" + evil + ".size", name});
+      o.settings.arch.push_back({"\" onload=\"alert(3)", number + evil});
+      if (n % 4 == 3) o.settings.engine = evil, o.speed.machine = evil;
+    }
+  results.outcomes = outcomes;
   return results;
 }
 
