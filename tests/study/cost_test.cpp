@@ -108,10 +108,11 @@ TEST(Cost, TheDefaultPipeByHand) {
   EXPECT_DOUBLE_EQ(area.multipliers, 34.0 * (3 * 17 * 17 + 18 * 18 + 3 * 18 * 17));
   EXPECT_DOUBLE_EQ(area.tables, 6.0 * 512 * 2 * 18);
   // Pipe: differences of 23 bits and their rounding to 17, two sums of r2, the table's, kicks, sums. A lane:
-  // differences, then 17 adders and comparisons of 21 bits. Update, per axis: two of v, two of x.
+  // differences, then 17 adders and comparisons of 21 bits. Update, per axis: two of v, one of x
+  // with its residue, 20 + 8 bits and 2 of the cell.
   const double kick = 18 + 17 - plan.rule.kick_shift;
   const double pipe = 3 * 23 + 3 * 17 + 2 * 34 + 18 + 3 * kick + 3 * (kick + 9), lane = 3 * 23 + 17 * 21;
-  EXPECT_DOUBLE_EQ(area.adders, 28.0 * (pipe + 8 * lane + 3 * (2 * 29 + 2 * 22)));
+  EXPECT_DOUBLE_EQ(area.adders, 28.0 * (pipe + 8 * lane + 3 * (2 * 29 + 30)));
   // 16 slots and 6 x 16 arrivals of a particle, 26 x 16 halos of 64 bits, 16 queued with 8 mask bits.
   EXPECT_EQ(plan.words.halo_bits, 64);
   const double sum = kick + 9;  // 27 * 16 kicks
