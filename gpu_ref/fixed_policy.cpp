@@ -22,6 +22,8 @@ DeviceTable put(const FixedTable& table, std::vector<int32_t>& cache) {
 FixedRuleOnDevice::FixedRuleOnDevice(Stream& stream, const FixedRule& rule)
     : cache_(stream.device()), scale_(stream.device()), types_(stream.device()) {
   view_.widths = rule.widths;
+  view_.cell_edge = int32_t{1} << rule.widths.position_frac;
+  view_.position_unit = 1 / static_cast<float>(view_.cell_edge);
   view_.cutoff2 = rule.cutoff2;
   std::vector<int32_t> cache;
   view_.force = put(rule.force, cache);

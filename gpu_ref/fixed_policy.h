@@ -17,7 +17,8 @@ namespace cuboct::gpu {
 
 // FixedTable's numbers; its entries stand in the cache from word `first` on: c0 and c1 side by side, then all c2.
 struct DeviceTable {
-  int shape, degree, difference_frac, index_bits, bin_bits, first_octave, fraction_bits;
+  int shape, degree, difference_frac, index_bits, bin_bits, first_octave;
+  Rounding fraction_bits;
   uint32_t first;
 };
 
@@ -30,13 +31,15 @@ struct DeviceType {
 
 struct FixedView {
   Widths widths;
+  int32_t cell_edge;     // in units of a position
+  float position_unit;  // in cells
   uint64_t cutoff2;
   DeviceTable force, damp;
   bool damped, scaled;
   const int32_t* scale;  // types x types
   int type_count;
   const DeviceType* types;
-  int difference_shift, w_shift, q_shift, damp_shift, kick_shift;
+  Rounding difference_shift, w_shift, q_shift, damp_shift, kick_shift;
 };
 
 // Owns what a FixedView points to.
@@ -62,7 +65,8 @@ struct CachedFixedRule {
     CUBOCT_DEVICE int32_t operator[](uint32_t k) const { return entries[2 * k + static_cast<uint32_t>(offset)]; }
   };
   struct Table {
-    int shape, degree, difference_frac, index_bits, bin_bits, first_octave, fraction_bits;
+    int shape, degree, difference_frac, index_bits, bin_bits, first_octave;
+    const Rounding& fraction_bits;
     Row c0, c1;
     const int32_t* c2;
     CUBOCT_DEVICE Table(const DeviceTable& table, const int32_t* cache)
@@ -84,16 +88,18 @@ struct CachedFixedRule {
   };
 
   const Widths& widths;
+  int32_t cell_edge;  // in units of a position
   uint64_t cutoff2;
   Table force, damp;
   static constexpr bool damped = Damped;
   bool scaled;
   Scale scale;
   const DeviceType* types;
-  int difference_shift, w_shift, q_shift, damp_shift, kick_shift;
+  const Rounding &difference_shift, &w_shift, &q_shift, &damp_shift, &kick_shift;
 
   CUBOCT_DEVICE CachedFixedRule(const FixedView& view, const void* cache)
       : widths(view.widths),
+        cell_edge(view.cell_edge),
         cutoff2(view.cutoff2),
         force(view.force, static_cast<const int32_t*>(cache)),
         damp(view.damp, static_cast<const int32_t*>(cache)),
@@ -152,8 +158,8 @@ struct FixedPolicy {
       use(Variant<false>());
   }
 
-  // Both parts of a position, P+G fractional bits.
-  CUBOCT_DEVICE static int64_t whole(const Widths& widths, const Position& x, const Three<uint32_t>& residue, int axis) {
+  // Both parts of a position, P+G fractional bits. The host reads states with it.
+  CUBOCT_HD static int64_t whole(const Widths& widths, const Position& x, const Three<uint32_t>& residue, int axis) {
     return x.at[axis] * (int64_t{1} << widths.guard) + residue.at[axis];
   }
   CUBOCT_DEVICE static int64_t whole(const View& view, const Position& x, const Three<uint32_t>& residue, int axis) {
@@ -171,7 +177,7 @@ struct FixedPolicy {
   CUBOCT_DEVICE static bool add_pair(const Cached& rule, const GridView&, const Position& one, const Velocity& v,
                                      const Position& other, const Velocity& w, const int (&away)[3], Sum& sum) {
     Triple y;
-    for (int a = 0; a < 3; ++a) y[a] = other.at[a] + away[a] * (int64_t{1} << rule.widths.position_frac);
+    for (int a = 0; a < 3; ++a) y[a] = other.at[a] + int64_t{away[a]} * rule.cell_edge;
     const auto pair = pair_kick_of<PairOutcome>(rule, triple(one.at), triple(v), type_in(one.last), y, triple(w), type_in(other.last));
     for (int a = 0; a < 3; ++a) sum.at[a] += pair.kick[a];
     return pair.fault == Fault::none;
@@ -213,7 +219,7 @@ struct FixedPolicy {
 
   // In cells.
   CUBOCT_DEVICE static float along(const View& view, const GridView&, const Position& x, int axis) {
-    return static_cast<float>(x.at[axis]) / static_cast<float>(1 << view.widths.position_frac);
+    return static_cast<float>(x.at[axis]) * view.position_unit;
   }
   CUBOCT_DEVICE static int cells_off(const View& view, const GridView&, const Position& x, int axis) {
     return x.at[axis] >> view.widths.position_frac;

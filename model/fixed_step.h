@@ -22,11 +22,11 @@ CUBOCT_HD constexpr int leading_bit(uint64_t a) {
 // Where r2 falls in a table: FixedTable in model/fixed_rule.h.
 template <class Table>
 CUBOCT_HD void table_address(const Table& table, uint64_t r2, uint32_t& index, uint32_t& t) {
-  const uint64_t t_mask = (uint64_t{1} << table.fraction_bits) - 1;
+  const uint32_t t_mask = (uint32_t{1} << table.fraction_bits) - 1;
   if (static_cast<int>(table.shape) == 0) {  // TableShape::uniform
     const int below = 2 * table.difference_frac - table.index_bits;
     index = static_cast<uint32_t>(r2 >> below);
-    t = static_cast<uint32_t>(r2 >> (below - table.fraction_bits) & t_mask);
+    t = static_cast<uint32_t>(r2 >> (below - table.fraction_bits)) & t_mask;
     return;
   }
   index = t = 0;
@@ -38,16 +38,17 @@ CUBOCT_HD void table_address(const Table& table, uint64_t r2, uint32_t& index, u
   const uint64_t bin_and_t = spare >= 0 ? mantissa >> spare : mantissa << static_cast<unsigned>(-spare);
   const auto row = static_cast<uint32_t>(octave - table.first_octave);
   index = (row << table.bin_bits) + static_cast<uint32_t>(bin_and_t >> table.fraction_bits);
-  t = static_cast<uint32_t>(bin_and_t & t_mask);
+  t = static_cast<uint32_t>(bin_and_t) & t_mask;
 }
 
 template <class Table>
 CUBOCT_HD int64_t table_value(const Table& table, uint64_t r2) {
   uint32_t k, t;
   table_address(table, r2, k, t);
-  int64_t slope = table.c1[k];
-  if (table.degree == 2) slope += round_odd(int64_t{table.c2[k]} * t, table.fraction_bits);
-  return table.c0[k] + round_odd(slope * t, table.fraction_bits);
+  const auto fraction = static_cast<int32_t>(t);
+  if (table.degree == 1) return table.c0[k] + round_odd(product(table.c1[k], fraction), table.fraction_bits);
+  const int64_t slope = table.c1[k] + round_odd(product(table.c2[k], fraction), table.fraction_bits);
+  return table.c0[k] + round_odd(slope * fraction, table.fraction_bits);
 }
 
 // One pair's part of the kick, as PairResult holds it. x_i, x_j: visible positions, `x_j` in the frame of i's node.
@@ -56,9 +57,10 @@ CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple&
                               const Triple& x_j, const Triple& v_j, int type_j) {
   using FaultType = decltype(Result::fault);
   Result result;
-  int64_t d[3];
-  for (int a = 0; a < 3; ++a) d[a] = round_odd(x_j[a] - x_i[a], rule.difference_shift);
-  const auto r2 = static_cast<uint64_t>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  // Products of 32 bits by 32: differences have D <= 24 fractional bits of at most four cells, w and s 27 bits.
+  int32_t d[3];
+  for (int a = 0; a < 3; ++a) d[a] = static_cast<int32_t>(round_odd(x_j[a] - x_i[a], rule.difference_shift));
+  const auto r2 = static_cast<uint64_t>(product(d[0], d[0]) + product(d[1], d[1]) + product(d[2], d[2]));
   if (r2 >= rule.cutoff2) return result;
   result.inside = true;
   int64_t s = table_value(rule.force, r2);
@@ -66,19 +68,25 @@ CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple&
     const int w_bits = rule.widths.relative_velocity_bits;
     int64_t wd = 0;
     for (int a = 0; a < 3; ++a) {
-      const int64_t w = round_odd(v_j[a] - v_i[a], rule.w_shift);
-      if (!fits(w, w_bits) && result.fault == FaultType::none)
-        result.fault = FaultType::relative_velocity, result.number = w;
-      wd += wrap(w, w_bits) * d[a];
+      int64_t w = round_odd(v_j[a] - v_i[a], rule.w_shift);
+      if (!fits(w, w_bits)) {
+        if (result.fault == FaultType::none) result.fault = FaultType::relative_velocity, result.number = w;
+        w = wrap(w, w_bits);
+      }
+      wd += product(static_cast<int32_t>(w), d[a]);
     }
     const int64_t q = round_odd(wd, rule.q_shift);
     s -= round_odd(table_value(rule.damp, r2) * q, rule.damp_shift);
-    if (!fits(s, rule.widths.strength_bits) && result.fault == FaultType::none)
-      result.fault = FaultType::strength, result.number = s;
-    s = wrap(s, rule.widths.strength_bits);
+    if (!fits(s, rule.widths.strength_bits)) {
+      if (result.fault == FaultType::none) result.fault = FaultType::strength, result.number = s;
+      s = wrap(s, rule.widths.strength_bits);
+    }
   }
-  if (rule.scaled) s = round_odd(s * rule.scale[type_i][type_j], rule.widths.scale_frac);
-  for (int a = 0; a < 3; ++a) result.kick[a] = -round_odd(s * d[a], rule.kick_shift);
+  auto strength = static_cast<int32_t>(s);
+  if (rule.scaled)
+    strength = static_cast<int32_t>(
+        round_odd(product(strength, rule.scale[type_i][type_j]), rule.widths.scale_frac));
+  for (int a = 0; a < 3; ++a) result.kick[a] = -round_odd(product(strength, d[a]), rule.kick_shift);
   return result;
 }
 
@@ -92,7 +100,8 @@ CUBOCT_HD Result finish_of(const Rule& rule, const Triple& sum, const Triple& x,
   const auto& kind = rule.types[type];
   Result result;
   const auto check = [&result](int64_t value, int bits, FaultType fault) {
-    if (!fits(value, bits) && (result.fault == FaultType::none || fault < result.fault)) {
+    if (fits(value, bits)) return value;
+    if (result.fault == FaultType::none || fault < result.fault) {
       result.fault = fault;
       result.number = value;
     }

