@@ -33,21 +33,39 @@ struct Layout {
   }
 };
 
-// Until all are done. Most waits are short and spin; one that is not sleeps between looks, as the rank that
-// it waits for may want this core.
+using Clock = std::chrono::steady_clock;
+
+// A sleeper is back after some 100 us, where a rank that has a core to itself answers within one step's work.
+constexpr std::chrono::nanoseconds kLongestSpin = std::chrono::microseconds(400);
+constexpr std::chrono::nanoseconds kShortestSpin = std::chrono::microseconds(10);
+// A spin whose clock jumps so far was put aside: others want the core. For a while this rank does not spin
+// then.
+constexpr auto kPutAside = std::chrono::microseconds(500);
+constexpr auto kCrowded = std::chrono::milliseconds(50);
+constexpr auto kShortestSleep = std::chrono::microseconds(20), kLongestSleep = std::chrono::microseconds(200);
+
+// Until all are done. Who waits spins at first, and for less time where that was in vain; then it sleeps
+// between looks, as the rank that it waits for may want this core.
 void wait(std::span<MPI_Request> requests) {
-  using Clock = std::chrono::steady_clock;
-  constexpr auto kSpin = std::chrono::microseconds(50);
-  constexpr auto kShortest = std::chrono::microseconds(20), kLongest = std::chrono::microseconds(200);
+  static std::chrono::nanoseconds spin = kLongestSpin;
+  static Clock::time_point crowded_until;
   const auto begin = Clock::now();
-  auto sleep = kShortest;
+  auto last = begin;
+  std::chrono::nanoseconds sleep{};
   for (int done = 0;;) {
     MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
-    if (done != 0) return;
-    if (Clock::now() - begin < kSpin) continue;
+    if (done != 0) break;
+    const auto now = Clock::now();
+    if (sleep.count() == 0) {
+      if (now - last > kPutAside) crowded_until = now + kCrowded;
+      last = now;
+      if (now >= crowded_until && now - begin < spin) continue;
+    }
+    sleep =
+        sleep.count() == 0 ? kShortestSleep : std::min<std::chrono::nanoseconds>(2 * sleep, kLongestSleep);
     std::this_thread::sleep_for(sleep);
-    sleep = std::min(2 * sleep, kLongest);
   }
+  spin = sleep.count() == 0 ? std::min(2 * spin, kLongestSpin) : std::max(spin / 2, kShortestSpin);
 }
 
 void wait(MPI_Request request) { wait({&request, 1}); }
