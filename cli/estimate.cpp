@@ -16,8 +16,9 @@ namespace {
 
 constexpr double kProgram = 20e6;  // bytes, of a process before it has read anything
 
-// Of one engine: the time per particle, neighbour and step, and bytes per particle, neighbour and cell. Measured on one
-// thread of an idle Xeon (Sapphire Rapids) with scenes/bench: 18 neighbours in a crystal, 55 in a liquid.
+// Of one engine: the time per particle, neighbour and step, and bytes per particle, neighbour and cell.
+// Measured on one thread of an idle Xeon (Sapphire Rapids) with scenes/bench: 18 neighbours in a crystal, 55
+// in a liquid.
 struct Rates {
   const char* engine;
   double neighbour_time;  // s; 0: not known
@@ -25,9 +26,9 @@ struct Rates {
   double particle, neighbour, cell;  // bytes
 };
 constexpr Rates kRates[] = {
-    {"lattice", 3e-9, true, 240, 1.5, 70},   {"reference", 2.5e-9, true, 700, 6, 70},
-    {"golden", 40e-9, false, 600, 10, 100},  {"systemc", 0, false, 600, 0, 50e3},
-    {"rtl", 0, false, 600, 0, 15e3},          {"gpu", 0, false, 250, 0, 70},
+    {"lattice", 3e-9, true, 240, 1.5, 70},  {"reference", 2.5e-9, true, 700, 6, 70},
+    {"golden", 40e-9, false, 600, 10, 100}, {"systemc", 0, false, 600, 0, 50e3},
+    {"rtl", 0, false, 600, 0, 15e3},        {"gpu", 0, false, 250, 0, 70},
     {"fpga", 0, false, 600, 0, 70},
 };
 
@@ -41,8 +42,8 @@ struct Extent {
   double neighbours = 0;     // of a particle within the cutoff, in the mean
 };
 
-// Neighbours by density, in a box that is half a pitch or so larger than its particles' centres on either side; none are beyond
-// the particles that there are.
+// Neighbours by density, in a box that is half a pitch or so larger than its particles' centres on either
+// side; none are beyond the particles that there are.
 Extent extent_of(const Scene& scene, const FixedRule& rule) {
   Extent extent;
   Vec3 low = scene.body.x.front(), high = low;
@@ -96,14 +97,16 @@ RunSize run_size(const Scene& scene) {
 Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
   const Rates& rates = rates_of(size.engine);
   const Extent extent = extent_of(scene, plan.rule);
-  const double particles = plan.particles, cells = plan.lattice.size(), steps = static_cast<double>(size.steps);
+  const double particles = plan.particles, cells = plan.lattice.size(),
+               steps = static_cast<double>(size.steps);
   Estimate e;
   e.particle_steps = particles * steps;
   if (rates.neighbour_time > 0) {
     constexpr double kEach = 1000;  // fewer particles are not worth a thread
-    e.threads = rates.threads ? std::clamp(size.threads > 0 ? size.threads : static_cast<int>(particles / kEach), 1,
-                                           usable_cores())
-                              : 1;
+    e.threads = rates.threads
+                    ? std::clamp(size.threads > 0 ? size.threads : static_cast<int>(particles / kEach), 1,
+                                 usable_cores())
+                    : 1;
     if (size.ranks > 1) e.threads = std::min(size.ranks * std::max(1, size.threads), usable_cores());
     // A particle costs something however few neighbours it has.
     e.rate = 1 / (rates.neighbour_time * std::max(4.0, extent.neighbours));
@@ -113,20 +116,24 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
   constexpr double kCurvePoint = sizeof(uint64_t) + sizeof(double), kEnergies = 6, kOfProbe = 3;
   const double samples = size.probe_every > 0 ? count_every(size.probe_every, size.steps) : 0;
   const bool hashes_all = size.engine == "golden" || size.engine == "systemc" || size.engine == "rtl";
-  const double hashes = size.engine == "reference" ? 0 : count_every(hashes_all ? 1 : size.hash_every, size.steps);
+  const double hashes =
+      size.engine == "reference" ? 0 : count_every(hashes_all ? 1 : size.hash_every, size.steps);
   e.hashes = hashes * sizeof(uint64_t);
   e.samples = samples * (kEnergies + kOfProbe * static_cast<double>(scene.probes.size())) * kCurvePoint;
   const bool cycles = size.cycles || size.engine == "systemc" || size.engine == "rtl";
   e.spans = cycles ? steps * plan.nodes() * kPhases * sizeof(PhaseSpan) : 0;
   // Each rank reads the scene and keeps its lattice.
   constexpr double kRead = 64, kRank = 40e6;
-  e.memory = kProgram + particles * (rates.particle + rates.neighbour * extent.neighbours) + cells * rates.cell +
-             (size.ranks > 1 ? size.ranks * (kRank + kRead * particles + 70 * cells) : 0) + e.hashes + e.samples + e.spans;
+  e.memory = kProgram + particles * (rates.particle + rates.neighbour * extent.neighbours) +
+             cells * rates.cell +
+             (size.ranks > 1 ? size.ranks * (kRank + kRead * particles + 70 * cells) : 0) + e.hashes +
+             e.samples + e.spans;
 
   // Per particle a line of XYZ, a record of VTK and, packed, of the trace.
   constexpr double kXyz = 95, kVtk = 76, kState = 15, kPixel = 1, kSpan = 1.5;
   e.frames = count_every(size.frame_every, size.steps);
-  e.frame = kPixel * pixels_of(scene, extent, size.raster) + (size.states ? particles * (kXyz + kVtk + kState) : 0);
+  e.frame =
+      kPixel * pixels_of(scene, extent, size.raster) + (size.states ? particles * (kXyz + kVtk + kState) : 0);
   e.disk = e.frames * e.frame + e.hashes + e.samples + e.spans / sizeof(PhaseSpan) * kSpan;
   return e;
 }
@@ -135,12 +142,13 @@ void add_estimate(Items& items, const Estimate& e) {
   items.add("particle-steps", e.particle_steps);
   if (e.seconds > 0)
     items.add("time", e.seconds, "s",
-              fmt::format("an estimate: {:.2g} particle-steps/s on {} thread{}; what rests costs less", e.rate * e.threads,
-                          e.threads, e.threads == 1 ? "" : "s"));
-  items.add("memory", static_cast<uint64_t>(e.memory), "B", fmt::format("an estimate: {}", in_bytes(e.memory)));
+              fmt::format("an estimate: {:.2g} particle-steps/s on {} thread{}; what rests costs less",
+                          e.rate * e.threads, e.threads, e.threads == 1 ? "" : "s"));
+  items.add("memory", static_cast<uint64_t>(e.memory), "B",
+            fmt::format("an estimate: {}", in_bytes(e.memory)));
   items.add("disk", static_cast<uint64_t>(std::min(e.disk, 9e18)), "B",
-            fmt::format("an estimate: {} in the directory of a run, {:.6g} frames of {}", in_bytes(e.disk), e.frames,
-                        in_bytes(e.frame)));
+            fmt::format("an estimate: {} in the directory of a run, {:.6g} frames of {}", in_bytes(e.disk),
+                        e.frames, in_bytes(e.frame)));
 }
 
 void check_lists(const Scene& scene, const RunSize& size, bool frames_given) {
@@ -148,12 +156,11 @@ void check_lists(const Scene& scene, const RunSize& size, bool frames_given) {
   const auto refuse = [&](bool option, const char* key, uint64_t every) {
     if (every == 0 || count_every(every, size.steps) <= kMost) return;
     const uint64_t would_do = round_interval(size.steps, 0.5 * kMost);
-    const std::string text =
-        fmt::format("every {} of {} steps are {:.3g}: at most {:.3g} can be kept", every, size.steps,
-                    count_every(every, size.steps), kMost);
+    const std::string text = fmt::format("every {} of {} steps are {:.3g}: at most {:.3g} can be kept", every,
+                                         size.steps, count_every(every, size.steps), kMost);
     if (option) throw InputError("--frames-every: " + text, fmt::format("--frames-every {}", would_do));
-    scene.places.fail({fmt::format("run.{}", key), "run.duration", "run.steps"}, fmt::format("{}: {}", key, text),
-                      fmt::format("{} = {}", key, would_do));
+    scene.places.fail({fmt::format("run.{}", key), "run.duration", "run.steps"},
+                      fmt::format("{}: {}", key, text), fmt::format("{} = {}", key, would_do));
   };
   refuse(frames_given, "frame_every", size.frame_every);
   refuse(false, "probe_every", size.probe_every);
@@ -162,18 +169,21 @@ void check_lists(const Scene& scene, const RunSize& size, bool frames_given) {
 void check_fits(const Scene& scene, const RunSize& size, const Estimate& e, const std::string& out) {
   const double free = static_cast<double>(free_memory());
   if (e.memory > free) {
-    const std::string text = fmt::format("the run takes about {} of memory: {} are free", in_bytes(e.memory), in_bytes(free));
+    const std::string text =
+        fmt::format("the run takes about {} of memory: {} are free", in_bytes(e.memory), in_bytes(free));
     const double rest = e.memory - e.hashes - e.spans - e.samples;
     const double left = std::max(0.0, free - rest);
     const std::string anyway = "; --anyway runs it all the same";
     if (rest < free && e.spans >= std::max(e.hashes, e.samples))
-      throw InputError(fmt::format("{}, {} of it for the cycles of {} steps", text, in_bytes(e.spans), size.steps),
-                       fmt::format("--steps {:.0f}{}",
-                                   std::floor(0.9 * static_cast<double>(size.steps) * left / e.spans), anyway));
-    if (rest < free && e.hashes >= e.samples)
       throw InputError(
-          fmt::format("{}, {} of it for a hash every {} steps of {}", text, in_bytes(e.hashes), size.hash_every, size.steps),
-          fmt::format("--hash-every {}{}", round_interval(size.steps, 0.5 * left / sizeof(uint64_t)), anyway));
+          fmt::format("{}, {} of it for the cycles of {} steps", text, in_bytes(e.spans), size.steps),
+          fmt::format("--steps {:.0f}{}", std::floor(0.9 * static_cast<double>(size.steps) * left / e.spans),
+                      anyway));
+    if (rest < free && e.hashes >= e.samples)
+      throw InputError(fmt::format("{}, {} of it for a hash every {} steps of {}", text, in_bytes(e.hashes),
+                                   size.hash_every, size.steps),
+                       fmt::format("--hash-every {}{}",
+                                   round_interval(size.steps, 0.5 * left / sizeof(uint64_t)), anyway));
     if (rest < free)
       scene.places.fail({"run.probe_every", "run.duration", "run.steps"},
                         fmt::format("{}, {} of it for curves", text, in_bytes(e.samples)),
@@ -184,8 +194,9 @@ void check_fits(const Scene& scene, const RunSize& size, const Estimate& e, cons
   }
   const double disk = static_cast<double>(free_disk(out.empty() ? "." : out));
   if (out.empty() || e.disk <= disk) return;
-  const std::string text = fmt::format("the run takes about {} of disk, {:.6g} frames of {} each: {} are free in {}",
-                                       in_bytes(e.disk), e.frames, in_bytes(e.frame), in_bytes(disk), out);
+  const std::string text =
+      fmt::format("the run takes about {} of disk, {:.6g} frames of {} each: {} are free in {}",
+                  in_bytes(e.disk), e.frames, in_bytes(e.frame), in_bytes(disk), out);
   const double most = 0.9 * (disk - (e.disk - e.frames * e.frame)) / e.frame;
   const std::string hint =
       most >= 3 && size.steps > 2
@@ -194,7 +205,8 @@ void check_fits(const Scene& scene, const RunSize& size, const Estimate& e, cons
           : std::string("--no-states keeps pictures alone");
   // The command line's own wish has no place in the file.
   if (size.frame_every != scene.frame_every) throw InputError(text, hint + "; --anyway runs it all the same");
-  scene.places.fail({"run.frame_every", "packing.pitch", "geometry", "box"}, text, hint + "; --anyway runs it all the same");
+  scene.places.fail({"run.frame_every", "packing.pitch", "geometry", "box"}, text,
+                    hint + "; --anyway runs it all the same");
 }
 
 void check_workers(int threads, int ranks, const Plan& plan) {
@@ -202,15 +214,17 @@ void check_workers(int threads, int ranks, const Plan& plan) {
   constexpr int kPerCore = 4, kAlways = 16;
   const int cores = usable_cores(), most = std::max(kAlways, kPerCore * cores);
   const std::string here = fmt::format("this machine has {} core{} to use", cores, cores == 1 ? "" : "s");
-  if (threads > most) throw InputError(fmt::format("--threads {}: {}", threads, here), fmt::format("--threads {}", cores));
+  if (threads > most)
+    throw InputError(fmt::format("--threads {}: {}", threads, here), fmt::format("--threads {}", cores));
   // Under a scheduler of jobs, or with a list of hosts, ranks run elsewhere too.
   const auto set = [](const char* name) { return std::getenv(name) != nullptr; };
   const bool elsewhere =
       set("SLURM_JOB_ID") || set("PBS_JOBID") || set("LSB_JOBID") || set("OMPI_MCA_orte_default_hostfile");
   const auto nodes = static_cast<int>(std::min<uint32_t>(plan.nodes(), 1 << 30));  // a rank has whole ones
   if (ranks <= nodes && (ranks <= most || elsewhere)) return;
-  throw InputError(fmt::format("--ranks {}: {}, and the scene {} node{}", ranks, here, nodes, nodes == 1 ? "" : "s"),
-                   fmt::format("--ranks {}", std::min(cores, nodes)));
+  throw InputError(
+      fmt::format("--ranks {}: {}, and the scene {} node{}", ranks, here, nodes, nodes == 1 ? "" : "s"),
+      fmt::format("--ranks {}", std::min(cores, nodes)));
 }
 
 }  // namespace cuboct

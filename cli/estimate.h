@@ -15,10 +15,10 @@ struct RunSize {
   uint64_t steps = 0;
   uint64_t frame_every = 0, probe_every = 0;  // 0: first and last; 0: never
   uint64_t hash_every = 100;
-  bool cycles = false;   // spans of all phases of all nodes are kept
-  bool states = true;    // frames hold particles, not pictures alone
-  uint32_t raster = 800; // pixels along the body
-  int threads = 0;       // 0: as many as suit the scene
+  bool cycles = false;    // spans of all phases of all nodes are kept
+  bool states = true;     // frames hold particles, not pictures alone
+  uint32_t raster = 800;  // pixels along the body
+  int threads = 0;        // 0: as many as suit the scene
   int ranks = 1;
 };
 
@@ -37,8 +37,9 @@ struct Estimate {
   double frames = 0;
 };
 
-// Particles, cells and steps are counted. Time and bytes per particle are those measured on example scenes: time is right
-// within a factor of 3 or so on a machine of today where nothing rests, memory and disk within 2.
+// Particles, cells and steps are counted. Time and bytes per particle are those measured on example scenes:
+// time is right within a factor of 3 or so on a machine of today where nothing rests, memory and disk
+// within 2.
 Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size);
 
 void add_estimate(Items& items, const Estimate& estimate);
@@ -46,8 +47,8 @@ void add_estimate(Items& items, const Estimate& estimate);
 // Throws InputError where frames or samples are too many to list. `frames_given`: by the command line.
 void check_lists(const Scene& scene, const RunSize& size, bool frames_given);
 
-// Throws InputError where the run needs more memory than is free, or, into the directory `out` (empty: none), more disk: at
-// the key or option that asks for most of it, with what would do.
+// Throws InputError where the run needs more memory than is free, or, into the directory `out` (empty: none),
+// more disk: at the key or option that asks for most of it, with what would do.
 void check_fits(const Scene& scene, const RunSize& size, const Estimate& estimate, const std::string& out);
 
 // Throws InputError where threads (0: not given) or ranks are more than the machine or the scene can use.

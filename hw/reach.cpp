@@ -66,12 +66,14 @@ class Reach {
   Reach(double edge, const Vec3& origin, const Cell& period)
       : edge_(edge), origin_(origin), period_(period) {}
 
-  // Every cell that the box touches. 0, or how many those would be: more than can be built, infinite beyond all numbers.
+  // Every cell that the box touches. 0, or how many those would be: more than can be built, infinite beyond
+  // all numbers.
   double add(const Vec3& low, const Vec3& high) {
     double count = 1;
     std::array<Span, 3> box;
     for (int a = 0; a < 3; ++a) {
-      const double first = std::floor((low[a] - origin_[a]) / edge_), last = std::floor((high[a] - origin_[a]) / edge_);
+      const double first = std::floor((low[a] - origin_[a]) / edge_),
+                   last = std::floor((high[a] - origin_[a]) / edge_);
       const int32_t ring = period_[a];
       count *= ring > 0 ? std::min(last - first + 1, static_cast<double>(ring)) : last - first + 1;
       if (ring > 0 && last - first + 1 >= ring) {
@@ -80,7 +82,8 @@ class Reach {
         const auto begin = static_cast<int32_t>(first - std::floor(first / ring) * ring);
         box[a] = {begin, begin + static_cast<int32_t>(last - first)};
       } else {
-        if (!(std::max(std::abs(first), std::abs(last)) < 1e9)) return std::numeric_limits<double>::infinity();
+        if (!(std::max(std::abs(first), std::abs(last)) < 1e9))
+          return std::numeric_limits<double>::infinity();
         box[a] = {static_cast<int32_t>(first), static_cast<int32_t>(last)};
       }
     }
@@ -197,9 +200,10 @@ bool check_paths(const Scene& scene, double edge, const Cell& period) {
     if (open.norm() / edge > kMostCells || stops > kMostStops)
       scene.places.fail(
           {"run.duration", "run.steps"},
-          fmt::format("a body moved at {:.4g} m/s goes {:.4g} m in {:.4g} s, through {:.3g} cells of {:.4g} m: more "
-                      "than can be built",
-                      scene.rule.types[t].velocity.norm(), way.norm(), duration, way.norm() / edge, edge),
+          fmt::format(
+              "a body moved at {:.4g} m/s goes {:.4g} m in {:.4g} s, through {:.3g} cells of {:.4g} m: more "
+              "than can be built",
+              scene.rule.types[t].velocity.norm(), way.norm(), duration, way.norm() / edge, edge),
           "a shorter run, or one in which bodies are moved less far");
   }
   return any;
@@ -223,7 +227,8 @@ std::vector<Cell> reachable_cells(const Scene& scene, double edge, const Vec3& o
     if (std::isinf(count))
       scene.places.fail(causes, fmt::format("{} more than 1e+09 cells of {:.4g} m away", what, edge), hint);
     scene.places.fail(causes,
-                      fmt::format("{} {:.3g} cells of {:.4g} m: at most {:.3g} can be built", what, count, edge, kMostCells),
+                      fmt::format("{} {:.3g} cells of {:.4g} m: at most {:.3g} can be built", what, count,
+                                  edge, kMostCells),
                       hint);
   };
   const std::vector<std::string> run{"run.duration", "run.steps"};
@@ -241,7 +246,8 @@ std::vector<Cell> reachable_cells(const Scene& scene, double edge, const Vec3& o
       const double count = reach.add(layer(at.cwiseMin(to) - margin), layer(at.cwiseMax(to) + margin));
       if (count == 0) continue;
       if (way.isZero(0))
-        refuse({std::isinf(count) ? "particle" : "reach.margin"}, std::isinf(count) ? fmt::format("particle {} is", id) : "the reach of a particle spans", count,
+        refuse({std::isinf(count) ? "particle" : "reach.margin"},
+               std::isinf(count) ? fmt::format("particle {} is", id) : "the reach of a particle spans", count,
                std::isinf(count) ? "particles nearer to one another" : "a smaller reach.margin");
       refuse(run, fmt::format("a body that is moved by {:.4g} m reaches", way.norm()), count, shorter);
     }

@@ -17,9 +17,10 @@ namespace {
 
 constexpr double kTolerance = 1e-6;  // of the pitch
 
-// The h at which start + h * step lies within the bounds grown by `slack`; first > second where it never does. In a crystal
-// that is turned against a thin body, most rows of the bounds' corners' range pass it by.
-std::pair<double, double> inside_bounds(const Vec3& start, const Vec3& step, const Bounds& bounds, double slack) {
+// The h at which start + h * step lies within the bounds grown by `slack`; first > second where it never
+// does. In a crystal that is turned against a thin body, most rows of the bounds' corners' range pass it by.
+std::pair<double, double> inside_bounds(const Vec3& start, const Vec3& step, const Bounds& bounds,
+                                        double slack) {
   std::pair<double, double> in{-1e9, 1e9};
   for (int a = 0; a < 3; ++a) {
     const double low = bounds.low[a] - slack - start[a], high = bounds.high[a] + slack - start[a];

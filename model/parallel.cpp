@@ -29,8 +29,8 @@ constexpr auto kActiveSpin = std::chrono::milliseconds(10);  // of a user who wa
 constexpr auto kPutAside = std::chrono::microseconds(500);
 constexpr auto kCrowded = std::chrono::milliseconds(50);
 
-// std::atomic's own wait yields before it sleeps: on a busy machine a thread that yields has lost its turn, one that
-// sleeps is soon back.
+// std::atomic's own wait yields before it sleeps: on a busy machine a thread that yields has lost its turn,
+// one that sleeps is soon back.
 void sleep_while(const std::atomic<uint32_t>& word, uint32_t value) {
   syscall(SYS_futex, &word, FUTEX_WAIT_PRIVATE, value, nullptr, nullptr, 0);
 }

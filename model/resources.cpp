@@ -54,7 +54,8 @@ std::string group_of(const std::string& controller) {
   return "";
 }
 
-// Calls see(directory) for the group and those above it. In a container the root of the mount may be the group itself.
+// Calls see(directory) for the group and those above it. In a container the root of the mount may be the
+// group itself.
 template <typename See>
 void for_each_group(const fs::path& mount, const std::string& group, const See& see) {
   for (fs::path at = group; at.has_relative_path(); at = at.parent_path()) see(mount / at.relative_path());
@@ -105,8 +106,9 @@ double quota() {
 int counted_cores() {
   // Of 1024 cores and more the set would have to be larger: then all count.
   cpu_set_t set;
-  const int cores = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set)
-                                                                : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+  const int cores = sched_getaffinity(0, sizeof set, &set) == 0
+                        ? CPU_COUNT(&set)
+                        : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
   return static_cast<int>(std::clamp(std::ceil(quota()), 1.0, static_cast<double>(std::max(1, cores))));
 }
 

@@ -7,8 +7,8 @@
 
 namespace cuboct {
 
-// Cores that the process may keep busy: those of its affinity, or what its control group's quota pays for. At least 1. As they
-// are at the first call.
+// Cores that the process may keep busy: those of its affinity, or what its control group's quota pays for. At
+// least 1. As they are at the first call.
 int usable_cores();
 
 // Bytes that the process can still take without swapping: of the machine's available memory, of its control

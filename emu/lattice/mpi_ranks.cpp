@@ -33,21 +33,39 @@ struct Layout {
   }
 };
 
-// Until all are done. Most waits are short and spin; one that is not sleeps between looks, as the rank that it waits for may
-// want this core.
+using Clock = std::chrono::steady_clock;
+
+// A sleeper is back after some 100 us, where a rank that has a core to itself answers within one step's work.
+constexpr std::chrono::nanoseconds kLongestSpin = std::chrono::microseconds(400);
+constexpr std::chrono::nanoseconds kShortestSpin = std::chrono::microseconds(10);
+// A spin whose clock jumps so far was put aside: others want the core. For a while this rank does not spin
+// then.
+constexpr auto kPutAside = std::chrono::microseconds(500);
+constexpr auto kCrowded = std::chrono::milliseconds(50);
+constexpr auto kShortestSleep = std::chrono::microseconds(20), kLongestSleep = std::chrono::microseconds(200);
+
+// Until all are done. Who waits spins at first, and for less time where that was in vain; then it sleeps
+// between looks, as the rank that it waits for may want this core.
 void wait(std::span<MPI_Request> requests) {
-  using Clock = std::chrono::steady_clock;
-  constexpr auto kSpin = std::chrono::microseconds(50);
-  constexpr auto kShortest = std::chrono::microseconds(20), kLongest = std::chrono::microseconds(200);
+  static std::chrono::nanoseconds spin = kLongestSpin;
+  static Clock::time_point crowded_until;
   const auto begin = Clock::now();
-  auto sleep = kShortest;
+  auto last = begin;
+  std::chrono::nanoseconds sleep{};
   for (int done = 0;;) {
     MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
-    if (done != 0) return;
-    if (Clock::now() - begin < kSpin) continue;
+    if (done != 0) break;
+    const auto now = Clock::now();
+    if (sleep.count() == 0) {
+      if (now - last > kPutAside) crowded_until = now + kCrowded;
+      last = now;
+      if (now >= crowded_until && now - begin < spin) continue;
+    }
+    sleep =
+        sleep.count() == 0 ? kShortestSleep : std::min<std::chrono::nanoseconds>(2 * sleep, kLongestSleep);
     std::this_thread::sleep_for(sleep);
-    sleep = std::min(2 * sleep, kLongest);
   }
+  spin = sleep.count() == 0 ? std::min(2 * spin, kLongestSpin) : std::max(spin / 2, kShortestSpin);
 }
 
 void wait(MPI_Request request) { wait({&request, 1}); }
@@ -56,8 +74,8 @@ void wait(MPI_Request request) { wait({&request, 1}); }
 
 MpiRanks::MpiRanks(int* argc, char*** argv) {
   int provided = 0;
-  // Open MPI would yield at each look of wait() where it takes the machine for full: on a busy one who yields has lost
-  // its turn for milliseconds, who sleeps is soon back. What a user sets stays.
+  // Open MPI would yield at each look of wait() where it takes the machine for full: on a busy one who yields
+  // has lost its turn for milliseconds, who sleeps is soon back. What a user sets stays.
   setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
   prctl(PR_SET_TIMERSLACK, 1000);  // ns; by default sleeps are 50 us longer than asked for
   // Threads compute; only the first one talks.
@@ -75,19 +93,22 @@ MpiRanks::~MpiRanks() {
 
 void MpiRanks::sum(std::span<uint64_t> values) {
   MPI_Request request;
-  MPI_Iallreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD, &request);
+  MPI_Iallreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD,
+                 &request);
   wait(request);
 }
 
 void MpiRanks::most(std::span<double> values) {
   MPI_Request request;
-  MPI_Iallreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD, &request);
+  MPI_Iallreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD,
+                 &request);
   wait(request);
 }
 
 void MpiRanks::any(std::span<uint8_t> flags) {
   MPI_Request request;
-  MPI_Iallreduce(MPI_IN_PLACE, flags.data(), checked(flags.size()), MPI_UINT8_T, MPI_BOR, MPI_COMM_WORLD, &request);
+  MPI_Iallreduce(MPI_IN_PLACE, flags.data(), checked(flags.size()), MPI_UINT8_T, MPI_BOR, MPI_COMM_WORLD,
+                 &request);
   wait(request);
 }
 
@@ -101,8 +122,8 @@ std::vector<Bytes> MpiRanks::exchange(const std::vector<Bytes>& to) {
   Bytes sent, received(static_cast<size_t>(receive.total));
   sent.reserve(static_cast<size_t>(send.total));
   for (const Bytes& b : to) sent.insert(sent.end(), b.begin(), b.end());
-  MPI_Ialltoallv(sent.data(), send.count.data(), send.at.data(), MPI_BYTE, received.data(), receive.count.data(),
-                 receive.at.data(), MPI_BYTE, MPI_COMM_WORLD, &request);
+  MPI_Ialltoallv(sent.data(), send.count.data(), send.at.data(), MPI_BYTE, received.data(),
+                 receive.count.data(), receive.at.data(), MPI_BYTE, MPI_COMM_WORLD, &request);
   wait(request);
   std::vector<Bytes> from(to.size());
   for (size_t q = 0; q < to.size(); ++q)
@@ -118,8 +139,8 @@ Bytes MpiRanks::all(const Bytes& mine) {
   wait(request);
   const Layout layout(counts);
   Bytes received(static_cast<size_t>(layout.total));
-  MPI_Iallgatherv(mine.data(), count, MPI_BYTE, received.data(), layout.count.data(), layout.at.data(), MPI_BYTE,
-                  MPI_COMM_WORLD, &request);
+  MPI_Iallgatherv(mine.data(), count, MPI_BYTE, received.data(), layout.count.data(), layout.at.data(),
+                  MPI_BYTE, MPI_COMM_WORLD, &request);
   wait(request);
   return received;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Input that asks for more than a machine has is refused before anything is made: within seconds of CPU time and
-// little memory, which limits of the process hold.
+// Input that asks for more than a machine has is refused before anything is made: within seconds of CPU time
+// and little memory, which limits of the process hold.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -46,7 +46,8 @@ TEST_F(LimitsTest, APathThatIsTooLong) {
       "[[constraint]]\nname = \"pull\"\nkind = \"moved\"\nregion = { shape = \"sphere\", radius = 0.1 }\n";
   const std::string run = "[run]\ndt = 0.001\nsteps = 1000000000000\n";
   EXPECT_EQ(refusal(kHead + kPair + moved + "velocity = [1, 0, 0]\n" + run),
-            ":19:9: a body moved at 1 m/s goes 1e+09 m in 1e+09 s, through 4e+08 cells of 2.5 m: more than can be built\n"
+            ":19:9: a body moved at 1 m/s goes 1e+09 m in 1e+09 s, through 4e+08 cells of 2.5 m: more than "
+            "can be built\n"
             "  hint: a shorter run, or one in which bodies are moved less far\n");
   EXPECT_EQ(refusal(kHead + kPair + moved + "velocity = [0.02, 0.01, 0]\n" + run).substr(0, 6), ":19:9:");
 }
@@ -62,13 +63,15 @@ TEST_F(LimitsTest, APathAroundARingIsNotTooLong) {
 }
 
 std::string block(const std::string& cells, const std::string& rest = "") {
-  return kHead + "[packing]\npitch = 1.1\n[box]\n" + cells + "\nperiodic = \"xyz\"\n[run]\ndt = 0.001\nsteps = 10\n" + rest;
+  return kHead + "[packing]\npitch = 1.1\n[box]\n" + cells +
+         "\nperiodic = \"xyz\"\n[run]\ndt = 0.001\nsteps = 10\n" + rest;
 }
 
 TEST_F(LimitsTest, MoreParticlesThanMemory) {
   const std::string text = refusal(block("cells = [700, 700, 700]"));
-  EXPECT_TRUE(std::regex_match(text, std::regex(":10:1: about 1.37e\\+09 particles, 87.8 GB to read them: [0-9.]+ [MG]B are "
-                                                "free\n  hint: 'cells' whose product is smaller by a factor of [0-9.]+\n")))
+  EXPECT_TRUE(std::regex_match(
+      text, std::regex(":10:1: about 1.37e\\+09 particles, 87.8 GB to read them: [0-9.]+ [MG]B are "
+                       "free\n  hint: 'cells' whose product is smaller by a factor of [0-9.]+\n")))
       << text;
 }
 
@@ -77,7 +80,9 @@ TEST_F(LimitsTest, ABeamOfTooFineAPitch) {
       "density = \"7800 kg/m^3\"\n[packing]\npitch = \"0.05 mm\"\n[geometry]\nshape = \"box\"\n"
       "size = \"[200, 20, 20] mm\"\n[law]\nkind = \"ductile\"\nyoungs_modulus = \"200 GPa\"\n"
       "direction = [1, 0, 0]\n[run]\nduration = \"1 ms\"\n");
-  EXPECT_TRUE(std::regex_search(text, std::regex("^:4:1: about 9\\.[0-9]+e\\+08 particles, [0-9.]+ GB to read them: "))) << text;
+  EXPECT_TRUE(std::regex_search(
+      text, std::regex("^:4:1: about 9\\.[0-9]+e\\+08 particles, [0-9.]+ GB to read them: ")))
+      << text;
 }
 
 TEST_F(LimitsTest, APolygonOfTooManyPoints) {
@@ -89,14 +94,17 @@ TEST_F(LimitsTest, APolygonOfTooManyPoints) {
   const std::string text =
       refusal(kHead + "[packing]\npitch = 1.1\n[geometry]\nshape = \"extrude\"\nx = [" + x + "]\ny = [" + y +
               "]\nthickness = 100.0\n[run]\ndt = 0.001\nsteps = 10\n");
-  EXPECT_NE(text.find("held against 100000 parts of the geometry: at most 4e+10 tests are made"), std::string::npos) << text;
+  EXPECT_NE(text.find("held against 100000 parts of the geometry: at most 4e+10 tests are made"),
+            std::string::npos)
+      << text;
   EXPECT_NE(text.find("or fewer points"), std::string::npos) << text;
 }
 
 TEST_F(LimitsTest, TooManyMaterials) {
   std::string many;
   for (int k = 0; k < 30'000; ++k) many += fmt::format("[[material]]\nname = \"m{}\"\n", k);
-  EXPECT_EQ(refusal(kHead + many + kPair + "[run]\ndt = 0.001\nsteps = 10\n"), ":520:1: more than 256 materials\n");
+  EXPECT_EQ(refusal(kHead + many + kPair + "[run]\ndt = 0.001\nsteps = 10\n"),
+            ":520:1: more than 256 materials\n");
 }
 
 TEST_F(LimitsTest, ManyRegionsAreFound) {
@@ -118,20 +126,24 @@ TEST_F(LimitsTest, TablesWithinTables) {
     for (int k = 0; k < 200'000; ++k) text += part;
     return text;
   };
-  EXPECT_EQ(refusal("title = \"...........\"\n" + repeated("a.") + "a = 1\n"), ":2:128: a key of more than 64 parts\n");
+  EXPECT_EQ(refusal("title = \"...........\"\n" + repeated("a.") + "a = 1\n"),
+            ":2:128: a key of more than 64 parts\n");
   EXPECT_EQ(refusal(std::string("[") + repeated("a.") + "a]\n"), ":1:129: a key of more than 64 parts\n");
   for (const char* open : {"[", "{a="})
-    EXPECT_NE(refusal("a = " + repeated(open)).find("exceeded maximum nested value depth"), std::string::npos) << open;
+    EXPECT_NE(refusal("a = " + repeated(open)).find("exceeded maximum nested value depth"), std::string::npos)
+        << open;
 }
 
 TEST_F(LimitsTest, ParticlesBeyondAllNumbers) {
-  EXPECT_EQ(refusal(kHead + "[[particle]]\nposition = [0, 0, 0]\n[[particle]]\nposition = [1e300, 0, 0]\n"
-                            "[run]\ndt = 0.001\nsteps = 10\n"),
-            ":8:1: particle 1 is more than 1e+09 cells of 2.5 m away\n  hint: particles nearer to one another\n");
+  EXPECT_EQ(
+      refusal(kHead + "[[particle]]\nposition = [0, 0, 0]\n[[particle]]\nposition = [1e300, 0, 0]\n"
+                      "[run]\ndt = 0.001\nsteps = 10\n"),
+      ":8:1: particle 1 is more than 1e+09 cells of 2.5 m away\n  hint: particles nearer to one another\n");
 }
 
 TEST_F(LimitsTest, ABoxOfTooManyCells) {
-  EXPECT_EQ(refusal(kHead + kPair + "[box]\nsize = [1e12, 10, 10]\nperiodic = \"x\"\n[run]\ndt = 0.001\nsteps = 10\n"),
+  EXPECT_EQ(refusal(kHead + kPair +
+                    "[box]\nsize = [1e12, 10, 10]\nperiodic = \"x\"\n[run]\ndt = 0.001\nsteps = 10\n"),
             ":13:8: the periodic box is 4e+11 cells of 2.5 m long: at most 1e+07 can be built\n");
 }
 
@@ -144,19 +156,24 @@ TEST_F(LimitsTest, ListsOfSteps) {
   const std::string path = bench_.path("scene.toml");
   Answer answer = run(scene + "frame_every = 1\n", {});
   EXPECT_EQ(answer.code, 2);
-  EXPECT_EQ(answer.err, path + ":15:15: frame_every: every 1 of 1000000000000 steps are 1e+12: at most 1e+07 can be kept\n"
-                               "  hint: frame_every = 300000\n");
+  EXPECT_EQ(answer.err,
+            path +
+                ":15:15: frame_every: every 1 of 1000000000000 steps are 1e+12: at most 1e+07 can be kept\n"
+                "  hint: frame_every = 300000\n");
   answer = run(scene, {"--frames-every", "7", "--out", bench_.path("out")});
   EXPECT_EQ(answer.code, 2);
-  EXPECT_EQ(answer.err, "--frames-every: every 7 of 1000000000000 steps are 1.43e+11: at most 1e+07 can be kept\n"
-                        "  hint: --frames-every 300000\n");
+  EXPECT_EQ(answer.err,
+            "--frames-every: every 7 of 1000000000000 steps are 1.43e+11: at most 1e+07 can be kept\n"
+            "  hint: --frames-every 300000\n");
   answer = run(scene, {"--hash-every", "1"});
   EXPECT_EQ(answer.code, 2);
-  EXPECT_NE(answer.err.find("8 TB of it for a hash every 1 steps of 1000000000000\n  hint: --hash-every "), std::string::npos)
+  EXPECT_NE(answer.err.find("8 TB of it for a hash every 1 steps of 1000000000000\n  hint: --hash-every "),
+            std::string::npos)
       << answer.err;
   answer = run(scene, {"--cycles", "--hash-every", "1000000000"});
   EXPECT_EQ(answer.code, 2);
-  EXPECT_NE(answer.err.find(" of it for the cycles of 1000000000000 steps\n  hint: --steps "), std::string::npos)
+  EXPECT_NE(answer.err.find(" of it for the cycles of 1000000000000 steps\n  hint: --steps "),
+            std::string::npos)
       << answer.err;
 }
 
@@ -165,26 +182,30 @@ TEST_F(LimitsTest, FramesBeyondTheDisk) {
   const Answer answer = bench_.cuboct(
       {"run", "scenes/plate.toml", "--steps", "1000000", "--frames-every", "1", "--out", out}, 0, kSmall);
   EXPECT_EQ(answer.code, 2);
-  EXPECT_TRUE(std::regex_match(answer.err, std::regex("the run takes about [0-9.]+ TB of disk, 1e\\+06 frames of [0-9.]+ MB "
-                                                      "each: [0-9.]+ .B are free in .*\n  hint: --frames-every [0-9]+; "
-                                                      "--anyway runs it all the same\n")))
+  EXPECT_TRUE(std::regex_match(
+      answer.err, std::regex("the run takes about [0-9.]+ TB of disk, 1e\\+06 frames of [0-9.]+ MB "
+                             "each: [0-9.]+ .B are free in .*\n  hint: --frames-every [0-9]+; "
+                             "--anyway runs it all the same\n")))
       << answer.err;
   EXPECT_FALSE(std::filesystem::exists(out + "/trace.h5"));
 }
 
 TEST_F(LimitsTest, ThreadsAndRanksBeyondTheMachine) {
   const auto run = [&](const char* option, const char* count) {
-    return bench_.cuboct({"run", "scenes/lj_block.toml", "--steps", "2", option, count}, 0, {.cpu_seconds = 20});
+    return bench_.cuboct({"run", "scenes/lj_block.toml", "--steps", "2", option, count}, 0,
+                         {.cpu_seconds = 20});
   };
   Answer answer = run("--ranks", "1000");
   EXPECT_EQ(answer.code, 2);
-  EXPECT_TRUE(std::regex_match(answer.err, std::regex("--ranks 1000: this machine has [0-9]+ cores? to use, and the scene 27 "
-                                                      "nodes\n  hint: --ranks [0-9]+\n")))
+  EXPECT_TRUE(std::regex_match(
+      answer.err, std::regex("--ranks 1000: this machine has [0-9]+ cores? to use, and the scene 27 "
+                             "nodes\n  hint: --ranks [0-9]+\n")))
       << answer.err;
   answer = run("--threads", "4096");
   EXPECT_EQ(answer.code, 2);
   EXPECT_TRUE(std::regex_match(
-      answer.err, std::regex("--threads 4096: this machine has [0-9]+ cores? to use\n  hint: --threads [0-9]+\n")))
+      answer.err,
+      std::regex("--threads 4096: this machine has [0-9]+ cores? to use\n  hint: --threads [0-9]+\n")))
       << answer.err;
 }
 
@@ -207,9 +228,11 @@ class EstimateTest : public LimitsTest {
 
 TEST_F(EstimateTest, HoldWithinAFactorOfTwo) {
   for (const char* scene : {"scenes/coupon.toml", "scenes/sheet.toml", "scenes/bench/block_32k.toml"}) {
-    std::string text = std::regex_replace(contents(CUBOCT_SOURCE_DIR "/" + std::string(scene)),
-                                          std::regex("\n(steps|duration|frame_every|probe_every) *=[^\n]*"), "");
-    text = std::regex_replace(text, std::regex("\n\\[run\\]"), "\n[run]\nsteps = 60\nframe_every = 10\nprobe_every = 5");
+    std::string text =
+        std::regex_replace(contents(CUBOCT_SOURCE_DIR "/" + std::string(scene)),
+                           std::regex("\n(steps|duration|frame_every|probe_every) *=[^\n]*"), "");
+    text = std::regex_replace(text, std::regex("\n\\[run\\]"),
+                              "\n[run]\nsteps = 60\nframe_every = 10\nprobe_every = 5");
     const std::string path = file("scene.toml", text), out = bench_.path("results");
     const std::string told = bench_.cuboct({"check", path, "--json"}).out;
     const Answer ran = bench_.cuboct({"run", path, "--threads", "1", "--out", out, "--json"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Threads and ranks that wait leave their core to others: beside busy programs a run in two takes hardly more CPU time than
-// a run in one. CPU time alone is compared, which a busy machine does not change.
+// Threads and ranks that wait leave their core to others: beside busy programs a run in two takes hardly more
+// CPU time than a run in one. CPU time alone is compared, which a busy machine does not change.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -44,11 +44,12 @@ class Busy {
 };
 
 // Of a run of the coupon, bound to so many cores (0: all).
-double cpu_of(const std::string& option, const std::string& count, int cores = 0, const std::string& steps = "1500") {
+double cpu_of(const std::string& option, const std::string& count, int cores = 0,
+              const std::string& steps = "300") {
   const Bench bench(false);
   std::filesystem::copy(CUBOCT_LATTICE, bench.path("bin/cuboct-lattice"));
-  const Answer answer = bench.cuboct({"run", "scenes/coupon.toml", "--no-watch", "--steps", steps, option, count}, 0,
-                                     {.cores = cores});
+  const Answer answer = bench.cuboct(
+      {"run", "scenes/coupon.toml", "--no-watch", "--steps", steps, option, count}, 0, {.cores = cores});
   EXPECT_EQ(answer.code, 0) << answer.err;
   return answer.cpu;
 }

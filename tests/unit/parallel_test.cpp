@@ -36,7 +36,8 @@ TEST(Parallel, DoesEachPartOnceInAMemberOfItsOwn) {
   EXPECT_GT(shared, 0u);
 }
 
-// Members 1, 2, ... have the slow parts: all others help them, and two reach for the same part again and again.
+// Members 1, 2, ... have the slow parts: all others help them, and two reach for the same part again and
+// again.
 TEST(Parallel, DoesNoPartTwiceWhereManyReachForIt) {
   size_t helped = 0;
   for (int round = 0; round < 3'000; ++round) {
@@ -49,7 +50,8 @@ TEST(Parallel, DoesNoPartTwiceWhereManyReachForIt) {
       by_others += member != owner ? 1 : 0;
       ++done[part];
     });
-    for (size_t part = 0; part < done.size(); ++part) ASSERT_EQ(done[part], 1) << "round " << round << ", part " << part;
+    for (size_t part = 0; part < done.size(); ++part)
+      ASSERT_EQ(done[part], 1) << "round " << round << ", part " << part;
     helped += by_others;
   }
   EXPECT_GT(helped, 1000u);
@@ -97,7 +99,9 @@ TEST(Parallel, WorksWithinItselfAndBesideItself) {
 double cpu_seconds() {
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
