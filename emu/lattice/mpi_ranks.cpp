@@ -2,6 +2,7 @@
 #include "emu/lattice/mpi_ranks.h"
 
 #include <sys/prctl.h>
+#include <sys/sysinfo.h>
 
 #include <algorithm>
 #include <chrono>
@@ -33,42 +34,23 @@ struct Layout {
   }
 };
 
-using Clock = std::chrono::steady_clock;
+// Most waits are short and spin. One that is not sleeps between looks, as the rank that it waits for, or
+// somebody else, may want this core. A yielded turn is gone for milliseconds beside strangers; a sleeper is
+// soon back.
+constexpr auto kSpin = std::chrono::microseconds(100), kSpinWithoutACore = std::chrono::microseconds(20);
+constexpr std::chrono::nanoseconds kShortestSleep = std::chrono::microseconds(5),
+                                   kLongestSleep = std::chrono::microseconds(50);
+// A message in pieces takes some calls in a row.
+constexpr int kCallsOfALook = 4;
 
-// A sleeper is back after some 100 us, where a rank that has a core to itself answers within one step's work.
-constexpr std::chrono::nanoseconds kLongestSpin = std::chrono::microseconds(400);
-constexpr std::chrono::nanoseconds kShortestSpin = std::chrono::microseconds(10);
-// A spin whose clock jumps so far was put aside: others want the core. For a while this rank does not spin
-// then.
-constexpr auto kPutAside = std::chrono::microseconds(500);
-constexpr auto kCrowded = std::chrono::milliseconds(50);
-constexpr auto kShortestSleep = std::chrono::microseconds(20), kLongestSleep = std::chrono::microseconds(200);
-
-// Until all are done. Who waits spins at first, and for less time where that was in vain; then it sleeps
-// between looks, as the rank that it waits for may want this core.
-void wait(std::span<MPI_Request> requests) {
-  static std::chrono::nanoseconds spin = kLongestSpin;
-  static Clock::time_point crowded_until;
-  const auto begin = Clock::now();
-  auto last = begin;
-  std::chrono::nanoseconds sleep{};
-  for (int done = 0;;) {
-    MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
-    if (done != 0) break;
-    const auto now = Clock::now();
-    if (sleep.count() == 0) {
-      if (now - last > kPutAside) crowded_until = now + kCrowded;
-      last = now;
-      if (now >= crowded_until && now - begin < spin) continue;
-    }
-    sleep =
-        sleep.count() == 0 ? kShortestSleep : std::min<std::chrono::nanoseconds>(2 * sleep, kLongestSleep);
-    std::this_thread::sleep_for(sleep);
-  }
-  spin = sleep.count() == 0 ? std::min(2 * spin, kLongestSpin) : std::max(spin / 2, kShortestSpin);
+bool every_rank_has_a_core() {
+  MPI_Comm here;
+  int ranks = 1;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+  MPI_Comm_size(here, &ranks);
+  MPI_Comm_free(&here);
+  return ranks <= get_nprocs();
 }
-
-void wait(MPI_Request request) { wait({&request, 1}); }
 
 }  // namespace
 
@@ -82,34 +64,49 @@ MpiRanks::MpiRanks(int* argc, char*** argv) {
   MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  spin_ = every_rank_has_a_core() ? kSpin : kSpinWithoutACore;
 }
 
 MpiRanks::~MpiRanks() {
   // MPI's own wait for the last rank, which may be writing files, takes a core.
   MPI_Request request;
-  if (MPI_Ibarrier(MPI_COMM_WORLD, &request) == MPI_SUCCESS) wait(request);
+  if (MPI_Ibarrier(MPI_COMM_WORLD, &request) == MPI_SUCCESS) wait({&request, 1});
   MPI_Finalize();
+}
+
+void MpiRanks::wait(std::span<MPI_Request> requests) const {
+  const auto begin = std::chrono::steady_clock::now();
+  auto sleep = kShortestSleep;
+  for (;;) {
+    for (int call = 0, done = 0; call < kCallsOfALook; ++call) {
+      MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
+      if (done != 0) return;
+    }
+    if (std::chrono::steady_clock::now() - begin < spin_) continue;
+    std::this_thread::sleep_for(sleep);
+    sleep = std::min(2 * sleep, kLongestSleep);
+  }
 }
 
 void MpiRanks::sum(std::span<uint64_t> values) {
   MPI_Request request;
   MPI_Iallreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD,
                  &request);
-  wait(request);
+  wait({&request, 1});
 }
 
 void MpiRanks::most(std::span<double> values) {
   MPI_Request request;
   MPI_Iallreduce(MPI_IN_PLACE, values.data(), checked(values.size()), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD,
                  &request);
-  wait(request);
+  wait({&request, 1});
 }
 
 void MpiRanks::any(std::span<uint8_t> flags) {
   MPI_Request request;
   MPI_Iallreduce(MPI_IN_PLACE, flags.data(), checked(flags.size()), MPI_UINT8_T, MPI_BOR, MPI_COMM_WORLD,
                  &request);
-  wait(request);
+  wait({&request, 1});
 }
 
 std::vector<Bytes> MpiRanks::exchange(const std::vector<Bytes>& to) {
@@ -117,14 +114,14 @@ std::vector<Bytes> MpiRanks::exchange(const std::vector<Bytes>& to) {
   for (size_t q = 0; q < to.size(); ++q) out[q] = checked(to[q].size());
   MPI_Request request;
   MPI_Ialltoall(out.data(), 1, MPI_INT, in.data(), 1, MPI_INT, MPI_COMM_WORLD, &request);
-  wait(request);
+  wait({&request, 1});
   const Layout send(out), receive(in);
   Bytes sent, received(static_cast<size_t>(receive.total));
   sent.reserve(static_cast<size_t>(send.total));
   for (const Bytes& b : to) sent.insert(sent.end(), b.begin(), b.end());
   MPI_Ialltoallv(sent.data(), send.count.data(), send.at.data(), MPI_BYTE, received.data(),
                  receive.count.data(), receive.at.data(), MPI_BYTE, MPI_COMM_WORLD, &request);
-  wait(request);
+  wait({&request, 1});
   std::vector<Bytes> from(to.size());
   for (size_t q = 0; q < to.size(); ++q)
     from[q].assign(received.begin() + receive.at[q], received.begin() + receive.at[q] + receive.count[q]);
@@ -136,12 +133,12 @@ Bytes MpiRanks::all(const Bytes& mine) {
   std::vector<int> counts(static_cast<size_t>(size_));
   MPI_Request request;
   MPI_Iallgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD, &request);
-  wait(request);
+  wait({&request, 1});
   const Layout layout(counts);
   Bytes received(static_cast<size_t>(layout.total));
   MPI_Iallgatherv(mine.data(), count, MPI_BYTE, received.data(), layout.count.data(), layout.at.data(),
                   MPI_BYTE, MPI_COMM_WORLD, &request);
-  wait(request);
+  wait({&request, 1});
   return received;
 }
 

@@ -3,6 +3,8 @@
 
 #include <mpi.h>
 
+#include <chrono>
+
 #include "emu/lattice/ranks.h"
 
 namespace cuboct::emu {
@@ -27,7 +29,11 @@ class MpiRanks : public Ranks {
   void finish() override;
 
  private:
+  // Until all are done.
+  void wait(std::span<MPI_Request> requests) const;
+
   int rank_ = 0, size_ = 1;
+  std::chrono::nanoseconds spin_{};  // of a wait, before it sleeps
   std::vector<MPI_Request> requests_;
 };
 
