@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -68,7 +69,7 @@ constexpr int kLeastCapacity = 16;
 constexpr double kMayComeIn = 0.2;
 
 // Particles that the fullest cell may hold with those that may come in through its faces, and a quarter more: a multiple
-// of four.
+// of four. A power of two that holds the former is enough: with one particle more, each memory doubles.
 int capacity_for(const Scene& scene, const Lattice& lattice, double edge, const Vec3& origin) {
   const double pitch = scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff();
   const double reach = kMayComeIn * pitch / edge;
@@ -84,8 +85,9 @@ int capacity_for(const Scene& scene, const Lattice& lattice, double edge, const 
         for (int32_t cx = near[0][0]; cx <= near[0][1]; ++cx)
           if (const uint32_t cell = lattice.find({cx, cy, cz}); cell != kNoNode) ++count[cell];
   }
-  const double fullest = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
-  return std::clamp(4 * static_cast<int>(std::ceil(1.25 * fullest / 4)), kLeastCapacity, 256);
+  const uint32_t fullest = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
+  const uint32_t roomy = 4 * ((5 * fullest + 15) / 16), power = std::bit_floor(roomy);
+  return std::clamp(static_cast<int>(power >= fullest ? power : roomy), kLeastCapacity, 256);
 }
 
 // The rule in integers. Where formats that the arch file sets cannot hold it, the hint names those that can.
