@@ -191,6 +191,8 @@ class Machine {
   void resettle();
   void sort();
   void mirror();
+  template <class Use>
+  void each_copy(const Slab& s, const Use& use);
   void mirror_residues();
   void list_pairs();
   void list_pairs(Slab& slab);

@@ -266,6 +266,18 @@ void Machine<Policy>::sort() {
   wait_for_all();
 }
 
+// Calls use(slab beside, place in its arrays, place of its copies here, count) for each border of a slab.
+template <class Policy>
+template <class Use>
+void Machine<Policy>::each_copy(const Slab& s, const Use& use) {
+  for (int side = 0; side < 2; ++side) {
+    const Slab* other = beside(s, side);
+    if (!other) continue;
+    const uint32_t to = side == 0 ? s.own : s.lower_copy_end;
+    use(*other, side == 0 ? other->high_begin : 0, to, (side == 0 ? s.lower_copy_end : s.all) - to);
+  }
+}
+
 // The neighbours' borders into one's own copies.
 template <class Policy>
 void Machine<Policy>::mirror() {
@@ -273,20 +285,15 @@ void Machine<Policy>::mirror() {
   for (auto& slab : slabs_) {
     Slab& s = *slab;
     counters.halo_particles += s.all - s.own;
-    for (int side = 0; side < 2; ++side) {
-      const Slab* other = beside(s, side);
-      if (!other) continue;
-      const uint32_t to = side == 0 ? s.own : s.lower_copy_end;
-      const uint32_t from = side == 0 ? other->high_begin : 0;
-      const size_t count = (side == 0 ? s.lower_copy_end : s.all) - to;
-      copy(s.stream, s.x[at_].data() + to, s.device, other->x[at_].data() + from, other->device,
+    each_copy(s, [&](const Slab& other, uint32_t from, uint32_t to, size_t count) {
+      copy(s.stream, s.x[at_].data() + to, s.device, other.x[at_].data() + from, other.device,
            count * sizeof(typename Policy::Position));
       // Velocities into both of the slab's states: with them go anchors, which a list's steps leave as they are.
       for (int state = 0; state < 2; ++state)
-        copy(s.stream, s.v[state].data() + to, s.device, other->v[at_].data() + from, other->device,
+        copy(s.stream, s.v[state].data() + to, s.device, other.v[at_].data() + from, other.device,
              count * sizeof(typename Policy::Velocity));
-      copy(s.stream, s.cell.data() + to, s.device, other->cell.data() + from, other->device, count * sizeof(CellAt));
-    }
+      copy(s.stream, s.cell.data() + to, s.device, other.cell.data() + from, other.device, count * sizeof(CellAt));
+    });
   }
   wait_for_all();
 }
@@ -298,15 +305,10 @@ void Machine<Policy>::mirror_residues() {
   wait_for_all();
   for (auto& slab : slabs_) {
     Slab& s = *slab;
-    for (int side = 0; side < 2; ++side) {
-      const Slab* other = beside(s, side);
-      if (!other) continue;
-      const uint32_t to = side == 0 ? s.own : s.lower_copy_end;
-      const uint32_t from = side == 0 ? other->high_begin : 0;
-      const size_t count = (side == 0 ? s.lower_copy_end : s.all) - to;
-      copy(s.stream, s.residue[at_].data() + to * words, s.device, other->residue[at_].data() + from * words,
-           other->device, count * words * sizeof(uint32_t));
-    }
+    each_copy(s, [&](const Slab& other, uint32_t from, uint32_t to, size_t count) {
+      copy(s.stream, s.residue[at_].data() + to * words, s.device, other.residue[at_].data() + from * words,
+           other.device, count * words * sizeof(uint32_t));
+    });
   }
 }
 

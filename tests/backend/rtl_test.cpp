@@ -202,7 +202,7 @@ TEST(RtlAssertion, EndsTheProgramWithOne) {
                        {.name = "cuboct-rtl", .description = "", .engine = "rtl", .nodes = one_flooded});
   EXPECT_EQ(code, 1);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "cuboct-rtl: node 1 (1,0,0), cycle 21: the assertion of the RTL at " + place_of("a_halo_room") +
+            "cuboct-rtl: node 1 (1,0,0), cycle 17: the assertion of the RTL at " + place_of("a_halo_room") +
                 " failed\n");
 }
 

@@ -164,6 +164,7 @@ struct Engine {
   const char* name;
   Strings options;
 };
+std::ostream& operator<<(std::ostream& out, const Engine& engine) { return out << engine.name; }
 
 class OfEngine : public NothingLost, public testing::WithParamInterface<Engine> {
  protected:

@@ -15,9 +15,8 @@
 namespace cuboct {
 namespace {
 
-// A bar of E = 3 GPa, 6 mm long, its ends `held` and `moved` along x.
-Scene bar(const std::string& velocity, const std::string& run, const std::string& top = "") {
-  return parse_scene(top + R"(
+// E = 3 GPa, 6 mm long.
+const std::string kBar = R"(
 density = "1.41 g/cm^3"
 [packing]
 pitch = "0.5 mm"
@@ -29,7 +28,11 @@ max = "[6, 1.5, 1.5] mm"
 kind = "elastic"
 youngs_modulus = "3 GPa"
 direction = [1, 0, 0]
-[[constraint]]
+)";
+
+// Its ends `held` and `moved` along x.
+Scene bar(const std::string& velocity, const std::string& run, const std::string& top = "") {
+  return parse_scene(top + kBar + R"([[constraint]]
 name = "fixed"
 kind = "held"
 region = { shape = "half_space", point = "[0.1, 0, 0] mm", normal = [1, 0, 0] }
@@ -190,23 +193,11 @@ TEST(AutoWidths, ARefusalNamesWidthsThatHold) {
 // Gains that the usual 16 fractional bits would round by more than the accuracy, and ones that they cannot hold.
 TEST(AutoWidths, GainsAreRightToTheAccuracy) {
   for (const char* gains : {"kp = \"1e3 N/m\"\nkd = \"1 g/s\"\n", "kp = \"1e5 N/m\"\n"}) {
-    const Scene scene = parse_scene(std::string(R"(
-density = "1.41 g/cm^3"
-[packing]
-pitch = "0.5 mm"
-[geometry]
-shape = "box"
-min = "[0, 0, 0] mm"
-max = "[6, 1.5, 1.5] mm"
-[law]
-kind = "elastic"
-youngs_modulus = "3 GPa"
-direction = [1, 0, 0]
-[[constraint]]
+    const Scene scene = parse_scene(kBar + R"([[constraint]]
 name = "led"
 kind = "held_by_force"
 region = { shape = "half_space", point = "[0.1, 0, 0] mm", normal = [1, 0, 0] }
-)") + gains + "[run]\nsteps = 10\naccuracy = 0.01\n", "gains.toml");
+)" + gains + "[run]\nsteps = 10\naccuracy = 0.01\n", "gains.toml");
     const Plan plan = plan_of(scene, {});
     for (size_t k = 0; k < plan.rule.types.size(); ++k) {
       const ParticleType& type = scene.rule.types[k];
