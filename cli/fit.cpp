@@ -86,8 +86,9 @@ Fitter::Fitter(const Input& input, const Target& target, const BoardChoice& boar
       base_(make_setup(scene_, arch_)),
       census_(base_.plan.rule, base_.plan.lattice, base_.initial),
       loads_(base_.plan, census_),
-      memories_(base_.plan.rule, arch_, base_.plan.particles),
+      memories_(base_.plan.rule, base_.plan.arch, base_.plan.particles),
       room_(synth::room_of(target)) {
+  arch_ = base_.plan.arch;  // with what was automatic
   if (!arch_.narrow_memories) with_choice(arch_text_, input.arch, {{1, 1, 1}, 1, 1});  // can take a choice
 }
 

@@ -18,9 +18,9 @@ PAIR = "pair_style lj/smooth/linear 2.5\npair_coeff * * 1 1"
 N = 4000
 
 
-def fluctuation(time, energy):
+def fluctuation(time, energy, start=MELT):
     """Root mean square about the mean, that about the straight line, and the drift per unit of time; per particle."""
-    time, energy = time[time >= MELT], energy[time >= MELT]
+    time, energy = time[time >= start], energy[time >= start]
     line = np.polyfit(time, energy, 1)
     return energy.std(), (energy - np.polyval(line, time)).std(), line[0]
 
@@ -44,7 +44,7 @@ def main():
     jobs = int(sys.argv[3]) if len(sys.argv) > 3 else os.cpu_count()
     kinds = [
         ("default", lambda dt: ours(build, out, "default", dt, 100, arch="default.toml")),
-        ("guard_16", lambda dt: ours(build, out, "guard", dt, 100, arch="guard.toml")),
+        ("D_20", lambda dt: ours(build, out, "D_20", dt, 100, arch="differences.toml")),
         ("wide", lambda dt: ours(build, out, "wide", dt, 100, arch="wide.toml")),
         # A fifth of the time: sums in doubles over cells take their time, and the fluctuation does not.
         ("reference", lambda dt: ours(build, out, "reference", dt, 20, engine="reference", arch="wide.toml")),

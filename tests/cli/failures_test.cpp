@@ -86,9 +86,6 @@ TEST(Watch, ExamplesAreSilent) {
   for (const char* name : {"coupon", "hot_cluster", "lj_block", "sheet", "two_types", "undamped_block"})
     for (std::vector<std::string> more :
          {std::vector<std::string>{"--threads", "1"}, {"--engine", "reference", "--steps", "150"}}) {
-      // The coupon's whole length takes too long here; docs/reference/failures.md tells of it.
-      if (name == std::string("coupon") && more[0] == "--threads")
-        more.insert(more.end(), {"--steps", "3000"});
       const Answer answer = run(bench, std::string("scenes/") + name + ".toml", "", more);
       EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
       EXPECT_TRUE(warnings(answer.out).empty()) << name << answer.out;
