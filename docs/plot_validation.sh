@@ -22,7 +22,7 @@ plot 1.14*x**2 dashtype 2 linecolor "gray40" title "dt^2", \
      of("LAMMPS") using 2:3 with points pointtype 4 pointsize 2.2 linecolor "black" title "LAMMPS, doubles, this start", \
      of("reference") using 2:3 with points pointtype 2 pointsize 1.5 linecolor "#d55e00" title "reference, doubles", \
      of("wide") using 2:3 with linespoints pointtype 7 linecolor "#0072b2" title "golden's bits, wide formats", \
-     of("guard_16") using 2:3 with linespoints pointtype 9 linecolor "#009e73" title "default formats, 16 guard bits", \
+     of("D_20") using 2:3 with linespoints pointtype 9 linecolor "#009e73" title "default formats, D = 20", \
      of("default") using 2:3 with linespoints pointtype 5 linecolor "#cc79a7" title "default formats"
 
 reset

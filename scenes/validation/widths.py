@@ -14,6 +14,8 @@ from nve import fluctuation
 from runs import HERE, Curves, cuboct, in_parallel
 
 DT, MELT, LENGTH, N = 0.001, 5.0, 20.0, 864
+FOLLOWING = dict.fromkeys(("velocity_bits", "sum_bits", "relative_velocity_frac", "relative_velocity_bits",
+                           "displacement_bits"), '"auto"')
 KINDS = (
     ("wide", {}),
     ("23 value bits", {"strength_bits": 23}),
@@ -21,8 +23,8 @@ KINDS = (
     ("12 bits between entries", {"fraction_bits": 12}),
     ("512 lines, 17 bits between", {"degree": 1, "index_bits": 9, "fraction_bits": 17}),
     ("D 16", {"difference_frac": 16}),
-    ("P 20, D 20, 14 guard bits", {"position_frac": 20, "difference_frac": 20, "guard": 14}),
-    ("P 20, D 20, 8 guard bits", {"position_frac": 20, "difference_frac": 20, "guard": 8}),
+    ("P 20, D 20, 14 guard bits", {"position_frac": 20, "difference_frac": 20, "guard": 14, **FOLLOWING}),
+    ("P 20, D 20, 8 guard bits", {"position_frac": 20, "difference_frac": 20, "guard": 8, **FOLLOWING}),
 )
 
 
