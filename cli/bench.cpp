@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // How fast the engines are. Each benchmark makes its engine once, steps it a little to warm up, then times
 // some steps per repetition.
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/check.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -3,10 +3,15 @@
 // found what it looks for wrong, 2 (by InputError) the input is wrong.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "hw/setup.h"
+
+// Its header costs each file that reads it four seconds: those that add options do.
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
 
 namespace cuboct {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/run_fpga.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace cuboct {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/run_gpu.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/run_reference.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,0 +1,51 @@
+# Headers from elsewhere that many files read, compiled once for the libraries and programs and once for the tests.
+option(CUBOCT_PRECOMPILE "Precompiled headers" ON)
+
+set(cuboct_common <algorithm> <array> <bit> <chrono> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional>
+  <limits> <map> <memory> <numeric> <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <tuple> <utility>
+  <vector> <Eigen/Dense> <fmt/format.h> <fmt/ranges.h>)
+
+# With the compile options of the directory that calls it.
+function(cuboct_headers name)
+  if(NOT CUBOCT_PRECOMPILE)
+    return()
+  endif()
+  set(empty ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  file(TOUCH ${empty})
+  add_library(${name} OBJECT ${empty})
+  target_link_libraries(${name} PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json)
+  target_precompile_headers(${name} PRIVATE ${cuboct_common} ${ARGN})
+  # ccache wants to see what was precompiled.
+  target_compile_options(${name} PRIVATE -fpch-preprocess)
+endfunction()
+
+function(cuboct_precompile directory)
+  if(NOT CUBOCT_PRECOMPILE)
+    return()
+  endif()
+  get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
+  foreach(target ${targets})
+    get_target_property(type ${target} TYPE)
+    get_target_property(links ${target} LINK_LIBRARIES)
+    # What is loaded at run time is compiled otherwise; what links nothing does not know the headers' folders.
+    if(NOT type MATCHES "^(STATIC_LIBRARY|EXECUTABLE)$" OR NOT links)
+      continue()
+    endif()
+    if(directory MATCHES "^${CMAKE_SOURCE_DIR}/tests")
+      if(NOT "${links}" MATCHES "GTest::")
+        continue()
+      endif()
+      set(from test_headers)
+    else()
+      set(from library_headers)
+    endif()
+    target_precompile_headers(${target} REUSE_FROM ${from})
+    # GCC 12 takes what was precompiled for the project's own, and its false alarms about std::string come through.
+    target_compile_options(${target} PRIVATE
+      "$<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess;-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>")
+  endforeach()
+  get_property(parts DIRECTORY ${directory} PROPERTY SUBDIRECTORIES)
+  foreach(part ${parts})
+    cuboct_precompile(${part})
+  endforeach()
+endfunction()
