@@ -22,14 +22,15 @@ constexpr double kProgram = 20e6;  // bytes, of a process before it has read any
 struct Rates {
   const char* engine;
   double neighbour_time;  // s; 0: not known
+  double cell_time;       // s, of a cell
   bool threads;
   double particle, neighbour, cell;  // bytes
 };
 constexpr Rates kRates[] = {
-    {"lattice", 3e-9, true, 240, 1.5, 70},  {"reference", 2.5e-9, true, 700, 6, 70},
-    {"golden", 40e-9, false, 600, 10, 100}, {"systemc", 0, false, 600, 0, 50e3},
-    {"rtl", 0, false, 600, 0, 15e3},        {"gpu", 0, false, 250, 0, 70},
-    {"fpga", 0, false, 600, 0, 70},
+    {"lattice", 3e-9, 1.5e-9, true, 240, 1.5, 70},  {"reference", 2.5e-9, 0, true, 700, 6, 70},
+    {"golden", 40e-9, 0, false, 600, 10, 100}, {"systemc", 0, 0, false, 600, 0, 50e3},
+    {"rtl", 0, 0, false, 600, 0, 15e3},        {"gpu", 0, 0, false, 250, 0, 70},
+    {"fpga", 0, 0, false, 600, 0, 70},
 };
 
 const Rates& rates_of(const std::string& engine) {
@@ -109,8 +110,10 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
                     : 1;
     if (size.ranks > 1) e.threads = std::min(size.ranks * std::max(1, size.threads), usable_cores());
     // A particle costs something however few neighbours it has.
-    e.rate = 1 / (rates.neighbour_time * std::max(4.0, extent.neighbours));
-    e.seconds = e.particle_steps / (e.rate * e.threads);
+    // So do cells at rest, which one thread passes over.
+    e.seconds = e.particle_steps * rates.neighbour_time * std::max(4.0, extent.neighbours) / e.threads +
+                steps * cells * rates.cell_time;
+    e.rate = e.seconds > 0 ? e.particle_steps / (e.seconds * e.threads) : 0;
   }
 
   constexpr double kCurvePoint = sizeof(uint64_t) + sizeof(double), kEnergies = 6, kOfProbe = 3;

@@ -28,11 +28,19 @@ constexpr uint64_t kLeast = 1 << 19;
 constexpr uint64_t kMost =
     1 << 28;  // a run of so many steps that its hashes take more may well be ended early
 
+// What a run writes, besides run.toml and pictures.
+constexpr const char* kFiles[] = {"trace.h5", "summary.json", "plan.txt", "frames.xyz", "frames.pvd", "rasters.h5"};
+
 void refuse_unfinished(const RecorderOptions& options) {
   const std::string& directory = options.directory;
   const bool checkpoint = fs::exists(directory + "/checkpoint");
   const bool unfinished = checkpoint || fs::exists(directory + "/checkpoint.journal") ||
                           (fs::exists(directory + "/run.toml") && !is_over(read_record(directory)));
+  if (!fs::exists(directory + "/run.toml") && !unfinished && !options.force)
+    for (const char* name : kFiles)
+      if (fs::exists(directory + "/" + name))
+        throw InputError(fmt::format("{} holds a file {} that no run left", directory, name),
+                         "another --out keeps it; --force puts a run's in its place");
   if (!unfinished || options.resume) return;
   if (!options.force)
     throw InputError(fmt::format("{} holds a run that did not end", directory),
@@ -62,9 +70,8 @@ struct Recorder::Impl {
     refuse_unfinished(options);
     if (!options.resume)
       for (const char* name : {"checkpoint", "checkpoint.journal", "checkpoint.tmp"}) fs::remove(path(name));
-    for (const char* name :
-         {"trace.h5", "run.toml", "summary.json", "plan.txt", "frames.xyz", "frames.pvd", "rasters.h5"})
-      check_writable(path(name));
+    check_writable(path("run.toml"));
+    for (const char* name : kFiles) check_writable(path(name));
   }
 
   std::string path(const std::string& name) const { return options.directory + "/" + name; }

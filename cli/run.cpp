@@ -80,12 +80,10 @@ RunFacts run_by_lattice(const Options& options, const Loaded& loaded, emu::Latti
   LatticeAnswer result =
       run_on_lattice(options.input, loaded.scene, loaded.setup.plan, options.lattice, std::move(request));
   trace = std::move(result.trace);
-  trace.findings = result.findings;
-  trace.watched = result.watched;
   left_checkpoint = result.left_checkpoint;
   trouble = std::move(result.trouble);
-  return {result.momentum_before,     result.momentum_after,      result.largest_speed, trace.curves,
-          result.watched.has_value(), std::move(result.findings), result.watched};
+  return {result.momentum_before,    result.momentum_after, result.largest_speed, trace.curves,
+          trace.watched.has_value(), trace.findings,        trace.watched};
 }
 
 // Before the first step: what this machine cannot hold.

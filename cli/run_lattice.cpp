@@ -59,6 +59,7 @@ LatticeAnswer run_over_mpi(const Input& input, const Plan& plan, const LatticeCh
   add(choice.threads > 0, {"--threads", std::to_string(choice.threads)});
   add(request.cycles, {"--cycles"});
   add(request.energies, {"--energies"});
+  add(request.watch, {"--watch"});
   add(!checkpoint.path.empty(), {"--checkpoint", checkpoint.path});
   add(!choice.checkpoint_every.empty(), {"--checkpoint-every", choice.checkpoint_every});
   add(checkpoint.resume, {"--resume"});

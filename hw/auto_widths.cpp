@@ -24,7 +24,9 @@ constexpr int kKickUnits = 4;
 // gain times a displacement in 64 bits.
 constexpr int kMostPosition = 30, kMostGuard = 30, kMostDifference = 24, kMostVelocity = 44,
               kMostVelocityWithGains = 43, kMostRelativeBits = 25;
+constexpr int kMostVelocityFrac = 50;  // of positions with their guard bits: docs/user/arch.md
 constexpr int kRelativeRange = -3;  // 1/8 of a cell per step
+constexpr int kWidestRelative = 27;  // bits that an arch file may ask for
 // Units per 1/accuracy below which a run is warned of: half a unit of so many is five times the accuracy.
 // More than this off, and quantise() refuses an imposed velocity or gravity.
 constexpr double kWorst = 0.01;
@@ -127,13 +129,13 @@ class Chooser {
       for (const ParticleType& other : scene_.rule.types)
         fastest = std::max(fastest, (type.velocity - other.velocity).norm());
     const int range = std::max(kRelativeRange, fastest > 0 ? 1 - bits_for(fastest * dt / edge_) + 1 : kRelativeRange);
-    // A width that the arch file sets keeps the range that it has with the least fraction.
+    // A width that the arch file sets keeps the range that it has with the least fraction, or this scene's.
     const int most = asked_.relative_velocity_bits != kAutomatic
-                         ? std::min(kLeastRelative, w.velocity_frac())
+                         ? std::min(std::max(kLeastRelative, asked_.relative_velocity_bits - 1 - range), w.velocity_frac())
                          : std::min(w.velocity_frac(), kMostRelativeBits - 1 - range);
     w.relative_velocity_frac = take("relative_velocity_frac", asked_.relative_velocity_frac, wanted, most, why);
     w.relative_velocity_bits = take("relative_velocity_bits", asked_.relative_velocity_bits,
-                                    w.relative_velocity_frac + range + 1, 27,
+                                    w.relative_velocity_frac + range + 1, kWidestRelative,
                                     fmt::format("up to {:.3g} cells per step", std::ldexp(1.0, range)));
   }
 
@@ -177,12 +179,19 @@ std::vector<std::string> width_warnings(const Scene& scene, double edge, const A
     return *std::find_if(taken.reasons.begin(), taken.reasons.end(),
                          [&](const WidthReason& r) { return r.key == key; });
   };
-  // What would do, or that nothing does.
-  const auto cure = [&](const char* key) {
-    const WidthReason& r = reason(key);
-    return r.asked ? fmt::format("{} = {} would do, or \"auto\"", key, r.wanted)
-                   : fmt::format("{} of {} would do: {} is the most that engines hold", key, r.wanted, r.bits);
+  // What would do, or that nothing does. `within`: the key that bounds this one, where the arch file sets it.
+  const auto cure = [&](const char* key, const char* within, int beyond, int most) {
+    const WidthReason &r = reason(key), &bound = reason(within);
+    if (r.asked) return fmt::format("{} = {} would do, or \"auto\"", key, r.wanted);
+    if (bound.asked) return fmt::format("{} = {} would do, or \"auto\"", within, r.wanted + beyond);
+    if (r.wanted <= most)
+      return fmt::format("{} = {} would do; \"auto\" ends at {}, with which the lattice engine is fast", key, r.wanted,
+                         r.bits);
+    return fmt::format("{} of {} would do: {} is the most that engines hold; doubles do (--engine reference)", key,
+                       r.wanted, most);
   };
+  const auto of_guard = [&] { return cure("guard", "velocity_bits", rule.widths.position_frac + 1,
+                                          kMostVelocityFrac - rule.widths.position_frac); };
   const double unit = std::ldexp(edge, -rule.widths.velocity_frac());
   const auto off_by = [&](const Vec3& real, const Int3& fixed, double per_unit) {
     const Vec3 kept(static_cast<double>(fixed[0]), static_cast<double>(fixed[1]), static_cast<double>(fixed[2]));
@@ -193,10 +202,10 @@ std::vector<std::string> width_warnings(const Scene& scene, double edge, const A
     const double v = off_by(type.velocity, rule.types[k].velocity, unit / rule.dt);
     const double g = off_by(type.gravity, rule.types[k].gravity, unit / (rule.dt * rule.dt));
     if (v > scene.accuracy)
-      warnings.push_back(fmt::format("the velocity imposed on '{}' is off by {:.2g} of it: {}", type.name, v,
-                                     cure("guard")));
+      warnings.push_back(
+          fmt::format("the velocity imposed on '{}' is off by {:.2g} of it: {}", type.name, v, of_guard()));
     if (g > scene.accuracy)
-      warnings.push_back(fmt::format("the gravity of '{}' is off by {:.2g} of it: {}", type.name, g, cure("guard")));
+      warnings.push_back(fmt::format("the gravity of '{}' is off by {:.2g} of it: {}", type.name, g, of_guard()));
   }
   // Units of a difference, and of a velocity, that the expected strain makes.
   const double strain = motion.strain * motion.rest_distance / edge;
@@ -204,10 +213,18 @@ std::vector<std::string> width_warnings(const Scene& scene, double edge, const A
   const auto few = [&](double units) { return strain > 0 && units < kFewest / scene.accuracy; };
   if (const double units = std::ldexp(strain, rule.widths.difference_frac); few(units))
     warnings.push_back(fmt::format("a strain of {:.2g}, by {}, has {:.2g} units of a difference: {}", motion.strain,
-                                   motion.strain_of, units, cure("difference_frac")));
+                                   motion.strain_of, units,
+                                   cure("difference_frac", "position_frac", kPositionBeyondDifference, kMostDifference)));
   if (const double units = std::ldexp(kick, rule.widths.velocity_frac()); few(units))
     warnings.push_back(fmt::format("a strain of {:.2g}, by {}, kicks by {:.2g} units of a velocity: {}",
-                                   motion.strain, motion.strain_of, units, cure("guard")));
+                                   motion.strain, motion.strain_of, units, of_guard()));
+  // Damping sees relative velocities: those of a wave of that strain.
+  const double relative = motion.strain * motion.sound_speed * rule.dt / edge;
+  if (const double units = std::ldexp(relative, rule.widths.relative_velocity_frac); rule.damped && few(units))
+    warnings.push_back(fmt::format("a strain of {:.2g}, by {}, is damped by relative velocities of {:.2g} units: {}",
+                                   motion.strain, motion.strain_of, units,
+                                   cure("relative_velocity_frac", "relative_velocity_bits", kRelativeRange + 1,
+                                        std::min(rule.widths.velocity_frac(), kWidestRelative - 1 - kRelativeRange))));
   return warnings;
 }
 

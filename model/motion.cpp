@@ -64,10 +64,29 @@ Speeds speeds_of(const Scene& scene) {
   return {std::sqrt(all / count), std::sqrt(rotation / count), std::sqrt(left / count), mean};
 }
 
-double longest_side(const Scene& scene) {
-  Vec3 low = Vec3::Constant(INFINITY), high = -low;
-  for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  return scene.body.size() == 0 ? 0 : (high - low).maxCoeff();
+struct Box {
+  Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
+  void add(const Vec3& x) { low = low.cwiseMin(x), high = high.cwiseMax(x); }
+  bool empty() const { return low[0] > high[0]; }
+};
+
+// How much bending by gravity strains what reaches beyond the held particles, m/s^2 g along one axis; c, T as in Motion.
+double bending(const Scene& scene, const Vec3& gravity, double c, double duration) {
+  Box all, held;
+  for (size_t i = 0; i < scene.body.size(); ++i) {
+    all.add(scene.body.x[i]);
+    if (driven(scene.rule.types[scene.body.type[i]])) held.add(scene.body.x[i]);
+  }
+  if (held.empty()) return 0;
+  int along = 0;
+  const double g = gravity.cwiseAbs().maxCoeff(&along);
+  const double height = all.high[along] - all.low[along];
+  double reach = 0;
+  for (int a = 0; a < 3; ++a)
+    if (a != along) reach = std::max({reach, held.low[a] - all.low[a], all.high[a] - held.high[a]});
+  if (!(height > 0) || !(reach > height)) return 0;
+  return std::min(3 * g * reach * reach / (c * c * height),
+                  0.75 * height * g * duration * duration / (reach * reach));
 }
 
 }  // namespace
@@ -77,7 +96,9 @@ Motion motion_of(const Scene& scene) {
   Motion motion;
   read_bond(scene, motion);
   const double c = motion.sound_speed, duration = static_cast<double>(scene.steps) * rule.dt;
-  const double length = std::max(longest_side(scene), motion.rest_distance);
+  Box box;
+  for (const Vec3& x : scene.body.x) box.add(x);
+  const double length = std::max(box.empty() ? 0 : (box.high - box.low).maxCoeff(), motion.rest_distance);
   const auto strains = [&](double strain, const std::string& by) {
     strain = std::min(strain, kMostStrain);
     if (c > 0 && strain > motion.strain) motion.strain = strain, motion.strain_of = by;
@@ -96,6 +117,7 @@ Motion motion_of(const Scene& scene) {
     if (const double g = type.gravity.norm(); g > 0) {
       motion.gravity = motion.gravity > 0 ? std::min(motion.gravity, g) : g;
       strains(std::min(g * duration / c, g * length / (c * c)), "gravity");
+      if (!driven(type)) strains(bending(scene, type.gravity, c, duration), "gravity, which bends it");
     }
   }
   const Speeds speeds = speeds_of(scene);

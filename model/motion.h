@@ -20,8 +20,10 @@ struct Motion {
   // T the duration and L the body's longest side:
   //   moved types        max(V/c, V T/L), V their largest difference of velocity, to the body or to one another:
   //                      a wave carries V/c, and each time it crosses the body as much is added
-  //   gravity            min(g T/c, g L/c^2): of a body under its own weight, before and after a wave crossed it.
-  //                      Bending makes more
+  //   gravity            min(g T/c, g L/c^2): of a body under its own weight, before and after a wave crossed it
+  //   gravity, bending   min(3 g l^2/(c^2 h), 3 h g T^2/(4 l^2)): of a part that reaches l beyond what holds the body,
+  //                      across gravity, h high along it: at rest (Euler and Bernoulli's beam), and what its end falls
+  //                      until then
   //   initial motion     V/c, V the root mean square about the motion of a rigid body, or the mean against what is held
   //                      or moved
   //   initial rotation   (V/c)^2, V the root mean square of the rotation

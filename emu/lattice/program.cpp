@@ -140,7 +140,10 @@ int run_lattice_program(int argc, char** argv, Ranks* ranks) {
       ->check(CLI::IsMember({"bricks", "x", "y", "z"}))
       ->capture_default_str();
   app.add_flag("--cycles", run.cycles, "Count the machine's cycles with the timing model");
-  app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
+  auto* energies =
+      app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
+  app.add_flag("--watch", run.watch, "Look for what makes a run wrong where energies are measured, and at the last state")
+      ->needs(energies);
   app.add_option("--hash-every", run.hash_every, "The state's hash each so many steps")
       ->capture_default_str();
   app.add_option("--checkpoint", run.checkpoint.path, "File that the run can go on from; gone when it ends");

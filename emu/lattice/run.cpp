@@ -355,8 +355,8 @@ void Loop::finish() {
   trace_.curves = meter_.curves();
   meter_.conclude();
   if (const Watch* watch = meter_.watch()) {
-    result_.findings = watch->findings();
-    result_.watched = watch->last_step();
+    trace_.findings = watch->findings();
+    trace_.watched = watch->last_step();
   }
   if (timing_ && !lost) {
     engine_->slots(slots_);

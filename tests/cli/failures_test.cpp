@@ -3,6 +3,7 @@
 // and the examples are not, in whatever engine runs them.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <regex>
 
 #include "tests/cli/shell.h"
@@ -109,6 +110,22 @@ TEST(Watch, AreTheSameInEveryFixedEngine) {
   EXPECT_EQ(doubles.code, 1);
   ASSERT_FALSE(warnings(doubles.out).empty());
   EXPECT_EQ(failure_of(warnings(doubles.out)[0]), "stiff hold");
+}
+
+TEST(Watch, SeesWhatRanksRun) {
+  const Bench bench(false);
+  std::filesystem::copy(CUBOCT_LATTICE, bench.path("bin/cuboct-lattice"));
+  const auto of_ranks = [&](const std::string& name, const char* count) {
+    return run(bench, scene(name), "", {"--ranks", count});
+  };
+  const Answer healthy = of_ranks("stiff_hold_healthy", "2");
+  if (healthy.code == 2) GTEST_SKIP() << healthy.err;  // no MPI
+  EXPECT_EQ(healthy.code, 0) << healthy.err;
+  EXPECT_TRUE(warnings(healthy.out).empty()) << healthy.out;
+  const Answer one = of_ranks("stiff_hold", "1"), two = of_ranks("stiff_hold", "2");
+  EXPECT_EQ(two.code, 1) << two.err;
+  ASSERT_FALSE(warnings(one.out).empty()) << one.out;
+  EXPECT_EQ(warnings(two.out), warnings(one.out));
 }
 
 TEST(Watch, TextNamesStepPlaceAndNumber) {

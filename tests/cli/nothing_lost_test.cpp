@@ -194,6 +194,16 @@ INSTANTIATE_TEST_SUITE_P(Engines, OfEngine,
                                          Engine{"systemc", {"--engine", "systemc"}}),
                          name_of);
 
+TEST_F(NothingLost, AFileThatNoRunLeftStays) {
+  fs::create_directory(dir());
+  std::ofstream(dir() + "/frames.xyz") << "mine";
+  const Answer answer = bench_.cuboct(run({"--steps", "3"}));
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(answer.err, dir() + " holds a file frames.xyz that no run left\n  hint: another --out keeps it; --force puts a run's in its place\n");
+  EXPECT_EQ(fs::file_size(dir() + "/frames.xyz"), 4u);
+  expect_force();
+}
+
 // No file may grow beyond 1500 kB: frames.xyz is the first to reach that, and the only one.
 TEST_P(OfEngine, AFullDiskCostsWhatDoesNotFit) {
   if (std::string(GetParam().name) == "ranks") GTEST_SKIP() << "files of Open MPI itself need more";

@@ -80,7 +80,7 @@ TEST_P(Accuracy, IsThatOfDoublesToOnePerCent) {
   request.probes = looks(scene);
   const emu::LatticeResult run = emu::run_lattice(scene, plan, request);
   ASSERT_FALSE(run.trace.stop) << run.trace.stop->text;
-  for (const Finding& finding : run.findings) ADD_FAILURE() << finding.text;
+  for (const Finding& finding : run.trace.findings) ADD_FAILURE() << finding.text;
 
   const std::vector<Curve> reference = in_doubles(scene);
   for (const std::string& name : one.curves) {

@@ -60,7 +60,7 @@ TEST(Plate, BreaksInTwo) {
   for (uint64_t step = 0; step <= scene.steps; step += 20) request.probes.push_back(step);
   const emu::LatticeResult result = emu::run_lattice(scene, plan, request);
   ASSERT_FALSE(result.trace.stop) << result.trace.stop->text;
-  EXPECT_TRUE(result.findings.empty());
+  EXPECT_TRUE(result.trace.findings.empty());
 
   const std::vector<double>& stress = curve_named(result.trace.curves, "tension.stress").value;
   const auto peak = std::max_element(stress.begin(), stress.end());

@@ -166,6 +166,39 @@ TEST(AutoWidths, WhatTheArchSaysWinsAndIsWarnedOf) {
   EXPECT_EQ(r.wanted, 21);
 }
 
+// Of what damping sees, and of what bounds a width that the arch leaves to us; the numbers that are named work.
+TEST(AutoWidths, WarningsNameTheKeyThatBounds) {
+  const Scene scene = bar("[5, 0, 0] mm/s", "steps = 20000\n", "damping.ratio = 0.1\n");
+  EXPECT_TRUE(plan_of(scene, {}).warnings.empty());
+  const auto warning = [&](auto set) {
+    Arch arch;
+    set(arch.widths);
+    const std::vector<std::string> warnings = plan_of(scene, arch).warnings;
+    return warnings.size() == 1 ? warnings[0].substr(warnings[0].find(": ") + 2) : fmt::format("{} warnings", warnings.size());
+  };
+  EXPECT_EQ(warning([](Widths& w) { w.relative_velocity_frac = 6; }), "relative_velocity_frac = 24 would do, or \"auto\"");
+  EXPECT_EQ(warning([](Widths& w) { w.relative_velocity_bits = 6; }), "relative_velocity_bits = 22 would do, or \"auto\"");
+  EXPECT_EQ(warning([](Widths& w) { w.relative_velocity_bits = 22; }), "0 warnings");
+  EXPECT_EQ(warning([](Widths& w) { w.position_frac = 12; }), "position_frac = 26 would do, or \"auto\"");
+  EXPECT_EQ(warning([](Widths& w) { w.position_frac = 26; }), "0 warnings");
+}
+
+// A cantilever's largest strain by Euler and Bernoulli is 3 rho g l^2 / (E h); c^2 is E/rho to within a factor of two.
+TEST(AutoWidths, GravityBendsWhatReachesOut) {
+  const Scene scene = parse_scene("gravity = \"[0, 0, -9.81] m/s^2\"\n" + kBar + R"([[constraint]]
+name = "fixed"
+kind = "held"
+region = { shape = "half_space", point = "[0.1, 0, 0] mm", normal = [1, 0, 0] }
+[run]
+steps = 1000000
+)", "cantilever.toml");
+  const Motion motion = motion_of(scene);
+  const double beam = 3 * 1410 * 9.81 * std::pow(6e-3, 2) / (3e9 * 1.5e-3);
+  EXPECT_EQ(motion.strain_of, "gravity, which bends it");
+  EXPECT_GT(motion.strain, 0.5 * beam);
+  EXPECT_LT(motion.strain, 2 * beam);
+}
+
 // The widths that a refusal names work.
 TEST(AutoWidths, ARefusalNamesWidthsThatHold) {
   const Scene scene = bar("[1, 0, 0] um/s", "steps = 20000\n");
