@@ -119,7 +119,10 @@ async function hovering_tells_settings(page, study) {
 async function pressing_a_mark_finds_its_row(page) {
   await bring(page, "error-speed");
   const [mark] = await lone_marks(page, "error-speed");
+  // A busy machine takes its time to draw, and to answer.
+  await hover(page, "error-speed", mark);
   await page.mouse.click(mark.x, mark.y);
+  await page.waitForSelector("#points tr.chosen", {state: "attached", timeout: 20000});
   const chosen = await page.$$eval("#points tr.chosen", (rows) => rows.map((r) => r.cells[0].textContent));
   assert.deepEqual(chosen, [String(mark.point + 1)]);
 }
