@@ -26,11 +26,6 @@ FixedTable::Address FixedTable::address(uint64_t r2) const {
 
 int64_t FixedTable::at(uint64_t r2) const { return table_value(*this, r2); }
 
-Int3 visible(const FixedRule& rule, const Int3& x) {
-  const int G = rule.widths.guard;
-  return {x[0] >> G, x[1] >> G, x[2] >> G};
-}
-
 Int3 difference(const FixedRule& rule, const Int3& x_i, const Int3& x_j) {
   Int3 d;
   for (int a = 0; a < 3; ++a) d[a] = round_odd(x_j[a] - x_i[a], rule.difference_shift);

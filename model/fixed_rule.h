@@ -117,7 +117,10 @@ struct PairResult {
 };
 
 // What forces and neighbours see of a position of P+G fractional bits: its leading P, rounded down.
-Int3 visible(const FixedRule& rule, const Int3& x);
+inline Int3 visible(const FixedRule& rule, const Int3& x) {
+  const int guard = rule.widths.guard;
+  return {x[0] >> guard, x[1] >> guard, x[2] >> guard};
+}
 
 // x_i, x_j: visible positions in the frame of i's node (x_j may lie in [-2^P, 2^(P+1))); v with P+G.
 PairResult pair_kick(const FixedRule& rule, const Int3& x_i, const Int3& v_i, int type_i, const Int3& x_j,

@@ -50,9 +50,12 @@ void Golden::step() {
 
   // Force: every particle against every other of its own and the neighbour nodes.
   std::vector<std::vector<Int3>> sums(nodes_.size());
+  std::vector<Int3> seen;  // visible positions of a node's own
   for (uint32_t n = 0; n < nodes_.size(); ++n) {
     sums[n].resize(nodes_[n].size());
     if (nodes_[n].empty()) continue;
+    seen.clear();
+    for (const Particle& i : nodes_[n]) seen.push_back(visible(rule_, i.x));
     for (const auto& [other, offset] : lattice_.neighbourhood(n))
       for (const Particle& j : nodes_[other]) {
         Int3 x_j = visible(rule_, j.x);
@@ -60,7 +63,7 @@ void Golden::step() {
         for (size_t k = 0; k < nodes_[n].size(); ++k) {
           const Particle& i = nodes_[n][k];
           if (i.id == j.id) continue;
-          const PairResult pair = pair_kick(rule_, visible(rule_, i.x), i.v, i.type, x_j, j.v, j.type);
+          const PairResult pair = pair_kick(rule_, seen[k], i.v, i.type, x_j, j.v, j.type);
           if (pair.fault != Fault::none) faults.push_back(fault_of(pair.fault, n, i.id, pair.number));
           for (int a = 0; a < 3; ++a) sums[n][k][a] += pair.kick[a];
         }
