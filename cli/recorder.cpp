@@ -31,7 +31,7 @@ constexpr uint64_t kMost =
 // What a run writes, besides run.toml and pictures.
 constexpr const char* kFiles[] = {"trace.h5", "summary.json", "plan.txt", "frames.xyz", "frames.pvd", "rasters.h5"};
 
-void refuse_unfinished(const RecorderOptions& options) {
+void refuse_what_is_kept(const RecorderOptions& options) {
   const std::string& directory = options.directory;
   const bool checkpoint = fs::exists(directory + "/checkpoint");
   const bool unfinished = checkpoint || fs::exists(directory + "/checkpoint.journal") ||
@@ -67,7 +67,7 @@ struct Recorder::Impl {
         maker(loaded),
         head(head_of(loaded, options.real, options.si)) {
     head.cells = !options.no_states || options.cycles;
-    refuse_unfinished(options);
+    refuse_what_is_kept(options);
     if (!options.resume)
       for (const char* name : {"checkpoint", "checkpoint.journal", "checkpoint.tmp"}) fs::remove(path(name));
     check_writable(path("run.toml"));

@@ -70,13 +70,8 @@ struct Box {
   bool empty() const { return low[0] > high[0]; }
 };
 
-// How much bending by gravity strains what reaches beyond the held particles, m/s^2 g along one axis; c, T as in Motion.
-double bending(const Scene& scene, const Vec3& gravity, double c, double duration) {
-  Box all, held;
-  for (size_t i = 0; i < scene.body.size(); ++i) {
-    all.add(scene.body.x[i]);
-    if (driven(scene.rule.types[scene.body.type[i]])) held.add(scene.body.x[i]);
-  }
+// The largest strain by which gravity bends what reaches beyond the held particles; c and duration as c and T in Motion.
+double bending(const Box& all, const Box& held, const Vec3& gravity, double c, double duration) {
   if (held.empty()) return 0;
   int along = 0;
   const double g = gravity.cwiseAbs().maxCoeff(&along);
@@ -96,9 +91,12 @@ Motion motion_of(const Scene& scene) {
   Motion motion;
   read_bond(scene, motion);
   const double c = motion.sound_speed, duration = static_cast<double>(scene.steps) * rule.dt;
-  Box box;
-  for (const Vec3& x : scene.body.x) box.add(x);
-  const double length = std::max(box.empty() ? 0 : (box.high - box.low).maxCoeff(), motion.rest_distance);
+  Box all, held;
+  for (size_t i = 0; i < scene.body.size(); ++i) {
+    all.add(scene.body.x[i]);
+    if (driven(rule.types[scene.body.type[i]])) held.add(scene.body.x[i]);
+  }
+  const double length = std::max(all.empty() ? 0 : (all.high - all.low).maxCoeff(), motion.rest_distance);
   const auto strains = [&](double strain, const std::string& by) {
     strain = std::min(strain, kMostStrain);
     if (c > 0 && strain > motion.strain) motion.strain = strain, motion.strain_of = by;
@@ -117,7 +115,7 @@ Motion motion_of(const Scene& scene) {
     if (const double g = type.gravity.norm(); g > 0) {
       motion.gravity = motion.gravity > 0 ? std::min(motion.gravity, g) : g;
       strains(std::min(g * duration / c, g * length / (c * c)), "gravity");
-      if (!driven(type)) strains(bending(scene, type.gravity, c, duration), "gravity, which bends it");
+      if (!driven(type)) strains(bending(all, held, type.gravity, c, duration), "gravity, which bends it");
     }
   }
   const Speeds speeds = speeds_of(scene);
