@@ -5,8 +5,8 @@
 #include <string>
 
 #include "hw/plan.h"
-#include "model/scene.h"
-#include "model/trace.h"
+#include "model/scene/scene.h"
+#include "model/trace/trace.h"
 
 namespace cuboct {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // How fast the engines are. Each benchmark makes its engine once, steps it a little to warm up, then times
 // some steps per repetition.
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -22,12 +22,12 @@
 #include "emu/lattice/program.h"
 #include "emu/lattice/timing.h"
 #include "gpu_ref/bench_rows.h"
-#include "model/resources.h"
-#include "model/golden.h"
-#include "model/output.h"
-#include "model/process.h"
-#include "model/reference.h"
-#include "model/spelling.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "model/base/resources.h"
+#include "model/base/spelling.h"
+#include "model/contract/golden.h"
+#include "model/real/reference.h"
 
 namespace cuboct {
 namespace {
@@ -343,8 +343,7 @@ std::vector<Entry> entries(const Options& options) {
         [=](auto& s) { run_ranks(s, "scaling", {.cells = 40}, ranks, 100); }, true);
   for (const gpu::BenchRow& row : gpu::bench_rows())
     list.push_back({"gpu." + row.name, "the GPU engine, " + row.what,
-                    [=](auto& s) { run_gpu_row(s, row.name, options.repeats, seconds); },
-                    false, true});
+                    [=](auto& s) { run_gpu_row(s, row.name, options.repeats, seconds); }, false, true});
   return list;
 }
 
@@ -376,7 +375,9 @@ int bench(const Options& options) {
   for (const Entry* entry : chosen)
     benchmark::RegisterBenchmark(entry->name.c_str(), entry->run)
         ->Iterations(1)
-        ->Repetitions(entry->gpu ? 1 : entry->once ? std::min(options.repeats, 3) : options.repeats)
+        ->Repetitions(entry->gpu    ? 1
+                      : entry->once ? std::min(options.repeats, 3)
+                                    : options.repeats)
         ->UseManualTime();
   int count = 1;
   char name[] = "cuboct";

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "cli/bench_report.h"
-#include "model/process.h"
+#include "model/base/process.h"
 
 namespace cuboct {
 namespace {

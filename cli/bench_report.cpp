@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "model/resources.h"
+#include "model/base/resources.h"
 
 namespace cuboct {
 
@@ -19,8 +19,8 @@ std::string machine() {
       model = line.substr(line.find(':') + 2);
       break;
     }
-  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
-                        static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e9;
+  const double memory =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e9;
   return fmt::format("{}, {} cores, {:.0f} GB of memory", model, usable_cores(), memory);
 }
 

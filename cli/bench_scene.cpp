@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "cli/engines.h"
-#include "model/output.h"
-#include "model/process.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
 
 namespace cuboct {
 namespace {

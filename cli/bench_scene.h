@@ -27,8 +27,8 @@ struct BenchScene {
 // Scene and plan, without a State. The latest is kept, so that benchmarks that follow one another share it.
 std::shared_ptr<const Loaded> load_bench(const BenchScene& scene);
 
-// Whether a run of so many particles fits into the memory that is free now, at 300 bytes each (measured with ten
-// million: 165, scene and engine together).
+// Whether a run of so many particles fits into the memory that is free now, at 300 bytes each (measured with
+// ten million: 165, scene and engine together).
 bool fits_in_memory(uint64_t particles);
 
 }  // namespace cuboct

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "model/error.h"
-#include "model/output.h"
-#include "model/spelling.h"
-#include "model/text.h"
+#include "model/base/error.h"
+#include "model/base/output.h"
+#include "model/base/spelling.h"
+#include "model/base/text.h"
 #include "study/budget.h"
 
 namespace cuboct {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/check.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <array>
 #include <memory>
@@ -11,8 +11,8 @@
 #include "cli/estimate.h"
 #include "cli/summary.h"
 #include "hw/cycles.h"
-#include "model/motion.h"
-#include "model/quantise.h"
+#include "model/analysis/motion.h"
+#include "model/contract/quantise.h"
 #include "study/cost.h"
 
 namespace cuboct {
@@ -76,9 +76,10 @@ void add_not_built(Items& items, const Plan& plan) {
 std::string reason_of(const Plan& plan, const std::string& key) {
   for (const WidthReason& reason : plan.reasons)
     if (reason.key == key)
-      return !reason.asked                    ? reason.why
-             : reason.wanted != reason.bits ? fmt::format("by the arch file; \"auto\": {}, {}", reason.wanted, reason.why)
-                                              : "by the arch file";
+      return !reason.asked ? reason.why
+             : reason.wanted != reason.bits
+                 ? fmt::format("by the arch file; \"auto\": {}, {}", reason.wanted, reason.why)
+                 : "by the arch file";
   return {};
 }
 
@@ -100,9 +101,10 @@ void add_cheaper(Items& items, const Scene& scene, const Plan& plan) {
       other.widths.strength_bits == rule.widths.strength_bits)
     return;
   items.add(fmt::format("with accuracy {:.2g}", loose.accuracy), words.halo_bits, "bit",
-            fmt::format("of a halo record, {} of a particle record; differences {}, strength {}, velocities {} bits",
-                        words.particle_bits, other.widths.difference_frac, other.widths.strength_bits,
-                        other.widths.velocity_bits));
+            fmt::format(
+                "of a halo record, {} of a particle record; differences {}, strength {}, velocities {} bits",
+                words.particle_bits, other.widths.difference_frac, other.widths.strength_bits,
+                other.widths.velocity_bits));
 }
 
 }  // namespace
@@ -146,8 +148,10 @@ Items resolve(const Loaded& loaded) {
   add_table(items, "force table", rule.force);
   if (rule.damped) {
     add_table(items, "damping table", rule.damp);
-    items.add("relative velocity bits", w.relative_velocity_bits, "", reason_of(plan, "relative_velocity_bits"));
-    items.add("relative velocity fraction", w.relative_velocity_frac, "", reason_of(plan, "relative_velocity_frac"));
+    items.add("relative velocity bits", w.relative_velocity_bits, "",
+              reason_of(plan, "relative_velocity_bits"));
+    items.add("relative velocity fraction", w.relative_velocity_frac, "",
+              reason_of(plan, "relative_velocity_frac"));
   }
   items.add("worst force error", rule.error.worst_force, "N",
             fmt::format("at {:.4g} m; {:.2g} of the largest force", rule.error.at, rule.error.relative));

@@ -48,8 +48,8 @@ struct Loaded {
   Setup setup;
 };
 Loaded load(const Input& input);
-// The same without `setup.initial`: for engines that take their particles one by one, and scenes of which a second
-// copy would not fit.
+// The same without `setup.initial`: for engines that take their particles one by one, and scenes of which a
+// second copy would not fit.
 Loaded load_plan(const Input& input);
 
 }  // namespace cuboct

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -13,14 +13,14 @@
 #include "cli/run_fpga.h"
 #include "cli/run_gpu.h"
 #include "cli/run_lattice.h"
-#include "model/interrupt.h"
+#include "model/base/interrupt.h"
 
-#include "model/compare.h"
-#include "model/directory_lock.h"
-#include "model/output.h"
-#include "model/process.h"
-#include "model/progress.h"
-#include "model/text.h"
+#include "model/base/directory_lock.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "model/base/progress.h"
+#include "model/base/text.h"
+#include "model/trace/compare.h"
 
 namespace cuboct {
 namespace {
@@ -119,10 +119,11 @@ void tell_faults(const std::string& engine, const Trace& trace) {
     return std::nullopt;
   };
   if (!counted("injected")) return;
-  fmt::print("{}: {:.0f} faults injected ({:.0f} flipped, {:.0f} dropped, {:.0f} repeated, {:.0f} in "
-             "acknowledgements), {:.0f} detected, {:.0f} healed\n",
-             engine, *counted("injected"), *counted("flipped"), *counted("dropped"), *counted("repeated"),
-             *counted("in_acks"), *counted("detected"), *counted("healed"));
+  fmt::print(
+      "{}: {:.0f} faults injected ({:.0f} flipped, {:.0f} dropped, {:.0f} repeated, {:.0f} in "
+      "acknowledgements), {:.0f} detected, {:.0f} healed\n",
+      engine, *counted("injected"), *counted("flipped"), *counted("dropped"), *counted("repeated"),
+      *counted("in_acks"), *counted("detected"), *counted("healed"));
 }
 
 int crosscheck(Options options) {

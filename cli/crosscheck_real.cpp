@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "cli/real_bounds.h"
-#include "model/interrupt.h"
-#include "model/process.h"
-#include "model/reference.h"
-#include "model/steps.h"
-#include "model/text.h"
+#include "model/base/interrupt.h"
+#include "model/base/process.h"
+#include "model/base/steps.h"
+#include "model/base/text.h"
+#include "model/real/reference.h"
 
 namespace cuboct {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -8,9 +8,9 @@
 #include "cli/command.h"
 #include "cli/fit.h"
 #include "hw/rtl_emit.h"
-#include "model/interrupt.h"
-#include "model/text.h"
-#include "rtl/synth/tool.h"
+#include "model/base/interrupt.h"
+#include "model/base/text.h"
+#include "synth/tool.h"
 
 namespace cuboct {
 namespace {
@@ -47,7 +47,8 @@ int emit_fitted(const Input& input, const std::string& target, const std::string
 // The text of the arch where it is the one that an earlier --fit left in the project: it stays there.
 std::string chosen_before(const std::string& arch, const std::string& out) {
   std::error_code none;
-  if (arch.empty() || !std::filesystem::equivalent(arch, std::filesystem::path(out) / "arch.toml", none)) return {};
+  if (arch.empty() || !std::filesystem::equivalent(arch, std::filesystem::path(out) / "arch.toml", none))
+    return {};
   return synth::read_text(arch);
 }
 

@@ -8,11 +8,11 @@
 #include <cstring>
 #include <filesystem>
 
-#include "model/interrupt.h"
-#include "model/output.h"
-#include "model/process.h"
-#include "model/progress.h"
-#include "model/spelling.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "model/base/progress.h"
+#include "model/base/spelling.h"
 
 namespace cuboct {
 

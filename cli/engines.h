@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "model/trace_file.h"
+#include "model/trace/trace_file.h"
 
 namespace cuboct {
 
@@ -27,8 +27,8 @@ void check_engine(const std::string& name, const std::vector<std::string>& allow
 void check_faults(const Input& input, const std::vector<std::string>& engines);
 
 // Golden runs here. A run that has to stop is a trace with a stop reason; Ctrl-C gives the trace so far.
-// `watch` is called with each state, step 0 included; `keep` takes the frames as they come, which the trace holds where
-// nobody does.
+// `watch` is called with each state, step 0 included; `keep` takes the frames as they come, which the trace
+// holds where nobody does.
 Trace run_golden(const Setup& setup, const Request& request,
                  const std::function<void(const State&)>& watch = {},
                  const std::function<void(const State&)>& keep = {});
@@ -58,6 +58,5 @@ class AlreadyTold : public std::exception {
   explicit AlreadyTold(int exit_code) : exit_code(exit_code) {}
   int exit_code;
 };
-
 
 }  // namespace cuboct

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "model/resources.h"
-#include "model/trace.h"
+#include "model/base/resources.h"
+#include "model/trace/trace.h"
 
 namespace cuboct {
 namespace {
@@ -27,9 +27,12 @@ struct Rates {
   double particle, neighbour, cell;  // bytes
 };
 constexpr Rates kRates[] = {
-    {"lattice", 3e-9, 1.5e-9, true, 240, 1.5, 70},  {"reference", 2.5e-9, 0, true, 700, 6, 70},
-    {"golden", 40e-9, 0, false, 600, 10, 100}, {"systemc", 0, 0, false, 600, 0, 50e3},
-    {"rtl", 0, 0, false, 600, 0, 15e3},        {"gpu", 0, 0, false, 250, 0, 70},
+    {"lattice", 3e-9, 1.5e-9, true, 240, 1.5, 70},
+    {"reference", 2.5e-9, 0, true, 700, 6, 70},
+    {"golden", 40e-9, 0, false, 600, 10, 100},
+    {"systemc", 0, 0, false, 600, 0, 50e3},
+    {"rtl", 0, 0, false, 600, 0, 15e3},
+    {"gpu", 0, 0, false, 250, 0, 70},
     {"fpga", 0, 0, false, 600, 0, 70},
 };
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
 
 #include "cli/budget.h"
 #include "cli/command.h"
-#include "model/directory_lock.h"
-#include "model/interrupt.h"
-#include "model/text.h"
+#include "model/base/directory_lock.h"
+#include "model/base/interrupt.h"
+#include "model/base/text.h"
 #include "study/measure_run.h"
 #include "study/page.h"
 #include "study/runner.h"
@@ -88,15 +88,18 @@ void add_explore(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("explore", "chart speed against accuracy over a study's settings");
   command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
-  command->add_option("--out", options->out, "directory for results; default: that of the study's name with .study")
+  command
+      ->add_option("--out", options->out,
+                   "directory for results; default: that of the study's name with .study")
       ->type_name("DIR");
   command->add_option("--jobs", options->jobs, "points computed at once; default: one per core")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   command->add_option("--add", options->add, "results of the same study from elsewhere")->type_name("FILE");
   command
-      ->add_option("--error", options->error,
-                   "instead: the cheapest settings of [search] that keep a figure's error within E, as 1% or 0.01")
+      ->add_option(
+          "--error", options->error,
+          "instead: the cheapest settings of [search] that keep a figure's error within E, as 1% or 0.01")
       ->type_name("E");
   command->add_option("--figure", options->figure, "the figure of --error")->type_name("NAME");
   command->add_flag("--no-speed", options->no_speed, "measure errors alone");

@@ -6,11 +6,11 @@
 #include <algorithm>
 
 #include "hw/rtl_emit.h"
-#include "model/changes.h"
-#include "model/config.h"
-#include "model/interrupt.h"
-#include "model/progress.h"
-#include "rtl/synth/tool.h"
+#include "model/base/interrupt.h"
+#include "model/base/progress.h"
+#include "model/scene/changes.h"
+#include "model/scene/config.h"
+#include "synth/tool.h"
 
 namespace cuboct {
 namespace {

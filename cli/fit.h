@@ -12,8 +12,8 @@
 #include "hw/board.h"
 #include "hw/fit.h"
 #include "hw/node_memories.h"
-#include "rtl/synth/fit_measure.h"
-#include "rtl/synth/fit_model.h"
+#include "synth/fit_measure.h"
+#include "synth/fit_model.h"
 
 namespace cuboct {
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "model/text.h"
+#include "model/base/text.h"
 #include "study/json.h"
 
 namespace cuboct {

@@ -25,8 +25,10 @@ class Items {
   }
   void add(const std::string& name, double value, const std::string& unit = {}, const std::string& note = {});
 
-  // A number that changed: its last value, and between which it was. In JSON "smallest" and "largest" beside "value".
-  void add_range(const std::string& name, double last, double smallest, double largest, const std::string& unit);
+  // A number that changed: its last value, and between which it was. In JSON "smallest" and "largest" beside
+  // "value".
+  void add_range(const std::string& name, double last, double smallest, double largest,
+                 const std::string& unit);
 
   // Several findings of one kind: in the text a line "line: <text>" each, where <text> is the value of its
   // item "text"; in JSON {"value": [{"step": 1, ...}, ...]}, values alone.

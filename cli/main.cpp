@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -11,10 +11,10 @@
 
 #include "cli/command.h"
 #include "cli/engines.h"
-#include "model/output.h"
-#include "model/resources.h"
-#include "model/spelling.h"
-#include "model/text.h"
+#include "model/base/output.h"
+#include "model/base/resources.h"
+#include "model/base/spelling.h"
+#include "model/base/text.h"
 
 namespace cuboct {
 namespace {

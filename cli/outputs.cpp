@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "model/measure.h"
-#include "model/output.h"
+#include "model/analysis/measure.h"
+#include "model/base/output.h"
 
 namespace cuboct {
 namespace {
@@ -48,9 +48,8 @@ const StrainMeter& FrameMaker::meter(bool fixed) const {
   std::vector<Vec3> initial;  // without a State: see load_plan
   initial.reserve(scene.body.size());
   for (uint32_t id = 0; id < scene.body.size(); ++id)
-    initial.push_back(
-        position_of(plan.rule, plan.lattice, plan.origin,
-                    fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin)));
+    initial.push_back(position_of(plan.rule, plan.lattice, plan.origin,
+                                  fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin)));
   return meter.emplace(strain_meter(scene, initial));
 }
 
@@ -58,14 +57,19 @@ Frame FrameMaker::make(const State& state) const {
   const Plan& plan = loaded_.setup.plan;
   Body body = to_real(state, plan.rule, plan.lattice, plan.origin);
   std::vector<double> strain = meter(true).axial(body.x, axis_);
-  return {state.step, static_cast<double>(state.step) * plan.rule.dt, std::move(body.x), std::move(body.v),
+  return {state.step,           static_cast<double>(state.step) * plan.rule.dt,
+          std::move(body.x),    std::move(body.v),
           std::move(body.type), std::move(strain)};
 }
 
 Frame FrameMaker::make(uint64_t step, std::vector<Vec3> x, std::vector<Vec3> v) const {
   const Scene& scene = loaded_.scene;
   std::vector<double> strain = meter(false).axial(x, axis_);
-  return {step, static_cast<double>(step) * scene.rule.dt, std::move(x), std::move(v), scene.body.type,
+  return {step,
+          static_cast<double>(step) * scene.rule.dt,
+          std::move(x),
+          std::move(v),
+          scene.body.type,
           std::move(strain)};
 }
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "model/frames.h"
-#include "model/strain.h"
-#include "model/trace.h"
-#include "model/trace_head.h"
+#include "model/analysis/strain.h"
+#include "model/trace/frames.h"
+#include "model/trace/trace.h"
+#include "model/trace/trace_head.h"
 
 namespace cuboct {
 
@@ -31,7 +31,8 @@ class FrameMaker {
  public:
   explicit FrameMaker(const Loaded& loaded);
   Frame make(const State& state) const;
-  Frame make(uint64_t step, std::vector<Vec3> x, std::vector<Vec3> v) const;  // in real numbers, types the scene's
+  Frame make(uint64_t step, std::vector<Vec3> x,
+             std::vector<Vec3> v) const;  // in real numbers, types the scene's
 
  private:
   // Against what the engine begins with: positions of the fixed rule, or the scene's own.
@@ -42,11 +43,12 @@ class FrameMaker {
   mutable std::optional<StrainMeter> fixed_, real_;
 };
 
-// What a report needs to find its way back, and a run to know whose directory it is: run.toml in the directory,
-// its paths relative to the directory.
+// What a report needs to find its way back, and a run to know whose directory it is: run.toml in the
+// directory, its paths relative to the directory.
 struct RunRecord {
   std::string scene, arch, engine;
-  std::string state = "finished";  // or "running" (or killed), "interrupted", "stopped" (a fault), "incomplete"
+  std::string state =
+      "finished";  // or "running" (or killed), "interrupted", "stopped" (a fault), "incomplete"
 };
 void write_record(const std::string& directory, const RunRecord& record);
 // Paths as they are to be opened now. InputError where the directory holds no run.

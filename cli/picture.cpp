@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -11,9 +11,9 @@
 
 #include "cli/command.h"
 #include "cli/raster_plot.h"
-#include "model/directory_lock.h"
-#include "model/output.h"
-#include "model/text.h"
+#include "model/base/directory_lock.h"
+#include "model/base/output.h"
+#include "model/base/text.h"
 
 namespace cuboct {
 namespace {
@@ -76,8 +76,11 @@ void draw(const Options& options) {
 
 void add_picture(CLI::App& app, int&) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("picture", "draw the frames of a run's directory, of bodies of any size");
-  command->add_option("directory", options->directory, "what 'cuboct run --out' wrote")->required()->type_name("DIR");
+  CLI::App* command =
+      app.add_subcommand("picture", "draw the frames of a run's directory, of bodies of any size");
+  command->add_option("directory", options->directory, "what 'cuboct run --out' wrote")
+      ->required()
+      ->type_name("DIR");
   command->add_option("--out", options->out, "the PNG file; default: DIR/picture.png")->type_name("FILE");
   command->add_option("--field", options->field, "strain, speed or thickness")->capture_default_str();
   command->add_option("--steps", options->steps, "frames to draw, by their steps; default: up to four")

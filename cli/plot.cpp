@@ -7,9 +7,9 @@
 #include <iterator>
 #include <sstream>
 
-#include "model/output.h"
-#include "model/process.h"
-#include "model/text.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "model/base/text.h"
 #include "study/gnuplot.h"
 
 namespace cuboct {
@@ -106,9 +106,9 @@ std::string gnuplot(const std::string& data, const std::string& plot, const std:
                     int height) {
   const Scratch scratch;
   const std::string out = scratch.path("plot." + kind);
-  const std::string terminal =
-      kind == "svg" ? fmt::format("svg size {},{} dynamic font 'Helvetica,14'", width, height)
-                    : fmt::format("pngcairo size {},{} font 'Helvetica,13'", width, height);
+  const std::string terminal = kind == "svg"
+                                   ? fmt::format("svg size {},{} dynamic font 'Helvetica,14'", width, height)
+                                   : fmt::format("pngcairo size {},{} font 'Helvetica,13'", width, height);
   study::run_gnuplot(
       scratch, fmt::format("{}set encoding utf8\nset terminal {} background '#ffffff'\nset output {}\n{}",
                            data, terminal, gnuplot_file(out), plot));

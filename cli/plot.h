@@ -24,8 +24,8 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
 std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
                           const std::string& bar_label, double low, double high);
 
-// What gnuplot draws by `plot`, with `data` (its here-documents) before it: the file's bytes. `kind`: "png" or
-// "svg".
+// What gnuplot draws by `plot`, with `data` (its here-documents) before it: the file's bytes. `kind`: "png"
+// or "svg".
 std::string gnuplot(const std::string& data, const std::string& plot, const std::string& kind, int width,
                     int height);
 

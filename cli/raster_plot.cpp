@@ -11,11 +11,11 @@
 #include <limits>
 #include <sstream>
 
-#include "model/error.h"
-#include "model/output.h"
-#include "model/process.h"
-#include "model/spelling.h"
-#include "model/text.h"
+#include "model/base/error.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "model/base/spelling.h"
+#include "model/base/text.h"
 #include "study/gnuplot.h"
 
 namespace cuboct {
@@ -46,8 +46,8 @@ bool is_seen(const Rasters& rasters, const Raster& frame, size_t pixel) {
   return frame.thickness[pixel] > 0.2 * particle_thickness(rasters.particle);
 }
 
-// The 90th percentile of the drawn pixels' values, without sign: the few that a crack parts would else take the whole
-// scale.
+// The 90th percentile of the drawn pixels' values, without sign: the few that a crack parts would else take
+// the whole scale.
 double usual_limit(const Rasters& rasters, const RasterPicture& picture, std::vector<float> Raster::*values) {
   std::vector<float> all;
   for (const size_t k : picture.frames) {
@@ -79,7 +79,8 @@ Field field_of(const std::string& name) {
 std::vector<size_t> spread_frames(size_t count) {
   std::vector<size_t> chosen;
   for (size_t k = 1; k <= 4 && count > 0; ++k)
-    if (const size_t at = k * (count - 1) / 4; (at > 0 || count == 1) && (chosen.empty() || chosen.back() != at))
+    if (const size_t at = k * (count - 1) / 4;
+        (at > 0 || count == 1) && (chosen.empty() || chosen.back() != at))
       chosen.push_back(at);
   return chosen;
 }
@@ -90,14 +91,15 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
   const Shown shown =
       picture.field == Field::strain
           ? Shown{&Raster::strain, 100, fmt::format("axial strain along {}, %", "xyz"[rasters.strain_axis])}
-      : picture.field == Field::speed ? Shown{&Raster::speed, 1, "speed, m/s"}
-                                      : Shown{&Raster::thickness, length.factor,
-                                              fmt::format("thickness, {}", length.name)};
+      : picture.field == Field::speed
+          ? Shown{&Raster::speed, 1, "speed, m/s"}
+          : Shown{&Raster::thickness, length.factor, fmt::format("thickness, {}", length.name)};
   double limit = picture.limit > 0 ? picture.limit : usual_limit(rasters, picture, shown.values);
   limit = std::max(limit * shown.factor, 1e-9);
 
   const int panels = static_cast<int>(picture.frames.size());
-  const int across = panels > 1 && grid.columns < 3 * grid.rows ? 2 : 1, down = (panels + across - 1) / across;
+  const int across = panels > 1 && grid.columns < 3 * grid.rows ? 2 : 1,
+            down = (panels + across - 1) / across;
   // A tall body gets narrower panels, so that the picture is at most twice as high as wide.
   const double shape = static_cast<double>(grid.rows) / grid.columns;
   const int most = (2 * picture.width - kTitle - kBar) / down - kLabel - kTics;
@@ -135,7 +137,8 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
                           ? static_cast<float>((frame.*shown.values)[pixel] * shown.factor)
                           : std::numeric_limits<float>::quiet_NaN();
     const std::string name = scratch.path(fmt::format("panel{}", n));
-    write_text(name, std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
+    write_text(name,
+               std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
     const int from_left = n % across * (picture.width / across) + kLeft;
     const int from_top = kTitle + n / across * row + kLabel;
     const Unit time = readable(frame.time, kTimes);

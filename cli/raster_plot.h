@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Figures of rasters by gnuplot: frames beside and under one another, to one scale, with axes and a colour bar.
+// Figures of rasters by gnuplot: frames beside and under one another, to one scale, with axes and a colour
+// bar.
 #pragma once
 
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "model/raster.h"
+#include "model/trace/raster.h"
 
 namespace cuboct {
 
@@ -21,8 +22,8 @@ struct RasterPicture {
   int width = 1600;            // pixels
 };
 
-// PNG bytes. Strain is drawn from -limit (blue) to limit (red), the others from 0. A pixel that looks through less than a
-// fifth of a particle's thickness stays white.
+// PNG bytes. Strain is drawn from -limit (blue) to limit (red), the others from 0. A pixel that looks through
+// less than a fifth of a particle's thickness stays white.
 std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture);
 
 // Up to four, evenly spread, the last one included and, where there are others, not the first.

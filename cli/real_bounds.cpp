@@ -6,8 +6,8 @@
 #include <limits>
 #include <variant>
 
-#include "model/law.h"
-#include "model/neighbours.h"
+#include "model/contract/law.h"
+#include "model/contract/neighbours.h"
 
 namespace cuboct {
 namespace {

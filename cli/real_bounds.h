@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 namespace cuboct {
 

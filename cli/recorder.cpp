@@ -12,11 +12,11 @@
 #include <optional>
 #include <vector>
 
-#include "model/directory_lock.h"
-#include "model/frames.h"
-#include "model/output.h"
-#include "model/raster.h"
-#include "model/trace_file.h"
+#include "model/base/directory_lock.h"
+#include "model/base/output.h"
+#include "model/trace/frames.h"
+#include "model/trace/raster.h"
+#include "model/trace/trace_file.h"
 
 namespace cuboct {
 namespace {
@@ -29,7 +29,8 @@ constexpr uint64_t kMost =
     1 << 28;  // a run of so many steps that its hashes take more may well be ended early
 
 // What a run writes, besides run.toml and pictures.
-constexpr const char* kFiles[] = {"trace.h5", "summary.json", "plan.txt", "frames.xyz", "frames.pvd", "rasters.h5"};
+constexpr const char* kFiles[] = {"trace.h5",   "summary.json", "plan.txt",
+                                  "frames.xyz", "frames.pvd",   "rasters.h5"};
 
 void refuse_what_is_kept(const RecorderOptions& options) {
   const std::string& directory = options.directory;

@@ -8,7 +8,7 @@
 #include "cli/command.h"
 #include "cli/items.h"
 #include "cli/outputs.h"
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/vec.h"
+#include "model/base/vec.h"
 
 namespace cuboct {
 

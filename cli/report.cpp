@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +14,11 @@
 #include "cli/plot.h"
 #include "cli/summary.h"
 #include "hw/state_bounds.h"
-#include "model/base64.h"
-#include "model/compare.h"
-#include "model/directory_lock.h"
-#include "model/output.h"
-#include "model/text.h"
+#include "model/base/base64.h"
+#include "model/base/directory_lock.h"
+#include "model/base/output.h"
+#include "model/base/text.h"
+#include "model/trace/compare.h"
 
 namespace cuboct {
 namespace {
@@ -166,8 +166,9 @@ Multiple multiple_of(double largest, const std::string& unit) {
 }
 
 // Curves over time, in one figure; `names`: with what the key calls them. `change`: since the first sample.
-std::string over_time(const Trace& trace, double dt, const std::vector<std::pair<std::string, std::string>>& names,
-                      const std::string& label, bool change = false) {
+std::string over_time(const Trace& trace, double dt,
+                      const std::vector<std::pair<std::string, std::string>>& names, const std::string& label,
+                      bool change = false) {
   std::vector<Series> all;
   std::string unit;
   double latest = 0, largest = 0;
@@ -205,12 +206,14 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
     switch (probe.kind) {
       case Probe::Kind::stress_strain:
         if (const auto tension = tension_of(trace, probe.name))
-          section("Stress and strain: " + probe.name,
-                  stress_strain(trace, *tension, tension->name == first->name ? chosen : std::vector<size_t>()));
+          section(
+              "Stress and strain: " + probe.name,
+              stress_strain(trace, *tension, tension->name == first->name ? chosen : std::vector<size_t>()));
         break;
       case Probe::Kind::force:
         section("Force: " + probe.name,
-                over_time(trace, dt, {{of + "force_x", "x"}, {of + "force_y", "y"}, {of + "force_z", "z"}}, "force"));
+                over_time(trace, dt, {{of + "force_x", "x"}, {of + "force_y", "y"}, {of + "force_z", "z"}},
+                          "force"));
         break;
       case Probe::Kind::displacement:
         section("Displacement: " + probe.name,
@@ -218,13 +221,12 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
         break;
     }
   }
-  section("Energy, since the start",
-          over_time(trace, dt,
-                    {{"energy.kinetic", "kinetic"},
-                     {"energy.potential", "potential"},
-                     {"energy.gravity", "gravity"},
-                     {"energy.total", "total"}},
-                    "change of energy", true));
+  section("Energy, since the start", over_time(trace, dt,
+                                               {{"energy.kinetic", "kinetic"},
+                                                {"energy.potential", "potential"},
+                                                {"energy.gravity", "gravity"},
+                                                {"energy.total", "total"}},
+                                               "change of energy", true));
   section("Temperature", over_time(trace, dt, {{"temperature", ""}}, "temperature"));
   section("Pressure", over_time(trace, dt, {{"pressure", ""}}, "pressure"));
   return out;
@@ -268,11 +270,12 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
       traces.push_back(std::move(trace));
       continue;
     }
-    rows += engine_row(loaded, trace,
-                       other ? fmt::format("<b class=\"bad\">not compared: {} is of another scene or arch, plan "
-                                           "{:016x}</b>",
-                                           html_text(fs::path(file).filename().string()), trace.plan_hash)
-                             : "no state hashes to compare");
+    rows +=
+        engine_row(loaded, trace,
+                   other ? fmt::format("<b class=\"bad\">not compared: {} is of another scene or arch, plan "
+                                       "{:016x}</b>",
+                                       html_text(fs::path(file).filename().string()), trace.plan_hash)
+                         : "no state hashes to compare");
   }
   for (const Trace& trace : traces) {
     // Every engine against the first, and its cycles against each that counts them.
@@ -284,10 +287,12 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
                     html_text(mismatch->text(other.engine, trace.engine, loaded.setup.plan.lattice)) + "</b>";
     const uint64_t bits = trace.steps() * loaded.setup.plan.particles *
                           static_cast<uint64_t>(loaded.setup.plan.words.particle_bits);
-    if (verdict.empty()) verdict = traces.size() < 2 ? "no other trace to compare" : fmt::format("{} bits equal", bits);
+    if (verdict.empty())
+      verdict = traces.size() < 2 ? "no other trace to compare" : fmt::format("{} bits equal", bits);
     rows += engine_row(loaded, trace, verdict);
   }
-  return "<h2>Engines</h2>\n<div class=\"wide\"><table>\n<tr><th></th><th>steps</th><th>particle updates</th><th>state bits</th>"
+  return "<h2>Engines</h2>\n<div class=\"wide\"><table>\n<tr><th></th><th>steps</th><th>particle "
+         "updates</th><th>state bits</th>"
          "<th>mean cycles per step</th><th>most</th><th>host time, s</th><th>particle-steps/s</th></tr>\n" +
          rows + "</table></div>\n";
 }
@@ -354,7 +359,8 @@ void report(const std::string& directory, std::string out) {
       html_text(loaded.scene.title.empty() ? record.scene : loaded.scene.title), kStyle, plan.particles,
       plan.nodes(), trace.steps(), plan.rule.dt, html_text(trace.engine),
       trace.asked && trace.steps() != trace.asked
-          ? fmt::format(", <b class=\"bad\">{} after {} of {} steps</b>", trace.ended(), trace.steps(), *trace.asked)
+          ? fmt::format(", <b class=\"bad\">{} after {} of {} steps</b>", trace.ended(), trace.steps(),
+                        *trace.asked)
           : "");
   // A run in real numbers, which has no hashes, needs no widths.
   html += warning_section(trace.state_hash.empty() ? std::vector<std::string>() : plan.warnings, trace);

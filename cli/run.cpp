@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -19,10 +19,10 @@
 #include "cli/run_lattice.h"
 #include "cli/run_reference.h"
 #include "cli/summary.h"
-#include "model/interrupt.h"
-#include "model/process.h"
-#include "model/progress.h"
-#include "model/steps.h"
+#include "model/base/interrupt.h"
+#include "model/base/process.h"
+#include "model/base/progress.h"
+#include "model/base/steps.h"
 
 namespace cuboct {
 namespace {
@@ -57,7 +57,8 @@ struct Options {
 // Bytes of a trace besides its frames, at most.
 uint64_t rest_of(const Options& options, const Loaded& loaded, uint64_t steps, uint64_t samples) {
   const bool lattice = options.engine == "lattice" || options.engine == "gpu" || options.engine == "fpga";
-  const uint64_t hashes = options.engine == "reference" ? 0 : steps / (lattice ? options.lattice.hash_every : 1) + 2;
+  const uint64_t hashes =
+      options.engine == "reference" ? 0 : steps / (lattice ? options.lattice.hash_every : 1) + 2;
   const bool cycles = options.lattice.cycles || options.engine == "systemc" || options.engine == "rtl";
   const uint64_t spans = cycles ? steps * loaded.setup.plan.nodes() * kPhases : 0;
   const uint64_t curves = 6 + 3 * loaded.scene.probes.size();
@@ -132,17 +133,18 @@ int run(Options options) {
   const std::vector<uint64_t> probe_steps = every_so_often(scene.probe_every, steps);
   std::optional<Recorder> recorder;
   if (!options.out.empty())
-    recorder.emplace(RecorderOptions{options.out,
-                                     {options.input.scene, options.input.arch, options.engine},
-                                     options.lattice.resume,
-                                     options.force,
-                                     options.no_states,
-                                     options.raster,
-                                     options.real.is_real(options.engine),
-                                     options.si,
-                                     options.lattice.cycles || options.engine == "systemc" || options.engine == "rtl",
-                                     rest_of(options, loaded, steps, probe_steps.size())},
-                     loaded);
+    recorder.emplace(
+        RecorderOptions{options.out,
+                        {options.input.scene, options.input.arch, options.engine},
+                        options.lattice.resume,
+                        options.force,
+                        options.no_states,
+                        options.raster,
+                        options.real.is_real(options.engine),
+                        options.si,
+                        options.lattice.cycles || options.engine == "systemc" || options.engine == "rtl",
+                        rest_of(options, loaded, steps, probe_steps.size())},
+        loaded);
   const auto keep = [&](const State& state) {
     if (recorder) recorder->keep(state);
   };
@@ -151,7 +153,7 @@ int run(Options options) {
   Items summary;
   std::string trouble;  // what could not be written, but for the recorder's
   bool left_checkpoint = false;
-  bool failed = false;  // in the sense of model/watch.h
+  bool failed = false;  // in the sense of model/analysis/watch.h
   if (reference) {
     RealOptions real = options.real.options();
     real.threads = options.lattice.threads;
@@ -168,7 +170,8 @@ int run(Options options) {
     request.watch = !options.no_watch;
     request.passes = true;
     if (options.hashes_given || request.precision == "fixed") request.hash_every = options.lattice.hash_every;
-    GpuAnswer answer = run_on_gpu(options.input, loaded, options.gpu, request, recorder ? &*recorder : nullptr);
+    GpuAnswer answer =
+        run_on_gpu(options.input, loaded, options.gpu, request, recorder ? &*recorder : nullptr);
     failed = answer.failed;
     trace = std::move(answer.trace);
     summary = std::move(answer.summary);
@@ -178,7 +181,8 @@ int run(Options options) {
     request.frames = frame_steps;
     request.probes = probe_steps;
     request.keep = keep;
-    const RunFacts facts = run_by_lattice(options, loaded, std::move(request), trace, left_checkpoint, trouble);
+    const RunFacts facts =
+        run_by_lattice(options, loaded, std::move(request), trace, left_checkpoint, trouble);
     summary = summarise(loaded, trace, facts);
     failed = !facts.findings.empty();
   } else {
@@ -186,7 +190,8 @@ int run(Options options) {
     Request request{steps, frame_steps};
     RunMeter meter(loaded, probe_steps, !options.no_watch);
     if (options.engine == "golden") {
-      trace = run_golden(loaded.setup, request, [&](const State& state) { meter.see(state); }, keep);
+      trace = run_golden(
+          loaded.setup, request, [&](const State& state) { meter.see(state); }, keep);
     } else {
       request.frames.clear();
       std::set_union(frame_steps.begin(), frame_steps.end(), probe_steps.begin(), probe_steps.end(),
@@ -201,7 +206,8 @@ int run(Options options) {
       trace = reader->rest();
       reader->frames([&](const State& state) {
         meter.see(state);
-        if (state.step == trace.steps() || std::binary_search(frame_steps.begin(), frame_steps.end(), state.step))
+        if (state.step == trace.steps() ||
+            std::binary_search(frame_steps.begin(), frame_steps.end(), state.step))
           keep(state);
       });
     }
@@ -216,8 +222,12 @@ int run(Options options) {
   add_end(summary, trace);
   // Run to its end, or to a fault, it has nothing left to do.
   const bool unfinished = interrupted() && !trace.stop && trace.steps() < steps;
-  const char* state = !trouble.empty() ? "incomplete" : trace.stop ? "stopped" : unfinished ? "interrupted" : "finished";
-  if (recorder) std::signal(SIGPIPE, SIG_IGN);  // a reader that went away costs the summary's lines, not the files
+  const char* state = !trouble.empty() ? "incomplete"
+                      : trace.stop     ? "stopped"
+                      : unfinished     ? "interrupted"
+                                       : "finished";
+  if (recorder)
+    std::signal(SIGPIPE, SIG_IGN);  // a reader that went away costs the summary's lines, not the files
   try {
     fmt::print("{}", options.json ? summary.json() : summary.text());
     if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
@@ -230,8 +240,11 @@ int run(Options options) {
   }
   if (unfinished)
     fmt::print(stderr, "interrupted{}\n",
-               left_checkpoint ? fmt::format("; the same command with --resume goes on at step {}", trace.steps()) : "");
-  else if (options.lattice.keeps_checkpoints() && trouble.empty())  // else it is what writes all of it once more
+               left_checkpoint
+                   ? fmt::format("; the same command with --resume goes on at step {}", trace.steps())
+                   : "");
+  else if (options.lattice.keeps_checkpoints() &&
+           trouble.empty())  // else it is what writes all of it once more
     emu::remove_checkpoint(options.out + "/checkpoint");
   if (!trouble.empty()) throw InputError(trouble);
   return trace.stop || failed || unfinished ? 1 : 0;
@@ -286,7 +299,8 @@ void add_run(CLI::App& app, int& exit_code) {
                      ->type_name("PX");
   command->add_flag("--no-states", options->no_states,
                     "of the frames, DIR keeps rasters.h5 alone: for bodies of millions of particles");
-  command->add_flag("--si", options->si, "the trace in DIR holds positions and velocities in m and m/s as well");
+  command->add_flag("--si", options->si,
+                    "the trace in DIR holds positions and velocities in m and m/s as well");
   command->add_flag("--no-watch", options->no_watch,
                     "do not look for what makes a run wrong (docs/reference/failures.md)");
   command->add_flag("--anyway", options->anyway, "run although it needs more memory or disk than is free");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/run_fpga.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 namespace cuboct {
 

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "cli/engines.h"
-#include "model/interrupt.h"
-#include "model/progress.h"
-#include "model/golden.h"
+#include "model/base/interrupt.h"
+#include "model/base/progress.h"
+#include "model/contract/golden.h"
 
 namespace cuboct {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "cli/run_gpu.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "cli/summary.h"
-#include "model/process.h"
-#include "model/progress.h"
+#include "model/base/process.h"
+#include "model/base/progress.h"
 
 namespace cuboct {
 namespace {

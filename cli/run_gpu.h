@@ -9,7 +9,7 @@
 #include "cli/engines.h"
 #include "cli/items.h"
 #include "cli/recorder.h"
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct {
 

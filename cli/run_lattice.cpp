@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "cli/run_lattice.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 
 #include "cli/engines.h"
 #include "cli/estimate.h"
 #include "emu/lattice/program.h"
-#include "model/interrupt.h"
-#include "model/measure.h"
-#include "model/output.h"
-#include "model/process.h"
-#include "model/progress.h"
-#include "model/trace_file.h"
+#include "model/analysis/measure.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "model/base/progress.h"
+#include "model/trace/trace_file.h"
 
 namespace cuboct {
 namespace {
 
 LatticeAnswer run_over_mpi(const Input& input, const Plan& plan, const LatticeChoice& choice,
-                                const emu::LatticeRun& request) {
+                           const emu::LatticeRun& request) {
   if (access((program_directory() + "/cuboct-lattice").c_str(), X_OK) != 0)
     throw InputError(fmt::format("--ranks {}: no program cuboct-lattice beside cuboct", choice.ranks));
   if (!emu::lattice_has_mpi())
@@ -31,7 +31,8 @@ LatticeAnswer run_over_mpi(const Input& input, const Plan& plan, const LatticeCh
   if (!in_path("mpirun"))
     throw InputError(fmt::format("--ranks {}: no program mpirun", choice.ranks), "install openmpi-bin");
   const Scratch scratch;
-  const std::string out = scratch.path("lattice.h5"), frames = scratch.path("frames"), begun = scratch.path("begun");
+  const std::string out = scratch.path("lattice.h5"), frames = scratch.path("frames"),
+                    begun = scratch.path("begun");
   write_text(frames, fmt::format("{}\n", fmt::join(request.frames, "\n")));
   std::vector<std::string> arguments{"--quiet",
                                      "--oversubscribe",
@@ -95,7 +96,8 @@ LatticeAnswer run_over_mpi(const Input& input, const Plan& plan, const LatticeCh
 }  // namespace
 
 void LatticeChoice::add_to(CLI::App& command) {
-  command.add_option("--threads", threads, "threads of lattice or reference; default: as many as suit the scene")
+  command
+      .add_option("--threads", threads, "threads of lattice or reference; default: as many as suit the scene")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   command.add_option("--ranks", ranks, "processes of lattice, over MPI")
@@ -118,7 +120,7 @@ void LatticeChoice::check_unused(const std::string& engine) const {
 }
 
 LatticeAnswer run_on_lattice(const Input& input, const Scene& scene, const Plan& plan,
-                                  const LatticeChoice& choice, emu::LatticeRun request) {
+                             const LatticeChoice& choice, emu::LatticeRun request) {
   check_workers(choice.threads, choice.ranks, plan);
   request.engine.threads = choice.threads;
   if (!choice.checkpoint_every.empty()) emu::read_interval(choice.checkpoint_every, request.checkpoint);

@@ -31,6 +31,6 @@ struct LatticeAnswer : emu::LatticeResult {
 // `request` with the choice's threads, on one or more ranks. Throws InputError where ranks are asked for that
 // this build or machine does not have.
 LatticeAnswer run_on_lattice(const Input& input, const Scene& scene, const Plan& plan,
-                                  const LatticeChoice& choice, emu::LatticeRun request);
+                             const LatticeChoice& choice, emu::LatticeRun request);
 
 }  // namespace cuboct

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "cli/run_reference.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
 
 #include "cli/summary.h"
-#include "model/error.h"
-#include "model/interrupt.h"
-#include "model/measure.h"
-#include "model/progress.h"
-#include "model/real_meter.h"
+#include "model/analysis/measure.h"
+#include "model/analysis/real_meter.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
+#include "model/base/progress.h"
 
 namespace cuboct {
 void RealChoice::add_to(CLI::App& command) {

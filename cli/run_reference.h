@@ -8,8 +8,8 @@
 #include "cli/command.h"
 #include "cli/items.h"
 #include "cli/recorder.h"
-#include "model/reference.h"
-#include "model/trace.h"
+#include "model/real/reference.h"
+#include "model/trace/trace.h"
 
 namespace cuboct {
 
@@ -32,7 +32,8 @@ struct ReferenceRun {
   bool failed = false;  // the watch found something
 };
 
-// Ctrl-C gives the run so far. Frames go to the recorder where there is one. `threads` of `options` may be 0: as many as suit the scene.
+// Ctrl-C gives the run so far. Frames go to the recorder where there is one. `threads` of `options` may be 0:
+// as many as suit the scene.
 ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t steps,
                            const std::vector<uint64_t>& frame_steps, const std::vector<uint64_t>& probe_steps,
                            bool watch, Recorder* recorder);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <array>
 #include <cmath>
@@ -11,13 +11,13 @@
 
 #include "cli/command.h"
 #include "cli/stability_maps.h"
-#include "model/directory_lock.h"
-#include "model/dynamical_matrix.h"
-#include "model/error.h"
-#include "model/interrupt.h"
-#include "model/output.h"
-#include "model/progress.h"
-#include "model/text.h"
+#include "model/base/directory_lock.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/progress.h"
+#include "model/base/text.h"
+#include "model/solid/dynamical_matrix.h"
 #include "study/json.h"
 #include "study/stability.h"
 
@@ -132,7 +132,8 @@ std::string text_of(const Scene& scene, const std::vector<Row>& rows) {
     for (const auto& measured : row.measured) any = any || measured;
     for (const auto& measured : row.measured) {
       if (!any) break;
-      if (!measured) out += fmt::format("  {:>13}  {:>7}", "-", "");
+      if (!measured)
+        out += fmt::format("  {:>13}  {:>7}", "-", "");
       else
         out += fmt::format("  {:>13}  {:>7.4f}",
                            fmt::format("{}{:.5g}", measured->refused ? ">" : "", measured->middle()),
@@ -176,9 +177,10 @@ std::string json_of(const Scene& scene, const std::vector<Row>& rows) {
 
 void check(const Options& options) {
   if (!(options.strain >= 0 && options.strain <= 0.5))
-    throw InputError(fmt::format("--strain: {:g} is not in [0, 0.5]: the part of its length that the body is "
-                                 "stretched and pressed by",
-                                 options.strain));
+    throw InputError(
+        fmt::format("--strain: {:g} is not in [0, 0.5]: the part of its length that the body is "
+                    "stretched and pressed by",
+                    options.strain));
   if (!(options.resolution >= 1e-4 && options.resolution <= 0.1))
     throw InputError(fmt::format("--resolution: {:g} is not in [0.0001, 0.1]", options.resolution));
   if (!options.axis.empty() && options.axis != "x" && options.axis != "y" && options.axis != "z")
@@ -209,7 +211,8 @@ int stability(const Options& options) {
   };
   try {
     if (scene.pitch > 0) {
-      Row row{"perfect packing", "", 0, largest_frequency(*scene.rule.law, scene.rule.mass, scene.pitch), 0, {}};
+      Row row{
+          "perfect packing", "", 0, largest_frequency(*scene.rule.law, scene.rule.mass, scene.pitch), 0, {}};
       row.predicted = 2 / row.frequency;
       rows.push_back(row);
     }
@@ -239,7 +242,7 @@ int stability(const Options& options) {
              scene, axis, strain);
     if (!options.maps.empty())
       for (const study::StabilityMap& map :
-           study::stability_maps(scene, arch, axis, 26, [&](const std::string& name, double done) {
+           study::stability_maps(scene, arch, axis, 26, [&](const std::string&name, double done) {
              status.say(fmt::format("map of {}: {:.0f} %", name, 100 * done));
            }))
         for (const std::string& path : draw(map, options.maps)) drawn.push_back(path);
@@ -262,7 +265,8 @@ void add_stability(CLI::App& app, int& exit_code) {
       app.add_subcommand("stability", "measure the largest stable time step, beside what theory says");
   options->input.add_to(*command);
   command->add_flag("--json", options->json, "print as JSON");
-  command->add_option("--maps", options->maps, "draw maps of stable and unstable runs there")->type_name("DIR");
+  command->add_option("--maps", options->maps, "draw maps of stable and unstable runs there")
+      ->type_name("DIR");
   command
       ->add_option("--strain", options->strain,
                    "the part of its length that the body is stretched and pressed by; 0: neither")

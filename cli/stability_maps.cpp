@@ -6,14 +6,15 @@
 #include <cmath>
 
 #include "cli/plot.h"
-#include "model/output.h"
-#include "model/text.h"
+#include "model/base/output.h"
+#include "model/base/text.h"
 
 namespace cuboct {
 
 std::vector<std::string> draw(const study::StabilityMap& map, const std::string& directory) {
   static const char* const kColours[] = {"#cfe3f5", "#d9703f", "#b9b9b9", "#6f6f6f"};
-  static const char* const kNames[] = {"stable", "unstable", "the formats refuse it", "the body itself is unstable"};
+  static const char* const kNames[] = {"stable", "unstable", "the formats refuse it",
+                                       "the body itself is unstable"};
   std::string data = "$cells << END\n";
   std::string colours, keys;
   bool there[4] = {};

@@ -96,7 +96,8 @@ void add_end(Items& items, const Trace& trace) {
             whole ? "" : fmt::format("after {} of {} steps", trace.steps(), *trace.asked));
 }
 
-void add_warnings(Items& items, const std::vector<std::string>& of_plan, const std::vector<Finding>& findings) {
+void add_warnings(Items& items, const std::vector<std::string>& of_plan,
+                  const std::vector<Finding>& findings) {
   std::vector<Items> list;
   for (const std::string& text : of_plan) list.emplace_back().add("text", text);
   for (const Finding& f : findings) {

@@ -8,9 +8,9 @@
 
 #include "cli/command.h"
 #include "cli/items.h"
-#include "model/state_meter.h"
-#include "model/steps.h"
-#include "model/trace.h"
+#include "model/analysis/state_meter.h"
+#include "model/base/steps.h"
+#include "model/trace/trace.h"
 
 namespace cuboct {
 
@@ -50,14 +50,16 @@ struct CyclesPerStep {
 };
 std::optional<CyclesPerStep> cycles_per_step(const Trace& trace);
 
-// Every curve's last value, and its smallest and largest; of the energies, how much the total changed and its last.
+// Every curve's last value, and its smallest and largest; of the energies, how much the total changed and its
+// last.
 void add_curves(Items& items, const Scene& scene, const std::vector<Curve>& curves);
 
 // How the run ended, and where if that was too soon.
 void add_end(Items& items, const Trace& trace);
 
 // "warning: ..." lines and the array "warnings". `of_plan`: what the scene or the arch asks for in vain.
-void add_warnings(Items& items, const std::vector<std::string>& of_plan, const std::vector<Finding>& findings);
+void add_warnings(Items& items, const std::vector<std::string>& of_plan,
+                  const std::vector<Finding>& findings);
 
 Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts);
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 
 #include "cli/command.h"
-#include "model/text.h"
-#include "rtl/synth/flow.h"
-#include "rtl/synth/tool.h"
+#include "model/base/text.h"
+#include "synth/flow.h"
+#include "synth/tool.h"
 
 namespace cuboct {
 

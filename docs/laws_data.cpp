@@ -2,7 +2,7 @@
 // Prints the preset laws for docs/plot_laws.sh: a block per law, r in pitches and force in stiffness * pitch.
 #include <fmt/format.h>
 
-#include "model/law.h"
+#include "model/contract/law.h"
 
 int main() {
   for (const char* name : {"elastic", "brittle", "ductile", "viscous"}) {

@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/.."
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-g++ -std=c++20 -O1 -I. $(pkg-config --cflags eigen3 fmt) docs/laws_data.cpp model/law.cpp model/error.cpp \
+g++ -std=c++20 -O1 -I. $(pkg-config --cflags eigen3 fmt) docs/laws_data.cpp model/contract/law.cpp model/base/error.cpp \
   $(pkg-config --libs fmt) -o "$work/laws_data"
 "$work/laws_data" > "$work/laws.txt"
 gnuplot <<PLOT

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "model/interrupt.h"
+#include "model/base/interrupt.h"
 
 namespace cuboct::gpu {
 namespace {

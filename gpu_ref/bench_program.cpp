@@ -6,9 +6,9 @@
 #include <fstream>
 
 #include "gpu_ref/bench_report.h"
-#include "model/error.h"
-#include "model/interrupt.h"
-#include "model/output.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
 
 namespace cuboct::gpu {
 namespace {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "model/error.h"
-#include "model/spelling.h"
+#include "model/base/error.h"
+#include "model/base/spelling.h"
 
 namespace cuboct::gpu {
 namespace {

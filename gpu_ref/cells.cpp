@@ -7,11 +7,10 @@
 #include <numeric>
 #include <tuple>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::gpu {
 namespace {
-
 
 // Neighbours in space are near in memory: bricks of this many cells a side.
 constexpr int kBrick = 4;
@@ -36,8 +35,8 @@ void rank_planes(const Geometry& geometry, int axis, int first, int count, SlabC
         c[axis] = modulo(first + p, geometry.total[axis]);
         c[(axis + 1) % 3] = u;
         c[(axis + 2) % 3] = w;
-        if (geometry.nodes &&
-            geometry.nodes->find({c[0] + geometry.low[0], c[1] + geometry.low[1], c[2] + geometry.low[2]}) == kNoNode)
+        if (geometry.nodes && geometry.nodes->find({c[0] + geometry.low[0], c[1] + geometry.low[1],
+                                                    c[2] + geometry.low[2]}) == kNoNode)
           continue;
         Cell local = c;
         local[axis] = to_local + p;
@@ -84,16 +83,19 @@ int Cells::owner(int plane) const {
 Cells make_cells(const Geometry& geometry, const std::array<std::vector<uint64_t>, 3>& per_plane, int slabs) {
   Cells cells;
   cells.geometry = geometry;
-  cells.axis = static_cast<int>(std::max_element(geometry.total.begin(), geometry.total.end()) - geometry.total.begin());
+  cells.axis = static_cast<int>(std::max_element(geometry.total.begin(), geometry.total.end()) -
+                                geometry.total.begin());
   const int total = geometry.total[cells.axis], reach = geometry.reach;
   // Borders of a slab must not overlap, nor its two copies.
   const int least = 2 * reach;
   if (slabs > 1 && total < slabs * least)
-    throw InputError(fmt::format("{} slabs of {} planes of cells or more: the scene has {} along its longest axis",
-                                 slabs, least, total),
-                     "use fewer devices");
+    throw InputError(
+        fmt::format("{} slabs of {} planes of cells or more: the scene has {} along its longest axis", slabs,
+                    least, total),
+        "use fewer devices");
   const bool ring = geometry.wraps[cells.axis] || geometry.folds;
-  const std::vector<int> ends = slabs > 1 ? shares(per_plane[cells.axis], slabs, least) : std::vector<int>{total};
+  const std::vector<int> ends =
+      slabs > 1 ? shares(per_plane[cells.axis], slabs, least) : std::vector<int>{total};
   for (int s = 0; s < slabs; ++s) {
     SlabCells slab;
     slab.first = s == 0 ? 0 : ends[s - 1];

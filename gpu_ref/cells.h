@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 // The cells in which particles are stored, and how slabs of them are shared between devices.
 //
-// A slab owns a range of planes of cells across one axis. It stores its particles by cell: first the planes that its
-// lower neighbour sees, then the inner ones, then those that its upper neighbour sees, then copies of what the
-// neighbours own and it sees. A border and its copy are in the same order, so that a copy is one block of memory.
+// A slab owns a range of planes of cells across one axis. It stores its particles by cell: first the planes
+// that its lower neighbour sees, then the inner ones, then those that its upper neighbour sees, then copies
+// of what the neighbours own and it sees. A border and its copy are in the same order, so that a copy is one
+// block of memory.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "model/fixed_math.h"
-#include "model/lattice.h"
-#include "model/vec.h"
+#include "model/base/fixed_math.h"
+#include "model/base/vec.h"
+#include "model/contract/lattice.h"
 
 namespace cuboct::gpu {
 
@@ -25,8 +26,8 @@ CUBOCT_HD constexpr int modulo(int a, int n) {
 }
 
 struct Geometry {
-  Cell low{};    // lowest cell
-  Cell total{};  // cells along each axis
+  Cell low{};                   // lowest cell
+  Cell total{};                 // cells along each axis
   std::array<bool, 3> wraps{};  // the box repeats
   bool folds = false;  // cells outside share the storage of those inside, modulo `total`; else there are none
   std::array<double, 3> edge{1, 1, 1};  // in the unit of lengths of the lists
@@ -36,8 +37,8 @@ struct Geometry {
 
 // One slab's storage order.
 struct SlabCells {
-  int first = 0, planes = 0;           // owned, along the axis, from the lowest
-  int lower = -1, upper = -1;          // the slabs beside it; -1: none
+  int first = 0, planes = 0;              // owned, along the axis, from the lowest
+  int lower = -1, upper = -1;             // the slabs beside it; -1: none
   int local_first = 0, local_planes = 0;  // with the copies
   // Ranks [0, low_end) are the lower border, then come inner cells, the upper border and the two copies.
   uint32_t low_end = 0, inner_end = 0, own_end = 0, lower_copy_end = 0, ranks = 0;
@@ -55,8 +56,8 @@ struct Cells {
   int plane(const Cell& cell) const;
 };
 
-// `per_plane[a]`: particles by plane of cells across axis a; slabs get equal shares of them. InputError where there
-// are fewer planes than the slabs need.
+// `per_plane[a]`: particles by plane of cells across axis a; slabs get equal shares of them. InputError where
+// there are fewer planes than the slabs need.
 Cells make_cells(const Geometry& geometry, const std::array<std::vector<uint64_t>, 3>& per_plane, int slabs);
 
 }  // namespace cuboct::gpu

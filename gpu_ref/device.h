@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What kernels run on: CUDA, or, with CUBOCT_GPU_HOST, loops on the host that give the same results. A kernel is a
-// function object called for each index; the rest of the engine is the same source for both.
+// What kernels run on: CUDA, or, with CUBOCT_GPU_HOST, loops on the host that give the same results. A kernel
+// is a function object called for each index; the rest of the engine is the same source for both.
 //
 // Calls on one Stream run in their order; those of different streams are ordered by events alone. All but the
 // constructors throw std::runtime_error where CUDA fails.
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 
 #ifdef CUBOCT_GPU_HOST
 #include "gpu_ref/device_host.h"

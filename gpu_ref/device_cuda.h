@@ -45,7 +45,8 @@ class Stream {
     activate();
     int least = 0, greatest = 0;
     check(cudaDeviceGetStreamPriorityRange(&least, &greatest), "make a stream");
-    check(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, urgent ? greatest : least), "make a stream");
+    check(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, urgent ? greatest : least),
+          "make a stream");
     check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, device), "device");
   }
   Stream(const Stream&) = delete;
@@ -112,9 +113,8 @@ inline void release(int device, void* memory) {
   cudaFree(memory);
 }
 inline void copy(Stream& stream, void* to, int to_device, const void* from, int from_device, size_t bytes) {
-  check(to_device == from_device
-            ? cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, stream.get())
-            : cudaMemcpyPeerAsync(to, to_device, from, from_device, bytes, stream.get()),
+  check(to_device == from_device ? cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, stream.get())
+                                 : cudaMemcpyPeerAsync(to, to_device, from, from_device, bytes, stream.get()),
         "copy between devices");
 }
 inline void upload(Stream& stream, void* to, const void* from, size_t bytes) {
@@ -137,8 +137,8 @@ inline void share(const std::vector<int>& devices) {
       int can = 0;
       check(cudaDeviceCanAccessPeer(&can, a, b), "peer access");
       if (!can)
-        throw std::runtime_error("CUDA: device " + std::to_string(a) + " has no access to the memory of device " +
-                                 std::to_string(b));
+        throw std::runtime_error("CUDA: device " + std::to_string(a) +
+                                 " has no access to the memory of device " + std::to_string(b));
       check(cudaSetDevice(a), "choose a device");
       const cudaError_t error = cudaDeviceEnablePeerAccess(b, 0);
       if (error == cudaErrorPeerAccessAlreadyEnabled)
@@ -167,16 +167,17 @@ __device__ T load(const T* at) {
 inline constexpr int kLargestBlock = 256;
 
 template <class F>
-__global__ void __launch_bounds__(kLargestBlock) each_kernel(uint32_t begin, uint32_t end,
-                                                             const __grid_constant__ F f) {
+__global__ void __launch_bounds__(kLargestBlock)
+    each_kernel(uint32_t begin, uint32_t end, const __grid_constant__ F f) {
   for (uint32_t i = begin + blockIdx.x * blockDim.x + threadIdx.x; i < end; i += gridDim.x * blockDim.x) f(i);
 }
 
-// Each block holds `cache` in shared memory. All its threads go on or none does, though what they are told of may change
-// while they ask: those that left would leave a part of the cache unread.
+// Each block holds `cache` in shared memory. All its threads go on or none does, though what they are told of
+// may change while they ask: those that left would leave a part of the cache unread.
 template <class F>
-__global__ void __launch_bounds__(kLargestBlock) cached_kernel(uint32_t begin, uint32_t end, const uint32_t* cache,
-                                                               uint32_t words, const __grid_constant__ F f) {
+__global__ void __launch_bounds__(kLargestBlock)
+    cached_kernel(uint32_t begin, uint32_t end, const uint32_t* cache, uint32_t words,
+                  const __grid_constant__ F f) {
   extern __shared__ uint4 memory[];
   if (__syncthreads_or(f.idle())) return;
   auto* here = reinterpret_cast<uint32_t*>(memory);
@@ -187,8 +188,8 @@ __global__ void __launch_bounds__(kLargestBlock) cached_kernel(uint32_t begin, u
 }
 
 template <class F>
-__global__ void __launch_bounds__(kLargestBlock) sum_kernel(uint32_t begin, uint32_t end,
-                                                            const __grid_constant__ F f, uint64_t* out) {
+__global__ void __launch_bounds__(kLargestBlock)
+    sum_kernel(uint32_t begin, uint32_t end, const __grid_constant__ F f, uint64_t* out) {
   if (f.idle()) return;
   unsigned long long sum = 0;
   for (uint32_t i = begin + blockIdx.x * blockDim.x + threadIdx.x; i < end; i += gridDim.x * blockDim.x)
@@ -198,8 +199,8 @@ __global__ void __launch_bounds__(kLargestBlock) sum_kernel(uint32_t begin, uint
 }
 
 template <class F>
-__global__ void __launch_bounds__(kLargestBlock) max_kernel(uint32_t begin, uint32_t end,
-                                                            const __grid_constant__ F f, uint32_t* out) {
+__global__ void __launch_bounds__(kLargestBlock)
+    max_kernel(uint32_t begin, uint32_t end, const __grid_constant__ F f, uint32_t* out) {
   uint32_t most = 0;
   for (uint32_t i = begin + blockIdx.x * blockDim.x + threadIdx.x; i < end; i += gridDim.x * blockDim.x)
     most = max(most, f(i));

@@ -73,7 +73,8 @@ void for_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f) {
   });
 }
 template <class F>
-void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int, const void* cache, size_t, const F& f) {
+void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int, const void* cache, size_t,
+                     const F& f) {
   stream.later([=] {
     if (f.idle()) return;
     for (uint32_t i = begin; i < end; ++i) f(i, cache);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "model/rule.h"
+#include "model/contract/rule.h"
 
 namespace cuboct::gpu {
 

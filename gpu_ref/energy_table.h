@@ -9,7 +9,7 @@
 #include "gpu_ref/real_rule.h"
 
 namespace cuboct {
-struct Rule;  // model/rule.h, which no GPU compiler needs
+struct Rule;  // model/contract/rule.h, which no GPU compiler needs
 }
 namespace cuboct::gpu {
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "hw/plan.h"
-#include "model/measure.h"
-#include "model/scene.h"
-#include "model/state.h"
+#include "model/analysis/measure.h"
+#include "model/contract/state.h"
+#include "model/scene/scene.h"
 
 namespace cuboct::gpu {
 
@@ -23,19 +23,20 @@ const char* to_string(Arithmetic arithmetic);  // "fixed", "float", "double"
 inline constexpr int kMostSlabs = 16;
 
 struct Options {
-  // CUDA's ordinals, one per slab of the scene, at most kMostSlabs. One that comes twice holds two slabs: bits are the same.
+  // CUDA's ordinals, one per slab of the scene, at most kMostSlabs. One that comes twice holds two slabs:
+  // bits are the same.
   std::vector<int> devices{0};
   int block = 128;  // threads of a block, a multiple of 32; leaves no mark in the bits
 };
 
 struct Counters {
-  uint64_t list_builds = 0;      // of the pair lists
-  uint64_t thin_stops = 0;       // batches that ended as a thin list (gpu_ref/step.h) served no longer
-  uint64_t golden_steps = 0;     // of the fixed rule, done by golden on the host, as a fault seemed near
-  uint64_t longest_list = 0;     // partners of one particle
-  double listed_pairs = 0;       // entries per particle in the last list
-  uint64_t halo_particles = 0;   // copies of neighbours' particles, all devices, at the last list
-  uint64_t device_bytes = 0;     // memory asked for, all devices
+  uint64_t list_builds = 0;     // of the pair lists
+  uint64_t thin_stops = 0;      // batches that ended as a thin list (gpu_ref/step.h) served no longer
+  uint64_t golden_steps = 0;    // of the fixed rule, done by golden on the host, as a fault seemed near
+  uint64_t longest_list = 0;    // partners of one particle
+  double listed_pairs = 0;      // entries per particle in the last list
+  uint64_t halo_particles = 0;  // copies of neighbours' particles, all devices, at the last list
+  uint64_t device_bytes = 0;    // memory asked for, all devices
 };
 
 // What probes and energies need of a state, read on the devices.
@@ -43,10 +44,10 @@ struct Reading {
   uint64_t step = 0;
   std::vector<Vec3> x, force;  // m, N (of the pairs), of the probed particles in the order of their ids
   Energies energies;           // zero unless asked for
-  // J, with the energies: the sum over pairs of F . d, of the force on j by i and d = x_j - x_i; positive where
-  // they repel. Minus the trace of model/measure.h's virial_stress, times the volume.
+  // J, with the energies: the sum over pairs of F . d, of the force on j by i and d = x_j - x_i; positive
+  // where they repel. Minus the trace of model/analysis/measure.h's virial_stress, times the volume.
   double virial = 0;
-  double largest_speed = 0;    // m/s, along an axis
+  double largest_speed = 0;  // m/s, along an axis
 };
 
 // A step of a real engine in which a position leaves all bounds: the state before it stands.
@@ -64,7 +65,7 @@ class Engine {
 
   // Advances `steps` steps; where `hashes` is given, the state's hash after each is appended (fixed only).
   // Throws at the first step that cannot be done (fixed: golden's RunError; real: LostPosition): the state
-  // before it stands. Returns early, after a complete step, where model/interrupt.h
+  // before it stands. Returns early, after a complete step, where model/base/interrupt.h
   // says so.
   virtual void advance(uint64_t steps, std::vector<uint64_t>* hashes = nullptr) = 0;
   virtual uint64_t step_count() const = 0;
@@ -94,8 +95,8 @@ std::unique_ptr<Engine> make_real_engine(const Scene& scene, const Body& body, A
 // A device as it is found.
 struct Device {
   int ordinal = 0;
-  std::string name;            // "NVIDIA H100 80GB HBM3"
-  std::string bus;             // PCI bus id, as NVML wants it
+  std::string name;  // "NVIDIA H100 80GB HBM3"
+  std::string bus;   // PCI bus id, as NVML wants it
   int multiprocessors = 0;
   uint64_t memory = 0, free = 0;  // bytes
   uint64_t block_memory = 0;      // bytes that threads of a block may share

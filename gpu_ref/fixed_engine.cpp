@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The fixed rule: golden's bits. A step that may not be possible is golden's own, on the host, so that errors are too.
+// The fixed rule: golden's bits. A step that may not be possible is golden's own, on the host, so that errors
+// are too.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "gpu_ref/fixed_policy.h"
 #include "gpu_ref/machine.h"
-#include "model/golden.h"
-#include "model/interrupt.h"
+#include "model/base/interrupt.h"
+#include "model/contract/golden.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -78,7 +79,8 @@ class FixedEngine final : public Engine {
       for (int a = 0; a < 3; ++a) {
         cell[a] = loose.cell[i].c[a] + (loose.x[i].at[a] >> widths.position_frac);
         if (const int period = lattice.period()[a]; period > 0) cell[a] = modulo(cell[a], period);
-        p.x[a] = Policy::whole(widths, loose.x[i], loose.residue[i], a) & ((int64_t{1} << widths.velocity_frac()) - 1);
+        p.x[a] = Policy::whole(widths, loose.x[i], loose.residue[i], a) &
+                 ((int64_t{1} << widths.velocity_frac()) - 1);
         p.v[a] = loose.v[i].at[a];
         if (!loose.u.empty()) p.u[a] = loose.u[i].at[a];
       }
@@ -116,8 +118,8 @@ class FixedEngine final : public Engine {
     // Two cells' edges hold any cutoff, which is an edge at most, and the skin.
     g.reach = Policy::kReach;
     setup.radius = std::sqrt(std::ldexp(static_cast<double>(rule.cutoff2), -2 * rule.widths.difference_frac));
-    // Half a unit of a difference along three axes, for both of a pair; and floats of a node's coordinates, below 2
-    // edges, which lists and ways since then are made of.
+    // Half a unit of a difference along three axes, for both of a pair; and floats of a node's coordinates,
+    // below 2 edges, which lists and ways since then are made of.
     setup.rounding = 2 * std::ldexp(1.0, -rule.widths.difference_frac) +
                      16 * static_cast<double>(std::numeric_limits<float>::epsilon());
     setup.largest_skin = 0.2 * setup.radius;

@@ -6,8 +6,13 @@ namespace {
 
 DeviceTable put(const FixedTable& table, std::vector<int32_t>& cache) {
   if (cache.size() % 2 != 0) cache.push_back(0);
-  const DeviceTable put{static_cast<int>(table.shape), table.degree,       table.difference_frac, table.index_bits,
-                        table.bin_bits,                table.first_octave, table.fraction_bits,
+  const DeviceTable put{static_cast<int>(table.shape),
+                        table.degree,
+                        table.difference_frac,
+                        table.index_bits,
+                        table.bin_bits,
+                        table.first_octave,
+                        table.fraction_bits,
                         static_cast<uint32_t>(cache.size())};
   for (size_t k = 0; k < table.c0.size(); ++k) {
     cache.push_back(table.c0[k]);

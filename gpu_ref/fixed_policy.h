@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The fixed rule for the engine of gpu_ref/machine.h. Cells are nodes; a position counts from the corner of the node
-// in which its particle stood when the list was made, so that no list changes when a particle crosses a face. Its
-// leading P fractional bits, which pairs see, stand apart from the G bits below, its residue.
+// The fixed rule for the engine of gpu_ref/machine.h. Cells are nodes; a position counts from the corner of
+// the node in which its particle stood when the list was made, so that no list changes when a particle
+// crosses a face. Its leading P fractional bits, which pairs see, stand apart from the G bits below, its
+// residue.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +12,12 @@
 #include "gpu_ref/grid_view.h"
 #include "gpu_ref/particle.h"
 #include "hw/plan.h"
-#include "model/fixed_step.h"
+#include "model/contract/fixed_step.h"
 
 namespace cuboct::gpu {
 
-// FixedTable's numbers; its entries stand in the cache from word `first` on: c0 and c1 side by side, then all c2.
+// FixedTable's numbers; its entries stand in the cache from word `first` on: c0 and c1 side by side, then all
+// c2.
 struct DeviceTable {
   int shape, degree, difference_frac, index_bits, bin_bits, first_octave;
   Rounding fraction_bits;
@@ -31,7 +33,7 @@ struct DeviceType {
 
 struct FixedView {
   Widths widths;
-  int32_t cell_edge;     // in units of a position
+  int32_t cell_edge;    // in units of a position
   float position_unit;  // in cells
   uint64_t cutoff2;
   DeviceTable force, damp;
@@ -56,13 +58,16 @@ class FixedRuleOnDevice {
   Array<DeviceType> types_;
 };
 
-// The view with its tables found in `cache`, with the members that model/fixed_step.h asks of a rule.
+// The view with its tables found in `cache`, with the members that model/contract/fixed_step.h asks of a
+// rule.
 template <bool Damped>
 struct CachedFixedRule {
   struct Row {
     const int32_t* entries;
     int offset;
-    CUBOCT_DEVICE int32_t operator[](uint32_t k) const { return entries[2 * k + static_cast<uint32_t>(offset)]; }
+    CUBOCT_DEVICE int32_t operator[](uint32_t k) const {
+      return entries[2 * k + static_cast<uint32_t>(offset)];
+    }
   };
   struct Table {
     int shape, degree, difference_frac, index_bits, bin_bits, first_octave;
@@ -117,12 +122,12 @@ struct CachedFixedRule {
 template <typename VelocityNumber>
 struct FixedPolicy {
   static constexpr bool kFixed = true;
-  static constexpr int kReach = 2;     // cells that a list may span along an axis
-  static constexpr int kTogether = 1;  // partners loaded at once
-  using Position = Four<int32_t, uint32_t>;          // P fractional bits; type and thin anchor
+  static constexpr int kReach = 2;                        // cells that a list may span along an axis
+  static constexpr int kTogether = 1;                     // partners loaded at once
+  using Position = Four<int32_t, uint32_t>;               // P fractional bits; type and thin anchor
   using Velocity = Four<VelocityNumber, VelocityNumber>;  // P+G fractional bits; anchor (storage.h)
-  using Extra = Three<int64_t>;                      // u, P+G fractional bits
-  using Sum = Three<int64_t>;                        // kicks, P+G fractional bits
+  using Extra = Three<int64_t>;                           // u, P+G fractional bits
+  using Sum = Three<int64_t>;                             // kicks, P+G fractional bits
   using View = FixedView;
   using Rule = FixedRuleOnDevice;
 
@@ -159,10 +164,12 @@ struct FixedPolicy {
   }
 
   // Both parts of a position, P+G fractional bits. The host reads states with it.
-  CUBOCT_HD static int64_t whole(const Widths& widths, const Position& x, const Three<uint32_t>& residue, int axis) {
+  CUBOCT_HD static int64_t whole(const Widths& widths, const Position& x, const Three<uint32_t>& residue,
+                                 int axis) {
     return x.at[axis] * (int64_t{1} << widths.guard) + residue.at[axis];
   }
-  CUBOCT_DEVICE static int64_t whole(const View& view, const Position& x, const Three<uint32_t>& residue, int axis) {
+  CUBOCT_DEVICE static int64_t whole(const View& view, const Position& x, const Three<uint32_t>& residue,
+                                     int axis) {
     return whole(view.widths, x, residue, axis);
   }
 
@@ -174,26 +181,29 @@ struct FixedPolicy {
 
   // Adds what the other, whose cell lies `away`, does to the one. False: golden would refuse.
   template <class Cached>
-  CUBOCT_DEVICE static bool add_pair(const Cached& rule, const GridView&, const Position& one, const Velocity& v,
-                                     const Position& other, const Velocity& w, const int (&away)[3], Sum& sum) {
+  CUBOCT_DEVICE static bool add_pair(const Cached& rule, const GridView&, const Position& one,
+                                     const Velocity& v, const Position& other, const Velocity& w,
+                                     const int (&away)[3], Sum& sum) {
     Triple y;
     for (int a = 0; a < 3; ++a) y[a] = other.at[a] + int64_t{away[a]} * rule.cell_edge;
-    const auto pair = pair_kick_of<PairOutcome>(rule, triple(one.at), triple(v), type_in(one.last), y, triple(w), type_in(other.last));
+    const auto pair = pair_kick_of<PairOutcome>(rule, triple(one.at), triple(v), type_in(one.last), y,
+                                                triple(w), type_in(other.last));
     for (int a = 0; a < 3; ++a) sum.at[a] += pair.kick[a];
     return pair.fault == Fault::none;
   }
 
   // One step of the particle. False: golden would refuse.
   template <class Cached>
-  CUBOCT_DEVICE static bool finish(const Cached& rule, const Sum& sum, Position& x, Three<uint32_t>& residue, Velocity& v,
-                                   Extra* u) {
+  CUBOCT_DEVICE static bool finish(const Cached& rule, const Sum& sum, Position& x, Three<uint32_t>& residue,
+                                   Velocity& v, Extra* u) {
     Triple displacement{};
     if (u)
       for (int a = 0; a < 3; ++a) displacement[a] = u->at[a];
     const Triple sums{{sum.at[0], sum.at[1], sum.at[2]}};
     Triple position;
     for (int a = 0; a < 3; ++a) position[a] = whole(rule.widths, x, residue, a);
-    const auto result = finish_of<FinishOutcome>(rule, sums, position, triple(v), displacement, type_in(x.last));
+    const auto result =
+        finish_of<FinishOutcome>(rule, sums, position, triple(v), displacement, type_in(x.last));
     for (int a = 0; a < 3; ++a) {
       x.at[a] = static_cast<int32_t>(result.x[a] >> rule.widths.guard);
       residue.at[a] = static_cast<uint32_t>(result.x[a] & ((int64_t{1} << rule.widths.guard) - 1));
@@ -204,10 +214,11 @@ struct FixedPolicy {
     return result.fault == Fault::none;
   }
 
-  // What the coming step adds to v, of any size, in the unit of v; `u` may be null unless the rule has PD types.
+  // What the coming step adds to v, of any size, in the unit of v; `u` may be null unless the rule has PD
+  // types.
   template <class Cached>
-  CUBOCT_DEVICE static void gains(const Cached& rule, const Sum& sum, const Velocity& v, const Extra* u, int type,
-                                  double (&gain)[3]) {
+  CUBOCT_DEVICE static void gains(const Cached& rule, const Sum& sum, const Velocity& v, const Extra* u,
+                                  int type, double (&gain)[3]) {
     const DeviceType& of = rule.types[type];
     for (int a = 0; a < 3; ++a) {
       gain[a] = of.imposed[a] ? 0 : static_cast<double>(sum.at[a] + of.gravity[a]);

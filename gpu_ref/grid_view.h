@@ -46,8 +46,8 @@ struct GridView {
   }
 };
 
-// An entry of a pair list: the partner's place in the slab's storage, and above it by how many cells along each axis
-// its cell lies from one's own: as far as kReach.
+// An entry of a pair list: the partner's place in the slab's storage, and above it by how many cells along
+// each axis its cell lies from one's own: as far as kReach.
 template <int kReach>
 struct Entry;
 
@@ -85,8 +85,8 @@ inline constexpr uint32_t kPlaceMask = (1u << Entry<kReach>::kPlaceBits) - 1;
 inline constexpr int kNearBits = 16;
 inline constexpr uint32_t kNearMask = (1u << kNearBits) - 1;
 
-// A particle's partners: those that were near when the list was made stand in the first rows of `entries`, the further
-// ones in the last.
+// A particle's partners: those that were near when the list was made stand in the first rows of `entries`,
+// the further ones in the last.
 struct List {
   const uint32_t* entries;  // [row * stride + particle], `width` rows
   const uint32_t* count;    // near ones, and above kNearBits further ones
@@ -104,7 +104,8 @@ struct List {
     for (uint32_t k = 0; k < all; ++k) use(entries[(k < near_ones ? k : k + gap) * stride + i]);
   }
 };
-// Those of them that were within a thin skin at a later step, in the list's order: most steps go over these alone.
+// Those of them that were within a thin skin at a later step, in the list's order: most steps go over these
+// alone.
 struct ThinList {
   uint32_t* entries;  // as List's, without further ones
   uint32_t* count;

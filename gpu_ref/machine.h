@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The engine of both arithmetics on one or more devices.
 //
-// Space is cut into slabs, one per device or more. Particles are stored by cell; a pair list with a skin holds each
-// one's partners until some particle has moved half the skin, and a thin list those of them that are near now
-// (step.h). One kernel does a step of a particle, from one of two copies of the state to the other. Steps go in
-// batches without the host: kernels note up to which step all was good, and those beyond it do nothing. A slab's
-// borders have a stream of their own: they are written into the neighbours' memory as well, while the inner particles
-// are computed. A slab that has to stop tells the others, which may then be one step ahead: the state that all have
-// reached is still in one of their two copies.
+// Space is cut into slabs, one per device or more. Particles are stored by cell; a pair list with a skin
+// holds each one's partners until some particle has moved half the skin, and a thin list those of them that
+// are near now (step.h). One kernel does a step of a particle, from one of two copies of the state to the
+// other. Steps go in batches without the host: kernels note up to which step all was good, and those beyond
+// it do nothing. A slab's borders have a stream of their own: they are written into the neighbours' memory as
+// well, while the inner particles are computed. A slab that has to stop tells the others, which may then be
+// one step ahead: the state that all have reached is still in one of their two copies.
 #pragma once
 
 #include <array>
@@ -59,9 +59,9 @@ class Machine {
 
   struct Setup {
     Geometry geometry;
-    double radius = 1;     // of the interaction, in the unit of the geometry's edges
-    double rounding = 0;   // that the rule's own differences may bring pairs nearer
-    double largest_skin = 0;  // what the reach of the cells leaves room for
+    double radius = 1;           // of the interaction, in the unit of the geometry's edges
+    double rounding = 0;         // that the rule's own differences may bring pairs nearer
+    double largest_skin = 0;     // what the reach of the cells leaves room for
     uint32_t capacity = kNever;  // of a node (fixed)
     bool pd = false, damped = false;
     int residue_bits = 0;  // of a position (fixed)
@@ -71,8 +71,8 @@ class Machine {
   };
   // `make_rule(stream)` puts the rule on a stream's device.
   template <class MakeRule>
-  Machine(const Options& options, const Setup& setup, const EnergyTables& energies, const Loose<Policy>& state,
-          const MakeRule& make_rule);
+  Machine(const Options& options, const Setup& setup, const EnergyTables& energies,
+          const Loose<Policy>& state, const MakeRule& make_rule);
 
   // One batch of at most `steps`; how many were done, and why it ended. A hash for each where `hashes`.
   enum class End : uint8_t { full, thin, list, doubt, crowded };
@@ -100,12 +100,14 @@ class Machine {
 
  private:
   struct Slab {
-    Slab(int device, int number, uint64_t* account) : device(device), number(number), stream(device), edge(device, true) {
+    Slab(int device, int number, uint64_t* account)
+        : device(device), number(number), stream(device), edge(device, true) {
       for (auto* a : {&x[0], &x[1]}) *a = Array<typename Policy::Position>(device, account);
       for (auto* a : {&v[0], &v[1]}) *a = Array<typename Policy::Velocity>(device, account);
       for (auto* a : {&u[0], &u[1]}) *a = Array<typename Policy::Extra>(device, account);
-      for (auto* a : {&residue[0], &residue[1], &id, &spare_id, &rank_of, &order, &entered, &rank, &count, &first, &taken, &occupancy, &entries,
-                      &counts, &thin_entries, &thin_counts, &notes, &slot, &found_here})
+      for (auto* a :
+           {&residue[0], &residue[1], &id, &spare_id, &rank_of, &order, &entered, &rank, &count, &first,
+            &taken, &occupancy, &entries, &counts, &thin_entries, &thin_counts, &notes, &slot, &found_here})
         *a = Array<uint32_t>(device, account);
       for (auto* a : {&cell, &spare_cell}) *a = Array<CellAt>(device, account);
       for (auto* a : {&leaving[0], &leaving[1], &arriving}) *a = Array<Traveller<Policy>>(device, account);
@@ -113,11 +115,12 @@ class Machine {
       hashes = Array<uint64_t>(device, account);
       found = Array<Found<Policy>>(device, account);
       sums = Array<Sums>(device, account);
-      for (auto* a : {&energy_node, &energy_strength, &energy_weight, &energy_free}) *a = Array<double>(device, account);
+      for (auto* a : {&energy_node, &energy_strength, &energy_weight, &energy_free})
+        *a = Array<double>(device, account);
     }
     int device, number;
     Stream stream;
-    Stream edge;  // for the borders
+    Stream edge;                                    // for the borders
     Event begun[2], border_done[2], inner_done[2];  // of a step, by its number's last bit
     std::unique_ptr<Rule> rule;
     Array<typename Policy::Position> x[2];
@@ -138,10 +141,10 @@ class Machine {
     Array<double> energy_node, energy_strength, energy_weight, energy_free;
     EnergyRule energy;
     Graph graph[2];  // kGraphSteps steps from either copy
-    // Places: own [0, own), of them the lower border [0, low_end) and the upper one [high_begin, own); then the
-    // copies up to `lower_copy_end` and `all`.
+    // Places: own [0, own), of them the lower border [0, low_end) and the upper one [high_begin, own); then
+    // the copies up to `lower_copy_end` and `all`.
     uint32_t own = 0, low_end = 0, high_begin = 0, lower_copy_end = 0, all = 0;
-    size_t room = 0;   // of the arrays
+    size_t room = 0;    // of the arrays
     size_t stride = 0;  // of the list
     uint32_t width = 24;
   };
@@ -152,7 +155,7 @@ class Machine {
   // Share of the interaction's radius. Thinner ones hold fewer pairs and are made more often.
   static constexpr double kThinSkin = 0.06;
   static constexpr uint32_t kThinLongest = 16;  // steps of a thin list
-  static constexpr uint32_t kGraphSteps = 16;  // even: it ends at the copy where it began
+  static constexpr uint32_t kGraphSteps = 16;   // even: it ends at the copy where it began
 
   bool alone() const { return slabs_.size() == 1; }
   const SlabCells& cells_of(const Slab& slab) const { return cells_.slabs[static_cast<size_t>(slab.number)]; }
@@ -162,14 +165,17 @@ class Machine {
   }
   GridView grid(const Slab& slab) const;
   ParticlesView<Policy> at(Slab& slab, int copy) const {
-    return {slab.x[copy].data(), slab.v[copy].data(), setup_.pd ? slab.u[copy].data() : nullptr,
+    return {slab.x[copy].data(),
+            slab.v[copy].data(),
+            setup_.pd ? slab.u[copy].data() : nullptr,
             {slab.residue[copy].data(), setup_.residue_bits}};
   }
   size_t residue_words() const { return Residues<Policy::kFixed>::words_for(setup_.residue_bits); }
   // How far a particle may move before a new list is due: what an anchor does not tell is taken off.
   double farthest() const {
     const auto& edge = setup_.geometry.edge;
-    return std::max(skin_.now() / 2 - static_cast<double>(kAnchorError) * std::max({edge[0], edge[1], edge[2]}), 0.0);
+    return std::max(
+        skin_.now() / 2 - static_cast<double>(kAnchorError) * std::max({edge[0], edge[1], edge[2]}), 0.0);
   }
   // Of thin anchors: a particle that has just left its list's bounds is still within.
   double range() const { return 1.02 * skin_.now() / 2 + 1e-3 * setup_.radius; }
@@ -219,7 +225,8 @@ class Machine {
   uint32_t batch_ = 16;
   // Thin lists are made every so many steps, a power of two; in the step before the next one they are so old.
   uint32_t thin_every_ = 8, thin_age_ = kNever;
-  uint32_t thin_good_ = 0, thin_patience_ = 16;  // thin lists that served to their end; after so many a longer life is tried
+  uint32_t thin_good_ = 0,
+           thin_patience_ = 16;  // thin lists that served to their end; after so many a longer life is tried
   size_t probed_ = 0;
 };
 

@@ -20,15 +20,19 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
   const Geometry& g = setup.geometry;
   for (int a = 0; a < 3; ++a) {
     per_plane[a].assign(static_cast<size_t>(g.total[a]), 0);
-    for (const CellAt& c : state.cell) ++per_plane[a][static_cast<size_t>(modulo(c.c[a] - g.low[a], g.total[a]))];
+    for (const CellAt& c : state.cell)
+      ++per_plane[a][static_cast<size_t>(modulo(c.c[a] - g.low[a], g.total[a]))];
   }
   cells_ = make_cells(g, per_plane, slabs);
   uint64_t cells = 0;
-  for (const SlabCells& slab : cells_.slabs) cells = std::max<uint64_t>(cells, slab.rank.size() + 4ull * slab.ranks);
-  require_memory(options, particles_, cells, bytes_per_particle<Policy>(setup.pd, setup.residue_bits, entries_expected(state.cell)));
+  for (const SlabCells& slab : cells_.slabs)
+    cells = std::max<uint64_t>(cells, slab.rank.size() + 4ull * slab.ranks);
+  require_memory(options, particles_, cells,
+                 bytes_per_particle<Policy>(setup.pd, setup.residue_bits, entries_expected(state.cell)));
   share(options.devices);
   for (int s = 0; s < slabs; ++s) {
-    slabs_.push_back(std::make_unique<Slab>(options.devices[static_cast<size_t>(s)], s, &counters.device_bytes));
+    slabs_.push_back(
+        std::make_unique<Slab>(options.devices[static_cast<size_t>(s)], s, &counters.device_bytes));
     Slab& slab = *slabs_.back();
     const SlabCells& of = cells_.slabs[static_cast<size_t>(s)];
     slab.rule = make_rule(slab.stream);
@@ -42,8 +46,8 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
     slab.energy_strength.set(slab.stream, energies.strength);
     slab.energy_weight.set(slab.stream, energies.weight);
     slab.energy_free.set(slab.stream, energies.free);
-    slab.energy = energies.rule(slab.energy_node.data(), slab.energy_strength.data(), slab.energy_weight.data(),
-                                slab.energy_free.data());
+    slab.energy = energies.rule(slab.energy_node.data(), slab.energy_strength.data(),
+                                slab.energy_weight.data(), slab.energy_free.data());
   }
   upload(state);
 }
@@ -61,7 +65,8 @@ double Machine<Policy>::entries_expected(const std::vector<CellAt>& cells) const
   for (const CellAt& cell : cells)
     if (some.count({cell.c[0], cell.c[1], cell.c[2]}) > 0) ++all;
   const auto& edge = setup_.geometry.edge;
-  const double density = static_cast<double>(all) / static_cast<double>(some.size()) / (edge[0] * edge[1] * edge[2]);
+  const double density =
+      static_cast<double>(all) / static_cast<double>(some.size()) / (edge[0] * edge[1] * edge[2]);
   const double reach = setup_.radius + setup_.largest_skin;
   return std::max(kLeast, kLongest * density * 4 / 3 * 3.14159265 * reach * reach * reach);
 }
@@ -88,7 +93,8 @@ GridView Machine<Policy>::grid(const Slab& slab) const {
 template <class Policy>
 void Machine<Policy>::make_room(Slab& slab, size_t particles) {
   if (particles <= slab.room) return;
-  const auto room = static_cast<size_t>(static_cast<double>(particles) * (slab.room > 0 ? kSpare : 1.0)) + 256;
+  const auto room =
+      static_cast<size_t>(static_cast<double>(particles) * (slab.room > 0 ? kSpare : 1.0)) + 256;
   if (room > kPlaceMask<Policy::kReach>) throw_too_many(particles, kPlaceMask<Policy::kReach>);
   const size_t kept = slab.room;
   for (int k = 0; k < 2; ++k) {
@@ -98,7 +104,8 @@ void Machine<Policy>::make_room(Slab& slab, size_t particles) {
     slab.residue[k].grow(slab.stream, room * residue_words(), kept * residue_words());
     slab.graph[k].drop();
   }
-  for (auto* array : {&slab.id, &slab.spare_id, &slab.rank_of, &slab.order}) array->grow(slab.stream, room, kept);
+  for (auto* array : {&slab.id, &slab.spare_id, &slab.rank_of, &slab.order})
+    array->grow(slab.stream, room, kept);
   if (Policy::kFixed) slab.entered.grow(slab.stream, room, kept);
   for (auto* array : {&slab.cell, &slab.spare_cell}) array->grow(slab.stream, room, kept);
   slab.room = room;
@@ -108,7 +115,8 @@ template <class Policy>
 void Machine<Policy>::scatter(const Loose<Policy>& state) {
   std::vector<std::vector<uint32_t>> of(slabs_.size());
   for (uint32_t i = 0; i < state.size(); ++i) {
-    const int owner = cells_.owner(cells_.plane({state.cell[i].c[0], state.cell[i].c[1], state.cell[i].c[2]}));
+    const int owner =
+        cells_.owner(cells_.plane({state.cell[i].c[0], state.cell[i].c[1], state.cell[i].c[2]}));
     of[static_cast<size_t>(owner)].push_back(i);
   }
   const auto some = [](const auto& all, const std::vector<uint32_t>& which) {
@@ -174,7 +182,8 @@ void Machine<Policy>::resettle() {
     f.rank = s.rank_of.data(), f.alone = alone(), f.room = room;
     f.own = {cells_of(s).first, cells_of(s).planes};
     for (int side = 0; side < 2; ++side) {
-      if (const Slab* other = beside(s, side)) f.beside[side] = {cells_of(*other).first, cells_of(*other).planes};
+      if (const Slab* other = beside(s, side))
+        f.beside[side] = {cells_of(*other).first, cells_of(*other).planes};
       f.leaving[side] = s.leaving[side].data();
     }
     f.leaving_count = s.notes.data(), f.lost = s.notes.data() + 2;
@@ -189,10 +198,12 @@ void Machine<Policy>::resettle() {
     lost |= notes[2] > 0;
   }
   if (lost) {  // seldom: through the host
-    for (auto& slab : slabs_) for_each(slab->stream, 0, slab->own, options_.block, KeepAll{slab->rank_of.data()});
+    for (auto& slab : slabs_)
+      for_each(slab->stream, 0, slab->own, options_.block, KeepAll{slab->rank_of.data()});
     wait_for_all();
     scatter(download());
-    for (auto& slab : slabs_) for_each(slab->stream, 0, slab->own, options_.block, KeepAll{slab->rank_of.data()});
+    for (auto& slab : slabs_)
+      for_each(slab->stream, 0, slab->own, options_.block, KeepAll{slab->rank_of.data()});
     wait_for_all();
     return;
   }
@@ -229,8 +240,9 @@ void Machine<Policy>::sort() {
     Slab& s = *slab;
     const SlabCells& mine = cells_of(s);
     if (const Slab* lower = beside(s, 0))
-      copy(s.stream, s.count.data() + mine.own_end, s.device, lower->count.data() + cells_of(*lower).inner_end,
-           lower->device, (mine.lower_copy_end - mine.own_end) * sizeof(uint32_t));
+      copy(s.stream, s.count.data() + mine.own_end, s.device,
+           lower->count.data() + cells_of(*lower).inner_end, lower->device,
+           (mine.lower_copy_end - mine.own_end) * sizeof(uint32_t));
     if (const Slab* upper = beside(s, 1))
       copy(s.stream, s.count.data() + mine.lower_copy_end, s.device, upper->count.data(), upper->device,
            (mine.ranks - mine.lower_copy_end) * sizeof(uint32_t));
@@ -240,7 +252,9 @@ void Machine<Policy>::sort() {
     // Where each part of the storage ends: the number of particles before a rank.
     if (!alone())
       for_each(s.stream, 0, 1, 32,
-               PartEnds{s.first.data(), s.count.data(), s.notes.data(),
+               PartEnds{s.first.data(),
+                        s.count.data(),
+                        s.notes.data(),
                         {mine.low_end, mine.inner_end, mine.own_end, mine.lower_copy_end, mine.ranks}});
   }
   for (auto& slab : slabs_) {
@@ -250,15 +264,19 @@ void Machine<Policy>::sort() {
       s.low_end = 0, s.high_begin = s.lower_copy_end = s.all = s.own;
     } else {
       const std::vector<uint32_t> ends = s.notes.host(s.stream, 0, 5);
-      s.low_end = ends[0], s.high_begin = ends[1], s.own = ends[2], s.lower_copy_end = ends[3], s.all = ends[4];
+      s.low_end = ends[0], s.high_begin = ends[1], s.own = ends[2], s.lower_copy_end = ends[3],
+      s.all = ends[4];
       make_room(s, s.all);
     }
     for_each(s.stream, 0, before, options_.block,
              Order{s.rank_of.data(), s.first.data(), s.taken.data(), s.order.data()});
     for_each(s.stream, 0, cells_of(s).own_end, options_.block,
              OrderInCell{s.first.data(), s.count.data(), s.id.data(), s.order.data()});
-    Gather<Policy> f{s.rule->view(), grid(s), s.order.data(), at(s, at_), at(s, 1 - at_), s.cell.data(), s.id.data(),
-                     s.spare_cell.data(), s.spare_id.data(), Policy::kFixed ? s.entered.data() : nullptr};
+    Gather<Policy> f{s.rule->view(),    grid(s),
+                     s.order.data(),    at(s, at_),
+                     at(s, 1 - at_),    s.cell.data(),
+                     s.id.data(),       s.spare_cell.data(),
+                     s.spare_id.data(), Policy::kFixed ? s.entered.data() : nullptr};
     for_each(s.stream, 0, s.own, options_.block, f);
     std::swap(s.cell, s.spare_cell), std::swap(s.id, s.spare_id);
   }
@@ -288,11 +306,13 @@ void Machine<Policy>::mirror() {
     each_copy(s, [&](const Slab& other, uint32_t from, uint32_t to, size_t count) {
       copy(s.stream, s.x[at_].data() + to, s.device, other.x[at_].data() + from, other.device,
            count * sizeof(typename Policy::Position));
-      // Velocities into both of the slab's states: with them go anchors, which a list's steps leave as they are.
+      // Velocities into both of the slab's states: with them go anchors, which a list's steps leave as they
+      // are.
       for (int state = 0; state < 2; ++state)
         copy(s.stream, s.v[state].data() + to, s.device, other.v[at_].data() + from, other.device,
              count * sizeof(typename Policy::Velocity));
-      copy(s.stream, s.cell.data() + to, s.device, other.cell.data() + from, other.device, count * sizeof(CellAt));
+      copy(s.stream, s.cell.data() + to, s.device, other.cell.data() + from, other.device,
+           count * sizeof(CellAt));
     });
   }
   wait_for_all();

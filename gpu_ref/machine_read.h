@@ -11,7 +11,7 @@ uint64_t Machine<Policy>::hash() {
   uint64_t sum = 0;
   for (auto& slab : slabs_) {
     slab->hashes.zero(slab->stream);
-    const HashEach<Policy> f{slab->rule->view(), grid(*slab), at(*slab, at_), slab->cell.data(),
+    const HashEach<Policy> f{slab->rule->view(), grid(*slab), at(*slab, at_),      slab->cell.data(),
                              slab->id.data(),    0,           slab->control.data()};
     sum_each(slab->stream, 0, slab->own, options_.block, f, slab->hashes.data());
     sum += slab->hashes.host(slab->stream, 0, 1)[0];
@@ -39,9 +39,9 @@ std::vector<Found<Policy>> Machine<Policy>::read_probed() {
     Slab& s = *slab;
     s.found_here.zero(s.stream);
     Policy::with_variant(s.rule->view(), [&](auto variant) {
-      const ReadProbed<Policy, decltype(variant)> f{s.rule->view(), grid(s),       at(s, at_),          list(s),
-                                                    s.cell.data(),  s.id.data(),   s.slot.data(),       s.found.data(),
-                                                    s.found_here.data()};
+      const ReadProbed<Policy, decltype(variant)> f{s.rule->view(), grid(s),        at(s, at_),
+                                                    list(s),        s.cell.data(),  s.id.data(),
+                                                    s.slot.data(),  s.found.data(), s.found_here.data()};
       for_each_cached(s.stream, 0, s.own, options_.block, s.rule->cache(), s.rule->cache_words(), f);
     });
     const auto here = s.found_here.host(s.stream, 0, probed_);

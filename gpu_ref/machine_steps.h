@@ -21,7 +21,8 @@ template <class Policy>
 void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
   // Less than an anchor tells is no way at all: a new list at each step.
   const auto square = [](double way) { return way > 0 ? static_cast<float>(way * way) : -1.0f; };
-  const auto launch = [&](Slab& s, Stream& stream, uint32_t begin, uint32_t end, uint32_t jump_at, uint32_t jump_by) {
+  const auto launch = [&](Slab& s, Stream& stream, uint32_t begin, uint32_t end, uint32_t jump_at,
+                          uint32_t jump_by) {
     if (begin == end) return;
     const auto fill_and_run = [&](auto f) {
       f.view = s.rule->view(), f.grid = grid(s), f.from = at(s, at_), f.to = at(s, 1 - at_), f.list = list(s);
@@ -29,20 +30,21 @@ void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
       f.thin2 = square(reach_of(thin_skin())), f.inside2 = square(reach_of(0));
       f.range = static_cast<float>(range()), f.thin_skin = static_cast<float>(thin_ways());
       if (const Slab* lower = beside(s, 0))
-        f.copies[0] = {lower->x[1 - at_].data(), setup_.damped ? lower->v[1 - at_].data() : nullptr, 0, s.low_end,
-                       int64_t{lower->lower_copy_end}};
+        f.copies[0] = {lower->x[1 - at_].data(), setup_.damped ? lower->v[1 - at_].data() : nullptr, 0,
+                       s.low_end, int64_t{lower->lower_copy_end}};
       if (const Slab* upper = beside(s, 1))
-        f.copies[1] = {upper->x[1 - at_].data(), setup_.damped ? upper->v[1 - at_].data() : nullptr, s.high_begin,
-                       s.own, int64_t{upper->own} - int64_t{s.high_begin}};
+        f.copies[1] = {upper->x[1 - at_].data(), setup_.damped ? upper->v[1 - at_].data() : nullptr,
+                       s.high_begin, s.own, int64_t{upper->own} - int64_t{s.high_begin}};
       if constexpr (Policy::kFixed) {
         const SlabCells& cells = cells_of(s);
-        f.occupancy = {s.occupancy.data(), nullptr, nullptr, cells.own_end, cells.lower_copy_end, setup_.capacity,
-                       s.entered.data()};
+        f.occupancy = {s.occupancy.data(),   nullptr,         nullptr,         cells.own_end,
+                       cells.lower_copy_end, setup_.capacity, s.entered.data()};
         if (const Slab* lower = beside(s, 0))
           f.occupancy.lower = lower->occupancy.data() + cells_of(*lower).inner_end;
         if (const Slab* upper = beside(s, 1)) f.occupancy.upper = upper->occupancy.data();
       }
-      f.cell = s.cell.data(), f.farthest2 = square(farthest()), f.number = number, f.control = s.control.data();
+      f.cell = s.cell.data(), f.farthest2 = square(farthest()), f.number = number,
+      f.control = s.control.data();
       f.jump_at = jump_at, f.jump_by = jump_by;
       for (const auto& other : slabs_)
         if (other.get() != &s) f.others.at[f.others.count++] = other->control.data();
@@ -58,9 +60,9 @@ void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
   const size_t now = number % 2, last = 1 - now;
   if (!alone())
     for (auto& slab : slabs_) {
-      // What the neighbours wrote in the step before is read now; what is written now they have read by then. And what
-      // is written now takes the place of the state before that step, which is wanted where a particle of any slab, at
-      // its border or not, found the step impossible.
+      // What the neighbours wrote in the step before is read now; what is written now they have read by then.
+      // And what is written now takes the place of the state before that step, which is wanted where a
+      // particle of any slab, at its border or not, found the step impossible.
       if (number > 1)
         for (auto& other : slabs_) {
           if (other != slab) slab->edge.wait(other->border_done[last]);
@@ -78,7 +80,7 @@ void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
     if (hash && !alone()) slab->stream.wait(slab->border_done[now]);
     if (!hash) continue;
     if constexpr (Policy::kFixed) {
-      const HashEach<Policy> f{slab->rule->view(), grid(*slab), at(*slab, 1 - at_), slab->cell.data(),
+      const HashEach<Policy> f{slab->rule->view(), grid(*slab), at(*slab, 1 - at_),  slab->cell.data(),
                                slab->id.data(),    number,      slab->control.data()};
       sum_each(slab->stream, 0, slab->own, options_.block, f, slab->hashes.data() + number);
     }

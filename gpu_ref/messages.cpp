@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "gpu_ref/particle.h"
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::gpu {
 
@@ -17,14 +17,16 @@ const char* to_string(Arithmetic arithmetic) {
 }
 
 void throw_too_many(uint64_t particles, uint64_t most) {
-  throw InputError(fmt::format("{} particles on one device, copies of its neighbours' included: a pair list's entry "
-                               "tells {} apart",
-                               particles, most),
-                   "use more devices");
+  throw InputError(
+      fmt::format("{} particles on one device, copies of its neighbours' included: a pair list's entry "
+                  "tells {} apart",
+                  particles, most),
+      "use more devices");
 }
 
 void throw_too_dense(uint64_t others) {
-  throw std::runtime_error(fmt::format("a particle has {} others inside the cutoff and the skin: matter has collapsed", others));
+  throw std::runtime_error(
+      fmt::format("a particle has {} others inside the cutoff and the skin: matter has collapsed", others));
 }
 
 void throw_far_particle(size_t particle) {
@@ -33,8 +35,9 @@ void throw_far_particle(size_t particle) {
 
 void throw_not_finite(uint64_t step, uint32_t fastest, double speed) {
   throw LostPosition(
-      fmt::format("step {}: a position leaves all bounds; before it particle {} was the fastest, at {:.4g} m/s",
-                  step + 1, fastest, speed),
+      fmt::format(
+          "step {}: a position leaves all bounds; before it particle {} was the fastest, at {:.4g} m/s",
+          step + 1, fastest, speed),
       step, fastest);
 }
 
@@ -42,25 +45,28 @@ void require_devices(const Options& options) {
   if (options.block < 32 || options.block > 256 || options.block % 32 != 0)
     throw InputError(fmt::format("a block of {} threads", options.block), "a multiple of 32 from 32 to 256");
   if (options.devices.empty() || options.devices.size() > size_t{kMostSlabs})
-    throw InputError(fmt::format("{} slabs", options.devices.size()), fmt::format("from 1 to {}", kMostSlabs));
+    throw InputError(fmt::format("{} slabs", options.devices.size()),
+                     fmt::format("from 1 to {}", kMostSlabs));
   std::string why;
   const std::vector<Device> devices = find_devices(&why);
   if (devices.empty()) throw InputError(fmt::format("the gpu engine needs a CUDA device: {}", why));
   for (const int ordinal : options.devices)
     if (std::none_of(devices.begin(), devices.end(), [&](const Device& d) { return d.ordinal == ordinal; }))
       throw InputError(fmt::format("there is no CUDA device {}", ordinal),
-                       devices.size() == 1 ? "this machine has one: 0"
-                                           : fmt::format("this machine has {}: 0 to {}", devices.size(),
-                                                         devices.size() - 1));
+                       devices.size() == 1
+                           ? "this machine has one: 0"
+                           : fmt::format("this machine has {}: 0 to {}", devices.size(), devices.size() - 1));
 }
 
 void require_widths(const Widths& widths) {
   if (widths.position_frac > kMostVisibleBits)
-    throw InputError(fmt::format("position_frac = {}: the gpu engine's positions hold {} bits of a cell at most",
-                                 widths.position_frac, kMostVisibleBits));
+    throw InputError(
+        fmt::format("position_frac = {}: the gpu engine's positions hold {} bits of a cell at most",
+                    widths.position_frac, kMostVisibleBits));
   if (widths.guard > kMostResidueBits)
-    throw InputError(fmt::format("guard = {}: the gpu engine keeps {} bits of a position beside those at most",
-                                 widths.guard, kMostResidueBits));
+    throw InputError(
+        fmt::format("guard = {}: the gpu engine keeps {} bits of a position beside those at most",
+                    widths.guard, kMostResidueBits));
 }
 
 void require_memory(const Options& options, uint64_t particles, uint64_t cells, double bytes_per_particle) {
@@ -79,15 +85,17 @@ void require_memory(const Options& options, uint64_t particles, uint64_t cells, 
         fmt::format("{} particles need {:.1f} GiB on device {} ({}), which has {:.1f} GiB free", particles,
                     needed / 0x1p30, device.ordinal, device.name, static_cast<double>(device.free) / 0x1p30),
         fmt::format("about {} particles fit, or use more devices",
-                    static_cast<uint64_t>(static_cast<double>(device.free) / needed * static_cast<double>(particles))));
+                    static_cast<uint64_t>(static_cast<double>(device.free) / needed *
+                                          static_cast<double>(particles))));
   }
 }
 
 void require_tables(const Options& options, uint64_t bytes) {
   for (const Device& device : find_devices())
-    if (std::count(options.devices.begin(), options.devices.end(), device.ordinal) > 0 && bytes > device.block_memory)
-      throw InputError(fmt::format("the rule's tables take {} bytes, and a block of device {} ({}) holds {}", bytes,
-                                   device.ordinal, device.name, device.block_memory),
+    if (std::count(options.devices.begin(), options.devices.end(), device.ordinal) > 0 &&
+        bytes > device.block_memory)
+      throw InputError(fmt::format("the rule's tables take {} bytes, and a block of device {} ({}) holds {}",
+                                   bytes, device.ordinal, device.name, device.block_memory),
                        "fewer of the arch's table.index_bits");
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the engine says where it refuses. Apart from the kernels: no GPU compiler sees how numbers are printed.
+// What the engine says where it refuses. Apart from the kernels: no GPU compiler sees how numbers are
+// printed.
 #pragma once
 
 #include <cstddef>

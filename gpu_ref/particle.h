@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 
 namespace cuboct::gpu {
 
@@ -27,7 +27,8 @@ struct Three {
   Number at[3];
 };
 
-// Bits of a cell's edge that a fixed position has: it may lie in its neighbour cell, or beyond by a step, and has 32.
+// Bits of a cell's edge that a fixed position has: it may lie in its neighbour cell, or beyond by a step, and
+// has 32.
 inline constexpr int kMostVisibleBits = 30;
 
 // The bits of a fixed position below those that pairs see, `bits` an axis (Widths::guard). They stay with the
@@ -49,7 +50,8 @@ struct Residues {
       const uint32_t* const at = words + i * words_for(bits);
       if (words_for(bits) == 3) return {{at[0], at[1], at[2]}};
       const uint64_t packed = words_for(bits) == 1 ? at[0] : at[0] | uint64_t{at[1]} << 32;
-      for (int a = 0; a < 3; ++a) value.at[a] = static_cast<uint32_t>(packed >> a * bits) & ((1u << bits) - 1);
+      for (int a = 0; a < 3; ++a)
+        value.at[a] = static_cast<uint32_t>(packed >> a * bits) & ((1u << bits) - 1);
     }
     return value;
   }
@@ -61,8 +63,7 @@ struct Residues {
         for (int a = 0; a < 3; ++a) at[a] = value.at[a];
         return;
       }
-      const uint64_t packed =
-          value.at[0] | uint64_t{value.at[1]} << bits | uint64_t{value.at[2]} << 2 * bits;
+      const uint64_t packed = value.at[0] | uint64_t{value.at[1]} << bits | uint64_t{value.at[2]} << 2 * bits;
       at[0] = static_cast<uint32_t>(packed);
       if (words_for(bits) == 2) at[1] = static_cast<uint32_t>(packed >> 32);
     }

@@ -10,7 +10,7 @@
 #include <set>
 #include <thread>
 
-#include "model/interrupt.h"
+#include "model/base/interrupt.h"
 
 namespace cuboct::gpu {
 namespace {

@@ -113,7 +113,8 @@ class EnergyMeter {
   explicit EnergyMeter(PowerMeter& power, const EnergyTimes& times = {}) : power_(power), times_(times) {}
   ~EnergyMeter() { power_.stop(); }
 
-  // Waits settle + idle, less where model/interrupt.h says so. Does nothing where the meter does not work.
+  // Waits settle + idle, less where model/base/interrupt.h says so. Does nothing where the meter does not
+  // work.
   void idle();
   // The window begins with the first call after `warm_up` of work and ends with the last one.
   void did(uint64_t steps);

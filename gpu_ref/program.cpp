@@ -14,11 +14,11 @@
 #include "gpu_ref/run.h"
 #include "gpu_ref/start.h"
 #include "hw/setup.h"
-#include "model/interrupt.h"
-#include "model/output.h"
-#include "model/state_meter.h"
-#include "model/steps.h"
-#include "model/text.h"
+#include "model/analysis/state_meter.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/steps.h"
+#include "model/base/text.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -28,7 +28,8 @@ struct Request {
   std::optional<uint64_t> steps;
   std::vector<uint64_t> frames;
   int gpus = 0;
-  bool frames_given = false, devices_given = false, hashes_given = false, bench = false, unpacked = false, joules = false;
+  bool frames_given = false, devices_given = false, hashes_given = false, bench = false, unpacked = false,
+       joules = false;
   bool list = false;
   int repeats = 0;
   double seconds = 0.3;
@@ -106,8 +107,8 @@ void print_bench(const Trace& trace, uint64_t particles) {
 // Rates of whole runs; a run that stops is told by the trace of one run.
 void print_rates(const Scene& scene, const Plan& plan, const Request& request) {
   const GpuRun& run = request.run;
-  for (const double rate : step_rates(
-           scene, plan, {run.arithmetic, run.steps, request.repeats, request.seconds, run.engine}))
+  for (const double rate :
+       step_rates(scene, plan, {run.arithmetic, run.steps, request.repeats, request.seconds, run.engine}))
     fmt::print("gpu.steps_per_second {:.15g} 1/s\n", rate);
 }
 

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "model/interrupt.h"
+#include "model/base/interrupt.h"
 
 namespace cuboct::gpu {
 namespace {

@@ -7,9 +7,9 @@
 #include "gpu_ref/machine.h"
 #include "gpu_ref/messages.h"
 #include "gpu_ref/real_policy.h"
-#include "model/error.h"
-#include "model/interrupt.h"
-#include "model/neighbours.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
+#include "model/contract/neighbours.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -17,7 +17,8 @@ namespace {
 // Cells as wide as the cutoff and the thickest skin.
 constexpr double kLargestSkin = 0.16, kEdge = 1 + kLargestSkin + 1e-4;
 
-// Cells of a fluid or a solid hold a few particles; more empty ones than these cost more memory than they save time.
+// Cells of a fluid or a solid hold a few particles; more empty ones than these cost more memory than they
+// save time.
 constexpr uint64_t kCellsPerParticle = 4, kLeastCells = 4096;
 
 template <class Real>
@@ -39,9 +40,8 @@ class RealEngine final : public Engine {
     double edge[3];
     std::copy(geometry_.edge.begin(), geometry_.edge.end(), edge);
     machine_ = std::make_unique<Machine<Policy>>(
-        options, setup, EnergyTables(scene.rule), loose(body), [&](Stream& stream) {
-          return std::make_unique<RealRuleOnDevice<Real>>(stream, tables_, edge);
-        });
+        options, setup, EnergyTables(scene.rule), loose(body),
+        [&](Stream& stream) { return std::make_unique<RealRuleOnDevice<Real>>(stream, tables_, edge); });
   }
 
   void advance(uint64_t steps, std::vector<uint64_t>*) override {
@@ -79,8 +79,8 @@ class RealEngine final : public Engine {
   uint64_t hash() override { throw std::logic_error("a real engine has no hash"); }
 
   Body body() override {
-    // Whether new lists have been made since the last step shows in the last bits: they make positions count from other
-    // cells.
+    // Whether new lists have been made since the last step shows in the last bits: they make positions count
+    // from other cells.
     if (old_) renew();
     const Loose<Policy> loose = machine_->download();
     Body body;
@@ -131,7 +131,8 @@ class RealEngine final : public Engine {
     while (cells() > most) {
       int longest = -1;
       for (int a = 0; a < 3; ++a)
-        if (!geometry_.wraps[a] && (longest < 0 || geometry_.total[a] > geometry_.total[longest])) longest = a;
+        if (!geometry_.wraps[a] && (longest < 0 || geometry_.total[a] > geometry_.total[longest]))
+          longest = a;
       if (longest < 0 || geometry_.total[longest] < 2) break;
       geometry_.total[longest] = (geometry_.total[longest] + 1) / 2;
     }
@@ -151,7 +152,8 @@ class RealEngine final : public Engine {
         loose.cell[i].c[a] = static_cast<int32_t>(cell);
         loose.x[i].at[a] = static_cast<Real>(at - cell * edge);
         loose.v[i].at[a] = static_cast<Real>(body.v[i][a] / tables_.velocity);
-        if (pd) loose.u[i].at[a] = body.u.empty() ? Real(0) : static_cast<Real>(body.u[i][a] / tables_.length);
+        if (pd)
+          loose.u[i].at[a] = body.u.empty() ? Real(0) : static_cast<Real>(body.u[i][a] / tables_.length);
       }
       loose.x[i].last = body.type[i];
       loose.id[i] = static_cast<uint32_t>(i);
@@ -162,7 +164,8 @@ class RealEngine final : public Engine {
   Vec3 position(const typename Policy::Position& x, const CellAt& cell) const {
     Vec3 position;
     for (int a = 0; a < 3; ++a)
-      position[a] = origin_[a] + (cell.c[a] * geometry_.edge[a] + static_cast<double>(x.at[a])) * tables_.length;
+      position[a] =
+          origin_[a] + (cell.c[a] * geometry_.edge[a] + static_cast<double>(x.at[a])) * tables_.length;
     return position;
   }
 

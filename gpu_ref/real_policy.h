@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rule in real numbers for the engine of gpu_ref/machine.h. A position counts from the corner of its cell, in
-// cutoffs: floats then resolve it to 2^-24 of a cell's edge wherever in space the cell is.
+// The rule in real numbers for the engine of gpu_ref/machine.h. A position counts from the corner of its
+// cell, in cutoffs: floats then resolve it to 2^-24 of a cell's edge wherever in space the cell is.
 #pragma once
 
 #include <cmath>
@@ -49,7 +49,8 @@ struct RealPolicy {
   static constexpr int kReach = 1;     // cells that a list may span along an axis
   static constexpr int kTogether = 3;  // partners loaded at once
   static constexpr bool kSingle = sizeof(Real) == 4;
-  using Position = Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs; type and thin anchor
+  using Position =
+      Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs; type and thin anchor
   using Velocity = Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs per step; anchor
   using Extra = Three<Real>;                                                     // u, cutoffs
   using Sum = Three<Real>;                                                       // kicks, cutoffs per step
@@ -74,27 +75,29 @@ struct RealPolicy {
   };
   template <class Use>
   static void with_variant(const View& view, const Use& use) {
-    with_kinds(view.rule, [&]<LawKind kKind, bool kDamped, bool kScaled>() { use(Variant<kKind, kDamped, kScaled>()); });
+    with_kinds(view.rule,
+               [&]<LawKind kKind, bool kDamped, bool kScaled>() { use(Variant<kKind, kDamped, kScaled>()); });
   }
 
   // Adds what the other, whose cell lies `away`, does to the one.
   template <class Cached>
-  CUBOCT_DEVICE static bool add_pair(const Cached& rule, const GridView&, const Position& one, const Velocity& v,
-                                     const Position& other, const Velocity& w, const int (&away)[3], Sum& sum) {
+  CUBOCT_DEVICE static bool add_pair(const Cached& rule, const GridView&, const Position& one,
+                                     const Velocity& v, const Position& other, const Velocity& w,
+                                     const int (&away)[3], Sum& sum) {
     Real d[3], dv[3];
     for (int a = 0; a < 3; ++a) {
       d[a] = (other.at[a] - one.at[a]) + static_cast<Real>(away[a]) * rule.edge[a];
       dv[a] = w.at[a] - v.at[a];
     }
-    add_pair_kick<Cached::kLaw, Cached::kDamps, Cached::kScales>(rule.rule, rule.cache, d, dv, type_in(one.last),
-                                                                 type_in(other.last), sum.at);
+    add_pair_kick<Cached::kLaw, Cached::kDamps, Cached::kScales>(
+        rule.rule, rule.cache, d, dv, type_in(one.last), type_in(other.last), sum.at);
     return true;
   }
 
   // One step of the particle. False: a position is not finite.
   template <class Cached>
-  CUBOCT_DEVICE static bool finish(const Cached& rule, const Sum& sum, Position& x, Three<uint32_t>&, Velocity& v,
-                                   Extra* u) {
+  CUBOCT_DEVICE static bool finish(const Cached& rule, const Sum& sum, Position& x, Three<uint32_t>&,
+                                   Velocity& v, Extra* u) {
     gpu::finish(rule.rule, sum.at, x.at, v.at, u ? u->at : nullptr, type_in(x.last));
     // Cells are counted in 32 bits; what goes beyond in one step is on its way to infinity.
     bool sound = true;
@@ -104,12 +107,13 @@ struct RealPolicy {
 
   // What the coming step adds to v; `u` may be null unless the rule has PD types.
   template <class Cached>
-  CUBOCT_DEVICE static void gains(const Cached& rule, const Sum& sum, const Velocity& v, const Extra* u, int type,
-                                  double (&gain)[3]) {
+  CUBOCT_DEVICE static void gains(const Cached& rule, const Sum& sum, const Velocity& v, const Extra* u,
+                                  int type, double (&gain)[3]) {
     const RealType<Real>& of = rule.rule.types[type];
     for (int a = 0; a < 3; ++a)
-      gain[a] = of.imposed[a] ? 0
-                              : static_cast<double>(velocity_gain(of, sum.at[a], v.at[a], u ? u->at : nullptr, a));
+      gain[a] = of.imposed[a]
+                    ? 0
+                    : static_cast<double>(velocity_gain(of, sum.at[a], v.at[a], u ? u->at : nullptr, a));
   }
 
   CUBOCT_DEVICE static Real whole(const View&, const Position& x, const Three<uint32_t>&, int axis) {

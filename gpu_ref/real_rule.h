@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A rule in real numbers as GPUs and their host evaluate it: pair kicks in closed form, and the step of one
-// particle by semi-implicit Euler. The physics is that of model/reference.h.
+// particle by semi-implicit Euler. The physics is that of model/real/reference.h.
 //
 // Units: lengths in cutoffs of the pair law, so that the cutoff is 1; times in steps. A velocity is in
 // cutoffs per step, and so is a kick, f dt^2/(m cutoff): no number comes near the ends of a float's range, as
@@ -11,7 +11,7 @@
 #include <cstdint>
 
 #include "gpu_ref/roots.h"
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 
 namespace cuboct::gpu {
 
@@ -172,8 +172,8 @@ CUBOCT_HD Real over_r(const RealRule<Real>& rule, const Real* cache, Real r2, Re
     if constexpr (!is_arc(kKind)) {
       return (c.a + t * (c.b + t * (c.c + t * c.d))) * inverse_r;
     } else {
-      // An arc of model/law_form.h has r2 s^2 + r1 s = t; the root that does not cancel is s = 2/r1 * p with
-      // p = t/(1 + sqrt(z)), z = 1 + 4 r2/r1^2 t = ((dr/ds)/r1)^2. f is a square function of p too:
+      // An arc of model/contract/law_form.h has r2 s^2 + r1 s = t; the root that does not cancel is s = 2/r1
+      // * p with p = t/(1 + sqrt(z)), z = 1 + 4 r2/r1^2 t = ((dr/ds)/r1)^2. f is a square function of p too:
       // c = {f0, 2 f1/r1, 4 f2/r1^2, 4 r2/r1^2}. Where legs of the control polygon differ much in length, an
       // arc bends within less than a rounding of r: it must not be followed below its beginning, nor z to 0.
       const Real from = detail::larger(t, Real(0));

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::gpu {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gpu_ref/real_rule.h"
-#include "model/rule.h"
+#include "model/contract/rule.h"
 
 namespace cuboct::gpu {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 
 namespace cuboct::gpu {
 

@@ -9,11 +9,11 @@
 #include <numeric>
 #include <optional>
 
-#include "model/energy_curves.h"
-#include "model/interrupt.h"
-#include "model/progress.h"
-#include "model/reference.h"
-#include "model/watch.h"
+#include "model/analysis/energy_curves.h"
+#include "model/analysis/watch.h"
+#include "model/base/interrupt.h"
+#include "model/base/progress.h"
+#include "model/real/reference.h"
 
 namespace cuboct::gpu {
 namespace {

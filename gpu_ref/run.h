@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gpu_ref/engine.h"
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::gpu {
 
@@ -39,7 +39,7 @@ struct GpuResult {
   bool interrupted = false;
 };
 
-// `plan` is the scene's. Heeds model/interrupt.h.
+// `plan` is the scene's. Heeds model/base/interrupt.h.
 // Counters of the trace, beside the engine's own (Counters), where `totals`:
 //   momentum_change  of the whole body: fixed LSB (P+G fractional bits), of the axis that changed most; real
 //                    kg m/s, length of the vector

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "model/error.h"
-#include "model/trace.h"
+#include "model/base/error.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::gpu {
 
@@ -14,8 +14,8 @@ void start_from(const std::string& path, Scene& scene) {
     throw InputError(fmt::format("--start {}: this trace holds no state in real numbers", path));
   RealFrame& frame = trace.bodies.back();
   if (frame.x.size() != scene.body.size())
-    throw InputError(fmt::format("--start {}: a state of {} particles, the scene has {}", path, frame.x.size(),
-                                 scene.body.size()));
+    throw InputError(fmt::format("--start {}: a state of {} particles, the scene has {}", path,
+                                 frame.x.size(), scene.body.size()));
   scene.body.x = std::move(frame.x);
   scene.body.v = std::move(frame.v);
 }

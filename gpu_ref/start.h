@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A run that starts elsewhere than its scene says: studies start all integrators at one time, and ask for forces at
-// positions of theirs.
+// A run that starts elsewhere than its scene says: studies start all integrators at one time, and ask for
+// forces at positions of theirs.
 #pragma once
 
 #include <string>
 
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 namespace cuboct::gpu {
 

@@ -7,7 +7,7 @@
 #include "gpu_ref/energy_table.h"
 #include "gpu_ref/engine.h"
 #include "gpu_ref/storage.h"
-#include "model/hash.h"
+#include "model/base/hash.h"
 
 namespace cuboct::gpu {
 
@@ -28,8 +28,9 @@ struct Controls {
   int count;
 };
 
-// How full nodes may be. No particle's departure is counted until the next list, nor does one count twice in a node:
-// while no node holds more than its capacity by that count, none has done so, in whatever order devices count.
+// How full nodes may be. No particle's departure is counted until the next list, nor does one count twice in
+// a node: while no node holds more than its capacity by that count, none has done so, in whatever order
+// devices count.
 struct Occupancy {
   uint32_t* own;
   uint32_t *lower, *upper;  // the neighbours' counts of what this slab holds copies of
@@ -72,8 +73,8 @@ struct Pairs {
   typename Policy::Sum sum{};
   bool sound = true;
 
-  // Calls use(entry, partner, its velocity) for `count` entries, one in each row of `stride`. Some are loaded at once, and
-  // with them the entries that follow: memory's latency is what a step waits for.
+  // Calls use(entry, partner, its velocity) for `count` entries, one in each row of `stride`. Some are loaded
+  // at once, and with them the entries that follow: memory's latency is what a step waits for.
   template <class Use>
   CUBOCT_DEVICE void over(const uint32_t* at, size_t stride, uint32_t count, const Use& use) const {
     constexpr int kTogether = Policy::kTogether;
@@ -105,7 +106,8 @@ struct Pairs {
     over(list.entries + i, list.stride, list.near(i), use);
     over(list.entries + i + list.stride * list.first_row(i), list.stride, list.further(i), use);
   }
-  CUBOCT_DEVICE void add(uint32_t entry, const typename Policy::Position& other, const typename Policy::Velocity& w) {
+  CUBOCT_DEVICE void add(uint32_t entry, const typename Policy::Position& other,
+                         const typename Policy::Velocity& w) {
     int away[3];
     Entry<Policy::kReach>::away(entry, away);
     sound &= Policy::add_pair(rule, grid, x, v, other, w, away, sum);
@@ -126,7 +128,8 @@ struct Pairs {
 template <class Policy, class Variant>
 CUBOCT_DEVICE inline typename Policy::Sum kick_of(const typename Policy::View& view, const void* cache,
                                                   const GridView& grid, const ParticlesView<Policy>& from,
-                                                  const List& list, uint32_t i, const typename Policy::Position& x,
+                                                  const List& list, uint32_t i,
+                                                  const typename Policy::Position& x,
                                                   const typename Policy::Velocity& v) {
   Pairs<Policy, Variant> pairs{view, grid, from, Variant::cached(view, cache), x, v};
   pairs.over(list, i, [&](uint32_t entry, const auto& other, const auto& w) { pairs.add(entry, other, w); });
@@ -219,8 +222,8 @@ struct Step {
     }
     return sqrtf(sum);
   }
-  // Whether a pair that no thin list holds may have come near: two that together have moved as far as the thin skin.
-  // One of them has moved half of that; few have, and they look at their partners.
+  // Whether a pair that no thin list holds may have come near: two that together have moved as far as the
+  // thin skin. One of them has moved half of that; few have, and they look at their partners.
   CUBOCT_DEVICE bool meets_a_stranger(uint32_t i, float way) const {
     bool meets = false;
     list.each(i, [&](uint32_t entry) {
@@ -240,7 +243,8 @@ struct Step {
     float moved[3];
     moved_since<Policy>(view, grid, x, v, moved);
     using Last = decltype(x.last);
-    x.last = static_cast<Last>(type_in(x.last)) | static_cast<Last>(thin_anchor_of(moved, range)) << kTypeBits;
+    x.last = static_cast<Last>(type_in(x.last)) | static_cast<Last>(thin_anchor_of(moved, range))
+                                                      << kTypeBits;
     uint32_t kept = 0;
     pairs.over(list, i, [&](uint32_t entry, const auto& other, const auto& w) {
       const float square = pairs.distance2(entry, other);
@@ -251,8 +255,8 @@ struct Step {
     thin.count[i] = kept;
   }
 
-  // The other slabs may be a step ahead, and no more: the state after this step stays in one of their two copies.
-  // They learn of it in time, as their next but one step begins after this slab's next one has.
+  // The other slabs may be a step ahead, and no more: the state after this step stays in one of their two
+  // copies. They learn of it in time, as their next but one step begins after this slab's next one has.
   CUBOCT_DEVICE void stop_after(uint32_t step) const {
     atomic_min(&control->limit, step);
     for (int k = 0; k < others.count; ++k) atomic_min(&others.at[k]->limit, step + 1);
@@ -290,7 +294,8 @@ struct Step {
   }
 };
 
-// hash_of (model/state.h) of the state after step `number` of a batch, where it came so far; 0: of the state as it is.
+// hash_of (model/contract/state.h) of the state after step `number` of a batch, where it came so far; 0: of
+// the state as it is.
 template <class Policy>
 struct HashEach {
   typename Policy::View view;
@@ -346,18 +351,19 @@ struct ReadProbed {
     const uint32_t to = slot[id[i]];
     if (to == kNever) return;
     const auto x = load(at.x + i);
-    found[to] = {x, at.residue.load(i), kick_of<Policy, Variant>(view, cache, grid, at, list, i, x, load(at.v + i)),
-                 cell[i]};
+    found[to] = {x, at.residue.load(i),
+                 kick_of<Policy, Variant>(view, cache, grid, at, list, i, x, load(at.v + i)), cell[i]};
     here[to] = 1;
   }
 };
 
-// Sums over some particles; each a few at a time in a fixed order, so that they are the same on every machine.
+// Sums over some particles; each a few at a time in a fixed order, so that they are the same on every
+// machine.
 struct Sums {
   double kinetic, potential, gravity;  // J
   double virial;                       // J, see Reading::virial
-  double free_kinetic, flow[3];        // J, and velocities in their unit: FreeMotion of model/measure.h
-  double speed;                        // largest, along an axis, in the unit of velocities
+  double free_kinetic, flow[3];  // J, and velocities in their unit: FreeMotion of model/analysis/measure.h
+  double speed;                  // largest, along an axis, in the unit of velocities
 };
 inline constexpr uint32_t kSummed = 64;  // particles of one Sums
 
@@ -369,9 +375,9 @@ struct ReadEnergies {
   List list;
   const CellAt* cell;
   EnergyRule energy;
-  double edge[3];         // of a cell, cutoffs
-  double origin[3];       // of cell (0,0,0), cutoffs in the scene's coordinates
-  double unit;            // cutoffs per unit of a whole position; cutoffs per step, of a velocity
+  double edge[3];    // of a cell, cutoffs
+  double origin[3];  // of cell (0,0,0), cutoffs in the scene's coordinates
+  double unit;       // cutoffs per unit of a whole position; cutoffs per step, of a velocity
   uint32_t count;
   Sums* sums;
 

@@ -13,8 +13,8 @@ namespace cuboct::gpu {
 
 inline constexpr uint32_t kGone = 0xffffffffu;  // rank of a particle that has left the slab
 
-// The place of a particle within its cell when the list was made, in ten bits an axis: what tells how far it has
-// moved since travels with its velocity.
+// The place of a particle within its cell when the list was made, in ten bits an axis: what tells how far it
+// has moved since travels with its velocity.
 inline constexpr int kAnchorBits = 10;
 inline constexpr float kAnchorSteps = 1 << kAnchorBits;
 
@@ -35,8 +35,8 @@ CUBOCT_DEVICE inline float moved_along(float place, uint32_t anchor, int axis, f
   return place - (step + 0.5f) * (edge / kAnchorSteps);
 }
 
-// Where a particle was when its thin list was made, from its anchor's middle: eight bits an axis, of a range of `range`
-// to both sides, which it does not leave while its list serves.
+// Where a particle was when its thin list was made, from its anchor's middle: eight bits an axis, of a range
+// of `range` to both sides, which it does not leave while its list serves.
 CUBOCT_DEVICE inline uint32_t thin_anchor_of(const float (&moved)[3], float range) {
   uint32_t anchor = 0;
   for (int a = 0; a < 3; ++a) {
@@ -75,8 +75,8 @@ struct Planes {
   CUBOCT_DEVICE bool has(int plane) const { return plane >= first && plane < first + planes; }
 };
 
-// Positions count from the cells in which particles are now. Those that the slab no longer owns are packed for their
-// new owners; `lost` counts those for which there is no room, or whose owner is not beside.
+// Positions count from the cells in which particles are now. Those that the slab no longer owns are packed
+// for their new owners; `lost` counts those for which there is no room, or whose owner is not beside.
 template <class Policy>
 struct Resettle {
   typename Policy::View view;
@@ -100,8 +100,7 @@ struct Resettle {
       if (off == 0) continue;
       Policy::take_off(view, grid, x, a, off);
       c.c[a] += off;
-      if (Policy::kFixed && grid.wraps[a])
-        c.c[a] = grid.low[a] + modulo(c.c[a] - grid.low[a], grid.total[a]);
+      if (Policy::kFixed && grid.wraps[a]) c.c[a] = grid.low[a] + modulo(c.c[a] - grid.low[a], grid.total[a]);
     }
     at.x[i] = x;
     cell[i] = c;
@@ -232,8 +231,8 @@ CUBOCT_DEVICE inline float gap(float place, int k, float edge) {
   return k > 0 ? static_cast<float>(k) * edge - place : place - static_cast<float>(k + 1) * edge;
 }
 
-// All others within `radius` at the time of making, those of one's own cell and of cells up to `reach` away: in the
-// order of cells, and of ids in a cell. Answers how many; those beyond `width` are not kept.
+// All others within `radius` at the time of making, those of one's own cell and of cells up to `reach` away:
+// in the order of cells, and of ids in a cell. Answers how many; those beyond `width` are not kept.
 template <class Policy>
 struct MakeList {
   typename Policy::View view;
@@ -271,9 +270,12 @@ struct MakeList {
               for (int a = 0; a < 3; ++a) same = same && (grid.wraps[a] || cell[j].c[a] == there[a]);
             if (!same) continue;
             const auto other = x[j];
-            const float ex = Policy::along(view, grid, other, 0) - own[0] + static_cast<float>(dx) * grid.edge[0];
-            const float ey = Policy::along(view, grid, other, 1) - own[1] + static_cast<float>(dy) * grid.edge[1];
-            const float ez = Policy::along(view, grid, other, 2) - own[2] + static_cast<float>(dz) * grid.edge[2];
+            const float ex =
+                Policy::along(view, grid, other, 0) - own[0] + static_cast<float>(dx) * grid.edge[0];
+            const float ey =
+                Policy::along(view, grid, other, 1) - own[1] + static_cast<float>(dy) * grid.edge[1];
+            const float ez =
+                Policy::along(view, grid, other, 2) - own[2] + static_cast<float>(dz) * grid.edge[2];
             const float square = ex * ex + ey * ey + ez * ez;
             if (square > limit) continue;
             const uint32_t row = square <= near2 ? found++ : width - 1 - further++;

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "hw/bricks.h"
-#include "model/config.h"
-#include "model/name.h"
+#include "model/scene/config.h"
+#include "model/scene/name.h"
 
 namespace cuboct {
 namespace {
@@ -18,8 +18,9 @@ void set(const ConfigTable& table, const char* key, int low, int high, int& valu
 void set_automatic(const ConfigTable& table, const char* key, int low, int high, int& value) {
   const auto found = table.find(key);
   if (!found) return;
-  value = found->is_string() && found->choice("width", {"auto"}) == 0 ? kAutomatic
-                                                                      : static_cast<int>(found->integer(low, high));
+  value = found->is_string() && found->choice("width", {"auto"}) == 0
+              ? kAutomatic
+              : static_cast<int>(found->integer(low, high));
 }
 
 void read_node(const ConfigTable& node, Arch& arch) {
@@ -91,8 +92,7 @@ Arch arch_of(const ConfigTable& root) {
                            ? 0
                            : static_cast<int>(bits->integer(1, 1024));
     if (const auto check = link->find("check"))
-      arch.link_check =
-          static_cast<LinkCheck>(check->choice("link check", {"none", "detect", "retry"}));
+      arch.link_check = static_cast<LinkCheck>(check->choice("link check", {"none", "detect", "retry"}));
     link->done();
   }
   if (const auto widths = root.table_at("widths")) read_widths(*widths, arch.widths);
@@ -106,9 +106,9 @@ Arch arch_of(const ConfigTable& root) {
 
 Widths automatic_widths() {
   Widths w;
-  for (int* bits : {&w.position_frac, &w.guard, &w.difference_frac, &w.velocity_bits, &w.relative_velocity_frac,
-                    &w.relative_velocity_bits, &w.filter_frac, &w.strength_bits, &w.sum_bits, &w.displacement_bits,
-                    &w.scale_frac, &w.gain_frac})
+  for (int* bits : {&w.position_frac, &w.guard, &w.difference_frac, &w.velocity_bits,
+                    &w.relative_velocity_frac, &w.relative_velocity_bits, &w.filter_frac, &w.strength_bits,
+                    &w.sum_bits, &w.displacement_bits, &w.scale_frac, &w.gain_frac})
     *bits = kAutomatic;
   return w;
 }

@@ -7,10 +7,10 @@
 
 #include "hw/carry.h"
 #include "hw/link_code.h"
-#include "model/fixed_rule.h"
-#include "model/places.h"
-#include "model/quantise.h"
-#include "model/vec.h"
+#include "model/base/vec.h"
+#include "model/contract/fixed_rule.h"
+#include "model/contract/places.h"
+#include "model/contract/quantise.h"
 
 namespace cuboct {
 
@@ -27,17 +27,17 @@ Widths automatic_widths();  // every one of them
 
 struct Arch {
   std::string name = "default";
-  std::string text;      // of the file; empty: the defaults
-  double cell_edge = 0;  // m; 0: the pair law's cutoff, or the next length that divides a periodic box
+  std::string text;           // of the file; empty: the defaults
+  double cell_edge = 0;       // m; 0: the pair law's cutoff, or the next length that divides a periodic box
   int capacity = kAutomatic;  // particles that a cell holds
-  int filter_lanes = 8;  // own particles that a candidate meets per cycle
-  int force_pipes = 1;   // pairs per cycle
+  int filter_lanes = 8;       // own particles that a candidate meets per cycle
+  int force_pipes = 1;        // pairs per cycle
   Multipliers multipliers = Multipliers::parallel;
-  int queue_depth = 16;  // (candidate, mask) entries between filter and pipes
-  bool overlap = true;   // candidates are filtered while the exchange still runs
-  Cell brick{1, 1, 1};   // cells that a node serves, along x, y, z
+  int queue_depth = 16;          // (candidate, mask) entries between filter and pipes
+  bool overlap = true;           // candidates are filtered while the exchange still runs
+  Cell brick{1, 1, 1};           // cells that a node serves, along x, y, z
   bool narrow_memories = false;  // words of a beat's width, one port to read: hw/plan.h says what that asks
-  int link_bits = 0;     // payload bits per beat; 0: one halo record per beat
+  int link_bits = 0;             // payload bits per beat; 0: one halo record per beat
   LinkCheck link_check = LinkCheck::none;
   Widths widths = automatic_widths();
   TableChoice table;

@@ -7,26 +7,26 @@
 #include <cmath>
 #include <limits>
 
-#include "model/motion.h"
+#include "model/analysis/motion.h"
 
 namespace cuboct {
 namespace {
 
-// What suits scenes of large strains, and the least that is taken: products of 18 bits, which small FPGAs multiply in
-// one DSP.
+// What suits scenes of large strains, and the least that is taken: products of 18 bits, which small FPGAs
+// multiply in one DSP.
 constexpr int kLeastPosition = 20, kLeastGuard = 8, kLeastDifference = 16, kLeastRelative = 20;
 // Positions are finer than differences by so much: a difference is rounded once more than its ends.
 constexpr int kPositionBeyondDifference = 4;
 // A unit of a difference kicks by 2^4 units of a velocity or more: with less, the kicks' rounding, not the
 // differences', sets how well energy is kept (docs/reference/validation.md, section 1).
 constexpr int kKickUnits = 4;
-// The widest with which every product and sum of the rule is exact in doubles (emu/lattice/kernel_rule.cpp), and a
-// gain times a displacement in 64 bits.
+// The widest with which every product and sum of the rule is exact in doubles (emu/lattice/kernel_rule.cpp),
+// and a gain times a displacement in 64 bits.
 constexpr int kMostPosition = 30, kMostGuard = 30, kMostDifference = 24, kMostVelocity = 44,
               kMostVelocityWithGains = 43, kMostRelativeBits = 25;
 constexpr int kMostVelocityFrac = 50;  // of positions with their guard bits: docs/user/arch.md
-constexpr int kRelativeRange = -3;  // 1/8 of a cell per step
-constexpr int kWidestRelative = 27;  // bits that an arch file may ask for
+constexpr int kRelativeRange = -3;     // 1/8 of a cell per step
+constexpr int kWidestRelative = 27;    // bits that an arch file may ask for
 // Units per 1/accuracy below which a run is warned of: half a unit of so many is five times the accuracy.
 // More than this off, and quantise() refuses an imposed velocity or gravity.
 constexpr double kWorst = 0.01;
@@ -77,12 +77,12 @@ class Chooser {
         wanted = bits, why = fmt::format("a strain of {:.2g}, by {}, has {:.3g} units", motion_.strain,
                                          motion_.strain_of, 1 / scene_.accuracy);
     const int most = asked_.position_frac != kAutomatic ? std::min(kMostDifference, asked_.position_frac)
-                                                         : kMostDifference;
+                                                        : kMostDifference;
     w.difference_frac = take("difference_frac", asked_.difference_frac, wanted, most, why);
-    w.position_frac = take("position_frac", asked_.position_frac,
-                           std::max(kLeastPosition, w.difference_frac + kPositionBeyondDifference), kMostPosition,
-                           fmt::format("{} more than differences have, {} or more", kPositionBeyondDifference,
-                                       kLeastPosition));
+    w.position_frac = take(
+        "position_frac", asked_.position_frac,
+        std::max(kLeastPosition, w.difference_frac + kPositionBeyondDifference), kMostPosition,
+        fmt::format("{} more than differences have, {} or more", kPositionBeyondDifference, kLeastPosition));
   }
 
   void velocity() {
@@ -94,11 +94,14 @@ class Chooser {
       if (bits > wanted) wanted = bits, why = std::move(reason);
     };
     const auto to_accuracy = [&](double per_step, const std::string& what) {
-      if (per_step > 0) want(bits_for(twice * per_step / edge_), fmt::format("{} to {:.2g}", what, scene_.accuracy));
+      if (per_step > 0)
+        want(bits_for(twice * per_step / edge_), fmt::format("{} to {:.2g}", what, scene_.accuracy));
     };
-    to_accuracy(motion_.slowest_imposed * dt, fmt::format("an imposed velocity of {:.3g} m/s", motion_.slowest_imposed));
+    to_accuracy(motion_.slowest_imposed * dt,
+                fmt::format("an imposed velocity of {:.3g} m/s", motion_.slowest_imposed));
     to_accuracy(motion_.gravity * dt * dt, fmt::format("gravity, {:.3g} m/s^2,", motion_.gravity));
-    to_accuracy(motion_.initial_speed * dt, fmt::format("initial velocities of {:.3g} m/s", motion_.initial_speed));
+    to_accuracy(motion_.initial_speed * dt,
+                fmt::format("initial velocities of {:.3g} m/s", motion_.initial_speed));
     if (kick_ > 0)
       want(w.difference_frac + bits_for(kick_) + kKickUnits,
            fmt::format("a unit of a difference kicks by {} units of a velocity", 1 << kKickUnits));
@@ -112,8 +115,8 @@ class Chooser {
     const std::string range = "up to one cell per step";
     w.velocity_bits = take("velocity_bits", asked_.velocity_bits, frac + 1, frac + 1, range);
     w.sum_bits = take("sum_bits", asked_.sum_bits, frac + 1, 48, range);
-    w.displacement_bits = take("displacement_bits", asked_.displacement_bits, frac + 1, kMostVelocityWithGains + 1,
-                               "up to one cell");
+    w.displacement_bits = take("displacement_bits", asked_.displacement_bits, frac + 1,
+                               kMostVelocityWithGains + 1, "up to one cell");
   }
 
   void relative_velocity() {
@@ -128,15 +131,18 @@ class Chooser {
     for (const ParticleType& type : scene_.rule.types)
       for (const ParticleType& other : scene_.rule.types)
         fastest = std::max(fastest, (type.velocity - other.velocity).norm());
-    const int range = std::max(kRelativeRange, fastest > 0 ? 1 - bits_for(fastest * dt / edge_) + 1 : kRelativeRange);
+    const int range =
+        std::max(kRelativeRange, fastest > 0 ? 1 - bits_for(fastest * dt / edge_) + 1 : kRelativeRange);
     // A width that the arch file sets keeps the range that it has with the least fraction, or this scene's.
-    const int most = asked_.relative_velocity_bits != kAutomatic
-                         ? std::min(std::max(kLeastRelative, asked_.relative_velocity_bits - 1 - range), w.velocity_frac())
-                         : std::min(w.velocity_frac(), kMostRelativeBits - 1 - range);
-    w.relative_velocity_frac = take("relative_velocity_frac", asked_.relative_velocity_frac, wanted, most, why);
-    w.relative_velocity_bits = take("relative_velocity_bits", asked_.relative_velocity_bits,
-                                    w.relative_velocity_frac + range + 1, kWidestRelative,
-                                    fmt::format("up to {:.3g} cells per step", std::ldexp(1.0, range)));
+    const int most =
+        asked_.relative_velocity_bits != kAutomatic
+            ? std::min(std::max(kLeastRelative, asked_.relative_velocity_bits - 1 - range), w.velocity_frac())
+            : std::min(w.velocity_frac(), kMostRelativeBits - 1 - range);
+    w.relative_velocity_frac =
+        take("relative_velocity_frac", asked_.relative_velocity_frac, wanted, most, why);
+    w.relative_velocity_bits =
+        take("relative_velocity_bits", asked_.relative_velocity_bits, w.relative_velocity_frac + range + 1,
+             kWidestRelative, fmt::format("up to {:.3g} cells per step", std::ldexp(1.0, range)));
   }
 
   void gain() {
@@ -151,8 +157,9 @@ class Chooser {
       wanted = std::max(wanted, bits_for(2 * scene_.accuracy * least));
       most = std::min(most, kGainBits - 2 + bits_for(largest * (1 + 1e-4)));
     }
-    w.gain_frac = take("gain_frac", asked_.gain_frac, wanted, std::max(4, most),
-                       wanted > kGain ? fmt::format("gains to {:.2g}", scene_.accuracy) : "the least that is taken");
+    w.gain_frac =
+        take("gain_frac", asked_.gain_frac, wanted, std::max(4, most),
+             wanted > kGain ? fmt::format("gains to {:.2g}", scene_.accuracy) : "the least that is taken");
   }
 
   const Scene& scene_;
@@ -185,16 +192,19 @@ std::vector<std::string> width_warnings(const Scene& scene, double edge, const A
     if (r.asked) return fmt::format("{} = {} would do, or \"auto\"", key, r.wanted);
     if (bound.asked) return fmt::format("{} = {} would do, or \"auto\"", within, r.wanted + beyond);
     if (r.wanted <= most)
-      return fmt::format("{} = {} would do; \"auto\" ends at {}, with which the lattice engine is fast", key, r.wanted,
-                         r.bits);
-    return fmt::format("{} of {} would do: {} is the most that engines hold; doubles do (--engine reference)", key,
-                       r.wanted, most);
+      return fmt::format("{} = {} would do; \"auto\" ends at {}, with which the lattice engine is fast", key,
+                         r.wanted, r.bits);
+    return fmt::format("{} of {} would do: {} is the most that engines hold; doubles do (--engine reference)",
+                       key, r.wanted, most);
   };
-  const auto of_guard = [&] { return cure("guard", "velocity_bits", rule.widths.position_frac + 1,
-                                          kMostVelocityFrac - rule.widths.position_frac); };
+  const auto of_guard = [&] {
+    return cure("guard", "velocity_bits", rule.widths.position_frac + 1,
+                kMostVelocityFrac - rule.widths.position_frac);
+  };
   const double unit = std::ldexp(edge, -rule.widths.velocity_frac());
   const auto off_by = [&](const Vec3& real, const Int3& fixed, double per_unit) {
-    const Vec3 kept(static_cast<double>(fixed[0]), static_cast<double>(fixed[1]), static_cast<double>(fixed[2]));
+    const Vec3 kept(static_cast<double>(fixed[0]), static_cast<double>(fixed[1]),
+                    static_cast<double>(fixed[2]));
     return real.norm() > 0 ? (kept * per_unit - real).norm() / real.norm() : 0;
   };
   for (size_t k = 0; k < rule.types.size(); ++k) {
@@ -205,26 +215,29 @@ std::vector<std::string> width_warnings(const Scene& scene, double edge, const A
       warnings.push_back(
           fmt::format("the velocity imposed on '{}' is off by {:.2g} of it: {}", type.name, v, of_guard()));
     if (g > scene.accuracy)
-      warnings.push_back(fmt::format("the gravity of '{}' is off by {:.2g} of it: {}", type.name, g, of_guard()));
+      warnings.push_back(
+          fmt::format("the gravity of '{}' is off by {:.2g} of it: {}", type.name, g, of_guard()));
   }
   // Units of a difference, and of a velocity, that the expected strain makes.
   const double strain = motion.strain * motion.rest_distance / edge;
   const double kick = motion.bond_stiffness * rule.dt * rule.dt / rule.mass * strain;
   const auto few = [&](double units) { return strain > 0 && units < kFewest / scene.accuracy; };
   if (const double units = std::ldexp(strain, rule.widths.difference_frac); few(units))
-    warnings.push_back(fmt::format("a strain of {:.2g}, by {}, has {:.2g} units of a difference: {}", motion.strain,
-                                   motion.strain_of, units,
-                                   cure("difference_frac", "position_frac", kPositionBeyondDifference, kMostDifference)));
+    warnings.push_back(fmt::format(
+        "a strain of {:.2g}, by {}, has {:.2g} units of a difference: {}", motion.strain, motion.strain_of,
+        units, cure("difference_frac", "position_frac", kPositionBeyondDifference, kMostDifference)));
   if (const double units = std::ldexp(kick, rule.widths.velocity_frac()); few(units))
     warnings.push_back(fmt::format("a strain of {:.2g}, by {}, kicks by {:.2g} units of a velocity: {}",
                                    motion.strain, motion.strain_of, units, of_guard()));
   // Damping sees relative velocities: those of a wave of that strain.
   const double relative = motion.strain * motion.sound_speed * rule.dt / edge;
-  if (const double units = std::ldexp(relative, rule.widths.relative_velocity_frac); rule.damped && few(units))
-    warnings.push_back(fmt::format("a strain of {:.2g}, by {}, is damped by relative velocities of {:.2g} units: {}",
-                                   motion.strain, motion.strain_of, units,
-                                   cure("relative_velocity_frac", "relative_velocity_bits", kRelativeRange + 1,
-                                        std::min(rule.widths.velocity_frac(), kWidestRelative - 1 - kRelativeRange))));
+  if (const double units = std::ldexp(relative, rule.widths.relative_velocity_frac);
+      rule.damped && few(units))
+    warnings.push_back(
+        fmt::format("a strain of {:.2g}, by {}, is damped by relative velocities of {:.2g} units: {}",
+                    motion.strain, motion.strain_of, units,
+                    cure("relative_velocity_frac", "relative_velocity_bits", kRelativeRange + 1,
+                         std::min(rule.widths.velocity_frac(), kWidestRelative - 1 - kRelativeRange))));
   return warnings;
 }
 

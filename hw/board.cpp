@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "model/spelling.h"
+#include "model/base/spelling.h"
 
 namespace cuboct {
 

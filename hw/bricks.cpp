@@ -9,7 +9,7 @@
 #include <map>
 #include <tuple>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct {
 namespace {
@@ -177,7 +177,9 @@ Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
   }
 }
 
-int Bricks::cell_bits() const { return single() ? 0 : static_cast<int>(std::bit_width(cells_of(shape_) - 1)); }
+int Bricks::cell_bits() const {
+  return single() ? 0 : static_cast<int>(std::bit_width(cells_of(shape_) - 1));
+}
 
 uint8_t Bricks::links(uint32_t node) const {
   uint8_t faces = 0;

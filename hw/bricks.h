@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "model/lattice.h"
+#include "model/contract/lattice.h"
 
 namespace cuboct {
 
@@ -67,7 +67,7 @@ struct BrickWalk {
 
   BrickWalk(const Cell& shape, const Cell& extent, uint8_t has_link, int axes);
 
-  std::vector<uint32_t> own;             // cells in order
+  std::vector<uint32_t> own;  // cells in order
   std::array<std::vector<Sent>, kFaces> sent;
   std::array<std::vector<Visit>, 1 + kFaces> visits;  // by segment: within the brick, then by face
   std::vector<Near> near;

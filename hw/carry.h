@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "model/fixed_rule.h"
+#include "model/contract/fixed_rule.h"
 
 namespace cuboct {
 

@@ -81,9 +81,8 @@ void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
     for (const BrickWalk::Visit& visit : walk.visits[s]) {
       const uint32_t cell = plan_.cell_of(n, visit.own);
       const uint64_t passes =
-          cell == kNoNode
-              ? 0
-              : ceil_div(census_.particles(cell), static_cast<uint64_t>(plan_.arch.filter_lanes));
+          cell == kNoNode ? 0
+                          : ceil_div(census_.particles(cell), static_cast<uint64_t>(plan_.arch.filter_lanes));
       items += passes == 0;
       if (passes == 0) continue;
       for (uint32_t k = visit.first; k < visit.end; ++k) {
@@ -139,7 +138,8 @@ uint64_t narrow_walk(const Plan& plan, const Held& held, uint32_t n) {
       if (!held[n].empty()) walk += 3 + (other == n ? 1 : beats);
       for (const Particle* i : held[n]) {
         if (i != held[n].front()) ++walk;
-        if (i == j || !may_interact(plan.rule, visible(plan.rule, i->x), moved(plan.rule, *j, offset))) continue;
+        if (i == j || !may_interact(plan.rule, visible(plan.rule, i->x), moved(plan.rule, *j, offset)))
+          continue;
         walk = std::max(walk + 1, ready);
         ready = walk + interval;
       }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hw/plan.h"
-#include "model/state.h"
+#include "model/contract/state.h"
 
 namespace cuboct {
 

@@ -5,7 +5,7 @@
 
 #include <charconv>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct {
 namespace {
@@ -30,8 +30,7 @@ constexpr Crc kAck{8, 0x37, 0xFF};
 }  // namespace
 
 CrcTable::CrcTable(const Crc& crc) : start_(crc.start) {
-  for (int k = 0; k < crc.width; ++k)
-    reversed_ |= (crc.polynomial >> k & 1) << (crc.width - 1 - k);
+  for (int k = 0; k < crc.width; ++k) reversed_ |= (crc.polynomial >> k & 1) << (crc.width - 1 - k);
   for (uint32_t byte = 0; byte < 256; ++byte) {
     uint32_t r = byte;
     for (int k = 0; k < 8; ++k) r = r >> 1 ^ ((r & 1) != 0 ? reversed_ : 0);

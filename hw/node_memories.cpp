@@ -5,7 +5,7 @@
 #include <bit>
 
 #include "hw/rtl_design.h"
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 
 namespace cuboct {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "model/hash.h"
+#include "model/base/hash.h"
 
 namespace cuboct {
 namespace {
@@ -15,7 +15,8 @@ namespace {
 // Cells of a brick, times slots, times passes of the lanes; 27 times that are a node's items in a step, which
 // the timing model counts in 25 bits.
 constexpr uint64_t kMostBrickWork = 1 << 20;
-// Of docs/reference/numeric.md: 2 since positions keep the guard bits. Bits of another contract are another plan's.
+// Of docs/reference/numeric.md: 2 since positions keep the guard bits. Bits of another contract are another
+// plan's.
 constexpr int kNumericContract = 2;
 constexpr int kScaleBits = 18;  // of a pair's scale
 
@@ -24,7 +25,8 @@ int ceil_div(int a, int b) { return (a + b - 1) / b; }
 void check_arch(const Arch& arch) {
   const auto positive = [&](const char* what, int value, int high) {
     if (value < 1 || value > high)
-      arch.places.fail({fmt::format("node.{}", what)}, fmt::format("{} = {} is out of range: 1 to {}", what, value, high));
+      arch.places.fail({fmt::format("node.{}", what)},
+                       fmt::format("{} = {} is out of range: 1 to {}", what, value, high));
   };
   positive("capacity", arch.capacity, 256);
   positive("filter_lanes", arch.filter_lanes, 64);
@@ -35,18 +37,21 @@ void check_arch(const Arch& arch) {
       uint64_t{cells_of({arch.brick[0], 1, 1})} * cells_of({1, arch.brick[1], arch.brick[2]});
   if (cells > kMostBrickCells)
     arch.places.fail({"node.brick"}, fmt::format("brick = [{}] has {} cells: a node serves at most {}",
-                                 fmt::join(arch.brick, ", "), cells, kMostBrickCells));
+                                                 fmt::join(arch.brick, ", "), cells, kMostBrickCells));
   const uint64_t visits =
       cells * static_cast<uint64_t>(arch.capacity * ceil_div(arch.capacity, arch.filter_lanes));
   if (cells > 1 && visits > kMostBrickWork)
-    arch.places.fail({"node.brick"}, fmt::format("brick = [{}]: {} cells of {} slots, met by {} lanes in {} passes, are {} "
+    arch.places.fail({"node.brick"},
+                     fmt::format("brick = [{}]: {} cells of {} slots, met by {} lanes in {} passes, are {} "
                                  "visits; a node makes at most {}",
                                  fmt::join(arch.brick, ", "), cells, arch.capacity, arch.filter_lanes,
                                  ceil_div(arch.capacity, arch.filter_lanes), visits, kMostBrickWork),
                      "use a smaller brick or more filter_lanes");
   if (arch.narrow_memories) {
     const auto want = [&](bool is, const char* what) {
-      if (!is) arch.places.fail({"node.memories"}, fmt::format("memories = \"narrow\" have one port to read: set {}", what));
+      if (!is)
+        arch.places.fail({"node.memories"},
+                         fmt::format("memories = \"narrow\" have one port to read: set {}", what));
     };
     want(arch.filter_lanes == 1, "filter_lanes = 1");
     want(!arch.overlap, "overlap = false");
@@ -132,8 +137,7 @@ Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles) {
   words.halo_bits = (bricks ? r.axes * P + words.halo_cell_bits : position) + (r.scaled ? r.type_bits : 0) +
                     (r.damped ? r.axes * r.widths.velocity_bits : 0);
   words.particle_bits = position + r.axes * (r.widths.velocity_bits + r.widths.guard) + r.type_bits +
-                        words.id_bits +
-                        (r.pd ? r.axes * r.widths.displacement_bits : 0);
+                        words.id_bits + (r.pd ? r.axes * r.widths.displacement_bits : 0);
   words.migrate_bits = words.particle_bits + words.migrate_cell_bits;
   words.link_bits = arch.link_bits > 0 ? arch.link_bits : words.halo_bits;
   words.halo_beats = ceil_div(words.halo_bits, words.link_bits);
@@ -144,14 +148,18 @@ Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles) {
 Latency latency_of(const FixedRule& r, const Arch& arch) {
   Latency latency;
   const int table = (r.force.degree == 2 ? 1 : 0), used = (r.damped ? 1 : 0) + (r.scaled ? 1 : 0);
-  const bool serial = arch.multipliers == Multipliers::serial, shared = arch.multipliers == Multipliers::shared;
+  const bool serial = arch.multipliers == Multipliers::serial,
+             shared = arch.multipliers == Multipliers::shared;
   if (serial) latency.product = product_cycles(r);
   // Squares, slope, kick, and what else is multiplied: each waits for the one before.
   latency.pipe = 8 + (r.force.shape == TableShape::octaves ? 1 : 0) + table + used +
                  latency.product * (3 + table + used) + (shared ? 2 * (r.axes - 1) : 0);
-  // A product stays for a cycle in which it is looked at. Beside narrow memories, which bring candidates slowly, a
-  // pair that is alone in the pipe needs no registers to wait in.
-  latency.interval = serial ? latency.product + 1 : !shared ? 1 : arch.narrow_memories ? latency.pipe - 2 : r.axes;
+  // A product stays for a cycle in which it is looked at. Beside narrow memories, which bring candidates
+  // slowly, a pair that is alone in the pipe needs no registers to wait in.
+  latency.interval = serial                 ? latency.product + 1
+                     : !shared              ? 1
+                     : arch.narrow_memories ? latency.pipe - 2
+                                            : r.axes;
   latency.update = r.pd ? 7 : 4;
   if (arch.narrow_memories) {
     latency.filter = 2;
@@ -231,10 +239,10 @@ std::string describe(const Plan& plan) {
            ? "1, 1, narrow memories"
            : fmt::format("{}, {}, queue of {}{}", plan.arch.filter_lanes, plan.arch.force_pipes,
                          plan.arch.queue_depth, plan.arch.overlap ? ", force overlaps the exchange" : ""));
-  line("latency", fmt::format("pipe {}, update {} cycles{}", plan.latency.pipe, plan.latency.update,
-                              plan.latency.interval > 1
-                                  ? fmt::format(", a pair every {}", plan.latency.interval)
-                                  : std::string()));
+  line("latency",
+       fmt::format("pipe {}, update {} cycles{}", plan.latency.pipe, plan.latency.update,
+                   plan.latency.interval > 1 ? fmt::format(", a pair every {}", plan.latency.interval)
+                                             : std::string()));
   std::string out;
   for (const auto& [used, name] : {std::pair{r.damped, "damping"}, std::pair{r.scaled, "pair scales"},
                                    std::pair{r.pd, "force-held types"}, std::pair{r.type_bits > 0, "types"},

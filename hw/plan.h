@@ -8,9 +8,9 @@
 #include "hw/arch.h"
 #include "hw/auto_widths.h"
 #include "hw/bricks.h"
-#include "model/fixed_rule.h"
-#include "model/lattice.h"
-#include "model/state.h"
+#include "model/contract/fixed_rule.h"
+#include "model/contract/lattice.h"
+#include "model/contract/state.h"
 
 namespace cuboct {
 
@@ -20,22 +20,21 @@ namespace cuboct {
 //                   residue[3 x G] u[3 x displacement_bits, if pd]
 // x[P] are the visible bits of a position, those that forces and links see; residue[G] are the G bits below
 // them. What the force engine reads of a particle lies below its id, so that its memories hold no residue.
-// A flat plan (rule.axes 2) has nothing of z: x[P+2] y[P] ..., x[P] y[P] away_y[2] v[2 x velocity_bits] ... residue[2 x G] ...
-// All but the last axis of a halo record are signed, in the frame of the sender's node (see
-// docs/reference/node.md); `away` is two's complement: -1, 0, +1. The particle word is the migrate record and
-// the word of the load and observe ports.
-// With bricks a halo record's coordinates are those in its own cell, x[P] y[P] z[P], and its last field says
-// which cell that is: cell[halo_cell_bits]. A migrate record is a particle and then the cell that it goes to,
-// cell[migrate_cell_bits]. hw/bricks.h numbers both.
+// A flat plan (rule.axes 2) has nothing of z: x[P+2] y[P] ..., x[P] y[P] away_y[2] v[2 x velocity_bits] ...
+// residue[2 x G] ... All but the last axis of a halo record are signed, in the frame of the sender's node
+// (see docs/reference/node.md); `away` is two's complement: -1, 0, +1. The particle word is the migrate
+// record and the word of the load and observe ports. With bricks a halo record's coordinates are those in its
+// own cell, x[P] y[P] z[P], and its last field says which cell that is: cell[halo_cell_bits]. A migrate
+// record is a particle and then the cell that it goes to, cell[migrate_cell_bits]. hw/bricks.h numbers both.
 struct Words {
   int id_bits = 0;
   int halo_bits = 0;
   int particle_bits = 0;
-  int halo_beats = 0;     // ceil(halo_bits / link_bits)
-  int migrate_beats = 0;  // ceil(migrate_bits / link_bits)
-  int migrate_bits = 0;   // particle_bits + migrate_cell_bits
+  int halo_beats = 0;                             // ceil(halo_bits / link_bits)
+  int migrate_beats = 0;                          // ceil(migrate_bits / link_bits)
+  int migrate_bits = 0;                           // particle_bits + migrate_cell_bits
   int halo_cell_bits = 0, migrate_cell_bits = 0;  // 0 without bricks
-  int link_bits = 0;      // as built: arch.link_bits, or halo_bits
+  int link_bits = 0;                              // as built: arch.link_bits, or halo_bits
 };
 
 // Registers of the filter with wide memories: a candidate's answer, the one chosen, sizes, masks.
@@ -45,18 +44,19 @@ inline constexpr int kFilterStages = 4;
 // multipliers. docs/reference/node.md.
 struct Latency {
   int filter = kFilterStages;  // from the candidate's read to its push into the queue
-  int pipe = 0;    // from a pair's issue to its sum
-  int update = 0;  // from a particle's read to the cycle in which MIGRATE may read it
-  int stride = 1;  // from one particle's read to the next in UPDATE: narrow memories keep each until it is written
+  int pipe = 0;                // from a pair's issue to its sum
+  int update = 0;              // from a particle's read to the cycle in which MIGRATE may read it
+  int stride =
+      1;  // from one particle's read to the next in UPDATE: narrow memories keep each until it is written
   int interval = 1;  // from one issue of pairs to the next
   int product = 1;   // of the pipe's multipliers; more than 1 where they are serial
 };
 
 struct Plan {
   FixedRule rule;
-  Arch arch;  // as built: nothing in it is automatic
-  Lattice lattice;  // of cells
-  Bricks bricks;    // of these: what each physical node serves
+  Arch arch;                   // as built: nothing in it is automatic
+  Lattice lattice;             // of cells
+  Bricks bricks;               // of these: what each physical node serves
   Vec3 origin = Vec3::Zero();  // m, lower corner of cell (0,0,0)
   Words words;
   Latency latency;

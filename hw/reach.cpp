@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "model/error.h"
-#include "model/hash.h"
+#include "model/base/error.h"
+#include "model/base/hash.h"
 
 namespace cuboct {
 namespace {

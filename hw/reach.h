@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "model/lattice.h"
-#include "model/scene.h"
+#include "model/contract/lattice.h"
+#include "model/scene/scene.h"
 
 namespace cuboct {
 

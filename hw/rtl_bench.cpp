@@ -7,8 +7,8 @@
 #include <initializer_list>
 #include <vector>
 
-#include "model/golden.h"
-#include "model/trace.h"
+#include "model/contract/golden.h"
+#include "model/trace/trace.h"
 
 namespace cuboct {
 namespace {
@@ -352,14 +352,16 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
               "  logic [CellBits-1:0] load_cell;\n"
               "  logic [31-CellBits:0] unused_load;\n"
               "  logic [Nodes*CellBits-1:0] observe_cell, unused_fault_cell;\n");
-    of_bricks("@CELL_PORTS@",
-              "\n    .load_cell_i(load_cell), .observe_cell_o(observe_cell), .fault_cell_o(unused_fault_cell),");
+    of_bricks(
+        "@CELL_PORTS@",
+        "\n    .load_cell_i(load_cell), .observe_cell_o(observe_cell), .fault_cell_o(unused_fault_cell),");
     of_bricks("@CELL_WORD@", "cell, ");
     of_bricks("@SLOT@", ";\n  logic [15:0] slot, own_cell", ", slot");
     of_bricks("@OWN_CELL@", "own_cell, ");
     of_bricks("@LOAD_TOP@", "63", "31");
     of_bricks("@LOAD_CELL@", "unused_load, load_cell, ");
-    of_bricks("@CELL_CHECK@", R"(        if (observe_cell[CellBits*k +: CellBits] !== own_cell[CellBits-1:0]) begin
+    of_bricks("@CELL_CHECK@",
+              R"(        if (observe_cell[CellBits*k +: CellBits] !== own_cell[CellBits-1:0]) begin
           $display("FAIL step %0d node %0d slot %0d particle %0d: cell is %0d, golden has %0d", step, k, slot,
                    want[@IDLSB@ +: IdBits], observe_cell[CellBits*k +: CellBits], own_cell);
           $fatal(1, "differs");

@@ -7,7 +7,7 @@
 
 #include "hw/plan.h"
 #include "hw/rtl_design.h"
-#include "model/state.h"
+#include "model/contract/state.h"
 
 namespace cuboct {
 

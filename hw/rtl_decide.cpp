@@ -6,7 +6,7 @@
 #include <bit>
 
 #include "hw/rtl_design.h"
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 
 namespace cuboct {
 namespace {
@@ -175,7 +175,8 @@ RtlDesign decide(const Plan& plan) {
   }
   design.cell_bits = plan.bricks.cell_bits();
   if (bricks)
-    design.constants.push_back({"CellBits", design.cell_bits, false, false, "of a cell's number in its node"});
+    design.constants.push_back(
+        {"CellBits", design.cell_bits, false, false, "of a cell's number in its node"});
   return design;
 }
 

@@ -50,15 +50,15 @@ struct RtlDesign {
   int pair_sum_bits = 0;    // of a pipe's exact sum
   std::vector<Cell> cells;  // of the nodes; of bricks their lowest ones
   std::vector<std::array<uint32_t, kFaces>> neighbour;
-  int cell_bits = 0;             // of a cell's number in its brick; 0: nodes of one cell
+  int cell_bits = 0;                 // of a cell's number in its brick; 0: nodes of one cell
   std::vector<std::string> extents;  // of bricks, by node: constants of extent_i and exit_i
   std::vector<std::string> exits;
 
   bool bricks() const { return cell_bits > 0; }
 };
 
-// Inputs of a node with a brick that never change: its cells along x, y, z, ceil(log2(longest + 2)) bits each, and, by
-// cell and face, whether the lattice has a cell there. Least significant bit first.
+// Inputs of a node with a brick that never change: its cells along x, y, z, ceil(log2(longest + 2)) bits
+// each, and, by cell and face, whether the lattice has a cell there. Least significant bit first.
 std::vector<bool> extent_bits(const Plan& plan, uint32_t node);
 std::vector<bool> exit_bits(const Plan& plan, uint32_t node);
 

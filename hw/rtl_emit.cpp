@@ -17,8 +17,8 @@
 #include "hw/rtl_design.h"
 #include "hw/rtl_library.h"
 #include "hw/rtl_project.h"
-#include "model/directory_lock.h"
-#include "model/output.h"
+#include "model/base/directory_lock.h"
+#include "model/base/output.h"
 
 namespace cuboct {
 namespace {
@@ -35,9 +35,9 @@ void add_node(Files& files, const RtlDesign& design) {
   const std::set<std::string_view> checks{"cuboct_link_crc.sv", "cuboct_link_guard.sv", "cuboct_link_send.sv",
                                           "cuboct_link_take.sv"};
   const std::set<std::string_view> single{
-      "cuboct_node_core.sv", "cuboct_candidate.sv",   "cuboct_halos.sv",      "cuboct_inbox.sv",
-      "cuboct_migrate.sv",   "cuboct_pair_finder.sv", "cuboct_pair_walk.sv",  "cuboct_relay.sv",
-      "cuboct_slots.sv",     "cuboct_streamer.sv",    "cuboct_sums.sv",       "cuboct_tick.sv",
+      "cuboct_node_core.sv",  "cuboct_candidate.sv",   "cuboct_halos.sv",     "cuboct_inbox.sv",
+      "cuboct_migrate.sv",    "cuboct_pair_finder.sv", "cuboct_pair_walk.sv", "cuboct_relay.sv",
+      "cuboct_slots.sv",      "cuboct_streamer.sv",    "cuboct_sums.sv",      "cuboct_tick.sv",
       "cuboct_word_halos.sv", "cuboct_word_inbox.sv"};
   const auto used = [&](std::string_view name) {
     if (checks.contains(name)) return design.checked;
@@ -102,8 +102,7 @@ void check_emit_directory(const std::string& dir) {
   if (!fs::is_directory(dir, error)) throw InputError(fmt::format("{}: is no directory", dir));
   const auto nothing = [](const fs::directory_entry& entry) { return entry.path().filename() == ".lock"; };
   const fs::directory_iterator entries(dir, error);
-  if (!std::all_of(entries, fs::directory_iterator(), nothing) &&
-      !fs::exists(fs::path(dir) / kMarker, error))
+  if (!std::all_of(entries, fs::directory_iterator(), nothing) && !fs::exists(fs::path(dir) / kMarker, error))
     throw InputError(fmt::format("{}: is not empty and holds no earlier emission", dir),
                      "give an empty or a new directory");
 }

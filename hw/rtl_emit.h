@@ -7,7 +7,7 @@
 
 #include "hw/board.h"
 #include "hw/plan.h"
-#include "model/state.h"
+#include "model/contract/state.h"
 
 namespace cuboct {
 

@@ -43,9 +43,7 @@ int width_of(const std::string& literal) { return std::stoi(literal); }
 std::vector<Port> node_ports(const RtlDesign& design, bool core) {
   const bool checked = design.checked && !core;
   const int faces = 2 * design.axes;
-  const auto by_face = [&](const char* bits) {
-    return fmt::format("[{}*cuboct_pkg::{}-1:0]", faces, bits);
-  };
+  const auto by_face = [&](const char* bits) { return fmt::format("[{}*cuboct_pkg::{}-1:0]", faces, bits); };
   const std::string link = by_face(checked ? "WireBits" : "LinkBits"),
                     particle = "[cuboct_pkg::ParticleBits-1:0]", face = fmt::format("[{}:0]", faces - 1);
   std::vector<Port> ports{{"input ", "", "clk_i"},
@@ -79,7 +77,8 @@ std::vector<Port> node_ports(const RtlDesign& design, bool core) {
                              {"output", "[63:0]", "fault_number_o"},
                              {"output", "", "idle_o"}});
   const auto add_after = [&](const char* name, std::vector<Port> more) {
-    const auto at = std::find_if(ports.begin(), ports.end(), [&](const Port& p) { return p.name == std::string(name); });
+    const auto at =
+        std::find_if(ports.begin(), ports.end(), [&](const Port& p) { return p.name == std::string(name); });
     ports.insert(at + 1, more.begin(), more.end());
   };
   if (design.bricks()) {
@@ -345,7 +344,8 @@ std::string print_lattice(const RtlDesign& design) {
       unused_ends += fmt::format("{}^error_{}", unused_ends.empty() ? "    " : ",\n    ", n);
   std::string events;
   for (size_t n = 0; n < nodes; ++n) events += fmt::format("{}event_{}", n == 0 ? "" : ", ", n);
-  text += fmt::format("  logic [3:0] {};\n  logic unused_events;\n  assign unused_events = ^{{{}}};\n", events, events);
+  text += fmt::format("  logic [3:0] {};\n  logic unused_events;\n  assign unused_events = ^{{{}}};\n",
+                      events, events);
   for (size_t n = 0; n < nodes; ++n) {
     const Cell& cell = design.cells[n];
     std::string has, valid, end, ready, data, ack;
@@ -362,8 +362,8 @@ std::string print_lattice(const RtlDesign& design) {
           (linked ? fmt::format("data_{}[{}*LinkBits +: LinkBits]", to, back) : "{LinkBits{1'b0}}") + comma;
       ack += (linked ? fmt::format("ack_{}[{}*AckBits +: AckBits]", to, back) : "{AckBits{1'b0}}") + comma;
       if (!linked && design.checked)
-        unused_ends += fmt::format("{}^ack_{}[{}*AckBits +: AckBits]", unused_ends.empty() ? "    " : ",\n    ",
-                                   n, f);
+        unused_ends +=
+            fmt::format("{}^ack_{}[{}*AckBits +: AckBits]", unused_ends.empty() ? "    " : ",\n    ", n, f);
       if (!linked)
         unused_ends +=
             fmt::format("{}valid_{}[{}], end_{}[{}], ready_{}[{}], ^data_{}[{}*LinkBits +: LinkBits]",
@@ -395,10 +395,11 @@ std::string print_lattice(const RtlDesign& design) {
                                      ack, n)
                        : "",
         design.bricks()
-            ? fmt::format(",\n    .extent_i({1}), .exit_i({2}), .load_cell_i,\n"
-                          "    .observe_cell_o(observe_cell_o[{0}*cuboct_pkg::CellBits +: cuboct_pkg::CellBits]),\n"
-                          "    .fault_cell_o(fault_cell_o[{0}*cuboct_pkg::CellBits +: cuboct_pkg::CellBits])",
-                          n, design.extents[n], design.exits[n])
+            ? fmt::format(
+                  ",\n    .extent_i({1}), .exit_i({2}), .load_cell_i,\n"
+                  "    .observe_cell_o(observe_cell_o[{0}*cuboct_pkg::CellBits +: cuboct_pkg::CellBits]),\n"
+                  "    .fault_cell_o(fault_cell_o[{0}*cuboct_pkg::CellBits +: cuboct_pkg::CellBits])",
+                  n, design.extents[n], design.exits[n])
             : "",
         design.bricks() ? "Cells from" : "Cell");
   }

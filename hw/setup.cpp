@@ -24,8 +24,9 @@ double periodic_edge(const Scene& scene, double least) {
   if (longest <= 0) return least;
   const std::vector<std::string> causes{"box.size", "box.cells", "box"};
   if (longest / least > kMostInRow)
-    scene.places.fail(causes, fmt::format("the periodic box is {:.3g} cells of {:.4g} m long: at most {:.3g} can be built",
-                                          longest / least, least, kMostInRow));
+    scene.places.fail(
+        causes, fmt::format("the periodic box is {:.3g} cells of {:.4g} m long: at most {:.3g} can be built",
+                            longest / least, least, kMostInRow));
   for (int n = static_cast<int>(std::floor(longest / least * (1 + 1e-12))); n >= 3; --n) {
     const double edge = longest / n;
     bool fits = true;
@@ -68,8 +69,9 @@ constexpr int kLeastCapacity = 16;
 // Particles that stand closer to a face than this share of the distance at rest may come in.
 constexpr double kMayComeIn = 0.2;
 
-// Particles that the fullest cell may hold with those that may come in through its faces, and a quarter more: a multiple
-// of four. A power of two that holds the former is enough: with one particle more, each memory doubles.
+// Particles that the fullest cell may hold with those that may come in through its faces, and a quarter more:
+// a multiple of four. A power of two that holds the former is enough: with one particle more, each memory
+// doubles.
 int capacity_for(const Scene& scene, const Lattice& lattice, double edge, const Vec3& origin) {
   const double pitch = scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff();
   const double reach = kMayComeIn * pitch / edge;
@@ -119,9 +121,11 @@ std::vector<Cell> filled_box(const std::vector<Cell>& cells, const Arch& arch) {
   double count = 1;
   for (int a = 0; a < 3; ++a) count *= high[a] - low[a] + 1.0;
   if (count > kMostCells)
-    arch.places.fail({"plan.carry"}, fmt::format(
-        "plan.carry = [\"empty_nodes\"]: the bounding box has {:.4g} cells, at most {:.3g} can be built",
-        count, kMostCells));
+    arch.places.fail(
+        {"plan.carry"},
+        fmt::format(
+            "plan.carry = [\"empty_nodes\"]: the bounding box has {:.4g} cells, at most {:.3g} can be built",
+            count, kMostCells));
   std::vector<Cell> box;
   box.reserve(static_cast<size_t>(count));
   for (int32_t z = low[2]; z <= high[2]; ++z)

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "hw/plan.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 
 namespace cuboct {
 
@@ -19,11 +19,12 @@ struct Setup {
 // machine cannot hold the scene: a node too full, a particle too fast, ...
 Setup make_setup(const Scene& scene, const Arch& arch);
 
-// The edge of a cell, m: the law's cutoff or the arch's, in a box that repeats the next length that divides it.
+// The edge of a cell, m: the law's cutoff or the arch's, in a box that repeats the next length that divides
+// it.
 double cell_edge_of(const Scene& scene, const Arch& arch);
 
-// `arch` with the formats that are automatic settled by this scene, but for the tables' width: for studies that change
-// the scene and mean the same machine.
+// `arch` with the formats that are automatic settled by this scene, but for the tables' width: for studies
+// that change the scene and mean the same machine.
 Arch settled(const Scene& scene, Arch arch);
 
 // The same plan and errors, without a State in memory.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hw/plan.h"
-#include "model/state_check.h"
+#include "model/trace/state_check.h"
 
 namespace cuboct {
 

@@ -8,8 +8,8 @@
 #include <functional>
 #include <optional>
 
-#include "model/error_parts.h"
-#include "model/text.h"
+#include "model/base/error_parts.h"
+#include "model/base/text.h"
 
 namespace cuboct::study {
 namespace {
@@ -37,10 +37,11 @@ std::optional<int> whole(const std::vector<Change>& changes, const std::string& 
   return std::nullopt;
 }
 
-// Positions or velocities of another format: what counts in their bits keeps its range, so that one width can be
-// swept by itself.
+// Positions or velocities of another format: what counts in their bits keeps its range, so that one width can
+// be swept by itself.
 void fit_widths(Settings& settings, const Widths& base) {
-  if (base.position_frac == kAutomatic || base.guard == kAutomatic) return;  // as are those that count in their bits
+  if (base.position_frac == kAutomatic || base.guard == kAutomatic)
+    return;  // as are those that count in their bits
   const auto now = [&](const char* key, int otherwise) {
     return whole(settings.arch, std::string("widths.") + key).value_or(otherwise);
   };
@@ -117,8 +118,7 @@ Set set_of(const Key& key, const ConfigValue& value, const Widths& widths) {
     };
   }
   if (name == "integrator") {
-    const auto integrator =
-        static_cast<Integrator>(value.choice("integrator", {"euler", "verlet"}));
+    const auto integrator = static_cast<Integrator>(value.choice("integrator", {"euler", "verlet"}));
     return [integrator](Settings& settings) { settings.integrator = integrator; };
   }
   if (name == "threads") {
@@ -136,10 +136,12 @@ Set set_of(const Key& key, const ConfigValue& value, const Widths& widths) {
 
 Widths widths_of(const Base& base) { return resolve(base, {}).arch.widths; }
 
-// An InputError's text without the place in a scene or arch that the user did not write: "path:line:column: ".
+// An InputError's text without the place in a scene or arch that the user did not write: "path:line:column:
+// ".
 std::string without_place(const std::string& text) {
   const size_t at = text.find(": ");
-  const bool placed = at != std::string::npos && at > 0 && std::isdigit(static_cast<unsigned char>(text[at - 1]));
+  const bool placed =
+      at != std::string::npos && at > 0 && std::isdigit(static_cast<unsigned char>(text[at - 1]));
   return placed ? text.substr(at + 2) : text;
 }
 
@@ -154,7 +156,9 @@ void try_alone(const ConfigValue& value, const Set& set, const Base& base) {
   }
 }
 
-std::string label_of(const ConfigValue& value) { return value.is_string() ? value.string() : toml_text(value); }
+std::string label_of(const ConfigValue& value) {
+  return value.is_string() ? value.string() : toml_text(value);
+}
 
 std::vector<ConfigValue> notches(const ConfigValue& value) {
   const std::vector<ConfigValue> items = value.is_array() ? value.items() : std::vector{value};

@@ -4,14 +4,14 @@
 
 #include <vector>
 
-#include "model/config.h"
+#include "model/scene/config.h"
 #include "study/study.h"
 
 namespace cuboct::study {
 
 // The axes of a table, in the order of docs/user/study.md: those of the table's keys that are there, then its
-// `presets`, then what stands in its `set`. Every value is tried on the base by itself: InputError at the value
-// where it makes no scene or arch, but for those that may turn out impossible only together with others
+// `presets`, then what stands in its `set`. Every value is tried on the base by itself: InputError at the
+// value where it makes no scene or arch, but for those that may turn out impossible only together with others
 // (pitch, cutoff, dt, cell_edge).
 std::vector<Axis> read_axes(const ConfigTable& table, const Base& base);
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/error.h"
+#include "model/base/error.h"
 #include "study/cost.h"
 #include "study/measure_errors.h"
 #include "study/measure_run.h"

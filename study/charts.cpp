@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <set>
 
-#include "model/output.h"
-#include "model/text.h"
+#include "model/base/output.h"
+#include "model/base/text.h"
 #include "study/gnuplot.h"
 #include "study/measures.h"
 #include "study/page.h"

@@ -6,8 +6,8 @@
 
 #include "hw/rtl_design.h"
 #include "hw/setup.h"
-#include "model/fixed_math.h"
-#include "model/neighbours.h"
+#include "model/base/fixed_math.h"
+#include "model/contract/neighbours.h"
 
 namespace cuboct::study {
 namespace {

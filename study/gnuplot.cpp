@@ -5,8 +5,8 @@
 
 #include <stdexcept>
 
-#include "model/error.h"
-#include "model/output.h"
+#include "model/base/error.h"
+#include "model/base/output.h"
 
 namespace cuboct::study {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Pictures by gnuplot, from scripts, in which all text is quoted by model/text.h.
+// Pictures by gnuplot, from scripts, in which all text is quoted by model/base/text.h.
 #pragma once
 
 #include <string>
 
-#include "model/process.h"
+#include "model/base/process.h"
 
 namespace cuboct::study {
 

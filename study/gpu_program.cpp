@@ -11,10 +11,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "model/error.h"
-#include "model/interrupt.h"
-#include "model/output.h"
-#include "model/process.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
 #include "study/interrupted.h"
 
 namespace cuboct::study {
@@ -30,7 +30,8 @@ std::string text_in(const std::string& path) {
 }
 
 std::string without(std::string text, const std::string& part) {
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part)) text.erase(at, part.size());
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part))
+    text.erase(at, part.size());
   while (text.ends_with('\n')) text.pop_back();
   return text;
 }
@@ -52,8 +53,8 @@ class Job {
   std::string errors() const { return without(text_in(path("errors")), scratch_.path("")); }
   [[noreturn]] void fail(int code) const {
     const std::string text = errors();
-    throw std::runtime_error(text.empty() && code < 0
-                                 ? fmt::format("cuboct-gpu was ended by signal {} ({})", -code, strsignal(-code))
+    throw std::runtime_error(text.empty() && code < 0 ? fmt::format("cuboct-gpu was ended by signal {} ({})",
+                                                                    -code, strsignal(-code))
                              : text.empty() ? fmt::format("cuboct-gpu ended with exit code {}", code)
                                             : text);
   }
@@ -88,8 +89,15 @@ std::vector<std::string> arguments_of(const Case& c, const Body& start, const Gp
   body.engine = "study";
   body.bodies.push_back({0, start.x, start.v, {}});
   write_trace(job.path("start.h5"), body);
-  return {job.path("scene.toml"), "--arch", job.path("arch.toml"), "--start", job.path("start.h5"),
-          "--precision", precision_of(c.settings.arithmetic), "--steps", std::to_string(request.steps)};
+  return {job.path("scene.toml"),
+          "--arch",
+          job.path("arch.toml"),
+          "--start",
+          job.path("start.h5"),
+          "--precision",
+          precision_of(c.settings.arithmetic),
+          "--steps",
+          std::to_string(request.steps)};
 }
 
 }  // namespace
@@ -145,9 +153,9 @@ std::vector<double> gpu_rates(const Case& c, const Body& start, const GpuRequest
                               double seconds) {
   Job job;
   std::vector<std::string> arguments = arguments_of(c, start, request, job);
-  for (const std::string& word : {std::string("--bench"), std::string("--repeats"), std::to_string(repeats),
-                                  std::string("--seconds"), fmt::format("{}", seconds), std::string("--out"),
-                                  job.path("trace.h5")})
+  for (const std::string& word :
+       {std::string("--bench"), std::string("--repeats"), std::to_string(repeats), std::string("--seconds"),
+        fmt::format("{}", seconds), std::string("--out"), job.path("trace.h5")})
     arguments.push_back(word);
   const int code = job.run(arguments);
   std::vector<double> rates;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The GPU engine, a program of its own beside the running one (docs/reference/gpu.md): started on a scene's text, it
-// leaves a trace.
+// The GPU engine, a program of its own beside the running one (docs/reference/gpu.md): started on a scene's
+// text, it leaves a trace.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "model/trace.h"
+#include "model/trace/trace.h"
 #include "study/settings.h"
 
 namespace cuboct::study {
@@ -26,16 +26,18 @@ struct GpuRequest {
   std::vector<uint64_t> keep;  // steps whose states are kept, ascending
 };
 
-// One run of the case from `start`, its velocities as the engine keeps them: half a step before positions. Its
-// states are Trace::frames (fixed) or Trace::bodies. A run that had to stop is a trace with a stop reason. Throws
-// InputError where the program refuses the case, Interrupted, and std::runtime_error where it fails.
+// One run of the case from `start`, its velocities as the engine keeps them: half a step before positions.
+// Its states are Trace::frames (fixed) or Trace::bodies. A run that had to stop is a trace with a stop
+// reason. Throws InputError where the program refuses the case, Interrupted, and std::runtime_error where it
+// fails.
 Trace run_gpu(const Case& c, const Body& start, const GpuRequest& request);
 
 // Pair forces of an engine in real numbers on the particles of `body`. N
 std::vector<Vec3> gpu_forces(const Case& c, const Body& body);
 
-// Steps per second of host time, once per repeat of `seconds` or more each: of the whole scene from its start, again
-// and again, without what comes before its first step. Empty where the run stops. Errors as of run_gpu.
+// Steps per second of host time, once per repeat of `seconds` or more each: of the whole scene from its
+// start, again and again, without what comes before its first step. Empty where the run stops. Errors as of
+// run_gpu.
 std::vector<double> gpu_rates(const Case& c, const Body& start, const GpuRequest& request, int repeats,
                               double seconds);
 

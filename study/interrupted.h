@@ -6,7 +6,8 @@
 
 namespace cuboct::study {
 
-// Thrown where model/interrupt.h says so (Ctrl-C). No std::runtime_error: those are how a run itself ends.
+// Thrown where model/base/interrupt.h says so (Ctrl-C). No std::runtime_error: those are how a run itself
+// ends.
 class Interrupted : public std::exception {
  public:
   const char* what() const noexcept override { return "interrupted"; }

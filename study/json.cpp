@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "model/text.h"
+#include "model/base/text.h"
 
 namespace cuboct::study {
 

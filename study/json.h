@@ -7,7 +7,7 @@
 
 namespace cuboct::study {
 
-std::string json(const std::string& text);  // json_text of model/text.h
+std::string json(const std::string& text);  // json_text of model/base/text.h
 std::string json(double value);             // the shortest text that reads back the same; null: not finite
 std::string json(bool value);
 template <typename T>

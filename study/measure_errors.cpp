@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "hw/setup.h"
-#include "model/error.h"
-#include "model/measure.h"
+#include "model/analysis/measure.h"
+#include "model/base/error.h"
 #include "study/cost.h"
 #include "study/gpu_program.h"
 #include "study/measure_run.h"

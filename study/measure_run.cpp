@@ -8,11 +8,11 @@
 
 #include "emu/lattice/engine.h"
 #include "hw/setup.h"
-#include "model/interrupt.h"
-#include "model/measure.h"
-#include "model/real_meter.h"
-#include "model/state_meter.h"
-#include "model/strain.h"
+#include "model/analysis/measure.h"
+#include "model/analysis/real_meter.h"
+#include "model/analysis/state_meter.h"
+#include "model/analysis/strain.h"
+#include "model/base/interrupt.h"
 #include "study/gpu_program.h"
 
 namespace cuboct::study {
@@ -192,7 +192,8 @@ Run run_case(const Case& c, const RunRequest& request) {
   scene.steps = per_sample * request.grid.samples;
   scene.probe_every = per_sample;
   if (on_gpu(c.settings)) return run_on_gpu(c, scene, request, per_sample);
-  if (c.settings.arithmetic == Arithmetic::fixed) return run_fixed(std::move(scene), c.arch, request, per_sample);
+  if (c.settings.arithmetic == Arithmetic::fixed)
+    return run_fixed(std::move(scene), c.arch, request, per_sample);
   return run_real(scene, c.settings, request, per_sample);
 }
 
@@ -202,8 +203,6 @@ double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b, cons
   return a.empty() ? 0 : std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-double length_unit(const Scene& scene) {
-  return scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff();
-}
+double length_unit(const Scene& scene) { return scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff(); }
 
 }  // namespace cuboct::study

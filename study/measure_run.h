@@ -6,30 +6,30 @@
 #include <string>
 #include <vector>
 
+#include "model/trace/trace.h"
 #include "study/interrupted.h"
 #include "study/settings.h"
 #include "study/time_grid.h"
-#include "model/trace.h"
 
 namespace cuboct::study {
 
 struct RunRequest {
   TimeGrid grid;
-  uint64_t until = 0;           // the last sample
-  bool curves = false;          // of the probes, read at each sample
+  uint64_t until = 0;     // the last sample
+  bool curves = false;    // of the probes, read at each sample
   bool energies = false;  // energy.kinetic, .potential, .gravity, .total, and the pressure of a box, as well
-  std::vector<uint64_t> keep;   // samples whose bodies are kept, ascending
-  int threads = 1;              // of the host
+  std::vector<uint64_t> keep;  // samples whose bodies are kept, ascending
+  int threads = 1;             // of the host
 };
 
 struct Run {
-  double dt = 0;                  // s, as fitted to the grid
-  uint64_t steps = 0;             // done
-  std::vector<Curve> curves;      // probes, then energies
-  std::vector<Body> kept;         // [as asked for, up to a stop]; positions and velocities
+  double dt = 0;                        // s, as fitted to the grid
+  uint64_t steps = 0;                   // done
+  std::vector<Curve> curves;            // probes, then energies
+  std::vector<Body> kept;               // [as asked for, up to a stop]; positions and velocities
   Vec3 momentum_change = Vec3::Zero();  // kg m/s, from the start to the end
   double momentum_scale = 0;            // kg m/s, sum of |m v| at the end
-  std::string stop;               // why the run ended early: a fault, not finite; empty: it did not
+  std::string stop;                     // why the run ended early: a fault, not finite; empty: it did not
 };
 
 // The bodies of all engines start at the same time: where an engine's velocities live half a step before its
@@ -37,8 +37,9 @@ struct Run {
 // order of dt however good the method.
 Body started_body(const Scene& scene, bool half_step_back);
 
-// Heeds model/interrupt.h: throws Interrupted. Throws InputError where the settings make no plan. Velocities
-// of kept bodies are those of the engine: half a step earlier than positions in semi-implicit Euler.
+// Heeds model/base/interrupt.h: throws Interrupted. Throws InputError where the settings make no plan.
+// Velocities of kept bodies are those of the engine: half a step earlier than positions in semi-implicit
+// Euler.
 Run run_case(const Case& c, const RunRequest& request);
 
 // Positions apart at one time: root mean square over the particles, m; over images in a periodic box.

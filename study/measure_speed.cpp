@@ -10,8 +10,8 @@
 
 #include "emu/lattice/engine.h"
 #include "hw/setup.h"
-#include "model/error.h"
-#include "model/interrupt.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
 #include "study/gpu_program.h"
 #include "study/measure_run.h"
 
@@ -49,7 +49,8 @@ class Stepper {
     }
     RealOptions options;
     options.integrator = c_.settings.integrator;
-    options.precision = c_.settings.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
+    options.precision =
+        c_.settings.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
     options.threads = c_.settings.threads;
     auto reference = std::make_shared<Reference>(c_.scene.rule, c_.scene.body, c_.scene.periodic, options);
     step_ = [reference] { reference->step(); };
@@ -129,7 +130,8 @@ Speed measure_speed(const Study& study, const Settings& settings) {
   } catch (const Interrupted&) {
     throw;
   } catch (const std::runtime_error& error) {
-    // InputError, RunError, not finite: the errors' row says it. A program that failed says nothing of a point.
+    // InputError, RunError, not finite: the errors' row says it. A program that failed says nothing of a
+    // point.
     if (on_gpu(settings) && !dynamic_cast<const InputError*>(&error)) throw;
   }
   return speed;

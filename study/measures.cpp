@@ -71,8 +71,10 @@ std::vector<Measure> error_measures(const Results& results) {
        of(&Errors::momentum)}};
   if (results.figure_names.size() > 1) {
     double floor = 0;
-    for (size_t n = 0; n < results.figure_names.size(); ++n) floor = std::max(floor, figure_floor(results.truth, n));
-    all.push_back({Kind::figure, "figures_worst", "relative error of the worst figure", true, floor, worst_figure_error});
+    for (size_t n = 0; n < results.figure_names.size(); ++n)
+      floor = std::max(floor, figure_floor(results.truth, n));
+    all.push_back({Kind::figure, "figures_worst", "relative error of the worst figure", true, floor,
+                   worst_figure_error});
   }
   for (size_t n = 0; n < results.figure_names.size(); ++n)
     all.push_back({Kind::figure, id_of(results.figure_names[n], n),
@@ -89,8 +91,8 @@ std::vector<Measure> speed_measures(const Results& results) {
                  [](const Outcome& outcome) { return outcome.speed.simulated_seconds; }},
                 {Kind::speed, "particle_steps", "particle-steps per second", false, 0,
                  [](const Outcome& outcome) { return outcome.speed.particle_steps; }},
-                {Kind::speed, "cost", "cost, transistors x time per simulated second (less is better)", true, 0,
-                 [](const Outcome& outcome) { return outcome.cost; }}});
+                {Kind::speed, "cost", "cost, transistors x time per simulated second (less is better)", true,
+                 0, [](const Outcome& outcome) { return outcome.cost; }}});
 }
 
 }  // namespace cuboct::study

@@ -29,8 +29,8 @@ double figure_floor(const Truth& truth, size_t n);
 // The worst relative error of an outcome's figures; nan where one was not measured, or there is none.
 double worst_figure_error(const Outcome& outcome);
 
-// Those that at least one outcome has: forces, trajectory, drift, momentum, then the study's figures, the worst of
-// several first.
+// Those that at least one outcome has: forces, trajectory, drift, momentum, then the study's figures, the
+// worst of several first.
 std::vector<Measure> error_measures(const Results& results);
 // Simulated seconds and particle-steps per second of host time, and the cost that needs no machine.
 std::vector<Measure> speed_measures(const Results& results);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "model/output.h"
-#include "model/text.h"
+#include "model/base/output.h"
+#include "model/base/text.h"
 #include "study/json.h"
 #include "study/measures.h"
 #include "study/parameters.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/error.h"
-#include "model/interrupt.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
 #include "study/measure_run.h"
 #include "study/stability.h"
 
@@ -27,8 +27,7 @@ void zero_imposed(const Rule& rule, const Body& body, std::vector<Vec3>& values)
 // m/s^2, of the pair law and the PD controllers at rest, over the free axes.
 std::vector<Vec3> accelerations(const Scene& scene) {
   const Rule& rule = scene.rule;
-  std::vector<Vec3> a =
-      Reference(rule, scene.body, scene.periodic, Integrator::semi_implicit_euler).forces();
+  std::vector<Vec3> a = Reference(rule, scene.body, scene.periodic, Integrator::semi_implicit_euler).forces();
   for (size_t i = 0; i < a.size(); ++i) {
     const ParticleType& type = rule.types[scene.body.type[i]];
     if (type.pd && !scene.body.u.empty()) a[i] -= type.kp * scene.body.u[i];
@@ -123,7 +122,8 @@ bool relax_to_minimum(Scene& scene, double tolerance, double site) {
     for (size_t i = 0; i < scene.body.size(); ++i)
       for (int axis = 0; axis < 3; ++axis) {
         dice = dice * 6364136223846793005u + 1442695040888963407u;
-        const double shift = 1e-3 * scene.rule.law->cutoff() * (static_cast<double>(dice >> 11) * 0x1p-52 - 1);
+        const double shift =
+            1e-3 * scene.rule.law->cutoff() * (static_cast<double>(dice >> 11) * 0x1p-52 - 1);
         if (scene.rule.types[scene.body.type[i]].imposed[axis]) continue;
         scene.body.x[i][axis] += shift;
         if (!scene.body.u.empty()) scene.body.u[i][axis] += shift;
@@ -186,7 +186,8 @@ Subject subject_of(const Scene& scene, int axis, double strain) {
     }
   }
   out.limit = stability_limit(vibrations_of(s.rule, s.body, s.periodic));
-  if (!std::isfinite(out.limit.dt)) give_up("nothing is restored or damped");
+  if (!std::isfinite(out.limit.dt))
+    give_up("nothing is restored or damped");
   else if (out.limit.body_unstable())
     give_up("the body itself is unstable: no dt cures that");
   return out;

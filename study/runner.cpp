@@ -7,8 +7,8 @@
 #include <mutex>
 #include <set>
 
-#include "model/error.h"
-#include "model/resources.h"
+#include "model/base/error.h"
+#include "model/base/resources.h"
 #include "study/gpu_program.h"
 #include "study/measure_errors.h"
 #include "study/measure_run.h"
@@ -48,8 +48,8 @@ const Truth& Runner::truth() {
   return at->second;
 }
 
-// Where the settings' own scene has no run in doubles, the point will be refused for the same reason: any truth
-// does.
+// Where the settings' own scene has no run in doubles, the point will be refused for the same reason: any
+// truth does.
 const Truth& Runner::truth_of(const Settings& settings) {
   const auto found = truths_.find(physics_key(settings));
   return found == truths_.end() ? truths_.at("") : found->second;
@@ -87,7 +87,8 @@ std::vector<Outcome> Runner::errors_of(const std::vector<Settings>& points) {
   std::vector<Settings> missing;
   std::set<std::string> known;
   for (const Settings& settings : points)
-    if (!store_.has_errors(settings) && known.insert(settings.numbers_key()).second) missing.push_back(settings);
+    if (!store_.has_errors(settings) && known.insert(settings.numbers_key()).second)
+      missing.push_back(settings);
   if (!missing.empty()) {
     const bool some_on_gpu = std::ranges::any_of(missing, on_gpu);
     if (some_on_gpu && !has_gpu()) throw InputError(no_gpu_);
@@ -95,10 +96,12 @@ std::vector<Outcome> Runner::errors_of(const std::vector<Settings>& points) {
     std::vector<Piece> here, there;
     for (const Settings& settings : missing)
       (on_gpu(settings) ? there : here).push_back({size_of_run(study_, settings), [&, settings] {
-        Outcome outcome = measure_errors(study_, truths_.at(""), truth_of(settings), settings);
-        if (on_gpu(settings)) outcome.machine = *gpu_;
-        store_.put_errors(outcome);
-      }});
+                                                     Outcome outcome =
+                                                         measure_errors(study_, truths_.at(""),
+                                                                        truth_of(settings), settings);
+                                                     if (on_gpu(settings)) outcome.machine = *gpu_;
+                                                     store_.put_errors(outcome);
+                                                   }});
     work_off(std::move(here), options_.jobs, "points", options_.progress);
     work_off(std::move(there), 1, "points on the GPU", options_.progress);
   }
@@ -127,12 +130,14 @@ bool Runner::has_gpu() {
 void Runner::run() {
   truth();
   const auto lacks = [&](const Settings& settings) {
-    return on_gpu(settings) && (!store_.has_errors(settings) || (options_.speed && !store_.has_speed(settings)));
+    return on_gpu(settings) &&
+           (!store_.has_errors(settings) || (options_.speed && !store_.has_speed(settings)));
   };
   std::vector<Settings> points = study_.points;
   const auto lacking = std::ranges::count_if(points, lacks);
   if (lacking > 0 && !has_gpu()) {
-    left_out_ = fmt::format("{} point{} of the gpu engine left out: {}", lacking, lacking == 1 ? "" : "s", no_gpu_);
+    left_out_ =
+        fmt::format("{} point{} of the gpu engine left out: {}", lacking, lacking == 1 ? "" : "s", no_gpu_);
     std::erase_if(points, [&](const Settings& s) { return on_gpu(s) && !store_.has_errors(s); });
   }
   errors_of(points);

@@ -15,14 +15,14 @@
 namespace cuboct::study {
 
 struct RunnerOptions {
-  int jobs = 0;         // points computed at once; 0: one per core
-  bool speed = true;    // measure speeds as well, one after the other when all errors are there
-  bool progress = true; // a line on stderr, where that is a terminal
+  int jobs = 0;          // points computed at once; 0: one per core
+  bool speed = true;     // measure speeds as well, one after the other when all errors are there
+  bool progress = true;  // a line on stderr, where that is a terminal
 };
 
-// Every call answers from the store where it can, and puts what it computes there before it returns: a process
-// that was killed, run again, ends with the same errors. All throw Interrupted (interrupted.h) once
-// model/interrupt.h was asked to stop. Study and store must outlive the runner.
+// Every call answers from the store where it can, and puts what it computes there before it returns: a
+// process that was killed, run again, ends with the same errors. All throw Interrupted (interrupted.h) once
+// model/base/interrupt.h was asked to stop. Study and store must outlive the runner.
 class Runner {
  public:
   Runner(const Study& study, Store& store, const RunnerOptions& options);

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "model/figure.h"
-#include "model/trace.h"
+#include "model/trace/figure.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::study {
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <span>
 
-#include "model/interrupt.h"
+#include "model/base/interrupt.h"
 #include "study/measure_run.h"
 
 namespace cuboct::study {

@@ -31,7 +31,8 @@ const char* label(Integrator integrator) {
 std::string describe(const Settings& settings) {
   std::string text = fmt::format("{}, {}", settings.engine, label(settings.arithmetic));
   if (settings.arithmetic != Arithmetic::fixed) text += fmt::format("; {}", label(settings.integrator));
-  if (!on_gpu(settings)) text += fmt::format("; {} thread{}", settings.threads, settings.threads == 1 ? "" : "s");
+  if (!on_gpu(settings))
+    text += fmt::format("; {} thread{}", settings.threads, settings.threads == 1 ? "" : "s");
   for (const auto* changes : {&settings.scene, &settings.arch})
     for (const Change& change : *changes) text += fmt::format("; {} {}", change.key, change.value);
   return text;

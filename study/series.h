@@ -25,8 +25,8 @@ const char* label(Integrator integrator);
 // "lattice, fixed; 4 threads; run.dt_safety 0.1; widths.guard 6": all that tells a point from others.
 std::string describe(const Settings& settings);
 
-// The engines of today first, in their own looks; then those from elsewhere, and known ones on further machines, in
-// the order of their first points.
+// The engines of today first, in their own looks; then those from elsewhere, and known ones on further
+// machines, in the order of their first points.
 std::vector<Series> series_of(const Results& results);
 
 }  // namespace cuboct::study

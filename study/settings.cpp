@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "model/config.h"
-#include "model/error.h"
+#include "model/base/error.h"
+#include "model/scene/config.h"
 
 namespace cuboct::study {
 namespace {
@@ -58,8 +58,8 @@ Case resolve(const Base& base, const Settings& settings) {
     throw InputError(fmt::format("engine '{}' does not know {} arithmetic", settings.engine,
                                  name_of(settings.arithmetic)));
   if (settings.integrator != Integrator::semi_implicit_euler && (fixed || on_gpu(settings)))
-    throw InputError(fmt::format("{} knows the integrator 'euler' only",
-                                 fixed ? "fixed arithmetic" : "the gpu engine"));
+    throw InputError(
+        fmt::format("{} knows the integrator 'euler' only", fixed ? "fixed arithmetic" : "the gpu engine"));
   Case c{settings, {}, {}, with_changes(base.scene_text, base.scene_path, settings.scene), {}};
   c.scene = parse_scene(c.scene_text, base.scene_path);
   const std::string arch_path = base.arch_path.empty() ? "(default arch)" : base.arch_path;

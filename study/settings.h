@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "hw/arch.h"
-#include "model/changes.h"
-#include "model/reference.h"
-#include "model/scene.h"
+#include "model/real/reference.h"
+#include "model/scene/changes.h"
+#include "model/scene/scene.h"
 
 namespace cuboct::study {
 
@@ -37,7 +37,7 @@ struct Settings {
                                    // points of other engines come from elsewhere (store.h)
   Arithmetic arithmetic = Arithmetic::fixed;
   Integrator integrator = Integrator::semi_implicit_euler;  // fixed knows this one only
-  int threads = 1;                    // of the host; the gpu engine knows none
+  int threads = 1;                                          // of the host; the gpu engine knows none
   std::vector<Change> scene, arch;  // from the base, e.g. {"run.dt_safety", "0.1"}, {"widths.guard", "6"}
 
   // What the numbers depend on: all of it, but for the threads of a fixed engine. One line, the same for the

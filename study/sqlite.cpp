@@ -24,7 +24,8 @@ void Database::run(const std::string& sql) {
 }
 
 Query::Query(const Database& database, const std::string& sql) : database_(database) {
-  if (sqlite3_prepare_v2(database.handle(), sql.c_str(), -1, &statement_, nullptr) != SQLITE_OK) database.fail();
+  if (sqlite3_prepare_v2(database.handle(), sql.c_str(), -1, &statement_, nullptr) != SQLITE_OK)
+    database.fail();
 }
 
 Query& Query::bind(double value) {
@@ -40,8 +41,8 @@ Query& Query::bind(int64_t value) {
 }
 
 Query& Query::bind(const std::string& value) {
-  if (sqlite3_bind_text(statement_, ++bound_, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT) !=
-      SQLITE_OK)
+  if (sqlite3_bind_text(statement_, ++bound_, value.data(), static_cast<int>(value.size()),
+                        SQLITE_TRANSIENT) != SQLITE_OK)
     database_.fail();
   return *this;
 }
@@ -80,7 +81,7 @@ void Query::copy_to(Query& to, const std::string& last) {
 double Query::real() {
   const int column = read_++;
   return sqlite3_column_type(statement_, column) == SQLITE_NULL ? std::nan("")
-                                                                 : sqlite3_column_double(statement_, column);
+                                                                : sqlite3_column_double(statement_, column);
 }
 
 int64_t Query::integer() { return sqlite3_column_int64(statement_, read_++); }

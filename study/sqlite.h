@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::study {
 
@@ -42,7 +42,10 @@ class Query {
   Query& bind_blob(const std::string& bytes);
 
   bool next();  // a row is there
-  void done() { while (next()) {} }
+  void done() {
+    while (next()) {
+    }
+  }
 
   // The row's columns into `to`, one after the other; the last one, of text, is `last` where it is empty.
   void copy_to(Query& to, const std::string& last);

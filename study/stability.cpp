@@ -12,8 +12,8 @@
 
 #include "emu/lattice/engine.h"
 #include "hw/setup.h"
-#include "model/error.h"
-#include "model/interrupt.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
 #include "study/measure_run.h"
 
 namespace cuboct::study {
@@ -21,11 +21,11 @@ namespace {
 
 constexpr uint64_t kSeed = 20231;
 
-// Of random displacements, in pitches (or cutoffs): large beside what the arithmetic resolves, and small, as laws
-// soften: a mode that is unstable by a part eps of dt stops growing where it has lost 2 eps of its stiffness, for
-// the presets at a swing of about 0.3 sqrt(eps) pitches. Doubles resolve 1e-16 of a body; floats, of one that is 30
-// pitches long, 2e-6; the fixed formats 1.5e-5 of a cell in the differences, and more where an arch has narrower
-// ones.
+// Of random displacements, in pitches (or cutoffs): large beside what the arithmetic resolves, and small, as
+// laws soften: a mode that is unstable by a part eps of dt stops growing where it has lost 2 eps of its
+// stiffness, for the presets at a swing of about 0.3 sqrt(eps) pitches. Doubles resolve 1e-16 of a body;
+// floats, of one that is 30 pitches long, 2e-6; the fixed formats 1.5e-5 of a cell in the differences, and
+// more where an arch has narrower ones.
 double seed_size(Arithmetic arithmetic, const Arch& arch) {
   if (arithmetic == Arithmetic::float64) return 1e-6;
   if (arithmetic == Arithmetic::float32) return 1e-4;
@@ -105,17 +105,18 @@ class Judge {
     const double second = *std::max_element(sizes.begin() + quarter, sizes.begin() + 2 * quarter);
     const double last = *std::max_element(sizes.end() - quarter, sizes.end());
     if (last > 3 * second && last > start(sizes))
-      return {Verdict::unstable, fmt::format("motion that flips at each step grew {:.1f}-fold from the second "
-                                             "quarter of {} steps to the last",
-                                             last / second, sizes.size() + 2)};
+      return {Verdict::unstable,
+              fmt::format("motion that flips at each step grew {:.1f}-fold from the second "
+                          "quarter of {} steps to the last",
+                          last / second, sizes.size() + 2)};
     return {Verdict::stable, ""};
   }
 
  private:
-  // Far beyond the limit the first steps grow as well: no more counts than a stable run can start with, which is
-  // |y| < 4 |w|, |w| < |v dt| + dt^2 |K x| < |v dt| + 4 |x|, with v dt and x below `seed` along each axis. And far
-  // below it, where y is no flip but the little that a smooth motion changes, formats may round it to nothing at
-  // first: no less counts than a part of that.
+  // Far beyond the limit the first steps grow as well: no more counts than a stable run can start with, which
+  // is |y| < 4 |w|, |w| < |v dt| + dt^2 |K x| < |v dt| + 4 |x|, with v dt and x below `seed` along each axis.
+  // And far below it, where y is no flip but the little that a smooth motion changes, formats may round it to
+  // nothing at first: no less counts than a part of that.
   double start(const std::vector<double>& sizes) const {
     const auto end = sizes.begin() + static_cast<ptrdiff_t>(std::min(kEarly, sizes.size()));
     return std::clamp(*std::max_element(sizes.begin(), end), 0.05 * bound_, bound_);
@@ -124,10 +125,11 @@ class Judge {
 };
 
 Trial try_reference(const Scene& scene, const Method& method, const Judge& judge, uint64_t steps) {
-  Reference run(scene.rule, scene.body, scene.periodic,
-                RealOptions{method.integrator,
-                            method.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64,
-                            method.threads});
+  Reference run(
+      scene.rule, scene.body, scene.periodic,
+      RealOptions{method.integrator,
+                  method.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64,
+                  method.threads});
   Flips flips(scene.body.size());
   std::vector<Vec3> before = scene.body.x;
   for (uint64_t n = 0; n < steps; ++n) {
@@ -150,16 +152,18 @@ Trial try_reference(const Scene& scene, const Method& method, const Judge& judge
 
 Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolution, double seed,
                   uint64_t steps) {
-  // A body under pressure has more particles in a node than the machine may be built for; no bit depends on it.
+  // A body under pressure has more particles in a node than the machine may be built for; no bit depends on
+  // it.
   if (arch.capacity != kAutomatic) arch.capacity = std::max(arch.capacity, 32);
   // The formats are those of the scene without the forces that hold a stretched body still.
   std::vector<Vec3> holding;
   for (ParticleType& type : scene.rule.types) holding.push_back(std::exchange(type.gravity, Vec3::Zero()));
   arch = settled(scene, arch);
   for (size_t k = 0; k < holding.size(); ++k) scene.rule.types[k].gravity = holding[k];
-  // Forces that hold a stretched body still, where the format of gravity would round them to less than 1 %: they
-  // are less than a difference's rounding does.
-  const double unit = std::ldexp(scene.rule.law->cutoff(), -arch.widths.velocity_frac()) / (scene.rule.dt * scene.rule.dt);
+  // Forces that hold a stretched body still, where the format of gravity would round them to less than 1 %:
+  // they are less than a difference's rounding does.
+  const double unit =
+      std::ldexp(scene.rule.law->cutoff(), -arch.widths.velocity_frac()) / (scene.rule.dt * scene.rule.dt);
   for (ParticleType& type : scene.rule.types)
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(type.gravity[axis]) < 128 * unit) type.gravity[axis] = 0;
@@ -185,7 +189,8 @@ Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolutio
       return {Verdict::unstable, error.what()};
     }
     run.for_each_slot([&](const Particle& p) {
-      flips.add(p.id, Vec3(static_cast<double>(p.v[0]), static_cast<double>(p.v[1]), static_cast<double>(p.v[2])));
+      flips.add(p.id,
+                Vec3(static_cast<double>(p.v[0]), static_cast<double>(p.v[1]), static_cast<double>(p.v[2])));
     });
     flips.end_step();
     if (const auto trial = judge.outgrown(flips.sizes())) return *trial;
@@ -208,8 +213,8 @@ Trial try_step(const Subject& subject, const Arch& arch, const Method& method, d
 }
 
 uint64_t steps_to_tell(const Limit& limit, double resolution) {
-  // Of the first mode at its limit, dt c = 2 share and dt^2 k = 4 (1 - share); at (1 + resolution) dt it has the
-  // root z < -1.
+  // Of the first mode at its limit, dt c = 2 share and dt^2 k = 4 (1 - share); at (1 + resolution) dt it has
+  // the root z < -1.
   const double a = 1 + resolution;
   const double c = 2 * limit.damping_share * a, k = 4 * (1 - limit.damping_share) * a * a;
   const double p = k + c - 2, q = 1 - c;

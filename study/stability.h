@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "hw/arch.h"
-#include "model/reference.h"
-#include "model/scene.h"
-#include "model/vibrations.h"
+#include "model/real/reference.h"
+#include "model/scene/scene.h"
+#include "model/solid/vibrations.h"
 #include "study/interrupted.h"
 #include "study/settings.h"
 
@@ -25,9 +25,9 @@ struct Subject {
 };
 
 // The scene's body as it stands; one that is not at rest (the surface of a Lennard-Jones crystal) is relaxed
-// first, by FIRE: E. Bitzek et al., Phys. Rev. Lett. 97 (2006) 170201. With `strain` (0.1: ten per cent) it is
-// then stretched along `axis` without lateral motion. The ends of a stretched body would spring back: each of
-// its particles is given a constant force against that, as gravity of its type, so that it rests as it is
+// first, by FIRE: E. Bitzek et al., Phys. Rev. Lett. 97 (2006) 170201. With `strain` (0.1: ten per cent) it
+// is then stretched along `axis` without lateral motion. The ends of a stretched body would spring back: each
+// of its particles is given a constant force against that, as gravity of its type, so that it rests as it is
 // stretched. Where that takes more types than there may be, it is not measurable.
 Subject subject_of(const Scene& scene, int axis = 0, double strain = 0);
 
@@ -43,7 +43,7 @@ struct Method {
   int threads = 1;
 };
 
-// The functions below throw Interrupted once model/interrupt.h was asked to stop.
+// The functions below throw Interrupted once model/base/interrupt.h was asked to stop.
 
 enum class Verdict : uint8_t {
   stable,
@@ -56,8 +56,8 @@ struct Trial {
 };
 // A run of `steps` steps from small random displacements and velocities (seeded). It looks at the part of the
 // motion that flips from step to step, y = w[n] - 2 w[n-1] + w[n-2] with w the displacement of a step: modes
-// leave the unit circle at -1 (model/vibrations.h), where |y| = 4 |w|, while slow motion cancels. The run is
-// unstable where the largest |y| of all particles
+// leave the unit circle at -1 (model/solid/vibrations.h), where |y| = 4 |w|, while slow motion cancels. The
+// run is unstable where the largest |y| of all particles
 //   - grows beyond what a stable mode can swing to that is `resolution` (relative) below its limit:
 //     1/sqrt(8 resolution) of its start, with a factor of 4 of room; or
 //   - is three times as large in the last quarter as in the second, and larger than at the start;
@@ -66,15 +66,15 @@ Trial try_step(const Subject& subject, const Arch& arch, const Method& method, d
                uint64_t steps);
 
 // Steps that tell a dt `resolution` beyond the limit. There a mode grows by the factor z of the quadratic in
-// model/vibrations.h, exp(sqrt(8 resolution)) per step where nothing damps; with damping it is slower.
+// model/solid/vibrations.h, exp(sqrt(8 resolution)) per step where nothing damps; with damping it is slower.
 uint64_t steps_to_tell(const Limit& limit, double resolution);
 
 struct MeasuredLimit {
   double stable = 0, unstable = 0;  // s: the bisection's bracket, within the resolution of each other
   uint64_t steps = 0;               // of each trial
   int trials = 0;
-  bool refused = false;             // the unstable end is a refusal: the formats end before stability does
-  std::string sign;                 // of the unstable end
+  bool refused = false;  // the unstable end is a refusal: the formats end before stability does
+  std::string sign;      // of the unstable end
   double middle() const { return (stable + unstable) / 2; }
 };
 // By bisection on the engine, from the theory's limit, which only saves trials: the bracket grows until it

@@ -9,9 +9,9 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "model/error.h"
-#include "model/interrupt.h"
-#include "model/parallel.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
+#include "model/base/parallel.h"
 #include "study/measure_run.h"
 
 namespace cuboct::study {
@@ -59,9 +59,8 @@ StabilityMap map_of(const Frame& frame, int axis, int fineness, double unit, con
         if (std::isfinite(subject.limit.dt)) map.theory[i] = subject.limit.dt / unit;
         const uint64_t steps = steps_to_tell(subject.limit, kResolution);
         for (size_t k = 0; k < map.y.size() && subject.measurable; ++k) {
-          const Verdict verdict = try_step(subject, column.arch, {frame.arithmetic}, map.y[k] * unit, kResolution,
-                                           steps)
-                                      .verdict;
+          const Verdict verdict =
+              try_step(subject, column.arch, {frame.arithmetic}, map.y[k] * unit, kResolution, steps).verdict;
           map.cells[k * nx + i] = static_cast<StabilityMap::Cell>(verdict);
         }
       } catch (const Interrupted&) {
@@ -140,8 +139,8 @@ std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, i
       progress));
   const Scene with_pd = with_parts(scene, {false, false, false, true});
   const auto held = [&](double kp) { return Column{held_by_force(with_pd, axis, kp * stiffness), arch}; };
-  maps.push_back(map_of({"pd_stiffness", "a region held by force, in doubles", "kp over the stiffness of a bond",
-                         even(0, 50, fineness), Arithmetic::float64},
+  maps.push_back(map_of({"pd_stiffness", "a region held by force, in doubles",
+                         "kp over the stiffness of a bond", even(0, 50, fineness), Arithmetic::float64},
                         axis, fineness, unit, held, progress));
   maps.push_back(map_of({"pd_stiffness_fixed", "a region held by force, in the fixed engine",
                          "kp over the stiffness of a bond", even(0, 50, fineness), Arithmetic::fixed},
@@ -173,9 +172,13 @@ std::vector<StabilityMap> stability_maps(const Scene& scene, const Arch& arch, i
       },
       progress));
   maps.push_back(map_of(
-      {"strain", fmt::format("strain along {}, in doubles", "xyz"[axis]), "strain", even(-0.15, 0.15, fineness | 1),
-       Arithmetic::float64},
-      axis, fineness, unit, [&](double strain) { return Column{bare, arch, strain}; }, progress));
+      {"strain", fmt::format("strain along {}, in doubles", "xyz"[axis]), "strain",
+       even(-0.15, 0.15, fineness | 1), Arithmetic::float64},
+      axis, fineness, unit,
+      [&](double strain) {
+        return Column{bare, arch, strain};
+      },
+      progress));
   return maps;
 }
 

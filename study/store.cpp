@@ -14,8 +14,8 @@
 #include <sstream>
 #include <thread>
 
-#include "model/error_parts.h"
-#include "model/text.h"
+#include "model/base/error_parts.h"
+#include "model/base/text.h"
 #include "study/sqlite.h"
 #include "study/truth_bytes.h"
 
@@ -29,13 +29,15 @@ constexpr const char* kTables =
     "CREATE TABLE IF NOT EXISTS truths(physics TEXT PRIMARY KEY, truth BLOB);"
     "CREATE TABLE IF NOT EXISTS rungs(physics TEXT, rung INTEGER, dt REAL, cutoff REAL, trajectory REAL,"
     " change REAL, PRIMARY KEY(physics, rung));"
-    "CREATE TABLE IF NOT EXISTS points(numbers TEXT PRIMARY KEY, settings TEXT, status TEXT, why TEXT, dt REAL,"
+    "CREATE TABLE IF NOT EXISTS points(numbers TEXT PRIMARY KEY, settings TEXT, status TEXT, why TEXT, dt "
+    "REAL,"
     " pitch REAL, particles INTEGER, steps INTEGER, cost REAL, halo_bits INTEGER, table_bits INTEGER,"
     " force_median REAL, force_999 REAL, force_max REAL, trajectory REAL, drift_per_step REAL,"
     " drift_per_oscillation REAL, momentum REAL, machine TEXT);"
     "CREATE TABLE IF NOT EXISTS figures(numbers TEXT, figure INTEGER, name TEXT, value REAL, error REAL,"
     " PRIMARY KEY(numbers, figure));"
-    "CREATE TABLE IF NOT EXISTS speeds(point TEXT PRIMARY KEY, numbers TEXT, settings TEXT, particle_steps REAL,"
+    "CREATE TABLE IF NOT EXISTS speeds(point TEXT PRIMARY KEY, numbers TEXT, settings TEXT, particle_steps "
+    "REAL,"
     " simulated_seconds REAL, spread REAL, repeats INTEGER, machine TEXT);";
 
 constexpr const char* kPointColumns =
@@ -63,10 +65,9 @@ std::string insert(const char* how, const char* table, const std::string& column
 
 // One setting per line.
 std::string text_of(const Settings& settings) {
-  std::string text =
-      fmt::format("engine={}\narithmetic={}\nintegrator={}\nthreads={}\n", settings.engine,
-                  name_of(settings.arithmetic),
-                  kIntegrators[static_cast<size_t>(settings.integrator)], settings.threads);
+  std::string text = fmt::format("engine={}\narithmetic={}\nintegrator={}\nthreads={}\n", settings.engine,
+                                 name_of(settings.arithmetic),
+                                 kIntegrators[static_cast<size_t>(settings.integrator)], settings.threads);
   for (const Change& change : settings.scene) text += fmt::format("scene.{}={}\n", change.key, change.value);
   for (const Change& change : settings.arch) text += fmt::format("arch.{}={}\n", change.key, change.value);
   return text;
@@ -179,7 +180,8 @@ void Store::Impl::check() {
   if (const std::string there = meta("study"); !there.empty() && there != hash)
     throw InputError("these are results of another study: its scene, arch, figures or times were others",
                      "take another directory, or remove this one's results.db");
-  Query put(database, "INSERT OR REPLACE INTO meta VALUES('format', ?), ('study', ?), ('title', ?), ('scene', ?)");
+  Query put(database,
+            "INSERT OR REPLACE INTO meta VALUES('format', ?), ('study', ?), ('title', ?), ('scene', ?)");
   put.bind(kFormat).bind(hash).bind(study.title).bind(study.base.scene_path).done();
   Query machine(database, "INSERT OR IGNORE INTO meta VALUES('machine', ?)");
   machine.bind(here).done();
@@ -205,7 +207,8 @@ Store::Store(const std::string& path, const Study& study) {
   try {
     impl_ = std::make_unique<Impl>(path, study);
     impl_->lock = lock;
-    // With a write-ahead log a row that was put survives the process; only a loss of power may take the last ones.
+    // With a write-ahead log a row that was put survives the process; only a loss of power may take the last
+    // ones.
     impl_->database.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
     impl_->database.run(kTables);
     impl_->check();
@@ -319,8 +322,8 @@ int Store::add(const std::string& path) {
     }
   }
   if (hash != fmt::format("{:016x}", impl_->study.hash))
-    throw InputError(fmt::format("{} holds results of another study: its scene, arch, figures or times are others",
-                                 path));
+    throw InputError(
+        fmt::format("{} holds results of another study: its scene, arch, figures or times are others", path));
   if (machine == impl_->meta("machine")) machine.clear();  // a part of the study, computed beside it
   int came = 0;
   const auto copy = [&](const char* table, const std::string& columns, bool has_machine) {
@@ -366,8 +369,9 @@ Results Store::results() const {
   results.machine = impl_->meta("machine");
   // What is no point of the study: one that it had before, or from elsewhere. By speeds, then points without
   // any.
-  Query speeds(impl_->database, "SELECT point, numbers, settings, particle_steps, simulated_seconds,"
-                                " spread, repeats, machine FROM speeds ORDER BY point");
+  Query speeds(impl_->database,
+               "SELECT point, numbers, settings, particle_steps, simulated_seconds,"
+               " spread, repeats, machine FROM speeds ORDER BY point");
   while (speeds.next()) {
     const std::string key = speeds.text(), numbers = speeds.text(), settings = speeds.text();
     if (!shown.insert(key).second) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The results of a study in one file (SQLite), written point by point: a study that is killed goes on where it
-// was. Points of other engines and machines (a GPU, a board) are rows as well. docs/user/study.md describes the
-// tables.
+// The results of a study in one file (SQLite), written point by point: a study that is killed goes on where
+// it was. Points of other engines and machines (a GPU, a board) are rows as well. docs/user/study.md
+// describes the tables.
 #pragma once
 
 #include <memory>
@@ -27,8 +27,8 @@ struct Results {
 // returns. Only a loss of power may take the last ones.
 class Store {
  public:
-  // Opens or makes `path`. Throws InputError where it is no store, that of another study (its hash), or at work
-  // in another process.
+  // Opens or makes `path`. Throws InputError where it is no store, that of another study (its hash), or at
+  // work in another process.
   Store(const std::string& path, const Study& study);
   ~Store();
   Store(const Store&) = delete;
@@ -49,8 +49,8 @@ class Store {
   bool has_speed(const Settings& settings) const;
   std::optional<Speed> speed(const Settings& settings) const;
 
-  // Rows of another store of the same scene, figures and times, measured elsewhere; what is here already stays.
-  // Throws InputError. The number of rows that came.
+  // Rows of another store of the same scene, figures and times, measured elsewhere; what is here already
+  // stays. Throws InputError. The number of rows that came.
   int add(const std::string& path);
 
   Results results() const;

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <set>
 
-#include "model/config.h"
-#include "model/error.h"
-#include "model/hash.h"
-#include "model/measure.h"
-#include "model/spelling.h"
+#include "model/analysis/measure.h"
+#include "model/base/error.h"
+#include "model/base/hash.h"
+#include "model/base/spelling.h"
+#include "model/scene/config.h"
 #include "study/axes.h"
 
 namespace cuboct::study {
@@ -29,7 +29,8 @@ std::string beside(const std::string& study, const std::string& path) {
 std::string file_named_by(const ConfigValue& value, const std::string& study) {
   const std::string file = beside(study, value.string());
   if (!fs::is_regular_file(file))
-    value.fail(fmt::format("'{}' names no file: {}", value.key(), file), "paths count from the study's directory");
+    value.fail(fmt::format("'{}' names no file: {}", value.key(), file),
+               "paths count from the study's directory");
   return file;
 }
 
@@ -123,7 +124,8 @@ void read_points(const ConfigTable& root, Study& study) {
     const std::vector<Axis> axes = read_axes(table, study.base);
     double count = 1;
     for (const Axis& axis : axes) count *= static_cast<double>(axis.sets.size());
-    if (count > 100'000) table.fail(fmt::format("this grid has {:.3g} points: at most 100000 are taken", count));
+    if (count > 100'000)
+      table.fail(fmt::format("this grid has {:.3g} points: at most 100000 are taken", count));
     add_grid(axes, known, study.points);
   }
 }
@@ -135,7 +137,8 @@ void read_search(const ConfigTable& table, Study& study) {
     for (const auto& set : axis.sets) {
       Settings settings;
       set(settings);
-      if (on_gpu(settings)) table.fail("a search cannot set the engine 'gpu'", "its fixed points have lattice's errors");
+      if (on_gpu(settings))
+        table.fail("a search cannot set the engine 'gpu'", "its fixed points have lattice's errors");
     }
 }
 
@@ -148,8 +151,8 @@ uint64_t hash_of(const Study& study) {
   text(study.base.scene_text);
   text(study.base.arch_text);
   for (const Figure& f : study.figures)
-    text(fmt::format("{} {} {} {} {} {} {}", static_cast<int>(f.kind), f.name, f.curve, f.against, f.from, f.to,
-                     f.fraction));
+    text(fmt::format("{} {} {} {} {} {} {}", static_cast<int>(f.kind), f.name, f.curve, f.against, f.from,
+                     f.to, f.fraction));
   text(fmt::format("{} {} {} {} {} {}", study.grid.sample, study.grid.samples, study.horizon,
                    study.truth_tolerance, study.truth_rungs, study.lengthen_cutoff));
   return hash.value();

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "model/figure.h"
+#include "model/trace/figure.h"
 #include "study/outcome.h"
 #include "study/time_grid.h"
 
@@ -27,16 +27,16 @@ struct Study {
   Base base;  // with the study's [change] made
   std::vector<Figure> figures;
   std::vector<std::string> figure_units;
-  std::vector<Settings> points;  // of all [[sweep]] grids, in their order, each once
-  std::vector<Axis> search;      // [search]: for each setting its notches from cheap to dear
-  TimeGrid grid;                 // of all runs; horizon 0 until the truth has found it
-  double horizon = 0;            // s, where trajectories are compared at the latest; 0: the truth decides
-  int repeats = 3;               // of each speed
-  double seconds = 0.3;          // of host time that each repeat takes at least
+  std::vector<Settings> points;   // of all [[sweep]] grids, in their order, each once
+  std::vector<Axis> search;       // [search]: for each setting its notches from cheap to dear
+  TimeGrid grid;                  // of all runs; horizon 0 until the truth has found it
+  double horizon = 0;             // s, where trajectories are compared at the latest; 0: the truth decides
+  int repeats = 3;                // of each speed
+  double seconds = 0.3;           // of host time that each repeat takes at least
   double truth_tolerance = 1e-4;  // refinement of the truth ends where every figure changes by less
-  int truth_rungs = 8;           // and after so many time steps
-  bool lengthen_cutoff = true;   // of a law that is cut off for speed alone (lj)
-  uint64_t hash = 0;             // of all that errors depend on but the points: results of another are refused
+  int truth_rungs = 8;            // and after so many time steps
+  bool lengthen_cutoff = true;    // of a law that is cut off for speed alone (lj)
+  uint64_t hash = 0;  // of all that errors depend on but the points: results of another are refused
 };
 
 // Throws InputError with file:line:column.
@@ -46,8 +46,8 @@ Study read_study(const std::string& path);
 // ten fixed ones. 0: the settings make no scene.
 double size_of_run(const Study& study, const Settings& settings);
 
-// Settings with what their engine does not look at taken out, so that equal runs have equal settings: an engine
-// of real numbers knows no arch, a GPU none of the host's threads.
+// Settings with what their engine does not look at taken out, so that equal runs have equal settings: an
+// engine of real numbers knows no arch, a GPU none of the host's threads.
 Settings canonical(Settings settings);
 
 }  // namespace cuboct::study

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/text.h"
+#include "model/base/text.h"
 #include "study/front.h"
 #include "study/measures.h"
 
@@ -47,7 +47,8 @@ std::string cheapest_per_decade(const Results& results) {
   const ValueOf error = [&](const Outcome& outcome) { return error_of(results, outcome); };
   const auto row = [](const std::string& most, const std::string& error, const std::string& cost,
                       const std::string& rate, const std::string& simulated, const std::string& settings) {
-    return fmt::format("{:>8}  {:>9}  {:>9}  {:>10}  {:>10}  {}\n", most, error, cost, rate, simulated, settings);
+    return fmt::format("{:>8}  {:>9}  {:>9}  {:>10}  {:>10}  {}\n", most, error, cost, rate, simulated,
+                       settings);
   };
   std::string text = fmt::format("the {} point for each error of {}\n", timed ? "fastest" : "cheapest",
                                  results.figure_names.empty() ? "the trajectory" : "the worst figure");

@@ -7,8 +7,8 @@
 
 namespace cuboct::study {
 
-// Times 0, sample, 2 sample, ..., samples * sample. A figure read from curves that were sampled at other times
-// would differ by more than the methods do; so would positions at another time.
+// Times 0, sample, 2 sample, ..., samples * sample. A figure read from curves that were sampled at other
+// times would differ by more than the methods do; so would positions at another time.
 struct TimeGrid {
   double sample = 0;     // s
   uint64_t samples = 0;  // >= 1

@@ -8,9 +8,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "model/config.h"
-#include "model/dynamical_matrix.h"
-#include "model/error.h"
+#include "model/base/error.h"
+#include "model/scene/config.h"
+#include "model/solid/dynamical_matrix.h"
 #include "study/measure_run.h"
 #include "study/sampling.h"
 #include "study/sensitivity.h"
@@ -67,9 +67,9 @@ Climb climb(const Study& study, Case c, const TimeGrid& grid, uint64_t per_sampl
   result.rung.cutoff = c.scene.rule.law->cutoff();
   result.rung.trajectory = result.rung.change = kNone;
   if (!result.run.stop.empty())
-    throw InputError(fmt::format("the run in doubles at dt = {:.4g} s has no end: {}", result.run.dt,
-                                 result.run.stop),
-                     "a study needs a scene that runs");
+    throw InputError(
+        fmt::format("the run in doubles at dt = {:.4g} s has no end: {}", result.run.dt, result.run.stop),
+        "a study needs a scene that runs");
   for (const Figure& figure : study.figures) {
     try {
       result.rung.figures.push_back(value_of(figure, result.run.curves, result.run.dt));
@@ -105,9 +105,9 @@ void keep_states(const Run& run, const TimeGrid& grid, Truth& truth) {
   truth.horizon = truth.states.back();
 }
 
-// A run's error by the last two changes of refinement by halves: of second order the last change is three times
-// the error that is left, of first order it is the error; where the changes do not fall as such, no more than
-// the last change is known.
+// A run's error by the last two changes of refinement by halves: of second order the last change is three
+// times the error that is left, of first order it is the error; where the changes do not fall as such, no
+// more than the last change is known.
 double error_left(double before, double last) {
   const double ratio = before / last;
   return ratio >= 2 ? last / (std::min(ratio, 4.0) - 1) : last;
@@ -127,7 +127,8 @@ void refine(const Study& study, const Case& c, int threads, Truth& truth,
       now.rung.change = change_between(truth.rungs.back().figures, now.rung.figures);
       now.rung.trajectory =
           rms_distance(truth.horizon.body.x, now.run.kept.back().x, c.scene.periodic) / unit;
-      truth.floor = k > 1 ? error_left(truth.rungs.back().trajectory, now.rung.trajectory) : now.rung.trajectory;
+      truth.floor =
+          k > 1 ? error_left(truth.rungs.back().trajectory, now.rung.trajectory) : now.rung.trajectory;
     }
     truth.rungs.push_back(now.rung);
     keep_states(now.run, truth.grid, truth);
@@ -135,8 +136,8 @@ void refine(const Study& study, const Case& c, int threads, Truth& truth,
     truth.notes = sampling_notes(study.figures, now.run.curves, now.run.dt,
                                  kSamplingTolerances * study.truth_tolerance);
     // From the third rung on, so that one change that is small by chance does not end the refinement.
-    truth.converged = k > 1 && now.rung.trajectory < study.truth_tolerance &&
-                      !(now.rung.change >= study.truth_tolerance);
+    truth.converged =
+        k > 1 && now.rung.trajectory < study.truth_tolerance && !(now.rung.change >= study.truth_tolerance);
     if (save) save(truth);
   }
   if (!truth.converged)
@@ -168,10 +169,12 @@ void lengthen(const Study& study, const Case& c, int threads, Truth& truth) {
   for (int k = 0; k < kLengthenings; ++k) {
     cutoff *= 1.25;
     Settings settings = c.settings;
-    settings.scene.push_back({"law.cutoff", reduced ? fmt::format("{}", cutoff) : fmt::format("\"{} m\"", cutoff)});
+    settings.scene.push_back(
+        {"law.cutoff", reduced ? fmt::format("{}", cutoff) : fmt::format("\"{} m\"", cutoff)});
     try {
       // Positions with another cutoff are those of another law: they are not compared.
-      Climb now = climb(study, resolve(study.base, settings), truth.grid, per_sample, truth.grid.samples, threads);
+      Climb now =
+          climb(study, resolve(study.base, settings), truth.grid, per_sample, truth.grid.samples, threads);
       now.rung.change = change_between(truth.rungs.back().figures, now.rung.figures);
       truth.rungs.push_back(now.rung);
       truth.figures = now.rung.figures;
@@ -180,9 +183,10 @@ void lengthen(const Study& study, const Case& c, int threads, Truth& truth) {
       std::string text = error.what();
       std::replace(text.begin(), text.end(), '\n', ' ');
       truth.converged = false;
-      truth.notes.push_back(fmt::format("the cutoff was lengthened up to {:.4g} m only, where figures changed by "
-                                        "{:.2g}: {}",
-                                        cutoff / 1.25, truth.rungs.back().change, text));
+      truth.notes.push_back(
+          fmt::format("the cutoff was lengthened up to {:.4g} m only, where figures changed by "
+                      "{:.2g}: {}",
+                      cutoff / 1.25, truth.rungs.back().change, text));
       return;
     }
   }
@@ -212,8 +216,7 @@ Truth make_truth(const Study& study, int jobs, Truth begun, const std::function<
   if (truth.rungs.empty()) {
     truth.grid = study.grid;
     truth.largest_frequency = largest_frequency_of(c.scene);
-    const Sensitivity sensitivity =
-        sensitivity_of(separation(c, study.grid, threads), study.grid.sample);
+    const Sensitivity sensitivity = sensitivity_of(separation(c, study.grid, threads), study.grid.sample);
     truth.lyapunov_time = sensitivity.lyapunov_time;
     truth.grid.horizon = sensitivity.horizon;
     if (study.horizon > 0)
@@ -224,7 +227,8 @@ Truth make_truth(const Study& study, int jobs, Truth begun, const std::function<
   lengthen(study, c, threads, truth);
   for (size_t k = 0; k < study.figures.size(); ++k)
     if (!std::isfinite(truth.figures[k]))
-      truth.notes.push_back(fmt::format("the run in doubles does not hold the figure '{}'", study.figures[k].name));
+      truth.notes.push_back(
+          fmt::format("the run in doubles does not hold the figure '{}'", study.figures[k].name));
   return truth;
 }
 
@@ -234,9 +238,8 @@ Truth make_own_truth(const Study& study, const Truth& study_truth, const Setting
     if (!change.key.starts_with("run.")) own.scene.push_back(change);
   const Case c = resolve(study.base, own);
   const Scene base = resolve(study.base, verlet_in_doubles()).scene;
-  const auto refined = std::find_if(study_truth.rungs.rbegin(), study_truth.rungs.rend(), [&](const Rung& rung) {
-    return rung.cutoff == base.rule.law->cutoff();
-  });
+  const auto refined = std::find_if(study_truth.rungs.rbegin(), study_truth.rungs.rend(),
+                                    [&](const Rung& rung) { return rung.cutoff == base.rule.law->cutoff(); });
   const double scale = c.scene.dt_limit > 0 && base.dt_limit > 0 ? c.scene.dt_limit / base.dt_limit : 1;
   Truth truth;
   truth.grid = study_truth.grid;
@@ -245,7 +248,8 @@ Truth make_own_truth(const Study& study, const Truth& study_truth, const Setting
   truth.converged = study_truth.converged;
   truth.figures = study_truth.figures;
   const uint64_t per_sample = truth.grid.steps_per_sample(refined->dt * scale);
-  const Climb coarse = climb(study, c, truth.grid, std::max<uint64_t>(1, per_sample / 2), truth.grid.horizon, 1);
+  const Climb coarse =
+      climb(study, c, truth.grid, std::max<uint64_t>(1, per_sample / 2), truth.grid.horizon, 1);
   Climb fine = climb(study, c, truth.grid, per_sample, truth.grid.horizon, 1);
   fine.rung.figures.clear();
   fine.rung.trajectory = truth.floor =

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::study {
 namespace {
@@ -45,11 +45,17 @@ class In {
 };
 
 template <class Way>
-void field(Way& way, double& value) { way.raw(value); }
+void field(Way& way, double& value) {
+  way.raw(value);
+}
 template <class Way>
-void field(Way& way, uint8_t& value) { way.raw(value); }
+void field(Way& way, uint8_t& value) {
+  way.raw(value);
+}
 template <class Way>
-void field(Way& way, char& value) { way.raw(value); }
+void field(Way& way, char& value) {
+  way.raw(value);
+}
 template <class Way>
 void field(Way& way, bool& value) {
   uint8_t byte = value;

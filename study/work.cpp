@@ -11,8 +11,8 @@
 #include <mutex>
 #include <thread>
 
-#include "model/progress.h"
-#include "model/resources.h"
+#include "model/base/progress.h"
+#include "model/base/resources.h"
 
 namespace cuboct::study {
 namespace {

@@ -13,8 +13,8 @@ struct Piece {
   std::function<void()> work;
 };
 
-// Done when all are; the first exception of a piece ends the others' beginning and is thrown on. `label` begins the
-// line on stderr, where that is a terminal and `progress` is set.
+// Done when all are; the first exception of a piece ends the others' beginning and is thrown on. `label`
+// begins the line on stderr, where that is a terminal and `progress` is set.
 void work_off(std::vector<Piece> pieces, int jobs, const std::string& label, bool progress);
 
 }  // namespace cuboct::study

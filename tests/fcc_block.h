@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "model/rule.h"
+#include "model/contract/rule.h"
 
 namespace cuboct::test {
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "emu/board/serial_port.h"
-#include "emu/systemc/bits.h"
-#include "model/error.h"
+#include "emu/machine/bits.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 

@@ -8,10 +8,10 @@
 
 #include "emu/board/session.h"
 #include "hw/setup.h"
-#include "model/interrupt.h"
-#include "model/output.h"
-#include "model/steps.h"
-#include "model/text.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/steps.h"
+#include "model/base/text.h"
 
 namespace cuboct::emu {
 namespace {

@@ -15,7 +15,7 @@
 #include <cstring>
 #include <map>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 namespace {

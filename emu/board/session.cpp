@@ -11,11 +11,11 @@
 #include <thread>
 #include <tuple>
 
-#include "emu/systemc/collector.h"
-#include "emu/systemc/words.h"
+#include "emu/machine/collector.h"
+#include "emu/machine/words.h"
 #include "hw/board.h"
-#include "model/interrupt.h"
-#include "model/progress.h"
+#include "model/base/interrupt.h"
+#include "model/base/progress.h"
 
 namespace cuboct::emu {
 namespace {
@@ -101,8 +101,12 @@ class Session {
       const BoardFault found = host_.fault(static_cast<uint16_t>(n));
       if (found.fault == Fault::none) continue;
       const uint64_t told = found.particle;
-      const StopReason reason{found.fault,  step, faulty_cell(n, found.fault, told >> id_bits),
-                              static_cast<uint32_t>(told & ((uint64_t{1} << id_bits) - 1)), found.number, {}};
+      const StopReason reason{found.fault,
+                              step,
+                              faulty_cell(n, found.fault, told >> id_bits),
+                              static_cast<uint32_t>(told & ((uint64_t{1} << id_bits) - 1)),
+                              found.number,
+                              {}};
       const auto key = [](const StopReason& r) { return std::tie(r.fault, r.particle, r.number); };
       if (least.fault == Fault::none || key(reason) < key(least)) least = reason;
     }

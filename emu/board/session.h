@@ -7,7 +7,7 @@
 
 #include "emu/board/host.h"
 #include "hw/plan.h"
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::emu {
 

@@ -18,7 +18,7 @@
 #include "emu/lattice/aligned.h"
 #include "emu/lattice/kernel_rule.h"
 #include "emu/lattice/slots.h"
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 
@@ -36,8 +36,8 @@ struct Particles {
                                          // unwrapped since the last list was built
   std::array<PaddedArray<int32_t>, 3> residue;  // the G bits of a position below those, in [0, 2^G); not of
                                                 // ghosts
-  std::array<PaddedArray<double>, 3> v;  // P+G fractional bits
-  std::array<PaddedArray<double>, 3> u;  // P+G fractional bits; empty unless the rule has PD
+  std::array<PaddedArray<double>, 3> v;         // P+G fractional bits
+  std::array<PaddedArray<double>, 3> u;         // P+G fractional bits; empty unless the rule has PD
   PaddedArray<uint32_t> id;  // empty where a particle's index is its id; else kNoParticle where a block's
                              // last group is not full
   uint32_t id_of(uint32_t index) const { return id.size() == 0 ? index : id[index]; }

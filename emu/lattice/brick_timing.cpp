@@ -6,7 +6,7 @@
 
 #include "emu/lattice/force_time.h"
 #include "emu/lattice/phase_spans.h"
-#include "model/parallel.h"
+#include "model/base/parallel.h"
 
 namespace cuboct::emu {
 namespace {

@@ -12,7 +12,7 @@
 #include "emu/lattice/node_force.h"
 #include "emu/lattice/slots.h"
 #include "hw/plan.h"
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::emu {
 

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "emu/lattice/journal.h"
-#include "model/error.h"
-#include "model/output.h"
+#include "model/base/error.h"
+#include "model/base/output.h"
 
 namespace cuboct::emu {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "emu/lattice/engine.h"
 #include "emu/lattice/word_file.h"
-#include "model/measure.h"
+#include "model/analysis/measure.h"
 
 namespace cuboct::emu {
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/lattice.h"
+#include "model/contract/lattice.h"
 
 namespace cuboct::emu {
 

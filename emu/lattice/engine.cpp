@@ -7,7 +7,7 @@
 
 #include "emu/lattice/hash_particles.h"
 #include "emu/lattice/impl.h"
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 namespace {

@@ -11,7 +11,7 @@
 #include "emu/lattice/ranks.h"
 #include "emu/lattice/slots.h"
 #include "hw/plan.h"
-#include "model/state.h"
+#include "model/contract/state.h"
 
 namespace cuboct::emu {
 

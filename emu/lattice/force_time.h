@@ -23,7 +23,8 @@ struct ForceShape {
 };
 
 // What the streamer walks. An item is a (record, pass); it becomes an entry of the queue if it has hits, and
-// then takes ceil(hits / force_pipes) issues, one every `interval` cycles. A segment without items takes a cycle.
+// then takes ceil(hits / force_pipes) issues, one every `interval` cycles. A segment without items takes a
+// cycle.
 struct ForceWork {
   // An entry: its item, counted from the first segment's first, and its issues. At most 27 * 256 * 256 items,
   // 64 issues.
@@ -40,8 +41,8 @@ struct ForceWork {
 // where that is so from the start.
 using Available = std::array<int64_t, 3>;
 
-// The engine's last cycle, counted from its first (0). `popped` is scratch, any content. With narrow memories a
-// record's items, its passes, are the own particles.
+// The engine's last cycle, counted from its first (0). `popped` is scratch, any content. With narrow memories
+// a record's items, its passes, are the own particles.
 int64_t force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
                    std::vector<int64_t>& popped);
 

@@ -25,7 +25,7 @@ constexpr uint32_t kLanes = hn::MaxLanes(d);
 constexpr uint32_t kWays = 4;
 constexpr uint32_t kStride = kWays * kLanes;
 
-// Hash::add of model/hash.h.
+// Hash::add of model/base/hash.h.
 HWY_INLINE void add(V hash[kWays], const V value[kWays]) {
   V z[kWays];
   for (uint32_t w = 0; w < kWays; ++w)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// hash_of (model/state.h) over many particles at once.
+// hash_of (model/contract/state.h) over many particles at once.
 #pragma once
 
 #include <cstdint>
 
 #include "emu/lattice/block.h"
-#include "model/lattice.h"
+#include "model/contract/lattice.h"
 
 namespace cuboct::emu {
 

@@ -26,9 +26,8 @@ size_t gather(const PlanarTest& test, const Places& places, uint32_t node, HitSc
   const V zero = hn::Zero(d), cell = hn::Set(d, int32_t{1} << test.position_frac);
   const V shift[3] = {zero, hn::Sub(zero, cell), cell};
   // x + shift lies in [-2^P, 2^(P+1)).
-  const auto coarse = [&](const int32_t* x, V by) HWY_ATTR {
-    return hn::ShiftRightSame(hn::Add(hn::LoadU(d, x), by), test.shift);
-  };
+  const auto coarse = [&](const int32_t* x, V by)
+                          HWY_ATTR { return hn::ShiftRightSame(hn::Add(hn::LoadU(d, x), by), test.shift); };
   int32_t* const to[3] = {scratch.x[0].data(), scratch.x[1].data(), scratch.x[2].data()};
   const auto near = [&](uint32_t of, size_t axis, size_t way) {
     return way == 0 ? of : places.neighbour[of][2 * axis + way - 1];

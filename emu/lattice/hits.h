@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "emu/lattice/force_time.h"
-#include "model/fixed_rule.h"
+#include "model/contract/fixed_rule.h"
 
 namespace cuboct::emu {
 
-// `may_interact` of model/fixed_rule.h in 32 bits. They suffice for all formats: P <= 30, so that candidates
-// lie in [-2^30, 2^31); sizes are below 2^(B+1) with B <= 16.
+// `may_interact` of model/contract/fixed_rule.h in 32 bits. They suffice for all formats: P <= 30, so that
+// candidates lie in [-2^30, 2^31); sizes are below 2^(B+1) with B <= 16.
 struct PlanarTest {
   explicit PlanarTest(const FixedRule& rule);
   int position_frac;                // P

@@ -11,7 +11,7 @@
 #include "emu/lattice/pair_list.h"
 #include "emu/lattice/quiet.h"
 #include "emu/lattice/ranks.h"
-#include "model/parallel.h"
+#include "model/base/parallel.h"
 
 namespace cuboct::emu {
 

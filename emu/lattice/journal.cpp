@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 namespace {

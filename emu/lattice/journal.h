@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "emu/lattice/word_file.h"
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::emu {
 

@@ -351,8 +351,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
           if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, s, dx, doubtful))
             continue;
           if (HWY_UNLIKELY(doubtful != 0))
-            report(rule, particles, i, e->first + static_cast<int32_t>(at), e->shift, doubtful, true,
-                   block);
+            report(rule, particles, i, e->first + static_cast<int32_t>(at), e->shift, doubtful, true, block);
           written = std::max(written, static_cast<uint32_t>(e->first) + kGroup);
           const uint32_t to = ((static_cast<uint32_t>(e->first) - block.begin) & block.ring_mask) + at;
           const V factor = kick_factor<kSimple>(rule, s, dx);

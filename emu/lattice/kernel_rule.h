@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/fixed_rule.h"
+#include "model/contract/fixed_rule.h"
 
 namespace cuboct::emu {
 
@@ -67,8 +67,8 @@ struct KernelRule {
   std::vector<double> scale;  // types x types
   double scale_factor = 0;
   double guard = 0, inverse_guard = 0;  // 2^G, 2^-G
-  double sum_limit = 0, v_limit = 0;  // |value| from here on may not fit
-  std::vector<uint8_t> plain;         // by type: neither imposed nor held by force
+  double sum_limit = 0, v_limit = 0;    // |value| from here on may not fit
+  std::vector<uint8_t> plain;           // by type: neither imposed nor held by force
 };
 
 // `capacity`: of a node; it bounds how many kicks a sum holds.

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "emu/lattice/kernel.h"
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 
 namespace cuboct::emu {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "emu/lattice/mpi_ranks.h"
-#include "model/process.h"
+#include "model/base/process.h"
 
 // Alone, without mpirun (Open MPI, MPICH, Slurm), MPI is not even started.
 int main(int argc, char** argv) {

@@ -9,8 +9,8 @@
 
 #include "emu/lattice/aligned.h"
 #include "emu/lattice/slots.h"
-#include "model/error.h"
-#include "model/lattice.h"
+#include "model/base/error.h"
+#include "model/contract/lattice.h"
 
 namespace cuboct::emu {
 

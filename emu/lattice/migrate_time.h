@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "emu/lattice/slots.h"
-#include "model/lattice.h"
+#include "model/contract/lattice.h"
 
 namespace cuboct::emu {
 
 class Migration {
  public:
-  // `beats`: of a migrate record. `on_the_way`: cycles from the one that loads a record's last beat to that in
-  // which the receiver sees it. Keeps a reference to `lattice`.
+  // `beats`: of a migrate record. `on_the_way`: cycles from the one that loads a record's last beat to that
+  // in which the receiver sees it. Keeps a reference to `lattice`.
   Migration(const Lattice& lattice, int beats, int on_the_way);
 
   // A particle that comes over a face: in the receiver's FIFO `after` cycles after the start of the sender's

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::emu {
 

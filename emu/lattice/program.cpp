@@ -11,12 +11,12 @@
 
 #include "emu/lattice/run.h"
 #include "hw/setup.h"
-#include "model/interrupt.h"
-#include "model/output.h"
-#include "model/state_meter.h"
-#include "model/steps.h"
-#include "model/text.h"
-#include "model/trace_file.h"
+#include "model/analysis/state_meter.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/steps.h"
+#include "model/base/text.h"
+#include "model/trace/trace_file.h"
 
 namespace cuboct::emu {
 namespace {
@@ -62,8 +62,7 @@ int run(Request request) {
   put_in_order(run.frames);
   if (!request.frames_given && !request.bench) run.frames = {0, run.steps};
   // Energies are read at the first and the last step too.
-  run.probes =
-      run.energies ? every_so_often(scene.probe_every, run.steps) : probe_steps_of(scene, run.steps);
+  run.probes = run.energies ? every_so_often(scene.probe_every, run.steps) : probe_steps_of(scene, run.steps);
   run.engine.quiescence = !request.no_quiescence;
   // A benchmark times steps: its one hash is the last state's.
   if (request.bench) run.hash_every = std::max<uint64_t>(run.steps, 1);
@@ -77,7 +76,8 @@ int run(Request request) {
       try {
         writer->add(frame);
       } catch (const InputError& error) {
-        if (trouble.empty()) trouble = fmt::format("{}; frames are left out from step {} on", error.what(), frame.step);
+        if (trouble.empty())
+          trouble = fmt::format("{}; frames are left out from step {} on", error.what(), frame.step);
       }
     };
   }
@@ -142,7 +142,8 @@ int run_lattice_program(int argc, char** argv, Ranks* ranks) {
   app.add_flag("--cycles", run.cycles, "Count the machine's cycles with the timing model");
   auto* energies =
       app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
-  app.add_flag("--watch", run.watch, "Look for what makes a run wrong where energies are measured, and at the last state")
+  app.add_flag("--watch", run.watch,
+               "Look for what makes a run wrong where energies are measured, and at the last state")
       ->needs(energies);
   app.add_option("--hash-every", run.hash_every, "The state's hash each so many steps")
       ->capture_default_str();

@@ -18,11 +18,11 @@
 #include "emu/lattice/timing.h"
 #include "hw/setup.h"
 #include "hw/state_bounds.h"
-#include "model/interrupt.h"
-#include "model/output.h"
-#include "model/progress.h"
-#include "model/resources.h"
-#include "model/state_meter.h"
+#include "model/analysis/state_meter.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/progress.h"
+#include "model/base/resources.h"
 
 namespace cuboct::emu {
 namespace {

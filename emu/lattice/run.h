@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "emu/lattice/engine.h"
-#include "model/scene.h"
-#include "model/trace.h"
-#include "model/watch.h"
+#include "model/analysis/watch.h"
+#include "model/scene/scene.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::emu {
 
@@ -30,11 +30,11 @@ struct LatticeRun {
   std::vector<uint64_t> probes;  // steps at which the scene's probes are read, ascending
   // Takes the kept states as they come, those before a checkpoint again; without one the trace holds them.
   std::function<void(const State&)> keep;
-  bool energies = false;         // and the energies; the last state is then measured too
-  bool watch = false;            // look for what fails wherever energies are read (model/watch.h)
-  bool cycles = false;           // run the timing model
-  uint64_t hash_every = 1;       // the state's hash each so many steps and at the last one
-  bool progress = false;         // a line per second on stderr where that is no terminal
+  bool energies = false;    // and the energies; the last state is then measured too
+  bool watch = false;       // look for what fails wherever energies are read (model/analysis/watch.h)
+  bool cycles = false;      // run the timing model
+  uint64_t hash_every = 1;  // the state's hash each so many steps and at the last one
+  bool progress = false;    // a line per second on stderr where that is no terminal
   LatticeOptions engine;
   CheckpointPlan checkpoint;
   // Where memory is short: the scene's own body, which is used up, and how to get it again if need be.
@@ -43,7 +43,8 @@ struct LatticeRun {
 };
 
 struct LatticeResult {
-  Trace trace;  // where the run stopped or was interrupted: up to the last complete step; with what the watch found
+  Trace trace;  // where the run stopped or was interrupted: up to the last complete step; with what the watch
+                // found
   Int3 momentum_before{}, momentum_after{};  // P+G fractional bits, at step 0 and after the last complete one
   double largest_speed = 0;                  // nodes per step, over the states that were kept or measured
   uint64_t resumed_at = 0;                   // step of the checkpoint
@@ -52,7 +53,7 @@ struct LatticeResult {
 };
 
 // `plan` is the scene's. The engine loses its state in a step that fails: the last complete state is then
-// made again, from the last checkpoint or from the start. Heeds model/interrupt.h after each step: a
+// made again, from the last checkpoint or from the start. Heeds model/base/interrupt.h after each step: a
 // checkpoint is written where one is planned. Throws InputError for a checkpoint that is not this run's, or a
 // file that cannot be written.
 LatticeResult run_lattice(const Scene& scene, const Plan& plan, const LatticeRun& request);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "emu/lattice/snapshot.h"
-#include "model/lattice.h"
+#include "model/contract/lattice.h"
 
 namespace cuboct::emu {
 

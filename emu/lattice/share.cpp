@@ -9,7 +9,7 @@
 
 #include "emu/lattice/cut.h"
 #include "emu/lattice/impl.h"
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <mutex>
 
-#include "model/parallel.h"
+#include "model/base/parallel.h"
 
 namespace cuboct::emu {
 

@@ -7,7 +7,7 @@
 
 #include "emu/lattice/block.h"
 #include "emu/lattice/members.h"
-#include "model/lattice.h"
+#include "model/contract/lattice.h"
 
 namespace cuboct::emu {
 

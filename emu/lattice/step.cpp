@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "emu/lattice/impl.h"
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 namespace {

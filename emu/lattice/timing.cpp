@@ -10,7 +10,7 @@
 #include "emu/lattice/hits.h"
 #include "emu/lattice/migrate_time.h"
 #include "emu/lattice/phase_spans.h"
-#include "model/parallel.h"
+#include "model/base/parallel.h"
 
 namespace cuboct::emu {
 namespace {
@@ -66,7 +66,7 @@ struct TimingModel::Impl {
   const ForceShape shape_;
   const Filter filter_;
   std::vector<std::array<uint32_t, 6>> neighbour_;  // nodes + 1; number `nodes_` where there is none
-  const int64_t take_;  // cycles of TAKE per particle
+  const int64_t take_;                              // cycles of TAKE per particle
   Migration migration_;
 
   // Of the step, nodes + 1 each: the one that does not exist is empty.
@@ -215,7 +215,8 @@ int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
 void TimingModel::Impl::exchange_z_to_update(uint32_t n, Scratch& scratch) {
   end_[at(Phase::exchange_z)][n] = axes_ == 3 ? exchanged(2, n) : end_[at(Phase::exchange_y)][n];
   const int64_t force_end = end_[at(Phase::force)][n] = force(n, scratch);
-  const int64_t update = count_[n] == 0 ? 1 : (int64_t{count_[n]} - 1) * plan_.latency.stride + plan_.latency.update;
+  const int64_t update =
+      count_[n] == 0 ? 1 : (int64_t{count_[n]} - 1) * plan_.latency.stride + plan_.latency.update;
   const int64_t end = end_[at(Phase::update)][n] = force_end + update;
   send_particles(0, n, end + 1);
 }

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "model/hash.h"
+#include "model/base/hash.h"
 
 namespace cuboct::emu {
 

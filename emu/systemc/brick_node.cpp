@@ -255,8 +255,7 @@ void BrickNode::land() {
     const uint32_t c = walked();
     const size_t left = landing(c);
     if (left > 0) {
-      std::array<std::deque<Mover>*, 4> lists{&inner_[0], &inbox_[2 * a], &inner_[1],
-                                              &inbox_[2 * a + 1]};
+      std::array<std::deque<Mover>*, 4> lists{&inner_[0], &inbox_[2 * a], &inner_[1], &inbox_[2 * a + 1]};
       settle(c, **std::find_if(lists.begin(), lists.end(),
                                [&](auto* list) { return !list->empty() && list->front().to == c; }));
     }
@@ -275,8 +274,7 @@ void BrickNode::take_particle(int face, const Bits& record) {
   const int a = face / 2;
   const auto tag =
       static_cast<uint32_t>(record.get(plan_.words.particle_bits, plan_.words.migrate_cell_bits));
-  const Cell at =
-      grid_.of_migrate_tag(a, tag % grid_.migrate_tags(a), face % 2 == 1 ? extent_[a] - 1 : 0);
+  const Cell at = grid_.of_migrate_tag(a, tag % grid_.migrate_tags(a), face % 2 == 1 ? extent_[a] - 1 : 0);
   Mover& mover = inbox_[face].emplace_back(Mover{grid_.local(at), unpack_particle(plan_, record)});
   mover.slot.away[static_cast<size_t>(a)] = 0;
 }

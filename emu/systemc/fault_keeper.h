@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <tuple>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 

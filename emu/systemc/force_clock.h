@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "emu/systemc/words.h"
+#include "emu/machine/words.h"
 #include "hw/plan.h"
 
 namespace cuboct::emu {

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "emu/machine/words.h"
 #include "emu/systemc/fault_keeper.h"
 #include "emu/systemc/force_clock.h"
-#include "emu/systemc/words.h"
 #include "hw/plan.h"
 
 namespace cuboct::emu {

@@ -5,9 +5,9 @@
 
 #include <memory>
 
-#include "emu/systemc/node_model.h"
+#include "emu/machine/node_model.h"
 #include "hw/plan.h"
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct::emu {
 
@@ -19,8 +19,8 @@ class BeatCode {
   // A node's beat as it goes over the wire, and what the wire's payload holds again.
   void seal(const Beat& beat, uint32_t sequence, Beat& wire) const;
   uint32_t sequence(const Beat& wire) const {
-    return static_cast<uint32_t>(wire.payload.get(code.wire_bits - code.beat.width - code.sequence_bits,
-                                                  code.sequence_bits));
+    return static_cast<uint32_t>(
+        wire.payload.get(code.wire_bits - code.beat.width - code.sequence_bits, code.sequence_bits));
   }
   // Whether the check of a wire's beat is right; `beat` then is the node's.
   bool open(const Beat& wire, Beat& beat) const;
@@ -79,11 +79,11 @@ class LinkGuard : public NodeModel {
   const std::unique_ptr<NodeModel> node_;
   std::array<Sender, kFaces> sender_;
   std::array<Taker, kFaces> taker_;
-  NodeInputs inner_;                // the node's inputs
-  std::array<Beat, kFaces> loaded_; // the node's link registers
-  std::array<Beat, kFaces> taken_;  // the checked registers
-  uint8_t inner_valid_ = 0;         // of the node's link registers
-  Errors errors_;                   // of the last cycle
+  NodeInputs inner_;                 // the node's inputs
+  std::array<Beat, kFaces> loaded_;  // the node's link registers
+  std::array<Beat, kFaces> taken_;   // the checked registers
+  uint8_t inner_valid_ = 0;          // of the node's link registers
+  Errors errors_;                    // of the last cycle
   // Without retry: code and face of the first error, from the cycle after it.
   Fault told_ = Fault::none;
   int told_face_ = 0;

@@ -2,8 +2,8 @@
 #include <cstdlib>
 #include <systemc>
 
+#include "emu/machine/program.h"
 #include "emu/systemc/node.h"
-#include "emu/systemc/program.h"
 
 int sc_main(int argc, char** argv) {
   return cuboct::emu::run_program(argc, argv,

@@ -40,8 +40,7 @@ void Node::begin() {
     const int cycles = n == 0 ? 1 : (n - 1) * plan_.latency.stride + plan_.latency.update;
     phase_last_ = now_ + static_cast<uint64_t>(cycles);
   }
-  if (migrates())
-    migrate_ = (leaving_ & bit(axis())) != 0 && !own_.empty() ? Migrate::scan : Migrate::end;
+  if (migrates()) migrate_ = (leaving_ & bit(axis())) != 0 && !own_.empty() ? Migrate::scan : Migrate::end;
 }
 
 int Node::relayed_size(int segment) const {

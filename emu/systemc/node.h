@@ -21,7 +21,7 @@ class Node final : public NodeMachine {
   struct Inbox {
     std::vector<Slot> fifo;  // particles not yet popped, oldest at `popped`
     size_t popped = 0;
-    uint64_t came = 0;       // cycle in which the last one of `fifo` came
+    uint64_t came = 0;  // cycle in which the last one of `fifo` came
   };
 
   void reset() override;

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 
 namespace cuboct::emu {
 

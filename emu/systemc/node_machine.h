@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // What all cycle-accurate nodes with native state have in common, whatever they hold: the walk through the
 // phases, link registers, streams, faults. docs/reference/node.md to the letter, the datapath by the
-// functions of model/fixed_rule.h. Values that only become visible later (sums, written-back slots) are
-// computed at once where nothing can see them in between; the cycles are the specified ones.
+// functions of model/contract/fixed_rule.h. Values that only become visible later (sums, written-back slots)
+// are computed at once where nothing can see them in between; the cycles are the specified ones.
 #pragma once
 
 #include <array>
 #include <memory>
 #include <string>
 
+#include "emu/machine/node_model.h"
 #include "emu/systemc/fault_keeper.h"
 #include "emu/systemc/force_machine.h"
-#include "emu/systemc/node_model.h"
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::emu {
 
@@ -94,10 +94,10 @@ class NodeMachine : public NodeModel {
   uint8_t halo_end_ = 0, migrate_end_ = 0;  // by face
   int beat_ = 0;                            // of `word_`, the record that is being sent
   Bits word_;
-  bool sent_ = false;        // EXCHANGE_a has loaded its end beats
-  uint64_t now_ = 0;         // the cycle that runs
-  uint64_t phase_last_ = 0;  // the last cycle of FORCE or UPDATE, known from its start
-  uint64_t wakes_at_ = 0;    // as wakes_at()
+  bool sent_ = false;           // EXCHANGE_a has loaded its end beats
+  uint64_t now_ = 0;            // the cycle that runs
+  uint64_t phase_last_ = 0;     // the last cycle of FORCE or UPDATE, known from its start
+  uint64_t wakes_at_ = 0;       // as wakes_at()
   NodeOutputs* out_ = nullptr;  // of the cycle that runs
 
  private:

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The planar test of one candidate against all slots of a node, four slots per operation: the same answer as
-// `may_interact` of model/fixed_rule.h.
+// `may_interact` of model/contract/fixed_rule.h.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <cstring>
 
-#include "model/fixed_rule.h"
+#include "model/contract/fixed_rule.h"
 
 namespace cuboct::emu {
 
@@ -41,8 +41,7 @@ struct PlanarMask {
 
 class PlanarTest {
  public:
-  explicit PlanarTest(const FixedRule& rule)
-      : shift_(rule.widths.position_frac - rule.widths.filter_frac) {
+  explicit PlanarTest(const FixedRule& rule) : shift_(rule.widths.position_frac - rule.widths.filter_frac) {
     // Sizes, below 2^(B+1) each with B <= 16, and their sums fit.
     for (size_t k = 0; k < 3; ++k) limit_[k] = static_cast<int32_t>(rule.planar[k]);
   }

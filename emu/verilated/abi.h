@@ -21,7 +21,7 @@ struct CuboctIn {
 struct CuboctOut {
   uint8_t phase_start, phase_end, observe_valid, fault_valid, fault_code, idle;
   uint8_t link_valid, link_end, link_ready;
-  uint8_t force_event;  // of a node alone: engine runs, stalled, presents a candidate, issues
+  uint8_t force_event;              // of a node alone: engine runs, stalled, presents a candidate, issues
   uint8_t beat_errors, ack_errors;  // of the cycle; these and link_ack where links are checked
   uint16_t link_ack[kCuboctFaces];
   uint32_t fault_id, observe_cell, fault_cell;  // the cells of a brick
@@ -36,7 +36,8 @@ struct CuboctOut {
 //   void cuboct_destroy(void* model);
 // and, of a node,
 //   const char* cuboct_clock(void* model, const CuboctIn*, CuboctOut*);
-//   void cuboct_place(void* model, const uint64_t* extent, const uint64_t* exits);   of a brick: before the first clock
+//   void cuboct_place(void* model, const uint64_t* extent, const uint64_t* exits);   of a brick: before the
+//   first clock
 // or, of a whole lattice, whose host loads one particle of node `load_node` per cycle; `out` has an element
 // per node
 //   const char* cuboct_clock_lattice(void* model, const CuboctIn* host, uint32_t load_node, CuboctOut* out);

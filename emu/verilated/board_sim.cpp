@@ -17,9 +17,9 @@
 
 #include "emu/verilated/library.h"
 #include "emu/verilated/serial_line.h"
-#include "model/error.h"
-#include "model/interrupt.h"
-#include "model/text.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
+#include "model/base/text.h"
 
 namespace cuboct::emu {
 namespace {

@@ -14,9 +14,9 @@
 #include <set>
 #include <sstream>
 
-#include "model/error.h"
-#include "model/hash.h"
-#include "model/text.h"
+#include "model/base/error.h"
+#include "model/base/hash.h"
+#include "model/base/text.h"
 
 namespace cuboct::emu {
 namespace {
@@ -114,9 +114,9 @@ struct Scratch {
   Scratch& operator=(const Scratch&) = delete;
 };
 
-// Two units, as most of the compiler's time would go into Verilator's headers: what runs in each cycle, with the
-// sources; and what runs once, as the settling of a new model and the filling of its tables, where the compiler is
-// not to spend time.
+// Two units, as most of the compiler's time would go into Verilator's headers: what runs in each cycle, with
+// the sources; and what runs once, as the settling of a new model and the filling of its tables, where the
+// compiler is not to spend time.
 struct Units {
   std::string each_cycle, once;
 };
@@ -153,7 +153,9 @@ std::string compile(const Build& build, const std::string& directory) {
 
   fs::remove(log, error);
   // One copy of the node's code serves all nodes of a lattice; inlined, the build takes minutes.
-  write_file(dir / "keep.vlt", "`verilator_config\nno_inline -module \"cuboct_node_core\"\nno_inline -module \"cuboct_brick_core\"\n");
+  write_file(
+      dir / "keep.vlt",
+      "`verilator_config\nno_inline -module \"cuboct_node_core\"\nno_inline -module \"cuboct_brick_core\"\n");
   run_logged("verilator",
              fmt::format("verilator {} {} --top-module {} --prefix V{} -Mdir {} ../keep.vlt -f files.f",
                          kVerilatorFlags, build.verilator_flags, build.top, build.top,

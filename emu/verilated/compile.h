@@ -10,13 +10,14 @@
 namespace cuboct::emu {
 
 struct Build {
-  std::string top;                                           // module
-  std::string verilator_flags;                               // besides those that every build has
-  std::string compiler_flags;                                // likewise, for what runs in each cycle
-  std::string libraries = {};                                // -lNAME
-  std::vector<std::pair<std::string, int>> constants;        // -DNAME=VALUE for the sources
-  std::vector<std::pair<std::string, std::string>> sources;  // name, text; the *.cpp in one unit with the model
-  std::function<void(const std::string& dir)> emit;          // writes rtl/ and files.f
+  std::string top;                                     // module
+  std::string verilator_flags;                         // besides those that every build has
+  std::string compiler_flags;                          // likewise, for what runs in each cycle
+  std::string libraries = {};                          // -lNAME
+  std::vector<std::pair<std::string, int>> constants;  // -DNAME=VALUE for the sources
+  std::vector<std::pair<std::string, std::string>>
+      sources;                                       // name, text; the *.cpp in one unit with the model
+  std::function<void(const std::string& dir)> emit;  // writes rtl/ and files.f
 };
 
 // The path of the library, compiled unless `directory` already holds the same. The name holds a hash of the

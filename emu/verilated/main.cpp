@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <systemc>
 
-#include "emu/systemc/program.h"
+#include "emu/machine/program.h"
 #include "emu/verilated/verilated_node.h"
 
 int sc_main(int argc, char** argv) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The whole emitted lattice as one SystemC module, and a host that clocks it. NODES, PARTICLE_BITS,
-// ID_BITS and CELL_BITS (0: nodes of one cell) come from the command line. Each clock function advances SystemC's time by one period.
+// ID_BITS and CELL_BITS (0: nodes of one cell) come from the command line. Each clock function advances
+// SystemC's time by one period.
 #include <systemc>
 
 #include "Vcuboct_lattice.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One Verilated node. FACES, LINK_BITS (of link_data), ACK_BITS (0 where links are not checked), PARTICLE_BITS and
-// BRICK (1: of a brick) come from the command line.
+// One Verilated node. FACES, LINK_BITS (of link_data), ACK_BITS (0 where links are not checked),
+// PARTICLE_BITS and BRICK (1: of a brick) come from the command line.
 #include <type_traits>
 
 #include "Vcuboct_node.h"

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "emu/systemc/words.h"
+#include "emu/machine/words.h"
 #include "hw/rtl_design.h"
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::emu {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "emu/systemc/node_model.h"
+#include "emu/machine/node_model.h"
 #include "emu/verilated/library.h"
 
 namespace cuboct::emu {
@@ -32,7 +32,7 @@ class VerilatedNode : public NodeModel {
   const uint8_t has_link_;
   void* const model_;
   CuboctOut out_{};
-  uint8_t phases_ = 0;  // that run
+  uint8_t phases_ = 0;                // that run
   std::array<uint64_t, 4> events_{};  // cycles of each bit of force_event_o
   bool idle_ = true;
   std::optional<uint64_t> cycle_;  // of the run, once it was started

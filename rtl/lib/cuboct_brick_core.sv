@@ -20,7 +20,7 @@ module cuboct_brick_core #(
   parameter int          LinkBits             = 66,     // payload of a beat, >= 1
   parameter int          IdBits               = 8,      // >= 1
   parameter int          TypeBits             = 0,      // 0 with one type
-  // Formats: model/fixed_rule.h, Widths.
+  // Formats: model/contract/fixed_rule.h, Widths.
   parameter int          PositionFrac         = 20,
   parameter int          Guard                = 8,
   parameter int          VelocityBits         = 29,

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "model/compare.h"
-#include "model/golden.h"
+#include "model/contract/golden.h"
+#include "model/trace/compare.h"
 #include "tests/support/block.h"
 
 namespace cuboct::test {

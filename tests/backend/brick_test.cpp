@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "emu/systemc/node.h"
-#include "model/scene.h"
+#include "model/scene/scene.h"
 #include "tests/backend/engines.h"
 #include "tests/support/cases.h"
 

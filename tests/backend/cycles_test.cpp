@@ -2,8 +2,8 @@
 // The cycles that `check` expects against those that the machine takes.
 #include <gtest/gtest.h>
 
+#include "emu/machine/plain.h"
 #include "emu/systemc/node.h"
-#include "emu/systemc/plain.h"
 #include "hw/cycles.h"
 #include "tests/support/block.h"
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "model/golden.h"
+#include "model/contract/golden.h"
 
 namespace cuboct::test {
 namespace {

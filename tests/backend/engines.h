@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "emu/systemc/plain.h"
+#include "emu/machine/plain.h"
 #include "hw/setup.h"
 
 namespace cuboct::test {

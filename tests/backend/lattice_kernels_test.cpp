@@ -10,7 +10,7 @@
 
 #include "emu/lattice/kernel.h"
 #include "emu/lattice/kernel_rule.h"
-#include "model/pair_kernel.h"
+#include "model/real/pair_kernel.h"
 #include "tests/support/cases.h"
 
 namespace cuboct::test {

@@ -14,7 +14,7 @@
 #include "emu/lattice/members.h"
 #include "emu/lattice/quiet.h"
 #include "emu/lattice/search.h"
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 #include "tests/support/dice.h"
 
 namespace cuboct::test {

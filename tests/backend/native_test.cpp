@@ -154,8 +154,8 @@ TEST(NativePlanar, EqualsMayInteract) {
         std::array<int32_t, 3> x{};
         for (size_t a = 0; a < 3; ++a) {
           // Half of them a plane's distance away, or one unit more.
-          const int64_t near =
-              candidate[a] + (draw(0, 1) ? 1 : -1) * (rule.planar[0] << (p - b)) + draw(-1, 1) * (int64_t{1} << (p - b));
+          const int64_t near = candidate[a] + (draw(0, 1) ? 1 : -1) * (rule.planar[0] << (p - b)) +
+                               draw(-1, 1) * (int64_t{1} << (p - b));
           const bool on_plane = draw(0, 1) && near >= 0 && near < cell;
           edges += on_plane;
           x[a] = static_cast<int32_t>(on_plane ? near : draw(0, 3) == 0 ? cell - 1 : draw(0, cell - 1));
@@ -166,8 +166,8 @@ TEST(NativePlanar, EqualsMayInteract) {
       const emu::PlanarMask mask = test(slots, candidate);
       for (int k = 0; k < emu::kPlanarSlots; ++k) {
         const bool got = mask.from(static_cast<uint32_t>(k)) & 1;
-        const bool expected =
-            k < count && may_interact(rule, own[static_cast<size_t>(k)], {candidate[0], candidate[1], candidate[2]});
+        const bool expected = k < count && may_interact(rule, own[static_cast<size_t>(k)],
+                                                        {candidate[0], candidate[1], candidate[2]});
         ASSERT_EQ(got, expected) << "P " << p << " B " << b << " run " << run << " slot " << k;
         met += k < count;
         passed += expected;

@@ -9,7 +9,7 @@
 #include <regex>
 #include <sstream>
 
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::test {
 namespace {

@@ -7,10 +7,10 @@
 #include <fstream>
 #include <systemc>
 
-#include "emu/systemc/bench.h"
+#include "emu/machine/bench.h"
+#include "emu/machine/program.h"
+#include "emu/machine/words.h"
 #include "emu/systemc/node.h"
-#include "emu/systemc/program.h"
-#include "emu/systemc/words.h"
 #include "emu/verilated/verilated_node.h"
 #include "tests/backend/engines.h"
 #include "tests/support/cases.h"
@@ -22,9 +22,11 @@ constexpr const char* kCache = CUBOCT_TEST_CACHE;
 
 // Cases that between them need few compiled nodes: the first four share one.
 std::vector<std::string> rtl_cases() {
-  return {"undamped_2x2x2", "lattice_3x2x1",   "hot_gas",  "lone_diagonal",
-          "rich_damped",    "rich_force_held", "rich_ring", "rich_shared", "rich_narrow", "flat", "flat_rich_damped",
-          "flat_rich_force_held", "flat_ring", "flat_narrow"};
+  return {"undamped_2x2x2", "lattice_3x2x1",    "hot_gas",
+          "lone_diagonal",  "rich_damped",      "rich_force_held",
+          "rich_ring",      "rich_shared",      "rich_narrow",
+          "flat",           "flat_rich_damped", "flat_rich_force_held",
+          "flat_ring",      "flat_narrow"};
 }
 
 class Rtl : public testing::TestWithParam<std::string> {};
@@ -78,12 +80,13 @@ TEST_P(Rtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) { expect_golden(make_cas
 
 INSTANTIATE_TEST_SUITE_P(Cases, Rtl, testing::ValuesIn(rtl_cases()), [](const auto& p) { return p.param; });
 
-// Thin and thick ones, ragged ones, a node that is its own neighbour, flat ones, several lanes and pipes, serial and
-// shared multipliers.
+// Thin and thick ones, ragged ones, a node that is its own neighbour, flat ones, several lanes and pipes,
+// serial and shared multipliers.
 INSTANTIATE_TEST_SUITE_P(Bricks, Rtl,
                          testing::Values("undamped_2x2x2.brick_2x1x1", "hot_gas.brick_2x2x2",
                                          "rich_ring.brick_3x1x2", "rich_force_held.brick_2x2x1",
-                                         "flat_ring.brick_2x2x1", "periodic_27.brick_2x3x2", "brick_serial", "brick_shared"),
+                                         "flat_ring.brick_2x2x1", "periodic_27.brick_2x3x2", "brick_serial",
+                                         "brick_shared"),
                          [](const auto& p) { return p.param.substr(0, p.param.find('.')); });
 
 class RtlFaults : public testing::TestWithParam<Fault> {};

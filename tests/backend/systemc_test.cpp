@@ -3,7 +3,7 @@
 // SystemC elaborates once per process, so ctest runs one test per process.
 #include <gtest/gtest.h>
 
-#include "emu/systemc/bench.h"
+#include "emu/machine/bench.h"
 #include "emu/systemc/node.h"
 #include "tests/backend/engines.h"
 #include "tests/support/cases.h"

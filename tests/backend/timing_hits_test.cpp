@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The vector filter against model/fixed_rule.h: every vector unit of this machine, every width of the
-// formats, particles on the planes of the test.
+// The vector filter against model/contract/fixed_rule.h: every vector unit of this machine, every width of
+// the formats, particles on the planes of the test.
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 
 #include "emu/lattice/hits.h"
-#include "model/lattice.h"
+#include "model/contract/lattice.h"
 
 namespace cuboct::test {
 namespace {

@@ -9,8 +9,8 @@
 #include "emu/lattice/engine.h"
 #include "emu/lattice/timing.h"
 #include "emu/systemc/node.h"
-#include "model/golden.h"
-#include "model/scene.h"
+#include "model/contract/golden.h"
+#include "model/scene/scene.h"
 #include "tests/backend/engines.h"
 #include "tests/support/block.h"
 #include "tests/support/cases.h"
@@ -186,7 +186,8 @@ Case rebuilt(Case c, uint64_t seed) {
   arch.multipliers = static_cast<Multipliers>(draw(0, 2));
   arch.overlap = draw(0, 3) > 0;
   arch.narrow_memories = draw(0, 3) == 0;
-  if (arch.narrow_memories) arch.filter_lanes = arch.force_pipes = 1, arch.overlap = false, arch.brick = {1, 1, 1};
+  if (arch.narrow_memories)
+    arch.filter_lanes = arch.force_pipes = 1, arch.overlap = false, arch.brick = {1, 1, 1};
   arch.link_bits = std::array{0, draw(1, 8), draw(9, 200), 1024}[static_cast<size_t>(draw(0, 3))];
   if (draw(0, 2) == 0) arch.capacity = crowd_of(c);
   if (draw(0, 2) == 0 && !arch.narrow_memories) {
@@ -296,8 +297,9 @@ TEST(TimingFaults, TheStepsBeforeAreEqual) {
 
 // Sparse lattices, resting parts, hundreds of nodes; several threads where there are enough for them.
 TEST(TimingScenes, EqualTheClockedNode) {
-  const std::vector<std::pair<std::string, uint64_t>> scenes{
-      {"coupon", 12}, {"hot_cluster", 20}, {"lj_block", 12}, {"sheet", 8},      {"two_types", 20},   {"undamped_block", 20}};
+  const std::vector<std::pair<std::string, uint64_t>> scenes{{"coupon", 12},    {"hot_cluster", 20},
+                                                             {"lj_block", 12},  {"sheet", 8},
+                                                             {"two_types", 20}, {"undamped_block", 20}};
   for (const auto& [name, steps] : scenes) {
     const Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/" + name + ".toml");
     Case c{name, make_setup(scene, Arch{}), steps};

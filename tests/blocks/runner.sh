@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What rtl/blocks/pages says of a page that is not what the RTL is: a copy of two modules and their pages, broken in one
+# What tests/blocks/pages says of a page that is not what the RTL is: a copy of two modules and their pages, broken in one
 # place at a time.
 # usage: runner.sh PYTHON SOURCE_DIRECTORY
 set -uo pipefail
@@ -15,12 +15,12 @@ fresh() {  # the copy as it should be, with its pages written
   mkdir -p "$work/tree/rtl/lib" "$work/tree/docs/reference/blocks"
   cp "$source/rtl/lib/cuboct_fifo.sv" "$work/tree/rtl/lib"
   cp "$source/docs/reference/blocks/README.md" "$source/$page" "$work/tree/docs/reference/blocks"
-  (cd "$work/tree" && "$python" "$source/rtl/blocks/pages" --root . > log 2>&1) || { cat "$work/tree/log"; exit 1; }
+  (cd "$work/tree" && "$python" "$source/tests/blocks/pages" --root . > log 2>&1) || { cat "$work/tree/log"; exit 1; }
 }
 expect() {  # CHECK STATUS TEXT...: what the check ends with, and lines that it prints
   local check=$1 status=$2 found
   shift 2
-  (cd "$work/tree" && "$python" "$source/rtl/blocks/pages" --root . --check "$check" > log 2>&1)
+  (cd "$work/tree" && "$python" "$source/tests/blocks/pages" --root . --check "$check" > log 2>&1)
   found=$?
   if [ $found != "$status" ]; then
     echo "status $found, not $status, for: $*"
@@ -46,7 +46,7 @@ expect cycles 0 "none differs"
 
 edit rtl/lib/cuboct_fifo.sv 's/pop_i/take_i/g'
 expect ports 1 "$page: cuboct_fifo: 'take_i' is missing on the page" \
-  "$page: cuboct_fifo: 'pop_i' is on the page, but not in the module" "to write the pages anew: rtl/blocks/pages"
+  "$page: cuboct_fifo: 'pop_i' is on the page, but not in the module" "to write the pages anew: tests/blocks/pages"
 expect cycles 2 "'pop_i' is no input of cuboct_fifo"
 
 fresh
@@ -71,7 +71,7 @@ expect ports 2 "module cuboct_other is on no page of docs/reference/blocks"
 
 fresh
 edit rtl/lib/cuboct_fifo.sv 's/assign full_o  = (count_q == Depth/assign full_o  = (count_d == Depth/'
-expect cycles 1 "cuboct_fifo: the page shows" "to write the pages anew: rtl/blocks/pages"
+expect cycles 1 "cuboct_fifo: the page shows" "to write the pages anew: tests/blocks/pages"
 expect ports 0
 
 fresh

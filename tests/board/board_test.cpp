@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "emu/board/session.h"
-#include "emu/systemc/collector.h"
+#include "emu/machine/collector.h"
+#include "emu/machine/plain.h"
+#include "emu/machine/words.h"
 #include "emu/systemc/node.h"
-#include "emu/systemc/plain.h"
-#include "emu/systemc/words.h"
 #include "hw/board.h"
 #include "tests/board/simulated_board.h"
 
@@ -107,7 +107,8 @@ TEST(Board, TakesOtherVelocitiesAndFindsAFault) {
 // One node serves both cells: what goes over the line names them.
 TEST(Board, OfABrickHoldsGoldensBitsAndFindsTheFaultsCell) {
   const SimulatedBoard board({}, "one_node.toml");
-  const auto grips = board_setup("grips.toml", "one_node.toml"), thrown = board_setup("thrown.toml", "one_node.toml");
+  const auto grips = board_setup("grips.toml", "one_node.toml"),
+             thrown = board_setup("thrown.toml", "one_node.toml");
   ASSERT_EQ(grips.plan.nodes(), 1u);
   emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
   const Trace held = emu::run_on_board(host, grips.plan, grips.initial, {.steps = 24, .frames = up_to(24)});

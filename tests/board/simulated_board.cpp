@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "hw/rtl_emit.h"
-#include "model/compare.h"
-#include "model/golden.h"
+#include "model/contract/golden.h"
+#include "model/trace/compare.h"
 
 namespace cuboct::test {
 namespace {

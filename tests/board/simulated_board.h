@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hw/setup.h"
-#include "model/process.h"
-#include "model/trace.h"
+#include "model/base/process.h"
+#include "model/trace/trace.h"
 
 namespace cuboct::test {
 
@@ -25,7 +25,8 @@ Answer command(const std::vector<std::string>& arguments);
 class SimulatedBoard {
  public:
   // `options`: further ones of cuboct-board-sim.
-  explicit SimulatedBoard(const std::vector<std::string>& options = {}, const std::string& arch = "small.toml");
+  explicit SimulatedBoard(const std::vector<std::string>& options = {},
+                          const std::string& arch = "small.toml");
 
   const std::string& port() const { return port_; }
   static constexpr int kBaud = 3000000;  // four clocks per bit

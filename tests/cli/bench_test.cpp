@@ -39,8 +39,8 @@ TEST(BenchCommand, TellsTheMedianOfItsRepeats) {
   EXPECT_EQ(answer.err, "");
   const auto values = values_of(answer.out);
   ASSERT_EQ(values.size(), 1u) << answer.out;
-  // 4000 particles meet some hundred candidates each: no machine does it a billion times a second, or less than a
-  // thousand times.
+  // 4000 particles meet some hundred candidates each: no machine does it a billion times a second, or less
+  // than a thousand times.
   EXPECT_GT(values.at("golden.block_4k.particle_steps"), 1e3);
   EXPECT_LT(values.at("golden.block_4k.particle_steps"), 1e9);
   EXPECT_NE(answer.out.find("# golden.block_4k: 3 repeats of "), std::string::npos) << answer.out;
@@ -89,23 +89,30 @@ void put_gpu_program(const Bench& bench, const std::string& machine, const std::
                      const std::string& others) {
   const std::string path = bench.path("bin/cuboct-gpu");
   std::ofstream(path) << "#!/bin/sh\n"
-                         "echo \"$*\" >>" + bench.path("asked") + "\n"
-                         "[ \"$2\" = --machine ] && { printf '" + machine + "' >$3; exit 0; }\n"
-                         "[ \"$2 $4 $6 $8\" = '--only --repeats --seconds --lines' ] || exit 2\n"
-                         "case $3 in *.float) printf '" + floats + "' >$9;; *) printf '" + others + "' >$9; esac\n";
+                         "echo \"$*\" >>" +
+                             bench.path("asked") +
+                             "\n"
+                             "[ \"$2\" = --machine ] && { printf '" +
+                             machine +
+                             "' >$3; exit 0; }\n"
+                             "[ \"$2 $4 $6 $8\" = '--only --repeats --seconds --lines' ] || exit 2\n"
+                             "case $3 in *.float) printf '" +
+                             floats + "' >$9;; *) printf '" + others + "' >$9; esac\n";
   std::filesystem::permissions(path, std::filesystem::perms::owner_all);
 }
 
 TEST(BenchCommand, LetsTheGpuProgramMeasure) {
   const Bench bench(false);
-  put_gpu_program(bench, "{}\\n", "# 256000 particles on a GPU\\nparticle_steps 6.4e+08 1/s\\nrepeat 0.4 s\\n",
+  put_gpu_program(bench, "{}\\n",
+                  "# 256000 particles on a GPU\\nparticle_steps 6.4e+08 1/s\\nrepeat 0.4 s\\n",
                   "# skipped: needs 9 GB of 8 GB\\n");
   const Answer answer = bench.cuboct({"bench", "gpu.melt_256k", "--repeats", "7", "--seconds", "0.2"});
   EXPECT_EQ(answer.code, 0) << answer.err;
   const auto values = values_of(answer.out);
   ASSERT_EQ(values.size(), 1u) << answer.out;
   EXPECT_EQ(values.at("gpu.melt_256k.float.particle_steps"), 6.4e8);
-  EXPECT_NE(answer.out.find("# gpu.melt_256k.float: 256000 particles on a GPU\n"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("# gpu.melt_256k.float: 256000 particles on a GPU\n"), std::string::npos)
+      << answer.out;
   EXPECT_NE(answer.out.find("# gpu.melt_256k.fixed: skipped: needs 9 GB of 8 GB\n"), std::string::npos)
       << answer.out;
   // It repeats by itself: each row is asked for once.
@@ -135,11 +142,13 @@ TEST(BenchCommand, SaysOnceThatThereIsNoGpu) {
 TEST(BenchCommand, NamesWhatItHas) {
   const Answer list = bench({"--list"});
   EXPECT_EQ(list.code, 0);
-  for (const char* name : {"lattice.block_32k.1_thread ", "lattice.damped_2m.all_cores ", "lattice.cycles_32k.",
-                           "golden.block_4k ", "real.double_block_32k.1_thread ",
-                           "real.float_damped_256k.all_cores ", "systemc.block_2k ", "impact.quiescence_off ", "scaling.threads_1 ", "gpu.melt_2m.fixed "})
+  for (const char* name :
+       {"lattice.block_32k.1_thread ", "lattice.damped_2m.all_cores ", "lattice.cycles_32k.",
+        "golden.block_4k ", "real.double_block_32k.1_thread ", "real.float_damped_256k.all_cores ",
+        "systemc.block_2k ", "impact.quiescence_off ", "scaling.threads_1 ", "gpu.melt_2m.fixed "})
     EXPECT_NE(list.out.find(name), std::string::npos) << name;
-  EXPECT_EQ(bench({"golden.block_4"}).err, "no benchmark 'golden.block_4'\n  hint: did you mean 'golden.block_4k'?\n");
+  EXPECT_EQ(bench({"golden.block_4"}).err,
+            "no benchmark 'golden.block_4'\n  hint: did you mean 'golden.block_4k'?\n");
   EXPECT_EQ(bench({"abacus"}).err, "no benchmark 'abacus'\n  hint: 'cuboct bench --list' names them\n");
   EXPECT_EQ(bench({"abacus"}).code, 2);
 }

@@ -5,10 +5,10 @@
 #include <sstream>
 #include <vector>
 
-#include "model/figure.h"
-#include "model/output.h"
-#include "model/scene.h"
-#include "model/trace.h"
+#include "model/base/output.h"
+#include "model/scene/scene.h"
+#include "model/trace/figure.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -124,9 +124,9 @@ TEST(ErrorBudget, TheChosenFilesRun) {
   const std::string out = s.bench.path("results");
   EXPECT_NE(answer.out.find("cuboct run " + out + "/cheapest.toml --arch " + out + "/cheapest_arch.toml\n"),
             std::string::npos);
-  const Answer run = s.bench.cuboct(
-      {"run", out + "/cheapest.toml", "--arch", out + "/cheapest_arch.toml", "--out", s.bench.path("run"),
-       "--no-watch"});  // which warns of formats with few units
+  const Answer run =
+      s.bench.cuboct({"run", out + "/cheapest.toml", "--arch", out + "/cheapest_arch.toml", "--out",
+                      s.bench.path("run"), "--no-watch"});  // which warns of formats with few units
   ASSERT_EQ(run.code, 0) << run.err;
   const Trace trace = read_trace(s.bench.path("run") + "/trace.h5");
   Figure figure;

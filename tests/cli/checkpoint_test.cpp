@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Checkpoints of cuboct-lattice: whatever ends a run, it can go on, and the trace tells no difference. What is
-// not a whole checkpoint of this run is refused.
+// Checkpoints of cuboct-lattice: whatever ends a run, it can go on, and the trace tells no difference. What
+// is not a whole checkpoint of this run is refused.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 #include <random>
 #include <thread>
 
-#include "model/hash.h"
-#include "model/trace.h"
+#include "model/base/hash.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -50,8 +50,8 @@ class Checkpoint : public testing::Test {
     return list;
   }
   Strings with_checkpoint(const Strings& more = {}) const {
-    Strings list = arguments({"--threads", "1", "--out", path("run.h5"), "--checkpoint", path("state"), "--checkpoint-every",
-                              "2 steps"});
+    Strings list = arguments({"--threads", "1", "--out", path("run.h5"), "--checkpoint", path("state"),
+                              "--checkpoint-every", "2 steps"});
     list.insert(list.end(), more.begin(), more.end());
     return list;
   }
@@ -94,7 +94,8 @@ class Checkpoint : public testing::Test {
   }
 
   std::string uninterrupted() const {
-    EXPECT_EQ(lattice(arguments({"--threads", "2", "--out", path("whole.h5")})), 0) << contents(path("lattice.err"));
+    EXPECT_EQ(lattice(arguments({"--threads", "2", "--out", path("whole.h5")})), 0)
+        << contents(path("lattice.err"));
     return bytes(path("whole.h5"));
   }
 
@@ -246,17 +247,22 @@ TEST_F(Checkpoint, RefusesWhatItsNumbersDoNotAllow) {
     Hash hash;
     for (size_t k = 0; k + 1 < bad.size(); ++k) hash.add(static_cast<int64_t>(bad[k]));
     bad.back() = hash.value();
-    std::ofstream(path("state"), std::ios::binary).write(reinterpret_cast<const char*>(bad.data()), good.size());
+    std::ofstream(path("state"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bad.data()), good.size());
     EXPECT_EQ(lattice(with_checkpoint({"--resume"})), 2) << at;
     return contents(path("lattice.err"));
   };
-  // The number of probed particles; then, of the last particle of ten words, node and id, and its type above its z.
+  // The number of probed particles; then, of the last particle of ten words, node and id, and its type above
+  // its z.
   const size_t probed = 18, last = words.size() - 1 - 10;
   for (const uint64_t count : {uint64_t{1} << 40, ~uint64_t{0}})
-    EXPECT_NE(said(probed, count).find(" things of 3 words do not fit behind its word 19\n"), std::string::npos);
+    EXPECT_NE(said(probed, count).find(" things of 3 words do not fit behind its word 19\n"),
+              std::string::npos);
   EXPECT_NE(said(last, uint64_t{1} << 63).find(": cell 2147483648 is not below "), std::string::npos);
-  EXPECT_NE(said(last, words[last] | 0xffffffff).find("particle 4294967295: id 4294967295 is not below "), std::string::npos);
-  EXPECT_NE(said(last + 3, words[last + 3] | uint64_t{77} << 56).find(": type 77 is not below 2\n"), std::string::npos);
+  EXPECT_NE(said(last, words[last] | 0xffffffff).find("particle 4294967295: id 4294967295 is not below "),
+            std::string::npos);
+  EXPECT_NE(said(last + 3, words[last + 3] | uint64_t{77} << 56).find(": type 77 is not below 2\n"),
+            std::string::npos);
 }
 
 TEST_F(Checkpoint, RefusesAnotherRun) {
@@ -277,9 +283,11 @@ TEST_F(Checkpoint, RefusesAnotherRun) {
   };
   expect_refusal(with({"--cycles", "--energies", "--frames", "0,5,50,51,300", "--hash-every", "3"}),
                  path("state") + " was made with a hash every 1 steps, this run has one every 3" + hint);
-  expect_refusal(with({"--energies", "--frames", "0,5,50,51,300"}), path("state") + " was made with cycles" + hint);
-  expect_refusal(with({"--cycles", "--frames", "0,5,50,51,300"}),
-                 path("state") + " was made with other probes\n  hint: resume with the scene that wrote it\n");
+  expect_refusal(with({"--energies", "--frames", "0,5,50,51,300"}),
+                 path("state") + " was made with cycles" + hint);
+  expect_refusal(
+      with({"--cycles", "--frames", "0,5,50,51,300"}),
+      path("state") + " was made with other probes\n  hint: resume with the scene that wrote it\n");
   expect_refusal(with({"--cycles", "--energies", "--frames", "0,1,300"}),
                  path("state") + " was made with frames at other steps" + hint);
   uint64_t step = 0;  // the fourth word of the file
@@ -305,14 +313,17 @@ TEST_F(Checkpoint, RefusesWhatCannotBe) {
 TEST_F(Checkpoint, ServesTheStateBeforeAFault) {
   // The first particle flies out of the lattice in step 350: golden's last state, from a checkpoint and from
   // the start.
-  std::ofstream(path("stray.toml")) << "title = \"Stray\"\nunits = \"reduced\"\nmass = 1.0\n"
-                                       "[law]\nkind = \"lj\"\nepsilon = 1.0\nsigma = 1.0\ncutoff = 2.5\n"
-                                       "[[particle]]\nposition = [0.0, 0.0, 0.0]\nvelocity = [0.0, -9.0, 0.0]\n"
-                                       "[[particle]]\nposition = [1.12, 0.0, 0.0]\n"
-                                       "[run]\ndt = 0.001\nsteps = 2000\n";
-  ASSERT_EQ(bench_.cuboct({"run", path("stray.toml"), "--engine", "golden", "--out", path("golden")}).code, 1);
+  std::ofstream(path("stray.toml"))
+      << "title = \"Stray\"\nunits = \"reduced\"\nmass = 1.0\n"
+         "[law]\nkind = \"lj\"\nepsilon = 1.0\nsigma = 1.0\ncutoff = 2.5\n"
+         "[[particle]]\nposition = [0.0, 0.0, 0.0]\nvelocity = [0.0, -9.0, 0.0]\n"
+         "[[particle]]\nposition = [1.12, 0.0, 0.0]\n"
+         "[run]\ndt = 0.001\nsteps = 2000\n";
+  ASSERT_EQ(bench_.cuboct({"run", path("stray.toml"), "--engine", "golden", "--out", path("golden")}).code,
+            1);
   const Trace golden = read_trace(path("golden/trace.h5"));
-  for (const Strings& more : {Strings{}, Strings{"--checkpoint", path("state"), "--checkpoint-every", "40 steps"}}) {
+  for (const Strings& more :
+       {Strings{}, Strings{"--checkpoint", path("state"), "--checkpoint-every", "40 steps"}}) {
     Strings list{path("stray.toml"), "--out", path("stray.h5")};
     list.insert(list.end(), more.begin(), more.end());
     EXPECT_EQ(lattice(list), 1);

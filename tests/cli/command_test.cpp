@@ -16,10 +16,12 @@ void expect_refusal(const std::vector<std::string>& arguments, const std::string
 
 TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
   expect_refusal({},
-                 "no command\n  hint: one of check, run, crosscheck, emit, synth, explore, stability, bench, picture or report; see 'cuboct --help'\n");
+                 "no command\n  hint: one of check, run, crosscheck, emit, synth, explore, stability, bench, "
+                 "picture or report; see 'cuboct --help'\n");
   expect_refusal({"chek"}, "unknown command 'chek'\n  hint: did you mean 'check'?\n");
   expect_refusal({"simulate"},
-                 "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit, synth, explore, stability, bench, picture or report\n");
+                 "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit, synth, explore, "
+                 "stability, bench, picture or report\n");
   expect_refusal({"--version"}, "unknown option '--version'\n  hint: see 'cuboct --help'\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--stepz", "3"},
                  "unknown option '--stepz' of 'cuboct run'\n  hint: did you mean '--steps'?\n");
@@ -39,12 +41,15 @@ TEST(Command, RefusesWrongValues) {
                  "--steps: '99999999999999999999' is not a whole number below 2^63\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "goldn"},
                  "unknown engine 'goldn'\n  hint: did you mean 'golden'?\n");
-  expect_refusal({"run", "scenes/lj_block.toml", "--engine", "quantum"},
-                 "unknown engine 'quantum'\n  hint: one of golden, lattice, systemc, rtl, fpga, gpu or reference\n");
-  expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden"},
-                 "a crosscheck needs two or more different engines\n  hint: --engines golden,lattice,systemc,rtl\n");
-  expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden,golden"},
-                 "a crosscheck needs two or more different engines\n  hint: --engines golden,lattice,systemc,rtl\n");
+  expect_refusal(
+      {"run", "scenes/lj_block.toml", "--engine", "quantum"},
+      "unknown engine 'quantum'\n  hint: one of golden, lattice, systemc, rtl, fpga, gpu or reference\n");
+  expect_refusal(
+      {"crosscheck", "scenes/lj_block.toml", "--engines", "golden"},
+      "a crosscheck needs two or more different engines\n  hint: --engines golden,lattice,systemc,rtl\n");
+  expect_refusal(
+      {"crosscheck", "scenes/lj_block.toml", "--engines", "golden,golden"},
+      "a crosscheck needs two or more different engines\n  hint: --engines golden,lattice,systemc,rtl\n");
   expect_refusal(
       {"crosscheck", "scenes/lj_block.toml", "--engines", "golden,reference"},
       "engine 'reference' computes in doubles and has no bits to compare\n  hint: one of golden, lattice, "

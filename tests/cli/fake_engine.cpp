@@ -11,8 +11,8 @@
 #include <fstream>
 
 #include "hw/setup.h"
-#include "model/golden.h"
-#include "model/trace.h"
+#include "model/contract/golden.h"
+#include "model/trace/trace.h"
 
 namespace {
 

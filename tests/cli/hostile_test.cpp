@@ -10,8 +10,8 @@
 
 #include "cli/plot.h"
 #include "cli/raster_plot.h"
-#include "model/text.h"
-#include "model/trace.h"
+#include "model/base/text.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 #include "tests/support/hostile.h"
 
@@ -61,7 +61,8 @@ class Hostile : public testing::Test {
  protected:
   Hostile() : bench_(false) { std::ofstream(scene()) << scene_text(); }
   ~Hostile() override {
-    for (const std::string& place : {std::string("."), std::string(CUBOCT_SOURCE_DIR), bench_.path(""), out()}) {
+    for (const std::string& place :
+         {std::string("."), std::string(CUBOCT_SOURCE_DIR), bench_.path(""), out()}) {
       EXPECT_FALSE(take_loot(place)) << "something was run in " << place;
     }
   }

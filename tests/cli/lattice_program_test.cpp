@@ -9,7 +9,7 @@
 #include <fstream>
 #include <regex>
 
-#include "model/trace.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -44,13 +44,15 @@ TEST_F(LatticeProgram, NoBitDependsOnItsOptions) {
   ASSERT_EQ(plain.state_hash.size(), 26u);
   EXPECT_EQ(plain.frames.size(), 2u);
   EXPECT_TRUE(plain.cycles.empty());
-  for (const char* options : {"--threads 3", "--no-quiescence", "--simd portable", "--cycles", "--energies"}) {
+  for (const char* options :
+       {"--threads 3", "--no-quiescence", "--simd portable", "--cycles", "--energies"}) {
     const Trace other = traced(options);
     EXPECT_EQ(other.state_hash, plain.state_hash) << options;
     EXPECT_EQ(other.frames, plain.frames) << options;
   }
   EXPECT_EQ(traced("--cycles").cycles.size(), 25 * plain.nodes * kPhases);
-  EXPECT_EQ(traced("--energies").curves.size(), 6u);  // four energies, the temperature and, in a periodic box, the pressure
+  EXPECT_EQ(traced("--energies").curves.size(),
+            6u);  // four energies, the temperature and, in a periodic box, the pressure
 }
 
 // Bricks change the nodes and cycles of the machine, and no bit.
@@ -105,12 +107,15 @@ TEST_F(LatticeProgram, TellsItsSpeed) {
 
 TEST_F(LatticeProgram, RefusesWhatItCannotDo) {
   expect_refusal("scenes/lj_block.toml", "--out is required\n");
-  expect_refusal("scenes/lj_block.toml --out none/t.h5", "cannot write none/t.h5: No such file or directory\n");
+  expect_refusal("scenes/lj_block.toml --out none/t.h5",
+                 "cannot write none/t.h5: No such file or directory\n");
   expect_refusal("scenes/lj_block.toml --hash-every 0 --out '" + path("t.h5") + "'",
                  "--hash-every: 0 is not a number of steps\n");
-  expect_refusal("scenes/none.toml --out '" + path("t.h5") + "'", "scenes/none.toml: cannot read this file\n");
+  expect_refusal("scenes/none.toml --out '" + path("t.h5") + "'",
+                 "scenes/none.toml: cannot read this file\n");
   EXPECT_EQ(run("scenes/lj_block.toml --simd mmx --out '" + path("t.h5") + "'").code, 2);
-  EXPECT_NE(run("scenes/lj_block.toml --simd mmx --out '" + path("t.h5") + "'").err.find("mmx"), std::string::npos);
+  EXPECT_NE(run("scenes/lj_block.toml --simd mmx --out '" + path("t.h5") + "'").err.find("mmx"),
+            std::string::npos);
 }
 
 }  // namespace

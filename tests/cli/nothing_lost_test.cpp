@@ -15,9 +15,9 @@
 #include <regex>
 #include <thread>
 
-#include "model/directory_lock.h"
-#include "model/error.h"
-#include "model/trace.h"
+#include "model/base/directory_lock.h"
+#include "model/base/error.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -199,7 +199,9 @@ TEST_F(NothingLost, AFileThatNoRunLeftStays) {
   std::ofstream(dir() + "/frames.xyz") << "mine";
   const Answer answer = bench_.cuboct(run({"--steps", "3"}));
   EXPECT_EQ(answer.code, 2);
-  EXPECT_EQ(answer.err, dir() + " holds a file frames.xyz that no run left\n  hint: another --out keeps it; --force puts a run's in its place\n");
+  EXPECT_EQ(answer.err, dir() +
+                            " holds a file frames.xyz that no run left\n  hint: another --out keeps it; "
+                            "--force puts a run's in its place\n");
   EXPECT_EQ(fs::file_size(dir() + "/frames.xyz"), 4u);
   expect_force();
 }
@@ -279,7 +281,8 @@ TEST_P(OfEngine, SigtermEndsItAsCtrlCDoes) {
   const Trace trace = read_trace(dir() + "/trace.h5");
   EXPECT_GT(trace.steps(), 0u);
   const std::string said = fmt::format("after {} of 10000000 steps", trace.steps());
-  EXPECT_NE(contents(dir() + "/summary.json").find("\"ended\": {\"value\": \"interrupted\", \"note\": \"" + said + "\"}"),
+  EXPECT_NE(contents(dir() + "/summary.json")
+                .find("\"ended\": {\"value\": \"interrupted\", \"note\": \"" + said + "\"}"),
             std::string::npos)
       << contents(dir() + "/summary.json");
   EXPECT_NE(answer.out.find(said), std::string::npos);
@@ -449,7 +452,7 @@ TEST_F(NothingLost, AFullFileSystemIsAFullDisk) {
   if (mount("none", disk.c_str(), "tmpfs", 0, "size=2m") != 0)
     GTEST_SKIP() << "no right to mount a file system";
   for (const Strings& more : {Strings{}, Strings{"--ranks", "2"}}) {
-    Strings arguments{"run", kScene,    "--steps", "100",        "--frames-every",
+    Strings arguments{"run", kScene,    "--steps",  "100",   "--frames-every",
                       "1",   "--force", "--anyway", "--out", disk + "/dir"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     Started started(bench_, arguments);

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "model/raster.h"
-#include "model/trace.h"
+#include "model/trace/raster.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -29,8 +29,8 @@ TEST(Picture, IsDrawnOfFixedAndRealRuns) {
   std::vector<Rasters> rasters;
   for (const char* engine : {"golden", "reference"}) {
     const std::string out = bench.path(engine);
-    const Answer run = bench.cuboct({"run", "scenes/coupon.toml", "--steps", "400", "--frames-every", "200", "--engine",
-                                     engine, "--raster", "100", "--no-states", "--out", out});
+    const Answer run = bench.cuboct({"run", "scenes/coupon.toml", "--steps", "400", "--frames-every", "200",
+                                     "--engine", engine, "--raster", "100", "--no-states", "--out", out});
     ASSERT_EQ(run.code, 0) << run.err;
     EXPECT_FALSE(fs::exists(out + "/frames.xyz"));
     EXPECT_FALSE(fs::exists(out + "/frames.pvd"));
@@ -53,7 +53,8 @@ TEST(Picture, IsDrawnOfFixedAndRealRuns) {
   double largest = 0, apart = 0;
   for (size_t k = 0; k < rasters[0].grid.pixels(); ++k) {
     largest = std::max(largest, std::abs(double{rasters[0].frames[2].strain[k]}));
-    apart = std::max(apart, std::abs(double{rasters[0].frames[2].strain[k] - rasters[1].frames[2].strain[k]}));
+    apart =
+        std::max(apart, std::abs(double{rasters[0].frames[2].strain[k] - rasters[1].frames[2].strain[k]}));
   }
   EXPECT_GT(largest, 1e-3);
   EXPECT_LT(apart, 0.01 * largest);
@@ -62,7 +63,9 @@ TEST(Picture, IsDrawnOfFixedAndRealRuns) {
 TEST(Picture, SaysWhatItCannotDraw) {
   const Bench bench(false);
   const std::string out = bench.path("run");
-  ASSERT_EQ(bench.cuboct({"run", "scenes/coupon.toml", "--steps", "20", "--frames-every", "10", "--out", out}).code, 0);
+  ASSERT_EQ(
+      bench.cuboct({"run", "scenes/coupon.toml", "--steps", "20", "--frames-every", "10", "--out", out}).code,
+      0);
   const auto refused = [&](std::vector<std::string> arguments, const std::string& text) {
     arguments.insert(arguments.begin(), "picture");
     const Answer answer = bench.cuboct(arguments);

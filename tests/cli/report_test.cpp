@@ -6,7 +6,7 @@
 #include <fstream>
 #include <regex>
 
-#include "model/trace.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -67,7 +67,8 @@ TEST(Report, HoldsEveryWarning) {
     const std::string html = page(Bench(false), {"scenes/failures/tunnelling.toml", "--engine", engine}, 1);
     EXPECT_TRUE(std::regex_search(html, std::regex("<li>warning: step [0-9]+: tunnelling: "))) << engine;
   }
-  EXPECT_EQ(page(Bench(false), {"scenes/failures/tunnelling_healthy.toml"}).find("warning:"), std::string::npos);
+  EXPECT_EQ(page(Bench(false), {"scenes/failures/tunnelling_healthy.toml"}).find("warning:"),
+            std::string::npos);
 }
 
 // What check warns of stands in the summary and in the report too; nothing of it in a run of real numbers.
@@ -77,16 +78,19 @@ TEST(Report, HoldsTheWarningsOfThePlan) {
   std::ofstream(arch) << "name = \"few\"\n[widths]\ndifference_frac = 8\n";
   const std::string warning = "warning: a strain of ";
   EXPECT_EQ(count(bench.cuboct({"check", "scenes/coupon.toml", "--arch", arch}).out, warning), 1u);
-  EXPECT_EQ(count(bench.cuboct({"run", "scenes/coupon.toml", "--arch", arch, "--steps", "20"}).out, warning), 1u);
-  EXPECT_EQ(count(page(bench, {"scenes/coupon.toml", "--arch", arch, "--steps", "20"}), "<li>" + warning), 1u);
-  EXPECT_EQ(count(page(bench, {"scenes/coupon.toml", "--arch", arch, "--steps", "20", "--engine", "reference"}),
-                  "warning:"),
-            0u);
+  EXPECT_EQ(count(bench.cuboct({"run", "scenes/coupon.toml", "--arch", arch, "--steps", "20"}).out, warning),
+            1u);
+  EXPECT_EQ(count(page(bench, {"scenes/coupon.toml", "--arch", arch, "--steps", "20"}), "<li>" + warning),
+            1u);
+  EXPECT_EQ(
+      count(page(bench, {"scenes/coupon.toml", "--arch", arch, "--steps", "20", "--engine", "reference"}),
+            "warning:"),
+      0u);
 }
 
 TEST(Report, SaysWhyARunStopped) {
-  const std::string html =
-      page(Bench(false), {"scenes/failures/full_node.toml", "--arch", "scenes/failures/archs/full_node.toml"}, 1);
+  const std::string html = page(
+      Bench(false), {"scenes/failures/full_node.toml", "--arch", "scenes/failures/archs/full_node.toml"}, 1);
   EXPECT_NE(html.find("<b class=\"bad\">stopped after 33 of "), std::string::npos);
   EXPECT_NE(html.find("<li>stopped: step 33, node "), std::string::npos);
 }
@@ -104,13 +108,17 @@ TEST(Report, DrawsTheCurvesOfEveryProbe) {
   const Bench bench(false);
   std::string scene = contents(CUBOCT_SOURCE_DIR "/scenes/coupon.toml");
   scene +=
-      "\n[[probe]]\nname = \"pull\"\nkind = \"force\"\nregion = { shape = \"half_space\", normal = [1, 0, 0] }\n"
-      "[[probe]]\nname = \"tip\"\nkind = \"displacement\"\nregion = { shape = \"half_space\", normal = [1, 0, 0] }\n";
+      "\n[[probe]]\nname = \"pull\"\nkind = \"force\"\nregion = { shape = \"half_space\", normal = [1, 0, 0] "
+      "}\n"
+      "[[probe]]\nname = \"tip\"\nkind = \"displacement\"\nregion = { shape = \"half_space\", normal = [1, "
+      "0, 0] }\n";
   std::ofstream(bench.path("scene.toml")) << scene;
   const std::string html = page(bench, {bench.path("scene.toml"), "--steps", "100"});
-  for (const char* title : {"Stress and strain: tension", "Force: pull", "Displacement: tip", "Energy, since the start"})
+  for (const char* title :
+       {"Stress and strain: tension", "Force: pull", "Displacement: tip", "Energy, since the start"})
     EXPECT_EQ(count(html, std::string("<h2>") + title + "</h2>\n<figure><svg"), 1u) << title;
-  for (const char* curve : {"tension.strain", "tension.stress", "pull.force_x", "pull.force_z", "tip.x", "tip.y"})
+  for (const char* curve :
+       {"tension.strain", "tension.stress", "pull.force_x", "pull.force_z", "tip.x", "tip.y"})
     EXPECT_EQ(count(html, std::string("<tr><th>") + curve + "</th><td>"), 1u) << curve;
   EXPECT_EQ(count(html, "<h2>Temperature</h2>"), 0u);  // the coupon damps
 }
@@ -139,7 +147,8 @@ TEST(Report, PrintsRoundingAsZero) {
     const std::string html = contents(bench.path("run/report.html"));
     const std::string shown = change < 1e-15 ? "0 J" : "1e-12 J";
     for (const char* name : {"energy", "energy change"})
-      EXPECT_NE(html.find("<tr><th>" + std::string(name) + "</th><td>" + shown), std::string::npos) << name << change;
+      EXPECT_NE(html.find("<tr><th>" + std::string(name) + "</th><td>" + shown), std::string::npos)
+          << name << change;
   }
 }
 
@@ -147,12 +156,14 @@ TEST(Report, PrintsRoundingAsZero) {
 TEST(Report, ComparesNoTraceOfAnotherScene) {
   const Bench bench(true);
   const std::string out = bench.path("run");
-  ASSERT_EQ(bench.cuboct({"crosscheck", "scenes/coupon.toml", "--steps", "3", "--engines", "golden,systemc", "--out",
-                          out + "/crosscheck"})
+  ASSERT_EQ(bench
+                .cuboct({"crosscheck", "scenes/coupon.toml", "--steps", "3", "--engines", "golden,systemc",
+                         "--out", out + "/crosscheck"})
                 .code,
             0);
-  ASSERT_EQ(bench.cuboct({"crosscheck", "scenes/lj_block.toml", "--steps", "3", "--engines", "golden,rtl", "--out",
-                          bench.path("other")})
+  ASSERT_EQ(bench
+                .cuboct({"crosscheck", "scenes/lj_block.toml", "--steps", "3", "--engines", "golden,rtl",
+                         "--out", bench.path("other")})
                 .code,
             0);
   fs::copy(bench.path("other/rtl.h5"), out + "/crosscheck/rtl.h5");

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <regex>
 
-#include "model/trace.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -53,8 +53,8 @@ TEST(Run, WritesItsDirectoryTheSameEachTime) {
   for (const auto& entry : fs::directory_iterator(bench.path("a"))) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{"frames.pvd", "frames.xyz", "frames_000000.vtp",
-                                             "frames_000001.vtp", "frames_000002.vtp", "plan.txt", "rasters.h5",
-                                             "run.toml", "summary.json", "trace.h5"}));
+                                             "frames_000001.vtp", "frames_000002.vtp", "plan.txt",
+                                             "rasters.h5", "run.toml", "summary.json", "trace.h5"}));
   for (const std::string& name : names)
     if (name != "trace.h5" && name != "summary.json") {  // these tell the host's time
       EXPECT_EQ(contents(bench.path("a/" + name)), contents(bench.path("b/" + name))) << name;
@@ -111,12 +111,13 @@ TEST(Run, OfTheReferenceFollowsGolden) {
   EXPECT_NEAR(stress[0], stress[1], 1e-2 * stress[1]);
 }
 
-// Frames hold the state to six digits or more: threads leave no mark in them, floats and the other integrator do.
+// Frames hold the state to six digits or more: threads leave no mark in them, floats and the other integrator
+// do.
 TEST(Run, OfTheReferenceTakesItsOptions) {
   const Bench bench(false);
   const auto run = [&](const std::string& name, std::vector<std::string> more) {
-    std::vector<std::string> arguments{"run",     "scenes/coupon.toml", "--engine", "reference",
-                                       "--steps", "100",                "--out",    bench.path(name)};
+    std::vector<std::string> arguments{
+        "run", "scenes/coupon.toml", "--engine", "reference", "--steps", "100", "--out", bench.path(name)};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Answer answer = bench.cuboct(arguments);
     EXPECT_EQ(answer.code, 0) << answer.err;
@@ -258,8 +259,9 @@ TEST(Run, SaysInItsDirectoryThatItWasInterrupted) {
                 .find("\n  \"ended\": {\"value\": \"interrupted\", \"note\": \"" + after + "\"}"),
             std::string::npos);
   ASSERT_EQ(bench.cuboct({"report", bench.path("out_dir")}).code, 0);
-  EXPECT_NE(contents(bench.path("out_dir/report.html")).find("<b class=\"bad\">interrupted " + after + "</b>"),
-            std::string::npos);
+  EXPECT_NE(
+      contents(bench.path("out_dir/report.html")).find("<b class=\"bad\">interrupted " + after + "</b>"),
+      std::string::npos);
 }
 
 // A key of JSON is words joined by '_'.

@@ -60,11 +60,14 @@ void obey(const Limits& limits) {
   sched_setaffinity(0, sizeof set, &set);
 }
 
-double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
 
 }  // namespace
 
-Answer Bench::cuboct(const std::vector<std::string>& arguments, double interrupt_after, const Limits& limits) const {
+Answer Bench::cuboct(const std::vector<std::string>& arguments, double interrupt_after,
+                     const Limits& limits) const {
   const std::string program = path("bin/cuboct");
   std::vector<char*> argv{const_cast<char*>("cuboct")};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));

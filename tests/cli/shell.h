@@ -32,7 +32,8 @@ class Bench {
 
   // Runs cuboct in the root of the sources, without a terminal. `interrupt_after` > 0: sends SIGINT after so
   // many seconds.
-  Answer cuboct(const std::vector<std::string>& arguments, double interrupt_after = 0, const Limits& limits = {}) const;
+  Answer cuboct(const std::vector<std::string>& arguments, double interrupt_after = 0,
+                const Limits& limits = {}) const;
   std::string path(const std::string& name) const { return (directory_ / name).string(); }
 
  private:

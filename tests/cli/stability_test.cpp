@@ -23,7 +23,8 @@ std::string block(const Bench& bench, const std::string& more = "") {
 
 TEST(Stability, PrintsTheoryBesideWhatItMeasures) {
   const Bench bench(false);
-  const Answer answer = bench.cuboct({"stability", block(bench, "[damping]\nratio = 0.3\n"), "--strain", "0"});
+  const Answer answer =
+      bench.cuboct({"stability", block(bench, "[damping]\nratio = 0.3\n"), "--strain", "0"});
   EXPECT_EQ(answer.code, 0) << answer.err;
   EXPECT_EQ(answer.err, "");
   // 2/sqrt(8 k/m)
@@ -36,7 +37,8 @@ TEST(Stability, PrintsTheoryBesideWhatItMeasures) {
 
 TEST(Stability, JsonAndStrain) {
   const Bench bench(false);
-  const Answer answer = bench.cuboct({"stability", block(bench), "--json", "--resolution", "0.01", "--axis", "y"});
+  const Answer answer =
+      bench.cuboct({"stability", block(bench), "--json", "--resolution", "0.01", "--axis", "y"});
   EXPECT_EQ(answer.code, 0) << answer.err;
   for (const char* part :
        {"\"particles\": 32,", "{\"name\": \"perfect packing\", \"note\": \"\", \"predicted\": 0.5,",
@@ -67,8 +69,9 @@ TEST(Stability, RefusesWrongInput) {
   expect_refusal({"stability", "scenes/none.toml"}, "scenes/none.toml: cannot read this file\n");
   expect_refusal({"stability", "scenes/lj_block.toml", "--strian", "0.1"},
                  "unknown option '--strian' of 'cuboct stability'\n  hint: did you mean '--strain'?\n");
-  expect_refusal({"stability", "scenes/lj_block.toml", "--strain", "0.7"},
-                 "--strain: 0.7 is not in [0, 0.5]: the part of its length that the body is stretched and pressed by\n");
+  expect_refusal(
+      {"stability", "scenes/lj_block.toml", "--strain", "0.7"},
+      "--strain: 0.7 is not in [0, 0.5]: the part of its length that the body is stretched and pressed by\n");
   expect_refusal({"stability", "scenes/lj_block.toml", "--resolution", "0"},
                  "--resolution: 0 is not in [0.0001, 0.1]\n");
   expect_refusal({"stability", "scenes/lj_block.toml", "--axis", "w"}, "--axis: 'w' is not x, y or z\n");

@@ -23,14 +23,14 @@ std::string stray(const Bench& bench, const std::string& reach = "") {
   return path;
 }
 
-constexpr const char* kLeft =
-    "step 350, node 1 at cell (0, -1, 0), particle 0: left the lattice along y (0)";
+constexpr const char* kLeft = "step 350, node 1 at cell (0, -1, 0), particle 0: left the lattice along y (0)";
 
 TEST(Stop, NamesStepNodeAndParticle) {
   const Bench bench(false);
   const Answer answer = bench.cuboct({"run", stray(bench), "--out", bench.path("kept")});
   EXPECT_EQ(answer.code, 1);
-  EXPECT_NE(answer.out.find(std::string(" ") + kLeft + "\nended "), std::string::npos) << answer.out << answer.err;
+  EXPECT_NE(answer.out.find(std::string(" ") + kLeft + "\nended "), std::string::npos)
+      << answer.out << answer.err;
   EXPECT_NE(answer.out.find("\nstopped  "), std::string::npos) << answer.out;
   EXPECT_TRUE(std::filesystem::exists(bench.path("kept/trace.h5")));  // what was done is kept
 }
@@ -48,9 +48,10 @@ TEST(Stop, AReachOfMoreCellsThanCanBeBuiltIsRefused) {
   const Answer answer = bench.cuboct({"check", stray(bench, "[reach]\nmargin = 1e4\n")});
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.out, "");
-  EXPECT_NE(answer.err.find(": the reach of a particle spans 6.4e+07 cells of 2.5 m: at most 3e+07 can be built\n"
-                            "  hint: a smaller reach.margin\n"),
-            std::string::npos)
+  EXPECT_NE(
+      answer.err.find(": the reach of a particle spans 6.4e+07 cells of 2.5 m: at most 3e+07 can be built\n"
+                      "  hint: a smaller reach.margin\n"),
+      std::string::npos)
       << answer.err;
 }
 
@@ -62,9 +63,9 @@ TEST(Stop, AGeometryOfMoreSitesThanCanBeTestedIsRefused) {
                          "[law]\nkind = \"elastic\"\nstiffness = 1.0\n[run]\ndt = \"auto\"\nsteps = 1\n";
   const Answer answer = bench.cuboct({"check", path});
   EXPECT_EQ(answer.code, 2);
-  EXPECT_NE(
-      answer.err.find("1.13e+16 sites of the packing, held against 1 parts of the geometry: at most 4e+10 tests are made"),
-      std::string::npos)
+  EXPECT_NE(answer.err.find("1.13e+16 sites of the packing, held against 1 parts of the geometry: at most "
+                            "4e+10 tests are made"),
+            std::string::npos)
       << answer.err;
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# What rtl/formal/prove says of proofs that do not hold, prove nothing, or are written wrongly.
+# What tests/formal/prove says of proofs that do not hold, prove nothing, or are written wrongly.
 # usage: runner.sh PYTHON PROVE
 set -uo pipefail
 python=$1 prove=$2

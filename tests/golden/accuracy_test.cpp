@@ -10,7 +10,7 @@
 
 #include "emu/lattice/run.h"
 #include "hw/setup.h"
-#include "model/real_meter.h"
+#include "model/analysis/real_meter.h"
 
 namespace cuboct {
 namespace {

@@ -6,10 +6,10 @@
 #include <numeric>
 
 #include "hw/setup.h"
-#include "model/dynamical_matrix.h"
-#include "model/golden.h"
-#include "model/measure.h"
-#include "model/strain.h"
+#include "model/analysis/measure.h"
+#include "model/analysis/strain.h"
+#include "model/contract/golden.h"
+#include "model/solid/dynamical_matrix.h"
 
 namespace cuboct {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/dynamical_matrix.h"
-#include "model/figure.h"
-#include "model/measure.h"
-#include "model/reference.h"
+#include "model/analysis/measure.h"
+#include "model/real/reference.h"
+#include "model/solid/dynamical_matrix.h"
+#include "model/trace/figure.h"
 #include "tests/golden/scene_with.h"
 
 namespace cuboct {
@@ -92,9 +92,9 @@ TEST(Wave, DispersesLikeAChainInTheReference) {
 }
 
 // First bending frequency of a beam of `count` particles along its longer rows, over Euler and Bernoulli's
-// 22.3733/L^2 sqrt(EI/(mass per length)). scenes/validation/beam.toml has 12 rows of `count` bonds and 6 of one less,
-// each of stiffness * pitch = 1 per strain and of mass 1 per length, at z = -+sqrt(2), 0 (4 rows each), -+sqrt(1/2)
-// (3 rows each).
+// 22.3733/L^2 sqrt(EI/(mass per length)). scenes/validation/beam.toml has 12 rows of `count` bonds and 6 of
+// one less, each of stiffness * pitch = 1 per strain and of mass 1 per length, at z = -+sqrt(2), 0 (4 rows
+// each), -+sqrt(1/2) (3 rows each).
 double bending(int count) {
   const auto box = [](double low, double high) {
     return fmt::format("{{ shape = \"box\", min = [{}, -9, -9], max = [{}, 9, 9] }}", low, high);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The total energy of a liquid fluctuates in proportion to dt^2, and as much as in LAMMPS: the check by which GROMACS
-// tests its integrators. docs/reference/validation.md, section 1, has the full table.
+// The total energy of a liquid fluctuates in proportion to dt^2, and as much as in LAMMPS: the check by which
+// GROMACS tests its integrators. docs/reference/validation.md, section 1, has the full table.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -45,15 +45,15 @@ double fluctuation(const Body& liquid, double dt) {
   return std::sqrt(squares / n - sum * sum / (n * n));
 }
 
-// Both runs begin in one state and part only as their errors grow, so that the ratio of their fluctuations is known
-// better than each: some 40 of 104 samples are independent, 12 % of statistical error.
+// Both runs begin in one state and part only as their errors grow, so that the ratio of their fluctuations is
+// known better than each: some 40 of 104 samples are independent, 12 % of statistical error.
 TEST(EnergyFluctuation, GrowsAsTheSquareOfTheTimeStep) {
   const Body liquid = melted();
   const double fine = fluctuation(liquid, 0.004), coarse = fluctuation(liquid, 0.008);
   fmt::print("{:.3g} at dt 0.004, {:.3g} at 0.008: ratio {:.2f}\n", fine, coarse, coarse / fine);
   EXPECT_NEAR(coarse / fine, 4, 0.8);
-  // LAMMPS with 4,000 atoms (pair_style lj/smooth/linear 2.5, kT about 0.70): 1.82e-5 and 7.24e-5 epsilon per atom.
-  // Fluctuations per particle go with 1/sqrt(N). Three times the statistical error.
+  // LAMMPS with 4,000 atoms (pair_style lj/smooth/linear 2.5, kT about 0.70): 1.82e-5 and 7.24e-5 epsilon per
+  // atom. Fluctuations per particle go with 1/sqrt(N). Three times the statistical error.
   const double larger = std::sqrt(4000 / 864.0);
   EXPECT_NEAR(fine / (1.82e-5 * larger), 1, 0.36);
   EXPECT_NEAR(coarse / (7.24e-5 * larger), 1, 0.36);

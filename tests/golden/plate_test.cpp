@@ -6,8 +6,8 @@
 #include <map>
 #include <numeric>
 
-#include "model/measure.h"
-#include "model/neighbours.h"
+#include "model/analysis/measure.h"
+#include "model/contract/neighbours.h"
 #include "tests/golden/scene_with.h"
 
 namespace cuboct::test {
@@ -32,10 +32,10 @@ std::vector<size_t> pieces(const std::vector<Vec3>& x, double reach) {
   return sizes;
 }
 
-// A twentieth of plate_5m's length and width: 6 mm x 3 mm. The curve rises to a peak; at the end no pair across the
-// crack attracts (the law does up to 1.137 pitches), and what the grip feels is the ringing of its half. The stress is
-// gone at 45 us. When the last pair parts is chance: between 49 and 66 us in doubles by either integrator and in five
-// fixed formats. By 70 us the grip went 1.5 pitches on.
+// A twentieth of plate_5m's length and width: 6 mm x 3 mm. The curve rises to a peak; at the end no pair
+// across the crack attracts (the law does up to 1.137 pitches), and what the grip feels is the ringing of its
+// half. The stress is gone at 45 us. When the last pair parts is chance: between 49 and 66 us in doubles by
+// either integrator and in five fixed formats. By 70 us the grip went 1.5 pitches on.
 TEST(Plate, BreaksInTwo) {
   const Scene scene = scene_with(
       CUBOCT_SOURCE_DIR "/scenes/bench/plate_50k.toml",

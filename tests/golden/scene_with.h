@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A committed scene with some of its values replaced, and its run in golden's bits (the lattice engine holds them).
+// A committed scene with some of its values replaced, and its run in golden's bits (the lattice engine holds
+// them).
 #pragma once
 
 #include <unistd.h>
@@ -10,15 +11,15 @@
 
 #include "emu/lattice/run.h"
 #include "hw/setup.h"
-#include "model/changes.h"
+#include "model/scene/changes.h"
 
 namespace cuboct::test {
 
 inline Scene scene_with(const std::string& path, const std::vector<Change>& changes) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
-  const auto copy = std::filesystem::temp_directory_path() /
-                    ("cuboct_scene_with_" + std::to_string(::getpid()) + ".toml");
+  const auto copy =
+      std::filesystem::temp_directory_path() / ("cuboct_scene_with_" + std::to_string(::getpid()) + ".toml");
   std::ofstream(copy) << with_changes(text.str(), path, changes);
   Scene scene = read_scene(copy.string());
   std::filesystem::remove(copy);

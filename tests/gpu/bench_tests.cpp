@@ -14,8 +14,8 @@
 #include <thread>
 
 #include "gpu_ref/bench_report.h"
-#include "model/error.h"
-#include "model/process.h"
+#include "model/base/error.h"
+#include "model/base/process.h"
 #include "tests/gpu/fake_nvml.h"
 
 namespace cuboct::gpu {

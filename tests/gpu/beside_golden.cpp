@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/compare.h"
-#include "model/golden.h"
+#include "model/contract/golden.h"
+#include "model/trace/compare.h"
 #include "tests/support/block.h"
 #include "tests/support/dice.h"
 
@@ -16,8 +16,8 @@ namespace cuboct::test {
 namespace {
 
 std::string text_of(const RunError& e) {
-  return fmt::format("{} step {} node {} particle {} number {}: {}", to_string(e.fault), e.step, e.node, e.particle,
-                     e.number, e.what());
+  return fmt::format("{} step {} node {} particle {} number {}: {}", to_string(e.fault), e.step, e.node,
+                     e.particle, e.number, e.what());
 }
 
 std::string text_of(const std::optional<RunError>& e) { return e ? text_of(*e) : "no fault"; }
@@ -67,7 +67,8 @@ int most_slabs(const Plan& plan) {
   return std::clamp(longest / 4, 1, 4);
 }
 
-void compare(const Case& c, const GoldenPath& golden, const gpu::Options& options, Cut cut, uint64_t seed, Met& met) {
+void compare(const Case& c, const GoldenPath& golden, const gpu::Options& options, Cut cut, uint64_t seed,
+             Met& met) {
   SCOPED_TRACE(fmt::format("{}, {} slabs, blocks of {}, cut {}, seed {}", c.name, options.devices.size(),
                            options.block, static_cast<int>(cut), seed));
   Dice dice(seed);
@@ -80,9 +81,10 @@ void compare(const Case& c, const GoldenPath& golden, const gpu::Options& option
   try {
     while (engine->step_count() < first + c.steps) {
       const uint64_t left = first + c.steps - engine->step_count();
-      const uint64_t steps = cut == Cut::whole    ? left
-                             : cut == Cut::single ? 1
-                                                  : std::min<uint64_t>(left, static_cast<uint64_t>(dice.draw(1, 9)));
+      const uint64_t steps = cut == Cut::whole ? left
+                             : cut == Cut::single
+                                 ? 1
+                                 : std::min<uint64_t>(left, static_cast<uint64_t>(dice.draw(1, 9)));
       if (cut == Cut::random) look(*engine, dice, plan.particles);
       // Hashes are asked for or not: the kernels differ.
       if (cut == Cut::random && dice.chance(30)) {
@@ -106,7 +108,8 @@ void compare(const Case& c, const GoldenPath& golden, const gpu::Options& option
   ASSERT_EQ(hashes.size(), golden.hashes.size());
   const State found = engine->state();
   const auto mismatch = cuboct::compare(golden.last, found);
-  ASSERT_TRUE(found == golden.last) << (mismatch ? mismatch->text("golden", "gpu", plan.lattice) : "steps differ");
+  ASSERT_TRUE(found == golden.last) << (mismatch ? mismatch->text("golden", "gpu", plan.lattice)
+                                                 : "steps differ");
   ASSERT_EQ(engine->hash(), hash_of(plan.lattice, golden.last));
   if (fault) {
     // It stands where it stood, and says so again.

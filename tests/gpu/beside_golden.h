@@ -29,13 +29,14 @@ struct Met {
 };
 
 // All of a run: `seed` draws the cuts and what is read in between.
-void compare(const Case& c, const GoldenPath& golden, const gpu::Options& options, Cut cut, uint64_t seed, Met& met);
+void compare(const Case& c, const GoldenPath& golden, const gpu::Options& options, Cut cut, uint64_t seed,
+             Met& met);
 
 // The most slabs that a plan's longest axis has the planes for, up to 4.
 int most_slabs(const Plan& plan);
 
-// A bar, most often with room for four slabs along one axis, whatever else a rule and an arch may ask for; InputError
-// where they do not go together.
+// A bar, most often with room for four slabs along one axis, whatever else a rule and an arch may ask for;
+// InputError where they do not go together.
 Case random_bar(uint64_t seed);
 
 }  // namespace cuboct::test

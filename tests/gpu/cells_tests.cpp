@@ -9,7 +9,7 @@
 
 #include "gpu_ref/grid_view.h"
 #include "gpu_ref/messages.h"
-#include "model/error.h"
+#include "model/base/error.h"
 #include "tests/support/dice.h"
 
 namespace cuboct::gpu {
@@ -227,8 +227,8 @@ TEST(GpuRefusals, OfDevicesAndBlocks) {
   EXPECT_EQ(text({0, 8}, 128), "there is no CUDA device 8\n  hint: this machine has 8: 0 to 7");
   EXPECT_EQ(text({-1}, 128), "there is no CUDA device -1\n  hint: this machine has 8: 0 to 7");
   for (const int block : {0, 16, 100, 288, -32})
-    EXPECT_EQ(text({0}, block), "a block of " + std::to_string(block) +
-                                    " threads\n  hint: a multiple of 32 from 32 to 256");
+    EXPECT_EQ(text({0}, block),
+              "a block of " + std::to_string(block) + " threads\n  hint: a multiple of 32 from 32 to 256");
   EXPECT_EQ(text({}, 128), "0 slabs\n  hint: from 1 to 16");
   EXPECT_EQ(text(std::vector<int>(17, 0), 128), "17 slabs\n  hint: from 1 to 16");
 }

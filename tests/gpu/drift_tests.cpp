@@ -7,7 +7,7 @@
 
 #include "gpu_ref/engine.h"
 #include "gpu_ref/particle.h"
-#include "model/error.h"
+#include "model/base/error.h"
 #include "tests/gpu/beside_golden.h"
 #include "tests/support/block.h"
 #include "tests/support/dice.h"
@@ -35,13 +35,14 @@ TEST(GpuResidues, KeepEveryBitBesideTheirNeighbours) {
       expected[i] = k % 7 == 0 ? gpu::Three<uint32_t>{{~0u >> (32 - bits), 0, ~0u >> (32 - bits)}} : draw();
       residues.store(i, expected[i]);
       for (size_t j = 0; j < kParticles; ++j)
-        for (int a = 0; a < 3; ++a) ASSERT_EQ(residues.load(j).at[a], expected[j].at[a]) << j << ", axis " << a;
+        for (int a = 0; a < 3; ++a)
+          ASSERT_EQ(residues.load(j).at[a], expected[j].at[a]) << j << ", axis " << a;
     }
   }
 }
 
-// A row of particles out of each other's reach, one a cell, each within a few units of a face and slower than one unit
-// of a visible position per step; and a fast one, for which lists are made anew all the time.
+// A row of particles out of each other's reach, one a cell, each within a few units of a face and slower than
+// one unit of a visible position per step; and a fast one, for which lists are made anew all the time.
 struct Row {
   Case of{"row", {}, 300, {}};
   std::vector<Int3> first;  // from the corner of cell (0, 0, 0), P+G fractional bits
@@ -49,7 +50,8 @@ struct Row {
   explicit Row(int guard) {
     constexpr int kLength = 16, kFast = 8;
     constexpr double kEdge = 4;  // three cutoffs and more
-    of.scene = block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .dt = 1e-3, .jitter = 0, .speed = 0, .margin = kEdge});
+    of.scene =
+        block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .dt = 1e-3, .jitter = 0, .speed = 0, .margin = kEdge});
     of.scene.body = {};
     for (int k = 0; k < kLength; ++k) of.scene.body.x.push_back(Vec3(kEdge * k, 0, 0));
     of.scene.body.v.assign(kLength, Vec3::Zero());

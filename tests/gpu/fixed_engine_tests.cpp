@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/measure.h"
+#include "model/analysis/measure.h"
 #include "tests/gpu/beside_golden.h"
 #include "tests/support/block.h"
 
@@ -29,7 +29,8 @@ void compare_all(const Case& c, uint64_t seed, Met& met) {
   for (int s = 1; s <= most; ++s) {
     const auto k = static_cast<size_t>(s) + seed;
     compare(c, golden, slabs(s, kBlocks[k % 3]), kCuts[k % 3], seed, met);
-    if (s == 1 || seed % 4 == 0) compare(c, golden, slabs(s, kBlocks[(k + 2) % 3]), kCuts[(k + 1) % 3], seed + 1, met);
+    if (s == 1 || seed % 4 == 0)
+      compare(c, golden, slabs(s, kBlocks[(k + 2) % 3]), kCuts[(k + 1) % 3], seed + 1, met);
     if (testing::Test::HasFatalFailure()) return;
   }
 }
@@ -43,7 +44,8 @@ TEST_P(FixedCases, HoldGoldensBits) {
   EXPECT_GT(met.updates, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, FixedCases, testing::ValuesIn(case_names()), [](const auto& p) { return p.param; });
+INSTANTIATE_TEST_SUITE_P(Gpu, FixedCases, testing::ValuesIn(case_names()),
+                         [](const auto& p) { return p.param; });
 
 struct Named {
   std::string scene;
@@ -110,8 +112,8 @@ TEST(FixedRandom, BarsOfSeveralSlabsHoldGoldensBits) {
   EXPECT_GT(met.halo, 10000u);
 }
 
-// Cells a thousand cutoffs wide, where any skin is below what an anchor tells: one particle comes to stand in the middle
-// of its anchor's step, within the reach of another that stands in the middle of its own.
+// Cells a thousand cutoffs wide, where any skin is below what an anchor tells: one particle comes to stand in
+// the middle of its anchor's step, within the reach of another that stands in the middle of its own.
 TEST(FixedRandom, SkinsBelowTheAnchorsAreNotTrusted) {
   Case c{"wide cells", {}, 20, {}};
   c.scene = block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .jitter = 0, .speed = 0, .margin = 1});
@@ -140,13 +142,14 @@ TEST(FixedRandom, SkinsBelowTheAnchorsAreNotTrusted) {
   compare(c, golden, slabs(1), Cut::whole, 1, met);
 }
 
-// Two particles that meet head on, from all distances around what the first lists reach: each of the two has gone less
-// far than the list allows when they come within the cutoff.
+// Two particles that meet head on, from all distances around what the first lists reach: each of the two has
+// gone less far than the list allows when they come within the cutoff.
 TEST(FixedRandom, FurtherPartnersComeIntoReach) {
   Met met;
   for (int k = 0; k < 40; ++k) {
     Case c{"head on " + std::to_string(k), {}, 60, {}};
-    c.scene = block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .dt = 0.05, .jitter = 0, .speed = 0, .margin = 1});
+    c.scene =
+        block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .dt = 0.05, .jitter = 0, .speed = 0, .margin = 1});
     c.scene.body = {};
     c.scene.body.x = {Vec3(0, 0, 0), Vec3(1.2 * (1.06 + 0.001 * k), 0, 0)};
     c.scene.body.v = {Vec3(0.021, 0, 0), Vec3(-0.021, 0, 0)};
@@ -161,13 +164,14 @@ TEST(FixedRandom, FurtherPartnersComeIntoReach) {
   EXPECT_LT(met.lists, 10 * met.runs);
 }
 
-// Two on springs that swing to and fro about a distance just outside the cutoff, in and out of what thin lists reach: each
-// is soon back where the pair list found it, though not where the thin list did.
+// Two on springs that swing to and fro about a distance just outside the cutoff, in and out of what thin
+// lists reach: each is soon back where the pair list found it, though not where the thin list did.
 TEST(FixedRandom, WaysCountFromWhereTheThinListWasMade) {
   Met met;
   for (int k = 0; k < 40; ++k) {
     Case c{"swing " + std::to_string(k), {}, 200, {}};
-    c.scene = block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .dt = 0.05, .jitter = 0, .speed = 0, .margin = 1});
+    c.scene =
+        block_scene({.size = {1, 1, 1}, .cutoff = 1.2, .dt = 0.05, .jitter = 0, .speed = 0, .margin = 1});
     c.scene.body = {};
     const double far = 0.02 * 1.2, turn = 0.25 + 0.005 * k;  // amplitude; radians a step
     ParticleType& type = c.scene.rule.types[0];
@@ -208,8 +212,8 @@ TEST(FixedFaults, AreGoldensWhateverTheSlabs) {
   EXPECT_GE(runs, 33u);
 }
 
-// A gas that damps and at last collides faster than its relative velocities are wide, and another whose nodes run
-// full: most have several particles at fault, of which golden names one.
+// A gas that damps and at last collides faster than its relative velocities are wide, and another whose nodes
+// run full: most have several particles at fault, of which golden names one.
 TEST(FixedFaults, OfGasesAreGoldens) {
   Met met;
   for (uint64_t seed = 1; seed <= 16; ++seed) {
@@ -278,8 +282,8 @@ TEST(FixedFaults, FullNodesAreNoFault) {
 // What is read is what the host measures: forces to the bit, sums of doubles but for their order.
 TEST(FixedReading, IsWhatTheHostMeasures) {
   uint64_t read = 0;
-  for (const char* name : {"rich_damped", "rich_force_held", "rich_ring", "flat_rich_damped", "hot_gas", "periodic_27",
-                           "held_and_moved", "force_held", "damped"}) {
+  for (const char* name : {"rich_damped", "rich_force_held", "rich_ring", "flat_rich_damped", "hot_gas",
+                           "periodic_27", "held_and_moved", "force_held", "damped"}) {
     const Case c = make_case(name);
     const Plan& plan = c.setup.plan;
     for (int s = 1; s <= most_slabs(plan); ++s) {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "model/law.h"
-#include "model/scene.h"
+#include "model/contract/law.h"
+#include "model/scene/scene.h"
 #include "tests/fcc_block.h"
 
 namespace cuboct::test {

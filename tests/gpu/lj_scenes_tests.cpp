@@ -9,9 +9,9 @@
 #include "emu/lattice/run.h"
 #include "gpu_ref/bench_rows.h"
 #include "hw/setup.h"
-#include "model/measure.h"
-#include "model/reference.h"
-#include "model/scene.h"
+#include "model/analysis/measure.h"
+#include "model/real/reference.h"
+#include "model/scene/scene.h"
 
 namespace cuboct::gpu {
 namespace {

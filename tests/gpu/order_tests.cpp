@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gpu_ref/device.h"
-#include "model/law.h"
+#include "model/contract/law.h"
 #include "tests/fcc_block.h"
 #include "tests/gpu/beside_golden.h"
 

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "gpu_ref/run.h"
-#include "model/trace.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 #include "tests/support/file_limit.h"
 
@@ -238,10 +238,12 @@ TEST_F(GpuProgram, AFullDiskFailsCleanly) {
   const std::string before = contents(bench_.path("kept/summary.json"));
   for (const std::string precision : {"fixed", "float"}) {
     const FileLimit limit(900 << 10);
-    const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--precision", precision, "--steps", "80",
-                                         "--frames-every", "1", "--out", bench_.path("kept")});
+    const Answer answer =
+        bench_.cuboct({"run", kBlock, "--engine", "gpu", "--precision", precision, "--steps", "80",
+                       "--frames-every", "1", "--out", bench_.path("kept")});
     EXPECT_EQ(answer.code, 2);
-    EXPECT_TRUE(answer.err.starts_with("cannot write ") && answer.err.ends_with("/gpu.h5: File too large\n")) << answer.err;
+    EXPECT_TRUE(answer.err.starts_with("cannot write ") && answer.err.ends_with("/gpu.h5: File too large\n"))
+        << answer.err;
     EXPECT_EQ(answer.out, "");
   }
   EXPECT_EQ(contents(bench_.path("kept/summary.json")), before);

@@ -7,18 +7,18 @@
 #include <numeric>
 
 #include "gpu_ref/engine.h"
-#include "model/error.h"
-#include "model/law.h"
-#include "model/measure.h"
-#include "model/reference.h"
+#include "model/analysis/measure.h"
+#include "model/base/error.h"
+#include "model/contract/law.h"
+#include "model/real/reference.h"
 #include "tests/fcc_block.h"
 #include "tests/support/dice.h"
 
 namespace cuboct::gpu {
 namespace {
 
-constexpr double kPitch = 1e-3;                          // m, of the solids
-constexpr double kSigma = 3.4e-10, kArgon = 1.65e-21;    // m, J
+constexpr double kPitch = 1e-3;                        // m, of the solids
+constexpr double kSigma = 3.4e-10, kArgon = 1.65e-21;  // m, J
 
 Options slabs(int count, int block = 128) {
   Options options;
@@ -73,8 +73,8 @@ Trial solid(const Cell& cells, bool ring, bool full) {
 // Liquid argon, in reduced units of density 0.8 and of temperature about 1.5 while it melts.
 Trial melt(const Cell& cells, uint64_t steps) {
   Trial run{"melt", {}, steps};
-  run.scene.rule =
-      test::simple_rule(lennard_jones(kArgon, kSigma, 2.5 * kSigma, 0.6 * kSigma, Smoothing::none), 6.6e-26, 1e-14);
+  run.scene.rule = test::simple_rule(
+      lennard_jones(kArgon, kSigma, 2.5 * kSigma, 0.6 * kSigma, Smoothing::none), 6.6e-26, 1e-14);
   const double pitch = std::cbrt(std::numbers::sqrt2 / 0.8) * kSigma;
   run.scene.body = fcc_bar(cells, pitch);
   run.scene.periodic.extent = pitch * std::numbers::sqrt2 * Vec3(cells[0], cells[1], cells[2]);
@@ -134,8 +134,8 @@ double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return most;
 }
 
-// How far the reference gets from itself when all its particles are moved by parts in 10^15 of a cutoff: what a
-// rounding grows to.
+// How far the reference gets from itself when all its particles are moved by parts in 10^15 of a cutoff: what
+// a rounding grows to.
 double growth(const Trial& run) {
   const double cutoff = run.scene.rule.law->cutoff();
   Reference one(run.scene.rule, run.scene.body, run.scene.periodic);
@@ -147,8 +147,8 @@ double growth(const Trial& run) {
   return farthest(one.body().x, other.body().x) / cutoff;
 }
 
-// Positions, in cutoffs, and velocities, in cutoffs per step, beside the reference after the run: a sum of roundings,
-// of some 10^-16 at each step, each of which grows as the run makes it.
+// Positions, in cutoffs, and velocities, in cutoffs per step, beside the reference after the run: a sum of
+// roundings, of some 10^-16 at each step, each of which grows as the run makes it.
 void compare(const Trial& run, int count) {
   SCOPED_TRACE(fmt::format("{}, {} slabs", run.name, count));
   const double grown = growth(run), tolerance = 1e-13 + 20 * grown;
@@ -177,7 +177,8 @@ void compare(const Trial& run, int count) {
   for (const Vec3& f : forces) largest = std::max(largest, f.norm());
   for (size_t k = 0; k < ids.size(); ++k) {
     EXPECT_EQ(reading.x[k], found.x[ids[k]]) << "particle " << ids[k];
-    EXPECT_LE((reading.force[k] - forces[ids[k]]).norm(), 1e3 * tolerance * largest + 1e-12 * largest) << "particle " << ids[k];
+    EXPECT_LE((reading.force[k] - forces[ids[k]]).norm(), 1e3 * tolerance * largest + 1e-12 * largest)
+        << "particle " << ids[k];
   }
   const Rule& rule = run.scene.rule;
   double kinetic = 0, gravity = 0, speed = 0, heights = 0;
@@ -265,7 +266,8 @@ TEST(GpuReal, ThinListsServeAsLongOnSlabs) {
     const auto many = engine_of(run, Arithmetic::float32, slabs(4));
     for (uint64_t step = 1; step <= 120; ++step) {
       alone->advance(1), many->advance(1);
-      ASSERT_EQ(many->counters().thin_stops, alone->counters().thin_stops) << "run " << k << ", step " << step;
+      ASSERT_EQ(many->counters().thin_stops, alone->counters().thin_stops)
+          << "run " << k << ", step " << step;
     }
     stops += alone->counters().thin_stops;
   }
@@ -301,8 +303,9 @@ TEST(GpuReal, APositionWithoutBoundsStopsTheRun) {
       } catch (const LostPosition& e) {
         EXPECT_EQ(e.step, 0u);
         EXPECT_EQ(e.particle, 17u);
-        EXPECT_STREQ(e.what(),
-                     "step 1: a position leaves all bounds; before it particle 17 was the fastest, at 3.333e+09 m/s");
+        EXPECT_STREQ(
+            e.what(),
+            "step 1: a position leaves all bounds; before it particle 17 was the fastest, at 3.333e+09 m/s");
       }
       EXPECT_EQ(engine->step_count(), 0u);
       expect_same(engine->body(), before);

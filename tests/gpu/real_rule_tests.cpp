@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "gpu_ref/real_tables.h"
-#include "model/error.h"
+#include "model/base/error.h"
 #include "tests/gpu/laws.h"
 
 namespace cuboct::gpu {

@@ -6,8 +6,8 @@
 
 #include "gpu_ref/energy_table.h"
 #include "gpu_ref/real_tables.h"
-#include "model/measure.h"
-#include "model/reference.h"
+#include "model/analysis/measure.h"
+#include "model/real/reference.h"
 #include "tests/gpu/laws.h"
 
 namespace cuboct::gpu {
@@ -166,7 +166,7 @@ TEST(RealSteps, FollowTheReferenceInDoubles) {
   for (const Case& c : cases()) compare<double>(c, 400 * 0x1p-53);
 }
 
-// Of all particles and pairs, against the formulas of model/measure.h and Reference's own sum.
+// Of all particles and pairs, against the formulas of model/analysis/measure.h and Reference's own sum.
 TEST(RealEnergies, AreThoseOfTheReference) {
   for (const Case& c : cases()) {
     Reference reference(c.rule, c.body, c.box);

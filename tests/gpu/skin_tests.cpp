@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The skin's choice on made-up matter: how many entries a list has and how long it serves are functions of the skin.
+// The skin's choice on made-up matter: how many entries a list has and how long it serves are functions of
+// the skin.
 #include "gpu_ref/skin.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +59,8 @@ double best(const Matter& matter) {
   double least = 1e300;
   for (int k = 0; k < 14; ++k) {
     const double skin = std::min(0.02 * std::pow(1.25, k), 0.16);
-    least = std::min(least, kMaking / std::max(1.0, matter.life(skin)) + kOthers + kEntry * matter.entries(skin));
+    least =
+        std::min(least, kMaking / std::max(1.0, matter.life(skin)) + kOthers + kEntry * matter.entries(skin));
   }
   return least;
 }
@@ -97,7 +99,8 @@ TEST(GpuSkin, IsTheSameForTheSameRun) {
   // A longer run begins as the shorter one.
   const Lived shorter = live(matter, 20'000), longer = live(matter, 50'000);
   ASSERT_GT(shorter.skins.size(), 20u);
-  EXPECT_EQ(shorter.skins, std::vector<double>(longer.skins.begin(), longer.skins.begin() + shorter.skins.size()));
+  EXPECT_EQ(shorter.skins,
+            std::vector<double>(longer.skins.begin(), longer.skins.begin() + shorter.skins.size()));
 }
 
 TEST(GpuSkin, StaysWithinWhatTheCellsHold) {

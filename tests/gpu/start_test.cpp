@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "model/reference.h"
-#include "model/scene.h"
-#include "model/trace.h"
+#include "model/real/reference.h"
+#include "model/scene/scene.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct {
@@ -34,14 +34,15 @@ class Start : public testing::Test {
   test::Bench bench_{false};
 };
 
-// Forty steps are ten and thirty, where the thirty begin with the ten's last state: in doubles as close as doubles
-// of other units allow, from which a start at the scene's own positions is far.
+// Forty steps are ten and thirty, where the thirty begin with the ten's last state: in doubles as close as
+// doubles of other units allow, from which a start at the scene's own positions is far.
 TEST_F(Start, ARunGoesOnFromAnothersLastState) {
   const std::string scene = kScene + " --precision double --frames ";
   const Trace whole = trace("whole.h5", scene + "0,40 --steps 40");
   trace("begun.h5", scene + "10 --steps 10");
   const Trace rest = trace("rest.h5", scene + "30 --steps 30 --start " + bench_.path("begun.h5"));
-  const std::vector<Vec3>&end = whole.bodies.back().x, &begin = whole.bodies.front().x, &other = rest.bodies.back().x;
+  const std::vector<Vec3>&end = whole.bodies.back().x, &begin = whole.bodies.front().x,
+        &other = rest.bodies.back().x;
   ASSERT_EQ(other.size(), end.size());
   double apart = 0, moved = 0;
   for (size_t i = 0; i < end.size(); ++i) {
@@ -61,7 +62,8 @@ TEST_F(Start, ForcesAtGivenPositions) {
   for (Vec3& x : given.bodies[0].x) x *= 1.01;
   write_trace(bench_.path("given.h5"), given);
   const Trace answer =
-      trace("forces.h5", kScene + " --precision double --steps 0 --frames 0 --forces --start " + bench_.path("given.h5"));
+      trace("forces.h5",
+            kScene + " --precision double --steps 0 --frames 0 --forces --start " + bench_.path("given.h5"));
   Body body = scene.body;
   body.x = given.bodies[0].x;
   const auto forces = Reference(scene.rule, body, scene.periodic, RealOptions{}).forces();

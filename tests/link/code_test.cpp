@@ -5,10 +5,10 @@
 #include <set>
 #include <unordered_set>
 
+#include "emu/machine/words.h"
 #include "emu/systemc/link_guard.h"
-#include "emu/systemc/words.h"
 #include "hw/link_code.h"
-#include "model/config.h"
+#include "model/scene/config.h"
 #include "tests/support/cases.h"
 #include "tests/support/dice.h"
 
@@ -31,19 +31,20 @@ uint32_t reversed(uint32_t value, int width) {
   return out;
 }
 
-// Check values of the catalogue of parametrised CRC algorithms (Cook, https://reveng.sourceforge.io/crc-catalogue).
+// Check values of the catalogue of parametrised CRC algorithms (Cook,
+// https://reveng.sourceforge.io/crc-catalogue).
 TEST(LinkCode, GivesThePublishedCheckValues) {
   const auto low = digits(false), high = digits(true);
-  EXPECT_EQ(CrcTable({16, 0x3D65, 0})(low.data(), 72) ^ 0xFFFF, 0xEA82u);       // CRC-16/DNP
-  EXPECT_EQ(CrcTable({16, 0x1021, 0xFFFF})(low.data(), 72), 0x6F91u);           // CRC-16/MCRF4XX
-  EXPECT_EQ(CrcTable({16, 0x1021, 0})(low.data(), 72), 0x2189u);                // CRC-16/KERMIT
+  EXPECT_EQ(CrcTable({16, 0x3D65, 0})(low.data(), 72) ^ 0xFFFF, 0xEA82u);  // CRC-16/DNP
+  EXPECT_EQ(CrcTable({16, 0x1021, 0xFFFF})(low.data(), 72), 0x6F91u);      // CRC-16/MCRF4XX
+  EXPECT_EQ(CrcTable({16, 0x1021, 0})(low.data(), 72), 0x2189u);           // CRC-16/KERMIT
   EXPECT_EQ(CrcTable({32, 0x04C11DB7, 0xFFFFFFFF})(low.data(), 72) ^ 0xFFFFFFFF, 0xCBF43926u);  // CRC-32
   // Those that take bit 7 of a byte first give the remainder the other way round.
-  EXPECT_EQ(reversed(CrcTable({16, 0x3D65, 0})(high.data(), 72), 16) ^ 0xFFFF, 0xC2B7u);   // EN-13757
-  EXPECT_EQ(reversed(CrcTable({16, 0x5935, 0xFFFF})(high.data(), 72), 16), 0x772Bu);       // CRC-16/M17
-  EXPECT_EQ(reversed(CrcTable({16, 0x1021, 0})(high.data(), 72), 16), 0x31C3u);            // XMODEM
-  EXPECT_EQ(reversed(CrcTable({8, 0x2F, 0xFF})(high.data(), 72), 8) ^ 0xFF, 0xDFu);        // AUTOSAR
-  EXPECT_EQ(CrcTable({8, 0x39, 0})(low.data(), 72), 0x15u);                                // DARC
+  EXPECT_EQ(reversed(CrcTable({16, 0x3D65, 0})(high.data(), 72), 16) ^ 0xFFFF, 0xC2B7u);  // EN-13757
+  EXPECT_EQ(reversed(CrcTable({16, 0x5935, 0xFFFF})(high.data(), 72), 16), 0x772Bu);      // CRC-16/M17
+  EXPECT_EQ(reversed(CrcTable({16, 0x1021, 0})(high.data(), 72), 16), 0x31C3u);           // XMODEM
+  EXPECT_EQ(reversed(CrcTable({8, 0x2F, 0xFF})(high.data(), 72), 8) ^ 0xFF, 0xDFu);       // AUTOSAR
+  EXPECT_EQ(CrcTable({8, 0x39, 0})(low.data(), 72), 0x15u);                               // DARC
 }
 
 // What each wrong bit of {message, check} adds to the remainder.
@@ -103,8 +104,8 @@ TEST(LinkCode, HasTheDistanceThatItSaysUpToItsLength) {
   EXPECT_LT(code.window, 1 << code.sequence_bits);
 }
 
-// A burst of 16 bits or less is seen wherever it lies, by each of the three polynomials: all patterns at every
-// place.
+// A burst of 16 bits or less is seen wherever it lies, by each of the three polynomials: all patterns at
+// every place.
 TEST(LinkCode, SeesEachBurstUpToItsWidth) {
   for (const int bits : {66, 150, 300}) {
     const LinkCode code = link_code(LinkCheck::retry, bits);
@@ -223,8 +224,9 @@ TEST(FaultShare, IsAShareOrANumber) {
       ADD_FAILURE() << bad;
     } catch (const InputError& e) {
       EXPECT_EQ(std::string(e.what()),
-                "'" + bad + "' faults cannot be injected\n"
-                "  hint: give a share of all beats, as 0.001, or their number in the run, as 10000");
+                "'" + bad +
+                    "' faults cannot be injected\n"
+                    "  hint: give a share of all beats, as 0.001, or their number in the run, as 10000");
     }
   }
 }

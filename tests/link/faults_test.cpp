@@ -26,7 +26,8 @@ std::string before_stop(const Plan& plan, const GoldenRun& golden, const emu::Ru
 // A beat with checks takes two cycles more; which check makes no difference, and nothing else changes.
 TEST(CheckedLinks, CostTwoCyclesPerBeatAndNoBits) {
   for (const std::string name : {"undamped_2x2x2", "flat_ring", "rich_ring", "lattice_3x2x1"}) {
-    const Case none = make_case(name), detect = make_case(name + ".detect"), retry = make_case(name + ".retry");
+    const Case none = make_case(name), detect = make_case(name + ".detect"),
+               retry = make_case(name + ".retry");
     const GoldenRun golden = run_golden(none.setup, none.steps);
     const auto options = keep_all(none.steps), stalled = keep_all(none.steps, 0.4, 5);
     const emu::RunResult n = run(none, options), d = run(detect, options), r = run(retry, options);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Checked links of the emitted nodes: golden's bits, the native node's cycles, with and without faults, in the
-// plain loop and behind SystemC. One test per process.
+// Checked links of the emitted nodes: golden's bits, the native node's cycles, with and without faults, in
+// the plain loop and behind SystemC. One test per process.
 #include <gtest/gtest.h>
 
 #include <systemc>
 
-#include "emu/systemc/bench.h"
+#include "emu/machine/bench.h"
 #include "emu/systemc/node.h"
 #include "emu/verilated/verilated_node.h"
 #include "tests/backend/engines.h"
@@ -75,8 +75,8 @@ TEST_P(LinkRtl, MeetsFaultsAsTheNativeNodeDoes) {
   }
 }
 
-// Native and emitted nodes as neighbours: every beat and acknowledgement of the one is opened by the other, so
-// that the checks are equal bit by bit.
+// Native and emitted nodes as neighbours: every beat and acknowledgement of the one is opened by the other,
+// so that the checks are equal bit by bit.
 TEST_P(LinkRtl, SpeaksTheNativeNodesCode) {
   const Case c = make_case(GetParam());
   const Plan& plan = c.setup.plan;
@@ -89,8 +89,7 @@ TEST_P(LinkRtl, SpeaksTheNativeNodesCode) {
   EXPECT_EQ(compare(plan, run_golden(c.setup, c.steps), got).difference, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, LinkRtl,
-                         testing::Values("undamped_2x2x2.detect", "flat_ring.retry"),
+INSTANTIATE_TEST_SUITE_P(Cases, LinkRtl, testing::Values("undamped_2x2x2.detect", "flat_ring.retry"),
                          [](const auto& p) {
                            std::string name = p.param;
                            name[name.find('.')] = '_';

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// link_study SCENE RUNS STEPS systemc|rtl CACHE: runs a scene whose links detect, RUNS times with another single
-// fault each, and counts what became of them. Exit code 1 unless each fault was found, the run stopped with
-// the link named and every state before it equal to golden's, or nothing was left to go wrong and all bits are
-// equal. docs/reference/links.md has the table.
+// link_study SCENE RUNS STEPS systemc|rtl CACHE: runs a scene whose links detect, RUNS times with another
+// single fault each, and counts what became of them. Exit code 1 unless each fault was found, the run stopped
+// with the link named and every state before it equal to golden's, or nothing was left to go wrong and all
+// bits are equal. docs/reference/links.md has the table.
 #include <fmt/format.h>
 
 #include <string>
 
+#include "emu/machine/plain.h"
 #include "emu/systemc/node.h"
-#include "emu/systemc/plain.h"
 #include "emu/verilated/verilated_node.h"
 #include "hw/setup.h"
-#include "model/golden.h"
+#include "model/contract/golden.h"
 
 namespace {
 
@@ -33,7 +33,8 @@ std::vector<uint64_t> golden_hashes(const Setup& setup, uint64_t steps) {
 }
 
 // Whether the run is as it must be.
-bool is_right(const Plan& plan, const std::vector<uint64_t>& golden, const emu::RunResult& run, Tally& tally) {
+bool is_right(const Plan& plan, const std::vector<uint64_t>& golden, const emu::RunResult& run,
+              Tally& tally) {
   const Trace& trace = run.trace;
   if (run.faults.injected() != 1 || run.faults.detected != 1) return false;
   if (!std::equal(trace.state_hash.begin(), trace.state_hash.end(), golden.begin())) return false;
@@ -47,7 +48,8 @@ bool is_right(const Plan& plan, const std::vector<uint64_t>& golden, const emu::
   ++tally.by_kind[static_cast<int>(stop.fault) - static_cast<int>(Fault::link_check)];
   const emu::FaultPlace& at = run.first_fault;
   const bool by_sender = stop.node == at.node && stop.number == at.face;
-  const bool by_receiver = stop.node == plan.lattice.neighbour(at.node, at.face) && stop.number == (at.face ^ 1);
+  const bool by_receiver =
+      stop.node == plan.lattice.neighbour(at.node, at.face) && stop.number == (at.face ^ 1);
   return by_sender || by_receiver;
 }
 
@@ -78,8 +80,10 @@ int study(int argc, char** argv) {
     if (++tally.bad == 1) fmt::print(stderr, "seed {} is not as it must be\n", seed);
   }
   fmt::print(
-      "{} {}: {} runs of {} steps, {} injected ({} flipped, {} dropped, {} repeated, {} in acknowledgements), "
-      "{} detected, {} stopped with the link named ({} check, {} order, {} silent), {} ended with all bits equal, "
+      "{} {}: {} runs of {} steps, {} injected ({} flipped, {} dropped, {} repeated, {} in "
+      "acknowledgements), "
+      "{} detected, {} stopped with the link named ({} check, {} order, {} silent), {} ended with all bits "
+      "equal, "
       "{} wrong\n",
       argv[1], engine, runs, options.steps, tally.counts.injected(), tally.counts.flips, tally.counts.drops,
       tally.counts.repeats, tally.counts.acks, tally.counts.detected, tally.stopped, tally.by_kind[0],

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Mean of a time series and its standard error, by blocks: H. Flyvbjerg and H. G. Petersen, J. Chem. Phys. 91 (1989)
-// 461. Neighbouring samples are averaged in pairs again and again; the error estimated as if samples were independent
-// rises until blocks are longer than the correlation time, then stays. Taken is the first level that is within its own
-// uncertainty, 1/sqrt(2 (n - 1)) of it, of the largest estimate at any later level with 16 blocks or more.
+// Mean of a time series and its standard error, by blocks: H. Flyvbjerg and H. G. Petersen, J. Chem. Phys. 91
+// (1989) 461. Neighbouring samples are averaged in pairs again and again; the error estimated as if samples
+// were independent rises until blocks are longer than the correlation time, then stays. Taken is the first
+// level that is within its own uncertainty, 1/sqrt(2 (n - 1)) of it, of the largest estimate at any later
+// level with 16 blocks or more.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +36,8 @@ inline Mean blocked(std::vector<double> x) {
   }
   for (size_t k = 0; k < errors.size(); ++k) {
     mean.error = errors[k];
-    if (*std::max_element(errors.begin() + static_cast<ptrdiff_t>(k), errors.end()) <= errors[k] + doubts[k]) break;
+    if (*std::max_element(errors.begin() + static_cast<ptrdiff_t>(k), errors.end()) <= errors[k] + doubts[k])
+      break;
   }
   return mean;
 }

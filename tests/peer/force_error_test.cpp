@@ -10,8 +10,8 @@
 #include <cstdlib>
 
 #include "hw/setup.h"
-#include "model/measure.h"
-#include "model/reference.h"
+#include "model/analysis/measure.h"
+#include "model/real/reference.h"
 
 namespace cuboct {
 namespace {
@@ -24,14 +24,13 @@ struct Spread {
 
 Spread spread_of(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   std::vector<double> off;
-  for (size_t i = 0; i < a.size(); ++i)
-    off.push_back(2 * (a[i] - b[i]).norm() / (a[i].norm() + b[i].norm()));
+  for (size_t i = 0; i < a.size(); ++i) off.push_back(2 * (a[i] - b[i]).norm() / (a[i].norm() + b[i].norm()));
   std::sort(off.begin(), off.end());
   return {off[off.size() / 2], off[off.size() - 1 - off.size() / 1000], off.back()};
 }
 
-// A scene after `steps` of the reference, and more bodies from then on: what forces are compared at. Doubles, so that a
-// format's rounding of positions is part of what it is charged with.
+// A scene after `steps` of the reference, and more bodies from then on: what forces are compared at. Doubles,
+// so that a format's rounding of positions is part of what it is charged with.
 struct Warm {
   Scene scene;
   std::vector<Body> bodies;
@@ -57,8 +56,8 @@ Warm warm(const std::string& path, uint64_t steps) {
 std::vector<Vec3> exact_forces(const Warm& warm, Precision precision = Precision::float64) {
   std::vector<Vec3> all;
   for (const Body& body : warm.bodies) {
-    const auto forces = Reference(warm.scene.rule, body, warm.scene.periodic,
-                                  RealOptions{.precision = precision}).forces();
+    const auto forces =
+        Reference(warm.scene.rule, body, warm.scene.periodic, RealOptions{.precision = precision}).forces();
     all.insert(all.end(), forces.begin(), forces.end());
   }
   return all;
@@ -79,7 +78,8 @@ struct System {
   const char* name;
   const char* scene;
   uint64_t steps;
-  double default_median, wide_median;  // what the page states, and 30 % more: other compilers, other trajectories
+  double default_median,
+      wide_median;  // what the page states, and 30 % more: other compilers, other trajectories
 };
 constexpr double kRoom = 1.3;
 void PrintTo(const System& system, std::ostream* out) { *out << system.name; }
@@ -140,9 +140,10 @@ TEST_P(ForceError, InOpenMMsMeasure) {
   }
 }
 
-// The stress that pressure is made of, over the same liquid. Scale: 1/3 of the trace of the absolute pair virials is
-// some 10 epsilon/sigma^3, of which the pressure is a small difference; forces that are right to 4e-4 (4e-6 wide) at
-// random leave some 2e-3 of a unit, and wide formats 3e-6. Five times and thirty times that is allowed.
+// The stress that pressure is made of, over the same liquid. Scale: 1/3 of the trace of the absolute pair
+// virials is some 10 epsilon/sigma^3, of which the pressure is a small difference; forces that are right to
+// 4e-4 (4e-6 wide) at random leave some 2e-3 of a unit, and wide formats 3e-6. Five times and thirty times
+// that is allowed.
 TEST(Virial, IsThatOfTheReference) {
   const Warm liquid = warm(kScenes + "validation/melt_864.toml", 1500);
   const Scene& scene = liquid.scene;
@@ -157,7 +158,8 @@ TEST(Virial, IsThatOfTheReference) {
         exact += one;
       const State state = to_fixed(body, plan.rule, plan.lattice, plan.origin);
       EXPECT_GT(exact.cwiseAbs().maxCoeff(), 0.1);  // there is a stress to be wrong about
-      off = std::max(off, (virial_stress(plan.rule, plan.lattice, state, volume) - exact).cwiseAbs().maxCoeff());
+      off = std::max(off,
+                     (virial_stress(plan.rule, plan.lattice, state, volume) - exact).cwiseAbs().maxCoeff());
     }
     fmt::print("{}: virial stress off by {:.1e} epsilon/sigma^3 at most\n", name, off);
     EXPECT_LT(off, tolerance);

@@ -162,8 +162,8 @@ std::vector<LammpsSample> sample_lammps(const LammpsRun& run, const Body& body) 
   std::vector<LammpsSample> samples = samples_of(run, body, scratch, false);
   const int expected = run.steps / run.every + 1;
   if (static_cast<int>(samples.size()) < expected)
-    throw std::runtime_error(
-        fmt::format("LAMMPS wrote {} samples, not {}:\n{}", samples.size(), expected, scratch.read("out.txt")));
+    throw std::runtime_error(fmt::format("LAMMPS wrote {} samples, not {}:\n{}", samples.size(), expected,
+                                         scratch.read("out.txt")));
   return samples;
 }
 

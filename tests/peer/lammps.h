@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/rule.h"
+#include "model/contract/rule.h"
 
 namespace cuboct::test {
 
@@ -26,7 +26,7 @@ struct LammpsRun {
   double mass = 1, dt = 0;
   int steps = 0;
   std::vector<std::pair<std::string, std::string>> files;  // name, text: put beside the input
-  int every = 0;  // steps between samples
+  int every = 0;                                           // steps between samples
 };
 
 // What LAMMPS measures on its way, of all particles: J and Pa in our words.

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "model/dynamical_matrix.h"
-#include "model/law.h"
-#include "model/reference.h"
+#include "model/contract/law.h"
+#include "model/real/reference.h"
+#include "model/solid/dynamical_matrix.h"
 #include "tests/fcc_block.h"
 #include "tests/peer/lammps.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A Lennard-Jones liquid in golden's bits (the lattice engine holds them) and in LAMMPS: from the same start, at the same
-// energy, temperature and pressure agree within their statistical errors. docs/reference/validation.md, section 3.
+// A Lennard-Jones liquid in golden's bits (the lattice engine holds them) and in LAMMPS: from the same start,
+// at the same energy, temperature and pressure agree within their statistical errors.
+// docs/reference/validation.md, section 3.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -74,8 +75,9 @@ TEST(Melt, TemperatureAndPressureAreThoseOfLammps) {
   };
   const Liquid ours = liquid_of(curve("energy.kinetic"), curve("pressure"), curve("energy.total"), n);
 
-  test::LammpsRun peer{scene.periodic, "pair_style lj/smooth/linear 2.5\npair_coeff 1 1 1 1", 1, scene.rule.dt, kSteps,
-                       {}, kEvery};
+  test::LammpsRun peer{
+      scene.periodic, "pair_style lj/smooth/linear 2.5\npair_coeff 1 1 1 1", 1, scene.rule.dt, kSteps, {},
+      kEvery};
   std::vector<double> kinetic, pressure, total;
   for (const test::LammpsSample& sample : test::sample_lammps(peer, scene.body)) {
     if (sample.step < kMelt) continue;
@@ -84,17 +86,19 @@ TEST(Melt, TemperatureAndPressureAreThoseOfLammps) {
     total.push_back(sample.kinetic_energy + sample.potential_energy);
   }
   const Liquid theirs = liquid_of(kinetic, pressure, total, n);
-  fmt::print("kT {:.5f} +- {:.5f}, {:.5f} +- {:.5f}: {:+.1f} sigma\npressure {:.4f} +- {:.4f}, {:.4f} +- {:.4f}: {:+.1f} "
-             "sigma\nenergy {:.6f}, {:.6f}\n",
-             ours.temperature.value, ours.temperature.error, theirs.temperature.value, theirs.temperature.error,
-             sigmas(ours.temperature, theirs.temperature), ours.pressure.value, ours.pressure.error,
-             theirs.pressure.value, theirs.pressure.error, sigmas(ours.pressure, theirs.pressure), ours.energy.value,
-             theirs.energy.value);
+  fmt::print(
+      "kT {:.5f} +- {:.5f}, {:.5f} +- {:.5f}: {:+.1f} sigma\npressure {:.4f} +- {:.4f}, {:.4f} +- {:.4f}: "
+      "{:+.1f} "
+      "sigma\nenergy {:.6f}, {:.6f}\n",
+      ours.temperature.value, ours.temperature.error, theirs.temperature.value, theirs.temperature.error,
+      sigmas(ours.temperature, theirs.temperature), ours.pressure.value, ours.pressure.error,
+      theirs.pressure.value, theirs.pressure.error, sigmas(ours.pressure, theirs.pressure), ours.energy.value,
+      theirs.energy.value);
   // Four sigma: one run of 16,000 is further off by chance.
   EXPECT_LT(std::abs(sigmas(ours.temperature, theirs.temperature)), 4);
   EXPECT_LT(std::abs(sigmas(ours.pressure, theirs.pressure)), 4);
-  // The error is small enough to tell a pressure without its kinetic part, or a virial counted twice (both off by more
-  // than 0.5), or an energy that is off by 1 %: its derivative by kT is 2.4.
+  // The error is small enough to tell a pressure without its kinetic part, or a virial counted twice (both
+  // off by more than 0.5), or an energy that is off by 1 %: its derivative by kT is 2.4.
   EXPECT_LT(ours.pressure.error, 0.03);
   EXPECT_LT(ours.temperature.error, 0.003);
   // What the coarse table's energy differs by from the law's while the crystal melts.

@@ -83,7 +83,8 @@ std::string print_blocks(const Plan& plan) {
       static_cast<int>(in::count), static_cast<int>(out::count));
 
   // The pipe gets its own particle from a memory, a cycle later.
-  text += fmt::format("  logic [64*{}-1:0] in_q;\n  always_ff @(posedge clk_i) in_q <= in_i;\n", static_cast<int>(in::count));
+  text += fmt::format("  logic [64*{}-1:0] in_q;\n  always_ff @(posedge clk_i) in_q <= in_i;\n",
+                      static_cast<int>(in::count));
   text += "  logic pipe_valid, pipe_fault, pipe_strength, pipe_busy;\n";
   text += fmt::format("  logic [{}:0] pipe_slot, pipe_slot_next, new_slot;\n", kSlotBits - 1);
   text +=
@@ -123,7 +124,8 @@ std::string print_blocks(const Plan& plan) {
           from("own_type_i", in::own_type, "T", 1, "in_q") + from("other_x_i", in::other_x, "(P+2)", 3) +
           from("other_v_i", in::other_v, "V", 3) + from("other_type_i", in::other_type, "T");
   text +=
-      "    .valid_o(pipe_valid), .slot_next_o(pipe_slot_next), .slot_o(pipe_slot), .push_o(push), .fault_o(pipe_fault),\n"
+      "    .valid_o(pipe_valid), .slot_next_o(pipe_slot_next), .slot_o(pipe_slot), .push_o(push), "
+      ".fault_o(pipe_fault),\n"
       "    .fault_strength_o(pipe_strength), .fault_number_o(pipe_number), .busy_o(pipe_busy)\n  );\n";
   text += to_axes(out::d, "u_pipe.d_q", "D+1") + to(out::r2, "u_pipe.r2_q") +
           to(out::q, damped ? "u_pipe.gen_damp.q_q" : "1'b0", damped) +
@@ -135,7 +137,8 @@ std::string print_blocks(const Plan& plan) {
 
   text +=
       "\n  logic new_valid, fault;\n  logic [3:0] code;\n  logic signed [63:0] number;\n"
-      "  logic [3*P-1:0] new_x;\n  logic [3*G-1:0] new_residue;\n  logic [5:0] away;\n  logic [3*V-1:0] new_v;\n  logic [T-1:0] new_type;\n"
+      "  logic [3*P-1:0] new_x;\n  logic [3*G-1:0] new_residue;\n  logic [5:0] away;\n  logic [3*V-1:0] "
+      "new_v;\n  logic [T-1:0] new_type;\n"
       "  logic [Id-1:0] new_id, fault_id;\n  logic [3*U-1:0] new_u;\n  cuboct_update #(\n    " +
       given({"PositionFrac", "Guard", "VelocityBits", "SumBits", "Pd", "DisplacementBits", "GainBits",
              "GainFrac", "ConstantBits", "IdBits"}) +
@@ -148,16 +151,16 @@ std::string print_blocks(const Plan& plan) {
           from("residue_i", in::residue, "G", 3) + from("v_i", in::v, "V", 3) +
           from("type_i", in::type, "T") + from("id_i", in::id, "Id") + from("u_i", in::u, "U", 3);
   text +=
-      "    .valid_o(new_valid), .slot_o(new_slot), .x_o(new_x), .residue_o(new_residue), .away_o(away), .v_o(new_v), "
+      "    .valid_o(new_valid), .slot_o(new_slot), .x_o(new_x), .residue_o(new_residue), .away_o(away), "
+      ".v_o(new_v), "
       ".type_o(new_type),\n"
       "    .id_o(new_id), .u_o(new_u), .fault_o(fault), .fault_code_o(code),\n"
       "    .fault_id_o(fault_id), .fault_number_o(number)\n  );\n";
   text += to(out::update_valid, "new_valid") + to(out::update_slot, "new_slot") +
-          to_axes(out::x, "new_x", "P", false) +
-          to_axes(out::residue, "new_residue", "G", false) + to_axes(out::away, "away", "2") +
-          to_axes(out::v, "new_v", "V") + to(out::type, "new_type") + to(out::id, "new_id") +
-          to_axes(out::u, "new_u", "U") + to(out::fault, "fault") + to(out::fault_id, "fault_id") + to(out::code, "code") +
-          to(out::number, "number", true);
+          to_axes(out::x, "new_x", "P", false) + to_axes(out::residue, "new_residue", "G", false) +
+          to_axes(out::away, "away", "2") + to_axes(out::v, "new_v", "V") + to(out::type, "new_type") +
+          to(out::id, "new_id") + to_axes(out::u, "new_u", "U") + to(out::fault, "fault") +
+          to(out::fault_id, "fault_id") + to(out::code, "code") + to(out::number, "number", true);
 
   text += "\n";
   text += table("", "cuboct_force_rom", "force", "ForceBits", out::force_table);

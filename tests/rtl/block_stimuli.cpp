@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 
 namespace cuboct::test {
 namespace {
@@ -207,7 +207,8 @@ std::vector<std::string> look(const FixedRule& rule, PairStimulus& p) {
   const int64_t last = (int64_t{1} << w.position_frac) - 1;
   bool extreme = false;
   for (size_t a = 0; a < 3; ++a)
-    extreme = extreme || ((p.x_i[a] == 0 || p.x_i[a] == last) && std::abs(p.d[a]) >= cutoff_of(rule) * 9 / 10);
+    extreme =
+        extreme || ((p.x_i[a] == 0 || p.x_i[a] == last) && std::abs(p.d[a]) >= cutoff_of(rule) * 9 / 10);
   note(extreme, "x at an end, d long");
   for (size_t a = 0; a < 3; ++a) note(negative_half(p.x_j[a] - p.x_i[a], rule.difference_shift), "half of d");
   if (!p.result.inside) return seen;
@@ -269,7 +270,8 @@ std::set<std::string> pair_classes(const FixedRule& rule) {
       "half of d", "half of slope t, force", "half of the kick"};
   // At a cutoff of one cell edge, 2^D, the integers below and at cutoff2 are of the form 4^a (8b + 7), or the
   // squares of one axis alone, which the planar test stops.
-  if (whole(rule)) names.merge(std::set<std::string>{"d beyond its bits", "d beyond its bits, wrapped inside"});
+  if (whole(rule))
+    names.merge(std::set<std::string>{"d beyond its bits", "d beyond its bits, wrapped inside"});
   if (three_squares(rule.cutoff2 - 1)) names.insert("r2 = cutoff2 - 1");
   if (three_squares(rule.cutoff2) && !whole(rule)) names.insert("r2 = cutoff2");
   // t is not negative, so a negative product takes a negative coefficient.
@@ -337,9 +339,9 @@ PairStimuli pair_stimuli(const FixedRule& rule, uint64_t seed) {
     const auto which = source.draw()(0, 9);
     const bool made = which == 0
                           ? source.exactly(rule.cutoff2 - static_cast<uint64_t>(source.draw()(0, 1)), p)
-                      : which == 1 ? source.near_target(rule.cutoff2, p)
+                      : which == 1                ? source.near_target(rule.cutoff2, p)
                       : which == 2 && whole(rule) ? source.beyond(p)
-                                   : source.any(p);
+                                                  : source.any(p);
     if (made) offer(p, k % (kCandidates / kOrdinary) == 0);
   }
   return result;
@@ -414,11 +416,21 @@ UpdateStimuli update_stimuli(const FixedRule& rule, int sum_bits, uint64_t seed)
     pd = pd || t.pd;
     for (const bool axis : t.imposed) imposed = imposed || axis;
   }
-  std::set<std::string> names{
-      "sum at a limit",    "sum one beyond",     "v at a limit",       "v one beyond",
-      "to the node below", "to the node above",  "x = 0",              "x at its end",
-      "no fault",          "fault of the sum",   "fault of v",         "several faults",
-      "slow, seen to rest", "slow, seen to rise", "slow, seen to fall"};
+  std::set<std::string> names{"sum at a limit",
+                              "sum one beyond",
+                              "v at a limit",
+                              "v one beyond",
+                              "to the node below",
+                              "to the node above",
+                              "x = 0",
+                              "x at its end",
+                              "no fault",
+                              "fault of the sum",
+                              "fault of v",
+                              "several faults",
+                              "slow, seen to rest",
+                              "slow, seen to rise",
+                              "slow, seen to fall"};
   if (imposed) names.insert("imposed, sum of any size");
   if (pd)
     names.merge(std::set<std::string>{"half of the pull", "u at a limit", "u one beyond", "fault of u"});
@@ -442,10 +454,11 @@ UpdateStimuli update_stimuli(const FixedRule& rule, int sum_bits, uint64_t seed)
         s.sum[a] = (draw.chance(50) ? 1 : -1) * (int64_t{1} << (w.sum_bits - 1)) - draw(0, 1);
       if (kind.pd) s.u[a] = draw.edgy(w.displacement_bits);
     }
-    // One axis where v, or u, meets its limit exactly, or misses it by one; or where v is less than a unit of X.
+    // One axis where v, or u, meets its limit exactly, or misses it by one; or where v is less than a unit of
+    // X.
     const auto a = static_cast<size_t>(draw(0, 2));
     const int64_t slow = (int64_t{1} << w.guard) - 1;
-    const int64_t end = draw.chance(30) ? draw(-slow, slow)
+    const int64_t end = draw.chance(30)   ? draw(-slow, slow)
                         : draw.chance(50) ? step - draw(0, 1)
                                           : -step - draw(0, 1);
     if (draw.chance(30) && !kind.imposed[a]) {

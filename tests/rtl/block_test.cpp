@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The arithmetic of a node by itself: cuboct_pipe, cuboct_pair_table and cuboct_update, Verilated, driven
-// every cycle and compared, stage by stage and port by port, with model/fixed_rule.h.
+// every cycle and compared, stage by stage and port by port, with model/contract/fixed_rule.h.
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include "emu/verilated/compile.h"
 #include "emu/verilated/sources.h"
 #include "hw/rtl_emit.h"
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 #include "tests/rtl/block_lanes.h"
 #include "tests/rtl/block_stimuli.h"
 #include "tests/support/block.h"
@@ -315,8 +315,8 @@ void compare_pairs(const Plan& plan, const Stimuli& s, const Schedule& schedule,
 
 void compare_updates(const Plan& plan, const Stimuli& s, const Schedule& schedule,
                      const std::vector<OutLanes>& trace, Outcome& outcome) {
-  // UPDATE ends a cycle after the last particle is written, which is a cycle after it is at the outputs. With types held by
-  // force a fault is told a cycle later than the particle is there.
+  // UPDATE ends a cycle after the last particle is written, which is a cycle after it is at the outputs. With
+  // types held by force a fault is told a cycle later than the particle is there.
   const auto last = static_cast<size_t>(plan.latency.update - 2);
   const size_t told = last + (plan.rule.pd ? 1 : 0);
   const Widths& w = plan.rule.widths;
@@ -485,7 +485,8 @@ std::vector<Mutation> mutations() {
        "pipe: stage 5, q is "},
       {"pull_truncated",
        "rich",
-       {{"cuboct_update.sv", "carry = pull_sum_q[GainFrac-1] &&", "carry = 1'b0 && pull_sum_q[GainFrac-1] &&"}},
+       {{"cuboct_update.sv", "carry = pull_sum_q[GainFrac-1] &&",
+         "carry = 1'b0 && pull_sum_q[GainFrac-1] &&"}},
        "update: v."},
       {"drift_truncated",
        "plain",
@@ -498,7 +499,8 @@ std::vector<Mutation> mutations() {
        "update: residue."},
       {"negative_half",
        "plain",
-       {{"cuboct_round_odd.sv", "(!full[FullBits-1] || rest)", "(!full[FullBits-1] || full[FullBits-1] || rest)"}},
+       {{"cuboct_round_odd.sv", "(!full[FullBits-1] || rest)",
+         "(!full[FullBits-1] || full[FullBits-1] || rest)"}},
        "pipe: stage 2, d."},
       {"every_second_pair",
        "plain",

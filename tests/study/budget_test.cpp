@@ -13,7 +13,7 @@
 
 #include "cli/budget.h"
 #include "hw/setup.h"
-#include "model/error.h"
+#include "model/base/error.h"
 #include "study/cost.h"
 
 namespace cuboct::study {

@@ -14,7 +14,8 @@ namespace {
 
 // Four cells a side, no damping.
 const Base& block() {
-  static const Base base = read_base(CUBOCT_SOURCE_DIR "/scenes/undamped_block.toml", CUBOCT_SOURCE_DIR "/tests/study/formats.toml");
+  static const Base base = read_base(CUBOCT_SOURCE_DIR "/scenes/undamped_block.toml",
+                                     CUBOCT_SOURCE_DIR "/tests/study/formats.toml");
   return base;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `cuboct explore`, killed in the middle several times and begun again, ends with the results of a run that was let be.
+// `cuboct explore`, killed in the middle several times and begun again, ends with the results of a run that
+// was let be.
 #include <gtest/gtest.h>
 
 #include <fcntl.h>
@@ -87,7 +88,8 @@ class Explore {
 std::string sweep() {
   // 24 points of some 10 ms each.
   return "[change.run]\nsteps = 800\n[truth]\nrungs = 4\ntolerance = 1e-9\n[[figure]]\nkind = \"mean\"\n"
-         "curve = \"energy.potential\"\n[[sweep]]\ndt_safety = [0.05, 0.1, 0.2, 0.4]\nindex_bits = [4, 5, 6, 7, 8, 9]\n";
+         "curve = \"energy.potential\"\n[[sweep]]\ndt_safety = [0.05, 0.1, 0.2, 0.4]\nindex_bits = [4, 5, 6, "
+         "7, 8, 9]\n";
 }
 
 int count_of(const std::string& out, const char* table) {

@@ -111,7 +111,9 @@ TEST(Outcomes, RefusedAndUnstablePointsAreRows) {
       "= 20\n"
       "[[sweep]]\nintegrator = \"verlet\"\n[[sweep]]\nsum_bits = 14\n");
   EXPECT_EQ(m.outcomes[0].status, Status::refused);
-  EXPECT_TRUE(m.outcomes[0].why.ends_with("cell_edge = 0.0006 m is shorter than the pair law's cutoff, 0.000707107 m")) << m.outcomes[0].why;
+  EXPECT_TRUE(m.outcomes[0].why.ends_with(
+      "cell_edge = 0.0006 m is shorter than the pair law's cutoff, 0.000707107 m"))
+      << m.outcomes[0].why;
   EXPECT_EQ(m.outcomes[1].status, Status::refused);
   EXPECT_EQ(m.outcomes[2].status, Status::refused);
   EXPECT_EQ(m.outcomes[2].why, "fixed arithmetic knows the integrator 'euler' only");

@@ -32,9 +32,7 @@ TEST(Sensitivity, OfABoundDistanceIsNoneAndTheHorizonIsTheEnd) {
   EXPECT_EQ(s.horizon, 400U);
 }
 
-TEST(Sensitivity, TheHorizonIsAtLeastOneSample) {
-  EXPECT_EQ(sensitivity_of({1e-9, 1e-3}, 0.5).horizon, 1U);
-}
+TEST(Sensitivity, TheHorizonIsAtLeastOneSample) { EXPECT_EQ(sensitivity_of({1e-9, 1e-3}, 0.5).horizon, 1U); }
 
 }  // namespace
 }  // namespace cuboct::study

@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "model/dynamical_matrix.h"
-#include "model/error.h"
-#include "model/law.h"
+#include "model/base/error.h"
+#include "model/contract/law.h"
+#include "model/solid/dynamical_matrix.h"
 #include "study/stability_map.h"
 #include "tests/fcc_block.h"
 
@@ -40,8 +40,8 @@ const std::vector<Asked>& methods() {
   return all;
 }
 
-// Half of a bracket of 0.5 % is 0.25 %. In floats and integers the law has softened or stiffened by the swing that stands
-// out of their rounding, and rounding keeps pushing a damped body: 1 % more.
+// Half of a bracket of 0.5 % is 0.25 %. In floats and integers the law has softened or stiffened by the swing
+// that stands out of their rounding, and rounding keeps pushing a damped body: 1 % more.
 void expect_as_predicted(const Subject& subject, const Arch& arch = {}) {
   ASSERT_TRUE(subject.measurable) << subject.note;
   for (const Asked& asked : methods()) {
@@ -146,8 +146,8 @@ TEST(Stability, StretchedByTenPerCent) {
   expect_as_predicted(subject);
 }
 
-// Lennard-Jones stiffens: pressed by 10 % the limit is two thirds. A periodic box that is pressed has no cell edge
-// that divides it, so this is measured in real numbers.
+// Lennard-Jones stiffens: pressed by 10 % the limit is two thirds. A periodic box that is pressed has no cell
+// edge that divides it, so this is measured in real numbers.
 TEST(Stability, PressedByTenPerCent) {
   const auto law = lennard_jones(1, 1, 1.8, 0.8);
   Scene scene = block(3, law, true);
@@ -189,7 +189,8 @@ TEST(Stability, VerdictsFarFromTheLimit) {
   const uint64_t steps = steps_to_tell(subject.limit, 0.01);
   for (const Asked& asked : methods()) {
     for (const double part : {0.02, 0.1, 0.5, 0.98})
-      EXPECT_EQ(try_step(subject, Arch{}, asked.method, part * subject.limit.dt, 0.01, steps).verdict, Verdict::stable)
+      EXPECT_EQ(try_step(subject, Arch{}, asked.method, part * subject.limit.dt, 0.01, steps).verdict,
+                Verdict::stable)
           << asked.name << " at " << part;
     for (const double part : {1.02, 1.1, 1.5, 3.0, 10.0}) {
       const Trial trial = try_step(subject, Arch{}, asked.method, part * subject.limit.dt, 0.01, steps);
@@ -204,7 +205,8 @@ TEST(Stability, MapsAgreeWithTheTheory) {
   int cells = 0, refused = 0, unstable_bodies = 0;
   Arch narrow;  // whose gains end before stability does
   narrow.widths.gain_frac = 16;
-  const std::vector<StabilityMap> maps = stability_maps(scene, narrow, 0, 4, [](const std::string&, double) {});
+  const std::vector<StabilityMap> maps =
+      stability_maps(scene, narrow, 0, 4, [](const std::string&, double) {});
   ASSERT_EQ(maps.size(), 6U);
   for (const StabilityMap& map : maps)
     for (size_t k = 0; k < map.y.size(); ++k)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Results on disk: what was put comes back to the last bit, rows of other machines come in, those of other studies
-// do not; a runner computes what lacks and nothing else.
+// Results on disk: what was put comes back to the last bit, rows of other machines come in, those of other
+// studies do not; a runner computes what lacks and nothing else.
 #include "study/store.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "model/error.h"
+#include "model/base/error.h"
 #include "study/measure_errors.h"
 #include "study/runner.h"
 #include "study/truth_bytes.h"
@@ -35,12 +35,14 @@ void expect_same_errors(const Outcome& a, const Outcome& b) {
   EXPECT_EQ(a.why, b.why);
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_TRUE(same(a.dt, b.dt) && same(a.cost, b.cost) && same(a.pitch, b.pitch));
-  EXPECT_TRUE(same(a.errors.force_median, b.errors.force_median) && same(a.errors.force_max, b.errors.force_max));
+  EXPECT_TRUE(same(a.errors.force_median, b.errors.force_median) &&
+              same(a.errors.force_max, b.errors.force_max));
   EXPECT_TRUE(same(a.errors.trajectory, b.errors.trajectory) && same(a.errors.momentum, b.errors.momentum));
   EXPECT_TRUE(same(a.errors.drift_per_step, b.errors.drift_per_step));
   ASSERT_EQ(a.errors.figures.size(), b.errors.figures.size());
   for (size_t k = 0; k < a.errors.figures.size(); ++k)
-    EXPECT_TRUE(same(a.errors.figures[k], b.errors.figures[k]) && same(a.errors.values[k], b.errors.values[k]));
+    EXPECT_TRUE(same(a.errors.figures[k], b.errors.figures[k]) &&
+                same(a.errors.values[k], b.errors.values[k]));
 }
 
 TEST(Store, KeepsEverythingToTheLastBit) {
@@ -127,7 +129,8 @@ TEST(Store, ARunnerComputesWhatLacks) {
     first = runner.errors_of(study.points);
   }
   rows(path, "delete from points where settings like '%0.4%'");
-  rows(path, "update points set momentum = 7 where settings like '%0.2%'");  // what is there is not done again
+  rows(path,
+       "update points set momentum = 7 where settings like '%0.2%'");  // what is there is not done again
   Store store(path, study);
   Runner runner(study, store, kQuiet);
   const std::vector<Outcome> again = runner.errors_of(study.points);
@@ -168,8 +171,10 @@ TEST(Store, RefusesAnotherStudyAndASecondProcess) {
     EXPECT_EQ(error_of(study), "another process is at work on " + path);
   }
   const Study other = read_study(files.study(std::string("[change.run]\nsteps = 80\n") + kStudy));
-  EXPECT_EQ(error_of(other), path + ": these are results of another study: its scene, arch, figures or times were others\n"
-                                    "  hint: take another directory, or remove this one's results.db");
+  EXPECT_EQ(error_of(other),
+            path +
+                ": these are results of another study: its scene, arch, figures or times were others\n"
+                "  hint: take another directory, or remove this one's results.db");
   EXPECT_EQ(error_of(study), "no error");
 }
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "model/error.h"
+#include "model/base/error.h"
 #include "tests/study/small_study.h"
 
 namespace cuboct::study {
@@ -113,7 +113,8 @@ guard = [4, 8]
 
 TEST(Study, ChangesTheSceneForAllPoints) {
   const SmallStudy files;
-  const Study study = read_study(files.study("[change.run]\nsteps = 320\n[[sweep]]\nset.damping.ratio = [0.1]\n"));
+  const Study study =
+      read_study(files.study("[change.run]\nsteps = 320\n[[sweep]]\nset.damping.ratio = [0.1]\n"));
   EXPECT_EQ(resolve(study.base, study.points[0]).scene.steps, 320U);
   EXPECT_GT(resolve(study.base, study.points[0]).scene.rule.damping.coefficient, 0);
   EXPECT_EQ(study.grid.samples, 16U);
@@ -159,14 +160,17 @@ TEST(Study, MistakesNameTheirPlace) {
   EXPECT_EQ(error_of(files, "[[sweep]]\nset.damping.ration = [0.1]\n"),
             "study.toml:4:23: missing key 'coefficient' in 'damping'");
   EXPECT_EQ(error_of(files, "[[sweep]]\nindex_bits = []\n"), "study.toml:4:14: 'index_bits' lists nothing");
-  EXPECT_EQ(error_of(files, ""), "study.toml:1:1: a study without points\n  hint: add a [[sweep]] or a [search]");
+  EXPECT_EQ(error_of(files, ""),
+            "study.toml:1:1: a study without points\n  hint: add a [[sweep]] or a [search]");
   EXPECT_EQ(error_of(files, "[[figure]]\nkind = \"mean\"\ncurve = \"energy.kinetc\"\n[[sweep]]\n"),
             "study.toml:5:9: the scene has no curve 'energy.kinetc'\n  hint: did you mean 'energy.kinetic'?");
-  EXPECT_EQ(error_of(files, "[search]\nengine = [\"lattice\", \"gpu\"]\n"),
-            "study.toml:3:1: a search cannot set the engine 'gpu'\n  hint: its fixed points have lattice's errors");
+  EXPECT_EQ(
+      error_of(files, "[search]\nengine = [\"lattice\", \"gpu\"]\n"),
+      "study.toml:3:1: a search cannot set the engine 'gpu'\n  hint: its fixed points have lattice's errors");
   EXPECT_EQ(error_of(files, "[[sweep]]\nengine = \"gpuu\"\n"),
             "study.toml:4:10: unknown engine 'gpuu'\n  hint: did you mean 'gpu'?");
-  EXPECT_EQ(error_of(files, "[truth]\nrungs = 1\n[[sweep]]\n"), "study.toml:4:9: 'rungs' must be between 2 and 20, not 1");
+  EXPECT_EQ(error_of(files, "[truth]\nrungs = 1\n[[sweep]]\n"),
+            "study.toml:4:9: 'rungs' must be between 2 and 20, not 1");
   const std::string missing = error_of(files, "arch = \"nowhere.toml\"\n[[sweep]]\n");
   EXPECT_TRUE(missing.starts_with("study.toml:3:8: 'arch' names no file: ")) << missing;
   EXPECT_TRUE(missing.ends_with("nowhere.toml\n  hint: paths count from the study's directory")) << missing;

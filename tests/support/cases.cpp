@@ -2,13 +2,13 @@
 #include "tests/support/cases.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <map>
 #include <stdexcept>
 
-#include "model/golden.h"
+#include "model/contract/golden.h"
 #include "tests/support/block.h"
 #include "tests/support/dice.h"
 

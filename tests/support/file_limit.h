@@ -3,7 +3,7 @@
 
 #include <sys/resource.h>
 
-#include "model/output.h"
+#include "model/base/output.h"
 
 namespace cuboct {
 

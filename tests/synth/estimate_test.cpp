@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The clock before placement: rules of wires against the paths that they come from, and OpenSTA's longest
 // path of small netlists against sums by hand.
-#include "rtl/synth/estimate.h"
+#include "synth/estimate.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <map>
 #include <sstream>
 
-#include "model/process.h"
-#include "rtl/synth/tool.h"
+#include "model/base/process.h"
+#include "synth/tool.h"
 
 namespace cuboct::synth {
 namespace {
@@ -37,7 +37,7 @@ TEST(Estimate, Blocks) {
 // Wires on published critical paths: the mean is what a net of four sinks has, and each path's sum is met
 // within the error that is claimed.
 TEST(Estimate, Ecp5WiresAreThoseOfPublishedPaths) {
-  std::ifstream in(CUBOCT_SOURCE_DIR "/rtl/synth/ecp5_paths.tsv");
+  std::ifstream in(CUBOCT_SOURCE_DIR "/synth/ecp5_paths.tsv");
   struct Known {
     double cells = 0, wires = 0;
     int count = 0;

@@ -12,12 +12,12 @@
 
 #include "hw/rtl_emit.h"
 #include "hw/setup.h"
-#include "model/process.h"
-#include "rtl/synth/elaborate.h"
-#include "rtl/synth/fit_model.h"
-#include "rtl/synth/json_file.h"
-#include "rtl/synth/project.h"
-#include "rtl/synth/script.h"
+#include "model/base/process.h"
+#include "synth/elaborate.h"
+#include "synth/fit_model.h"
+#include "synth/json_file.h"
+#include "synth/project.h"
+#include "synth/script.h"
 
 namespace cuboct::synth {
 namespace {

@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <fstream>
 
-#include "model/error.h"
-#include "model/process.h"
-#include "rtl/synth/elaborate.h"
-#include "rtl/synth/netlist.h"
-#include "rtl/synth/report.h"
-#include "rtl/synth/timing.h"
-#include "rtl/synth/tool.h"
+#include "model/base/error.h"
+#include "model/base/process.h"
+#include "synth/elaborate.h"
+#include "synth/netlist.h"
+#include "synth/report.h"
+#include "synth/timing.h"
+#include "synth/tool.h"
 
 namespace cuboct::synth {
 namespace {

@@ -8,13 +8,13 @@
 
 #include "hw/rtl_emit.h"
 #include "hw/setup.h"
-#include "model/error.h"
-#include "model/process.h"
-#include "rtl/synth/elaborate.h"
-#include "rtl/synth/flow.h"
-#include "rtl/synth/project.h"
-#include "rtl/synth/script.h"
-#include "rtl/synth/tool.h"
+#include "model/base/error.h"
+#include "model/base/process.h"
+#include "synth/elaborate.h"
+#include "synth/flow.h"
+#include "synth/project.h"
+#include "synth/script.h"
+#include "synth/tool.h"
 
 namespace cuboct::synth {
 namespace {
@@ -158,7 +158,8 @@ TEST_F(Refuse, MissingToolsWithTheirPackages) {
 TEST_F(Refuse, AToolWithoutItsData) {
   const std::string path = std::getenv("PATH");
   setenv("PATH", (scratch_.path("") + ":" + path).c_str(), 1);
-  std::ofstream(scratch_.path("icetime")) << "#!/bin/sh\necho \"Can't find chipdb file for device 5k\" >&2\nexit 1\n";
+  std::ofstream(scratch_.path("icetime"))
+      << "#!/bin/sh\necho \"Can't find chipdb file for device 5k\" >&2\nexit 1\n";
   fs::permissions(scratch_.path("icetime"), fs::perms::owner_all);
   std::string told;
   try {
@@ -167,7 +168,8 @@ TEST_F(Refuse, AToolWithoutItsData) {
     told = error.what();
   }
   setenv("PATH", path.c_str(), 1);
-  EXPECT_EQ(told, "icetime failed: Can't find chipdb file for device 5k; apt-get install fpga-icestorm-chipdb");
+  EXPECT_EQ(told,
+            "icetime failed: Can't find chipdb file for device 5k; apt-get install fpga-icestorm-chipdb");
 }
 
 TEST_F(Refuse, TimingWithoutWhatItIsOf) {

@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "hw/setup.h"
-#include "model/error.h"
-#include "model/golden.h"
-#include "model/motion.h"
+#include "model/analysis/motion.h"
+#include "model/base/error.h"
+#include "model/contract/golden.h"
 
 namespace cuboct {
 namespace {
@@ -39,10 +39,12 @@ region = { shape = "half_space", point = "[0.1, 0, 0] mm", normal = [1, 0, 0] }
 [[constraint]]
 name = "pulled"
 kind = "moved"
-velocity = ")" + velocity + R"("
+velocity = ")" + velocity +
+                         R"("
 region = { shape = "half_space", point = "[5.5, 0, 0] mm", normal = [-1, 0, 0] }
 [run]
-)" + run, "bar.toml");
+)" + run,
+                     "bar.toml");
 }
 
 const WidthReason& reason(const std::vector<WidthReason>& reasons, const std::string& key) {
@@ -53,7 +55,8 @@ const WidthReason& reason(const std::vector<WidthReason>& reasons, const std::st
 
 // Off by so much of itself, in the plan's integers.
 double error_of(const Vec3& real, const Int3& fixed, double unit) {
-  return (Vec3(static_cast<double>(fixed[0]), static_cast<double>(fixed[1]), static_cast<double>(fixed[2])) * unit -
+  return (Vec3(static_cast<double>(fixed[0]), static_cast<double>(fixed[1]), static_cast<double>(fixed[2])) *
+              unit -
           real)
              .norm() /
          real.norm();
@@ -125,7 +128,8 @@ cells = [4, 4, 4]
 kind = "elastic"
 stiffness = 1.0
 [[velocity]]
-)" + velocity + "\n[run]\nsteps = 10\n", "hot.toml"));
+)" + velocity + "\n[run]\nsteps = 10\n",
+                                 "hot.toml"));
   };
   const Motion flying = moving("uniform = [0.01, 0, 0]"), turning = moving("spin = [0, 0, 0.001]"),
                hot = moving("thermal_speed = 0.01\nseed = 1");
@@ -166,7 +170,8 @@ TEST(AutoWidths, WhatTheArchSaysWinsAndIsWarnedOf) {
   EXPECT_EQ(r.wanted, 21);
 }
 
-// Of what damping sees, and of what bounds a width that the arch leaves to us; the numbers that are named work.
+// Of what damping sees, and of what bounds a width that the arch leaves to us; the numbers that are named
+// work.
 TEST(AutoWidths, WarningsNameTheKeyThatBounds) {
   const Scene scene = bar("[5, 0, 0] mm/s", "steps = 20000\n", "damping.ratio = 0.1\n");
   EXPECT_TRUE(plan_of(scene, {}).warnings.empty());
@@ -174,16 +179,20 @@ TEST(AutoWidths, WarningsNameTheKeyThatBounds) {
     Arch arch;
     set(arch.widths);
     const std::vector<std::string> warnings = plan_of(scene, arch).warnings;
-    return warnings.size() == 1 ? warnings[0].substr(warnings[0].find(": ") + 2) : fmt::format("{} warnings", warnings.size());
+    return warnings.size() == 1 ? warnings[0].substr(warnings[0].find(": ") + 2)
+                                : fmt::format("{} warnings", warnings.size());
   };
-  EXPECT_EQ(warning([](Widths& w) { w.relative_velocity_frac = 6; }), "relative_velocity_frac = 24 would do, or \"auto\"");
-  EXPECT_EQ(warning([](Widths& w) { w.relative_velocity_bits = 6; }), "relative_velocity_bits = 22 would do, or \"auto\"");
+  EXPECT_EQ(warning([](Widths& w) { w.relative_velocity_frac = 6; }),
+            "relative_velocity_frac = 24 would do, or \"auto\"");
+  EXPECT_EQ(warning([](Widths& w) { w.relative_velocity_bits = 6; }),
+            "relative_velocity_bits = 22 would do, or \"auto\"");
   EXPECT_EQ(warning([](Widths& w) { w.relative_velocity_bits = 22; }), "0 warnings");
   EXPECT_EQ(warning([](Widths& w) { w.position_frac = 12; }), "position_frac = 26 would do, or \"auto\"");
   EXPECT_EQ(warning([](Widths& w) { w.position_frac = 26; }), "0 warnings");
 }
 
-// A cantilever's largest strain by Euler and Bernoulli is 3 rho g l^2 / (E h); c^2 is E/rho to within a factor of two.
+// A cantilever's largest strain by Euler and Bernoulli is 3 rho g l^2 / (E h); c^2 is E/rho to within a
+// factor of two.
 TEST(AutoWidths, GravityBendsWhatReachesOut) {
   const Scene scene = parse_scene("gravity = \"[0, 0, -9.81] m/s^2\"\n" + kBar + R"([[constraint]]
 name = "fixed"
@@ -191,7 +200,8 @@ kind = "held"
 region = { shape = "half_space", point = "[0.1, 0, 0] mm", normal = [1, 0, 0] }
 [run]
 steps = 1000000
-)", "cantilever.toml");
+)",
+                                  "cantilever.toml");
   const Motion motion = motion_of(scene);
   const double beam = 3 * 1410 * 9.81 * std::pow(6e-3, 2) / (3e9 * 1.5e-3);
   EXPECT_EQ(motion.strain_of, "gravity, which bends it");
@@ -214,8 +224,8 @@ TEST(AutoWidths, ARefusalNamesWidthsThatHold) {
   int position = 0, guard = 0;
   const size_t hint = said.find("hint: widths that hold it: ");
   ASSERT_NE(hint, std::string::npos) << said;
-  EXPECT_EQ(std::sscanf(said.c_str() + hint, "hint: widths that hold it: position_frac = %d, guard = %d", &position,
-                        &guard),
+  EXPECT_EQ(std::sscanf(said.c_str() + hint, "hint: widths that hold it: position_frac = %d, guard = %d",
+                        &position, &guard),
             2)
       << said;
   arch.widths.position_frac = position;
@@ -223,20 +233,24 @@ TEST(AutoWidths, ARefusalNamesWidthsThatHold) {
   EXPECT_NO_THROW(plan_of(scene, arch));
 }
 
-// Gains that the usual 16 fractional bits would round by more than the accuracy, and ones that they cannot hold.
+// Gains that the usual 16 fractional bits would round by more than the accuracy, and ones that they cannot
+// hold.
 TEST(AutoWidths, GainsAreRightToTheAccuracy) {
   for (const char* gains : {"kp = \"1e3 N/m\"\nkd = \"1 g/s\"\n", "kp = \"1e5 N/m\"\n"}) {
     const Scene scene = parse_scene(kBar + R"([[constraint]]
 name = "led"
 kind = "held_by_force"
 region = { shape = "half_space", point = "[0.1, 0, 0] mm", normal = [1, 0, 0] }
-)" + gains + "[run]\nsteps = 10\naccuracy = 0.01\n", "gains.toml");
+)" + gains + "[run]\nsteps = 10\naccuracy = 0.01\n",
+                                    "gains.toml");
     const Plan plan = plan_of(scene, {});
     for (size_t k = 0; k < plan.rule.types.size(); ++k) {
       const ParticleType& type = scene.rule.types[k];
       if (!type.pd) continue;
-      const double unit = std::ldexp(1.0, -plan.rule.widths.gain_frac), step = scene.rule.dt / scene.rule.mass;
-      EXPECT_NEAR(static_cast<double>(plan.rule.types[k].kp) * unit / (type.kp * step * scene.rule.dt), 1, 0.01);
+      const double unit = std::ldexp(1.0, -plan.rule.widths.gain_frac),
+                   step = scene.rule.dt / scene.rule.mass;
+      EXPECT_NEAR(static_cast<double>(plan.rule.types[k].kp) * unit / (type.kp * step * scene.rule.dt), 1,
+                  0.01);
       if (type.kd > 0) {
         EXPECT_NEAR(static_cast<double>(plan.rule.types[k].kd) * unit / (type.kd * step), 1, 0.01);
       }
@@ -244,7 +258,8 @@ region = { shape = "half_space", point = "[0.1, 0, 0] mm", normal = [1, 0, 0] }
   }
 }
 
-// A warm crystal in a box whose cells are a little longer than the cutoff: planes of sites near faces come in.
+// A warm crystal in a box whose cells are a little longer than the cutoff: planes of sites near faces come
+// in.
 TEST(AutoWidths, ACellHoldsWhatComesIn) {
   Scene scene = read_scene(std::string(CUBOCT_SOURCE_DIR) + "/scenes/validation/crystal.toml");
   const cuboct::Setup setup = make_setup(scene, {});

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "model/changes.h"
+#include "model/scene/changes.h"
 
 #include <gtest/gtest.h>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The comparison must see every field: each test changes one and expects exactly that one to be named.
-#include "model/compare.h"
+#include "model/trace/compare.h"
 
 #include <gtest/gtest.h>
 

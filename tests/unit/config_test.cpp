@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "model/config.h"
-#include "model/error.h"
+#include "model/base/error.h"
+#include "model/scene/config.h"
 
 namespace cuboct {
 namespace {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "hw/arch.h"
-#include "model/config.h"
-#include "model/error.h"
-#include "model/scene.h"
+#include "model/base/error.h"
+#include "model/scene/config.h"
+#include "model/scene/scene.h"
 #include "study/study.h"
 
 namespace cuboct {
@@ -165,7 +165,8 @@ TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
   std::filesystem::remove(path);
   std::set<std::string> asked;
   for (const std::string& key : keys)
-    if (!of_scene.contains(key) && !key.starts_with("change.")) asked.insert(key);  // names that the user chose
+    if (!of_scene.contains(key) && !key.starts_with("change."))
+      asked.insert(key);  // names that the user chose
   EXPECT_GT(asked.size(), 40U);
   expect_documented(page, asked);
   const auto named = documented(page);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/dynamical_matrix.h"
+#include "model/solid/dynamical_matrix.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/error.h"
-#include "model/law.h"
+#include "model/base/error.h"
+#include "model/contract/law.h"
 
 namespace cuboct {
 namespace {

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "hw/setup.h"
-#include "model/golden.h"
-#include "model/neighbours.h"
-#include "model/scene.h"
+#include "model/contract/golden.h"
+#include "model/contract/neighbours.h"
+#include "model/scene/scene.h"
 
 namespace cuboct {
 namespace {

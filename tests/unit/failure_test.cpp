@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/law.h"
-#include "model/reference.h"
+#include "model/contract/law.h"
+#include "model/real/reference.h"
 #include "tests/fcc_block.h"
 
 namespace cuboct {

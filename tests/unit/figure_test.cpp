@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Numbers out of made curves whose answers are known.
-#include "model/figure.h"
+#include "model/trace/figure.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/frames.h"
+#include "model/trace/frames.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,8 +10,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "model/base64.h"
-#include "model/error.h"
+#include "model/base/base64.h"
+#include "model/base/error.h"
 #include "tests/support/file_limit.h"
 
 namespace cuboct {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "model/error.h"
-#include "model/geometry.h"
+#include "model/base/error.h"
+#include "model/scene/geometry.h"
 
 namespace cuboct {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 
 #include "hw/setup.h"
-#include "model/law.h"
+#include "model/contract/law.h"
 
 namespace cuboct {
 namespace {

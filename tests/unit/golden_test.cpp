@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "model/golden.h"
+#include "model/contract/golden.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 
-#include "model/fixed_math.h"
-#include "model/reference.h"
+#include "model/base/fixed_math.h"
+#include "model/real/reference.h"
 #include "tests/support/block.h"
 
 namespace cuboct {

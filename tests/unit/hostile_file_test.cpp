@@ -8,11 +8,11 @@
 #include <fstream>
 #include <functional>
 
-#include "model/error.h"
-#include "model/process.h"
-#include "model/raster.h"
-#include "model/state_check.h"
-#include "model/trace.h"
+#include "model/base/error.h"
+#include "model/base/process.h"
+#include "model/trace/raster.h"
+#include "model/trace/state_check.h"
+#include "model/trace/trace.h"
 #include "tests/unit/made_trace.h"
 
 namespace cuboct {

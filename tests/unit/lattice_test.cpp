@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/lattice.h"
+#include "model/contract/lattice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/law.h"
+#include "model/contract/law.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <unsupported/Eigen/Splines>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct {
 namespace {

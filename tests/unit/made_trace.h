@@ -2,7 +2,7 @@
 // A small trace with something in each field: two nodes, three particles, two steps and a stop.
 #pragma once
 
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 namespace cuboct {
 

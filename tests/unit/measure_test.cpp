@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/measure.h"
+#include "model/analysis/measure.h"
 
 #include <gtest/gtest.h>
 
@@ -90,7 +90,8 @@ TEST(Measure, EnergiesOfTwoParticlesByHand) {
   EXPECT_DOUBLE_EQ(e.total(), e.kinetic + e.potential + e.gravity);
 }
 
-// Each is pulled with 0.75 N over 1 m: in 8 m^3 a tension of 0.75/8 Pa along x. The kinetic energy is as above.
+// Each is pulled with 0.75 N over 1 m: in 8 m^3 a tension of 0.75/8 Pa along x. The kinetic energy is as
+// above.
 TEST(Measure, VirialAndPressureOfTwoParticlesByHand) {
   TwoParticles two;
   const Mat3 stress = virial_stress(two.fixed, two.lattice, two.state, 8);

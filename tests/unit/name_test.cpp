@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "hw/arch.h"
-#include "model/error.h"
-#include "model/scene.h"
+#include "model/base/error.h"
+#include "model/scene/scene.h"
 
 namespace cuboct {
 namespace {

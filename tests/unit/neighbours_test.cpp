@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "model/neighbours.h"
+#include "model/contract/neighbours.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <set>
 
-#include "model/error.h"
+#include "model/base/error.h"
 #include "tests/fcc_block.h"
 
 namespace cuboct {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "model/packing.h"
+#include "model/scene/packing.h"
 
 namespace cuboct {
 namespace {
@@ -86,8 +86,8 @@ TEST(Packing, SurfaceSitesAreSafe) {
   }
 }
 
-// Rows of the crystal that pass a thin body by are not tested; none is lost, none comes in another order. Oracle: every
-// site of a ball around it.
+// Rows of the crystal that pass a thin body by are not tested; none is lost, none comes in another order.
+// Oracle: every site of a ball around it.
 TEST(Packing, AThinTurnedPlateLosesNoSite) {
   const Vec3 turns[] = {{1, 2, 3}, {1, 0, 0}, {-3, 1, 0.1}};
   for (const Vec3& axis : turns)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/parallel.h"
+#include "model/base/parallel.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -7,8 +7,8 @@
 
 #include "hw/arch.h"
 #include "hw/setup.h"
-#include "model/golden.h"
-#include "model/scene.h"
+#include "model/contract/golden.h"
+#include "model/scene/scene.h"
 #include "tests/support/block.h"
 
 namespace cuboct::test {

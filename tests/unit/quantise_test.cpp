@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "model/quantise.h"
+#include "model/contract/quantise.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "model/fixed_math.h"
+#include "model/base/fixed_math.h"
 #include "tests/support/block.h"
 
 namespace cuboct {

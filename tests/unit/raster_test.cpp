@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/raster.h"
+#include "model/trace/raster.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,9 +10,9 @@
 #include <numeric>
 #include <sstream>
 
-#include "model/error.h"
-#include "model/geometry.h"
-#include "model/packing.h"
+#include "model/base/error.h"
+#include "model/scene/geometry.h"
+#include "model/scene/packing.h"
 
 namespace cuboct {
 namespace {
@@ -36,8 +36,8 @@ RasterGrid grid_of(const std::vector<Frame>& frames, double radius, uint32_t acr
   return part_of(grid, used);
 }
 
-// Four pixels of edge 1, one particle of edge 1 whose middle lies a quarter right of and above the middle: it has
-// 1/4 * 1/4, 3/4 * 1/4, ... of its square in them, and the thickness 1/sqrt(2).
+// Four pixels of edge 1, one particle of edge 1 whose middle lies a quarter right of and above the middle: it
+// has 1/4 * 1/4, 3/4 * 1/4, ... of its square in them, and the thickness 1/sqrt(2).
 TEST(Raster, AParticleIsSpreadByArea) {
   const RasterGrid grid{.right = 0, .up = 1, .left = 0, .bottom = 0, .pixel = 1, .columns = 2, .rows = 2};
   const Raster raster = rasterise(frame_of({{1.25, 1.25, 7}}), grid, 0.5);
@@ -63,8 +63,9 @@ TEST(Raster, AMeanIsWeighedByArea) {
   EXPECT_FLOAT_EQ(rasterise(frame, grid, 0.5).strain[1], static_cast<float>((0.25 - 0.5) / 0.75));
 }
 
-// A plate of 20 x 40 x 3 cubic cells with pixels that do not fit the packing: inside, away from the edges, each pixel
-// looks through as much as any other to within what a few planes leave uneven, and all hold the whole volume.
+// A plate of 20 x 40 x 3 cubic cells with pixels that do not fit the packing: inside, away from the edges,
+// each pixel looks through as much as any other to within what a few planes leave uneven, and all hold the
+// whole volume.
 TEST(Raster, ThicknessIsThatOfThePlate) {
   const Fcc fcc{.pitch = 1};
   const auto plate = box(Vec3::Zero(), Vec3(40, 80, 6) * fcc.cell() / 2);
@@ -74,7 +75,8 @@ TEST(Raster, ThicknessIsThatOfThePlate) {
   EXPECT_EQ(grid.up, 0);
   EXPECT_EQ(grid.columns, 37u);
   const Raster raster = rasterise(frame_of(x), grid, 0.5);
-  const double volume = std::accumulate(raster.thickness.begin(), raster.thickness.end(), 0.0) * grid.pixel * grid.pixel;
+  const double volume =
+      std::accumulate(raster.thickness.begin(), raster.thickness.end(), 0.0) * grid.pixel * grid.pixel;
   EXPECT_NEAR(volume, static_cast<double>(x.size()) / std::sqrt(2.0), 1e-3 * volume);
   // Seven planes half a cell apart.
   const double thick = 7 * fcc.cell() / 2;
@@ -88,7 +90,8 @@ TEST(Raster, PixelsAreNoFinerThanAQuarterOfAParticle) {
   EXPECT_THROW(raster_grid(Frame{}, 0.5, 100), InputError);
 }
 
-// A particle that flies off may widen the picture by half the body's length on each side; beyond, it is counted.
+// A particle that flies off may widen the picture by half the body's length on each side; beyond, it is
+// counted.
 TEST(Raster, OneThatFliesOffIsLeftOut) {
   const Frame first = frame_of({{0, 0, 0}, {9, 4, 0}});
   for (const auto& [to, outside] : {std::pair{13.5, 0u}, {14.5, 1u}, {1e30, 1u}, {NAN, 1u}}) {
@@ -113,7 +116,8 @@ TEST(Raster, AFileHoldsElevenBits) {
   rasters.frames = {rasterise(frame, rasters.grid, 0.5), rasterise(frame_of(x), rasters.grid, 0.5)};
   const std::string a = directory / "a.h5", b = directory / "b.h5";
   for (const std::string& path : {a, b}) {
-    RasterWriter out(path, path + ".part", {rasters.title, rasters.strain_axis, rasters.particle, {}, {}}, 100);
+    RasterWriter out(path, path + ".part", {rasters.title, rasters.strain_axis, rasters.particle, {}, {}},
+                     100);
     out.add(frame);
     out.add(frame_of(x));
     EXPECT_FALSE(fs::exists(path));

@@ -9,7 +9,7 @@
 #include <set>
 #include <tuple>
 
-#include "model/error.h"
+#include "model/base/error.h"
 
 namespace cuboct {
 namespace {
@@ -61,7 +61,8 @@ Scene random_scene(std::mt19937_64& random) {
   scene.rule.dt = 0.1;
   scene.rule.types.resize(2);
   if (random() % 3 == 0) scene.rule.types[1].velocity = Vec3(uniform(-4, 4), uniform(-4, 4), uniform(-4, 4));
-  if (random() % 3 == 0) scene.rule.types[1].velocity = uniform(-9, 9) * Vec3::Unit(static_cast<int>(random() % 3));
+  if (random() % 3 == 0)
+    scene.rule.types[1].velocity = uniform(-9, 9) * Vec3::Unit(static_cast<int>(random() % 3));
   if (random() % 2 == 0)
     scene.reach_margin = Vec3(uniform(0, 2), uniform(0, 2), random() % 2 == 0 ? 0 : uniform(0, 2));
   if (random() % 3 == 0) scene.reach = {Vec3(-2, -1.5, -1), Vec3(uniform(0, 3), 1, 2)};

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <set>
 
-#include "model/error.h"
-#include "model/law.h"
-#include "model/reference.h"
+#include "model/base/error.h"
+#include "model/contract/law.h"
+#include "model/real/reference.h"
 #include "tests/fcc_block.h"
 #include "tests/support/block.h"
 

@@ -11,9 +11,9 @@
 #include <numeric>
 
 #include "hw/setup.h"
-#include "model/golden.h"
-#include "model/reference.h"
-#include "model/scene.h"
+#include "model/contract/golden.h"
+#include "model/real/reference.h"
+#include "model/scene/scene.h"
 #include "tests/golden/scene_with.h"
 
 namespace cuboct {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The curves of runs in real numbers: by hand, and beside those of the fixed rule.
-#include "model/real_meter.h"
+#include "model/analysis/real_meter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "hw/setup.h"
-#include "model/golden.h"
-#include "model/law.h"
-#include "model/state_meter.h"
+#include "model/analysis/state_meter.h"
+#include "model/contract/golden.h"
+#include "model/contract/law.h"
 #include "tests/fcc_block.h"
 
 namespace cuboct {
@@ -76,7 +76,8 @@ TEST(RealMeter, IsThatOfTheFixedRule) {
       EXPECT_NEAR(a[k].value[0], b[k].value[0], 5e-3 * std::abs(b[k].value[0])) << name << ' ' << a[k].name;
     }
     // Behind the probes' curves; the second scene's box does not repeat.
-    std::vector<std::string> names{"energy.kinetic", "energy.potential", "energy.gravity", "energy.total", "temperature"};
+    std::vector<std::string> names{"energy.kinetic", "energy.potential", "energy.gravity", "energy.total",
+                                   "temperature"};
     if (name == std::string("lj_block")) names.push_back("pressure");
     ASSERT_GE(a.size(), names.size());
     const size_t first = a.size() - names.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/reference.h"
+#include "model/real/reference.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "model/dynamical_matrix.h"
-#include "model/error.h"
-#include "model/law.h"
+#include "model/base/error.h"
+#include "model/contract/law.h"
+#include "model/solid/dynamical_matrix.h"
 #include "tests/fcc_block.h"
 
 namespace cuboct {

@@ -12,12 +12,12 @@
 #include <sstream>
 
 #include "hw/arch.h"
-#include "model/config.h"
-#include "model/dynamical_matrix.h"
-#include "model/error.h"
-#include "model/law.h"
-#include "model/scene.h"
-#include "model/scene_parts.h"
+#include "model/base/error.h"
+#include "model/contract/law.h"
+#include "model/scene/config.h"
+#include "model/scene/scene.h"
+#include "model/scene/scene_parts.h"
+#include "model/solid/dynamical_matrix.h"
 
 namespace cuboct {
 namespace {
@@ -321,14 +321,15 @@ duration = 1.0
   EXPECT_EQ(s.rule.mass, 2.0);
 }
 
-// A dimer of Lennard-Jones particles: w^2 = 2k/m. A given dt must be below its limit; "auto" lasts for a crystal that
-// listed particles may become.
+// A dimer of Lennard-Jones particles: w^2 = 2k/m. A given dt must be below its limit; "auto" lasts for a
+// crystal that listed particles may become.
 TEST_F(SceneTest, ListedParticlesHaveTheLimitOfTheirVibrations) {
   const auto dimer = [&](double distance, const std::string& dt) {
-    return fmt::format("units = \"reduced\"\nmass = 2.0\n[law]\nkind = \"lj\"\nepsilon = 1\nsigma = 1\ncutoff = 1.8\n"
-                       "[[particle]]\nposition = [0, 0, 0]\n[[particle]]\nposition = [{:.17g}, 0, 0]\n"
-                       "[run]\ndt = {}\nsteps = 1\n",
-                       distance, dt);
+    return fmt::format(
+        "units = \"reduced\"\nmass = 2.0\n[law]\nkind = \"lj\"\nepsilon = 1\nsigma = 1\ncutoff = 1.8\n"
+        "[[particle]]\nposition = [0, 0, 0]\n[[particle]]\nposition = [{:.17g}, 0, 0]\n"
+        "[run]\ndt = {}\nsteps = 1\n",
+        distance, dt);
   };
   const double rest = std::pow(2, 1.0 / 6);
   const Scene given = read(dimer(rest, "0.1"));
@@ -336,14 +337,16 @@ TEST_F(SceneTest, ListedParticlesHaveTheLimitOfTheirVibrations) {
   EXPECT_NEAR(given.dt_limit, 2 / std::sqrt(2 * k / 2.0), 1e-9);
   EXPECT_NEAR(given.dt_safety, 0.1 / given.dt_limit, 1e-12);
   EXPECT_EQ(given.dt_limit_of, "the particles that are listed");
-  EXPECT_EQ(error(dimer(rest, "0.3")), "a.toml:13:6: 'dt' is beyond the stability limit 0.2646 s\n"
-                                         "  hint: \"auto\" would take 0.02647 s");
+  EXPECT_EQ(error(dimer(rest, "0.3")),
+            "a.toml:13:6: 'dt' is beyond the stability limit 0.2646 s\n"
+            "  hint: \"auto\" would take 0.02647 s");
   const Scene automatic = read(dimer(rest, "\"auto\""));
   EXPECT_NEAR(automatic.dt_limit, stable_time_step(automatic.rule, rest), 1e-3 * automatic.dt_limit);
   EXPECT_NEAR(automatic.dt_limit, 0.5 * given.dt_limit, 0.01 * given.dt_limit);  // w^2 = 8k/m
   EXPECT_EQ(automatic.dt_limit_of, "a packing at the law's rest distance");
   EXPECT_DOUBLE_EQ(automatic.rule.dt, 0.2 * automatic.dt_limit);
-  // Out of reach of each other nothing vibrates, but may yet; pressed together they are stiffer than a crystal.
+  // Out of reach of each other nothing vibrates, but may yet; pressed together they are stiffer than a
+  // crystal.
   EXPECT_EQ(read(dimer(3, "0.3")).dt_limit, 0.0);
   EXPECT_EQ(read(dimer(3, "\"auto\"")).dt_limit, automatic.dt_limit);
   const Scene pressed = read(dimer(0.85, "\"auto\""));
@@ -355,9 +358,10 @@ TEST_F(SceneTest, ListedParticlesHaveTheLimitOfTheirVibrations) {
 TEST_F(SceneTest, AListedParticleNearAPackingCounts) {
   const std::string law = "kind = \"spline\"\nr = [0, 1, 1.4]\nforce = [30, 0, 0]\ncore = 0.05\n";
   const auto scene = [&](double height) {
-    return read(fmt::format("units = \"reduced\"\nmass = 1\n[packing]\npitch = 1\n[box]\ncells = [3, 3, 3]\n[law]\n{}"
-                            "[[particle]]\nposition = [0, 0, {}]\n[run]\nsteps = 1\n",
-                            law, height));
+    return read(
+        fmt::format("units = \"reduced\"\nmass = 1\n[packing]\npitch = 1\n[box]\ncells = [3, 3, 3]\n[law]\n{}"
+                    "[[particle]]\nposition = [0, 0, {}]\n[run]\nsteps = 1\n",
+                    law, height));
   };
   const Scene far = scene(-3), near = scene(-0.2);
   EXPECT_DOUBLE_EQ(far.dt_limit, stable_time_step(far.rule, 1));

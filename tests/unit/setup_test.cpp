@@ -6,8 +6,8 @@
 
 #include <functional>
 
-#include "model/error.h"
-#include "model/scene.h"
+#include "model/base/error.h"
+#include "model/scene/scene.h"
 
 namespace cuboct {
 namespace {

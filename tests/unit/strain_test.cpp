@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/strain.h"
+#include "model/analysis/strain.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/temperature.h"
+#include "model/analysis/temperature.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 
 #include "hw/setup.h"
-#include "model/real_meter.h"
-#include "model/state_meter.h"
+#include "model/analysis/real_meter.h"
+#include "model/analysis/state_meter.h"
 
 namespace cuboct {
 namespace {
@@ -49,13 +49,13 @@ Measured in_integers(const Scene& scene) {
   return {meter.curves()};
 }
 
-// About the mean (2, 0, 0) m/s: (1, 0, 0), (-1, 0, 0), (0, 3, 0), (0, -3, 0), so K = 2/2 (1 + 1 + 9 + 9) = 20 J, and 3
-// (4 - 1) degrees of freedom, as the places differ along z: T = 40/(9 k_B).
+// About the mean (2, 0, 0) m/s: (1, 0, 0), (-1, 0, 0), (0, 3, 0), (0, -3, 0), so K = 2/2 (1 + 1 + 9 + 9) = 20
+// J, and 3 (4 - 1) degrees of freedom, as the places differ along z: T = 40/(9 k_B).
 TEST(Temperature, IsThatOfTheMotionAboutTheMean) {
-  const Scene scene = parse_scene(
-      scene_of(particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]") +
-               particle("[0, 10, 0]", "[2, 3, 0]") + particle("[0, 0, 10]", "[2, -3, 0]")),
-      "gas.toml");
+  const Scene scene =
+      parse_scene(scene_of(particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]") +
+                           particle("[0, 10, 0]", "[2, 3, 0]") + particle("[0, 0, 10]", "[2, -3, 0]")),
+                  "gas.toml");
   EXPECT_EQ(Thermometer(scene).degrees(), 9);
   for (const Measured& measured : {in_doubles(scene), in_integers(scene)}) {
     const Curve* curve = measured.curve("temperature");
@@ -67,25 +67,27 @@ TEST(Temperature, IsThatOfTheMotionAboutTheMean) {
 
 // In the plane z = 0 nothing moves along z: 2 (4 - 1) degrees.
 TEST(Temperature, CountsNoAxisAlongWhichNothingCanMove) {
-  const Scene scene = parse_scene(
-      scene_of(particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]") +
-               particle("[0, 10, 0]", "[2, 3, 0]") + particle("[10, 10, 0]", "[2, -3, 0]")),
-      "gas.toml");
+  const Scene scene =
+      parse_scene(scene_of(particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]") +
+                           particle("[0, 10, 0]", "[2, 3, 0]") + particle("[10, 10, 0]", "[2, -3, 0]")),
+                  "gas.toml");
   EXPECT_EQ(Thermometer(scene).degrees(), 6);
   EXPECT_NEAR(in_integers(scene).curve("temperature")->value[0] * kBoltzmann, 40.0 / 6, kRounding * 40 / 6);
 }
 
-// A particle that is held along x, and one that a controller moves: the three others make 2 + 3 + 3 - 3 degrees, two of
-// them along x with +-1 m/s about their mean.
+// A particle that is held along x, and one that a controller moves: the three others make 2 + 3 + 3 - 3
+// degrees, two of them along x with +-1 m/s about their mean.
 TEST(Temperature, LeavesOutWhatIsHeldOrSteered) {
   const std::string hold =
-      "[[constraint]]\nname = \"held\"\nkind = \"held\"\naxes = \"x\"\nregion = { shape = \"sphere\", radius = 1.0 }\n"
+      "[[constraint]]\nname = \"held\"\nkind = \"held\"\naxes = \"x\"\nregion = { shape = \"sphere\", radius "
+      "= 1.0 }\n"
       "[[constraint]]\nname = \"led\"\nkind = \"moved_by_force\"\nvelocity = [7, 0, 0]\nkp = 1e4\nkd = 10.0\n"
       "region = { shape = \"sphere\", radius = 1.0, centre = [0, 0, 10] }\n";
-  const Scene scene = parse_scene(
-      scene_of(particle("[0, 0, 0]", "[0, 0, 0]") + particle("[10, 0, 0]", "[3, 0, 0]") +
-               particle("[0, 10, 0]", "[1, 0, 0]") + particle("[0, 0, 10]", "[9, 9, 9]")) + hold,
-      "gas.toml");
+  const Scene scene =
+      parse_scene(scene_of(particle("[0, 0, 0]", "[0, 0, 0]") + particle("[10, 0, 0]", "[3, 0, 0]") +
+                           particle("[0, 10, 0]", "[1, 0, 0]") + particle("[0, 0, 10]", "[9, 9, 9]")) +
+                      hold,
+                  "gas.toml");
   EXPECT_EQ(Thermometer(scene).degrees(), 5);
   for (const Measured& measured : {in_doubles(scene), in_integers(scene)})
     EXPECT_NEAR(measured.curve("temperature")->value[0] * kBoltzmann, 2.0 * 2 / 5, kRounding);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Each escape against what its place would make of the text.
-#include "model/text.h"
+#include "model/base/text.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "model/config.h"
-#include "model/error.h"
-#include "model/output.h"
-#include "model/process.h"
+#include "model/base/error.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "model/scene/config.h"
 #include "tests/support/hostile.h"
 
 namespace cuboct {

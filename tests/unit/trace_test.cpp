@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/trace.h"
+#include "model/trace/trace.h"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -14,9 +14,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "model/hdf5_file.h"
-#include "model/output.h"
-#include "model/trace_file.h"
+#include "model/base/output.h"
+#include "model/trace/hdf5_file.h"
+#include "model/trace/trace_file.h"
 #include "tests/support/file_limit.h"
 #include "tests/unit/made_trace.h"
 

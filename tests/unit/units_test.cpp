@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "model/spelling.h"
-#include "model/units.h"
+#include "model/base/spelling.h"
+#include "model/scene/units.h"
 
 namespace cuboct {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The matrices of small vibrations against finite differences of the engine's forces, closed forms and lattice
-// sums; the stability limit against the spectral radius of one step of the engine.
+// The matrices of small vibrations against finite differences of the engine's forces, closed forms and
+// lattice sums; the stability limit against the spectral radius of one step of the engine.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -8,10 +8,10 @@
 #include <cmath>
 #include <random>
 
-#include "model/dynamical_matrix.h"
-#include "model/law.h"
-#include "model/reference.h"
-#include "model/vibrations.h"
+#include "model/contract/law.h"
+#include "model/real/reference.h"
+#include "model/solid/dynamical_matrix.h"
+#include "model/solid/vibrations.h"
 #include "tests/fcc_block.h"
 
 namespace cuboct {

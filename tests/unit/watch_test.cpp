@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "hw/setup.h"
-#include "model/expected_strain.h"
-#include "model/golden.h"
-#include "model/law.h"
-#include "model/measure.h"
-#include "model/unstable.h"
-#include "model/watch.h"
+#include "model/analysis/expected_strain.h"
+#include "model/analysis/measure.h"
+#include "model/analysis/unstable.h"
+#include "model/analysis/watch.h"
+#include "model/contract/golden.h"
+#include "model/contract/law.h"
 #include "tests/fcc_block.h"
 
 namespace cuboct {
@@ -152,7 +152,8 @@ TEST(ExpectedStrain, OfARowIsThatOfSprings) {
               5 * 2 * 0.1 / k, 1e-9);
 }
 
-// A block with one end held and the other led, by golden, with so many guard bits. `thrown`: m/s, of all that is free.
+// A block with one end held and the other led, by golden, with so many guard bits. `thrown`: m/s, of all that
+// is free.
 std::vector<Finding> found_in_a_pull(double speed, int guard, uint64_t steps, double thrown = 0) {
   Scene scene;
   scene.rule = test::simple_rule(preset_law("elastic", 1, 1), 1, 0.1);
@@ -179,14 +180,15 @@ std::vector<Finding> found_in_a_pull(double speed, int guard, uint64_t steps, do
   for (uint64_t step = 0; step <= steps; step += 10) {
     while (golden.step_count() < step) golden.step();
     const State state = golden.state();
-    watch.see(plan.rule, plan.lattice, plan.origin, state, summed_kicks(plan.rule, plan.lattice, state), {}, {});
+    watch.see(plan.rule, plan.lattice, plan.origin, state, summed_kicks(plan.rule, plan.lattice, state), {},
+              {});
   }
   watch.conclude();
   return watch.findings();
 }
 
-// 62.62 units of 2^-28 cells per step, at a cell edge of sqrt(2), are rounded to 63: 0.6 % too fast. The guard bits that
-// the finding names leave nothing to tell.
+// 62.62 units of 2^-28 cells per step, at a cell edge of sqrt(2), are rounded to 63: 0.6 % too fast. The
+// guard bits that the finding names leave nothing to tell.
 TEST(Watch, TellsImposedMotionThatIsRounded) {
   const double speed = 62.62 * std::ldexp(std::sqrt(2.0), -28) / 0.1;
   const std::vector<Finding> found = found_in_a_pull(speed, 8, 4000);
@@ -198,8 +200,8 @@ TEST(Watch, TellsImposedMotionThatIsRounded) {
   EXPECT_TRUE(found_in_a_pull(speed, 12, 4000).empty());
 }
 
-// Bonds that are to stretch by 2 units of a difference: told after the last look. A hundred times the speed, and bonds
-// stretch by 200.
+// Bonds that are to stretch by 2 units of a difference: told after the last look. A hundred times the speed,
+// and bonds stretch by 200.
 TEST(Watch, TellsStrainBelowTheUnitOfADifference) {
   const double speed = 64 * std::ldexp(std::sqrt(2.0), -28) / 0.1;
   const std::vector<Finding> found = found_in_a_pull(speed, 8, 500);

@@ -223,8 +223,8 @@ Judgement Judge::judge(const std::shared_ptr<const emu::Library>& library) const
     };
     emu::RunResult run;
     try {
-      run = run_plain(plan, case_.setup.initial, options_of(runs_[k]), watched(emitted, ports_[k], result.cycles),
-                      "rtl");
+      run = run_plain(plan, case_.setup.initial, options_of(runs_[k]),
+                      watched(emitted, ports_[k], result.cycles), "rtl");
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception& e) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Judges a node's RTL, changed or not, by one case: golden's bits, golden's fault, the native node's ports in each
-// cycle; without stalls and with, and where links are checked with faults on the wires.
+// Judges a node's RTL, changed or not, by one case: golden's bits, golden's fault, the native node's ports in
+// each cycle; without stalls and with, and where links are checked with faults on the wires.
 #pragma once
 
 #include <memory>
@@ -15,8 +15,8 @@
 
 namespace cuboct::test {
 
-// `name` of make_case, random_<seed>, random_flat_<seed>, fault_<code> or small_<name of small_case>. A case that
-// faults ends with the step that does. Throws std::out_of_range.
+// `name` of make_case, random_<seed>, random_flat_<seed>, fault_<code> or small_<name of small_case>. A case
+// that faults ends with the step that does. Throws std::out_of_range.
 Case case_of(const std::string& name);
 
 struct NodeBuild {
@@ -32,10 +32,11 @@ std::string build_node(const Plan& plan, const NodeBuild& build, const std::stri
 // How a mutant was seen, or that it was not.
 enum class Verdict {
   passed,
-  bits,       // a state, an order of slots or a hash differs from golden's, an observed particle from the native node's
-  fault,      // stops where golden does not, or otherwise
-  cycles,     // a phase begins or ends in another cycle than the native node's, or its engine did other work
-  links,      // a beat, an acknowledgement or a link's error differs from the native node's
+  bits,    // a state, an order of slots or a hash differs from golden's, an observed particle from the native
+           // node's
+  fault,   // stops where golden does not, or otherwise
+  cycles,  // a phase begins or ends in another cycle than the native node's, or its engine did other work
+  links,   // a beat, an acknowledgement or a link's error differs from the native node's
   assertion,  // of the RTL
   stuck,      // no phase begins or ends any more: the bench's own limit
   error       // a word that cannot be: a particle of another node's id, a step out of order
@@ -44,7 +45,7 @@ const char* to_string(Verdict verdict);
 
 struct Judgement {
   Verdict verdict = Verdict::passed;
-  std::string text;  // the first difference
+  std::string text;                                          // the first difference
   uint64_t steps = 0, particles = 0, spans = 0, cycles = 0;  // compared; cycles of nodes, port by port
 };
 
@@ -54,10 +55,10 @@ class Judge {
   struct Run {
     double stall_rate = 0;  // of the links
     uint64_t stall_seed = 1;
-    uint32_t register_seed = 0;             // what the registers hold before reset (emu/verilated)
-    std::optional<uint64_t> steps{};        // other than the case's
-    bool mixed = false;                     // every second node is a native one
-    emu::FaultOptions faults{};             // on the wires
+    uint32_t register_seed = 0;       // what the registers hold before reset (emu/verilated)
+    std::optional<uint64_t> steps{};  // other than the case's
+    bool mixed = false;               // every second node is a native one
+    emu::FaultOptions faults{};       // on the wires
   };
   // Runs golden and the native node once per run.
   Judge(Case c, std::vector<Run> runs);
@@ -79,8 +80,8 @@ class Judge {
   std::vector<PortRecord> ports_;  // the native node's
 };
 
-// Without stalls from zeros, with three cycles of ten stalled from random registers, and of no step. Checked links
-// also meet native neighbours, and faults of each kind: many with retry, single ones with detect.
+// Without stalls from zeros, with three cycles of ten stalled from random registers, and of no step. Checked
+// links also meet native neighbours, and faults of each kind: many with retry, single ones with detect.
 std::vector<Judge::Run> usual_runs(const Plan& plan);
 
 }  // namespace cuboct::test

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // rtl_judge CASE --cache DIR [--changed DIR] [--mutants FILE] [--out FILE] [--jobs N] [--coverage]
-// Judges the RTL by one case (judge.h). With --mutants, numbers one per line, each of them in a process of its
-// own, after number 0, which must pass; a line `number<TAB>case<TAB>verdict<TAB>text` per mutant goes to --out.
-// Exit status: 0, 1 where the RTL as it is does not pass, 2 where it cannot be judged.
+// Judges the RTL by one case (judge.h). With --mutants, numbers one per line, each of them in a process of
+// its own, after number 0, which must pass; a line `number<TAB>case<TAB>verdict<TAB>text` per mutant goes to
+// --out. Exit status: 0, 1 where the RTL as it is does not pass, 2 where it cannot be judged.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -116,7 +116,8 @@ int run(const Request& r) {
 int main(int argc, char** argv) {
   Request r;
   CLI::App app{"Judges the RTL of a node by one case", "rtl_judge"};
-  app.add_option("case", r.name, "Name of tests/support/cases.h, random_N, random_flat_N, fault_N")->required();
+  app.add_option("case", r.name, "Name of tests/support/cases.h, random_N, random_flat_N, fault_N")
+      ->required();
   app.add_option("--cache", r.cache, "Where compiled nodes are kept")->required();
   app.add_option("--changed", r.build.changed, "Modules in place of the library's");
   app.add_option("--optimise", r.build.optimise, "Of the C++ compiler")->capture_default_str();

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "model/hash.h"
+#include "model/base/hash.h"
 
 namespace cuboct::test {
 namespace {

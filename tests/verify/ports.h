@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "emu/systemc/node_model.h"
+#include "emu/machine/node_model.h"
 
 namespace cuboct::test {
 
@@ -22,11 +22,13 @@ using Shown = std::array<uint64_t, static_cast<size_t>(PortGroup::count)>;
 // [node][cycle after reset]
 using PortRecord = std::vector<std::vector<Shown>>;
 
-// The nodes of `factory`; what they show goes to `record`, which has to outlive them and holds a list per node.
+// The nodes of `factory`; what they show goes to `record`, which has to outlive them and holds a list per
+// node.
 emu::NodeFactory recorded(emu::NodeFactory factory, PortRecord& record);
 
-// The nodes of `factory`. Throws std::runtime_error, with kPortsDiffer and a group's name in its text, in the first
-// cycle in which one shows other than `expected`, which has to outlive them; cycles that were compared are counted.
+// The nodes of `factory`. Throws std::runtime_error, with kPortsDiffer and a group's name in its text, in the
+// first cycle in which one shows other than `expected`, which has to outlive them; cycles that were compared
+// are counted.
 emu::NodeFactory watched(emu::NodeFactory factory, const PortRecord& expected, uint64_t& cycles);
 inline constexpr const char* kPortsDiffer = "differs from the native node's: ";
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "emu/systemc/words.h"
+#include "emu/machine/words.h"
 #include "tests/support/dice.h"
 
 namespace cuboct::test {

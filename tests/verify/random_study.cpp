@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // rtl_random_study --seeds A-B --out FILE --cache DIR [--minutes N] [--changed DIR] [--draw]
-// Random scenes, machines and stalls (random_scene.h), each judged in bits and cycles. A line per seed goes to
-// --out; seeds that stand there already are not run again. The sum of all that the file holds is printed at the
-// end. Exit status: 0, 1 where a seed failed, 2 where the command line is wrong.
+// Random scenes, machines and stalls (random_scene.h), each judged in bits and cycles. A line per seed goes
+// to
+// --out; seeds that stand there already are not run again. The sum of all that the file holds is printed at
+// the end. Exit status: 0, 1 where a seed failed, 2 where the command line is wrong.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -97,14 +98,16 @@ int run(const Request& r) {
     for (const auto& [name, count] : row.counts) file << name << '=' << count << ';';
     file << std::endl;
     if (row.verdict != "passed" && row.verdict != "refused" && !r.draw)
-      fmt::print("seed {} fails: {}: {}\n  again: rtl_random_study --seeds {} --out NEW_FILE --cache {}\n", seed,
-                 row.verdict, row.text, seed, r.cache);
+      fmt::print("seed {} fails: {}: {}\n  again: rtl_random_study --seeds {} --out NEW_FILE --cache {}\n",
+                 seed, row.verdict, row.text, seed, r.cache);
   }
 
   uint64_t passed = 0, failed = 0, refused = 0;
   std::map<std::string, std::pair<uint64_t, uint64_t>> sums;  // seeds with some, and how many in all
   for (const auto& [seed, row] : rows) {
-    (row.verdict == "passed" || row.verdict == "drawn" ? passed : row.verdict == "refused" ? refused : failed) += 1;
+    (row.verdict == "passed" || row.verdict == "drawn" ? passed
+     : row.verdict == "refused"                        ? refused
+                                                       : failed) += 1;
     for (const auto& [name, count] : row.counts) {
       sums[name].first += count > 0;
       sums[name].second += count;
@@ -121,13 +124,15 @@ int run(const Request& r) {
 int main(int argc, char** argv) {
   Request r;
   CLI::App app{"Random scenes, machines and stalls for the RTL", "rtl_random_study"};
-  app.add_option("--seeds", r.seeds, "A-B, or one")->required()->check(CLI::Validator(
-      [](std::string& text) {
-        const bool fine = !text.empty() && text.find_first_not_of("0123456789-") == std::string::npos &&
-                          text.front() != '-' && text.back() != '-';
-        return fine ? std::string() : "expected A-B, two numbers, got " + text;
-      },
-      "A-B"));
+  app.add_option("--seeds", r.seeds, "A-B, or one")
+      ->required()
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            const bool fine = !text.empty() && text.find_first_not_of("0123456789-") == std::string::npos &&
+                              text.front() != '-' && text.back() != '-';
+            return fine ? std::string() : "expected A-B, two numbers, got " + text;
+          },
+          "A-B"));
   app.add_option("--out", r.out, "A line per seed is added to this file")->required();
   app.add_option("--cache", r.cache, "Where nodes are compiled")->required();
   app.add_option("--minutes", r.minutes, "No further seed is begun after these");

@@ -32,8 +32,9 @@ Arch small_arch() {
   return arch;
 }
 
-// A particle of the neighbour node in each direction gets the offset of one of node 0: where the cell's edge is the
-// cutoff, r2 of the two is cutoff2, at which nothing acts, and each size of the planar test is its bound.
+// A particle of the neighbour node in each direction gets the offset of one of node 0: where the cell's edge
+// is the cutoff, r2 of the two is cutoff2, at which nothing acts, and each size of the planar test is its
+// bound.
 void at_the_cutoff(Setup& setup) {
   auto& particles = setup.initial.particles;
   const auto first_of = [&](uint32_t node) -> Particle& {
@@ -43,10 +44,12 @@ void at_the_cutoff(Setup& setup) {
   };
   const Particle from = first_of(0);
   for (const int face : {1, 3, 5})
-    if (const uint32_t other = setup.plan.lattice.neighbour(0, face); other != kNoNode) first_of(other).x = from.x;
+    if (const uint32_t other = setup.plan.lattice.neighbour(0, face); other != kNoNode)
+      first_of(other).x = from.x;
 }
 
-// One particle of the first node goes to the last node, and one the other way, over all three axes in one step.
+// One particle of the first node goes to the last node, and one the other way, over all three axes in one
+// step.
 void cross_the_corner(Setup& setup) {
   const int64_t edge = int64_t{1} << setup.plan.rule.widths.velocity_frac();
   const int64_t most = (int64_t{1} << (setup.plan.rule.widths.velocity_bits - 4)) - 1;
@@ -67,16 +70,16 @@ void cross_the_corner(Setup& setup) {
 
 // Half of the particles drift up, half down, all the time: inboxes go round.
 void drift(Scene& scene) {
-  for (size_t k = 0; k < scene.body.size(); ++k)
-    scene.body.v[k] += (k % 2 == 0 ? 1 : -1) * Vec3(1.6, 1.1, 0);
+  for (size_t k = 0; k < scene.body.size(); ++k) scene.body.v[k] += (k % 2 == 0 ? 1 : -1) * Vec3(1.6, 1.1, 0);
   for (int a = 0; a < 2; ++a) {
     scene.periodic.origin[a] = -0.3;
     scene.periodic.extent[a] = 4 * std::sqrt(2.0);
   }
 }
 
-// Two alone in a ring of three cells along each axis, one along a diagonal through the cells' corners, up, one down:
-// cells, and nodes, become empty, and an empty one gets a particle that goes on along the next axis.
+// Two alone in a ring of three cells along each axis, one along a diagonal through the cells' corners, up,
+// one down: cells, and nodes, become empty, and an empty one gets a particle that goes on along the next
+// axis.
 void fly(Scene& scene) {
   Body body;
   const double edge = std::sqrt(2.0);
@@ -90,8 +93,8 @@ void fly(Scene& scene) {
   scene.reach_margin = Vec3::Constant(3 * edge);
 }
 
-// A particle of node 0 a few places of the position beside another, below a table's first octave, and one at 0.3 of
-// the cell's edge, where r2 has fewer bits than the table's address.
+// A particle of node 0 a few places of the position beside another, below a table's first octave, and one at
+// 0.3 of the cell's edge, where r2 has fewer bits than the table's address.
 void close_together(Setup& setup) {
   Particle* first = nullptr;
   int moved = 0;
@@ -120,16 +123,17 @@ void one_pair(Scene& scene) {
   scene.body = body;
 }
 
-// Velocities by turns +v, -v, so that pairs meet; less on the later axes, and a little different for each particle.
-// Nothing before the axis `first`.
+// Velocities by turns +v, -v, so that pairs meet; less on the later axes, and a little different for each
+// particle. Nothing before the axis `first`.
 void set_velocities(Setup& setup, int64_t v, bool by_turns, int first = 0) {
   for (Particle& p : setup.initial.particles)
     for (int a = first; a < 3; ++a)
-      p.v[a] = (by_turns && (p.id + static_cast<uint32_t>(a)) % 2 == 0 ? -1 : 1) * (v - 200 * a - 7 * int64_t{p.id});
+      p.v[a] = (by_turns && (p.id + static_cast<uint32_t>(a)) % 2 == 0 ? -1 : 1) *
+               (v - 200 * a - 7 * int64_t{p.id});
 }
 
-// One rule and machine with damping and PD, of which every number is near its limit; what a scene sets is what it
-// makes fail, of several particles, pairs and axes in one step.
+// One rule and machine with damping and PD, of which every number is near its limit; what a scene sets is
+// what it makes fail, of several particles, pairs and axes in one step.
 void failing(Small& s) {
   s.features.damping = 8;
   s.features.force_held = true;
@@ -139,7 +143,8 @@ void failing(Small& s) {
   s.steps = 3;
 }
 
-// Memories of words of a beat. With the 13 bits of small_arch the sign of x lies in two words, that of y in one.
+// Memories of words of a beat. With the 13 bits of small_arch the sign of x lies in two words, that of y in
+// one.
 void narrow(Arch& arch) {
   arch.narrow_memories = true;
   arch.filter_lanes = arch.force_pipes = 1;
@@ -149,15 +154,22 @@ void narrow(Arch& arch) {
 // Another case's scene and machine in nodes of several cells.
 const std::map<std::string, std::pair<const char*, Cell>>& bricks() {
   static const std::map<std::string, std::pair<const char*, Cell>> all{
-      {"brick_hot", {"hot", {2, 2, 1}}},      {"brick_thin", {"hot", {1, 2, 1}}},
+      {"brick_hot", {"hot", {2, 2, 1}}},
+      {"brick_thin", {"hot", {1, 2, 1}}},
       {"brick_whole", {"hot", {2, 2, 2}}},
-      {"brick_drift", {"drift", {2, 3, 1}}},  {"brick_full", {"full", {2, 1, 1}}},
-      {"brick_pd", {"pd", {2, 1, 1}}},        {"brick_edge", {"edge", {2, 1, 2}}},
-      {"brick_retry", {"retry", {2, 1, 1}}},  {"brick_fails_sum", {"fails_sum", {2, 1, 1}}},
-      {"brick_fails_v", {"fails_v", {2, 1, 1}}},  {"brick_fly", {"fly", {2, 2, 2}}},
-      {"brick_fails_w", {"fails_w", {2, 1, 1}}},  {"brick_fails_free", {"fails_free", {2, 1, 1}}},
+      {"brick_drift", {"drift", {2, 3, 1}}},
+      {"brick_full", {"full", {2, 1, 1}}},
+      {"brick_pd", {"pd", {2, 1, 1}}},
+      {"brick_edge", {"edge", {2, 1, 2}}},
+      {"brick_retry", {"retry", {2, 1, 1}}},
+      {"brick_fails_sum", {"fails_sum", {2, 1, 1}}},
+      {"brick_fails_v", {"fails_v", {2, 1, 1}}},
+      {"brick_fly", {"fly", {2, 2, 2}}},
+      {"brick_fails_w", {"fails_w", {2, 1, 1}}},
+      {"brick_fails_free", {"fails_free", {2, 1, 1}}},
       {"brick_fails_s", {"fails_s", {2, 1, 1}}},
-      {"brick_shared", {"flat_shared", {1, 2, 1}}}, {"brick_serial", {"flat_serial", {2, 1, 1}}}};
+      {"brick_shared", {"flat_shared", {1, 2, 1}}},
+      {"brick_serial", {"flat_serial", {2, 1, 1}}}};
   return all;
 }
 
@@ -291,7 +303,8 @@ const std::map<std::string, Recipe>& recipes() {
            set_velocities(setup, 30000, false);
            for (Particle& p : setup.initial.particles)
              if (setup.plan.rule.types[p.type].pd)
-               for (int a = 0; a < 3; ++a) p.u[a] = (p.id + static_cast<uint32_t>(a)) % 3 == 0 ? 5 : kMostU - 3 * a;
+               for (int a = 0; a < 3; ++a)
+                 p.u[a] = (p.id + static_cast<uint32_t>(a)) % 3 == 0 ? 5 : kMostU - 3 * a;
          };
        }},
       {"fails_v",
@@ -322,7 +335,8 @@ const std::map<std::string, Recipe>& recipes() {
          s.place = at_the_cutoff;
        }},
       // Particles go everywhere, along several axes in a step; nodes fill up.
-      // One multiplier for the axes, pairs as close as it lets them come, many of them beyond the cutoff; one that fails.
+      // One multiplier for the axes, pairs as close as it lets them come, many of them beyond the cutoff; one
+      // that fails.
       {"shared_edge",
        [](S s) {
          recipes().at("edge")(s);

@@ -4,7 +4,7 @@
 #include <exception>
 
 #include "hw/rtl_emit.h"
-#include "model/error.h"
+#include "model/base/error.h"
 #include "tests/verify/small_case.h"
 
 int main(int argc, char** argv) {

@@ -166,7 +166,8 @@ study::Results hostile_results() {
   results.truth.notes = {evil};
   std::vector<Outcome> outcomes;
   for (size_t n = 0; n < 8; ++n)
-    // A name and a number's unit, each swept by itself: directories, quotes, a template of the charts' library.
+    // A name and a number's unit, each swept by itself: directories, quotes, a template of the charts'
+    // library.
     for (const auto& [name, number] : {std::pair{evil, "1 "}, {"{b}" + evil, "1 "}, {evil, "2 "}}) {
       Outcome& o = outcomes.emplace_back(results.outcomes[n]);
       o.why = evil;

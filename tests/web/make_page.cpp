@@ -5,7 +5,7 @@
 
 #include <exception>
 
-#include "model/output.h"
+#include "model/base/output.h"
 #include "study/page.h"
 #include "tests/web/made_up_results.h"
 

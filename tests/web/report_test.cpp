@@ -11,8 +11,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "model/process.h"
-#include "model/text.h"
+#include "model/base/process.h"
+#include "model/base/text.h"
 #include "study/json.h"
 #include "study/page.h"
 #include "study/parameters.h"
@@ -196,7 +196,8 @@ TEST(Series, EveryEngineHasALookOfItsOwnThatCanBeSeen) {
   for (int n = 0; n < 12; ++n) add(results, {}, {}, 1, 1).settings.engine = fmt::format("engine{}", n);
   const auto gpu = [&](Arithmetic arithmetic, const std::string& machine) {
     Outcome& outcome = add(results, {}, {}, 1, 1);
-    outcome.settings.engine = "gpu", outcome.settings.arithmetic = arithmetic, outcome.speed.machine = machine;
+    outcome.settings.engine = "gpu", outcome.settings.arithmetic = arithmetic,
+    outcome.speed.machine = machine;
   };
   gpu(Arithmetic::fixed, "a <made-up> GPU"), gpu(Arithmetic::fixed, "another"), gpu(Arithmetic::float64, "");
   add(results, {}, {}, 1, 1).speed.machine = "another";
@@ -302,7 +303,8 @@ TEST(Charts, HostileTextIsDrawn) {
   EXPECT_GT(drawn, 0U);
 }
 
-// The chart keeps its width, of which its axis' name tells the middle: beside short names and above long ones.
+// The chart keeps its width, of which its axis' name tells the middle: beside short names and above long
+// ones.
 TEST(Charts, LongNamesStandBelow) {
   const auto middle = [](const std::string& machine) {
     Results results;

@@ -51,8 +51,9 @@ TEST_F(ExploreOnGpu, WithoutTheProgramItsPointsAreLeftOutAndComeFromAnotherMachi
   const std::string here = bench_.path("here"), there = bench_.path("there");
   const Answer alone = explore(here);
   EXPECT_EQ(alone.code, 0) << alone.err;
-  EXPECT_EQ(left_out(alone.out),
-            std::string("3 points of the gpu engine left out: no program cuboct-gpu beside this one") + kHint);
+  EXPECT_EQ(
+      left_out(alone.out),
+      std::string("3 points of the gpu engine left out: no program cuboct-gpu beside this one") + kHint);
   const std::string lattice = "lattice fixed euler run.dt=\"auto\" run.dt_safety=";
   EXPECT_EQ(points_of(here), lattice + "0.2|done|||\n" + lattice + "0.4|done|||\n");
 
@@ -83,29 +84,34 @@ TEST_F(ExploreOnGpu, WithoutADeviceItsPointsAreLeftOut) {
   put("echo 'the gpu engine needs a CUDA device: no driver (libcuda.so.1)' >&2\nexit 2\n");
   const Answer answer = explore(bench_.path("here"), {"--no-speed"});
   EXPECT_EQ(answer.code, 0) << answer.err;
-  EXPECT_EQ(left_out(answer.out), std::string("3 points of the gpu engine left out: the gpu engine needs a CUDA "
-                                              "device: no driver (libcuda.so.1)") +
-                                      kHint);
+  EXPECT_EQ(left_out(answer.out),
+            std::string("3 points of the gpu engine left out: the gpu engine needs a CUDA "
+                        "device: no driver (libcuda.so.1)") +
+                kHint);
   EXPECT_EQ(rows(bench_.path("here") + "/results.db", "select count(*) from points"), "2|\n");
 }
 
 // A device that fails is no property of a point: nothing is recorded of it, and the next call begins there.
 TEST_F(ExploreOnGpu, AProgramThatFailsEndsTheStudyAndLeavesNoRow) {
-  put("case \"$*\" in --list) echo '0 a GPU';; *) echo 'cuboct-gpu: an illegal memory access' >&2; exit 1;; esac\n");
+  put("case \"$*\" in --list) echo '0 a GPU';; *) echo 'cuboct-gpu: an illegal memory access' >&2; exit 1;; "
+      "esac\n");
   const Answer answer = explore(bench_.path("here"), {"--no-speed"});
   EXPECT_EQ(answer.code, 1);
   EXPECT_EQ(answer.err, "cuboct-gpu: an illegal memory access\n");
   EXPECT_EQ(rows(bench_.path("here") + "/results.db", "select count(*) from points"), "2|\n");
 }
 
-// An interrupt that meets cuboct alone is passed on, from whichever thread waits: the program need not end by itself.
+// An interrupt that meets cuboct alone is passed on, from whichever thread waits: the program need not end by
+// itself.
 TEST_F(ExploreOnGpu, AnInterruptEndsTheProgram) {
-  put("case \"$*\" in --list) echo '0 a GPU';; *) touch " + bench_.path("begun") + "; exec sleep 100;; esac\n");
+  put("case \"$*\" in --list) echo '0 a GPU';; *) touch " + bench_.path("begun") +
+      "; exec sleep 100;; esac\n");
   const auto begin = std::chrono::steady_clock::now();
   double after = 1;
   // A busy machine may not have come to the first point of the GPU yet.
   for (; !std::filesystem::exists(bench_.path("begun")) && after < 60; after *= 2) {
-    const Answer answer = bench_.cuboct({"explore", study_, "--out", bench_.path("here"), "--no-speed"}, after);
+    const Answer answer =
+        bench_.cuboct({"explore", study_, "--out", bench_.path("here"), "--no-speed"}, after);
     EXPECT_EQ(answer.code, 1);
     EXPECT_EQ(answer.err, "interrupted; the same command goes on where it was\n");
   }

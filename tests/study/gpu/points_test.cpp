@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "model/error.h"
+#include "model/base/error.h"
 #include "study/gpu_program.h"
 #include "study/measure_errors.h"
 #include "study/measure_speed.h"
@@ -15,8 +15,8 @@
 namespace cuboct::study {
 namespace {
 
-// The block falls from the start: where an engine did not start half a step back, it would show. Its figure is a
-// curve that the program reads.
+// The block falls from the start: where an engine did not start half a step back, it would show. Its figure
+// is a curve that the program reads.
 constexpr const char* kFalling =
     "[change]\ngravity = \"[0, 0, -1e7] m/s^2\"\n[truth]\nrungs = 4\n"
     "[[figure]]\nkind = \"mean\"\ncurve = \"energy.potential\"\n";
@@ -35,8 +35,9 @@ struct Measured {
 };
 
 TEST(GpuPoints, FixedOnesHaveTheBitsOfTheLatticesPoints) {
-  const Measured m(std::string(kFalling) +
-                   "[[sweep]]\nengine = [\"lattice\", \"gpu\"]\ndt_safety = [0.1, 0.4]\nindex_bits = [5, 8]\n");
+  const Measured m(
+      std::string(kFalling) +
+      "[[sweep]]\nengine = [\"lattice\", \"gpu\"]\ndt_safety = [0.1, 0.4]\nindex_bits = [5, 8]\n");
   ASSERT_EQ(m.outcomes.size(), 8U);
   for (size_t k = 0; k < 4; ++k) {
     const Outcome &lattice = m.outcomes[k], &gpu = m.outcomes[k + 4];
@@ -58,9 +59,10 @@ TEST(GpuPoints, FixedOnesHaveTheBitsOfTheLatticesPoints) {
 }
 
 TEST(GpuPoints, RealOnesStartWhereTheReferenceDoes) {
-  const Measured m(std::string(kFalling) +
-                   "[[sweep]]\nengine = \"gpu\"\narithmetic = [\"float64\", \"float32\"]\ndt_safety = [0.4, 0.2]\n"
-                   "[[sweep]]\narithmetic = \"float64\"\ndt_safety = [0.4, 0.2]\n");
+  const Measured m(
+      std::string(kFalling) +
+      "[[sweep]]\nengine = \"gpu\"\narithmetic = [\"float64\", \"float32\"]\ndt_safety = [0.4, 0.2]\n"
+      "[[sweep]]\narithmetic = \"float64\"\ndt_safety = [0.4, 0.2]\n");
   ASSERT_EQ(m.outcomes.size(), 6U);
   for (size_t k = 0; k < 2; ++k) {
     const Outcome &in_doubles = m.outcomes[k], &in_floats = m.outcomes[k + 2], &reference = m.outcomes[k + 4];
@@ -81,7 +83,8 @@ TEST(GpuPoints, RealOnesStartWhereTheReferenceDoes) {
 
 // Without gravity momentum is kept: to the last bit by integers, by floats to their rounding.
 TEST(GpuPoints, MomentumIsThatOfTheWholeRun) {
-  const Measured m("[truth]\nrungs = 2\n[[sweep]]\nengine = \"gpu\"\narithmetic = [\"fixed\", \"float32\"]\n");
+  const Measured m(
+      "[truth]\nrungs = 2\n[[sweep]]\nengine = \"gpu\"\narithmetic = [\"fixed\", \"float32\"]\n");
   EXPECT_EQ(m.outcomes[0].errors.momentum, 0);
   EXPECT_GT(m.outcomes[1].errors.momentum, 0);
   EXPECT_LT(m.outcomes[1].errors.momentum, 1e-4);
@@ -95,15 +98,17 @@ TEST(GpuPoints, RunsThatStopAreUnstableWithTheirReason) {
   EXPECT_EQ(m.outcomes[1].why, m.outcomes[0].why);
   EXPECT_EQ(m.outcomes[1].steps, m.outcomes[0].steps);
   EXPECT_EQ(m.outcomes[2].status, Status::refused);
-  EXPECT_TRUE(m.outcomes[2].why.ends_with("cell_edge = 0.0006 m is shorter than the pair law's cutoff, 0.000707107 m")) << m.outcomes[2].why;
+  EXPECT_TRUE(m.outcomes[2].why.ends_with(
+      "cell_edge = 0.0006 m is shorter than the pair law's cutoff, 0.000707107 m"))
+      << m.outcomes[2].why;
   EXPECT_TRUE(std::isnan(measure_speed(m.study, m.study.points[1]).particle_steps));
   EXPECT_TRUE(std::isnan(measure_speed(m.study, m.study.points[2]).particle_steps));
 }
 
 TEST(GpuPoints, SpeedIsOfStepsOverTheStudysSeconds) {
   const test::SmallStudy files;
-  const Study study = read_study(
-      files.study("[speed]\nrepeats = 2\nseconds = 0.1\n[[sweep]]\nengine = \"gpu\"\narithmetic = \"float64\"\n"));
+  const Study study = read_study(files.study(
+      "[speed]\nrepeats = 2\nseconds = 0.1\n[[sweep]]\nengine = \"gpu\"\narithmetic = \"float64\"\n"));
   const auto begin = std::chrono::steady_clock::now();
   const Speed speed = measure_speed(study, study.points[0]);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -112,8 +117,8 @@ TEST(GpuPoints, SpeedIsOfStepsOverTheStudysSeconds) {
   EXPECT_GE(speed.spread, 0);
   const Case c = resolve(study.base, study.points[0]);
   const auto particles = static_cast<double>(c.scene.body.size());
-  EXPECT_NEAR(speed.simulated_seconds / speed.particle_steps * particles / study.grid.fitted(c.scene.rule.dt), 1,
-              1e-12);
+  EXPECT_NEAR(speed.simulated_seconds / speed.particle_steps * particles / study.grid.fitted(c.scene.rule.dt),
+              1, 1e-12);
   // All steps that the window can have held took no longer than the whole of it.
   EXPECT_GT(speed.particle_steps, 160 * particles / seconds);
 }

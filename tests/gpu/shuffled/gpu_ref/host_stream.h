@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// In the place of gpu_ref/host_stream.h: streams that do nothing until somebody waits, and then in an order that is
-// drawn among all that events allow. Whatever an engine only expects to come first comes last here some time.
+// In the place of gpu_ref/host_stream.h: streams that do nothing until somebody waits, and then in an order
+// that is drawn among all that events allow. Whatever an engine only expects to come first comes last here
+// some time.
 #pragma once
 
 #include <cstdint>
@@ -49,14 +50,17 @@ class Stream {
     later([&event] { ++event.reached_; });
   }
   // As CUDA: for the record that was called last, if any.
-  void wait(const Event& event) { add({&event, event.issued_, [] {}}); }
+  void wait(const Event& event) {
+    add({&event, event.issued_, [] {}});
+  }
   void synchronize() {
     while (!queue_.empty()) go_on();
   }
   static void finish(int device) {
     for (;;) {
       bool idle = true;
-      for (Stream* stream : Shuffle::all().streams) idle = idle && (stream->device_ != device || stream->queue_.empty());
+      for (Stream* stream : Shuffle::all().streams)
+        idle = idle && (stream->device_ != device || stream->queue_.empty());
       if (idle) return;
       go_on();
     }
@@ -74,7 +78,8 @@ class Stream {
     queue_.push_back(std::move(call));
   }
   bool ready() const {
-    return !queue_.empty() && (!queue_.front().event || queue_.front().event->reached_ >= queue_.front().reached);
+    return !queue_.empty() &&
+           (!queue_.front().event || queue_.front().event->reached_ >= queue_.front().reached);
   }
   // Some stream, as far as it gets or a few calls.
   static void go_on() {

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "emu/machine/collector.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+
+#include "emu/machine/words.h"
+
+namespace cuboct::emu {
+namespace {
+
+std::string place_of(const Lattice& lattice, uint32_t node) {
+  const Cell& c = lattice.cell(node);
+  return fmt::format(" at cell ({}, {}, {})", c[0], c[1], c[2]);
+}
+
+}  // namespace
+
+uint64_t patience_of(const Plan& plan, double stall_rate) {
+  // The longest phase is FORCE, where each of the 27 C candidates passes ceil(C / L) times and each of its 27
+  // C^2 pairs may take a cycle; an exchange sends at most 9 C records and waits for a neighbour that may be a
+  // step behind.
+  // A brick does so for each of its cells, and sends no more than all that it and those around hold.
+  const uint64_t c = static_cast<uint64_t>(plan.arch.capacity), cells = cells_of(plan.arch.brick);
+  const uint64_t force = cells * 27 * c * (c + 1) + 1000;
+  const uint64_t beats =
+      16 * c * cells * static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
+  return 4 * force + static_cast<uint64_t>(64.0 * static_cast<double>(beats) / (1.0 - stall_rate));
+}
+
+std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initial) {
+  std::vector<std::vector<Particle>> cells(plan.lattice.size());
+  const Particle* first = nullptr;  // that found its cell full; `initial` ascends in id
+  for (const Particle& p : initial.particles) {
+    if (static_cast<int>(cells[p.node].size()) < plan.arch.capacity)
+      cells[p.node].push_back(p);
+    else if (first == nullptr)
+      first = &p;
+  }
+  if (first != nullptr)
+    throw RunError(Fault::full_x, initial.step, first->node, first->id, plan.arch.capacity,
+                   place_of(plan.lattice, first->node));
+  if (plan.bricks.single()) return cells;
+  std::vector<std::vector<Particle>> nodes(plan.nodes());
+  for (uint32_t n = 0; n < plan.nodes(); ++n)
+    for (uint32_t local = 0; local < cells_of(plan.bricks.shape()); ++local)
+      if (const uint32_t cell = plan.cell_of(n, local); cell != kNoNode)
+        nodes[n].insert(nodes[n].end(), cells[cell].begin(), cells[cell].end());
+  return nodes;
+}
+
+Bits load_word(const Plan& plan, const Particle& particle) {
+  Slot slot;
+  put_position(plan.rule.widths, particle.x, slot);
+  slot.body.v = particle.v;
+  slot.body.type = particle.type;
+  slot.u = particle.u;
+  slot.id = particle.id;
+  return pack_particle(plan, slot);
+}
+
+void load(const Plan& plan, const std::vector<Particle>& particles, size_t k, Control& control) {
+  control.load_valid = k < particles.size();
+  control.load_data = control.load_valid ? load_word(plan, particles[k]) : Bits{};
+  control.load_cell = control.load_valid ? plan.local_of(particles[k].node) : 0;
+}
+
+Collector::Collector(const Plan& plan, const RunOptions& options)
+    : plan_(plan),
+      options_(options),
+      nodes_(plan.nodes()),
+      shown_phase_(plan.bricks.single() ? Phase::exchange_x : Phase::update),
+      last_phase_(last_phase(plan.rule.axes)),
+      step_(nodes_),
+      stopped_(nodes_) {
+  std::sort(options_.frames.begin(), options_.frames.end());
+  trace_.plan_hash = plan.hash;
+  trace_.nodes = nodes_;
+}
+
+Collector::Snapshot& Collector::snapshot(uint64_t step) {
+  const auto [at, is_new] = open_.try_emplace(step);
+  if (is_new) at->second.kept = std::binary_search(options_.frames.begin(), options_.frames.end(), step);
+  return at->second;
+}
+
+// The lattice's cell; a brick's first one where a damaged word names a cell that is not there.
+uint32_t Collector::cell_of(uint32_t node, uint32_t local) const {
+  const uint32_t cell = plan_.cell_of(node, local);
+  return cell != kNoNode ? cell : plan_.first_cell_of(node);
+}
+
+void Collector::observe(uint32_t node, const NodeOutputs& out) {
+  const Slot slot = unpack_particle(plan_, out.observe_data);
+  if (slot.id >= plan_.particles)
+    throw std::runtime_error(
+        fmt::format("step {}: holds particle {}, of {}", step_[node], slot.id, plan_.particles));
+  const uint64_t step = step_[node];
+  Particle p;
+  p.id = slot.id;
+  p.type = slot.body.type;
+  p.node = cell_of(node, out.observe_cell);
+  p.x = position_of(plan_.rule.widths, slot);
+  p.v = slot.body.v;
+  p.u = slot.u;
+  Snapshot& s = snapshot(step);
+  s.hash += hash_of(plan_.lattice, p);
+  if (s.kept) s.state.particles.push_back(p);
+  if (options_.keep_order) {
+    if (order_.size() <= step)
+      order_.resize(step + 1, std::vector<std::vector<uint32_t>>(plan_.lattice.size()));
+    order_[step][p.node].push_back(p.id);
+  }
+}
+
+void Collector::complete(uint64_t step) {
+  Snapshot& s = snapshot(step);
+  if (++s.complete < nodes_) return;
+  trace_.state_hash.push_back(s.hash);
+  if (s.kept) {
+    s.state.step = step;
+    std::sort(s.state.particles.begin(), s.state.particles.end(),
+              [](const Particle& a, const Particle& b) { return a.id < b.id; });
+    trace_.frames.push_back(std::move(s.state));
+  }
+  open_.erase(step);
+}
+
+void Collector::close(uint64_t cycle) {
+  done_ = true;
+  last_cycle_ = cycle;
+}
+
+void Collector::break_off(uint64_t cycle) {
+  if (done_) return;
+  stop_ = {};  // a fault that some nodes may yet precede
+  close(cycle);
+}
+
+void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
+  if (done_) return;
+  const uint64_t step = step_[node];
+  // The nodes around a link that failed wait for ever; the node that tells may be idle already.
+  if (out.fault && is_of_link(static_cast<Fault>(out.fault_code))) {
+    stop_ = {static_cast<Fault>(out.fault_code), step, cell_of(node, 0), out.fault_id, out.fault_number, {}};
+    close(cycle);
+    return;
+  }
+  if (stopped_[node]) return;
+  last_event_ = cycle;
+  const auto span = [&](int phase) -> PhaseSpan& {
+    return trace_.cycles[(step * nodes_ + node) * kPhases + static_cast<size_t>(phase)];
+  };
+  if (out.phase_start != 0 && trace_.cycles.size() < (step + 1) * nodes_ * kPhases)
+    trace_.cycles.resize((step + 1) * nodes_ * kPhases);
+  for (int p = 0; p < kPhases; ++p)
+    if (out.phase_start >> p & 1) span(p).start = cycle;
+  if (out.observe) observe(node, out);
+  for (int p = 0; p < kPhases; ++p)
+    if (out.phase_end >> p & 1) span(p).end = cycle;
+  // What a flat plan does not have lies, empty, after what comes before it.
+  if (last_phase_ != Phase::migrate_z)
+    for (const Phase y : {Phase::exchange_y, Phase::migrate_y})
+      if (out.phase_end >> static_cast<int>(y) & 1) span(static_cast<int>(y) + 1) = {cycle + 1, cycle};
+  if (out.phase_end & 1u << static_cast<int>(shown_phase_)) complete(step);
+  if (out.fault) {
+    const StopReason found{static_cast<Fault>(out.fault_code),
+                           step,
+                           cell_of(node, out.fault_cell),
+                           out.fault_id,
+                           out.fault_number,
+                           {}};
+    const auto key = [](const StopReason& r) { return std::tie(r.step, r.fault, r.particle, r.number); };
+    if (stop_.fault == Fault::none || key(found) < key(stop_)) stop_ = found;
+  }
+  if (out.phase_end & 1u << static_cast<int>(last_phase_)) {
+    ++step_[node];
+    ++finished_[step];
+  }
+  if (out.idle) {
+    stopped_[node] = true;
+    complete(options_.steps);
+  }
+  // No fault of an earlier step can come once all nodes have finished this one.
+  if (stop_.fault != Fault::none ? finished_[stop_.step] == nodes_
+                                 : trace_.state_hash.size() == options_.steps + 1)
+    close(cycle);
+}
+
+Trace Collector::take_trace() {
+  if (stop_.fault != Fault::none) {
+    stop_.text = RunError(stop_.fault, stop_.step, stop_.node, stop_.particle, stop_.number,
+                          place_of(plan_.lattice, stop_.node))
+                     .what();
+    trace_.stop = stop_;
+    // Where a link failed, not every node may have come so far.
+    if (trace_.state_hash.size() > stop_.step + 1) trace_.state_hash.resize(stop_.step + 1);
+    if (options_.keep_order) order_.resize(trace_.state_hash.size());
+    std::erase_if(trace_.frames, [&](const State& s) { return s.step > stop_.step; });
+  }
+  trace_.cycles.resize(steps_done() * nodes_ * kPhases);
+  return std::move(trace_);
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// What the bench asks of a node, whoever implements it: the ports of docs/reference/node.md, one call per
+// clock cycle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "emu/machine/bits.h"
+#include "model/contract/lattice.h"
+
+namespace cuboct::emu {
+
+// One beat of a link: the payload, or the end of a stream. Bits beyond the link's width are zero, from the
+// start on: who writes a beat may leave them alone. Aligned so that a narrow one lies in one cache line.
+struct alignas(64) Beat {
+  bool end = false;
+  Bits payload;
+};
+
+// The host's side of a node's ports.
+struct Control {
+  bool reset_n = false;
+  bool start = false;
+  uint32_t steps = 0;
+  bool load_valid = false;
+  uint32_t load_cell = 0;  // of a brick
+  Bits load_data;
+  bool operator==(const Control&) const = default;
+};
+
+// A cycle that never comes.
+inline constexpr uint64_t kNever = UINT64_MAX;
+
+// A node's inputs during one cycle. Bit f of a mask belongs to face f.
+struct NodeInputs {
+  uint64_t now =
+      0;  // the cycle, counted from any origin; ascends over the calls, by more than one after a sleep
+  const Control* control = nullptr;
+  uint8_t valid = 0;                       // link_valid_i
+  uint8_t ready = 0;                       // link_ready_i
+  std::array<const Beat*, kFaces> beat{};  // where `valid`
+  std::array<uint16_t, kFaces> ack{};      // link_ack_i, where links are checked
+};
+
+// What a node shows of one cycle, and its link registers after the edge that ends the cycle.
+struct NodeOutputs {
+  // Of the cycle.
+  uint8_t phase_start = 0, phase_end = 0;  // bit p: Phase p
+  bool observe = false, fault = false, idle = false;
+  Bits observe_data;                          // where `observe`
+  uint32_t observe_cell = 0, fault_cell = 0;  // of a brick: where `observe`, where `fault`
+  uint8_t fault_code = 0;                     // these three where `fault`
+  uint32_t fault_id = 0;
+  int64_t fault_number = 0;
+  uint8_t beat_errors = 0, ack_errors = 0;  // link_error_o: of arriving beats, of acknowledgements
+  // After the edge.
+  uint8_t valid = 0;                   // link_valid_o
+  uint8_t loaded = 0;                  // faces whose register is new; a subset of `valid`
+  uint8_t ready = 0;                   // link_ready_o
+  std::array<uint16_t, kFaces> ack{};  // link_ack_o, where links are checked
+  // Where the node writes link_end_o and link_data_o of the loaded faces: the caller's, who may put another
+  // place here between calls. None where there is no link.
+  std::array<Beat*, kFaces> beat{};
+};
+
+using Counters = std::vector<std::pair<std::string, double>>;
+
+// Adds `part` to what `sum` holds from `first` on; an empty tail takes its names.
+inline void add_counters(Counters& sum, size_t first, const Counters& part) {
+  if (sum.size() == first)
+    for (const auto& [name, value] : part) sum.emplace_back(name, 0.0);
+  for (size_t k = 0; k < part.size(); ++k) sum[first + k].second += part[k].second;
+}
+
+class NodeModel {
+ public:
+  virtual ~NodeModel() = default;
+  // One clock cycle. `out` is the same object in every call.
+  virtual void clock(const NodeInputs& in, NodeOutputs& out) = 0;
+  // After `clock`: the next cycle that the node must be called for. In the cycles before, as long as no link
+  // holds a beat on either side and the control stays as it is, the node would show nothing and load nothing,
+  // and they may be left out. A call in one of them is right too; any value up to the next cycle asks for
+  // each.
+  virtual uint64_t wakes_at() const { return 0; }
+  // What the node is doing, for the report of a deadlock.
+  virtual std::string doing() const { return "unknown"; }
+  // Counters of this node, always the same names in the same order; the bench adds them up over the nodes.
+  virtual Counters counters() const { return {}; }
+};
+
+// `node` counts the plan's physical nodes; `has_link` the faces that have a neighbour.
+using NodeFactory = std::function<std::unique_ptr<NodeModel>(uint32_t node, uint8_t has_link)>;
+
+}  // namespace cuboct::emu

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// The words of hw/plan.h, packed and unpacked: halo records and particles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "emu/machine/bits.h"
+#include "hw/plan.h"
+
+namespace cuboct::emu {
+
+// What a pair needs of a candidate; the halo memories hold these in the receiver's own frame.
+struct Candidate {
+  std::array<int32_t, 3> x{};  // P fractional bits, P+2 bits signed; P <= 30. z stays 0 in a flat plan
+  uint8_t type = 0;
+  Int3 v{};  // P+G fractional bits; zero unless the rule damps
+};
+
+// A particle in a slot.
+struct Slot {
+  Candidate body;                    // x: visible
+  std::array<int32_t, 3> residue{};  // the G bits of the position below those
+  Int3 u{};
+  uint32_t id = 0;
+  std::array<int8_t, 3> away{};  // per axis: nodes still to go, -1, 0, +1
+};
+
+// A particle's position with all its P+G fractional bits; put_position drops whole cells.
+Int3 position_of(const Widths& widths, const Slot& slot);
+void put_position(const Widths& widths, const Int3& x, Slot& slot);
+
+// Throws InputError where a word is wider than Bits.
+void check_words(const Plan& plan);
+
+// In place, as a record's way through a link is what a busy lattice does most. `out` must hold zeros.
+void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out);
+// In the frame of the receiver: `shift` is added to the coordinate `axis`, in P+2 bits.
+void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Candidate& out);
+// The same of a plan with bricks: coordinates in the record's own cell, and which cell that is, as
+// hw/bricks.h numbers it.
+void pack_cell_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out);
+uint32_t unpack_cell_halo(const Plan& plan, const Bits& bits, Candidate& out);
+Bits pack_particle(const Plan& plan, const Slot& slot);
+Slot unpack_particle(const Plan& plan, const Bits& bits);
+
+}  // namespace cuboct::emu

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// What a state means in real units: forces, energies, momentum, and the curves of a scene's probes. Nothing
+// here knows which engine made the state.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "model/contract/fixed_rule.h"
+#include "model/contract/lattice.h"
+#include "model/contract/state.h"
+#include "model/scene/scene.h"
+#include "model/trace/trace.h"
+
+namespace cuboct {
+
+// Sum of the pair kicks on each particle, in the order of `state.particles`; P+G fractional bits of a cell
+// edge per step. It is what the machine adds up in the step that begins with `state`.
+// `threads` (0: one per core) share the nodes; no bit depends on their number, here and in `energies`.
+std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state,
+                               int threads = 0);
+
+// Newtons per unit of a kick: a kick of one cell edge per step is cell_edge/dt in velocity, gained within dt.
+double newtons_per_kick(const FixedRule& rule);
+Vec3 force_of(const FixedRule& rule, const Int3& kick);  // N
+
+// The particles along the axes that nothing imposes or steers, at the time of the positions.
+struct FreeMotion {
+  double kinetic = 0;              // J
+  Vec3 velocities = Vec3::Zero();  // m/s, summed
+};
+
+struct Energies {
+  double kinetic = 0;    // J, at the time of the positions: v + dv/2 with all that the step adds to v, which
+                         // lives half a step earlier
+  double potential = 0;  // J, of the pairs, by the pair law in doubles at the fixed positions
+  double gravity = 0;    // J, -m g.x summed, from the origin of the scene's coordinates
+  FreeMotion free = {};  // a part of `kinetic`
+  double total() const { return kinetic + potential + gravity; }
+};
+
+// The two particles that are nearest to each other inside the cutoff; r infinite where none are.
+struct ClosestPair {
+  uint32_t i = 0, j = 0;                               // ids, i < j
+  double r = std::numeric_limits<double>::infinity();  // m
+};
+
+Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
+                  const State& state, const std::vector<Int3>& kicks, int threads = 0,
+                  ClosestPair* closest = nullptr);
+
+// Of particle `i` in real units, m/s^2, at body's x, v and u: the pair force (N), the PD force and gravity; 0
+// along axes whose velocity is imposed.
+Vec3 acceleration(const Rule& rule, const Body& body, size_t i, const Vec3& force);
+
+// Virial stress of the whole body over `volume` (m^3), Pa, tension positive: the sum over pairs of f (x) d by
+// the kicks that the machine adds up and the positions that it holds. In a periodic box the mean of
+// Reference::virial_stress, which leaves out the kinetic part too.
+Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,
+                   int threads = 0);
+
+// Of a box that repeats along all axes, Pa: 2/3 of the kinetic energy over the volume, less a third of the
+// trace of the virial stress. R. Clausius, Phil. Mag. 40 (1870) 122. Kinetic energy is that in the scene's
+// frame, also of a body that moves as a whole.
+double pressure(const Energies& energies, const Mat3& virial_stress, double volume);
+
+// Whether a run of the rule keeps its energy: nothing damps, drives or steers, and no gravity acts along a
+// ring.
+bool keeps_energy(const Rule& rule, const Periodic& periodic);
+// Whether a run keeps the sum of all particles' velocities: nothing holds, drives, steers or weighs.
+bool keeps_momentum(const Rule& rule);
+
+// Largest |v| along an axis, as a fraction of one node per step.
+double largest_speed(const FixedRule& rule, const State& state);
+
+// Particles at one time in real units; the index is the particle's id.
+struct Sample {
+  uint64_t step = 0;
+  std::vector<Vec3> x;      // m; an axis with a period may be given in any image
+  std::vector<Vec3> force;  // N, of the pairs
+};
+
+Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
+                 const std::vector<Int3>& kicks);
+
+// Particles in any probe's set, ascending.
+std::vector<uint32_t> probed_ids(const std::vector<Probe>& probes);
+// The probes with their ids replaced by places in `ids`, for samples that hold the probed particles alone.
+std::vector<Probe> placed(std::vector<Probe> probes, const std::vector<uint32_t>& ids);
+
+// Turns samples into the curves of a scene's probes:
+//   force          <name>.force_x, .force_y, .force_z   N
+//   displacement   <name>.x, .y, .z                     m
+//   stress_strain  <name>.strain                        1
+//                  <name>.stress                        Pa, positive where the body pulls at the grip
+class ProbeMeter {
+ public:
+  // `initial`: positions at step 0, from which displacements and strains count.
+  ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodic, const std::vector<Vec3>& initial);
+
+  // Samples come in the order of steps, close enough that no particle moves half a period between two of
+  // them.
+  void add(const Sample& sample);
+  const std::vector<Curve>& curves() const { return curves_; }
+
+  // What the next sample counts on from, to keep with a checkpoint: the latest positions and the way since
+  // step 0, in m.
+  struct Memory {
+    std::vector<Vec3> latest, moved;
+  };
+  Memory memory() const { return {latest_, moved_}; }
+  // Goes on from a memory of the same probes and from their curves so far.
+  void restore(Memory memory, std::vector<Curve> curves);
+
+ private:
+  Vec3 displacement(const ParticleSet& set) const;  // mean, m
+  Vec3 position(const ParticleSet& set) const;      // mean initial position, m
+
+  std::vector<Probe> probes_;
+  Periodic periodic_;
+  std::vector<Vec3> initial_, latest_, moved_;
+  std::vector<Curve> curves_;
+};
+
+}  // namespace cuboct

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "model/analysis/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "model/contract/law.h"
+
+namespace cuboct {
+namespace {
+
+constexpr double kMostStrain = 0.2;  // a crystal holds no more
+
+bool driven(const ParticleType& type) { return type.pd || type.imposed != std::array<bool, 3>{}; }
+bool moves_freely(const ParticleType& type) { return type.imposed != std::array<bool, 3>{true, true, true}; }
+
+// Of the bond between nearest neighbours at rest, and their distance.
+void read_bond(const Scene& scene, Motion& motion) {
+  const Rule& rule = scene.rule;
+  double strongest = 0;
+  for (const auto& row : rule.strength)
+    strongest = std::max(strongest, *std::max_element(row.begin(), row.end()));
+  const double rest = stiffest_rest_distance(*rule.law);
+  motion.rest_distance = scene.pitch > 0 ? scene.pitch : rest > 0 ? rest : rule.law->cutoff();
+  if (scene.pitch > 0 || rest > 0)
+    motion.bond_stiffness = strongest * std::max(0.0, -rule.law->slope(motion.rest_distance));
+  if (motion.bond_stiffness == 0 &&
+      scene.dt_limit > 0)  // that of a packing with this fastest vibration, sqrt(8 k/m)
+    motion.bond_stiffness = rule.mass / (2 * scene.dt_limit * scene.dt_limit);
+  motion.sound_speed = motion.rest_distance * std::sqrt(motion.bond_stiffness / rule.mass);
+}
+
+// Root mean squares of the free particles' velocities: all, that of the rotation as a rigid body, and what is
+// left.
+struct Speeds {
+  double all = 0, rotation = 0, left = 0;
+  Vec3 mean = Vec3::Zero();
+};
+
+Speeds speeds_of(const Scene& scene) {
+  const Body& body = scene.body;
+  const auto each_free = [&](auto see) {
+    for (size_t i = 0; i < body.size(); ++i)
+      if (moves_freely(scene.rule.types[body.type[i]])) see(body.x[i], body.v[i]);
+  };
+  Vec3 centre = Vec3::Zero(), mean = Vec3::Zero();
+  double count = 0, all = 0;
+  each_free([&](const Vec3& x, const Vec3& v) { centre += x, mean += v, all += v.squaredNorm(), ++count; });
+  if (count == 0 || all == 0) return {};
+  centre /= count, mean /= count;
+  Vec3 turning = Vec3::Zero();
+  Mat3 inertia = Mat3::Zero();
+  each_free([&](const Vec3& x, const Vec3& v) {
+    const Vec3 r = x - centre;
+    turning += r.cross(v - mean);
+    inertia += r.squaredNorm() * Mat3::Identity() - r * r.transpose();
+  });
+  const Vec3 omega = inertia.completeOrthogonalDecomposition().solve(turning);
+  double rotation = 0, left = 0;
+  each_free([&](const Vec3& x, const Vec3& v) {
+    const Vec3 rigid = omega.cross(x - centre);
+    rotation += rigid.squaredNorm();
+    left += (v - mean - rigid).squaredNorm();
+  });
+  return {std::sqrt(all / count), std::sqrt(rotation / count), std::sqrt(left / count), mean};
+}
+
+struct Box {
+  Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
+  void add(const Vec3& x) { low = low.cwiseMin(x), high = high.cwiseMax(x); }
+  bool empty() const { return low[0] > high[0]; }
+};
+
+// The largest strain by which gravity bends what reaches beyond the held particles; c and duration as c and T
+// in Motion.
+double bending(const Box& all, const Box& held, const Vec3& gravity, double c, double duration) {
+  if (held.empty()) return 0;
+  int along = 0;
+  const double g = gravity.cwiseAbs().maxCoeff(&along);
+  const double height = all.high[along] - all.low[along];
+  double reach = 0;
+  for (int a = 0; a < 3; ++a)
+    if (a != along) reach = std::max({reach, held.low[a] - all.low[a], all.high[a] - held.high[a]});
+  if (!(height > 0) || !(reach > height)) return 0;
+  return std::min(3 * g * reach * reach / (c * c * height),
+                  0.75 * height * g * duration * duration / (reach * reach));
+}
+
+}  // namespace
+
+Motion motion_of(const Scene& scene) {
+  const Rule& rule = scene.rule;
+  Motion motion;
+  read_bond(scene, motion);
+  const double c = motion.sound_speed, duration = static_cast<double>(scene.steps) * rule.dt;
+  Box all, held;
+  for (size_t i = 0; i < scene.body.size(); ++i) {
+    all.add(scene.body.x[i]);
+    if (driven(rule.types[scene.body.type[i]])) held.add(scene.body.x[i]);
+  }
+  const double length = std::max(all.empty() ? 0 : (all.high - all.low).maxCoeff(), motion.rest_distance);
+  const auto strains = [&](double strain, const std::string& by) {
+    strain = std::min(strain, kMostStrain);
+    if (c > 0 && strain > motion.strain) motion.strain = strain, motion.strain_of = by;
+  };
+
+  const bool all_driven = std::all_of(rule.types.begin(), rule.types.end(), driven);
+  for (const ParticleType& type : rule.types) {
+    const double speed = driven(type) ? type.velocity.norm() : 0;
+    if (speed > 0) {
+      motion.slowest_imposed = motion.slowest_imposed > 0 ? std::min(motion.slowest_imposed, speed) : speed;
+      double apart = all_driven ? 0 : speed;
+      for (const ParticleType& other : rule.types)
+        if (driven(other)) apart = std::max(apart, (type.velocity - other.velocity).norm());
+      strains(std::max(apart / c, apart * duration / length), "the velocity imposed on '" + type.name + "'");
+    }
+    if (const double g = type.gravity.norm(); g > 0) {
+      motion.gravity = motion.gravity > 0 ? std::min(motion.gravity, g) : g;
+      strains(std::min(g * duration / c, g * length / (c * c)), "gravity");
+      if (!driven(type)) strains(bending(all, held, type.gravity, c, duration), "gravity, which bends it");
+    }
+  }
+  const Speeds speeds = speeds_of(scene);
+  motion.initial_speed = speeds.all;
+  // What rounding leaves of a fit is no motion.
+  if (speeds.left > 1e-9 * speeds.all) strains(speeds.left / c, "the initial velocities");
+  if (speeds.all > 0)
+    for (const ParticleType& type : rule.types)
+      if (driven(type)) strains((speeds.mean - type.velocity).norm() / c, "the initial velocities");
+  if (speeds.rotation > 1e-9 * speeds.all) strains(std::pow(speeds.rotation / c, 2), "the initial rotation");
+  if (scene.expected_strain > 0)
+    motion.strain = scene.expected_strain, motion.strain_of = "run.expected_strain";
+  return motion;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "model/analysis/strain.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "model/base/parallel.h"
+#include "model/contract/neighbours.h"
+
+namespace cuboct {
+Vec3 nearest_image(Vec3 d, const Periodic& periodic) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (periodic.extent[axis] > 0)
+      d[axis] -= periodic.extent[axis] * std::round(d[axis] / periodic.extent[axis]);
+  return d;
+}
+
+StrainMeter::StrainMeter(const std::vector<Vec3>& initial, const Periodic& periodic, double radius)
+    : initial_(initial), periodic_(periodic), first_(initial.size() + 1, 0) {
+  CellList cells(radius, periodic);
+  cells.build(initial);
+  cells.for_each_pair(initial, [&](uint32_t i, uint32_t j, const Vec3&, double) {
+    ++first_[i + 1];
+    ++first_[j + 1];
+  });
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  neighbours_.resize(first_.back());
+  // first_[i] moves on to the end of i's neighbours, which is where those of i + 1 begin.
+  cells.for_each_pair(initial, [&](uint32_t i, uint32_t j, const Vec3&, double) {
+    neighbours_[first_[i]++] = j;
+    neighbours_[first_[j]++] = i;
+  });
+  std::copy_backward(first_.begin(), first_.end() - 1, first_.end());
+  first_.front() = 0;
+}
+
+Mat3 StrainMeter::gradient(size_t i, const std::vector<Vec3>& present) const {
+  // Least squares for A = F - 1 in  du = A dx : A = (sum du dx^T) (sum dx dx^T)^+ . The pseudo-inverse is the
+  // least-norm answer, so unseen directions get A = 0.
+  Mat3 moved = Mat3::Zero(), shape = Mat3::Zero();
+  for (size_t k = first_[i]; k < first_[i + 1]; ++k) {
+    const uint32_t j = neighbours_[k];
+    const Vec3 before = nearest_image(initial_[j] - initial_[i], periodic_);
+    const Vec3 after = nearest_image(present[j] - present[i], periodic_);
+    moved += (after - before) * before.transpose();
+    shape += before * before.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(shape);
+  Vec3 inverse = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (axes.eigenvalues()[k] > 1e-6 * axes.eigenvalues()[2]) inverse[k] = 1 / axes.eigenvalues()[k];
+  return Mat3::Identity() +
+         moved * axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose();
+}
+
+std::vector<LocalStrain> StrainMeter::measure(const std::vector<Vec3>& present) const {
+  std::vector<LocalStrain> strains(initial_.size());
+  for (size_t i = 0; i < strains.size(); ++i) {
+    LocalStrain& strain = strains[i];
+    strain.neighbours = static_cast<int>(first_[i + 1] - first_[i]);
+    strain.gradient = gradient(i, present);
+    for (size_t k = first_[i]; k < first_[i + 1]; ++k) {
+      const uint32_t j = neighbours_[k];
+      const Vec3 before = nearest_image(initial_[j] - initial_[i], periodic_);
+      const Vec3 after = nearest_image(present[j] - present[i], periodic_);
+      strain.residual += (after - strain.gradient * before).squaredNorm();
+    }
+  }
+  return strains;
+}
+
+std::vector<double> StrainMeter::axial(const std::vector<Vec3>& present, int axis) const {
+  std::vector<double> strains(initial_.size());
+  for_each_range(strains.size(), 10'000, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) strains[i] = LocalStrain{gradient(i, present), 0, 0}.axial(axis);
+  });
+  return strains;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Strain of each particle from how its initial neighbourhood moved.
+//
+// Source: M. L. Falk, J. S. Langer, "Dynamics of viscoplastic deformation in amorphous solids", Phys. Rev. E
+// 57, 7192 (1998): the affine map F that best carries the initial neighbour vectors into the present ones,
+// and what it leaves (D2min). F. Shimizu, S. Ogata, J. Li, "Theory of shear banding in metallic glasses and
+// molecular dynamics calculations", Mater. Trans. 48, 2923 (2007): the Lagrangian strain (F^T F - 1)/2 of
+// that map.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "model/base/vec.h"
+#include "model/contract/rule.h"
+
+namespace cuboct {
+
+struct LocalStrain {
+  Mat3 gradient = Mat3::Identity();  // F: present neighbour vector = F * initial neighbour vector
+  double residual = 0;               // m^2, D2min: sum over the neighbours of what F leaves, squared
+  int neighbours = 0;
+
+  // Green-Lagrange strain.
+  Mat3 lagrangian() const { return 0.5 * (gradient.transpose() * gradient - Mat3::Identity()); }
+  // Elongation of a fibre that lay along `axis`: |F e| - 1 = sqrt(1 + 2 lagrangian(axis, axis)) - 1.
+  double axial(int axis) const { return gradient.col(axis).norm() - 1; }
+};
+
+class StrainMeter {
+ public:
+  // Neighbours are the pairs of `initial` closer than `radius` in metres (between the first and second shell
+  // of the packing). Axes with a period take the nearest image; such a period is at least two radii
+  // (InputError).
+  StrainMeter(const std::vector<Vec3>& initial, const Periodic& periodic, double radius);
+
+  // `present` has the order of `initial`. Where the neighbours span less than space (a chain, a sheet, a lone
+  // particle), the directions that they do not see count as unstrained.
+  std::vector<LocalStrain> measure(const std::vector<Vec3>& present) const;
+  // The elongation along one axis alone, LocalStrain::axial: 8 bytes per particle instead of 96, in threads.
+  std::vector<double> axial(const std::vector<Vec3>& present, int axis) const;
+
+ private:
+  Mat3 gradient(size_t i, const std::vector<Vec3>& present) const;
+
+  std::vector<Vec3> initial_;
+  Periodic periodic_;
+  std::vector<size_t> first_;         // [particle]: begin of its neighbours; one more at the end
+  std::vector<uint32_t> neighbours_;  // by particle
+};
+
+// `d` in the nearest image: each periodic axis in [-extent/2, extent/2].
+Vec3 nearest_image(Vec3 d, const Periodic& periodic);
+
+}  // namespace cuboct

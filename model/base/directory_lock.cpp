@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "model/base/directory_lock.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "model/base/error.h"
+#include "model/base/output.h"
+
+namespace cuboct {
+namespace {
+
+// What the holder wrote, as one line; anyone may have edited it.
+std::string holder_of(int file) {
+  char text[100];
+  const ssize_t size = pread(file, text, sizeof text, 0);
+  std::string line(text, size > 0 ? static_cast<size_t>(size) : 0);
+  line = line.substr(0, line.find('\n'));
+  for (char& c : line)
+    if (c < ' ' || c > '~') c = '?';
+  return line.empty() ? "another process" : line;
+}
+
+// Whether the file of this name is the one that is open: its holder may have removed it in the meantime.
+bool is_at(int file, const std::string& path) {
+  struct stat open_file {
+  }, named{};
+  return fstat(file, &open_file) == 0 && stat(path.c_str(), &named) == 0 &&
+         open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+DirectoryLock::DirectoryLock(const std::string& directory, const std::string& work)
+    : directory_(directory), path_(directory + "/.lock"), made_(!std::filesystem::exists(directory)) {
+  make_directory(directory);
+  do {
+    if (file_ >= 0) close(file_);
+    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (file_ < 0)
+      throw InputError(
+          fmt::format("cannot write into the directory {}: {}", directory, std::strerror(errno)));
+    if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
+      const int error = errno;
+      const std::string holder = error == EWOULDBLOCK ? holder_of(file_) : "";
+      close(file_);
+      if (error != EWOULDBLOCK)
+        throw InputError(fmt::format("cannot lock {}: {}", path_, std::strerror(error)));
+      throw InputError(fmt::format("{} is in use by {}", directory, holder),
+                       "another --out, or wait for its end");
+    }
+  } while (!is_at(file_, path_));
+  const std::string text = fmt::format("process {}, '{}'\n", getpid(), work);
+  // For people alone: on a full disk the lock holds without.
+  if (ftruncate(file_, 0) != 0 || pwrite(file_, text.data(), text.size(), 0) < 0) return;
+}
+
+DirectoryLock::~DirectoryLock() {
+  unlink(path_.c_str());
+  close(file_);
+  if (made_) rmdir(directory_.c_str());  // where it is empty
+}
+
+}  // namespace cuboct

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "model/base/error.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "model/base/error_parts.h"
+#include "model/base/text.h"
+
+namespace cuboct {
+namespace {
+
+constexpr std::string_view kHint = "\n  hint: ";
+
+std::string with_hint(const std::string& message, const std::string& hint) {
+  return hint.empty() ? line_text(message) : line_text(message) + std::string(kHint) + line_text(hint);
+}
+
+}  // namespace
+
+InputError::InputError(const std::string& message, const std::string& hint)
+    : std::runtime_error(with_hint(message, hint)) {}
+
+InputError::InputError(const std::string& file, int line, int column, const std::string& message,
+                       const std::string& hint)
+    : std::runtime_error(with_hint(fmt::format("{}:{}:{}: {}", file, line, column, message), hint)) {}
+
+InputError InputError::with(const std::string& hint) const {
+  return InputError(parts_of(*this).message, hint);
+}
+
+ErrorParts parts_of(const InputError& error) {
+  const std::string text = error.what();
+  const size_t at = text.find(kHint);
+  return at == std::string::npos ? ErrorParts{text, ""}
+                                 : ErrorParts{text.substr(0, at), text.substr(at + kHint.size())};
+}
+
+const char* to_string(Fault fault) {
+  switch (fault) {
+    case Fault::none:
+      return "none";
+    case Fault::relative_velocity:
+      return "relative velocity out of width";
+    case Fault::strength:
+      return "pair strength out of width";
+    case Fault::sum:
+      return "sum of kicks out of width";
+    case Fault::displacement:
+      return "displacement out of width";
+    case Fault::velocity:
+      return "velocity out of width";
+    case Fault::left_x:
+      return "left the lattice along x";
+    case Fault::full_x:
+      return "node full after moving along x";
+    case Fault::left_y:
+      return "left the lattice along y";
+    case Fault::full_y:
+      return "node full after moving along y";
+    case Fault::left_z:
+      return "left the lattice along z";
+    case Fault::full_z:
+      return "node full after moving along z";
+    case Fault::link_check:
+      return "wrong check of a beat";
+    case Fault::link_order:
+      return "beat lost or repeated";
+    case Fault::link_silent:
+      return "beats not acknowledged";
+  }
+  return "?";
+}
+
+namespace {
+
+std::string text_of(Fault fault, uint64_t step, uint32_t node, uint32_t particle, int64_t number,
+                    const std::string& where) {
+  constexpr const char* kFace[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
+  if (is_of_link(fault))
+    return fmt::format("step {}, node {}{}, link {}: {}", step, node, where,
+                       number >= 0 && number < 6 ? kFace[number] : "?", to_string(fault));
+  return fmt::format("step {}, node {}{}, particle {}: {} ({})", step, node, where, particle,
+                     to_string(fault), number);
+}
+
+}  // namespace
+
+RunError::RunError(Fault fault, uint64_t step, uint32_t node, uint32_t particle, int64_t number,
+                   const std::string& where)
+    : std::runtime_error(text_of(fault, step, node, particle, number, where)),
+      fault(fault),
+      step(step),
+      node(node),
+      particle(particle),
+      number(number) {}
+
+}  // namespace cuboct

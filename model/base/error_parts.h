@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// An error's text in its parts, to tell it again at another place.
+#pragma once
+
+#include <string>
+
+#include "model/base/error.h"
+
+namespace cuboct {
+
+struct ErrorParts {
+  std::string message, hint;  // an empty hint: there is none
+};
+ErrorParts parts_of(const InputError& error);
+
+}  // namespace cuboct

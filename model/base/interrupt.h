@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// Ctrl-C (SIGINT; or SIGTERM, or SIGHUP of a terminal that goes, or SIGUSR1, which mpirun passes on) ends a
+// run after the step at hand, so that what was done can be written; a second one, half a second later or
+// more, ends the program. To be caught where the stepping begins: before, nothing asks `interrupted`.
+#pragma once
+
+namespace cuboct {
+
+void catch_interrupts();
+bool interrupted();
+
+}  // namespace cuboct

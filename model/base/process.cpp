@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "model/base/process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
+
+extern char** environ;
+
+namespace cuboct {
+
+namespace {
+
+constexpr std::string_view kStarter = "CUBOCT_STARTED_BY=";
+
+struct Child {
+  const char* program;
+  char** arguments;
+  char** environment;
+  bool apart;
+  const char *out, *err;
+  pid_t parent;
+};
+
+// In the child: it shares our memory until it is the other program, so it calls nothing but the system.
+[[noreturn]] void become(const Child& child, volatile int& error) {
+  const auto send = [](int stream, const char* to) {
+    if (*to == 0) return true;
+    const int file = open(to, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    const bool sent = file >= 0 && dup2(file, stream) >= 0;
+    if (file >= 0 && file != stream) close(file);
+    return sent;
+  };
+  // No program outlives the one that started it, however that ends.
+  if (prctl(PR_SET_PDEATHSIG, child.apart ? SIGTERM : SIGKILL) == 0 && getppid() == child.parent &&
+      (!child.apart || setpgid(0, 0) == 0) && send(STDOUT_FILENO, child.out) &&
+      send(STDERR_FILENO, child.err))
+    execvpe(child.program, child.arguments, child.environment);
+  error = errno;
+  _exit(127);
+}
+
+// As posix_spawn, which cannot ask for a signal at our death. 0, or an errno.
+int start(const Child& child, pid_t& pid) {
+  // Until the child has become the other program, no handler of ours may run in it.
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  volatile int error = 0;
+  pid = vfork();
+  if (pid == 0) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
+      struct sigaction action {};
+      if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
+        action = {};
+        action.sa_handler = SIG_DFL;
+        sigaction(signal, &action, nullptr);
+      }
+    }
+    sigprocmask(SIG_SETMASK, &before, nullptr);
+    become(child, error);
+  }
+  const int failed = pid < 0 ? errno : error;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (pid > 0 && failed != 0) waitpid(pid, nullptr, 0);
+  return failed;
+}
+
+}  // namespace
+
+Process::Process(const std::string& program, const std::vector<std::string>& arguments, bool apart,
+                 const Streams& streams)
+    : pid_(-1), passed_on_(apart ? SIGUSR1 : SIGTERM) {
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  std::vector<std::string> variables;
+  for (char** variable = environ; *variable; ++variable)
+    if (!std::string_view(*variable).starts_with(kStarter)) variables.emplace_back(*variable);
+  variables.push_back(fmt::format("{}{}", kStarter, getpid()));
+  std::vector<char*> environment;
+  for (std::string& variable : variables) environment.push_back(variable.data());
+  environment.push_back(nullptr);
+  const Child child{program.c_str(),     argv.data(), environment.data(), apart, streams.out.c_str(),
+                    streams.err.c_str(), getpid()};
+  const int error = start(child, pid_);
+  if (error != 0) {
+    pid_ = -1;
+    throw InputError(fmt::format("cannot start {}: {}", program, std::strerror(error)));
+  }
+}
+
+Process::~Process() {
+  if (pid_ < 0) return;
+  kill(pid_, SIGTERM);
+  while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+Process::Process(Process&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)), passed_on_(other.passed_on_) {}
+
+int Process::wait(const std::function<bool()>& begun) {
+  constexpr std::chrono::seconds kGrace(2);
+  using Clock = std::chrono::steady_clock;
+  std::optional<Clock::time_point> passed_on;
+  bool early = false;
+  int status = 0;
+  // Readable when the program has ended. Where the kernel gives none, we look every 10 ms.
+  pollfd ended{static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), POLLIN, 0};
+  const nfds_t count = ended.fd >= 0 ? 1 : 0;
+  pid_t found = 0;
+  while ((found = waitpid(pid_, &status, WNOHANG)) == 0) {
+    // A terminal sends Ctrl-C to the engine as well; a `kill` meets us alone, and of our threads any one.
+    if (interrupted() && !passed_on) {
+      passed_on = Clock::now();
+      early = begun && !begun();
+      kill(pid_, early ? SIGTERM : passed_on_);
+    } else if (early && Clock::now() - *passed_on > kGrace) {
+      kill(pid_, SIGKILL);
+    }
+    poll(&ended, count, count ? 100 : 10);
+  }
+  if (ended.fd >= 0) close(ended.fd);
+  if (found < 0) throw std::runtime_error(fmt::format("waitpid: {}", std::strerror(errno)));
+  pid_ = -1;
+  return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+void end_with_starter() {
+  if (!std::getenv(std::string(kStarter.substr(0, kStarter.size() - 1)).c_str())) return;
+  // One that is init's child now has lost its starter before this call.
+  if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() == 1) _exit(1);
+}
+
+std::string program_directory() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
+}
+
+bool in_path(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::istringstream directories(path ? path : "");
+  for (std::string directory; std::getline(directories, directory, ':');)
+    if (access((directory + "/" + program).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+Scratch::Scratch() {
+  std::string name = (std::filesystem::temp_directory_path() / "cuboct-XXXXXX").string();
+  if (!mkdtemp(name.data()))
+    throw InputError(fmt::format("cannot make the directory {}: {}", name, std::strerror(errno)));
+  directory_ = name;
+}
+
+Scratch::~Scratch() {
+  std::error_code none;
+  std::filesystem::remove_all(directory_, none);
+}
+
+}  // namespace cuboct

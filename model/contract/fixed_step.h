@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// The arithmetic of the fixed rule, written once for every machine: for the host over FixedRule
+// (model/contract/fixed_rule.h), for a GPU over a rule of plain arrays with the same members. The contract is
+// docs/reference/numeric.md.
+#pragma once
+
+#include <cstdint>
+
+#include "model/base/fixed_math.h"
+
+namespace cuboct {
+
+// floor(log2 a), a > 0.
+CUBOCT_HD constexpr int leading_bit(uint64_t a) {
+#ifdef __CUDA_ARCH__
+  return 63 - __clzll(static_cast<long long>(a));
+#else
+  return 63 - __builtin_clzll(a);
+#endif
+}
+
+// Where r2 falls in a table: FixedTable in model/contract/fixed_rule.h.
+template <class Table>
+CUBOCT_HD void table_address(const Table& table, uint64_t r2, uint32_t& index, uint32_t& t) {
+  const uint32_t t_mask = (uint32_t{1} << table.fraction_bits) - 1;
+  if (static_cast<int>(table.shape) == 0) {  // TableShape::uniform
+    const int below = 2 * table.difference_frac - table.index_bits;
+    index = static_cast<uint32_t>(r2 >> below);
+    t = static_cast<uint32_t>(r2 >> (below - table.fraction_bits)) & t_mask;
+    return;
+  }
+  index = t = 0;
+  const int octave = r2 > 0 ? leading_bit(r2) : -1;
+  if (octave < table.first_octave) return;
+  const uint64_t mantissa = r2 ^ (uint64_t{1} << octave);
+  // Bits of r2 below t; negative: t is padded with zeros.
+  const int spare = octave - table.bin_bits - table.fraction_bits;
+  const uint64_t bin_and_t = spare >= 0 ? mantissa >> spare : mantissa << static_cast<unsigned>(-spare);
+  const auto row = static_cast<uint32_t>(octave - table.first_octave);
+  index = (row << table.bin_bits) + static_cast<uint32_t>(bin_and_t >> table.fraction_bits);
+  t = static_cast<uint32_t>(bin_and_t) & t_mask;
+}
+
+template <class Table>
+CUBOCT_HD int64_t table_value(const Table& table, uint64_t r2) {
+  uint32_t k, t;
+  table_address(table, r2, k, t);
+  const auto fraction = static_cast<int32_t>(t);
+  if (table.degree == 1) return table.c0[k] + round_odd(product(table.c1[k], fraction), table.fraction_bits);
+  const int64_t slope = table.c1[k] + round_odd(product(table.c2[k], fraction), table.fraction_bits);
+  return table.c0[k] + round_odd(slope * fraction, table.fraction_bits);
+}
+
+// One pair's part of the kick, as PairResult holds it. x_i, x_j: visible positions, `x_j` in the frame of i's
+// node.
+template <class Result, class Rule, class Triple>
+CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple& v_i, int type_i,
+                              const Triple& x_j, const Triple& v_j, int type_j) {
+  using FaultType = decltype(Result::fault);
+  Result result;
+  // Products of 32 bits by 32: differences have D <= 24 fractional bits of at most four cells, w and s 27
+  // bits.
+  int32_t d[3];
+  for (int a = 0; a < 3; ++a) d[a] = static_cast<int32_t>(round_odd(x_j[a] - x_i[a], rule.difference_shift));
+  const auto r2 = static_cast<uint64_t>(product(d[0], d[0]) + product(d[1], d[1]) + product(d[2], d[2]));
+  if (r2 >= rule.cutoff2) return result;
+  result.inside = true;
+  int64_t s = table_value(rule.force, r2);
+  if (rule.damped) {
+    const int w_bits = rule.widths.relative_velocity_bits;
+    int64_t wd = 0;
+    for (int a = 0; a < 3; ++a) {
+      int64_t w = round_odd(v_j[a] - v_i[a], rule.w_shift);
+      if (!fits(w, w_bits)) {
+        if (result.fault == FaultType::none) result.fault = FaultType::relative_velocity, result.number = w;
+        w = wrap(w, w_bits);
+      }
+      wd += product(static_cast<int32_t>(w), d[a]);
+    }
+    const int64_t q = round_odd(wd, rule.q_shift);
+    s -= round_odd(table_value(rule.damp, r2) * q, rule.damp_shift);
+    if (!fits(s, rule.widths.strength_bits)) {
+      if (result.fault == FaultType::none) result.fault = FaultType::strength, result.number = s;
+      s = wrap(s, rule.widths.strength_bits);
+    }
+  }
+  auto strength = static_cast<int32_t>(s);
+  if (rule.scaled)
+    strength = static_cast<int32_t>(
+        round_odd(product(strength, rule.scale[type_i][type_j]), rule.widths.scale_frac));
+  for (int a = 0; a < 3; ++a) result.kick[a] = -round_odd(product(strength, d[a]), rule.kick_shift);
+  return result;
+}
+
+// Kick, constraints and drift of one particle, as FinishResult holds it. The drift is exact: x has the
+// fractional bits of v.
+template <class Result, class Rule, class Triple>
+CUBOCT_HD Result finish_of(const Rule& rule, const Triple& sum, const Triple& x, const Triple& v,
+                           const Triple& u, int type) {
+  using FaultType = decltype(Result::fault);
+  const auto& widths = rule.widths;
+  const auto& kind = rule.types[type];
+  Result result;
+  const auto check = [&result](int64_t value, int bits, FaultType fault) {
+    if (fits(value, bits)) return value;
+    if (result.fault == FaultType::none || fault < result.fault) {
+      result.fault = fault;
+      result.number = value;
+    }
+    return wrap(value, bits);
+  };
+  for (int a = 0; a < 3; ++a) {
+    const int64_t to_go = kind.velocity[a];
+    if (kind.imposed[a]) {
+      result.v[a] = to_go;  // the sum is not used, so it may be of any size
+    } else {
+      int64_t dv = check(sum[a], widths.sum_bits, FaultType::sum);
+      if (kind.pd) dv -= round_odd(kind.kp * u[a] + kind.kd * (v[a] - to_go), widths.gain_frac);
+      result.v[a] = check(v[a] + dv + kind.gravity[a], widths.velocity_bits, FaultType::velocity);
+    }
+    if (kind.pd)
+      result.u[a] = check(u[a] + result.v[a] - to_go, widths.displacement_bits, FaultType::displacement);
+    result.x[a] = x[a] + result.v[a];
+  }
+  return result;
+}
+
+}  // namespace cuboct

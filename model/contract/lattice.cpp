@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+#include "model/contract/lattice.h"
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+namespace cuboct {
+namespace {
+
+bool before(const Cell& a, const Cell& b) { return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]); }
+
+void sort_unique(std::vector<Cell>& cells) {
+  if (!std::is_sorted(cells.begin(), cells.end(), before)) std::sort(cells.begin(), cells.end(), before);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+}
+
+constexpr int bit_of(int dx, int dy, int dz) { return 13 + dx + 3 * dy + 9 * dz; }
+
+// For each offset from a cell, the cells on the ways there and back, as bits.
+constexpr std::array<uint32_t, 27> kWays = [] {
+  std::array<uint32_t, 27> ways{};
+  for (int dz = -1; dz <= 1; ++dz)
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        if ((dx != 0) + (dy != 0) + (dz != 0) < 2) continue;
+        for (const int on_way : {bit_of(dx, 0, 0), bit_of(dx, dy, 0), bit_of(0, dy, dz), bit_of(0, 0, dz)})
+          ways[static_cast<size_t>(bit_of(dx, dy, dz))] |= 1u << on_way;
+      }
+  return ways;
+}();
+
+}  // namespace
+
+Lattice::Lattice(std::vector<Cell> cells, Cell period) : period_(period), cells_(std::move(cells)) {
+  for (Cell& c : cells_) c = wrapped(c);
+  sort_unique(cells_);
+  close();
+  cells_.shrink_to_fit();
+  rows_.shrink_to_fit();
+  link();
+}
+
+Cell Lattice::wrapped(Cell cell) const {
+  for (int a = 0; a < 3; ++a)
+    if (period_[a] > 0 && (cell[a] < 0 || cell[a] >= period_[a]))
+      cell[a] = (cell[a] % period_[a] + period_[a]) % period_[a];
+  return cell;
+}
+
+size_t Lattice::row_at(int32_t z, int32_t y) const {
+  if (rows_.empty()) return 0;
+  const auto end = rows_.end() - 1;
+  const auto it = std::lower_bound(rows_.begin(), end, std::pair(z, y), [](const Row& row, const auto& at) {
+    return std::pair(row.z, row.y) < at;
+  });
+  return static_cast<size_t>((it != end && it->z == z && it->y == y ? it : end) - rows_.begin());
+}
+
+uint32_t Lattice::find(const Cell& cell) const {
+  const Cell c = wrapped(cell);
+  const size_t row = row_at(c[2], c[1]);
+  return row + 1 < rows_.size() ? in_row({rows_[row].first, rows_[row + 1].first}, c[0]) : kNoNode;
+}
+
+uint32_t Lattice::in_row(const Span& row, int32_t x) const {
+  // As x ascends, the cell stands no later than it would in a row without gaps, and mostly there.
+  const int64_t ahead = int64_t{x} - cells_[row.begin][0];
+  if (ahead < 0) return kNoNode;
+  const auto end = static_cast<uint32_t>(std::min<int64_t>(row.end, row.begin + ahead + 1));
+  if (cells_[end - 1][0] == x) return end - 1;
+  const auto it = std::lower_bound(cells_.begin() + row.begin, cells_.begin() + end, x,
+                                   [](const Cell& cell, int32_t at) { return cell[0] < at; });
+  return it != cells_.begin() + end && (*it)[0] == x ? static_cast<uint32_t>(it - cells_.begin()) : kNoNode;
+}
+
+void Lattice::index_rows() {
+  rows_.clear();
+  for (uint32_t n = 0; n < size(); ++n)
+    if (n == 0 || cells_[n][1] != cells_[n - 1][1] || cells_[n][2] != cells_[n - 1][2])
+      rows_.push_back({cells_[n][2], cells_[n][1], n});
+  rows_.push_back({0, 0, size()});
+}
+
+Lattice::Span Lattice::around(size_t row, int dz, int dy) const {
+  const Cell at = wrapped({0, rows_[row].y + dy, rows_[row].z + dz});
+  const size_t other = row_at(at[2], at[1]);
+  return other + 1 < rows_.size() ? Span{rows_[other].first, rows_[other + 1].first} : Span{};
+}
+
+// Whether `row` holds x - 1 or x + 1; `at` is its first cell not below x - 1.
+bool Lattice::neighbours_in_x(const Span& row, uint32_t at, int32_t x) const {
+  for (uint32_t k = at; k < row.end && cells_[k][0] <= x + 1; ++k)
+    if (cells_[k][0] != x) return true;
+  if (period_[0] == 0 || row.begin == row.end) return false;
+  return (x == 0 && cells_[row.end - 1][0] == period_[0] - 1) ||
+         (x == period_[0] - 1 && cells_[row.begin][0] == 0);
+}
+
+// What the ways from the cells of `row` (y, z) to those of its neighbour `other` (y + dy, z + dz) lack. A way
+// goes by x, then y, then z. From (x, y, z) to x' = x +- 1 in `other` it passes (x', y, z), in `row`, and,
+// where it goes on by y and by z, (x', y + dy, z), in the row called `middle`. With x' = x only the latter is
+// new.
+void Lattice::missing_between(size_t row, int dz, int dy, std::vector<Cell>& missing) const {
+  const Span other = around(row, dz, dy);
+  if (other.begin == other.end) return;
+  const Span own{rows_[row].first, rows_[row + 1].first};
+  const bool corner = dy != 0 && dz != 0;
+  const Span middle = corner ? around(row, 0, dy) : Span{};
+  const int32_t middle_y = wrapped({0, rows_[row].y + dy, 0})[1];
+  uint32_t in_own = own.begin, in_middle = middle.begin;
+  for (uint32_t n = other.begin; n < other.end; ++n) {
+    const int32_t x = cells_[n][0];
+    while (in_own < own.end && cells_[in_own][0] < x - 1) ++in_own;
+    bool same = false;
+    for (uint32_t k = in_own; k < own.end && cells_[k][0] <= x; ++k) same = cells_[k][0] == x;
+    const bool aside = (!same || corner) && neighbours_in_x(own, in_own, x);
+    if (aside && !same) missing.push_back({x, rows_[row].y, rows_[row].z});
+    if (!corner || !(aside || same)) continue;
+    while (in_middle < middle.end && cells_[in_middle][0] < x) ++in_middle;
+    if (in_middle == middle.end || cells_[in_middle][0] != x) missing.push_back({x, middle_y, rows_[row].z});
+  }
+}
+
+// The cells around `cell`, itself included: bit bit_of(dx, dy, dz) is set where the lattice has that one.
+uint32_t Lattice::present_around(const Cell& cell) const {
+  uint32_t present = 0;
+  const size_t row = row_at(cell[2], cell[1]);
+  for (int dz = -1; dz <= 1; ++dz)
+    for (int dy = -1; dy <= 1; ++dy) {
+      const Span beside = around(row, dz, dy);
+      if (beside.begin == beside.end) continue;
+      for (int dx = -1; dx <= 1; ++dx)
+        if (in_row(beside, wrapped({cell[0] + dx, 0, 0})[0]) != kNoNode) present |= 1u << bit_of(dx, dy, dz);
+    }
+  return present;
+}
+
+// A cell that is added may start further ways, so this goes on until nothing is missing. After the first
+// round only what is around new cells can be.
+void Lattice::close() {
+  index_rows();
+  std::vector<Cell> missing;
+  for (size_t row = 0; row + 1 < rows_.size(); ++row)
+    for (int dz = -1; dz <= 1; ++dz)
+      for (int dy = -1; dy <= 1; ++dy)
+        if (dy != 0 || dz != 0) missing_between(row, dz, dy, missing);
+  for (sort_unique(missing); !missing.empty(); sort_unique(missing)) {
+    const auto middle = static_cast<ptrdiff_t>(cells_.size());
+    cells_.insert(cells_.end(), missing.begin(), missing.end());
+    std::inplace_merge(cells_.begin(), cells_.begin() + middle, cells_.end(), before);
+    index_rows();
+    std::vector<Cell> next;
+    for (const Cell& c : missing) {
+      const uint32_t present = present_around(c);
+      uint32_t needed = 0;
+      for (int bit = 0; bit < 27; ++bit)
+        if ((present >> bit & 1) != 0) needed |= kWays[static_cast<size_t>(bit)];
+      needed &= ~present;
+      for (int bit = 0; needed >> bit != 0; ++bit)
+        if ((needed >> bit & 1) != 0)
+          next.push_back(wrapped({c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1}));
+    }
+    missing = std::move(next);
+  }
+}
+
+void Lattice::link() {
+  std::array<uint32_t, kFaces> none;
+  none.fill(kNoNode);
+  neighbour_.assign(cells_.size(), none);
+  for (size_t row = 0; row + 1 < rows_.size(); ++row) {
+    const Span own{rows_[row].first, rows_[row + 1].first};
+    for (uint32_t n = own.begin; n + 1 < own.end; ++n)
+      if (cells_[n + 1][0] == cells_[n][0] + 1) {
+        neighbour_[n][1] = n + 1;
+        neighbour_[n + 1][0] = n;
+      }
+    if (period_[0] > 0 && cells_[own.begin][0] == 0 && cells_[own.end - 1][0] == period_[0] - 1) {
+      neighbour_[own.begin][0] = own.end - 1;
+      neighbour_[own.end - 1][1] = own.begin;
+    }
+    for (int face = 2; face < kFaces; ++face) {
+      const int way = face % 2 == 1 ? 1 : -1;
+      const Span other = face < 4 ? around(row, 0, way) : around(row, way, 0);
+      uint32_t m = other.begin;
+      for (uint32_t n = own.begin; n < own.end; ++n) {
+        while (m < other.end && cells_[m][0] < cells_[n][0]) ++m;
+        if (m < other.end && cells_[m][0] == cells_[n][0]) neighbour_[n][static_cast<size_t>(face)] = m;
+      }
+    }
+  }
+}
+
+std::vector<Lattice::Near> Lattice::neighbourhood(uint32_t node) const {
+  const auto hop = [this](uint32_t from, int axis, int way) {
+    return way == 0 || from == kNoNode ? from : neighbour_[from][2 * axis + (way > 0)];
+  };
+  std::vector<Near> near;
+  near.reserve(27);
+  for (int dz = -1; dz <= 1; ++dz)
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const uint32_t other = hop(hop(hop(node, 0, dx), 1, dy), 2, dz);
+        if (other != kNoNode) near.push_back({other, {dx, dy, dz}});
+      }
+  return near;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+#include "model/contract/quantise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+
+#include "model/base/fixed_math.h"
+#include "model/contract/law.h"
+
+namespace cuboct {
+namespace {
+
+constexpr int kLeastStrength = 18, kWidestStrength = 27;
+constexpr int kLeastIndex = 9, kMostIndex = 13;
+constexpr double kBondsFrom = 0.8;     // of the distance at rest: nearer, particles collide
+constexpr int kMostVelocityFrac = 50;  // of a double's 53 bits (emu/lattice/kernel_rule.h)
+constexpr double kHalfUnit =
+    1.7e-4;  // of the strongest pull: where the elastic constants of Lennard-Jones are right to 1 %
+
+using Real = std::function<double(double)>;  // of r2 in cell edges squared
+
+// `whole`: the length of the vector that the value is a component of; a component is as exact as the vector
+// asks for.
+int64_t quantised(double value, double whole, int frac, int bits, const char* what) {
+  const double scaled = std::ldexp(value, frac);
+  if (!(std::abs(scaled) < std::ldexp(1.0, bits - 1) - 0.5))
+    throw InputError(
+        fmt::format(
+            "{} is {:.6g} in units of the lattice: {} bits with {} fractional bits hold less than {:.6g}",
+            what, value, bits, frac, std::ldexp(1.0, bits - 1 - frac)),
+        "a smaller dt helps, or a wider format in the arch file");
+  const auto result = std::llround(scaled);
+  // One per cent: coarser, and the run would be of another scene.
+  if (std::abs(static_cast<double>(result) - scaled) > 0.01 * std::abs(std::ldexp(whole, frac)))
+    throw InputError(
+        fmt::format("{} is {:.6g} in units of the lattice: {} fractional bits round it to {:.6g}", what,
+                    value, frac, std::ldexp(static_cast<double>(result), -frac)),
+        "more guard bits in the arch file keep it");
+  return result;
+}
+
+// The r2 (cell edges squared) at which bin k of the table starts; the table's end for k = number of bins.
+double bin_start(const FixedTable& table, uint32_t k) {
+  if (table.shape == TableShape::uniform) return std::ldexp(static_cast<double>(k), -table.index_bits);
+  const uint32_t bins = 1u << table.bin_bits;
+  const double mantissa = 1.0 + static_cast<double>(k % bins) / bins;
+  return std::ldexp(mantissa, table.first_octave + static_cast<int>(k / bins) - 2 * table.difference_frac);
+}
+
+uint32_t bins_used(const FixedTable& table) {
+  if (table.shape == TableShape::uniform) return 1u << table.index_bits;
+  return static_cast<uint32_t>(2 * table.difference_frac - table.first_octave) << table.bin_bits;
+}
+
+// Fills the coefficients so that neighbouring bins meet: value(end of k) == value(start of k+1), in integers.
+// `end` is the cutoff squared: the bin that holds it continues its polynomial, bins beyond are zero.
+void fill(FixedTable& table, const Real& value, double end, int value_bits, int headroom) {
+  const uint32_t used = bins_used(table);
+  struct Bin {
+    double left, middle, right;
+  };
+  std::vector<Bin> bins(used, Bin{0, 0, 0});
+  double largest = 0;
+  for (uint32_t k = 0; k < used; ++k) {
+    const double a = bin_start(table, k), b = bin_start(table, k + 1);
+    if (a >= end) break;
+    const double inside = std::min(b, end * (1 - 1e-12));
+    Bin bin{value(a), value(0.5 * (a + inside)), value(inside)};
+    if (inside < b) {  // continue to b the parabola (line) through the part inside the cutoff
+      const double h = inside - a, z = (b - a) / h;
+      const double c2 = table.degree == 2 ? 2 * (bin.left + bin.right - 2 * bin.middle) : 0;
+      const double c1 = bin.right - bin.left - c2, left = bin.left;
+      bin = {left, left + c1 * z / 2 + c2 * z * z / 4, left + c1 * z + c2 * z * z};
+    }
+    bins[k] = bin;
+    const double curve = 2 * (bin.left + bin.right - 2 * bin.middle);
+    largest = std::max({largest, std::abs(bin.left), std::abs(bin.right), std::abs(bin.right - bin.left)});
+    if (table.degree == 2)
+      largest =
+          std::max({largest, std::abs(bin.middle), std::abs(curve), std::abs(bin.right - bin.left - curve)});
+  }
+  if (largest == 0) throw InputError("the pair law is zero everywhere inside its cutoff");
+  // The largest E with largest * 2^E + 1 (for rounding) < 2^(value_bits-1-headroom).
+  const double limit = std::ldexp(1.0, value_bits - 1 - headroom) - 2;
+  table.value_frac = static_cast<int>(std::floor(std::log2(limit / largest)));
+
+  const uint32_t entries = 1u << table.index_bits;
+  table.c0.assign(entries, 0);
+  table.c1.assign(entries, 0);
+  table.c2.assign(table.degree == 2 ? entries : 0, 0);
+  const auto rounded = [&](double v) {
+    return static_cast<int32_t>(std::lround(std::ldexp(v, table.value_frac)));
+  };
+  for (uint32_t k = 0; k < used; ++k) {
+    const Bin& bin = bins[k];
+    const int32_t left = rounded(bin.left), right = rounded(bin.right);
+    const int32_t curve = table.degree == 2 ? rounded(2 * (bin.left + bin.right - 2 * bin.middle)) : 0;
+    table.c0[k] = left;
+    table.c1[k] = right - left - curve;
+    if (table.degree == 2) table.c2[k] = curve;
+  }
+}
+
+FixedTable shaped(TableShape shape, const TableChoice& choice, int difference_frac, double core2) {
+  FixedTable table;
+  table.shape = shape;
+  table.degree = choice.degree;
+  table.difference_frac = difference_frac;
+  table.index_bits = choice.index_bits;
+  table.fraction_bits = choice.fraction_bits;
+  if (shape == TableShape::uniform) {
+    table.fraction_bits = std::min(choice.fraction_bits, 2 * difference_frac - choice.index_bits);
+  } else {
+    // Rows from the octave that holds the core on: below, every law's f/r is constant.
+    table.first_octave = std::clamp(static_cast<int>(std::floor(std::log2(core2))) + 2 * difference_frac, 0,
+                                    2 * difference_frac - 1);
+    const auto rows = static_cast<unsigned>(2 * difference_frac - table.first_octave);
+    table.bin_bits = choice.index_bits - std::bit_width(rows - 1);
+  }
+  return table;
+}
+
+// Over the distances from `nearest` m on.
+FixedRule::Error error_of(const FixedRule& fixed, const Rule& rule, double scale, double nearest) {
+  FixedRule::Error error;
+  const FixedTable& table = fixed.force;
+  const double unit = std::ldexp(1.0, -table.value_frac) * rule.mass / (rule.dt * rule.dt) / scale;
+  double largest = 0;
+  constexpr int kSamples = 64;  // per bin
+  for (uint32_t k = 0; k < bins_used(table); ++k) {
+    const double a = bin_start(table, k), b = bin_start(table, k + 1);
+    for (int sample = 0; sample < kSamples; ++sample) {
+      const auto r2 = static_cast<uint64_t>(
+          std::ldexp(a + (b - a) * (sample + 0.5) / kSamples, 2 * table.difference_frac));
+      if (r2 == 0 || r2 >= fixed.cutoff2) continue;
+      const double r =
+          std::sqrt(std::ldexp(static_cast<double>(r2), -2 * table.difference_frac)) * fixed.cell_edge;
+      if (r < nearest) continue;
+      const double exact = rule.law->force(std::min(r, rule.law->cutoff() * (1 - 1e-12)));
+      const double off = std::abs(static_cast<double>(table.at(r2)) * unit * r - exact);
+      largest = std::max(largest, std::abs(exact));
+      if (off > error.worst_force) error.worst_force = off, error.at = r;
+    }
+  }
+  error.relative = largest > 0 ? error.worst_force / largest : 0;
+  return error;
+}
+
+void check_range(const char* what, int value, int low, int high) {
+  if (value < low || value > high)
+    throw InputError(fmt::format("{} = {} is out of range: {} to {}", what, value, low, high));
+}
+
+void check_widths(const Widths& w, const TableChoice& table) {
+  check_range("position_frac", w.position_frac, 8, 30);
+  check_range("guard", w.guard, 1, 30);
+  check_range("position_frac + guard", w.velocity_frac(), 9, kMostVelocityFrac);
+  check_range("difference_frac", w.difference_frac, 6, std::min(w.position_frac, 24));
+  check_range("filter_frac", w.filter_frac, 2, 16);
+  check_range("velocity_bits", w.velocity_bits, 8, w.velocity_frac() + 1);
+  check_range("relative_velocity_frac", w.relative_velocity_frac, 4, w.velocity_frac());
+  check_range("relative_velocity_bits", w.relative_velocity_bits, 4, 27);
+  if (w.strength_bits != 0) check_range("strength_bits", w.strength_bits, 8, kWidestStrength);
+  check_range("sum_bits", w.sum_bits, 8, 48);
+  check_range("displacement_bits", w.displacement_bits, 8, 44);
+  check_range("scale_frac", w.scale_frac, 4, 16);
+  check_range("gain_frac", w.gain_frac, 4, 24);
+  check_range("table index_bits", table.index_bits, 2, std::min(16, 2 * w.difference_frac - 1));
+  check_range("table fraction_bits", table.fraction_bits, 1, 24);
+  check_range("table degree", table.degree, 1, 2);
+}
+
+void make_tables(FixedRule& fixed, const Rule& rule, TableShape shape, const TableChoice& choice,
+                 double scale) {
+  const double edge = fixed.cell_edge, cutoff = rule.law->cutoff();
+  const double end = cutoff * cutoff / (edge * edge);
+  const double core = rule.law->core();
+  const int D = fixed.widths.difference_frac;
+  const auto distance = [=](double r2) { return std::max(std::sqrt(r2) * edge, 1e-6 * core); };
+  fixed.force = shaped(shape, choice, D, core * core / (edge * edge));
+  fill(
+      fixed.force,
+      [&](double r2) {
+        const double r = distance(r2);
+        return scale * rule.law->force(r) / r * rule.dt * rule.dt / rule.mass;
+      },
+      end, fixed.widths.strength_bits, fixed.damped ? 1 : 0);
+  if (fixed.damped) {
+    fixed.damp = shaped(shape, choice, D, core * core / (edge * edge));
+    fill(
+        fixed.damp,
+        [&](double r2) {
+          return scale * rule.damping_over_r2(distance(r2)) * edge * edge * rule.dt / rule.mass;
+        },
+        end, fixed.widths.strength_bits, 0);
+  }
+  fixed.error = error_of(fixed, rule, scale, core);
+}
+
+// Strongest pull of the law in newtons; its strongest push if it never pulls.
+double strongest_pull(const PairLaw& law) {
+  constexpr int kSamples = 4096;
+  double pull = 0, push = 0;
+  for (int k = 0; k < kSamples; ++k) {
+    const double f = law.force(law.core() + (law.cutoff() - law.core()) * k / kSamples);
+    pull = std::max(pull, -f);
+    push = std::max(push, f);
+  }
+  return pull > 0 ? pull : push;
+}
+
+// Tables of the chosen shape, or of the shape that errs less.
+FixedRule with_tables(const FixedRule& fixed, const Rule& rule, const TableChoice& choice, double scale,
+                      bool fits_octaves) {
+  FixedRule uniform = fixed, octaves = fixed;
+  if (choice.shape != TableChoice::Shape::octaves)
+    make_tables(uniform, rule, TableShape::uniform, choice, scale);
+  if (choice.shape == TableChoice::Shape::uniform || !fits_octaves) return uniform;
+  make_tables(octaves, rule, TableShape::octaves, choice, scale);
+  if (choice.shape == TableChoice::Shape::octaves) return octaves;
+  return octaves.error.worst_force < uniform.error.worst_force ? octaves : uniform;
+}
+
+}  // namespace
+
+FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table,
+                   double most_half_unit) {
+  if (table.index_bits == 0) {
+    TableChoice choice = table;
+    const double rest = stiffest_rest_distance(*rule.law);
+    const double nearest = std::max(rule.law->core(), kBondsFrom * rest);
+    for (choice.index_bits = kLeastIndex;; ++choice.index_bits) {
+      FixedRule fixed = quantise(rule, cell_edge, widths, choice, most_half_unit);
+      if (choice.index_bits == std::min(kMostIndex, 2 * widths.difference_frac - 1) ||
+          std::isinf(most_half_unit))
+        return fixed;
+      double scale = 0;
+      for (const auto& row : rule.strength)
+        scale = std::max(scale, *std::max_element(row.begin(), row.end()));
+      if (error_of(fixed, rule, scale, nearest).worst_force <= 2 * most_half_unit) return fixed;
+    }
+  }
+  const TableChoice& choice = table;
+  check_widths(widths, choice);
+  const double cutoff = rule.law->cutoff();
+  if (cutoff > cell_edge * (1 + 1e-12))
+    throw InputError(
+        fmt::format("the cutoff, {:.6g} m, is longer than a cell edge, {:.6g} m", cutoff, cell_edge));
+  FixedRule fixed;
+  fixed.widths = widths;
+  fixed.widths.filter_frac = std::min(widths.filter_frac, widths.position_frac);
+  fixed.cell_edge = cell_edge;
+  fixed.dt = rule.dt;
+  fixed.mass = rule.mass;
+  fixed.damped = rule.damping.coefficient > 0;
+
+  const int D = widths.difference_frac;
+  const double ratio = std::min(1.0, cutoff / cell_edge);
+  fixed.cutoff2 = static_cast<uint64_t>(std::llround(std::ldexp(ratio * ratio, 2 * D)));
+  set_planar(fixed);
+
+  double scale = 0;
+  for (const auto& row : rule.strength) scale = std::max(scale, *std::max_element(row.begin(), row.end()));
+  double least = scale;
+  for (const auto& row : rule.strength) least = std::min(least, *std::min_element(row.begin(), row.end()));
+  fixed.scaled = least != scale;
+
+  const bool fits_octaves = [&] {
+    const FixedTable table =
+        shaped(TableShape::octaves, choice, D, std::pow(rule.law->core() / cell_edge, 2));
+    return table.bin_bits >= 1;
+  }();
+  if (choice.shape == TableChoice::Shape::octaves && !fits_octaves)
+    throw InputError(
+        fmt::format("{} index bits are too few for the octaves between the law's core and its cutoff",
+                    choice.index_bits));
+  if (widths.strength_bits == 0) {
+    const double pull = strongest_pull(*rule.law);
+    for (fixed.widths.strength_bits = kLeastStrength; fixed.widths.strength_bits < kWidestStrength;
+         ++fixed.widths.strength_bits) {
+      const FixedRule tried = with_tables(fixed, rule, choice, scale, fits_octaves);
+      const double half_unit =
+          std::ldexp(0.5, -tried.force.value_frac) * rule.mass / (rule.dt * rule.dt) / scale * cutoff;
+      const bool kicks = tried.force.value_frac + D >= widths.velocity_frac();
+      if (kicks && half_unit <= std::min(kHalfUnit * pull, most_half_unit)) break;
+    }
+  }
+  fixed = with_tables(fixed, rule, choice, scale, fits_octaves);
+
+  const int frac = widths.velocity_frac();
+  fixed.difference_shift = widths.position_frac - D;
+  fixed.w_shift = frac - widths.relative_velocity_frac;
+  fixed.q_shift = D + 1;
+  fixed.damp_shift =
+      fixed.damped ? fixed.damp.value_frac + widths.relative_velocity_frac - 1 - fixed.force.value_frac : 0;
+  fixed.kick_shift = fixed.force.value_frac + D - frac;
+  if (fixed.kick_shift < 0)
+    throw InputError(
+        fmt::format("the pair law's f/r * dt^2/m reaches {:.3g}: with {} value bits its kicks have fewer "
+                    "fractional bits ({}) than velocities ({})",
+                    std::ldexp(1.0, fixed.widths.strength_bits - 1 - fixed.force.value_frac),
+                    fixed.widths.strength_bits, fixed.force.value_frac + D, frac),
+        "use a smaller dt, a larger core, more strength_bits, or fewer guard bits");
+  if (fixed.damp_shift < 0)
+    throw InputError(
+        fmt::format("the damping c/r^2 * dt/m reaches {:.3g}: too strong beside the pair law for {} bits",
+                    std::ldexp(1.0, widths.strength_bits - 1 - fixed.damp.value_frac), widths.strength_bits));
+
+  const double length = cell_edge;
+  for (const ParticleType& type : rule.types) {
+    FixedType t;
+    t.imposed = type.imposed;
+    t.pd = type.pd;
+    for (int a = 0; a < 3; ++a) {
+      const double velocity = rule.dt / length, gravity = velocity * rule.dt;
+      t.velocity[a] = quantised(type.velocity[a] * velocity, type.velocity.norm() * velocity, frac,
+                                widths.velocity_bits, "an imposed velocity");
+      t.gravity[a] = quantised(type.gravity[a] * gravity, type.gravity.norm() * gravity, frac,
+                               widths.velocity_bits, "gravity");
+    }
+    if (type.pd) {
+      const double kp = type.kp * rule.dt * rule.dt / rule.mass, kd = type.kd * rule.dt / rule.mass;
+      t.kp = quantised(kp, kp, widths.gain_frac, 18, "the gain kp");
+      t.kd = quantised(kd, kd, widths.gain_frac, 18, "the gain kd");
+      fixed.pd = true;
+    }
+    fixed.types.push_back(t);
+  }
+  fixed.type_bits = fixed.types.size() > 1 ? std::bit_width(fixed.types.size() - 1) : 0;
+  if (fixed.scaled)
+    for (size_t i = 0; i < rule.types.size(); ++i) {
+      fixed.scale.emplace_back();
+      for (size_t j = 0; j < rule.types.size(); ++j) {
+        const double strength = rule.strength_of(static_cast<int>(i), static_cast<int>(j)) / scale;
+        fixed.scale[i].push_back(
+            static_cast<int32_t>(quantised(strength, strength, widths.scale_frac, 18, "a pair strength")));
+      }
+    }
+  return fixed;
+}
+
+}  // namespace cuboct

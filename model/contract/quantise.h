@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// From a rule in doubles to one in integers.
+#pragma once
+
+#include <limits>
+
+#include "model/contract/fixed_rule.h"
+#include "model/contract/rule.h"
+
+namespace cuboct {
+
+// How to tabulate; an arch file may set each of them.
+struct TableChoice {
+  enum class Shape : uint8_t { automatic, uniform, octaves };
+  Shape shape = Shape::automatic;  // automatic: the shape with the smaller worst force error
+  int degree = 1;                  // 1 or 2
+  int index_bits = 0;              // 2^index_bits entries; 0: chosen, see quantise
+  int fraction_bits = 17;
+};
+
+// `widths.strength_bits` = 0 takes the least width from 18 (a multiplier of small FPGAs) to 27 at which half
+// a unit of the force table, at the cutoff, is worth at most 1.7e-4 of the law's strongest pull and at most
+// `half_unit` N, and at which kicks have no fewer fractional bits than velocities: laws with a steep core, as
+// Lennard-Jones, need more than soft ones, small strains more than large ones. 27 is taken where none will
+// do. The result says which.
+//
+// `table.index_bits` = 0 takes the least from 9 to 13 at which the table's force is within 2 half_unit of the
+// law's, where bonds are: from 0.8 of the distance at rest to the cutoff. 13 is taken where none will do.
+//
+// Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative
+// shift, a velocity, gain or scale out of its width.
+FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table,
+                   double half_unit = std::numeric_limits<double>::infinity());
+
+}  // namespace cuboct

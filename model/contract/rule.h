@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// The local update rule in real units (SI, double precision): pair law, damping, types and their constraints.
+// A Rule and a Body are all that a physical scene is; quantisation makes a FixedRule of the one and a State
+// of the other.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/base/vec.h"
+#include "model/contract/law_form.h"
+
+namespace cuboct {
+
+// A radial pair law: force in newtons at distance r in metres, positive repels. It is zero from `cutoff` on.
+class PairLaw {
+ public:
+  virtual ~PairLaw() = default;
+  virtual double force(double r) const = 0;
+  // Potential energy in joules, zero at the cutoff; dU/dr = -force.
+  virtual double energy(double r) const = 0;
+  // df/dr in N/m.
+  virtual double slope(double r) const = 0;
+  virtual double cutoff() const = 0;
+  // Below this distance every law is linear, force(r) = r * force(core)/core: the force rolls off and f/r
+  // stays finite.
+  virtual double core() const = 0;  // > 0
+  // The same force between core and cutoff, but for rounding.
+  virtual LawForm form() const { return {}; }
+};
+
+// Damping on the radial velocity difference: on i the force c(r) * (w . e) e, e = d/r, d = x_j - x_i, w = v_j
+// - v_i. c(r) = coefficient * (1 - (r/cutoff)^2)^2, in kg/s: smooth, and zero at the cutoff of the pair law.
+// Below the law's core c/r^2 keeps its value at the core.
+struct Damping {
+  double coefficient = 0;  // kg/s, >= 0; 0: the scene does not damp
+};
+
+// What sets one particle apart from another. Particles of one type share material and constraints.
+struct ParticleType {
+  std::string name;                                  // "material" or "material/constraint", for messages
+  int material = 0;                                  // index into Rule::strength
+  std::array<bool, 3> imposed{false, false, false};  // axes whose velocity is imposed; held is an imposed 0
+  Vec3 velocity = Vec3::Zero();  // m/s, imposed, or followed by the anchor of the PD controller
+  Vec3 gravity = Vec3::Zero();   // m/s^2
+  bool pd = false;               // held or moved by force
+  double kp = 0;                 // N/m
+  double kd = 0;                 // kg/s
+};
+
+// Whether nothing imposes or steers the motion of such a particle along the axis.
+inline bool is_free(const ParticleType& type, int axis) { return !type.imposed[axis] && !type.pd; }
+
+struct Rule {
+  std::shared_ptr<const PairLaw> law;
+  Damping damping;
+  double mass = 0;                  // kg per particle
+  double dt = 0;                    // s
+  std::vector<ParticleType> types;  // at least one
+  std::vector<std::vector<double>>
+      strength;  // symmetric, materials x materials, > 0: factor on the pair force
+
+  // c(r)/r^2 in kg/(s m^2).
+  double damping_over_r2(double r) const {
+    const double near = std::max(r, law->core());
+    const double q = near / law->cutoff();
+    return q < 1 ? damping.coefficient * (1 - q * q) * (1 - q * q) / (near * near) : 0.0;
+  }
+  double strength_of(int type_i, int type_j) const {
+    return strength[types[type_i].material][types[type_j].material];
+  }
+};
+
+// Particles in SI units; the index is the particle's id.
+struct Body {
+  std::vector<Vec3> x;        // m
+  std::vector<Vec3> v;        // m/s
+  std::vector<Vec3> u;        // m, displacement from the PD anchor; empty unless some type has one
+  std::vector<uint8_t> type;  // index into Rule::types
+
+  size_t size() const { return x.size(); }
+};
+
+// A box that repeats. Axes that are not periodic have extent 0. Where all three are 0 the space is unbounded.
+struct Periodic {
+  Vec3 origin = Vec3::Zero();  // m
+  Vec3 extent = Vec3::Zero();  // m
+};
+
+}  // namespace cuboct

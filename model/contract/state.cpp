@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "model/contract/state.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/base/hash.h"
+
+namespace cuboct {
+
+uint64_t hash_of(const Lattice& lattice, const Particle& particle) {
+  Hash hash;
+  hash.add(particle.id).add(particle.type);
+  for (const int32_t c : lattice.cell(particle.node)) hash.add(c);
+  for (int a = 0; a < 3; ++a) hash.add(particle.x[a]).add(particle.v[a]).add(particle.u[a]);
+  return hash.value();
+}
+
+uint64_t hash_of(const Lattice& lattice, const State& state) {
+  uint64_t sum = 0;
+  for (const Particle& particle : state.particles) sum += hash_of(lattice, particle);
+  return sum;
+}
+
+Int3 momentum(const State& state) {
+  Int3 sum{};
+  for (const Particle& particle : state.particles)
+    for (int a = 0; a < 3; ++a) sum[a] += particle.v[a];
+  return sum;
+}
+
+Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, const Lattice& lattice,
+                        const Vec3& origin) {
+  const int frac = rule.widths.velocity_frac();
+  const double position_unit = std::ldexp(rule.cell_edge, -frac);
+  const double velocity_unit = position_unit / rule.dt;
+  Particle p;
+  p.id = id;
+  p.type = body.type[id];
+  const FixedType& type = rule.types[p.type];
+  Cell cell;
+  for (int a = 0; a < 3; ++a) {
+    const int64_t whole = std::llround((body.x[id][a] - origin[a]) / position_unit);
+    cell[a] = static_cast<int32_t>(whole >> frac);
+    p.x[a] = whole & ((int64_t{1} << frac) - 1);
+    p.v[a] = type.imposed[a] ? type.velocity[a] : std::llround(body.v[id][a] / velocity_unit);
+    if (!body.u.empty()) p.u[a] = std::llround(body.u[id][a] / position_unit);
+    if (!fits(p.v[a], rule.widths.velocity_bits))
+      throw InputError(
+          fmt::format("particle {} moves at {:.4g} m/s: more than the {:.4g} m/s that {} velocity bits hold",
+                      id, body.v[id][a], std::ldexp(velocity_unit, rule.widths.velocity_bits - 1),
+                      rule.widths.velocity_bits),
+          "a smaller dt or a larger cell edge lets it move fewer cells per step");
+  }
+  p.node = lattice.find(cell);
+  if (p.node == kNoNode)
+    throw InputError(fmt::format("particle {} lies in cell ({}, {}, {}), which has no node", id, cell[0],
+                                 cell[1], cell[2]));
+  return p;
+}
+
+State to_fixed(const Body& body, const FixedRule& rule, const Lattice& lattice, const Vec3& origin) {
+  State state;
+  state.particles.resize(body.size());
+  for (uint32_t id = 0; id < body.size(); ++id)
+    state.particles[id] = fixed_particle(body, id, rule, lattice, origin);
+  return state;
+}
+
+Body to_real(const State& state, const FixedRule& rule, const Lattice& lattice, const Vec3& origin) {
+  Body body;
+  const size_t n = state.particles.size();
+  body.x.resize(n);
+  body.v.resize(n);
+  body.type.resize(n);
+  if (rule.pd) body.u.resize(n);
+  const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
+  for (size_t k = 0; k < n; ++k) {
+    const Particle& p = state.particles[k];
+    const Cell& cell = lattice.cell(p.node);
+    body.type[k] = p.type;
+    for (int a = 0; a < 3; ++a) {
+      body.x[k][a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(p.x[a]) * unit;
+      body.v[k][a] = static_cast<double>(p.v[a]) * unit / rule.dt;
+      if (rule.pd) body.u[k][a] = static_cast<double>(p.u[a]) * unit;
+    }
+  }
+  return body;
+}
+
+Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
+                 const Particle& particle) {
+  const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
+  const Cell& cell = lattice.cell(particle.node);
+  Vec3 x;
+  for (int a = 0; a < 3; ++a)
+    x[a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(particle.x[a]) * unit;
+  return x;
+}
+
+double velocity_unit(const FixedRule& rule) {
+  return std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
+}
+
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle) {
+  return velocity_unit(rule) * Vec3(static_cast<double>(particle.v[0]), static_cast<double>(particle.v[1]),
+                                    static_cast<double>(particle.v[2]));
+}
+
+}  // namespace cuboct

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// What a fixed engine holds between two steps.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "model/contract/fixed_rule.h"
+#include "model/contract/lattice.h"
+
+namespace cuboct {
+
+struct Particle {
+  uint32_t id = 0;
+  uint8_t type = 0;
+  uint32_t node = 0;  // index into the lattice
+  Int3 x{};           // P+G fractional bits, in [0, 2^(P+G)); forces see its leading P (visible)
+  Int3 v{};           // P+G fractional bits, at half steps
+  Int3 u{};           // P+G fractional bits; zero unless the type is held by force
+
+  bool operator==(const Particle&) const = default;
+};
+
+struct State {
+  uint64_t step = 0;
+  std::vector<Particle> particles;  // sorted by id wherever a State is handed over
+
+  bool operator==(const State&) const = default;
+};
+
+// Sum over particles (modulo 2^64) of a 64-bit mix of id, type, cell coordinates, x, v and u: independent of
+// order, so that threads, ranks and GPUs can add up their shares.
+uint64_t hash_of(const Lattice& lattice, const Particle& particle);
+uint64_t hash_of(const Lattice& lattice, const State& state);
+
+// Sum of v over the particles, P+G fractional bits.
+Int3 momentum(const State& state);
+
+// Between real and fixed state. `origin` is the position of cell (0,0,0)'s lower corner in metres.
+// Positions are rounded to nearest; a particle whose cell has no node, or whose velocity does not fit its
+// width, is an InputError. Particle by particle, no State need be held: an engine can be fed from the Body.
+Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, const Lattice& lattice,
+                        const Vec3& origin);
+State to_fixed(const Body& body, const FixedRule& rule, const Lattice& lattice, const Vec3& origin);
+Body to_real(const State& state, const FixedRule& rule, const Lattice& lattice, const Vec3& origin);
+
+// Position of a particle, m.
+Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const Particle& particle);
+
+// m/s of a velocity's least bit.
+double velocity_unit(const FixedRule& rule);
+
+// Velocity of a particle, m/s.
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle);
+
+}  // namespace cuboct

@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: MIT
+#include "model/scene/config.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "model/base/error.h"
+#include "model/base/spelling.h"
+
+namespace cuboct {
+
+struct ConfigNode {
+  enum class Kind : uint8_t { boolean, integer, real, string, date, array, table };
+  Kind kind = Kind::table;
+  int line = 1, column = 1;          // of the value
+  int key_line = 1, key_column = 1;  // of its key
+  std::string key;
+  std::string path;  // "material.region", indices left out
+  bool boolean = false;
+  int64_t integer = 0;
+  double real = 0;
+  std::string text;
+  std::vector<ConfigNode> items;  // elements of an array, or the fields of a table in the order of the file
+  std::map<std::string, size_t> by_key;  // of a table, the indices of its items
+  mutable std::string alias;             // instead of the path, for the recorder
+  mutable std::set<std::string> asked;
+  mutable bool opened = false;  // a table that someone reads
+};
+
+struct ConfigFile {
+  std::string path;
+  bool reduced = false;
+  ConfigNode root;
+};
+
+namespace {
+
+using Kind = ConfigNode::Kind;
+
+std::set<std::string>* recorder = nullptr;
+
+const char* kind_name(Kind kind) {
+  switch (kind) {
+    case Kind::boolean:
+      return "true or false";
+    case Kind::integer:
+      return "a whole number";
+    case Kind::real:
+      return "a number";
+    case Kind::string:
+      return "a string";
+    case Kind::date:
+      return "a date";
+    case Kind::array:
+      return "an array";
+    case Kind::table:
+      return "a table";
+  }
+  return "?";
+}
+
+ConfigNode convert(const toml::node& from, const std::string& key, const std::string& path) {
+  ConfigNode node;
+  node.key = key;
+  node.path = path;
+  node.line = node.key_line = static_cast<int>(from.source().begin.line);
+  node.column = node.key_column = static_cast<int>(from.source().begin.column);
+  if (const auto* table = from.as_table()) {
+    node.kind = Kind::table;
+    for (const auto& [name, value] : *table) {
+      const std::string text(name.str());
+      node.items.push_back(convert(value, text, path.empty() ? text : path + "." + text));
+      node.items.back().key_line = static_cast<int>(name.source().begin.line);
+      node.items.back().key_column = static_cast<int>(name.source().begin.column);
+    }
+    std::ranges::sort(node.items, {},
+                      [](const ConfigNode& n) { return std::pair(n.key_line, n.key_column); });
+    for (size_t k = 0; k < node.items.size(); ++k) node.by_key.emplace(node.items[k].key, k);
+  } else if (const auto* array = from.as_array()) {
+    node.kind = Kind::array;
+    for (const auto& value : *array) node.items.push_back(convert(value, key, path));
+  } else if (const auto* boolean = from.as_boolean()) {
+    node.kind = Kind::boolean;
+    node.boolean = boolean->get();
+  } else if (const auto* integer = from.as_integer()) {
+    node.kind = Kind::integer;
+    node.integer = integer->get();
+  } else if (const auto* real = from.as_floating_point()) {
+    node.kind = Kind::real;
+    node.real = real->get();
+  } else if (const auto* text = from.as_string()) {
+    node.kind = Kind::string;
+    node.text = text->get();
+  } else {
+    node.kind = Kind::date;
+  }
+  return node;
+}
+
+const ConfigNode* field(const ConfigNode& table, const std::string& key) {
+  const auto found = table.by_key.find(key);
+  return found == table.by_key.end() ? nullptr : &table.items[found->second];
+}
+
+// Of arrays the first element stands for all: of a million particles none is looked for by its place.
+void add_places(const ConfigNode& node, Places& places) {
+  if (!node.path.empty()) places.add(node.path, node.line, node.column);
+  for (const ConfigNode& item : node.items) {
+    add_places(item, places);
+    if (node.kind == Kind::array) return;
+  }
+}
+
+// toml++ and all that reads its tables go as deep as a key is long: a.b.c makes three tables.
+void check_keys(std::string_view text, const std::string& path) {
+  constexpr int kMostParts = 64;
+  int line = 1, parts = 1;
+  size_t line_begin = 0;
+  std::string_view quote;  // what ends the string at hand
+  for (size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (c == '\n') ++line, line_begin = k + 1, parts = 1;
+    if (!quote.empty()) {
+      if (c == '\\' && quote[0] == '"')
+        ++k;
+      else if (text.substr(k).starts_with(quote))
+        k += quote.size() - 1, quote = {};
+    } else if (c == '"' || c == '\'') {
+      quote = text.substr(k, 1);
+      if (text.substr(k, 3) == std::string(3, c)) quote = text.substr(k, 3), k += 2;
+    } else if (c == '#') {
+      k = std::min(text.find('\n', k), text.size()) - 1;
+    } else if (c == '.' && ++parts > kMostParts) {
+      throw InputError(path, line, static_cast<int>(k - line_begin) + 1,
+                       fmt::format("a key of more than {} parts", kMostParts));
+    } else if (c == '=' || c == ',' || c == '[' || c == '{') {
+      parts = 1;
+    }
+  }
+}
+
+void check_asked(const ConfigFile& file, const ConfigNode& node) {
+  if (node.kind == Kind::table && node.opened) {
+    for (const ConfigNode& item : node.items) {
+      if (node.asked.contains(item.key)) continue;
+      std::vector<std::string> free;
+      for (const std::string& key : node.asked)
+        if (field(node, key) == nullptr) free.push_back(key);
+      throw InputError(file.path, item.key_line, item.key_column, fmt::format("unknown key '{}'", item.key),
+                       did_you_mean(item.key, free));
+    }
+  }
+  for (const ConfigNode& item : node.items) check_asked(file, item);
+}
+
+}  // namespace
+
+bool ConfigValue::is_table() const { return node_->kind == Kind::table; }
+bool ConfigValue::is_array() const { return node_->kind == Kind::array; }
+bool ConfigValue::is_number() const { return node_->kind == Kind::integer || node_->kind == Kind::real; }
+bool ConfigValue::is_string() const { return node_->kind == Kind::string; }
+const std::string& ConfigValue::key() const { return node_->key; }
+
+void ConfigValue::fail(const std::string& message, const std::string& hint) const {
+  throw InputError(file_->path, node_->line, node_->column, message, hint);
+}
+
+void ConfigValue::wants(const std::string& what) const {
+  fail(fmt::format("'{}' must be {}, not {}", node_->key, what, kind_name(node_->kind)));
+}
+
+bool ConfigValue::boolean() const {
+  if (node_->kind != Kind::boolean) wants("true or false");
+  return node_->boolean;
+}
+
+int64_t ConfigValue::integer(int64_t low, int64_t high) const {
+  if (node_->kind != Kind::integer) wants("a whole number");
+  if (node_->integer < low || node_->integer > high) {
+    fail(high == std::numeric_limits<int64_t>::max()
+             ? fmt::format("'{}' must be at least {}, not {}", node_->key, low, node_->integer)
+             : fmt::format("'{}' must be between {} and {}, not {}", node_->key, low, high, node_->integer));
+  }
+  return node_->integer;
+}
+
+std::string ConfigValue::string() const {
+  if (node_->kind != Kind::string) wants("a string");
+  return node_->text;
+}
+
+size_t ConfigValue::choice(const std::string& what, const std::vector<std::string>& names) const {
+  const std::string text = string();
+  const auto found = std::ranges::find(names, text);
+  if (found != names.end()) return static_cast<size_t>(found - names.begin());
+  const std::string near = did_you_mean(text, names);
+  fail(fmt::format("unknown {} '{}'", what, text), near.empty() ? "known: " + list_of(names) : near);
+}
+
+void ConfigValue::check(double value, const Range& range) const {
+  if (std::isfinite(value) && range.contains(value)) return;
+  const std::string shown =
+      node_->kind == Kind::string ? fmt::format("\"{}\"", node_->text) : fmt::format("{}", value);
+  std::string limits;
+  if (!std::isfinite(value))
+    limits = "finite";
+  else if (std::isinf(range.high))
+    limits = fmt::format("{} {}", range.low_open ? "greater than" : "at least", range.low);
+  else if (range.low_open || range.high_open)
+    limits = fmt::format("{} {} and {} {}", range.low_open ? "above" : "at least", range.low,
+                         range.high_open ? "below" : "at most", range.high);
+  else
+    limits = fmt::format("between {} and {}", range.low, range.high);
+  fail(fmt::format("'{}' must be {}, not {}", node_->key, limits, shown));
+}
+
+double ConfigValue::plain(const Quantity& quantity, const Range& range) const {
+  if (node_->kind != Kind::integer && node_->kind != Kind::real) {
+    if (node_->kind == Kind::string && quantity.dimension != Dimension{})
+      fail(fmt::format("'{}' must be a plain number, as units = \"reduced\"", node_->key));
+    wants("a number");
+  }
+  const double value = node_->kind == Kind::integer ? static_cast<double>(node_->integer) : node_->real;
+  check(value, range);
+  return value;
+}
+
+double ConfigValue::number(const Quantity& quantity, const Range& range) const {
+  if (file_->reduced || quantity.dimension == Dimension{}) return plain(quantity, range);
+  if (is_array()) wants(fmt::format("{} such as \"{}\"", quantity.name, quantity.example));
+  const std::vector<double> values = numbers(quantity, range);
+  if (values.size() != 1)
+    fail(fmt::format("'{}' must be {} such as \"{}\", not a list", node_->key, quantity.name,
+                     quantity.example));
+  return values[0];
+}
+
+std::vector<double> ConfigValue::numbers(const Quantity& quantity, const Range& range) const {
+  std::vector<double> values;
+  if (is_array()) {
+    for (const ConfigValue& item : items()) values.push_back(item.number(quantity, range));
+    return values;
+  }
+  if (file_->reduced || quantity.dimension == Dimension{}) wants("an array of numbers");
+  const std::string such = fmt::format("{} such as \"{}\"", quantity.name, quantity.example);
+  if (is_number()) fail(fmt::format("'{}' needs a unit: {}", node_->key, such));
+  if (!is_string()) wants(such);
+  try {
+    const ParsedQuantity parsed = parse_quantity(node_->text);
+    if (parsed.dimension == Dimension{}) fail(fmt::format("'{}' needs a unit: {}", node_->key, such));
+    if (parsed.dimension != quantity.dimension)
+      fail(fmt::format("'{}' must be {}, but \"{}\" is {}", node_->key, such, node_->text,
+                       describe(parsed.dimension)));
+    for (double value : parsed.values) check(value, range);
+    return parsed.values;
+  } catch (const UnitError& error) {
+    fail(error.message, error.hint);
+  }
+}
+
+Vec3 ConfigValue::vector(const Quantity& quantity) const {
+  const std::vector<double> values = numbers(quantity);
+  if (values.size() != 3) {
+    const bool plain = file_->reduced || quantity.dimension == Dimension{};
+    const std::string example = quantity.example;
+    fail(fmt::format("'{}' needs three components, not {}", node_->key, values.size()),
+         plain ? "for instance [0, 0, 1]"
+               : fmt::format("for instance \"[0, 0, 1]{}\"", example.substr(example.find(' '))));
+  }
+  return {values[0], values[1], values[2]};
+}
+
+std::vector<ConfigValue> ConfigValue::items() const {
+  if (!is_array()) wants("an array");
+  std::vector<ConfigValue> values;
+  for (const ConfigNode& item : node_->items) values.emplace_back(file_, &item);
+  return values;
+}
+
+ConfigTable ConfigValue::table() const {
+  if (!is_table()) wants("a table");
+  node_->opened = true;
+  return {file_, node_};
+}
+
+bool ConfigTable::has(const std::string& key) const { return find(key).has_value(); }
+
+std::optional<ConfigValue> ConfigTable::find(const std::string& key) const {
+  node_->asked.insert(key);
+  if (recorder != nullptr) {
+    const std::string& table = node_->alias.empty() ? node_->path : node_->alias;
+    recorder->insert(table.empty() ? key : table + "." + key);
+  }
+  const ConfigNode* found = field(*node_, key);
+  if (found == nullptr) return std::nullopt;
+  return ConfigValue(file_, found);
+}
+
+ConfigValue ConfigTable::at(const std::string& key) const {
+  if (auto found = find(key)) return *found;
+  // Where a key that no one asked for looks like the missing one, it is the better complaint.
+  for (const ConfigNode& item : node_->items)
+    if (!node_->asked.contains(item.key) && !nearest_spelling(item.key, {key}).empty())
+      throw InputError(file_->path, item.key_line, item.key_column, fmt::format("unknown key '{}'", item.key),
+                       did_you_mean(item.key, {key}));
+  if (node_->path.empty()) fail(fmt::format("missing key '{}'", key));
+  fail(fmt::format("missing key '{}' in '{}'", key, node_->path));
+}
+
+double ConfigTable::number(const std::string& key, const Quantity& quantity, const Range& range) const {
+  return at(key).number(quantity, range);
+}
+
+double ConfigTable::number_or(const std::string& key, const Quantity& quantity, double otherwise,
+                              const Range& range) const {
+  const auto value = find(key);
+  return value ? value->number(quantity, range) : otherwise;
+}
+
+int64_t ConfigTable::integer_or(const std::string& key, int64_t low, int64_t high, int64_t otherwise) const {
+  const auto value = find(key);
+  return value ? value->integer(low, high) : otherwise;
+}
+
+bool ConfigTable::boolean_or(const std::string& key, bool otherwise) const {
+  const auto value = find(key);
+  return value ? value->boolean() : otherwise;
+}
+
+std::string ConfigTable::string_or(const std::string& key, const std::string& otherwise) const {
+  const auto value = find(key);
+  return value ? value->string() : otherwise;
+}
+
+Vec3 ConfigTable::vector_or(const std::string& key, const Quantity& quantity, const Vec3& otherwise) const {
+  const auto value = find(key);
+  return value ? value->vector(quantity) : otherwise;
+}
+
+std::array<bool, 3> ConfigTable::axes(const std::string& key) const {
+  const ConfigValue value = at(key);
+  const std::string text = value.string();
+  std::array<bool, 3> chosen{};
+  for (char c : text) {
+    const size_t axis = static_cast<size_t>(c - 'x');
+    if (c < 'x' || c > 'z' || chosen[axis])
+      value.fail(fmt::format("'{}' must name axes, such as \"x\" or \"xyz\", not \"{}\"", key, text));
+    chosen[axis] = true;
+  }
+  if (text.empty()) value.fail(fmt::format("'{}' must name axes, such as \"x\" or \"xyz\"", key));
+  return chosen;
+}
+
+std::vector<ConfigTable> ConfigTable::tables(const std::string& key) const {
+  std::vector<ConfigTable> result;
+  const auto value = find(key);
+  if (!value) return result;
+  if (!value->is_array())
+    value->fail(fmt::format("'{}' must be an array of tables", key), fmt::format("write [[{}]]", key));
+  for (const ConfigValue& item : value->items()) result.push_back(item.table());
+  return result;
+}
+
+std::optional<ConfigTable> ConfigTable::table_at(const std::string& key) const {
+  const auto value = find(key);
+  if (!value) return std::nullopt;
+  if (!value->is_table())
+    value->fail(fmt::format("'{}' must be a table", key), fmt::format("write [{}]", key));
+  return value->table();
+}
+
+std::vector<std::string> ConfigTable::names() const {
+  std::vector<std::string> names;
+  for (const ConfigNode& item : node_->items) {
+    names.push_back(item.key);
+    node_->asked.insert(item.key);
+  }
+  return names;
+}
+
+void ConfigTable::not_both(const std::string& a, const std::string& b) const {
+  const auto second = find(b);
+  if (find(a) && second) second->fail(fmt::format("give '{}' or '{}', not both", a, b));
+}
+
+void ConfigTable::record_as(const std::string& name) const { node_->alias = name; }
+
+Places ConfigTable::places() const {
+  Places places(file_->path);
+  add_places(*node_, places);
+  return places;
+}
+
+void ConfigTable::done() const { check_asked(*file_, *node_); }
+
+ConfigTable parse_config(const std::string& text, const std::string& path) {
+  auto file = std::make_shared<ConfigFile>();
+  file->path = path;
+  check_keys(text, path);
+  try {
+    file->root = convert(toml::parse(text, path), "", "");
+  } catch (const toml::parse_error& error) {
+    const auto& at = error.source().begin;
+    throw InputError(path, static_cast<int>(at.line), static_cast<int>(at.column),
+                     std::string(error.description()));
+  }
+  file->root.line = file->root.column = 1;
+  file->root.opened = true;
+  ConfigTable root(file, &file->root);
+  if (const auto units = root.find("units")) file->reduced = units->choice("units", {"SI", "reduced"}) == 1;
+  return root;
+}
+
+std::string read_config_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  // A directory opens and then fails to read.
+  if (!in || !(text << in.rdbuf())) throw InputError(fmt::format("{}: cannot read this file", path));
+  return text.str();
+}
+
+ConfigTable read_config(const std::string& path) { return parse_config(read_config_text(path), path); }
+
+void record_config_keys(std::set<std::string>* keys) { recorder = keys; }
+
+}  // namespace cuboct

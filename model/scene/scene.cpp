@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#include "model/scene/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "model/base/error.h"
+#include "model/contract/law.h"
+#include "model/scene/scene_parts.h"
+#include "model/solid/dynamical_matrix.h"
+#include "model/solid/vibrations.h"
+
+namespace cuboct {
+namespace {
+
+double read_mass(const ConfigTable& root, Scene& scene) {
+  root.not_both("density", "mass");
+  if (root.has("mass")) return root.number("mass", quantity::mass, Range::positive());
+  if (scene.pitch == 0) return root.number("mass", quantity::mass, Range::positive());
+  scene.density = root.number("density", quantity::density, Range::positive());
+  return particle_mass(scene.density, scene.pitch);
+}
+
+Damping read_damping(const ConfigTable& root, const Scene& scene) {
+  Damping damping;
+  const auto table = root.table_at("damping");
+  if (!table) return damping;
+  table->not_both("coefficient", "ratio");
+  if (table->has("ratio")) {
+    const double ratio = table->number("ratio", quantity::number, Range::not_negative());
+    const double stiffness = scene.pitch > 0 ? -scene.rule.law->slope(scene.pitch) : 0;
+    if (!(stiffness > 0))
+      table->at("ratio").fail("'ratio' needs a packing with a stiff bond at its pitch",
+                              "give 'coefficient' instead");
+    damping.coefficient = ratio * 2 * std::sqrt(stiffness * scene.rule.mass);
+  } else {
+    damping.coefficient = table->number("coefficient", quantity::damping, Range::not_negative());
+  }
+  table->done();
+  return damping;
+}
+
+// The damping as if it were a law of springs: its dynamical matrix is that of the rates C/m.
+class DampingAsLaw final : public PairLaw {
+ public:
+  explicit DampingAsLaw(const Rule& rule) : rule_(rule) {}
+  double force(double) const override { return 0; }
+  double energy(double) const override { return 0; }
+  double slope(double r) const override { return -rule_.damping_over_r2(r) * r * r; }
+  double cutoff() const override { return rule_.law->cutoff(); }
+  double core() const override { return rule_.law->core(); }
+
+ private:
+  const Rule& rule_;
+};
+
+// The limit of the body's own vibrations, or of its part [low, high]; infinite where nothing is restored.
+double vibrations_limit(const Scene& scene, const Vec3& low, const Vec3& high) {
+  Body part;
+  for (size_t i = 0; i < scene.body.size(); ++i) {
+    const Vec3& x = scene.body.x[i];
+    if ((x.array() < low.array()).any() || (x.array() > high.array()).any()) continue;
+    part.x.push_back(x);
+    part.type.push_back(scene.body.type[i]);
+  }
+  return stability_limit(vibrations_of(scene.rule, part, scene.periodic)).dt;
+}
+
+struct TimeLimit {
+  double dt = std::numeric_limits<double>::infinity();  // s
+  std::string of;                                       // what sets it
+
+  void meet(double other, const std::string& what) {
+    if (other > 0 && other < dt) dt = other, of = what;
+  }
+  double known() const { return std::isinf(dt) ? 0 : dt; }  // 0: it is not
+};
+
+// Of a dt that the scene gives, and of "auto", which must last for what listed particles may become.
+struct TimeLimits {
+  TimeLimit given, automatic;
+};
+
+TimeLimits time_limits(const Scene& scene, size_t listed) {
+  const Rule& rule = scene.rule;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  TimeLimits limits;
+  const double cutoff = rule.law->cutoff();
+  if (scene.pitch > 0) limits.given.meet(stable_time_step(rule, scene.pitch), "the perfect packing");
+  bool small = false;  // a box that every engine will refuse
+  for (const double extent : scene.periodic.extent) small = small || (extent > 0 && extent < 2 * cutoff);
+  if (listed > 0 && !small) {
+    // They, and what of a packing is near: elsewhere it is perfect, or has lost bonds.
+    Vec3 low = Vec3::Constant(-kNone), high = Vec3::Constant(kNone);
+    if (scene.pitch > 0) {
+      std::swap(low, high);
+      for (size_t i = scene.body.size() - listed; i < scene.body.size(); ++i)
+        low = low.cwiseMin(scene.body.x[i]), high = high.cwiseMax(scene.body.x[i]);
+      low.array() -= 3 * cutoff, high.array() += 3 * cutoff;
+      for (int axis = 0; axis < 3; ++axis)
+        if (scene.periodic.extent[axis] > 0) low[axis] = -kNone, high[axis] = kNone;
+    }
+    limits.given.meet(vibrations_limit(scene, low, high), "the particles that are listed");
+    const double rest = stiffest_rest_distance(*rule.law);
+    if (scene.pitch == 0 && rest > 0.1 * cutoff)
+      limits.automatic.meet(stable_time_step(rule, rest), "a packing at the law's rest distance");
+  }
+  limits.automatic.meet(limits.given.dt, limits.given.of);
+  return limits;
+}
+
+void read_time(const ConfigTable& root, Scene& scene) {
+  const auto found = root.table_at("run");
+  if (!found) root.at("run");
+  const ConfigTable& run = *found;
+  const TimeLimits limits = time_limits(scene, root.tables("particle").size());
+  const auto dt = run.find("dt");
+  const bool automatic = !dt || (dt->is_string() && dt->string() == "auto");
+  const TimeLimit& limit = automatic ? limits.automatic : limits.given;
+  scene.dt_limit = limit.known();
+  scene.dt_limit_of = limit.of;
+  const auto safety = run.find("dt_safety");
+  if (automatic) {
+    scene.dt_safety =
+        safety ? safety->number(quantity::number, {.low = 0, .high = 1, .low_open = true}) : 0.2;
+    if (scene.dt_limit == 0) (dt ? *dt : run).fail("no stability limit is known for this scene", "give 'dt'");
+    scene.rule.dt = scene.dt_safety * scene.dt_limit;
+  } else {
+    if (safety) safety->fail("'dt_safety' serves dt = \"auto\" only");
+    scene.rule.dt = dt->number(quantity::time, Range::positive());
+    if (scene.dt_limit > 0) {
+      scene.dt_safety = scene.rule.dt / scene.dt_limit;
+      if (scene.dt_safety > 1)
+        dt->fail(fmt::format("'dt' is beyond the stability limit {:.4g} s", scene.dt_limit),
+                 fmt::format("\"auto\" would take {:.4g} s", 0.2 * limits.automatic.dt));
+    }
+  }
+
+  run.not_both("steps", "duration");
+  if (run.has("duration")) {
+    const double steps =
+        std::ceil(run.number("duration", quantity::time, Range::positive()) / scene.rule.dt * (1 - 1e-12));
+    if (steps > 1e15) run.at("duration").fail(fmt::format("'duration' takes {:.3g} steps", steps));
+    scene.steps = static_cast<uint64_t>(steps);
+  } else {
+    scene.steps = static_cast<uint64_t>(run.at("steps").integer(0, INT64_MAX));
+  }
+  const auto every = [&](const char* key, uint64_t otherwise) {
+    return static_cast<uint64_t>(run.integer_or(key, 0, INT64_MAX, static_cast<int64_t>(otherwise)));
+  };
+  scene.probe_every =
+      every("probe_every", scene.probes.empty() ? 0 : std::max<uint64_t>(1, scene.steps / 500));
+  scene.frame_every = every("frame_every", 0);
+  if (const auto accuracy = run.find("accuracy"))
+    scene.accuracy = accuracy->number(quantity::number, {.low = 1e-6, .high = 0.1});
+  if (const auto strain = run.find("expected_strain"))
+    scene.expected_strain = strain->number(quantity::number, {.low = 0, .high = 1, .low_open = true});
+  run.done();
+}
+
+void read_reach(const ConfigTable& root, Scene& scene) {
+  const auto table = root.table_at("reach");
+  if (!table) return;
+  if (const auto margin = table->find("margin")) {
+    const auto values = margin->is_number() ? std::vector{margin->number(quantity::length)}
+                                            : margin->numbers(quantity::length);
+    if (values.size() != 1 && values.size() != 3) margin->fail("'margin' needs one length or three");
+    for (size_t a = 0; a < 3; ++a) scene.reach_margin[a] = values[values.size() == 1 ? 0 : a];
+    if (scene.reach_margin.minCoeff() < 0) margin->fail("'margin' must not be negative");
+  }
+  if (table->has("min") || table->has("max")) {
+    scene.reach = {table->at("min").vector(quantity::length), table->at("max").vector(quantity::length)};
+    for (int a = 0; a < 3; ++a)
+      if (!(scene.reach[0][a] < scene.reach[1][a]))
+        table->at("max").fail(fmt::format("'max' must be above 'min' along {}", "xyz"[a]));
+  }
+  table->done();
+}
+
+}  // namespace
+
+double stable_time_step(const Rule& rule, double pitch) {
+  double strongest = 0, kp = 0, kd = 0;
+  for (const ParticleType& type : rule.types) {
+    for (const ParticleType& other : rule.types)
+      strongest = std::max(strongest, rule.strength[type.material][other.material]);
+    kp = std::max(kp, type.kp);
+    kd = std::max(kd, type.kd);
+  }
+  const double w = largest_frequency(*rule.law, rule.mass, pitch);
+  if (!(w > 0)) return 0;
+  const double w2 = strongest * w * w + kp / rule.mass;
+  double g = kd / rule.mass;
+  if (rule.damping.coefficient > 0) {
+    const double root = largest_frequency(DampingAsLaw(rule), rule.mass, pitch);
+    g += root * root;
+  }
+  // (sqrt(g^2 + 4 w^2) - g)/w^2 without its cancellation.
+  return 4 / (std::sqrt(g * g + 4 * w2) + g);
+}
+
+namespace {
+
+Scene scene_of(const ConfigTable& root, const std::string& path) {
+  Scene scene;
+  scene.path = path;
+  scene.places = root.places();
+  scene.title = root.string_or("title", "");
+  auto packing = read_packing(root);
+  PackingChoice* choice = packing ? &*packing : nullptr;
+  scene.rule.law = read_law(root, choice);
+  if (packing) {
+    scene.pitch = packing->fcc.pitch;
+    scene.orientation = packing->fcc.orientation;
+  }
+  scene.rule.mass = read_mass(root, scene);
+  scene.rule.damping = read_damping(root, scene);
+  const Regions regions(root);
+  read_body(root, regions, choice, scene);
+  read_probes(root, regions, scene);
+  read_time(root, scene);
+  read_reach(root, scene);
+  root.done();
+  return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::string& path) { return parse_scene(read_config_text(path), path); }
+
+Scene parse_scene(const std::string& text, const std::string& path) {
+  Scene scene = scene_of(parse_config(text, path), path);
+  scene.text = text;
+  return scene;
+}
+
+}  // namespace cuboct

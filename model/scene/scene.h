@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// What a user writes, resolved to SI units: particles, rule, what to measure and for how long.
+// docs/user/scene.md is the reference of the file format.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/contract/places.h"
+#include "model/contract/rule.h"
+
+namespace cuboct {
+
+// A named set of particles (by id, ascending): those whose initial position lies in the probe's region.
+struct ParticleSet {
+  std::string name;
+  std::vector<uint32_t> ids;
+};
+
+// What to measure every `probe_every` steps. Curves are named "<probe>.<quantity>".
+struct Probe {
+  enum class Kind : uint8_t {
+    force,          // total pair force on a set, N: force_x, force_y, force_z
+    displacement,   // mean displacement of a set from its initial mean position, m: x, y, z
+    stress_strain,  // two sets and an axis: strain = change of the distance between their means over its
+                    // initial value; stress = pull on `grip` along the axis over `area`, Pa
+  };
+  Kind kind = Kind::force;
+  std::string name;
+  ParticleSet set;           // force, displacement
+  ParticleSet lower, upper;  // stress_strain: gauge marks
+  ParticleSet grip;          // stress_strain: whose force counts, on the side of `upper`
+  int axis = 0;
+  double area = 0;  // m^2
+};
+
+struct Scene {
+  std::string path;  // as given
+  std::string text;  // of the file
+  std::string title;
+  Rule rule;
+  Body body;
+  Periodic periodic;
+  double pitch = 0;  // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
+  Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates
+  bool thermal = false;                 // some velocities are drawn
+  double density = 0;                   // kg/m^3, 0 if the mass was given
+  double dt_limit = 0;      // s, largest stable dt: of the perfect packing, and of the vibrations of
+                            // particles that are listed (docs/user/scene.md, [run]); 0 if unknown
+  std::string dt_limit_of;  // what sets it, e.g. "the perfect packing"
+  double dt_safety = 0;     // dt = dt_safety * dt_limit where dt was "auto", else dt / dt_limit
+  Vec3 reach_margin =
+      Vec3::Constant(-1);  // m, space around the body that particles may reach; negative: one cell edge
+  std::array<Vec3, 2> reach{Vec3::Zero(),
+                            Vec3::Zero()};  // m, an extra box that particles may reach; empty if equal
+  // What the formats of a fixed rule are chosen by: no imposed velocity, gravity or gain may be off by more,
+  // and the strain that is expected has so many units of a difference.
+  double accuracy = 1e-3;
+  double expected_strain = 0;  // 0: what the scene's motion tells (model/analysis/motion.h)
+  std::vector<Probe> probes;
+  uint64_t steps = 0;
+  uint64_t probe_every = 0;  // 0: never
+  uint64_t frame_every = 0;  // 0: first and last only
+  Places places;             // of the file's keys
+};
+
+// Throws InputError with file:line:column.
+Scene read_scene(const std::string& path);
+// The same for text in memory; `path` stands in messages.
+Scene parse_scene(const std::string& text, const std::string& path);
+
+}  // namespace cuboct

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: MIT
+// The particles of a scene: where they are, how they move, what they are made of and what holds them.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "model/base/error.h"
+#include "model/base/resources.h"
+#include "model/base/spelling.h"
+#include "model/scene/name.h"
+#include "model/scene/scene_parts.h"
+
+namespace cuboct {
+namespace {
+
+constexpr double kTolerance = 1e-6;  // of the pitch, as in packing.h
+constexpr size_t kMaxTypes = 256;
+constexpr double kMostParticles = 4e9;  // ids have 32 bits
+constexpr double kBytesToRead = 64;     // a particle while it is read: position, velocity, type, two numbers
+
+// Particles on a region's surface count as inside; where there is no packing the law's cutoff sets the scale.
+double tolerance_of(const Scene& scene) {
+  return kTolerance * (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff());
+}
+
+void check_size(const ConfigTable& geometry, const Bounds& bounds, double pitch) {
+  for (int a = 0; a < 3; ++a) {
+    const double size = bounds.high[a] - bounds.low[a];
+    const char axis = "xyz"[a];
+    if (std::isinf(size)) geometry.fail(fmt::format("the geometry has no end along {}", axis));
+    if (size < pitch * (1 - kTolerance))
+      geometry.fail(fmt::format("the geometry is {:.6g} m along {}, less than the pitch {:.6g} m",
+                                std::max(size, 0.0), axis, pitch));
+  }
+}
+
+// Before anything is made: what stops a packing that this machine cannot hold, or that takes hours.
+// `by_cells`: the box is so many cells of the crystal, whatever their size.
+void check_packing(const ConfigValue& at, const Fcc& fcc, const Shape* shape, const Periodic& box,
+                   bool by_cells) {
+  constexpr double kMostTests = 4e10;  // some minutes
+  const PackingSize size = packing_size(fcc, shape, box);
+  if (size.farthest > 1e6) at.fail("the geometry is beyond a million pitches");
+  const size_t parts = shape != nullptr ? shape->parts() : 1;
+  const double tests = size.tested * static_cast<double>(parts);
+  // Where there are `times` too many.
+  const auto hint = [&](double times) {
+    if (by_cells) return fmt::format("'cells' whose product is smaller by a factor of {:.2g}", 1.1 * times);
+    return fmt::format("a pitch of {:.2g} m, or a smaller geometry", fcc.pitch * std::cbrt(times) * 1.06);
+  };
+  if (tests > kMostTests)
+    at.fail(fmt::format("{:.3g} sites of the packing, held against {} parts of the geometry: at most {:.3g} "
+                        "tests are made",
+                        size.tested, parts, kMostTests),
+            hint(tests / kMostTests) + (parts > 100 ? ", or fewer points" : ""));
+  const double bytes = size.sites * kBytesToRead, free = static_cast<double>(free_memory());
+  const double most = std::min(kMostParticles, free / kBytesToRead);
+  if (size.sites > most)
+    at.fail(fmt::format("about {:.3g} particles, {} to read them: {}", size.sites, in_bytes(bytes),
+                        most < kMostParticles ? in_bytes(free) + " are free"
+                                              : fmt::format("a scene holds at most {:.3g}", kMostParticles)),
+            hint(size.sites / most));
+}
+
+void pack_geometry(const ConfigTable& root, const PackingChoice& packing, Scene& scene) {
+  const auto [boxed, periodic] = read_box(root, &packing);
+  for (size_t a = 0; a < 3; ++a)
+    if (periodic[a]) scene.periodic.extent[a] = boxed.extent[a];
+  scene.periodic.origin = boxed.origin;
+  const auto geometry = root.table_at("geometry");
+  const bool whole_box = (boxed.extent.array() > 0).all();
+  if (!geometry && !whole_box)
+    root.at("packing").fail("nothing says what to pack", "add [geometry], or [box] with 'cells'");
+  ShapePtr shape;
+  if (geometry) {
+    shape = read_shape(*geometry);
+    Bounds bounds = shape->bounds();
+    for (int a = 0; a < 3; ++a) {
+      if (boxed.extent[a] == 0) continue;
+      bounds.low[a] = std::max(bounds.low[a], boxed.origin[a]);
+      bounds.high[a] = std::min(bounds.high[a], boxed.origin[a] + boxed.extent[a]);
+    }
+    check_size(*geometry, bounds, scene.pitch);
+  }
+  const ConfigValue box = geometry ? ConfigValue(*geometry) : root.at("box");
+  check_packing(box, packing.fcc, shape.get(), boxed, !geometry && root.at("box").table().has("cells"));
+  scene.body.x = pack(packing.fcc, shape.get(), boxed);
+  if (scene.body.x.empty()) box.fail("no particle: no site of the packing lies inside");
+  scene.body.v.assign(scene.body.x.size(), Vec3::Zero());
+}
+
+void read_single_box(const ConfigTable& root, Scene& scene) {
+  const auto [boxed, periodic] = read_box(root, nullptr);
+  scene.periodic.origin = boxed.origin;
+  for (size_t a = 0; a < 3; ++a)
+    if (periodic[a]) scene.periodic.extent[a] = boxed.extent[a];
+}
+
+// The materials named by the [[particle]] entries, the last of all particles; -1: by region.
+std::vector<int> read_particles(const ConfigTable& root, const std::vector<std::string>& materials,
+                                Scene& scene) {
+  std::vector<int> named;
+  const auto tables = root.tables("particle");
+  scene.body.x.reserve(scene.body.x.size() + tables.size());  // behind millions: no growth by halves
+  scene.body.v.reserve(scene.body.v.size() + tables.size());
+  for (const ConfigTable& table : tables) {
+    const ConfigValue position = table.at("position");
+    const Vec3 x = position.vector(quantity::length);
+    for (int a = 0; a < 3; ++a) {
+      const double in = x[a] - scene.periodic.origin[a];
+      if (scene.periodic.extent[a] > 0 && !(in >= 0 && in < scene.periodic.extent[a]))
+        position.fail(fmt::format("'position' is outside the periodic box along {}", "xyz"[a]));
+    }
+    scene.body.x.push_back(x);
+    scene.body.v.push_back(table.vector_or("velocity", quantity::velocity, Vec3::Zero()));
+    const auto material = table.find("material");
+    named.push_back(material ? static_cast<int>(material->choice("material", materials)) : -1);
+    table.done();
+  }
+  return named;
+}
+
+// Sites of a packing are a pitch apart: only the listed particles, the last of `x`, can stand where another
+// does.
+void check_distinct(const ConfigTable& root, const std::vector<Vec3>& x, size_t listed) {
+  const auto key = [&](size_t i) { return std::array{x[i][0], x[i][1], x[i][2], static_cast<double>(i)}; };
+  std::vector<size_t> order(listed);
+  std::iota(order.begin(), order.end(), x.size() - listed);
+  std::ranges::sort(order, {}, key);
+  const size_t packed = listed > 0 ? x.size() - listed : 0;
+  const auto place = [&](size_t i) { return std::array{x[i][0], x[i][1], x[i][2]}; };
+  std::vector<size_t> covered;
+  for (size_t i = 0; i < packed; ++i)
+    if (std::ranges::binary_search(order, place(i), {}, place)) covered.push_back(i);
+  order.insert(order.end(), covered.begin(), covered.end());
+  std::ranges::sort(order, {}, key);
+  for (size_t i = 1; i < order.size(); ++i)
+    if (x[order[i]] == x[order[i - 1]])
+      root.fail(fmt::format("particles {} and {} stand at the same point", order[i - 1], order[i]));
+}
+
+struct Material {
+  std::string name;
+  double strength = 1;
+};
+
+std::vector<Material> read_materials(const ConfigTable& root) {
+  std::vector<Material> materials;
+  for (const ConfigTable& table : root.tables("material")) {
+    if (materials.size() == kMaxTypes) table.fail(fmt::format("more than {} materials", kMaxTypes));
+    Material material{read_name(table.at("name")),
+                      table.number_or("strength", quantity::number, 1, Range::positive())};
+    for (const Material& other : materials)
+      if (other.name == material.name)
+        table.at("name").fail(fmt::format("material '{}' is there twice", other.name));
+    materials.push_back(material);
+  }
+  if (materials.empty()) materials.push_back({"matter", 1});
+  return materials;
+}
+
+// Pairs of unlike materials take the geometric mean unless a [[bond]] says otherwise.
+void read_strengths(const ConfigTable& root, const std::vector<Material>& materials,
+                    const std::vector<std::string>& names, Rule& rule) {
+  const size_t n = materials.size();
+  rule.strength.assign(n, std::vector<double>(n));
+  for (size_t i = 0; i < n; ++i)
+    for (size_t j = 0; j < n; ++j)
+      rule.strength[i][j] =
+          i == j ? materials[i].strength : std::sqrt(materials[i].strength * materials[j].strength);
+  for (const ConfigTable& table : root.tables("bond")) {
+    const ConfigValue between = table.at("between");
+    const auto pair = between.items();
+    if (pair.size() != 2) between.fail("'between' needs two materials");
+    const size_t i = pair[0].choice("material", names), j = pair[1].choice("material", names);
+    rule.strength[i][j] = rule.strength[j][i] = table.number("strength", quantity::number, Range::positive());
+    table.done();
+  }
+}
+
+std::vector<int> assign_materials(const ConfigTable& root, const Regions& regions,
+                                  const std::vector<int>& named, const Scene& scene) {
+  std::vector<int> material(scene.body.size(), 0);
+  int index = 0;
+  for (const ConfigTable& table : root.tables("material")) {
+    if (const auto region = table.find("region"))
+      for (uint32_t id : regions.select(*region, scene.body.x, tolerance_of(scene))) material[id] = index;
+    else if (index > 0)
+      table.at("region");  // only the first material may fill what no region claims
+    table.done();
+    ++index;
+  }
+  const size_t packed = material.size() - named.size();
+  for (size_t i = 0; i < named.size(); ++i)
+    if (named[i] >= 0) material[packed + i] = named[i];
+  return material;
+}
+
+ParticleType read_constraint(const ConfigTable& table, const Rule& rule, double pitch) {
+  ParticleType type;
+  const std::vector<std::string> kinds = {"held", "moved", "held_by_force", "moved_by_force"};
+  const size_t kind = table.at("kind").choice("constraint", kinds);
+  const bool moved = kind % 2 == 1;
+  if (moved) type.velocity = table.at("velocity").vector(quantity::velocity);
+  if (kind < 2) {
+    type.imposed = table.has("axes") ? table.axes("axes") : std::array{true, true, true};
+    for (size_t a = 0; a < 3; ++a)
+      if (!type.imposed[a] && type.velocity[a] != 0)
+        table.at("velocity")
+            .fail(fmt::format("'velocity' has a part along {}, which 'axes' leaves free", "xyz"[a]));
+  } else {
+    if (const auto axes = table.find("axes"))
+      axes->fail(fmt::format("'axes' serves 'held' and 'moved' only, not '{}'", kinds[kind]));
+    type.pd = true;
+    double stiffest = 0;
+    for (const auto& row : rule.strength)
+      for (double s : row) stiffest = std::max(stiffest, s);
+    stiffest *= largest_stiffness(*rule.law, pitch > 0 ? pitch : rule.law->core());
+    type.kp = table.number_or("kp", quantity::stiffness, 10 * stiffest, Range::positive());
+    type.kd = table.number_or("kd", quantity::damping, rule.damping.coefficient, Range::not_negative());
+  }
+  return type;
+}
+
+void read_velocities(const ConfigTable& root, const Regions& regions, Scene& scene) {
+  Body& body = scene.body;
+  for (const ConfigTable& table : root.tables("velocity")) {
+    std::vector<uint32_t> ids;
+    if (const auto region = table.find("region")) {
+      ids = regions.select(*region, body.x, tolerance_of(scene));
+    } else {
+      ids.resize(body.size());
+      std::iota(ids.begin(), ids.end(), 0U);
+    }
+    const Vec3 uniform = table.vector_or("uniform", quantity::velocity, Vec3::Zero());
+    const Vec3 spin = table.vector_or("spin", quantity::angular_velocity, Vec3::Zero());
+    Vec3 centre = Vec3::Zero();
+    for (uint32_t id : ids) centre += body.x[id];
+    centre /= static_cast<double>(ids.size());
+    for (uint32_t id : ids) body.v[id] += uniform + spin.cross(body.x[id] - centre);
+    table.not_both("thermal_speed", "thermal_energy");
+    double speed = table.number_or("thermal_speed", quantity::velocity, 0, Range::not_negative());
+    if (table.has("thermal_energy"))
+      speed = std::sqrt(table.number("thermal_energy", quantity::energy, Range::not_negative()) /
+                        scene.rule.mass);
+    if (table.has("thermal_speed") || table.has("thermal_energy")) {
+      scene.thermal |= speed > 0;
+      add_thermal(body.v, ids, speed, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)));
+    }
+    table.done();
+  }
+}
+
+}  // namespace
+
+Regions::Regions(const ConfigTable& root) {
+  const auto table = root.table_at("regions");
+  if (!table) return;
+  for (const std::string& name : table->names()) {
+    names_.push_back(name);
+    shapes_.push_back(read_shape(table->at(name).table()));
+  }
+}
+
+ShapePtr Regions::read(const ConfigValue& value) const {
+  if (value.is_string()) return shapes_[value.choice("region", names_)];
+  if (!value.is_table())
+    value.fail(fmt::format("'{}' must be the name of a region, or a shape", value.key()));
+  return read_shape(value.table());
+}
+
+std::vector<uint32_t> Regions::select(const ConfigValue& value, const std::vector<Vec3>& x,
+                                      double tolerance) const {
+  const ShapePtr shape = read(value);
+  constexpr double kMostTests = 4e10;  // of one scene: some minutes
+  tests_ += static_cast<double>(x.size()) * static_cast<double>(shape->parts());
+  if (tests_ > kMostTests)
+    value.fail(
+        fmt::format("{:.3g} tests of particles against regions: at most {:.3g} are made", tests_, kMostTests),
+        "fewer regions, or shapes of fewer points");
+  std::vector<uint32_t> ids;
+  for (uint32_t id = 0; id < x.size(); ++id)
+    if (shape->distance(x[id]) <= tolerance) ids.push_back(id);
+  if (ids.empty()) value.fail("no particle lies in this region");
+  return ids;
+}
+
+std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const PackingChoice* packing) {
+  Periodic box;
+  std::array<bool, 3> periodic{};
+  const auto table = root.table_at("box");
+  if (!table) return {box, periodic};
+  if (table->has("periodic")) periodic = table->axes("periodic");
+  box.origin = table->vector_or("origin", quantity::length, Vec3::Zero());
+  table->not_both("cells", "size");
+  if (packing != nullptr && table->has("cells")) {
+    const ConfigValue cells = table->at("cells");
+    const Vec3 n = cells.vector(quantity::number);
+    for (size_t a = 0; a < 3; ++a) {
+      if (!(n[a] >= 1 && n[a] == std::round(n[a])))
+        cells.fail("'cells' must hold three whole numbers of at least 1");
+      if (!packing->along[a]) cells.fail("'cells' needs 'axes' of whole numbers; give 'size' instead");
+      box.extent[a] = n[a] * packing->along[a]->norm() * packing->fcc.cell();
+    }
+  } else {
+    const ConfigValue size = table->at("size");
+    box.extent = size.vector(quantity::length);
+    if (!(box.extent.minCoeff() > 0)) size.fail("'size' must be greater than 0 along each axis");
+    for (size_t a = 0; a < 3; ++a)
+      if (packing != nullptr && periodic[a] && !is_period(packing->fcc, box.extent[a] * Vec3::Unit(a)))
+        size.fail(fmt::format("the packing does not repeat after {:.9g} m along {}", box.extent[a], "xyz"[a]),
+                  "give 'cells' instead");
+  }
+  table->done();
+  return {box, periodic};
+}
+
+void read_body(const ConfigTable& root, const Regions& regions, const PackingChoice* packing, Scene& scene) {
+  const std::vector<Material> materials = read_materials(root);
+  std::vector<std::string> names;
+  for (const Material& material : materials) names.push_back(material.name);
+  read_strengths(root, materials, names, scene.rule);
+
+  if (packing != nullptr)
+    pack_geometry(root, *packing, scene);
+  else
+    read_single_box(root, scene);
+  const std::vector<int> named = read_particles(root, names, scene);
+  Body& body = scene.body;
+  if (body.size() == 0) root.fail("no particle", "add [packing] with [geometry], or [[particle]]");
+  check_distinct(root, body.x, named.size());
+  read_velocities(root, regions, scene);
+
+  const std::vector<int> material = assign_materials(root, regions, named, scene);
+  const Vec3 gravity = root.vector_or("gravity", quantity::acceleration, Vec3::Zero());
+  std::vector<int> constraint(body.size(), -1);
+  std::vector<ParticleType> constraints;
+  for (const ConfigTable& table : root.tables("constraint")) {
+    if (constraints.size() == kMaxTypes) table.fail(fmt::format("more than {} constraints", kMaxTypes));
+    ParticleType type = read_constraint(table, scene.rule, scene.pitch);
+    type.name = read_name(table.at("name"));
+    for (const ParticleType& other : constraints)
+      if (other.name == type.name)
+        table.at("name").fail(fmt::format("constraint '{}' is there twice", type.name));
+    for (uint32_t id : regions.select(table.at("region"), body.x, tolerance_of(scene)))
+      constraint[id] = static_cast<int>(constraints.size());
+    table.done();
+    constraints.push_back(std::move(type));
+  }
+
+  std::map<std::pair<int, int>, size_t> occurring;
+  for (size_t i = 0; i < body.size(); ++i) occurring.try_emplace({material[i], constraint[i]}, 0);
+  if (occurring.size() > kMaxTypes)
+    root.fail(fmt::format("{} pairs of material and constraint occur, at most {} may", occurring.size(),
+                          kMaxTypes));
+  for (auto& [pair, index] : occurring) {
+    ParticleType type = pair.second < 0 ? ParticleType{} : constraints[static_cast<size_t>(pair.second)];
+    const std::string& name = names[static_cast<size_t>(pair.first)];
+    type.name = pair.second < 0 ? name : name + "/" + type.name;
+    type.material = pair.first;
+    type.gravity = gravity;
+    index = scene.rule.types.size();
+    scene.rule.types.push_back(std::move(type));
+  }
+  bool pd = false;
+  body.type.resize(body.size());
+  for (size_t i = 0; i < body.size(); ++i) {
+    const size_t index = occurring.at({material[i], constraint[i]});
+    body.type[i] = static_cast<uint8_t>(index);
+    const ParticleType& type = scene.rule.types[index];
+    pd = pd || type.pd;
+    for (size_t a = 0; a < 3; ++a)
+      if (type.imposed[a]) body.v[i][a] = type.velocity[a];
+  }
+  if (pd) body.u.assign(body.size(), Vec3::Zero());
+}
+
+}  // namespace cuboct

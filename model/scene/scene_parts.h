@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The parts of reading a scene, in the order in which they are read. Each takes the file's root table and
+// what the parts before it found, and throws InputError.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/scene/config.h"
+#include "model/scene/geometry.h"
+#include "model/scene/packing.h"
+#include "model/scene/scene.h"
+
+namespace cuboct {
+
+// Named regions of [regions], and `region = ...` values: a name or a shape.
+class Regions {
+ public:
+  explicit Regions(const ConfigTable& root);
+  ShapePtr read(const ConfigValue& value) const;
+  // The particles whose initial position lies in the region (surface included); none is an error.
+  std::vector<uint32_t> select(const ConfigValue& value, const std::vector<Vec3>& x, double tolerance) const;
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<ShapePtr> shapes_;
+  mutable double tests_ = 0;  // of particles, by select()
+};
+
+// [packing]. Absent where all particles are listed.
+struct PackingChoice {
+  Fcc fcc;  // pitch 0: "relaxed", to be found from the law
+  std::array<std::optional<Vec3>, 3>
+      along;  // crystal directions along x, y, z in least integers, where they are such
+};
+std::optional<PackingChoice> read_packing(const ConfigTable& root);
+
+// The stiffness in N/m of the nearest-neighbour bond that gives an FCC packing the Young's modulus `modulus`
+// (Pa) for a pull along the crystal direction n. With bonds between nearest neighbours alone, at rest, of
+// stiffness k, the elastic constants are C_abcd = k pitch^2/(2V) sum over the 12 bonds of e_a e_b e_c e_d, V
+// = pitch^3/sqrt(2), so C11 = 2c, C12 = C44 = c with c = k/(sqrt(2) pitch). For a cubic crystal 1/E = S11 - 2
+// (S11 - S12 - S44/2) J, J = nx^2 ny^2 + ny^2 nz^2 + nz^2 nx^2 (J. F. Nye, Physical Properties of Crystals,
+// 1957, ch. VIII), and here S11 = 3/(4c), S12 = -1/(4c), S44 = 1/c: 1/E = (3/4 - J)/c.
+double stiffness_from_modulus(double modulus, const Vec3& direction, double pitch);
+
+// [law]. Sets packing->fcc.pitch where it was "relaxed".
+std::shared_ptr<const PairLaw> read_law(const ConfigTable& root, PackingChoice* packing);
+// max |df/dr| between `from` and the cutoff, N/m, from 4096 samples.
+double largest_stiffness(const PairLaw& law, double from);
+
+// The box of [periodic] or `cells`; the second marks the axes that repeat.
+std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const PackingChoice* packing);
+
+// Everything that gives particles: positions and velocities ([packing], [geometry], [[particle]],
+// [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and .strength.
+// scene.rule needs law, damping and mass.
+void read_body(const ConfigTable& root, const Regions& regions, const PackingChoice* packing, Scene& scene);
+
+// The largest stable time step of the perfect packing in s, 0 if unknown. With all frequencies up to w and
+// all damping rates up to g (rates of the matrices K/m and C/m) the update v += -dt (K/m x + C/m v), x += dt
+// v has the mode equation z^2 - (2 - g dt - w^2 dt^2) z + 1 - g dt = 0, stable while 2 g dt + w^2 dt^2 < 4;
+// both at their largest bound dt by (sqrt(g^2 + 4 w^2) - g)/w^2, which is 2/w where nothing damps.
+double stable_time_step(const Rule& rule, double pitch);
+
+void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene);
+
+}  // namespace cuboct

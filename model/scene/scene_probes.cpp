@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// The [[probe]] tables of a scene.
+#include <fmt/format.h>
+
+#include "model/scene/name.h"
+#include "model/scene/scene_parts.h"
+
+namespace cuboct {
+namespace {
+
+double mean_along(const ParticleSet& set, const std::vector<Vec3>& x, int axis) {
+  double sum = 0;
+  for (uint32_t id : set.ids) sum += x[id][axis];
+  return sum / static_cast<double>(set.ids.size());
+}
+
+}  // namespace
+
+void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) {
+  const double tolerance = 1e-6 * (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff());
+  for (const ConfigTable& table : root.tables("probe")) {
+    Probe probe;
+    const std::vector<std::string> kinds = {"force", "displacement", "stress_strain"};
+    probe.kind = static_cast<Probe::Kind>(table.at("kind").choice("probe", kinds));
+    probe.name = read_name(table.at("name"));
+    for (const Probe& other : scene.probes)
+      if (other.name == probe.name)
+        table.at("name").fail(fmt::format("probe '{}' is there twice", probe.name));
+    const auto set = [&](const char* key, const std::string& name) {
+      return ParticleSet{name, regions.select(table.at(key), scene.body.x, tolerance)};
+    };
+    if (probe.kind == Probe::Kind::stress_strain) {
+      probe.lower = set("lower", probe.name + ".lower");
+      probe.upper = set("upper", probe.name + ".upper");
+      probe.grip = set("grip", probe.name + ".grip");
+      probe.axis = static_cast<int>(table.at("axis").choice("axis", {"x", "y", "z"}));
+      probe.area = table.number("area", quantity::area, Range::positive());
+      if (!(mean_along(probe.lower, scene.body.x, probe.axis) <
+            mean_along(probe.upper, scene.body.x, probe.axis)))
+        table.at("upper").fail(fmt::format("'upper' must lie above 'lower' along {}", "xyz"[probe.axis]));
+    } else {
+      probe.set = set("region", probe.name);
+    }
+    table.done();
+    scene.probes.push_back(std::move(probe));
+  }
+}
+
+}  // namespace cuboct

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "model/trace/trace_head.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "model/trace/hdf5_file.h"
+
+namespace cuboct {
+namespace {
+
+using hdf5::Handle;
+using hdf5::Writer;
+
+std::vector<double> triple(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+void write_widths(const Writer& out, const Widths& w) {
+  const auto number = [&](const char* name, int value) { out.number<int32_t>(out.root(), name, value); };
+  number("position_frac", w.position_frac);
+  number("guard", w.guard);
+  number("difference_frac", w.difference_frac);
+  number("velocity_bits", w.velocity_bits);
+  number("relative_velocity_frac", w.relative_velocity_frac);
+  number("relative_velocity_bits", w.relative_velocity_bits);
+  number("filter_frac", w.filter_frac);
+  number("strength_bits", w.strength_bits);
+  number("sum_bits", w.sum_bits);
+  number("displacement_bits", w.displacement_bits);
+  number("scale_frac", w.scale_frac);
+  number("gain_frac", w.gain_frac);
+}
+
+void write_lattice(const Writer& out, const Lattice& lattice) {
+  const Handle group = out.group(out.root(), "lattice");
+  out.numbers<int32_t>(group, "period", {lattice.period().begin(), lattice.period().end()});
+  const hsize_t chunk = std::clamp<hsize_t>(lattice.size(), 1 << 10, (1 << 15) / 3);
+  hdf5::Growing<int32_t> cells(out, group, "cell", chunk, 3, "cell edge",
+                               "[node][axis] coordinates of the node's cell");
+  for (uint32_t node = 0; node < lattice.size(); ++node) cells.add(lattice.cell(node).data());
+  cells.finish();
+}
+
+// At most what the head takes of the disk.
+uint64_t bytes_of(const TraceHead& head) {
+  uint64_t bytes = (uint64_t{1} << 18) + 2 * (head.scene.text.size() + head.arch.size());
+  for (const ParticleType& type : head.scene.rule.types) bytes += 2 * type.name.size();
+  if (head.rule && head.cells) bytes += 13 * uint64_t{head.lattice->size()};
+  return bytes;
+}
+
+}  // namespace
+
+const char* program_version() { return CUBOCT_VERSION; }
+
+void write_head(const Writer& out, const TraceHead& head) {
+  out.reserve(bytes_of(head));
+  const Scene& scene = head.scene;
+  const hid_t root = out.root();
+  out.text(root, "program_version", program_version());
+  out.text(root, "units", "SI (m, kg, s, N, J, Pa, K), but for integers, whose datasets say their unit");
+  out.text(root, "title", scene.title);
+  out.number<double>(root, "dt", scene.rule.dt);
+  out.number<double>(root, "mass", scene.rule.mass);
+  out.numbers<double>(root, "periodic_origin", triple(scene.periodic.origin));
+  out.numbers<double>(root, "periodic_extent", triple(scene.periodic.extent));
+  std::vector<std::string> types;
+  for (const ParticleType& type : scene.rule.types) types.push_back(type.name);
+  out.names(root, "types", types);
+  {
+    // Datasets: HDF5 holds no attribute above 64 KiB.
+    const Handle source = out.group(root, "source");
+    out.text(source, "scene_path", scene.path);
+    out.names(source, "scene", {scene.text});
+    out.names(source, "arch", {head.arch});
+  }
+  if (!head.rule) return out.flush();
+  out.number<double>(root, "cell_edge", head.rule->cell_edge);
+  out.numbers<double>(root, "origin", triple(head.origin));
+  write_widths(out, head.rule->widths);
+  if (head.cells) write_lattice(out, *head.lattice);
+  out.flush();
+}
+
+}  // namespace cuboct

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "synth/fit_measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "model/base/error.h"
+#include "model/base/hash.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "synth/json_file.h"
+#include "synth/netlist.h"
+#include "synth/project.h"
+#include "synth/script.h"
+#include "synth/timing.h"
+#include "synth/tool.h"
+
+namespace cuboct::synth {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Resource kKept[] = {Resource::lut, Resource::ff, Resource::dsp, Resource::bram, Resource::cell};
+
+// What is synthesised of a project.
+Synthesis whole(const std::string& directory, bool board, const std::string& out) {
+  Synthesis s;
+  const Project project = read_project(directory);
+  const std::vector<std::string> files = board ? read_board(project).files : project.files;
+  for (const std::string& f : files) s.files.push_back(directory + "/" + f);
+  s.top = s.module = s.unit = board ? read_board(project).top : "cuboct_lattice";
+  s.kept = "cuboct_node";
+  s.harness = false;
+  s.counts_only = true;
+  s.out = out;
+  return s;
+}
+
+// Comments name the plan that a file was made from; what the hardware is stands in the other lines.
+void add_code(Hash& hash, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("//")) continue;
+    for (const char c : line) hash.add(c);
+    hash.add('\n');
+  }
+}
+
+// Nodes below a module that is flat but for them: each is a cell of its own.
+uint64_t nodes_in(const std::string& netlist, const std::string& module) {
+  uint64_t count = 0;
+  const nlohmann::json json = read_json(netlist);
+  for (const auto& [name, cell] : json.at("modules").at(module).at("cells").items())
+    count += cell.at("type") == "cuboct_node";
+  return count;
+}
+
+nlohmann::ordered_json to_json(const Counts& counts) {
+  nlohmann::ordered_json json;
+  for (const Resource r : kKept) json[to_string(r)] = counts[r];
+  return json;
+}
+
+Counts counts_of(const nlohmann::json& json) {
+  Counts counts;
+  for (const Resource r : kKept) counts[r] = json.at(to_string(r));
+  return counts;
+}
+
+}  // namespace
+
+Meter::Meter(const Target& target, std::function<void(const std::string& what)> begins)
+    : target_(target), begins_(std::move(begins)) {
+  need("yosys");
+  tools_.push_back(first_line("yosys", "-V"));
+  if (target.family == Family::ice40) {
+    need("nextpnr-ice40");
+    tools_.push_back(first_line("nextpnr-ice40", "--version"));
+  }
+}
+
+std::string Meter::cache_directory() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != 0)
+    return (fs::path(cache) / "cuboct").string();
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0)
+    return (fs::path(home) / ".cache" / "cuboct").string();
+  return "";
+}
+
+std::string Meter::key_of(const std::string& directory, bool board) const {
+  Synthesis s = whole(directory, board, "");
+  Hash hash;
+  for (std::string& file : s.files) {
+    add_code(hash, read_text(file));
+    file = fs::path(file).filename().string();
+  }
+  add_code(hash, fpga_script(s, target_));
+  for (const std::string& tool : tools_) add_code(hash, tool);
+  if (target_.family == Family::ice40) add_code(hash, target_.name);
+  return fmt::format("{:016x}", hash.value());
+}
+
+Measured Meter::run(const std::string& directory, bool board) const {
+  const std::string out = directory + "/measure";
+  make_directory(out);
+  const Runner runner(out, begins_);
+  const Synthesis s = whole(directory, board, out);
+  runner.write("synth.ys", fpga_script(s, target_));
+  runner.run("yosys", "yosys", "yosys", {out + "/synth.ys"});
+  const std::string netlist = out + "/netlist.json";
+  const CostOf costs = costs_of(target_.family);
+  Measured m;
+  m.nodes = nodes_in(netlist, s.unit);
+  m.node = count_all(netlist, s.kept, costs);
+  const Counts all = count_all(netlist, s.unit, costs);
+  for (const Resource r : kKept) m.around[r] = all[r] - m.nodes * m.node[r];
+  if (target_.family == Family::ice40) {
+    runner.run("nextpnr-ice40", "pack", "nextpnr-ice40",
+               {"--" + target_.name, "--package", target_.package, "--json", netlist, "--top", s.unit,
+                "--pack-only"});
+    const auto use = read_utilisation(read_text(out + "/pack.log"));
+    const auto packed = use.find("ICESTORM_LC");
+    if (packed == use.end())
+      throw ToolFailed("nextpnr-ice40", "pack.log", "it does not say how many cells it packed");
+    // Around the nodes none may share; what this leaves for the nodes is theirs.
+    const uint64_t cells = packed->second.used, most = m.around[Resource::lut] + m.around[Resource::ff];
+    m.node[Resource::cell] = (cells - std::min(cells, most) + m.nodes - 1) / m.nodes;
+    m.around[Resource::cell] = cells - std::min(cells, m.nodes * m.node[Resource::cell]);
+  }
+  return m;
+}
+
+Measured Meter::measure(const std::function<void(const std::string& directory)>& emit, bool board) const {
+  const Scratch scratch;
+  const std::string directory = scratch.path("project");
+  emit(directory);
+  const std::string cache = cache_directory();
+  const std::string file = cache.empty() ? "" : cache + "/fit/" + key_of(directory, board) + ".json";
+  std::error_code none;
+  if (!file.empty() && fs::is_regular_file(file, none)) {
+    try {
+      const nlohmann::json json = read_json(file);
+      return {counts_of(json.at("node")), counts_of(json.at("around")), json.at("nodes"), true};
+    } catch (const std::exception&) {
+      // It is measured anew.
+    }
+  }
+  const Measured m = run(directory, board);
+  if (!file.empty()) {
+    try {
+      make_directory(cache + "/fit");
+      const nlohmann::ordered_json json = {
+          {"nodes", m.nodes}, {"node", to_json(m.node)}, {"around", to_json(m.around)}, {"tools", tools_}};
+      write_text(file, json.dump(2) + "\n");
+    } catch (const InputError&) {
+      // What cannot be kept is measured again another time.
+    }
+  }
+  return m;
+}
+
+}  // namespace cuboct::synth

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// What an emitted project takes on a device: all of it, its nodes synthesised once and counted.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "synth/target.h"
+
+namespace cuboct::synth {
+
+struct Measured {
+  Counts node;    // one
+  Counts around;  // the rest of the lattice, or of the board
+  uint64_t nodes = 0;
+  bool kept = false;  // from the cache
+};
+
+class Meter {
+ public:
+  // `begins` hears of each tool before it runs. Throws InputError where a tool is missing.
+  Meter(const Target& target, std::function<void(const std::string& what)> begins);
+
+  // `emit` writes a project into the directory that it is given; `board`: with board/. Results are kept in
+  // the user's cache directory, by the text of the RTL, the script and the versions of the tools. On ice40 a
+  // node's logic cells are those that nextpnr packs. Throws what `emit` throws, ToolFailed (whose log is
+  // gone), Interrupted.
+  Measured measure(const std::function<void(const std::string& directory)>& emit, bool board) const;
+
+  const std::vector<std::string>& tools() const { return tools_; }  // versions
+  // Where results are kept; empty where the environment names no place.
+  static std::string cache_directory();
+
+ private:
+  Measured run(const std::string& directory, bool board) const;
+  std::string key_of(const std::string& directory, bool board) const;
+
+  const Target& target_;
+  std::function<void(const std::string&)> begins_;
+  std::vector<std::string> tools_;
+};
+
+}  // namespace cuboct::synth

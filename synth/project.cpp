@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "synth/project.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "model/base/error.h"
+
+namespace cuboct::synth {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* kHint = "cuboct emit SCENE --out DIR makes a project";
+
+// An entry of project.json, or an InputError that names it.
+template <class T>
+T entry(const Json& json, const std::string& file, const std::string& name) {
+  const Json::json_pointer at("/" + name);
+  try {
+    return json.at(at).get<T>();
+  } catch (const Json::exception&) {
+    throw InputError(fmt::format("{}: no '{}' as cuboct emit writes it", file, name), kHint);
+  }
+}
+
+std::vector<std::string> lines_of(const fs::path& path) {
+  std::vector<std::string> lines;
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+Project read_project(const std::string& directory) {
+  const fs::path dir(directory);
+  if (!fs::is_directory(dir)) throw InputError(fmt::format("{}: no such directory", directory), kHint);
+  const std::string file = (dir / "project.json").string();
+  std::ifstream in(file);
+  if (!in)
+    throw InputError(fmt::format("{}: is no project of cuboct emit: it has no project.json", directory),
+                     kHint);
+  Json json;
+  try {
+    json = Json::parse(in);
+  } catch (const Json::parse_error& error) {
+    throw InputError(fmt::format("{}: is not JSON, at byte {}", file, error.byte), kHint);
+  }
+  Project project;
+  project.directory = directory;
+  project.plan = entry<std::string>(json, file, "plan");
+  project.nodes = entry<uint64_t>(json, file, "nodes");
+  project.particles = entry<uint64_t>(json, file, "particles");
+  project.capacity = entry<int>(json, file, "arch/capacity");
+  project.cycles_per_step = entry<uint64_t>(json, file, "cycles_per_step/expected");
+  project.files = entry<std::vector<std::string>>(json, file, "files");
+  for (const std::string& f : project.files)
+    if (!fs::is_regular_file(dir / f))
+      throw InputError(fmt::format("{}: names {}, which is not there", file, f), "emit the project again");
+  return project;
+}
+
+Board read_board(const Project& project) {
+  const fs::path dir = fs::path(project.directory) / "board";
+  if (!fs::is_regular_file(dir / "files.f"))
+    throw InputError(fmt::format("{}: has no board/", project.directory),
+                     "cuboct emit SCENE --out DIR --board BOARD writes one");
+  Board board;
+  board.top = "cuboct_board_top";
+  board.files = lines_of(dir / "files.f");
+  for (const std::string& f : board.files)
+    if (!fs::is_regular_file(fs::path(project.directory) / f))
+      throw InputError(fmt::format("{}/files.f: names {}, which is not there", dir.string(), f),
+                       "emit the project again");
+  for (const char* pins : {"board/pins.pcf", "board/pins.lpf"})
+    if (fs::is_regular_file(fs::path(project.directory) / pins)) board.pins = pins;
+  if (board.pins.empty())
+    throw InputError(fmt::format("{}/board: has neither pins.pcf nor pins.lpf", project.directory));
+  return board;
+}
+
+}  // namespace cuboct::synth
