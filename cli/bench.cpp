@@ -16,8 +16,7 @@
 #include "cli/bench_report.h"
 #include "cli/bench_scene.h"
 #include "cli/command.h"
-#include "cli/engines.h"
-#include "cli/run_lattice.h"
+#include "cli/engine_run.h"
 #include "emu/lattice/engine.h"
 #include "emu/lattice/program.h"
 #include "emu/lattice/timing.h"
@@ -206,10 +205,13 @@ void run_systemc_block(benchmark::State& state, const BenchScene& scene, uint64_
   write_text(path, scene.text());
   Input input;
   input.scene = path;
+  const auto loaded = load_bench(scene);
+  RunRequest request;
+  request.steps = steps;
   double node_cycles = 0;
   for (auto _ : state) {
     const Trace trace =
-        RunningEngine("systemc", input, {steps, {steps}}, scratch.path("trace.h5"), false).finish();
+        EngineRun("systemc", input, *loaded, {}, request, scratch.path("trace.h5"), true).finish().trace;
     for (const auto& [name, value] : trace.counters)
       if (name == "cycles") node_cycles = value * static_cast<double>(trace.nodes);
     state.SetIterationTime(trace.seconds);
@@ -264,14 +266,15 @@ void run_ranks(benchmark::State& state, const std::string& group, const BenchSce
   input.scene = scratch.path("block.toml");
   write_text(input.scene, scene.text());
   const auto loaded = load_bench(scene);
-  LatticeChoice choice;
+  EngineOptions choice;
   choice.threads = 1;
   choice.ranks = ranks;
-  emu::LatticeRun request;
+  RunRequest request;
   request.steps = request.hash_every = steps;
   Trace trace;
   for (auto _ : state) {
-    trace = run_on_lattice(input, loaded->scene, loaded->setup.plan, choice, request).trace;
+    trace =
+        EngineRun("lattice", input, *loaded, choice, request, scratch.path("trace.h5"), true).finish().trace;
     state.SetIterationTime(trace.seconds);
   }
   if (!same_state(state, group, trace.state_hash.back())) return;

@@ -9,13 +9,10 @@
 
 #include "cli/command.h"
 #include "cli/crosscheck_real.h"
+#include "cli/engine_run.h"
 #include "cli/engines.h"
-#include "cli/run_fpga.h"
-#include "cli/run_gpu.h"
-#include "cli/run_lattice.h"
-#include "model/base/interrupt.h"
-
 #include "model/base/directory_lock.h"
+#include "model/base/interrupt.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
 #include "model/base/progress.h"
@@ -28,53 +25,32 @@ namespace {
 struct Options {
   Input input;
   std::vector<std::string> engines{"golden", "lattice", "systemc", "rtl"};
-  LatticeChoice lattice;
-  GpuChoice gpu;
-  FpgaChoice fpga;
-  std::string precision;
+  EngineOptions choice;
   std::string out;
   uint64_t steps = 0;
   bool steps_given = false;
 };
 
-bool runs_here(const std::string& engine) { return engine == "golden" || engine == "lattice"; }
-bool counts_cycles(const std::string& engine) { return engine == "systemc" || engine == "rtl"; }
+bool runs_here(const std::string& engine) { return engine_row(engine).program.empty(); }
 
-// Programs run beside golden and lattice, which run here. Lattice counts cycles where another engine does,
-// but for links that stall or fail.
+// Programs run beside the engines that run here. Lattice counts cycles where another engine does, but for
+// links that stall or fail.
 std::vector<Trace> run_all(const std::vector<std::string>& engines, const Options& options,
-                           const Loaded& loaded, const Request& request, const std::string& directory) {
+                           const Loaded& loaded, const RunRequest& request, const std::string& directory) {
   const Input& input = options.input;
-  const Setup& setup = loaded.setup;
-  std::vector<std::optional<RunningEngine>> programs(engines.size());
-  for (size_t i = 0; i < engines.size(); ++i) {
-    if (runs_here(engines[i])) continue;
-    std::string path = directory + "/" + engines[i] + ".h5";
-    if (engines[i] == "gpu") {
-      GpuRequest gpu{request};
-      gpu.hash_every = 1;
-      gpu.energies = false;
-      programs[i].emplace(start_gpu(input, options.gpu, gpu, std::move(path), false));
-    } else if (engines[i] == "fpga") {
-      programs[i].emplace(start_fpga(input, options.fpga, request, 1, std::move(path), stderr_is_terminal()));
-    } else {
-      programs[i].emplace(engines[i], input, request, std::move(path), false);
-    }
+  const bool counted = input.stall_rate == 0 && input.faults.empty() && options.choice.ranks == 1 &&
+                       std::ranges::any_of(engines, [](auto& name) { return engine_row(name).cycles; });
+  std::vector<EngineRun> runs;
+  for (const std::string& engine : engines) {
+    RunRequest asked = request;
+    asked.cycles = counted && engine_row(engine).counts_if_asked;
+    runs.emplace_back(engine, input, loaded, options.choice, std::move(asked),
+                      directory + "/" + engine + ".h5", false);
   }
   std::vector<Trace> traces(engines.size());
-  for (size_t i = 0; i < engines.size(); ++i)
-    if (engines[i] == "golden") traces[i] = run_golden(setup, request);
-  for (size_t i = 0; i < engines.size(); ++i) {
-    if (engines[i] != "lattice") continue;
-    emu::LatticeRun run;
-    run.steps = request.steps;
-    run.frames = request.frames;
-    run.cycles = input.stall_rate == 0 && input.faults.empty() && options.lattice.ranks == 1 &&
-                 std::any_of(engines.begin(), engines.end(), counts_cycles);
-    traces[i] = run_on_lattice(input, loaded.scene, setup.plan, options.lattice, std::move(run)).trace;
-  }
-  for (size_t i = 0; i < engines.size(); ++i)
-    if (programs[i]) traces[i] = programs[i]->finish();
+  for (const bool here : {true, false})
+    for (size_t i = 0; i < engines.size(); ++i)
+      if (runs_here(engines[i]) == here) traces[i] = runs[i].finish().trace;
   return traces;
 }
 
@@ -83,7 +59,8 @@ std::vector<Trace> run_all(const std::vector<std::string>& engines, const Option
 std::string explain(const Options& options, const Loaded& loaded, const std::string& engine_a,
                     const std::string& engine_b, uint64_t step, const std::string& directory) {
   const Setup& setup = loaded.setup;
-  Request request{step, {}};
+  RunRequest request;
+  request.steps = step;
   if (step > 0) request.frames.push_back(step - 1);
   request.frames.push_back(step);
   const std::vector<Trace> again = run_all({engine_a, engine_b}, options, loaded, request, directory);
@@ -103,7 +80,7 @@ bool of_real_numbers(const Options& options) {
   std::vector<std::string> sorted = options.engines;
   std::sort(sorted.begin(), sorted.end());
   const bool real = sorted == std::vector<std::string>{"gpu", "reference"};
-  if (!real && !options.precision.empty())
+  if (!real && !options.choice.precision.empty())
     throw InputError("--precision goes with --engines reference,gpu",
                      "other engines compute in the fixed rule");
   return real;
@@ -133,27 +110,24 @@ int crosscheck(Options options) {
       lock.emplace(options.out, "cuboct crosscheck");
       check_writable(options.out + "/gpu.h5");
     }
-    return crosscheck_real(options.input, options.gpu,
-                           options.precision.empty() ? "float" : options.precision,
+    options.choice.precision = options.choice.precision.empty() ? "float" : options.choice.precision;
+    options.choice.check({"gpu"}, options.input);
+    return crosscheck_real(options.input, options.choice,
                            options.steps_given ? std::optional(options.steps) : std::nullopt, options.out);
   }
   for (const std::string& engine : options.engines) {
     if (engine == "reference")
       throw InputError("engine 'reference' computes in doubles and has no bits to compare",
                        "one of golden, lattice, systemc, rtl, fpga or gpu");
-    check_engine(engine, fixed_engines());
+    engine_row(engine, true);
   }
   std::vector<std::string> sorted = options.engines;
   std::sort(sorted.begin(), sorted.end());
   if (std::unique(sorted.begin(), sorted.end()) != sorted.end() || sorted.size() < 2)
     throw InputError("a crosscheck needs two or more different engines",
                      "--engines golden,lattice,systemc,rtl");
-  check_faults(options.input, options.engines);
-  if (std::find(sorted.begin(), sorted.end(), "fpga") == sorted.end())
-    options.fpga.check_unused(fmt::format("{}", fmt::join(options.engines, ",")));
-  else
-    options.fpga.check_used();
-  const Loaded loaded = load(options.input);
+  options.choice.check(options.engines, options.input);
+  const Loaded loaded = load_plan(options.input);
   catch_interrupts();
   const Setup& setup = loaded.setup;
   const Plan& plan = setup.plan;
@@ -166,7 +140,9 @@ int crosscheck(Options options) {
   }
 
   const uint64_t steps = options.steps_given ? options.steps : loaded.scene.steps;
-  const std::vector<Trace> traces = run_all(options.engines, options, loaded, {steps, {}}, directory);
+  RunRequest request;
+  request.steps = steps;
+  const std::vector<Trace> traces = run_all(options.engines, options, loaded, request, directory);
   for (size_t i = 0; i < traces.size(); ++i)
     if (!options.out.empty() && runs_here(options.engines[i]))
       write_trace(options.out + "/" + options.engines[i] + ".h5", traces[i]);
@@ -237,14 +213,12 @@ void add_crosscheck(CLI::App& app, int& exit_code) {
       app.add_subcommand("crosscheck", "run a scene in several engines and compare every bit");
   options->input.add_to(*command);
   options->input.add_stalls_to(*command);
-  options->lattice.add_to(*command);
-  options->gpu.add_to(*command);
-  options->fpga.add_to(*command);
+  options->choice.add_machines(*command);
   command->add_option("--engines", options->engines, "which ones; default: golden,lattice,systemc,rtl")
       ->delimiter(',')
       ->type_name("A,B,...");
   command
-      ->add_option("--precision", options->precision,
+      ->add_option("--precision", options->choice.precision,
                    "float (default) or double: the numbers of gpu against reference, within bounds")
       ->check(CLI::IsMember({"float", "double"}));
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")

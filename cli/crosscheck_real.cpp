@@ -98,25 +98,25 @@ bool check_forces(const Scene& scene, const RealFrame& frame, bool floats, const
 
 }  // namespace
 
-int crosscheck_real(const Input& input, const GpuChoice& choice, const std::string& precision,
-                    std::optional<uint64_t> steps, const std::string& out) {
+int crosscheck_real(const Input& input, EngineOptions choice, std::optional<uint64_t> steps,
+                    const std::string& out) {
   const Loaded loaded = load_plan(input);
   const Scene& scene = loaded.scene;
   catch_interrupts();
-  const bool floats = precision == "float";
+  const bool floats = choice.precision == "float";
   const uint64_t last = steps.value_or(std::min(scene.steps, kRealSteps));
   const Short exact(scene, floats, last);
-  GpuRequest request;
+  RunRequest request;
   request.steps = last;
   request.frames = {0, exact.step, last};
   put_in_order(request.frames);
-  request.precision = precision;
-  request.energies = false;
+  request.hash_every = 0;
   request.forces = true;
   const Scratch scratch;
-  const Trace trace =
-      start_gpu(input, choice, request, out.empty() ? scratch.path("gpu.h5") : out + "/gpu.h5", false)
-          .finish();
+  const Trace trace = EngineRun("gpu", input, loaded, choice, request,
+                                out.empty() ? scratch.path("gpu.h5") : out + "/gpu.h5", out.empty())
+                          .finish()
+                          .trace;
   if (interrupted()) {
     fmt::print(stderr, "interrupted\n");
     return 1;

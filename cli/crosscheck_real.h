@@ -7,17 +7,17 @@
 #include <string>
 
 #include "cli/command.h"
-#include "cli/run_gpu.h"
+#include "cli/engine_run.h"
 
 namespace cuboct {
 
-// "float" or "double"; `steps`: without it the scene's, but kRealSteps at most. Forces are compared at the
-// start and at the end, positions where errors can be told from a wrong program: as late as their bound is
-// below kRealTold of the cutoff. Prints what it measured beside its bounds; the exit code is 1 where one is
-// exceeded or the run had to stop. `out`: directory of the gpu's trace, or empty.
+// In the precision of `choice`, float or double; `steps`: without it the scene's, but kRealSteps at most.
+// Forces are compared at the start and at the end, positions where errors can be told from a wrong program:
+// as late as their bound is below kRealTold of the cutoff. Prints what it measured beside its bounds; the
+// exit code is 1 where one is exceeded or the run had to stop. `out`: directory of the gpu's trace, or empty.
 inline constexpr uint64_t kRealSteps = 100;
 constexpr double kRealTold(bool floats) { return floats ? 1e-4 : 1e-10; }
-int crosscheck_real(const Input& input, const GpuChoice& choice, const std::string& precision,
-                    std::optional<uint64_t> steps, const std::string& out);
+int crosscheck_real(const Input& input, EngineOptions choice, std::optional<uint64_t> steps,
+                    const std::string& out);
 
 }  // namespace cuboct

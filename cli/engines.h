@@ -1,62 +1,47 @@
 // SPDX-License-Identifier: MIT
-// Every engine behind one call.
+// The engines that `cuboct` has: a row each.
 #pragma once
 
-#include <functional>
-#include <memory>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
-#include "model/trace/trace_file.h"
-
 namespace cuboct {
 
-// What to run and what to keep. Steps ascend and are at most `steps`.
-struct Request {
-  uint64_t steps = 0;
-  std::vector<uint64_t> frames;
+// What a run costs on a machine of today.
+struct EngineCost {
+  double neighbour_time = 0;                     // s per particle, step and neighbour; 0: no rate is known
+  double cell_time = 0;                          // s per cell and step
+  bool threads = false;                          // that share the work
+  double particle = 0, neighbour = 0, cell = 0;  // bytes
 };
 
-// Engines that hold the bits of the fixed rule.
-const std::vector<std::string>& fixed_engines();
-// InputError with the nearest spelling where `name` is not in `allowed`.
-void check_engine(const std::string& name, const std::vector<std::string>& allowed);
-
-// InputError where faults are asked for wrongly, or of engines that have no links.
-void check_faults(const Input& input, const std::vector<std::string>& engines);
-
-// Golden runs here. A run that has to stop is a trace with a stop reason; Ctrl-C gives the trace so far.
-// `watch` is called with each state, step 0 included; `keep` takes the frames as they come, which the trace
-// holds where nobody does.
-Trace run_golden(const Setup& setup, const Request& request,
-                 const std::function<void(const State&)>& watch = {},
-                 const std::function<void(const State&)>& keep = {});
-
-// An engine at work in a program of its own; its trace goes to `path`.
-class RunningEngine {
- public:
-  // Throws InputError where the program was not built. `more`: arguments that this engine alone has.
-  RunningEngine(const std::string& engine, const Input& input, const Request& request, std::string path,
-                bool progress, const std::vector<std::string>& more = {});
-  // Waits. Exit code 2 throws InputError (the program told the text already), any other failure
-  // std::runtime_error.
-  Trace finish();
-  // The same, for a trace of which no two frames are to be in memory at once.
-  std::unique_ptr<TraceReader> finish_reading();
-
- private:
-  void wait();
-
-  struct State;
-  std::shared_ptr<State> state_;
+struct EngineRow {
+  std::string name;
+  bool bits = true;              // holds those of the fixed rule
+  bool real = false;             // computes in real numbers, if told to or always
+  bool links = false;            // that may stall or fail
+  bool cycles = false;           // counts the machine's cycles, always
+  bool counts_if_asked = false;  // or where --cycles asks for it
+  bool saves = false;            // leaves checkpoints
+  uint64_t hash_every = 1;       // steps between two hashes where the user says nothing; 0: none
+  std::string program = {};      // of its own, beside cuboct; empty: runs here
+  std::string needs = {};             // hint where the program is missing
+  EngineCost cost = {};
 };
 
-// The exit of a command whose engine has told its error already.
-class AlreadyTold : public std::exception {
- public:
-  explicit AlreadyTold(int exit_code) : exit_code(exit_code) {}
-  int exit_code;
-};
+const std::vector<EngineRow>& engines();
+// InputError with the nearest spelling where no row of `allowed` has the name. `bits`: only those that hold
+// the fixed rule's.
+const EngineRow& engine_row(const std::string& name, bool bits = false);
+
+// "golden, lattice or gpu": those of which it is true.
+template <typename Has>
+std::vector<std::string> engines_that(Has has) {
+  std::vector<std::string> names;
+  for (const EngineRow& row : engines())
+    if (has(row)) names.push_back(row.name);
+  return names;
+}
 
 }  // namespace cuboct

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "cli/engines.h"
 #include "model/base/resources.h"
 #include "model/trace/trace.h"
 
@@ -15,31 +16,6 @@ namespace cuboct {
 namespace {
 
 constexpr double kProgram = 20e6;  // bytes, of a process before it has read anything
-
-// Of one engine: the time per particle, neighbour and step, and bytes per particle, neighbour and cell.
-// Measured on one thread of an idle Xeon (Sapphire Rapids) with scenes/bench: 18 neighbours in a crystal, 55
-// in a liquid.
-struct Rates {
-  const char* engine;
-  double neighbour_time;  // s; 0: not known
-  double cell_time;       // s, of a cell
-  bool threads;
-  double particle, neighbour, cell;  // bytes
-};
-constexpr Rates kRates[] = {
-    {"lattice", 3e-9, 1.5e-9, true, 240, 1.5, 70},
-    {"reference", 2.5e-9, 0, true, 700, 6, 70},
-    {"golden", 40e-9, 0, false, 600, 10, 100},
-    {"systemc", 0, 0, false, 600, 0, 50e3},
-    {"rtl", 0, 0, false, 600, 0, 15e3},
-    {"gpu", 0, 0, false, 250, 0, 70},
-    {"fpga", 0, 0, false, 600, 0, 70},
-};
-
-const Rates& rates_of(const std::string& engine) {
-  const auto* found = std::ranges::find(kRates, engine, &Rates::engine);
-  return found == std::end(kRates) ? kRates[0] : *found;
-}
 
 struct Extent {
   Vec3 size = Vec3::Zero();  // m, of the box around all particles
@@ -99,7 +75,8 @@ RunSize run_size(const Scene& scene) {
 }
 
 Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
-  const Rates& rates = rates_of(size.engine);
+  const EngineRow& engine = engine_row(size.engine);
+  const EngineCost& rates = engine.cost;
   const Extent extent = extent_of(scene, plan.rule);
   const double particles = plan.particles, cells = plan.lattice.size(),
                steps = static_cast<double>(size.steps);
@@ -121,12 +98,10 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
 
   constexpr double kCurvePoint = sizeof(uint64_t) + sizeof(double), kEnergies = 6, kOfProbe = 3;
   const double samples = size.probe_every > 0 ? count_every(size.probe_every, size.steps) : 0;
-  const bool hashes_all = size.engine == "golden" || size.engine == "systemc" || size.engine == "rtl";
-  const double hashes =
-      size.engine == "reference" ? 0 : count_every(hashes_all ? 1 : size.hash_every, size.steps);
+  const double hashes = size.hash_every > 0 ? count_every(size.hash_every, size.steps) : 0;
   e.hashes = hashes * sizeof(uint64_t);
   e.samples = samples * (kEnergies + kOfProbe * static_cast<double>(scene.probes.size())) * kCurvePoint;
-  const bool cycles = size.cycles || size.engine == "systemc" || size.engine == "rtl";
+  const bool cycles = size.cycles || engine.cycles;
   e.spans = cycles ? steps * plan.nodes() * kPhases * sizeof(PhaseSpan) : 0;
   // Each rank reads the scene and keeps its lattice.
   constexpr double kRead = 64, kRank = 40e6;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/engines.h"
+#include "cli/engine_run.h"
 #include "model/base/output.h"
 #include "model/base/resources.h"
 #include "model/base/spelling.h"

@@ -9,36 +9,6 @@
 #include "cli/advice.h"
 
 namespace cuboct {
-RunMeter::RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps, bool watch)
-    : loaded_(loaded),
-      probe_steps_(probe_steps.begin(), probe_steps.end()),
-      meter_(
-          loaded.scene, loaded.setup.plan.rule, loaded.setup.plan.lattice, loaded.setup.plan.origin,
-          [&](uint32_t id) { return loaded.setup.initial.particles[id]; }, true, 0, watch) {}
-
-void RunMeter::see(const State& state) {
-  if (!any_) facts_.momentum_before = momentum(state);
-  any_ = true;
-  last_ = state;
-  facts_.largest_speed =
-      std::max(facts_.largest_speed, cuboct::largest_speed(loaded_.setup.plan.rule, state));
-  measured_ = probe_steps_.contains(state.step);
-  if (measured_) meter_.add(state);
-}
-
-RunFacts RunMeter::finish() {
-  if (any_ && !measured_) meter_.add(last_);
-  facts_.momentum_after = momentum(last_);
-  facts_.curves = meter_.curves();
-  meter_.conclude();
-  if (const Watch* watch = meter_.watch()) {
-    facts_.watch = true;
-    facts_.findings = watch->findings();
-    facts_.watched = watch->last_step();
-  }
-  return facts_;
-}
-
 std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
   const size_t row = trace.nodes * kPhases;
   if (trace.cycles.empty() || row == 0) return std::nullopt;
@@ -115,15 +85,18 @@ void add_warnings(Items& items, const std::vector<std::string>& of_plan,
   items.add_list("warnings", "warning", list);
 }
 
-Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts) {
+Items summarise(const Loaded& loaded, const Recorded& run, bool real) {
+  const Trace& trace = run.trace;
   const Plan& plan = loaded.setup.plan;
   Items items;
   items.add("engine", trace.engine);
   for (const auto& [name, text] : trace.notes) items.add(name, text);
   items.add("scene", loaded.scene.path);
   items.add("particles", plan.particles);
-  items.add("nodes", plan.nodes());
-  if (!plan.bricks.single()) items.add("cells per node", cells_of(plan.bricks.shape()));
+  if (!real) {
+    items.add("nodes", plan.nodes());
+    if (!plan.bricks.single()) items.add("cells per node", cells_of(plan.bricks.shape()));
+  }
   items.add("steps", trace.steps());
   items.add("simulated time", static_cast<double>(trace.steps()) * plan.rule.dt, "s");
   items.add("host time", trace.seconds, "s");
@@ -131,30 +104,36 @@ Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts)
     items.add("speed", static_cast<double>(trace.steps() * plan.particles) / trace.seconds,
               "particle-steps/s");
 
-  const Int3 &before = facts.momentum_before, &after = facts.momentum_after;
-  int64_t change = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    change = std::max<int64_t>(change, std::abs(after[axis] - before[axis]));
-  items.add("momentum change", change, "LSB",
-            keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside");
+  const char* forced = keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside";
+  if (real)
+    items.add("momentum change", run.momentum_change, "kg m/s", forced);
+  else
+    items.add("momentum change", std::llround(run.momentum_change), "LSB", forced);
 
-  add_curves(items, loaded.scene, facts.curves);
-  items.add("largest speed", facts.largest_speed, "node/step");
+  add_curves(items, loaded.scene, trace.curves);
+  items.add("largest speed", run.largest_speed, "node/step");
   if (const auto cycles = cycles_per_step(trace)) {
     items.add("mean cycles per step", cycles->mean);
     items.add("most cycles per step", cycles->max);
   }
-  for (const auto& [name, value] : trace.counters) items.add(name, value);
-  items.add("plan hash", fmt::format("{:016x}", trace.plan_hash));
-  if (!trace.state_hash.empty()) items.add("state hash", fmt::format("{:016x}", trace.state_hash.back()));
-  if (facts.watch || !plan.warnings.empty()) add_warnings(items, plan.warnings, facts.findings);
+  constexpr const char* kJoules = "joules_per_particle_step";
+  for (const auto& [name, value] : trace.counters)
+    if (name != kJoules) items.add(name, value);
+  if (!real) {
+    items.add("plan hash", fmt::format("{:016x}", trace.plan_hash));
+    if (!trace.state_hash.empty()) items.add("state hash", fmt::format("{:016x}", trace.state_hash.back()));
+  }
+  const std::vector<std::string> of_plan = real ? std::vector<std::string>() : plan.warnings;
+  if (trace.watched || !of_plan.empty()) add_warnings(items, of_plan, trace.findings);
   if (trace.stop) {
-    if (facts.watched)
-      items.add("last look", fmt::format("step {}: {}", *facts.watched,
-                                         facts.findings.empty() ? "nothing amiss" : "see the warnings"));
-    items.add("advice", advice_on(*trace.stop, plan, loaded.scene));
+    if (trace.watched)
+      items.add("last look", fmt::format("step {}: {}", *trace.watched,
+                                         trace.findings.empty() ? "nothing amiss" : "see the warnings"));
+    if (!real) items.add("advice", advice_on(*trace.stop, plan, loaded.scene));
     items.add("stopped", trace.stop->text);
   }
+  for (const auto& [name, value] : trace.counters)
+    if (name == kJoules) items.add("energy per particle-step", value, "J", "of the boards");
   return items;
 }
 

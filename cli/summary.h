@@ -1,47 +1,15 @@
 // SPDX-License-Identifier: MIT
-// What a run's states add up to, and the summary that ends a run.
+// The summary that ends a run.
 #pragma once
 
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "cli/command.h"
 #include "cli/items.h"
-#include "model/analysis/state_meter.h"
-#include "model/base/steps.h"
-#include "model/trace/trace.h"
+#include "model/run/record.h"
 
 namespace cuboct {
-
-// What a summary says beyond the trace.
-struct RunFacts {
-  Int3 momentum_before{}, momentum_after{};  // P+G fractional bits
-  double largest_speed = 0;                  // nodes per step, over the states that were looked at
-  std::vector<Curve> curves;                 // energy.total among them
-  bool watch = false;                        // whether anyone looked for failures
-  std::vector<Finding> findings;             // what was found
-  std::optional<uint64_t> watched;           // the last step that was looked at
-};
-
-// Watches the states of a run: probe curves at the probe steps, energies there and at the last state, largest
-// speed.
-class RunMeter {
- public:
-  RunMeter(const Loaded& loaded, std::vector<uint64_t> probe_steps, bool watch);
-
-  void see(const State& state);
-  // Measures the last state too, where it was no probe step. To be called once.
-  RunFacts finish();
-
- private:
-  const Loaded& loaded_;
-  std::set<uint64_t> probe_steps_;
-  StateMeter meter_;
-  State last_;
-  bool any_ = false, measured_ = false;
-  RunFacts facts_;
-};
 
 // Cycles that the machine takes per step: from the end of its slowest node in one step to that in the next.
 struct CyclesPerStep {
@@ -61,6 +29,7 @@ void add_end(Items& items, const Trace& trace);
 void add_warnings(Items& items, const std::vector<std::string>& of_plan,
                   const std::vector<Finding>& findings);
 
-Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts);
+// `real`: of an engine in real numbers.
+Items summarise(const Loaded& loaded, const Recorded& run, bool real);
 
 }  // namespace cuboct

@@ -2,275 +2,160 @@
 #include "gpu_ref/run.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdlib>
-#include <memory>
 #include <numeric>
-#include <optional>
 
-#include "model/analysis/energy_curves.h"
-#include "model/analysis/watch.h"
-#include "model/base/interrupt.h"
-#include "model/base/progress.h"
-#include "model/real/reference.h"
+#include "hw/engine_kind.h"
 
 namespace cuboct::gpu {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-bool among(const std::vector<uint64_t>& ascending, uint64_t step) {
-  return std::binary_search(ascending.begin(), ascending.end(), step);
-}
-
-// The first of `ascending` behind `step`, if it is below `next`.
-uint64_t sooner(const std::vector<uint64_t>& ascending, uint64_t step, uint64_t next) {
-  const auto at = std::upper_bound(ascending.begin(), ascending.end(), step);
-  return at == ascending.end() ? next : std::min(*at, next);
-}
-
-class Loop {
+class Runner : public cuboct::Engine {
  public:
-  Loop(const Scene& scene, const Plan& plan, const GpuRun& request);
-  GpuResult run();
+  Runner(const Scene& scene, const Plan& plan, const GpuChoice& choice);
+
+  uint64_t step_count() const override { return engine_->step_count(); }
+  void advance(uint64_t steps, std::vector<uint64_t>* hashes) override;
+  uint64_t hash() override { return engine_->hash(); }
+  RunState frame(bool forces) override;
+  cuboct::Reading read(const Asked& asked) override;
+  Momentum momentum() override;
+  double largest_speed() override;
+  cuboct::Counters counters() override;
+  Notes notes() override { return notes_; }
 
  private:
-  bool fixed() const { return request_.arithmetic == Arithmetic::fixed; }
-  std::vector<Vec3> initial_positions() const;
-  void make_engine();
-  void go();
-  void advance(uint64_t steps);
-  void record();
-  void sample(const Reading& reading);
-  // The state, for a look at it and for a frame.
-  void take(bool look, bool keep);
-  void look_at(const State& state);
-  void look_at(const Body& body);
-  void keep(Body body);
-  void probe_for_curves() { engine_->probe(ids_); }
-  void finish();
-  void count();
+  bool fixed() const { return choice_.arithmetic == Arithmetic::fixed; }
+  void probe(std::span<const uint32_t> ids);
+  void show(Watch& watch);
 
   const Scene& scene_;
   const Plan& plan_;
-  const GpuRun& request_;
-  const std::vector<uint64_t> looks_;
-  const std::vector<uint32_t> ids_;  // probed particles
-  ProbeMeter probes_;
-  EnergyCurves energy_;
-  std::optional<Watch> watch_;
-  std::unique_ptr<Engine> engine_;
-  Int3 momentum_{};           // fixed, of the initial state
-  uint64_t piece_ = 1;        // steps between two looks at the clock, where somebody looks
-  double largest_speed_ = 0;  // m/s
-  GpuResult result_;
-  Trace& trace_;
+  const GpuChoice& choice_;
+  std::unique_ptr<gpu::Engine> engine_;
+  std::vector<uint32_t> probed_;
+  double largest_speed_ = -1;  // m/s; below 0: not read yet
+  Notes notes_;
 };
 
-Loop::Loop(const Scene& scene, const Plan& plan, const GpuRun& request)
-    : scene_(scene),
-      plan_(plan),
-      request_(request),
-      looks_(request.watch ? looks_of(request.probes, scene.body.size()) : std::vector<uint64_t>()),
-      ids_(probed_ids(scene.probes)),
-      probes_(placed(scene.probes, ids_), scene.periodic, initial_positions()),
-      energy_(request.energies, scene),
-      trace_(result_.trace) {
-  trace_.engine = "gpu";
-  trace_.plan_hash = plan.hash;
-  trace_.nodes = plan.nodes();
-  trace_.hash_every = fixed() ? request.hash_every : 1;
-  trace_.notes.emplace_back("precision", to_string(request.arithmetic));
-  if (!request.energies) return;
-  if (request.watch) watch_.emplace(scene, fixed() ? plan.rule.error.worst_force : 0);
+Runner::Runner(const Scene& scene, const Plan& plan, const GpuChoice& choice)
+    : scene_(scene), plan_(plan), choice_(choice) {
+  if (fixed())
+    engine_ = make_fixed_engine(scene, plan, to_fixed(scene.body, plan.rule, plan.lattice, plan.origin),
+                                choice.engine);
+  else
+    engine_ = make_real_engine(scene, scene.body, choice.arithmetic, choice.engine);
+  notes_.emplace_back("precision", to_string(choice.arithmetic));
+  if (!fixed()) notes_.emplace_back("integrator", "semi-implicit Euler");
+  if (choice.hooks.ready) choice.hooks.ready();
 }
 
-// Of the probed particles, in the engine's arithmetic.
-std::vector<Vec3> Loop::initial_positions() const {
-  std::vector<Vec3> x;
-  for (const uint32_t id : ids_)
-    x.push_back(fixed()
-                    ? position_of(plan_.rule, plan_.lattice, plan_.origin,
-                                  fixed_particle(scene_.body, id, plan_.rule, plan_.lattice, plan_.origin))
-                    : scene_.body.x[id]);
-  return x;
-}
-
-void Loop::make_engine() {
-  if (fixed()) {
-    const State initial = to_fixed(scene_.body, plan_.rule, plan_.lattice, plan_.origin);
-    momentum_ = momentum(initial);
-    engine_ = make_fixed_engine(scene_, plan_, initial, request_.engine);
-  } else {
-    engine_ = make_real_engine(scene_, scene_.body, request_.arithmetic, request_.engine);
-  }
-  probe_for_curves();
-}
-
-void Loop::advance(uint64_t steps) {
-  const uint64_t before = engine_->step_count();
-  const auto begin = Clock::now();
+void Runner::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
+  const uint64_t before = step_count();
   const auto done = [&] {
-    trace_.seconds += since(begin);
-    trace_.steps_done = engine_->step_count();
-    if (request_.hooks.did) request_.hooks.did(trace_.steps_done - before);
+    if (choice_.hooks.did) choice_.hooks.did(step_count() - before);
   };
   try {
-    engine_->advance(steps, fixed() && request_.hash_every == 1 ? &trace_.state_hash : nullptr);
+    engine_->advance(steps, hashes);
   } catch (const RunError&) {
     done();
     throw;
-  } catch (const LostPosition&) {
+  } catch (const LostPosition& error) {
     done();
-    throw;
+    throw StepError({Fault::none, error.step, 0, error.particle, 0, error.what()});
   }
   done();
 }
 
-void Loop::look_at(const State& state) {
-  const std::vector<Int3> kicks = summed_kicks(plan_.rule, plan_.lattice, state);
-  ClosestPair closest;
-  const Energies e =
-      energies(scene_.rule, plan_.rule, plan_.lattice, plan_.origin, state, kicks, 0, &closest);
-  watch_->see(plan_.rule, plan_.lattice, plan_.origin, state, kicks, e, closest);
+void Runner::probe(std::span<const uint32_t> ids) {
+  if (std::equal(ids.begin(), ids.end(), probed_.begin(), probed_.end())) return;
+  probed_.assign(ids.begin(), ids.end());
+  engine_->probe(probed_);
 }
 
-void Loop::look_at(const Body& body) {
-  RealOptions options;
-  options.precision = request_.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
-  options.threads = reference_threads(body.size());
-  const Reference here(scene_.rule, body, scene_.periodic, options);
-  watch_->see(engine_->step_count(), body, here.forces(), engine_->read(true).energies);
-}
-
-void Loop::keep(Body body) {
-  RealFrame frame{engine_->step_count(), std::move(body.x), std::move(body.v), {}};
-  if (request_.forces) {
+RunState Runner::frame(bool forces) {
+  if (fixed()) return engine_->state();
+  Body body = engine_->body();
+  RealFrame frame{step_count(), std::move(body.x), std::move(body.v), {}};
+  if (forces) {
     std::vector<uint32_t> all(frame.x.size());
     std::iota(all.begin(), all.end(), 0);
-    engine_->probe(all);
+    probe(all);
     frame.force = engine_->read(false).force;
-    probe_for_curves();
   }
-  trace_.bodies.push_back(std::move(frame));
+  return frame;
 }
 
-void Loop::take(bool look, bool keep_it) {
-  look &= watch_.has_value();
-  if (!look && !keep_it) return;
+cuboct::Reading Runner::read(const Asked& asked) {
+  probe(asked.ids);
+  gpu::Reading read = engine_->read(asked.energies);
+  if (asked.energies) largest_speed_ = std::max(largest_speed_, read.largest_speed);
+  cuboct::Reading reading{read.step, std::move(read.x), std::move(read.force), read.energies};
+  if (asked.volume > 0) reading.stress = Mat3::Identity() * (-read.virial / (3 * asked.volume));
+  if (asked.watch) show(*asked.watch);
+  return reading;
+}
+
+// On the host.
+void Runner::show(Watch& watch) {
   if (fixed()) {
-    State state = engine_->state();
-    if (look) look_at(state);
-    if (keep_it) trace_.frames.push_back(std::move(state));
-  } else {
-    Body body = engine_->body();
-    body.type = scene_.body.type;
-    if (look) look_at(body);
-    if (keep_it) keep(std::move(body));
+    Asked asked;
+    asked.energies = true;
+    asked.watch = &watch;
+    read_state(scene_.rule, plan_.rule, plan_.lattice, plan_.origin, engine_->state(), asked, 0);
+    return;
   }
+  Body body = engine_->body();
+  body.type = scene_.body.type;
+  RealOptions options;
+  options.precision = choice_.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
+  options.threads = reference_threads(body.size());
+  const Reference here(scene_.rule, body, scene_.periodic, options);
+  watch.see(step_count(), body, here.forces(), engine_->read(true).energies);
 }
 
-void Loop::sample(const Reading& reading) {
-  largest_speed_ = std::max(largest_speed_, reading.largest_speed);
-  if (!scene_.probes.empty()) probes_.add({engine_->step_count(), reading.x, reading.force});
-  energy_.add(engine_->step_count(), reading.energies,
-              [&] { return Mat3(Mat3::Identity() * (-reading.virial / (3 * energy_.volume()))); });
+Momentum Runner::momentum() {
+  if (fixed()) return {cuboct::momentum(engine_->state()), {}};
+  const std::vector<Vec3> v = engine_->body().v;
+  return {{}, scene_.rule.mass * std::accumulate(v.begin(), v.end(), Vec3(Vec3::Zero()))};
 }
 
-void Loop::record() {
-  const uint64_t step = trace_.steps_done;
-  if (fixed() && step % request_.hash_every == 0 && (request_.hash_every > 1 || step == 0))
-    trace_.state_hash.push_back(engine_->hash());
-  if (among(request_.probes, step)) sample(engine_->read(request_.energies));
-  take(among(looks_, step), among(request_.frames, step));
+double Runner::largest_speed() {
+  if (largest_speed_ < 0) largest_speed_ = engine_->read(true).largest_speed;
+  return largest_speed_ * scene_.rule.dt / plan_.rule.cell_edge;
 }
 
-void Loop::go() {
-  record();
-  Progress progress("gpu", request_.steps, plan_.particles, 0, request_.progress);
-  const bool in_pieces = request_.progress || stderr_is_terminal() || request_.hooks.did;
-  while (trace_.steps_done < request_.steps && !interrupted()) {
-    const uint64_t step = trace_.steps_done;
-    uint64_t to = sooner(request_.frames, step, sooner(request_.probes, step, request_.steps));
-    if (fixed() && request_.hash_every > 1)
-      to = std::min(to, (step / request_.hash_every + 1) * request_.hash_every);
-    const auto begin = Clock::now();  // a piece is long beside what a batch costs to start
-    advance(in_pieces ? std::min(to - step, piece_) : to - step);
-    record();
-    if (since(begin) < 0.1) piece_ *= 2;
-    progress.at(trace_.steps_done);
-  }
-  result_.interrupted = trace_.steps_done < request_.steps;
-}
-
-// The last state is part of every answer, also of a run that ended early: its hash, its frame, its energies.
-void Loop::finish() {
-  const uint64_t last = trace_.steps_done;
-  if (fixed() && last % request_.hash_every != 0) trace_.state_hash.push_back(engine_->hash());
-  if (request_.energies && !among(request_.probes, last)) sample(engine_->read(true));
-  take(request_.watch && !among(looks_, last), !request_.frames.empty() && !among(request_.frames, last));
-  trace_.curves = probes_.curves();
-  trace_.curves.insert(trace_.curves.end(), energy_.curves().begin(), energy_.curves().end());
-  if (watch_) {
-    watch_->conclude();
-    trace_.findings = watch_->findings();
-    trace_.watched = watch_->last_step();
-  }
-  if (request_.totals) {
-    if (!request_.energies) largest_speed_ = std::max(largest_speed_, engine_->read(true).largest_speed);
-    double change = 0;
-    if (fixed()) {
-      const bool kept = !trace_.frames.empty() && trace_.frames.back().step == last;
-      const Int3 after = momentum(kept ? trace_.frames.back() : engine_->state());
-      for (int a = 0; a < 3; ++a)
-        change = std::max(change, static_cast<double>(std::abs(after[a] - momentum_[a])));
-    } else {
-      const auto sum = [](const std::vector<Vec3>& v) {
-        return std::accumulate(v.begin(), v.end(), Vec3(Vec3::Zero()));
-      };
-      const bool kept = !trace_.bodies.empty() && trace_.bodies.back().step == last;
-      const Vec3 after = sum(kept ? trace_.bodies.back().v : engine_->body().v);
-      change = scene_.rule.mass * (after - sum(scene_.body.v)).norm();
-    }
-    trace_.counters.emplace_back("momentum_change", change);
-    trace_.counters.emplace_back("largest_speed", largest_speed_ * scene_.rule.dt / plan_.rule.cell_edge);
-  }
-  count();
-  if (request_.hooks.finish) request_.hooks.finish(trace_);
-}
-
-void Loop::count() {
-  const Counters& counters = engine_->counters();
-  const auto add = [&](const char* name, double value) { trace_.counters.emplace_back(name, value); };
-  add("list_builds", static_cast<double>(counters.list_builds));
-  if (fixed()) add("golden_steps", static_cast<double>(counters.golden_steps));
-  add("longest_list", static_cast<double>(counters.longest_list));
-  add("listed_pairs", counters.listed_pairs);
-  add("halo_particles", static_cast<double>(counters.halo_particles));
-  add("device_bytes", static_cast<double>(counters.device_bytes));
-}
-
-GpuResult Loop::run() {
-  try {
-    make_engine();
-    if (request_.hooks.ready) request_.hooks.ready();
-    go();
-  } catch (const RunError& error) {
-    trace_.stop = StopReason{error.fault, error.step, error.node, error.particle, error.number, error.what()};
-  } catch (const LostPosition& error) {
-    trace_.stop = StopReason{Fault::none, error.step, 0, error.particle, 0, error.what()};
-  }
-  if (engine_) finish();
-  return std::move(result_);
+cuboct::Counters Runner::counters() {
+  const gpu::Counters& counts = engine_->counters();
+  cuboct::Counters counters{{"list_builds", static_cast<double>(counts.list_builds)}};
+  if (fixed()) counters.emplace_back("golden_steps", static_cast<double>(counts.golden_steps));
+  counters.emplace_back("longest_list", static_cast<double>(counts.longest_list));
+  counters.emplace_back("listed_pairs", counts.listed_pairs);
+  counters.emplace_back("halo_particles", static_cast<double>(counts.halo_particles));
+  counters.emplace_back("device_bytes", static_cast<double>(counts.device_bytes));
+  if (choice_.hooks.finish) choice_.hooks.finish(counters, notes_);
+  return counters;
 }
 
 }  // namespace
 
-GpuResult run_gpu(const Scene& scene, const Plan& plan, const GpuRun& request) {
-  return Loop(scene, plan, request).run();
+EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choice) {
+  EngineKind kind = choice.arithmetic == Arithmetic::fixed
+                        ? fixed_kind("gpu", scene, plan)
+                        : real_kind("gpu", scene, plan, choice.arithmetic == Arithmetic::float32);
+  kind.batches = kind.hashes_come = true;
+  kind.in_pieces = static_cast<bool>(choice.hooks.did);
+  kind.looks = [particles = scene.body.size()](const std::vector<uint64_t>& probes) {
+    return looks_of(probes, particles);
+  };
+  kind.make = [&scene, &plan, &choice](CheckpointReader*, bool) {
+    return std::make_unique<Runner>(scene, plan, choice);
+  };
+  return kind;
+}
+
+Recorded run_gpu(const Scene& scene, const Plan& plan, const GpuRun& request) {
+  const GpuChoice choice{request.arithmetic, request.engine, request.hooks};
+  return record(scene, gpu_kind(scene, plan, choice), request);
 }
 
 }  // namespace cuboct::gpu

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
+// What a plan allows a particle's numbers to be, for particles that come from a file.
 #pragma once
 
 #include "hw/plan.h"
+#include "model/run/checkpoint.h"
 #include "model/trace/state_check.h"
 
 namespace cuboct {
@@ -10,5 +12,8 @@ inline StateBounds bounds_of(const Plan& plan) {
   return {plan.particles, plan.rule.types.size(), plan.lattice.size(), plan.rule.widths.velocity_frac(),
           plan.rule.widths.velocity_bits};
 }
+
+// The next particle of a checkpoint, which may be a stranger's. InputError where it cannot be of the plan.
+Particle checked_particle(CheckpointReader& from, const Plan& plan);
 
 }  // namespace cuboct

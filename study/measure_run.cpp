@@ -4,15 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
-#include "emu/lattice/engine.h"
+#include "emu/lattice/run.h"
 #include "hw/setup.h"
-#include "model/analysis/measure.h"
-#include "model/analysis/real_meter.h"
-#include "model/analysis/state_meter.h"
 #include "model/analysis/strain.h"
-#include "model/base/interrupt.h"
+#include "model/run/reference_engine.h"
 #include "study/gpu_program.h"
 
 namespace cuboct::study {
@@ -32,22 +30,33 @@ Sums sums_of(const Rule& rule, const std::vector<Vec3>& velocities) {
   return sums;
 }
 
-// What both engines share: steps from sample to sample, looking where asked.
-template <class Step, class Look>
-void go(const RunRequest& request, uint64_t per_sample, Run& run, Step step, Look look) {
-  look(0);
-  for (uint64_t sample = 1; sample <= request.until; ++sample) {
-    for (uint64_t k = 0; k < per_sample; ++k) {
-      if (interrupted()) throw Interrupted();
-      step();
-      ++run.steps;
-    }
-    look(sample);
-  }
-}
-
 bool among(const std::vector<uint64_t>& ascending, uint64_t sample) {
   return std::binary_search(ascending.begin(), ascending.end(), sample);
+}
+
+// A run from sample to sample; `see` takes the state at each.
+Run run_engine(const Scene& scene, const EngineKind& kind, const RunRequest& request, uint64_t per_sample,
+               const std::function<void(uint64_t sample, const RunState&)>& see) {
+  cuboct::RunRequest asked;
+  asked.steps = request.until * per_sample;
+  for (uint64_t step = 0; step <= asked.steps; step += per_sample) asked.frames.push_back(step);
+  if (request.curves || request.energies) asked.probes = asked.frames;
+  asked.energies = request.energies;
+  asked.hash_every = 0;
+  asked.last = false;
+  asked.keep = [&](const RunState& frame) {
+    see(std::visit([](const auto& state) { return state.step; }, frame) / per_sample, frame);
+  };
+  Scene measured = scene;
+  if (!request.curves) measured.probes.clear();
+  Recorded recorded = record(measured, kind, asked);
+  if (recorded.interrupted) throw Interrupted();
+  Run run;
+  run.dt = scene.rule.dt;
+  run.steps = recorded.trace.steps_done;
+  run.curves = std::move(recorded.trace.curves);
+  if (recorded.trace.stop) run.stop = recorded.trace.stop->text;
+  return run;
 }
 
 Run run_real(const Scene& scene, const Settings& settings, const RunRequest& request, uint64_t per_sample) {
@@ -55,28 +64,28 @@ Run run_real(const Scene& scene, const Settings& settings, const RunRequest& req
   options.integrator = settings.integrator;
   options.precision = settings.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
   options.threads = request.threads;
-  const bool half_step_back = settings.integrator == Integrator::semi_implicit_euler;
-  Reference reference(scene.rule, started_body(scene, half_step_back), scene.periodic, options);
-  Run run;
-  run.dt = scene.rule.dt;
-  RealMeter meter(scene, settings.integrator, request.curves, request.energies);
-  const Sums before = sums_of(scene.rule, reference.body().v);
-  try {
-    go(
-        request, per_sample, run, [&] { reference.step(); },
-        [&](uint64_t sample) {
-          if (request.curves || request.energies) meter.add(reference);
-          if (among(request.keep, sample)) run.kept.push_back(reference.body());
-        });
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    run.stop = error.what();
-  }
-  const Sums after = sums_of(scene.rule, reference.body().v);
+  const Body start = started_body(scene, settings.integrator == Integrator::semi_implicit_euler);
+  EngineKind kind;
+  kind.name = "reference";
+  kind.particles = start.size();
+  kind.fixed = kind.keeps_state = false;
+  kind.initial = [&](uint32_t id) { return scene.body.x[id]; };
+  kind.make = [&](CheckpointReader*, bool) {
+    return std::make_unique<ReferenceEngine>(scene, start, options, 1);
+  };
+  std::vector<Body> kept;
+  std::vector<Vec3> last;
+  Run run = run_engine(scene, kind, request, per_sample, [&](uint64_t sample, const RunState& frame) {
+    const RealFrame& state = std::get<RealFrame>(frame);
+    last = state.v;
+    if (!among(request.keep, sample)) return;
+    kept.push_back(start);
+    kept.back().x = state.x, kept.back().v = state.v;
+  });
+  run.kept = std::move(kept);
+  const Sums before = sums_of(scene.rule, start.v), after = sums_of(scene.rule, last);
   run.momentum_change = after.momentum - before.momentum;
   run.momentum_scale = after.scale;
-  run.curves = meter.curves();
   return run;
 }
 
@@ -93,37 +102,24 @@ void add_momenta(const Scene& scene, const FixedRule& rule, const Int3& before, 
 }
 
 Run run_fixed(Scene scene, const Arch& arch, const RunRequest& request, uint64_t per_sample) {
-  const std::vector<Vec3> initial = scene.body.x;
   scene.body = started_body(scene, true);
   const Plan plan = plan_of(scene, arch);
-  const FixedRule& rule = plan.rule;
-  const auto particle = [&](uint32_t id) {
-    return fixed_particle(scene.body, id, rule, plan.lattice, plan.origin);
-  };
-  emu::LatticeOptions options;
-  options.threads = request.threads;
-  emu::LatticeEngine engine(plan, 0, plan.particles, particle, options);
-  Scene measured = scene;
-  if (!request.curves) measured.probes.clear();
-  StateMeter meter(measured, rule, plan.lattice, plan.origin, particle, request.energies, request.threads);
-  Run run;
-  run.dt = rule.dt;
-  const Int3 before = engine.momentum();
-  State last = engine.state();
-  try {
-    go(
-        request, per_sample, run, [&] { engine.step(); },
-        [&](uint64_t sample) {
-          last = engine.state();
-          if (request.curves || request.energies) meter.add(last);
-          if (among(request.keep, sample)) run.kept.push_back(to_real(last, rule, plan.lattice, plan.origin));
-        });
-  } catch (const RunError& error) {
-    // The engine's state went with the step that failed: sums are those of the sample before it.
-    run.stop = error.what();
-  }
-  add_momenta(scene, rule, before, last, run);
-  run.curves = meter.curves();
+  emu::LatticeChoice choice;
+  choice.engine.threads = request.threads;
+  std::vector<Body> kept;
+  std::optional<Int3> before;
+  State last;
+  Run run = run_engine(scene, emu::lattice_kind(scene, plan, choice), request, per_sample,
+                       [&](uint64_t sample, const RunState& frame) {
+                         last = std::get<State>(frame);
+                         if (!before) before = momentum(last);
+                         if (among(request.keep, sample))
+                           kept.push_back(to_real(last, plan.rule, plan.lattice, plan.origin));
+                       });
+  run.kept = std::move(kept);
+  run.dt = plan.rule.dt;
+  // The engine's state went with a step that failed: sums are those of the sample before it.
+  if (before) add_momenta(scene, plan.rule, *before, last, run);
   return run;
 }
 

@@ -6,21 +6,15 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
-#include <optional>
-#include <set>
 #include <thread>
 #include <tuple>
 
 #include "emu/machine/collector.h"
 #include "emu/machine/words.h"
 #include "hw/board.h"
-#include "model/base/interrupt.h"
-#include "model/base/progress.h"
 
 namespace cuboct::emu {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 class Session {
  public:
@@ -171,66 +165,63 @@ class Session {
   uint64_t cycles_before_ = 0, cycles_ = 0;  // of runs without a fault
 };
 
+class BoardEngine : public StateEngine {
+ public:
+  BoardEngine(Host& host, const Scene& scene, const Plan& plan)
+      : StateEngine(setting_of(scene, plan)),
+        host_(host),
+        session_(host, plan),
+        known_(to_fixed(scene.body, plan.rule, plan.lattice, plan.origin)) {
+    session_.load(known_);
+  }
+
+  uint64_t step_count() const override { return at_; }
+  void advance(uint64_t steps, std::vector<uint64_t>*) override {
+    if (at_ + steps > std::numeric_limits<uint32_t>::max())
+      throw InputError(fmt::format("{} steps: a board counts at most {}", at_ + steps,
+                                   std::numeric_limits<uint32_t>::max()));
+    if (!session_.run(at_, steps)) {
+      const StopReason stop = session_.find_fault(known_, at_ + steps);
+      at_ = known_.step;
+      throw StepError(stop);
+    }
+    at_ += steps;
+  }
+  Counters counters() override {
+    const LinkCount& count = host_.count();
+    return {{"cycles", static_cast<double>(session_.cycles())},
+            {"requests", static_cast<double>(count.requests)},
+            {"retries", static_cast<double>(count.retries)},
+            {"bytes on the line", static_cast<double>(count.bytes)}};
+  }
+  Notes notes() override {
+    return {{"port", host_.port()}, {"board clock", fmt::format("{} MHz", session_.info().clock_hz / 1e6)}};
+  }
+
+ protected:
+  State make_state() override {
+    if (!read_ || known_.step != at_) known_ = session_.read(at_);
+    read_ = true;
+    return known_;
+  }
+
+ private:
+  Host& host_;
+  Session session_;
+  State known_;        // the last that was loaded, read, or found before a fault
+  bool read_ = false;  // what was loaded is read back once
+  uint64_t at_ = 0;
+};
+
 }  // namespace
 
-Trace run_on_board(Host& host, const Plan& plan, const State& initial, const BoardRun& run) {
-  if (run.steps > std::numeric_limits<uint32_t>::max())
-    throw InputError(
-        fmt::format("{} steps: a board counts at most {}", run.steps, std::numeric_limits<uint32_t>::max()));
-  Session session(host, plan);
-  Trace trace;
-  trace.engine = "fpga";
-  trace.plan_hash = plan.hash;
-  trace.nodes = plan.nodes();
-  trace.hash_every = std::max<uint64_t>(1, run.hash_every);
-
-  std::set<uint64_t> stops(run.frames.begin(), run.frames.end());
-  if (run.hash_every > 0)
-    for (uint64_t step = 0; step < run.steps; step += run.hash_every) stops.insert(step);
-  if (run.hash_every > 0 || !run.frames.empty()) stops.insert(run.steps);
-  const auto record = [&](const State& state) {
-    if (run.hash_every > 0 && trace.hashes(state.step, run.steps))
-      trace.state_hash.push_back(hash_of(plan.lattice, state));
-    if (std::binary_search(run.frames.begin(), run.frames.end(), state.step)) trace.frames.push_back(state);
+EngineKind board_kind(Host& host, const Scene& scene, const Plan& plan) {
+  EngineKind kind = fixed_kind("fpga", scene, plan);
+  kind.batches = kind.in_pieces = true;
+  kind.make = [&host, &scene, &plan](CheckpointReader*, bool) {
+    return std::make_unique<BoardEngine>(host, scene, plan);
   };
-
-  Progress progress("fpga", run.steps, plan.particles, 0, run.progress);
-  session.load(initial);
-  State known = initial;  // the last that was read
-  if (stops.contains(0)) record(known = session.read(0));
-  uint64_t at = 0, chunk = 1;
-  const auto begin = Clock::now();
-  while (at < run.steps && !interrupted()) {
-    const auto next = stops.upper_bound(at);
-    const uint64_t stop = next == stops.end() ? run.steps : *next, end = std::min(stop, at + chunk);
-    const auto start = Clock::now();
-    if (!session.run(at, end - at)) {
-      trace.stop = session.find_fault(known, end);
-      break;
-    }
-    // Half a second at once: long enough to spare the line, short enough for Ctrl-C.
-    if (Clock::now() - start < std::chrono::milliseconds(500)) chunk *= 2;
-    at = end;
-    if (stops.contains(at)) record(known = session.read(at));
-    progress.at(at);
-  }
-  trace.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-  trace.steps_done = trace.stop ? known.step : at;
-  // What a run that ended early ends with.
-  if (trace.steps_done < run.steps && (run.hash_every > 0 || !run.frames.empty())) {
-    if (known.step != trace.steps_done) known = session.read(trace.steps_done);
-    if (run.hash_every > 1 && known.step % run.hash_every != 0)
-      trace.state_hash.push_back(hash_of(plan.lattice, known));
-    if (!run.frames.empty() && trace.frames.back().step != known.step) trace.frames.push_back(known);
-  }
-  const LinkCount& count = host.count();
-  trace.counters = {{"cycles", static_cast<double>(session.cycles())},
-                    {"requests", static_cast<double>(count.requests)},
-                    {"retries", static_cast<double>(count.retries)},
-                    {"bytes on the line", static_cast<double>(count.bytes)}};
-  trace.notes = {{"port", host.port()},
-                 {"board clock", fmt::format("{} MHz", session.info().clock_hz / 1e6)}};
-  return trace;
+  return kind;
 }
 
 }  // namespace cuboct::emu

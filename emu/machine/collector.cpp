@@ -17,6 +17,11 @@ std::string place_of(const Lattice& lattice, uint32_t node) {
   return fmt::format(" at cell ({}, {}, {})", c[0], c[1], c[2]);
 }
 
+void sort_by_id(State& state) {
+  std::sort(state.particles.begin(), state.particles.end(),
+            [](const Particle& a, const Particle& b) { return a.id < b.id; });
+}
+
 }  // namespace
 
 uint64_t patience_of(const Plan& plan, double stall_rate) {
@@ -108,7 +113,7 @@ void Collector::observe(uint32_t node, const NodeOutputs& out) {
   p.u = slot.u;
   Snapshot& s = snapshot(step);
   s.hash += hash_of(plan_.lattice, p);
-  if (s.kept) s.state.particles.push_back(p);
+  if (s.kept || options_.keep_last) s.state.particles.push_back(p);
   if (options_.keep_order) {
     if (order_.size() <= step)
       order_.resize(step + 1, std::vector<std::vector<uint32_t>>(plan_.lattice.size()));
@@ -120,11 +125,15 @@ void Collector::complete(uint64_t step) {
   Snapshot& s = snapshot(step);
   if (++s.complete < nodes_) return;
   trace_.state_hash.push_back(s.hash);
+  s.state.step = step;
   if (s.kept) {
-    s.state.step = step;
-    std::sort(s.state.particles.begin(), s.state.particles.end(),
-              [](const Particle& a, const Particle& b) { return a.id < b.id; });
+    sort_by_id(s.state);
     trace_.frames.push_back(std::move(s.state));
+  } else if (options_.keep_last) {
+    // A fault's step ends a few steps behind the nodes that are ahead.
+    constexpr size_t kAhead = 4;
+    recent_.push_back(std::move(s.state));
+    if (recent_.size() > kAhead) recent_.pop_front();
   }
   open_.erase(step);
 }
@@ -190,6 +199,14 @@ void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
     close(cycle);
 }
 
+void Collector::add_last() {
+  for (State& state : recent_) {
+    if (state.step != steps_done()) continue;
+    sort_by_id(state);
+    trace_.frames.push_back(std::move(state));
+  }
+}
+
 Trace Collector::take_trace() {
   if (stop_.fault != Fault::none) {
     stop_.text = RunError(stop_.fault, stop_.step, stop_.node, stop_.particle, stop_.number,
@@ -201,6 +218,7 @@ Trace Collector::take_trace() {
     if (options_.keep_order) order_.resize(trace_.state_hash.size());
     std::erase_if(trace_.frames, [&](const State& s) { return s.step > stop_.step; });
   }
+  add_last();
   trace_.cycles.resize(steps_done() * nodes_ * kPhases);
   return std::move(trace_);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct RunOptions {
   uint64_t stall_seed = 1;
   FaultOptions faults;      // on the wires
   bool progress = false;    // a line per second on standard error
+  bool keep_last = false;   // keep the state after the last complete step too
   bool keep_order = false;  // keep the ids in the order of the slots, per step and node
   uint64_t patience =
       0;  // cycles without any event after which the run is stuck; 0: `patience_of(plan, ...)`
@@ -65,8 +67,8 @@ class Collector {
 
  private:
   struct Snapshot {
-    State state;  // kept only for frames
-    bool kept = false;
+    State state;        // of frames, and of what may be the last step
+    bool kept = false;  // a frame
     uint64_t hash = 0;
     uint32_t complete = 0;  // nodes that have shown all of it
   };
@@ -75,6 +77,7 @@ class Collector {
   uint32_t cell_of(uint32_t node, uint32_t local) const;
   void complete(uint64_t step);
   void close(uint64_t cycle);
+  void add_last();
 
   const Plan& plan_;
   RunOptions options_;  // frames ascending
@@ -86,6 +89,7 @@ class Collector {
   std::vector<bool> stopped_;              // per node: back in IDLE
   std::map<uint64_t, Snapshot> open_;      // states of which a part is still to come
   std::map<uint64_t, uint32_t> finished_;  // nodes that finished a step
+  std::deque<State> recent_;               // the last complete ones, ascending, where the last is to be kept
   std::vector<std::vector<std::vector<uint32_t>>> order_;
   StopReason stop_;  // the least (step, fault, id, number) so far
   bool done_ = false;

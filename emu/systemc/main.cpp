@@ -6,7 +6,7 @@
 #include "emu/systemc/node.h"
 
 int sc_main(int argc, char** argv) {
-  return cuboct::emu::run_program(argc, argv,
+  return cuboct::emu::run_machine(argc, argv,
                                   {.name = "cuboct-systemc",
                                    .description = "Runs a scene on cycle-accurate nodes in SystemC",
                                    .engine = "systemc",

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <systemc>
 
@@ -8,7 +9,7 @@
 int sc_main(int argc, char** argv) {
   using namespace cuboct::emu;
   std::string build_directory;
-  Program program{.name = "cuboct-rtl",
+  Machine program{.name = "cuboct-rtl",
                   .description = "Runs a scene on the emitted hardware, compiled by Verilator",
                   .engine = "rtl",
                   .nodes = [&](const cuboct::Plan& plan) {
@@ -19,7 +20,7 @@ int sc_main(int argc, char** argv) {
     app.add_option("--build-dir", build_directory,
                    "Where compiled nodes are kept; $XDG_CACHE_HOME/cuboct or ~/.cache/cuboct without it");
   };
-  return run_program(argc, argv, program);
+  return run_machine(argc, argv, program);
 }
 
 // Instead of SystemC's own main, which would print a banner first.

@@ -12,11 +12,11 @@ EnergyCurves::EnergyCurves(bool wanted, const Scene& scene)
   if (volume_ > 0) curves_.push_back({"pressure", "Pa", {}, {}});
 }
 
-void EnergyCurves::add(uint64_t step, const Energies& energies, const std::function<Mat3()>& stress) {
+void EnergyCurves::add(uint64_t step, const Energies& energies, const Mat3& stress) {
   if (!wanted()) return;
   std::vector<double> values{energies.kinetic, energies.potential, energies.gravity, energies.total()};
   if (thermometer_.wanted()) values.push_back(thermometer_.temperature(energies.free));
-  if (volume_ > 0) values.push_back(pressure(energies, stress(), volume_));
+  if (volume_ > 0) values.push_back(pressure(energies, stress, volume_));
   for (size_t k = 0; k < values.size(); ++k) {
     curves_[k].step.push_back(step);
     curves_[k].value.push_back(values[k]);

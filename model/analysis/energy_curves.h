@@ -3,7 +3,6 @@
 // axes.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "model/analysis/measure.h"
@@ -17,8 +16,8 @@ class EnergyCurves {
   EnergyCurves(bool wanted, const Scene& scene);
   bool wanted() const { return !curves_.empty(); }
   double volume() const { return volume_; }  // m^3, of a box that repeats along all axes; else 0
-  // `stress`, Pa, is asked for the pressure alone.
-  void add(uint64_t step, const Energies& energies, const std::function<Mat3()>& stress);
+  // `stress`, Pa: for the pressure alone.
+  void add(uint64_t step, const Energies& energies, const Mat3& stress);
   // energy.kinetic, energy.potential, energy.gravity, energy.total in J; then, where the scene has them,
   // temperature in K and pressure in Pa.
   const std::vector<Curve>& curves() const { return curves_; }

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "emu/lattice/engine.h"
-#include "emu/lattice/word_file.h"
 #include "model/analysis/measure.h"
+#include "model/run/engine.h"
+#include "model/run/word_file.h"
 
-namespace cuboct::emu {
+namespace cuboct {
 
-// Everything but the particles, which follow by node and slot.
+// Everything but the particles, which follow by cell and slot.
 struct CheckpointHead {
   uint64_t plan_hash = 0;
   uint64_t step = 0;
@@ -24,15 +24,13 @@ struct CheckpointHead {
   double seconds = 0;
   double largest_speed = 0;
   Int3 momentum{};  // at step 0
-  LatticeCounters counters;
+  EngineMemory engine;
   ProbeMeter::Memory probes;
-  std::vector<uint64_t> timing;  // TimingModel::starts(); empty without cycles
   WordMark journal;
 };
 
 // `displaced`: the rule holds particles by force, their displacements count.
-void write_checkpoint(const std::string& path, const CheckpointHead& head, const LatticeEngine& engine,
-                      bool displaced);
+void write_checkpoint(const std::string& path, const CheckpointHead& head, Engine& engine, bool displaced);
 
 class CheckpointReader {
  public:
@@ -40,15 +38,17 @@ class CheckpointReader {
   // another plan.
   CheckpointReader(const std::string& path, uint64_t plan_hash, bool displaced);
 
+  const std::string& path() const { return path_; }
   const CheckpointHead& head() const { return head_; }
   Particle next();  // head().particles times
   void rewind();    // to the first particle
 
  private:
+  std::string path_;
   WordReader in_;
   bool displaced_;
   CheckpointHead head_;
   uint64_t first_ = 0;  // where the particles begin
 };
 
-}  // namespace cuboct::emu
+}  // namespace cuboct

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "emu/lattice/word_file.h"
+#include "model/run/word_file.h"
 #include "model/trace/trace.h"
 
-namespace cuboct::emu {
+namespace cuboct {
 
 // Six words per particle, nine where the rule holds particles by force:
 //   id, node (32 bits each)   x, y   z, type   v_x v_y v_z   [u_x u_y u_z]
@@ -48,4 +48,4 @@ class Journal {
   std::unique_ptr<WordWriter> out_;
 };
 
-}  // namespace cuboct::emu
+}  // namespace cuboct

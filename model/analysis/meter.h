@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The curves of a run, from states that come one by one: the scene's probes and, where asked, the energies.
-// Every engine's run is measured here.
+// The curves of a run, from readings that come one by one: the scene's probes and, where asked, the energies,
+// with a watch over them. Every engine's run is measured here.
 #pragma once
 
 #include <functional>
@@ -8,26 +8,33 @@
 #include <vector>
 
 #include "model/analysis/energy_curves.h"
-#include "model/analysis/measure.h"
-#include "model/analysis/watch.h"
+#include "model/analysis/reading.h"
 
 namespace cuboct {
 
-class StateMeter {
- public:
-  // `initial(id)`: the particle at step 0; called for those in a probe's set alone. Keeps references to
-  // scene, rule and lattice. `watch`: look for what fails as well; of use with `energies` alone.
-  StateMeter(const Scene& scene, const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
-             const std::function<Particle(uint32_t)>& initial, bool energies, int threads = 0,
-             bool watch = false);
+struct MeterOptions {
+  bool probes = true;
+  bool energies = false;
+  bool watch = false;      // look for what fails wherever energies are read (model/analysis/watch.h)
+  double table_error = 0;  // N, the largest error of the force that an engine's table makes
+  int threads = 0;         // of the watch; 0: one per core
+};
 
-  // States come in the order of steps, sorted by id.
-  void add(const State& state);
+class Meter {
+ public:
+  // `initial(id)`: m, where the particle is at step 0; called for those in a probe's set alone. Keeps a
+  // reference to `scene`.
+  Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, const MeterOptions& options);
+
+  // What is to be read of the engine. With `look`, the watch sees the state too.
+  Asked asked(bool look = true);
+
+  // Readings come in the order of steps.
+  void add(const Reading& reading);
 
   // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where
   // the scene has them, temperature in K and pressure in Pa.
   std::vector<Curve> curves() const;
-
   // The last value of each curve, once there is one.
   std::vector<double> latest() const;
 
@@ -44,19 +51,14 @@ class StateMeter {
   void restore(ProbeMeter::Memory memory, const std::vector<Curve>& curves);
 
  private:
-  const Scene& scene_;
-  const FixedRule& rule_;
-  const Lattice& lattice_;
-  Vec3 origin_;
   std::vector<uint32_t> ids_;  // particles in any probe's set, ascending: the probes' ids index this list
   ProbeMeter probes_;
   EnergyCurves energy_;
   bool forces_ = false;  // some probe needs them
-  int threads_;
   std::optional<Watch> watch_;
 };
 
-// The steps 0, every, 2 every, ... up to `last`; none for every 0.
+// The steps 0, every, 2 every, ... up to `last` at which the scene's probes are read; none for every 0.
 std::vector<uint64_t> probe_steps_of(const Scene& scene, uint64_t last);
 
 }  // namespace cuboct

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "emu/lattice/checkpoint.h"
+#include "model/run/checkpoint.h"
 
 #include <fmt/format.h>
 
@@ -8,15 +8,16 @@
 #include <cstring>
 #include <optional>
 
-#include "emu/lattice/journal.h"
 #include "model/base/error.h"
 #include "model/base/output.h"
+#include "model/run/journal.h"
 
-namespace cuboct::emu {
+namespace cuboct {
 namespace {
 
 constexpr uint64_t kMagic = 0x5450434854424355;  // "UCBTHCPT"
 constexpr uint64_t kVersion = 2;
+constexpr size_t kCounters = 3;  // words; of an engine that counts less they are 0
 
 void put(WordWriter& out, const std::vector<Vec3>& list) {
   out.word(list.size());
@@ -33,8 +34,7 @@ std::vector<Vec3> take_vectors(WordReader& in) {
 
 }  // namespace
 
-void write_checkpoint(const std::string& path, const CheckpointHead& head, const LatticeEngine& engine,
-                      bool displaced) {
+void write_checkpoint(const std::string& path, const CheckpointHead& head, Engine& engine, bool displaced) {
   const std::string temporary = path + ".tmp";
   // Ranks send their particles: to the end, even where the disk is full.
   std::optional<WordWriter> out;
@@ -54,13 +54,13 @@ void write_checkpoint(const std::string& path, const CheckpointHead& head, const
     out->number(head.seconds);
     out->number(head.largest_speed);
     for (const int64_t p : head.momentum) out->word(static_cast<uint64_t>(p));
-    for (const uint64_t value : {head.counters.list_builds, head.counters.node_steps,
-                                 head.counters.quiet_node_steps, head.journal.words, head.journal.hash})
-      out->word(value);
+    for (size_t k = 0; k < kCounters; ++k)
+      out->word(k < head.engine.counters.size() ? head.engine.counters[k] : 0);
+    for (const uint64_t value : {head.journal.words, head.journal.hash}) out->word(value);
     put(*out, head.probes.latest);
     put(*out, head.probes.moved);
-    out->word(head.timing.size());
-    out->words(head.timing);
+    out->word(head.engine.timing.size());
+    out->words(head.engine.timing);
   });
   engine.for_each_slot([&](const Particle& p) { attempt([&] { put(*out, p, displaced); }); });
   attempt([&] {
@@ -78,10 +78,9 @@ void write_checkpoint(const std::string& path, const CheckpointHead& head, const
 }
 
 CheckpointReader::CheckpointReader(const std::string& path, uint64_t plan_hash, bool displaced)
-    : in_(path), displaced_(displaced) {
+    : path_(path), in_(path), displaced_(displaced) {
   constexpr uint64_t kLeast = 22;  // words of a checkpoint without particles
-  if (in_.size() < 2 || in_.word() != kMagic)
-    throw InputError(fmt::format("{} is not a checkpoint of the lattice engine", path));
+  if (in_.size() < 2 || in_.word() != kMagic) throw InputError(fmt::format("{} is not a checkpoint", path));
   if (const uint64_t version = in_.word(); version != kVersion)
     throw InputError(fmt::format("{} is a checkpoint of version {}; this program reads version {}", path,
                                  version, kVersion));
@@ -107,15 +106,13 @@ CheckpointReader::CheckpointReader(const std::string& path, uint64_t plan_hash, 
   head_.seconds = in_.number();
   head_.largest_speed = in_.number();
   for (int64_t& p : head_.momentum) p = static_cast<int64_t>(in_.word());
-  head_.counters.list_builds = in_.word();
-  head_.counters.node_steps = in_.word();
-  head_.counters.quiet_node_steps = in_.word();
+  for (size_t k = 0; k < kCounters; ++k) head_.engine.counters.push_back(in_.word());
   head_.journal.words = in_.word();
   head_.journal.hash = in_.word();
   head_.probes.latest = take_vectors(in_);
   head_.probes.moved = take_vectors(in_);
-  head_.timing.resize(in_.count(1));
-  in_.words(head_.timing);
+  head_.engine.timing.resize(in_.count(1));
+  in_.words(head_.engine.timing);
   first_ = in_.mark().words;
 }
 
@@ -123,4 +120,4 @@ void CheckpointReader::rewind() { in_.seek(first_); }
 
 Particle CheckpointReader::next() { return take_particle(in_, displaced_); }
 
-}  // namespace cuboct::emu
+}  // namespace cuboct

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "emu/lattice/journal.h"
+#include "model/run/journal.h"
 
 #include <fmt/format.h>
 
 #include "model/base/error.h"
 
-namespace cuboct::emu {
+namespace cuboct {
 namespace {
 
 constexpr uint64_t kMagic = 0x4c4e524a54424355;  // "UCBTJRNL"
@@ -136,4 +136,4 @@ void Journal::for_each_frame(const std::function<void(State)>& see) {
   }
 }
 
-}  // namespace cuboct::emu
+}  // namespace cuboct

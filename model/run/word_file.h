@@ -12,7 +12,7 @@
 
 #include "model/base/hash.h"
 
-namespace cuboct::emu {
+namespace cuboct {
 
 static_assert(std::endian::native == std::endian::little, "words are written as they lie in memory");
 
@@ -89,4 +89,4 @@ class WordReader {
 // The directory's entry of a file is on the disk when it returns.
 void sync_directory_of(const std::string& path);
 
-}  // namespace cuboct::emu
+}  // namespace cuboct

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "emu/lattice/word_file.h"
+#include "model/run/word_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 
 #include "model/base/error.h"
 
-namespace cuboct::emu {
+namespace cuboct {
 namespace {
 
 constexpr size_t kBuffer = size_t{1} << 17;  // words: 1 MiB
@@ -144,4 +144,4 @@ void sync_directory_of(const std::string& path) {
   close(directory);
 }
 
-}  // namespace cuboct::emu
+}  // namespace cuboct

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "cli/engine_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "cli/engines.h"
+#include "model/base/error.h"
+
+namespace cuboct {
+namespace {
+
+bool among(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// "the lattice and the reference engine"
+std::string the_engines(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t k = 0; k < names.size(); ++k)
+    text += fmt::format("{}the {}", k == 0 ? "" : k + 1 == names.size() ? " and " : ", ", names[k]);
+  return text + " engine";
+}
+
+}  // namespace
+
+void EngineOptions::add_machines(CLI::App& command) {
+  command
+      .add_option("--threads", threads, "threads of lattice or reference; default: as many as suit the scene")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command.add_option("--ranks", ranks, "processes of lattice, over MPI")
+      ->check(CLI::Range(1, 65536))
+      ->type_name("N");
+  auto* list =
+      command
+          .add_option("--devices", devices, "devices of gpu by CUDA's ordinals, one per part of the scene")
+          ->delimiter(',')
+          ->check(CLI::Range(0, 1023))
+          ->type_name("A,B,...");
+  command.add_option("--gpus", gpus, "the first N devices of gpu; default: one")
+      ->check(CLI::Range(1, 64))
+      ->excludes(list)
+      ->type_name("N");
+  command.add_option("--port", port, "serial port of fpga's board, e.g. /dev/ttyUSB0")->type_name("P");
+  command.add_option("--baud", baud, "bits per second on it; default: 1000000")
+      ->check(CLI::Range(300, 12000000))
+      ->type_name("N");
+  command
+      .add_option("--port-timeout", timeout,
+                  "seconds without an answer after which fpga asks the board again; default: 0.3")
+      ->check(CLI::Range(0.001, 60.0))
+      ->type_name("T");
+}
+
+void EngineOptions::add_numbers(CLI::App& command) {
+  command
+      .add_option(
+          "--precision", precision,
+          "the numbers of reference, double (default) or float, and of gpu, fixed (default), float or double")
+      ->check(CLI::IsMember({"fixed", "float", "double"}));
+  command
+      .add_option("--integrator", integrator,
+                  "euler (semi-implicit, as the fixed rule) or verlet, of reference")
+      ->check(CLI::IsMember({"euler", "verlet"}))
+      ->capture_default_str();
+}
+
+void EngineOptions::add_run(CLI::App& command) {
+  command.add_flag("--joules", joules,
+                   "measure the energy of gpu's devices, which rest for two seconds first");
+  command
+      .add_option_function<uint64_t>(
+          "--hash-every", [this](uint64_t every) { hash_every = every, hashes_given = true; },
+          "steps between two hashes of the state; default: 100 of lattice and gpu, none of fpga, else 1")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))
+      ->type_name("K");
+  command.add_flag("--cycles", cycles, "count the machine's cycles in lattice");
+  command
+      .add_option(
+          "--checkpoint-every", checkpoint_every,
+          "'1000 steps', '30 s', '5 min' or '2 h': how often lattice or golden leaves a checkpoint in DIR")
+      ->type_name("T");
+  command.add_flag("--resume", resume, "go on from the checkpoint in DIR");
+}
+
+void EngineOptions::check(const std::vector<std::string>& engines, const Input& input) const {
+  const auto with = [](auto has) { return engines_that(has); };
+  const auto refuse = [&](bool given, const char* option, const std::vector<std::string>& owners) {
+    if (!given || std::ranges::any_of(engines, [&](auto& engine) { return among(owners, engine); })) return;
+    throw InputError(fmt::format("{} is an option of {}, not of {}", option, the_engines(owners),
+                                 fmt::join(engines, ",")));
+  };
+  const auto savers = with([](const EngineRow& row) { return row.saves; });
+  refuse(threads > 0, "--threads", {"lattice", "reference"});
+  refuse(ranks > 1, "--ranks", {"lattice"});
+  refuse(cycles, "--cycles", with([](const EngineRow& row) { return row.counts_if_asked; }));
+  refuse(!checkpoint_every.empty(), "--checkpoint-every", savers);
+  refuse(resume, "--resume", savers);
+  refuse(gpus > 0, "--gpus", {"gpu"});
+  refuse(!devices.empty(), "--devices", {"gpu"});
+  refuse(joules, "--joules", {"gpu"});
+  refuse(!port.empty(), "--port", {"fpga"});
+  refuse(baud > 0, "--baud", {"fpga"});
+  refuse(timeout > 0, "--port-timeout", {"fpga"});
+  refuse(!precision.empty(), "--precision", {"reference", "gpu"});
+  refuse(integrator != "euler", "--integrator", {"reference"});
+  refuse(hashes_given, "--hash-every", with([](const EngineRow& row) { return row.bits; }));
+  if (precision == "fixed" && among(engines, "reference"))
+    throw InputError("--precision fixed: the reference engine computes in doubles or floats",
+                     "lattice, golden and gpu compute in the fixed rule's integers");
+  if (hashes_given && std::ranges::all_of(engines, [&](auto& engine) { return is_real(engine); }))
+    throw InputError("--hash-every goes with --precision fixed", "states in real numbers have no hash");
+  if (among(engines, "fpga") && port.empty())
+    throw InputError("the fpga engine needs --port, where the board is",
+                     "--port /dev/ttyUSB0, or what cuboct-board-sim prints");
+  if (input.faults.empty()) return;
+  read_fault_share(input.faults);
+  const auto linked = with([](const EngineRow& row) { return row.links; });
+  if (std::ranges::none_of(engines, [&](auto& engine) { return among(linked, engine); }))
+    throw InputError("--inject-faults needs an engine that has links",
+                     fmt::format("{}", fmt::join(linked, " or ")));
+}
+
+bool EngineOptions::is_real(const std::string& engine) const {
+  const EngineRow& row = engine_row(engine);
+  return !row.bits || (row.real && !precision.empty() && precision != "fixed");
+}
+
+RealOptions EngineOptions::real_options() const {
+  return {
+      .integrator = integrator == "verlet" ? Integrator::velocity_verlet : Integrator::semi_implicit_euler,
+      .precision = precision == "float" ? Precision::float32 : Precision::float64};
+}
+
+}  // namespace cuboct

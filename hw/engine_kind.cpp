@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "hw/engine_kind.h"
+
+#include <fmt/format.h>
+
+#include "hw/state_bounds.h"
+#include "model/run/golden_engine.h"
+#include "model/run/reference_engine.h"
+
+namespace cuboct {
+
+FixedSetting setting_of(const Scene& scene, const Plan& plan, int threads) {
+  return {scene.rule, plan.rule, plan.lattice, plan.origin, threads};
+}
+
+EngineKind fixed_kind(const std::string& name, const Scene& scene, const Plan& plan) {
+  EngineKind kind;
+  kind.name = name;
+  kind.plan_hash = plan.hash;
+  kind.nodes = plan.nodes();
+  kind.particles = plan.particles;
+  kind.displaced = plan.rule.pd;
+  kind.table_error = plan.rule.error.worst_force;
+  kind.initial = [&scene, &plan](uint32_t id) {
+    return position_of(plan.rule, plan.lattice, plan.origin,
+                       fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin));
+  };
+  return kind;
+}
+
+EngineKind real_kind(const std::string& name, const Scene& scene, const Plan& plan, bool floats) {
+  EngineKind kind;
+  kind.name = name;
+  kind.plan_hash = plan.hash;
+  kind.nodes = plan.nodes();
+  kind.particles = scene.body.size();
+  kind.fixed = false;
+  kind.floats = floats;
+  kind.initial = [&scene](uint32_t id) { return scene.body.x[id]; };
+  return kind;
+}
+
+EngineKind golden_kind(const Scene& scene, const Plan& plan) {
+  EngineKind kind = fixed_kind("golden", scene, plan);
+  kind.saves = true;
+  kind.make = [&scene, &plan](CheckpointReader* from, bool) {
+    State initial;
+    if (from) {
+      initial.step = from->head().step;
+      for (uint32_t k = 0; k < plan.particles; ++k)
+        initial.particles.push_back(checked_particle(*from, plan));
+    } else {
+      initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
+    }
+    return std::make_unique<GoldenEngine>(setting_of(scene, plan), plan.arch.capacity, initial);
+  };
+  return kind;
+}
+
+EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
+  EngineKind kind = real_kind("reference", scene, plan, options.precision == Precision::float32);
+  kind.keeps_state = false;
+  kind.make = [&scene, &plan, options](CheckpointReader*, bool) {
+    return std::make_unique<ReferenceEngine>(scene, scene.body, options, plan.rule.cell_edge);
+  };
+  return kind;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// What a run must know of an engine of a plan, and the two engines that need nothing but the model.
+#pragma once
+
+#include <string>
+
+#include "hw/setup.h"
+#include "model/run/record.h"
+#include "model/run/state_engine.h"
+
+namespace cuboct {
+
+// All keep references to what they are given.
+FixedSetting setting_of(const Scene& scene, const Plan& plan, int threads = 0);
+
+// Of an engine of the fixed rule, but for its making.
+EngineKind fixed_kind(const std::string& name, const Scene& scene, const Plan& plan);
+// Of one in real numbers; the plan gives its hash and the cells in which speeds are told.
+EngineKind real_kind(const std::string& name, const Scene& scene, const Plan& plan, bool floats);
+
+EngineKind golden_kind(const Scene& scene, const Plan& plan);
+EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options);
+
+}  // namespace cuboct

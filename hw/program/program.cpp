@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "hw/program/program.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "hw/setup.h"
+#include "model/analysis/meter.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/steps.h"
+#include "model/base/text.h"
+#include "model/trace/trace_file.h"
+
+namespace cuboct {
+namespace {
+
+// What is parsed and then settled.
+struct Parsed {
+  ProgramOptions options;
+  std::string frames_file, begun, interval;
+  bool frames_given = false, unpacked = false;
+};
+
+void settle(const EngineProgram& program, Parsed& parsed, const Scene& scene) {
+  ProgramOptions& options = parsed.options;
+  RunRequest& run = options.run;
+  run.steps = options.steps.value_or(scene.steps);
+  if (run.steps > program.abilities.steps)
+    throw InputError(
+        fmt::format("{} steps: the machine counts at most {}", run.steps, program.abilities.steps));
+  if (!parsed.frames_file.empty()) run.frames = read_steps(parsed.frames_file);
+  put_in_order(run.frames);
+  std::erase_if(run.frames, [&](uint64_t step) { return step > run.steps; });
+  if (!parsed.frames_given && !options.bench) run.frames = {0, run.steps};
+  if (run.watch) run.energies = true;
+  // Energies are read at the first and the last step too.
+  run.probes = run.energies ? every_so_often(scene.probe_every, run.steps) : probe_steps_of(scene, run.steps);
+  run.totals = !options.bench;
+  run.cycles |= program.abilities.always_cycles;
+  // A benchmark times steps: its one hash is the last state's.
+  if (options.bench) run.hash_every = std::max<uint64_t>(run.steps, 1);
+}
+
+void check(const Parsed& parsed) {
+  const ProgramOptions& options = parsed.options;
+  const RunRequest& run = options.run;
+  if (options.scene.empty()) throw InputError("a scene is required");
+  if (options.out.empty() && !options.bench) throw InputError("--out is required");
+  if (run.checkpoint.path.empty() && (run.checkpoint.resume || !parsed.interval.empty()))
+    throw InputError("--resume and --checkpoint-every need --checkpoint FILE");
+}
+
+int tell(EngineProgram& program, const Parsed& parsed, const Scene& scene, const Plan& plan,
+         const Recorded& run) {
+  const Trace& trace = run.trace;
+  if (parsed.options.bench)
+    program.print_bench(scene, plan, run);
+  else
+    program.print_end(plan, trace);
+  for (const Finding& finding : trace.findings) fmt::print("warning: {}\n", line_text(finding.text));
+  if (run.interrupted && !trace.stop)
+    fmt::print("interrupted after step {}{}\n", trace.steps(),
+               run.left_checkpoint ? "; the same command with --resume goes on" : "");
+  if (trace.stop)
+    fmt::print(stderr, "{}: {}\n", line_text(parsed.options.scene), line_text(trace.stop->text));
+  return run.interrupted || trace.stop || !trace.findings.empty() ? 1 : 0;
+}
+
+int run(EngineProgram& program, Parsed parsed) {
+  ProgramOptions& options = parsed.options;
+  if (program.prepare(options)) return 0;
+  check(parsed);
+  const bool leads = program.leads();
+  if (!options.out.empty() && leads) check_writable(options.out);
+  if (!parsed.interval.empty()) read_interval(parsed.interval, options.run.checkpoint);
+  Scene scene = read_scene(options.scene);
+  program.begin(scene);
+  const Plan plan = plan_of(scene, read_arch(options.arch));
+  settle(program, parsed, scene);
+
+  std::optional<TraceWriter> writer;
+  std::string trouble;
+  if (!options.out.empty() && leads) {
+    writer.emplace(options.out, temporary_beside(options.out), !parsed.unpacked);
+    options.run.keep = [&](const RunState& frame) {
+      std::visit(
+          [&](const auto& state) {
+            try {
+              writer->add(state);
+            } catch (const InputError& error) {
+              if (trouble.empty())
+                trouble = fmt::format("{}; frames are left out from step {} on", error.what(), state.step);
+            }
+          },
+          frame);
+    };
+  }
+  EngineKind kind = program.kind(scene, plan, options);
+  if (leads && !parsed.begun.empty())
+    kind.make = [&parsed, make = kind.make](CheckpointReader* from, bool cycles) {
+      auto engine = make(from, cycles);
+      write_text(parsed.begun, "");
+      return engine;
+    };
+  catch_interrupts();
+  Recorded result = record(scene, kind, options.run);
+  if (!leads) return result.trace.stop || result.interrupted ? 1 : 0;
+  if (options.run.totals) put_totals(result);
+  if (writer) writer->finish(result.trace);
+  const int code = tell(program, parsed, scene, plan, result);
+  if (!trouble.empty()) throw InputError(trouble);
+  if (!result.interrupted) remove_checkpoint(options.run.checkpoint.path);
+  return code;
+}
+
+void add_options(CLI::App& app, EngineProgram& program, Parsed& parsed) {
+  ProgramOptions& options = parsed.options;
+  RunRequest& run = options.run;
+  const ProgramAbilities& can = program.abilities;
+  app.add_option("scene", options.scene, "Scene file (TOML)");
+  app.add_option("--arch", options.arch, "Machine description (TOML); the defaults without one");
+  app.add_option("--steps", options.steps, "Steps to run; the scene's own number without it");
+  app.add_option("--out", options.out, "Trace file to write (HDF5); --bench does without");
+  app.add_flag("--unpacked", parsed.unpacked, "Do not compress the trace: larger, and written in less time");
+  app.add_option("--begun", parsed.begun, "File that is made when the steps begin");
+  app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
+  app.add_flag("--watch", run.watch, "Look for what makes a run wrong; energies are measured with it");
+  app.add_option("--hash-every", run.hash_every, "Steps between two hashes of the state; 0: none")
+      ->capture_default_str();
+  if (can.cycles) app.add_flag("--cycles", run.cycles, "Count the machine's cycles with the timing model");
+  if (can.forces) app.add_flag("--forces", run.forces, "Frames in real numbers hold the pair forces too");
+  if (can.checkpoints) {
+    app.add_option("--checkpoint", run.checkpoint.path,
+                   "File that the run can go on from; gone when it ends");
+    app.add_option("--checkpoint-every", parsed.interval, "'1000 steps', '30 s', '5 min' or '2 h'");
+    app.add_flag("--resume", run.checkpoint.resume, "Go on from the checkpoint");
+  }
+  app.add_flag("--bench", options.bench, "Print 'name value unit' lines; no trace unless --out asks for one");
+  app.add_flag("--progress", run.progress, "A line per second on standard error");
+  program.add_options(app);
+}
+
+}  // namespace
+
+void EngineProgram::print_bench(const Scene&, const Plan& plan, const Recorded& run) {
+  const Trace& trace = run.trace;
+  const double seconds = std::max(trace.seconds, 1e-9);
+  const auto steps = static_cast<double>(trace.steps() - run.resumed_at);
+  fmt::print("{}.particle_steps {:.6g} 1/s\n", trace.engine, steps * plan.particles / seconds);
+  for (const auto& [counter, value] : trace.counters)
+    if (counter == "cycles" && !trace.cycles.empty())
+      fmt::print("{}.node_cycles {:.6g} 1/s\n", trace.engine,
+                 value * static_cast<double>(trace.nodes) / seconds);
+  for (const auto& [counter, value] : trace.counters)
+    fmt::print("{}.{} {:.15g} 1\n", trace.engine, counter, value);
+  fmt::print("{}.seconds {:.6g} s\n", trace.engine, trace.seconds);
+}
+
+void EngineProgram::print_end(const Plan& plan, const Trace& trace) {
+  fmt::print("{} steps of {} particles on {} nodes, {:.3g} particle-steps/s\n", trace.steps(), plan.particles,
+             trace.nodes,
+             static_cast<double>(trace.steps()) * plan.particles / std::max(trace.seconds, 1e-9));
+}
+
+int run_program(int argc, char** argv, EngineProgram& program) {
+  survive_file_limit();
+  Parsed parsed;
+  CLI::App app{program.description, program.name};
+  add_options(app, program, parsed);
+  auto* frames = app.add_option("--frames", parsed.options.run.frames,
+                                "Steps whose states are kept; the first and the last without it")
+                     ->delimiter(',');
+  auto* frames_file =
+      app.add_option("--frames-file", parsed.frames_file, "The same from a file, one step per line")
+          ->excludes(frames);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  parsed.frames_given = frames->count() > 0 || frames_file->count() > 0;
+  parsed.options.hashes_given = app.get_option("--hash-every")->count() > 0;
+  try {
+    return run(program, std::move(parsed));
+  } catch (const InputError& e) {
+    if (program.leads()) fmt::print(stderr, "{}\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}: {}\n", program.name, block_text(e.what()));
+    return 1;
+  }
+}
+
+std::vector<std::string> program_arguments(const std::string& scene, const std::string& arch,
+                                           const RunRequest& request, const std::string& out,
+                                           const std::string& steps_file) {
+  std::vector<std::string> words{scene, "--steps",      std::to_string(request.steps),     "--out",
+                                 out,   "--hash-every", std::to_string(request.hash_every)};
+  const auto add = [&](bool wanted, std::initializer_list<std::string> more) {
+    if (wanted) words.insert(words.end(), more);
+  };
+  add(!arch.empty(), {"--arch", arch});
+  // A few on the command line, where they can be read; it holds no more than some ten thousand. An empty list
+  // in a file asks for none.
+  constexpr size_t kListed = 1000;
+  if (request.frames.empty() || request.frames.size() > kListed) {
+    write_text(steps_file, fmt::format("{}\n", fmt::join(request.frames, "\n")));
+    add(true, {"--frames-file", steps_file});
+  } else {
+    add(true, {"--frames", fmt::format("{}", fmt::join(request.frames, ","))});
+  }
+  const CheckpointPlan& checkpoint = request.checkpoint;
+  add(request.energies, {"--energies"});
+  add(request.watch, {"--watch"});
+  add(request.cycles, {"--cycles"});
+  add(request.forces, {"--forces"});
+  add(!checkpoint.path.empty(), {"--checkpoint", checkpoint.path});
+  add(checkpoint.every_steps > 0, {"--checkpoint-every", fmt::format("{} steps", checkpoint.every_steps)});
+  add(checkpoint.every_seconds > 0, {"--checkpoint-every", fmt::format("{} s", checkpoint.every_seconds)});
+  add(checkpoint.resume, {"--resume"});
+  add(request.progress, {"--progress"});
+  return words;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "model/analysis/meter.h"
+
+namespace cuboct {
+namespace {
+
+std::vector<uint32_t> ids_of(const Scene& scene, bool probes) {
+  return probes ? probed_ids(scene.probes) : std::vector<uint32_t>();
+}
+
+std::vector<Vec3> places_of(const std::vector<uint32_t>& ids, const std::function<Vec3(uint32_t)>& initial) {
+  std::vector<Vec3> x;
+  x.reserve(ids.size());
+  for (const uint32_t id : ids) x.push_back(initial(id));
+  return x;
+}
+
+}  // namespace
+
+Meter::Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, const MeterOptions& options)
+    : ids_(ids_of(scene, options.probes)),
+      probes_(options.probes ? placed(scene.probes, ids_) : std::vector<Probe>(), scene.periodic,
+              places_of(ids_, initial)),
+      energy_(options.energies, scene) {
+  if (options.probes)
+    for (const Probe& probe : scene.probes) forces_ |= probe.kind != Probe::Kind::displacement;
+  if (options.energies && options.watch) watch_.emplace(scene, options.table_error, options.threads);
+}
+
+Asked Meter::asked(bool look) {
+  return {ids_, forces_, energy_.wanted(), energy_.volume(), look && watch_ ? &*watch_ : nullptr};
+}
+
+void Meter::add(const Reading& reading) {
+  if (!probes_.curves().empty()) probes_.add({reading.step, reading.x, reading.force});
+  energy_.add(reading.step, reading.energies, reading.stress);
+}
+
+std::vector<Curve> Meter::curves() const {
+  std::vector<Curve> all = probes_.curves();
+  all.insert(all.end(), energy_.curves().begin(), energy_.curves().end());
+  return all;
+}
+
+std::vector<double> Meter::latest() const {
+  std::vector<double> values;
+  for (const std::vector<Curve>* part : {&probes_.curves(), &energy_.curves()})
+    for (const Curve& curve : *part) values.push_back(curve.value.back());
+  return values;
+}
+
+void Meter::restore(ProbeMeter::Memory memory, const std::vector<Curve>& curves) {
+  const auto energies = curves.end() - static_cast<ptrdiff_t>(energy_.curves().size());
+  probes_.restore(std::move(memory), {curves.begin(), energies});
+  energy_.restore({energies, curves.end()});
+  if (watch_ && !energies->value.empty())
+    watch_->remember({energies[0].value[0], energies[1].value[0], energies[2].value[0]});
+}
+
+std::vector<uint64_t> probe_steps_of(const Scene& scene, uint64_t last) {
+  std::vector<uint64_t> at;
+  if (scene.probe_every == 0 || scene.probes.empty()) return at;
+  for (uint64_t s = 0; s <= last; s += scene.probe_every) at.push_back(s);
+  return at;
+}
+
+}  // namespace cuboct

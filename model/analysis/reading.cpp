@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "model/analysis/reading.h"
+
+#include <numeric>
+
+namespace cuboct {
+
+Reading read_state(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
+                   const State& state, const Asked& asked, int threads) {
+  Reading reading;
+  reading.step = state.step;
+  std::vector<Int3> kicks;
+  if (asked.forces || asked.energies) kicks = summed_kicks(fixed, lattice, state, threads);
+  for (const uint32_t id : asked.ids) {
+    reading.x.push_back(position_of(fixed, lattice, origin, state.particles[id]));
+    reading.force.push_back(force_of(fixed, kicks.empty() ? Int3{} : kicks[id]));
+  }
+  if (!asked.energies) return reading;
+  ClosestPair closest;
+  reading.energies = energies(rule, fixed, lattice, origin, state, kicks, threads, &closest);
+  if (asked.watch) asked.watch->see(fixed, lattice, origin, state, kicks, reading.energies, closest);
+  if (asked.volume > 0) reading.stress = virial_stress(fixed, lattice, state, asked.volume, threads);
+  return reading;
+}
+
+Reading read_reference(const Rule& rule, const Reference& reference, double late, const Asked& asked) {
+  Reading reading;
+  reading.step = reference.step_count();
+  const Body& body = reference.body();
+  std::vector<Vec3> force;
+  if (asked.forces || asked.energies) force = reference.forces();
+  for (const uint32_t id : asked.ids) {
+    reading.x.push_back(body.x[id]);
+    reading.force.push_back(force.empty() ? Vec3(Vec3::Zero()) : force[id]);
+  }
+  if (!asked.energies) return reading;
+  Energies& e = reading.energies;
+  for (size_t i = 0; i < body.size(); ++i) {
+    const Vec3 v = body.v[i] + late * acceleration(rule, body, i, force[i]);
+    const ParticleType& type = rule.types[body.type[i]];
+    e.kinetic += rule.mass * v.squaredNorm() / 2;
+    e.gravity -= rule.mass * type.gravity.dot(body.x[i]);
+    for (int a = 0; a < 3; ++a)
+      if (is_free(type, a)) e.free.kinetic += rule.mass * v[a] * v[a] / 2, e.free.velocities[a] += v[a];
+  }
+  e.potential = reference.potential_energy();
+  if (asked.watch) asked.watch->see(reference.step_count(), body, force, e);
+  if (asked.volume > 0) {
+    const std::vector<Mat3> stress = reference.virial_stress(asked.volume);
+    reading.stress = std::accumulate(stress.begin(), stress.end(), Mat3(Mat3::Zero()));
+  }
+  return reading;
+}
+
+}  // namespace cuboct

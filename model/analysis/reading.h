@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// What probes, energies and a watch take from one state of a run, whoever computes it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "model/analysis/measure.h"
+#include "model/analysis/watch.h"
+#include "model/real/reference.h"
+
+namespace cuboct {
+
+struct Asked {
+  std::span<const uint32_t> ids;  // whose positions are wanted, ascending
+  bool forces = false;            // of those particles
+  bool energies = false;
+  double volume = 0;       // m^3: with energies, the virial stress over it; 0: none
+  Watch* watch = nullptr;  // to be shown the state; of use with energies alone
+};
+
+struct Reading {
+  uint64_t step = 0;
+  std::vector<Vec3> x, force;  // m; N of the pairs, zero where not asked for: in the order of the ids
+  Energies energies;
+  Mat3 stress = Mat3::Zero();  // Pa, tension positive, without its kinetic part
+};
+
+// `threads`: 0 for one per core; no bit depends on their number.
+Reading read_state(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
+                   const State& state, const Asked& asked, int threads);
+
+// `late`: s, from the time of the velocities to that of the positions.
+Reading read_reference(const Rule& rule, const Reference& reference, double late, const Asked& asked);
+
+}  // namespace cuboct

@@ -1,0 +1,464 @@
+// SPDX-License-Identifier: MIT
+#include "model/run/record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <tuple>
+
+#include "model/analysis/meter.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/progress.h"
+#include "model/run/journal.h"
+
+namespace cuboct {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+bool among(const std::vector<uint64_t>& ascending, uint64_t step) {
+  return std::binary_search(ascending.begin(), ascending.end(), step);
+}
+
+// The first of `ascending` behind `step`, if it is below `next`.
+uint64_t sooner(const std::vector<uint64_t>& ascending, uint64_t step, uint64_t next) {
+  const auto at = std::upper_bound(ascending.begin(), ascending.end(), step);
+  return at == ascending.end() ? next : std::min(*at, next);
+}
+
+class Loop {
+ public:
+  Loop(const Scene& scene, const EngineKind& kind, const RunRequest& request);
+  Recorded run();
+
+ private:
+  void start();
+  void resume();
+  void resume_trace(const CheckpointHead& head);
+  void check_alike(const CheckpointHead& head) const;
+  void make_engine(CheckpointReader* from, bool cycles);
+  void go();
+  uint64_t next_stop() const;
+  void advance(uint64_t steps);
+  void record();
+  void measure(bool look, bool add);
+  void keep();
+  void give(RunState frame);
+  void journal(const std::function<void(Journal&)>& write);
+  void save();
+  bool write_state();
+  bool save_is_due() const;
+  void go_back_to(uint64_t step);
+  void finish();
+  void total();
+  bool hashed() const { return kind_.fixed && request_.hash_every > 0; }
+  bool leads() const { return engine_->leads(); }
+
+  const Scene& scene_;
+  const EngineKind& kind_;
+  const RunRequest& request_;
+  const CheckpointPlan& save_plan_;
+  Meter meter_;
+  const std::vector<uint64_t> looks_;
+  std::unique_ptr<Engine> engine_;
+  std::optional<Journal> journal_;
+  bool saved_ = false;  // there is a checkpoint of this run
+  uint64_t saved_step_ = 0;
+  Clock::time_point saved_time_;
+  uint64_t piece_;  // steps between two looks at the clock, of an engine that works in batches
+  std::optional<uint64_t> looked_;
+  std::vector<uint64_t> sample_steps_;
+  Momentum before_;
+  Counters counters_;
+  bool lost_ = false;  // the engine's state went with the step that failed
+  Recorded result_;
+  Trace& trace_;
+};
+
+Loop::Loop(const Scene& scene, const EngineKind& kind, const RunRequest& request)
+    : scene_(scene),
+      kind_(kind),
+      request_(request),
+      save_plan_(request.checkpoint),
+      meter_(scene, kind.initial,
+             {.energies = request.energies,
+              .watch = request.watch,
+              .table_error = kind.table_error,
+              .threads = kind.threads}),
+      looks_(kind.looks ? kind.looks(request.probes) : request.probes),
+      piece_(kind.in_pieces || request.progress || stderr_is_terminal()
+                 ? 1
+                 : std::max<uint64_t>(request.steps, 1)),
+      trace_(result_.trace) {
+  trace_.engine = kind.name;
+  trace_.plan_hash = kind.plan_hash;
+  trace_.nodes = kind.nodes;
+  trace_.hash_every = hashed() ? request.hash_every : 1;
+}
+
+void Loop::make_engine(CheckpointReader* from, bool cycles) {
+  engine_.reset();
+  engine_ = kind_.make(from, cycles);
+}
+
+void Loop::start() {
+  if (!save_plan_.path.empty() && !kind_.saves)
+    throw InputError(fmt::format("the {} engine leaves no checkpoints", kind_.name));
+  make_engine(nullptr, request_.cycles);
+  if (!save_plan_.path.empty() && leads()) {
+    if (std::filesystem::exists(save_plan_.path))
+      throw InputError(fmt::format("{} holds a run that did not end", save_plan_.path),
+                       "--resume goes on with it; to begin anew, remove it first");
+    check_writable(save_plan_.path);
+    journal_.emplace(save_plan_.path + ".journal", kind_.plan_hash, kind_.displaced);
+  }
+  if (request_.totals || !save_plan_.path.empty()) before_ = engine_->momentum();
+  record();
+}
+
+void Loop::check_alike(const CheckpointHead& head) const {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(fmt::format("{} was made with {}", save_plan_.path, what),
+                     "resume with the options of the run that wrote it");
+  };
+  if (head.hash_every != request_.hash_every)
+    refuse(fmt::format("a hash every {} steps, this run has one every {}", head.hash_every,
+                       request_.hash_every));
+  if (head.cycles != request_.cycles) refuse(head.cycles ? "cycles" : "no cycles");
+  if (head.energies != request_.energies) refuse(head.energies ? "energies" : "no energies");
+  if (head.step > request_.steps)
+    refuse(fmt::format("more steps: it is at step {} of this run's {}", head.step, request_.steps));
+  const auto until_now = [&](const std::vector<uint64_t>& steps) {
+    return std::vector<uint64_t>(steps.begin(), std::upper_bound(steps.begin(), steps.end(), head.step));
+  };
+  if (journal_->frame_steps() != until_now(request_.frames)) refuse("frames at other steps");
+  if (sample_steps_ != until_now(request_.probes) && !meter_.curves().empty())
+    refuse("probes read at other steps");
+}
+
+void Loop::resume() {
+  if (!kind_.saves) throw InputError(fmt::format("the {} engine leaves no checkpoints", kind_.name));
+  if (!std::filesystem::exists(save_plan_.path))
+    throw InputError(fmt::format("there is no checkpoint {}", save_plan_.path),
+                     "leave out --resume to begin at step 0");
+  CheckpointReader from(save_plan_.path, kind_.plan_hash, kind_.displaced);
+  const CheckpointHead& head = from.head();
+  make_engine(&from, request_.cycles);
+  if (leads()) {
+    resume_trace(head);
+    check_alike(head);
+  }
+  trace_.steps_done = head.step;
+  trace_.seconds = head.seconds;
+  before_.fixed = head.momentum;
+  result_.largest_speed = head.largest_speed;
+  result_.resumed_at = saved_step_ = head.step;
+  saved_ = true;
+}
+
+// From the journal.
+void Loop::resume_trace(const CheckpointHead& head) {
+  journal_.emplace(save_plan_.path + ".journal", kind_.plan_hash, kind_.displaced, head.journal, trace_);
+  const std::vector<Curve> fresh = meter_.curves();
+  if (!trace_.curves.empty()) {
+    sample_steps_ = trace_.curves.front().step;
+    if (trace_.curves.size() != fresh.size() || head.probes.latest.size() != meter_.probed())
+      throw InputError(fmt::format("{} was made with other probes", save_plan_.path),
+                       "resume with the scene that wrote it");
+    for (size_t k = 0; k < fresh.size(); ++k)
+      trace_.curves[k].name = fresh[k].name, trace_.curves[k].unit = fresh[k].unit;
+    meter_.restore(head.probes, trace_.curves);
+  }
+  journal_->for_each_frame([&](State state) { give(std::move(state)); });
+}
+
+// A state is made only where a frame or a sample asks for one.
+void Loop::record() {
+  const uint64_t step = engine_->step_count();
+  trace_.steps_done = step;
+  // Of batches, the hash after each step has come with them.
+  const bool came = kind_.hashes_come && request_.hash_every == 1 && step > 0;
+  if (hashed() && step % request_.hash_every == 0 && !came) {
+    trace_.state_hash.push_back(engine_->hash());
+    journal([&](Journal& to) { to.hash(step, trace_.state_hash.back()); });
+  }
+  if (among(request_.probes, step)) {
+    measure(among(looks_, step), true);
+    if (leads() && journal_)
+      if (const std::vector<double> values = meter_.latest(); !values.empty())
+        journal([&](Journal& to) { to.sample(step, values); });
+  }
+  if (among(request_.frames, step)) keep();
+}
+
+// `add`: to the curves; else the watch alone looks.
+void Loop::measure(bool look, bool add) {
+  const Reading reading = engine_->read(meter_.asked(look));
+  if (look) looked_ = engine_->step_count();
+  if (!add || !leads()) return;
+  meter_.add(reading);
+  sample_steps_.push_back(reading.step);
+}
+
+void Loop::keep() {
+  RunState frame = engine_->frame(request_.forces);
+  if (!leads()) return;
+  if (const State* state = std::get_if<State>(&frame)) journal([&](Journal& to) { to.frame(*state); });
+  give(std::move(frame));
+}
+
+void Loop::give(RunState frame) {
+  if (request_.keep)
+    request_.keep(frame);
+  else if (State* state = std::get_if<State>(&frame))
+    trace_.frames.push_back(std::move(*state));
+  else
+    trace_.bodies.push_back(std::move(std::get<RealFrame>(frame)));
+}
+
+// A journal that cannot be written ends the checkpoints, not the run; the last checkpoint holds.
+void Loop::journal(const std::function<void(Journal&)>& write) {
+  if (!journal_) return;
+  try {
+    write(*journal_);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "warning: {}; no checkpoint from step {} on\n", error.what(), trace_.steps_done);
+    journal_.reset();
+  }
+}
+
+void Loop::advance(uint64_t steps) {
+  const uint64_t before = engine_->step_count();
+  const auto begin = Clock::now();
+  const auto done = [&] {
+    trace_.steps_done = engine_->step_count();
+    if (!request_.cycles) return;
+    const std::vector<PhaseSpan> spans = engine_->phase_times();
+    trace_.cycles.insert(trace_.cycles.end(), spans.begin(), spans.end());
+    if (!spans.empty()) journal([&](Journal& to) { to.cycles(before, spans); });
+  };
+  const bool with_hashes = kind_.hashes_come && hashed() && request_.hash_every == 1;
+  try {
+    engine_->advance(steps, with_hashes ? &trace_.state_hash : nullptr);
+  } catch (...) {
+    trace_.seconds += since(begin);
+    if (kind_.keeps_state) done();
+    throw;
+  }
+  trace_.seconds += since(begin);
+  done();
+}
+
+// The step up to which nobody asks for a state.
+uint64_t Loop::next_stop() const {
+  const uint64_t step = trace_.steps_done;
+  uint64_t to = sooner(request_.frames, step, sooner(request_.probes, step, request_.steps));
+  if (hashed() && (request_.hash_every > 1 || !kind_.hashes_come))
+    to = std::min(to, (step / request_.hash_every + 1) * request_.hash_every);
+  if (save_plan_.every_steps > 0) to = std::min(to, saved_step_ + save_plan_.every_steps);
+  return std::max(to, step + 1);
+}
+
+void Loop::go() {
+  Progress progress(kind_.name, request_.steps, kind_.particles, trace_.steps_done, request_.progress);
+  bool stop = engine_->agreed(interrupted(), false).first;
+  while (trace_.steps_done < request_.steps && !stop) {
+    const auto begin = Clock::now();  // a piece is long beside what a batch costs to start
+    advance(kind_.batches ? std::min(next_stop() - trace_.steps_done, piece_) : 1);
+    record();
+    if (since(begin) < 0.1 && piece_ < request_.steps) piece_ *= 2;
+    if (leads()) progress.at(trace_.steps_done);
+    bool due = false;
+    std::tie(stop, due) = engine_->agreed(interrupted(), save_is_due());
+    if (due && !stop && trace_.steps_done < request_.steps) save();
+  }
+}
+
+bool Loop::save_is_due() const {
+  return journal_ &&
+         ((save_plan_.every_steps > 0 && trace_.steps_done - saved_step_ >= save_plan_.every_steps) ||
+          (save_plan_.every_seconds > 0 && since(saved_time_) >= save_plan_.every_seconds));
+}
+
+void Loop::save() {
+  bool failed = false;
+  if (leads())
+    failed = !write_state();
+  else
+    engine_->for_each_slot([](const Particle&) {});  // they are gathered where they are written
+  result_.left_checkpoint = !engine_->agreed(failed, false).first;
+  saved_ = saved_ || result_.left_checkpoint;
+}
+
+// Whether the checkpoint is there.
+bool Loop::write_state() {
+  CheckpointHead head;
+  head.plan_hash = kind_.plan_hash;
+  head.step = trace_.steps_done;
+  head.particles = static_cast<uint32_t>(kind_.particles);
+  head.hash_every = request_.hash_every;
+  head.cycles = request_.cycles;
+  head.energies = request_.energies;
+  head.seconds = trace_.seconds;
+  head.largest_speed = std::max(result_.largest_speed, engine_->largest_speed());
+  head.momentum = before_.fixed;
+  head.engine = engine_->memory();
+  head.probes = meter_.memory();
+  journal([&](Journal& to) { head.journal = to.sync(); });
+  saved_step_ = head.step;
+  saved_time_ = Clock::now();
+  if (!journal_) {
+    engine_->for_each_slot([](const Particle&) {});  // the other processes send theirs
+    return false;
+  }
+  try {
+    write_checkpoint(save_plan_.path, head, *engine_, kind_.displaced);
+    return true;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "warning: {}; no checkpoint of step {}\n", error.what(), head.step);
+    return false;
+  }
+}
+
+// The state after `step` once more, where the engine has lost it.
+void Loop::go_back_to(uint64_t step) {
+  if (saved_) {
+    CheckpointReader from(save_plan_.path, kind_.plan_hash, kind_.displaced);
+    make_engine(&from, false);
+  } else {
+    make_engine(nullptr, false);
+  }
+  engine_->advance(step - engine_->step_count());
+}
+
+// The last state is part of every answer, also of a run that ended early: its hash, its frame, its energies.
+void Loop::finish() {
+  const uint64_t last = trace_.steps_done;
+  const bool frame = request_.last && !request_.frames.empty() && !among(request_.frames, last);
+  const bool sample = request_.last && request_.energies && !among(request_.probes, last);
+  const bool look = request_.last && meter_.watch() && looked_ != last;
+  const bool hash = request_.last && hashed() && last % request_.hash_every != 0;
+  if (lost_ && (sample || look || hash || frame || request_.totals)) go_back_to(last);
+  if (hash) trace_.state_hash.push_back(engine_->hash());
+  if (sample || look) measure(look || sample, sample);
+  if (frame) {
+    RunState last_frame = engine_->frame(request_.forces);
+    if (leads()) give(std::move(last_frame));
+  }
+  trace_.curves = meter_.curves();
+  meter_.conclude();
+  if (const Watch* watch = meter_.watch()) {
+    trace_.findings = watch->findings();
+    if (const auto far = kind_.floats ? find_far_origin(scene_) : std::nullopt)
+      trace_.findings.insert(trace_.findings.begin(), *far);
+    trace_.watched = watch->last_step();
+  }
+  if (request_.totals) total();
+  if (const auto seconds = engine_->seconds()) trace_.seconds = *seconds;
+  trace_.notes = engine_->notes();
+}
+
+void Loop::total() {
+  const Momentum after = engine_->momentum();
+  if (kind_.fixed)
+    for (int a = 0; a < 3; ++a)
+      result_.momentum_change =
+          std::max(result_.momentum_change, std::abs(static_cast<double>(after.fixed[a] - before_.fixed[a])));
+  else
+    result_.momentum_change = (after.real - before_.real).norm();
+  result_.largest_speed = std::max(result_.largest_speed, engine_->largest_speed());
+}
+
+Recorded Loop::run() {
+  try {
+    saved_time_ = Clock::now();
+    if (save_plan_.resume)
+      resume();
+    else
+      start();
+    go();
+    result_.interrupted = trace_.steps_done < request_.steps;
+    if (result_.interrupted && !save_plan_.path.empty()) save();
+  } catch (const RunError& error) {
+    trace_.stop = StopReason{error.fault, error.step, error.node, error.particle, error.number, error.what()};
+    lost_ = !kind_.keeps_state;
+  } catch (const StepError& error) {
+    trace_.stop = error.reason;
+    lost_ = !kind_.keeps_state;
+  }
+  if (!engine_) return std::move(result_);  // not even the initial state could be held
+  counters_ = engine_->counters();
+  finish();
+  trace_.counters = std::move(counters_);
+  return std::move(result_);
+}
+
+}  // namespace
+
+void read_interval(const std::string& text, CheckpointPlan& plan) {
+  const auto refuse = [&]() -> double {
+    throw InputError(fmt::format("'{}' says no interval between checkpoints", text),
+                     "such as '1000 steps', '30 s', '5 min' or '2 h'");
+  };
+  size_t digits = 0;
+  double number = 0;
+  try {
+    number = std::stod(text, &digits);
+  } catch (const std::logic_error&) {
+    refuse();
+  }
+  const size_t at = text.find_first_not_of(' ', digits);
+  const std::string unit = at == std::string::npos ? "" : text.substr(at);
+  const double seconds = unit == "s" ? 1 : unit == "min" ? 60 : unit == "h" ? 3600 : 0;
+  if (!(number > 0) || number > 1e15 || (seconds == 0 && unit != "steps" && unit != "step")) refuse();
+  if (seconds > 0)
+    plan.every_seconds = number * seconds;
+  else if (number == std::floor(number))
+    plan.every_steps = static_cast<uint64_t>(number);
+  else
+    refuse();
+}
+
+void remove_checkpoint(const std::string& path) {
+  std::error_code none;
+  if (path.empty()) return;
+  std::filesystem::remove(path, none);
+  std::filesystem::remove(path + ".journal", none);
+  std::filesystem::remove(path + ".tmp", none);
+}
+
+Recorded record(const Scene& scene, const EngineKind& kind, const RunRequest& request) {
+  return Loop(scene, kind, request).run();
+}
+
+namespace {
+constexpr const char* kChange = "momentum_change";
+constexpr const char* kSpeed = "largest_speed";
+}  // namespace
+
+void put_totals(Recorded& run) {
+  run.trace.counters.emplace_back(kChange, run.momentum_change);
+  run.trace.counters.emplace_back(kSpeed, run.largest_speed);
+}
+
+void take_totals(Recorded& run) {
+  Counters& counters = run.trace.counters;
+  const auto take = [&](const char* name, double& to) {
+    const auto at =
+        std::find_if(counters.begin(), counters.end(), [&](const auto& c) { return c.first == name; });
+    if (at == counters.end()) return;
+    to = at->second;
+    counters.erase(at);
+  };
+  take(kChange, run.momentum_change);
+  take(kSpeed, run.largest_speed);
+}
+
+}  // namespace cuboct

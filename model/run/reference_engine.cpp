@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "model/run/reference_engine.h"
+
+#include <stdexcept>
+
+namespace cuboct {
+
+ReferenceEngine::ReferenceEngine(const Scene& scene, const Body& body, const RealOptions& options,
+                                 double cell_edge)
+    : scene_(scene),
+      options_(options),
+      cell_edge_(cell_edge),
+      reference_(scene.rule, body, scene.periodic, options) {}
+
+void ReferenceEngine::advance(uint64_t steps, std::vector<uint64_t>*) {
+  const uint64_t before = step_count();
+  for (uint64_t done = 0; done < steps; ++done) {
+    try {
+      reference_.step();
+    } catch (const std::runtime_error& error) {
+      throw StepError({Fault::none, before + done, 0, 0, 0, error.what()});
+    }
+  }
+}
+
+uint64_t ReferenceEngine::hash() { throw std::logic_error("states in real numbers have no hash"); }
+
+RunState ReferenceEngine::frame(bool forces) {
+  const Body& body = reference_.body();
+  return RealFrame{step_count(), body.x, body.v, forces ? reference_.forces() : std::vector<Vec3>()};
+}
+
+Reading ReferenceEngine::read(const Asked& asked) {
+  const bool half_step = options_.integrator == Integrator::semi_implicit_euler;
+  return read_reference(scene_.rule, reference_, half_step ? scene_.rule.dt / 2 : 0, asked);
+}
+
+double ReferenceEngine::largest_speed() { return reference_.largest_speed() * scene_.rule.dt / cell_edge_; }
+
+Notes ReferenceEngine::notes() {
+  return {{"precision", options_.precision == Precision::float32 ? "float" : "double"},
+          {"integrator",
+           options_.integrator == Integrator::velocity_verlet ? "velocity Verlet" : "semi-implicit Euler"}};
+}
+
+}  // namespace cuboct

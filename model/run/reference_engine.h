@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// The rule in real numbers behind the interface of all engines.
+#pragma once
+
+#include "model/run/engine.h"
+#include "model/scene/scene.h"
+
+namespace cuboct {
+
+class ReferenceEngine : public Engine {
+ public:
+  // Keeps a reference to `scene`; `body` may be another one than the scene's. `cell_edge`: m, in which speeds
+  // are told.
+  ReferenceEngine(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge);
+
+  uint64_t step_count() const override { return reference_.step_count(); }
+  // A step in which a position stops being finite takes the state with it.
+  void advance(uint64_t steps, std::vector<uint64_t>*) override;
+  uint64_t hash() override;
+  RunState frame(bool forces) override;
+  Reading read(const Asked& asked) override;
+  Momentum momentum() override { return {{}, reference_.momentum()}; }
+  double largest_speed() override;
+  Counters counters() override { return {{"threads", options_.threads}}; }
+  Notes notes() override;
+  const Body& body() const { return reference_.body(); }
+
+ private:
+  const Scene& scene_;
+  RealOptions options_;
+  double cell_edge_;
+  Reference reference_;
+};
+
+}  // namespace cuboct

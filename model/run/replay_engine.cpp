@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "model/run/replay_engine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/trace/compare.h"
+
+namespace cuboct {
+
+void ReplayEngine::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
+  const uint64_t end = std::min(step_ + steps, trace_.steps()), wanted = step_ + steps;
+  if (hashes)
+    for (uint64_t step = step_ + 1; step <= end; ++step) hashes->push_back(trace_.state_hash.at(step));
+  step_ = end;
+  if (step_ == wanted) return;
+  if (trace_.stop) throw StepError(*trace_.stop);
+  ended_ = true;
+}
+
+std::vector<PhaseSpan> ReplayEngine::phase_times() {
+  const auto at = [&](uint64_t step) {
+    return trace_.cycles.begin() + static_cast<ptrdiff_t>(std::min(step * row_, trace_.cycles.size()));
+  };
+  std::vector<PhaseSpan> spans(at(shown_), at(step_));
+  shown_ = step_;
+  return spans;
+}
+
+State ReplayEngine::make_state() {
+  const State* state = frame_at(trace_, step_);
+  if (!state) throw std::logic_error(fmt::format("the trace holds no state of step {}", step_));
+  return *state;
+}
+
+std::vector<uint64_t> asked_steps(const RunRequest& request) {
+  std::vector<uint64_t> steps = request.frames;
+  steps.insert(steps.end(), request.probes.begin(), request.probes.end());
+  if (request.totals || request.energies) steps.insert(steps.end(), {0, request.steps});
+  std::sort(steps.begin(), steps.end());
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+  return steps;
+}
+
+bool asks_for_last(const RunRequest& request) {
+  return request.totals || request.energies || !request.frames.empty();
+}
+
+}  // namespace cuboct

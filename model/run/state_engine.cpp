@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "model/run/state_engine.h"
+
+#include <algorithm>
+
+namespace cuboct {
+
+const State& StateEngine::here() {
+  if (state_ && state_->step == step_count()) return *state_;
+  state_ = make_state();
+  largest_speed_ = std::max(largest_speed_, cuboct::largest_speed(setting_.fixed, *state_));
+  return *state_;
+}
+
+RunState StateEngine::frame(bool) {
+  here();
+  State state = std::move(*state_);
+  state_.reset();
+  return state;
+}
+
+Reading StateEngine::read(const Asked& asked) {
+  const State& state = here();
+  if (!leads()) return {};
+  return read_state(setting_.rule, setting_.fixed, setting_.lattice, setting_.origin, state, asked,
+                    setting_.threads);
+}
+
+}  // namespace cuboct
