@@ -108,7 +108,7 @@ Items summarise(const Loaded& loaded, const Recorded& run, bool real) {
   if (real)
     items.add("momentum change", run.momentum_change, "kg m/s", forced);
   else
-    items.add("momentum change", std::llround(run.momentum_change), "LSB", forced);
+    items.add("momentum change", int64_t{std::lround(run.momentum_change)}, "LSB", forced);
 
   add_curves(items, loaded.scene, trace.curves);
   items.add("largest speed", run.largest_speed, "node/step");

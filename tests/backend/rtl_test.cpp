@@ -201,7 +201,7 @@ TEST(RtlAssertion, EndsTheProgramWithOne) {
   for (std::string& w : words) argv.push_back(w.data());
   testing::internal::CaptureStderr();
   const int code =
-      emu::run_program(static_cast<int>(argv.size()), argv.data(),
+      emu::run_machine(static_cast<int>(argv.size()), argv.data(),
                        {.name = "cuboct-rtl", .description = "", .engine = "rtl", .nodes = one_flooded});
   EXPECT_EQ(code, 1);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),

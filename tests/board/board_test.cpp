@@ -48,12 +48,11 @@ TEST(Board, HoldsGoldensBitsAndTheModelsCycles) {
   const Trace golden = golden_trace(setup, 24);
 
   // Step by step, then in one go.
-  const Trace steps = emu::run_on_board(host, setup.plan, setup.initial, {.steps = 24, .frames = up_to(24)});
+  const Trace steps = run_on_board(host, setup, {.steps = 24, .frames = up_to(24)});
   EXPECT_EQ(difference(setup.plan, golden, steps), "");
   EXPECT_EQ(steps.frames.size(), 25u);
   EXPECT_EQ(steps.state_hash.size(), 25u);
-  const Trace few =
-      emu::run_on_board(host, setup.plan, setup.initial, {.steps = 24, .frames = {7, 24}, .hash_every = 0});
+  const Trace few = run_on_board(host, setup, {.steps = 24, .frames = {7, 24}, .hash_every = 0});
   ASSERT_EQ(few.frames.size(), 2u);
   EXPECT_EQ(few.frames[0], golden.frames[7]);
   EXPECT_EQ(few.frames[1], golden.frames[24]);
@@ -81,14 +80,12 @@ TEST(Board, TakesOtherVelocitiesAndFindsAFault) {
   const Trace golden = golden_trace(thrown, 24);
   ASSERT_TRUE(golden.stop);
   EXPECT_EQ(golden.stop->step, 6u);
-  const Trace stepped =
-      emu::run_on_board(host, thrown.plan, thrown.initial, {.steps = 24, .frames = up_to(24)});
+  const Trace stepped = run_on_board(host, thrown, {.steps = 24, .frames = up_to(24)});
   EXPECT_EQ(difference(thrown.plan, golden, stepped), "");
   EXPECT_EQ(stepped.frames.size(), 7u);
   // The step is found where the board was not read after each.
   for (const uint64_t steps : {7, 9, 24}) {
-    const Trace whole = emu::run_on_board(host, thrown.plan, thrown.initial,
-                                          {.steps = steps, .frames = {0, steps}, .hash_every = 0});
+    const Trace whole = run_on_board(host, thrown, {.steps = steps, .frames = {0, steps}, .hash_every = 0});
     ASSERT_TRUE(whole.stop);
     EXPECT_EQ(*whole.stop, *golden.stop);
     EXPECT_EQ(whole.steps(), 6u);
@@ -100,7 +97,7 @@ TEST(Board, TakesOtherVelocitiesAndFindsAFault) {
   EXPECT_EQ(host.fault(1).particle, 1u);
   EXPECT_EQ(golden.stop->particle, 1u);
   // What was set does not outlive the reset.
-  const Trace again = emu::run_on_board(host, grips.plan, grips.initial, {.steps = 24, .frames = {}});
+  const Trace again = run_on_board(host, grips, {.steps = 24, .frames = {}});
   EXPECT_EQ(difference(grips.plan, golden_trace(grips, 24), again), "");
 }
 
@@ -111,15 +108,14 @@ TEST(Board, OfABrickHoldsGoldensBitsAndFindsTheFaultsCell) {
              thrown = board_setup("thrown.toml", "one_node.toml");
   ASSERT_EQ(grips.plan.nodes(), 1u);
   emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
-  const Trace held = emu::run_on_board(host, grips.plan, grips.initial, {.steps = 24, .frames = up_to(24)});
+  const Trace held = run_on_board(host, grips, {.steps = 24, .frames = up_to(24)});
   EXPECT_EQ(difference(grips.plan, golden_trace(grips, 24), held), "");
   EXPECT_EQ(held.frames.size(), 25u);
   const Trace golden = golden_trace(thrown, 24);
   ASSERT_TRUE(golden.stop);
   EXPECT_EQ(golden.stop->node, 1u);
   for (const uint64_t steps : {7, 24}) {
-    const Trace whole = emu::run_on_board(host, thrown.plan, thrown.initial,
-                                          {.steps = steps, .frames = {0, steps}, .hash_every = 0});
+    const Trace whole = run_on_board(host, thrown, {.steps = steps, .frames = {0, steps}, .hash_every = 0});
     ASSERT_TRUE(whole.stop);
     EXPECT_EQ(*whole.stop, *golden.stop);
   }
@@ -131,10 +127,10 @@ TEST(Board, IsResetInTheMidstOfARun) {
   const Trace golden = golden_trace(setup, 5);
   emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
   for (const uint32_t steps : {1000000u, 2000000u, 3000000u}) {
-    emu::run_on_board(host, setup.plan, setup.initial, {.steps = 2, .frames = {}, .hash_every = 0});
+    run_on_board(host, setup, {.steps = 2, .frames = {}, .hash_every = 0});
     host.run(2, steps);
     EXPECT_TRUE(host.status().busy);
-    const Trace after = emu::run_on_board(host, setup.plan, setup.initial, {.steps = 5, .frames = {5}});
+    const Trace after = run_on_board(host, setup, {.steps = 5, .frames = {5}});
     EXPECT_EQ(difference(setup.plan, golden, after), "");
   }
 }

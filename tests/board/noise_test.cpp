@@ -24,8 +24,7 @@ TEST_P(Noise, CostsTimeAlone) {
     emu::Host host(board.port(), SimulatedBoard::kBaud, 0.05);
     for (const char* scene : {"grips.toml", "thrown.toml"}) {
       const auto setup = board_setup(scene);
-      const Trace run =
-          emu::run_on_board(host, setup.plan, setup.initial, {.steps = 12, .frames = {0, 5, 11}});
+      const Trace run = run_on_board(host, setup, {.steps = 12, .frames = {0, 5, 11}});
       EXPECT_EQ(difference(setup.plan, golden_trace(setup, 12), run), "") << scene;
     }
     retries = host.count().retries;
@@ -49,7 +48,7 @@ TEST(Skew, OfTwoPercentIsNoNoise) {
   for (const char* skew : {"-2", "2"}) {
     const SimulatedBoard board({"--skew", skew});
     emu::Host host(board.port(), SimulatedBoard::kBaud, 20);
-    const Trace run = emu::run_on_board(host, setup.plan, setup.initial, {.steps = 6, .frames = {}});
+    const Trace run = run_on_board(host, setup, {.steps = 6, .frames = {}});
     EXPECT_EQ(difference(setup.plan, golden, run), "") << skew;
     EXPECT_EQ(host.count().retries, 0u) << skew;
   }

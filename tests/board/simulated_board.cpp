@@ -28,8 +28,19 @@ std::string board_file(const std::string& name) {
   return std::string(CUBOCT_SOURCE_DIR) + (shown ? "/scenes/boards/" : "/tests/board/") + name;
 }
 
-Setup board_setup(const std::string& scene, const std::string& arch) {
-  return make_setup(read_scene(board_file(scene)), read_arch(board_file(arch)));
+BoardSetup board_setup(const std::string& scene, const std::string& arch) {
+  BoardSetup setup;
+  setup.scene = read_scene(board_file(scene));
+  static_cast<Setup&>(setup) = make_setup(setup.scene, read_arch(board_file(arch)));
+  return setup;
+}
+
+Trace run_on_board(emu::Host& host, const BoardSetup& setup, const BoardRun& run) {
+  RunRequest request;
+  request.steps = run.steps;
+  request.frames = run.frames;
+  request.hash_every = run.hash_every;
+  return record(setup.scene, emu::board_kind(host, setup.scene, setup.plan), request).trace;
 }
 
 Answer command(const std::vector<std::string>& arguments) {

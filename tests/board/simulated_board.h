@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "emu/board/session.h"
 #include "hw/setup.h"
 #include "model/base/process.h"
 #include "model/trace/trace.h"
@@ -13,7 +14,11 @@
 namespace cuboct::test {
 
 std::string board_file(const std::string& name);  // of scenes/boards or tests/board
-Setup board_setup(const std::string& scene, const std::string& arch = "small.toml");  // likewise
+// A scene with its machine.
+struct BoardSetup : Setup {
+  Scene scene;
+};
+BoardSetup board_setup(const std::string& scene, const std::string& arch = "small.toml");  // likewise
 
 struct Answer {
   int code;  // exit code
@@ -39,6 +44,13 @@ class SimulatedBoard {
   std::string port_;
 };
 
+// A run on a board, as golden's trace.
+struct BoardRun {
+  uint64_t steps = 0;
+  std::vector<uint64_t> frames = {};
+  uint64_t hash_every = 1;
+};
+Trace run_on_board(emu::Host& host, const BoardSetup& setup, const BoardRun& run);
 // Golden's trace with every state.
 Trace golden_trace(const Setup& setup, uint64_t steps);
 // The first difference in hashes, stops, and each state that `run` kept; empty where there is none.

@@ -9,8 +9,8 @@
 #include <cstdlib>
 
 #include "emu/lattice/run.h"
+#include "hw/engine_kind.h"
 #include "hw/setup.h"
-#include "model/analysis/real_meter.h"
 
 namespace cuboct {
 namespace {
@@ -36,15 +36,8 @@ std::vector<uint64_t> looks(const Scene& scene) {
   return at;
 }
 
-std::vector<Curve> in_doubles(const Scene& scene) {
-  Reference reference(scene.rule, scene.body, scene.periodic,
-                      {.integrator = Integrator::semi_implicit_euler, .threads = 1});
-  RealMeter meter(scene, Integrator::semi_implicit_euler, true, true);
-  for (const uint64_t step : looks(scene)) {
-    while (reference.step_count() < step) reference.step();
-    meter.add(reference);
-  }
-  return meter.curves();
+std::vector<Curve> in_doubles(const Scene& scene, const Plan& plan, const RunRequest& request) {
+  return record(scene, reference_kind(scene, plan, {}), request).trace.curves;
 }
 
 const std::vector<double>& values(const std::vector<Curve>& curves, const std::string& name) {
@@ -78,11 +71,11 @@ TEST_P(Accuracy, IsThatOfDoublesToOnePerCent) {
   request.energies = request.watch = true;
   request.engine.threads = 1;
   request.probes = looks(scene);
-  const emu::LatticeResult run = emu::run_lattice(scene, plan, request);
+  const Recorded run = emu::run_lattice(scene, plan, request);
   ASSERT_FALSE(run.trace.stop) << run.trace.stop->text;
   for (const Finding& finding : run.trace.findings) ADD_FAILURE() << finding.text;
 
-  const std::vector<Curve> reference = in_doubles(scene);
+  const std::vector<Curve> reference = in_doubles(scene, plan, request);
   for (const std::string& name : one.curves) {
     const std::vector<double>&fixed = values(run.trace.curves, name), &doubles = values(reference, name);
     ASSERT_EQ(fixed.size(), doubles.size());

@@ -58,7 +58,7 @@ TEST(Plate, BreaksInTwo) {
   request.watch = true;
   request.frames = {scene.steps};
   for (uint64_t step = 0; step <= scene.steps; step += 20) request.probes.push_back(step);
-  const emu::LatticeResult result = emu::run_lattice(scene, plan, request);
+  const Recorded result = emu::run_lattice(scene, plan, request);
   ASSERT_FALSE(result.trace.stop) << result.trace.stop->text;
   EXPECT_TRUE(result.trace.findings.empty());
 

@@ -50,7 +50,7 @@ TEST(GpuRun, OfALostPositionKeepsTheStatesBefore) {
   request.probes = {0, 20};
   uint64_t done = 0;
   request.hooks.did = [&](uint64_t steps) { done += steps; };
-  const GpuResult result = run_gpu(scene, plan, request);
+  const Recorded result = run_gpu(scene, plan, request);
   const Trace& trace = result.trace;
   ASSERT_TRUE(trace.stop);
   EXPECT_EQ(trace.stop->text, "step 8: particle 3 is gone");

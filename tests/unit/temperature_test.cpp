@@ -6,9 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "hw/setup.h"
-#include "model/analysis/real_meter.h"
-#include "model/analysis/state_meter.h"
+#include "hw/engine_kind.h"
 
 namespace cuboct {
 namespace {
@@ -34,19 +32,18 @@ struct Measured {
   }
   std::vector<Curve> curves;
 };
+Measured at_start(const Scene& scene, const EngineKind& kind) {
+  RunRequest request;
+  request.energies = true;
+  return {record(scene, kind, request).trace.curves};
+}
 Measured in_doubles(const Scene& scene) {
-  RealMeter meter(scene, Integrator::semi_implicit_euler, false, true);
-  meter.add(Reference(scene.rule, scene.body, scene.periodic));
-  return {meter.curves()};
+  const Plan plan = plan_of(scene, Arch());
+  return at_start(scene, reference_kind(scene, plan, {}));
 }
 Measured in_integers(const Scene& scene) {
-  Arch arch;
-  const Setup setup = make_setup(scene, arch);
-  StateMeter meter(
-      scene, setup.plan.rule, setup.plan.lattice, setup.plan.origin,
-      [&](uint32_t id) { return setup.initial.particles[id]; }, true);
-  meter.add(setup.initial);
-  return {meter.curves()};
+  const Plan plan = plan_of(scene, Arch());
+  return at_start(scene, golden_kind(scene, plan));
 }
 
 // About the mean (2, 0, 0) m/s: (1, 0, 0), (-1, 0, 0), (0, 3, 0), (0, -3, 0), so K = 2/2 (1 + 1 + 9 + 9) = 20

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The curves of runs in real numbers: by hand, and beside those of the fixed rule.
-#include "model/analysis/real_meter.h"
+#include "model/analysis/meter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hw/setup.h"
-#include "model/analysis/state_meter.h"
-#include "model/contract/golden.h"
+#include "hw/engine_kind.h"
 #include "model/contract/law.h"
 #include "tests/fcc_block.h"
 
@@ -34,11 +32,13 @@ Scene one_particle() {
   return scene;
 }
 
-TEST(RealMeter, EnergiesOfAParticleHeldByForce) {
+TEST(Meter, EnergiesOfAParticleHeldByForce) {
   const Scene scene = one_particle();
   for (const Integrator integrator : {Integrator::semi_implicit_euler, Integrator::velocity_verlet}) {
-    RealMeter meter(scene, integrator, true, true);
-    meter.add(Reference(scene.rule, scene.body, scene.periodic, integrator));
+    const Reference reference(scene.rule, scene.body, scene.periodic, integrator);
+    Meter meter(scene, [&](uint32_t id) { return scene.body.x[id]; }, {.energies = true});
+    const double late = integrator == Integrator::semi_implicit_euler ? scene.rule.dt / 2 : 0;
+    meter.add(read_reference(scene.rule, reference, late, meter.asked()));
     const std::vector<Curve> curves = meter.curves();
     ASSERT_EQ(curves.size(), 4u);
     // Velocities of semi-implicit Euler live half a step earlier.
@@ -52,22 +52,16 @@ TEST(RealMeter, EnergiesOfAParticleHeldByForce) {
 
 // The same names, units and, but for rounding and the table's error, values as those of the fixed rule: warm
 // in a box that repeats, and held by controllers under gravity.
-TEST(RealMeter, IsThatOfTheFixedRule) {
+TEST(Meter, IsThatOfTheFixedRule) {
   for (const char* name : {"lj_block", "failures/stiff_hold_healthy"}) {
     const Scene scene = read_scene(kRoot + "/scenes/" + name + ".toml");
-    const auto setup = make_setup(scene, {});
-    const Plan& plan = setup.plan;
-    Golden golden(plan.rule, plan.lattice, plan.arch.capacity, setup.initial);
-    Reference reference(scene.rule, scene.body, scene.periodic);
-    StateMeter fixed(
-        scene, plan.rule, plan.lattice, plan.origin, [&](uint32_t id) { return setup.initial.particles[id]; },
-        true);
-    RealMeter real(scene, Integrator::semi_implicit_euler, true, true);
-    for (int n = 0; n < 20; ++n) golden.step();
-    reference.step(20);
-    fixed.add(golden.state());
-    real.add(reference);
-    const std::vector<Curve> a = fixed.curves(), b = real.curves();
+    const Plan plan = plan_of(scene, {});
+    RunRequest request;
+    request.steps = 20;
+    request.probes = {20};
+    request.energies = true;
+    const std::vector<Curve> a = record(scene, golden_kind(scene, plan), request).trace.curves,
+                             b = record(scene, reference_kind(scene, plan, {}), request).trace.curves;
     ASSERT_EQ(a.size(), b.size()) << name;
     for (size_t k = 0; k < a.size(); ++k) {
       EXPECT_EQ(a[k].name, b[k].name);
