@@ -26,7 +26,7 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
     commands.push_back(command->get_name());
   if (words.empty()) throw InputError("no command", "one of " + list_of(commands) + "; see 'cuboct --help'");
   if (words[0].starts_with('-')) {
-    if (words[0] != "--help" && words[0] != "-h")
+    if (words[0] != "--help" && words[0] != "-h" && words[0] != "--version")
       throw InputError(fmt::format("unknown option '{}'", words[0]), "see 'cuboct --help'");
     return;
   }
@@ -66,6 +66,8 @@ int main_of(int argc, char** argv) {
   int exit_code = 0;
   CLI::App app("Particle matter and the hardware that computes it: one rule, the same bits everywhere.",
                "cuboct");
+  app.set_version_flag(
+      "--version", [] { return version_text(); }, "Print version, commit and engines, and exit");
   app.require_subcommand(1);
   add_check(app, exit_code);
   add_run(app, exit_code);
