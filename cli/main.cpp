@@ -90,7 +90,7 @@ int main_of(int argc, char** argv) {
   } catch (const AlreadyTold& told) {
     return told.exit_code;
   } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}\n", error.told());
     return 2;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "out of memory: {} are free now\n", in_bytes(static_cast<double>(free_memory())));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <regex>
 
 #include "tests/cli/shell.h"
@@ -53,6 +54,26 @@ TEST(Command, TellsItsVersionAndTheEnginesBesideIt) {
                                                       "studies    (built in|left out)\n"
                                                       "synthesis  (built in|left out)\n")))
       << answer.out;
+}
+
+// A line of the file stands between message and hint.
+TEST(Command, ShowsTheLineThatIsWrong) {
+  const Bench bench(false);
+  const std::string path = bench.path("a.toml");
+  std::ofstream(path) << "units = \"reduced\"\n\tmas\x1b = 1\n";
+  const Answer broken = bench.cuboct({"check", path});
+  EXPECT_EQ(broken.code, 2);
+  EXPECT_TRUE(std::regex_search(broken.err, std::regex("^[^\n]*a.toml:2:5: [^\n]*\n"
+                                                       "   2 |  mas\\\\x1b = 1\n"
+                                                       "     \\|     \\^\n$")))
+      << broken.err;
+  std::ofstream(path) << "units = \"reduced\"\nmass = 1\n[run]\n  dt = 0.1\n[law]\nkind = \"lk\"\n";
+  const Answer wrong = bench.cuboct({"check", path});
+  EXPECT_EQ(wrong.err, path +
+                           ":6:8: unknown law 'lk'\n"
+                           "   6 | kind = \"lk\"\n"
+                           "     |        ^\n"
+                           "  hint: did you mean 'lj'?\n");
 }
 
 TEST(Command, RefusesWrongValues) {
