@@ -11,9 +11,9 @@
 #include "cli/estimate.h"
 #include "cli/summary.h"
 #include "hw/cycles.h"
+#include "hw/node_area.h"
 #include "model/analysis/motion.h"
 #include "model/contract/quantise.h"
-#include "study/cost.h"
 
 namespace cuboct {
 namespace {
@@ -162,7 +162,7 @@ Items resolve(const Loaded& loaded) {
   items.add("particle record", plan.words.particle_bits, "bit", beats(plan.words.migrate_beats));
   items.add("link", plan.words.link_bits, "bit");
   if (!plan.bricks.single()) {
-    const double bits = study::memory_bits(plan), cells = cells_of(plan.bricks.shape());
+    const double bits = memory_bits(plan), cells = cells_of(plan.bricks.shape());
     items.add("node memory", bits, "bit",
               fmt::format("particles, halos, queue, sums; {:.0f} per cell", bits / cells));
   }

@@ -26,6 +26,9 @@ void add_picture(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
 void add_stability(CLI::App& app, int& exit_code);
 
+// What `cuboct --version` prints.
+std::string version_text();
+
 // What every command that reads a scene takes.
 struct Input {
   std::string scene;

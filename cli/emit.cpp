@@ -6,53 +6,28 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "cli/fit.h"
+#include "cli/emit.h"
 #include "hw/rtl_emit.h"
-#include "model/base/interrupt.h"
 #include "model/base/text.h"
-#include "synth/tool.h"
+#include "model/scene/config.h"
 
 namespace cuboct {
 namespace {
-
-void say_done(const std::string& out, const Plan& plan) {
-  fmt::print("{}: {} nodes, {} particles, plan {:016x}\n", line_text(out), plan.nodes(), plan.particles,
-             plan.hash);
-}
-
-// 0, or 1 where a tool failed or somebody interrupted.
-int emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
-                const BoardChoice& board) {
-  const synth::Target& device = fit_target(target, board);
-  check_emit_directory(out);
-  catch_interrupts();
-  try {
-    Fitter fitter(input, device, board);
-    fitter.choose();
-    const Setup setup = fitter.setup();
-    const std::string table = fitter.table();
-    emit_rtl(setup.plan, setup.initial, out, vector_steps, board, fitter.arch_text());
-    fmt::print("{}{:<16} {}/arch.toml\n", block_text(table), "arch", line_text(out));
-    say_done(out, setup.plan);
-  } catch (const synth::ToolFailed& error) {
-    fmt::print(stderr, "{}\n", line_text(error.what()));
-    return 1;
-  } catch (const synth::Interrupted&) {
-    fmt::print(stderr, "interrupted; nothing was written\n");
-    return 1;
-  }
-  return 0;
-}
 
 // The text of the arch where it is the one that an earlier --fit left in the project: it stays there.
 std::string chosen_before(const std::string& arch, const std::string& out) {
   std::error_code none;
   if (arch.empty() || !std::filesystem::equivalent(arch, std::filesystem::path(out) / "arch.toml", none))
     return {};
-  return synth::read_text(arch);
+  return read_config_text(arch);
 }
 
 }  // namespace
+
+void say_emitted(const std::string& out, const Plan& plan) {
+  fmt::print("{}: {} nodes, {} particles, plan {:016x}\n", line_text(out), plan.nodes(), plan.particles,
+             plan.hash);
+}
 
 void add_emit(CLI::App& app, int& exit_code) {
   struct Options {
@@ -103,7 +78,7 @@ void add_emit(CLI::App& app, int& exit_code) {
     const Plan& plan = loaded.setup.plan;
     emit_rtl(plan, loaded.setup.initial, options->out, options->vector_steps, options->board,
              chosen_before(options->input.arch, options->out));
-    say_done(options->out, plan);
+    say_emitted(options->out, plan);
   });
 }
 

@@ -40,11 +40,17 @@ void print_table(const study::Results& results) {
   fmt::print("{} points, {} refused, {} unstable\n", results.outcomes.size(), refused, unstable);
 }
 
-// Charts need gnuplot; the page does not.
+// Charts need gnuplot; the page does not, but a charting library in the build.
 void report(const study::Results& results, const std::string& out) {
   print_table(results);
-  study::write_page(results, out + "/page.html");
-  fmt::print("page: {}/page.html\n", line_text(out));
+  if (study::has_page()) {
+    study::write_page(results, out + "/page.html");
+    fmt::print("page: {}/page.html\n", line_text(out));
+  } else {
+    fmt::print(stderr,
+               "no page: this cuboct was built without the npm packages of study/web\n"
+               "  hint: tools/setup fetches them; then configure and build again\n");
+  }
   try {
     const size_t charts = study::write_charts(results, out + "/charts").size();
     fmt::print("charts: {} in {}/charts\n", charts, line_text(out));

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 
+#include "model/base/json.h"
 #include "model/base/text.h"
-#include "study/json.h"
 
 namespace cuboct {
 
 void Items::add(const std::string& name, const std::string& text, const std::string& note) {
-  items_.push_back({name, text, study::json(text), "", note, false});
+  items_.push_back({name, text, cuboct::json(text), "", note, false});
 }
 
 void Items::add(const std::string& name, uint64_t value, const std::string& unit, const std::string& note) {
@@ -23,14 +23,14 @@ void Items::add(const std::string& name, int64_t value, const std::string& unit,
 }
 
 void Items::add(const std::string& name, double value, const std::string& unit, const std::string& note) {
-  items_.push_back({name, fmt::format("{:.6g}", value), study::json(value), unit, note, false});
+  items_.push_back({name, fmt::format("{:.6g}", value), cuboct::json(value), unit, note, false});
 }
 
 void Items::add_range(const std::string& name, double last, double smallest, double largest,
                       const std::string& unit) {
   add(name, last, unit == "1" ? "" : unit, fmt::format("{:.4g} to {:.4g}", smallest, largest));
   items_.back().more =
-      fmt::format(", \"smallest\": {}, \"largest\": {}", study::json(smallest), study::json(largest));
+      fmt::format(", \"smallest\": {}, \"largest\": {}", cuboct::json(smallest), cuboct::json(largest));
 }
 
 void Items::add_list(const std::string& name, const std::string& line, const std::vector<Items>& list) {
@@ -41,7 +41,7 @@ void Items::add_list(const std::string& name, const std::string& line, const std
     const char* inner = "";
     for (const Item& part : one.all()) {
       if (part.name == "text") item.text += fmt::format("{}: {}\n", line, line_text(part.text));
-      item.json += fmt::format("{}{}: {}", inner, study::json(part.name), part.json);
+      item.json += fmt::format("{}{}: {}", inner, cuboct::json(part.name), part.json);
       inner = ", ";
     }
     item.json += "}";
@@ -75,9 +75,9 @@ std::string Items::json() const {
   for (const Item& item : items_) {
     std::string name = item.name;
     std::replace(name.begin(), name.end(), ' ', '_');
-    out += fmt::format("{}  {}: {{\"value\": {}", separator, study::json(name), item.json);
-    if (!item.unit.empty()) out += ", \"unit\": " + study::json(item.unit);
-    if (!item.note.empty()) out += ", \"note\": " + study::json(item.note);
+    out += fmt::format("{}  {}: {{\"value\": {}", separator, cuboct::json(name), item.json);
+    if (!item.unit.empty()) out += ", \"unit\": " + cuboct::json(item.unit);
+    if (!item.note.empty()) out += ", \"note\": " + cuboct::json(item.note);
     out += item.more + "}";
     separator = ",\n";
   }

@@ -26,7 +26,7 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
     commands.push_back(command->get_name());
   if (words.empty()) throw InputError("no command", "one of " + list_of(commands) + "; see 'cuboct --help'");
   if (words[0].starts_with('-')) {
-    if (words[0] != "--help" && words[0] != "-h")
+    if (words[0] != "--help" && words[0] != "-h" && words[0] != "--version")
       throw InputError(fmt::format("unknown option '{}'", words[0]), "see 'cuboct --help'");
     return;
   }
@@ -36,6 +36,7 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
                      near.empty() ? "one of " + list_of(commands) : near);
   }
   const CLI::App* command = app.get_subcommand(words[0]);
+  if (command->get_prefix_command()) return;  // left out of this build
   // An empty value is a variable of a script that was never set; an empty path would mean none.
   for (size_t i = 1; i < words.size(); ++i)
     if (words[i].empty() || (words[i].starts_with("--") && words[i].ends_with('='))) {
@@ -65,6 +66,8 @@ int main_of(int argc, char** argv) {
   int exit_code = 0;
   CLI::App app("Particle matter and the hardware that computes it: one rule, the same bits everywhere.",
                "cuboct");
+  app.set_version_flag(
+      "--version", [] { return version_text(); }, "Print version, commit and engines, and exit");
   app.require_subcommand(1);
   add_check(app, exit_code);
   add_run(app, exit_code);
@@ -87,7 +90,7 @@ int main_of(int argc, char** argv) {
   } catch (const AlreadyTold& told) {
     return told.exit_code;
   } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}\n", error.told());
     return 2;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "out of memory: {} are free now\n", in_bytes(static_cast<double>(free_memory())));

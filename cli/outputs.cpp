@@ -8,7 +8,10 @@
 #include <sstream>
 
 #include "model/analysis/measure.h"
+#include "model/base/error.h"
+#include "model/base/excerpt.h"
 #include "model/base/output.h"
+#include "model/scene/config.h"
 
 namespace cuboct {
 namespace {
@@ -120,8 +123,9 @@ RunRecord read_record(const std::string& directory) {
     return record;
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
-    throw InputError(path, static_cast<int>(at.line), static_cast<int>(at.column),
-                     std::string(error.description()));
+    const int line = static_cast<int>(at.line), column = static_cast<int>(at.column);
+    throw InputError(path, line, column, std::string(error.description()), {},
+                     excerpt(line_of(read_config_text(path), line), line, column));
   }
 }
 

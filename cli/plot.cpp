@@ -7,10 +7,10 @@
 #include <iterator>
 #include <sstream>
 
+#include "model/base/gnuplot.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
 #include "model/base/text.h"
-#include "study/gnuplot.h"
 
 namespace cuboct {
 namespace {
@@ -54,7 +54,7 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
                             gnuplot_file(name + ".marks"), kColours[1]);
     }
   }
-  study::run_gnuplot(scratch, script + "\n");
+  run_gnuplot(scratch, script + "\n");
   const std::string svg = contents(scratch.path("plot.svg"));
   const size_t begin = svg.find("<svg");
   if (begin == std::string::npos) throw std::runtime_error("gnuplot made no SVG");
@@ -98,7 +98,7 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
       "unset multiplot\n",
       y(height - kBar + 14), y(height - kBar + 32), gnuplot_label(bar_label), low, high,
       gnuplot_file(scratch.path("bar")), (high - low) / 255, low);
-  study::run_gnuplot(scratch, script);
+  run_gnuplot(scratch, script);
   return contents(scratch.path("plot.png"));
 }
 
@@ -109,9 +109,9 @@ std::string gnuplot(const std::string& data, const std::string& plot, const std:
   const std::string terminal = kind == "svg"
                                    ? fmt::format("svg size {},{} dynamic font 'Helvetica,14'", width, height)
                                    : fmt::format("pngcairo size {},{} font 'Helvetica,13'", width, height);
-  study::run_gnuplot(
-      scratch, fmt::format("{}set encoding utf8\nset terminal {} background '#ffffff'\nset output {}\n{}",
-                           data, terminal, gnuplot_file(out), plot));
+  run_gnuplot(scratch,
+              fmt::format("{}set encoding utf8\nset terminal {} background '#ffffff'\nset output {}\n{}",
+                          data, terminal, gnuplot_file(out), plot));
   return contents(out);
 }
 

@@ -12,11 +12,11 @@
 #include <sstream>
 
 #include "model/base/error.h"
+#include "model/base/gnuplot.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
 #include "model/base/spelling.h"
 #include "model/base/text.h"
-#include "study/gnuplot.h"
 
 namespace cuboct {
 namespace {
@@ -168,7 +168,7 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
       "unset multiplot\n",
       y(height - kBar + 10), y(height - kBar + 28), gnuplot_label(shown.label), low, limit,
       gnuplot_file(scratch.path("bar")), (limit - low) / 255, low);
-  study::run_gnuplot(scratch, script);
+  run_gnuplot(scratch, script);
   std::ifstream in(scratch.path("plot.png"), std::ios::binary);
   std::ostringstream bytes;
   bytes << in.rdbuf();

@@ -14,11 +14,11 @@
 #include "model/base/directory_lock.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
+#include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/progress.h"
 #include "model/base/text.h"
 #include "model/solid/dynamical_matrix.h"
-#include "study/json.h"
 #include "study/stability.h"
 
 namespace cuboct {
@@ -151,14 +151,14 @@ std::string number(double value) { return std::isfinite(value) ? fmt::format("{:
 
 std::string json_of(const Scene& scene, const std::vector<Row>& rows) {
   std::string out = fmt::format("{{\"scene\": {}, \"particles\": {}, \"dt\": {}, \"lines\": [",
-                                study::json(scene.path), scene.body.size(), number(scene.rule.dt));
+                                json(scene.path), scene.body.size(), number(scene.rule.dt));
   for (size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     out += fmt::format(
         "{}\n  {{\"name\": {}, \"note\": {}, \"predicted\": {}, \"frequency\": {}, \"damping_share\": {}, "
         "\"measured\": {{",
-        i > 0 ? "," : "", study::json(row.name), study::json(row.note), number(row.predicted),
-        number(row.frequency), number(row.damping_share));
+        i > 0 ? "," : "", json(row.name), json(row.note), number(row.predicted), number(row.frequency),
+        number(row.damping_share));
     bool first = true;
     for (size_t e = 0; e < kEngines.size(); ++e) {
       if (!row.measured[e]) continue;
@@ -167,7 +167,7 @@ std::string json_of(const Scene& scene, const std::vector<Row>& rows) {
           "{}\n    \"{}\": {{\"stable\": {}, \"unstable\": {}, \"ratio\": {}, \"steps\": {}, \"trials\": {}, "
           "\"refused\": {}, \"sign\": {}}}",
           first ? "" : ",", kEngines[e].key, number(m.stable), number(m.unstable),
-          number(m.middle() / row.predicted), m.steps, m.trials, m.refused, study::json(m.sign));
+          number(m.middle() / row.predicted), m.steps, m.trials, m.refused, json(m.sign));
       first = false;
     }
     out += "}}";

@@ -13,10 +13,11 @@ namespace cuboct {
 
 // Why a format is as wide as it is.
 struct WidthReason {
-  std::string key;     // of the arch file, "difference_frac"
-  int bits = 0;        // as taken
-  int wanted = 0;      // what the scene's accuracy asks for; more than `bits` where no format is as wide, or
-                       // where the arch file says less
+  std::string key;  // of the arch file, "difference_frac"
+  int bits = 0;     // as taken
+  // What the scene's accuracy asks for: more than `bits` where no format is as wide, or where the arch file
+  // says less.
+  int wanted = 0;
   bool asked = false;  // the arch file says so
   std::string why;
 };

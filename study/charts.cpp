@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <set>
 
+#include "model/base/gnuplot.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
-#include "study/gnuplot.h"
 #include "study/measures.h"
 #include "study/page.h"
 #include "study/parameters.h"

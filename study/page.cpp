@@ -6,9 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
-#include "study/json.h"
 #include "study/measures.h"
 #include "study/parameters.h"
 #include "study/series.h"
@@ -177,6 +177,8 @@ std::string data_of(const Results& results) {
 }
 
 }  // namespace
+
+bool has_page() { return true; }
 
 // The frame's places "@name@", in their order.
 std::string page_of(const Results& results) {

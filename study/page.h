@@ -10,6 +10,9 @@
 
 namespace cuboct::study {
 
+// Whether this build has the page: it needs the charting library, which npm fetches.
+bool has_page();
+
 // One HTML file that asks for nothing else: charts (zoom, hover with each point's settings), tables, the
 // machine. Charts and tables are drawn in the reader's browser by study/web/*.js from the numbers that stand
 // in the page. The same results give the same bytes.

@@ -23,11 +23,21 @@ InputError::InputError(const std::string& message, const std::string& hint)
     : std::runtime_error(with_hint(message, hint)) {}
 
 InputError::InputError(const std::string& file, int line, int column, const std::string& message,
-                       const std::string& hint)
-    : std::runtime_error(with_hint(fmt::format("{}:{}:{}: {}", file, line, column, message), hint)) {}
+                       const std::string& hint, const std::string& excerpt)
+    : std::runtime_error(with_hint(fmt::format("{}:{}:{}: {}", file, line, column, message), hint)) {
+  if (!excerpt.empty()) excerpt_ = std::make_shared<const std::string>(excerpt);
+}
 
 InputError InputError::with(const std::string& hint) const {
-  return InputError(parts_of(*this).message, hint);
+  InputError other(parts_of(*this).message, hint);
+  other.excerpt_ = excerpt_;
+  return other;
+}
+
+std::string InputError::told() const {
+  if (!excerpt_) return what();
+  const ErrorParts parts = parts_of(*this);
+  return parts.message + '\n' + *excerpt_ + (parts.hint.empty() ? "" : std::string(kHint) + parts.hint);
 }
 
 ErrorParts parts_of(const InputError& error) {

@@ -4,24 +4,32 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
 namespace cuboct {
 
-// Bad input. `what()` is the complete text that a user sees, in this form (the hint's line only where there
-// is a hint):
+// Bad input. `what()` is its text in this form (the hint's line only where there is a hint); `told()`, what a
+// user sees, has the line of the file between the two, where the error knows it:
 //   scenes/a.toml:12:3: unknown key 'capcity'
+//     12 |   capcity = 8
+//        |   ^
 //     hint: did you mean 'capacity'?
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message, const std::string& hint = {});
-  // line and column count from 1.
+  // line and column count from 1. `excerpt`: of that line, by model/base/excerpt.h.
   InputError(const std::string& file, int line, int column, const std::string& message,
-             const std::string& hint = {});
+             const std::string& hint = {}, const std::string& excerpt = {});
 
   // The same error with another hint.
   InputError with(const std::string& hint) const;
+
+  std::string told() const;
+
+ private:
+  std::shared_ptr<const std::string> excerpt_;  // none: null
 };
 
 // The checks that every fixed engine makes, in the order in which a step makes them. When several particles

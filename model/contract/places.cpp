@@ -9,7 +9,7 @@ void Places::fail(const std::vector<std::string>& paths, const std::string& mess
                   const std::string& hint) const {
   for (const std::string& path : paths)
     if (const auto found = at_.find(path); found != at_.end())
-      throw InputError(file_, found->second.line, found->second.column, message, hint);
+      throw InputError(file_, found->second.line, found->second.column, message, hint, found->second.excerpt);
   throw InputError(message, hint);
 }
 

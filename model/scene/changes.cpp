@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "model/base/error.h"
+#include "model/base/excerpt.h"
 #include "model/base/text.h"
 
 namespace cuboct {
@@ -19,7 +20,9 @@ toml::table parsed(const std::string& text, const std::string& path) {
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
     throw InputError(path, static_cast<int>(at.line), static_cast<int>(at.column),
-                     std::string(error.description()));
+                     std::string(error.description()), {},
+                     excerpt(line_of(text, static_cast<int>(at.line)), static_cast<int>(at.line),
+                             static_cast<int>(at.column)));
   }
 }
 

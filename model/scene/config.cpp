@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "model/base/error.h"
+#include "model/base/excerpt.h"
 #include "model/base/spelling.h"
 
 namespace cuboct {
@@ -36,7 +37,7 @@ struct ConfigNode {
 };
 
 struct ConfigFile {
-  std::string path;
+  std::string path, text;
   bool reduced = false;
   ConfigNode root;
 };
@@ -110,18 +111,27 @@ const ConfigNode* field(const ConfigNode& table, const std::string& key) {
   return found == table.by_key.end() ? nullptr : &table.items[found->second];
 }
 
+[[noreturn]] void fail_at(const ConfigFile& file, int line, int column, const std::string& message,
+                          const std::string& hint = {}) {
+  throw InputError(file.path, line, column, message, hint, excerpt(line_of(file.text, line), line, column));
+}
+
 // Of arrays the first element stands for all: of a million particles none is looked for by its place.
-void add_places(const ConfigNode& node, Places& places) {
-  if (!node.path.empty()) places.add(node.path, node.line, node.column);
+void add_places(const std::vector<std::string_view>& lines, const ConfigNode& node, Places& places) {
+  if (!node.path.empty()) {
+    const std::string_view line = lines[static_cast<size_t>(node.line) - 1];
+    places.add(node.path, node.line, node.column, excerpt(line, node.line, node.column));
+  }
   for (const ConfigNode& item : node.items) {
-    add_places(item, places);
+    add_places(lines, item, places);
     if (node.kind == Kind::array) return;
   }
 }
 
 // toml++ and all that reads its tables go as deep as a key is long: a.b.c makes three tables.
-void check_keys(std::string_view text, const std::string& path) {
+void check_keys(const ConfigFile& file) {
   constexpr int kMostParts = 64;
+  const std::string_view text = file.text;
   int line = 1, parts = 1;
   size_t line_begin = 0;
   std::string_view quote;  // what ends the string at hand
@@ -139,8 +149,8 @@ void check_keys(std::string_view text, const std::string& path) {
     } else if (c == '#') {
       k = std::min(text.find('\n', k), text.size()) - 1;
     } else if (c == '.' && ++parts > kMostParts) {
-      throw InputError(path, line, static_cast<int>(k - line_begin) + 1,
-                       fmt::format("a key of more than {} parts", kMostParts));
+      fail_at(file, line, characters(text.substr(line_begin, k + 1 - line_begin)),
+              fmt::format("a key of more than {} parts", kMostParts));
     } else if (c == '=' || c == ',' || c == '[' || c == '{') {
       parts = 1;
     }
@@ -154,8 +164,8 @@ void check_asked(const ConfigFile& file, const ConfigNode& node) {
       std::vector<std::string> free;
       for (const std::string& key : node.asked)
         if (field(node, key) == nullptr) free.push_back(key);
-      throw InputError(file.path, item.key_line, item.key_column, fmt::format("unknown key '{}'", item.key),
-                       did_you_mean(item.key, free));
+      fail_at(file, item.key_line, item.key_column, fmt::format("unknown key '{}'", item.key),
+              did_you_mean(item.key, free));
     }
   }
   for (const ConfigNode& item : node.items) check_asked(file, item);
@@ -170,7 +180,9 @@ bool ConfigValue::is_string() const { return node_->kind == Kind::string; }
 const std::string& ConfigValue::key() const { return node_->key; }
 
 void ConfigValue::fail(const std::string& message, const std::string& hint) const {
-  throw InputError(file_->path, node_->line, node_->column, message, hint);
+  // What is said of the whole file stands at its first line, which says nothing.
+  if (node_ == &file_->root) throw InputError(file_->path, node_->line, node_->column, message, hint);
+  fail_at(*file_, node_->line, node_->column, message, hint);
 }
 
 void ConfigValue::wants(const std::string& what) const {
@@ -309,8 +321,8 @@ ConfigValue ConfigTable::at(const std::string& key) const {
   // Where a key that no one asked for looks like the missing one, it is the better complaint.
   for (const ConfigNode& item : node_->items)
     if (!node_->asked.contains(item.key) && !nearest_spelling(item.key, {key}).empty())
-      throw InputError(file_->path, item.key_line, item.key_column, fmt::format("unknown key '{}'", item.key),
-                       did_you_mean(item.key, {key}));
+      fail_at(*file_, item.key_line, item.key_column, fmt::format("unknown key '{}'", item.key),
+              did_you_mean(item.key, {key}));
   if (node_->path.empty()) fail(fmt::format("missing key '{}'", key));
   fail(fmt::format("missing key '{}' in '{}'", key, node_->path));
 }
@@ -395,22 +407,22 @@ void ConfigTable::record_as(const std::string& name) const { node_->alias = name
 
 Places ConfigTable::places() const {
   Places places(file_->path);
-  add_places(*node_, places);
+  add_places(lines_of(file_->text), *node_, places);
   return places;
 }
 
 void ConfigTable::done() const { check_asked(*file_, *node_); }
 
-ConfigTable parse_config(const std::string& text, const std::string& path) {
+ConfigTable parse_config(std::string text, const std::string& path) {
   auto file = std::make_shared<ConfigFile>();
   file->path = path;
-  check_keys(text, path);
+  file->text = std::move(text);
+  check_keys(*file);
   try {
-    file->root = convert(toml::parse(text, path), "", "");
+    file->root = convert(toml::parse(file->text, path), "", "");
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
-    throw InputError(path, static_cast<int>(at.line), static_cast<int>(at.column),
-                     std::string(error.description()));
+    fail_at(*file, static_cast<int>(at.line), static_cast<int>(at.column), std::string(error.description()));
   }
   file->root.line = file->root.column = 1;
   file->root.opened = true;

@@ -3,6 +3,8 @@
 // that no one asked for is an error, so that a misspelt option cannot pass silently. All errors are
 // InputError:
 //   scenes/a.toml:12:3: unknown key 'capcity'
+//     12 |   capcity = 8
+//        |   ^
 //     hint: did you mean 'capacity'?
 #pragma once
 
@@ -122,7 +124,7 @@ ConfigTable read_config(const std::string& path);
 // Its text alone.
 std::string read_config_text(const std::string& path);
 // The same for text in memory; `path` stands in messages.
-ConfigTable parse_config(const std::string& text, const std::string& path);
+ConfigTable parse_config(std::string text, const std::string& path);
 
 // Every key that anyone has asked for since `keys` was given, as "table.key"; null stops. For the test that
 // compares readers with their documentation.

@@ -2,6 +2,10 @@
 // What the command line refuses, word for word.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <regex>
+
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -22,13 +26,54 @@ TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
   expect_refusal({"simulate"},
                  "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit, synth, explore, "
                  "stability, bench, picture or report\n");
-  expect_refusal({"--version"}, "unknown option '--version'\n  hint: see 'cuboct --help'\n");
+  expect_refusal({"--verbose"}, "unknown option '--verbose'\n  hint: see 'cuboct --help'\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--stepz", "3"},
                  "unknown option '--stepz' of 'cuboct run'\n  hint: did you mean '--steps'?\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--quux=3"},
                  "unknown option '--quux' of 'cuboct run'\n  hint: see 'cuboct run --help'\n");
   expect_refusal({"run", "scenes/lj_block.toml", "-q"},
                  "unknown option '-q' of 'cuboct run'\n  hint: see 'cuboct run --help'\n");
+}
+
+TEST(Command, TellsItsVersionAndTheEnginesBesideIt) {
+  const Bench bench(true);
+  std::filesystem::copy(CUBOCT_LATTICE, bench.path("bin/cuboct-lattice"));
+  const Answer answer = bench.cuboct({"--version"});
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_EQ(answer.err, "");
+  EXPECT_TRUE(std::regex_match(answer.out, std::regex("cuboct " CUBOCT_VERSION "\n"
+                                                      "commit     (unknown|[-.0-9A-Za-z]+)\n"
+                                                      "golden     built in\n"
+                                                      "reference  built in\n"
+                                                      "lattice    built in(, without MPI|; ranks over MPI: "
+                                                      "cuboct-lattice)\n"
+                                                      "systemc    cuboct-systemc\n"
+                                                      "rtl        cuboct-rtl\n"
+                                                      "fpga       no program cuboct-fpga beside cuboct\n"
+                                                      "gpu        no program cuboct-gpu beside cuboct\n"
+                                                      "studies    (built in|left out)\n"
+                                                      "synthesis  (built in|left out)\n")))
+      << answer.out;
+}
+
+// A line of the file stands between message and hint.
+TEST(Command, ShowsTheLineThatIsWrong) {
+  const Bench bench(false);
+  const std::string path = bench.path("a.toml");
+  std::ofstream(path) << "units = \"reduced\"\n\tmas\x1b = 1\n";
+  const Answer broken = bench.cuboct({"check", path});
+  EXPECT_EQ(broken.code, 2);
+  EXPECT_TRUE(std::regex_search(broken.err, std::regex("^[^\n]*a.toml:2:5: [^\n]*\n"
+                                                       "   2 |  mas\\\\x1b = 1\n"
+                                                       "     \\|     \\^\n$")))
+      << broken.err;
+  std::ofstream(path) << "units = \"reduced\"\nmass = 1\n[run]\n  dt = 0.1\n[law]\nkind = \"lk\"\n";
+  const Answer wrong = bench.cuboct({"check", path});
+  EXPECT_EQ(wrong.err, path +
+                           ":6:8: unknown law 'lk'\n"
+                           "   6 | kind = \"lk\"\n"
+                           "     |        ^\n"
+                           "  hint: did you mean 'lj'?\n");
 }
 
 TEST(Command, RefusesWrongValues) {

@@ -180,6 +180,7 @@ TEST_F(Hostile, EmittedProjectsHoldNothingOfIt) {
   }
 }
 
+#ifdef CUBOCT_HAS_PAGE
 TEST_F(Hostile, StudyPagesAndTablesHoldTextAlone) {
   std::ofstream(scene(), std::ios::app) << "";
   std::ofstream(bench_.path("study.toml"))
@@ -208,6 +209,7 @@ TEST_F(Hostile, StudyPagesAndTablesHoldTextAlone) {
   }
   EXPECT_GT(charts, 0U);
 }
+#endif
 
 TEST_F(Hostile, AStrangersTraceIsRefusedInOneLine) {
   run();

@@ -343,8 +343,10 @@ TEST_F(NothingLost, NoCommandWritesIntoADirectoryInUse) {
       {"run", kScene, "--steps", "4", "--engine", "rtl", "--out", dir()},
       {"run", kScene, "--steps", "4", "--engine", "gpu", "--out", dir()},
       {"crosscheck", kScene, "--steps", "1", "--engines", "golden,lattice", "--out", dir()},
+#ifdef CUBOCT_HAS_STUDIES
       {"explore", "scenes/studies/block.toml", "--no-speed", "--out", dir()},
       {"stability", "scenes/undamped_block.toml", "--maps", dir()},
+#endif
       {"report", dir()},
       {"picture", dir()}};
   const std::string expected = fmt::format(

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -24,6 +25,10 @@ std::string contents(const std::string& path) {
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+std::string without_excerpt(const std::string& text) {
+  return std::regex_replace(text, std::regex("\n *[0-9]+ \\| [^\n]*\n +\\| +\\^(?=\n)"), "");
 }
 
 Bench::Bench(bool fake_engines) {

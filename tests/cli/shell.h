@@ -40,6 +40,9 @@ class Bench {
   std::filesystem::path directory_;
 };
 
+// What cuboct says of a file, less the line that it shows of it (model/base/excerpt.h).
+std::string without_excerpt(const std::string& text);
+
 std::string contents(const std::string& path);
 
 }  // namespace cuboct::test

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hw/node_area.h"
 #include "hw/setup.h"
 
 namespace cuboct::study {

@@ -15,7 +15,9 @@
 #include "model/base/error.h"
 #include "model/scene/config.h"
 #include "model/scene/scene.h"
+#ifdef CUBOCT_HAS_STUDIES
 #include "study/study.h"
+#endif
 
 namespace cuboct {
 namespace {
@@ -145,6 +147,7 @@ TEST(Docs, EveryArchKeyIsDocumentedAndViceVersa) {
     EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
 }
 
+#ifdef CUBOCT_HAS_STUDIES
 // Keys of studies: those of one that takes every branch, less what the scene and arch inside it ask for.
 TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
   const std::string page = text_of(kRoot + "/docs/user/study.md");
@@ -174,6 +177,7 @@ TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
   for (const std::string& key : named)
     EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
 }
+#endif
 
 // "8 to 30" in the row of a key: both ends are read, one beyond each is not.
 TEST(Docs, ArchRangesAreThoseOfTheReader) {

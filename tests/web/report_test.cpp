@@ -11,9 +11,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "model/base/json.h"
 #include "model/base/process.h"
 #include "model/base/text.h"
-#include "study/json.h"
 #include "study/page.h"
 #include "study/parameters.h"
 #include "study/series.h"
@@ -227,9 +227,9 @@ TEST(Series, EveryEngineHasALookOfItsOwnThatCanBeSeen) {
 }
 
 TEST(Json, TextThatCannotEndItsElement) {
-  EXPECT_EQ(study::json(std::string("a\"b\\c</script>\n")), R"("a\"b\\c\u003c/script>\u000a")");
-  EXPECT_EQ(study::json(0.1), "0.1");
-  EXPECT_EQ(study::json(std::vector<double>{1e-300, NAN, -INFINITY}), "[1e-300,null,null]");
+  EXPECT_EQ(json(std::string("a\"b\\c</script>\n")), R"("a\"b\\c\u003c/script>\u000a")");
+  EXPECT_EQ(json(0.1), "0.1");
+  EXPECT_EQ(json(std::vector<double>{1e-300, NAN, -INFINITY}), "[1e-300,null,null]");
 }
 
 std::string bytes(const std::string& path) {

@@ -74,9 +74,11 @@ TEST_F(ExploreOnGpu, WithoutTheProgramItsPointsAreLeftOutAndComeFromAnotherMachi
   EXPECT_TRUE(added.out.starts_with("6 rows from ")) << added.out;
   EXPECT_EQ(left_out(added.out), "");
   EXPECT_EQ(points_of(here), points_of(there));
+#ifdef CUBOCT_HAS_PAGE
   const std::string page = contents(here + "/page.html");
   EXPECT_NE(page.find("\"name\":\"gpu, float (host)\""), std::string::npos);
   EXPECT_NE(page.find("\"name\":\"lattice, fixed\""), std::string::npos);
+#endif
 }
 
 // What the program says where there is no driver is tested with it.

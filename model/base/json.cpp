@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/json.h"
+#include "model/base/json.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "model/base/text.h"
 
-namespace cuboct::study {
+namespace cuboct {
 
 std::string json(const std::string& text) { return json_text(text); }
 
@@ -39,4 +39,4 @@ JsonObject& JsonObject::add(const std::string& name, const std::string& value_as
   return *this;
 }
 
-}  // namespace cuboct::study
+}  // namespace cuboct

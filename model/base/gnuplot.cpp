@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/gnuplot.h"
+#include "model/base/gnuplot.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "model/base/error.h"
 #include "model/base/output.h"
 
-namespace cuboct::study {
+namespace cuboct {
 
 void run_gnuplot(const Scratch& scratch, const std::string& script) {
   write_text(scratch.path("script.gp"), script);
@@ -21,4 +21,4 @@ void run_gnuplot(const Scratch& scratch, const std::string& script) {
   if (code != 0) throw std::runtime_error(fmt::format("gnuplot ended with exit code {}", code));
 }
 
-}  // namespace cuboct::study
+}  // namespace cuboct

@@ -6,10 +6,10 @@
 
 #include "model/base/process.h"
 
-namespace cuboct::study {
+namespace cuboct {
 
 // Runs a script, written into `scratch`, without the user's own settings of gnuplot. Throws InputError where
 // gnuplot is not there, std::runtime_error where it ends with an error (its own text is on stderr).
 void run_gnuplot(const Scratch& scratch, const std::string& script);
 
-}  // namespace cuboct::study
+}  // namespace cuboct

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace cuboct::study {
+namespace cuboct {
 
 std::string json(const std::string& text);  // json_text of model/base/text.h
 std::string json(double value);             // the shortest text that reads back the same; null: not finite
@@ -30,4 +30,4 @@ class JsonObject {
   std::string members_;
 };
 
-}  // namespace cuboct::study
+}  // namespace cuboct
