@@ -141,7 +141,7 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
     define("board/cuboct_board.sv", "`define CUBOCT_BRICKS  // nodes serve several cells each\n");
   if (!design.moved.empty())
     for (const char* path : {design.bricks() ? "rtl/cuboct_brick_core.sv" : "rtl/cuboct_node_core.sv",
-                             "rtl/cuboct_update.sv", "board/cuboct_board.sv"})
+                             "rtl/cuboct_datapath.sv", "rtl/cuboct_update.sv", "board/cuboct_board.sv"})
       define(path, "`define CUBOCT_HOST_VELOCITY  // velocities of held and moved types are set by a host\n");
   write(dir, files);
 }

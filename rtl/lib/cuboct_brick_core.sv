@@ -115,16 +115,10 @@ module cuboct_brick_core #(
 );
   // Fields of a particle.
   localparam int PosBits    = Axes * PositionFrac;
-  localparam int VelBits    = Axes * VelocityBits;
-  localparam int DispBits   = Axes * DisplacementBits;
   localparam int AwayBits   = 2 * (Axes - 1);
   localparam int VelLsb     = PosBits + AwayBits;
-  localparam int TypeLsb    = VelLsb + VelBits;
+  localparam int TypeLsb    = VelLsb + Axes * VelocityBits;
   localparam int IdLsb      = TypeLsb + TypeBits;
-  localparam int ResidueLsb = IdLsb + IdBits;
-  localparam int ResidueBits = Axes * Guard;
-  localparam int DispLsb    = ResidueLsb + ResidueBits;
-  localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
   localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}
   localparam int SeenBits   = (HaloVelocity + HaloType > 0) ? IdLsb : PosBits;  // what others see of it
   // A candidate is a halo record with signs.
@@ -150,20 +144,6 @@ module cuboct_brick_core #(
   localparam int RowBits     = (Rows > 1) ? $clog2(Rows) : 1;
   localparam int RowAddrBits = CellBits + RowBits;
   localparam int HaloAddrBits = TagBits + SlotBits;
-  // |s| <= 2^(SBits-1) and |d| <= 2^D; a cell sees at most 3^Axes * Capacity kicks.
-  localparam int SBits       = (Damped != 0) ? StrengthBits : ForceBits;
-  localparam int KickFull    = SBits + PositionFrac - DifferenceShift + 1 - KickShift;
-  localparam int KickBits    = (KickFull > 2) ? KickFull : 2;
-  localparam int PipeSumBits = KickBits + $clog2(((Axes == 3) ? 27 : 9) * Capacity);
-  // No number that a fault tells is longer: w, s before their checks; sums, v, u; the capacity.
-  localparam int SFullBits   = ((DampBits + RelativeVelocityBits > ForceBits) ? DampBits + RelativeVelocityBits : ForceBits)
-                               + 2;
-  localparam int PullBits    = (Pd != 0) ? GainBits + DisplacementBits + 6 : 10;
-  localparam int VFullBits   = ((VelocityBits > SumBits) ? VelocityBits : SumBits) + 4;
-  localparam int LongPull    = (PullBits > VFullBits) ? PullBits : VFullBits;
-  localparam int LongKick    = (PipeSumBits + ForcePipes > SFullBits) ? PipeSumBits + ForcePipes : SFullBits;
-  localparam int LongNumber  = (LongPull > LongKick) ? LongPull : LongKick;
-  localparam int NumberBits  = (LongNumber < 64) ? LongNumber : 64;
   // Update.
   localparam int UpdateLatency = (Pd != 0) ? 7 : 4;  // a cycle after the last one is written MIGRATE may read it
   localparam int UpdateTail    = UpdateLatency - 2;
@@ -247,7 +227,7 @@ module cuboct_brick_core #(
   logic [SeenBits-1:0]            stream_data;
   logic                           stream_read;
   logic [ForcePipes*SlotBits-1:0] issue_slot;
-  logic [ForcePipes*PlaceBits-1:0] kick_place, kick_place_next;
+  logic [ForcePipes*PlaceBits-1:0] issue_place;
   logic [ForcePipes*AddrBits-1:0] pipe_addr, kick_addr_next;
   logic [ForcePipes*SeenBits-1:0] pipe_data;
   logic [ForcePipes*IdBits-1:0]   kick_id;
@@ -340,12 +320,7 @@ module cuboct_brick_core #(
     ) u_pipe_addr (
       .cell_i(issue_cell), .slot_i(issue_slot[f*SlotBits +: SlotBits]), .addr_o(pipe_addr[f*AddrBits +: AddrBits])
     );
-    cuboct_brick_addr #(
-      .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
-    ) u_kick_addr_next (
-      .cell_i(kick_place_next[f*PlaceBits+SlotBits +: CellBits]), .slot_i(kick_place_next[f*PlaceBits +: SlotBits]),
-      .addr_o(kick_addr_next[f*AddrBits +: AddrBits])
-    );
+    assign issue_place[f*PlaceBits +: PlaceBits] = {issue_cell, issue_slot[f*SlotBits +: SlotBits]};
   end
   cuboct_brick_slots #(
     .Axes(Axes), .Bits(OwnBits), .SeenBits(SeenBits), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
@@ -499,12 +474,8 @@ module cuboct_brick_core #(
 
   // Force engine.
   logic [CandidateBits-1:0]     issue_candidate;
-  logic [ForcePipes-1:0]        issue, pipe_busy, kick_valid, pipe_fault, pipe_fault_strength;
-  logic [ForcePipes*64-1:0]     pipe_fault_number;
-  logic                         finder_done, force_stall, meet;
-  logic [ForcePipes*Axes*PipeSumBits-1:0] sums;
-  logic [Axes*PipeSumBits-1:0]  total;
-  logic                         take;
+  logic [ForcePipes-1:0]        issue, pipe_busy;
+  logic                         finder_done, force_stall, meet, take, fault_left, fault_full, kept_fault;
   cuboct_brick_finder #(
     .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits),
     .TagBits(TagBits), .Capacity(Capacity), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
@@ -523,69 +494,6 @@ module cuboct_brick_core #(
   assign force_event_o = {issue != '0, meet, force_stall, engine_runs};
   assign force_done = engine_runs && finder_done && (pipe_busy == '0);
 
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
-    logic [Axes*KickBits-1:0] push;
-    logic [SeenBits-1:0]      own;
-    logic [SomeType-1:0]      own_type, other_type;
-    logic [VelBits-1:0]       own_v, other_v;
-    assign own = pipe_data[f*SeenBits +: SeenBits];
-    if (HaloType > 0) begin : gen_type
-      assign own_type   = own[TypeLsb +: SomeType];
-      assign other_type = issue_candidate[CandPos +: SomeType];
-    end else begin : gen_no_type
-      assign own_type   = '0;
-      assign other_type = '0;
-    end
-    if (HaloVelocity > 0) begin : gen_velocity
-      assign own_v   = own[VelLsb +: VelBits];
-      assign other_v = issue_candidate[CandPos + HaloType +: VelBits];
-    end else begin : gen_no_velocity
-      assign own_v   = '0;
-      assign other_v = '0;
-    end
-    cuboct_pipe #(
-      .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .Cutoff2(Cutoff2),
-      .EntryBits(StrengthBits), .IndexBits(IndexBits), .Octaves(Octaves), .Degree(Degree), .BinBits(BinBits), .FirstOctave(FirstOctave),
-      .FractionBits(FractionBits), .ForceBits(ForceBits), .Damped(Damped), .VelocityBits(VelocityBits),
-      .RelativeVelocityBits(RelativeVelocityBits), .WShift(WShift), .QShift(QShift), .DampShift(DampShift),
-      .DampIndexBits(DampIndexBits), .DampOctaves(DampOctaves), .DampDegree(DampDegree), .DampBinBits(DampBinBits),
-      .DampFirstOctave(DampFirstOctave), .DampFractionBits(DampFractionBits), .DampBits(DampBits),
-      .StrengthBits(StrengthBits), .Scaled(Scaled), .TypeBits(SomeType), .ScaleBits(ScaleBits),
-      .ScaleFrac(ScaleFrac), .KickShift(KickShift), .KickBits(KickBits), .SlotBits(PlaceBits), .Shared(Shared),
-      .Product(Product), .Interval(Interval)
-    ) u_pipe (
-      .clk_i, .rst_ni, .valid_i(issue[f]), .slot_i({issue_cell, issue_slot[f*SlotBits +: SlotBits]}),
-      .own_x_i(own[PosBits-1:0]), .own_v_i(own_v), .own_type_i(own_type),
-      .other_x_i(issue_candidate[CandPos-1:0]), .other_v_i(other_v), .other_type_i(other_type),
-      .valid_o(kick_valid[f]), .slot_next_o(kick_place_next[f*PlaceBits +: PlaceBits]),
-      .slot_o(kick_place[f*PlaceBits +: PlaceBits]), .push_o(push),
-      .fault_o(pipe_fault[f]), .fault_strength_o(pipe_fault_strength[f]),
-      .fault_number_o(pipe_fault_number[f*64 +: 64]), .busy_o(pipe_busy[f])
-    );
-    cuboct_brick_sums #(
-      .Axes(Axes), .KickBits(KickBits), .SumBits(PipeSumBits), .Depth(Cells * Capacity), .AddrBits(AddrBits)
-    ) u_sums (
-      .clk_i, .kick_valid_i(kick_valid[f]), .push_i(push),
-      .zero_i(take || load || migrate_land), .zero_addr_i(take ? own_addr_q : write_addr),
-      .busy_i(pipe_busy[f]), .kick_addr_i(kick_addr_next[f*AddrBits +: AddrBits]), .look_addr_i(own_addr_d),
-      .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
-    );
-    logic unused_own;
-    assign unused_own = ^{own, kick_place[f*PlaceBits +: SlotBits]};
-  end
-  // One after the other: of pipe f and those before it.
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_total
-    logic [Axes*PipeSumBits-1:0] so_far;
-    for (genvar a = 0; a < Axes; a++) begin : gen_axis
-      if (f == 0) begin : gen_first
-        assign so_far[a*PipeSumBits +: PipeSumBits] = sums[a*PipeSumBits +: PipeSumBits];
-      end else begin : gen_more
-        assign so_far[a*PipeSumBits +: PipeSumBits] = gen_total[f-1].so_far[a*PipeSumBits +: PipeSumBits]
-                                                    + sums[(Axes*f+a)*PipeSumBits +: PipeSumBits];
-      end
-    end
-  end
-  assign total = gen_total[ForcePipes-1].so_far;
   // Update and dump walk the cells and their slots.
   logic [SlotBits-1:0] tick_d, tick_q;
   logic                past_d, past_q;  // past: no cell is left
@@ -620,68 +528,47 @@ module cuboct_brick_core #(
     end
   end
 
-  logic [PosBits-1:0]  new_x;
-  logic [ResidueBits-1:0] new_residue;
-  logic [2*Axes-1:0]   new_away;
-  logic [VelBits-1:0]  new_v;
-  logic [SomeType-1:0] old_type, new_type;
-  logic [IdBits-1:0]   new_id;
-  logic [DispBits-1:0] old_u, new_u;
-  logic                update_fault;
-  logic [3:0]          update_fault_code;
+  // What the migration says is told a cycle later, but for a full cell in the step's last cycle.
   localparam int TellBits = IdBits + CellBits;
-  logic [CellBits-1:0] unused_new_cell;
-  logic [TellBits-1:0] update_fault_id;
-  logic [63:0]         update_fault_number;
-  cuboct_update #(
-    .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
-    .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .DisplacementBits(DisplacementBits), .GainBits(GainBits),
+  logic [3:0]              kept_code;
+  logic [TellBits-1:0]     kept_id;
+  logic [63:0]             kept_number;
+  logic [ParticleBits-1:0] fault_particle;
+  cuboct_datapath #(
+    .Axes(Axes), .Cells(Cells), .Capacity(Capacity), .ForcePipes(ForcePipes), .Shared(Shared), .Product(Product),
+    .Interval(Interval), .IdBits(IdBits), .TypeBits(TypeBits), .ParticleBits(ParticleBits),
+    .SeenBits(SeenBits), .CandidateBits(CandidateBits), .PositionFrac(PositionFrac), .Guard(Guard),
+    .VelocityBits(VelocityBits), .RelativeVelocityBits(RelativeVelocityBits), .StrengthBits(StrengthBits),
+    .SumBits(SumBits), .DisplacementBits(DisplacementBits), .ScaleFrac(ScaleFrac), .GainFrac(GainFrac),
+    .GainBits(GainBits), .ScaleBits(ScaleBits), .ConstantBits(ConstantBits), .DifferenceShift(DifferenceShift),
+    .WShift(WShift), .QShift(QShift), .DampShift(DampShift), .KickShift(KickShift), .Cutoff2(Cutoff2), .Octaves(Octaves),
+    .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits), .FirstOctave(FirstOctave), .FractionBits(FractionBits),
+    .ForceBits(ForceBits), .Damped(Damped), .DampOctaves(DampOctaves), .DampDegree(DampDegree),
+    .DampIndexBits(DampIndexBits), .DampBinBits(DampBinBits), .DampFirstOctave(DampFirstOctave),
+    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled),
 `ifdef CUBOCT_HOST_VELOCITY
     .MovedTypes(MovedTypes),
 `endif
-    .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(PlaceBits), .IdBits(TellBits)
-  ) u_update (
+    .Pd(Pd)
+  ) u_datapath (
 `ifdef CUBOCT_HOST_VELOCITY
     .velocity_i,
 `endif
-    .clk_i, .rst_ni, .valid_i(take), .slot_i({main_own, tick_q}), .sum_i(total),
-    .x_i(main_data[PosBits-1:0]), .residue_i(main_data[ResidueLsb +: ResidueBits]),
-    .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
-    .id_i({main_data[IdLsb +: IdBits], main_own}), .u_i(old_u), .valid_o(update_write), .slot_o(update_place),
-    .x_o(new_x), .residue_o(new_residue), .away_o(new_away), .v_o(new_v), .type_o(new_type),
-    .id_o({new_id, unused_new_cell}), .u_o(new_u),
-    .fault_o(update_fault), .fault_code_o(update_fault_code), .fault_id_o(update_fault_id),
-    .fault_number_o(update_fault_number)
+    .clk_i, .rst_ni, .issue_i(issue), .issue_place_i(issue_place), .candidate_i(issue_candidate), .own_i(pipe_data),
+    .busy_o(pipe_busy), .kick_addr_o(kick_addr_next), .kick_id_i(kick_id), .look_addr_i(own_addr_d),
+    .clear_i(take || load || migrate_land), .clear_addr_i(take ? own_addr_q : write_addr), .take_i(take),
+    .take_place_i({main_own, tick_q}), .slot_i(main_data), .written_o(update_write), .place_o(update_place),
+    .slot_o(update_data), .leaving_o(away_axes), .step_end_i(step_end),
+    .move_fault_i((fault_left || fault_full) && !step_end), .move_axis_i(axis), .move_full_i(of_after),
+    .move_tell_i({fault_particle[IdLsb +: IdBits], main_own}), .fault_o(kept_fault), .fault_code_o(kept_code),
+    .fault_tell_o(kept_id), .fault_number_o(kept_number)
   );
-  assign update_data[PosBits-1:0]               = new_x;
-  assign update_data[PosBits +: AwayBits]       = new_away[2*Axes-1:2];
-  assign update_data[VelLsb +: VelBits]         = new_v;
-  assign update_data[IdLsb +: IdBits]           = new_id;
-  assign update_data[ResidueLsb +: ResidueBits] = new_residue;
-  assign update_data[ParticleBits +: 2]         = new_away[1:0];
-  if (TypeBits > 0) begin : gen_types
-    assign old_type                         = main_data[TypeLsb +: SomeType];
-    assign update_data[TypeLsb +: SomeType] = new_type;
-  end else begin : gen_one_type
-    logic unused_new_type;
-    assign unused_new_type = ^new_type;
-    assign old_type        = '0;
-  end
-  if (Pd != 0) begin : gen_displacement
-    assign old_u                            = main_data[DispLsb +: DispBits];
-    assign update_data[DispLsb +: DispBits] = new_u;
-  end else begin : gen_no_displacement
-    logic unused_new_u;
-    assign unused_new_u = ^new_u;
-    assign old_u        = '0;
-  end
+
   // Migration.
-  logic                    fault_left, fault_full;
   logic [1:0]              axis_pop;
   logic                    from_above;
-  logic [ParticleBits-1:0] fault_particle, stored;
+  logic [ParticleBits-1:0] stored;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_migrate
-    assign away_axes[a]            = (new_away[2*a +: 2] != 2'b00);
     assign migrate_pop[2*a +: 2]   = axis_pop & {2{axis_onehot[a]}};
     assign migrate_clear[2*a +: 2] = {2{axis_onehot[a] && migrate_done}};
   end
@@ -720,53 +607,13 @@ module cuboct_brick_core #(
   assign observe_cell_o  = main_own;
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
-  // Faults: source 0 is pipe 0 or the update, which never speak in one cycle. A particle is in one cell, so the cell
-  // below its id changes no order.
-  logic [ForcePipes-1:0]          fault_valid;
-  logic [ForcePipes*4-1:0]        fault_code;
-  logic [ForcePipes*TellBits-1:0] fault_id;
-  logic [ForcePipes*64-1:0]       fault_number;
-  logic [3:0]                     migrate_fault_code;
-  assign migrate_fault_code = 4'd6 + {1'b0, axis, 1'b0} + {3'b000, of_after};  // left, full: 6 7, 8 9, 10 11
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_fault
-    always_comb begin
-      fault_valid[f]                   = pipe_fault[f];
-      fault_code[f*4 +: 4]             = pipe_fault_strength[f] ? 4'd2 : 4'd1;
-      fault_id[f*TellBits +: TellBits] = {kick_id[f*IdBits +: IdBits], kick_place[f*PlaceBits+SlotBits +: CellBits]};
-      fault_number[f*64 +: 64]         = pipe_fault_number[f*64 +: 64];
-      if (f == 0 && update_fault) begin
-        fault_valid[f]                   = 1'b1;
-        fault_code[f*4 +: 4]             = update_fault_code;
-        fault_id[f*TellBits +: TellBits] = update_fault_id;
-        fault_number[f*64 +: 64]         = update_fault_number;
-      end
-    end
-  end
-  // What the migration says is compared a cycle later, but for a full cell in the step's last cycle. Its code is the
-  // highest one there is, its cell the last one, highest along the axis; so who comes from above comes over the face.
+  // The code of a full cell in the step's last cycle is the highest one there is, its cell the last one, highest along
+  // the axis; so who comes from above comes over the face.
   localparam int LastAxis = Axes - 1;
   localparam int LastFull = 7 + 2 * LastAxis;
-  logic                    move_fault_q, move_full_q;
-  logic [3:0]              move_code_q, kept_code;
-  logic [TellBits-1:0]     move_id_q, kept_id, last_id;
+  logic                    last_first;
+  logic [TellBits-1:0]     last_id;
   logic [ParticleBits-1:0] last_low, last_high, last_particle;
-  logic                    kept_fault, last_first;
-  logic [63:0]             kept_number;
-  always_ff @(posedge clk_i) begin
-    if (!rst_ni) move_fault_q <= 1'b0;
-    else move_fault_q <= (fault_left || fault_full) && !step_end;
-  end
-  always_ff @(posedge clk_i) begin
-    move_full_q <= of_after;
-    move_code_q <= migrate_fault_code;
-    move_id_q   <= {fault_particle[IdLsb +: IdBits], main_own};
-  end
-  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(TellBits), .NumberBits(NumberBits)) u_fault (
-    .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
-    .number_i(fault_number), .move_valid_i(move_fault_q), .move_code_i(move_code_q), .move_id_i(move_id_q),
-    .move_number_i(move_full_q ? {32'd0, Capacity} : 64'd0), .valid_o(kept_fault), .code_o(kept_code),
-    .id_o(kept_id), .number_o(kept_number)
-  );
   assign last_low       = arrived[2*LastAxis*ParticleBits +: ParticleBits];
   assign last_high      = arrived[(2*LastAxis+1)*ParticleBits +: ParticleBits];
   assign last_particle  = from_above ? last_high : main_low[LastAxis] ? last_low : stored;
@@ -778,6 +625,6 @@ module cuboct_brick_core #(
   assign fault_number_o = kept_fault ? kept_number : {32'd0, Capacity};
 
   logic unused_fields;
-  assign unused_fields = ^{main_data, stream_data, fault_particle, last_particle, relay_next, first_face, next_face, issue_candidate,
+  assign unused_fields = ^{stream_data, fault_particle, last_particle, relay_next, first_face, next_face,
                            relay_halo_count, relay_halos};
 endmodule

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Two nodes of bricks side by side, all of cuboct_brick_core that controls: what the finder, the pipes, their sums, the
-// update and the slots give, and what the beats carry, is any value, at any time; so any number of particles goes
+// Two nodes of bricks side by side, all of cuboct_brick_core that controls: what the finder, the datapath
+// and the slots give, and what the beats carry, is any value, at any time; so any number of particles goes
 // anywhere. Any loads, any number of steps, any extents, any stalls of the two links. Streams of one step never meet those
 // of the next, neighbours are never more than a step apart, and there is no state in which both wait for ever.
 module brick_neighbours_formal #(
