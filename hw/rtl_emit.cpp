@@ -32,13 +32,15 @@ constexpr const char* kMarker = ".cuboct-emit";
 
 void add_node(Files& files, const RtlDesign& design) {
   // What checks links goes only where links are checked; of the two kinds of node one is there.
+  // cuboct_sums goes with bricks too: yosys looks into cuboct_datapath with its default parameters first, and
+  // wants what one cell needs.
   const std::set<std::string_view> checks{"cuboct_link_crc.sv", "cuboct_link_guard.sv", "cuboct_link_send.sv",
                                           "cuboct_link_take.sv"};
   const std::set<std::string_view> single{
       "cuboct_node_core.sv",  "cuboct_candidate.sv",   "cuboct_halos.sv",     "cuboct_inbox.sv",
       "cuboct_migrate.sv",    "cuboct_pair_finder.sv", "cuboct_pair_walk.sv", "cuboct_relay.sv",
-      "cuboct_slots.sv",      "cuboct_streamer.sv",    "cuboct_sums.sv",      "cuboct_tick.sv",
-      "cuboct_word_halos.sv", "cuboct_word_inbox.sv"};
+      "cuboct_slots.sv",      "cuboct_streamer.sv",    "cuboct_tick.sv",      "cuboct_word_halos.sv",
+      "cuboct_word_inbox.sv"};
   const auto used = [&](std::string_view name) {
     if (checks.contains(name)) return design.checked;
     return design.bricks() ? !single.contains(name) : !name.starts_with("cuboct_brick_");
