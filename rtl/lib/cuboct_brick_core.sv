@@ -2,7 +2,8 @@
 // A particle processor that serves a brick of cells in turn: cuboct_node_core for several cells. The contract, cycle by
 // cycle, is docs/reference/node.md, "Bricks"; a particle's word is that of cuboct_node_core, the others are
 //   particle on a link: particle, number of the cell in the face
-//   halo record:        x[P] y[P] z[P] type[TypeBits, Scaled] v[3 x VelocityBits, Damped], number of the cell in the layer
+//   halo record:        x[P] y[P] z[P] type[TypeBits, Scaled] v[3 x VelocityBits, Damped], number of the cell in the
+//                       layer
 module cuboct_brick_core #(
   // Machine.
   parameter int          Axes                 = 3,      // 2 or 3
@@ -163,7 +164,8 @@ module cuboct_brick_core #(
   );
 
   // Its walk over the own cells, in UPDATE, MIGRATE and DUMP; that of the relay over layers of cells.
-  logic                  ticking, tick_over, migrate_advance, migrate_leave, migrate_ends, tick_advance, advance, last_cell;
+  logic                  ticking, tick_over, migrate_advance, migrate_leave, migrate_ends, tick_advance, advance;
+  logic                  last_cell;
   logic [CellBits-1:0]   main_own, after_own, asked_own, here;
   logic [3*TagBits-1:0]  main_face, after_face;
   logic [2:0]            main_low, main_high, after_low, after_high;
@@ -216,12 +218,12 @@ module cuboct_brick_core #(
   logic [CountBits-1:0]           main_count, main_count_d, asked_count, stream_own_count, stream_near_count, count_set;
   logic [CountBits-1:0]           migrate_count, relay_own_count;
   logic [CellBits-1:0]            stream_own, stream_near, write_cell;
-  logic                           own_write, load, update_write, migrate_write, migrate_count_set, migrate_land, any_held;
-  logic                           count_write, alone, leave, main_written, away_written;
+  logic                           own_write, load, update_write, migrate_write, migrate_count_set, migrate_land;
+  logic                           any_held, count_write, alone, leave, main_written, away_written;
   logic [SlotBits-1:0]            write_slot, migrate_write_slot;
   logic [PlaceBits-1:0]           update_place;
-  logic [AddrBits-1:0]            write_addr, main_addr, stream_addr, after_addr, leave_addr, away_addr, first_addr, next_addr;
-  logic [AddrBits-1:0]            own_addr_d, own_addr_q, relay_addr_d, relay_addr_q;
+  logic [AddrBits-1:0]            write_addr, main_addr, stream_addr, after_addr, leave_addr, away_addr, first_addr;
+  logic [AddrBits-1:0]            next_addr, own_addr_d, own_addr_q, relay_addr_d, relay_addr_q;
   logic [OwnBits-1:0]             write_data, update_data, migrate_write_data, main_data;
   logic [2*Axes-1:0]              main_away;
   logic [SeenBits-1:0]            stream_data;
@@ -304,7 +306,8 @@ module cuboct_brick_core #(
   assign leave_addr   = (in_migrate ? migrate_ends : tick_over) ? after_addr : own_addr_q + 1'b1;
   assign own_addr_d   = leave ? leave_addr : own_addr_q;
   assign main_addr    = leave ? leave_addr : in_exchange ? relay_addr_d : own_addr_q;
-  // Before MIGRATE only the first cell's first slot matters of where a particle goes: it is asked for with the last one.
+  // Before MIGRATE only the first cell's first slot matters of where a particle goes: it is asked for with the last
+  // one.
   assign away_addr    = (!in_migrate || migrate_ends) ? after_addr : own_addr_q + 1'b1;
   // No phase asks for a next slot of the cell in the cycle in which this is written.
   assign main_written = own_write && (leave ? advance && write_addr == after_addr : write_addr == own_addr_q);
@@ -329,7 +332,9 @@ module cuboct_brick_core #(
   ) u_slots (
     .clk_i, .write_i(own_write), .write_cell_i(write_cell), .write_slot_i(write_slot), .write_addr_i(write_addr),
     .write_data_i(write_data), .main_addr_i(main_addr), .main_written_i(main_written), .main_data_o(main_data),
-    .away_read_i(leave), .away_addr_i(away_addr), .away_written_i(away_written), .away_o(main_away), .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data),
+    .away_read_i(leave), .away_addr_i(away_addr), .away_written_i(away_written), .away_o(main_away),
+    .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_data), .row_i(row),
+    .row_data_o(row_data),
     .pipe_addr_i(pipe_addr), .pipe_data_o(pipe_data), .fault_addr_i(kick_addr_next), .fault_id_o(kick_id)
   );
 
@@ -465,7 +470,8 @@ module cuboct_brick_core #(
   ) u_relay (
     .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done), .has_link_i, .extent_i,
     .low_o(relay_low), .high_o(relay_high), .advance_o(relay_advance), .restart_o(relay_restart),
-    .first_o(relay_first), .cell_i(relay_cell), .last_i(relay_last), .layer_i(relay_layer), .own_count_i(relay_own_count),
+    .first_o(relay_first), .cell_i(relay_cell), .last_i(relay_last), .layer_i(relay_layer),
+    .own_count_i(relay_own_count),
     .halo_count_i(relay_halo_count[(Faces-2)*CountBits-1:0]), .step_o(relay_step), .own_i(main_seen),
     .halo_i(relay_halos[(Faces-2)*HaloBits-1:0]), .can_load_i(axis_can_load), .load_o(relay_load), .end_o(relay_end),
     .data_o(relay_beat), .sent_o(relay_sent)
@@ -541,7 +547,8 @@ module cuboct_brick_core #(
     .VelocityBits(VelocityBits), .RelativeVelocityBits(RelativeVelocityBits), .StrengthBits(StrengthBits),
     .SumBits(SumBits), .DisplacementBits(DisplacementBits), .ScaleFrac(ScaleFrac), .GainFrac(GainFrac),
     .GainBits(GainBits), .ScaleBits(ScaleBits), .ConstantBits(ConstantBits), .DifferenceShift(DifferenceShift),
-    .WShift(WShift), .QShift(QShift), .DampShift(DampShift), .KickShift(KickShift), .Cutoff2(Cutoff2), .Octaves(Octaves),
+    .WShift(WShift), .QShift(QShift), .DampShift(DampShift), .KickShift(KickShift), .Cutoff2(Cutoff2),
+    .Octaves(Octaves),
     .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits), .FirstOctave(FirstOctave), .FractionBits(FractionBits),
     .ForceBits(ForceBits), .Damped(Damped), .DampOctaves(DampOctaves), .DampDegree(DampDegree),
     .DampIndexBits(DampIndexBits), .DampBinBits(DampBinBits), .DampFirstOctave(DampFirstOctave),
@@ -576,8 +583,10 @@ module cuboct_brick_core #(
   always_comb begin
     leaving_d = leaving_q;
     for (g = 0; g < Cells; g = g + 1) begin
-      if (update_write && write_cell == g[CellBits-1:0]) leaving_d[g*Axes +: Axes] = leaving_q[g*Axes +: Axes] | away_axes;
-      if (migrate_land && main_own == g[CellBits-1:0]) leaving_d[g*Axes +: Axes] = leaving_q[g*Axes +: Axes] | leaving_more;
+      if (update_write && write_cell == g[CellBits-1:0])
+        leaving_d[g*Axes +: Axes] = leaving_q[g*Axes +: Axes] | away_axes;
+      if (migrate_land && main_own == g[CellBits-1:0])
+        leaving_d[g*Axes +: Axes] = leaving_q[g*Axes +: Axes] | leaving_more;
     end
     if (step_end) leaving_d = '0;
   end

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What becomes of particles in a node, of one cell (cuboct_node_core) or of a brick (cuboct_brick_core): pairs go through
-// the force pipes, their kicks are summed by particle, the update moves each particle once a step, and the least fault of
-// the step is kept. Who meets whom, which slot is read and where it is written is the core's to say. A place is the number
-// of a cell in the node, absent where it has one cell, above that of a slot in the cell.
+// What becomes of particles in a node, of one cell (cuboct_node_core) or of a brick (cuboct_brick_core): pairs go
+// through the force pipes, their kicks are summed by particle, the update moves each particle once a step, and the
+// least fault of the step is kept. Who meets whom, which slot is read and where it is written is the core's to say. A
+// place is the number of a cell in the node, absent where it has one cell, above that of a slot in the cell.
 module cuboct_datapath #(
   // Machine.
   parameter int          Axes                 = 3,      // 2 or 3
@@ -79,7 +79,7 @@ module cuboct_datapath #(
   // The slots are at addresses: cell * Capacity + slot.
   output logic [ForcePipes*PlaceBits-1:0] kick_addr_o,    // by pipe: of the next cycle's kick, which may be a fault
   input  logic [ForcePipes*IdBits-1:0]    kick_id_i,      // by pipe: the id at kick_addr_o of the cycle before
-  input  logic [PlaceBits-1:0]            look_addr_i,    // the sum that take_i of the next cycle takes, or clear_i clears
+  input  logic [PlaceBits-1:0]            look_addr_i,    // the sum that the next cycle's take_i or clear_i is about
   input  logic                            clear_i,        // a sum becomes zero, in no cycle with a kick:
   input  logic [PlaceBits-1:0]            clear_addr_i,   // this one; with one cell that of look_addr_i
   // Update: a slot is {away_x, particle}.

@@ -198,7 +198,8 @@ module cuboct_node_core #(
     .RowBits(RowBits), .ForcePipes(ForcePipes), .Narrow(Narrow)
   ) u_slots (
     .clk_i, .write_i(own_write), .write_slot_i(own_write_slot), .write_data_i(own_write_data),
-    .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read), .stream_slot_i(stream_slot),
+    .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read),
+    .stream_slot_i(stream_slot),
     .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data), .pipe_slot_i(issue_slot),
     .pipe_data_o(pipe_data), .fault_slot_i(kick_slot_next), .fault_id_o(kick_id)
   );
@@ -279,7 +280,8 @@ module cuboct_node_core #(
     assign halo_word = '0;
     assign record    = '0;
     logic unused_narrow;
-    assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, relay_pick, relay_clear[0]};
+    assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, relay_pick,
+                             relay_clear[0]};
   end
 
   // leaving[a]: some own particle has to go along axis a.
@@ -318,7 +320,9 @@ module cuboct_node_core #(
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
   assign send_end  = in_migrate ? migrate_send_end : relay_end;
   // Of the three all but one are 0.
-  cuboct_late #(.Bits(LinkBits)) u_send (.early_i(migrate_beat | relay_beat), .late_i(relay_halo_beat), .or_o(send_data));
+  cuboct_late #(.Bits(LinkBits)) u_send (
+    .early_i(migrate_beat | relay_beat), .late_i(relay_halo_beat), .or_o(send_data)
+  );
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_link
     assign load_link[2*a +: 2] = axis_load & {2{axis_onehot[a]}};
   end
@@ -360,7 +364,8 @@ module cuboct_node_core #(
   ) u_relay (
     .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
     .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_d}), .pick_o(relay_pick), .clear_o(relay_clear),
-    .read_o(relay_read), .addr_o(relay_addr), .slot_o(relay_slot), .record_i(relay_record), .halo_i(relay_halo_record), .word_o(relay_word),
+    .read_o(relay_read), .addr_o(relay_addr), .slot_o(relay_slot), .record_i(relay_record), .halo_i(relay_halo_record),
+    .word_o(relay_word),
     .word_i(halo_word), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load), .end_o(relay_end),
     .data_o(relay_beat), .halo_data_o(relay_halo_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
   );
@@ -458,7 +463,8 @@ module cuboct_node_core #(
     .VelocityBits(VelocityBits), .RelativeVelocityBits(RelativeVelocityBits), .StrengthBits(StrengthBits),
     .SumBits(SumBits), .DisplacementBits(DisplacementBits), .ScaleFrac(ScaleFrac), .GainFrac(GainFrac),
     .GainBits(GainBits), .ScaleBits(ScaleBits), .ConstantBits(ConstantBits), .DifferenceShift(DifferenceShift),
-    .WShift(WShift), .QShift(QShift), .DampShift(DampShift), .KickShift(KickShift), .Cutoff2(Cutoff2), .Octaves(Octaves),
+    .WShift(WShift), .QShift(QShift), .DampShift(DampShift), .KickShift(KickShift), .Cutoff2(Cutoff2),
+    .Octaves(Octaves),
     .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits), .FirstOctave(FirstOctave), .FractionBits(FractionBits),
     .ForceBits(ForceBits), .Damped(Damped), .DampOctaves(DampOctaves), .DampDegree(DampDegree),
     .DampIndexBits(DampIndexBits), .DampBinBits(DampBinBits), .DampFirstOctave(DampFirstOctave),
@@ -500,8 +506,8 @@ module cuboct_node_core #(
     .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_migrate (
     .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .has_link_i(axis_has_link),
-    .leaving_i(next_leaving), .count_i(own_count_q), .full_i(full_q), .count_set_o(migrate_count_set), .count_o(migrate_count),
-    .full_o(migrate_full),
+    .leaving_i(next_leaving), .count_i(own_count_q), .full_i(full_q), .count_set_o(migrate_count_set),
+    .count_o(migrate_count), .full_o(migrate_full),
     .read_o(migrate_read), .read_slot_o(migrate_read_slot), .read_data_i(main_data), .write_o(migrate_write),
     .write_slot_o(migrate_write_slot), .write_data_o(migrate_write_data), .leaving_more_o(leaving_more),
     .can_load_i(axis_can_load), .load_o(migrate_load), .end_o(migrate_send_end), .data_o(migrate_beat),

@@ -252,8 +252,10 @@ module neighbours_formal #(
       i_sent:   assert ((!tap_sent_0 || tap_state_0 <= 4'd1) && (!tap_sent_1 || tap_state_1 <= 4'd1));
       i_axis_0: assert (tap_axis_0 == ((tap_state_0 == ExchangeY || tap_state_0 == MigrateY) ? 3'b010 : 3'b001));
       i_axis_1: assert (tap_axis_1 == ((tap_state_1 == ExchangeY || tap_state_1 == MigrateY) ? 3'b010 : 3'b001));
-      i_face_0: assert (tap_face_0 == ({2'b00, tap_migrate_0 == TakeHigh, tap_migrate_0 == TakeLow} << {tap_axis_0[1], 1'b0}));
-      i_face_1: assert (tap_face_1 == ({2'b00, tap_migrate_1 == TakeHigh, tap_migrate_1 == TakeLow} << {tap_axis_1[1], 1'b0}));
+      i_face_0: assert (tap_face_0
+                        == ({2'b00, tap_migrate_0 == TakeHigh, tap_migrate_0 == TakeLow} << {tap_axis_0[1], 1'b0}));
+      i_face_1: assert (tap_face_1
+                        == ({2'b00, tap_migrate_1 == TakeHigh, tap_migrate_1 == TakeLow} << {tap_axis_1[1], 1'b0}));
       i_phase:  assert ((tap_migrate_0 == 3'd0 || tap_state_0 == MigrateX || tap_state_0 == MigrateY)
                         && (tap_migrate_1 == 3'd0 || tap_state_1 == MigrateX || tap_state_1 == MigrateY)
                         && tap_migrate_0 <= TakeHigh && tap_migrate_1 <= TakeHigh);
