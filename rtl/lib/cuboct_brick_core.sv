@@ -114,6 +114,12 @@ module cuboct_brick_core #(
   output logic [63:0]             fault_number_o,
   output logic                    idle_o
 );
+  // Every tool ends with an error where a module is missing: the parameters are out of their ranges.
+  if (Axes < 2 || Axes > 3 || Cells < 2 || (Axes == 2 && BrickZ != 1) || Capacity < 1 || FilterLanes < 1
+      || ForcePipes < 1 || QueueDepth < 1 || LinkBits < 1 || IdBits < 1 || TypeBits < 0
+      || FilterFrac > PositionFrac) begin : gen_range
+    cuboct_parameter_out_of_range u_error ();
+  end
   // Fields of a particle.
   localparam int PosBits    = Axes * PositionFrac;
   localparam int AwayBits   = 2 * (Axes - 1);

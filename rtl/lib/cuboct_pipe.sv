@@ -67,6 +67,12 @@ module cuboct_pipe #(
   output logic signed [63:0]              fault_number_o,
   output logic                            busy_o        // a pair is on its way
 );
+  // Every tool ends with an error where a module is missing: the parameters are out of their ranges.
+  if (Axes < 2 || Axes > 3 || Degree < 1 || Degree > 2 || DampDegree < 1 || DampDegree > 2 || TypeBits < 1
+      || DifferenceShift >= PositionFrac || Interval < 1 || Product < 1 || (Shared != 0 && Product != 1)
+      || (Shared != 0 && Interval < Axes) || (Product > 1 && Interval <= Product)) begin : gen_range
+    cuboct_parameter_out_of_range u_error ();
+  end
   localparam int D            = PositionFrac - DifferenceShift;
   localparam int DBits        = D + 1;
   localparam int R2Bits       = 2 * D + Axes - 1;  // so many squares of at most 2^(2D)
