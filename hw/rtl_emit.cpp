@@ -32,13 +32,15 @@ constexpr const char* kMarker = ".cuboct-emit";
 
 void add_node(Files& files, const RtlDesign& design) {
   // What checks links goes only where links are checked; of the two kinds of node one is there.
+  // cuboct_sums goes with bricks too: yosys looks into cuboct_datapath with its default parameters first, and
+  // wants what one cell needs.
   const std::set<std::string_view> checks{"cuboct_link_crc.sv", "cuboct_link_guard.sv", "cuboct_link_send.sv",
                                           "cuboct_link_take.sv"};
   const std::set<std::string_view> single{
       "cuboct_node_core.sv",  "cuboct_candidate.sv",   "cuboct_halos.sv",     "cuboct_inbox.sv",
       "cuboct_migrate.sv",    "cuboct_pair_finder.sv", "cuboct_pair_walk.sv", "cuboct_relay.sv",
-      "cuboct_slots.sv",      "cuboct_streamer.sv",    "cuboct_sums.sv",      "cuboct_tick.sv",
-      "cuboct_word_halos.sv", "cuboct_word_inbox.sv"};
+      "cuboct_slots.sv",      "cuboct_streamer.sv",    "cuboct_tick.sv",      "cuboct_word_halos.sv",
+      "cuboct_word_inbox.sv"};
   const auto used = [&](std::string_view name) {
     if (checks.contains(name)) return design.checked;
     return design.bricks() ? !single.contains(name) : !name.starts_with("cuboct_brick_");
@@ -141,7 +143,7 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
     define("board/cuboct_board.sv", "`define CUBOCT_BRICKS  // nodes serve several cells each\n");
   if (!design.moved.empty())
     for (const char* path : {design.bricks() ? "rtl/cuboct_brick_core.sv" : "rtl/cuboct_node_core.sv",
-                             "rtl/cuboct_update.sv", "board/cuboct_board.sv"})
+                             "rtl/cuboct_datapath.sv", "rtl/cuboct_update.sv", "board/cuboct_board.sv"})
       define(path, "`define CUBOCT_HOST_VELOCITY  // velocities of held and moved types are set by a host\n");
   write(dir, files);
 }

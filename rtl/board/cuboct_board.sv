@@ -79,7 +79,8 @@ module cuboct_board (
     .velocity_i(velocities),
 `endif
     .clk_i, .rst_ni(lattice_rst_n), .start_i(start), .steps_i(steps), .load_valid_i(load_valid),
-    .load_node_i(load_node), .load_data_i(load_word[ParticleBits-1:0]), .phase_start_o(phase_start), .phase_end_o(phase_end),
+    .load_node_i(load_node), .load_data_i(load_word[ParticleBits-1:0]), .phase_start_o(phase_start),
+    .phase_end_o(phase_end),
     .observe_valid_o(observe_valid), .observe_data_o(observe_data), .fault_valid_o(fault_valid),
     .fault_code_o(fault_code), .fault_id_o(fault_id), .fault_number_o(fault_number), .idle_o(idle)
   );

@@ -2,6 +2,7 @@ rtl/cuboct_pkg.sv
 rtl/cuboct_axis_mults.sv
 rtl/cuboct_beat.sv
 rtl/cuboct_candidate.sv
+rtl/cuboct_datapath.sv
 rtl/cuboct_delay.sv
 rtl/cuboct_fifo.sv
 rtl/cuboct_filter.sv

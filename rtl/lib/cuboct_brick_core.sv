@@ -2,7 +2,8 @@
 // A particle processor that serves a brick of cells in turn: cuboct_node_core for several cells. The contract, cycle by
 // cycle, is docs/reference/node.md, "Bricks"; a particle's word is that of cuboct_node_core, the others are
 //   particle on a link: particle, number of the cell in the face
-//   halo record:        x[P] y[P] z[P] type[TypeBits, Scaled] v[3 x VelocityBits, Damped], number of the cell in the layer
+//   halo record:        x[P] y[P] z[P] type[TypeBits, Scaled] v[3 x VelocityBits, Damped], number of the cell in the
+//                       layer
 module cuboct_brick_core #(
   // Machine.
   parameter int          Axes                 = 3,      // 2 or 3
@@ -113,18 +114,18 @@ module cuboct_brick_core #(
   output logic [63:0]             fault_number_o,
   output logic                    idle_o
 );
+  // Every tool ends with an error where a module is missing: the parameters are out of their ranges.
+  if (Axes < 2 || Axes > 3 || Cells < 2 || (Axes == 2 && BrickZ != 1) || Capacity < 1 || FilterLanes < 1
+      || ForcePipes < 1 || QueueDepth < 1 || LinkBits < 1 || IdBits < 1 || TypeBits < 0
+      || FilterFrac > PositionFrac) begin : gen_range
+    cuboct_parameter_out_of_range u_error ();
+  end
   // Fields of a particle.
   localparam int PosBits    = Axes * PositionFrac;
-  localparam int VelBits    = Axes * VelocityBits;
-  localparam int DispBits   = Axes * DisplacementBits;
   localparam int AwayBits   = 2 * (Axes - 1);
   localparam int VelLsb     = PosBits + AwayBits;
-  localparam int TypeLsb    = VelLsb + VelBits;
+  localparam int TypeLsb    = VelLsb + Axes * VelocityBits;
   localparam int IdLsb      = TypeLsb + TypeBits;
-  localparam int ResidueLsb = IdLsb + IdBits;
-  localparam int ResidueBits = Axes * Guard;
-  localparam int DispLsb    = ResidueLsb + ResidueBits;
-  localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
   localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}
   localparam int SeenBits   = (HaloVelocity + HaloType > 0) ? IdLsb : PosBits;  // what others see of it
   // A candidate is a halo record with signs.
@@ -150,20 +151,6 @@ module cuboct_brick_core #(
   localparam int RowBits     = (Rows > 1) ? $clog2(Rows) : 1;
   localparam int RowAddrBits = CellBits + RowBits;
   localparam int HaloAddrBits = TagBits + SlotBits;
-  // |s| <= 2^(SBits-1) and |d| <= 2^D; a cell sees at most 3^Axes * Capacity kicks.
-  localparam int SBits       = (Damped != 0) ? StrengthBits : ForceBits;
-  localparam int KickFull    = SBits + PositionFrac - DifferenceShift + 1 - KickShift;
-  localparam int KickBits    = (KickFull > 2) ? KickFull : 2;
-  localparam int PipeSumBits = KickBits + $clog2(((Axes == 3) ? 27 : 9) * Capacity);
-  // No number that a fault tells is longer: w, s before their checks; sums, v, u; the capacity.
-  localparam int SFullBits   = ((DampBits + RelativeVelocityBits > ForceBits) ? DampBits + RelativeVelocityBits : ForceBits)
-                               + 2;
-  localparam int PullBits    = (Pd != 0) ? GainBits + DisplacementBits + 6 : 10;
-  localparam int VFullBits   = ((VelocityBits > SumBits) ? VelocityBits : SumBits) + 4;
-  localparam int LongPull    = (PullBits > VFullBits) ? PullBits : VFullBits;
-  localparam int LongKick    = (PipeSumBits + ForcePipes > SFullBits) ? PipeSumBits + ForcePipes : SFullBits;
-  localparam int LongNumber  = (LongPull > LongKick) ? LongPull : LongKick;
-  localparam int NumberBits  = (LongNumber < 64) ? LongNumber : 64;
   // Update.
   localparam int UpdateLatency = (Pd != 0) ? 7 : 4;  // a cycle after the last one is written MIGRATE may read it
   localparam int UpdateTail    = UpdateLatency - 2;
@@ -183,7 +170,8 @@ module cuboct_brick_core #(
   );
 
   // Its walk over the own cells, in UPDATE, MIGRATE and DUMP; that of the relay over layers of cells.
-  logic                  ticking, tick_over, migrate_advance, migrate_leave, migrate_ends, tick_advance, advance, last_cell;
+  logic                  ticking, tick_over, migrate_advance, migrate_leave, migrate_ends, tick_advance, advance;
+  logic                  last_cell;
   logic [CellBits-1:0]   main_own, after_own, asked_own, here;
   logic [3*TagBits-1:0]  main_face, after_face;
   logic [2:0]            main_low, main_high, after_low, after_high;
@@ -236,18 +224,18 @@ module cuboct_brick_core #(
   logic [CountBits-1:0]           main_count, main_count_d, asked_count, stream_own_count, stream_near_count, count_set;
   logic [CountBits-1:0]           migrate_count, relay_own_count;
   logic [CellBits-1:0]            stream_own, stream_near, write_cell;
-  logic                           own_write, load, update_write, migrate_write, migrate_count_set, migrate_land, any_held;
-  logic                           count_write, alone, leave, main_written, away_written;
+  logic                           own_write, load, update_write, migrate_write, migrate_count_set, migrate_land;
+  logic                           any_held, count_write, alone, leave, main_written, away_written;
   logic [SlotBits-1:0]            write_slot, migrate_write_slot;
   logic [PlaceBits-1:0]           update_place;
-  logic [AddrBits-1:0]            write_addr, main_addr, stream_addr, after_addr, leave_addr, away_addr, first_addr, next_addr;
-  logic [AddrBits-1:0]            own_addr_d, own_addr_q, relay_addr_d, relay_addr_q;
+  logic [AddrBits-1:0]            write_addr, main_addr, stream_addr, after_addr, leave_addr, away_addr, first_addr;
+  logic [AddrBits-1:0]            next_addr, own_addr_d, own_addr_q, relay_addr_d, relay_addr_q;
   logic [OwnBits-1:0]             write_data, update_data, migrate_write_data, main_data;
   logic [2*Axes-1:0]              main_away;
   logic [SeenBits-1:0]            stream_data;
   logic                           stream_read;
   logic [ForcePipes*SlotBits-1:0] issue_slot;
-  logic [ForcePipes*PlaceBits-1:0] kick_place, kick_place_next;
+  logic [ForcePipes*PlaceBits-1:0] issue_place;
   logic [ForcePipes*AddrBits-1:0] pipe_addr, kick_addr_next;
   logic [ForcePipes*SeenBits-1:0] pipe_data;
   logic [ForcePipes*IdBits-1:0]   kick_id;
@@ -324,7 +312,8 @@ module cuboct_brick_core #(
   assign leave_addr   = (in_migrate ? migrate_ends : tick_over) ? after_addr : own_addr_q + 1'b1;
   assign own_addr_d   = leave ? leave_addr : own_addr_q;
   assign main_addr    = leave ? leave_addr : in_exchange ? relay_addr_d : own_addr_q;
-  // Before MIGRATE only the first cell's first slot matters of where a particle goes: it is asked for with the last one.
+  // Before MIGRATE only the first cell's first slot matters of where a particle goes: it is asked for with the last
+  // one.
   assign away_addr    = (!in_migrate || migrate_ends) ? after_addr : own_addr_q + 1'b1;
   // No phase asks for a next slot of the cell in the cycle in which this is written.
   assign main_written = own_write && (leave ? advance && write_addr == after_addr : write_addr == own_addr_q);
@@ -340,12 +329,7 @@ module cuboct_brick_core #(
     ) u_pipe_addr (
       .cell_i(issue_cell), .slot_i(issue_slot[f*SlotBits +: SlotBits]), .addr_o(pipe_addr[f*AddrBits +: AddrBits])
     );
-    cuboct_brick_addr #(
-      .Factor(Capacity), .CellBits(CellBits), .SlotBits(SlotBits), .AddrBits(AddrBits)
-    ) u_kick_addr_next (
-      .cell_i(kick_place_next[f*PlaceBits+SlotBits +: CellBits]), .slot_i(kick_place_next[f*PlaceBits +: SlotBits]),
-      .addr_o(kick_addr_next[f*AddrBits +: AddrBits])
-    );
+    assign issue_place[f*PlaceBits +: PlaceBits] = {issue_cell, issue_slot[f*SlotBits +: SlotBits]};
   end
   cuboct_brick_slots #(
     .Axes(Axes), .Bits(OwnBits), .SeenBits(SeenBits), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
@@ -354,7 +338,9 @@ module cuboct_brick_core #(
   ) u_slots (
     .clk_i, .write_i(own_write), .write_cell_i(write_cell), .write_slot_i(write_slot), .write_addr_i(write_addr),
     .write_data_i(write_data), .main_addr_i(main_addr), .main_written_i(main_written), .main_data_o(main_data),
-    .away_read_i(leave), .away_addr_i(away_addr), .away_written_i(away_written), .away_o(main_away), .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data),
+    .away_read_i(leave), .away_addr_i(away_addr), .away_written_i(away_written), .away_o(main_away),
+    .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_data), .row_i(row),
+    .row_data_o(row_data),
     .pipe_addr_i(pipe_addr), .pipe_data_o(pipe_data), .fault_addr_i(kick_addr_next), .fault_id_o(kick_id)
   );
 
@@ -490,7 +476,8 @@ module cuboct_brick_core #(
   ) u_relay (
     .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done), .has_link_i, .extent_i,
     .low_o(relay_low), .high_o(relay_high), .advance_o(relay_advance), .restart_o(relay_restart),
-    .first_o(relay_first), .cell_i(relay_cell), .last_i(relay_last), .layer_i(relay_layer), .own_count_i(relay_own_count),
+    .first_o(relay_first), .cell_i(relay_cell), .last_i(relay_last), .layer_i(relay_layer),
+    .own_count_i(relay_own_count),
     .halo_count_i(relay_halo_count[(Faces-2)*CountBits-1:0]), .step_o(relay_step), .own_i(main_seen),
     .halo_i(relay_halos[(Faces-2)*HaloBits-1:0]), .can_load_i(axis_can_load), .load_o(relay_load), .end_o(relay_end),
     .data_o(relay_beat), .sent_o(relay_sent)
@@ -499,12 +486,8 @@ module cuboct_brick_core #(
 
   // Force engine.
   logic [CandidateBits-1:0]     issue_candidate;
-  logic [ForcePipes-1:0]        issue, pipe_busy, kick_valid, pipe_fault, pipe_fault_strength;
-  logic [ForcePipes*64-1:0]     pipe_fault_number;
-  logic                         finder_done, force_stall, meet;
-  logic [ForcePipes*Axes*PipeSumBits-1:0] sums;
-  logic [Axes*PipeSumBits-1:0]  total;
-  logic                         take;
+  logic [ForcePipes-1:0]        issue, pipe_busy;
+  logic                         finder_done, force_stall, meet, take, fault_left, fault_full, kept_fault;
   cuboct_brick_finder #(
     .Axes(Axes), .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits),
     .TagBits(TagBits), .Capacity(Capacity), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
@@ -523,69 +506,6 @@ module cuboct_brick_core #(
   assign force_event_o = {issue != '0, meet, force_stall, engine_runs};
   assign force_done = engine_runs && finder_done && (pipe_busy == '0);
 
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
-    logic [Axes*KickBits-1:0] push;
-    logic [SeenBits-1:0]      own;
-    logic [SomeType-1:0]      own_type, other_type;
-    logic [VelBits-1:0]       own_v, other_v;
-    assign own = pipe_data[f*SeenBits +: SeenBits];
-    if (HaloType > 0) begin : gen_type
-      assign own_type   = own[TypeLsb +: SomeType];
-      assign other_type = issue_candidate[CandPos +: SomeType];
-    end else begin : gen_no_type
-      assign own_type   = '0;
-      assign other_type = '0;
-    end
-    if (HaloVelocity > 0) begin : gen_velocity
-      assign own_v   = own[VelLsb +: VelBits];
-      assign other_v = issue_candidate[CandPos + HaloType +: VelBits];
-    end else begin : gen_no_velocity
-      assign own_v   = '0;
-      assign other_v = '0;
-    end
-    cuboct_pipe #(
-      .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .Cutoff2(Cutoff2),
-      .EntryBits(StrengthBits), .IndexBits(IndexBits), .Octaves(Octaves), .Degree(Degree), .BinBits(BinBits), .FirstOctave(FirstOctave),
-      .FractionBits(FractionBits), .ForceBits(ForceBits), .Damped(Damped), .VelocityBits(VelocityBits),
-      .RelativeVelocityBits(RelativeVelocityBits), .WShift(WShift), .QShift(QShift), .DampShift(DampShift),
-      .DampIndexBits(DampIndexBits), .DampOctaves(DampOctaves), .DampDegree(DampDegree), .DampBinBits(DampBinBits),
-      .DampFirstOctave(DampFirstOctave), .DampFractionBits(DampFractionBits), .DampBits(DampBits),
-      .StrengthBits(StrengthBits), .Scaled(Scaled), .TypeBits(SomeType), .ScaleBits(ScaleBits),
-      .ScaleFrac(ScaleFrac), .KickShift(KickShift), .KickBits(KickBits), .SlotBits(PlaceBits), .Shared(Shared),
-      .Product(Product), .Interval(Interval)
-    ) u_pipe (
-      .clk_i, .rst_ni, .valid_i(issue[f]), .slot_i({issue_cell, issue_slot[f*SlotBits +: SlotBits]}),
-      .own_x_i(own[PosBits-1:0]), .own_v_i(own_v), .own_type_i(own_type),
-      .other_x_i(issue_candidate[CandPos-1:0]), .other_v_i(other_v), .other_type_i(other_type),
-      .valid_o(kick_valid[f]), .slot_next_o(kick_place_next[f*PlaceBits +: PlaceBits]),
-      .slot_o(kick_place[f*PlaceBits +: PlaceBits]), .push_o(push),
-      .fault_o(pipe_fault[f]), .fault_strength_o(pipe_fault_strength[f]),
-      .fault_number_o(pipe_fault_number[f*64 +: 64]), .busy_o(pipe_busy[f])
-    );
-    cuboct_brick_sums #(
-      .Axes(Axes), .KickBits(KickBits), .SumBits(PipeSumBits), .Depth(Cells * Capacity), .AddrBits(AddrBits)
-    ) u_sums (
-      .clk_i, .kick_valid_i(kick_valid[f]), .push_i(push),
-      .zero_i(take || load || migrate_land), .zero_addr_i(take ? own_addr_q : write_addr),
-      .busy_i(pipe_busy[f]), .kick_addr_i(kick_addr_next[f*AddrBits +: AddrBits]), .look_addr_i(own_addr_d),
-      .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
-    );
-    logic unused_own;
-    assign unused_own = ^{own, kick_place[f*PlaceBits +: SlotBits]};
-  end
-  // One after the other: of pipe f and those before it.
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_total
-    logic [Axes*PipeSumBits-1:0] so_far;
-    for (genvar a = 0; a < Axes; a++) begin : gen_axis
-      if (f == 0) begin : gen_first
-        assign so_far[a*PipeSumBits +: PipeSumBits] = sums[a*PipeSumBits +: PipeSumBits];
-      end else begin : gen_more
-        assign so_far[a*PipeSumBits +: PipeSumBits] = gen_total[f-1].so_far[a*PipeSumBits +: PipeSumBits]
-                                                    + sums[(Axes*f+a)*PipeSumBits +: PipeSumBits];
-      end
-    end
-  end
-  assign total = gen_total[ForcePipes-1].so_far;
   // Update and dump walk the cells and their slots.
   logic [SlotBits-1:0] tick_d, tick_q;
   logic                past_d, past_q;  // past: no cell is left
@@ -620,68 +540,48 @@ module cuboct_brick_core #(
     end
   end
 
-  logic [PosBits-1:0]  new_x;
-  logic [ResidueBits-1:0] new_residue;
-  logic [2*Axes-1:0]   new_away;
-  logic [VelBits-1:0]  new_v;
-  logic [SomeType-1:0] old_type, new_type;
-  logic [IdBits-1:0]   new_id;
-  logic [DispBits-1:0] old_u, new_u;
-  logic                update_fault;
-  logic [3:0]          update_fault_code;
+  // What the migration says is told a cycle later, but for a full cell in the step's last cycle.
   localparam int TellBits = IdBits + CellBits;
-  logic [CellBits-1:0] unused_new_cell;
-  logic [TellBits-1:0] update_fault_id;
-  logic [63:0]         update_fault_number;
-  cuboct_update #(
-    .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
-    .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .DisplacementBits(DisplacementBits), .GainBits(GainBits),
+  logic [3:0]              kept_code;
+  logic [TellBits-1:0]     kept_id;
+  logic [63:0]             kept_number;
+  logic [ParticleBits-1:0] fault_particle;
+  cuboct_datapath #(
+    .Axes(Axes), .Cells(Cells), .Capacity(Capacity), .ForcePipes(ForcePipes), .Shared(Shared), .Product(Product),
+    .Interval(Interval), .IdBits(IdBits), .TypeBits(TypeBits), .ParticleBits(ParticleBits),
+    .SeenBits(SeenBits), .CandidateBits(CandidateBits), .PositionFrac(PositionFrac), .Guard(Guard),
+    .VelocityBits(VelocityBits), .RelativeVelocityBits(RelativeVelocityBits), .StrengthBits(StrengthBits),
+    .SumBits(SumBits), .DisplacementBits(DisplacementBits), .ScaleFrac(ScaleFrac), .GainFrac(GainFrac),
+    .GainBits(GainBits), .ScaleBits(ScaleBits), .ConstantBits(ConstantBits), .DifferenceShift(DifferenceShift),
+    .WShift(WShift), .QShift(QShift), .DampShift(DampShift), .KickShift(KickShift), .Cutoff2(Cutoff2),
+    .Octaves(Octaves),
+    .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits), .FirstOctave(FirstOctave), .FractionBits(FractionBits),
+    .ForceBits(ForceBits), .Damped(Damped), .DampOctaves(DampOctaves), .DampDegree(DampDegree),
+    .DampIndexBits(DampIndexBits), .DampBinBits(DampBinBits), .DampFirstOctave(DampFirstOctave),
+    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled),
 `ifdef CUBOCT_HOST_VELOCITY
     .MovedTypes(MovedTypes),
 `endif
-    .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(PlaceBits), .IdBits(TellBits)
-  ) u_update (
+    .Pd(Pd)
+  ) u_datapath (
 `ifdef CUBOCT_HOST_VELOCITY
     .velocity_i,
 `endif
-    .clk_i, .rst_ni, .valid_i(take), .slot_i({main_own, tick_q}), .sum_i(total),
-    .x_i(main_data[PosBits-1:0]), .residue_i(main_data[ResidueLsb +: ResidueBits]),
-    .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
-    .id_i({main_data[IdLsb +: IdBits], main_own}), .u_i(old_u), .valid_o(update_write), .slot_o(update_place),
-    .x_o(new_x), .residue_o(new_residue), .away_o(new_away), .v_o(new_v), .type_o(new_type),
-    .id_o({new_id, unused_new_cell}), .u_o(new_u),
-    .fault_o(update_fault), .fault_code_o(update_fault_code), .fault_id_o(update_fault_id),
-    .fault_number_o(update_fault_number)
+    .clk_i, .rst_ni, .issue_i(issue), .issue_place_i(issue_place), .candidate_i(issue_candidate), .own_i(pipe_data),
+    .busy_o(pipe_busy), .kick_addr_o(kick_addr_next), .kick_id_i(kick_id), .look_addr_i(own_addr_d),
+    .clear_i(take || load || migrate_land), .clear_addr_i(take ? own_addr_q : write_addr), .take_i(take),
+    .take_place_i({main_own, tick_q}), .slot_i(main_data), .written_o(update_write), .place_o(update_place),
+    .slot_o(update_data), .leaving_o(away_axes), .step_end_i(step_end),
+    .move_fault_i((fault_left || fault_full) && !step_end), .move_axis_i(axis), .move_full_i(of_after),
+    .move_tell_i({fault_particle[IdLsb +: IdBits], main_own}), .fault_o(kept_fault), .fault_code_o(kept_code),
+    .fault_tell_o(kept_id), .fault_number_o(kept_number)
   );
-  assign update_data[PosBits-1:0]               = new_x;
-  assign update_data[PosBits +: AwayBits]       = new_away[2*Axes-1:2];
-  assign update_data[VelLsb +: VelBits]         = new_v;
-  assign update_data[IdLsb +: IdBits]           = new_id;
-  assign update_data[ResidueLsb +: ResidueBits] = new_residue;
-  assign update_data[ParticleBits +: 2]         = new_away[1:0];
-  if (TypeBits > 0) begin : gen_types
-    assign old_type                         = main_data[TypeLsb +: SomeType];
-    assign update_data[TypeLsb +: SomeType] = new_type;
-  end else begin : gen_one_type
-    logic unused_new_type;
-    assign unused_new_type = ^new_type;
-    assign old_type        = '0;
-  end
-  if (Pd != 0) begin : gen_displacement
-    assign old_u                            = main_data[DispLsb +: DispBits];
-    assign update_data[DispLsb +: DispBits] = new_u;
-  end else begin : gen_no_displacement
-    logic unused_new_u;
-    assign unused_new_u = ^new_u;
-    assign old_u        = '0;
-  end
+
   // Migration.
-  logic                    fault_left, fault_full;
   logic [1:0]              axis_pop;
   logic                    from_above;
-  logic [ParticleBits-1:0] fault_particle, stored;
+  logic [ParticleBits-1:0] stored;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_migrate
-    assign away_axes[a]            = (new_away[2*a +: 2] != 2'b00);
     assign migrate_pop[2*a +: 2]   = axis_pop & {2{axis_onehot[a]}};
     assign migrate_clear[2*a +: 2] = {2{axis_onehot[a] && migrate_done}};
   end
@@ -689,8 +589,10 @@ module cuboct_brick_core #(
   always_comb begin
     leaving_d = leaving_q;
     for (g = 0; g < Cells; g = g + 1) begin
-      if (update_write && write_cell == g[CellBits-1:0]) leaving_d[g*Axes +: Axes] = leaving_q[g*Axes +: Axes] | away_axes;
-      if (migrate_land && main_own == g[CellBits-1:0]) leaving_d[g*Axes +: Axes] = leaving_q[g*Axes +: Axes] | leaving_more;
+      if (update_write && write_cell == g[CellBits-1:0])
+        leaving_d[g*Axes +: Axes] = leaving_q[g*Axes +: Axes] | away_axes;
+      if (migrate_land && main_own == g[CellBits-1:0])
+        leaving_d[g*Axes +: Axes] = leaving_q[g*Axes +: Axes] | leaving_more;
     end
     if (step_end) leaving_d = '0;
   end
@@ -720,53 +622,13 @@ module cuboct_brick_core #(
   assign observe_cell_o  = main_own;
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
-  // Faults: source 0 is pipe 0 or the update, which never speak in one cycle. A particle is in one cell, so the cell
-  // below its id changes no order.
-  logic [ForcePipes-1:0]          fault_valid;
-  logic [ForcePipes*4-1:0]        fault_code;
-  logic [ForcePipes*TellBits-1:0] fault_id;
-  logic [ForcePipes*64-1:0]       fault_number;
-  logic [3:0]                     migrate_fault_code;
-  assign migrate_fault_code = 4'd6 + {1'b0, axis, 1'b0} + {3'b000, of_after};  // left, full: 6 7, 8 9, 10 11
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_fault
-    always_comb begin
-      fault_valid[f]                   = pipe_fault[f];
-      fault_code[f*4 +: 4]             = pipe_fault_strength[f] ? 4'd2 : 4'd1;
-      fault_id[f*TellBits +: TellBits] = {kick_id[f*IdBits +: IdBits], kick_place[f*PlaceBits+SlotBits +: CellBits]};
-      fault_number[f*64 +: 64]         = pipe_fault_number[f*64 +: 64];
-      if (f == 0 && update_fault) begin
-        fault_valid[f]                   = 1'b1;
-        fault_code[f*4 +: 4]             = update_fault_code;
-        fault_id[f*TellBits +: TellBits] = update_fault_id;
-        fault_number[f*64 +: 64]         = update_fault_number;
-      end
-    end
-  end
-  // What the migration says is compared a cycle later, but for a full cell in the step's last cycle. Its code is the
-  // highest one there is, its cell the last one, highest along the axis; so who comes from above comes over the face.
+  // The code of a full cell in the step's last cycle is the highest one there is, its cell the last one, highest along
+  // the axis; so who comes from above comes over the face.
   localparam int LastAxis = Axes - 1;
   localparam int LastFull = 7 + 2 * LastAxis;
-  logic                    move_fault_q, move_full_q;
-  logic [3:0]              move_code_q, kept_code;
-  logic [TellBits-1:0]     move_id_q, kept_id, last_id;
+  logic                    last_first;
+  logic [TellBits-1:0]     last_id;
   logic [ParticleBits-1:0] last_low, last_high, last_particle;
-  logic                    kept_fault, last_first;
-  logic [63:0]             kept_number;
-  always_ff @(posedge clk_i) begin
-    if (!rst_ni) move_fault_q <= 1'b0;
-    else move_fault_q <= (fault_left || fault_full) && !step_end;
-  end
-  always_ff @(posedge clk_i) begin
-    move_full_q <= of_after;
-    move_code_q <= migrate_fault_code;
-    move_id_q   <= {fault_particle[IdLsb +: IdBits], main_own};
-  end
-  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(TellBits), .NumberBits(NumberBits)) u_fault (
-    .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
-    .number_i(fault_number), .move_valid_i(move_fault_q), .move_code_i(move_code_q), .move_id_i(move_id_q),
-    .move_number_i(move_full_q ? {32'd0, Capacity} : 64'd0), .valid_o(kept_fault), .code_o(kept_code),
-    .id_o(kept_id), .number_o(kept_number)
-  );
   assign last_low       = arrived[2*LastAxis*ParticleBits +: ParticleBits];
   assign last_high      = arrived[(2*LastAxis+1)*ParticleBits +: ParticleBits];
   assign last_particle  = from_above ? last_high : main_low[LastAxis] ? last_low : stored;
@@ -778,6 +640,6 @@ module cuboct_brick_core #(
   assign fault_number_o = kept_fault ? kept_number : {32'd0, Capacity};
 
   logic unused_fields;
-  assign unused_fields = ^{main_data, stream_data, fault_particle, last_particle, relay_next, first_face, next_face, issue_candidate,
+  assign unused_fields = ^{stream_data, fault_particle, last_particle, relay_next, first_face, next_face,
                            relay_halo_count, relay_halos};
 endmodule

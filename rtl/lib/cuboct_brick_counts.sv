@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A number for each of some cells, zero after a reset and after clear_i. What is written in cycle t is read from t+1 on,
-// without latency. A cell that there is not reads as nothing known.
+// A number for each of some cells, zero after a reset and after clear_i. What is written in cycle t is read from t+1
+// on, without latency. A cell that there is not reads as nothing known.
 module cuboct_brick_counts #(
   parameter int Cells    = 8,  // >= 1
   parameter int AddrBits = 3,  // of a cell's number, >= clog2(Cells), >= 1

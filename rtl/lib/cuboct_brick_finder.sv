@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // From the cells of a brick to pairs, as cuboct_pair_finder does it for one cell. A candidate is what the filter, the
-// queue and the pipes carry: position in the own cell's frame, what the rule needs of type and v, the own cell's number.
+// queue and the pipes carry: position in the own cell's frame, what the rule needs of type and v, the own cell's
+// number.
 module cuboct_brick_finder #(
   parameter int          Axes            = 3,   // 2 or 3
   parameter int          BrickX          = 2,

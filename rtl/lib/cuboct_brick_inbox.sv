@@ -12,7 +12,7 @@ module cuboct_brick_inbox #(
   parameter int Relayed      = 1,   // 1: a second read port for the relay
   parameter int TagBits      = 2,   // of a cell's number
   parameter int CountBits    = 5,   // >= clog2(Capacity + 1)
-  parameter int AddrBits     = 6,   // of the streamer's and the relay's address, >= TagBits, and clog2(HaloCells * Capacity)
+  parameter int AddrBits     = 6,   // of streamer's and relay's addresses, >= TagBits, and clog2(HaloCells * Capacity)
   localparam int TotalBits   = $clog2(FaceCells * Capacity + 1)
 ) (
   input  logic                    clk_i,
@@ -32,7 +32,7 @@ module cuboct_brick_inbox #(
   input  logic [AddrBits-1:0]     relay_addr_i,    // the relay asks in every cycle
   output logic [HaloBits-1:0]     relay_halo_o,    // from the next cycle on
   // Particles.
-  input  logic                    migrating_i,     // a migration phase: the oldest particle is shown, one cycle later on
+  input  logic                    migrating_i,     // a migration phase: the oldest particle is shown, a cycle later on
   input  logic                    forget_i,        // the phase's end: all have landed
   input  logic                    push_i,          // a particle came
   input  logic [TagBits-1:0]      particle_cell_i, // the cell that it goes to
@@ -54,7 +54,8 @@ module cuboct_brick_inbox #(
   assign unused_any = any_halo;
   cuboct_brick_counts #(.Cells(HaloCells), .AddrBits(TagBits), .Bits(CountBits), .Reads(3)) u_halo_counts (
     .clk_i, .rst_ni, .clear_i, .write_i(append_i), .write_addr_i(halo_cell_i), .count_i(added),
-    .addr_i({relay_cell_i, stream_cell_i, halo_cell_i}), .count_o({relay_count_o, stream_count_o, halo_count}), .any_o(any_halo)
+    .addr_i({relay_cell_i, stream_cell_i, halo_cell_i}), .count_o({relay_count_o, stream_count_o, halo_count}),
+    .any_o(any_halo)
   );
   assign added = halo_count + 1'b1;
   logic [CountBits-1:0] landing;

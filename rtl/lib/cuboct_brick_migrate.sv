@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The migration phases of a brick. SCAN walks the own cells: who leaves over a face of the brick is sent, who goes to
-// another cell of it is stored, and the gaps are closed; END closes the streams, WAIT until all that comes has come, LAND
-// walks the cells and appends to each what came to it, from below before from above. SCAN and LAND are left out where
-// no one leaves, no one came.
+// another cell of it is stored, and the gaps are closed; END closes the streams, WAIT until all that comes has come,
+// LAND walks the cells and appends to each what came to it, from below before from above. SCAN and LAND are left out
+// where no one leaves, no one came.
 module cuboct_brick_migrate #(
   parameter int Axes         = 3,    // 2 or 3
   parameter int BrickX       = 2,
@@ -39,8 +39,8 @@ module cuboct_brick_migrate #(
   input  logic [CountBits-1:0]      count_i,          // particles of the cell
   output logic                      count_set_o,      // they are count_o from the next cycle on
   output logic [CountBits-1:0]      count_o,          // with count_set_o
-  // The next cycle's read_data_i is the first slot of the cell after this one with leave_o and ends_o, the next slot with
-  // leave_o alone, else the same again.
+  // The next cycle's read_data_i is the first slot of the cell after this one with leave_o and ends_o, the next slot
+  // with leave_o alone, else the same again.
   output logic                      leave_o,          // the slot is left
   output logic                      ends_o,           // advance_o, with leave_o
   input  logic [2*Axes-1:0]         away_i,           // where the particle of read_data_i goes, by axis
@@ -58,7 +58,7 @@ module cuboct_brick_migrate #(
   // What came over the faces of the axis: below, above.
   input  logic [1:0]                none_i,           // no particle came in this phase
   input  logic [1:0]                ended_i,          // the end beat came
-  output logic                      of_after_o,       // asks for the count of the cell after the present one, else of this
+  output logic                      of_after_o,       // asks for the count of the cell after this one, else of this
   input  logic [2*CountBits-1:0]    land_count_i,     // by face: particles that go to the cell asked for
   input  logic [2*ParticleBits-1:0] arrived_i,        // the oldest particle of each face
   output logic [1:0]                pop_o,            // it is taken
@@ -87,7 +87,8 @@ module cuboct_brick_migrate #(
   logic [CountBits-1:0] below_d, below_q, above_d, above_q;  // Land: particles that still come to the cell
   logic [BeatBits-1:0]  beat_d, beat_q;
   logic [1:0]           away;
-  logic                 visit, stays, up, exists, at_low, at_high, outer, loadable, last_beat, slot_done, last_slot, last_cell;
+  logic                 visit, stays, up, exists, at_low, at_high, outer, loadable, last_beat, slot_done, last_slot;
+  logic                 last_cell;
   logic                 moves;  // to another cell of the brick
 
   always_comb begin
@@ -163,8 +164,8 @@ module cuboct_brick_migrate #(
   assign none_moved  = !some_up && !some_down;
   assign store_write = up ? ups_q : downs_q;
   cuboct_ram #(.Bits(ParticleBits), .Depth(Store), .AddrBits(StoreBits)) u_store (
-    .clk_i, .write_i(moves), .write_addr_i(store_write), .write_data_i(read_data_i[ParticleBits-1:0]), .read_i(1'b1), .clear_i(1'b0),
-    .read_addr_i(store_read), .read_data_o(stored)
+    .clk_i, .write_i(moves), .write_addr_i(store_write), .write_data_i(read_data_i[ParticleBits-1:0]), .read_i(1'b1),
+    .clear_i(1'b0), .read_addr_i(store_read), .read_data_o(stored)
   );
 
   // Landing: from below over the face if the cell is at it, else out of the store; so from above.

@@ -11,7 +11,7 @@ module cuboct_brick_place #(
 ) (
   input  logic [3*GridBits-1:0] cell_i,   // x, y, z
   output logic [CellBits-1:0]   own_o,    // in the brick, x first
-  output logic [3*TagBits-1:0]  layer_o,  // by axis: along x y, z; along y x, z with x from below the brick; along z x, y
+  output logic [3*TagBits-1:0]  layer_o,  // by axis: along x y, z; along y x, z, x from below the brick; along z x, y
   output logic [3*TagBits-1:0]  face_o    // by axis
 );
   localparam int Bits = CellBits + 5;

@@ -34,7 +34,7 @@ module cuboct_brick_relay #(
   // The cell's records: of each face but those of the last axis, and own ones.
   input  logic [CountBits-1:0]  own_count_i, // own particles
   input  logic [(Faces-2)*CountBits-1:0] halo_count_i,  // by face
-  output logic                  step_o,      // the next cycle's record is the next one of the cell; a cell's first one comes first
+  output logic                  step_o,      // the next cycle's record is the cell's next; a cell's first comes first
   input  logic [HaloBits-1:0]   own_i,       // the record
   input  logic [(Faces-2)*HaloBits-1:0] halo_i,  // by face
   // To the link registers of the axis: below, above.

@@ -55,7 +55,8 @@ module cuboct_brick_slots #(
     if (write_i) written_q <= write_data_i;
   end
   cuboct_ram #(.Bits(Bits), .Depth(Depth), .AddrBits(AddrBits)) u_main (
-    .clk_i, .write_i, .write_addr_i, .write_data_i, .read_i(1'b1), .clear_i(1'b0), .read_addr_i(main_addr_i), .read_data_o(main_data)
+    .clk_i, .write_i, .write_addr_i, .write_data_i, .read_i(1'b1), .clear_i(1'b0), .read_addr_i(main_addr_i),
+    .read_data_o(main_data)
   );
   assign main_data_o = same_q ? written_q : main_data;
   // The migration does not wait for the block's answer.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Walks the pairs of cells that may interact: segment 0 within the brick, then one for each face -x, +x, -y, +y, -z, +z;
-// in each the own cells, for each the segment's cells around it, their records, and every record once for each row of
-// the own cell's slots. One (record, row) per cycle; an own cell without particles, or a cell around without records,
-// takes a cycle in which nobody meets, a segment without a link one in which nothing is presented.
+// Walks the pairs of cells that may interact: segment 0 within the brick, then one for each face -x, +x, -y, +y, -z,
+// +z; in each the own cells, for each the segment's cells around it, their records, and every record once for each row
+// of the own cell's slots. One (record, row) per cycle; an own cell without particles, or a cell around without
+// records, takes a cycle in which nobody meets, a segment without a link one in which nothing is presented.
 module cuboct_brick_streamer #(
   parameter int Axes        = 3,  // 2 or 3
   parameter int BrickX      = 2,
@@ -77,8 +77,8 @@ module cuboct_brick_streamer #(
   assign last_near     = (offset_q == high_offset);
   assign leave_near    = present_o && (nobody_o || (last_row && last_record));
   assign leave_visit   = leave_near && (last_near || own_count_i == '0);
-  // The other visit is that of the cell after this one, or the first one of the segment after this one. Which one it is,
-  // and all that is known of it, is there before it is known whether this visit ends.
+  // The other visit is that of the cell after this one, or the first one of the segment after this one. Which one it
+  // is, and all that is known of it, is there before it is known whether this visit ends.
   assign turns         = past_o || last_cell || !linked;
   assign other_segment = past_o ? 3'd0 : turns ? segment_q + 3'd1 : segment_q;
   assign enter         = leave_visit || (go && !linked) || restart_i;
@@ -172,7 +172,8 @@ module cuboct_brick_streamer #(
     end
   end
 
-  // Numbers of the own cell and of the one around, in registers: of the next one around, of the other visit, or the same.
+  // Numbers of the own cell and of the one around, in registers: of the next one around, of the other visit, or the
+  // same.
   logic [CellBits-1:0]  own_d, own_q, near_d, near_q, other_own, next_near_own, other_near_own;
   logic [3*TagBits-1:0] layer_d, layer_q, next_layer, other_layer, own_layer, own_face, next_face, other_face;
   for (genvar b = 0; b < 3; b++) begin : gen_near

@@ -10,7 +10,7 @@ module cuboct_brick_sums #(
   parameter int AddrBits = 7    // >= clog2(Depth)
 ) (
   input  logic                     clk_i,
-  input  logic                     kick_valid_i, // a kick is added to the sum of the slot that the cycle before asked for
+  input  logic                     kick_valid_i, // a kick is added to the sum that the cycle before asked for
   input  logic [Axes*KickBits-1:0] push_i,       // minus the kick
   input  logic                     zero_i,       // never in a cycle with a kick
   input  logic [AddrBits-1:0]      zero_addr_i,  // with zero_i
@@ -38,8 +38,8 @@ module cuboct_brick_sums #(
     if (kick_valid_i) written_q <= added;
   end
   cuboct_ram #(.Bits(Axes * SumBits), .Depth(Depth), .AddrBits(AddrBits)) u_words (
-    .clk_i, .write_i(write), .write_addr_i(write_addr), .write_data_i(zero_i ? '0 : added), .read_i(1'b1), .clear_i(1'b0),
-    .read_addr_i(next_addr), .read_data_o(word)
+    .clk_i, .write_i(write), .write_addr_i(write_addr), .write_data_i(zero_i ? '0 : added), .read_i(1'b1),
+    .clear_i(1'b0), .read_addr_i(next_addr), .read_data_o(word)
   );
   assign old   = same_q ? written_q : word;
   assign sum_o = old;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The filter: register F0 holds a candidate (in the memories' output registers) and a row, F1 holds both once more, so
 // that a memory's answer is chosen in one cycle and compared in the next; FilterLanes lanes test the candidate against
-// the row's slots, through registers of their sizes, F2; register F3 holds the mask of those that may interact. All keep
-// their contents in a stalled cycle.
+// the row's slots, through registers of their sizes, F2; register F3 holds the mask of those that may interact. All
+// keep their contents in a stalled cycle.
 module cuboct_filter #(
   parameter int          Axes            = 3,   // 2 or 3
   parameter int          PositionFrac    = 20,

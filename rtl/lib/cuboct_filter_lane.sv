@@ -2,7 +2,8 @@
 // One filter lane: may the candidate interact with the particle of this lane's slot? Adders and comparators only, on
 // the leading FilterFrac bits of the positions. With e the difference of these, size = e, or -e - 1 if e < 0; each
 // size, each sum of two and, of three axes, the sum of all stand against bounds that no pair inside the cutoff exceeds
-// (model/contract/fixed_rule.h). Combinational, or with a register between sizes and sums; near_o are the tests one by one, for who has a register to put between.
+// (model/contract/fixed_rule.h). Combinational, or with a register between sizes and sums; near_o are the tests one by
+// one, for who has a register to put between.
 module cuboct_filter_lane #(
   parameter int          Axes        = 3,      // 2 or 3
   parameter int          FilterFrac  = 8,      // B

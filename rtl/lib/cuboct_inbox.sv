@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What came over one face in this step: its halo records, and the particles that migrate, each in a memory of their own.
-// The particles' is small, so that it may lie in distributed memory: an arrival goes through many choices in the cycle in
-// which it is read. A halo that is appended in cycle t counts, and can be asked for, from t+1 on; a particle counts from
-// t+2 on, when the memory can have answered.
+// What came over one face in this step: its halo records, and the particles that migrate, each in a memory of their
+// own. The particles' is small, so that it may lie in distributed memory: an arrival goes through many choices in the
+// cycle in which it is read. A halo that is appended in cycle t counts, and can be asked for, from t+1 on; a particle
+// counts from t+2 on, when the memory can have answered.
 module cuboct_inbox #(
   parameter int HaloBits     = 66,   // of a halo record, >= 1
   parameter int ParticleBits = 128,  // >= 1
@@ -81,8 +81,8 @@ module cuboct_inbox #(
   end
 
   cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_words (
-    .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i), .read_i(read_i), .clear_i(1'b0),
-    .read_addr_i(addr_i), .read_data_o(halo_o)
+    .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i), .read_i(read_i),
+    .clear_i(1'b0), .read_addr_i(addr_i), .read_data_o(halo_o)
   );
   cuboct_ram #(.Bits(ParticleBits), .Depth(Capacity), .AddrBits(PlaceBits)) u_particles (
     .clk_i, .write_i(push_i), .write_addr_i(write_q), .write_data_i(particle_i), .read_i(migrating_i), .clear_i(1'b0),

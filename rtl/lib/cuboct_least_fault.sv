@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Keeps the least fault of a step, by (code, id, number); number is signed, code 0 is none. What pipes and update say
-// is compared a cycle later. Migration speaks in the step's last cycle too, so what it says is shown at once: its codes are
-// above theirs and never fall within a step, so that its id alone is compared, and that with faults of the same code.
+// is compared a cycle later. Migration speaks in the step's last cycle too, so what it says is shown at once: its codes
+// are above theirs and never fall within a step, so that its id alone is compared, and that with faults of the same
+// code.
 module cuboct_least_fault #(
   parameter int Sources    = 1,  // pipes, that may speak in one cycle; the update in place of the first; >= 1
   parameter int IdBits     = 8,  // of an id, >= 1
@@ -55,7 +56,8 @@ module cuboct_least_fault #(
   assign move_key = {move_code_i, move_id_i, !move_number_i[NumberBits-1], move_number_i[NumberBits-2:0]};
   assign moved    = move_valid_i
                  && ((!valid_q && late_valid_q == '0)
-                     || (valid_q && key_q[NumberBits+IdBits +: 4] == move_code_i && below(move_id_i, key_q[NumberBits +: IdBits])));
+                     || (valid_q && key_q[NumberBits+IdBits +: 4] == move_code_i
+                         && below(move_id_i, key_q[NumberBits +: IdBits])));
   always_comb begin
     seen  = valid_q;
     key_d = key_q;

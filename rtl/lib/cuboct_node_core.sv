@@ -105,18 +105,18 @@ module cuboct_node_core #(
   output logic [63:0]             fault_number_o,
   output logic                    idle_o
 );
+  // Every tool ends with an error where a module is missing: the parameters are out of their ranges.
+  if (Axes < 2 || Axes > 3 || Capacity < 1 || FilterLanes < 1 || ForcePipes < 1 || QueueDepth < 1 || LinkBits < 1
+      || IdBits < 1 || TypeBits < 0 || FilterFrac > PositionFrac
+      || (Narrow != 0 && (FilterLanes != 1 || ForcePipes != 1 || Overlap != 0))) begin : gen_range
+    cuboct_parameter_out_of_range u_error ();
+  end
   // Fields of a particle.
   localparam int PosBits    = Axes * PositionFrac;
-  localparam int VelBits    = Axes * VelocityBits;
-  localparam int DispBits   = Axes * DisplacementBits;
   localparam int AwayBits   = 2 * (Axes - 1);
   localparam int VelLsb     = PosBits + AwayBits;
-  localparam int TypeLsb    = VelLsb + VelBits;
+  localparam int TypeLsb    = VelLsb + Axes * VelocityBits;
   localparam int IdLsb      = TypeLsb + TypeBits;
-  localparam int ResidueLsb = IdLsb + IdBits;
-  localparam int ResidueBits = Axes * Guard;
-  localparam int DispLsb    = ResidueLsb + ResidueBits;
-  localparam int SomeType   = (TypeBits > 0) ? TypeBits : 1;
   localparam int OwnBits    = ParticleBits + 2;  // a slot: {away_x, particle}
   localparam int SeenBits   = (HaloVelocity + HaloType > 0) ? IdLsb : PosBits;  // what others see of it
   // Fields of a candidate: a halo record with all axes of one width.
@@ -132,20 +132,6 @@ module cuboct_node_core #(
   localparam int HaloBeats = (HaloBits + LinkBits - 1) / LinkBits;
   localparam int FirstWord = Capacity * ((ParticleBits + LinkBits - 1) / LinkBits);  // of the halos in a face's memory
   localparam int WordBits  = $clog2(FirstWord + ((Axes == 3) ? 9 : 3) * Capacity * HaloBeats + 1);
-  // |s| <= 2^(SBits-1) and |d| <= 2^D; a node sees at most 3^Axes * Capacity kicks.
-  localparam int SBits       = (Damped != 0) ? StrengthBits : ForceBits;
-  localparam int KickFull    = SBits + PositionFrac - DifferenceShift + 1 - KickShift;
-  localparam int KickBits    = (KickFull > 2) ? KickFull : 2;
-  localparam int PipeSumBits = KickBits + $clog2(((Axes == 3) ? 27 : 9) * Capacity);
-  // No number that a fault tells is longer: w, s before their checks; sums, v, u; the capacity.
-  localparam int SFullBits   = ((DampBits + RelativeVelocityBits > ForceBits) ? DampBits + RelativeVelocityBits : ForceBits)
-                               + 2;
-  localparam int PullBits    = (Pd != 0) ? GainBits + DisplacementBits + 6 : 10;
-  localparam int VFullBits   = ((VelocityBits > SumBits) ? VelocityBits : SumBits) + 4;
-  localparam int LongPull    = (PullBits > VFullBits) ? PullBits : VFullBits;
-  localparam int LongKick    = (PipeSumBits + ForcePipes > SFullBits) ? PipeSumBits + ForcePipes : SFullBits;
-  localparam int LongNumber  = (LongPull > LongKick) ? LongPull : LongKick;
-  localparam int NumberBits  = (LongNumber < 64) ? LongNumber : 64;
   // Update.
   localparam int UpdateLatency = (Pd != 0) ? 7 : 4;  // a cycle after the last one is written MIGRATE may read it
   localparam int UpdateTail    = UpdateLatency - 2;
@@ -172,7 +158,7 @@ module cuboct_node_core #(
   logic [OwnBits-1:0]             own_write_data, update_data, migrate_write_data, main_data;
   logic [SeenBits-1:0]            stream_data;
   logic                           stream_read, main_read, main_hold, migrate_read;
-  logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot, kick_slot_next;
+  logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot_next;
   logic [ForcePipes*SeenBits-1:0] pipe_data;
   logic [ForcePipes*IdBits-1:0]   kick_id;
   logic [RowBits-1:0]             row;
@@ -218,7 +204,8 @@ module cuboct_node_core #(
     .RowBits(RowBits), .ForcePipes(ForcePipes), .Narrow(Narrow)
   ) u_slots (
     .clk_i, .write_i(own_write), .write_slot_i(own_write_slot), .write_data_i(own_write_data),
-    .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read), .stream_slot_i(stream_slot),
+    .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read),
+    .stream_slot_i(stream_slot),
     .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data), .pipe_slot_i(issue_slot),
     .pipe_data_o(pipe_data), .fault_slot_i(kick_slot_next), .fault_id_o(kick_id)
   );
@@ -299,7 +286,8 @@ module cuboct_node_core #(
     assign halo_word = '0;
     assign record    = '0;
     logic unused_narrow;
-    assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, relay_pick, relay_clear[0]};
+    assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, relay_pick,
+                             relay_clear[0]};
   end
 
   // leaving[a]: some own particle has to go along axis a.
@@ -338,7 +326,9 @@ module cuboct_node_core #(
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
   assign send_end  = in_migrate ? migrate_send_end : relay_end;
   // Of the three all but one are 0.
-  cuboct_late #(.Bits(LinkBits)) u_send (.early_i(migrate_beat | relay_beat), .late_i(relay_halo_beat), .or_o(send_data));
+  cuboct_late #(.Bits(LinkBits)) u_send (
+    .early_i(migrate_beat | relay_beat), .late_i(relay_halo_beat), .or_o(send_data)
+  );
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_link
     assign load_link[2*a +: 2] = axis_load & {2{axis_onehot[a]}};
   end
@@ -380,7 +370,8 @@ module cuboct_node_core #(
   ) u_relay (
     .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
     .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_d}), .pick_o(relay_pick), .clear_o(relay_clear),
-    .read_o(relay_read), .addr_o(relay_addr), .slot_o(relay_slot), .record_i(relay_record), .halo_i(relay_halo_record), .word_o(relay_word),
+    .read_o(relay_read), .addr_o(relay_addr), .slot_o(relay_slot), .record_i(relay_record), .halo_i(relay_halo_record),
+    .word_o(relay_word),
     .word_i(halo_word), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load), .end_o(relay_end),
     .data_o(relay_beat), .halo_data_o(relay_halo_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
   );
@@ -388,13 +379,11 @@ module cuboct_node_core #(
 
   // Force engine.
   logic [CandidateBits-1:0]     issue_candidate;
-  logic [ForcePipes-1:0]        issue, pipe_busy, kick_valid, pipe_fault, pipe_fault_strength;
-  logic [ForcePipes*64-1:0]     pipe_fault_number;
+  logic [ForcePipes-1:0]        issue, pipe_busy;
   logic                         finder_done, present, force_stall;
-  logic [ForcePipes*Axes*PipeSumBits-1:0] sums;
-  logic [Axes*PipeSumBits-1:0]  total;
   logic [SlotBits-1:0]          tick_slot, tick_next;
-  logic                         take;
+  logic                         take, fault_left, fault_full, some_fault;
+  logic [ParticleBits-1:0]      fault_particle;
   if (CandidateBits > CandPos) begin : gen_own_record
     assign own_record = {own_candidate[CandidateBits-1:CandPos], own_candidate[CandPos-3:0]};
   end else begin : gen_bare_own_record
@@ -453,72 +442,6 @@ module cuboct_node_core #(
   assign force_event_o = {issue != '0, present, force_stall, engine_runs};
   assign force_done = engine_runs && finder_done && (pipe_busy == '0);
 
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
-    logic [Axes*KickBits-1:0] push;
-    logic [SeenBits-1:0]      own;
-    logic [SomeType-1:0]      own_type, other_type;
-    logic [VelBits-1:0]       own_v, other_v;
-    assign own = pipe_data[f*SeenBits +: SeenBits];
-    if (HaloType > 0) begin : gen_type
-      assign own_type   = own[TypeLsb +: SomeType];
-      assign other_type = issue_candidate[CandPos +: SomeType];
-    end else begin : gen_no_type
-      assign own_type   = '0;
-      assign other_type = '0;
-    end
-    if (HaloVelocity > 0) begin : gen_velocity
-      assign own_v   = own[VelLsb +: VelBits];
-      assign other_v = issue_candidate[CandPos + HaloType +: VelBits];
-    end else begin : gen_no_velocity
-      assign own_v   = '0;
-      assign other_v = '0;
-    end
-    cuboct_pipe #(
-      .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .Cutoff2(Cutoff2),
-      .EntryBits(StrengthBits), .IndexBits(IndexBits), .Octaves(Octaves), .Degree(Degree), .BinBits(BinBits), .FirstOctave(FirstOctave),
-      .FractionBits(FractionBits), .ForceBits(ForceBits), .Damped(Damped), .VelocityBits(VelocityBits),
-      .RelativeVelocityBits(RelativeVelocityBits), .WShift(WShift), .QShift(QShift), .DampShift(DampShift),
-      .DampIndexBits(DampIndexBits), .DampOctaves(DampOctaves), .DampDegree(DampDegree), .DampBinBits(DampBinBits),
-      .DampFirstOctave(DampFirstOctave), .DampFractionBits(DampFractionBits), .DampBits(DampBits),
-      .StrengthBits(StrengthBits), .Scaled(Scaled), .TypeBits(SomeType), .ScaleBits(ScaleBits),
-      .ScaleFrac(ScaleFrac), .KickShift(KickShift), .KickBits(KickBits), .SlotBits(SlotBits), .Shared(Shared),
-      .Product(Product), .Interval(Interval)
-    ) u_pipe (
-      .clk_i, .rst_ni, .valid_i(issue[f]), .slot_i(issue_slot[f*SlotBits +: SlotBits]),
-      .own_x_i(own[PosBits-1:0]), .own_v_i(own_v), .own_type_i(own_type),
-      .other_x_i(issue_candidate[CandPos-1:0]), .other_v_i(other_v), .other_type_i(other_type),
-      .valid_o(kick_valid[f]), .slot_next_o(kick_slot_next[f*SlotBits +: SlotBits]),
-      .slot_o(kick_slot[f*SlotBits +: SlotBits]), .push_o(push),
-      .fault_o(pipe_fault[f]), .fault_strength_o(pipe_fault_strength[f]),
-      .fault_number_o(pipe_fault_number[f*64 +: 64]), .busy_o(pipe_busy[f])
-    );
-    cuboct_sums #(
-      .Axes(Axes), .KickBits(KickBits), .SumBits(PipeSumBits), .Capacity(Capacity),
-      .Spaced((Interval > 1) ? 1 : 0), .SlotBits(SlotBits)
-    ) u_sums (
-      .clk_i, .rst_ni, .kick_valid_i(kick_valid[f]), .push_i(push),
-      .next_slot_i(pipe_busy[f] ? kick_slot_next[f*SlotBits +: SlotBits] : tick_next),
-      .take_i((Narrow != 0) ? update_write : take), .sum_o(sums[f*Axes*PipeSumBits +: Axes*PipeSumBits])
-    );
-    logic unused_own;
-    assign unused_own = ^{own, kick_slot[f*SlotBits +: SlotBits]};
-  end
-  // One after the other: of pipe f and those before it.
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_total
-    logic [Axes*PipeSumBits-1:0] so_far;
-    for (genvar a = 0; a < Axes; a++) begin : gen_axis
-      if (f == 0) begin : gen_first
-        assign so_far[a*PipeSumBits +: PipeSumBits] = sums[a*PipeSumBits +: PipeSumBits];
-      end else begin : gen_more
-        assign so_far[a*PipeSumBits +: PipeSumBits] = gen_total[f-1].so_far[a*PipeSumBits +: PipeSumBits]
-                                                    + sums[(Axes*f+a)*PipeSumBits +: PipeSumBits];
-      end
-    end
-  end
-  assign total = gen_total[ForcePipes-1].so_far;
-  logic unused_candidate;
-  assign unused_candidate = ^issue_candidate;
-
   // Update and dump walk the slots. Narrow: one after the other, so that the memories' answers stay for the update.
   localparam int Tail = (Narrow != 0) ? 0 : UpdateTail;
   logic [TickBits-1:0] tick, tick_after;
@@ -539,64 +462,40 @@ module cuboct_node_core #(
   logic unused_tick;
   assign unused_tick = ^{tick, tick_after};
 
-  logic [PosBits-1:0]  new_x;
-  logic [ResidueBits-1:0] new_residue;
-  logic [2*Axes-1:0]   new_away;
-  logic [VelBits-1:0]  new_v;
-  logic [SomeType-1:0] old_type, new_type;
-  logic [IdBits-1:0]   new_id;
-  logic [DispBits-1:0] old_u, new_u;
-  logic                update_fault;
-  logic [3:0]          update_fault_code;
-  logic [IdBits-1:0]   update_fault_id;
-  logic [63:0]         update_fault_number;
-  cuboct_update #(
-    .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
-    .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .Held(Narrow), .DisplacementBits(DisplacementBits), .GainBits(GainBits),
+  cuboct_datapath #(
+    .Axes(Axes), .Cells(1), .Capacity(Capacity), .ForcePipes(ForcePipes), .Shared(Shared), .Product(Product),
+    .Interval(Interval), .Narrow(Narrow), .IdBits(IdBits), .TypeBits(TypeBits), .ParticleBits(ParticleBits),
+    .SeenBits(SeenBits), .CandidateBits(CandidateBits), .PositionFrac(PositionFrac), .Guard(Guard),
+    .VelocityBits(VelocityBits), .RelativeVelocityBits(RelativeVelocityBits), .StrengthBits(StrengthBits),
+    .SumBits(SumBits), .DisplacementBits(DisplacementBits), .ScaleFrac(ScaleFrac), .GainFrac(GainFrac),
+    .GainBits(GainBits), .ScaleBits(ScaleBits), .ConstantBits(ConstantBits), .DifferenceShift(DifferenceShift),
+    .WShift(WShift), .QShift(QShift), .DampShift(DampShift), .KickShift(KickShift), .Cutoff2(Cutoff2),
+    .Octaves(Octaves),
+    .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits), .FirstOctave(FirstOctave), .FractionBits(FractionBits),
+    .ForceBits(ForceBits), .Damped(Damped), .DampOctaves(DampOctaves), .DampDegree(DampDegree),
+    .DampIndexBits(DampIndexBits), .DampBinBits(DampBinBits), .DampFirstOctave(DampFirstOctave),
+    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled),
 `ifdef CUBOCT_HOST_VELOCITY
     .MovedTypes(MovedTypes),
 `endif
-    .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(SlotBits), .IdBits(IdBits)
-  ) u_update (
+    .Pd(Pd)
+  ) u_datapath (
 `ifdef CUBOCT_HOST_VELOCITY
     .velocity_i,
 `endif
-    .clk_i, .rst_ni, .valid_i(take), .slot_i(tick_slot), .sum_i(total),
-    .x_i(main_data[PosBits-1:0]), .residue_i(main_data[ResidueLsb +: ResidueBits]),
-    .v_i(main_data[VelLsb +: VelBits]), .type_i(old_type),
-    .id_i(main_data[IdLsb +: IdBits]), .u_i(old_u), .valid_o(update_write), .slot_o(update_slot), .x_o(new_x),
-    .residue_o(new_residue), .away_o(new_away), .v_o(new_v), .type_o(new_type), .id_o(new_id), .u_o(new_u), .fault_o(update_fault),
-    .fault_code_o(update_fault_code), .fault_id_o(update_fault_id), .fault_number_o(update_fault_number)
+    .clk_i, .rst_ni, .issue_i(issue), .issue_place_i(issue_slot), .candidate_i(issue_candidate), .own_i(pipe_data),
+    .busy_o(pipe_busy), .kick_addr_o(kick_slot_next), .kick_id_i(kick_id), .look_addr_i(tick_next),
+    .clear_i((Narrow != 0) ? update_write : take), .clear_addr_i(tick_next), .take_i(take),
+    .take_place_i(tick_slot), .slot_i(main_data), .written_o(update_write), .place_o(update_slot),
+    .slot_o(update_data), .leaving_o(away_axes), .step_end_i(step_end), .move_fault_i(fault_left || fault_full),
+    .move_axis_i(axis), .move_full_i(fault_full), .move_tell_i(fault_particle[IdLsb +: IdBits]),
+    .fault_o(some_fault), .fault_code_o, .fault_tell_o(fault_id_o), .fault_number_o
   );
-  assign update_data[PosBits-1:0]               = new_x;
-  assign update_data[PosBits +: AwayBits]       = new_away[2*Axes-1:2];
-  assign update_data[VelLsb +: VelBits]         = new_v;
-  assign update_data[IdLsb +: IdBits]           = new_id;
-  assign update_data[ResidueLsb +: ResidueBits] = new_residue;
-  assign update_data[ParticleBits +: 2]         = new_away[1:0];
-  if (TypeBits > 0) begin : gen_types
-    assign old_type                         = main_data[TypeLsb +: SomeType];
-    assign update_data[TypeLsb +: SomeType] = new_type;
-  end else begin : gen_one_type
-    logic unused_new_type;
-    assign unused_new_type = ^new_type;
-    assign old_type        = '0;
-  end
-  if (Pd != 0) begin : gen_displacement
-    assign old_u                            = main_data[DispLsb +: DispBits];
-    assign update_data[DispLsb +: DispBits] = new_u;
-  end else begin : gen_no_displacement
-    logic unused_new_u;
-    assign unused_new_u = ^new_u;
-    assign old_u        = '0;
-  end
+  assign fault_valid_o = some_fault && step_end;  // a step's last cycle is one in which nothing moves
 
   // Migration.
   logic [SlotBits-1:0]     migrate_read_slot;
-  logic                    fault_left, fault_full;
-  logic [ParticleBits-1:0] fault_particle;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_migrate
-    assign away_axes[a]            = (new_away[2*a +: 2] != 2'b00);
     assign migrate_clear[2*a +: 2] = {2{axis_onehot[a] && migrate_done}};
   end
   always_comb begin
@@ -613,8 +512,8 @@ module cuboct_node_core #(
     .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_migrate (
     .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .has_link_i(axis_has_link),
-    .leaving_i(next_leaving), .count_i(own_count_q), .full_i(full_q), .count_set_o(migrate_count_set), .count_o(migrate_count),
-    .full_o(migrate_full),
+    .leaving_i(next_leaving), .count_i(own_count_q), .full_i(full_q), .count_set_o(migrate_count_set),
+    .count_o(migrate_count), .full_o(migrate_full),
     .read_o(migrate_read), .read_slot_o(migrate_read_slot), .read_data_i(main_data), .write_o(migrate_write),
     .write_slot_o(migrate_write_slot), .write_data_o(migrate_write_data), .leaving_more_o(leaving_more),
     .can_load_i(axis_can_load), .load_o(migrate_load), .end_o(migrate_send_end), .data_o(migrate_beat),
@@ -630,49 +529,6 @@ module cuboct_node_core #(
   assign observe_valid_o = (relay_first_own && (axis == 2'd0)) || (in_dump && (own_count_q != '0));
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
-  // Faults: source 0 is pipe 0 or the update, which never speak in one cycle.
-  logic [ForcePipes-1:0]        fault_valid;
-  logic [ForcePipes*4-1:0]      fault_code;
-  logic [ForcePipes*IdBits-1:0] fault_id;
-  logic [ForcePipes*64-1:0]     fault_number;
-  logic [3:0]                   migrate_fault_code;
-  assign migrate_fault_code = 4'd6 + {1'b0, axis, 1'b0} + {3'b000, fault_full};  // left, full: 6 7, 8 9, 10 11
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_fault
-    always_comb begin
-      fault_valid[f]               = pipe_fault[f];
-      fault_code[f*4 +: 4]         = pipe_fault_strength[f] ? 4'd2 : 4'd1;
-      fault_id[f*IdBits +: IdBits] = kick_id[f*IdBits +: IdBits];
-      fault_number[f*64 +: 64]     = pipe_fault_number[f*64 +: 64];
-      if (f == 0 && update_fault) begin
-        fault_valid[f]               = 1'b1;
-        fault_code[f*4 +: 4]         = update_fault_code;
-        fault_id[f*IdBits +: IdBits] = update_fault_id;
-        fault_number[f*64 +: 64]     = update_fault_number;
-      end
-    end
-  end
-  // A cycle later, too: a step's last cycle is one in which nothing moves.
-  logic              move_fault_q, move_full_q;
-  logic [3:0]        move_code_q;
-  logic [IdBits-1:0] move_id_q;
-  always_ff @(posedge clk_i) begin
-    if (!rst_ni) move_fault_q <= 1'b0;
-    else move_fault_q <= fault_left || fault_full;
-  end
-  always_ff @(posedge clk_i) begin
-    move_full_q <= fault_full;
-    move_code_q <= migrate_fault_code;
-    move_id_q   <= fault_particle[IdLsb +: IdBits];
-  end
-  logic some_fault;
-  cuboct_least_fault #(.Sources(ForcePipes), .IdBits(IdBits), .NumberBits(NumberBits)) u_fault (
-    .clk_i, .rst_ni, .clear_i(step_end), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_id),
-    .number_i(fault_number), .move_valid_i(move_fault_q), .move_code_i(move_code_q), .move_id_i(move_id_q),
-    .move_number_i(move_full_q ? {32'd0, Capacity} : 64'd0), .valid_o(some_fault), .code_o(fault_code_o),
-    .id_o(fault_id_o), .number_o(fault_number_o)
-  );
-  assign fault_valid_o = some_fault && step_end;
-
   logic unused_fields;
-  assign unused_fields = ^{main_data, stream_data, fault_particle};
+  assign unused_fields = ^{stream_data, fault_particle};
 endmodule

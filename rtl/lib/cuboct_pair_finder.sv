@@ -70,8 +70,8 @@ module cuboct_pair_finder #(
 
   cuboct_filter #(
     .Axes(Axes), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne),
-    .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .RowBits(RowBits),
-    .SlotBits(SlotBits), .CountBits(CountBits)
+    .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes),
+    .RowBits(RowBits), .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_filter (
     .clk_i, .rst_ni, .present_i(present), .row_i(row), .own_i(pick[0]),
     .slot_i(slot_o), .own_count_i(counts_i[0 +: CountBits]), .candidate_i(candidate), .row_data_i,

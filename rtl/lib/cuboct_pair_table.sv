@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A function of r2 as a piecewise polynomial. The memory stands outside (generated); this is its address, and the
-// interpolation of what it answers one cycle after that. Latency 3 + Product cycles, +1 with OctaveStage, +1 + Product with SquareStages.
+// interpolation of what it answers one cycle after that. Latency 3 + Product cycles, +1 with OctaveStage, +1 + Product
+// with SquareStages.
 //   uniform: index = the top IndexBits of r2, t = the next FractionBits.
 //   octaves: with o = floor(log2 r2): index = (o - FirstOctave) * 2^BinBits + the BinBits below the leading one,
 //            t = the next FractionBits, zeros where r2 has no more; r2 < 2^FirstOctave has index 0, t 0.
@@ -93,8 +94,8 @@ module cuboct_pair_table #(
     assign unused_r2 = ^r2_i;
   end
   always_ff @(posedge clk_i) t_q <= t_d;
-  // A pair in each cycle: the register stands behind the memory, as a product that waits for a block's read would be the
-  // longest path. With pairs further apart the entry needs no register, and the index is shorter.
+  // A pair in each cycle: the register stands behind the memory, as a product that waits for a block's read would be
+  // the longest path. With pairs further apart the entry needs no register, and the index is shorter.
   logic signed [EntryBits-1:0] c0_read, c1_read, c2_read;
   if (Interval == 1) begin : gen_entry
     logic signed [EntryBits-1:0] c0_q, c1_q, c2_q;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The force pipe: from operands to the kick on the own particle. It takes one pair every Interval cycles: 1; Axes or more
-// with Shared, where one multiplier serves the axes in turn; Product + 1 or more where a product takes Product cycles. It
-// never stalls.
+// The force pipe: from operands to the kick on the own particle. It takes one pair every Interval cycles: 1; Axes or
+// more with Shared, where one multiplier serves the axes in turn; Product + 1 or more where a product takes Product
+// cycles. It never stalls.
 //   d = round_odd(x_j - x_i), r2 = d.d, s = force(r2)
 //   s -= round_odd(damp(r2) * round_odd(w.d))    with Damped; w = round_odd(v_j - v_i)
 //   s = round_odd(s * scale[type_i][type_j])     with Scaled
@@ -67,6 +67,12 @@ module cuboct_pipe #(
   output logic signed [63:0]              fault_number_o,
   output logic                            busy_o        // a pair is on its way
 );
+  // Every tool ends with an error where a module is missing: the parameters are out of their ranges.
+  if (Axes < 2 || Axes > 3 || Degree < 1 || Degree > 2 || DampDegree < 1 || DampDegree > 2 || TypeBits < 1
+      || DifferenceShift >= PositionFrac || Interval < 1 || Product < 1 || (Shared != 0 && Product != 1)
+      || (Shared != 0 && Interval < Axes) || (Product > 1 && Interval <= Product)) begin : gen_range
+    cuboct_parameter_out_of_range u_error ();
+  end
   localparam int D            = PositionFrac - DifferenceShift;
   localparam int DBits        = D + 1;
   localparam int R2Bits       = 2 * D + Axes - 1;  // so many squares of at most 2^(2D)
@@ -129,7 +135,8 @@ module cuboct_pipe #(
       end
       if (valid_q[1]) {d_high_q, d_q[a*DBits +: DBits]} <= d_full;
     end
-    assign difference = $signed({other_q[PositionFrac+1], other_q}) - $signed({3'b000, own_x_i[a*PositionFrac +: PositionFrac]});
+    assign difference = $signed({other_q[PositionFrac+1], other_q})
+                      - $signed({3'b000, own_x_i[a*PositionFrac +: PositionFrac]});
     cuboct_round_odd #(.InBits(PositionFrac + 3), .Shift(DifferenceShift), .OutBits(DBits + 2)) u_round (
       .a_i(difference), .y_o(d_full)
     );
@@ -139,7 +146,9 @@ module cuboct_pipe #(
     logic unused_high;
     assign unused_high = ^product;
   end
-  cuboct_axis_mults #(.Axes(Axes), .Shared(Shared), .ABits(DBits), .BBits(DBits), .Product(Product), .Held(Shared)) u_squares (
+  cuboct_axis_mults #(
+    .Axes(Axes), .Shared(Shared), .ABits(DBits), .BBits(DBits), .Product(Product), .Held(Shared)
+  ) u_squares (
     .clk_i, .rst_ni, .en_i(valid_q[2]), .a_i(d_q), .b_i(d_q), .p_o(products)
   );
   if (Axes == 3) begin : gen_space
@@ -167,7 +176,8 @@ module cuboct_pipe #(
     .FirstOctave(FirstOctave), .FractionBits(FractionBits), .EntryBits(EntryBits), .ValueBits(ForceBits),
     .OctaveStage(OctaveStage), .SquareStages(SquareStages), .Product(Product), .Interval(Interval)
   ) u_force (
-    .clk_i, .rst_ni, .valid_i(valid_q[StageValue:StageR2]), .r2_i(r2_q[2*D-1:0]), .index_o(index), .c0_i(c0), .c1_i(c1), .c2_i(c2), .value_o(force_value)
+    .clk_i, .rst_ni, .valid_i(valid_q[StageValue:StageR2]), .r2_i(r2_q[2*D-1:0]), .index_o(index), .c0_i(c0), .c1_i(c1),
+    .c2_i(c2), .value_o(force_value)
   );
   cuboct_force_rom u_force_rom (.clk_i, .index_i(index), .c0_o(c0), .c1_o(c1), .c2_o(c2));
 
@@ -265,7 +275,8 @@ module cuboct_pipe #(
       .EntryBits(EntryBits), .ValueBits(DampBits), .OctaveStage(OctaveStage), .SquareStages(SquareStages),
       .Product(Product), .Interval(Interval)
     ) u_damp (
-      .clk_i, .rst_ni, .valid_i(valid_q[StageValue:StageR2]), .r2_i(r2_q[2*D-1:0]), .index_o(damp_index), .c0_i(e0), .c1_i(e1), .c2_i(e2), .value_o(damp_value)
+      .clk_i, .rst_ni, .valid_i(valid_q[StageValue:StageR2]), .r2_i(r2_q[2*D-1:0]), .index_o(damp_index), .c0_i(e0),
+      .c1_i(e1), .c2_i(e2), .value_o(damp_value)
     );
     cuboct_damp_rom u_damp_rom (.clk_i, .index_i(damp_index), .c0_o(e0), .c1_o(e1), .c2_o(e2));
     cuboct_mult #(.ABits(DampBits), .BBits(RelativeVelocityBits), .Cycles(Product)) u_friction (

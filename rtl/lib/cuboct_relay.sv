@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The sender of the exchange phases: own records, then the halos that the axes before this one brought, to both links
-// of the axis in lock step. One thing per cycle: an empty segment is left, or a beat is loaded, or it waits. From narrow
-// memories halos come word by word, a beat each.
+// of the axis in lock step. One thing per cycle: an empty segment is left, or a beat is loaded, or it waits. From
+// narrow memories halos come word by word, a beat each.
 module cuboct_relay #(
   parameter int Axes      = 3,   // 2 or 3
   parameter int LinkBits  = 32,  // payload of a beat

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// a / 2^Shift, rounded to nearest, halves away from zero: (a + 2^(Shift-1) - (a < 0)) >>> Shift. Odd in a. Combinational.
-// The carry out of the bits that go is found from them alone, so that the only adder is as wide as the result:
-// with a = h 2^Shift + l it is 1 where l >= 2^(Shift-1) + (a < 0).
+// a / 2^Shift, rounded to nearest, halves away from zero: (a + 2^(Shift-1) - (a < 0)) >>> Shift. Odd in a.
+// Combinational. The carry out of the bits that go is found from them alone, so that the only adder is as wide as the
+// result: with a = h 2^Shift + l it is 1 where l >= 2^(Shift-1) + (a < 0).
 module cuboct_round_odd #(
   parameter int InBits  = 8,  // width of a_i, >= 1
   parameter int Shift   = 1,  // >= 0; 0 passes a_i

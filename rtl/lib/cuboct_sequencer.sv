@@ -28,8 +28,8 @@ module cuboct_sequencer #(
   output logic [7:0]  phase_start_o,    // first cycle of exchange x y z, force, update, migrate x y z
   output logic [7:0]  phase_end_o
 );
-  // One bit each: what depends on the machine's state depends on a register, and the way from a phase's last cycle to the
-  // next state is two choices long.
+  // One bit each: what depends on the machine's state depends on a register, and the way from a phase's last cycle to
+  // the next state is two choices long.
   localparam int ExchangeX = 0;
   localparam int ExchangeY = 1;
   localparam int ExchangeZ = 2;
@@ -64,7 +64,8 @@ module cuboct_sequencer #(
   assign enter[MigrateZ]  = (Axes == 3) && state_q[MigrateY] && migrate_done_i;
   assign enter[Dump]      = (start && none) || (step_end_o && last_step);
   assign enter[Idle]      = state_q[Dump] && dump_done_i;
-  assign leave            = {start, dump_done_i, {3{migrate_done_i}}, update_done_i, force_done_i, {3{exchange_done_i}}};
+  assign leave            = {start, dump_done_i, {3{migrate_done_i}}, update_done_i, force_done_i,
+                             {3{exchange_done_i}}};
   assign first_d          = (enter != '0);
   assign state_d          = enter | (state_q & ~leave);
   assign z_d              = enter[ExchangeZ] || enter[MigrateZ] || (axis_q[2] && !enter[Force] && !step_end_o);
@@ -124,5 +125,6 @@ module cuboct_sequencer #(
   assign unused_number = {state_q[Dump] || state_q[Idle],
                           state_q[Update] || state_q[MigrateX] || state_q[MigrateY] || state_q[MigrateZ],
                           state_q[ExchangeZ] || state_q[Force] || state_q[MigrateY] || state_q[MigrateZ],
-                          state_q[ExchangeY] || state_q[Force] || state_q[MigrateX] || state_q[MigrateZ] || state_q[Idle]};
+                          state_q[ExchangeY] || state_q[Force] || state_q[MigrateX] || state_q[MigrateZ]
+                          || state_q[Idle]};
 endmodule

@@ -40,8 +40,8 @@ module cuboct_slots #(
   localparam int Rows = (Capacity + FilterLanes - 1) / FilterLanes;
 
   cuboct_ram #(.Bits(Bits), .Depth(Capacity), .AddrBits(SlotBits)) u_main (
-    .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i, .read_i(main_read_i), .clear_i(1'b0), .read_addr_i(main_slot_i),
-    .read_data_o(main_data_o)
+    .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i, .read_i(main_read_i), .clear_i(1'b0),
+    .read_addr_i(main_slot_i), .read_data_o(main_data_o)
   );
   if (Narrow != 0) begin : gen_one_port
     assign stream_data_o = main_data_o[SeenBits-1:0];
@@ -51,20 +51,21 @@ module cuboct_slots #(
     assign unused_ports = ^{stream_read_i, stream_slot_i, pipe_slot_i};
   end else begin : gen_ports
     cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_stream (
-      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i), .clear_i(1'b0),
-      .read_addr_i(stream_slot_i), .read_data_o(stream_data_o)
+      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i),
+      .clear_i(1'b0), .read_addr_i(stream_slot_i), .read_data_o(stream_data_o)
     );
     for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
       cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_pipe (
-        .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(1'b1), .clear_i(1'b0),
+        .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(1'b1),
+        .clear_i(1'b0),
         .read_addr_i(pipe_slot_i[f*SlotBits +: SlotBits]), .read_data_o(pipe_data_o[f*SeenBits +: SeenBits])
       );
     end
   end
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_id
     cuboct_ram #(.Bits(IdBits), .Depth(Capacity), .AddrBits(SlotBits)) u_id (
-      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[IdLsb +: IdBits]), .read_i(1'b1), .clear_i(1'b0),
-      .read_addr_i(fault_slot_i[f*SlotBits +: SlotBits]), .read_data_o(fault_id_o[f*IdBits +: IdBits])
+      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[IdLsb +: IdBits]), .read_i(1'b1),
+      .clear_i(1'b0), .read_addr_i(fault_slot_i[f*SlotBits +: SlotBits]), .read_data_o(fault_id_o[f*IdBits +: IdBits])
     );
   end
 

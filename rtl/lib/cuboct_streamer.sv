@@ -16,7 +16,7 @@ module cuboct_streamer #(
   input  logic                   stall_i,      // nothing moves
   input  logic [Axes:0]          available_i,  // own; x, y, z halos complete
   input  logic [(2*Axes+1)*CountBits-1:0] counts_i,     // by segment
-  output logic [2*Axes:0]        pick_o,       // segment: own, then -x, +x, -y, +y, -z, +z, one bit each; none if past_o
+  output logic [2*Axes:0]        pick_o,       // segment, a bit each: own, -x, +x, -y, +y, -z, +z; none if past_o
   output logic [AddrBits-1:0]    addr_o,       // the record's number in its segment
   output logic [SlotBits-1:0]    slot_o,       // addr_o, for the own particles
   output logic [RowBits-1:0]     row_o,        // of own slots

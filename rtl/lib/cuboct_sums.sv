@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The summed kicks of the node's particles, of one pipe. Exact: a sum holds every kick that a node can see. A kick
-// accepted in cycle t counts from t+1 on. Taking a sum clears it. Where kicks never come in two cycles after one another
-// (Spaced) the sums lie in a memory whose word is asked for a cycle ahead.
+// accepted in cycle t counts from t+1 on. Taking a sum clears it. Where kicks never come in two cycles after one
+// another (Spaced) the sums lie in a memory whose word is asked for a cycle ahead.
 module cuboct_sums #(
   parameter int Axes     = 3,   // 2 or 3
   parameter int KickBits = 18,  // of one axis of a kick
@@ -16,7 +16,7 @@ module cuboct_sums #(
   input  logic [Axes*KickBits-1:0] push_i,     // minus the kick
   input  logic [SlotBits-1:0]   next_slot_i,  // the slot that the next cycle's kick or take is about
   input  logic                  take_i,       // clears that sum; never with a kick
-  output logic [Axes*SumBits-1:0] sum_o         // of the slot of the cycle before; if Spaced, not in the cycle after a kick
+  output logic [Axes*SumBits-1:0] sum_o         // of the cycle before's slot; if Spaced, not in the cycle after a kick
 );
   localparam int IndexBits = (Capacity > 1) ? $clog2(Capacity) : 1;
 

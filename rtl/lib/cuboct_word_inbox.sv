@@ -120,8 +120,8 @@ module cuboct_word_inbox #(
   end
 
   cuboct_ram #(.Bits(LinkBits), .Depth(Depth), .AddrBits(WordBits)) u_words (
-    .clk_i, .write_i(take), .write_addr_i(word_q), .write_data_i(data_i ^ flips), .read_i(1'b1), .clear_i(1'b0), .read_addr_i(word_i),
-    .read_data_o(data_o)
+    .clk_i, .write_i(take), .write_addr_i(word_q), .write_data_i(data_i ^ flips), .read_i(1'b1), .clear_i(1'b0),
+    .read_addr_i(word_i), .read_data_o(data_o)
   );
 
   assign count_o       = count_q;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// cuboct_brick_inbox: the k-th halo of a cell since the clear, cell and k any, is what both ports answer in the cycle after
-// they asked for place k of that cell; the streamer's answer stays until the memory is read for someone else. A watched
-// particle, any of those pushed, is shown once, after those before it and before those after it, unchanged, from the
-// second cycle after its push on. Counts of a watched cell are exact, and whether any particle came.
+// cuboct_brick_inbox: the k-th halo of a cell since the clear, cell and k any, is what both ports answer in the cycle
+// after they asked for place k of that cell; the streamer's answer stays until the memory is read for someone else. A
+// watched particle, any of those pushed, is shown once, after those before it and before those after it, unchanged,
+// from the second cycle after its push on. Counts of a watched cell are exact, and whether any particle came.
 `include "torn_ram.svh"
 module brick_inbox_formal #(
   parameter int HaloCells    = 2,

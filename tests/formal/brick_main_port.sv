@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The one read port of a brick's own slots that relay, update, migration and dump share: each of them asks a cycle ahead
-// for a slot of the next cycle's cell, the numbers are put together by OR. Whenever one of them looks at the answer, it is
-// that of the slot and cell meant, and no update writes then; what the relay looks at of a halo is of its cell's place in
-// its layer; the sums were asked for the slot that is taken, and are never set to zero while a pipe is busy; an arrival is
-// taken only if its inbox was asked in the cycle before. Where a particle goes is asked of the slot that the migration
-// looks at, and what is written in the cycle of a question is told to be. All of cuboct_brick_core that controls; the rest is any value, as
-// are the four links.
+// The one read port of a brick's own slots that relay, update, migration and dump share: each of them asks a cycle
+// ahead for a slot of the next cycle's cell, the numbers are put together by OR. Whenever one of them looks at the
+// answer, it is that of the slot and cell meant, and no update writes then; what the relay looks at of a halo is of its
+// cell's place in its layer; the sums were asked for the slot that is taken, and are never set to zero while a pipe is
+// busy; an arrival is taken only if its inbox was asked in the cycle before. Where a particle goes is asked of the slot
+// that the migration looks at, and what is written in the cycle of a question is told to be. All of cuboct_brick_core
+// that controls; the rest is any value, as are the four links.
 module brick_main_port_formal #(
   parameter int BrickX   = 2,
   parameter int BrickY   = 1,
@@ -133,7 +133,8 @@ module brick_main_port_formal #(
     end
   endfunction
   logic [7:0] halo_place;
-  assign halo_place = {{(8 - TagBits) {1'b0}}, tap_layer[0 +: TagBits]} * Capacity[7:0] + {{(8 - SlotBits) {1'b0}}, tap_relay_slot};
+  assign halo_place = {{(8 - TagBits) {1'b0}}, tap_layer[0 +: TagBits]} * Capacity[7:0]
+                    + {{(8 - SlotBits) {1'b0}}, tap_relay_slot};
   always_ff @(posedge clk_i) begin
     if (running_q) begin
       a_relay:   assert (!relays || below || above || asked_q == place(tap_relay_own, tap_relay_slot));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// cuboct_brick_migrate with its walk and its numbers of cells, through any number of phases, for bricks of any extent, from
-// any particles and counts, under any stalls and any arrivals. SCAN meets each particle of each cell with leavers once, in
-// order, and each stays in its place, is sent whole on its side with the number of its cell in the face, is told as `left`
-// where the lattice ends, or is kept for another cell. LAND meets in each cell what came to it once, from below before
-// from above, each in order, and appends it with its `away` cleared or tells it as `full`. A watched particle, any that is
-// in a slot or that arrives, is followed to where it ends; what the other slots hold and what the other arrivals are is
-// any value. Counts are exact.
+// cuboct_brick_migrate with its walk and its numbers of cells, through any number of phases, for bricks of any extent,
+// from any particles and counts, under any stalls and any arrivals. SCAN meets each particle of each cell with leavers
+// once, in order, and each stays in its place, is sent whole on its side with the number of its cell in the face, is
+// told as `left` where the lattice ends, or is kept for another cell. LAND meets in each cell what came to it once,
+// from below before from above, each in order, and appends it with its `away` cleared or tells it as `full`. A watched
+// particle, any that is in a slot or that arrives, is followed to where it ends; what the other slots hold and what the
+// other arrivals are is any value. Counts are exact.
 `include "torn_ram.svh"
 module brick_migrate_formal #(
   parameter int Axes     = 2,
@@ -210,7 +210,8 @@ module brick_migrate_formal #(
   always_comb begin
     arrived = came_i;
     if (watch_q && !own && !w_above && popped_low_q == low_before + w_number) arrived[0 +: ParticleBits] = w_value;
-    if (watch_q && !own && w_above && popped_high_q == high_before + w_number) arrived[ParticleBits +: ParticleBits] = w_value;
+    if (watch_q && !own && w_above && popped_high_q == high_before + w_number)
+      arrived[ParticleBits +: ParticleBits] = w_value;
     // What is not final, or of a cell that is not at the face, says nothing.
     land[0 +: CountBits]         = (ended[0] && asked_low) ? low_asked : wide(stray_i[0 +: Held]);
     land[CountBits +: CountBits] = (ended[1] && asked_high) ? high_asked : wide(stray_i[Held +: Held]);
@@ -407,7 +408,8 @@ module brick_migrate_formal #(
 
   always_ff @(posedge clk_i) begin
     if (running_q) begin
-      a_idle:  assert (active_q || (!acts && !landing && load == 2'b00 && pop == 2'b00 && !advance && !count_set && !done));
+      a_idle:  assert (active_q || (!acts && !landing && load == 2'b00 && pop == 2'b00 && !advance && !count_set
+                                    && !done));
       a_may:   assert ((load & ~can_load_i) == 2'b00 && (!is_end || load == 2'b11));
       a_stage: assert ((!acts || !scanned_q) && (!landing || (scanned_q && ended == 2'b11))
                        && (!is_end || (!scanned_q && data == '0 && beat_q == '0 && handled_q == '0)));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Two nodes of bricks side by side, all of cuboct_brick_core that controls: what the finder, the pipes, their sums, the
-// update and the slots give, and what the beats carry, is any value, at any time; so any number of particles goes
-// anywhere. Any loads, any number of steps, any extents, any stalls of the two links. Streams of one step never meet those
-// of the next, neighbours are never more than a step apart, and there is no state in which both wait for ever.
+// Two nodes of bricks side by side, all of cuboct_brick_core that controls: what the finder, the datapath
+// and the slots give, and what the beats carry, is any value, at any time; so any number of particles goes
+// anywhere. Any loads, any number of steps, any extents, any stalls of the two links. Streams of one step never meet
+// those of the next, neighbours are never more than a step apart, and there is no state in which both wait for ever.
 module brick_neighbours_formal #(
   parameter int Axis     = 0,  // the nodes are neighbours along x or y
   parameter int BrickX   = 2,
@@ -78,10 +78,12 @@ module brick_neighbours_formal #(
       .RelativeVelocityBits(1), .DifferenceShift(0), .FilterFrac(1), .Overlap(1)
     ) u_node (
       .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link), .extent_i(extent), .exit_i(exits),
-      .load_valid_i(load), .load_cell_i(load_cell), .load_data_i(9'd0), .link_valid_o(link_valid), .link_end_o(link_end),
+      .load_valid_i(load), .load_cell_i(load_cell), .load_data_i(9'd0), .link_valid_o(link_valid),
+      .link_end_o(link_end),
       .link_data_o(link_data), .link_ready_i(link_ready_in), .link_valid_i(link_valid_in), .link_end_i(link_end_in),
       .link_data_i(link_data_in), .link_ready_o(link_ready), .phase_start_o(phase_start[8*n +: 8]),
-      .phase_end_o(phase_end[8*n +: 8]), .force_event_o(events), .observe_valid_o(observe), .observe_cell_o(observed_cell),
+      .phase_end_o(phase_end[8*n +: 8]), .force_event_o(events), .observe_valid_o(observe),
+      .observe_cell_o(observed_cell),
       .observe_data_o(observed), .fault_valid_o(fault), .fault_code_o(code), .fault_id_o(id), .fault_cell_o(fault_cell),
       .fault_number_o(number), .idle_o(idle[n])
     );
@@ -181,8 +183,10 @@ module brick_neighbours_formal #(
   always_ff @(posedge clk_i) begin
     if (running_q) begin
       // Halos of the next step never meet those of this one, nor arrivals.
-      if (tap_halo_0[Above] || tap_halo_end_0[Above]) a_halo_0: assert (tap_state_0 != Force && !tap_halo_ended_0[Above]);
-      if (tap_halo_1[Below] || tap_halo_end_1[Below]) a_halo_1: assert (tap_state_1 != Force && !tap_halo_ended_1[Below]);
+      if (tap_halo_0[Above] || tap_halo_end_0[Above])
+        a_halo_0: assert (tap_state_0 != Force && !tap_halo_ended_0[Above]);
+      if (tap_halo_1[Below] || tap_halo_end_1[Below])
+        a_halo_1: assert (tap_state_1 != Force && !tap_halo_ended_1[Below]);
       if (tap_arrival_0[Above] || tap_arrival_end_0[Above]) a_arrival_0: assert (!tap_migrate_ended_0[Above]);
       if (tap_arrival_1[Below] || tap_arrival_end_1[Below]) a_arrival_1: assert (!tap_migrate_ended_1[Below]);
       a_ready:    assert (all_ready == '1);

@@ -60,7 +60,8 @@ module brick_place_formal #(
       a_own:   assert (own_one == x + BrickX * (y + BrickY * z) && own_one < Cells);
       a_x:     assert (layer_one[0 +: TagBits] == y + BrickY * z && layer_one[0 +: TagBits] < LayerX
                        && face_one[0 +: TagBits] == layer_one[0 +: TagBits]);
-      a_face:  assert (face_one[TagBits +: TagBits] == x + BrickX * z && face_one[TagBits +: TagBits] < BrickX * BrickZ);
+      a_face:  assert (face_one[TagBits +: TagBits] == x + BrickX * z
+                       && face_one[TagBits +: TagBits] < BrickX * BrickZ);
       if (Axes == 3) a_face_z: assert (face_one[2*TagBits +: TagBits] == x + BrickX * y);
     end
     if (in_layer_y(one_i)) a_y: assert (layer_one[TagBits +: TagBits] == (x + 1) + (BrickX + 2) * z

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// cuboct_brick_relay with its walk and its numbers of cells, through any number of steps of exchange phases, for bricks of
-// any extent, with any links, any counts and any pauses of the links: over each face that has a link each record of each
-// cell of the layer is sent once, cells and records in order, with the cell's number in the layer, from the memory in
-// which it lies; then one end beat, then nothing until the phase is over. A record's content is its own name, (memory,
-// cell, number), so what is sent tells where it was read. A count holds while the walk stays in its cell.
+// cuboct_brick_relay with its walk and its numbers of cells, through any number of steps of exchange phases, for bricks
+// of any extent, with any links, any counts and any pauses of the links: over each face that has a link each record of
+// each cell of the layer is sent once, cells and records in order, with the cell's number in the layer, from the memory
+// in which it lies; then one end beat, then nothing until the phase is over. A record's content is its own name,
+// (memory, cell, number), so what is sent tells where it was read. A count holds while the walk stays in its cell.
 module brick_relay_formal #(
   parameter int Axes     = 2,
   parameter int BrickX   = 2,
@@ -78,8 +78,10 @@ module brick_relay_formal #(
   logic [(Faces-2)*CountBits-1:0] halo_count;
   logic [(Faces-2)*HaloBits-1:0]  halos;
   cuboct_brick_walk #(.GridBits(GridBits)) u_walk (
-    .clk_i, .rst_ni(running_q), .low_i(active_q ? low : {3{One}}), .high_i(active_q ? high : extent), .advance_i(advance),
-    .restart_i(restart), .first_i(active_q ? first : {3{One}}), .cell_o(at), .after_o(after), .next_o(next), .last_o(last)
+    .clk_i, .rst_ni(running_q), .low_i(active_q ? low : {3{One}}), .high_i(active_q ? high : extent),
+    .advance_i(advance),
+    .restart_i(restart), .first_i(active_q ? first : {3{One}}), .cell_o(at), .after_o(after), .next_o(next),
+    .last_o(last)
   );
   cuboct_brick_place #(
     .BrickX(BrickX), .BrickY(BrickY), .GridBits(GridBits), .CellBits(CellBits), .TagBits(TagBits)
@@ -113,7 +115,8 @@ module brick_relay_formal #(
     source = Own;
     for (s = 0; s < Axes - 1; s = s + 1) begin
       if (s[1:0] < axis_q && at[s*GridBits +: GridBits] == '0) source = {1'b0, s[1:0]} << 1;
-      if (s[1:0] < axis_q && at[s*GridBits +: GridBits] > extent[s*GridBits +: GridBits]) source = ({1'b0, s[1:0]} << 1) | 3'd1;
+      if (s[1:0] < axis_q && at[s*GridBits +: GridBits] > extent[s*GridBits +: GridBits])
+        source = ({1'b0, s[1:0]} << 1) | 3'd1;
     end
   end
   function automatic logic in_layer(input logic [PlaceBits-1:0] place, input logic [1:0] axis, input logic up,

@@ -41,7 +41,8 @@ module brick_slots_formal #(
     assume (watched_cell < Cells && watched_slot < Capacity && watched_lane < FilterLanes);
     assume ({4'd0, watched_slot} == {4'd0, watched_row} * FilterLanes[7:0] + {4'd0, watched_lane});
     if (write_i) assume (cell_i < Cells && slot_i < Capacity);
-    assume (away_i < Depth && main_i < Depth && stream_i < Depth && pipe_i < Depth && fault_i < Depth && row_i < Cells * Rows);
+    assume (away_i < Depth && main_i < Depth && stream_i < Depth && pipe_i < Depth && fault_i < Depth
+            && row_i < Cells * Rows);
   end
 
   logic [7:0]                     main_data;
@@ -66,7 +67,8 @@ module brick_slots_formal #(
     .clk_i, .write_i, .write_cell_i(cell_i[CellBits-1:0]), .write_slot_i(slot_i[SlotBits-1:0]),
     .write_addr_i(address[AddrBits-1:0]), .write_data_i(data_i), .main_addr_i(main_i[AddrBits-1:0]),
     .main_written_i(write_i && address == main_i), .main_data_o(main_data), .away_read_i,
-    .away_addr_i(away_i[AddrBits-1:0]), .away_written_i(write_i && address == away_next), .away_o(away), .stream_read_i, .stream_addr_i(stream_i[AddrBits-1:0]), .stream_data_o(stream_data),
+    .away_addr_i(away_i[AddrBits-1:0]), .away_written_i(write_i && address == away_next), .away_o(away), .stream_read_i,
+    .stream_addr_i(stream_i[AddrBits-1:0]), .stream_data_o(stream_data),
     .row_i(row_i[RowAddrBits-1:0]), .row_data_o(row_data), .pipe_addr_i(pipe_addr), .pipe_data_o(pipe_data),
     .fault_addr_i(fault_addr), .fault_id_o(fault_id)
   );

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// cuboct_brick_streamer through any number of steps, for bricks of any extent, with any links, any counts, halos that come
-// when they like and any stalls: each (segment, own cell, cell around it, record, row) that may meet is presented once,
-// in that order, with the numbers of both cells; `past` comes after the last one and only when every halo was there. A
-// watched one, any, tells that none is left out; what is presented is always later than what was before.
+// cuboct_brick_streamer through any number of steps, for bricks of any extent, with any links, any counts, halos that
+// come when they like and any stalls: each (segment, own cell, cell around it, record, row) that may meet is presented
+// once, in that order, with the numbers of both cells; `past` comes after the last one and only when every halo was
+// there. A watched one, any, tells that none is left out; what is presented is always later than what was before.
 module brick_streamer_formal #(
   parameter int Axes        = 2,
   parameter int BrickX      = 2,

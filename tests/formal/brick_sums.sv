@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// cuboct_brick_sums: of a watched slot, any, that was set to zero once, the answer in the cycle after a question is minus
-// the sum of all that was pushed since then, whatever else is written; kicks of one slot may follow one another in
-// consecutive cycles. Nothing is said of the answer to who asks in the cycle in which the slot is set to zero.
+// cuboct_brick_sums: of a watched slot, any, that was set to zero once, the answer in the cycle after a question is
+// minus the sum of all that was pushed since then, whatever else is written; kicks of one slot may follow one another
+// in consecutive cycles. Nothing is said of the answer to who asks in the cycle in which the slot is set to zero.
 `include "torn_ram.svh"
 module brick_sums_formal #(
   parameter int Axes     = 2,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// cuboct_brick_walk through any number of walks, over any boxes: the n-th cell of a walk is that whose place in the box,
-// x first, is n; so each cell of the box is walked once, in order, and `last` is told at the last one alone. Then the
-// same box may be walked again at once, or another one is begun.
+// cuboct_brick_walk through any number of walks, over any boxes: the n-th cell of a walk is that whose place in the
+// box, x first, is n; so each cell of the box is walked once, in order, and `last` is told at the last one alone. Then
+// the same box may be walked again at once, or another one is begun.
 module brick_walk_formal #(
   parameter int GridBits = 2
 ) (
@@ -56,7 +56,8 @@ module brick_walk_formal #(
   assign z     = {{(Bits - GridBits) {1'b0}}, at[2*GridBits +: GridBits] - low_q[2*GridBits +: GridBits]};
   assign wide  = {{(Bits - GridBits) {1'b0}}, high_q[0 +: GridBits] - low_q[0 +: GridBits]} + 1'b1;
   assign deep  = {{(Bits - GridBits) {1'b0}}, high_q[GridBits +: GridBits] - low_q[GridBits +: GridBits]} + 1'b1;
-  assign all   = wide * deep * ({{(Bits - GridBits) {1'b0}}, high_q[2*GridBits +: GridBits] - low_q[2*GridBits +: GridBits]} + 1'b1);
+  assign all   = wide * deep
+               * ({{(Bits - GridBits) {1'b0}}, high_q[2*GridBits +: GridBits] - low_q[2*GridBits +: GridBits]} + 1'b1);
   assign place = x + wide * (y + deep * z);
 
   // What was said of the next cycle, and what comes after.

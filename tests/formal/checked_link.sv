@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // cuboct_link_send, a wire that stalls, changes, drops and repeats beats and changes acknowledgements as often as it
-// likes, cuboct_link_take. Beat n carries n: what comes out is 0, 1, 2, ... whatever the wire does. With Wire = 1 it does
-// at most one thing wrong and never stalls: that is told within a bound and, with Retry, healed. With Wire = 2 it only
-// stalls: nothing is told.
+// likes, cuboct_link_take. Beat n carries n: what comes out is 0, 1, 2, ... whatever the wire does. With Wire = 1 it
+// does at most one thing wrong and never stalls: that is told within a bound and, with Retry, healed. With Wire = 2 it
+// only stalls: nothing is told.
 module checked_link_formal #(
   parameter int SequenceBits = 2,
   parameter int Window       = 2,

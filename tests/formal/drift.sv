@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_update: where a particle is written back, x with its residue is what it was, plus the velocity that is written,
-// exactly, in the node that away says. Whatever the velocity is: sums, constants and products are any values.
+// cuboct_update: where a particle is written back, x with its residue is what it was, plus the velocity that is
+// written, exactly, in the node that away says. Whatever the velocity is: sums, constants and products are any values.
 module cuboct_type_rom (
   input  logic [0:0] type_i,
   output logic [1:0] imposed_o,
@@ -50,7 +50,8 @@ module drift_formal #(
     .TypeBits(1), .Pd(Pd), .Held(Held), .DisplacementBits(6), .GainBits(3), .GainFrac(2), .ConstantBits(3),
     .SlotBits(2), .IdBits(2)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .valid_i, .slot_i(2'd0), .sum_i, .x_i, .residue_i, .v_i, .type_i(1'b0), .id_i(2'd0), .u_i,
+    .clk_i, .rst_ni(running_q), .valid_i, .slot_i(2'd0), .sum_i, .x_i, .residue_i, .v_i, .type_i(1'b0), .id_i(2'd0),
+    .u_i,
     .valid_o(valid), .slot_o(unused_slot), .x_o(x), .residue_o(residue), .away_o(away), .v_o(v), .type_o(unused_type),
     .id_o(unused_id), .u_o(unused_u), .fault_o(unused_fault), .fault_code_o(unused_code), .fault_id_o(unused_fault_id),
     .fault_number_o(unused_number)

@@ -40,7 +40,8 @@ module inbox_formal #(
     .Relayed(Relayed), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .clear_i, .append_i, .halo_i, .count_o(count), .read_i,
-    .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_read_i, .relay_clear_i, .relay_addr_i(relay_addr_i[AddrBits-1:0]),
+    .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_read_i, .relay_clear_i,
+    .relay_addr_i(relay_addr_i[AddrBits-1:0]),
     .relay_halo_o(relay_halo), .migrating_i, .push_i, .particle_i, .full_o(full), .pop_i,
     .particle_o(particle), .empty_o(empty)
   );

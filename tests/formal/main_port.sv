@@ -102,7 +102,8 @@ module main_port_formal #(
     if (tap_main_read) asked_q <= tap_main_slot;
     migrated_q <= tap_in_migrate;
     // As it was asked for, or since.
-    together_q <= tap_write && tap_write_slot == (tap_main_read ? tap_main_slot : asked_q) || (together_q && !tap_main_read);
+    together_q <= tap_write && tap_write_slot == (tap_main_read ? tap_main_slot : asked_q)
+                  || (together_q && !tap_main_read);
   end
   always_ff @(posedge clk_i) begin
     if (running_q) begin

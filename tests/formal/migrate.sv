@@ -72,7 +72,8 @@ module migrate_formal #(
   logic sets;
   assign sets = !active_q && set_i;
   always_comb begin
-    if (sets && begin_i) assume (set_slot_i != {{(4 - SlotBits) {1'b0}}, read_slot} && set_count_i[CountBits-1:0] == count_q);
+    if (sets && begin_i)
+      assume (set_slot_i != {{(4 - SlotBits) {1'b0}}, read_slot} && set_count_i[CountBits-1:0] == count_q);
   end
   always_ff @(posedge clk_i) begin
     if (!running_q) count_q <= '0;
@@ -324,7 +325,8 @@ module migrate_formal #(
           && !fault_full));
       a_may:   assert ((load & ~can_load) == 2'b00);
       a_one:   assert (!is_end ? (load != 2'b11) : (load == 2'b11));
-      a_face:  assert ((face & ~({{(2 * Axes - 2) {1'b0}}, 2'b11} << {axis_q, 1'b0})) == '0 && side != 2'b11 && (active_q || face == '0));
+      a_face:  assert ((face & ~({{(2 * Axes - 2) {1'b0}}, 2'b11} << {axis_q, 1'b0})) == '0 && side != 2'b11
+                       && (active_q || face == '0));
       a_pop:   assert ((pop & empty) == 2'b00);
       a_fifo:  assert ((push & full) == 2'b00);
       a_full_set: assert (!count_set || new_full == (new_count == Capacity[CountBits-1:0]));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Two whole nodes side by side, all of cuboct_node_core that controls: what the pair finder, the pipes, their
-// sums, the update and the slots give, and what the beats carry, is any value, at any time that the cycle
+// Two whole nodes side by side, all of cuboct_node_core that controls: what the pair finder, the
+// datapath and the slots give, and what the beats carry, is any value, at any time that the cycle
 // contract allows, so that any number of particles goes anywhere. Any loads, any number of steps, any stalls
 // of the two links. Order is kept (docs/reference/node.md, section Order), nothing overflows, neighbours are
 // never more than a step apart, and there is no state in which both wait for ever.
@@ -82,7 +82,7 @@ module neighbours_formal #(
 
     // What the contract says of the units that are cut out: the finder is done only in FORCE, as the last
     // segment is there only then (proof `streamer`); the update writes a slot two cycles after it was read.
-    (* keep *) logic       tap_finder_done, tap_take, tap_update_write, tap_update_fault, tap_pipe_fault;
+    (* keep *) logic       tap_finder_done, tap_take, tap_update_write;
     (* keep *) logic [1:0] tap_past_exchange;
     (* keep *) logic [SlotBits-1:0] tap_tick_slot, tap_update_slot;
     logic [SlotBits-1:0]            slot_1_q, slot_2_q;
@@ -96,7 +96,6 @@ module neighbours_formal #(
     always_comb begin
       assume (!tap_finder_done || tap_past_exchange[1]);
       assume (tap_update_write == take_2_q && (!take_2_q || tap_update_slot == slot_2_q));
-      assume (!tap_pipe_fault && !tap_update_fault);
     end
   end
 
@@ -253,8 +252,10 @@ module neighbours_formal #(
       i_sent:   assert ((!tap_sent_0 || tap_state_0 <= 4'd1) && (!tap_sent_1 || tap_state_1 <= 4'd1));
       i_axis_0: assert (tap_axis_0 == ((tap_state_0 == ExchangeY || tap_state_0 == MigrateY) ? 3'b010 : 3'b001));
       i_axis_1: assert (tap_axis_1 == ((tap_state_1 == ExchangeY || tap_state_1 == MigrateY) ? 3'b010 : 3'b001));
-      i_face_0: assert (tap_face_0 == ({2'b00, tap_migrate_0 == TakeHigh, tap_migrate_0 == TakeLow} << {tap_axis_0[1], 1'b0}));
-      i_face_1: assert (tap_face_1 == ({2'b00, tap_migrate_1 == TakeHigh, tap_migrate_1 == TakeLow} << {tap_axis_1[1], 1'b0}));
+      i_face_0: assert (tap_face_0
+                        == ({2'b00, tap_migrate_0 == TakeHigh, tap_migrate_0 == TakeLow} << {tap_axis_0[1], 1'b0}));
+      i_face_1: assert (tap_face_1
+                        == ({2'b00, tap_migrate_1 == TakeHigh, tap_migrate_1 == TakeLow} << {tap_axis_1[1], 1'b0}));
       i_phase:  assert ((tap_migrate_0 == 3'd0 || tap_state_0 == MigrateX || tap_state_0 == MigrateY)
                         && (tap_migrate_1 == 3'd0 || tap_state_1 == MigrateX || tap_state_1 == MigrateY)
                         && tap_migrate_0 <= TakeHigh && tap_migrate_1 <= TakeHigh);

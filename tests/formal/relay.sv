@@ -64,8 +64,8 @@ module relay_formal #(
         .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_i(done), .counts_i(counts),
-    .pick_o(pick), .clear_o(clear), .read_o(read), .addr_o(addr), .slot_o(slot), .record_i(answers_q[0 +: HaloBits]), .halo_i(halo), .can_load_i,
-    .load_o(load),
+    .pick_o(pick), .clear_o(clear), .read_o(read), .addr_o(addr), .slot_o(slot), .record_i(answers_q[0 +: HaloBits]),
+    .halo_i(halo), .can_load_i, .load_o(load),
     .end_o(is_end), .data_o(own_data), .halo_data_o(halo_data), .first_own_o(first_own), .sent_o(sent)
   );
   // The memories' answers; that of own particles is taken when they are picked, of the others the relay clears.

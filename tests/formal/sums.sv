@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // cuboct_sums: of a watched slot, any, the answer in the cycle after a question is minus the sum of all that was pushed
-// since the reset or since it was taken last, whatever happens to the others; kicks of one slot may follow one another in
-// consecutive cycles, and a take may follow a kick, but where the sums lie in a memory (Spaced).
+// since the reset or since it was taken last, whatever happens to the others; kicks of one slot may follow one another
+// in consecutive cycles, and a take may follow a kick, but where the sums lie in a memory (Spaced).
 `include "torn_ram.svh"
 module sums_formal #(
   parameter int Axes     = 2,

@@ -12,3 +12,10 @@ if out=$(bash "$1/tests/layering/layering.sh" "$copy"); then
   echo "a forbidden include was not seen"; exit 1
 fi
 grep -q 'model/contract/state.h:[0-9]*: model/contract must not include hw/plan.h' <<<"$out"
+
+# So must the check of columns see a line that is one too long.
+printf '// %118s\n' x >> "$copy/rtl/lib/cuboct_ram.sv"
+if out=$(bash "$1/tests/layering/columns.sh" "$copy"); then
+  echo "a line of 121 columns was not seen"; exit 1
+fi
+grep -q 'rtl/lib/cuboct_ram.sv:[0-9]*: 121 columns' <<<"$out"

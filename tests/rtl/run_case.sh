@@ -22,7 +22,7 @@ case $mutation in
   # A particle that comes from another node has lost its residue.
   residue)
     edit "$rtl/cuboct_node_core.sv" \
-      's/\.arrived_i(arrived)/.arrived_i(arrived \& ~({{(ParticleBits-ResidueBits){1'"'"'b0}}, {ResidueBits{1'"'"'b1}}} << ResidueLsb))/' ;;
+      's/\.arrived_i(arrived)/.arrived_i(arrived \& ~({{(ParticleBits-Axes*Guard){1'"'"'b0}}, {(Axes*Guard){1'"'"'b1}}} << (IdLsb+IdBits)))/' ;;
   # The second record of each halo memory is not kept.
   record) edit "$rtl/cuboct_inbox.sv" 's/write_i(append_i), \(.*read_i(read_i)\)/write_i(append_i \&\& count_q != 1), \1/' ;;
   # A node hears its neighbour below x where it should hear the one above.
