@@ -45,7 +45,7 @@ Trace run_golden(const Setup& setup, const Request& request, const std::function
       progress.at(state.step);
     }
   } catch (const RunError& error) {
-    trace.stop = StopReason{error.fault, error.step, error.node, error.particle, error.number, error.what()};
+    trace.stop = StopReason{error.fault, error.step, error.cell, error.particle, error.number, error.what()};
   }
   // The last state is part of every answer, also of a run that ended early.
   if (!trace.state_hash.empty() && !request.frames.empty() && given != state.step) give(state);

@@ -44,7 +44,7 @@ Items summarise_real(const Loaded& loaded, const Trace& trace, double momentum_c
   items.add("momentum change", momentum_change, "kg m/s",
             keeps_momentum(scene.rule) ? "" : "held or driven from outside");
   add_curves(items, scene, trace.curves);
-  items.add("largest speed", largest_speed, "node/step");
+  items.add("largest speed", largest_speed, "cell/step");
   for (const auto& [name, value] : trace.counters) items.add(name, value);
   if (trace.watched) add_warnings(items, {}, trace.findings);
   if (trace.stop) items.add("stopped", trace.stop->text);

@@ -105,7 +105,7 @@ ReferenceRun run_reference(const Loaded& loaded, RealOptions options, uint64_t s
             keeps_momentum(scene.rule) ? "" : "held or driven from outside");
   add_curves(items, scene, run.trace.curves);
   items.add("largest speed", reference.largest_speed() * scene.rule.dt / loaded.setup.plan.rule.cell_edge,
-            "node/step");
+            "cell/step");
   detectors.conclude();
   std::vector<Finding> findings = detectors.findings();
   if (const auto far = options.precision == Precision::float32 ? find_far_origin(scene) : std::nullopt)

@@ -139,7 +139,7 @@ Items summarise(const Loaded& loaded, const Trace& trace, const RunFacts& facts)
             keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside");
 
   add_curves(items, loaded.scene, facts.curves);
-  items.add("largest speed", facts.largest_speed, "node/step");
+  items.add("largest speed", facts.largest_speed, "cell/step");
   if (const auto cycles = cycles_per_step(trace)) {
     items.add("mean cycles per step", cycles->mean);
     items.add("most cycles per step", cycles->max);

@@ -17,7 +17,7 @@ namespace cuboct {
 // What a summary says beyond the trace.
 struct RunFacts {
   Int3 momentum_before{}, momentum_after{};  // P+G fractional bits
-  double largest_speed = 0;                  // nodes per step, over the states that were looked at
+  double largest_speed = 0;                  // cells per step, over the states that were looked at
   std::vector<Curve> curves;                 // energy.total among them
   bool watch = false;                        // whether anyone looked for failures
   std::vector<Finding> findings;             // what was found

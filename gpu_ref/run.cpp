@@ -259,7 +259,7 @@ GpuResult Loop::run() {
     if (request_.hooks.ready) request_.hooks.ready();
     go();
   } catch (const RunError& error) {
-    trace_.stop = StopReason{error.fault, error.step, error.node, error.particle, error.number, error.what()};
+    trace_.stop = StopReason{error.fault, error.step, error.cell, error.particle, error.number, error.what()};
   } catch (const LostPosition& error) {
     trace_.stop = StopReason{Fault::none, error.step, 0, error.particle, 0, error.what()};
   }

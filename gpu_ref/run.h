@@ -43,7 +43,7 @@ struct GpuResult {
 // Counters of the trace, beside the engine's own (Counters), where `totals`:
 //   momentum_change  of the whole body: fixed LSB (P+G fractional bits), of the axis that changed most; real
 //                    kg m/s, length of the vector
-//   largest_speed    nodes per step, along an axis, over the states that were measured
+//   largest_speed    cells per step, along an axis, over the states that were measured
 GpuResult run_gpu(const Scene& scene, const Plan& plan, const GpuRun& request);
 
 // Where a watch looks: a look takes the whole state to the host and sums its forces there. All of `probes` up

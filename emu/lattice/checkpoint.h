@@ -12,7 +12,7 @@
 
 namespace cuboct::emu {
 
-// Everything but the particles, which follow by node and slot.
+// Everything but the particles, which follow by cell and slot.
 struct CheckpointHead {
   uint64_t plan_hash = 0;
   uint64_t step = 0;

@@ -134,9 +134,9 @@ int run_lattice_program(int argc, char** argv, Ranks* ranks) {
   app.add_option("--begun", request.begun, "File that is made when the steps begin");
   app.add_option("--threads", run.engine.threads, "Threads; one per core without it")
       ->check(CLI::Range(1, 4096));
-  app.add_flag("--no-quiescence", request.no_quiescence, "Do not skip nodes at rest; no bit changes");
+  app.add_flag("--no-quiescence", request.no_quiescence, "Do not skip cells at rest; no bit changes");
   app.add_option("--simd", run.engine.simd, "Vector units: avx512, avx2 or portable; the widest without it");
-  app.add_option("--cut", run.engine.cut, "How ranks share the nodes: bricks, or slabs along x, y or z")
+  app.add_option("--cut", run.engine.cut, "How ranks share the cells: bricks, or slabs along x, y or z")
       ->check(CLI::IsMember({"bricks", "x", "y", "z"}))
       ->capture_default_str();
   app.add_flag("--cycles", run.cycles, "Count the machine's cycles with the timing model");

@@ -84,7 +84,7 @@ class Loop {
   LatticeCounters earlier_;  // of the runs before this one, up to the checkpoint
   uint64_t saved_step_ = 0;
   Clock::time_point saved_time_;
-  NodeSlots slots_;
+  CellSlots slots_;
   std::vector<PhaseSpan> spans_;
   std::vector<uint64_t> sample_steps_;
   Int3 kept_momentum_{};  // of the last state that was kept
@@ -393,7 +393,7 @@ LatticeResult Loop::run() {
     result_.interrupted = step_count() < request_.steps;
     if (result_.interrupted && !save_plan_.path.empty()) save();
   } catch (const RunError& error) {
-    trace_.stop = StopReason{error.fault, error.step, error.node, error.particle, error.number, error.what()};
+    trace_.stop = StopReason{error.fault, error.step, error.cell, error.particle, error.number, error.what()};
     if (engine_) counters = engine_->counters();
   }
   finish();

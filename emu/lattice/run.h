@@ -46,7 +46,7 @@ struct LatticeResult {
   Trace trace;  // where the run stopped or was interrupted: up to the last complete step; with what the watch
                 // found
   Int3 momentum_before{}, momentum_after{};  // P+G fractional bits, at step 0 and after the last complete one
-  double largest_speed = 0;                  // nodes per step, over the states that were kept or measured
+  double largest_speed = 0;                  // cells per step, over the states that were kept or measured
   uint64_t resumed_at = 0;                   // step of the checkpoint
   bool interrupted = false;
   bool left_checkpoint = false;  // of the last state, of an interrupted run

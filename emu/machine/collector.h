@@ -19,7 +19,7 @@ struct RunOptions {
   uint64_t stall_seed = 1;
   FaultOptions faults;      // on the wires
   bool progress = false;    // a line per second on standard error
-  bool keep_order = false;  // keep the ids in the order of the slots, per step and node
+  bool keep_order = false;  // keep the ids in the order of the slots, per step and cell
   uint64_t patience =
       0;  // cycles without any event after which the run is stuck; 0: `patience_of(plan, ...)`
 };
