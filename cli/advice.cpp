@@ -13,18 +13,18 @@ std::string what_happened(const StopReason& stop, const Plan& plan) {
   const double per_step = std::ldexp(static_cast<double>(stop.number), -w.velocity_frac());
   switch (stop.fault) {
     case Fault::velocity:
-      return fmt::format("particle {} would move {:.3g} nodes in a step, {:.3g} fit", stop.particle,
+      return fmt::format("particle {} would move {:.3g} cells in a step, {:.3g} fit", stop.particle,
                          std::abs(per_step), std::ldexp(1.0, w.velocity_bits - 1 - w.velocity_frac()));
     case Fault::sum:
       return fmt::format(
-          "the pairs would change particle {}'s velocity by {:.3g} nodes per step at once, "
+          "the pairs would change particle {}'s velocity by {:.3g} cells per step at once, "
           "{:.3g} fit",
           stop.particle, std::abs(per_step), std::ldexp(1.0, w.sum_bits - 1 - w.velocity_frac()));
     case Fault::displacement:
-      return fmt::format("particle {} is {:.3g} nodes from its anchor, {:.3g} fit", stop.particle,
+      return fmt::format("particle {} is {:.3g} cells from its anchor, {:.3g} fit", stop.particle,
                          std::abs(per_step), std::ldexp(1.0, w.displacement_bits - 1 - w.velocity_frac()));
     case Fault::relative_velocity:
-      return fmt::format("a pair of particle {} moves apart or together at {:.3g} nodes per step, {:.3g} fit",
+      return fmt::format("a pair of particle {} moves apart or together at {:.3g} cells per step, {:.3g} fit",
                          stop.particle,
                          std::abs(std::ldexp(static_cast<double>(stop.number), -w.relative_velocity_frac)),
                          std::ldexp(1.0, w.relative_velocity_bits - 1 - w.relative_velocity_frac));
@@ -34,12 +34,12 @@ std::string what_happened(const StopReason& stop, const Plan& plan) {
     case Fault::full_x:
     case Fault::full_y:
     case Fault::full_z:
-      return fmt::format("particle {} came, and the node holds {} particles", stop.particle,
+      return fmt::format("particle {} came, and the cell holds {} particles", stop.particle,
                          plan.arch.capacity);
     case Fault::left_x:
     case Fault::left_y:
     case Fault::left_z:
-      return fmt::format("particle {} went where no node is", stop.particle);
+      return fmt::format("particle {} went where no cell is", stop.particle);
     case Fault::link_check:
     case Fault::link_order:
     case Fault::link_silent:
@@ -85,13 +85,13 @@ const char* what_helps(Fault fault) {
 }  // namespace
 
 std::string advice_on(const StopReason& stop, const Plan& plan, const Scene& scene) {
-  const Cell& c = plan.lattice.cell(stop.node);
+  const Cell& c = plan.lattice.cell(stop.cell);
   Vec3 centre;
   for (int a = 0; a < 3; ++a) centre[a] = plan.origin[a] + (c[a] + 0.5) * plan.rule.cell_edge;
   const std::string dt = stop.fault == Fault::velocity && scene.dt_limit > 0
                              ? fmt::format(" (now {:.3g} of the limit)", scene.rule.dt / scene.dt_limit)
                              : "";
-  return fmt::format("node ({} {} {}) at ({:.4g}, {:.4g}, {:.4g}) m: {}; {}{}", c[0], c[1], c[2], centre[0],
+  return fmt::format("cell ({} {} {}) at ({:.4g}, {:.4g}, {:.4g}) m: {}; {}{}", c[0], c[1], c[2], centre[0],
                      centre[1], centre[2], what_happened(stop, plan), what_helps(stop.fault), dt);
 }
 

@@ -10,7 +10,7 @@
 
 namespace cuboct {
 
-// One line: the node with its cell and where that stands, what happened there with its number, and the keys
+// One line: the cell and where it stands, what happened there with its number, and the keys
 // of scene or arch that help.
 std::string advice_on(const StopReason& stop, const Plan& plan, const Scene& scene);
 

@@ -113,7 +113,7 @@ struct Bed {
   std::unique_ptr<emu::TimingModel> timing;
   std::unique_ptr<Golden> golden;
   std::unique_ptr<Reference> real;
-  emu::NodeSlots slots;
+  emu::CellSlots slots;
   std::optional<Timed> timed;
 };
 Bed& bed_of(const std::string& name) {

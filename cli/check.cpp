@@ -53,7 +53,8 @@ void add_not_built(Items& items, const Plan& plan) {
     const std::string name = fmt::format("not built {}", kNames[k]);
     if (k + 1 == Carry::kCount) {
       const uint64_t empty = cells - plan.lattice.size();
-      items.add(name, empty, "cells", fmt::format("of {} cells of the bounding box have no node", cells));
+      items.add(name, empty, "cells",
+                fmt::format("of {} cells of the bounding box are not in the lattice", cells));
       continue;
     }
     Carry carry;
@@ -125,7 +126,7 @@ Items resolve(const Loaded& loaded) {
     items.add(
         "cells per node", cells_of(plan.bricks.shape()), "",
         fmt::format("bricks of {}; {} cells", fmt::join(plan.bricks.shape(), " x "), plan.lattice.size()));
-  items.add("capacity", plan.arch.capacity, plan.bricks.single() ? "particles/node" : "particles/cell");
+  items.add("capacity", plan.arch.capacity, "particles/cell");
   items.add("steps", scene.steps);
   if (scene.pitch > 0) items.add("pitch", scene.pitch, "m");
   items.add("cutoff", scene.rule.law->cutoff(), "m");

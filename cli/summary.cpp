@@ -111,7 +111,7 @@ Items summarise(const Loaded& loaded, const Recorded& run, bool real) {
     items.add("momentum change", int64_t{std::lround(run.momentum_change)}, "LSB", forced);
 
   add_curves(items, loaded.scene, trace.curves);
-  items.add("largest speed", run.largest_speed, "node/step");
+  items.add("largest speed", run.largest_speed, "cell/step");
   if (const auto cycles = cycles_per_step(trace)) {
     items.add("mean cycles per step", cycles->mean);
     items.add("most cycles per step", cycles->max);

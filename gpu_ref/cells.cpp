@@ -35,8 +35,8 @@ void rank_planes(const Geometry& geometry, int axis, int first, int count, SlabC
         c[axis] = modulo(first + p, geometry.total[axis]);
         c[(axis + 1) % 3] = u;
         c[(axis + 2) % 3] = w;
-        if (geometry.nodes && geometry.nodes->find({c[0] + geometry.low[0], c[1] + geometry.low[1],
-                                                    c[2] + geometry.low[2]}) == kNoNode)
+        if (geometry.lattice && geometry.lattice->find({c[0] + geometry.low[0], c[1] + geometry.low[1],
+                                                        c[2] + geometry.low[2]}) == kNoCell)
           continue;
         Cell local = c;
         local[axis] = to_local + p;

@@ -17,8 +17,6 @@
 
 namespace cuboct::gpu {
 
-inline constexpr uint32_t kNoCell = 0xffffffffu;
-
 // In [0, n).
 CUBOCT_HD constexpr int modulo(int a, int n) {
   const int rest = a % n;
@@ -32,7 +30,7 @@ struct Geometry {
   bool folds = false;  // cells outside share the storage of those inside, modulo `total`; else there are none
   std::array<double, 3> edge{1, 1, 1};  // in the unit of lengths of the lists
   int reach = 1;                        // cells that a pair list may span along an axis, at most 2
-  const Lattice* nodes = nullptr;       // where given: only these cells are
+  const Lattice* lattice = nullptr;     // where given: only its cells are
 };
 
 // One slab's storage order.

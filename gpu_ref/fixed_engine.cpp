@@ -32,7 +32,7 @@ class FixedEngine final : public Engine {
       const auto outcome = machine_->run(last - step_, hashes);
       step_ += outcome.done;
       using End = typename Machine<Policy>::End;
-      // Whatever else comes of a step that stopped: nodes have counted particles that did not enter.
+      // Whatever else comes of a step that stopped: cells have counted particles that did not enter.
       old_ = outcome.end != End::full && outcome.end != End::thin;
       if (outcome.end != End::doubt && (outcome.end != End::crowded || machine_->age() > 0)) continue;
       step_by_golden();
@@ -84,7 +84,7 @@ class FixedEngine final : public Engine {
         p.v[a] = loose.v[i].at[a];
         if (!loose.u.empty()) p.u[a] = loose.u[i].at[a];
       }
-      p.node = lattice.find(cell);
+      p.cell = lattice.find(cell);
     }
     return state;
   }
@@ -114,11 +114,11 @@ class FixedEngine final : public Engine {
       if (period > 0) g.low[a] = 0;
       g.total[a] = period > 0 ? period : high[a] - g.low[a] + 1;
     }
-    g.nodes = &plan.lattice;
+    g.lattice = &plan.lattice;
     // Two cells' edges hold any cutoff, which is an edge at most, and the skin.
     g.reach = Policy::kReach;
     setup.radius = std::sqrt(std::ldexp(static_cast<double>(rule.cutoff2), -2 * rule.widths.difference_frac));
-    // Half a unit of a difference along three axes, for both of a pair; and floats of a node's coordinates,
+    // Half a unit of a difference along three axes, for both of a pair; and floats of a cell's coordinates,
     // below 2 edges, which lists and ways since then are made of.
     setup.rounding = 2 * std::ldexp(1.0, -rule.widths.difference_frac) +
                      16 * static_cast<double>(std::numeric_limits<float>::epsilon());
@@ -143,7 +143,7 @@ class FixedEngine final : public Engine {
     if (plan_.rule.pd) loose.u.resize(n);
     for (size_t i = 0; i < n; ++i) {
       const Particle& p = state.particles[i];
-      const Cell& cell = plan_.lattice.cell(p.node);
+      const Cell& cell = plan_.lattice.cell(p.cell);
       for (int a = 0; a < 3; ++a) {
         loose.x[i].at[a] = static_cast<int32_t>(p.x[a] >> guard);
         loose.residue[i].at[a] = static_cast<uint32_t>(p.x[a] & ((int64_t{1} << guard) - 1));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The fixed rule for the engine of gpu_ref/machine.h. Cells are nodes; a position counts from the corner of
-// the node in which its particle stood when the list was made, so that no list changes when a particle
-// crosses a face. Its leading P fractional bits, which pairs see, stand apart from the G bits below, its
-// residue.
+// The fixed rule for the engine of gpu_ref/machine.h. Its cells are the lattice's; a position counts from the
+// corner of the cell in which its particle stood when the list was made, so that no list changes when a
+// particle crosses a face. Its leading P fractional bits, which pairs see, stand apart from the G bits below,
+// its residue.
 #pragma once
 
 #include <cstdint>

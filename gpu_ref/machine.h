@@ -62,7 +62,7 @@ class Machine {
     double radius = 1;           // of the interaction, in the unit of the geometry's edges
     double rounding = 0;         // that the rule's own differences may bring pairs nearer
     double largest_skin = 0;     // what the reach of the cells leaves room for
-    uint32_t capacity = kNever;  // of a node (fixed)
+    uint32_t capacity = kNever;  // of a cell (fixed)
     bool pd = false, damped = false;
     int residue_bits = 0;  // of a position (fixed)
     // Of energies: see ReadEnergies.

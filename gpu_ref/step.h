@@ -16,7 +16,7 @@ struct Control {
   uint32_t base;     // of step numbers: a graph counts its steps from 1 each time that it is launched
   uint32_t limit;    // the steps up to this one are good
   uint32_t doubt;    // the first step that may not be possible
-  uint32_t crowded;  // the first step in which a node may be too full
+  uint32_t crowded;  // the first step in which a cell may be too full
   uint32_t old;      // the first step after which the list serves no longer
   uint32_t thin;     // the first step after which the thin lists serve no longer
 };
@@ -28,15 +28,15 @@ struct Controls {
   int count;
 };
 
-// How full nodes may be. No particle's departure is counted until the next list, nor does one count twice in
-// a node: while no node holds more than its capacity by that count, none has done so, in whatever order
+// How full cells may be. No particle's departure is counted until the next list, nor does one count twice in
+// a cell: while no cell holds more than its capacity by that count, none has done so, in whatever order
 // devices count.
 struct Occupancy {
   uint32_t* own;
   uint32_t *lower, *upper;  // the neighbours' counts of what this slab holds copies of
   uint32_t own_end, lower_copy_end;
   uint32_t capacity;
-  uint32_t* entered;  // 27 bits a particle: which nodes around that of the list's making
+  uint32_t* entered;  // 27 bits a particle: which cells around that of the list's making
   CUBOCT_DEVICE uint32_t* of(uint32_t rank) const {
     if (rank < own_end) return own + rank;
     return rank < lower_copy_end ? lower + (rank - own_end) : upper + (rank - lower_copy_end);

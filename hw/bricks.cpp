@@ -147,7 +147,7 @@ Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
   for (uint32_t c = 0; c < lattice.size(); ++c)
     bricks[{brick_of(c, 2), brick_of(c, 1), brick_of(c, 0)}].push_back(c);
   place_.resize(lattice.size());
-  cells_.assign(bricks.size() * cells_of(shape), kNoNode);
+  cells_.assign(bricks.size() * cells_of(shape), kNoCell);
   for (const auto& [key, cells] : bricks) {
     Node node;
     node.neighbour.fill(kNoNode);
@@ -170,7 +170,7 @@ Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
       const int32_t inside = lattice.cell(c)[a] - node.low[a];
       for (int up = 0; up < 2; ++up) {
         const uint32_t other = lattice.neighbour(c, 2 * a + up);
-        if (other != kNoNode && inside == (up != 0 ? node.extent[a] - 1 : 0))
+        if (other != kNoCell && inside == (up != 0 ? node.extent[a] - 1 : 0))
           node.neighbour[at(2 * a + up)] = node_of(other);
       }
     }
@@ -204,7 +204,7 @@ BrickMap::BrickMap(const Bricks& bricks, int axes) : grid_(bricks.shape()) {
   using Key = std::tuple<int32_t, int32_t, int32_t, uint8_t>;
   std::map<Key, std::shared_ptr<const BrickWalk>> walks;
   const Cell& shape = bricks.shape();
-  cell_.assign(size_t{bricks.size()} * grid_.size(), kNoNode);
+  cell_.assign(size_t{bricks.size()} * grid_.size(), kNoCell);
   const auto place = [this](uint32_t node, uint32_t grid) -> uint32_t& {
     return cell_[size_t{node} * grid_.size() + grid];
   };

@@ -12,6 +12,9 @@
 
 namespace cuboct {
 
+// No node of the machine.
+inline constexpr uint32_t kNoNode = kNoCell;
+
 // The largest brick, in cells.
 inline constexpr int kMostBrickCells = 512;
 
@@ -91,7 +94,7 @@ class Bricks {
   uint32_t size() const { return static_cast<uint32_t>(nodes_.size()); }
   const Cell& shape() const { return shape_; }
   const Node& node(uint32_t node) const { return nodes_[node]; }
-  // The lattice's cell, or kNoNode where it has none there.
+  // The lattice's cell, or kNoCell where it has none there.
   uint32_t cell(uint32_t node, uint32_t local) const { return cells_[node * cells_of(shape_) + local]; }
   uint32_t node_of(uint32_t cell) const { return place_[cell] / cells_of(shape_); }
   uint32_t local_of(uint32_t cell) const { return place_[cell] % cells_of(shape_); }
@@ -119,7 +122,7 @@ class BrickMap {
   BrickMap(const Bricks& bricks, int axes);
   const BrickGrid& grid() const { return grid_; }
   const BrickWalk& walk(uint32_t node) const { return *walk_[node]; }
-  // The cell whose records the node holds at a place of its grid after the exchange, or kNoNode.
+  // The cell whose records the node holds at a place of its grid after the exchange, or kNoCell.
   uint32_t cell(uint32_t node, uint32_t place) const { return cell_[size_t{node} * grid_.size() + place]; }
 
  private:

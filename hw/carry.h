@@ -16,7 +16,7 @@ struct Carry {
   bool types = false;        // a bit for the type, where one type would do
   bool pd = false;           // displacements, of no type
   bool third_axis = false;   // in a flat scene
-  bool empty_nodes = false;  // every cell of the lattice's bounding box has a node
+  bool empty_nodes = false;  // the lattice has every cell of its bounding box
 
   static constexpr int kCount = 6;
   // In the order of the fields: the names that an arch file uses.
@@ -26,7 +26,7 @@ struct Carry {
   static Carry everything();
 };
 
-// All but the empty nodes, which are no part of a rule. Two more things can stop a run then: a relative
+// All but the empty cells, which are no part of a rule. Two more things can stop a run then: a relative
 // velocity inside the cutoff that does not fit `relative_velocity_bits`, as in any damped plan, and a
 // strength that does not fit.
 FixedRule carrying(FixedRule rule, const Carry& carry);

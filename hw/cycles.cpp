@@ -34,7 +34,7 @@ class BrickCycles {
  private:
   uint64_t held(uint32_t n, uint32_t place) const {
     const uint32_t cell = map_.cell(n, place);
-    return cell == kNoNode ? 0 : census_.particles(cell);
+    return cell == kNoCell ? 0 : census_.particles(cell);
   }
   // Cycles, from the start of an exchange, after which the end beat that goes over `face` has been loaded.
   uint64_t sent(uint32_t n, int face) const {
@@ -71,7 +71,7 @@ void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
   uint64_t streamed = plan_.arch.overlap ? 0 : now, candidates = 0, met = 0, own = 0, slots = 0;
   for (const uint32_t local : walk.own) {
     const uint32_t cell = plan_.cell_of(n, local);
-    const uint64_t count = cell == kNoNode ? 0 : census_.particles(cell);
+    const uint64_t count = cell == kNoCell ? 0 : census_.particles(cell);
     own += count;
     slots += std::max<uint64_t>(count, 1);
   }
@@ -81,7 +81,7 @@ void BrickCycles::add(uint32_t n, ExpectedCycles& expected) const {
     for (const BrickWalk::Visit& visit : walk.visits[s]) {
       const uint32_t cell = plan_.cell_of(n, visit.own);
       const uint64_t passes =
-          cell == kNoNode ? 0
+          cell == kNoCell ? 0
                           : ceil_div(census_.particles(cell), static_cast<uint64_t>(plan_.arch.filter_lanes));
       items += passes == 0;
       if (passes == 0) continue;
@@ -113,7 +113,7 @@ using Held = std::vector<std::vector<const Particle*>>;  // by cell
 
 Held held_by(const Lattice& lattice, const State& state) {
   Held held(lattice.size());
-  for (const Particle& p : state.particles) held[p.node].push_back(&p);
+  for (const Particle& p : state.particles) held[p.cell].push_back(&p);
   return held;
 }
 
@@ -163,7 +163,7 @@ ExpectedCycles single_cycles(const Plan& plan, Particles particles, Pairs pairs_
       }
     for (uint32_t n = 0; n < lattice.size(); ++n)
       for (int face = 2 * axis; face < 2 * axis + 2; ++face)
-        if (lattice.neighbour(n, face) != kNoNode)
+        if (lattice.neighbour(n, face) != kNoCell)
           segment[n][1 + face] = sends[lattice.neighbour(n, face)].records[axis];
   }
 
@@ -183,7 +183,7 @@ ExpectedCycles single_cycles(const Plan& plan, Particles particles, Pairs pairs_
     for (int axis = 0; axis < axes; ++axis) {
       uint64_t longest = send_time(n, axis);
       for (int face = 2 * axis; face < 2 * axis + 2; ++face)
-        if (lattice.neighbour(n, face) != kNoNode)
+        if (lattice.neighbour(n, face) != kNoCell)
           longest = std::max(longest, send_time(lattice.neighbour(n, face), axis));
       exchanged[axis] = now += longest + end_beat;
     }

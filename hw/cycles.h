@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a step will cost the machine, from how many particles each node holds.
+// What a step will cost the machine, from how many particles each cell holds.
 #pragma once
 
 #include <array>

@@ -21,7 +21,7 @@ namespace cuboct {
 // x[P] are the visible bits of a position, those that forces and links see; residue[G] are the G bits below
 // them. What the force engine reads of a particle lies below its id, so that its memories hold no residue.
 // A flat plan (rule.axes 2) has nothing of z: x[P+2] y[P] ..., x[P] y[P] away_y[2] v[2 x velocity_bits] ...
-// residue[2 x G] ... All but the last axis of a halo record are signed, in the frame of the sender's node
+// residue[2 x G] ... All but the last axis of a halo record are signed, in the frame of the sender's cell
 // (see docs/reference/node.md); `away` is two's complement: -1, 0, +1. The particle word is the migrate
 // record and the word of the load and observe ports. With bricks a halo record's coordinates are those in its
 // own cell, x[P] y[P] z[P], and its last field says which cell that is: cell[halo_cell_bits]. A migrate
@@ -75,14 +75,14 @@ struct Plan {
   }
   uint32_t node_of(uint32_t cell) const { return bricks.single() ? cell : bricks.node_of(cell); }
   uint32_t local_of(uint32_t cell) const { return bricks.single() ? 0 : bricks.local_of(cell); }
-  // The lattice's cell number `local` of a node, or kNoNode.
+  // The lattice's cell number `local` of a node, or kNoCell.
   uint32_t cell_of(uint32_t node, uint32_t local) const {
     return bricks.single() ? node : bricks.cell(node, local);
   }
   // The first of the lattice's cells that a node has.
   uint32_t first_cell_of(uint32_t node) const {
     uint32_t local = 0;
-    while (cell_of(node, local) == kNoNode) ++local;
+    while (cell_of(node, local) == kNoCell) ++local;
     return cell_of(node, local);
   }
 };

@@ -294,20 +294,20 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
     std::vector<std::pair<uint32_t, uint32_t>> cells;  // of the lattice, and which one of the node's
     if (!bricks) return cells.emplace_back(n, 0), cells;
     for (uint32_t local = 0; local < cells_of(plan.bricks.shape()); ++local)
-      if (const uint32_t cell = plan.bricks.cell(n, local); cell != kNoNode) cells.emplace_back(cell, local);
+      if (const uint32_t cell = plan.bricks.cell(n, local); cell != kNoCell) cells.emplace_back(cell, local);
     return cells;
   };
   for (uint32_t n = 0; n < nodes; ++n)
     for (const auto& [cell, local] : of_node(n))
-      for (const Particle& p : golden.nodes()[cell])
+      for (const Particle& p : golden.cells()[cell])
         loads += bricks ? particle_hex(plan, p, {n, local}) : particle_hex(plan, p, {n});
   std::vector<std::string> expected(nodes);
   std::vector<uint64_t> count(nodes);
   for (uint64_t step = 0;; ++step) {
     for (uint32_t n = 0; n < nodes; ++n)
       for (const auto& [cell, local] : of_node(n))
-        for (size_t slot = 0; slot < golden.nodes()[cell].size(); ++slot, ++count[n])
-          expected[n] += particle_hex(plan, golden.nodes()[cell][slot], {uint64_t{local} << 16 | slot, step});
+        for (size_t slot = 0; slot < golden.cells()[cell].size(); ++slot, ++count[n])
+          expected[n] += particle_hex(plan, golden.cells()[cell][slot], {uint64_t{local} << 16 | slot, step});
     if (step == steps) break;
     golden.step();
   }

@@ -194,7 +194,7 @@ std::vector<bool> exit_bits(const Plan& plan, uint32_t node) {
   for (uint32_t local = 0; local < cells_of(plan.bricks.shape()); ++local) {
     const uint32_t cell = plan.bricks.cell(node, local);
     for (int f = 0; f < 2 * plan.rule.axes; ++f)
-      bits.push_back(cell != kNoNode && plan.lattice.neighbour(cell, f) != kNoNode);
+      bits.push_back(cell != kNoCell && plan.lattice.neighbour(cell, f) != kNoCell);
   }
   return bits;
 }

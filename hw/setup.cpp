@@ -85,7 +85,7 @@ int capacity_for(const Scene& scene, const Lattice& lattice, double edge, const 
     for (int32_t cz = near[2][0]; cz <= near[2][1]; ++cz)
       for (int32_t cy = near[1][0]; cy <= near[1][1]; ++cy)
         for (int32_t cx = near[0][0]; cx <= near[0][1]; ++cx)
-          if (const uint32_t cell = lattice.find({cx, cy, cz}); cell != kNoNode) ++count[cell];
+          if (const uint32_t cell = lattice.find({cx, cy, cz}); cell != kNoCell) ++count[cell];
   }
   const uint32_t fullest = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
   const uint32_t roomy = 4 * ((5 * fullest + 15) / 16), power = std::bit_floor(roomy);
@@ -170,13 +170,13 @@ Plan plan_with(const Scene& scene, Arch arch, See see) {
   uint32_t fullest = 0;
   for (uint32_t id = 0; id < scene.body.size(); ++id) {
     const Particle particle = fixed_particle(scene.body, id, rule, lattice, origin);
-    fullest = std::max(fullest, ++count[particle.node]);
+    fullest = std::max(fullest, ++count[particle.cell]);
     see(particle);
   }
   if (static_cast<int64_t>(fullest) > arch.capacity)
     arch.places.fail(
         {"node.capacity"},
-        fmt::format("a node would hold {} particles: its capacity is {}", fullest, arch.capacity),
+        fmt::format("a cell would hold {} particles: its capacity is {}", fullest, arch.capacity),
         fmt::format("set node.capacity to at least {} in the arch file", fullest));
   std::vector<std::string> warnings = width_warnings(scene, edge, chosen, rule);
   Plan plan = make_plan(std::move(rule), std::move(arch), std::move(lattice), origin,

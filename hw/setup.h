@@ -16,7 +16,7 @@ struct Setup {
 };
 
 // Chooses the cell edge and the reachable cells, quantises rule and body. Deterministic. InputError where the
-// machine cannot hold the scene: a node too full, a particle too fast, ...
+// machine cannot hold the scene: a cell too full, a particle too fast, ...
 Setup make_setup(const Scene& scene, const Arch& arch);
 
 // The edge of a cell, m: the law's cutoff or the arch's, in a box that repeats the next length that divides

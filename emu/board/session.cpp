@@ -43,7 +43,7 @@ class Session {
     for (uint32_t n = 0; n < nodes.size(); ++n)
       for (const Particle& p : nodes[n]) {
         Bits word = load_word(plan_, p);
-        word.put(plan_.words.particle_bits, plan_.bricks.cell_bits(), plan_.local_of(p.node));
+        word.put(plan_.words.particle_bits, plan_.bricks.cell_bits(), plan_.local_of(p.cell));
         host_.load(index++, static_cast<uint16_t>(n), word, word_bits());
       }
   }
@@ -70,7 +70,7 @@ class Session {
         Particle p;
         p.id = slot.id;
         p.type = slot.body.type;
-        p.node = cell_of(n, word.get(plan_.words.particle_bits, plan_.bricks.cell_bits()));
+        p.cell = cell_of(n, word.get(plan_.words.particle_bits, plan_.bricks.cell_bits()));
         p.x = position_of(plan_.rule.widths, slot);
         p.v = slot.body.v;
         p.u = slot.u;
@@ -104,9 +104,9 @@ class Session {
       const auto key = [](const StopReason& r) { return std::tie(r.fault, r.particle, r.number); };
       if (least.fault == Fault::none || key(reason) < key(least)) least = reason;
     }
-    const Cell& c = plan_.lattice.cell(least.node);
-    least.text = RunError(least.fault, step, least.node, least.particle, least.number,
-                          fmt::format(" at cell ({}, {}, {})", c[0], c[1], c[2]))
+    const Cell& c = plan_.lattice.cell(least.cell);
+    least.text = RunError(least.fault, step, least.cell, least.particle, least.number,
+                          fmt::format(" at ({}, {}, {})", c[0], c[1], c[2]))
                      .what();
     return least;
   }
@@ -138,8 +138,8 @@ class Session {
 
   uint32_t cell_of(uint32_t node, uint64_t local) const {
     const bool within = plan_.bricks.single() ? local == 0 : local < cells_of(plan_.bricks.shape());
-    const uint32_t cell = within ? plan_.cell_of(node, static_cast<uint32_t>(local)) : kNoNode;
-    if (cell == kNoNode)
+    const uint32_t cell = within ? plan_.cell_of(node, static_cast<uint32_t>(local)) : kNoCell;
+    if (cell == kNoCell)
       throw std::runtime_error(
           fmt::format("port {}: node {} tells of a cell {} that it has not", host_.port(), node, local));
     return cell;

@@ -41,13 +41,13 @@ struct Particles {
   PaddedArray<uint32_t> id;  // empty where a particle's index is its id; else kNoParticle where a block's
                              // last group is not full
   uint32_t id_of(uint32_t index) const { return id.size() == 0 ? index : id[index]; }
-  const uint32_t* node = nullptr;  // readable kGroup elements beyond
+  const uint32_t* cell = nullptr;  // readable kGroup elements beyond
   PaddedArray<uint8_t> type;
-  // By group: its nodes are among low ... low + span - 1. Wider than need be after migrations.
-  struct Nodes {
+  // By group: its cells are among low ... low + span - 1. Wider than need be after migrations.
+  struct Cells {
     uint32_t low, span;
   };
-  std::vector<Nodes> group_nodes;
+  std::vector<Cells> group_cells;
   // What to add to x_j - x_i where the pair meets across the seam of a periodic box: (sx+1) + 3 (sy+1) + 9
   // (sz+1) periods.
   std::array<std::array<double, 3>, 27> shift{};
@@ -62,7 +62,7 @@ inline Int3 exact_position(const Particles& particles, uint32_t p, int guard) {
   return x;
 }
 
-// Something that did not fit; the node is found from the particle.
+// Something that did not fit; the cell is found from the particle.
 struct Found {
   Fault fault;
   uint32_t particle;  // index

@@ -44,9 +44,9 @@ void BrickMigration::plan(std::vector<uint32_t>& count, std::span<const Leaving>
   movers_.clear();
   std::fill(leaving_.begin(), leaving_.end(), 0);
   for (const Leaving& l : leaving) {
-    movers_.push_back({l.node, l.away});
+    movers_.push_back({l.cell, l.away});
     for (int a = 0; a < 3; ++a)
-      if (l.away[at(a)] != 0) leaving_[l.node] |= bit(a);
+      if (l.away[at(a)] != 0) leaving_[l.cell] |= bit(a);
   }
   for (int axis = 0; axis < plan_.rule.axes; ++axis) move(axis, count, map);
 }
@@ -58,7 +58,7 @@ void BrickMigration::move(int axis, std::vector<uint32_t>& count, const BrickMap
     int64_t cycles = 0;
     for (const uint32_t local : map.walk(n).own) {
       const uint32_t cell = plan_.cell_of(n, local);
-      const bool leaves = cell != kNoNode && (leaving_[cell] & bit(axis)) != 0;
+      const bool leaves = cell != kNoCell && (leaving_[cell] & bit(axis)) != 0;
       any = any || leaves;
       cycles += leaves ? std::max<int64_t>(count[cell], 1) : 1;
     }
@@ -71,7 +71,7 @@ void BrickMigration::move(int axis, std::vector<uint32_t>& count, const BrickMap
     if (way == 0) continue;
     const int face = 2 * axis + (way > 0);
     const uint32_t to = plan_.lattice.neighbour(m.cell, face);
-    if (to == kNoNode) throw std::invalid_argument("a particle leaves the lattice");
+    if (to == kNoCell) throw std::invalid_argument("a particle leaves the lattice");
     if (crosses(m.cell, face)) scan[plan_.node_of(m.cell)] += plan_.words.migrate_beats - 1;
     --count[m.cell];
     ++arrived_[to];
@@ -86,7 +86,7 @@ void BrickMigration::move(int axis, std::vector<uint32_t>& count, const BrickMap
     land[n] = 0;
     for (const uint32_t local : map.walk(n).own) {
       const uint32_t cell = plan_.cell_of(n, local);
-      const uint32_t come = cell == kNoNode ? 0 : arrived_[cell];
+      const uint32_t come = cell == kNoCell ? 0 : arrived_[cell];
       land[n] += std::max<int64_t>(come, 1);
       if (come > 0) count[cell] += come;
     }
@@ -113,7 +113,7 @@ BrickTiming::BrickTiming(const Plan& plan, int threads)
   for (auto& cycles : migrate_end_) cycles.resize(nodes_);
 }
 
-void BrickTiming::begin(const NodeSlots& slots, std::span<const Leaving> leaving) {
+void BrickTiming::begin(const CellSlots& slots, std::span<const Leaving> leaving) {
   const uint32_t cells = plan_.lattice.size();
   if (slots.first.size() != cells + 1) throw std::invalid_argument("slots of another lattice");
   for (const auto& x : slots.x)
@@ -121,12 +121,12 @@ void BrickTiming::begin(const NodeSlots& slots, std::span<const Leaving> leaving
   for (uint32_t c = 0; c < cells; ++c) {
     count_[c] = slots.first[c + 1] - slots.first[c];
     if (count_[c] > static_cast<uint32_t>(plan_.arch.capacity))
-      throw std::invalid_argument("a node holds more than its capacity");
+      throw std::invalid_argument("a cell holds more than its capacity");
     if (steps_ > 0 && count_[c] != final_count_[c])
-      throw std::invalid_argument("a node does not hold what the step before left there");
+      throw std::invalid_argument("a cell does not hold what the step before left there");
   }
   for (const Leaving& l : leaving)
-    if (l.node >= cells || l.slot >= count_[l.node]) throw std::invalid_argument("no such particle leaves");
+    if (l.cell >= cells || l.slot >= count_[l.cell]) throw std::invalid_argument("no such particle leaves");
   final_count_ = count_;
   migration_.plan(final_count_, leaving, map_);
 }
@@ -136,7 +136,7 @@ int64_t BrickTiming::walk(uint32_t n, const uint32_t* first) const {
   int64_t cycles = 0;
   for (const uint32_t local : map_.walk(n).own) {
     const uint32_t cell = plan_.cell_of(n, local);
-    cycles += cell == kNoNode ? 1 : std::max<int64_t>(first[cell + 1] - first[cell], 1);
+    cycles += cell == kNoCell ? 1 : std::max<int64_t>(first[cell + 1] - first[cell], 1);
   }
   return cycles;
 }
@@ -146,7 +146,7 @@ int64_t BrickTiming::layer(int face, uint32_t n) const {
   int64_t cycles = 0;
   for (const BrickWalk::Sent& s : map_.walk(n).sent[at(face)]) {
     const uint32_t cell = map_.cell(n, s.grid);
-    const int64_t records = cell == kNoNode ? 0 : count_[cell];
+    const int64_t records = cell == kNoCell ? 0 : count_[cell];
     cycles += records == 0 ? 1 : records * halo_beats_;
   }
   return cycles;
@@ -180,7 +180,7 @@ int64_t BrickTiming::exchanged(int axis, uint32_t n) const {
 }
 
 // The items of a cell's candidates before the own slots that lie in `scratch`: `planar` of hits.h.
-void BrickTiming::meet(const NodeSlots& slots, uint32_t cell, const std::array<int8_t, 3>& offset, bool same,
+void BrickTiming::meet(const CellSlots& slots, uint32_t cell, const std::array<int8_t, 3>& offset, bool same,
                        uint32_t& item, Scratch& scratch) const {
   const PlanarTest& test = filter_.test;
   const auto own = static_cast<uint32_t>(scratch.own[0].size());
@@ -211,7 +211,7 @@ void BrickTiming::meet(const NodeSlots& slots, uint32_t cell, const std::array<i
 }
 
 // The engine's last cycle. A visit at which nobody meets is an item without hits.
-int64_t BrickTiming::force(const NodeSlots& slots, uint32_t n, Scratch& scratch) const {
+int64_t BrickTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratch) const {
   const int64_t begin = plan_.arch.overlap ? start_[n] : end_[at(Phase::exchange_z)][n] + 1;
   Available available;
   for (int a = 0; a < 3; ++a) available[at(a)] = end_[at(a)][n] + 1 - begin;
@@ -223,7 +223,7 @@ int64_t BrickTiming::force(const NodeSlots& slots, uint32_t n, Scratch& scratch)
     const uint32_t first = item;
     for (const BrickWalk::Visit& visit : walk.visits[segment]) {
       const uint32_t own = plan_.cell_of(n, visit.own);
-      if (own == kNoNode || count_[own] == 0) {
+      if (own == kNoCell || count_[own] == 0) {
         ++item;
         continue;
       }
@@ -235,7 +235,7 @@ int64_t BrickTiming::force(const NodeSlots& slots, uint32_t n, Scratch& scratch)
       for (uint32_t k = visit.first; k < visit.end; ++k) {
         const BrickWalk::Near& near = walk.near[k];
         const uint32_t cell = map_.cell(n, near.grid);
-        if (cell == kNoNode || count_[cell] == 0)
+        if (cell == kNoCell || count_[cell] == 0)
           ++item;
         else
           meet(slots, cell, near.offset, near.offset == std::array<int8_t, 3>{}, item, scratch);
@@ -248,12 +248,12 @@ int64_t BrickTiming::force(const NodeSlots& slots, uint32_t n, Scratch& scratch)
   return begin + force_time(shape_, work, available, scratch.popped);
 }
 
-void BrickTiming::exchange_to_update(const NodeSlots& slots, uint32_t n, Scratch& scratch) {
+void BrickTiming::exchange_to_update(const CellSlots& slots, uint32_t n, Scratch& scratch) {
   end_[at(Phase::exchange_z)][n] = axes_ == 3 ? exchanged(2, n) : end_[at(Phase::exchange_y)][n];
   const int64_t force_end = end_[at(Phase::force)][n] = force(slots, n, scratch);
   int64_t held = 0;
   for (const uint32_t local : map_.walk(n).own)
-    if (const uint32_t cell = plan_.cell_of(n, local); cell != kNoNode) held += count_[cell];
+    if (const uint32_t cell = plan_.cell_of(n, local); cell != kNoCell) held += count_[cell];
   const int64_t end = end_[at(Phase::update)][n] =
       force_end + (held == 0 ? 1 : walk(n, slots.first.data()) - 1 + plan_.latency.update);
   migrate_end_[0][n] = end + 1 + migration_.scan(0, n);
@@ -276,7 +276,7 @@ void BrickTiming::finish(uint32_t n, std::span<PhaseSpan> spans) {
   start_[n] = end_[at(Phase::migrate_z)][n] + 1;
 }
 
-void BrickTiming::step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
+void BrickTiming::step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
   if (!spans.empty() && spans.size() != size_t{nodes_} * kPhases)
     throw std::invalid_argument("spans of another lattice");
   begin(slots, leaving);
@@ -301,13 +301,13 @@ void BrickTiming::step(const NodeSlots& slots, std::span<const Leaving> leaving,
   for (uint32_t n = 0; n < nodes_; ++n) {
     const bool busy = std::any_of(map_.walk(n).own.begin(), map_.walk(n).own.end(), [&](uint32_t local) {
       const uint32_t cell = plan_.cell_of(n, local);
-      return cell != kNoNode && count_[cell] > 0;
+      return cell != kNoCell && count_[cell] > 0;
     });
     counters_.busy += busy, counters_.filtered += busy, counters_.walked += busy;
   }
 }
 
-uint64_t BrickTiming::cycles(const NodeSlots& slots) const {
+uint64_t BrickTiming::cycles(const CellSlots& slots) const {
   if (slots.first.size() != plan_.lattice.size() + 1) throw std::invalid_argument("slots of another lattice");
   int64_t idle = 0;  // the last node's first cycle of IDLE
   for (uint32_t n = 0; n < nodes_; ++n) idle = std::max(idle, start_[n] + walk(n, slots.first.data()));

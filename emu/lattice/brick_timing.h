@@ -47,8 +47,8 @@ class BrickTiming {
  public:
   // As TimingModel's.
   BrickTiming(const Plan& plan, int threads);
-  void step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans);
-  uint64_t cycles(const NodeSlots& slots) const;
+  void step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans);
+  uint64_t cycles(const CellSlots& slots) const;
   std::vector<uint64_t> starts() const { return {start_.begin(), start_.end()}; }
   void resume(std::span<const uint64_t> starts);
   const TimingCounters& counters() const { return counters_; }
@@ -60,14 +60,14 @@ class BrickTiming {
     std::vector<int64_t> popped;
   };
 
-  void begin(const NodeSlots& slots, std::span<const Leaving> leaving);
+  void begin(const CellSlots& slots, std::span<const Leaving> leaving);
   void send(int axis, uint32_t n);
   int64_t exchanged(int axis, uint32_t n) const;
   int64_t layer(int face, uint32_t n) const;
   int64_t walk(uint32_t n, const uint32_t* first) const;
-  void exchange_to_update(const NodeSlots& slots, uint32_t n, Scratch& scratch);
-  int64_t force(const NodeSlots& slots, uint32_t n, Scratch& scratch) const;
-  void meet(const NodeSlots& slots, uint32_t cell, const std::array<int8_t, 3>& offset, bool same,
+  void exchange_to_update(const CellSlots& slots, uint32_t n, Scratch& scratch);
+  int64_t force(const CellSlots& slots, uint32_t n, Scratch& scratch) const;
+  void meet(const CellSlots& slots, uint32_t cell, const std::array<int8_t, 3>& offset, bool same,
             uint32_t& item, Scratch& scratch) const;
   void take_particles(int axis, uint32_t n);
   void finish(uint32_t n, std::span<PhaseSpan> spans);

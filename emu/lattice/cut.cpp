@@ -13,12 +13,12 @@
 namespace cuboct::emu {
 namespace {
 
-// Gives [begin, end) of `nodes` to the ranks [first, first + ranks), cut in planes across `axis` (-1: the
+// Gives [begin, end) of `cells` to the ranks [first, first + ranks), cut in planes across `axis` (-1: the
 // longest).
-void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::vector<uint32_t>& nodes,
+void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::vector<uint32_t>& cells,
             size_t begin, size_t end, int first, int ranks, int axis, std::vector<uint16_t>& owner) {
   if (ranks == 1 || begin == end) {
-    for (size_t k = begin; k < end; ++k) owner[nodes[k]] = static_cast<uint16_t>(first);
+    for (size_t k = begin; k < end; ++k) owner[cells[k]] = static_cast<uint16_t>(first);
     return;
   }
   int along = axis;
@@ -28,8 +28,8 @@ void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::ve
     high.fill(std::numeric_limits<int32_t>::min());
     for (size_t k = begin; k < end; ++k)
       for (int a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], lattice.cell(nodes[k])[a]);
-        high[a] = std::max(high[a], lattice.cell(nodes[k])[a]);
+        low[a] = std::min(low[a], lattice.cell(cells[k])[a]);
+        high[a] = std::max(high[a], lattice.cell(cells[k])[a]);
       }
     // Particles are stored in rows along x: a cut across x leaves stumps of rows at the rim, so x has to be
     // twice as long.
@@ -41,8 +41,8 @@ void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::ve
   std::map<int32_t, uint64_t> planes;  // coordinate, weight
   uint64_t total = 0;
   for (size_t k = begin; k < end; ++k) {
-    planes[lattice.cell(nodes[k])[along]] += weight[nodes[k]];
-    total += weight[nodes[k]];
+    planes[lattice.cell(cells[k])[along]] += weight[cells[k]];
+    total += weight[cells[k]];
   }
   // The plane below which the share of the lower ranks is met best.
   const int lower = ranks / 2;
@@ -56,26 +56,26 @@ void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::ve
       plane = at + 1;
     }
   }
-  const auto middle = std::stable_partition(nodes.begin() + static_cast<ptrdiff_t>(begin),
-                                            nodes.begin() + static_cast<ptrdiff_t>(end),
+  const auto middle = std::stable_partition(cells.begin() + static_cast<ptrdiff_t>(begin),
+                                            cells.begin() + static_cast<ptrdiff_t>(end),
                                             [&](uint32_t n) { return lattice.cell(n)[along] < plane; });
-  const auto at = static_cast<size_t>(middle - nodes.begin());
-  bisect(lattice, weight, nodes, begin, at, first, lower, axis, owner);
-  bisect(lattice, weight, nodes, at, end, first + lower, ranks - lower, axis, owner);
+  const auto at = static_cast<size_t>(middle - cells.begin());
+  bisect(lattice, weight, cells, begin, at, first, lower, axis, owner);
+  bisect(lattice, weight, cells, at, end, first + lower, ranks - lower, axis, owner);
 }
 
 }  // namespace
 
-std::vector<uint16_t> cut_nodes(const Lattice& lattice, const std::vector<uint16_t>& weight, int ranks,
+std::vector<uint16_t> cut_cells(const Lattice& lattice, const std::vector<uint16_t>& weight, int ranks,
                                 const std::string& how) {
   const std::string axes = "xyz";
   const bool slabs = how.size() == 1 && axes.find(how) != std::string::npos;
   if (!slabs && how != "bricks")
     throw InputError(fmt::format("unknown cut '{}'", how), "one of bricks, x, y, z");
   std::vector<uint16_t> owner(lattice.size());
-  std::vector<uint32_t> nodes(lattice.size());
-  std::iota(nodes.begin(), nodes.end(), 0u);
-  bisect(lattice, weight, nodes, 0, nodes.size(), 0, ranks, slabs ? static_cast<int>(axes.find(how)) : -1,
+  std::vector<uint32_t> cells(lattice.size());
+  std::iota(cells.begin(), cells.end(), 0u);
+  bisect(lattice, weight, cells, 0, cells.size(), 0, ranks, slabs ? static_cast<int>(axes.find(how)) : -1,
          owner);
   return owner;
 }

@@ -78,14 +78,14 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
   members_ = Members(lattice_, plan_.arch.capacity, count_);
   std::vector<RunError> faults;
   const auto enter = [&](const Particle& p) {
-    if (!members_.append(p.node, p.id))
-      faults.push_back(error(Fault::full_x, p.node, p.id, plan_.arch.capacity));
+    if (!members_.append(p.cell, p.id))
+      faults.push_back(error(Fault::full_x, p.cell, p.id, plan_.arch.capacity));
   };
   const int guard = plan_.rule.widths.guard;
   const auto put = [&](const Particle& p, uint32_t at) {
     if (particles_.id.size() > 0) particles_.id[at] = p.id;
     if (p.type != 0) particles_.type[at] = p.type;  // zeros are there, and take no memory
-    const Cell& cell = lattice_.cell(p.node);
+    const Cell& cell = lattice_.cell(p.cell);
     for (int a = 0; a < 3; ++a) {
       particles_.x[a][at] = static_cast<double>(p.x[a] >> guard) + cell[a] * rule_.cell;
       particles_.residue[a][at] = static_cast<int32_t>(p.x[a] & ((int64_t{1} << guard) - 1));
@@ -104,13 +104,13 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
       enter(p);
     }
     fail_if_any(faults);
-    particles_.node = members_.nodes();
+    particles_.cell = members_.cells();
   } else {
     // Once to know who owns what, once to take what is owned; build() brings it in order.
     for (uint32_t k = 0; k < count_; ++k) enter(particle(k));
     fail_if_any(faults);
-    own_nodes();
-    const auto mine = [&](uint32_t node) { return owner_[node] == options_.ranks->rank(); };
+    own_cells();
+    const auto mine = [&](uint32_t cell) { return owner_[cell] == options_.ranks->rank(); };
     uint32_t held = 0;
     for (uint32_t n = 0; n < lattice_.size(); ++n)
       if (mine(n)) held += static_cast<uint32_t>(members_.count(n));
@@ -120,7 +120,7 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
     uint32_t at = 0;
     for (uint32_t k = 0; k < count_; ++k) {
       const Particle p = particle(k);
-      if (!mine(p.node)) continue;
+      if (!mine(p.cell)) continue;
       put(p, at);
       index_.by_id[p.id] = at++;
     }
@@ -133,7 +133,7 @@ Particle LatticeEngine::Impl::particle(uint32_t index) const {
   Particle p;
   p.id = particles_.id_of(index);
   p.type = particles_.type[index];
-  p.node = members_.nodes()[p.id];
+  p.cell = members_.cells()[p.id];
   const Widths& widths = plan_.rule.widths;
   const int64_t mask = (int64_t{1} << widths.velocity_frac()) - 1;
   const Int3 x = exact_position(particles_, index, widths.guard);
@@ -196,7 +196,7 @@ uint64_t LatticeEngine::hash() const {
   const Impl& impl = *impl_;
   std::atomic<uint64_t> all = 0;
   for_each_part(impl.blocks_.size(), impl.threads_, [&](size_t b, int) {
-    all += hash_particles(impl.particles_, impl.lattice_, impl.members_.nodes(), impl.plan_.rule.widths,
+    all += hash_particles(impl.particles_, impl.lattice_, impl.members_.cells(), impl.plan_.rule.widths,
                           impl.blocks_[b].begin, impl.blocks_[b].end);
   });
   uint64_t sum = all;
@@ -217,15 +217,15 @@ Int3 LatticeEngine::momentum() const {
   return sum;
 }
 
-void LatticeEngine::slots(NodeSlots& out) const {
-  const uint32_t nodes = impl_->lattice_.size();
-  out.first.resize(nodes + 1);
+void LatticeEngine::slots(CellSlots& out) const {
+  const uint32_t cells = impl_->lattice_.size();
+  out.first.resize(cells + 1);
   uint32_t at = 0;
-  for (uint32_t n = 0; n < nodes; ++n) {
+  for (uint32_t n = 0; n < cells; ++n) {
     out.first[n] = at;
     at += static_cast<uint32_t>(impl_->members_.count(n));
   }
-  out.first[nodes] = at;
+  out.first[cells] = at;
   for (auto& x : out.x) x.resize(at);
   const int64_t mask = (int64_t{1} << impl_->plan_.rule.widths.position_frac) - 1;
   const auto write = [&](size_t begin, size_t end) {
@@ -239,7 +239,7 @@ void LatticeEngine::slots(NodeSlots& out) const {
       });
     }
   };
-  for_each_range(nodes, 1, write, impl_->threads_);
+  for_each_range(cells, 1, write, impl_->threads_);
 }
 
 }  // namespace cuboct::emu

@@ -17,7 +17,7 @@ namespace cuboct::emu {
 
 struct LatticeOptions {
   int threads = 0;         // 0: one per core that the process may use, fewer for small scenes
-  bool quiescence = true;  // nodes at rest among nodes at rest are skipped; no bit depends on it
+  bool quiescence = true;  // cells at rest among cells at rest are skipped; no bit depends on it
   std::string simd;        // "avx512", "avx2", "128-bit", "portable"; empty: the widest that this machine has
   Ranks* ranks = nullptr;  // who shares the scene; null: nobody. Must outlive the engine
   std::string cut = "bricks";  // how: see cut.h
@@ -29,9 +29,9 @@ struct LatticeCounters {
   uint64_t list_mends = 0;        // of parts of it
   uint64_t near_lists = 0;        // taken from the far list
   uint64_t near_parts = 0;        // of those, taken only where something had changed
-  uint64_t sorts = 0;             // builds for which particles were stored anew by node
-  uint64_t node_steps = 0;        // nodes times steps
-  uint64_t quiet_node_steps = 0;  // of those, nodes whose particles and neighbours did not change in the step
+  uint64_t sorts = 0;             // builds for which particles were stored anew by cell
+  uint64_t node_steps = 0;        // cells times steps
+  uint64_t quiet_node_steps = 0;  // of those, cells whose particles and neighbours did not change in the step
                                   // before: their clock could stand still (quiescence on)
 };
 
@@ -39,9 +39,9 @@ struct LatticeCounters {
 class LatticeEngine {
  public:
   // `particle(k)`, k = 0 ... count-1, is called once each in this order (twice with ranks): no second copy of
-  // the state is held. Ids are 0 ... count-1. Particles of one node take its slots in the order in which they
+  // the state is held. Ids are 0 ... count-1. Particles of one cell take its slots in the order in which they
   // come (by id at the start of a run; in the order of for_each_slot when a run resumes). `plan` must outlive
-  // the engine. Throws RunError where a node would hold more than its capacity, InputError where `simd` is
+  // the engine. Throws RunError where a cell would hold more than its capacity, InputError where `simd` is
   // not to be had.
   LatticeEngine(const Plan& plan, uint64_t step, uint32_t count,
                 const std::function<Particle(uint32_t)>& particle, const LatticeOptions& options);
@@ -56,14 +56,14 @@ class LatticeEngine {
   uint64_t step_count() const;
   uint32_t size() const;                                                      // particles
   State state() const;                                                        // sorted by id
-  void for_each_slot(const std::function<void(const Particle&)>& see) const;  // by node, then slot; of
+  void for_each_slot(const std::function<void(const Particle&)>& see) const;  // by cell, then slot; of
                                                                               // all, on rank 0
   uint64_t hash() const;                                                      // hash_of(lattice, state())
   Int3 momentum() const;
 
-  // For the timing model, without ranks: the particles by node and slot, and those that left their node in
+  // For the timing model, without ranks: the particles by cell and slot, and those that left their cell in
   // the last step.
-  void slots(NodeSlots& out) const;
+  void slots(CellSlots& out) const;
   std::span<const Leaving> leaving() const;
 
   const LatticeCounters& counters() const;

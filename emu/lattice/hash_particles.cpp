@@ -43,9 +43,9 @@ HWY_INLINE V integer(hn::Vec<D> whole) {
   return hn::Sub(hn::BitCast(u, hn::Add(whole, magic)), hn::BitCast(u, magic));
 }
 
-uint64_t hash_particles(const Particles& particles, const Lattice& lattice, const uint32_t* node,
+uint64_t hash_particles(const Particles& particles, const Lattice& lattice, const uint32_t* cell,
                         const Widths& widths, uint32_t begin, uint32_t end) {
-  const auto cell = hn::Set(d, std::ldexp(1.0, widths.position_frac)),
+  const auto edge = hn::Set(d, std::ldexp(1.0, widths.position_frac)),
              inverse = hn::Set(d, std::ldexp(1.0, -widths.position_frac)),
              guard = hn::Set(d, std::ldexp(1.0, widths.guard));
   const bool pd = particles.u[0].size() > 0;
@@ -57,7 +57,7 @@ uint64_t hash_particles(const Particles& particles, const Lattice& lattice, cons
       head[0][l] = id;
       head[1][l] = particles.type[i + l];
       for (int a = 0; a < 3; ++a)
-        head[2 + a][l] = static_cast<uint64_t>(static_cast<int64_t>(lattice.cell(node[id])[a]));
+        head[2 + a][l] = static_cast<uint64_t>(static_cast<int64_t>(lattice.cell(cell[id])[a]));
     }
     V hash[kWays], value[kWays];
     for (V& h : hash) h = hn::Zero(u);
@@ -76,7 +76,7 @@ uint64_t hash_particles(const Particles& particles, const Lattice& lattice, cons
     for (int a = 0; a < 3; ++a) {
       for (uint32_t w = 0; w < kWays; ++w) {
         const auto x = load(particles.x[a], w);
-        const auto visible = hn::Sub(x, hn::Mul(hn::Floor(hn::Mul(x, inverse)), cell));
+        const auto visible = hn::Sub(x, hn::Mul(hn::Floor(hn::Mul(x, inverse)), edge));
         value[w] = integer(hn::MulAdd(visible, guard, residue(particles.residue[a], w)));
       }
       add(hash, value);
@@ -99,9 +99,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace cuboct::emu {
 HWY_EXPORT(hash_particles);
-uint64_t hash_particles(const Particles& particles, const Lattice& lattice, const uint32_t* node,
+uint64_t hash_particles(const Particles& particles, const Lattice& lattice, const uint32_t* cell,
                         const Widths& widths, uint32_t begin, uint32_t end) {
-  return HWY_DYNAMIC_DISPATCH(hash_particles)(particles, lattice, node, widths, begin, end);
+  return HWY_DYNAMIC_DISPATCH(hash_particles)(particles, lattice, cell, widths, begin, end);
 }
 }  // namespace cuboct::emu
 #endif

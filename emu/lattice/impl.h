@@ -34,7 +34,7 @@ struct LatticeEngine::Impl {
   void step();
   void forces_and_update(const Active& active);
   std::vector<Crossing> all_crossings() const;
-  RunError error(Fault fault, uint32_t node, uint32_t id, int64_t number) const;
+  RunError error(Fault fault, uint32_t cell, uint32_t id, int64_t number) const;
   void fail_if_any(std::vector<RunError> faults) const;
   void fail_if_any(std::vector<Found> Block::*faults) const;
 
@@ -47,18 +47,18 @@ struct LatticeEngine::Impl {
   template <typename See>
   void for_each_moved(const See& see) const;
   bool crystal() const;
-  void find_group_nodes();
-  void widen_group_nodes(uint32_t index);
+  void find_group_cells();
+  void widen_group_cells(uint32_t index);
   double reach_of_step() const;  // cells that a particle can have moved in the last step
 
   // share.cpp
   bool shared() const { return options_.ranks != nullptr && options_.ranks->size() > 1; }
-  void own_nodes();
+  void own_cells();
   static void check_room(uint64_t particles);  // InputError where one process cannot hold them
   void make_room(uint32_t stored, uint32_t ghosts);
   void cut_blocks(std::vector<Block>& blocks, uint32_t begin, uint32_t end) const;
   void wrap();
-  void store_by_node();
+  void store_by_cell();
   void redistribute();
   void start_halo();
   void finish_halo();
@@ -74,7 +74,7 @@ struct LatticeEngine::Impl {
   uint32_t count_;       // particles of all ranks
   uint32_t stored_ = 0;  // places for this rank's own; ghosts stand behind them
   Particles particles_;
-  PaddedArray<uint32_t> node_;  // by index; empty where the index is the id
+  PaddedArray<uint32_t> cell_;  // by index; empty where the index is the id
   Index index_;
   std::vector<Block> blocks_;  // those without ghosts first
   Members members_;
@@ -91,8 +91,8 @@ struct LatticeEngine::Impl {
     uint32_t take_from = 0, take_count = 0;
     std::vector<double> out, in;
   };
-  std::vector<uint16_t> owner_;  // by node, its rank
-  std::vector<NodeSet> reach_;   // by rank: nodes whose particles it may need
+  std::vector<uint16_t> owner_;  // by cell, its rank
+  std::vector<CellSet> reach_;   // by rank: cells whose particles it may need
   std::vector<Peer> peers_;
 
   bool listed_ = false;

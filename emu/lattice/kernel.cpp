@@ -138,10 +138,10 @@ HWY_INLINE V kick_factor(const KernelRule& rule, V& s, V dx[3]) {
   return hn::Set(d, rule.kick_factor);
 }
 
-HWY_INLINE uint32_t awake_lanes(const uint8_t* node_flag, const Particles& particles, uint32_t g) {
+HWY_INLINE uint32_t awake_lanes(const uint8_t* cell_flag, const Particles& particles, uint32_t g) {
   uint32_t lanes = 0;
-  const uint32_t* node = particles.node + size_t{g} * kGroup;
-  for (uint32_t l = 0; l < kGroup; ++l) lanes |= static_cast<uint32_t>(node_flag[node[l]] != 0) << l;
+  const uint32_t* cell = particles.cell + size_t{g} * kGroup;
+  for (uint32_t l = 0; l < kGroup; ++l) lanes |= static_cast<uint32_t>(cell_flag[cell[l]] != 0) << l;
   return lanes;
 }
 
@@ -312,7 +312,7 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
   if (active.changed != nullptr) {
     const uint32_t who = mask_lanes(hn::And(changed, mask));
     for (uint32_t l = 0; l < kLanes; ++l)
-      if (who >> l & 1) active.mark(particles.node[i + l]);
+      if (who >> l & 1) active.mark(particles.cell[i + l]);
   }
 }
 

@@ -14,23 +14,23 @@ namespace cuboct::emu {
 
 // Which particles to work on.
 struct Active {
-  // Flags by node, readable 8 bytes beyond; null: all are awake.
+  // Flags by cell, readable 8 bytes beyond; null: all are awake.
   const uint8_t* near = nullptr;   // pairs of its particles may be needed
   const uint8_t* awake = nullptr;  // its particles are updated
-  uint8_t* changed = nullptr;      // by node: set to 1 where a particle changed; null: nobody asks
+  uint8_t* changed = nullptr;      // by cell: set to 1 where a particle changed; null: nobody asks
 
-  // Particles of one node may be in the blocks of several threads.
-  void mark(uint32_t node) const {
-    std::atomic_ref<uint8_t>(changed[node]).store(1, std::memory_order_relaxed);
+  // Particles of one cell may be in the blocks of several threads.
+  void mark(uint32_t cell) const {
+    std::atomic_ref<uint8_t>(changed[cell]).store(1, std::memory_order_relaxed);
   }
 };
 
-// Whether one of the nodes of group g has a flag; may say yes too often.
-inline bool any_flag(const uint8_t* node_flag, const Particles& particles, uint32_t g) {
-  const auto [low, span] = particles.group_nodes[g];
+// Whether one of the cells of group g has a flag; may say yes too often.
+inline bool any_flag(const uint8_t* cell_flag, const Particles& particles, uint32_t g) {
+  const auto [low, span] = particles.group_cells[g];
   for (uint32_t n = 0; n < span; n += 8) {
     uint64_t eight;  // arrays of flags are readable 8 bytes beyond their ends
-    std::memcpy(&eight, node_flag + low + n, 8);
+    std::memcpy(&eight, cell_flag + low + n, 8);
     if (span - n < 8) eight &= (uint64_t{1} << 8 * (span - n)) - 1;
     if (eight != 0) return true;
   }
@@ -40,7 +40,7 @@ inline bool any_flag(const uint8_t* node_flag, const Particles& particles, uint3
 struct Kernels {
   std::string name;
   // Puts the entries with a pair within `reach` (P fractional bits) first in their groups, in the groups with
-  // a particle in a node of `only` (by node; null: all).
+  // a particle in a cell of `only` (by cell; null: all).
   void (*prune)(const Particles&, double reach, const uint8_t* only, Block&);
   // The sums of an edge of the block.
   void (*across)(const KernelRule&, const Particles&, const Active&, Edge&, Block&);

@@ -121,7 +121,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
         if (ghosts != nullptr) sums[l][a] += taken(ghosts[a * kGroup + l]);
       }
       const uint32_t p = g * kGroup + l;
-      if (!work || p >= block.end || (active.awake != nullptr && active.awake[particles.node[p]] == 0))
+      if (!work || p >= block.end || (active.awake != nullptr && active.awake[particles.cell[p]] == 0))
         continue;
       update_one(rule, particles, p, sums[l], active, block);
     }
@@ -160,7 +160,7 @@ void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const 
     speed2 += static_cast<double>(done.v[a]) * static_cast<double>(done.v[a]);
   }
   block.fastest2 = std::max(block.fastest2, speed2);
-  if (changed && active.changed != nullptr) active.mark(particles.node[p]);
+  if (changed && active.changed != nullptr) active.mark(particles.cell[p]);
   if (crossing.away != std::array<int8_t, 3>{}) block.crossings.push_back(crossing);
 }
 

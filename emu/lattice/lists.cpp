@@ -25,7 +25,7 @@ constexpr double kMostNear = 0.4;
 // A near list this much wider than need be is made anew everywhere.
 constexpr double kWaste = 0.7;
 // Entries with fewer pairs than this on average are not what storage in rows is for: particles are stored by
-// node then.
+// cell then.
 constexpr double kFewLanes = 2.5;
 
 }  // namespace
@@ -38,7 +38,7 @@ double LatticeEngine::Impl::reach_of_step() const {
 // Calls see(index) for each that may have moved since the far list was made.
 template <typename See>
 void LatticeEngine::Impl::for_each_moved(const See& see) const {
-  if (const NodeSet* moved = quiet_ ? quiet_->moved() : nullptr)
+  if (const CellSet* moved = quiet_ ? quiet_->moved() : nullptr)
     moved->for_each(rows_, [&](uint32_t n) {
       members_.for_each(n, [&](uint32_t id) {
         if (const uint32_t p = index_(id); p < stored_) see(p);
@@ -59,22 +59,22 @@ double LatticeEngine::Impl::displacement() const {
   return most;
 }
 
-// The span of nodes of each group.
-void LatticeEngine::Impl::find_group_nodes() {
-  particles_.group_nodes.assign(stored_ / kGroup + 1, {0, 0});  // an entry may overhang the last group
+// The span of cells of each group.
+void LatticeEngine::Impl::find_group_cells() {
+  particles_.group_cells.assign(stored_ / kGroup + 1, {0, 0});  // an entry may overhang the last group
   for_each_block([&](Block& block) {
     for (uint32_t base = block.begin; base < block.end; base += kGroup) {
-      const uint32_t* node = particles_.node + base;
-      const auto [low, high] = std::minmax_element(node, node + std::min(kGroup, block.end - base));
-      particles_.group_nodes[base / kGroup] = {*low, *high - *low + 1};
+      const uint32_t* cell = particles_.cell + base;
+      const auto [low, high] = std::minmax_element(cell, cell + std::min(kGroup, block.end - base));
+      particles_.group_cells[base / kGroup] = {*low, *high - *low + 1};
     }
   });
 }
 
-void LatticeEngine::Impl::widen_group_nodes(uint32_t index) {
-  auto& [low, span] = particles_.group_nodes[index / kGroup];
-  const uint32_t node = particles_.node[index], high = std::max(low + span - 1, node);
-  low = std::min(low, node);
+void LatticeEngine::Impl::widen_group_cells(uint32_t index) {
+  auto& [low, span] = particles_.group_cells[index / kGroup];
+  const uint32_t cell = particles_.cell[index], high = std::max(low + span - 1, cell);
+  low = std::min(low, cell);
   span = high - low + 1;
 }
 
@@ -94,7 +94,7 @@ void LatticeEngine::Impl::build() {
   if (shared())
     redistribute();
   else if (listed_ && !crystal())
-    store_by_node(), ++counters_.sorts;
+    store_by_cell(), ++counters_.sorts;
   {
     Bins bins(lattice_, members_, index_, particles_, snapshot_.position_frac, threads_);
     for_each_block([&](Block& block) {
@@ -109,7 +109,7 @@ void LatticeEngine::Impl::build() {
   near_floor_ = -1;
   if (quiet_) {
     quiet_->forget_moved();
-    find_group_nodes();
+    find_group_cells();
   }
 }
 
@@ -124,14 +124,14 @@ bool LatticeEngine::Impl::mend() {
   if (static_cast<double>(strays.size()) > kMostMended * count_) return false;
   for (const uint32_t p : strays)
     for (int a = 0; a < 3; ++a)  // beyond the seam of a ring: the shifts of its entries no longer hold
-      if (std::floor(particles_.x[a][p] * rule_.inverse_cell) != lattice_.cell(particles_.node[p])[a])
+      if (std::floor(particles_.x[a][p] * rule_.inverse_cell) != lattice_.cell(particles_.cell[p])[a])
         return false;
   for (const uint32_t p : strays) snapshot_.look(particles_, p);
   std::vector<uint8_t> only(stored_ / kGroup);
   Search search(lattice_, rows_, cutoff_ + skin_, members_, index_, snapshot_);
   for (const uint32_t p : strays)
     for (const auto& hit :
-         search.around(particles_.node[p], {snapshot_.at[0][p], snapshot_.at[1][p], snapshot_.at[2][p]}))
+         search.around(particles_.cell[p], {snapshot_.at[0][p], snapshot_.at[1][p], snapshot_.at[2][p]}))
       only[hit.particle / kGroup] = 1;
   for_each_block([&](Block& block) { mend_list(particles_, snapshot_, search, only, block); });
   ++counters_.list_mends;

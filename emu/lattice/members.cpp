@@ -12,35 +12,35 @@ Members::Members(const Lattice& lattice, int capacity, size_t particles)
       head_(lattice.size()),
       next_(particles),
       count_(lattice.size()),
-      node_(particles) {}
+      cell_(particles) {}
 
-bool Members::append(uint32_t node, uint32_t particle) {
-  node_[particle] = node;
-  if (count_[node] == capacity_) return false;
-  if (count_[node] == 0) {
-    head_[node] = particle;
+bool Members::append(uint32_t cell, uint32_t particle) {
+  cell_[particle] = cell;
+  if (count_[cell] == capacity_) return false;
+  if (count_[cell] == 0) {
+    head_[cell] = particle;
   } else {
-    uint32_t last = head_[node];
-    for (int k = 1; k < count_[node]; ++k) last = next_[last];
+    uint32_t last = head_[cell];
+    for (int k = 1; k < count_[cell]; ++k) last = next_[last];
     next_[last] = particle;
   }
-  ++count_[node];
+  ++count_[cell];
   return true;
 }
 
-uint32_t Members::slot_of(uint32_t node, uint32_t particle) const {
+uint32_t Members::slot_of(uint32_t cell, uint32_t particle) const {
   uint32_t slot = 0;
-  for (uint32_t p = head_[node]; p != particle; p = next_[p]) ++slot;
+  for (uint32_t p = head_[cell]; p != particle; p = next_[p]) ++slot;
   return slot;
 }
 
-void Members::remove(uint32_t node, uint32_t particle) {
-  --count_[node];
-  if (head_[node] == particle) {
-    head_[node] = next_[particle];
+void Members::remove(uint32_t cell, uint32_t particle) {
+  --count_[cell];
+  if (head_[cell] == particle) {
+    head_[cell] = next_[particle];
     return;
   }
-  uint32_t before = head_[node];
+  uint32_t before = head_[cell];
   while (next_[before] != particle) before = next_[before];
   next_[before] = next_[particle];
 }
@@ -48,9 +48,9 @@ void Members::remove(uint32_t node, uint32_t particle) {
 std::vector<Refused> Members::migrate(std::span<const Crossing> crossings, std::vector<Leaving>& leaving) {
   leaving.clear();
   for (const Crossing& c : crossings)
-    leaving.push_back({node_[c.particle], slot_of(node_[c.particle], c.particle), c.away});
+    leaving.push_back({cell_[c.particle], slot_of(cell_[c.particle], c.particle), c.away});
   std::sort(leaving.begin(), leaving.end(),
-            [](const auto& a, const auto& b) { return std::tie(a.node, a.slot) < std::tie(b.node, b.slot); });
+            [](const auto& a, const auto& b) { return std::tie(a.cell, a.slot) < std::tie(b.cell, b.slot); });
 
   struct Move {
     uint32_t to;
@@ -67,16 +67,16 @@ std::vector<Refused> Members::migrate(std::span<const Crossing> crossings, std::
     for (const Crossing& c : crossings) {
       const int way = c.away[axis];
       if (way == 0) continue;
-      const uint32_t from = node_[c.particle], to = lattice_->neighbour(from, 2 * axis + (way > 0));
+      const uint32_t from = cell_[c.particle], to = lattice_->neighbour(from, 2 * axis + (way > 0));
       moves.push_back({to, way < 0, slot_of(from, c.particle), c.particle});
     }
-    for (const Move& m : moves) remove(node_[m.particle], m.particle);
+    for (const Move& m : moves) remove(cell_[m.particle], m.particle);
     std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
       return std::tie(a.to, a.from_above, a.slot) < std::tie(b.to, b.from_above, b.slot);
     });
     for (const Move& m : moves) {
-      if (m.to == kNoNode) {
-        refused.push_back({fault(Fault::left_x), node_[m.particle], m.particle});
+      if (m.to == kNoCell) {
+        refused.push_back({fault(Fault::left_x), cell_[m.particle], m.particle});
         continue;
       }
       if (!append(m.to, m.particle)) refused.push_back({fault(Fault::full_x), m.to, m.particle});

@@ -57,9 +57,9 @@ void Migration::plan(std::span<uint32_t> count, std::span<const Leaving> leaving
   any_ = !leaving.empty();
   if (!any_) return;
   for (const Leaving& l : leaving) {
-    movers_.push_back({l.node, l.slot, l.away});
+    movers_.push_back({l.cell, l.slot, l.away});
     for (int axis = 0; axis < 3; ++axis)
-      if (l.away[at(axis)] != 0) set_leaving(l.node, axis);
+      if (l.away[at(axis)] != 0) set_leaving(l.cell, axis);
   }
   const auto before = [](const Mover& a, const Mover& b) {
     return std::tie(a.node, a.slot) < std::tie(b.node, b.slot);
@@ -88,7 +88,7 @@ void Migration::depart(int axis, std::span<uint32_t> count) {
       continue;
     }
     const uint32_t to = lattice_.neighbour(node, 2 * axis + (way > 0));
-    if (to == kNoNode) throw std::invalid_argument("a particle leaves the lattice");
+    if (to == kNoCell) throw std::invalid_argument("a particle leaves the lattice");
     m.away[at(axis)] = 0;
     ++gone;
     const auto last_beat = static_cast<int32_t>(m.slot + gone * static_cast<uint32_t>(beats_ - 1));

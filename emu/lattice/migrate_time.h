@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "emu/lattice/slots.h"
+#include "hw/bricks.h"
 #include "model/contract/lattice.h"
 
 namespace cuboct::emu {

@@ -71,7 +71,7 @@ void collect(const Particles& particles, const Block& block, uint32_t base, Sear
              uint32_t ghosts, Merger& inside, Merger& beside, Merger& beyond) {
   const uint32_t end = std::min(base + kGroup, block.end);
   for (uint32_t i = base; i < end; ++i)
-    for (const auto& [j, shift] : search.around(particles.node[i], at(i))) {
+    for (const auto& [j, shift] : search.around(particles.cell[i], at(i))) {
       const auto first = static_cast<int32_t>(j) - static_cast<int32_t>(i - base);
       if (j >= ghosts)
         beyond.add(first, shift, i - base);

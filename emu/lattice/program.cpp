@@ -24,9 +24,9 @@ class LatticeProgram : public EngineProgram {
     LatticeOptions& engine = choice_.engine;
     app.add_option("--threads", engine.threads, "Threads; one per core without it")
         ->check(CLI::Range(1, 4096));
-    app.add_flag("--no-quiescence", no_quiescence_, "Do not skip nodes at rest; no bit changes");
+    app.add_flag("--no-quiescence", no_quiescence_, "Do not skip cells at rest; no bit changes");
     app.add_option("--simd", engine.simd, "Vector units: avx512, avx2 or portable; the widest without it");
-    app.add_option("--cut", engine.cut, "How ranks share the nodes: bricks, or slabs along x, y or z")
+    app.add_option("--cut", engine.cut, "How ranks share the cells: bricks, or slabs along x, y or z")
         ->check(CLI::IsMember({"bricks", "x", "y", "z"}))
         ->capture_default_str();
   }

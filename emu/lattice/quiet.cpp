@@ -7,13 +7,13 @@
 namespace cuboct::emu {
 namespace {
 
-// Beyond this share of nodes awake, telling them apart costs more than it saves; look again after a pause.
+// Beyond this share of cells awake, telling them apart costs more than it saves; look again after a pause.
 constexpr double kMostAwake = 0.8;
 constexpr int kPause = 16;
 
 }  // namespace
 
-void NodeSet::survey(const Rows& rows) {
+void CellSet::survey(const Rows& rows) {
   for (uint32_t r = 0; r < row_.size(); ++r) {
     const auto [begin, end] = rows.row(r);
     uint8_t any = 0;
@@ -22,7 +22,7 @@ void NodeSet::survey(const Rows& rows) {
   }
 }
 
-void NodeSet::clear(const Rows& rows) {
+void CellSet::clear(const Rows& rows) {
   for (uint32_t r = 0; r < row_.size(); ++r) {
     if (row_[r] == 0) continue;
     const auto [begin, end] = rows.row(r);
@@ -31,7 +31,7 @@ void NodeSet::clear(const Rows& rows) {
   }
 }
 
-void NodeSet::add(const NodeSet& other, const Rows& rows) {
+void CellSet::add(const CellSet& other, const Rows& rows) {
   for (uint32_t r = 0; r < row_.size(); ++r) {
     if (other.row_[r] == 0) continue;
     row_[r] = 1;
@@ -40,7 +40,7 @@ void NodeSet::add(const NodeSet& other, const Rows& rows) {
   }
 }
 
-uint64_t NodeSet::count(const Rows& rows) const {
+uint64_t CellSet::count(const Rows& rows) const {
   uint64_t count = 0;
   for (uint32_t r = 0; r < row_.size(); ++r)
     if (row_[r] != 0)
@@ -48,7 +48,7 @@ uint64_t NodeSet::count(const Rows& rows) const {
   return count;
 }
 
-void NodeSet::spread_x(const NodeSet& other, const Lattice& lattice, const Rows& rows) {
+void CellSet::spread_x(const CellSet& other, const Lattice& lattice, const Rows& rows) {
   for (uint32_t r = 0; r < row_.size(); ++r) {
     if (other.row_[r] == 0) continue;
     row_[r] = 1;
@@ -60,25 +60,25 @@ void NodeSet::spread_x(const NodeSet& other, const Lattice& lattice, const Rows&
       for (uint32_t n = begin + 1; n < end; ++n) to[n] |= from[n - 1];
       for (uint32_t n = begin; n + 1 < end; ++n) to[n] |= from[n + 1];
       const uint32_t before = lattice.neighbour(begin, 0), behind = lattice.neighbour(end - 1, 1);
-      if (before != kNoNode) to[before] |= from[begin];  // around a ring
-      if (behind != kNoNode) to[behind] |= from[end - 1];
+      if (before != kNoCell) to[before] |= from[begin];  // around a ring
+      if (behind != kNoCell) to[behind] |= from[end - 1];
       continue;
     }
     for (uint32_t n = begin; n < end; ++n) {
       if (from[n] == 0) continue;
       to[n] = 1;
       for (const int face : {0, 1})
-        if (const uint32_t beside = lattice.neighbour(n, face); beside != kNoNode) to[beside] = 1;
+        if (const uint32_t beside = lattice.neighbour(n, face); beside != kNoCell) to[beside] = 1;
     }
   }
 }
 
 // Adds `other` moved by (0, dy, dz).
-void NodeSet::spread_rows(const NodeSet& other, int dy, int dz, const Lattice& lattice, const Rows& rows) {
+void CellSet::spread_rows(const CellSet& other, int dy, int dz, const Lattice& lattice, const Rows& rows) {
   for (uint32_t r = 0; r < row_.size(); ++r) {
     if (other.row_[r] == 0) continue;
     const uint32_t t = rows.near(r, dy, dz);
-    if (t == kNoNode) continue;
+    if (t == kNoCell) continue;
     row_[t] = 1;
     const auto [begin, end] = rows.row(r);
     if (rows.whole(r) && rows.whole(t)) {
@@ -94,16 +94,16 @@ void NodeSet::spread_rows(const NodeSet& other, int dy, int dz, const Lattice& l
     for (uint32_t n = begin; n < end; ++n) {
       if (other.flag_[n] == 0) continue;
       const int32_t x = lattice.cell(n)[0];
-      const auto [at, behind] = rows.nodes(t, x, x);
+      const auto [at, behind] = rows.cells(t, x, x);
       if (at != behind) flag_[at] = 1;
     }
   }
 }
 
-void NodeSet::dilate(const NodeSet& other, const Lattice& lattice, const Rows& rows) {
-  thread_local NodeSet x, xy;  // empty between calls: the next one may be of another lattice
-  for (NodeSet* set : {&x, &xy})
-    if (set->flag_.size() != flag_.size() || set->row_.size() != row_.size()) *set = NodeSet(lattice, rows);
+void CellSet::dilate(const CellSet& other, const Lattice& lattice, const Rows& rows) {
+  thread_local CellSet x, xy;  // empty between calls: the next one may be of another lattice
+  for (CellSet* set : {&x, &xy})
+    if (set->flag_.size() != flag_.size() || set->row_.size() != row_.size()) *set = CellSet(lattice, rows);
   clear(rows);
   x.spread_x(other, lattice, rows);
   for (const int dy : {-1, 0, 1}) xy.spread_rows(x, dy, 0, lattice, rows);
@@ -123,7 +123,7 @@ Quiet::Quiet(const Lattice& lattice, const Rows& rows)
       spare_(lattice, rows) {}
 
 Active Quiet::next() {
-  quiet_nodes_ = 0;
+  quiet_cells_ = 0;
   telling_ = true;
   if (!told_) {
     if (pause_ > 0) --pause_;
@@ -133,7 +133,7 @@ Active Quiet::next() {
   awake_.dilate(changed_, *lattice_, *rows_);
   changed_.clear(*rows_);
   const uint64_t awake = awake_.count(*rows_);
-  quiet_nodes_ = lattice_->size() - awake;
+  quiet_cells_ = lattice_->size() - awake;
   if (static_cast<double>(awake) > kMostAwake * lattice_->size()) {
     pause_ = kPause;
     telling_ = false;
@@ -160,7 +160,7 @@ const uint8_t* Quiet::take_touched() {
   touched_all_ = false;
   if (!all) {
     spare_.dilate(touched_, *lattice_, *rows_);
-    NodeSet twice = spare_;
+    CellSet twice = spare_;
     twice.dilate(spare_, *lattice_, *rows_);
     spare_.dilate(twice, *lattice_, *rows_);
   }

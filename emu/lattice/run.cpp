@@ -48,7 +48,7 @@ class Runner : public StateEngine {
   std::optional<TimingModel> timing_;
   bool failed_ = false;
   std::array<uint64_t, 3> earlier_{};  // counts of the runs before this one, up to the checkpoint
-  NodeSlots slots_;
+  CellSlots slots_;
   std::vector<PhaseSpan> spans_;
 };
 

@@ -38,7 +38,7 @@ Rows::Rows(const Lattice& lattice) : lattice_(lattice), row_of_(lattice.size()) 
         const auto at =
             index.find({wrapped(c[2] + dz, period[2]).first, wrapped(c[1] + dy, period[1]).first});
         near_[r][static_cast<size_t>((dz + kReach) * (2 * kReach + 1) + dy + kReach)] =
-            at == index.end() ? kNoNode : at->second;
+            at == index.end() ? kNoCell : at->second;
       }
   }
 }
@@ -48,7 +48,7 @@ bool Rows::whole(uint32_t row) const {
   return lattice_.cell(r.end - 1)[0] - lattice_.cell(r.begin)[0] + 1 == static_cast<int32_t>(r.end - r.begin);
 }
 
-Rows::Range Rows::nodes(uint32_t row, int32_t low, int32_t high) const {
+Rows::Range Rows::cells(uint32_t row, int32_t low, int32_t high) const {
   const Range& r = rows_[row];
   const int32_t x0 = lattice_.cell(r.begin)[0], x1 = lattice_.cell(r.end - 1)[0];
   if (low > x1 || high < x0) return {r.begin, r.begin};
@@ -90,10 +90,10 @@ Search::Search(const Lattice& lattice, const Rows& rows, double reach, const Mem
   snapshot_ = &snapshot;
 }
 
-void Search::add(Rows::Range nodes, const std::array<int32_t, 3>& at, uint8_t shift) {
-  if (nodes.begin == nodes.end) return;
+void Search::add(Rows::Range cells, const std::array<int32_t, 3>& at, uint8_t shift) {
+  if (cells.begin == cells.end) return;
   if (bins_ == nullptr) {
-    for (uint32_t n = nodes.begin; n < nodes.end; ++n)
+    for (uint32_t n = cells.begin; n < cells.end; ++n)
       members_->for_each(n, [&](uint32_t id) {
         const uint32_t p = (*index_)(id);
         float r2 = 0;
@@ -106,7 +106,7 @@ void Search::add(Rows::Range nodes, const std::array<int32_t, 3>& at, uint8_t sh
       });
     return;
   }
-  const uint32_t begin = bins_->first[nodes.begin], count = bins_->first[nodes.end] - begin;
+  const uint32_t begin = bins_->first[cells.begin], count = bins_->first[cells.end] - begin;
   if (count == 0) return;
   found_.resize(std::max<size_t>(found_.size(), count + 16));
   const uint32_t n = within(&bins_->at[0][begin], &bins_->at[1][begin], &bins_->at[2][begin], count,
@@ -114,9 +114,9 @@ void Search::add(Rows::Range nodes, const std::array<int32_t, 3>& at, uint8_t sh
   for (uint32_t k = 0; k < n; ++k) hits_.push_back({bins_->particle[begin + found_[k]], shift});
 }
 
-const std::vector<Search::Hit>& Search::around(uint32_t node, const std::array<int32_t, 3>& at) {
+const std::vector<Search::Hit>& Search::around(uint32_t cell, const std::array<int32_t, 3>& at) {
   hits_.clear();
-  const Cell& cell = lattice_.cell(node);
+  const Cell& centre = lattice_.cell(cell);
   const Cell& period = lattice_.period();
   // The cells that [x - reach, x + reach] touches, relative to the particle's own.
   std::array<int, 3> low, high;
@@ -125,22 +125,23 @@ const std::vector<Search::Hit>& Search::around(uint32_t node, const std::array<i
     low[a] = (local - reach_) >> kCoarse;
     high[a] = (local + reach_) >> kCoarse;
   }
-  const uint32_t row = rows_.row_of(node);
+  const uint32_t row = rows_.row_of(cell);
   for (int dz = low[2]; dz <= high[2]; ++dz) {
-    const int image_z = wrapped(cell[2] + dz, period[2]).second;
+    const int image_z = wrapped(centre[2] + dz, period[2]).second;
     for (int dy = low[1]; dy <= high[1]; ++dy) {
       const uint32_t other = rows_.near(row, dy, dz);
-      if (other == kNoNode) continue;
-      const int image_y = wrapped(cell[1] + dy, period[1]).second;
+      if (other == kNoCell) continue;
+      const int image_y = wrapped(centre[1] + dy, period[1]).second;
       // Images of the ring along x are stretches of their own.
       for (int image_x = period[0] > 0 ? -1 : 0; image_x <= (period[0] > 0 ? 1 : 0); ++image_x) {
-        const int32_t a = cell[0] + low[0] - image_x * period[0], b = cell[0] + high[0] - image_x * period[0];
+        const int32_t a = centre[0] + low[0] - image_x * period[0],
+                      b = centre[0] + high[0] - image_x * period[0];
         if (period[0] > 0 && (b < 0 || a >= period[0])) continue;
         const auto moved = [](int32_t value, int image, int32_t cells) {
           return static_cast<int32_t>(static_cast<uint32_t>(value) -
                                       (static_cast<uint32_t>(image * cells) << kCoarse));
         };
-        add(rows_.nodes(other, a, b),
+        add(rows_.cells(other, a, b),
             {moved(at[0], image_x, period[0]), moved(at[1], image_y, period[1]),
              moved(at[2], image_z, period[2])},
             static_cast<uint8_t>(image_x + 1 + 3 * (image_y + 1) + 9 * (image_z + 1)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Finds the particles around a point, over the nodes' rows.
+// Finds the particles around a point, over the cells' rows.
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@
 
 namespace cuboct::emu {
 
-// Neighbours in x, y and z of a row of nodes: nodes of one (y, z) stand one after another in a Lattice, so
+// Neighbours in x, y and z of a row of cells: cells of one (y, z) stand one after another in a Lattice, so
 // the particles of a stretch of a row are a stretch of an array.
 class Rows {
  public:
   explicit Rows(const Lattice& lattice);
 
   static constexpr int kReach = 2;  // cells
-  // The row `dy`, `dz` beside that of `node`, and the node range in it of x from `low` to `high`.
-  uint32_t row_of(uint32_t node) const { return row_of_[node]; }
-  // kNoNode where there is none.
+  // The row `dy`, `dz` beside that of `cell`, and the cell range in it of x from `low` to `high`.
+  uint32_t row_of(uint32_t cell) const { return row_of_[cell]; }
+  // kNoCell where there is none.
   uint32_t near(uint32_t row, int dy, int dz) const {
     return near_[row][static_cast<size_t>((dz + kReach) * (2 * kReach + 1) + dy + kReach)];
   }
@@ -29,9 +29,9 @@ class Rows {
   };
   uint32_t count() const { return static_cast<uint32_t>(rows_.size()); }
   Range row(uint32_t row) const { return rows_[row]; }
-  // Whether its nodes stand without a gap.
+  // Whether its cells stand without a gap.
   bool whole(uint32_t row) const;
-  Range nodes(uint32_t row, int32_t low, int32_t high) const;
+  Range cells(uint32_t row, int32_t low, int32_t high) const;
 
  private:
   const Lattice& lattice_;
@@ -41,7 +41,7 @@ class Rows {
 };
 
 // Finds the particles within `reach` cells (at most Rows::kReach) of a point: in the bins, or, where only a
-// few points are looked at, among the members of the nodes as the snapshot has them.
+// few points are looked at, among the members of the cells as the snapshot has them.
 class Search {
  public:
   Search(const Lattice& lattice, const Rows& rows, double reach, const Bins& bins);
@@ -51,12 +51,12 @@ class Search {
     uint32_t particle;
     uint8_t shift;  // as in Entry
   };
-  // Around the point `at` of the cell of `node`. The hits are valid until the next call.
-  const std::vector<Hit>& around(uint32_t node, const std::array<int32_t, 3>& at);
+  // Around the point `at` of `cell`. The hits are valid until the next call.
+  const std::vector<Hit>& around(uint32_t cell, const std::array<int32_t, 3>& at);
 
  private:
   Search(const Lattice& lattice, const Rows& rows, double reach);
-  void add(Rows::Range nodes, const std::array<int32_t, 3>& at, uint8_t shift);
+  void add(Rows::Range cells, const std::array<int32_t, 3>& at, uint8_t shift);
   const Lattice& lattice_;
   const Rows& rows_;
   const Bins* bins_ = nullptr;

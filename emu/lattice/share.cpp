@@ -21,7 +21,7 @@ struct Moving {
   double x[3], v[3], u[3];
 };
 
-// Pairs reach no farther than two nodes, also from where particles stood when the far list was made.
+// Pairs reach no farther than two cells, also from where particles stood when the far list was made.
 constexpr int kGhostHops = 2;
 
 // In a block of so many particles of a cube of millions one pair in 15 goes beyond it.
@@ -73,7 +73,7 @@ void LatticeEngine::Impl::wrap() {
   if (lattice_.period() == Cell{}) return;
   for_each_block([&](Block& block) {
     for (uint32_t p = block.begin; p < block.end; ++p) {
-      const Cell& cell = lattice_.cell(members_.nodes()[particles_.id_of(p)]);
+      const Cell& cell = lattice_.cell(members_.cells()[particles_.id_of(p)]);
       for (int a = 0; a < 3; ++a) {
         double& x = particles_.x[a][p];
         x += (cell[a] - std::floor(x * rule_.inverse_cell)) * rule_.cell;
@@ -82,9 +82,9 @@ void LatticeEngine::Impl::wrap() {
   });
 }
 
-// Where particles no longer stand in rows they are stored node by node, so that neighbours stay near in
+// Where particles no longer stand in rows they are stored cell by cell, so that neighbours stay near in
 // memory.
-void LatticeEngine::Impl::store_by_node() {
+void LatticeEngine::Impl::store_by_cell() {
   std::vector<uint32_t> from;  // by new index, the old one
   from.reserve(count_);
   for (uint32_t n = 0; n < lattice_.size(); ++n)
@@ -106,19 +106,19 @@ void LatticeEngine::Impl::store_by_node() {
   reorder(particles_.id);
   reorder(particles_.type);
   index_.by_id.resize(count_);
-  if (node_.size() == 0) node_ = PaddedArray<uint32_t>(stored_);
+  if (cell_.size() == 0) cell_ = PaddedArray<uint32_t>(stored_);
   for (uint32_t k = 0; k < count_; ++k) {
     index_.by_id[particles_.id[k]] = k;
-    node_[k] = members_.nodes()[particles_.id[k]];
+    cell_[k] = members_.cells()[particles_.id[k]];
   }
-  particles_.node = node_.data();
+  particles_.cell = cell_.data();
 }
 
-void LatticeEngine::Impl::own_nodes() {
+void LatticeEngine::Impl::own_cells() {
   const int ranks = options_.ranks->size();
-  owner_ = cut_nodes(lattice_, members_.counts(), ranks, options_.cut);
+  owner_ = cut_cells(lattice_, members_.counts(), ranks, options_.cut);
   for (int r = 0; r < ranks; ++r) {
-    NodeSet own(lattice_, rows_), reach(lattice_, rows_);
+    CellSet own(lattice_, rows_), reach(lattice_, rows_);
     for (uint32_t n = 0; n < lattice_.size(); ++n) own.flags()[n] = owner_[n] == r;
     own.survey(rows_);
     for (int hop = 0; hop < kGhostHops; ++hop) {
@@ -130,14 +130,14 @@ void LatticeEngine::Impl::own_nodes() {
   peers_.resize(static_cast<size_t>(ranks));
 }
 
-// Particles go to the ranks that own their nodes; those that others see as ghosts are stored last.
+// Particles go to the ranks that own their cells; those that others see as ghosts are stored last.
 void LatticeEngine::Impl::redistribute() {
   Ranks& ranks = *options_.ranks;
   const int me = ranks.rank();
   std::vector<Bytes> to(peers_.size());
   for_each_index([&](uint32_t p) {
     const uint32_t id = particles_.id_of(p);
-    const int owner = owner_[members_.nodes()[id]];
+    const int owner = owner_[members_.cells()[id]];
     if (owner == me) return;
     Moving moving{id, particles_.type[p], {}, {}, {}, {}};
     for (int a = 0; a < 3; ++a) {
@@ -158,11 +158,11 @@ void LatticeEngine::Impl::redistribute() {
       seen = seen || (static_cast<int>(q) != me && reach_[q].flags()[n] != 0);
     members_.for_each(n, [&](uint32_t id) { (seen ? rim : core).push_back(id); });
   }
-  if (!listed_ || crystal())  // else they stay in the order of nodes
+  if (!listed_ || crystal())  // else they stay in the order of cells
     for (auto* ids : {&rim, &core}) std::sort(ids->begin(), ids->end());
   const uint32_t core_room = groups_of(core.size()) * kGroup, rim_room = groups_of(rim.size()) * kGroup;
 
-  // By rank, the ids of ghosts: those of its nodes that this rank may need.
+  // By rank, the ids of ghosts: those of its cells that this rank may need.
   std::vector<std::vector<uint32_t>> ghosts(peers_.size()), given(peers_.size());
   for (uint32_t n = 0; n < lattice_.size(); ++n)
     for (size_t q = 0; q < peers_.size(); ++q) {
@@ -184,14 +184,14 @@ void LatticeEngine::Impl::redistribute() {
   particles_.shift = old.shift;
   const Index old_index = std::move(index_);
   make_room(core_room + rim_room, static_cast<uint32_t>(ghost_count));
-  node_ = PaddedArray<uint32_t>(snapshot_.room);
-  particles_.node = node_.data();
+  cell_ = PaddedArray<uint32_t>(snapshot_.room);
+  particles_.cell = cell_.data();
   index_.by_id.assign(count_, kNoParticle);
   const auto place = [&](const std::vector<uint32_t>& ids, uint32_t begin) {
     for (const uint32_t id : ids) {
       index_.by_id[id] = begin;
       particles_.id[begin] = id;
-      node_[begin] = members_.nodes()[id];
+      cell_[begin] = members_.cells()[id];
       if (const uint32_t p = old_index(id); p != kNoParticle && old.id[p] == id) {
         particles_.type[begin] = old.type[p];
         for (int a = 0; a < 3; ++a) {
@@ -236,7 +236,7 @@ void LatticeEngine::Impl::redistribute() {
     for (const uint32_t id : ghosts[q]) {
       index_.by_id[id] = at;
       particles_.id[at] = id;
-      node_[at++] = members_.nodes()[id];
+      cell_[at++] = members_.cells()[id];
     }
   }
   const std::vector<Bytes> their_types = ranks.exchange(types);

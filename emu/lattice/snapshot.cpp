@@ -47,7 +47,7 @@ double Snapshot::displacement(const Particles& particles, uint32_t begin, uint32
 bool Snapshot::astray(const Lattice& lattice, const Particles& particles, uint32_t particle,
                       double threshold) const {
   static_assert(kCoarse == 16);  // a place keeps 16 bits of its cell
-  const Cell& cell = lattice.cell(particles.node[particle]);
+  const Cell& cell = lattice.cell(particles.cell[particle]);
   for (int a = 0; a < 3; ++a)
     if (at[a][particle] >> kCoarse != static_cast<int16_t>(cell[a])) return true;
   return moved(particles, particle) > threshold;
@@ -56,8 +56,8 @@ bool Snapshot::astray(const Lattice& lattice, const Particles& particles, uint32
 Bins::Bins(const Lattice& lattice, const Members& members, const Index& index, const Particles& particles,
            int position_frac, int threads)
     : first(lattice.size() + 1) {
-  const auto for_each_here = [&](uint32_t node, const auto& see) {
-    members.for_each(node, [&](uint32_t id) {
+  const auto for_each_here = [&](uint32_t cell, const auto& see) {
+    members.for_each(cell, [&](uint32_t id) {
       if (const uint32_t p = index(id); p != kNoParticle) see(p);
     });
   };

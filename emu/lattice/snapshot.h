@@ -30,8 +30,8 @@ struct Snapshot {
   // The distance of a particle from its place here, in cells, rounded up; the largest of [begin, end).
   double moved(const Particles& particles, uint32_t particle) const;
   double displacement(const Particles& particles, uint32_t begin, uint32_t end) const;
-  // Whether a particle is farther than `threshold` cells from its place here, or that is not in the cell of
-  // its node.
+  // Whether a particle is farther than `threshold` cells from its place here, or that place is not in the
+  // particle's cell.
   bool astray(const Lattice& lattice, const Particles& particles, uint32_t particle, double threshold) const;
   void look(const Particles& particles, uint32_t particle);
 
@@ -45,11 +45,11 @@ struct Index {
   uint32_t operator()(uint32_t id) const { return by_id.empty() ? id : by_id[id]; }
 };
 
-// The particles stored here sorted by node and slot: those of a stretch of nodes are a stretch of arrays.
+// The particles stored here sorted by cell and slot: those of a stretch of cells are a stretch of arrays.
 struct Bins {
   Bins(const Lattice& lattice, const Members& members, const Index& index, const Particles& particles,
        int position_frac, int threads);
-  std::vector<uint32_t> first;  // nodes + 1
+  std::vector<uint32_t> first;  // cells + 1
   std::array<PaddedArray<int32_t>, 3> at;
   PaddedArray<uint32_t> particle;
 

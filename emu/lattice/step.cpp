@@ -20,9 +20,9 @@ bool is_full(Fault fault) {
 
 }  // namespace
 
-RunError LatticeEngine::Impl::error(Fault fault, uint32_t node, uint32_t id, int64_t number) const {
-  const Cell& c = lattice_.cell(node);
-  return {fault, step_, node, id, number, fmt::format(" at cell ({}, {}, {})", c[0], c[1], c[2])};
+RunError LatticeEngine::Impl::error(Fault fault, uint32_t cell, uint32_t id, int64_t number) const {
+  const Cell& c = lattice_.cell(cell);
+  return {fault, step_, cell, id, number, fmt::format(" at ({}, {}, {})", c[0], c[1], c[2])};
 }
 
 void LatticeEngine::Impl::fail_if_any(std::vector<RunError> faults) const {
@@ -35,19 +35,19 @@ void LatticeEngine::Impl::fail_if_any(std::vector<RunError> faults) const {
 void LatticeEngine::Impl::fail_if_any(std::vector<Found> Block::*faults) const {
   struct Told {
     Fault fault;
-    uint32_t node, id;
+    uint32_t cell, id;
     int64_t number;
   };
   Bytes mine;
   for (const Block& block : blocks_)
     for (const Found& f : block.*faults) {
       const uint32_t id = particles_.id_of(f.particle);
-      append(mine, Told{f.fault, members_.nodes()[id], id, f.number});
+      append(mine, Told{f.fault, members_.cells()[id], id, f.number});
     }
   const Bytes all = shared() ? options_.ranks->all(mine) : mine;
   std::vector<RunError> errors;
   for_each_of<Told>(
-      all, [&](const Told& told) { errors.push_back(error(told.fault, told.node, told.id, told.number)); });
+      all, [&](const Told& told) { errors.push_back(error(told.fault, told.cell, told.id, told.number)); });
   fail_if_any(errors);
 }
 
@@ -106,15 +106,15 @@ void LatticeEngine::Impl::step() {
   const std::vector<Crossing> crossings = all_crossings();
   std::vector<RunError> faults;
   for (const Refused& r : members_.migrate(crossings, leaving_))
-    faults.push_back(error(r.fault, r.node, r.particle, is_full(r.fault) ? plan_.arch.capacity : 0));
+    faults.push_back(error(r.fault, r.cell, r.particle, is_full(r.fault) ? plan_.arch.capacity : 0));
   fail_if_any(faults);
   for (const Crossing& c : crossings) {
     const uint32_t index = index_(c.particle);
     if (index == kNoParticle || index >= stored_) continue;
-    if (node_.size() > 0) node_[index] = members_.nodes()[c.particle];
+    if (cell_.size() > 0) cell_[index] = members_.cells()[c.particle];
     if (!quiet_) continue;
-    quiet_->changed(particles_.node[index]);
-    widen_group_nodes(index);
+    quiet_->changed(particles_.cell[index]);
+    widen_group_cells(index);
   }
   if (quiet_) quiet_->done(options_.ranks);
 
@@ -122,7 +122,7 @@ void LatticeEngine::Impl::step() {
   moved_ += reach_of_step();
   near_moved_ += reach_of_step();
   counters_.node_steps += lattice_.size();
-  if (quiet_) counters_.quiet_node_steps += quiet_->quiet_nodes();
+  if (quiet_) counters_.quiet_node_steps += quiet_->quiet_cells();
   ++step_;
 }
 

@@ -41,16 +41,16 @@ struct Scratch {
 struct TimingModel::Impl {
   Impl(const Plan& plan, int threads);
 
-  void begin(const NodeSlots& slots, std::span<const Leaving> leaving);
+  void begin(const CellSlots& slots, std::span<const Leaving> leaving);
   // One node's part of a step, pass by pass (take_particles once per axis): each pass needs of the neighbours
   // what they did in the passes before.
-  void exchange_x(const NodeSlots& slots, uint32_t n);
+  void exchange_x(const CellSlots& slots, uint32_t n);
   void exchange_y(uint32_t n);
   void exchange_z_to_update(uint32_t n, Scratch& scratch);
   void take_particles(int axis, uint32_t n);
   void finish(uint32_t n, std::span<PhaseSpan> spans);
 
-  void place(const NodeSlots& slots, uint32_t n);
+  void place(const CellSlots& slots, uint32_t n);
   bool still(uint32_t n) const;
   int64_t stream(int64_t records) const { return records == 0 ? 1 : records * halo_beats_; }
   int64_t exchanged(int axis, uint32_t n) const;
@@ -115,7 +115,7 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
   for (uint32_t n = 0; n < nodes_; ++n)
     for (int f = 0; f < kFaces; ++f) {
       const uint32_t other = plan.lattice.neighbour(n, f);
-      neighbour_[n][at(f)] = other == kNoNode ? nodes_ : other;
+      neighbour_[n][at(f)] = other == kNoCell ? nodes_ : other;
     }
   start_[nodes_] = kLongAgo;
   for (auto& cycles : end_) cycles.resize(nodes_);
@@ -125,7 +125,7 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
     scratch_.push_back({HitScratch(plan.arch.capacity, plan.arch.filter_lanes), {}});
 }
 
-void TimingModel::Impl::begin(const NodeSlots& slots, std::span<const Leaving> leaving) {
+void TimingModel::Impl::begin(const CellSlots& slots, std::span<const Leaving> leaving) {
   if (slots.first.size() != nodes_ + 1) throw std::invalid_argument("slots of another lattice");
   const size_t particles = slots.first[nodes_];
   for (const auto& x : slots.x)
@@ -133,12 +133,12 @@ void TimingModel::Impl::begin(const NodeSlots& slots, std::span<const Leaving> l
   for (uint32_t n = 0; n < nodes_; ++n) {
     const uint32_t count = slots.first[n + 1] - slots.first[n];
     if (count > static_cast<uint32_t>(plan_.arch.capacity))
-      throw std::invalid_argument("a node holds more than its capacity");
+      throw std::invalid_argument("a cell holds more than its capacity");
     if (steps_ > 0 && count != final_count_[n])
-      throw std::invalid_argument("a node does not hold what the step before left there");
+      throw std::invalid_argument("a cell does not hold what the step before left there");
   }
   for (const Leaving& l : leaving)
-    if (l.node >= nodes_ || l.slot >= slots.first[l.node + 1] - slots.first[l.node])
+    if (l.cell >= nodes_ || l.slot >= slots.first[l.cell + 1] - slots.first[l.cell])
       throw std::invalid_argument("no such particle leaves");
 
   std::swap(x_, old_x_);
@@ -155,7 +155,7 @@ void TimingModel::Impl::begin(const NodeSlots& slots, std::span<const Leaving> l
 }
 
 // Takes the node's particles, and notes whether they are where they were.
-void TimingModel::Impl::place(const NodeSlots& slots, uint32_t n) {
+void TimingModel::Impl::place(const CellSlots& slots, uint32_t n) {
   const uint32_t first = first_[n], count = count_[n], old = old_first_[n];
   bool moved = changed_[n] != 0;
   for (size_t a = 0; a < 3; ++a) {
@@ -174,7 +174,7 @@ int64_t TimingModel::Impl::exchanged(int axis, uint32_t n) const {
       {end[n] + kSent, end[near[at(2 * axis)]] + received_, end[near[at(2 * axis + 1)]] + received_});
 }
 
-void TimingModel::Impl::exchange_x(const NodeSlots& slots, uint32_t n) {
+void TimingModel::Impl::exchange_x(const CellSlots& slots, uint32_t n) {
   place(slots, n);
   const uint32_t own = count_[n], low = neighbour_[n][0], high = neighbour_[n][1];
   sent_y_[n] = own + count_[low] + count_[high];
@@ -255,7 +255,7 @@ TimingModel::TimingModel(const Plan& plan, int threads) {
 }
 TimingModel::~TimingModel() = default;
 
-void TimingModel::step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
+void TimingModel::step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
   if (brick_) return brick_->step(slots, leaving, spans);
   Impl& m = *impl_;
   if (!spans.empty() && spans.size() != size_t{m.nodes_} * kPhases)
@@ -295,7 +295,7 @@ void TimingModel::step(const NodeSlots& slots, std::span<const Leaving> leaving,
   }
 }
 
-uint64_t TimingModel::cycles(const NodeSlots& slots) const {
+uint64_t TimingModel::cycles(const CellSlots& slots) const {
   if (brick_) return brick_->cycles(slots);
   const Impl& m = *impl_;
   if (slots.first.size() != m.nodes_ + 1) throw std::invalid_argument("slots of another lattice");

@@ -30,13 +30,13 @@ class TimingModel {
   // their cell in it, in any order. The step must be one that ends without a fault. spans[node * kPhases +
   // phase], of physical nodes, gets first and last cycle, cycle 0 being the first of the run; empty where
   // nobody wants them. Throws std::invalid_argument, and is of no use after, where sizes do not fit the plan,
-  // a node holds more than its capacity or not what the step before left there, or a particle leaves the
+  // a cell holds more than its capacity or not what the step before left there, or a particle leaves the
   // lattice.
-  void step(const NodeSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans);
+  void step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans);
 
   // Cycles of the run if it ends after the steps so far, DUMP and the last node's first cycle of IDLE
   // included: what the cycle-accurate engines count. `slots` are the particles then.
-  uint64_t cycles(const NodeSlots& slots) const;
+  uint64_t cycles(const CellSlots& slots) const;
 
   // All that later steps depend on: the cycle, by node, at which the next step begins.
   std::vector<uint64_t> starts() const;

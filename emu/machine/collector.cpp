@@ -12,9 +12,9 @@
 namespace cuboct::emu {
 namespace {
 
-std::string place_of(const Lattice& lattice, uint32_t node) {
-  const Cell& c = lattice.cell(node);
-  return fmt::format(" at cell ({}, {}, {})", c[0], c[1], c[2]);
+std::string place_of(const Lattice& lattice, uint32_t cell) {
+  const Cell& c = lattice.cell(cell);
+  return fmt::format(" at ({}, {}, {})", c[0], c[1], c[2]);
 }
 
 void sort_by_id(State& state) {
@@ -40,19 +40,19 @@ std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initia
   std::vector<std::vector<Particle>> cells(plan.lattice.size());
   const Particle* first = nullptr;  // that found its cell full; `initial` ascends in id
   for (const Particle& p : initial.particles) {
-    if (static_cast<int>(cells[p.node].size()) < plan.arch.capacity)
-      cells[p.node].push_back(p);
+    if (static_cast<int>(cells[p.cell].size()) < plan.arch.capacity)
+      cells[p.cell].push_back(p);
     else if (first == nullptr)
       first = &p;
   }
   if (first != nullptr)
-    throw RunError(Fault::full_x, initial.step, first->node, first->id, plan.arch.capacity,
-                   place_of(plan.lattice, first->node));
+    throw RunError(Fault::full_x, initial.step, first->cell, first->id, plan.arch.capacity,
+                   place_of(plan.lattice, first->cell));
   if (plan.bricks.single()) return cells;
   std::vector<std::vector<Particle>> nodes(plan.nodes());
   for (uint32_t n = 0; n < plan.nodes(); ++n)
     for (uint32_t local = 0; local < cells_of(plan.bricks.shape()); ++local)
-      if (const uint32_t cell = plan.cell_of(n, local); cell != kNoNode)
+      if (const uint32_t cell = plan.cell_of(n, local); cell != kNoCell)
         nodes[n].insert(nodes[n].end(), cells[cell].begin(), cells[cell].end());
   return nodes;
 }
@@ -70,7 +70,7 @@ Bits load_word(const Plan& plan, const Particle& particle) {
 void load(const Plan& plan, const std::vector<Particle>& particles, size_t k, Control& control) {
   control.load_valid = k < particles.size();
   control.load_data = control.load_valid ? load_word(plan, particles[k]) : Bits{};
-  control.load_cell = control.load_valid ? plan.local_of(particles[k].node) : 0;
+  control.load_cell = control.load_valid ? plan.local_of(particles[k].cell) : 0;
 }
 
 Collector::Collector(const Plan& plan, const RunOptions& options)
@@ -95,7 +95,7 @@ Collector::Snapshot& Collector::snapshot(uint64_t step) {
 // The lattice's cell; a brick's first one where a damaged word names a cell that is not there.
 uint32_t Collector::cell_of(uint32_t node, uint32_t local) const {
   const uint32_t cell = plan_.cell_of(node, local);
-  return cell != kNoNode ? cell : plan_.first_cell_of(node);
+  return cell != kNoCell ? cell : plan_.first_cell_of(node);
 }
 
 void Collector::observe(uint32_t node, const NodeOutputs& out) {
@@ -107,7 +107,7 @@ void Collector::observe(uint32_t node, const NodeOutputs& out) {
   Particle p;
   p.id = slot.id;
   p.type = slot.body.type;
-  p.node = cell_of(node, out.observe_cell);
+  p.cell = cell_of(node, out.observe_cell);
   p.x = position_of(plan_.rule.widths, slot);
   p.v = slot.body.v;
   p.u = slot.u;
@@ -117,7 +117,7 @@ void Collector::observe(uint32_t node, const NodeOutputs& out) {
   if (options_.keep_order) {
     if (order_.size() <= step)
       order_.resize(step + 1, std::vector<std::vector<uint32_t>>(plan_.lattice.size()));
-    order_[step][p.node].push_back(p.id);
+    order_[step][p.cell].push_back(p.id);
   }
 }
 
@@ -209,8 +209,8 @@ void Collector::add_last() {
 
 Trace Collector::take_trace() {
   if (stop_.fault != Fault::none) {
-    stop_.text = RunError(stop_.fault, stop_.step, stop_.node, stop_.particle, stop_.number,
-                          place_of(plan_.lattice, stop_.node))
+    stop_.text = RunError(stop_.fault, stop_.step, stop_.cell, stop_.particle, stop_.number,
+                          place_of(plan_.lattice, stop_.cell))
                      .what();
     trace_.stop = stop_;
     // Where a link failed, not every node may have come so far.

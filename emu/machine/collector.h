@@ -21,7 +21,7 @@ struct RunOptions {
   FaultOptions faults;      // on the wires
   bool progress = false;    // a line per second on standard error
   bool keep_last = false;   // keep the state after the last complete step too
-  bool keep_order = false;  // keep the ids in the order of the slots, per step and node
+  bool keep_order = false;  // keep the ids in the order of the slots, per step and cell
   uint64_t patience =
       0;  // cycles without any event after which the run is stuck; 0: `patience_of(plan, ...)`
 };

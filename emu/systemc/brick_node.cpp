@@ -181,8 +181,8 @@ bool BrickNode::leave(uint32_t local, const Slot& slot) {
   const bool up = slot.away[static_cast<size_t>(a)] > 0;
   const int face = 2 * a + (up ? 1 : 0);
   const uint32_t cell = plan_.bricks.cell(node_, local);
-  const uint32_t to = cell == kNoNode ? kNoNode : plan_.lattice.neighbour(cell, face);
-  if (to == kNoNode) {
+  const uint32_t to = cell == kNoCell ? kNoCell : plan_.lattice.neighbour(cell, face);
+  if (to == kNoCell) {
     fault_.add(along(Fault::left_x, a), slot.id, 0, local);
     return true;
   }

@@ -13,55 +13,55 @@
 namespace cuboct {
 namespace {
 
-// Particles (indices into a state) by node, ascending in each.
-struct ByNode {
-  ByNode(const Lattice& lattice, const State& state)
+// Particles (indices into a state) by cell, ascending in each.
+struct ByCell {
+  ByCell(const Lattice& lattice, const State& state)
       : first(lattice.size() + 1, 0), order(state.particles.size()) {
-    for (const Particle& particle : state.particles) ++first[particle.node + 1];
+    for (const Particle& particle : state.particles) ++first[particle.cell + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<uint32_t> next(first.begin(), first.end() - 1);
-    for (uint32_t i = 0; i < order.size(); ++i) order[next[state.particles[i].node]++] = i;
+    for (uint32_t i = 0; i < order.size(); ++i) order[next[state.particles[i].cell]++] = i;
   }
-  std::span<const uint32_t> at(uint32_t node) const {
-    return {order.data() + first[node], order.data() + first[node + 1]};
+  std::span<const uint32_t> at(uint32_t cell) const {
+    return {order.data() + first[cell], order.data() + first[cell + 1]};
   }
   std::vector<uint32_t> first, order;
 };
 
-// Calls visit(i, j, x_j in the frame of i's node, P+G fractional bits) for each particle i of the nodes and
+// Calls visit(i, j, x_j in the frame of i's cell, P+G fractional bits) for each particle i of the cells and
 // each other one in reach.
 template <typename Visit>
-void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, const ByNode& by_node,
+void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& state, const ByCell& by_cell,
                    uint32_t begin, uint32_t end, Visit visit) {
   const int64_t edge = int64_t{1} << rule.widths.velocity_frac();
-  for (uint32_t node = begin; node < end; ++node) {
-    if (by_node.at(node).empty()) continue;
-    for (const Lattice::Near& near : lattice.neighbourhood(node))
-      for (const uint32_t j : by_node.at(near.node)) {
+  for (uint32_t cell = begin; cell < end; ++cell) {
+    if (by_cell.at(cell).empty()) continue;
+    for (const Lattice::Near& near : lattice.neighbourhood(cell))
+      for (const uint32_t j : by_cell.at(near.cell)) {
         Int3 x = state.particles[j].x;
         for (int axis = 0; axis < 3; ++axis) x[axis] += near.offset[axis] * edge;
-        for (const uint32_t i : by_node.at(node))
+        for (const uint32_t i : by_cell.at(cell))
           if (i != j) visit(i, j, x);
       }
   }
 }
 
-constexpr size_t kNodesWorthAThread = 1000;
+constexpr size_t kCellsWorthAThread = 1000;
 
-// The sum of part(i, j, x_j) over unordered pairs in reach; by blocks of nodes, so that its rounding does not
+// The sum of part(i, j, x_j) over unordered pairs in reach; by blocks of cells, so that its rounding does not
 // depend on the number of threads.
 template <typename T, typename Part>
 T sum_over_pairs(const FixedRule& rule, const Lattice& lattice, const State& state, const T& zero,
                  int threads, Part part) {
   constexpr uint32_t kBlock = 4096;
-  const ByNode by_node(lattice, state);
+  const ByCell by_cell(lattice, state);
   std::vector<T> sums((lattice.size() + kBlock - 1) / kBlock, zero);
   for_each_range(
       sums.size(), 1,
       [&](size_t first, size_t last) {
         for (size_t block = first; block < last; ++block) {
           const auto begin = static_cast<uint32_t>(block) * kBlock;
-          for_each_pair(rule, lattice, state, by_node, begin, std::min(begin + kBlock, lattice.size()),
+          for_each_pair(rule, lattice, state, by_cell, begin, std::min(begin + kBlock, lattice.size()),
                         [&](uint32_t i, uint32_t j, const Int3& x_j) {
                           if (i < j) sums[block] += part(i, j, x_j);
                         });
@@ -99,11 +99,11 @@ struct PairEnergy {
 std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state,
                                int threads) {
   std::vector<Int3> sums(state.particles.size(), Int3{});
-  const ByNode by_node(lattice, state);
+  const ByCell by_cell(lattice, state);
   for_each_range(
-      lattice.size(), kNodesWorthAThread,
+      lattice.size(), kCellsWorthAThread,
       [&](size_t begin, size_t end) {
-        for_each_pair(rule, lattice, state, by_node, static_cast<uint32_t>(begin), static_cast<uint32_t>(end),
+        for_each_pair(rule, lattice, state, by_cell, static_cast<uint32_t>(begin), static_cast<uint32_t>(end),
                       [&](uint32_t i, uint32_t j, const Int3& x_j) {
                         const Particle &a = state.particles[i], &b = state.particles[j];
                         const PairResult pair = kick_on(rule, a, x_j, b);
@@ -131,7 +131,7 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
     const Particle& particle = state.particles[i];
     const FixedType& type = fixed.types[particle.type];
     const Vec3& gravity = rule.types[particle.type].gravity;
-    const Cell& cell = lattice.cell(particle.node);
+    const Cell& cell = lattice.cell(particle.cell);
     for (int axis = 0; axis < 3; ++axis) {
       // What the step adds to v, of any size: finish() wraps what its widths do not hold.
       double gain = 0;

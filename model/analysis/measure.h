@@ -18,7 +18,7 @@ namespace cuboct {
 
 // Sum of the pair kicks on each particle, in the order of `state.particles`; P+G fractional bits of a cell
 // edge per step. It is what the machine adds up in the step that begins with `state`.
-// `threads` (0: one per core) share the nodes; no bit depends on their number, here and in `energies`.
+// `threads` (0: one per core) share the cells; no bit depends on their number, here and in `energies`.
 std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state,
                                int threads = 0);
 
@@ -72,7 +72,7 @@ bool keeps_energy(const Rule& rule, const Periodic& periodic);
 // Whether a run keeps the sum of all particles' velocities: nothing holds, drives, steers or weighs.
 bool keeps_momentum(const Rule& rule);
 
-// Largest |v| along an axis, as a fraction of one node per step.
+// Largest |v| along an axis, as a fraction of one cell per step.
 double largest_speed(const FixedRule& rule, const State& state);
 
 // Particles at one time in real units; the index is the particle's id.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where methods fail: detectors that look at a run while it goes, in any engine, and name what went wrong
 // with step, place and number. docs/reference/failures.md has a section per failure. The faults of the fixed
-// engines (model/base/error.h: a velocity that saturates, a full node) stop a run by themselves; what stands
+// engines (model/base/error.h: a velocity that saturates, a full cell) stop a run by themselves; what stands
 // here is what a run survives and is wrong all the same.
 #pragma once
 

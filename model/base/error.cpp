@@ -64,15 +64,15 @@ const char* to_string(Fault fault) {
     case Fault::left_x:
       return "left the lattice along x";
     case Fault::full_x:
-      return "node full after moving along x";
+      return "cell full after moving along x";
     case Fault::left_y:
       return "left the lattice along y";
     case Fault::full_y:
-      return "node full after moving along y";
+      return "cell full after moving along y";
     case Fault::left_z:
       return "left the lattice along z";
     case Fault::full_z:
-      return "node full after moving along z";
+      return "cell full after moving along z";
     case Fault::link_check:
       return "wrong check of a beat";
     case Fault::link_order:
@@ -85,24 +85,24 @@ const char* to_string(Fault fault) {
 
 namespace {
 
-std::string text_of(Fault fault, uint64_t step, uint32_t node, uint32_t particle, int64_t number,
+std::string text_of(Fault fault, uint64_t step, uint32_t cell, uint32_t particle, int64_t number,
                     const std::string& where) {
   constexpr const char* kFace[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
   if (is_of_link(fault))
-    return fmt::format("step {}, node {}{}, link {}: {}", step, node, where,
+    return fmt::format("step {}, node of cell {}{}, link {}: {}", step, cell, where,
                        number >= 0 && number < 6 ? kFace[number] : "?", to_string(fault));
-  return fmt::format("step {}, node {}{}, particle {}: {} ({})", step, node, where, particle,
+  return fmt::format("step {}, cell {}{}, particle {}: {} ({})", step, cell, where, particle,
                      to_string(fault), number);
 }
 
 }  // namespace
 
-RunError::RunError(Fault fault, uint64_t step, uint32_t node, uint32_t particle, int64_t number,
+RunError::RunError(Fault fault, uint64_t step, uint32_t cell, uint32_t particle, int64_t number,
                    const std::string& where)
-    : std::runtime_error(text_of(fault, step, node, particle, number, where)),
+    : std::runtime_error(text_of(fault, step, cell, particle, number, where)),
       fault(fault),
       step(step),
-      node(node),
+      cell(cell),
       particle(particle),
       number(number) {}
 

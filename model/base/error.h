@@ -40,9 +40,9 @@ enum class Fault : uint8_t {
   strength,           // s of an interacting pair does not fit `strength_bits`
   sum,                // a particle's summed kick does not fit `sum_bits`
   displacement,       // u of a force-held particle does not fit `displacement_bits`
-  velocity,           // v does not fit `velocity_bits`; at P+G+1 bits: more than one node per step
-  left_x,             // moved along x into a place that has no node
-  full_x,             // moved along x into a node that holds `capacity` particles
+  velocity,           // v does not fit `velocity_bits`; at P+G+1 bits: more than one cell per step
+  left_x,             // moved along x out of the lattice
+  full_x,             // moved along x into a cell that holds `capacity` particles
   left_y,
   full_y,
   left_z,
@@ -59,15 +59,16 @@ constexpr bool is_of_link(Fault fault) { return fault >= Fault::link_check; }
 const char* to_string(Fault fault);
 
 // A run that had to stop. `number` is the offending value in the integer units of the fixed rule (for
-// `full_*`: the capacity). `node` is an index into the lattice.
+// `full_*`: the capacity). `cell` is an index into the lattice; of a fault of a link the first cell of the
+// node whose link it is. `where` follows the index in the text: " at (1, 2, 0)".
 class RunError : public std::runtime_error {
  public:
-  RunError(Fault fault, uint64_t step, uint32_t node, uint32_t particle, int64_t number,
+  RunError(Fault fault, uint64_t step, uint32_t cell, uint32_t particle, int64_t number,
            const std::string& where);
 
   Fault fault;
   uint64_t step;
-  uint32_t node;
+  uint32_t cell;
   uint32_t particle;
   int64_t number;
 };

@@ -122,7 +122,7 @@ inline Int3 visible(const FixedRule& rule, const Int3& x) {
   return {x[0] >> guard, x[1] >> guard, x[2] >> guard};
 }
 
-// x_i, x_j: visible positions in the frame of i's node (x_j may lie in [-2^P, 2^(P+1))); v with P+G.
+// x_i, x_j: visible positions in the frame of i's cell (x_j may lie in [-2^P, 2^(P+1))); v with P+G.
 PairResult pair_kick(const FixedRule& rule, const Int3& x_i, const Int3& v_i, int type_i, const Int3& x_j,
                      const Int3& v_j, int type_j);
 

@@ -52,7 +52,7 @@ CUBOCT_HD int64_t table_value(const Table& table, uint64_t r2) {
 }
 
 // One pair's part of the kick, as PairResult holds it. x_i, x_j: visible positions, `x_j` in the frame of i's
-// node.
+// cell.
 template <class Result, class Rule, class Triple>
 CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple& v_i, int type_i,
                               const Triple& x_j, const Triple& v_j, int type_j) {

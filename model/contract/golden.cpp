@@ -21,21 +21,21 @@ auto order(const RunError& e) { return std::tuple(e.fault, e.particle, e.number)
 }  // namespace
 
 Golden::Golden(const FixedRule& rule, const Lattice& lattice, int capacity, const State& initial)
-    : rule_(rule), lattice_(lattice), capacity_(capacity), step_(initial.step), nodes_(lattice.size()) {
+    : rule_(rule), lattice_(lattice), capacity_(capacity), step_(initial.step), cells_(lattice.size()) {
   std::vector<RunError> faults;
   for (const Particle& p : initial.particles) {
-    auto& node = nodes_[p.node];
-    if (static_cast<int>(node.size()) == capacity_)
-      faults.push_back(fault_of(Fault::full_x, p.node, p.id, capacity_));
+    auto& cell = cells_[p.cell];
+    if (static_cast<int>(cell.size()) == capacity_)
+      faults.push_back(fault_of(Fault::full_x, p.cell, p.id, capacity_));
     else
-      node.push_back(p);
+      cell.push_back(p);
   }
   fail_if_any(faults);
 }
 
-RunError Golden::fault_of(Fault fault, uint32_t node, uint32_t particle, int64_t number) const {
-  const Cell& c = lattice_.cell(node);
-  return {fault, step_, node, particle, number, fmt::format(" at cell ({}, {}, {})", c[0], c[1], c[2])};
+RunError Golden::fault_of(Fault fault, uint32_t cell, uint32_t particle, int64_t number) const {
+  const Cell& c = lattice_.cell(cell);
+  return {fault, step_, cell, particle, number, fmt::format(" at ({}, {}, {})", c[0], c[1], c[2])};
 }
 
 void Golden::fail_if_any(const std::vector<RunError>& faults) const {
@@ -48,20 +48,20 @@ void Golden::step() {
   const int P = rule_.widths.position_frac, frac = rule_.widths.velocity_frac();
   std::vector<RunError> faults;
 
-  // Force: every particle against every other of its own and the neighbour nodes.
-  std::vector<std::vector<Int3>> sums(nodes_.size());
-  std::vector<Int3> seen;  // visible positions of a node's own
-  for (uint32_t n = 0; n < nodes_.size(); ++n) {
-    sums[n].resize(nodes_[n].size());
-    if (nodes_[n].empty()) continue;
+  // Force: every particle against every other of its own and the neighbour cells.
+  std::vector<std::vector<Int3>> sums(cells_.size());
+  std::vector<Int3> seen;  // visible positions of a cell's own
+  for (uint32_t n = 0; n < cells_.size(); ++n) {
+    sums[n].resize(cells_[n].size());
+    if (cells_[n].empty()) continue;
     seen.clear();
-    for (const Particle& i : nodes_[n]) seen.push_back(visible(rule_, i.x));
+    for (const Particle& i : cells_[n]) seen.push_back(visible(rule_, i.x));
     for (const auto& [other, offset] : lattice_.neighbourhood(n))
-      for (const Particle& j : nodes_[other]) {
+      for (const Particle& j : cells_[other]) {
         Int3 x_j = visible(rule_, j.x);
         for (int a = 0; a < 3; ++a) x_j[a] += int64_t{offset[a]} << P;
-        for (size_t k = 0; k < nodes_[n].size(); ++k) {
-          const Particle& i = nodes_[n][k];
+        for (size_t k = 0; k < cells_[n].size(); ++k) {
+          const Particle& i = cells_[n][k];
           if (i.id == j.id) continue;
           const PairResult pair = pair_kick(rule_, seen[k], i.v, i.type, x_j, j.v, j.type);
           if (pair.fault != Fault::none) faults.push_back(fault_of(pair.fault, n, i.id, pair.number));
@@ -72,10 +72,10 @@ void Golden::step() {
   fail_if_any(faults);
 
   // Update: kick, constraints, drift.
-  std::vector<std::vector<Moving>> moving(nodes_.size());
-  for (uint32_t n = 0; n < nodes_.size(); ++n)
-    for (size_t k = 0; k < nodes_[n].size(); ++k) {
-      Moving m{nodes_[n][k], {}};
+  std::vector<std::vector<Moving>> moving(cells_.size());
+  for (uint32_t n = 0; n < cells_.size(); ++n)
+    for (size_t k = 0; k < cells_[n].size(); ++k) {
+      Moving m{cells_[n][k], {}};
       Particle& p = m.particle;
       const FinishResult result = finish(rule_, sums[n][k], p.x, p.v, p.u, p.type);
       if (result.fault != Fault::none) faults.push_back(fault_of(result.fault, n, p.id, result.number));
@@ -92,9 +92,9 @@ void Golden::step() {
   // Migration: along x, then y, then z; those who stay keep their order, then come those from below, then
   // from above.
   for (int axis = 0; axis < 3; ++axis) migrate(axis, moving);
-  for (uint32_t n = 0; n < nodes_.size(); ++n) {
-    nodes_[n].clear();
-    for (const Moving& m : moving[n]) nodes_[n].push_back(m.particle);
+  for (uint32_t n = 0; n < cells_.size(); ++n) {
+    cells_[n].clear();
+    for (const Moving& m : moving[n]) cells_[n].push_back(m.particle);
   }
   ++step_;
 }
@@ -111,11 +111,11 @@ void Golden::migrate(int axis, std::vector<std::vector<Moving>>& moving) const {
         continue;
       }
       const uint32_t to = lattice_.neighbour(n, 2 * axis + (way > 0));
-      if (to == kNoNode) {
+      if (to == kNoCell) {
         faults.push_back(fault_of(along(axis, Fault::left_x), n, m.particle.id, 0));
         continue;
       }
-      m.particle.node = to;
+      m.particle.cell = to;
       arrived[to][way < 0].push_back(m);
     }
     moving[n] = stay;
@@ -133,7 +133,7 @@ void Golden::migrate(int axis, std::vector<std::vector<Moving>>& moving) const {
 
 State Golden::state() const {
   State state{step_, {}};
-  for (const auto& node : nodes_) state.particles.insert(state.particles.end(), node.begin(), node.end());
+  for (const auto& cell : cells_) state.particles.insert(state.particles.end(), cell.begin(), cell.end());
   std::sort(state.particles.begin(), state.particles.end(), [](auto& a, auto& b) { return a.id < b.id; });
   return state;
 }

@@ -60,18 +60,18 @@ size_t Lattice::row_at(int32_t z, int32_t y) const {
 uint32_t Lattice::find(const Cell& cell) const {
   const Cell c = wrapped(cell);
   const size_t row = row_at(c[2], c[1]);
-  return row + 1 < rows_.size() ? in_row({rows_[row].first, rows_[row + 1].first}, c[0]) : kNoNode;
+  return row + 1 < rows_.size() ? in_row({rows_[row].first, rows_[row + 1].first}, c[0]) : kNoCell;
 }
 
 uint32_t Lattice::in_row(const Span& row, int32_t x) const {
   // As x ascends, the cell stands no later than it would in a row without gaps, and mostly there.
   const int64_t ahead = int64_t{x} - cells_[row.begin][0];
-  if (ahead < 0) return kNoNode;
+  if (ahead < 0) return kNoCell;
   const auto end = static_cast<uint32_t>(std::min<int64_t>(row.end, row.begin + ahead + 1));
   if (cells_[end - 1][0] == x) return end - 1;
   const auto it = std::lower_bound(cells_.begin() + row.begin, cells_.begin() + end, x,
                                    [](const Cell& cell, int32_t at) { return cell[0] < at; });
-  return it != cells_.begin() + end && (*it)[0] == x ? static_cast<uint32_t>(it - cells_.begin()) : kNoNode;
+  return it != cells_.begin() + end && (*it)[0] == x ? static_cast<uint32_t>(it - cells_.begin()) : kNoCell;
 }
 
 void Lattice::index_rows() {
@@ -131,7 +131,7 @@ uint32_t Lattice::present_around(const Cell& cell) const {
       const Span beside = around(row, dz, dy);
       if (beside.begin == beside.end) continue;
       for (int dx = -1; dx <= 1; ++dx)
-        if (in_row(beside, wrapped({cell[0] + dx, 0, 0})[0]) != kNoNode) present |= 1u << bit_of(dx, dy, dz);
+        if (in_row(beside, wrapped({cell[0] + dx, 0, 0})[0]) != kNoCell) present |= 1u << bit_of(dx, dy, dz);
     }
   return present;
 }
@@ -167,7 +167,7 @@ void Lattice::close() {
 
 void Lattice::link() {
   std::array<uint32_t, kFaces> none;
-  none.fill(kNoNode);
+  none.fill(kNoCell);
   neighbour_.assign(cells_.size(), none);
   for (size_t row = 0; row + 1 < rows_.size(); ++row) {
     const Span own{rows_[row].first, rows_[row + 1].first};
@@ -192,17 +192,17 @@ void Lattice::link() {
   }
 }
 
-std::vector<Lattice::Near> Lattice::neighbourhood(uint32_t node) const {
+std::vector<Lattice::Near> Lattice::neighbourhood(uint32_t cell) const {
   const auto hop = [this](uint32_t from, int axis, int way) {
-    return way == 0 || from == kNoNode ? from : neighbour_[from][2 * axis + (way > 0)];
+    return way == 0 || from == kNoCell ? from : neighbour_[from][2 * axis + (way > 0)];
   };
   std::vector<Near> near;
   near.reserve(27);
   for (int dz = -1; dz <= 1; ++dz)
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
-        const uint32_t other = hop(hop(hop(node, 0, dx), 1, dy), 2, dz);
-        if (other != kNoNode) near.push_back({other, {dx, dy, dz}});
+        const uint32_t other = hop(hop(hop(cell, 0, dx), 1, dy), 2, dz);
+        if (other != kNoCell) near.push_back({other, {dx, dy, dz}});
       }
   return near;
 }

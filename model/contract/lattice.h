@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The nodes of a scene and their 6-neighbour links. Sparse: only listed cells have a node; memory and time
-// grow with the nodes (36 bytes each and 12 per row of them along x), not with the space that they span.
+// The cells of a scene and their 6-neighbour links. Sparse: memory and time grow with the cells that are
+// listed (36 bytes each and 12 per row of them along x), not with the space that they span.
 #pragma once
 
 #include <array>
@@ -13,29 +13,29 @@ namespace cuboct {
 
 // Faces in the order of the links: -x, +x, -y, +y, -z, +z.
 inline constexpr int kFaces = 6;
-inline constexpr uint32_t kNoNode = 0xffffffffu;
+inline constexpr uint32_t kNoCell = 0xffffffffu;
 
 class Lattice {
  public:
   Lattice() = default;
-  // The nodes are `cells`, deduplicated, plus the cells that keep the set closed: records and particles
-  // travel to a diagonal neighbour by x, then y, then z, so the cells on that way must exist too. `period[a]`
-  // > 0 makes axis a a ring of that many cells (at least 3, and every coordinate in [0, period)). Node
-  // indices follow the order of (z, y, x); cells that come in it are not sorted again.
+  // `cells`, deduplicated, plus those that keep the set closed: records and particles travel to a diagonal
+  // neighbour by x, then y, then z, so the cells on that way must exist too. `period[a]` > 0 makes axis a a
+  // ring of that many cells (at least 3, and every coordinate in [0, period)). Indices follow the order of
+  // (z, y, x); cells that come in it are not sorted again.
   Lattice(std::vector<Cell> cells, Cell period);
 
   uint32_t size() const { return static_cast<uint32_t>(cells_.size()); }
-  const Cell& cell(uint32_t node) const { return cells_[node]; }
+  const Cell& cell(uint32_t cell) const { return cells_[cell]; }
   const Cell& period() const { return period_; }
-  uint32_t neighbour(uint32_t node, int face) const { return neighbour_[node][face]; }
-  // kNoNode where the cell has no node.
+  uint32_t neighbour(uint32_t cell, int face) const { return neighbour_[cell][face]; }
+  // kNoCell where the lattice has no such cell.
   uint32_t find(const Cell& cell) const;
-  // All up to 27 nodes around `node`, itself included, with their offsets.
+  // The up to 27 cells around `cell`, itself included, with their offsets.
   struct Near {
-    uint32_t node;
+    uint32_t cell;
     Cell offset;
   };
-  std::vector<Near> neighbourhood(uint32_t node) const;
+  std::vector<Near> neighbourhood(uint32_t cell) const;
 
  private:
   // All cells of one z and y: [first, first of the next row), ascending in x. The last row is a sentinel.

@@ -12,7 +12,7 @@ namespace cuboct {
 uint64_t hash_of(const Lattice& lattice, const Particle& particle) {
   Hash hash;
   hash.add(particle.id).add(particle.type);
-  for (const int32_t c : lattice.cell(particle.node)) hash.add(c);
+  for (const int32_t c : lattice.cell(particle.cell)) hash.add(c);
   for (int a = 0; a < 3; ++a) hash.add(particle.x[a]).add(particle.v[a]).add(particle.u[a]);
   return hash.value();
 }
@@ -53,10 +53,10 @@ Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, co
                       rule.widths.velocity_bits),
           "a smaller dt or a larger cell edge lets it move fewer cells per step");
   }
-  p.node = lattice.find(cell);
-  if (p.node == kNoNode)
-    throw InputError(fmt::format("particle {} lies in cell ({}, {}, {}), which has no node", id, cell[0],
-                                 cell[1], cell[2]));
+  p.cell = lattice.find(cell);
+  if (p.cell == kNoCell)
+    throw InputError(fmt::format("particle {} lies in cell ({}, {}, {}), which the lattice lacks", id,
+                                 cell[0], cell[1], cell[2]));
   return p;
 }
 
@@ -78,7 +78,7 @@ Body to_real(const State& state, const FixedRule& rule, const Lattice& lattice, 
   const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
   for (size_t k = 0; k < n; ++k) {
     const Particle& p = state.particles[k];
-    const Cell& cell = lattice.cell(p.node);
+    const Cell& cell = lattice.cell(p.cell);
     body.type[k] = p.type;
     for (int a = 0; a < 3; ++a) {
       body.x[k][a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(p.x[a]) * unit;
@@ -92,7 +92,7 @@ Body to_real(const State& state, const FixedRule& rule, const Lattice& lattice, 
 Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
                  const Particle& particle) {
   const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
-  const Cell& cell = lattice.cell(particle.node);
+  const Cell& cell = lattice.cell(particle.cell);
   Vec3 x;
   for (int a = 0; a < 3; ++a)
     x[a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(particle.x[a]) * unit;

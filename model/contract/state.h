@@ -13,7 +13,7 @@ namespace cuboct {
 struct Particle {
   uint32_t id = 0;
   uint8_t type = 0;
-  uint32_t node = 0;  // index into the lattice
+  uint32_t cell = 0;  // index into the lattice
   Int3 x{};           // P+G fractional bits, in [0, 2^(P+G)); forces see its leading P (visible)
   Int3 v{};           // P+G fractional bits, at half steps
   Int3 u{};           // P+G fractional bits; zero unless the type is held by force
@@ -37,8 +37,9 @@ uint64_t hash_of(const Lattice& lattice, const State& state);
 Int3 momentum(const State& state);
 
 // Between real and fixed state. `origin` is the position of cell (0,0,0)'s lower corner in metres.
-// Positions are rounded to nearest; a particle whose cell has no node, or whose velocity does not fit its
-// width, is an InputError. Particle by particle, no State need be held: an engine can be fed from the Body.
+// Positions are rounded to nearest; a particle whose cell the lattice lacks, or whose velocity does not fit
+// its width, is an InputError. Particle by particle, no State need be held: an engine can be fed from the
+// Body.
 Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, const Lattice& lattice,
                         const Vec3& origin);
 State to_fixed(const Body& body, const FixedRule& rule, const Lattice& lattice, const Vec3& origin);

@@ -18,7 +18,7 @@ class GoldenEngine : public StateEngine {
   }
   Counters counters() override { return {}; }
   void for_each_slot(const std::function<void(const Particle&)>& see) override {
-    for (const auto& cell : golden_.nodes())
+    for (const auto& cell : golden_.cells())
       for (const Particle& particle : cell) see(particle);
   }
 

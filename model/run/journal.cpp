@@ -15,7 +15,7 @@ enum Kind : uint64_t { kHash = 1, kSample, kCycles, kFrame };
 }  // namespace
 
 void put(WordWriter& out, const Particle& p, bool displaced) {
-  out.word(p.id | uint64_t{p.node} << 32);
+  out.word(p.id | uint64_t{p.cell} << 32);
   for (size_t a = 0; a < 3; ++a)  // a position has at most 50 bits
     out.word(static_cast<uint64_t>(p.x[a]) | (a == 2 ? uint64_t{p.type} << 56 : 0));
   for (const int64_t v : p.v) out.word(static_cast<uint64_t>(v));
@@ -27,7 +27,7 @@ Particle take_particle(WordReader& in, bool displaced) {
   Particle p;
   const uint64_t place = in.word();
   p.id = static_cast<uint32_t>(place);
-  p.node = static_cast<uint32_t>(place >> 32);
+  p.cell = static_cast<uint32_t>(place >> 32);
   for (int64_t& x : p.x) x = static_cast<int64_t>(in.word());
   p.type = static_cast<uint8_t>(static_cast<uint64_t>(p.x[2]) >> 56);
   p.x[2] &= (int64_t{1} << 56) - 1;

@@ -15,7 +15,7 @@
 namespace cuboct {
 
 // Six words per particle, nine where the rule holds particles by force:
-//   id, node (32 bits each)   x, y   z, type   v_x v_y v_z   [u_x u_y u_z]
+//   id, cell (32 bits each)   x, y   z, type   v_x v_y v_z   [u_x u_y u_z]
 void put(WordWriter& out, const Particle& particle, bool displaced);
 Particle take_particle(WordReader& in, bool displaced);
 

@@ -387,7 +387,7 @@ Recorded Loop::run() {
     result_.interrupted = trace_.steps_done < request_.steps;
     if (result_.interrupted && !save_plan_.path.empty()) save();
   } catch (const RunError& error) {
-    trace_.stop = StopReason{error.fault, error.step, error.node, error.particle, error.number, error.what()};
+    trace_.stop = StopReason{error.fault, error.step, error.cell, error.particle, error.number, error.what()};
     lost_ = !kind_.keeps_state;
   } catch (const StepError& error) {
     trace_.stop = error.reason;

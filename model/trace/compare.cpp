@@ -29,7 +29,7 @@ std::optional<Mismatch> compare_stops(const std::optional<StopReason>& a,
   const StopReason none, &sa = a ? *a : none, &sb = b ? *b : none;
   if (sa.fault != sb.fault) return differ("fault", to_string(sa.fault), to_string(sb.fault));
   if (sa.step != sb.step) return differ("step", std::to_string(sa.step), std::to_string(sb.step));
-  if (sa.node != sb.node) return differ("node", std::to_string(sa.node), std::to_string(sb.node));
+  if (sa.cell != sb.cell) return differ("cell", std::to_string(sa.cell), std::to_string(sb.cell));
   if (sa.particle != sb.particle)
     return differ("particle", std::to_string(sa.particle), std::to_string(sb.particle));
   if (sa.number != sb.number) return differ("number", std::to_string(sa.number), std::to_string(sb.number));
@@ -72,11 +72,17 @@ void for_each_common(const Trace& a, const Trace& b, See see) {
   }
 }
 
-std::string place(const Lattice& lattice, uint32_t node) {
-  if (node == kNoNode) return "";
-  if (node >= lattice.size()) return fmt::format(", node {}", node);
-  const Cell& cell = lattice.cell(node);
-  return fmt::format(", node {} (cell {} {} {})", node, cell[0], cell[1], cell[2]);
+std::string place_of_cell(const Lattice& lattice, uint32_t cell) {
+  if (cell >= lattice.size()) return fmt::format("cell {}", cell);
+  const Cell& at = lattice.cell(cell);
+  return fmt::format("cell {} ({} {} {})", cell, at[0], at[1], at[2]);
+}
+
+// With the coordinates of its cell where each node of the machine serves the cell of its number.
+std::string place_of_node(const Lattice& lattice, uint32_t node, uint64_t nodes) {
+  if (nodes != lattice.size() || node >= nodes) return fmt::format("node {}", node);
+  const Cell& at = lattice.cell(node);
+  return fmt::format("node {} (cell {} {} {})", node, at[0], at[1], at[2]);
 }
 
 }  // namespace
@@ -102,12 +108,12 @@ std::string Mismatch::text(const std::string& engine_a, const std::string& engin
       where = "stop, " + field;
       break;
     case Kind::cycles:
-      where = node != kNoNode && nodes != lattice.size()
-                  ? fmt::format("step {}, node {}, {}", step, node, field)
-                  : fmt::format("step {}{}, {}", step, place(lattice, node), field);
+      where = node ? fmt::format("step {}, {}, {}", step, place_of_node(lattice, *node, nodes), field)
+                   : fmt::format("step {}, {}", step, field);
       break;
     case Kind::particle:
-      where = fmt::format("step {}{}, particle {}, {}", step, place(lattice, node), particle, field);
+      where =
+          fmt::format("step {}, {}, particle {}, {}", step, place_of_cell(lattice, cell), particle, field);
   }
   return fmt::format("{}: {} {}, {} {}", where, engine_a, value_a, engine_b, value_b);
 }
@@ -150,15 +156,15 @@ std::optional<Mismatch> compare(const State& a, const State& b) {
     const Particle* pb = i < b.particles.size() ? &b.particles[i] : nullptr;
     if (!pb || (pa && pa->id < pb->id)) {
       mismatch.particle = pa->id;
-      mismatch.node = pa->node;
+      mismatch.cell = pa->cell;
       return differ("presence", "present", "missing");
     }
     mismatch.particle = pb->id;
-    mismatch.node = pb->node;
+    mismatch.cell = pb->cell;
     if (!pa || pb->id < pa->id) return differ("presence", "missing", "present");
-    mismatch.node = pa->node;
+    mismatch.cell = pa->cell;
     if (pa->type != pb->type) return differ("type", int{pa->type}, int{pb->type});
-    if (pa->node != pb->node) return differ("node", pa->node, pb->node);
+    if (pa->cell != pb->cell) return differ("cell", pa->cell, pb->cell);
     const auto triple = [&](const char* name, const Int3& ta, const Int3& tb) -> std::optional<Mismatch> {
       for (int axis = 0; axis < 3; ++axis)
         if (ta[axis] != tb[axis]) return differ(fmt::format("{}.{}", name, "xyz"[axis]), ta[axis], tb[axis]);

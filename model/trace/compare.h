@@ -25,13 +25,14 @@ struct Mismatch {
   Kind kind = Kind::plan;
   uint64_t step = 0;             // state, cycles, particle. In cycles: the step that begins with state `step`
   uint64_t equal_at = 0;         // state: the latest step before it at which both hashes are there and equal
-  uint32_t node = kNoNode;       // cycles (a physical node), particle (where a has it)
+  std::optional<uint32_t> node;  // cycles, of a step that both did
+  uint32_t cell = kNoCell;       // particle (where a has it)
   uint64_t nodes = 0;            // cycles: of the machine; as many as cells, but where nodes serve several
   uint32_t particle = 0;         // particle
   std::string field;             // stop, cycles, particle: "fault", "force end", "v.y", ...
   std::string value_a, value_b;  // as text
 
-  // One line, e.g. "step 13, node 5 (cell 1 2 0), particle 17, v.y: golden 120, rtl 121", or where steps in
+  // One line, e.g. "step 13, cell 5 (1 2 0), particle 17, v.y: golden 120, rtl 121", or where steps in
   // between were not hashed "step 40 (equal at step 30), state hash: ...".
   std::string text(const std::string& engine_a, const std::string& engine_b, const Lattice& lattice) const;
 };
@@ -40,7 +41,7 @@ struct Mismatch {
 // of steps, stop reasons, cycles step by step (only where both engines count them).
 std::optional<Mismatch> compare(const Trace& a, const Trace& b);
 
-// Particle by particle in the order of ids, field by field: missing, type, node, x, v, u.
+// Particle by particle in the order of ids, field by field: missing, type, cell, x, v, u.
 std::optional<Mismatch> compare(const State& a, const State& b);
 
 // The frame of that step; null where the trace has none.

@@ -13,7 +13,7 @@ std::string out_of_bounds(const Particle& particle, const StateBounds& bounds) {
   };
   if (particle.id >= bounds.particles) return not_below("id", particle.id, bounds.particles);
   if (particle.type >= bounds.types) return not_below("type", particle.type, bounds.types);
-  if (particle.node >= bounds.cells) return not_below("cell", particle.node, bounds.cells);
+  if (particle.cell >= bounds.cells) return not_below("cell", particle.cell, bounds.cells);
   for (const int64_t x : particle.x)
     if (x < 0 || x >> bounds.position_bits != 0) return fmt::format("position {} is outside its cell", x);
   const int64_t fastest = int64_t{1} << (bounds.velocity_bits - 1);

@@ -67,7 +67,7 @@ class FrameRows {
         first_(out, group_, "first", "", "[frame]: rows first[k] to first[k+1]-1 are frame k"),
         id_(out, group_, "id", chunk_of(particles, 1), 1, "", kOfRow),
         type_(out, group_, "type", chunk_of(particles, 1), 1, "", "[row] index into `types`"),
-        node_(out, group_, "node", chunk_of(particles, 1), 1, "", "[row] index into lattice/cell"),
+        cell_(out, group_, "node", chunk_of(particles, 1), 1, "", "[row] index into lattice/cell"),
         x_(out, group_, "x", chunk_of(particles, 3), 3, "cell edge / 2^(P+G)",
            "[row][axis] offset in the node's cell"),
         v_(out, group_, "v", chunk_of(particles, 3), 3, "cell edge / step / 2^(P+G)",
@@ -88,7 +88,7 @@ class FrameRows {
     for (const Particle& p : frame.particles) {
       id_.add(&p.id);
       type_.add(&p.type);
-      node_.add(&p.node);
+      cell_.add(&p.cell);
       x_.add(p.x.data());
       v_.add(p.v.data());
       u_.add(p.u.data());
@@ -103,10 +103,10 @@ class FrameRows {
   }
   // At most what finish() writes.
   uint64_t pending() const {
-    return id_.chunk_bytes() + type_.chunk_bytes() + node_.chunk_bytes() + (head_ ? 5 : 3) * x_.chunk_bytes();
+    return id_.chunk_bytes() + type_.chunk_bytes() + cell_.chunk_bytes() + (head_ ? 5 : 3) * x_.chunk_bytes();
   }
   void finish() {
-    id_.finish(), type_.finish(), node_.finish(), x_.finish(), v_.finish(), u_.finish();
+    id_.finish(), type_.finish(), cell_.finish(), x_.finish(), v_.finish(), u_.finish();
     if (head_) x_si_->finish(), v_si_->finish();
   }
 
@@ -118,7 +118,7 @@ class FrameRows {
   PerFrame<int64_t> first_;
   hdf5::Growing<uint32_t> id_;
   hdf5::Growing<uint8_t> type_;
-  hdf5::Growing<uint32_t> node_;
+  hdf5::Growing<uint32_t> cell_;
   hdf5::Growing<int64_t> x_, v_, u_;
   std::optional<hdf5::Growing<double>> x_si_, v_si_;
   int64_t rows_ = 0;
@@ -192,7 +192,7 @@ void read_frames(const Reader& in, const std::function<void(State)>& see) {
     };
     number("id", &Particle::id);
     number("type", &Particle::type);
-    number("node", &Particle::node);
+    number("node", &Particle::cell);
     triple("x", &Particle::x);
     triple("v", &Particle::v);
     triple("u", &Particle::u);
@@ -485,7 +485,7 @@ void TraceWriter::finish(const Trace& trace) {
       out.number<uint8_t>(stop, "fault", static_cast<uint8_t>(trace.stop->fault));
       out.text(stop, "fault_name", to_string(trace.stop->fault));
       out.number<uint64_t>(stop, "step", trace.stop->step);
-      out.number<uint32_t>(stop, "node", trace.stop->node);
+      out.number<uint32_t>(stop, "node", trace.stop->cell);
       out.number<uint32_t>(stop, "particle", trace.stop->particle);
       out.number<int64_t>(stop, "number", trace.stop->number);
       out.text(stop, "text", trace.stop->text);

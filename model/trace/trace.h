@@ -55,7 +55,7 @@ struct RealFrame {
 struct StopReason {
   Fault fault = Fault::none;
   uint64_t step = 0;
-  uint32_t node = 0, particle = 0;
+  uint32_t cell = 0, particle = 0;  // of a fault of a link: the first cell of the node whose link it is
   int64_t number = 0;
   std::string text;
   bool operator==(const StopReason&) const = default;

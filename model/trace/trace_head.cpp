@@ -36,7 +36,7 @@ void write_lattice(const Writer& out, const Lattice& lattice) {
   const hsize_t chunk = std::clamp<hsize_t>(lattice.size(), 1 << 10, (1 << 15) / 3);
   hdf5::Growing<int32_t> cells(out, group, "cell", chunk, 3, "cell edge",
                                "[node][axis] coordinates of the node's cell");
-  for (uint32_t node = 0; node < lattice.size(); ++node) cells.add(lattice.cell(node).data());
+  for (uint32_t cell = 0; cell < lattice.size(); ++cell) cells.add(lattice.cell(cell).data());
   cells.finish();
 }
 

@@ -14,8 +14,8 @@ namespace cuboct::test {
 namespace {
 
 std::string where(const RunError& e) {
-  return fmt::format("{} step {} node {} particle {} number {}: {}", static_cast<int>(e.fault), e.step,
-                     e.node, e.particle, e.number, e.what());
+  return fmt::format("{} step {} cell {} particle {} number {}: {}", static_cast<int>(e.fault), e.step,
+                     e.cell, e.particle, e.number, e.what());
 }
 
 std::string name(const emu::LatticeOptions& options) {
@@ -87,11 +87,11 @@ void compare(const Case& c, const emu::LatticeOptions& options, Count& count) {
     ASSERT_EQ(engine.momentum(), momentum(state));
     std::vector<Particle> slots, golden_slots;
     engine.for_each_slot([&](const Particle& p) { slots.push_back(p); });
-    for (const auto& node : golden.nodes()) golden_slots.insert(golden_slots.end(), node.begin(), node.end());
+    for (const auto& cell : golden.cells()) golden_slots.insert(golden_slots.end(), cell.begin(), cell.end());
     ASSERT_TRUE(!first || slots == golden_slots) << "step " << s;
     uint64_t moved = 0;
     for (size_t k = 0; k < state.particles.size(); ++k)
-      moved += state.particles[k].node != before.particles[k].node;
+      moved += state.particles[k].cell != before.particles[k].cell;
     ASSERT_EQ(engine.leaving().size(), moved);
     count.moves += moved;
     count.updates += state.particles.size();

@@ -16,7 +16,7 @@ std::vector<emu::LatticeOptions> variants(const Plan& plan);
 // What comparisons met, summed over calls.
 struct Count {
   uint64_t updates = 0, moves = 0, faults = 0, vectors = 0;
-  uint64_t resumed = 0;  // steps with nodes at rest after one without
+  uint64_t resumed = 0;  // steps with cells at rest after one without
   emu::LatticeCounters lists;
 };
 

@@ -46,13 +46,13 @@ void note(Seen& seen, const Plan& plan, const GoldenRun& golden) {
     for (int32_t z = 0; z < node.extent[2]; ++z)
       for (int32_t y = 0; y < node.extent[1]; ++y)
         for (int32_t x = 0; x < node.extent[0]; ++x)
-          seen.absent += b.cell(n, BrickGrid(b.shape()).local({x, y, z})) == kNoNode;
+          seen.absent += b.cell(n, BrickGrid(b.shape()).local({x, y, z})) == kNoCell;
   }
   for (int a = 0; a < 3; ++a) seen.thin += b.shape()[a] == 1, seen.thick += b.shape()[a] > 3;
   for (size_t s = 1; s < golden.states.size(); ++s) {
     std::vector<int> came(plan.lattice.size());
     for (size_t k = 0; k < golden.states[s].particles.size(); ++k) {
-      const uint32_t from = golden.states[s - 1].particles[k].node, to = golden.states[s].particles[k].node;
+      const uint32_t from = golden.states[s - 1].particles[k].cell, to = golden.states[s].particles[k].cell;
       if (from == to) continue;
       ++(b.node_of(from) == b.node_of(to) ? seen.inner : seen.outer);
       seen.crowded += ++came[to] == 2;

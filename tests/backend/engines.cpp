@@ -21,7 +21,7 @@ std::string first_difference(uint64_t step, const State& expected, const State& 
     };
     field("id", e.id, g.id);
     field("type", e.type, g.type);
-    field("node", e.node, g.node);
+    field("cell", e.cell, g.cell);
     for (int a = 0; a < 3; ++a) {
       const char axis = "xyz"[a];
       field(fmt::format("x.{}", axis), e.x[a], g.x[a]);
@@ -41,9 +41,9 @@ GoldenRun run_golden(const Setup& setup, uint64_t steps) {
   const auto keep = [&](const Golden& golden) {
     run.states.push_back(golden.state());
     auto& order = run.order.emplace_back();
-    for (const auto& node : golden.nodes()) {
+    for (const auto& cell : golden.cells()) {
       auto& ids = order.emplace_back();
-      for (const Particle& p : node) ids.push_back(p.id);
+      for (const Particle& p : cell) ids.push_back(p.id);
     }
   };
   try {

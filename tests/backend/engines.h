@@ -14,7 +14,7 @@ namespace cuboct::test {
 // Golden's run: the state and the order of the slots at each step, and the fault that stopped it.
 struct GoldenRun {
   std::vector<State> states;                              // [step]
-  std::vector<std::vector<std::vector<uint32_t>>> order;  // [step][node] ids
+  std::vector<std::vector<std::vector<uint32_t>>> order;  // [step][cell] ids
   std::optional<RunError> fault;
 };
 GoldenRun run_golden(const Setup& setup, uint64_t steps);

@@ -49,16 +49,16 @@ struct Crowd {
     const uint32_t room = (count + emu::kGroup - 1) / emu::kGroup * emu::kGroup;
     for (auto& x : particles.x) x = emu::PaddedArray<double>(room);
     for (uint32_t p = 0; p < count; ++p) {
-      const auto node = static_cast<uint32_t>(dice.draw(0, static_cast<int>(lattice.size()) - 1));
-      EXPECT_TRUE(members.append(node, p));
+      const auto cell = static_cast<uint32_t>(dice.draw(0, static_cast<int>(lattice.size()) - 1));
+      EXPECT_TRUE(members.append(cell, p));
       for (int a = 0; a < 3; ++a) {
         // On faces and corners too.
         const auto local =
             dice.chance(10) ? (dice.chance(50) ? 0 : (1 << kFrac) - 1) : static_cast<int>(dice.bits(kFrac));
-        particles.x[a][p] = lattice.cell(node)[a] * std::ldexp(1.0, kFrac) + local;
+        particles.x[a][p] = lattice.cell(cell)[a] * std::ldexp(1.0, kFrac) + local;
       }
     }
-    particles.node = members.nodes();
+    particles.cell = members.cells();
     snapshot.position_frac = kFrac;
     snapshot.room = room;
   }
@@ -111,7 +111,7 @@ TEST(LatticeSearch, FindsAllWithinReachAndFewBeyond) {
     }
     for (uint32_t i = 0; i < count; ++i) {
       std::set<std::pair<uint32_t, int>> found;
-      for (const auto& hit : search->around(crowd.particles.node[i], at[i]))
+      for (const auto& hit : search->around(crowd.particles.cell[i], at[i]))
         ASSERT_TRUE(found.insert({hit.particle, hit.shift}).second) << "twice";
       // Places are known to 2^-16 cells per axis.
       const double loose = reach + 4 * std::ldexp(1.0, -16);
@@ -149,67 +149,67 @@ TEST(LatticeRows, GiveTheNodesBetweenTwoCoordinates) {
         const Cell &c = lattice.cell(m), &own = lattice.cell(n);
         if (c[1] == own[1] && c[2] == own[2] && c[0] >= low && c[0] <= high) expected.push_back(m);
       }
-      const auto [begin, end] = rows.nodes(r, low, high);
+      const auto [begin, end] = rows.cells(r, low, high);
       for (uint32_t m = begin; m < end; ++m) found.push_back(m);
       ASSERT_EQ(found, expected);
       for (int dz = -2; dz <= 2; ++dz)
         for (int dy = -2; dy <= 2; ++dy) {
-          // Any node of the row beside, by find() over all x.
+          // Any cell of the row beside, by find() over all x.
           const uint32_t beside = rows.near(r, dy, dz);
-          uint32_t any = kNoNode;
-          for (uint32_t m = 0; m < lattice.size() && any == kNoNode; ++m) {
+          uint32_t any = kNoCell;
+          for (uint32_t m = 0; m < lattice.size() && any == kNoCell; ++m) {
             const Cell &c = lattice.cell(m), &own = lattice.cell(n);
             if (lattice.find({c[0], own[1] + dy, own[2] + dz}) == m) any = m;
           }
-          ASSERT_EQ(beside, any == kNoNode ? kNoNode : rows.row_of(any));
+          ASSERT_EQ(beside, any == kNoCell ? kNoCell : rows.row_of(any));
         }
     }
   }
   EXPECT_GT(gaps, 100);
 }
 
-// What a set of nodes holds, by its flags.
-std::set<uint32_t> nodes_of(const emu::NodeSet& set, const Lattice& lattice) {
-  std::set<uint32_t> nodes;
+// What a set of cells holds, by its flags.
+std::set<uint32_t> cells_of_set(const emu::CellSet& set, const Lattice& lattice) {
+  std::set<uint32_t> cells;
   for (uint32_t n = 0; n < lattice.size(); ++n)
-    if (set.flags()[n] != 0) nodes.insert(n);
-  return nodes;
+    if (set.flags()[n] != 0) cells.insert(n);
+  return cells;
 }
 
-TEST(LatticeNodeSet, DilatesToTheNeighbourhoods) {
+TEST(LatticeCellSet, DilatesToTheNeighbourhoods) {
   Dice dice(3);
   size_t grown = 0;
   for (int round = 0; round < 400; ++round) {
     const Lattice lattice = random_lattice(dice);
     const emu::Rows rows(lattice);
-    emu::NodeSet set(lattice, rows), out(lattice, rows);
+    emu::CellSet set(lattice, rows), out(lattice, rows);
     std::set<uint32_t> expected;
     const int share = dice.draw(0, 30);
     for (uint32_t n = 0; n < lattice.size(); ++n) {
       if (!dice.chance(share)) continue;
       set.flags()[n] = 1;
-      for (const auto& near : lattice.neighbourhood(n)) expected.insert(near.node);
+      for (const auto& near : lattice.neighbourhood(n)) expected.insert(near.cell);
     }
     set.survey(rows);
-    const auto before = nodes_of(set, lattice);
+    const auto before = cells_of_set(set, lattice);
     for (int time = 0; time < 2; ++time) {  // the second time over its own result
       out.dilate(set, lattice, rows);
-      ASSERT_EQ(nodes_of(out, lattice), expected);
+      ASSERT_EQ(cells_of_set(out, lattice), expected);
       ASSERT_EQ(out.count(rows), expected.size());
     }
-    ASSERT_EQ(nodes_of(set, lattice), before);
+    ASSERT_EQ(cells_of_set(set, lattice), before);
     std::set<uint32_t> seen;
     out.for_each(rows, [&](uint32_t n) { seen.insert(n); });
     ASSERT_EQ(seen, expected);
     grown += expected.size() - before.size();
     out.clear(rows);
-    ASSERT_TRUE(nodes_of(out, lattice).empty());
+    ASSERT_TRUE(cells_of_set(out, lattice).empty());
   }
   EXPECT_GT(grown, 5000u);
 }
 
-// Two lattices of as many nodes and rows, but other rows: what one leaves behind may not reach the other.
-TEST(LatticeNodeSet, DilatesInTurnOverTwoLattices) {
+// Two lattices of as many cells and rows, but other rows: what one leaves behind may not reach the other.
+TEST(LatticeCellSet, DilatesInTurnOverTwoLattices) {
   const auto rows_of_lengths = [](std::initializer_list<int> lengths) {
     std::vector<Cell> cells;
     int z = 0;
@@ -223,12 +223,12 @@ TEST(LatticeNodeSet, DilatesInTurnOverTwoLattices) {
   ASSERT_EQ(one.size(), two.size());
   const emu::Rows rows_one(one), rows_two(two);
   ASSERT_EQ(rows_one.count(), rows_two.count());
-  const auto dilated = [](const Lattice& lattice, const emu::Rows& rows, uint32_t node) {
-    emu::NodeSet set(lattice, rows), out(lattice, rows);
-    set.flags()[node] = 1;
+  const auto dilated = [](const Lattice& lattice, const emu::Rows& rows, uint32_t cell) {
+    emu::CellSet set(lattice, rows), out(lattice, rows);
+    set.flags()[cell] = 1;
     set.survey(rows);
     out.dilate(set, lattice, rows);
-    return nodes_of(out, lattice);
+    return cells_of_set(out, lattice);
   };
   EXPECT_EQ(dilated(one, rows_one, 6), (std::set<uint32_t>{5, 6, 7}));
   EXPECT_EQ(dilated(two, rows_two, 3), (std::set<uint32_t>{2, 3, 4}));
@@ -238,9 +238,9 @@ TEST(LatticeNodeSet, DilatesInTurnOverTwoLattices) {
 TEST(LatticeMembers, KeepTheOrderOfSlotsAndRefuseInTheOrderOfAxes) {
   // 0 1 2 along x, capacity 3.
   const Lattice lattice({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {});
-  const auto ids = [](const emu::Members& members, uint32_t node) {
+  const auto ids = [](const emu::Members& members, uint32_t cell) {
     std::vector<uint32_t> list;
-    members.for_each(node, [&](uint32_t id) { list.push_back(id); });
+    members.for_each(cell, [&](uint32_t id) { list.push_back(id); });
     return list;
   };
   const auto filled = [&] {
@@ -252,7 +252,7 @@ TEST(LatticeMembers, KeepTheOrderOfSlotsAndRefuseInTheOrderOfAxes) {
   };
   std::vector<emu::Leaving> leaving;
   {
-    // The head and the tail of node 1 leave, one comes from above, one from below: below stands first.
+    // The head and the tail of cell 1 leave, one comes from above, one from below: below stands first.
     emu::Members members = filled();
     const std::vector<emu::Crossing> crossings{
         {3, {-1, 0, 0}}, {6, {1, 0, 0}}, {0, {1, 0, 0}}, {2, {-1, 0, 0}}};
@@ -260,32 +260,32 @@ TEST(LatticeMembers, KeepTheOrderOfSlotsAndRefuseInTheOrderOfAxes) {
     EXPECT_EQ(ids(members, 0), (std::vector<uint32_t>{5, 2}));
     EXPECT_EQ(ids(members, 1), (std::vector<uint32_t>{1, 0, 3}));
     EXPECT_EQ(ids(members, 2), (std::vector<uint32_t>{4, 6}));
-    EXPECT_EQ(members.nodes()[6], 2u);
+    EXPECT_EQ(members.cells()[6], 2u);
     ASSERT_EQ(leaving.size(), 4u);
-    EXPECT_EQ(std::tuple(leaving[0].node, leaving[0].slot), std::tuple(0u, 1u));
-    EXPECT_EQ(std::tuple(leaving[1].node, leaving[1].slot), std::tuple(1u, 0u));
-    EXPECT_EQ(std::tuple(leaving[2].node, leaving[2].slot), std::tuple(1u, 2u));
-    EXPECT_EQ(std::tuple(leaving[3].node, leaving[3].slot), std::tuple(2u, 1u));
+    EXPECT_EQ(std::tuple(leaving[0].cell, leaving[0].slot), std::tuple(0u, 1u));
+    EXPECT_EQ(std::tuple(leaving[1].cell, leaving[1].slot), std::tuple(1u, 0u));
+    EXPECT_EQ(std::tuple(leaving[2].cell, leaving[2].slot), std::tuple(1u, 2u));
+    EXPECT_EQ(std::tuple(leaving[3].cell, leaving[3].slot), std::tuple(2u, 1u));
   }
   {
-    // A full node takes as many as leave it in the same axis, and refuses one more: the last to come.
+    // A full cell takes as many as leave it in the same axis, and refuses one more: the last to come.
     emu::Members members = filled();
     const std::vector<emu::Crossing> crossings{{0, {1, 0, 0}}, {2, {1, 0, 0}}, {3, {-1, 0, 0}}};
     const auto refused = members.migrate(crossings, leaving);
     ASSERT_EQ(refused.size(), 1u);
     EXPECT_EQ(refused[0].fault, Fault::full_x);
     EXPECT_EQ(refused[0].particle, 3u);
-    EXPECT_EQ(refused[0].node, 1u);
+    EXPECT_EQ(refused[0].cell, 1u);
   }
   {
-    // Who finds no node along x ends the step there, though another would find none along z.
+    // Who finds no cell along x ends the step there, though another would find none along z.
     emu::Members members = filled();
     const std::vector<emu::Crossing> crossings{{4, {0, 0, 1}}, {3, {1, 0, 0}}};
     const auto refused = members.migrate(crossings, leaving);
     ASSERT_EQ(refused.size(), 1u);
     EXPECT_EQ(refused[0].fault, Fault::left_x);
     EXPECT_EQ(refused[0].particle, 3u);
-    EXPECT_EQ(refused[0].node, 2u);
+    EXPECT_EQ(refused[0].cell, 2u);
   }
   EXPECT_FALSE([&] {
     emu::Members members = filled();
@@ -306,7 +306,7 @@ TEST(LatticeCut, GivesEachRankItsShareToWithinAPlane) {
     for (auto& w : weight) w = static_cast<uint16_t>(dice.draw(0, 9));
     const int ranks = dice.draw(2, 8);
     for (int axis = 0; axis < 3; ++axis) {
-      const auto owner = emu::cut_nodes(lattice, weight, ranks, std::string(1, "xyz"[axis]));
+      const auto owner = emu::cut_cells(lattice, weight, ranks, std::string(1, "xyz"[axis]));
       std::vector<double> held(static_cast<size_t>(ranks)), plane(static_cast<size_t>(size[axis]));
       double total = 0;
       std::map<int, int> rank_of_plane;
@@ -327,7 +327,7 @@ TEST(LatticeCut, GivesEachRankItsShareToWithinAPlane) {
       const double heaviest = *std::max_element(plane.begin(), plane.end());
       for (const double h : held) ASSERT_NEAR(h, total / ranks, 1.5 * heaviest) << ranks << " ranks";
     }
-    const auto bricks = emu::cut_nodes(lattice, weight, ranks, "bricks");
+    const auto bricks = emu::cut_cells(lattice, weight, ranks, "bricks");
     std::vector<double> held(static_cast<size_t>(ranks));
     double total = 0;
     for (uint32_t n = 0; n < lattice.size(); ++n) {
@@ -345,12 +345,12 @@ TEST(LatticeCut, GivesEachRankItsShareToWithinAPlane) {
 TEST(LatticeCut, GivesFewNodesToManyRanks) {
   const Lattice one({{5, -3, 7}}, {});
   for (const char* how : {"bricks", "x", "y", "z"}) {
-    EXPECT_LT(emu::cut_nodes(one, {4}, 8, how).at(0), 8);
-    EXPECT_LT(emu::cut_nodes(one, {0}, 8, how).at(0), 8);
-    EXPECT_TRUE(emu::cut_nodes(Lattice({}, {}), {}, 8, how).empty());
+    EXPECT_LT(emu::cut_cells(one, {4}, 8, how).at(0), 8);
+    EXPECT_LT(emu::cut_cells(one, {0}, 8, how).at(0), 8);
+    EXPECT_TRUE(emu::cut_cells(Lattice({}, {}), {}, 8, how).empty());
   }
   const Lattice two({{0, 0, 0}, {1, 0, 0}}, {});
-  const auto owner = emu::cut_nodes(two, {3, 3}, 2, "bricks");
+  const auto owner = emu::cut_cells(two, {3, 3}, 2, "bricks");
   EXPECT_EQ(owner, (std::vector<uint16_t>{0, 1}));
 }
 

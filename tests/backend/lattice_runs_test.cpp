@@ -71,7 +71,7 @@ Case split() {
   return cooked("split", scene, 80);
 }
 
-// Springs of the nearest neighbours alone, in coarse formats and strongly damped: a blow wakes all nodes,
+// Springs of the nearest neighbours alone, in coarse formats and strongly damped: a blow wakes all cells,
 // then they come to rest one after another.
 Case blow() {
   Scene scene =
@@ -124,8 +124,8 @@ Case random_shots(uint64_t seed) {
   return cooked("shots " + std::to_string(seed), scene, 60);
 }
 
-// A chain at rest is hit from below in x: its first group, all of whose nodes lie ahead, must list the shot
-// from two nodes away, wherever the faces between them are. Or two pairs fly apart, and half of each against
+// A chain at rest is hit from below in x: its first group, all of whose cells lie ahead, must list the shot
+// from two cells away, wherever the faces between them are. Or two pairs fly apart, and half of each against
 // the other.
 Case random_chain(uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -204,7 +204,7 @@ TEST(LatticeRuns, ParticlesPassASeamWhileListsAreMended) {
   }
 }
 
-TEST(LatticeRuns, AHotGasIsSortedByNodeAgainAndAgain) {
+TEST(LatticeRuns, AHotGasIsSortedByCellAgainAndAgain) {
   for (const bool quiescence : {false, true}) {
     Count count;
     compare_some(hot_gas(), quiescence, count);
@@ -236,7 +236,7 @@ TEST(LatticeRuns, MendedListsJoinThreadsThatHadNoPairs) {
   }
 }
 
-TEST(LatticeRuns, AFlyerStaysAwakeThroughAllNodes) {
+TEST(LatticeRuns, AFlyerStaysAwakeThroughAllCells) {
   for (const bool quiescence : {false, true}) {
     Count count;
     compare_some(flyer(), quiescence, count);
@@ -247,7 +247,7 @@ TEST(LatticeRuns, AFlyerStaysAwakeThroughAllNodes) {
   }
 }
 
-// Golden names the lower id of the two; storage by node puts it behind the other as often as not.
+// Golden names the lower id of the two; storage by cell puts it behind the other as often as not.
 TEST(LatticeRuns, FaultsOfPairsNameTheLowerIdHoweverParticlesAreStored) {
   Count count;
   for (uint64_t seed = 1; seed <= 12; ++seed)

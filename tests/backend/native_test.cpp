@@ -22,7 +22,7 @@ int moves(const GoldenRun& golden) {
   int count = 0;
   for (size_t s = 1; s < golden.states.size(); ++s)
     for (size_t k = 0; k < golden.states[s].particles.size(); ++k)
-      count += golden.states[s].particles[k].node != golden.states[s - 1].particles[k].node;
+      count += golden.states[s].particles[k].cell != golden.states[s - 1].particles[k].cell;
   return count;
 }
 
@@ -107,14 +107,14 @@ TEST(NativeFaults, CapacityHoldsAtTheLimit) {
     ASSERT_FALSE(golden.fault);
     size_t fullest = 0;
     for (const auto& step : golden.order)
-      for (const auto& node : step) fullest = std::max(fullest, node.size());
+      for (const auto& cell : step) fullest = std::max(fullest, cell.size());
     EXPECT_EQ(fullest, 5u);
     c.steps = 12;
     EXPECT_EQ(compare(c.setup.plan, golden, run(c)).difference, "");
   }
 }
 
-TEST(NativeFaults, AFullNodeAtTheStartIsRefusedAsByGolden) {
+TEST(NativeFaults, AFullCellAtTheStartIsRefusedAsByGolden) {
   Case c = make_case("undamped_2x2x2");
   c.setup.plan.arch.capacity = 3;
   const GoldenRun golden = run_golden(c.setup, 1);

@@ -229,7 +229,7 @@ emu::RunResult run_lattice(const Case& c) {
     for (const Particle& p : particles[n]) {
       const emu::Bits word = emu::load_word(plan, p);
       host.load_data = word.word.data();
-      host.load_cell = plan.local_of(p.node);
+      host.load_cell = plan.local_of(p.cell);
       clock(n);
     }
   host.load_valid = 0;

@@ -43,7 +43,7 @@ std::array<std::vector<Int3>, emu::kSegments> halos(const Lattice& lattice,
     segments = self(axis - 1, self, n);
     for (int side = 0; side < 2; ++side) {
       const uint32_t other = lattice.neighbour(n, 2 * axis + side);
-      if (other == kNoNode) continue;
+      if (other == kNoCell) continue;
       auto& halo = segments[static_cast<size_t>(1 + 2 * axis + side)];
       for (const auto& sent : self(axis - 1, self, other))
         for (Int3 x : sent) {

@@ -22,26 +22,26 @@ namespace {
 struct Seen {
   uint64_t spans = 0, runs = 0, faults = 0;
   uint64_t stalls = 0;       // cycles in which a full queue held a streamer
-  uint64_t multi_pass = 0;   // node-steps with more own particles than lanes
+  uint64_t multi_pass = 0;   // cell-steps with more own particles than lanes
   uint64_t multi_beat = 0;   // steps of plans whose records take several beats
-  uint64_t empty_nodes = 0;  // node-steps
-  uint64_t full_nodes = 0;   // node-steps that hold the capacity
-  uint64_t leave = 0;        // particles that leave their node in a step
+  uint64_t empty_cells = 0;  // cell-steps
+  uint64_t full_cells = 0;   // cell-steps that hold the capacity
+  uint64_t leave = 0;        // particles that leave their cell in a step
   uint64_t leave_twice = 0;  // along two axes, so that an arrival leaves again
   uint64_t leave_thrice = 0;
-  uint64_t crowds = 0;                          // node-steps in which several particles leave one node
-  uint64_t emptied = 0;                         // nodes that hold particles before a step and none after
+  uint64_t crowds = 0;                          // cell-steps in which several particles leave one cell
+  uint64_t emptied = 0;                         // cells that hold particles before a step and none after
   uint64_t busy = 0, filtered = 0, walked = 0;  // TimingCounters
   uint64_t checked = 0;
   uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, damped = 0, rings_of_3 = 0, lone_nodes = 0,
            flat = 0, shared = 0, coarse = 0, narrow = 0, serial = 0, bricks = 0;
 };
 
-emu::NodeSlots slots_of(const FixedRule& rule, const Golden& golden) {
-  emu::NodeSlots slots;
-  for (const auto& node : golden.nodes()) {
+emu::CellSlots slots_of(const FixedRule& rule, const Golden& golden) {
+  emu::CellSlots slots;
+  for (const auto& cell : golden.cells()) {
     slots.first.push_back(static_cast<uint32_t>(slots.x[0].size()));
-    for (const Particle& p : node) {
+    for (const Particle& p : cell) {
       const Int3 x = visible(rule, p.x);
       for (size_t a = 0; a < 3; ++a) slots.x[a].push_back(static_cast<int32_t>(x[a]));
     }
@@ -50,11 +50,11 @@ emu::NodeSlots slots_of(const FixedRule& rule, const Golden& golden) {
   return slots;
 }
 
-// Where each particle is, by id: node and slot.
+// Where each particle is, by id: cell and slot.
 std::map<uint32_t, std::pair<uint32_t, uint32_t>> places_of(const Golden& golden) {
   std::map<uint32_t, std::pair<uint32_t, uint32_t>> places;
-  for (uint32_t n = 0; n < golden.nodes().size(); ++n)
-    for (uint32_t k = 0; k < golden.nodes()[n].size(); ++k) places[golden.nodes()[n][k].id] = {n, k};
+  for (uint32_t n = 0; n < golden.cells().size(); ++n)
+    for (uint32_t k = 0; k < golden.cells()[n].size(); ++k) places[golden.cells()[n][k].id] = {n, k};
   return places;
 }
 
@@ -78,10 +78,10 @@ std::vector<emu::Leaving> leaving_between(const Lattice& lattice,
 
 void note(Seen& seen, const Plan& plan, const Golden& golden, const std::vector<emu::Leaving>& leaving) {
   const auto& arch = plan.arch;
-  for (const auto& node : golden.nodes()) {
-    seen.multi_pass += static_cast<int>(node.size()) > arch.filter_lanes;
-    seen.empty_nodes += node.empty();
-    seen.full_nodes += static_cast<int>(node.size()) == arch.capacity;
+  for (const auto& cell : golden.cells()) {
+    seen.multi_pass += static_cast<int>(cell.size()) > arch.filter_lanes;
+    seen.empty_cells += cell.empty();
+    seen.full_cells += static_cast<int>(cell.size()) == arch.capacity;
   }
   std::map<uint32_t, uint32_t> from;
   for (const auto& l : leaving) {
@@ -89,9 +89,9 @@ void note(Seen& seen, const Plan& plan, const Golden& golden, const std::vector<
     ++seen.leave;
     seen.leave_twice += axes == 2;
     seen.leave_thrice += axes == 3;
-    seen.crowds += ++from[l.node] == 2;
+    seen.crowds += ++from[l.cell] == 2;
   }
-  for (const auto& [node, count] : from) seen.emptied += count == golden.nodes()[node].size();
+  for (const auto& [cell, count] : from) seen.emptied += count == golden.cells()[cell].size();
   seen.multi_beat += plan.words.halo_beats > 1 || plan.words.migrate_beats > 1;
 }
 
@@ -163,16 +163,16 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   return {};
 }
 
-// The most particles that a node holds in the case's steps.
+// The most particles that a cell holds in the case's steps.
 int crowd_of(const Case& c) {
   size_t most = 1;
   for (const auto& step : run_golden(c.setup, c.steps).order)
-    for (const auto& node : step) most = std::max(most, node.size());
+    for (const auto& cell : step) most = std::max(most, cell.size());
   return static_cast<int>(most);
 }
 
 // The same scene and rule on another machine: everything of the arch that only changes cycles is drawn anew.
-// The capacity is sometimes what the fullest node holds.
+// The capacity is sometimes what the fullest cell holds.
 Case rebuilt(Case c, uint64_t seed) {
   std::mt19937_64 random(seed * 7919);
   const auto draw = [&random](int low, int high) {
@@ -235,8 +235,8 @@ TEST(TimingRandom, EqualsTheClockedNode) {
                                                              {"stalls", seen.stalls},
                                                              {"multi_pass", seen.multi_pass},
                                                              {"multi_beat", seen.multi_beat},
-                                                             {"empty_nodes", seen.empty_nodes},
-                                                             {"full_nodes", seen.full_nodes},
+                                                             {"empty_cells", seen.empty_cells},
+                                                             {"full_cells", seen.full_cells},
                                                              {"leave", seen.leave},
                                                              {"leave_twice", seen.leave_twice},
                                                              {"leave_thrice", seen.leave_thrice},
@@ -362,7 +362,7 @@ TEST(TimingEngine, EqualsTheClockedNode) {
                               [&](uint32_t k) { return particles[k]; }, {});
     emu::TimingModel model(plan, 1);
     std::vector<PhaseSpan> spans(size_t{plan.lattice.size()} * kPhases);
-    emu::NodeSlots slots;
+    emu::CellSlots slots;
     for (uint64_t step = 0; step < trace.steps(); ++step) {
       engine.slots(slots);
       engine.step();
@@ -382,7 +382,7 @@ TEST(TimingModel, RefusesWhatDoesNotFit) {
   const Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
   const auto slots = slots_of(plan.rule, golden);
   std::vector<PhaseSpan> spans(size_t{plan.lattice.size()} * kPhases);
-  const auto refusal = [&](const emu::NodeSlots& given, const std::vector<emu::Leaving>& leaving,
+  const auto refusal = [&](const emu::CellSlots& given, const std::vector<emu::Leaving>& leaving,
                            std::span<PhaseSpan> into, int times = 1) -> std::string {
     emu::TimingModel model(plan, 1);
     try {
@@ -403,15 +403,15 @@ TEST(TimingModel, RefusesWhatDoesNotFit) {
   EXPECT_EQ(refusal(wrong, {}, spans), "slots without positions");
   wrong = slots;
   for (size_t n = 1; n < wrong.first.size(); ++n) wrong.first[n] = wrong.first.back();
-  EXPECT_EQ(refusal(wrong, {}, spans), "a node holds more than its capacity");
+  EXPECT_EQ(refusal(wrong, {}, spans), "a cell holds more than its capacity");
   EXPECT_EQ(refusal(slots, {{0, 200, {1, 0, 0}}}, spans), "no such particle leaves");
   EXPECT_EQ(refusal(slots, {{plan.lattice.size(), 0, {1, 0, 0}}}, spans), "no such particle leaves");
   uint32_t first = 0;  // node 0 is the lowest corner; the margin of this case is 0
   while (slots.first[first + 1] == 0) ++first;
-  ASSERT_EQ(plan.lattice.neighbour(first, 0), kNoNode);
+  ASSERT_EQ(plan.lattice.neighbour(first, 0), kNoCell);
   EXPECT_EQ(refusal(slots, {{first, 0, {-1, 0, 0}}}, spans), "a particle leaves the lattice");
   EXPECT_EQ(refusal(slots, {{first, 0, {1, 0, 0}}}, spans, 2),
-            "a node does not hold what the step before left there");
+            "a cell does not hold what the step before left there");
   emu::TimingModel model(plan, 1);
   EXPECT_THROW(model.resume(std::vector<uint64_t>(plan.lattice.size() + 1)), std::invalid_argument);
 }
@@ -438,7 +438,7 @@ TEST(TimingModel, OneNodeByHand) {
   const Plan& plan = c.setup.plan;
   ASSERT_EQ(plan.lattice.size(), 1u);
   const Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
-  const uint64_t n = golden.nodes()[0].size();
+  const uint64_t n = golden.cells()[0].size();
   ASSERT_EQ(n, 4u);
   std::vector<PhaseSpan> spans(kPhases);
   emu::TimingModel model(plan, 1);

@@ -30,7 +30,7 @@ uint64_t cycles_of(const cuboct::Setup& setup, uint64_t steps) {
   const Trace trace =
       emu::run_plain(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
   std::vector<uint64_t> dumped(trace.nodes);
-  for (const Particle& p : trace.frames.back().particles) ++dumped[p.node];
+  for (const Particle& p : trace.frames.back().particles) ++dumped[p.cell];
   uint64_t last = 0;
   for (uint64_t n = 0; n < trace.nodes; ++n) {
     const size_t row = ((steps - 1) * trace.nodes + n) * kPhases;
@@ -113,7 +113,7 @@ TEST(Board, OfABrickHoldsGoldensBitsAndFindsTheFaultsCell) {
   EXPECT_EQ(held.frames.size(), 25u);
   const Trace golden = golden_trace(thrown, 24);
   ASSERT_TRUE(golden.stop);
-  EXPECT_EQ(golden.stop->node, 1u);
+  EXPECT_EQ(golden.stop->cell, 1u);
   for (const uint64_t steps : {7, 24}) {
     const Trace whole = run_on_board(host, thrown, {.steps = steps, .frames = {0, steps}, .hash_every = 0});
     ASSERT_TRUE(whole.stop);
@@ -186,7 +186,7 @@ TEST(Board, TheCommandDrivesIt) {
   EXPECT_EQ(matched.code, 0);
   const Answer stopped = with({"crosscheck", board_file("thrown.toml"), "--engines", "fpga,lattice"});
   EXPECT_EQ(stopped.out,
-            "matched 48 updates over 6 steps in 2 engines\nall stopped: step 6, node 1 at cell (1, 0, 0), "
+            "matched 48 updates over 6 steps in 2 engines\nall stopped: step 6, cell 1 at (1, 0, 0), "
             "particle 1: "
             "left the lattice along y (0)\n");
   EXPECT_EQ(stopped.code, 1);

@@ -86,7 +86,7 @@ Trace golden_trace(const Setup& setup, uint64_t steps) {
       golden.step();
     }
   } catch (const RunError& e) {
-    trace.stop = StopReason{e.fault, e.step, e.node, e.particle, e.number, e.what()};
+    trace.stop = StopReason{e.fault, e.step, e.cell, e.particle, e.number, e.what()};
   }
   return trace;
 }

@@ -327,9 +327,9 @@ TEST_F(Checkpoint, ServesTheStateBeforeAFault) {
     Strings list{path("stray.toml"), "--out", path("stray.h5")};
     list.insert(list.end(), more.begin(), more.end());
     EXPECT_EQ(lattice(list), 1);
-    EXPECT_EQ(contents(path("lattice.err")),
-              path("stray.toml") +
-                  ": step 350, node 1 at cell (0, -1, 0), particle 0: left the lattice along y (0)\n");
+    EXPECT_EQ(
+        contents(path("lattice.err")),
+        path("stray.toml") + ": step 350, cell 1 at (0, -1, 0), particle 0: left the lattice along y (0)\n");
     const Trace trace = read_trace(path("stray.h5"));
     EXPECT_EQ(trace.stop, golden.stop);
     EXPECT_EQ(trace.state_hash, golden.state_hash);

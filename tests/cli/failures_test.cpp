@@ -180,7 +180,7 @@ TEST(Stop, SaysWhatHelpsAgainstAFullNode) {
   EXPECT_EQ(answer.code, 1);
   EXPECT_NE(
       answer.out.find("\nlast look         step 33: nothing amiss\n"
-                      "advice            node (1 1 3) at (1.868, 1.868, 4.696) m: particle 154 came, and "
+                      "advice            cell (1 1 3) at (1.868, 1.868, 4.696) m: particle 154 came, and "
                       "the node holds 5 particles; raise node.capacity, or take a shorter node.cell_edge "
                       "where it is longer than the cutoff\n"
                       "stopped           step 33, node "),
@@ -194,8 +194,8 @@ TEST(Stop, SaysWhatHelpsAgainstAVelocityThatSaturates) {
   const Answer answer = run(bench, scene("velocity"), "");
   EXPECT_EQ(answer.code, 1);
   EXPECT_NE(
-      answer.out.find("\nadvice            node (0 0 -15) at (0.45, 0.45, 3.45) m: particle 0 would move "
-                      "1.03 nodes in a step, 1 fit; use a smaller run.dt or a larger node.cell_edge; a run "
+      answer.out.find("\nadvice            cell (0 0 -15) at (0.45, 0.45, 3.45) m: particle 0 would move "
+                      "1.03 cells in a step, 1 fit; use a smaller run.dt or a larger node.cell_edge; a run "
                       "that was stable until then met an impact, or its dt is too long\n"),
       std::string::npos)
       << answer.out;

@@ -62,7 +62,7 @@ int run(int argc, char** argv) {
     try {
       golden.step();
     } catch (const RunError& e) {
-      trace.stop = StopReason{e.fault, e.step, e.node, e.particle, e.number, e.what()};
+      trace.stop = StopReason{e.fault, e.step, e.cell, e.particle, e.number, e.what()};
       break;
     }
   }

@@ -223,7 +223,7 @@ TEST_F(Hostile, AStrangersTraceIsRefusedInOneLine) {
     return answer.err;
   };
   const std::string is_none = out() + "/trace.h5 is no trace of this scene: ";
-  EXPECT_EQ(refused([](Trace& t) { t.frames[1].particles[3].node = 1u << 31; }),
+  EXPECT_EQ(refused([](Trace& t) { t.frames[1].particles[3].cell = 1u << 31; }),
             is_none + "frame of step 10, particle 3: cell 2147483648 is not below 27\n");
   EXPECT_EQ(refused([](Trace& t) { t.frames[1].particles[3].type = 200; }),
             is_none + "frame of step 10, particle 3: type 200 is not below 1\n");

@@ -23,7 +23,7 @@ std::string stray(const Bench& bench, const std::string& reach = "") {
   return path;
 }
 
-constexpr const char* kLeft = "step 350, node 1 at cell (0, -1, 0), particle 0: left the lattice along y (0)";
+constexpr const char* kLeft = "step 350, cell 1 at (0, -1, 0), particle 0: left the lattice along y (0)";
 
 TEST(Stop, NamesStepNodeAndParticle) {
   const Bench bench(false);

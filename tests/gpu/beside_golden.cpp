@@ -16,7 +16,7 @@ namespace cuboct::test {
 namespace {
 
 std::string text_of(const RunError& e) {
-  return fmt::format("{} step {} node {} particle {} number {}: {}", to_string(e.fault), e.step, e.node,
+  return fmt::format("{} step {} cell {} particle {} number {}: {}", to_string(e.fault), e.step, e.cell,
                      e.particle, e.number, e.what());
 }
 
@@ -127,7 +127,7 @@ void compare(const Case& c, const GoldenPath& golden, const gpu::Options& option
   met.updates += hashes.size() * plan.particles;
   met.faults += fault.has_value();
   for (size_t k = 0; k < found.particles.size(); ++k)
-    met.crossed += found.particles[k].node != c.setup.initial.particles[k].node;
+    met.crossed += found.particles[k].cell != c.setup.initial.particles[k].cell;
   met.lists += counters.list_builds;
   met.golden_steps += counters.golden_steps;
   met.halo += counters.halo_particles;

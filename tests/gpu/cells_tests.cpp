@@ -86,7 +86,7 @@ TEST(GpuCells, BordersAndCopiesAreTheSameCellsInTheSameOrder) {
     }
     const int along = dice.draw(0, 2), slabs = dice.draw(1, 4);
     g.total[along] = std::max({2 * g.reach * slabs + dice.draw(0, 9), g.total[0], g.total[1], g.total[2]});
-    Lattice nodes;
+    Lattice lattice;
     if (!g.folds && dice.chance(50) && !(g.wraps[0] || g.wraps[1] || g.wraps[2])) {
       std::vector<Cell> some;
       for (int x = 0; x < g.total[0]; ++x)
@@ -94,8 +94,8 @@ TEST(GpuCells, BordersAndCopiesAreTheSameCellsInTheSameOrder) {
           for (int z = 0; z < g.total[2]; ++z)
             if (dice.chance(40)) some.push_back({x + g.low[0], y + g.low[1], z + g.low[2]});
       if (some.empty()) continue;
-      nodes = Lattice(some, {0, 0, 0});
-      g.nodes = &nodes;
+      lattice = Lattice(some, {0, 0, 0});
+      g.lattice = &lattice;
       ++sparse;
     }
     std::array<std::vector<uint64_t>, 3> per_plane;
@@ -128,7 +128,7 @@ TEST(GpuCells, BordersAndCopiesAreTheSameCellsInTheSameOrder) {
         Cell there = mine[r];
         for (int a = 0; a < 3; ++a) there[a] += g.low[a];
         ASSERT_EQ(view_of(cells, slab).find({there[0], there[1], there[2]}), r);
-        ASSERT_TRUE(!g.nodes || nodes.find(there) != kNoNode);
+        ASSERT_TRUE(!g.lattice || lattice.find(there) != kNoCell);
         for (int a = 0; a < 3; ++a) {
           int32_t image[3] = {there[0], there[1], there[2]};
           image[a] += g.total[a] * (dice.chance(50) ? 1 : -1);

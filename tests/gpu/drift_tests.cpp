@@ -71,7 +71,7 @@ struct Row {
       p.x = {slow > 0 ? edge - 20 * unit : 20 * unit, (k % 2 == 0 ? 1 : 3) * edge / 4, edge / 2};
       if (k == kFast) p.x = {edge / 2, 0, edge - 1}, p.v = {0, edge / 400, -edge / 400};
       Int3 from;
-      for (int a = 0; a < 3; ++a) from[a] = of.setup.plan.lattice.cell(p.node)[a] * edge + p.x[a];
+      for (int a = 0; a < 3; ++a) from[a] = of.setup.plan.lattice.cell(p.cell)[a] * edge + p.x[a];
       first.push_back(from);
     }
   }
@@ -96,10 +96,10 @@ TEST(FixedDrift, IsTheSumOfItsVelocities) {
       for (const Particle& p : state.particles) {
         const Particle& before = row.of.setup.initial.particles[p.id];
         ASSERT_EQ(p.v, before.v);
-        crossed += p.node != before.node;
+        crossed += p.cell != before.cell;
         for (int a = 0; a < 3; ++a) {
           const int64_t whole = row.first[p.id][a] + static_cast<int64_t>(row.of.steps) * p.v[a];
-          ASSERT_EQ(plan.lattice.cell(p.node)[a], whole >> frac) << "particle " << p.id << ", axis " << a;
+          ASSERT_EQ(plan.lattice.cell(p.cell)[a], whole >> frac) << "particle " << p.id << ", axis " << a;
           ASSERT_EQ(p.x[a], whole & ((int64_t{1} << frac) - 1)) << "particle " << p.id << ", axis " << a;
         }
       }

@@ -131,7 +131,7 @@ TEST(FixedRandom, SkinsBelowTheAnchorsAreNotTrusted) {
   c.setup = make_setup(c.scene, arch);
   constexpr int64_t kStep = int64_t{1} << 18, kMiddle = 300 * kStep + kStep / 2, kMove = kStep * 3 / 10;
   auto& particles = c.setup.initial.particles;
-  ASSERT_EQ(particles[0].node, particles[1].node);
+  ASSERT_EQ(particles[0].cell, particles[1].cell);
   c.setup.plan.rule.types[0].velocity = {kMove << 12, 0, 0};
   particles[0].v = {kMove << 12, 0, 0};
   particles[0].x = {kMiddle - kMove, kMiddle, kMiddle};
@@ -212,7 +212,7 @@ TEST(FixedFaults, AreGoldensWhateverTheSlabs) {
   EXPECT_GE(runs, 33u);
 }
 
-// A gas that damps and at last collides faster than its relative velocities are wide, and another whose nodes
+// A gas that damps and at last collides faster than its relative velocities are wide, and another whose cells
 // run full: most have several particles at fault, of which golden names one.
 TEST(FixedFaults, OfGasesAreGoldens) {
   Met met;
@@ -244,8 +244,8 @@ TEST(FixedFaults, OfGasesAreGoldens) {
   EXPECT_GT(met.crossed, 10000u);
 }
 
-// Nodes that are as full as they may be, and particles that come and go, but never one too many.
-TEST(FixedFaults, FullNodesAreNoFault) {
+// Cells that are as full as they may be, and particles that come and go, but never one too many.
+TEST(FixedFaults, FullCellsAreNoFault) {
   Met met;
   uint64_t near_misses = 0;
   for (uint64_t seed = 1; seed <= 6; ++seed) {
@@ -272,7 +272,7 @@ TEST(FixedFaults, FullNodesAreNoFault) {
     }
     near_misses += one.golden_steps;
     met.crossed += one.crossed;
-    // The step before a node is full asks golden; others do not.
+    // The step before a cell is full asks golden; others do not.
     EXPECT_LT(one.golden_steps, one.runs * c.steps / 4) << c.name;
   }
   EXPECT_GT(near_misses, 0u);

@@ -27,7 +27,7 @@ expect 0 'matched 1280 updates over 5 steps in 3 engines
 matched 1080 phase times' \
   "$cuboct" crosscheck "$scene" --arch retry.toml --steps 5 --engines golden,systemc,lattice
 expect 1 'systemc: 1 faults injected (0 flipped, 0 dropped, 0 repeated, 1 in acknowledgements), 1 detected, 0 healed
-systemc stopped after 1 matched steps: step 1, node 26 at cell (2, 2, 2), link +z: wrong check of a beat' \
+systemc stopped after 1 matched steps: step 1, node of cell 26 at (2, 2, 2), link +z: wrong check of a beat' \
   "$cuboct" crosscheck "$scene" --arch detect.toml --steps 5 --engines golden,systemc --inject-faults 1
 # Without a check the comparison finds what went wrong.
 if "$cuboct" crosscheck "$scene" --steps 5 --engines golden,systemc --inject-faults 20 --fault-seed 1 >out 2>errors; then

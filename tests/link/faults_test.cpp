@@ -91,7 +91,7 @@ void EachBeat::is_found_and_named(const Case& c) {
     EXPECT_EQ(before_stop(plan, golden, got), "");
     const uint32_t receiver = plan.neighbour(t.node, t.face);
     const bool by_sender = t.kind == FaultKind::ack || stop.fault == Fault::link_silent;
-    EXPECT_EQ(stop.node, plan.cell_of(by_sender ? t.node : receiver, 0));
+    EXPECT_EQ(stop.cell, plan.cell_of(by_sender ? t.node : receiver, 0));
     EXPECT_EQ(stop.number, by_sender ? t.face : t.face ^ 1);
     EXPECT_LE(stop.step, 2u);
     const Fault expected = t.kind == FaultKind::flip || t.kind == FaultKind::ack ? Fault::link_check
@@ -198,10 +198,11 @@ TEST(Detect, SaysWhereInWords) {
     options.faults.target = {0, 1, beat, kind};
     return run(c, options).trace.stop->text;
   };
-  EXPECT_EQ(text(FaultKind::flip, 0), "step 0, node 1 at cell (1, 0, 0), link -x: wrong check of a beat");
-  EXPECT_EQ(text(FaultKind::repeat, 0), "step 0, node 1 at cell (1, 0, 0), link -x: beat lost or repeated");
-  EXPECT_EQ(text(FaultKind::drop, 0), "step 0, node 1 at cell (1, 0, 0), link -x: beat lost or repeated");
-  EXPECT_EQ(text(FaultKind::ack, 0), "step 0, node 0 at cell (0, 0, 0), link +x: wrong check of a beat");
+  EXPECT_EQ(text(FaultKind::flip, 0), "step 0, node of cell 1 at (1, 0, 0), link -x: wrong check of a beat");
+  EXPECT_EQ(text(FaultKind::repeat, 0),
+            "step 0, node of cell 1 at (1, 0, 0), link -x: beat lost or repeated");
+  EXPECT_EQ(text(FaultKind::drop, 0), "step 0, node of cell 1 at (1, 0, 0), link -x: beat lost or repeated");
+  EXPECT_EQ(text(FaultKind::ack, 0), "step 0, node of cell 0 at (0, 0, 0), link +x: wrong check of a beat");
 }
 
 // Without a check the same faults make wrong bits, or a machine that waits for ever, and no one says where.

@@ -47,9 +47,9 @@ bool is_right(const Plan& plan, const std::vector<uint64_t>& golden, const emu::
   ++tally.stopped;
   ++tally.by_kind[static_cast<int>(stop.fault) - static_cast<int>(Fault::link_check)];
   const emu::FaultPlace& at = run.first_fault;
-  const bool by_sender = stop.node == at.node && stop.number == at.face;
+  const bool by_sender = stop.cell == at.node && stop.number == at.face;
   const bool by_receiver =
-      stop.node == plan.lattice.neighbour(at.node, at.face) && stop.number == (at.face ^ 1);
+      stop.cell == plan.lattice.neighbour(at.node, at.face) && stop.number == (at.face ^ 1);
   return by_sender || by_receiver;
 }
 

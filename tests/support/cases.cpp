@@ -357,7 +357,7 @@ Case hollowed(Case c) {
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
   std::vector<bool> held(plan.lattice.size());
   const auto note = [&] {
-    for (uint32_t n = 0; n < held.size(); ++n) held[n] = held[n] || !golden.nodes()[n].empty();
+    for (uint32_t n = 0; n < held.size(); ++n) held[n] = held[n] || !golden.cells()[n].empty();
   };
   note();
   for (uint64_t step = 0; step < c.steps; ++step) golden.step(), note();
@@ -365,7 +365,7 @@ Case hollowed(Case c) {
   for (uint32_t n = 0; n < held.size(); ++n)
     if (held[n]) cells.push_back(plan.lattice.cell(n));
   Lattice lattice(cells, plan.lattice.period());
-  for (Particle& p : c.setup.initial.particles) p.node = lattice.find(plan.lattice.cell(p.node));
+  for (Particle& p : c.setup.initial.particles) p.cell = lattice.find(plan.lattice.cell(p.cell));
   plan = make_plan(plan.rule, plan.arch, std::move(lattice), plan.origin, plan.particles);
   return c;
 }

@@ -265,7 +265,7 @@ TEST(AutoWidths, ACellHoldsWhatComesIn) {
   const cuboct::Setup setup = make_setup(scene, {});
   uint32_t fullest = 0;
   std::vector<uint32_t> count(setup.plan.lattice.size());
-  for (const Particle& p : setup.initial.particles) fullest = std::max(fullest, ++count[p.node]);
+  for (const Particle& p : setup.initial.particles) fullest = std::max(fullest, ++count[p.cell]);
   EXPECT_EQ(fullest, 32u);
   Golden golden(setup.plan.rule, setup.plan.lattice, setup.plan.arch.capacity, setup.initial);
   EXPECT_NO_THROW({

@@ -39,7 +39,7 @@ TEST(Bricks, CutALatticeFromItsLowestCell) {
     EXPECT_EQ(bricks.local_of(c), static_cast<uint32_t>(at[0] % 2 + 2 * (at[1] % 3)));
     EXPECT_EQ(bricks.cell(bricks.node_of(c), bricks.local_of(c)), c);
   }
-  EXPECT_EQ(bricks.cell(5, 1), kNoNode);
+  EXPECT_EQ(bricks.cell(5, 1), kNoCell);
 }
 
 // A ring of five in bricks of two closes with a brick of one; a ring in one brick is its own neighbour.

@@ -86,7 +86,7 @@ TEST(Compare, NamesEachFieldOfAStop) {
   EXPECT_EQ(difference_after([](Trace& t) { t.stop->fault = Fault::sum; }),
             "stop, fault: golden velocity out of width, rtl sum of kicks out of width");
   EXPECT_EQ(difference_after([](Trace& t) { t.stop->step = 1; }), "stop, step: golden 2, rtl 1");
-  EXPECT_EQ(difference_after([](Trace& t) { t.stop->node = 0; }), "stop, node: golden 1, rtl 0");
+  EXPECT_EQ(difference_after([](Trace& t) { t.stop->cell = 0; }), "stop, cell: golden 1, rtl 0");
   EXPECT_EQ(difference_after([](Trace& t) { t.stop->particle = 1; }), "stop, particle: golden 5, rtl 1");
   EXPECT_EQ(difference_after([](Trace& t) { t.stop->number = 7; }),
             "stop, number: golden -1099511627776, rtl 7");
@@ -125,9 +125,9 @@ TEST(Compare, NamesEachFieldOfAParticle) {
   using Particles = std::vector<Particle>;
   EXPECT_EQ(frame_difference_after([](Particles&) {}), "equal");
   EXPECT_EQ(frame_difference_after([](Particles& p) { p[1].type = 0; }),
-            "step 2, node 0 (cell 0 0 0), particle 1, type: golden 1, rtl 0");
-  EXPECT_EQ(frame_difference_after([](Particles& p) { p[2].node = 0; }),
-            "step 2, node 1 (cell 1 0 0), particle 5, node: golden 1, rtl 0");
+            "step 2, cell 0 (0 0 0), particle 1, type: golden 1, rtl 0");
+  EXPECT_EQ(frame_difference_after([](Particles& p) { p[2].cell = 0; }),
+            "step 2, cell 1 (1 0 0), particle 5, cell: golden 1, rtl 0");
   const char* names[] = {"x", "v", "u"};
   for (int field = 0; field < 3; ++field)
     for (int axis = 0; axis < 3; ++axis) {
@@ -139,7 +139,7 @@ TEST(Compare, NamesEachFieldOfAParticle) {
       const auto mismatch = compare(made_state(2), other);
       ASSERT_TRUE(mismatch);
       EXPECT_EQ(mismatch->text("golden", "rtl", two_nodes()),
-                std::string("step 2, node 0 (cell 0 0 0), particle 1, ") + names[field] + "." + "xyz"[axis] +
+                std::string("step 2, cell 0 (0 0 0), particle 1, ") + names[field] + "." + "xyz"[axis] +
                     ": golden " + was + ", rtl " + std::to_string(value));
     }
 }
@@ -147,13 +147,13 @@ TEST(Compare, NamesEachFieldOfAParticle) {
 TEST(Compare, NamesAParticleThatOneEngineLost) {
   using Particles = std::vector<Particle>;
   EXPECT_EQ(frame_difference_after([](Particles& p) { p.erase(p.begin() + 1); }),
-            "step 2, node 0 (cell 0 0 0), particle 1, presence: golden present, rtl missing");
+            "step 2, cell 0 (0 0 0), particle 1, presence: golden present, rtl missing");
   EXPECT_EQ(frame_difference_after([](Particles& p) { p.pop_back(); }),
-            "step 2, node 1 (cell 1 0 0), particle 5, presence: golden present, rtl missing");
+            "step 2, cell 1 (1 0 0), particle 5, presence: golden present, rtl missing");
   EXPECT_EQ(frame_difference_after([](Particles& p) {
               p.push_back({9, 0, 1, {}, {}, {}});
             }),
-            "step 2, node 1 (cell 1 0 0), particle 9, presence: golden missing, rtl present");
+            "step 2, cell 1 (1 0 0), particle 9, presence: golden missing, rtl present");
 }
 
 TEST(Compare, FindsFramesByStep) {

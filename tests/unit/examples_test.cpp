@@ -31,12 +31,12 @@ Outcome run(const MadeSetup& setup, int steps) {
     golden.step();
     const State after = golden.state();
     for (size_t p = 0; p < after.particles.size(); ++p) {
-      if (after.particles[p].node == before.particles[p].node) continue;
+      if (after.particles[p].cell == before.particles[p].cell) continue;
       ++outcome.moved;
       int axes = 0;
       for (int a = 0; a < 3; ++a)
-        axes += setup.plan.lattice.cell(after.particles[p].node)[a] !=
-                setup.plan.lattice.cell(before.particles[p].node)[a];
+        axes += setup.plan.lattice.cell(after.particles[p].cell)[a] !=
+                setup.plan.lattice.cell(before.particles[p].cell)[a];
       outcome.corner += axes > 1;
     }
     before = after;

@@ -192,14 +192,14 @@ TEST(Fit, TheCensusCountsAllPairs) {
       Int3 x_j = visible(plan.rule, j.x);
       bool near = &i != &j;
       for (int a = 0; a < 3; ++a) {
-        const int32_t apart = plan.lattice.cell(j.node)[static_cast<size_t>(a)] -
-                              plan.lattice.cell(i.node)[static_cast<size_t>(a)];
+        const int32_t apart = plan.lattice.cell(j.cell)[static_cast<size_t>(a)] -
+                              plan.lattice.cell(i.cell)[static_cast<size_t>(a)];
         near = near && std::abs(apart) <= 1;
         offset[static_cast<size_t>(a)] = static_cast<int8_t>(apart);
         x_j[a] += int64_t{apart} << plan.rule.widths.position_frac;
       }
       if (!near || !may_interact(plan.rule, visible(plan.rule, i.x), x_j)) continue;
-      ++pairs[{i.node, offset}];
+      ++pairs[{i.cell, offset}];
       ++all;
     }
   for (const auto& [where, count] : pairs) EXPECT_EQ(census.pairs(where.first, where.second), count);

@@ -42,19 +42,19 @@ Mat3 stress(const Mat3& strain) {
   const int P = rule.widths.position_frac;
   const double length = rule.cell_edge, position = std::ldexp(length, -P);  // of a visible unit
   const double newton = std::ldexp(length, -rule.widths.velocity_frac()) * rule.mass / (rule.dt * rule.dt);
-  std::vector<std::vector<const Particle*>> nodes(setup.plan.lattice.size());
-  for (const Particle& p : setup.initial.particles) nodes[p.node].push_back(&p);
+  std::vector<std::vector<const Particle*>> cells(setup.plan.lattice.size());
+  for (const Particle& p : setup.initial.particles) cells[p.cell].push_back(&p);
 
   const Vec3 low = Vec3::Constant(2.6), high = Vec3::Constant(6.5 * kEdge - 2.6);
   Mat3 sum = Mat3::Zero();
   int bulk = 0;
-  for (uint32_t n = 0; n < nodes.size(); ++n)
-    for (const Particle* i : nodes[n]) {
+  for (uint32_t n = 0; n < cells.size(); ++n)
+    for (const Particle* i : cells[n]) {
       const Vec3& at = scene.body.x[i->id];
       if ((at.array() < low.array()).any() || (at.array() > high.array()).any()) continue;
       ++bulk;
       for (const auto& [other, offset] : setup.plan.lattice.neighbourhood(n))
-        for (const Particle* j : nodes[other]) {
+        for (const Particle* j : cells[other]) {
           const Int3 x_i = visible(rule, i->x);
           Int3 x_j = visible(rule, j->x);
           for (int a = 0; a < 3; ++a) x_j[a] += int64_t{offset[a]} << P;

@@ -31,10 +31,10 @@ Arch plain() {
 
 Features hot() { return {.size = {3, 2, 2}, .speed = 0.12, .margin = 4}; }
 
-// How often a particle changed node between two states of the same particles.
+// How often a particle changed cell between two states of the same particles.
 int moves(const State& a, const State& b) {
   int count = 0;
-  for (size_t k = 0; k < a.particles.size(); ++k) count += a.particles[k].node != b.particles[k].node;
+  for (size_t k = 0; k < a.particles.size(); ++k) count += a.particles[k].cell != b.particles[k].cell;
   return count;
 }
 
@@ -42,7 +42,7 @@ int moves(const State& a, const State& b) {
 Int3 place(const Plan& plan, const Particle& p) {
   Int3 x = p.x;
   for (int a = 0; a < 3; ++a)
-    x[a] += int64_t{plan.lattice.cell(p.node)[a]} << plan.rule.widths.velocity_frac();
+    x[a] += int64_t{plan.lattice.cell(p.cell)[a]} << plan.rule.widths.velocity_frac();
   return x;
 }
 
@@ -53,8 +53,8 @@ void put(const Plan& plan, const Int3& place, Particle& p) {
     cell[a] = static_cast<int32_t>(place[a] >> frac);
     p.x[a] = place[a] & ((int64_t{1} << frac) - 1);
   }
-  p.node = plan.lattice.find(cell);
-  ASSERT_NE(p.node, kNoNode);
+  p.cell = plan.lattice.find(cell);
+  ASSERT_NE(p.cell, kNoCell);
 }
 
 Int3 sum_of_places(const Plan& plan, const State& state) {
@@ -132,7 +132,7 @@ TEST(Golden, UndampedRunReversesBitForBit) {
     for (int a = 0; a < 3; ++a) back.particles[k].v[a] = -beyond.particles[k].v[a];
   back = run(setup, back, steps);
   for (size_t k = 0; k < back.particles.size(); ++k) {
-    ASSERT_EQ(back.particles[k].node, setup.initial.particles[k].node) << k;
+    ASSERT_EQ(back.particles[k].cell, setup.initial.particles[k].cell) << k;
     ASSERT_EQ(back.particles[k].x, setup.initial.particles[k].x) << k;
     for (int a = 0; a < 3; ++a) ASSERT_EQ(back.particles[k].v[a], -first.particles[k].v[a]) << k;
   }
@@ -146,7 +146,7 @@ TEST(Golden, OrderOfParticlesChangesNoBit) {
   EXPECT_EQ(run(setup, shuffled, 300), run(setup, setup.initial, 300));
 }
 
-TEST(Golden, TranslationByWholeNodesChangesNoBit) {
+TEST(Golden, TranslationByWholeCellsChangesNoBit) {
   const auto setup = block(hot());
   const Cell by{5, -3, 2};
   std::vector<Cell> cells;
@@ -157,7 +157,7 @@ TEST(Golden, TranslationByWholeNodesChangesNoBit) {
   }
   const Lattice moved(cells, {0, 0, 0});
   ASSERT_EQ(moved.size(), setup.plan.lattice.size());
-  State state = setup.initial;  // node indices follow (z, y, x), so they stay what they were
+  State state = setup.initial;  // cell indices follow (z, y, x), so they stay what they were
   Golden golden(setup.plan.rule, moved, setup.plan.arch.capacity, state);
   for (int k = 0; k < 300; ++k) golden.step();
   EXPECT_EQ(golden.state(), run(setup, setup.initial, 300));
@@ -212,12 +212,12 @@ TEST(Golden, SlowParticlesMoveByTheirVelocityExactly) {
     const Particle there = state.particles[0];
     for (int a = 0; a < 3; ++a)
       EXPECT_EQ(place(setup.plan, there)[a] - place(setup.plan, start)[a], steps * slow[a]) << a;
-    const Cell &from = setup.plan.lattice.cell(start.node), &to = setup.plan.lattice.cell(there.node);
+    const Cell &from = setup.plan.lattice.cell(start.cell), &to = setup.plan.lattice.cell(there.cell);
     EXPECT_EQ(to, (Cell{from[0] + 1, from[1] - 1, from[2]}));
     drive(state.particles[0], {-slow[0], -slow[1], -slow[2]});
     state = run(setup, state, steps);
     EXPECT_EQ(state.particles[0].x, start.x);
-    EXPECT_EQ(state.particles[0].node, start.node);
+    EXPECT_EQ(state.particles[0].cell, start.cell);
   }
 }
 
@@ -332,7 +332,7 @@ TEST(GoldenFaults, EachNamesItsParticle) {
   EXPECT_EQ(sum.fault, Fault::sum);
   EXPECT_EQ(sum.step, 0u);
   EXPECT_FALSE(fits(sum.number, 16));
-  EXPECT_STREQ(std::string(sum.what()).substr(0, 13).c_str(), "step 0, node ");
+  EXPECT_STREQ(std::string(sum.what()).substr(0, 13).c_str(), "step 0, cell ");
 
   narrow = {};
   narrow.widths.relative_velocity_bits = 10;
@@ -360,10 +360,10 @@ TEST(GoldenFaults, CapacityHoldsAtTheLimitAndStopsOneBeyond) {
   arch.capacity = 3;
   try {
     make_setup(scene, arch);
-    FAIL() << "a full node was accepted";
+    FAIL() << "a full cell was accepted";
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),
-                 "a node would hold 4 particles: its capacity is 3\n  hint: set node.capacity to at least 4 "
+                 "a cell would hold 4 particles: its capacity is 3\n  hint: set node.capacity to at least 4 "
                  "in the arch file");
   }
 }

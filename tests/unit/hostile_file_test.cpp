@@ -200,7 +200,7 @@ TEST(StateCheck, NumbersAreWithinTheScene) {
   };
   const std::string at = "t.h5 is no trace of this scene: frame of step 0, particle 1: ";
   EXPECT_EQ(error([](Trace&) {}), "accepted");
-  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].node = 2; }), at + "cell 2 is not below 2");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].cell = 2; }), at + "cell 2 is not below 2");
   EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].type = 2; }), at + "type 2 is not below 2");
   EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].id = 3; }), at + "id 3 is not below 3");
   EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].id = 2; }), at + "id 2 stands in row 1");

@@ -25,9 +25,9 @@ TEST(Lattice, BoxHasItsLinksInOrder) {
   EXPECT_EQ(lattice.cell(3), (Cell{0, 1, 0}));
   EXPECT_EQ(lattice.neighbour(1, 0), 0u);
   EXPECT_EQ(lattice.neighbour(1, 1), 2u);
-  EXPECT_EQ(lattice.neighbour(1, 2), kNoNode);
+  EXPECT_EQ(lattice.neighbour(1, 2), kNoCell);
   EXPECT_EQ(lattice.neighbour(1, 3), 4u);
-  EXPECT_EQ(lattice.neighbour(1, 5), kNoNode);
+  EXPECT_EQ(lattice.neighbour(1, 5), kNoCell);
   EXPECT_EQ(lattice.neighbourhood(1).size(), 6u);
   EXPECT_EQ(lattice.neighbourhood(0).size(), 4u);
 }
@@ -40,7 +40,7 @@ TEST(Lattice, RingsWrap) {
     const auto near = lattice.neighbourhood(n);
     ASSERT_EQ(near.size(), 27u);
     for (size_t i = 0; i < 27; ++i)
-      for (size_t j = i + 1; j < 27; ++j) ASSERT_NE(near[i].node, near[j].node);
+      for (size_t j = i + 1; j < 27; ++j) ASSERT_NE(near[i].cell, near[j].cell);
   }
 }
 
@@ -48,12 +48,12 @@ TEST(Lattice, RingsWrap) {
 TEST(Lattice, ClosesTheWayAroundACorner) {
   const Lattice lattice({{0, 0, 0}, {1, 1, 1}}, {0, 0, 0});
   for (const Cell& way : {Cell{1, 0, 0}, Cell{1, 1, 0}, Cell{0, 1, 1}, Cell{0, 0, 1}})
-    EXPECT_NE(lattice.find(way), kNoNode);
+    EXPECT_NE(lattice.find(way), kNoCell);
   const Lattice apart({{0, 0, 0}, {2, 0, 0}}, {0, 0, 0});
   EXPECT_EQ(apart.size(), 2u);
 }
 
-// From any node, its neighbourhood by links is all cells of the set around it: brute force as the oracle.
+// From any cell, its neighbourhood by links is all cells of the set around it: brute force as the oracle.
 TEST(Lattice, NeighbourhoodByLinksIsWhatCoordinatesSay) {
   std::mt19937_64 random(5);
   size_t added = 0;
@@ -73,8 +73,8 @@ TEST(Lattice, NeighbourhoodByLinksIsWhatCoordinatesSay) {
       }
       const auto found = lattice.neighbourhood(n);
       ASSERT_EQ(found.size(), count);
-      for (const auto& [node, offset] : found)
-        for (int a = 0; a < 3; ++a) ASSERT_EQ(lattice.cell(node)[a], lattice.cell(n)[a] + offset[a]);
+      for (const auto& [cell, offset] : found)
+        for (int a = 0; a < 3; ++a) ASSERT_EQ(lattice.cell(cell)[a], lattice.cell(n)[a] + offset[a]);
     }
   }
   EXPECT_GT(added, 0u);
@@ -110,7 +110,7 @@ Cells closed(const std::vector<Cell>& cells, const Cell& period) {
   return set;
 }
 
-// Nodes, order, links and find() against that definition, on sparse and dense sets with and without rings.
+// Cells, order, links and find() against that definition, on sparse and dense sets with and without rings.
 TEST(Lattice, IsTheClosureOfItsCells) {
   std::mt19937_64 random(11);
   size_t added = 0, rings = 0;
@@ -133,7 +133,7 @@ TEST(Lattice, IsTheClosureOfItsCells) {
     for (const Cell& c : expected) ASSERT_EQ(lattice.cell(n++), c);
     const auto index = [&](const Cell& c) {
       const auto it = expected.find(wrapped(c, period));
-      return it == expected.end() ? kNoNode : static_cast<uint32_t>(std::distance(expected.begin(), it));
+      return it == expected.end() ? kNoCell : static_cast<uint32_t>(std::distance(expected.begin(), it));
     };
     for (n = 0; n < lattice.size(); ++n)
       for (int face = 0; face < kFaces; ++face) {
@@ -162,16 +162,16 @@ TEST(Lattice, TwoBodiesAMillionCellsApart) {
   EXPECT_EQ(lattice.cell(0), (Cell{0, 0, 0}));
   EXPECT_EQ(lattice.find({1'000'019, -999'981, 1'000'019}), 16'000u);
   EXPECT_EQ(lattice.find({500'000, 0, 0}), 20u);  // in the row of the first body
-  EXPECT_EQ(lattice.find({499'999, 0, 0}), kNoNode);
-  EXPECT_EQ(lattice.neighbour(20, 0), kNoNode);
+  EXPECT_EQ(lattice.find({499'999, 0, 0}), kNoCell);
+  EXPECT_EQ(lattice.neighbour(20, 0), kNoCell);
   EXPECT_EQ(lattice.neighbourhood(20).size(), 1u);
 }
 
 TEST(Lattice, MayBeEmpty) {
   const Lattice lattice({}, {0, 0, 0});
   EXPECT_EQ(lattice.size(), 0u);
-  EXPECT_EQ(lattice.find({0, 0, 0}), kNoNode);
-  EXPECT_EQ(Lattice().find({0, 0, 0}), kNoNode);
+  EXPECT_EQ(lattice.find({0, 0, 0}), kNoCell);
+  EXPECT_EQ(Lattice().find({0, 0, 0}), kNoCell);
 }
 
 }  // namespace

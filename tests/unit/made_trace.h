@@ -30,7 +30,7 @@ inline Trace made_trace() {
       for (uint64_t phase = 0; phase < kPhases; ++phase)
         trace.cycles.push_back({1000 * step + 100 * phase + node, 1000 * step + 100 * phase + 9 + node});
   trace.stop =
-      StopReason{Fault::velocity, 2, 1, 5, -(int64_t{1} << 40), "step 2, node 1 (cell 1 0 0), particle 5"};
+      StopReason{Fault::velocity, 2, 1, 5, -(int64_t{1} << 40), "step 2, cell 1 (1 0 0), particle 5"};
   trace.seconds = 0.25;
   trace.counters = {{"pairs_issued", 12}, {"stalls", 0.5}};
   trace.bodies = {{0, {{1, 2, 3}, {4, 5, 6}}, {{-1, 0.1, 1e-300}, {7, 8, 9}}, {{0, 1, 0}, {0, -1, 0}}},

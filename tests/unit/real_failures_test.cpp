@@ -181,7 +181,7 @@ TEST(RealFailures, TheFixedRuleKnowsNoOrder) {
   ASSERT_EQ(b.particles.size(), n);
   for (size_t i = 0; i < n; ++i) {
     const Particle &one = a.particles[i], &other = b.particles[n - 1 - i];
-    EXPECT_EQ(one.node, other.node) << i;
+    EXPECT_EQ(one.cell, other.cell) << i;
     EXPECT_EQ(one.x, other.x) << i;
     EXPECT_EQ(one.v, other.v) << i;
   }

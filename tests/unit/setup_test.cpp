@@ -52,7 +52,7 @@ TEST(Setup, BothWaysRefuseAlike) {
   Arch arch;
   arch.capacity = 3;
   EXPECT_EQ(error_of([&] { plan_of(scene, arch); }),
-            "a node would hold 4 particles: its capacity is 3\n"
+            "a cell would hold 4 particles: its capacity is 3\n"
             "  hint: set node.capacity to at least 4 in the arch file");
   EXPECT_EQ(error_of([&] { make_setup(scene, arch); }), error_of([&] { plan_of(scene, arch); }));
   arch.capacity = 300;

@@ -10,7 +10,7 @@
 namespace cuboct::test {
 namespace {
 
-// As many particles as the fullest node holds at the start.
+// As many particles as the fullest cell holds at the start.
 int fullest(const Setup& setup) {
   size_t most = 1;
   for (const auto& list : emu::by_node(setup.plan, setup.initial)) most = std::max(most, list.size());
@@ -129,7 +129,7 @@ std::map<std::string, uint64_t> stimuli_of(const RandomScene& scene, const Judge
   const auto& states = judge.golden().states;
   for (size_t s = 1; s < states.size(); ++s)
     for (size_t k = 0; k < states[s].particles.size(); ++k) {
-      const uint32_t now = states[s].particles[k].node, before = states[s - 1].particles[k].node;
+      const uint32_t now = states[s].particles[k].cell, before = states[s - 1].particles[k].cell;
       moves += now != before;
       const Cell &to = plan.lattice.cell(now), &from = plan.lattice.cell(before);
       diagonal += (to[0] != from[0]) + (to[1] != from[1]) + (to[2] != from[2]) > 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Random scenes on random machines with random stalls, for the RTL: those of tests/support/cases.h, and
-// beside them what runs into trouble: narrow formats, full nodes, fast particles, short queues, links that
+// beside them what runs into trouble: narrow formats, full cells, fast particles, short queues, links that
 // fail.
 #pragma once
 

@@ -39,12 +39,12 @@ void at_the_cutoff(Setup& setup) {
   auto& particles = setup.initial.particles;
   const auto first_of = [&](uint32_t node) -> Particle& {
     for (Particle& p : particles)
-      if (p.node == node) return p;
+      if (p.cell == node) return p;
     throw std::logic_error("a node of the case is empty");
   };
   const Particle from = first_of(0);
   for (const int face : {1, 3, 5})
-    if (const uint32_t other = setup.plan.lattice.neighbour(0, face); other != kNoNode)
+    if (const uint32_t other = setup.plan.lattice.neighbour(0, face); other != kNoCell)
       first_of(other).x = from.x;
 }
 
@@ -56,11 +56,11 @@ void cross_the_corner(Setup& setup) {
   const uint32_t last = setup.plan.lattice.size() - 1;
   bool up = false, down = false;
   for (Particle& q : setup.initial.particles) {
-    if (q.node == 0 && !up) {
+    if (q.cell == 0 && !up) {
       up = true;
       q.x = {edge - 9, edge - 7, edge - 5};
       q.v = {most, most - 77, most / 2};
-    } else if (q.node == last && !down) {
+    } else if (q.cell == last && !down) {
       down = true;
       q.x = {3, 5, 8};
       q.v = {-most, 55 - most, -most / 2};
@@ -101,7 +101,7 @@ void close_together(Setup& setup) {
   const Widths& w = setup.plan.rule.widths;
   const int64_t edge = int64_t{1} << w.velocity_frac();
   for (Particle& p : setup.initial.particles) {
-    if (p.node != 0 || moved == 2) continue;
+    if (p.cell != 0 || moved == 2) continue;
     if (first == nullptr) {
       first = &p;
       continue;
