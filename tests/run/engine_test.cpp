@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+// What a run leaves is the same, whichever engine did it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "model/base/steps.h"
+#include "model/run/reference_engine.h"
+#include "tests/run/kinds.h"
+
+namespace cuboct::test {
+namespace {
+
+const std::string kRoot = CUBOCT_SOURCE_DIR;
+
+Bed bed_of(const std::string& scene, const std::string& arch = "scenes/boards/small.toml") {
+  Bed bed;
+  bed.scene = read_scene(kRoot + "/" + scene);
+  bed.plan = plan_of(bed.scene, read_arch(arch.empty() ? arch : kRoot + "/" + arch));
+  bed.one_thread.engine.threads = 1;
+  bed.two_threads.engine.threads = 2;
+  return bed;
+}
+
+RunRequest everything(uint64_t steps) {
+  RunRequest request;
+  request.steps = steps;
+  request.frames = {0, 3, 7};
+  request.probes = every_so_often(6, steps);
+  request.energies = request.watch = request.totals = true;
+  return request;
+}
+
+// The gpu engine sums energies in another order, and its probes' forces: equal but for the rounding of
+// doubles.
+void expect_equal(const std::vector<Curve>& a, const std::vector<Curve>& b, double share) {
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].name, b[k].name);
+    EXPECT_EQ(a[k].unit, b[k].unit);
+    EXPECT_EQ(a[k].step, b[k].step) << a[k].name;
+    ASSERT_EQ(a[k].value.size(), b[k].value.size()) << a[k].name;
+    double scale = 0;
+    for (const double value : a[k].value) scale = std::max(scale, std::abs(value));
+    for (size_t n = 0; n < a[k].value.size(); ++n)
+      EXPECT_NEAR(a[k].value[n], b[k].value[n], share * scale) << a[k].name << " at sample " << n;
+  }
+}
+
+void expect_equal(const Recorded& golden, const Recorded& run, double share) {
+  const Trace &a = golden.trace, &b = run.trace;
+  EXPECT_EQ(a.plan_hash, b.plan_hash);
+  EXPECT_EQ(a.nodes, b.nodes);
+  EXPECT_EQ(a.state_hash, b.state_hash);
+  EXPECT_EQ(a.hash_every, b.hash_every);
+  EXPECT_EQ(a.steps(), b.steps());
+  EXPECT_EQ(a.frames, b.frames);
+  EXPECT_EQ(a.stop, b.stop);
+  EXPECT_EQ(a.watched, b.watched);
+  ASSERT_EQ(a.findings.size(), b.findings.size());
+  for (size_t k = 0; k < a.findings.size(); ++k) EXPECT_EQ(a.findings[k].step, b.findings[k].step);
+  EXPECT_EQ(golden.momentum_change, run.momentum_change);
+  expect_equal(a.curves, b.curves, share);
+}
+
+class EveryEngine : public testing::TestWithParam<Kind> {
+ protected:
+  // In this engine, and in golden.
+  void compare(const Bed& bed, const RunRequest& request) {
+    golden_ = record(bed.scene, fixed_kinds().front().make(bed, request), request);
+    run_ = record(bed.scene, GetParam().make(bed, request), request);
+    expect_equal(golden_, run_, GetParam().name == "gpu" ? 1e-12 : 0);
+  }
+  Recorded golden_, run_;
+};
+
+TEST_P(EveryEngine, LeavesGoldensTrace) {
+  compare(bed_of("scenes/boards/grips.toml"), everything(20));
+  EXPECT_EQ(run_.trace.frames.size(), 4u);  // the last one too
+  EXPECT_EQ(run_.trace.state_hash.size(), 21u);
+  EXPECT_GT(run_.momentum_change, 0);
+  EXPECT_GT(run_.largest_speed, 0);
+  ASSERT_FALSE(run_.trace.curves.empty());
+  EXPECT_EQ(run_.trace.curves.front().step, (std::vector<uint64_t>{0, 6, 12, 18, 20}));
+}
+
+TEST_P(EveryEngine, HashesAsOftenAsItIsAsked) {
+  RunRequest request = everything(18);
+  request.hash_every = 4;
+  compare(bed_of("scenes/boards/grips.toml"), request);
+  EXPECT_EQ(run_.trace.state_hash.size(), 6u);  // 0, 4, ... 16 and 18
+  request.hash_every = 0;
+  compare(bed_of("scenes/boards/grips.toml"), request);
+  EXPECT_TRUE(run_.trace.state_hash.empty());
+}
+
+// The state before the step that cannot be done is kept, measured and looked at.
+TEST_P(EveryEngine, EndsAtAFaultWithTheStateBefore) {
+  compare(bed_of("tests/board/thrown.toml"), everything(24));
+  ASSERT_TRUE(run_.trace.stop);
+  EXPECT_EQ(run_.trace.steps(), 6u);
+  EXPECT_EQ(run_.trace.frames.back().step, 6u);
+  EXPECT_EQ(run_.trace.curves.back().step.back(), 6u);
+  EXPECT_EQ(run_.trace.watched, 6u);
+  EXPECT_FALSE(run_.interrupted);
+}
+
+TEST_P(EveryEngine, OfWarmParticlesInABox) {
+  RunRequest request = everything(12);
+  request.frames = {};
+  compare(bed_of("scenes/two_types.toml", ""), request);
+  EXPECT_TRUE(run_.trace.frames.empty());
+}
+
+// Killed, as far as files can tell, between a checkpoint and the next.
+TEST_P(EveryEngine, GoesOnFromItsCheckpointOrSaysThatItLeavesNone) {
+  const Bed bed = bed_of("scenes/boards/grips.toml");
+  RunRequest request = everything(20);
+  const std::string path = testing::TempDir() + "run_tests." + GetParam().name;
+  remove_checkpoint(path);
+  request.checkpoint.path = path;
+  request.checkpoint.every_steps = 5;
+  struct Killed {};
+  request.keep = [](const RunState& state) {
+    if (std::get<State>(state).step == 7) throw Killed();
+  };
+  const EngineKind kind = GetParam().make(bed, request);
+  if (!kind.saves) {
+    try {
+      record(bed.scene, kind, request);
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()), "the " + kind.name + " engine leaves no checkpoints");
+    }
+    return;
+  }
+  EXPECT_THROW(record(bed.scene, kind, request), Killed);
+  ASSERT_TRUE(std::filesystem::exists(path));
+  request.keep = {};
+  request.checkpoint.resume = true;
+  const Recorded run = record(bed.scene, kind, request);
+  remove_checkpoint(path);
+  EXPECT_EQ(run.resumed_at, 5u);
+  request.checkpoint = {};
+  expect_equal(record(bed.scene, golden_kind(bed.scene, bed.plan), request), run, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryEngine, testing::ValuesIn(fixed_kinds()),
+                         [](const auto& p) { return p.param.name; });
+
+// In real numbers: the same steps, names and ends.
+TEST(RealEngines, AreRecordedAlike) {
+  Bed bed = bed_of("scenes/boards/grips.toml");
+  const RunRequest request = everything(20);
+  const Recorded reference = record(bed.scene, reference_kind(bed.scene, bed.plan, {}), request);
+  bed.gpu.arithmetic = gpu::Arithmetic::float64;
+  const Recorded device = record(bed.scene, gpu::gpu_kind(bed.scene, bed.plan, bed.gpu), request);
+  for (const Recorded* run : {&reference, &device}) {
+    EXPECT_TRUE(run->trace.state_hash.empty());
+    EXPECT_EQ(run->trace.steps(), 20u);
+    ASSERT_EQ(run->trace.bodies.size(), 4u);
+    EXPECT_EQ(run->trace.bodies.back().step, 20u);
+    EXPECT_EQ(run->trace.watched, 20u);
+  }
+  // Sums in another order, over 20 steps of a warm bar.
+  expect_equal(reference.trace.curves, device.trace.curves, 1e-9);
+  EXPECT_NEAR(reference.momentum_change, device.momentum_change, 1e-9 * reference.momentum_change);
+}
+
+// A position that stops being finite takes the state with it: the run ends with the state before.
+TEST(RealEngines, EndWhereAPositionIsLost) {
+  Scene scene = read_scene(kRoot + "/scenes/boards/grips.toml");
+  const Plan plan = plan_of(scene, read_arch(kRoot + "/scenes/boards/small.toml"));
+  scene.rule.dt *= 1e160;
+  const Recorded run = record(scene, reference_kind(scene, plan, {}), everything(20));
+  ASSERT_TRUE(run.trace.stop);
+  EXPECT_EQ(run.trace.stop->fault, Fault::none);
+  EXPECT_LT(run.trace.steps(), 20u);
+  ASSERT_FALSE(run.trace.bodies.empty());
+  EXPECT_EQ(run.trace.bodies.back().step, run.trace.steps());
+  for (const Vec3& x : run.trace.bodies.back().x) EXPECT_TRUE(x.allFinite());
+}
+
+}  // namespace
+}  // namespace cuboct::test
