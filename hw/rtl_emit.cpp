@@ -37,9 +37,9 @@ void add_node(Files& files, const RtlDesign& design) {
   const std::set<std::string_view> checks{"cuboct_link_crc.sv", "cuboct_link_guard.sv", "cuboct_link_send.sv",
                                           "cuboct_link_take.sv"};
   const std::set<std::string_view> single{
-      "cuboct_node_core.sv",  "cuboct_candidate.sv",   "cuboct_halos.sv",     "cuboct_inbox.sv",
-      "cuboct_migrate.sv",    "cuboct_pair_finder.sv", "cuboct_pair_walk.sv", "cuboct_relay.sv",
-      "cuboct_slots.sv",      "cuboct_streamer.sv",    "cuboct_tick.sv",      "cuboct_word_halos.sv",
+      "cuboct_node_core.sv", "cuboct_candidate.sv",   "cuboct_halos.sv",     "cuboct_inbox.sv",
+      "cuboct_migrate.sv",   "cuboct_pair_finder.sv", "cuboct_pair_walk.sv", "cuboct_relay.sv",
+      "cuboct_slots.sv",     "cuboct_streamer.sv",    "cuboct_tick.sv",      "cuboct_word_halos.sv",
       "cuboct_word_inbox.sv"};
   const auto used = [&](std::string_view name) {
     if (checks.contains(name)) return design.checked;
