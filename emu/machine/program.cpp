@@ -81,7 +81,7 @@ int run(const Program& program, Request request) {
   else
     fmt::print("{} steps of {} particles on {} nodes{} in {:.0f} cycles, {:.3g} node-cycles/s\n",
                trace.steps(), setup.plan.particles, trace.nodes,
-               setup.plan.bricks.single()
+               setup.plan.bricks.cells() == 1
                    ? std::string()
                    : fmt::format(" of {} cells", fmt::join(setup.plan.bricks.shape(), " x ")),
                cycles, node_cycles);
