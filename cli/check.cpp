@@ -122,7 +122,7 @@ Items resolve(const Loaded& loaded) {
   items.add("particles", plan.particles);
   items.add("particle types", static_cast<uint64_t>(rule.types.size()));
   items.add("nodes", plan.nodes());
-  if (!plan.bricks.single())
+  if (plan.bricks.cells() > 1)
     items.add(
         "cells per node", cells_of(plan.bricks.shape()), "",
         fmt::format("bricks of {}; {} cells", fmt::join(plan.bricks.shape(), " x "), plan.lattice.size()));
@@ -162,8 +162,8 @@ Items resolve(const Loaded& loaded) {
   items.add("halo record", plan.words.halo_bits, "bit", beats(plan.words.halo_beats));
   items.add("particle record", plan.words.particle_bits, "bit", beats(plan.words.migrate_beats));
   items.add("link", plan.words.link_bits, "bit");
-  if (!plan.bricks.single()) {
-    const double bits = memory_bits(plan), cells = cells_of(plan.bricks.shape());
+  if (plan.bricks.cells() > 1) {
+    const double bits = memory_bits(plan), cells = plan.bricks.cells();
     items.add("node memory", bits, "bit",
               fmt::format("particles, halos, queue, sums; {:.0f} per cell", bits / cells));
   }

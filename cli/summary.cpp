@@ -95,7 +95,7 @@ Items summarise(const Loaded& loaded, const Recorded& run, bool real) {
   items.add("particles", plan.particles);
   if (!real) {
     items.add("nodes", plan.nodes());
-    if (!plan.bricks.single()) items.add("cells per node", cells_of(plan.bricks.shape()));
+    if (plan.bricks.cells() > 1) items.add("cells per node", plan.bricks.cells());
   }
   items.add("steps", trace.steps());
   items.add("simulated time", static_cast<double>(trace.steps()) * plan.rule.dt, "s");

@@ -31,7 +31,7 @@ struct Options {
 
 struct Counters {
   uint64_t list_builds = 0;     // of the pair lists
-  uint64_t thin_stops = 0;      // batches that ended as a thin list (gpu_ref/step.h) served no longer
+  uint64_t near_stops = 0;      // batches that ended as a near list (gpu_ref/step.h) served no longer
   uint64_t golden_steps = 0;    // of the fixed rule, done by golden on the host, as a fault seemed near
   uint64_t longest_list = 0;    // partners of one particle
   double listed_pairs = 0;      // entries per particle in the last list

@@ -33,7 +33,7 @@ class FixedEngine final : public Engine {
       step_ += outcome.done;
       using End = typename Machine<Policy>::End;
       // Whatever else comes of a step that stopped: cells have counted particles that did not enter.
-      old_ = outcome.end != End::full && outcome.end != End::thin;
+      old_ = outcome.end != End::full && outcome.end != End::near_list;
       if (outcome.end != End::doubt && (outcome.end != End::crowded || machine_->age() > 0)) continue;
       step_by_golden();
       if (hashes) hashes->push_back(machine_->hash());
@@ -119,7 +119,7 @@ class FixedEngine final : public Engine {
     g.reach = Policy::kReach;
     setup.radius = std::sqrt(std::ldexp(static_cast<double>(rule.cutoff2), -2 * rule.widths.difference_frac));
     // Half a unit of a difference along three axes, for both of a pair; and floats of a cell's coordinates,
-    // below 2 edges, which lists and ways since then are made of.
+    // below 2 edges, which lists and displacements since then are made of.
     setup.rounding = 2 * std::ldexp(1.0, -rule.widths.difference_frac) +
                      16 * static_cast<double>(std::numeric_limits<float>::epsilon());
     setup.largest_skin = 0.2 * setup.radius;

@@ -124,7 +124,7 @@ struct FixedPolicy {
   static constexpr bool kFixed = true;
   static constexpr int kReach = 2;                        // cells that a list may span along an axis
   static constexpr int kTogether = 1;                     // partners loaded at once
-  using Position = Four<int32_t, uint32_t>;               // P fractional bits; type and thin anchor
+  using Position = Four<int32_t, uint32_t>;               // P fractional bits; type and near anchor
   using Velocity = Four<VelocityNumber, VelocityNumber>;  // P+G fractional bits; anchor (storage.h)
   using Extra = Three<int64_t>;                           // u, P+G fractional bits
   using Sum = Three<int64_t>;                             // kicks, P+G fractional bits

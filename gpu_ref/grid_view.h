@@ -104,9 +104,9 @@ struct List {
     for (uint32_t k = 0; k < all; ++k) use(entries[(k < near_ones ? k : k + gap) * stride + i]);
   }
 };
-// Those of them that were within a thin skin at a later step, in the list's order: most steps go over these
+// Those of them that were within the near skin at a later step, in the list's order: most steps go over these
 // alone.
-struct ThinList {
+struct NearList {
   uint32_t* entries;  // as List's, without further ones
   uint32_t* count;
 };

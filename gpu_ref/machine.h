@@ -2,7 +2,7 @@
 // The engine of both arithmetics on one or more devices.
 //
 // Space is cut into slabs, one per device or more. Particles are stored by cell; a pair list with a skin
-// holds each one's partners until some particle has moved half the skin, and a thin list those of them that
+// holds each one's partners until some particle has moved half the skin, and a near list those of them that
 // are near now (step.h). One kernel does a step of a particle, from one of two copies of the state to the
 // other. Steps go in batches without the host: kernels note up to which step all was good, and those beyond
 // it do nothing. A slab's borders have a stream of their own: they are written into the neighbours' memory as
@@ -75,7 +75,7 @@ class Machine {
           const Loose<Policy>& state, const MakeRule& make_rule);
 
   // One batch of at most `steps`; how many were done, and why it ended. A hash for each where `hashes`.
-  enum class End : uint8_t { full, thin, list, doubt, crowded };
+  enum class End : uint8_t { full, near_list, list, doubt, crowded };
   struct Outcome {
     uint64_t done = 0;
     End end = End::full;
@@ -107,7 +107,7 @@ class Machine {
       for (auto* a : {&u[0], &u[1]}) *a = Array<typename Policy::Extra>(device, account);
       for (auto* a :
            {&residue[0], &residue[1], &id, &spare_id, &rank_of, &order, &entered, &rank, &count, &first,
-            &taken, &occupancy, &entries, &counts, &thin_entries, &thin_counts, &notes, &slot, &found_here})
+            &taken, &occupancy, &entries, &counts, &near_entries, &near_counts, &notes, &slot, &found_here})
         *a = Array<uint32_t>(device, account);
       for (auto* a : {&cell, &spare_cell}) *a = Array<CellAt>(device, account);
       for (auto* a : {&leaving[0], &leaving[1], &arriving}) *a = Array<Traveller<Policy>>(device, account);
@@ -130,7 +130,7 @@ class Machine {
     Array<uint32_t> id, spare_id, rank_of, order, entered;
     Array<CellAt> cell, spare_cell;
     Array<uint32_t> rank, count, first, taken, occupancy;  // of cells
-    Array<uint32_t> entries, counts, thin_entries, thin_counts;
+    Array<uint32_t> entries, counts, near_entries, near_counts;
     Array<uint32_t> notes;  // two counts of leavers, lost ones, longest list
     Array<Traveller<Policy>> leaving[2], arriving;
     Array<Control> control;
@@ -153,8 +153,8 @@ class Machine {
   static constexpr double kSpare = 1.1;
   static constexpr uint32_t kLongest = 512;  // steps of a batch
   // Share of the interaction's radius. Thinner ones hold fewer pairs and are made more often.
-  static constexpr double kThinSkin = 0.06;
-  static constexpr uint32_t kThinLongest = 16;  // steps of a thin list
+  static constexpr double kNearSkin = 0.06;
+  static constexpr uint32_t kNearLongest = 16;  // steps of a near list
   static constexpr uint32_t kGraphSteps = 16;   // even: it ends at the copy where it began
 
   bool alone() const { return slabs_.size() == 1; }
@@ -177,12 +177,12 @@ class Machine {
     return std::max(
         skin_.now() / 2 - static_cast<double>(kAnchorError) * std::max({edge[0], edge[1], edge[2]}), 0.0);
   }
-  // Of thin anchors: a particle that has just left its list's bounds is still within.
+  // Of near anchors: a particle that has just left its list's bounds is still within.
   double range() const { return 1.02 * skin_.now() / 2 + 1e-3 * setup_.radius; }
-  double thin_skin() const { return std::min(kThinSkin * setup_.radius, skin_.now()); }
-  // How far two may have moved together since their thin list was made.
-  double thin_ways() const {
-    return std::max(thin_skin() - 2 * static_cast<double>(kThinAnchorError) * range(), 0.0);
+  double near_skin() const { return std::min(kNearSkin * setup_.radius, skin_.now()); }
+  // How far two may have moved together since their near list was made.
+  double near_allowed() const {
+    return std::max(near_skin() - 2 * static_cast<double>(kNearAnchorError) * range(), 0.0);
   }
   // What a list of that skin reaches.
   float reach_of(double skin) const {
@@ -203,9 +203,9 @@ class Machine {
   void list_pairs();
   void list_pairs(Slab& slab);
   void scatter(const Loose<Policy>& state);
-  void step(uint32_t number, bool hash, bool thins);
-  bool next_thins();
-  void plan_thin_lists(const Outcome& outcome);
+  void step(uint32_t number, bool hash, bool makes_near);
+  bool next_makes_near();
+  void plan_near_lists(const Outcome& outcome);
   void start_batch(uint32_t steps, bool hash);
   void wait_for_all() {
     for (auto& slab : slabs_) {
@@ -223,10 +223,10 @@ class Machine {
   int at_ = 0;  // which copy holds the state
   uint64_t age_ = 0;
   uint32_t batch_ = 16;
-  // Thin lists are made every so many steps, a power of two; in the step before the next one they are so old.
-  uint32_t thin_every_ = 8, thin_age_ = kNever;
-  uint32_t thin_good_ = 0,
-           thin_patience_ = 16;  // thin lists that served to their end; after so many a longer life is tried
+  // Near lists are made every so many steps, a power of two; in the step before the next one they are so old.
+  uint32_t near_every_ = 8, near_age_ = kNever;
+  uint32_t near_good_ = 0,
+           near_patience_ = 16;  // near lists that served to their end; after so many a longer life is tried
   size_t probed_ = 0;
 };
 

@@ -335,14 +335,14 @@ void Machine<Policy>::mirror_residues() {
 template <class Policy>
 void Machine<Policy>::list_pairs(Slab& s) {
   s.stride = (s.own + 31) / 32 * 32;
-  for (auto* counts : {&s.counts, &s.thin_counts})
+  for (auto* counts : {&s.counts, &s.near_counts})
     if (counts->size() < s.own) counts->resize(s.room);
-  for (auto* entries : {&s.entries, &s.thin_entries})
+  for (auto* entries : {&s.entries, &s.near_entries})
     if (entries->size() < s.stride * s.width) entries->resize(s.stride * s.width);
   s.notes.zero(s.stream);
   MakeList<Policy> f{};
   f.view = s.rule->view(), f.grid = grid(s);
-  f.radius = reach_of(skin_.now()), f.near = reach_of(thin_skin());
+  f.radius = reach_of(skin_.now()), f.near = reach_of(near_skin());
   f.x = s.x[at_].data(), f.cell = s.cell.data(), f.first = s.first.data(), f.count = s.count.data();
   f.entries = s.entries.data(), f.counts = s.counts.data(), f.width = s.width, f.stride = s.stride;
   max_each(s.stream, 0, s.own, options_.block, f, s.notes.data());
@@ -381,7 +381,7 @@ void Machine<Policy>::make_lists() {
   for (auto& slab : slabs_)
     for (Graph& graph : slab->graph) graph.drop();
   age_ = 0;
-  thin_age_ = kNever;
+  near_age_ = kNever;
 }
 
 }  // namespace cuboct::gpu

@@ -18,17 +18,17 @@ struct RaiseBase {
 
 // The step from the copy that holds the state to the other one.
 template <class Policy>
-void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
-  // Less than an anchor tells is no way at all: a new list at each step.
-  const auto square = [](double way) { return way > 0 ? static_cast<float>(way * way) : -1.0f; };
+void Machine<Policy>::step(uint32_t number, bool hash, bool makes_near) {
+  // Where the allowed displacement is below an anchor's resolution, the list is made anew every step.
+  const auto square = [](double length) { return length > 0 ? static_cast<float>(length * length) : -1.0f; };
   const auto launch = [&](Slab& s, Stream& stream, uint32_t begin, uint32_t end, uint32_t jump_at,
                           uint32_t jump_by) {
     if (begin == end) return;
     const auto fill_and_run = [&](auto f) {
       f.view = s.rule->view(), f.grid = grid(s), f.from = at(s, at_), f.to = at(s, 1 - at_), f.list = list(s);
-      f.thin = {s.thin_entries.data(), s.thin_counts.data()};
-      f.thin2 = square(reach_of(thin_skin())), f.inside2 = square(reach_of(0));
-      f.range = static_cast<float>(range()), f.thin_skin = static_cast<float>(thin_ways());
+      f.near = {s.near_entries.data(), s.near_counts.data()};
+      f.near2 = square(reach_of(near_skin())), f.inside2 = square(reach_of(0));
+      f.range = static_cast<float>(range()), f.near_allowed = static_cast<float>(near_allowed());
       if (const Slab* lower = beside(s, 0))
         f.copies[0] = {lower->x[1 - at_].data(), setup_.damped ? lower->v[1 - at_].data() : nullptr, 0,
                        s.low_end, int64_t{lower->lower_copy_end}};
@@ -51,7 +51,7 @@ void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
       for_each_cached(stream, begin, end, options_.block, s.rule->cache(), s.rule->cache_words(), f);
     };
     Policy::with_variant(s.rule->view(), [&](auto variant) {
-      if (thins)
+      if (makes_near)
         fill_and_run(Step<Policy, decltype(variant), true>());
       else
         fill_and_run(Step<Policy, decltype(variant), false>());
@@ -88,29 +88,29 @@ void Machine<Policy>::step(uint32_t number, bool hash, bool thins) {
   at_ = 1 - at_;
 }
 
-// Whether the next step makes thin lists.
+// Whether the next step makes near lists.
 template <class Policy>
-bool Machine<Policy>::next_thins() {
-  const bool thins = thin_age_ == kNever || thin_age_ >= thin_every_;
-  thin_age_ = thins ? 1 : thin_age_ + 1;
-  return thins;
+bool Machine<Policy>::next_makes_near() {
+  const bool makes_near = near_age_ == kNever || near_age_ >= near_every_;
+  near_age_ = makes_near ? 1 : near_age_ + 1;
+  return makes_near;
 }
 
-// Thin lists live longer where they have served to their end, and shorter where they have not.
+// Near lists live longer where they have served to their end, and shorter where they have not.
 template <class Policy>
-void Machine<Policy>::plan_thin_lists(const Outcome& outcome) {
-  const uint32_t before = thin_every_;
-  if (outcome.end == End::thin) {
-    ++counters.thin_stops;
-    thin_age_ = kNever;
-    thin_every_ = std::max(thin_every_ / 2, 1u);
-    thin_good_ = 0;
-    thin_patience_ = std::min(2 * thin_patience_, 4096u);
-  } else if ((thin_good_ += static_cast<uint32_t>(outcome.done) / thin_every_) >= thin_patience_) {
-    thin_every_ = std::min(2 * thin_every_, kThinLongest);
-    thin_good_ = 0;
+void Machine<Policy>::plan_near_lists(const Outcome& outcome) {
+  const uint32_t before = near_every_;
+  if (outcome.end == End::near_list) {
+    ++counters.near_stops;
+    near_age_ = kNever;
+    near_every_ = std::max(near_every_ / 2, 1u);
+    near_good_ = 0;
+    near_patience_ = std::min(2 * near_patience_, 4096u);
+  } else if ((near_good_ += static_cast<uint32_t>(outcome.done) / near_every_) >= near_patience_) {
+    near_every_ = std::min(2 * near_every_, kNearLongest);
+    near_good_ = 0;
   }
-  if (thin_every_ != before)
+  if (near_every_ != before)
     for (auto& slab : slabs_)
       for (Graph& graph : slab->graph) graph.drop();
 }
@@ -131,17 +131,17 @@ void Machine<Policy>::start_batch(uint32_t steps, bool hash) {
       Graph& graph = only.graph[at_];
       if (!graph.ready()) {
         graph.begin(only.stream);
-        for (uint32_t k = 1; k <= kGraphSteps; ++k) step(k, false, (k - 1) % thin_every_ == 0);
+        for (uint32_t k = 1; k <= kGraphSteps; ++k) step(k, false, (k - 1) % near_every_ == 0);
         for_each(only.stream, 0, 1, 32, RaiseBase{only.control.data(), kGraphSteps});
         graph.end(only.stream);
       }
       graph.launch(only.stream);
     }
     // What follows counts on.
-    if (done > 0) thin_age_ = thin_every_;
-    for (uint32_t k = 1; done < steps; ++k, ++done) step(k, false, next_thins());
+    if (done > 0) near_age_ = near_every_;
+    for (uint32_t k = 1; done < steps; ++k, ++done) step(k, false, next_makes_near());
   }
-  for (uint32_t k = done + 1; k <= steps; ++k) step(k, hash, next_thins());
+  for (uint32_t k = done + 1; k <= steps; ++k) step(k, hash, next_makes_near());
   wait_for_all();
 }
 
@@ -151,13 +151,13 @@ typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vec
   const int begin = at_;
   start_batch(steps, hashes != nullptr);
   Outcome outcome{steps, End::full};
-  uint32_t doubt = kNever, crowded = kNever, old = kNever, thin = kNever;
+  uint32_t doubt = kNever, crowded = kNever, old = kNever, near_old = kNever;
   for (auto& slab : slabs_) {
     const Control told = slab->control.host(slab->stream, 0, 1)[0];
     const uint64_t done = std::min(told.limit, steps);
     outcome.done = std::min(outcome.done, done);
     doubt = std::min(doubt, told.doubt), crowded = std::min(crowded, told.crowded);
-    old = std::min(old, told.old), thin = std::min(thin, told.thin);
+    old = std::min(old, told.old), near_old = std::min(near_old, told.near_old);
   }
   if (crowded == outcome.done + 1)
     outcome.end = End::crowded;
@@ -165,9 +165,9 @@ typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vec
     outcome.end = End::doubt;
   else if (old == outcome.done)
     outcome.end = End::list;
-  else if (thin == outcome.done)
-    outcome.end = End::thin;
-  plan_thin_lists(outcome);
+  else if (near_old == outcome.done)
+    outcome.end = End::near_list;
+  plan_near_lists(outcome);
   at_ = static_cast<int>((static_cast<uint64_t>(begin) + outcome.done) % 2);
   age_ += outcome.done;
   if (hashes) {
@@ -178,7 +178,7 @@ typename Machine<Policy>::Outcome Machine<Policy>::run(uint64_t wanted, std::vec
     }
     hashes->insert(hashes->end(), sums.begin(), sums.end());
   }
-  if (outcome.end == End::thin) {
+  if (outcome.end == End::near_list) {
     batch_ = std::max(batch_ / 4, kGraphSteps);
   } else if (outcome.end == End::full) {
     if (steps == batch_) batch_ = std::min(2 * batch_, kLongest);

@@ -15,7 +15,7 @@ struct alignas(16) Four {
   Last last;
 };
 
-// The last number of a position: the type, and above it a thin anchor (gpu_ref/storage.h).
+// The last number of a position: the type, and above it a near anchor (gpu_ref/storage.h).
 inline constexpr int kTypeBits = 8;
 template <typename Last>
 CUBOCT_HD constexpr int type_in(Last last) {

@@ -51,7 +51,7 @@ class RealEngine final : public Engine {
       const auto outcome = machine_->run(last - step_, nullptr);
       step_ += outcome.done;
       using End = typename Machine<Policy>::End;
-      old_ = outcome.end != End::full && outcome.end != End::thin;
+      old_ = outcome.end != End::full && outcome.end != End::near_list;
       if (outcome.end == End::doubt) throw_not_finite();
     }
   }

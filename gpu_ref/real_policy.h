@@ -50,7 +50,7 @@ struct RealPolicy {
   static constexpr int kTogether = 3;  // partners loaded at once
   static constexpr bool kSingle = sizeof(Real) == 4;
   using Position =
-      Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs; type and thin anchor
+      Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs; type and near anchor
   using Velocity = Four<Real, std::conditional_t<kSingle, uint32_t, uint64_t>>;  // cutoffs per step; anchor
   using Extra = Three<Real>;                                                     // u, cutoffs
   using Sum = Three<Real>;                                                       // kicks, cutoffs per step

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How thick the skin of pair lists should be. A thick one lives long and holds many pairs, which are gone
-// over whenever a thin list is made of it (gpu_ref/step.h); a thin one is used up soon. In a solid lists live
+// over whenever a near list is made of it (gpu_ref/step.h); a near one is used up soon. In a solid lists live
 // for ever beyond the amplitude of its vibrations, and each shell of neighbours counts at once; in a fluid
 // both go smoothly. So the skin follows what lists have cost, per step and particle. It depends on steps and
 // lists alone: runs repeat to the bit.
@@ -26,9 +26,9 @@ class Skin {
 
  private:
   static constexpr int kSkins = 14;
-  // In the time of a pair of a thin list: making a list takes that of so many pairs per particle, and where
+  // In the time of a pair of a near list: making a list takes that of so many pairs per particle, and where
   // there are few particles that of more, as it is then a matter of waiting for the host; an entry that is
-  // met now and then, when thin lists are made, takes so much a step.
+  // met now and then, when near lists are made, takes so much a step.
   static constexpr double kMaking = 400, kMakingOfFew = 1100, kFew = 50e3, kEntry = 0.06;
   // The share of the cost that is worth a try, and for how many lists one remembers what it gave.
   static constexpr double kWorthwhile = 0.05, kOthers = 20;

@@ -13,12 +13,12 @@ namespace cuboct::gpu {
 
 // What a slab's kernels tell the host of a batch. Steps count from 1 in a batch.
 struct Control {
-  uint32_t base;     // of step numbers: a graph counts its steps from 1 each time that it is launched
-  uint32_t limit;    // the steps up to this one are good
-  uint32_t doubt;    // the first step that may not be possible
-  uint32_t crowded;  // the first step in which a cell may be too full
-  uint32_t old;      // the first step after which the list serves no longer
-  uint32_t thin;     // the first step after which the thin lists serve no longer
+  uint32_t base;      // of step numbers: a graph counts its steps from 1 each time that it is launched
+  uint32_t limit;     // the steps up to this one are good
+  uint32_t doubt;     // the first step that may not be possible
+  uint32_t crowded;   // the first step in which a cell may be too full
+  uint32_t old;       // the first step after which the list serves no longer
+  uint32_t near_old;  // the first step after which the near lists serve no longer
 };
 inline constexpr uint32_t kNever = 0xffffffffu;
 
@@ -136,22 +136,22 @@ CUBOCT_DEVICE inline typename Policy::Sum kick_of(const typename Policy::View& v
   return pairs.sum;
 }
 
-// Thins: goes over the whole list and leaves a new thin list on the way; else over the thin list.
-template <class Policy, class Variant, bool kThins>
+// kMakesNear: goes over the whole list and leaves a new near list; else over the near list.
+template <class Policy, class Variant, bool kMakesNear>
 struct Step {
   typename Policy::View view;
   GridView grid;
   ParticlesView<Policy> from, to;
   List list;
-  ThinList thin;
-  float thin2;      // square of what the thin list reaches
-  float inside2;    // square of what no interaction reaches, roundings included
-  float range;      // of thin anchors
-  float thin_skin;  // the ways of two that it allows together
+  NearList near;
+  float near2;         // square of what the near list reaches
+  float inside2;       // square of what no interaction reaches, roundings included
+  float range;         // of near anchors
+  float near_allowed;  // what two may have moved together since it was made
   Copies<Policy> copies[2];
   Occupancy occupancy;
   const CellAt* cell;
-  float farthest2;  // square of the way that the list allows
+  float farthest2;  // square of the displacement that the list allows
   uint32_t number;  // of the step, above the control's base
   Controls others;
   uint32_t jump_at, jump_by;  // both borders of a slab in one loop: from the one index on, places lie further
@@ -165,12 +165,12 @@ struct Step {
     auto v = load(from.v + i);
     const auto before = x;
     Pairs<Policy, Variant> pairs{view, grid, from, Variant::cached(view, cache), x, v};
-    if constexpr (kThins) {
-      thin_out(i, x, v, pairs);
+    if constexpr (kMakesNear) {
+      make_near(i, x, v, pairs);
     } else {
-      const float way = thin_way(x, v);
-      if (2 * way > thin_skin && meets_a_stranger(i, way)) {
-        atomic_min(&control->thin, control->base + number - 1);
+      const float displacement = near_displacement(x, v);
+      if (2 * displacement > near_allowed && meets_a_stranger(i, displacement)) {
+        atomic_min(&control->near_old, control->base + number - 1);
         stop_after(control->base + number - 1);
         return;
       }
@@ -211,48 +211,50 @@ struct Step {
     stop_after(now);
   }
 
-  // The way since the thin list was made.
-  CUBOCT_DEVICE float thin_way(const typename Policy::Position& x, const typename Policy::Velocity& v) const {
+  // The displacement since the near list was made.
+  CUBOCT_DEVICE float near_displacement(const typename Policy::Position& x,
+                                        const typename Policy::Velocity& v) const {
     float moved[3], sum = 0;
     moved_since<Policy>(view, grid, x, v, moved);
     const auto anchor = static_cast<uint32_t>(x.last >> kTypeBits);
     for (int a = 0; a < 3; ++a) {
-      const float d = moved[a] - thin_anchor_at(anchor, a, range);
+      const float d = moved[a] - near_anchor_at(anchor, a, range);
       sum += d * d;
     }
     return sqrtf(sum);
   }
-  // Whether a pair that no thin list holds may have come near: two that together have moved as far as the
-  // thin skin. One of them has moved half of that; few have, and they look at their partners.
-  CUBOCT_DEVICE bool meets_a_stranger(uint32_t i, float way) const {
+  // Whether a pair that no near list holds may have come near: two that together have moved as far as the
+  // near list allows. One of them has moved half of that; few have, and they look at their partners.
+  CUBOCT_DEVICE bool meets_a_stranger(uint32_t i, float displacement) const {
     bool meets = false;
     list.each(i, [&](uint32_t entry) {
       const uint32_t place = entry & kPlaceMask<Policy::kReach>;
-      meets = meets || way + thin_way(load(from.x + place), load(from.v + place)) > thin_skin;
+      meets = meets ||
+              displacement + near_displacement(load(from.x + place), load(from.v + place)) > near_allowed;
     });
     return meets;
   }
 
   CUBOCT_DEVICE void go_over(uint32_t i, Pairs<Policy, Variant>& pairs) const {
-    pairs.over(thin.entries + i, list.stride, thin.count[i],
+    pairs.over(near.entries + i, list.stride, near.count[i],
                [&](uint32_t entry, const auto& other, const auto& w) { pairs.add(entry, other, w); });
   }
 
-  CUBOCT_DEVICE void thin_out(uint32_t i, typename Policy::Position& x, const typename Policy::Velocity& v,
-                              Pairs<Policy, Variant>& pairs) const {
+  CUBOCT_DEVICE void make_near(uint32_t i, typename Policy::Position& x, const typename Policy::Velocity& v,
+                               Pairs<Policy, Variant>& pairs) const {
     float moved[3];
     moved_since<Policy>(view, grid, x, v, moved);
     using Last = decltype(x.last);
-    x.last = static_cast<Last>(type_in(x.last)) | static_cast<Last>(thin_anchor_of(moved, range))
+    x.last = static_cast<Last>(type_in(x.last)) | static_cast<Last>(near_anchor_of(moved, range))
                                                       << kTypeBits;
     uint32_t kept = 0;
     pairs.over(list, i, [&](uint32_t entry, const auto& other, const auto& w) {
       const float square = pairs.distance2(entry, other);
-      if (square > thin2) return;
-      thin.entries[kept++ * list.stride + i] = entry;
+      if (square > near2) return;
+      near.entries[kept++ * list.stride + i] = entry;
       if (square <= inside2) pairs.add(entry, other, w);
     });
-    thin.count[i] = kept;
+    near.count[i] = kept;
   }
 
   // The other slabs may be a step ahead, and no more: the state after this step stays in one of their two

@@ -35,9 +35,9 @@ CUBOCT_DEVICE inline float moved_along(float place, uint32_t anchor, int axis, f
   return place - (step + 0.5f) * (edge / kAnchorSteps);
 }
 
-// Where a particle was when its thin list was made, from its anchor's middle: eight bits an axis, of a range
+// Where a particle was when its near list was made, from its anchor's middle: eight bits an axis, of a range
 // of `range` to both sides, which it does not leave while its list serves.
-CUBOCT_DEVICE inline uint32_t thin_anchor_of(const float (&moved)[3], float range) {
+CUBOCT_DEVICE inline uint32_t near_anchor_of(const float (&moved)[3], float range) {
   uint32_t anchor = 0;
   for (int a = 0; a < 3; ++a) {
     const int step = static_cast<int>((moved[a] / range + 1) * 128);
@@ -45,11 +45,11 @@ CUBOCT_DEVICE inline uint32_t thin_anchor_of(const float (&moved)[3], float rang
   }
   return anchor;
 }
-CUBOCT_DEVICE inline float thin_anchor_at(uint32_t anchor, int axis, float range) {
+CUBOCT_DEVICE inline float near_anchor_at(uint32_t anchor, int axis, float range) {
   return (static_cast<float>(anchor >> 8 * axis & 255u) - 127.5f) * (range / 128);
 }
 // Half a step along three axes, as a share of the range.
-inline constexpr float kThinAnchorError = 0.8661f / 128;
+inline constexpr float kNearAnchorError = 0.8661f / 128;
 
 template <class Policy>
 struct ParticlesView {

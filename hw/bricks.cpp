@@ -121,7 +121,11 @@ BrickWalk::BrickWalk(const Cell& shape, const Cell& extent, uint8_t has_link, in
 }
 
 Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
-  if (cells_of(shape) == 1 || lattice.size() == 0) return;
+  if (lattice.size() == 0) return;
+  if (cells() == 1) {
+    nodes_ = lattice.size();
+    return;
+  }
   Cell low = lattice.cell(0), high = low;
   for (uint32_t n = 1; n < lattice.size(); ++n)
     for (int a = 0; a < 3; ++a) {
@@ -147,44 +151,43 @@ Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
   for (uint32_t c = 0; c < lattice.size(); ++c)
     bricks[{brick_of(c, 2), brick_of(c, 1), brick_of(c, 0)}].push_back(c);
   place_.resize(lattice.size());
-  cells_.assign(bricks.size() * cells_of(shape), kNoCell);
+  cells_.assign(bricks.size() * this->cells(), kNoCell);
   for (const auto& [key, cells] : bricks) {
-    Node node;
-    node.neighbour.fill(kNoNode);
+    Box box;
+    box.neighbour.fill(kNoNode);
     const Cell brick{std::get<2>(key), std::get<1>(key), std::get<0>(key)};
     for (int a = 0; a < 3; ++a) {
-      node.low[a] = low[a] + brick[a] * shape[a];
-      node.extent[a] = std::min(shape[a], high[a] + 1 - node.low[a]);
+      box.low[a] = low[a] + brick[a] * shape[a];
+      box.extent[a] = std::min(shape[a], high[a] + 1 - box.low[a]);
     }
     for (const uint32_t c : cells) {
       Cell inside = lattice.cell(c);
-      for (int a = 0; a < 3; ++a) inside[a] -= node.low[a];
-      place_[c] = size() * cells_of(shape) + grid.local(inside);
+      for (int a = 0; a < 3; ++a) inside[a] -= box.low[a];
+      place_[c] = nodes_ * this->cells() + grid.local(inside);
       cells_[place_[c]] = c;
     }
-    nodes_.push_back(node);
+    box_.push_back(box);
+    ++nodes_;
   }
   for (uint32_t c = 0; c < lattice.size(); ++c) {
-    Node& node = nodes_[node_of(c)];
+    Box& box = box_[node_of(c)];
     for (int a = 0; a < 3; ++a) {
-      const int32_t inside = lattice.cell(c)[a] - node.low[a];
+      const int32_t inside = lattice.cell(c)[a] - box.low[a];
       for (int up = 0; up < 2; ++up) {
         const uint32_t other = lattice.neighbour(c, 2 * a + up);
-        if (other != kNoCell && inside == (up != 0 ? node.extent[a] - 1 : 0))
-          node.neighbour[at(2 * a + up)] = node_of(other);
+        if (other != kNoCell && inside == (up != 0 ? box.extent[a] - 1 : 0))
+          box.neighbour[at(2 * a + up)] = node_of(other);
       }
     }
   }
 }
 
-int Bricks::cell_bits() const {
-  return single() ? 0 : static_cast<int>(std::bit_width(cells_of(shape_) - 1));
-}
+int Bricks::cell_bits() const { return static_cast<int>(std::bit_width(cells() - 1)); }
 
-uint8_t Bricks::links(uint32_t node) const {
+uint8_t Bricks::links(const Lattice& lattice, uint32_t node) const {
   uint8_t faces = 0;
   for (int f = 0; f < kFaces; ++f)
-    if (nodes_[node].neighbour[at(f)] != kNoNode) faces |= static_cast<uint8_t>(1u << f);
+    if (neighbour(lattice, node, f) != kNoNode) faces |= static_cast<uint8_t>(1u << f);
   return faces;
 }
 
@@ -200,7 +203,7 @@ HeldWords held_words(const Cell& brick, int axes) {
   return held;
 }
 
-BrickMap::BrickMap(const Bricks& bricks, int axes) : grid_(bricks.shape()) {
+BrickMap::BrickMap(const Lattice& lattice, const Bricks& bricks, int axes) : grid_(bricks.shape()) {
   using Key = std::tuple<int32_t, int32_t, int32_t, uint8_t>;
   std::map<Key, std::shared_ptr<const BrickWalk>> walks;
   const Cell& shape = bricks.shape();
@@ -209,9 +212,10 @@ BrickMap::BrickMap(const Bricks& bricks, int axes) : grid_(bricks.shape()) {
     return cell_[size_t{node} * grid_.size() + grid];
   };
   for (uint32_t n = 0; n < bricks.size(); ++n) {
-    const Cell& extent = bricks.node(n).extent;
-    auto& walk = walks[{extent[0], extent[1], extent[2], bricks.links(n)}];
-    if (!walk) walk = std::make_shared<const BrickWalk>(shape, extent, bricks.links(n), axes);
+    const Cell extent = bricks.extent(n);
+    const uint8_t links = bricks.links(lattice, n);
+    auto& walk = walks[{extent[0], extent[1], extent[2], links}];
+    if (!walk) walk = std::make_shared<const BrickWalk>(shape, extent, links, axes);
     walk_.push_back(walk);
     for_all({0, 0, 0}, {extent[0] - 1, extent[1] - 1, extent[2] - 1},
             [&](const Cell& at) { place(n, grid_.at(at)) = bricks.cell(n, grid_.local(at)); });
@@ -220,9 +224,9 @@ BrickMap::BrickMap(const Bricks& bricks, int axes) : grid_(bricks.shape()) {
   for (int axis = 0; axis < axes; ++axis)
     for (uint32_t n = 0; n < bricks.size(); ++n)
       for (int face = 2 * axis; face < 2 * axis + 2; ++face) {
-        const uint32_t to = bricks.node(n).neighbour[at(face)];
+        const uint32_t to = bricks.neighbour(lattice, n, face);
         if (to == kNoNode) continue;
-        const int32_t along = face % 2 == 1 ? -1 : bricks.node(to).extent[axis];
+        const int32_t along = face % 2 == 1 ? -1 : bricks.extent(to)[axis];
         for (const BrickWalk::Sent& s : walk_[n]->sent[at(face)])
           place(to, grid_.at(grid_.of_halo_tag(axis, s.tag, along))) = place(n, s.grid);
       }

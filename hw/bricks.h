@@ -76,35 +76,52 @@ struct BrickWalk {
   std::vector<Near> near;
 };
 
+// Which cells each node of the machine serves: the lattice, cut into bricks of one shape. A brick of one cell
+// is one like any other; then a node has its cell's number, and nothing is stored. Else 48 bytes per node and
+// 4 for each cell of its brick, and 4 for each of the lattice's cells.
 class Bricks {
  public:
-  struct Node {
-    Cell low;     // its lowest cell
-    Cell extent;  // cells along the axes: those of the shape, fewer at the upper end of the lattice
-    std::array<uint32_t, kFaces> neighbour;  // kNoNode where there is none; itself where it closes a ring
-  };
-
-  Bricks() = default;  // one cell per node
+  Bricks() = default;
   // Cuts the lattice into bricks, from its lowest cell on. Throws InputError where `shape` does not fit.
   Bricks(const Lattice& lattice, const Cell& shape);
 
-  bool single() const { return nodes_.empty(); }
-  int cell_bits() const;  // of a cell's number in its node; 0 if that is the only one
-  // What follows is not for single cells.
-  uint32_t size() const { return static_cast<uint32_t>(nodes_.size()); }
   const Cell& shape() const { return shape_; }
-  const Node& node(uint32_t node) const { return nodes_[node]; }
+  uint32_t cells() const { return cells_of(shape_); }  // of a brick
+  // A node of one cell has a core of its own (rtl/lib/cuboct_node_core.sv, emu/systemc/node.h), with other
+  // phases than that of bricks. Only for what chooses a core, or knows its schedule.
+  bool one_cell() const { return cells() == 1; }
+  int cell_bits() const;                    // of a cell's number in its node; 0 if that is the only one
+  uint32_t size() const { return nodes_; }  // nodes
   // The lattice's cell, or kNoCell where it has none there.
-  uint32_t cell(uint32_t node, uint32_t local) const { return cells_[node * cells_of(shape_) + local]; }
-  uint32_t node_of(uint32_t cell) const { return place_[cell] / cells_of(shape_); }
-  uint32_t local_of(uint32_t cell) const { return place_[cell] % cells_of(shape_); }
-  uint8_t links(uint32_t node) const;  // bit f: there is a neighbour over face f
+  uint32_t cell(uint32_t node, uint32_t local) const {
+    return cells_.empty() ? node : cells_[node * cells() + local];
+  }
+  uint32_t node_of(uint32_t cell) const { return place_.empty() ? cell : place_[cell] / cells(); }
+  uint32_t local_of(uint32_t cell) const { return place_.empty() ? 0 : place_[cell] % cells(); }
+  // Cells along the axes: those of the shape, fewer at the upper end of the lattice.
+  Cell extent(uint32_t node) const { return box_.empty() ? shape_ : box_[node].extent; }
+  // What follows is of the lattice that was cut.
+  // A node's lowest cell; the lattice may lack it.
+  Cell low(const Lattice& lattice, uint32_t node) const {
+    return box_.empty() ? lattice.cell(node) : box_[node].low;
+  }
+  // kNoNode where there is none over the face; itself where it closes a ring.
+  uint32_t neighbour(const Lattice& lattice, uint32_t node, int face) const {
+    return box_.empty() ? lattice.neighbour(node, face) : box_[node].neighbour[static_cast<size_t>(face)];
+  }
+  uint8_t links(const Lattice& lattice, uint32_t node) const;  // bit f: there is a neighbour over face f
 
  private:
+  struct Box {
+    Cell low, extent;
+    std::array<uint32_t, kFaces> neighbour;
+  };
   Cell shape_{1, 1, 1};
-  std::vector<Node> nodes_;
+  uint32_t nodes_ = 0;
+  // Empty where a brick is one cell.
+  std::vector<Box> box_;         // [node]
   std::vector<uint32_t> cells_;  // [node][local]
-  std::vector<uint32_t> place_;  // [cell]: node * cells + local
+  std::vector<uint32_t> place_;  // [cell]: node * cells() + local
 };
 
 // What a node's memories hold, in units of its capacity. A node of one cell: 7 particles (own slots and six
@@ -119,7 +136,8 @@ HeldWords held_words(const Cell& brick, int axes);
 // The walks of all nodes, and which cell of the lattice stands where in their halos.
 class BrickMap {
  public:
-  BrickMap(const Bricks& bricks, int axes);
+  // 4 bytes for each cell in and around a node's brick: 108 per node of one cell.
+  BrickMap(const Lattice& lattice, const Bricks& bricks, int axes);
   const BrickGrid& grid() const { return grid_; }
   const BrickWalk& walk(uint32_t node) const { return *walk_[node]; }
   // The cell whose records the node holds at a place of its grid after the exchange, or kNoCell.

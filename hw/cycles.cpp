@@ -24,7 +24,7 @@ struct Sends {
 class BrickCycles {
  public:
   BrickCycles(const Plan& plan, const PairCensus& census)
-      : plan_(plan), map_(plan.bricks, plan.rule.axes), census_(census) {}
+      : plan_(plan), map_(plan.lattice, plan.bricks, plan.rule.axes), census_(census) {}
   ExpectedCycles expected() const {
     ExpectedCycles expected;
     for (uint32_t n = 0; n < plan_.nodes(); ++n) add(n, expected);
@@ -231,14 +231,14 @@ uint64_t PairCensus::pairs(uint32_t cell) const {
 }
 
 ExpectedCycles expected_cycles(const Plan& plan, const PairCensus& census) {
-  if (!plan.bricks.single()) return BrickCycles(plan, census).expected();
+  if (!plan.bricks.one_cell()) return BrickCycles(plan, census).expected();
   return single_cycles(
       plan, [&](uint32_t n) { return census.particles(n); }, [&](uint32_t n) { return census.pairs(n); },
       [](uint32_t) { return uint64_t{0}; });
 }
 
 ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
-  if (!plan.bricks.single()) return expected_cycles(plan, PairCensus(plan.rule, plan.lattice, state));
+  if (!plan.bricks.one_cell()) return expected_cycles(plan, PairCensus(plan.rule, plan.lattice, state));
   const Held held = held_by(plan.lattice, state);
   return single_cycles(
       plan, [&](uint32_t n) { return held[n].size(); },

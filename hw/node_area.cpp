@@ -79,7 +79,7 @@ NodeArea area_of(const Plan& plan) {
   area.tables = kMemoryBit * arch.force_pipes * memory;
   area.adders = kAdderBit * (arch.force_pipes * adders + arch.filter_lanes * lane + update_adders);
   area.particles =
-      particle_memory(arch, held_words(arch.brick, plan.bricks.single() ? 3 : rule.axes),
+      particle_memory(arch, held_words(arch.brick, plan.bricks.one_cell() ? 3 : rule.axes),
                       plan.words.particle_bits, plan.words.halo_bits - plan.words.halo_cell_bits, sum);
   return area;
 }

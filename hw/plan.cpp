@@ -101,7 +101,7 @@ uint64_t hash_of(const Plan& plan) {
   if (w.filter_frac != Widths{}.filter_frac) hash.add(w.filter_frac);
   hash.add(plan.words.link_bits).add(plan.particles);
   if (plan.link.checked()) hash.add(static_cast<int>(plan.link.check));
-  if (!plan.bricks.single())
+  if (!plan.bricks.one_cell())
     for (const int32_t c : arch.brick) hash.add(c);
   for (const int32_t p : plan.lattice.period()) hash.add(p);
   for (uint32_t n = 0; n < plan.lattice.size(); ++n)
@@ -210,8 +210,8 @@ std::string describe(const Plan& plan) {
   line("particles",
        fmt::format("{} of {} type{}", plan.particles, r.types.size(), r.types.size() == 1 ? "" : "s"));
   const std::string slots = fmt::format("{} slots, cell edge {:.6g} m", plan.arch.capacity, r.cell_edge);
-  if (plan.bricks.single())
-    line("nodes", fmt::format("{} of {}", plan.lattice.size(), slots));
+  if (plan.bricks.cells() == 1)
+    line("nodes", fmt::format("{} of {}", plan.nodes(), slots));
   else
     line("nodes", fmt::format("{} with bricks of {} cells; {} cells of {}", plan.nodes(),
                               fmt::join(plan.arch.brick, " x "), plan.lattice.size(), slots));

@@ -67,18 +67,15 @@ struct Plan {
   std::vector<WidthReason> reasons;
   std::vector<std::string> warnings;
 
-  // Physical nodes, and the neighbour of one over a face, or kNoNode.
-  uint32_t nodes() const { return bricks.single() ? lattice.size() : bricks.size(); }
-  uint32_t neighbour(uint32_t node, int face) const {
-    return bricks.single() ? lattice.neighbour(node, face)
-                           : bricks.node(node).neighbour[static_cast<size_t>(face)];
-  }
-  uint32_t node_of(uint32_t cell) const { return bricks.single() ? cell : bricks.node_of(cell); }
-  uint32_t local_of(uint32_t cell) const { return bricks.single() ? 0 : bricks.local_of(cell); }
+  // Of the machine's nodes. The neighbour over a face may be kNoNode.
+  uint32_t nodes() const { return bricks.size(); }
+  uint32_t neighbour(uint32_t node, int face) const { return bricks.neighbour(lattice, node, face); }
+  // Coordinates of a node's lowest cell.
+  Cell low_of(uint32_t node) const { return bricks.low(lattice, node); }
+  uint32_t node_of(uint32_t cell) const { return bricks.node_of(cell); }
+  uint32_t local_of(uint32_t cell) const { return bricks.local_of(cell); }
   // The lattice's cell number `local` of a node, or kNoCell.
-  uint32_t cell_of(uint32_t node, uint32_t local) const {
-    return bricks.single() ? node : bricks.cell(node, local);
-  }
+  uint32_t cell_of(uint32_t node, uint32_t local) const { return bricks.cell(node, local); }
   // The first of the lattice's cells that a node has.
   uint32_t first_cell_of(uint32_t node) const {
     uint32_t local = 0;

@@ -176,10 +176,12 @@ class Reach {
   std::pair<const Rows, Spans>* latest_ = nullptr;
 };
 
-double stops_of(const Vec3& way, double edge) { return 1 + std::ceil(way.norm() / (0.5 * edge)); }
+double stops_of(const Vec3& displacement, double edge) {
+  return 1 + std::ceil(displacement.norm() / (0.5 * edge));
+}
 
-// Whether a box that moves by `way` touches all of the box around its first and its last place.
-bool sweeps_a_box(const Vec3& way) { return (way.array() != 0).count() <= 1; }
+// Whether a box that moves by `displacement` touches all of the box around its first and its last place.
+bool sweeps_a_box(const Vec3& displacement) { return (displacement.array() != 0).count() <= 1; }
 
 // Refuses paths that take too long to follow. Whether there are paths.
 bool check_paths(const Scene& scene, double edge, const Cell& period) {
@@ -190,20 +192,21 @@ bool check_paths(const Scene& scene, double edge, const Cell& period) {
   double stops = 0;
   bool any = false;
   for (size_t t = 0; t < moved.size(); ++t) {
-    const Vec3 way = scene.rule.types[t].velocity * duration;
-    Vec3 open = way;
+    const Vec3 displacement = scene.rule.types[t].velocity * duration;
+    Vec3 open = displacement;
     for (int a = 0; a < 3; ++a)
       if (period[a] > 0) open[a] = 0;
-    if (moved[t] == 0 || way.isZero(0)) continue;
+    if (moved[t] == 0 || displacement.isZero(0)) continue;
     any = true;
-    if (!sweeps_a_box(way)) stops += moved[t] * stops_of(way, edge);
+    if (!sweeps_a_box(displacement)) stops += moved[t] * stops_of(displacement, edge);
     if (open.norm() / edge > kMostCells || stops > kMostStops)
       scene.places.fail(
           {"run.duration", "run.steps"},
           fmt::format(
               "a body moved at {:.4g} m/s goes {:.4g} m in {:.4g} s, through {:.3g} cells of {:.4g} m: more "
               "than can be built",
-              scene.rule.types[t].velocity.norm(), way.norm(), duration, way.norm() / edge, edge),
+              scene.rule.types[t].velocity.norm(), displacement.norm(), duration, displacement.norm() / edge,
+              edge),
           "a shorter run, or one in which bodies are moved less far");
   }
   return any;
@@ -236,20 +239,22 @@ std::vector<Cell> reachable_cells(const Scene& scene, double edge, const Vec3& o
   const bool moved = check_paths(scene, edge, period);
   for (size_t id = 0; id < scene.body.size(); ++id) {
     const Vec3& x = scene.body.x[id];
-    const Vec3 way = scene.rule.types[scene.body.type[id]].velocity * duration;
+    const Vec3 displacement = scene.rule.types[scene.body.type[id]].velocity * duration;
     // Along one axis all between the ends is touched.
-    const bool swept = sweeps_a_box(way);
-    const auto stops = swept ? int64_t{1} : static_cast<int64_t>(stops_of(way, edge));
+    const bool swept = sweeps_a_box(displacement);
+    const auto stops = swept ? int64_t{1} : static_cast<int64_t>(stops_of(displacement, edge));
     for (int64_t k = swept ? 1 : 0; k <= stops; ++k) {
-      const Vec3 at = swept ? x : Vec3(x + way * static_cast<double>(k) / static_cast<double>(stops));
-      const Vec3 to = swept ? Vec3(x + way) : at;
+      const Vec3 at =
+          swept ? x : Vec3(x + displacement * static_cast<double>(k) / static_cast<double>(stops));
+      const Vec3 to = swept ? Vec3(x + displacement) : at;
       const double count = reach.add(layer(at.cwiseMin(to) - margin), layer(at.cwiseMax(to) + margin));
       if (count == 0) continue;
-      if (way.isZero(0))
+      if (displacement.isZero(0))
         refuse({std::isinf(count) ? "particle" : "reach.margin"},
                std::isinf(count) ? fmt::format("particle {} is", id) : "the reach of a particle spans", count,
                std::isinf(count) ? "particles nearer to one another" : "a smaller reach.margin");
-      refuse(run, fmt::format("a body that is moved by {:.4g} m reaches", way.norm()), count, shorter);
+      refuse(run, fmt::format("a body that is moved by {:.4g} m reaches", displacement.norm()), count,
+             shorter);
     }
   }
   if (scene.reach[0] != scene.reach[1])

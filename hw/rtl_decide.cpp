@@ -70,7 +70,7 @@ RtlDesign decide(const Plan& plan) {
     design.constants.push_back({name, static_cast<int64_t>(value), true, true, comment});
   };
   constant("Axes", rule.axes, "3, or 2 where nothing happens along z");
-  const bool bricks = !plan.bricks.single();
+  const bool bricks = !plan.bricks.one_cell();
   if (bricks)
     for (size_t a = 0; a < 3; ++a)
       constant(std::array{"BrickX", "BrickY", "BrickZ"}[a], arch.brick[static_cast<int>(a)],
@@ -166,7 +166,7 @@ RtlDesign decide(const Plan& plan) {
   design.pair_sum_bits =
       kick_bits + clog2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(arch.capacity));
   for (uint32_t n = 0; n < plan.nodes(); ++n) {
-    design.cells.push_back(bricks ? plan.bricks.node(n).low : plan.lattice.cell(n));
+    design.cells.push_back(plan.low_of(n));
     auto& faces = design.neighbour.emplace_back();
     for (int f = 0; f < kFaces; ++f) faces[f] = plan.neighbour(n, f);
     if (!bricks) continue;
@@ -181,11 +181,11 @@ RtlDesign decide(const Plan& plan) {
 }
 
 std::vector<bool> extent_bits(const Plan& plan, uint32_t node) {
-  const Cell& brick = plan.bricks.shape();
+  const Cell &brick = plan.bricks.shape(), extent = plan.bricks.extent(node);
   const int width = clog2(static_cast<uint64_t>(std::max({brick[0], brick[1], brick[2]})) + 2);
   std::vector<bool> bits;
   for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < width; ++b) bits.push_back(plan.bricks.node(node).extent[a] >> b & 1);
+    for (int b = 0; b < width; ++b) bits.push_back(extent[a] >> b & 1);
   return bits;
 }
 

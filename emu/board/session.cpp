@@ -137,8 +137,8 @@ class Session {
   int word_bits() const { return plan_.words.particle_bits + plan_.bricks.cell_bits(); }
 
   uint32_t cell_of(uint32_t node, uint64_t local) const {
-    const bool within = plan_.bricks.single() ? local == 0 : local < cells_of(plan_.bricks.shape());
-    const uint32_t cell = within ? plan_.cell_of(node, static_cast<uint32_t>(local)) : kNoCell;
+    const uint32_t cell =
+        local < plan_.bricks.cells() ? plan_.cell_of(node, static_cast<uint32_t>(local)) : kNoCell;
     if (cell == kNoCell)
       throw std::runtime_error(
           fmt::format("port {}: node {} tells of a cell {} that it has not", host_.port(), node, local));

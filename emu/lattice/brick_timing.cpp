@@ -31,10 +31,10 @@ BrickMigration::BrickMigration(const Plan& plan)
 
 // Whether the way over this face of a cell leaves its brick.
 bool BrickMigration::crosses(uint32_t cell, int face) const {
-  const Bricks::Node& node = plan_.bricks.node(plan_.node_of(cell));
+  const uint32_t node = plan_.node_of(cell);
   const int axis = face / 2;
-  const int32_t inside = plan_.lattice.cell(cell)[axis] - node.low[axis];
-  return inside == (face % 2 == 1 ? node.extent[axis] - 1 : 0);
+  const int32_t inside = plan_.lattice.cell(cell)[axis] - plan_.low_of(node)[axis];
+  return inside == (face % 2 == 1 ? plan_.bricks.extent(node)[axis] - 1 : 0);
 }
 
 void BrickMigration::plan(std::vector<uint32_t>& count, std::span<const Leaving> leaving,
@@ -95,7 +95,7 @@ void BrickMigration::move(int axis, std::vector<uint32_t>& count, const BrickMap
 
 BrickTiming::BrickTiming(const Plan& plan, int threads)
     : plan_(plan),
-      map_(plan.bricks, plan.rule.axes),
+      map_(plan.lattice, plan.bricks, plan.rule.axes),
       nodes_(plan.nodes()),
       axes_(plan.rule.axes),
       threads_(threads > 0 ? threads : usable_cores()),

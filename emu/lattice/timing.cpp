@@ -248,7 +248,7 @@ void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
 }
 
 TimingModel::TimingModel(const Plan& plan, int threads) {
-  if (plan.bricks.single())
+  if (plan.bricks.one_cell())
     impl_ = std::make_unique<Impl>(plan, threads);
   else
     brick_ = std::make_unique<BrickTiming>(plan, threads);

@@ -48,10 +48,9 @@ std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initia
   if (first != nullptr)
     throw RunError(Fault::full_x, initial.step, first->cell, first->id, plan.arch.capacity,
                    place_of(plan.lattice, first->cell));
-  if (plan.bricks.single()) return cells;
   std::vector<std::vector<Particle>> nodes(plan.nodes());
   for (uint32_t n = 0; n < plan.nodes(); ++n)
-    for (uint32_t local = 0; local < cells_of(plan.bricks.shape()); ++local)
+    for (uint32_t local = 0; local < plan.bricks.cells(); ++local)
       if (const uint32_t cell = plan.cell_of(n, local); cell != kNoCell)
         nodes[n].insert(nodes[n].end(), cells[cell].begin(), cells[cell].end());
   return nodes;
@@ -77,7 +76,7 @@ Collector::Collector(const Plan& plan, const RunOptions& options)
     : plan_(plan),
       options_(options),
       nodes_(plan.nodes()),
-      shown_phase_(plan.bricks.single() ? Phase::exchange_x : Phase::update),
+      shown_phase_(plan.bricks.one_cell() ? Phase::exchange_x : Phase::update),
       last_phase_(last_phase(plan.rule.axes)),
       step_(nodes_),
       stopped_(nodes_) {

@@ -91,15 +91,10 @@ class Machine {
 
 }  // namespace
 
-uint8_t links_of(const Plan& plan, uint32_t node) {
-  uint8_t mask = 0;
-  for (int f = 0; f < kFaces; ++f)
-    if (plan.neighbour(node, f) != kNoNode) mask |= static_cast<uint8_t>(1u << f);
-  return mask;
-}
+uint8_t links_of(const Plan& plan, uint32_t node) { return plan.bricks.links(plan.lattice, node); }
 
 std::string node_text(const Plan& plan, uint32_t node) {
-  const Cell& c = plan.bricks.single() ? plan.lattice.cell(node) : plan.bricks.node(node).low;
+  const Cell c = plan.low_of(node);
   return fmt::format("node {} ({},{},{})", node, c[0], c[1], c[2]);
 }
 

@@ -19,43 +19,21 @@ uint64_t threshold_of(double rate) {
 // fewer than the check's distance, or this many where there is none.
 constexpr int kBurst = 16, kScattered = 3;
 
-// With bricks: what the layers hold that go over the faces.
-uint64_t brick_beats_per_step(const Plan& plan, const State& state) {
-  const BrickMap map(plan.bricks, plan.rule.axes);
+}  // namespace
+
+uint64_t beats_per_step(const Plan& plan, const State& state) {
+  const BrickMap map(plan.lattice, plan.bricks, plan.rule.axes);
   std::vector<uint64_t> held(plan.lattice.size());
   for (const Particle& p : state.particles) ++held[p.cell];
   uint64_t beats = 0;
   for (uint32_t n = 0; n < plan.nodes(); ++n)
     for (int f = 0; f < 2 * plan.rule.axes; ++f) {
       if (plan.neighbour(n, f) == kNoNode) continue;
-      beats += 2;
+      beats += 2;  // the end beats of a halo and of a migrate stream
       for (const BrickWalk::Sent& s : map.walk(n).sent[static_cast<size_t>(f)])
         if (const uint32_t cell = map.cell(n, s.grid); cell != kNoCell)
           beats += held[cell] * static_cast<uint64_t>(plan.words.halo_beats);
     }
-  return beats;
-}
-
-}  // namespace
-
-uint64_t beats_per_step(const Plan& plan, const State& state) {
-  if (!plan.bricks.single()) return brick_beats_per_step(plan, state);
-  const Lattice& lattice = plan.lattice;
-  std::vector<uint64_t> records(lattice.size());  // that a node sends along the axis
-  for (const Particle& p : state.particles) ++records[p.cell];
-  uint64_t beats = 0;
-  for (int axis = 0; axis < plan.rule.axes; ++axis) {
-    std::vector<uint64_t> next = records;
-    for (uint32_t n = 0; n < lattice.size(); ++n)
-      for (int f = 2 * axis; f < 2 * axis + 2; ++f) {
-        const uint32_t other = lattice.neighbour(n, f);
-        if (other == kNoCell) continue;
-        next[other] += records[n];
-        // The end beats of a halo and of a migrate stream.
-        beats += records[n] * static_cast<uint64_t>(plan.words.halo_beats) + 2;
-      }
-    records = std::move(next);
-  }
   return beats;
 }
 

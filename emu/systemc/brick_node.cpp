@@ -9,7 +9,7 @@ namespace cuboct::emu {
 BrickNode::BrickNode(const Plan& plan, uint32_t node, uint8_t has_link)
     : NodeMachine(plan, has_link),
       node_(node),
-      extent_(plan.bricks.node(node).extent),
+      extent_(plan.bricks.extent(node)),
       grid_(plan.bricks.shape()),
       walk_(plan.bricks.shape(), extent_, has_link, axes_),
       cells_{std::vector<std::vector<Slot>>(cells_of(plan.bricks.shape())),

@@ -194,7 +194,7 @@ uint8_t Node::awaited() const {
 NodeFactory native_nodes(const Plan& plan) {
   check_words(plan);
   return guarded(plan, [&plan](uint32_t node, uint8_t has_link) -> std::unique_ptr<NodeModel> {
-    if (plan.bricks.single()) return std::make_unique<Node>(plan, has_link);
+    if (plan.bricks.one_cell()) return std::make_unique<Node>(plan, has_link);
     return std::make_unique<BrickNode>(plan, node, has_link);
   });
 }

@@ -32,7 +32,7 @@ void read_outputs(const CuboctOut& from, NodeOutputs& out) {
 VerilatedNode::VerilatedNode(std::shared_ptr<const Library> library, const Plan& plan, uint32_t node,
                              uint8_t has_link, uint32_t seed)
     : library_(std::move(library)), has_link_(has_link), model_(library_->create(seed)) {
-  if (plan.bricks.single()) return;
+  if (plan.bricks.one_cell()) return;
   const auto words = [](const std::vector<bool>& bits) {
     std::vector<uint64_t> packed(bits.size() / 64 + 2);
     for (size_t k = 0; k < bits.size(); ++k) packed[k / 64] |= uint64_t{bits[k]} << k % 64;

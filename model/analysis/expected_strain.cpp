@@ -72,18 +72,18 @@ class Equilibrium {
     Field rest = times(u);
     for (size_t i = 0; i < u.size(); ++i) rest[i] = load[i] - rest[i];
     clear_imposed(rest);
-    Field way = rest;
+    Field direction = rest;
     double left = dot(rest, rest);
     const double enough = 1e-16 * left;
     for (size_t n = 0; n < iterations && left > enough; ++n) {
-      Field pull = times(way);
+      Field pull = times(direction);
       clear_imposed(pull);
-      const double stiff = dot(way, pull);
+      const double stiff = dot(direction, pull);
       if (!(stiff > 0)) return false;
       const double step = left / stiff;
-      for (size_t i = 0; i < u.size(); ++i) u[i] += step * way[i], rest[i] -= step * pull[i];
+      for (size_t i = 0; i < u.size(); ++i) u[i] += step * direction[i], rest[i] -= step * pull[i];
       const double next = dot(rest, rest);
-      for (size_t i = 0; i < u.size(); ++i) way[i] = rest[i] + next / left * way[i];
+      for (size_t i = 0; i < u.size(); ++i) direction[i] = rest[i] + next / left * direction[i];
       left = next;
     }
     return std::isfinite(left);
@@ -143,7 +143,7 @@ ExpectedStrain expected_strain(const Scene& scene, std::span<const Vec3> x, std:
     strain.energy += 0.5 * b.stiffness * stretch * stretch;
     if (stretch > strain.stretch) strain.stretch = stretch, strain.particle = b.i;
   }
-  // What is led as a whole is not strained, but for the rounding of its way.
+  // What is led as a whole is not strained, but for the rounding of its displacement.
   if (strain.stretch < 1e-6 * farthest) return {};
   return strain;
 }

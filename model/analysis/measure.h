@@ -105,8 +105,8 @@ class ProbeMeter {
   void add(const Sample& sample);
   const std::vector<Curve>& curves() const { return curves_; }
 
-  // What the next sample counts on from, to keep with a checkpoint: the latest positions and the way since
-  // step 0, in m.
+  // What the next sample counts on from, to keep with a checkpoint: the latest positions and the displacement
+  // since step 0, in m.
   struct Memory {
     std::vector<Vec3> latest, moved;
   };

@@ -181,16 +181,16 @@ std::optional<Resolution::Lack> Resolution::see_led(const Moment& moment) const 
   for (const Led& led : led_) {
     const ParticleType& type = scene_.rule.types[led.type];
     if (led.ids.empty() || (type.pd && !moment.u)) continue;
-    Vec3 way = time * type.velocity, off = Vec3::Zero();
+    Vec3 displacement = time * type.velocity, off = Vec3::Zero();
     for (size_t k = 0; k < led.ids.size(); ++k) {
       Vec3 moved = moment.x(led.ids[k]) - led.start[k];
       if (type.pd) moved -= moment.u(led.ids[k]);
-      off += nearest_image(moved - way, scene_.periodic);
+      off += nearest_image(moved - displacement, scene_.periodic);
     }
     off /= static_cast<double>(led.ids.size());
     for (int a = 0; a < 3; ++a)
-      if (!type.pd && !type.imposed[a]) off[a] = way[a] = 0;
-    const double length = way.norm();
+      if (!type.pd && !type.imposed[a]) off[a] = displacement[a] = 0;
+    const double length = displacement.norm();
     // Where a particle stood at first is rounded too.
     const double unit = moment.fixed
                             ? std::ldexp(moment.fixed->cell_edge, -moment.fixed->widths.velocity_frac())
@@ -198,7 +198,7 @@ std::optional<Resolution::Lack> Resolution::see_led(const Moment& moment) const 
     if (!(off.norm() > kAchieved * length + 2 * unit)) continue;
     Lack lack{led.ids[0], moment.x(led.ids[0]), off.norm() / length, kAchieved, {}};
     lack.text = fmt::format("what '{}' moves has gone {:.4g} m and should have gone {:.4g} m", type.name,
-                            (way + off).dot(way) / length, length);
+                            (displacement + off).dot(displacement) / length, length);
     if (!moment.fixed) {
       lack.text += "; the numbers of this engine do not hold such short steps, doubles do";
       return lack;

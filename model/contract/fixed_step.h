@@ -110,16 +110,17 @@ CUBOCT_HD Result finish_of(const Rule& rule, const Triple& sum, const Triple& x,
     return wrap(value, bits);
   };
   for (int a = 0; a < 3; ++a) {
-    const int64_t to_go = kind.velocity[a];
+    const int64_t target_velocity = kind.velocity[a];
     if (kind.imposed[a]) {
-      result.v[a] = to_go;  // the sum is not used, so it may be of any size
+      result.v[a] = target_velocity;  // the sum is not used, so it may be of any size
     } else {
       int64_t dv = check(sum[a], widths.sum_bits, FaultType::sum);
-      if (kind.pd) dv -= round_odd(kind.kp * u[a] + kind.kd * (v[a] - to_go), widths.gain_frac);
+      if (kind.pd) dv -= round_odd(kind.kp * u[a] + kind.kd * (v[a] - target_velocity), widths.gain_frac);
       result.v[a] = check(v[a] + dv + kind.gravity[a], widths.velocity_bits, FaultType::velocity);
     }
     if (kind.pd)
-      result.u[a] = check(u[a] + result.v[a] - to_go, widths.displacement_bits, FaultType::displacement);
+      result.u[a] =
+          check(u[a] + result.v[a] - target_velocity, widths.displacement_bits, FaultType::displacement);
     result.x[a] = x[a] + result.v[a];
   }
   return result;

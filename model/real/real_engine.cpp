@@ -102,7 +102,7 @@ class Engine final : public RealEngine {
     return by_id;
   }
   double largest_speed() const override { return static_cast<double>(fastest_); }
-  const VerletList& list() const override { return list_; }
+  const NearList& list() const override { return list_; }
   uint64_t lists_made() const override { return lists_made_; }
 
  private:
@@ -243,7 +243,7 @@ class Engine final : public RealEngine {
 
   const PairForce<Real> force_;
   const int threads_;
-  VerletList list_;
+  NearList list_;
   const RealOptions options_;
   const Real mass_;
   const double dt_;

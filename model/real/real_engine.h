@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "model/real/near_list.h"
 #include "model/real/reference.h"
-#include "model/real/verlet_list.h"
 
 namespace cuboct {
 
@@ -19,7 +19,7 @@ class RealEngine {
   virtual void read(Body& body) const = 0;
   virtual std::vector<Vec3> forces() const = 0;
   virtual double largest_speed() const = 0;  // m/s, along an axis, since the start
-  virtual const VerletList& list() const = 0;
+  virtual const NearList& list() const = 0;
   virtual uint64_t lists_made() const = 0;
 };
 

@@ -60,7 +60,7 @@ const char* Reference::simd() { return pair_simd(); }
 
 template <class On>
 void Reference::for_each_neighbour(On&& on) const {
-  const VerletList& list = engine_->list();
+  const NearList& list = engine_->list();
   const std::vector<Vec3>& x = body().x;
   const std::span<const uint32_t> ids = list.order();
   const std::vector<PairRows>& parts = list.parts();

@@ -61,10 +61,10 @@ struct Capsule final : Shape {
   double radius;
   Capsule(const Vec3& f, const Vec3& t, double r) : from(f), to(t), radius(r) {}
   double distance(const Vec3& x) const override {
-    const Vec3 way = to - from;
-    const double length2 = way.squaredNorm();
-    const double t = length2 > 0 ? std::clamp((x - from).dot(way) / length2, 0.0, 1.0) : 0.0;
-    return (x - from - t * way).norm() - radius;
+    const Vec3 axis = to - from;
+    const double length2 = axis.squaredNorm();
+    const double t = length2 > 0 ? std::clamp((x - from).dot(axis) / length2, 0.0, 1.0) : 0.0;
+    return (x - from - t * axis).norm() - radius;
   }
   Bounds bounds() const override {
     const Vec3 r = Vec3::Constant(radius);

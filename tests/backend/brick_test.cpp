@@ -36,16 +36,16 @@ void note(Seen& seen, const Plan& plan, const GoldenRun& golden) {
   const Bricks& b = plan.bricks;
   seen.nodes_of_one += plan.nodes() == 1;
   for (uint32_t n = 0; n < plan.nodes(); ++n) {
-    const Bricks::Node& node = b.node(n);
+    const Cell extent = b.extent(n);
     for (int a = 0; a < 3; ++a) {
-      const uint32_t low = node.neighbour[static_cast<size_t>(2 * a)];
+      const uint32_t low = plan.neighbour(n, 2 * a);
       seen.rings += low == n;
-      seen.pairs += low != n && low != kNoNode && low == node.neighbour[static_cast<size_t>(2 * a + 1)];
-      seen.ragged += node.extent[a] < b.shape()[a];
+      seen.pairs += low != n && low != kNoNode && low == plan.neighbour(n, 2 * a + 1);
+      seen.ragged += extent[a] < b.shape()[a];
     }
-    for (int32_t z = 0; z < node.extent[2]; ++z)
-      for (int32_t y = 0; y < node.extent[1]; ++y)
-        for (int32_t x = 0; x < node.extent[0]; ++x)
+    for (int32_t z = 0; z < extent[2]; ++z)
+      for (int32_t y = 0; y < extent[1]; ++y)
+        for (int32_t x = 0; x < extent[0]; ++x)
           seen.absent += b.cell(n, BrickGrid(b.shape()).local({x, y, z})) == kNoCell;
   }
   for (int a = 0; a < 3; ++a) seen.thin += b.shape()[a] == 1, seen.thick += b.shape()[a] > 3;

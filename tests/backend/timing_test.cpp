@@ -152,7 +152,7 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   seen.shared += plan.arch.multipliers == Multipliers::shared;
   seen.serial += plan.arch.multipliers == Multipliers::serial;
   seen.narrow += plan.arch.narrow_memories;
-  seen.bricks += !plan.bricks.single();
+  seen.bricks += plan.bricks.cells() > 1;
   seen.coarse += plan.rule.widths.filter_frac != Widths{}.filter_frac;
   seen.pd += plan.rule.pd;
   seen.damped += plan.rule.damped;

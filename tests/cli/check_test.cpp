@@ -45,7 +45,7 @@ particle record with everything  276 bit (276 as built)
 }
 
 // Two particles at the corners of a large box: 27 cells around each.
-TEST(Check, CountsTheCellsWithoutNode) {
+TEST(Check, CountsTheCellsThatTheLatticeLacks) {
   const Bench bench(false);
   std::ofstream(bench.path("two.toml")) << "units = \"reduced\"\nmass = 1.0\n"
                                            "[law]\nkind = \"lj\"\nepsilon = 1.0\nsigma = 1.0\ncutoff = 2.5\n"
@@ -55,8 +55,8 @@ TEST(Check, CountsTheCellsWithoutNode) {
   const Answer answer = bench.cuboct({"check", bench.path("two.toml")});
   EXPECT_NE(answer.out.find("PD controllers, empty nodes\n"), std::string::npos) << answer.out;
   EXPECT_NE(
-      answer.out.find("not built empty nodes            1277 cells (of 1331 cells of the bounding box have "
-                      "no node)\n"),
+      answer.out.find("not built empty nodes            1277 cells (of 1331 cells of the bounding box are "
+                      "not in the lattice)\n"),
       std::string::npos)
       << answer.out;
 }

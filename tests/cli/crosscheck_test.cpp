@@ -38,7 +38,7 @@ TEST(Crosscheck, NamesTheParticleBehindADifferentHash) {
       answer.out, found,
       std::regex(
           "mismatch: step 3, state hash: golden [0-9a-f]{16}, rtl [0-9a-f]{16}\n"
-          "first difference: step 3, node \\d+ \\(cell \\d \\d \\d\\), particle 17, v\\.y: golden (-?\\d+), "
+          "first difference: step 3, cell \\d+ \\(\\d \\d \\d\\), particle 17, v\\.y: golden (-?\\d+), "
           "rtl (-?\\d+)\n")))
       << answer.out;
   EXPECT_EQ(std::stoll(found[1]) ^ 1, std::stoll(found[2]));

@@ -174,16 +174,16 @@ TEST(Watch, FarOriginIsToldWithFloatsAlone) {
 }
 
 // The faults that stop a run: what the last look saw, what helps, and the fault itself.
-TEST(Stop, SaysWhatHelpsAgainstAFullNode) {
+TEST(Stop, SaysWhatHelpsAgainstAFullCell) {
   const Bench bench(false);
   const Answer answer = run(bench, scene("full_node"), "full_node");
   EXPECT_EQ(answer.code, 1);
   EXPECT_NE(
       answer.out.find("\nlast look         step 33: nothing amiss\n"
                       "advice            cell (1 1 3) at (1.868, 1.868, 4.696) m: particle 154 came, and "
-                      "the node holds 5 particles; raise node.capacity, or take a shorter node.cell_edge "
+                      "the cell holds 5 particles; raise node.capacity, or take a shorter node.cell_edge "
                       "where it is longer than the cutoff\n"
-                      "stopped           step 33, node "),
+                      "stopped           step 33, cell "),
       std::string::npos)
       << answer.out;
   EXPECT_EQ(run(bench, scene("full_node"), "full_node_healthy").code, 0);

@@ -92,7 +92,7 @@ TEST(Report, SaysWhyARunStopped) {
   const std::string html = page(
       Bench(false), {"scenes/failures/full_node.toml", "--arch", "scenes/failures/archs/full_node.toml"}, 1);
   EXPECT_NE(html.find("<b class=\"bad\">stopped after 33 of "), std::string::npos);
-  EXPECT_NE(html.find("<li>stopped: step 33, node "), std::string::npos);
+  EXPECT_NE(html.find("<li>stopped: step 33, cell "), std::string::npos);
 }
 
 // Of a scene of many more steps.

@@ -164,9 +164,9 @@ TEST(FixedRandom, FurtherPartnersComeIntoReach) {
   EXPECT_LT(met.lists, 10 * met.runs);
 }
 
-// Two on springs that swing to and fro about a distance just outside the cutoff, in and out of what thin
-// lists reach: each is soon back where the pair list found it, though not where the thin list did.
-TEST(FixedRandom, WaysCountFromWhereTheThinListWasMade) {
+// Two on springs that swing to and fro about a distance just outside the cutoff, in and out of what near
+// lists reach: each is soon back where the pair list found it, though not where the near list did.
+TEST(FixedRandom, DisplacementsCountFromWhereTheNearListWasMade) {
   Met met;
   for (int k = 0; k < 40; ++k) {
     Case c{"swing " + std::to_string(k), {}, 200, {}};

@@ -257,7 +257,7 @@ TEST(GpuReal, BitsDoNotKnowOfSlabsBlocksAndCuts) {
 }
 
 // Ways are those of the particles themselves, whoever looks: copies have their anchors in both states.
-TEST(GpuReal, ThinListsServeAsLongOnSlabs) {
+TEST(GpuReal, NearListsServeAsLongOnSlabs) {
   uint64_t stops = 0;
   for (int k = 0; k < 8; ++k) {
     Trial run = melt({4, 4, 14}, 0);
@@ -266,10 +266,10 @@ TEST(GpuReal, ThinListsServeAsLongOnSlabs) {
     const auto many = engine_of(run, Arithmetic::float32, slabs(4));
     for (uint64_t step = 1; step <= 120; ++step) {
       alone->advance(1), many->advance(1);
-      ASSERT_EQ(many->counters().thin_stops, alone->counters().thin_stops)
+      ASSERT_EQ(many->counters().near_stops, alone->counters().near_stops)
           << "run " << k << ", step " << step;
     }
-    stops += alone->counters().thin_stops;
+    stops += alone->counters().near_stops;
   }
   EXPECT_GT(stops, 6u);
 }

@@ -21,18 +21,23 @@ Lattice box(const Cell& size, const Cell& period = {}) {
   return Lattice(std::move(cells), period);
 }
 
+std::array<uint32_t, kFaces> around(const Bricks& bricks, const Lattice& lattice, uint32_t node) {
+  std::array<uint32_t, kFaces> near;
+  for (int f = 0; f < kFaces; ++f) near[static_cast<size_t>(f)] = bricks.neighbour(lattice, node, f);
+  return near;
+}
+
 // 5 x 4 x 1 cells in bricks of 2 x 3 x 1: three columns, the last one cell wide; two rows, the last one high.
 TEST(Bricks, CutALatticeFromItsLowestCell) {
   const Lattice lattice = box({5, 4, 1});
   const Bricks bricks(lattice, {2, 3, 1});
   ASSERT_EQ(bricks.size(), 6u);
-  EXPECT_EQ(bricks.node(0).extent, (Cell{2, 3, 1}));
-  EXPECT_EQ(bricks.node(2).extent, (Cell{1, 3, 1}));
-  EXPECT_EQ(bricks.node(5).extent, (Cell{1, 1, 1}));
-  EXPECT_EQ(bricks.node(4).low, (Cell{2, 3, 0}));
-  const auto& near = bricks.node(1).neighbour;
-  EXPECT_EQ(near, (std::array<uint32_t, kFaces>{0, 2, kNoNode, 4, kNoNode, kNoNode}));
-  EXPECT_EQ(bricks.links(1), 0b1011);
+  EXPECT_EQ(bricks.extent(0), (Cell{2, 3, 1}));
+  EXPECT_EQ(bricks.extent(2), (Cell{1, 3, 1}));
+  EXPECT_EQ(bricks.extent(5), (Cell{1, 1, 1}));
+  EXPECT_EQ(bricks.low(lattice, 4), (Cell{2, 3, 0}));
+  EXPECT_EQ(around(bricks, lattice, 1), (std::array<uint32_t, kFaces>{0, 2, kNoNode, 4, kNoNode, kNoNode}));
+  EXPECT_EQ(bricks.links(lattice, 1), 0b1011);
   for (uint32_t c = 0; c < lattice.size(); ++c) {
     const Cell& at = lattice.cell(c);
     EXPECT_EQ(bricks.node_of(c), static_cast<uint32_t>(at[0] / 2 + 3 * (at[1] / 3)));
@@ -42,14 +47,45 @@ TEST(Bricks, CutALatticeFromItsLowestCell) {
   EXPECT_EQ(bricks.cell(5, 1), kNoCell);
 }
 
+// A brick of one cell: nodes are cells, links are those of the lattice, and after the exchange a node holds
+// what stands around its cell.
+TEST(Bricks, OfOneCellAreTheLatticesCells) {
+  const Lattice lattice({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 1}}, {3, 0, 0});
+  const Bricks bricks(lattice, {1, 1, 1});
+  ASSERT_EQ(bricks.size(), lattice.size());
+  EXPECT_EQ(bricks.cells(), 1u);
+  EXPECT_EQ(bricks.cell_bits(), 0);
+  const BrickMap map(lattice, bricks, 3);
+  uint32_t apart = 0;
+  for (uint32_t n = 0; n < lattice.size(); ++n) {
+    EXPECT_EQ(bricks.cell(n, 0), n);
+    EXPECT_EQ(bricks.node_of(n), n);
+    EXPECT_EQ(bricks.local_of(n), 0u);
+    EXPECT_EQ(bricks.low(lattice, n), lattice.cell(n));
+    EXPECT_EQ(bricks.extent(n), (Cell{1, 1, 1}));
+    for (int f = 0; f < kFaces; ++f) {
+      EXPECT_EQ(bricks.neighbour(lattice, n, f), lattice.neighbour(n, f));
+      EXPECT_EQ(bricks.links(lattice, n) >> f & 1, lattice.neighbour(n, f) != kNoCell);
+    }
+    std::vector<uint32_t> expected(map.grid().size(), kNoCell);
+    for (const Lattice::Near& near : lattice.neighbourhood(n))
+      expected[map.grid().at(near.offset)] = near.cell;
+    for (uint32_t place = 0; place < map.grid().size(); ++place) {
+      EXPECT_EQ(map.cell(n, place), expected[place]) << n << " " << place;
+      apart += expected[place] != kNoCell && expected[place] != n;
+    }
+  }
+  EXPECT_GT(apart, 20u);
+}
+
 // A ring of five in bricks of two closes with a brick of one; a ring in one brick is its own neighbour.
 TEST(Bricks, CloseRings) {
   const Lattice lattice = box({5, 3, 3}, {5, 3, 0});
   const Bricks bricks(lattice, {2, 3, 3});
   ASSERT_EQ(bricks.size(), 3u);
-  EXPECT_EQ(bricks.node(0).neighbour, (std::array<uint32_t, kFaces>{2, 1, 0, 0, kNoNode, kNoNode}));
-  EXPECT_EQ(bricks.node(2).neighbour, (std::array<uint32_t, kFaces>{1, 0, 2, 2, kNoNode, kNoNode}));
-  EXPECT_EQ(bricks.node(2).extent, (Cell{1, 3, 3}));
+  EXPECT_EQ(around(bricks, lattice, 0), (std::array<uint32_t, kFaces>{2, 1, 0, 0, kNoNode, kNoNode}));
+  EXPECT_EQ(around(bricks, lattice, 2), (std::array<uint32_t, kFaces>{1, 0, 2, 2, kNoNode, kNoNode}));
+  EXPECT_EQ(bricks.extent(2), (Cell{1, 3, 3}));
 }
 
 // Every cell meets itself and each cell around it once, whether it lies within the brick or beyond a face.
@@ -151,7 +187,7 @@ TEST(BrickPlans, HaveTheirOwnHash) {
   const Features f{.size = {2, 2, 2}};
   Arch arch;
   const Plan one = block(f, arch).plan;
-  EXPECT_TRUE(one.bricks.single());
+  EXPECT_TRUE(one.bricks.one_cell());
   EXPECT_EQ(one.nodes(), one.lattice.size());
   EXPECT_EQ(one.words.migrate_bits, one.words.particle_bits);
   arch.brick = {2, 2, 1};

@@ -40,11 +40,12 @@ Cells by_definition(const Scene& scene, double edge, const Vec3& origin, const C
   Cells cells;
   const Vec3 margin = scene.reach_margin.minCoeff() < 0 ? Vec3(Vec3::Constant(edge)) : scene.reach_margin;
   for (size_t id = 0; id < scene.body.size(); ++id) {
-    const Vec3 way =
+    const Vec3 displacement =
         scene.rule.types[scene.body.type[id]].velocity * (static_cast<double>(scene.steps) * scene.rule.dt);
-    const int stops = way.norm() > 0 ? 1 + static_cast<int>(std::ceil(way.norm() / (0.5 * edge))) : 0;
+    const int stops =
+        displacement.norm() > 0 ? 1 + static_cast<int>(std::ceil(displacement.norm() / (0.5 * edge))) : 0;
     for (int k = 0; k <= stops; ++k) {
-      const Vec3 at = stops > 0 ? Vec3(scene.body.x[id] + way * k / stops) : scene.body.x[id];
+      const Vec3 at = stops > 0 ? Vec3(scene.body.x[id] + displacement * k / stops) : scene.body.x[id];
       touch(cells, at - margin, at + margin, origin, edge, period);
     }
   }

@@ -216,7 +216,7 @@ Judgement Judge::judge(const std::shared_ptr<const emu::Library>& library) const
   const emu::NodeFactory native = emu::native_nodes(plan);
   for (size_t k = 0; k < runs_.size(); ++k) {
     const auto emitted = [&](uint32_t node, uint8_t has_link) -> std::unique_ptr<emu::NodeModel> {
-      const Cell& cell = plan.bricks.single() ? plan.lattice.cell(node) : plan.bricks.node(node).low;
+      const Cell cell = plan.low_of(node);
       if (runs_[k].mixed && (cell[0] + cell[1] + cell[2]) % 2 == 0) return native(node, has_link);
       const uint32_t seed = runs_[k].register_seed;
       return std::make_unique<emu::VerilatedNode>(library, plan, node, has_link, seed == 0 ? 0 : seed + node);

@@ -110,7 +110,7 @@ std::map<std::string, uint64_t> stimuli_of(const RandomScene& scene, const Judge
   n["flat"] = rule.axes == 2;
   n["periodic"] = scene.c.scene.periodic.extent.maxCoeff() > 0;
   n["one node"] = plan.nodes() == 1;
-  n["bricks"] = !plan.bricks.single();
+  n["bricks"] = plan.bricks.cells() > 1;
   n["octaves"] = rule.force.shape == TableShape::octaves;
   n["degree 2"] = rule.force.degree == 2;
   n["several pipes"] = arch.force_pipes > 1;

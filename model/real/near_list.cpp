@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/real/verlet_list.h"
+#include "model/real/near_list.h"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ constexpr size_t kSample = 256;  // particles whose neighbours are counted
 
 }  // namespace
 
-VerletList::VerletList(double cutoff, const Periodic& periodic, double margin, size_t lanes, int threads)
+NearList::NearList(double cutoff, const Periodic& periodic, double margin, size_t lanes, int threads)
     : cutoff_(cutoff),
       margin_(margin),
       periodic_(periodic),
@@ -31,7 +31,7 @@ VerletList::VerletList(double cutoff, const Periodic& periodic, double margin, s
 
 // Each skin costs its longer lists at each step, and a new list whenever the fastest particle has crossed
 // half of it.
-void VerletList::plan(std::span<const Vec3> x, double speed) {
+void NearList::plan(std::span<const Vec3> x, double speed) {
   CellList cells(cutoff_, periodic_, cutoff_ * kSkins.back());
   cells.build(x);
   std::array<double, kSkins.size()> listed{};
@@ -61,7 +61,7 @@ void VerletList::plan(std::span<const Vec3> x, double speed) {
   }
 }
 
-void VerletList::build(std::span<const Vec3> x) {
+void NearList::build(std::span<const Vec3> x) {
   CellList cells(cutoff_, periodic_, skin_ + margin_);
   cells.build(x);
   order_.assign(cells.order().begin(), cells.order().end());
@@ -76,8 +76,8 @@ void VerletList::build(std::span<const Vec3> x) {
   });
 }
 
-void VerletList::fill(const CellList& cells, const std::vector<Vec3>& x, const std::vector<uint32_t>& ids,
-                      PairRows& part, size_t end_group) const {
+void NearList::fill(const CellList& cells, const std::vector<Vec3>& x, const std::vector<uint32_t>& ids,
+                    PairRows& part, size_t end_group) const {
   const double range = cutoff_ + skin_ + margin_;
   const double range2 = range * range;
   part.begin.assign(1, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lists of the pairs nearer than a cutoff and a skin: exact until some particle has moved half the skin.
-// L. Verlet, Phys. Rev. 159 (1967) 98.
+// The near list: the pairs nearer than a cutoff and a skin, exact until some particle has moved half the
+// skin. L. Verlet, Phys. Rev. 159 (1967) 98.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace cuboct {
 
-class VerletList {
+class NearList {
  public:
   // InputError as of CellList. `lanes` particles make a group. Rounding may bring pairs nearer by `margin`
   // (m): that much beyond the cutoff they are listed always.
-  VerletList(double cutoff, const Periodic& periodic, double margin, size_t lanes, int threads);
+  NearList(double cutoff, const Periodic& periodic, double margin, size_t lanes, int threads);
 
   // Gives each particle a slot, by cells, and lists its neighbours by ascending id: a sum over them does not
   // depend on slots, nor on when lists were made. std::runtime_error where a position is not finite.
