@@ -95,9 +95,9 @@ std::string print(const Items& summary, bool json) {
 }
 
 int run(Options options) {
-  options.check_kept();
   engine_row(options.engine);
   options.engines.check({options.engine}, options.input);
+  options.check_kept();
   const Loaded loaded = load_plan(options.input);
   catch_interrupts();
   const Scene& scene = loaded.scene;

@@ -102,12 +102,18 @@ TEST(Command, RefusesWrongValues) {
 }
 
 TEST(Command, RefusesOptionsOfAnotherEngine) {
-  const std::vector<std::string> golden{"run", "scenes/lj_block.toml", "--engine", "golden"};
-  for (const std::vector<std::string>& option : std::vector<std::vector<std::string>>{
-           {"--ranks", "2"}, {"--cycles"}, {"--resume"}, {"--checkpoint-every", "5 min"}}) {
-    std::vector<std::string> arguments = golden;
+  const std::vector<std::string> systemc{"run", "scenes/lj_block.toml", "--engine", "systemc"};
+  for (const auto& [option, owners] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--ranks", "2"}, "the lattice"},
+           {{"--cycles"}, "the lattice"},
+           {{"--resume"}, "the golden and the lattice"},
+           {{"--checkpoint-every", "5 min"}, "the golden and the lattice"},
+           {{"--gpus", "2"}, "the gpu"},
+           {{"--joules"}, "the gpu"},
+           {{"--port", "/dev/null"}, "the fpga"}}) {
+    std::vector<std::string> arguments = systemc;
     arguments.insert(arguments.end(), option.begin(), option.end());
-    expect_refusal(arguments, option[0] + " is an option of the lattice engine, not of golden\n");
+    expect_refusal(arguments, option[0] + " is an option of " + owners + " engine, not of systemc\n");
   }
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "golden", "--threads", "2"},
                  "--threads is an option of the lattice and the reference engine, not of golden\n");

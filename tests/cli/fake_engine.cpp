@@ -2,61 +2,77 @@
 // An engine that lies as told, to see that `cuboct crosscheck` finds out: golden's states with the fault that
 // the variable LIE names. It stands beside a copy of cuboct as cuboct-systemc and cuboct-rtl; only the latter
 // lies.
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
-#include "hw/setup.h"
+#include "hw/engine_kind.h"
+#include "hw/program/program.h"
 #include "model/contract/golden.h"
-#include "model/trace/trace.h"
+#include "model/run/replay_engine.h"
 
 namespace {
 
 using namespace cuboct;
 
-int run(int argc, char** argv) {
-  std::string scene, arch, out, frames_file;
-  uint64_t steps = 0;
-  std::vector<uint64_t> frames;
-  CLI::App app;
-  app.add_option("scene", scene);
-  app.add_option("--arch", arch);
-  app.add_option("--steps", steps);
-  app.add_option("--out", out);
-  app.add_option("--frames", frames)->delimiter(',');
-  app.add_option("--frames-file", frames_file);
-  app.add_flag("--progress");
-  CLI11_PARSE(app, argc, argv);
+// Says that it stopped, once all steps are done.
+class Stopping : public ReplayEngine {
+ public:
+  Stopping(const FixedSetting& setting, Trace trace) : ReplayEngine(setting, std::move(trace)) {}
+  void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
+    ReplayEngine::advance(steps, hashes);
+    throw StepError({Fault::sum, step_count(), 1, 2, 3, "stopped by the fake engine"});
+  }
+};
 
-  std::ifstream list(frames_file);
-  for (uint64_t step; list >> step;) frames.push_back(step);
-  const std::string name = std::filesystem::path(argv[0]).filename().string();
-  const char* told = std::getenv("LIE");
-  const std::string lie = told && name == "cuboct-rtl" ? told : "";
-  if (lie == "refuse") throw InputError("refused by the fake engine");
-  if (lie == "crash") std::abort();
-  if (lie == "nothing") return 1;
+class Liar : public EngineProgram {
+ public:
+  explicit Liar(const std::string& program) {
+    name = program;
+    abilities.always_cycles = true;
+    const char* told = std::getenv("LIE");
+    lie_ = told && name == "cuboct-rtl" ? told : "";
+  }
 
-  const Setup setup = make_setup(read_scene(scene), read_arch(arch));
+  bool prepare(ProgramOptions&) override {
+    if (lie_ == "refuse") throw InputError("refused by the fake engine");
+    if (lie_ == "crash") std::abort();
+    if (lie_ == "nothing") std::exit(1);
+    return false;
+  }
+
+  EngineKind kind(Scene& scene, const Plan& plan, const ProgramOptions& options) override {
+    EngineKind kind = fixed_kind(name.substr(name.find('-') + 1), scene, plan);
+    kind.plan_hash += lie_ == "plan";
+    kind.batches = kind.hashes_come = true;
+    kind.make = [this, &scene, &plan, steps = options.run.steps](CheckpointReader*, bool) {
+      const FixedSetting setting = setting_of(scene, plan);
+      Trace trace = trace_of(scene, plan, steps);
+      if (lie_ == "stop") return std::unique_ptr<Engine>(new Stopping(setting, std::move(trace)));
+      return std::unique_ptr<Engine>(new ReplayEngine(setting, std::move(trace)));
+    };
+    return kind;
+  }
+
+ private:
+  Trace trace_of(const Scene& scene, const Plan& plan, uint64_t steps) const;
+  std::string lie_;
+};
+
+Trace Liar::trace_of(const Scene& scene, const Plan& plan, uint64_t steps) const {
   Trace trace;
-  trace.engine = name.substr(name.find('-') + 1);
-  trace.plan_hash = setup.plan.hash + (lie == "plan");
-  trace.nodes = setup.plan.lattice.size();
-  Golden golden(setup.plan.rule, setup.plan.lattice, setup.plan.arch.capacity, setup.initial);
+  trace.nodes = plan.lattice.size();
+  const State initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
+  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, initial);
   for (uint64_t step = 0;; ++step) {
     State state = golden.state();
-    if (lie == "state" && step >= 3) state.particles[17].v[1] ^= 1;
-    trace.state_hash.push_back(hash_of(setup.plan.lattice, state) + (lie == "hash" && step == 2));
-    if (std::find(frames.begin(), frames.end(), step) != frames.end()) trace.frames.push_back(state);
+    if (lie_ == "state" && step >= 3) state.particles[17].v[1] ^= 1;
+    trace.state_hash.push_back(hash_of(plan.lattice, state) + (lie_ == "hash" && step == 2));
+    trace.frames.push_back(std::move(state));
     if (step == steps) break;
     for (uint64_t node = 0; node < trace.nodes; ++node)
       for (uint64_t phase = 0; phase < kPhases; ++phase) {
         const uint64_t start = 100 * step + 10 * phase;
-        const bool late = lie == "cycles" && step == 2 && node == 5 && phase == 3;
+        const bool late = lie_ == "cycles" && step == 2 && node == 5 && phase == 3;
         trace.cycles.push_back({start, start + 9 + late});
       }
     try {
@@ -66,18 +82,13 @@ int run(int argc, char** argv) {
       break;
     }
   }
-  if (lie == "stop") trace.stop = StopReason{Fault::sum, steps, 1, 2, 3, "stopped by the fake engine"};
-  write_trace(out, trace);
-  return trace.stop ? 1 : 0;
+  return trace;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const cuboct::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  const std::filesystem::path program = argv[0];
+  Liar liar(program.filename().string());
+  return run_program(argc, argv, liar);
 }

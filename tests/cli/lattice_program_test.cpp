@@ -109,8 +109,6 @@ TEST_F(LatticeProgram, RefusesWhatItCannotDo) {
   expect_refusal("scenes/lj_block.toml", "--out is required\n");
   expect_refusal("scenes/lj_block.toml --out none/t.h5",
                  "cannot write none/t.h5: No such file or directory\n");
-  expect_refusal("scenes/lj_block.toml --hash-every 0 --out '" + path("t.h5") + "'",
-                 "--hash-every: 0 is not a number of steps\n");
   expect_refusal("scenes/none.toml --out '" + path("t.h5") + "'",
                  "scenes/none.toml: cannot read this file\n");
   EXPECT_EQ(run("scenes/lj_block.toml --simd mmx --out '" + path("t.h5") + "'").code, 2);

@@ -176,7 +176,7 @@ class OfEngine : public NothingLost, public testing::WithParamInterface<Engine> 
   // Lattice's ranks say so by a file.
   bool ranks_step() const {
     for (const auto& entry : fs::directory_iterator(bench_.path("tmp")))
-      if (fs::exists(entry.path() / "begun")) return true;
+      if (fs::exists(entry.path() / "lattice.h5.begun")) return true;
     return false;
   }
   bool hands_over() const {

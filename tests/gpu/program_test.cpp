@@ -321,8 +321,7 @@ TEST_F(GpuProgram, StandsAlone) {
        {std::pair<std::string, std::string>{kBlock, "--out is required\n"},
         {to + " --block 100", "--block 100: not a multiple of 32 from 32 to 256\n"},
         {to + " --forces",
-         "--forces goes with --precision float or double\n  hint: fixed states determine their forces\n"},
-        {to + " --hash-every 0", "--hash-every: 0 is not a number of steps\n"}}) {
+         "--forces goes with --precision float or double\n  hint: fixed states determine their forces\n"}}) {
     const Answer refused = program(arguments);
     EXPECT_EQ(refused.code, 2);
     EXPECT_EQ(refused.err, text);

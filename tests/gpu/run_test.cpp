@@ -68,6 +68,7 @@ TEST(GpuRun, OfALostPositionKeepsTheStatesBefore) {
 }  // namespace
 
 const char* to_string(Arithmetic) { return "made up"; }
+std::vector<Device> find_devices(std::string*) { return {}; }
 std::unique_ptr<Engine> make_fixed_engine(const Scene&, const Plan&, const State&, const Options&) {
   return nullptr;
 }
