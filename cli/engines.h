@@ -26,7 +26,7 @@ struct EngineRow {
   bool saves = false;            // leaves checkpoints
   uint64_t hash_every = 1;       // steps between two hashes where the user says nothing; 0: none
   std::string program = {};      // of its own, beside cuboct; empty: runs here
-  std::string needs = {};             // hint where the program is missing
+  std::string needs = {};        // hint where the program is missing
   EngineCost cost = {};
 };
 

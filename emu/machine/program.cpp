@@ -71,10 +71,11 @@ class MachineProgram : public EngineProgram {
 
   void print_end(const Plan& plan, const Trace& trace) override {
     const auto& shape = plan.bricks.shape();
-    fmt::print("{} steps of {} particles on {} nodes{} in {:.0f} cycles, {:.3g} node-cycles/s\n",
-               trace.steps(), plan.particles, trace.nodes,
-               plan.bricks.cells() == 1 ? std::string() : fmt::format(" of {} cells", fmt::join(shape, " x ")),
-               trace.counters.front().second, node_cycles(trace));
+    fmt::print(
+        "{} steps of {} particles on {} nodes{} in {:.0f} cycles, {:.3g} node-cycles/s\n", trace.steps(),
+        plan.particles, trace.nodes,
+        plan.bricks.cells() == 1 ? std::string() : fmt::format(" of {} cells", fmt::join(shape, " x ")),
+        trace.counters.front().second, node_cycles(trace));
   }
 
  private:

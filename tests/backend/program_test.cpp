@@ -85,7 +85,8 @@ TEST_F(Programs, WrongCommandLinesAndScenesEndWithTwo) {
     ends("none.toml --out t.h5", "none.toml: cannot read this file\n");
     ends("bad.toml --out t.h5", "bad.toml:1:1: unknown key 'stepz'\n");
     ends(scene + " --out none/t.h5", "cannot write none/t.h5: No such file or directory\n");
-    ends(scene + " --out t.h5 --steps 5000000000", "5000000000 steps: the machine counts at most 4294967295\n");
+    ends(scene + " --out t.h5 --steps 5000000000",
+         "5000000000 steps: the machine counts at most 4294967295\n");
   }
   EXPECT_EQ(run(fmt::format("'{}' --help", CUBOCT_RTL)).code, 0);
 }

@@ -113,6 +113,17 @@ TEST_P(EveryEngine, OfWarmParticlesInABox) {
   EXPECT_TRUE(run_.trace.frames.empty());
 }
 
+// An engine whose states are dear has the watch look at some of the probes' steps, and at the last state.
+TEST_P(EveryEngine, IsLookedAtWhereItAllowsAndAtItsEnd) {
+  const Bed bed = bed_of("scenes/boards/grips.toml");
+  const RunRequest request = everything(18);
+  EngineKind kind = GetParam().make(bed, request);
+  kind.looks = [](const std::vector<uint64_t>&) { return std::vector<uint64_t>{0}; };
+  const Recorded run = record(bed.scene, kind, request);
+  EXPECT_EQ(run.trace.watched, 18u);
+  EXPECT_EQ(run.trace.curves.front().step, (std::vector<uint64_t>{0, 6, 12, 18}));
+}
+
 // Killed, as far as files can tell, between a checkpoint and the next.
 TEST_P(EveryEngine, GoesOnFromItsCheckpointOrSaysThatItLeavesNone) {
   const Bed bed = bed_of("scenes/boards/grips.toml");
