@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "hw/rtl_template.h"
 #include "model/contract/golden.h"
 #include "model/trace/trace.h"
 
@@ -255,10 +256,14 @@ std::string particle_hex(const Plan& plan, const Particle& particle, std::initia
   return word.hex() + "\n";
 }
 
-void replace(std::string& text, const std::string& key, const std::string& value) {
-  for (size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + value.size()))
-    text.replace(at, key.size(), value);
-}
+// Of a brick, of which the bench sees the cell too; the place of a particle's id.
+constexpr const char* kCellCheck =
+    R"(        if (observe_cell[CellBits*k +: CellBits] !== own_cell[CellBits-1:0]) begin
+          $display("FAIL step %0d node %0d slot %0d particle %0d: cell is %0d, golden has %0d", step, k, slot,
+                   want[{} +: IdBits], observe_cell[CellBits*k +: CellBits], own_cell);
+          $fatal(1, "differs");
+        end
+)";
 
 std::string print_fields(const Plan& plan, int& id_lsb) {
   std::string text;
@@ -331,46 +336,37 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
   const uint64_t limit = std::min<uint64_t>(longest, INT32_MAX);  // what an int holds
 
   std::map<std::string, std::string> files;
-  const auto filled = [&](std::string text) {
-    int id_lsb = 0;
-    const std::string fields = print_fields(plan, id_lsb);
-    replace(text, "@MAKER@", design.maker);
-    replace(text, "@NODES@", std::to_string(nodes));
-    replace(text, "@LOADS@", std::to_string(initial.particles.size()));
-    replace(text, "@EXPECTED@", std::to_string(total));
-    replace(text, "@STEPS@", std::to_string(steps));
-    replace(text, "@LIMIT@", std::to_string(limit));
-    replace(text, "@FIELDS@", fields);
-    replace(text, "@LAST@", std::to_string(static_cast<int>(last_phase(plan.rule.axes))));
-    replace(text, "@VELOCITY@",
-            design.moved.empty() ? "" : fmt::format(" .velocity_i({}),\n   ", print_velocities(design)));
-    const auto of_bricks = [&](const char* key, const char* with, const char* without = "") {
-      replace(text, key, bricks ? with : without);
-    };
-    of_bricks("@CELLS@",
-              "  localparam int CellBits = cuboct_pkg::CellBits;\n"
-              "  logic [CellBits-1:0] load_cell;\n"
-              "  logic [31-CellBits:0] unused_load;\n"
-              "  logic [Nodes*CellBits-1:0] observe_cell, unused_fault_cell;\n");
-    of_bricks(
-        "@CELL_PORTS@",
-        "\n    .load_cell_i(load_cell), .observe_cell_o(observe_cell), .fault_cell_o(unused_fault_cell),");
-    of_bricks("@CELL_WORD@", "cell, ");
-    of_bricks("@SLOT@", ";\n  logic [15:0] slot, own_cell", ", slot");
-    of_bricks("@OWN_CELL@", "own_cell, ");
-    of_bricks("@LOAD_TOP@", "63", "31");
-    of_bricks("@LOAD_CELL@", "unused_load, load_cell, ");
-    of_bricks("@CELL_CHECK@",
-              R"(        if (observe_cell[CellBits*k +: CellBits] !== own_cell[CellBits-1:0]) begin
-          $display("FAIL step %0d node %0d slot %0d particle %0d: cell is %0d, golden has %0d", step, k, slot,
-                   want[@IDLSB@ +: IdBits], observe_cell[CellBits*k +: CellBits], own_cell);
-          $fatal(1, "differs");
-        end
-)");
-    replace(text, "@IDLSB@", std::to_string(id_lsb));
-    replace(text, "@PLAN@", describe(plan));
-    return text;
+  int id_lsb = 0;
+  const std::string fields = print_fields(plan, id_lsb);
+  const auto of_bricks = [&](const char* with, const char* without = "") {
+    return std::string(bricks ? with : without);
   };
+  const std::map<std::string, std::string, std::less<>> values{
+      {"MAKER", design.maker},
+      {"NODES", std::to_string(nodes)},
+      {"LOADS", std::to_string(initial.particles.size())},
+      {"EXPECTED", std::to_string(total)},
+      {"STEPS", std::to_string(steps)},
+      {"LIMIT", std::to_string(limit)},
+      {"FIELDS", fields},
+      {"IDLSB", std::to_string(id_lsb)},
+      {"PLAN", describe(plan)},
+      {"LAST", std::to_string(static_cast<int>(last_phase(plan.rule.axes)))},
+      {"VELOCITY",
+       design.moved.empty() ? "" : fmt::format(" .velocity_i({}),\n   ", print_velocities(design))},
+      {"CELLS", of_bricks("  localparam int CellBits = cuboct_pkg::CellBits;\n"
+                          "  logic [CellBits-1:0] load_cell;\n"
+                          "  logic [31-CellBits:0] unused_load;\n"
+                          "  logic [Nodes*CellBits-1:0] observe_cell, unused_fault_cell;\n")},
+      {"CELL_PORTS", of_bricks("\n    .load_cell_i(load_cell), .observe_cell_o(observe_cell), "
+                               ".fault_cell_o(unused_fault_cell),")},
+      {"CELL_WORD", of_bricks("cell, ")},
+      {"SLOT", of_bricks(";\n  logic [15:0] slot, own_cell", ", slot")},
+      {"OWN_CELL", of_bricks("own_cell, ")},
+      {"LOAD_TOP", of_bricks("63", "31")},
+      {"LOAD_CELL", of_bricks("unused_load, load_cell, ")},
+      {"CELL_CHECK", bricks ? fmt::format(kCellCheck, id_lsb) : std::string()}};
+  const auto filled = [&](const char* text) { return fill(text, values); };
   files["bench/cuboct_bench.sv"] =
       "// SPDX-License-Identifier: MIT\n// " + design.maker + "\n" + filled(kBench);
   files["bench/Makefile"] = filled(kMakefile);

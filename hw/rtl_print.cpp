@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "hw/rtl_design.h"
+#include "hw/rtl_template.h"
 
 namespace cuboct {
 namespace {
@@ -286,7 +287,8 @@ std::string print_lattice(const RtlDesign& design) {
   const size_t nodes = design.cells.size();
   const int faces = 2 * design.axes;
   std::string text = head(design);
-  text +=
+  const auto of_bricks = [&](const char* port) { return std::string(design.bricks() ? port : ""); };
+  text += fill(
       "// All nodes and their links. Node n's part of a vector over nodes has n times the part's width below "
       "it.\n"
       "// load_valid_i appends load_data_i to node load_node_i; start_i starts all nodes.\n"
@@ -311,23 +313,19 @@ std::string print_lattice(const RtlDesign& design) {
       "  output logic [4*Nodes-1:0] fault_code_o,\n"
       "  output logic [Nodes*cuboct_pkg::IdBits-1:0] fault_id_o,\n"
       "@FAULT_CELL_PORT@"
-      "  output logic [64*Nodes-1:0] fault_number_o,\n";
+      "  output logic [64*Nodes-1:0] fault_number_o,\n",
+      {{"NODES", std::to_string(nodes)},
+       {"VELOCITY_PORT",
+        design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n"},
+       {"LOAD_CELL_PORT", of_bricks("  input  logic [cuboct_pkg::CellBits-1:0] load_cell_i,\n")},
+       {"OBSERVE_CELL_PORT", of_bricks("  output logic [Nodes*cuboct_pkg::CellBits-1:0] observe_cell_o,\n")},
+       {"FAULT_CELL_PORT", of_bricks("  output logic [Nodes*cuboct_pkg::CellBits-1:0] fault_cell_o,\n")}});
   text += fmt::format(
       "  output logic [Nodes-1:0] idle_o\n"
       ");\n"
       "  localparam int LinkBits = cuboct_pkg::{};\n{}\n",
       design.checked ? "WireBits" : "LinkBits",
       design.checked ? "  localparam int AckBits = cuboct_pkg::AckBits;\n" : "");
-  const auto put = [&](const std::string& key, const std::string& value) {
-    text.replace(text.find(key), key.size(), value);
-  };
-  const auto of_bricks = [&](const char* port) { return std::string(design.bricks() ? port : ""); };
-  put("@VELOCITY_PORT@",
-      design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n");
-  put("@LOAD_CELL_PORT@", of_bricks("  input  logic [cuboct_pkg::CellBits-1:0] load_cell_i,\n"));
-  put("@OBSERVE_CELL_PORT@", of_bricks("  output logic [Nodes*cuboct_pkg::CellBits-1:0] observe_cell_o,\n"));
-  put("@FAULT_CELL_PORT@", of_bricks("  output logic [Nodes*cuboct_pkg::CellBits-1:0] fault_cell_o,\n"));
-  put("@NODES@", std::to_string(nodes));
   for (size_t n = 0; n < nodes; ++n)
     text +=
         fmt::format("  logic [{1}:0] valid_{0}, end_{0}, ready_{0};\n  logic [{2}*LinkBits-1:0] data_{0};\n",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "hw/rtl_emit.h"
+#include "hw/rtl_template.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -30,6 +31,19 @@ TEST(RtlEmit, ClearsItsOwnFilesAlone) {
   EXPECT_FALSE(fs::exists(stale));
   EXPECT_TRUE(fs::exists(precious));
   fs::remove_all(root);
+}
+
+// A place of a template that nothing fills would reach a user's project.
+TEST(RtlTemplate, LeavesNoPlaceUnfilled) {
+  EXPECT_EQ(fill("@A@ always_ff @(posedge clk_i) a@b @B_C@@A@", {{"A", "1"}, {"B_C", "@A@"}, {"D", "4"}}),
+            "1 always_ff @(posedge clk_i) a@b @A@1");
+  EXPECT_EQ(fill("", {}), "");
+  try {
+    fill("x @NODES@", {{"NODE", "1"}});
+    FAIL();
+  } catch (const std::logic_error& error) {
+    EXPECT_STREQ(error.what(), "nothing fills @NODES@");
+  }
 }
 
 }  // namespace
