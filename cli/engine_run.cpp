@@ -140,16 +140,8 @@ Recorded EngineRun::Impl::read() {
   run.interrupted = run.trace.steps() < request.steps && !run.trace.stop;
   if (told_trouble) run.trouble = "the ranks could not write all of it";
   run.left_checkpoint = run.interrupted && fs::exists(request.checkpoint.path);
-  const auto give = [&](RunState frame) {
-    if (request.keep)
-      request.keep(frame);
-    else if (State* state = std::get_if<State>(&frame))
-      run.trace.frames.push_back(std::move(*state));
-    else
-      run.trace.bodies.push_back(std::move(std::get<RealFrame>(frame)));
-  };
-  reader.frames([&](State state) { give(std::move(state)); });
-  reader.bodies([&](RealFrame frame) { give(std::move(frame)); });
+  reader.frames([&](State state) { give(request, std::move(state), run.trace); });
+  reader.bodies([&](RealFrame frame) { give(request, std::move(frame), run.trace); });
   return run;
 }
 

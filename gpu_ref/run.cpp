@@ -26,24 +26,31 @@ class Runner : public cuboct::Engine {
  private:
   bool fixed() const { return choice_.arithmetic == Arithmetic::fixed; }
   void probe(std::span<const uint32_t> ids);
-  void show(Watch& watch);
+  void show(Watch& watch, const Energies& energies);
+  Momentum momentum_of(const std::vector<Vec3>& v) const;
 
   const Scene& scene_;
   const Plan& plan_;
   const GpuChoice& choice_;
   std::unique_ptr<gpu::Engine> engine_;
   std::vector<uint32_t> probed_;
+  // Of the last state that came to the host, and of the start.
+  uint64_t known_ = 0;
+  Momentum momentum_;
   double largest_speed_ = -1;  // m/s; below 0: not read yet
   Notes notes_;
 };
 
 Runner::Runner(const Scene& scene, const Plan& plan, const GpuChoice& choice)
     : scene_(scene), plan_(plan), choice_(choice) {
-  if (fixed())
-    engine_ = make_fixed_engine(scene, plan, to_fixed(scene.body, plan.rule, plan.lattice, plan.origin),
-                                choice.engine);
-  else
+  if (fixed()) {
+    const State initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
+    momentum_.fixed = cuboct::momentum(initial);
+    engine_ = make_fixed_engine(scene, plan, initial, choice.engine);
+  } else {
+    momentum_ = momentum_of(scene.body.v);
     engine_ = make_real_engine(scene, scene.body, choice.arithmetic, choice.engine);
+  }
   notes_.emplace_back("precision", to_string(choice.arithmetic));
   if (!fixed()) notes_.emplace_back("integrator", "semi-implicit Euler");
   if (choice.hooks.ready) choice.hooks.ready();
@@ -73,8 +80,14 @@ void Runner::probe(std::span<const uint32_t> ids) {
 }
 
 RunState Runner::frame(bool forces) {
-  if (fixed()) return engine_->state();
+  known_ = step_count();
+  if (fixed()) {
+    State state = engine_->state();
+    momentum_.fixed = cuboct::momentum(state);
+    return state;
+  }
   Body body = engine_->body();
+  momentum_ = momentum_of(body.v);
   RealFrame frame{step_count(), std::move(body.x), std::move(body.v), {}};
   if (forces) {
     std::vector<uint32_t> all(frame.x.size());
@@ -91,12 +104,12 @@ cuboct::Reading Runner::read(const Asked& asked) {
   if (asked.energies) largest_speed_ = std::max(largest_speed_, read.largest_speed);
   cuboct::Reading reading{read.step, std::move(read.x), std::move(read.force), read.energies};
   if (asked.volume > 0) reading.stress = Mat3::Identity() * (-read.virial / (3 * asked.volume));
-  if (asked.watch) show(*asked.watch);
+  if (asked.watch) show(*asked.watch, read.energies);
   return reading;
 }
 
 // On the host.
-void Runner::show(Watch& watch) {
+void Runner::show(Watch& watch, const Energies& energies) {
   if (fixed()) {
     Asked asked;
     asked.energies = true;
@@ -110,13 +123,16 @@ void Runner::show(Watch& watch) {
   options.precision = choice_.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
   options.threads = reference_threads(body.size());
   const Reference here(scene_.rule, body, scene_.periodic, options);
-  watch.see(step_count(), body, here.forces(), engine_->read(true).energies);
+  watch.see(step_count(), body, here.forces(), energies);
+}
+
+Momentum Runner::momentum_of(const std::vector<Vec3>& v) const {
+  return {{}, scene_.rule.mass * std::accumulate(v.begin(), v.end(), Vec3(Vec3::Zero()))};
 }
 
 Momentum Runner::momentum() {
-  if (fixed()) return {cuboct::momentum(engine_->state()), {}};
-  const std::vector<Vec3> v = engine_->body().v;
-  return {{}, scene_.rule.mass * std::accumulate(v.begin(), v.end(), Vec3(Vec3::Zero()))};
+  if (known_ != step_count()) frame(false);
+  return momentum_;
 }
 
 double Runner::largest_speed() {

@@ -50,7 +50,6 @@ class Loop {
   void record();
   void measure(bool look, bool add);
   void keep();
-  void give(RunState frame);
   void journal(const std::function<void(Journal&)>& write);
   void save();
   bool write_state();
@@ -74,9 +73,7 @@ class Loop {
   Clock::time_point saved_time_;
   uint64_t piece_;  // steps between two looks at the clock, of an engine that works in batches
   std::optional<uint64_t> looked_;
-  std::vector<uint64_t> sample_steps_;
   Momentum before_;
-  Counters counters_;
   bool lost_ = false;  // the engine's state went with the step that failed
   Recorded result_;
   Trace& trace_;
@@ -109,8 +106,6 @@ void Loop::make_engine(CheckpointReader* from, bool cycles) {
 }
 
 void Loop::start() {
-  if (!save_plan_.path.empty() && !kind_.saves)
-    throw InputError(fmt::format("the {} engine leaves no checkpoints", kind_.name));
   make_engine(nullptr, request_.cycles);
   if (!save_plan_.path.empty() && leads()) {
     if (std::filesystem::exists(save_plan_.path))
@@ -139,12 +134,12 @@ void Loop::check_alike(const CheckpointHead& head) const {
     return std::vector<uint64_t>(steps.begin(), std::upper_bound(steps.begin(), steps.end(), head.step));
   };
   if (journal_->frame_steps() != until_now(request_.frames)) refuse("frames at other steps");
-  if (sample_steps_ != until_now(request_.probes) && !meter_.curves().empty())
+  const std::vector<Curve> curves = meter_.curves();
+  if (!curves.empty() && curves.front().step != until_now(request_.probes))
     refuse("probes read at other steps");
 }
 
 void Loop::resume() {
-  if (!kind_.saves) throw InputError(fmt::format("the {} engine leaves no checkpoints", kind_.name));
   if (!std::filesystem::exists(save_plan_.path))
     throw InputError(fmt::format("there is no checkpoint {}", save_plan_.path),
                      "leave out --resume to begin at step 0");
@@ -168,7 +163,6 @@ void Loop::resume_trace(const CheckpointHead& head) {
   journal_.emplace(save_plan_.path + ".journal", kind_.plan_hash, kind_.displaced, head.journal, trace_);
   const std::vector<Curve> fresh = meter_.curves();
   if (!trace_.curves.empty()) {
-    sample_steps_ = trace_.curves.front().step;
     if (trace_.curves.size() != fresh.size() || head.probes.latest.size() != meter_.probed())
       throw InputError(fmt::format("{} was made with other probes", save_plan_.path),
                        "resume with the scene that wrote it");
@@ -176,7 +170,7 @@ void Loop::resume_trace(const CheckpointHead& head) {
       trace_.curves[k].name = fresh[k].name, trace_.curves[k].unit = fresh[k].unit;
     meter_.restore(head.probes, trace_.curves);
   }
-  journal_->for_each_frame([&](State state) { give(std::move(state)); });
+  journal_->for_each_frame([&](State state) { give(request_, std::move(state), trace_); });
 }
 
 // A state is made only where a frame or a sample asks for one.
@@ -202,25 +196,14 @@ void Loop::record() {
 void Loop::measure(bool look, bool add) {
   const Reading reading = engine_->read(meter_.asked(look));
   if (look) looked_ = engine_->step_count();
-  if (!add || !leads()) return;
-  meter_.add(reading);
-  sample_steps_.push_back(reading.step);
+  if (add && leads()) meter_.add(reading);
 }
 
 void Loop::keep() {
   RunState frame = engine_->frame(request_.forces);
   if (!leads()) return;
   if (const State* state = std::get_if<State>(&frame)) journal([&](Journal& to) { to.frame(*state); });
-  give(std::move(frame));
-}
-
-void Loop::give(RunState frame) {
-  if (request_.keep)
-    request_.keep(frame);
-  else if (State* state = std::get_if<State>(&frame))
-    trace_.frames.push_back(std::move(*state));
-  else
-    trace_.bodies.push_back(std::move(std::get<RealFrame>(frame)));
+  give(request_, std::move(frame), trace_);
 }
 
 // A journal that cannot be written ends the checkpoints, not the run; the last checkpoint holds.
@@ -350,7 +333,7 @@ void Loop::finish() {
   if (sample || look) measure(look || sample, sample);
   if (frame) {
     RunState last_frame = engine_->frame(request_.forces);
-    if (leads()) give(std::move(last_frame));
+    if (leads()) give(request_, std::move(last_frame), trace_);
   }
   trace_.curves = meter_.curves();
   meter_.conclude();
@@ -377,6 +360,8 @@ void Loop::total() {
 }
 
 Recorded Loop::run() {
+  if (!kind_.saves && (save_plan_.resume || !save_plan_.path.empty()))
+    throw InputError(fmt::format("the {} engine leaves no checkpoints", kind_.name));
   try {
     saved_time_ = Clock::now();
     if (save_plan_.resume)
@@ -394,9 +379,8 @@ Recorded Loop::run() {
     lost_ = !kind_.keeps_state;
   }
   if (!engine_) return std::move(result_);  // not even the initial state could be held
-  counters_ = engine_->counters();
+  trace_.counters = engine_->counters();    // of the run: another engine may make the last state again
   finish();
-  trace_.counters = std::move(counters_);
   return std::move(result_);
 }
 
@@ -432,6 +416,15 @@ void remove_checkpoint(const std::string& path) {
   std::filesystem::remove(path, none);
   std::filesystem::remove(path + ".journal", none);
   std::filesystem::remove(path + ".tmp", none);
+}
+
+void give(const RunRequest& request, RunState state, Trace& trace) {
+  if (request.keep)
+    request.keep(state);
+  else if (State* fixed = std::get_if<State>(&state))
+    trace.frames.push_back(std::move(*fixed));
+  else
+    trace.bodies.push_back(std::move(std::get<RealFrame>(state)));
 }
 
 Recorded record(const Scene& scene, const EngineKind& kind, const RunRequest& request) {

@@ -84,6 +84,9 @@ struct Recorded {
 // cannot be written.
 Recorded record(const Scene& scene, const EngineKind& kind, const RunRequest& request);
 
+// A kept state goes to who takes it, else into the trace.
+void give(const RunRequest& request, RunState state, Trace& trace);
+
 // Totals travel from a program to another as counters of the trace.
 void put_totals(Recorded& run);
 void take_totals(Recorded& run);

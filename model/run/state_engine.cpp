@@ -8,8 +8,15 @@ namespace cuboct {
 const State& StateEngine::here() {
   if (state_ && state_->step == step_count()) return *state_;
   state_ = make_state();
+  made_ = state_->step;
+  momentum_ = cuboct::momentum(*state_);
   largest_speed_ = std::max(largest_speed_, cuboct::largest_speed(setting_.fixed, *state_));
   return *state_;
+}
+
+Momentum StateEngine::momentum() {
+  if (made_ != step_count()) here();
+  return {momentum_, {}};
 }
 
 RunState StateEngine::frame(bool) {

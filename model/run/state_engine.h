@@ -24,7 +24,7 @@ class StateEngine : public Engine {
   uint64_t hash() override { return hash_of(setting_.lattice, here()); }
   RunState frame(bool) override;
   Reading read(const Asked& asked) override;
-  Momentum momentum() override { return {cuboct::momentum(here()), {}}; }
+  Momentum momentum() override;
   double largest_speed() override { return largest_speed_; }
 
  protected:
@@ -36,6 +36,9 @@ class StateEngine : public Engine {
 
   FixedSetting setting_;
   std::optional<State> state_;  // of the step at which it was asked for
+  // Of the last state that was made, which frame() may have given away.
+  std::optional<uint64_t> made_;
+  Int3 momentum_{};
   double largest_speed_ = 0;
 };
 
