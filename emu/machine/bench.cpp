@@ -10,6 +10,7 @@
 #include <ostream>
 
 #include "model/base/interrupt.h"
+#include "model/base/parallel.h"
 
 namespace cuboct::emu {
 
@@ -83,19 +84,9 @@ const NodeInputs& NodeModule::seen() {
   return seen_;
 }
 
-void NodeModule::cycle() {
-  // The wake event comes between two edges, or one delta after the edge at which a link or the control
-  // changed: the change belongs to the next cycle, and the static sensitivity is back.
-  if (pins_.asleep) {
-    pins_.asleep = false;
-    return;
-  }
-  if (timeline_->over) {
-    sleep(kNever);
-    return;
-  }
+void NodeModule::evaluate() {
+  evaluated_ = timeline_->edge;
   NodeInputs& in = pins_.inputs;
-  NodeOutputs& out = pins_.outputs;
   in.now = timeline_->edge;
   in.valid = pins_.held;
   in.ready = pins_.ready;
@@ -108,12 +99,32 @@ void NodeModule::cycle() {
   }
   // SystemC would wrap the text of an exception that leaves a process.
   try {
-    model_->clock(faults_ ? seen() : in, out);
+    model_->clock(faults_ ? seen() : in, pins_.outputs);
   } catch (const std::runtime_error& e) {
-    monitor_o->fail(node_, e.what());
+    failure_ = e.what();
+  }
+}
+
+void NodeModule::cycle() {
+  // The wake event comes between two edges, or one delta after the edge at which a link or the control
+  // changed: the change belongs to the next cycle, and the static sensitivity is back.
+  if (pins_.asleep) {
+    pins_.asleep = false;
+    monitor_o->expect(*this);
+    return;
+  }
+  if (timeline_->over) {
     sleep(kNever);
     return;
   }
+  if (evaluated_ != timeline_->edge) monitor_o->evaluate();
+  if (!failure_.empty()) {
+    monitor_o->fail(node_, failure_);
+    sleep(kNever);
+    return;
+  }
+  const NodeInputs& in = pins_.inputs;
+  const NodeOutputs& out = pins_.outputs;
   if (timeline_->running()) {
     ++calls_;
     if (Collector::shows(out) || (out.beat_errors | out.ack_errors) != 0) monitor_o->report(node_, out);
@@ -135,9 +146,20 @@ void NodeModule::cycle() {
   if (checked_)
     for (const int f : faces_)
       if (ack_[f] != out.ack[f]) in_link_[f]->set_ack(ack_[f] = out.ack[f]);
+  if (valid_ == 0 && (pins_.held & ~taken) == 0) rest();
+  if (!pins_.asleep) monitor_o->expect(*this);
+}
+
+// No link holds a beat on either side.
+void NodeModule::rest() {
   if (faults_ && std::any_of(faces_.begin(), faces_.end(), [&](int f) { return in_link_[f]->repeats(); }))
     return;
-  if (model_->wakes_at() > in.now + 1 && valid_ == 0 && (pins_.held & ~taken) == 0) sleep(model_->wakes_at());
+  // Gates and faults change inputs without an event.
+  pins_.heeds_all = model_->stands_still() && !stalls_ && !faults_;
+  if (pins_.heeds_all)
+    sleep(kNever);
+  else if (model_->wakes_at() > pins_.inputs.now + 1)
+    sleep(model_->wakes_at());
 }
 
 Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State& initial,
@@ -162,6 +184,7 @@ Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State&
     nodes_[n]->clk_i(clk_i);
     nodes_[n]->control_i(control_[n]);
     nodes_[n]->monitor_o(*this);
+    expected_.push_back(nodes_[n].get());
   }
   for (uint32_t n = 0; n < plan.nodes(); ++n)
     for (int f = 0; f < kFaces; ++f) {
@@ -193,6 +216,19 @@ void Bench::report(uint32_t node, const NodeOutputs& out) {
   } catch (const std::runtime_error& e) {
     fail(node, e.what());
   }
+}
+
+void Bench::evaluate() {
+  // A wire with faults is looked at by both of its nodes.
+  const int threads = options_.faults.enabled() ? 1 : options_.threads;
+  const size_t least = threads > 0 ? 1 : 64;  // nodes, below which a thread is not worth its waking
+  for_each_range(
+      expected_.size(), least,
+      [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) expected_[k]->evaluate();
+      },
+      threads);
+  expected_.clear();
 }
 
 void Bench::fail(uint32_t node, const std::string& text) {
@@ -261,7 +297,7 @@ RunResult Bench::take_result() {
   Counters counters{{"cycles", static_cast<double>(collector_.last_cycle() + 1)}};
   double calls = 0;
   for (const auto& n : nodes_) {
-    add_counters(counters, 1, n->model().counters());
+    add_counters(counters, 1, n->model().counters(timeline_.edge));
     calls += static_cast<double>(n->calls());
   }
   counters.emplace_back("node_calls", calls);

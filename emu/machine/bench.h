@@ -21,6 +21,8 @@ namespace cuboct::emu {
 inline std::ostream& operator<<(std::ostream& out, const Control& c) { return out << c.reset_n << c.start; }
 inline void sc_trace(sc_core::sc_trace_file*, const Control&, const std::string&) {}
 
+class NodeModule;
+
 // The host's view of the run that the node modules report to.
 class Monitor : public virtual sc_core::sc_interface {
  public:
@@ -29,6 +31,10 @@ class Monitor : public virtual sc_core::sc_interface {
   virtual void report(uint32_t node, const NodeOutputs& out) = 0;
   // A node that cannot go on: the run is over.
   virtual void fail(uint32_t node, const std::string& text) = 0;
+  // The node is awake at the next edge.
+  virtual void expect(NodeModule& node) = 0;
+  // At an edge, before its first node goes on: calls the models of all that were expected, in threads.
+  virtual void evaluate() = 0;
 };
 
 class NodeModule : public sc_core::sc_module {
@@ -46,12 +52,16 @@ class NodeModule : public sc_core::sc_module {
              std::unique_ptr<NodeModel> model, bool checked, bool faults);
   NodeModel& model() { return *model_; }
   uint64_t calls() const { return calls_; }  // of the model, in cycles that count
+  // Calls the model for this edge: reads what all links showed before it, writes nothing that another node
+  // reads.
+  void evaluate();
 
  private:
   void end_of_elaboration() override;
   void cycle();
   void heed_control();
   void sleep(uint64_t until);
+  void rest();
   const NodeInputs& seen();
 
   const uint32_t node_;
@@ -64,6 +74,8 @@ class NodeModule : public sc_core::sc_module {
   bool stalls_ = false;
   const bool checked_, faults_;  // links are checked; wires have faults
   LinkPins pins_;
+  uint64_t evaluated_ = kNever;  // the edge that the outputs are of
+  std::string failure_;          // of the model
   uint64_t calls_ = 0;
   uint8_t valid_ = 0, ready_ = 0;  // the link registers as the node left them
   std::array<uint16_t, kFaces> ack_{};
@@ -89,6 +101,8 @@ class Bench : public sc_core::sc_module, private Monitor {
   const Timeline& timeline() const override { return timeline_; }
   void report(uint32_t node, const NodeOutputs& out) override;
   void fail(uint32_t node, const std::string& text) override;
+  void expect(NodeModule& node) override { expected_.push_back(&node); }
+  void evaluate() override;
   void host();
   void tick() { ++timeline_.edge; }
   void show_progress();
@@ -106,6 +120,7 @@ class Bench : public sc_core::sc_module, private Monitor {
   sc_core::sc_vector<sc_core::sc_signal<Control>> control_;
   std::vector<std::unique_ptr<Link>> links_;
   std::vector<std::unique_ptr<NodeModule>> nodes_;
+  std::vector<NodeModule*> expected_;  // at the next edge
   Host state_ = Host::reset;
   size_t loaded_ = 0, most_ = 0;
   std::string stuck_;                           // why there is no result

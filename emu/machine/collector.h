@@ -20,6 +20,7 @@ struct RunOptions {
   uint64_t stall_seed = 1;
   FaultOptions faults;      // on the wires
   bool progress = false;    // a line per second on standard error
+  int threads = 0;          // that step nodes; 0: one per core. No bit and no cycle depends on it
   bool keep_last = false;   // keep the state after the last complete step too
   bool keep_order = false;  // keep the ids in the order of the slots, per step and cell
   uint64_t patience =

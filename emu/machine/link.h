@@ -27,6 +27,7 @@ struct LinkPins {
   uint8_t held = 0;     // incoming registers that are not empty
   uint8_t ready = 0;    // receivers of the outgoing links that are ready
   bool asleep = false;  // the node asks to be woken by a filled register
+  bool heeds_all = false;  // while asleep: by a change of ready or of an acknowledgement too
   NodeInputs inputs;    // `beat`: the incoming registers, where held
   NodeOutputs outputs;  // `beat`: where the next beat is written
   sc_core::sc_event wake;
@@ -110,6 +111,8 @@ class Link final : public sc_core::sc_prim_channel, public LinkSender, public Li
       sender_->outputs.beat[static_cast<size_t>(out_face_)] = &buffer_[spare_];
       if (receiver_->asleep) receiver_->wake.notify(sc_core::SC_ZERO_TIME);
     }
+    if (sender_->heeds_all && sender_->asleep && (ready_ != next_ready_ || ack_ != next_ack_))
+      sender_->wake.notify(sc_core::SC_ZERO_TIME);
     valid_ = next_valid_;
     ready_ = next_ready_;
     ack_ = next_ack_;

@@ -81,17 +81,21 @@ inline void add_counters(Counters& sum, size_t first, const Counters& part) {
 class NodeModel {
  public:
   virtual ~NodeModel() = default;
-  // One clock cycle. `out` is the same object in every call.
+  // One clock cycle. `out` is the same object in every call. Different nodes are called in different threads.
   virtual void clock(const NodeInputs& in, NodeOutputs& out) = 0;
   // After `clock`: the next cycle that the node must be called for. In the cycles before, as long as no link
   // holds a beat on either side and the control stays as it is, the node would show nothing and load nothing,
   // and they may be left out. A call in one of them is right too; any value up to the next cycle asks for
   // each.
   virtual uint64_t wakes_at() const { return 0; }
+  // After `clock`, of models that do not know their future: with the same inputs no call would change anything
+  // or show anything. Calls may be left out until an input changes, be it a ready or an acknowledgement.
+  virtual bool stands_still() const { return false; }
   // What the node is doing, for the report of a deadlock.
   virtual std::string doing() const { return "unknown"; }
-  // Counters of this node, always the same names in the same order; the bench adds them up over the nodes.
-  virtual Counters counters() const { return {}; }
+  // Counters of this node over the cycles before `end`, always the same names in the same order; the bench adds
+  // them up over the nodes.
+  virtual Counters counters(uint64_t /*end*/) const { return {}; }
 };
 
 // `node` counts the plan's physical nodes; `has_link` the faces that have a neighbour.

@@ -69,6 +69,8 @@ class Machine {
     ++now_;
   }
 
+  uint64_t now() const { return now_; }  // the next cycle, counted from the reset
+
   std::vector<Place> places;
   FaultyWires faults;
 
@@ -169,7 +171,7 @@ RunResult run_plain(const Plan& plan, const State& initial, const RunOptions& op
   result.trace.engine = engine;
   result.trace.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   result.trace.counters = {{"cycles", cycles}};
-  for (const Place& p : places) add_counters(result.trace.counters, 1, p.model->counters());
+  for (const Place& p : places) add_counters(result.trace.counters, 1, p.model->counters(machine.now()));
   if (options.faults.enabled())
     for (const auto& counter : machine.faults.source.counters()) result.trace.counters.push_back(counter);
   return result;

@@ -37,6 +37,8 @@ class MachineProgram : public EngineProgram {
     app.add_option("--inject-faults", faults_,
                    "Faults on the wires: their share of all beats, or their number in the run");
     app.add_option("--fault-seed", run_.faults.seed, "Seed of the faults")->capture_default_str();
+    app.add_option("--threads", run_.threads, "Threads that step the nodes; default: one per core")
+        ->check(CLI::Range(1, 4096));
     machine_.add_options(app);
   }
 

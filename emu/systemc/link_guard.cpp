@@ -215,8 +215,8 @@ std::string LinkGuard::doing() const {
   return fmt::format("{}; {} on the link of face {}", node_->doing(), to_string(told_), told_face_);
 }
 
-Counters LinkGuard::counters() const {
-  Counters all = node_->counters();
+Counters LinkGuard::counters(uint64_t end) const {
+  Counters all = node_->counters(end);
   all.emplace_back("beats_discarded", static_cast<double>(discarded_));
   all.emplace_back("link_resends", static_cast<double>(resent_));
   return all;

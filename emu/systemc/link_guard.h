@@ -43,7 +43,7 @@ class LinkGuard : public NodeModel {
   void clock(const NodeInputs& in, NodeOutputs& out) override;
   uint64_t wakes_at() const override;
   std::string doing() const override;
-  Counters counters() const override;
+  Counters counters(uint64_t end) const override;
 
  private:
   // cuboct_link_send: a register for the wire, and the beats that are not acknowledged yet.

@@ -235,7 +235,7 @@ std::string NodeMachine::doing() const {
   return text;
 }
 
-Counters NodeMachine::counters() const {
+Counters NodeMachine::counters(uint64_t) const {
   const ForceCounts& c = engine_->counts();
   const auto number = [](uint64_t n) { return static_cast<double>(n); };
   return {{"candidates", number(c.candidates)},     {"pairs_issued", number(c.pairs_issued)},

@@ -21,7 +21,7 @@ class NodeMachine : public NodeModel {
   void clock(const NodeInputs& in, NodeOutputs& out) final;
   uint64_t wakes_at() const final { return wakes_at_; }
   std::string doing() const final;
-  Counters counters() const final;
+  Counters counters(uint64_t) const final;
 
  protected:
   enum class Main : uint8_t {  // the first eight are those of Phase

@@ -61,19 +61,17 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
     ports.link_end |= static_cast<uint8_t>(in.beat[f]->end << f);
     ports.link_data[f] = in.beat[f]->payload.word.data();
   }
+  for (size_t e = 0; e < events_.size(); ++e) events_[e] = event_cycles(e, in.now);
+  last_ = in.now;
   const char* failed = library_->clock(model_, &ports, &out_);
   if (failed != nullptr) {
-    const std::string when = cycle_ ? fmt::format("cycle {}", *cycle_) : "before the run";
+    const std::string when = begin_ ? fmt::format("cycle {}", in.now - *begin_) : "before the run";
     throw std::runtime_error(fmt::format("{}: the assertion of the RTL at {} failed", when, failed));
   }
-  if (host.start)
-    cycle_ = 0;
-  else if (cycle_)
-    ++*cycle_;
+  if (host.start) begin_ = in.now + 1;
 
   read_outputs(out_, out);
-  if (host.reset_n)  // what registers hold before is no event
-    for (size_t e = 0; e < events_.size(); ++e) events_[e] += out_.force_event >> e & 1;
+  if (!host.reset_n) out_.force_event = 0;  // what registers hold before is no event
   out.valid = out.loaded = out_.link_valid & has_link_;
   out.ready = out_.link_ready & has_link_;
   std::copy(out_.link_ack, out_.link_ack + kFaces, out.ack.begin());
@@ -86,8 +84,12 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
   idle_ = out.idle;
 }
 
-Counters VerilatedNode::counters() const {
-  const auto count = [this](size_t event) { return static_cast<double>(events_[event]); };
+uint64_t VerilatedNode::event_cycles(size_t event, uint64_t end) const {
+  return events_[event] + ((out_.force_event >> event & 1) != 0 && end > last_ ? end - last_ : 0);
+}
+
+Counters VerilatedNode::counters(uint64_t end) const {
+  const auto count = [&](size_t event) { return static_cast<double>(event_cycles(event, end)); };
   return {{"candidates", count(2)},
           {"queue_stalls", count(1)},
           {"issue_cycles", count(3)},

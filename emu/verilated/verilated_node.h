@@ -24,8 +24,9 @@ class VerilatedNode : public NodeModel {
 
   // Throws std::runtime_error with cycle, file and line where an assertion of the RTL fails.
   void clock(const NodeInputs& in, NodeOutputs& out) override;
+  bool stands_still() const override { return out_.still != 0; }
   std::string doing() const override;
-  Counters counters() const override;
+  Counters counters(uint64_t end) const override;
 
  private:
   const std::shared_ptr<const Library> library_;
@@ -33,9 +34,11 @@ class VerilatedNode : public NodeModel {
   void* const model_;
   CuboctOut out_{};
   uint8_t phases_ = 0;                // that run
-  std::array<uint64_t, 4> events_{};  // cycles of each bit of force_event_o
+  uint64_t event_cycles(size_t event, uint64_t end) const;
+  std::array<uint64_t, 4> events_{};  // cycles of each bit of force_event_o, up to `last_`
+  uint64_t last_ = 0;                 // cycle of the last call; force_event_o stays through those left out
   bool idle_ = true;
-  std::optional<uint64_t> cycle_;  // of the run, once it was started
+  std::optional<uint64_t> begin_;  // edge of the run's cycle 0, once it was started
 };
 
 // The outputs that belong to the cycle, without the link registers.

@@ -84,7 +84,7 @@ class Restless : public emu::NodeModel {
  public:
   explicit Restless(std::unique_ptr<emu::NodeModel> inner) : inner_(std::move(inner)) {}
   void clock(const emu::NodeInputs& in, emu::NodeOutputs& out) override { inner_->clock(in, out); }
-  emu::Counters counters() const override { return inner_->counters(); }
+  emu::Counters counters(uint64_t end) const override { return inner_->counters(end); }
 
  private:
   std::unique_ptr<emu::NodeModel> inner_;
