@@ -255,10 +255,16 @@ ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodi
     };
     switch (probe.kind) {
       case Probe::Kind::force:
-        curve("force_x", "N"), curve("force_y", "N"), curve("force_z", "N");
+        if (!probe.axis.isZero(0))
+          curve("force", "N");
+        else
+          curve("force_x", "N"), curve("force_y", "N"), curve("force_z", "N");
         break;
       case Probe::Kind::displacement:
-        curve("x", "m"), curve("y", "m"), curve("z", "m");
+        if (!probe.axis.isZero(0))
+          curve("along", "m");
+        else
+          curve("x", "m"), curve("y", "m"), curve("z", "m");
         break;
       case Probe::Kind::stress_strain:
         curve("strain", "1"), curve("stress", "Pa");
@@ -282,22 +288,24 @@ void ProbeMeter::add(const Sample& sample) {
     curves_[next].step.push_back(sample.step);
     curves_[next++].value.push_back(value);
   };
+  const auto points = [&](const Vec3& value, const Vec3& axis) {
+    if (!axis.isZero(0))
+      point(value.dot(axis));
+    else
+      for (const double component : value) point(component);
+  };
   for (const Probe& probe : probes_) switch (probe.kind) {
-      case Probe::Kind::force: {
-        const Vec3 force = total_force(probe.set);
-        point(force.x()), point(force.y()), point(force.z());
+      case Probe::Kind::force:
+        points(total_force(probe.set), probe.axis);
         break;
-      }
-      case Probe::Kind::displacement: {
-        const Vec3 moved = displacement(probe.set);
-        point(moved.x()), point(moved.y()), point(moved.z());
+      case Probe::Kind::displacement:
+        points(displacement(probe.set), probe.axis);
         break;
-      }
       case Probe::Kind::stress_strain: {
-        const double gauge = (position(probe.upper) - position(probe.lower))[probe.axis];
-        const double stretch = (displacement(probe.upper) - displacement(probe.lower))[probe.axis];
+        const double gauge = (position(probe.upper) - position(probe.lower)).dot(probe.axis);
+        const double stretch = (displacement(probe.upper) - displacement(probe.lower)).dot(probe.axis);
         point(stretch / gauge);
-        point(-total_force(probe.grip)[probe.axis] / probe.area);
+        point(-total_force(probe.grip).dot(probe.axis) / probe.area);
         break;
       }
     }

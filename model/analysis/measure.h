@@ -91,8 +91,8 @@ std::vector<uint32_t> probed_ids(const std::vector<Probe>& probes);
 std::vector<Probe> placed(std::vector<Probe> probes, const std::vector<uint32_t>& ids);
 
 // Turns samples into the curves of a scene's probes:
-//   force          <name>.force_x, .force_y, .force_z   N
-//   displacement   <name>.x, .y, .z                     m
+//   force          <name>.force_x, .force_y, .force_z   N; with an axis <name>.force
+//   displacement   <name>.x, .y, .z                     m; with an axis <name>.along
 //   stress_strain  <name>.strain                        1
 //                  <name>.stress                        Pa, positive where the body pulls at the grip
 class ProbeMeter {

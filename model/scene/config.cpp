@@ -290,6 +290,23 @@ Vec3 ConfigValue::vector(const Quantity& quantity) const {
   return {values[0], values[1], values[2]};
 }
 
+Vec3 ConfigValue::direction() const {
+  Vec3 v = Vec3::Zero();
+  if (is_array()) {
+    v = vector(quantity::number);
+    if (v.isZero(0)) fail(fmt::format("'{}' must not be zero", node_->key));
+    return v;
+  }
+  if (!is_string()) wants("a direction such as \"z\", \"-x\" or [1, 1, 0]");
+  const std::string& text = node_->text;
+  const bool sign = text.starts_with('-') || text.starts_with('+');
+  const char axis = text.empty() ? '\0' : text.back();
+  if (text.size() != (sign ? 2 : 1) || axis < 'x' || axis > 'z')
+    fail(fmt::format("unknown direction '{}'", text), "such as \"z\", \"-x\" or three numbers: [1, 1, 0]");
+  v[axis - 'x'] = text[0] == '-' ? -1 : 1;
+  return v;
+}
+
 std::vector<ConfigValue> ConfigValue::items() const {
   if (!is_array()) wants("an array");
   std::vector<ConfigValue> values;

@@ -66,6 +66,8 @@ class ConfigValue {
   // Several: "[0, 1, 2.5] mm", or an array whose elements are single ones.
   std::vector<double> numbers(const Quantity& quantity, const Range& range = Range::any()) const;
   Vec3 vector(const Quantity& quantity) const;
+  // "x", "-y", "+z" of the scene, or three plain numbers that are not all 0: of any length.
+  Vec3 direction() const;
 
   std::vector<ConfigValue> items() const;  // of an array
   ConfigTable table() const;

@@ -22,18 +22,18 @@ struct ParticleSet {
 // What to measure every `probe_every` steps. Curves are named "<probe>.<quantity>".
 struct Probe {
   enum class Kind : uint8_t {
-    force,          // total pair force on a set, N: force_x, force_y, force_z
-    displacement,   // mean displacement of a set from its initial mean position, m: x, y, z
-    stress_strain,  // two sets and an axis: strain = change of the distance between their means over its
-                    // initial value; stress = pull on `grip` along the axis over `area`, Pa
+    force,          // total pair force on a set, N: force_x, force_y, force_z; or force, along an axis
+    displacement,   // mean displacement of a set from its initial mean position, m: x, y, z; or along
+    stress_strain,  // two sets and an axis: strain = change of the distance between their means along it
+                    // over its initial value; stress = pull on `grip` along the axis over `area`, Pa
   };
   Kind kind = Kind::force;
   std::string name;
   ParticleSet set;           // force, displacement
   ParticleSet lower, upper;  // stress_strain: gauge marks
   ParticleSet grip;          // stress_strain: whose force counts, on the side of `upper`
-  int axis = 0;
-  double area = 0;  // m^2
+  Vec3 axis = Vec3::Zero();  // unit length; 0: force and displacement give their three components
+  double area = 0;           // m^2
 };
 
 struct Scene {

@@ -8,9 +8,9 @@
 namespace cuboct {
 namespace {
 
-double mean_along(const ParticleSet& set, const std::vector<Vec3>& x, int axis) {
+double mean_along(const ParticleSet& set, const std::vector<Vec3>& x, const Vec3& axis) {
   double sum = 0;
-  for (uint32_t id : set.ids) sum += x[id][axis];
+  for (uint32_t id : set.ids) sum += x[id].dot(axis);
   return sum / static_cast<double>(set.ids.size());
 }
 
@@ -29,15 +29,16 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
     const auto set = [&](const char* key, const std::string& name) {
       return ParticleSet{name, regions.select(table.at(key), scene.body.x, tolerance)};
     };
-    if (probe.kind == Probe::Kind::stress_strain) {
+    const bool tension = probe.kind == Probe::Kind::stress_strain;
+    if (tension || table.has("axis")) probe.axis = table.at("axis").direction().normalized();
+    if (tension) {
       probe.lower = set("lower", probe.name + ".lower");
       probe.upper = set("upper", probe.name + ".upper");
       probe.grip = set("grip", probe.name + ".grip");
-      probe.axis = static_cast<int>(table.at("axis").choice("axis", {"x", "y", "z"}));
       probe.area = table.number("area", quantity::area, Range::positive());
       if (!(mean_along(probe.lower, scene.body.x, probe.axis) <
             mean_along(probe.upper, scene.body.x, probe.axis)))
-        table.at("upper").fail(fmt::format("'upper' must lie above 'lower' along {}", "xyz"[probe.axis]));
+        table.at("upper").fail("'upper' must lie further along 'axis' than 'lower'");
     } else {
       probe.set = set("region", probe.name);
     }

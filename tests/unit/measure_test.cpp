@@ -171,7 +171,7 @@ TEST(Probes, FollowTheirDefinitions) {
   pull.lower.ids = {0};
   pull.upper.ids = {1, 2};
   pull.grip.ids = {2};
-  pull.axis = 2;
+  pull.axis = Vec3::UnitZ();
   pull.area = 0.5;
 
   const std::vector<Vec3> initial{{0, 0, 0}, {0, 0, 4}, {0, 0, 6}};
@@ -192,6 +192,23 @@ TEST(Probes, FollowTheirDefinitions) {
   // Gauge 5 m; the marks moved by -1 and +0.5: strain 0.3. The body pulls the grip down with 8 N over 0.5
   // m^2.
   EXPECT_EQ(last, (std::vector<double>{11, 22, 33, 1.5, 0, 0.5, 0.3, 16}));
+}
+
+// One component instead of three; a pull along (0, 0.6, 0.8).
+TEST(Probes, FollowAnAxis) {
+  Probe force = probe_of(Probe::Kind::force, "f"), moved = probe_of(Probe::Kind::displacement, "d"),
+        pull = probe_of(Probe::Kind::stress_strain, "pull");
+  force.set.ids = moved.set.ids = pull.upper.ids = pull.grip.ids = {1};
+  pull.lower.ids = {0};
+  pull.area = 2;
+  for (Probe* probe : {&force, &moved, &pull}) probe->axis = Vec3(0, 0.6, 0.8);
+  ProbeMeter meter({force, moved, pull}, {}, {{0, 0, 0}, {0, 0, 5}});
+  meter.add({1, {{0, 0, 0}, {7, 5, 5}}, {Vec3::Zero(), {9, 10, 20}}});
+  std::vector<std::string> names;
+  for (const Curve& curve : meter.curves()) names.push_back(curve.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"f.force", "d.along", "pull.strain", "pull.stress"}));
+  const double expected[] = {22, 3, 3.0 / 4, -11};
+  for (size_t k = 0; k < 4; ++k) EXPECT_NEAR(meter.curves()[k].value[0], expected[k], 1e-12) << names[k];
 }
 
 TEST(Probes, CountRoundsOfAPeriodicBox) {
