@@ -24,7 +24,7 @@ bool alive(const Scene& scene, int axis) {
 
 }  // namespace
 
-Thermometer::Thermometer(const Scene& scene) : mass_(scene.rule.mass) {
+Thermometer::Thermometer(const Scene& scene) : mass_(scene.rule.mass), boltzmann_(scene.boltzmann) {
   for (const uint8_t type : scene.body.type)
     for (int a = 0; a < 3; ++a) free_[a] += is_free(scene.rule.types[type], a);
   for (int a = 0; a < 3; ++a)
@@ -37,7 +37,7 @@ double Thermometer::temperature(const FreeMotion& motion) const {
   for (int a = 0; a < 3; ++a)
     if (free_[a] > 0)
       energy -= mass_ * motion.velocities[a] * motion.velocities[a] / (2 * static_cast<double>(free_[a]));
-  return 2 * std::max(energy, 0.0) / (degrees_ * kBoltzmann);
+  return 2 * std::max(energy, 0.0) / (degrees_ * boltzmann_);
 }
 
 }  // namespace cuboct

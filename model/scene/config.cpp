@@ -177,6 +177,7 @@ bool ConfigValue::is_table() const { return node_->kind == Kind::table; }
 bool ConfigValue::is_array() const { return node_->kind == Kind::array; }
 bool ConfigValue::is_number() const { return node_->kind == Kind::integer || node_->kind == Kind::real; }
 bool ConfigValue::is_string() const { return node_->kind == Kind::string; }
+bool ConfigValue::reduced() const { return file_->reduced; }
 const std::string& ConfigValue::key() const { return node_->key; }
 
 void ConfigValue::fail(const std::string& message, const std::string& hint) const {
@@ -187,6 +188,26 @@ void ConfigValue::fail(const std::string& message, const std::string& hint) cons
 
 void ConfigValue::wants(const std::string& what) const {
   fail(fmt::format("'{}' must be {}, not {}", node_->key, what, kind_name(node_->kind)));
+}
+
+// Shows the same value with a unit that fits.
+void ConfigValue::lacks_unit(const Quantity& quantity) const {
+  constexpr size_t kShown = 3;  // elements of a list
+  const std::string_view example = quantity.example, unit = example.substr(example.find(' '));
+  std::string such(example.substr(0, example.find(' ')));
+  const auto number = [](const ConfigNode& node) {
+    return node.kind == Kind::integer ? fmt::format("{}", node.integer) : fmt::format("{}", node.real);
+  };
+  if (is_string())
+    such = node_->text;
+  else if (is_number())
+    such = number(*node_);
+  else if (node_->items.size() <= kShown) {
+    such.clear();
+    for (const ConfigNode& item : node_->items) such += (such.empty() ? "[" : ", ") + number(item);
+    such += "]";
+  }
+  fail(fmt::format("'{}' needs a unit: {} such as \"{}{}\"", node_->key, quantity.name, such, unit));
 }
 
 bool ConfigValue::boolean() const {
@@ -257,17 +278,22 @@ double ConfigValue::number(const Quantity& quantity, const Range& range) const {
 
 std::vector<double> ConfigValue::numbers(const Quantity& quantity, const Range& range) const {
   std::vector<double> values;
+  const bool plain = file_->reduced || quantity.dimension == Dimension{};
   if (is_array()) {
+    const auto is_plain = [](const ConfigNode& item) {
+      return item.kind == Kind::integer || item.kind == Kind::real;
+    };
+    if (!plain && !node_->items.empty() && std::ranges::all_of(node_->items, is_plain)) lacks_unit(quantity);
     for (const ConfigValue& item : items()) values.push_back(item.number(quantity, range));
     return values;
   }
-  if (file_->reduced || quantity.dimension == Dimension{}) wants("an array of numbers");
+  if (plain) wants("an array of numbers");
   const std::string such = fmt::format("{} such as \"{}\"", quantity.name, quantity.example);
-  if (is_number()) fail(fmt::format("'{}' needs a unit: {}", node_->key, such));
+  if (is_number()) lacks_unit(quantity);
   if (!is_string()) wants(such);
   try {
     const ParsedQuantity parsed = parse_quantity(node_->text);
-    if (parsed.dimension == Dimension{}) fail(fmt::format("'{}' needs a unit: {}", node_->key, such));
+    if (parsed.dimension == Dimension{}) lacks_unit(quantity);
     if (parsed.dimension != quantity.dimension)
       fail(fmt::format("'{}' must be {}, but \"{}\" is {}", node_->key, such, node_->text,
                        describe(parsed.dimension)));

@@ -210,6 +210,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path) {
   scene.path = path;
   scene.places = root.places();
   scene.title = root.string_or("title", "");
+  if (root.reduced()) scene.boltzmann = 1;
   auto packing = read_packing(root);
   PackingChoice* choice = packing ? &*packing : nullptr;
   scene.rule.law = read_law(root, choice);

@@ -13,6 +13,11 @@
 
 namespace cuboct {
 
+inline constexpr double kBoltzmann = 1.380649e-23;  // J/K, exact: the SI defines the kelvin by it
+
+// Of temperatures: in reduced units k_B is 1, and they are energies.
+inline const char* temperature_unit(double boltzmann) { return boltzmann == 1 ? "J" : "K"; }
+
 // A named set of particles (by id, ascending): those whose initial position lies in the probe's region.
 struct ParticleSet {
   std::string name;
@@ -46,6 +51,7 @@ struct Scene {
   double pitch = 0;  // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
   Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates
   bool thermal = false;                 // some velocities are drawn
+  double boltzmann = kBoltzmann;        // J/K; 1 in reduced units
   double density = 0;                   // kg/m^3, 0 if the mass was given
   double dt_limit = 0;      // s, largest stable dt: of the perfect packing, and of the vibrations of
                             // particles that are listed (docs/user/scene.md, [run]); 0 if unknown

@@ -227,6 +227,21 @@ ParticleType read_constraint(const ConfigTable& table, const Rule& rule, double 
   return type;
 }
 
+// Standard deviation of each component, m/s: sqrt(kT/m).
+std::optional<double> thermal_speed(const ConfigTable& table, const Scene& scene) {
+  const char* keys[] = {"thermal_speed", "thermal_energy", "temperature"};
+  table.not_both(keys[0], keys[1]);
+  table.not_both(keys[0], keys[2]);
+  table.not_both(keys[1], keys[2]);
+  const auto not_negative = [&](int key, const Quantity& quantity) {
+    return table.number(keys[key], quantity, Range::not_negative());
+  };
+  if (table.has(keys[0])) return not_negative(0, quantity::velocity);
+  if (table.has(keys[1])) return std::sqrt(not_negative(1, quantity::energy) / scene.rule.mass);
+  if (!table.has(keys[2])) return std::nullopt;
+  return std::sqrt(scene.boltzmann * not_negative(2, quantity::temperature) / scene.rule.mass);
+}
+
 void read_velocities(const ConfigTable& root, const Regions& regions, Scene& scene) {
   Body& body = scene.body;
   for (const ConfigTable& table : root.tables("velocity")) {
@@ -243,14 +258,9 @@ void read_velocities(const ConfigTable& root, const Regions& regions, Scene& sce
     for (uint32_t id : ids) centre += body.x[id];
     centre /= static_cast<double>(ids.size());
     for (uint32_t id : ids) body.v[id] += uniform + spin.cross(body.x[id] - centre);
-    table.not_both("thermal_speed", "thermal_energy");
-    double speed = table.number_or("thermal_speed", quantity::velocity, 0, Range::not_negative());
-    if (table.has("thermal_energy"))
-      speed = std::sqrt(table.number("thermal_energy", quantity::energy, Range::not_negative()) /
-                        scene.rule.mass);
-    if (table.has("thermal_speed") || table.has("thermal_energy")) {
-      scene.thermal |= speed > 0;
-      add_thermal(body.v, ids, speed, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)));
+    if (const auto speed = thermal_speed(table, scene)) {
+      scene.thermal |= *speed > 0;
+      add_thermal(body.v, ids, *speed, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)));
     }
     table.done();
   }

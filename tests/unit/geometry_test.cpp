@@ -184,7 +184,7 @@ TEST(Geometry, RefusesBadShapes) {
   EXPECT_EQ(error_of("[g]\nshape = \"box\"\nmin = \"[0, 0, 0] m\"\nmax = \"[1, 0, 1] m\"\n"),
             "a.toml:4:7: 'max' must be above 'min' along y");
   EXPECT_EQ(error_of("g = { shape = \"union\", of = [ { shape = \"sphere\", radius = 3 } ] }\n"),
-            "a.toml:1:60: 'radius' needs a unit: a length such as \"0.5 mm\"");
+            "a.toml:1:60: 'radius' needs a unit: a length such as \"3 mm\"");
   EXPECT_EQ(error_of("[g]\nshape = \"half_space\"\nnormal = [0, 0, 0]\n"),
             "a.toml:3:10: 'normal' must not be zero");
   EXPECT_EQ(error_of("[g]\nshape = \"half_space\"\nnormal = \"xy\"\n"),

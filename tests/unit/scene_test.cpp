@@ -111,6 +111,16 @@ TEST_F(SceneTest, ErrorsWordForWord) {
             "a.toml:1:1: unknown key 'densty'\n  hint: did you mean 'density'?");
   EXPECT_EQ(error(with("\"0.5 mm\"", "0.5")),
             "a.toml:3:9: 'pitch' needs a unit: a length such as \"0.5 mm\"");
+  EXPECT_EQ(error(with("\"0.5 mm\"", "\"2e-4\"")),
+            "a.toml:3:9: 'pitch' needs a unit: a length such as \"2e-4 mm\"");
+  EXPECT_EQ(error("gravity = [0, 0, -9.81]\n" + kBase),
+            "a.toml:1:11: 'gravity' needs a unit: an acceleration such as \"[0, 0, -9.81] m/s^2\"");
+  EXPECT_EQ(error("gravity = [0, \"0 m/s^2\", -9.81]\n" + kBase),
+            "a.toml:1:12: 'gravity' needs a unit: an acceleration such as \"0 m/s^2\"");
+  EXPECT_EQ(error(kBase + "[[velocity]]\nseed = 1\ntemperature = 300\n"),
+            "a.toml:16:15: 'temperature' needs a unit: a temperature such as \"300 K\"");
+  EXPECT_EQ(error(kBase + "[[velocity]]\nseed = 1\ntemperature = \"1 K\"\nthermal_energy = \"1 eV\"\n"),
+            "a.toml:16:15: give 'thermal_energy' or 'temperature', not both");
   EXPECT_EQ(error(with("1 MN/m", "1 MN")),
             "a.toml:10:13: 'stiffness' must be a stiffness such as \"1 MN/m\", but \"1 MN\" is a force");
   EXPECT_EQ(error(with("\"elastic\"", "\"elastc\"")),
