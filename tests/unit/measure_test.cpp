@@ -176,8 +176,8 @@ TEST(Probes, FollowTheirDefinitions) {
 
   const std::vector<Vec3> initial{{0, 0, 0}, {0, 0, 4}, {0, 0, 6}};
   ProbeMeter meter({force, moved, pull}, {}, initial);
-  meter.add({0, initial, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}});
-  meter.add({10, {{0, 0, -1}, {1, 0, 4}, {2, 0, 7}}, {{1, 2, 3}, {10, 20, 30}, {0, 0, -8}}});
+  meter.add({0, initial, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}, {}});
+  meter.add({10, {{0, 0, -1}, {1, 0, 4}, {2, 0, 7}}, {{1, 2, 3}, {10, 20, 30}, {0, 0, -8}}, {}});
 
   std::vector<std::string> names;
   std::vector<double> last;
@@ -203,7 +203,7 @@ TEST(Probes, FollowAnAxis) {
   pull.area = 2;
   for (Probe* probe : {&force, &moved, &pull}) probe->axis = Vec3(0, 0.6, 0.8);
   ProbeMeter meter({force, moved, pull}, {}, {{0, 0, 0}, {0, 0, 5}});
-  meter.add({1, {{0, 0, 0}, {7, 5, 5}}, {Vec3::Zero(), {9, 10, 20}}});
+  meter.add({1, {{0, 0, 0}, {7, 5, 5}}, {Vec3::Zero(), {9, 10, 20}}, {}});
   std::vector<std::string> names;
   for (const Curve& curve : meter.curves()) names.push_back(curve.name);
   EXPECT_EQ(names, (std::vector<std::string>{"f.force", "d.along", "pull.strain", "pull.stress"}));
@@ -216,7 +216,7 @@ TEST(Probes, CountRoundsOfAPeriodicBox) {
   moved.set.ids = {0};
   ProbeMeter meter({moved}, {Vec3::Zero(), Vec3(1, 0, 0)}, {Vec3(0.1, 0, 0)});
   for (uint64_t step = 0; step <= 10; ++step)
-    meter.add({step, {Vec3(std::fmod(0.1 + 0.4 * static_cast<double>(step), 1.0), 0, 0)}, {Vec3::Zero()}});
+    meter.add({step, {Vec3(std::fmod(0.1 + 0.4 * static_cast<double>(step), 1.0), 0, 0)}, {Vec3::Zero()}, {}});
   EXPECT_NEAR(meter.curves()[0].value.back(), 4.0, 1e-12);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "hw/engine_kind.h"
+#include "model/base/error.h"
 
 namespace cuboct {
 namespace {
@@ -107,6 +108,52 @@ TEST(Temperature, OfADrawIsThatOfItsThermalEnergy) {
   const Scene scene = read_scene(std::string(CUBOCT_SOURCE_DIR) + "/scenes/lj_block.toml");
   EXPECT_EQ(Thermometer(scene).degrees(), 765);
   EXPECT_NEAR(in_integers(scene).curve("temperature")->value[0], 0.2, 4 * 0.05 * 0.2);
+}
+
+// A probe of the three near the origin: about their mean (2, 1, 0) m/s (1, -1, 0), (-1, -1, 0), (0, 2, 0), so
+// K = 2/2 (2 + 2 + 4) = 8 J. The fourth is elsewhere, and makes the scene one in space: 3 (3 - 1) degrees.
+std::string probed(const std::string& fourth, const std::string& more = "") {
+  return scene_of(
+      particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]") +
+      particle("[0, 10, 0]", "[2, 3, 0]") + fourth + more +
+      "[[probe]]\nname = \"t\"\nkind = \"temperature\"\nregion = { shape = \"sphere\", radius = 12 }\n"
+      "[[probe]]\nname = \"v\"\nkind = \"velocity\"\nregion = { shape = \"sphere\", radius = 12 }\n"
+      "[[probe]]\nname = \"e\"\nkind = \"kinetic_energy\"\nregion = { shape = \"sphere\", radius = 12 }\n");
+}
+TEST(Temperature, ProbesMeasureARegion) {
+  const auto expect = [](const std::string& text, double temperature, double energy) {
+    const Scene scene = parse_scene(text, "gas.toml");
+    for (const Measured& measured : {in_doubles(scene), in_integers(scene)}) {
+      EXPECT_EQ(measured.curve("t.temperature")->unit, "J");
+      EXPECT_NEAR(measured.curve("t.temperature")->value[0], temperature, 40 * kRounding);
+      EXPECT_NEAR(measured.curve("e.kinetic_energy")->value[0], energy, 40 * kRounding);
+      EXPECT_NEAR(measured.curve("v.velocity_x")->value[0], 2, kRounding);
+      EXPECT_NEAR(measured.curve("v.velocity_y")->value[0], 1, kRounding);
+      EXPECT_NEAR(measured.curve("v.velocity_z")->value[0], 0, kRounding);
+    }
+  };
+  const double energy = 9 + 1 + 13;  // J, of 2 kg each, not about the mean
+  expect(probed(particle("[0, 0, 20]", "[50, 0, 0]")), 2 * 8 / 6.0, energy);
+  expect(probed(particle("[20, 20, 0]", "[50, 0, 0]")), 2 * 8 / 4.0, energy);  // a flat scene
+  // What is held is no part of it: 2 kg at (0.5, -1.5) and (-0.5, 1.5) about their mean.
+  const std::string held =
+      "[[constraint]]\nname = \"a\"\nkind = \"moved\"\naxes = \"x\"\nvelocity = [3, 0, 0]\n"
+      "region = { shape = \"sphere\", radius = 1 }\n";
+  expect(probed(particle("[0, 0, 20]", "[0, 0, 0]"), held), 2 * 5 / 3.0, energy);
+}
+
+TEST(Temperature, NeedsTwoFreeParticles) {
+  const std::string one =
+      "[[probe]]\nname = \"a\"\nkind = \"temperature\"\n"
+      "region = { shape = \"sphere\", radius = 1 }\n";
+  const std::string two = particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]");
+  try {
+    parse_scene(scene_of(two) + one, "a.toml");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "a.toml:22:10: a temperature needs two particles that no constraint holds or moves");
+  }
 }
 
 // Of copper at 300 K, and the same by its energy and its speed: kT = 4.14e-21 J, sqrt(kT/m) = 198 m/s.
