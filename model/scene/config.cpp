@@ -2,6 +2,7 @@
 #include "model/scene/config.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -106,6 +107,10 @@ ConfigNode convert(const toml::node& from, const std::string& key, const std::st
   return node;
 }
 
+double number_in(const ConfigNode& node) {
+  return node.kind == Kind::integer ? static_cast<double>(node.integer) : node.real;
+}
+
 const ConfigNode* field(const ConfigNode& table, const std::string& key) {
   const auto found = table.by_key.find(key);
   return found == table.by_key.end() ? nullptr : &table.items[found->second];
@@ -190,24 +195,25 @@ void ConfigValue::wants(const std::string& what) const {
   fail(fmt::format("'{}' must be {}, not {}", node_->key, what, kind_name(node_->kind)));
 }
 
-// Shows the same value with a unit that fits.
+// Shows the same value with a unit that fits, where it is likely to be meant in that unit.
 void ConfigValue::lacks_unit(const Quantity& quantity) const {
   constexpr size_t kShown = 3;  // elements of a list
-  const std::string_view example = quantity.example, unit = example.substr(example.find(' '));
-  std::string such(example.substr(0, example.find(' ')));
-  const auto number = [](const ConfigNode& node) {
-    return node.kind == Kind::integer ? fmt::format("{}", node.integer) : fmt::format("{}", node.real);
-  };
+  std::vector<double> values;
   if (is_string())
-    such = node_->text;
-  else if (is_number())
-    such = number(*node_);
-  else if (node_->items.size() <= kShown) {
-    such.clear();
-    for (const ConfigNode& item : node_->items) such += (such.empty() ? "[" : ", ") + number(item);
-    such += "]";
+    values = parse_quantity(node_->text).values;
+  else if (is_array())
+    for (const ConfigNode& item : node_->items) values.push_back(number_in(item));
+  else
+    values = {number_in(*node_)};
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  std::string such = quantity.example;
+  if (values.size() <= kShown && largest < 1e4 && (largest == 0 || largest >= 1e-3)) {
+    const bool list = values.size() > 1;
+    such = fmt::format("{}{}{}{}", list ? "[" : "", fmt::join(values, ", "), list ? "]" : "",
+                       such.substr(such.find(' ')));
   }
-  fail(fmt::format("'{}' needs a unit: {} such as \"{}{}\"", node_->key, quantity.name, such, unit));
+  fail(fmt::format("'{}' needs a unit: {} such as \"{}\"", node_->key, quantity.name, such));
 }
 
 bool ConfigValue::boolean() const {
@@ -261,7 +267,7 @@ double ConfigValue::plain(const Quantity& quantity, const Range& range) const {
       fail(fmt::format("'{}' must be a plain number, as units = \"reduced\"", node_->key));
     wants("a number");
   }
-  const double value = node_->kind == Kind::integer ? static_cast<double>(node_->integer) : node_->real;
+  const double value = number_in(*node_);
   check(value, range);
   return value;
 }

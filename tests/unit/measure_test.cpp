@@ -216,7 +216,8 @@ TEST(Probes, CountRoundsOfAPeriodicBox) {
   moved.set.ids = {0};
   ProbeMeter meter({moved}, {Vec3::Zero(), Vec3(1, 0, 0)}, {Vec3(0.1, 0, 0)});
   for (uint64_t step = 0; step <= 10; ++step)
-    meter.add({step, {Vec3(std::fmod(0.1 + 0.4 * static_cast<double>(step), 1.0), 0, 0)}, {Vec3::Zero()}, {}});
+    meter.add(
+        {step, {Vec3(std::fmod(0.1 + 0.4 * static_cast<double>(step), 1.0), 0, 0)}, {Vec3::Zero()}, {}});
   EXPECT_NEAR(meter.curves()[0].value.back(), 4.0, 1e-12);
 }
 

@@ -111,8 +111,11 @@ TEST_F(SceneTest, ErrorsWordForWord) {
             "a.toml:1:1: unknown key 'densty'\n  hint: did you mean 'density'?");
   EXPECT_EQ(error(with("\"0.5 mm\"", "0.5")),
             "a.toml:3:9: 'pitch' needs a unit: a length such as \"0.5 mm\"");
-  EXPECT_EQ(error(with("\"0.5 mm\"", "\"2e-4\"")),
-            "a.toml:3:9: 'pitch' needs a unit: a length such as \"2e-4 mm\"");
+  EXPECT_EQ(error(with("\"0.5 mm\"", "\"0.2\"")),
+            "a.toml:3:9: 'pitch' needs a unit: a length such as \"0.2 mm\"");
+  // 0.0002 mm is not what is meant.
+  EXPECT_EQ(error(with("\"0.5 mm\"", "2e-4")),
+            "a.toml:3:9: 'pitch' needs a unit: a length such as \"0.5 mm\"");
   EXPECT_EQ(error("gravity = [0, 0, -9.81]\n" + kBase),
             "a.toml:1:11: 'gravity' needs a unit: an acceleration such as \"[0, 0, -9.81] m/s^2\"");
   EXPECT_EQ(error("gravity = [0, \"0 m/s^2\", -9.81]\n" + kBase),
