@@ -9,10 +9,12 @@
 #include <memory>
 
 #include "cli/estimate.h"
+#include "cli/quantity_text.h"
 #include "cli/summary.h"
 #include "hw/cycles.h"
 #include "hw/node_area.h"
 #include "model/analysis/motion.h"
+#include "model/base/resources.h"
 #include "model/contract/quantise.h"
 
 namespace cuboct {
@@ -181,18 +183,119 @@ Items resolve(const Loaded& loaded) {
   return items;
 }
 
+namespace {
+
+// Lengths and times of a scene, for people; plain numbers in reduced units.
+class Shown {
+ public:
+  explicit Shown(const Scene& scene) : reduced_(scene.boltzmann == 1) {}
+  std::string operator()(double value, const char* unit) const {
+    return quantity_text(value, reduced_ ? "" : unit);
+  }
+  std::string mass(double kg) const {
+    return reduced_ ? "mass " + (*this)(kg, "") : quantity_text(1000 * kg, "g");
+  }
+
+ private:
+  bool reduced_;
+};
+
+// Of the box along axes that repeat, else of the particles' centres.
+Vec3 size_of(const Scene& scene) {
+  Vec3 low = scene.body.x[0], high = low;
+  for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  Vec3 size = high - low;
+  for (int a = 0; a < 3; ++a)
+    if (scene.periodic.extent[a] > 0) size[a] = scene.periodic.extent[a];
+  return size;
+}
+
+std::string body_text(const Scene& scene, const Shown& shown) {
+  const Vec3 size = size_of(scene);
+  std::string text, repeats;
+  for (int a = 0; a < 3; ++a) {
+    if (scene.periodic.extent[a] > 0) repeats += "xyz"[a];
+    if (size[a] > 1e-9 * scene.rule.law->cutoff()) text += (text.empty() ? "" : " x ") + shown(size[a], "m");
+  }
+  if (!repeats.empty()) text += ", repeats along " + repeats;
+  const size_t count = scene.body.size();
+  text += fmt::format("{}{} particle{} of {}", text.empty() ? "" : ", ", count, count == 1 ? "" : "s",
+                      shown.mass(scene.rule.mass));
+  return scene.pitch > 0 ? fmt::format("{}, {} apart", text, shown(scene.pitch, "m")) : text;
+}
+
+// Three digits, but never an exponent.
+std::string times_text(double times) {
+  return times < 1000 ? fmt::format("{:.3g}", times) : count_text(times);
+}
+
+// An estimate.
+std::string waiting_text(double seconds) {
+  if (seconds < 0.1) return "under 0.1 s";
+  if (seconds < 120) return fmt::format("about {:.2g} s", seconds);
+  if (seconds < 7200) return fmt::format("about {:.0f} min", seconds / 60);
+  return "about " + count_text(seconds / 3600) + " h";
+}
+
+// What the scene is, and what a run of it does and takes.
+Items physics(const Loaded& loaded) {
+  const Scene& scene = loaded.scene;
+  const Plan& plan = loaded.setup.plan;
+  const Shown shown(scene);
+  const Motion motion = motion_of(scene);
+  const double dt = scene.rule.dt, duration = static_cast<double>(scene.steps) * dt,
+               length = size_of(scene).maxCoeff();
+  Items items;
+  items.add("scene", scene.path);
+  if (!scene.title.empty()) items.add("title", scene.title);
+  items.add("body", body_text(scene, shown));
+  std::string crossings;
+  if (motion.sound_speed > 0 && length > 0) {
+    items.add("waves", fmt::format("{}, {} from end to end", shown(motion.sound_speed, "m/s"),
+                                   shown(length / motion.sound_speed, "s")));
+    crossings = fmt::format(", {} crossings", times_text(duration * motion.sound_speed / length));
+  }
+  items.add("run", fmt::format("{} step{} of {} = {}{}", scene.steps, scene.steps == 1 ? "" : "s",
+                               shown(dt, "s"), shown(duration, "s"), crossings));
+  items.add("step", scene.dt_limit > 0
+                        ? fmt::format("{:.2g} of {}, the largest stable one of {}", scene.dt_safety,
+                                      shown(scene.dt_limit, "s"), scene.dt_limit_of)
+                        : "by the scene; no largest stable one is known");
+  if (motion.strain > 0)
+    items.add("strain", fmt::format("about {:.2g} %, by {}", 100 * motion.strain, motion.strain_of));
+  const Estimate cost = estimate(scene, plan, run_size(scene));
+  std::string time;
+  if (cost.seconds > 0)
+    time = fmt::format(", {} on {} thread{}", waiting_text(cost.seconds), cost.threads,
+                       cost.threads == 1 ? "" : "s");
+  items.add("work", fmt::format("{} particle-steps{}, {} of memory", count_text(cost.particle_steps), time,
+                                in_bytes(cost.memory)));
+  items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),
+                                cost.frames == 1 ? "" : "s"));
+  items.add("machine", fmt::format("{} node{}; --machine tells formats, records and cycles", plan.nodes(),
+                                   plan.nodes() == 1 ? "" : "s"));
+  if (!plan.warnings.empty()) add_warnings(items, plan.warnings, {});
+  return items;
+}
+
+}  // namespace
+
 void add_check(CLI::App& app, int&) {
   struct Options {
     Input input;
-    bool json = false;
+    bool machine = false, json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("check", "read a scene, resolve it and print what would be built");
+  CLI::App* command = app.add_subcommand("check", "read a scene and print what a run of it does and takes");
   options->input.add_to(*command);
-  command->add_flag("--json", options->json, "print as JSON");
+  command->add_flag("--machine", options->machine, "print what would be built: formats, records, cycles");
+  command->add_flag("--json", options->json, "print all as JSON");
   command->callback([options] {
-    const Items items = resolve(load(options->input));
-    fmt::print("{}", options->json ? items.json() : items.text());
+    const Loaded loaded = load(options->input);
+    if (options->json)
+      fmt::print("{}", resolve(loaded).json());
+    else
+      fmt::print("{}", (options->machine ? resolve(loaded) : physics(loaded)).text());
   });
 }
 

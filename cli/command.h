@@ -15,6 +15,7 @@ class Validator;
 
 namespace cuboct {
 
+void add_new(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_crosscheck(CLI::App& app, int& exit_code);

@@ -69,6 +69,7 @@ int main_of(int argc, char** argv) {
   app.set_version_flag(
       "--version", [] { return version_text(); }, "Print version, commit and engines, and exit");
   app.require_subcommand(1);
+  add_new(app, exit_code);
   add_check(app, exit_code);
   add_run(app, exit_code);
   add_crosscheck(app, exit_code);

@@ -25,12 +25,12 @@ std::string relative_to(const std::string& directory, const std::string& path) {
 }  // namespace
 
 int strain_axis(const Scene& scene) {
+  int axis = 0;
   for (const Probe& probe : scene.probes)
-    if (probe.kind == Probe::Kind::stress_strain) return probe.axis;
+    if (probe.kind == Probe::Kind::stress_strain) return probe.axis.cwiseAbs().maxCoeff(&axis), axis;
   if (scene.body.size() == 0) return 0;
   Vec3 lower = scene.body.x[0], upper = lower;
   for (const Vec3& x : scene.body.x) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
-  int axis = 0;
   (upper - lower).maxCoeff(&axis);
   return axis;
 }

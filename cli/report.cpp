@@ -212,12 +212,31 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
         break;
       case Probe::Kind::force:
         section("Force: " + probe.name,
-                over_time(trace, dt, {{of + "force_x", "x"}, {of + "force_y", "y"}, {of + "force_z", "z"}},
-                          "force"));
+                over_time(
+                    trace, dt,
+                    {{of + "force", ""}, {of + "force_x", "x"}, {of + "force_y", "y"}, {of + "force_z", "z"}},
+                    "force"));
         break;
       case Probe::Kind::displacement:
         section("Displacement: " + probe.name,
-                over_time(trace, dt, {{of + "x", "x"}, {of + "y", "y"}, {of + "z", "z"}}, "displacement"));
+                over_time(trace, dt, {{of + "along", ""}, {of + "x", "x"}, {of + "y", "y"}, {of + "z", "z"}},
+                          "displacement"));
+        break;
+      case Probe::Kind::velocity:
+        section("Velocity: " + probe.name, over_time(trace, dt,
+                                                     {{of + "velocity", ""},
+                                                      {of + "velocity_x", "x"},
+                                                      {of + "velocity_y", "y"},
+                                                      {of + "velocity_z", "z"}},
+                                                     "velocity"));
+        break;
+      case Probe::Kind::kinetic_energy:
+        section("Kinetic energy: " + probe.name,
+                over_time(trace, dt, {{of + "kinetic_energy", ""}}, "kinetic energy"));
+        break;
+      case Probe::Kind::temperature:
+        section("Temperature: " + probe.name,
+                over_time(trace, dt, {{of + "temperature", ""}}, "temperature"));
         break;
     }
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "cli/command.h"
+#include "cli/outputs.h"
 #include "cli/stability_maps.h"
 #include "model/base/directory_lock.h"
 #include "model/base/error.h"
@@ -74,19 +75,8 @@ class Status {
   bool shown_ = false;
 };
 
-int longest_axis(const std::vector<Vec3>& x) {
-  Vec3 low = x[0], high = x[0];
-  for (const Vec3& one : x) low = low.cwiseMin(one), high = high.cwiseMax(one);
-  int axis = 0;
-  (high - low).maxCoeff(&axis);
-  return axis;
-}
-
 int axis_of(const Options& options, const Scene& scene) {
-  if (!options.axis.empty()) return options.axis[0] - 'x';
-  for (const Probe& probe : scene.probes)
-    if (probe.kind == Probe::Kind::stress_strain) return probe.axis;
-  return longest_axis(scene.body.x);
+  return options.axis.empty() ? strain_axis(scene) : options.axis[0] - 'x';
 }
 
 // Each line's scene, only where the scene has the thing.

@@ -42,8 +42,9 @@ struct Counters {
 // What probes and energies need of a state, read on the devices.
 struct Reading {
   uint64_t step = 0;
-  std::vector<Vec3> x, force;  // m, N (of the pairs), of the probed particles in the order of their ids
-  Energies energies;           // zero unless asked for
+  // Of the probed particles in the order of their ids: m; N, of the pairs; m/s, at the time of the positions.
+  std::vector<Vec3> x, force, v;
+  Energies energies;  // zero unless asked for
   // J, with the energies: the sum over pairs of F . d, of the force on j by i and d = x_j - x_i; positive
   // where they repel. Minus the trace of model/analysis/measure.h's virial_stress, times the volume.
   double virial = 0;
@@ -72,7 +73,7 @@ class Engine {
 
   // Of the particles given to `probe`, and the energies where `energies`.
   virtual Reading read(bool energies) = 0;
-  // Ids, ascending, whose x and force `read` gives from now on.
+  // Ids, ascending, whose x, force and v `read` gives from now on.
   virtual void probe(const std::vector<uint32_t>& ids) = 0;
 
   // Fixed: sorted by id. RunError of real engines, which have none.

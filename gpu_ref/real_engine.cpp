@@ -64,6 +64,7 @@ class RealEngine final : public Engine {
     for (const Found<Policy>& found : machine_->read_probed()) {
       reading.x.push_back(position(found.x, found.cell));
       reading.force.push_back(tables_.force * Vec3(found.kick.at[0], found.kick.at[1], found.kick.at[2]));
+      reading.v.push_back(tables_.velocity * Vec3(found.v[0], found.v[1], found.v[2]));
     }
     if (energies) {
       const Sums sums = machine_->read_energies();

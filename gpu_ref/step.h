@@ -334,6 +334,7 @@ struct Found {
   typename Policy::Position x;
   Three<uint32_t> residue;
   typename Policy::Sum kick;
+  double v[3];  // in the unit of velocities, at the time of the positions
   CellAt cell;
 };
 
@@ -353,8 +354,12 @@ struct ReadProbed {
     const uint32_t to = slot[id[i]];
     if (to == kNever) return;
     const auto x = load(at.x + i);
-    found[to] = {x, at.residue.load(i),
-                 kick_of<Policy, Variant>(view, cache, grid, at, list, i, x, load(at.v + i)), cell[i]};
+    const auto v = load(at.v + i);
+    const auto kick = kick_of<Policy, Variant>(view, cache, grid, at, list, i, x, v);
+    found[to] = {x, at.residue.load(i), kick, {}, cell[i]};
+    double gain[3];
+    Policy::gains(Variant::cached(view, cache), kick, v, at.u ? &at.u[i] : nullptr, type_in(x.last), gain);
+    for (int a = 0; a < 3; ++a) found[to].v[a] = static_cast<double>(v.at[a]) + gain[a] / 2;
     here[to] = 1;
   }
 };

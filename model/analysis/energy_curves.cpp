@@ -8,7 +8,7 @@ EnergyCurves::EnergyCurves(bool wanted, const Scene& scene)
   if (!wanted) return;
   for (const char* part : {"kinetic", "potential", "gravity", "total"})
     curves_.push_back({std::string("energy.") + part, "J", {}, {}});
-  if (thermometer_.wanted()) curves_.push_back({"temperature", "K", {}, {}});
+  if (thermometer_.wanted()) curves_.push_back({"temperature", thermometer_.unit(), {}, {}});
   if (volume_ > 0) curves_.push_back({"pressure", "Pa", {}, {}});
 }
 

@@ -19,7 +19,7 @@ class EnergyCurves {
   // `stress`, Pa: for the pressure alone.
   void add(uint64_t step, const Energies& energies, const Mat3& stress);
   // energy.kinetic, energy.potential, energy.gravity, energy.total in J; then, where the scene has them,
-  // temperature in K and pressure in Pa.
+  // temperature in K (reduced units: J) and pressure in Pa.
   const std::vector<Curve>& curves() const { return curves_; }
   // Curves that an earlier run of the same kind has given.
   void restore(std::vector<Curve> curves) { curves_ = std::move(curves); }

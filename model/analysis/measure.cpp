@@ -122,28 +122,36 @@ Vec3 force_of(const FixedRule& rule, const Int3& kick) {
          Vec3(static_cast<double>(kick[0]), static_cast<double>(kick[1]), static_cast<double>(kick[2]));
 }
 
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick) {
+  const FixedType& type = rule.types[particle.type];
+  const double unit = velocity_unit(rule);
+  Vec3 v;
+  for (int axis = 0; axis < 3; ++axis) {
+    // What the step adds to v, of any size: finish() wraps what its widths do not hold.
+    double gain = 0;
+    if (!type.imposed[axis]) gain = static_cast<double>(kick[axis] + type.gravity[axis]);
+    if (!type.imposed[axis] && type.pd)
+      gain -= std::ldexp(static_cast<double>(type.kp * particle.u[axis] +
+                                             type.kd * (particle.v[axis] - type.velocity[axis])),
+                         -rule.widths.gain_frac);
+    v[axis] = (static_cast<double>(particle.v[axis]) + gain / 2) * unit;
+  }
+  return v;
+}
+
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                   const State& state, const std::vector<Int3>& kicks, int threads, ClosestPair* closest) {
   Energies sum;
   const double length = std::ldexp(fixed.cell_edge, -fixed.widths.velocity_frac());
-  const double velocity = velocity_unit(fixed);
   for (size_t i = 0; i < state.particles.size(); ++i) {
     const Particle& particle = state.particles[i];
-    const FixedType& type = fixed.types[particle.type];
     const Vec3& gravity = rule.types[particle.type].gravity;
     const Cell& cell = lattice.cell(particle.cell);
+    const Vec3 velocity = velocity_of(fixed, particle, kicks[i]);
     for (int axis = 0; axis < 3; ++axis) {
-      // What the step adds to v, of any size: finish() wraps what its widths do not hold.
-      double gain = 0;
-      if (!type.imposed[axis]) gain = static_cast<double>(kicks[i][axis] + type.gravity[axis]);
-      if (!type.imposed[axis] && type.pd)
-        gain -= std::ldexp(static_cast<double>(type.kp * particle.u[axis] +
-                                               type.kd * (particle.v[axis] - type.velocity[axis])),
-                           -fixed.widths.gain_frac);
-      const double v = (static_cast<double>(particle.v[axis]) + gain / 2) * velocity;
       const double x =
           origin[axis] + cell[axis] * fixed.cell_edge + static_cast<double>(particle.x[axis]) * length;
-      const double kinetic = 0.5 * fixed.mass * v * v;
+      const double v = velocity[axis], kinetic = 0.5 * fixed.mass * v * v;
       sum.kinetic += kinetic;
       if (is_free(rule.types[particle.type], axis))
         sum.free.kinetic += kinetic, sum.free.velocities[axis] += v;
@@ -219,8 +227,11 @@ double largest_speed(const FixedRule& rule, const State& state) {
 
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
                  const std::vector<Int3>& kicks) {
-  Sample sample{state.step, to_real(state, rule, lattice, origin).x, {}};
-  for (const Int3& kick : kicks) sample.force.push_back(force_of(rule, kick));
+  Sample sample{state.step, to_real(state, rule, lattice, origin).x, {}, {}};
+  for (size_t i = 0; i < kicks.size(); ++i) {
+    sample.force.push_back(force_of(rule, kicks[i]));
+    sample.v.push_back(velocity_of(rule, state.particles[i], kicks[i]));
+  }
   return sample;
 }
 
@@ -250,56 +261,97 @@ ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodi
       latest_(initial),
       moved_(initial.size(), Vec3::Zero()) {
   for (const Probe& probe : probes_) {
-    const auto curve = [&](const char* quantity, const char* unit) {
+    const auto curve = [&](const std::string& quantity, const std::string& unit) {
       curves_.push_back({probe.name + "." + quantity, unit, {}, {}});
+    };
+    const auto curves = [&](const std::string& along, const std::string& of, const std::string& unit) {
+      if (!probe.axis.isZero(0)) return curve(along, unit);
+      for (const char axis : {'x', 'y', 'z'}) curve(of + axis, unit);
     };
     switch (probe.kind) {
       case Probe::Kind::force:
-        curve("force_x", "N"), curve("force_y", "N"), curve("force_z", "N");
+        curves("force", "force_", "N");
         break;
       case Probe::Kind::displacement:
-        curve("x", "m"), curve("y", "m"), curve("z", "m");
+        curves("along", "", "m");
         break;
       case Probe::Kind::stress_strain:
         curve("strain", "1"), curve("stress", "Pa");
         break;
+      case Probe::Kind::velocity:
+        curves("velocity", "velocity_", "m/s");
+        break;
+      case Probe::Kind::kinetic_energy:
+        curve("kinetic_energy", "J");
+        break;
+      case Probe::Kind::temperature:
+        curve("temperature", probe.unit);
+        break;
     }
   }
 }
+
+namespace {
+
+Vec3 sum_of(const std::vector<Vec3>& values, const std::vector<uint32_t>& at) {
+  Vec3 sum = Vec3::Zero();
+  for (const uint32_t k : at) sum += values[k];
+  return sum;
+}
+
+Vec3 mean_of(const std::vector<Vec3>& values, const std::vector<uint32_t>& at) {
+  return at.empty() ? Vec3(Vec3::Zero()) : Vec3(sum_of(values, at) / static_cast<double>(at.size()));
+}
+
+// Of the motion about `mean`.
+double squares(const std::vector<Vec3>& v, const std::vector<uint32_t>& at, const Vec3& mean) {
+  double sum = 0;
+  for (const uint32_t k : at) sum += (v[k] - mean).squaredNorm();
+  return sum;
+}
+
+}  // namespace
 
 void ProbeMeter::add(const Sample& sample) {
   for (size_t i = 0; i < moved_.size(); ++i) {
     moved_[i] += nearest_image(sample.x[i] - latest_[i], periodic_);
     latest_[i] = sample.x[i];
   }
-  const auto total_force = [&](const ParticleSet& set) {
-    Vec3 sum = Vec3::Zero();
-    for (const uint32_t id : set.ids) sum += sample.force[id];
-    return sum;
-  };
   size_t next = 0;
   const auto point = [&](double value) {
     curves_[next].step.push_back(sample.step);
     curves_[next++].value.push_back(value);
   };
+  const auto points = [&](const Vec3& value, const Vec3& axis) {
+    if (!axis.isZero(0))
+      point(value.dot(axis));
+    else
+      for (const double component : value) point(component);
+  };
   for (const Probe& probe : probes_) switch (probe.kind) {
-      case Probe::Kind::force: {
-        const Vec3 force = total_force(probe.set);
-        point(force.x()), point(force.y()), point(force.z());
+      case Probe::Kind::force:
+        points(sum_of(sample.force, probe.set.ids), probe.axis);
         break;
-      }
-      case Probe::Kind::displacement: {
-        const Vec3 moved = displacement(probe.set);
-        point(moved.x()), point(moved.y()), point(moved.z());
+      case Probe::Kind::displacement:
+        points(mean_of(moved_, probe.set.ids), probe.axis);
         break;
-      }
       case Probe::Kind::stress_strain: {
-        const double gauge = (position(probe.upper) - position(probe.lower))[probe.axis];
-        const double stretch = (displacement(probe.upper) - displacement(probe.lower))[probe.axis];
-        point(stretch / gauge);
-        point(-total_force(probe.grip)[probe.axis] / probe.area);
+        const auto growth = [&](const std::vector<Vec3>& of) {
+          return (mean_of(of, probe.upper.ids) - mean_of(of, probe.lower.ids)).dot(probe.axis);
+        };
+        point(growth(moved_) / growth(initial_));
+        point(-sum_of(sample.force, probe.grip.ids).dot(probe.axis) / probe.area);
         break;
       }
+      case Probe::Kind::velocity:
+        points(mean_of(sample.v, probe.set.ids), probe.axis);
+        break;
+      case Probe::Kind::kinetic_energy:
+        point(probe.scale * squares(sample.v, probe.set.ids, Vec3::Zero()));
+        break;
+      case Probe::Kind::temperature:
+        point(probe.scale * squares(sample.v, probe.set.ids, mean_of(sample.v, probe.set.ids)));
+        break;
     }
 }
 
@@ -307,18 +359,6 @@ void ProbeMeter::restore(Memory memory, std::vector<Curve> curves) {
   latest_ = std::move(memory.latest);
   moved_ = std::move(memory.moved);
   curves_ = std::move(curves);
-}
-
-Vec3 ProbeMeter::displacement(const ParticleSet& set) const {
-  Vec3 sum = Vec3::Zero();
-  for (const uint32_t id : set.ids) sum += moved_[id];
-  return set.ids.empty() ? sum : Vec3(sum / static_cast<double>(set.ids.size()));
-}
-
-Vec3 ProbeMeter::position(const ParticleSet& set) const {
-  Vec3 sum = Vec3::Zero();
-  for (const uint32_t id : set.ids) sum += initial_[id];
-  return set.ids.empty() ? sum : Vec3(sum / static_cast<double>(set.ids.size()));
 }
 
 }  // namespace cuboct

@@ -25,6 +25,9 @@ std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, co
 // Newtons per unit of a kick: a kick of one cell edge per step is cell_edge/dt in velocity, gained within dt.
 double newtons_per_kick(const FixedRule& rule);
 Vec3 force_of(const FixedRule& rule, const Int3& kick);  // N
+// m/s, at the time of the positions: v + dv/2 with all that the step adds to v, which lives half a step
+// earlier.
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick);
 
 // The particles along the axes that nothing imposes or steers, at the time of the positions.
 struct FreeMotion {
@@ -33,8 +36,7 @@ struct FreeMotion {
 };
 
 struct Energies {
-  double kinetic = 0;    // J, at the time of the positions: v + dv/2 with all that the step adds to v, which
-                         // lives half a step earlier
+  double kinetic = 0;    // J, at the time of the positions
   double potential = 0;  // J, of the pairs, by the pair law in doubles at the fixed positions
   double gravity = 0;    // J, -m g.x summed, from the origin of the scene's coordinates
   FreeMotion free = {};  // a part of `kinetic`
@@ -80,6 +82,7 @@ struct Sample {
   uint64_t step = 0;
   std::vector<Vec3> x;      // m; an axis with a period may be given in any image
   std::vector<Vec3> force;  // N, of the pairs
+  std::vector<Vec3> v;      // m/s, at the time of the positions
 };
 
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
@@ -91,10 +94,13 @@ std::vector<uint32_t> probed_ids(const std::vector<Probe>& probes);
 std::vector<Probe> placed(std::vector<Probe> probes, const std::vector<uint32_t>& ids);
 
 // Turns samples into the curves of a scene's probes:
-//   force          <name>.force_x, .force_y, .force_z   N
-//   displacement   <name>.x, .y, .z                     m
+//   force          <name>.force_x, .force_y, .force_z   N; with an axis <name>.force
+//   displacement   <name>.x, .y, .z                     m; with an axis <name>.along
 //   stress_strain  <name>.strain                        1
 //                  <name>.stress                        Pa, positive where the body pulls at the grip
+//   velocity       <name>.velocity_x, _y, _z            m/s; with an axis <name>.velocity
+//   kinetic_energy <name>.kinetic_energy                J
+//   temperature    <name>.temperature                   K, in reduced units J
 class ProbeMeter {
  public:
   // `initial`: positions at step 0, from which displacements and strains count.
@@ -115,9 +121,6 @@ class ProbeMeter {
   void restore(Memory memory, std::vector<Curve> curves);
 
  private:
-  Vec3 displacement(const ParticleSet& set) const;  // mean, m
-  Vec3 position(const ParticleSet& set) const;      // mean initial position, m
-
   std::vector<Probe> probes_;
   Periodic periodic_;
   std::vector<Vec3> initial_, latest_, moved_;

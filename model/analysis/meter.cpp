@@ -23,16 +23,20 @@ Meter::Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, c
               places_of(ids_, initial)),
       energy_(options.energies, scene) {
   if (options.probes)
-    for (const Probe& probe : scene.probes) forces_ |= probe.kind != Probe::Kind::displacement;
+    for (const Probe& probe : scene.probes) {
+      forces_ |= probe.kind == Probe::Kind::force || probe.kind == Probe::Kind::stress_strain;
+      velocities_ |= probe.kind >= Probe::Kind::velocity;
+    }
   if (options.energies && options.watch) watch_.emplace(scene, options.table_error, options.threads);
 }
 
 Asked Meter::asked(bool look) {
-  return {ids_, forces_, energy_.wanted(), energy_.volume(), look && watch_ ? &*watch_ : nullptr};
+  return {
+      ids_, forces_, velocities_, energy_.wanted(), energy_.volume(), look && watch_ ? &*watch_ : nullptr};
 }
 
 void Meter::add(const Reading& reading) {
-  if (!probes_.curves().empty()) probes_.add({reading.step, reading.x, reading.force});
+  if (!probes_.curves().empty()) probes_.add({reading.step, reading.x, reading.force, reading.v});
   energy_.add(reading.step, reading.energies, reading.stress);
 }
 

@@ -33,7 +33,7 @@ class Meter {
   void add(const Reading& reading);
 
   // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where
-  // the scene has them, temperature in K and pressure in Pa.
+  // the scene has them, temperature in K (reduced units: J) and pressure in Pa.
   std::vector<Curve> curves() const;
   // The last value of each curve, once there is one.
   std::vector<double> latest() const;
@@ -54,7 +54,7 @@ class Meter {
   std::vector<uint32_t> ids_;  // particles in any probe's set, ascending: the probes' ids index this list
   ProbeMeter probes_;
   EnergyCurves energy_;
-  bool forces_ = false;  // some probe needs them
+  bool forces_ = false, velocities_ = false;  // some probe needs them
   std::optional<Watch> watch_;
 };
 

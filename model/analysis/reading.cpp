@@ -10,10 +10,12 @@ Reading read_state(const Rule& rule, const FixedRule& fixed, const Lattice& latt
   Reading reading;
   reading.step = state.step;
   std::vector<Int3> kicks;
-  if (asked.forces || asked.energies) kicks = summed_kicks(fixed, lattice, state, threads);
+  if (asked.forces || asked.velocities || asked.energies)
+    kicks = summed_kicks(fixed, lattice, state, threads);
   for (const uint32_t id : asked.ids) {
     reading.x.push_back(position_of(fixed, lattice, origin, state.particles[id]));
     reading.force.push_back(force_of(fixed, kicks.empty() ? Int3{} : kicks[id]));
+    if (asked.velocities) reading.v.push_back(velocity_of(fixed, state.particles[id], kicks[id]));
   }
   if (!asked.energies) return reading;
   ClosestPair closest;
@@ -28,10 +30,11 @@ Reading read_reference(const Rule& rule, const Reference& reference, double late
   reading.step = reference.step_count();
   const Body& body = reference.body();
   std::vector<Vec3> force;
-  if (asked.forces || asked.energies) force = reference.forces();
+  if (asked.forces || asked.velocities || asked.energies) force = reference.forces();
   for (const uint32_t id : asked.ids) {
     reading.x.push_back(body.x[id]);
     reading.force.push_back(force.empty() ? Vec3(Vec3::Zero()) : force[id]);
+    if (asked.velocities) reading.v.push_back(body.v[id] + late * acceleration(rule, body, id, force[id]));
   }
   if (!asked.energies) return reading;
   Energies& e = reading.energies;

@@ -15,6 +15,7 @@ namespace cuboct {
 struct Asked {
   std::span<const uint32_t> ids;  // whose positions are wanted, ascending
   bool forces = false;            // of those particles
+  bool velocities = false;        // of those particles
   bool energies = false;
   double volume = 0;       // m^3: with energies, the virial stress over it; 0: none
   Watch* watch = nullptr;  // to be shown the state; of use with energies alone
@@ -22,7 +23,9 @@ struct Asked {
 
 struct Reading {
   uint64_t step = 0;
-  std::vector<Vec3> x, force;  // m; N of the pairs, zero where not asked for: in the order of the ids
+  // In the order of the ids: m; N of the pairs, zero where not asked for; m/s at the time of the positions,
+  // empty where not asked for.
+  std::vector<Vec3> x, force, v;
   Energies energies;
   Mat3 stress = Mat3::Zero();  // Pa, tension positive, without its kinetic part
 };

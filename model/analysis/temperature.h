@@ -12,18 +12,17 @@
 
 namespace cuboct {
 
-inline constexpr double kBoltzmann = 1.380649e-23;  // J/K, exact: the SI defines the kelvin by it
-
 class Thermometer {
  public:
   explicit Thermometer(const Scene& scene);
   // Whether the scene has a temperature: it is undamped, or draws thermal velocities, and particles are free.
   bool wanted() const { return wanted_; }
   double degrees() const { return degrees_; }
-  double temperature(const FreeMotion& motion) const;  // K; of a scene that has one
+  double temperature(const FreeMotion& motion) const;  // K, in reduced units J; of a scene that has one
+  const char* unit() const { return temperature_unit(boltzmann_); }
 
  private:
-  double mass_;
+  double mass_, boltzmann_;
   std::array<uint64_t, 3> free_{};  // particles that nothing drives along each axis
   double degrees_ = 0;
   bool wanted_ = false;

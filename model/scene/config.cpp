@@ -2,6 +2,7 @@
 #include "model/scene/config.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -106,6 +107,10 @@ ConfigNode convert(const toml::node& from, const std::string& key, const std::st
   return node;
 }
 
+double number_in(const ConfigNode& node) {
+  return node.kind == Kind::integer ? static_cast<double>(node.integer) : node.real;
+}
+
 const ConfigNode* field(const ConfigNode& table, const std::string& key) {
   const auto found = table.by_key.find(key);
   return found == table.by_key.end() ? nullptr : &table.items[found->second];
@@ -177,6 +182,7 @@ bool ConfigValue::is_table() const { return node_->kind == Kind::table; }
 bool ConfigValue::is_array() const { return node_->kind == Kind::array; }
 bool ConfigValue::is_number() const { return node_->kind == Kind::integer || node_->kind == Kind::real; }
 bool ConfigValue::is_string() const { return node_->kind == Kind::string; }
+bool ConfigValue::reduced() const { return file_->reduced; }
 const std::string& ConfigValue::key() const { return node_->key; }
 
 void ConfigValue::fail(const std::string& message, const std::string& hint) const {
@@ -187,6 +193,27 @@ void ConfigValue::fail(const std::string& message, const std::string& hint) cons
 
 void ConfigValue::wants(const std::string& what) const {
   fail(fmt::format("'{}' must be {}, not {}", node_->key, what, kind_name(node_->kind)));
+}
+
+// Shows the same value with a unit that fits, where it is likely to be meant in that unit.
+void ConfigValue::lacks_unit(const Quantity& quantity) const {
+  constexpr size_t kShown = 3;  // elements of a list
+  std::vector<double> values;
+  if (is_string())
+    values = parse_quantity(node_->text).values;
+  else if (is_array())
+    for (const ConfigNode& item : node_->items) values.push_back(number_in(item));
+  else
+    values = {number_in(*node_)};
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  std::string such = quantity.example;
+  if (values.size() <= kShown && largest < 1e4 && (largest == 0 || largest >= 1e-3)) {
+    const bool list = values.size() > 1;
+    such = fmt::format("{}{}{}{}", list ? "[" : "", fmt::join(values, ", "), list ? "]" : "",
+                       such.substr(such.find(' ')));
+  }
+  fail(fmt::format("'{}' needs a unit: {} such as \"{}\"", node_->key, quantity.name, such));
 }
 
 bool ConfigValue::boolean() const {
@@ -240,7 +267,7 @@ double ConfigValue::plain(const Quantity& quantity, const Range& range) const {
       fail(fmt::format("'{}' must be a plain number, as units = \"reduced\"", node_->key));
     wants("a number");
   }
-  const double value = node_->kind == Kind::integer ? static_cast<double>(node_->integer) : node_->real;
+  const double value = number_in(*node_);
   check(value, range);
   return value;
 }
@@ -257,17 +284,22 @@ double ConfigValue::number(const Quantity& quantity, const Range& range) const {
 
 std::vector<double> ConfigValue::numbers(const Quantity& quantity, const Range& range) const {
   std::vector<double> values;
+  const bool plain = file_->reduced || quantity.dimension == Dimension{};
   if (is_array()) {
+    const auto is_plain = [](const ConfigNode& item) {
+      return item.kind == Kind::integer || item.kind == Kind::real;
+    };
+    if (!plain && !node_->items.empty() && std::ranges::all_of(node_->items, is_plain)) lacks_unit(quantity);
     for (const ConfigValue& item : items()) values.push_back(item.number(quantity, range));
     return values;
   }
-  if (file_->reduced || quantity.dimension == Dimension{}) wants("an array of numbers");
+  if (plain) wants("an array of numbers");
   const std::string such = fmt::format("{} such as \"{}\"", quantity.name, quantity.example);
-  if (is_number()) fail(fmt::format("'{}' needs a unit: {}", node_->key, such));
+  if (is_number()) lacks_unit(quantity);
   if (!is_string()) wants(such);
   try {
     const ParsedQuantity parsed = parse_quantity(node_->text);
-    if (parsed.dimension == Dimension{}) fail(fmt::format("'{}' needs a unit: {}", node_->key, such));
+    if (parsed.dimension == Dimension{}) lacks_unit(quantity);
     if (parsed.dimension != quantity.dimension)
       fail(fmt::format("'{}' must be {}, but \"{}\" is {}", node_->key, such, node_->text,
                        describe(parsed.dimension)));
@@ -288,6 +320,23 @@ Vec3 ConfigValue::vector(const Quantity& quantity) const {
                : fmt::format("for instance \"[0, 0, 1]{}\"", example.substr(example.find(' '))));
   }
   return {values[0], values[1], values[2]};
+}
+
+Vec3 ConfigValue::direction() const {
+  Vec3 v = Vec3::Zero();
+  if (is_array()) {
+    v = vector(quantity::number);
+    if (v.isZero(0)) fail(fmt::format("'{}' must not be zero", node_->key));
+    return v;
+  }
+  if (!is_string()) wants("a direction such as \"z\", \"-x\" or [1, 1, 0]");
+  const std::string& text = node_->text;
+  const bool sign = text.starts_with('-') || text.starts_with('+');
+  const char axis = text.empty() ? '\0' : text.back();
+  if (text.size() != (sign ? 2 : 1) || axis < 'x' || axis > 'z')
+    fail(fmt::format("unknown direction '{}'", text), "such as \"z\", \"-x\" or three numbers: [1, 1, 0]");
+  v[axis - 'x'] = text[0] == '-' ? -1 : 1;
+  return v;
 }
 
 std::vector<ConfigValue> ConfigValue::items() const {

@@ -53,6 +53,7 @@ class ConfigValue {
   bool is_array() const;
   bool is_number() const;
   bool is_string() const;
+  bool reduced() const;            // the file's quantities are plain numbers
   const std::string& key() const;  // the last key on the way here; of an array's element: the array's
 
   bool boolean() const;
@@ -66,6 +67,8 @@ class ConfigValue {
   // Several: "[0, 1, 2.5] mm", or an array whose elements are single ones.
   std::vector<double> numbers(const Quantity& quantity, const Range& range = Range::any()) const;
   Vec3 vector(const Quantity& quantity) const;
+  // "x", "-y", "+z" of the scene, or three plain numbers that are not all 0: of any length.
+  Vec3 direction() const;
 
   std::vector<ConfigValue> items() const;  // of an array
   ConfigTable table() const;
@@ -77,6 +80,7 @@ class ConfigValue {
   double plain(const Quantity& quantity, const Range& range) const;
   void check(double value, const Range& range) const;
   [[noreturn]] void wants(const std::string& what) const;
+  [[noreturn]] void lacks_unit(const Quantity& quantity) const;
 
   std::shared_ptr<const ConfigFile> file_;
   const ConfigNode* node_;

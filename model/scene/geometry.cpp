@@ -90,7 +90,7 @@ struct Extrusion final : Shape {
   std::vector<double> px, py;
   double half;
   Extrusion(std::vector<double> x, std::vector<double> y, double t)
-      : px(std::move(x)), py(std::move(y)), half(t / 2) {}
+      : Shape(x.size()), px(std::move(x)), py(std::move(y)), half(t / 2) {}
 
   // Least distance to an edge; the sign by the parity of crossings of a ray along +x.
   double in_plane(double x, double y) const {
@@ -108,7 +108,6 @@ struct Extrusion final : Shape {
   double distance(const Vec3& x) const override {
     return corner_distance<Eigen::Vector2d>({in_plane(x[0], x[1]), std::abs(x[2]) - half});
   }
-  size_t parts() const override { return px.size(); }
   Bounds bounds() const override {
     return {{std::ranges::min(px), std::ranges::min(py), -half},
             {std::ranges::max(px), std::ranges::max(py), half}};
@@ -122,17 +121,16 @@ size_t parts_of(const std::vector<ShapePtr>& shapes) {
 }
 
 struct Union final : Shape {
-  std::vector<ShapePtr> parts_;
-  explicit Union(std::vector<ShapePtr> p) : parts_(std::move(p)) {}
+  std::vector<ShapePtr> members;
+  explicit Union(std::vector<ShapePtr> p) : Shape(parts_of(p)), members(std::move(p)) {}
   double distance(const Vec3& x) const override {
     double least = kInfinity;
-    for (const auto& part : parts_) least = std::min(least, part->distance(x));
+    for (const auto& part : members) least = std::min(least, part->distance(x));
     return least;
   }
-  size_t parts() const override { return parts_of(parts_); }
   Bounds bounds() const override {
     Bounds b{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
-    for (const auto& part : parts_) {
+    for (const auto& part : members) {
       const Bounds p = part->bounds();
       b.low = b.low.cwiseMin(p.low);
       b.high = b.high.cwiseMax(p.high);
@@ -142,17 +140,16 @@ struct Union final : Shape {
 };
 
 struct Intersection final : Shape {
-  std::vector<ShapePtr> parts_;
-  explicit Intersection(std::vector<ShapePtr> p) : parts_(std::move(p)) {}
+  std::vector<ShapePtr> members;
+  explicit Intersection(std::vector<ShapePtr> p) : Shape(parts_of(p)), members(std::move(p)) {}
   double distance(const Vec3& x) const override {
     double most = -kInfinity;
-    for (const auto& part : parts_) most = std::max(most, part->distance(x));
+    for (const auto& part : members) most = std::max(most, part->distance(x));
     return most;
   }
-  size_t parts() const override { return parts_of(parts_); }
   Bounds bounds() const override {
     Bounds b;
-    for (const auto& part : parts_) {
+    for (const auto& part : members) {
       const Bounds p = part->bounds();
       b.low = b.low.cwiseMax(p.low);
       b.high = b.high.cwiseMin(p.high);
@@ -163,9 +160,8 @@ struct Intersection final : Shape {
 
 struct Complement final : Shape {
   ShapePtr shape;
-  explicit Complement(ShapePtr s) : shape(std::move(s)) {}
+  explicit Complement(ShapePtr s) : Shape(s->parts()), shape(std::move(s)) {}
   double distance(const Vec3& x) const override { return -shape->distance(x); }
-  size_t parts() const override { return shape->parts(); }
   Bounds bounds() const override { return {}; }
 };
 
@@ -175,11 +171,10 @@ struct Transformed final : Shape {
   Mat3 rotation;
   Vec3 translation;
   Transformed(ShapePtr s, double k, const Mat3& r, const Vec3& t)
-      : shape(std::move(s)), scale(k), rotation(r), translation(t) {}
+      : Shape(s->parts()), shape(std::move(s)), scale(k), rotation(r), translation(t) {}
   double distance(const Vec3& x) const override {
     return scale * shape->distance(rotation.transpose() * (x - translation) / scale);
   }
-  size_t parts() const override { return shape->parts(); }
   // Interval arithmetic: each output axis is a sum of scaled input intervals; 0 * infinity counts 0.
   Bounds bounds() const override {
     const Bounds inner = shape->bounds();

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "model/base/vec.h"
-#include "model/scene/config.h"
 
 namespace cuboct {
 
@@ -27,7 +26,13 @@ class Shape {
   // Holds the solid; need not be the smallest such box.
   virtual Bounds bounds() const = 0;
   // Primitives and edges that one distance looks at.
-  virtual size_t parts() const { return 1; }
+  size_t parts() const { return parts_; }
+
+ protected:
+  explicit Shape(size_t parts = 1) : parts_(parts) {}
+
+ private:
+  size_t parts_;
 };
 
 using ShapePtr = std::shared_ptr<const Shape>;
@@ -62,8 +67,5 @@ ShapePtr intersect(std::vector<ShapePtr> parts);
 ShapePtr subtract(ShapePtr from, std::vector<ShapePtr> parts);
 // x -> rotation * (scale * x) + translation; rotation is orthonormal, scale > 0.
 ShapePtr transform(ShapePtr shape, double scale, const Mat3& rotation, const Vec3& translation);
-
-// Reads { shape = "...", ... }; docs/user/scene.md lists shapes and keys. Throws InputError.
-ShapePtr read_shape(const ConfigTable& table);
 
 }  // namespace cuboct

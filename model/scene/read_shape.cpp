@@ -2,29 +2,19 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <functional>
 #include <utility>
 
-#include "model/base/spelling.h"
-#include "model/scene/geometry.h"
+#include "model/scene/regions.h"
 
 namespace cuboct {
 namespace {
 
-Vec3 direction(const ConfigValue& value) {
-  if (value.is_string()) {
-    const size_t axis = value.choice("axis", {"x", "y", "z"});
-    return Vec3::Unit(static_cast<Eigen::Index>(axis));
-  }
-  const Vec3 v = value.vector(quantity::number);
-  if (v.norm() == 0) value.fail(fmt::format("'{}' must not be zero", value.key()));
-  return v;
-}
-
-std::vector<ShapePtr> read_parts(const ConfigTable& table, const std::string& key, size_t least) {
+std::vector<ShapePtr> read_parts(const ConfigTable& table, const std::string& key, const Regions& regions) {
   std::vector<ShapePtr> parts;
-  for (const ConfigValue& item : table.at(key).items()) parts.push_back(read_shape(item.table()));
-  if (parts.size() < least) table.at(key).fail(fmt::format("'{}' needs at least {} shapes", key, least));
+  for (const ConfigValue& item : table.at(key).items()) parts.push_back(read_shape(item, regions));
+  if (parts.empty()) table.at(key).fail(fmt::format("'{}' needs at least one shape", key));
   return parts;
 }
 
@@ -59,7 +49,7 @@ ShapePtr read_box(const ConfigTable& t) {
 ShapePtr read_cylinder(const ConfigTable& t) {
   const auto axis = t.find("axis");
   return cylinder(t.vector_or("centre", quantity::length, Vec3::Zero()),
-                  axis ? direction(*axis) : Vec3(Vec3::UnitZ()),
+                  axis ? axis->direction() : Vec3(Vec3::UnitZ()),
                   t.number("radius", quantity::length, Range::positive()),
                   t.number("length", quantity::length, Range::positive()));
 }
@@ -70,7 +60,7 @@ ShapePtr read_capsule(const ConfigTable& t) {
 }
 
 ShapePtr read_half_space(const ConfigTable& t) {
-  return half_space(t.vector_or("point", quantity::length, Vec3::Zero()), direction(t.at("normal")));
+  return half_space(t.vector_or("point", quantity::length, Vec3::Zero()), t.at("normal").direction());
 }
 
 ShapePtr read_extrude(const ConfigTable& t) {
@@ -106,9 +96,9 @@ ShapePtr read_dog_bone(const ConfigTable& t) {
   return dog_bone(bone);
 }
 
-ShapePtr read_difference(const ConfigTable& t) {
-  ShapePtr from = read_shape(t.at("from").table());
-  return subtract(std::move(from), read_parts(t, "minus", 1));
+ShapePtr read_difference(const ConfigTable& t, const Regions& regions) {
+  ShapePtr from = read_shape(t.at("from"), regions);
+  return subtract(std::move(from), read_parts(t, "minus", regions));
 }
 
 ShapePtr read_placement(const ConfigTable& t, ShapePtr shape) {
@@ -116,17 +106,14 @@ ShapePtr read_placement(const ConfigTable& t, ShapePtr shape) {
   const double scale = t.number_or("scale", quantity::number, 1, Range::positive());
   Mat3 rotation = Mat3::Identity();
   if (const auto rotate = t.table_at("rotate")) {
-    const Vec3 axis = direction(rotate->at("axis")).normalized();
+    const Vec3 axis = rotate->at("axis").direction().normalized();
     rotation = Eigen::AngleAxisd(rotate->number("angle", quantity::angle), axis).toRotationMatrix();
   }
   return transform(std::move(shape), scale, rotation,
                    t.vector_or("translate", quantity::length, Vec3::Zero()));
 }
 
-}  // namespace
-
-ShapePtr read_shape(const ConfigTable& table) {
-  table.record_as("shape");
+ShapePtr read_kind(const ConfigTable& table, const Regions& regions) {
   using Reader = std::function<ShapePtr(const ConfigTable&)>;
   const std::vector<std::pair<std::string, Reader>> readers = {
       {"sphere", read_sphere},
@@ -136,15 +123,30 @@ ShapePtr read_shape(const ConfigTable& table) {
       {"half_space", read_half_space},
       {"extrude", read_extrude},
       {"astm_d638", read_dog_bone},
-      {"union", [](const ConfigTable& t) { return unite(read_parts(t, "of", 1)); }},
-      {"intersection", [](const ConfigTable& t) { return intersect(read_parts(t, "of", 1)); }},
-      {"difference", read_difference},
+      {"union", [&](const ConfigTable& t) { return unite(read_parts(t, "of", regions)); }},
+      {"intersection", [&](const ConfigTable& t) { return intersect(read_parts(t, "of", regions)); }},
+      {"difference", [&](const ConfigTable& t) { return read_difference(t, regions); }},
   };
   std::vector<std::string> names;
   for (const auto& [name, reader] : readers) names.push_back(name);
-  const size_t kind = table.at("shape").choice("shape", names);
-  ShapePtr shape = readers[kind].second(table);
-  shape = read_placement(table, std::move(shape));
+  const ConfigValue kind = table.at("shape");
+  const std::string name = kind.string();
+  if (regions.has(name) && std::ranges::find(names, name) == names.end())
+    kind.fail(fmt::format("unknown shape '{}'", name), fmt::format("of the region: region = \"{}\"", name));
+  return readers[kind.choice("shape", names)].second(table);
+}
+
+}  // namespace
+
+ShapePtr read_shape(const ConfigValue& value, const Regions& regions) {
+  if (value.is_string()) return regions.named(value);
+  if (!value.is_table())
+    value.fail(fmt::format("'{}' must be the name of a region, or a shape", value.key()));
+  const ConfigTable table = value.table();
+  table.record_as("shape");
+  table.not_both("shape", "region");
+  const auto region = table.find("region");
+  ShapePtr shape = read_placement(table, region ? regions.named(*region) : read_kind(table, regions));
   table.done();
   return shape;
 }

@@ -210,6 +210,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path) {
   scene.path = path;
   scene.places = root.places();
   scene.title = root.string_or("title", "");
+  if (root.reduced()) scene.boltzmann = 1;
   auto packing = read_packing(root);
   PackingChoice* choice = packing ? &*packing : nullptr;
   scene.rule.law = read_law(root, choice);
@@ -229,6 +230,20 @@ Scene scene_of(const ConfigTable& root, const std::string& path) {
 }
 
 }  // namespace
+
+std::array<bool, 3> live_axes(const Scene& scene) {
+  const Body& body = scene.body;
+  const double same = 1e-9 * scene.rule.law->cutoff();
+  const ParticleType& first = scene.rule.types[body.type[0]];
+  std::array<bool, 3> live{};
+  for (size_t i = 0; i < body.size() && live != std::array{true, true, true}; ++i) {
+    const ParticleType& type = scene.rule.types[body.type[i]];
+    for (int a = 0; a < 3; ++a)
+      live[a] = live[a] || std::abs(body.x[i][a] - body.x[0][a]) > same || body.v[i][a] != body.v[0][a] ||
+                type.gravity[a] != first.gravity[a] || type.velocity[a] != first.velocity[a];
+  }
+  return live;
+}
 
 Scene read_scene(const std::string& path) { return parse_scene(read_config_text(path), path); }
 

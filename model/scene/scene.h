@@ -13,6 +13,11 @@
 
 namespace cuboct {
 
+inline constexpr double kBoltzmann = 1.380649e-23;  // J/K, exact: the SI defines the kelvin by it
+
+// Of temperatures: in reduced units k_B is 1, and they are energies.
+inline const char* temperature_unit(double boltzmann) { return boltzmann == 1 ? "J" : "K"; }
+
 // A named set of particles (by id, ascending): those whose initial position lies in the probe's region.
 struct ParticleSet {
   std::string name;
@@ -22,18 +27,25 @@ struct ParticleSet {
 // What to measure every `probe_every` steps. Curves are named "<probe>.<quantity>".
 struct Probe {
   enum class Kind : uint8_t {
-    force,          // total pair force on a set, N: force_x, force_y, force_z
-    displacement,   // mean displacement of a set from its initial mean position, m: x, y, z
-    stress_strain,  // two sets and an axis: strain = change of the distance between their means over its
-                    // initial value; stress = pull on `grip` along the axis over `area`, Pa
+    force,           // total pair force on a set, N: force_x, force_y, force_z; or force, along an axis
+    displacement,    // mean displacement of a set from its initial mean position, m: x, y, z; or along
+    stress_strain,   // two sets and an axis: strain = change of the distance between their means along it
+                     // over its initial value; stress = pull on `grip` along the axis over `area`, Pa
+    velocity,        // mean of a set, m/s: velocity_x, velocity_y, velocity_z; or velocity, along an axis
+    kinetic_energy,  // of a set, J
+    temperature,     // of the motion of a set about its mean velocity
   };
   Kind kind = Kind::force;
   std::string name;
-  ParticleSet set;           // force, displacement
+  ParticleSet set;           // all but stress_strain; of a temperature those that nothing holds or leads
   ParticleSet lower, upper;  // stress_strain: gauge marks
   ParticleSet grip;          // stress_strain: whose force counts, on the side of `upper`
-  int axis = 0;
-  double area = 0;  // m^2
+  Vec3 axis = Vec3::Zero();  // unit length; 0: forces, displacements and velocities give three components
+  double area = 0;           // m^2
+  // kinetic_energy: over the sum of v^2. temperature: over the sum of (v - mean)^2, m/(g k_B) with g degrees
+  // of freedom.
+  double scale = 0;
+  std::string unit;  // of temperature: K, in reduced units J
 };
 
 struct Scene {
@@ -46,6 +58,7 @@ struct Scene {
   double pitch = 0;  // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
   Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates
   bool thermal = false;                 // some velocities are drawn
+  double boltzmann = kBoltzmann;        // J/K; 1 in reduced units
   double density = 0;                   // kg/m^3, 0 if the mass was given
   double dt_limit = 0;      // s, largest stable dt: of the perfect packing, and of the vibrations of
                             // particles that are listed (docs/user/scene.md, [run]); 0 if unknown
@@ -65,6 +78,10 @@ struct Scene {
   uint64_t frame_every = 0;  // 0: first and last only
   Places places;             // of the file's keys
 };
+
+// Axes along which particles can come to differ in their motion. Of a flat sheet and of a straight chain none
+// can along some: pairs then have no force along it.
+std::array<bool, 3> live_axes(const Scene& scene);
 
 // Throws InputError with file:line:column.
 Scene read_scene(const std::string& path);

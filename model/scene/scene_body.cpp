@@ -27,7 +27,7 @@ double tolerance_of(const Scene& scene) {
   return kTolerance * (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff());
 }
 
-void check_size(const ConfigTable& geometry, const Bounds& bounds, double pitch) {
+void check_size(const ConfigValue& geometry, const Bounds& bounds, double pitch) {
   for (int a = 0; a < 3; ++a) {
     const double size = bounds.high[a] - bounds.low[a];
     const char axis = "xyz"[a];
@@ -66,18 +66,19 @@ void check_packing(const ConfigValue& at, const Fcc& fcc, const Shape* shape, co
             hint(size.sites / most));
 }
 
-void pack_geometry(const ConfigTable& root, const PackingChoice& packing, Scene& scene) {
+void pack_geometry(const ConfigTable& root, const Regions& regions, const PackingChoice& packing,
+                   Scene& scene) {
   const auto [boxed, periodic] = read_box(root, &packing);
   for (size_t a = 0; a < 3; ++a)
     if (periodic[a]) scene.periodic.extent[a] = boxed.extent[a];
   scene.periodic.origin = boxed.origin;
-  const auto geometry = root.table_at("geometry");
+  const auto geometry = root.find("geometry");
   const bool whole_box = (boxed.extent.array() > 0).all();
   if (!geometry && !whole_box)
     root.at("packing").fail("nothing says what to pack", "add [geometry], or [box] with 'cells'");
   ShapePtr shape;
   if (geometry) {
-    shape = read_shape(*geometry);
+    shape = read_shape(*geometry, regions);
     Bounds bounds = shape->bounds();
     for (int a = 0; a < 3; ++a) {
       if (boxed.extent[a] == 0) continue;
@@ -86,7 +87,7 @@ void pack_geometry(const ConfigTable& root, const PackingChoice& packing, Scene&
     }
     check_size(*geometry, bounds, scene.pitch);
   }
-  const ConfigValue box = geometry ? ConfigValue(*geometry) : root.at("box");
+  const ConfigValue box = geometry ? *geometry : root.at("box");
   check_packing(box, packing.fcc, shape.get(), boxed, !geometry && root.at("box").table().has("cells"));
   scene.body.x = pack(packing.fcc, shape.get(), boxed);
   if (scene.body.x.empty()) box.fail("no particle: no site of the packing lies inside");
@@ -226,6 +227,21 @@ ParticleType read_constraint(const ConfigTable& table, const Rule& rule, double 
   return type;
 }
 
+// Standard deviation of each component, m/s: sqrt(kT/m).
+std::optional<double> thermal_speed(const ConfigTable& table, const Scene& scene) {
+  const char* keys[] = {"thermal_speed", "thermal_energy", "temperature"};
+  table.not_both(keys[0], keys[1]);
+  table.not_both(keys[0], keys[2]);
+  table.not_both(keys[1], keys[2]);
+  const auto not_negative = [&](int key, const Quantity& quantity) {
+    return table.number(keys[key], quantity, Range::not_negative());
+  };
+  if (table.has(keys[0])) return not_negative(0, quantity::velocity);
+  if (table.has(keys[1])) return std::sqrt(not_negative(1, quantity::energy) / scene.rule.mass);
+  if (!table.has(keys[2])) return std::nullopt;
+  return std::sqrt(scene.boltzmann * not_negative(2, quantity::temperature) / scene.rule.mass);
+}
+
 void read_velocities(const ConfigTable& root, const Regions& regions, Scene& scene) {
   Body& body = scene.body;
   for (const ConfigTable& table : root.tables("velocity")) {
@@ -242,52 +258,15 @@ void read_velocities(const ConfigTable& root, const Regions& regions, Scene& sce
     for (uint32_t id : ids) centre += body.x[id];
     centre /= static_cast<double>(ids.size());
     for (uint32_t id : ids) body.v[id] += uniform + spin.cross(body.x[id] - centre);
-    table.not_both("thermal_speed", "thermal_energy");
-    double speed = table.number_or("thermal_speed", quantity::velocity, 0, Range::not_negative());
-    if (table.has("thermal_energy"))
-      speed = std::sqrt(table.number("thermal_energy", quantity::energy, Range::not_negative()) /
-                        scene.rule.mass);
-    if (table.has("thermal_speed") || table.has("thermal_energy")) {
-      scene.thermal |= speed > 0;
-      add_thermal(body.v, ids, speed, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)));
+    if (const auto speed = thermal_speed(table, scene)) {
+      scene.thermal |= *speed > 0;
+      add_thermal(body.v, ids, *speed, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)));
     }
     table.done();
   }
 }
 
 }  // namespace
-
-Regions::Regions(const ConfigTable& root) {
-  const auto table = root.table_at("regions");
-  if (!table) return;
-  for (const std::string& name : table->names()) {
-    names_.push_back(name);
-    shapes_.push_back(read_shape(table->at(name).table()));
-  }
-}
-
-ShapePtr Regions::read(const ConfigValue& value) const {
-  if (value.is_string()) return shapes_[value.choice("region", names_)];
-  if (!value.is_table())
-    value.fail(fmt::format("'{}' must be the name of a region, or a shape", value.key()));
-  return read_shape(value.table());
-}
-
-std::vector<uint32_t> Regions::select(const ConfigValue& value, const std::vector<Vec3>& x,
-                                      double tolerance) const {
-  const ShapePtr shape = read(value);
-  constexpr double kMostTests = 4e10;  // of one scene: some minutes
-  tests_ += static_cast<double>(x.size()) * static_cast<double>(shape->parts());
-  if (tests_ > kMostTests)
-    value.fail(
-        fmt::format("{:.3g} tests of particles against regions: at most {:.3g} are made", tests_, kMostTests),
-        "fewer regions, or shapes of fewer points");
-  std::vector<uint32_t> ids;
-  for (uint32_t id = 0; id < x.size(); ++id)
-    if (shape->distance(x[id]) <= tolerance) ids.push_back(id);
-  if (ids.empty()) value.fail("no particle lies in this region");
-  return ids;
-}
 
 std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const PackingChoice* packing) {
   Periodic box;
@@ -326,7 +305,7 @@ void read_body(const ConfigTable& root, const Regions& regions, const PackingCho
   read_strengths(root, materials, names, scene.rule);
 
   if (packing != nullptr)
-    pack_geometry(root, *packing, scene);
+    pack_geometry(root, regions, *packing, scene);
   else
     read_single_box(root, scene);
   const std::vector<int> named = read_particles(root, names, scene);

@@ -100,8 +100,9 @@ std::shared_ptr<const PairLaw> read_preset(const ConfigTable& law, const std::st
   law.not_both("stiffness", "youngs_modulus");
   double stiffness = 0;
   if (law.has("youngs_modulus")) {
-    const Vec3 direction = law.at("direction").vector(quantity::number);
-    if (direction.norm() == 0) law.at("direction").fail("'direction' must not be zero");
+    const ConfigValue along = law.at("direction");
+    Vec3 direction = along.direction();
+    if (along.is_string()) direction = packing->fcc.orientation.transpose() * direction;
     stiffness = stiffness_from_modulus(positive(law, "youngs_modulus", quantity::pressure), direction, pitch);
   } else {
     stiffness = positive(law, "stiffness", quantity::stiffness);

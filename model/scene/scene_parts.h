@@ -11,25 +11,11 @@
 #include <vector>
 
 #include "model/scene/config.h"
-#include "model/scene/geometry.h"
 #include "model/scene/packing.h"
+#include "model/scene/regions.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {
-
-// Named regions of [regions], and `region = ...` values: a name or a shape.
-class Regions {
- public:
-  explicit Regions(const ConfigTable& root);
-  ShapePtr read(const ConfigValue& value) const;
-  // The particles whose initial position lies in the region (surface included); none is an error.
-  std::vector<uint32_t> select(const ConfigValue& value, const std::vector<Vec3>& x, double tolerance) const;
-
- private:
-  std::vector<std::string> names_;
-  std::vector<ShapePtr> shapes_;
-  mutable double tests_ = 0;  // of particles, by select()
-};
 
 // [packing]. Absent where all particles are listed.
 struct PackingChoice {

@@ -2,16 +2,36 @@
 // The [[probe]] tables of a scene.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "model/scene/name.h"
 #include "model/scene/scene_parts.h"
 
 namespace cuboct {
 namespace {
 
-double mean_along(const ParticleSet& set, const std::vector<Vec3>& x, int axis) {
+double mean_along(const ParticleSet& set, const std::vector<Vec3>& x, const Vec3& axis) {
   double sum = 0;
-  for (uint32_t id : set.ids) sum += x[id][axis];
+  for (uint32_t id : set.ids) sum += x[id].dot(axis);
   return sum / static_cast<double>(set.ids.size());
+}
+
+// T = m sum (v - mean)^2/(g k_B), with g = d (N - 1) degrees of freedom along the d axes that live: the mean
+// takes one each.
+void read_temperature(const ConfigTable& table, const Scene& scene, Probe& probe) {
+  const std::array<bool, 3> live = live_axes(scene);
+  std::erase_if(probe.set.ids, [&](uint32_t id) {
+    const ParticleType& type = scene.rule.types[scene.body.type[id]];
+    for (int a = 0; a < 3; ++a)
+      if (live[a] && !is_free(type, a)) return true;
+    return false;
+  });
+  const auto degrees =
+      static_cast<double>(std::ranges::count(live, true)) * (static_cast<double>(probe.set.ids.size()) - 1);
+  if (!(degrees > 0))
+    table.at("region").fail("a temperature needs two particles that no constraint holds or moves");
+  probe.scale = scene.rule.mass / (degrees * scene.boltzmann);
+  probe.unit = temperature_unit(scene.boltzmann);
 }
 
 }  // namespace
@@ -20,7 +40,8 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
   const double tolerance = 1e-6 * (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff());
   for (const ConfigTable& table : root.tables("probe")) {
     Probe probe;
-    const std::vector<std::string> kinds = {"force", "displacement", "stress_strain"};
+    const std::vector<std::string> kinds = {"force",    "displacement",   "stress_strain",
+                                            "velocity", "kinetic_energy", "temperature"};
     probe.kind = static_cast<Probe::Kind>(table.at("kind").choice("probe", kinds));
     probe.name = read_name(table.at("name"));
     for (const Probe& other : scene.probes)
@@ -29,17 +50,21 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
     const auto set = [&](const char* key, const std::string& name) {
       return ParticleSet{name, regions.select(table.at(key), scene.body.x, tolerance)};
     };
-    if (probe.kind == Probe::Kind::stress_strain) {
+    const bool tension = probe.kind == Probe::Kind::stress_strain;
+    const bool scalar = probe.kind >= Probe::Kind::kinetic_energy;
+    if (tension || (!scalar && table.has("axis"))) probe.axis = table.at("axis").direction().normalized();
+    if (tension) {
       probe.lower = set("lower", probe.name + ".lower");
       probe.upper = set("upper", probe.name + ".upper");
       probe.grip = set("grip", probe.name + ".grip");
-      probe.axis = static_cast<int>(table.at("axis").choice("axis", {"x", "y", "z"}));
       probe.area = table.number("area", quantity::area, Range::positive());
       if (!(mean_along(probe.lower, scene.body.x, probe.axis) <
             mean_along(probe.upper, scene.body.x, probe.axis)))
-        table.at("upper").fail(fmt::format("'upper' must lie above 'lower' along {}", "xyz"[probe.axis]));
+        table.at("upper").fail("'upper' must lie further along 'axis' than 'lower'");
     } else {
       probe.set = set("region", probe.name);
+      probe.scale = scene.rule.mass / 2;
+      if (probe.kind == Probe::Kind::temperature) read_temperature(table, scene, probe);
     }
     table.done();
     scene.probes.push_back(std::move(probe));

@@ -32,6 +32,8 @@ constexpr NamedUnit kUnits[] = {
     {"W", 0, 1, {{1, 2, -3, 0}}},
     {"Hz", 0, 1, {{0, 0, -1, 0}}},
     {"eV", -19, 1.602176634, {{1, 2, -2, 0}}},  // exact since 2019
+    {"u", -27, 1.66053906660, {{1, 0, 0, 0}}},  // CODATA 2018
+    {"K", 0, 1, {{0, 0, 0, 0, 1}}},
     {"angstrom", -10, 1, {{0, 1, 0, 0}}},
     {"min", 0, 60, {{0, 0, 1, 0}}},
     {"rad", 0, 1, {{0, 0, 0, 1}}},
@@ -238,11 +240,12 @@ std::string describe(const Dimension& dimension) {
   for (const Quantity& known :
        {quantity::number, quantity::length, quantity::area, quantity::mass, quantity::time,
         quantity::velocity, quantity::acceleration, quantity::density, quantity::force, quantity::stiffness,
-        quantity::pressure, quantity::energy, quantity::damping, quantity::angle, quantity::angular_velocity})
+        quantity::pressure, quantity::energy, quantity::damping, quantity::angle, quantity::angular_velocity,
+        quantity::temperature})
     if (known.dimension == dimension) return known.name;
-  const char* base[] = {"kg", "m", "s", "rad"};
+  const char* base[] = {"kg", "m", "s", "rad", "K"};
   std::string above, below;
-  for (size_t i = 0; i < 4; ++i) {
+  for (size_t i = 0; i < std::size(base); ++i) {
     const int power = dimension.exponent[i];
     if (power == 0) continue;
     std::string& side = power > 0 ? above : below;

@@ -2,8 +2,8 @@
 // Physical dimensions and the text form of quantities: "0.5 mm", "1.41 g/cm^3", "[0, 0, -9.81] m/s^2".
 //
 // A unit is built of named units with `*`, `/`, `^` and a whole exponent, and parentheses; `*` and `/` bind
-// alike, from left to right; `1` stands alone in "1/s". Named units: g m s N Pa J W Hz eV angstrom rad deg
-// min, each with the prefixes f p n u (or µ) m c k M G T where that gives no other named unit.
+// alike, from left to right; `1` stands alone in "1/s". Named units: g m s N Pa J W Hz eV u K angstrom rad
+// deg min, each with the prefixes f p n u (or µ) m c k M G T where that gives no other named unit.
 #pragma once
 
 #include <array>
@@ -13,9 +13,9 @@
 
 namespace cuboct {
 
-// Exponents of kg, m, s and rad. The radian is kept apart so that an angle cannot pass for a plain number.
+// Exponents of kg, m, s, rad and K. The radian is kept apart so that an angle cannot pass for a plain number.
 struct Dimension {
-  std::array<int, 4> exponent{};
+  std::array<int, 5> exponent{};
   bool operator==(const Dimension&) const = default;
 };
 
@@ -42,6 +42,7 @@ inline constexpr Quantity energy{{{1, 2, -2, 0}}, "an energy", "1 uJ"};
 inline constexpr Quantity damping{{{1, 0, -1, 0}}, "a damping coefficient", "0.1 kg/s"};
 inline constexpr Quantity angle{{{0, 0, 0, 1}}, "an angle", "30 deg"};
 inline constexpr Quantity angular_velocity{{{0, 0, -1, 1}}, "an angular velocity", "10 rad/s"};
+inline constexpr Quantity temperature{{{0, 0, 0, 0, 1}}, "a temperature", "300 K"};
 }  // namespace quantity
 
 // "a length" for the known ones, else base units: "kg*m^2/s^3".

@@ -3,13 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <regex>
 
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
 namespace {
 
-std::string not_built(const std::vector<std::string>& arguments) {
+std::string not_built(std::vector<std::string> arguments) {
+  if (arguments.back() != "--json") arguments.push_back("--machine");
   const Answer answer = Bench(false).cuboct(arguments);
   EXPECT_EQ(answer.code, 0);
   EXPECT_EQ(answer.err, "");
@@ -52,7 +54,7 @@ TEST(Check, CountsTheCellsThatTheLatticeLacks) {
                                            "[[particle]]\nposition = [0.0, 0.0, 0.0]\n"
                                            "[[particle]]\nposition = [20.0, 20.0, 20.0]\n"
                                            "[run]\ndt = 0.001\nsteps = 20\n";
-  const Answer answer = bench.cuboct({"check", bench.path("two.toml")});
+  const Answer answer = bench.cuboct({"check", bench.path("two.toml"), "--machine"});
   EXPECT_NE(answer.out.find("PD controllers, empty nodes\n"), std::string::npos) << answer.out;
   EXPECT_NE(
       answer.out.find("not built empty nodes            1277 cells (of 1331 cells of the bounding box are "
@@ -63,13 +65,36 @@ TEST(Check, CountsTheCellsThatTheLatticeLacks) {
 
 TEST(Check, SaysWhatSetsTheLimitOfDt) {
   const auto limit = [](const std::string& scene) {
-    const std::string out = Bench(false).cuboct({"check", scene}).out;
+    const std::string out = Bench(false).cuboct({"check", scene, "--machine"}).out;
     const size_t from = out.find("\ndt limit ");
     return out.substr(from, out.find('\n', from + 1) - from);
   };
   EXPECT_TRUE(limit("scenes/coupon.toml").ends_with(" s (largest stable step of the perfect packing)"));
   EXPECT_TRUE(limit("scenes/failures/stiff_hold.toml")
                   .ends_with(" s (largest stable step of the particles that are listed)"));
+}
+
+// Physics first, in units that people read: the bar of bonds k = 1 MN/m carries waves at pitch sqrt(k/m).
+TEST(Check, TellsPhysics) {
+  const Answer answer = Bench(false).cuboct({"check", "scenes/sheet.toml"});
+  EXPECT_EQ(answer.err, "");
+  EXPECT_TRUE(std::regex_match(
+      answer.out,
+      std::regex(
+          "scene    scenes/sheet.toml\n"
+          "title    Notched sheet of one layer, torn\n"
+          "body     30 mm x 19.9 mm, 2818 particles of 125 ug, 500 um apart\n"
+          "waves    1.42 km/s, 21.2 us from end to end\n"
+          "run      6226 steps of 48.2 ns = 300 us, 14.2 crossings\n"
+          "step     0.2 of 241 ns, the largest stable one of the perfect packing\n"
+          "strain   about 10 %, by the velocity imposed on 'matter/pulled'\n"
+          "work     17.5 million particle-steps, about [0-9.]+ s on [0-9]+ threads?, [0-9.]+ MB of memory\n"
+          "disk     [0-9.]+ MB with --out, 2 frames\n"
+          "machine  [0-9]+ nodes; --machine tells formats, records and cycles\n")))
+      << answer.out;
+  // A box that repeats, of plain numbers.
+  const std::string gas = Bench(false).cuboct({"check", "scenes/lj_block.toml"}).out;
+  EXPECT_NE(gas.find("repeats along xyz, 256 particles of mass 1, 1.11 apart\n"), std::string::npos) << gas;
 }
 
 TEST(Check, NamesItInJsonToo) {

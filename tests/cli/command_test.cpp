@@ -19,13 +19,15 @@ void expect_refusal(const std::vector<std::string>& arguments, const std::string
 }
 
 TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
-  expect_refusal({},
-                 "no command\n  hint: one of check, run, crosscheck, emit, synth, explore, stability, bench, "
-                 "picture or report; see 'cuboct --help'\n");
+  expect_refusal(
+      {},
+      "no command\n  hint: one of new, check, run, crosscheck, emit, synth, explore, stability, bench, "
+      "picture or report; see 'cuboct --help'\n");
   expect_refusal({"chek"}, "unknown command 'chek'\n  hint: did you mean 'check'?\n");
-  expect_refusal({"simulate"},
-                 "unknown command 'simulate'\n  hint: one of check, run, crosscheck, emit, synth, explore, "
-                 "stability, bench, picture or report\n");
+  expect_refusal(
+      {"simulate"},
+      "unknown command 'simulate'\n  hint: one of new, check, run, crosscheck, emit, synth, explore, "
+      "stability, bench, picture or report\n");
   expect_refusal({"--verbose"}, "unknown option '--verbose'\n  hint: see 'cuboct --help'\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--stepz", "3"},
                  "unknown option '--stepz' of 'cuboct run'\n  hint: did you mean '--steps'?\n");
@@ -189,7 +191,7 @@ TEST(Command, HelpIsNoError) {
   const Answer answer = Bench(false).cuboct({"--help"});
   EXPECT_EQ(answer.code, 0);
   EXPECT_EQ(answer.err, "");
-  for (const char* command : {"check", "run", "crosscheck", "emit", "bench", "picture", "report"})
+  for (const char* command : {"new", "check", "run", "crosscheck", "emit", "bench", "picture", "report"})
     EXPECT_NE(answer.out.find(command), std::string::npos);
 }
 

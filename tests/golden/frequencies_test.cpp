@@ -85,7 +85,7 @@ TEST(Wave, DispersesLikeAChainInTheReference) {
   ProbeMeter meter(scene.probes, scene.periodic, scene.body.x);
   const std::vector<Vec3> no_force(scene.body.size(), Vec3::Zero());
   for (uint64_t step = 0; step <= scene.steps; step += scene.probe_every) {
-    meter.add({step, run.body().x, no_force});
+    meter.add({step, run.body().x, no_force, {}});
     run.step(scene.probe_every);
   }
   EXPECT_NEAR(speed_of(meter.curves(), scene) / chain(scene, cells), 1, 5e-4);

@@ -7,6 +7,7 @@
 
 #include "model/base/steps.h"
 #include "model/run/reference_engine.h"
+#include "model/scene/config.h"
 #include "tests/run/kinds.h"
 
 namespace cuboct::test {
@@ -93,6 +94,35 @@ TEST_P(EveryEngine, HashesAsOftenAsItIsAsked) {
   request.hash_every = 0;
   compare(bed_of("scenes/boards/grips.toml"), request);
   EXPECT_TRUE(run_.trace.state_hash.empty());
+}
+
+// One probe of each kind over a warm block, a warm chain that hangs from a controller, and a warm flat sheet.
+TEST_P(EveryEngine, ReadsEveryProbe) {
+  struct Of {
+    std::string name, radius, speed;
+  };
+  for (const auto& [name, radius, speed] : {Of{"boards/grips", "99", "0.02"},
+                                            {"failures/stiff_hold_healthy", "99", "0.5"},
+                                            {"sheet", "\"9 m\"", "\"1 m/s\""}}) {
+    const std::string path = kRoot + "/scenes/" + name + ".toml";
+    const std::string all = "region = { shape = \"sphere\", radius = " + radius + " }\n";
+    std::string probes = "[[velocity]]\nseed = 3\nthermal_speed = " + speed + "\n";
+    for (const std::string kind : {"force", "displacement", "velocity", "kinetic_energy", "temperature"})
+      probes += "[[probe]]\nname = \"all_" + kind + "\"\nkind = \"" + kind + "\"\n" + all;
+    Bed bed = bed_of("scenes/" + name + ".toml", "");
+    bed.scene = parse_scene(read_config_text(path) + probes, path);
+    bed.plan = plan_of(bed.scene, {});
+    RunRequest request = everything(9);
+    request.frames = {};
+    compare(bed, request);
+    size_t seen = 0;
+    for (const Curve& curve : run_.trace.curves)
+      if (curve.name == "all_temperature.temperature" || curve.name == "all_kinetic_energy.kinetic_energy") {
+        EXPECT_GT(curve.value.back(), 0) << name;
+        ++seen;
+      }
+    EXPECT_EQ(seen, 2u);
+  }
 }
 
 // The state before the step that cannot be done is kept, measured and looked at.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -7,7 +8,7 @@
 #include <random>
 
 #include "model/base/error.h"
-#include "model/scene/geometry.h"
+#include "model/scene/regions.h"
 
 namespace cuboct {
 namespace {
@@ -139,9 +140,15 @@ TEST(Geometry, DogBone) {
   EXPECT_GT(shape->distance({9.53 / 2 + w - 0.01, 9.53 / 2 - 0.001, 0}), 0);
 }
 
+// The shape `g`.
+ShapePtr read(const std::string& text) {
+  const ConfigTable root = parse_config(text, "a.toml");
+  return read_shape(root.at("g"), Regions(root));
+}
+
 std::string error_of(const std::string& text) {
   try {
-    read_shape(parse_config(text, "a.toml").at("g").table());
+    read(text);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -149,7 +156,7 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(Geometry, ReadsNestedShapes) {
-  const auto shape = read_shape(parse_config(R"(
+  const auto shape = read(R"(
 [g]
 shape = "difference"
 from = { shape = "box", size = "[4, 4, 4] mm" }
@@ -158,10 +165,7 @@ minus = [ { shape = "cylinder", axis = "z", radius = "1 mm", length = "5 mm" },
 scale = 2.0
 rotate = { axis = [0, 0, 1], angle = "90 deg" }
 translate = "[1, 0, 0] m"
-)",
-                                             "a.toml")
-                                    .at("g")
-                                    .table());
+)");
   EXPECT_GT(shape->distance({1, 0, 0}), 0);                     // in the bore
   EXPECT_LT(shape->distance({1.003, 0, 0}), 0);                 // in the wall
   EXPECT_GT(shape->distance({1 - 0.0039, 0.0039, 0.0039}), 0);  // the corner cut: (+,+,+) turned to (-,+,+)
@@ -180,12 +184,80 @@ TEST(Geometry, RefusesBadShapes) {
   EXPECT_EQ(error_of("[g]\nshape = \"box\"\nmin = \"[0, 0, 0] m\"\nmax = \"[1, 0, 1] m\"\n"),
             "a.toml:4:7: 'max' must be above 'min' along y");
   EXPECT_EQ(error_of("g = { shape = \"union\", of = [ { shape = \"sphere\", radius = 3 } ] }\n"),
-            "a.toml:1:60: 'radius' needs a unit: a length such as \"0.5 mm\"");
+            "a.toml:1:60: 'radius' needs a unit: a length such as \"3 mm\"");
   EXPECT_EQ(error_of("[g]\nshape = \"half_space\"\nnormal = [0, 0, 0]\n"),
             "a.toml:3:10: 'normal' must not be zero");
+  EXPECT_EQ(error_of("[g]\nshape = \"half_space\"\nnormal = \"xy\"\n"),
+            "a.toml:3:10: unknown direction 'xy'\n  hint: such as \"z\", \"-x\" or three numbers: [1, 1, 0]");
+  EXPECT_EQ(
+      error_of("[g]\nshape = \"half_space\"\nnormal = 3\n"),
+      "a.toml:3:10: 'normal' must be a direction such as \"z\", \"-x\" or [1, 1, 0], not a whole number");
   EXPECT_EQ(
       error_of("[g]\nshape = \"extrude\"\nx = \"[0, 1, 1] m\"\ny = \"[0, 0] m\"\nthickness = \"1 m\"\n"),
       "a.toml:4:5: 'x' has 3 coordinates, 'y' has 2");
+}
+
+// A half space against each way to write its normal: the depth of a point is its component along it.
+TEST(Geometry, ReadsDirections) {
+  const Vec3 point(1, 2, 3);
+  const auto depth = [&](const std::string& normal) {
+    return read("[g]\nshape = \"half_space\"\nnormal = " + normal + "\n")->distance(point);
+  };
+  EXPECT_EQ(depth("\"y\""), 2);
+  EXPECT_EQ(depth("\"+z\""), 3);
+  EXPECT_EQ(depth("\"-x\""), -1);
+  EXPECT_NEAR(depth("[3, 0, -4]"), (3 - 12) / 5.0, 1e-15);
+  const auto turned = read(
+      "[g]\nshape = \"cylinder\"\naxis = \"-x\"\nradius = \"1 m\"\nlength = \"6 m\"\n"
+      "rotate = { axis = \"-z\", angle = \"90 deg\" }\n");
+  EXPECT_LT(turned->distance({0, 2.9, 0}), 0);  // along y now
+  EXPECT_GT(turned->distance({2.9, 0, 0}), 0);
+}
+
+// A plate with a hole, from names: of regions before and after, placed and as they stand.
+const std::string kNamed = R"([regions]
+plate = { shape = "difference", from = "slab", minus = ["bore", { region = "bore", translate = "[3, 0, 0] m" }] }
+slab = { shape = "box", size = "[20, 4, 1] m" }
+bore = { shape = "cylinder", radius = "1 m", length = "2 m" }
+same = "plate"
+)";
+
+TEST(Geometry, ShapesAreMadeOfNamedOnes) {
+  for (const std::string& g :
+       {"g = \"plate\"\n" + kNamed, "g = \"same\"\n" + kNamed, kNamed + "[g]\nregion = \"plate\"\n"}) {
+    const auto shape = read(g);
+    EXPECT_EQ(shape->parts(), 3U);
+    EXPECT_GT(shape->distance({0, 0, 0}), 0);
+    EXPECT_GT(shape->distance({3, 0, 0}), 0);
+    EXPECT_LT(shape->distance({1.5, 0, 0}), 0);
+    EXPECT_LT(shape->distance({-3, 0, 0}), 0);
+  }
+  const auto moved = read(kNamed + "[g]\nregion = \"plate\"\ntranslate = \"[0, 9, 0] m\"\n");
+  EXPECT_GT(moved->distance({3, 9, 0}), 0);
+  EXPECT_LT(moved->distance({-3, 9, 0}), 0);
+}
+
+TEST(Geometry, RefusesNamesThatLeadNowhere) {
+  EXPECT_EQ(error_of("g = \"plat\"\n" + kNamed),
+            "a.toml:1:5: unknown region 'plat'\n  hint: did you mean 'plate'?");
+  EXPECT_EQ(error_of("g = \"plate\"\n"),
+            "a.toml:1:5: unknown region 'plate'\n  hint: [regions] names shapes");
+  EXPECT_EQ(error_of(kNamed + "[g]\nshape = \"slab\"\n"),
+            "a.toml:7:9: unknown shape 'slab'\n  hint: of the region: region = \"slab\"");
+  EXPECT_EQ(error_of(kNamed + "[g]\nregion = \"slab\"\nshape = \"box\"\n"),
+            "a.toml:7:10: give 'shape' or 'region', not both");
+  EXPECT_EQ(error_of("g = \"a\"\n[regions]\na = { shape = \"union\", of = [\"b\"] }\nb = { region = \"c\" }\n"
+                     "c = { shape = \"difference\", from = \"b\", minus = [\"a\"] }\n"),
+            "a.toml:5:36: region 'b' is made of itself: b, c, b");
+  EXPECT_EQ(error_of("g = \"a\"\n[regions]\na = \"a\"\n"), "a.toml:3:5: region 'a' is made of itself: a, a");
+  // Twice as many parts, and one deeper, with each line.
+  std::string doubled = "[regions]\na0 = { shape = \"sphere\", radius = \"1 m\" }\n";
+  for (int k = 1; k <= 60; ++k)
+    doubled += fmt::format("a{0} = {{ shape = \"union\", of = [\"a{1}\", \"a{1}\"] }}\n", k, k - 1);
+  EXPECT_EQ(error_of(doubled), "a.toml:22:7: region 'a20' has 1048576 parts: at most 1000000 may be");
+  std::string chain = "[regions]\n";
+  for (int k = 0; k < 100; ++k) chain += fmt::format("a{} = \"a{}\"\n", k, k + 1);
+  EXPECT_EQ(error_of(chain), "a.toml:65:7: more than 64 regions within one another");
 }
 
 }  // namespace

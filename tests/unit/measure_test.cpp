@@ -171,13 +171,13 @@ TEST(Probes, FollowTheirDefinitions) {
   pull.lower.ids = {0};
   pull.upper.ids = {1, 2};
   pull.grip.ids = {2};
-  pull.axis = 2;
+  pull.axis = Vec3::UnitZ();
   pull.area = 0.5;
 
   const std::vector<Vec3> initial{{0, 0, 0}, {0, 0, 4}, {0, 0, 6}};
   ProbeMeter meter({force, moved, pull}, {}, initial);
-  meter.add({0, initial, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}});
-  meter.add({10, {{0, 0, -1}, {1, 0, 4}, {2, 0, 7}}, {{1, 2, 3}, {10, 20, 30}, {0, 0, -8}}});
+  meter.add({0, initial, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}, {}});
+  meter.add({10, {{0, 0, -1}, {1, 0, 4}, {2, 0, 7}}, {{1, 2, 3}, {10, 20, 30}, {0, 0, -8}}, {}});
 
   std::vector<std::string> names;
   std::vector<double> last;
@@ -194,12 +194,30 @@ TEST(Probes, FollowTheirDefinitions) {
   EXPECT_EQ(last, (std::vector<double>{11, 22, 33, 1.5, 0, 0.5, 0.3, 16}));
 }
 
+// One component instead of three; a pull along (0, 0.6, 0.8).
+TEST(Probes, FollowAnAxis) {
+  Probe force = probe_of(Probe::Kind::force, "f"), moved = probe_of(Probe::Kind::displacement, "d"),
+        pull = probe_of(Probe::Kind::stress_strain, "pull");
+  force.set.ids = moved.set.ids = pull.upper.ids = pull.grip.ids = {1};
+  pull.lower.ids = {0};
+  pull.area = 2;
+  for (Probe* probe : {&force, &moved, &pull}) probe->axis = Vec3(0, 0.6, 0.8);
+  ProbeMeter meter({force, moved, pull}, {}, {{0, 0, 0}, {0, 0, 5}});
+  meter.add({1, {{0, 0, 0}, {7, 5, 5}}, {Vec3::Zero(), {9, 10, 20}}, {}});
+  std::vector<std::string> names;
+  for (const Curve& curve : meter.curves()) names.push_back(curve.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"f.force", "d.along", "pull.strain", "pull.stress"}));
+  const double expected[] = {22, 3, 3.0 / 4, -11};
+  for (size_t k = 0; k < 4; ++k) EXPECT_NEAR(meter.curves()[k].value[0], expected[k], 1e-12) << names[k];
+}
+
 TEST(Probes, CountRoundsOfAPeriodicBox) {
   Probe moved = probe_of(Probe::Kind::displacement, "d");
   moved.set.ids = {0};
   ProbeMeter meter({moved}, {Vec3::Zero(), Vec3(1, 0, 0)}, {Vec3(0.1, 0, 0)});
   for (uint64_t step = 0; step <= 10; ++step)
-    meter.add({step, {Vec3(std::fmod(0.1 + 0.4 * static_cast<double>(step), 1.0), 0, 0)}, {Vec3::Zero()}});
+    meter.add(
+        {step, {Vec3(std::fmod(0.1 + 0.4 * static_cast<double>(step), 1.0), 0, 0)}, {Vec3::Zero()}, {}});
   EXPECT_NEAR(meter.curves()[0].value.back(), 4.0, 1e-12);
 }
 

@@ -111,6 +111,19 @@ TEST_F(SceneTest, ErrorsWordForWord) {
             "a.toml:1:1: unknown key 'densty'\n  hint: did you mean 'density'?");
   EXPECT_EQ(error(with("\"0.5 mm\"", "0.5")),
             "a.toml:3:9: 'pitch' needs a unit: a length such as \"0.5 mm\"");
+  EXPECT_EQ(error(with("\"0.5 mm\"", "\"0.2\"")),
+            "a.toml:3:9: 'pitch' needs a unit: a length such as \"0.2 mm\"");
+  // 0.0002 mm is not what is meant.
+  EXPECT_EQ(error(with("\"0.5 mm\"", "2e-4")),
+            "a.toml:3:9: 'pitch' needs a unit: a length such as \"0.5 mm\"");
+  EXPECT_EQ(error("gravity = [0, 0, -9.81]\n" + kBase),
+            "a.toml:1:11: 'gravity' needs a unit: an acceleration such as \"[0, 0, -9.81] m/s^2\"");
+  EXPECT_EQ(error("gravity = [0, \"0 m/s^2\", -9.81]\n" + kBase),
+            "a.toml:1:12: 'gravity' needs a unit: an acceleration such as \"0 m/s^2\"");
+  EXPECT_EQ(error(kBase + "[[velocity]]\nseed = 1\ntemperature = 300\n"),
+            "a.toml:16:15: 'temperature' needs a unit: a temperature such as \"300 K\"");
+  EXPECT_EQ(error(kBase + "[[velocity]]\nseed = 1\ntemperature = \"1 K\"\nthermal_energy = \"1 eV\"\n"),
+            "a.toml:16:15: give 'thermal_energy' or 'temperature', not both");
   EXPECT_EQ(error(with("1 MN/m", "1 MN")),
             "a.toml:10:13: 'stiffness' must be a stiffness such as \"1 MN/m\", but \"1 MN\" is a force");
   EXPECT_EQ(error(with("\"elastic\"", "\"elastc\"")),
@@ -202,6 +215,12 @@ TEST_F(SceneTest, ModulusIsMet) {
   const Scene s = read(with("stiffness = \"1 MN/m\"", "youngs_modulus = \"3 GPa\"\ndirection = [1, 1, 0]"));
   // E110 = sqrt(2) k/pitch.
   EXPECT_NEAR(-s.rule.law->slope(s.pitch), 3e9 * 0.5e-3 / std::sqrt(2), 1e-3);
+  // A name is an axis of the scene: in a turned packing, the crystal direction along it.
+  const std::string stiffness = "stiffness = \"1 MN/m\"";
+  std::string text = with("[geometry]", "axes = [[1, 1, 0], [-1, 1, 0]]\n[geometry]");
+  text.replace(text.find(stiffness), stiffness.size(), "youngs_modulus = \"3 GPa\"\ndirection = \"-x\"");
+  const Scene turned = read(text);
+  EXPECT_NEAR(turned.rule.law->slope(turned.pitch), s.rule.law->slope(s.pitch), 1e-3);
 }
 
 TEST_F(SceneTest, MaterialsAndConstraintsMakeTypes) {
@@ -270,6 +289,27 @@ uniform = "[1, 0, 0] m/s"
     EXPECT_EQ(s.body.v[i], pulled ? Vec3(1, 0, 2) : Vec3(1, 0, 0));
   }
   EXPECT_EQ(s.body.u.size(), s.body.size());
+}
+
+TEST_F(SceneTest, ProbesTakeAnyAxis) {
+  const std::string regions =
+      "[regions]\nbar = { shape = \"box\", min = \"[0, 0, 0] mm\", max = \"[1.5, 1.5, 2.9] mm\" }\n"
+      "low = { shape = \"half_space\", normal = \"z\" }\n"
+      "high = { shape = \"half_space\", point = \"[0, 0, 2.7] mm\", normal = \"-z\" }\n";
+  const auto probe = [&](const std::string& axis, const std::string& lower, const std::string& upper) {
+    return with("[geometry]\nshape = \"box\"\nmin = \"[0, 0, 0] mm\"\nmax = \"[1.5, 1.5, 2.9] mm\"\n",
+                regions + "[geometry]\nregion = \"bar\"\n") +
+           "[[probe]]\nname = \"p\"\nkind = \"stress_strain\"\narea = \"1 mm^2\"\naxis = " + axis +
+           "\nlower = \"" + lower + "\"\nupper = \"" + upper + "\"\ngrip = \"high\"\n" +
+           "[[probe]]\nname = \"f\"\nkind = \"force\"\nregion = \"high\"\naxis = [0, 3, 4]\n";
+  };
+  const Scene s = read(probe("[0, 0, 5]", "low", "high"));
+  EXPECT_EQ(s.body.size(), read(kBase).body.size());
+  EXPECT_EQ(s.probes[0].axis, Vec3::UnitZ());
+  EXPECT_LT((s.probes[1].axis - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+  EXPECT_EQ(read(probe("\"-z\"", "high", "low")).probes[0].axis, -Vec3::UnitZ());
+  EXPECT_EQ(error(probe("\"-z\"", "low", "high")),
+            "a.toml:22:9: 'upper' must lie further along 'axis' than 'lower'");
 }
 
 // dt_limit with damping and PD: the mode equation z^2 - (2 - g dt - w^2 dt^2) z + 1 - g dt = 0 has a root on

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "model/analysis/temperature.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
 #include "hw/engine_kind.h"
+#include "model/base/error.h"
 
 namespace cuboct {
 namespace {
@@ -47,7 +49,7 @@ Measured in_integers(const Scene& scene) {
 }
 
 // About the mean (2, 0, 0) m/s: (1, 0, 0), (-1, 0, 0), (0, 3, 0), (0, -3, 0), so K = 2/2 (1 + 1 + 9 + 9) = 20
-// J, and 3 (4 - 1) degrees of freedom, as the places differ along z: T = 40/(9 k_B).
+// J, and 3 (4 - 1) degrees of freedom, as the places differ along z: T = 40/9 J.
 TEST(Temperature, IsThatOfTheMotionAboutTheMean) {
   const Scene scene =
       parse_scene(scene_of(particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]") +
@@ -57,8 +59,8 @@ TEST(Temperature, IsThatOfTheMotionAboutTheMean) {
   for (const Measured& measured : {in_doubles(scene), in_integers(scene)}) {
     const Curve* curve = measured.curve("temperature");
     ASSERT_NE(curve, nullptr);
-    EXPECT_EQ(curve->unit, "K");
-    EXPECT_NEAR(curve->value[0], 40 / (9 * kBoltzmann), kRounding * curve->value[0]);
+    EXPECT_EQ(curve->unit, "J");
+    EXPECT_NEAR(curve->value[0], 40 / 9.0, kRounding * 40 / 9);
   }
 }
 
@@ -69,7 +71,7 @@ TEST(Temperature, CountsNoAxisAlongWhichNothingCanMove) {
                            particle("[0, 10, 0]", "[2, 3, 0]") + particle("[10, 10, 0]", "[2, -3, 0]")),
                   "gas.toml");
   EXPECT_EQ(Thermometer(scene).degrees(), 6);
-  EXPECT_NEAR(in_integers(scene).curve("temperature")->value[0] * kBoltzmann, 40.0 / 6, kRounding * 40 / 6);
+  EXPECT_NEAR(in_integers(scene).curve("temperature")->value[0], 40.0 / 6, kRounding * 40 / 6);
 }
 
 // A particle that is held along x, and one that a controller moves: the three others make 2 + 3 + 3 - 3
@@ -87,7 +89,7 @@ TEST(Temperature, LeavesOutWhatIsHeldOrSteered) {
                   "gas.toml");
   EXPECT_EQ(Thermometer(scene).degrees(), 5);
   for (const Measured& measured : {in_doubles(scene), in_integers(scene)})
-    EXPECT_NEAR(measured.curve("temperature")->value[0] * kBoltzmann, 2.0 * 2 / 5, kRounding);
+    EXPECT_NEAR(measured.curve("temperature")->value[0], 2.0 * 2 / 5, kRounding);
 }
 
 TEST(Temperature, IsMeasuredInUndampedAndInHotScenesAlone) {
@@ -101,11 +103,86 @@ TEST(Temperature, IsMeasuredInUndampedAndInHotScenesAlone) {
   EXPECT_EQ(in_doubles(parse_scene(scene_of(two + damped), "s.toml")).curve("temperature"), nullptr);
 }
 
-// 256 particles of kT = 0.2 J have 765 degrees: T is 0.2/k_B but for sqrt(2/765) = 5 % of scatter.
+// 256 particles of kT = 0.2 J have 765 degrees: T is 0.2 J but for sqrt(2/765) = 5 % of scatter.
 TEST(Temperature, OfADrawIsThatOfItsThermalEnergy) {
   const Scene scene = read_scene(std::string(CUBOCT_SOURCE_DIR) + "/scenes/lj_block.toml");
   EXPECT_EQ(Thermometer(scene).degrees(), 765);
-  EXPECT_NEAR(in_integers(scene).curve("temperature")->value[0] * kBoltzmann, 0.2, 4 * 0.05 * 0.2);
+  EXPECT_NEAR(in_integers(scene).curve("temperature")->value[0], 0.2, 4 * 0.05 * 0.2);
+}
+
+// A probe of the three near the origin: about their mean (2, 1, 0) m/s (1, -1, 0), (-1, -1, 0), (0, 2, 0), so
+// K = 2/2 (2 + 2 + 4) = 8 J. The fourth is elsewhere, and makes the scene one in space: 3 (3 - 1) degrees.
+std::string probed(const std::string& fourth, const std::string& more = "") {
+  return scene_of(
+      particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]") +
+      particle("[0, 10, 0]", "[2, 3, 0]") + fourth + more +
+      "[[probe]]\nname = \"t\"\nkind = \"temperature\"\nregion = { shape = \"sphere\", radius = 12 }\n"
+      "[[probe]]\nname = \"v\"\nkind = \"velocity\"\nregion = { shape = \"sphere\", radius = 12 }\n"
+      "[[probe]]\nname = \"e\"\nkind = \"kinetic_energy\"\nregion = { shape = \"sphere\", radius = 12 }\n");
+}
+TEST(Temperature, ProbesMeasureARegion) {
+  const auto expect = [](const std::string& text, double temperature, double energy) {
+    const Scene scene = parse_scene(text, "gas.toml");
+    for (const Measured& measured : {in_doubles(scene), in_integers(scene)}) {
+      EXPECT_EQ(measured.curve("t.temperature")->unit, "J");
+      EXPECT_NEAR(measured.curve("t.temperature")->value[0], temperature, 40 * kRounding);
+      EXPECT_NEAR(measured.curve("e.kinetic_energy")->value[0], energy, 40 * kRounding);
+      EXPECT_NEAR(measured.curve("v.velocity_x")->value[0], 2, kRounding);
+      EXPECT_NEAR(measured.curve("v.velocity_y")->value[0], 1, kRounding);
+      EXPECT_NEAR(measured.curve("v.velocity_z")->value[0], 0, kRounding);
+    }
+  };
+  const double energy = 9 + 1 + 13;  // J, of 2 kg each, not about the mean
+  expect(probed(particle("[0, 0, 20]", "[50, 0, 0]")), 2 * 8 / 6.0, energy);
+  expect(probed(particle("[20, 20, 0]", "[50, 0, 0]")), 2 * 8 / 4.0, energy);  // a flat scene
+  // What is held is no part of it: 2 kg at (0.5, -1.5) and (-0.5, 1.5) about their mean.
+  const std::string held =
+      "[[constraint]]\nname = \"a\"\nkind = \"moved\"\naxes = \"x\"\nvelocity = [3, 0, 0]\n"
+      "region = { shape = \"sphere\", radius = 1 }\n";
+  expect(probed(particle("[0, 0, 20]", "[0, 0, 0]"), held), 2 * 5 / 3.0, energy);
+}
+
+TEST(Temperature, NeedsTwoFreeParticles) {
+  const std::string one =
+      "[[probe]]\nname = \"a\"\nkind = \"temperature\"\n"
+      "region = { shape = \"sphere\", radius = 1 }\n";
+  const std::string two = particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]");
+  try {
+    parse_scene(scene_of(two) + one, "a.toml");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "a.toml:22:10: a temperature needs two particles that no constraint holds or moves");
+  }
+}
+
+// Of copper at 300 K, and the same by its energy and its speed: kT = 4.14e-21 J, sqrt(kT/m) = 198 m/s.
+TEST(Temperature, IsThatOfTheScene) {
+  const auto copper = [](const std::string& thermal) {
+    return parse_scene(
+        "mass = \"63.546 u\"\n[packing]\npitch = \"relaxed\"\n[box]\nperiodic = \"xyz\"\ncells = [6, 6, 6]\n"
+        "[law]\nkind = \"lj\"\nepsilon = \"0.409 eV\"\nsigma = \"2.338 angstrom\"\ncutoff = \"4.5 "
+        "angstrom\"\n"
+        "[[velocity]]\nseed = 1\n" +
+            thermal + "\n[run]\nsteps = 1\n",
+        "copper.toml");
+  };
+  const Scene scene = copper("temperature = \"300 K\"");
+  EXPECT_NEAR(scene.rule.mass, 63.546 * 1.66053906660e-27, 1e-34);
+  const Measured measured = in_doubles(scene);
+  EXPECT_EQ(measured.curve("temperature")->unit, "K");
+  EXPECT_NEAR(measured.curve("temperature")->value[0], 300, 4 * 300 * std::sqrt(2.0 / 2589));
+  const double energy = 300 * 1.380649e-23;
+  for (const std::string& same :
+       {fmt::format("thermal_energy = \"{:.17g} J\"", energy),
+        fmt::format("thermal_speed = \"{:.17g} m/s\"", std::sqrt(energy / scene.rule.mass))})
+    for (size_t i = 0; i < scene.body.size(); ++i)
+      ASSERT_LT((copper(same).body.v[i] - scene.body.v[i]).norm(), 1e-9) << same;
+  // In reduced units a temperature is an energy.
+  const std::string pair = particle("[0, 0, 0]", "[0, 0, 0]") + particle("[10, 0, 0]", "[0, 0, 0]");
+  const std::string of = "[[velocity]]\nseed = 1\n";
+  EXPECT_EQ(parse_scene(scene_of(pair + of + "temperature = 2\n"), "a.toml").body.v,
+            parse_scene(scene_of(pair + of + "thermal_energy = 2\n"), "a.toml").body.v);
 }
 
 }  // namespace

@@ -35,6 +35,11 @@ TEST(Units, AreTheNearestDoubles) {
   EXPECT_EQ(value("90 deg", quantity::angle), std::numbers::pi / 2);
   EXPECT_DOUBLE_EQ(value("2 eV", quantity::energy), 2 * 1.602176634e-19);
   EXPECT_EQ(value("2 min", quantity::time), 120.0);
+  EXPECT_EQ(value("300 K", quantity::temperature), 300.0);
+  EXPECT_EQ(value("4 mK", quantity::temperature), 4e-3);
+  EXPECT_EQ(value("1 u", quantity::mass), 1.66053906660e-27);
+  EXPECT_DOUBLE_EQ(value("2 ku", quantity::mass), 2e3 * 1.66053906660e-27);
+  EXPECT_EQ(value("2 um", quantity::length), 2e-6);
   EXPECT_EQ(value("3 mm", quantity::length), value("3e-3 m", quantity::length));
 }
 
@@ -78,6 +83,7 @@ TEST(Units, AreNamedInMessages) {
   EXPECT_EQ(describe(quantity::pressure.dimension), "a pressure");
   EXPECT_EQ(describe(Dimension{{1, 2, -3, 0}}), "kg*m^2/s^3");
   EXPECT_EQ(describe(Dimension{{0, 0, -3, 0}}), "1/s^3");
+  EXPECT_EQ(describe(Dimension{{1, 2, -2, 0, -1}}), "kg*m^2/s^2/K");
 }
 
 TEST(Spelling, FindsTheNearest) {

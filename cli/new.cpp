@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/templates.h"
+#include "model/base/output.h"
+#include "model/base/spelling.h"
+#include "model/base/text.h"
+
+namespace cuboct {
+namespace {
+
+struct Template {
+  std::string name, text;
+  // The first line, a comment.
+  std::string what() const { return text.substr(2, text.find('\n') - 2); }
+};
+
+const std::vector<Template>& templates() {
+  static const std::vector<Template> all{
+      {"tension", kTensionScene}, {"impact", kImpactScene}, {"drop", kDropScene},   {"beam", kBeamScene},
+      {"gas", kGasScene},         {"metal", kMetalScene},   {"crack", kCrackScene}, {"sheet", kSheetScene}};
+  return all;
+}
+
+struct Options {
+  std::string name, like = "tension";
+  bool list = false, force = false;
+};
+
+const Template& template_of(const std::string& like) {
+  const auto found = std::ranges::find(templates(), like, &Template::name);
+  if (found != templates().end()) return *found;
+  std::vector<std::string> names;
+  for (const Template& one : templates()) names.push_back(one.name);
+  const std::string near = did_you_mean(like, names);
+  throw InputError(fmt::format("unknown template '{}'", like),
+                   near.empty() ? "one of " + list_of(names) : near);
+}
+
+void make(const Options& options) {
+  if (options.list) {
+    for (const Template& one : templates()) fmt::print("{:<8} {}\n", one.name, one.what());
+    return;
+  }
+  if (options.name.empty())
+    throw InputError("no NAME for the scene", "cuboct new --list tells what there is");
+  const Template& like = template_of(options.like);
+  const std::string path = options.name + (options.name.ends_with(".toml") ? "" : ".toml");
+  if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(path)))
+    throw InputError(fmt::format("{} is there already", path), "--force replaces it");
+  check_writable(path);
+  write_text(path, like.text);
+  const std::string shown = line_text(path);
+  fmt::print("{}: {}\n  cuboct check {}\n  cuboct run {} --out out/{}\n", shown, like.what(), shown, shown,
+             line_text(std::filesystem::path(path).stem()));
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, int&) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("new", "write a commented scene to start from");
+  command->add_option("name", options->name, "the file, NAME.toml")->type_name("NAME");
+  command->add_option("--like", options->like, "what it shows: see --list")
+      ->capture_default_str()
+      ->type_name("TEMPLATE");
+  command->add_flag("--list", options->list, "tell what templates there are");
+  command->add_flag("--force", options->force, "replace a file of that name");
+  command->callback([options] { make(*options); });
+}
+
+}  // namespace cuboct

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// The scenes of scenes/templates, built in, for `cuboct new`.
+#pragma once
+
+namespace cuboct {
+
+extern const char kTensionScene[];
+extern const char kImpactScene[];
+extern const char kDropScene[];
+extern const char kBeamScene[];
+extern const char kGasScene[];
+extern const char kMetalScene[];
+extern const char kCrackScene[];
+extern const char kSheetScene[];
+
+}  // namespace cuboct

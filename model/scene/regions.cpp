@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "model/scene/regions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace cuboct {
+namespace {
+
+constexpr size_t kDeepest = 64;           // regions of regions: each is a call within a call
+constexpr size_t kMostParts = 1'000'000;  // of one region: names can double it at each level
+
+}  // namespace
+
+Regions::Regions(const ConfigTable& root) {
+  const auto table = root.table_at("regions");
+  if (!table) return;
+  for (const std::string& name : table->names()) {
+    names_.push_back(name);
+    values_.push_back(table->at(name));
+  }
+  shapes_.resize(names_.size());
+  for (size_t k = 0; k < names_.size(); ++k) resolve(k, values_[k]);
+}
+
+bool Regions::has(const std::string& name) const { return std::ranges::find(names_, name) != names_.end(); }
+
+ShapePtr Regions::named(const ConfigValue& name) const {
+  if (names_.empty()) name.fail(fmt::format("unknown region '{}'", name.string()), "[regions] names shapes");
+  return resolve(name.choice("region", names_), name);
+}
+
+ShapePtr Regions::resolve(size_t region, const ConfigValue& at) const {
+  if (shapes_[region]) return shapes_[region];
+  const auto same = std::ranges::find(open_, region);
+  if (same != open_.end()) {
+    std::string ring;
+    for (auto k = same; k != open_.end(); ++k) ring += names_[*k] + ", ";
+    at.fail(fmt::format("region '{}' is made of itself: {}{}", names_[region], ring, names_[region]));
+  }
+  if (open_.size() == kDeepest) at.fail(fmt::format("more than {} regions within one another", kDeepest));
+  open_.push_back(region);
+  ShapePtr shape = read_shape(values_[region], *this);
+  open_.pop_back();
+  if (shape->parts() > kMostParts)
+    values_[region].fail(fmt::format("region '{}' has {} parts: at most {} may be", names_[region],
+                                     shape->parts(), kMostParts));
+  return shapes_[region] = std::move(shape);
+}
+
+std::vector<uint32_t> Regions::select(const ConfigValue& value, const std::vector<Vec3>& x,
+                                      double tolerance) const {
+  const ShapePtr shape = read_shape(value, *this);
+  constexpr double kMostTests = 4e10;  // of one scene: some minutes
+  tests_ += static_cast<double>(x.size()) * static_cast<double>(shape->parts());
+  if (tests_ > kMostTests)
+    value.fail(
+        fmt::format("{:.3g} tests of particles against regions: at most {:.3g} are made", tests_, kMostTests),
+        "fewer regions, or shapes of fewer points");
+  std::vector<uint32_t> ids;
+  for (uint32_t id = 0; id < x.size(); ++id)
+    if (shape->distance(x[id]) <= tolerance) ids.push_back(id);
+  if (ids.empty()) value.fail("no particle lies in this region");
+  return ids;
+}
+
+}  // namespace cuboct
