@@ -3,25 +3,20 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
+#include "study/chart.h"
 #include "study/measures.h"
-#include "study/parameters.h"
 #include "study/series.h"
 #include "study/web.h"
 
 namespace cuboct::study {
 namespace {
-
-std::vector<double> values_of(const Results& results, const Measure& measure) {
-  std::vector<double> values;
-  for (const Outcome& outcome : results.outcomes) values.push_back(measure.value(outcome));
-  return values;
-}
 
 std::string measures_json(const Results& results, const std::vector<Measure>& measures) {
   std::vector<std::string> items;
@@ -36,58 +31,81 @@ std::string measures_json(const Results& results, const std::vector<Measure>& me
   return json_array(items);
 }
 
-// [error][speed]: the front, and the table by decades as [exponent or null, point].
-std::string choices_json(const Results& results, const std::vector<Measure>& errors,
+// [error][speed]: the table by decades, as [exponent or null, point].
+std::string decades_json(const Results& results, const std::vector<Measure>& errors,
                          const std::vector<Measure>& speeds) {
   std::vector<std::string> by_error;
   for (const Measure& error : errors) {
     std::vector<std::string> by_speed;
     for (const Measure& speed : speeds) {
-      const ValueOf merit = [&](const Outcome& outcome) { return speed.merit(outcome); };
       std::vector<std::string> rows;
-      for (const Cheapest& row : cheapest_by_decade(results.outcomes, error.value, merit))
+      for (const Cheapest& row : cheapest_by_decade(results.outcomes, error.value,
+                                                    [&](const Outcome& o) { return speed.merit(o); }))
         rows.push_back(fmt::format(
             "[{},{}]", row.exponent == Cheapest::kExact ? "null" : std::to_string(row.exponent), row.point));
-      by_speed.push_back(JsonObject()
-                             .add("front", json(pareto_front(results.outcomes, error.value, merit)))
-                             .add("decades", json_array(rows))
-                             .text());
+      by_speed.push_back(json_array(rows));
     }
     by_error.push_back(json_array(by_speed));
   }
   return json_array(by_error);
 }
 
-std::string orders_json(const Results& results, const Parameter& parameter, const Measure& error) {
-  std::vector<std::string> orders;
-  for (const Order& order : expected_orders(results, parameter, error))
-    if (const auto line = order_line(results, parameter, error, order))
-      orders.push_back(
-          JsonObject()
-              .add("label", json(order.label))
-              .add("line", fmt::format("[[{},{}],[{},{}]]", json(line->first.first), json(line->first.second),
-                                       json(line->second.first), json(line->second.second)))
-              .text());
-  return json_array(orders);
+// Charts name their values by an index into `columns`: several share one.
+std::string axis_json(const ChartAxis& axis, std::vector<std::string>& columns) {
+  const std::string values = json(axis.values);
+  const auto at = std::ranges::find(columns, values) - columns.begin();
+  if (at == std::ssize(columns)) columns.push_back(values);
+  std::vector<std::string> ticks;
+  for (const Tick& tick : axis.ticks)
+    ticks.push_back(json_array(std::array{json(tick.at), json(tick.label)}));
+  return JsonObject()
+      .add("label", json(axis.label))
+      .add("column", std::to_string(at))
+      .add("logarithmic", json(axis.logarithmic))
+      .add("decades", json(axis.decades))
+      .add("range", json(std::vector{axis.low, axis.high}))
+      .add("ticks", json_array(ticks))
+      .text();
 }
 
-std::string parameters_json(const Results& results, const std::vector<Measure>& errors) {
-  std::vector<std::string> items;
-  for (const Parameter& parameter : swept_parameters(results)) {
-    std::vector<std::string> sweeps, orders;
-    for (const Sweep& sweep : parameter.sweeps) sweeps.push_back(json(sweep.points));
-    for (const Measure& error : errors) orders.push_back(orders_json(results, parameter, error));
-    items.push_back(JsonObject()
-                        .add("id", json(parameter.id))
-                        .add("label", json(parameter.label))
-                        .add("logarithmic", json(parameter.logarithmic))
-                        .add("names", json(parameter.names))
-                        .add("x", json(parameter.x))
-                        .add("sweeps", json_array(sweeps))
-                        .add("orders", json_array(orders))
-                        .text());
-  }
-  return json_array(items);
+std::string plotted_json(const Plotted& plotted) {
+  static constexpr const char* kStrokes[] = {"none", "solid", "dashed", "dotted"};
+  std::vector<std::string> rows, places;
+  for (const Rows& joined : plotted.rows) rows.push_back(json(joined));
+  for (const auto& [x, y] : plotted.places) places.push_back(json(std::vector{x, y}));
+  return JsonObject()
+      .add("name", json(plotted.name))
+      .add("colour", json(plotted.colour))
+      .add("symbol", std::to_string(plotted.symbol))
+      .add("size", json(plotted.size))
+      .add("stroke", json(std::string(kStrokes[static_cast<size_t>(plotted.stroke)])))
+      .add("width", json(plotted.width))
+      .add("rows", json_array(rows))
+      .add("places", json_array(places))
+      .text();
+}
+
+std::string chart_json(const Chart& chart, std::vector<std::string>& columns) {
+  const auto index = [](std::optional<size_t> n) { return n ? std::to_string(*n) : "null"; };
+  std::vector<std::string> plotted;
+  for (const Plotted& one : chart.plotted) plotted.push_back(plotted_json(one));
+  return JsonObject()
+      .add("section", json(chart.section))
+      .add("error", index(chart.error))
+      .add("speed", index(chart.speed))
+      .add("title", json(chart.title))
+      .add("caption", json(chart.caption))
+      .add("x", axis_json(chart.x, columns))
+      .add("y", axis_json(chart.y, columns))
+      .add("plotted", json_array(plotted))
+      .add("best", json(chart.best))
+      .add("band",
+           chart.band ? json_array(std::array{json(chart.band->high), json(chart.band->text)}) : "null")
+      .add("corner", json(chart.corner))
+      .add("corner_left", json(chart.corner_left))
+      .add("key", json(chart.key))
+      .add("tips", json(chart.tips))
+      .text();
 }
 
 std::string series_json(const Results& results) {
@@ -160,6 +178,8 @@ std::string truth_json(const Results& results) {
 
 std::string data_of(const Results& results) {
   const std::vector<Measure> errors = error_measures(results), speeds = speed_measures(results);
+  std::vector<std::string> charts, columns;
+  for (const Chart& chart : charts_of(results)) charts.push_back(chart_json(chart, columns));
   return JsonObject()
       .add("title", json(results.title))
       .add("scene", json(results.scene))
@@ -169,8 +189,9 @@ std::string data_of(const Results& results) {
       .add("series", series_json(results))
       .add("errors", measures_json(results, errors))
       .add("speeds", measures_json(results, speeds))
-      .add("choices", choices_json(results, errors, speeds))
-      .add("parameters", parameters_json(results, errors))
+      .add("decades", decades_json(results, errors, speeds))
+      .add("charts", json_array(charts))
+      .add("columns", json_array(columns))
       .add("points", points_json(results))
       .add("truth", truth_json(results))
       .text();
