@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "cli/engines.h"
+#include "hw/engines.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
 
