@@ -10,12 +10,13 @@
 #include "cli/command.h"
 #include "cli/crosscheck_real.h"
 #include "cli/engine_run.h"
-#include "cli/engines.h"
+#include "hw/engines.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
 #include "model/base/progress.h"
+#include "model/base/spelling.h"
 #include "model/base/text.h"
 #include "model/trace/compare.h"
 
@@ -31,7 +32,7 @@ struct Options {
   bool steps_given = false;
 };
 
-bool runs_here(const std::string& engine) { return engine_row(engine).program.empty(); }
+bool runs_here(const std::string& engine) { return engine_row(engine).here != Here::none; }
 
 // Programs run beside the engines that run here. Lattice counts cycles where another engine does, but for
 // links that stall or fail.
@@ -77,9 +78,13 @@ std::string explain(const Options& options, const Loaded& loaded, const std::str
 
 // Whether numbers are to be compared instead of bits.
 bool of_real_numbers(const Options& options) {
-  std::vector<std::string> sorted = options.engines;
-  std::sort(sorted.begin(), sorted.end());
-  const bool real = sorted == std::vector<std::string>{"gpu", "reference"};
+  const auto count = [&](bool bits) {
+    return std::ranges::count_if(options.engines, [bits](auto& engine) {
+      const EngineRow* row = find_engine(engine);
+      return row && row->real && row->bits == bits;
+    });
+  };
+  const bool real = options.engines.size() == 2 && count(true) == 1 && count(false) == 1;
   if (!real && !options.choice.precision.empty())
     throw InputError("--precision goes with --engines reference,gpu",
                      "other engines compute in the fixed rule");
@@ -116,9 +121,9 @@ int crosscheck(Options options) {
                            options.steps_given ? std::optional(options.steps) : std::nullopt, options.out);
   }
   for (const std::string& engine : options.engines) {
-    if (engine == "reference")
-      throw InputError("engine 'reference' computes in doubles and has no bits to compare",
-                       "one of golden, lattice, systemc, rtl, fpga or gpu");
+    if (const EngineRow* row = find_engine(engine); row && !row->bits)
+      throw InputError(fmt::format("engine '{}' computes in doubles and has no bits to compare", engine),
+                       "one of " + list_of(engines_that([](auto& other) { return other.bits; })));
     engine_row(engine, true);
   }
   std::vector<std::string> sorted = options.engines;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/real_bounds.h"
+#include "model/analysis/real_bounds.h"
 #include "model/base/interrupt.h"
 #include "model/base/process.h"
 #include "model/base/steps.h"

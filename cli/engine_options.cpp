@@ -7,15 +7,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "cli/engines.h"
+#include "hw/engines.h"
 #include "model/base/error.h"
+#include "model/base/spelling.h"
 
 namespace cuboct {
 namespace {
-
-bool among(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 // "the lattice and the reference engine"
 std::string the_engines(const std::vector<std::string>& names) {
@@ -88,41 +85,43 @@ void EngineOptions::add_run(CLI::App& command) {
 }
 
 void EngineOptions::check(const std::vector<std::string>& engines, const Input& input) const {
-  const auto with = [](auto has) { return engines_that(has); };
-  const auto refuse = [&](bool given, const char* option, const std::vector<std::string>& owners) {
-    if (!given || std::ranges::any_of(engines, [&](auto& engine) { return among(owners, engine); })) return;
-    throw InputError(fmt::format("{} is an option of {}, not of {}", option, the_engines(owners),
-                                 fmt::join(engines, ",")));
+  const auto some = [&](auto has) {
+    return std::ranges::any_of(engines, [&](auto& engine) { return has(engine_row(engine)); });
   };
-  const auto savers = with([](const EngineRow& row) { return row.saves; });
-  refuse(threads > 0, "--threads", {"lattice", "reference"});
-  refuse(ranks > 1, "--ranks", {"lattice"});
-  refuse(cycles, "--cycles", with([](const EngineRow& row) { return row.counts_if_asked; }));
-  refuse(!checkpoint_every.empty(), "--checkpoint-every", savers);
-  refuse(resume, "--resume", savers);
-  refuse(gpus > 0, "--gpus", {"gpu"});
-  refuse(!devices.empty(), "--devices", {"gpu"});
-  refuse(joules, "--joules", {"gpu"});
-  refuse(!port.empty(), "--port", {"fpga"});
-  refuse(baud > 0, "--baud", {"fpga"});
-  refuse(timeout > 0, "--port-timeout", {"fpga"});
-  refuse(!precision.empty(), "--precision", {"reference", "gpu"});
-  refuse(integrator != "euler", "--integrator", {"reference"});
-  refuse(hashes_given, "--hash-every", with([](const EngineRow& row) { return row.bits; }));
-  if (precision == "fixed" && among(engines, "reference"))
-    throw InputError("--precision fixed: the reference engine computes in doubles or floats",
-                     "lattice, golden and gpu compute in the fixed rule's integers");
+  const auto refuse = [&](bool given, const char* option, auto has) {
+    if (given && !some(has))
+      throw InputError(fmt::format("{} is an option of {}, not of {}", option, the_engines(engines_that(has)),
+                                   fmt::join(engines, ",")));
+  };
+  refuse(threads > 0, "--threads", [](auto& row) { return row.cost.threads; });
+  refuse(ranks > 1, "--ranks", [](auto& row) { return !row.ranks.empty(); });
+  refuse(cycles, "--cycles", [](auto& row) { return row.counts_if_asked; });
+  refuse(!checkpoint_every.empty(), "--checkpoint-every", [](auto& row) { return row.saves; });
+  refuse(resume, "--resume", [](auto& row) { return row.saves; });
+  refuse(gpus > 0, "--gpus", [](auto& row) { return row.devices; });
+  refuse(!devices.empty(), "--devices", [](auto& row) { return row.devices; });
+  refuse(joules, "--joules", [](auto& row) { return row.devices; });
+  refuse(!port.empty(), "--port", [](auto& row) { return row.port; });
+  refuse(baud > 0, "--baud", [](auto& row) { return row.port; });
+  refuse(timeout > 0, "--port-timeout", [](auto& row) { return row.port; });
+  refuse(!precision.empty(), "--precision", [](auto& row) { return row.real; });
+  refuse(integrator != "euler", "--integrator", [](auto& row) { return row.integrators; });
+  refuse(hashes_given, "--hash-every", [](auto& row) { return row.bits; });
+  for (const std::string& engine : engines)
+    if (precision == "fixed" && !engine_row(engine).bits)
+      throw InputError(fmt::format("--precision fixed: the {} engine computes in doubles or floats", engine),
+                       "lattice, golden and gpu compute in the fixed rule's integers");
   if (hashes_given && std::ranges::all_of(engines, [&](auto& engine) { return is_real(engine); }))
     throw InputError("--hash-every goes with --precision fixed", "states in real numbers have no hash");
-  if (among(engines, "fpga") && port.empty())
-    throw InputError("the fpga engine needs --port, where the board is",
-                     "--port /dev/ttyUSB0, or what cuboct-board-sim prints");
+  for (const std::string& engine : engines)
+    if (engine_row(engine).port && port.empty())
+      throw InputError(fmt::format("the {} engine needs --port, where the board is", engine),
+                       "--port /dev/ttyUSB0, or what cuboct-board-sim prints");
   if (input.faults.empty()) return;
   read_fault_share(input.faults);
-  const auto linked = with([](const EngineRow& row) { return row.links; });
-  if (std::ranges::none_of(engines, [&](auto& engine) { return among(linked, engine); }))
-    throw InputError("--inject-faults needs an engine that has links",
-                     fmt::format("{}", fmt::join(linked, " or ")));
+  const auto links = [](auto& row) { return row.links; };
+  if (!some(links))
+    throw InputError("--inject-faults needs an engine that has links", list_of(engines_that(links)));
 }
 
 bool EngineOptions::is_real(const std::string& engine) const {

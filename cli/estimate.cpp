@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "cli/engines.h"
+#include "hw/engines.h"
 #include "model/base/resources.h"
 #include "model/trace/trace.h"
 

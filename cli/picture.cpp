@@ -10,10 +10,10 @@
 #include <optional>
 
 #include "cli/command.h"
-#include "cli/raster_plot.h"
 #include "model/base/directory_lock.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
+#include "model/trace/raster_plot.h"
 
 namespace cuboct {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "cli/check.h"
 #include "cli/outputs.h"
-#include "cli/plot.h"
 #include "cli/summary.h"
 #include "hw/state_bounds.h"
 #include "model/base/base64.h"
@@ -19,6 +18,7 @@
 #include "model/base/output.h"
 #include "model/base/text.h"
 #include "model/trace/compare.h"
+#include "model/trace/plot.h"
 
 namespace cuboct {
 namespace {

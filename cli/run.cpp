@@ -12,10 +12,10 @@
 
 #include "cli/command.h"
 #include "cli/engine_run.h"
-#include "cli/engines.h"
 #include "cli/estimate.h"
 #include "cli/recorder.h"
 #include "cli/summary.h"
+#include "hw/engines.h"
 #include "model/base/interrupt.h"
 #include "model/base/process.h"
 #include "model/base/progress.h"

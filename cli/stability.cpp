@@ -11,7 +11,6 @@
 
 #include "cli/command.h"
 #include "cli/outputs.h"
-#include "cli/stability_maps.h"
 #include "model/base/directory_lock.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
@@ -21,6 +20,7 @@
 #include "model/base/text.h"
 #include "model/solid/dynamical_matrix.h"
 #include "study/stability.h"
+#include "study/stability_pictures.h"
 
 namespace cuboct {
 namespace {

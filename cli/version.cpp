@@ -1,30 +1,26 @@
 // SPDX-License-Identifier: MIT
 // `cuboct --version`: what was built, and which programs of engines lie beside it.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <string>
 
 #include "cli/command.h"
 #include "cli/commit.h"
 #include "emu/lattice/program.h"
+#include "hw/engines.h"
 #include "model/base/process.h"
 #include "model/trace/trace_head.h"
 
 namespace cuboct {
 namespace {
 
-bool is_beside(const std::string& program) {
-  return access((program_directory() + "/" + program).c_str(), X_OK) == 0;
+std::string program_text(const std::string& program) {
+  return beside(program).empty() ? fmt::format("no program {} beside cuboct", program) : program;
 }
 
-std::string beside(const std::string& program) {
-  return is_beside(program) ? program : fmt::format("no program {} beside cuboct", program);
-}
-
-std::string lattice() {
+std::string shared(const std::string& program) {
   if (!emu::lattice_has_mpi()) return "built in, without MPI";
-  return "built in; ranks over MPI: " + beside("cuboct-lattice");
+  return "built in; ranks over MPI: " + program_text(program);
 }
 
 #ifdef CUBOCT_HAS_STUDIES
@@ -42,14 +38,13 @@ constexpr const char* kSynthesis = "left out";
 
 std::string version_text() {
   std::string out = fmt::format("cuboct {}\ncommit     {}\n", program_version(), commit());
-  const auto line = [&](const char* name, const std::string& what) {
+  const auto line = [&](const std::string& name, const std::string& what) {
     out += fmt::format("{:<10} {}\n", name, what);
   };
-  line("golden", "built in");
-  line("reference", "built in");
-  line("lattice", lattice());
-  for (const char* engine : {"systemc", "rtl", "fpga", "gpu"})
-    line(engine, beside(fmt::format("cuboct-{}", engine)));
+  for (const EngineRow& row : engines())
+    line(row.name, !row.program.empty() ? program_text(row.program)
+                   : row.ranks.empty()  ? "built in"
+                                        : shared(row.ranks));
   line("studies", kStudies);
   line("synthesis", kSynthesis);
   out.pop_back();  // CLI11 ends the line

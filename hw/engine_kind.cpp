@@ -57,12 +57,24 @@ EngineKind golden_kind(const Scene& scene, const Plan& plan) {
   return kind;
 }
 
-EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
-  EngineKind kind = real_kind("reference", scene, plan, options.precision == Precision::float32);
-  kind.keeps_state = false;
-  kind.make = [&scene, &plan, options](CheckpointReader*, bool) {
-    return std::make_unique<ReferenceEngine>(scene, scene.body, options, plan.rule.cell_edge);
+EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
+                          double cell_edge) {
+  EngineKind kind;
+  kind.name = "reference";
+  kind.particles = start.size();
+  kind.fixed = kind.keeps_state = false;
+  kind.floats = options.precision == Precision::float32;
+  kind.initial = [&start](uint32_t id) { return start.x[id]; };
+  kind.make = [&scene, &start, options, cell_edge](CheckpointReader*, bool) {
+    return std::make_unique<ReferenceEngine>(scene, start, options, cell_edge);
   };
+  return kind;
+}
+
+EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
+  EngineKind kind = reference_kind(scene, scene.body, options, plan.rule.cell_edge);
+  kind.plan_hash = plan.hash;
+  kind.nodes = plan.nodes();
   return kind;
 }
 

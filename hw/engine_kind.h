@@ -20,5 +20,8 @@ EngineKind real_kind(const std::string& name, const Scene& scene, const Plan& pl
 
 EngineKind golden_kind(const Scene& scene, const Plan& plan);
 EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options);
+// Without a plan, from `start` instead of the scene's body. `cell_edge`: m, in which speeds are told.
+EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
+                          double cell_edge);
 
 }  // namespace cuboct

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 
+#include "hw/engines.h"
 #include "model/base/error_parts.h"
 #include "model/base/text.h"
 
@@ -103,18 +104,18 @@ constexpr Key kKeys[] = {
 Set set_of(const Key& key, const ConfigValue& value, const Widths& widths) {
   const std::string name = key.name;
   if (name == "engine") {
-    static const std::vector<std::string> engines{"lattice", "reference", "gpu"};
-    const std::string engine = engines[value.choice("engine", engines)];
+    const auto names = engines_that([](auto& row) { return row.studied; });
+    const std::string engine = names[value.choice("engine", names)];
     return [engine](Settings& settings) {
       settings.engine = engine;
-      settings.arithmetic = engine == "reference" ? Arithmetic::float64 : Arithmetic::fixed;
+      settings.arithmetic = engine_row(engine).bits ? Arithmetic::fixed : Arithmetic::float64;
     };
   }
   if (name == "arithmetic") {
     const auto arithmetic = static_cast<Arithmetic>(value.choice("arithmetic", arithmetic_names()));
     return [arithmetic](Settings& settings) {
       settings.arithmetic = arithmetic;
-      if (!on_gpu(settings)) settings.engine = arithmetic == Arithmetic::fixed ? "lattice" : "reference";
+      if (!on_gpu(settings)) settings.engine = default_engine(arithmetic);
     };
   }
   if (name == "integrator") {

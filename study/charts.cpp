@@ -1,278 +1,233 @@
 // SPDX-License-Identifier: MIT
-// The page's charts by gnuplot: one script draws all, each once as PNG and once as SVG.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <numeric>
 #include <set>
 
-#include "model/base/gnuplot.h"
-#include "model/base/output.h"
 #include "model/base/text.h"
-#include "study/measures.h"
-#include "study/page.h"
+#include "study/chart.h"
+#include "study/chart_axes.h"
+#include "study/front.h"
+#include "study/numbers.h"
 #include "study/parameters.h"
 #include "study/series.h"
 
 namespace cuboct::study {
 namespace {
 
-constexpr size_t kLongName = 24;  // letters
+constexpr char kBlack[] = "#000000", kGrey[] = "#777777";
 
-// gnuplot's point types that look like the page's symbols.
-constexpr int kPointTypes[kSymbols] = {7, 5, 9, 13, 11, 15};
-
-// Whole decades that hold all values; where one of them is 0, a decade below stands for it.
-struct LogRange {
-  double low = 0.1, high = 1;
-  bool zero = false;
-  double placed(double value) const { return value == 0 ? low : value; }
-};
-LogRange log_range(const std::vector<double>& values) {
-  double least = INFINITY, most = 0;
-  LogRange range;
-  for (const double value : values) {
-    if (value == 0) range.zero = true;
-    if (value > 0) least = std::min(least, value), most = std::max(most, value);
-  }
-  if (most > 0) {
-    const double low = std::floor(std::log10(least) + 1e-9), high = std::ceil(std::log10(most) - 1e-9);
-    range.low = std::pow(10, low), range.high = std::pow(10, std::max(high, low + 1));
-  }
-  if (range.zero) range.low /= 10;
-  return range;
+template <typename Has>
+Rows those(const Rows& rows, Has has) {
+  Rows some;
+  std::ranges::copy_if(rows, std::back_inserter(some), has);
+  return some;
 }
 
-class Script {
- public:
-  explicit Script(std::string directory) : directory_(std::move(directory)) {}
-
-  void begin(const std::string& name) {
-    name_ = name;
-    settings_ = data_ = "";
-    plots_.clear();
-    set("border 3 lc '#444444'");
-    set("tics nomirror");
-    set("grid lc '#dddddd' lt 1 lw 0.5");
-    set("key outside right top Left reverse noenhanced samplen 2 spacing 1.15");
-  }
-  // Names that take half of the width beside the chart stand below it.
-  void key_of(const std::vector<Series>& all) {
-    const bool is_long = std::ranges::any_of(all, [](const Series& s) { return s.name.size() > kLongName; });
-    if (is_long) set("key below Left reverse noenhanced samplen 2 spacing 1.15");
-  }
-  void set(const std::string& what) { settings_ += "set " + what + "\n"; }
-
-  // `reversed`: less is better, and better is to the right.
-  void log_axis(char axis, const std::string& label, const LogRange& range, bool reversed = false) {
-    set(fmt::format("{}label {}", axis, gnuplot_label(label)));
-    set(fmt::format("logscale {}", axis));
-    set(fmt::format("format {} '10^{{%T}}'", axis));
-    set(fmt::format("{}range [{}:{}]", axis, reversed ? range.high : range.low,
-                    reversed ? range.low : range.high));
-    if (range.zero) set(fmt::format("{}tics add ('0' {})", axis, range.low));
-  }
-  void band(double floor, const LogRange& range) {
-    if (floor <= range.low) return;
-    set(fmt::format(
-        "object 1 rectangle from graph 0,first {} to graph 1,first {} behind fillstyle solid noborder "
-        "fillcolor '#e8e8e8'",
-        range.low, std::min(floor, range.high)));
-    set(
-        fmt::format("label 1 \"below: the truth's own error\" at graph 0.99,first {} right offset 0,0.6 "
-                    "textcolor '#555555'",
-                    range.low));
-  }
-  // `style`: after "with".
-  void plot(const std::vector<std::pair<double, double>>& points, const std::string& title,
-            const std::string& style) {
-    if (points.empty()) return;
-    const std::string block = fmt::format("$data{}", plots_.size());
-    data_ += block + " << END\n";
-    for (const auto& [x, y] : points) data_ += fmt::format("{} {}\n", x, y);
-    data_ += "END\n";
-    plots_.push_back(fmt::format("{} using 1:2 with {} {}", block, style,
-                                 title.empty() ? "notitle" : fmt::format("title {}", gnuplot_label(title))));
-  }
-  void end() {
-    if (plots_.empty()) return;
-    std::string plot = "plot ";
-    for (const std::string& one : plots_) plot += (plot.size() > 5 ? ", " : "") + one;
-    text_ += "reset\n" + data_ + settings_;
-    text_ += output("pngcairo size 1100,680 font 'Helvetica,13' background '#ffffff'", ".png") + plot + "\n";
-    text_ +=
-        output("svg size 1100,680 dynamic font 'Helvetica,14' background '#ffffff'", ".svg") + plot + "\n";
-  }
-
-  const std::string& text() const { return text_; }
-  const std::vector<std::string>& files() const { return files_; }
-
- private:
-  std::string output(const std::string& terminal, const std::string& ending) {
-    files_.push_back(name_ + ending);
-    return fmt::format("set terminal {}\nset output {}\n", terminal,
-                       gnuplot_file(directory_ + "/" + files_.back()));
-  }
-
-  std::string directory_, name_, settings_, data_, text_;
-  std::vector<std::string> plots_, files_;
-};
-
-std::string marks(const Series& series, double size) {
-  return fmt::format("points pt {} ps {} lc '{}'", kPointTypes[series.symbol], size, series.colour);
+Rows all_rows(size_t count) {
+  Rows rows(count);
+  std::iota(rows.begin(), rows.end(), 0);
+  return rows;
 }
 
-void draw_error_speed(const Results& results, const Measure& error, const Measure& speed, Script& script) {
+bool is_error(double value) { return std::isfinite(value) && value >= 0; }
+
+std::optional<Band> below_truth(const Measure& error, const ChartAxis& axis) {
+  if (error.floor <= axis.low) return std::nullopt;
+  return Band{std::min(error.floor, axis.high), "below: the truth's own error"};
+}
+
+Plotted marks_of(const Series& series, double size) {
+  return {series.name, series.colour, series.symbol, size, Stroke::none, 0, {}, {}};
+}
+
+// Between two points of the front the more exact one has to serve: a stair.
+Plotted stair_through(const Rows& front, const ChartAxis& x, const ChartAxis& y) {
+  Plotted stair{"Pareto front", "#222222", -1, 0, Stroke::solid, 1.5, {}, {}};
+  for (const size_t n : front) {
+    if (!stair.places.empty()) stair.places.emplace_back(x.values[n], stair.places.back().second);
+    stair.places.emplace_back(x.values[n], y.place(y.values[n]));
+  }
+  return stair;
+}
+
+Chart error_against_speed(const Results& results, const Measure& error, const Measure& speed) {
   const auto& outcomes = results.outcomes;
-  const auto shown = [&](size_t n) {
-    return error.value(outcomes[n]) >= 0 && speed.value(outcomes[n]) > 0 &&
-           std::isfinite(error.value(outcomes[n])) && std::isfinite(speed.value(outcomes[n]));
+  const std::vector<double> xs = values_of(results, speed), ys = values_of(results, error);
+  const Rows drawn = those(all_rows(outcomes.size()),
+                           [&](size_t n) { return std::isfinite(xs[n]) && xs[n] > 0 && is_error(ys[n]); });
+  Chart chart;
+  chart.id = fmt::format("{}_{}", file_word(error.id), speed.id);
+  chart.section = "error-speed";
+  chart.title = error.label + " against " + speed.label;
+  chart.caption = fmt::format(
+      "The better, the lower and the further to the {}. The line is the Pareto front: no other point is both "
+      "as "
+      "{} and as exact as one on it.",
+      speed.less_is_better ? "left" : "right", speed.less_is_better ? "cheap" : "fast");
+  chart.corner_left = speed.less_is_better;
+  chart.corner = chart.corner_left ? "↙ better" : "better ↘";
+  chart.x = decades_axis(speed.label, xs, drawn);
+  chart.y = decades_axis(error.label, ys, drawn);
+  chart.band = below_truth(error, chart.y);
+  chart.best = pareto_front(outcomes, error.value, [&](const Outcome& o) { return speed.merit(o); });
+  chart.plotted.push_back(stair_through(chart.best, chart.x, chart.y));
+  const auto is = [&](Status status) {
+    return [&, status](size_t n) {
+      return outcomes[n].status == status && std::ranges::binary_search(drawn, n);
+    };
   };
-  std::vector<double> xs, ys;
-  for (size_t n = 0; n < outcomes.size(); ++n)
-    if (shown(n)) xs.push_back(speed.value(outcomes[n])), ys.push_back(error.value(outcomes[n]));
-  const LogRange x = log_range(xs), y = log_range(ys);
-  const auto place = [&](size_t n) {
-    return std::pair{speed.value(outcomes[n]), y.placed(error.value(outcomes[n]))};
-  };
-  script.begin(fmt::format("{}_{}", file_word(error.id), speed.id));
-  script.key_of(series_of(results));
-  script.log_axis('x', speed.label, x, speed.less_is_better);
-  script.log_axis('y', error.label, y);
-  script.band(error.floor, y);
-
-  const auto front = pareto_front(outcomes, error.value, [&](const Outcome& o) { return speed.merit(o); });
-  std::vector<std::pair<double, double>> stair, rings, unstable;
-  for (size_t k = 0; k < front.size(); ++k) {
-    const auto at = place(front[k]);
-    // Between two points of the front the more exact one has to serve.
-    if (k > 0) stair.emplace_back(at.first, stair.back().second);
-    stair.push_back(at);
-    rings.push_back(at);
-  }
-  for (const Series& series : series_of(results)) {
-    std::vector<std::pair<double, double>> points;
-    for (const size_t n : series.points)
-      if (shown(n)) (outcomes[n].status == Status::done ? points : unstable).push_back(place(n));
-    script.plot(points, series.name, marks(series, 0.9));
-  }
-  script.plot(unstable, "unstable", "points pt 2 ps 0.7 lc '#777777'");
-  script.plot(stair, "Pareto front", "lines lw 1.5 lc '#222222'");
-  script.plot(rings, "", "points pt 6 ps 1.7 lw 1.5 lc '#222222'");
-  script.end();
-}
-
-void draw_parameter(const Results& results, const Parameter& parameter, const Measure& error,
-                    Script& script) {
-  const auto& outcomes = results.outcomes;
-  const auto shown = [&](size_t n) {
-    const double e = error.value(outcomes[n]);
-    return std::isfinite(parameter.x[n]) && e >= 0 && std::isfinite(e) && outcomes[n].status == Status::done;
-  };
-  std::vector<double> xs, ys;
-  for (size_t n = 0; n < outcomes.size(); ++n)
-    if (shown(n)) xs.push_back(parameter.x[n]), ys.push_back(error.value(outcomes[n]));
-  if (xs.empty()) return;
-  const LogRange y = log_range(ys);
-  std::string name = parameter.id;
-  std::replace(name.begin(), name.end(), '.', '-');
-  script.begin(fmt::format("{}_by_{}", file_word(error.id), file_word(name)));
-  script.key_of(series_of(results));
-  if (parameter.logarithmic) {
-    script.log_axis('x', parameter.label, log_range(xs));
-  } else {
-    const auto [low, high] = std::minmax_element(xs.begin(), xs.end());
-    const double margin = *high > *low ? 0.06 * (*high - *low) : 1;
-    script.set(fmt::format("xlabel {}", gnuplot_label(parameter.label)));
-    script.set(fmt::format("xrange [{}:{}]", *low - margin, *high + margin));
-    std::string tics;
-    for (size_t k = 0; k < parameter.names.size(); ++k)
-      tics += fmt::format("{}{} {}", k > 0 ? ", " : "", gnuplot_text(parameter.names[k]), k);
-    if (!tics.empty()) script.set("xtics noenhanced (" + tics + ")");
-  }
-  script.log_axis('y', error.label, y);
-  script.band(error.floor, y);
-  const auto place = [&](size_t n) { return std::pair{parameter.x[n], y.placed(error.value(outcomes[n]))}; };
-  for (const Series& series : series_of(results)) {
-    std::vector<std::pair<double, double>> points;
-    for (const size_t n : series.points)
-      if (shown(n)) points.push_back(place(n));
-    script.plot(points, series.name, marks(series, 0.8));
-    for (const Sweep& sweep : parameter.sweeps) {
-      if (std::find(series.points.begin(), series.points.end(), sweep.points.front()) == series.points.end())
-        continue;
-      std::vector<std::pair<double, double>> line;
-      for (const size_t n : sweep.points)
-        if (shown(n)) line.push_back(place(n));
-      script.plot(line, "", fmt::format("lines lw 0.8 lc '{}'", series.colour));
+  if (std::ranges::any_of(drawn,
+                          is(Status::unstable)))  // for the key; the marks have the colours of their series
+    chart.plotted.push_back({"unstable", kGrey, kCross, 9, Stroke::none, 0, {}, {}});
+  for (const Status status : {Status::unstable, Status::done})
+    for (const Series& series : series_of(results)) {
+      const Rows rows = those(series.points, is(status));
+      if (rows.empty()) continue;
+      Plotted marks = marks_of(series, 9);
+      marks.rows = {rows};
+      if (status == Status::unstable) marks.name = "unstable", marks.symbol = kCross;
+      chart.plotted.push_back(std::move(marks));
     }
-  }
-  int dash = 2;
-  for (const Order& order : expected_orders(results, parameter, error))
-    if (const auto line = order_line(results, parameter, error, order))
-      script.plot({line->first, line->second}, order.label,
-                  fmt::format("lines lw 1.8 dt {} lc '#000000'", dash++));
-  script.end();
+  return chart;
 }
 
-void draw_truth(const Results& results, Script& script) {
-  const auto& rungs = results.truth.rungs;
-  std::vector<std::pair<std::string, std::vector<std::pair<double, double>>>> lines{
-      {"trajectory, distance from the rung before, pitches", {}}};
-  for (const std::string& name : results.figure_names)
-    lines.push_back({name + ", relative distance from the last rung", {}});
-  std::vector<double> xs, ys;
-  const auto add = [&](size_t line, double dt, double value) {
-    if (!(value > 0) || !std::isfinite(value)) return;
-    lines[line].second.emplace_back(dt, value);
-    xs.push_back(dt), ys.push_back(value);
+// The straight line of an order, cut where it leaves the chart below.
+std::vector<Place> on_chart(const Line& line, const ChartAxis& x, const ChartAxis& y) {
+  const auto& [a, b] = line;
+  const auto at = [&](double t) {
+    return Place{x.logarithmic ? a.first * std::pow(b.first / a.first, t) : std::lerp(a.first, b.first, t),
+                 a.second * std::pow(b.second / a.second, t)};
   };
-  for (const Rung& rung : rungs) {
-    add(0, rung.dt, rung.trajectory);
-    for (size_t k = 0; k < results.figure_names.size(); ++k)
-      if (k < rung.figures.size() && k < rungs.back().figures.size())
-        add(k + 1, rung.dt, std::abs(rung.figures[k] / rungs.back().figures[k] - 1));
+  const double end = b.second >= y.low ? 1 : std::log(y.low / a.second) / std::log(b.second / a.second);
+  return {at(0), at(0.6 * end), at(end)};
+}
+
+Chart error_against_setting(const Results& results, const Parameter& parameter, const Measure& error) {
+  const std::vector<double> ys = values_of(results, error);
+  const auto has = [&](size_t n) {
+    return std::isfinite(parameter.x[n]) && is_error(ys[n]) && results.outcomes[n].status == Status::done;
+  };
+  const Rows drawn = those(all_rows(ys.size()), has);
+  Chart chart;
+  if (drawn.empty()) return chart;
+  std::string name = parameter.id;
+  std::ranges::replace(name, '.', '-');
+  chart.id = fmt::format("{}_by_{}", file_word(error.id), file_word(name));
+  chart.section = "settings";
+  chart.title = error.label + " against " + parameter.label;
+  chart.caption =
+      "Lines join points that differ in nothing else. Dashed and dotted: the orders that theory expects "
+      "where this "
+      "setting alone makes the error, through the least error at its coarsest value.";
+  chart.key = false;
+  chart.x = parameter.names.empty() ? close_axis(parameter.label, parameter.x, drawn, parameter.logarithmic)
+                                    : named_axis(parameter.label, parameter.x, parameter.names);
+  chart.y = decades_axis(error.label, ys, drawn);
+  chart.band = below_truth(error, chart.y);
+  for (const Series& series : series_of(results)) {
+    Plotted marks = marks_of(series, 7);
+    marks.stroke = Stroke::solid, marks.width = 1;
+    std::set<size_t> joined;
+    for (const Sweep& sweep : parameter.sweeps) {
+      const Rows rows = those(sweep.points, has);
+      if (rows.size() < 2 || !std::ranges::binary_search(series.points, rows[0])) continue;
+      joined.insert(rows.begin(), rows.end());
+      marks.rows.push_back(rows);
+    }
+    for (const size_t n : those(series.points, has))
+      if (!joined.contains(n)) marks.rows.push_back({n});
+    if (!marks.rows.empty()) chart.plotted.push_back(std::move(marks));
   }
+  bool dotted = false;
+  for (const Order& order : expected_orders(results, parameter, error))
+    if (const auto line = order_line(results, parameter, error, order)) {
+      chart.plotted.push_back({order.label,
+                               kBlack,
+                               -1,
+                               0,
+                               dotted ? Stroke::dotted : Stroke::dashed,
+                               1.5,
+                               {},
+                               on_chart(*line, chart.x, chart.y)});
+      dotted = !dotted;
+    }
+  return chart;
+}
+
+Chart change_by_rung(const Results& results) {
+  const auto& rungs = results.truth.rungs;
+  Chart chart;
   std::set<double> steps;
   for (const Rung& rung : rungs) steps.insert(rung.dt);
-  if (xs.empty() || steps.size() < 2) return;
-  script.begin("truth");
-  script.set("key below Left reverse noenhanced");
-  script.log_axis('x', "time step, s", log_range(xs), true);
-  script.log_axis('y', "change", log_range(ys));
-  static const char* const kColours[] = {"#0072b2", "#d55e00", "#00875f", "#aa4499", "#332288", "#7a6a00"};
-  for (size_t k = 0; k < lines.size(); ++k)
-    script.plot(
-        lines[k].second, lines[k].first,
-        fmt::format("linespoints pt {} ps 1 lw 1.2 lc '{}'", kPointTypes[k % kSymbols], kColours[k % 6]));
-  if (lines[0].second.size() > 1) {
-    const auto [dt, change] = lines[0].second.front();
-    const double last = lines[0].second.back().first;
-    script.plot({{dt, change}, {last, change * last / dt}}, "dt", "lines lw 1.5 dt 3 lc '#000000'");
-    script.plot({{dt, change}, {last, change * std::pow(last / dt, 2)}}, "dt^2",
-                "lines lw 1.5 dt 2 lc '#000000'");
-  }
-  script.end();
+  if (rungs.size() < 2) return chart;
+  const bool by_step = steps.size() == rungs.size();
+  std::vector<double> xs, ys;
+  const auto add_line = [&](const std::string& name, auto change_of) {
+    Rows rows;
+    for (size_t r = 0; r < rungs.size(); ++r) {
+      const double change = change_of(rungs[r]);
+      if (!(change > 0) || !std::isfinite(change)) continue;
+      rows.push_back(xs.size());
+      xs.push_back(by_step ? rungs[r].dt : static_cast<double>(r)), ys.push_back(change);
+      chart.tips.push_back(fmt::format("{}\nrung {}: {}", name, r + 1, number_text(change)));
+    }
+    const size_t k = chart.plotted.size();
+    chart.plotted.push_back(
+        {name, series_colour(k), static_cast<int>(k % kSymbols), 8, Stroke::solid, 2, {rows}, {}});
+  };
+  add_line("trajectory: distance from the rung before, pitches", [](const Rung& r) { return r.trajectory; });
+  for (size_t k = 0; k < results.figure_names.size(); ++k)
+    add_line(results.figure_names[k] + ": relative distance from the last rung", [&](const Rung& r) {
+      const auto& last = rungs.back().figures;
+      return k < r.figures.size() && k < last.size() ? std::abs(r.figures[k] / last[k] - 1) : kNotMeasured;
+    });
+  if (xs.empty()) return chart;
+  std::vector<std::string> names;
+  for (size_t r = 1; r <= rungs.size(); ++r) names.push_back(std::to_string(r));
+  const Rows drawn = all_rows(xs.size()), first = chart.plotted[0].rows[0];
+  chart.x = by_step ? decades_axis("time step, s", xs, drawn) : named_axis("rung", xs, names);
+  chart.y = decades_axis("change", ys, drawn);
+  if (by_step && first.size() > 1)
+    for (const auto& [name, order, stroke] :
+         {std::tuple{"dt", 1, Stroke::dotted}, std::tuple{"dt²", 2, Stroke::dashed}}) {
+      const double from = xs[first.front()], to = xs[first.back()], change = ys[first.front()];
+      chart.plotted.push_back({name,
+                               kBlack,
+                               -1,
+                               0,
+                               stroke,
+                               1.5,
+                               {},
+                               {{from, change}, {to, change * std::pow(to / from, order)}}});
+    }
+  chart.id = chart.section = "truth";
+  chart.title = "How much the truth changed with each rung of its refinement";
+  chart.caption =
+      fmt::format("The truth is refined from the {}.", by_step ? "right to the left" : "left to the right");
+  return chart;
 }
 
 }  // namespace
 
-std::vector<std::string> write_charts(const Results& results, const std::string& directory) {
-  make_directory(directory);
-  Script script(directory);
+std::vector<Chart> charts_of(const Results& results) {
   const std::vector<Measure> errors = error_measures(results), speeds = speed_measures(results);
-  for (const Measure& error : errors)
-    for (const Measure& speed : speeds) draw_error_speed(results, error, speed, script);
+  std::vector<Chart> charts;
+  const auto add = [&](Chart chart, std::optional<size_t> error, std::optional<size_t> speed) {
+    chart.error = error, chart.speed = speed;
+    if (std::ranges::any_of(chart.plotted, [](const Plotted& p) { return !p.rows.empty(); }) &&
+        !chart.id.empty())
+      charts.push_back(std::move(chart));
+  };
+  for (size_t e = 0; e < errors.size(); ++e)
+    for (size_t s = 0; s < speeds.size(); ++s) add(error_against_speed(results, errors[e], speeds[s]), e, s);
   for (const Parameter& parameter : swept_parameters(results))
-    for (const Measure& error : errors) draw_parameter(results, parameter, error, script);
-  draw_truth(results, script);
-  if (script.files().empty()) return {};
-  run_gnuplot(Scratch(), script.text());
-  for (const std::string& file : script.files())
-    if (!std::filesystem::exists(std::filesystem::path(directory) / file))
-      throw std::runtime_error(fmt::format("gnuplot made no {}/{}", directory, file));
-  return script.files();
+    for (size_t e = 0; e < errors.size(); ++e)
+      add(error_against_setting(results, parameter, errors[e]), e, std::nullopt);
+  add(change_by_rung(results), std::nullopt, std::nullopt);
+  return charts;
 }
 
 }  // namespace cuboct::study

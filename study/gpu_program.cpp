@@ -2,66 +2,26 @@
 #include "study/gpu_program.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
+#include <optional>
 #include <sstream>
 
+#include "hw/engines.h"
+#include "hw/program/remote.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
-#include "model/base/process.h"
 #include "study/interrupted.h"
 
 namespace cuboct::study {
 namespace {
 
-std::string program() { return program_directory() + "/cuboct-gpu"; }
-
-std::string text_in(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+std::string program() {
+  const std::string path = beside(std::ranges::find_if(engines(), &EngineRow::devices)->program);
+  if (path.empty()) throw InputError("no program cuboct-gpu beside this one");
+  return path;
 }
-
-std::string without(std::string text, const std::string& part) {
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part))
-    text.erase(at, part.size());
-  while (text.ends_with('\n')) text.pop_back();
-  return text;
-}
-
-// The program at work in a directory of its own. What it says is kept from the terminal.
-class Job {
- public:
-  // The exit code. A text of exit code 2 is an InputError's.
-  int run(const std::vector<std::string>& arguments) {
-    if (access(program().c_str(), X_OK) != 0) throw InputError("no program cuboct-gpu beside this one");
-    const int code = Process(program(), arguments, false, {path("said"), path("errors")}).wait();
-    if (interrupted()) throw Interrupted();
-    if (code == 2) throw InputError(errors());
-    return code;
-  }
-  std::string path(const std::string& name) const { return scratch_.path(name); }
-  std::string said() const { return text_in(path("said")); }
-  // Names of our files are of no use to others.
-  std::string errors() const { return without(text_in(path("errors")), scratch_.path("")); }
-  [[noreturn]] void fail(int code) const {
-    const std::string text = errors();
-    throw std::runtime_error(text.empty() && code < 0 ? fmt::format("cuboct-gpu was ended by signal {} ({})",
-                                                                    -code, strsignal(-code))
-                             : text.empty() ? fmt::format("cuboct-gpu ended with exit code {}", code)
-                                            : text);
-  }
-
- private:
-  Scratch scratch_;
-};
 
 // dt to its last bit, and what else of the run is the study's.
 std::string scene_text(const Case& c, const GpuRequest& request) {
@@ -80,62 +40,68 @@ const char* precision_of(Arithmetic arithmetic) {
   return arithmetic == Arithmetic::fixed ? "fixed" : arithmetic == Arithmetic::float32 ? "float" : "double";
 }
 
-// Files and options that every run has.
-std::vector<std::string> arguments_of(const Case& c, const Body& start, const GpuRequest& request,
-                                      const Job& job) {
-  write_text(job.path("scene.toml"), scene_text(c, request));
-  write_text(job.path("arch.toml"), c.arch_text);
-  Trace body;
-  body.engine = "study";
-  body.bodies.push_back({0, start.x, start.v, {}});
-  write_trace(job.path("start.h5"), body);
-  return {job.path("scene.toml"),
-          "--arch",
-          job.path("arch.toml"),
-          "--start",
-          job.path("start.h5"),
-          "--precision",
-          precision_of(c.settings.arithmetic),
-          "--steps",
-          std::to_string(request.steps)};
-}
+// A run in a directory of its own. What the program says is kept from the terminal.
+class Job {
+ public:
+  Job(const Case& c, const Body& start, const GpuRequest& request,
+      const std::vector<std::string>& more = {}) {
+    write_text(path("scene.toml"), scene_text(c, request));
+    write_text(path("arch.toml"), c.arch_text);
+    Trace body;
+    body.engine = "study";
+    body.bodies.push_back({0, start.x, start.v, {}});
+    write_trace(path("start.h5"), body);
+    RemoteRun run{program(), path("scene.toml"), path("arch.toml"), path("trace.h5")};
+    run.own = {"--start", path("start.h5"), "--precision", precision_of(c.settings.arithmetic)};
+    run.own.insert(run.own.end(), more.begin(), more.end());
+    run.unpacked = run.quiet = true;
+    run.request.steps = request.steps;
+    run.request.frames = request.keep;
+    run.request.energies = request.energies;
+    run.request.forces = request.forces;
+    run.request.hash_every = 0;  // work that nobody reads here
+    remote_.emplace(std::move(run));
+  }
+  Trace finish() try {
+    Trace trace = remote_->finish().trace;
+    if (interrupted()) throw Interrupted();
+    return trace;
+  } catch (const std::runtime_error&) {
+    if (interrupted()) throw Interrupted();
+    throw;
+  }
+  std::string said() const { return remote_->said(); }
+
+ private:
+  std::string path(const char* name) const { return scratch_.path(name); }
+
+  Scratch scratch_;
+  std::optional<Remote> remote_;
+};
 
 }  // namespace
 
 std::string find_gpu(std::string& why) {
   try {
-    Job job;
-    if (const int code = job.run({"--list"}); code != 0) job.fail(code);
-    std::istringstream lines(job.said());
-    std::string name;
-    std::getline(lines, name);
-    return name.substr(name.find(' ') + 1);  // behind the ordinal
+    const Scratch scratch;
+    const int code =
+        Process(program(), {"--list"}, false, {scratch.path("said"), scratch.path("errors")}).wait();
+    if (interrupted()) throw Interrupted();
+    if (code != 0) throw std::runtime_error(read_text(scratch.path("errors")));
+    const std::string line = read_text(scratch.path("said"));
+    return line.substr(line.find(' ') + 1, line.find('\n') - line.find(' ') - 1);  // behind the ordinal
   } catch (const Interrupted&) {
     throw;
   } catch (const std::runtime_error& error) {
     why = error.what();
+    while (why.ends_with('\n')) why.pop_back();
     std::ranges::replace(why, '\n', ' ');
     return "";
   }
 }
 
 Trace run_gpu(const Case& c, const Body& start, const GpuRequest& request) {
-  Job job;
-  std::vector<std::string> arguments = arguments_of(c, start, request, job);
-  const std::string out = job.path("trace.h5");
-  write_text(job.path("keep"), fmt::format("{}\n", fmt::join(request.keep, "\n")));
-  for (const std::string& word : {std::string("--frames-file"), job.path("keep"), std::string("--out"), out})
-    arguments.push_back(word);
-  // Hashes are work that nobody reads here.
-  if (c.settings.arithmetic == Arithmetic::fixed)
-    for (const std::string& word : {std::string("--hash-every"), std::to_string(request.steps + 1)})
-      arguments.push_back(word);
-  if (request.energies) arguments.emplace_back("--energies");
-  if (request.forces) arguments.emplace_back("--forces");
-  const int code = job.run(arguments);
-  // Exit code 1 with a trace: the run had to stop, and the trace says why.
-  if ((code != 0 && code != 1) || !std::filesystem::exists(out)) job.fail(code);
-  return read_trace(out);
+  return Job(c, start, request).finish();
 }
 
 std::vector<Vec3> gpu_forces(const Case& c, const Body& body) {
@@ -151,16 +117,10 @@ std::vector<Vec3> gpu_forces(const Case& c, const Body& body) {
 
 std::vector<double> gpu_rates(const Case& c, const Body& start, const GpuRequest& request, int repeats,
                               double seconds) {
-  Job job;
-  std::vector<std::string> arguments = arguments_of(c, start, request, job);
-  for (const std::string& word :
-       {std::string("--bench"), std::string("--repeats"), std::to_string(repeats), std::string("--seconds"),
-        fmt::format("{}", seconds), std::string("--out"), job.path("trace.h5")})
-    arguments.push_back(word);
-  const int code = job.run(arguments);
+  Job job(c, start, request,
+          {"--bench", "--repeats", std::to_string(repeats), "--seconds", fmt::format("{}", seconds)});
   std::vector<double> rates;
-  if (code == 1 && std::filesystem::exists(job.path("trace.h5"))) return rates;
-  if (code != 0) job.fail(code);
+  if (job.finish().stop) return rates;
   std::istringstream lines(job.said());
   for (std::string name, unit; lines >> name;) {
     double value = 0;

@@ -8,9 +8,8 @@
 #include <stdexcept>
 
 #include "emu/lattice/run.h"
-#include "hw/setup.h"
+#include "hw/engine_kind.h"
 #include "model/analysis/strain.h"
-#include "model/run/reference_engine.h"
 #include "study/gpu_program.h"
 
 namespace cuboct::study {
@@ -65,14 +64,7 @@ Run run_real(const Scene& scene, const Settings& settings, const RunRequest& req
   options.precision = settings.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
   options.threads = request.threads;
   const Body start = started_body(scene, settings.integrator == Integrator::semi_implicit_euler);
-  EngineKind kind;
-  kind.name = "reference";
-  kind.particles = start.size();
-  kind.fixed = kind.keeps_state = false;
-  kind.initial = [&](uint32_t id) { return scene.body.x[id]; };
-  kind.make = [&](CheckpointReader*, bool) {
-    return std::make_unique<ReferenceEngine>(scene, start, options, 1);
-  };
+  const EngineKind kind = reference_kind(scene, start, options, 1);
   std::vector<Body> kept;
   std::vector<Vec3> last;
   Run run = run_engine(scene, kind, request, per_sample, [&](uint64_t sample, const RunState& frame) {

@@ -34,6 +34,12 @@ std::vector<Measure> measured(const Results& results, std::vector<Measure> all) 
 
 }  // namespace
 
+std::vector<double> values_of(const Results& results, const Measure& measure) {
+  std::vector<double> values;
+  for (const Outcome& outcome : results.outcomes) values.push_back(measure.value(outcome));
+  return values;
+}
+
 double figure_floor(const Truth& truth, size_t n) {
   if (truth.rungs.size() < 2) return 0;
   const auto& last = truth.rungs.back().figures;

@@ -23,6 +23,8 @@ struct Measure {
   double merit(const Outcome& outcome) const { return less_is_better ? -value(outcome) : value(outcome); }
 };
 
+std::vector<double> values_of(const Results& results, const Measure& measure);
+
 // How much figure `n` moved at the last rung of the truth's refinement, relative to its value.
 double figure_floor(const Truth& truth, size_t n);
 

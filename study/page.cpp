@@ -3,177 +3,157 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
+#include "study/chart.h"
 #include "study/measures.h"
-#include "study/parameters.h"
 #include "study/series.h"
 #include "study/web.h"
 
 namespace cuboct::study {
 namespace {
 
-std::vector<double> values_of(const Results& results, const Measure& measure) {
-  std::vector<double> values;
-  for (const Outcome& outcome : results.outcomes) values.push_back(measure.value(outcome));
-  return values;
-}
-
 std::string measures_json(const Results& results, const std::vector<Measure>& measures) {
-  std::vector<std::string> items;
-  for (const Measure& measure : measures)
-    items.push_back(JsonObject()
-                        .add("id", json(measure.id))
-                        .add("label", json(measure.label))
-                        .add("less", json(measure.less_is_better))
-                        .add("floor", json(measure.floor))
-                        .add("values", json(values_of(results, measure)))
-                        .text());
-  return json_array(items);
+  return json_array(measures, [&](const Measure& measure) {
+    return json_object({{"id", json(measure.id)},
+                        {"label", json(measure.label)},
+                        {"less", json(measure.less_is_better)},
+                        {"values", json(values_of(results, measure))}});
+  });
 }
 
-// [error][speed]: the front, and the table by decades as [exponent or null, point].
-std::string choices_json(const Results& results, const std::vector<Measure>& errors,
+// [error][speed]: the table by decades, as [exponent or null, point].
+std::string decades_json(const Results& results, const std::vector<Measure>& errors,
                          const std::vector<Measure>& speeds) {
-  std::vector<std::string> by_error;
-  for (const Measure& error : errors) {
-    std::vector<std::string> by_speed;
-    for (const Measure& speed : speeds) {
-      const ValueOf merit = [&](const Outcome& outcome) { return speed.merit(outcome); };
-      std::vector<std::string> rows;
-      for (const Cheapest& row : cheapest_by_decade(results.outcomes, error.value, merit))
-        rows.push_back(fmt::format(
-            "[{},{}]", row.exponent == Cheapest::kExact ? "null" : std::to_string(row.exponent), row.point));
-      by_speed.push_back(JsonObject()
-                             .add("front", json(pareto_front(results.outcomes, error.value, merit)))
-                             .add("decades", json_array(rows))
-                             .text());
-    }
-    by_error.push_back(json_array(by_speed));
-  }
-  return json_array(by_error);
+  const auto row_json = [](const Cheapest& row) {
+    return fmt::format("[{},{}]", row.exponent == Cheapest::kExact ? "null" : std::to_string(row.exponent),
+                       row.point);
+  };
+  return json_array(errors, [&](const Measure& error) {
+    return json_array(speeds, [&](const Measure& speed) {
+      const auto merit = [&](const Outcome& outcome) { return speed.merit(outcome); };
+      return json_array(cheapest_by_decade(results.outcomes, error.value, merit), row_json);
+    });
+  });
 }
 
-std::string orders_json(const Results& results, const Parameter& parameter, const Measure& error) {
-  std::vector<std::string> orders;
-  for (const Order& order : expected_orders(results, parameter, error))
-    if (const auto line = order_line(results, parameter, error, order))
-      orders.push_back(
-          JsonObject()
-              .add("label", json(order.label))
-              .add("line", fmt::format("[[{},{}],[{},{}]]", json(line->first.first), json(line->first.second),
-                                       json(line->second.first), json(line->second.second)))
-              .text());
-  return json_array(orders);
+// Charts name their values by an index into `columns`: several share one.
+std::string axis_json(const ChartAxis& axis, std::vector<std::string>& columns) {
+  const std::string values = json(axis.values);
+  const auto at = std::ranges::find(columns, values) - columns.begin();
+  if (at == std::ssize(columns)) columns.push_back(values);
+  const auto tick_json = [](const Tick& tick) {
+    return json_array(std::array{json(tick.at), json(tick.label)});
+  };
+  return json_object({{"label", json(axis.label)},
+                      {"column", std::to_string(at)},
+                      {"logarithmic", json(axis.logarithmic)},
+                      {"decades", json(axis.decades)},
+                      {"range", json(std::vector{axis.low, axis.high})},
+                      {"ticks", json_array(axis.ticks, tick_json)}});
 }
 
-std::string parameters_json(const Results& results, const std::vector<Measure>& errors) {
-  std::vector<std::string> items;
-  for (const Parameter& parameter : swept_parameters(results)) {
-    std::vector<std::string> sweeps, orders;
-    for (const Sweep& sweep : parameter.sweeps) sweeps.push_back(json(sweep.points));
-    for (const Measure& error : errors) orders.push_back(orders_json(results, parameter, error));
-    items.push_back(JsonObject()
-                        .add("id", json(parameter.id))
-                        .add("label", json(parameter.label))
-                        .add("logarithmic", json(parameter.logarithmic))
-                        .add("names", json(parameter.names))
-                        .add("x", json(parameter.x))
-                        .add("sweeps", json_array(sweeps))
-                        .add("orders", json_array(orders))
-                        .text());
-  }
-  return json_array(items);
+std::string plotted_json(const Plotted& plotted) {
+  static constexpr const char* kStrokes[] = {"none", "solid", "dashed", "dotted"};
+  const auto place_json = [](const Place& place) { return json(std::vector{place.first, place.second}); };
+  return json_object({{"name", json(plotted.name)},
+                      {"colour", json(plotted.colour)},
+                      {"symbol", std::to_string(plotted.symbol)},
+                      {"size", json(plotted.size)},
+                      {"stroke", json(std::string(kStrokes[static_cast<size_t>(plotted.stroke)]))},
+                      {"width", json(plotted.width)},
+                      {"rows", json_array(plotted.rows, [](const Rows& rows) { return json(rows); })},
+                      {"places", json_array(plotted.places, place_json)}});
 }
 
-std::string series_json(const Results& results) {
-  std::vector<std::string> items;
-  for (const Series& series : series_of(results))
-    items.push_back(JsonObject()
-                        .add("name", json(series.name))
-                        .add("colour", json(series.colour))
-                        .add("symbol", std::to_string(series.symbol))
-                        .add("points", json(series.points))
-                        .text());
-  return json_array(items);
+std::string chart_json(const Chart& chart, std::vector<std::string>& columns) {
+  const auto index = [](std::optional<size_t> n) { return n ? std::to_string(*n) : "null"; };
+  return json_object(
+      {{"section", json(chart.section)},
+       {"error", index(chart.error)},
+       {"speed", index(chart.speed)},
+       {"title", json(chart.title)},
+       {"caption", json(chart.caption)},
+       {"x", axis_json(chart.x, columns)},
+       {"y", axis_json(chart.y, columns)},
+       {"plotted", json_array(chart.plotted, plotted_json)},
+       {"best", json(chart.best)},
+       {"band", chart.band ? json_array(std::array{json(chart.band->high), json(chart.band->text)}) : "null"},
+       {"corner", json(chart.corner)},
+       {"corner_left", json(chart.corner_left)},
+       {"key", json(chart.key)},
+       {"tips", json(chart.tips)}});
+}
+
+std::string series_json(const Series& series) {
+  return json_object({{"name", json(series.name)},
+                      {"colour", json(series.colour)},
+                      {"symbol", std::to_string(series.symbol)},
+                      {"points", json(series.points)}});
 }
 
 std::string changes_json(const std::vector<Change>& changes) {
-  std::vector<std::string> items;
-  for (const Change& change : changes) items.push_back(json(std::vector{change.key, change.value}));
-  return json_array(items);
+  return json_array(changes, [](const Change& c) { return json(std::vector{c.key, c.value}); });
 }
 
-std::string points_json(const Results& results) {
-  std::vector<std::string> items;
-  for (const Outcome& outcome : results.outcomes) {
-    const Settings& settings = outcome.settings;
-    items.push_back(JsonObject()
-                        .add("engine", json(settings.engine))
-                        .add("arithmetic", json(std::string(label(settings.arithmetic))))
-                        .add("integrator", json(std::string(label(settings.integrator))))
-                        .add("threads", on_gpu(settings) ? "null" : std::to_string(settings.threads))
-                        .add("machine", json(outcome.measured_on()))
-                        .add("scene", changes_json(settings.scene))
-                        .add("arch", changes_json(settings.arch))
-                        .add("status", json(std::string(label(outcome.status))))
-                        .add("why", json(outcome.why))
-                        .add("dt", json(outcome.dt))
-                        .add("pitch", json(outcome.pitch))
-                        .add("particles", std::to_string(outcome.particles))
-                        .add("steps", std::to_string(outcome.steps))
-                        .add("halo_bits", std::to_string(outcome.halo_bits))
-                        .add("table_bits", std::to_string(outcome.table_bits))
-                        .add("spread", json(outcome.speed.spread))
-                        .add("repeats", std::to_string(outcome.speed.repeats))
-                        .add("figures", json(outcome.errors.values))
-                        .text());
-  }
-  return json_array(items);
+std::string point_json(const Outcome& outcome) {
+  const Settings& settings = outcome.settings;
+  return json_object({{"engine", json(settings.engine)},
+                      {"arithmetic", json(std::string(label(settings.arithmetic)))},
+                      {"integrator", json(std::string(label(settings.integrator)))},
+                      {"threads", on_gpu(settings) ? "null" : std::to_string(settings.threads)},
+                      {"machine", json(outcome.measured_on())},
+                      {"scene", changes_json(settings.scene)},
+                      {"arch", changes_json(settings.arch)},
+                      {"status", json(std::string(label(outcome.status)))},
+                      {"why", json(outcome.why)},
+                      {"dt", json(outcome.dt)},
+                      {"particles", std::to_string(outcome.particles)},
+                      {"steps", std::to_string(outcome.steps)},
+                      {"halo_bits", std::to_string(outcome.halo_bits)},
+                      {"table_bits", std::to_string(outcome.table_bits)},
+                      {"spread", json(outcome.speed.spread)},
+                      {"repeats", std::to_string(outcome.speed.repeats)},
+                      {"figures", json(outcome.errors.values)}});
 }
 
-std::string truth_json(const Results& results) {
-  const Truth& truth = results.truth;
-  std::vector<std::string> rungs;
-  for (const Rung& rung : truth.rungs)
-    rungs.push_back(JsonObject()
-                        .add("dt", json(rung.dt))
-                        .add("cutoff", json(rung.cutoff))
-                        .add("figures", json(rung.figures))
-                        .add("trajectory", json(rung.trajectory))
-                        .add("change", json(rung.change))
-                        .text());
-  return JsonObject()
-      .add("rungs", json_array(rungs))
-      .add("figures", json(truth.figures))
-      .add("lyapunov_time", json(truth.lyapunov_time))
-      .add("floor", json(truth.floor))
-      .add("largest_frequency", json(truth.largest_frequency))
-      .add("converged", json(truth.converged))
-      .add("notes", json(truth.notes))
-      .text();
+std::string rung_json(const Rung& rung) {
+  return json_object({{"dt", json(rung.dt)},
+                      {"cutoff", json(rung.cutoff)},
+                      {"figures", json(rung.figures)},
+                      {"trajectory", json(rung.trajectory)},
+                      {"change", json(rung.change)}});
 }
 
 std::string data_of(const Results& results) {
   const std::vector<Measure> errors = error_measures(results), speeds = speed_measures(results);
-  return JsonObject()
-      .add("title", json(results.title))
-      .add("scene", json(results.scene))
-      .add("machine", json(results.machine))
-      .add("figure_names", json(results.figure_names))
-      .add("figure_units", json(results.figure_units))
-      .add("series", series_json(results))
-      .add("errors", measures_json(results, errors))
-      .add("speeds", measures_json(results, speeds))
-      .add("choices", choices_json(results, errors, speeds))
-      .add("parameters", parameters_json(results, errors))
-      .add("points", points_json(results))
-      .add("truth", truth_json(results))
-      .text();
+  const Truth& truth = results.truth;
+  std::vector<std::string> columns;
+  const std::string charts =
+      json_array(charts_of(results), [&](const Chart& chart) { return chart_json(chart, columns); });
+  return json_object({{"title", json(results.title)},
+                      {"scene", json(results.scene)},
+                      {"machine", json(results.machine)},
+                      {"figure_names", json(results.figure_names)},
+                      {"figure_units", json(results.figure_units)},
+                      {"series", json_array(series_of(results), series_json)},
+                      {"errors", measures_json(results, errors)},
+                      {"speeds", measures_json(results, speeds)},
+                      {"decades", decades_json(results, errors, speeds)},
+                      {"charts", charts},
+                      {"columns", json_array(columns)},
+                      {"points", json_array(results.outcomes, point_json)},
+                      {"truth", json_object({{"rungs", json_array(truth.rungs, rung_json)},
+                                             {"lyapunov_time", json(truth.lyapunov_time)},
+                                             {"floor", json(truth.floor)},
+                                             {"largest_frequency", json(truth.largest_frequency)},
+                                             {"converged", json(truth.converged)},
+                                             {"notes", json(truth.notes)}})}});
 }
 
 }  // namespace

@@ -19,9 +19,8 @@ bool has_page();
 std::string page_of(const Results& results);
 void write_page(const Results& results, const std::string& path);
 
-// The same charts as PNG and SVG, made by gnuplot, in a directory that is made where needed: each error
-// against each speed, each error against each varied setting, the truth's refinement. The names of the files,
-// without directory. Throws InputError where gnuplot is missing.
+// The same charts as PNG and SVG, made by gnuplot, in a directory that is made where needed: charts_of
+// study/chart.h. The names of the files, without directory. Throws InputError where gnuplot is missing.
 std::vector<std::string> write_charts(const Results& results, const std::string& directory);
 
 }  // namespace cuboct::study

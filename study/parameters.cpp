@@ -10,6 +10,8 @@
 #include <set>
 #include <tuple>
 
+#include "study/numbers.h"
+
 namespace cuboct::study {
 namespace {
 
@@ -183,11 +185,11 @@ std::vector<Order> expected_orders(const Results& results, const Parameter& para
   const bool motion = error.kind == Kind::trajectory || error.kind == Kind::figure;
   if ((!motion && error.kind != Kind::force) || !parameter.names.empty()) return {};
   if (parameter.id == "dt")
-    return motion ? std::vector<Order>{{"dt, where something damps", 1, 0, 0}, {"dt^2", 2, 0, 0}}
+    return motion ? std::vector<Order>{{"dt, where something damps", 1, 0, 0}, {"dt²", 2, 0, 0}}
                   : std::vector<Order>{};
   if (parameter.id == "scene.packing.pitch")
     return error.kind == Kind::figure
-               ? std::vector<Order>{{"pitch, of free surfaces", 1, 0, 0}, {"pitch^2, of the bulk", 2, 0, 0}}
+               ? std::vector<Order>{{"pitch, of free surfaces", 1, 0, 0}, {"pitch², of the bulk", 2, 0, 0}}
                : std::vector<Order>{};
   if (parameter.id == "arch.table.index_bits") {
     std::set<int> degrees;
@@ -195,7 +197,8 @@ std::vector<Order> expected_orders(const Results& results, const Parameter& para
       if (std::isfinite(parameter.x[n])) degrees.insert(degree_of(results.outcomes[n].settings));
     std::vector<Order> orders;
     for (const int degree : degrees)
-      orders.push_back({fmt::format("bins^-{}, degree {}", degree + 1, degree), 0, degree + 1.0, degree});
+      orders.push_back(
+          {fmt::format("bins{}, degree {}", superscript(-degree - 1), degree), 0, degree + 1.0, degree});
     return orders;
   }
   // The guard's bits are of velocities, which no force depends on.

@@ -13,7 +13,7 @@ namespace cuboct::study {
 
 // How an error grows with a parameter x where that parameter alone makes it.
 struct Order {
-  std::string label;          // "dt^2"
+  std::string label;          // "dt²"
   double power = 0;           // error ~ x^power
   double halvings = 0;        // error ~ 2^(-halvings x): x counts bits
   int degree = 0;             // of the table's polynomials, where this holds for one degree only

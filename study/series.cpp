@@ -16,6 +16,8 @@ constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#00875f", "
 
 }  // namespace
 
+const char* series_colour(size_t k) { return kColours[k % kColours.size()]; }
+
 const char* label(Arithmetic arithmetic) {
   return arithmetic == Arithmetic::float64 ? "double" : arithmetic == Arithmetic::float32 ? "float" : "fixed";
 }
@@ -44,7 +46,7 @@ std::vector<Series> series_of(const Results& results) {
   std::vector<Series> all;
   const auto add = [&](const std::string& name) {
     const size_t k = all.size();
-    all.push_back({name, kColours[k % kColours.size()], static_cast<int>(k % kSymbols), {}});
+    all.push_back({name, series_colour(k), static_cast<int>(k % kSymbols), {}});
     return all.end() - 1;
   };
   for (const char* name : kKnown) add(name);

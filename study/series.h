@@ -17,6 +17,9 @@ struct Series {
 };
 
 inline constexpr int kSymbols = 6;  // circle, square, triangle, diamond, inverted triangle, pentagon
+inline constexpr int kCross = 6;    // of what is unstable
+
+const char* series_colour(size_t k);
 
 const char* label(Arithmetic arithmetic);  // "double", "float", "fixed"
 const char* label(Status status);

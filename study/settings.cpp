@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "hw/engines.h"
 #include "model/base/error.h"
 #include "model/scene/config.h"
 
@@ -52,9 +53,15 @@ std::string Settings::key() const {
                                          : numbers_key();
 }
 
+bool on_gpu(const Settings& settings) {
+  const EngineRow* row = find_engine(settings.engine);
+  return row && row->devices;
+}
+
 Case resolve(const Base& base, const Settings& settings) {
   const bool fixed = settings.arithmetic == Arithmetic::fixed;
-  if (settings.engine == "reference" ? fixed : settings.engine == "lattice" && !fixed)
+  const EngineRow* row = find_engine(settings.engine);
+  if (row && !(fixed ? row->bits : row->real))
     throw InputError(fmt::format("engine '{}' does not know {} arithmetic", settings.engine,
                                  name_of(settings.arithmetic)));
   if (settings.integrator != Integrator::semi_implicit_euler && (fixed || on_gpu(settings)))

@@ -47,7 +47,11 @@ struct Settings {
   std::string key() const;
   bool operator==(const Settings&) const = default;
 };
-inline bool on_gpu(const Settings& settings) { return settings.engine == "gpu"; }
+// Of an arithmetic where no engine is named.
+inline const char* default_engine(Arithmetic arithmetic) {
+  return arithmetic == Arithmetic::fixed ? "lattice" : "reference";
+}
+bool on_gpu(const Settings& settings);
 
 // The resolved scene and arch of some settings. Throws InputError: the scene or arch that results is wrong
 // (its text says which key), or engine and arithmetic do not go together.

@@ -184,7 +184,7 @@ Study read_study(const std::string& path) {
   study.title = root.string_or("title", "");
   study.base = read_changed_base(root, path);
   Settings plain;
-  plain.engine = "reference";
+  plain.engine = default_engine(Arithmetic::float64);
   plain.arithmetic = Arithmetic::float64;
   const Scene scene = resolve(study.base, plain).scene;
   read_grid(root, scene, study);

@@ -23,8 +23,7 @@ double error_of(const Results& results, const Outcome& outcome) {
 
 std::string short_name(const Settings& settings) {
   std::string text = name_of(settings.arithmetic);
-  if (settings.engine != "lattice" && settings.engine != "reference")
-    text = line_text(settings.engine) + " " + text;
+  if (settings.engine != default_engine(settings.arithmetic)) text = line_text(settings.engine) + " " + text;
   if (settings.arithmetic != Arithmetic::fixed)
     text += settings.integrator == Integrator::velocity_verlet ? " verlet" : " euler";
   const auto add = [&](const Change& change) {

@@ -29,7 +29,7 @@ constexpr double kSamplingTolerances = 10;
 
 Settings verlet_in_doubles() {
   Settings settings;
-  settings.engine = "reference";
+  settings.engine = default_engine(Arithmetic::float64);
   settings.arithmetic = Arithmetic::float64;
   settings.integrator = Integrator::velocity_verlet;
   return settings;

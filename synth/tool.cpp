@@ -89,12 +89,4 @@ std::string complaint_of(const std::string& log) {
   return complaint.empty() ? last : complaint;
 }
 
-std::string read_text(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", file));
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 }  // namespace cuboct::synth

@@ -46,7 +46,4 @@ std::string first_line(const std::string& program, const std::string& argument);
 // all.
 std::string complaint_of(const std::string& log);
 
-// A file as text. Throws std::runtime_error.
-std::string read_text(const std::string& file);
-
 }  // namespace cuboct::synth

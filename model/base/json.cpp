@@ -33,10 +33,11 @@ std::string json(const std::vector<std::string>& texts) {
   return json_array(items);
 }
 
-JsonObject& JsonObject::add(const std::string& name, const std::string& value_as_json) {
-  if (!members_.empty()) members_ += ",\n";
-  members_ += json(name) + ":" + value_as_json;
-  return *this;
+std::string json_object(std::initializer_list<std::pair<const char*, std::string>> members) {
+  std::string text;
+  for (const auto& [name, value] : members)
+    text += (text.empty() ? "" : ",\n") + json_text(name) + ":" + value;
+  return "{" + text + "}";
 }
 
 }  // namespace cuboct

@@ -2,7 +2,9 @@
 // JSON text that may stand inside a script element of HTML.
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cuboct {
@@ -20,14 +22,15 @@ std::string json(const std::vector<double>& values);
 std::string json(const std::vector<size_t>& values);
 std::string json(const std::vector<std::string>& texts);
 
-// {"a":1,"b":[2]}
-class JsonObject {
- public:
-  JsonObject& add(const std::string& name, const std::string& value_as_json);
-  std::string text() const { return "{" + members_ + "}"; }
+// The array of what `text_of` makes of each item, as JSON.
+template <typename T, typename TextOf>
+std::string json_array(const T& items, TextOf text_of) {
+  std::vector<std::string> texts;
+  for (const auto& item : items) texts.push_back(text_of(item));
+  return json_array(texts);
+}
 
- private:
-  std::string members_;
-};
+// {"a":1,"b":[2]}, of values that are JSON already.
+std::string json_object(std::initializer_list<std::pair<const char*, std::string>> members);
 
 }  // namespace cuboct

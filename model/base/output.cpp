@@ -11,7 +11,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <sstream>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -64,6 +67,14 @@ void make_directory(const std::string& path) {
     error = std::make_error_code(std::errc::not_a_directory);
   if (error)
     throw InputError(fmt::format("cannot make the directory {}: {}", path, std::strerror(error.value())));
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", path));
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
 }
 
 void write_whole(const std::string& path, const std::function<void(const std::string&)>& write) {

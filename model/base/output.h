@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files that a run leaves: checked before the work starts, whole or not there at all.
+// Files that a run leaves: checked before the work starts, whole or not there at all. And read again.
 #pragma once
 
 #include <sys/types.h>
@@ -21,6 +21,9 @@ void check_writable(const std::string& path);
 
 // Makes the directory and those above it. Throws InputError ("cannot make the directory PATH: REASON").
 void make_directory(const std::string& path);
+
+// What is in a file. Throws std::runtime_error.
+std::string read_text(const std::string& path);
 
 // Calls `write` with a temporary name beside `path`, then renames that file to `path`. Where `write` throws,
 // the temporary file is removed and `path` stays as it was. Throws InputError where the rename fails.

@@ -155,6 +155,11 @@ std::string program_directory() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
 }
 
+std::string beside(const std::string& program) {
+  const std::string path = program_directory() + "/" + program;
+  return access(path.c_str(), X_OK) == 0 ? path : "";
+}
+
 bool in_path(const std::string& program) {
   const char* path = std::getenv("PATH");
   std::istringstream directories(path ? path : "");

@@ -43,6 +43,8 @@ void end_with_starter();
 
 // Directory of the running program: engines with heavy needs are programs of their own, beside it.
 std::string program_directory();
+// The path of a program there; empty where it has none.
+std::string beside(const std::string& program);
 
 // Whether a directory of PATH has it.
 bool in_path(const std::string& program);

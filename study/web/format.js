@@ -19,6 +19,7 @@ function number(x, digits = 4) {
 
 const escape_html = (text) => String(text).replace(/[<>&"]/g, (c) => ({"<": "&lt;", ">": "&gt;", "&": "&amp;", '"': "&quot;"})[c]);
 
+for (const {x, y} of study.charts) for (const axis of [x, y]) axis.values = study.columns[axis.column];
 const series_of_point = [];
 for (const series of study.series) for (const n of series.points) series_of_point[n] = series;
 

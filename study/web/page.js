@@ -2,13 +2,13 @@
 // Puts the page together: selectors, charts, tables.
 "use strict";
 
-// Indices of what the charts show.
-const state = {error: 0, speed: 0};
+// What the reader chose: the measures' indices, the table's order and its marked point.
+const state = {error: 0, speed: 0, sorted: "", down: false, chosen: -1};
 
 function draw() {
-  draw_error_speed();
-  draw_parameters();
+  draw_charts();
   fill_decades();
+  fill_points();
 }
 
 function fill_select(id, measures, key) {
@@ -62,9 +62,9 @@ fill_select("speed", study.speeds, "speed");
 summarise();
 draw_series_names();
 draw();
-draw_truth();
 fill_rungs();
-fill_points();
+for (const [id, event] of [["filter", "input"], ["status", "change"]])
+  document.getElementById(id).addEventListener(event, () => { draw_charts(); filter_points(); });
 
 function fit(width) {
   for (const chart of charts) chart.resize(width ? {width} : {width: "auto"});
@@ -74,8 +74,7 @@ window.addEventListener("resize", () => {
   fit();
   if (narrow() !== was_narrow) {
     was_narrow = narrow();
-    draw();
-    draw_truth();
+    draw_charts();
   }
 });
 window.addEventListener("beforeprint", () => fit(680));

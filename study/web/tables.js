@@ -20,7 +20,7 @@ function fill_decades() {
   table.replaceChildren();
   const error = study.errors[state.error], speed = study.speeds[state.speed];
   if (!error || !speed) return;
-  const decades = study.choices[state.error][state.speed].decades;
+  const decades = study.decades[state.error][state.speed];
   table.append(element("thead"), element("tbody"));
   table.tHead.append(row_of([element("th", "error at most"), element("th", speed.label, "number"), element("th", "error", "number"),
     element("th", "series"), element("th", "settings"),
@@ -59,16 +59,19 @@ function point_columns() {
     return text !== "" && Number.isFinite(as_number) ? as_number : text;
   }});
   const of = (name, field, is_number) => ({name, value: (n) => study.points[n][field], number: is_number});
+  const measures = (all) => all.map((m) => ({name: m.label, value: (n) => m.values[n], number: true}));
+  const chosen = [study.errors[state.error], study.speeds[state.speed]].filter((m) => m);
+  const others = (all) => measures(all.filter((m) => !chosen.includes(m)));
   return [
     {name: "point", value: (n) => n + 1, number: true}, of("engine", "engine"), of("arithmetic", "arithmetic"),
+    ...measures(chosen), of("status", "status"), of("threads", "threads", true), of("integrator", "integrator"),
     ...(study.points.some((p) => p.machine) ? [of("machine", "machine")] : []),
-    of("status", "status"), of("threads", "threads", true), of("integrator", "integrator"),
     ...keys("scene").map((key) => change("scene", key)), ...keys("arch").map((key) => change("arch", key)),
     of("time step, s", "dt", true),
-    ...study.errors.map((e) => ({name: e.label, value: (n) => e.values[n], number: true})),
+    ...others(study.errors),
     ...study.figure_names.map((name, k) => ({name: name + (study.figure_units[k] ? ", " + study.figure_units[k] : ""),
       value: (n) => study.points[n].figures[k] ?? null, number: true})),
-    ...study.speeds.map((s) => ({name: s.label, value: (n) => s.values[n], number: true})),
+    ...others(study.speeds),
     of("spread of the repeats", "spread", true), of("bits of a record", "halo_bits", true), of("bits of the tables", "table_bits", true),
     of("particles", "particles", true), of("steps", "steps", true), of("why", "why"),
   ];
@@ -81,19 +84,24 @@ function compare_values(a, b) {
   return String(a) < String(b) ? -1 : String(a) > String(b) ? 1 : 0;
 }
 
+// Stands in the order in which the reader sorted it last.
 function fill_points() {
   const table = document.getElementById("points");
   const columns = point_columns();
-  table.append(element("thead"), element("tbody"));
-  table.tHead.append(row_of(columns.map((column, c) => {
+  table.replaceChildren(element("thead"), element("tbody"));
+  table.tHead.append(row_of(columns.map((column) => {
     const head = element("th", undefined, column.number ? "number" : "");
     const button = element("button", column.name);
     button.type = "button";
-    button.addEventListener("click", () => sort_points(c));
+    button.addEventListener("click", () => {
+      state.down = state.sorted === column.name && !state.down;
+      state.sorted = column.name;
+      sort_points();
+    });
     head.append(button);
     return head;
   })));
-  const rows = study.points.map((point, n) => {
+  table.tBodies[0].append(...study.points.map((point, n) => {
     const row = row_of(columns.map((column) => {
       const value = column.value(n);
       const kind = column.name === "status" && value !== "done" ? value : column.name === "why" ? "why" : "name";
@@ -101,42 +109,43 @@ function fill_points() {
         column.number || typeof value === "number" ? "number" : kind);
     }));
     row.dataset.point = n;
+    row.classList.toggle("chosen", n === state.chosen);
     return row;
-  });
-  table.tBodies[0].append(...rows);
+  }));
 
-  function sort_points(c) {
-    const heads = table.tHead.rows[0].cells;
-    const down = heads[c].getAttribute("aria-sort") === "ascending";
-    for (const head of heads) head.removeAttribute("aria-sort");
-    heads[c].setAttribute("aria-sort", down ? "descending" : "ascending");
-    const value = columns[c].value;
-    const order = [...rows].sort((a, b) => {
+  function sort_points() {
+    const by = columns.findIndex((column) => column.name === state.sorted);
+    if (by < 0) return;
+    for (const head of table.tHead.rows[0].cells) head.removeAttribute("aria-sort");
+    table.tHead.rows[0].cells[by].setAttribute("aria-sort", state.down ? "descending" : "ascending");
+    const order = [...table.tBodies[0].rows].sort((a, b) => {
       const n = Number(a.dataset.point), m = Number(b.dataset.point);
-      const d = compare_values(value(n), value(m));
-      return d === 0 || Number.isNaN(d) ? n - m : Number.isFinite(d) && down ? -d : d;
+      const d = compare_values(columns[by].value(n), columns[by].value(m));
+      return d === 0 || Number.isNaN(d) ? n - m : Number.isFinite(d) && state.down ? -d : d;
     });
     table.tBodies[0].replaceChildren(...order);
   }
+  sort_points();
+  filter_points();
+}
 
-  const filter = document.getElementById("filter"), status = document.getElementById("status");
-  const update = () => {
-    let count = 0;
-    for (const row of rows) {
-      const point = study.points[Number(row.dataset.point)];
-      const text = settings_of(point).flat().concat(point.machine, point.why).join(" ").toLowerCase();
-      row.hidden = (status.value !== "" && point.status !== status.value) || !text.includes(filter.value.toLowerCase());
-      if (!row.hidden) ++count;
-    }
-    document.getElementById("shown").textContent = `${count} of ${rows.length}`;
-  };
-  filter.addEventListener("input", update);
-  status.addEventListener("change", update);
-  update();
+// Whether the reader's filter lets a point through.
+function is_shown(n) {
+  const point = study.points[n], word = document.getElementById("filter").value.toLowerCase();
+  const status = document.getElementById("status").value;
+  const text = settings_of(point).flat().concat(point.machine, point.why).join(" ").toLowerCase();
+  return (status === "" || point.status === status) && text.includes(word);
+}
+
+function filter_points() {
+  const rows = [...document.getElementById("points").tBodies[0].rows];
+  for (const row of rows) row.hidden = !is_shown(Number(row.dataset.point));
+  document.getElementById("shown").textContent = `${rows.filter((row) => !row.hidden).length} of ${rows.length}`;
 }
 
 // Shows a point's row.
 function choose(n) {
+  state.chosen = n;
   for (const row of document.querySelectorAll("#points tr.chosen")) row.classList.remove("chosen");
   const row = document.querySelector(`#points tr[data-point="${n}"]`);
   row.hidden = false;

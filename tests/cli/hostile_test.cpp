@@ -8,9 +8,9 @@
 #include <functional>
 #include <sstream>
 
-#include "cli/plot.h"
-#include "cli/raster_plot.h"
 #include "model/base/text.h"
+#include "model/trace/plot.h"
+#include "model/trace/raster_plot.h"
 #include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 #include "tests/support/hostile.h"

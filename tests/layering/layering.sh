@@ -23,6 +23,7 @@ declare -A may=(
   [emu/board]="model hw emu/machine"
   [gpu_ref]="model hw"
   [study]="model hw emu/lattice"
+  [study/bench]="model hw emu/lattice gpu_ref"
   [cli]="model hw synth emu gpu_ref study"
 )
 

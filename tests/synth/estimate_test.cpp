@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "model/base/output.h"
 #include "model/base/process.h"
 #include "synth/tool.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures: the renderer that leaves out what is hidden against one that draws every sphere.
-#include "cli/render.h"
+#include "model/trace/render.h"
 
 #include <gtest/gtest.h>
 

@@ -68,21 +68,22 @@ async function charts_are_there(page, study) {
   assert.equal(await page.textContent("h1"), study.title);
   assert.match(await page.textContent("#summary"),
     /^265 points: 246 done, 17 unstable, 2 refused\. Machine: no machine: made-up numbers, 4 cores; of some points a <made-up> GPU\.$/);
-  assert.equal((await page.$$(".chart svg")).length, 2 + study.parameters.length);
-  assert.ok(study.parameters.length >= 6);
-  assert.ok((await texts(page, "error-speed")).includes("relative error of the worst figure"));
+  const settings = study.charts.filter((c) => c.section === "settings" && c.error === 0).length;
+  assert.ok(settings >= 6);
+  assert.equal((await page.$$(".chart svg")).length, 2 + settings);
+  assert.ok((await texts(page, "error-speed-0")).includes("relative error of the worst figure"));
   await page.selectOption("#error", {label: "distance from the true trajectory, pitches (rms)"});
-  const drawn = await texts(page, "error-speed");
+  const drawn = await texts(page, "error-speed-0");
   for (const text of ["lattice, fixed", "reference, double", "reference, float", "gpu, float (a <made-up> GPU)", "fpga, fixed", "Pareto front",
     "distance from the true trajectory, pitches (rms)", "simulated seconds per second", "below: the truth's own error"])
     assert.ok(drawn.includes(text), `the chart does not say '${text}': ${drawn}`);
   // As many marks as there are points with both numbers.
-  const marks = await page.$$eval("#error-speed svg path", (all, colours) => all.filter((p) =>
+  const marks = await page.$$eval("#error-speed-0 svg path", (all, colours) => all.filter((p) =>
     colours.includes((p.getAttribute("fill") || "").toLowerCase())).length, study.series.map((s) => s.colour));
   const expected = study.points.filter((p, n) => p.status === "done" && study.errors.find((e) => e.id === "trajectory").values[n] !== null).length;
   assert.equal(expected, 246);
   assert.ok(marks >= expected && marks <= expected + study.series.length, `${marks} marks of ${expected} points`);
-  assert.ok((await texts(page, "truth-chart")).includes("dt²"));
+  assert.ok((await texts(page, "truth-0")).includes("dt²"));
   assert.match(await page.textContent("#truth-text"), /^Errors are measured against a run in doubles, its time step halved 5 times\. Its figures/);
   assert.deepEqual(await page.$$eval("#truth-notes li", (all) => all.map((note) => note.textContent)),
     ["strength changes by 2.3 % if every second sample is left out: more 'samples'", "a <second> note & more"]);
@@ -96,11 +97,11 @@ const series_name = (point) => `${point.engine}, ${point.arithmetic}` + (point.m
 async function hovering_tells_settings(page, study) {
   const error = study.errors.find((e) => e.id === "trajectory");
   const seen = new Set();
-  await bring(page, "error-speed");
-  for (const mark of await lone_marks(page, "error-speed")) {
+  await bring(page, "error-speed-0");
+  for (const mark of await lone_marks(page, "error-speed-0")) {
     const point = study.points[mark.point], name = `${point.engine}, ${point.arithmetic}`;
     if (seen.has(series_name(point))) continue;
-    const text = await hover(page, "error-speed", mark);
+    const text = await hover(page, "error-speed-0", mark);
     assert.ok(text.startsWith(`Point ${mark.point + 1}engine${name}`), `hovering point ${mark.point + 1} shows: ${text}`);
     for (const [key, value] of [...point.scene, ...point.arch]) assert.ok(text.includes(key + value), `${key} = ${value} is not in: ${text}`);
     const shown = as_number(text.split(error.label)[1].match(/^[-0-9.]+(·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?/)[0]);
@@ -111,16 +112,16 @@ async function hovering_tells_settings(page, study) {
   }
   assert.deepEqual([...seen].sort(), study.series.map((s) => s.name).sort());
   // The settings' charts tell as much.
-  await bring(page, "parameter-0");
-  const [mark] = await lone_marks(page, "parameter-0");
-  assert.ok((await hover(page, "parameter-0", mark)).startsWith(`Point ${mark.point + 1}engine`));
+  await bring(page, "settings-0");
+  const [mark] = await lone_marks(page, "settings-0");
+  assert.ok((await hover(page, "settings-0", mark)).startsWith(`Point ${mark.point + 1}engine`));
 }
 
 async function pressing_a_mark_finds_its_row(page) {
-  await bring(page, "error-speed");
-  const [mark] = await lone_marks(page, "error-speed");
+  await bring(page, "error-speed-0");
+  const [mark] = await lone_marks(page, "error-speed-0");
   // A busy machine takes its time to draw, and to answer.
-  await hover(page, "error-speed", mark);
+  await hover(page, "error-speed-0", mark);
   await page.mouse.click(mark.x, mark.y);
   await page.waitForSelector("#points tr.chosen", {state: "attached", timeout: 20000});
   const chosen = await page.$$eval("#points tr.chosen", (rows) => rows.map((r) => r.cells[0].textContent));
@@ -131,7 +132,7 @@ async function selectors_change_charts(page, study) {
   const table = () => page.textContent("#decades");
   const before = await table();
   await page.selectOption("#error", {label: "change of momentum, of the sum of |m v|"});
-  let drawn = await texts(page, "error-speed");
+  let drawn = await texts(page, "error-speed-0");
   assert.ok(drawn.includes("change of momentum, of the sum of |m v|") && !drawn.includes("distance from the true trajectory, pitches (rms)"));
   // Fixed engines keep momentum to the last bit: an error of 0 has a place on the logarithmic axis.
   assert.ok(drawn.includes("0"), `no place for an error of 0: ${drawn}`);
@@ -139,30 +140,32 @@ async function selectors_change_charts(page, study) {
   const first = await page.$eval("#decades tbody tr:last-child th", (cell) => cell.textContent);
   assert.equal(first, "0");
   assert.notEqual(await table(), before);
-  assert.ok((await texts(page, "parameter-0")).includes("change of momentum, of the sum of |m v|"));
+  assert.ok((await texts(page, "settings-0")).includes("change of momentum, of the sum of |m v|"));
 
   const by_cost = await table();
   await page.selectOption("#speed", {label: "cost, transistors x time per simulated second (less is better)"});
-  drawn = await texts(page, "error-speed");
+  drawn = await texts(page, "error-speed-0");
   assert.ok(drawn.includes("cost, transistors x time per simulated second (less is better)"));
   assert.notEqual(await table(), by_cost);
-  // The better is to the right: the cheapest point stands furthest there.
+  // Axes run from left to right: the cheapest point stands furthest to the left, and the chart says so.
   const places = await page.evaluate(() => {
-    const chart = echarts.getInstanceByDom(document.getElementById("error-speed"));
+    const chart = echarts.getInstanceByDom(document.getElementById("error-speed-0"));
     return chart.getOption().series.flatMap((s, k) => s.data.filter((d) => d.point !== undefined)
       .map((d) => [d.value[0], chart.convertToPixel({seriesIndex: k}, d.value)[0]]));
   });
   places.sort((a, b) => a[0] - b[0]);
-  assert.ok(places[0][1] > places[places.length - 1][1]);
+  assert.ok(places[0][1] < places[places.length - 1][1]);
+  assert.ok(drawn.includes("↙ better"), `no better corner: ${drawn}`);
+  assert.match(await page.textContent("#error-speed + .note"), /further to the left/);
 
   await page.selectOption("#error", {label: "relative error of Young's modulus"});
   await page.selectOption("#speed", {label: "particle-steps per second"});
-  drawn = await texts(page, "error-speed");
+  drawn = await texts(page, "error-speed-0");
   assert.ok(drawn.includes("relative error of Young's modulus") && drawn.includes("particle-steps per second"));
   await page.selectOption("#error", {label: "distance from the true trajectory, pitches (rms)"});
   await page.selectOption("#speed", {label: "simulated seconds per second"});
   assert.equal(await table(), before);
-  assert.equal(study.choices.length, study.errors.length);
+  assert.equal(study.decades.length, study.errors.length);
 }
 
 async function tables_sort_and_filter(page, study) {
@@ -194,22 +197,37 @@ async function tables_sort_and_filter(page, study) {
   assert.equal(rows.length, 4);
   assert.ok(rows.some((r) => r.includes("left the truth by 44 pitches at the horizon")));
   assert.equal(await page.textContent("#shown"), "4 of 265");
+  // The charts show what the table does: of the four one is unstable, and has no such error.
+  const drawn = () => page.evaluate(() => ["error-speed-0", "settings-0"].map((id) => echarts.getInstanceByDom(document.getElementById(id)).getOption()
+    .series.flatMap((s) => (s.data || []).filter((d) => d.point !== undefined).map((d) => study.points[d.point].engine))));
+  assert.deepEqual(await drawn(), [["fpga", "fpga", "fpga"], ["fpga", "fpga", "fpga"]]);
   await page.fill("#filter", "");
+  assert.ok((await drawn()).every((engines) => engines.length >= 246));
+}
+
+// Of the chosen error and speed, beside the first columns of the settings.
+async function table_shows_what_was_chosen(page) {
+  for (const error of ["change of momentum, of the sum of |m v|", "distance from the true trajectory, pitches (rms)"]) {
+    await page.selectOption("#error", {label: error});
+    const heads = await page.$$eval("#points th", (all) => all.filter((th) => th.getBoundingClientRect().right <= 1280).map((th) => th.textContent));
+    for (const name of ["point", "engine", error, "simulated seconds per second", "threads"])
+      assert.ok(heads.includes(name), `no '${name}' within 1280 pixels: ${heads}`);
+  }
 }
 
 async function zooms_and_comes_back(page) {
-  const ends = () => page.evaluate(() => echarts.getInstanceByDom(document.getElementById("error-speed")).getOption().dataZoom.map((z) => z.end - z.start));
-  await bring(page, "error-speed");
-  const box = await page.locator("#error-speed").boundingBox();
+  const ends = () => page.evaluate(() => echarts.getInstanceByDom(document.getElementById("error-speed-0")).getOption().dataZoom.map((z) => z.end - z.start));
+  await bring(page, "error-speed-0");
+  const box = await page.locator("#error-speed-0").boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.keyboard.down("Shift");
   await page.mouse.wheel(0, -240);
   await page.keyboard.up("Shift");
   await page.waitForFunction(() => {
-    const [x] = echarts.getInstanceByDom(document.getElementById("error-speed")).getOption().dataZoom;
+    const [x] = echarts.getInstanceByDom(document.getElementById("error-speed-0")).getOption().dataZoom;
     return x.end - x.start < 100;
   }, undefined, {timeout: 20000});
-  await page.evaluate(() => echarts.getInstanceByDom(document.getElementById("error-speed")).dispatchAction({type: "restore"}));
+  await page.evaluate(() => echarts.getInstanceByDom(document.getElementById("error-speed-0")).dispatchAction({type: "restore"}));
   assert.ok((await ends()).every((d) => d === 100));
 }
 
@@ -217,10 +235,10 @@ async function fits_a_phone(browser) {
   const page = await open(browser, 390, 844);
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 390, "the page is wider than the screen");
   for (const box of await page.$$eval(".chart svg", (all) => all.map((s) => s.getBoundingClientRect().right))) assert.ok(box <= 390);
-  await bring(page, "error-speed");
-  const [mark] = await lone_marks(page, "error-speed");
-  await hover(page, "error-speed", mark);
-  const tip = await page.locator("#error-speed .tip").boundingBox();
+  await bring(page, "error-speed-0");
+  const [mark] = await lone_marks(page, "error-speed-0");
+  await hover(page, "error-speed-0", mark);
+  const tip = await page.locator("#error-speed-0 .tip").boundingBox();
   assert.ok(tip.x >= 0 && tip.x + tip.width <= 390, "what a mark tells is cut");
   assert.ok(tip.height < 400, `what a mark tells is ${tip.height} pixels high`);
   await page.context().close();
@@ -245,14 +263,17 @@ async function hostile_text_is_text(browser) {
   // A title of a document is shown with the controls' escapes.
   assert.ok((await page.textContent("h1")).startsWith("x\nsystem("));
   await page.evaluate(() => study.points.forEach((_, n) => document.body.insertAdjacentHTML("beforeend", tip(n))));
-  await page.evaluate(() => echarts.getInstanceByDom(document.getElementById("error-speed"))
-    .dispatchAction({type: "showTip", seriesIndex: 0, dataIndex: 0}));
-  await page.waitForSelector("#error-speed .tip", {state: "visible", timeout: 20000});
-  assert.ok((await page.$eval("#error-speed .tip", (tip) => tip.textContent)).includes("<script>alert(1)</script>"));
+  await page.evaluate(() => {
+    const chart = echarts.getInstanceByDom(document.getElementById("error-speed-0"));
+    const seriesIndex = chart.getOption().series.findIndex((s) => s.data.some((d) => d.point !== undefined));
+    chart.dispatchAction({type: "showTip", seriesIndex, dataIndex: 0});
+  });
+  await page.waitForSelector("#error-speed-0 .tip", {state: "visible", timeout: 20000});
+  assert.ok((await page.$eval("#error-speed-0 .tip", (tip) => tip.textContent)).includes("<script>alert(1)</script>"));
   for (const unwanted of ["img", "body script:not(#data) ~ script ~ script", "[onload]", "[onerror]", ".tip script"])
     assert.equal((await page.$$(unwanted)).length, 0, `the page has a '${unwanted}'`);
   assert.ok((await page.textContent("#points")).includes("<img src=x onerror=alert(2)>"));
-  assert.ok((await texts(page, "error-speed")).some((text) => text.includes("{/Symbol s}")));
+  assert.ok((await texts(page, "error-speed-0")).some((text) => text.includes("{/Symbol s}")));
   // The policy: what is put in by force does not load.
   assert.equal(await page.evaluate(() => new Promise((done) => {
     const image = new Image();
@@ -275,6 +296,7 @@ try {
   await pressing_a_mark_finds_its_row(page);
   await selectors_change_charts(page, study);
   await tables_sort_and_filter(page, study);
+  await table_shows_what_was_chosen(page);
   await zooms_and_comes_back(page);
   await prints(page);
   await fits_a_phone(browser);

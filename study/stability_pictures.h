@@ -6,9 +6,9 @@
 
 #include "study/stability_map.h"
 
-namespace cuboct {
+namespace cuboct::study {
 
 // DIRECTORY/<name>.png and .svg: the cells of the map with the theory's line over them. The names written.
-std::vector<std::string> draw(const study::StabilityMap& map, const std::string& directory);
+std::vector<std::string> draw(const StabilityMap& map, const std::string& directory);
 
-}  // namespace cuboct
+}  // namespace cuboct::study

@@ -3,23 +3,24 @@
 // cycles. docs/reference/synth.md, "Fitting a device".
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
 #include "hw/board.h"
 #include "hw/fit.h"
 #include "hw/node_memories.h"
+#include "hw/setup.h"
 #include "synth/fit_measure.h"
 #include "synth/fit_model.h"
 
-namespace cuboct {
+namespace cuboct::synth {
 
 // Throws InputError where nothing can be fitted to `target`: an unknown one, standard cells, another device
 // than the board's.
-const synth::Target& fit_target(const std::string& target, const BoardChoice& board);
+const Target& fit_target(const std::string& target, const BoardChoice& board);
 
 // Particles in the cell that has most, at least 1.
 int fullest(const PairCensus& census, uint32_t cells);
@@ -30,10 +31,12 @@ inline constexpr size_t kMostSyntheses = 16;
 class Fitter {
  public:
   // Reads scene and arch. Throws InputError; a tool that is missing is told first.
-  Fitter(const Input& input, const synth::Target& target, const BoardChoice& board);
+  // `says` hears what it does next.
+  Fitter(const std::string& scene, const std::string& arch, const Target& target, const BoardChoice& board,
+         std::function<void(const std::string& what)> says);
 
   // Searches, measures, and searches again until the best plan is one that was measured. Throws InputError
-  // with the numbers of the nearest where none fits, synth::ToolFailed, synth::Interrupted.
+  // with the numbers of the nearest where none fits, ToolFailed, Interrupted.
   void choose();
 
   // What was considered, the choice marked.
@@ -49,7 +52,7 @@ class Fitter {
   };
 
   Plan plan_at(const FitPoint& point) const;
-  FitAmounts memories(const Cell& brick, int lanes, int pipes, synth::Family family);
+  FitAmounts memories(const Cell& brick, int lanes, int pipes, Family family);
   FitAmounts estimate(const FitShape& shape, int lanes, int pipes);
   FitAmounts uses(const FitShape& shape, int lanes, int pipes);
   std::optional<uint64_t> cycles(const FitPoint& point);
@@ -58,20 +61,21 @@ class Fitter {
   void measure(const FitPoint& point);
   bool measured(const FitPoint& point) const { return measured_.contains(point); }
   FitAmounts least_uses(const Cell& brick, uint64_t nodes);
-  bool fit_memories(const synth::Target& target, const Cell& brick, uint64_t nodes);
+  bool fit_memories(const Target& target, const Cell& brick, uint64_t nodes);
   // No plan of the space fits.
   [[noreturn]] void refuse();
-  const synth::Target* other_device();
+  const Target* other_device();
   uint64_t cells_that_fit();
   void add_row(std::vector<Row>& rows, const std::optional<FitChoice>& plan);
   std::string numbers(const FitAmounts& uses) const;
   std::string excess(const FitAmounts& uses) const;
   std::string verdict(const FitAmounts& uses) const;
 
-  Input input_;
-  const synth::Target& target_;
+  std::string scene_path_, arch_path_;
+  const Target& target_;
   BoardChoice board_;
-  synth::Meter meter_;
+  std::function<void(const std::string&)> says_;
+  Meter meter_;
   Scene scene_;
   std::string arch_text_;
   Arch arch_;  // one cell, lane and pipe
@@ -81,7 +85,7 @@ class Fitter {
   NodeMemories memories_;
   FitAmounts room_;
   FitSpace space_;
-  synth::FitModel model_;
+  FitModel model_;
   std::map<FitPoint, FitAmounts> measured_;                                   // whole
   std::array<double, 5> around_{};                                            // per node, as last measured
   std::map<std::pair<Cell, int>, std::array<FitAmounts, 2>> memory_amounts_;  // of one pipe, of each more
@@ -93,4 +97,4 @@ class Fitter {
       estimates_;  // of what was measured after the lines were drawn, before it was
 };
 
-}  // namespace cuboct
+}  // namespace cuboct::synth

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "cli/bench_scene.h"
+#include "study/bench/bench_scene.h"
 
 #include <fmt/format.h>
 
 #include <fstream>
 #include <optional>
 #include <stdexcept>
-
-#include "cli/engines.h"
-#include "model/base/output.h"
-#include "model/base/process.h"
 
 namespace cuboct {
 namespace {
@@ -33,24 +29,17 @@ std::string BenchScene::text() const {
 
 std::string BenchScene::arch() const { return impact ? kBenchImpactArch : ""; }
 
-std::shared_ptr<const Loaded> load_bench(const BenchScene& scene) {
+std::shared_ptr<const BenchCase> make_case(const BenchScene& scene) {
   static std::optional<BenchScene> latest;
-  static std::shared_ptr<const Loaded> loaded;
+  static std::shared_ptr<const BenchCase> made;
   if (latest != scene) {
-    loaded.reset();  // before the next one takes its memory
-    const Scratch scratch;
-    const std::string path = scratch.path("block.toml");
-    write_text(path, scene.text());
-    Input input;
-    input.scene = path;
-    if (const std::string arch = scene.arch(); !arch.empty()) {
-      input.arch = scratch.path("arch.toml");
-      write_text(input.arch, arch);
-    }
-    loaded = std::make_shared<const Loaded>(load_plan(input));
+    made.reset();  // before the next one takes its memory
+    BenchCase next{parse_scene(scene.text(), "block.toml"), {}};
+    next.plan = plan_of(next.scene, scene.impact ? parse_arch(scene.arch(), "arch.toml") : Arch());
+    made = std::make_shared<const BenchCase>(std::move(next));
     latest = scene;
   }
-  return loaded;
+  return made;
 }
 
 bool fits_in_memory(uint64_t particles) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The engines that `cuboct` has: a row each.
+// The engines that cuboct has: a row each. No other place tells one from another by its name.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,32 @@ struct EngineCost {
   double particle = 0, neighbour = 0, cell = 0;  // bytes
 };
 
+// The code of an engine that runs in the command's own process.
+enum class Here : uint8_t { none, golden, lattice, reference };
+
 struct EngineRow {
   std::string name;
+  Here here = Here::none;
   bool bits = true;              // holds those of the fixed rule
   bool real = false;             // computes in real numbers, if told to or always
+  bool integrators = false;      // has several
+  bool studied = false;          // by `cuboct explore`
+  bool devices = false;          // runs on GPUs, not on the host's threads
+  bool port = false;             // reaches its machine over a serial port
   bool links = false;            // that may stall or fail
   bool cycles = false;           // counts the machine's cycles, always
   bool counts_if_asked = false;  // or where --cycles asks for it
   bool saves = false;            // leaves checkpoints
   uint64_t hash_every = 1;       // steps between two hashes where the user says nothing; 0: none
-  std::string program = {};      // of its own, beside cuboct; empty: runs here
+  std::string program = {};      // of its own, beside cuboct, where it does not run here
+  std::string ranks = {};        // the program in which several processes share a scene
   std::string needs = {};        // hint where the program is missing
   EngineCost cost = {};
 };
 
 const std::vector<EngineRow>& engines();
+// None: an engine from elsewhere.
+const EngineRow* find_engine(const std::string& name);
 // InputError with the nearest spelling where no row of `allowed` has the name. `bits`: only those that hold
 // the fixed rule's.
 const EngineRow& engine_row(const std::string& name, bool bits = false);

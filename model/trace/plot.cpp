@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/plot.h"
+#include "model/trace/plot.h"
 
 #include <fmt/format.h>
 

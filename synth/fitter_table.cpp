@@ -9,15 +9,10 @@
 #include <set>
 #include <tuple>
 
-#include "cli/fit.h"
+#include "synth/fitter.h"
 
-namespace cuboct {
+namespace cuboct::synth {
 namespace {
-
-using synth::Family;
-using synth::kFitted;
-using synth::Resource;
-using synth::Target;
 
 // Rows on either side of the choice, by numbers of nodes.
 constexpr size_t kShownAround = 4;
@@ -192,7 +187,7 @@ std::string Fitter::table() {
 const Target* Fitter::other_device() {
   const Lattice& lattice = base_.plan.lattice;
   std::vector<const Target*> others;
-  for (const Target& t : synth::targets())
+  for (const Target& t : targets())
     if (t.family != Family::asic && t.name != target_.name) others.push_back(&t);
   // Numbers of the same family first: those of another one are nearly these.
   std::ranges::stable_sort(others, {}, [&](const Target* t) {
@@ -202,7 +197,7 @@ const Target* Fitter::other_device() {
     const FitAmounts own = memories(brick, 1, 1, t.family);
     FitAmounts all = times(model_.predict({brick, 1, 1}, own), nodes);
     if (t.family != Family::ice40) all[4] = 0;
-    return has_room(all, synth::room_of(t));
+    return has_room(all, room_of(t));
   };
   std::vector<Cell> bricks =
       arch_.narrow_memories || !no_bricks_.empty() ? std::vector<Cell>{{1, 1, 1}} : possible_bricks(lattice);
@@ -249,7 +244,7 @@ void Fitter::refuse() {
         measured_, {}, [this](const auto& m) { return worst_share(m.second, room_).share; });
     throw InputError(fmt::format("{}: none of the {} plans for {} that were synthesised fits; the nearest, "
                                  "nodes of {} cells with {} and {}, takes {}",
-                                 input_.scene, measured_.size(), target_.name, cells_text(point.brick),
+                                 scene_path_, measured_.size(), target_.name, cells_text(point.brick),
                                  count_text(static_cast<uint64_t>(point.lanes), "lane"),
                                  count_text(static_cast<uint64_t>(point.pipes), "pipe"), excess(uses)),
                      "each was estimated to fit, so the device is nearly full: give a shorter node.capacity "
@@ -278,7 +273,7 @@ void Fitter::refuse() {
   }
   const std::string what = fmt::format(
       "{}: its {} do not fit {}{}: the nearest plan, {} of {} cells with 1 lane and 1 pipe, takes {}{}",
-      input_.scene, count_text(lattice.size(), "cell"), target_.name,
+      scene_path_, count_text(lattice.size(), "cell"), target_.name,
       arch_.narrow_memories ? " with narrow memories" : "", count_text(shape.nodes, "node"),
       cells_text(shape.brick), excess(used), model_.empty() ? ", for its memories alone" : "");
   std::string hint;
@@ -306,4 +301,4 @@ void Fitter::refuse() {
   throw InputError(what, hint);
 }
 
-}  // namespace cuboct
+}  // namespace cuboct::synth

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/engines.h"
+#include "hw/engines.h"
 
 #include <fmt/format.h>
 
@@ -14,11 +14,14 @@ namespace cuboct {
 // liquid.
 const std::vector<EngineRow>& engines() {
   static const std::vector<EngineRow> rows{
-      {.name = "golden", .saves = true, .cost = {40e-9, 0, false, 600, 10, 100}},
+      {.name = "golden", .here = Here::golden, .saves = true, .cost = {40e-9, 0, false, 600, 10, 100}},
       {.name = "lattice",
+       .here = Here::lattice,
+       .studied = true,
        .counts_if_asked = true,
        .saves = true,
        .hash_every = 100,
+       .ranks = "cuboct-lattice",
        .cost = {3e-9, 1.5e-9, true, 240, 1.5, 70}},
       {.name = "systemc",
        .links = true,
@@ -33,32 +36,39 @@ const std::vector<EngineRow>& engines() {
        .needs = "install verilator and libsystemc-dev and build again",
        .cost = {0, 0, false, 600, 0, 15e3}},
       {.name = "fpga",
+       .port = true,
        .hash_every = 0,
        .program = "cuboct-fpga",
        .needs = "install zlib1g-dev and build again",
        .cost = {0, 0, false, 600, 0, 70}},
       {.name = "gpu",
        .real = true,
+       .studied = true,
+       .devices = true,
        .hash_every = 100,
        .program = "cuboct-gpu",
        .needs = "install the CUDA toolkit (nvcc), configure and build again",
        .cost = {0, 0, false, 250, 0, 70}},
       {.name = "reference",
+       .here = Here::reference,
        .bits = false,
        .real = true,
+       .integrators = true,
+       .studied = true,
        .hash_every = 0,
        .cost = {2.5e-9, 0, true, 700, 6, 70}},
   };
   return rows;
 }
 
+const EngineRow* find_engine(const std::string& name) {
+  const auto row = std::ranges::find(engines(), name, &EngineRow::name);
+  return row == engines().end() ? nullptr : &*row;
+}
+
 const EngineRow& engine_row(const std::string& name, bool bits) {
-  std::vector<std::string> allowed;
-  for (const EngineRow& row : engines()) {
-    if (bits && !row.bits) continue;
-    if (row.name == name) return row;
-    allowed.push_back(row.name);
-  }
+  if (const EngineRow* row = find_engine(name); row && (row->bits || !bits)) return *row;
+  const auto allowed = engines_that([bits](const EngineRow& row) { return row.bits || !bits; });
   const std::string near = did_you_mean(name, allowed);
   throw InputError(fmt::format("unknown engine '{}'", name),
                    near.empty() ? "one of " + list_of(allowed) : near);

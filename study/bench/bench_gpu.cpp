@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: MIT
-#include "cli/bench_gpu.h"
+#include "study/bench/bench_gpu.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <map>
 #include <sstream>
 
-#include "cli/bench_report.h"
 #include "model/base/process.h"
+#include "study/bench/bench_report.h"
 
 namespace cuboct {
 namespace {
 
-std::string program() { return program_directory() + "/cuboct-gpu"; }
+std::string program() { return beside("cuboct-gpu"); }
 
 }  // namespace
 
 std::string gpu_left_out() {
-  if (access(program().c_str(), X_OK) != 0) return "no program cuboct-gpu beside cuboct";
+  if (program().empty()) return "no program cuboct-gpu beside cuboct";
   const Scratch scratch;
   const std::string path = scratch.path("machine");
   const int code = Process(program(), {"bench", "--machine", path}).wait();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/real_bounds.h"
+#include "model/analysis/real_bounds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render.h"
+#include "model/trace/render.h"
 
 namespace cuboct {
 

@@ -1,8 +1,8 @@
-# cmake -D OUT=file.cpp -D DIR=scenes/bench [-D PAIRS=name:file,... -D HEADER=h -D SPACE=n] -P embed.cmake: scenes as C++ text;
-# those of `cuboct bench` unless said.
+# cmake -D OUT=file.cpp -D DIR=scenes/bench [-D PAIRS=name:file,... -D HEADER=h -D SPACE=n] -P embed_scenes.cmake: scenes as
+# C++ text; those of `cuboct bench` unless said.
 if(NOT PAIRS)
   set(PAIRS kBenchBlock:block_32k,kBenchImpact:impact_1m,kBenchImpactArch:impact_arch)
-  set(HEADER cli/bench_scene.h)
+  set(HEADER study/bench/bench_scene.h)
   set(SPACE cuboct)
 endif()
 string(REPLACE "," ";" PAIRS ${PAIRS})

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "cli/stability_maps.h"
+#include "study/stability_pictures.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "cli/plot.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
+#include "model/trace/plot.h"
 
-namespace cuboct {
+namespace cuboct::study {
 
-std::vector<std::string> draw(const study::StabilityMap& map, const std::string& directory) {
+std::vector<std::string> draw(const StabilityMap& map, const std::string& directory) {
   static const char* const kColours[] = {"#cfe3f5", "#d9703f", "#b9b9b9", "#6f6f6f"};
   static const char* const kNames[] = {"stable", "unstable", "the formats refuse it",
                                        "the body itself is unstable"};
@@ -55,4 +55,4 @@ std::vector<std::string> draw(const study::StabilityMap& map, const std::string&
   return names;
 }
 
-}  // namespace cuboct
+}  // namespace cuboct::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/fit.h"
+#include "synth/fitter.h"
 
 #include <fmt/format.h>
 
@@ -7,16 +7,12 @@
 
 #include "hw/rtl_emit.h"
 #include "model/base/interrupt.h"
-#include "model/base/progress.h"
 #include "model/scene/changes.h"
 #include "model/scene/config.h"
 #include "synth/tool.h"
 
-namespace cuboct {
+namespace cuboct::synth {
 namespace {
-
-using synth::Family;
-using synth::Target;
 
 // Of lanes, between which the lines of the model are drawn.
 constexpr int kManyLanes = 8;
@@ -24,15 +20,6 @@ constexpr int kManyLanes = 8;
 constexpr size_t kMostRefused = 4;
 
 constexpr const char* kHeading = "# Brick, lanes and pipes as cuboct emit --fit ";
-
-void say(const std::string& what) {
-  if (stderr_is_terminal()) fmt::print(stderr, "\r\033[K{}", what.empty() ? "" : "fit: " + what + " ...");
-}
-
-// Nothing of the progress is left where a search ends, however it does.
-struct Said {
-  ~Said() { say(""); }
-};
 
 // A plan that has no RTL; another brick may have. What else goes wrong in a synthesis goes wrong for all.
 struct NotEmitted : InputError {
@@ -66,7 +53,7 @@ int fullest(const PairCensus& census, uint32_t cells) {
 }
 
 const Target& fit_target(const std::string& name, const BoardChoice& board) {
-  const Target& target = synth::target_of(name);
+  const Target& target = target_of(name);
   if (target.family == Family::asic)
     throw InputError("--fit asic: standard cells have no limit to fit", "--fit is for FPGAs");
   if (!board.name.empty() && board_of(board.name).target != name)
@@ -75,21 +62,24 @@ const Target& fit_target(const std::string& name, const BoardChoice& board) {
   return target;
 }
 
-Fitter::Fitter(const Input& input, const Target& target, const BoardChoice& board)
-    : input_(input),
+Fitter::Fitter(const std::string& scene, const std::string& arch, const Target& target,
+               const BoardChoice& board, std::function<void(const std::string&)> says)
+    : scene_path_(scene),
+      arch_path_(arch),
       target_(target),
       board_(board),
+      says_(std::move(says)),
       meter_(target, [](const std::string&) {}),
-      scene_(read_scene(input.scene)),
-      arch_text_(text_of(input.arch)),
-      arch_(least(parse_arch(arch_text_, input.arch))),
+      scene_(read_scene(scene)),
+      arch_text_(text_of(arch)),
+      arch_(least(parse_arch(arch_text_, arch))),
       base_(make_setup(scene_, arch_)),
       census_(base_.plan.rule, base_.plan.lattice, base_.initial),
       loads_(base_.plan, census_),
       memories_(base_.plan.rule, base_.plan.arch, base_.plan.particles),
-      room_(synth::room_of(target)) {
-  arch_ = base_.plan.arch;  // with what was automatic
-  if (!arch_.narrow_memories) with_choice(arch_text_, input.arch, {{1, 1, 1}, 1, 1});  // can take a choice
+      room_(room_of(target)) {
+  arch_ = base_.plan.arch;                                                       // with what was automatic
+  if (!arch_.narrow_memories) with_choice(arch_text_, arch, {{1, 1, 1}, 1, 1});  // can take a choice
 }
 
 Plan Fitter::plan_at(const FitPoint& point) const {
@@ -104,10 +94,9 @@ Plan Fitter::plan_at(const FitPoint& point) const {
 FitAmounts Fitter::memories(const Cell& brick, int lanes, int pipes, Family family) {
   if (arch_.narrow_memories) return {};
   const auto count = [&](int of_pipes) {
-    synth::Counts counts;
-    for (const NodeMemory& m : memories_.of(brick, lanes, of_pipes))
-      counts += synth::memory_counts(family, m);
-    return synth::amounts_of(counts);
+    Counts counts;
+    for (const NodeMemory& m : memories_.of(brick, lanes, of_pipes)) counts += memory_counts(family, m);
+    return amounts_of(counts);
   };
   if (family != target_.family) return count(pipes);
   const auto [found, is_new] = memory_amounts_.try_emplace({brick, lanes});
@@ -139,7 +128,7 @@ FitAmounts Fitter::uses(const FitShape& shape, int lanes, int pipes) {
 }
 
 std::optional<uint64_t> Fitter::cycles(const FitPoint& point) {
-  if (interrupted()) throw synth::Interrupted();
+  if (interrupted()) throw Interrupted();
   const auto [found, is_new] = cycles_.try_emplace(point);
   if (is_new) {
     try {
@@ -165,7 +154,7 @@ FitCosts Fitter::costs() {
 
 // Whether the memories of so many nodes, of the fewest lanes and pipes, find room.
 bool Fitter::fit_memories(const Target& target, const Cell& brick, uint64_t nodes) {
-  return has_room(times(memories(brick, 1, 1, target.family), nodes), synth::room_of(target));
+  return has_room(times(memories(brick, 1, 1, target.family), nodes), room_of(target));
 }
 
 // Shapes without room for their memories are not looked at.
@@ -188,11 +177,11 @@ void Fitter::find_shapes() {
 
 void Fitter::measure(const FitPoint& point) {
   if (measured(point)) return;
-  if (interrupted()) throw synth::Interrupted();
-  say(fmt::format("synthesises nodes of {} x {} x {} cells, {} lanes, {} pipes ({} done)", point.brick[0],
-                  point.brick[1], point.brick[2], point.lanes, point.pipes, measured_.size()));
+  if (interrupted()) throw Interrupted();
+  says_(fmt::format("synthesises nodes of {} x {} x {} cells, {} lanes, {} pipes ({} done)", point.brick[0],
+                    point.brick[1], point.brick[2], point.lanes, point.pipes, measured_.size()));
   const Plan plan = plan_at(point);
-  const synth::Measured m = meter_.measure(
+  const Measured m = meter_.measure(
       [&](const std::string& directory) {
         try {
           emit_rtl(plan, base_.initial, directory, 1, board_);
@@ -201,7 +190,7 @@ void Fitter::measure(const FitPoint& point) {
         }
       },
       !board_.name.empty());
-  const FitAmounts node = synth::amounts_of(m.node), around = synth::amounts_of(m.around);
+  const FitAmounts node = amounts_of(m.node), around = amounts_of(m.around);
   model_.add(point, memories(point.brick, point.lanes, point.pipes, target_.family), node);
   FitAmounts& all = measured_[point] = times(node, m.nodes);
   for (size_t r = 0; r < all.size(); ++r) {
@@ -211,8 +200,7 @@ void Fitter::measure(const FitPoint& point) {
 }
 
 void Fitter::choose() {
-  const Said said;
-  say("looks for bricks");
+  says_("looks for bricks");
   find_shapes();
   choice_ = fastest_that_fits(space_, room_, costs());
   std::array<bool, 2> drawn{};  // lines of nodes of one cell, of bricks
@@ -254,12 +242,11 @@ void Fitter::choose() {
 }
 
 std::string Fitter::arch_text() const {
-  std::string text =
-      arch_.narrow_memories ? arch_text_ : with_choice(arch_text_, input_.arch, choice_->point);
+  std::string text = arch_.narrow_memories ? arch_text_ : with_choice(arch_text_, arch_path_, choice_->point);
   if (text.starts_with(kHeading)) text.erase(0, text.find('\n') + 1);  // of an earlier choice
   return fmt::format("{}{} chose them.\n{}", kHeading, target_.name, text);
 }
 
 Setup Fitter::setup() const { return make_setup(scene_, parse_arch(arch_text(), "arch.toml")); }
 
-}  // namespace cuboct
+}  // namespace cuboct::synth

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/bench_report.h"
+#include "study/bench/bench_report.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

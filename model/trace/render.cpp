@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/render.h"
+#include "model/trace/render.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

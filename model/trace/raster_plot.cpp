@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/raster_plot.h"
+#include "model/trace/raster_plot.h"
 
 #include <fmt/format.h>
 

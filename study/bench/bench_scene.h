@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "cli/command.h"
+#include "hw/setup.h"
 
 namespace cuboct {
 
@@ -24,8 +24,12 @@ struct BenchScene {
   bool operator==(const BenchScene&) const = default;
 };
 
-// Scene and plan, without a State. The latest is kept, so that benchmarks that follow one another share it.
-std::shared_ptr<const Loaded> load_bench(const BenchScene& scene);
+struct BenchCase {
+  Scene scene;
+  Plan plan;
+};
+// The latest is kept, so that benchmarks that follow one another share it.
+std::shared_ptr<const BenchCase> make_case(const BenchScene& scene);
 
 // Whether a run of so many particles fits into the memory that is free now, at 300 bytes each (measured with
 // ten million: 165, scene and engine together).

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "hw/program/remote.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+
+#include "hw/program/program.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
+#include "model/trace/trace_file.h"
+
+namespace cuboct {
+
+namespace fs = std::filesystem;
+
+Remote::Remote(RemoteRun run) : run_(std::move(run)) {
+  std::vector<std::string> arguments =
+      program_arguments(run_.scene, run_.arch, run_.request, run_.trace, file(".steps"));
+  arguments.insert(arguments.end(), run_.own.begin(), run_.own.end());
+  if (run_.unpacked) arguments.emplace_back("--unpacked");
+  fs::remove(run_.trace);  // what is found there afterwards is this run's
+  start(std::move(arguments));
+}
+
+void Remote::start(std::vector<std::string> arguments) {
+  const Streams streams = run_.quiet ? Streams{file(".said"), file(".errors")} : Streams{};
+  if (!over_mpi()) {
+    process_.emplace(run_.program, arguments, false, streams);
+    return;
+  }
+  if (!in_path("mpirun"))
+    throw InputError(fmt::format("--ranks {}: no program mpirun", run_.ranks), "install openmpi-bin");
+  std::vector<std::string> words{"--quiet", "--oversubscribe",          "--bind-to", "none",
+                                 "-n",      std::to_string(run_.ranks), run_.program};
+  // Open MPI warns root, who in a container is everyone.
+  if (geteuid() == 0) words.insert(words.begin(), "--allow-run-as-root");
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  words.insert(words.end(), {"--begun", file(".begun")});
+  process_.emplace("mpirun", words, true, streams);
+}
+
+// Without the names of our files, which are of no use to others.
+std::string Remote::errors() const {
+  const std::string directory = fs::path(run_.trace).parent_path().string() + "/";
+  std::string text = read_text(file(".errors"));
+  for (size_t at = text.find(directory); at != std::string::npos; at = text.find(directory))
+    text.erase(at, directory.size());
+  while (text.ends_with('\n')) text.pop_back();
+  return text;
+}
+
+void Remote::wait() {
+  const int code = over_mpi() ? process_->wait([&] { return fs::exists(file(".begun")); }) : process_->wait();
+  const std::string name = over_mpi() ? "mpirun" : fs::path(run_.program).filename().string();
+  const std::string said = run_.quiet ? errors() : "";
+  for (const char* ending : {".steps", ".begun", ".errors"}) fs::remove(file(ending));
+  // Ranks that could not write all of it have told so, and leave what they have.
+  const bool left = fs::exists(run_.trace);
+  if (code == 2 && run_.quiet) throw InputError(said);
+  if (code == 2 && !(over_mpi() && left)) throw AlreadyTold(2);
+  told_trouble_ = code == 2;
+  // Exit code 1 with a trace: the run had to stop or found something wrong, and the trace says what.
+  if (code == 0 || (code > 0 && left)) return;
+  if (interrupted() && (code < 0 || over_mpi()))
+    throw std::runtime_error(fmt::format("interrupted before {} began", over_mpi() ? "the ranks" : name));
+  if (!said.empty()) throw std::runtime_error(said);
+  if (code < 0)
+    throw std::runtime_error(fmt::format("{} was ended by signal {} ({})", name, -code, strsignal(-code)));
+  throw std::runtime_error(fmt::format("{} ended with exit code {}", name, code));
+}
+
+Recorded Remote::read() const {
+  const RunRequest& request = run_.request;
+  const TraceReader reader(run_.trace);
+  Recorded run;
+  run.trace = reader.rest();
+  take_totals(run);
+  run.interrupted = run.trace.steps() < request.steps && !run.trace.stop;
+  if (told_trouble_) run.trouble = "the ranks could not write all of it";
+  run.left_checkpoint = run.interrupted && fs::exists(request.checkpoint.path);
+  reader.frames([&](State state) { give(request, std::move(state), run.trace); });
+  reader.bodies([&](RealFrame frame) { give(request, std::move(frame), run.trace); });
+  return run;
+}
+
+Recorded Remote::finish() {
+  wait();
+  return read();
+}
+
+}  // namespace cuboct

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// A run in an engine's program, which leaves a trace.
+#pragma once
+
+#include <exception>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "model/run/record.h"
+
+namespace cuboct {
+
+struct RemoteRun {
+  std::string program;             // its path
+  std::string scene, arch;         // files; no arch: the defaults
+  std::string trace;               // the file that it leaves; others begin with its name while it runs
+  std::vector<std::string> own{};  // options that the engine alone has
+  int ranks = 1;                   // more: processes over MPI
+  bool unpacked = false;           // the trace: packing millions of particles takes longer than many steps
+  bool quiet = false;              // the program's words are kept, else those on stderr are shown
+  RunRequest request{};
+};
+
+class Remote {
+ public:
+  // Starts. Throws InputError where nothing can be started.
+  explicit Remote(RemoteRun run);
+  Remote(Remote&&) = default;
+
+  // Waits. Frames go where the request keeps them. Exit code 2 throws AlreadyTold, or where it was quiet
+  // InputError with the program's words; any other failure without a trace throws std::runtime_error.
+  Recorded finish();
+  // On stdout, where it was quiet.
+  std::string said() const { return read_text(file(".said")); }
+
+ private:
+  bool over_mpi() const { return run_.ranks > 1; }
+  std::string file(const char* ending) const { return run_.trace + ending; }
+  void start(std::vector<std::string> arguments);
+  void wait();
+  std::string errors() const;
+  Recorded read() const;
+
+  RemoteRun run_;
+  std::optional<Process> process_;
+  bool told_trouble_ = false;
+};
+
+// The exit of a command whose engine has told its error already.
+class AlreadyTold : public std::exception {
+ public:
+  explicit AlreadyTold(int exit_code) : exit_code(exit_code) {}
+  int exit_code;
+};
+
+}  // namespace cuboct

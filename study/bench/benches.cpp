@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+// How fast the engines are. Each benchmark makes its engine once, steps it a little to warm up, then times
+// some steps per repetition.
+#include "study/bench/benches.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "emu/lattice/engine.h"
+#include "emu/lattice/program.h"
+#include "emu/lattice/timing.h"
+#include "gpu_ref/bench_rows.h"
+#include "hw/program/remote.h"
+#include "model/base/output.h"
+#include "model/base/resources.h"
+#include "model/contract/golden.h"
+#include "model/real/reference.h"
+#include "study/bench/bench_gpu.h"
+#include "study/bench/bench_report.h"
+#include "study/bench/bench_scene.h"
+
+namespace cuboct {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+// Times `step` for about so many seconds in each repetition; answers the steps of one. The number is found in
+// the first, which warms up, and then stays.
+class Timed {
+ public:
+  explicit Timed(double seconds) : seconds_(seconds) {}
+
+  void run(benchmark::State& state, const std::function<void()>& step) {
+    if (steps_ == 0) {
+      for (int k = 0; k < 3; ++k) step();  // memory is touched, lists are made
+      const auto begin = Clock::now();
+      uint64_t warm = 0;
+      for (; warm < 1 || (since(begin) < 0.3 * seconds_ && warm < 1000); ++warm) step();
+      steps_ =
+          std::max<uint64_t>(1, static_cast<uint64_t>(seconds_ * static_cast<double>(warm) / since(begin)));
+    }
+    for (auto _ : state) {
+      const auto begin = Clock::now();
+      for (uint64_t k = 0; k < steps_; ++k) step();
+      state.SetIterationTime(since(begin));
+    }
+  }
+  uint64_t steps() const { return steps_; }
+
+ private:
+  double seconds_;
+  uint64_t steps_ = 0;
+};
+
+std::string counted(int threads) { return fmt::format("{} thread{}", threads, threads == 1 ? "" : "s"); }
+
+benchmark::Counter rate(double amount) { return benchmark::Counter(amount, benchmark::Counter::kIsRate); }
+
+bool too_large(benchmark::State& state, uint64_t particles) {
+  if (fits_in_memory(particles)) return false;
+  state.SkipWithError(
+      fmt::format("{}{} particles do not fit into the free memory", kSkipped, particles).c_str());
+  return true;
+}
+
+emu::LatticeOptions on_threads(int threads, bool quiescence = true) {
+  emu::LatticeOptions options;
+  options.threads = threads;
+  options.quiescence = quiescence;
+  return options;
+}
+
+std::unique_ptr<emu::LatticeEngine> lattice_engine(const BenchCase& made,
+                                                   const emu::LatticeOptions& options) {
+  const Plan& plan = made.plan;
+  return std::make_unique<emu::LatticeEngine>(
+      plan, 0, plan.particles,
+      [&](uint32_t id) { return fixed_particle(made.scene.body, id, plan.rule, plan.lattice, plan.origin); },
+      options);
+}
+
+// One benchmark's objects; they live until the next benchmark begins.
+struct Bed {
+  std::shared_ptr<const BenchCase> made;
+  std::unique_ptr<emu::LatticeEngine> lattice;
+  std::unique_ptr<emu::TimingModel> timing;
+  std::unique_ptr<Golden> golden;
+  std::unique_ptr<Reference> real;
+  emu::CellSlots slots;
+  std::optional<Timed> timed;
+};
+Bed& bed_of(const std::string& name) {
+  static std::string owner;
+  static std::unique_ptr<Bed> bed;
+  if (owner != name) {
+    bed.reset();
+    bed = std::make_unique<Bed>();
+    owner = name;
+  }
+  return *bed;
+}
+
+void run_lattice_block(benchmark::State& state, const std::string& name, const BenchScene& scene, int threads,
+                       bool cycles, double seconds) {
+  if (too_large(state, scene.particles())) return;
+  Bed& bed = bed_of(name);
+  if (!bed.lattice) {
+    bed.made = make_case(scene);
+    bed.lattice = lattice_engine(*bed.made, on_threads(threads));
+    if (cycles) bed.timing = std::make_unique<emu::TimingModel>(bed.made->plan, threads);
+    bed.timed.emplace(seconds);
+  }
+  const auto node_cycles = [&] {
+    if (!bed.timing) return 0.0;
+    const std::vector<uint64_t>& starts = bed.timing->starts();
+    return std::accumulate(starts.begin(), starts.end(), 0.0);
+  };
+  double before = node_cycles();
+  const uint64_t first = bed.lattice->step_count();
+  bed.timed->run(state, [&] {
+    if (bed.timing) bed.lattice->slots(bed.slots);
+    bed.lattice->step();
+    if (bed.timing) bed.timing->step(bed.slots, bed.lattice->leaving(), {});
+  });
+  const auto done = static_cast<double>(bed.timed->steps());
+  // Cycles of all steps, those that warmed up included, scaled to the timed ones.
+  const double share = done / static_cast<double>(bed.lattice->step_count() - first);
+  state.counters["particle_steps"] = rate(done * bed.lattice->size());
+  if (bed.timing) state.counters["node_cycles"] = rate((node_cycles() - before) * share);
+  state.SetLabel(fmt::format("{} particles on {} nodes, {}, {}, {} steps per repeat", scene.particles(),
+                             bed.made->plan.nodes(), counted(bed.lattice->threads()), bed.lattice->simd(),
+                             bed.timed->steps()));
+}
+
+void run_golden_block(benchmark::State& state, const std::string& name, const BenchScene& scene,
+                      double seconds) {
+  Bed& bed = bed_of(name);
+  if (!bed.golden) {
+    bed.made = make_case(scene);
+    const Plan& plan = bed.made->plan;
+    bed.golden =
+        std::make_unique<Golden>(plan.rule, plan.lattice, plan.arch.capacity,
+                                 to_fixed(bed.made->scene.body, plan.rule, plan.lattice, plan.origin));
+    bed.timed.emplace(seconds);
+  }
+  bed.timed->run(state, [&] { bed.golden->step(); });
+  state.counters["particle_steps"] = rate(static_cast<double>(bed.timed->steps()) * bed.made->plan.particles);
+  state.SetLabel(
+      fmt::format("{} particles, 1 thread, {} steps per repeat", scene.particles(), bed.timed->steps()));
+}
+
+void run_real_block(benchmark::State& state, const std::string& name, const BenchScene& scene,
+                    const RealOptions& options, double seconds) {
+  if (too_large(state, scene.particles())) return;
+  Bed& bed = bed_of(name);
+  if (!bed.real) {
+    bed.made = make_case(scene);
+    const Scene& s = bed.made->scene;
+    bed.real = std::make_unique<Reference>(s.rule, s.body, s.periodic, options);
+    bed.timed.emplace(seconds);
+  }
+  bed.timed->run(state, [&] { bed.real->step(); });
+  state.counters["particle_steps"] =
+      rate(static_cast<double>(bed.timed->steps()) * static_cast<double>(scene.particles()));
+  state.SetLabel(fmt::format("{} particles, {}, {}, {} steps per repeat", scene.particles(),
+                             counted(options.threads), Reference::simd(), bed.timed->steps()));
+}
+
+// The scene in a program of its own.
+RemoteRun remote(const std::string& program, const BenchScene& scene, const Scratch& scratch) {
+  RemoteRun run{program, scratch.path("block.toml"), "", scratch.path("trace.h5")};
+  write_text(run.scene, scene.text());
+  return run;
+}
+
+// Its own program tells how long the clock ran.
+void run_systemc_block(benchmark::State& state, const BenchScene& scene, uint64_t steps) {
+  const std::string program = beside("cuboct-systemc");
+  if (program.empty()) {
+    state.SkipWithError(fmt::format("{}no program cuboct-systemc beside cuboct", kSkipped).c_str());
+    return;
+  }
+  const Scratch scratch;
+  RemoteRun run = remote(program, scene, scratch);
+  run.request.steps = steps;
+  double node_cycles = 0;
+  for (auto _ : state) {
+    const Trace trace = Remote(run).finish().trace;
+    for (const auto& [name, value] : trace.counters)
+      if (name == "cycles") node_cycles = value * static_cast<double>(trace.nodes);
+    state.SetIterationTime(trace.seconds);
+  }
+  state.counters["node_cycles"] = rate(node_cycles);
+  state.counters["particle_steps"] = rate(static_cast<double>(steps * scene.particles()));
+  state.SetLabel(fmt::format("{} particles, 1 thread, {} steps per repeat", scene.particles(), steps));
+}
+
+// Runs of one `group` must end in one state. False, and the benchmark is told, if they do not.
+bool same_state(benchmark::State& state, const std::string& group, uint64_t hash) {
+  static std::map<std::string, uint64_t> hashes;
+  const uint64_t expected = hashes.try_emplace(group, hash).first->second;
+  if (hash == expected) return true;
+  state.SkipWithError(
+      fmt::format("wrong: its state hash is {:016x}, another run's {:016x}", hash, expected).c_str());
+  return false;
+}
+
+// A run of given length from its start.
+void run_whole(benchmark::State& state, const std::string& group, const BenchScene& scene,
+               const emu::LatticeOptions& options, uint64_t steps) {
+  bed_of("");  // of the benchmark before: its memory is needed
+  if (too_large(state, scene.particles())) return;
+  const auto made = make_case(scene);
+  const auto engine = lattice_engine(*made, options);
+  for (auto _ : state) {
+    const auto begin = Clock::now();
+    for (uint64_t k = 0; k < steps; ++k) engine->step();
+    state.SetIterationTime(since(begin));
+  }
+  const uint64_t hash = engine->hash();
+  if (!same_state(state, group, hash)) return;
+  state.counters["particle_steps"] = rate(static_cast<double>(steps * scene.particles()));
+  const emu::LatticeCounters& counters = engine->counters();
+  state.SetLabel(fmt::format(
+      "{} particles, {}, {} steps, {:.0f} % of the node-steps quiet, state hash {:016x}", scene.particles(),
+      counted(engine->threads()), steps,
+      100 * static_cast<double>(counters.quiet_node_steps) / static_cast<double>(counters.node_steps), hash));
+}
+
+// The same over MPI, a thread per rank, by the program's own clock.
+void run_ranks(benchmark::State& state, const std::string& group, const BenchScene& scene, int ranks,
+               uint64_t steps) {
+  bed_of("");
+  const std::string program = beside("cuboct-lattice");
+  if (!emu::lattice_has_mpi() || !in_path("mpirun") || program.empty()) {
+    state.SkipWithError(fmt::format("{}no MPI here", kSkipped).c_str());
+    return;
+  }
+  const Scratch scratch;
+  RemoteRun run = remote(program, scene, scratch);
+  run.own = {"--threads", "1"};
+  run.ranks = ranks;
+  run.request.steps = run.request.hash_every = steps;
+  Trace trace;
+  for (auto _ : state) {
+    trace = Remote(run).finish().trace;
+    state.SetIterationTime(trace.seconds);
+  }
+  if (!same_state(state, group, trace.state_hash.back())) return;
+  state.counters["particle_steps"] = rate(static_cast<double>(steps * scene.particles()));
+  state.SetLabel(fmt::format("{} particles, {} x 1 thread, {} steps, state hash {:016x}", scene.particles(),
+                             ranks == 1 ? "1 rank" : fmt::format("{} ranks", ranks), steps,
+                             trace.state_hash.back()));
+}
+
+}  // namespace
+
+std::vector<Bench> benches(const BenchLength& length, int threads) {
+  const int all = threads > 0 ? threads : usable_cores();
+  const double seconds = length.seconds;
+  std::vector<Bench> list;
+  const auto add = [&](const std::string& name, const std::string& what,
+                       std::function<void(benchmark::State&)> run, bool once = false) {
+    list.push_back({name, what, std::move(run), once});
+  };
+  const std::pair<const char*, int> sizes[] = {{"32k", 20}, {"256k", 40}, {"2m", 80}};
+  for (const auto& [size, cells] : sizes)
+    for (const bool damped : {false, true})
+      for (const bool cores : {false, true}) {
+        const std::string name = fmt::format("lattice.{}_{}.{}", damped ? "damped" : "block", size,
+                                             cores ? "all_cores" : "1_thread");
+        const BenchScene scene{.cells = cells, .damped = damped};
+        add(name,
+            fmt::format("the lattice engine, {} particles{}, {}", scene.particles(), damped ? ", damped" : "",
+                        cores ? "a thread per core" : "one thread"),
+            [=](benchmark::State& s) { run_lattice_block(s, name, scene, cores ? all : 1, false, seconds); });
+      }
+  for (const bool cores : {false, true}) {
+    const std::string name = fmt::format("lattice.cycles_32k.{}", cores ? "all_cores" : "1_thread");
+    add(name,
+        fmt::format("the same with the timing model, 32000 particles, {}",
+                    cores ? "a thread per core" : "one thread"),
+        [=](auto& s) { run_lattice_block(s, name, {}, cores ? all : 1, true, seconds); });
+  }
+  for (const auto& [size, cells] : {sizes[0], sizes[1]})
+    for (const bool damped : {false, true})
+      for (const Precision precision : {Precision::float64, Precision::float32})
+        for (const bool cores : {false, true}) {
+          const char* const number = precision == Precision::float32 ? "float" : "double";
+          const std::string name = fmt::format("real.{}_{}_{}.{}", number, damped ? "damped" : "block", size,
+                                               cores ? "all_cores" : "1_thread");
+          const BenchScene scene{.cells = cells, .damped = damped};
+          add(name,
+              fmt::format("the reference engine in {}s, {} particles{}, {}", number, scene.particles(),
+                          damped ? ", damped" : "", cores ? "a thread per core" : "one thread"),
+              [=](benchmark::State& s) {
+                run_real_block(s, name, scene, {.precision = precision, .threads = cores ? all : 1}, seconds);
+              });
+        }
+  add("golden.block_4k", "the golden engine, 4000 particles",
+      [=](auto& s) { run_golden_block(s, "golden.block_4k", {.cells = 10}, seconds); });
+  add("systemc.block_2k", "the clocked engine, 2048 particles, 10 steps",
+      [](auto& s) { run_systemc_block(s, {.cells = 8}, 10); });
+  for (const bool on : {true, false})
+    add(
+        fmt::format("impact.quiescence_{}", on ? "on" : "off"),
+        "a corner of 1000188 particles at rest is hit: 500 steps",
+        [=](auto& s) { run_whole(s, "impact", {.cells = 63, .impact = true}, on_threads(all, on), 500); },
+        true);
+  for (int count = 1; count <= all; ++count)
+    add(
+        fmt::format("scaling.threads_{}", count), "256000 particles, 100 steps",
+        [=](auto& s) { run_whole(s, "scaling", {.cells = 40}, on_threads(count), 100); }, true);
+  for (int ranks = 1; ranks <= all; ++ranks)
+    add(
+        fmt::format("scaling.ranks_{}", ranks), "256000 particles, 100 steps, over MPI",
+        [=](auto& s) { run_ranks(s, "scaling", {.cells = 40}, ranks, 100); }, true);
+  for (const gpu::BenchRow& row : gpu::bench_rows())
+    list.push_back({"gpu." + row.name, "the GPU engine, " + row.what,
+                    [=](auto& s) { run_gpu_row(s, row.name, length.repeats, seconds); }, false, true});
+  return list;
+}
+
+}  // namespace cuboct
