@@ -13,6 +13,7 @@
 #include "cli/outputs.h"
 #include "cli/summary.h"
 #include "hw/state_bounds.h"
+#include "model/analysis/tension.h"
 #include "model/base/base64.h"
 #include "model/base/directory_lock.h"
 #include "model/base/output.h"
@@ -135,20 +136,50 @@ std::string figure(const std::vector<Series>& series, const std::string& x, cons
   return "<figure>" + plot_lines(series, x, y) + "</figure>\n";
 }
 
+// The figures of a tension test beside those of the datasheet, where the scene gives one.
+std::string tension_table(const Tension& tension, const Probe& probe) {
+  const TensionFigures figures = tension_figures(tension.strain->value, tension.stress->value);
+  const Datasheet sheet = probe.datasheet.value_or(Datasheet{});
+  std::string rows;
+  const auto row = [&](const char* name, std::optional<double> measured, double given, double unit,
+                       const char* unit_name) {
+    if (!measured && given == 0) return;
+    const auto text = [&](double value) { return fmt::format("{:.3g} {}", value / unit, unit_name); };
+    rows += fmt::format("<tr><th>{}</th><td>{}</td>{}</tr>\n", name, measured ? text(*measured) : "–",
+                        probe.datasheet ? "<td>" + (given > 0 ? text(given) : "–") + "</td>" : "");
+  };
+  row("modulus", figures.modulus, sheet.modulus, 1e9, "GPa");
+  row("strength", figures.strength, sheet.strength, 1e6, "MPa");
+  row("strain at the strength", figures.yield_strain, sheet.yield_strain, 0.01, "%");
+  row("strain at break", figures.strain_at_break, sheet.strain_at_break, 0.01, "%");
+  const std::string given =
+      probe.datasheet
+          ? "<th>datasheet" + (sheet.source.empty() ? "" : ": " + html_text(sheet.source)) + "</th>"
+          : "";
+  return fmt::format(
+      "<div class=\"wide\"><table>\n<tr><th></th><th>measured</th>{}</tr>\n{}</table></div>\n"
+      "<p class=\"note\">Modulus: slope up to a strain of 0.5 %. Strength and break: of the running mean "
+      "over {} "
+      "readings; broken where it stays below a tenth of the strength.</p>\n",
+      given, rows, tension_window(tension.strain->value.size()));
+}
+
 // `marks`: the frames that are pictured.
-std::string stress_strain(const Trace& trace, const Tension& tension, const std::vector<size_t>& marks) {
-  Series series;
-  for (size_t k = 0; k < tension.strain->value.size(); ++k) {
-    series.x.push_back(100 * tension.strain->value[k]);
-    series.y.push_back(1e-6 * tension.stress->value[k]);
-  }
+std::string stress_strain(const Trace& trace, const Tension& tension, const Probe& probe,
+                          const std::vector<size_t>& marks) {
+  const size_t window = tension_window(tension.strain->value.size());
+  Series readings, mean;
+  readings.faint = true;
+  readings.title = "readings", mean.title = "running mean";
+  for (const double strain : tension.strain->value) readings.x.push_back(100 * strain);
+  for (const double stress : tension.stress->value) readings.y.push_back(1e-6 * stress);
+  mean.x = running_mean(readings.x, window), mean.y = running_mean(readings.y, window);
   for (const size_t k : marks) {
     const size_t at = sample_at(*tension.strain, trace.frames[k].step);
-    series.marks.emplace_back(series.x[at], series.y[at]);
+    mean.marks.emplace_back(mean.x[at], mean.y[at]);
   }
-  return figure({series}, "strain of the gauge length, %", "stress, MPa") +
-         fmt::format("<p>Largest stress {:.4g} MPa at a strain of {:.3g} %.</p>\n", series.y[tension.peak],
-                     series.x[tension.peak]);
+  return figure({readings, mean}, "strain of the gauge length, %", "stress, MPa") +
+         tension_table(tension, probe);
 }
 
 // Numbers up to `largest` of an SI unit, in the multiple of it that makes them 1 to 1000.
@@ -206,9 +237,9 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
     switch (probe.kind) {
       case Probe::Kind::stress_strain:
         if (const auto tension = tension_of(trace, probe.name))
-          section(
-              "Stress and strain: " + probe.name,
-              stress_strain(trace, *tension, tension->name == first->name ? chosen : std::vector<size_t>()));
+          section("Stress and strain: " + probe.name,
+                  stress_strain(trace, *tension, probe,
+                                tension->name == first->name ? chosen : std::vector<size_t>()));
         break;
       case Probe::Kind::force:
         section("Force: " + probe.name,

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cli/advice.h"
+#include "model/analysis/tension.h"
 
 namespace cuboct {
 std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
@@ -40,6 +41,31 @@ double largest_energy(const std::vector<Curve>& curves) {
   return largest;
 }
 
+const Curve* curve_of(const std::vector<Curve>& curves, const std::string& name) {
+  const auto found =
+      std::find_if(curves.begin(), curves.end(), [&](const Curve& curve) { return curve.name == name; });
+  return found == curves.end() || found->value.size() < 2 ? nullptr : &*found;
+}
+
+void add_tension(Items& items, const Scene& scene, const std::vector<Curve>& curves) {
+  for (const Probe& probe : scene.probes) {
+    if (probe.kind != Probe::Kind::stress_strain) continue;
+    const Curve* strain = curve_of(curves, probe.name + ".strain");
+    const Curve* stress = curve_of(curves, probe.name + ".stress");
+    if (strain == nullptr || stress == nullptr || strain->step != stress->step) continue;
+    const TensionFigures figures = tension_figures(strain->value, stress->value);
+    const Datasheet sheet = probe.datasheet.value_or(Datasheet{});
+    const auto add = [&](const char* name, double value, double given, const char* unit) {
+      items.add(probe.name + "." + name, value, unit,
+                given > 0 ? fmt::format("datasheet: {:g} {}", given, unit) : "");
+    };
+    if (figures.modulus) add("modulus", *figures.modulus, sheet.modulus, "Pa");
+    add("strength", figures.strength, sheet.strength, "Pa");
+    add("yield_strain", figures.yield_strain, sheet.yield_strain, "");
+    if (figures.strain_at_break) add("strain_at_break", *figures.strain_at_break, sheet.strain_at_break, "");
+  }
+}
+
 }  // namespace
 
 void add_curves(Items& items, const Scene& scene, const std::vector<Curve>& curves) {
@@ -58,6 +84,7 @@ void add_curves(Items& items, const Scene& scene, const std::vector<Curve>& curv
       energy("energy change", curve.value.back() - curve.value.front(), "driven or damped");
     energy("energy", curve.value.back());
   }
+  add_tension(items, scene, curves);
 }
 
 void add_end(Items& items, const Trace& trace) {

@@ -24,12 +24,12 @@ struct Timeline {
 // A node's end of its links: what the channels' current values are, gathered so that a node looks in one
 // place. Links write it in SystemC's update phase and at no other time. Bit f of a mask belongs to face f.
 struct LinkPins {
-  uint8_t held = 0;     // incoming registers that are not empty
-  uint8_t ready = 0;    // receivers of the outgoing links that are ready
-  bool asleep = false;  // the node asks to be woken by a filled register
+  uint8_t held = 0;        // incoming registers that are not empty
+  uint8_t ready = 0;       // receivers of the outgoing links that are ready
+  bool asleep = false;     // the node asks to be woken by a filled register
   bool heeds_all = false;  // while asleep: by a change of ready or of an acknowledgement too
-  NodeInputs inputs;    // `beat`: the incoming registers, where held
-  NodeOutputs outputs;  // `beat`: where the next beat is written
+  NodeInputs inputs;       // `beat`: the incoming registers, where held
+  NodeOutputs outputs;     // `beat`: where the next beat is written
   sc_core::sc_event wake;
 };
 

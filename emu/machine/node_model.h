@@ -88,13 +88,14 @@ class NodeModel {
   // and they may be left out. A call in one of them is right too; any value up to the next cycle asks for
   // each.
   virtual uint64_t wakes_at() const { return 0; }
-  // After `clock`, of models that do not know their future: with the same inputs no call would change anything
-  // or show anything. Calls may be left out until an input changes, be it a ready or an acknowledgement.
+  // After `clock`, of models that do not know their future: with the same inputs no call would change
+  // anything or show anything. Calls may be left out until an input changes, be it a ready or an
+  // acknowledgement.
   virtual bool stands_still() const { return false; }
   // What the node is doing, for the report of a deadlock.
   virtual std::string doing() const { return "unknown"; }
-  // Counters of this node over the cycles before `end`, always the same names in the same order; the bench adds
-  // them up over the nodes.
+  // Counters of this node over the cycles before `end`, always the same names in the same order; the bench
+  // adds them up over the nodes.
   virtual Counters counters(uint64_t /*end*/) const { return {}; }
 };
 

@@ -23,7 +23,8 @@ struct CuboctOut {
   uint8_t link_valid, link_end, link_ready;
   uint8_t force_event;              // of a node alone: engine runs, stalled, presents a candidate, issues
   uint8_t beat_errors, ack_errors;  // of the cycle; these and link_ack where links are checked
-  uint8_t still;  // of a node alone: with the same inputs no clock would change a bit of it, nor show more than force_event
+  uint8_t still;  // of a node alone: with the same inputs no clock would change a bit of it, nor show more
+                  // than force_event
   uint16_t link_ack[kCuboctFaces];
   uint32_t fault_id, observe_cell, fault_cell;  // the cells of a brick
   int64_t fault_number;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "Vcuboct_node.h"
-#include "Vcuboct_node___024root.h"
 #include "Vcuboct_node__Syms.h"
+#include "Vcuboct_node___024root.h"
 #include "shim.h"
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,15 @@ inline const char* temperature_unit(double boltzmann) { return boltzmann == 1 ? 
 struct ParticleSet {
   std::string name;
   std::vector<uint32_t> ids;
+};
+
+// What a datasheet says of a material in tension; what it does not say is 0.
+struct Datasheet {
+  double modulus = 0;          // Pa
+  double strength = 0;         // Pa
+  double yield_strain = 0;     // at the strength
+  double strain_at_break = 0;  // elongation of the gauge length
+  std::string source;
 };
 
 // What to measure every `probe_every` steps. Curves are named "<probe>.<quantity>".
@@ -45,7 +55,8 @@ struct Probe {
   // kinetic_energy: over the sum of v^2. temperature: over the sum of (v - mean)^2, m/(g k_B) with g degrees
   // of freedom.
   double scale = 0;
-  std::string unit;  // of temperature: K, in reduced units J
+  std::string unit;                    // of temperature: K, in reduced units J
+  std::optional<Datasheet> datasheet;  // stress_strain: what the material is said to show
 };
 
 struct Scene {

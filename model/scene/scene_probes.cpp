@@ -34,6 +34,23 @@ void read_temperature(const ConfigTable& table, const Scene& scene, Probe& probe
   probe.unit = temperature_unit(scene.boltzmann);
 }
 
+Datasheet read_datasheet(const ConfigTable& table) {
+  Datasheet sheet;
+  const auto stress = [&](const char* key) {
+    return table.number_or(key, quantity::pressure, 0, Range::positive());
+  };
+  const auto strain = [&](const char* key) {
+    return table.number_or(key, quantity::number, 0, Range::positive());
+  };
+  sheet.modulus = stress("modulus");
+  sheet.strength = stress("strength");
+  sheet.yield_strain = strain("yield_strain");
+  sheet.strain_at_break = strain("strain_at_break");
+  sheet.source = table.string_or("source", "");
+  table.done();
+  return sheet;
+}
+
 }  // namespace
 
 void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) {
@@ -58,6 +75,7 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
       probe.upper = set("upper", probe.name + ".upper");
       probe.grip = set("grip", probe.name + ".grip");
       probe.area = table.number("area", quantity::area, Range::positive());
+      if (const auto sheet = table.table_at("datasheet")) probe.datasheet = read_datasheet(*sheet);
       if (!(mean_along(probe.lower, scene.body.x, probe.axis) <
             mean_along(probe.upper, scene.body.x, probe.axis)))
         table.at("upper").fail("'upper' must lie further along 'axis' than 'lower'");

@@ -46,7 +46,8 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
     const std::string name = scratch.path(fmt::format("series{}", i));
     write_text(name, points);
     script += fmt::format(
-        "{}{} with lines lw 2 lc '{}' {}", i > 0 ? ", " : "", gnuplot_file(name), kColours[i % 4],
+        "{}{} with lines lw {} lc '{}' {}", i > 0 ? ", " : "", gnuplot_file(name), series[i].faint ? 1 : 2,
+        series[i].faint ? "#bbbbbb" : kColours[i % 4],
         series[i].title.empty() ? "notitle" : fmt::format("title {}", gnuplot_label(series[i].title)));
     if (!marks.empty()) {
       write_text(name + ".marks", marks);

@@ -13,6 +13,7 @@ struct Series {
   std::string title;
   std::vector<double> x, y;
   std::vector<std::pair<double, double>> marks;  // points to stand out
+  bool faint = false;                            // a thin grey line, behind what is drawn later
 };
 
 // An SVG element, ready to stand in HTML.
