@@ -31,12 +31,6 @@ struct Port {
   const char* name;
 };
 
-// All velocities that come from outside: type by type, axis 0 in the least significant place.
-std::string velocity_range(const RtlDesign& design) {
-  return fmt::format("[{}:0]",
-                     design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits) - 1);
-}
-
 // Of a sized literal.
 int width_of(const std::string& literal) { return std::stoi(literal); }
 
@@ -170,7 +164,13 @@ std::string print_scale(const RtlDesign& design) {
   return text + "      default: scale_o = '0;\n    endcase\n  end\nendmodule\n";
 }
 
+std::string velocity_range(const RtlDesign& design) {
+  const size_t bits = design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits);
+  return fmt::format("[{}:0]", std::max<size_t>(bits, 1) - 1);
+}
+
 std::string print_velocities(const RtlDesign& design) {
+  if (design.moved.empty()) return "1'b0";
   std::string text;
   for (const int k : design.moved) {
     const FixedType& type = design.types[static_cast<size_t>(k)];
@@ -187,7 +187,8 @@ std::string print_types(const RtlDesign& design) {
       "or of the\n"
       "// anchor), gravity, whether held by force, gains. Combinational.\n"
       "module cuboct_type_rom (\n"
-      "{}  input  logic [{}:0] type_i,\n"
+      "  input  logic {} velocity_i,  // by type that is moved from outside\n"
+      "  input  logic [{}:0] type_i,\n"
       "  output logic [{}:0] imposed_o,\n"
       "  output logic [{}:0] velocity_o,\n"
       "  output logic [{}:0] gravity_o,\n"
@@ -195,8 +196,8 @@ std::string print_types(const RtlDesign& design) {
       "  output logic [17:0] kp_o,\n"
       "  output logic [17:0] kd_o\n"
       ");\n",
-      design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n", t - 1,
-      axes - 1, axes * v - 1, axes * v - 1);
+      velocity_range(design), t - 1, axes - 1, axes * v - 1, axes * v - 1);
+  if (design.moved.empty()) text += "  logic unused_velocity;\n  assign unused_velocity = velocity_i;\n";
   const auto velocity = [&](const FixedType& type, int number) {
     const auto at = std::find(design.moved.begin(), design.moved.end(), number);
     if (at == design.moved.end()) return concatenated(type.velocity, v, axes);
@@ -248,7 +249,8 @@ std::string print_node(const RtlDesign& design) {
   }
   for (const RtlConstant& c : design.constants)
     if (c.core) core.push_back(fmt::format("    .{0}(cuboct_pkg::{0})", c.name));
-  if (!design.moved.empty()) core.push_back(fmt::format("    .MovedTypes({})", design.moved.size()));
+  core.push_back(fmt::format("    .MovedTypes({})", design.moved.size()));
+  if (design.moved.empty()) connected.emplace_back("    .velocity_i(1'b0)");
   text += fmt::format("  {} #(\n{}\n  ) u_core (\n{}\n  );\n", core_name, fmt::join(core, ",\n"),
                       fmt::join(connected, ",\n"));
   if (design.checked)
