@@ -21,7 +21,7 @@ std::string print_package(const Plan& plan, const RtlDesign& design, const Board
       "  localparam int          CellBits    = {};  // of a cell's number in its node\n"
       "  localparam int          Slots       = {};  // of a node\n"
       "  localparam int          MovedTypes  = {};\n"
-      "  localparam logic {} Velocities = {};\n"
+      "  localparam logic [{}:0] Velocities = {};\n"
       "  localparam logic [63:0] PlanHash    = 64'h{:016x};\n"
       "  localparam logic [63:0] MachineHash = 64'h{:016x};\n"
       "  localparam int          ClockHz     = {};\n"
@@ -29,7 +29,7 @@ std::string print_package(const Plan& plan, const RtlDesign& design, const Board
       "endpackage\n",
       design.maker, choice.baud, board.clock_hz / 1e6, plan.nodes(), plan.bricks.cell_bits(),
       cells_of(plan.bricks.shape()) * static_cast<uint32_t>(plan.arch.capacity), design.moved.size(),
-      velocity_range(design), print_velocities(design), plan.hash, machine_hash(plan), board.clock_hz,
+      velocities_bits(design) - 1, print_velocities(design), plan.hash, machine_hash(plan), board.clock_hz,
       bit_clocks16(board, choice.baud));
 }
 
