@@ -119,32 +119,6 @@ int product_cycles(const FixedRule& r) {
 
 }  // namespace
 
-Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles) {
-  const int P = r.widths.position_frac;
-  Words words;
-  words.id_bits = std::max(1, static_cast<int>(std::bit_width(particles > 0 ? particles - 1 : 0u)));
-  // Signs of a halo's position, `away` of a particle: 2 bits for all axes but one.
-  const int position = r.axes * P + 2 * (r.axes - 1);
-  const bool bricks = cells_of(arch.brick) > 1;
-  if (bricks) {
-    const BrickGrid grid(arch.brick);
-    const auto bits = [](uint32_t numbers) { return static_cast<int>(std::bit_width(numbers - 1)); };
-    for (int a = 0; a < r.axes; ++a) {
-      words.halo_cell_bits = std::max(words.halo_cell_bits, bits(grid.halo_tags(a)));
-      words.migrate_cell_bits = std::max(words.migrate_cell_bits, bits(grid.migrate_tags(a)));
-    }
-  }
-  words.halo_bits = (bricks ? r.axes * P + words.halo_cell_bits : position) + (r.scaled ? r.type_bits : 0) +
-                    (r.damped ? r.axes * r.widths.velocity_bits : 0);
-  words.particle_bits = position + r.axes * (r.widths.velocity_bits + r.widths.guard) + r.type_bits +
-                        words.id_bits + (r.pd ? r.axes * r.widths.displacement_bits : 0);
-  words.migrate_bits = words.particle_bits + words.migrate_cell_bits;
-  words.link_bits = arch.link_bits > 0 ? arch.link_bits : words.halo_bits;
-  words.halo_beats = ceil_div(words.halo_bits, words.link_bits);
-  words.migrate_beats = ceil_div(words.migrate_bits, words.link_bits);
-  return words;
-}
-
 Latency latency_of(const FixedRule& r, const Arch& arch) {
   Latency latency;
   const int table = (r.force.degree == 2 ? 1 : 0), used = (r.damped ? 1 : 0) + (r.scaled ? 1 : 0);

@@ -8,34 +8,12 @@
 #include "hw/arch.h"
 #include "hw/auto_widths.h"
 #include "hw/bricks.h"
+#include "hw/words.h"
 #include "model/contract/fixed_rule.h"
 #include "model/contract/lattice.h"
 #include "model/contract/state.h"
 
 namespace cuboct {
-
-// Bits of the words that travel and of the fields in them, least significant field first.
-//   halo record:    x[P+2] y[P+2] z[P] type[type_bits, if scaled] v[3 x velocity_bits, if damped]
-//   particle:       x[P] y[P] z[P] away_y[2] away_z[2] v[3 x velocity_bits] type[type_bits] id[id_bits]
-//                   residue[3 x G] u[3 x displacement_bits, if pd]
-// x[P] are the visible bits of a position, those that forces and links see; residue[G] are the G bits below
-// them. What the force engine reads of a particle lies below its id, so that its memories hold no residue.
-// A flat plan (rule.axes 2) has nothing of z: x[P+2] y[P] ..., x[P] y[P] away_y[2] v[2 x velocity_bits] ...
-// residue[2 x G] ... All but the last axis of a halo record are signed, in the frame of the sender's cell
-// (see docs/reference/node.md); `away` is two's complement: -1, 0, +1. The particle word is the migrate
-// record and the word of the load and observe ports. With bricks a halo record's coordinates are those in its
-// own cell, x[P] y[P] z[P], and its last field says which cell that is: cell[halo_cell_bits]. A migrate
-// record is a particle and then the cell that it goes to, cell[migrate_cell_bits]. hw/bricks.h numbers both.
-struct Words {
-  int id_bits = 0;
-  int halo_bits = 0;
-  int particle_bits = 0;
-  int halo_beats = 0;                             // ceil(halo_bits / link_bits)
-  int migrate_beats = 0;                          // ceil(migrate_bits / link_bits)
-  int migrate_bits = 0;                           // particle_bits + migrate_cell_bits
-  int halo_cell_bits = 0, migrate_cell_bits = 0;  // 0 without bricks
-  int link_bits = 0;                              // as built: arch.link_bits, or halo_bits
-};
 
 // Registers of the filter with wide memories: a candidate's answer, the one chosen, sizes, masks.
 inline constexpr int kFilterStages = 4;
@@ -84,8 +62,6 @@ struct Plan {
   }
 };
 
-// What make_plan derives: words of records, latencies.
-Words words_of(const FixedRule& rule, const Arch& arch, uint32_t particles);
 Latency latency_of(const FixedRule& rule, const Arch& arch);
 // Cells of the smallest box that holds the lattice.
 uint64_t bounding_cells(const Lattice& lattice);

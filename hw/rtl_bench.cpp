@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "hw/rtl_ports.h"
 #include "hw/rtl_template.h"
 #include "model/contract/golden.h"
 #include "model/trace/trace.h"
@@ -35,33 +36,6 @@ class BitWord {
   std::vector<int> bits_;
 };
 
-struct Field {
-  std::string name;
-  int lsb, bits;
-  bool is_signed;
-};
-
-std::vector<Field> fields_of(const Plan& plan) {
-  const Widths& w = plan.rule.widths;
-  const char* axis = "xyz";
-  std::vector<Field> fields;
-  int lsb = 0;
-  const auto add = [&](const std::string& name, int bits, bool is_signed) {
-    if (bits > 0) fields.push_back({name, lsb, bits, is_signed});
-    lsb += bits;
-  };
-  const int axes = plan.rule.axes;
-  for (int a = 0; a < axes; ++a) add(fmt::format("x_{}", axis[a]), w.position_frac, false);
-  for (int a = 1; a < axes; ++a) add(fmt::format("away_{}", axis[a]), 2, true);
-  for (int a = 0; a < axes; ++a) add(fmt::format("v_{}", axis[a]), w.velocity_bits, true);
-  add("type", plan.rule.type_bits, false);
-  add("id", plan.words.id_bits, false);
-  for (int a = 0; a < axes; ++a) add(fmt::format("residue_{}", axis[a]), w.guard, false);
-  if (plan.rule.pd)
-    for (int a = 0; a < axes; ++a) add(fmt::format("u_{}", axis[a]), w.displacement_bits, true);
-  return fields;
-}
-
 // Placeholders in capitals between @ are replaced; the rest is the file.
 constexpr const char* kBench =
     R"sv(// Loads the lattice, runs Steps steps and compares every particle that a node observes with golden's.
@@ -75,21 +49,10 @@ module cuboct_bench;
   localparam int Steps        = @STEPS@;
   localparam int Limit        = @LIMIT@;  // cycles; a run that takes longer hangs
 
-  logic clk, rst_n, start, load_valid;
-  logic [31:0] load_node;
-@CELLS@  logic [ParticleBits-1:0] load_data;
-  logic [8*Nodes-1:0] phase_start, phase_end;
-  logic [Nodes-1:0] observe_valid, fault_valid, idle;
-  logic [Nodes*ParticleBits-1:0] observe_data;
-  logic [4*Nodes-1:0] fault_code;
-  logic [Nodes*IdBits-1:0] fault_id;
-  logic [64*Nodes-1:0] fault_number;
-
+@CELLS@@SIGNALS@  assign steps = Steps;
+@VELOCITY@
   cuboct_lattice u_lattice (
-    .clk_i(clk), .rst_ni(rst_n), .start_i(start), .steps_i(Steps), .load_valid_i(load_valid),
-    .load_node_i(load_node), .load_data_i(load_data),@VELOCITY@@CELL_PORTS@ .phase_start_o(phase_start), .phase_end_o(phase_end),
-    .observe_valid_o(observe_valid), .observe_data_o(observe_data), .fault_valid_o(fault_valid),
-    .fault_code_o(fault_code), .fault_id_o(fault_id), .fault_number_o(fault_number), .idle_o(idle)
+@PORTS@
   );
 
   // Words are {@CELL_WORD@node, particle}; {step, @CELL_WORD@slot, particle}, all of node 0 in the order of time, then of node 1, ...;
@@ -235,23 +198,60 @@ A lattice of @NODES@ particle processors in SystemVerilog, self-contained.
 
 The bench ends with `PASS n comparisons, ...` and exit status 0, or with `FAIL`, the place and another status.
 
-The plan:
+## Ports of cuboct_lattice
+
+| port | | bits | meaning |
+|---|---|---|---|
+@PORT_ROWS@
+## The particle of load_data_i and observe_data_o
+
+| field | lowest bit | bits | |
+|---|---|---|---|
+@FIELD_ROWS@
+## The plan
 
 @PLAN@)";
 
-// {above, particle}, the particle as plan.words lays it out; above are 32-bit words, least significant first.
+std::string port_rows(const RtlDesign& design) {
+  std::string rows;
+  for (const RtlPort& p : lattice_ports(design))
+    rows += fmt::format("| `{}` | {} | `{}` | {} |\n", p.name, p.output ? "out" : "in", p.bits, p.meaning);
+  return rows;
+}
+
+std::string field_rows(const Plan& plan) {
+  std::string rows;
+  for (const WordField& f : plan.words.particle)
+    rows += fmt::format("| `{}` | {} | {} | {} |\n", name_of(f), f.lsb, f.bits, f.is_signed ? "signed" : "");
+  return rows;
+}
+
+// {above, particle}; above are 32-bit words, least significant first.
 std::string particle_hex(const Plan& plan, const Particle& particle, std::initializer_list<uint64_t> above) {
-  const Widths& w = plan.rule.widths;
   BitWord word;
-  const int axes = plan.rule.axes;
-  for (int a = 0; a < axes; ++a) word.add(particle.x[a] >> w.guard, w.position_frac);
-  word.add(0, 2 * (axes - 1));  // away
-  for (int a = 0; a < axes; ++a) word.add(particle.v[a], w.velocity_bits);
-  word.add(particle.type, plan.rule.type_bits);
-  word.add(particle.id, plan.words.id_bits);
-  for (int a = 0; a < axes; ++a) word.add(particle.x[a], w.guard);
-  if (plan.rule.pd)
-    for (int a = 0; a < axes; ++a) word.add(particle.u[a], w.displacement_bits);
+  for (const WordField& f : plan.words.particle) {
+    const auto value = [&]() -> int64_t {
+      switch (f.kind) {
+        case FieldKind::position:
+          return particle.x[f.axis] >> plan.rule.widths.guard;
+        case FieldKind::residue:
+          return particle.x[f.axis];
+        case FieldKind::velocity:
+          return particle.v[f.axis];
+        case FieldKind::type:
+          return particle.type;
+        case FieldKind::id:
+          return particle.id;
+        case FieldKind::displacement:
+          return particle.u[f.axis];
+        case FieldKind::away:
+        case FieldKind::cell:
+          break;
+      }
+      return 0;
+    };
+    word.add(value(), f.bits);
+  }
   for (const uint64_t more : above) word.add(static_cast<int64_t>(more), 32);
   return word.hex() + "\n";
 }
@@ -267,10 +267,9 @@ constexpr const char* kCellCheck =
 
 std::string print_fields(const Plan& plan, int& id_lsb) {
   std::string text;
-  const std::vector<Field> fields = fields_of(plan);
-  for (const Field& f : fields)
-    if (f.name == "id") id_lsb = f.lsb;
-  for (const Field& f : fields) {
+  for (const WordField& f : plan.words.particle)
+    if (f.kind == FieldKind::id) id_lsb = f.lsb;
+  for (const WordField& f : plan.words.particle) {
     const auto part = [&](const char* word) {
       return f.is_signed ? fmt::format("$signed({}[{} +: {}])", word, f.lsb, f.bits)
                          : fmt::format("{}[{} +: {}]", word, f.lsb, f.bits);
@@ -282,7 +281,7 @@ std::string print_fields(const Plan& plan, int& id_lsb) {
         "                   slot, want[{3} +: IdBits], {4}, {5});\n"
         "          $fatal(1, \"differs\");\n"
         "        end\n",
-        f.lsb, f.bits, f.name, id_lsb, part("got"), part("want"));
+        f.lsb, f.bits, name_of(f), id_lsb, part("got"), part("want"));
   }
   return text;
 }
@@ -338,6 +337,14 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
   std::map<std::string, std::string> files;
   int id_lsb = 0;
   const std::string fields = print_fields(plan, id_lsb);
+  // A signal for each port, of its name without the end.
+  std::string signals;
+  std::vector<std::string> connections;
+  for (const RtlPort& port : lattice_ports(design)) {
+    const std::string signal = port.name.substr(0, port.name.size() - (port.name.ends_with("_ni") ? 1 : 2));
+    signals += fmt::format("  logic {}{};\n", range_of(port), signal);
+    connections.push_back(fmt::format("    .{}({})", port.name, signal));
+  }
   const auto of_bricks = [&](const char* with, const char* without = "") {
     return std::string(bricks ? with : without);
   };
@@ -351,15 +358,15 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
       {"FIELDS", fields},
       {"IDLSB", std::to_string(id_lsb)},
       {"PLAN", describe(plan)},
+      {"PORT_ROWS", port_rows(design)},
+      {"FIELD_ROWS", field_rows(plan)},
       {"LAST", std::to_string(static_cast<int>(last_phase(plan.rule.axes)))},
+      {"SIGNALS", signals},
+      {"PORTS", fmt::format("{}", fmt::join(connections, ",\n"))},
       {"VELOCITY",
-       design.moved.empty() ? "" : fmt::format(" .velocity_i({}),\n   ", print_velocities(design))},
+       design.moved.empty() ? "" : fmt::format("  assign velocity = {};\n", print_velocities(design))},
       {"CELLS", of_bricks("  localparam int CellBits = cuboct_pkg::CellBits;\n"
-                          "  logic [CellBits-1:0] load_cell;\n"
-                          "  logic [31-CellBits:0] unused_load;\n"
-                          "  logic [Nodes*CellBits-1:0] observe_cell, unused_fault_cell;\n")},
-      {"CELL_PORTS", of_bricks("\n    .load_cell_i(load_cell), .observe_cell_o(observe_cell), "
-                               ".fault_cell_o(unused_fault_cell),")},
+                          "  logic [31-CellBits:0] unused_load;\n")},
       {"CELL_WORD", of_bricks("cell, ")},
       {"SLOT", of_bricks(";\n  logic [15:0] slot, own_cell", ", slot")},
       {"OWN_CELL", of_bricks("own_cell, ")},

@@ -12,11 +12,6 @@ constexpr int kLargest = 65535;  // 16 bits for a node's number, and for a count
 
 std::string print_package(const Plan& plan, const RtlDesign& design, const BoardChoice& choice) {
   const Board& board = board_of(choice.name);
-  const size_t bits = design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits);
-  std::string velocities = fmt::format("  localparam int          MovedTypes  = {};\n", design.moved.size());
-  if (bits > 0)
-    velocities +=
-        fmt::format("  localparam logic [{}:0] Velocities = {};\n", bits - 1, print_velocities(design));
   return fmt::format(
       "// SPDX-License-Identifier: MIT\n"
       "// {}\n"
@@ -25,15 +20,17 @@ std::string print_package(const Plan& plan, const RtlDesign& design, const Board
       "  localparam int          Nodes       = {};\n"
       "  localparam int          CellBits    = {};  // of a cell's number in its node\n"
       "  localparam int          Slots       = {};  // of a node\n"
-      "{}"
+      "  localparam int          MovedTypes  = {};\n"
+      "  localparam logic [{}:0] Velocities = {};\n"
       "  localparam logic [63:0] PlanHash    = 64'h{:016x};\n"
       "  localparam logic [63:0] MachineHash = 64'h{:016x};\n"
       "  localparam int          ClockHz     = {};\n"
       "  localparam int          BitClocks16 = {};  // length of a bit in 1/16 clocks\n"
       "endpackage\n",
       design.maker, choice.baud, board.clock_hz / 1e6, plan.nodes(), plan.bricks.cell_bits(),
-      cells_of(plan.bricks.shape()) * static_cast<uint32_t>(plan.arch.capacity), velocities, plan.hash,
-      machine_hash(plan), board.clock_hz, bit_clocks16(board, choice.baud));
+      cells_of(plan.bricks.shape()) * static_cast<uint32_t>(plan.arch.capacity), design.moved.size(),
+      velocities_bits(design) - 1, print_velocities(design), plan.hash, machine_hash(plan), board.clock_hz,
+      bit_clocks16(board, choice.baud));
 }
 
 }  // namespace

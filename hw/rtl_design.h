@@ -70,10 +70,12 @@ void legalise(const RtlDesign& design, bool with_lattice);
 
 std::string print_package(const RtlDesign& design);
 std::string print_table(const RtlDesign& design, const RtlTable& table);
-std::string print_scale(const RtlDesign& design);       // cuboct_scale_rom
-std::string print_types(const RtlDesign& design);       // cuboct_type_rom
-std::string print_velocities(const RtlDesign& design);  // of design.moved, as one vector
-std::string print_node(const RtlDesign& design);        // cuboct_node
+std::string print_scale(const RtlDesign& design);  // cuboct_scale_rom
+std::string print_types(const RtlDesign& design);  // cuboct_type_rom
+// Of design.moved, as one vector: type by type, axis 0 in the least significant place; one bit where none is.
+std::string print_velocities(const RtlDesign& design);
+int velocities_bits(const RtlDesign& design);
+std::string print_node(const RtlDesign& design);  // cuboct_node
 std::string print_lattice(const RtlDesign& design);
 
 }  // namespace cuboct

@@ -138,13 +138,6 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
     files["board/files.f"] = board_list(files["files.f"], files);
     files["README.md"] += print_board_readme(plan, board);
   }
-  const auto define = [&](const std::string& path, const char* line) { files[path] = line + files[path]; };
-  if (!board.name.empty() && design.bricks())
-    define("board/cuboct_board.sv", "`define CUBOCT_BRICKS  // nodes serve several cells each\n");
-  if (!design.moved.empty())
-    for (const char* path : {design.bricks() ? "rtl/cuboct_brick_core.sv" : "rtl/cuboct_node_core.sv",
-                             "rtl/cuboct_datapath.sv", "rtl/cuboct_update.sv", "board/cuboct_board.sv"})
-      define(path, "`define CUBOCT_HOST_VELOCITY  // velocities of held and moved types are set by a host\n");
   write(dir, files);
 }
 

@@ -2,8 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
-#include "hw/rtl_design.h"
+#include "hw/rtl_ports.h"
 #include "hw/rtl_template.h"
 
 namespace cuboct {
@@ -23,85 +24,6 @@ std::string concatenated(const Int3& values, int bits, int axes) {
   std::string text;
   for (int a = axes - 1; a >= 0; --a) text += (text.empty() ? "" : ", ") + literal(values[a], bits);
   return "{" + text + "}";
-}
-
-struct Port {
-  const char* direction;
-  std::string range;  // with a trailing blank, or empty
-  const char* name;
-};
-
-// All velocities that come from outside: type by type, axis 0 in the least significant place.
-std::string velocity_range(const RtlDesign& design) {
-  return fmt::format("[{}:0]",
-                     design.moved.size() * static_cast<size_t>(design.axes * design.velocity_bits) - 1);
-}
-
-// Of a sized literal.
-int width_of(const std::string& literal) { return std::stoi(literal); }
-
-// The ports of cuboct_node, or of its cuboct_node_core, in order.
-std::vector<Port> node_ports(const RtlDesign& design, bool core) {
-  const bool checked = design.checked && !core;
-  const int faces = 2 * design.axes;
-  const auto by_face = [&](const char* bits) { return fmt::format("[{}*cuboct_pkg::{}-1:0]", faces, bits); };
-  const std::string link = by_face(checked ? "WireBits" : "LinkBits"),
-                    particle = "[cuboct_pkg::ParticleBits-1:0]", face = fmt::format("[{}:0]", faces - 1);
-  std::vector<Port> ports{{"input ", "", "clk_i"},
-                          {"input ", "", "rst_ni"},
-                          {"input ", "", "start_i"},
-                          {"input ", "[31:0]", "steps_i"},
-                          {"input ", face, "has_link_i"},
-                          {"input ", "", "load_valid_i"},
-                          {"input ", particle, "load_data_i"},
-                          {"output", face, "link_valid_o"},
-                          {"output", face, "link_end_o"},
-                          {"output", link, "link_data_o"},
-                          {"input ", face, "link_ready_i"}};
-  if (checked) ports.push_back({"input ", by_face("AckBits"), "link_ack_i"});
-  ports.insert(ports.end(), {{"input ", face, "link_valid_i"},
-                             {"input ", face, "link_end_i"},
-                             {"input ", link, "link_data_i"},
-                             {"output", face, "link_ready_o"}});
-  if (checked) {
-    ports.push_back({"output", by_face("AckBits"), "link_ack_o"});
-    ports.push_back({"output", fmt::format("[{}:0]", 2 * faces - 1), "link_error_o"});
-  }
-  ports.insert(ports.end(), {{"output", "[7:0]", "phase_start_o"},
-                             {"output", "[7:0]", "phase_end_o"},
-                             {"output", "[3:0]", "force_event_o"},
-                             {"output", "", "observe_valid_o"},
-                             {"output", particle, "observe_data_o"},
-                             {"output", "", "fault_valid_o"},
-                             {"output", "[3:0]", "fault_code_o"},
-                             {"output", "[cuboct_pkg::IdBits-1:0]", "fault_id_o"},
-                             {"output", "[63:0]", "fault_number_o"},
-                             {"output", "", "idle_o"}});
-  const auto add_after = [&](const char* name, std::vector<Port> more) {
-    const auto at =
-        std::find_if(ports.begin(), ports.end(), [&](const Port& p) { return p.name == std::string(name); });
-    ports.insert(at + 1, more.begin(), more.end());
-  };
-  if (design.bricks()) {
-    const std::string cell = "[cuboct_pkg::CellBits-1:0]";
-    add_after("has_link_i", {{"input ", fmt::format("[{}:0]", width_of(design.extents[0]) - 1), "extent_i"},
-                             {"input ", fmt::format("[{}:0]", width_of(design.exits[0]) - 1), "exit_i"}});
-    add_after("load_valid_i", {{"input ", cell, "load_cell_i"}});
-    add_after("observe_valid_o", {{"output", cell, "observe_cell_o"}});
-    add_after("fault_id_o", {{"output", cell, "fault_cell_o"}});
-  }
-  if (!design.moved.empty()) add_after("load_data_i", {{"input ", velocity_range(design), "velocity_i"}});
-  return ports;
-}
-
-std::string print_ports(const std::vector<Port>& ports) {
-  size_t width = 0;
-  for (const Port& p : ports) width = std::max(width, p.range.size());
-  std::string text;
-  for (size_t k = 0; k < ports.size(); ++k)
-    text += fmt::format("  {} logic {:<{}} {}{}\n", ports[k].direction, ports[k].range, width, ports[k].name,
-                        k + 1 < ports.size() ? "," : "");
-  return text;
 }
 
 }  // namespace
@@ -170,7 +92,12 @@ std::string print_scale(const RtlDesign& design) {
   return text + "      default: scale_o = '0;\n    endcase\n  end\nendmodule\n";
 }
 
+int velocities_bits(const RtlDesign& design) {
+  return std::max(1, static_cast<int>(design.moved.size()) * design.axes * design.velocity_bits);
+}
+
 std::string print_velocities(const RtlDesign& design) {
+  if (design.moved.empty()) return "1'b0";
   std::string text;
   for (const int k : design.moved) {
     const FixedType& type = design.types[static_cast<size_t>(k)];
@@ -187,7 +114,8 @@ std::string print_types(const RtlDesign& design) {
       "or of the\n"
       "// anchor), gravity, whether held by force, gains. Combinational.\n"
       "module cuboct_type_rom (\n"
-      "{}  input  logic [{}:0] type_i,\n"
+      "  input  logic [{}:0] velocity_i,  // by type that is moved from outside\n"
+      "  input  logic [{}:0] type_i,\n"
       "  output logic [{}:0] imposed_o,\n"
       "  output logic [{}:0] velocity_o,\n"
       "  output logic [{}:0] gravity_o,\n"
@@ -195,8 +123,8 @@ std::string print_types(const RtlDesign& design) {
       "  output logic [17:0] kp_o,\n"
       "  output logic [17:0] kd_o\n"
       ");\n",
-      design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n", t - 1,
-      axes - 1, axes * v - 1, axes * v - 1);
+      velocities_bits(design) - 1, t - 1, axes - 1, axes * v - 1, axes * v - 1);
+  if (design.moved.empty()) text += "  logic unused_velocity;\n  assign unused_velocity = velocity_i;\n";
   const auto velocity = [&](const FixedType& type, int number) {
     const auto at = std::find(design.moved.begin(), design.moved.end(), number);
     if (at == design.moved.end()) return concatenated(type.velocity, v, axes);
@@ -230,7 +158,7 @@ std::string print_node(const RtlDesign& design) {
   text += fmt::format(
       "// One node of the plan: {} with the plan's constants{}.\nmodule cuboct_node (\n{});\n", core_name,
       design.checked ? ", and the checks of its links" : "", print_ports(node_ports(design, false)));
-  const std::vector<Port> ports = node_ports(design, true);
+  const std::vector<RtlPort> ports = node_ports(design, true);
   // What stands between the core's links and the node's: the core's port `x_o` is the wire `core_x`, `x_i`
   // the wire `wire_x`.
   const auto guarded = [&](const std::string& name) {
@@ -240,15 +168,15 @@ std::string print_node(const RtlDesign& design) {
     return (name.ends_with("_o") ? "core_" : "wire_") + name.substr(0, name.size() - 2);
   };
   std::vector<std::string> core, connected;
-  for (const Port& p : ports) {
-    if (guarded(p.name))
-      text += fmt::format("  logic {}{}{};\n", p.range, p.range.empty() ? "" : " ", inner(p.name));
+  for (const RtlPort& p : ports) {
+    if (guarded(p.name)) text += fmt::format("  logic {}{};\n", range_of(p), inner(p.name));
     connected.push_back(guarded(p.name) ? fmt::format("    .{}({})", p.name, inner(p.name))
                                         : fmt::format("    .{}", p.name));
   }
   for (const RtlConstant& c : design.constants)
     if (c.core) core.push_back(fmt::format("    .{0}(cuboct_pkg::{0})", c.name));
-  if (!design.moved.empty()) core.push_back(fmt::format("    .MovedTypes({})", design.moved.size()));
+  core.push_back(fmt::format("    .MovedTypes({})", design.moved.size()));
+  if (design.moved.empty()) connected.emplace_back("    .velocity_i(1'b0)");
   text += fmt::format("  {} #(\n{}\n  ) u_core (\n{}\n  );\n", core_name, fmt::join(core, ",\n"),
                       fmt::join(connected, ",\n"));
   if (design.checked)
@@ -287,44 +215,16 @@ std::string print_lattice(const RtlDesign& design) {
   const size_t nodes = design.cells.size();
   const int faces = 2 * design.axes;
   std::string text = head(design);
-  const auto of_bricks = [&](const char* port) { return std::string(design.bricks() ? port : ""); };
-  text += fill(
+  text += fmt::format(
       "// All nodes and their links. Node n's part of a vector over nodes has n times the part's width below "
       "it.\n"
       "// load_valid_i appends load_data_i to node load_node_i; start_i starts all nodes.\n"
       "module cuboct_lattice #(\n"
-      "  localparam int Nodes = @NODES@\n"
+      "  localparam int Nodes = {}\n"
       ") (\n"
-      "  input  logic clk_i,\n"
-      "  input  logic rst_ni,\n"
-      "  input  logic start_i,\n"
-      "  input  logic [31:0] steps_i,\n"
-      "  input  logic load_valid_i,\n"
-      "  input  logic [31:0] load_node_i,\n"
-      "@LOAD_CELL_PORT@"
-      "  input  logic [cuboct_pkg::ParticleBits-1:0] load_data_i,\n"
-      "@VELOCITY_PORT@"
-      "  output logic [8*Nodes-1:0] phase_start_o,\n"
-      "  output logic [8*Nodes-1:0] phase_end_o,\n"
-      "  output logic [Nodes-1:0] observe_valid_o,\n"
-      "@OBSERVE_CELL_PORT@"
-      "  output logic [Nodes*cuboct_pkg::ParticleBits-1:0] observe_data_o,\n"
-      "  output logic [Nodes-1:0] fault_valid_o,\n"
-      "  output logic [4*Nodes-1:0] fault_code_o,\n"
-      "  output logic [Nodes*cuboct_pkg::IdBits-1:0] fault_id_o,\n"
-      "@FAULT_CELL_PORT@"
-      "  output logic [64*Nodes-1:0] fault_number_o,\n",
-      {{"NODES", std::to_string(nodes)},
-       {"VELOCITY_PORT",
-        design.moved.empty() ? "" : "  input  logic " + velocity_range(design) + " velocity_i,\n"},
-       {"LOAD_CELL_PORT", of_bricks("  input  logic [cuboct_pkg::CellBits-1:0] load_cell_i,\n")},
-       {"OBSERVE_CELL_PORT", of_bricks("  output logic [Nodes*cuboct_pkg::CellBits-1:0] observe_cell_o,\n")},
-       {"FAULT_CELL_PORT", of_bricks("  output logic [Nodes*cuboct_pkg::CellBits-1:0] fault_cell_o,\n")}});
-  text += fmt::format(
-      "  output logic [Nodes-1:0] idle_o\n"
-      ");\n"
+      "{});\n"
       "  localparam int LinkBits = cuboct_pkg::{};\n{}\n",
-      design.checked ? "WireBits" : "LinkBits",
+      nodes, print_ports(lattice_ports(design)), design.checked ? "WireBits" : "LinkBits",
       design.checked ? "  localparam int AckBits = cuboct_pkg::AckBits;\n" : "");
   for (size_t n = 0; n < nodes; ++n)
     text +=
@@ -367,39 +267,37 @@ std::string print_lattice(const RtlDesign& design) {
             fmt::format("{}valid_{}[{}], end_{}[{}], ready_{}[{}], ^data_{}[{}*LinkBits +: LinkBits]",
                         unused_ends.empty() ? "    " : ",\n    ", n, f, n, f, n, f, n, f);
     }
-    text += fmt::format(
-        "\n  // {13} ({1}, {2}, {3}).\n"
-        "  cuboct_node u_node_{0} (\n"
-        "    .clk_i, .rst_ni, .start_i, .steps_i, .has_link_i({9}'b{4}),\n"
-        "    .load_valid_i(load_valid_i && load_node_i == 32'd{0}), .load_data_i,{10}\n"
-        "    .link_valid_o(valid_{0}), .link_end_o(end_{0}), .link_data_o(data_{0}),\n"
-        "    .link_ready_i({{{7}}}),\n"
-        "    .link_valid_i({{{5}}}),\n"
-        "    .link_end_i({{{6}}}),\n"
-        "    .link_data_i({{{8}}}),\n"
-        "    .link_ready_o(ready_{0}),\n"
-        "{11}"
-        "    .phase_start_o(phase_start_o[8*{0} +: 8]), .phase_end_o(phase_end_o[8*{0} +: 8]),\n"
-        "    .force_event_o(event_{0}), .observe_valid_o(observe_valid_o[{0}]),\n"
-        "    .observe_data_o(observe_data_o[{0}*cuboct_pkg::ParticleBits +: cuboct_pkg::ParticleBits]),\n"
-        "    .fault_valid_o(fault_valid_o[{0}]), .fault_code_o(fault_code_o[4*{0} +: 4]),\n"
-        "    .fault_id_o(fault_id_o[{0}*cuboct_pkg::IdBits +: cuboct_pkg::IdBits]),\n"
-        "    .fault_number_o(fault_number_o[64*{0} +: 64]), .idle_o(idle_o[{0}]){12}\n"
-        "  );\n",
-        n, cell[0], cell[1], cell[2], has, valid, end, ready, data, faces,
-        design.moved.empty() ? "" : " .velocity_i,",
-        design.checked ? fmt::format("    .link_ack_i({{{0}}}),\n"
-                                     "    .link_ack_o(ack_{1}), .link_error_o(error_{1}),\n",
-                                     ack, n)
-                       : "",
-        design.bricks()
-            ? fmt::format(
-                  ",\n    .extent_i({1}), .exit_i({2}), .load_cell_i,\n"
-                  "    .observe_cell_o(observe_cell_o[{0}*cuboct_pkg::CellBits +: cuboct_pkg::CellBits]),\n"
-                  "    .fault_cell_o(fault_cell_o[{0}*cuboct_pkg::CellBits +: cuboct_pkg::CellBits])",
-                  n, design.extents[n], design.exits[n])
-            : "",
-        design.bricks() ? "Cells from" : "Cell");
+    const std::string number = std::to_string(n);
+    const std::map<std::string, std::string> special{
+        {"has_link_i", fmt::format("{}'b{}", faces, has)},
+        {"load_valid_i", "load_valid_i && load_node_i == 32'd" + number},
+        {"extent_i", design.bricks() ? design.extents[n] : ""},
+        {"exit_i", design.bricks() ? design.exits[n] : ""},
+        {"link_valid_o", "valid_" + number},
+        {"link_end_o", "end_" + number},
+        {"link_data_o", "data_" + number},
+        {"link_ready_o", "ready_" + number},
+        {"link_ack_o", "ack_" + number},
+        {"link_error_o", "error_" + number},
+        {"link_valid_i", "{" + valid + "}"},
+        {"link_end_i", "{" + end + "}"},
+        {"link_data_i", "{" + data + "}"},
+        {"link_ready_i", "{" + ready + "}"},
+        {"link_ack_i", "{" + ack + "}"},
+        {"force_event_o", "event_" + number}};
+    // The rest is the host's: inputs go to all nodes, outputs have a part for each.
+    const auto connected = [&](const RtlPort& p) {
+      if (const auto at = special.find(p.name); at != special.end())
+        return fmt::format("    .{}({})", p.name, at->second);
+      if (!p.output) return "    ." + p.name;
+      return p.bits == "1" ? fmt::format("    .{0}({0}[{1}])", p.name, n)
+                           : fmt::format("    .{0}({0}[{1}*{2} +: {2}])", p.name, n, p.bits);
+    };
+    std::vector<std::string> connections;
+    for (const RtlPort& p : node_ports(design, false)) connections.push_back(connected(p));
+    text += fmt::format("\n  // {} ({}, {}, {}).\n  cuboct_node u_node_{} (\n{}\n  );\n",
+                        design.bricks() ? "Cells from" : "Cell", cell[0], cell[1], cell[2], n,
+                        fmt::join(connections, ",\n"));
   }
   if (!unused_ends.empty())
     text += "\n  logic unused_faces;\n  assign unused_faces = ^{\n" + unused_ends + "\n  };\n";

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 
-#include "model/base/fixed_math.h"
-
 namespace cuboct::emu {
 namespace {
 
@@ -25,111 +23,112 @@ void check_words(const Plan& plan) {
                      "use fewer link.bits");
 }
 
-void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out) {
-  const Widths& w = plan.rule.widths;
-  const int p = w.position_frac;
-  const Wide mask = (Wide{1} << (p + 2)) - 1;
-  const auto signed_field = [&](int a) {
-    return static_cast<Wide>(candidate.x[static_cast<size_t>(a)]) & mask;
-  };
-  const auto last_field = [&](int a) {
-    return static_cast<Wide>(candidate.x[static_cast<size_t>(a)] & ((int64_t{1} << p) - 1));
-  };
-  const int axes = plan.rule.axes;
-  // 3P+4 bits: at most 94.
-  const Wide xyz = axes == 3 ? signed_field(0) | signed_field(1) << (p + 2) | last_field(2) << (2 * p + 4)
-                             : signed_field(0) | last_field(1) << (p + 2);
+void pack_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out) {
+  const WordLayout& word = plan.words.halo;
+  const auto axes = static_cast<size_t>(plan.rule.axes);
+  // The positions at once: at most 94 bits.
+  Wide xyz = 0;
+  for (size_t a = 0; a < axes; ++a) {
+    const uint64_t mask = (uint64_t{1} << word[a].bits) - 1;
+    xyz |= static_cast<Wide>(static_cast<uint64_t>(candidate.x[a]) & mask) << word[a].lsb;
+  }
   out.word[0] = static_cast<uint64_t>(xyz);
   out.word[1] = static_cast<uint64_t>(xyz >> 64);
-  int at = axes * p + 2 * (axes - 1);
-  const auto field = [&](int width, int64_t value) { out.put(at, width, value), at += width; };
-  if (plan.rule.scaled) field(plan.rule.type_bits, candidate.type);
-  if (plan.rule.damped)
-    for (int a = 0; a < axes; ++a) field(w.velocity_bits, candidate.v[a]);
-}
-
-void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Candidate& out) {
-  const Widths& w = plan.rule.widths;
-  const int p = w.position_frac;
-  const Wide xyz = static_cast<Wide>(bits.word[1]) << 64 | bits.word[0];
-  const auto signed_field = [&](Wide v) { return wrap(static_cast<int64_t>(v), p + 2); };
-  const auto moved = [&](int a, int64_t x) {
-    return static_cast<int32_t>(wrap(a == axis ? x + shift : x, p + 2));
-  };
-  out.x[0] = moved(0, signed_field(xyz));
-  const auto last_field = [&](Wide v) { return static_cast<int64_t>(v) & ((int64_t{1} << p) - 1); };
-  const int axes = plan.rule.axes;
-  if (axes == 3) {
-    out.x[1] = moved(1, signed_field(xyz >> (p + 2)));
-    out.x[2] = moved(2, last_field(xyz >> (2 * p + 4)));
-  } else {
-    out.x[1] = moved(1, last_field(xyz >> (p + 2)));
+  for (size_t k = axes; k < word.size(); ++k) {
+    const WordField& f = word[k];
+    out.put(f.lsb, f.bits,
+            f.kind == FieldKind::velocity ? candidate.v[static_cast<size_t>(f.axis)]
+            : f.kind == FieldKind::type   ? candidate.type
+                                          : int64_t{cell});
   }
-  int at = axes * p + 2 * (axes - 1);
-  const auto take = [&](int width) { return at += width, bits.get(at - width, width); };
-  const auto take_signed = [&](int width) { return at += width, bits.get_signed(at - width, width); };
-  out.type = plan.rule.scaled ? static_cast<uint8_t>(take(plan.rule.type_bits)) : 0;
-  if (plan.rule.damped)
-    for (int a = 0; a < axes; ++a) out.v[a] = take_signed(w.velocity_bits);
 }
 
-void pack_cell_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out) {
-  const Widths& w = plan.rule.widths;
-  int at = 0;
-  const auto field = [&](int width, int64_t value) { out.put(at, width, value), at += width; };
+uint32_t unpack_halo(const Plan& plan, const Bits& bits, Candidate& out) {
+  const WordLayout& word = plan.words.halo;
   const auto axes = static_cast<size_t>(plan.rule.axes);
-  for (size_t a = 0; a < axes; ++a) field(w.position_frac, candidate.x[a]);
-  if (plan.rule.scaled) field(plan.rule.type_bits, candidate.type);
-  if (plan.rule.damped)
-    for (size_t a = 0; a < axes; ++a) field(w.velocity_bits, candidate.v[a]);
-  field(plan.words.halo_cell_bits, cell);
-}
-
-uint32_t unpack_cell_halo(const Plan& plan, const Bits& bits, Candidate& out) {
-  const Widths& w = plan.rule.widths;
-  int at = 0;
-  const auto take = [&](int width) { return at += width, bits.get(at - width, width); };
-  const auto axes = static_cast<size_t>(plan.rule.axes);
-  for (size_t a = 0; a < axes; ++a) out.x[a] = static_cast<int32_t>(take(w.position_frac));
-  out.type = plan.rule.scaled ? static_cast<uint8_t>(take(plan.rule.type_bits)) : 0;
-  if (plan.rule.damped)
-    for (size_t a = 0; a < axes; ++a)
-      at += w.velocity_bits, out.v[a] = bits.get_signed(at - w.velocity_bits, w.velocity_bits);
-  return static_cast<uint32_t>(take(plan.words.halo_cell_bits));
+  const Wide xyz = static_cast<Wide>(bits.word[1]) << 64 | bits.word[0];
+  for (size_t a = 0; a < axes; ++a) {
+    const auto x = static_cast<uint64_t>(xyz >> word[a].lsb);
+    const int above = 64 - word[a].bits;
+    out.x[a] = static_cast<int32_t>(word[a].is_signed ? static_cast<int64_t>(x << above) >> above
+                                                      : static_cast<int64_t>(x << above >> above));
+  }
+  uint32_t cell = 0;
+  out.type = 0;
+  for (size_t k = axes; k < word.size(); ++k) {
+    const WordField& f = word[k];
+    if (f.kind == FieldKind::velocity)
+      out.v[static_cast<size_t>(f.axis)] = bits.get_signed(f.lsb, f.bits);
+    else if (f.kind == FieldKind::type)
+      out.type = static_cast<uint8_t>(bits.get(f.lsb, f.bits));
+    else
+      cell = static_cast<uint32_t>(bits.get(f.lsb, f.bits));
+  }
+  return cell;
 }
 
 Bits pack_particle(const Plan& plan, const Slot& slot) {
-  const Widths& w = plan.rule.widths;
   Bits out;
-  int at = 0;
-  const auto field = [&](int width, int64_t value) { out.put(at, width, value), at += width; };
-  const auto axes = static_cast<size_t>(plan.rule.axes);
-  for (size_t a = 0; a < axes; ++a) field(w.position_frac, slot.body.x[a]);
-  for (size_t a = 1; a < axes; ++a) field(2, slot.away[a]);
-  for (size_t a = 0; a < axes; ++a) field(w.velocity_bits, slot.body.v[a]);
-  field(plan.rule.type_bits, slot.body.type);
-  field(plan.words.id_bits, slot.id);
-  for (size_t a = 0; a < axes; ++a) field(w.guard, slot.residue[a]);
-  if (plan.rule.pd)
-    for (size_t a = 0; a < axes; ++a) field(w.displacement_bits, slot.u[a]);
+  for (const WordField& f : plan.words.particle) {
+    const auto a = static_cast<size_t>(std::max(f.axis, 0));
+    const auto value = [&]() -> int64_t {
+      switch (f.kind) {
+        case FieldKind::position:
+          return slot.body.x[a];
+        case FieldKind::away:
+          return slot.away[a];
+        case FieldKind::velocity:
+          return slot.body.v[a];
+        case FieldKind::type:
+          return slot.body.type;
+        case FieldKind::id:
+          return slot.id;
+        case FieldKind::residue:
+          return slot.residue[a];
+        case FieldKind::displacement:
+          return slot.u[a];
+        case FieldKind::cell:
+          break;
+      }
+      return 0;
+    };
+    out.put(f.lsb, f.bits, value());
+  }
   return out;
 }
 
 Slot unpack_particle(const Plan& plan, const Bits& bits) {
-  const Widths& w = plan.rule.widths;
   Slot out;
-  int at = 0;
-  const auto take = [&](int width) { return at += width, bits.get(at - width, width); };
-  const auto take_signed = [&](int width) { return at += width, bits.get_signed(at - width, width); };
-  const auto axes = static_cast<size_t>(plan.rule.axes);
-  for (size_t a = 0; a < axes; ++a) out.body.x[a] = static_cast<int32_t>(take(w.position_frac));
-  for (size_t a = 1; a < axes; ++a) out.away[a] = static_cast<int8_t>(take_signed(2));
-  for (size_t a = 0; a < axes; ++a) out.body.v[a] = take_signed(w.velocity_bits);
-  out.body.type = static_cast<uint8_t>(take(plan.rule.type_bits));
-  out.id = static_cast<uint32_t>(take(plan.words.id_bits));
-  for (size_t a = 0; a < axes; ++a) out.residue[a] = static_cast<int32_t>(take(w.guard));
-  if (plan.rule.pd)
-    for (size_t a = 0; a < axes; ++a) out.u[a] = take_signed(w.displacement_bits);
+  for (const WordField& f : plan.words.particle) {
+    const auto a = static_cast<size_t>(std::max(f.axis, 0));
+    const int64_t value =
+        f.is_signed ? bits.get_signed(f.lsb, f.bits) : static_cast<int64_t>(bits.get(f.lsb, f.bits));
+    switch (f.kind) {
+      case FieldKind::position:
+        out.body.x[a] = static_cast<int32_t>(value);
+        break;
+      case FieldKind::away:
+        out.away[a] = static_cast<int8_t>(value);
+        break;
+      case FieldKind::velocity:
+        out.body.v[a] = value;
+        break;
+      case FieldKind::type:
+        out.body.type = static_cast<uint8_t>(value);
+        break;
+      case FieldKind::id:
+        out.id = static_cast<uint32_t>(value);
+        break;
+      case FieldKind::residue:
+        out.residue[a] = static_cast<int32_t>(value);
+        break;
+      case FieldKind::displacement:
+        out.u[a] = value;
+        break;
+      case FieldKind::cell:
+        break;
+    }
+  }
   return out;
 }
 

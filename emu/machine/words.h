@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The words of hw/plan.h, packed and unpacked: halo records and particles.
+// The words of hw/words.h, packed and unpacked: halo records and particles.
 #pragma once
 
 #include <array>
@@ -33,14 +33,11 @@ void put_position(const Widths& widths, const Int3& x, Slot& slot);
 // Throws InputError where a word is wider than Bits.
 void check_words(const Plan& plan);
 
-// In place, as a record's way through a link is what a busy lattice does most. `out` must hold zeros.
-void pack_halo(const Plan& plan, const Candidate& candidate, Bits& out);
-// In the frame of the receiver: `shift` is added to the coordinate `axis`, in P+2 bits.
-void unpack_halo(const Plan& plan, const Bits& bits, int axis, int64_t shift, Candidate& out);
-// The same of a plan with bricks: coordinates in the record's own cell, and which cell that is, as
-// hw/bricks.h numbers it.
-void pack_cell_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out);
-uint32_t unpack_cell_halo(const Plan& plan, const Bits& bits, Candidate& out);
+// In place, as a record's way through a link is what a busy lattice does most. `out` must hold zeros. `cell`:
+// of a plan with bricks.
+void pack_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out);
+// In the frame of the sender; returns the cell, 0 without bricks.
+uint32_t unpack_halo(const Plan& plan, const Bits& bits, Candidate& out);
 Bits pack_particle(const Plan& plan, const Slot& slot);
 Slot unpack_particle(const Plan& plan, const Bits& bits);
 

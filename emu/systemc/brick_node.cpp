@@ -98,10 +98,10 @@ void BrickNode::exchange() {
   const BrickWalk::Sent& from = layer[place_];
   if (beat_ == 0) {
     word_ = {};
-    pack_cell_halo(plan_,
-                   from.local >= 0 ? cells_.own[static_cast<size_t>(from.local)][record_].body
-                                   : cells_.halo[from.grid][record_],
-                   from.tag, word_);
+    pack_halo(plan_,
+              from.local >= 0 ? cells_.own[static_cast<size_t>(from.local)][record_].body
+                              : cells_.halo[from.grid][record_],
+              from.tag, word_);
   }
   for (int f = 0; f < kFaces; ++f)
     if (faces >> f & 1) load_slice(f);
@@ -282,7 +282,7 @@ void BrickNode::take_particle(int face, const Bits& record) {
 void BrickNode::take_halo(int face, const Bits& record) {
   const int a = face / 2;
   Candidate candidate;
-  const uint32_t tag = unpack_cell_halo(plan_, record, candidate);
+  const uint32_t tag = unpack_halo(plan_, record, candidate);
   const Cell at = grid_.of_halo_tag(a, tag % grid_.halo_tags(a), face % 2 == 1 ? extent_[a] : -1);
   cells_.halo[grid_.at(at)].push_back(candidate);
 }

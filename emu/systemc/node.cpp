@@ -3,6 +3,7 @@
 
 #include "emu/systemc/brick_node.h"
 #include "emu/systemc/link_guard.h"
+#include "model/base/fixed_math.h"
 
 namespace cuboct::emu {
 
@@ -70,9 +71,9 @@ void Node::exchange() {
   const Candidate& record = relayed(segment_, record_);
   if (plan_.words.halo_beats == 1) {
     for (const int f : {low, high})
-      if (linked(f)) pack_halo(plan_, record, load(f, false));
+      if (linked(f)) pack_halo(plan_, record, 0, load(f, false));
   } else {
-    if (beat_ == 0) word_ = {}, pack_halo(plan_, record, word_);
+    if (beat_ == 0) word_ = {}, pack_halo(plan_, record, 0, word_);
     load_slice(low);
     load_slice(high);
   }
@@ -182,8 +183,13 @@ void Node::take_particle(int face, const Bits& record) {
 }
 
 void Node::take_halo(int face, const Bits& record) {
-  const int64_t cell = int64_t{1} << plan_.rule.widths.position_frac;
-  unpack_halo(plan_, record, face / 2, face % 2 == 0 ? -cell : cell, halo_[face].emplace_back());
+  // Into the own frame.
+  const int P = plan_.rule.widths.position_frac;
+  const int64_t cell = int64_t{1} << P;
+  Candidate& candidate = halo_[face].emplace_back();
+  unpack_halo(plan_, record, candidate);
+  int32_t& x = candidate.x[static_cast<size_t>(face / 2)];
+  x = static_cast<int32_t>(wrap(face % 2 == 0 ? x - cell : x + cell, P + 2));
 }
 
 uint8_t Node::awaited() const {

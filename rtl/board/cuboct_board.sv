@@ -45,40 +45,46 @@ module cuboct_board (
     .velocity_valid_o(velocity_valid), .velocity_type_o(velocity_type), .velocity_axis_o(velocity_axis),
     .velocity_data_o(velocity_data), .busy_o, .fault_o
   );
-`ifdef CUBOCT_HOST_VELOCITY
-  localparam int AllBits = cuboct_board_pkg::MovedTypes * cuboct_pkg::Axes * VelocityBits;
-  logic [AllBits-1:0] velocities;
-  cuboct_velocities #(
-    .Types(cuboct_board_pkg::MovedTypes), .Axes(cuboct_pkg::Axes), .Bits(VelocityBits),
-    .Initial(cuboct_board_pkg::Velocities)
-  ) u_velocities (
-    .clk_i, .reset_i(velocity_reset), .valid_i(velocity_valid), .type_i(velocity_type),
-    .axis_i(velocity_axis), .data_i(velocity_data), .velocity_o(velocities)
-  );
-`else
-  logic unused_velocities;
-  assign unused_velocities = ^{velocity_reset, velocity_valid, velocity_type, velocity_axis, velocity_data};
-`endif
-`ifdef CUBOCT_BRICKS
-  logic [Nodes*CellBits-1:0] observe_cell, fault_cell;
-  for (genvar n = 0; n < Nodes; n++) begin : gen_cell
-    assign observe_word[n*WordBits +: WordBits]
-      = {observe_cell[n*CellBits +: CellBits], observe_data[n*ParticleBits +: ParticleBits]};
-    assign fault_tell[n*TellBits +: TellBits]
-      = {fault_cell[n*CellBits +: CellBits], fault_id[n*IdBits +: IdBits]};
+  // Ports that not every lattice has. They bear the ports' names: .* connects those that are there.
+  localparam int MovedTypes   = cuboct_board_pkg::MovedTypes;
+  localparam int HostBits     = (MovedTypes > 0) ? MovedTypes * cuboct_pkg::Axes * VelocityBits : 1;
+  localparam int CellPortBits = (CellBits > 0) ? CellBits : 1;
+  logic [HostBits-1:0]           velocity_i;
+  logic [CellPortBits-1:0]       load_cell_i;
+  logic [Nodes*CellPortBits-1:0] observe_cell_o, fault_cell_o;
+  if (MovedTypes > 0) begin : gen_velocities
+    cuboct_velocities #(
+      .Types(MovedTypes), .Axes(cuboct_pkg::Axes), .Bits(VelocityBits),
+      .Initial(cuboct_board_pkg::Velocities)
+    ) u_velocities (
+      .clk_i, .reset_i(velocity_reset), .valid_i(velocity_valid), .type_i(velocity_type),
+      .axis_i(velocity_axis), .data_i(velocity_data), .velocity_o(velocity_i)
+    );
+  end else begin : gen_no_velocities
+    logic unused_velocities;
+    assign velocity_i        = '0;
+    assign unused_velocities = ^{velocity_reset, velocity_valid, velocity_type, velocity_axis, velocity_data,
+                                 velocity_i};
   end
-`else
-  assign observe_word = observe_data;
-  assign fault_tell   = fault_id;
-`endif
+  if (CellBits > 0) begin : gen_bricks
+    assign load_cell_i = load_word[ParticleBits +: CellPortBits];
+    for (genvar n = 0; n < Nodes; n++) begin : gen_cell
+      assign observe_word[n*WordBits +: WordBits]
+        = {observe_cell_o[n*CellPortBits +: CellPortBits], observe_data[n*ParticleBits +: ParticleBits]};
+      assign fault_tell[n*TellBits +: TellBits]
+        = {fault_cell_o[n*CellPortBits +: CellPortBits], fault_id[n*IdBits +: IdBits]};
+    end
+  end else begin : gen_no_bricks
+    logic unused_cells;
+    assign unused_cells   = ^{load_cell_i, observe_cell_o, fault_cell_o};
+    assign load_cell_i    = '0;
+    assign observe_cell_o = '0;
+    assign fault_cell_o   = '0;
+    assign observe_word   = observe_data;
+    assign fault_tell     = fault_id;
+  end
   cuboct_lattice u_lattice (
-`ifdef CUBOCT_BRICKS
-    .load_cell_i(load_word[ParticleBits +: CellBits]), .observe_cell_o(observe_cell), .fault_cell_o(fault_cell),
-`endif
-`ifdef CUBOCT_HOST_VELOCITY
-    .velocity_i(velocities),
-`endif
-    .clk_i, .rst_ni(lattice_rst_n), .start_i(start), .steps_i(steps), .load_valid_i(load_valid),
+    .*, .clk_i, .rst_ni(lattice_rst_n), .start_i(start), .steps_i(steps), .load_valid_i(load_valid),
     .load_node_i(load_node), .load_data_i(load_word[ParticleBits-1:0]), .phase_start_o(phase_start),
     .phase_end_o(phase_end),
     .observe_valid_o(observe_valid), .observe_data_o(observe_data), .fault_valid_o(fault_valid),

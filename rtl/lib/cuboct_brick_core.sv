@@ -63,9 +63,7 @@ module cuboct_brick_core #(
   parameter int          DampBits             = 18,     // of any value of the damping table
   parameter int          Scaled               = 0,      // 0, 1
   parameter int          Pd                   = 0,      // 0, 1
-`ifdef CUBOCT_HOST_VELOCITY
-  parameter int          MovedTypes           = 1,      // types whose velocities come from outside
-`endif
+  parameter int          MovedTypes           = 0,      // types with velocities from velocity_i; 0: not read
   // Derived; do not set.
   localparam int         Faces                = 2 * Axes,
   localparam int         Cells                = BrickX * BrickY * BrickZ,
@@ -78,7 +76,8 @@ module cuboct_brick_core #(
   localparam int         HaloBits             = Axes * PositionFrac + HaloType + HaloVelocity,
   localparam int         ParticleBits         = Axes * PositionFrac + 2 * (Axes - 1) + Axes * VelocityBits + TypeBits
                                                 + IdBits + Axes * Guard
-                                                + ((Pd != 0) ? Axes * DisplacementBits : 0)
+                                                + ((Pd != 0) ? Axes * DisplacementBits : 0),
+  localparam int         HostBits             = (MovedTypes > 0) ? MovedTypes * Axes * VelocityBits : 1
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -90,9 +89,7 @@ module cuboct_brick_core #(
   input  logic                    load_valid_i,   // in IDLE: append a particle
   input  logic [CellBits-1:0]     load_cell_i,    // to this cell
   input  logic [ParticleBits-1:0] load_data_i,
-`ifdef CUBOCT_HOST_VELOCITY
-  input  logic [MovedTypes*Axes*VelocityBits-1:0] velocity_i,  // changes in IDLE alone
-`endif
+  input  logic [HostBits-1:0]     velocity_i,     // by moved type and axis; changes in IDLE alone
   output logic [Faces-1:0]        link_valid_o,
   output logic [Faces-1:0]        link_end_o,
   output logic [Faces*LinkBits-1:0] link_data_o,
@@ -558,17 +555,10 @@ module cuboct_brick_core #(
     .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits), .FirstOctave(FirstOctave), .FractionBits(FractionBits),
     .ForceBits(ForceBits), .Damped(Damped), .DampOctaves(DampOctaves), .DampDegree(DampDegree),
     .DampIndexBits(DampIndexBits), .DampBinBits(DampBinBits), .DampFirstOctave(DampFirstOctave),
-    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled),
-`ifdef CUBOCT_HOST_VELOCITY
-    .MovedTypes(MovedTypes),
-`endif
-    .Pd(Pd)
+    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled), .MovedTypes(MovedTypes), .Pd(Pd)
   ) u_datapath (
-`ifdef CUBOCT_HOST_VELOCITY
-    .velocity_i,
-`endif
-    .clk_i, .rst_ni, .issue_i(issue), .issue_place_i(issue_place), .candidate_i(issue_candidate), .own_i(pipe_data),
-    .busy_o(pipe_busy), .kick_addr_o(kick_addr_next), .kick_id_i(kick_id), .look_addr_i(own_addr_d),
+    .clk_i, .rst_ni, .velocity_i, .issue_i(issue), .issue_place_i(issue_place), .candidate_i(issue_candidate),
+    .own_i(pipe_data), .busy_o(pipe_busy), .kick_addr_o(kick_addr_next), .kick_id_i(kick_id), .look_addr_i(own_addr_d),
     .clear_i(take || load || migrate_land), .clear_addr_i(take ? own_addr_q : write_addr), .take_i(take),
     .take_place_i({main_own, tick_q}), .slot_i(main_data), .written_o(update_write), .place_o(update_place),
     .slot_o(update_data), .leaving_o(away_axes), .step_end_i(step_end),

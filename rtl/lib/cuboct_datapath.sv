@@ -56,20 +56,17 @@ module cuboct_datapath #(
   parameter int          DampBits             = 18,     // of any value of the damping table
   parameter int          Scaled               = 0,      // 0, 1
   parameter int          Pd                   = 0,      // 0, 1
-`ifdef CUBOCT_HOST_VELOCITY
-  parameter int          MovedTypes           = 1,      // types whose velocities come from outside
-`endif
+  parameter int          MovedTypes           = 0,      // types with velocities from velocity_i; 0: not read
   // Derived; do not set.
   localparam int         CellBits             = $clog2(Cells),  // of a cell's number in the node, 0 with one
   localparam int         SlotBits             = (Capacity > 1) ? $clog2(Capacity) : 1,
   localparam int         PlaceBits            = CellBits + SlotBits,
-  localparam int         TellBits             = IdBits + CellBits  // of {id, cell}
+  localparam int         TellBits             = IdBits + CellBits,  // of {id, cell}
+  localparam int         HostBits             = (MovedTypes > 0) ? MovedTypes * Axes * VelocityBits : 1
 ) (
   input  logic                            clk_i,
   input  logic                            rst_ni,
-`ifdef CUBOCT_HOST_VELOCITY
-  input  logic [MovedTypes*Axes*VelocityBits-1:0] velocity_i,  // changes in IDLE alone
-`endif
+  input  logic [HostBits-1:0]             velocity_i,     // by moved type and axis; changes in IDLE alone
   // Pairs of a candidate with own particles, by pipe.
   input  logic [ForcePipes-1:0]           issue_i,        // a pair enters the pipe
   input  logic [ForcePipes*PlaceBits-1:0] issue_place_i,  // with issue_i: of its own particle
@@ -230,15 +227,10 @@ module cuboct_datapath #(
   cuboct_update #(
     .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
     .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .Held(Narrow), .DisplacementBits(DisplacementBits),
-`ifdef CUBOCT_HOST_VELOCITY
-    .MovedTypes(MovedTypes),
-`endif
-    .GainBits(GainBits), .GainFrac(GainFrac), .ConstantBits(ConstantBits), .SlotBits(PlaceBits), .IdBits(TellBits)
+    .GainBits(GainBits), .GainFrac(GainFrac), .ConstantBits(ConstantBits), .MovedTypes(MovedTypes),
+    .SlotBits(PlaceBits), .IdBits(TellBits)
   ) u_update (
-`ifdef CUBOCT_HOST_VELOCITY
-    .velocity_i,
-`endif
-    .clk_i, .rst_ni, .valid_i(take_i), .slot_i(take_place_i), .sum_i(gen_total[ForcePipes-1].so_far),
+    .clk_i, .rst_ni, .velocity_i, .valid_i(take_i), .slot_i(take_place_i), .sum_i(gen_total[ForcePipes-1].so_far),
     .x_i(slot_i[PosBits-1:0]), .residue_i(slot_i[ResidueLsb +: ResidueBits]), .v_i(slot_i[VelLsb +: VelBits]),
     .type_i(old_type), .id_i(old_tell), .u_i(old_u), .valid_o(written_o), .slot_o(place_o),
     .x_o(slot_o[PosBits-1:0]), .residue_o(slot_o[ResidueLsb +: ResidueBits]), .away_o(new_away),

@@ -64,9 +64,7 @@ module cuboct_node_core #(
   parameter int          DampBits             = 18,     // of any value of the damping table
   parameter int          Scaled               = 0,      // 0, 1
   parameter int          Pd                   = 0,      // 0, 1
-`ifdef CUBOCT_HOST_VELOCITY
-  parameter int          MovedTypes           = 1,      // types whose velocities come from outside
-`endif
+  parameter int          MovedTypes           = 0,      // types with velocities from velocity_i; 0: not read
   // Derived; do not set.
   localparam int         Faces                = 2 * Axes,
   localparam int         HaloType             = (Scaled != 0) ? TypeBits : 0,
@@ -74,7 +72,8 @@ module cuboct_node_core #(
   localparam int         HaloBits             = Axes * PositionFrac + 2 * (Axes - 1) + HaloType + HaloVelocity,
   localparam int         ParticleBits         = Axes * PositionFrac + 2 * (Axes - 1) + Axes * VelocityBits + TypeBits
                                                 + IdBits + Axes * Guard
-                                                + ((Pd != 0) ? Axes * DisplacementBits : 0)
+                                                + ((Pd != 0) ? Axes * DisplacementBits : 0),
+  localparam int         HostBits             = (MovedTypes > 0) ? MovedTypes * Axes * VelocityBits : 1
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -83,9 +82,7 @@ module cuboct_node_core #(
   input  logic [Faces-1:0]        has_link_i,     // constant; faces -x, +x, -y, +y, -z, +z
   input  logic                    load_valid_i,   // in IDLE: append a particle
   input  logic [ParticleBits-1:0] load_data_i,
-`ifdef CUBOCT_HOST_VELOCITY
-  input  logic [MovedTypes*Axes*VelocityBits-1:0] velocity_i,  // changes in IDLE alone
-`endif
+  input  logic [HostBits-1:0]     velocity_i,     // by moved type and axis; changes in IDLE alone
   output logic [Faces-1:0]        link_valid_o,
   output logic [Faces-1:0]        link_end_o,
   output logic [Faces*LinkBits-1:0] link_data_o,
@@ -474,17 +471,10 @@ module cuboct_node_core #(
     .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits), .FirstOctave(FirstOctave), .FractionBits(FractionBits),
     .ForceBits(ForceBits), .Damped(Damped), .DampOctaves(DampOctaves), .DampDegree(DampDegree),
     .DampIndexBits(DampIndexBits), .DampBinBits(DampBinBits), .DampFirstOctave(DampFirstOctave),
-    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled),
-`ifdef CUBOCT_HOST_VELOCITY
-    .MovedTypes(MovedTypes),
-`endif
-    .Pd(Pd)
+    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled), .MovedTypes(MovedTypes), .Pd(Pd)
   ) u_datapath (
-`ifdef CUBOCT_HOST_VELOCITY
-    .velocity_i,
-`endif
-    .clk_i, .rst_ni, .issue_i(issue), .issue_place_i(issue_slot), .candidate_i(issue_candidate), .own_i(pipe_data),
-    .busy_o(pipe_busy), .kick_addr_o(kick_slot_next), .kick_id_i(kick_id), .look_addr_i(tick_next),
+    .clk_i, .rst_ni, .velocity_i, .issue_i(issue), .issue_place_i(issue_slot), .candidate_i(issue_candidate),
+    .own_i(pipe_data), .busy_o(pipe_busy), .kick_addr_o(kick_slot_next), .kick_id_i(kick_id), .look_addr_i(tick_next),
     .clear_i((Narrow != 0) ? update_write : take), .clear_addr_i(tick_next), .take_i(take),
     .take_place_i(tick_slot), .slot_i(main_data), .written_o(update_write), .place_o(update_slot),
     .slot_o(update_data), .leaving_o(away_axes), .step_end_i(step_end), .move_fault_i(fault_left || fault_full),

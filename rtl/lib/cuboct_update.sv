@@ -22,17 +22,15 @@ module cuboct_update #(
   parameter int GainBits         = 18,
   parameter int GainFrac         = 16,
   parameter int ConstantBits     = 29,  // of V and g
-`ifdef CUBOCT_HOST_VELOCITY
-  parameter int MovedTypes       = 1,   // types whose V comes from outside
-`endif
+  parameter int MovedTypes       = 0,   // types with V from velocity_i; 0: not read
   parameter int SlotBits         = 4,
-  parameter int IdBits           = 8
+  parameter int IdBits           = 8,
+  // Derived; do not set.
+  localparam int HostBits        = (MovedTypes > 0) ? MovedTypes * Axes * ConstantBits : 1
 ) (
   input  logic                          clk_i,
   input  logic                          rst_ni,
-`ifdef CUBOCT_HOST_VELOCITY
-  input  logic [MovedTypes*Axes*ConstantBits-1:0] velocity_i,  // V by type and axis; constant in a run
-`endif
+  input  logic [HostBits-1:0]           velocity_i,    // V by moved type and axis; constant in a run
   input  logic                          valid_i,       // a particle is taken
   input  logic [SlotBits-1:0]           slot_i,        // its slot
   input  logic [Axes*TotalBits-1:0]     sum_i,         // its sum over all pipes, signed
@@ -94,10 +92,7 @@ module cuboct_update #(
   logic                      held;
   logic [GainBits-1:0]       kp, kd;
   cuboct_type_rom u_type_rom (
-`ifdef CUBOCT_HOST_VELOCITY
-    .velocity_i,
-`endif
-    .type_i(type_1), .imposed_o(imposed), .velocity_o(to_go), .gravity_o(gravity), .pd_o(held), .kp_o(kp),
+    .velocity_i, .type_i(type_1), .imposed_o(imposed), .velocity_o(to_go), .gravity_o(gravity), .pd_o(held), .kp_o(kp),
     .kd_o(kd)
   );
 

@@ -171,8 +171,7 @@ endmodule
 def bench(table, module):
     """A module around the block that drives the rows and writes what is seen: per cycle the number, then each value in
     binary, a value that is not to be shown as `-`."""
-    ports = [port for port in module.ports if not port.define]
-    parameters = [item for item in module.parameters if not item.define]
+    ports, parameters = module.ports, module.parameters
     names = {port.name for port in ports}
     for columns, suffix in ((table.inputs, "_i"), (table.outputs, "_o")):
         for column in columns:

@@ -10,8 +10,6 @@ import shutil
 import subprocess
 import tempfile
 
-DEFINE = "CUBOCT_HOST_VELOCITY"  # ports and parameters that a project has only with it
-
 
 class InputError(Exception):
     """A page, a module or the command line is wrong."""
@@ -26,7 +24,6 @@ class Item:
     size: str     # of a port: bits; of a parameter: the value without another one
     comment: str  # of its line, "" if there is none
     group: str    # the comment on lines of its own before it and those after it, "" if there is none
-    define: bool  # only with DEFINE
     text: str     # its declaration, without comment and comma
 
 
@@ -53,16 +50,14 @@ def bits_of(range_text):
 
 
 def header_items(lines):
-    """The declarations between module and `);`: (line number, code, comment, group, in DEFINE), a declaration per
-    entry, numbers from 0."""
-    items, group, joins, define = [], "", False, False
+    """The declarations between module and `);`: (line number, code, comment, group), a declaration per entry,
+    numbers from 0."""
+    items, group, joins = [], "", False
     code, comment, start = "", [], 0
     for number, line in enumerate(lines):
         text, _, remark = line.partition("//")
         text, remark = text.strip(), remark.strip()
-        if text.startswith("`"):
-            define = text.startswith("`ifdef")
-        elif not text and remark and not code:
+        if not text and remark and not code:
             group, joins = (f"{group} {remark}" if joins else remark), True
         elif text.startswith(("module ", ");")):
             continue
@@ -73,8 +68,8 @@ def header_items(lines):
             start = start if code else number
             code = f"{code} {text}".strip()
             comment += [remark] if remark else []
-            if text.endswith(",") or lines[number + 1].strip().startswith((")", "`")):
-                items.append((start, code.rstrip(","), " ".join(comment), group, define))
+            if text.endswith(",") or lines[number + 1].strip().startswith(")"):
+                items.append((start, code.rstrip(","), " ".join(comment), group))
                 code, comment = "", []
     return items
 
@@ -94,20 +89,20 @@ def read_module(name, facts, path, first):
         source = facts["netnames"][port]["attributes"]["src"]
         places[int(source.rsplit(":", 1)[1].split(".")[0])] = (port, fact["direction"])
     told = set(facts.get("parameter_default_values", {}))
-    for number, code, comment, group, define in header_items(lines[first - 1:end + 1]):
+    for number, code, comment, group in header_items(lines[first - 1:end + 1]):
         words = code.split()
         if words[0] in ("parameter", "localparam"):
             left, _, value = code.partition("=")
             item = left.split()[-1]
             kind = "derived" if words[0] == "localparam" else " ".join(left.split()[1:-1])
-            module.parameters.append(Item(item, kind, " ".join(value.split()), comment, group, define, code))
+            module.parameters.append(Item(item, kind, " ".join(value.split()), comment, group, code))
             told.discard(item)
         else:
             port, direction = places.pop(first + number)
             wide = re.sub(r"^(input|output)\s+logic\s*", "", code[:code.rindex(port)]).strip()
             signed = "signed" in wide.split()
             size = bits_of(wide.replace("signed", "").strip()) + (", signed" if signed else "")
-            module.ports.append(Item(port, "in" if direction == "input" else "out", size, comment, group, define,
+            module.ports.append(Item(port, "in" if direction == "input" else "out", size, comment, group,
                                      re.sub(r"^(input|output)\s+", "", code)))
     if places or told:
         odd = sorted(told | {port for port, _ in places.values()})[0]
@@ -122,7 +117,7 @@ def read_library(files):
     with tempfile.TemporaryDirectory() as work:
         out = pathlib.Path(work) / "library.json"
         names = " ".join(str(file) for file in files)
-        script = f"read_verilog -sv -D {DEFINE} {names}; delete */p:*; write_json {out}"
+        script = f"read_verilog -sv {names}; delete */p:*; write_json {out}"
         run = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True, check=False)
         if run.returncode != 0:
             raise InputError(f"yosys cannot read the library:\n{run.stdout}{run.stderr}")

@@ -78,7 +78,7 @@ module brick_neighbours_formal #(
       .RelativeVelocityBits(1), .DifferenceShift(0), .FilterFrac(1), .Overlap(1)
     ) u_node (
       .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link), .extent_i(extent), .exit_i(exits),
-      .load_valid_i(load), .load_cell_i(load_cell), .load_data_i(9'd0), .link_valid_o(link_valid),
+      .load_valid_i(load), .load_cell_i(load_cell), .load_data_i(9'd0), .velocity_i(1'b0), .link_valid_o(link_valid),
       .link_end_o(link_end),
       .link_data_o(link_data), .link_ready_i(link_ready_in), .link_valid_i(link_valid_in), .link_end_i(link_end_in),
       .link_data_i(link_data_in), .link_ready_o(link_ready), .phase_start_o(phase_start[8*n +: 8]),

@@ -2,6 +2,7 @@
 // cuboct_update: where a particle is written back, x with its residue is what it was, plus the velocity that is
 // written, exactly, in the node that away says. Whatever the velocity is: sums, constants and products are any values.
 module cuboct_type_rom (
+  input  logic       velocity_i,
   input  logic [0:0] type_i,
   output logic [1:0] imposed_o,
   output logic [5:0] velocity_o,
@@ -10,8 +11,8 @@ module cuboct_type_rom (
   output logic [2:0] kp_o,
   output logic [2:0] kd_o
 );
-  logic unused_type;
-  assign unused_type = ^type_i;
+  logic unused_inputs;
+  assign unused_inputs = ^{velocity_i, type_i};
 endmodule
 
 module drift_formal #(
@@ -50,8 +51,8 @@ module drift_formal #(
     .TypeBits(1), .Pd(Pd), .Held(Held), .DisplacementBits(6), .GainBits(3), .GainFrac(2), .ConstantBits(3),
     .SlotBits(2), .IdBits(2)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .valid_i, .slot_i(2'd0), .sum_i, .x_i, .residue_i, .v_i, .type_i(1'b0), .id_i(2'd0),
-    .u_i,
+    .clk_i, .rst_ni(running_q), .velocity_i(1'b0), .valid_i, .slot_i(2'd0), .sum_i, .x_i, .residue_i, .v_i,
+    .type_i(1'b0), .id_i(2'd0), .u_i,
     .valid_o(valid), .slot_o(unused_slot), .x_o(x), .residue_o(residue), .away_o(away), .v_o(v), .type_o(unused_type),
     .id_o(unused_id), .u_o(unused_u), .fault_o(unused_fault), .fault_code_o(unused_code), .fault_id_o(unused_fault_id),
     .fault_number_o(unused_number)

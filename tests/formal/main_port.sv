@@ -45,7 +45,7 @@ module main_port_formal #(
     .FilterFrac(1), .Pd(Pd), .DisplacementBits(1), .Overlap(1)
   ) u_node (
     .clk_i, .rst_ni(running_q), .start_i, .steps_i, .has_link_i(has_link), .load_valid_i(load_i),
-    .load_data_i({(9+2*Pd) {1'b0}}), .link_valid_o(link_valid), .link_end_o(link_end),
+    .load_data_i({(9+2*Pd) {1'b0}}), .velocity_i(1'b0), .link_valid_o(link_valid), .link_end_o(link_end),
     .link_data_o(link_data), .link_ready_i, .link_valid_i, .link_end_i, .link_data_i,
     .link_ready_o(link_ready), .phase_start_o(phase_start), .phase_end_o(phase_end),
     .force_event_o(event_now), .observe_valid_o(observe), .observe_data_o(observed), .fault_valid_o(fault),

@@ -70,7 +70,7 @@ module neighbours_formal #(
           .FilterFrac(1), .Overlap((Narrow != 0) ? 0 : 1), .Narrow(Narrow)
     ) u_node (
       .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link),
-      .load_valid_i(running_q && load_i[n]), .load_data_i(9'd0),
+      .load_valid_i(running_q && load_i[n]), .load_data_i(9'd0), .velocity_i(1'b0),
       .link_valid_o(link_valid), .link_end_o(link_end), .link_data_o(link_data), .link_ready_i(link_ready_in),
       .link_valid_i(link_valid_in), .link_end_i(link_end_in), .link_data_i(link_data_in),
           .link_ready_o(link_ready),

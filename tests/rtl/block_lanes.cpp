@@ -143,7 +143,8 @@ std::string print_blocks(const Plan& plan) {
       given({"PositionFrac", "Guard", "VelocityBits", "SumBits", "Pd", "DisplacementBits", "GainBits",
              "GainFrac", "ConstantBits", "IdBits"}) +
       fmt::format(
-          "\n    .TotalBits(Sum), .TypeBits(T), .SlotBits({})\n  ) u_update (\n    .clk_i, .rst_ni,\n",
+          "\n    .TotalBits(Sum), .TypeBits(T), .SlotBits({})\n  ) u_update (\n    .clk_i, .rst_ni, "
+          ".velocity_i(1'b0),\n",
           kSlotBits);
   text += from("valid_i", in::update_valid, "1") +
           from("slot_i", in::update_slot, fmt::format("{}", kSlotBits).c_str()) +

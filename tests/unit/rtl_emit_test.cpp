@@ -33,6 +33,41 @@ TEST(RtlEmit, ClearsItsOwnFilesAlone) {
   fs::remove_all(root);
 }
 
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// One who reads a library's file reads what every project holds, whatever the project is made for.
+TEST(RtlEmit, CopiesTheLibraryByteForByte) {
+  Arch bricks;
+  bricks.brick = {2, 1, 1};
+  const Scene held = test::block_scene({.size = {2, 1, 1}, .held = true});
+  const fs::path library = fs::path(CUBOCT_SOURCE_DIR) / "rtl",
+                 root = fs::temp_directory_path() / ("cuboct-emit-copies-" + std::to_string(getpid()));
+  for (const Arch& arch : {Arch{}, bricks})
+    for (const BoardChoice& board : {BoardChoice{}, BoardChoice{.name = "ulx3s"},
+                                     BoardChoice{.name = "icebreaker", .velocities = false}}) {
+      const auto setup = make_setup(held, arch);
+      emit_rtl(setup.plan, setup.initial, root.string(), 1, board);
+      size_t copies = 0;
+      for (const auto& entry : fs::recursive_directory_iterator(root)) {
+        const fs::path name = entry.path().filename();
+        for (const fs::path& folder : {library / "lib", library / "board", library / "board" / board.name})
+          if (fs::is_regular_file(folder / name)) {
+            EXPECT_EQ(text_of(entry.path()), text_of(folder / name)) << name;
+            ++copies;
+          }
+      }
+      EXPECT_GE(copies, board.name.empty() ? 25u : 35u);
+      const bool brick = arch.brick[0] > 1, settable = !board.name.empty() && board.velocities;
+      EXPECT_EQ(fs::exists(root / "rtl/cuboct_brick_core.sv"), brick);
+      EXPECT_EQ(fs::exists(root / "rtl/cuboct_node_core.sv"), !brick);
+      EXPECT_EQ(text_of(root / "rtl/cuboct_node.sv").find(".MovedTypes(0)") == std::string::npos, settable);
+      fs::remove_all(root);
+    }
+}
+
 // A place of a template that nothing fills would reach a user's project.
 TEST(RtlTemplate, LeavesNoPlaceUnfilled) {
   EXPECT_EQ(fill("@A@ always_ff @(posedge clk_i) a@b @B_C@@A@", {{"A", "1"}, {"B_C", "@A@"}, {"D", "4"}}),

@@ -11,21 +11,41 @@ module cuboct_bench;
   localparam int Steps        = 2;
   localparam int Limit        = 2096;  // cycles; a run that takes longer hangs
 
-  logic clk, rst_n, start, load_valid;
+  logic clk;
+  logic rst_n;
+  logic start;
+  logic [31:0] steps;
+  logic load_valid;
   logic [31:0] load_node;
-  logic [ParticleBits-1:0] load_data;
-  logic [8*Nodes-1:0] phase_start, phase_end;
-  logic [Nodes-1:0] observe_valid, fault_valid, idle;
-  logic [Nodes*ParticleBits-1:0] observe_data;
-  logic [4*Nodes-1:0] fault_code;
-  logic [Nodes*IdBits-1:0] fault_id;
-  logic [64*Nodes-1:0] fault_number;
+  logic [cuboct_pkg::ParticleBits-1:0] load_data;
+  logic [Nodes*8-1:0] phase_start;
+  logic [Nodes*8-1:0] phase_end;
+  logic [Nodes-1:0] observe_valid;
+  logic [Nodes*cuboct_pkg::ParticleBits-1:0] observe_data;
+  logic [Nodes-1:0] fault_valid;
+  logic [Nodes*4-1:0] fault_code;
+  logic [Nodes*cuboct_pkg::IdBits-1:0] fault_id;
+  logic [Nodes*64-1:0] fault_number;
+  logic [Nodes-1:0] idle;
+  assign steps = Steps;
 
   cuboct_lattice u_lattice (
-    .clk_i(clk), .rst_ni(rst_n), .start_i(start), .steps_i(Steps), .load_valid_i(load_valid),
-    .load_node_i(load_node), .load_data_i(load_data), .phase_start_o(phase_start), .phase_end_o(phase_end),
-    .observe_valid_o(observe_valid), .observe_data_o(observe_data), .fault_valid_o(fault_valid),
-    .fault_code_o(fault_code), .fault_id_o(fault_id), .fault_number_o(fault_number), .idle_o(idle)
+    .clk_i(clk),
+    .rst_ni(rst_n),
+    .start_i(start),
+    .steps_i(steps),
+    .load_valid_i(load_valid),
+    .load_node_i(load_node),
+    .load_data_i(load_data),
+    .phase_start_o(phase_start),
+    .phase_end_o(phase_end),
+    .observe_valid_o(observe_valid),
+    .observe_data_o(observe_data),
+    .fault_valid_o(fault_valid),
+    .fault_code_o(fault_code),
+    .fault_id_o(fault_id),
+    .fault_number_o(fault_number),
+    .idle_o(idle)
   );
 
   // Words are {node, particle}; {step, slot, particle}, all of node 0 in the order of time, then of node 1, ...;

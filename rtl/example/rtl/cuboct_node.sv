@@ -73,7 +73,8 @@ module cuboct_node (
     .ForceBits(cuboct_pkg::ForceBits),
     .Damped(cuboct_pkg::Damped),
     .Scaled(cuboct_pkg::Scaled),
-    .Pd(cuboct_pkg::Pd)
+    .Pd(cuboct_pkg::Pd),
+    .MovedTypes(0)
   ) u_core (
     .clk_i,
     .rst_ni,
@@ -99,6 +100,7 @@ module cuboct_node (
     .fault_code_o,
     .fault_id_o,
     .fault_number_o,
-    .idle_o
+    .idle_o,
+    .velocity_i(1'b0)
   );
 endmodule

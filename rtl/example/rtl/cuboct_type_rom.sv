@@ -3,6 +3,7 @@
 // What sets the types apart, axis 0 in the least significant place: imposed axes, velocity (imposed, or of the
 // anchor), gravity, whether held by force, gains. Combinational.
 module cuboct_type_rom (
+  input  logic [0:0] velocity_i,  // by type that is moved from outside
   input  logic [0:0] type_i,
   output logic [2:0] imposed_o,
   output logic [86:0] velocity_o,
@@ -11,6 +12,8 @@ module cuboct_type_rom (
   output logic [17:0] kp_o,
   output logic [17:0] kd_o
 );
+  logic unused_velocity;
+  assign unused_velocity = velocity_i;
   logic unused_type;
   assign unused_type = ^type_i;
   assign imposed_o  = 3'b000;
