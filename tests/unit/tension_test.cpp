@@ -12,11 +12,11 @@ namespace {
 
 // Rises at 3 GPa to 60 MPa at 2 %, stays there to 20 %, falls to 0 within a tenth of a per cent; 1000
 // readings.
-struct Test {
+struct Pull {
   std::vector<double> strain, stress;
 };
-Test ideal(double end) {
-  Test test;
+Pull ideal(double end) {
+  Pull test;
   for (int k = 0; k < 1000; ++k) {
     const double e = end * k / 999;
     test.strain.push_back(e);
@@ -26,7 +26,7 @@ Test ideal(double end) {
 }
 
 TEST(TensionFigures, AreThoseOfTheCurve) {
-  const Test test = ideal(0.3);
+  const Pull test = ideal(0.3);
   const TensionFigures figures = tension_figures(test.strain, test.stress);
   ASSERT_TRUE(figures.modulus && figures.strain_at_break);
   EXPECT_NEAR(*figures.modulus, 3e9, 1);
@@ -36,7 +36,7 @@ TEST(TensionFigures, AreThoseOfTheCurve) {
 }
 
 TEST(TensionFigures, RingingOfOnePeriodIsAveragedOut) {
-  Test test = ideal(0.3);
+  Pull test = ideal(0.3);
   for (size_t k = 0; k < test.stress.size(); ++k)
     test.stress[k] += 10e6 * std::sin(2 * M_PI * static_cast<double>(k) / 11);
   const TensionFigures figures = tension_figures(test.strain, test.stress);
@@ -46,7 +46,7 @@ TEST(TensionFigures, RingingOfOnePeriodIsAveragedOut) {
 }
 
 TEST(TensionFigures, WhatIsNotThereIsNotTold) {
-  const Test whole = ideal(0.15);  // does not break
+  const Pull whole = ideal(0.15);  // does not break
   EXPECT_FALSE(tension_figures(whole.strain, whole.stress).strain_at_break);
   const std::vector<double> coarse = {0, 0.01, 0.02, 0.03}, stress = {0, 30e6, 60e6, 60e6};
   EXPECT_FALSE(
