@@ -30,7 +30,7 @@ class Watcher : public NodeModel {
     if (in.control->reset_n) see(shown(out));
   }
   std::string doing() const override { return node_->doing(); }
-  emu::Counters counters() const override { return node_->counters(); }
+  emu::Counters counters(uint64_t end) const override { return node_->counters(end); }
 
  protected:
   virtual void see(const Shown& shown) = 0;
