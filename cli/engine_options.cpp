@@ -26,7 +26,8 @@ std::string the_engines(const std::vector<std::string>& names) {
 
 void EngineOptions::add_machines(CLI::App& command) {
   command
-      .add_option("--threads", threads, "threads of lattice, systemc, rtl or reference; default: as many as suit the scene")
+      .add_option("--threads", threads,
+                  "threads of lattice, systemc, rtl or reference; default: as many as suit the scene")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   command.add_option("--ranks", ranks, "processes of lattice, over MPI")

@@ -35,6 +35,7 @@ void read_temperature(const ConfigTable& table, const Scene& scene, Probe& probe
 }
 
 Datasheet read_datasheet(const ConfigTable& table) {
+  table.record_as("probe");
   Datasheet sheet;
   const auto stress = [&](const char* key) {
     return table.number_or(key, quantity::pressure, 0, Range::positive());

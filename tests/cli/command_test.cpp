@@ -118,7 +118,8 @@ TEST(Command, RefusesOptionsOfAnotherEngine) {
     expect_refusal(arguments, option[0] + " is an option of " + owners + " engine, not of systemc\n");
   }
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "golden", "--threads", "2"},
-                 "--threads is an option of the lattice, the systemc, the rtl and the reference engine, not of golden\n");
+                 "--threads is an option of the lattice, the systemc, the rtl and the reference engine, not "
+                 "of golden\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "reference", "--ranks", "2"},
                  "--ranks is an option of the lattice engine, not of reference\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--precision", "float"},

@@ -197,7 +197,7 @@ TEST(Run, EndsCleanlyOnCtrlC) {
 TEST(Run, GoesOnWhereCtrlCLeftIt) {
   const Bench bench(false);
   const std::vector<std::string> plain{
-      "run", "scenes/coupon.toml", "--steps", "2000", "--frames-every", "500", "--out"};
+      "run", "scenes/coupon.toml", "--steps", "10000", "--frames-every", "2500", "--out"};
   const auto run = [&](const std::string& out, const std::vector<std::string>& more, double interrupt = 0) {
     std::vector<std::string> arguments = plain;
     arguments.push_back(bench.path(out));

@@ -259,8 +259,9 @@ TEST_F(GpuProgram, RefusesWhatItCannotDo) {
   };
   expect_refusal(with({"--integrator", "verlet"}),
                  "--integrator is an option of the reference engine, not of gpu\n");
-  expect_refusal(with({"--threads", "2"}),
-                 "--threads is an option of the lattice, the systemc, the rtl and the reference engine, not of gpu\n");
+  expect_refusal(
+      with({"--threads", "2"}),
+      "--threads is an option of the lattice, the systemc, the rtl and the reference engine, not of gpu\n");
   expect_refusal(with({"--cycles"}), "--cycles is an option of the lattice engine, not of gpu\n");
   expect_refusal(
       with({"--gpus", "9"}),
