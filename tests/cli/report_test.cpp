@@ -33,7 +33,7 @@ size_t count(const std::string& text, const std::string& part) {
 
 TEST(Report, SetsFiguresBesideThoseOfTheDatasheet) {
   const Bench bench(false);
-  const std::string out = bench.path("out");
+  const std::string out = bench.path("run");
   const Answer run = bench.cuboct({"run", "scenes/acetal.toml", "--steps", "120", "--out", out});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_NE(run.out.find("(datasheet: 7.2e+07 Pa)"), std::string::npos) << run.out;
