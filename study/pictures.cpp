@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "model/base/gnuplot.h"
@@ -28,9 +29,10 @@ std::string axis_text(char name, const ChartAxis& axis) {
   std::string tics;
   for (const Tick& tick : axis.ticks)
     tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ", gnuplot_text(tick.label), tick.at);
-  if (axis.decades)
-    for (double power = axis.low; power < axis.high / 2; power *= 10)
-      for (int digit = 2; digit <= 9; ++digit) tics += fmt::format(", '' {} 1", digit * power);
+  const int decades = axis.decades ? static_cast<int>(std::lround(std::log10(axis.high / axis.low))) : 0;
+  for (int k = 0; k < decades; ++k)
+    for (int digit = 2; digit <= 9; ++digit)
+      tics += fmt::format(", '' {} 1", digit * axis.low * std::pow(10, k));
   return fmt::format("{}set {}label {}\nset {}range [{}:{}]\nset {}tics noenhanced ({})\n",
                      axis.logarithmic ? fmt::format("set logscale {}\n", name) : "", name,
                      gnuplot_label(axis.label), name, axis.low, axis.high, name, tics);
