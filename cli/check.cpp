@@ -202,9 +202,7 @@ class Shown {
 
 // Of the box along axes that repeat, else of the particles' centres.
 Vec3 size_of(const Scene& scene) {
-  Vec3 low = scene.body.x[0], high = low;
-  for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  Vec3 size = high - low;
+  Vec3 size = body_size(scene);
   for (int a = 0; a < 3; ++a)
     if (scene.periodic.extent[a] > 0) size[a] = scene.periodic.extent[a];
   return size;

@@ -26,9 +26,7 @@ struct Extent {
 // side; none are beyond the particles that there are.
 Extent extent_of(const Scene& scene, const FixedRule& rule) {
   Extent extent;
-  Vec3 low = scene.body.x.front(), high = low;
-  for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  extent.size = high - low;
+  extent.size = body_size(scene);
   const double cutoff = scene.rule.law->cutoff();
   const double others = static_cast<double>(scene.body.size()) - 1;
   double volume = 1;
@@ -65,6 +63,12 @@ uint64_t round_interval(uint64_t steps, double most) {
 }
 
 }  // namespace
+
+Vec3 body_size(const Scene& scene) {
+  Vec3 low = scene.body.x.front(), high = low;
+  for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  return high - low;
+}
 
 RunSize run_size(const Scene& scene) {
   RunSize size;

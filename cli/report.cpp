@@ -26,31 +26,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const Curve* find_curve(const Trace& trace, const std::string& name) {
-  for (const Curve& curve : trace.curves)
-    if (curve.name == name && curve.value.size() > 1) return &curve;
-  return nullptr;
-}
-
-// A stress-strain curve of a trace, where it has one.
-struct Tension {
-  std::string name;  // the probe's
-  const Curve *strain = nullptr, *stress = nullptr;
-  size_t peak = 0;  // sample of the largest stress
-};
-std::optional<Tension> tension_of(const Trace& trace, const std::string& name) {
-  Tension tension{name, find_curve(trace, name + ".strain"), find_curve(trace, name + ".stress"), 0};
-  if (!tension.strain || !tension.stress || tension.strain->step != tension.stress->step) return std::nullopt;
-  const auto& value = tension.stress->value;
-  tension.peak = static_cast<size_t>(std::max_element(value.begin(), value.end()) - value.begin());
-  return tension;
-}
-// The first.
-std::optional<Tension> tension_of(const Scene& scene, const Trace& trace) {
+// The first probe that has a stress-strain curve in the trace.
+const Probe* first_tension(const Scene& scene, const Trace& trace) {
   for (const Probe& probe : scene.probes)
-    if (probe.kind == Probe::Kind::stress_strain)
-      if (auto tension = tension_of(trace, probe.name)) return tension;
-  return std::nullopt;
+    if (probe.kind == Probe::Kind::stress_strain && tension_of(trace.curves, probe.name)) return &probe;
+  return nullptr;
 }
 
 size_t nearest_frame(const Trace& trace, uint64_t step) {
@@ -68,8 +48,10 @@ size_t nearest_frame(const Trace& trace, uint64_t step) {
 std::vector<size_t> choose_frames(const Scene& scene, const Trace& trace) {
   const size_t last = trace.frames.size() - 1;
   std::set<size_t> chosen{0, last};
-  if (const auto tension = tension_of(scene, trace)) {
-    const size_t peak = nearest_frame(trace, tension->stress->step[tension->peak]);
+  if (const Probe* probe = first_tension(scene, trace)) {
+    const Curve& stress = *tension_of(trace.curves, probe->name)->stress;
+    const auto largest = std::max_element(stress.value.begin(), stress.value.end()) - stress.value.begin();
+    const size_t peak = nearest_frame(trace, stress.step[static_cast<size_t>(largest)]);
     chosen.insert(peak);
     chosen.insert(peak + (last - peak) / 4);
   }
@@ -204,7 +186,7 @@ std::string over_time(const Trace& trace, double dt,
   std::string unit;
   double latest = 0, largest = 0;
   for (const auto& [name, key] : names) {
-    const Curve* curve = find_curve(trace, name);
+    const Curve* curve = find_curve(trace.curves, name);
     if (!curve) continue;
     unit = curve->unit;
     Series& series = all.emplace_back(Series{key, {}, curve->value, {}});
@@ -227,7 +209,7 @@ std::string over_time(const Trace& trace, double dt,
 // Every curve that has more than one sample.
 std::string curve_section(const Loaded& loaded, const Trace& trace, const std::vector<size_t>& chosen) {
   const double dt = loaded.scene.rule.dt;
-  const auto first = tension_of(loaded.scene, trace);
+  const Probe* first = first_tension(loaded.scene, trace);
   std::string out;
   const auto section = [&](const std::string& title, const std::string& figure) {
     if (!figure.empty()) out += "<h2>" + html_text(title) + "</h2>\n" + figure;
@@ -236,10 +218,9 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
     const std::string of = probe.name + ".";
     switch (probe.kind) {
       case Probe::Kind::stress_strain:
-        if (const auto tension = tension_of(trace, probe.name))
+        if (const auto tension = tension_of(trace.curves, probe.name))
           section("Stress and strain: " + probe.name,
-                  stress_strain(trace, *tension, probe,
-                                tension->name == first->name ? chosen : std::vector<size_t>()));
+                  stress_strain(trace, *tension, probe, &probe == first ? chosen : std::vector<size_t>()));
         break;
       case Probe::Kind::force:
         section("Force: " + probe.name,

@@ -41,19 +41,12 @@ double largest_energy(const std::vector<Curve>& curves) {
   return largest;
 }
 
-const Curve* curve_of(const std::vector<Curve>& curves, const std::string& name) {
-  const auto found =
-      std::find_if(curves.begin(), curves.end(), [&](const Curve& curve) { return curve.name == name; });
-  return found == curves.end() || found->value.size() < 2 ? nullptr : &*found;
-}
-
 void add_tension(Items& items, const Scene& scene, const std::vector<Curve>& curves) {
   for (const Probe& probe : scene.probes) {
     if (probe.kind != Probe::Kind::stress_strain) continue;
-    const Curve* strain = curve_of(curves, probe.name + ".strain");
-    const Curve* stress = curve_of(curves, probe.name + ".stress");
-    if (strain == nullptr || stress == nullptr || strain->step != stress->step) continue;
-    const TensionFigures figures = tension_figures(strain->value, stress->value);
+    const auto tension = tension_of(curves, probe.name);
+    if (!tension) continue;
+    const TensionFigures figures = tension_figures(tension->strain->value, tension->stress->value);
     const Datasheet sheet = probe.datasheet.value_or(Datasheet{});
     const auto add = [&](const char* name, double value, double given, const char* unit) {
       items.add(probe.name + "." + name, value, unit,

@@ -24,6 +24,18 @@ std::optional<double> slope(const std::vector<double>& x, const std::vector<doub
 
 }  // namespace
 
+const Curve* find_curve(const std::vector<Curve>& curves, const std::string& name) {
+  for (const Curve& curve : curves)
+    if (curve.name == name && curve.value.size() > 1) return &curve;
+  return nullptr;
+}
+
+std::optional<Tension> tension_of(const std::vector<Curve>& curves, const std::string& probe) {
+  const Tension tension{find_curve(curves, probe + ".strain"), find_curve(curves, probe + ".stress")};
+  if (!tension.strain || !tension.stress || tension.strain->step != tension.stress->step) return std::nullopt;
+  return tension;
+}
+
 std::vector<double> running_mean(const std::vector<double>& values, size_t width) {
   const auto count = static_cast<ptrdiff_t>(values.size()), half = static_cast<ptrdiff_t>(width / 2);
   std::vector<double> mean(values.size());

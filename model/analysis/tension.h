@@ -3,9 +3,21 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "model/trace/trace.h"
+
 namespace cuboct {
+
+// A curve of two readings or more; null where there is none of the name.
+const Curve* find_curve(const std::vector<Curve>& curves, const std::string& name);
+
+// The curves of a stress_strain probe: both have the same steps.
+struct Tension {
+  const Curve *strain = nullptr, *stress = nullptr;
+};
+std::optional<Tension> tension_of(const std::vector<Curve>& curves, const std::string& probe);
 
 struct TensionFigures {
   // Slope of the least-squares line through the readings of up to 0.5 % before the largest stress, Pa. ISO
