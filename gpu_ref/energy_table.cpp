@@ -25,9 +25,14 @@ EnergyTables::EnergyTables(const Rule& rule) {
     node.push_back(law.energy(r));
     node.push_back(slope(r));
   }
+  if (!rule.contact.empty()) {
+    rule_.contact2 = std::pow(rule.contact_distance / cutoff, 2);
+    rule_.contact_energy = law.energy(rule.contact_distance);
+  }
   rule_.type_count = static_cast<int>(rule.types.size());
   for (int i = 0; i < rule_.type_count; ++i) {
-    for (int j = 0; j < rule_.type_count; ++j) strength.push_back(rule.strength_of(i, j));
+    for (int j = 0; j < rule_.type_count; ++j)
+      strength.push_back(rule.only_touch(i, j) ? -rule.strength_of(i, j) : rule.strength_of(i, j));
     for (int axis = 0; axis < 3; ++axis) {
       weight.push_back(rule.mass * rule.types[i].gravity[axis] * cutoff);
       free.push_back(is_free(rule.types[i], axis) ? 1 : 0);

@@ -22,7 +22,8 @@ struct EnergyRule {
   const double* node = nullptr;  // U (J), dU/ds (J); from the bin of the core to 1
   int first_bin = 0;
   double core2 = 0, core_energy = 0, core_slope = 0;  // below: U = core_energy + core_slope (s - core2)
-  const double* strength = nullptr;                   // type_count x type_count
+  const double* strength = nullptr;                   // type_count x type_count; negative: the two only touch
+  double contact2 = 0, contact_energy = 0;            // where those part, in cutoff^2; U there, J
   int type_count = 1;
   const double* weight = nullptr;  // three per type, J per cutoff: mass * gravity * cutoff
   const double* free = nullptr;    // three per type: 1 along axes that nothing imposes or steers, else 0
@@ -48,7 +49,9 @@ CUBOCT_HD inline double pair_energy(const EnergyRule& rule, double s, int type_i
     const double t = (s - a) / h, left = h * n[1], right = h * n[3], rise = n[2] - n[0];
     energy = n[0] + t * (left + t * (3 * rise - 2 * left - right + t * (left + right - 2 * rise)));
   }
-  return energy * rule.strength[type_i * rule.type_count + type_j];
+  const double strength = rule.strength[type_i * rule.type_count + type_j];
+  if (strength > 0) return energy * strength;
+  return s < rule.contact2 ? (rule.contact_energy - energy) * strength : 0;
 }
 
 // Adds one particle's kinetic energy at the time of its positions, half a step after that of v: v + half of

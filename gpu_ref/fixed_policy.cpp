@@ -30,6 +30,7 @@ FixedRuleOnDevice::FixedRuleOnDevice(Stream& stream, const FixedRule& rule)
   view_.cell_edge = int32_t{1} << rule.widths.position_frac;
   view_.position_unit = 1 / static_cast<float>(view_.cell_edge);
   view_.cutoff2 = rule.cutoff2;
+  view_.contact2 = rule.contact2;
   std::vector<int32_t> cache;
   view_.force = put(rule.force, cache);
   view_.damped = rule.damped;

@@ -39,6 +39,7 @@ struct FixedView {
   DeviceTable force, damp;
   bool damped, scaled;
   const int32_t* scale;  // types x types
+  uint64_t contact2;
   int type_count;
   const DeviceType* types;
   Rounding difference_shift, w_shift, q_shift, damp_shift, kick_shift;
@@ -94,7 +95,7 @@ struct CachedFixedRule {
 
   const Widths& widths;
   int32_t cell_edge;  // in units of a position
-  uint64_t cutoff2;
+  uint64_t cutoff2, contact2;
   Table force, damp;
   static constexpr bool damped = Damped;
   bool scaled;
@@ -106,6 +107,7 @@ struct CachedFixedRule {
       : widths(view.widths),
         cell_edge(view.cell_edge),
         cutoff2(view.cutoff2),
+        contact2(view.contact2),
         force(view.force, static_cast<const int32_t*>(cache)),
         damp(view.damp, static_cast<const int32_t*>(cache)),
         scaled(view.scaled),

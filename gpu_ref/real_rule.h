@@ -66,7 +66,8 @@ struct RealRule {
   // In the cache: where the bin of no bits would stand, the begins, their squares.
   int bin_at = 0, begin_at = 0, joint_at = 0;
 
-  const Real* strength = nullptr;  // type_count x type_count, factor on the pair force
+  const Real* strength = nullptr;  // type_count x type_count, factor on the pair force; negative: only touch
+  Real contact2 = 0;               // cutoff^2: from here on pairs that only touch do nothing
   const RealType<Real>* types = nullptr;
 };
 
@@ -193,7 +194,7 @@ template <LawKind kKind, bool kDamped, bool kScaled, class Roots = FastRoots, cl
 CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, const Real d[3], const Real w[3],
                              int type_i, int type_j, Real sum[3]) {
   const Real r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-  const bool inside = r2 < Real(1);
+  bool inside = r2 < Real(1);
   // Up to the cutoff, as bins end there.
   Real near2 = detail::larger(r2, rule.core2);
   if constexpr (has_pieces(kKind)) near2 = detail::smaller(near2, Real(1));
@@ -204,7 +205,11 @@ CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, cons
     const Real rest = 1 - near2;
     k -= rule.damping * rest * rest * inverse2 * closing;
   }
-  if constexpr (kScaled) k *= rule.strength[type_i * rule.type_count + type_j];
+  if constexpr (kScaled) {
+    const Real strength = rule.strength[type_i * rule.type_count + type_j];
+    inside = inside && (strength > 0 || r2 < rule.contact2);
+    k *= strength > 0 ? strength : -strength;
+  }
   k = inside ? k : Real(0);
   for (int a = 0; a < 3; ++a) sum[a] -= k * d[a];
   return inside;

@@ -77,9 +77,11 @@ RealTables<Real>::RealTables(const Rule& rule) {
   rule_.type_count = static_cast<int>(rule.types.size());
   for (int i = 0; i < rule_.type_count; ++i)
     for (int j = 0; j < rule_.type_count; ++j) {
-      strength.push_back(real(rule.strength_of(i, j)));
-      rule_.scaled |= rule.strength_of(i, j) != 1;
+      const double factor = rule.only_touch(i, j) ? -rule.strength_of(i, j) : rule.strength_of(i, j);
+      strength.push_back(real(factor));
+      rule_.scaled |= factor != 1;
     }
+  rule_.contact2 = real(rule.contact_distance * rule.contact_distance / (length * length));
   require_range(*rule.law);
 }
 

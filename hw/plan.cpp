@@ -84,6 +84,7 @@ uint64_t hash_of(const Plan& plan) {
   if (rule.types.size() == 1 && rule.type_bits > 0) hash.add(rule.type_bits);
   add(hash, rule.force);
   if (rule.damped) add(hash, rule.damp);
+  if (rule.contact2 > 0) hash.add(static_cast<int64_t>(rule.contact2));
   for (const auto& row : rule.scale)
     for (const int32_t s : row) hash.add(s);
   for (const FixedType& type : rule.types) {

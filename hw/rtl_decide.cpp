@@ -106,6 +106,7 @@ RtlDesign decide(const Plan& plan) {
   constant("DampShift", rule.damp_shift, "");
   constant("KickShift", rule.kick_shift, "");
   wide("Cutoff2", rule.cutoff2, "in units of r2");
+  wide("Contact2", rule.contact2, "as Cutoff2, of types that only touch; 0: no two do");
   wide("PlanarOne", static_cast<uint64_t>(rule.planar[0]), "FilterFrac fractional bits");
   wide("PlanarTwo", static_cast<uint64_t>(rule.planar[1]), "");
   wide("PlanarThree", static_cast<uint64_t>(rule.planar[2]), "");
@@ -129,7 +130,7 @@ RtlDesign decide(const Plan& plan) {
     table("Damp", rule.damp, "damping table");
     constant("DampBits", bits_for(table_range(rule.damp)), "that hold every value of the damping table");
   }
-  constant("Scaled", rule.scaled, "pair scales differ");
+  constant("Scaled", rule.scaled, "pairs of types differ");
   constant("Pd", rule.pd, "some type is held by force");
   design.constants.push_back(
       {"ParticleBits", plan.words.particle_bits, false, false, "of the words to load and observe"});

@@ -103,7 +103,7 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
     dx[a] = rounded(x, rule.difference_factor);
   }
   const V r2 = hn::MulAdd(dx[2], dx[2], hn::MulAdd(dx[1], dx[1], hn::Mul(dx[0], dx[0])));
-  const M near = hn::And(lane_mask(entry.lanes >> at), hn::Lt(r2, hn::Set(d, rule.cutoff2)));
+  M near = hn::And(lane_mask(entry.lanes >> at), hn::Lt(r2, hn::Set(d, rule.cutoff2)));
   if (HWY_UNLIKELY(hn::AllFalse(d, near))) return false;
   s = hn::Sub(table_value<kSimple>(rule.force, r2), hn::Set(d, rule.force.bias));
   if (kDamped) {
@@ -124,7 +124,10 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
     double factor[kLanes];
     for (uint32_t l = 0; l < kLanes; ++l)
       factor[l] = rule.scale[particles.type[i + l] * rule.types + particles.type[j + l]];
-    s = rounded(hn::Mul(s, hn::LoadU(d, factor)), rule.scale_factor);
+    const V scale = hn::LoadU(d, factor);
+    const M apart = hn::And(hn::Lt(scale, hn::Zero(d)), hn::Ge(r2, hn::Set(d, rule.contact2)));
+    near = hn::AndNot(apart, near);
+    s = rounded(hn::Mul(s, hn::Abs(scale)), rule.scale_factor);
   }
   s = hn::IfThenElseZero(near, s);
   return true;

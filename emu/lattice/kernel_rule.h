@@ -64,7 +64,8 @@ struct KernelRule {
   double s_low = 0, s_high = 0;  // s outside [low, high) does not fit
   bool scaled = false;
   int types = 1;
-  std::vector<double> scale;  // types x types
+  std::vector<double> scale;  // types x types; negative: the two only touch
+  double contact2 = 0;
   double scale_factor = 0;
   double guard = 0, inverse_guard = 0;  // 2^G, 2^-G
   double sum_limit = 0, v_limit = 0;    // |value| from here on may not fit

@@ -120,6 +120,7 @@ ExpectedStrain expected_strain(const Scene& scene, std::span<const Vec3> x, std:
   CellList cells(range, scene.periodic);
   cells.build(x);
   cells.for_each_pair(x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
+    if (rule.only_touch(type[i], type[j])) return;  // may part
     bonds.push_back({i, j, d / r, std::max(0.0, -rule.law->slope(r)) * rule.strength_of(type[i], type[j])});
   });
   const std::vector<char> held = supported(rule, type, bonds);

@@ -159,14 +159,13 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
     }
   }
   const double cutoff = rule.law->cutoff();
-  const PairEnergy pairs =
-      sum_over_pairs(fixed, lattice, state, PairEnergy{}, threads,
-                     [&](uint32_t i, uint32_t j, const Int3& x_j) -> PairEnergy {
-                       const Particle &a = state.particles[i], &b = state.particles[j];
-                       const double r = between(a, x_j).norm() * length;
-                       if (r >= cutoff) return {};
-                       return {rule.law->energy(r) * rule.strength_of(a.type, b.type), {a.id, b.id, r}};
-                     });
+  const PairEnergy pairs = sum_over_pairs(fixed, lattice, state, PairEnergy{}, threads,
+                                          [&](uint32_t i, uint32_t j, const Int3& x_j) -> PairEnergy {
+                                            const Particle &a = state.particles[i], &b = state.particles[j];
+                                            const double r = between(a, x_j).norm() * length;
+                                            if (r >= cutoff) return {};
+                                            return {rule.pair_energy(a.type, b.type, r), {a.id, b.id, r}};
+                                          });
   sum.potential = pairs.energy;
   if (closest) *closest = pairs.closest;
   return sum;

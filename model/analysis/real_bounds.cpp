@@ -74,7 +74,11 @@ ForceBounds force_bounds(const Scene& scene, const std::vector<Vec3>& x, const s
   CellList cells(cutoff, scene.periodic, margin);
   cells.build(x);
   cells.for_each_pair(x, [&](uint32_t i, uint32_t j, const Vec3&, double r) {
-    const double strength = rule.strength_of(scene.body.type[i], scene.body.type[j]);
+    const int type_i = scene.body.type[i], type_j = scene.body.type[j];
+    const double strength = rule.strength_of(type_i, type_j);
+    const bool touch = rule.only_touch(type_i, type_j);
+    const double reach = rule.reach(type_i, type_j);
+    if (touch && r > reach + margin) return;
     Sum one;
     one.pairs = 1;
     // Of both ends of what the distance may be: a joint, the core or the cutoff may lie between.
@@ -98,6 +102,8 @@ ForceBounds force_bounds(const Scene& scene, const std::vector<Vec3>& x, const s
       one.stiffness += change;
       one.error += change * of.difference + kDamping * u * rule.damping.coefficient * w.norm() +
                    2 * u * c * (v[i].norm() + v[j].norm());
+      // A pair that only touches is damped up to its reach, and not at all from there on.
+      if (touch && r > reach - margin) one.error += c * w.norm();
       one.force += c * w.norm();
     }
     for (const uint32_t k : {i, j}) {

@@ -61,6 +61,7 @@ bool in_balance(const Rule& rule, const Body& body, const Periodic& periodic, do
   CellList cells(rule.law->cutoff(), periodic);
   cells.build(body.x);
   cells.for_each_pair(body.x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
+    if (r >= rule.reach(body.type[i], body.type[j])) return;
     const Vec3 f = rule.law->force(r) / r * rule.strength_of(body.type[i], body.type[j]) * d;
     force[i] -= f;
     force[j] += f;

@@ -83,8 +83,11 @@ struct FixedRule {
   FixedTable force;  // f(r)/r * dt^2/m, times the largest pair scale
   bool damped = false;
   FixedTable damp;      // c(r)/(r/cell_edge)^2 * dt/m, times the largest pair scale; only if damped
-  bool scaled = false;  // pair scales differ
-  std::vector<std::vector<int32_t>> scale;  // types x types, scale_frac fractional bits; only if scaled
+  bool scaled = false;  // pairs of types differ
+  // Types x types, scale_frac fractional bits; only if scaled. Negative: the two only touch. Their factor is
+  // its size, and from contact2 on they do not interact.
+  std::vector<std::vector<int32_t>> scale;
+  uint64_t contact2 = 0;  // as cutoff2, at most that; 0: no two types only touch
   std::vector<FixedType> types;
   bool pd = false;  // some type is held or moved by force
   // 2: every particle has z = 0, v_z = 0 and u_z = 0 for ever (hw/setup.h), and no record holds them.
@@ -110,7 +113,7 @@ struct FixedRule {
 // One pair's part of the kick: what j does to i, P+G fractional bits, and the tests on its way. Exactly the
 // contract: pair(i, j) == -pair(j, i).
 struct PairResult {
-  bool inside = false;  // r2 < cutoff2
+  bool inside = false;  // r2 < cutoff2, or contact2
   Fault fault = Fault::none;
   int64_t number = 0;  // the value that did not fit
   Int3 kick{};

@@ -64,6 +64,14 @@ CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple&
   for (int a = 0; a < 3; ++a) d[a] = static_cast<int32_t>(round_odd(x_j[a] - x_i[a], rule.difference_shift));
   const auto r2 = static_cast<uint64_t>(product(d[0], d[0]) + product(d[1], d[1]) + product(d[2], d[2]));
   if (r2 >= rule.cutoff2) return result;
+  int32_t scale = 0;
+  if (rule.scaled) {
+    scale = rule.scale[type_i][type_j];
+    if (scale < 0) {  // the two only touch
+      if (r2 >= rule.contact2) return result;
+      scale = -scale;
+    }
+  }
   result.inside = true;
   int64_t s = table_value(rule.force, r2);
   if (rule.damped) {
@@ -86,8 +94,7 @@ CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple&
   }
   auto strength = static_cast<int32_t>(s);
   if (rule.scaled)
-    strength = static_cast<int32_t>(
-        round_odd(product(strength, rule.scale[type_i][type_j]), rule.widths.scale_frac));
+    strength = static_cast<int32_t>(round_odd(product(strength, scale), rule.widths.scale_frac));
   for (int a = 0; a < 3; ++a) result.kick[a] = -round_odd(product(strength, d[a]), rule.kick_shift);
   return result;
 }

@@ -342,16 +342,30 @@ std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch,
                    "the presets are elastic, brittle, ductile and viscous");
 }
 
+namespace {
+constexpr int kBondSamples = 4096;  // of a law's range
+}
+
 double stiffest_rest_distance(const PairLaw& law) {
-  constexpr int kSamples = 4096;
   double stiffest = 0, at = 0;
-  for (int k = 0; k < kSamples; ++k) {
-    const auto distance = [&](int n) { return law.core() + (law.cutoff() - law.core()) * n / kSamples; };
+  for (int k = 0; k < kBondSamples; ++k) {
+    const auto distance = [&](int n) { return law.core() + (law.cutoff() - law.core()) * n / kBondSamples; };
     const double r = distance(k), next = distance(k + 1);
     if (!(law.force(r) > 0) || law.force(next) > 0 || next >= law.cutoff()) continue;
     if (-law.slope(next) > stiffest) stiffest = -law.slope(next), at = next;
   }
   return at;
+}
+
+double push_end(const PairLaw& law) {
+  double outside = stiffest_rest_distance(law);
+  if (outside == 0) return law.cutoff();
+  double inside = outside - (law.cutoff() - law.core()) / kBondSamples;
+  for (;;) {
+    const double middle = 0.5 * (inside + outside);
+    if (middle <= inside || middle >= outside) return outside;
+    (law.force(middle) > 0 ? inside : outside) = middle;
+  }
 }
 
 }  // namespace cuboct

@@ -64,4 +64,8 @@ std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch,
 // m to 1/4096 of the law's range; 0 where there is none.
 double stiffest_rest_distance(const PairLaw& law);
 
+// Where the push of the stiffest bond ends, in m to a rounding of r: bodies that only touch part there. The
+// cutoff of a law that never pulls.
+double push_end(const PairLaw& law);
+
 }  // namespace cuboct

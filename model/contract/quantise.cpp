@@ -267,7 +267,12 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   for (const auto& row : rule.strength) scale = std::max(scale, *std::max_element(row.begin(), row.end()));
   double least = scale;
   for (const auto& row : rule.strength) least = std::min(least, *std::min_element(row.begin(), row.end()));
-  fixed.scaled = least != scale;
+  fixed.scaled = least != scale || !rule.contact.empty();
+  if (!rule.contact.empty()) {
+    const double reach = std::min(rule.contact_distance, cutoff) / cell_edge;
+    fixed.contact2 =
+        std::min(fixed.cutoff2, static_cast<uint64_t>(std::llround(std::ldexp(reach * reach, 2 * D))));
+  }
 
   const bool fits_octaves = [&] {
     const FixedTable table =
@@ -336,8 +341,9 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
       fixed.scale.emplace_back();
       for (size_t j = 0; j < rule.types.size(); ++j) {
         const double strength = rule.strength_of(static_cast<int>(i), static_cast<int>(j)) / scale;
-        fixed.scale[i].push_back(
-            static_cast<int32_t>(quantised(strength, strength, widths.scale_frac, 18, "a pair strength")));
+        const auto size =
+            static_cast<int32_t>(quantised(strength, strength, widths.scale_frac, 18, "a pair strength"));
+        fixed.scale[i].push_back(rule.only_touch(static_cast<int>(i), static_cast<int>(j)) ? -size : size);
       }
     }
   return fixed;

@@ -64,6 +64,10 @@ struct Rule {
   std::vector<ParticleType> types;  // at least one
   std::vector<std::vector<double>>
       strength;  // symmetric, materials x materials, > 0: factor on the pair force
+  // Materials that only touch: their pairs push within the contact distance and do nothing beyond it.
+  // Symmetric, materials x materials; empty where no two do.
+  std::vector<std::vector<char>> contact;
+  double contact_distance = 0;  // m, where the law's push ends (law.h); only with `contact`
 
   // c(r)/r^2 in kg/(s m^2).
   double damping_over_r2(double r) const {
@@ -73,6 +77,20 @@ struct Rule {
   }
   double strength_of(int type_i, int type_j) const {
     return strength[types[type_i].material][types[type_j].material];
+  }
+  bool only_touch(int type_i, int type_j) const {
+    return !contact.empty() && contact[types[type_i].material][types[type_j].material] != 0;
+  }
+  // The distance from which on the pair does nothing, m.
+  double reach(int type_i, int type_j) const {
+    return only_touch(type_i, type_j) ? contact_distance : law->cutoff();
+  }
+  // J, zero from the pair's reach on; dU/dr = -strength * force.
+  double pair_energy(int type_i, int type_j, double r) const {
+    const double end = reach(type_i, type_j);
+    if (r >= end) return 0;
+    const double beyond = only_touch(type_i, type_j) ? law->energy(end) : 0;
+    return (law->energy(r) - beyond) * strength_of(type_i, type_j);
   }
 };
 

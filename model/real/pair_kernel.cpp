@@ -224,7 +224,7 @@ HWY_INLINE void sum_forces(const PairForce<Real>& force, const PairRows& rows, c
       }
       const V r2 = hn::Add(hn::Add(hn::Mul(d0, d0), hn::Mul(d1, d1)), hn::Mul(d2, d2));
       // Particles at one point, as a particle and itself where rows are filled up, have k*d = 0.
-      const auto pair = hn::Lt(r2, cutoff2);
+      auto pair = hn::Lt(r2, cutoff2);
       const V near2 = hn::Max(r2, core2);
       V k = law.over_r(near2);
       if (kDamped) {
@@ -237,7 +237,9 @@ HWY_INLINE void sum_forces(const PairForce<Real>& force, const PairRows& rows, c
       }
       if (scaled) {
         const V which = hn::Add(row_of_strengths, hn::GatherIndex(d, x + 3, j));
-        k = hn::Mul(k, hn::GatherIndex(d, force.strength.data(), hn::ConvertTo(ii, which)));
+        const V strength = hn::GatherIndex(d, force.strength.data(), hn::ConvertTo(ii, which));
+        k = hn::Mul(k, hn::Abs(strength));
+        pair = hn::AndNot(hn::And(hn::Lt(strength, zero), hn::Ge(r2, hn::Set(d, force.contact2))), pair);
       }
       k = hn::IfThenElseZero(pair, k);
       f0 = hn::Sub(f0, hn::Mul(k, d0));
@@ -395,13 +397,17 @@ PairForce<Real>::PairForce(const Rule& rule, const Periodic& periodic) : law(rul
   core2 = real(core * core);
   damping = real(rule.damping.coefficient);
   inverse_cutoff2 = real(1 / (cutoff * cutoff));
-  bool scaled = false;
+  bool scaled = !rule.contact.empty();
   for (const auto& row : rule.strength)
     for (const double factor : row) scaled |= factor != 1;
   if (scaled) {
     materials = rule.strength.size();
-    for (const auto& row : rule.strength)
-      for (const double factor : row) strength.push_back(real(factor));
+    for (size_t i = 0; i < materials; ++i)
+      for (size_t j = 0; j < materials; ++j) {
+        const bool touch = !rule.contact.empty() && rule.contact[i][j] != 0;
+        strength.push_back(real(touch ? -rule.strength[i][j] : rule.strength[i][j]));
+      }
+    contact2 = real(rule.contact_distance * rule.contact_distance);
   }
   for (int axis = 0; axis < 3; ++axis) {
     if (periodic.extent[axis] <= 0) continue;

@@ -39,7 +39,9 @@ struct PairForce {
   Real cutoff2 = 0, core2 = 0;  // m^2
   Real damping = 0, inverse_cutoff2 = 0;
   size_t materials = 1;
-  std::vector<Real> strength;  // materials x materials; empty where all are 1
+  // Materials x materials; empty where all are 1 and none only touch. Negative: the two only touch.
+  std::vector<Real> strength;
+  Real contact2 = 0;  // m^2
   bool ring = false;
   std::array<Real, 3> extent{}, inverse_extent{};  // 0 in open axes
 };

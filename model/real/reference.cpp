@@ -87,7 +87,7 @@ void Reference::for_each_neighbour(On&& on) const {
 double Reference::potential_energy() const {
   std::vector<double> of(body().size());
   for_each_neighbour([&](uint32_t i, uint32_t j, const Vec3&, double r2) {
-    if (i < j) of[i] += rule_.law->energy(std::sqrt(r2)) * rule_.strength_of(body_.type[i], body_.type[j]);
+    if (i < j) of[i] += rule_.pair_energy(body_.type[i], body_.type[j], std::sqrt(r2));
   });
   return std::accumulate(of.begin(), of.end(), 0.0);
 }
@@ -109,6 +109,7 @@ std::vector<Mat3> Reference::virial_stress(double volume) const {
   const bool damps = rule_.damping.coefficient > 0;
   for_each_neighbour([&](uint32_t i, uint32_t j, const Vec3& d, double r2) {
     const double r = std::sqrt(r2);
+    if (r >= rule_.reach(body_.type[i], body_.type[j])) return;
     double k = rule_.law->force(r) / r;
     if (damps) k -= rule_.damping_over_r2(r) * (body_.v[j] - body_.v[i]).dot(d);
     k *= rule_.strength_of(body_.type[i], body_.type[j]);

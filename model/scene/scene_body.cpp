@@ -11,6 +11,7 @@
 #include "model/base/error.h"
 #include "model/base/resources.h"
 #include "model/base/spelling.h"
+#include "model/contract/law.h"
 #include "model/scene/name.h"
 #include "model/scene/scene_parts.h"
 
@@ -164,7 +165,7 @@ std::vector<Material> read_materials(const ConfigTable& root) {
   return materials;
 }
 
-// Pairs of unlike materials take the geometric mean unless a [[bond]] says otherwise.
+// Pairs of unlike materials take the geometric mean unless a [[bond]] gives a strength.
 void read_strengths(const ConfigTable& root, const std::vector<Material>& materials,
                     const std::vector<std::string>& names, Rule& rule) {
   const size_t n = materials.size();
@@ -178,7 +179,15 @@ void read_strengths(const ConfigTable& root, const std::vector<Material>& materi
     const auto pair = between.items();
     if (pair.size() != 2) between.fail("'between' needs two materials");
     const size_t i = pair[0].choice("material", names), j = pair[1].choice("material", names);
-    rule.strength[i][j] = rule.strength[j][i] = table.number("strength", quantity::number, Range::positive());
+    const bool contact = table.boolean_or("contact", false);
+    if (!contact || table.has("strength"))
+      rule.strength[i][j] = rule.strength[j][i] =
+          table.number("strength", quantity::number, Range::positive());
+    if (contact) {
+      if (rule.contact.empty()) rule.contact.assign(n, std::vector<char>(n, 0));
+      rule.contact[i][j] = rule.contact[j][i] = 1;
+      rule.contact_distance = push_end(*rule.law);
+    }
     table.done();
   }
 }

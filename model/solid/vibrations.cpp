@@ -107,6 +107,7 @@ Vibrations vibrations_of(const Rule& rule, const Body& body, const Periodic& per
   CellList cells(rule.law->cutoff(), periodic);
   cells.build(body.x);
   cells.for_each_pair(body.x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
+    if (r >= rule.reach(body.type[i], body.type[j])) return;
     const Vec3 e = d / r;
     const double scale = rule.strength_of(body.type[i], body.type[j]) / rule.mass;
     const double axial = -rule.law->slope(r), lateral = -rule.law->force(r) / r;

@@ -39,6 +39,7 @@ module cuboct_datapath #(
   parameter int          KickShift            = 0,
   // Law.
   parameter logic [63:0] Cutoff2              = 64'd0,
+  parameter logic [63:0] Contact2             = 64'd0,
   parameter int          Octaves              = 0,      // force table: 0 uniform, 1 octaves
   parameter int          Degree               = 1,
   parameter int          IndexBits            = 9,
@@ -155,6 +156,7 @@ module cuboct_datapath #(
     end
     cuboct_pipe #(
       .Axes(Axes), .PositionFrac(PositionFrac), .DifferenceShift(DifferenceShift), .Cutoff2(Cutoff2),
+      .Contact2(Contact2),
       .EntryBits(StrengthBits), .IndexBits(IndexBits), .Octaves(Octaves), .Degree(Degree), .BinBits(BinBits),
       .FirstOctave(FirstOctave), .FractionBits(FractionBits), .ForceBits(ForceBits), .Damped(Damped),
       .VelocityBits(VelocityBits), .RelativeVelocityBits(RelativeVelocityBits), .WShift(WShift), .QShift(QShift),

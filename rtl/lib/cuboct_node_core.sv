@@ -44,6 +44,7 @@ module cuboct_node_core #(
   parameter int          KickShift            = 0,
   // Law.
   parameter logic [63:0] Cutoff2              = 64'd0,
+  parameter logic [63:0] Contact2             = 64'd0,
   parameter logic [63:0] PlanarOne            = 64'd0,
   parameter logic [63:0] PlanarTwo            = 64'd0,
   parameter logic [63:0] PlanarThree          = 64'd0,
@@ -467,6 +468,7 @@ module cuboct_node_core #(
     .SumBits(SumBits), .DisplacementBits(DisplacementBits), .ScaleFrac(ScaleFrac), .GainFrac(GainFrac),
     .GainBits(GainBits), .ScaleBits(ScaleBits), .ConstantBits(ConstantBits), .DifferenceShift(DifferenceShift),
     .WShift(WShift), .QShift(QShift), .DampShift(DampShift), .KickShift(KickShift), .Cutoff2(Cutoff2),
+    .Contact2(Contact2),
     .Octaves(Octaves),
     .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits), .FirstOctave(FirstOctave), .FractionBits(FractionBits),
     .ForceBits(ForceBits), .Damped(Damped), .DampOctaves(DampOctaves), .DampDegree(DampDegree),

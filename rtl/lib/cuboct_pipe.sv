@@ -5,7 +5,7 @@
 //   d = round_odd(x_j - x_i), r2 = d.d, s = force(r2)
 //   s -= round_odd(damp(r2) * round_odd(w.d))    with Damped; w = round_odd(v_j - v_i)
 //   s = round_odd(s * scale[type_i][type_j])     with Scaled
-//   push = round_odd(s * d), the kick's negative  nothing where r2 >= Cutoff2
+//   push = round_odd(s * d), the kick's negative  nothing where r2 >= Cutoff2, or Contact2
 // The kick of a pair accepted in cycle t is at the outputs in cycle t + Stages: 7 (+1 octaves, +1 degree 2, +1 damped,
 // +1 scaled) and Product for each product after one another: 3 (+1 degree 2, +1 damped, +1 scaled); +2 (Axes-1) shared.
 module cuboct_pipe #(
@@ -13,6 +13,7 @@ module cuboct_pipe #(
   parameter int          PositionFrac         = 20,     // P
   parameter int          DifferenceShift      = 4,      // P - D
   parameter logic [63:0] Cutoff2              = 64'd0,  // 2D fractional bits, <= 2^(2D)
+  parameter logic [63:0] Contact2             = 64'd0,  // as Cutoff2, of types that only touch; 0: no two do
   parameter int          EntryBits            = 18,     // of a table entry
   parameter int          IndexBits            = 9,      // of the force table
   parameter int          Octaves              = 0,      // force table: 0 uniform, 1 octaves
@@ -162,7 +163,8 @@ module cuboct_pipe #(
   cuboct_hold #(.Bits(1), .Depth(StageR2 - 2), .Interval(Interval)) u_outside (
     .clk_i, .valid_i(valid_q[StageR2:2]), .d_i(outside != '0), .q_o(outside_r2)
   );
-  assign near = (r2_q < Cutoff2[R2Bits-1:0]) && !outside_r2;
+  logic [R2Bits-1:0] reach2;  // stage StageR2: from here on the pair does nothing
+  assign near = (r2_q < reach2) && !outside_r2;
   cuboct_hold #(.Bits(Axes * DBits), .Depth(StageS - 2), .Interval(Interval)) u_d (
     .clk_i, .valid_i(valid_q[StageS:2]), .d_i(d_q), .q_o(d_s)
   );
@@ -332,9 +334,27 @@ module cuboct_pipe #(
     cuboct_hold #(.Bits(2 * TypeBits), .Depth(StageDamped - 2), .Interval(Interval)) u_types (
       .clk_i, .valid_i(valid_q[StageDamped:2]), .d_i(types_q), .q_o(types)
     );
+    logic unused_touch;
     cuboct_scale_rom u_scale_rom (
-      .own_type_i(types[TypeBits-1:0]), .other_type_i(types[2*TypeBits-1:TypeBits]), .scale_o(scale)
+      .own_type_i(types[TypeBits-1:0]), .other_type_i(types[2*TypeBits-1:TypeBits]), .scale_o(scale),
+      .touch_o(unused_touch)
     );
+    if (Contact2 != 64'd0) begin : gen_touch
+      logic                        touch_d, touch;  // stages 2, StageR2
+      logic signed [ScaleBits-1:0] touch_scale;
+      logic                        unused_scale;
+      cuboct_scale_rom u_touch_rom (
+        .own_type_i(types_q[TypeBits-1:0]), .other_type_i(types_q[2*TypeBits-1:TypeBits]), .scale_o(touch_scale),
+        .touch_o(touch_d)
+      );
+      cuboct_hold #(.Bits(1), .Depth(StageR2 - 2), .Interval(Interval)) u_touch (
+        .clk_i, .valid_i(valid_q[StageR2:2]), .d_i(touch_d), .q_o(touch)
+      );
+      assign reach2       = touch ? Contact2[R2Bits-1:0] : Cutoff2[R2Bits-1:0];
+      assign unused_scale = ^touch_scale;
+    end else begin : gen_one_reach
+      assign reach2 = Cutoff2[R2Bits-1:0];
+    end
     cuboct_mult #(.ABits(SBits), .BBits(ScaleBits), .Cycles(Product)) u_mult (
       .clk_i, .rst_ni, .en_i(hit_q[StageDamped]), .a_i(s_damped), .b_i(scale), .p_o(product)
     );
@@ -348,7 +368,8 @@ module cuboct_pipe #(
   end else begin : gen_unscaled
     logic unused_types;
     assign unused_types = ^{own_type_i, other_type_i};
-    assign s = s_damped;
+    assign s      = s_damped;
+    assign reach2 = Cutoff2[R2Bits-1:0];
   end
 
   // The last stages: times d, rounded once.

@@ -35,6 +35,10 @@ inline std::vector<NamedRule> made_rules() {
   std::vector<NamedRule> rules;
   for (const char* name : {"elastic", "brittle", "ductile", "viscous"})
     rules.push_back({name, full_rule(preset_law(name, 1e-3, 1e3), 1e-6, 3e-6, 1e3)});
+  rules.push_back({"contact", rules[1].rule});
+  Rule& touch = rules.back().rule;
+  touch.contact = {{0, 1}, {1, 0}};
+  touch.contact_distance = push_end(*touch.law);
   const double epsilon = 1.65e-21, sigma = 3.4e-10, mass = 6.6e-26;  // argon
   const double stiffness = 57 * epsilon / (sigma * sigma);
   const auto lj = [&](double cutoff, double core, Smoothing smoothing) {

@@ -263,7 +263,15 @@ TEST(EnergyTable, IsWithinItsBound) {
     for (const double s : {0.0, 0.1 * core2, 0.9 * core2, std::nextafter(core2, 0.0)}) {
       const double expected = law.energy(std::sqrt(s) * cutoff);
       EXPECT_NEAR(pair_energy(energy, s, 0, 0), expected, 1e-14 * std::abs(expected)) << named.name;
-      EXPECT_NEAR(pair_energy(energy, s, 1, 0), 0.7 * expected, 1e-14 * std::abs(expected)) << named.name;
+      EXPECT_NEAR(pair_energy(energy, s, 1, 0), named.rule.pair_energy(1, 0, std::sqrt(s) * cutoff),
+                  1e-14 * std::abs(expected))
+          << named.name;
+    }
+    if (named.rule.only_touch(1, 0)) {
+      const double touch = named.rule.contact_distance / cutoff;
+      EXPECT_GT(pair_energy(energy, 0.99 * touch * touch, 1, 0), 0);
+      for (const double s : {touch * touch, 0.5 + 0.5 * touch * touch})
+        EXPECT_EQ(pair_energy(energy, s, 1, 0), 0) << s;
     }
     for (const double s : {1.0, 1.5, std::numeric_limits<double>::infinity()})
       EXPECT_EQ(pair_energy(energy, s, 0, 0), 0) << named.name;

@@ -90,27 +90,17 @@ std::string print_blocks(const Plan& plan) {
   text +=
       "  logic [3*K-1:0] push, kick;\n  logic signed [63:0] pipe_number;\n"
       "  assign kick = {-push[2*K +: K], -push[K +: K], -push[0 +: K]};\n";
-  text += "  cuboct_pipe #(\n    " + given({"PositionFrac",
-                                            "DifferenceShift",
-                                            "Cutoff2",
-                                            "IndexBits",
-                                            "Octaves",
-                                            "Degree",
-                                            "BinBits",
-                                            "FirstOctave",
-                                            "FractionBits",
-                                            "ForceBits",
-                                            "Damped",
-                                            "VelocityBits",
-                                            "RelativeVelocityBits",
-                                            "WShift",
-                                            "QShift",
-                                            "DampShift",
-                                            "StrengthBits",
-                                            "Scaled",
-                                            "ScaleBits",
-                                            "ScaleFrac",
-                                            "KickShift"});
+  text += "  cuboct_pipe #(\n    " + given({"PositionFrac", "DifferenceShift",
+                                            "Cutoff2",      "Contact2",
+                                            "IndexBits",    "Octaves",
+                                            "Degree",       "BinBits",
+                                            "FirstOctave",  "FractionBits",
+                                            "ForceBits",    "Damped",
+                                            "VelocityBits", "RelativeVelocityBits",
+                                            "WShift",       "QShift",
+                                            "DampShift",    "StrengthBits",
+                                            "Scaled",       "ScaleBits",
+                                            "ScaleFrac",    "KickShift"});
   if (damped)
     text += given({"DampIndexBits", "DampOctaves", "DampDegree", "DampBinBits", "DampFirstOctave",
                    "DampFractionBits", "DampBits"});

@@ -196,6 +196,11 @@ std::vector<std::string> look(const FixedRule& rule, PairStimulus& p) {
   note(!p.result.inside, "outside");
   note(p.r2 + 1 == rule.cutoff2, "r2 = cutoff2 - 1");
   note(p.r2 == rule.cutoff2, "r2 = cutoff2");
+  const bool touch =
+      rule.scaled && rule.scale[static_cast<size_t>(p.type_i)][static_cast<size_t>(p.type_j)] < 0;
+  note(touch && p.r2 + 1 == rule.contact2, "r2 = contact2 - 1, touch");
+  note(touch && p.r2 == rule.contact2, "r2 = contact2, touch");
+  note(!touch && p.r2 >= rule.contact2 && p.result.inside, "beyond contact2, inside");
   note(p.r2 == 0, "d = 0");
   // What the planar test lets pass may be longer than the pipe's d, which wraps; such a pair is outside.
   const int bits = w.difference_frac + 1;
@@ -251,7 +256,8 @@ std::vector<std::string> look(const FixedRule& rule, PairStimulus& p) {
   }
   p.damped = s;
   if (rule.scaled) {
-    const int64_t product = s * rule.scale[static_cast<size_t>(p.type_i)][static_cast<size_t>(p.type_j)];
+    const int64_t product =
+        s * std::abs(rule.scale[static_cast<size_t>(p.type_i)][static_cast<size_t>(p.type_j)]);
     note(negative_half(product, w.scale_frac), "half of the scaled s");
     s = round_odd(product, w.scale_frac);
   }
@@ -287,6 +293,11 @@ std::set<std::string> pair_classes(const FixedRule& rule) {
     if (bends_down(rule.damp)) names.insert("half of c2 t, damping");
   }
   if (rule.scaled) names.insert("half of the scaled s");
+  if (rule.contact2 > 0) {
+    names.insert("beyond contact2, inside");
+    if (three_squares(rule.contact2 - 1)) names.insert("r2 = contact2 - 1, touch");
+    if (three_squares(rule.contact2)) names.insert("r2 = contact2, touch");
+  }
   return names;
 }
 
@@ -339,7 +350,9 @@ PairStimuli pair_stimuli(const FixedRule& rule, uint64_t seed) {
     const auto which = source.draw()(0, 9);
     const bool made = which == 0
                           ? source.exactly(rule.cutoff2 - static_cast<uint64_t>(source.draw()(0, 1)), p)
-                      : which == 1                ? source.near_target(rule.cutoff2, p)
+                      : which == 1 ? source.near_target(rule.cutoff2, p)
+                      : which == 3 && rule.contact2 > 0
+                          ? source.exactly(rule.contact2 - static_cast<uint64_t>(source.draw()(0, 1)), p)
                       : which == 2 && whole(rule) ? source.beyond(p)
                                                   : source.any(p);
     if (made) offer(p, k % (kCandidates / kOrdinary) == 0);

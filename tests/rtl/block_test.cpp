@@ -17,6 +17,7 @@
 #include "emu/verilated/sources.h"
 #include "hw/rtl_emit.h"
 #include "model/base/fixed_math.h"
+#include "model/contract/law.h"
 #include "tests/rtl/block_lanes.h"
 #include "tests/rtl/block_stimuli.h"
 #include "tests/support/block.h"
@@ -43,6 +44,8 @@ Plan plain() {
 
 Scene rich_scene() {
   Scene scene = block_scene({.damping = 40, .two_materials = true, .force_held = true, .gravity = true});
+  scene.rule.contact = {{0, 1}, {1, 0}};
+  scene.rule.contact_distance = push_end(*scene.rule.law);
   auto& types = scene.rule.types;
   types[0].imposed = {true, false, true};
   types[0].velocity = Vec3(0.02, 0, -0.01);
@@ -509,8 +512,16 @@ std::vector<Mutation> mutations() {
        "pipe: stage 2, d."},
       {"cutoff_included",
        "plain",
-       {{"cuboct_pipe.sv", "(r2_q < Cutoff2", "(r2_q <= Cutoff2"}},
+       {{"cuboct_pipe.sv", "(r2_q < reach2", "(r2_q <= reach2"}},
        "pipe: valid is 1"},
+      {"contact_as_cutoff",
+       "rich",
+       {{"cuboct_pipe.sv", "touch ? Contact2", "touch ? Cutoff2"}},
+       "pipe: valid is 1"},
+      {"all_only_touch",
+       "rich",
+       {{"cuboct_pipe.sv", "touch ? Contact2", "1'b1 ? Contact2"}},
+       "pipe: stage 13, s after damping"},
   };
 }
 

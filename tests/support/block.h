@@ -7,6 +7,7 @@
 #include <random>
 
 #include "hw/setup.h"
+#include "model/contract/law.h"
 
 namespace cuboct::test {
 
@@ -46,6 +47,7 @@ struct Features {
   double speed = 0.02;   // pitch per unit time, uniform per axis
   double damping = 0;
   bool two_materials = false;  // weaker in the upper half of x
+  bool contact = false;        // the two only touch
   bool held = false;           // lowest plane of x held; the highest moved
   bool force_held = false;     // the same by PD
   bool gravity = false;
@@ -80,6 +82,10 @@ inline Scene block_scene(const Features& f) {
   rule.dt = f.dt;
   rule.strength = {{1.0}};
   if (f.two_materials) rule.strength = {{1.0, 0.625}, {0.625, 0.3}};
+  if (f.two_materials && f.contact) {
+    rule.contact = {{0, 1}, {1, 0}};
+    rule.contact_distance = push_end(*rule.law);
+  }
 
   std::mt19937_64 random(f.seed);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1.0; };

@@ -48,6 +48,12 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
        }},
       {"damped", [](R r) { r.features.damping = 0.2; }},
       {"two_materials", [](R r) { r.features.two_materials = true; }},
+      {"contact",
+       [](R r) {
+         r.features.two_materials = r.features.contact = true;
+         r.features.damping = 0.2;
+         r.features.speed = 0.3;
+       }},
       {"held_and_moved", [](R r) { r.features.held = true; }},
       {"force_held", [](R r) { r.features.force_held = r.features.gravity = true; }},
       {"octaves", [](R r) { r.arch.table.shape = TableChoice::Shape::octaves; }},
@@ -110,7 +116,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.features.size = {4, 3, 1};
          r.features.damping = 0.2;
          r.features.speed = 0.5;
-         r.features.two_materials = r.features.held = true;
+         r.features.two_materials = r.features.contact = r.features.held = true;
          r.arch.force_pipes = 2;
          r.arch.filter_lanes = 3;
          r.arch.capacity = 13;
@@ -182,7 +188,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
        [](R r) {
          r.features.damping = 0.2;
          r.features.speed = 0.3;
-         r.features.two_materials = r.features.held = true;
+         r.features.two_materials = r.features.contact = r.features.held = true;
          r.arch.multipliers = Multipliers::shared;
          r.arch.widths.filter_frac = 5;
          r.arch.filter_lanes = 3;
@@ -193,7 +199,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
        [](R r) {
          r.features.damping = 0.2;
          r.features.speed = 0.5;
-         r.features.two_materials = r.features.held = true;
+         r.features.two_materials = r.features.contact = r.features.held = true;
          r.arch.force_pipes = 2;
          r.arch.filter_lanes = 4;
          r.arch.capacity = 13;
@@ -285,6 +291,8 @@ Case random_recipe(uint64_t seed, bool flat) {
   r.features.speed = 0.01 * dice.draw(0, 60);
   r.features.damping = dice.chance(40) ? 0.05 * dice.draw(1, 4) : 0;
   r.features.two_materials = dice.chance(40);
+  // Drawn apart, so that the other scenes stay what they were.
+  r.features.contact = Dice(seed * 0x9e3779b97f4a7c15u + 5).chance(40);
   r.features.held = dice.chance(25);
   r.features.force_held = !r.features.held && dice.chance(30);
   r.features.gravity = dice.chance(30);

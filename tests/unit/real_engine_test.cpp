@@ -27,7 +27,7 @@ std::vector<Vec3> plain_forces(const Rule& rule, const Body& body, const Periodi
       for (int axis = 0; axis < 3; ++axis)
         if (box.extent[axis] > 0) d[axis] -= box.extent[axis] * std::round(d[axis] / box.extent[axis]);
       const double r = d.norm();
-      if (r == 0 || r >= rule.law->cutoff()) continue;
+      if (r == 0 || r >= rule.reach(body.type[i], body.type[j])) continue;
       double k = rule.law->force(r) / r;
       if (rule.damping.coefficient > 0) k -= rule.damping_over_r2(r) * (body.v[j] - body.v[i]).dot(d);
       f[i] -= k * rule.strength_of(body.type[i], body.type[j]) * d;
@@ -50,6 +50,7 @@ struct Case {
   const char* name;
   std::shared_ptr<const PairLaw> law;
   bool damped, two_materials, ring;
+  bool contact = false;
 };
 // Every form of a law; pieces within a vector's lanes and beyond; every branch of the kernel.
 std::vector<Case> cases() {
@@ -64,6 +65,7 @@ std::vector<Case> cases() {
           {"many_pieces", spline_law(r, f, Interpolation::monotone_cubic, 0.6), false, true, true},
           {"arcs", spline_law({0.5, 0.8, 1.0, 1.3, 1.6}, {9, 4, 0, -2, 0}, Interpolation::b_spline, 0.6),
            true, true, true},
+          {"contact", preset_law("brittle", 1, 20), true, true, true, true},
           {"many_arcs", spline_law(r, f, Interpolation::b_spline, 0.6), false, false, false},
           {"asked", std::make_shared<test::BondLaw>(20, 1.6), true, false, true}};
 }
@@ -81,6 +83,7 @@ Made made(const Case& c, double speed) {
   if (c.two_materials) {
     m.rule.types.push_back({.name = "other", .material = 1});
     m.rule.strength = {{1, 0.5}, {0.5, 1.5}};
+    if (c.contact) m.rule.contact = {{0, 1}, {1, 0}}, m.rule.contact_distance = push_end(*c.law);
     for (size_t i = 0; i < m.body.size(); i += 3) m.body.type[i] = 1;
   }
   return m;

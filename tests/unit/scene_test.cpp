@@ -284,11 +284,33 @@ uniform = "[1, 0, 0] m/s"
   EXPECT_EQ(f[1][0], f[0][1]);
   EXPECT_EQ(f[1][2], 0.125);
   EXPECT_EQ(f[2][1], 0.125);
+  EXPECT_TRUE(s.rule.contact.empty());
   for (size_t i = 0; i < s.body.size(); ++i) {
     const bool pulled = s.rule.types[s.body.type[i]].name == "soft/pull";
     EXPECT_EQ(s.body.v[i], pulled ? Vec3(1, 0, 2) : Vec3(1, 0, 0));
   }
   EXPECT_EQ(s.body.u.size(), s.body.size());
+}
+
+TEST_F(SceneTest, MaterialsMayOnlyTouch) {
+  const std::string materials = kBase + R"(
+[[material]]
+name = "ball"
+[[material]]
+name = "plate"
+strength = 0.25
+region = { shape = "half_space", point = "[0, 0, 1.5] mm", normal = "z" }
+[[bond]]
+between = ["ball", "plate"]
+)";
+  const Scene s = read(materials + "contact = true\n");
+  EXPECT_DOUBLE_EQ(s.rule.contact_distance, s.pitch);
+  EXPECT_TRUE(s.rule.only_touch(0, 1) && s.rule.only_touch(1, 0));
+  EXPECT_FALSE(s.rule.only_touch(0, 0) || s.rule.only_touch(1, 1));
+  EXPECT_DOUBLE_EQ(s.rule.strength[0][1], 0.5);
+  EXPECT_DOUBLE_EQ(read(materials + "contact = true\nstrength = 0.7\n").rule.strength[1][0], 0.7);
+  EXPECT_TRUE(read(materials + "contact = false\nstrength = 0.7\n").rule.contact.empty());
+  EXPECT_NE(error(materials).find("a.toml:21:1: missing key 'strength' in 'bond'"), std::string::npos);
 }
 
 TEST_F(SceneTest, ProbesTakeAnyAxis) {
