@@ -61,6 +61,7 @@ module cuboct_node (
     .DampShift(cuboct_pkg::DampShift),
     .KickShift(cuboct_pkg::KickShift),
     .Cutoff2(cuboct_pkg::Cutoff2),
+    .Contact2(cuboct_pkg::Contact2),
     .PlanarOne(cuboct_pkg::PlanarOne),
     .PlanarTwo(cuboct_pkg::PlanarTwo),
     .PlanarThree(cuboct_pkg::PlanarThree),

@@ -34,6 +34,7 @@ package cuboct_pkg;
   localparam int          DampShift            = 0;
   localparam int          KickShift            = 11;
   localparam logic [63:0] Cutoff2              = 64'h100000000;  // in units of r2
+  localparam logic [63:0] Contact2             = 64'h0;         // as Cutoff2, of types that only touch; 0: no two do
   localparam logic [63:0] PlanarOne            = 64'h400;       // FilterFrac fractional bits
   localparam logic [63:0] PlanarTwo            = 64'h5aa;
   localparam logic [63:0] PlanarThree          = 64'h6f0;
@@ -45,7 +46,7 @@ package cuboct_pkg;
   localparam int          FractionBits         = 17;
   localparam int          ForceBits            = 21;            // that hold every value of the force table
   localparam int          Damped               = 0;
-  localparam int          Scaled               = 0;             // pair scales differ
+  localparam int          Scaled               = 0;             // pairs of types differ
   localparam int          Pd                   = 0;             // some type is held by force
   localparam int          ParticleBits         = 178;           // of the words to load and observe
 endpackage
