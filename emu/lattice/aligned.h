@@ -34,8 +34,8 @@ class PaddedArray {
     void* raw = std::calloc((size + 2 * lead) * sizeof(T) + kLine, 1);
     if (raw == nullptr) throw std::bad_alloc();
     memory_.reset(raw);
-    const auto address = reinterpret_cast<uintptr_t>(raw);
-    data_ = reinterpret_cast<T*>((address + kLine - 1) / kLine * kLine) + lead;
+    size_t space = (size + 2 * lead) * sizeof(T) + kLine;
+    data_ = static_cast<T*>(std::align(kLine, sizeof(T), raw, space)) + lead;
   }
   PaddedArray(size_t size, T fill) : PaddedArray(size) {
     std::fill(data_ - kGroup, data_ + size + kGroup, fill);

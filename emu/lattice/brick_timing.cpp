@@ -29,7 +29,7 @@ BrickMigration::BrickMigration(const Plan& plan)
     for (auto& of_axis : *cycles) of_axis.resize(plan.nodes());
 }
 
-// Whether the way over this face of a cell leaves its brick.
+// Whether the step over this face of a cell leaves its brick.
 bool BrickMigration::crosses(uint32_t cell, int face) const {
   const uint32_t node = plan_.node_of(cell);
   const int axis = face / 2;
@@ -67,9 +67,9 @@ void BrickMigration::move(int axis, std::vector<uint32_t>& count, const BrickMap
   }
   std::fill(arrived_.begin(), arrived_.end(), 0);
   for (Mover& m : movers_) {
-    const int way = m.away[at(axis)];
-    if (way == 0) continue;
-    const int face = 2 * axis + (way > 0);
+    const auto direction = static_cast<int>(m.away[at(axis)]);
+    if (direction == 0) continue;
+    const int face = 2 * axis + (direction > 0);
     const uint32_t to = plan_.lattice.neighbour(m.cell, face);
     if (to == kNoCell) throw std::invalid_argument("a particle leaves the lattice");
     if (crosses(m.cell, face)) scan[plan_.node_of(m.cell)] += plan_.words.migrate_beats - 1;

@@ -65,10 +65,10 @@ std::vector<Refused> Members::migrate(std::span<const Crossing> crossings, std::
     };
     moves.clear();
     for (const Crossing& c : crossings) {
-      const int way = c.away[axis];
-      if (way == 0) continue;
-      const uint32_t from = cell_[c.particle], to = lattice_->neighbour(from, 2 * axis + (way > 0));
-      moves.push_back({to, way < 0, slot_of(from, c.particle), c.particle});
+      const auto direction = static_cast<int>(c.away[axis]);
+      if (direction == 0) continue;
+      const uint32_t from = cell_[c.particle], to = lattice_->neighbour(from, 2 * axis + (direction > 0));
+      moves.push_back({to, direction < 0, slot_of(from, c.particle), c.particle});
     }
     for (const Move& m : moves) remove(cell_[m.particle], m.particle);
     std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {

@@ -81,19 +81,19 @@ void Migration::depart(int axis, std::span<uint32_t> count) {
   uint32_t node = kNoNode, gone = 0;
   for (Mover m : movers_) {
     if (m.node != node) node = m.node, gone = 0;
-    const int way = m.away[at(axis)];
-    if (way == 0) {
+    const auto direction = static_cast<int>(m.away[at(axis)]);
+    if (direction == 0) {
       m.slot -= gone;
       movers_[kept++] = m;
       continue;
     }
-    const uint32_t to = lattice_.neighbour(node, 2 * axis + (way > 0));
+    const uint32_t to = lattice_.neighbour(node, 2 * axis + (direction > 0));
     if (to == kNoCell) throw std::invalid_argument("a particle leaves the lattice");
     m.away[at(axis)] = 0;
     ++gone;
     const auto last_beat = static_cast<int32_t>(m.slot + gone * static_cast<uint32_t>(beats_ - 1));
     landings_.push_back({to,
-                         way > 0 ? 0u : 1u,
+                         direction > 0 ? 0u : 1u,
                          static_cast<uint32_t>(landings_.size()),
                          m.away,
                          {node, last_beat + on_the_way_}});

@@ -22,7 +22,7 @@ class Rows {
   uint32_t row_of(uint32_t cell) const { return row_of_[cell]; }
   // kNoCell where there is none.
   uint32_t near(uint32_t row, int dy, int dz) const {
-    return near_[row][static_cast<size_t>((dz + kReach) * (2 * kReach + 1) + dy + kReach)];
+    return near_[row][static_cast<size_t>(dz + kReach) * (2 * kReach + 1) + static_cast<size_t>(dy + kReach)];
   }
   struct Range {
     uint32_t begin, end;
