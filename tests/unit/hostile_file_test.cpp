@@ -213,7 +213,7 @@ TEST(StateCheck, NumbersAreWithinTheScene) {
   EXPECT_EQ(error([](Trace& t) { t.frames[0].particles.pop_back(); }),
             "t.h5 is no trace of this scene: the frame of step 0 has 2 particles, the scene 3");
   EXPECT_EQ(error([](Trace& t) {
-              t.bodies.push_back({7, {{0, 0, 0}}, {{0, 0, 0}}, {}});
+              t.bodies.push_back({7, {{0, 0, 0}}, {{0, 0, 0}}, {}, {}});
             }),
             "t.h5 is no trace of this scene: the frame of step 7 has 1 particles, the scene 3");
 }
