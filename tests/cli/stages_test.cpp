@@ -157,6 +157,47 @@ TEST(Stages, ResumeInTheStageThatWasCut) {
   EXPECT_EQ(hashes(bench, "a"), hashes(bench, "b"));
 }
 
+// By Ctrl-C, a second in: the second stage is cut, leaves a checkpoint, and goes on from it. Where the
+// machine is so slow or so quick that it is not cut, the length of the stage is tried anew.
+TEST(Stages, GoOnFromTheCheckpointOfTheStageThatWasCut) {
+  const Bench bench(false);
+  const std::string scene = bench.path("long.toml");
+  for (uint64_t steps = 100'000; steps < 20'000'000; steps *= 4) {
+    write_text(scene, read_config_text(CUBOCT_SOURCE_DIR "/scenes/lj_block.toml") +
+                          "\n[[stage]]\nname = \"pull\"\nsteps = 12\n[[stage]]\nname = \"hold\"\nsteps = " +
+                          std::to_string(steps) + "\nprobe_every = 1000\n");
+    const std::vector<std::string> run{"run",
+                                       scene,
+                                       "--hash-every",
+                                       "100000",
+                                       "--force",
+                                       "--no-watch",
+                                       "--out",
+                                       bench.path("cut"),
+                                       "--checkpoint-every",
+                                       "1 h"};
+    const Answer cut = bench.cuboct(run, 1);
+    const std::string checkpoint = bench.path("cut/2-hold/checkpoint");
+    if (cut.code == 0 || !fs::exists(checkpoint)) continue;
+    EXPECT_EQ(cut.code, 1);
+    EXPECT_NE(cut.out.find("stage 2-hold  interrupted"), std::string::npos) << cut.out;
+    std::vector<std::string> again = run;
+    again[4] = "--resume";
+    const Answer resumed = bench.cuboct(again);
+    EXPECT_EQ(resumed.code, 0) << resumed.out << resumed.err;
+    EXPECT_EQ(resumed.out.find("stage 1-pull\n"), std::string::npos) << resumed.out;  // not run again
+    again[4] = "--force";
+    again[7] = bench.path("whole");
+    ASSERT_EQ(bench.cuboct(again).code, 0);
+    const Trace a = read_trace(bench.path("cut/2-hold/trace.h5")),
+                b = read_trace(bench.path("whole/2-hold/trace.h5"));
+    EXPECT_EQ(a.state_hash, b.state_hash);
+    EXPECT_EQ(a.steps(), steps);
+    return;
+  }
+  FAIL() << "no run was cut";
+}
+
 TEST(Stages, ARunBeginsWhereAnotherEnded) {
   const Bench bench(false);
   const auto hash = [&](const std::string& out) {
