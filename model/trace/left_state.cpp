@@ -63,7 +63,8 @@ void read_fixed(const Reader& in, LeftState& left) {
   exact->cell_edge = in.number<double>(in.root(), "cell_edge");
   exact->dt = in.number<double>(in.root(), "dt");
   exact->origin = vector_in(in, "origin");
-  if (!(exact->cell_edge > 0) || !(exact->dt > 0))
+  if (!(exact->cell_edge > 0) || !(exact->dt > 0) || !std::isfinite(exact->cell_edge) ||
+      !exact->origin.allFinite())
     throw InputError(in.missing("number above 0", "cell_edge"));
   const Handle lattice = in.group(in.root(), "lattice");
   const auto cells = in.array<int32_t>(lattice, "cell", {3});
