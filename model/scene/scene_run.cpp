@@ -80,7 +80,7 @@ void read_start(const ConfigTable& root, const SceneChoice& choice, Scene& scene
   const auto table = root.table_at("start");
   if (!table) return;
   if (!choice.begins)
-    table->fail("[start] is for 'cuboct run', 'crosscheck' and 'check'",
+    table->fail("[start] is for 'cuboct run', 'crosscheck', 'check' and 'emit'",
                 "this command begins with the packing");
   scene.start = table->at("from").string();
   if (scene.start.empty()) table->at("from").fail("'from' names no directory");
@@ -97,7 +97,7 @@ std::optional<ConfigTable> read_stage(const ConfigTable& root, const SceneChoice
   const std::vector<std::string> names = stage_names(root);
   if (choice.stage.empty())
     tables[0].fail(choice.begins ? fmt::format("the scene has {} stages: --stage takes one", names.size())
-                                 : "a scene of stages is for 'cuboct run', 'crosscheck' and 'check'",
+                                 : "a scene of stages is for 'cuboct run', 'crosscheck', 'check' and 'emit'",
                    fmt::format("its stages: {}", fmt::join(names, ", ")));
   std::optional<ConfigTable> chosen;
   for (size_t k = 0; k < tables.size(); ++k) {

@@ -101,6 +101,13 @@ TEST(Stages, RunAloneAndOnOtherEngines) {
                                        bench.path("a/1-pull"), "--engines", "golden,lattice"});
   EXPECT_EQ(crossed.code, 0) << crossed.out << crossed.err;
   EXPECT_EQ(crossed.out.substr(0, 8), "matched ");
+  EXPECT_EQ(bench
+                .cuboct({"emit", scene, "--stage", "hold", "--from", bench.path("a/1-pull"), "--out",
+                         bench.path("rtl")})
+                .code,
+            0);
+  EXPECT_NE(bench.cuboct({"emit", scene, "--out", bench.path("rtl2")}).err.find("--stage takes one"),
+            std::string::npos);
   EXPECT_NE(bench.cuboct({"crosscheck", scene, "--engines", "golden,lattice"}).err.find("--stage takes one"),
             std::string::npos);
   const Answer checked = bench.cuboct({"check", scene});

@@ -110,9 +110,10 @@ TEST(Stage, IsForThoseWhoBeginElsewhere) {
     return std::string();
   };
   EXPECT_EQ(plain(""), "");
-  EXPECT_EQ(plain(kStages), "s.toml:49:1: a scene of stages is for 'cuboct run', 'crosscheck' and 'check'");
+  EXPECT_EQ(plain(kStages),
+            "s.toml:49:1: a scene of stages is for 'cuboct run', 'crosscheck', 'check' and 'emit'");
   EXPECT_EQ(plain("[start]\nfrom = \"out\"\n"),
-            "s.toml:48:1: [start] is for 'cuboct run', 'crosscheck' and 'check'");
+            "s.toml:48:1: [start] is for 'cuboct run', 'crosscheck', 'check' and 'emit'");
 }
 
 }  // namespace
