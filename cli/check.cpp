@@ -16,6 +16,7 @@
 #include "model/analysis/motion.h"
 #include "model/base/resources.h"
 #include "model/contract/quantise.h"
+#include "model/run/start.h"
 
 namespace cuboct {
 namespace {
@@ -261,6 +262,12 @@ Items physics(const Loaded& loaded) {
                         : "by the scene; no largest stable one is known");
   if (motion.strain > 0)
     items.add("strain", fmt::format("about {:.2g} %, by {}", 100 * motion.strain, motion.strain_of));
+  if (scene.until)
+    items.add(
+        "until",
+        fmt::format("{} is {} {:.6g}", scene.until->curve, scene.until->side_name(), scene.until->limit),
+        "or the last step");
+  if (scene.began) items.add("begins at", start_text(scene, &plan.rule, plan.origin));
   const Estimate cost = estimate(scene, plan, run_size(scene));
   std::string time;
   if (cost.seconds > 0)
@@ -276,6 +283,29 @@ Items physics(const Loaded& loaded) {
   return items;
 }
 
+std::string stage_text(const Scene& scene) {
+  const Shown shown(scene);
+  const double dt = scene.rule.dt;
+  std::string text = fmt::format("{} step{} of {} = {}", scene.steps, scene.steps == 1 ? "" : "s",
+                                 shown(dt, "s"), shown(static_cast<double>(scene.steps) * dt, "s"));
+  if (scene.until)
+    text += fmt::format(", until {} is {} {:.6g}", scene.until->curve, scene.until->side_name(),
+                        scene.until->limit);
+  return text + (scene.rule.damping.coefficient > 0 ? ", damped" : "");
+}
+
+// Of a scene with stages all are told, and the first looked at unless another is chosen.
+Items stages_in(Input& input) {
+  Items items;
+  const std::vector<std::string> names = stages_of(input.scene);
+  for (size_t k = 0; k < names.size(); ++k)
+    items.add(fmt::format("stage {}-{}", k + 1, names[k]),
+              stage_text(load_scene(input.scene, {names[k], {}, true})));
+  if (!names.empty() && input.stage.empty()) input.stage = names.front();
+  input.looks_only = true;
+  return items;
+}
+
 }  // namespace
 
 void add_check(CLI::App& app, int&) {
@@ -286,14 +316,15 @@ void add_check(CLI::App& app, int&) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("check", "read a scene and print what a run of it does and takes");
   options->input.add_to(*command);
+  options->input.add_start_to(*command);
   command->add_flag("--machine", options->machine, "print what would be built: formats, records, cycles");
   command->add_flag("--json", options->json, "print all as JSON");
   command->callback([options] {
+    const Items stages = stages_in(options->input);
     const Loaded loaded = load(options->input);
-    if (options->json)
-      fmt::print("{}", resolve(loaded).json());
-    else
-      fmt::print("{}", (options->machine ? resolve(loaded) : physics(loaded)).text());
+    Items items = options->json || options->machine ? resolve(loaded) : physics(loaded);
+    for (const Items::Item& stage : stages.all()) items.add(stage.name, stage.text);
+    fmt::print("{}", options->json ? items.json() : items.text());
   });
 }
 

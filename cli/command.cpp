@@ -6,11 +6,19 @@
 
 #include <charconv>
 
+#include "model/run/start.h"
+
 namespace cuboct {
 
 void Input::add_to(CLI::App& command) {
   command.add_option("scene", scene, "scene file (TOML)")->required()->type_name("SCENE");
   command.add_option("--arch", arch, "machine description (TOML)")->type_name("FILE");
+}
+
+void Input::add_start_to(CLI::App& command) {
+  command.add_option("--stage", stage, "of a scene with [[stage]]: the one to take")->type_name("NAME");
+  command.add_option("--from", from, "directory of a run: begin with the last state that it left")
+      ->type_name("DIR");
 }
 
 void Input::add_stalls_to(CLI::App& command) {
@@ -41,13 +49,13 @@ CLI::Validator whole_number() {
 }
 
 Loaded load(const Input& input) {
-  Loaded loaded{read_scene(input.scene), {}};
+  Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
   loaded.setup = make_setup(loaded.scene, read_arch(input.arch));
   return loaded;
 }
 
 Loaded load_plan(const Input& input) {
-  Loaded loaded{read_scene(input.scene), {}};
+  Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
   loaded.setup.plan = plan_of(loaded.scene, read_arch(input.arch));
   return loaded;
 }

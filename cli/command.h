@@ -36,10 +36,13 @@ struct Input {
   std::string arch;       // empty: the defaults
   double stall_rate = 0;  // share of cycles in which a link of a cycle-accurate engine passes nothing
   uint64_t stall_seed = 1;
+  std::string stage{}, from{};  // model/run/start.h
+  bool looks_only = false;      // the same
   std::string faults{};  // on the links of such an engine: hw/link_code.h, read_fault_share; empty: none
   uint64_t fault_seed = 1;
 
   void add_to(CLI::App& command);
+  void add_start_to(CLI::App& command);   // --stage, --from
   void add_stalls_to(CLI::App& command);  // for commands that run such engines
 };
 

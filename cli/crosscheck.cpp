@@ -10,7 +10,9 @@
 #include "cli/command.h"
 #include "cli/crosscheck_real.h"
 #include "cli/engine_run.h"
+#include "cli/summary.h"
 #include "hw/engines.h"
+#include "model/analysis/meter.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
@@ -147,6 +149,7 @@ int crosscheck(Options options) {
   const uint64_t steps = options.steps_given ? options.steps : loaded.scene.steps;
   RunRequest request;
   request.steps = steps;
+  if (loaded.scene.until) request.until = true, request.probes = probe_steps_of(loaded.scene, steps);
   const std::vector<Trace> traces = run_all(options.engines, options, loaded, request, directory);
   for (size_t i = 0; i < traces.size(); ++i)
     if (!options.out.empty() && runs_here(options.engines[i]))
@@ -201,6 +204,7 @@ int crosscheck(Options options) {
   }
   fmt::print("matched {} updates over {} steps in {} engines\n", updates_compared(traces[0], plan.particles),
              traces[0].steps(), traces.size());
+  if (traces[0].reached) fmt::print("all ended {}\n", reached_text(traces[0]));
   if (phase_times > 0) fmt::print("matched {} phase times\n", phase_times);
   for (size_t i = 0; i < traces.size(); ++i) tell_faults(options.engines[i], traces[i]);
   if (traces[0].stop) {
@@ -217,6 +221,7 @@ void add_crosscheck(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("crosscheck", "run a scene in several engines and compare every bit");
   options->input.add_to(*command);
+  options->input.add_start_to(*command);
   options->input.add_stalls_to(*command);
   options->choice.add_machines(*command);
   command->add_option("--engines", options->engines, "which ones; default: golden,lattice,systemc,rtl")

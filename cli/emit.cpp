@@ -40,6 +40,7 @@ void add_emit(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("emit", "write the scene's machine as a self-contained RTL project");
   options->input.add_to(*command);
+  options->input.add_start_to(*command);
   command->add_option("--out", options->out, "directory, new or of an earlier emission")
       ->required()
       ->type_name("DIR");
@@ -70,6 +71,9 @@ void add_emit(CLI::App& app, int& exit_code) {
     options->board.velocities = !options->fixed_velocities;
     if (!options->board.name.empty()) bit_clocks16(board_of(options->board.name), options->board.baud);
     if (!options->fit.empty()) {
+      if (!options->input.stage.empty() || !options->input.from.empty())
+        throw InputError("--fit chooses a machine for a scene that begins with its packing",
+                         "emit without --fit takes --stage and --from");
       exit_code =
           emit_fitted(options->input, options->fit, options->out, options->vector_steps, options->board);
       return;

@@ -78,9 +78,10 @@ void EngineOptions::add_run(CLI::App& command) {
       ->type_name("K");
   command.add_flag("--cycles", cycles, "count the machine's cycles in lattice");
   command
-      .add_option(
-          "--checkpoint-every", checkpoint_every,
-          "'1000 steps', '30 s', '5 min' or '2 h': how often lattice or golden leaves a checkpoint in DIR")
+      .add_option("--checkpoint-every", checkpoint_every,
+                  "'1000 steps', '30 s', '5 min' or '2 h': how often lattice, golden or reference leaves a "
+                  "checkpoint "
+                  "in DIR")
       ->type_name("T");
   command.add_flag("--resume", resume, "go on from the checkpoint in DIR");
 }

@@ -25,8 +25,9 @@ struct Template {
 
 const std::vector<Template>& templates() {
   static const std::vector<Template> all{
-      {"tension", kTensionScene}, {"impact", kImpactScene}, {"drop", kDropScene},   {"beam", kBeamScene},
-      {"gas", kGasScene},         {"metal", kMetalScene},   {"crack", kCrackScene}, {"sheet", kSheetScene}};
+      {"tension", kTensionScene}, {"impact", kImpactScene}, {"drop", kDropScene},
+      {"beam", kBeamScene},       {"gas", kGasScene},       {"metal", kMetalScene},
+      {"crack", kCrackScene},     {"sheet", kSheetScene},   {"release", kReleaseScene}};
   return all;
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "hw/engine_kind.h"
 #include "model/analysis/measure.h"
 #include "model/base/error.h"
 #include "model/base/excerpt.h"
@@ -28,9 +29,10 @@ int strain_axis(const Scene& scene) {
   int axis = 0;
   for (const Probe& probe : scene.probes)
     if (probe.kind == Probe::Kind::stress_strain) return probe.axis.cwiseAbs().maxCoeff(&axis), axis;
-  if (scene.body.size() == 0) return 0;
-  Vec3 lower = scene.body.x[0], upper = lower;
-  for (const Vec3& x : scene.body.x) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
+  const std::vector<Vec3>& places = scene.packing().x;
+  if (places.empty()) return 0;
+  Vec3 lower = places[0], upper = lower;
+  for (const Vec3& x : places) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
   (upper - lower).maxCoeff(&axis);
   return axis;
 }
@@ -47,12 +49,10 @@ const StrainMeter& FrameMaker::meter(bool fixed) const {
   if (meter) return *meter;
   const Scene& scene = loaded_.scene;
   const Plan& plan = loaded_.setup.plan;
-  if (!fixed) return meter.emplace(strain_meter(scene, scene.body.x));
+  if (!fixed) return meter.emplace(strain_meter(scene, scene.packing().x));
   std::vector<Vec3> initial;  // without a State: see load_plan
   initial.reserve(scene.body.size());
-  for (uint32_t id = 0; id < scene.body.size(); ++id)
-    initial.push_back(position_of(plan.rule, plan.lattice, plan.origin,
-                                  fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin)));
+  for (uint32_t id = 0; id < scene.body.size(); ++id) initial.push_back(packed_place(scene, plan, id));
   return meter.emplace(strain_meter(scene, initial));
 }
 
@@ -96,6 +96,8 @@ void write_record(const std::string& directory, const RunRecord& record) {
                     {"arch", relative_to(directory, record.arch)},
                     {"engine", record.engine},
                     {"state", record.state}};
+  if (!record.stage.empty()) table.insert("stage", record.stage);
+  if (!record.from.empty()) table.insert("from", relative_to(directory, record.from));
   std::ostringstream text;
   text << table << '\n';
   write_text(directory + "/run.toml", text.str());
@@ -113,8 +115,12 @@ RunRecord read_record(const std::string& directory) {
       return value.empty() ? value : (fs::path(directory) / value).lexically_normal().string();
     };
     // A directory of before there were states holds a run that came to its end.
-    const RunRecord record{from("scene"), from("arch"), table["engine"].value_or(std::string()),
-                           table["state"].value_or(std::string("finished"))};
+    const RunRecord record{from("scene"),
+                           from("arch"),
+                           table["engine"].value_or(std::string()),
+                           table["state"].value_or(std::string("finished")),
+                           table["stage"].value_or(std::string()),
+                           from("from")};
     // A stranger's record may name what never ends, as a device.
     for (const auto& [key, file] : {std::pair{"scene", record.scene}, {"arch", record.arch}})
       if ((key[0] == 's' || !file.empty()) && !fs::is_regular_file(file))

@@ -48,7 +48,8 @@ class FrameMaker {
 struct RunRecord {
   std::string scene, arch, engine;
   std::string state =
-      "finished";  // or "running" (or killed), "interrupted", "stopped" (a fault), "incomplete"
+      "finished";               // or "running" (or killed), "interrupted", "stopped" (a fault), "incomplete"
+  std::string stage{}, from{};  // model/run/start.h
 };
 void write_record(const std::string& directory, const RunRecord& record);
 // Paths as they are to be opened now. InputError where the directory holds no run.

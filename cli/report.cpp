@@ -371,7 +371,10 @@ void report(const std::string& directory, std::string out) {
     out = directory + "/report.html";
   }
   check_writable(out);
-  const Loaded loaded = load({record.scene, record.arch});
+  Input input{record.scene, record.arch};
+  input.stage = record.stage;
+  input.from = record.from;
+  const Loaded loaded = load(input);
   const Trace trace = read_trace(directory + "/trace.h5");
   const Plan& plan = loaded.setup.plan;
   if (trace.plan_hash != plan.hash)
@@ -389,7 +392,7 @@ void report(const std::string& directory, std::string out) {
       "<p class=\"lead\">{2} particles on {3} nodes, {4} steps of {5:.4g} s in the {6} engine{7}.</p>\n",
       html_text(loaded.scene.title.empty() ? record.scene : loaded.scene.title), kStyle, plan.particles,
       plan.nodes(), trace.steps(), plan.rule.dt, html_text(trace.engine),
-      trace.asked && trace.steps() != trace.asked
+      trace.asked && trace.steps() != trace.asked && !trace.reached
           ? fmt::format(", <b class=\"bad\">{} after {} of {} steps</b>", trace.ended(), trace.steps(),
                         *trace.asked)
           : "");

@@ -14,12 +14,14 @@
 #include "cli/engine_run.h"
 #include "cli/estimate.h"
 #include "cli/recorder.h"
+#include "cli/stages.h"
 #include "cli/summary.h"
 #include "hw/engines.h"
 #include "model/base/interrupt.h"
 #include "model/base/process.h"
 #include "model/base/progress.h"
 #include "model/base/steps.h"
+#include "model/run/start.h"
 
 namespace cuboct {
 namespace {
@@ -32,6 +34,7 @@ struct Options {
   uint64_t steps = 0;
   uint64_t frames_every = 0;
   uint32_t raster = 800;
+  bool in_stages = false;  // one run of several, which are summed up together
   bool steps_given = false, frames_given = false, json = false, no_watch = false, no_states = false,
        si = false, raster_given = false, force = false, anyway = false;
 
@@ -94,10 +97,13 @@ std::string print(const Items& summary, bool json) {
   return {};
 }
 
-int run(Options options) {
-  engine_row(options.engine);
-  options.engines.check({options.engine}, options.input);
-  options.check_kept();
+// How a run ended.
+struct Ended {
+  int code = 0;
+  bool whole = false;  // it has a last state that the next stage can begin with
+};
+
+Ended run_once(const Options& options) {
   const Loaded loaded = load_plan(options.input);
   catch_interrupts();
   const Scene& scene = loaded.scene;
@@ -109,6 +115,7 @@ int run(Options options) {
   request.probes = every_so_often(scene.probe_every, request.steps);
   request.energies = request.totals = true;
   request.watch = !options.no_watch;
+  request.until = true;
   request.cycles = options.engines.cycles;
   request.hash_every = hashes_every(options.engine, options.engines);
   request.progress = stderr_is_terminal();
@@ -118,7 +125,8 @@ int run(Options options) {
   if (!options.out.empty()) {
     request.frames = every_so_often(every, request.steps);
     recorder.emplace(RecorderOptions{options.out,
-                                     {options.input.scene, options.input.arch, options.engine},
+                                     {options.input.scene, options.input.arch, options.engine, "running",
+                                      options.input.stage, options.input.from},
                                      options.engines.resume,
                                      options.force,
                                      options.no_states,
@@ -140,6 +148,10 @@ int run(Options options) {
                      .finish();
   Trace& trace = run.trace;
   trace.asked = steps;
+  if (scene.began)
+    trace.notes.emplace(
+        trace.notes.begin(), "begins at",
+        start_text(scene, real ? nullptr : &loaded.setup.plan.rule, loaded.setup.plan.origin));
   Items summary = summarise(loaded, run, real);
   add_end(summary, trace);
   // Run to its end, or to a fault, it has nothing left to do.
@@ -151,7 +163,8 @@ int run(Options options) {
                                        : "finished";
   if (recorder)
     std::signal(SIGPIPE, SIG_IGN);  // a reader that went away costs the summary's lines, not the files
-  if (const std::string unprinted = print(summary, options.json); trouble.empty()) trouble = unprinted;
+  if (!options.in_stages || !options.json)
+    if (const std::string unprinted = print(summary, options.json); trouble.empty()) trouble = unprinted;
   if (recorder) {
     recorder->finish(trace, summary, state);
     if (!recorder->trouble().empty()) trouble = recorder->trouble();
@@ -164,7 +177,35 @@ int run(Options options) {
   else if (trouble.empty())  // else it is what writes all of it once more
     remove_checkpoint(checkpoint);
   if (!trouble.empty()) throw InputError(trouble);
-  return trace.stop || !trace.findings.empty() || unfinished ? 1 : 0;
+  return {trace.stop || !trace.findings.empty() || unfinished ? 1 : 0, !trace.stop && !unfinished};
+}
+
+int run(Options options) {
+  engine_row(options.engine);
+  options.engines.check({options.engine}, options.input);
+  options.check_kept();
+  const std::vector<std::string> names = stages_of(options.input.scene);
+  if (names.empty()) return run_once(options).code;
+  if (options.out.empty())
+    throw InputError(
+        "a scene of stages needs --out DIR, where each keeps the state that the next one begins with");
+  if (options.no_states) throw InputError("--no-states keeps no state with which the next stage could begin");
+  if (options.steps_given && options.input.stage.empty())
+    throw InputError("--steps goes with --stage NAME: each stage has its own steps");
+  StageRun request{options.input.scene, names,       options.input.stage,
+                   options.input.from,  options.out, options.engines.resume,
+                   options.force,       options.json};
+  return run_stages(request, [&](const StageDirectory& stage) {
+    Options one = options;
+    one.in_stages = true;
+    one.input.stage = stage.name;
+    one.input.from = stage.from;
+    one.out = stage.path;
+    one.engines.resume = stage.resume;
+    one.force = stage.force;
+    const Ended ended = run_once(one);
+    return std::pair{ended.code, ended.whole};
+  });
 }
 
 }  // namespace
@@ -173,6 +214,7 @@ void add_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "run a scene and end with a summary");
   options->input.add_to(*command);
+  options->input.add_start_to(*command);
   options->input.add_stalls_to(*command);
   command
       ->add_option("--engine", options->engine,

@@ -80,10 +80,22 @@ void add_curves(Items& items, const Scene& scene, const std::vector<Curve>& curv
   add_tension(items, scene, curves);
 }
 
+std::string reached_text(const Trace& trace) {
+  const Reached& reached = *trace.reached;
+  std::string unit;
+  for (const Curve& curve : trace.curves)
+    if (curve.name == reached.curve && curve.unit != "1") unit = " " + curve.unit;
+  return fmt::format("at step {}: {} is {:.6g}{}, {} {:.6g}{}", reached.step, reached.curve, reached.value,
+                     unit, reached.side, reached.limit, unit);
+}
+
 void add_end(Items& items, const Trace& trace) {
-  const bool whole = trace.steps() == trace.asked;
-  items.add("ended", trace.ended(),
-            whole ? "" : fmt::format("after {} of {} steps", trace.steps(), *trace.asked));
+  std::string where;
+  if (trace.reached)
+    where = reached_text(trace);
+  else if (trace.steps() != trace.asked)
+    where = fmt::format("after {} of {} steps", trace.steps(), *trace.asked);
+  items.add("ended", trace.ended(), where);
 }
 
 void add_warnings(Items& items, const std::vector<std::string>& of_plan,

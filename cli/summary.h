@@ -22,6 +22,9 @@ std::optional<CyclesPerStep> cycles_per_step(const Trace& trace);
 // last.
 void add_curves(Items& items, const Scene& scene, const std::vector<Curve>& curves);
 
+// The reading that ended a run, "at step 9: tip.along is 0.0031 m, above 0.003 m".
+std::string reached_text(const Trace& trace);
+
 // How the run ended, and where if that was too soon.
 void add_end(Items& items, const Trace& trace);
 

@@ -12,5 +12,6 @@ extern const char kGasScene[];
 extern const char kMetalScene[];
 extern const char kCrackScene[];
 extern const char kSheetScene[];
+extern const char kReleaseScene[];
 
 }  // namespace cuboct

@@ -88,7 +88,7 @@ RunState Runner::frame(bool forces) {
   }
   Body body = engine_->body();
   momentum_ = momentum_of(body.v);
-  RealFrame frame{step_count(), std::move(body.x), std::move(body.v), {}};
+  RealFrame frame{step_count(), std::move(body.x), std::move(body.v), {}, std::move(body.u)};
   if (forces) {
     std::vector<uint32_t> all(frame.x.size());
     std::iota(all.begin(), all.end(), 0);

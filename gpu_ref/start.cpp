@@ -18,6 +18,7 @@ void start_from(const std::string& path, Scene& scene) {
                                  frame.x.size(), scene.body.size()));
   scene.body.x = std::move(frame.x);
   scene.body.v = std::move(frame.v);
+  scene.body.exact.reset();
 }
 
 }  // namespace cuboct::gpu

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "model/analysis/motion.h"
+#include "model/contract/state.h"
 
 namespace cuboct {
 namespace {
@@ -33,6 +35,8 @@ constexpr double kWorst = 0.01;
 constexpr double kFewest = 0.1;
 constexpr int kGainBits = 18, kScale = 16, kFilter = 10, kGain = 16, kMostGain = 24;
 
+constexpr const char* kLeft = "as the run had that left the state";
+
 // The least n with 2^-n <= x.
 int bits_for(double x) { return static_cast<int>(std::ceil(-std::log2(x) - 1e-9)); }
 
@@ -44,6 +48,8 @@ class Chooser {
     kick_ = motion_.bond_stiffness * rule.dt * rule.dt / rule.mass;
     strain_ = motion_.strain * motion_.rest_distance / edge;
     for (const ParticleType& type : rule.types) gains_ = gains_ || type.pd;
+    if (const ExactBody* exact = scene.body.exact.get(); exact && exact->cell_edge == edge)
+      left_ = exact->widths;
   }
 
   AutoWidths choose() {
@@ -76,12 +82,15 @@ class Chooser {
       if (const int bits = bits_for(strain_ * scene_.accuracy); bits > wanted)
         wanted = bits, why = fmt::format("a strain of {:.2g}, by {}, has {:.3g} units", motion_.strain,
                                          motion_.strain_of, 1 / scene_.accuracy);
+    if (left_ && left_->difference_frac > wanted) wanted = left_->difference_frac, why = kLeft;
     const int most = asked_.position_frac != kAutomatic ? std::min(kMostDifference, asked_.position_frac)
                                                         : kMostDifference;
     w.difference_frac = take("difference_frac", asked_.difference_frac, wanted, most, why);
     w.position_frac = take(
         "position_frac", asked_.position_frac,
-        std::max(kLeastPosition, w.difference_frac + kPositionBeyondDifference), kMostPosition,
+        std::max({kLeastPosition, w.difference_frac + kPositionBeyondDifference,
+                  left_ ? left_->position_frac : 0}),
+        kMostPosition,
         fmt::format("{} more than differences have, {} or more", kPositionBeyondDifference, kLeastPosition));
   }
 
@@ -105,6 +114,7 @@ class Chooser {
     if (kick_ > 0)
       want(w.difference_frac + bits_for(kick_) + kKickUnits,
            fmt::format("a unit of a difference kicks by {} units of a velocity", 1 << kKickUnits));
+    if (left_) want(left_->velocity_frac(), kLeft);
     const int most = gains_ ? kMostVelocityWithGains : kMostVelocity;
     // A width that the arch file sets keeps the range that it has with the least guard.
     const int guard = asked_.velocity_bits != kAutomatic
@@ -127,6 +137,7 @@ class Chooser {
     if (const double slow = scene_.accuracy * motion_.strain * motion_.sound_speed * dt / edge_; slow > 0)
       if (const int bits = bits_for(slow); bits > wanted)
         wanted = bits, why = fmt::format("damps what strains by {:.2g}", scene_.accuracy * motion_.strain);
+    if (left_ && left_->relative_velocity_frac > wanted) wanted = left_->relative_velocity_frac, why = kLeft;
     double fastest = 4 * motion_.initial_speed;
     for (const ParticleType& type : scene_.rule.types)
       for (const ParticleType& other : scene_.rule.types)
@@ -169,6 +180,8 @@ class Chooser {
   double kick_ = 0;    // cells/step that a bond's stretch of one cell gives in a step
   double strain_ = 0;  // cells: what the expected strain stretches a bond by
   bool gains_ = false;
+  std::optional<Widths>
+      left_;  // of the run that left the state: the same cells, so that its integers carry over
   AutoWidths result_;
 };
 

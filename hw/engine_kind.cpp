@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "hw/state_bounds.h"
 #include "model/run/golden_engine.h"
 #include "model/run/reference_engine.h"
@@ -13,6 +15,11 @@ FixedSetting setting_of(const Scene& scene, const Plan& plan, int threads) {
   return {scene.rule, plan.rule, plan.lattice, plan.origin, threads};
 }
 
+Vec3 packed_place(const Scene& scene, const Plan& plan, uint32_t id) {
+  return position_of(plan.rule, plan.lattice, plan.origin,
+                     fixed_particle(scene.packing(), id, plan.rule, plan.lattice, plan.origin));
+}
+
 EngineKind fixed_kind(const std::string& name, const Scene& scene, const Plan& plan) {
   EngineKind kind;
   kind.name = name;
@@ -21,10 +28,7 @@ EngineKind fixed_kind(const std::string& name, const Scene& scene, const Plan& p
   kind.particles = plan.particles;
   kind.displaced = plan.rule.pd;
   kind.table_error = plan.rule.error.worst_force;
-  kind.initial = [&scene, &plan](uint32_t id) {
-    return position_of(plan.rule, plan.lattice, plan.origin,
-                       fixed_particle(scene.body, id, plan.rule, plan.lattice, plan.origin));
-  };
+  kind.initial = [&scene, &plan](uint32_t id) { return packed_place(scene, plan, id); };
   return kind;
 }
 
@@ -36,7 +40,7 @@ EngineKind real_kind(const std::string& name, const Scene& scene, const Plan& pl
   kind.particles = scene.body.size();
   kind.fixed = false;
   kind.floats = floats;
-  kind.initial = [&scene](uint32_t id) { return scene.body.x[id]; };
+  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
   return kind;
 }
 
@@ -57,6 +61,23 @@ EngineKind golden_kind(const Scene& scene, const Plan& plan) {
   return kind;
 }
 
+namespace {
+
+Body saved_body(CheckpointReader& from, const Body& start, const RealOptions& options) {
+  if (from.head().engine.counters[0] != static_cast<uint64_t>(options.precision))
+    throw InputError(fmt::format("{} was made with another --precision", from.path()),
+                     "resume with the options of the run that wrote it");
+  if (from.head().particles != start.size())
+    throw InputError(fmt::format("{} holds {} particles, the scene has {}", from.path(),
+                                 from.head().particles, start.size()));
+  Body body;
+  body.type = start.type;
+  from.next(body);
+  return body;
+}
+
+}  // namespace
+
 EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
                           double cell_edge) {
   EngineKind kind;
@@ -64,9 +85,14 @@ EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptio
   kind.particles = start.size();
   kind.fixed = kind.keeps_state = false;
   kind.floats = options.precision == Precision::float32;
+  kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
   kind.initial = [&start](uint32_t id) { return start.x[id]; };
-  kind.make = [&scene, &start, options, cell_edge](CheckpointReader*, bool) {
-    return std::make_unique<ReferenceEngine>(scene, start, options, cell_edge);
+  // Velocity Verlet's next step needs the forces of the last one, at its half-step velocities.
+  kind.saves = options.integrator == Integrator::semi_implicit_euler;
+  kind.make = [&scene, &start, options, cell_edge](CheckpointReader* from, bool) {
+    if (!from) return std::make_unique<ReferenceEngine>(scene, start, options, cell_edge);
+    return std::make_unique<ReferenceEngine>(scene, saved_body(*from, start, options), options, cell_edge,
+                                             from->head().step);
   };
   return kind;
 }
@@ -75,6 +101,7 @@ EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOption
   EngineKind kind = reference_kind(scene, scene.body, options, plan.rule.cell_edge);
   kind.plan_hash = plan.hash;
   kind.nodes = plan.nodes();
+  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
   return kind;
 }
 

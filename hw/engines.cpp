@@ -55,6 +55,7 @@ const std::vector<EngineRow>& engines() {
        .real = true,
        .integrators = true,
        .studied = true,
+       .saves = true,
        .hash_every = 0,
        .cost = {2.5e-9, 0, true, 700, 6, 70}},
   };

@@ -257,6 +257,9 @@ std::vector<Cell> reachable_cells(const Scene& scene, double edge, const Vec3& o
              shorter);
     }
   }
+  // Displacements count from the packing, wherever the run begins.
+  if (scene.packed)
+    for (const Vec3& x : scene.packed->x) reach.add(layer(x - margin), layer(x + margin));
   if (scene.reach[0] != scene.reach[1])
     if (const double count = reach.add(layer(scene.reach[0]), layer(scene.reach[1])); count > 0)
       refuse({"reach.max", "reach.min"}, "the reach box spans", count, "a smaller reach box");

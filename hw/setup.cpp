@@ -138,10 +138,10 @@ std::vector<Cell> filled_box(const std::vector<Cell>& cells, const Arch& arch) {
 template <typename See>
 Plan plan_with(const Scene& scene, Arch arch, See see) {
   const double edge = cell_edge_of(scene, arch);
-  // Cells start a quarter of an edge below the body, so that the planes of an aligned crystal do not lie on
-  // faces; along z a flat body's only plane does.
+  // Cells start a quarter of an edge below the packing, so that the planes of an aligned crystal do not lie
+  // on faces; along z a flat body's only plane does.
   Vec3 origin = Vec3::Constant(INFINITY);
-  for (const Vec3& x : scene.body.x) origin = origin.cwiseMin(x);
+  for (const Vec3& x : scene.packing().x) origin = origin.cwiseMin(x);
   const AutoWidths chosen = auto_widths(scene, edge, arch.widths);
   FixedRule rule = fixed_rule(scene, arch, edge, chosen);
   arch.widths = rule.widths;

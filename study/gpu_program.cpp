@@ -49,7 +49,7 @@ class Job {
     write_text(path("arch.toml"), c.arch_text);
     Trace body;
     body.engine = "study";
-    body.bodies.push_back({0, start.x, start.v, {}});
+    body.bodies.push_back({0, start.x, start.v, {}, {}});
     write_trace(path("start.h5"), body);
     RemoteRun run{program(), path("scene.toml"), path("arch.toml"), path("trace.h5")};
     run.own = {"--start", path("start.h5"), "--precision", precision_of(c.settings.arithmetic)};

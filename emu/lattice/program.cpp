@@ -7,6 +7,7 @@
 
 #include "emu/lattice/run.h"
 #include "hw/program/program.h"
+#include "model/run/start.h"
 
 namespace cuboct::emu {
 namespace {
@@ -40,7 +41,7 @@ class LatticeProgram : public EngineProgram {
 
   EngineKind kind(Scene& scene, const Plan& plan, const ProgramOptions& options) override {
     choice_.spare = &scene.body;
-    choice_.body_again = [path = options.scene] { return read_scene(path).body; };
+    choice_.body_again = [&options] { return load_scene(options.scene, {options.stage, options.from}).body; };
     return lattice_kind(scene, plan, choice_);
   }
 

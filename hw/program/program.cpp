@@ -13,6 +13,7 @@
 #include "model/base/output.h"
 #include "model/base/steps.h"
 #include "model/base/text.h"
+#include "model/run/start.h"
 #include "model/trace/trace_file.h"
 
 namespace cuboct {
@@ -77,7 +78,7 @@ int run(EngineProgram& program, Parsed parsed) {
   const bool leads = program.leads();
   if (!options.out.empty() && leads) check_writable(options.out);
   if (!parsed.interval.empty()) read_interval(parsed.interval, options.run.checkpoint);
-  Scene scene = read_scene(options.scene);
+  Scene scene = load_scene(options.scene, {options.stage, options.from});
   program.begin(scene);
   const Plan plan = plan_of(scene, read_arch(options.arch));
   settle(program, parsed, scene);
@@ -123,12 +124,15 @@ void add_options(CLI::App& app, EngineProgram& program, Parsed& parsed) {
   const ProgramAbilities& can = program.abilities;
   app.add_option("scene", options.scene, "Scene file (TOML)");
   app.add_option("--arch", options.arch, "Machine description (TOML); the defaults without one");
+  app.add_option("--stage", options.stage, "Of a scene with [[stage]]: the one to run");
+  app.add_option("--from", options.from, "Directory of a run: this one begins with its last state");
   app.add_option("--steps", options.steps, "Steps to run; the scene's own number without it");
   app.add_option("--out", options.out, "Trace file to write (HDF5); --bench does without");
   app.add_flag("--unpacked", parsed.unpacked, "Do not compress the trace: larger, and written in less time");
   app.add_option("--begun", parsed.begun, "File that is made when the steps begin");
   app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
   app.add_flag("--watch", run.watch, "Look for what makes a run wrong; energies are measured with it");
+  app.add_flag("--until", run.until, "End where the scene's 'until' holds");
   app.add_option("--hash-every", run.hash_every, "Steps between two hashes of the state; 0: none")
       ->capture_default_str();
   if (can.cycles) app.add_flag("--cycles", run.cycles, "Count the machine's cycles with the timing model");
@@ -216,6 +220,7 @@ std::vector<std::string> program_arguments(const std::string& scene, const std::
   const CheckpointPlan& checkpoint = request.checkpoint;
   add(request.energies, {"--energies"});
   add(request.watch, {"--watch"});
+  add(request.until, {"--until"});
   add(request.cycles, {"--cycles"});
   add(request.forces, {"--forces"});
   add(!checkpoint.path.empty(), {"--checkpoint", checkpoint.path});

@@ -18,6 +18,7 @@ namespace cuboct {
 // What a program's command line said.
 struct ProgramOptions {
   std::string scene, arch, out;
+  std::string stage, from;  // model/run/start.h
   std::optional<uint64_t> steps;
   bool bench = false;
   bool hashes_given = false;

@@ -20,6 +20,8 @@ Remote::Remote(RemoteRun run) : run_(std::move(run)) {
   std::vector<std::string> arguments =
       program_arguments(run_.scene, run_.arch, run_.request, run_.trace, file(".steps"));
   arguments.insert(arguments.end(), run_.own.begin(), run_.own.end());
+  for (const auto& [option, value] : {std::pair{"--stage", run_.stage}, {"--from", run_.from}})
+    if (!value.empty()) arguments.insert(arguments.end(), {option, value});
   if (run_.unpacked) arguments.emplace_back("--unpacked");
   fs::remove(run_.trace);  // what is found there afterwards is this run's
   start(std::move(arguments));
@@ -78,7 +80,7 @@ Recorded Remote::read() const {
   Recorded run;
   run.trace = reader.rest();
   take_totals(run);
-  run.interrupted = run.trace.steps() < request.steps && !run.trace.stop;
+  run.interrupted = run.trace.steps() < request.steps && !run.trace.stop && !run.trace.reached;
   if (told_trouble_) run.trouble = "the ranks could not write all of it";
   run.left_checkpoint = run.interrupted && fs::exists(request.checkpoint.path);
   reader.frames([&](State state) { give(request, std::move(state), run.trace); });

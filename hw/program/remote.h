@@ -20,6 +20,7 @@ struct RemoteRun {
   std::vector<std::string> own{};  // options that the engine alone has
   int ranks = 1;                   // more: processes over MPI
   bool unpacked = false;           // the trace: packing millions of particles takes longer than many steps
+  std::string stage{}, from{};     // model/run/start.h
   bool quiet = false;              // the program's words are kept, else those on stderr are shown
   RunRequest request{};
 };

@@ -53,6 +53,12 @@ std::vector<double> Meter::latest() const {
   return values;
 }
 
+std::optional<double> Meter::latest_of(const std::string& name) const {
+  for (const Curve& curve : probes_.curves())
+    if (curve.name == name && !curve.value.empty()) return curve.value.back();
+  return std::nullopt;
+}
+
 void Meter::restore(ProbeMeter::Memory memory, const std::vector<Curve>& curves) {
   const auto energies = curves.end() - static_cast<ptrdiff_t>(energy_.curves().size());
   probes_.restore(std::move(memory), {curves.begin(), energies});

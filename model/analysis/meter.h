@@ -45,6 +45,9 @@ class Meter {
   // Null where nobody watches.
   const Watch* watch() const { return watch_ ? &*watch_ : nullptr; }
 
+  // The last value of the probe's curve of this name, once there is one.
+  std::optional<double> latest_of(const std::string& curve) const;
+
   // For checkpoints.
   ProbeMeter::Memory memory() const { return probes_.memory(); }
   size_t probed() const { return ids_.size(); }  // particles in `memory`

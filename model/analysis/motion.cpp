@@ -16,6 +16,10 @@ constexpr double kMostStrain = 0.2;  // a crystal holds no more
 bool driven(const ParticleType& type) { return type.pd || type.imposed != std::array<bool, 3>{}; }
 bool moves_freely(const ParticleType& type) { return type.imposed != std::array<bool, 3>{true, true, true}; }
 
+// Formats that a state brings along already hold its motion: the scene then adds what it would have from its
+// packing, so that a run in two parts has the formats of the whole.
+const Body& planned_body(const Scene& scene) { return scene.body.exact ? scene.packing() : scene.body; }
+
 // Of the bond between nearest neighbours at rest, and their distance.
 void read_bond(const Scene& scene, Motion& motion) {
   const Rule& rule = scene.rule;
@@ -40,7 +44,7 @@ struct Speeds {
 };
 
 Speeds speeds_of(const Scene& scene) {
-  const Body& body = scene.body;
+  const Body& body = planned_body(scene);
   const auto each_free = [&](auto see) {
     for (size_t i = 0; i < body.size(); ++i)
       if (moves_freely(scene.rule.types[body.type[i]])) see(body.x[i], body.v[i]);
@@ -96,9 +100,10 @@ Motion motion_of(const Scene& scene) {
   read_bond(scene, motion);
   const double c = motion.sound_speed, duration = static_cast<double>(scene.steps) * rule.dt;
   Box all, held;
-  for (size_t i = 0; i < scene.body.size(); ++i) {
-    all.add(scene.body.x[i]);
-    if (driven(rule.types[scene.body.type[i]])) held.add(scene.body.x[i]);
+  const Body& body = planned_body(scene);
+  for (size_t i = 0; i < body.size(); ++i) {
+    all.add(body.x[i]);
+    if (driven(rule.types[body.type[i]])) held.add(body.x[i]);
   }
   const double length = std::max(all.empty() ? 0 : (all.high - all.low).maxCoeff(), motion.rest_distance);
   const auto strains = [&](double strain, const std::string& by) {

@@ -94,12 +94,17 @@ struct Rule {
   }
 };
 
+struct ExactBody;
+
 // Particles in SI units; the index is the particle's id.
 struct Body {
   std::vector<Vec3> x;        // m
   std::vector<Vec3> v;        // m/s
   std::vector<Vec3> u;        // m, displacement from the PD anchor; empty unless some type has one
   std::vector<uint8_t> type;  // index into Rule::types
+  // The same in the integers of a fixed rule that left them (model/contract/state.h); null: there are none.
+  // Whoever changes x, v or u drops it.
+  std::shared_ptr<const ExactBody> exact;
 
   size_t size() const { return x.size(); }
 };

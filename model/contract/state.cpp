@@ -30,6 +30,11 @@ Int3 momentum(const State& state) {
   return sum;
 }
 
+bool ExactBody::fits(const FixedRule& rule, const Vec3& rule_origin) const {
+  return rule.widths.velocity_frac() == widths.velocity_frac() && rule.cell_edge == cell_edge &&
+         rule.dt == dt && rule_origin == origin;
+}
+
 Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, const Lattice& lattice,
                         const Vec3& origin) {
   const int frac = rule.widths.velocity_frac();
@@ -39,13 +44,22 @@ Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, co
   p.id = id;
   p.type = body.type[id];
   const FixedType& type = rule.types[p.type];
+  const ExactBody* exact = body.exact && body.exact->fits(rule, origin) ? body.exact.get() : nullptr;
   Cell cell;
   for (int a = 0; a < 3; ++a) {
-    const int64_t whole = std::llround((body.x[id][a] - origin[a]) / position_unit);
-    cell[a] = static_cast<int32_t>(whole >> frac);
-    p.x[a] = whole & ((int64_t{1} << frac) - 1);
-    p.v[a] = type.imposed[a] ? type.velocity[a] : std::llround(body.v[id][a] / velocity_unit);
-    if (!body.u.empty()) p.u[a] = std::llround(body.u[id][a] / position_unit);
+    if (exact) {
+      cell[a] = exact->cell[id][a];
+      p.x[a] = exact->x[id][a];
+      p.v[a] = exact->v[id][a];
+      p.u[a] = exact->u[id][a];
+    } else {
+      const int64_t whole = std::llround((body.x[id][a] - origin[a]) / position_unit);
+      cell[a] = static_cast<int32_t>(whole >> frac);
+      p.x[a] = whole & ((int64_t{1} << frac) - 1);
+      p.v[a] = std::llround(body.v[id][a] / velocity_unit);
+      if (!body.u.empty()) p.u[a] = std::llround(body.u[id][a] / position_unit);
+    }
+    if (type.imposed[a]) p.v[a] = type.velocity[a];
     if (!fits(p.v[a], rule.widths.velocity_bits))
       throw InputError(
           fmt::format("particle {} moves at {:.4g} m/s: more than the {:.4g} m/s that {} velocity bits hold",

@@ -36,10 +36,24 @@ uint64_t hash_of(const Lattice& lattice, const State& state);
 // Sum of v over the particles, P+G fractional bits.
 Int3 momentum(const State& state);
 
+// Particles in the integers of the run that left them, by id. A rule of the same formats takes them over as
+// they are.
+struct ExactBody {
+  Widths widths;
+  double cell_edge = 0;        // m
+  double dt = 0;               // s
+  Vec3 origin = Vec3::Zero();  // m, lower corner of cell (0,0,0)
+  std::vector<Cell> cell;      // coordinates
+  std::vector<Int3> x, v, u;   // as in Particle
+
+  // Whether the integers mean the same under this rule.
+  bool fits(const FixedRule& rule, const Vec3& rule_origin) const;
+};
+
 // Between real and fixed state. `origin` is the position of cell (0,0,0)'s lower corner in metres.
 // Positions are rounded to nearest; a particle whose cell the lattice lacks, or whose velocity does not fit
-// its width, is an InputError. Particle by particle, no State need be held: an engine can be fed from the
-// Body.
+// its width, is an InputError. Integers of Body::exact that fit the rule are taken over bit for bit. Particle
+// by particle, no State need be held: an engine can be fed from the Body.
 Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, const Lattice& lattice,
                         const Vec3& origin);
 State to_fixed(const Body& body, const FixedRule& rule, const Lattice& lattice, const Vec3& origin);

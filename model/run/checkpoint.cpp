@@ -63,6 +63,7 @@ void write_checkpoint(const std::string& path, const CheckpointHead& head, Engin
     out->words(head.engine.timing);
   });
   engine.for_each_slot([&](const Particle& p) { attempt([&] { put(*out, p, displaced); }); });
+  if (const Body* body = engine.saved_body()) attempt([&] { put(*out, body->x, body->v, body->u); });
   attempt([&] {
     out->word(out->mark().hash);
     out->sync();
@@ -117,6 +118,8 @@ CheckpointReader::CheckpointReader(const std::string& path, uint64_t plan_hash, 
 }
 
 void CheckpointReader::rewind() { in_.seek(first_); }
+
+void CheckpointReader::next(Body& body) { take_body(in_, head_.particles, displaced_, body); }
 
 Particle CheckpointReader::next() { return take_particle(in_, displaced_); }
 

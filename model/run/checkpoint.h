@@ -23,7 +23,7 @@ struct CheckpointHead {
   // The run so far.
   double seconds = 0;
   double largest_speed = 0;
-  Int3 momentum{};  // at step 0
+  Int3 momentum{};  // at step 0; in real numbers the doubles' bits
   EngineMemory engine;
   ProbeMeter::Memory probes;
   WordMark journal;
@@ -40,8 +40,9 @@ class CheckpointReader {
 
   const std::string& path() const { return path_; }
   const CheckpointHead& head() const { return head_; }
-  Particle next();  // head().particles times
-  void rewind();    // to the first particle
+  Particle next();        // head().particles times
+  void next(Body& body);  // of an engine in real numbers: all at once, by id; types stay
+  void rewind();          // to the first particle
 
  private:
   std::string path_;

@@ -72,6 +72,8 @@ class Engine {
 
   // Of engines whose state is saved: the particles in the order in which a new engine is to take them.
   virtual void for_each_slot(const std::function<void(const Particle&)>&) {}
+  // Of one in real numbers: all particles at once, by id.
+  virtual const Body* saved_body() { return nullptr; }
   virtual EngineMemory memory() { return {}; }
 
   // Of processes that share a scene, all make the same calls; one keeps the trace and the files.

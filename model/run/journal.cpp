@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint64_t kMagic = 0x4c4e524a54424355;  // "UCBTJRNL"
 constexpr uint64_t kVersion = 2;
-enum Kind : uint64_t { kHash = 1, kSample, kCycles, kFrame };
+enum Kind : uint64_t { kHash = 1, kSample, kCycles, kFrame, kRealFrame };
 
 }  // namespace
 
@@ -35,6 +35,22 @@ Particle take_particle(WordReader& in, bool displaced) {
   if (displaced)
     for (int64_t& u : p.u) u = static_cast<int64_t>(in.word());
   return p;
+}
+
+void put(WordWriter& out, const std::vector<Vec3>& x, const std::vector<Vec3>& v,
+         const std::vector<Vec3>& u) {
+  for (size_t id = 0; id < x.size(); ++id)
+    for (const std::vector<Vec3>* of : {&x, &v, &u})
+      if (!of->empty())
+        for (const double c : (*of)[id]) out.number(c);
+}
+
+void take_body(WordReader& in, size_t particles, bool displaced, Body& body) {
+  body.x.resize(particles), body.v.resize(particles), body.u.resize(displaced ? particles : 0);
+  for (size_t id = 0; id < particles; ++id)
+    for (std::vector<Vec3>* of : {&body.x, &body.v, &body.u})
+      if (!of->empty())
+        for (double& c : (*of)[id]) c = in.number();
 }
 
 Journal::Journal(const std::string& path, uint64_t plan_hash, bool displaced)
@@ -78,6 +94,7 @@ Journal::Journal(const std::string& path, uint64_t plan_hash, bool displaced, co
         }
         break;
       case kFrame:
+      case kRealFrame:
         frame_steps_.push_back(step);
         frame_places_.push_back(place);
         in.seek(place + 3 + words);
@@ -111,11 +128,20 @@ void Journal::cycles(uint64_t step, std::span<const PhaseSpan> spans) {
   }
 }
 
-void Journal::frame(const State& state) {
-  frame_steps_.push_back(state.step);
-  frame_places_.push_back(out_->mark().words);
-  head(kFrame, state.step, state.particles.size() * (displaced_ ? 10 : 7));
-  for (const Particle& p : state.particles) put(*out_, p, displaced_);
+void Journal::frame(const RunState& state) {
+  const auto begin = [&](uint64_t kind, uint64_t step, uint64_t words) {
+    frame_steps_.push_back(step);
+    frame_places_.push_back(out_->mark().words);
+    head(kind, step, words);
+  };
+  if (const State* fixed = std::get_if<State>(&state)) {
+    begin(kFrame, fixed->step, fixed->particles.size() * (displaced_ ? 10 : 7));
+    for (const Particle& p : fixed->particles) put(*out_, p, displaced_);
+    return;
+  }
+  const RealFrame& real = std::get<RealFrame>(state);
+  begin(kRealFrame, real.step, real.x.size() * (displaced_ ? 9 : 6));
+  put(*out_, real.x, real.v, real.u);
 }
 
 WordMark Journal::sync() {
@@ -123,14 +149,23 @@ WordMark Journal::sync() {
   return out_->mark();
 }
 
-void Journal::for_each_frame(const std::function<void(State)>& see) {
+void Journal::for_each_frame(const std::function<void(RunState)>& see) {
   sync();
   WordReader in(path_);
   for (size_t k = 0; k < frame_steps_.size(); ++k) {
+    in.seek(frame_places_[k]);
+    const bool real = in.word() == kRealFrame;
+    in.seek(frame_places_[k] + 2);
+    const uint64_t words = in.count(1);
+    if (real) {
+      Body body;
+      take_body(in, words / (displaced_ ? 9 : 6), displaced_, body);
+      see(RealFrame{frame_steps_[k], std::move(body.x), std::move(body.v), {}, std::move(body.u)});
+      continue;
+    }
     State frame;
     frame.step = frame_steps_[k];
-    in.seek(frame_places_[k] + 2);
-    frame.particles.resize(in.count(1) / (displaced_ ? 10 : 7));
+    frame.particles.resize(words / (displaced_ ? 10 : 7));
     for (Particle& p : frame.particles) p = take_particle(in, displaced_);
     see(std::move(frame));
   }

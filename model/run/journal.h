@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "model/run/engine.h"
 #include "model/run/word_file.h"
-#include "model/trace/trace.h"
 
 namespace cuboct {
 
@@ -18,6 +18,10 @@ namespace cuboct {
 //   id, cell (32 bits each)   x, y   z, type   v_x v_y v_z   [u_x u_y u_z]
 void put(WordWriter& out, const Particle& particle, bool displaced);
 Particle take_particle(WordReader& in, bool displaced);
+
+// In real numbers, by id: x_x x_y x_z   v_x v_y v_z   [u_x u_y u_z]; types stay.
+void put(WordWriter& out, const std::vector<Vec3>& x, const std::vector<Vec3>& v, const std::vector<Vec3>& u);
+void take_body(WordReader& in, size_t particles, bool displaced, Body& body);
 
 class Journal {
  public:
@@ -31,13 +35,13 @@ class Journal {
   void hash(uint64_t step, uint64_t hash);
   void sample(uint64_t step, std::span<const double> values);  // one per curve
   void cycles(uint64_t step, std::span<const PhaseSpan> spans);
-  void frame(const State& state);
+  void frame(const RunState& state);
 
   // All of the above is on the disk when it returns.
   WordMark sync();
 
   const std::vector<uint64_t>& frame_steps() const { return frame_steps_; }
-  void for_each_frame(const std::function<void(State)>& see);  // read back
+  void for_each_frame(const std::function<void(RunState)>& see);  // read back
 
  private:
   void head(uint64_t kind, uint64_t step, uint64_t words);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -57,6 +58,9 @@ class Loop {
   void go_back_to(uint64_t step);
   void finish();
   void total();
+  void look_for_end();
+  bool reached();
+  bool ends_early() const { return request_.until && scene_.until; }
   bool hashed() const { return kind_.fixed && request_.hash_every > 0; }
   bool leads() const { return engine_->leads(); }
 
@@ -74,6 +78,7 @@ class Loop {
   uint64_t piece_;  // steps between two looks at the clock, of an engine that works in batches
   std::optional<uint64_t> looked_;
   Momentum before_;
+  bool over_ = false;  // as the scene's `until` has it
   bool lost_ = false;  // the engine's state went with the step that failed
   Recorded result_;
   Trace& trace_;
@@ -153,6 +158,7 @@ void Loop::resume() {
   trace_.steps_done = head.step;
   trace_.seconds = head.seconds;
   before_.fixed = head.momentum;
+  for (size_t a = 0; a < 3; ++a) before_.real[a] = std::bit_cast<double>(head.momentum[a]);
   result_.largest_speed = head.largest_speed;
   result_.resumed_at = saved_step_ = head.step;
   saved_ = true;
@@ -170,7 +176,7 @@ void Loop::resume_trace(const CheckpointHead& head) {
       trace_.curves[k].name = fresh[k].name, trace_.curves[k].unit = fresh[k].unit;
     meter_.restore(head.probes, trace_.curves);
   }
-  journal_->for_each_frame([&](State state) { give(request_, std::move(state), trace_); });
+  journal_->for_each_frame([&](RunState state) { give(request_, std::move(state), trace_); });
 }
 
 // A state is made only where a frame or a sample asks for one.
@@ -185,11 +191,28 @@ void Loop::record() {
   }
   if (among(request_.probes, step)) {
     measure(among(looks_, step), true);
+    look_for_end();
     if (leads() && journal_)
       if (const std::vector<double> values = meter_.latest(); !values.empty())
         journal([&](Journal& to) { to.sample(step, values); });
   }
   if (among(request_.frames, step)) keep();
+}
+
+// Whether the probes say that the run is over.
+void Loop::look_for_end() {
+  if (!ends_early() || !leads()) return;
+  const Until& until = *scene_.until;
+  const std::optional<double> value = meter_.latest_of(until.curve);
+  if (engine_->step_count() > until.after && value && until.holds(*value))
+    trace_.reached = Reached{until.curve, until.side_name(), engine_->step_count(), *value, until.limit};
+}
+
+// The same for all processes that share a scene: one of them reads the probes.
+bool Loop::reached() {
+  if (!ends_early()) return false;
+  const bool told = engine_->agreed(trace_.reached.has_value(), false).first;
+  return leads() ? trace_.reached.has_value() : told;
 }
 
 // `add`: to the curves; else the watch alone looks.
@@ -202,7 +225,7 @@ void Loop::measure(bool look, bool add) {
 void Loop::keep() {
   RunState frame = engine_->frame(request_.forces);
   if (!leads()) return;
-  if (const State* state = std::get_if<State>(&frame)) journal([&](Journal& to) { to.frame(*state); });
+  journal([&](Journal& to) { to.frame(frame); });
   give(request_, std::move(frame), trace_);
 }
 
@@ -252,7 +275,8 @@ uint64_t Loop::next_stop() const {
 void Loop::go() {
   Progress progress(kind_.name, request_.steps, kind_.particles, trace_.steps_done, request_.progress);
   bool stop = engine_->agreed(interrupted(), false).first;
-  while (trace_.steps_done < request_.steps && !stop) {
+  over_ = reached();
+  while (trace_.steps_done < request_.steps && !stop && !over_) {
     const auto begin = Clock::now();  // a piece is long beside what a batch costs to start
     advance(kind_.batches ? std::min(next_stop() - trace_.steps_done, piece_) : 1);
     record();
@@ -260,7 +284,8 @@ void Loop::go() {
     if (leads()) progress.at(trace_.steps_done);
     bool due = false;
     std::tie(stop, due) = engine_->agreed(interrupted(), save_is_due());
-    if (due && !stop && trace_.steps_done < request_.steps) save();
+    over_ = reached();
+    if (due && !stop && !over_ && trace_.steps_done < request_.steps) save();
   }
 }
 
@@ -292,6 +317,8 @@ bool Loop::write_state() {
   head.seconds = trace_.seconds;
   head.largest_speed = std::max(result_.largest_speed, engine_->largest_speed());
   head.momentum = before_.fixed;
+  if (!kind_.fixed)
+    for (size_t a = 0; a < 3; ++a) head.momentum[a] = std::bit_cast<int64_t>(before_.real[a]);
   head.engine = engine_->memory();
   head.probes = meter_.memory();
   journal([&](Journal& to) { head.journal = to.sync(); });
@@ -361,7 +388,8 @@ void Loop::total() {
 
 Recorded Loop::run() {
   if (!kind_.saves && (save_plan_.resume || !save_plan_.path.empty()))
-    throw InputError(fmt::format("the {} engine leaves no checkpoints", kind_.name));
+    throw InputError(fmt::format("the {} engine leaves no checkpoints", kind_.name),
+                     kind_.name == "reference" ? "with --integrator euler it does" : "");
   try {
     saved_time_ = Clock::now();
     if (save_plan_.resume)
@@ -369,7 +397,7 @@ Recorded Loop::run() {
     else
       start();
     go();
-    result_.interrupted = trace_.steps_done < request_.steps;
+    result_.interrupted = trace_.steps_done < request_.steps && !over_;
     if (result_.interrupted && !save_plan_.path.empty()) save();
   } catch (const RunError& error) {
     trace_.stop = StopReason{error.fault, error.step, error.cell, error.particle, error.number, error.what()};

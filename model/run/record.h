@@ -39,6 +39,7 @@ struct RunRequest {
   bool cycles = false;    // keep phase times, where the engine has them
   bool forces = false;    // frames in real numbers hold the pair forces
   bool totals = false;    // Recorded::momentum_change and largest_speed
+  bool until = false;     // end where the scene's `until` holds
   bool last = true;       // the last state's hash, frame and readings, wherever a run ends
   uint64_t hash_every =
       1;  // of fixed engines: the state's hash each so many steps and at the last one; 0: none
@@ -61,7 +62,7 @@ struct EngineKind {
   bool in_pieces = false;                 // no batch is to take long, whoever looks on
   bool hashes_come = false;               // with a batch, after each of its steps
   bool saves = false;                     // leaves checkpoints
-  std::function<Vec3(uint32_t)> initial;  // m, where a particle is at step 0
+  std::function<Vec3(uint32_t)> initial;  // m, from where a particle's displacement counts
   // Of the probes' steps, those at which the watch looks; empty: at all.
   std::function<std::vector<uint64_t>(const std::vector<uint64_t>&)> looks;
   // From the start, or from a checkpoint; `cycles`: with its timing. Throws RunError where a cell would hold

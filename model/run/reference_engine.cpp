@@ -6,10 +6,11 @@
 namespace cuboct {
 
 ReferenceEngine::ReferenceEngine(const Scene& scene, const Body& body, const RealOptions& options,
-                                 double cell_edge)
+                                 double cell_edge, uint64_t step)
     : scene_(scene),
       options_(options),
       cell_edge_(cell_edge),
+      begin_(step),
       reference_(scene.rule, body, scene.periodic, options) {}
 
 void ReferenceEngine::advance(uint64_t steps, std::vector<uint64_t>*) {
@@ -27,7 +28,7 @@ uint64_t ReferenceEngine::hash() { throw std::logic_error("states in real number
 
 RunState ReferenceEngine::frame(bool forces) {
   const Body& body = reference_.body();
-  return RealFrame{step_count(), body.x, body.v, forces ? reference_.forces() : std::vector<Vec3>()};
+  return RealFrame{step_count(), body.x, body.v, forces ? reference_.forces() : std::vector<Vec3>(), body.u};
 }
 
 Reading ReferenceEngine::read(const Asked& asked) {

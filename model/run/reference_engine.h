@@ -10,10 +10,11 @@ namespace cuboct {
 class ReferenceEngine : public Engine {
  public:
   // Keeps a reference to `scene`; `body` may be another one than the scene's. `cell_edge`: m, in which speeds
-  // are told.
-  ReferenceEngine(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge);
+  // are told. `step`: that of `body`.
+  ReferenceEngine(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge,
+                  uint64_t step = 0);
 
-  uint64_t step_count() const override { return reference_.step_count(); }
+  uint64_t step_count() const override { return begin_ + reference_.step_count(); }
   // A step in which a position stops being finite takes the state with it.
   void advance(uint64_t steps, std::vector<uint64_t>*) override;
   uint64_t hash() override;
@@ -24,11 +25,14 @@ class ReferenceEngine : public Engine {
   Counters counters() override { return {{"threads", options_.threads}}; }
   Notes notes() override;
   const Body& body() const { return reference_.body(); }
+  const Body* saved_body() override { return &body(); }
+  EngineMemory memory() override { return {{static_cast<uint64_t>(options_.precision)}, {}}; }
 
  private:
   const Scene& scene_;
   RealOptions options_;
   double cell_edge_;
+  uint64_t begin_;
   Reference reference_;
 };
 

@@ -28,6 +28,14 @@ std::vector<PhaseSpan> ReplayEngine::phase_times() {
   return spans;
 }
 
+Counters ReplayEngine::counters() {
+  if (step_ == trace_.steps()) return trace_.counters;
+  uint64_t end = 0;
+  for (size_t k = 0; k < step_ * row_ && k < trace_.cycles.size(); ++k)
+    end = std::max(end, trace_.cycles[k].end + 1);
+  return {{"cycles", static_cast<double>(end)}};
+}
+
 State ReplayEngine::make_state() {
   const State* state = frame_at(trace_, step_);
   if (!state) throw std::logic_error(fmt::format("the trace holds no state of step {}", step_));

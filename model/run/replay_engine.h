@@ -19,7 +19,8 @@ class ReplayEngine : public StateEngine {
   uint64_t hash() override { return trace_.state_hash.at(step_); }
   std::vector<PhaseSpan> phase_times() override;
   std::optional<double> seconds() override { return trace_.seconds; }
-  Counters counters() override { return trace_.counters; }
+  // Of a run that is replayed in part, the cycles up to its last phase alone: other counts are of the whole.
+  Counters counters() override;
   Notes notes() override { return trace_.notes; }
   // What interrupts this program has interrupted the run already: all that was done is still replayed.
   std::pair<bool, bool> agreed(bool, bool) override { return {ended_, false}; }

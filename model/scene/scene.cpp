@@ -25,10 +25,10 @@ double read_mass(const ConfigTable& root, Scene& scene) {
   return particle_mass(scene.density, scene.pitch);
 }
 
-Damping read_damping(const ConfigTable& root, const Scene& scene) {
-  Damping damping;
-  const auto table = root.table_at("damping");
-  if (!table) return damping;
+void read_damping(const ConfigTable& from, Scene& scene) {
+  const auto table = from.table_at("damping");
+  if (!table) return;
+  table->record_as("damping");
   table->not_both("coefficient", "ratio");
   if (table->has("ratio")) {
     const double ratio = table->number("ratio", quantity::number, Range::not_negative());
@@ -36,12 +36,11 @@ Damping read_damping(const ConfigTable& root, const Scene& scene) {
     if (!(stiffness > 0))
       table->at("ratio").fail("'ratio' needs a packing with a stiff bond at its pitch",
                               "give 'coefficient' instead");
-    damping.coefficient = ratio * 2 * std::sqrt(stiffness * scene.rule.mass);
+    scene.rule.damping.coefficient = ratio * 2 * std::sqrt(stiffness * scene.rule.mass);
   } else {
-    damping.coefficient = table->number("coefficient", quantity::damping, Range::not_negative());
+    scene.rule.damping.coefficient = table->number("coefficient", quantity::damping, Range::not_negative());
   }
   table->done();
-  return damping;
 }
 
 // The damping as if it were a law of springs: its dynamical matrix is that of the rates C/m.
@@ -113,12 +112,25 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
   return limits;
 }
 
-void read_time(const ConfigTable& root, Scene& scene) {
+void read_length(const ConfigTable& table, Scene& scene) {
+  if (table.has("duration")) {
+    const double steps =
+        std::ceil(table.number("duration", quantity::time, Range::positive()) / scene.rule.dt * (1 - 1e-12));
+    if (steps > 1e15) table.at("duration").fail(fmt::format("'duration' takes {:.3g} steps", steps));
+    scene.steps = static_cast<uint64_t>(steps);
+  } else {
+    scene.steps = static_cast<uint64_t>(table.at("steps").integer(0, INT64_MAX));
+  }
+}
+
+// A stage's keys replace those of [run].
+void read_time(const ConfigTable& root, const ConfigTable* stage, Scene& scene) {
   const auto found = root.table_at("run");
   if (!found) root.at("run");
   const ConfigTable& run = *found;
   const TimeLimits limits = time_limits(scene, root.tables("particle").size());
-  const auto dt = run.find("dt");
+  const auto usual = run.find("dt"), own = stage ? stage->find("dt") : std::nullopt;
+  const auto dt = own ? own : usual;
   const bool automatic = !dt || (dt->is_string() && dt->string() == "auto");
   const TimeLimit& limit = automatic ? limits.automatic : limits.given;
   scene.dt_limit = limit.known();
@@ -130,7 +142,7 @@ void read_time(const ConfigTable& root, Scene& scene) {
     if (scene.dt_limit == 0) (dt ? *dt : run).fail("no stability limit is known for this scene", "give 'dt'");
     scene.rule.dt = scene.dt_safety * scene.dt_limit;
   } else {
-    if (safety) safety->fail("'dt_safety' serves dt = \"auto\" only");
+    if (safety && !own) safety->fail("'dt_safety' serves dt = \"auto\" only");
     scene.rule.dt = dt->number(quantity::time, Range::positive());
     if (scene.dt_limit > 0) {
       scene.dt_safety = scene.rule.dt / scene.dt_limit;
@@ -140,17 +152,12 @@ void read_time(const ConfigTable& root, Scene& scene) {
     }
   }
 
-  run.not_both("steps", "duration");
-  if (run.has("duration")) {
-    const double steps =
-        std::ceil(run.number("duration", quantity::time, Range::positive()) / scene.rule.dt * (1 - 1e-12));
-    if (steps > 1e15) run.at("duration").fail(fmt::format("'duration' takes {:.3g} steps", steps));
-    scene.steps = static_cast<uint64_t>(steps);
-  } else {
-    scene.steps = static_cast<uint64_t>(run.at("steps").integer(0, INT64_MAX));
-  }
+  for (const ConfigTable* table : {&run, stage})
+    if (table) table->not_both("steps", "duration");
+  read_length(stage && (stage->has("steps") || stage->has("duration")) ? *stage : run, scene);
   const auto every = [&](const char* key, uint64_t otherwise) {
-    return static_cast<uint64_t>(run.integer_or(key, 0, INT64_MAX, static_cast<int64_t>(otherwise)));
+    const auto of = static_cast<uint64_t>(run.integer_or(key, 0, INT64_MAX, static_cast<int64_t>(otherwise)));
+    return stage ? static_cast<uint64_t>(stage->integer_or(key, 0, INT64_MAX, static_cast<int64_t>(of))) : of;
   };
   scene.probe_every =
       every("probe_every", scene.probes.empty() ? 0 : std::max<uint64_t>(1, scene.steps / 500));
@@ -159,6 +166,10 @@ void read_time(const ConfigTable& root, Scene& scene) {
     scene.accuracy = accuracy->number(quantity::number, {.low = 1e-6, .high = 0.1});
   if (const auto strain = run.find("expected_strain"))
     scene.expected_strain = strain->number(quantity::number, {.low = 0, .high = 1, .low_open = true});
+  scene.until = read_until(run, scene);
+  if (stage)
+    if (const auto until = read_until(*stage, scene)) scene.until = until;
+  if (scene.until && scene.probe_every == 0) run.fail("'until' needs readings: 'probe_every' is 0");
   run.done();
 }
 
@@ -205,25 +216,29 @@ double stable_time_step(const Rule& rule, double pitch) {
 
 namespace {
 
-Scene scene_of(const ConfigTable& root, const std::string& path) {
+Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoice& choice) {
   Scene scene;
   scene.path = path;
   scene.places = root.places();
   scene.title = root.string_or("title", "");
   if (root.reduced()) scene.boltzmann = 1;
+  read_start(root, choice, scene);
+  const std::optional<ConfigTable> chosen = read_stage(root, choice, scene);
+  const ConfigTable* stage = chosen ? &*chosen : nullptr;
   auto packing = read_packing(root);
-  PackingChoice* choice = packing ? &*packing : nullptr;
-  scene.rule.law = read_law(root, choice);
+  PackingChoice* packed = packing ? &*packing : nullptr;
+  scene.rule.law = read_law(root, packed);
   if (packing) {
     scene.pitch = packing->fcc.pitch;
     scene.orientation = packing->fcc.orientation;
   }
   scene.rule.mass = read_mass(root, scene);
-  scene.rule.damping = read_damping(root, scene);
+  read_damping(root, scene);
+  if (stage) read_damping(*stage, scene);
   const Regions regions(root);
-  read_body(root, regions, choice, scene);
+  read_body(root, stage, regions, packed, scene);
   read_probes(root, regions, scene);
-  read_time(root, scene);
+  read_time(root, stage, scene);
   read_reach(root, scene);
   root.done();
   return scene;
@@ -245,10 +260,12 @@ std::array<bool, 3> live_axes(const Scene& scene) {
   return live;
 }
 
-Scene read_scene(const std::string& path) { return parse_scene(read_config_text(path), path); }
+Scene read_scene(const std::string& path, const SceneChoice& choice) {
+  return parse_scene(read_config_text(path), path, choice);
+}
 
-Scene parse_scene(const std::string& text, const std::string& path) {
-  Scene scene = scene_of(parse_config(text, path), path);
+Scene parse_scene(const std::string& text, const std::string& path, const SceneChoice& choice) {
+  Scene scene = scene_of(parse_config(text, path), path, choice);
   scene.text = text;
   return scene;
 }

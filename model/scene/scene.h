@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,12 +61,40 @@ struct Probe {
   std::optional<Datasheet> datasheet;  // stress_strain: what the material is said to show
 };
 
+// Where a run ends before its last step: at the first reading of a probe that is beyond a limit.
+struct Until {
+  enum class Side : uint8_t { above, below, beyond };  // beyond: by its magnitude
+  std::string curve;                                   // "tip.along"
+  Side side = Side::above;
+  double limit = 0;    // in the curve's unit
+  uint64_t after = 0;  // readings count behind this step
+
+  bool holds(double value) const {
+    return side == Side::above   ? value >= limit
+           : side == Side::below ? value <= limit
+                                 : std::abs(value) >= limit;
+  }
+  const char* side_name() const {
+    return side == Side::above ? "above" : side == Side::below ? "below" : "beyond";
+  }
+};
+
+// The run whose last state a scene begins with.
+struct Began {
+  std::string from, engine;
+  uint64_t step = 0;
+};
+
 struct Scene {
   std::string path;  // as given
   std::string text;  // of the file
   std::string title;
+  std::string stage;  // of [[stage]], whose keys replace others; empty: the scene has none
+  std::string start;  // a run's directory, as [start] says; empty: the run begins with the packing
+  std::optional<Began> began;
   Rule rule;
-  Body body;
+  Body body;                           // as the run begins
+  std::shared_ptr<const Body> packed;  // as the scene packs it, where the run begins elsewhere
   Periodic periodic;
   double pitch = 0;  // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
   Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates
@@ -87,16 +117,29 @@ struct Scene {
   uint64_t steps = 0;
   uint64_t probe_every = 0;  // 0: never
   uint64_t frame_every = 0;  // 0: first and last only
-  Places places;             // of the file's keys
+  std::optional<Until> until;
+  Places places;  // of the file's keys
+
+  // What regions, displacements and strains count from.
+  const Body& packing() const { return packed ? *packed : body; }
 };
 
 // Axes along which particles can come to differ in their motion. Of a flat sheet and of a straight chain none
 // can along some: pairs then have no force along it.
 std::array<bool, 3> live_axes(const Scene& scene);
 
+// What of a file is read. Without `begins` a file with [start] or [[stage]] is refused: such scenes are for
+// those who put the particles where another run left them (model/run/start.h).
+struct SceneChoice {
+  bool begins = false;
+  std::string stage;  // required where the file has stages
+};
+
 // Throws InputError with file:line:column.
-Scene read_scene(const std::string& path);
+Scene read_scene(const std::string& path, const SceneChoice& choice = {});
 // The same for text in memory; `path` stands in messages.
-Scene parse_scene(const std::string& text, const std::string& path);
+Scene parse_scene(const std::string& text, const std::string& path, const SceneChoice& choice = {});
+// The names of the file's stages, in its order.
+std::vector<std::string> stages_of(const std::string& path);
 
 }  // namespace cuboct

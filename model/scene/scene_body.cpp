@@ -210,12 +210,41 @@ std::vector<int> assign_materials(const ConfigTable& root, const Regions& region
   return material;
 }
 
-ParticleType read_constraint(const ConfigTable& table, const Rule& rule, double pitch) {
+// What a stage says of the constraints, by their names.
+std::map<std::string, ConfigTable> constraint_changes(const ConfigTable& root, const ConfigTable* stage) {
+  std::map<std::string, ConfigTable> changes;
+  if (!stage) return changes;
+  std::vector<std::string> names;
+  for (const ConfigTable& table : root.tables("constraint")) names.push_back(table.at("name").string());
+  for (const ConfigTable& table : stage->tables("constraint")) {
+    table.record_as("constraint");
+    const ConfigValue name = table.at("name");
+    if (names.empty()) name.fail("the scene has no [[constraint]]");
+    name.choice("constraint", names);
+    table.not_both("velocity", "free");
+    if (!table.has("velocity") && !table.has("free"))
+      table.fail("a stage gives a constraint 'velocity' or 'free'");
+    if (!changes.try_emplace(name.string(), table).second)
+      name.fail(fmt::format("constraint '{}' is there twice", name.string()));
+  }
+  return changes;
+}
+
+// `change`: a stage's, or null.
+ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change, const Rule& rule,
+                             double pitch) {
   ParticleType type;
   const std::vector<std::string> kinds = {"held", "moved", "held_by_force", "moved_by_force"};
   const size_t kind = table.at("kind").choice("constraint", kinds);
   const bool moved = kind % 2 == 1;
   if (moved) type.velocity = table.at("velocity").vector(quantity::velocity);
+  if (change && change->has("velocity")) {
+    if (!moved)
+      change->at("velocity")
+          .fail(fmt::format("'{}' is '{}' and has no velocity", change->at("name").string(), kinds[kind]),
+                "make it 'moved', with a velocity of 0 where it stands");
+    type.velocity = change->at("velocity").vector(quantity::velocity);
+  }
   if (kind < 2) {
     type.imposed = table.has("axes") ? table.axes("axes") : std::array{true, true, true};
     for (size_t a = 0; a < 3; ++a)
@@ -307,7 +336,8 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
   return {box, periodic};
 }
 
-void read_body(const ConfigTable& root, const Regions& regions, const PackingChoice* packing, Scene& scene) {
+void read_body(const ConfigTable& root, const ConfigTable* stage, const Regions& regions,
+               const PackingChoice* packing, Scene& scene) {
   const std::vector<Material> materials = read_materials(root);
   std::vector<std::string> names;
   for (const Material& material : materials) names.push_back(material.name);
@@ -324,18 +354,23 @@ void read_body(const ConfigTable& root, const Regions& regions, const PackingCho
   read_velocities(root, regions, scene);
 
   const std::vector<int> material = assign_materials(root, regions, named, scene);
-  const Vec3 gravity = root.vector_or("gravity", quantity::acceleration, Vec3::Zero());
+  Vec3 gravity = root.vector_or("gravity", quantity::acceleration, Vec3::Zero());
+  if (stage) gravity = stage->vector_or("gravity", quantity::acceleration, gravity);
+  const std::map<std::string, ConfigTable> changes = constraint_changes(root, stage);
   std::vector<int> constraint(body.size(), -1);
   std::vector<ParticleType> constraints;
   for (const ConfigTable& table : root.tables("constraint")) {
     if (constraints.size() == kMaxTypes) table.fail(fmt::format("more than {} constraints", kMaxTypes));
-    ParticleType type = read_constraint(table, scene.rule, scene.pitch);
+    const auto found = changes.find(table.at("name").string());
+    const ConfigTable* change = found == changes.end() ? nullptr : &found->second;
+    ParticleType type = read_constraint(table, change, scene.rule, scene.pitch);
     type.name = read_name(table.at("name"));
     for (const ParticleType& other : constraints)
       if (other.name == type.name)
         table.at("name").fail(fmt::format("constraint '{}' is there twice", type.name));
+    const bool free = change && change->boolean_or("free", false);
     for (uint32_t id : regions.select(table.at("region"), body.x, tolerance_of(scene)))
-      constraint[id] = static_cast<int>(constraints.size());
+      constraint[id] = free ? -1 : static_cast<int>(constraints.size());
     table.done();
     constraints.push_back(std::move(type));
   }

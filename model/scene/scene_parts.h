@@ -43,8 +43,9 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
 
 // Everything that gives particles: positions and velocities ([packing], [geometry], [[particle]],
 // [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and .strength.
-// scene.rule needs law, damping and mass.
-void read_body(const ConfigTable& root, const Regions& regions, const PackingChoice* packing, Scene& scene);
+// scene.rule needs law, damping and mass. `stage`: whose keys replace those of the root.
+void read_body(const ConfigTable& root, const ConfigTable* stage, const Regions& regions,
+               const PackingChoice* packing, Scene& scene);
 
 // The largest stable time step of the perfect packing in s, 0 if unknown. With all frequencies up to w and
 // all damping rates up to g (rates of the matrices K/m and C/m) the update v += -dt (K/m x + C/m v), x += dt
@@ -53,5 +54,12 @@ void read_body(const ConfigTable& root, const Regions& regions, const PackingCho
 double stable_time_step(const Rule& rule, double pitch);
 
 void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene);
+
+// [start].
+void read_start(const ConfigTable& root, const SceneChoice& choice, Scene& scene);
+// The stage that is chosen; none where the file has none.
+std::optional<ConfigTable> read_stage(const ConfigTable& root, const SceneChoice& choice, Scene& scene);
+// `until` of [run] or of a stage. scene.probes are read.
+std::optional<Until> read_until(const ConfigTable& table, const Scene& scene);
 
 }  // namespace cuboct

@@ -135,26 +135,29 @@ class BodyRows {
         v_(out, group_, "v", chunk_of(particles_, 3), 3, "m/s", kRows) {
     if (head) out.array(group_, "type", {particles_}, head->scene.body.type, "", "[id] index into `types`");
     if (!first.force.empty()) force_.emplace(out, group_, "force", chunk_of(particles_, 3), 3, "N", kRows);
+    if (!first.u.empty()) u_.emplace(out, group_, "u", chunk_of(particles_, 3), 3, "m", kRows);
   }
 
   void add(const RealFrame& frame) {
     if (frame.x.size() != particles_ || frame.v.size() != particles_ ||
-        frame.force.size() != (force_ ? particles_ : 0))
+        frame.force.size() != (force_ ? particles_ : 0) || frame.u.size() != (u_ ? particles_ : 0))
       throw std::logic_error("the frames of a trace differ in their number of particles");
-    const uint64_t bytes = particles_ * 9 * sizeof(double);
+    const uint64_t bytes = particles_ * 12 * sizeof(double);
     out_.reserve(bytes + bytes / 100 + pending() + kSlack);
     for (size_t k = 0; k < particles_; ++k) {
       x_.add(frame.x[k].data());
       v_.add(frame.v[k].data());
       if (force_) force_->add(frame.force[k].data());
+      if (u_) u_->add(frame.u[k].data());
     }
     step_.add(frame.step);
     out_.flush();
   }
-  uint64_t pending() const { return 3 * x_.chunk_bytes(); }
+  uint64_t pending() const { return 4 * x_.chunk_bytes(); }
   void finish() {
     x_.finish(), v_.finish();
     if (force_) force_->finish();
+    if (u_) u_->finish();
   }
 
  private:
@@ -164,7 +167,7 @@ class BodyRows {
   Handle group_;
   PerFrame<uint64_t> step_;
   hdf5::Growing<double> x_, v_;
-  std::optional<hdf5::Growing<double>> force_;
+  std::optional<hdf5::Growing<double>> force_, u_;
 };
 
 void read_frames(const Reader& in, const std::function<void(State)>& see) {
@@ -206,8 +209,9 @@ void read_bodies(const Reader& in, const std::function<void(RealFrame)>& see) {
   const auto step = in.array<uint64_t>(group, "step");
   const hsize_t rows = in.length(group, "x");
   in.same_length(!step.empty() && rows % step.size() == 0, "the bodies' fields");
-  const bool forces = in.has(group, "force");
-  in.same_length(in.length(group, "v") == rows && (!forces || in.length(group, "force") == rows),
+  const bool forces = in.has(group, "force"), displaced = in.has(group, "u");
+  in.same_length(in.length(group, "v") == rows && (!forces || in.length(group, "force") == rows) &&
+                     (!displaced || in.length(group, "u") == rows),
                  "the bodies' fields");
   const size_t particles = rows / step.size();
   for (size_t k = 0; k < step.size(); ++k) {
@@ -223,6 +227,7 @@ void read_bodies(const Reader& in, const std::function<void(RealFrame)>& see) {
     triple("x", &RealFrame::x);
     triple("v", &RealFrame::v);
     if (forces) triple("force", &RealFrame::force);
+    if (displaced) triple("u", &RealFrame::u);
     see(std::move(frame));
   }
 }
@@ -361,7 +366,7 @@ const char* to_string(Phase phase) {
 }
 
 const char* Trace::ended() const {
-  return !asked ? "" : stop ? "stopped" : steps() < *asked ? "interrupted" : "finished";
+  return !asked ? "" : stop ? "stopped" : steps() < *asked && !reached ? "interrupted" : "finished";
 }
 
 namespace {
@@ -480,6 +485,14 @@ void TraceWriter::finish(const Trace& trace) {
       out.names(notes, "text", texts);
     }
     write_findings(out, trace);
+    if (trace.reached) {
+      const Handle reached = out.group(out.root(), "reached");
+      out.text(reached, "curve", trace.reached->curve);
+      out.text(reached, "side", trace.reached->side);
+      out.number<uint64_t>(reached, "step", trace.reached->step);
+      out.number<double>(reached, "value", trace.reached->value);
+      out.number<double>(reached, "limit", trace.reached->limit);
+    }
     if (trace.stop) {
       const Handle stop = out.group(out.root(), "stop");
       out.number<uint8_t>(stop, "fault", static_cast<uint8_t>(trace.stop->fault));
@@ -541,6 +554,12 @@ Trace read_rest(const Reader& in) {
     for (size_t i = 0; i < of.size(); ++i) trace.notes.emplace_back(of[i], texts[i]);
   }
   read_findings(in, trace);
+  if (in.has(in.root(), "reached")) {
+    const Handle reached = in.group(in.root(), "reached");
+    trace.reached =
+        Reached{in.text(reached, "curve"), in.text(reached, "side"), in.number<uint64_t>(reached, "step"),
+                in.number<double>(reached, "value"), in.number<double>(reached, "limit")};
+  }
   if (in.has(in.root(), "stop")) {
     const Handle stop = in.group(in.root(), "stop");
     trace.stop = StopReason{static_cast<Fault>(in.number<uint8_t>(stop, "fault")),

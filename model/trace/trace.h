@@ -50,6 +50,7 @@ struct RealFrame {
   uint64_t step = 0;
   std::vector<Vec3> x, v;   // m, not wrapped into a periodic box; m/s, half a step before the positions
   std::vector<Vec3> force;  // N, of the pairs; empty, or of all particles in each frame of a trace
+  std::vector<Vec3> u;      // m, from the anchors; empty where the rule holds none by force
 };
 
 struct StopReason {
@@ -59,6 +60,14 @@ struct StopReason {
   int64_t number = 0;
   std::string text;
   bool operator==(const StopReason&) const = default;
+};
+
+// The reading that ended a run (Scene::until).
+struct Reached {
+  std::string curve, side;
+  uint64_t step = 0;
+  double value = 0, limit = 0;  // in the curve's unit
+  bool operator==(const Reached&) const = default;
 };
 
 struct TraceHead;
@@ -79,6 +88,7 @@ struct Trace {
   std::vector<PhaseSpan>
       cycles;  // [(step * nodes + node) * kPhases + phase]; empty where the engine counts none
   std::optional<StopReason> stop;  // the run had to stop: after the last complete step
+  std::optional<Reached> reached;  // the run ended before its last step, as its scene has it
   std::optional<uint64_t> asked;   // steps that the run was to do, where the file says so
   // Of an engine that watches its own run (model/analysis/watch.h):
   std::vector<Finding> findings;    // in the order in which they came

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "model/trace/trace_head.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include "model/base/hash.h"
 
 #include "model/trace/hdf5_file.h"
 
@@ -52,6 +57,22 @@ uint64_t bytes_of(const TraceHead& head) {
 
 const char* program_version() { return CUBOCT_VERSION; }
 
+uint64_t packing_hash(const Scene& scene) {
+  const Body& body = scene.packing();
+  double farthest = scene.periodic.extent.maxCoeff();
+  for (const Vec3& x : body.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
+  // A last bit that came out otherwise is no other packing: 30 bits count, and round numbers, which are
+  // frequent, do not stand where rounding turns.
+  const double unit = farthest > 0 ? std::ldexp(1.0, std::ilogb(farthest) - 30) : 1;
+  Hash hash;
+  const auto add = [&](const Vec3& v) {
+    for (const double c : v) hash.add(std::llround(c / unit + 0.137));
+  };
+  add(scene.periodic.extent);
+  for (const Vec3& x : body.x) add(x);
+  return hash.value();
+}
+
 void write_head(const Writer& out, const TraceHead& head) {
   out.reserve(bytes_of(head));
   const Scene& scene = head.scene;
@@ -66,12 +87,16 @@ void write_head(const Writer& out, const TraceHead& head) {
   std::vector<std::string> types;
   for (const ParticleType& type : scene.rule.types) types.push_back(type.name);
   out.names(root, "types", types);
+  out.number<uint64_t>(root, "packing", packing_hash(scene));
   {
     // Datasets: HDF5 holds no attribute above 64 KiB.
     const Handle source = out.group(root, "source");
     out.text(source, "scene_path", scene.path);
     out.names(source, "scene", {scene.text});
     out.names(source, "arch", {head.arch});
+    if (!scene.stage.empty()) out.text(source, "stage", scene.stage);
+    if (scene.began)
+      out.text(source, "began", fmt::format("step {} of {}", scene.began->step, scene.began->from));
   }
   if (!head.rule) return out.flush();
   out.number<double>(root, "cell_edge", head.rule->cell_edge);

@@ -26,6 +26,10 @@ struct TraceHead {
   bool cells = true;           // the lattice's cells too, of use where something counts by them
 };
 
+// Of where the scene packs its particles, and of the box that repeats. Runs of one packing have the same
+// particles.
+uint64_t packing_hash(const Scene& scene);
+
 // Of the program: "0.1.0".
 const char* program_version();
 

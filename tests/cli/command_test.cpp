@@ -108,8 +108,8 @@ TEST(Command, RefusesOptionsOfAnotherEngine) {
   for (const auto& [option, owners] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--ranks", "2"}, "the lattice"},
            {{"--cycles"}, "the lattice"},
-           {{"--resume"}, "the golden and the lattice"},
-           {{"--checkpoint-every", "5 min"}, "the golden and the lattice"},
+           {{"--resume"}, "the golden, the lattice and the reference"},
+           {{"--checkpoint-every", "5 min"}, "the golden, the lattice and the reference"},
            {{"--gpus", "2"}, "the gpu"},
            {{"--joules"}, "the gpu"},
            {{"--port", "/dev/null"}, "the fpga"}}) {

@@ -31,7 +31,7 @@ std::vector<std::string> listed() {
 TEST(New, ListsEveryTemplate) {
   const std::vector<std::string> names = listed();
   EXPECT_EQ(names, (std::vector<std::string>{"tension", "impact", "drop", "beam", "gas", "metal", "crack",
-                                             "sheet"}));
+                                             "sheet", "release"}));
   size_t files = 0;
   for (const auto& entry : fs::directory_iterator(kTemplates)) files += entry.path().extension() == ".toml";
   EXPECT_EQ(files, names.size());
@@ -47,7 +47,9 @@ TEST(New, WritesScenesThatRun) {
     const Answer checked = bench.cuboct({"check", path});
     EXPECT_EQ(checked.code, 0) << checked.err;
     EXPECT_EQ(checked.out.find("warning"), std::string::npos) << checked.out;
-    const Answer ran = bench.cuboct({"run", path, "--steps", "40"});
+    std::vector<std::string> run{"run", path, "--steps", "40"};
+    if (name == "release") run.insert(run.end(), {"--stage", "relax", "--out", bench.path("stages")});
+    const Answer ran = bench.cuboct(run);
     EXPECT_EQ(ran.code, 0) << name << ran.out << ran.err;
   }
 }
@@ -74,7 +76,8 @@ TEST(New, ReplacesNothingUnasked) {
   EXPECT_EQ(refusal({"new", bench.path("b"), "--like", "tensoin"}),
             "unknown template 'tensoin'\n  hint: did you mean 'tension'?\n");
   EXPECT_EQ(refusal({"new", bench.path("b"), "--like", "x"}),
-            "unknown template 'x'\n  hint: one of tension, impact, drop, beam, gas, metal, crack or sheet\n");
+            "unknown template 'x'\n  hint: one of tension, impact, drop, beam, gas, metal, crack, sheet or "
+            "release\n");
   EXPECT_EQ(refusal({"new", bench.path("none/b")}),
             "cannot write " + bench.path("none/b.toml") + ": No such file or directory\n");
   EXPECT_FALSE(fs::exists(bench.path("b.toml")));

@@ -58,7 +58,7 @@ TEST_F(Start, ForcesAtGivenPositions) {
   const Scene scene = read_scene(kScene);
   Trace given;
   given.engine = "test";
-  given.bodies.push_back({0, scene.body.x, scene.body.v, {}});
+  given.bodies.push_back({0, scene.body.x, scene.body.v, {}, {}});
   for (Vec3& x : given.bodies[0].x) x *= 1.01;
   write_trace(bench_.path("given.h5"), given);
   const Trace answer =
@@ -86,7 +86,7 @@ TEST_F(Start, MistakesAreTold) {
     return answer.err;
   };
   EXPECT_EQ(refusal(), "--start " + file + ": this trace holds no state in real numbers\n");
-  trace.bodies.push_back({0, {Vec3::Zero()}, {Vec3::Zero()}, {}});
+  trace.bodies.push_back({0, {Vec3::Zero()}, {Vec3::Zero()}, {}, {}});
   const std::string particles = std::to_string(read_scene(kScene).body.size());
   EXPECT_EQ(refusal(), "--start " + file + ": a state of 1 particles, the scene has " + particles + "\n");
   EXPECT_EQ(program("--out " + file).err, "a scene is required\n");

@@ -118,6 +118,13 @@ std::set<std::string> scene_keys() {
                         << shape << run;
     read_scene(path.string());
   }
+  std::ofstream(path)
+      << read_config_text(kRoot + "/scenes/coupon.toml")
+      << "[start]\nfrom = \"there\"\n[[stage]]\nname = \"pull\"\n"
+         "until = { probe = \"tension.strain\", above = 0.1 }\ngravity = \"[0, 0, 0] m/s^2\"\n"
+         "constraint = [{ name = \"pulled\", velocity = \"[1, 0, 0] m/s\" }, { name = \"fixed\", "
+         "free = true }]\n";
+  read_scene(path.string(), {.begins = true, .stage = "pull"});
   std::filesystem::remove(path);
   record_config_keys(nullptr);
   return keys;

@@ -4,15 +4,22 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 
+#include "hw/setup.h"
 #include "model/base/error.h"
 #include "model/base/process.h"
+#include "model/scene/scene.h"
+#include "model/trace/left_state.h"
 #include "model/trace/raster.h"
 #include "model/trace/state_check.h"
 #include "model/trace/trace.h"
+#include "model/trace/trace_file.h"
+#include "model/trace/trace_head.h"
 #include "tests/unit/made_trace.h"
 
 namespace cuboct {
@@ -27,6 +34,24 @@ class HostileFile : public testing::Test {
     write_trace(path_, made_trace());
     edit(change);
     return error([&] { read_trace(path_); });
+  }
+  // As a run that is to go on takes it.
+  std::string of_left_state(const std::function<void(hid_t)>& change) {
+    const Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/boards/grips.toml");
+    const cuboct::Setup setup = make_setup(scene, {});
+    const TraceHead head{scene, &setup.plan.rule, &setup.plan.lattice, setup.plan.origin, ""};
+    TraceWriter out(path_, path_ + ".part", true, &head);
+    out.add(setup.initial);
+    out.finish({});
+    edit(change);
+    return error([&] { EXPECT_EQ(read_left_state(path_).body.size(), scene.body.size()); });
+  }
+  template <typename T>
+  static void overwrite(hid_t file, const char* name, hid_t type, T value) {
+    const hid_t data = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(data);
+    const std::vector<T> all(static_cast<size_t>(H5Sget_simple_extent_npoints(space)), value);
+    ASSERT_GE(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()), 0);
+    H5Sclose(space), H5Dclose(data);
   }
   std::string of_rasters(const std::function<void(hid_t)>& change) {
     Frame frame;
@@ -83,6 +108,33 @@ class HostileFile : public testing::Test {
 TEST_F(HostileFile, IsAcceptedAsItIs) {
   EXPECT_EQ(of_trace([](hid_t) {}), "accepted");
   EXPECT_EQ(of_rasters([](hid_t) {}), "accepted");
+  EXPECT_EQ(of_left_state([](hid_t) {}), "accepted");
+}
+
+// What a state that a run begins with says of cells, types and numbers.
+TEST_F(HostileFile, AStateToBeginWithMustFitItself) {
+  const std::string disagree = path_ + " is not a cuboct trace: ";
+  EXPECT_EQ(of_left_state([](hid_t f) { overwrite<uint8_t>(f, "frames/type", H5T_NATIVE_UINT8, 200); }),
+            disagree + "types and particles disagree in length");
+  EXPECT_EQ(of_left_state([](hid_t f) { overwrite<uint32_t>(f, "frames/node", H5T_NATIVE_UINT32, 1 << 30); }),
+            disagree + "cells and particles disagree in length");
+  EXPECT_EQ(of_left_state([](hid_t f) { overwrite<uint32_t>(f, "frames/id", H5T_NATIVE_UINT32, 0); }),
+            disagree + "ids and particles disagree in length");
+  for (const int64_t x : {int64_t{-1}, int64_t{1} << 50, INT64_MIN})
+    EXPECT_EQ(of_left_state([x](hid_t f) { overwrite<int64_t>(f, "frames/x", H5T_NATIVE_INT64, x); }),
+              disagree + "values and widths disagree in length");
+  for (const double edge : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
+    EXPECT_EQ(of_left_state([edge](hid_t f) { put_double(f, "cell_edge", edge); }),
+              disagree + "no number above 0 'cell_edge'");
+  EXPECT_EQ(of_left_state([](hid_t f) {
+              const int32_t wide = 60;
+              put_number(f, "guard", H5T_NATIVE_INT32, &wide);
+            }),
+            disagree + "no width 'guard'");
+  EXPECT_EQ(
+      of_left_state([](hid_t f) { H5Adelete(f, "packing"); }),
+      path_ +
+          " does not say whose particles it holds\n  hint: 'cuboct run --out DIR' leaves a trace that does");
 }
 
 TEST_F(HostileFile, ShapesAreHeldAgainstTheBytes) {
@@ -213,7 +265,7 @@ TEST(StateCheck, NumbersAreWithinTheScene) {
   EXPECT_EQ(error([](Trace& t) { t.frames[0].particles.pop_back(); }),
             "t.h5 is no trace of this scene: the frame of step 0 has 2 particles, the scene 3");
   EXPECT_EQ(error([](Trace& t) {
-              t.bodies.push_back({7, {{0, 0, 0}}, {{0, 0, 0}}, {}});
+              t.bodies.push_back({7, {{0, 0, 0}}, {{0, 0, 0}}, {}, {}});
             }),
             "t.h5 is no trace of this scene: the frame of step 7 has 1 particles, the scene 3");
 }

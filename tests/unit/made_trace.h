@@ -33,8 +33,17 @@ inline Trace made_trace() {
       StopReason{Fault::velocity, 2, 1, 5, -(int64_t{1} << 40), "step 2, cell 1 (1 0 0), particle 5"};
   trace.seconds = 0.25;
   trace.counters = {{"pairs_issued", 12}, {"stalls", 0.5}};
-  trace.bodies = {{0, {{1, 2, 3}, {4, 5, 6}}, {{-1, 0.1, 1e-300}, {7, 8, 9}}, {{0, 1, 0}, {0, -1, 0}}},
-                  {2, {{1.5, 2, 3}, {4, 5, -6}}, {{-1, 0.1, 2}, {7, 8.5, 9}}, {{3, 0, 0}, {-3, 0, 1e9}}}};
+  trace.bodies = {{0,
+                   {{1, 2, 3}, {4, 5, 6}},
+                   {{-1, 0.1, 1e-300}, {7, 8, 9}},
+                   {{0, 1, 0}, {0, -1, 0}},
+                   {{0, 0, 0}, {0.5, 0, 0}}},
+                  {2,
+                   {{1.5, 2, 3}, {4, 5, -6}},
+                   {{-1, 0.1, 2}, {7, 8.5, 9}},
+                   {{3, 0, 0}, {-3, 0, 1e9}},
+                   {{1e-9, 0, 0}, {0, 0, 2}}}};
+  trace.reached = Reached{"grip.force_x", "beyond", 2, -0.5, 0.25};
   trace.notes = {{"precision", "float"}, {"device 0", "a device, of some name"}, {"empty", ""}};
   trace.watched = 2;
   trace.findings = {{Failure::stiff_hold, 1, std::nullopt, Vec3::Zero(), 4.5, 4, "step 1: stiff hold: ..."},

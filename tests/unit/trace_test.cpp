@@ -77,6 +77,7 @@ void expect_equal(const Trace& a, const Trace& b) {
   }
   EXPECT_EQ(a.cycles, b.cycles);
   EXPECT_EQ(a.stop, b.stop);
+  EXPECT_EQ(a.reached, b.reached);
   EXPECT_EQ(a.seconds, b.seconds);
   EXPECT_EQ(a.counters, b.counters);
   EXPECT_EQ(a.notes, b.notes);
@@ -86,6 +87,7 @@ void expect_equal(const Trace& a, const Trace& b) {
     EXPECT_EQ(a.bodies[k].x, b.bodies[k].x);
     EXPECT_EQ(a.bodies[k].v, b.bodies[k].v);
     EXPECT_EQ(a.bodies[k].force, b.bodies[k].force);
+    EXPECT_EQ(a.bodies[k].u, b.bodies[k].u);
   }
   EXPECT_EQ(a.watched, b.watched);
   ASSERT_EQ(a.findings.size(), b.findings.size());
@@ -196,6 +198,8 @@ TEST_F(TraceFile, SaysHowTheRunEnded) {
   trace.asked = 2;
   EXPECT_STREQ(trace.ended(), "finished");
   trace.asked = 3;
+  EXPECT_STREQ(trace.ended(), "finished");  // as `until` has it
+  trace.reached.reset();
   EXPECT_STREQ(trace.ended(), "interrupted");
   trace.stop = StopReason{};
   EXPECT_STREQ(trace.ended(), "stopped");

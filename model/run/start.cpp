@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "model/run/start.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "model/base/error.h"
+#include "model/trace/left_state.h"
+#include "model/trace/trace_head.h"
+
+namespace cuboct {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string material_of(const std::string& type) { return type.substr(0, type.find('/')); }
+
+[[noreturn]] void differ(const Scene& scene, const std::vector<std::string>& keys, const std::string& from,
+                         const std::string& what) {
+  std::vector<std::string> at{"start.from"};
+  at.insert(at.end(), keys.begin(), keys.end());
+  scene.places.fail(at, fmt::format("{} was left by other particles: {}", from, what),
+                    "packing, geometry, box and materials must be those of the run that is to go on");
+}
+
+void check_alike(const Scene& scene, const LeftState& left, const std::string& from) {
+  const Body& body = scene.body;
+  const size_t count = left.body.size();
+  if (count != body.size())
+    differ(scene, {"geometry", "packing", "particle"}, from,
+           fmt::format("{} there, {} here", count, body.size()));
+  if (left.packing != packing_hash(scene))
+    differ(scene, {"packing.pitch", "geometry", "particle"}, from, "their packing or its box is another one");
+  for (size_t id = 0; id < count; ++id) {
+    const std::string there = material_of(left.types[left.body.type[id]]);
+    const std::string here = material_of(scene.rule.types[body.type[id]].name);
+    if (there != here)
+      differ(scene, {"material", "geometry", "packing"}, from,
+             fmt::format("particle {} is of '{}' there, of '{}' here", id, there, here));
+  }
+}
+
+// Whether a particle's displacement from its anchor goes on: the same constraint holds it by force. Else the
+// anchor stands where the particle is.
+bool keeps_anchor(const Scene& scene, const LeftState& left, size_t id) {
+  const ParticleType& type = scene.rule.types[scene.body.type[id]];
+  return type.pd && !left.body.u.empty() && left.types[left.body.type[id]] == type.name;
+}
+
+}  // namespace
+
+void begin_at(Scene& scene, const std::string& directory) {
+  const std::string path = directory + "/trace.h5";
+  if (!fs::exists(path))
+    scene.places.fail({"start.from"}, fmt::format("{} holds no finished run: no file trace.h5", directory),
+                      "'cuboct run SCENE --out DIR' leaves one");
+  LeftState left = read_left_state(path);
+  check_alike(scene, left, directory);
+
+  scene.packed = std::make_shared<Body>(scene.body);
+  Body& body = scene.body;
+  body.x = std::move(left.body.x);
+  body.v = std::move(left.body.v);
+  auto exact = left.body.exact ? std::make_shared<ExactBody>(*left.body.exact) : nullptr;
+  for (size_t id = 0; id < body.size(); ++id) {
+    const ParticleType& type = scene.rule.types[body.type[id]];
+    for (int a = 0; a < 3; ++a)
+      if (type.imposed[a]) body.v[id][a] = type.velocity[a];
+    if (keeps_anchor(scene, left, id))
+      body.u[id] = left.body.u[id];
+    else if (exact)
+      exact->u[id] = {};
+  }
+  body.exact = std::move(exact);
+  scene.began = Began{directory, left.engine, left.step};
+}
+
+Scene load_scene(const std::string& path, const StartChoice& choice) {
+  Scene scene = read_scene(path, {.begins = true, .stage = choice.stage});
+  std::string from = choice.from;
+  const bool first = scene.stage.empty() || stages_of(path).front() == scene.stage;
+  if (from.empty() && first && !scene.start.empty())
+    from = (fs::path(path).parent_path() / scene.start).lexically_normal().string();
+  if (from.empty() && !first && !choice.looks_only)
+    throw InputError(fmt::format(
+        "stage '{}' begins where the stage before it ended: --from DIR says where that is", scene.stage));
+  if (!from.empty()) begin_at(scene, from);
+  return scene;
+}
+
+std::string start_text(const Scene& scene, const FixedRule* rule, const Vec3& origin) {
+  const std::string where = fmt::format("step {} of {}", scene.began->step, scene.began->from);
+  const ExactBody* exact = scene.body.exact.get();
+  if (!exact || !rule) return where;
+  if (exact->fits(*rule, origin)) return where + ", bit for bit";
+  std::string why = "other formats";
+  if (exact->dt != rule->dt)
+    why = fmt::format("dt {:.6g} s there, {:.6g} s here", exact->dt, rule->dt);
+  else if (exact->cell_edge != rule->cell_edge)
+    why = fmt::format("cell edge {:.6g} m there, {:.6g} m here", exact->cell_edge, rule->cell_edge);
+  else if (exact->widths.velocity_frac() != rule->widths.velocity_frac())
+    why = fmt::format("{} fractional bits there, {} here", exact->widths.velocity_frac(),
+                      rule->widths.velocity_frac());
+  return fmt::format("{}, rounded anew: {}", where, why);
+}
+
+}  // namespace cuboct

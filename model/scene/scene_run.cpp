@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// What of a scene says how it is run: [start], [[stage]] and `until`.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/base/error.h"
+#include "model/scene/name.h"
+#include "model/scene/scene_parts.h"
+
+namespace cuboct {
+namespace {
+
+struct CurveOf {
+  std::string name;
+  Quantity quantity;
+};
+
+// Those that model/analysis/measure.h makes of the probe.
+std::vector<CurveOf> curves_of(const Probe& probe) {
+  std::vector<CurveOf> curves;
+  const auto add = [&](const std::string& name, const Quantity& quantity) {
+    curves.push_back({probe.name + "." + name, quantity});
+  };
+  const auto along = [&](const std::string& one, const std::string& each, const Quantity& quantity) {
+    if (!probe.axis.isZero(0)) return add(one, quantity);
+    for (const char axis : {'x', 'y', 'z'}) add(each + axis, quantity);
+  };
+  switch (probe.kind) {
+    case Probe::Kind::force:
+      along("force", "force_", quantity::force);
+      break;
+    case Probe::Kind::displacement:
+      along("along", "", quantity::length);
+      break;
+    case Probe::Kind::stress_strain:
+      add("strain", quantity::number), add("stress", quantity::pressure);
+      break;
+    case Probe::Kind::velocity:
+      along("velocity", "velocity_", quantity::velocity);
+      break;
+    case Probe::Kind::kinetic_energy:
+      add("kinetic_energy", quantity::energy);
+      break;
+    case Probe::Kind::temperature:
+      add("temperature", quantity::temperature);
+      break;
+  }
+  return curves;
+}
+
+// A probe's name stands for its curve where it has one alone.
+CurveOf curve_at(const ConfigValue& value, const Scene& scene) {
+  std::vector<std::string> names;
+  std::vector<CurveOf> all;
+  for (const Probe& probe : scene.probes) {
+    const std::vector<CurveOf> curves = curves_of(probe);
+    if (curves.size() == 1 && value.string() == probe.name) return curves[0];
+    for (const CurveOf& curve : curves) names.push_back(curve.name), all.push_back(curve);
+  }
+  if (all.empty()) value.fail("'until' needs a [[probe]]");
+  return all[value.choice("curve", names)];
+}
+
+std::vector<std::string> stage_names(const ConfigTable& root) {
+  std::vector<std::string> names;
+  for (const ConfigTable& table : root.tables("stage")) {
+    names.push_back(read_name(table.at("name")));
+    if (std::count(names.begin(), names.end(), names.back()) > 1)
+      table.at("name").fail(fmt::format("stage '{}' is there twice", names.back()));
+  }
+  return names;
+}
+
+}  // namespace
+
+void read_start(const ConfigTable& root, const SceneChoice& choice, Scene& scene) {
+  const auto table = root.table_at("start");
+  if (!table) return;
+  if (!choice.begins)
+    table->fail("[start] is for 'cuboct run', 'crosscheck', 'check' and 'emit'",
+                "this command begins with the packing");
+  scene.start = table->at("from").string();
+  if (scene.start.empty()) table->at("from").fail("'from' names no directory");
+  table->done();
+}
+
+std::optional<ConfigTable> read_stage(const ConfigTable& root, const SceneChoice& choice, Scene& scene) {
+  const std::vector<ConfigTable> tables = root.tables("stage");
+  if (tables.empty()) {
+    if (!choice.stage.empty())
+      throw InputError(fmt::format("{} has no stages, and no stage '{}'", scene.path, choice.stage));
+    return std::nullopt;
+  }
+  const std::vector<std::string> names = stage_names(root);
+  if (choice.stage.empty())
+    tables[0].fail(choice.begins ? fmt::format("the scene has {} stages: --stage takes one", names.size())
+                                 : "a scene of stages is for 'cuboct run', 'crosscheck', 'check' and 'emit'",
+                   fmt::format("its stages: {}", fmt::join(names, ", ")));
+  std::optional<ConfigTable> chosen;
+  for (size_t k = 0; k < tables.size(); ++k) {
+    if (names[k] == choice.stage)
+      chosen = tables[k];
+    else
+      tables[k].names();  // for whoever reads that stage
+  }
+  if (!chosen)
+    throw InputError(fmt::format("{} has no stage '{}'", scene.path, choice.stage),
+                     fmt::format("its stages: {}", fmt::join(names, ", ")));
+  scene.stage = choice.stage;
+  return chosen;
+}
+
+std::optional<Until> read_until(const ConfigTable& table, const Scene& scene) {
+  const auto found = table.table_at("until");
+  if (!found) return std::nullopt;
+  found->record_as("run");
+  const CurveOf curve = curve_at(found->at("probe"), scene);
+  Until until;
+  until.curve = curve.name;
+  const char* keys[] = {"above", "below", "beyond"};
+  for (int a = 0; a < 3; ++a)
+    for (int b = a + 1; b < 3; ++b) found->not_both(keys[a], keys[b]);
+  const char* key = keys[0];
+  for (int k = 0; k < 3; ++k)
+    if (found->has(keys[k])) key = keys[k], until.side = static_cast<Until::Side>(k);
+  until.limit = found->number(key, curve.quantity,
+                              until.side == Until::Side::beyond ? Range::not_negative() : Range::any());
+  if (found->has("after")) {
+    const double steps =
+        std::ceil(found->number("after", quantity::time, Range::not_negative()) / scene.rule.dt);
+    if (steps > 1e15) found->at("after").fail(fmt::format("'after' takes {:.3g} steps", steps));
+    until.after = static_cast<uint64_t>(steps);
+  }
+  found->done();
+  return until;
+}
+
+std::vector<std::string> stages_of(const std::string& path) { return stage_names(read_config(path)); }
+
+}  // namespace cuboct

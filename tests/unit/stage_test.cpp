@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// [[stage]], [start] and `until` of a scene, as the reader takes them.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "model/base/error.h"
+#include "model/scene/config.h"
+#include "model/scene/scene.h"
+
+namespace cuboct {
+namespace {
+
+const std::string kGrips = CUBOCT_SOURCE_DIR "/scenes/boards/grips.toml";
+
+Scene parsed(const std::string& more, const std::string& stage) {
+  return parse_scene(read_config_text(kGrips) + "\n" + more, "s.toml", {.begins = true, .stage = stage});
+}
+
+const std::string kStages = R"(
+[[stage]]
+name = "relax"
+steps = 7
+damping = { ratio = 0.5 }
+constraint = [{ name = "right", velocity = [0, 0, 0] }]
+
+[[stage]]
+name = "load"
+duration = 1.4
+dt = 0.07
+gravity = [0, 0, -0.01]
+until = { probe = "grip.force_x", beyond = 0.2, after = 0.35 }
+probe_every = 2
+constraint = [{ name = "left", free = true }]
+)";
+
+TEST(Stage, ReplacesKeysOfTheScene) {
+  const Scene base = parsed("", ""), relax = parsed(kStages, "relax"), load = parsed(kStages, "load");
+  EXPECT_EQ(relax.stage, "relax");
+  EXPECT_EQ(relax.steps, 7u);
+  EXPECT_EQ(relax.rule.dt, 0.14);
+  EXPECT_DOUBLE_EQ(relax.rule.damping.coefficient, 5 * base.rule.damping.coefficient);
+  EXPECT_FALSE(relax.until);
+  EXPECT_EQ(load.steps, 20u);
+  EXPECT_EQ(load.rule.dt, 0.07);
+  EXPECT_EQ(load.rule.damping.coefficient, base.rule.damping.coefficient);
+  EXPECT_EQ(load.probe_every, 2u);
+  EXPECT_EQ(load.rule.types[0].gravity, Vec3(0, 0, -0.01));
+  ASSERT_TRUE(load.until);
+  EXPECT_EQ(load.until->curve, "grip.force_x");
+  EXPECT_EQ(load.until->after, 5u);
+  EXPECT_TRUE(load.until->holds(-0.2));
+  EXPECT_FALSE(load.until->holds(0.19));
+  const auto type = [](const Scene& scene, const std::string& name) -> const ParticleType* {
+    for (const ParticleType& one : scene.rule.types)
+      if (one.name == name) return &one;
+    return nullptr;
+  };
+  ASSERT_TRUE(type(relax, "matter/right"));
+  EXPECT_EQ(type(relax, "matter/right")->velocity, Vec3::Zero());
+  EXPECT_EQ(type(load, "matter/right")->velocity, Vec3(0.03, -0.01, 0));
+  EXPECT_TRUE(type(relax, "matter/left"));
+  EXPECT_FALSE(type(load, "matter/left"));
+  EXPECT_EQ(relax.body.x, base.body.x);
+}
+
+std::string refusal(const std::string& more, const std::string& stage) {
+  try {
+    parsed(more, stage);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    return what.substr(0, what.find('\n'));
+  }
+  return "";
+}
+
+TEST(Stage, IsRefusedWithItsPlace) {
+  EXPECT_EQ(refusal(kStages, ""), "s.toml:49:1: the scene has 2 stages: --stage takes one");
+  EXPECT_EQ(refusal(kStages, "pull"), "s.toml has no stage 'pull'");
+  EXPECT_EQ(refusal("", "pull"), "s.toml has no stages, and no stage 'pull'");
+  EXPECT_EQ(refusal("[[stage]]\nname = \"a\"\nstpes = 3\n", "a"), "s.toml:50:1: unknown key 'stpes'");
+  EXPECT_EQ(refusal("[[stage]]\nname = \"a\"\n[[stage]]\nname = \"a\"\n", "a"),
+            "s.toml:51:8: stage 'a' is there twice");
+  const std::string a = "[[stage]]\nname = \"a\"\n";
+  EXPECT_EQ(refusal(a + "constraint = [{ name = \"lift\", free = true }]\n", "a"),
+            "s.toml:50:24: unknown constraint 'lift'");
+  EXPECT_EQ(refusal(a + "constraint = [{ name = \"left\", velocity = [1, 0, 0] }]\n", "a"),
+            "s.toml:50:43: 'left' is 'held' and has no velocity");
+  EXPECT_EQ(refusal(a + "until = { probe = \"grip\", above = 1 }\n", "a"),
+            "s.toml:50:19: unknown curve 'grip'");
+  EXPECT_EQ(refusal(a + "until = { probe = \"grip.force_x\", above = 1, below = 2 }\n", "a"),
+            "s.toml:50:54: give 'above' or 'below', not both");
+  EXPECT_EQ(refusal(a + "until = { probe = \"grip.force_x\" }\n", "a"),
+            "s.toml:50:9: missing key 'above' in 'stage.until'");
+  EXPECT_EQ(refusal(a + "probe_every = 0\nuntil = { probe = \"grip.force_x\", above = 1 }\n", "a"),
+            "s.toml:40:1: 'until' needs readings: 'probe_every' is 0");
+  EXPECT_EQ(refusal("[start]\nform = \"out\"\n", ""), "s.toml:49:1: unknown key 'form'");
+  EXPECT_EQ(parsed("[start]\nfrom = \"out\"\n", "").start, "out");
+}
+
+// Who does not put particles where another run left them must not take such a scene for another one.
+TEST(Stage, IsForThoseWhoBeginElsewhere) {
+  const auto plain = [](const std::string& more) {
+    try {
+      parse_scene(read_config_text(kGrips) + "\n" + more, "s.toml");
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      return what.substr(0, what.find('\n'));
+    }
+    return std::string();
+  };
+  EXPECT_EQ(plain(""), "");
+  EXPECT_EQ(plain(kStages),
+            "s.toml:49:1: a scene of stages is for 'cuboct run', 'crosscheck', 'check' and 'emit'");
+  EXPECT_EQ(plain("[start]\nfrom = \"out\"\n"),
+            "s.toml:48:1: [start] is for 'cuboct run', 'crosscheck', 'check' and 'emit'");
+}
+
+}  // namespace
+}  // namespace cuboct
