@@ -10,7 +10,7 @@ import re
 import sys
 
 WORDS, COLUMNS = 30, 160
-END = re.compile(r"(?<!e\.g\.)(?<!i\.e\.)(?<!et al\.)(?<!cf\.)(?<=[.!?])[\"')\]*_]*\s+(?=[\w`\"'(*\[√])")
+END = re.compile(r"(?<!\.\.\.)(?<!e\.g\.)(?<!i\.e\.)(?<!et al\.)(?<!cf\.)(?<=[.!?])[\"')\]*_]*\s+(?=[\w`\"'(*\[√])")
 
 
 class Paragraph:
