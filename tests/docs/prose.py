@@ -4,7 +4,8 @@
 
     prose.py ROOT [PAGE...]    prints what is longer, as PAGE:LINE: ...; exit status 1 if there is any
 
-Tables, code, comments, pictures and links' targets are no prose; a span of code or an equation of them is one word."""
+Tables, code, comments, pictures and links' targets are no prose, nor is what a script wrote: docs/tables and
+tests/blocks/pages. A span of code is one word."""
 import pathlib
 import re
 import sys
@@ -25,7 +26,7 @@ class Paragraph:
 
 def paragraphs(text):
     """The paragraphs of a page; `lead` is what begins one that is an item of a list."""
-    found, current, fence, comment, blank = [], None, "", False, True
+    found, current, fence, comment, generated, blank = [], None, "", False, False, True
     for number, line in enumerate(text.split("\n")):
         bare = line.strip()
         item = re.match(r"( *)([-*]|\d+\.) +(?=\S)", line)
@@ -33,6 +34,8 @@ def paragraphs(text):
             fence = "" if bare == fence else fence
         elif re.match(r"```|~~~", bare):
             fence, current = bare[:3], None
+        elif generated or re.match(r"<!-- (module|proofs|pages|table)\b", bare):
+            generated, current = bare != "<!-- end -->", None
         elif comment or bare.startswith("<!--"):
             comment, current = "-->" not in bare, None
         elif not bare or bare[0] in "|#<" or bare.startswith("!["):
