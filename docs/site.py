@@ -28,10 +28,31 @@ def linked(page):
             yield path
 
 
+def with_lists(text):
+    """As mkdocs' Markdown reads lists: after an empty line, and four blanks deeper where GitHub takes two."""
+    lines, fence, inside, before = [], False, False, ""
+    for line in text.split("\n"):
+        indent = len(line) - len(line.lstrip(" "))
+        item = re.match(r" *([-*]|\d+\.) ", line)
+        fence ^= line.lstrip().startswith("```")
+        if not fence and item and (inside or indent == 0):
+            if not inside and before:
+                lines.append("")
+            inside = True
+        elif inside and not fence and line and not indent and not before:
+            inside = False
+        lines.append(" " * indent + line if inside and not fence else line)
+        before = line.strip()
+    return "\n".join(lines)
+
+
 def copy(path, into):
     to = into / path.relative_to(ROOT)
     to.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(path, to)
+    if path.suffix == ".md":
+        to.write_text(with_lists(path.read_text()))
+    else:
+        shutil.copyfile(path, to)
 
 
 def title(page):

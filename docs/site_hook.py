@@ -25,6 +25,9 @@ def on_post_build(config):
     for page, text in texts.items():
         if "mkdocs" not in text or page.name == "404.html":  # a file of the tree, such as a study; served anywhere
             continue
+        plain = re.sub(r"<pre>.*?</pre>", "", text, flags=re.S)
+        for line in re.findall(r"^(?:<p>)?(?:[-*] |\| |```).*", plain, re.M):
+            log.warning(f"{page.relative_to(site)}: read as text: {line[:80]}")
         for target in re.findall(r'(?:href|src)="([^"]+)"', text):
             if re.match(r"[a-z]+:|//", target) or target == "#":
                 continue
