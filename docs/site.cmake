@@ -8,5 +8,5 @@ if(CUBOCT_MKDOCS AND Python3_Interpreter_FOUND)
             ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/docs/site.py ${CMAKE_BINARY_DIR}/docs-work ${CMAKE_BINARY_DIR}/docs
     COMMENT "The pages as HTML: ${CMAKE_BINARY_DIR}/docs/index.html" VERBATIM)
 else()
-  message(STATUS "The pages as HTML: without the target docs, as mkdocs is not found")
+  message(STATUS "The pages as HTML: without the target docs, as mkdocs (Debian package mkdocs) is not found")
 endif()
