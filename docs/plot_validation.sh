@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Draws the pictures of docs/reference/validation.md from the tables in docs/reference/validation. Needs gnuplot.
+# Draws the pictures of docs/measured/validation.md from the tables in docs/measured/validation. Needs gnuplot.
 set -eu
-cd "$(dirname "$0")/reference/validation"
+cd "$(dirname "$0")/measured/validation"
 gnuplot <<'PLOT'
 set terminal pngcairo size 900,600 font "sans,13" linewidth 1.5
 set grid

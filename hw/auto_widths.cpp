@@ -20,7 +20,7 @@ constexpr int kLeastPosition = 20, kLeastGuard = 8, kLeastDifference = 16, kLeas
 // Positions are finer than differences by so much: a difference is rounded once more than its ends.
 constexpr int kPositionBeyondDifference = 4;
 // A unit of a difference kicks by 2^4 units of a velocity or more: with less, the kicks' rounding, not the
-// differences', sets how well energy is kept (docs/reference/validation.md, section 1).
+// differences', sets how well energy is kept (docs/measured/validation.md, section 1).
 constexpr int kKickUnits = 4;
 // The widest with which every product and sum of the rule is exact in doubles (emu/lattice/kernel_rule.cpp),
 // and a gain times a displacement in 64 bits.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""First bending frequency of free beams: docs/reference/validation.md, section 5.
+"""First bending frequency of free beams: docs/measured/validation.md, section 5.
 
     python3 scenes/validation/beam.py BUILD OUT [JOBS]
 

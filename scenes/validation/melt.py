@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Temperature and pressure of a Lennard-Jones liquid beside LAMMPS: docs/reference/validation.md, section 3.
+"""Temperature and pressure of a Lennard-Jones liquid beside LAMMPS: docs/measured/validation.md, section 3.
 
     python3 scenes/validation/melt.py BUILD OUT [JOBS]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Fluctuation of the energy at constant energy against the time step: docs/reference/validation.md, section 1.
+"""Fluctuation of the energy at constant energy against the time step: docs/measured/validation.md, section 1.
 
     python3 scenes/validation/nve.py BUILD OUT [JOBS]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Speed of standing waves along [100]: docs/reference/validation.md, section 4.
+"""Speed of standing waves along [100]: docs/measured/validation.md, section 4.
 
     python3 scenes/validation/wave.py BUILD OUT [JOBS]
 

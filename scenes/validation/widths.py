@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What each format adds to the fluctuation of the energy: docs/reference/validation.md, section 1.
+"""What each format adds to the fluctuation of the energy: docs/measured/validation.md, section 1.
 
     python3 scenes/validation/widths.py BUILD OUT [JOBS]
 

@@ -49,12 +49,13 @@ ln -s "$root"/study/web/*.* "$work/bare/study/web"
 for folder in $(tr : ' ' <<<"$(pkg-config --variable pc_path pkg-config)"); do
   [ ! -e "$folder/libhwy.pc" ] || cp "$folder/libhwy.pc" "$work/pkgconfig"
 done
-PKG_CONFIG_LIBDIR=$work/pkgconfig configure "$work/bare" -DCMAKE_DISABLE_FIND_PACKAGE_{SQLite3,MPI,GTest}=ON
+PKG_CONFIG_LIBDIR=$work/pkgconfig configure "$work/bare" -DCMAKE_DISABLE_FIND_PACKAGE_{SQLite3,MPI,GTest}=ON -DCUBOCT_MKDOCS=
 says "The gpu engine: without its program cuboct-gpu, as no CUDA compiler (nvcc) works here"
 says "The lattice engine: on one rank alone, as MPI (libopenmpi-dev) is not found"
 says "Studies: left out, as SQLite (libsqlite3-dev) is not found"
 says "The systemc and rtl engines: without their programs, as SystemC (libsystemc-dev) is not found"
 says "Tests: left out, as GoogleTest (libgtest-dev) is not found"
+says "The pages as HTML: without the target docs, as mkdocs (Debian package mkdocs) is not found"
 has cuboct cuboct-lattice cuboct_synth
 if command -v ccache >/dev/null; then
   says "ccache: $(command -v ccache)"
@@ -62,12 +63,12 @@ if command -v ccache >/dev/null; then
 else
   says "ccache: not used, as it is not found"
 fi
-lacks cuboct_ranks cuboct_study cuboct-systemc cuboct-rtl unit_tests
+lacks cuboct_ranks cuboct_study cuboct-systemc cuboct-rtl unit_tests docs
 
-configure "$work/bare" -DCUBOCT_SYSTEMC=OFF -DCMAKE_CXX_COMPILER_LAUNCHER=env -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=bfd
+configure "$work/bare" -DCUBOCT_SYSTEMC=OFF -DCMAKE_CXX_COMPILER_LAUNCHER=env -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=bfd -DCUBOCT_MKDOCS=/bin/true
 says "Compiler launcher, as given: env"
 says "Linker, as given: -fuse-ld=bfd"
 says "Studies: without their page, as study/web/node_modules is missing: run tools/setup, or npm ci --ignore-scripts in study/web"
-has cuboct cuboct_study unit_tests study_tests
+has cuboct cuboct_study unit_tests study_tests docs
 lacks web_tests systemc_tests program_tests link_rtl_tests
 echo "three ways to configure"

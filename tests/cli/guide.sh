@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Runs every sh block of docs/user/guide.md in turn, and finds every text of its plain blocks in what the block before
-# printed.
-# usage: guide.sh ROOT DIRECTORY_OF_CUBOCT
+# Runs every sh block of a page in turn, in one directory, and finds every line of its plain blocks in what the block
+# before printed. A systemverilog block is written to the file that its first line names: `// NAME`.
+# usage: guide.sh ROOT DIRECTORY_OF_CUBOCT PAGE BLOCKS TEXTS [FILE...]
+#   at least BLOCKS sh blocks and TEXTS plain ones stand on the page; the FILEs exist at the end
 set -euo pipefail
-root=$1 programs=$2
+root=$1 programs=$2 page=$1/$3 least_blocks=$4 least_texts=$5
+shift 5
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 ln -s "$root/scenes" "$work/scenes"
@@ -16,18 +18,25 @@ kind='' body=''
 while IFS= read -r line; do
   case "$kind:$line" in
     ':```sh') kind=sh body='' ;;
+    ':```systemverilog') kind=file body='' ;;
     ':```') kind=text body='' ;;
+    ':```'*) kind=other body='' ;;
     'sh:```')
       kind='' blocks=$((blocks + 1))
       bash -euo pipefail -c "$body" >printed 2>&1 </dev/null || { echo "failed: $body"; cat printed; exit 1; } ;;
+    'file:```')
+      kind='' name=${body%%$'\n'*}
+      printf %s "$body" >"${name#// }" ;;
     'text:```')
       kind='' texts=$((texts + 1))
       while IFS= read -r expected; do
         grep -qxF -- "$expected" printed || { echo "not printed: $expected"; cat printed; exit 1; }
       done < <(printf %s "$body") ;;
-    sh:* | text:*) body+=$line$'\n' ;;
+    'other:```') kind='' ;;
+    sh:* | file:* | text:*) body+=$line$'\n' ;;
   esac
-done <"$root/docs/user/guide.md"
-[ "$blocks" -ge 7 ] && [ "$texts" -ge 2 ] || { echo "only $blocks blocks and $texts texts found"; exit 1; }
-test -s out/tour/report.html
+done <"$page"
+[ "$blocks" -ge "$least_blocks" ] && [ "$texts" -ge "$least_texts" ] ||
+  { echo "only $blocks blocks and $texts texts found"; exit 1; }
+for file; do test -s "$file"; done
 echo "$blocks blocks ran, $texts texts matched"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Twelve scenes of different kinds and speeds, none with an arch file: what the fixed rule's probes say
 // beside those of doubles, of the same integrator and the same steps. With CUBOCT_VERBOSE set it prints the
-// table of docs/reference/accuracy.md.
+// table of docs/measured/accuracy.md.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -60,7 +60,7 @@ double root_mean_square(const std::vector<double>& values) {
 
 class Accuracy : public testing::TestWithParam<Case> {};
 
-// One per cent: what docs/reference/accuracy.md promises of the widths that are taken where no arch file
+// One per cent: what docs/measured/accuracy.md promises of the widths that are taken where no arch file
 // gives any.
 TEST_P(Accuracy, IsThatOfDoublesToOnePerCent) {
   const Case& one = GetParam();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Standing waves and ringing beams against the theory of elasticity; the full tables are in
-// docs/reference/validation.md, sections 4 and 5.
+// docs/measured/validation.md, sections 4 and 5.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The total energy of a liquid fluctuates in proportion to dt^2, and as much as in LAMMPS: the check by which
-// GROMACS tests its integrators. docs/reference/validation.md, section 1, has the full table.
+// GROMACS tests its integrators. docs/measured/validation.md, section 1, has the full table.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

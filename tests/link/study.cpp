@@ -2,7 +2,7 @@
 // link_study SCENE RUNS STEPS systemc|rtl CACHE: runs a scene whose links detect, RUNS times with another
 // single fault each, and counts what became of them. Exit code 1 unless each fault was found, the run stopped
 // with the link named and every state before it equal to golden's, or nothing was left to go wrong and all
-// bits are equal. docs/reference/links.md has the table.
+// bits are equal. docs/measured/links.md has the table.
 #include <fmt/format.h>
 
 #include <string>

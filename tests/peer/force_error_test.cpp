@@ -2,7 +2,7 @@
 // Forces of the fixed rule against the reference in doubles, in the measure by which OpenMM states what its
 // platforms are worth: 2 |a - b| / (|a| + |b|) per particle. P. Eastman et al., PLoS Comput. Biol. 13 (2017)
 // e1005659, and OpenMM's user guide, "Platforms": median 2.6e-6 in single, 8.8e-8 in double precision.
-// CUBOCT_VERBOSE=1 prints the table of docs/reference/validation.md, section 2.
+// CUBOCT_VERBOSE=1 prints the table of docs/measured/validation.md, section 2.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

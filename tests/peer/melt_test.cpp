@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A Lennard-Jones liquid in golden's bits (the lattice engine holds them) and in LAMMPS: from the same start,
 // at the same energy, temperature and pressure agree within their statistical errors.
-// docs/reference/validation.md, section 3.
+// docs/measured/validation.md, section 3.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
