@@ -2,6 +2,8 @@
 // The scenes of scenes/templates, built in, for `cuboct new`.
 #pragma once
 
+#include <string>
+
 namespace cuboct {
 
 extern const char kTensionScene[];
@@ -12,5 +14,8 @@ extern const char kGasScene[];
 extern const char kMetalScene[];
 extern const char kCrackScene[];
 extern const char kSheetScene[];
+
+// By its name; InputError with the nearest spelling.
+const std::string& template_text(const std::string& name);
 
 }  // namespace cuboct
