@@ -2,6 +2,11 @@
 """The errors of cuboct."""
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ._run import Run
+
 
 class InputError(ValueError):
     """Something that was given is wrong: a scene, an arch, a study, or an argument.
@@ -51,7 +56,7 @@ class RunError(RuntimeError):
         super().__init__(message)
         self.advice = advice
         self.step = step
-        self.run = None
+        self.run: Run | None = None
 
     def __str__(self) -> str:
         text = super().__str__()

@@ -7,35 +7,35 @@ import os
 import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, Union
+from typing import Any, Self, Union
 
 from . import _cuboct
 from ._errors import InputError
 from ._toml import dumps
 
 
-class _Tables(dict):
+class _Tables(dict[str, Any]):
     """A TOML file as a nested dict. As long as nothing is changed the text is that of the file, and errors point into it."""
 
     _what = ""  # the name in errors of one that was made here
 
-    def __init__(self, *tables: Mapping[str, Any], **more: Any):
-        super().__init__(*tables, **more)
-        self._read: tuple[dict, str, str] | None = None  # as it was read: tables, text, path
+    def __init__(self, tables: Mapping[str, Any] = {}, /, **more: Any):
+        super().__init__(tables, **more)
+        self._read: tuple[dict[str, Any], str, str] | None = None  # as it was read: tables, text, path
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]):
+    def load(cls, path: str | os.PathLike[str]) -> Self:
         """Reads a file. InputError, with its place, where it is no TOML."""
         name = os.fspath(path)
         return cls._of(_cuboct.read_text(name), name)
 
     @classmethod
-    def parse(cls, text: str):
+    def parse(cls, text: str) -> Self:
         """The same for a text."""
         return cls._of(text, cls._what)
 
     @classmethod
-    def _of(cls, text: str, path: str):
+    def _of(cls, text: str, path: str) -> Self:
         _cuboct.check_toml(text, path)
         tables = cls(tomllib.loads(text))
         tables._read = (copy.deepcopy(dict(tables)), text, path)
@@ -50,7 +50,7 @@ class _Tables(dict):
         with open(path, "w", encoding="utf-8") as out:
             out.write(self.toml())
 
-    def copy(self):
+    def copy(self) -> Self:
         """A copy that shares no table with this one."""
         return copy.deepcopy(self)
 
@@ -74,7 +74,7 @@ class Scene(_Tables):
     _what = "scene"
 
     @classmethod
-    def like(cls, template: str) -> "Scene":
+    def like(cls, template: str) -> Self:
         """A template of `cuboct new`: tension, impact, drop, beam, gas, metal, crack or sheet."""
         return cls._of(_cuboct.template_text(template), template)
 

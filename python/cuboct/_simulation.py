@@ -25,12 +25,10 @@ def _count(value: int, what: str) -> int:
 
 def _vector(value: Sequence[float], what: str) -> tuple[float, float, float]:
     try:
-        vector = tuple(float(part) for part in value)
+        x, y, z = value
+        return float(x), float(y), float(z)
     except (TypeError, ValueError):
-        vector = ()
-    if len(vector) != 3 or isinstance(value, str):
-        raise InputError(f"{what} has three components, as plain numbers, not {value!r}")
-    return vector
+        raise InputError(f"{what} has three components, as plain numbers, not {value!r}") from None
 
 
 class Simulation:
