@@ -18,8 +18,8 @@ def _given(**options: Any) -> dict[str, Any]:
 
 
 def _count(value: int, what: str) -> int:
-    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or value < 0:
-        raise InputError(f"{what} is a whole number, not {value!r}")
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not 0 <= value < 2**63:
+        raise InputError(f"{what} is a whole number from 0 to 2^63 - 1, not {value!r}")
     return int(value)
 
 

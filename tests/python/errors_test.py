@@ -72,7 +72,7 @@ class Errors(unittest.TestCase):
     def test_numbers(self):
         block = scene_file("lj_block.toml")
         simulation = cuboct.Simulation(block)
-        for wrong in (-1, 2.5, "3", True, None):
+        for wrong in (-1, 2.5, "3", True, None, 2**63):
             self.refused(simulation.step, wrong)
         self.refused(cuboct.run, block, steps=-1)
         self.refused(cuboct.run, block, threads=0)
