@@ -221,10 +221,10 @@ PYBIND11_MODULE(_cuboct, module) {
 
   py::class_<Simulation>(module, "Simulation")
       .def(py::init([](const Sources& sources, const std::string& engine, const py::dict& options,
-                       std::optional<uint64_t> probe_every) {
+                       std::optional<uint64_t> probe_every, bool anyway) {
         const EngineOptions choice = options_of(options);
         py::gil_scoped_release unlocked;
-        return std::make_unique<Simulation>(sources, engine, choice, probe_every);
+        return std::make_unique<Simulation>(sources, engine, choice, probe_every, anyway);
       }))
       .def("step", &Simulation::step, Unlocked())
       .def("step_count", &Simulation::step_count, Unlocked())
@@ -295,8 +295,8 @@ PYBIND11_MODULE(_cuboct, module) {
       .def_property_readonly("type_names", &Simulation::type_names);
 
   module.def("run", [](const Sources& sources, const std::string& engine, const py::dict& options,
-                       std::optional<uint64_t> steps, std::optional<uint64_t> keep_every) {
-    const RunAsked asked{engine, options_of(options), steps, keep_every};
+                       std::optional<uint64_t> steps, std::optional<uint64_t> keep_every, bool anyway) {
+    const RunAsked asked{engine, options_of(options), steps, keep_every, anyway};
     WholeRun result;
     {
       py::gil_scoped_release unlocked;

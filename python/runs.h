@@ -18,6 +18,7 @@ struct RunAsked {
   EngineOptions options;
   std::optional<uint64_t> steps;       // the scene's
   std::optional<uint64_t> keep_every;  // states; nothing: the last alone
+  bool anyway = false;                 // though it needs more memory than is free
 };
 
 // A state in SI, by ids.

@@ -27,7 +27,6 @@ void check_here(const std::string& engine) {
 }
 
 void check_size(const Loaded& loaded, const std::string& engine, const EngineOptions& options) {
-  check_workers(options.threads, 1, loaded.setup.plan);
   RunSize size = run_size(loaded.scene);
   size.engine = engine;
   size.steps = 0;
@@ -70,12 +69,13 @@ void check_finite(const Vec3& value, const char* what) {
 }  // namespace
 
 Simulation::Simulation(const Sources& sources, const std::string& engine, const EngineOptions& options,
-                       std::optional<uint64_t> probe_every)
+                       std::optional<uint64_t> probe_every, bool anyway)
     : engine_name_(engine), options_(options), real_(options.is_real(engine)) {
   check_here(engine);
   options.check({engine}, {});
   Loaded loaded = load(sources);
-  check_size(loaded, engine, options);
+  check_workers(options.threads, 1, loaded.setup.plan);
+  if (!anyway) check_size(loaded, engine, options);
   scene_ = std::move(loaded.scene);
   setup_ = std::move(loaded.setup);
   probe_every_ = probe_every.value_or(scene_.probe_every);

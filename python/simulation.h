@@ -38,9 +38,10 @@ struct EnergiesNow {
 class Simulation {
  public:
   // `probe_every`: steps between two readings of probes and energies, 0: none; nothing: the scene's.
-  // InputError where the engine is no part of this process.
+  // `anyway`: though it needs more memory than is free. InputError where the engine is no part of this
+  // process.
   Simulation(const Sources& sources, const std::string& engine, const EngineOptions& options,
-             std::optional<uint64_t> probe_every);
+             std::optional<uint64_t> probe_every, bool anyway = false);
 
   // Throws Stopped, and Interrupted after a whole step.
   void step(uint64_t steps);

@@ -99,6 +99,7 @@ def run(
     devices: Sequence[int] | None = None,
     port: str | None = None,
     baud: int | None = None,
+    anyway: bool = False,
 ) -> Run:
     """Runs a scene from its start, as `cuboct run` does, in any engine: lattice, golden, reference, systemc, rtl, gpu or fpga.
 
@@ -113,7 +114,7 @@ def run(
     last = None if steps is None else _count(steps, "steps")
     every = None if frames_every is None else _count(frames_every, "frames_every")
     with sources(scene, arch) as source:
-        found = _cuboct.run(source, engine, options, last, every)
+        found = _cuboct.run(source, engine, options, last, every, bool(anyway))
     found["frames"] = [Frame(**frame) for frame in found["frames"]]
     found["summary"] = json.loads(found["summary"])
     result = Run(**found)

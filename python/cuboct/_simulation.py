@@ -39,7 +39,7 @@ class Simulation:
 
     `arch`: the machine, as a `cuboct.Arch`, a dict or a path. `threads`: as many as suit the scene, where None. `precision` ("double" or
     "float") and `integrator` ("euler" or "verlet") are of the reference. `probe_every`: steps between two readings of the probes and
-    energies, 0 for none; None: the scene's own.
+    energies, 0 for none; None: the scene's own. `anyway`: though it needs more memory than is free.
     """
 
     def __init__(
@@ -52,11 +52,12 @@ class Simulation:
         precision: str | None = None,
         integrator: str | None = None,
         probe_every: int | None = None,
+        anyway: bool = False,
     ):
         options = _given(threads=threads, precision=precision, integrator=integrator)
         every = None if probe_every is None else _count(probe_every, "probe_every")
         with sources(scene, arch) as source:
-            self._of = _cuboct.Simulation(source, engine, options, every)
+            self._of = _cuboct.Simulation(source, engine, options, every, bool(anyway))
         self._engine = engine
 
     def step(self, steps: int = 1) -> None:
