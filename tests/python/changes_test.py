@@ -76,17 +76,31 @@ class Changes(unittest.TestCase):
             np.testing.assert_allclose(simulation.velocities[:, 2] - speed, -0.01, rtol=2e-3)
 
     def test_beyond_the_cells_of_the_start(self):
-        """Pulled back by more than what the scene's own motion reaches."""
+        """Two particles, moved 1 mm along x, then 5 mm along y: five cells."""
+        scene = {
+            "mass": "1 mg",
+            "law": {"kind": "spline", "r": "[0, 1] mm", "force": "[1, 0] mN", "core": "0.5 mm"},
+            "particle": [{"position": "[0, 0, 0] mm"}, {"position": "[5, 0, 3] mm"}],
+            "constraint": [
+                {
+                    "name": "all",
+                    "kind": "moved",
+                    "velocity": "[1, 0, 0] m/s",
+                    "region": {"shape": "sphere", "radius": "1 m"},
+                }
+            ],
+            "run": {"dt": "10 us", "steps": 100},
+        }
         for engine in ("golden", "lattice"):
-            scene = bar()
-            scene["run"]["duration"] = "60 us"
             simulation = cuboct.Simulation(scene, engine)
+            self.assertAlmostEqual(cuboct.Scene(scene).check()["cell_edge"], 1e-3)
+            start = simulation.positions
             simulation.run()
             cells = simulation.plan_hash
-            simulation.set_velocity("pulled", [-4, 0, 0])
+            simulation.set_velocity("all", [0, 5, 0])
             self.assertNotEqual(simulation.plan_hash, cells)
-            simulation.step(2 * simulation.steps)
-            self.assertEqual(len(simulation.positions), simulation.particles)
+            simulation.step(100)
+            np.testing.assert_allclose(simulation.positions - start, [[1e-3, 5e-3, 0]] * 2, rtol=1e-3, atol=1e-9)
 
     def test_refusals_change_nothing(self):
         simulation = cuboct.Simulation(bar())
