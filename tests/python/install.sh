@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # `pip install .` as docs/user/python.md says, offline; the module then runs from anywhere.
-# usage: install.sh ROOT PYTHON
+# usage: install.sh ROOT PYTHON [BUILD_DIRECTORY]; without one, all is compiled once more
 set -euo pipefail
 root=$1 python=$2
+unset CUBOCT_BUILD
+[ $# -lt 3 ] || export CUBOCT_BUILD=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 unset PYTHONPATH
