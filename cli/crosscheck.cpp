@@ -9,8 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/crosscheck_real.h"
-#include "cli/engine_run.h"
-#include "cli/summary.h"
+#include "cli/run_engines.h"
 #include "hw/engines.h"
 #include "model/analysis/meter.h"
 #include "model/base/directory_lock.h"
@@ -33,50 +32,6 @@ struct Options {
   uint64_t steps = 0;
   bool steps_given = false;
 };
-
-bool runs_here(const std::string& engine) { return engine_row(engine).here != Here::none; }
-
-// Programs run beside the engines that run here. Lattice counts cycles where another engine does, but for
-// links that stall or fail.
-std::vector<Trace> run_all(const std::vector<std::string>& engines, const Options& options,
-                           const Loaded& loaded, const RunRequest& request, const std::string& directory) {
-  const Input& input = options.input;
-  const bool counted = input.stall_rate == 0 && input.faults.empty() && options.choice.ranks == 1 &&
-                       std::ranges::any_of(engines, [](auto& name) { return engine_row(name).cycles; });
-  std::vector<EngineRun> runs;
-  for (const std::string& engine : engines) {
-    RunRequest asked = request;
-    asked.cycles = counted && engine_row(engine).counts_if_asked;
-    runs.emplace_back(engine, input, loaded, options.choice, std::move(asked),
-                      directory + "/" + engine + ".h5", false);
-  }
-  std::vector<Trace> traces(engines.size());
-  for (const bool here : {true, false})
-    for (size_t i = 0; i < engines.size(); ++i)
-      if (runs_here(engines[i]) == here) traces[i] = runs[i].finish().trace;
-  return traces;
-}
-
-// The particle and field behind two hashes that differ: both engines again, up to that step, with the states
-// before and after it.
-std::string explain(const Options& options, const Loaded& loaded, const std::string& engine_a,
-                    const std::string& engine_b, uint64_t step, const std::string& directory) {
-  const Setup& setup = loaded.setup;
-  RunRequest request;
-  request.steps = step;
-  if (step > 0) request.frames.push_back(step - 1);
-  request.frames.push_back(step);
-  const std::vector<Trace> again = run_all({engine_a, engine_b}, options, loaded, request, directory);
-  for (const uint64_t at : request.frames) {
-    const State *a = frame_at(again[0], at), *b = frame_at(again[1], at);
-    if (!a || !b) return fmt::format("{} recorded no state of step {}", a ? engine_b : engine_a, at);
-    if (const auto mismatch = compare(*a, *b)) return mismatch->text(engine_a, engine_b, setup.plan.lattice);
-  }
-  return fmt::format(
-      "the states of step {} are equal when run again: one of the engines is not deterministic, or "
-      "computes its hashes wrong",
-      step);
-}
 
 // Whether numbers are to be compared instead of bits.
 bool of_real_numbers(const Options& options) {
@@ -150,9 +105,10 @@ int crosscheck(Options options) {
   RunRequest request;
   request.steps = steps;
   if (loaded.scene.until) request.until = true, request.probes = probe_steps_of(loaded.scene, steps);
-  const std::vector<Trace> traces = run_all(options.engines, options, loaded, request, directory);
+  const std::vector<Trace> traces =
+      run_all({options.input, options.choice, loaded, directory}, options.engines, request);
   for (size_t i = 0; i < traces.size(); ++i)
-    if (!options.out.empty() && runs_here(options.engines[i]))
+    if (!options.out.empty() && engine_row(options.engines[i]).here != Here::none)
       write_trace(options.out + "/" + options.engines[i] + ".h5", traces[i]);
   if (interrupted()) {
     fmt::print(stderr, "interrupted\n");
@@ -183,8 +139,8 @@ int crosscheck(Options options) {
       fmt::print("mismatch: {}\n", mismatch->text(options.engines[a], options.engines[b], plan.lattice));
       if (mismatch->kind == Mismatch::Kind::state) {
         const Scratch second;
-        fmt::print("first difference: {}\n", explain(options, loaded, options.engines[a], options.engines[b],
-                                                     mismatch->step, second.path("")));
+        fmt::print("first difference: {}\n", explain({options.input, options.choice, loaded, second.path("")},
+                                                     options.engines[a], options.engines[b], mismatch->step));
       }
       if (mismatch->kind == Mismatch::Kind::length || mismatch->kind == Mismatch::Kind::stop)
         for (const size_t i : {a, b})

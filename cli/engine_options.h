@@ -25,6 +25,7 @@ struct EngineOptions {
   uint64_t hash_every = 0;
   bool hashes_given = false, cycles = false, joules = false, resume = false;
   std::string checkpoint_every;
+  bool quiet = false;  // programs of engines say nothing, and what they would is an error's text
 
   void add_machines(
       CLI::App& command);  // --threads, --ranks, --gpus, --devices, --port, --baud, --port-timeout

@@ -66,6 +66,8 @@ void make(const Options& options) {
 
 }  // namespace
 
+const std::string& template_text(const std::string& name) { return template_of(name).text; }
+
 void add_new(CLI::App& app, int&) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("new", "write a commented scene to start from");

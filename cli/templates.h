@@ -2,6 +2,8 @@
 // The scenes of scenes/templates, built in, for `cuboct new`.
 #pragma once
 
+#include <string>
+
 namespace cuboct {
 
 extern const char kTensionScene[];
@@ -13,5 +15,8 @@ extern const char kMetalScene[];
 extern const char kCrackScene[];
 extern const char kSheetScene[];
 extern const char kReleaseScene[];
+
+// By its name; InputError with the nearest spelling.
+const std::string& template_text(const std::string& name);
 
 }  // namespace cuboct

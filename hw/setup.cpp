@@ -236,4 +236,26 @@ Setup make_setup(const Scene& scene, const Arch& arch) {
   return {std::move(plan), std::move(initial)};
 }
 
+Setup going_on(const Scene& scene, const Plan& before, const State& now) {
+  const FixedRule& old = before.rule;
+  const Arch& arch = before.arch;
+  FixedRule rule = quantise(scene.rule, old.cell_edge, old.widths, arch.table);
+  rule.axes = old.axes;
+  for (const FixedType& type : rule.types)
+    if (rule.axes == 2 && (type.velocity[2] != 0 || type.gravity[2] != 0))
+      throw InputError("the scene began flat, and its machine has no third axis: nothing can move along z",
+                       "a scene whose own constraints or gravity act along z is built with three axes");
+  std::vector<Cell> cells =
+      reachable_cells(scene, old.cell_edge, before.origin, before.lattice.period(), rule.axes);
+  if (arch.carry.empty_nodes) cells = filled_box(cells, arch);
+  Lattice lattice(std::move(cells), before.lattice.period());
+  State state = now;
+  for (Particle& particle : state.particles) particle.cell = lattice.find(before.lattice.cell(particle.cell));
+  Plan plan = make_plan(carrying(std::move(rule), arch.carry), arch, std::move(lattice), before.origin,
+                        before.particles);
+  plan.reasons = before.reasons;
+  plan.warnings = before.warnings;
+  return {std::move(plan), std::move(state)};
+}
+
 }  // namespace cuboct

@@ -73,10 +73,11 @@ void Runner::feed(const Scene& scene, const LatticeChoice& choice, CheckpointRea
   const auto next = [&](uint32_t k) {
     if (k == 0 && from) from->rewind();  // ranks take the particles twice
     if (from) return checked_particle(*from, plan_);
+    if (choice.from) return choice.from->particles[k];
     return shrinking ? (*shrinking)(k)
                      : fixed_particle(scene.body, k, plan_.rule, plan_.lattice, plan_.origin);
   };
-  const uint64_t step = from ? from->head().step : 0;
+  const uint64_t step = from ? from->head().step : choice.from ? choice.from->step : 0;
   engine_ = std::make_unique<LatticeEngine>(plan_, step, plan_.particles, next, choice.engine);
   if (choice.spare) *choice.spare = {};
 }
@@ -139,7 +140,7 @@ EngineKind lattice_kind(const Scene& scene, const Plan& plan, const LatticeChoic
 }
 
 Recorded run_lattice(const Scene& scene, const Plan& plan, const LatticeRun& request) {
-  const LatticeChoice choice{request.engine, nullptr, {}};
+  const LatticeChoice choice{.engine = request.engine};
   return record(scene, lattice_kind(scene, plan, choice), request);
 }
 

@@ -12,9 +12,11 @@ namespace cuboct::emu {
 
 struct LatticeChoice {
   LatticeOptions engine;
+  // A state of the plan to go on from, particles sorted by id, in place of the scene's body; null: that.
+  const State* from = nullptr;
   // Where memory is short: the scene's own body, which is used up, and how to get it again if need be.
   Body* spare = nullptr;
-  std::function<Body()> body_again;
+  std::function<Body()> body_again{};
 };
 
 // `plan` is the scene's. The engine loses its state in a step that fails. References are kept.

@@ -24,20 +24,19 @@ InputError::InputError(const std::string& message, const std::string& hint)
 
 InputError::InputError(const std::string& file, int line, int column, const std::string& message,
                        const std::string& hint, const std::string& excerpt)
-    : std::runtime_error(with_hint(fmt::format("{}:{}:{}: {}", file, line, column, message), hint)) {
-  if (!excerpt.empty()) excerpt_ = std::make_shared<const std::string>(excerpt);
-}
+    : std::runtime_error(with_hint(fmt::format("{}:{}:{}: {}", file, line, column, message), hint)),
+      place_(std::make_shared<const Place>(file, line, column, excerpt)) {}
 
 InputError InputError::with(const std::string& hint) const {
   InputError other(parts_of(*this).message, hint);
-  other.excerpt_ = excerpt_;
+  other.place_ = place_;
   return other;
 }
 
 std::string InputError::told() const {
-  if (!excerpt_) return what();
+  if (!place_ || place_->excerpt.empty()) return what();
   const ErrorParts parts = parts_of(*this);
-  return parts.message + '\n' + *excerpt_ + (parts.hint.empty() ? "" : std::string(kHint) + parts.hint);
+  return parts.message + '\n' + place_->excerpt + (parts.hint.empty() ? "" : std::string(kHint) + parts.hint);
 }
 
 ErrorParts parts_of(const InputError& error) {

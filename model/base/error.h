@@ -28,8 +28,16 @@ class InputError : public std::runtime_error {
 
   std::string told() const;
 
+  // Where in which file; null where the error does not know it.
+  struct Place {
+    std::string file;
+    int line, column;  // counted from 1
+    std::string excerpt;
+  };
+  const Place* place() const { return place_.get(); }
+
  private:
-  std::shared_ptr<const std::string> excerpt_;  // none: null
+  std::shared_ptr<const Place> place_;
 };
 
 // The checks that every fixed engine makes, in the order in which a step makes them. When several particles

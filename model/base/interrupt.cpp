@@ -4,6 +4,7 @@
 #include <csignal>
 #include <ctime>
 #include <initializer_list>
+#include <mutex>
 
 namespace cuboct {
 namespace {
@@ -29,6 +30,10 @@ void handle(int signal) {
   raise(signal);
 }
 
+std::mutex guard;  // of the two below
+int catching = 0;
+struct sigaction before_catching;
+
 }  // namespace
 
 void catch_interrupts() {
@@ -42,5 +47,21 @@ void catch_interrupts() {
 }
 
 bool interrupted() { return asked_to_stop != 0; }
+
+CatchInterrupt::CatchInterrupt() {
+  const std::lock_guard lock(guard);
+  if (catching++ > 0) return;
+  asked_to_stop = 0;
+  struct sigaction action {};
+  action.sa_handler = [](int) { asked_to_stop = 1; };
+  sigaction(SIGINT, &action, &before_catching);
+}
+
+CatchInterrupt::~CatchInterrupt() {
+  const std::lock_guard lock(guard);
+  if (--catching > 0) return;
+  sigaction(SIGINT, &before_catching, nullptr);
+  asked_to_stop = 0;
+}
 
 }  // namespace cuboct

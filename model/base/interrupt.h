@@ -9,4 +9,15 @@ namespace cuboct {
 void catch_interrupts();
 bool interrupted();
 
+// Within a program whose handlers are its own, such as Python: while any of these lives Ctrl-C alone is
+// caught, however often it comes, and nothing ends the program. Afterwards the handler of before is back, and
+// `interrupted` is false again.
+class CatchInterrupt {
+ public:
+  CatchInterrupt();
+  ~CatchInterrupt();
+  CatchInterrupt(const CatchInterrupt&) = delete;
+  CatchInterrupt& operator=(const CatchInterrupt&) = delete;
+};
+
 }  // namespace cuboct

@@ -151,7 +151,14 @@ void end_with_starter() {
   if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() == 1) _exit(1);
 }
 
+namespace {
+std::string other_directory;  // empty: that of the program
+}
+
+void set_program_directory(const std::string& directory) { other_directory = directory; }
+
 std::string program_directory() {
+  if (!other_directory.empty()) return other_directory;
   return std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
 }
 

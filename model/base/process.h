@@ -43,6 +43,8 @@ void end_with_starter();
 
 // Directory of the running program: engines with heavy needs are programs of their own, beside it.
 std::string program_directory();
+// Another one from now on: within a program that is not ours, such as Python.
+void set_program_directory(const std::string& directory);
 // The path of a program there; empty where it has none.
 std::string beside(const std::string& program);
 

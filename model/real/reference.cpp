@@ -18,7 +18,7 @@ int reference_threads(size_t particles) {
 }
 
 Reference::Reference(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options)
-    : rule_(rule), threads_(options.threads), body_(body) {
+    : rule_(rule), threads_(options.threads), step_(options.first_step), body_(body) {
   const size_t n = body_.size();
   if (body_.v.size() != n || body_.type.size() != n || (!body_.u.empty() && body_.u.size() != n)) {
     throw InputError(fmt::format("a body of {} positions has {} velocities, {} types and {} displacements", n,

@@ -35,6 +35,7 @@ struct RealOptions {
   // 0: a particle's pairs are summed by ascending id of the other. Else in an order drawn from it anew at
   // each step, as by a machine without order.
   uint64_t order_seed = 0;
+  uint64_t first_step = 0;  // the step that the body is the state of
 };
 
 // Threads that pay for themselves on this machine.

@@ -26,11 +26,12 @@ lacks() {
   local target
   for target; do if grep -qx "$target" "$work/targets"; then echo "there is a target $target"; exit 1; fi; done
 }
-parts=(cuboct_ranks cuboct_study cuboct_synth cuboct-systemc cuboct-rtl unit_tests)
+parts=(_cuboct cuboct_ranks cuboct_study cuboct_synth cuboct-systemc cuboct-rtl unit_tests)
 
-configure "$root" -DCUBOCT_{CCACHE,MOLD,CUDA,MPI,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF
+configure "$root" -DCUBOCT_{CCACHE,MOLD,CUDA,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF
 says "The gpu engine: without its program cuboct-gpu, as this build has sanitizers or CUBOCT_CUDA is OFF"
 says "The lattice engine: on one rank alone, as CUBOCT_MPI is OFF"
+says "Python: left out, as CUBOCT_PYTHON is OFF"
 says "Studies: left out, as CUBOCT_STUDIES is OFF"
 says "Synthesis: left out, as CUBOCT_SYNTH is OFF"
 says "The systemc and rtl engines: without their programs, as CUBOCT_SYSTEMC is OFF"
@@ -49,9 +50,10 @@ ln -s "$root"/study/web/*.* "$work/bare/study/web"
 for folder in $(tr : ' ' <<<"$(pkg-config --variable pc_path pkg-config)"); do
   [ ! -e "$folder/libhwy.pc" ] || cp "$folder/libhwy.pc" "$work/pkgconfig"
 done
-PKG_CONFIG_LIBDIR=$work/pkgconfig configure "$work/bare" -DCMAKE_DISABLE_FIND_PACKAGE_{SQLite3,MPI,GTest}=ON -DCUBOCT_MKDOCS=
+PKG_CONFIG_LIBDIR=$work/pkgconfig configure "$work/bare" -DCMAKE_DISABLE_FIND_PACKAGE_{SQLite3,MPI,GTest,pybind11}=ON -DCUBOCT_MKDOCS=
 says "The gpu engine: without its program cuboct-gpu, as no CUDA compiler (nvcc) works here"
 says "The lattice engine: on one rank alone, as MPI (libopenmpi-dev) is not found"
+says "Python: left out, as Python 3.11 (python3-dev) or pybind11 (pybind11-dev) is not found"
 says "Studies: left out, as SQLite (libsqlite3-dev) is not found"
 says "The systemc and rtl engines: without their programs, as SystemC (libsystemc-dev) is not found"
 says "Tests: left out, as GoogleTest (libgtest-dev) is not found"
@@ -63,7 +65,7 @@ if command -v ccache >/dev/null; then
 else
   says "ccache: not used, as it is not found"
 fi
-lacks cuboct_ranks cuboct_study cuboct-systemc cuboct-rtl unit_tests docs
+lacks _cuboct cuboct_ranks cuboct_study cuboct-systemc cuboct-rtl unit_tests docs
 
 configure "$work/bare" -DCUBOCT_SYSTEMC=OFF -DCMAKE_CXX_COMPILER_LAUNCHER=env -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=bfd -DCUBOCT_MKDOCS=/bin/true
 says "Compiler launcher, as given: env"

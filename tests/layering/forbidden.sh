@@ -4,7 +4,7 @@
 set -euo pipefail
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
-for d in model hw rtl synth emu study gpu_ref cli tests; do
+for d in model hw rtl synth emu study gpu_ref cli python tests; do
   [ ! -d "$1/$d" ] || tar -C "$1" --exclude=node_modules -cf - "$d" | tar -C "$copy" -xf -
 done
 echo '#include "hw/plan.h"' >> "$copy/model/contract/state.h"

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""Whole runs in any engine, comparisons of engines, and studies."""
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _cuboct
+from ._errors import InputError, RunError
+from ._scene import ArchLike, SceneLike, sources
+from ._simulation import _count, _given
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A state of a run, by particle id."""
+
+    step: int
+    positions: NDArray[np.float64]  # (particles, 3), m
+    velocities: NDArray[np.float64]  # (particles, 3), m/s, half a step before the positions
+    types: NDArray[np.uint8]  # (particles,)
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run leaves."""
+
+    engine: str
+    steps: int  # done
+    dt: float  # s
+    seconds: float  # of host time, of the steps alone
+    hash: str | None  # of the last state, 16 hexadecimal digits; None of real numbers
+    hashes: NDArray[np.uint64]  # at steps 0, hash_every, 2 hash_every, ..., and the last
+    hash_every: int
+    plan_hash: str
+    curves: dict[str, NDArray[Any]]  # "step", "time" (s), probes and energies by name
+    units: dict[str, str]  # of the curves
+    frames: list[Frame]
+    cycles: NDArray[np.uint64] | None  # [step, node, phase, (first, last)], of engines that count them
+    counters: dict[str, float]
+    warnings: list[str]  # what the watch found wrong (docs/reference/failures.md)
+    stopped: str | None  # why it ended before its last step
+    summary: dict[str, Any]  # of `cuboct run --json`
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """Of the last state, (particles, 3), m."""
+        return self.frames[-1].positions
+
+    @property
+    def velocities(self) -> NDArray[np.float64]:
+        """Of the last state, (particles, 3), m/s, half a step before the positions."""
+        return self.frames[-1].velocities
+
+    def __repr__(self) -> str:
+        return f"<cuboct.Run of {self.steps} steps, {self.engine} engine, hash {self.hash}>"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How a crosscheck ended. True where all engines matched."""
+
+    matched: bool
+    text: str  # "matched U updates over S steps in K engines", or the first difference
+    step: int | None  # of the first difference
+    engines: tuple[str, str] | None  # that differ first
+    updates: int  # of particles, that were found equal
+    steps: int
+
+    def __bool__(self) -> bool:
+        return self.matched
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def run(
+    scene: SceneLike,
+    engine: str = "lattice",
+    *,
+    arch: ArchLike = None,
+    steps: int | None = None,
+    frames_every: int | None = None,
+    threads: int | None = None,
+    ranks: int | None = None,
+    precision: str | None = None,
+    integrator: str | None = None,
+    hash_every: int | None = None,
+    cycles: bool = False,
+    gpus: int | None = None,
+    devices: Sequence[int] | None = None,
+    port: str | None = None,
+    baud: int | None = None,
+    anyway: bool = False,
+) -> Run:
+    """Runs a scene from its start, as `cuboct run` does, in any engine: lattice, golden, reference, systemc, rtl, gpu or fpga.
+
+    `steps`: None for the scene's. `frames_every`: keeps every so many states, 0 the first and the last; None: the last alone. The other arguments
+    are the command's options of that name. RunError where a step cannot be done, with what there is in its `run`.
+    """
+    options = _given(
+        threads=threads, ranks=ranks, precision=precision, integrator=integrator, hash_every=hash_every,
+        gpus=gpus, devices=None if devices is None else list(devices), port=port, baud=baud,
+    )  # fmt: skip
+    options["cycles"] = bool(cycles)
+    last = None if steps is None else _count(steps, "steps")
+    every = None if frames_every is None else _count(frames_every, "frames_every")
+    with sources(scene, arch) as source:
+        found = _cuboct.run(source, engine, options, last, every, bool(anyway))
+    found["frames"] = [Frame(**frame) for frame in found["frames"]]
+    found["summary"] = json.loads(found["summary"])
+    result = Run(**found)
+    if result.stopped is not None:
+        error = RunError(result.stopped, result.summary.get("advice", {}).get("value", ""), result.steps)
+        error.run = result
+        raise error
+    return result
+
+
+def crosscheck(
+    scene: SceneLike,
+    engines: Sequence[str] = ("golden", "lattice"),
+    *,
+    arch: ArchLike = None,
+    steps: int | None = None,
+    threads: int | None = None,
+) -> Comparison:
+    """Runs a scene in several engines of the fixed rule and compares every bit, and every cycle where two engines count them.
+
+    >>> assert crosscheck("scenes/lj_block.toml", ["golden", "lattice"], steps=5)
+    """
+    last = None if steps is None else _count(steps, "steps")
+    if isinstance(engines, str):
+        raise InputError(f"engines is a list of names, not {engines!r}", 'engines=["golden", "lattice"]')
+    with sources(scene, arch) as source:
+        return Comparison(**_cuboct.crosscheck(source, list(engines), _given(threads=threads), last))
+
+
+def explore(
+    study: str | os.PathLike[str],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    jobs: int | None = None,
+    speed: bool = True,
+) -> dict[str, Any]:
+    """Runs a study (docs/user/study.md) and returns its points as a table: columns by name, one entry per point.
+
+    Texts are lists, numbers NumPy arrays with nan for what was not measured: settings by their keys, `status`, `dt` (s), the study's figures by
+    name in SI, `error.*` against the truth, `cost`, speeds. pandas.DataFrame takes it as it is. What was computed stays in the directory `out`
+    (None: that of the study's name with .study) and is not computed again. `speed=False` leaves speeds out.
+    """
+    name = os.fspath(study)
+    where = os.fspath(out) if out is not None else Path(name).stem + ".study"
+    count = 0 if jobs is None else _count(jobs, "jobs")
+    columns, left_out = _cuboct.explore(name, where, count, bool(speed))
+    if left_out:
+        warnings.warn(left_out, stacklevel=2)
+    return {name: _numbers(column) for name, column in columns.items()}
+
+
+def _numbers(column: Any) -> Any:
+    """Settings that are all numbers, as such."""
+    try:
+        return np.array([float(value) for value in column])
+    except ValueError:
+        return column

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: MIT
+"""A simulation that is stepped from Python."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _cuboct
+from ._errors import InputError
+from ._scene import ArchLike, SceneLike, sources
+
+
+def _given(**options: Any) -> dict[str, Any]:
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def _count(value: int, what: str) -> int:
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not 0 <= value < 2**63:
+        raise InputError(f"{what} is a whole number from 0 to 2^63 - 1, not {value!r}")
+    return int(value)
+
+
+def _vector(value: Sequence[float], what: str) -> tuple[float, float, float]:
+    try:
+        x, y, z = value
+        return float(x), float(y), float(z)
+    except (TypeError, ValueError):
+        raise InputError(f"{what} has three components, as plain numbers, not {value!r}") from None
+
+
+class Simulation:
+    """A scene in an engine of this process: "golden", "lattice" (fast, the same bits) or "reference" (doubles).
+
+    Arrays are copies, by particle id. All quantities are in SI. Long calls let other threads run. Ctrl-C ends one after a whole step
+    with KeyboardInterrupt; the simulation then goes on from that step.
+
+    `arch`: the machine, as a `cuboct.Arch`, a dict or a path. `threads`: as many as suit the scene, where None. `precision` ("double" or
+    "float") and `integrator` ("euler" or "verlet") are of the reference. `probe_every`: steps between two readings of the probes and
+    energies, 0 for none; None: the scene's own. `anyway`: though it needs more memory than is free.
+    """
+
+    def __init__(
+        self,
+        scene: SceneLike,
+        engine: str = "lattice",
+        *,
+        arch: ArchLike = None,
+        threads: int | None = None,
+        precision: str | None = None,
+        integrator: str | None = None,
+        probe_every: int | None = None,
+        anyway: bool = False,
+    ):
+        options = _given(threads=threads, precision=precision, integrator=integrator)
+        every = None if probe_every is None else _count(probe_every, "probe_every")
+        with sources(scene, arch) as source:
+            self._of = _cuboct.Simulation(source, engine, options, every, bool(anyway))
+        self._engine = engine
+
+    def step(self, steps: int = 1) -> None:
+        """Goes so many steps further. RunError where one cannot be done; the state before it stands."""
+        self._of.step(_count(steps, "steps"))
+
+    def run(self) -> None:
+        """Goes to the scene's last step."""
+        self._of.step(max(self._of.scene_steps - self._of.step_count(), 0))
+
+    @property
+    def engine(self) -> str:
+        """Its name."""
+        return self._engine
+
+    @property
+    def steps(self) -> int:
+        """Steps done."""
+        return self._of.step_count()
+
+    @property
+    def dt(self) -> float:
+        """Time step, s."""
+        return self._of.dt
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self.steps * self.dt
+
+    @property
+    def particles(self) -> int:
+        """Their number."""
+        return self._of.particles
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """(particles, 3), m. A copy."""
+        return self._of.state()["positions"]
+
+    @property
+    def velocities(self) -> NDArray[np.float64]:
+        """(particles, 3), m/s. A copy. They live half a step before the positions; with velocity Verlet at the same time."""
+        return self._of.state()["velocities"]
+
+    @property
+    def types(self) -> NDArray[np.uint8]:
+        """(particles,), indices into `type_names`. A copy."""
+        return self._of.state()["types"]
+
+    @property
+    def type_names(self) -> list[str]:
+        """"material" or "material/constraint"."""
+        return self._of.type_names
+
+    @property
+    def hash(self) -> str | None:
+        """Of the state, 16 hexadecimal digits: equal in all engines of the fixed rule. None of the reference."""
+        return self._of.hash()
+
+    @property
+    def plan_hash(self) -> str:
+        """Of the machine."""
+        return self._of.plan_hash()
+
+    @property
+    def energies(self) -> dict[str, float]:
+        """`kinetic`, `potential`, `gravity` and `total`, J, at the time of the positions."""
+        return self._of.energies()[0]
+
+    @property
+    def temperature(self) -> float | None:
+        """K, in reduced units J; None where the scene has none (docs/reference/trace.md, Temperature)."""
+        return self._of.energies()[1]
+
+    @property
+    def curves(self) -> dict[str, NDArray[Any]]:
+        """What probes and energies read so far: "step", "time" (s), then the curves by name, such as "tension.stress".
+
+        Units: `units`. Curves of energies are called energy.kinetic and so on. They are read every `probe_every` steps.
+        """
+        return self._of.curves()[0]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of `curves`, by the same names."""
+        return self._of.curves()[1]
+
+    def set_velocity(self, constraint: str, velocity: Sequence[float]) -> None:
+        """Imposes another velocity, three numbers in m/s, on what the constraint of this name holds or moves.
+
+        The state stays as it is, to the last bit; cells are reached from where particles are now. InputError where the formats of the
+        machine's numbers, which were chosen for the scene, cannot hold it; nothing is changed then.
+        """
+        self._of.set_velocity(constraint, _vector(velocity, "a velocity"))
+
+    def set_gravity(self, gravity: Sequence[float]) -> None:
+        """Another gravity, three numbers in m/s^2. As `set_velocity`."""
+        self._of.set_gravity(_vector(gravity, "gravity"))
+
+    def picture(self, field: str = "strain", *, limit: float | None = None, width: int = 1200) -> bytes:
+        """A PNG of the present state, by gnuplot: `field` is "strain", "speed" or "thickness".
+
+        `limit`: where the colours end (strain: 0.01 is 1 %; m/s; m), None: at the 90th percentile. `width`: pixels, 400 to 16384.
+        """
+        if limit is not None and not 0 < limit < float("inf"):
+            raise InputError(f"limit = {limit!r}: a number above 0")
+        if not 400 <= _count(width, "width") <= 16384:
+            raise InputError(f"width = {width}: from 400 to 16384 pixels")
+        return self._of.picture(field, limit or 0.0, width)
+
+    def _repr_png_(self) -> bytes:
+        return self.picture()
+
+    def __repr__(self) -> str:
+        title = self._of.title or "a scene"
+        return f"<cuboct.Simulation of {title}: {self.particles} particles, step {self.steps}, {self.engine} engine>"

@@ -1,0 +1,31 @@
+# Whether the Python module can be built: sets CUBOCT_HAS_PYTHON, and says so. To be included before anything is
+# compiled: what a module loads has to be independent of its place in memory.
+set(CUBOCT_HAS_PYTHON OFF)
+if(NOT CUBOCT_PYTHON)
+  message(STATUS "Python: left out, as CUBOCT_PYTHON is OFF")
+  return()
+endif()
+if(CUBOCT_SANITIZE)
+  message(STATUS "Python: left out, as this build has sanitizers")
+  return()
+endif()
+# Debian's, which has Debian's NumPy, before what else stands in PATH.
+if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)
+  set(Python_EXECUTABLE /usr/bin/python3)
+endif()
+find_package(Python 3.11 COMPONENTS Interpreter Development.Module)
+find_package(pybind11 2.10)
+if(NOT Python_FOUND OR NOT pybind11_FOUND)
+  message(STATUS "Python: left out, as Python 3.11 (python3-dev) or pybind11 (pybind11-dev) is not found")
+  return()
+endif()
+execute_process(COMMAND ${Python_EXECUTABLE} -c "import numpy" RESULT_VARIABLE no_numpy OUTPUT_QUIET ERROR_QUIET)
+if(no_numpy)
+  message(STATUS "Python: left out, as ${Python_EXECUTABLE} has no NumPy (python3-numpy)")
+  return()
+endif()
+message(STATUS "Python: the module cuboct, for ${Python_EXECUTABLE} ${Python_VERSION}")
+set(CUBOCT_HAS_PYTHON ON)
+# One set of objects for programs and module. Nobody puts functions of his own in the place of ours: calls within a
+# file stay direct, and inlined.
+add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-fPIC;-fno-semantic-interposition>")

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "python/runs.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "cli/engine_run.h"
+#include "cli/estimate.h"
+#include "cli/run_engines.h"
+#include "cli/summary.h"
+#include "hw/engines.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "model/base/steps.h"
+#include "model/trace/compare.h"
+
+namespace cuboct::python {
+namespace {
+
+// Programs read files.
+Input input_of(const Sources& sources, const Scratch& scratch) {
+  Input input{.scene = scratch.path("scene.toml"), .arch = {}};
+  write_text(input.scene, sources.scene);
+  if (sources.arch.empty()) return input;
+  input.arch = scratch.path("arch.toml");
+  write_text(input.arch, sources.arch);
+  return input;
+}
+
+// What a program says of its own end is no error of the user's where he asked for it.
+template <typename Work>
+auto unless_interrupted(Work work) {
+  try {
+    auto result = work();
+    if (interrupted()) throw Interrupted();
+    return result;
+  } catch (const std::runtime_error&) {
+    if (interrupted()) throw Interrupted();
+    throw;
+  }
+}
+
+void check_size(const Loaded& loaded, const RunAsked& asked, uint64_t steps) {
+  RunSize size = run_size(loaded.scene);
+  size.engine = asked.engine;
+  size.steps = steps;
+  size.frame_every = asked.keep_every.value_or(0);
+  size.hash_every = hashes_every(asked.engine, asked.options);
+  size.cycles = asked.options.cycles;
+  size.threads = asked.options.threads;
+  size.ranks = asked.options.ranks;
+  check_fits(loaded.scene, size, estimate(loaded.scene, loaded.setup.plan, size), "");
+}
+
+}  // namespace
+
+WholeRun run(const Sources& sources, const RunAsked& asked) {
+  asked.options.check({asked.engine}, {});
+  const Loaded loaded = load_plan(sources);
+  const Scene& scene = loaded.scene;
+  const Plan& plan = loaded.setup.plan;
+  WholeRun result;
+  result.dt = scene.rule.dt;
+  RunRequest request;
+  request.steps = asked.steps.value_or(scene.steps);
+  if (!asked.anyway) check_size(loaded, asked, request.steps);
+  request.probes = every_so_often(scene.probe_every, request.steps);
+  request.energies = request.totals = request.watch = true;
+  request.cycles = asked.options.cycles;
+  request.hash_every = hashes_every(asked.engine, asked.options);
+  request.frames = asked.keep_every ? every_so_often(*asked.keep_every, request.steps)
+                                    : std::vector<uint64_t>{request.steps};
+  request.keep = [&](const RunState& frame) {
+    if (const State* state = std::get_if<State>(&frame)) {
+      result.kept.push_back({state->step, to_real(*state, plan.rule, plan.lattice, plan.origin)});
+    } else {
+      const RealFrame& real = std::get<RealFrame>(frame);
+      result.kept.push_back({real.step, Body{real.x, real.v, {}, scene.body.type}});
+    }
+  };
+  const Scratch scratch;
+  const Input input = input_of(sources, scratch);
+  const CatchInterrupt catching;
+  const uint64_t steps = request.steps;
+  result.recorded = unless_interrupted([&] {
+    return EngineRun(asked.engine, input, loaded, asked.options, std::move(request),
+                     scratch.path(asked.engine + ".h5"), true)
+        .finish();
+  });
+  if (!result.recorded.trouble.empty()) throw InputError(result.recorded.trouble);
+  result.recorded.trace.asked = steps;
+  Items summary = summarise(loaded, result.recorded, asked.options.is_real(asked.engine));
+  add_end(summary, result.recorded.trace);
+  result.summary = summary.json();
+  return result;
+}
+
+Comparison crosscheck(const Sources& sources, const std::vector<std::string>& engines,
+                      const EngineOptions& options, std::optional<uint64_t> steps) {
+  for (const std::string& engine : engines) engine_row(engine, true);
+  if (std::set(engines.begin(), engines.end()).size() != engines.size() || engines.size() < 2)
+    throw InputError("a crosscheck needs two or more different engines", "engines=[\"golden\", \"lattice\"]");
+  options.check(engines, {});
+  const Loaded loaded = load_plan(sources);
+  const Plan& plan = loaded.setup.plan;
+  const Scratch scratch;
+  const Input input = input_of(sources, scratch);
+  const CatchInterrupt catching;
+  RunRequest request;
+  request.steps = steps.value_or(loaded.scene.steps);
+  const std::vector<Trace> traces = unless_interrupted([&] {
+    return run_all({input, options, loaded, scratch.path("")}, engines, request);
+  });
+  Comparison result;
+  for (size_t a = 0; a < traces.size(); ++a)
+    for (size_t b = a + 1; b < traces.size(); ++b) {
+      const auto mismatch = compare(traces[a], traces[b]);
+      if (!mismatch) continue;
+      const std::string &first = engines[a], &second = engines[b];
+      result.text = "mismatch: " + mismatch->text(first, second, plan.lattice);
+      result.engines = {first, second};
+      if (mismatch->kind == Mismatch::Kind::state || mismatch->kind == Mismatch::Kind::cycles)
+        result.step = mismatch->step;
+      if (mismatch->kind == Mismatch::Kind::state) {
+        const Scratch again;
+        result.text +=
+            "\nfirst difference: " + unless_interrupted([&] {
+              return explain({input, options, loaded, again.path("")}, first, second, mismatch->step);
+            });
+      }
+      return result;
+    }
+  result.matched = true;
+  result.steps = traces[0].steps();
+  result.updates = updates_compared(traces[0], plan.particles);
+  result.text = fmt::format("matched {} updates over {} steps in {} engines", result.updates, result.steps,
+                            traces.size());
+  if (traces[0].stop) result.text += "\nall stopped: " + traces[0].stop->text;
+  return result;
+}
+
+}  // namespace cuboct::python

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Whole runs, in any engine: here, or in a program of its own.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/engine_options.h"
+#include "model/run/record.h"
+#include "python/sources.h"
+
+namespace cuboct::python {
+
+struct RunAsked {
+  std::string engine;
+  EngineOptions options;
+  std::optional<uint64_t> steps;       // the scene's
+  std::optional<uint64_t> keep_every;  // states; nothing: the last alone
+  bool anyway = false;                 // though it needs more memory than is free
+};
+
+// A state in SI, by ids.
+struct Kept {
+  uint64_t step = 0;
+  Body body;
+};
+
+struct WholeRun {
+  Recorded recorded;  // without its frames
+  std::vector<Kept> kept;
+  double dt = 0;        // s
+  std::string summary;  // as `cuboct run --json` prints it
+};
+
+// Throws Interrupted. A run that a fault stopped tells so in its trace.
+WholeRun run(const Sources& sources, const RunAsked& asked);
+
+struct Comparison {
+  bool matched = false;
+  std::string text;                                            // of one line or more
+  std::optional<uint64_t> step;                                // of the first difference, where it has one
+  std::optional<std::pair<std::string, std::string>> engines;  // that differ
+  uint64_t updates = 0, steps = 0;                             // compared
+};
+
+Comparison crosscheck(const Sources& sources, const std::vector<std::string>& engines,
+                      const EngineOptions& options, std::optional<uint64_t> steps);
+
+}  // namespace cuboct::python

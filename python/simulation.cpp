@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: MIT
+#include "python/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/advice.h"
+#include "cli/estimate.h"
+#include "cli/outputs.h"
+#include "hw/engine_kind.h"
+#include "hw/engines.h"
+#include "model/base/interrupt.h"
+#include "model/base/spelling.h"
+#include "model/run/golden_engine.h"
+#include "model/run/reference_engine.h"
+#include "model/trace/raster_plot.h"
+
+namespace cuboct::python {
+namespace {
+
+void check_here(const std::string& engine) {
+  if (engine_row(engine).here != Here::none) return;
+  throw InputError(fmt::format("the {} engine is a program of its own and cannot be stepped", engine),
+                   fmt::format("cuboct.run(scene, engine=\"{}\") runs it; {} can be stepped", engine,
+                               list_of(engines_that([](auto& row) { return row.here != Here::none; }))));
+}
+
+void check_size(const Loaded& loaded, const std::string& engine, const EngineOptions& options) {
+  RunSize size = run_size(loaded.scene);
+  size.engine = engine;
+  size.steps = 0;
+  size.threads = options.threads;
+  check_fits(loaded.scene, size, estimate(loaded.scene, loaded.setup.plan, size), "");
+}
+
+// The name of what imposes or steers a type's motion: its own is "material/constraint".
+std::string constraint_of(const ParticleType& type) {
+  const size_t at = type.name.find('/');
+  return at == std::string::npos ? "" : type.name.substr(at + 1);
+}
+
+void give_velocity(Rule& rule, const std::string& constraint, const Vec3& velocity) {
+  std::vector<std::string> names;
+  bool found = false;
+  for (ParticleType& type : rule.types) {
+    const std::string name = constraint_of(type);
+    if (!name.empty()) names.push_back(name);
+    if (name != constraint || name.empty()) continue;
+    found = true;
+    for (int a = 0; a < 3; ++a)
+      if (is_free(type, a) && velocity[a] != 0)
+        throw InputError(
+            fmt::format("the velocity has a part along {}, which '{}' leaves free", "xyz"[a], constraint));
+    type.velocity = velocity;
+  }
+  if (found) return;
+  const std::string near = did_you_mean(constraint, names);
+  throw InputError(fmt::format("no particle is held or moved by a constraint '{}'", constraint),
+                   !near.empty()   ? near
+                   : names.empty() ? "the scene has no constraints"
+                                   : "one of " + list_of(names));
+}
+
+void check_finite(const Vec3& value, const char* what) {
+  if (!value.allFinite()) throw InputError(fmt::format("{} is not finite", what));
+}
+
+}  // namespace
+
+Simulation::Simulation(const Sources& sources, const std::string& engine, const EngineOptions& options,
+                       std::optional<uint64_t> probe_every, bool anyway)
+    : engine_name_(engine), options_(options), real_(options.is_real(engine)) {
+  check_here(engine);
+  options.check({engine}, {});
+  Loaded loaded = load(sources);
+  check_workers(options.threads, 1, loaded.setup.plan);
+  if (!anyway) check_size(loaded, engine, options);
+  scene_ = std::move(loaded.scene);
+  setup_ = std::move(loaded.setup);
+  probe_every_ = probe_every.value_or(scene_.probe_every);
+  if (real_) start_ = scene_.body, setup_.initial = {};
+  make_engine();
+  const EngineKind kind =
+      real_ ? real_kind(engine, scene_, setup_.plan, false) : fixed_kind(engine, scene_, setup_.plan);
+  meter_.emplace(scene_, kind.initial, MeterOptions{.energies = true, .threads = options.threads});
+  if (probe_every_ > 0) read_probes();
+}
+
+void Simulation::make_engine() {
+  engine_.reset();
+  reading_.reset();
+  present_.reset();
+  const Plan& plan = setup_.plan;
+  const Here here = engine_row(engine_name_).here;
+  if (here == Here::reference) {
+    RealOptions real = options_.real_options();
+    real.threads = options_.threads > 0 ? options_.threads : reference_threads(start_.size());
+    real.first_step = first_step_;
+    engine_ = std::make_unique<ReferenceEngine>(scene_, start_, real, plan.rule.cell_edge);
+  } else if (here == Here::golden) {
+    engine_ = std::make_unique<GoldenEngine>(setting_of(scene_, plan, options_.threads), plan.arch.capacity,
+                                             setup_.initial);
+  } else {
+    lattice_.engine.threads = options_.threads;
+    lattice_.from = &setup_.initial;
+    engine_ = emu::lattice_kind(scene_, plan, lattice_).make(nullptr, false);
+  }
+}
+
+// Engines may lose their state in a step that fails: what was done is done again, to the same bits.
+void Simulation::stop(const StopReason& reason) {
+  make_engine();
+  while (now() < reason.step) engine_->advance(1);
+  throw Stopped(reason, real_ ? "" : advice_on(reason, setup_.plan, scene_));
+}
+
+void Simulation::advance() {
+  const uint64_t before = now();
+  reading_.reset();
+  present_.reset();
+  try {
+    engine_->advance(1);
+  } catch (const RunError& e) {
+    stop({e.fault, before, e.cell, e.particle, e.number, e.what()});
+  } catch (const StepError& error) {
+    StopReason reason = error.reason;
+    reason.step = before;
+    stop(reason);
+  }
+}
+
+void Simulation::step(uint64_t steps) {
+  const std::lock_guard lock(mutex_);
+  const CatchInterrupt catching;
+  for (; steps > 0; --steps) {
+    if (interrupted()) throw Interrupted();
+    advance();
+    if (probe_every_ > 0 && now() % probe_every_ == 0) read_probes();
+  }
+  if (interrupted()) throw Interrupted();
+}
+
+const Reading& Simulation::reading() {
+  if (!reading_) reading_ = engine_->read(meter_->asked(false));
+  return *reading_;
+}
+
+void Simulation::read_probes() { meter_->add(reading()); }
+
+const Body& Simulation::present() {
+  if (present_) return *present_;
+  RunState frame = engine_->frame(false);
+  if (const State* state = std::get_if<State>(&frame)) {
+    const Plan& plan = setup_.plan;
+    present_ = to_real(*state, plan.rule, plan.lattice, plan.origin);
+  } else {
+    RealFrame& real = std::get<RealFrame>(frame);
+    present_ = Body{std::move(real.x), std::move(real.v), {}, scene_.body.type};
+  }
+  return *present_;
+}
+
+uint64_t Simulation::step_count() {
+  const std::lock_guard lock(mutex_);
+  return now();
+}
+
+Body Simulation::body() {
+  const std::lock_guard lock(mutex_);
+  return present();
+}
+
+uint64_t Simulation::hash() {
+  const std::lock_guard lock(mutex_);
+  return engine_->hash();
+}
+
+uint64_t Simulation::plan_hash() {
+  const std::lock_guard lock(mutex_);
+  return setup_.plan.hash;
+}
+
+EnergiesNow Simulation::energies() {
+  const std::lock_guard lock(mutex_);
+  EnergiesNow result{reading().energies, {}};
+  const Thermometer thermometer(scene_);
+  if (thermometer.wanted()) result.temperature = thermometer.temperature(result.of.free);
+  return result;
+}
+
+std::vector<Curve> Simulation::curves() {
+  const std::lock_guard lock(mutex_);
+  return meter_->curves();
+}
+
+std::vector<std::string> Simulation::type_names() const {
+  std::vector<std::string> names;
+  for (const ParticleType& type : scene_.rule.types) names.push_back(type.name);
+  return names;
+}
+
+void Simulation::set_velocity(const std::string& constraint, const Vec3& velocity) {
+  check_finite(velocity, "the velocity");
+  change([&](Rule& rule) { give_velocity(rule, constraint, velocity); });
+}
+
+void Simulation::set_gravity(const Vec3& gravity) {
+  check_finite(gravity, "gravity");
+  change([&](Rule& rule) {
+    for (ParticleType& type : rule.types) type.gravity = gravity;
+  });
+}
+
+// All that can be refused is, before anything changes.
+void Simulation::change(const std::function<void(Rule&)>& edit) {
+  const std::lock_guard lock(mutex_);
+  Scene changed = scene_;
+  edit(changed.rule);
+  strain();  // its initial positions are those of the plan so far
+  first_step_ = now();
+  if (real_) {
+    start_ = static_cast<const ReferenceEngine&>(*engine_).body();
+  } else {
+    const RunState frame = engine_->frame(false);
+    const State& state = std::get<State>(frame);
+    const Plan& plan = setup_.plan;
+    changed.body = to_real(state, plan.rule, plan.lattice, plan.origin);
+    setup_ = going_on(changed, plan, state);
+  }
+  scene_.rule = std::move(changed.rule);
+  make_engine();
+}
+
+const StrainMeter& Simulation::strain() {
+  if (strain_) return *strain_;
+  if (real_) return strain_.emplace(strain_meter(scene_, scene_.body.x));
+  const Plan& plan = setup_.plan;
+  std::vector<Vec3> initial;
+  initial.reserve(scene_.body.size());
+  for (uint32_t id = 0; id < scene_.body.size(); ++id)
+    initial.push_back(position_of(plan.rule, plan.lattice, plan.origin,
+                                  fixed_particle(scene_.body, id, plan.rule, plan.lattice, plan.origin)));
+  return strain_.emplace(strain_meter(scene_, initial));
+}
+
+std::string Simulation::picture(const std::string& field, double limit, int width) {
+  const std::lock_guard lock(mutex_);
+  const int axis = strain_axis(scene_);
+  const Body& body = present();
+  const Frame frame{now(),     static_cast<double>(now()) * dt(), body.x, body.v,
+                    body.type, strain().axial(body.x, axis)};
+  const double radius = frame_style(scene_).radius;
+  const RasterGrid whole = raster_grid(frame, radius, static_cast<uint32_t>(width));
+  const RasterGrid grid = part_of(whole, window_of(frame, whole, radius));
+  const Rasters rasters{scene_.title, axis, 2 * radius, grid, {rasterise(frame, grid, radius)}};
+  return plot_rasters(rasters, {field_of(field), {0}, limit, width});
+}
+
+}  // namespace cuboct::python

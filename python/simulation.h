@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// A scene in an engine of this process that is stepped from outside. Any thread may call any function: one
+// waits for the other.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cli/engine_options.h"
+#include "emu/lattice/run.h"
+#include "model/analysis/meter.h"
+#include "model/analysis/strain.h"
+#include "model/run/engine.h"
+#include "python/sources.h"
+
+namespace cuboct::python {
+
+// A step could not be done; the state before it stands.
+class Stopped : public std::runtime_error {
+ public:
+  // `advice`: what a user can do; empty where nothing is known.
+  Stopped(const StopReason& reason, const std::string& advice)
+      : std::runtime_error(reason.text), reason(reason), advice(advice) {}
+  StopReason reason;
+  std::string advice;
+};
+
+struct EnergiesNow {
+  Energies of;
+  std::optional<double> temperature;  // K, in reduced units J; of a scene that has one
+};
+
+class Simulation {
+ public:
+  // `probe_every`: steps between two readings of probes and energies, 0: none; nothing: the scene's.
+  // `anyway`: though it needs more memory than is free. InputError where the engine is no part of this
+  // process.
+  Simulation(const Sources& sources, const std::string& engine, const EngineOptions& options,
+             std::optional<uint64_t> probe_every, bool anyway = false);
+
+  // Throws Stopped, and Interrupted after a whole step.
+  void step(uint64_t steps);
+
+  uint64_t step_count();
+  Body body();      // the index is the particle's id; velocities live half a step before the positions, but
+                    // for velocity Verlet
+  uint64_t hash();  // of fixed engines
+  uint64_t plan_hash();
+  EnergiesNow energies();
+  std::vector<Curve> curves();
+
+  // m/s, of all particles that the constraint holds or moves, from the next step on.
+  void set_velocity(const std::string& constraint, const Vec3& velocity);
+  void set_gravity(const Vec3& gravity);  // m/s^2
+
+  // PNG, of the present state.
+  std::string picture(const std::string& field, double limit, int width);
+
+  // Never change.
+  bool real() const { return real_; }
+  double dt() const { return scene_.rule.dt; }
+  uint64_t particles() const { return scene_.body.size(); }
+  uint64_t scene_steps() const { return scene_.steps; }
+  const std::string& title() const { return scene_.title; }
+  std::vector<std::string> type_names() const;
+
+ private:
+  void make_engine();
+  void advance();
+  [[noreturn]] void stop(const StopReason& reason);
+  void read_probes();
+  const Reading& reading();
+  const Body& present();
+  const StrainMeter& strain();
+  void change(const std::function<void(Rule&)>& edit);
+  uint64_t now() const { return engine_->step_count(); }
+
+  std::mutex mutex_;
+  Scene scene_;  // its body is the initial one
+  Setup setup_;  // the state is that from which the engine was made
+  Body start_;   // the same of an engine in real numbers
+  std::string engine_name_;
+  EngineOptions options_;
+  bool real_;
+  uint64_t first_step_ = 0, probe_every_;  // of the engine
+  emu::LatticeChoice lattice_;
+  std::unique_ptr<Engine> engine_;
+  std::optional<Meter> meter_;
+  std::optional<StrainMeter> strain_;  // against the initial state
+  std::optional<Reading> reading_;     // those of the present state, once asked for
+  std::optional<Body> present_;
+};
+
+}  // namespace cuboct::python
