@@ -46,7 +46,7 @@ std::vector<Trace> run_all(const std::vector<std::string>& engines, const Option
     RunRequest asked = request;
     asked.cycles = counted && engine_row(engine).counts_if_asked;
     runs.emplace_back(engine, input, loaded, options.choice, std::move(asked),
-                      directory + "/" + engine + ".h5", false);
+                      fmt::format("{}/{}.h5", directory, engine), false);
   }
   std::vector<Trace> traces(engines.size());
   for (const bool here : {true, false})

@@ -113,8 +113,8 @@ RunRecord read_record(const std::string& directory) {
       return value.empty() ? value : (fs::path(directory) / value).lexically_normal().string();
     };
     // A directory of before there were states holds a run that came to its end.
-    const RunRecord record{from("scene"), from("arch"), table["engine"].value_or(std::string()),
-                           table["state"].value_or(std::string("finished"))};
+    RunRecord record{from("scene"), from("arch"), table["engine"].value_or(std::string()),
+                     table["state"].value_or(std::string("finished"))};
     // A stranger's record may name what never ends, as a device.
     for (const auto& [key, file] : {std::pair{"scene", record.scene}, {"arch", record.arch}})
       if ((key[0] == 's' || !file.empty()) && !fs::is_regular_file(file))
