@@ -46,15 +46,16 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
                            : fmt::format("argument {} of 'cuboct {}' is empty", i, words[0]),
                        fmt::format("leave it out, or see 'cuboct {} --help'", words[0]));
     }
-  std::vector<std::string> options;
-  for (const CLI::Option* option : command->get_options())
+  std::vector<std::string> options, letters;
+  for (const CLI::Option* option : command->get_options()) {
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) letters.push_back("-" + name);
+  }
   for (size_t i = 1; i < words.size(); ++i) {
-    const bool is_short =
-        words[i].size() > 1 && words[i][0] == '-' && std::isalpha(words[i][1]) && words[i] != "-h";
+    const bool is_short = words[i].size() > 1 && words[i][0] == '-' && std::isalpha(words[i][1]);
     if (!words[i].starts_with("--") && !is_short) continue;
     const std::string name = words[i].substr(0, words[i].find('='));
-    if (std::find(options.begin(), options.end(), name) != options.end()) continue;
+    if (std::ranges::count(is_short ? letters : options, name) > 0) continue;
     const std::string near = did_you_mean(name, options);
     throw InputError(fmt::format("unknown option '{}' of 'cuboct {}'", name, words[0]),
                      near.empty() ? fmt::format("see 'cuboct {} --help'", words[0]) : near);

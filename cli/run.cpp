@@ -33,7 +33,7 @@ struct Options {
   uint64_t frames_every = 0;
   uint32_t raster = 800;
   bool steps_given = false, frames_given = false, json = false, no_watch = false, no_states = false,
-       si = false, raster_given = false, force = false, anyway = false;
+       si = false, raster_given = false, force = false, anyway = false, quiet = false, verbose = false;
 
   // Options of what is kept say nothing where nothing is.
   void check_kept() const {
@@ -94,11 +94,28 @@ std::string print(const Items& summary, bool json) {
   return {};
 }
 
+// What --verbose says: where the engine runs, what it computes, and why what the arch file leaves to cuboct
+// is as it is.
+std::string plan_text(const Options& options, const Plan& plan) {
+  const EngineRow& row = engine_row(options.engine);
+  const std::string program = options.engines.ranks > 1 ? row.ranks : row.program;
+  std::string text = fmt::format("  {:<22} {}, {}\n", "engine", row.name,
+                                 program.empty() ? "in this process" : "the program " + program);
+  if (options.engines.is_real(options.engine)) return text;
+  text += describe(plan);
+  for (const WidthReason& reason : plan.reasons)
+    text += fmt::format("  {:<22} {}: {}\n", reason.key, reason.bits,
+                        reason.asked ? "by the arch file" : reason.why);
+  for (const std::string& warning : plan.warnings) text += fmt::format("  {:<22} {}\n", "warning", warning);
+  return text;
+}
+
 int run(Options options) {
   engine_row(options.engine);
   options.engines.check({options.engine}, options.input);
   options.check_kept();
   const Loaded loaded = load_plan(options.input);
+  if (options.verbose) fmt::print(stderr, "{}", plan_text(options, loaded.setup.plan));
   catch_interrupts();
   const Scene& scene = loaded.scene;
   const bool real = options.engines.is_real(options.engine);
@@ -111,7 +128,7 @@ int run(Options options) {
   request.watch = !options.no_watch;
   request.cycles = options.engines.cycles;
   request.hash_every = hashes_every(options.engine, options.engines);
-  request.progress = stderr_is_terminal();
+  request.log = options.quiet ? LogRows::quiet : stderr_is_terminal() ? LogRows::seconds : LogRows::parts;
   if (options.engines.keeps_checkpoints()) request.checkpoint.path = options.out + "/checkpoint";
   const std::string checkpoint = request.checkpoint.path;
   std::optional<Recorder> recorder;
@@ -205,6 +222,10 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--no-watch", options->no_watch,
                     "do not look for what makes a run wrong (docs/reference/failures.md)");
   command->add_flag("--anyway", options->anyway, "run although it needs more memory or disk than is free");
+  auto* quiet = command->add_flag("-q,--quiet", options->quiet,
+                                  "nothing on stderr but errors: no table of the run as it goes");
+  command->add_flag("-v,--verbose", options->verbose, "say what runs before it does: engine, plan, reasons")
+      ->excludes(quiet);
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->callback([options, steps, frames, raster, &exit_code] {
     options->steps_given = steps->count() > 0;

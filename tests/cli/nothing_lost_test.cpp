@@ -133,7 +133,7 @@ class NothingLost : public testing::Test {
 
   std::string dir() const { return bench_.path("dir"); }
   Strings run(const Strings& more) const {
-    Strings all{"run", kScene, "--out", dir()};
+    Strings all{"run", kScene, "--quiet", "--out", dir()};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -486,8 +486,8 @@ TEST_F(NothingLost, ADirectoryThatCannotBeMadeIsFoundFirst) {
 // Nothing else of the run is lost with whoever reads the summary.
 TEST_F(NothingLost, AReaderThatGoesAwayCostsTheSummaryAlone) {
   const std::string command =
-      fmt::format("cd {}; {} run {} --steps 5 --out {} 2>{} | :; exit ${{PIPESTATUS[0]}}", CUBOCT_SOURCE_DIR,
-                  bench_.path("bin/cuboct"), kScene, dir(), bench_.path("err"));
+      fmt::format("cd {}; {} run {} --quiet --steps 5 --out {} 2>{} | :; exit ${{PIPESTATUS[0]}}",
+                  CUBOCT_SOURCE_DIR, bench_.path("bin/cuboct"), kScene, dir(), bench_.path("err"));
   const int status = std::system(("bash -c '" + command + "'").c_str());
   EXPECT_EQ(WEXITSTATUS(status), 2);
   EXPECT_EQ(contents(bench_.path("err")), "cannot print the summary: Broken pipe\n");

@@ -220,8 +220,8 @@ TEST_F(GpuProgram, OfALongerStepIsBeyondTheBoundOfPositions) {
 }
 
 TEST_F(GpuProgram, EndsEarlyWhenItIsAsked) {
-  const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--steps", "100000000", "--out",
-                                       bench_.path("run"), "--hash-every", "1000000"},
+  const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--steps", "100000000", "--quiet",
+                                       "--out", bench_.path("run"), "--hash-every", "1000000"},
                                       1.5);
   EXPECT_EQ(answer.code, 1);
   EXPECT_EQ(answer.err, "interrupted\n");
