@@ -115,7 +115,7 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
              e.samples + e.spans;
 
   // Per particle a line of XYZ, a record of VTK and, packed, of the trace.
-  constexpr double kXyz = 95, kVtk = 76, kState = 15, kPixel = 1, kSpan = 1.5;
+  constexpr double kXyz = 145, kVtk = 66, kState = 15, kPixel = 1, kSpan = 1.5;
   e.frames = count_every(size.frame_every, size.steps);
   e.frame =
       kPixel * pixels_of(scene, extent, size.raster) + (size.states ? particles * (kXyz + kVtk + kState) : 0);

@@ -31,9 +31,18 @@ struct Options {
   std::string out;
   uint64_t steps = 0;
   uint64_t frames_every = 0;
+  std::vector<std::string> frames{"xyz", "vtp"};
   uint32_t raster = 800;
-  bool steps_given = false, frames_given = false, json = false, no_watch = false, no_states = false,
-       si = false, raster_given = false, force = false, anyway = false, quiet = false, verbose = false;
+  bool steps_given = false, frames_given = false, formats_given = false, json = false, no_watch = false,
+       no_states = false, si = false, raster_given = false, force = false, anyway = false, quiet = false,
+       verbose = false;
+
+  // Of the frames' files.
+  std::vector<std::string> formats() const {
+    if (std::ranges::count(frames, "none") == 0) return frames;
+    if (frames.size() > 1) throw InputError("--frames: none goes with no other format");
+    return {};
+  }
 
   // Options of what is kept say nothing where nothing is.
   void check_kept() const {
@@ -42,6 +51,7 @@ struct Options {
         throw InputError(fmt::format("{} needs --out DIR: without it nothing of the run is kept", option));
     };
     needs_out(frames_given, "--frames-every");
+    needs_out(formats_given, "--frames");
     needs_out(raster_given, "--raster");
     needs_out(no_states, "--no-states");
     needs_out(si, "--si");
@@ -114,6 +124,7 @@ int run(Options options) {
   engine_row(options.engine);
   options.engines.check({options.engine}, options.input);
   options.check_kept();
+  static_cast<void>(options.formats());
   const Loaded loaded = load_plan(options.input);
   if (options.verbose) fmt::print(stderr, "{}", plan_text(options, loaded.setup.plan));
   catch_interrupts();
@@ -139,6 +150,7 @@ int run(Options options) {
                                      options.engines.resume,
                                      options.force,
                                      options.no_states,
+                                     options.formats(),
                                      options.raster,
                                      real,
                                      options.si,
@@ -203,6 +215,15 @@ void add_run(CLI::App& app, int& exit_code) {
                                   "keep every K-th state; default: the scene's; 0: first and last")
                      ->check(whole_number())
                      ->type_name("K");
+  auto* formats =
+      command
+          ->add_option("--frames", options->frames,
+                       "formats of the frames in DIR, written as they come: xyz, xyz.gz, vtp, lammps "
+                       "(frames.dump.gz), or none; default: xyz,vtp")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(CLI::IsMember({"xyz", "xyz.gz", "vtp", "lammps", "none"}))
+          ->type_name("A,B,...");
   options->engines.add_machines(*command);
   options->engines.add_numbers(*command);
   options->engines.add_run(*command);
@@ -227,7 +248,8 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("-v,--verbose", options->verbose, "say what runs before it does: engine, plan, reasons")
       ->excludes(quiet);
   command->add_flag("--json", options->json, "print the summary as JSON");
-  command->callback([options, steps, frames, raster, &exit_code] {
+  command->callback([options, steps, frames, formats, raster, &exit_code] {
+    options->formats_given = formats->count() > 0;
     options->steps_given = steps->count() > 0;
     options->raster_given = raster->count() > 0;
     options->frames_given = frames->count() > 0;

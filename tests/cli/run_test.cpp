@@ -280,6 +280,42 @@ TEST(Run, GivesKeysThatScriptsCanName) {
   }
 }
 
+TEST(Run, LeavesTheFramesThatAreAskedFor) {
+  const Bench bench(false);
+  const auto files = [&](const std::string& formats) {
+    const std::string out = bench.path(formats);
+    const Answer answer =
+        bench.cuboct({"run", "--frames", formats, "scenes/coupon.toml", "--steps", "20", "--out", out});
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(out))
+      if (entry.path().filename().string().starts_with("frames")) names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(files("none"), Names{});
+  EXPECT_EQ(files("lammps"), Names{"frames.dump.gz"});
+  EXPECT_EQ(files("xyz.gz,vtp"),
+            (Names{"frames.pvd", "frames.xyz.gz", "frames_000000.vtp", "frames_000001.vtp"}));
+  // A run with other formats replaces those of the run before.
+  EXPECT_EQ(bench
+                .cuboct({"run", "--frames", "none", "scenes/coupon.toml", "--steps", "1", "--out",
+                         bench.path("lammps")})
+                .code,
+            0);
+  EXPECT_FALSE(fs::exists(bench.path("lammps/frames.dump.gz")));
+  for (const auto& [formats, text] : {std::pair{"pdb", "--frames: pdb not in {xyz,xyz.gz,vtp,lammps,none}\n"},
+                                      {"none,xyz", "--frames: none goes with no other format\n"}}) {
+    const Answer answer =
+        bench.cuboct({"run", "scenes/coupon.toml", "--frames", formats, "--out", bench.path("out_dir")});
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_EQ(answer.err, text);
+  }
+  EXPECT_EQ(bench.cuboct({"run", "scenes/coupon.toml", "--frames", "vtp"}).err,
+            "--frames needs --out DIR: without it nothing of the run is kept\n");
+}
+
 // The trace's positions in metres are asked for, and mean nothing without a trace.
 TEST(Run, RefusesSiWithoutADirectory) {
   const Answer answer = Bench(false).cuboct({"run", "scenes/lj_block.toml", "--steps", "1", "--si"});
