@@ -30,7 +30,7 @@ struct Options {
   EngineOptions engines;
   std::string out;
   uint64_t steps = 0;
-  uint64_t frames_every = 0;
+  uint64_t frame_every = 0;
   std::vector<std::string> frames{"xyz", "vtp"};
   uint32_t raster = 800;
   bool steps_given = false, frames_given = false, formats_given = false, json = false, no_watch = false,
@@ -50,7 +50,7 @@ struct Options {
       if (given && out.empty())
         throw InputError(fmt::format("{} needs --out DIR: without it nothing of the run is kept", option));
     };
-    needs_out(frames_given, "--frames-every");
+    needs_out(frames_given, "--frame-every");
     needs_out(formats_given, "--frames");
     needs_out(raster_given, "--raster");
     needs_out(no_states, "--no-states");
@@ -132,7 +132,7 @@ int run(Options options) {
   const bool real = options.engines.is_real(options.engine);
   RunRequest request;
   request.steps = options.steps_given ? options.steps : scene.steps;
-  const uint64_t every = options.frames_given ? options.frames_every : scene.frame_every;
+  const uint64_t every = options.frames_given ? options.frame_every : scene.frame_every;
   check_size(options, loaded, request.steps, every);
   request.probes = every_so_often(scene.probe_every, request.steps);
   request.energies = request.totals = true;
@@ -211,7 +211,7 @@ void add_run(CLI::App& app, int& exit_code) {
                     ->check(whole_number())
                     ->type_name("N");
   auto* frames = command
-                     ->add_option("--frames-every", options->frames_every,
+                     ->add_option("--frame-every", options->frame_every,
                                   "keep every K-th state; default: the scene's; 0: first and last")
                      ->check(whole_number())
                      ->type_name("K");

@@ -24,20 +24,36 @@ InputError::InputError(const std::string& message, const std::string& hint)
 
 InputError::InputError(const std::string& file, int line, int column, const std::string& message,
                        const std::string& hint, const std::string& excerpt)
-    : std::runtime_error(with_hint(fmt::format("{}:{}:{}: {}", file, line, column, message), hint)) {
-  if (!excerpt.empty()) excerpt_ = std::make_shared<const std::string>(excerpt);
-}
+    : std::runtime_error(with_hint(fmt::format("{}:{}:{}: {}", file, line, column, message), hint)),
+      source_(std::make_shared<const Source>(Source{file, excerpt, line, column})) {}
 
 InputError InputError::with(const std::string& hint) const {
   InputError other(parts_of(*this).message, hint);
-  other.excerpt_ = excerpt_;
+  other.source_ = source_;
   return other;
 }
 
 std::string InputError::told() const {
-  if (!excerpt_) return what();
+  if (!source_ || source_->excerpt.empty()) return what();
   const ErrorParts parts = parts_of(*this);
-  return parts.message + '\n' + *excerpt_ + (parts.hint.empty() ? "" : std::string(kHint) + parts.hint);
+  return parts.message + '\n' + source_->excerpt +
+         (parts.hint.empty() ? "" : std::string(kHint) + parts.hint);
+}
+
+std::string InputError::json() const {
+  const ErrorParts parts = parts_of(*this);
+  std::string message = parts.message, file = "null", line = "null", column = "null";
+  if (source_) {
+    const std::string place =
+        line_text(fmt::format("{}:{}:{}: ", source_->file, source_->line, source_->column));
+    if (message.starts_with(place)) message.erase(0, place.size());
+    file = json_text(source_->file);
+    line = std::to_string(source_->line);
+    column = std::to_string(source_->column);
+  }
+  return fmt::format("{{\"error\":{{\"message\":{},\"file\":{},\"line\":{},\"column\":{},\"hint\":{}}}}}",
+                     json_text(message), file, line, column,
+                     parts.hint.empty() ? "null" : json_text(parts.hint));
 }
 
 ErrorParts parts_of(const InputError& error) {

@@ -28,8 +28,15 @@ class InputError : public std::runtime_error {
 
   std::string told() const;
 
+  // {"error":{"message":...,"file":...,"line":...,"column":...,"hint":...}}; null is what it does not know.
+  std::string json() const;
+
  private:
-  std::shared_ptr<const std::string> excerpt_;  // none: null
+  struct Source {
+    std::string file, excerpt;
+    int line, column;
+  };
+  std::shared_ptr<const Source> source_;  // none: null
 };
 
 // The checks that every fixed engine makes, in the order in which a step makes them. When several particles

@@ -44,7 +44,7 @@ TEST(Run, WritesItsDirectoryTheSameEachTime) {
   const Bench bench(false);
   for (const char* name : {"a", "b"})
     ASSERT_EQ(bench
-                  .cuboct({"run", "scenes/coupon.toml", "--steps", "20", "--frames-every", "10", "--out",
+                  .cuboct({"run", "scenes/coupon.toml", "--steps", "20", "--frame-every", "10", "--out",
                            bench.path(name)})
                   .code,
               0);
@@ -152,16 +152,11 @@ TEST(Run, SharesASceneAmongRanks) {
   const Bench bench(false);
   fs::copy(CUBOCT_LATTICE, bench.path("bin/cuboct-lattice"));
   const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"run",
-                                       "scenes/undamped_block.toml",
-                                       "--steps",
-                                       "120",
-                                       "--frames-every",
-                                       "40",
-                                       "--hash-every",
-                                       "1",
-                                       "--out",
-                                       bench.path(out)};
+    std::vector<std::string> arguments{"run",           "scenes/undamped_block.toml",
+                                       "--steps",       "120",
+                                       "--frame-every", "40",
+                                       "--hash-every",  "1",
+                                       "--out",         bench.path(out)};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return bench.cuboct(arguments);
   };
@@ -197,7 +192,7 @@ TEST(Run, EndsCleanlyOnCtrlC) {
 TEST(Run, GoesOnWhereCtrlCLeftIt) {
   const Bench bench(false);
   const std::vector<std::string> plain{"run",   "scenes/coupon.toml", "--quiet", "--steps",
-                                       "10000", "--frames-every",     "2500",    "--out"};
+                                       "10000", "--frame-every",      "2500",    "--out"};
   const auto run = [&](const std::string& out, const std::vector<std::string>& more, double interrupt = 0) {
     std::vector<std::string> arguments = plain;
     arguments.push_back(bench.path(out));
