@@ -153,7 +153,7 @@ TEST_F(Hostile, LinesOfAReportAreDrawnAsTheyRead) {
 TEST_F(Hostile, PicturesOfAReportHaveTheirLabels) {
   const Image image{300, 60, std::vector<Colour>(18000, Colour{100, 100, 100})};
   const auto drawn = [&](const std::string& label, const std::string& bar) {
-    return plot_pictures({image}, {label}, bar, 0, 1);
+    return plot_pictures({image}, {label}, bar, 1);
   };
   EXPECT_EQ(drawn("x", "x"), drawn("x", "x"));
   EXPECT_NE(drawn("x", "x"), drawn("{x}", "x"));
