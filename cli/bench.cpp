@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "cli/items.h"
 #include "model/base/error.h"
 #include "model/base/spelling.h"
 #include "study/bench/bench_gpu.h"
@@ -17,13 +18,22 @@ namespace {
 
 struct Options {
   std::string name;
-  bool list = false;
+  bool list = false, json = false;
   int threads = 0;
   BenchLength length;
 };
 
 int bench(const Options& options) {
   const std::vector<Bench> list = benches(options.length, options.threads);
+  if (options.list && options.json) {
+    std::vector<Items> all(list.size());
+    for (size_t k = 0; k < list.size(); ++k)
+      all[k].add("name", list[k].name), all[k].add("what", list[k].what);
+    Items items;
+    items.add_list("benchmarks", "benchmark", all);
+    fmt::print("{}", items.json());
+    return 0;
+  }
   if (options.list) {
     for (const Bench& entry : list) fmt::print("{:<32} {}\n", entry.name, entry.what);
     return 0;
@@ -70,7 +80,8 @@ void add_bench(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("bench", "measure how fast the engines are");
   command->add_option("name", options->name, "a benchmark, or the first words of some; default: all")
       ->type_name("NAME");
-  command->add_flag("--list", options->list, "name the benchmarks");
+  auto* list = command->add_flag("--list", options->list, "name the benchmarks");
+  command->add_flag("--json", options->json, "print the list as JSON")->needs(list);
   command->add_option("--threads", options->threads, "threads of 'all cores'; default: every core")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");

@@ -98,7 +98,7 @@ bool check_forces(const Scene& scene, const RealFrame& frame, bool floats, const
 
 }  // namespace
 
-int crosscheck_real(const Input& input, EngineOptions choice, std::optional<uint64_t> steps,
+int crosscheck_real(const Input& input, const EngineOptions& choice, std::optional<uint64_t> steps,
                     const std::string& out) {
   const Loaded loaded = load_plan(input);
   const Scene& scene = loaded.scene;

@@ -17,7 +17,7 @@ namespace cuboct {
 // exit code is 1 where one is exceeded or the run had to stop. `out`: directory of the gpu's trace, or empty.
 inline constexpr uint64_t kRealSteps = 100;
 constexpr double kRealTold(bool floats) { return floats ? 1e-4 : 1e-10; }
-int crosscheck_real(const Input& input, EngineOptions choice, std::optional<uint64_t> steps,
+int crosscheck_real(const Input& input, const EngineOptions& choice, std::optional<uint64_t> steps,
                     const std::string& out);
 
 }  // namespace cuboct

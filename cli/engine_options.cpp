@@ -95,6 +95,9 @@ void EngineOptions::check(const std::vector<std::string>& engines, const Input& 
       throw InputError(fmt::format("{} is an option of {}, not of {}", option, the_engines(engines_that(has)),
                                    fmt::join(engines, ",")));
   };
+  const auto links = [](auto& row) { return row.links; };
+  refuse(input.stall_rate > 0, "--stall-rate", links);
+  refuse(input.stall_seed != 1, "--stall-seed", links);
   refuse(threads > 0, "--threads", [](auto& row) { return row.cost.threads; });
   refuse(ranks > 1, "--ranks", [](auto& row) { return !row.ranks.empty(); });
   refuse(cycles, "--cycles", [](auto& row) { return row.counts_if_asked; });
@@ -121,7 +124,6 @@ void EngineOptions::check(const std::vector<std::string>& engines, const Input& 
                        "--port /dev/ttyUSB0, or what cuboct-board-sim prints");
   if (input.faults.empty()) return;
   read_fault_share(input.faults);
-  const auto links = [](auto& row) { return row.links; };
   if (!some(links))
     throw InputError("--inject-faults needs an engine that has links", list_of(engines_that(links)));
 }

@@ -39,9 +39,9 @@ std::vector<std::string> own_arguments(const EngineRow& row, const Input& input,
 // The path of the program in which the engine runs; empty: here.
 std::string program_of(const EngineRow& row, const EngineOptions& options) {
   const bool ranks = !row.ranks.empty() && options.ranks > 1;
-  const std::string name = ranks ? row.ranks : row.program;
+  std::string name = ranks ? row.ranks : row.program;
   if (name.empty()) return name;
-  const std::string path = beside(name);
+  std::string path = beside(name);
   if (ranks && path.empty())
     throw InputError(fmt::format("--ranks {}: no program {} beside cuboct", options.ranks, name));
   if (path.empty())

@@ -115,7 +115,7 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
              e.samples + e.spans;
 
   // Per particle a line of XYZ, a record of VTK and, packed, of the trace.
-  constexpr double kXyz = 95, kVtk = 76, kState = 15, kPixel = 1, kSpan = 1.5;
+  constexpr double kXyz = 145, kVtk = 66, kState = 15, kPixel = 1, kSpan = 1.5;
   e.frames = count_every(size.frame_every, size.steps);
   e.frame =
       kPixel * pixels_of(scene, extent, size.raster) + (size.states ? particles * (kXyz + kVtk + kState) : 0);
@@ -143,7 +143,7 @@ void check_lists(const Scene& scene, const RunSize& size, bool frames_given) {
     const uint64_t would_do = round_interval(size.steps, 0.5 * kMost);
     const std::string text = fmt::format("every {} of {} steps are {:.3g}: at most {:.3g} can be kept", every,
                                          size.steps, count_every(every, size.steps), kMost);
-    if (option) throw InputError("--frames-every: " + text, fmt::format("--frames-every {}", would_do));
+    if (option) throw InputError("--frame-every: " + text, fmt::format("--frame-every {}", would_do));
     scene.places.fail({fmt::format("run.{}", key), "run.duration", "run.steps"},
                       fmt::format("{}: {}", key, text), fmt::format("{} = {}", key, would_do));
   };
@@ -185,7 +185,7 @@ void check_fits(const Scene& scene, const RunSize& size, const Estimate& e, cons
   const double most = 0.9 * (disk - (e.disk - e.frames * e.frame)) / e.frame;
   const std::string hint =
       most >= 3 && size.steps > 2
-          ? fmt::format("{} {}", size.frame_every == scene.frame_every ? "frame_every =" : "--frames-every",
+          ? fmt::format("{} {}", size.frame_every == scene.frame_every ? "frame_every =" : "--frame-every",
                         round_interval(size.steps, most))
           : std::string("--no-states keeps pictures alone");
   // The command line's own wish has no place in the file.

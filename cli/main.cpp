@@ -11,6 +11,7 @@
 
 #include "cli/command.h"
 #include "cli/engine_run.h"
+#include "cli/help.h"
 #include "model/base/output.h"
 #include "model/base/resources.h"
 #include "model/base/spelling.h"
@@ -46,29 +47,44 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
                            : fmt::format("argument {} of 'cuboct {}' is empty", i, words[0]),
                        fmt::format("leave it out, or see 'cuboct {} --help'", words[0]));
     }
-  std::vector<std::string> options;
-  for (const CLI::Option* option : command->get_options())
+  std::vector<std::string> options, letters;
+  for (const CLI::Option* option : command->get_options()) {
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) letters.push_back("-" + name);
+  }
   for (size_t i = 1; i < words.size(); ++i) {
-    const bool is_short =
-        words[i].size() > 1 && words[i][0] == '-' && std::isalpha(words[i][1]) && words[i] != "-h";
+    const bool is_short = words[i].size() > 1 && words[i][0] == '-' && std::isalpha(words[i][1]);
     if (!words[i].starts_with("--") && !is_short) continue;
     const std::string name = words[i].substr(0, words[i].find('='));
-    if (std::find(options.begin(), options.end(), name) != options.end()) continue;
+    if (std::ranges::count(is_short ? letters : options, name) > 0) continue;
     const std::string near = did_you_mean(name, options);
     throw InputError(fmt::format("unknown option '{}' of 'cuboct {}'", name, words[0]),
                      near.empty() ? fmt::format("see 'cuboct {} --help'", words[0]) : near);
   }
 }
 
+// 'cuboct help run' is 'cuboct run --help'.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty() || words[0] != "help") return words;
+  words.erase(words.begin());
+  words.emplace_back("--help");
+  return words;
+}
+
+int tell(const InputError& error, bool as_json, int exit_code) {
+  fmt::print(stderr, "{}\n", as_json ? error.json() : error.told());
+  return exit_code;
+}
+
 int main_of(int argc, char** argv) {
   survive_file_limit();
   int exit_code = 0;
-  CLI::App app("Particle matter and the hardware that computes it: one rule, the same bits everywhere.",
-               "cuboct");
+  CLI::App app("cuboct: particle matter and the hardware that computes it, the same bits.", "cuboct");
   app.set_version_flag(
       "--version", [] { return version_text(); }, "Print version, commit and engines, and exit");
   app.require_subcommand(1);
+  app.set_help_flag("-h,--help", "print this help and exit");
   add_new(app, exit_code);
   add_check(app, exit_code);
   add_run(app, exit_code);
@@ -80,25 +96,32 @@ int main_of(int argc, char** argv) {
   add_bench(app, exit_code);
   add_picture(app, exit_code);
   add_report(app, exit_code);
+  set_help(app);
+  std::vector<std::string> words = words_of(argc, argv);
+  const bool as_json = std::ranges::count(words, "--json") > 0;
+  // What an exception says in its own words: a message, perhaps of several lines.
+  const auto plain = [&](const std::string& text, int code) {
+    if (as_json) return tell(InputError(text), true, code);
+    fmt::print(stderr, "{}\n", block_text(text));
+    return code;
+  };
   try {
-    check_words(app, {argv + 1, argv + argc});
-    app.parse(argc, argv);
+    check_words(app, words);
+    std::ranges::reverse(words);  // as CLI11 takes them
+    app.parse(std::move(words));
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::Error& error) {
-    fmt::print(stderr, "{}\n", block_text(error.what()));
-    return 2;
+    return plain(error.what(), 2);
   } catch (const AlreadyTold& told) {
     return told.exit_code;
   } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.told());
-    return 2;
+    return tell(error, as_json, 2);
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "out of memory: {} are free now\n", in_bytes(static_cast<double>(free_memory())));
-    return 1;
+    return plain(fmt::format("out of memory: {} are free now", in_bytes(static_cast<double>(free_memory()))),
+                 1);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", block_text(error.what()));
-    return 1;
+    return plain(error.what(), 1);
   }
   return exit_code;
 }

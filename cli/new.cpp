@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/items.h"
 #include "cli/templates.h"
 #include "model/base/output.h"
 #include "model/base/spelling.h"
@@ -33,7 +34,7 @@ const std::vector<Template>& templates() {
 
 struct Options {
   std::string name, like = "tension";
-  bool list = false, force = false;
+  bool list = false, force = false, json = false;
 };
 
 const Template& template_of(const std::string& like) {
@@ -47,6 +48,17 @@ const Template& template_of(const std::string& like) {
 }
 
 void make(const Options& options) {
+  if (options.json) {
+    std::vector<Items> all;
+    for (const Template& one : templates()) {
+      all.emplace_back().add("name", one.name);
+      all.back().add("what", one.what());
+    }
+    Items items;
+    items.add_list("templates", "template", all);
+    fmt::print("{}", items.json());
+    return;
+  }
   if (options.list) {
     for (const Template& one : templates()) fmt::print("{:<8} {}\n", one.name, one.what());
     return;
@@ -75,7 +87,8 @@ void add_new(CLI::App& app, int&) {
   command->add_option("--like", options->like, "what it shows: see --list")
       ->capture_default_str()
       ->type_name("TEMPLATE");
-  command->add_flag("--list", options->list, "tell what templates there are");
+  auto* list = command->add_flag("--list", options->list, "tell what templates there are");
+  command->add_flag("--json", options->json, "print the list as JSON")->needs(list);
   command->add_flag("--force", options->force, "replace a file of that name");
   command->callback([options] { make(*options); });
 }

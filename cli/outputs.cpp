@@ -42,7 +42,8 @@ StrainMeter strain_meter(const Scene& scene, const std::vector<Vec3>& initial) {
   return {initial, scene.periodic, scene.pitch > 0 ? 1.207 * scene.pitch : scene.rule.law->cutoff()};
 }
 
-FrameMaker::FrameMaker(const Loaded& loaded) : loaded_(loaded), axis_(strain_axis(loaded.scene)) {}
+FrameMaker::FrameMaker(const Loaded& loaded, bool whole)
+    : loaded_(loaded), axis_(strain_axis(loaded.scene)), whole_(whole) {}
 
 const StrainMeter& FrameMaker::meter(bool fixed) const {
   std::optional<StrainMeter>& meter = fixed ? fixed_ : real_;
@@ -56,24 +57,32 @@ const StrainMeter& FrameMaker::meter(bool fixed) const {
   return meter.emplace(strain_meter(scene, initial));
 }
 
+void FrameMaker::measure(Frame& frame, bool fixed) const {
+  if (!whole_) {
+    frame.strain = meter(fixed).axial(frame.x, axis_);
+    return;
+  }
+  for (const Deformation& one : meter(fixed).deformations(frame.x, axis_, loaded_.scene.rule.law->cutoff())) {
+    frame.strain.push_back(one.axial);
+    frame.tensor.push_back(one.strain);
+    frame.broken.push_back(one.broken);
+  }
+}
+
 Frame FrameMaker::make(const State& state) const {
   const Plan& plan = loaded_.setup.plan;
   Body body = to_real(state, plan.rule, plan.lattice, plan.origin);
-  std::vector<double> strain = meter(true).axial(body.x, axis_);
-  return {state.step,           static_cast<double>(state.step) * plan.rule.dt,
-          std::move(body.x),    std::move(body.v),
-          std::move(body.type), std::move(strain)};
+  Frame frame{state.step, static_cast<double>(state.step) * plan.rule.dt, std::move(body.x),
+              std::move(body.v), std::move(body.type)};
+  measure(frame, true);
+  return frame;
 }
 
 Frame FrameMaker::make(uint64_t step, std::vector<Vec3> x, std::vector<Vec3> v) const {
   const Scene& scene = loaded_.scene;
-  std::vector<double> strain = meter(false).axial(x, axis_);
-  return {step,
-          static_cast<double>(step) * scene.rule.dt,
-          std::move(x),
-          std::move(v),
-          scene.body.type,
-          std::move(strain)};
+  Frame frame{step, static_cast<double>(step) * scene.rule.dt, std::move(x), std::move(v), scene.body.type};
+  measure(frame, false);
+  return frame;
 }
 
 FrameStyle frame_style(const Scene& scene) {
@@ -115,12 +124,12 @@ RunRecord read_record(const std::string& directory) {
       return value.empty() ? value : (fs::path(directory) / value).lexically_normal().string();
     };
     // A directory of before there were states holds a run that came to its end.
-    const RunRecord record{from("scene"),
-                           from("arch"),
-                           table["engine"].value_or(std::string()),
-                           table["state"].value_or(std::string("finished")),
-                           table["stage"].value_or(std::string()),
-                           from("from")};
+    RunRecord record{from("scene"),
+                     from("arch"),
+                     table["engine"].value_or(std::string()),
+                     table["state"].value_or(std::string("finished")),
+                     table["stage"].value_or(std::string()),
+                     from("from")};
     // A stranger's record may name what never ends, as a device.
     for (const auto& [key, file] : {std::pair{"scene", record.scene}, {"arch", record.arch}})
       if ((key[0] == 's' || !file.empty()) && !fs::is_regular_file(file))

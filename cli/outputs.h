@@ -29,17 +29,20 @@ TraceHead head_of(const Loaded& loaded, bool real, bool si);
 // Frames in real units, with each particle's axial strain against the initial state.
 class FrameMaker {
  public:
-  explicit FrameMaker(const Loaded& loaded);
+  // `whole`: with strain tensors and broken bonds, which pictures do without.
+  FrameMaker(const Loaded& loaded, bool whole);
   Frame make(const State& state) const;
   Frame make(uint64_t step, std::vector<Vec3> x,
              std::vector<Vec3> v) const;  // in real numbers, types the scene's
 
  private:
+  void measure(Frame& frame, bool fixed) const;
   // Against what the engine begins with: positions of the fixed rule, or the scene's own.
   const StrainMeter& meter(bool fixed) const;
 
   const Loaded& loaded_;
   int axis_;
+  bool whole_;
   mutable std::optional<StrainMeter> fixed_, real_;
 };
 

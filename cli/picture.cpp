@@ -83,13 +83,16 @@ void add_picture(CLI::App& app, int&) {
       ->type_name("DIR");
   command->add_option("--out", options->out, "the PNG file; default: DIR/picture.png")->type_name("FILE");
   command->add_option("--field", options->field, "strain, speed or thickness")->capture_default_str();
-  command->add_option("--steps", options->steps, "frames to draw, by their steps; default: up to four")
+  command
+      ->add_option("--steps", options->steps,
+                   "frames to draw, by their steps; default: first, last and two between")
       ->delimiter(',')
       ->check(whole_number())
       ->type_name("N,...");
   command
-      ->add_option("--limit", options->limit,
-                   "where the colours end: strain (0.01 is 1 %), m/s or m; default: the 90th percentile")
+      ->add_option(
+          "--limit", options->limit,
+          "where the colours end: strain (0.01 is 1 %), m/s or m; default: the 90th percentile of all frames")
       ->check(above_zero())
       ->type_name("V");
   command->add_option("--width", options->width, "pixels of the picture")

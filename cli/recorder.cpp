@@ -29,8 +29,8 @@ constexpr uint64_t kMost =
     1 << 28;  // a run of so many steps that its hashes take more may well be ended early
 
 // What a run writes, besides run.toml and pictures.
-constexpr const char* kFiles[] = {"trace.h5",   "summary.json", "plan.txt",
-                                  "frames.xyz", "frames.pvd",   "rasters.h5"};
+constexpr const char* kFiles[] = {"trace.h5",      "summary.json",   "plan.txt",   "frames.xyz",
+                                  "frames.xyz.gz", "frames.dump.gz", "frames.pvd", "rasters.h5"};
 
 void refuse_what_is_kept(const RecorderOptions& options) {
   const std::string& directory = options.directory;
@@ -65,7 +65,7 @@ struct Recorder::Impl {
         loaded(loaded),
         lock(options.directory, "cuboct run"),
         style(frame_style(loaded.scene)),
-        maker(loaded),
+        maker(loaded, !options.no_states && !options.frames.empty()),
         head(head_of(loaded, options.real, options.si)) {
     head.cells = !options.no_states || options.cycles;
     refuse_what_is_kept(options);
@@ -77,12 +77,16 @@ struct Recorder::Impl {
 
   std::string path(const std::string& name) const { return options.directory + "/" + name; }
 
+  bool wants(const char* format) const {
+    return !options.no_states && std::ranges::count(options.frames, format) > 0;
+  }
+
   // Old files go, so that no directory holds parts of two runs.
   void begin() {
     if (begun) return;
     begun = true;
     for (const char* name : {"run.toml", "summary.json", "trace.h5", "trace.part.h5", "rasters.h5",
-                             "rasters.part.h5", "frames.xyz"})
+                             "rasters.part.h5", "frames.xyz", "frames.xyz.gz", "frames.dump.gz"})
       fs::remove(path(name));
     remove_vtk(path("frames"));
     write_text(path(kBallast), "");
@@ -99,9 +103,10 @@ struct Recorder::Impl {
     rasters.writer.emplace(path("rasters.h5"), path("rasters.part.h5"),
                            Rasters{loaded.scene.title, strain_axis(loaded.scene), 2 * style.radius, {}, {}},
                            options.raster);
-    if (options.no_states) return;
-    vtk.writer.emplace(path("frames"), style);
-    xyz.writer.emplace(path("frames.xyz"), style);
+    if (wants("vtp")) vtk.writer.emplace(path("frames"), style);
+    if (wants("xyz")) xyz.writer.emplace(path("frames.xyz"), style);
+    if (wants("xyz.gz")) packed_xyz.writer.emplace(path("frames.xyz.gz"), style, true);
+    if (wants("lammps")) lammps.writer.emplace(path("frames.dump.gz"), style);
   }
 
   void write_state(const std::string& state) {
@@ -131,6 +136,8 @@ struct Recorder::Impl {
     add(rasters, frame);
     add(vtk, frame);
     add(xyz, frame);
+    add(packed_xyz, frame);
+    add(lammps, frame);
     ++frames;
   }
 
@@ -154,7 +161,8 @@ struct Recorder::Impl {
   Output<TraceWriter> trace{"trace.h5"};
   Output<RasterWriter> rasters{"rasters.h5"};
   Output<VtkWriter> vtk{"frames.pvd"};
-  Output<XyzWriter> xyz{"frames.xyz"};
+  Output<XyzWriter> xyz{"frames.xyz"}, packed_xyz{"frames.xyz.gz"};
+  Output<LammpsWriter> lammps{"frames.dump.gz"};
 };
 
 Recorder::Recorder(RecorderOptions options, const Loaded& loaded)
@@ -198,6 +206,8 @@ void Recorder::finish(const Trace& trace, const Items& summary, const std::strin
   });
   to.vtk.writer.reset();
   to.xyz.writer.reset();
+  to.packed_xyz.writer.reset();
+  to.lammps.writer.reset();
   whole("summary.json", [&] { write_text(to.path("summary.json"), summary.json()); });
   whole("run.toml", [&] { to.write_state(to.first_error.empty() ? state : "incomplete"); });
 }
@@ -208,8 +218,10 @@ std::string Recorder::trouble() const {
   std::string text, missing;
   of.tell(text, of.trace, of.states);
   of.tell(text, of.rasters, true);
-  of.tell(text, of.vtk, !of.options.no_states);
-  of.tell(text, of.xyz, !of.options.no_states);
+  of.tell(text, of.vtk, of.wants("vtp"));
+  of.tell(text, of.xyz, of.wants("xyz"));
+  of.tell(text, of.packed_xyz, of.wants("xyz.gz"));
+  of.tell(text, of.lammps, of.wants("lammps"));
   for (const std::string& name : of.missing) missing += fmt::format("; {} is missing", name);
   return fmt::format("{}; of {} frames {}{}", of.first_error, of.frames, text, missing);
 }

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/items.h"
@@ -15,13 +16,14 @@ namespace cuboct {
 struct RecorderOptions {
   std::string directory;
   RunRecord record;
-  bool resume = false;     // goes on with the run that the directory holds
-  bool force = false;      // a run that did not end may be replaced
-  bool no_states = false;  // of the frames, rasters alone
-  uint32_t raster = 800;   // pixels along the body
-  bool real = false;       // a run in real numbers
-  bool si = false;         // the trace holds positions in metres too
-  bool cycles = false;     // it holds cycles
+  bool resume = false;                            // goes on with the run that the directory holds
+  bool force = false;                             // a run that did not end may be replaced
+  bool no_states = false;                         // of the frames, rasters alone
+  std::vector<std::string> frames{"xyz", "vtp"};  // for viewers: "xyz", "xyz.gz", "vtp", "lammps"
+  uint32_t raster = 800;                          // pixels along the body
+  bool real = false;                              // a run in real numbers
+  bool si = false;                                // the trace holds positions in metres too
+  bool cycles = false;                            // it holds cycles
   // At most what the trace will hold besides frames, bytes: taken from the disk before the first step, so
   // that frames that fill it cost themselves alone.
   uint64_t rest = 0;

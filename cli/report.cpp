@@ -20,6 +20,7 @@
 #include "model/base/text.h"
 #include "model/trace/compare.h"
 #include "model/trace/plot.h"
+#include "model/trace/raster_plot.h"
 
 namespace cuboct {
 namespace {
@@ -43,11 +44,30 @@ size_t nearest_frame(const Trace& trace, uint64_t step) {
   return best;
 }
 
-// Four frames that tell the story: the start, the largest stress, a quarter of the way from there to the end,
-// the end; where those fall together or no stress was measured, evenly spread ones.
-std::vector<size_t> choose_frames(const Scene& scene, const Trace& trace) {
+std::vector<Vec3> positions_of(const Plan& plan, const State& state) {
+  return to_real(state, plan.rule, plan.lattice, plan.origin).x;
+}
+
+// The first frame in which an initial neighbour is out of the law's reach, by halving: bonds that broke stay
+// broken, as a rule.
+std::optional<size_t> crack_onset(const Loaded& loaded, const Trace& trace, const StrainMeter& meter) {
+  const auto broken = [&](size_t k) {
+    const auto all = meter.deformations(positions_of(loaded.setup.plan, trace.frames[k]), 0,
+                                        loaded.scene.rule.law->cutoff());
+    return std::ranges::any_of(all, [](const Deformation& one) { return one.broken > 0; });
+  };
+  size_t whole = 0, parted = trace.frames.size() - 1;
+  if (broken(whole) || !broken(parted)) return std::nullopt;
+  while (parted - whole > 1) (broken((whole + parted) / 2) ? parted : whole) = (whole + parted) / 2;
+  return parted;
+}
+
+// Frames that tell the story: the start, the first broken bond, the largest stress, a quarter of the way from
+// there to the end, the end; where those fall together, evenly spread ones too.
+std::vector<size_t> choose_frames(const Scene& scene, const Trace& trace, std::optional<size_t> onset) {
   const size_t last = trace.frames.size() - 1;
   std::set<size_t> chosen{0, last};
+  if (onset) chosen.insert(*onset);
   if (const Probe* probe = first_tension(scene, trace)) {
     const Curve& stress = *tension_of(trace.curves, probe->name)->stress;
     const auto largest = std::max_element(stress.value.begin(), stress.value.end()) - stress.value.begin();
@@ -60,34 +80,36 @@ std::vector<size_t> choose_frames(const Scene& scene, const Trace& trace) {
   return {chosen.begin(), chosen.end()};
 }
 
-std::string pictures(const Loaded& loaded, const Trace& trace, const std::vector<size_t>& chosen) {
+// Where the colours end: as `cuboct picture` has it, of the same rasters; without them, of these particles.
+double colour_limit(const std::string& directory, const std::vector<std::vector<float>>& strains) {
+  const std::string rasters = directory + "/rasters.h5";
+  if (fs::exists(rasters)) return usual_limit(read_rasters(rasters), Field::strain);
+  std::vector<float> all;
+  for (const auto& strain : strains)
+    for (const float one : strain)
+      if (std::isfinite(one)) all.push_back(std::abs(one));
+  if (all.empty()) return 0;
+  const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 90 / 100);
+  std::nth_element(all.begin(), end, all.end());
+  return *end;
+}
+
+std::string pictures(const Loaded& loaded, const Trace& trace, const StrainMeter& meter,
+                     const std::vector<size_t>& chosen, std::optional<size_t> onset,
+                     const std::string& directory) {
   const Plan& plan = loaded.setup.plan;
-  const auto positions = [&](const State& state) {
-    return to_real(state, plan.rule, plan.lattice, plan.origin).x;
-  };
   const double radius = frame_style(loaded.scene).radius;
 
   // Of one frame at a time only the strains are kept: there may be millions of particles.
   std::vector<std::vector<float>> strains;
   Vec3 lower = Vec3::Constant(INFINITY), upper = -lower;
-  {
-    const StrainMeter meter = strain_meter(loaded.scene, positions(loaded.setup.initial));
-    for (const size_t k : chosen) {
-      const std::vector<Vec3> x = positions(trace.frames[k]);
-      for (const Vec3& one : x) lower = lower.cwiseMin(one), upper = upper.cwiseMax(one);
-      const std::vector<double> strain = meter.axial(x, strain_axis(loaded.scene));
-      strains.emplace_back(strain.begin(), strain.end());
-    }
+  for (const size_t k : chosen) {
+    const std::vector<Vec3> x = positions_of(plan, trace.frames[k]);
+    for (const Vec3& one : x) lower = lower.cwiseMin(one), upper = upper.cwiseMax(one);
+    const std::vector<double> strain = meter.axial(x, strain_axis(loaded.scene));
+    strains.emplace_back(strain.begin(), strain.end());
   }
-  // The scale ends at the 98th percentile: the few pairs that a crack parts would else take all of it.
-  std::vector<float> all;
-  for (const auto& strain : strains)
-    std::copy_if(strain.begin(), strain.end(), std::back_inserter(all),
-                 [](float s) { return std::isfinite(s); });
-  const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 98 / 100);
-  std::nth_element(all.begin(), end, all.end());
-  const double low = 0, high = std::max(all.empty() ? 0.0 : double{*end}, 1e-4);
-  all = {};
+  const double limit = std::max(colour_limit(directory, strains), 1e-9);
   int height = 0;
   constexpr int kWidth = 1100;
   const View view = view_of(lower - Vec3::Constant(radius), upper + Vec3::Constant(radius), kWidth, height);
@@ -97,13 +119,17 @@ std::string pictures(const Loaded& loaded, const Trace& trace, const std::vector
     const State& state = trace.frames[chosen[n]];
     std::vector<Colour> colours;
     colours.reserve(strains[n].size());
-    for (const float strain : strains[n]) colours.push_back(viridis((strain - low) / (high - low)));
-    images.push_back(render(positions(state), colours, radius, view, kWidth, height));
-    labels.push_back(
-        fmt::format("step {}    t = {:.4g} s", state.step, static_cast<double>(state.step) * plan.rule.dt));
+    for (const float strain : strains[n]) colours.push_back(diverging(strain / limit));
+    images.push_back(render(positions_of(plan, state), colours, radius, view, kWidth, height));
+    labels.push_back(fmt::format("step {}    t = {:.4g} s{}", state.step,
+                                 static_cast<double>(state.step) * plan.rule.dt,
+                                 chosen[n] == onset ? "    first frame with a broken bond" : ""));
   }
-  const std::string png = plot_pictures(
-      images, labels, fmt::format("axial strain along {}", "xyz"[strain_axis(loaded.scene)]), low, high);
+  const std::string png =
+      plot_pictures(images, labels,
+                    fmt::format("axial strain along {}, % (colours end at the 90th percentile of all frames)",
+                                "xyz"[strain_axis(loaded.scene)]),
+                    100 * limit);
   return base64(png.data(), png.size());
 }
 
@@ -252,12 +278,15 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
         break;
     }
   }
-  section("Energy, since the start", over_time(trace, dt,
-                                               {{"energy.kinetic", "kinetic"},
-                                                {"energy.potential", "potential"},
-                                                {"energy.gravity", "gravity"},
-                                                {"energy.total", "total"}},
-                                               "change of energy", true));
+  // On axes of their own: the potential energy's change would else flatten the others.
+  std::string energies;
+  for (const char* part : {"kinetic", "potential", "gravity", "total"})
+    if (const Curve* curve = find_curve(trace.curves, std::string("energy.") + part);
+        curve &&
+        std::ranges::any_of(curve->value, [&](double value) { return value != curve->value.front(); }))
+      energies +=
+          over_time(trace, dt, {{curve->name, ""}}, std::string("change of ") + part + " energy", true);
+  section("Energy, since the start", energies);
   section("Temperature", over_time(trace, dt, {{"temperature", ""}}, "temperature"));
   section("Pressure", over_time(trace, dt, {{"pressure", ""}}, "pressure"));
   return out;
@@ -328,6 +357,29 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
          rows + "</table></div>\n";
 }
 
+// What each phase takes, of the engines that count cycles: a node's mean over the run, and the longest.
+std::string phase_section(const Trace& trace) {
+  const size_t row = trace.nodes * kPhases;
+  if (trace.cycles.empty() || row == 0) return "";
+  std::string rows;
+  for (size_t phase = 0; phase < kPhases; ++phase) {
+    uint64_t sum = 0, most = 0;
+    for (size_t k = phase; k < trace.cycles.size(); k += kPhases) {
+      const uint64_t length =
+          trace.cycles[k].end + 1 - trace.cycles[k].start;  // an empty span ends before it starts
+      sum += length;
+      most = std::max(most, length);
+    }
+    rows +=
+        fmt::format("<tr><th>{}</th><td>{:.1f}</td><td>{}</td></tr>\n", to_string(static_cast<Phase>(phase)),
+                    static_cast<double>(sum) * kPhases / static_cast<double>(trace.cycles.size()), most);
+  }
+  return "<h2>Cycles per phase</h2>\n<div class=\"wide\"><table>\n<tr><th></th><th>mean of a node</th>"
+         "<th>most</th></tr>\n" +
+         rows +
+         "</table></div>\n<p class=\"note\">With the cycles in which a node waits for its neighbours.</p>\n";
+}
+
 // `without`: an item that is left out.
 std::string table_of(const Items& items, const std::string& without = {}) {
   std::string out = "<div class=\"wide\"><table class=\"plain\">\n";
@@ -387,7 +439,8 @@ void report(const std::string& directory, std::string out) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
       "http-equiv=\"Content-Security-Policy\" "
       "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</"
+      "content=\"width=device-width, "
+      "initial-scale=1\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</"
       "h1>\n"
       "<p class=\"lead\">{2} particles on {3} nodes, {4} steps of {5:.4g} s in the {6} engine{7}.</p>\n",
       html_text(loaded.scene.title.empty() ? record.scene : loaded.scene.title), kStyle, plan.particles,
@@ -400,14 +453,17 @@ void report(const std::string& directory, std::string out) {
   html += warning_section(trace.state_hash.empty() ? std::vector<std::string>() : plan.warnings, trace);
   std::vector<size_t> chosen;
   if (!trace.frames.empty()) {
-    chosen = choose_frames(loaded.scene, trace);
+    const StrainMeter meter = strain_meter(loaded.scene, positions_of(plan, loaded.setup.initial));
+    const std::optional<size_t> onset = crack_onset(loaded, trace, meter);
+    chosen = choose_frames(loaded.scene, trace, onset);
     html += fmt::format(
         "<figure><img alt=\"The particles, coloured by axial strain\" "
         "src=\"data:image/png;base64,{}\"></figure>\n",
-        pictures(loaded, trace, chosen));
+        pictures(loaded, trace, meter, chosen, onset, directory));
   }
   html += curve_section(loaded, trace, chosen);
   html += engine_section(loaded, trace, directory);
+  html += phase_section(trace);
   html += "<h2>Run</h2>\n" + table_of(facts_of(loaded, trace));
   html += "<h2>Plan</h2>\n" + table_of(resolve(loaded), "steps");  // the scene's, which need not be the run's
   html += "</body>\n</html>\n";

@@ -32,11 +32,20 @@ struct Options {
   EngineOptions engines;
   std::string out;
   uint64_t steps = 0;
-  uint64_t frames_every = 0;
+  uint64_t frame_every = 0;
+  std::vector<std::string> frames{"xyz", "vtp"};
   uint32_t raster = 800;
   bool in_stages = false;  // one run of several, which are summed up together
-  bool steps_given = false, frames_given = false, json = false, no_watch = false, no_states = false,
-       si = false, raster_given = false, force = false, anyway = false;
+  bool steps_given = false, frames_given = false, formats_given = false, json = false, no_watch = false,
+       no_states = false, si = false, raster_given = false, force = false, anyway = false, quiet = false,
+       verbose = false;
+
+  // Of the frames' files.
+  std::vector<std::string> formats() const {
+    if (std::ranges::count(frames, "none") == 0) return frames;
+    if (frames.size() > 1) throw InputError("--frames: none goes with no other format");
+    return {};
+  }
 
   // Options of what is kept say nothing where nothing is.
   void check_kept() const {
@@ -44,7 +53,8 @@ struct Options {
       if (given && out.empty())
         throw InputError(fmt::format("{} needs --out DIR: without it nothing of the run is kept", option));
     };
-    needs_out(frames_given, "--frames-every");
+    needs_out(frames_given, "--frame-every");
+    needs_out(formats_given, "--frames");
     needs_out(raster_given, "--raster");
     needs_out(no_states, "--no-states");
     needs_out(si, "--si");
@@ -97,6 +107,22 @@ std::string print(const Items& summary, bool json) {
   return {};
 }
 
+// What --verbose says: where the engine runs, what it computes, and why what the arch file leaves to cuboct
+// is as it is.
+std::string plan_text(const Options& options, const Plan& plan) {
+  const EngineRow& row = engine_row(options.engine);
+  const std::string program = options.engines.ranks > 1 ? row.ranks : row.program;
+  std::string text = fmt::format("  {:<22} {}, {}\n", "engine", row.name,
+                                 program.empty() ? "in this process" : "the program " + program);
+  if (options.engines.is_real(options.engine)) return text;
+  text += describe(plan);
+  for (const WidthReason& reason : plan.reasons)
+    text += fmt::format("  {:<22} {}: {}\n", reason.key, reason.bits,
+                        reason.asked ? "by the arch file" : reason.why);
+  for (const std::string& warning : plan.warnings) text += fmt::format("  {:<22} {}\n", "warning", warning);
+  return text;
+}
+
 // How a run ended.
 struct Ended {
   int code = 0;
@@ -105,12 +131,13 @@ struct Ended {
 
 Ended run_once(const Options& options) {
   const Loaded loaded = load_plan(options.input);
+  if (options.verbose) fmt::print(stderr, "{}", plan_text(options, loaded.setup.plan));
   catch_interrupts();
   const Scene& scene = loaded.scene;
   const bool real = options.engines.is_real(options.engine);
   RunRequest request;
   request.steps = options.steps_given ? options.steps : scene.steps;
-  const uint64_t every = options.frames_given ? options.frames_every : scene.frame_every;
+  const uint64_t every = options.frames_given ? options.frame_every : scene.frame_every;
   check_size(options, loaded, request.steps, every);
   request.probes = every_so_often(scene.probe_every, request.steps);
   request.energies = request.totals = true;
@@ -118,7 +145,7 @@ Ended run_once(const Options& options) {
   request.until = true;
   request.cycles = options.engines.cycles;
   request.hash_every = hashes_every(options.engine, options.engines);
-  request.progress = stderr_is_terminal();
+  request.log = options.quiet ? LogRows::quiet : stderr_is_terminal() ? LogRows::seconds : LogRows::parts;
   if (options.engines.keeps_checkpoints()) request.checkpoint.path = options.out + "/checkpoint";
   const std::string checkpoint = request.checkpoint.path;
   std::optional<Recorder> recorder;
@@ -130,6 +157,7 @@ Ended run_once(const Options& options) {
                                      options.engines.resume,
                                      options.force,
                                      options.no_states,
+                                     options.formats(),
                                      options.raster,
                                      real,
                                      options.si,
@@ -184,6 +212,7 @@ int run(Options options) {
   engine_row(options.engine);
   options.engines.check({options.engine}, options.input);
   options.check_kept();
+  static_cast<void>(options.formats());
   const std::vector<std::string> names = stages_of(options.input.scene);
   if (names.empty()) return run_once(options).code;
   if (options.out.empty())
@@ -224,10 +253,19 @@ void add_run(CLI::App& app, int& exit_code) {
                     ->check(whole_number())
                     ->type_name("N");
   auto* frames = command
-                     ->add_option("--frames-every", options->frames_every,
+                     ->add_option("--frame-every", options->frame_every,
                                   "keep every K-th state; default: the scene's; 0: first and last")
                      ->check(whole_number())
                      ->type_name("K");
+  auto* formats =
+      command
+          ->add_option("--frames", options->frames,
+                       "formats of the frames in DIR, written as they come: xyz, xyz.gz, vtp, lammps "
+                       "(frames.dump.gz), or none; default: xyz,vtp")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(CLI::IsMember({"xyz", "xyz.gz", "vtp", "lammps", "none"}))
+          ->type_name("A,B,...");
   options->engines.add_machines(*command);
   options->engines.add_numbers(*command);
   options->engines.add_run(*command);
@@ -247,8 +285,13 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--no-watch", options->no_watch,
                     "do not look for what makes a run wrong (docs/reference/failures.md)");
   command->add_flag("--anyway", options->anyway, "run although it needs more memory or disk than is free");
+  auto* quiet = command->add_flag("-q,--quiet", options->quiet,
+                                  "nothing on stderr but errors: no table of the run as it goes");
+  command->add_flag("-v,--verbose", options->verbose, "say what runs before it does: engine, plan, reasons")
+      ->excludes(quiet);
   command->add_flag("--json", options->json, "print the summary as JSON");
-  command->callback([options, steps, frames, raster, &exit_code] {
+  command->callback([options, steps, frames, formats, raster, &exit_code] {
+    options->formats_given = formats->count() > 0;
     options->steps_given = steps->count() > 0;
     options->raster_given = raster->count() > 0;
     options->frames_given = frames->count() > 0;

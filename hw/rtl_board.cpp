@@ -46,9 +46,9 @@ void legalise_board(const Plan& plan, const BoardChoice& choice) {
   at_most("the number of slots of a node",
           cells_of(plan.bricks.shape()) * static_cast<uint64_t>(plan.arch.capacity), 32767);
   at_most("the width of a particle's id and of its cell",
-          static_cast<uint64_t>(plan.words.id_bits + cell_bits), 32);
+          static_cast<uint64_t>(plan.words.id_bits) + static_cast<uint64_t>(cell_bits), 32);
   at_most("the width of a particle and of its cell",
-          static_cast<uint64_t>(plan.words.particle_bits + cell_bits), 512);
+          static_cast<uint64_t>(plan.words.particle_bits) + static_cast<uint64_t>(cell_bits), 512);
   at_most("the number of particles", plan.particles, kLargest);
   at_most("the width of a velocity", static_cast<uint64_t>(plan.rule.widths.velocity_bits), 64);
   at_most("the number of held and moved types", moved_types(plan.rule).size(), 255);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -104,12 +105,12 @@ int velocities_bits(const RtlDesign& design) {
 
 std::string print_velocities(const RtlDesign& design) {
   if (design.moved.empty()) return "1'b0";
-  std::string text;
-  for (const int k : design.moved) {
-    const FixedType& type = design.types[static_cast<size_t>(k)];
-    text = concatenated(type.velocity, design.velocity_bits, design.axes) + (text.empty() ? "" : ", ") + text;
-  }
-  return "{" + text + "}";
+  std::vector<std::string> velocities;
+  for (const int k : design.moved)
+    velocities.push_back(
+        concatenated(design.types[static_cast<size_t>(k)].velocity, design.velocity_bits, design.axes));
+  std::ranges::reverse(velocities);  // the first in the lowest bits
+  return fmt::format("{{{}}}", fmt::join(velocities, ", "));
 }
 
 std::string print_types(const RtlDesign& design) {

@@ -191,9 +191,11 @@ Plan plan_with(const Scene& scene, Arch arch, See see) {
 template <typename T>
 void give_back(std::vector<T>& values, size_t first, size_t last) {
   static const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));
-  const auto begin = (reinterpret_cast<uintptr_t>(values.data() + first) + page - 1) / page * page;
-  const auto end = reinterpret_cast<uintptr_t>(values.data() + last) / page * page;
-  if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
+  char* const bytes = reinterpret_cast<char*>(values.data());
+  const auto before = reinterpret_cast<uintptr_t>(bytes);
+  const auto begin = (before + first * sizeof(T) + page - 1) / page * page;
+  const auto end = (before + last * sizeof(T)) / page * page;
+  if (begin < end) madvise(bytes + (begin - before), end - begin, MADV_DONTNEED);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "emu/machine/bench.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -259,7 +258,7 @@ void Bench::host() {
       control.steps = static_cast<uint32_t>(options_.steps);
       for (auto& c : control_) c.write(control);
       timeline_.base = timeline_.edge + 2;  // the next cycle is the last in IDLE
-      begin_ = shown_ = now();
+      begin_ = now();
       state_ = Host::run;
       return;
     case Host::run:
@@ -276,18 +275,9 @@ void Bench::host() {
         for (const auto& n : nodes_) doing.push_back(n->model().doing());
         stuck_ = stuck_text(plan_, timeline_.cycle(), patience_, doing);
         timeline_.over = true;
-      } else if (options_.progress && timeline_.cycle() % 1024 == 0) {
-        show_progress();
       }
       return;
   }
-}
-
-void Bench::show_progress() {
-  if (now() - shown_ < 1) return;
-  shown_ = now();
-  fmt::print(stderr, "{}step {} of {}, cycle {}{}", isatty(2) ? "\r" : "", collector_.steps_done(),
-             options_.steps, timeline_.cycle(), isatty(2) ? "" : "\n");
 }
 
 RunResult Bench::take_result() {

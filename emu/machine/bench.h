@@ -105,7 +105,6 @@ class Bench : public sc_core::sc_module, private Monitor {
   void evaluate() override;
   void host();
   void tick() { ++timeline_.edge; }
-  void show_progress();
 
   const Plan& plan_;
   const RunOptions options_;
@@ -123,8 +122,8 @@ class Bench : public sc_core::sc_module, private Monitor {
   std::vector<NodeModule*> expected_;  // at the next edge
   Host state_ = Host::reset;
   size_t loaded_ = 0, most_ = 0;
-  std::string stuck_;                           // why there is no result
-  double begin_ = 0, seconds_ = 0, shown_ = 0;  // host time, s
+  std::string stuck_;               // why there is no result
+  double begin_ = 0, seconds_ = 0;  // host time, s
 };
 
 // Clocks all benches until each is over. Once per process.

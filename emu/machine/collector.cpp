@@ -125,7 +125,8 @@ void Collector::complete(uint64_t step) {
   if (++s.complete < nodes_) return;
   trace_.state_hash.push_back(s.hash);
   s.state.step = step;
-  if (s.kept) {
+  const bool kept = s.kept;
+  if (kept) {
     sort_by_id(s.state);
     trace_.frames.push_back(std::move(s.state));
   } else if (options_.keep_last) {
@@ -135,6 +136,7 @@ void Collector::complete(uint64_t step) {
     if (recent_.size() > kAhead) recent_.pop_front();
   }
   open_.erase(step);
+  if (options_.shown) options_.shown(step, kept ? &trace_.frames.back() : nullptr);
 }
 
 void Collector::close(uint64_t cycle) {

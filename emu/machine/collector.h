@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -18,8 +19,9 @@ struct RunOptions {
   std::vector<uint64_t> frames;  // steps whose states are kept, in any order; those beyond `steps` never come
   double stall_rate = 0;         // share of cycles in which a link passes nothing, [0, 1)
   uint64_t stall_seed = 1;
-  FaultOptions faults;      // on the wires
-  bool progress = false;    // a line per second on standard error
+  FaultOptions faults;  // on the wires
+  // Called after each step that all nodes have done, 0 too; with its state where that is kept.
+  std::function<void(uint64_t step, const State* kept)> shown{};
   int threads = 0;          // that step nodes; 0: one per core. No bit and no cycle depends on it
   bool keep_last = false;   // keep the state after the last complete step too
   bool keep_order = false;  // keep the ids in the order of the slots, per step and cell

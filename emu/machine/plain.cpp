@@ -12,12 +12,12 @@ namespace cuboct::emu {
 namespace {
 
 struct Place {
-  std::unique_ptr<NodeModel> model;
-  NodeOutputs out;
-  NodeInputs in;
-  Control control;
   // The link registers, and where the node writes the next; a node is called while others read the former.
   std::array<Beat, kFaces> beat, next;
+  std::unique_ptr<NodeModel> model;
+  Control control;
+  NodeInputs in;
+  NodeOutputs out;
   std::array<uint16_t, kFaces> ack{};
   uint8_t valid = 0, ready = 0;
 };
@@ -154,6 +154,7 @@ RunResult run_plain(const Plan& plan, const State& initial, const RunOptions& op
     }
     if (cycle - collector.last_event() > patience) {
       std::vector<std::string> doing;
+      doing.reserve(places.size());
       for (const Place& p : places) doing.push_back(p.model->doing());
       throw std::runtime_error(stuck_text(plan, cycle, patience, doing));
     }

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <map>
 
 #include "hw/setup.h"
 #include "model/analysis/meter.h"
@@ -118,6 +119,13 @@ int run(EngineProgram& program, Parsed parsed) {
   return code;
 }
 
+std::map<std::string, LogRows> rows_by_name() {
+  std::map<std::string, LogRows> rows;
+  for (const LogRows one : {LogRows::off, LogRows::quiet, LogRows::seconds, LogRows::parts})
+    rows.emplace(to_string(one), one);
+  return rows;
+}
+
 void add_options(CLI::App& app, EngineProgram& program, Parsed& parsed) {
   ProgramOptions& options = parsed.options;
   RunRequest& run = options.run;
@@ -144,7 +152,12 @@ void add_options(CLI::App& app, EngineProgram& program, Parsed& parsed) {
     app.add_flag("--resume", run.checkpoint.resume, "Go on from the checkpoint");
   }
   app.add_flag("--bench", options.bench, "Print 'name value unit' lines; no trace unless --out asks for one");
-  app.add_flag("--progress", run.progress, "A line per second on standard error");
+  app.add_option(
+         "--log", run.log,
+         "A table on standard error, a row each two 'seconds' or twenty as 'parts' of the run; 'off': a "
+         "line in place on a terminal; 'quiet': not even that")
+      ->transform(CLI::CheckedTransformer(rows_by_name()))
+      ->type_name("ROWS");
   program.add_options(app);
 }
 
@@ -227,7 +240,7 @@ std::vector<std::string> program_arguments(const std::string& scene, const std::
   add(checkpoint.every_steps > 0, {"--checkpoint-every", fmt::format("{} steps", checkpoint.every_steps)});
   add(checkpoint.every_seconds > 0, {"--checkpoint-every", fmt::format("{} s", checkpoint.every_seconds)});
   add(checkpoint.resume, {"--resume"});
-  add(request.progress, {"--progress"});
+  add(request.log != LogRows::off, {"--log", to_string(request.log)});
   return words;
 }
 

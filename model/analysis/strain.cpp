@@ -79,4 +79,29 @@ std::vector<double> StrainMeter::axial(const std::vector<Vec3>& present, int axi
   return strains;
 }
 
+uint32_t StrainMeter::broken(size_t i, const std::vector<Vec3>& present, double reach) const {
+  const auto beyond = [&](const std::vector<Vec3>& x, uint32_t j) {
+    return nearest_image(x[j] - x[i], periodic_).squaredNorm() > reach * reach;
+  };
+  uint32_t count = 0;
+  for (size_t k = first_[i]; k < first_[i + 1]; ++k)
+    count += beyond(present, neighbours_[k]) && !beyond(initial_, neighbours_[k]);
+  return count;
+}
+
+std::vector<Deformation> StrainMeter::deformations(const std::vector<Vec3>& present, int axis,
+                                                   double reach) const {
+  std::vector<Deformation> all(initial_.size());
+  for_each_range(all.size(), 10'000, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const LocalStrain local{gradient(i, present), 0, 0};
+      const Eigen::Matrix3f e = local.lagrangian().cast<float>();
+      all[i] = {local.axial(axis),
+                {e(0, 0), e(1, 1), e(2, 2), e(0, 1), e(0, 2), e(1, 2)},
+                broken(i, present, reach)};
+    }
+  });
+  return all;
+}
+
 }  // namespace cuboct

@@ -8,6 +8,7 @@
 // that map.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -27,6 +28,13 @@ struct LocalStrain {
   double axial(int axis) const { return gradient.col(axis).norm() - 1; }
 };
 
+// What the viewers' frames say of a particle.
+struct Deformation {
+  double axial = 0;               // LocalStrain::axial
+  std::array<float, 6> strain{};  // Green-Lagrange: xx, yy, zz, xy, xz, yz
+  uint32_t broken = 0;            // initial neighbours that are now beyond the law's reach
+};
+
 class StrainMeter {
  public:
   // Neighbours are the pairs of `initial` closer than `radius` in metres (between the first and second shell
@@ -39,9 +47,12 @@ class StrainMeter {
   std::vector<LocalStrain> measure(const std::vector<Vec3>& present) const;
   // The elongation along one axis alone, LocalStrain::axial: 8 bytes per particle instead of 96, in threads.
   std::vector<double> axial(const std::vector<Vec3>& present, int axis) const;
+  // `reach`: m, the law's cutoff; a neighbour that was beyond it from the start never counts.
+  std::vector<Deformation> deformations(const std::vector<Vec3>& present, int axis, double reach) const;
 
  private:
   Mat3 gradient(size_t i, const std::vector<Vec3>& present) const;
+  uint32_t broken(size_t i, const std::vector<Vec3>& present, double reach) const;
 
   std::vector<Vec3> initial_;
   Periodic periodic_;

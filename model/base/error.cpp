@@ -39,6 +39,22 @@ std::string InputError::told() const {
   return parts.message + '\n' + place_->excerpt + (parts.hint.empty() ? "" : std::string(kHint) + parts.hint);
 }
 
+std::string InputError::json() const {
+  const ErrorParts parts = parts_of(*this);
+  std::string message = parts.message, file = "null", line = "null", column = "null";
+  if (place_) {
+    const std::string place =
+        line_text(fmt::format("{}:{}:{}: ", place_->file, place_->line, place_->column));
+    if (message.starts_with(place)) message.erase(0, place.size());
+    file = json_text(place_->file);
+    line = std::to_string(place_->line);
+    column = std::to_string(place_->column);
+  }
+  return fmt::format("{{\"error\":{{\"message\":{},\"file\":{},\"line\":{},\"column\":{},\"hint\":{}}}}}",
+                     json_text(message), file, line, column,
+                     parts.hint.empty() ? "null" : json_text(parts.hint));
+}
+
 ErrorParts parts_of(const InputError& error) {
   const std::string text = error.what();
   const size_t at = text.find(kHint);

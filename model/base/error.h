@@ -28,6 +28,9 @@ class InputError : public std::runtime_error {
 
   std::string told() const;
 
+  // {"error":{"message":...,"file":...,"line":...,"column":...,"hint":...}}; null is what it does not know.
+  std::string json() const;
+
   // Where in which file; null where the error does not know it.
   struct Place {
     std::string file;

@@ -14,7 +14,6 @@
 #include "model/analysis/meter.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
-#include "model/base/progress.h"
 #include "model/run/journal.h"
 
 namespace cuboct {
@@ -46,6 +45,7 @@ class Loop {
   void check_alike(const CheckpointHead& head) const;
   void make_engine(CheckpointReader* from, bool cycles);
   void go();
+  void show();
   uint64_t next_stop() const;
   void advance(uint64_t steps);
   void record();
@@ -75,6 +75,7 @@ class Loop {
   bool saved_ = false;  // there is a checkpoint of this run
   uint64_t saved_step_ = 0;
   Clock::time_point saved_time_;
+  RunLog log_;
   uint64_t piece_;  // steps between two looks at the clock, of an engine that works in batches
   std::optional<uint64_t> looked_;
   Momentum before_;
@@ -95,7 +96,10 @@ Loop::Loop(const Scene& scene, const EngineKind& kind, const RunRequest& request
               .table_error = kind.table_error,
               .threads = kind.threads}),
       looks_(kind.looks ? kind.looks(request.probes) : request.probes),
-      piece_(kind.in_pieces || request.progress || stderr_is_terminal()
+      log_({kind.name, request.steps, kind.particles, request.probes,
+            kind.logs ? LogRows::quiet : request.log},
+           scene, meter_.curves()),
+      piece_(kind.in_pieces || request.log == LogRows::seconds || stderr_is_terminal()
                  ? 1
                  : std::max<uint64_t>(request.steps, 1)),
       trace_(result_.trace) {
@@ -265,7 +269,7 @@ void Loop::advance(uint64_t steps) {
 // The step up to which nobody asks for a state.
 uint64_t Loop::next_stop() const {
   const uint64_t step = trace_.steps_done;
-  uint64_t to = sooner(request_.frames, step, sooner(request_.probes, step, request_.steps));
+  uint64_t to = sooner(request_.frames, step, sooner(request_.probes, step, log_.next_row(step)));
   if (hashed() && (request_.hash_every > 1 || !kind_.hashes_come))
     to = std::min(to, (step / request_.hash_every + 1) * request_.hash_every);
   if (save_plan_.every_steps > 0) to = std::min(to, saved_step_ + save_plan_.every_steps);
@@ -273,7 +277,8 @@ uint64_t Loop::next_stop() const {
 }
 
 void Loop::go() {
-  Progress progress(kind_.name, request_.steps, kind_.particles, trace_.steps_done, request_.progress);
+  log_.begin(trace_.steps_done);
+  show();
   bool stop = engine_->agreed(interrupted(), false).first;
   over_ = reached();
   while (trace_.steps_done < request_.steps && !stop && !over_) {
@@ -281,12 +286,17 @@ void Loop::go() {
     advance(kind_.batches ? std::min(next_stop() - trace_.steps_done, piece_) : 1);
     record();
     if (since(begin) < 0.1 && piece_ < request_.steps) piece_ *= 2;
-    if (leads()) progress.at(trace_.steps_done);
+    show();
     bool due = false;
     std::tie(stop, due) = engine_->agreed(interrupted(), save_is_due());
     over_ = reached();
     if (due && !stop && !over_ && trace_.steps_done < request_.steps) save();
   }
+}
+
+void Loop::show() {
+  if (leads())
+    log_.at(trace_.steps_done, among(request_.probes, trace_.steps_done), [this] { return meter_.latest(); });
 }
 
 bool Loop::save_is_due() const {
@@ -362,6 +372,7 @@ void Loop::finish() {
     RunState last_frame = engine_->frame(request_.forces);
     if (leads()) give(request_, std::move(last_frame), trace_);
   }
+  if (leads()) log_.end(last, sample || among(request_.probes, last), [this] { return meter_.latest(); });
   trace_.curves = meter_.curves();
   meter_.conclude();
   if (const Watch* watch = meter_.watch()) {

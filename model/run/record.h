@@ -10,6 +10,7 @@
 
 #include "model/run/checkpoint.h"
 #include "model/run/engine.h"
+#include "model/run/run_log.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {
@@ -43,7 +44,7 @@ struct RunRequest {
   bool last = true;       // the last state's hash, frame and readings, wherever a run ends
   uint64_t hash_every =
       1;  // of fixed engines: the state's hash each so many steps and at the last one; 0: none
-  bool progress = false;  // a line per second on stderr where that is no terminal
+  LogRows log = LogRows::off;  // on stderr
   CheckpointPlan checkpoint;
 };
 
@@ -62,6 +63,7 @@ struct EngineKind {
   bool in_pieces = false;                 // no batch is to take long, whoever looks on
   bool hashes_come = false;               // with a batch, after each of its steps
   bool saves = false;                     // leaves checkpoints
+  bool logs = false;                      // itself, while `make` works
   std::function<Vec3(uint32_t)> initial;  // m, from where a particle's displacement counts
   // Of the probes' steps, those at which the watch looks; empty: at all.
   std::function<std::vector<uint64_t>(const std::vector<uint64_t>&)> looks;

@@ -63,7 +63,7 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
 }
 
 std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
-                          const std::string& bar_label, double low, double high) {
+                          const std::string& bar_label, double limit) {
   constexpr int kLabel = 30, kBar = 106;
   const Scratch scratch;
   const int width = pictures[0].width, row = pictures[0].height + kLabel;
@@ -87,7 +87,7 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
         pictures[i].height - 1, gnuplot_file(name), width, pictures[i].height);
   }
   Image bar{256, 2, {}};  // gnuplot draws no image of one row
-  for (int k = 0; k < 512; ++k) bar.pixels.push_back(viridis(k % 256 / 255.0));
+  for (int k = 0; k < 512; ++k) bar.pixels.push_back(diverging(k % 256 / 127.5 - 1));
   write_raw(scratch.path("bar"), bar);
   script += fmt::format(
       "unset label 1\nset lmargin at screen 0.25\nset rmargin at screen 0.75\n"
@@ -97,8 +97,8 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
       "plot {} binary array=(256,2) format='%uchar' dx={:.9g} dy=1 origin=({:.9g},0) using 1:2:3 with "
       "rgbimage\n"
       "unset multiplot\n",
-      y(height - kBar + 14), y(height - kBar + 32), gnuplot_label(bar_label), low, high,
-      gnuplot_file(scratch.path("bar")), (high - low) / 255, low);
+      y(height - kBar + 14), y(height - kBar + 32), gnuplot_label(bar_label), -limit, limit,
+      gnuplot_file(scratch.path("bar")), limit / 127.5, -limit);
   run_gnuplot(scratch, script);
   return contents(scratch.path("plot.png"));
 }

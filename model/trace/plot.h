@@ -20,10 +20,10 @@ struct Series {
 std::string plot_lines(const std::vector<Series>& series, const std::string& x_label,
                        const std::string& y_label);
 
-// Pictures of one size under one another, each with its label, above a bar that maps [low, high] to viridis.
-// PNG bytes.
+// Pictures of one size under one another, each with its label, above a bar that maps [-limit, limit] to
+// `diverging`. PNG bytes.
 std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
-                          const std::string& bar_label, double low, double high);
+                          const std::string& bar_label, double limit);
 
 // What gnuplot draws by `plot`, with `data` (its here-documents) before it: the file's bytes. `kind`: "png"
 // or "svg".

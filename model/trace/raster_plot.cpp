@@ -17,12 +17,12 @@
 #include "model/base/process.h"
 #include "model/base/spelling.h"
 #include "model/base/text.h"
+#include "model/trace/render.h"
 
 namespace cuboct {
 namespace {
 
 struct Shown {
-  std::vector<float> Raster::*values;
   double factor;  // from SI to what the bar counts in
   std::string label;
 };
@@ -46,20 +46,19 @@ bool is_seen(const Rasters& rasters, const Raster& frame, size_t pixel) {
   return frame.thickness[pixel] > 0.2 * particle_thickness(rasters.particle);
 }
 
-// The 90th percentile of the drawn pixels' values, without sign: the few that a crack parts would else take
-// the whole scale.
-double usual_limit(const Rasters& rasters, const RasterPicture& picture, std::vector<float> Raster::*values) {
-  std::vector<float> all;
-  for (const size_t k : picture.frames) {
-    const Raster& frame = rasters.frames[k];
-    for (size_t pixel = 0; pixel < rasters.grid.pixels(); ++pixel)
-      if (is_seen(rasters, frame, pixel) && std::isfinite((frame.*values)[pixel]))
-        all.push_back(std::abs((frame.*values)[pixel]));
-  }
-  if (all.empty()) return 0;
-  const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 90 / 100);
-  std::nth_element(all.begin(), end, all.end());
-  return *end;
+std::vector<float> Raster::*values_of(Field field) {
+  return field == Field::strain  ? &Raster::strain
+         : field == Field::speed ? &Raster::speed
+                                 : &Raster::thickness;
+}
+
+// kDiverging, as gnuplot wants it.
+std::string diverging_palette() {
+  std::string text;
+  for (const Anchor& one : kDiverging)
+    text += fmt::format("{}{} '#{:02x}{:02x}{:02x}'", text.empty() ? "" : ", ", one.at, one.colour[0],
+                        one.colour[1], one.colour[2]);
+  return text;
 }
 
 // Screen pixels around and between the panels.
@@ -76,26 +75,39 @@ Field field_of(const std::string& name) {
                    near.empty() ? "strain, speed and thickness can be drawn" : near);
 }
 
+// The few pixels that a crack parts would else take the whole scale.
+double usual_limit(const Rasters& rasters, Field field) {
+  std::vector<float> all;
+  for (const Raster& frame : rasters.frames) {
+    const std::vector<float>& values = frame.*values_of(field);
+    for (size_t pixel = 0; pixel < rasters.grid.pixels(); ++pixel)
+      if (is_seen(rasters, frame, pixel) && std::isfinite(values[pixel]))
+        all.push_back(std::abs(values[pixel]));
+  }
+  if (all.empty()) return 0;
+  const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 90 / 100);
+  std::nth_element(all.begin(), end, all.end());
+  return *end;
+}
+
 std::vector<size_t> spread_frames(size_t count) {
   std::vector<size_t> chosen;
-  for (size_t k = 1; k <= 4 && count > 0; ++k)
-    if (const size_t at = k * (count - 1) / 4;
-        (at > 0 || count == 1) && (chosen.empty() || chosen.back() != at))
-      chosen.push_back(at);
+  for (size_t k = 0; k < 4 && count > 0; ++k)
+    if (const size_t at = k * (count - 1) / 3; chosen.empty() || chosen.back() != at) chosen.push_back(at);
   return chosen;
 }
 
 std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
   const RasterGrid& grid = rasters.grid;
   const Unit length = readable(std::max(grid.columns, grid.rows) * grid.pixel, kLengths);
-  const Shown shown =
-      picture.field == Field::strain
-          ? Shown{&Raster::strain, 100, fmt::format("axial strain along {}, %", "xyz"[rasters.strain_axis])}
-      : picture.field == Field::speed
-          ? Shown{&Raster::speed, 1, "speed, m/s"}
-          : Shown{&Raster::thickness, length.factor, fmt::format("thickness, {}", length.name)};
-  double limit = picture.limit > 0 ? picture.limit : usual_limit(rasters, picture, shown.values);
+  Shown shown = picture.field == Field::strain
+                    ? Shown{100, fmt::format("axial strain along {}, %", "xyz"[rasters.strain_axis])}
+                : picture.field == Field::speed
+                    ? Shown{1, "speed, m/s"}
+                    : Shown{length.factor, fmt::format("thickness, {}", length.name)};
+  double limit = picture.limit > 0 ? picture.limit : usual_limit(rasters, picture.field);
   limit = std::max(limit * shown.factor, 1e-9);
+  if (picture.limit == 0) shown.label += " (colours end at the 90th percentile of all frames)";
 
   const int panels = static_cast<int>(picture.frames.size());
   const int across = panels > 1 && grid.columns < 3 * grid.rows ? 2 : 1,
@@ -122,11 +134,11 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
       "[{:.9g}:{:.9g}]\n",
       picture.width, height, gnuplot_file(scratch.path("plot.png")), gnuplot_label(rasters.title),
       y(kTitle / 2),
-      picture.field == Field::strain ? "-1 '#08306b', -0.6 '#2171b5', -0.25 '#9ecae1', 0 '#e8e8e8', 0.25 "
-                                       "'#fdae6b', 0.6 '#e6550d', 1 '#7f0000'"
-                                     : "0 '#440154', 1 '#472c7a', 2 '#3b518b', 3 '#2c718e', 4 '#21908d', 5 "
-                                       "'#27ad81', 6 '#5cc863', 7 '#aadc32', "
-                                       "8 '#fde725'",
+      picture.field == Field::strain
+          ? diverging_palette()
+          : std::string("0 '#440154', 1 '#472c7a', 2 '#3b518b', 3 '#2c718e', 4 '#21908d', 5 "
+                        "'#27ad81', 6 '#5cc863', 7 '#aadc32', "
+                        "8 '#fde725'"),
       picture.field == Field::strain ? -limit : 0, limit, left, left + grid.columns * px, bottom,
       bottom + grid.rows * px);
   for (int n = 0; n < panels; ++n) {
@@ -134,7 +146,7 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
     std::vector<float> values(grid.pixels());
     for (size_t pixel = 0; pixel < values.size(); ++pixel)
       values[pixel] = is_seen(rasters, frame, pixel)
-                          ? static_cast<float>((frame.*shown.values)[pixel] * shown.factor)
+                          ? static_cast<float>((frame.*values_of(picture.field))[pixel] * shown.factor)
                           : std::numeric_limits<float>::quiet_NaN();
     const std::string name = scratch.path(fmt::format("panel{}", n));
     write_text(name,

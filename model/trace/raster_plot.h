@@ -18,7 +18,7 @@ Field field_of(const std::string& name);
 struct RasterPicture {
   Field field = Field::strain;
   std::vector<size_t> frames;  // indices into Rasters::frames, in the order of drawing
-  double limit = 0;            // of the colours, 1, m/s or m; 0: the 90th percentile of what is drawn
+  double limit = 0;            // of the colours, 1, m/s or m; 0: usual_limit
   int width = 1600;            // pixels
 };
 
@@ -26,7 +26,10 @@ struct RasterPicture {
 // less than a fifth of a particle's thickness stays white.
 std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture);
 
-// Up to four, evenly spread, the last one included and, where there are others, not the first.
+// The 90th percentile of a field's magnitude, over the drawn pixels of all frames: 1, m/s or m.
+double usual_limit(const Rasters& rasters, Field field);
+
+// Up to four, evenly spread, first and last included.
 std::vector<size_t> spread_frames(size_t count);
 
 }  // namespace cuboct

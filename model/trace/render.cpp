@@ -111,16 +111,15 @@ class Cover {
 
 }  // namespace
 
-Colour viridis(double value) {
-  static constexpr Colour kAnchors[9] = {{68, 1, 84},    {71, 44, 122},  {59, 81, 139},
-                                         {44, 113, 142}, {33, 144, 141}, {39, 173, 129},
-                                         {92, 200, 99},  {170, 220, 50}, {253, 231, 37}};
-  const double at = 8 * std::clamp(value, 0.0, 1.0);
-  const int low = std::min(static_cast<int>(at), 7);
+Colour diverging(double value) {
+  const double at = std::clamp(value, -1.0, 1.0);
+  size_t k = 1;
+  while (k + 1 < kDiverging.size() && kDiverging[k].at < at) ++k;
+  const Anchor &low = kDiverging[k - 1], &high = kDiverging[k];
+  const double part = (at - low.at) / (high.at - low.at);
   Colour colour;
-  for (int c = 0; c < 3; ++c)
-    colour[c] = static_cast<uint8_t>(
-        std::lround(kAnchors[low][c] + (at - low) * (kAnchors[low + 1][c] - kAnchors[low][c])));
+  for (size_t c = 0; c < 3; ++c)
+    colour[c] = static_cast<uint8_t>(std::lround(low.colour[c] + part * (high.colour[c] - low.colour[c])));
   return colour;
 }
 

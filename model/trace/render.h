@@ -17,9 +17,20 @@ struct Image {
   std::vector<Colour> pixels;  // rows from the top
 };
 
-// 0 ... 1 to colour, clamped: the nine anchors of viridis (S. van der Walt, N. Smith, matplotlib, CC0), even
-// in perceived lightness.
-Colour viridis(double value);
+// Of signed quantities: blue below zero, grey at it, red above. Colours between go in straight lines.
+struct Anchor {
+  double at;  // -1 ... 1
+  Colour colour;
+};
+inline constexpr std::array<Anchor, 7> kDiverging{{{-1, {8, 48, 107}},
+                                                   {-0.6, {33, 113, 181}},
+                                                   {-0.25, {158, 202, 225}},
+                                                   {0, {232, 232, 232}},
+                                                   {0.25, {253, 174, 107}},
+                                                   {0.6, {230, 85, 13}},
+                                                   {1, {127, 0, 0}}}};
+// -1 ... 1 to colour, clamped.
+Colour diverging(double value);
 
 struct View {
   Mat3 turn = Mat3::Identity();  // rows: right, up, towards the eye

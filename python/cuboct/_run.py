@@ -88,7 +88,7 @@ def run(
     *,
     arch: ArchLike = None,
     steps: int | None = None,
-    frames_every: int | None = None,
+    frame_every: int | None = None,
     threads: int | None = None,
     ranks: int | None = None,
     precision: str | None = None,
@@ -103,7 +103,7 @@ def run(
 ) -> Run:
     """Runs a scene from its start, as `cuboct run` does, in any engine: lattice, golden, reference, systemc, rtl, gpu or fpga.
 
-    `steps`: None for the scene's. `frames_every`: keeps every so many states, 0 the first and the last; None: the last alone. The other arguments
+    `steps`: None for the scene's. `frame_every`: keeps every so many states, 0 the first and the last; None: the last alone. The other arguments
     are the command's options of that name. RunError where a step cannot be done, with what there is in its `run`.
     """
     options = _given(
@@ -112,7 +112,7 @@ def run(
     )  # fmt: skip
     options["cycles"] = bool(cycles)
     last = None if steps is None else _count(steps, "steps")
-    every = None if frames_every is None else _count(frames_every, "frames_every")
+    every = None if frame_every is None else _count(frame_every, "frame_every")
     with sources(scene, arch) as source:
         found = _cuboct.run(source, engine, options, last, every, bool(anyway))
     found["frames"] = [Frame(**frame) for frame in found["frames"]]

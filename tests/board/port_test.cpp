@@ -38,8 +38,8 @@ struct Pty {
 };
 
 Answer run_at(const std::string& port, const std::string& timeout = "0.05") {
-  return command({"run", board_file("grips.toml"), "--arch", board_file("small.toml"), "--engine", "fpga",
-                  "--port", port, "--port-timeout", timeout});
+  return command({"run", "--quiet", board_file("grips.toml"), "--arch", board_file("small.toml"), "--engine",
+                  "fpga", "--port", port, "--port-timeout", timeout});
 }
 
 void expect_refusal(const Answer& answer, const std::string& text) {

@@ -160,11 +160,11 @@ TEST_F(LimitsTest, ListsOfSteps) {
             path +
                 ":15:15: frame_every: every 1 of 1000000000000 steps are 1e+12: at most 1e+07 can be kept\n"
                 "  hint: frame_every = 300000\n");
-  answer = run(scene, {"--frames-every", "7", "--out", bench_.path("out")});
+  answer = run(scene, {"--frame-every", "7", "--out", bench_.path("out")});
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.err,
-            "--frames-every: every 7 of 1000000000000 steps are 1.43e+11: at most 1e+07 can be kept\n"
-            "  hint: --frames-every 300000\n");
+            "--frame-every: every 7 of 1000000000000 steps are 1.43e+11: at most 1e+07 can be kept\n"
+            "  hint: --frame-every 300000\n");
   answer = run(scene, {"--hash-every", "1"});
   EXPECT_EQ(answer.code, 2);
   EXPECT_NE(answer.err.find("8 TB of it for a hash every 1 steps of 1000000000000\n  hint: --hash-every "),
@@ -180,11 +180,11 @@ TEST_F(LimitsTest, ListsOfSteps) {
 TEST_F(LimitsTest, FramesBeyondTheDisk) {
   const std::string out = bench_.path("results");
   const Answer answer = bench_.cuboct(
-      {"run", "scenes/plate.toml", "--steps", "1000000", "--frames-every", "1", "--out", out}, 0, kSmall);
+      {"run", "scenes/plate.toml", "--steps", "1000000", "--frame-every", "1", "--out", out}, 0, kSmall);
   EXPECT_EQ(answer.code, 2);
   EXPECT_TRUE(std::regex_match(
       answer.err, std::regex("the run takes about [0-9.]+ TB of disk, 1e\\+06 frames of [0-9.]+ MB "
-                             "each: [0-9.]+ .B are free in .*\n  hint: --frames-every [0-9]+; "
+                             "each: [0-9.]+ .B are free in .*\n  hint: --frame-every [0-9]+; "
                              "--anyway runs it all the same\n")))
       << answer.err;
   EXPECT_FALSE(std::filesystem::exists(out + "/trace.h5"));

@@ -87,8 +87,8 @@ TEST(New, ReplacesNothingUnasked) {
 class Template : public testing::Test {
  protected:
   void run(const std::string& name) {
-    const Answer ran = bench_.cuboct({"run", kTemplates + name + ".toml", "--frames-every", "0",
-                                      "--no-states", "--out", bench_.path("results")});
+    const Answer ran = bench_.cuboct({"run", kTemplates + name + ".toml", "--frame-every", "0", "--no-states",
+                                      "--out", bench_.path("results")});
     ASSERT_EQ(ran.code, 0) << ran.err;
     trace_ = read_trace(bench_.path("results/trace.h5"));
   }

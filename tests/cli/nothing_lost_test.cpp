@@ -106,7 +106,7 @@ std::vector<uint64_t> xyz_steps(const std::string& directory) {
     steps.push_back(std::stoull(line.substr(line.find("Step=") + 5)));
     for (int k = 0; k < particles; ++k) {
       EXPECT_TRUE(std::getline(in, line));
-      EXPECT_EQ(std::count(line.begin(), line.end(), ' '), 9) << line;
+      EXPECT_EQ(std::count(line.begin(), line.end(), ' '), 16) << line;
     }
   }
   return steps;
@@ -133,7 +133,7 @@ class NothingLost : public testing::Test {
 
   std::string dir() const { return bench_.path("dir"); }
   Strings run(const Strings& more) const {
-    Strings all{"run", kScene, "--out", dir()};
+    Strings all{"run", kScene, "--quiet", "--out", dir()};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -209,7 +209,7 @@ TEST_F(NothingLost, AFileThatNoRunLeftStays) {
 // No file may grow beyond 1500 kB: frames.xyz is the first to reach that, and the only one.
 TEST_P(OfEngine, AFullDiskCostsWhatDoesNotFit) {
   if (std::string(GetParam().name) == "ranks") GTEST_SKIP() << "files of Open MPI itself need more";
-  Started started(bench_, run({"--steps", "80", "--frames-every", "1"}), 1500 << 10);
+  Started started(bench_, run({"--steps", "80", "--frame-every", "1"}), 1500 << 10);
   const Answer answer = started.finish();
   EXPECT_EQ(answer.code, 2) << answer.err;
   const auto kept = xyz_steps(dir());
@@ -250,7 +250,7 @@ TEST_P(OfEngine, ADiskThatIsFullBeforeIsFoundBeforeTheFirstStep) {
 
 TEST_P(OfEngine, AKillLeavesTheFramesSoFar) {
   if (hands_over()) GTEST_SKIP() << "its frames come when it has ended";
-  Started started(bench_, run({"--steps", "1000000", "--frames-every", "5"}));
+  Started started(bench_, run({"--steps", "1000000", "--frame-every", "5"}));
   ASSERT_TRUE(comes([&] { return fs::exists(dir() + "/frames_000004.vtp"); }));
   started.signal(SIGKILL);
   EXPECT_EQ(started.finish().code, -SIGKILL);
@@ -267,7 +267,7 @@ TEST_P(OfEngine, AKillLeavesTheFramesSoFar) {
 }
 
 TEST_P(OfEngine, SigtermEndsItAsCtrlCDoes) {
-  Started started(bench_, run({"--steps", "10000000", "--frames-every", "50000"}));
+  Started started(bench_, run({"--steps", "10000000", "--frame-every", "50000"}));
   if (std::string(GetParam().name) == "systemc") GTEST_SKIP() << "the false one knows no signals";
   ASSERT_TRUE(comes([&] { return fs::exists(dir() + "/frames.xyz") || ranks_step() || !started.runs(); }));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));  // steps
@@ -297,7 +297,7 @@ TEST_P(OfEngine, SigtermEndsItAsCtrlCDoes) {
 TEST_F(NothingLost, SigtermEndsSystemcToo) {
   fs::remove(bench_.path("bin/cuboct-systemc"));
   fs::copy(CUBOCT_SYSTEMC, bench_.path("bin/cuboct-systemc"));
-  Started started(bench_, run({"--engine", "systemc", "--steps", "1000000", "--frames-every", "1"}));
+  Started started(bench_, run({"--engine", "systemc", "--steps", "1000000", "--frame-every", "1"}));
   ASSERT_TRUE(comes([&] { return !processes(bench_, "cuboct-systemc").empty(); }));
   std::this_thread::sleep_for(std::chrono::seconds(2));
   started.signal(SIGTERM);
@@ -371,7 +371,7 @@ TEST_F(NothingLost, NoCommandWritesIntoADirectoryInUse) {
 
 // No directory holds files of two runs.
 TEST_F(NothingLost, TheFilesOfTheRunBeforeGo) {
-  ASSERT_EQ(bench_.cuboct(run({"--steps", "4", "--frames-every", "1"})).code, 0);
+  ASSERT_EQ(bench_.cuboct(run({"--steps", "4", "--frame-every", "1"})).code, 0);
   ASSERT_TRUE(fs::exists(dir() + "/frames_000004.vtp"));
   ASSERT_EQ(bench_.cuboct(run({"--steps", "3", "--no-states"})).code, 0);
   Strings names;
@@ -417,7 +417,7 @@ TEST_F(NothingLost, AnUnfinishedRunGoesOnOrIsKept) {
 
 // Of checkpoints that no longer fit the last good one stays, and the run comes to its end.
 TEST_F(NothingLost, AFullDiskCostsCheckpointsAndNotTheRun) {
-  Started started(bench_, run({"--steps", "100", "--frames-every", "1", "--checkpoint-every", "1 steps"}),
+  Started started(bench_, run({"--steps", "100", "--frame-every", "1", "--checkpoint-every", "1 steps"}),
                   1100 << 10);
   const Answer answer = started.finish();
   EXPECT_EQ(answer.code, 2);
@@ -427,7 +427,7 @@ TEST_F(NothingLost, AFullDiskCostsCheckpointsAndNotTheRun) {
       << answer.err;
   EXPECT_EQ(read_trace(dir() + "/trace.h5").steps(), 100u);
   EXPECT_TRUE(fs::exists(dir() + "/checkpoint"));
-  ASSERT_EQ(bench_.cuboct(run({"--steps", "100", "--frames-every", "1", "--resume"})).code, 0);
+  ASSERT_EQ(bench_.cuboct(run({"--steps", "100", "--frame-every", "1", "--resume"})).code, 0);
   EXPECT_EQ(state_of(dir()), "finished");
   EXPECT_EQ(xyz_steps(dir()).size(), 101u);
   EXPECT_EQ(read_trace(dir() + "/trace.h5").frames.size(), 101u);
@@ -438,8 +438,7 @@ TEST_F(NothingLost, MemoryDoesNotGrowWithFrames) {
   for (const char* engine : {"lattice", "golden", "reference"}) {
     std::vector<long> memory;
     for (const char* every : {"100", "1"}) {
-      Started started(bench_,
-                      run({"--steps", "400", "--frames-every", every, "--engine", engine, "--force"}));
+      Started started(bench_, run({"--steps", "400", "--frame-every", every, "--engine", engine, "--force"}));
       ASSERT_EQ(started.finish().code, 0);
       memory.push_back(started.memory());
     }
@@ -454,7 +453,7 @@ TEST_F(NothingLost, AFullFileSystemIsAFullDisk) {
   if (mount("none", disk.c_str(), "tmpfs", 0, "size=2m") != 0)
     GTEST_SKIP() << "no right to mount a file system";
   for (const Strings& more : {Strings{}, Strings{"--ranks", "2"}}) {
-    Strings arguments{"run", kScene,    "--steps",  "100",   "--frames-every",
+    Strings arguments{"run", kScene,    "--steps",  "100",   "--frame-every",
                       "1",   "--force", "--anyway", "--out", disk + "/dir"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     Started started(bench_, arguments);
@@ -486,8 +485,8 @@ TEST_F(NothingLost, ADirectoryThatCannotBeMadeIsFoundFirst) {
 // Nothing else of the run is lost with whoever reads the summary.
 TEST_F(NothingLost, AReaderThatGoesAwayCostsTheSummaryAlone) {
   const std::string command =
-      fmt::format("cd {}; {} run {} --steps 5 --out {} 2>{} | :; exit ${{PIPESTATUS[0]}}", CUBOCT_SOURCE_DIR,
-                  bench_.path("bin/cuboct"), kScene, dir(), bench_.path("err"));
+      fmt::format("cd {}; {} run {} --quiet --steps 5 --out {} 2>{} | :; exit ${{PIPESTATUS[0]}}",
+                  CUBOCT_SOURCE_DIR, bench_.path("bin/cuboct"), kScene, dir(), bench_.path("err"));
   const int status = std::system(("bash -c '" + command + "'").c_str());
   EXPECT_EQ(WEXITSTATUS(status), 2);
   EXPECT_EQ(contents(bench_.path("err")), "cannot print the summary: Broken pipe\n");

@@ -29,7 +29,7 @@ TEST(Picture, IsDrawnOfFixedAndRealRuns) {
   std::vector<Rasters> rasters;
   for (const char* engine : {"golden", "reference"}) {
     const std::string out = bench.path(engine);
-    const Answer run = bench.cuboct({"run", "scenes/coupon.toml", "--steps", "400", "--frames-every", "200",
+    const Answer run = bench.cuboct({"run", "scenes/coupon.toml", "--steps", "400", "--frame-every", "200",
                                      "--engine", engine, "--raster", "100", "--no-states", "--out", out});
     ASSERT_EQ(run.code, 0) << run.err;
     EXPECT_FALSE(fs::exists(out + "/frames.xyz"));
@@ -64,7 +64,7 @@ TEST(Picture, SaysWhatItCannotDraw) {
   const Bench bench(false);
   const std::string out = bench.path("run");
   ASSERT_EQ(
-      bench.cuboct({"run", "scenes/coupon.toml", "--steps", "20", "--frames-every", "10", "--out", out}).code,
+      bench.cuboct({"run", "scenes/coupon.toml", "--steps", "20", "--frame-every", "10", "--out", out}).code,
       0);
   const auto refused = [&](std::vector<std::string> arguments, const std::string& text) {
     arguments.insert(arguments.begin(), "picture");

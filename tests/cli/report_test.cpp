@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The page that `cuboct report` makes of a run's directory.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,8 +50,7 @@ TEST(Report, IsOneFileWithoutOutsideResources) {
   const Bench bench(true);
   const std::string out = bench.path("run");
   ASSERT_EQ(
-      bench.cuboct({"run", "scenes/coupon.toml", "--steps", "100", "--frames-every", "25", "--out", out})
-          .code,
+      bench.cuboct({"run", "scenes/coupon.toml", "--steps", "100", "--frame-every", "25", "--out", out}).code,
       0);
   ASSERT_EQ(bench
                 .cuboct({"crosscheck", "scenes/coupon.toml", "--steps", "5", "--engines",
@@ -115,6 +115,23 @@ TEST(Report, CountsTheStepsOfTheRun) {
   EXPECT_NE(html.find(" 50 steps of "), std::string::npos);
   EXPECT_NE(html.find("<tr><th>steps</th><td>50 "), std::string::npos);
   EXPECT_EQ(html.find("<tr><th>steps</th><td>1000 "), std::string::npos);
+}
+
+TEST(Report, HasTheCyclesOfEachPhaseWhereTheyWereCounted) {
+  const Bench bench(false);
+  const std::string html = page(bench, {"scenes/lj_block.toml", "--steps", "20", "--cycles"});
+  const Trace trace = read_trace(bench.path("run") + "/trace.h5");
+  uint64_t sum = 0, most = 0, spans = 0;
+  for (size_t k = static_cast<size_t>(Phase::force); k < trace.cycles.size(); k += kPhases, ++spans) {
+    const uint64_t length = trace.cycles[k].end - trace.cycles[k].start + 1;
+    sum += length, most = std::max(most, length);
+  }
+  ASSERT_EQ(spans, 20 * trace.nodes);
+  EXPECT_EQ(count(html, fmt::format("<tr><th>force</th><td>{:.1f}</td><td>{}</td></tr>",
+                                    static_cast<double>(sum) / static_cast<double>(spans), most)),
+            1u);
+  EXPECT_EQ(page(Bench(false), {"scenes/lj_block.toml", "--steps", "20"}).find("Cycles per phase"),
+            std::string::npos);
 }
 
 // A scene with a probe of each kind: a figure and the last values of each, and of the energies.

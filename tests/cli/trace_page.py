@@ -106,9 +106,9 @@ def compare_curves(read_curve, out):
 def main():
     read_frames, read_curve = reader()
     runs = [  # a body with types that are moved, a box that repeats, a flat sheet
-        ("coupon", "lattice", ["--steps", "60", "--frames-every", "20"]),
-        ("lj_block", "golden", ["--steps", "20", "--frames-every", "5"]),
-        ("sheet", "lattice", ["--steps", "40", "--frames-every", "40"]),
+        ("coupon", "lattice", ["--steps", "60", "--frame-every", "20"]),
+        ("lj_block", "golden", ["--steps", "20", "--frame-every", "5"]),
+        ("sheet", "lattice", ["--steps", "40", "--frame-every", "40"]),
     ]
     if os.access(os.path.join(PROGRAMS, "cuboct-systemc"), os.X_OK):
         runs.append(("lj_block", "systemc", ["--steps", "3"]))

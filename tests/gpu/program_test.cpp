@@ -87,7 +87,7 @@ TEST_F(GpuProgram, HasGoldensBits) {
 }
 
 TEST_F(GpuProgram, LeavesTheSameFilesAsGolden) {
-  const std::vector<std::string> scene{"scenes/coupon.toml", "--steps", "60", "--frames-every", "30"};
+  const std::vector<std::string> scene{"scenes/coupon.toml", "--steps", "60", "--frame-every", "30"};
   std::vector<std::string> golden = scene, gpu = scene;
   golden.insert(golden.end(), {"--engine", "golden"});
   gpu.insert(gpu.end(), {"--engine", "gpu", "--hash-every", "25"});
@@ -154,7 +154,7 @@ TEST_F(GpuProgram, WatchesAsGoldenDoes) {
 TEST_F(GpuProgram, MeasuresRealNumbersAsTheReferenceDoes) {
   for (const std::string precision : {"double", "float"}) {
     const auto of = [&](const char* engine) {
-      return run(engine, {kBlock, "--steps", "20", "--frames-every", "10", "--precision", precision,
+      return run(engine, {kBlock, "--steps", "20", "--frame-every", "10", "--precision", precision,
                           "--engine", engine});
     };
     const Trace gpu = of("gpu");
@@ -220,8 +220,8 @@ TEST_F(GpuProgram, OfALongerStepIsBeyondTheBoundOfPositions) {
 }
 
 TEST_F(GpuProgram, EndsEarlyWhenItIsAsked) {
-  const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--steps", "100000000", "--out",
-                                       bench_.path("run"), "--hash-every", "1000000"},
+  const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--steps", "100000000", "--quiet",
+                                       "--out", bench_.path("run"), "--hash-every", "1000000"},
                                       1.5);
   EXPECT_EQ(answer.code, 1);
   EXPECT_EQ(answer.err, "interrupted\n");
@@ -240,7 +240,7 @@ TEST_F(GpuProgram, AFullDiskFailsCleanly) {
     const FileLimit limit(900 << 10);
     const Answer answer =
         bench_.cuboct({"run", kBlock, "--engine", "gpu", "--precision", precision, "--steps", "80",
-                       "--frames-every", "1", "--out", bench_.path("kept")});
+                       "--frame-every", "1", "--out", bench_.path("kept")});
     EXPECT_EQ(answer.code, 2);
     EXPECT_TRUE(answer.err.starts_with("cannot write ") && answer.err.ends_with("/gpu.h5: File too large\n"))
         << answer.err;

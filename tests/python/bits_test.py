@@ -52,8 +52,8 @@ class Bits(unittest.TestCase):
     @unittest.skipUnless(os.path.exists(os.path.join(PROGRAMS, "cuboct-systemc")), "no cuboct-systemc")
     def test_an_engine_in_a_program_of_its_own(self):
         scene = cuboct.Scene.load(scene_file("lj_block.toml"))
-        here = cuboct.run(scene, "lattice", steps=5, cycles=True, frames_every=1)
-        there = cuboct.run(scene, "systemc", steps=5, frames_every=1)
+        here = cuboct.run(scene, "lattice", steps=5, cycles=True, frame_every=1)
+        there = cuboct.run(scene, "systemc", steps=5, frame_every=1)
         self.assertEqual(here.hash, there.hash)
         self.assertEqual(here.cycles.shape, (5, here.summary["nodes"]["value"], 8, 2))
         self.assertTrue((here.cycles == there.cycles).all())

@@ -27,8 +27,8 @@ class Programs(unittest.TestCase):
         self.scene["title"] = "changed in Python"  # so the program reads what was made here
 
     def test_a_run_in_a_program(self):
-        run = cuboct.run(self.scene, "rtl", steps=5, frames_every=2)
-        here = cuboct.run(self.scene, "golden", steps=5, frames_every=2)
+        run = cuboct.run(self.scene, "rtl", steps=5, frame_every=2)
+        here = cuboct.run(self.scene, "golden", steps=5, frame_every=2)
         self.assertEqual(run.engine, "rtl")
         self.assertEqual(run.hashes.tolist(), here.hashes.tolist())
         self.assertEqual([frame.step for frame in run.frames], [0, 2, 4, 5])

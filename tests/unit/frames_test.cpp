@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -24,6 +26,58 @@ std::string text_of(const fs::path& path) {
   std::stringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+std::string unpacked(const fs::path& path) {
+  std::string text;
+  gzFile file = gzopen(path.c_str(), "rb");
+  char block[1 << 12];
+  for (int size = 0; (size = gzread(file, block, sizeof block)) > 0;)
+    text.append(block, static_cast<size_t>(size));
+  EXPECT_EQ(gzclose(file), Z_OK) << path;
+  return text;
+}
+
+std::string decoded(const std::string& text) {
+  static const std::string kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  uint32_t word = 0;
+  int bits = 0;
+  for (const char c : text.substr(0, text.find('='))) {
+    word = word << 6 | static_cast<uint32_t>(kAlphabet.find(c));
+    if ((bits += 6) >= 8) bytes += static_cast<char>(word >> (bits -= 8) & 255);
+  }
+  return bytes;
+}
+
+// Of an array of a .vtp file, by VTK's description of its packed form: count of blocks, their size, that of a
+// last shorter one, the packed sizes; then the blocks.
+template <typename T>
+std::vector<T> values_of(const std::string& vtp, const std::string& name) {
+  const size_t at = vtp.find('>', vtp.find("Name=\"" + name + "\"")) + 1;
+  const std::string text = vtp.substr(at, vtp.find('<', at) - at);
+  const auto numbers = [&](size_t count) {
+    const std::string head = decoded(text.substr(0, (count * 8 + 2) / 3 * 4));
+    std::vector<uint64_t> list(count);
+    std::memcpy(list.data(), head.data(), count * 8);
+    return list;
+  };
+  const uint64_t blocks = numbers(1)[0];
+  const std::vector<uint64_t> head = numbers(3 + blocks);
+  const std::string packed = decoded(text.substr(((3 + blocks) * 8 + 2) / 3 * 4));
+  std::vector<T> values;
+  size_t from = 0;
+  for (uint64_t k = 0; k < blocks; ++k) {
+    uLongf size = k + 1 == blocks && head[2] > 0 ? head[2] : head[1];
+    const size_t before = values.size();
+    values.resize(before + size / sizeof(T));
+    EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(values.data() + before), &size,
+                         reinterpret_cast<const Bytef*>(packed.data()) + from, head[3 + k]),
+              Z_OK);
+    from += head[3 + k];
+  }
+  EXPECT_EQ(from, packed.size());
+  return values;
 }
 
 void write_extended_xyz(const fs::path& path, const std::vector<Frame>& frames, const FrameStyle& style) {
@@ -49,6 +103,8 @@ class Frames : public testing::Test {
       frame.v = {Vec3(0, 0, 0), Vec3(0, 0.5, 0)};
       frame.type = {0, 1};
       frame.strain = {0, 0.125 * k};
+      frame.tensor = {{}, {0.25f, 0, 0, 0.5f, 0, -1e-3f}};
+      frame.broken = {0, 3u * k};
       frames_.push_back(frame);
     }
     style_.radius = 0.5;
@@ -68,16 +124,18 @@ TEST_F(Frames, ExtendedXyzHoldsBoxColumnsAndTimes) {
   const auto head = [](const std::string& y) {
     return "2\nLattice=\"4 0 0 0 " + y +
            " 0 0 0 4\" Origin=\"-1 -0.5 -0.5\" pbc=\"T F F\" "
-           "Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1 ";
+           "Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1:"
+           "StrainTensor:R:6:BrokenBonds:I:1 ";
   };
-  EXPECT_EQ(text_of(directory_ / "f.xyz"), head("3") +
-                                               "Step=0 Time=0\n"
-                                               "0 delrin 0 0 0 0 0 0 0.5 0\n"
-                                               "1 delrin/top_grip 1 2 3 0 0.5 0 0.5 0\n" +
-                                               head("4") +
-                                               "Step=10 Time=0.5\n"
-                                               "0 delrin 0 0 0 0 0 0 0.5 0\n"
-                                               "1 delrin/top_grip 1 3 3 0 0.5 0 0.5 0.125\n");
+  EXPECT_EQ(text_of(directory_ / "f.xyz"),
+            head("3") +
+                "Step=0 Time=0\n"
+                "0 delrin 0 0 0 0 0 0 0.5 0 0 0 0 0 0 0 0\n"
+                "1 delrin/top_grip 1 2 3 0 0.5 0 0.5 0 0.25 0 0 0.5 0 -0.001 0\n" +
+                head("4") +
+                "Step=10 Time=0.5\n"
+                "0 delrin 0 0 0 0 0 0 0.5 0 0 0 0 0 0 0 0\n"
+                "1 delrin/top_grip 1 3 3 0 0.5 0 0.5 0.125 0.25 0 0 0.5 0 -0.001 3\n");
 }
 
 TEST_F(Frames, VtkListsItsFilesAndHoldsTheValues) {
@@ -91,23 +149,49 @@ TEST_F(Frames, VtkListsItsFilesAndHoldsTheValues) {
             "  </Collection>\n"
             "</VTKFile>\n");
   const std::string vtp = text_of(directory_ / "f_000001.vtp");
-  // 8 bytes follow: 0 and 0.125 as floats.
-  const uint8_t strain[] = {8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x3e};
-  EXPECT_NE(vtp.find("Name=\"axial_strain\" format=\"binary\">" + base64(strain, sizeof strain) + "<"),
-            std::string::npos);
-  const uint8_t ends[] = {8, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
-  EXPECT_NE(vtp.find("Name=\"offsets\" format=\"binary\">" + base64(ends, sizeof ends) + "<"),
-            std::string::npos);
+  EXPECT_EQ(values_of<float>(vtp, "axial_strain"), (std::vector<float>{0, 0.125f}));
+  // In VTK's order: xx, yy, zz, xy, yz, xz.
+  EXPECT_EQ(values_of<float>(vtp, "strain"),
+            (std::vector<float>{0, 0, 0, 0, 0, 0, 0.25f, 0, 0, 0.5f, -1e-3f, 0}));
+  EXPECT_EQ(values_of<uint32_t>(vtp, "broken_bonds"), (std::vector<uint32_t>{0, 3}));
+  EXPECT_EQ(values_of<uint32_t>(vtp, "offsets"), (std::vector<uint32_t>{1, 2}));
   EXPECT_NE(vtp.find("NumberOfPoints=\"2\""), std::string::npos);
+}
+
+TEST_F(Frames, LammpsDumpHasTheColumnsThatOvitoKnows) {
+  {
+    LammpsWriter out((directory_ / "f.gz").string(), style_);
+    for (const Frame& frame : frames_) out.add(frame);
+  }
+  const auto head = [](const std::string& time, const std::string& step, const std::string& y) {
+    return "ITEM: UNITS\nsi\nITEM: TIME\n" + time + "\nITEM: TIMESTEP\n" + step +
+           "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff ff\n-1 3\n-0.5 " + y +
+           "\n-0.5 3.5\nITEM: ATOMS id type x y z vx vy vz radius StrainTensor.XX StrainTensor.YY "
+           "StrainTensor.ZZ StrainTensor.XY StrainTensor.XZ StrainTensor.YZ AxialStrain BrokenBonds\n"
+           "0 1 0 0 0 0 0 0 0.5 0 0 0 0 0 0 0 0\n";
+  };
+  EXPECT_EQ(unpacked(directory_ / "f.gz"),
+            head("0", "0", "2.5") + "1 2 1 2 3 0 0.5 0 0.5 0.25 0 0 0.5 0 -0.001 0 0\n" +
+                head("0.5", "10", "3.5") + "1 2 1 3 3 0 0.5 0 0.5 0.25 0 0 0.5 0 -0.001 0.125 3\n");
+}
+
+TEST_F(Frames, PackedXyzIsXyz) {
+  write_extended_xyz(directory_ / "f.xyz", frames_, style_);
+  {
+    XyzWriter out((directory_ / "f.gz").string(), style_, true);
+    for (const Frame& frame : frames_) {
+      out.add(frame);
+      EXPECT_FALSE(unpacked(directory_ / "f.gz").empty());  // whole as it grows
+    }
+  }
+  EXPECT_EQ(unpacked(directory_ / "f.gz"), text_of(directory_ / "f.xyz"));
 }
 
 // More than the writers' buffers hold: against the array encoded at once, and line by line.
 TEST_F(Frames, LargeFramesAreWhole) {
   constexpr uint32_t n = 70'001;
   Frame frame;
-  std::vector<char> position(4);
-  const uint32_t bytes = n * 24;
-  std::memcpy(position.data(), &bytes, 4);
+  std::vector<double> position;
   std::string lines;
   for (uint32_t i = 0; i < n; ++i) {
     const Vec3 x(i, 0.5 * i, -3.0 * i);
@@ -115,19 +199,19 @@ TEST_F(Frames, LargeFramesAreWhole) {
     frame.v.push_back(Vec3(0, 0.25, i % 7));
     frame.type.push_back(static_cast<uint8_t>(i % 2));
     frame.strain.push_back(0.125);
-    const auto* raw = reinterpret_cast<const char*>(x.data());
-    position.insert(position.end(), raw, raw + 24);
+    frame.tensor.push_back({});
+    frame.broken.push_back(i);
+    position.insert(position.end(), {x[0], x[1], x[2]});
     std::ostringstream line;
     line.precision(9);
     line << i << (i % 2 == 0 ? " delrin " : " delrin/top_grip ") << x[0] << ' ' << x[1] << ' ' << x[2]
-         << " 0 0.25 " << i % 7 << " 0.5 0.125\n";
+         << " 0 0.25 " << i % 7 << " 0.5 0.125 0 0 0 0 0 0 " << i << "\n";
     lines += line.str();
   }
   write_vtk(directory_ / "f", {frame}, style_);
   const std::string vtp = text_of(directory_ / "f_000000.vtp");
-  EXPECT_NE(vtp.find("Name=\"position\" NumberOfComponents=\"3\" format=\"binary\">" +
-                     base64(position.data(), position.size()) + "<"),
-            std::string::npos);
+  EXPECT_EQ(values_of<double>(vtp, "position"), position);
+  EXPECT_EQ(values_of<uint32_t>(vtp, "broken_bonds"), frame.broken);
   write_extended_xyz(directory_ / "f.xyz", {frame}, style_);
   const std::string xyz = text_of(directory_ / "f.xyz");
   EXPECT_EQ(xyz.substr(xyz.find("Time=0\n") + 7), lines);
@@ -166,6 +250,9 @@ TEST_F(Frames, ThatDoNotFitAreLeftOut) {
   large.v = large.x;
   large.type.resize(large.x.size());
   large.strain.resize(large.x.size());
+  large.tensor.resize(large.x.size());
+  large.broken.resize(large.x.size());
+  for (size_t i = 0; i < large.x.size(); ++i) large.x[i] = Vec3::Constant(std::sin(i));  // does not pack
   XyzWriter xyz(directory_ / "f.xyz", style_);
   VtkWriter vtk(directory_ / "f", style_);
   xyz.add(frames_[0]);

@@ -78,7 +78,7 @@ Drawing block(int n, uint64_t seed) {
   for (int k = 0; k < 20; ++k)
     drawing.x.push_back(Vec3(uniform(-3, n + 3), uniform(-3, n + 3), uniform(-3, n + 3)));
   std::shuffle(drawing.x.begin(), drawing.x.end(), random);
-  for (size_t k = 0; k < drawing.x.size(); ++k) drawing.colour.push_back(viridis(uniform(0, 1)));
+  for (size_t k = 0; k < drawing.x.size(); ++k) drawing.colour.push_back(diverging(uniform(-1, 1)));
   return drawing;
 }
 
