@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/crosscheck_real.h"
 #include "cli/run_engines.h"
+#include "cli/summary.h"
 #include "hw/engines.h"
 #include "model/analysis/meter.h"
 #include "model/base/directory_lock.h"

@@ -77,7 +77,7 @@ WholeRun run(const Sources& sources, const RunAsked& asked) {
       result.kept.push_back({state->step, to_real(*state, plan.rule, plan.lattice, plan.origin)});
     } else {
       const RealFrame& real = std::get<RealFrame>(frame);
-      result.kept.push_back({real.step, Body{real.x, real.v, {}, scene.body.type}});
+      result.kept.push_back({real.step, Body{real.x, real.v, {}, scene.body.type, nullptr}});
     }
   };
   const Scratch scratch;

@@ -156,7 +156,7 @@ const Body& Simulation::present() {
     present_ = to_real(*state, plan.rule, plan.lattice, plan.origin);
   } else {
     RealFrame& real = std::get<RealFrame>(frame);
-    present_ = Body{std::move(real.x), std::move(real.v), {}, scene_.body.type};
+    present_ = Body{std::move(real.x), std::move(real.v), {}, scene_.body.type, nullptr};
   }
   return *present_;
 }
