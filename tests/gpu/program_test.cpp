@@ -125,7 +125,7 @@ TEST_F(GpuProgram, MeasuresPressureAsGoldenDoes) {
 }
 
 TEST_F(GpuProgram, TellsAFaultAsGoldenDoes) {
-  const Trace gpu = run("gpu", {"scenes/failures/velocity.toml", "--engine", "gpu"}, 1);
+  const Trace gpu = run("gpu", {"scenes/failures/velocity.toml", "--engine", "gpu", "--quiet"}, 1);
   const Answer told = answer_;
   const Trace golden = run("golden", {"scenes/failures/velocity.toml", "--engine", "golden"}, 1);
   ASSERT_TRUE(gpu.stop && golden.stop);
@@ -240,7 +240,7 @@ TEST_F(GpuProgram, AFullDiskFailsCleanly) {
     const FileLimit limit(900 << 10);
     const Answer answer =
         bench_.cuboct({"run", kBlock, "--engine", "gpu", "--precision", precision, "--steps", "80",
-                       "--frame-every", "1", "--out", bench_.path("kept")});
+                       "--frame-every", "1", "--quiet", "--out", bench_.path("kept")});
     EXPECT_EQ(answer.code, 2);
     EXPECT_TRUE(answer.err.starts_with("cannot write ") && answer.err.ends_with("/gpu.h5: File too large\n"))
         << answer.err;
