@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "model/base/directory_lock.h"
-#include "model/base/interrupt.h"
+#include "python/catch_interrupt.h"
 #include "study/interrupted.h"
 #include "study/measures.h"
 #include "study/runner.h"
@@ -111,7 +111,7 @@ Table explore(const ExploreAsked& asked) {
                      "cuboct explore --error asks its [search]");
   const DirectoryLock lock(asked.out, "cuboct explore");
   study::Store store(asked.out + "/results.db", plan);
-  const CatchInterrupt catching;
+  const CatchFromPython catching;
   study::Runner runner(plan, store, {.jobs = asked.jobs, .speed = asked.speed});
   try {
     runner.run();

@@ -15,6 +15,7 @@
 #include "model/base/process.h"
 #include "model/base/steps.h"
 #include "model/trace/compare.h"
+#include "python/catch_interrupt.h"
 
 namespace cuboct::python {
 namespace {
@@ -82,7 +83,7 @@ WholeRun run(const Sources& sources, const RunAsked& asked) {
   };
   const Scratch scratch;
   const Input input = input_of(sources, scratch);
-  const CatchInterrupt catching;
+  const CatchFromPython catching;
   const uint64_t steps = request.steps;
   result.recorded = unless_interrupted([&] {
     return EngineRun(asked.engine, input, loaded, asked.options, std::move(request),
@@ -107,7 +108,7 @@ Comparison crosscheck(const Sources& sources, const std::vector<std::string>& en
   const Plan& plan = loaded.setup.plan;
   const Scratch scratch;
   const Input input = input_of(sources, scratch);
-  const CatchInterrupt catching;
+  const CatchFromPython catching;
   RunRequest request;
   request.steps = steps.value_or(loaded.scene.steps);
   const std::vector<Trace> traces = unless_interrupted([&] {

@@ -15,6 +15,7 @@
 #include "model/run/golden_engine.h"
 #include "model/run/reference_engine.h"
 #include "model/trace/raster_plot.h"
+#include "python/catch_interrupt.h"
 
 namespace cuboct::python {
 namespace {
@@ -132,7 +133,7 @@ void Simulation::advance() {
 
 void Simulation::step(uint64_t steps) {
   const std::lock_guard lock(mutex_);
-  const CatchInterrupt catching;
+  const CatchFromPython catching;
   for (; steps > 0; --steps) {
     if (interrupted()) throw Interrupted();
     advance();

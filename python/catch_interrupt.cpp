@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#include "python/catch_interrupt.h"
+
+#include <pybind11/pybind11.h>
+
+namespace cuboct {
+
+CatchFromPython::CatchFromPython() {
+  const pybind11::gil_scoped_acquire locked;
+  if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+}
+
+}  // namespace cuboct
