@@ -75,7 +75,7 @@ class Scene(_Tables):
 
     @classmethod
     def like(cls, template: str) -> Self:
-        """A template of `cuboct new`: tension, impact, drop, beam, gas, metal, crack or sheet."""
+        """A template of `cuboct new`: tension, impact, drop, beam, gas, metal, crack, sheet or release."""
         return cls._of(_cuboct.template_text(template), template)
 
     def check(self, arch: "ArchLike" = None) -> dict[str, Any]:

@@ -20,7 +20,7 @@ synthesis='this cuboct was built without synthesis
 scene=$root/scenes/lj_block.toml
 refuses "explore: $studies" explore study.toml --error 1%
 refuses "explore: $studies" explore
-refuses "stability: $studies" stability "$scene" --json
+refuses "stability: $studies" stability "$scene"
 refuses "synth: $synthesis" synth project --target up5k
 refuses "emit --fit: $synthesis" emit "$scene" --fit ecp5-85 --out "$build/project"
 [ ! -e "$build/project" ]
