@@ -134,7 +134,8 @@ Items resolve(const Loaded& loaded) {
   if (scene.pitch > 0) items.add("pitch", scene.pitch, "m");
   items.add("cutoff", scene.rule.law->cutoff(), "m");
   items.add("cell edge", rule.cell_edge, "m");
-  items.add("mass", rule.mass, "kg");
+  items.add("mass", rule.mass, "kg", rule.weighted ? "of the lightest particles" : "");
+  if (rule.weighted) items.add("heaviest mass", scene.rule.heaviest(), "kg");
   items.add("dt", rule.dt, "s");
   if (scene.dt_limit > 0) {
     items.add("dt limit", scene.dt_limit, "s", "largest stable step of " + scene.dt_limit_of);
@@ -174,7 +175,8 @@ Items resolve(const Loaded& loaded) {
   items.add("force pipes", plan.arch.force_pipes);
   items.add("filter latency", plan.latency.filter, "cycles");
   items.add("pipe latency", plan.latency.pipe, "cycles");
-  items.add("update latency", plan.latency.update, "cycles");
+  items.add("update latency", plan.latency.update, "cycles",
+            plan.rule.weighted ? "with a multiplier per axis, as masses differ" : "");
   const ExpectedCycles cycles = expected_cycles(plan, loaded.setup.initial);
   items.add("expected cycles", cycles.step, "cycles/step",
             fmt::format("at the start; filter lanes and force pipes alone: {}", cycles.ideal));
@@ -220,6 +222,7 @@ std::string body_text(const Scene& scene, const Shown& shown) {
   const size_t count = scene.body.size();
   text += fmt::format("{}{} particle{} of {}", text.empty() ? "" : ", ", count, count == 1 ? "" : "s",
                       shown.mass(scene.rule.mass));
+  if (!scene.rule.masses.empty()) text += " to " + shown.mass(scene.rule.heaviest());
   return scene.pitch > 0 ? fmt::format("{}, {} apart", text, shown(scene.pitch, "m")) : text;
 }
 

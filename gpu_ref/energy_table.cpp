@@ -33,8 +33,9 @@ EnergyTables::EnergyTables(const Rule& rule) {
   for (int i = 0; i < rule_.type_count; ++i) {
     for (int j = 0; j < rule_.type_count; ++j)
       strength.push_back(rule.only_touch(i, j) ? -rule.strength_of(i, j) : rule.strength_of(i, j));
+    mass.push_back(rule.relative_mass(i));
     for (int axis = 0; axis < 3; ++axis) {
-      weight.push_back(rule.mass * rule.types[i].gravity[axis] * cutoff);
+      weight.push_back(rule.mass_of(i) * rule.types[i].gravity[axis] * cutoff);
       free.push_back(is_free(rule.types[i], axis) ? 1 : 0);
     }
   }

@@ -27,7 +27,8 @@ struct EnergyRule {
   int type_count = 1;
   const double* weight = nullptr;  // three per type, J per cutoff: mass * gravity * cutoff
   const double* free = nullptr;    // three per type: 1 along axes that nothing imposes or steers, else 0
-  double kinetic = 0;              // J: mass/2 (cutoff/dt)^2
+  const double* mass = nullptr;    // per type, over the lightest
+  double kinetic = 0;              // J: mass/2 (cutoff/dt)^2 of the lightest
 };
 
 inline constexpr int kEnergyBits = 12, kEnergyBins = 1 << kEnergyBits;
@@ -65,7 +66,7 @@ CUBOCT_HD void add_particle_energy(const RealRule<Real>& rule, const EnergyRule&
   for (int a = 0; a < 3; ++a) {
     double now = static_cast<double>(v[a]);
     if (!of.imposed[a]) now += static_cast<double>(velocity_gain(of, sum[a], v[a], u, a)) / 2;
-    kinetic += energy.kinetic * now * now;
+    kinetic += energy.kinetic * energy.mass[type] * now * now;
     gravity -= energy.weight[3 * type + a] * x[a];
   }
 }
@@ -74,16 +75,19 @@ CUBOCT_HD void add_particle_energy(const RealRule<Real>& rule, const EnergyRule&
 struct EnergyTables {
   explicit EnergyTables(const Rule& rule);
 
-  std::vector<double> node, strength, weight, free;
+  std::vector<double> node, strength, weight, free, mass;
 
-  EnergyRule rule() const { return rule(node.data(), strength.data(), weight.data(), free.data()); }
+  EnergyRule rule() const {
+    return rule(node.data(), strength.data(), weight.data(), free.data(), mass.data());
+  }
   EnergyRule rule(const double* node_copy, const double* strength_copy, const double* weight_copy,
-                  const double* free_copy) const {
+                  const double* free_copy, const double* mass_copy) const {
     EnergyRule view = rule_;
     view.node = node_copy;
     view.strength = strength_copy;
     view.weight = weight_copy;
     view.free = free_copy;
+    view.mass = mass_copy;
     return view;
   }
 

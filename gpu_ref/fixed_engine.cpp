@@ -9,6 +9,7 @@
 #include "gpu_ref/machine.h"
 #include "model/base/interrupt.h"
 #include "model/contract/golden.h"
+#include "model/contract/quantise.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -21,7 +22,7 @@ class FixedEngine final : public Engine {
   FixedEngine(const Scene& scene, const Plan& plan, const State& initial, const Options& options)
       : plan_(plan), step_(initial.step) {
     machine_ = std::make_unique<Machine<Policy>>(
-        options, setup_of(scene, plan), EnergyTables(scene.rule), loose(initial),
+        options, setup_of(scene, plan), EnergyTables(with_masses_of(plan.rule, scene.rule)), loose(initial),
         [&](Stream& stream) { return std::make_unique<FixedRuleOnDevice>(stream, plan.rule); });
   }
 

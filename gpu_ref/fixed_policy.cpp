@@ -37,6 +37,7 @@ FixedRuleOnDevice::FixedRuleOnDevice(Stream& stream, const FixedRule& rule)
   if (rule.damped) view_.damp = put(rule.damp, cache);
   cache_.set(stream, cache);
   view_.scaled = rule.scaled;
+  view_.weighted = rule.weighted;
   view_.type_count = static_cast<int>(rule.types.size());
   if (rule.scaled) {
     std::vector<int32_t> scale;
@@ -49,6 +50,7 @@ FixedRuleOnDevice::FixedRuleOnDevice(Stream& stream, const FixedRule& rule)
     DeviceType one{};
     one.pd = type.pd;
     one.kp = type.kp, one.kd = type.kd;
+    one.weight = type.weight;
     for (int a = 0; a < 3; ++a) {
       one.imposed[a] = type.imposed[a];
       one.velocity[a] = type.velocity[a];

@@ -29,6 +29,7 @@ struct DeviceType {
   bool pd;
   int64_t velocity[3], gravity[3];
   int64_t kp, kd;
+  int64_t weight;
 };
 
 struct FixedView {
@@ -37,7 +38,7 @@ struct FixedView {
   float position_unit;  // in cells
   uint64_t cutoff2;
   DeviceTable force, damp;
-  bool damped, scaled;
+  bool damped, scaled, weighted;
   const int32_t* scale;  // types x types
   uint64_t contact2;
   int type_count;
@@ -98,7 +99,7 @@ struct CachedFixedRule {
   uint64_t cutoff2, contact2;
   Table force, damp;
   static constexpr bool damped = Damped;
-  bool scaled;
+  bool scaled, weighted;
   Scale scale;
   const DeviceType* types;
   const Rounding &difference_shift, &w_shift, &q_shift, &damp_shift, &kick_shift;
@@ -111,6 +112,7 @@ struct CachedFixedRule {
         force(view.force, static_cast<const int32_t*>(cache)),
         damp(view.damp, static_cast<const int32_t*>(cache)),
         scaled(view.scaled),
+        weighted(view.weighted),
         scale{view.scale, view.type_count},
         types(view.types),
         difference_shift(view.difference_shift),
@@ -223,7 +225,7 @@ struct FixedPolicy {
                                   int type, double (&gain)[3]) {
     const DeviceType& of = rule.types[type];
     for (int a = 0; a < 3; ++a) {
-      gain[a] = of.imposed[a] ? 0 : static_cast<double>(sum.at[a] + of.gravity[a]);
+      gain[a] = of.imposed[a] ? 0 : static_cast<double>(weighed(rule, of, sum.at[a]) + of.gravity[a]);
       if (of.pd && !of.imposed[a])
         gain[a] -= static_cast<double>(of.kp * u->at[a] + of.kd * (v.at[a] - of.velocity[a])) /
                    static_cast<double>(int64_t{1} << rule.widths.gain_frac);

@@ -115,7 +115,7 @@ class Machine {
       hashes = Array<uint64_t>(device, account);
       found = Array<Found<Policy>>(device, account);
       sums = Array<Sums>(device, account);
-      for (auto* a : {&energy_node, &energy_strength, &energy_weight, &energy_free})
+      for (auto* a : {&energy_node, &energy_strength, &energy_weight, &energy_free, &energy_mass})
         *a = Array<double>(device, account);
     }
     int device, number;
@@ -138,7 +138,7 @@ class Machine {
     Array<uint32_t> slot, found_here;
     Array<Found<Policy>> found;
     Array<Sums> sums;
-    Array<double> energy_node, energy_strength, energy_weight, energy_free;
+    Array<double> energy_node, energy_strength, energy_weight, energy_free, energy_mass;
     EnergyRule energy;
     Graph graph[2];  // kGraphSteps steps from either copy
     // Places: own [0, own), of them the lower border [0, low_end) and the upper one [high_begin, own); then

@@ -46,8 +46,9 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
     slab.energy_strength.set(slab.stream, energies.strength);
     slab.energy_weight.set(slab.stream, energies.weight);
     slab.energy_free.set(slab.stream, energies.free);
+    slab.energy_mass.set(slab.stream, energies.mass);
     slab.energy = energies.rule(slab.energy_node.data(), slab.energy_strength.data(),
-                                slab.energy_weight.data(), slab.energy_free.data());
+                                slab.energy_weight.data(), slab.energy_free.data(), slab.energy_mass.data());
   }
   upload(state);
 }

@@ -36,6 +36,7 @@ struct RealType {
   Real gravity[3] = {};   // cutoffs per step^2
   Real velocity[3] = {};  // cutoffs per step: imposed, or the PD anchor's
   Real kp = 0, kd = 0;    // per step^2, per step
+  Real weight = 1;        // of the summed kicks: the lightest mass over the type's
   bool imposed[3] = {};
   bool pd = false;
 };
@@ -46,7 +47,7 @@ struct RealRule {
   LawKind kind = LawKind::lennard_jones;
   bool damped = false, scaled = false;  // the template arguments of add_pair_kick
   bool pd = false;                      // some type has a u
-  bool constrained = false;             // some type has anything set: imposed axes, PD, gravity
+  bool constrained = false;             // some type has anything set: imposed axes, PD, gravity, weight
   int type_count = 1;
   Real core2 = 0;    // cutoff^2; nearer pairs have the f/r of the core
   Real damping = 0;  // per step
@@ -218,7 +219,7 @@ CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, cons
 // What a step adds to v[axis] of a particle whose axis is not imposed; u is read only where its type has PD.
 template <class Real>
 CUBOCT_HD Real velocity_gain(const RealType<Real>& type, Real sum, Real v, const Real u[3], int axis) {
-  Real gain = sum + type.gravity[axis];
+  Real gain = type.weight * sum + type.gravity[axis];
   if (type.pd) gain -= type.kp * u[axis] + type.kd * (v - type.velocity[axis]);
   return gain;
 }

@@ -61,8 +61,11 @@ RealTables<Real>::RealTables(const Rule& rule) {
   rule_.damped = rule.damping.coefficient > 0;
   for (const ParticleType& from : rule.types) {
     RealType<Real> type;
-    type.kp = real(from.kp * rule.dt * rule.dt / rule.mass);
-    type.kd = real(from.kd * rule.dt / rule.mass);
+    const double mass = rule.mass_of(static_cast<int>(types.size()));
+    type.weight = real(rule.mass / mass);
+    rule_.constrained |= mass != rule.mass;
+    type.kp = real(from.kp * rule.dt * rule.dt / mass);
+    type.kd = real(from.kd * rule.dt / mass);
     type.pd = from.pd;
     rule_.pd |= from.pd;
     rule_.constrained |= from.pd;

@@ -19,7 +19,7 @@ struct RealTables {
   // One unit of a RealRule in SI.
   double length = 0;    // m: the cutoff
   double velocity = 0;  // m/s: a cutoff per step
-  double force = 0;     // N: mass * velocity per step
+  double force = 0;     // N: the lightest mass * velocity per step
 
   // The rule over these arrays, or over copies of them elsewhere (a device; 16-byte aligned).
   RealRule<Real> rule() const { return rule(cache.data(), strength.data(), types.data()); }

@@ -45,7 +45,7 @@ Runner::Runner(const Scene& scene, const Plan& plan, const GpuChoice& choice)
     : scene_(scene), plan_(plan), choice_(choice) {
   if (fixed()) {
     const State initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
-    momentum_.fixed = cuboct::momentum(initial);
+    momentum_.fixed = cuboct::momentum(plan.rule, initial);
     engine_ = make_fixed_engine(scene, plan, initial, choice.engine);
   } else {
     momentum_ = momentum_of(scene.body.v);
@@ -83,7 +83,7 @@ RunState Runner::frame(bool forces) {
   known_ = step_count();
   if (fixed()) {
     State state = engine_->state();
-    momentum_.fixed = cuboct::momentum(state);
+    momentum_.fixed = cuboct::momentum(plan_.rule, state);
     return state;
   }
   Body body = engine_->body();
@@ -128,7 +128,9 @@ void Runner::show(Watch& watch, const Energies& energies) {
 }
 
 Momentum Runner::momentum_of(const std::vector<Vec3>& v) const {
-  return {{}, scene_.rule.mass * std::accumulate(v.begin(), v.end(), Vec3(Vec3::Zero()))};
+  Vec3 sum = Vec3::Zero();
+  for (size_t i = 0; i < v.size(); ++i) sum += scene_.rule.relative_mass(scene_.body.type[i]) * v[i];
+  return {{}, scene_.rule.mass * sum};
 }
 
 Momentum Runner::momentum() {

@@ -428,10 +428,11 @@ struct ReadEnergies {
       Policy::gains(rule, kick, v, at.u ? &at.u[i] : nullptr, type_in(x.last), gain);
       for (int a = 0; a < 3; ++a) {
         const double late = static_cast<double>(v.at[a]) + gain[a] / 2, now = late * unit;
-        const double kinetic = energy.kinetic * now * now, free = energy.free[3 * type_in(x.last) + a];
+        const double mass = energy.mass[type_in(x.last)];
+        const double kinetic = energy.kinetic * mass * now * now, free = energy.free[3 * type_in(x.last) + a];
         sum.kinetic += kinetic;
         sum.free_kinetic += free * kinetic;
-        sum.flow[a] += free * late;
+        sum.flow[a] += free * mass * late;
         sum.gravity -= energy.weight[3 * type_in(x.last) + a] * scene[a];
         const double speed = v.at[a] < 0 ? -static_cast<double>(v.at[a]) : static_cast<double>(v.at[a]);
         if (speed > sum.speed) sum.speed = speed;

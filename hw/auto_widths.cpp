@@ -45,7 +45,7 @@ class Chooser {
   Chooser(const Scene& scene, double edge, const Widths& asked)
       : scene_(scene), edge_(edge), asked_(asked), motion_(motion_of(scene)) {
     const Rule& rule = scene.rule;
-    kick_ = motion_.bond_stiffness * rule.dt * rule.dt / rule.mass;
+    kick_ = motion_.bond_stiffness * rule.dt * rule.dt / rule.heaviest();
     strain_ = motion_.strain * motion_.rest_distance / edge;
     for (const ParticleType& type : rule.types) gains_ = gains_ || type.pd;
     if (const ExactBody* exact = scene.body.exact.get(); exact && exact->cell_edge == edge)
@@ -160,9 +160,12 @@ class Chooser {
     Widths& w = result_.widths;
     const Rule& rule = scene_.rule;
     double least = std::numeric_limits<double>::infinity(), largest = 0;
-    for (const ParticleType& type : rule.types)
-      for (const double gain : {type.kp * rule.dt * rule.dt / rule.mass, type.kd * rule.dt / rule.mass})
+    for (size_t k = 0; k < rule.types.size(); ++k) {
+      const ParticleType& type = rule.types[k];
+      const double mass = rule.mass_of(static_cast<int>(k));
+      for (const double gain : {type.kp * rule.dt * rule.dt / mass, type.kd * rule.dt / mass})
         if (type.pd && gain > 0) least = std::min(least, gain), largest = std::max(largest, gain);
+    }
     int wanted = kGain, most = kMostGain;
     if (largest > 0) {
       wanted = std::max(wanted, bits_for(2 * scene_.accuracy * least));
@@ -177,7 +180,7 @@ class Chooser {
   double edge_;
   const Widths& asked_;
   Motion motion_;
-  double kick_ = 0;    // cells/step that a bond's stretch of one cell gives in a step
+  double kick_ = 0;    // cells/step that a bond's stretch of one cell gives the heaviest in a step
   double strain_ = 0;  // cells: what the expected strain stretches a bond by
   bool gains_ = false;
   std::optional<Widths>
@@ -230,10 +233,16 @@ std::vector<std::string> width_warnings(const Scene& scene, double edge, const A
     if (g > scene.accuracy)
       warnings.push_back(
           fmt::format("the gravity of '{}' is off by {:.2g} of it: {}", type.name, g, of_guard()));
+    const double mass = scene.rule.mass_of(static_cast<int>(k));
+    if (const double off = std::abs(mass_of(rule, static_cast<int>(k)) / mass - 1); off > scene.accuracy)
+      warnings.push_back(
+          fmt::format("the mass of '{}' is off by {:.2g} of it: weights have {} fractional bits, "
+                      "doubles hold any mass (--engine reference)",
+                      type.name, off, kWeightFrac));
   }
   // Units of a difference, and of a velocity, that the expected strain makes.
   const double strain = motion.strain * motion.rest_distance / edge;
-  const double kick = motion.bond_stiffness * rule.dt * rule.dt / rule.mass * strain;
+  const double kick = motion.bond_stiffness * rule.dt * rule.dt / scene.rule.heaviest() * strain;
   const auto few = [&](double units) { return strain > 0 && units < kFewest / scene.accuracy; };
   if (const double units = std::ldexp(strain, rule.widths.difference_frac); few(units))
     warnings.push_back(fmt::format(

@@ -11,7 +11,7 @@ namespace cuboct {
 namespace {
 
 constexpr double kBitProduct = 34, kAdderBit = 28, kMemoryBit = 6;
-// Multiplicands of constant width in rtl/lib: pair scales, gains.
+// Multiplicands of constant width in rtl/lib: pair scales and weights, gains.
 constexpr double kScaleBits = 18, kGainBits = 18;
 
 // Bits of two's complement that hold every value of a table: ForceBits, DampBits of the RTL.
@@ -69,8 +69,9 @@ NodeArea area_of(const Plan& plan) {
   const double lane = 3 * (P + 3) + 6 * (d + 4) + 4 * (d + 4) + 7 * (d + 4);
   // Update, per axis: two adders of v, and x with its residue.
   double update_adders = 3 * (2 * V + P + w.guard + 2), update_products = 0;
+  if (rule.weighted) update_products += 3 * kScaleBits * w.sum_bits, update_adders += 3 * w.sum_bits;
   if (rule.pd) {
-    update_products = 3 * kGainBits * (w.displacement_bits + V + 1);
+    update_products += 3 * kGainBits * (w.displacement_bits + V + 1);
     update_adders += 3 * (2 * V + 2 * w.displacement_bits + kGainBits);
   }
 

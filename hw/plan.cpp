@@ -87,6 +87,8 @@ uint64_t hash_of(const Plan& plan) {
   if (rule.contact2 > 0) hash.add(static_cast<int64_t>(rule.contact2));
   for (const auto& row : rule.scale)
     for (const int32_t s : row) hash.add(s);
+  if (rule.weighted)
+    for (const FixedType& type : rule.types) hash.add(type.weight);
   for (const FixedType& type : rule.types) {
     for (int a = 0; a < 3; ++a) hash.add(type.imposed[a]).add(type.velocity[a]).add(type.gravity[a]);
     hash.add(type.pd).add(type.kp).add(type.kd);
@@ -135,7 +137,8 @@ Latency latency_of(const FixedRule& r, const Arch& arch) {
                      : !shared              ? 1
                      : arch.narrow_memories ? latency.pipe - 2
                                             : r.axes;
-  latency.update = r.pd ? 7 : 4;
+  // A product and its rounding come before the sum of v; with gains they stand beside theirs.
+  latency.update = r.pd ? 7 : r.weighted ? 6 : 4;
   if (arch.narrow_memories) {
     latency.filter = 2;
     latency.stride = latency.update - 1;

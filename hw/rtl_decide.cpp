@@ -131,6 +131,7 @@ RtlDesign decide(const Plan& plan) {
     constant("DampBits", bits_for(table_range(rule.damp)), "that hold every value of the damping table");
   }
   constant("Scaled", rule.scaled, "pairs of types differ");
+  constant("Weighted", rule.weighted, "masses of types differ");
   constant("Pd", rule.pd, "some type is held by force");
   design.constants.push_back(
       {"ParticleBits", plan.words.particle_bits, false, false, "of the words to load and observe"});

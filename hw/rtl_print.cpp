@@ -119,7 +119,7 @@ std::string print_types(const RtlDesign& design) {
   text += fmt::format(
       "// What sets the types apart, axis 0 in the least significant place: imposed axes, velocity (imposed, "
       "or of the\n"
-      "// anchor), gravity, whether held by force, gains. Combinational.\n"
+      "// anchor), gravity, whether held by force, gains, weight of the sum. Combinational.\n"
       "module cuboct_type_rom (\n"
       "  input  logic [{}:0] velocity_i,  // by type that is moved from outside\n"
       "  input  logic [{}:0] type_i,\n"
@@ -128,7 +128,8 @@ std::string print_types(const RtlDesign& design) {
       "  output logic [{}:0] gravity_o,\n"
       "  output logic pd_o,\n"
       "  output logic [17:0] kp_o,\n"
-      "  output logic [17:0] kd_o\n"
+      "  output logic [17:0] kd_o,\n"
+      "  output logic [17:0] weight_o\n"
       ");\n",
       velocities_bits(design) - 1, t - 1, axes - 1, axes * v - 1, axes * v - 1);
   if (design.moved.empty()) text += "  logic unused_velocity;\n  assign unused_velocity = velocity_i;\n";
@@ -147,6 +148,7 @@ std::string print_types(const RtlDesign& design) {
     lines += fmt::format("{}pd_o       = 1'b{};\n", indent, type.pd ? 1 : 0);
     lines += fmt::format("{}kp_o       = {};\n", indent, literal(type.kp, 18));
     lines += fmt::format("{}kd_o       = {};\n", indent, literal(type.kd, 18));
+    lines += fmt::format("{}weight_o   = {};\n", indent, literal(type.weight, 18));
     return lines;
   };
   if (design.types.size() == 1)

@@ -24,6 +24,7 @@ std::string print_project(const Plan& plan, const State& initial, const std::vec
        {{"types", rule.types.size()},
         {"damped", rule.damped},
         {"scaled", rule.scaled},
+        {"weighted", rule.weighted},
         {"force_held", rule.pd}}},
       {"arch",
        {{"brick", {plan.arch.brick[0], plan.arch.brick[1], plan.arch.brick[2]}},

@@ -292,7 +292,8 @@ PYBIND11_MODULE(_cuboct, module) {
       .def_property_readonly("particles", &Simulation::particles)
       .def_property_readonly("scene_steps", &Simulation::scene_steps)
       .def_property_readonly("title", &Simulation::title)
-      .def_property_readonly("type_names", &Simulation::type_names);
+      .def_property_readonly("type_names", &Simulation::type_names)
+      .def_property_readonly("type_masses", &Simulation::type_masses);
 
   module.def("run", [](const Sources& sources, const std::string& engine, const py::dict& options,
                        std::optional<uint64_t> steps, std::optional<uint64_t> keep_every, bool anyway) {

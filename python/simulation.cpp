@@ -201,6 +201,13 @@ std::vector<std::string> Simulation::type_names() const {
   return names;
 }
 
+std::vector<double> Simulation::type_masses() const {
+  std::vector<double> masses;
+  for (size_t k = 0; k < scene_.rule.types.size(); ++k)
+    masses.push_back(scene_.rule.mass_of(static_cast<int>(k)));
+  return masses;
+}
+
 void Simulation::set_velocity(const std::string& constraint, const Vec3& velocity) {
   check_finite(velocity, "the velocity");
   change([&](Rule& rule) { give_velocity(rule, constraint, velocity); });

@@ -68,6 +68,7 @@ class Simulation {
   uint64_t scene_steps() const { return scene_.steps; }
   const std::string& title() const { return scene_.title; }
   std::vector<std::string> type_names() const;
+  std::vector<double> type_masses() const;  // kg
 
  private:
   void make_engine();

@@ -20,11 +20,12 @@ struct Sums {
   double scale = 0;
 };
 
-Sums sums_of(const Rule& rule, const std::vector<Vec3>& velocities) {
+Sums sums_of(const Scene& scene, const std::vector<Vec3>& velocities) {
   Sums sums;
-  for (const Vec3& v : velocities) {
-    sums.momentum += rule.mass * v;
-    sums.scale += rule.mass * v.norm();
+  for (size_t i = 0; i < velocities.size(); ++i) {
+    const double mass = scene.rule.mass_of(scene.body.type[i]);
+    sums.momentum += mass * velocities[i];
+    sums.scale += mass * velocities[i].norm();
   }
   return sums;
 }
@@ -75,7 +76,7 @@ Run run_real(const Scene& scene, const Settings& settings, const RunRequest& req
     kept.back().x = state.x, kept.back().v = state.v;
   });
   run.kept = std::move(kept);
-  const Sums before = sums_of(scene.rule, start.v), after = sums_of(scene.rule, last);
+  const Sums before = sums_of(scene, start.v), after = sums_of(scene, last);
   run.momentum_change = after.momentum - before.momentum;
   run.momentum_scale = after.scale;
   return run;
@@ -84,12 +85,12 @@ Run run_real(const Scene& scene, const Settings& settings, const RunRequest& req
 // `before`: of the start.
 void add_momenta(const Scene& scene, const FixedRule& rule, const Int3& before, const State& last, Run& run) {
   const double unit = scene.rule.mass * rule.cell_edge / rule.dt / std::exp2(rule.widths.velocity_frac());
-  const Int3 after = momentum(last);
+  const Int3 after = momentum(rule, last);
   for (int a = 0; a < 3; ++a) run.momentum_change[a] = unit * static_cast<double>(after[a] - before[a]);
   for (const Particle& p : last.particles) {
     Vec3 v;
     for (int a = 0; a < 3; ++a) v[a] = unit * static_cast<double>(p.v[a]);
-    run.momentum_scale += v.norm();
+    run.momentum_scale += scene.rule.relative_mass(p.type) * v.norm();
   }
 }
 
@@ -104,7 +105,7 @@ Run run_fixed(Scene scene, const Arch& arch, const RunRequest& request, uint64_t
   Run run = run_engine(scene, emu::lattice_kind(scene, plan, choice), request, per_sample,
                        [&](uint64_t sample, const RunState& frame) {
                          last = std::get<State>(frame);
-                         if (!before) before = momentum(last);
+                         if (!before) before = momentum(plan.rule, last);
                          if (among(request.keep, sample))
                            kept.push_back(to_real(last, plan.rule, plan.lattice, plan.origin));
                        });
@@ -144,7 +145,7 @@ Run run_on_gpu(const Case& c, const Scene& scene, const RunRequest& request, uin
     for (const State& state : trace.frames)
       if (wanted(state.step)) run.kept.push_back(to_real(state, plan.rule, plan.lattice, plan.origin));
     if (!trace.frames.empty())
-      add_momenta(scene, plan.rule, momentum(trace.frames.front()), trace.frames.back(), run);
+      add_momenta(scene, plan.rule, momentum(plan.rule, trace.frames.front()), trace.frames.back(), run);
     return run;
   }
   for (const RealFrame& frame : trace.bodies) {
@@ -153,8 +154,8 @@ Run run_on_gpu(const Case& c, const Scene& scene, const RunRequest& request, uin
     run.kept.back().x = frame.x, run.kept.back().v = frame.v;
   }
   if (!trace.bodies.empty()) {
-    const Sums before = sums_of(scene.rule, trace.bodies.front().v);
-    const Sums after = sums_of(scene.rule, trace.bodies.back().v);
+    const Sums before = sums_of(scene, trace.bodies.front().v);
+    const Sums after = sums_of(scene, trace.bodies.back().v);
     run.momentum_change = after.momentum - before.momentum;
     run.momentum_scale = after.scale;
   }

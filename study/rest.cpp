@@ -31,7 +31,7 @@ std::vector<Vec3> accelerations(const Scene& scene) {
   for (size_t i = 0; i < a.size(); ++i) {
     const ParticleType& type = rule.types[scene.body.type[i]];
     if (type.pd && !scene.body.u.empty()) a[i] -= type.kp * scene.body.u[i];
-    a[i] = a[i] / rule.mass + type.gravity;
+    a[i] = a[i] / rule.mass_of(scene.body.type[i]) + type.gravity;
   }
   zero_imposed(rule, scene.body, a);
   return a;

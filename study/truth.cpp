@@ -91,10 +91,8 @@ double change_between(const std::vector<double>& a, const std::vector<double>& b
 
 double largest_frequency_of(const Scene& scene) {
   if (!(scene.pitch > 0)) return 0;
-  double strongest = 0;
-  for (const auto& row : scene.rule.strength)
-    for (const double strength : row) strongest = std::max(strongest, strength);
-  return largest_frequency(*scene.rule.law, scene.rule.mass, scene.pitch) * std::sqrt(strongest);
+  return largest_frequency(*scene.rule.law, scene.rule.mass, scene.pitch) *
+         std::sqrt(scene.rule.largest_rate());
 }
 
 void keep_states(const Run& run, const TimeGrid& grid, Truth& truth) {

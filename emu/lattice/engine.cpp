@@ -205,16 +205,20 @@ uint64_t LatticeEngine::hash() const {
 }
 
 Int3 LatticeEngine::momentum() const {
-  Int3 sum{};
+  const FixedRule& rule = impl_->plan_.rule;
+  std::vector<Int3> by_type(rule.types.size(), Int3{});
   for (int a = 0; a < 3; ++a)
-    impl_->for_each_index([&](uint32_t p) { sum[a] += static_cast<int64_t>(impl_->particles_.v[a][p]); });
+    impl_->for_each_index([&](uint32_t p) {
+      by_type[impl_->particles_.type[p]][a] += static_cast<int64_t>(impl_->particles_.v[a][p]);
+    });
   if (impl_->shared())
-    for (int64_t& s : sum) {
-      auto modulo = static_cast<uint64_t>(s);
-      impl_->options_.ranks->sum({&modulo, 1});
-      s = static_cast<int64_t>(modulo);
-    }
-  return sum;
+    for (Int3& sum : by_type)
+      for (int64_t& s : sum) {
+        auto modulo = static_cast<uint64_t>(s);
+        impl_->options_.ranks->sum({&modulo, 1});
+        s = static_cast<int64_t>(modulo);
+      }
+  return cuboct::momentum(rule, by_type);
 }
 
 void LatticeEngine::slots(CellSlots& out) const {

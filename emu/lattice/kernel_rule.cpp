@@ -73,6 +73,8 @@ KernelRule kernel_rule(const FixedRule& rule, int capacity) {
   k.inverse_guard = std::ldexp(1.0, -w.guard);
   k.sum_limit = std::ldexp(1.0, w.sum_bits - 1);
   k.v_limit = std::ldexp(1.0, w.velocity_bits - 1);
+  k.weighted = rule.weighted;
+  for (const FixedType& type : rule.types) k.weight.push_back(static_cast<double>(type.weight));
   for (const FixedType& type : rule.types)
     k.plain.push_back(!type.pd && !type.imposed[0] && !type.imposed[1] && !type.imposed[2]);
 

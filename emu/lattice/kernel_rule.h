@@ -67,6 +67,8 @@ struct KernelRule {
   std::vector<double> scale;  // types x types; negative: the two only touch
   double contact2 = 0;
   double scale_factor = 0;
+  bool weighted = false;
+  std::vector<double> weight;           // by type, 2^kWeightFrac for the lightest
   double guard = 0, inverse_guard = 0;  // 2^G, 2^-G
   double sum_limit = 0, v_limit = 0;    // |value| from here on may not fit
   std::vector<uint8_t> plain;           // by type: neither imposed nor held by force

@@ -131,7 +131,7 @@ ExpectedStrain expected_strain(const Scene& scene, std::span<const Vec3> x, std:
   for (size_t i = 0; i < x.size(); ++i) {
     const ParticleType& t = rule.types[type[i]];
     if (!held[i]) continue;
-    load[i] = rule.mass * t.gravity;
+    load[i] = rule.mass_of(type[i]) * t.gravity;
     if (t.pd) load[i] += t.kp * time * t.velocity;
     for (int a = 0; a < 3; ++a)
       if (t.imposed[a]) u[i][a] = time * t.velocity[a];

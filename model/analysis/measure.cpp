@@ -129,7 +129,7 @@ Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& ki
   for (int axis = 0; axis < 3; ++axis) {
     // What the step adds to v, of any size: finish() wraps what its widths do not hold.
     double gain = 0;
-    if (!type.imposed[axis]) gain = static_cast<double>(kick[axis] + type.gravity[axis]);
+    if (!type.imposed[axis]) gain = static_cast<double>(weighed(rule, type, kick[axis]) + type.gravity[axis]);
     if (!type.imposed[axis] && type.pd)
       gain -= std::ldexp(static_cast<double>(type.kp * particle.u[axis] +
                                              type.kd * (particle.v[axis] - type.velocity[axis])),
@@ -146,16 +146,17 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
   for (size_t i = 0; i < state.particles.size(); ++i) {
     const Particle& particle = state.particles[i];
     const Vec3& gravity = rule.types[particle.type].gravity;
+    const double mass = mass_of(fixed, particle.type), relative = mass / fixed.mass;
     const Cell& cell = lattice.cell(particle.cell);
     const Vec3 velocity = velocity_of(fixed, particle, kicks[i]);
     for (int axis = 0; axis < 3; ++axis) {
       const double x =
           origin[axis] + cell[axis] * fixed.cell_edge + static_cast<double>(particle.x[axis]) * length;
-      const double v = velocity[axis], kinetic = 0.5 * fixed.mass * v * v;
+      const double v = velocity[axis], kinetic = 0.5 * mass * v * v;
       sum.kinetic += kinetic;
       if (is_free(rule.types[particle.type], axis))
-        sum.free.kinetic += kinetic, sum.free.velocities[axis] += v;
-      sum.gravity -= fixed.mass * gravity[axis] * x;
+        sum.free.kinetic += kinetic, sum.free.velocities[axis] += relative * v;
+      sum.gravity -= mass * gravity[axis] * x;
     }
   }
   const double cutoff = rule.law->cutoff();
@@ -176,7 +177,7 @@ Vec3 acceleration(const Rule& rule, const Body& body, size_t i, const Vec3& forc
   Vec3 f = force;
   const Vec3 u = body.u.empty() ? Vec3::Zero() : body.u[i];
   if (type.pd) f -= type.kp * u + type.kd * (body.v[i] - type.velocity);
-  Vec3 a = f / rule.mass + type.gravity;
+  Vec3 a = f / rule.mass_of(body.type[i]) + type.gravity;
   for (int axis = 0; axis < 3; ++axis)
     if (type.imposed[axis]) a[axis] = 0;
   return a;
@@ -302,11 +303,20 @@ Vec3 mean_of(const std::vector<Vec3>& values, const std::vector<uint32_t>& at) {
   return at.empty() ? Vec3(Vec3::Zero()) : Vec3(sum_of(values, at) / static_cast<double>(at.size()));
 }
 
-// Of the motion about `mean`.
-double squares(const std::vector<Vec3>& v, const std::vector<uint32_t>& at, const Vec3& mean) {
+// Of the motion about `mean`, times the masses.
+double squares(const std::vector<Vec3>& v, const Probe& probe, const Vec3& mean) {
   double sum = 0;
-  for (const uint32_t k : at) sum += (v[k] - mean).squaredNorm();
+  for (size_t k = 0; k < probe.set.ids.size(); ++k)
+    sum += (probe.relative.empty() ? 1 : probe.relative[k]) * (v[probe.set.ids[k]] - mean).squaredNorm();
   return sum;
+}
+
+// Velocity of the centre of mass.
+Vec3 flow_of(const std::vector<Vec3>& v, const Probe& probe) {
+  if (probe.relative.empty()) return mean_of(v, probe.set.ids);
+  Vec3 sum = Vec3::Zero();
+  for (size_t k = 0; k < probe.set.ids.size(); ++k) sum += probe.relative[k] * v[probe.set.ids[k]];
+  return sum / std::accumulate(probe.relative.begin(), probe.relative.end(), 0.0);
 }
 
 }  // namespace
@@ -346,10 +356,10 @@ void ProbeMeter::add(const Sample& sample) {
         points(mean_of(sample.v, probe.set.ids), probe.axis);
         break;
       case Probe::Kind::kinetic_energy:
-        point(probe.scale * squares(sample.v, probe.set.ids, Vec3::Zero()));
+        point(probe.scale * squares(sample.v, probe, Vec3::Zero()));
         break;
       case Probe::Kind::temperature:
-        point(probe.scale * squares(sample.v, probe.set.ids, mean_of(sample.v, probe.set.ids)));
+        point(probe.scale * squares(sample.v, probe, flow_of(sample.v, probe)));
         break;
     }
 }

@@ -32,7 +32,7 @@ Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& ki
 // The particles along the axes that nothing imposes or steers, at the time of the positions.
 struct FreeMotion {
   double kinetic = 0;              // J
-  Vec3 velocities = Vec3::Zero();  // m/s, summed
+  Vec3 velocities = Vec3::Zero();  // m/s, summed, each times its mass over the lightest
 };
 
 struct Energies {

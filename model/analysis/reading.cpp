@@ -41,10 +41,11 @@ Reading read_reference(const Rule& rule, const Reference& reference, double late
   for (size_t i = 0; i < body.size(); ++i) {
     const Vec3 v = body.v[i] + late * acceleration(rule, body, i, force[i]);
     const ParticleType& type = rule.types[body.type[i]];
-    e.kinetic += rule.mass * v.squaredNorm() / 2;
-    e.gravity -= rule.mass * type.gravity.dot(body.x[i]);
+    const double relative = rule.relative_mass(body.type[i]), mass = rule.mass * relative;
+    e.kinetic += mass * v.squaredNorm() / 2;
+    e.gravity -= mass * type.gravity.dot(body.x[i]);
     for (int a = 0; a < 3; ++a)
-      if (is_free(type, a)) e.free.kinetic += rule.mass * v[a] * v[a] / 2, e.free.velocities[a] += v[a];
+      if (is_free(type, a)) e.free.kinetic += mass * v[a] * v[a] / 2, e.free.velocities[a] += relative * v[a];
   }
   e.potential = reference.potential_energy();
   if (asked.watch) asked.watch->see(reference.step_count(), body, force, e);

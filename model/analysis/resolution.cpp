@@ -60,17 +60,19 @@ Resolution::Resolution(const Scene& scene) : scene_(scene), type_(scene.body.typ
   }
 
   Vec3 mean = Vec3::Zero();
-  double free = 0, moving = 0, speed2 = 0;
+  double free = 0, moving = 0, speed2 = 0, energy2 = 0;
   for (uint32_t id = 0; id < body.size(); ++id) {
     if (!is_free[body.type[id]]) continue;
-    mean += body.v[id];
-    free += 1;
+    const double relative = rule.relative_mass(body.type[id]);
+    mean += relative * body.v[id];
+    free += relative;
     speed2 += body.v[id].squaredNorm();
+    energy2 += relative * body.v[id].squaredNorm();
     moving += body.v[id].isZero(0) ? 0 : 1;
   }
   if (moving > 0) {
     speed_ = std::sqrt(speed2 / moving);
-    vibration_ = 0.5 * rule.mass * (held ? speed2 : speed2 - mean.squaredNorm() / free);
+    vibration_ = 0.5 * rule.mass * (held ? energy2 : energy2 - mean.squaredNorm() / free);
   }
   if (loaded_ || vibration_ > 0) choose_bonds();
   shown_ = bonds_.empty() || !(loaded_ || vibration_ > 0);
@@ -119,9 +121,13 @@ std::vector<Resolution::Unit> Resolution::units(const FixedRule& rule, double re
   // A stretch r of a bond changes a kick by kick r/edge, in cells per step, and an entry of the force table,
   // which is a kick over a distance, by kick r/rest.
   const double kick = stiffness * rule.dt * rule.dt / rule.mass;
+  // The heaviest particles' velocities change least.
+  int64_t weight = FixedType{}.weight;
+  for (const FixedType& type : rule.types) weight = std::min(weight, type.weight);
+  const double slowest = std::ldexp(kick * static_cast<double>(weight), -kWeightFrac);
   return {{"difference_frac", w.difference_frac, std::ldexp(edge, -w.difference_frac)},
           {"position_frac", w.position_frac, std::ldexp(edge, -w.position_frac)},
-          {"guard", w.guard, std::ldexp(edge, -w.velocity_frac()) / kick},
+          {"guard", w.guard, std::ldexp(edge, -w.velocity_frac()) / slowest},
           {"strength_bits", w.strength_bits, std::ldexp(rest, -rule.force.value_frac) / kick}};
 }
 

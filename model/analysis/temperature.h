@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The kinetic temperature of a run: T = 2 K/(g k_B), with K the kinetic energy of the free particles about
-// their mean velocity and g their degrees of freedom. docs/reference/trace.md, "Temperature", says which
-// scenes have it.
+// the velocity of their centre of mass and g their degrees of freedom. docs/reference/trace.md,
+// "Temperature", says which scenes have it.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ class Thermometer {
 
  private:
   double mass_, boltzmann_;
-  std::array<uint64_t, 3> free_{};  // particles that nothing drives along each axis
+  std::array<double, 3> free_mass_{};  // over mass_, of the particles that nothing drives along each axis
   double degrees_ = 0;
   bool wanted_ = false;
 };

@@ -44,6 +44,9 @@ double Quotient::stable_dt(double dt) const {
 
 Quotient stability_quotient(const Rule& rule, const Periodic& periodic, std::span<const Vec3> x,
                             std::span<const uint8_t> type, std::vector<Vec3> y) {
+  // y counts displacements times the root of the mass, so that K/m and C/m are symmetric.
+  std::vector<double> root;
+  for (const uint8_t t : type) root.push_back(std::sqrt(rule.relative_mass(t)));
   const std::vector<Bond> bonds = bonds_of(rule, periodic, x, type);
   const double dt = rule.dt;
   Quotient q;
@@ -68,18 +71,18 @@ Quotient stability_quotient(const Rule& rule, const Periodic& periodic, std::spa
       const ParticleType& t = rule.types[type[i]];
       next[i] = kShift * y[i];
       if (!t.pd) continue;
-      const double stiff = dt * dt * t.kp / rule.mass, damp = 2 * dt * t.kd / rule.mass;
+      const double mass = rule.mass_of(type[i]), stiff = dt * dt * t.kp / mass, damp = 2 * dt * t.kd / mass;
       next[i] += (stiff + damp) * y[i];
       q.hold_dt2 += stiff * y[i].squaredNorm();
       q.hold += (stiff + damp) * y[i].squaredNorm();
     }
     for (const Bond& b : bonds) {
-      const Vec3 w = y[b.i] - y[b.j];
+      const Vec3 w = y[b.i] / root[b.i] - y[b.j] / root[b.j];
       const double along = b.e.dot(w);
       const Vec3 stiff = dt * dt * (b.along * along * b.e + b.across * (w - along * b.e)),
                  damp = 2 * dt * b.damping * along * b.e;
-      next[b.i] += stiff + damp;
-      next[b.j] -= stiff + damp;
+      next[b.i] += (stiff + damp) / root[b.i];
+      next[b.j] -= (stiff + damp) / root[b.j];
       q.law += stiff.dot(w);
       q.damping += damp.dot(w);
     }
@@ -88,6 +91,7 @@ Quotient stability_quotient(const Rule& rule, const Periodic& periodic, std::spa
   }
   for (uint32_t i = 0; i < y.size(); ++i)
     if (y[i].squaredNorm() > y[q.particle].squaredNorm()) q.particle = i;
+  for (size_t i = 0; i < y.size(); ++i) y[i] *= root[i];
   q.mode = std::move(y);
   return q;
 }

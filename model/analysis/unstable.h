@@ -17,7 +17,7 @@ struct Quotient {
   double damping = 0;      // 2 dt times their damping
   double hold = 0;         // both, of PD controllers
   uint32_t particle = 0;   // where the mode is largest
-  std::vector<Vec3> mode;  // y, of length 1
+  std::vector<Vec3> mode;  // y times the root of the mass over the lightest, y of length 1
   double total() const { return law + damping + hold; }
   double stable_dt(double dt) const;  // s: where this quotient would be 4
 

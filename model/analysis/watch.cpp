@@ -156,23 +156,28 @@ Watch::Motion Watch::motion_of(const Moment& moment) const {
   };
   struct Part {
     Vec3 sum = Vec3::Zero();
-    double carried = 0, flipped = 0, swing = 0, most = 0, fastest = 0;
+    double mass = 0, carried = 0, flipped = 0, swing = 0, most = 0, fastest = 0;
     size_t free = 0;
   };
   std::vector<Part> parts(blocks);
   by_block([&](size_t b, uint32_t id) {
     const Vec3 v = moment.v(id);
+    const double relative = rule.relative_mass(type_[id]);
     if (imposed[type_[id]])
-      parts[b].carried += v.squaredNorm();
+      parts[b].carried += relative * v.squaredNorm();
     else
-      parts[b].sum += v, ++parts[b].free;
+      parts[b].sum += relative * v, parts[b].mass += relative, ++parts[b].free;
   });
   Motion motion;
   size_t free = 0;
-  for (const Part& part : parts) motion.mean += part.sum, motion.carried += part.carried, free += part.free;
+  double mass = 0;  // of the free, over the lightest
+  for (const Part& part : parts) {
+    motion.mean += part.sum, motion.carried += part.carried;
+    free += part.free, mass += part.mass;
+  }
   if (free == 0) return motion;
-  motion.mean /= static_cast<double>(free);
-  motion.carried += static_cast<double>(free) * motion.mean.squaredNorm();
+  motion.mean /= mass;
+  motion.carried += mass * motion.mean.squaredNorm();
   motion.carried *= 0.5 * rule.mass;
   by_block([&](size_t b, uint32_t id) {
     if (imposed[type_[id]]) return;
@@ -288,10 +293,10 @@ void Watch::see_core(const Moment& moment, const Motion& motion) {
                      closest.j, law.core()));
     return;
   }
-  // Two particles with w between them have the energy m w^2/4 along their line, and w is at most twice the
-  // fastest. Damping may stop them all the same.
+  // Two particles with w between them have the energy m_i m_j/(m_i + m_j) w^2/2 along their line, at most m
+  // w^2/4 of the heaviest, and w is at most twice the fastest. Damping may stop them all the same.
   if (rule.damping.coefficient > 0 || !std::isfinite(closest.r) ||
-      rule.mass * motion.fastest * motion.fastest <
+      rule.heaviest() * motion.fastest * motion.fastest <
           least_of(rule.strength) * (barrier_ - law.energy(closest.r)))
     return;
   std::vector<Vec3> x(type_.size());
@@ -303,7 +308,8 @@ void Watch::see_core(const Moment& moment, const Motion& motion) {
   cells.for_each_pair(x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
     const double approach = -(moment.v(j) - moment.v(i)).dot(d) / r;
     const double wall = (barrier_ - law.energy(r)) * rule.strength_of(type_[i], type_[j]);
-    const double share = 0.25 * rule.mass * approach * approach / wall;
+    const double r_i = rule.relative_mass(type_[i]), r_j = rule.relative_mass(type_[j]);
+    const double share = 0.5 * (rule.mass * r_i * r_j / (r_i + r_j)) * approach * approach / wall;
     if (approach > 0 && share > most) most = share, a = i, b = j;
   });
   if (most > 1)

@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include "model/contract/fixed_step.h"
-
 namespace cuboct {
 namespace {
 

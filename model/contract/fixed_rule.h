@@ -3,11 +3,13 @@
 // number of fractional bits. docs/reference/numeric.md derives each format.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "model/base/error.h"
+#include "model/contract/fixed_step.h"
 #include "model/contract/rule.h"
 
 namespace cuboct {
@@ -60,6 +62,8 @@ struct FixedTable {
 };
 
 struct FixedType {
+  // The lightest material's mass over this one's, kWeightFrac fractional bits, in (0, 1].
+  int64_t weight = int64_t{1} << kWeightFrac;
   std::array<bool, 3> imposed{};
   Int3 velocity{};  // P+G fractional bits
   Int3 gravity{};   // cell edges per step^2, P+G fractional bits
@@ -72,7 +76,7 @@ struct FixedRule {
   Widths widths;
   double cell_edge = 0;  // m
   double dt = 0;         // s
-  double mass = 0;       // kg
+  double mass = 0;       // kg, the lightest material's: kicks and tables count in it
 
   uint64_t cutoff2 = 0;  // 2D fractional bits; r2 >= cutoff2: no interaction
   // Adder-only test that no interacting pair fails, on the leading bits of the positions: with e_a the
@@ -89,7 +93,8 @@ struct FixedRule {
   std::vector<std::vector<int32_t>> scale;
   uint64_t contact2 = 0;  // as cutoff2, at most that; 0: no two types only touch
   std::vector<FixedType> types;
-  bool pd = false;  // some type is held or moved by force
+  bool weighted = false;  // masses differ: some weight is below 1
+  bool pd = false;        // some type is held or moved by force
   // 2: every particle has z = 0, v_z = 0 and u_z = 0 for ever (hw/setup.h), and no record holds them.
   int axes = 3;
 
@@ -109,6 +114,11 @@ struct FixedRule {
     double relative = 0;     // worst_force over the largest |f| outside the core
   } error;
 };
+
+// kg: what the weight of a type means, and by that the masses that a run has.
+inline double mass_of(const FixedRule& rule, int type) {
+  return std::ldexp(rule.mass, kWeightFrac) / static_cast<double>(rule.types[type].weight);
+}
 
 // One pair's part of the kick: what j does to i, P+G fractional bits, and the tests on its way. Exactly the
 // contract: pair(i, j) == -pair(j, i).

@@ -99,6 +99,15 @@ CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple&
   return result;
 }
 
+inline constexpr int kWeightFrac = 16;  // of FixedType::weight
+
+// What a summed kick adds to the velocity of a particle of such a type. |sum| < 2^47, so that the product
+// fits.
+template <class Rule, class Type>
+CUBOCT_HD int64_t weighed(const Rule& rule, const Type& kind, int64_t sum) {
+  return rule.weighted ? round_odd(sum * kind.weight, kWeightFrac) : sum;
+}
+
 // Kick, constraints and drift of one particle, as FinishResult holds it. The drift is exact: x has the
 // fractional bits of v.
 template <class Result, class Rule, class Triple>
@@ -121,7 +130,7 @@ CUBOCT_HD Result finish_of(const Rule& rule, const Triple& sum, const Triple& x,
     if (kind.imposed[a]) {
       result.v[a] = target_velocity;  // the sum is not used, so it may be of any size
     } else {
-      int64_t dv = check(sum[a], widths.sum_bits, FaultType::sum);
+      int64_t dv = weighed(rule, kind, check(sum[a], widths.sum_bits, FaultType::sum));
       if (kind.pd) dv -= round_odd(kind.kp * u[a] + kind.kd * (v[a] - target_velocity), widths.gain_frac);
       result.v[a] = check(v[a] + dv + kind.gravity[a], widths.velocity_bits, FaultType::velocity);
     }

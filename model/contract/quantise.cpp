@@ -21,6 +21,8 @@ constexpr int kMostVelocityFrac = 50;  // of a double's 53 bits (emu/lattice/ker
 constexpr double kHalfUnit =
     1.7e-4;  // of the strongest pull: where the elastic constants of Lennard-Jones are right to 1 %
 
+constexpr double kMostRatio = 1024;  // of masses: the least weight is 64 units, off by half of one
+
 using Real = std::function<double(double)>;  // of r2 in cell edges squared
 
 // `whole`: the length of the vector that the value is a component of; a component is as exact as the vector
@@ -41,6 +43,16 @@ int64_t quantised(double value, double whole, int frac, int bits, const char* wh
                     value, frac, std::ldexp(static_cast<double>(result), -frac)),
         "more guard bits in the arch file keep it");
   return result;
+}
+
+int64_t weight_of(const Rule& rule, int type) {
+  const double ratio = rule.relative_mass(type);
+  if (ratio > kMostRatio)
+    throw InputError(
+        fmt::format("a particle of '{}' is {:.6g} times as heavy as the lightest: integers hold at most {}",
+                    rule.types[static_cast<size_t>(type)].name, ratio, kMostRatio),
+        "doubles hold any (--engine reference)");
+  return std::llround(std::ldexp(1 / ratio, kWeightFrac));
 }
 
 // The r2 (cell edges squared) at which bin k of the table starts; the table's end for k = number of bins.
@@ -318,6 +330,9 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   const double length = cell_edge;
   for (const ParticleType& type : rule.types) {
     FixedType t;
+    const auto index = static_cast<int>(fixed.types.size());
+    t.weight = weight_of(rule, index);
+    fixed.weighted = fixed.weighted || t.weight != FixedType{}.weight;
     t.imposed = type.imposed;
     t.pd = type.pd;
     for (int a = 0; a < 3; ++a) {
@@ -328,7 +343,8 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
                                widths.velocity_bits, "gravity");
     }
     if (type.pd) {
-      const double kp = type.kp * rule.dt * rule.dt / rule.mass, kd = type.kd * rule.dt / rule.mass;
+      const double mass = rule.mass_of(index);
+      const double kp = type.kp * rule.dt * rule.dt / mass, kd = type.kd * rule.dt / mass;
       t.kp = quantised(kp, kp, widths.gain_frac, 18, "the gain kp");
       t.kd = quantised(kd, kd, widths.gain_frac, 18, "the gain kd");
       fixed.pd = true;
@@ -347,6 +363,13 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
       }
     }
   return fixed;
+}
+
+Rule with_masses_of(const FixedRule& fixed, Rule rule) {
+  if (rule.masses.empty()) return rule;
+  for (size_t k = 0; k < rule.types.size(); ++k)
+    rule.masses[static_cast<size_t>(rule.types[k].material)] = mass_of(fixed, static_cast<int>(k));
+  return rule;
 }
 
 }  // namespace cuboct

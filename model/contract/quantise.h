@@ -28,8 +28,11 @@ struct TableChoice {
 // law's, where bonds are: from 0.8 of the distance at rest to the cutoff. 13 is taken where none will do.
 //
 // Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative
-// shift, a velocity, gain or scale out of its width.
+// shift, a velocity, gain, scale or mass out of its width.
 FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table,
                    double half_unit = std::numeric_limits<double>::infinity());
+
+// The rule with the masses that the fixed one gives its particles.
+Rule with_masses_of(const FixedRule& fixed, Rule rule);
 
 }  // namespace cuboct

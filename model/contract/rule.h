@@ -59,7 +59,8 @@ inline bool is_free(const ParticleType& type, int axis) { return !type.imposed[a
 struct Rule {
   std::shared_ptr<const PairLaw> law;
   Damping damping;
-  double mass = 0;                  // kg per particle
+  double mass = 0;                  // kg per particle; where masses differ, of the lightest material
+  std::vector<double> masses;       // kg by material; empty where all have `mass`
   double dt = 0;                    // s
   std::vector<ParticleType> types;  // at least one
   std::vector<std::vector<double>>
@@ -69,6 +70,23 @@ struct Rule {
   std::vector<std::vector<char>> contact;
   double contact_distance = 0;  // m, where the law's push ends (law.h); only with `contact`
 
+  double mass_of(int type) const { return masses.empty() ? mass : masses[types[type].material]; }
+  // Over the lightest material's, >= 1.
+  double relative_mass(int type) const { return mass_of(type) / mass; }
+  double heaviest() const { return masses.empty() ? mass : *std::max_element(masses.begin(), masses.end()); }
+  // The largest strength over the relative mass of the pair's lighter particle. A packing's largest squared
+  // frequency is at most so many times that of strength 1 and `mass`, w^2: with C this factor, the stiffness
+  // of a pair is at most C min(m_i, m_j), which is the sum over masses t of C where both are heavier than t;
+  // the bonds among those are some of a packing's, whose energy is at most w^2 times the sum of their x^2.
+  double largest_rate() const {
+    double rate = 0;
+    for (size_t i = 0; i < types.size(); ++i)
+      for (size_t j = 0; j < types.size(); ++j) {
+        const int a = static_cast<int>(i), b = static_cast<int>(j);
+        rate = std::max(rate, strength_of(a, b) / std::min(relative_mass(a), relative_mass(b)));
+      }
+    return rate;
+  }
   // c(r)/r^2 in kg/(s m^2).
   double damping_over_r2(double r) const {
     const double near = std::max(r, law->core());

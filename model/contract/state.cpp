@@ -23,10 +23,23 @@ uint64_t hash_of(const Lattice& lattice, const State& state) {
   return sum;
 }
 
-Int3 momentum(const State& state) {
-  Int3 sum{};
+Int3 momentum(const FixedRule& rule, const State& state) {
+  std::vector<Int3> by_type(rule.types.size(), Int3{});
   for (const Particle& particle : state.particles)
-    for (int a = 0; a < 3; ++a) sum[a] += particle.v[a];
+    for (int a = 0; a < 3; ++a) by_type[particle.type][a] += particle.v[a];
+  return momentum(rule, by_type);
+}
+
+Int3 momentum(const FixedRule& rule, const std::vector<Int3>& by_type) {
+  Int3 sum{};
+  for (int a = 0; a < 3; ++a) {
+    double weighed = 0;
+    for (size_t k = 0; k < by_type.size(); ++k) {
+      sum[a] += by_type[k][a];
+      weighed += static_cast<double>(by_type[k][a]) * mass_of(rule, static_cast<int>(k)) / rule.mass;
+    }
+    if (rule.weighted) sum[a] = std::llround(weighed);
+  }
   return sum;
 }
 

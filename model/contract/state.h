@@ -33,8 +33,11 @@ struct State {
 uint64_t hash_of(const Lattice& lattice, const Particle& particle);
 uint64_t hash_of(const Lattice& lattice, const State& state);
 
-// Sum of v over the particles, P+G fractional bits.
-Int3 momentum(const State& state);
+// Sum of v over the particles, P+G fractional bits; where masses differ, of v times the mass over the
+// lightest, rounded.
+Int3 momentum(const FixedRule& rule, const State& state);
+// The same of the sums of v by type.
+Int3 momentum(const FixedRule& rule, const std::vector<Int3>& by_type);
 
 // Particles in the integers of the run that left them, by id. A rule of the same formats takes them over as
 // they are.

@@ -30,10 +30,13 @@ uint64_t mixed(uint64_t x) {  // splitmix64, G. Steele et al., OOPSLA 2014
 // What a type does to its particles.
 template <class Real>
 struct Push {
-  Real gravity[3], velocity[3], kp, kd;
+  Real mass, gravity[3], velocity[3], kp, kd;
   bool imposed[3], pd;
-  explicit Push(const ParticleType& type)
-      : kp(static_cast<Real>(type.kp)), kd(static_cast<Real>(type.kd)), pd(type.pd) {
+  Push(const ParticleType& type, double kg)
+      : mass(static_cast<Real>(kg)),
+        kp(static_cast<Real>(type.kp)),
+        kd(static_cast<Real>(type.kd)),
+        pd(type.pd) {
     for (int axis = 0; axis < 3; ++axis) {
       gravity[axis] = static_cast<Real>(type.gravity[axis]);
       velocity[axis] = static_cast<Real>(type.velocity[axis]);
@@ -51,11 +54,10 @@ class Engine final : public RealEngine {
                                                      static_cast<size_t>(std::max(1, options.threads))))),
         list_(rule.law->cutoff(), periodic, margin(rule, periodic), pair_lanes<Real>(), threads_),
         options_(options),
-        mass_(static_cast<Real>(rule.mass)),
         dt_(rule.dt),
         particles_(body.size()) {
     for (const ParticleType& type : rule.types) {
-      pushes_.emplace_back(type);
+      pushes_.emplace_back(type, rule.mass_of(static_cast<int>(pushes_.size())));
       materials_.push_back(static_cast<Real>(type.material));
       pd_ = pd_ || type.pd;
     }
@@ -183,7 +185,7 @@ class Engine final : public RealEngine {
         const Real* const f = &f_[4 * s];
         Real moved2 = 0;
         for (int axis = 0; axis < 3; ++axis) {
-          const Real a = f[axis] / mass_ + push.gravity[axis];
+          const Real a = f[axis] / push.mass + push.gravity[axis];
           const Real free = v[axis] + a * kick_dt;
           v[axis] = push.imposed[axis] ? push.velocity[axis] : free;
           fastest_here = std::max(fastest_here, std::abs(v[axis]));
@@ -245,7 +247,6 @@ class Engine final : public RealEngine {
   const int threads_;
   NearList list_;
   const RealOptions options_;
-  const Real mass_;
   const double dt_;
   const size_t particles_;
   bool pd_ = false;

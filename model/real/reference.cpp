@@ -94,13 +94,14 @@ double Reference::potential_energy() const {
 
 double Reference::kinetic_energy() const {
   double sum = 0;
-  for (const Vec3& v : body().v) sum += v.squaredNorm();
+  for (size_t i = 0; i < body().size(); ++i)
+    sum += rule_.relative_mass(body_.type[i]) * body_.v[i].squaredNorm();
   return rule_.mass * sum / 2;
 }
 
 Vec3 Reference::momentum() const {
   Vec3 sum = Vec3::Zero();
-  for (const Vec3& v : body().v) sum += v;
+  for (size_t i = 0; i < body().size(); ++i) sum += rule_.relative_mass(body_.type[i]) * body_.v[i];
   return rule_.mass * sum;
 }
 

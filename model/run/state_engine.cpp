@@ -9,7 +9,7 @@ const State& StateEngine::here() {
   if (state_ && state_->step == step_count()) return *state_;
   state_ = make_state();
   made_ = state_->step;
-  momentum_ = cuboct::momentum(*state_);
+  momentum_ = cuboct::momentum(setting_.fixed, *state_);
   largest_speed_ = std::max(largest_speed_, cuboct::largest_speed(setting_.fixed, *state_));
   return *state_;
 }

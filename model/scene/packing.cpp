@@ -181,14 +181,20 @@ class Deviates {
 
 }  // namespace
 
-void add_thermal(std::vector<Vec3>& v, const std::vector<uint32_t>& ids, double speed, uint64_t seed) {
+void add_thermal(std::vector<Vec3>& v, const std::vector<uint32_t>& ids, double speed, uint64_t seed,
+                 const std::function<ThermalShare(uint32_t id)>& share) {
   if (ids.empty()) return;
   // Drawn twice, once for the mean: kept, the draws would take half as much memory as the body.
   Vec3 mean = Vec3::Zero();
+  double mass = 0;
   Deviates first(seed), again(seed);
-  for (size_t i = 0; i < ids.size(); ++i) mean += first.next();
-  mean /= static_cast<double>(ids.size());
-  for (const uint32_t id : ids) v[id] += speed * (again.next() - mean);
+  for (const uint32_t id : ids) {
+    const ThermalShare of = share(id);
+    mean += of.mass * of.speed * first.next();
+    mass += of.mass;
+  }
+  mean /= mass;
+  for (const uint32_t id : ids) v[id] += speed * (share(id).speed * again.next() - mean);
 }
 
 }  // namespace cuboct

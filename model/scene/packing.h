@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "model/contract/rule.h"
@@ -41,9 +42,14 @@ PackingSize packing_size(const Fcc& fcc, const Shape* shape, const Periodic& box
 // Whether moving by `shift` maps the sites on themselves (within 1e-6 of the pitch).
 bool is_period(const Fcc& fcc, const Vec3& shift);
 
-// Adds to v independent normal deviates of standard deviation `speed` (m/s) per component, less their mean,
-// to the particles `ids` in their order. std::mt19937_64 and the Box-Muller transform, as
-// std::normal_distribution differs between libraries.
-void add_thermal(std::vector<Vec3>& v, const std::vector<uint32_t>& ids, double speed, uint64_t seed);
+struct ThermalShare {
+  double mass = 1, speed = 1;  // a particle's factors on a mass and on `speed`
+};
+// Adds to v independent normal deviates of standard deviation `speed` (m/s) per component, less the velocity
+// of their centre of mass, to the particles `ids` in their order. std::mt19937_64 and the Box-Muller
+// transform, as std::normal_distribution differs between libraries.
+void add_thermal(
+    std::vector<Vec3>& v, const std::vector<uint32_t>& ids, double speed, uint64_t seed,
+    const std::function<ThermalShare(uint32_t id)>& share = [](uint32_t) { return ThermalShare{}; });
 
 }  // namespace cuboct

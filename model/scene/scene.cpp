@@ -17,12 +17,26 @@
 namespace cuboct {
 namespace {
 
-double read_mass(const ConfigTable& root, Scene& scene) {
-  root.not_both("density", "mass");
-  if (root.has("mass")) return root.number("mass", quantity::mass, Range::positive());
-  if (scene.pitch == 0) return root.number("mass", quantity::mass, Range::positive());
-  scene.density = root.number("density", quantity::density, Range::positive());
-  return particle_mass(scene.density, scene.pitch);
+double read_mass(const ConfigTable& table, double pitch, double* density = nullptr) {
+  table.not_both("density", "mass");
+  if (table.has("mass") || pitch == 0) return table.number("mass", quantity::mass, Range::positive());
+  const double value = table.number("density", quantity::density, Range::positive());
+  if (density) *density = value;
+  return particle_mass(value, pitch);
+}
+
+// That of the file, and those of materials that have their own.
+void read_masses(const ConfigTable& root, Scene& scene) {
+  Rule& rule = scene.rule;
+  const auto own = [](const ConfigTable& table) { return table.has("density") || table.has("mass"); };
+  const std::vector<ConfigTable> materials = root.tables("material");
+  const bool all_own = !materials.empty() && std::all_of(materials.begin(), materials.end(), own);
+  if (!all_own || own(root)) rule.mass = read_mass(root, scene.pitch, &scene.density);
+  for (const ConfigTable& material : materials)
+    rule.masses.push_back(own(material) ? read_mass(material, scene.pitch) : rule.mass);
+  if (materials.empty()) return;
+  rule.mass = *std::min_element(rule.masses.begin(), rule.masses.end());
+  if (rule.heaviest() == rule.mass) rule.masses.clear();
 }
 
 void read_damping(const ConfigTable& from, Scene& scene) {
@@ -195,17 +209,16 @@ void read_reach(const ConfigTable& root, Scene& scene) {
 }  // namespace
 
 double stable_time_step(const Rule& rule, double pitch) {
-  double strongest = 0, kp = 0, kd = 0;
-  for (const ParticleType& type : rule.types) {
-    for (const ParticleType& other : rule.types)
-      strongest = std::max(strongest, rule.strength[type.material][other.material]);
-    kp = std::max(kp, type.kp);
-    kd = std::max(kd, type.kd);
+  double kp = 0, kd = 0;  // over the mass
+  for (size_t k = 0; k < rule.types.size(); ++k) {
+    const double mass = rule.mass_of(static_cast<int>(k));
+    kp = std::max(kp, rule.types[k].kp / mass);
+    kd = std::max(kd, rule.types[k].kd / mass);
   }
   const double w = largest_frequency(*rule.law, rule.mass, pitch);
   if (!(w > 0)) return 0;
-  const double w2 = strongest * w * w + kp / rule.mass;
-  double g = kd / rule.mass;
+  const double w2 = rule.largest_rate() * w * w + kp;
+  double g = kd;
   if (rule.damping.coefficient > 0) {
     const double root = largest_frequency(DampingAsLaw(rule), rule.mass, pitch);
     g += root * root;
@@ -232,7 +245,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
     scene.pitch = packing->fcc.pitch;
     scene.orientation = packing->fcc.orientation;
   }
-  scene.rule.mass = read_mass(root, scene);
+  read_masses(root, scene);
   read_damping(root, scene);
   if (stage) read_damping(*stage, scene);
   const Regions regions(root);

@@ -57,6 +57,8 @@ struct Probe {
   // kinetic_energy: over the sum of v^2. temperature: over the sum of (v - mean)^2, m/(g k_B) with g degrees
   // of freedom.
   double scale = 0;
+  // The masses of the set's particles over rule.mass, where they differ: factors of v^2 and of the mean.
+  std::vector<double> relative;
   std::string unit;                    // of temperature: K, in reduced units J
   std::optional<Datasheet> datasheet;  // stress_strain: what the material is said to show
 };
@@ -100,7 +102,7 @@ struct Scene {
   Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates
   bool thermal = false;                 // some velocities are drawn
   double boltzmann = kBoltzmann;        // J/K; 1 in reduced units
-  double density = 0;                   // kg/m^3, 0 if the mass was given
+  double density = 0;                   // kg/m^3, at the top of the file; 0 if it is not given
   double dt_limit = 0;      // s, largest stable dt: of the perfect packing, and of the vibrations of
                             // particles that are listed (docs/user/scene.md, [run]); 0 if unknown
   std::string dt_limit_of;  // what sets it, e.g. "the perfect packing"

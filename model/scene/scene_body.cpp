@@ -265,7 +265,7 @@ ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change
   return type;
 }
 
-// Standard deviation of each component, m/s: sqrt(kT/m).
+// Standard deviation of each component, m/s: sqrt(kT/m), m of the lightest material.
 std::optional<double> thermal_speed(const ConfigTable& table, const Scene& scene) {
   const char* keys[] = {"thermal_speed", "thermal_energy", "temperature"};
   table.not_both(keys[0], keys[1]);
@@ -280,7 +280,16 @@ std::optional<double> thermal_speed(const ConfigTable& table, const Scene& scene
   return std::sqrt(scene.boltzmann * not_negative(2, quantity::temperature) / scene.rule.mass);
 }
 
-void read_velocities(const ConfigTable& root, const Regions& regions, Scene& scene) {
+// Of a temperature each particle has the speed that its mass gives.
+ThermalShare thermal_share(const ConfigTable& table, const Rule& rule, int material) {
+  if (rule.masses.empty()) return {};
+  const double relative = rule.masses[static_cast<size_t>(material)] / rule.mass;
+  return {relative, table.has("thermal_speed") ? 1 : 1 / std::sqrt(relative)};
+}
+
+// `material`: by particle.
+void read_velocities(const ConfigTable& root, const Regions& regions, const std::vector<int>& material,
+                     Scene& scene) {
   Body& body = scene.body;
   for (const ConfigTable& table : root.tables("velocity")) {
     std::vector<uint32_t> ids;
@@ -298,7 +307,8 @@ void read_velocities(const ConfigTable& root, const Regions& regions, Scene& sce
     for (uint32_t id : ids) body.v[id] += uniform + spin.cross(body.x[id] - centre);
     if (const auto speed = thermal_speed(table, scene)) {
       scene.thermal |= *speed > 0;
-      add_thermal(body.v, ids, *speed, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)));
+      add_thermal(body.v, ids, *speed, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)),
+                  [&](uint32_t id) { return thermal_share(table, scene.rule, material[id]); });
     }
     table.done();
   }
@@ -351,9 +361,8 @@ void read_body(const ConfigTable& root, const ConfigTable* stage, const Regions&
   Body& body = scene.body;
   if (body.size() == 0) root.fail("no particle", "add [packing] with [geometry], or [[particle]]");
   check_distinct(root, body.x, named.size());
-  read_velocities(root, regions, scene);
-
   const std::vector<int> material = assign_materials(root, regions, named, scene);
+  read_velocities(root, regions, material, scene);
   Vec3 gravity = root.vector_or("gravity", quantity::acceleration, Vec3::Zero());
   if (stage) gravity = stage->vector_or("gravity", quantity::acceleration, gravity);
   const std::map<std::string, ConfigTable> changes = constraint_changes(root, stage);

@@ -84,6 +84,9 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
       probe.set = set("region", probe.name);
       probe.scale = scene.rule.mass / 2;
       if (probe.kind == Probe::Kind::temperature) read_temperature(table, scene, probe);
+      if (!scene.rule.masses.empty())
+        for (const uint32_t id : probe.set.ids)
+          probe.relative.push_back(scene.rule.relative_mass(scene.body.type[id]));
     }
     table.done();
     scene.probes.push_back(std::move(probe));

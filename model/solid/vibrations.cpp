@@ -102,6 +102,8 @@ Vibrations vibrations_of(const Rule& rule, const Body& body, const Periodic& per
       for (int b = 0; b < 3; ++b)
         if (row[i][a] >= 0 && row[j][b] >= 0) entries.emplace_back(row[i][a], row[j][b], block(a, b));
   };
+  std::vector<double> relative;  // masses
+  for (const uint8_t type : body.type) relative.push_back(rule.relative_mass(type));
   // The diagonal blocks are summed first: one entry each.
   std::vector<Mat3> own(body.size(), Mat3::Zero()), own_damping(damps ? body.size() : 0, Mat3::Zero());
   CellList cells(rule.law->cutoff(), periodic);
@@ -113,19 +115,21 @@ Vibrations vibrations_of(const Rule& rule, const Body& body, const Periodic& per
     const double axial = -rule.law->slope(r), lateral = -rule.law->force(r) / r;
     const Mat3 along = e * e.transpose();
     const Mat3 block = scale * (lateral * Mat3::Identity() + (axial - lateral) * along);
-    own[i] += block, own[j] += block;
-    add(stiffness, i, j, -block), add(stiffness, j, i, -block);
+    const double r_i = relative[i], r_j = relative[j], both = std::sqrt(r_i * r_j);
+    own[i] += block / r_i, own[j] += block / r_j;
+    add(stiffness, i, j, -block / both), add(stiffness, j, i, -block / both);
     if (rule.damping.coefficient > 0) {
       const Mat3 drag = scale * rule.damping_over_r2(r) * r * r * along;
-      own_damping[i] += drag, own_damping[j] += drag;
-      add(damping, i, j, -drag), add(damping, j, i, -drag);
+      own_damping[i] += drag / r_i, own_damping[j] += drag / r_j;
+      add(damping, i, j, -drag / both), add(damping, j, i, -drag / both);
     }
   });
   for (uint32_t i = 0; i < body.size(); ++i) {
     const ParticleType& type = rule.types[body.type[i]];
     if (type.pd) {
-      own[i] += type.kp / rule.mass * Mat3::Identity();
-      if (damps) own_damping[i] += type.kd / rule.mass * Mat3::Identity();
+      const double mass = rule.mass_of(body.type[i]);
+      own[i] += type.kp / mass * Mat3::Identity();
+      if (damps) own_damping[i] += type.kd / mass * Mat3::Identity();
     }
     add(stiffness, i, i, own[i]);
     if (damps) add(damping, i, i, own_damping[i]);

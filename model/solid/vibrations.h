@@ -10,10 +10,11 @@
 namespace cuboct {
 
 // Rates per unit mass of small motions about the body's positions, over the degrees of freedom that no
-// constraint imposes (particle by particle, axis by axis): x'' = -stiffness x - damping x'. Symmetric. A bond
-// adds its axial part -f' e e^T and, under load, its geometric part -(f/r)(1 - e e^T), times the strength of
-// its materials, which scales its damping c(r) e e^T as well. PD-held particles add kp/m and kd/m. Born and
-// Huang, Dynamical Theory of Crystal Lattices (1954), section 24.
+// constraint imposes (particle by particle, axis by axis): x'' = -stiffness x - damping x'. Symmetric: x
+// counts displacements times the root of the mass over the lightest's. A bond adds its axial part -f' e e^T
+// and, under load, its geometric part -(f/r)(1 - e e^T), times the strength of its materials, which scales
+// its damping c(r) e e^T as well. PD-held particles add kp/m and kd/m. Born and Huang, Dynamical Theory of
+// Crystal Lattices (1954), section 24.
 struct Vibrations {
   using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   Matrix stiffness;                // 1/s^2

@@ -87,6 +87,11 @@ void write_head(const Writer& out, const TraceHead& head) {
   std::vector<std::string> types;
   for (const ParticleType& type : scene.rule.types) types.push_back(type.name);
   out.names(root, "types", types);
+  if (!scene.rule.masses.empty()) {
+    std::vector<double> masses;
+    for (size_t k = 0; k < types.size(); ++k) masses.push_back(scene.rule.mass_of(static_cast<int>(k)));
+    out.numbers<double>(root, "masses", masses);
+  }
   out.number<uint64_t>(root, "packing", packing_hash(scene));
   {
     // Datasets: HDF5 holds no attribute above 64 KiB.

@@ -114,6 +114,11 @@ class Simulation:
         return self._of.type_names
 
     @property
+    def masses(self) -> NDArray[np.float64]:
+        """(particles,), kg: of each particle's material. A copy."""
+        return np.asarray(self._of.type_masses)[self.types]
+
+    @property
     def hash(self) -> str | None:
         """Of the state, 16 hexadecimal digits: equal in all engines of the fixed rule. None of the reference."""
         return self._of.hash()

@@ -63,6 +63,7 @@ module cuboct_brick_core #(
   parameter int          DampFractionBits     = 17,
   parameter int          DampBits             = 18,     // of any value of the damping table
   parameter int          Scaled               = 0,      // 0, 1
+  parameter int          Weighted             = 0,      // 0, 1
   parameter int          Pd                   = 0,      // 0, 1
   parameter int          MovedTypes           = 0,      // types with velocities from velocity_i; 0: not read
   // Derived; do not set.
@@ -150,7 +151,8 @@ module cuboct_brick_core #(
   localparam int RowAddrBits = CellBits + RowBits;
   localparam int HaloAddrBits = TagBits + SlotBits;
   // Update.
-  localparam int UpdateLatency = (Pd != 0) ? 7 : 4;  // a cycle after the last one is written MIGRATE may read it
+  // A cycle after the last one is written MIGRATE may read it.
+  localparam int UpdateLatency = (Pd != 0) ? 7 : (Weighted != 0) ? 6 : 4;
   localparam int UpdateTail    = UpdateLatency - 2;
   localparam int TailBits      = $clog2(UpdateLatency);
 
@@ -557,7 +559,8 @@ module cuboct_brick_core #(
     .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits), .FirstOctave(FirstOctave), .FractionBits(FractionBits),
     .ForceBits(ForceBits), .Damped(Damped), .DampOctaves(DampOctaves), .DampDegree(DampDegree),
     .DampIndexBits(DampIndexBits), .DampBinBits(DampBinBits), .DampFirstOctave(DampFirstOctave),
-    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled), .MovedTypes(MovedTypes), .Pd(Pd)
+    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled), .MovedTypes(MovedTypes),
+    .Weighted(Weighted), .Pd(Pd)
   ) u_datapath (
     .clk_i, .rst_ni, .velocity_i, .issue_i(issue), .issue_place_i(issue_place), .candidate_i(issue_candidate),
     .own_i(pipe_data), .busy_o(pipe_busy), .kick_addr_o(kick_addr_next), .kick_id_i(kick_id), .look_addr_i(own_addr_d),

@@ -56,6 +56,7 @@ module cuboct_datapath #(
   parameter int          DampFractionBits     = 17,
   parameter int          DampBits             = 18,     // of any value of the damping table
   parameter int          Scaled               = 0,      // 0, 1
+  parameter int          Weighted             = 0,      // 0, 1
   parameter int          Pd                   = 0,      // 0, 1
   parameter int          MovedTypes           = 0,      // types with velocities from velocity_i; 0: not read
   // Derived; do not set.
@@ -228,9 +229,9 @@ module cuboct_datapath #(
   logic [63:0]         update_fault_number;
   cuboct_update #(
     .Axes(Axes), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(PipeSumBits),
-    .SumBits(SumBits), .TypeBits(SomeType), .Pd(Pd), .Held(Narrow), .DisplacementBits(DisplacementBits),
-    .GainBits(GainBits), .GainFrac(GainFrac), .ConstantBits(ConstantBits), .MovedTypes(MovedTypes),
-    .SlotBits(PlaceBits), .IdBits(TellBits)
+    .SumBits(SumBits), .TypeBits(SomeType), .Weighted(Weighted), .Pd(Pd), .Held(Narrow),
+    .DisplacementBits(DisplacementBits), .GainBits(GainBits), .GainFrac(GainFrac), .ConstantBits(ConstantBits),
+    .MovedTypes(MovedTypes), .SlotBits(PlaceBits), .IdBits(TellBits)
   ) u_update (
     .clk_i, .rst_ni, .velocity_i, .valid_i(take_i), .slot_i(take_place_i), .sum_i(gen_total[ForcePipes-1].so_far),
     .x_i(slot_i[PosBits-1:0]), .residue_i(slot_i[ResidueLsb +: ResidueBits]), .v_i(slot_i[VelLsb +: VelBits]),

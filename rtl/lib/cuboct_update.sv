@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Kick, constraints and drift: one particle per cycle. Per axis
 //   dv   = sum, which must fit SumBits                        not where the type imposes the velocity
+//   dv   = round_odd(dv * weight, WeightFrac)                 masses differ only (Weighted)
 //   dv  -= round_odd(kp * u + kd * (v - V), GainFrac)         types held by force only (Pd)
 //   v   += dv + g, which must fit VelocityBits; or v = V      where imposed
 //   u   += v - V, which must fit DisplacementBits             types held by force only
 //   x   += v, exactly: x and its residue, the Guard bits below, are one number
-// A particle accepted in cycle t is at the outputs in cycle t + Latency - 1, Latency = 3, or 6 with Pd: it is written
-// back at the edge of that cycle. With Held the inputs stay until that cycle, and the next particle comes after it:
-// nothing of them has to be kept here.
+// A particle accepted in cycle t is at the outputs in cycle t + Latency - 1, Latency = 3, with Weighted 5, with Pd 6:
+// it is written back at the edge of that cycle. With Held the inputs stay until that cycle, and the next particle
+// comes after it: nothing of them has to be kept here.
 module cuboct_update #(
   parameter int Axes             = 3,   // 2 or 3
   parameter int PositionFrac     = 20,
@@ -16,6 +17,9 @@ module cuboct_update #(
   parameter int TotalBits        = 30,  // of the exact sum over all pipes
   parameter int SumBits          = 29,  // that it must fit
   parameter int TypeBits         = 1,   // >= 1
+  parameter int Weighted         = 0,   // 0, 1
+  parameter int WeightBits       = 18,  // of a weight, signed
+  parameter int WeightFrac       = 16,  // its fractional bits
   parameter int Pd               = 0,   // 0, 1
   parameter int Held             = 0,   // 0, 1
   parameter int DisplacementBits = 29,
@@ -56,7 +60,8 @@ module cuboct_update #(
   output logic signed [63:0]            fault_number_o // that value
 );
   // Stage 1: operands. Stage VStage-1 holds what v is made of; v at VStage; the outputs are made in stage VStage.
-  localparam int VStage   = (Pd != 0) ? 5 : 2;
+  localparam int VStage   = (Pd != 0) ? 5 : (Weighted != 0) ? 4 : 2;
+  localparam int Kick     = (Weighted != 0) ? 3 : 1;  // the stage that has dv: a product and its rounding take one each
   // Wide enough for every sum below: four terms, none wider than PullBits after its rounding.
   localparam int PullBits = (Pd != 0) ? GainBits + DisplacementBits + 2 : 1;
   localparam int MaxVs    = (VelocityBits > SumBits) ? VelocityBits : SumBits;
@@ -91,9 +96,10 @@ module cuboct_update #(
   logic [Axes*ConstantBits-1:0] to_go, gravity;
   logic                      held;
   logic [GainBits-1:0]       kp, kd;
+  logic [WeightBits-1:0]     weight;
   cuboct_type_rom u_type_rom (
     .velocity_i, .type_i(type_1), .imposed_o(imposed), .velocity_o(to_go), .gravity_o(gravity), .pd_o(held), .kp_o(kp),
-    .kd_o(kd)
+    .kd_o(kd), .weight_o(weight)
   );
 
   logic [Axes-1:0]    bad_sum, bad_u, bad_v;                       // with the outputs
@@ -130,7 +136,33 @@ module cuboct_update #(
     logic signed [WideBits-1:0] plain, v_free, v_imposed;
     logic                       imposed_v, bad_sum_v;
     logic signed [TotalBits-1:0] sum_v;
-    assign plain = v_wide_1 + dv_wide + g_wide;
+    if (Weighted != 0) begin : gen_weighted
+      localparam int ProductBits = SumBits + WeightBits;
+      logic signed [WeightBits-1:0]  weight_1;
+      logic signed [ProductBits-1:0] product;
+      logic signed [SumBits-1:0]     dv_2, dv_3;
+      logic signed [WideBits-1:0]    rest_3, dv_3_wide;
+      assign weight_1 = $signed(weight);
+      cuboct_mult #(.ABits(SumBits), .BBits(WeightBits)) u_weigh (
+        .clk_i, .rst_ni, .en_i(valid_q[1]), .a_i(dv_1), .b_i(weight_1), .p_o(product)
+      );
+      cuboct_round_odd #(.InBits(ProductBits), .Shift(WeightFrac), .OutBits(SumBits)) u_round (
+        .a_i(product), .y_o(dv_2)
+      );
+      cuboct_delay #(.Bits(SumBits), .Depth(1)) u_dv3 (.clk_i, .d_i(dv_2), .q_o(dv_3));
+      cuboct_delay #(.Bits(WideBits), .Depth(Delay * 2)) u_rest3 (.clk_i, .d_i(v_wide_1 + g_wide), .q_o(rest_3));
+      cuboct_resize #(.InBits(SumBits), .OutBits(WideBits)) u_dv3_wide (.a_i(dv_3), .y_o(dv_3_wide));
+      assign plain = rest_3 + dv_3_wide;
+      logic unused_dv;
+      assign unused_dv = ^dv_wide;
+    end else begin : gen_alike
+      assign plain = v_wide_1 + dv_wide + g_wide;
+      logic unused_weight;
+      assign unused_weight = ^weight;
+    end
+    cuboct_delay #(.Bits(TotalBits + WideBits + 2), .Depth(Delay * (VStage - 2))) u_rest (
+      .clk_i, .d_i({imposed_1, bad_1, sum_1, to_go_wide}), .q_o({imposed_v, bad_sum_v, sum_v, v_imposed})
+    );
 
     if (Pd != 0) begin : gen_pd
       localparam int ErrorBits = ((VelocityBits > ConstantBits) ? VelocityBits : ConstantBits) + 1;
@@ -176,16 +208,14 @@ module cuboct_update #(
       assign high  = pull_sum_q[SpringBits-1:GainFrac];
       assign carry = pull_sum_q[GainFrac-1] && (!pull_sum_q[SpringBits-1] || pull_sum_q[GainFrac-2:0] != '0);
       cuboct_resize #(.InBits(HighBits), .OutBits(WideBits)) u_high (.a_i(high), .y_o(high_wide));
-      cuboct_delay #(.Bits(WideBits + 1), .Depth(Delay * 3)) u_plain4 (
-        .clk_i, .d_i({held, plain}), .q_o({held_4, plain_4})
+      cuboct_delay #(.Bits(1), .Depth(Delay * 3)) u_held4 (.clk_i, .d_i(held), .q_o(held_4));
+      cuboct_delay #(.Bits(WideBits), .Depth(Delay * (VStage - 1 - Kick))) u_plain4 (
+        .clk_i, .d_i(plain), .q_o(plain_4)
       );
       assign both   = $signed({plain_4, 1'b1}) + $signed({held_4 ? ~high_wide : '0, held_4 && !carry});
       assign v_free = both[WideBits:1];
       logic unused_carry;
       assign unused_carry = both[0];
-      cuboct_delay #(.Bits(TotalBits + WideBits + 2), .Depth(Delay * 3)) u_rest (
-        .clk_i, .d_i({imposed_1, bad_1, sum_1, to_go_wide}), .q_o({imposed_v, bad_sum_v, sum_v, v_imposed})
-      );
 
       // The displacement, with the outputs.
       logic signed [UBits-1:0]            u_wide, u_full, u_back, v_last, to_go_4, to_go_last;
@@ -208,10 +238,6 @@ module cuboct_update #(
       );
     end else begin : gen_free
       assign v_free    = plain;
-      assign imposed_v = imposed_1;
-      assign bad_sum_v = bad_1;
-      assign sum_v     = sum_1;
-      assign v_imposed = to_go_wide;
       assign bad_u[a]  = 1'b0;
       assign u_number[a*NumberBits +: NumberBits] = '0;
       assign u_o[a*DisplacementBits +: DisplacementBits] = '0;

@@ -84,7 +84,7 @@ void compare(const Case& c, const emu::LatticeOptions& options, Count& count) {
     const State found_state = engine.state();
     ASSERT_TRUE(!first || found_state == state) << first_difference(plan.lattice, state, found_state);
     ASSERT_EQ(engine.hash(), hash_of(plan.lattice, state));
-    ASSERT_EQ(engine.momentum(), momentum(state));
+    ASSERT_EQ(engine.momentum(), momentum(plan.rule, state));
     std::vector<Particle> slots, golden_slots;
     engine.for_each_slot([&](const Particle& p) { slots.push_back(p); });
     for (const auto& cell : golden.cells()) golden_slots.insert(golden_slots.end(), cell.begin(), cell.end());

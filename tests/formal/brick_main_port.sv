@@ -11,6 +11,7 @@ module brick_main_port_formal #(
   parameter int BrickY   = 1,
   parameter int Capacity = 1,
   parameter int LinkBits = 10,
+  parameter int Weighted = 0,  // 0, 1: masses differ, an update of two cycles more
   parameter int Pd       = 0,  // 0, 1: types held by force only, an update of three cycles more
   parameter int Steps    = 2   // of a run, at most
 ) (
@@ -22,7 +23,7 @@ module brick_main_port_formal #(
   input logic [4*LinkBits-1:0] link_data_i
 );
   localparam int Faces    = 4;
-  localparam int Taken    = (Pd != 0) ? 5 : 2;  // cycles from take to write
+  localparam int Taken    = (Pd != 0) ? 5 : (Weighted != 0) ? 4 : 2;  // cycles from take to write
   localparam int Cells    = BrickX * BrickY;
   localparam int CellBits = $clog2(Cells);
   localparam int Longest  = (BrickX > BrickY) ? BrickX : BrickY;
@@ -62,7 +63,8 @@ module brick_main_port_formal #(
   cuboct_brick_core #(
     .Axes(2), .BrickX(BrickX), .BrickY(BrickY), .BrickZ(1), .Capacity(Capacity), .FilterLanes(1), .ForcePipes(1),
     .QueueDepth(1), .LinkBits(LinkBits), .IdBits(1), .PositionFrac(1), .Guard(1), .VelocityBits(1),
-    .RelativeVelocityBits(1), .DifferenceShift(0), .FilterFrac(1), .Pd(Pd), .DisplacementBits(1), .Overlap(1)
+    .RelativeVelocityBits(1), .DifferenceShift(0), .FilterFrac(1), .Weighted(Weighted), .Pd(Pd), .DisplacementBits(1),
+    .Overlap(1)
   ) u_node (
     .clk_i, .rst_ni(running_q), .start_i, .steps_i, .has_link_i(has_link), .extent_i(extent), .exit_i(exits),
     .load_valid_i(load_i), .load_cell_i(load_cell), .load_data_i(loaded), .velocity_i(1'b0), .link_valid_o(link_valid),

@@ -9,7 +9,8 @@ module cuboct_type_rom (
   output logic [5:0] gravity_o,
   output logic       pd_o,
   output logic [2:0] kp_o,
-  output logic [2:0] kd_o
+  output logic [2:0] kd_o,
+  output logic [2:0] weight_o
 );
   logic unused_inputs;
   assign unused_inputs = ^{velocity_i, type_i};
@@ -19,6 +20,7 @@ module drift_formal #(
   parameter int PositionFrac = 3,
   parameter int Guard        = 2,
   parameter int VelocityBits = 6,
+  parameter int Weighted     = 0,
   parameter int Pd           = 0,
   parameter int Held         = 0
 ) (
@@ -30,7 +32,7 @@ module drift_formal #(
   input logic [11:0]               sum_i,
   input logic [11:0]               u_i
 );
-  localparam int Latency = (Pd != 0) ? 5 : 2;  // cycles from valid_i to valid_o
+  localparam int Latency = (Pd != 0) ? 5 : (Weighted != 0) ? 4 : 2;  // cycles from valid_i to valid_o
   localparam int Bits    = PositionFrac + Guard + 2;
 
   logic running_q = 1'b0;  // reset in the first cycle only
@@ -48,8 +50,8 @@ module drift_formal #(
   logic signed [63:0]        unused_number;
   cuboct_update #(
     .Axes(2), .PositionFrac(PositionFrac), .Guard(Guard), .VelocityBits(VelocityBits), .TotalBits(6), .SumBits(5),
-    .TypeBits(1), .Pd(Pd), .Held(Held), .DisplacementBits(6), .GainBits(3), .GainFrac(2), .ConstantBits(3),
-    .SlotBits(2), .IdBits(2)
+    .TypeBits(1), .Weighted(Weighted), .WeightBits(3), .WeightFrac(1), .Pd(Pd), .Held(Held), .DisplacementBits(6),
+    .GainBits(3), .GainFrac(2), .ConstantBits(3), .SlotBits(2), .IdBits(2)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .velocity_i(1'b0), .valid_i, .slot_i(2'd0), .sum_i, .x_i, .residue_i, .v_i,
     .type_i(1'b0), .id_i(2'd0), .u_i,

@@ -7,6 +7,7 @@
 module main_port_formal #(
   parameter int Capacity = 2,
   parameter int LinkBits = 10,
+  parameter int Weighted = 0,  // 0, 1: masses differ, an update of two cycles more
   parameter int Pd       = 0,  // 0, 1: types held by force only, an update of three cycles more
   parameter int Steps    = 2   // of a run, at most
 ) (
@@ -18,7 +19,7 @@ module main_port_formal #(
   input logic [4*LinkBits-1:0] link_data_i
 );
   localparam int Faces     = 4;
-  localparam int Taken     = (Pd != 0) ? 5 : 2;  // cycles from take to write
+  localparam int Taken     = (Pd != 0) ? 5 : (Weighted != 0) ? 4 : 2;  // cycles from take to write
   localparam int SlotBits  = (Capacity > 1) ? $clog2(Capacity) : 1;
   localparam int CountBits = $clog2(3 * Capacity) + 1;
   localparam int AddrBits  = $clog2(3 * Capacity);
@@ -42,7 +43,7 @@ module main_port_formal #(
   cuboct_node_core #(
     .Axes(2), .Capacity(Capacity), .FilterLanes(1), .ForcePipes(1), .QueueDepth(1), .LinkBits(LinkBits),
     .IdBits(1), .PositionFrac(1), .Guard(1), .VelocityBits(1), .RelativeVelocityBits(1), .DifferenceShift(0),
-    .FilterFrac(1), .Pd(Pd), .DisplacementBits(1), .Overlap(1)
+    .FilterFrac(1), .Weighted(Weighted), .Pd(Pd), .DisplacementBits(1), .Overlap(1)
   ) u_node (
     .clk_i, .rst_ni(running_q), .start_i, .steps_i, .has_link_i(has_link), .load_valid_i(load_i),
     .load_data_i({(9+2*Pd) {1'b0}}), .velocity_i(1'b0), .link_valid_o(link_valid), .link_end_o(link_end),

@@ -39,6 +39,9 @@ inline std::vector<NamedRule> made_rules() {
   Rule& touch = rules.back().rule;
   touch.contact = {{0, 1}, {1, 0}};
   touch.contact_distance = push_end(*touch.law);
+  rules.push_back({"masses", rules[2].rule});
+  Rule& heavy = rules.back().rule;
+  heavy.masses = {heavy.mass, 2.7 * heavy.mass};
   const double epsilon = 1.65e-21, sigma = 3.4e-10, mass = 6.6e-26;  // argon
   const double stiffness = 57 * epsilon / (sigma * sigma);
   const auto lj = [&](double cutoff, double core, Smoothing smoothing) {

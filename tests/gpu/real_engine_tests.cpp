@@ -184,8 +184,9 @@ void compare(const Trial& run, int count) {
   double kinetic = 0, gravity = 0, speed = 0, heights = 0;
   for (size_t i = 0; i < found.size(); ++i) {
     const Vec3 v = expected.v[i] + dt / 2 * acceleration(rule, expected, i, forces[i]);
-    kinetic += rule.mass * v.squaredNorm() / 2;
-    const double weight = rule.mass * rule.types[found.type[i]].gravity.dot(expected.x[i]);
+    const double mass = rule.mass_of(found.type[i]);
+    kinetic += mass * v.squaredNorm() / 2;
+    const double weight = mass * rule.types[found.type[i]].gravity.dot(expected.x[i]);
     gravity -= weight, heights += std::abs(weight);
     speed = std::max(speed, expected.v[i].cwiseAbs().maxCoeff());
   }

@@ -62,6 +62,7 @@ std::vector<Case> cases() {
   const double argon = 3.4e-10 * std::pow(2, 1.0 / 6);
   return {make_case("lj", argon, false, false, false),   make_case("lj_smooth", argon, true, true, false),
           make_case("ductile", 1e-3, true, true, false), make_case("ductile", 1e-3, false, true, true),
+          make_case("masses", 1e-3, true, true, false),  make_case("masses", 1e-3, false, true, true),
           make_case("brittle", 1e-3, true, false, true), make_case("cubic_crowded", 1e-3, false, true, false),
           make_case("b_spline", 1e-3, true, true, true)};
 }
@@ -176,8 +177,8 @@ TEST(RealEnergies, AreThoseOfTheReference) {
     Energies expected;
     for (size_t i = 0; i < body.size(); ++i) {
       const Vec3 v = body.v[i] + c.rule.dt / 2 * acceleration(c.rule, body, i, forces[i]);
-      expected.kinetic += c.rule.mass * v.squaredNorm() / 2;
-      expected.gravity -= c.rule.mass * c.rule.types[body.type[i]].gravity.dot(body.x[i]);
+      expected.kinetic += c.rule.mass_of(body.type[i]) * v.squaredNorm() / 2;
+      expected.gravity -= c.rule.mass_of(body.type[i]) * c.rule.types[body.type[i]].gravity.dot(body.x[i]);
     }
     expected.potential = reference.potential_energy();
     const Case now{c.name, c.rule, body, c.box};

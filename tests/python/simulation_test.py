@@ -44,6 +44,27 @@ class State(unittest.TestCase):
             self.assertLess(simulation.positions[0, 0], 1e-3)
             self.assertEqual(simulation.types.tolist(), [0, 0])
             self.assertEqual(simulation.type_names, ["matter"])
+            np.testing.assert_allclose(simulation.masses, [1e-6, 1e-6])
+
+    def test_materials_have_their_masses(self):
+        everywhere = {"shape": "half_space", "point": "[1, 0, 0] mm", "normal": "-x"}
+        scene = {
+            "mass": "1 mg",
+            "law": {"kind": "spline", "r": "[0, 1] mm", "force": "[1, 0] mN", "core": "0.5 mm"},
+            "material": [{"name": "light"}, {"name": "heavy", "mass": "4 mg", "region": everywhere}],
+            "particle": [
+                {"position": "[0, 0, 0] mm", "velocity": "[0, 1, 0] m/s"},
+                {"position": "[5, 0, 0] mm", "velocity": "[0, 2, 0] m/s"},
+            ],
+            "run": {"dt": "1 us", "steps": 10},
+            "reach": {"margin": "3 mm"},
+        }
+        for engine in ("golden", "lattice", "reference"):
+            simulation = cuboct.Simulation(scene, engine)
+            simulation.run()
+            np.testing.assert_allclose(simulation.masses, [1e-6, 4e-6])
+            kinetic = (simulation.masses * (simulation.velocities**2).sum(axis=1)).sum() / 2
+            self.assertAlmostEqual(simulation.energies["kinetic"] / kinetic, 1, places=6)
 
     def test_energies_are_the_sum(self):
         simulation = cuboct.Simulation(scene_file("lj_block.toml"))

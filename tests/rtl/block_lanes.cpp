@@ -130,8 +130,8 @@ std::string print_blocks(const Plan& plan) {
       "  logic [3*P-1:0] new_x;\n  logic [3*G-1:0] new_residue;\n  logic [5:0] away;\n  logic [3*V-1:0] "
       "new_v;\n  logic [T-1:0] new_type;\n"
       "  logic [Id-1:0] new_id, fault_id;\n  logic [3*U-1:0] new_u;\n  cuboct_update #(\n    " +
-      given({"PositionFrac", "Guard", "VelocityBits", "SumBits", "Pd", "DisplacementBits", "GainBits",
-             "GainFrac", "ConstantBits", "IdBits"}) +
+      given({"PositionFrac", "Guard", "VelocityBits", "SumBits", "Weighted", "Pd", "DisplacementBits",
+             "GainBits", "GainFrac", "ConstantBits", "IdBits"}) +
       fmt::format(
           "\n    .TotalBits(Sum), .TypeBits(T), .SlotBits({})\n  ) u_update (\n    .clk_i, .rst_ni, "
           ".velocity_i(1'b0),\n",

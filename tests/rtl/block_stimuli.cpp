@@ -2,6 +2,7 @@
 #include "tests/rtl/block_stimuli.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <random>
@@ -386,7 +387,9 @@ std::vector<std::string> look(const FixedRule& rule, UpdateStimulus& s) {
       note(at_limit(s.sum[a], w.sum_bits), "sum at a limit");
       note(beyond(s.sum[a], w.sum_bits), "sum one beyond");
       if (!fits(s.sum[a], w.sum_bits)) faults.insert(Fault::sum);
-      int64_t v = s.v[a] + wrap(s.sum[a], w.sum_bits) + kind.gravity[a];
+      const int64_t sum = wrap(s.sum[a], w.sum_bits);
+      note(rule.weighted && negative_half(sum * kind.weight, kWeightFrac), "half of the weighed sum");
+      int64_t v = s.v[a] + weighed(rule, kind, sum) + kind.gravity[a];
       if (kind.pd) {
         const int64_t pull = kind.kp * s.u[a] + kind.kd * (s.v[a] - kind.velocity[a]);
         note(negative_half(pull, w.gain_frac), "half of the pull");
@@ -447,6 +450,7 @@ UpdateStimuli update_stimuli(const FixedRule& rule, int sum_bits, uint64_t seed)
   if (imposed) names.insert("imposed, sum of any size");
   if (pd)
     names.merge(std::set<std::string>{"half of the pull", "u at a limit", "u one beyond", "fault of u"});
+  if (rule.weighted) names.insert("half of the weighed sum");
   for (const std::string& name : names) result.count[name] = 0;
 
   Draw draw(seed);
@@ -465,6 +469,10 @@ UpdateStimuli update_stimuli(const FixedRule& rule, int sum_bits, uint64_t seed)
           calm ? draw.of_bits(w.sum_bits) / draw(1, 64) : draw.edgy(draw.chance(50) ? sum_bits : w.sum_bits);
       if (!calm && draw.chance(20))
         s.sum[a] = (draw.chance(50) ? 1 : -1) * (int64_t{1} << (w.sum_bits - 1)) - draw(0, 1);
+      // An odd multiple of the unit whose product with the weight is a half.
+      const int odd = kWeightFrac - 1 - std::countr_zero(static_cast<uint64_t>(kind.weight));
+      if (rule.weighted && odd >= 0 && draw.chance(10))
+        s.sum[a] = -(2 * draw(0, 20) + 1) * (int64_t{1} << odd);
       if (kind.pd) s.u[a] = draw.edgy(w.displacement_bits);
     }
     // One axis where v, or u, meets its limit exactly, or misses it by one; or where v is less than a unit of
@@ -477,11 +485,13 @@ UpdateStimuli update_stimuli(const FixedRule& rule, int sum_bits, uint64_t seed)
     if (draw.chance(30) && !kind.imposed[a]) {
       const int64_t pull =
           kind.pd ? round_odd(kind.kp * s.u[a] + kind.kd * (s.v[a] - kind.velocity[a]), w.gain_frac) : 0;
-      const int64_t room = (int64_t{1} << (w.sum_bits - 1)) - 1;
+      const int64_t room = weighed(rule, kind, (int64_t{1} << (w.sum_bits - 1)) - 1);
       s.v[a] = std::clamp(end - draw(-room, room), -step, step - 1);
       const int64_t pull_now =
           kind.pd ? round_odd(kind.kp * s.u[a] + kind.kd * (s.v[a] - kind.velocity[a]), w.gain_frac) : pull;
-      const int64_t sum = end - s.v[a] - kind.gravity[a] + pull_now;
+      // The sum that comes nearest: what it misses by is less than half a unit once it is weighed.
+      const auto gain = static_cast<double>(end - s.v[a] - kind.gravity[a] + pull_now);
+      const int64_t sum = std::llround(std::ldexp(gain, kWeightFrac) / static_cast<double>(kind.weight));
       if (fits(sum, w.sum_bits)) s.sum[a] = sum;
     }
     if (kind.pd && draw.chance(30)) {

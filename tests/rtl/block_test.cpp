@@ -46,6 +46,7 @@ Scene rich_scene() {
   Scene scene = block_scene({.damping = 40, .two_materials = true, .force_held = true, .gravity = true});
   scene.rule.contact = {{0, 1}, {1, 0}};
   scene.rule.contact_distance = push_end(*scene.rule.law);
+  scene.rule.masses = {1, 2.7};
   auto& types = scene.rule.types;
   types[0].imposed = {true, false, true};
   types[0].velocity = Vec3(0.02, 0, -0.01);
@@ -72,13 +73,14 @@ Plan rich() {
   return make_setup(rich_scene(), arch).plan;
 }
 
-// Damped and scaled, uniform tables of parabolas, the cutoff at the cell's edge.
+// Damped, scaled and weighted, uniform tables of parabolas, the cutoff at the cell's edge.
 Plan mixed() {
   Arch arch;
   arch.widths.sum_bits = 24;
   arch.widths.velocity_bits = 28;
   arch.table = {.shape = TableChoice::Shape::uniform, .degree = 2, .index_bits = 6};
-  return make_setup(block_scene({.damping = 40, .two_materials = true, .held = true}), arch).plan;
+  return make_setup(block_scene({.damping = 40, .two_materials = true, .masses = true, .held = true}), arch)
+      .plan;
 }
 
 Plan plan_of(const std::string& name) {
@@ -518,6 +520,19 @@ std::vector<Mutation> mutations() {
        "rich",
        {{"cuboct_pipe.sv", "touch ? Contact2", "touch ? Cutoff2"}},
        "pipe: valid is 1"},
+      {"masses_alike",
+       "mixed",
+       {{"cuboct_update.sv", "weight_1 = $signed(weight)", "weight_1 = $signed(18'h10000)"}},
+       "update: v."},
+      {"weighed_sum_rounded_down",
+       "mixed",
+       {{"cuboct_update.sv", ".a_i(product), .y_o(dv_2)",
+         ".a_i({product[ProductBits-1:1], 1'b1}), .y_o(dv_2)"}},
+       "update: v."},
+      {"weighed_a_cycle_late",
+       "rich",
+       {{"cuboct_update.sv", "Delay * (VStage - 1 - Kick)", "Delay * (VStage - Kick)"}},
+       "update: v."},
       {"all_only_touch",
        "rich",
        {{"cuboct_pipe.sv", "touch ? Contact2", "1'b1 ? Contact2"}},

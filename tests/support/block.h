@@ -48,6 +48,7 @@ struct Features {
   double damping = 0;
   bool two_materials = false;  // weaker in the upper half of x
   bool contact = false;        // the two only touch
+  bool masses = false;         // those of the upper half are heavier
   bool held = false;           // lowest plane of x held; the highest moved
   bool force_held = false;     // the same by PD
   bool gravity = false;
@@ -86,6 +87,7 @@ inline Scene block_scene(const Features& f) {
     rule.contact = {{0, 1}, {1, 0}};
     rule.contact_distance = push_end(*rule.law);
   }
+  if (f.two_materials && f.masses) rule.masses = {1, 2.7};
 
   std::mt19937_64 random(f.seed);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1.0; };

@@ -54,6 +54,11 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.features.damping = 0.2;
          r.features.speed = 0.3;
        }},
+      {"masses",
+       [](R r) {
+         r.features.two_materials = r.features.masses = true;
+         r.features.speed = 0.3;
+       }},
       {"held_and_moved", [](R r) { r.features.held = true; }},
       {"force_held", [](R r) { r.features.force_held = r.features.gravity = true; }},
       {"octaves", [](R r) { r.arch.table.shape = TableChoice::Shape::octaves; }},
@@ -116,7 +121,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.features.size = {4, 3, 1};
          r.features.damping = 0.2;
          r.features.speed = 0.5;
-         r.features.two_materials = r.features.contact = r.features.held = true;
+         r.features.two_materials = r.features.contact = r.features.masses = r.features.held = true;
          r.arch.force_pipes = 2;
          r.arch.filter_lanes = 3;
          r.arch.capacity = 13;
@@ -155,7 +160,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
        [](R r) {
          r.features.damping = 0.2;
          r.features.speed = 0.5;
-         r.features.two_materials = r.features.held = true;
+         r.features.two_materials = r.features.masses = r.features.held = true;
          r.arch.multipliers = Multipliers::serial;
          r.arch.force_pipes = 2;
          r.arch.queue_depth = 2;
@@ -179,7 +184,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
        [](R r) {
          r.features.damping = 0.2;
          r.features.speed = 0.5;
-         r.features.two_materials = r.features.held = true;
+         r.features.two_materials = r.features.masses = r.features.held = true;
          r.arch.multipliers = Multipliers::serial;
          r.arch.link_bits = 21;  // the sign of x lies in two words
          narrow(r.arch);
@@ -199,7 +204,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
        [](R r) {
          r.features.damping = 0.2;
          r.features.speed = 0.5;
-         r.features.two_materials = r.features.contact = r.features.held = true;
+         r.features.two_materials = r.features.contact = r.features.masses = r.features.held = true;
          r.arch.force_pipes = 2;
          r.arch.filter_lanes = 4;
          r.arch.capacity = 13;
@@ -207,6 +212,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
       {"rich_force_held",
        [](R r) {
          r.features.force_held = r.features.gravity = true;
+         r.features.two_materials = r.features.masses = true;
          r.arch.table = {.shape = TableChoice::Shape::octaves, .degree = 2, .index_bits = 7};
          r.arch.link_bits = 24;
          r.arch.overlap = false;
@@ -293,6 +299,7 @@ Case random_recipe(uint64_t seed, bool flat) {
   r.features.two_materials = dice.chance(40);
   // Drawn apart, so that the other scenes stay what they were.
   r.features.contact = Dice(seed * 0x9e3779b97f4a7c15u + 5).chance(40);
+  r.features.masses = Dice(seed * 0x9e3779b97f4a7c15u + 7).chance(40);
   r.features.held = dice.chance(25);
   r.features.force_held = !r.features.held && dice.chance(30);
   r.features.gravity = dice.chance(30);

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "hw/arch.h"
+#include "model/analysis/measure.h"
 #include "model/base/error.h"
 #include "model/contract/law.h"
 #include "model/scene/config.h"
@@ -311,6 +312,85 @@ between = ["ball", "plate"]
   EXPECT_DOUBLE_EQ(read(materials + "contact = true\nstrength = 0.7\n").rule.strength[1][0], 0.7);
   EXPECT_TRUE(read(materials + "contact = false\nstrength = 0.7\n").rule.contact.empty());
   EXPECT_NE(error(materials).find("a.toml:21:1: missing key 'strength' in 'bond'"), std::string::npos);
+}
+
+TEST_F(SceneTest, MaterialsMayHaveTheirOwnMass) {
+  const std::string steel = R"([[material]]
+name = "polymer"
+[[material]]
+name = "steel"
+density = "7.05 g/cm^3"
+region = { shape = "half_space", point = "[0, 0, 1.5] mm", normal = "z" }
+)";
+  const Scene s = read(kBase + steel);
+  ASSERT_EQ(s.rule.types.size(), 2u);
+  EXPECT_EQ(s.rule.mass, read(kBase).rule.mass);
+  EXPECT_EQ(s.rule.mass_of(0), s.rule.mass);
+  EXPECT_DOUBLE_EQ(s.rule.mass_of(1), 5 * s.rule.mass);
+  EXPECT_DOUBLE_EQ(s.rule.heaviest(), 5 * s.rule.mass);
+  // The lighter material sets the step.
+  EXPECT_EQ(s.dt_limit, read(kBase).dt_limit);
+  // The lightest need not be the file's; the file's need not be there.
+  std::string light = steel;
+  light.replace(light.find("7.05"), 4, "0.47");
+  const Scene foam = read(kBase + light);
+  EXPECT_DOUBLE_EQ(3 * foam.rule.mass, s.rule.mass);
+  EXPECT_DOUBLE_EQ(foam.rule.relative_mass(0), 3);
+  EXPECT_DOUBLE_EQ(foam.dt_limit, s.dt_limit / std::sqrt(3));
+  std::string own = with("density = \"1.41 g/cm^3\"\n", "") + steel;
+  EXPECT_EQ(error(own), "a.toml:1:1: missing key 'density'");
+  own.replace(own.find("\"polymer\""), 9, "\"polymer\"\nmass = \"2 mg\"");
+  EXPECT_DOUBLE_EQ(read(own).rule.mass_of(0), 2e-6);
+  EXPECT_TRUE(read(kBase + "[[material]]\nname = \"a\"\ndensity = \"1.41 g/cm^3\"\n").rule.masses.empty());
+  EXPECT_EQ(error(kBase + steel + "mass = \"1 g\"\n"), "a.toml:20:8: give 'density' or 'mass', not both");
+  EXPECT_NE(error(kBase + "[[material]]\nname = \"a\"\nmass = \"0 g\"\n").find("a.toml:16:8"),
+            std::string::npos);
+}
+
+TEST_F(SceneTest, MassesCountInTemperaturesAndProbes) {
+  const std::string two = R"([[material]]
+name = "light"
+[[material]]
+name = "heavy"
+density = "11.28 g/cm^3"
+region = { shape = "half_space", point = "[0, 0, 1.5] mm", normal = "z" }
+[[probe]]
+name = "hot"
+kind = "temperature"
+region = { shape = "half_space", point = "[0, 0, -1] mm", normal = "-z" }
+)";
+  const auto heated = [&](const std::string& how) {
+    return read(kBase + "[[velocity]]\nseed = 3\n" + how + "\n" + two);
+  };
+  const Scene s = heated("temperature = \"300 K\"");
+  std::array<double, 2> count{}, energy{};
+  Vec3 momentum = Vec3::Zero();
+  for (size_t i = 0; i < s.body.size(); ++i) {
+    const int type = s.body.type[i];
+    count[type] += 1, energy[type] += s.rule.mass_of(type) * s.body.v[i].squaredNorm() / 2;
+    momentum += s.rule.relative_mass(type) * s.body.v[i];
+  }
+  // Each has 3 kT/2, whatever its mass; of N draws the energy is off by sqrt(2/(3 N)).
+  for (const int type : {0, 1})
+    EXPECT_NEAR(energy[type] / count[type], 1.5 * s.boltzmann * 300,
+                4 * 1.5 * s.boltzmann * 300 * std::sqrt(2 / (3 * count[type])));
+  const double speed = std::sqrt(s.boltzmann * 300 / s.rule.mass);
+  EXPECT_LT(momentum.norm(), 1e-12 * speed);
+  // A speed is a speed.
+  double slow = 0, heavy = 0;
+  const Scene alike = heated("thermal_speed = \"1 m/s\"");
+  for (size_t i = 0; i < alike.body.size(); ++i)
+    if (alike.body.type[i] == 1) slow += alike.body.v[i].squaredNorm(), ++heavy;
+  EXPECT_NEAR(slow / heavy, 3, 12 * std::sqrt(2 / (3 * heavy)));
+  // The probe's temperature is 2 K/(g k_B) about the centre of mass, which rests.
+  const Probe& probe = s.probes[0];
+  ASSERT_EQ(probe.relative.size(), s.body.size());
+  ProbeMeter meter(s.probes, s.periodic, s.body.x);
+  Sample sample{0, s.body.x, std::vector<Vec3>(s.body.size(), Vec3::Zero()), s.body.v};
+  for (Vec3& v : sample.v) v += Vec3(1, 2, 3);
+  meter.add(sample);
+  const double degrees = 3 * (count[0] + count[1] - 1);
+  EXPECT_NEAR(meter.curves()[0].value[0], 2 * (energy[0] + energy[1]) / (degrees * s.boltzmann), 1e-4);
 }
 
 TEST_F(SceneTest, ProbesTakeAnyAxis) {

@@ -47,6 +47,7 @@ package cuboct_pkg;
   localparam int          ForceBits            = 21;            // that hold every value of the force table
   localparam int          Damped               = 0;
   localparam int          Scaled               = 0;             // pairs of types differ
+  localparam int          Weighted             = 0;             // masses of types differ
   localparam int          Pd                   = 0;             // some type is held by force
   localparam int          ParticleBits         = 178;           // of the words to load and observe
 endpackage
