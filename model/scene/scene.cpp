@@ -50,8 +50,8 @@ class DampingAsLaw final : public PairLaw {
   double force(double) const override { return 0; }
   double energy(double) const override { return 0; }
   double slope(double r) const override { return -rule_.damping_over_r2(r) * r * r; }
-  double cutoff() const override { return rule_.law->cutoff(); }
-  double core() const override { return rule_.law->core(); }
+  double cutoff() const override { return rule_.cutoff(); }
+  double core() const override { return rule_.core(); }
 
  private:
   const Rule& rule_;
@@ -88,7 +88,7 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
   const Rule& rule = scene.rule;
   constexpr double kNone = std::numeric_limits<double>::infinity();
   TimeLimits limits;
-  const double cutoff = rule.law->cutoff();
+  const double cutoff = rule.cutoff();
   if (scene.pitch > 0) limits.given.meet(stable_time_step(rule, scene.pitch), "the perfect packing");
   bool small = false;  // a box that every engine will refuse
   for (const double extent : scene.periodic.extent) small = small || (extent > 0 && extent < 2 * cutoff);
@@ -104,9 +104,9 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
         if (scene.periodic.extent[axis] > 0) low[axis] = -kNone, high[axis] = kNone;
     }
     limits.given.meet(vibrations_limit(scene, low, high), "the particles that are listed");
-    const double rest = stiffest_rest_distance(*rule.law);
-    if (scene.pitch == 0 && rest > 0.1 * cutoff)
-      limits.automatic.meet(stable_time_step(rule, rest), "a packing at the law's rest distance");
+    if (scene.pitch == 0 && stiffest_rest_distance(*rule.law) > 0.1 * cutoff)
+      limits.automatic.meet(stable_time_step(rule, stiffest_rest_distance),
+                            "a packing at the law's rest distance");
   }
   limits.automatic.meet(limits.given.dt, limits.given.of);
   return limits;
@@ -195,21 +195,32 @@ void read_reach(const ConfigTable& root, Scene& scene) {
 }  // namespace
 
 double stable_time_step(const Rule& rule, double pitch) {
-  double strongest = 0, kp = 0, kd = 0;
-  for (const ParticleType& type : rule.types) {
-    for (const ParticleType& other : rule.types)
-      strongest = std::max(strongest, rule.strength[type.material][other.material]);
-    kp = std::max(kp, type.kp);
-    kd = std::max(kd, type.kd);
+  return stable_time_step(rule, [pitch](const PairLaw&) { return pitch; });
+}
+
+double stable_time_step(const Rule& rule, const std::function<double(const PairLaw&)>& pitch) {
+  double kp = 0, kd = 0, fastest = 0, damped = 0;  // the latter two are frequencies squared, 1/s^2 and 1/s
+  std::array<double, kMostLaws> strongest{};
+  for (size_t i = 0; i < rule.types.size(); ++i) {
+    for (size_t j = 0; j < rule.types.size(); ++j) {
+      const int a = static_cast<int>(i), b = static_cast<int>(j);
+      double& most = strongest[rule.law_index_of(a, b)];
+      most = std::max(most, rule.strength_of(a, b));
+    }
+    kp = std::max(kp, rule.types[i].kp);
+    kd = std::max(kd, rule.types[i].kd);
   }
-  const double w = largest_frequency(*rule.law, rule.mass, pitch);
-  if (!(w > 0)) return 0;
-  const double w2 = strongest * w * w + kp / rule.mass;
-  double g = kd / rule.mass;
-  if (rule.damping.coefficient > 0) {
-    const double root = largest_frequency(DampingAsLaw(rule), rule.mass, pitch);
-    g += root * root;
+  for (size_t k = 0; k < rule.laws(); ++k) {
+    if (strongest[k] == 0) continue;  // no pair of types has it
+    const double of = pitch(rule.law_at(k)), w = largest_frequency(rule.law_at(k), rule.mass, of);
+    fastest = std::max(fastest, strongest[k] * w * w);
+    if (!(w > 0) || rule.damping.coefficient == 0) continue;
+    const double root = largest_frequency(DampingAsLaw(rule), rule.mass, of);
+    damped = std::max(damped, root * root);
   }
+  if (!(fastest > 0)) return 0;
+  const double w2 = fastest + kp / rule.mass;
+  const double g = kd / rule.mass + damped;
   // (sqrt(g^2 + 4 w^2) - g)/w^2 without its cancellation.
   return 4 / (std::sqrt(g * g + 4 * w2) + g);
 }
@@ -248,7 +259,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
 
 std::array<bool, 3> live_axes(const Scene& scene) {
   const Body& body = scene.body;
-  const double same = 1e-9 * scene.rule.law->cutoff();
+  const double same = 1e-9 * scene.rule.cutoff();
   const ParticleType& first = scene.rule.types[body.type[0]];
   std::array<bool, 3> live{};
   for (size_t i = 0; i < body.size() && live != std::array{true, true, true}; ++i) {

@@ -74,6 +74,7 @@ module cuboct_node (
     .ForceBits(cuboct_pkg::ForceBits),
     .Damped(cuboct_pkg::Damped),
     .Scaled(cuboct_pkg::Scaled),
+    .LawBits(cuboct_pkg::LawBits),
     .Pd(cuboct_pkg::Pd),
     .MovedTypes(0)
   ) u_core (
