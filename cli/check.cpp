@@ -132,7 +132,7 @@ Items resolve(const Loaded& loaded) {
   items.add("capacity", plan.arch.capacity, "particles/cell");
   items.add("steps", scene.steps);
   if (scene.pitch > 0) items.add("pitch", scene.pitch, "m");
-  items.add("cutoff", scene.rule.law->cutoff(), "m");
+  items.add("cutoff", scene.rule.cutoff(), "m");
   items.add("cell edge", rule.cell_edge, "m");
   items.add("mass", rule.mass, "kg", rule.weighted ? "of the lightest particles" : "");
   if (rule.weighted) items.add("heaviest mass", scene.rule.heaviest(), "kg");
@@ -158,8 +158,12 @@ Items resolve(const Loaded& loaded) {
     items.add("relative velocity fraction", w.relative_velocity_frac, "",
               reason_of(plan, "relative_velocity_frac"));
   }
-  items.add("worst force error", rule.error.worst_force, "N",
-            fmt::format("at {:.4g} m; {:.2g} of the largest force", rule.error.at, rule.error.relative));
+  items.add("worst force error", rule.error().worst_force, "N",
+            fmt::format("at {:.4g} m; {:.2g} of the largest force", rule.error().at, rule.error().relative));
+  for (size_t n = 0; rule.errors.size() > 1 && n < rule.errors.size(); ++n)
+    items.add(
+        fmt::format("of law {}", n + 1), rule.errors[n].worst_force, "N",
+        fmt::format("at {:.4g} m; {:.2g} of its largest force", rule.errors[n].at, rule.errors[n].relative));
   add_cheaper(items, scene, plan);
   if (!plan.warnings.empty()) add_warnings(items, plan.warnings, {});
   const auto beats = [](int count) { return fmt::format("{} beat{}", count, count == 1 ? "" : "s"); };
@@ -216,7 +220,7 @@ std::string body_text(const Scene& scene, const Shown& shown) {
   std::string text, repeats;
   for (int a = 0; a < 3; ++a) {
     if (scene.periodic.extent[a] > 0) repeats += "xyz"[a];
-    if (size[a] > 1e-9 * scene.rule.law->cutoff()) text += (text.empty() ? "" : " x ") + shown(size[a], "m");
+    if (size[a] > 1e-9 * scene.rule.cutoff()) text += (text.empty() ? "" : " x ") + shown(size[a], "m");
   }
   if (!repeats.empty()) text += ", repeats along " + repeats;
   const size_t count = scene.body.size();

@@ -73,7 +73,7 @@ Short::Short(const Scene& scene, bool floats, uint64_t most) {
     of_gpu.step(force_bounds(scene, body.x, body.v, mine), speed);
     of_reference.step(force_bounds(scene, body.x, body.v, its), speed);
     const double next = of_gpu.position() + of_reference.position();
-    if (step > 0 && next > kRealTold(floats) * scene.rule.law->cutoff()) break;
+    if (step > 0 && next > kRealTold(floats) * scene.rule.cutoff()) break;
     bound = next;
     reference.step();
     other.step();

@@ -27,7 +27,7 @@ struct Extent {
 Extent extent_of(const Scene& scene, const FixedRule& rule) {
   Extent extent;
   extent.size = body_size(scene);
-  const double cutoff = scene.rule.law->cutoff();
+  const double cutoff = scene.rule.cutoff();
   const double others = static_cast<double>(scene.body.size()) - 1;
   double volume = 1;
   for (int a = 0; a < 3; ++a) volume *= extent.size[a] + 0.6 * cutoff;
@@ -44,7 +44,7 @@ Extent extent_of(const Scene& scene, const FixedRule& rule) {
 double pixels_of(const Scene& scene, const Extent& extent, uint32_t across) {
   std::array<double, 3> sides{extent.size[0], extent.size[1], extent.size[2]};
   std::ranges::sort(sides);
-  const double radius = (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff()) / 2;
+  const double radius = (scene.pitch > 0 ? scene.pitch : scene.rule.cutoff()) / 2;
   const double pixel = std::max((sides[2] + 2 * radius) / across, radius / 2);
   return ((sides[2] + 2 * radius) / pixel) * ((sides[1] + 2 * radius) / pixel);
 }

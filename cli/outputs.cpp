@@ -39,7 +39,7 @@ int strain_axis(const Scene& scene) {
 
 StrainMeter strain_meter(const Scene& scene, const std::vector<Vec3>& initial) {
   // Between the first and second shell of the packing: pitch (1 + sqrt 2)/2.
-  return {initial, scene.periodic, scene.pitch > 0 ? 1.207 * scene.pitch : scene.rule.law->cutoff()};
+  return {initial, scene.periodic, scene.pitch > 0 ? 1.207 * scene.pitch : scene.rule.cutoff()};
 }
 
 FrameMaker::FrameMaker(const Loaded& loaded, bool whole)
@@ -62,7 +62,7 @@ void FrameMaker::measure(Frame& frame, bool fixed) const {
     frame.strain = meter(fixed).axial(frame.x, axis_);
     return;
   }
-  for (const Deformation& one : meter(fixed).deformations(frame.x, axis_, loaded_.scene.rule.law->cutoff())) {
+  for (const Deformation& one : meter(fixed).deformations(frame.x, axis_, loaded_.scene.rule.cutoff())) {
     frame.strain.push_back(one.axial);
     frame.tensor.push_back(one.strain);
     frame.broken.push_back(one.broken);
@@ -88,7 +88,7 @@ Frame FrameMaker::make(uint64_t step, std::vector<Vec3> x, std::vector<Vec3> v) 
 FrameStyle frame_style(const Scene& scene) {
   FrameStyle style;
   style.periodic = scene.periodic;
-  style.radius = (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff()) / 2;
+  style.radius = (scene.pitch > 0 ? scene.pitch : scene.rule.cutoff()) / 2;
   for (const ParticleType& type : scene.rule.types) style.types.push_back(type.name);
   return style;
 }

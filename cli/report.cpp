@@ -52,8 +52,8 @@ std::vector<Vec3> positions_of(const Plan& plan, const State& state) {
 // broken, as a rule.
 std::optional<size_t> crack_onset(const Loaded& loaded, const Trace& trace, const StrainMeter& meter) {
   const auto broken = [&](size_t k) {
-    const auto all = meter.deformations(positions_of(loaded.setup.plan, trace.frames[k]), 0,
-                                        loaded.scene.rule.law->cutoff());
+    const auto all =
+        meter.deformations(positions_of(loaded.setup.plan, trace.frames[k]), 0, loaded.scene.rule.cutoff());
     return std::ranges::any_of(all, [](const Deformation& one) { return one.broken > 0; });
   };
   size_t whole = 0, parted = trace.frames.size() - 1;

@@ -201,8 +201,7 @@ int stability(const Options& options) {
   };
   try {
     if (scene.pitch > 0) {
-      Row row{
-          "perfect packing", "", 0, largest_frequency(*scene.rule.law, scene.rule.mass, scene.pitch), 0, {}};
+      Row row{"perfect packing", "", 0, largest_frequency(scene.rule, scene.pitch), 0, {}};
       row.predicted = 2 / row.frequency;
       rows.push_back(row);
     }

@@ -7,28 +7,36 @@
 
 namespace cuboct::gpu {
 
-EnergyTables::EnergyTables(const Rule& rule) {
-  const PairLaw& law = *rule.law;
-  const double cutoff = law.cutoff(), core = law.core() / cutoff;
+// `cutoff`: of the rule, m.
+EnergyLaw EnergyTables::take_law(const PairLaw& law, double cutoff) {
+  EnergyLaw terms;
+  const double core = law.core() / cutoff, end = law.cutoff() / cutoff;
   // dU/ds = -f dr/ds, dr/ds = cutoff^2/(2 r). Just below the cutoff, where the force may jump.
   const auto slope = [&](double r) { return -law.force(r) * cutoff * cutoff / (2 * r); };
-  rule_.core2 = core * core;
-  rule_.core_energy = law.energy(law.core());
-  rule_.core_slope = slope(law.core());
-  rule_.first_bin = bin_bits(rule_.core2, kEnergyShift);
-  node = {rule_.core_energy, rule_.core_slope};
-  const int end = bin_bits(1.0, kEnergyShift);
-  for (int bits = rule_.first_bin + 1; bits <= end; ++bits) {
+  terms.first = static_cast<int>(node.size());
+  terms.core2 = core * core;
+  terms.cutoff2 = end * end;
+  terms.core_energy = law.energy(law.core());
+  terms.core_slope = slope(law.core());
+  terms.first_bin = bin_bits(terms.core2, kEnergyShift);
+  node.insert(node.end(), {terms.core_energy, terms.core_slope});
+  for (int bits = terms.first_bin + 1;; ++bits) {
     const double s =
         std::bit_cast<double>(static_cast<uint64_t>(static_cast<uint32_t>(bits)) << (32 + kEnergyShift));
-    const double r = bits < end ? std::sqrt(s) * cutoff : std::nextafter(cutoff, 0.0);
-    node.push_back(law.energy(r));
-    node.push_back(slope(r));
+    const double r = s < terms.cutoff2 ? std::sqrt(s) * cutoff : std::nextafter(law.cutoff(), 0.0);
+    node.insert(node.end(), {law.energy(r), slope(r)});
+    if (!(s < terms.cutoff2)) return terms;
   }
-  if (!rule.contact.empty()) {
-    rule_.contact2 = std::pow(rule.contact_distance / cutoff, 2);
-    rule_.contact_energy = law.energy(rule.contact_distance);
+}
+
+EnergyTables::EnergyTables(const Rule& rule) {
+  const double cutoff = rule.cutoff();
+  for (size_t k = 0; k < rule.laws(); ++k) {
+    rule_.law[k] = take_law(rule.law_at(k), cutoff);
+    if (!rule.contact.empty()) rule_.law[k].contact_energy = rule.law_at(k).energy(rule.contact_distance);
   }
+  rule_.several = rule.laws() > 1;
+  if (!rule.contact.empty()) rule_.contact2 = std::pow(rule.contact_distance / cutoff, 2);
   rule_.type_count = static_cast<int>(rule.types.size());
   for (int i = 0; i < rule_.type_count; ++i) {
     for (int j = 0; j < rule_.type_count; ++j)
@@ -39,6 +47,9 @@ EnergyTables::EnergyTables(const Rule& rule) {
       free.push_back(is_free(rule.types[i], axis) ? 1 : 0);
     }
   }
+  for (int i = 0; rule_.several && i < rule_.type_count; ++i)
+    for (int j = 0; j < rule_.type_count; ++j)
+      strength.push_back(static_cast<double>(rule.law_index_of(i, j)));
   const double velocity = cutoff / rule.dt;
   rule_.kinetic = rule.mass * velocity * velocity / 2;
 }

@@ -9,21 +9,33 @@
 #include "gpu_ref/real_rule.h"
 
 namespace cuboct {
+class PairLaw;
 struct Rule;  // model/contract/rule.h, which no GPU compiler needs
-}
+}  // namespace cuboct
 namespace cuboct::gpu {
 
-// A view, as RealRule. U over s = (r/cutoff)^2 by cubics through values and slopes at the nodes: the core,
+// Of one law. U over s = (r/cutoff)^2 by cubics through values and slopes at the nodes: the core,
 // and beyond it the ends of kEnergyBins ranges of equal length in each octave of s, up to 1. Error inside a
 // bin [a, a + h], by Peano's kernel of the cubic Hermite interpolation:
 //   |U - table| <= h^4/384 max|U''''| + h^3/192 |J|      derivatives by s,
 // with a joint of the law in the bin, where U''' jumps by J; laws here have a continuous f', so U'' does not.
-struct EnergyRule {
-  const double* node = nullptr;  // U (J), dU/ds (J); from the bin of the core to 1
+struct EnergyLaw {
+  int first = 0;  // of its nodes
   int first_bin = 0;
   double core2 = 0, core_energy = 0, core_slope = 0;  // below: U = core_energy + core_slope (s - core2)
-  const double* strength = nullptr;                   // type_count x type_count; negative: the two only touch
-  double contact2 = 0, contact_energy = 0;            // where those part, in cutoff^2; U there, J
+  double cutoff2 = 1;         // of the law, in that of the rule, squared; the end of the bin that holds it
+  double contact_energy = 0;  // J, at contact2
+};
+
+// A view, as RealRule.
+struct EnergyRule {
+  EnergyLaw law[kLaws];
+  bool several = false;          // laws
+  const double* node = nullptr;  // U (J), dU/ds (J); law by law from the bin of the core to its cutoff
+  // type_count x type_count; negative: the two only touch. With several laws as many again: the number of
+  // each pair's law.
+  const double* strength = nullptr;
+  double contact2 = 0;  // where those that only touch part, cutoff^2
   int type_count = 1;
   const double* weight = nullptr;  // three per type, J per cutoff: mass * gravity * cutoff
   const double* free = nullptr;    // three per type: 1 along axes that nothing imposes or steers, else 0
@@ -36,23 +48,27 @@ inline constexpr int kEnergyShift = 20 - kEnergyBits;  // of an upper word: see 
 
 // Of one pair (count it once), J; 0 from the cutoff on. s = |x_j - x_i|^2 in cutoff^2. Strength included.
 CUBOCT_HD inline double pair_energy(const EnergyRule& rule, double s, int type_i, int type_j) {
-  if (!(s < 1)) return 0;
+  const int pair = type_i * rule.type_count + type_j;
+  const EnergyLaw& law =
+      rule.law[rule.several ? static_cast<int>(rule.strength[rule.type_count * rule.type_count + pair]) : 0];
+  if (!(s < law.cutoff2)) return 0;
   double energy;
-  if (s < rule.core2) {
-    energy = rule.core_energy + rule.core_slope * (s - rule.core2);
+  if (s < law.core2) {
+    energy = law.core_energy + law.core_slope * (s - law.core2);
   } else {
     const int bits = bin_bits(s, kEnergyShift);
     const auto begin_of = [](int bin) {
       return std::bit_cast<double>(static_cast<uint64_t>(static_cast<uint32_t>(bin)) << (32 + kEnergyShift));
     };
-    const double a = detail::larger(begin_of(bits), rule.core2), h = begin_of(bits + 1) - a;
-    const double* const n = rule.node + 2 * (bits - rule.first_bin);
+    const double a = detail::larger(begin_of(bits), law.core2);
+    const double h = detail::smaller(begin_of(bits + 1), law.cutoff2) - a;
+    const double* const n = rule.node + law.first + 2 * (bits - law.first_bin);
     const double t = (s - a) / h, left = h * n[1], right = h * n[3], rise = n[2] - n[0];
     energy = n[0] + t * (left + t * (3 * rise - 2 * left - right + t * (left + right - 2 * rise)));
   }
-  const double strength = rule.strength[type_i * rule.type_count + type_j];
+  const double strength = rule.strength[pair];
   if (strength > 0) return energy * strength;
-  return s < rule.contact2 ? (rule.contact_energy - energy) * strength : 0;
+  return s < rule.contact2 ? (law.contact_energy - energy) * strength : 0;
 }
 
 // Adds one particle's kinetic energy at the time of its positions, half a step after that of v: v + half of
@@ -92,6 +108,8 @@ struct EnergyTables {
   }
 
  private:
+  EnergyLaw take_law(const PairLaw& law, double cutoff);
+
   EnergyRule rule_;
 };
 

@@ -128,7 +128,7 @@ class FixedEngine final : public Engine {
     setup.capacity = static_cast<uint32_t>(plan.arch.capacity);
     setup.pd = rule.pd, setup.damped = rule.damped;
     setup.residue_bits = rule.widths.guard;
-    const double cutoff = scene.rule.law->cutoff();
+    const double cutoff = scene.rule.cutoff();
     for (int a = 0; a < 3; ++a) {
       setup.edge[a] = rule.cell_edge / cutoff;
       setup.origin[a] = plan.origin[a] / cutoff;

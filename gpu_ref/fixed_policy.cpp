@@ -13,7 +13,8 @@ DeviceTable put(const FixedTable& table, std::vector<int32_t>& cache) {
                         table.bin_bits,
                         table.first_octave,
                         table.fraction_bits,
-                        static_cast<uint32_t>(cache.size())};
+                        static_cast<uint32_t>(cache.size()),
+                        static_cast<uint32_t>(table.c0.size())};
   for (size_t k = 0; k < table.c0.size(); ++k) {
     cache.push_back(table.c0[k]);
     cache.push_back(table.c1[k]);
@@ -38,10 +39,12 @@ FixedRuleOnDevice::FixedRuleOnDevice(Stream& stream, const FixedRule& rule)
   cache_.set(stream, cache);
   view_.scaled = rule.scaled;
   view_.weighted = rule.weighted;
+  view_.law_bits = rule.law_bits;
   view_.type_count = static_cast<int>(rule.types.size());
   if (rule.scaled) {
     std::vector<int32_t> scale;
     for (const auto& row : rule.scale) scale.insert(scale.end(), row.begin(), row.end());
+    for (const auto& row : rule.law) scale.insert(scale.end(), row.begin(), row.end());
     scale_.set(stream, scale);
     view_.scale = scale_.data();
   }

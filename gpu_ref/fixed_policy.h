@@ -21,7 +21,7 @@ namespace cuboct::gpu {
 struct DeviceTable {
   int shape, degree, difference_frac, index_bits, bin_bits, first_octave;
   Rounding fraction_bits;
-  uint32_t first;
+  uint32_t first, entries;
 };
 
 struct DeviceType {
@@ -39,7 +39,8 @@ struct FixedView {
   uint64_t cutoff2;
   DeviceTable force, damp;
   bool damped, scaled, weighted;
-  const int32_t* scale;  // types x types
+  const int32_t* scale;  // types x types; with several laws as many again: the number of each pair's law
+  int law_bits;
   uint64_t contact2;
   int type_count;
   const DeviceType* types;
@@ -86,9 +87,9 @@ struct CachedFixedRule {
           fraction_bits(table.fraction_bits),
           c0{cache + table.first, 0},
           c1{cache + table.first, 1},
-          c2(cache + table.first + (size_t{2} << table.index_bits)) {}
+          c2(cache + table.first + 2 * size_t{table.entries}) {}
   };
-  struct Scale {
+  struct Pairs {
     const int32_t* first;
     int types;
     CUBOCT_DEVICE const int32_t* operator[](int i) const { return first + i * types; }
@@ -100,7 +101,8 @@ struct CachedFixedRule {
   Table force, damp;
   static constexpr bool damped = Damped;
   bool scaled, weighted;
-  Scale scale;
+  int law_bits;
+  Pairs scale, law;
   const DeviceType* types;
   const Rounding &difference_shift, &w_shift, &q_shift, &damp_shift, &kick_shift;
 
@@ -113,7 +115,9 @@ struct CachedFixedRule {
         damp(view.damp, static_cast<const int32_t*>(cache)),
         scaled(view.scaled),
         weighted(view.weighted),
+        law_bits(view.law_bits),
         scale{view.scale, view.type_count},
+        law{view.scaled ? view.scale + view.type_count * view.type_count : nullptr, view.type_count},
         types(view.types),
         difference_shift(view.difference_shift),
         w_shift(view.w_shift),

@@ -106,7 +106,7 @@ class RealEngine final : public Engine {
  private:
   // Chooses cells: whole ones in a box that repeats, else from the body's lowest corner on.
   void place(const Body& body) {
-    CellList(scene_.rule.law->cutoff(), scene_.periodic);  // refuses a box in which pairs meet twice
+    CellList(scene_.rule.cutoff(), scene_.periodic);  // refuses a box in which pairs meet twice
     Vec3 low = body.x[0], high = body.x[0];
     for (const Vec3& x : body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
     const double length = tables_.length;

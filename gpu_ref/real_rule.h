@@ -23,9 +23,10 @@ enum class LawKind : uint8_t {
   arc,
   crowded_cubic,
   crowded_arc,
+  several,  // each pair of types has its own of these
 };
 constexpr bool is_arc(LawKind kind) { return kind == LawKind::arc || kind == LawKind::crowded_arc; }
-constexpr bool has_pieces(LawKind kind) { return kind >= LawKind::cubic; }
+constexpr bool has_pieces(LawKind kind) { return kind >= LawKind::cubic && kind != LawKind::several; }
 constexpr bool is_crowded(LawKind kind) {
   return kind == LawKind::crowded_cubic || kind == LawKind::crowded_arc;
 }
@@ -41,20 +42,34 @@ struct RealType {
   bool pd = false;
 };
 
-// A view: gpu_ref/real_tables.h makes it and owns what it points to, or a copy of that on a device.
+inline constexpr int kLaws = 4;  // at most
+
+// One law.
 template <class Real>
-struct RealRule {
+struct RealLaw {
   LawKind kind = LawKind::lennard_jones;
+  Real core2 = 0;    // cutoff^2; nearer pairs have the f/r of the core
+  Real cutoff2 = 1;  // of the law, in that of the rule, squared
+  // Lennard-Jones: f/r = (repulsion/r^6 - attraction)/r^8 + offset/r
+  Real repulsion = 0, attraction = 0, offset = 0;
+  int first = 0;  // where its coefficients begin in the rule's cache, a multiple of 4
+  int bin_shift = 0;
+  // From there on: where the bin of no bits would stand, the begins, their squares.
+  int bin_at = 0, begin_at = 0, joint_at = 0;
+};
+
+// A view: gpu_ref/real_tables.h makes it and owns what it points to, or a copy of that on a device. It is the
+// law too; of several laws (LawKind::several) it has the shortest core, and `laws` are them.
+template <class Real>
+struct RealRule : RealLaw<Real> {
   bool damped = false, scaled = false;  // the template arguments of add_pair_kick
   bool pd = false;                      // some type has a u
   bool constrained = false;             // some type has anything set: imposed axes, PD, gravity, weight
   int type_count = 1;
-  Real core2 = 0;    // cutoff^2; nearer pairs have the f/r of the core
   Real damping = 0;  // per step
-  // Lennard-Jones: f/r = (repulsion/r^6 - attraction)/r^8 + offset/r
-  Real repulsion = 0, attraction = 0, offset = 0;
+  RealLaw<Real> laws[kLaws];
 
-  // The law's coefficients: none for Lennard-Jones, else
+  // Each law's coefficients: none for Lennard-Jones, else
   //   pieces  4 each, see over_r
   //   bins    2 each: the first joint (cutoff^2) inside the bin, 2 where there is none; and, as an integer's
   //           bits, the piece at the bin's beginning
@@ -63,12 +78,11 @@ struct RealRule {
   // operations away, bins are finer where a law is steeper, and the cutoff is the end of one.
   const Real* cache = nullptr;  // aligned to 16 bytes, as every copy of it
   int cache_size = 0;           // Reals, a multiple of 4
-  int bin_shift = 0;
-  // In the cache: where the bin of no bits would stand, the begins, their squares.
-  int bin_at = 0, begin_at = 0, joint_at = 0;
 
-  const Real* strength = nullptr;  // type_count x type_count, factor on the pair force; negative: only touch
-  Real contact2 = 0;               // cutoff^2: from here on pairs that only touch do nothing
+  // type_count x type_count, factor on the pair force; negative: only touch. With several laws as many again:
+  // the number of each pair's law.
+  const Real* strength = nullptr;
+  Real contact2 = 0;  // cutoff^2: from here on pairs that only touch do nothing
   const RealType<Real>* types = nullptr;
 };
 
@@ -146,31 +160,31 @@ CUBOCT_HD inline double smaller(double a, double b) { return a < b ? a : b; }
 // The piece of a law that holds r2, core2 <= r2 <= 1. Joints and r2 are rounded: beside a joint the answer
 // may be the neighbour, which there has the same force but for rounding.
 template <bool kCrowded, class Real>
-CUBOCT_HD int piece_of(const RealRule<Real>& rule, const Real* cache, Real r2) {
-  const detail::Two<Real> bin = detail::load_two(cache + rule.bin_at + 2 * bin_bits(r2, rule.bin_shift));
+CUBOCT_HD int piece_of(const RealLaw<Real>& law, const Real* cache, Real r2) {
+  const detail::Two<Real> bin = detail::load_two(cache + law.bin_at + 2 * bin_bits(r2, law.bin_shift));
   int piece = index_in(bin.b) + (r2 >= bin.a ? 1 : 0);
   if constexpr (kCrowded)
-    while (r2 >= cache[rule.joint_at + piece + 1]) ++piece;
+    while (r2 >= cache[law.joint_at + piece + 1]) ++piece;
   return piece;
 }
 
 // f/r in kicks per cutoff at core2 <= r2 <= 1, and 1/r2 for whom it may concern. The rounding errors of each
-// kind are bounded in tests/gpu/real_rule_tests.cpp.
+// kind are bounded in tests/gpu/real_rule_tests.cpp. `cache`: where the law's coefficients begin.
 template <LawKind kKind, class Roots, class Real>
-CUBOCT_HD Real over_r(const RealRule<Real>& rule, const Real* cache, Real r2, Real& inverse_r2) {
+CUBOCT_HD Real over_r(const RealLaw<Real>& law, const Real* cache, Real r2, Real& inverse_r2) {
   if constexpr (!has_pieces(kKind)) {
     // Not the square of 1/r, whose error the power 14 would double.
     const Real q = inverse_r2 = Roots::inverse(r2);
     const Real q3 = q * q * q;
-    const Real k = q * q3 * (rule.repulsion * q3 - rule.attraction);
+    const Real k = q * q3 * (law.repulsion * q3 - law.attraction);
     if constexpr (kKind == LawKind::lennard_jones) return k;
-    return k + rule.offset * Roots::inverse_root(r2);
+    return k + law.offset * Roots::inverse_root(r2);
   } else {
     const Real inverse_r = Roots::inverse_root(r2);
     inverse_r2 = inverse_r * inverse_r;
-    const int piece = piece_of<is_crowded(kKind)>(rule, cache, r2);
+    const int piece = piece_of<is_crowded(kKind)>(law, cache, r2);
     const detail::Four<Real> c = detail::load_four(cache + 4 * piece);
-    const Real t = r2 * inverse_r - cache[rule.begin_at + piece];
+    const Real t = r2 * inverse_r - cache[law.begin_at + piece];
     if constexpr (!is_arc(kKind)) {
       return (c.a + t * (c.b + t * (c.c + t * c.d))) * inverse_r;
     } else {
@@ -186,11 +200,36 @@ CUBOCT_HD Real over_r(const RealRule<Real>& rule, const Real* cache, Real r2, Re
   }
 }
 
+// f/r of a law of any kind but several, 0 from its cutoff on. Lanes of unlike kinds go one after another.
+template <class Roots, class Real>
+CUBOCT_HD Real over_r_of_any(const RealLaw<Real>& law, const Real* cache, Real r2) {
+  if (!(r2 < law.cutoff2)) return Real(0);
+  const Real* const own = cache + law.first;
+  const Real near2 = detail::larger(r2, law.core2);
+  Real inverse2;
+  switch (law.kind) {
+    case LawKind::shifted_lennard_jones:
+      return over_r<LawKind::shifted_lennard_jones, Roots>(law, own, near2, inverse2);
+    case LawKind::cubic:
+      return over_r<LawKind::cubic, Roots>(law, own, near2, inverse2);
+    case LawKind::arc:
+      return over_r<LawKind::arc, Roots>(law, own, near2, inverse2);
+    case LawKind::crowded_cubic:
+      return over_r<LawKind::crowded_cubic, Roots>(law, own, near2, inverse2);
+    case LawKind::crowded_arc:
+      return over_r<LawKind::crowded_arc, Roots>(law, own, near2, inverse2);
+    case LawKind::lennard_jones:
+    case LawKind::several:
+      break;
+  }
+  return over_r<LawKind::lennard_jones, Roots>(law, own, near2, inverse2);
+}
+
 // Adds to `sum` (cutoffs per step) what j does to i, and tells whether j is inside the cutoff; d = x_j - x_i,
 // in a periodic box the shortest, w = v_j - v_i (read only where kDamped), `cache`: rule.cache or a copy of
 // it (shared memory). Types are read only where kScaled. Of i and j swapped, with -d and -w, it is the
 // negative to the last bit: only even functions of d and w enter the factor on d. No lane goes an own way,
-// but in crowded laws.
+// but in crowded laws and with several.
 template <LawKind kKind, bool kDamped, bool kScaled, class Roots = FastRoots, class Real>
 CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, const Real d[3], const Real w[3],
                              int type_i, int type_j, Real sum[3]) {
@@ -199,8 +238,14 @@ CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, cons
   // Up to the cutoff, as bins end there.
   Real near2 = detail::larger(r2, rule.core2);
   if constexpr (has_pieces(kKind)) near2 = detail::smaller(near2, Real(1));
-  Real inverse2;
-  Real k = over_r<kKind, Roots>(rule, cache, near2, inverse2);
+  Real inverse2, k;
+  if constexpr (kKind == LawKind::several) {
+    const int number = rule.type_count * (rule.type_count + type_i) + type_j;
+    k = over_r_of_any<Roots>(rule.laws[static_cast<int>(rule.strength[number])], cache, r2);
+    if constexpr (kDamped) inverse2 = Roots::inverse(near2);
+  } else {
+    k = over_r<kKind, Roots>(rule, cache, near2, inverse2);
+  }
   if constexpr (kDamped) {
     const Real closing = w[0] * d[0] + w[1] * d[1] + w[2] * d[2];
     const Real rest = 1 - near2;
@@ -264,6 +309,9 @@ decltype(auto) with_kinds(const RealRule<Real>& rule, On&& on) {
       return of.template operator()<LawKind::crowded_cubic>();
     case LawKind::crowded_arc:
       return of.template operator()<LawKind::crowded_arc>();
+    case LawKind::several:
+      if (rule.damped) return on.template operator()<LawKind::several, true, true>();
+      return on.template operator()<LawKind::several, false, true>();
     case LawKind::lennard_jones:
       break;
   }

@@ -45,18 +45,21 @@ double begin_of_bin(int bits, int shift, double) {
 
 template <class Real>
 RealTables<Real>::RealTables(const Rule& rule) {
-  length = rule.law->cutoff();
+  length = rule.cutoff();
   velocity = length / rule.dt;
   force = rule.mass * velocity / rule.dt;
   const auto real = [](double value) { return static_cast<Real>(value); };
-  const double core = rule.law->core() / length;
-  rule_.core2 = real(core * core);
-  if (rule_.core2 < std::numeric_limits<Real>::min()) {
-    throw InputError(
-        fmt::format("the pair law's core is {:g} of its cutoff, whose square no {} holds", core, kName<Real>),
-        kHint<Real>);
+  static_assert(kLaws == kMostLaws);
+  for (size_t k = 0; k < rule.laws(); ++k) rule_.laws[k] = take_law(rule.law_at(k));
+  static_cast<RealLaw<Real>&>(rule_) = rule_.laws[0];
+  const bool several = rule.laws() > 1;
+  if (several) {
+    rule_.kind = LawKind::several;
+    rule_.core2 = real(rule.core() * rule.core() / (length * length));
+    rule_.cutoff2 = 1;
+    rule_.scaled = true;
   }
-  take_law(*rule.law);
+  rule_.cache_size = static_cast<int>(cache.size());
   rule_.damping = real(rule.damping.coefficient * rule.dt / rule.mass);
   rule_.damped = rule.damping.coefficient > 0;
   for (const ParticleType& from : rule.types) {
@@ -84,30 +87,42 @@ RealTables<Real>::RealTables(const Rule& rule) {
       strength.push_back(real(factor));
       rule_.scaled |= factor != 1;
     }
+  for (int i = 0; several && i < rule_.type_count; ++i)
+    for (int j = 0; j < rule_.type_count; ++j)
+      strength.push_back(real(static_cast<double>(rule.law_index_of(i, j))));
   rule_.contact2 = real(rule.contact_distance * rule.contact_distance / (length * length));
-  require_range(*rule.law);
+  for (size_t k = 0; k < rule.laws(); ++k) require_range(rule_.laws[k], rule.law_at(k));
 }
 
 template <class Real>
-void RealTables<Real>::take_law(const PairLaw& law) {
+RealLaw<Real> RealTables<Real>::take_law(const PairLaw& law) {
+  RealLaw<Real> terms;
+  terms.first = static_cast<int>(cache.size());
+  const double core = law.core() / length;
+  terms.core2 = static_cast<Real>(core * core);
+  terms.cutoff2 = static_cast<Real>(law.cutoff() * law.cutoff() / (length * length));
+  if (terms.core2 < std::numeric_limits<Real>::min())
+    throw InputError(
+        fmt::format("the pair law's core is {:g} of its cutoff, whose square no {} holds", core, kName<Real>),
+        kHint<Real>);
   const LawForm form = law.form();
   if (const auto* lj = std::get_if<LennardJonesForm>(&form)) {
     // f/r = 24 epsilon (2 (sigma^2/r^2)^6 - (sigma^2/r^2)^3)/r^2 + offset/r
     const double q = lj->sigma * lj->sigma / (length * length), q3 = q * q * q;
     const double scale = 24 * lj->epsilon / (force * length);
-    rule_.kind = lj->offset != 0 ? LawKind::shifted_lennard_jones : LawKind::lennard_jones;
-    rule_.repulsion = static_cast<Real>(2 * scale * q3 * q3);
-    rule_.attraction = static_cast<Real>(scale * q3);
-    rule_.offset = static_cast<Real>(lj->offset / force);
+    terms.kind = lj->offset != 0 ? LawKind::shifted_lennard_jones : LawKind::lennard_jones;
+    terms.repulsion = static_cast<Real>(2 * scale * q3 * q3);
+    terms.attraction = static_cast<Real>(scale * q3);
+    terms.offset = static_cast<Real>(lj->offset / force);
   } else if (const auto* cubics = std::get_if<std::vector<CubicPiece>>(&form)) {
-    rule_.kind = LawKind::cubic;
-    take_pieces(*cubics, [&](const CubicPiece& p) {
+    terms.kind = LawKind::cubic;
+    take_pieces(terms, *cubics, [&](const CubicPiece& p) {
       return std::array<double, 4>{p.c0 / force, p.c1 * length / force, p.c2 * length * length / force,
                                    p.c3 * length * length * length / force};
     });
   } else if (const auto* arcs = std::get_if<std::vector<ArcPiece>>(&form)) {
-    rule_.kind = LawKind::arc;
-    take_pieces(*arcs, [&](const ArcPiece& p) {
+    terms.kind = LawKind::arc;
+    take_pieces(terms, *arcs, [&](const ArcPiece& p) {
       const double b = 2 * length / p.r1;  // p of over_r is s/b
       return std::array<double, 4>{p.f0 / force, p.f1 * b / force, p.f2 * b * b / force,
                                    p.r2 / length * b * b};
@@ -115,56 +130,53 @@ void RealTables<Real>::take_law(const PairLaw& law) {
   } else {
     throw InputError("the pair law has no closed form, which the real-number GPU engine needs");
   }
+  return terms;
 }
 
 template <class Real>
 template <class Piece, class Coefficients>
-void RealTables<Real>::take_pieces(const std::vector<Piece>& pieces, Coefficients coefficients) {
+void RealTables<Real>::take_pieces(RealLaw<Real>& terms, const std::vector<Piece>& pieces,
+                                   Coefficients coefficients) {
   std::vector<Real> joint2;  // where piece k + 1 begins
   for (size_t k = 1; k < pieces.size(); ++k)
     joint2.push_back(static_cast<Real>(pieces[k].r * pieces[k].r / (length * length)));
-  const auto bits_of = [&](Real r2) { return bin_bits(r2, rule_.bin_shift); };
+  const auto bits_of = [&](Real r2) { return bin_bits(r2, terms.bin_shift); };
   bool crowded = false;
   for (int bits = kLeastBits; bits <= kMostBits; ++bits) {
     const int shift = kMantissaBits<Real> - bits;
-    if (bits > kLeastBits && bin_bits(Real(1), shift) - bin_bits(rule_.core2, shift) >= kMostBins) break;
-    rule_.bin_shift = shift;
+    if (bits > kLeastBits && bin_bits(Real(1), shift) - bin_bits(terms.core2, shift) >= kMostBins) break;
+    terms.bin_shift = shift;
     crowded = false;
     for (size_t k = 0; k + 1 < joint2.size(); ++k)
-      crowded |= bits_of(joint2[k]) == bits_of(joint2[k + 1]) && joint2[k + 1] > rule_.core2;
+      crowded |= bits_of(joint2[k]) == bits_of(joint2[k + 1]) && joint2[k + 1] > terms.core2;
     if (!crowded) break;
   }
-  if (crowded) rule_.kind = is_arc(rule_.kind) ? LawKind::crowded_arc : LawKind::crowded_cubic;
+  if (crowded) terms.kind = is_arc(terms.kind) ? LawKind::crowded_arc : LawKind::crowded_cubic;
   for (const Piece& piece : pieces)
     for (const double c : coefficients(piece)) cache.push_back(static_cast<Real>(c));
-  const int first = bits_of(rule_.core2);
-  rule_.bin_at = static_cast<int>(cache.size()) - 2 * first;
+  const int first = bits_of(terms.core2);
+  const auto here = [&] { return static_cast<int>(cache.size()) - terms.first; };
+  terms.bin_at = here() - 2 * first;
   for (int bits = first; bits <= bits_of(Real(1)); ++bits) {
-    const Real begin = std::max(begin_of_bin(bits, rule_.bin_shift, Real()), rule_.core2);
+    const Real begin = std::max(begin_of_bin(bits, terms.bin_shift, Real()), terms.core2);
     const auto next = std::upper_bound(joint2.begin(), joint2.end(), begin);
     const bool inside = next != joint2.end() && bits_of(*next) == bits;
     cache.push_back(inside ? *next : Real(2));
     cache.push_back(index_as_real<Real>(static_cast<size_t>(next - joint2.begin())));
   }
-  rule_.begin_at = static_cast<int>(cache.size());
+  terms.begin_at = here();
   for (const Piece& piece : pieces) cache.push_back(static_cast<Real>(piece.r / length));
-  rule_.joint_at = static_cast<int>(cache.size());
+  terms.joint_at = here();
   cache.push_back(0);
   cache.insert(cache.end(), joint2.begin(), joint2.end());
   cache.push_back(2);
   cache.resize((cache.size() + 3) / 4 * 4, Real(0));
-  rule_.cache_size = static_cast<int>(cache.size());
 }
 
 // The force is largest at the core, or no power of r stands in it.
 template <class Real>
-void RealTables<Real>::require_range(const PairLaw& law) const {
-  const RealRule<Real> view = rule();
-  Real inverse2;
-  const Real k = with_kinds(view, [&]<LawKind kKind, bool, bool>() {
-    return over_r<kKind, FastRoots>(view, view.cache, view.core2, inverse2);
-  });
-  if (std::isfinite(k)) return;
+void RealTables<Real>::require_range(const RealLaw<Real>& terms, const PairLaw& law) const {
+  if (std::isfinite(over_r_of_any<FastRoots>(terms, cache.data(), terms.core2))) return;
   throw InputError(fmt::format("the pair law's force at its core, {:g} m, is beyond the range of a {}",
                                law.core(), kName<Real>),
                    kHint<Real>);

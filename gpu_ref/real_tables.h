@@ -33,10 +33,10 @@ struct RealTables {
   }
 
  private:
-  void take_law(const PairLaw& law);
+  RealLaw<Real> take_law(const PairLaw& law);
   template <class Piece, class Coefficients>
-  void take_pieces(const std::vector<Piece>& pieces, Coefficients coefficients);
-  void require_range(const PairLaw& law) const;
+  void take_pieces(RealLaw<Real>& terms, const std::vector<Piece>& pieces, Coefficients coefficients);
+  void require_range(const RealLaw<Real>& terms, const PairLaw& law) const;
 
   RealRule<Real> rule_;
 };

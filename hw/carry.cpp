@@ -21,7 +21,8 @@ FixedRule carrying(FixedRule rule, const Carry& carry) {
   if (carry.damping && !rule.damped) {
     rule.damped = true;
     rule.damp = rule.force;
-    for (auto* column : {&rule.damp.c0, &rule.damp.c1, &rule.damp.c2}) column->assign(column->size(), 0);
+    for (auto* column : {&rule.damp.c0, &rule.damp.c1, &rule.damp.c2})
+      column->assign(column->empty() ? 0 : size_t{1} << rule.damp.index_bits, 0);
     rule.damp_shift = rule.widths.relative_velocity_frac - 1;
   }
   if (carry.pd) rule.pd = true;

@@ -27,7 +27,7 @@ EngineKind fixed_kind(const std::string& name, const Scene& scene, const Plan& p
   kind.nodes = plan.nodes();
   kind.particles = plan.particles;
   kind.displaced = plan.rule.pd;
-  kind.table_error = plan.rule.error.worst_force;
+  kind.table_error = plan.rule.error().worst_force;
   kind.initial = [&scene, &plan](uint32_t id) { return packed_place(scene, plan, id); };
   return kind;
 }

@@ -89,6 +89,8 @@ uint64_t hash_of(const Plan& plan) {
     for (const int32_t s : row) hash.add(s);
   if (rule.weighted)
     for (const FixedType& type : rule.types) hash.add(type.weight);
+  for (const auto& row : rule.law)
+    for (const uint8_t law : row) hash.add(law);
   for (const FixedType& type : rule.types) {
     for (int a = 0; a < 3; ++a) hash.add(type.imposed[a]).add(type.velocity[a]).add(type.gravity[a]);
     hash.add(type.pd).add(type.kp).add(type.kd);
@@ -197,12 +199,12 @@ std::string describe(const Plan& plan) {
   line("position", fmt::format("{} fractional bits, differences {}", w.position_frac, w.difference_frac));
   line("velocity", fmt::format("{} bits, {} fractional", w.velocity_bits, w.velocity_frac()));
   line("table",
-       fmt::format("{} entries of {} bits, {}, degree {}, scaled by 2^{}", 1 << t.index_bits, w.strength_bits,
+       fmt::format("{} entries of {} bits, {}, degree {}, scaled by 2^{}", t.c0.size(), w.strength_bits,
                    t.shape == TableShape::uniform ? std::string("uniform in r^2")
                                                   : fmt::format("{} per octave of r^2", 1 << t.bin_bits),
                    t.degree, t.value_frac));
   line("worst force error", fmt::format("{:.3g} N at r = {:.6g} m ({:.3g} of the largest force)",
-                                        r.error.worst_force, r.error.at, r.error.relative));
+                                        r.error().worst_force, r.error().at, r.error().relative));
   line("halo record", fmt::format("{} bits in {} beat{} of {}", plan.words.halo_bits, plan.words.halo_beats,
                                   plan.words.halo_beats == 1 ? "" : "s", plan.words.link_bits));
   line("particle word", fmt::format("{} bits in {} beat{}", plan.words.particle_bits,

@@ -27,8 +27,9 @@ std::string binary(const std::vector<bool>& bits) {
   return fmt::format("{}'b{}", bits.size(), text);
 }
 
-void add_table(RtlDesign& design, const std::string& module, const FixedTable& table, int entry_bits) {
-  design.tables.push_back({module, entry_bits, table.index_bits, table.c0, table.c1, table.c2});
+void add_table(RtlDesign& design, const std::string& module, const FixedTable& table, int entry_bits,
+               int law_bits) {
+  design.tables.push_back({module, entry_bits, table.index_bits + law_bits, table.c0, table.c1, table.c2});
 }
 
 }  // namespace
@@ -132,6 +133,7 @@ RtlDesign decide(const Plan& plan) {
   }
   constant("Scaled", rule.scaled, "pairs of types differ");
   constant("Weighted", rule.weighted, "masses of types differ");
+  constant("LawBits", rule.law_bits, "of the law of a pair of types; 0: all have one");
   constant("Pd", rule.pd, "some type is held by force");
   design.constants.push_back(
       {"ParticleBits", plan.words.particle_bits, false, false, "of the words to load and observe"});
@@ -154,10 +156,12 @@ RtlDesign decide(const Plan& plan) {
     design.checked = true;
   }
 
-  add_table(design, "cuboct_force_rom", rule.force, w.strength_bits);
-  if (rule.damped) add_table(design, "cuboct_damp_rom", rule.damp, w.strength_bits);
+  add_table(design, "cuboct_force_rom", rule.force, w.strength_bits, rule.law_bits);
+  if (rule.damped) add_table(design, "cuboct_damp_rom", rule.damp, w.strength_bits, 0);
   design.types = rule.types;
   if (rule.scaled) design.scale = rule.scale;
+  design.law_bits = rule.law_bits;
+  design.law = rule.law;
   design.axes = rule.axes;
   design.type_bits = rule.type_bits;
   design.velocity_bits = w.velocity_bits;
@@ -209,7 +213,7 @@ void legalise(const RtlDesign& design, bool with_lattice) {
   at_most("the width of a particle's exact sum", design.pair_sum_bits, 64);
   at_most("the width of a particle", design.particle_bits, 1024);
   for (const RtlTable& t : design.tables) {
-    at_most("a table's index width", t.index_bits, 16);
+    at_most("a table's index width", t.index_bits, 18);
     for (const auto* column : {&t.c0, &t.c1, &t.c2})
       for (const int32_t c : *column)
         if (!fits(c, t.entry_bits))

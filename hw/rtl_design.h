@@ -26,7 +26,7 @@ struct RtlConstant {
 struct RtlTable {
   std::string module;
   int entry_bits = 0;
-  int index_bits = 0;
+  int index_bits = 0;               // of an address: law, then bin
   std::vector<int32_t> c0, c1, c2;  // c2 is empty at degree 1
 };
 
@@ -42,6 +42,8 @@ struct RtlDesign {
   std::vector<FixedType> types;
   std::vector<int> moved;  // types whose velocities come from outside (hw/board.h); decide() leaves it empty
   std::vector<std::vector<int32_t>> scale;  // types x types; empty where the plan has none
+  int law_bits = 0;                         // of a law's number; 0: one law
+  std::vector<std::vector<uint8_t>> law;    // types x types; empty where there is one law
   int axes = 3;
   int type_bits = 0;
   int velocity_bits = 0;

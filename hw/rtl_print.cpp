@@ -76,26 +76,31 @@ std::string print_scale(const RtlDesign& design) {
   const int t = std::max(1, design.type_bits);  // one type may still have a scale below 1
   std::string text = head(design);
   text += fmt::format(
-      "// What a pair of types multiplies its strength by, ScaleFrac fractional bits, and whether the two "
-      "only "
-      "touch.\n"
+      "// What a pair of types multiplies its strength by, ScaleFrac fractional bits, whether the two only "
+      "touch,\n"
+      "// and the number of their law.\n"
       "// Combinational.\n"
       "module cuboct_scale_rom (\n"
       "  input  logic [{0}:0]         own_type_i,\n"
       "  input  logic [{0}:0]         other_type_i,\n"
       "  output logic signed [17:0] scale_o,\n"
-      "  output logic               touch_o\n"
+      "  output logic               touch_o,\n"
+      "  output logic [{1}:0]         law_o\n"
       ");\n"
       "  always_comb begin\n"
       "    scale_o = '0;\n"
       "    touch_o = 1'b0;\n"
+      "    law_o   = '0;\n"
       "    unique case ({{own_type_i, other_type_i}})\n",
-      t - 1);
+      t - 1, std::max(1, design.law_bits) - 1);
   for (size_t i = 0; i < design.scale.size(); ++i)
-    for (size_t j = 0; j < design.scale.size(); ++j)
-      text += fmt::format("      {}: {{touch_o, scale_o}} = {{1'b{}, {}}};\n",
-                          literal(static_cast<int64_t>(i << t | j), 2 * t), design.scale[i][j] < 0 ? 1 : 0,
-                          literal(std::abs(design.scale[i][j]), 18));
+    for (size_t j = 0; j < design.scale.size(); ++j) {
+      const std::string law =
+          design.law.empty() ? "1'b0" : fmt::format("{}'d{}", design.law_bits, design.law[i][j]);
+      text += fmt::format("      {}: {{law_o, touch_o, scale_o}} = {{{}, 1'b{}, {}}};\n",
+                          literal(static_cast<int64_t>(i << t | j), 2 * t), law,
+                          design.scale[i][j] < 0 ? 1 : 0, literal(std::abs(design.scale[i][j]), 18));
+    }
   return text + "      default: scale_o = '0;\n    endcase\n  end\nendmodule\n";
 }
 

@@ -22,6 +22,7 @@ std::string print_project(const Plan& plan, const State& initial, const std::vec
       {"axes", rule.axes},
       {"rule",
        {{"types", rule.types.size()},
+        {"laws", rule.errors.size()},
         {"damped", rule.damped},
         {"scaled", rule.scaled},
         {"weighted", rule.weighted},

@@ -73,7 +73,7 @@ constexpr double kMayComeIn = 0.2;
 // a multiple of four. A power of two that holds the former is enough: with one particle more, each memory
 // doubles.
 int capacity_for(const Scene& scene, const Lattice& lattice, double edge, const Vec3& origin) {
-  const double pitch = scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff();
+  const double pitch = scene.pitch > 0 ? scene.pitch : scene.rule.cutoff();
   const double reach = kMayComeIn * pitch / edge;
   std::vector<uint32_t> count(lattice.size(), 0);
   for (const Vec3& x : scene.body.x) {
@@ -213,7 +213,7 @@ Particle InitialParticles::operator()(uint32_t id) {
 }
 
 double cell_edge_of(const Scene& scene, const Arch& arch) {
-  const double cutoff = scene.rule.law->cutoff();
+  const double cutoff = scene.rule.cutoff();
   if (arch.cell_edge > 0 && arch.cell_edge < cutoff)
     arch.places.fail({"node.cell_edge"},
                      fmt::format("cell_edge = {:.6g} m is shorter than the pair law's cutoff, {:.6g} m",

@@ -12,7 +12,7 @@ namespace {
 // cutoff itself: bond laws end at the second neighbours, and rounding alone would tell how many of these
 // count.
 double ordered_pairs(const Scene& scene) {
-  const double cutoff = scene.rule.law->cutoff();
+  const double cutoff = scene.rule.cutoff();
   CellList cells(cutoff, scene.periodic);
   cells.build(scene.body.x);
   double pairs = 0;

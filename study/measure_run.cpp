@@ -192,6 +192,6 @@ double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b, cons
   return a.empty() ? 0 : std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-double length_unit(const Scene& scene) { return scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff(); }
+double length_unit(const Scene& scene) { return scene.pitch > 0 ? scene.pitch : scene.rule.cutoff(); }
 
 }  // namespace cuboct::study

@@ -122,8 +122,7 @@ bool relax_to_minimum(Scene& scene, double tolerance, double site) {
     for (size_t i = 0; i < scene.body.size(); ++i)
       for (int axis = 0; axis < 3; ++axis) {
         dice = dice * 6364136223846793005u + 1442695040888963407u;
-        const double shift =
-            1e-3 * scene.rule.law->cutoff() * (static_cast<double>(dice >> 11) * 0x1p-52 - 1);
+        const double shift = 1e-3 * scene.rule.cutoff() * (static_cast<double>(dice >> 11) * 0x1p-52 - 1);
         if (scene.rule.types[scene.body.type[i]].imposed[axis]) continue;
         scene.body.x[i][axis] += shift;
         if (!scene.body.u.empty()) scene.body.u[i][axis] += shift;
@@ -142,8 +141,11 @@ void stretch(Scene& scene, int axis, double strain) {
 Scene with_parts(Scene scene, const Parts& parts) {
   Rule& rule = scene.rule;
   if (!parts.damping) rule.damping.coefficient = 0;
-  if (!parts.strengths)
+  if (!parts.strengths) {
     for (auto& row : rule.strength) std::fill(row.begin(), row.end(), 1.0);
+    rule.other_laws.clear();
+    rule.law_index.clear();
+  }
   for (ParticleType& type : rule.types) {
     if (!parts.imposed) type.imposed = {false, false, false};
     if (!parts.pd) type.pd = false, type.kp = type.kd = 0;
@@ -161,14 +163,14 @@ Subject subject_of(const Scene& scene, int axis, double strain) {
   s.steps = 0, s.probes.clear();
   s.reach_margin = Vec3::Constant(-1), s.reach = {Vec3::Zero(), Vec3::Zero()};
 
-  const auto tolerance = [&] { return kAtRest * s.rule.law->cutoff() * stiffest_site(s); };
+  const auto tolerance = [&] { return kAtRest * s.rule.cutoff() * stiffest_site(s); };
   const auto give_up = [&](const std::string& why) {
     out.note += (out.note.empty() ? "" : "; ") + why;
     out.measurable = false;
   };
   if (const double start = tolerance(); start > 0 && largest(accelerations(s)) > start) {
     const std::vector<Vec3> x = s.body.x;
-    const bool rests = relax_to_minimum(s, start, start / (kAtRest * s.rule.law->cutoff()));
+    const bool rests = relax_to_minimum(s, start, start / (kAtRest * s.rule.cutoff()));
     double farthest = 0;
     for (size_t i = 0; i < x.size(); ++i) farthest = std::max(farthest, (s.body.x[i] - x[i]).norm());
     if (rests) {

@@ -163,7 +163,7 @@ Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolutio
   // Forces that hold a stretched body still, where the format of gravity would round them to less than 1 %:
   // they are less than a difference's rounding does.
   const double unit =
-      std::ldexp(scene.rule.law->cutoff(), -arch.widths.velocity_frac()) / (scene.rule.dt * scene.rule.dt);
+      std::ldexp(scene.rule.cutoff(), -arch.widths.velocity_frac()) / (scene.rule.dt * scene.rule.dt);
   for (ParticleType& type : scene.rule.types)
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(type.gravity[axis]) < 128 * unit) type.gravity[axis] = 0;

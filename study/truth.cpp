@@ -64,7 +64,7 @@ Climb climb(const Study& study, Case c, const TimeGrid& grid, uint64_t per_sampl
   Climb result;
   result.run = run_case(c, request);
   result.rung.dt = result.run.dt;
-  result.rung.cutoff = c.scene.rule.law->cutoff();
+  result.rung.cutoff = c.scene.rule.cutoff();
   result.rung.trajectory = result.rung.change = kNone;
   if (!result.run.stop.empty())
     throw InputError(
@@ -91,8 +91,7 @@ double change_between(const std::vector<double>& a, const std::vector<double>& b
 
 double largest_frequency_of(const Scene& scene) {
   if (!(scene.pitch > 0)) return 0;
-  return largest_frequency(*scene.rule.law, scene.rule.mass, scene.pitch) *
-         std::sqrt(scene.rule.largest_rate());
+  return largest_frequency(scene.rule, scene.pitch);
 }
 
 void keep_states(const Run& run, const TimeGrid& grid, Truth& truth) {
@@ -163,7 +162,7 @@ void lengthen(const Study& study, const Case& c, int threads, Truth& truth) {
   }
   const uint64_t per_sample = truth.grid.steps_per_sample(truth.rungs.back().dt);
   const bool reduced = is_reduced(study.base);
-  double cutoff = c.scene.rule.law->cutoff();
+  double cutoff = c.scene.rule.cutoff();
   for (int k = 0; k < kLengthenings; ++k) {
     cutoff *= 1.25;
     Settings settings = c.settings;
@@ -237,7 +236,7 @@ Truth make_own_truth(const Study& study, const Truth& study_truth, const Setting
   const Case c = resolve(study.base, own);
   const Scene base = resolve(study.base, verlet_in_doubles()).scene;
   const auto refined = std::find_if(study_truth.rungs.rbegin(), study_truth.rungs.rend(),
-                                    [&](const Rung& rung) { return rung.cutoff == base.rule.law->cutoff(); });
+                                    [&](const Rung& rung) { return rung.cutoff == base.rule.cutoff(); });
   const double scale = c.scene.dt_limit > 0 && base.dt_limit > 0 ? c.scene.dt_limit / base.dt_limit : 1;
   Truth truth;
   truth.grid = study_truth.grid;

@@ -43,15 +43,19 @@ HWY_INLINE uint32_t mask_lanes(M mask) {
   return bits[0] & ((1u << kLanes) - 1);
 }
 
-// The table's value plus `bias`.
-template <bool kSimple>
-HWY_INLINE V table_value(const KernelTable& table, V r2) {
+// What pairs of types may differ in: nothing, their scale, their law too.
+enum class Pairs { alike, scaled, laws };
+
+// The table's value plus `bias`. `first`: where the entries of each lane's law begin, read only where kLaws.
+template <bool kSimple, bool kLaws>
+HWY_INLINE V table_value(const KernelTable& table, V r2, hn::Vec<U> first) {
   constexpr U u;
   const auto two52 = hn::Set(u, uint64_t{0x4330000000000000});
   constexpr I i;
   if (kSimple) {  // uniform, degree 1, narrow
     const auto bits = hn::BitCast(u, hn::Add(r2, hn::BitCast(d, two52)));
-    const auto index = hn::And(hn::ShiftRightSame(bits, table.index_shift), hn::Set(u, table.index_mask));
+    auto index = hn::And(hn::ShiftRightSame(bits, table.index_shift), hn::Set(u, table.index_mask));
+    if (kLaws) index = hn::Add(index, first);
     const auto word = hn::GatherIndex(u, table.words.data(), hn::BitCast(i, index));
     const V t = hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(u, table.t_mask)), two52));
     const V factor = hn::Set(d, table.narrow_t_factor);
@@ -77,6 +81,7 @@ HWY_INLINE V table_value(const KernelTable& table, V r2) {
                 hn::BitCast(d, two52));
     t = hn::IfThenElseZero(hn::RebindMask(d, inside), t);
   }
+  if (kLaws) index = hn::Add(index, first);
   const auto word = hn::GatherIndex(u, table.words.data(), hn::BitCast(i, index));
   const auto low = hn::Set(u, table.low_mask);
   const V c0 = hn::BitCast(d, hn::Or(hn::And(word, low), hn::BitCast(u, magic())));
@@ -93,7 +98,7 @@ struct Own {
 
 // One entry, or the part of it at lanes `at` on: s, zero where there is no pair, and d. Their product times
 // `factor` is the kick, once rounded. Returns whether there is a pair.
-template <bool kSimple, bool kDamped, bool kScaled>
+template <bool kSimple, bool kDamped, Pairs kPairs>
 HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, const Own& own, uint32_t i,
                            const Entry& entry, uint32_t at, V& s, V dx[3], uint32_t& doubtful) {
   const ptrdiff_t j = static_cast<ptrdiff_t>(entry.first) + at;
@@ -105,7 +110,16 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
   const V r2 = hn::MulAdd(dx[2], dx[2], hn::MulAdd(dx[1], dx[1], hn::Mul(dx[0], dx[0])));
   M near = hn::And(lane_mask(entry.lanes >> at), hn::Lt(r2, hn::Set(d, rule.cutoff2)));
   if (HWY_UNLIKELY(hn::AllFalse(d, near))) return false;
-  s = hn::Sub(table_value<kSimple>(rule.force, r2), hn::Set(d, rule.force.bias));
+  constexpr U u;
+  auto first = hn::Zero(u);
+  if (kPairs == Pairs::laws) {
+    int64_t of[kLanes];
+    for (uint32_t l = 0; l < kLanes; ++l)
+      of[l] = rule.first[particles.type[i + l] * rule.types + particles.type[j + l]];
+    first = hn::BitCast(u, hn::LoadU(I(), of));
+  }
+  s = hn::Sub(table_value<kSimple, kPairs == Pairs::laws>(rule.force, r2, first),
+              hn::Set(d, rule.force.bias));
   if (kDamped) {
     V wd = hn::Zero(d), most = hn::Zero(d);
     for (int a = 0; a < 3; ++a) {
@@ -114,13 +128,13 @@ HWY_INLINE bool pair_terms(const KernelRule& rule, const Particles& particles, c
       wd = hn::MulAdd(w, dx[a], wd);
     }
     const V q = rounded(wd, rule.q_factor);
-    const V c = hn::Sub(table_value<kSimple>(rule.damp, r2), hn::Set(d, rule.damp.bias));
+    const V c = hn::Sub(table_value<kSimple, false>(rule.damp, r2, first), hn::Set(d, rule.damp.bias));
     s = hn::Sub(hn::NegMulAdd(hn::Mul(c, q), hn::Set(d, rule.damp_factor), hn::Add(s, magic())), magic());
     const M odd = hn::Or(hn::Ge(most, hn::Set(d, rule.w_limit)),
                          hn::Or(hn::Lt(s, hn::Set(d, rule.s_low)), hn::Ge(s, hn::Set(d, rule.s_high))));
     doubtful = mask_lanes(hn::And(odd, near));
   }
-  if (kScaled) {
+  if (kPairs != Pairs::alike) {
     double factor[kLanes];
     for (uint32_t l = 0; l < kLanes; ++l)
       factor[l] = rule.scale[particles.type[i + l] * rule.types + particles.type[j + l]];
@@ -202,7 +216,7 @@ HWY_NOINLINE void report(const KernelRule& rule, const Particles& particles, uin
     if (lanes >> l & 1) report_pair(rule, particles, i + l, j + l, shift, both, block);
 }
 
-template <bool kSimple, bool kDamped, bool kScaled>
+template <bool kSimple, bool kDamped, Pairs kPairs>
 void across(const KernelRule& rule, const Particles& particles, const Active& active, Edge& edge,
             Block& block) {
   for (size_t k = 0; k < edge.group.size(); ++k) {
@@ -217,7 +231,7 @@ void across(const KernelRule& rule, const Particles& particles, const Active& ac
         const Entry& entry = edge.pairs.entries[e];
         uint32_t doubtful = 0;
         V s, dx[3];
-        if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, entry, at, s, dx, doubtful))
+        if (!pair_terms<kSimple, kDamped, kPairs>(rule, particles, own, i, entry, at, s, dx, doubtful))
           continue;
         if (HWY_UNLIKELY(doubtful != 0))
           report(rule, particles, i, entry.first + static_cast<int32_t>(at), entry.shift, doubtful, false,
@@ -337,7 +351,7 @@ HWY_INLINE void update(const KernelRule& rule, Particles& particles, uint32_t i,
   }
 }
 
-template <bool kSimple, bool kDamped, bool kScaled>
+template <bool kSimple, bool kDamped, Pairs kPairs>
 void inside(const KernelRule& rule, Particles& particles, const Active& active, Block& block) {
   double* const ring[3] = {block.ring[0].data(), block.ring[1].data(), block.ring[2].data()};
   V fastest2 = hn::Zero(d);
@@ -369,7 +383,7 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
             continue;
           uint32_t doubtful = 0;
           V s, dx[3];
-          if (!pair_terms<kSimple, kDamped, kScaled>(rule, particles, own, i, *e, at, s, dx, doubtful))
+          if (!pair_terms<kSimple, kDamped, kPairs>(rule, particles, own, i, *e, at, s, dx, doubtful))
             continue;
           if (HWY_UNLIKELY(doubtful != 0))
             report(rule, particles, i, e->first + static_cast<int32_t>(at), e->shift, doubtful, true, block);
@@ -404,11 +418,12 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
 
 template <bool kSimple>
 Kernels kernels_for(const KernelRule& rule, const char* name) {
-  if (rule.damped)
-    return rule.scaled ? Kernels{name, prune, across<kSimple, true, true>, inside<kSimple, true, true>}
-                       : Kernels{name, prune, across<kSimple, true, false>, inside<kSimple, true, false>};
-  return rule.scaled ? Kernels{name, prune, across<kSimple, false, true>, inside<kSimple, false, true>}
-                     : Kernels{name, prune, across<kSimple, false, false>, inside<kSimple, false, false>};
+  const auto of = [&]<Pairs kPairs>() {
+    return rule.damped ? Kernels{name, prune, across<kSimple, true, kPairs>, inside<kSimple, true, kPairs>}
+                       : Kernels{name, prune, across<kSimple, false, kPairs>, inside<kSimple, false, kPairs>};
+  };
+  if (!rule.first.empty()) return of.template operator()<Pairs::laws>();
+  return rule.scaled ? of.template operator()<Pairs::scaled>() : of.template operator()<Pairs::alike>();
 }
 #endif
 

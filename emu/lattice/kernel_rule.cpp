@@ -67,6 +67,8 @@ KernelRule kernel_rule(const FixedRule& rule, int capacity) {
   k.types = static_cast<int>(rule.types.size());
   if (rule.scaled)
     for (const auto& row : rule.scale) k.scale.insert(k.scale.end(), row.begin(), row.end());
+  for (const auto& row : rule.law)
+    for (const uint8_t law : row) k.first.push_back(int64_t{law} << rule.force.index_bits);
   k.contact2 = static_cast<double>(rule.contact2);
   k.scale_factor = rounding_factor(w.scale_frac);
   k.guard = std::ldexp(1.0, w.guard);

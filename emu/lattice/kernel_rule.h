@@ -65,6 +65,8 @@ struct KernelRule {
   bool scaled = false;
   int types = 1;
   std::vector<double> scale;  // types x types; negative: the two only touch
+  // Types x types, where the entries of the pair's law begin in `force`; empty where there is one law.
+  std::vector<int64_t> first;
   double contact2 = 0;
   double scale_factor = 0;
   bool weighted = false;

@@ -106,9 +106,8 @@ class Equilibrium {
 }  // namespace
 
 double bond_range(const Scene& scene) {
-  const PairLaw& law = *scene.rule.law;
-  const double rest = scene.pitch > 0 ? scene.pitch : stiffest_rest_distance(law);
-  return std::min(1.2 * rest, law.cutoff());
+  const double rest = scene.pitch > 0 ? scene.pitch : stiffest_rest_distance(*scene.rule.law);
+  return std::min(1.2 * rest, scene.rule.cutoff());
 }
 
 ExpectedStrain expected_strain(const Scene& scene, std::span<const Vec3> x, std::span<const uint8_t> type,
@@ -121,7 +120,8 @@ ExpectedStrain expected_strain(const Scene& scene, std::span<const Vec3> x, std:
   cells.build(x);
   cells.for_each_pair(x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
     if (rule.only_touch(type[i], type[j])) return;  // may part
-    bonds.push_back({i, j, d / r, std::max(0.0, -rule.law->slope(r)) * rule.strength_of(type[i], type[j])});
+    const double slope = rule.law_of(type[i], type[j]).slope(r);
+    bonds.push_back({i, j, d / r, std::max(0.0, -slope) * rule.strength_of(type[i], type[j])});
   });
   const std::vector<char> held = supported(rule, type, bonds);
   const Equilibrium body(rule, type, std::move(bonds));

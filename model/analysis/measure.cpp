@@ -159,7 +159,7 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
       sum.gravity -= mass * gravity[axis] * x;
     }
   }
-  const double cutoff = rule.law->cutoff();
+  const double cutoff = rule.cutoff();
   const PairEnergy pairs = sum_over_pairs(fixed, lattice, state, PairEnergy{}, threads,
                                           [&](uint32_t i, uint32_t j, const Int3& x_j) -> PairEnergy {
                                             const Particle &a = state.particles[i], &b = state.particles[j];

@@ -23,13 +23,9 @@ const Body& planned_body(const Scene& scene) { return scene.body.exact ? scene.p
 // Of the bond between nearest neighbours at rest, and their distance.
 void read_bond(const Scene& scene, Motion& motion) {
   const Rule& rule = scene.rule;
-  double strongest = 0;
-  for (const auto& row : rule.strength)
-    strongest = std::max(strongest, *std::max_element(row.begin(), row.end()));
   const double rest = stiffest_rest_distance(*rule.law);
-  motion.rest_distance = scene.pitch > 0 ? scene.pitch : rest > 0 ? rest : rule.law->cutoff();
-  if (scene.pitch > 0 || rest > 0)
-    motion.bond_stiffness = strongest * std::max(0.0, -rule.law->slope(motion.rest_distance));
+  motion.rest_distance = scene.pitch > 0 ? scene.pitch : rest > 0 ? rest : rule.cutoff();
+  if (scene.pitch > 0 || rest > 0) motion.bond_stiffness = stiffest_bond(rule, motion.rest_distance);
   if (motion.bond_stiffness == 0 &&
       scene.dt_limit > 0)  // that of a packing with this fastest vibration, sqrt(8 k/m)
     motion.bond_stiffness = rule.mass / (2 * scene.dt_limit * scene.dt_limit);

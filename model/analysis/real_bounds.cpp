@@ -21,12 +21,15 @@ constexpr double kDamping = 24;
 // The sizes of the parts of a law's force, summed: what its roundings are relative to, N.
 class PartsOf {
  public:
-  explicit PartsOf(const PairLaw& law) : law_(law), form_(law.form()) {
+  explicit PartsOf(const PairLaw& law)
+      : law_(law), form_(law.form()), jump_(std::abs(law.force(law.cutoff() * (1 - 1e-12)))) {
     for (int k = 0; k <= kSamples; ++k) {
       const double r = law.core() + (law.cutoff() - law.core()) * k / kSamples;
       largest_pull_ = std::max(largest_pull_, -law.force(r * (1 - 1e-12)));
     }
   }
+  const PairLaw& law() const { return law_; }
+  double jump() const { return jump_; }  // at its cutoff, N
   double at(double r) const {
     const double near = std::max(r, law_.core()), inside = std::min(r / near, 1.0);
     if (const auto* lj = std::get_if<LennardJonesForm>(&form_)) {
@@ -40,13 +43,13 @@ class PartsOf {
   static constexpr int kSamples = 1024;
   const PairLaw& law_;
   LawForm form_;
-  double largest_pull_ = 0;
+  double jump_, largest_pull_ = 0;
 };
 
 }  // namespace
 
 Roundings gpu_roundings(const Scene& scene, bool floats) {
-  const double u = floats ? 0x1p-24 : 0x1p-53, cutoff = scene.rule.law->cutoff();
+  const double u = floats ? 0x1p-24 : 0x1p-53, cutoff = scene.rule.cutoff();
   // Positions are at most 2.6 cutoffs long along an axis; the engine allows 32 u for a difference of two.
   return {u, std::sqrt(3) * 2.6 * u * cutoff, 32 * u * cutoff};
 }
@@ -54,17 +57,16 @@ Roundings gpu_roundings(const Scene& scene, bool floats) {
 Roundings reference_roundings(const Scene& scene) {
   double farthest = 0;
   for (const Vec3& x : scene.body.x) farthest = std::max(farthest, x.norm());
-  const double u = 0x1p-53, far = 2 * farthest + scene.rule.law->cutoff();
+  const double u = 0x1p-53, far = 2 * farthest + scene.rule.cutoff();
   return {u, u * far, 3 * u * far};
 }
 
 ForceBounds force_bounds(const Scene& scene, const std::vector<Vec3>& x, const std::vector<Vec3>& v,
                          const Roundings& of) {
   const Rule& rule = scene.rule;
-  const PairLaw& law = *rule.law;
-  const PartsOf parts(law);
-  const double cutoff = law.cutoff(), margin = 2 * of.difference, u = of.unit;
-  const double jump = std::abs(law.force(cutoff * (1 - 1e-12)));
+  std::vector<PartsOf> laws;
+  for (size_t k = 0; k < rule.laws(); ++k) laws.emplace_back(rule.law_at(k));
+  const double cutoff = rule.cutoff(), margin = 2 * of.difference, u = of.unit;
   const size_t n = x.size();
   struct Sum {
     double error = 0, force = 0, stiffness = 0, friction = 0;
@@ -76,13 +78,17 @@ ForceBounds force_bounds(const Scene& scene, const std::vector<Vec3>& x, const s
   cells.for_each_pair(x, [&](uint32_t i, uint32_t j, const Vec3&, double r) {
     const int type_i = scene.body.type[i], type_j = scene.body.type[j];
     const double strength = rule.strength_of(type_i, type_j);
+    const PartsOf& parts = laws[rule.law_index_of(type_i, type_j)];
+    const PairLaw& law = parts.law();
     const bool touch = rule.only_touch(type_i, type_j);
     const double reach = rule.reach(type_i, type_j);
     if (touch && r > reach + margin) return;
     Sum one;
     one.pairs = 1;
     // Of both ends of what the distance may be: a joint, the core or the cutoff may lie between.
-    for (const double at : {std::max(r - margin, 0.5 * r), std::min(r + margin, cutoff * (1 - 1e-12))}) {
+    const double end = law.cutoff() * (1 - 1e-12);
+    for (const double at : {std::min(std::max(r - margin, 0.5 * r), end), std::min(r + margin, end)}) {
+      if (r > law.cutoff() + margin) break;
       const double near = std::max(at, law.core());
       const double over_r = std::abs(law.force(near)) / near;
       one.stiffness = std::max({one.stiffness, std::abs(law.slope(near)), over_r});
@@ -90,10 +96,10 @@ ForceBounds force_bounds(const Scene& scene, const std::vector<Vec3>& x, const s
       one.error = std::max(one.error, kEvaluation * u * parts.at(at));
     }
     one.error += one.stiffness * of.difference;
-    if (r > cutoff - margin) one.error += jump;
+    if (std::abs(r - law.cutoff()) < margin) one.error += parts.jump();
     if (rule.damping.coefficient > 0) {
       const Vec3 w = v[j] - v[i];
-      const double near = std::max(std::min(r, cutoff), law.core()),
+      const double near = std::max(std::min(r, cutoff), rule.core()),
                    c = rule.damping_over_r2(near) * near * near;
       // c w.e e: its change by d over d is at most that of c, 4/cutoff of it at c's largest, and twice 1/r.
       const double change =

@@ -85,10 +85,7 @@ void Resolution::choose_bonds() {
   const Body& body = scene_.body;
   const double range = bond_range(scene_);
   rest_ = scene_.pitch > 0 ? scene_.pitch : stiffest_rest_distance(*rule.law);
-  double strongest = 0;
-  for (const auto& row : rule.strength)
-    strongest = std::max(strongest, *std::max_element(row.begin(), row.end()));
-  if (range > 0 && rest_ > 0) stiffness_ = -rule.law->slope(rest_) * strongest;
+  if (range > 0 && rest_ > 0) stiffness_ = stiffest_bond(rule, rest_);
   double apart = 0;
   if (stiffness_ > 0) {
     CellList cells(range, scene_.periodic);
@@ -200,7 +197,7 @@ std::optional<Resolution::Lack> Resolution::see_led(const Moment& moment) const 
     // Where a particle stood at first is rounded too.
     const double unit = moment.fixed
                             ? std::ldexp(moment.fixed->cell_edge, -moment.fixed->widths.velocity_frac())
-                            : 1e-6 * scene_.rule.law->cutoff();
+                            : 1e-6 * scene_.rule.cutoff();
     if (!(off.norm() > kAchieved * length + 2 * unit)) continue;
     Lack lack{led.ids[0], moment.x(led.ids[0]), off.norm() / length, kAchieved, {}};
     lack.text = fmt::format("what '{}' moves has gone {:.4g} m and should have gone {:.4g} m", type.name,

@@ -17,13 +17,14 @@ struct Bond {
 std::vector<Bond> bonds_of(const Rule& rule, const Periodic& periodic, std::span<const Vec3> x,
                            std::span<const uint8_t> type) {
   std::vector<Bond> bonds;
-  CellList cells(rule.law->cutoff(), periodic);
+  CellList cells(rule.cutoff(), periodic);
   cells.build(x);
   cells.for_each_pair(x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
     if (r >= rule.reach(type[i], type[j])) return;
     const double s = rule.strength_of(type[i], type[j]) / rule.mass;
-    bonds.push_back({i, j, d / r, -rule.law->slope(r) * s, -rule.law->force(r) / r * s,
-                     rule.damping_over_r2(r) * r * r * s});
+    const PairLaw& law = rule.law_of(type[i], type[j]);
+    bonds.push_back(
+        {i, j, d / r, -law.slope(r) * s, -law.force(r) / r * s, rule.damping_over_r2(r) * r * r * s});
   });
   return bonds;
 }

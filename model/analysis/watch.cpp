@@ -51,18 +51,19 @@ double least_of(const std::vector<std::vector<double>>& strength) {
 // The limit of dt, s: that of the scene, or where it has none of a packing of such bonds.
 double limit_of(const Scene& scene) {
   if (scene.dt_limit > 0) return scene.dt_limit;
-  const double limit = stable_time_step(scene.rule, bond_length(*scene.rule.law));
+  const double limit = stable_time_step(scene.rule, bond_length);
   return limit > 0 ? limit : std::numeric_limits<double>::infinity();
 }
 
 // Whether every pair force of the body is 0, to what `law` of a scene may lack of it at its pitch.
 bool in_balance(const Rule& rule, const Body& body, const Periodic& periodic, double pull) {
   std::vector<Vec3> force(body.size(), Vec3::Zero());
-  CellList cells(rule.law->cutoff(), periodic);
+  CellList cells(rule.cutoff(), periodic);
   cells.build(body.x);
   cells.for_each_pair(body.x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
     if (r >= rule.reach(body.type[i], body.type[j])) return;
-    const Vec3 f = rule.law->force(r) / r * rule.strength_of(body.type[i], body.type[j]) * d;
+    const int type_i = body.type[i], type_j = body.type[j];
+    const Vec3 f = rule.law_of(type_i, type_j).force(r) / r * rule.strength_of(type_i, type_j) * d;
     force[i] -= f;
     force[j] += f;
   });
@@ -83,9 +84,11 @@ Watch::Watch(const Scene& scene, double table_error, int threads)
       type_(scene.body.type) {
   const Rule& rule = scene.rule;
   const PairLaw& law = *rule.law;
-  pull_ = strongest_pull(law);
-  jump_ = std::abs(law.force(law.cutoff() * (1 - 1e-12)));
-  barrier_ = law.energy(0);
+  for (size_t k = 0; k < rule.laws(); ++k) {
+    const PairLaw& one = rule.law_at(k);
+    pull_ = std::max(pull_, strongest_pull(one));
+    jump_ = std::max(jump_, std::abs(one.force(one.cutoff() * (1 - 1e-12))));
+  }
   keeps_energy_ = cuboct::keeps_energy(rule, scene.periodic);
   Rule undamped = rule;
   undamped.damping.coefficient = 0;
@@ -285,8 +288,9 @@ bool Watch::prove_unstable(const Moment& moment, const Motion& motion, Suspicion
 void Watch::see_core(const Moment& moment, const Motion& motion) {
   if (found(Failure::tunnelling)) return;
   const Rule& rule = scene_.rule;
-  const PairLaw& law = *rule.law;
   const ClosestPair& closest = moment.closest;
+  if (!std::isfinite(closest.r)) return;
+  const PairLaw& law = rule.law_of(type_[closest.i], type_[closest.j]);
   if (closest.r < law.core()) {
     find(Failure::tunnelling, moment, closest.i, closest.r, law.core(),
          fmt::format("{:.4g} m from particle {}: the law rolls off below its core, {:.4g} m", closest.r,
@@ -295,19 +299,22 @@ void Watch::see_core(const Moment& moment, const Motion& motion) {
   }
   // Two particles with w between them have the energy m_i m_j/(m_i + m_j) w^2/2 along their line, at most m
   // w^2/4 of the heaviest, and w is at most twice the fastest. Damping may stop them all the same.
-  if (rule.damping.coefficient > 0 || !std::isfinite(closest.r) ||
-      rule.heaviest() * motion.fastest * motion.fastest <
-          least_of(rule.strength) * (barrier_ - law.energy(closest.r)))
+  double barrier = std::numeric_limits<double>::infinity();
+  for (size_t k = 0; k < rule.laws(); ++k)
+    barrier = std::min(barrier, rule.law_at(k).energy(0) - rule.law_at(k).energy(closest.r));
+  if (rule.damping.coefficient > 0 ||
+      rule.heaviest() * motion.fastest * motion.fastest < least_of(rule.strength) * barrier)
     return;
   std::vector<Vec3> x(type_.size());
   for (uint32_t id = 0; id < type_.size(); ++id) x[id] = moment.x(id);
-  CellList cells(law.cutoff(), scene_.periodic);
+  CellList cells(rule.cutoff(), scene_.periodic);
   cells.build(x);
   double most = 1;
   uint32_t a = 0, b = 0;
   cells.for_each_pair(x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
     const double approach = -(moment.v(j) - moment.v(i)).dot(d) / r;
-    const double wall = (barrier_ - law.energy(r)) * rule.strength_of(type_[i], type_[j]);
+    const PairLaw& between = rule.law_of(type_[i], type_[j]);
+    const double wall = (between.energy(0) - between.energy(r)) * rule.strength_of(type_[i], type_[j]);
     const double r_i = rule.relative_mass(type_[i]), r_j = rule.relative_mass(type_[j]);
     const double share = 0.5 * (rule.mass * r_i * r_j / (r_i + r_j)) * approach * approach / wall;
     if (approach > 0 && share > most) most = share, a = i, b = j;
@@ -375,7 +382,7 @@ void Watch::see_energy(const Moment& moment, const Motion& motion) {
 
 void Watch::see_rest(const Moment& moment) {
   if (rest_.empty() || found(Failure::creep)) return;
-  const double pitch = scene_.pitch > 0 ? scene_.pitch : scene_.rule.law->cutoff();
+  const double pitch = scene_.pitch > 0 ? scene_.pitch : scene_.rule.cutoff();
   double most = 0;
   uint32_t worst = 0;
   for (uint32_t id = 0; id < rest_.size(); ++id) {
@@ -428,7 +435,7 @@ void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force,
   if (!body.u.empty()) moment.u = [&](uint32_t id) { return body.u[id]; };
   moment.force = [&](uint32_t id) { return force[id]; };
   moment.energies = energies;
-  CellList cells(rule.law->cutoff(), scene_.periodic);
+  CellList cells(rule.cutoff(), scene_.periodic);
   cells.build(body.x);
   cells.for_each_pair(body.x, [&](uint32_t i, uint32_t j, const Vec3&, double r) {
     if (r < moment.closest.r) moment.closest = {i, j, r};
@@ -439,7 +446,7 @@ void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force,
 std::optional<Finding> find_far_origin(const Scene& scene) {
   double farthest = 0;
   for (const Vec3& x : scene.body.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
-  const double pitch = scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff();
+  const double pitch = scene.pitch > 0 ? scene.pitch : scene.rule.cutoff();
   const auto nearest = static_cast<float>(farthest);
   const double spacing = std::nextafter(nearest, std::numeric_limits<float>::infinity()) - nearest;
   // 1e-4 of the pitch: a tenth of what counts as creep, for each of some ten bonds.

@@ -71,7 +71,6 @@ class Watch {
   double table_error_;
   int threads_;
   double pull_ = 0, jump_ = 0;  // N, of the law: strongest pull, force at the cutoff
-  double barrier_ = 0;          // J, of the law between two particles at one place
   double energy_limit_ = 0;     // of |change of energy| over the largest thermal energy
   double faint_ = 0;            // J: less is no energy to speak of; bonds strained as far as creep may go
   bool near_limit_ = false;     // dt is more than half of the limit, as far as it is known

@@ -22,7 +22,7 @@ FixedTable::Address FixedTable::address(uint64_t r2) const {
   return address;
 }
 
-int64_t FixedTable::at(uint64_t r2) const { return table_value(*this, r2); }
+int64_t FixedTable::at(uint64_t r2, uint32_t law) const { return table_value(*this, r2, law << index_bits); }
 
 Int3 difference(const FixedRule& rule, const Int3& x_i, const Int3& x_j) {
   Int3 d;

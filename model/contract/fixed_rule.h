@@ -3,6 +3,7 @@
 // number of fractional bits. docs/reference/numeric.md derives each format.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -41,12 +42,13 @@ enum class TableShape : uint8_t { uniform, octaves };
 //            one, t = the next fraction_bits (zeros where r2 has no more); r2 below 2^first_octave takes k =
 //            0, t = 0.
 // value = c0[k] + round_odd((c1[k] + round_odd(c2[k] * t, T)) * t, T), T = fraction_bits; c2 is empty at
-// degree 1, where value = c0[k] + round_odd(c1[k] * t, T).
+// degree 1, where value = c0[k] + round_odd(c1[k] * t, T). A table of several laws holds them one after
+// another: of law n the entry is that of n 2^index_bits + k.
 struct FixedTable {
   TableShape shape = TableShape::uniform;
   int degree = 1;
   int difference_frac = 16;  // D
-  int index_bits = 9;        // entries == 2^index_bits
+  int index_bits = 9;        // of k; entries == 2^index_bits for each law that the table holds
   int bin_bits = 0;          // octaves only
   int first_octave = 0;      // octaves only
   int fraction_bits = 17;    // T: t is unsigned and fits 18 bits signed
@@ -58,7 +60,7 @@ struct FixedTable {
     uint32_t t;
   };
   Address address(uint64_t r2) const;
-  int64_t at(uint64_t r2) const;
+  int64_t at(uint64_t r2, uint32_t law = 0) const;
 };
 
 struct FixedType {
@@ -84,14 +86,16 @@ struct FixedRule {
   // sum of two <= [1], the sum of all <= [2]. B fractional bits. See set_planar.
   std::array<int64_t, 3> planar{};
 
-  FixedTable force;  // f(r)/r * dt^2/m, times the largest pair scale
+  FixedTable force;  // of each law f(r)/r * dt^2/m, times the largest pair scale
   bool damped = false;
   FixedTable damp;      // c(r)/(r/cell_edge)^2 * dt/m, times the largest pair scale; only if damped
-  bool scaled = false;  // pairs of types differ
+  bool scaled = false;  // pairs of types differ, by scale or law
   // Types x types, scale_frac fractional bits; only if scaled. Negative: the two only touch. Their factor is
   // its size, and from contact2 on they do not interact.
   std::vector<std::vector<int32_t>> scale;
-  uint64_t contact2 = 0;  // as cutoff2, at most that; 0: no two types only touch
+  uint64_t contact2 = 0;                  // as cutoff2, at most that; 0: no two types only touch
+  int law_bits = 0;                       // of a law's number; 0: all pairs have one law
+  std::vector<std::vector<uint8_t>> law;  // types x types, which law of `force`; only with law_bits
   std::vector<FixedType> types;
   bool weighted = false;  // masses differ: some weight is below 1
   bool pd = false;        // some type is held or moved by force
@@ -111,8 +115,11 @@ struct FixedRule {
   struct Error {
     double worst_force = 0;  // N, largest |f_fixed - f| over the distances outside the core
     double at = 0;           // m, where
-    double relative = 0;     // worst_force over the largest |f| outside the core
-  } error;
+    double relative = 0;     // worst_force over the law's largest |f| outside the core
+  };
+  std::vector<Error> errors{1};  // by law
+  // Of the law that errs most.
+  const Error& error() const { return *std::ranges::max_element(errors, {}, &Error::worst_force); }
 };
 
 // kg: what the weight of a type means, and by that the masses that a run has.

@@ -41,10 +41,12 @@ CUBOCT_HD void table_address(const Table& table, uint64_t r2, uint32_t& index, u
   t = static_cast<uint32_t>(bin_and_t) & t_mask;
 }
 
+// `first`: where the entries of the law begin.
 template <class Table>
-CUBOCT_HD int64_t table_value(const Table& table, uint64_t r2) {
+CUBOCT_HD int64_t table_value(const Table& table, uint64_t r2, uint32_t first = 0) {
   uint32_t k, t;
   table_address(table, r2, k, t);
+  k += first;
   const auto fraction = static_cast<int32_t>(t);
   if (table.degree == 1) return table.c0[k] + round_odd(product(table.c1[k], fraction), table.fraction_bits);
   const int64_t slope = table.c1[k] + round_odd(product(table.c2[k], fraction), table.fraction_bits);
@@ -65,15 +67,17 @@ CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple&
   const auto r2 = static_cast<uint64_t>(product(d[0], d[0]) + product(d[1], d[1]) + product(d[2], d[2]));
   if (r2 >= rule.cutoff2) return result;
   int32_t scale = 0;
+  uint32_t first = 0;
   if (rule.scaled) {
     scale = rule.scale[type_i][type_j];
     if (scale < 0) {  // the two only touch
       if (r2 >= rule.contact2) return result;
       scale = -scale;
     }
+    if (rule.law_bits > 0) first = static_cast<uint32_t>(rule.law[type_i][type_j]) << rule.force.index_bits;
   }
   result.inside = true;
-  int64_t s = table_value(rule.force, r2);
+  int64_t s = table_value(rule.force, r2, first);
   if (rule.damped) {
     const int w_bits = rule.widths.relative_velocity_bits;
     int64_t wd = 0;

@@ -346,6 +346,20 @@ namespace {
 constexpr int kBondSamples = 4096;  // of a law's range
 }
 
+bool same_law(const PairLaw& one, const PairLaw& other) {
+  if (&one == &other) return true;
+  const LawForm form = one.form();
+  return one.core() == other.core() && one.cutoff() == other.cutoff() &&
+         !std::holds_alternative<std::monostate>(form) && form == other.form();
+}
+
+double stiffest_bond(const Rule& rule, double r) {
+  double stiffest = 0;
+  for (size_t k = 0; k < rule.laws(); ++k)
+    stiffest = std::max(stiffest, -rule.law_at(k).slope(r) * rule.strongest_of(k));
+  return stiffest;
+}
+
 double stiffest_rest_distance(const PairLaw& law) {
   double stiffest = 0, at = 0;
   for (int k = 0; k < kBondSamples; ++k) {

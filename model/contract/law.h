@@ -60,6 +60,14 @@ std::shared_ptr<const PairLaw> spline_law(std::vector<double> r, std::vector<dou
 // brings them closer ("hardness").
 std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch, double stiffness_N_per_m);
 
+// Whether both give the same force at every distance; laws of no form are the same only if they are one
+// object.
+bool same_law(const PairLaw& one, const PairLaw& other);
+
+// The largest of -strength df/dr over the pairs of materials, N/m, for bonds of length r; 0 where none
+// restores.
+double stiffest_bond(const Rule& rule, double r);
+
 // Of the distances beyond the core at which the force turns from push to pull, that of the stiffest bond, in
 // m to 1/4096 of the law's range; 0 where there is none.
 double stiffest_rest_distance(const PairLaw& law);

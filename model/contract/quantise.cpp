@@ -68,19 +68,21 @@ uint32_t bins_used(const FixedTable& table) {
   return static_cast<uint32_t>(2 * table.difference_frac - table.first_octave) << table.bin_bits;
 }
 
-// Fills the coefficients so that neighbouring bins meet: value(end of k) == value(start of k+1), in integers.
-// `end` is the cutoff squared: the bin that holds it continues its polynomial, bins beyond are zero.
-void fill(FixedTable& table, const Real& value, double end, int value_bits, int headroom) {
-  const uint32_t used = bins_used(table);
-  struct Bin {
-    double left, middle, right;
-  };
-  std::vector<Bin> bins(used, Bin{0, 0, 0});
-  double largest = 0;
-  for (uint32_t k = 0; k < used; ++k) {
+// A function over one bin of a table.
+struct Bin {
+  double left = 0, middle = 0, right = 0;
+
+  double curve() const { return 2 * (left + right - 2 * middle); }
+};
+
+// A function of r2 over the bins of a table. `end` (cell edges squared), where `continued`: the cutoff, whose
+// bin continues its polynomial, as nobody looks beyond. Bins beyond are zero.
+std::vector<Bin> bins_of(const FixedTable& table, const Real& value, double end, bool continued) {
+  std::vector<Bin> bins(bins_used(table));
+  for (uint32_t k = 0; k < bins.size(); ++k) {
     const double a = bin_start(table, k), b = bin_start(table, k + 1);
     if (a >= end) break;
-    const double inside = std::min(b, end * (1 - 1e-12));
+    const double inside = continued ? std::min(b, end * (1 - 1e-12)) : b;
     Bin bin{value(a), value(0.5 * (a + inside)), value(inside)};
     if (inside < b) {  // continue to b the parabola (line) through the part inside the cutoff
       const double h = inside - a, z = (b - a) / h;
@@ -89,32 +91,53 @@ void fill(FixedTable& table, const Real& value, double end, int value_bits, int 
       bin = {left, left + c1 * z / 2 + c2 * z * z / 4, left + c1 * z + c2 * z * z};
     }
     bins[k] = bin;
-    const double curve = 2 * (bin.left + bin.right - 2 * bin.middle);
-    largest = std::max({largest, std::abs(bin.left), std::abs(bin.right), std::abs(bin.right - bin.left)});
-    if (table.degree == 2)
-      largest =
-          std::max({largest, std::abs(bin.middle), std::abs(curve), std::abs(bin.right - bin.left - curve)});
   }
-  if (largest == 0) throw InputError("the pair law is zero everywhere inside its cutoff");
+  return bins;
+}
+
+// The largest coefficient or value.
+double largest_in(const std::vector<Bin>& bins, int degree) {
+  double largest = 0;
+  for (const Bin& bin : bins) {
+    largest = std::max({largest, std::abs(bin.left), std::abs(bin.right), std::abs(bin.right - bin.left)});
+    if (degree == 2)
+      largest = std::max({largest, std::abs(bin.middle), std::abs(bin.curve()),
+                          std::abs(bin.right - bin.left - bin.curve())});
+  }
+  return largest;
+}
+
+// Fills the coefficients, law by law, so that neighbouring bins meet: value(end of k) == value(start of k+1),
+// in integers.
+void fill(FixedTable& table, const std::vector<std::vector<Bin>>& laws, int value_bits, int headroom) {
+  double largest = 0;
+  for (size_t n = 0; n < laws.size(); ++n) {
+    const double own = largest_in(laws[n], table.degree);
+    if (own == 0)
+      throw InputError(fmt::format("the pair law{} is zero everywhere inside its cutoff",
+                                   laws.size() > 1 ? fmt::format(" {} of {}", n + 1, laws.size()) : ""));
+    largest = std::max(largest, own);
+  }
   // The largest E with largest * 2^E + 1 (for rounding) < 2^(value_bits-1-headroom).
   const double limit = std::ldexp(1.0, value_bits - 1 - headroom) - 2;
   table.value_frac = static_cast<int>(std::floor(std::log2(limit / largest)));
 
-  const uint32_t entries = 1u << table.index_bits;
+  const size_t entries = laws.size() << table.index_bits;
   table.c0.assign(entries, 0);
   table.c1.assign(entries, 0);
   table.c2.assign(table.degree == 2 ? entries : 0, 0);
   const auto rounded = [&](double v) {
     return static_cast<int32_t>(std::lround(std::ldexp(v, table.value_frac)));
   };
-  for (uint32_t k = 0; k < used; ++k) {
-    const Bin& bin = bins[k];
-    const int32_t left = rounded(bin.left), right = rounded(bin.right);
-    const int32_t curve = table.degree == 2 ? rounded(2 * (bin.left + bin.right - 2 * bin.middle)) : 0;
-    table.c0[k] = left;
-    table.c1[k] = right - left - curve;
-    if (table.degree == 2) table.c2[k] = curve;
-  }
+  for (size_t n = 0; n < laws.size(); ++n)
+    for (size_t bin = 0, k = n << table.index_bits; bin < laws[n].size(); ++bin, ++k) {
+      const Bin& of = laws[n][bin];
+      const int32_t left = rounded(of.left), right = rounded(of.right);
+      const int32_t curve = table.degree == 2 ? rounded(of.curve()) : 0;
+      table.c0[k] = left;
+      table.c1[k] = right - left - curve;
+      if (table.degree == 2) table.c2[k] = curve;
+    }
 }
 
 FixedTable shaped(TableShape shape, const TableChoice& choice, int difference_frac, double core2) {
@@ -136,8 +159,10 @@ FixedTable shaped(TableShape shape, const TableChoice& choice, int difference_fr
   return table;
 }
 
-// Over the distances from `nearest` m on.
-FixedRule::Error error_of(const FixedRule& fixed, const Rule& rule, double scale, double nearest) {
+// Of law n over the distances from `nearest` m on.
+FixedRule::Error error_of(const FixedRule& fixed, const Rule& rule, size_t n, double scale, double nearest) {
+  const PairLaw& law = rule.law_at(n);
+  const double last = rule.cutoff() * (1 - 1e-12);
   FixedRule::Error error;
   const FixedTable& table = fixed.force;
   const double unit = std::ldexp(1.0, -table.value_frac) * rule.mass / (rule.dt * rule.dt) / scale;
@@ -152,8 +177,9 @@ FixedRule::Error error_of(const FixedRule& fixed, const Rule& rule, double scale
       const double r =
           std::sqrt(std::ldexp(static_cast<double>(r2), -2 * table.difference_frac)) * fixed.cell_edge;
       if (r < nearest) continue;
-      const double exact = rule.law->force(std::min(r, rule.law->cutoff() * (1 - 1e-12)));
-      const double off = std::abs(static_cast<double>(table.at(r2)) * unit * r - exact);
+      const double exact = law.force(std::min(r, last));
+      const double off =
+          std::abs(static_cast<double>(table.at(r2, static_cast<uint32_t>(n))) * unit * r - exact);
       largest = std::max(largest, std::abs(exact));
       if (off > error.worst_force) error.worst_force = off, error.at = r;
     }
@@ -188,29 +214,31 @@ void check_widths(const Widths& w, const TableChoice& table) {
 
 void make_tables(FixedRule& fixed, const Rule& rule, TableShape shape, const TableChoice& choice,
                  double scale) {
-  const double edge = fixed.cell_edge, cutoff = rule.law->cutoff();
-  const double end = cutoff * cutoff / (edge * edge);
-  const double core = rule.law->core();
+  const double edge = fixed.cell_edge, core = rule.core();
+  const auto end = [&](double cutoff) { return cutoff * cutoff / (edge * edge); };
   const int D = fixed.widths.difference_frac;
   const auto distance = [=](double r2) { return std::max(std::sqrt(r2) * edge, 1e-6 * core); };
   fixed.force = shaped(shape, choice, D, core * core / (edge * edge));
-  fill(
-      fixed.force,
-      [&](double r2) {
-        const double r = distance(r2);
-        return scale * rule.law->force(r) / r * rule.dt * rule.dt / rule.mass;
-      },
-      end, fixed.widths.strength_bits, fixed.damped ? 1 : 0);
+  std::vector<std::vector<Bin>> laws;
+  for (size_t n = 0; n < rule.laws(); ++n) {
+    const PairLaw& law = rule.law_at(n);
+    const auto value = [&](double r2) {
+      const double r = distance(r2);
+      return scale * law.force(r) / r * rule.dt * rule.dt / rule.mass;
+    };
+    laws.push_back(bins_of(fixed.force, value, end(law.cutoff()), law.cutoff() == rule.cutoff()));
+  }
+  fill(fixed.force, laws, fixed.widths.strength_bits, fixed.damped ? 1 : 0);
   if (fixed.damped) {
     fixed.damp = shaped(shape, choice, D, core * core / (edge * edge));
-    fill(
-        fixed.damp,
-        [&](double r2) {
-          return scale * rule.damping_over_r2(distance(r2)) * edge * edge * rule.dt / rule.mass;
-        },
-        end, fixed.widths.strength_bits, 0);
+    const auto value = [&](double r2) {
+      return scale * rule.damping_over_r2(distance(r2)) * edge * edge * rule.dt / rule.mass;
+    };
+    fill(fixed.damp, {bins_of(fixed.damp, value, end(rule.cutoff()), true)}, fixed.widths.strength_bits, 0);
   }
-  fixed.error = error_of(fixed, rule, scale, core);
+  fixed.errors.clear();
+  for (size_t n = 0; n < rule.laws(); ++n)
+    fixed.errors.push_back(error_of(fixed, rule, n, scale, rule.law_at(n).core()));
 }
 
 // Strongest pull of the law in newtons; its strongest push if it never pulls.
@@ -234,7 +262,7 @@ FixedRule with_tables(const FixedRule& fixed, const Rule& rule, const TableChoic
   if (choice.shape == TableChoice::Shape::uniform || !fits_octaves) return uniform;
   make_tables(octaves, rule, TableShape::octaves, choice, scale);
   if (choice.shape == TableChoice::Shape::octaves) return octaves;
-  return octaves.error.worst_force < uniform.error.worst_force ? octaves : uniform;
+  return octaves.error().worst_force < uniform.error().worst_force ? octaves : uniform;
 }
 
 }  // namespace
@@ -243,8 +271,6 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
                    double most_half_unit) {
   if (table.index_bits == 0) {
     TableChoice choice = table;
-    const double rest = stiffest_rest_distance(*rule.law);
-    const double nearest = std::max(rule.law->core(), kBondsFrom * rest);
     for (choice.index_bits = kLeastIndex;; ++choice.index_bits) {
       FixedRule fixed = quantise(rule, cell_edge, widths, choice, most_half_unit);
       if (choice.index_bits == std::min(kMostIndex, 2 * widths.difference_frac - 1) ||
@@ -253,12 +279,18 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
       double scale = 0;
       for (const auto& row : rule.strength)
         scale = std::max(scale, *std::max_element(row.begin(), row.end()));
-      if (error_of(fixed, rule, scale, nearest).worst_force <= 2 * most_half_unit) return fixed;
+      double worst = 0;
+      for (size_t n = 0; n < rule.laws(); ++n) {
+        const PairLaw& law = rule.law_at(n);
+        const double nearest = std::max(law.core(), kBondsFrom * stiffest_rest_distance(law));
+        worst = std::max(worst, error_of(fixed, rule, n, scale, nearest).worst_force);
+      }
+      if (worst <= 2 * most_half_unit) return fixed;
     }
   }
   const TableChoice& choice = table;
   check_widths(widths, choice);
-  const double cutoff = rule.law->cutoff();
+  const double cutoff = rule.cutoff();
   if (cutoff > cell_edge * (1 + 1e-12))
     throw InputError(
         fmt::format("the cutoff, {:.6g} m, is longer than a cell edge, {:.6g} m", cutoff, cell_edge));
@@ -279,7 +311,8 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   for (const auto& row : rule.strength) scale = std::max(scale, *std::max_element(row.begin(), row.end()));
   double least = scale;
   for (const auto& row : rule.strength) least = std::min(least, *std::min_element(row.begin(), row.end()));
-  fixed.scaled = least != scale || !rule.contact.empty();
+  fixed.scaled = least != scale || !rule.contact.empty() || rule.laws() > 1;
+  fixed.law_bits = std::bit_width(rule.laws() - 1);
   if (!rule.contact.empty()) {
     const double reach = std::min(rule.contact_distance, cutoff) / cell_edge;
     fixed.contact2 =
@@ -287,8 +320,7 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   }
 
   const bool fits_octaves = [&] {
-    const FixedTable table =
-        shaped(TableShape::octaves, choice, D, std::pow(rule.law->core() / cell_edge, 2));
+    const FixedTable table = shaped(TableShape::octaves, choice, D, std::pow(rule.core() / cell_edge, 2));
     return table.bin_bits >= 1;
   }();
   if (choice.shape == TableChoice::Shape::octaves && !fits_octaves)
@@ -296,7 +328,8 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
         fmt::format("{} index bits are too few for the octaves between the law's core and its cutoff",
                     choice.index_bits));
   if (widths.strength_bits == 0) {
-    const double pull = strongest_pull(*rule.law);
+    double pull = std::numeric_limits<double>::infinity();  // of the weakest law
+    for (size_t n = 0; n < rule.laws(); ++n) pull = std::min(pull, strongest_pull(rule.law_at(n)));
     for (fixed.widths.strength_bits = kLeastStrength; fixed.widths.strength_bits < kWidestStrength;
          ++fixed.widths.strength_bits) {
       const FixedRule tried = with_tables(fixed, rule, choice, scale, fits_octaves);
@@ -355,11 +388,15 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   if (fixed.scaled)
     for (size_t i = 0; i < rule.types.size(); ++i) {
       fixed.scale.emplace_back();
+      if (fixed.law_bits > 0) fixed.law.emplace_back();
       for (size_t j = 0; j < rule.types.size(); ++j) {
         const double strength = rule.strength_of(static_cast<int>(i), static_cast<int>(j)) / scale;
         const auto size =
             static_cast<int32_t>(quantised(strength, strength, widths.scale_frac, 18, "a pair strength"));
         fixed.scale[i].push_back(rule.only_touch(static_cast<int>(i), static_cast<int>(j)) ? -size : size);
+        if (fixed.law_bits > 0)
+          fixed.law[i].push_back(
+              static_cast<uint8_t>(rule.law_index_of(static_cast<int>(i), static_cast<int>(j))));
       }
     }
   return fixed;

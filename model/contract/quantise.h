@@ -27,6 +27,9 @@ struct TableChoice {
 // `table.index_bits` = 0 takes the least from 9 to 13 at which the table's force is within 2 half_unit of the
 // law's, where bonds are: from 0.8 of the distance at rest to the cutoff. 13 is taken where none will do.
 //
+// Several laws share one shape and one unit: that of the largest f/r. The weakest law decides the widths
+// above.
+//
 // Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative
 // shift, a velocity, gain, scale or mass out of its width.
 FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table,

@@ -35,8 +35,8 @@ class PairLaw {
 };
 
 // Damping on the radial velocity difference: on i the force c(r) * (w . e) e, e = d/r, d = x_j - x_i, w = v_j
-// - v_i. c(r) = coefficient * (1 - (r/cutoff)^2)^2, in kg/s: smooth, and zero at the cutoff of the pair law.
-// Below the law's core c/r^2 keeps its value at the core.
+// - v_i. c(r) = coefficient * (1 - (r/cutoff)^2)^2, in kg/s: smooth, and zero at the cutoff of the rule.
+// Below the rule's core c/r^2 keeps its value at the core.
 struct Damping {
   double coefficient = 0;  // kg/s, >= 0; 0: the scene does not damp
 };
@@ -56,8 +56,16 @@ struct ParticleType {
 // Whether nothing imposes or steers the motion of such a particle along the axis.
 inline bool is_free(const ParticleType& type, int axis) { return !type.imposed[axis] && !type.pd; }
 
+// A table of the force for each law is in every force pipe: more laws are more memory than small devices
+// have.
+inline constexpr size_t kMostLaws = 4;
+
 struct Rule {
-  std::shared_ptr<const PairLaw> law;
+  std::shared_ptr<const PairLaw> law;  // of all pairs of materials that have none of their own
+  // Of pairs of materials with laws of their own, each once. Symmetric, materials x materials: 0 means `law`,
+  // k other_laws[k - 1]. Both empty where `law` serves all.
+  std::vector<std::shared_ptr<const PairLaw>> other_laws;
+  std::vector<std::vector<uint8_t>> law_index;
   Damping damping;
   double mass = 0;                  // kg per particle; where masses differ, of the lightest material
   std::vector<double> masses;       // kg by material; empty where all have `mass`
@@ -68,29 +76,61 @@ struct Rule {
   // Materials that only touch: their pairs push within the contact distance and do nothing beyond it.
   // Symmetric, materials x materials; empty where no two do.
   std::vector<std::vector<char>> contact;
-  double contact_distance = 0;  // m, where the law's push ends (law.h); only with `contact`
+  double contact_distance = 0;  // m, where the laws' push ends (law.h); only with `contact`
+
+  size_t laws() const { return 1 + other_laws.size(); }
+  const PairLaw& law_at(size_t k) const { return k == 0 ? *law : *other_laws[k - 1]; }
+  size_t law_between(size_t material, size_t other) const {
+    return law_index.empty() ? 0 : law_index[material][other];
+  }
+  // The largest strength of the pairs of materials that law k serves; 0 where it serves none.
+  double strongest_of(size_t k) const {
+    double strongest = 0;
+    for (size_t i = 0; i < strength.size(); ++i)
+      for (size_t j = 0; j < strength.size(); ++j)
+        if (law_between(i, j) == k) strongest = std::max(strongest, strength[i][j]);
+    return strongest;
+  }
+  size_t law_index_of(int type_i, int type_j) const {
+    return law_between(static_cast<size_t>(types[type_i].material),
+                       static_cast<size_t>(types[type_j].material));
+  }
+  const PairLaw& law_of(int type_i, int type_j) const { return law_at(law_index_of(type_i, type_j)); }
+  // Of all laws the longest cutoff and the shortest core, m.
+  double cutoff() const {
+    double longest = law->cutoff();
+    for (const auto& other : other_laws) longest = std::max(longest, other->cutoff());
+    return longest;
+  }
+  double core() const {
+    double shortest = law->core();
+    for (const auto& other : other_laws) shortest = std::min(shortest, other->core());
+    return shortest;
+  }
 
   double mass_of(int type) const { return masses.empty() ? mass : masses[types[type].material]; }
   // Over the lightest material's, >= 1.
   double relative_mass(int type) const { return mass_of(type) / mass; }
   double heaviest() const { return masses.empty() ? mass : *std::max_element(masses.begin(), masses.end()); }
-  // The largest strength over the relative mass of the pair's lighter particle. A packing's largest squared
-  // frequency is at most so many times that of strength 1 and `mass`, w^2: with C this factor, the stiffness
-  // of a pair is at most C min(m_i, m_j), which is the sum over masses t of C where both are heavier than t;
-  // the bonds among those are some of a packing's, whose energy is at most w^2 times the sum of their x^2.
-  double largest_rate() const {
+  // The largest strength over the relative mass of the pair's lighter particle, of the pairs of types that
+  // law k serves; 0 where it serves none. A packing's largest squared frequency is at most so many times that
+  // of strength 1 and `mass`, w^2: with C this factor, the stiffness of a pair is at most C min(m_i, m_j),
+  // which is the sum over masses t of C where both are heavier than t; the bonds among those are some of a
+  // packing's, whose energy is at most w^2 times the sum of their x^2.
+  double largest_rate(size_t k) const {
     double rate = 0;
     for (size_t i = 0; i < types.size(); ++i)
       for (size_t j = 0; j < types.size(); ++j) {
         const int a = static_cast<int>(i), b = static_cast<int>(j);
-        rate = std::max(rate, strength_of(a, b) / std::min(relative_mass(a), relative_mass(b)));
+        if (law_index_of(a, b) == k)
+          rate = std::max(rate, strength_of(a, b) / std::min(relative_mass(a), relative_mass(b)));
       }
     return rate;
   }
   // c(r)/r^2 in kg/(s m^2).
   double damping_over_r2(double r) const {
-    const double near = std::max(r, law->core());
-    const double q = near / law->cutoff();
+    const double near = std::max(r, core());
+    const double q = near / cutoff();
     return q < 1 ? damping.coefficient * (1 - q * q) * (1 - q * q) / (near * near) : 0.0;
   }
   double strength_of(int type_i, int type_j) const {
@@ -99,16 +139,17 @@ struct Rule {
   bool only_touch(int type_i, int type_j) const {
     return !contact.empty() && contact[types[type_i].material][types[type_j].material] != 0;
   }
-  // The distance from which on the pair does nothing, m.
+  // The distance from which on the pair does nothing, m: damping ends at the longest cutoff.
   double reach(int type_i, int type_j) const {
-    return only_touch(type_i, type_j) ? contact_distance : law->cutoff();
+    return only_touch(type_i, type_j) ? contact_distance : cutoff();
   }
   // J, zero from the pair's reach on; dU/dr = -strength * force.
   double pair_energy(int type_i, int type_j, double r) const {
     const double end = reach(type_i, type_j);
     if (r >= end) return 0;
-    const double beyond = only_touch(type_i, type_j) ? law->energy(end) : 0;
-    return (law->energy(r) - beyond) * strength_of(type_i, type_j);
+    const PairLaw& of = law_of(type_i, type_j);
+    const double beyond = only_touch(type_i, type_j) ? of.energy(end) : 0;
+    return (of.energy(r) - beyond) * strength_of(type_i, type_j);
   }
 };
 

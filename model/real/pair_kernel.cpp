@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "model/real/pair_kernel.cpp"
@@ -83,12 +84,12 @@ struct LennardJones : Vectors<Real> {
   using Vectors<Real>::set;
   V sigma2, epsilon24, offset, one;
   bool shifted;
-  HWY_INLINE explicit LennardJones(const PairForce<Real>& force)
-      : sigma2(set(force.sigma2)),
-        epsilon24(set(force.epsilon24)),
-        offset(set(force.offset)),
+  HWY_INLINE explicit LennardJones(const LawTerms<Real>& terms)
+      : sigma2(set(terms.sigma2)),
+        epsilon24(set(terms.epsilon24)),
+        offset(set(terms.offset)),
         one(set(1)),
-        shifted(force.offset != 0) {}
+        shifted(terms.offset != 0) {}
   HWY_INLINE V over_r(V r2) const {
     const V inverse = hn::Div(one, r2);
     const V q = hn::Mul(sigma2, inverse);
@@ -106,23 +107,23 @@ struct Pieces : Vectors<Real> {
   using typename Vectors<Real>::I;
   using typename Vectors<Real>::Index;
   using Vectors<Real>::set;
-  const PairForce<Real>& force;
+  const LawTerms<Real>& terms;
   bool small;  // a vector holds a coefficient of all pieces
-  HWY_INLINE explicit Pieces(const PairForce<Real>& force)
-      : force(force), small(force.pieces <= hn::Lanes(D())) {}
+  HWY_INLINE explicit Pieces(const LawTerms<Real>& terms)
+      : terms(terms), small(terms.pieces <= hn::Lanes(D())) {}
   // By r^2, which is known before the root. Where rounding picks the neighbour, both agree but for rounding.
   HWY_INLINE Index piece(V r2) const {
     const I i;
     const Index one = hn::Set(i, 1);
     Index count = hn::Zero(i);
-    for (size_t k = 0; k + 1 < force.pieces; ++k) {
-      const auto beyond = hn::RebindMask(i, hn::Ge(r2, set(force.joint2[k])));
+    for (size_t k = 0; k + 1 < terms.pieces; ++k) {
+      const auto beyond = hn::RebindMask(i, hn::Ge(r2, set(terms.joint2[k])));
       count = hn::Add(count, hn::IfThenElseZero(beyond, one));
     }
     return count;
   }
   HWY_INLINE V coefficient(size_t of, Index piece) const {
-    const Real* table = force.coefficient[of].data();
+    const Real* table = terms.coefficient[of].data();
     if (HWY_LIKELY(small)) return hn::TableLookupLanes(hn::LoadU(D(), table), hn::IndicesFromVec(D(), piece));
     return hn::GatherIndex(D(), table, piece);
   }
@@ -131,7 +132,7 @@ struct Pieces : Vectors<Real> {
 template <class Real>
 struct Cubic : Pieces<Real> {
   using typename Pieces<Real>::V;
-  HWY_INLINE explicit Cubic(const PairForce<Real>& force) : Pieces<Real>(force) {}
+  HWY_INLINE explicit Cubic(const LawTerms<Real>& terms) : Pieces<Real>(terms) {}
   HWY_INLINE V over_r(V r2) const {
     const V r = hn::Sqrt(r2);
     const auto k = this->piece(r2);
@@ -148,7 +149,7 @@ template <class Real>
 struct Arc : Pieces<Real> {
   using typename Pieces<Real>::D;
   using typename Pieces<Real>::V;
-  HWY_INLINE explicit Arc(const PairForce<Real>& force) : Pieces<Real>(force) {}
+  HWY_INLINE explicit Arc(const LawTerms<Real>& terms) : Pieces<Real>(terms) {}
   HWY_INLINE V over_r(V r2) const {
     const V r = hn::Sqrt(r2);
     const auto k = this->piece(r2);
@@ -167,7 +168,7 @@ struct Asked : Vectors<Real> {
   using typename Vectors<Real>::D;
   using typename Vectors<Real>::V;
   const PairLaw& law;
-  HWY_INLINE explicit Asked(const PairForce<Real>& force) : law(*force.law) {}
+  HWY_INLINE explicit Asked(const LawTerms<Real>& terms) : law(*terms.law) {}
   HWY_INLINE V over_r(V r2) const {
     Real at[hn::MaxLanes(D())];
     hn::StoreU(hn::Sqrt(r2), D(), at);
@@ -175,6 +176,48 @@ struct Asked : Vectors<Real> {
     return hn::LoadU(D(), at);
   }
 };
+
+// Of several laws that of each lane's pair, by its number.
+template <class Real>
+struct Several : Vectors<Real> {
+  using typename Vectors<Real>::D;
+  using typename Vectors<Real>::V;
+  using Vectors<Real>::set;
+  const std::vector<LawTerms<Real>>& laws;
+  HWY_INLINE explicit Several(const PairForce<Real>& force) : laws(force.laws) {}
+  static HWY_INLINE V of_one(const LawTerms<Real>& terms, V near2) {
+    using Kind = typename LawTerms<Real>::Kind;
+    switch (terms.kind) {
+      case Kind::lennard_jones:
+        return LennardJones<Real>(terms).over_r(near2);
+      case Kind::cubic:
+        return Cubic<Real>(terms).over_r(near2);
+      case Kind::arc:
+        return Arc<Real>(terms).over_r(near2);
+      case Kind::asked:
+        break;
+    }
+    return Asked<Real>(terms).over_r(near2);
+  }
+  HWY_INLINE V over_r(V r2, V number) const {
+    V k = hn::Zero(D());
+    for (size_t n = 0; n < laws.size(); ++n) {
+      const auto own = hn::And(hn::Eq(number, set(static_cast<Real>(n))), hn::Lt(r2, set(laws[n].cutoff2)));
+      if (hn::AllFalse(D(), own)) continue;
+      k = hn::IfThenElse(own, of_one(laws[n], hn::Max(r2, set(laws[n].core2))), k);
+    }
+    return k;
+  }
+};
+
+// Of one law: the only one.
+template <class Law, class Real>
+HWY_INLINE Law law_of(const PairForce<Real>& force) {
+  if constexpr (std::is_same_v<Law, Several<Real>>)
+    return Law(force);
+  else
+    return Law(force.laws[0]);
+}
 
 template <bool kDamped, class Real, class Law>
 HWY_INLINE void sum_forces(const PairForce<Real>& force, const PairRows& rows, const Real* x, const Real* v,
@@ -185,7 +228,8 @@ HWY_INLINE void sum_forces(const PairForce<Real>& force, const PairRows& rows, c
   const typename Vs::D d;
   const typename Vs::I ii;
   const size_t lanes = hn::Lanes(d);
-  const Law law(force);
+  constexpr bool kSeveral = std::is_same_v<Law, Several<Real>>;
+  const Law law = law_of<Law>(force);
   const V cutoff2 = hn::Set(d, force.cutoff2), core2 = hn::Set(d, force.core2), zero = hn::Zero(d);
   const V damping = hn::Set(d, force.damping), inverse_cutoff2 = hn::Set(d, force.inverse_cutoff2);
   const V one = hn::Set(d, Real{1});
@@ -226,7 +270,13 @@ HWY_INLINE void sum_forces(const PairForce<Real>& force, const PairRows& rows, c
       // Particles at one point, as a particle and itself where rows are filled up, have k*d = 0.
       auto pair = hn::Lt(r2, cutoff2);
       const V near2 = hn::Max(r2, core2);
-      V k = law.over_r(near2);
+      auto which = own_lanes;
+      if (scaled) which = hn::ConvertTo(ii, hn::Add(row_of_strengths, hn::GatherIndex(d, x + 3, j)));
+      V k;
+      if constexpr (kSeveral)
+        k = law.over_r(r2, hn::GatherIndex(d, force.law_index.data(), which));
+      else
+        k = law.over_r(near2);
       if (kDamped) {
         load_records(v, at, j, other);
         const V w0 = hn::Sub(other[0], v0), w1 = hn::Sub(other[1], v1), w2 = hn::Sub(other[2], v2);
@@ -236,8 +286,7 @@ HWY_INLINE void sum_forces(const PairForce<Real>& force, const PairRows& rows, c
         k = hn::Sub(k, hn::Mul(c, closing));
       }
       if (scaled) {
-        const V which = hn::Add(row_of_strengths, hn::GatherIndex(d, x + 3, j));
-        const V strength = hn::GatherIndex(d, force.strength.data(), hn::ConvertTo(ii, which));
+        const V strength = hn::GatherIndex(d, force.strength.data(), which);
         k = hn::Mul(k, hn::Abs(strength));
         pair = hn::AndNot(hn::And(hn::Lt(strength, zero), hn::Ge(r2, hn::Set(d, force.contact2))), pair);
       }
@@ -255,7 +304,7 @@ HWY_INLINE void sum_forces(const PairForce<Real>& force, const PairRows& rows, c
 
 template <class Real>
 void forces_of(const PairForce<Real>& force, const PairRows& rows, const Real* x, const Real* v, Real* f) {
-  using Kind = typename PairForce<Real>::Kind;
+  using Kind = typename LawTerms<Real>::Kind;
   const bool damped = force.damping > 0;
   const auto by = [&]<class Law>() HWY_ATTR {
     if (damped)
@@ -263,7 +312,8 @@ void forces_of(const PairForce<Real>& force, const PairRows& rows, const Real* x
     else
       sum_forces<false, Real, Law>(force, rows, x, v, f);
   };
-  switch (force.kind) {
+  if (force.laws.size() > 1) return by.template operator()<Several<Real>>();
+  switch (force.laws[0].kind) {
     case Kind::lennard_jones:
       return by.template operator()<LennardJones<Real>>();
     case Kind::cubic:
@@ -368,7 +418,10 @@ size_t pair_lanes<float>() {
 const char* pair_simd() { return HWY_DYNAMIC_DISPATCH(simd)(); }
 
 template <class Real>
-PairForce<Real>::PairForce(const Rule& rule, const Periodic& periodic) : law(rule.law.get()) {
+LawTerms<Real>::LawTerms(const PairLaw& of)
+    : law(&of),
+      cutoff2(static_cast<Real>(of.cutoff() * of.cutoff())),
+      core2(static_cast<Real>(of.core() * of.core())) {
   const auto real = [](double value) { return static_cast<Real>(value); };
   const auto take = [&](const auto& list, auto... member) {
     pieces = list.size();
@@ -392,12 +445,21 @@ PairForce<Real>::PairForce(const Rule& rule, const Periodic& periodic) : law(rul
     kind = Kind::arc;
     take(*arcs, &ArcPiece::r, &ArcPiece::r1, &ArcPiece::r2, &ArcPiece::f0, &ArcPiece::f1, &ArcPiece::f2);
   }
-  const double cutoff = law->cutoff(), core = law->core();
+}
+template struct LawTerms<double>;
+template struct LawTerms<float>;
+
+template <class Real>
+PairForce<Real>::PairForce(const Rule& rule, const Periodic& periodic) {
+  const auto real = [](double value) { return static_cast<Real>(value); };
+  for (size_t k = 0; k < rule.laws(); ++k) laws.emplace_back(rule.law_at(k));
+  const double cutoff = rule.cutoff(), core = rule.core();
   cutoff2 = real(cutoff * cutoff);
   core2 = real(core * core);
   damping = real(rule.damping.coefficient);
   inverse_cutoff2 = real(1 / (cutoff * cutoff));
-  bool scaled = !rule.contact.empty();
+  const bool several = laws.size() > 1;
+  bool scaled = several || !rule.contact.empty();
   for (const auto& row : rule.strength)
     for (const double factor : row) scaled |= factor != 1;
   if (scaled) {
@@ -406,6 +468,7 @@ PairForce<Real>::PairForce(const Rule& rule, const Periodic& periodic) : law(rul
       for (size_t j = 0; j < materials; ++j) {
         const bool touch = !rule.contact.empty() && rule.contact[i][j] != 0;
         strength.push_back(real(touch ? -rule.strength[i][j] : rule.strength[i][j]));
+        if (several) law_index.push_back(real(static_cast<double>(rule.law_between(i, j))));
       }
     contact2 = real(rule.contact_distance * rule.contact_distance);
   }

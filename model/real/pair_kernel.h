@@ -21,10 +21,10 @@ struct PairRows {
   std::vector<uint32_t> entry;
 };
 
-// The pair part of a rule as the kernels read it. Real: double or float.
+// A law as the kernels read it. Real: double or float.
 template <class Real>
-struct PairForce {
-  PairForce(const Rule& rule, const Periodic& periodic);
+struct LawTerms {
+  explicit LawTerms(const PairLaw& of);
 
   enum class Kind : uint8_t { lennard_jones, cubic, arc, asked } kind = Kind::asked;
   Real sigma2 = 0, epsilon24 = 0, offset = 0;  // m^2, J, N
@@ -35,11 +35,22 @@ struct PairForce {
   size_t pieces = 0;
   std::vector<Real> joint2;  // m^2, where one piece ends and the next begins
   const PairLaw* law = nullptr;
-
   Real cutoff2 = 0, core2 = 0;  // m^2
+};
+
+// The pair part of a rule.
+template <class Real>
+struct PairForce {
+  PairForce(const Rule& rule, const Periodic& periodic);
+
+  std::vector<LawTerms<Real>> laws;
+  std::vector<Real> law_index;  // materials x materials; empty where there is one law
+
+  Real cutoff2 = 0, core2 = 0;  // m^2, of the rule
   Real damping = 0, inverse_cutoff2 = 0;
   size_t materials = 1;
-  // Materials x materials; empty where all are 1 and none only touch. Negative: the two only touch.
+  // Materials x materials; empty where all are 1, none only touch, and there is one law. Negative: the two
+  // only touch.
   std::vector<Real> strength;
   Real contact2 = 0;  // m^2
   bool ring = false;

@@ -52,7 +52,7 @@ class Engine final : public RealEngine {
       : force_(rule, periodic),
         threads_(static_cast<int>(std::clamp<size_t>(body.size() / kParticlesPerThread, 1,
                                                      static_cast<size_t>(std::max(1, options.threads))))),
-        list_(rule.law->cutoff(), periodic, margin(rule, periodic), pair_lanes<Real>(), threads_),
+        list_(rule.cutoff(), periodic, margin(rule, periodic), pair_lanes<Real>(), threads_),
         options_(options),
         dt_(rule.dt),
         particles_(body.size()) {
@@ -111,7 +111,7 @@ class Engine final : public RealEngine {
   // Differences across a box and the box itself are rounded, each by half an epsilon of its size or less.
   static double margin(const Rule& rule, const Periodic& periodic) {
     return 8 * static_cast<double>(std::numeric_limits<Real>::epsilon()) *
-           (rule.law->cutoff() + periodic.extent.maxCoeff());
+           (rule.cutoff() + periodic.extent.maxCoeff());
   }
   static std::vector<Real> packed(const std::vector<Vec3>& by_id) {
     std::vector<Real> four(4 * by_id.size());

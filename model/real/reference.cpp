@@ -66,7 +66,7 @@ void Reference::for_each_neighbour(On&& on) const {
   const std::vector<PairRows>& parts = list.parts();
   const size_t groups = parts.back().first_group + parts.back().begin.size() - 1;
   const size_t lanes = groups == 0 ? 1 : list.slots() / groups;
-  const double cutoff2 = rule_.law->cutoff() * rule_.law->cutoff();
+  const double cutoff2 = rule_.cutoff() * rule_.cutoff();
   for_each_part(parts.size(), threads_, [&](size_t p, int) {
     const PairRows& part = parts[p];
     for (size_t g = 0; g + 1 < part.begin.size(); ++g) {
@@ -111,7 +111,7 @@ std::vector<Mat3> Reference::virial_stress(double volume) const {
   for_each_neighbour([&](uint32_t i, uint32_t j, const Vec3& d, double r2) {
     const double r = std::sqrt(r2);
     if (r >= rule_.reach(body_.type[i], body_.type[j])) return;
-    double k = rule_.law->force(r) / r;
+    double k = rule_.law_of(body_.type[i], body_.type[j]).force(r) / r;
     if (damps) k -= rule_.damping_over_r2(r) * (body_.v[j] - body_.v[i]).dot(d);
     k *= rule_.strength_of(body_.type[i], body_.type[j]);
     // A pair that pulls (k < 0) is under tension along d.

@@ -64,8 +64,8 @@ class DampingAsLaw final : public PairLaw {
   double force(double) const override { return 0; }
   double energy(double) const override { return 0; }
   double slope(double r) const override { return -rule_.damping_over_r2(r) * r * r; }
-  double cutoff() const override { return rule_.law->cutoff(); }
-  double core() const override { return rule_.law->core(); }
+  double cutoff() const override { return rule_.cutoff(); }
+  double core() const override { return rule_.core(); }
 
  private:
   const Rule& rule_;
@@ -102,7 +102,7 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
   const Rule& rule = scene.rule;
   constexpr double kNone = std::numeric_limits<double>::infinity();
   TimeLimits limits;
-  const double cutoff = rule.law->cutoff();
+  const double cutoff = rule.cutoff();
   if (scene.pitch > 0) limits.given.meet(stable_time_step(rule, scene.pitch), "the perfect packing");
   bool small = false;  // a box that every engine will refuse
   for (const double extent : scene.periodic.extent) small = small || (extent > 0 && extent < 2 * cutoff);
@@ -118,9 +118,9 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
         if (scene.periodic.extent[axis] > 0) low[axis] = -kNone, high[axis] = kNone;
     }
     limits.given.meet(vibrations_limit(scene, low, high), "the particles that are listed");
-    const double rest = stiffest_rest_distance(*rule.law);
-    if (scene.pitch == 0 && rest > 0.1 * cutoff)
-      limits.automatic.meet(stable_time_step(rule, rest), "a packing at the law's rest distance");
+    if (scene.pitch == 0 && stiffest_rest_distance(*rule.law) > 0.1 * cutoff)
+      limits.automatic.meet(stable_time_step(rule, stiffest_rest_distance),
+                            "a packing at the law's rest distance");
   }
   limits.automatic.meet(limits.given.dt, limits.given.of);
   return limits;
@@ -209,20 +209,29 @@ void read_reach(const ConfigTable& root, Scene& scene) {
 }  // namespace
 
 double stable_time_step(const Rule& rule, double pitch) {
-  double kp = 0, kd = 0;  // over the mass
+  return stable_time_step(rule, [pitch](const PairLaw&) { return pitch; });
+}
+
+double stable_time_step(const Rule& rule, const std::function<double(const PairLaw&)>& pitch) {
+  double kp = 0, kd = 0;           // over the mass
+  double fastest = 0, damped = 0;  // frequencies squared, 1/s^2 and 1/s
   for (size_t k = 0; k < rule.types.size(); ++k) {
     const double mass = rule.mass_of(static_cast<int>(k));
     kp = std::max(kp, rule.types[k].kp / mass);
     kd = std::max(kd, rule.types[k].kd / mass);
   }
-  const double w = largest_frequency(*rule.law, rule.mass, pitch);
-  if (!(w > 0)) return 0;
-  const double w2 = rule.largest_rate() * w * w + kp;
-  double g = kd;
-  if (rule.damping.coefficient > 0) {
-    const double root = largest_frequency(DampingAsLaw(rule), rule.mass, pitch);
-    g += root * root;
+  for (size_t k = 0; k < rule.laws(); ++k) {
+    const double rate = rule.largest_rate(k);
+    if (rate == 0) continue;  // no pair of types has it
+    const double of = pitch(rule.law_at(k)), w = largest_frequency(rule.law_at(k), rule.mass, of);
+    fastest = std::max(fastest, rate * w * w);
+    if (!(w > 0) || rule.damping.coefficient == 0) continue;
+    const double root = largest_frequency(DampingAsLaw(rule), rule.mass, of);
+    damped = std::max(damped, root * root);
   }
+  if (!(fastest > 0)) return 0;
+  const double w2 = fastest + kp;
+  const double g = kd + damped;
   // (sqrt(g^2 + 4 w^2) - g)/w^2 without its cancellation.
   return 4 / (std::sqrt(g * g + 4 * w2) + g);
 }
@@ -261,7 +270,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
 
 std::array<bool, 3> live_axes(const Scene& scene) {
   const Body& body = scene.body;
-  const double same = 1e-9 * scene.rule.law->cutoff();
+  const double same = 1e-9 * scene.rule.cutoff();
   const ParticleType& first = scene.rule.types[body.type[0]];
   std::array<bool, 3> live{};
   for (size_t i = 0; i < body.size() && live != std::array{true, true, true}; ++i) {

@@ -165,9 +165,50 @@ std::vector<Material> read_materials(const ConfigTable& root) {
   return materials;
 }
 
-// Pairs of unlike materials take the geometric mean unless a [[bond]] gives a strength.
-void read_strengths(const ConfigTable& root, const std::vector<Material>& materials,
-                    const std::vector<std::string>& names, Rule& rule) {
+// The law of a bond, and its number among those of the rule: equal ones are one.
+size_t read_bond_law(const ConfigTable& table, const PackingChoice* packing, Rule& rule) {
+  std::optional<PackingChoice> own;
+  if (packing != nullptr) own = *packing;
+  const auto law = read_law_table(table, own ? &*own : nullptr);
+  for (size_t k = 0; k < rule.laws(); ++k)
+    if (same_law(rule.law_at(k), *law)) return k;
+  if (rule.laws() == kMostLaws)
+    table.fail(fmt::format("more than {} laws", kMostLaws),
+               "each takes a table in every force pipe; bonds of equal laws share one");
+  rule.other_laws.push_back(law);
+  return rule.laws() - 1;
+}
+
+// All contacts of a scene end at one distance.
+void read_contact(const ConfigTable& bond, size_t i, size_t j, size_t law, Rule& rule) {
+  const double end = push_end(rule.law_at(law));
+  if (rule.contact.empty()) {
+    rule.contact.assign(rule.strength.size(), std::vector<char>(rule.strength.size(), 0));
+    rule.contact_distance = end;
+  }
+  if (std::abs(end - rule.contact_distance) > 1e-9 * end)
+    bond.at("contact").fail(
+        fmt::format("the push of this pair's law ends at {:.6g} m, that of another contact at "
+                    "{:.6g} m",
+                    end, rule.contact_distance),
+        "all contacts of a scene end at one distance");
+  rule.contact[i][j] = rule.contact[j][i] = 1;
+}
+
+// Where bonds have replaced the scene's law everywhere, the first of theirs takes its place.
+void drop_unused_law(Rule& rule) {
+  if (rule.strongest_of(0) > 0) return;
+  rule.law = rule.other_laws.front();
+  rule.other_laws.erase(rule.other_laws.begin());
+  for (auto& row : rule.law_index)
+    for (uint8_t& law : row) --law;
+  if (rule.other_laws.empty()) rule.law_index.clear();
+}
+
+// Pairs of unlike materials take the geometric mean unless a [[bond]] gives a strength, or a law: that has
+// its own.
+void read_bonds(const ConfigTable& root, const std::vector<Material>& materials,
+                const std::vector<std::string>& names, const PackingChoice* packing, Rule& rule) {
   const size_t n = materials.size();
   rule.strength.assign(n, std::vector<double>(n));
   for (size_t i = 0; i < n; ++i)
@@ -180,16 +221,21 @@ void read_strengths(const ConfigTable& root, const std::vector<Material>& materi
     if (pair.size() != 2) between.fail("'between' needs two materials");
     const size_t i = pair[0].choice("material", names), j = pair[1].choice("material", names);
     const bool contact = table.boolean_or("contact", false);
-    if (!contact || table.has("strength"))
+    const auto own = table.table_at("law");
+    size_t law = 0;
+    if (own) {
+      law = read_bond_law(*own, packing, rule);
+      if (rule.law_index.empty() && law > 0) rule.law_index.assign(n, std::vector<uint8_t>(n, 0));
+      if (!rule.law_index.empty()) rule.law_index[i][j] = rule.law_index[j][i] = static_cast<uint8_t>(law);
+      rule.strength[i][j] = rule.strength[j][i] = 1;
+    }
+    if ((!contact && !own) || table.has("strength"))
       rule.strength[i][j] = rule.strength[j][i] =
           table.number("strength", quantity::number, Range::positive());
-    if (contact) {
-      if (rule.contact.empty()) rule.contact.assign(n, std::vector<char>(n, 0));
-      rule.contact[i][j] = rule.contact[j][i] = 1;
-      rule.contact_distance = push_end(*rule.law);
-    }
+    if (contact) read_contact(table, i, j, law, rule);
     table.done();
   }
+  drop_unused_law(rule);
 }
 
 std::vector<int> assign_materials(const ConfigTable& root, const Regions& regions,
@@ -255,10 +301,7 @@ ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change
     if (const auto axes = table.find("axes"))
       axes->fail(fmt::format("'axes' serves 'held' and 'moved' only, not '{}'", kinds[kind]));
     type.pd = true;
-    double stiffest = 0;
-    for (const auto& row : rule.strength)
-      for (double s : row) stiffest = std::max(stiffest, s);
-    stiffest *= largest_stiffness(*rule.law, pitch > 0 ? pitch : rule.law->core());
+    const double stiffest = largest_stiffness(rule, pitch);
     type.kp = table.number_or("kp", quantity::stiffness, 10 * stiffest, Range::positive());
     type.kd = table.number_or("kd", quantity::damping, rule.damping.coefficient, Range::not_negative());
   }
@@ -351,7 +394,7 @@ void read_body(const ConfigTable& root, const ConfigTable* stage, const Regions&
   const std::vector<Material> materials = read_materials(root);
   std::vector<std::string> names;
   for (const Material& material : materials) names.push_back(material.name);
-  read_strengths(root, materials, names, scene.rule);
+  read_bonds(root, materials, names, packing, scene.rule);
 
   if (packing != nullptr)
     pack_geometry(root, regions, *packing, scene);

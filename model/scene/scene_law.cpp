@@ -144,7 +144,11 @@ double stiffness_from_modulus(double modulus, const Vec3& direction, double pitc
 std::shared_ptr<const PairLaw> read_law(const ConfigTable& root, PackingChoice* packing) {
   const auto found = root.table_at("law");
   if (!found) root.at("law");
-  const ConfigTable& table = *found;
+  return read_law_table(*found, packing);
+}
+
+std::shared_ptr<const PairLaw> read_law_table(const ConfigTable& table, PackingChoice* packing) {
+  table.record_as("law");
   const std::vector<std::string> kinds = {"elastic", "brittle", "ductile", "viscous", "spline", "lj"};
   const std::string kind = kinds[table.at("kind").choice("law", kinds)];
   std::shared_ptr<const PairLaw> law;
@@ -164,11 +168,17 @@ std::shared_ptr<const PairLaw> read_law(const ConfigTable& root, PackingChoice* 
   return law;
 }
 
-double largest_stiffness(const PairLaw& law, double from) {
+double largest_stiffness(const Rule& rule, double pitch) {
   constexpr int kSamples = 4096;
   double most = 0;
-  for (int i = 0; i <= kSamples; ++i)
-    most = std::max(most, std::abs(law.slope(from + (law.cutoff() - from) * i / kSamples)));
+  for (size_t k = 0; k < rule.laws(); ++k) {
+    const PairLaw& law = rule.law_at(k);
+    const double from = pitch > 0 ? pitch : law.core();
+    double steepest = 0;
+    for (int i = 0; i <= kSamples; ++i)
+      steepest = std::max(steepest, std::abs(law.slope(from + (law.cutoff() - from) * i / kSamples)));
+    most = std::max(most, rule.strongest_of(k) * steepest);
+  }
   return most;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,8 +36,11 @@ double stiffness_from_modulus(double modulus, const Vec3& direction, double pitc
 
 // [law]. Sets packing->fcc.pitch where it was "relaxed".
 std::shared_ptr<const PairLaw> read_law(const ConfigTable& root, PackingChoice* packing);
-// max |df/dr| between `from` and the cutoff, N/m, from 4096 samples.
-double largest_stiffness(const PairLaw& law, double from);
+// A [law] table, or the `law` of a bond.
+std::shared_ptr<const PairLaw> read_law_table(const ConfigTable& table, PackingChoice* packing);
+// The largest of strength |df/dr| over the pairs of materials, from the pitch (0: the law's core) to the
+// cutoff, N/m, from 4096 samples.
+double largest_stiffness(const Rule& rule, double pitch);
 
 // The box of [periodic] or `cells`; the second marks the axes that repeat.
 std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const PackingChoice* packing);
@@ -51,7 +55,10 @@ void read_body(const ConfigTable& root, const ConfigTable* stage, const Regions&
 // all damping rates up to g (rates of the matrices K/m and C/m) the update v += -dt (K/m x + C/m v), x += dt
 // v has the mode equation z^2 - (2 - g dt - w^2 dt^2) z + 1 - g dt = 0, stable while 2 g dt + w^2 dt^2 < 4;
 // both at their largest bound dt by (sqrt(g^2 + 4 w^2) - g)/w^2, which is 2/w where nothing damps.
+// Of several laws the stiffest decides: no composite of them vibrates faster.
 double stable_time_step(const Rule& rule, double pitch);
+// The same where each law has a packing of its own pitch, as where no packing is given.
+double stable_time_step(const Rule& rule, const std::function<double(const PairLaw&)>& pitch);
 
 void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene);
 

@@ -132,6 +132,16 @@ double largest_frequency(const PairLaw& law, double mass, double pitch) {
   return std::sqrt(largest / mass);
 }
 
+double largest_frequency(const Rule& rule, double pitch) {
+  double fastest = 0;
+  for (size_t k = 0; k < rule.laws(); ++k) {
+    const double rate = rule.largest_rate(k);
+    if (rate > 0)
+      fastest = std::max(fastest, largest_frequency(rule.law_at(k), rule.mass, pitch) * std::sqrt(rate));
+  }
+  return fastest;
+}
+
 Matrix6 elastic_constants(const PairLaw& law, double pitch) {
   Matrix6 c = Matrix6::Zero();
   for (const Vec3& d : fcc_neighbours(pitch, law.cutoff())) {

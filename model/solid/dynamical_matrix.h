@@ -31,6 +31,8 @@ Vec3 squared_frequencies(const PairLaw& law, double mass, double pitch, const Ve
 // cell that contains X, L, W, K and U, then a refinement from its best points. A leapfrog run is stable up to
 // dt = 2/that. 0 where no vibration is restored.
 double largest_frequency(const PairLaw& law, double mass, double pitch);
+// The largest of the packings that the pairs of materials would make alone.
+double largest_frequency(const Rule& rule, double pitch);
 
 // Elastic constants in Pa, Voigt order xx, yy, zz, yz, xz, xy with engineering shear strains, cubic axes.
 // Convention: the stress-strain coefficients at that pitch, Cauchy stress = c * strain for small strains from

@@ -106,13 +106,14 @@ Vibrations vibrations_of(const Rule& rule, const Body& body, const Periodic& per
   for (const uint8_t type : body.type) relative.push_back(rule.relative_mass(type));
   // The diagonal blocks are summed first: one entry each.
   std::vector<Mat3> own(body.size(), Mat3::Zero()), own_damping(damps ? body.size() : 0, Mat3::Zero());
-  CellList cells(rule.law->cutoff(), periodic);
+  CellList cells(rule.cutoff(), periodic);
   cells.build(body.x);
   cells.for_each_pair(body.x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
     if (r >= rule.reach(body.type[i], body.type[j])) return;
     const Vec3 e = d / r;
     const double scale = rule.strength_of(body.type[i], body.type[j]) / rule.mass;
-    const double axial = -rule.law->slope(r), lateral = -rule.law->force(r) / r;
+    const PairLaw& law = rule.law_of(body.type[i], body.type[j]);
+    const double axial = -law.slope(r), lateral = -law.force(r) / r;
     const Mat3 along = e * e.transpose();
     const Mat3 block = scale * (lateral * Mat3::Identity() + (axial - lateral) * along);
     const double r_i = relative[i], r_j = relative[j], both = std::sqrt(r_i * r_j);

@@ -64,6 +64,7 @@ module cuboct_brick_core #(
   parameter int          DampBits             = 18,     // of any value of the damping table
   parameter int          Scaled               = 0,      // 0, 1
   parameter int          Weighted             = 0,      // 0, 1
+  parameter int          LawBits              = 0,      // of the law of a pair of types; 0: all have one
   parameter int          Pd                   = 0,      // 0, 1
   parameter int          MovedTypes           = 0,      // types with velocities from velocity_i; 0: not read
   // Derived; do not set.
@@ -559,8 +560,8 @@ module cuboct_brick_core #(
     .Degree(Degree), .IndexBits(IndexBits), .BinBits(BinBits), .FirstOctave(FirstOctave), .FractionBits(FractionBits),
     .ForceBits(ForceBits), .Damped(Damped), .DampOctaves(DampOctaves), .DampDegree(DampDegree),
     .DampIndexBits(DampIndexBits), .DampBinBits(DampBinBits), .DampFirstOctave(DampFirstOctave),
-    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled), .MovedTypes(MovedTypes),
-    .Weighted(Weighted), .Pd(Pd)
+    .DampFractionBits(DampFractionBits), .DampBits(DampBits), .Scaled(Scaled), .LawBits(LawBits),
+    .MovedTypes(MovedTypes), .Weighted(Weighted), .Pd(Pd)
   ) u_datapath (
     .clk_i, .rst_ni, .velocity_i, .issue_i(issue), .issue_place_i(issue_place), .candidate_i(issue_candidate),
     .own_i(pipe_data), .busy_o(pipe_busy), .kick_addr_o(kick_addr_next), .kick_id_i(kick_id), .look_addr_i(own_addr_d),

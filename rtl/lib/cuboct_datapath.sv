@@ -57,6 +57,7 @@ module cuboct_datapath #(
   parameter int          DampBits             = 18,     // of any value of the damping table
   parameter int          Scaled               = 0,      // 0, 1
   parameter int          Weighted             = 0,      // 0, 1
+  parameter int          LawBits              = 0,      // of the law of a pair of types; 0: all have one
   parameter int          Pd                   = 0,      // 0, 1
   parameter int          MovedTypes           = 0,      // types with velocities from velocity_i; 0: not read
   // Derived; do not set.
@@ -163,7 +164,8 @@ module cuboct_datapath #(
       .VelocityBits(VelocityBits), .RelativeVelocityBits(RelativeVelocityBits), .WShift(WShift), .QShift(QShift),
       .DampShift(DampShift), .DampIndexBits(DampIndexBits), .DampOctaves(DampOctaves), .DampDegree(DampDegree),
       .DampBinBits(DampBinBits), .DampFirstOctave(DampFirstOctave), .DampFractionBits(DampFractionBits),
-      .DampBits(DampBits), .StrengthBits(StrengthBits), .Scaled(Scaled), .TypeBits(SomeType), .ScaleBits(ScaleBits),
+      .DampBits(DampBits), .StrengthBits(StrengthBits), .Scaled(Scaled), .LawBits(LawBits), .TypeBits(SomeType),
+      .ScaleBits(ScaleBits),
       .ScaleFrac(ScaleFrac), .KickShift(KickShift), .KickBits(KickBits), .SlotBits(PlaceBits), .Shared(Shared),
       .Product(Product), .Interval(Interval)
     ) u_pipe (

@@ -2,7 +2,7 @@
 // The force pipe: from operands to the kick on the own particle. It takes one pair every Interval cycles: 1; Axes or
 // more with Shared, where one multiplier serves the axes in turn; Product + 1 or more where a product takes Product
 // cycles. It never stalls.
-//   d = round_odd(x_j - x_i), r2 = d.d, s = force(r2)
+//   d = round_odd(x_j - x_i), r2 = d.d, s = force(r2), with LawBits that of law[type_i][type_j]
 //   s -= round_odd(damp(r2) * round_odd(w.d))    with Damped; w = round_odd(v_j - v_i)
 //   s = round_odd(s * scale[type_i][type_j])     with Scaled
 //   push = round_odd(s * d), the kick's negative  nothing where r2 >= Cutoff2, or Contact2
@@ -37,6 +37,7 @@ module cuboct_pipe #(
   parameter int          DampBits             = 18,     // of any value of the damping table
   parameter int          StrengthBits         = 18,     // of s after damping, checked; only if Damped
   parameter int          Scaled               = 0,      // 0, 1
+  parameter int          LawBits              = 0,      // of the law of a pair of types; 0: all have one, or not Scaled
   parameter int          TypeBits             = 1,      // >= 1; used if Scaled
   parameter int          ScaleBits            = 18,
   parameter int          ScaleFrac            = 16,
@@ -71,7 +72,8 @@ module cuboct_pipe #(
   // Every tool ends with an error where a module is missing: the parameters are out of their ranges.
   if (Axes < 2 || Axes > 3 || Degree < 1 || Degree > 2 || DampDegree < 1 || DampDegree > 2 || TypeBits < 1
       || DifferenceShift >= PositionFrac || Interval < 1 || Product < 1 || (Shared != 0 && Product != 1)
-      || (Shared != 0 && Interval < Axes) || (Product > 1 && Interval <= Product)) begin : gen_range
+      || (Shared != 0 && Interval < Axes) || (Product > 1 && Interval <= Product)
+      || (LawBits != 0 && Scaled == 0)) begin : gen_range
     cuboct_parameter_out_of_range u_error ();
   end
   localparam int D            = PositionFrac - DifferenceShift;
@@ -88,6 +90,7 @@ module cuboct_pipe #(
   localparam int StageDamped  = StageValue + DampStages;             // s after damping
   localparam int StageS       = StageDamped + ScaleStages;           // s
   localparam int Stages       = StageS + 1 + AxisProduct;            // the kick
+  localparam int LawWidth     = (LawBits != 0) ? LawBits : 1;
   localparam int SBits        = (Damped != 0) ? StrengthBits : ForceBits;
 
   // valid[k]: stage k holds a pair; hit[k], from the stage after r2 on: one inside the cutoff.
@@ -181,7 +184,16 @@ module cuboct_pipe #(
     .clk_i, .rst_ni, .valid_i(valid_q[StageValue:StageR2]), .r2_i(r2_q[2*D-1:0]), .index_o(index), .c0_i(c0), .c1_i(c1),
     .c2_i(c2), .value_o(force_value)
   );
-  cuboct_force_rom u_force_rom (.clk_i, .index_i(index), .c0_o(c0), .c1_o(c1), .c2_o(c2));
+  logic [LawWidth-1:0]          law;      // with the index
+  logic [LawBits+IndexBits-1:0] address;  // the tables of all laws, one after another
+  if (LawBits != 0) begin : gen_laws
+    assign address = {law, index};
+  end else begin : gen_one_law
+    assign address = index;
+    logic unused_law;
+    assign unused_law = ^law;
+  end
+  cuboct_force_rom u_force_rom (.clk_i, .index_i(address), .c0_o(c0), .c1_o(c1), .c2_o(c2));
 
   // Two stages: minus damp * q.
   logic signed [SBits-1:0] s_damped;  // stage StageDamped
@@ -334,26 +346,55 @@ module cuboct_pipe #(
     cuboct_hold #(.Bits(2 * TypeBits), .Depth(StageDamped - 2), .Interval(Interval)) u_types (
       .clk_i, .valid_i(valid_q[StageDamped:2]), .d_i(types_q), .q_o(types)
     );
-    logic unused_touch;
+    logic                unused_touch;
+    logic [LawWidth-1:0] unused_law;
     cuboct_scale_rom u_scale_rom (
       .own_type_i(types[TypeBits-1:0]), .other_type_i(types[2*TypeBits-1:TypeBits]), .scale_o(scale),
-      .touch_o(unused_touch)
+      .touch_o(unused_touch), .law_o(unused_law)
     );
-    if (Contact2 != 64'd0) begin : gen_touch
-      logic                        touch_d, touch;  // stages 2, StageR2
-      logic signed [ScaleBits-1:0] touch_scale;
+    logic                        touch_d;  // stage 2
+    logic [LawWidth-1:0]         law_d;    // stage 2
+    if (Contact2 != 64'd0 || LawBits != 0) begin : gen_early
+      logic signed [ScaleBits-1:0] early_scale;
       logic                        unused_scale;
-      cuboct_scale_rom u_touch_rom (
-        .own_type_i(types_q[TypeBits-1:0]), .other_type_i(types_q[2*TypeBits-1:TypeBits]), .scale_o(touch_scale),
-        .touch_o(touch_d)
+      cuboct_scale_rom u_early_rom (
+        .own_type_i(types_q[TypeBits-1:0]), .other_type_i(types_q[2*TypeBits-1:TypeBits]), .scale_o(early_scale),
+        .touch_o(touch_d), .law_o(law_d)
       );
+      assign unused_scale = ^early_scale;
+    end else begin : gen_late
+      assign touch_d = 1'b0;
+      assign law_d   = '0;
+    end
+    if (Contact2 != 64'd0) begin : gen_touch
+      logic touch;  // stage StageR2
       cuboct_hold #(.Bits(1), .Depth(StageR2 - 2), .Interval(Interval)) u_touch (
         .clk_i, .valid_i(valid_q[StageR2:2]), .d_i(touch_d), .q_o(touch)
       );
-      assign reach2       = touch ? Contact2[R2Bits-1:0] : Cutoff2[R2Bits-1:0];
-      assign unused_scale = ^touch_scale;
+      assign reach2 = touch ? Contact2[R2Bits-1:0] : Cutoff2[R2Bits-1:0];
     end else begin : gen_one_reach
       assign reach2 = Cutoff2[R2Bits-1:0];
+      logic unused_touch_d;
+      assign unused_touch_d = touch_d;
+    end
+    if (LawBits != 0) begin : gen_law
+      logic [LawWidth-1:0] law_r2;  // when r2 is at the table's address
+      cuboct_hold #(.Bits(LawWidth), .Depth(StageR2 + OctaveStage - 2), .Interval(Interval)) u_law (
+        .clk_i, .valid_i(valid_q[StageR2+OctaveStage:2]), .d_i(law_d), .q_o(law_r2)
+      );
+      if (Interval == 1) begin : gen_direct
+        assign law = law_r2;
+      end else begin : gen_kept  // as long as the index of cuboct_pair_table, a cycle later
+        logic [LawWidth-1:0] law_q;
+        always_ff @(posedge clk_i) begin
+          if (valid_q[StageR2+OctaveStage]) law_q <= law_r2;
+        end
+        assign law = law_q;
+      end
+    end else begin : gen_any_law
+      assign law = '0;
+      logic unused_law_d;
+      assign unused_law_d = ^law_d;
     end
     cuboct_mult #(.ABits(SBits), .BBits(ScaleBits), .Cycles(Product)) u_mult (
       .clk_i, .rst_ni, .en_i(hit_q[StageDamped]), .a_i(s_damped), .b_i(scale), .p_o(product)
@@ -370,6 +411,7 @@ module cuboct_pipe #(
     assign unused_types = ^{own_type_i, other_type_i};
     assign s      = s_damped;
     assign reach2 = Cutoff2[R2Bits-1:0];
+    assign law    = '0;
   end
 
   // The last stages: times d, rounded once.

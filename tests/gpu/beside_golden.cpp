@@ -148,6 +148,7 @@ Case random_bar(uint64_t seed) {
   // Drawn apart, so that the other bars stay what they were.
   f.contact = Dice(seed * 0x9e3779b97f4a7c15u + 7).chance(40);
   f.masses = Dice(seed * 0x9e3779b97f4a7c15u + 9).chance(40);
+  f.laws = Dice(seed * 0x9e3779b97f4a7c15u + 13).chance(40);
   f.held = dice.chance(20);
   f.force_held = !f.held && dice.chance(40);
   f.gravity = dice.chance(30);

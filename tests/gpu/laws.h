@@ -74,6 +74,24 @@ inline std::vector<NamedRule> made_rules() {
   return rules;
 }
 
+// Four laws of other kinds and cutoffs, one for each pair of three types but two; two only touch.
+inline NamedRule several_laws() {
+  const std::vector<double> r{0.4e-3, 0.7e-3, 1e-3, 1.1e-3, 1.2e-3}, f{0.5, 0.3, 0, -0.08, 0};
+  NamedRule named{"several", full_rule(spline_law({0.3e-3, 1e-3, 1.2e-3, 1.7e-3}, {0.5, 0, -0.1, 0},
+                                                  Interpolation::monotone_cubic, 0.5e-3),
+                                       1e-6, 3e-6, 1e3)};
+  Rule& rule = named.rule;
+  rule.types.push_back(rule.types[0]);
+  rule.types[2].material = 2;
+  rule.strength = {{1.0, 0.7, 0.4}, {0.7, 1.9, 1.2}, {0.4, 1.2, 1}};
+  rule.other_laws = {preset_law("brittle", 1e-3, 1e3), spline_law(r, f, Interpolation::b_spline, 0.45e-3),
+                     lennard_jones(1e-5, 0.9e-3, 1.5e-3, 0.6e-3)};
+  rule.law_index = {{0, 1, 2}, {1, 3, 0}, {2, 0, 2}};
+  rule.contact = {{0, 1, 0}, {1, 0, 0}, {0, 0, 0}};
+  rule.contact_distance = push_end(*rule.other_laws[0]);
+  return named;
+}
+
 // Of all committed scenes (archs have no law) but the large ones of the benchmarks.
 inline std::vector<NamedRule> scene_rules() {
   namespace fs = std::filesystem;

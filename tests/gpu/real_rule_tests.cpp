@@ -75,31 +75,36 @@ double bound_of(const Rule& law_of, const RealTables<Real>& tables, double r, do
   const bool is_float = sizeof(Real) == 4;
   const double inv = (is_float ? 3.0 : 4.0) * u, root = (is_float ? 4.1 : 4.0) * u,
                a = (is_float ? 1 : 10) * u;
-  const double core = law_of.law->core() / tables.length;
+  const PairLaw& law = law_of.law_of(i, j);
+  const RealLaw<Real>& terms = rule.laws[law_of.law_index_of(i, j)];
+  const Real* const cache = rule.cache + terms.first;
+  const double core = law.core() / tables.length;
   const double near = std::max(r, core), r2 = near * near;
-  const double q_error = has_pieces(rule.kind) ? 2 * (rho / 2 + root) + u : rho + inv;
+  const double q_error = has_pieces(terms.kind) ? 2 * (rho / 2 + root) + u : rho + inv;
   double error = 0, f = 0;
-  if (!has_pieces(rule.kind)) {
+  if (r >= law.cutoff() / tables.length) {
+    // Nothing but damping is left.
+  } else if (!has_pieces(terms.kind)) {
     const double q = 1 / r2, q4 = q * q * q * q;
-    const double R = static_cast<double>(rule.repulsion) * q4 * q * q * q,
-                 S = static_cast<double>(rule.attraction) * q4,
-                 O = std::abs(static_cast<double>(rule.offset));
+    const double R = static_cast<double>(terms.repulsion) * q4 * q * q * q,
+                 S = static_cast<double>(terms.attraction) * q4,
+                 O = std::abs(static_cast<double>(terms.offset));
     error = (7 * q_error + 9 * u + a) * (R + S) * near + (rho / 2 + root + 2 * u + a) * O;
     f = (R + S) * near + O;
   } else {
-    const int piece = piece_of<true>(rule, rule.cache, static_cast<Real>(std::min(r2, 1.0)));
-    const Real* const at = rule.cache + 4 * piece;
+    const int piece = piece_of<true>(terms, cache, static_cast<Real>(std::min(r2, 1.0)));
+    const Real* const at = cache + 4 * piece;
     const auto c = [&](int k) { return static_cast<double>(at[k]); };
-    const double t = near - static_cast<double>(rule.cache[rule.begin_at + piece]);
+    const double t = near - static_cast<double>(cache[terms.begin_at + piece]);
     const double t_error = (rho / 2 + root + 3 * u + a) * near;
     const double in_slope = tables.length / tables.force;
     // Of both sides, as rounding may choose either.
     const double aside = 4 * t_error * tables.length, at_r = near * tables.length;
     const double slope =
-        in_slope * std::max(std::abs(law_of.law->slope(std::max(at_r - aside, core * tables.length))),
-                            std::abs(law_of.law->slope(std::min(at_r + aside, tables.length * (1 - 1e-12)))));
+        in_slope * std::max(std::abs(law.slope(std::max(at_r - aside, core * tables.length))),
+                            std::abs(law.slope(std::min(at_r + aside, law.cutoff() * (1 - 1e-12)))));
     double sum = 0;
-    if (is_arc(rule.kind)) {
+    if (is_arc(terms.kind)) {
       const double z = 1 + c(3) * t, s = std::sqrt(z), p = t / (1 + s);
       const double p_error =
           std::abs(t) / (2 * s * (1 + s) * (1 + s)) * ((2 * u + a) * std::abs(z - 1) + u * z) +
@@ -117,15 +122,18 @@ double bound_of(const Rule& law_of, const RealTables<Real>& tables, double r, do
   error *= r / near;
   f *= r / near;
   if (rule.damped && r < 1) {
-    const double rest = 1 - r2, scale = static_cast<double>(rule.damping) / r2 * w_dot_d * r;
-    error += scale * (2 * rest * (rho * r2 + u) + rest * rest * (q_error + 7 * u + a));
+    // The rule's core, and 1/r2 as each kind of rule has it.
+    const double from = std::max(r, law_of.core() / tables.length), from2 = from * from;
+    const double rest = 1 - from2, scale = static_cast<double>(rule.damping) / from2 * w_dot_d * r;
+    const double inverse_error = rule.kind == LawKind::several ? rho + inv : q_error;
+    error += scale * (2 * rest * (rho * from2 + u) + rest * rest * (inverse_error + 7 * u + a));
     f += scale * rest * rest;
   }
   const double strength = law_of.strength_of(i, j);
   return strength * (error + (2 * u + a) * f);
 }
 
-// Distances in cutoffs: all of them, and close to the core, the joints and the cutoff.
+// Distances in cutoffs of the law: all of them, and close to the core, the joints and the cutoff.
 std::vector<double> distances(const PairLaw& law, double unit) {
   std::vector<double> r{0};
   const double cutoff = law.cutoff();
@@ -161,7 +169,11 @@ Worst sweep(const NamedRule& named) {
   double largest = 0, scale = 0, largest_error = 0;
   std::mt19937_64 generator(7);
   const int types = rule.type_count;
-  for (const double wanted : distances(*law_of.law, u)) {
+  std::vector<double> all;
+  for (size_t k = 0; k < law_of.laws(); ++k)
+    for (const double r : distances(law_of.law_at(k), u))
+      all.push_back(r * (law_of.law_at(k).cutoff() / tables.length));
+  for (const double wanted : all) {
     Vec3 direction = test::random_vector(generator);
     direction.normalize();
     Vec3 relative = 0.01 * test::random_vector(generator);
@@ -192,13 +204,15 @@ Worst sweep(const NamedRule& named) {
     ++worst.pairs;
     worst.inside += inside;
     const double reach = law_of.reach(i, j) / tables.length;
-    if (std::abs(r - reach) < 4 * u) continue;  // rounding says which side of the reach it is
+    const PairLaw& law = law_of.law_of(i, j);
+    // Rounding says which side of the reach, or of a cutoff where the force jumps, it is.
+    if (std::abs(r - reach) < 4 * u || std::abs(r - law.cutoff() / tables.length) < 4 * u) continue;
     EXPECT_EQ(inside, r < reach) << named.name << " at " << wanted;
     Vec3 expected = Vec3::Zero();
     if (r > 0 && r < reach) {
       const double metres = r * tables.length;
-      const double k = law_of.law->force(metres) / metres - law_of.damping_over_r2(metres) * tables.length *
-                                                                tables.velocity * exact_w.dot(exact_d);
+      const double k = law.force(metres) / metres - law_of.damping_over_r2(metres) * tables.length *
+                                                        tables.velocity * exact_w.dot(exact_d);
       expected = -k * law_of.strength_of(i, j) * tables.length / tables.force * exact_d;
     }
     const Vec3 got(static_cast<double>(kick[0]), static_cast<double>(kick[1]), static_cast<double>(kick[2]));
@@ -210,7 +224,7 @@ Worst sweep(const NamedRule& named) {
     if (bound > 0) worst.of_bound = std::max(worst.of_bound, error / bound);
     largest = std::max(largest, expected.norm());
     scale = std::max({scale, expected.norm(),
-                      std::abs(law_of.law->slope(r * tables.length)) * r * tables.length / tables.force *
+                      std::abs(law.slope(r * tables.length)) * r * tables.length / tables.force *
                           law_of.strength_of(i, j)});
     largest_error = std::max(largest_error, error);
   }
@@ -234,6 +248,13 @@ void expect_within_bounds(const std::vector<NamedRule>& rules) {
   }
 }
 
+TEST(RealRule, SeveralLaws) {
+  const std::vector<NamedRule> rules{test::several_laws()};
+  EXPECT_EQ(RealTables<float>(rules[0].rule).rule().kind, LawKind::several);
+  expect_within_bounds<float, FastRoots>(rules);
+  expect_within_bounds<float, WorstRoots>(rules);
+  expect_within_bounds<double, FastRoots>(rules);
+}
 TEST(RealRule, MadeLawsInFloats) { expect_within_bounds<float, FastRoots>(test::made_rules()); }
 TEST(RealRule, MadeLawsInFloatsWithTheDevicesWorstRoots) {
   expect_within_bounds<float, WorstRoots>(test::made_rules());

@@ -282,5 +282,26 @@ TEST(EnergyTable, IsWithinItsBound) {
   }
 }
 
+// Beside the rule in doubles: the bins' error is 1e-7 of the deepest well at most (the table above), and
+// 1e-12 of the energy is rounding.
+TEST(EnergyTable, HasEachPairsLaw) {
+  const Rule rule = test::several_laws().rule;
+  const EnergyTables tables(rule);
+  const EnergyRule energy = tables.rule();
+  const double cutoff = rule.cutoff();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const PairLaw& law = rule.law_of(i, j);
+      const double well = std::abs(law.energy(1e-3));
+      ASSERT_GT(well, 0);
+      for (int k = 0; k <= 5000; ++k) {
+        const double r = 1.05 * cutoff * k / 5000, expected = rule.pair_energy(i, j, r);
+        const double got = pair_energy(energy, r * r / (cutoff * cutoff), i, j);
+        ASSERT_NEAR(got, expected, 1e-6 * well + 1e-12 * std::abs(expected)) << i << " " << j << " at " << r;
+      }
+      EXPECT_EQ(pair_energy(energy, std::pow(law.cutoff() / cutoff, 2), i, j), 0);
+    }
+}
+
 }  // namespace
 }  // namespace cuboct::gpu

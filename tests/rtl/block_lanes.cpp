@@ -36,8 +36,9 @@ std::string to_axes(int lane, const char* value, const char* bits, bool is_signe
   return text;
 }
 
+// `law`: what stands before the index in the memory's address.
 std::string table(const std::string& prefix, const char* rom, const char* name, const char* value_bits,
-                  int lane) {
+                  int lane, const std::string& law) {
   return fmt::format(
              "  logic [cuboct_pkg::{0}IndexBits-1:0] {1}_index;\n"
              "  logic signed [cuboct_pkg::StrengthBits-1:0] {1}_c0, {1}_c1, {1}_c2;\n"
@@ -55,8 +56,9 @@ std::string table(const std::string& prefix, const char* rom, const char* name, 
              ".c2_i({1}_c2),\n"
              "    .value_o({1}_value)\n"
              "  );\n"
-             "  {3} u_{1}_rom (.clk_i, .index_i({1}_index), .c0_o({1}_c0), .c1_o({1}_c1), .c2_o({1}_c2));\n",
-             prefix, name, value_bits, rom, static_cast<int>(in::r2)) +
+             "  {3} u_{1}_rom (.clk_i, .index_i({{{5}{1}_index}}), .c0_o({1}_c0), .c1_o({1}_c1), "
+             ".c2_o({1}_c2));\n",
+             prefix, name, value_bits, rom, static_cast<int>(in::r2), law) +
          to(lane, fmt::format("{}_value", name), true);
 }
 
@@ -100,7 +102,8 @@ std::string print_blocks(const Plan& plan) {
                                             "WShift",       "QShift",
                                             "DampShift",    "StrengthBits",
                                             "Scaled",       "ScaleBits",
-                                            "ScaleFrac",    "KickShift"});
+                                            "ScaleFrac",    "KickShift",
+                                            "LawBits"});
   if (damped)
     text += given({"DampIndexBits", "DampOctaves", "DampDegree", "DampBinBits", "DampFirstOctave",
                    "DampFractionBits", "DampBits"});
@@ -154,8 +157,10 @@ std::string print_blocks(const Plan& plan) {
           to(out::fault_id, "fault_id") + to(out::code, "code") + to(out::number, "number", true);
 
   text += "\n";
-  text += table("", "cuboct_force_rom", "force", "ForceBits", out::force_table);
-  text += damped ? table("Damp", "cuboct_damp_rom", "damp", "DampBits", out::damp_table)
+  const int law_bits = plan.rule.law_bits;
+  text += table("", "cuboct_force_rom", "force", "ForceBits", out::force_table,
+                law_bits > 0 ? fmt::format("{}'d0, ", law_bits) : "");
+  text += damped ? table("Damp", "cuboct_damp_rom", "damp", "DampBits", out::damp_table, "")
                  : to(out::damp_table, "1'b0");
   return text + "endmodule\n";
 }

@@ -77,6 +77,12 @@ uint64_t entry_start(const FixedTable& table, uint32_t k) {
   return (uint64_t{1} << octave) + (uint64_t{bin} << octave >> table.bin_bits);
 }
 
+// Of the pair's types.
+uint32_t law_of(const FixedRule& rule, const PairStimulus& p) {
+  return rule.law_bits == 0 ? 0 : rule.law[static_cast<size_t>(p.type_i)][static_cast<size_t>(p.type_j)];
+}
+std::string law_class(uint32_t law) { return "inside, law " + std::to_string(law); }
+
 class PairSource {
  public:
   PairSource(const FixedRule& rule, uint64_t seed) : rule_(rule), draw_(seed) {}
@@ -163,7 +169,7 @@ class PairSource {
     if (damp == 0) return;
     const Widths& w = rule_.widths;
     const double limit = std::ldexp(draw_.chance(50) ? 1.0 : -1.0, w.strength_bits - 1);
-    const double friction = static_cast<double>(rule_.force.at(r2)) - limit;
+    const double friction = static_cast<double>(rule_.force.at(r2, law_of(rule_, p))) - limit;
     const double along =
         std::ldexp(friction / damp, rule_.damp_shift + rule_.q_shift) / static_cast<double>(r2);
     Int3 wanted;
@@ -219,8 +225,11 @@ std::vector<std::string> look(const FixedRule& rule, PairStimulus& p) {
   for (size_t a = 0; a < 3; ++a) note(negative_half(p.x_j[a] - p.x_i[a], rule.difference_shift), "half of d");
   if (!p.result.inside) return seen;
 
-  const auto table = [&](const FixedTable& t, const char* curve_half, const char* rise_half) {
-    const auto [k, f] = t.address(p.r2);
+  const uint32_t law = law_of(rule, p);
+  if (rule.law_bits > 0) seen.push_back(law_class(law));
+  const auto table = [&](const FixedTable& t, uint32_t first, const char* curve_half, const char* rise_half) {
+    const auto [bin, f] = t.address(p.r2);
+    const uint32_t k = first + bin;
     int64_t slope = t.c1[k];
     if (t.degree == 2) {
       note(negative_half(int64_t{t.c2[k]} * f, t.fraction_bits), curve_half);
@@ -228,11 +237,11 @@ std::vector<std::string> look(const FixedRule& rule, PairStimulus& p) {
     }
     note(negative_half(slope * f, t.fraction_bits), rise_half);
   };
-  table(rule.force, "half of c2 t, force", "half of slope t, force");
-  p.force = rule.force.at(p.r2);
+  table(rule.force, law << rule.force.index_bits, "half of c2 t, force", "half of slope t, force");
+  p.force = rule.force.at(p.r2, law);
   int64_t s = p.force;
   if (rule.damped) {
-    table(rule.damp, "half of c2 t, damping", "half of slope t, damping");
+    table(rule.damp, 0, "half of c2 t, damping", "half of slope t, damping");
     const int64_t edge = int64_t{1} << (w.relative_velocity_bits - 1);
     int64_t wd = 0;
     for (size_t a = 0; a < 3; ++a) {
@@ -294,6 +303,8 @@ std::set<std::string> pair_classes(const FixedRule& rule) {
     if (bends_down(rule.damp)) names.insert("half of c2 t, damping");
   }
   if (rule.scaled) names.insert("half of the scaled s");
+  for (const auto& row : rule.law)
+    for (const uint8_t law : row) names.insert(law_class(law));
   if (rule.contact2 > 0) {
     names.insert("beyond contact2, inside");
     if (three_squares(rule.contact2 - 1)) names.insert("r2 = contact2 - 1, touch");

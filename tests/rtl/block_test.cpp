@@ -44,6 +44,8 @@ Plan plain() {
 
 Scene rich_scene() {
   Scene scene = block_scene({.damping = 40, .two_materials = true, .force_held = true, .gravity = true});
+  scene.rule.other_laws = {std::make_shared<BondLaw>(0.6, 1.3), std::make_shared<BondLaw>(0.8, 1.45)};
+  scene.rule.law_index = {{0, 2}, {2, 1}};
   scene.rule.contact = {{0, 1}, {1, 0}};
   scene.rule.contact_distance = push_end(*scene.rule.law);
   scene.rule.masses = {1, 2.7};
@@ -537,6 +539,10 @@ std::vector<Mutation> mutations() {
        "rich",
        {{"cuboct_pipe.sv", "touch ? Contact2", "1'b1 ? Contact2"}},
        "pipe: stage 13, s after damping"},
+      {"law_of_the_first",
+       "rich",
+       {{"cuboct_pipe.sv", "assign address = {law, index}", "assign address = {{LawWidth{1'b0}}, index}"}},
+       "pipe: stage 11, force"},
   };
 }
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # run_case.sh EMIT_CASE CASE STEPS DIR [MUTATION] TARGET...: emits a case, breaks it in one way if asked, runs the targets
 # of its Makefile. A mutation must turn the bench red and name a place: then the exit status is 0.
-#   mutations: table, rounding, drift, residue, record, link
+#   mutations: table, law, rounding, drift, residue, record, link
 set -u
 emit=$1 case=$2 steps=$3 dir=$4 mutation=$5
 shift 5
@@ -15,6 +15,8 @@ case $mutation in
   none) ;;
   # The lowest bit of c0 in each entry of the force table.
   table) edit "$rtl/cuboct_force_rom.sv" 's/assign c0_o = data_q\[\([0-9]*\):0\];/assign c0_o = data_q[\1:0] ^ 1;/' ;;
+  # All pairs have the first law.
+  law) edit "$rtl/cuboct_pipe.sv" 's/assign address = {law, index};/assign address = {{LawWidth{1'"'"'b0}}, index};/' ;;
   # Truncation in place of rounding.
   rounding) edit "$rtl/cuboct_round_odd.sv" 's/{{(HighBits - 1) {1.b0}}, carry}/{HighBits{1'"'"'b0}}/' ;;
   # What v has below a unit of X is left out of the drift.

@@ -49,6 +49,7 @@ struct Features {
   bool two_materials = false;  // weaker in the upper half of x
   bool contact = false;        // the two only touch
   bool masses = false;         // those of the upper half are heavier
+  bool laws = false;           // each pair of the two has its own law
   bool held = false;           // lowest plane of x held; the highest moved
   bool force_held = false;     // the same by PD
   bool gravity = false;
@@ -88,6 +89,11 @@ inline Scene block_scene(const Features& f) {
     rule.contact_distance = push_end(*rule.law);
   }
   if (f.two_materials && f.masses) rule.masses = {1, 2.7};
+  if (f.two_materials && f.laws) {
+    // The one ends before the first; the other rests elsewhere, with another core.
+    rule.other_laws = {std::make_shared<BondLaw>(0.6, 0.8 * f.cutoff), preset_law("brittle", 0.95, 0.8)};
+    rule.law_index = {{0, 2}, {2, 1}};
+  }
 
   std::mt19937_64 random(f.seed);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1.0; };

@@ -59,6 +59,12 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.features.two_materials = r.features.masses = true;
          r.features.speed = 0.3;
        }},
+      {"laws",
+       [](R r) {
+         r.features.two_materials = r.features.laws = true;
+         r.features.damping = 0.2;
+         r.features.speed = 0.3;
+       }},
       {"held_and_moved", [](R r) { r.features.held = true; }},
       {"force_held", [](R r) { r.features.force_held = r.features.gravity = true; }},
       {"octaves", [](R r) { r.arch.table.shape = TableChoice::Shape::octaves; }},
@@ -184,7 +190,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
        [](R r) {
          r.features.damping = 0.2;
          r.features.speed = 0.5;
-         r.features.two_materials = r.features.masses = r.features.held = true;
+         r.features.two_materials = r.features.masses = r.features.laws = r.features.held = true;
          r.arch.multipliers = Multipliers::serial;
          r.arch.link_bits = 21;  // the sign of x lies in two words
          narrow(r.arch);
@@ -193,7 +199,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
        [](R r) {
          r.features.damping = 0.2;
          r.features.speed = 0.3;
-         r.features.two_materials = r.features.contact = r.features.held = true;
+         r.features.two_materials = r.features.contact = r.features.laws = r.features.held = true;
          r.arch.multipliers = Multipliers::shared;
          r.arch.widths.filter_frac = 5;
          r.arch.filter_lanes = 3;
@@ -220,7 +226,7 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
       {"rich_ring",
        [](R r) {
          r.features.size = {4, 1, 2};
-         r.features.two_materials = true;
+         r.features.two_materials = r.features.laws = true;
          r.periodic = {1, 0, 0};
          r.arch.queue_depth = 1;
          r.arch.filter_lanes = 3;
@@ -300,6 +306,7 @@ Case random_recipe(uint64_t seed, bool flat) {
   // Drawn apart, so that the other scenes stay what they were.
   r.features.contact = Dice(seed * 0x9e3779b97f4a7c15u + 5).chance(40);
   r.features.masses = Dice(seed * 0x9e3779b97f4a7c15u + 7).chance(40);
+  r.features.laws = Dice(seed * 0x9e3779b97f4a7c15u + 11).chance(40);
   r.features.held = dice.chance(25);
   r.features.force_held = !r.features.held && dice.chance(30);
   r.features.gravity = dice.chance(30);

@@ -97,7 +97,7 @@ TEST(Golden, OneStepOfTwoParticlesByHand) {
   const double f = scene.rule.law->force(1.1), v = f * scene.rule.dt;  // m = 1; f < 0 attracts
   ASSERT_LT(f, -0.01);
   // The table's error, as the quantiser reports it, plus half a unit of d (2^-17 cells on a slope near 1).
-  const double bound = (setup.plan.rule.error.worst_force + 1.6 / (1 << 17)) * scene.rule.dt;
+  const double bound = (setup.plan.rule.error().worst_force + 1.6 / (1 << 17)) * scene.rule.dt;
   EXPECT_NEAR(body.v[0].x(), -v, bound);
   EXPECT_NEAR(body.v[1].x(), v, bound);
   // Half a unit of the position at the start and half a unit of v.

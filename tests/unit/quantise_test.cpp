@@ -45,8 +45,8 @@ TEST(Quantise, ReportedErrorIsTheWorstThatRandomDistancesFind) {
       // times r, and at the core's kink a 64th of the bin.
       const double rounding =
           std::ldexp(0.5, -fixed.force.value_frac) * rule.mass / (rule.dt * rule.dt) * 1.6;
-      EXPECT_LE(worst, 1.05 * fixed.error.worst_force + rounding) << degree;
-      EXPECT_GE(worst, 0.95 * fixed.error.worst_force - rounding) << degree;
+      EXPECT_LE(worst, 1.05 * fixed.error().worst_force + rounding) << degree;
+      EXPECT_GE(worst, 0.95 * fixed.error().worst_force - rounding) << degree;
       EXPECT_GT(worst, 2 * rounding) << degree;
     }
 }
@@ -64,7 +64,8 @@ TEST(Quantise, ErrorFallsWithTheOrderOfTheTable) {
                        .degree = degree,
                        .index_bits = bits,
                        .fraction_bits = 22})
-          .error.worst_force;
+          .error()
+          .worst_force;
     };
     const double order = std::log2(error(6) / error(7));
     EXPECT_NEAR(order, degree + 1, 0.35) << "degree " << degree;
@@ -148,7 +149,7 @@ TEST(Quantise, PairTermIsOddAndMatchesTheRule) {
       const double kick = static_cast<double>(ij.kick[a]) * unit / rule.dt;
       // Table error, d to half a unit of 2^-16 cells against slopes below 20, damping's terms to 2^-16 of
       // themselves.
-      const double bound = rule.dt * (fixed.error.worst_force * 2 + 20 * length / 65536 +
+      const double bound = rule.dt * (fixed.error().worst_force * 2 + 20 * length / 65536 +
                                       0.01 * std::abs(rule.damping_over_r2(r) * w.dot(d)) * r) +
                            2 * unit / rule.dt;
       ASSERT_NEAR(kick, expected[a], bound) << r;

@@ -28,7 +28,7 @@ std::vector<Vec3> plain_forces(const Rule& rule, const Body& body, const Periodi
         if (box.extent[axis] > 0) d[axis] -= box.extent[axis] * std::round(d[axis] / box.extent[axis]);
       const double r = d.norm();
       if (r == 0 || r >= rule.reach(body.type[i], body.type[j])) continue;
-      double k = rule.law->force(r) / r;
+      double k = rule.law_of(body.type[i], body.type[j]).force(r) / r;
       if (rule.damping.coefficient > 0) k -= rule.damping_over_r2(r) * (body.v[j] - body.v[i]).dot(d);
       f[i] -= k * rule.strength_of(body.type[i], body.type[j]) * d;
     }
@@ -50,7 +50,7 @@ struct Case {
   const char* name;
   std::shared_ptr<const PairLaw> law;
   bool damped, two_materials, ring;
-  bool contact = false;
+  bool contact = false, laws = false;
 };
 // Every form of a law; pieces within a vector's lanes and beyond; every branch of the kernel.
 std::vector<Case> cases() {
@@ -66,6 +66,8 @@ std::vector<Case> cases() {
           {"arcs", spline_law({0.5, 0.8, 1.0, 1.3, 1.6}, {9, 4, 0, -2, 0}, Interpolation::b_spline, 0.6),
            true, true, true},
           {"contact", preset_law("brittle", 1, 20), true, true, true, true},
+          {"several", preset_law("brittle", 1, 20), false, true, true, false, true},
+          {"several_damped", preset_law("brittle", 1, 20), true, true, true, true, true},
           {"many_arcs", spline_law(r, f, Interpolation::b_spline, 0.6), false, false, false},
           {"asked", std::make_shared<test::BondLaw>(20, 1.6), true, false, true}};
 }
@@ -85,6 +87,17 @@ Made made(const Case& c, double speed) {
     m.rule.strength = {{1, 0.5}, {0.5, 1.5}};
     if (c.contact) m.rule.contact = {{0, 1}, {1, 0}}, m.rule.contact_distance = push_end(*c.law);
     for (size_t i = 0; i < m.body.size(); i += 3) m.body.type[i] = 1;
+    if (c.laws) {  // of every form, most shorter than the first
+      m.rule.types.push_back({.name = "third", .material = 2});
+      m.rule.strength = {{1, 0.5, 2}, {0.5, 1.5, 1}, {2, 1, 0.7}};
+      m.rule.other_laws = {
+          lennard_jones(1, 0.9, 1.3, 0.6),
+          spline_law({0.5, 0.8, 1.0, 1.2, 1.4}, {9, 4, 0, -2, 0}, Interpolation::b_spline, 0.55),
+          std::make_shared<test::BondLaw>(20, 1.35)};
+      m.rule.law_index = {{0, 1, 2}, {1, 3, 0}, {2, 0, 1}};
+      if (c.contact) m.rule.contact = {{0, 1, 0}, {1, 0, 0}, {0, 0, 0}};
+      for (size_t i = 1; i < m.body.size(); i += 3) m.body.type[i] = 2;
+    }
   }
   return m;
 }

@@ -273,7 +273,7 @@ uniform = "[1, 0, 0] m/s"
   const double critical = 2 * std::sqrt(1e6 * s.rule.mass);
   EXPECT_DOUBLE_EQ(s.rule.damping.coefficient, 0.25 * critical);
   EXPECT_TRUE(named("hard/base").pd);
-  EXPECT_DOUBLE_EQ(named("hard/base").kp, 10 * largest_stiffness(*s.rule.law, s.pitch));
+  EXPECT_DOUBLE_EQ(named("hard/base").kp, 10 * largest_stiffness(s.rule, s.pitch));
   EXPECT_GE(named("hard/base").kp, 10e6 * (1 - 1e-12));
   EXPECT_DOUBLE_EQ(named("hard/base").kd, 0.25 * critical);
   EXPECT_EQ(named("soft/pull").imposed, (std::array{false, false, true}));
@@ -391,6 +391,83 @@ region = { shape = "half_space", point = "[0, 0, -1] mm", normal = "-z" }
   meter.add(sample);
   const double degrees = 3 * (count[0] + count[1] - 1);
   EXPECT_NEAR(meter.curves()[0].value[0], 2 * (energy[0] + energy[1]) / (degrees * s.boltzmann), 1e-4);
+}
+
+// A fibre in a matrix; line 20 begins the bonds.
+const std::string kComposite = kBase + R"([[material]]
+name = "fibre"
+[[material]]
+name = "matrix"
+strength = 0.25
+region = { shape = "half_space", point = "[0, 0, 1.5] mm", normal = "z" }
+)";
+const std::string kBetween = "[[bond]]\nbetween = [\"fibre\", \"matrix\"]\n";
+
+TEST_F(SceneTest, BondsMayHaveLawsOfTheirOwn) {
+  const std::string soft =
+      "[[bond]]\nbetween = [\"matrix\", \"matrix\"]\nlaw = { kind = \"ductile\", stiffness = \"2 kN/m\" }\n";
+  const Scene s =
+      read(kComposite + soft + kBetween +
+           "strength = 0.5\n[bond.law]\nkind = \"spline\"\nr = \"[0.2, 0.5, 0.6] mm\"\nforce = \"[60, "
+           "0, 0] N\"\ncore = \"0.25 mm\"\n");
+  ASSERT_EQ(s.rule.laws(), 3u);
+  EXPECT_EQ(s.rule.law_index, (std::vector<std::vector<uint8_t>>{{0, 2}, {2, 1}}));
+  EXPECT_TRUE(same_law(*s.rule.other_laws[0], *preset_law("ductile", 0.5e-3, 2e3)));
+  EXPECT_DOUBLE_EQ(s.rule.law_of(1, 0).cutoff(), 0.6e-3);
+  EXPECT_DOUBLE_EQ(s.rule.cutoff(), std::sqrt(2) * 0.5e-3);
+  EXPECT_DOUBLE_EQ(s.rule.core(), 0.25e-3);
+  // A law stands for itself; a strength beside it scales it.
+  EXPECT_EQ(s.rule.strength, (std::vector<std::vector<double>>{{1, 0.5}, {0.5, 1}}));
+  // The stiffest pair decides the time step, as if all were of it.
+  EXPECT_DOUBLE_EQ(s.dt_limit, read(kComposite).dt_limit);
+  EXPECT_EQ(s.rule.pair_energy(0, 1, 0.61e-3), 0);
+  EXPECT_DOUBLE_EQ(s.rule.pair_energy(1, 1, 0.55e-3), s.rule.other_laws[0]->energy(0.55e-3));
+}
+
+TEST_F(SceneTest, EqualLawsAreOne) {
+  const std::string same = "law = { kind = \"elastic\", stiffness = \"1 MN/m\" }\n";
+  const Scene one = read(kComposite + kBetween + same);
+  EXPECT_EQ(one.rule.laws(), 1u);
+  EXPECT_TRUE(one.rule.law_index.empty());
+  EXPECT_EQ(one.rule.strength[0][1], 1);
+  const std::string soft = "law = { kind = \"elastic\", stiffness = \"1 kN/m\" }\n";
+  const std::string all = "[[bond]]\nbetween = [\"fibre\", \"fibre\"]\n" + soft +
+                          "[[bond]]\nbetween = [\"matrix\", \"matrix\"]\n" + soft;
+  EXPECT_EQ(read(kComposite + all).rule.laws(), 2u);
+  // What serves no pair is left out.
+  const Scene dropped = read(kComposite + all + kBetween + soft);
+  EXPECT_EQ(dropped.rule.laws(), 1u);
+  EXPECT_DOUBLE_EQ(-dropped.rule.law->slope(0.5e-3), 1e3);
+}
+
+TEST_F(SceneTest, LawsOfBondsAreRefusedInTheirPlace) {
+  EXPECT_EQ(error(kComposite + kBetween + "law = { kind = \"elastik\", stiffness = \"1 N/m\" }\n"),
+            "a.toml:22:16: unknown law 'elastik'\n  hint: did you mean 'elastic'?");
+  EXPECT_NE(error(kComposite + kBetween + "law = { kind = \"elastic\", stiffness = \"1 N/m\", cutof = 1 }\n")
+                .find("a.toml:22:48: unknown key 'cutof'"),
+            std::string::npos);
+  EXPECT_NE(error(kComposite + kBetween + "law = \"elastic\"\n").find("a.toml:22:7: "), std::string::npos);
+  EXPECT_NE(
+      error(
+          kComposite + kBetween +
+          "contact = true\nlaw = { kind = \"lj\", sigma = \"0.5 mm\", epsilon = \"1 J\", cutoff = \"0.7 mm\" "
+          "}\n[[bond]]\nbetween = [\"fibre\", \"fibre\"]\ncontact = true\n")
+          .find("a.toml:26:11: the push of this pair's law ends at 0.0005 m, that of another contact at "
+                "0.000561231 m"),
+      std::string::npos);
+  std::string many = kComposite;
+  for (const char* name : {"a", "b", "c", "d"})
+    many += std::string("[[material]]\nname = \"") + name +
+            "\"\nregion = { shape = \"sphere\", radius = \"0.1 mm\" }\n";
+  int k = 0;
+  for (const char* name : {"a", "b", "c", "d"})
+    many += fmt::format(
+        "[[bond]]\nbetween = [\"fibre\", \"{}\"]\nlaw = {{ kind = \"elastic\", stiffness = \"{} N/m\" }}\n",
+        name, ++k);
+  const std::string text = error(many);
+  EXPECT_NE(text.find("a.toml:43:7: more than 4 laws"), std::string::npos) << text;
+  EXPECT_NE(text.find("hint: each takes a table in every force pipe; bonds of equal laws share one"),
+            std::string::npos);
 }
 
 TEST_F(SceneTest, ProbesTakeAnyAxis) {

@@ -106,6 +106,7 @@ std::map<std::string, uint64_t> stimuli_of(const RandomScene& scene, const Judge
   n["strengths by type"] = rule.type_bits > 0 && plan.rule.scaled;
   n["types that only touch"] = rule.contact2 > 0;
   n["masses by type"] = rule.weighted;
+  n["several laws"] = rule.law_bits > 0;
   n["several types"] = rule.types.size() > 1;
   n["held or moved"] = any([](const auto& t) { return t.imposed[0] || t.imposed[1] || t.imposed[2]; });
   n["PD"] = rule.pd;

@@ -75,6 +75,7 @@ module cuboct_node (
     .Damped(cuboct_pkg::Damped),
     .Scaled(cuboct_pkg::Scaled),
     .Weighted(cuboct_pkg::Weighted),
+    .LawBits(cuboct_pkg::LawBits),
     .Pd(cuboct_pkg::Pd),
     .MovedTypes(0)
   ) u_core (

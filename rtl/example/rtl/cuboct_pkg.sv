@@ -48,6 +48,7 @@ package cuboct_pkg;
   localparam int          Damped               = 0;
   localparam int          Scaled               = 0;             // pairs of types differ
   localparam int          Weighted             = 0;             // masses of types differ
+  localparam int          LawBits              = 0;             // of the law of a pair of types; 0: all have one
   localparam int          Pd                   = 0;             // some type is held by force
   localparam int          ParticleBits         = 178;           // of the words to load and observe
 endpackage
