@@ -17,6 +17,7 @@
 #include "model/base/resources.h"
 #include "model/contract/quantise.h"
 #include "model/run/start.h"
+#include "model/scene/packing.h"
 
 namespace cuboct {
 namespace {
@@ -255,6 +256,13 @@ Items physics(const Loaded& loaded) {
   items.add("scene", scene.path);
   if (!scene.title.empty()) items.add("title", scene.title);
   items.add("body", body_text(scene, shown));
+  for (const MeshFacts& mesh : scene.meshes)
+    items.add("mesh",
+              fmt::format("{}: {} triangles, {}; area {:.4g} m^2, volume {:.4g} m^3", mesh.file,
+                          mesh.triangles, mesh.closed() ? "closed" : "not closed", mesh.area, mesh.volume));
+  if (!scene.meshes.empty())
+    items.add("packed", fmt::format("{:.4g} m^3, a particle's share times their number",
+                                    static_cast<double>(scene.body.size()) * particle_mass(1, scene.pitch)));
   std::string crossings;
   if (motion.sound_speed > 0 && length > 0) {
     items.add("waves", fmt::format("{}, {} from end to end", shown(motion.sound_speed, "m/s"),

@@ -179,6 +179,8 @@ Plan plan_with(const Scene& scene, Arch arch, See see) {
         fmt::format("a cell would hold {} particles: its capacity is {}", fullest, arch.capacity),
         fmt::format("set node.capacity to at least {} in the arch file", fullest));
   std::vector<std::string> warnings = width_warnings(scene, edge, chosen, rule);
+  for (const MeshFacts& mesh : scene.meshes)
+    if (std::string warning = mesh_warning(mesh); !warning.empty()) warnings.push_back(std::move(warning));
   Plan plan = make_plan(std::move(rule), std::move(arch), std::move(lattice), origin,
                         static_cast<uint32_t>(scene.body.size()));
   plan.reasons = chosen.reasons;

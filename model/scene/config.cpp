@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -234,6 +235,15 @@ int64_t ConfigValue::integer(int64_t low, int64_t high) const {
 std::string ConfigValue::string() const {
   if (node_->kind != Kind::string) wants("a string");
   return node_->text;
+}
+
+std::string ConfigValue::file() const {
+  namespace fs = std::filesystem;
+  const std::string name = string();
+  const std::string path = (fs::path(file_->path).parent_path() / name).string();
+  if (!fs::is_regular_file(path))
+    fail(fmt::format("no file '{}'", name), "a path is counted from the directory of " + file_->path);
+  return path;
 }
 
 size_t ConfigValue::choice(const std::string& what, const std::vector<std::string>& names) const {

@@ -59,6 +59,8 @@ class ConfigValue {
   bool boolean() const;
   int64_t integer(int64_t low, int64_t high) const;
   std::string string() const;
+  // The path of a file that a string names: as it is where absolute, else from the directory of this file.
+  std::string file() const;
   // A string that is one of `names`; the index. `what` completes "unknown ...": "shape".
   size_t choice(const std::string& what, const std::vector<std::string>& names) const;
 

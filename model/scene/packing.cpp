@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "model/base/error.h"
+#include "model/base/parallel.h"
 
 namespace cuboct {
 namespace {
@@ -111,19 +112,29 @@ std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) 
     last[a] = std::llround(std::ceil(range.high[a])) + 1;
   }
 
-  std::vector<Vec3> sites;
-  for (int64_t l = first[2]; l <= last[2]; ++l) {
+  const auto plane = [&](int64_t l) {
+    std::vector<Vec3> sites;
     for (int64_t k = first[1]; k <= last[1]; ++k) {
       const Vec3 start =
           fcc.offset + half * (fcc.orientation * Vec3(0, static_cast<double>(k), static_cast<double>(l)));
       const auto [from, to] = inside_bounds(start, half * fcc.orientation.col(0), bounds, half);
       const int64_t begin = from > static_cast<double>(first[0]) ? std::llround(std::ceil(from)) : first[0];
       const int64_t end = to < static_cast<double>(last[0]) ? std::llround(std::floor(to)) : last[0];
+      // No part of the surface is nearer than the last site's distance to it: sites of the row within that
+      // are as that one was.
+      bool held = shape == nullptr;
+      double clear = shape == nullptr ? std::numeric_limits<double>::infinity() : 0, passed = 0;
       // The first h of the row at which h + k + l is even.
       for (int64_t h = begin + ((begin + k + l) & 1); h <= end; h += 2) {
         const Vec3 hkl(static_cast<double>(h), static_cast<double>(k), static_cast<double>(l));
         Vec3 x = fcc.offset + fcc.orientation * (half * hkl);
-        bool inside = shape == nullptr || shape->distance(x) <= tolerance;
+        if (passed >= clear) {
+          const double distance = shape->distance(x);
+          held = distance <= tolerance;
+          clear = std::abs(distance) - 2 * tolerance, passed = 0;
+        }
+        passed += 2 * half;
+        bool inside = held;
         for (int a = 0; a < 3 && inside; ++a) {
           if (box.extent[a] == 0) continue;
           const double in = x[a] - box.origin[a];
@@ -133,6 +144,16 @@ std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) 
         if (inside) sites.push_back(x);
       }
     }
+    return sites;
+  };
+  std::vector<std::vector<Vec3>> planes(static_cast<size_t>(last[2] - first[2] + 1));
+  for_each_range(planes.size(), 4, [&](size_t begin, size_t end) {
+    for (size_t l = begin; l < end; ++l) planes[l] = plane(first[2] + static_cast<int64_t>(l));
+  });
+  std::vector<Vec3> sites;
+  for (std::vector<Vec3>& of : planes) {
+    sites.insert(sites.end(), of.begin(), of.end());
+    of = {};
   }
   return sites;
 }

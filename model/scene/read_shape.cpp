@@ -96,6 +96,14 @@ ShapePtr read_dog_bone(const ConfigTable& t) {
   return dog_bone(bone);
 }
 
+// A mesh has no unit of its own that a file would tell.
+ShapePtr read_mesh(const ConfigTable& t, const Regions& regions) {
+  const ConfigValue file = t.at("file");
+  const double unit = file.reduced() ? t.number_or("unit", quantity::length, 1, Range::positive())
+                                     : t.number("unit", quantity::length, Range::positive());
+  return regions.mesh(file, unit);
+}
+
 ShapePtr read_difference(const ConfigTable& t, const Regions& regions) {
   ShapePtr from = read_shape(t.at("from"), regions);
   return subtract(std::move(from), read_parts(t, "minus", regions));
@@ -123,6 +131,7 @@ ShapePtr read_kind(const ConfigTable& table, const Regions& regions) {
       {"half_space", read_half_space},
       {"extrude", read_extrude},
       {"astm_d638", read_dog_bone},
+      {"mesh", [&](const ConfigTable& t) { return read_mesh(t, regions); }},
       {"union", [&](const ConfigTable& t) { return unite(read_parts(t, "of", regions)); }},
       {"intersection", [&](const ConfigTable& t) { return intersect(read_parts(t, "of", regions)); }},
       {"difference", [&](const ConfigTable& t) { return read_difference(t, regions); }},

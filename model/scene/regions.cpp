@@ -5,6 +5,9 @@
 
 #include <algorithm>
 
+#include "model/base/error.h"
+#include "model/base/parallel.h"
+
 namespace cuboct {
 namespace {
 
@@ -49,6 +52,34 @@ ShapePtr Regions::resolve(size_t region, const ConfigValue& at) const {
   return shapes_[region] = std::move(shape);
 }
 
+ShapePtr Regions::mesh(const ConfigValue& file, double unit) const {
+  const std::string path = file.file();
+  for (const auto& [of, mesh] : meshes_)
+    if (of == unit && mesh.facts.file == path) return mesh.shape;
+  Mesh mesh;
+  try {
+    mesh = read_mesh(path, unit);
+  } catch (const InputError& error) {
+    file.fail(error.what());
+  }
+  constexpr double kMostDoubt = 0.25;
+  if (mesh.facts.doubt > kMostDoubt)
+    file.fail(fmt::format(
+                  "'{}' holds no solid: its surface has {} open edges, and for {:.0f} % of the points inside "
+                  "some rays tell otherwise",
+                  file.string(), mesh.facts.open, 100 * mesh.facts.doubt),
+              "a closed mesh: CAD programs and MeshLab close holes");
+  mesh.facts.file = path;
+  meshes_.emplace_back(unit, mesh);
+  return mesh.shape;
+}
+
+std::vector<MeshFacts> Regions::mesh_facts() const {
+  std::vector<MeshFacts> facts;
+  for (const auto& [unit, mesh] : meshes_) facts.push_back(mesh.facts);
+  return facts;
+}
+
 std::vector<uint32_t> Regions::select(const ConfigValue& value, const std::vector<Vec3>& x,
                                       double tolerance) const {
   const ShapePtr shape = read_shape(value, *this);
@@ -58,9 +89,13 @@ std::vector<uint32_t> Regions::select(const ConfigValue& value, const std::vecto
     value.fail(
         fmt::format("{:.3g} tests of particles against regions: at most {:.3g} are made", tests_, kMostTests),
         "fewer regions, or shapes of fewer points");
+  std::vector<char> in(x.size());
+  for_each_range(x.size(), 10'000, [&](size_t begin, size_t end) {
+    for (size_t id = begin; id < end; ++id) in[id] = shape->distance(x[id]) <= tolerance;
+  });
   std::vector<uint32_t> ids;
   for (uint32_t id = 0; id < x.size(); ++id)
-    if (shape->distance(x[id]) <= tolerance) ids.push_back(id);
+    if (in[id] != 0) ids.push_back(id);
   if (ids.empty()) value.fail("no particle lies in this region");
   return ids;
 }

@@ -9,6 +9,7 @@
 
 #include "model/scene/config.h"
 #include "model/scene/geometry.h"
+#include "model/scene/mesh.h"
 
 namespace cuboct {
 
@@ -17,6 +18,9 @@ class Regions {
   // Reads all of [regions]; one that is made of itself is an error.
   explicit Regions(const ConfigTable& root);
   bool has(const std::string& name) const;
+  // Of all meshes read so far, in the order of their first use; each file is read once.
+  ShapePtr mesh(const ConfigValue& file, double unit) const;
+  std::vector<MeshFacts> mesh_facts() const;
   // The shape of the region that a string of the file names.
   ShapePtr named(const ConfigValue& name) const;
   // The particles whose initial position lies in the region (surface included); none is an error.
@@ -27,9 +31,10 @@ class Regions {
 
   std::vector<std::string> names_;
   std::vector<ConfigValue> values_;
-  mutable std::vector<ShapePtr> shapes_;  // null until resolved
-  mutable std::vector<size_t> open_;      // being resolved, each made of the next
-  mutable double tests_ = 0;              // of particles, by select()
+  mutable std::vector<ShapePtr> shapes_;                 // null until resolved
+  mutable std::vector<size_t> open_;                     // being resolved, each made of the next
+  mutable std::vector<std::pair<double, Mesh>> meshes_;  // with the unit, m
+  mutable double tests_ = 0;                             // of particles, by select()
 };
 
 // "name", { shape = "...", ... } or { region = "name", ... }; docs/user/scene.md lists shapes and keys.

@@ -260,6 +260,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   const Regions regions(root);
   read_body(root, stage, regions, packed, scene);
   read_probes(root, regions, scene);
+  scene.meshes = regions.mesh_facts();
   read_time(root, stage, scene);
   read_reach(root, scene);
   root.done();

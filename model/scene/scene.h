@@ -13,6 +13,7 @@
 
 #include "model/contract/places.h"
 #include "model/contract/rule.h"
+#include "model/scene/mesh.h"
 
 namespace cuboct {
 
@@ -100,6 +101,7 @@ struct Scene {
   Periodic periodic;
   double pitch = 0;  // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
   Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates
+  std::vector<MeshFacts> meshes;        // that shapes are made of
   bool thermal = false;                 // some velocities are drawn
   double boltzmann = kBoltzmann;        // J/K; 1 in reduced units
   double density = 0;                   // kg/m^3, at the top of the file; 0 if it is not given
