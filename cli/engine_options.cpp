@@ -79,9 +79,8 @@ void EngineOptions::add_run(CLI::App& command) {
   command.add_flag("--cycles", cycles, "count the machine's cycles in lattice");
   command
       .add_option("--checkpoint-every", checkpoint_every,
-                  "'1000 steps', '30 s', '5 min' or '2 h': how often lattice, golden or reference leaves a "
-                  "checkpoint "
-                  "in DIR")
+                  "'1000 steps', '30 s', '5 min' or '2 h': how often an engine other than systemc and rtl "
+                  "leaves a checkpoint in DIR")
       ->type_name("T");
   command.add_flag("--resume", resume, "go on from the checkpoint in DIR");
 }
@@ -90,10 +89,11 @@ void EngineOptions::check(const std::vector<std::string>& engines, const Input& 
   const auto some = [&](auto has) {
     return std::ranges::any_of(engines, [&](auto& engine) { return has(engine_row(engine)); });
   };
-  const auto refuse = [&](bool given, const char* option, auto has) {
+  const auto refuse = [&](bool given, const char* option, auto has, const std::string& why = {}) {
     if (given && !some(has))
       throw InputError(fmt::format("{} is an option of {}, not of {}", option, the_engines(engines_that(has)),
-                                   fmt::join(engines, ",")));
+                                   fmt::join(engines, ",")),
+                       why);
   };
   const auto links = [](auto& row) { return row.links; };
   refuse(input.stall_rate > 0, "--stall-rate", links);
@@ -101,8 +101,10 @@ void EngineOptions::check(const std::vector<std::string>& engines, const Input& 
   refuse(threads > 0, "--threads", [](auto& row) { return row.cost.threads; });
   refuse(ranks > 1, "--ranks", [](auto& row) { return !row.ranks.empty(); });
   refuse(cycles, "--cycles", [](auto& row) { return row.counts_if_asked; });
-  refuse(!checkpoint_every.empty(), "--checkpoint-every", [](auto& row) { return row.saves; });
-  refuse(resume, "--resume", [](auto& row) { return row.saves; });
+  const auto saves = [](auto& row) { return row.unsaved.empty(); };
+  const std::string& unsaved = engine_row(engines.front()).unsaved;
+  refuse(!checkpoint_every.empty(), "--checkpoint-every", saves, unsaved);
+  refuse(resume, "--resume", saves, unsaved);
   refuse(gpus > 0, "--gpus", [](auto& row) { return row.devices; });
   refuse(!devices.empty(), "--devices", [](auto& row) { return row.devices; });
   refuse(joules, "--joules", [](auto& row) { return row.devices; });

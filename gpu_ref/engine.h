@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -60,6 +61,12 @@ class LostPosition : public std::runtime_error {
   uint32_t particle;
 };
 
+// A memory that cannot be one of the scene's.
+class DamagedMemory : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 class Engine {
  public:
   virtual ~Engine() = default;
@@ -82,6 +89,10 @@ class Engine {
   // SI; positions are not wrapped into a periodic box in the real engines. No types.
   virtual Body body() = 0;
 
+  // Of real engines: what another one of the same scene, on however many devices, goes on from with the same
+  // bits.
+  virtual std::vector<uint64_t> memory() { return {}; }
+
   virtual const Counters& counters() const = 0;
 };
 
@@ -92,6 +103,15 @@ std::unique_ptr<Engine> make_fixed_engine(const Scene& scene, const Plan& plan, 
                                           const Options& options);
 std::unique_ptr<Engine> make_real_engine(const Scene& scene, const Body& body, Arithmetic arithmetic,
                                          const Options& options);
+
+// The memory of an engine after so many steps.
+struct Memory {
+  uint64_t step = 0;
+  std::span<const uint64_t> words;
+};
+// Goes on from there. Throws DamagedMemory too.
+std::unique_ptr<Engine> resume_real_engine(const Scene& scene, const Body& body, Arithmetic arithmetic,
+                                           const Options& options, const Memory& memory);
 
 // A device as it is found.
 struct Device {

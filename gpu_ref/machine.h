@@ -36,7 +36,8 @@ constexpr double bytes_per_particle(bool pd, int residue_bits, double listed) {
                        4 * static_cast<double>(Residues<Policy::kFixed>::words_for(residue_bits)) +
                        (pd ? sizeof(typename Policy::Extra) : 0);
   const double order = 2 * (sizeof(CellAt) + 4) + 8 + (Policy::kFixed ? 8 : 0) + 4;
-  return 2 * state + order + 8 * listed + 8;
+  const double anchored = Policy::kFixed ? 0 : sizeof(typename Policy::Position);
+  return 2 * state + anchored + order + 8 * listed + 8;
 }
 
 // A state on the host, in the numbers of the devices; in no order.
@@ -49,6 +50,16 @@ struct Loose {
   std::vector<CellAt> cell;
   std::vector<uint32_t> id;
   size_t size() const { return x.size(); }
+};
+
+// What a real engine's bits depend on besides its state: the order of sums is that of the last list, which
+// depends on the positions of its making, and the time of the next one on those and on the skin.
+template <class Policy>
+struct Kept {
+  Loose<Policy> state;
+  std::vector<typename Policy::Position> listed;  // positions when the list was made
+  Skin::Memory skin;
+  uint64_t age = 0;
 };
 
 template <class Policy>
@@ -89,6 +100,10 @@ class Machine {
 
   void upload(const Loose<Policy>& state);
   Loose<Policy> download();
+  // Of real engines.
+  Kept<Policy> keep();
+  // False where the skin cannot be one of this machine's.
+  bool restore(const Kept<Policy>& kept);
 
   uint64_t hash();
   // A new list comes first where the old one no longer serves.
@@ -102,7 +117,7 @@ class Machine {
   struct Slab {
     Slab(int device, int number, uint64_t* account)
         : device(device), number(number), stream(device), edge(device, true) {
-      for (auto* a : {&x[0], &x[1]}) *a = Array<typename Policy::Position>(device, account);
+      for (auto* a : {&x[0], &x[1], &listed}) *a = Array<typename Policy::Position>(device, account);
       for (auto* a : {&v[0], &v[1]}) *a = Array<typename Policy::Velocity>(device, account);
       for (auto* a : {&u[0], &u[1]}) *a = Array<typename Policy::Extra>(device, account);
       for (auto* a :
@@ -123,7 +138,7 @@ class Machine {
     Stream edge;                                    // for the borders
     Event begun[2], border_done[2], inner_done[2];  // of a step, by its number's last bit
     std::unique_ptr<Rule> rule;
-    Array<typename Policy::Position> x[2];
+    Array<typename Policy::Position> x[2], listed;  // listed: when the list was made (real)
     Array<typename Policy::Velocity> v[2];
     Array<typename Policy::Extra> u[2];
     Array<uint32_t> residue[2];
@@ -203,6 +218,9 @@ class Machine {
   void list_pairs();
   void list_pairs(Slab& slab);
   void scatter(const Loose<Policy>& state);
+  void settle(const Loose<Policy>& state);
+  void list_here();
+  void place(const Kept<Policy>& kept);
   void step(uint32_t number, bool hash, bool makes_near);
   bool next_makes_near();
   void plan_near_lists(const Outcome& outcome);

@@ -105,6 +105,7 @@ void Machine<Policy>::make_room(Slab& slab, size_t particles) {
     slab.residue[k].grow(slab.stream, room * residue_words(), kept * residue_words());
     slab.graph[k].drop();
   }
+  if (!Policy::kFixed) slab.listed.grow(slab.stream, room, kept);
   for (auto* array : {&slab.id, &slab.spare_id, &slab.rank_of, &slab.order})
     array->grow(slab.stream, room, kept);
   if (Policy::kFixed) slab.entered.grow(slab.stream, room, kept);
@@ -169,6 +170,16 @@ Loose<Policy> Machine<Policy>::download() {
   return state;
 }
 
+// Each particle in the slab that owns the cell from which its position counts.
+template <class Policy>
+void Machine<Policy>::settle(const Loose<Policy>& state) {
+  wait_for_all();
+  scatter(state);
+  for (auto& slab : slabs_)
+    for_each(slab->stream, 0, slab->own, options_.block, KeepAll{slab->rank_of.data()});
+  wait_for_all();
+}
+
 // Each slab's particles where they are now, `own` of them with gaps of rank kGone.
 template <class Policy>
 void Machine<Policy>::resettle() {
@@ -198,16 +209,7 @@ void Machine<Policy>::resettle() {
     leavers.push_back({notes[0], notes[1]});
     lost |= notes[2] > 0;
   }
-  if (lost) {  // seldom: through the host
-    for (auto& slab : slabs_)
-      for_each(slab->stream, 0, slab->own, options_.block, KeepAll{slab->rank_of.data()});
-    wait_for_all();
-    scatter(download());
-    for (auto& slab : slabs_)
-      for_each(slab->stream, 0, slab->own, options_.block, KeepAll{slab->rank_of.data()});
-    wait_for_all();
-    return;
-  }
+  if (lost) return settle(download());  // seldom: through the host
   for (auto& slab : slabs_) {
     Slab& s = *slab;
     for (int side = 0; side < 2; ++side) {
@@ -375,14 +377,68 @@ template <class Policy>
 void Machine<Policy>::make_lists() {
   skin_.aged(age_);
   resettle();
+  list_here();
+  age_ = 0;
+}
+
+template <class Policy>
+void Machine<Policy>::list_here() {
   sort();
   mirror();
   list_pairs();
+  if (!Policy::kFixed)
+    for (auto& slab : slabs_)
+      copy(slab->stream, slab->listed.data(), slab->device, slab->x[at_].data(), slab->device,
+           slab->own * sizeof(typename Policy::Position));
   // Graphs hold the number of particles and the skin.
   for (auto& slab : slabs_)
     for (Graph& graph : slab->graph) graph.drop();
-  age_ = 0;
   near_age_ = kNever;
+}
+
+template <class Policy>
+Kept<Policy> Machine<Policy>::keep() {
+  Kept<Policy> kept{download(), {}, skin_.memory(), age_};
+  for (auto& slab : slabs_) {
+    const auto listed = slab->listed.host(slab->stream, 0, slab->own);
+    kept.listed.insert(kept.listed.end(), listed.begin(), listed.end());
+  }
+  return kept;
+}
+
+// The list is made as it was made, then its particles go on to where they were.
+template <class Policy>
+bool Machine<Policy>::restore(const Kept<Policy>& kept) {
+  if (!skin_.recall(kept.skin)) return false;
+  Loose<Policy> then = kept.state;
+  then.x = kept.listed;
+  settle(then);
+  list_here();
+  age_ = kept.age;
+  place(kept);
+  mirror();
+  return true;
+}
+
+template <class Policy>
+void Machine<Policy>::place(const Kept<Policy>& kept) {
+  std::vector<uint32_t> at(kept.state.size());  // of an id
+  for (uint32_t k = 0; k < kept.state.size(); ++k) at[kept.state.id[k]] = k;
+  for (auto& slab : slabs_) {
+    auto x = slab->x[at_].host(slab->stream, 0, slab->own);
+    auto v = slab->v[at_].host(slab->stream, 0, slab->own);  // with the anchors
+    std::vector<typename Policy::Extra> u;
+    const std::vector<uint32_t> id = slab->id.host(slab->stream, 0, slab->own);
+    for (size_t k = 0; k < id.size(); ++k) {
+      const size_t from = at[id[k]];
+      x[k] = kept.state.x[from];
+      std::copy_n(kept.state.v[from].at, 3, v[k].at);
+      if (setup_.pd) u.push_back(kept.state.u[from]);
+    }
+    slab->x[at_].put(slab->stream, 0, x);
+    slab->v[at_].put(slab->stream, 0, v);
+    slab->u[at_].put(slab->stream, 0, u);
+  }
 }
 
 }  // namespace cuboct::gpu

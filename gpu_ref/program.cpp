@@ -96,7 +96,7 @@ class GpuProgram : public EngineProgram {
   GpuProgram() {
     name = "cuboct-gpu";
     description = "Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers";
-    abilities.forces = true;
+    abilities.forces = abilities.checkpoints = true;
   }
 
   void add_options(CLI::App& app) override {
@@ -161,6 +161,8 @@ bool GpuProgram::prepare(ProgramOptions& options) {
     throw InputError("--forces goes with --precision float or double", "fixed states determine their forces");
   if (precision_ != "fixed" && options.hashes_given && options.run.hash_every > 0)
     throw InputError("--hash-every goes with --precision fixed", "states in real numbers have no hash");
+  if (options.run.forces && !options.run.checkpoint.path.empty())
+    throw InputError("--forces goes without --checkpoint", "a checkpoint's frames hold no forces");
   choice_.arithmetic = arithmetic_of(precision_);
   return false;
 }

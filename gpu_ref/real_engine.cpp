@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "gpu_ref/machine.h"
+#include "gpu_ref/memory_words.h"
 #include "gpu_ref/messages.h"
 #include "gpu_ref/real_policy.h"
 #include "model/base/error.h"
@@ -26,7 +27,7 @@ class RealEngine final : public Engine {
  public:
   using Policy = RealPolicy<Real>;
 
-  RealEngine(const Scene& scene, const Body& body, const Options& options)
+  RealEngine(const Scene& scene, const Body& body, const Options& options, const Memory* memory)
       : scene_(scene), tables_(scene.rule), type_(body.type) {
     place(body);
     typename Machine<Policy>::Setup setup;
@@ -42,6 +43,7 @@ class RealEngine final : public Engine {
     machine_ = std::make_unique<Machine<Policy>>(
         options, setup, EnergyTables(scene.rule), loose(body),
         [&](Stream& stream) { return std::make_unique<RealRuleOnDevice<Real>>(stream, tables_, edge); });
+    if (memory) restore(*memory);
   }
 
   void advance(uint64_t steps, std::vector<uint64_t>*) override {
@@ -101,9 +103,54 @@ class RealEngine final : public Engine {
     return body;
   }
 
+  std::vector<uint64_t> memory() override {
+    if (old_) renew();  // as the next step would
+    const Kept<Policy> kept = machine_->keep();
+    std::vector<uint64_t> words;
+    put(words, kept.state.x), put(words, kept.state.v), put(words, kept.state.u);
+    put(words, kept.state.cell), put(words, kept.state.id), put(words, kept.listed);
+    put<Skin::Memory>(words, {kept.skin});
+    words.push_back(kept.age);
+    return words;
+  }
+
   const Counters& counters() const override { return machine_->counters; }
 
  private:
+  void restore(const Memory& memory) {
+    std::span<const uint64_t> words = memory.words;
+    const size_t n = type_.size();
+    Kept<Policy> kept;
+    kept.state.x = take<typename Policy::Position>(words, n);
+    kept.state.v = take<typename Policy::Velocity>(words, n);
+    kept.state.u = take<typename Policy::Extra>(words, tables_.rule().pd ? n : 0);
+    kept.state.cell = take<CellAt>(words, n);
+    kept.state.id = take<uint32_t>(words, n);
+    kept.listed = take<typename Policy::Position>(words, n);
+    kept.skin = take<Skin::Memory>(words, 1).front();
+    if (words.size() != 1) throw DamagedMemory("its lists have other lengths");
+    kept.age = words[0];
+    check(kept);
+    if (!machine_->restore(kept)) throw DamagedMemory("no pair list has such a skin");
+    step_ = memory.step;
+  }
+
+  void check(const Kept<Policy>& kept) const {
+    std::vector<bool> seen(type_.size());
+    const auto near = [](Real x) { return std::abs(x) < Real(1e6); };
+    for (size_t k = 0; k < type_.size(); ++k) {
+      const uint32_t id = kept.state.id[k];
+      if (id >= seen.size() || seen[id]) throw DamagedMemory("a particle is missing");
+      seen[id] = true;
+      bool sound = type_in(kept.state.x[k].last) == type_[id] && type_in(kept.listed[k].last) == type_[id];
+      for (int a = 0; a < 3; ++a)
+        sound = sound && near(kept.state.x[k].at[a]) && near(kept.listed[k].at[a]) &&
+                std::isfinite(kept.state.v[k].at[a]) && std::abs(kept.state.cell[k].c[a]) < 1'000'000'000 &&
+                (kept.state.u.empty() || std::isfinite(kept.state.u[k].at[a]));
+      if (!sound) throw DamagedMemory("particle " + std::to_string(id) + " cannot be one of the scene's");
+    }
+  }
+
   // Chooses cells: whole ones in a box that repeats, else from the body's lowest corner on.
   void place(const Body& body) {
     CellList(scene_.rule.cutoff(), scene_.periodic);  // refuses a box in which pairs meet twice
@@ -193,12 +240,23 @@ class RealEngine final : public Engine {
   bool old_ = false;  // the lists no longer serve
 };
 
+std::unique_ptr<Engine> make(const Scene& scene, const Body& body, Arithmetic arithmetic,
+                             const Options& options, const Memory* memory) {
+  if (arithmetic == Arithmetic::float32)
+    return std::make_unique<RealEngine<float>>(scene, body, options, memory);
+  return std::make_unique<RealEngine<double>>(scene, body, options, memory);
+}
+
 }  // namespace
 
 std::unique_ptr<Engine> make_real_engine(const Scene& scene, const Body& body, Arithmetic arithmetic,
                                          const Options& options) {
-  if (arithmetic == Arithmetic::float32) return std::make_unique<RealEngine<float>>(scene, body, options);
-  return std::make_unique<RealEngine<double>>(scene, body, options);
+  return make(scene, body, arithmetic, options, nullptr);
+}
+
+std::unique_ptr<Engine> resume_real_engine(const Scene& scene, const Body& body, Arithmetic arithmetic,
+                                           const Options& options, const Memory& memory) {
+  return make(scene, body, arithmetic, options, &memory);
 }
 
 }  // namespace cuboct::gpu

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_ref/run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -11,7 +13,7 @@ namespace {
 
 class Runner : public cuboct::Engine {
  public:
-  Runner(const Scene& scene, const Plan& plan, const GpuChoice& choice);
+  Runner(const Scene& scene, const Plan& plan, const GpuChoice& choice, CheckpointReader* from);
 
   uint64_t step_count() const override { return engine_->step_count(); }
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override;
@@ -22,9 +24,16 @@ class Runner : public cuboct::Engine {
   double largest_speed() override;
   cuboct::Counters counters() override;
   Notes notes() override { return notes_; }
+  void for_each_slot(const std::function<void(const Particle&)>& see) override {
+    if (fixed())
+      for (const Particle& particle : engine_->state().particles) see(particle);
+  }
+  EngineMemory memory() override;
 
  private:
   bool fixed() const { return choice_.arithmetic == Arithmetic::fixed; }
+  void begin_fixed(CheckpointReader* from);
+  void begin_real(CheckpointReader* from);
   void probe(std::span<const uint32_t> ids);
   void show(Watch& watch, const Energies& energies);
   Momentum momentum_of(const std::vector<Vec3>& v) const;
@@ -39,18 +48,39 @@ class Runner : public cuboct::Engine {
   Momentum momentum_;
   double largest_speed_ = -1;  // m/s; below 0: not read yet
   Notes notes_;
+  uint64_t builds_before_ = 0, golden_before_ = 0;  // of the runs before this one, up to the checkpoint
 };
 
-Runner::Runner(const Scene& scene, const Plan& plan, const GpuChoice& choice)
-    : scene_(scene), plan_(plan), choice_(choice) {
-  if (fixed()) {
-    const State initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
-    momentum_.fixed = cuboct::momentum(plan.rule, initial);
-    engine_ = make_fixed_engine(scene, plan, initial, choice.engine);
-  } else {
-    momentum_ = momentum_of(scene.body.v);
-    engine_ = make_real_engine(scene, scene.body, choice.arithmetic, choice.engine);
+void Runner::begin_fixed(CheckpointReader* from) {
+  const State initial = begin_of(scene_, plan_, from);
+  momentum_.fixed = cuboct::momentum(plan_.rule, initial);
+  known_ = initial.step;
+  engine_ = make_fixed_engine(scene_, plan_, initial, choice_.engine);
+}
+
+void Runner::begin_real(CheckpointReader* from) {
+  momentum_ = momentum_of(scene_.body.v);
+  const GpuChoice& of = choice_;
+  try {
+    engine_ = from ? resume_real_engine(scene_, scene_.body, of.arithmetic, of.engine,
+                                        {from->head().step, from->head().engine.own})
+                   : make_real_engine(scene_, scene_.body, of.arithmetic, of.engine);
+  } catch (const DamagedMemory& error) {
+    throw InputError(fmt::format("{} is damaged: {}", from->path(), error.what()));
   }
+}
+
+Runner::Runner(const Scene& scene, const Plan& plan, const GpuChoice& choice, CheckpointReader* from)
+    : scene_(scene), plan_(plan), choice_(choice) {
+  if (from) {
+    const EngineMemory& kept = from->head().engine;
+    if (kept.own.empty() != fixed() ||
+        (!fixed() && kept.counters[2] != static_cast<uint64_t>(choice.arithmetic)))
+      throw InputError(fmt::format("{} was made with another engine or --precision", from->path()),
+                       "resume with the options of the run that wrote it");
+    builds_before_ = kept.counters[0], golden_before_ = kept.counters[1];
+  }
+  fixed() ? begin_fixed(from) : begin_real(from);
   notes_.emplace_back("precision", to_string(choice.arithmetic));
   if (!fixed()) notes_.emplace_back("integrator", "semi-implicit Euler");
   if (choice.hooks.ready) choice.hooks.ready();
@@ -143,10 +173,18 @@ double Runner::largest_speed() {
   return largest_speed_ * scene_.rule.dt / plan_.rule.cell_edge;
 }
 
+EngineMemory Runner::memory() {
+  const gpu::Counters& counts = engine_->counters();
+  return {{builds_before_ + counts.list_builds, golden_before_ + counts.golden_steps,
+           static_cast<uint64_t>(choice_.arithmetic)},
+          fixed() ? std::vector<uint64_t>() : engine_->memory()};
+}
+
 cuboct::Counters Runner::counters() {
   const gpu::Counters& counts = engine_->counters();
-  cuboct::Counters counters{{"list_builds", static_cast<double>(counts.list_builds)}};
-  if (fixed()) counters.emplace_back("golden_steps", static_cast<double>(counts.golden_steps));
+  cuboct::Counters counters{{"list_builds", static_cast<double>(builds_before_ + counts.list_builds)}};
+  if (fixed())
+    counters.emplace_back("golden_steps", static_cast<double>(golden_before_ + counts.golden_steps));
   counters.emplace_back("longest_list", static_cast<double>(counts.longest_list));
   counters.emplace_back("listed_pairs", counts.listed_pairs);
   counters.emplace_back("halo_particles", static_cast<double>(counts.halo_particles));
@@ -166,8 +204,9 @@ EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choic
   kind.looks = [particles = scene.body.size()](const std::vector<uint64_t>& probes) {
     return looks_of(probes, particles);
   };
-  kind.make = [&scene, &plan, &choice](CheckpointReader*, bool) {
-    return std::make_unique<Runner>(scene, plan, choice);
+  kind.saves = true;
+  kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool) {
+    return std::make_unique<Runner>(scene, plan, choice, from);
   };
   return kind;
 }

@@ -12,31 +12,33 @@ Skin::Skin(double radius, double largest, double particles)
   for (int k = 0; k < kSkins; ++k) {
     const double skin = radius * kThinnest * std::pow(kStep, k);
     skin_[k] = std::min(skin, largest);
-    if (skin <= radius * kFirst) at_ = k;
+    if (skin <= radius * kFirst) learned_.at = k;
     if (skin < largest) largest_ = std::min(k + 1, kSkins - 1);
   }
-  at_ = std::min(at_, largest_);
+  learned_.at = std::min(learned_.at, static_cast<uint64_t>(largest_));
 }
 
 void Skin::aged(uint64_t steps) {
   if (steps == 0) return;  // the first list, or one that never served
-  ++lists_;
+  auto& [cost, when, at, lists] = learned_;
+  const int now = static_cast<int>(at);
+  ++lists;
   const double making = making_ / static_cast<double>(steps), keeping = kEntry * entries_;
   // What was long ago may have been another motion.
-  const bool again = cost_[at_] > 0 && when_[at_] + 1 == lists_;
-  cost_[at_] = again ? (cost_[at_] + making + keeping) / 2 : making + keeping;
-  when_[at_] = lists_;
-  const int thinner = at_ - 1, thicker = at_ + 1;
-  int next = at_;
-  if (known(thinner) && cost_[thinner] < cost_[next]) next = thinner;
-  if (known(thicker) && cost_[thicker] < cost_[next]) next = thicker;
+  const bool again = cost[now] > 0 && when[now] + 1 == lists;
+  cost[now] = again ? (cost[now] + making + keeping) / 2 : making + keeping;
+  when[now] = lists;
+  const int thinner = now - 1, thicker = now + 1;
+  int next = now;
+  if (known(thinner) && cost[thinner] < cost[next]) next = thinner;
+  if (known(thicker) && cost[thicker] < cost[next]) next = thicker;
   // What is not known is tried where there is something to gain.
   const double worth = kWorthwhile * (kOthers + making + keeping);
   if (thicker <= largest_ && !known(thicker) && making > worth)
     next = thicker;
   else if (thinner >= 0 && !known(thinner) && making < keeping / 2 && keeping > worth)
     next = thinner;
-  at_ = next;
+  at = static_cast<uint64_t>(next);
 }
 
 }  // namespace cuboct::gpu

@@ -17,15 +17,29 @@ class Skin {
   // however many devices.
   Skin(double radius, double largest, double particles);
 
-  double now() const { return skin_[at_]; }
+  double now() const { return skin_[learned_.at]; }
 
   // Entries per particle of the list just made.
   void listed(double entries) { entries_ = entries; }
   // The list has served for so many steps and a new one is to be made: chooses its skin.
   void aged(uint64_t steps);
 
- private:
+  // What it has learned so far, in plain words.
   static constexpr int kSkins = 14;
+  struct Memory {
+    std::array<double, kSkins> cost{};    // 0: never tried
+    std::array<uint64_t, kSkins> when{};  // number of the list that told
+    uint64_t at = 0, lists = 0;
+  };
+  Memory memory() const { return learned_; }
+  // False where it cannot be that of such lists.
+  bool recall(const Memory& memory) {
+    if (memory.at > static_cast<uint64_t>(largest_)) return false;
+    learned_ = memory;
+    return true;
+  }
+
+ private:
   // In the time of a pair of a near list: making a list takes that of so many pairs per particle, and where
   // there are few particles that of more, as it is then a matter of waiting for the host; an entry that is
   // met now and then, when near lists are made, takes so much a step.
@@ -35,16 +49,15 @@ class Skin {
   static constexpr uint64_t kRemembered = 64;
 
   bool known(int skin) const {
-    return skin >= 0 && skin <= largest_ && cost_[skin] > 0 && lists_ - when_[skin] < kRemembered;
+    return skin >= 0 && skin <= largest_ && learned_.cost[skin] > 0 &&
+           learned_.lists - learned_.when[skin] < kRemembered;
   }
 
   std::array<double, kSkins> skin_{};
-  std::array<double, kSkins> cost_{};    // 0: never tried
-  std::array<uint64_t, kSkins> when_{};  // number of the list that told
   double making_;
-  int at_ = 0, largest_ = 0;
-  uint64_t lists_ = 0;
+  int largest_ = 0;
   double entries_ = 0;
+  Memory learned_;
 };
 
 }  // namespace cuboct::gpu

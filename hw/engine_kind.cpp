@@ -40,23 +40,21 @@ EngineKind real_kind(const std::string& name, const Scene& scene, const Plan& pl
   kind.particles = scene.body.size();
   kind.fixed = false;
   kind.floats = floats;
+  kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
   kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
   return kind;
+}
+
+State begin_of(const Scene& scene, const Plan& plan, CheckpointReader* from) {
+  return from ? checked_state(*from, plan) : to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
 }
 
 EngineKind golden_kind(const Scene& scene, const Plan& plan) {
   EngineKind kind = fixed_kind("golden", scene, plan);
   kind.saves = true;
   kind.make = [&scene, &plan](CheckpointReader* from, bool) {
-    State initial;
-    if (from) {
-      initial.step = from->head().step;
-      for (uint32_t k = 0; k < plan.particles; ++k)
-        initial.particles.push_back(checked_particle(*from, plan));
-    } else {
-      initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
-    }
-    return std::make_unique<GoldenEngine>(setting_of(scene, plan), plan.arch.capacity, initial);
+    return std::make_unique<GoldenEngine>(setting_of(scene, plan), plan.arch.capacity,
+                                          begin_of(scene, plan, from));
   };
   return kind;
 }

@@ -16,6 +16,9 @@ FixedSetting setting_of(const Scene& scene, const Plan& plan, int threads = 0);
 // Where displacements of a fixed engine count from, m: the packing in its integers.
 Vec3 packed_place(const Scene& scene, const Plan& plan, uint32_t id);
 
+// The state with which a fixed engine begins: a checkpoint's, or the scene's.
+State begin_of(const Scene& scene, const Plan& plan, CheckpointReader* from);
+
 // Of an engine of the fixed rule, but for its making.
 EngineKind fixed_kind(const std::string& name, const Scene& scene, const Plan& plan);
 // Of one in real numbers; the plan gives its hash and the cells in which speeds are told.

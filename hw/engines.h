@@ -31,7 +31,7 @@ struct EngineRow {
   bool links = false;            // that may stall or fail
   bool cycles = false;           // counts the machine's cycles, always
   bool counts_if_asked = false;  // or where --cycles asks for it
-  bool saves = false;            // leaves checkpoints
+  std::string unsaved = {};      // why it leaves no checkpoints; empty: it does
   uint64_t hash_every = 1;       // steps between two hashes where the user says nothing; 0: none
   std::string program = {};      // of its own, beside cuboct, where it does not run here
   std::string ranks = {};        // the program in which several processes share a scene

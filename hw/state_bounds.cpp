@@ -12,4 +12,17 @@ Particle checked_particle(CheckpointReader& from, const Plan& plan) {
   throw InputError(fmt::format("{} is damaged: particle {}: {}", from.path(), particle.id, wrong));
 }
 
+State checked_state(CheckpointReader& from, const Plan& plan) {
+  State state{from.head().step, {}};
+  std::vector<bool> seen(plan.particles);
+  for (uint32_t k = 0; k < plan.particles; ++k) {
+    const Particle particle = checked_particle(from, plan);
+    if (seen[particle.id])
+      throw InputError(fmt::format("{} is damaged: particle {} comes twice", from.path(), particle.id));
+    seen[particle.id] = true;
+    state.particles.push_back(particle);
+  }
+  return state;
+}
+
 }  // namespace cuboct

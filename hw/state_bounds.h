@@ -15,5 +15,7 @@ inline StateBounds bounds_of(const Plan& plan) {
 
 // The next particle of a checkpoint, which may be a stranger's. InputError where it cannot be of the plan.
 Particle checked_particle(CheckpointReader& from, const Plan& plan);
+// All of them, in the order of the slots.
+State checked_state(CheckpointReader& from, const Plan& plan);
 
 }  // namespace cuboct

@@ -17,6 +17,7 @@ class BoardProgram : public EngineProgram {
   BoardProgram() {
     name = "cuboct-fpga";
     description = "Runs a scene on the board behind a serial port";
+    abilities.checkpoints = true;
     abilities.steps = std::numeric_limits<uint32_t>::max();
   }
 

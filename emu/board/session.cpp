@@ -167,11 +167,13 @@ class Session {
 
 class BoardEngine : public StateEngine {
  public:
-  BoardEngine(Host& host, const Scene& scene, const Plan& plan)
+  BoardEngine(Host& host, const Scene& scene, const Plan& plan, CheckpointReader* from)
       : StateEngine(setting_of(scene, plan)),
         host_(host),
         session_(host, plan),
-        known_(to_fixed(scene.body, plan.rule, plan.lattice, plan.origin)) {
+        known_(begin_of(scene, plan, from)),
+        at_(known_.step),
+        cycles_before_(from ? from->head().engine.counters[0] : 0) {
     session_.load(known_);
   }
 
@@ -189,11 +191,15 @@ class BoardEngine : public StateEngine {
   }
   Counters counters() override {
     const LinkCount& count = host_.count();
-    return {{"cycles", static_cast<double>(session_.cycles())},
+    return {{"cycles", static_cast<double>(cycles_before_ + session_.cycles())},
             {"requests", static_cast<double>(count.requests)},
             {"retries", static_cast<double>(count.retries)},
             {"bytes on the line", static_cast<double>(count.bytes)}};
   }
+  void for_each_slot(const std::function<void(const Particle&)>& see) override {
+    for (const Particle& particle : make_state().particles) see(particle);
+  }
+  EngineMemory memory() override { return {{cycles_before_ + session_.cycles()}, {}}; }
   Notes notes() override {
     return {{"port", host_.port()}, {"board clock", fmt::format("{} MHz", session_.info().clock_hz / 1e6)}};
   }
@@ -210,7 +216,8 @@ class BoardEngine : public StateEngine {
   Session session_;
   State known_;        // the last that was loaded, read, or found before a fault
   bool read_ = false;  // what was loaded is read back once
-  uint64_t at_ = 0;
+  uint64_t at_;
+  const uint64_t cycles_before_;  // of the runs before this one, up to the checkpoint
 };
 
 }  // namespace
@@ -218,8 +225,9 @@ class BoardEngine : public StateEngine {
 EngineKind board_kind(Host& host, const Scene& scene, const Plan& plan) {
   EngineKind kind = fixed_kind("fpga", scene, plan);
   kind.batches = kind.in_pieces = true;
-  kind.make = [&host, &scene, &plan](CheckpointReader*, bool) {
-    return std::make_unique<BoardEngine>(host, scene, plan);
+  kind.saves = true;
+  kind.make = [&host, &scene, &plan](CheckpointReader* from, bool) {
+    return std::make_unique<BoardEngine>(host, scene, plan, from);
   };
   return kind;
 }

@@ -61,7 +61,7 @@ Runner::Runner(const Scene& scene, const Plan& plan, const LatticeChoice& choice
   feed(scene, choice, from);
   if (!from) return;
   std::copy_n(from->head().engine.counters.begin(), earlier_.size(), earlier_.begin());
-  if (timing_) timing_->resume(from->head().engine.timing);
+  if (timing_) timing_->resume(from->head().engine.own);
 }
 
 void Runner::feed(const Scene& scene, const LatticeChoice& choice, CheckpointReader* from) {

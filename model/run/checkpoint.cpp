@@ -59,8 +59,8 @@ void write_checkpoint(const std::string& path, const CheckpointHead& head, Engin
     for (const uint64_t value : {head.journal.words, head.journal.hash}) out->word(value);
     put(*out, head.probes.latest);
     put(*out, head.probes.moved);
-    out->word(head.engine.timing.size());
-    out->words(head.engine.timing);
+    out->word(head.engine.own.size());
+    out->words(head.engine.own);
   });
   engine.for_each_slot([&](const Particle& p) { attempt([&] { put(*out, p, displaced); }); });
   if (const Body* body = engine.saved_body()) attempt([&] { put(*out, body->x, body->v, body->u); });
@@ -112,8 +112,8 @@ CheckpointReader::CheckpointReader(const std::string& path, uint64_t plan_hash, 
   head_.journal.hash = in_.word();
   head_.probes.latest = take_vectors(in_);
   head_.probes.moved = take_vectors(in_);
-  head_.engine.timing.resize(in_.count(1));
-  in_.words(head_.engine.timing);
+  head_.engine.own.resize(in_.count(1));
+  in_.words(head_.engine.own);
   first_ = in_.mark().words;
 }
 

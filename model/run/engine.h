@@ -34,7 +34,7 @@ using Notes = std::vector<std::pair<std::string, std::string>>;
 // What a checkpoint keeps of an engine besides its particles.
 struct EngineMemory {
   std::vector<uint64_t> counters;  // of all runs so far
-  std::vector<uint64_t> timing;    // of an engine that counts cycles
+  std::vector<uint64_t> own;       // what the engine alone reads: its nodes' clocks, its machine's memory
 };
 
 // A step that cannot be done, of engines that tell it in their own words; the state before it stands.

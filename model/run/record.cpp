@@ -62,6 +62,7 @@ class Loop {
   bool reached();
   bool ends_early() const { return request_.until && scene_.until; }
   bool hashed() const { return kind_.fixed && request_.hash_every > 0; }
+  bool hashes_come() const { return kind_.hashes_come && hashed() && request_.hash_every == 1; }
   bool leads() const { return engine_->leads(); }
 
   const Scene& scene_;
@@ -99,7 +100,8 @@ Loop::Loop(const Scene& scene, const EngineKind& kind, const RunRequest& request
       log_({kind.name, request.steps, kind.particles, request.probes,
             kind.logs ? LogRows::quiet : request.log},
            scene, meter_.curves()),
-      piece_(kind.in_pieces || request.log == LogRows::seconds || stderr_is_terminal()
+      piece_(kind.in_pieces || request.checkpoint.every_seconds > 0 || request.log == LogRows::seconds ||
+                     stderr_is_terminal()
                  ? 1
                  : std::max<uint64_t>(request.steps, 1)),
       trace_(result_.trace) {
@@ -188,8 +190,7 @@ void Loop::record() {
   const uint64_t step = engine_->step_count();
   trace_.steps_done = step;
   // Of batches, the hash after each step has come with them.
-  const bool came = kind_.hashes_come && request_.hash_every == 1 && step > 0;
-  if (hashed() && step % request_.hash_every == 0 && !came) {
+  if (hashed() && step % request_.hash_every == 0 && !(hashes_come() && step > 0)) {
     trace_.state_hash.push_back(engine_->hash());
     journal([&](Journal& to) { to.hash(step, trace_.state_hash.back()); });
   }
@@ -246,17 +247,20 @@ void Loop::journal(const std::function<void(Journal&)>& write) {
 
 void Loop::advance(uint64_t steps) {
   const uint64_t before = engine_->step_count();
+  const size_t hashes = trace_.state_hash.size();
   const auto begin = Clock::now();
   const auto done = [&] {
     trace_.steps_done = engine_->step_count();
+    if (hashes_come())
+      for (size_t k = hashes; k < trace_.state_hash.size(); ++k)
+        journal([&](Journal& to) { to.hash(before + 1 + k - hashes, trace_.state_hash[k]); });
     if (!request_.cycles) return;
     const std::vector<PhaseSpan> spans = engine_->phase_times();
     trace_.cycles.insert(trace_.cycles.end(), spans.begin(), spans.end());
     if (!spans.empty()) journal([&](Journal& to) { to.cycles(before, spans); });
   };
-  const bool with_hashes = kind_.hashes_come && hashed() && request_.hash_every == 1;
   try {
-    engine_->advance(steps, with_hashes ? &trace_.state_hash : nullptr);
+    engine_->advance(steps, hashes_come() ? &trace_.state_hash : nullptr);
   } catch (...) {
     trace_.seconds += since(begin);
     if (kind_.keeps_state) done();
@@ -270,8 +274,7 @@ void Loop::advance(uint64_t steps) {
 uint64_t Loop::next_stop() const {
   const uint64_t step = trace_.steps_done;
   uint64_t to = sooner(request_.frames, step, sooner(request_.probes, step, log_.next_row(step)));
-  if (hashed() && (request_.hash_every > 1 || !kind_.hashes_come))
-    to = std::min(to, (step / request_.hash_every + 1) * request_.hash_every);
+  if (hashed() && !hashes_come()) to = std::min(to, (step / request_.hash_every + 1) * request_.hash_every);
   if (save_plan_.every_steps > 0) to = std::min(to, saved_step_ + save_plan_.every_steps);
   return std::max(to, step + 1);
 }

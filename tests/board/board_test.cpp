@@ -121,6 +121,35 @@ TEST(Board, OfABrickHoldsGoldensBitsAndFindsTheFaultsCell) {
   }
 }
 
+// Killed, as far as files can tell, between a checkpoint and the next.
+TEST(Board, GoesOnFromACheckpoint) {
+  const SimulatedBoard board;
+  const auto setup = board_setup("grips.toml");
+  emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
+  const EngineKind kind = emu::board_kind(host, setup.scene, setup.plan);
+  const Scratch scratch;
+  RunRequest request;
+  request.steps = 24;
+  request.frames = {0, 11, 24};
+  request.hash_every = 1;
+  request.checkpoint.path = scratch.path("checkpoint");
+  request.checkpoint.every_steps = 5;
+  struct Killed {};
+  request.keep = [](const RunState& state) {
+    if (std::get<State>(state).step == 11) throw Killed();
+  };
+  EXPECT_THROW(record(setup.scene, kind, request), Killed);
+  request.keep = {};
+  request.checkpoint.resume = true;
+  const Recorded resumed = record(setup.scene, kind, request);
+  EXPECT_EQ(resumed.resumed_at, 10u);
+  EXPECT_EQ(difference(setup.plan, golden_trace(setup, 24), resumed.trace), "");
+  EXPECT_EQ(resumed.trace.state_hash.size(), 25u);
+  EXPECT_EQ(resumed.trace.frames.size(), 3u);
+  EXPECT_EQ(resumed.trace.counters.front().first, "cycles");
+  EXPECT_GT(resumed.trace.counters.front().second, static_cast<double>(cycles_of(setup, 14)));
+}
+
 TEST(Board, IsResetInTheMidstOfARun) {
   const SimulatedBoard board;
   const auto setup = board_setup("grips.toml");

@@ -172,6 +172,37 @@ TEST_F(GpuProgram, MeasuresRealNumbersAsTheReferenceDoes) {
   }
 }
 
+// Ctrl-C of the command, which starts the program: until the run is over.
+TEST_F(GpuProgram, GoesOnWhereCtrlCLeftIt) {
+  for (const std::string precision : {"fixed", "float"}) {
+    const std::vector<std::string> plain{
+        "scenes/coupon.toml", "--engine", "gpu", "--precision", precision, "--quiet", "--steps", "1500",
+        "--frame-every",      "500"};
+    const Trace whole = run("whole" + precision, plain);
+    std::vector<std::string> arguments = plain;
+    const std::string out = bench_.path("parts" + precision);
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--out", out, "--checkpoint-every", "1 h"});
+    Answer answer = bench_.cuboct(arguments, 0.8);
+    int interrupts = 0;
+    arguments.emplace_back("--resume");
+    for (; answer.code == 1 && interrupts < 100; ++interrupts) {
+      EXPECT_EQ(answer.err, "interrupted; the same command with --resume goes on at step " +
+                                std::to_string(read_trace(out + "/trace.h5").steps()) + "\n");
+      answer = bench_.cuboct(arguments, 0.8 + 0.2 * interrupts);
+    }
+    EXPECT_GT(interrupts, 0);
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Trace parts = read_trace(out + "/trace.h5");
+    EXPECT_EQ(whole.state_hash, parts.state_hash);
+    EXPECT_EQ(whole.frames, parts.frames);
+    ASSERT_EQ(whole.bodies.size(), parts.bodies.size());
+    for (size_t k = 0; k < whole.bodies.size(); ++k) EXPECT_EQ(whole.bodies[k].x, parts.bodies[k].x);
+    expect_curves(whole, parts, precision == "fixed" ? 1e-12 : 0);
+    EXPECT_FALSE(std::filesystem::exists(out + "/checkpoint"));
+  }
+}
+
 // A cuboct-gpu that reads another scene than it was given.
 void make_wrong(const test::Bench& bench, const std::string& edit) {
   namespace fs = std::filesystem;

@@ -75,5 +75,9 @@ std::unique_ptr<Engine> make_fixed_engine(const Scene&, const Plan&, const State
 std::unique_ptr<Engine> make_real_engine(const Scene&, const Body& body, Arithmetic, const Options&) {
   return std::make_unique<Drifting>(body);
 }
+std::unique_ptr<Engine> resume_real_engine(const Scene&, const Body&, Arithmetic, const Options&,
+                                           const Memory&) {
+  return nullptr;
+}
 
 }  // namespace cuboct::gpu
