@@ -22,8 +22,10 @@ INSTANTIATE_TEST_SUITE_P(Cases, Lattice, testing::ValuesIn(case_names()),
 
 TEST(LatticeRandom, EqualsGolden) {
   Count count;
+  int weighted = 0;
   for (uint64_t seed = 1; seed <= 300; ++seed) {
     const Case c = random_case(seed);
+    weighted += c.setup.plan.rule.weighted;
     const auto all = variants(c.setup.plan);
     // Each seed meets the widest unit and one other variant.
     compare(c, all[seed % 8], count);
@@ -33,6 +35,7 @@ TEST(LatticeRandom, EqualsGolden) {
   EXPECT_GT(count.updates, 100000u);
   EXPECT_GT(count.moves, 500u);
   EXPECT_GT(count.faults, 0u);
+  EXPECT_GT(weighted, 20);
   RecordProperty("updates", static_cast<int>(count.updates));
 }
 

@@ -33,8 +33,8 @@ struct Seen {
   uint64_t emptied = 0;                         // cells that hold particles before a step and none after
   uint64_t busy = 0, filtered = 0, walked = 0;  // TimingCounters
   uint64_t checked = 0;
-  uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, damped = 0, rings_of_3 = 0, lone_nodes = 0,
-           flat = 0, shared = 0, coarse = 0, narrow = 0, serial = 0, bricks = 0;
+  uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, weighted = 0, damped = 0, rings_of_3 = 0,
+           lone_nodes = 0, flat = 0, shared = 0, coarse = 0, narrow = 0, serial = 0, bricks = 0;
 };
 
 emu::CellSlots slots_of(const FixedRule& rule, const Golden& golden) {
@@ -155,6 +155,7 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   seen.bricks += plan.bricks.cells() > 1;
   seen.coarse += plan.rule.widths.filter_frac != Widths{}.filter_frac;
   seen.pd += plan.rule.pd;
+  seen.weighted += plan.rule.weighted && !plan.rule.pd;
   seen.damped += plan.rule.damped;
   const Cell& period = plan.lattice.period();
   seen.rings_of_3 += period[0] == 3 || period[1] == 3 || period[2] == 3;
@@ -252,6 +253,7 @@ TEST(TimingRandom, EqualsTheClockedNode) {
                                                              {"coarse", seen.coarse},
                                                              {"bricks", seen.bricks},
                                                              {"pd", seen.pd},
+                                                             {"weighted", seen.weighted},
                                                              {"damped", seen.damped},
                                                              {"rings_of_3", seen.rings_of_3},
                                                              {"lone_nodes", seen.lone_nodes},

@@ -85,7 +85,7 @@ TEST(FixedRandom, HoldGoldensBits) {
 
 TEST(FixedRandom, BarsOfSeveralSlabsHoldGoldensBits) {
   Met met;
-  int refused = 0, wide = 0, rings = 0, four = 0, pd = 0;
+  int refused = 0, wide = 0, rings = 0, four = 0, pd = 0, weighted = 0;
   for (uint64_t seed = 1; seed <= 220; ++seed) {
     Case c;
     try {
@@ -98,6 +98,7 @@ TEST(FixedRandom, BarsOfSeveralSlabsHoldGoldensBits) {
     wide += plan.rule.widths.velocity_bits > 32;
     for (int a = 0; a < 3; ++a) rings += plan.lattice.period()[a] > 0;
     pd += plan.rule.pd;
+    weighted += plan.rule.weighted;
     four += most_slabs(plan) == 4;
     compare_all(c, seed, met);
     if (HasFatalFailure()) return;
@@ -107,6 +108,7 @@ TEST(FixedRandom, BarsOfSeveralSlabsHoldGoldensBits) {
   EXPECT_GT(rings, 20);
   EXPECT_GT(four, 20);
   EXPECT_GT(pd, 10);
+  EXPECT_GT(weighted, 20);
   EXPECT_GT(met.crossed, 5000u);
   EXPECT_GT(met.faults, 20u);
   EXPECT_GT(met.halo, 10000u);
