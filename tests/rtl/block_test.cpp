@@ -71,6 +71,7 @@ Plan rich() {
   arch.widths.relative_velocity_bits = 17;
   arch.widths.sum_bits = 24;
   arch.widths.displacement_bits = 28;
+  arch.widths.strength_bits = 22;  // more, for the weakest law, would leave no half of c2 t to meet
   arch.table = {.shape = TableChoice::Shape::octaves, .degree = 2, .index_bits = 7};
   return make_setup(rich_scene(), arch).plan;
 }
