@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <memory>
 
+#include "cli/answer.h"
 #include "cli/command.h"
-#include "cli/items.h"
 #include "model/base/error.h"
+#include "model/base/json.h"
 #include "model/base/spelling.h"
 #include "study/bench/bench_gpu.h"
 #include "study/bench/bench_report.h"
@@ -18,24 +19,24 @@ namespace {
 
 struct Options {
   std::string name;
-  bool list = false, json = false;
+  bool list = false;
+  Answer answer;
   int threads = 0;
   BenchLength length;
 };
 
 int bench(const Options& options) {
   const std::vector<Bench> list = benches(options.length, options.threads);
-  if (options.list && options.json) {
+  const Answer& answer = options.answer;
+  if (options.list) {
     std::vector<Items> all(list.size());
-    for (size_t k = 0; k < list.size(); ++k)
+    for (size_t k = 0; k < list.size(); ++k) {
+      answer.say("{:<32} {}\n", list[k].name, list[k].what);
       all[k].add("name", list[k].name), all[k].add("what", list[k].what);
+    }
     Items items;
     items.add_list("benchmarks", "benchmark", all);
-    fmt::print("{}", items.json());
-    return 0;
-  }
-  if (options.list) {
-    for (const Bench& entry : list) fmt::print("{:<32} {}\n", entry.name, entry.what);
+    if (answer.json) answer.close(items);
     return 0;
   }
   std::vector<const Bench*> chosen;
@@ -50,13 +51,26 @@ int bench(const Options& options) {
     throw InputError(fmt::format("no benchmark '{}'", options.name),
                      near.empty() ? "'cuboct bench --list' names them" : near);
   }
-  fmt::print("# {}\n", machine());
+  answer.say("# {}\n", machine());
+  std::vector<std::string> notes;
   if (std::any_of(chosen.begin(), chosen.end(), [](const Bench* entry) { return entry->gpu; }))
     if (const std::string why = gpu_left_out(); !why.empty()) {
-      fmt::print("# gpu: {}{}\n", kSkipped, why);
+      notes.push_back(fmt::format("gpu: {}{}", kSkipped, why));
+      answer.say("# {}\n", notes.back());
       std::erase_if(chosen, [](const Bench* entry) { return entry->gpu; });
     }
-  if (chosen.empty()) return 0;
+  LineReporter reporter(answer.json);
+  const auto end = [&](int code) {
+    notes.insert(notes.end(), reporter.notes().begin(), reporter.notes().end());
+    const auto row = [](const LineReporter::Row& row) {
+      return json_object({{"name", json(row.name)}, {"value", json(row.value)}, {"unit", json("1/s")}});
+    };
+    answer.close(json_object({{"machine", json(machine())},
+                              {"results", json_array(reporter.rows(), row)},
+                              {"notes", json(notes)}}));
+    return code;
+  };
+  if (chosen.empty()) return end(0);
   for (const Bench* entry : chosen)
     benchmark::RegisterBenchmark(entry->name.c_str(), entry->run)
         ->Iterations(1)
@@ -68,9 +82,8 @@ int bench(const Options& options) {
   char name[] = "cuboct";
   char* arguments[] = {name, nullptr};
   benchmark::Initialize(&count, arguments);
-  LineReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
-  return reporter.failed() ? 1 : 0;
+  return end(reporter.failed() ? 1 : 0);
 }
 
 }  // namespace
@@ -80,8 +93,8 @@ void add_bench(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("bench", "measure how fast the engines are");
   command->add_option("name", options->name, "a benchmark, or the first words of some; default: all")
       ->type_name("NAME");
-  auto* list = command->add_flag("--list", options->list, "name the benchmarks");
-  command->add_flag("--json", options->json, "print the list as JSON")->needs(list);
+  command->add_flag("--list", options->list, "name the benchmarks");
+  options->answer.add_to(*command);
   command->add_option("--threads", options->threads, "threads of 'all cores'; default: every core")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");

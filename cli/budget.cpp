@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/base/error.h"
+#include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/spelling.h"
 #include "model/base/text.h"
@@ -102,25 +103,49 @@ std::string command_of(const study::Settings& settings, const std::string& out) 
                      settings.integrator == Integrator::velocity_verlet ? " --integrator verlet" : "");
 }
 
-void print_failure(const BudgetAnswer& answer, const std::string& figure, const std::string& error) {
+void print_failure(const Answer& told, const BudgetAnswer& answer, const std::string& figure,
+                   const std::string& error) {
   const study::SearchResult& result = answer.result;
-  fmt::print("no settings of [search] keep '{}' within {}\n", line_text(figure), line_text(error));
-  fmt::print("the best: {} with {}\n",
-             std::isnan(result.best.error) ? "cannot be run (" + line_text(answer.chosen.why) + ")"
-                                           : signed_percent(result.best.error),
-             line_text(settings_of(answer, result.best.at)));
+  told.say("no settings of [search] keep '{}' within {}\n", line_text(figure), line_text(error));
+  told.say("the best: {} with {}\n",
+           std::isnan(result.best.error) ? "cannot be run (" + line_text(answer.chosen.why) + ")"
+                                         : signed_percent(result.best.error),
+           line_text(settings_of(answer, result.best.at)));
   if (result.accident)
-    fmt::print("  by accident: with a notch finer next to it the error is above the budget\n");
+    told.say("  by accident: with a notch finer next to it the error is above the budget\n");
   const double size = std::abs(result.best.error);
   if (result.limit < 0)
-    fmt::print("what limits cannot be told: no setting has another notch that runs\n");
+    told.say("what limits cannot be told: no setting has another notch that runs\n");
   else if (result.limit_change < 0.1 * size)
-    fmt::print(
+    told.say(
         "what limits is none of these settings: a notch of {}, which matters most, changes the error by {}\n",
         line_text(answer.axes[static_cast<size_t>(result.limit)].name), percent(result.limit_change));
   else
-    fmt::print("what limits is {}: the notch next to it still changes the error by {}\n",
-               line_text(answer.axes[static_cast<size_t>(result.limit)].name), percent(result.limit_change));
+    told.say("what limits is {}: the notch next to it still changes the error by {}\n",
+             line_text(answer.axes[static_cast<size_t>(result.limit)].name), percent(result.limit_change));
+}
+
+// What was chosen, or the best that does not keep the budget, for scripts.
+std::string json_of(const BudgetAnswer& answer, const std::string& figure, const std::string& unit,
+                    double truth, const std::string& command) {
+  const study::SearchResult& result = answer.result;
+  std::vector<std::string> settings;
+  for (size_t a = 0; a < answer.axes.size(); ++a)
+    if (is_used(answer, a))
+      settings.push_back(json_object(
+          {{"name", json(answer.axes[a].name)}, {"value", json(label(answer, a, result.best.at))}}));
+  return json_object({{"figure", json(figure)},
+                      {"unit", json(unit)},
+                      {"truth", json(truth)},
+                      {"met", json(result.met)},
+                      {"value", json(answer.chosen.value)},
+                      {"error", json(answer.chosen.error)},
+                      {"cost", json(answer.chosen.cost)},
+                      {"standard_cost", json(answer.standard.cost)},
+                      {"dt", json(answer.chosen.dt)},
+                      {"measured", std::to_string(result.measured)},
+                      {"settings", json_array(settings)},
+                      {"command", command.empty() ? "null" : json(command)}});
 }
 
 }  // namespace
@@ -162,7 +187,8 @@ void check_budget(const study::Study& study, const std::string& error, const std
                      "list settings from cheap to dear, e.g. [search] dt_safety = [0.8, 0.4, 0.2]");
 }
 
-int run_budget(const study::Study& study, const study::Truth& truth, const BudgetOptions& options) {
+int run_budget(const study::Study& study, const study::Truth& truth, const BudgetOptions& options,
+               const Answer& told) {
   study::BudgetQuestion question;
   question.budget = read_error_budget(options.error);
   question.figure = figure_named(study, options.figure);
@@ -172,22 +198,22 @@ int run_budget(const study::Study& study, const study::Truth& truth, const Budge
   const std::string& figure = study.figures[question.figure].name;
   const study::SearchResult& result = answer.result;
   const std::string& unit = study.figure_units[question.figure];
-  fmt::print("figure '{}': {:.6g} {} by the truth\n", line_text(figure), truth.figures[question.figure],
-             unit);
+  told.say("figure '{}': {:.6g} {} by the truth\n", line_text(figure), truth.figures[question.figure], unit);
   if (!result.met) {
-    print_failure(answer, figure, options.error);
+    print_failure(told, answer, figure, options.error);
+    told.close(json_of(answer, figure, unit, truth.figures[question.figure], ""));
     return 1;
   }
-  fmt::print("the cheapest settings within {}\n\n{}\n", line_text(options.error),
-             block_text(table(answer, question.budget)));
-  fmt::print("as measured: {:.6g} {}, {}\n", answer.chosen.value, unit, signed_percent(answer.chosen.error));
-  fmt::print("cost: {:.3g} transistors x pairs/s, {:.3g} of that of the study's own settings ({:.3g}, {})\n",
-             answer.chosen.cost, answer.chosen.cost / answer.standard.cost, answer.standard.cost,
-             std::isnan(answer.standard.error) ? line_text(answer.standard.why)
-                                               : signed_percent(answer.standard.error));
-  fmt::print("time step: {:.6g} s, {} to a sample\n", answer.chosen.dt,
-             truth.grid.steps_per_sample(answer.chosen.dt));
-  fmt::print("points: {} of {}\n", result.measured, [&] {
+  told.say("the cheapest settings within {}\n\n{}\n", line_text(options.error),
+           block_text(table(answer, question.budget)));
+  told.say("as measured: {:.6g} {}, {}\n", answer.chosen.value, unit, signed_percent(answer.chosen.error));
+  told.say("cost: {:.3g} transistors x pairs/s, {:.3g} of that of the study's own settings ({:.3g}, {})\n",
+           answer.chosen.cost, answer.chosen.cost / answer.standard.cost, answer.standard.cost,
+           std::isnan(answer.standard.error) ? line_text(answer.standard.why)
+                                             : signed_percent(answer.standard.error));
+  told.say("time step: {:.6g} s, {} to a sample\n", answer.chosen.dt,
+           truth.grid.steps_per_sample(answer.chosen.dt));
+  told.say("points: {} of {}\n", result.measured, [&] {
     size_t all = 1;
     for (const Axis& axis : answer.axes) all *= axis.sets.size();
     return all;
@@ -201,7 +227,9 @@ int run_budget(const study::Study& study, const study::Truth& truth, const Budge
       "\n";
   write_text(options.out + "/cheapest.toml", head + texts.scene);
   write_text(options.out + "/cheapest_arch.toml", head + texts.arch);
-  fmt::print("{}\n", line_text(command_of(answer.chosen.settings, options.out)));
+  const std::string command = command_of(answer.chosen.settings, options.out);
+  told.say("{}\n", line_text(command));
+  told.close(json_of(answer, figure, unit, truth.figures[question.figure], command));
   return 0;
 }
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "cli/answer.h"
 #include "study/study.h"
 #include "study/truth.h"
 
@@ -26,6 +27,7 @@ size_t figure_named(const study::Study& study, const std::string& name);
 void check_budget(const study::Study& study, const std::string& error, const std::string& figure);
 
 // Prints what was chosen and writes it to DIR. The exit code: 0, or 1 where no settings keep the budget.
-int run_budget(const study::Study& study, const study::Truth& truth, const BudgetOptions& options);
+int run_budget(const study::Study& study, const study::Truth& truth, const BudgetOptions& options,
+               const Answer& answer);
 
 }  // namespace cuboct

@@ -8,8 +8,10 @@
 #include <array>
 #include <memory>
 
+#include "cli/answer.h"
 #include "cli/estimate.h"
 #include "cli/quantity_text.h"
+#include "cli/stages.h"
 #include "cli/summary.h"
 #include "hw/cycles.h"
 #include "hw/node_area.h"
@@ -309,14 +311,23 @@ std::string stage_text(const Scene& scene) {
   return text + (scene.rule.damping.coefficient > 0 ? ", damped" : "");
 }
 
-// Of a scene with stages all are told, and the first looked at unless another is chosen.
+// Of a scene with stages all are told, parts in one line, and the first looked at unless another is chosen.
 Items stages_in(Input& input) {
   Items items;
-  const std::vector<std::string> names = stages_of(input.scene);
-  for (size_t k = 0; k < names.size(); ++k)
-    items.add(fmt::format("stage {}-{}", k + 1, names[k]),
-              stage_text(load_scene(input.scene, {names[k], {}, true})));
-  if (!names.empty() && input.stage.empty()) input.stage = names.front();
+  const std::vector<StageName> names = stages_of(input.scene);
+  for (size_t k = 0; k < names.size(); k += names[k].parts) {
+    const std::string text = stage_text(load_scene(input.scene, {names[k].name, {}, true}));
+    if (names[k].parts == 1)
+      items.add("stage " + stage_title(names, k), text);
+    else
+      items.add(
+          fmt::format("stages {} to {}", stage_title(names, k), stage_title(names, k + names[k].parts - 1)),
+          fmt::format("{} parts, each {}", names[k].parts, text));
+  }
+  if (!names.empty()) {
+    const StageRange taken = stages_to_take(input.scene, names, input.stage);
+    if (input.stage.empty() || taken.end - taken.first > 1) input.stage = names[taken.first].name;
+  }
   input.looks_only = true;
   return items;
 }
@@ -326,20 +337,21 @@ Items stages_in(Input& input) {
 void add_check(CLI::App& app, int&) {
   struct Options {
     Input input;
-    bool machine = false, json = false;
+    bool machine = false;
+    Answer answer;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("check", "read a scene and print what a run of it does and takes");
   options->input.add_to(*command);
   options->input.add_start_to(*command);
   command->add_flag("--machine", options->machine, "print what would be built: formats, records, cycles");
-  command->add_flag("--json", options->json, "print all as JSON");
+  options->answer.add_to(*command);
   command->callback([options] {
     const Items stages = stages_in(options->input);
     const Loaded loaded = load(options->input);
-    Items items = options->json || options->machine ? resolve(loaded) : physics(loaded);
+    Items items = options->answer.json || options->machine ? resolve(loaded) : physics(loaded);
     for (const Items::Item& stage : stages.all()) items.add(stage.name, stage.text);
-    fmt::print("{}", options->json ? items.json() : items.text());
+    options->answer.close(items);
   });
 }
 

@@ -7,20 +7,24 @@
 #include <memory>
 #include <optional>
 
+#include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/crosscheck_real.h"
+#include "cli/outputs.h"
 #include "cli/run_engines.h"
+#include "cli/stages.h"
 #include "cli/summary.h"
 #include "hw/engines.h"
 #include "model/analysis/meter.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
+#include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
-#include "model/base/progress.h"
 #include "model/base/spelling.h"
 #include "model/base/text.h"
 #include "model/trace/compare.h"
+#include "model/trace/trace_file.h"
 
 namespace cuboct {
 namespace {
@@ -32,6 +36,7 @@ struct Options {
   std::string out;
   uint64_t steps = 0;
   bool steps_given = false;
+  Answer answer;
 };
 
 // Whether numbers are to be compared instead of bits.
@@ -51,33 +56,7 @@ bool of_real_numbers(const Options& options) {
 
 bool by_link(const Trace& trace) { return trace.stop && is_of_link(trace.stop->fault); }
 
-// What became of the faults that were injected.
-void tell_faults(const std::string& engine, const Trace& trace) {
-  const auto counted = [&](const std::string& name) -> std::optional<double> {
-    for (const auto& [counter, value] : trace.counters)
-      if (counter == "faults_" + name) return value;
-    return std::nullopt;
-  };
-  if (!counted("injected")) return;
-  fmt::print(
-      "{}: {:.0f} faults injected ({:.0f} flipped, {:.0f} dropped, {:.0f} repeated, {:.0f} in "
-      "acknowledgements), {:.0f} detected, {:.0f} healed\n",
-      engine, *counted("injected"), *counted("flipped"), *counted("dropped"), *counted("repeated"),
-      *counted("in_acks"), *counted("detected"), *counted("healed"));
-}
-
-int crosscheck(Options options) {
-  std::optional<DirectoryLock> lock;
-  if (of_real_numbers(options)) {
-    if (!options.out.empty()) {
-      lock.emplace(options.out, "cuboct crosscheck");
-      check_writable(options.out + "/gpu.h5");
-    }
-    options.choice.precision = options.choice.precision.empty() ? "float" : options.choice.precision;
-    options.choice.check({"gpu"}, options.input);
-    return crosscheck_real(options.input, options.choice,
-                           options.steps_given ? std::optional(options.steps) : std::nullopt, options.out);
-  }
+void check_engines(const Options& options) {
   for (const std::string& engine : options.engines) {
     if (const EngineRow* row = find_engine(engine); row && !row->bits)
       throw InputError(fmt::format("engine '{}' computes in doubles and has no bits to compare", engine),
@@ -90,85 +69,241 @@ int crosscheck(Options options) {
     throw InputError("a crosscheck needs two or more different engines",
                      "--engines golden,lattice,systemc,rtl");
   options.choice.check(options.engines, options.input);
+}
+
+// The comparison of one run: it tells people as it goes, and keeps the same for scripts.
+class Comparison {
+ public:
+  Comparison(const Options& options, const Loaded& loaded, const std::vector<Trace>& traces)
+      : options_(options), loaded_(loaded), traces_(traces) {}
+
+  // The exit code.
+  int compare_all();
+  const Items& items() const { return items_; }
+
+ private:
+  const std::string& name(size_t i) const { return options_.engines[i]; }
+  int end(const char* verdict, int code);
+  bool same_plan();
+  void tell_mismatch(size_t a, size_t b, const Mismatch& mismatch);
+  void tell_engines();
+  void tell_faults(size_t i);
+
+  const Options& options_;
+  const Loaded& loaded_;
+  const std::vector<Trace>& traces_;
+  Items items_;
+};
+
+int Comparison::end(const char* verdict, int code) {
+  items_.add("verdict", verdict);
+  tell_engines();
+  return code;
+}
+
+bool Comparison::same_plan() {
+  const uint64_t hash = loaded_.setup.plan.hash;
+  for (size_t a = 0; a < traces_.size(); ++a) {
+    if (traces_[a].plan_hash == hash) continue;
+    const std::string text =
+        fmt::format("plan hash: cuboct {:016x}, {} {:016x}", hash, name(a), traces_[a].plan_hash);
+    options_.answer.say("mismatch: {}\n", text);
+    items_.add("mismatch", text);
+    return false;
+  }
+  return true;
+}
+
+void Comparison::tell_mismatch(size_t a, size_t b, const Mismatch& mismatch) {
+  const Answer& answer = options_.answer;
+  const std::string text = mismatch.text(name(a), name(b), loaded_.setup.plan.lattice);
+  answer.say("mismatch: {}\n", text);
+  items_.add("mismatch", text);
+  if (mismatch.kind == Mismatch::Kind::state) {
+    const Scratch second;
+    const std::string first =
+        explain({options_.input, options_.choice, loaded_, second.path("")}, name(a), name(b), mismatch.step);
+    answer.say("first difference: {}\n", first);
+    items_.add("first difference", first);
+  }
+  if (mismatch.kind == Mismatch::Kind::length || mismatch.kind == Mismatch::Kind::stop)
+    for (const size_t i : {a, b})
+      answer.say("{}: {}\n", name(i), traces_[i].stop ? line_text(traces_[i].stop->text) : "not stopped");
+}
+
+// What became of the faults that were injected.
+void Comparison::tell_faults(size_t i) {
+  const auto counted = [&](const std::string& fault) -> std::optional<double> {
+    for (const auto& [counter, value] : traces_[i].counters)
+      if (counter == "faults_" + fault) return value;
+    return std::nullopt;
+  };
+  if (!counted("injected")) return;
+  options_.answer.say(
+      "{}: {:.0f} faults injected ({:.0f} flipped, {:.0f} dropped, {:.0f} repeated, {:.0f} in "
+      "acknowledgements), {:.0f} detected, {:.0f} healed\n",
+      name(i), *counted("injected"), *counted("flipped"), *counted("dropped"), *counted("repeated"),
+      *counted("in_acks"), *counted("detected"), *counted("healed"));
+}
+
+void Comparison::tell_engines() {
+  std::vector<Items> engines(traces_.size());
+  for (size_t i = 0; i < traces_.size(); ++i) {
+    engines[i].add("name", name(i));
+    engines[i].add("steps", traces_[i].steps());
+    engines[i].add("seconds", traces_[i].seconds);
+    if (traces_[i].stop) engines[i].add("stopped", traces_[i].stop->text);
+    for (const auto& [counter, value] : traces_[i].counters) engines[i].add(counter, value);
+  }
+  items_.add_list("engines", "engine", engines);
+}
+
+int Comparison::compare_all() {
+  const Answer& answer = options_.answer;
+  if (!same_plan()) return end("mismatch", 1);
+  uint64_t phase_times = 0;
+  bool link_failed = false;
+  for (size_t a = 0; a < traces_.size(); ++a)
+    for (size_t b = a + 1; b < traces_.size(); ++b) {
+      const auto mismatch = compare(traces_[a], traces_[b]);
+      if (!mismatch) {
+        if (!traces_[a].cycles.empty() && !traces_[b].cycles.empty()) phase_times = traces_[a].cycles.size();
+        continue;
+      }
+      // All that a run held before one of its links failed is equal, and the run says so.
+      if ((by_link(traces_[a]) || by_link(traces_[b])) && mismatch->kind != Mismatch::Kind::state) {
+        link_failed = true;
+        continue;
+      }
+      tell_mismatch(a, b, *mismatch);
+      return end("mismatch", 1);
+    }
+  if (link_failed) {
+    for (size_t i = 0; i < traces_.size(); ++i) {
+      tell_faults(i);
+      if (by_link(traces_[i]))
+        answer.say("{} stopped after {} matched steps: {}\n", name(i), traces_[i].steps(),
+                   line_text(traces_[i].stop->text));
+    }
+    return end("a link failed", 1);
+  }
+  const Trace& first = traces_[0];
+  const uint64_t updates = updates_compared(first, loaded_.setup.plan.particles);
+  answer.say("matched {} updates over {} steps in {} engines\n", updates, first.steps(), traces_.size());
+  items_.add("updates", updates);
+  items_.add("steps", first.steps());
+  if (first.reached) {
+    answer.say("all ended {}\n", reached_text(first));
+    items_.add("ended", reached_text(first));
+  }
+  if (phase_times > 0) {
+    answer.say("matched {} phase times\n", phase_times);
+    items_.add("phase times", phase_times);
+  }
+  for (size_t i = 0; i < traces_.size(); ++i) tell_faults(i);
+  if (!first.stop) return end("matched", 0);
+  answer.say("all stopped: {}\n", line_text(first.stop->text));
+  items_.add("stopped", first.stop->text);
+  return end("all stopped", 1);
+}
+
+// The state in which all engines ended, for a run to begin with.
+void leave_state(const std::string& directory, const Loaded& loaded, Trace& trace) {
+  make_directory(directory);
+  const std::string path = directory + "/trace.h5";
+  const TraceHead head = head_of(loaded, false, false);
+  TraceWriter writer(path, temporary_beside(path), true, &head);
+  writer.add(trace.frames.back());
+  trace.frames.clear();
+  writer.finish(trace);
+}
+
+struct Crossed {
+  int code = 0;
+  bool reached = false;
+  Items items;
+};
+
+// `leave`: a directory for the last state; empty: none is asked for.
+Crossed cross_once(const Options& options, const std::string& leave) {
   const Loaded loaded = load_plan(options.input);
-  catch_interrupts();
-  const Setup& setup = loaded.setup;
-  const Plan& plan = setup.plan;
   const Scratch scratch;
+  std::optional<DirectoryLock> lock;
   std::string directory = scratch.path("");
   if (!options.out.empty()) {
     lock.emplace(options.out, "cuboct crosscheck");
     for (const std::string& engine : options.engines) check_writable(options.out + "/" + engine + ".h5");
     directory = options.out;
   }
-
-  const uint64_t steps = options.steps_given ? options.steps : loaded.scene.steps;
   RunRequest request;
-  request.steps = steps;
-  if (loaded.scene.until) request.until = true, request.probes = probe_steps_of(loaded.scene, steps);
-  const std::vector<Trace> traces =
+  request.steps = options.steps_given ? options.steps : loaded.scene.steps;
+  if (loaded.scene.until) request.until = true, request.probes = probe_steps_of(loaded.scene, request.steps);
+  if (!leave.empty()) request.frames = {request.steps};
+  std::vector<Trace> traces =
       run_all({options.input, options.choice, loaded, directory}, options.engines, request);
   for (size_t i = 0; i < traces.size(); ++i)
     if (!options.out.empty() && engine_row(options.engines[i]).here != Here::none)
       write_trace(options.out + "/" + options.engines[i] + ".h5", traces[i]);
-  if (interrupted()) {
-    fmt::print(stderr, "interrupted\n");
-    return 1;
-  }
+  if (interrupted()) throw Failed("interrupted");
+  Comparison comparison(options, loaded, traces);
+  const int code = comparison.compare_all();
+  Crossed crossed{code, traces[0].reached.has_value(), comparison.items()};
+  if (code == 0 && !leave.empty()) leave_state(leave, loaded, traces[0]);
+  return crossed;
+}
 
-  for (size_t a = 0; a < traces.size(); ++a) {
-    if (traces[a].plan_hash != plan.hash) {
-      fmt::print("mismatch: plan hash: cuboct {:016x}, {} {:016x}\n", plan.hash, options.engines[a],
-                 traces[a].plan_hash);
-      return 1;
-    }
+// One stage after the other, each from the state in which all engines ended the one before it.
+int cross_stages(const Options& options, const std::vector<StageName>& names, const StageRange& range) {
+  if (options.steps_given) throw InputError("--steps goes with --stage NAME: each stage has its own steps");
+  for (size_t k = range.first; k < range.end; ++k)
+    read_scene(options.input.scene, {.begins = true, .stage = names[k].name});
+  const Scratch scratch;
+  std::string from = options.input.from, ended;  // ended: a stage whose `until` held in an earlier part
+  std::vector<std::string> told;
+  int code = 0;
+  for (size_t k = range.first; k < range.end && code == 0; ++k) {
+    if (names[k].stage == ended) continue;
+    const std::string title = stage_title(names, k);
+    Options one = options;
+    one.input.stage = names[k].name;
+    one.input.from = from;
+    if (!options.out.empty()) one.out = options.out + "/" + title;
+    options.answer.say("stage {}\n", title);
+    from = scratch.path(title);
+    const Crossed crossed = cross_once(one, from);
+    code = crossed.code;
+    if (crossed.reached) ended = names[k].stage;
+    told.push_back(json_object({{"name", json(names[k].name)}, {"result", crossed.items.json()}}));
   }
-  uint64_t phase_times = 0;
-  bool link_failed = false;
-  for (size_t a = 0; a < traces.size(); ++a) {
-    for (size_t b = a + 1; b < traces.size(); ++b) {
-      const auto mismatch = compare(traces[a], traces[b]);
-      if (!mismatch) {
-        if (!traces[a].cycles.empty() && !traces[b].cycles.empty()) phase_times = traces[a].cycles.size();
-        continue;
-      }
-      // All that a run held before one of its links failed is equal, and the run says so.
-      if ((by_link(traces[a]) || by_link(traces[b])) && mismatch->kind != Mismatch::Kind::state) {
-        link_failed = true;
-        continue;
-      }
-      fmt::print("mismatch: {}\n", mismatch->text(options.engines[a], options.engines[b], plan.lattice));
-      if (mismatch->kind == Mismatch::Kind::state) {
-        const Scratch second;
-        fmt::print("first difference: {}\n", explain({options.input, options.choice, loaded, second.path("")},
-                                                     options.engines[a], options.engines[b], mismatch->step));
-      }
-      if (mismatch->kind == Mismatch::Kind::length || mismatch->kind == Mismatch::Kind::stop)
-        for (const size_t i : {a, b})
-          fmt::print("{}: {}\n", options.engines[i],
-                     traces[i].stop ? line_text(traces[i].stop->text) : "not stopped");
-      return 1;
-    }
+  options.answer.close(json_object({{"stages", json_array(told)}}));
+  return code;
+}
+
+int cross_real(Options options) {
+  std::optional<DirectoryLock> lock;
+  if (!options.out.empty()) {
+    lock.emplace(options.out, "cuboct crosscheck");
+    check_writable(options.out + "/gpu.h5");
   }
-  if (link_failed) {
-    for (size_t i = 0; i < traces.size(); ++i) {
-      tell_faults(options.engines[i], traces[i]);
-      if (by_link(traces[i]))
-        fmt::print("{} stopped after {} matched steps: {}\n", options.engines[i], traces[i].steps(),
-                   line_text(traces[i].stop->text));
-    }
-    return 1;
-  }
-  fmt::print("matched {} updates over {} steps in {} engines\n", updates_compared(traces[0], plan.particles),
-             traces[0].steps(), traces.size());
-  if (traces[0].reached) fmt::print("all ended {}\n", reached_text(traces[0]));
-  if (phase_times > 0) fmt::print("matched {} phase times\n", phase_times);
-  for (size_t i = 0; i < traces.size(); ++i) tell_faults(options.engines[i], traces[i]);
-  if (traces[0].stop) {
-    fmt::print("all stopped: {}\n", line_text(traces[0].stop->text));
-    return 1;
-  }
-  return 0;
+  options.choice.precision = options.choice.precision.empty() ? "float" : options.choice.precision;
+  options.choice.check({"gpu"}, options.input);
+  return crosscheck_real(options.input, options.choice,
+                         options.steps_given ? std::optional(options.steps) : std::nullopt, options.out,
+                         options.answer);
+}
+
+int crosscheck(const Options& options) {
+  catch_interrupts();
+  if (of_real_numbers(options)) return cross_real(options);
+  check_engines(options);
+  const std::vector<StageName> names = stages_of(options.input.scene);
+  const StageRange range = stages_to_take(options.input.scene, names, options.input.stage);
+  if (range.end - range.first > 1) return cross_stages(options, names, range);
+  Options one = options;
+  if (names.size() == 1) one.input.stage = names[0].name;
+  const Crossed crossed = cross_once(one, "");
+  if (options.answer.json) options.answer.close(crossed.items);
+  return crossed.code;
 }
 
 }  // namespace
@@ -191,7 +326,11 @@ void add_crosscheck(CLI::App& app, int& exit_code) {
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
                     ->check(whole_number())
                     ->type_name("N");
-  command->add_option("--out", options->out, "directory that keeps each engine's trace")->type_name("DIR");
+  command
+      ->add_option("--out", options->out,
+                   "directory that keeps each engine's trace; of a scene of stages, a directory each")
+      ->type_name("DIR");
+  options->answer.add_to(*command);
   command->callback([options, steps, &exit_code] {
     options->steps_given = steps->count() > 0;
     exit_code = crosscheck(*options);

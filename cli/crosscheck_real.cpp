@@ -22,10 +22,16 @@ double largest(const std::vector<Vec3>& of) {
   return most;
 }
 
-// Prints the particle whose error is the largest share of its bound. Whether all are within.
+// What is told of a comparison: lines for people, and the same for scripts.
+struct Told {
+  const Answer& answer;
+  std::vector<Items> errors{};
+};
+
+// The particle whose error is the largest share of its bound. Whether all are within.
 template <class Bound>
-bool tell(const std::string& what, const std::vector<Vec3>& got, const std::vector<Vec3>& exact, Bound bound,
-          const char* unit, const std::string& more) {
+bool tell(Told& told, const std::string& what, const std::vector<Vec3>& got, const std::vector<Vec3>& exact,
+          Bound bound, const char* unit, const std::string& more) {
   double worst = -1, most = 0;
   size_t at = 0;
   for (size_t i = 0; i < got.size(); ++i) {
@@ -35,10 +41,17 @@ bool tell(const std::string& what, const std::vector<Vec3>& got, const std::vect
     if (share > worst || std::isnan(share)) worst = share, at = i;
     if (std::isnan(share)) break;
   }
-  fmt::print("{}: largest error {:.3g} {}{}; nearest to its bound: particle {}, {:.3g} of {:.3g} {}\n", what,
-             most, unit, more, at, (got[at] - exact[at]).norm(), bound(at), unit);
+  Items& items = told.errors.emplace_back();
+  items.add("of", what);
+  items.add("largest_error", most);
+  items.add("unit", unit);
+  items.add("particle", uint64_t{at});
+  items.add("error", (got[at] - exact[at]).norm());
+  items.add("bound", double{bound(at)});
+  told.answer.say("{}: largest error {:.3g} {}{}; nearest to its bound: particle {}, {:.3g} of {:.3g} {}\n",
+                  what, most, unit, more, at, (got[at] - exact[at]).norm(), bound(at), unit);
   if (worst <= 1) return true;
-  fmt::print(
+  told.answer.say(
       "beyond its bound: particle {} has ({:.9g}, {:.9g}, {:.9g}) {}, the reference ({:.9g}, {:.9g}, "
       "{:.9g})\n",
       at, got[at][0], got[at][1], got[at][2], unit, exact[at][0], exact[at][1], exact[at][2]);
@@ -83,7 +96,8 @@ Short::Short(const Scene& scene, bool floats, uint64_t most) {
   for (size_t i = 0; i < x.size(); ++i) of_floats = std::max(of_floats, (other.body().x[i] - x[i]).norm());
 }
 
-bool check_forces(const Scene& scene, const RealFrame& frame, bool floats, const std::string& when) {
+bool check_forces(Told& told, const Scene& scene, const RealFrame& frame, bool floats,
+                  const std::string& when) {
   Body body = scene.body;
   body.x = frame.x;
   body.v = frame.v;
@@ -92,14 +106,14 @@ bool check_forces(const Scene& scene, const RealFrame& frame, bool floats, const
   const std::vector<double> mine = force_bounds(scene, body.x, body.v, gpu_roundings(scene, floats)).force;
   const std::vector<double> its = force_bounds(scene, body.x, body.v, reference_roundings(scene)).force;
   return tell(
-      "forces " + when, frame.force, exact, [&](size_t i) { return mine[i] + its[i]; }, "N",
+      told, "forces " + when, frame.force, exact, [&](size_t i) { return mine[i] + its[i]; }, "N",
       fmt::format(", largest force {:.3g} N", largest(exact)));
 }
 
 }  // namespace
 
 int crosscheck_real(const Input& input, const EngineOptions& choice, std::optional<uint64_t> steps,
-                    const std::string& out) {
+                    const std::string& out, const Answer& answer) {
   const Loaded loaded = load_plan(input);
   const Scene& scene = loaded.scene;
   catch_interrupts();
@@ -117,28 +131,36 @@ int crosscheck_real(const Input& input, const EngineOptions& choice, std::option
                                 out.empty() ? scratch.path("gpu.h5") : out + "/gpu.h5", out.empty())
                           .finish()
                           .trace;
-  if (interrupted()) {
-    fmt::print(stderr, "interrupted\n");
-    return 1;
-  }
+  if (interrupted()) throw Failed("interrupted");
+  Told told{answer};
+  const auto end = [&](const std::string& verdict, int code) {
+    Items items;
+    items.add("verdict", verdict);
+    items.add("steps", trace.steps());
+    items.add("precision", choice.precision);
+    items.add_list("errors", "error", told.errors);
+    if (answer.json) answer.close(items);
+    return code;
+  };
   if (trace.stop || trace.steps() != last) {
-    fmt::print("gpu: {}\n",
-               trace.stop ? line_text(trace.stop->text) : fmt::format("ended at step {}", trace.steps()));
-    return 1;
+    const std::string why =
+        trace.stop ? line_text(trace.stop->text) : fmt::format("ended at step {}", trace.steps());
+    answer.say("gpu: {}\n", why);
+    return end("gpu: " + why, 1);
   }
-  bool within = check_forces(scene, trace.bodies.front(), floats, "at the start");
+  bool within = check_forces(told, scene, trace.bodies.front(), floats, "at the start");
   if (last > 0)
-    within &= check_forces(scene, trace.bodies.back(), floats, fmt::format("after {} steps", last));
+    within &= check_forces(told, scene, trace.bodies.back(), floats, fmt::format("after {} steps", last));
   for (const RealFrame& frame : trace.bodies)
     if (frame.step == exact.step && exact.step > 0)
       within &= tell(
-          fmt::format("positions after {} steps", exact.step), frame.x, exact.x,
+          told, fmt::format("positions after {} steps", exact.step), frame.x, exact.x,
           [&](size_t) { return exact.bound; }, "m",
           fmt::format(" (of the reference in floats {:.3g} m)", exact.of_floats));
   if (within)
-    fmt::print("within bounds: {} particles over {} steps, gpu in {} against the reference in doubles\n",
+    answer.say("within bounds: {} particles over {} steps, gpu in {} against the reference in doubles\n",
                scene.body.size(), last, floats ? "floats" : "doubles");
-  return within ? 0 : 1;
+  return within ? end("within bounds", 0) : end("beyond bounds", 1);
 }
 
 }  // namespace cuboct

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/engine_run.h"
 
@@ -18,6 +19,6 @@ namespace cuboct {
 inline constexpr uint64_t kRealSteps = 100;
 constexpr double kRealTold(bool floats) { return floats ? 1e-4 : 1e-10; }
 int crosscheck_real(const Input& input, const EngineOptions& choice, std::optional<uint64_t> steps,
-                    const std::string& out);
+                    const std::string& out, const Answer& answer);
 
 }  // namespace cuboct

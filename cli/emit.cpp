@@ -7,7 +7,9 @@
 
 #include "cli/command.h"
 #include "cli/emit.h"
+#include "cli/stages.h"
 #include "hw/rtl_emit.h"
+#include "model/base/json.h"
 #include "model/base/text.h"
 #include "model/scene/config.h"
 
@@ -24,19 +26,80 @@ std::string chosen_before(const std::string& arch, const std::string& out) {
 
 }  // namespace
 
-void say_emitted(const std::string& out, const Plan& plan) {
-  fmt::print("{}: {} nodes, {} particles, plan {:016x}\n", line_text(out), plan.nodes(), plan.particles,
+Items say_emitted(const std::string& out, const Plan& plan, const Answer& answer) {
+  answer.say("{}: {} nodes, {} particles, plan {:016x}\n", line_text(out), plan.nodes(), plan.particles,
              plan.hash);
+  Items items;
+  items.add("directory", out);
+  items.add("nodes", plan.nodes());
+  items.add("particles", plan.particles);
+  items.add("cells per node", plan.bricks.cells());
+  items.add("filter lanes", plan.arch.filter_lanes);
+  items.add("force pipes", plan.arch.force_pipes);
+  items.add("plan hash", fmt::format("{:016x}", plan.hash));
+  return items;
 }
 
-void add_emit(CLI::App& app, int& exit_code) {
-  struct Options {
-    Input input;
-    std::string out, fit;
-    uint64_t vector_steps = 8;
-    BoardChoice board;
-    bool fixed_velocities = false;
-  };
+namespace {
+
+struct Options {
+  Input input;
+  std::string out, fit;
+  uint64_t vector_steps = 8;
+  BoardChoice board;
+  bool fixed_velocities = false;
+  Answer answer;
+};
+
+Items emit_one(const Options& options) {
+  const Loaded loaded = load(options.input);
+  emit_rtl(loaded.setup.plan, loaded.setup.initial, options.out, options.vector_steps, options.board,
+           chosen_before(options.input.arch, options.out));
+  return say_emitted(options.out, loaded.setup.plan, options.answer);
+}
+
+// A machine for each stage, in directories of their names. `from` of the input holds the runs of all.
+void emit_stages(const Options& options, const std::vector<StageName>& names, const StageRange& range) {
+  if (options.input.from.empty())
+    throw InputError(
+        "stages begin where the ones before them ended: --from DIR says where 'cuboct run' left them",
+        "--stage NAME takes one");
+  std::vector<Options> all;
+  for (size_t k = range.first; k < range.end; ++k) {
+    Options& one = all.emplace_back(options);
+    one.input.stage = names[k].name;
+    one.input.from = k > 0 ? stage_start(options.input.from, names, k) : "";
+    one.out = options.out + "/" + stage_title(names, k);
+    load(one.input);  // none is written where one cannot be
+    check_emit_directory(one.out);
+  }
+  std::vector<std::string> told;
+  for (const Options& one : all)
+    told.push_back(json_object({{"name", json(one.input.stage)}, {"result", emit_one(one).json()}}));
+  options.answer.close(json_object({{"stages", json_array(told)}}));
+}
+
+void emit(Options options) {
+  options.board.velocities = !options.fixed_velocities;
+  if (!options.board.name.empty()) bit_clocks16(board_of(options.board.name), options.board.baud);
+  if (!options.fit.empty()) {
+    if (!options.input.stage.empty() || !options.input.from.empty())
+      throw InputError("--fit chooses a machine for a scene that begins with its packing",
+                       "emit without --fit takes --stage and --from");
+    emit_fitted(options.input, options.fit, options.out, options.vector_steps, options.board, options.answer);
+    return;
+  }
+  const std::vector<StageName> names = stages_of(options.input.scene);
+  const StageRange range = stages_to_take(options.input.scene, names, options.input.stage);
+  if (range.end - range.first > 1) return emit_stages(options, names, range);
+  if (names.size() == 1) options.input.stage = names[0].name;
+  const Items items = emit_one(options);
+  if (options.answer.json) options.answer.close(items);
+}
+
+}  // namespace
+
+void add_emit(CLI::App& app, int&) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("emit", "write the scene's machine as a self-contained RTL project");
   options->input.add_to(*command);
@@ -67,23 +130,8 @@ void add_emit(CLI::App& app, int& exit_code) {
       ->add_flag("--fixed-velocities", options->fixed_velocities,
                  "the host cannot set the velocities of held and moved types: less area")
       ->needs(board);
-  command->callback([options, &exit_code] {
-    options->board.velocities = !options->fixed_velocities;
-    if (!options->board.name.empty()) bit_clocks16(board_of(options->board.name), options->board.baud);
-    if (!options->fit.empty()) {
-      if (!options->input.stage.empty() || !options->input.from.empty())
-        throw InputError("--fit chooses a machine for a scene that begins with its packing",
-                         "emit without --fit takes --stage and --from");
-      exit_code =
-          emit_fitted(options->input, options->fit, options->out, options->vector_steps, options->board);
-      return;
-    }
-    const Loaded loaded = load(options->input);
-    const Plan& plan = loaded.setup.plan;
-    emit_rtl(plan, loaded.setup.initial, options->out, options->vector_steps, options->board,
-             chosen_before(options->input.arch, options->out));
-    say_emitted(options->out, plan);
-  });
+  options->answer.add_to(*command);
+  command->callback([options] { emit(*options); });
 }
 
 }  // namespace cuboct

@@ -5,16 +5,18 @@
 #include <cstdint>
 #include <string>
 
+#include "cli/answer.h"
 #include "cli/command.h"
 #include "hw/board.h"
 
 namespace cuboct {
 
-// Chooses the arch for a device and writes the project. 0, or 1 where a tool failed or somebody interrupted.
-int emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
-                const BoardChoice& board);
+// Chooses the arch for a device and writes the project. Throws Failed where a tool failed or somebody
+// interrupted.
+void emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
+                 const BoardChoice& board, const Answer& answer);
 
-// The line that ends an emission.
-void say_emitted(const std::string& out, const Plan& plan);
+// What ends an emission: a line for people, and for scripts.
+Items say_emitted(const std::string& out, const Plan& plan, const Answer& answer);
 
 }  // namespace cuboct

@@ -23,8 +23,8 @@ struct Said {
 
 }  // namespace
 
-int emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
-                const BoardChoice& board) {
+void emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
+                 const BoardChoice& board, const Answer& answer) {
   const synth::Target& device = synth::fit_target(target, board);
   check_emit_directory(out);
   catch_interrupts();
@@ -37,16 +37,16 @@ int emit_fitted(const Input& input, const std::string& target, const std::string
     const Setup setup = fitter.setup();
     const std::string table = fitter.table();
     emit_rtl(setup.plan, setup.initial, out, vector_steps, board, fitter.arch_text());
-    fmt::print("{}{:<16} {}/arch.toml\n", block_text(table), "arch", line_text(out));
-    say_emitted(out, setup.plan);
+    answer.say("{}{:<16} {}/arch.toml\n", block_text(table), "arch", line_text(out));
+    Items items = say_emitted(out, setup.plan, answer);
+    items.add("target", target);
+    items.add("arch", out + "/arch.toml");
+    if (answer.json) answer.close(items);
   } catch (const synth::ToolFailed& error) {
-    fmt::print(stderr, "{}\n", line_text(error.what()));
-    return 1;
+    throw Failed(error.what());
   } catch (const synth::Interrupted&) {
-    fmt::print(stderr, "interrupted; nothing was written\n");
-    return 1;
+    throw Failed("interrupted; nothing was written");
   }
-  return 0;
 }
 
 }  // namespace cuboct

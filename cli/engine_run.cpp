@@ -78,7 +78,10 @@ EngineRun::EngineRun(const std::string& engine, const Input& input, const Loaded
   request.checkpoint.resume = options.resume;
   const std::string program = program_of(row, options);
   if (program.empty()) {
-    here_ = [&row, &loaded, &options, request] { return run_here(row, loaded, options, request); };
+    here_ = [&row, &loaded, &options, request] {
+      return with_places(loaded.scene, loaded.setup.plan.arch,
+                         [&] { return run_here(row, loaded, options, request); });
+    };
     return;
   }
   request.cycles &= row.counts_if_asked;

@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <memory>
 
+#include "cli/answer.h"
 #include "cli/budget.h"
 #include "cli/command.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
+#include "model/base/json.h"
 #include "model/base/text.h"
 #include "study/measure_run.h"
 #include "study/page.h"
@@ -23,40 +25,48 @@ struct Options {
   std::vector<std::string> add;
   int jobs = 0;
   bool no_speed = false;
+  Answer answer;
 };
 
 std::string default_directory(const std::string& study) {
   return std::filesystem::path(study).stem().string() + ".study";
 }
 
-void print_table(const study::Results& results) {
-  fmt::print("{}\n{}", block_text(study::describe(results.truth, results)),
+// Charts need gnuplot; the page does not, but a charting library in the build.
+void report(const study::Results& results, const std::string& out, const std::string& left_out,
+            const Answer& answer) {
+  answer.say("{}\n{}", block_text(study::describe(results.truth, results)),
              block_text(study::cheapest_per_decade(results)));
   size_t refused = 0, unstable = 0;
   for (const study::Outcome& outcome : results.outcomes) {
     refused += outcome.status == study::Status::refused;
     unstable += outcome.status == study::Status::unstable;
   }
-  fmt::print("{} points, {} refused, {} unstable\n", results.outcomes.size(), refused, unstable);
-}
-
-// Charts need gnuplot; the page does not, but a charting library in the build.
-void report(const study::Results& results, const std::string& out) {
-  print_table(results);
+  answer.say("{} points, {} refused, {} unstable\n", results.outcomes.size(), refused, unstable);
+  const std::string page = out + "/page.html";
   if (study::has_page()) {
-    study::write_page(results, out + "/page.html");
-    fmt::print("page: {}/page.html\n", line_text(out));
+    study::write_page(results, page);
+    answer.say("page: {}\n", line_text(page));
   } else {
     fmt::print(stderr,
                "no page: this cuboct was built without the npm packages of study/web\n"
                "  hint: tools/setup fetches them; then configure and build again\n");
   }
+  std::vector<std::string> charts;
   try {
-    const size_t charts = study::write_charts(results, out + "/charts").size();
-    fmt::print("charts: {} in {}/charts\n", charts, line_text(out));
+    charts = study::write_charts(results, out + "/charts");
+    answer.say("charts: {} in {}/charts\n", charts.size(), line_text(out));
   } catch (const InputError& error) {
     fmt::print(stderr, "no charts: {}\n", error.what());
   }
+  answer.close(json_object({{"directory", json(out)},
+                            {"points", std::to_string(results.outcomes.size())},
+                            {"refused", std::to_string(refused)},
+                            {"unstable", std::to_string(unstable)},
+                            {"left_out", left_out.empty() ? "null" : json(left_out)},
+                            {"best", study::cheapest_json(results)},
+                            {"page", study::has_page() ? json(page) : "null"},
+                            {"charts", json(charts)}}));
 }
 
 int explore(const Options& options) {
@@ -69,22 +79,23 @@ int explore(const Options& options) {
   study::Store store(out + "/results.db", study);
   catch_interrupts();
   for (const std::string& file : options.add)
-    fmt::print("{} rows from {}\n", store.add(file), line_text(file));
+    options.answer.say("{} rows from {}\n", store.add(file), line_text(file));
   study::Runner runner(study, store, {.jobs = options.jobs, .speed = !options.no_speed});
   try {
-    if (budget) return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs});
+    if (budget)
+      return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs},
+                        options.answer);
     if (study.points.empty())
       throw InputError(fmt::format("{}: no [[sweep]], so there are no points", options.study),
                        "--error asks its [search]");
     runner.run();
   } catch (const study::Interrupted&) {
-    fmt::print(stderr, "interrupted; the same command goes on where it was\n");
-    return 1;
+    throw Failed("interrupted; the same command goes on where it was");
   }
   if (!runner.left_out().empty())
-    fmt::print("{}\n  hint: --add FILE takes them from another machine's results.db\n",
-               line_text(runner.left_out()));
-  report(store.results(), out);
+    options.answer.say("{}\n  hint: --add FILE takes them from another machine's results.db\n",
+                       line_text(runner.left_out()));
+  report(store.results(), out, runner.left_out(), options.answer);
   return 0;
 }
 
@@ -109,6 +120,7 @@ void add_explore(CLI::App& app, int& exit_code) {
       ->type_name("E");
   command->add_option("--figure", options->figure, "the figure of --error")->type_name("NAME");
   command->add_flag("--no-speed", options->no_speed, "measure errors alone");
+  options->answer.add_to(*command);
   command->callback([options, &exit_code] { exit_code = explore(*options); });
 }
 

@@ -34,7 +34,8 @@ void add_stability(CLI::App& app, int&) { add_left_out(app, "stability", "studie
 
 #ifndef CUBOCT_HAS_SYNTH
 void add_synth(CLI::App& app, int&) { add_left_out(app, "synth", "synthesis", "CUBOCT_SYNTH"); }
-int emit_fitted(const Input&, const std::string&, const std::string&, uint64_t, const BoardChoice&) {
+void emit_fitted(const Input&, const std::string&, const std::string&, uint64_t, const BoardChoice&,
+                 const Answer&) {
   refuse("emit --fit", "synthesis", "CUBOCT_SYNTH");
 }
 #endif

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/answer.h"
 #include "cli/command.h"
-#include "cli/engine_run.h"
 #include "cli/help.h"
 #include "model/base/output.h"
 #include "model/base/resources.h"
@@ -113,10 +113,10 @@ int main_of(int argc, char** argv) {
     return app.exit(help);
   } catch (const CLI::Error& error) {
     return plain(error.what(), 2);
-  } catch (const AlreadyTold& told) {
-    return told.exit_code;
   } catch (const InputError& error) {
     return tell(error, as_json, 2);
+  } catch (const Failed& failed) {
+    return tell(failed.error, as_json, 1);
   } catch (const std::bad_alloc&) {
     return plain(fmt::format("out of memory: {} are free now", in_bytes(static_cast<double>(free_memory()))),
                  1);

@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/answer.h"
 #include "cli/command.h"
-#include "cli/items.h"
 #include "cli/templates.h"
+#include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/spelling.h"
 #include "model/base/text.h"
@@ -34,7 +35,8 @@ const std::vector<Template>& templates() {
 
 struct Options {
   std::string name, like = "tension";
-  bool list = false, force = false, json = false;
+  bool list = false, force = false;
+  Answer answer;
 };
 
 const Template& template_of(const std::string& like) {
@@ -48,19 +50,17 @@ const Template& template_of(const std::string& like) {
 }
 
 void make(const Options& options) {
-  if (options.json) {
+  const Answer& answer = options.answer;
+  if (options.list) {
     std::vector<Items> all;
     for (const Template& one : templates()) {
+      answer.say("{:<8} {}\n", one.name, one.what());
       all.emplace_back().add("name", one.name);
       all.back().add("what", one.what());
     }
     Items items;
     items.add_list("templates", "template", all);
-    fmt::print("{}", items.json());
-    return;
-  }
-  if (options.list) {
-    for (const Template& one : templates()) fmt::print("{:<8} {}\n", one.name, one.what());
+    if (answer.json) answer.close(items);
     return;
   }
   if (options.name.empty())
@@ -72,7 +72,8 @@ void make(const Options& options) {
   check_writable(path);
   write_text(path, like.text);
   const std::string shown = line_text(path);
-  fmt::print("{}: {}\n  cuboct check {}\n  cuboct run {} --out out/{}\n", shown, like.what(), shown, shown,
+  answer.close(json_object({{"file", json(path)}}));
+  answer.say("{}: {}\n  cuboct check {}\n  cuboct run {} --out out/{}\n", shown, like.what(), shown, shown,
              line_text(std::filesystem::path(path).stem()));
 }
 
@@ -87,8 +88,8 @@ void add_new(CLI::App& app, int&) {
   command->add_option("--like", options->like, "what it shows: see --list")
       ->capture_default_str()
       ->type_name("TEMPLATE");
-  auto* list = command->add_flag("--list", options->list, "tell what templates there are");
-  command->add_flag("--json", options->json, "print the list as JSON")->needs(list);
+  command->add_flag("--list", options->list, "tell what templates there are");
+  options->answer.add_to(*command);
   command->add_flag("--force", options->force, "replace a file of that name");
   command->callback([options] { make(*options); });
 }

@@ -106,6 +106,7 @@ void write_record(const std::string& directory, const RunRecord& record) {
                     {"engine", record.engine},
                     {"state", record.state}};
   if (!record.stage.empty()) table.insert("stage", record.stage);
+  if (record.reached) table.insert("reached", true);
   if (!record.from.empty()) table.insert("from", relative_to(directory, record.from));
   std::ostringstream text;
   text << table << '\n';
@@ -129,7 +130,8 @@ RunRecord read_record(const std::string& directory) {
                      table["engine"].value_or(std::string()),
                      table["state"].value_or(std::string("finished")),
                      table["stage"].value_or(std::string()),
-                     from("from")};
+                     from("from"),
+                     table["reached"].value_or(false)};
     // A stranger's record may name what never ends, as a device.
     for (const auto& [key, file] : {std::pair{"scene", record.scene}, {"arch", record.arch}})
       if ((key[0] == 's' || !file.empty()) && !fs::is_regular_file(file))

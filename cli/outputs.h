@@ -53,6 +53,7 @@ struct RunRecord {
   std::string state =
       "finished";               // or "running" (or killed), "interrupted", "stopped" (a fault), "incomplete"
   std::string stage{}, from{};  // model/run/start.h
+  bool reached = false;         // `until` ended it
 };
 void write_record(const std::string& directory, const RunRecord& record);
 // Paths as they are to be opened now. InputError where the directory holds no run.

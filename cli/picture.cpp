@@ -9,8 +9,10 @@
 #include <memory>
 #include <optional>
 
+#include "cli/answer.h"
 #include "cli/command.h"
 #include "model/base/directory_lock.h"
+#include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
 #include "model/trace/raster_plot.h"
@@ -23,6 +25,7 @@ struct Options {
   std::vector<uint64_t> steps;
   double limit = 0;
   int width = 1600;
+  Answer answer;
 };
 
 std::vector<size_t> frames_of(const Rasters& rasters, const std::vector<uint64_t>& steps) {
@@ -69,7 +72,8 @@ void draw(const Options& options) {
   check_writable(out);
   const std::string png = plot_rasters(rasters, picture);
   write_text(out, png);
-  fmt::print("{}\n", line_text(out));
+  options.answer.say("{}\n", line_text(out));
+  options.answer.close(json_object({{"file", json(out)}}));
 }
 
 }  // namespace
@@ -99,6 +103,7 @@ void add_picture(CLI::App& app, int&) {
       ->check(CLI::Range(400, 16384))
       ->capture_default_str()
       ->type_name("PX");
+  options->answer.add_to(*command);
   command->callback([options] { draw(*options); });
 }
 

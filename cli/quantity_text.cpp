@@ -7,18 +7,24 @@
 
 namespace cuboct {
 
-std::string quantity_text(double value, const std::string& unit) {
+Multiple multiple_of(double largest, const std::string& unit) {
   static const char* const kPrefixes[] = {"f", "p", "n", "u", "m", "", "k", "M", "G", "T"};
   constexpr int kOne = 5, kCount = 10;
+  // A kilogram has its prefix.
+  if (largest == 0 || unit.empty() || unit == "1" || unit.starts_with("kg")) return {1, unit};
+  const int place = kOne + static_cast<int>(std::floor(std::log10(std::abs(largest)) / 3 + 1e-9));
+  if (place < 0 || place >= kCount) return {1, unit};
+  return {std::pow(1000.0, place - kOne), kPrefixes[place] + unit};
+}
+
+std::string quantity_text(double value, const std::string& unit) {
   // As it is printed: 999.9 are 1000.
   const double digits = value == 0 ? 0 : std::floor(std::log10(std::abs(value)) + 1e-9);
   const double shown =
       value == 0 ? 0 : std::round(value / std::pow(10, digits - 2)) * std::pow(10, digits - 2);
-  const int place =
-      shown == 0 ? kOne : kOne + static_cast<int>(std::floor(std::log10(std::abs(shown)) / 3 + 1e-9));
-  if (unit.empty() || place < 0 || place >= kCount)
-    return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
-  return fmt::format("{:.4g} {}{}", shown / std::pow(1000.0, place - kOne), kPrefixes[place], unit);
+  const Multiple in = multiple_of(shown, unit);
+  if (in.name == unit) return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
+  return fmt::format("{:.4g} {}", shown / in.unit, in.name);
 }
 
 std::string count_text(double count) {

@@ -6,6 +6,13 @@
 
 namespace cuboct {
 
+// The unit in which numbers up to `largest` are 1 to 1000: 1e-3 of "m" is "mm".
+struct Multiple {
+  double unit;  // of the given unit in one of this
+  std::string name;
+};
+Multiple multiple_of(double largest, const std::string& unit);
+
 // "3.2 mm" of 0.0032 and "m"; "2.5e-20 J" beyond the prefixes. A mass is in g.
 std::string quantity_text(double value, const std::string& unit);
 

@@ -138,6 +138,7 @@ struct Recorder::Impl {
     add(xyz, frame);
     add(packed_xyz, frame);
     add(lammps, frame);
+    if (options.see) options.see(frame);
     ++frames;
   }
 
@@ -209,6 +210,7 @@ void Recorder::finish(const Trace& trace, const Items& summary, const std::strin
   to.packed_xyz.writer.reset();
   to.lammps.writer.reset();
   whole("summary.json", [&] { write_text(to.path("summary.json"), summary.json()); });
+  to.options.record.reached = trace.reached.has_value();
   whole("run.toml", [&] { to.write_state(to.first_error.empty() ? state : "incomplete"); });
 }
 

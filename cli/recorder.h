@@ -2,6 +2,7 @@
 // The directory of a run, written as the run goes: no more than the frame at hand is held.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ struct RecorderOptions {
   // At most what the trace will hold besides frames, bytes: taken from the disk before the first step, so
   // that frames that fill it cost themselves alone.
   uint64_t rest = 0;
+  std::function<void(const Frame&)> see{};  // each frame, with axial strain
 };
 
 class Recorder {

@@ -9,13 +9,16 @@
 #include <optional>
 #include <set>
 
+#include "cli/answer.h"
 #include "cli/check.h"
-#include "cli/outputs.h"
+#include "cli/quantity_text.h"
+#include "cli/report.h"
+#include "cli/report_pictures.h"
 #include "cli/summary.h"
-#include "hw/state_bounds.h"
 #include "model/analysis/tension.h"
 #include "model/base/base64.h"
 #include "model/base/directory_lock.h"
+#include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
 #include "model/trace/compare.h"
@@ -34,44 +37,27 @@ const Probe* first_tension(const Scene& scene, const Trace& trace) {
   return nullptr;
 }
 
-size_t nearest_frame(const Trace& trace, uint64_t step) {
+size_t nearest_frame(const Shots& shots, uint64_t step) {
   size_t best = 0;
   const auto distance = [&](size_t k) {
-    return trace.frames[k].step > step ? trace.frames[k].step - step : step - trace.frames[k].step;
+    return shots.step(k) > step ? shots.step(k) - step : step - shots.step(k);
   };
-  for (size_t k = 1; k < trace.frames.size(); ++k)
+  for (size_t k = 1; k < shots.size(); ++k)
     if (distance(k) < distance(best)) best = k;
   return best;
 }
 
-std::vector<Vec3> positions_of(const Plan& plan, const State& state) {
-  return to_real(state, plan.rule, plan.lattice, plan.origin).x;
-}
-
-// The first frame in which an initial neighbour is out of the law's reach, by halving: bonds that broke stay
-// broken, as a rule.
-std::optional<size_t> crack_onset(const Loaded& loaded, const Trace& trace, const StrainMeter& meter) {
-  const auto broken = [&](size_t k) {
-    const auto all =
-        meter.deformations(positions_of(loaded.setup.plan, trace.frames[k]), 0, loaded.scene.rule.cutoff());
-    return std::ranges::any_of(all, [](const Deformation& one) { return one.broken > 0; });
-  };
-  size_t whole = 0, parted = trace.frames.size() - 1;
-  if (broken(whole) || !broken(parted)) return std::nullopt;
-  while (parted - whole > 1) (broken((whole + parted) / 2) ? parted : whole) = (whole + parted) / 2;
-  return parted;
-}
-
 // Frames that tell the story: the start, the first broken bond, the largest stress, a quarter of the way from
 // there to the end, the end; where those fall together, evenly spread ones too.
-std::vector<size_t> choose_frames(const Scene& scene, const Trace& trace, std::optional<size_t> onset) {
-  const size_t last = trace.frames.size() - 1;
+std::vector<size_t> choose_frames(const Scene& scene, const Trace& trace, const Shots& shots,
+                                  std::optional<size_t> onset) {
+  const size_t last = shots.size() - 1;
   std::set<size_t> chosen{0, last};
   if (onset) chosen.insert(*onset);
   if (const Probe* probe = first_tension(scene, trace)) {
     const Curve& stress = *tension_of(trace.curves, probe->name)->stress;
     const auto largest = std::max_element(stress.value.begin(), stress.value.end()) - stress.value.begin();
-    const size_t peak = nearest_frame(trace, stress.step[static_cast<size_t>(largest)]);
+    const size_t peak = nearest_frame(shots, stress.step[static_cast<size_t>(largest)]);
     chosen.insert(peak);
     chosen.insert(peak + (last - peak) / 4);
   }
@@ -80,57 +66,22 @@ std::vector<size_t> choose_frames(const Scene& scene, const Trace& trace, std::o
   return {chosen.begin(), chosen.end()};
 }
 
-// Where the colours end: as `cuboct picture` has it, of the same rasters; without them, of these particles.
-double colour_limit(const std::string& directory, const std::vector<std::vector<float>>& strains) {
+// Where the colours end: as `cuboct picture` has it, of the same rasters; without them the frames tell.
+std::optional<double> colour_limit(const std::string& directory) {
   const std::string rasters = directory + "/rasters.h5";
-  if (fs::exists(rasters)) return usual_limit(read_rasters(rasters), Field::strain);
-  std::vector<float> all;
-  for (const auto& strain : strains)
-    for (const float one : strain)
-      if (std::isfinite(one)) all.push_back(std::abs(one));
-  if (all.empty()) return 0;
-  const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 90 / 100);
-  std::nth_element(all.begin(), end, all.end());
-  return *end;
+  if (!fs::exists(rasters)) return std::nullopt;
+  return usual_limit(read_rasters(rasters), Field::strain);
 }
 
-std::string pictures(const Loaded& loaded, const Trace& trace, const StrainMeter& meter,
-                     const std::vector<size_t>& chosen, std::optional<size_t> onset,
-                     const std::string& directory) {
-  const Plan& plan = loaded.setup.plan;
-  const double radius = frame_style(loaded.scene).radius;
-
-  // Of one frame at a time only the strains are kept: there may be millions of particles.
-  std::vector<std::vector<float>> strains;
-  Vec3 lower = Vec3::Constant(INFINITY), upper = -lower;
-  for (const size_t k : chosen) {
-    const std::vector<Vec3> x = positions_of(plan, trace.frames[k]);
-    for (const Vec3& one : x) lower = lower.cwiseMin(one), upper = upper.cwiseMax(one);
-    const std::vector<double> strain = meter.axial(x, strain_axis(loaded.scene));
-    strains.emplace_back(strain.begin(), strain.end());
-  }
-  const double limit = std::max(colour_limit(directory, strains), 1e-9);
-  int height = 0;
-  constexpr int kWidth = 1100;
-  const View view = view_of(lower - Vec3::Constant(radius), upper + Vec3::Constant(radius), kWidth, height);
-  std::vector<Image> images;
+std::string pictures(const Loaded& loaded, const Shots& shots, const std::vector<size_t>& chosen,
+                     std::optional<size_t> onset, const std::string& directory) {
   std::vector<std::string> labels;
-  for (size_t n = 0; n < chosen.size(); ++n) {
-    const State& state = trace.frames[chosen[n]];
-    std::vector<Colour> colours;
-    colours.reserve(strains[n].size());
-    for (const float strain : strains[n]) colours.push_back(diverging(strain / limit));
-    images.push_back(render(positions_of(plan, state), colours, radius, view, kWidth, height));
-    labels.push_back(fmt::format("step {}    t = {:.4g} s{}", state.step,
-                                 static_cast<double>(state.step) * plan.rule.dt,
-                                 chosen[n] == onset ? "    first frame with a broken bond" : ""));
-  }
-  const std::string png =
-      plot_pictures(images, labels,
-                    fmt::format("axial strain along {}, % (colours end at the 90th percentile of all frames)",
-                                "xyz"[strain_axis(loaded.scene)]),
-                    100 * limit);
-  return base64(png.data(), png.size());
+  for (const size_t k : chosen)
+    labels.push_back(fmt::format("step {}    t = {:.4g} s{}", shots.step(k),
+                                 static_cast<double>(shots.step(k)) * loaded.setup.plan.rule.dt,
+                                 k == onset ? "    first frame with a broken bond" : ""));
+  return draw_frames(
+      loaded.scene, labels, [&](size_t n) { return shots.frame(chosen[n]); }, colour_limit(directory));
 }
 
 // Where the frame's step falls on a curve.
@@ -172,9 +123,8 @@ std::string tension_table(const Tension& tension, const Probe& probe) {
       given, rows, tension_window(tension.strain->value.size()));
 }
 
-// `marks`: the frames that are pictured.
-std::string stress_strain(const Trace& trace, const Tension& tension, const Probe& probe,
-                          const std::vector<size_t>& marks) {
+// `marks`: the steps of the frames that are pictured.
+std::string stress_strain(const Tension& tension, const Probe& probe, const std::vector<uint64_t>& marks) {
   const size_t window = tension_window(tension.strain->value.size());
   Series readings, mean;
   readings.faint = true;
@@ -182,26 +132,12 @@ std::string stress_strain(const Trace& trace, const Tension& tension, const Prob
   for (const double strain : tension.strain->value) readings.x.push_back(100 * strain);
   for (const double stress : tension.stress->value) readings.y.push_back(1e-6 * stress);
   mean.x = running_mean(readings.x, window), mean.y = running_mean(readings.y, window);
-  for (const size_t k : marks) {
-    const size_t at = sample_at(*tension.strain, trace.frames[k].step);
+  for (const uint64_t step : marks) {
+    const size_t at = sample_at(*tension.strain, step);
     mean.marks.emplace_back(mean.x[at], mean.y[at]);
   }
   return figure({readings, mean}, "strain of the gauge length, %", "stress, MPa") +
          tension_table(tension, probe);
-}
-
-// Numbers up to `largest` of an SI unit, in the multiple of it that makes them 1 to 1000.
-struct Multiple {
-  double unit;  // SI units in one
-  std::string name;
-};
-Multiple multiple_of(double largest, const std::string& unit) {
-  static const std::string kPrefixes[] = {"f", "p", "n", "µ", "m", "", "k", "M", "G", "T"};
-  const int last = static_cast<int>(std::size(kPrefixes)) - 1;
-  const int thousands =
-      largest > 0 && unit.size() < 3 ? static_cast<int>(std::floor(std::log10(largest) / 3 + 1e-9)) : 0;
-  if (thousands < -5 || thousands + 5 > last) return {1, unit};
-  return {std::pow(1000.0, thousands), kPrefixes[thousands + 5] + unit};
 }
 
 // Curves over time, in one figure; `names`: with what the key calls them. `change`: since the first sample.
@@ -233,7 +169,7 @@ std::string over_time(const Trace& trace, double dt,
 }
 
 // Every curve that has more than one sample.
-std::string curve_section(const Loaded& loaded, const Trace& trace, const std::vector<size_t>& chosen) {
+std::string curve_section(const Loaded& loaded, const Trace& trace, const std::vector<uint64_t>& marks) {
   const double dt = loaded.scene.rule.dt;
   const Probe* first = first_tension(loaded.scene, trace);
   std::string out;
@@ -246,7 +182,7 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
       case Probe::Kind::stress_strain:
         if (const auto tension = tension_of(trace.curves, probe.name))
           section("Stress and strain: " + probe.name,
-                  stress_strain(trace, *tension, probe, &probe == first ? chosen : std::vector<size_t>()));
+                  stress_strain(*tension, probe, &probe == first ? marks : std::vector<uint64_t>()));
         break;
       case Probe::Kind::force:
         section("Force: " + probe.name,
@@ -415,14 +351,29 @@ constexpr char kStyle[] =
     "th,td{padding:.25rem .8rem .25rem 0;text-align:left;border-bottom:1px solid #eee;vertical-align:top}"
     ".plain td{overflow-wrap:anywhere}th{font-weight:600}.note{color:#777}.bad{color:#b00020}";
 
-void report(const std::string& directory, std::string out) {
-  std::optional<DirectoryLock> lock;
+}  // namespace
+
+std::string page_head(const std::string& title, int refresh) {
+  // The policy lets a browser run nothing and load nothing.
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n{0}"
+      "<meta http-equiv=\"Content-Security-Policy\" "
+      "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>{1}</title>\n<style>{2}</style>\n</head>\n<body>\n<h1>{1}</h1>\n",
+      refresh > 0 ? fmt::format("<meta http-equiv=\"refresh\" content=\"{}\">\n", refresh) : "",
+      html_text(title), kStyle);
+}
+
+std::string page_picture(const std::string& png) {
+  return fmt::format(
+      "<figure class=\"wide\"><img alt=\"The particles, coloured by axial strain\" "
+      "src=\"data:image/png;base64,{}\"></figure>\n",
+      base64(png.data(), png.size()));
+}
+
+void write_report(const std::string& directory, const std::string& out) {
   const RunRecord record = read_record(directory);
-  if (out.empty()) {
-    lock.emplace(directory, "cuboct report");
-    out = directory + "/report.html";
-  }
-  check_writable(out);
   Input input{record.scene, record.arch};
   input.stage = record.stage;
   input.from = record.from;
@@ -433,42 +384,47 @@ void report(const std::string& directory, std::string out) {
     throw InputError(fmt::format("{}/trace.h5 was made by plan {:016x}, but {} now gives plan {:016x}",
                                  directory, trace.plan_hash, record.scene, plan.hash),
                      "run the scene again");
-  check_frames(trace, bounds_of(plan), directory + "/trace.h5");
-  std::string html = fmt::format(
-      // The policy lets a browser run nothing and load nothing.
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
-      "http-equiv=\"Content-Security-Policy\" "
-      "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, "
-      "initial-scale=1\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</"
-      "h1>\n"
-      "<p class=\"lead\">{2} particles on {3} nodes, {4} steps of {5:.4g} s in the {6} engine{7}.</p>\n",
-      html_text(loaded.scene.title.empty() ? record.scene : loaded.scene.title), kStyle, plan.particles,
-      plan.nodes(), trace.steps(), plan.rule.dt, html_text(trace.engine),
-      trace.asked && trace.steps() != trace.asked && !trace.reached
-          ? fmt::format(", <b class=\"bad\">{} after {} of {} steps</b>", trace.ended(), trace.steps(),
-                        *trace.asked)
-          : "");
+  const Shots shots(loaded, trace, directory + "/trace.h5");
+  std::string html = page_head(loaded.scene.title.empty() ? record.scene : loaded.scene.title);
+  html +=
+      fmt::format("<p class=\"lead\">{} particles{}, {} steps of {:.4g} s in the {} engine{}.</p>\n",
+                  plan.particles, trace.state_hash.empty() ? "" : fmt::format(" on {} nodes", plan.nodes()),
+                  trace.steps(), plan.rule.dt, html_text(trace.engine),
+                  trace.asked && trace.steps() != trace.asked && !trace.reached
+                      ? fmt::format(", <b class=\"bad\">{} after {} of {} steps</b>", trace.ended(),
+                                    trace.steps(), *trace.asked)
+                      : "");
   // A run in real numbers, which has no hashes, needs no widths.
   html += warning_section(trace.state_hash.empty() ? std::vector<std::string>() : plan.warnings, trace);
-  std::vector<size_t> chosen;
-  if (!trace.frames.empty()) {
-    const StrainMeter meter = strain_meter(loaded.scene, positions_of(plan, loaded.setup.initial));
-    const std::optional<size_t> onset = crack_onset(loaded, trace, meter);
-    chosen = choose_frames(loaded.scene, trace, onset);
-    html += fmt::format(
-        "<figure><img alt=\"The particles, coloured by axial strain\" "
-        "src=\"data:image/png;base64,{}\"></figure>\n",
-        pictures(loaded, trace, meter, chosen, onset, directory));
+  std::vector<uint64_t> marks;
+  if (shots.size() > 0) {
+    const std::optional<size_t> onset = shots.crack_onset();
+    const std::vector<size_t> chosen = choose_frames(loaded.scene, trace, shots, onset);
+    for (const size_t k : chosen) marks.push_back(shots.step(k));
+    html += page_picture(pictures(loaded, shots, chosen, onset, directory));
   }
-  html += curve_section(loaded, trace, chosen);
+  html += curve_section(loaded, trace, marks);
   html += engine_section(loaded, trace, directory);
   html += phase_section(trace);
   html += "<h2>Run</h2>\n" + table_of(facts_of(loaded, trace));
   html += "<h2>Plan</h2>\n" + table_of(resolve(loaded), "steps");  // the scene's, which need not be the run's
   html += "</body>\n</html>\n";
   write_text(out, html);
-  fmt::print("{}\n", line_text(out));
+}
+
+namespace {
+
+void report(const std::string& directory, std::string out, const Answer& answer) {
+  std::optional<DirectoryLock> lock;
+  static_cast<void>(read_record(directory));  // a directory that holds no run gets no lock
+  if (out.empty()) {
+    lock.emplace(directory, "cuboct report");
+    out = directory + "/report.html";
+  }
+  check_writable(out);
+  write_report(directory, out);
+  answer.say("{}\n", line_text(out));
+  answer.close(json_object({{"file", json(out)}}));
 }
 
 }  // namespace
@@ -476,6 +432,7 @@ void report(const std::string& directory, std::string out) {
 void add_report(CLI::App& app, int&) {
   struct Options {
     std::string directory, out;
+    Answer answer;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("report", "make one HTML file of a run's directory");
@@ -486,7 +443,8 @@ void add_report(CLI::App& app, int&) {
       ->required()
       ->type_name("DIR");
   command->add_option("--out", options->out, "the HTML file; default: DIR/report.html")->type_name("FILE");
-  command->callback([options] { report(options->directory, options->out); });
+  options->answer.add_to(*command);
+  command->callback([options] { report(options->directory, options->out, options->answer); });
 }
 
 }  // namespace cuboct

@@ -9,13 +9,16 @@
 #include <memory>
 #include <optional>
 #include <system_error>
+#include <utility>
 
+#include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/engine_run.h"
 #include "cli/estimate.h"
 #include "cli/recorder.h"
 #include "cli/stages.h"
 #include "cli/summary.h"
+#include "cli/view.h"
 #include "hw/engines.h"
 #include "model/base/interrupt.h"
 #include "model/base/process.h"
@@ -36,9 +39,10 @@ struct Options {
   std::vector<std::string> frames{"xyz", "vtp"};
   uint32_t raster = 800;
   bool in_stages = false;  // one run of several, which are summed up together
-  bool steps_given = false, frames_given = false, formats_given = false, json = false, no_watch = false,
-       no_states = false, si = false, raster_given = false, force = false, anyway = false, quiet = false,
-       verbose = false;
+  Answer answer;
+  bool steps_given = false, frames_given = false, formats_given = false, no_watch = false, no_states = false,
+       si = false, raster_given = false, force = false, anyway = false, quiet = false, verbose = false,
+       view = false, opens = true;
 
   // Of the frames' files.
   std::vector<std::string> formats() const {
@@ -58,6 +62,7 @@ struct Options {
     needs_out(raster_given, "--raster");
     needs_out(no_states, "--no-states");
     needs_out(si, "--si");
+    needs_out(view, "--view");
     if (out.empty() && engines.keeps_checkpoints())
       throw InputError(fmt::format("{} needs --out DIR, where the checkpoint lies",
                                    engines.resume ? "--resume" : "--checkpoint-every"));
@@ -123,6 +128,9 @@ std::string plan_text(const Options& options, const Plan& plan) {
   return text;
 }
 
+// Frames of a run that is viewed and of which nobody says how many.
+constexpr uint64_t kViewed = 40;
+
 // How a run ended.
 struct Ended {
   int code = 0;
@@ -137,7 +145,8 @@ Ended run_once(const Options& options) {
   const bool real = options.engines.is_real(options.engine);
   RunRequest request;
   request.steps = options.steps_given ? options.steps : scene.steps;
-  const uint64_t every = options.frames_given ? options.frame_every : scene.frame_every;
+  uint64_t every = options.frames_given ? options.frame_every : scene.frame_every;
+  if (options.view && every == 0) every = std::max<uint64_t>(1, request.steps / kViewed);
   check_size(options, loaded, request.steps, every);
   request.probes = every_so_often(scene.probe_every, request.steps);
   request.energies = request.totals = true;
@@ -149,21 +158,27 @@ Ended run_once(const Options& options) {
   if (options.engines.keeps_checkpoints()) request.checkpoint.path = options.out + "/checkpoint";
   const std::string checkpoint = request.checkpoint.path;
   std::optional<Recorder> recorder;
+  std::optional<LiveView> view;
   if (!options.out.empty()) {
     request.frames = every_so_often(every, request.steps);
-    recorder.emplace(RecorderOptions{options.out,
-                                     {options.input.scene, options.input.arch, options.engine, "running",
-                                      options.input.stage, options.input.from},
-                                     options.engines.resume,
-                                     options.force,
-                                     options.no_states,
-                                     options.formats(),
-                                     options.raster,
-                                     real,
-                                     options.si,
-                                     counts_cycles(options),
-                                     rest_of(options, loaded, request.steps, request.probes.size())},
-                     loaded);
+    RecorderOptions kept;
+    kept.directory = options.out;
+    kept.record = {options.input.scene, options.input.arch,  options.engine,
+                   "running",           options.input.stage, options.input.from};
+    kept.resume = options.engines.resume;
+    kept.force = options.force;
+    kept.no_states = options.no_states;
+    kept.frames = options.formats();
+    kept.raster = options.raster;
+    kept.real = real;
+    kept.si = options.si;
+    kept.cycles = counts_cycles(options);
+    kept.rest = rest_of(options, loaded, request.steps, request.probes.size());
+    kept.see = [&](const Frame& frame) {
+      if (view) view->show(frame);
+    };
+    recorder.emplace(std::move(kept), loaded);
+    if (options.view) view.emplace(options.out, loaded, request.steps, options.opens);
     request.keep = [&](const RunState& frame) {
       std::visit([&](const auto& state) { recorder->keep(state); }, frame);
     };
@@ -191,12 +206,14 @@ Ended run_once(const Options& options) {
                                        : "finished";
   if (recorder)
     std::signal(SIGPIPE, SIG_IGN);  // a reader that went away costs the summary's lines, not the files
-  if (!options.in_stages || !options.json)
-    if (const std::string unprinted = print(summary, options.json); trouble.empty()) trouble = unprinted;
+  if (!options.in_stages || !options.answer.json)
+    if (const std::string unprinted = print(summary, options.answer.json); trouble.empty())
+      trouble = unprinted;
   if (recorder) {
     recorder->finish(trace, summary, state);
     if (!recorder->trouble().empty()) trouble = recorder->trouble();
   }
+  if (view) view->end();
   if (unfinished)
     fmt::print(stderr, "interrupted{}\n",
                run.left_checkpoint
@@ -213,20 +230,23 @@ int run(Options options) {
   options.engines.check({options.engine}, options.input);
   options.check_kept();
   static_cast<void>(options.formats());
-  const std::vector<std::string> names = stages_of(options.input.scene);
+  const std::vector<StageName> names = stages_of(options.input.scene);
   if (names.empty()) return run_once(options).code;
   if (options.out.empty())
     throw InputError(
         "a scene of stages needs --out DIR, where each keeps the state that the next one begins with");
   if (options.no_states) throw InputError("--no-states keeps no state with which the next stage could begin");
-  if (options.steps_given && options.input.stage.empty())
+  const StageRange taken = stages_to_take(options.input.scene, names, options.input.stage);
+  if (options.steps_given && (options.input.stage.empty() || taken.end - taken.first > 1))
     throw InputError("--steps goes with --stage NAME: each stage has its own steps");
-  StageRun request{options.input.scene, names,       options.input.stage,
-                   options.input.from,  options.out, options.engines.resume,
-                   options.force,       options.json};
+  StageRun request{
+      options.input.scene,    names,         options.input.stage, options.input.from, options.out,
+      options.engines.resume, options.force, options.answer.json};
+  bool opens = true;  // one page is enough
   return run_stages(request, [&](const StageDirectory& stage) {
     Options one = options;
     one.in_stages = true;
+    one.opens = std::exchange(opens, false);
     one.input.stage = stage.name;
     one.input.from = stage.from;
     one.out = stage.path;
@@ -284,12 +304,15 @@ void add_run(CLI::App& app, int& exit_code) {
                     "the trace in DIR holds positions and velocities in m and m/s as well");
   command->add_flag("--no-watch", options->no_watch,
                     "do not look for what makes a run wrong (docs/reference/failures.md)");
+  command->add_flag("--view", options->view,
+                    "show the run while it goes: DIR/report.html follows the frames, and opens in a browser "
+                    "where there is a display; keeps 40 frames unless scene or --frame-every say otherwise");
   command->add_flag("--anyway", options->anyway, "run although it needs more memory or disk than is free");
   auto* quiet = command->add_flag("-q,--quiet", options->quiet,
                                   "nothing on stderr but errors: no table of the run as it goes");
   command->add_flag("-v,--verbose", options->verbose, "say what runs before it does: engine, plan, reasons")
       ->excludes(quiet);
-  command->add_flag("--json", options->json, "print the summary as JSON");
+  options->answer.add_to(*command);
   command->callback([options, steps, frames, formats, raster, &exit_code] {
     options->formats_given = formats->count() > 0;
     options->steps_given = steps->count() > 0;

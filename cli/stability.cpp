@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
 #include "model/base/directory_lock.h"
@@ -31,7 +32,7 @@ using study::Subject;
 
 struct Options {
   Input input;
-  bool json = false;
+  Answer answer;
   std::string maps;
   std::string axis;
   double strain = 0.1;
@@ -139,7 +140,7 @@ std::string text_of(const Scene& scene, const std::vector<Row>& rows) {
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "null"; }
 
-std::string json_of(const Scene& scene, const std::vector<Row>& rows) {
+std::string json_of(const Scene& scene, const std::vector<Row>& rows, const std::vector<std::string>& maps) {
   std::string out = fmt::format("{{\"scene\": {}, \"particles\": {}, \"dt\": {}, \"lines\": [",
                                 json(scene.path), scene.body.size(), number(scene.rule.dt));
   for (size_t i = 0; i < rows.size(); ++i) {
@@ -162,7 +163,7 @@ std::string json_of(const Scene& scene, const std::vector<Row>& rows) {
     }
     out += "}}";
   }
-  return out + "\n]}\n";
+  return out + fmt::format("\n], \"maps\": {}}}", json(maps));
 }
 
 void check(const Options& options) {
@@ -177,7 +178,7 @@ void check(const Options& options) {
     throw InputError(fmt::format("--axis: '{}' is not x, y or z", options.axis));
 }
 
-int stability(const Options& options) {
+void stability(const Options& options) {
   check(options);
   const Scene scene = read_scene(options.input.scene);
   const Arch arch = read_arch(options.input.arch);
@@ -197,7 +198,9 @@ int stability(const Options& options) {
   std::vector<std::string> drawn;
   const auto print = [&] {
     status.clear();
-    fmt::print("{}", options.json ? json_of(scene, rows) : block_text(text_of(scene, rows)));
+    options.answer.say("{}", block_text(text_of(scene, rows)));
+    for (const std::string& path : drawn) options.answer.say("{}\n", line_text(path));
+    options.answer.close(json_of(scene, rows, drawn));
   };
   try {
     if (scene.pitch > 0) {
@@ -237,23 +240,19 @@ int stability(const Options& options) {
         for (const std::string& path : draw(map, options.maps)) drawn.push_back(path);
   } catch (const study::Interrupted&) {
     print();
-    fmt::print(stderr, "interrupted\n");
-    return 1;
+    throw Failed("interrupted");
   }
   print();
-  if (!options.json)
-    for (const std::string& path : drawn) fmt::print("{}\n", line_text(path));
-  return 0;
 }
 
 }  // namespace
 
-void add_stability(CLI::App& app, int& exit_code) {
+void add_stability(CLI::App& app, int&) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("stability", "measure the largest stable time step, beside what theory says");
   options->input.add_to(*command);
-  command->add_flag("--json", options->json, "print as JSON");
+  options->answer.add_to(*command);
   command->add_option("--maps", options->maps, "draw maps of stable and unstable runs there")
       ->type_name("DIR");
   command
@@ -269,7 +268,7 @@ void add_stability(CLI::App& app, int& exit_code) {
   command->add_option("--threads", options->threads, "of the engines; default: 1")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
-  command->callback([options, &exit_code] { exit_code = stability(*options); });
+  command->callback([options] { stability(*options); });
 }
 
 }  // namespace cuboct

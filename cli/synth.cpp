@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "cli/answer.h"
 #include "cli/command.h"
 #include "model/base/text.h"
 #include "synth/flow.h"
@@ -11,10 +12,10 @@
 
 namespace cuboct {
 
-void add_synth(CLI::App& app, int& exit_code) {
+void add_synth(CLI::App& app, int&) {
   struct Options {
     synth::Request request;
-    bool json = false;
+    Answer answer;
   };
   auto options = std::make_shared<Options>();
   synth::Request& request = options->request;
@@ -50,24 +51,19 @@ void add_synth(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.0, 2.0))
       ->type_name("A")
       ->capture_default_str();
-  command->add_flag("--json", options->json, "print the report as JSON");
-  command->callback([options, &exit_code] {
+  options->answer.add_to(*command);
+  command->callback([options] {
     const synth::Request& asked = options->request;
     try {
       const synth::Report report = synth::synthesise(asked);
-      if (options->json) {
-        fmt::print("{}\n", synth::report_json(report));
-      } else {
-        fmt::print("{}{:<22} {}\n", block_text(synth::print_table(report)), "files",
-                   line_text(synth::results_directory(asked)));
-      }
+      options->answer.say("{}{:<22} {}\n", block_text(synth::print_table(report)), "files",
+                          line_text(synth::results_directory(asked)));
+      options->answer.close(synth::report_json(report));
     } catch (const synth::ToolFailed& error) {
-      fmt::print(stderr, "{}\n  hint: its log is {}.failed/{}\n", line_text(error.what()),
-                 line_text(synth::results_directory(asked)), line_text(error.log));
-      exit_code = 1;
+      throw Failed(error.what(),
+                   fmt::format("its log is {}.failed/{}", synth::results_directory(asked), error.log));
     } catch (const synth::Interrupted&) {
-      fmt::print(stderr, "interrupted; nothing was written\n");
-      exit_code = 1;
+      throw Failed("interrupted; nothing was written");
     }
   });
 }

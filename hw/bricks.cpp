@@ -143,7 +143,8 @@ Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
       throw InputError(
           fmt::format("brick = [{}] is larger than the lattice: it has {} cell{} along {}",
                       fmt::join(shape, ", "), length[a], length[a] == 1 ? "" : "s", "xyz"[a]),
-          fmt::format("set node.brick to at most [{}] in the arch file", fmt::join(largest, ", ")));
+          fmt::format("set node.brick to at most [{}] in the arch file", fmt::join(largest, ", ")))
+          .about({"node.brick"});
 
   const BrickGrid grid(shape);
   std::map<std::tuple<int32_t, int32_t, int32_t>, std::vector<uint32_t>> bricks;  // cells by (z, y, x)

@@ -58,7 +58,8 @@ void check_arch(const Arch& arch) {
     want(cells == 1, "brick = [1, 1, 1]");
   }
   if (arch.link_bits < 0 || arch.link_bits > 1024)
-    throw InputError(fmt::format("link bits = {} is out of range: 1 to 1024, or 0 for one record per beat",
+    arch.places.fail({"link.bits"},
+                     fmt::format("link bits = {} is out of range: 1 to 1024, or 0 for one record per beat",
                                  arch.link_bits));
 }
 

@@ -229,21 +229,22 @@ Arch settled(const Scene& scene, Arch arch) {
 }
 
 Plan plan_of(const Scene& scene, const Arch& arch) {
-  return plan_with(scene, arch, [](const Particle&) {});
+  return with_places(scene, arch, [&] { return plan_with(scene, arch, [](const Particle&) {}); });
 }
 
 Setup make_setup(const Scene& scene, const Arch& arch) {
   State initial;
   initial.particles.reserve(scene.body.size());
-  Plan plan =
-      plan_with(scene, arch, [&](const Particle& particle) { initial.particles.push_back(particle); });
+  const auto keep = [&](const Particle& particle) { initial.particles.push_back(particle); };
+  Plan plan = with_places(scene, arch, [&] { return plan_with(scene, arch, keep); });
   return {std::move(plan), std::move(initial)};
 }
 
 Setup going_on(const Scene& scene, const Plan& before, const State& now) {
   const FixedRule& old = before.rule;
   const Arch& arch = before.arch;
-  FixedRule rule = quantise(scene.rule, old.cell_edge, old.widths, arch.table);
+  FixedRule rule =
+      with_places(scene, arch, [&] { return quantise(scene.rule, old.cell_edge, old.widths, arch.table); });
   rule.axes = old.axes;
   for (const FixedType& type : rule.types)
     if (rule.axes == 2 && (type.velocity[2] != 0 || type.gravity[2] != 0))

@@ -6,9 +6,20 @@
 #include <utility>
 
 #include "hw/plan.h"
+#include "model/base/error.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {
+
+// What `work` refuses gets the place of the key that it is about.
+template <typename Work>
+auto with_places(const Scene& scene, const Arch& arch, Work work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw arch.places.placed(scene.places.placed(error));
+  }
+}
 
 struct Setup {
   Plan plan;

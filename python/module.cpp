@@ -188,20 +188,12 @@ void raise(const char* type, const py::tuple& arguments, const py::object& place
   PyErr_SetObject(kind.ptr(), error.ptr());
 }
 
-// The message without what `place` says before it.
-std::string bare(const std::string& message, const InputError::Place* place) {
-  if (!place) return message;
-  const std::string head = fmt::format("{}:{}:{}: ", place->file, place->line, place->column);
-  return message.starts_with(head) ? message.substr(head.size()) : message;
-}
-
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const InputError& error) {
-    const ErrorParts parts = parts_of(error);
     const InputError::Place* place = error.place();
-    raise("InputError", py::make_tuple(bare(parts.message, place), parts.hint),
+    raise("InputError", py::make_tuple(bare_message(error), parts_of(error).hint),
           place ? py::object(py::make_tuple(place->file, place->line, place->column, place->excerpt))
                 : py::object(py::none()));
   } catch (const Stopped& stopped) {

@@ -14,6 +14,8 @@ std::string short_name(const Settings& settings);
 // For each decade of the error that counts, the fastest point at least as exact (where no speed was measured:
 // the one of least cost). The error: of the worst figure, in studies without figures of the trajectory.
 std::string cheapest_per_decade(const Results& results);
+// The same rows as an array of JSON.
+std::string cheapest_json(const Results& results);
 // The truth: rungs, horizon, notes.
 std::string describe(const Truth& truth, const Results& results);
 

@@ -33,7 +33,8 @@ void check_span(const Lattice& lattice, int position_frac) {
           fmt::format("the lattice reaches {} cells along {}: with position_frac = {} the lattice engine "
                       "holds up to {}",
                       reach, "xyz"[a], position_frac, most),
-          "use another engine, or fewer fractional bits in the arch file");
+          "use another engine, or fewer fractional bits in the arch file")
+          .about({"widths.position_frac", "box.size", "box"});
   }
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 
+#include "hw/program/error_file.h"
 #include "hw/setup.h"
 #include "model/analysis/meter.h"
 #include "model/base/interrupt.h"
@@ -23,7 +24,7 @@ namespace {
 // What is parsed and then settled.
 struct Parsed {
   ProgramOptions options;
-  std::string frames_file, begun, interval;
+  std::string frames_file, begun, interval, error;
   bool frames_given = false, unpacked = false;
 };
 
@@ -33,7 +34,9 @@ void settle(const EngineProgram& program, Parsed& parsed, const Scene& scene) {
   run.steps = options.steps.value_or(scene.steps);
   if (run.steps > program.abilities.steps)
     throw InputError(
-        fmt::format("{} steps: the machine counts at most {}", run.steps, program.abilities.steps));
+        fmt::format("{} steps: the machine counts at most {}", run.steps, program.abilities.steps))
+        .about(options.steps ? std::vector<std::string>()
+                             : std::vector<std::string>{"run.steps", "run.duration"});
   if (!parsed.frames_file.empty()) run.frames = read_steps(parsed.frames_file);
   put_in_order(run.frames);
   std::erase_if(run.frames, [&](uint64_t step) { return step > run.steps; });
@@ -67,21 +70,15 @@ int tell(EngineProgram& program, const Parsed& parsed, const Scene& scene, const
   if (run.interrupted && !trace.stop)
     fmt::print("interrupted after step {}{}\n", trace.steps(),
                run.left_checkpoint ? "; the same command with --resume goes on" : "");
-  if (trace.stop)
+  if (trace.stop && parsed.error.empty())
     fmt::print(stderr, "{}: {}\n", line_text(parsed.options.scene), line_text(trace.stop->text));
   return run.interrupted || trace.stop || !trace.findings.empty() ? 1 : 0;
 }
 
-int run(EngineProgram& program, Parsed parsed) {
+int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& arch) {
   ProgramOptions& options = parsed.options;
-  if (program.prepare(options)) return 0;
-  check(parsed);
   const bool leads = program.leads();
-  if (!options.out.empty() && leads) check_writable(options.out);
-  if (!parsed.interval.empty()) read_interval(parsed.interval, options.run.checkpoint);
-  Scene scene = load_scene(options.scene, {options.stage, options.from});
-  program.begin(scene);
-  const Plan plan = plan_of(scene, read_arch(options.arch));
+  const Plan plan = plan_of(scene, arch);
   settle(program, parsed, scene);
 
   std::optional<TraceWriter> writer;
@@ -119,6 +116,18 @@ int run(EngineProgram& program, Parsed parsed) {
   return code;
 }
 
+int run(EngineProgram& program, Parsed& parsed) {
+  ProgramOptions& options = parsed.options;
+  if (program.prepare(options)) return 0;
+  check(parsed);
+  if (!options.out.empty() && program.leads()) check_writable(options.out);
+  if (!parsed.interval.empty()) read_interval(parsed.interval, options.run.checkpoint);
+  Scene scene = load_scene(options.scene, {options.stage, options.from});
+  program.begin(scene);
+  const Arch arch = read_arch(options.arch);
+  return with_places(scene, arch, [&] { return run_scene(program, parsed, scene, arch); });
+}
+
 std::map<std::string, LogRows> rows_by_name() {
   std::map<std::string, LogRows> rows;
   for (const LogRows one : {LogRows::off, LogRows::quiet, LogRows::seconds, LogRows::parts})
@@ -137,6 +146,7 @@ void add_options(CLI::App& app, EngineProgram& program, Parsed& parsed) {
   app.add_option("--steps", options.steps, "Steps to run; the scene's own number without it");
   app.add_option("--out", options.out, "Trace file to write (HDF5); --bench does without");
   app.add_flag("--unpacked", parsed.unpacked, "Do not compress the trace: larger, and written in less time");
+  app.add_option("--error", parsed.error, "File that takes an error, in place of standard error");
   app.add_option("--begun", parsed.begun, "File that is made when the steps begin");
   app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
   app.add_flag("--watch", run.watch, "Look for what makes a run wrong; energies are measured with it");
@@ -201,14 +211,20 @@ int run_program(int argc, char** argv, EngineProgram& program) {
   }
   parsed.frames_given = frames->count() > 0 || frames_file->count() > 0;
   parsed.options.hashes_given = app.get_option("--hash-every")->count() > 0;
+  const auto told = [&](const InputError& error, const std::string& text, int code) {
+    if (!parsed.error.empty())
+      write_error(parsed.error, error);
+    else
+      fmt::print(stderr, "{}\n", text);
+    return code;
+  };
   try {
-    return run(program, std::move(parsed));
+    return run(program, parsed);
   } catch (const InputError& e) {
-    if (program.leads()) fmt::print(stderr, "{}\n", e.what());
-    return 2;
+    return program.leads() ? told(e, e.told(), 2) : 2;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "{}: {}\n", program.name, block_text(e.what()));
-    return 1;
+    const std::string text = fmt::format("{}: {}", program.name, block_text(e.what()));
+    return told(InputError(text), text, 1);
   }
 }
 

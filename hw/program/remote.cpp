@@ -7,8 +7,9 @@
 #include <cstring>
 #include <filesystem>
 
+#include "hw/program/error_file.h"
 #include "hw/program/program.h"
-#include "model/base/error.h"
+#include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
 #include "model/trace/trace_file.h"
 
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 Remote::Remote(RemoteRun run) : run_(std::move(run)) {
   std::vector<std::string> arguments =
       program_arguments(run_.scene, run_.arch, run_.request, run_.trace, file(".steps"));
+  arguments.insert(arguments.end(), {"--error", file(".error")});
   arguments.insert(arguments.end(), run_.own.begin(), run_.own.end());
   for (const auto& [option, value] : {std::pair{"--stage", run_.stage}, {"--from", run_.from}})
     if (!value.empty()) arguments.insert(arguments.end(), {option, value});
@@ -58,12 +60,17 @@ void Remote::wait() {
   const int code = over_mpi() ? process_->wait([&] { return fs::exists(file(".begun")); }) : process_->wait();
   const std::string name = over_mpi() ? "mpirun" : fs::path(run_.program).filename().string();
   const std::string said = run_.quiet ? errors() : "";
-  for (const char* ending : {".steps", ".begun", ".errors"}) fs::remove(file(ending));
-  // Ranks that could not write all of it have told so, and leave what they have.
+  std::optional<InputError> error;
+  if (fs::exists(file(".error"))) error = read_error(file(".error"));
+  for (const char* ending : {".steps", ".begun", ".errors", ".error"}) fs::remove(file(ending));
   const bool left = fs::exists(run_.trace);
-  if (code == 2 && run_.quiet) throw InputError(said);
-  if (code == 2 && !(over_mpi() && left)) throw AlreadyTold(2);
-  told_trouble_ = code == 2;
+  // Ranks that could not write all of it leave what they have.
+  if (code == 2 && over_mpi() && left) {
+    trouble_ = error ? parts_of(*error).message : "the ranks could not write all of it";
+    return;
+  }
+  if (error && code == 2) throw *error;
+  if (error && code == 1 && !left) throw std::runtime_error(error->what());
   // Exit code 1 with a trace: the run had to stop or found something wrong, and the trace says what.
   if (code == 0 || (code > 0 && left)) return;
   if (interrupted() && (code < 0 || over_mpi()))
@@ -81,7 +88,7 @@ Recorded Remote::read() const {
   run.trace = reader.rest();
   take_totals(run);
   run.interrupted = run.trace.steps() < request.steps && !run.trace.stop && !run.trace.reached;
-  if (told_trouble_) run.trouble = "the ranks could not write all of it";
+  run.trouble = trouble_;
   run.left_checkpoint = run.interrupted && fs::exists(request.checkpoint.path);
   reader.frames([&](State state) { give(request, std::move(state), run.trace); });
   reader.bodies([&](RealFrame frame) { give(request, std::move(frame), run.trace); });

@@ -2,7 +2,6 @@
 // A run in an engine's program, which leaves a trace.
 #pragma once
 
-#include <exception>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +20,7 @@ struct RemoteRun {
   int ranks = 1;                   // more: processes over MPI
   bool unpacked = false;           // the trace: packing millions of particles takes longer than many steps
   std::string stage{}, from{};     // model/run/start.h
-  bool quiet = false;              // the program's words are kept, else those on stderr are shown
+  bool quiet = false;              // the program's words are kept, else its table on stderr is shown
   RunRequest request{};
 };
 
@@ -31,8 +30,8 @@ class Remote {
   explicit Remote(RemoteRun run);
   Remote(Remote&&) = default;
 
-  // Waits. Frames go where the request keeps them. Exit code 2 throws AlreadyTold, or where it was quiet
-  // InputError with the program's words; any other failure without a trace throws std::runtime_error.
+  // Waits. Frames go where the request keeps them. Throws what the program threw, InputError or
+  // std::runtime_error; the latter too where it failed otherwise and left no trace.
   Recorded finish();
   // On stdout, where it was quiet.
   std::string said() const { return read_text(file(".said")); }
@@ -47,14 +46,7 @@ class Remote {
 
   RemoteRun run_;
   std::optional<Process> process_;
-  bool told_trouble_ = false;
-};
-
-// The exit of a command whose engine has told its error already.
-class AlreadyTold : public std::exception {
- public:
-  explicit AlreadyTold(int exit_code) : exit_code(exit_code) {}
-  int exit_code;
+  std::string trouble_;
 };
 
 }  // namespace cuboct

@@ -51,7 +51,9 @@ double least_of(const std::vector<std::vector<double>>& strength) {
 // The limit of dt, s: that of the scene, or where it has none of a packing of such bonds.
 double limit_of(const Scene& scene) {
   if (scene.dt_limit > 0) return scene.dt_limit;
-  const double limit = stable_time_step(scene.rule, bond_length);
+  // Three digits are more than the looks at it need.
+  constexpr double kTolerance = 1e-6;
+  const double limit = stable_time_step(scene.rule, bond_length, kTolerance);
   return limit > 0 ? limit : std::numeric_limits<double>::infinity();
 }
 

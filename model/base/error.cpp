@@ -30,6 +30,13 @@ InputError::InputError(const std::string& file, int line, int column, const std:
 InputError InputError::with(const std::string& hint) const {
   InputError other(parts_of(*this).message, hint);
   other.place_ = place_;
+  other.keys_ = keys_;
+  return other;
+}
+
+InputError InputError::about(std::vector<std::string> keys) const {
+  InputError other = *this;
+  other.keys_ = std::move(keys);
   return other;
 }
 
@@ -41,17 +48,14 @@ std::string InputError::told() const {
 
 std::string InputError::json() const {
   const ErrorParts parts = parts_of(*this);
-  std::string message = parts.message, file = "null", line = "null", column = "null";
+  std::string file = "null", line = "null", column = "null";
   if (place_) {
-    const std::string place =
-        line_text(fmt::format("{}:{}:{}: ", place_->file, place_->line, place_->column));
-    if (message.starts_with(place)) message.erase(0, place.size());
     file = json_text(place_->file);
     line = std::to_string(place_->line);
     column = std::to_string(place_->column);
   }
   return fmt::format("{{\"error\":{{\"message\":{},\"file\":{},\"line\":{},\"column\":{},\"hint\":{}}}}}",
-                     json_text(message), file, line, column,
+                     json_text(bare_message(*this)), file, line, column,
                      parts.hint.empty() ? "null" : json_text(parts.hint));
 }
 
@@ -60,6 +64,15 @@ ErrorParts parts_of(const InputError& error) {
   const size_t at = text.find(kHint);
   return at == std::string::npos ? ErrorParts{text, ""}
                                  : ErrorParts{text.substr(0, at), text.substr(at + kHint.size())};
+}
+
+std::string bare_message(const InputError& error) {
+  std::string message = parts_of(error).message;
+  if (const InputError::Place* place = error.place()) {
+    const std::string head = line_text(fmt::format("{}:{}:{}: ", place->file, place->line, place->column));
+    if (message.starts_with(head)) message.erase(0, head.size());
+  }
+  return message;
 }
 
 const char* to_string(Fault fault) {

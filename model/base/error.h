@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace cuboct {
 
@@ -26,6 +27,11 @@ class InputError : public std::runtime_error {
   // The same error with another hint.
   InputError with(const std::string& hint) const;
 
+  // The same error about these keys of a file, the likeliest first: "run.dt", "constraint[grip].velocity".
+  // Whoever knows where they stand gives it a place (model/contract/places.h).
+  InputError about(std::vector<std::string> keys) const;
+  const std::vector<std::string>& keys() const { return keys_; }
+
   std::string told() const;
 
   // {"error":{"message":...,"file":...,"line":...,"column":...,"hint":...}}; null is what it does not know.
@@ -41,6 +47,7 @@ class InputError : public std::runtime_error {
 
  private:
   std::shared_ptr<const Place> place_;
+  std::vector<std::string> keys_;
 };
 
 // The checks that every fixed engine makes, in the order in which a step makes them. When several particles

@@ -13,4 +13,7 @@ struct ErrorParts {
 };
 ErrorParts parts_of(const InputError& error);
 
+// The message without the file, line and column before it.
+std::string bare_message(const InputError& error);
+
 }  // namespace cuboct

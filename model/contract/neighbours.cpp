@@ -15,7 +15,8 @@ CellList::CellList(double cutoff, const Periodic& periodic, double skin)
     const double extent = periodic.extent[axis];
     if (extent != 0 && !(extent >= 2 * cutoff)) {
       throw InputError(fmt::format("the periodic box is {:g} m long along {}, less than two cutoffs ({:g} m)",
-                                   extent, "xyz"[axis], 2 * cutoff));
+                                   extent, "xyz"[axis], 2 * cutoff))
+          .about({"box.size", "box.cells", "box"});
     }
   }
 }

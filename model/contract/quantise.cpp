@@ -25,23 +25,59 @@ constexpr double kMostRatio = 1024;  // of masses: the least weight is 64 units,
 
 using Real = std::function<double(double)>;  // of r2 in cell edges squared
 
+// The keys of a scene that give a value to particles of this type.
+std::vector<std::string> keys_of(const ParticleType& type, const std::string& key) {
+  const size_t slash = type.name.find('/');
+  if (slash == std::string::npos) return {key};
+  const std::string constraint = fmt::format("constraint[{}]", type.name.substr(slash + 1));
+  return {constraint + "." + key, constraint};
+}
+
+std::vector<std::string> strength_keys(const Rule& rule, size_t i, size_t j) {
+  const auto material = [&](size_t type) {
+    return rule.types[type].name.substr(0, rule.types[type].name.find('/'));
+  };
+  std::vector<std::string> keys{fmt::format("bond[{},{}].strength", material(i), material(j))};
+  for (const size_t type : {i, j}) keys.push_back(fmt::format("material[{}].strength", material(type)));
+  return keys;
+}
+
+// What makes the law strong: a material, where one is stronger than the law, or the law.
+std::vector<std::string> law_keys(const Rule& rule) {
+  std::vector<std::string> keys;
+  size_t a = 0, b = 0;
+  for (size_t i = 0; i < rule.types.size(); ++i)
+    for (size_t j = 0; j < rule.types.size(); ++j)
+      if (rule.strength_of(static_cast<int>(i), static_cast<int>(j)) >
+          rule.strength_of(static_cast<int>(a), static_cast<int>(b)))
+        a = i, b = j;
+  if (!rule.types.empty() && rule.strength_of(static_cast<int>(a), static_cast<int>(b)) > 1)
+    keys = strength_keys(rule, a, b);
+  for (const char* key : {"law.stiffness", "law.youngs_modulus", "law.epsilon", "law.force", "law"})
+    keys.emplace_back(key);
+  return keys;
+}
+
 // `whole`: the length of the vector that the value is a component of; a component is as exact as the vector
 // asks for.
-int64_t quantised(double value, double whole, int frac, int bits, const char* what) {
+int64_t quantised(double value, double whole, int frac, int bits, const char* what,
+                  const std::vector<std::string>& keys) {
   const double scaled = std::ldexp(value, frac);
   if (!(std::abs(scaled) < std::ldexp(1.0, bits - 1) - 0.5))
     throw InputError(
         fmt::format(
             "{} is {:.6g} in units of the lattice: {} bits with {} fractional bits hold less than {:.6g}",
             what, value, bits, frac, std::ldexp(1.0, bits - 1 - frac)),
-        "a smaller dt helps, or a wider format in the arch file");
+        "a smaller dt helps, or a wider format in the arch file")
+        .about(keys);
   const auto result = std::llround(scaled);
   // One per cent: coarser, and the run would be of another scene.
   if (std::abs(static_cast<double>(result) - scaled) > 0.01 * std::abs(std::ldexp(whole, frac)))
     throw InputError(
         fmt::format("{} is {:.6g} in units of the lattice: {} fractional bits round it to {:.6g}", what,
                     value, frac, std::ldexp(static_cast<double>(result), -frac)),
-        "more guard bits in the arch file keep it");
+        "more guard bits in the arch file keep it")
+        .about(keys);
   return result;
 }
 
@@ -115,7 +151,8 @@ void fill(FixedTable& table, const std::vector<std::vector<Bin>>& laws, int valu
     const double own = largest_in(laws[n], table.degree);
     if (own == 0)
       throw InputError(fmt::format("the pair law{} is zero everywhere inside its cutoff",
-                                   laws.size() > 1 ? fmt::format(" {} of {}", n + 1, laws.size()) : ""));
+                                   laws.size() > 1 ? fmt::format(" {} of {}", n + 1, laws.size()) : ""))
+          .about({"law"});
     largest = std::max(largest, own);
   }
   // The largest E with largest * 2^E + 1 (for rounding) < 2^(value_bits-1-headroom).
@@ -188,9 +225,11 @@ FixedRule::Error error_of(const FixedRule& fixed, const Rule& rule, size_t n, do
   return error;
 }
 
-void check_range(const char* what, int value, int low, int high) {
+// `what`: a key of [widths], a sum of such, or "table index_bits".
+void check_range(const std::string& what, int value, int low, int high) {
   if (value < low || value > high)
-    throw InputError(fmt::format("{} = {} is out of range: {} to {}", what, value, low, high));
+    throw InputError(fmt::format("{} = {} is out of range: {} to {}", what, value, low, high))
+        .about({"widths." + what.substr(0, what.find(' ')), "table." + what.substr(what.find(' ') + 1)});
 }
 
 void check_widths(const Widths& w, const TableChoice& table) {
@@ -326,7 +365,8 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   if (choice.shape == TableChoice::Shape::octaves && !fits_octaves)
     throw InputError(
         fmt::format("{} index bits are too few for the octaves between the law's core and its cutoff",
-                    choice.index_bits));
+                    choice.index_bits))
+        .about({"table.index_bits", "table.shape"});
   if (widths.strength_bits == 0) {
     double pull = std::numeric_limits<double>::infinity();  // of the weakest law
     for (size_t n = 0; n < rule.laws(); ++n) pull = std::min(pull, strongest_pull(rule.law_at(n)));
@@ -354,11 +394,13 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
                     "fractional bits ({}) than velocities ({})",
                     std::ldexp(1.0, fixed.widths.strength_bits - 1 - fixed.force.value_frac),
                     fixed.widths.strength_bits, fixed.force.value_frac + D, frac),
-        "use a smaller dt, a larger core, more strength_bits, or fewer guard bits");
+        "use a smaller dt, a larger core, more strength_bits, or fewer guard bits")
+        .about(law_keys(rule));
   if (fixed.damp_shift < 0)
     throw InputError(
         fmt::format("the damping c/r^2 * dt/m reaches {:.3g}: too strong beside the pair law for {} bits",
-                    std::ldexp(1.0, widths.strength_bits - 1 - fixed.damp.value_frac), widths.strength_bits));
+                    std::ldexp(1.0, widths.strength_bits - 1 - fixed.damp.value_frac), widths.strength_bits))
+        .about({"damping.coefficient", "damping.ratio"});
 
   const double length = cell_edge;
   for (const ParticleType& type : rule.types) {
@@ -371,15 +413,15 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
     for (int a = 0; a < 3; ++a) {
       const double velocity = rule.dt / length, gravity = velocity * rule.dt;
       t.velocity[a] = quantised(type.velocity[a] * velocity, type.velocity.norm() * velocity, frac,
-                                widths.velocity_bits, "an imposed velocity");
+                                widths.velocity_bits, "an imposed velocity", keys_of(type, "velocity"));
       t.gravity[a] = quantised(type.gravity[a] * gravity, type.gravity.norm() * gravity, frac,
-                               widths.velocity_bits, "gravity");
+                               widths.velocity_bits, "gravity", {"gravity"});
     }
     if (type.pd) {
       const double mass = rule.mass_of(index);
       const double kp = type.kp * rule.dt * rule.dt / mass, kd = type.kd * rule.dt / mass;
-      t.kp = quantised(kp, kp, widths.gain_frac, 18, "the gain kp");
-      t.kd = quantised(kd, kd, widths.gain_frac, 18, "the gain kd");
+      t.kp = quantised(kp, kp, widths.gain_frac, 18, "the gain kp", keys_of(type, "kp"));
+      t.kd = quantised(kd, kd, widths.gain_frac, 18, "the gain kd", keys_of(type, "kd"));
       fixed.pd = true;
     }
     fixed.types.push_back(t);
@@ -391,8 +433,8 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
       if (fixed.law_bits > 0) fixed.law.emplace_back();
       for (size_t j = 0; j < rule.types.size(); ++j) {
         const double strength = rule.strength_of(static_cast<int>(i), static_cast<int>(j)) / scale;
-        const auto size =
-            static_cast<int32_t>(quantised(strength, strength, widths.scale_frac, 18, "a pair strength"));
+        const auto size = static_cast<int32_t>(quantised(strength, strength, widths.scale_frac, 18,
+                                                         "a pair strength", strength_keys(rule, i, j)));
         fixed.scale[i].push_back(rule.only_touch(static_cast<int>(i), static_cast<int>(j)) ? -size : size);
         if (fixed.law_bits > 0)
           fixed.law[i].push_back(

@@ -79,7 +79,7 @@ void begin_at(Scene& scene, const std::string& directory) {
 Scene load_scene(const std::string& path, const StartChoice& choice) {
   Scene scene = read_scene(path, {.begins = true, .stage = choice.stage});
   std::string from = choice.from;
-  const bool first = scene.stage.empty() || stages_of(path).front() == scene.stage;
+  const bool first = scene.stage.empty() || stages_of(path).front().name == scene.stage;
   if (from.empty() && first && !scene.start.empty())
     from = (fs::path(path).parent_path() / scene.start).lexically_normal().string();
   if (from.empty() && !first && !choice.looks_only)

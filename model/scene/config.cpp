@@ -122,16 +122,32 @@ const ConfigNode* field(const ConfigNode& table, const std::string& key) {
   throw InputError(file.path, line, column, message, hint, excerpt(line_of(file.text, line), line, column));
 }
 
-// Of arrays the first element stands for all: of a million particles none is looked for by its place.
-void add_places(const std::vector<std::string_view>& lines, const ConfigNode& node, Places& places) {
-  if (!node.path.empty()) {
+// What tells a table from others of an array: its name, or the two that it is between. Empty: nothing.
+std::vector<std::string> labels_of(const ConfigNode& table) {
+  if (const ConfigNode* name = field(table, "name"); name && name->kind == Kind::string) return {name->text};
+  const ConfigNode* between = field(table, "between");
+  if (!between || between->items.size() != 2) return {};
+  const std::string &a = between->items[0].text, &b = between->items[1].text;
+  return {a + "," + b, b + "," + a};
+}
+
+// Of arrays the first element stands for all, and those with labels for themselves: of a million particles
+// none is looked for by its place.
+void add_places(const std::vector<std::string_view>& lines, const ConfigNode& node, const std::string& path,
+                Places& places) {
+  if (!path.empty()) {
     const std::string_view line = lines[static_cast<size_t>(node.line) - 1];
-    places.add(node.path, node.line, node.column, excerpt(line, node.line, node.column));
+    places.add(path, node.line, node.column, excerpt(line, node.line, node.column));
   }
-  for (const ConfigNode& item : node.items) {
-    add_places(lines, item, places);
-    if (node.kind == Kind::array) return;
+  if (node.kind != Kind::array) {
+    for (const ConfigNode& item : node.items)
+      add_places(lines, item, path.empty() ? item.key : path + "." + item.key, places);
+    return;
   }
+  if (!node.items.empty()) add_places(lines, node.items[0], path, places);
+  for (const ConfigNode& item : node.items)
+    for (const std::string& label : labels_of(item))
+      add_places(lines, item, fmt::format("{}[{}]", path, label), places);
 }
 
 // toml++ and all that reads its tables go as deep as a key is long: a.b.c makes three tables.
@@ -466,7 +482,7 @@ void ConfigTable::record_as(const std::string& name) const { node_->alias = name
 
 Places ConfigTable::places() const {
   Places places(file_->path);
-  add_places(lines_of(file_->text), *node_, places);
+  add_places(lines_of(file_->text), *node_, "", places);
   return places;
 }
 

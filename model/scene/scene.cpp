@@ -138,7 +138,7 @@ void read_length(const ConfigTable& table, Scene& scene) {
 }
 
 // A stage's keys replace those of [run].
-void read_time(const ConfigTable& root, const ConfigTable* stage, Scene& scene) {
+void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
   const auto found = root.table_at("run");
   if (!found) root.at("run");
   const ConfigTable& run = *found;
@@ -166,15 +166,16 @@ void read_time(const ConfigTable& root, const ConfigTable* stage, Scene& scene) 
     }
   }
 
-  for (const ConfigTable* table : {&run, stage})
+  for (const ConfigTable* table : {&run, static_cast<const ConfigTable*>(stage)})
     if (table) table->not_both("steps", "duration");
   read_length(stage && (stage->has("steps") || stage->has("duration")) ? *stage : run, scene);
+  const uint64_t whole = scene.steps, parts = stage ? stage->parts() : 1;
+  scene.steps = (whole + parts - 1) / parts;
   const auto every = [&](const char* key, uint64_t otherwise) {
     const auto of = static_cast<uint64_t>(run.integer_or(key, 0, INT64_MAX, static_cast<int64_t>(otherwise)));
     return stage ? static_cast<uint64_t>(stage->integer_or(key, 0, INT64_MAX, static_cast<int64_t>(of))) : of;
   };
-  scene.probe_every =
-      every("probe_every", scene.probes.empty() ? 0 : std::max<uint64_t>(1, scene.steps / 500));
+  scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max<uint64_t>(1, whole / 500));
   scene.frame_every = every("frame_every", 0);
   if (const auto accuracy = run.find("accuracy"))
     scene.accuracy = accuracy->number(quantity::number, {.low = 1e-6, .high = 0.1});
@@ -183,6 +184,7 @@ void read_time(const ConfigTable& root, const ConfigTable* stage, Scene& scene) 
   scene.until = read_until(run, scene);
   if (stage)
     if (const auto until = read_until(*stage, scene)) scene.until = until;
+  if (scene.until && stage) scene.until->after -= std::min(scene.until->after, stage->part() * scene.steps);
   if (scene.until && scene.probe_every == 0) run.fail("'until' needs readings: 'probe_every' is 0");
   run.done();
 }
@@ -208,11 +210,11 @@ void read_reach(const ConfigTable& root, Scene& scene) {
 
 }  // namespace
 
-double stable_time_step(const Rule& rule, double pitch) {
-  return stable_time_step(rule, [pitch](const PairLaw&) { return pitch; });
+double stable_time_step(const Rule& rule, double pitch, double tolerance) {
+  return stable_time_step(rule, [pitch](const PairLaw&) { return pitch; }, tolerance);
 }
 
-double stable_time_step(const Rule& rule, const std::function<double(const PairLaw&)>& pitch) {
+double stable_time_step(const Rule& rule, const std::function<double(const PairLaw&)>& pitch, double tolerance) {
   double kp = 0, kd = 0;           // over the mass
   double fastest = 0, damped = 0;  // frequencies squared, 1/s^2 and 1/s
   for (size_t k = 0; k < rule.types.size(); ++k) {
@@ -223,10 +225,10 @@ double stable_time_step(const Rule& rule, const std::function<double(const PairL
   for (size_t k = 0; k < rule.laws(); ++k) {
     const double rate = rule.largest_rate(k);
     if (rate == 0) continue;  // no pair of types has it
-    const double of = pitch(rule.law_at(k)), w = largest_frequency(rule.law_at(k), rule.mass, of);
+    const double of = pitch(rule.law_at(k)), w = largest_frequency(rule.law_at(k), rule.mass, of, tolerance);
     fastest = std::max(fastest, rate * w * w);
     if (!(w > 0) || rule.damping.coefficient == 0) continue;
-    const double root = largest_frequency(DampingAsLaw(rule), rule.mass, of);
+    const double root = largest_frequency(DampingAsLaw(rule), rule.mass, of, tolerance);
     damped = std::max(damped, root * root);
   }
   if (!(fastest > 0)) return 0;
@@ -245,8 +247,9 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   scene.title = root.string_or("title", "");
   if (root.reduced()) scene.boltzmann = 1;
   read_start(root, choice, scene);
-  const std::optional<ConfigTable> chosen = read_stage(root, choice, scene);
-  const ConfigTable* stage = chosen ? &*chosen : nullptr;
+  const std::optional<StagePart> chosen = read_stage(root, choice, scene);
+  if (chosen) scene.places.prefer_stage(chosen->at("name").string());
+  const StagePart* stage = chosen ? &*chosen : nullptr;
   auto packing = read_packing(root);
   PackingChoice* packed = packing ? &*packing : nullptr;
   scene.rule.law = read_law(root, packed);
@@ -259,6 +262,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   if (stage) read_damping(*stage, scene);
   const Regions regions(root);
   read_body(root, stage, regions, packed, scene);
+  if (stage) stage->check_ramps();
   read_probes(root, regions, scene);
   scene.meshes = regions.mesh_facts();
   read_time(root, stage, scene);

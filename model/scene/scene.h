@@ -132,6 +132,13 @@ struct Scene {
 // can along some: pairs then have no force along it.
 std::array<bool, 3> live_axes(const Scene& scene);
 
+// A stage as it runs. One with `parts` is so many, "load-1", "load-2": its ramps have one value in each.
+struct StageName {
+  std::string name;   // "load-2"
+  std::string stage;  // "load"
+  size_t part = 0, parts = 1;
+};
+
 // What of a file is read. Without `begins` a file with [start] or [[stage]] is refused: such scenes are for
 // those who put the particles where another run left them (model/run/start.h).
 struct SceneChoice {
@@ -143,7 +150,7 @@ struct SceneChoice {
 Scene read_scene(const std::string& path, const SceneChoice& choice = {});
 // The same for text in memory; `path` stands in messages.
 Scene parse_scene(const std::string& text, const std::string& path, const SceneChoice& choice = {});
-// The names of the file's stages, in its order.
-std::vector<std::string> stages_of(const std::string& path);
+// The file's stages and their parts, in the order in which they run.
+std::vector<StageName> stages_of(const std::string& path);
 
 }  // namespace cuboct

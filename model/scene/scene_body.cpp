@@ -257,7 +257,7 @@ std::vector<int> assign_materials(const ConfigTable& root, const Regions& region
 }
 
 // What a stage says of the constraints, by their names.
-std::map<std::string, ConfigTable> constraint_changes(const ConfigTable& root, const ConfigTable* stage) {
+std::map<std::string, ConfigTable> constraint_changes(const ConfigTable& root, const StagePart* stage) {
   std::map<std::string, ConfigTable> changes;
   if (!stage) return changes;
   std::vector<std::string> names;
@@ -276,9 +276,9 @@ std::map<std::string, ConfigTable> constraint_changes(const ConfigTable& root, c
   return changes;
 }
 
-// `change`: a stage's, or null.
-ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change, const Rule& rule,
-                             double pitch) {
+// `change`: what `stage` says of it, or null.
+ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change, const StagePart* stage,
+                             const Rule& rule, double pitch) {
   ParticleType type;
   const std::vector<std::string> kinds = {"held", "moved", "held_by_force", "moved_by_force"};
   const size_t kind = table.at("kind").choice("constraint", kinds);
@@ -289,13 +289,14 @@ ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change
       change->at("velocity")
           .fail(fmt::format("'{}' is '{}' and has no velocity", change->at("name").string(), kinds[kind]),
                 "make it 'moved', with a velocity of 0 where it stands");
-    type.velocity = change->at("velocity").vector(quantity::velocity);
+    type.velocity = stage->vector_of(change->at("velocity"), quantity::velocity);
   }
   if (kind < 2) {
     type.imposed = table.has("axes") ? table.axes("axes") : std::array{true, true, true};
     for (size_t a = 0; a < 3; ++a)
       if (!type.imposed[a] && type.velocity[a] != 0)
-        table.at("velocity")
+        (change && change->has("velocity") ? *change : table)
+            .at("velocity")
             .fail(fmt::format("'velocity' has a part along {}, which 'axes' leaves free", "xyz"[a]));
   } else {
     if (const auto axes = table.find("axes"))
@@ -389,7 +390,7 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
   return {box, periodic};
 }
 
-void read_body(const ConfigTable& root, const ConfigTable* stage, const Regions& regions,
+void read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
                const PackingChoice* packing, Scene& scene) {
   const std::vector<Material> materials = read_materials(root);
   std::vector<std::string> names;
@@ -407,7 +408,8 @@ void read_body(const ConfigTable& root, const ConfigTable* stage, const Regions&
   const std::vector<int> material = assign_materials(root, regions, named, scene);
   read_velocities(root, regions, material, scene);
   Vec3 gravity = root.vector_or("gravity", quantity::acceleration, Vec3::Zero());
-  if (stage) gravity = stage->vector_or("gravity", quantity::acceleration, gravity);
+  if (stage)
+    if (const auto own = stage->find("gravity")) gravity = stage->vector_of(*own, quantity::acceleration);
   const std::map<std::string, ConfigTable> changes = constraint_changes(root, stage);
   std::vector<int> constraint(body.size(), -1);
   std::vector<ParticleType> constraints;
@@ -415,7 +417,7 @@ void read_body(const ConfigTable& root, const ConfigTable* stage, const Regions&
     if (constraints.size() == kMaxTypes) table.fail(fmt::format("more than {} constraints", kMaxTypes));
     const auto found = changes.find(table.at("name").string());
     const ConfigTable* change = found == changes.end() ? nullptr : &found->second;
-    ParticleType type = read_constraint(table, change, scene.rule, scene.pitch);
+    ParticleType type = read_constraint(table, change, stage, scene.rule, scene.pitch);
     type.name = read_name(table.at("name"));
     for (const ParticleType& other : constraints)
       if (other.name == type.name)

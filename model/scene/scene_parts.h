@@ -26,6 +26,26 @@ struct PackingChoice {
 };
 std::optional<PackingChoice> read_packing(const ConfigTable& root);
 
+// The table of the stage that is chosen, as one of its parts.
+class StagePart : public ConfigTable {
+ public:
+  StagePart(ConfigTable table, size_t part, size_t parts)
+      : ConfigTable(std::move(table)), part_(part), parts_(parts) {}
+
+  // Parts before this one, and all.
+  size_t part() const { return part_; }
+  size_t parts() const { return parts_; }
+  // A vector, or the ramp { from, to } in the middle of this part. All parts are equally long: the integral
+  // over the stage is that of the straight line.
+  Vec3 vector_of(const ConfigValue& value, const Quantity& quantity) const;
+  // Once all is read: parts without a ramp are a mistake.
+  void check_ramps() const;
+
+ private:
+  size_t part_, parts_;
+  mutable bool ramps_ = false;
+};
+
 // The stiffness in N/m of the nearest-neighbour bond that gives an FCC packing the Young's modulus `modulus`
 // (Pa) for a pull along the crystal direction n. With bonds between nearest neighbours alone, at rest, of
 // stiffness k, the elastic constants are C_abcd = k pitch^2/(2V) sum over the 12 bonds of e_a e_b e_c e_d, V
@@ -48,24 +68,26 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
 // Everything that gives particles: positions and velocities ([packing], [geometry], [[particle]],
 // [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and .strength.
 // scene.rule needs law, damping and mass. `stage`: whose keys replace those of the root.
-void read_body(const ConfigTable& root, const ConfigTable* stage, const Regions& regions,
+void read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
                const PackingChoice* packing, Scene& scene);
 
 // The largest stable time step of the perfect packing in s, 0 if unknown. With all frequencies up to w and
 // all damping rates up to g (rates of the matrices K/m and C/m) the update v += -dt (K/m x + C/m v), x += dt
 // v has the mode equation z^2 - (2 - g dt - w^2 dt^2) z + 1 - g dt = 0, stable while 2 g dt + w^2 dt^2 < 4;
 // both at their largest bound dt by (sqrt(g^2 + 4 w^2) - g)/w^2, which is 2/w where nothing damps.
-// Of several laws the stiffest decides: no composite of them vibrates faster.
-double stable_time_step(const Rule& rule, double pitch);
+// Of several laws the stiffest decides: no composite of them vibrates faster. `tolerance`: that of
+// largest_frequency.
+double stable_time_step(const Rule& rule, double pitch, double tolerance = 1e-14);
 // The same where each law has a packing of its own pitch, as where no packing is given.
-double stable_time_step(const Rule& rule, const std::function<double(const PairLaw&)>& pitch);
+double stable_time_step(const Rule& rule, const std::function<double(const PairLaw&)>& pitch,
+                        double tolerance = 1e-14);
 
 void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene);
 
 // [start].
 void read_start(const ConfigTable& root, const SceneChoice& choice, Scene& scene);
 // The stage that is chosen; none where the file has none.
-std::optional<ConfigTable> read_stage(const ConfigTable& root, const SceneChoice& choice, Scene& scene);
+std::optional<StagePart> read_stage(const ConfigTable& root, const SceneChoice& choice, Scene& scene);
 // `until` of [run] or of a stage. scene.probes are read.
 std::optional<Until> read_until(const ConfigTable& table, const Scene& scene);
 

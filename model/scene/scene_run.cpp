@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What of a scene says how it is run: [start], [[stage]] and `until`.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,17 +63,52 @@ CurveOf curve_at(const ConfigValue& value, const Scene& scene) {
   return all[value.choice("curve", names)];
 }
 
-std::vector<std::string> stage_names(const ConfigTable& root) {
-  std::vector<std::string> names;
+// Each is a directory and a summary.
+constexpr int64_t kMostParts = 100;
+
+std::vector<StageName> stage_names(const ConfigTable& root) {
+  std::vector<StageName> names;
   for (const ConfigTable& table : root.tables("stage")) {
-    names.push_back(read_name(table.at("name")));
-    if (std::count(names.begin(), names.end(), names.back()) > 1)
-      table.at("name").fail(fmt::format("stage '{}' is there twice", names.back()));
+    const ConfigValue at = table.at("name");
+    const std::string stage = read_name(at);
+    const bool twice = std::ranges::count(names, stage, &StageName::stage) > 0;
+    const auto asked = table.find("parts");
+    const auto parts = static_cast<size_t>(asked ? asked->integer(2, kMostParts) : 1);
+    for (size_t part = 0; part < parts; ++part) {
+      const std::string name = parts > 1 ? fmt::format("{}-{}", stage, part + 1) : stage;
+      if (twice || std::ranges::count(names, name, &StageName::name) > 0)
+        at.fail(fmt::format("stage '{}' is there twice", name));
+      names.push_back({name, stage, part, parts});
+    }
   }
   return names;
 }
 
+std::string texts_of(const std::vector<StageName>& names) {
+  std::string text;
+  for (const StageName& one : names) text += (text.empty() ? "" : ", ") + one.name;
+  return text;
+}
+
 }  // namespace
+
+Vec3 StagePart::vector_of(const ConfigValue& value, const Quantity& quantity) const {
+  if (!value.is_table()) return value.vector(quantity);
+  ramps_ = true;
+  const ConfigTable ramp = value.table();
+  ramp.record_as("stage");
+  const Vec3 from = ramp.at("from").vector(quantity), to = ramp.at("to").vector(quantity);
+  ramp.done();
+  if (parts_ == 1)
+    value.fail("a ramp needs 'parts' in its stage: of how many constant values it is made", "parts = 10");
+  return from + (static_cast<double>(part_) + 0.5) / static_cast<double>(parts_) * (to - from);
+}
+
+void StagePart::check_ramps() const {
+  if (parts_ > 1 && !ramps_)
+    at("parts").fail("'parts' serves ramps, and the stage has none",
+                     "velocity = { from = ..., to = ... } is one");
+}
 
 void read_start(const ConfigTable& root, const SceneChoice& choice, Scene& scene) {
   const auto table = root.table_at("start");
@@ -87,28 +121,31 @@ void read_start(const ConfigTable& root, const SceneChoice& choice, Scene& scene
   table->done();
 }
 
-std::optional<ConfigTable> read_stage(const ConfigTable& root, const SceneChoice& choice, Scene& scene) {
+std::optional<StagePart> read_stage(const ConfigTable& root, const SceneChoice& choice, Scene& scene) {
   const std::vector<ConfigTable> tables = root.tables("stage");
   if (tables.empty()) {
     if (!choice.stage.empty())
       throw InputError(fmt::format("{} has no stages, and no stage '{}'", scene.path, choice.stage));
     return std::nullopt;
   }
-  const std::vector<std::string> names = stage_names(root);
+  const std::vector<StageName> names = stage_names(root);
   if (choice.stage.empty())
     tables[0].fail(choice.begins ? fmt::format("the scene has {} stages: --stage takes one", names.size())
                                  : "a scene of stages is for 'cuboct run', 'crosscheck', 'check' and 'emit'",
-                   fmt::format("its stages: {}", fmt::join(names, ", ")));
-  std::optional<ConfigTable> chosen;
-  for (size_t k = 0; k < tables.size(); ++k) {
-    if (names[k] == choice.stage)
-      chosen = tables[k];
+                   fmt::format("its stages: {}", texts_of(names)));
+  std::optional<StagePart> chosen;
+  for (const ConfigTable& table : tables) {
+    const std::string stage = table.at("name").string();
+    const auto part = std::ranges::find_if(
+        names, [&](const StageName& one) { return one.stage == stage && one.name == choice.stage; });
+    if (part != names.end())
+      chosen.emplace(table, part->part, part->parts);
     else
-      tables[k].names();  // for whoever reads that stage
+      table.names();  // for whoever reads that stage
   }
   if (!chosen)
     throw InputError(fmt::format("{} has no stage '{}'", scene.path, choice.stage),
-                     fmt::format("its stages: {}", fmt::join(names, ", ")));
+                     fmt::format("its stages: {}", texts_of(names)));
   scene.stage = choice.stage;
   return chosen;
 }
@@ -138,6 +175,6 @@ std::optional<Until> read_until(const ConfigTable& table, const Scene& scene) {
   return until;
 }
 
-std::vector<std::string> stages_of(const std::string& path) { return stage_names(read_config(path)); }
+std::vector<StageName> stages_of(const std::string& path) { return stage_names(read_config(path)); }
 
 }  // namespace cuboct

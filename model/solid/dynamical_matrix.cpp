@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -36,11 +38,65 @@ std::vector<Bond> half_bonds(const PairLaw& law, double pitch) {
   return bonds;
 }
 
+Vec3 eigenvalues(const Mat3& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Mat3>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
 // m D(q) = sum over all neighbours of constants * (1 - cos q.d); opposite ones contribute the same.
 Vec3 eigenvalues(const std::vector<Bond>& bonds, const Vec3& q) {
   Mat3 sum = Mat3::Zero();
   for (const Bond& bond : bonds) sum += 2 * (1 - std::cos(q.dot(bond.d))) * bond.constants;
-  return Eigen::SelfAdjointEigenSolver<Mat3>(sum, Eigen::EigenvaluesOnly).eigenvalues();
+  return eigenvalues(sum);
+}
+
+// The reciprocal cell in as many parts along each edge: the points hold Gamma, X (1/2), L (1/2), W (1/4), K
+// (3/8) and U (5/8).
+constexpr int kGrid = 24;
+// Of the grid's points, those whose surroundings are searched.
+constexpr size_t kKept = 8;
+
+// Columns: the reciprocal vectors, b_i . a_j = 2 pi for the primitive cell of edges (0,1,1), (1,0,1), (1,1,0)
+// half cubic edges.
+Mat3 reciprocal_vectors(double pitch) {
+  Mat3 b;
+  b << -1, 1, 1, 1, -1, 1, 1, 1, -1;
+  return b * (std::numbers::pi * std::numbers::sqrt2 / pitch);
+}
+
+// The points of half the grid (q and -q are equal) among whose values the kKept largest are, in the grid's
+// order. There q.d is 2 pi/kGrid times a whole number, and bonds that differ by a multiple of kGrid along an
+// edge do the same: a law that reaches over thousands of neighbours costs no more than kGrid^3/2.
+std::vector<Vec3> best_of_grid(const std::vector<Bond>& bonds, const Mat3& reciprocal) {
+  constexpr double kRounding = 1e-9;  // of the values: they are sums of thousands at the most
+  std::map<std::array<int, 3>, Mat3> classes;
+  for (const Bond& bond : bonds) {
+    std::array<int, 3> turns;  // b_i . d over 2 pi, modulo kGrid
+    for (int a = 0; a < 3; ++a) {
+      const auto whole = std::lround(reciprocal.col(a).dot(bond.d) / (2 * std::numbers::pi));
+      turns[a] = static_cast<int>((whole % kGrid + kGrid) % kGrid);
+    }
+    classes.try_emplace(turns, Mat3::Zero()).first->second += bond.constants;
+  }
+  std::array<double, kGrid> weight;
+  for (int n = 0; n < kGrid; ++n) weight[n] = 2 * (1 - std::cos(2 * std::numbers::pi * n / kGrid));
+  std::vector<Vec3> points;
+  std::vector<double> values;
+  for (int k = 0; k <= kGrid / 2; ++k)
+    for (int j = 0; j < kGrid; ++j)
+      for (int i = 0; i < kGrid; ++i) {
+        Mat3 sum = Mat3::Zero();
+        for (const auto& [turns, constants] : classes)
+          sum += weight[(i * turns[0] + j * turns[1] + k * turns[2]) % kGrid] * constants;
+        points.push_back(Vec3(i, j, k) / kGrid);
+        values.push_back(eigenvalues(sum)[2]);
+      }
+  std::vector<double> sorted = values;
+  std::ranges::nth_element(sorted, sorted.begin() + kKept - 1, std::greater());
+  const double least = sorted[kKept - 1] - kRounding * std::abs(*std::ranges::max_element(values));
+  std::vector<Vec3> best;
+  for (size_t n = 0; n < points.size(); ++n)
+    if (values[n] >= least) best.push_back(points[n]);
+  return best;
 }
 
 constexpr std::array<std::array<int, 2>, 6> kVoigt{{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
@@ -81,36 +137,25 @@ Vec3 squared_frequencies(const PairLaw& law, double mass, double pitch, const Ve
   return eigenvalues(half_bonds(law, pitch), q) / mass;
 }
 
-double largest_frequency(const PairLaw& law, double mass, double pitch) {
+double largest_frequency(const PairLaw& law, double mass, double pitch, double tolerance) {
   const std::vector<Bond> bonds = half_bonds(law, pitch);
-  // Columns: the reciprocal vectors, b_i . a_j = 2 pi for the primitive cell of edges (0,1,1), (1,0,1),
-  // (1,1,0) half cubic edges. A grid of a 24th holds Gamma, X (1/2), L (1/2), W (1/4), K (3/8) and U (5/8).
-  constexpr int kGrid = 24;
-  Mat3 reciprocal;
-  reciprocal << -1, 1, 1, 1, -1, 1, 1, 1, -1;
-  reciprocal *= std::numbers::pi * std::numbers::sqrt2 / pitch;
+  const Mat3 reciprocal = reciprocal_vectors(pitch);
   struct Candidate {
     double value;
     Vec3 at;
   };
-  std::vector<Candidate> best;  // of the grid, descending
-  constexpr size_t kKept = 8;
-  for (int k = 0; k <= kGrid / 2; ++k) {  // q and -q are equal
-    for (int j = 0; j < kGrid; ++j) {
-      for (int i = 0; i < kGrid; ++i) {
-        const Vec3 at = Vec3(i, j, k) / kGrid;
-        const double value = eigenvalues(bonds, reciprocal * at)[2];
-        if (best.size() == kKept && value <= best.back().value) continue;
-        if (best.size() == kKept) best.pop_back();
-        const auto place = std::find_if(best.begin(), best.end(), [&](auto& c) { return c.value < value; });
-        best.insert(place, {value, at});
-      }
-    }
-  }
-  // Compass search: the largest eigenvalue is continuous, but kinks where branches cross.
+  std::vector<Candidate> best;
+  for (const Vec3& at : best_of_grid(bonds, reciprocal))
+    best.push_back({eigenvalues(bonds, reciprocal * at)[2], at});
+  std::ranges::stable_sort(best, std::greater(), &Candidate::value);
+  best.resize(std::min(best.size(), kKept));
+  // Compass search: the largest eigenvalue is continuous, but kinks where branches cross. Off the top by s
+  // (of a reciprocal edge) it falls by (2 pi n s)^2/2 of itself at most, n the neighbours along the cutoff;
+  // some ten make the least step.
+  const double least = std::max(1e-7, 0.02 * std::sqrt(tolerance));
   double largest = 0;
   for (Candidate c : best) {
-    for (double step = 0.5 / kGrid; step > 1e-7; step /= 2) {
+    for (double step = 0.5 / kGrid; step > least; step /= 2) {
       for (bool moved = true; moved;) {
         moved = false;
         for (int axis = 0; axis < 3; ++axis) {
@@ -119,7 +164,7 @@ double largest_frequency(const PairLaw& law, double mass, double pitch) {
             at[axis] += sign * step;
             const double value = eigenvalues(bonds, reciprocal * at)[2];
             // Above rounding, or the search could wander on a flat top.
-            if (value > c.value * (1 + 1e-14)) {
+            if (value > c.value * (1 + tolerance)) {
               c = {value, at};
               moved = true;
             }

@@ -29,8 +29,9 @@ Vec3 squared_frequencies(const PairLaw& law, double mass, double pitch, const Ve
 
 // The largest frequency of the Brillouin zone in rad/s, `mass` in kg per particle: a grid of the reciprocal
 // cell that contains X, L, W, K and U, then a refinement from its best points. A leapfrog run is stable up to
-// dt = 2/that. 0 where no vibration is restored.
-double largest_frequency(const PairLaw& law, double mass, double pitch);
+// dt = 2/that. 0 where no vibration is restored. `tolerance`: relative, of its square. The default is what
+// rounding leaves; the refinement then takes nearly all of the time where bonds are thousands.
+double largest_frequency(const PairLaw& law, double mass, double pitch, double tolerance = 1e-14);
 // The largest of the packings that the pairs of materials would make alone.
 double largest_frequency(const Rule& rule, double pitch);
 

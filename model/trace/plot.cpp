@@ -64,13 +64,14 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
 
 std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
                           const std::string& bar_label, double limit) {
-  constexpr int kLabel = 30, kBar = 106;
+  // Letters of 24 pixels in a picture of 1100: they can be read where a page shows it 400 wide.
+  constexpr int kLabel = 44, kBar = 140;
   const Scratch scratch;
   const int width = pictures[0].width, row = pictures[0].height + kLabel;
   const int height = static_cast<int>(pictures.size()) * row + kBar;
   const auto y = [&](int from_top) { return 1 - static_cast<double>(from_top) / height; };
   std::string script = fmt::format(
-      "set terminal pngcairo size {},{} font 'Helvetica,13' background '#ffffff'\nset output {}\n"
+      "set terminal pngcairo size {},{} font 'Helvetica,24' background '#ffffff'\nset output {}\n"
       "set multiplot\nunset key\nunset border\nunset tics\n",
       width, height, gnuplot_file(scratch.path("plot.png")));
   for (size_t i = 0; i < pictures.size(); ++i) {
@@ -97,7 +98,7 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
       "plot {} binary array=(256,2) format='%uchar' dx={:.9g} dy=1 origin=({:.9g},0) using 1:2:3 with "
       "rgbimage\n"
       "unset multiplot\n",
-      y(height - kBar + 14), y(height - kBar + 32), gnuplot_label(bar_label), -limit, limit,
+      y(height - kBar + 14), y(height - kBar + 40), gnuplot_label(bar_label), -limit, limit,
       gnuplot_file(scratch.path("bar")), limit / 127.5, -limit);
   run_gnuplot(scratch, script);
   return contents(scratch.path("plot.png"));

@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include <string>
+#include <vector>
 
 namespace cuboct {
 
@@ -11,13 +12,26 @@ namespace cuboct {
 // spread stand in a comment line before. Comment lines begin with "# ".
 class LineReporter : public benchmark::BenchmarkReporter {
  public:
+  // `silent`: prints nothing.
+  explicit LineReporter(bool silent) : silent_(silent) {}
   bool ReportContext(const Context& context) override;
   void ReportRuns(const std::vector<Run>& runs) override;
   // Some benchmark failed, other than for want of memory or of a program.
   bool failed() const { return failed_; }
+  // What was measured, 1/s, and what was said of it.
+  struct Row {
+    std::string name;
+    double value;
+  };
+  const std::vector<Row>& rows() const { return rows_; }
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  bool failed_ = false;
+  void note(const std::string& text);
+
+  bool silent_, failed_ = false;
+  std::vector<Row> rows_;
+  std::vector<std::string> notes_;
   std::string skipped_;
 };
 

@@ -121,10 +121,11 @@ std::set<std::string> scene_keys() {
   std::ofstream(path)
       << read_config_text(kRoot + "/scenes/coupon.toml")
       << "[start]\nfrom = \"there\"\n[[stage]]\nname = \"pull\"\n"
-         "until = { probe = \"tension.strain\", above = 0.1 }\ngravity = \"[0, 0, 0] m/s^2\"\n"
+         "until = { probe = \"tension.strain\", above = 0.1 }\nparts = 2\n"
+         "gravity = { from = \"[0, 0, 0] m/s^2\", to = \"[0, 0, 1] m/s^2\" }\n"
          "constraint = [{ name = \"pulled\", velocity = \"[1, 0, 0] m/s\" }, { name = \"fixed\", "
          "free = true }]\n";
-  read_scene(path.string(), {.begins = true, .stage = "pull"});
+  read_scene(path.string(), {.begins = true, .stage = "pull-2"});
   std::filesystem::remove(path);
   record_config_keys(nullptr);
   return keys;

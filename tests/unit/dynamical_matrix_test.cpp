@@ -94,6 +94,23 @@ TEST(Phonons, LargestFrequencyBeatsABlindScan) {
   }
 }
 
+// Of a law over thousands of neighbours: nothing of a scan is above, and a loose tolerance finds nearly it.
+TEST(Phonons, LargestFrequencyOfALongLaw) {
+  const auto law = spline_law({0, 0.2, 0.6, 1}, {2, 1.5, 0.7, 0}, Interpolation::monotone_cubic, 0.2);
+  const double answer = largest_frequency(*law, 1, 0.2), loose = largest_frequency(*law, 1, 0.2, 1e-6);
+  EXPECT_LE(loose, answer * (1 + 1e-9));
+  EXPECT_GE(loose, answer * 0.999);
+  double scan = 0;
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j)
+      for (int k = 0; k < 9; ++k) {
+        const Vec3 q = 2 * pi / (sqrt2 * 0.2) / 9 * Vec3(i + j, j + k, k + i);
+        scan = std::max(scan, squared_frequencies(*law, 1, 0.2, q)[2]);
+      }
+  EXPECT_LE(std::sqrt(scan), loose);
+  EXPECT_GE(std::sqrt(scan), answer * 0.95);
+}
+
 TEST(Phonons, LargestFrequencyIsZeroWhereNothingIsRestored) {
   const auto push = spline_law({1, 2, 3}, {-1, 1, 0}, Interpolation::monotone_cubic, 1);
   EXPECT_EQ(largest_frequency(*push, 1, 4), 0);  // no neighbour inside the cutoff

@@ -64,6 +64,41 @@ TEST(Stage, ReplacesKeysOfTheScene) {
   EXPECT_EQ(relax.body.x, base.body.x);
 }
 
+const std::string kRamps = R"(
+[[stage]]
+name = "start"
+steps = 10
+parts = 4
+gravity = { from = [0, 0, 0], to = [0, 0, -0.8] }
+until = { probe = "grip.force_x", beyond = 0.2, after = 0.56 }
+constraint = [{ name = "right", velocity = { from = [0.08, 0, 0], to = [0, 0, -0.08] } }]
+
+[[stage]]
+name = "hold"
+)";
+
+// Parts of 3 steps, the values those of the middles: 1, 3, 5 and 7 eighths of the way.
+TEST(Stage, ARampRunsInPartsOfItsMiddles) {
+  double way = 0;
+  for (int part = 0; part < 4; ++part) {
+    const Scene scene = parsed(kRamps, "start-" + std::to_string(part + 1));
+    const double along = (2 * part + 1) / 8.0;
+    EXPECT_EQ(scene.steps, 3u);
+    EXPECT_LT((scene.rule.types[0].gravity - Vec3(0, 0, -0.8 * along)).norm(), 1e-15);
+    const ParticleType& right = scene.rule.types.back();
+    ASSERT_EQ(right.name, "matter/right");
+    EXPECT_LT((right.velocity - Vec3(0.08 - 0.08 * along, 0, -0.08 * along)).norm(), 1e-15);
+    way += right.velocity.x() * static_cast<double>(scene.steps) * scene.rule.dt;
+    // 0.56 are 4 steps of 0.14: one step of the second part.
+    EXPECT_EQ(scene.until->after, part == 0 ? 4u : part == 1 ? 1u : 0u);
+  }
+  EXPECT_NEAR(way, 0.08 / 2 * 12 * 0.14, 1e-15);  // that of the straight line
+  const std::string no_gravity =
+      kRamps.substr(0, kRamps.find("gravity")) + kRamps.substr(kRamps.find("until"));
+  EXPECT_EQ(parsed(no_gravity, "hold").steps, 24u);
+  EXPECT_EQ(parsed(kRamps, "hold").rule.types.back().velocity, Vec3(0.03, -0.01, 0));
+}
+
 std::string refusal(const std::string& more, const std::string& stage) {
   try {
     parsed(more, stage);
@@ -94,6 +129,22 @@ TEST(Stage, IsRefusedWithItsPlace) {
             "s.toml:50:9: missing key 'above' in 'stage.until'");
   EXPECT_EQ(refusal(a + "probe_every = 0\nuntil = { probe = \"grip.force_x\", above = 1 }\n", "a"),
             "s.toml:40:1: 'until' needs readings: 'probe_every' is 0");
+  EXPECT_EQ(refusal(kRamps, "start"), "s.toml has no stage 'start'");
+  const std::string ramp =
+      "constraint = [{ name = \"right\", velocity = { from = [0, 0, 0], to = [1, 0, 0] } }]\n";
+  EXPECT_EQ(refusal(a + ramp, "a"),
+            "s.toml:50:44: a ramp needs 'parts' in its stage: of how many constant values it is made");
+  EXPECT_EQ(refusal(a + "parts = 1\n" + ramp, "a-1"),
+            "s.toml:50:9: 'parts' must be between 2 and 100, not 1");
+  EXPECT_EQ(refusal(a + "parts = 2\n", "a-1"), "s.toml:50:9: 'parts' serves ramps, and the stage has none");
+  EXPECT_EQ(refusal(a + "parts = 2\n" + ramp + "[[stage]]\nname = \"a-2\"\n", "a-1"),
+            "s.toml:53:8: stage 'a-2' is there twice");
+  EXPECT_EQ(refusal(a + "parts = 2\ngravity = { from = [0, 0, 0], too = [0, 0, 1] }\n", "a-1"),
+            "s.toml:51:31: unknown key 'too'");
+  EXPECT_EQ(refusal(a + "parts = 2\nconstraint = [{ name = \"left\", velocity = { from = [0, 0, 0], to = [1, "
+                        "0, 0] } }]\n",
+                    "a-1"),
+            "s.toml:51:43: 'left' is 'held' and has no velocity");
   EXPECT_EQ(refusal("[start]\nform = \"out\"\n", ""), "s.toml:49:1: unknown key 'form'");
   EXPECT_EQ(parsed("[start]\nfrom = \"out\"\n", "").start, "out");
 }
