@@ -29,7 +29,11 @@ void read_bond(const Scene& scene, Motion& motion) {
   if (motion.bond_stiffness == 0 &&
       scene.dt_limit > 0)  // that of a packing with this fastest vibration, sqrt(8 k/m)
     motion.bond_stiffness = rule.mass / (2 * scene.dt_limit * scene.dt_limit);
-  motion.sound_speed = motion.rest_distance * std::sqrt(motion.bond_stiffness / rule.mass);
+  double rate = motion.bond_stiffness / rule.mass;
+  // The strongest bonds may be those of heavy particles.
+  if (const double slope = -rule.law->slope(motion.rest_distance); !rule.masses.empty() && slope > 0)
+    rate = slope * rule.largest_rate() / rule.mass;
+  motion.sound_speed = motion.rest_distance * std::sqrt(rate);
 }
 
 // Root mean squares of the free particles' velocities: all, that of the rotation as a rigid body, and what is
