@@ -63,7 +63,8 @@ int bench(const Options& options) {
   const auto end = [&](int code) {
     notes.insert(notes.end(), reporter.notes().begin(), reporter.notes().end());
     const auto row = [](const LineReporter::Row& row) {
-      return json_object({{"name", json(row.name)}, {"value", json(row.value)}, {"unit", json("1/s")}});
+      return json_object(
+          {{"name", json(row.name)}, {"value", json(row.value)}, {"unit", json(std::string("1/s"))}});
     };
     answer.close(json_object({{"machine", json(machine())},
                               {"results", json_array(reporter.rows(), row)},

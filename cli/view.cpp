@@ -59,7 +59,7 @@ void LiveView::write(const std::string& body, int refresh) {
 void LiveView::open_page() const {
   const std::string page = std::filesystem::absolute(path_).lexically_normal().string();
   if (has_display() && in_path("xdg-open") && in_path("setsid") &&
-      Process("setsid", {"--fork", "xdg-open", page}).wait() == 0)
+      Process("setsid", {"--fork", "xdg-open", page}, false, {"/dev/null", "/dev/null"}).wait() == 0)
     return;
   fmt::print(stderr, "view: {}\n", line_text(page));
 }

@@ -212,10 +212,11 @@ int run_program(int argc, char** argv, EngineProgram& program) {
   parsed.frames_given = frames->count() > 0 || frames_file->count() > 0;
   parsed.options.hashes_given = app.get_option("--hash-every")->count() > 0;
   const auto told = [&](const InputError& error, const std::string& text, int code) {
-    if (!parsed.error.empty())
-      write_error(parsed.error, error);
-    else
-      fmt::print(stderr, "{}\n", text);
+    try {
+      if (!parsed.error.empty()) return write_error(parsed.error, error), code;
+    } catch (const std::exception&) {  // a full disk, say
+    }
+    fmt::print(stderr, "{}\n", text);
     return code;
   };
   try {

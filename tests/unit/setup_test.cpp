@@ -109,7 +109,7 @@ TEST(Setup, RefusalsStandAtTheirKeys) {
                "the pair law's f/r * dt^2/m reaches ", few);
   expect_place("[[material]]\nname = \"m\"\nstrength = 3\n", "s.toml:49:12",
                "the pair law's f/r * dt^2/m reaches ", few);
-  expect_place(with("thermal_speed = 0.02\nseed = 1", "uniform = [0, 500, 0]"), "s.toml:30:1", "particle ");
+  expect_place(with("thermal_speed = 0.02\nseed = 1", "uniform = [0, 500, 0]"), "s.toml:31:1", "particle ");
   expect_place(with("cells = [2, 1, 1]", "size = [9.7, 4, 4]\nperiodic = \"x\""), "s.toml:11:8",
                "the packing does not repeat");
   expect_place(
