@@ -22,6 +22,7 @@
 #include "model/base/output.h"
 #include "model/base/text.h"
 #include "model/trace/compare.h"
+#include "model/trace/cycles.h"
 #include "model/trace/plot.h"
 #include "model/trace/raster_plot.h"
 
@@ -168,6 +169,18 @@ std::string over_time(const Trace& trace, double dt,
   return figure(all, "time, " + time.name, label + ", " + number.name);
 }
 
+// Its figure: the curve of the whole, and what those of the axes begin with, if it has any.
+struct Probed {
+  Probe::Kind kind;
+  const char *title, *label, *whole, *part;
+};
+constexpr Probed kProbed[] = {
+    {Probe::Kind::force, "Force", "force", "force", "force_"},
+    {Probe::Kind::displacement, "Displacement", "displacement", "along", ""},
+    {Probe::Kind::velocity, "Velocity", "velocity", "velocity", "velocity_"},
+    {Probe::Kind::kinetic_energy, "Kinetic energy", "kinetic energy", "kinetic_energy", nullptr},
+    {Probe::Kind::temperature, "Temperature", "temperature", "temperature", nullptr}};
+
 // Every curve that has more than one sample.
 std::string curve_section(const Loaded& loaded, const Trace& trace, const std::vector<uint64_t>& marks) {
   const double dt = loaded.scene.rule.dt;
@@ -177,42 +190,17 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
     if (!figure.empty()) out += "<h2>" + html_text(title) + "</h2>\n" + figure;
   };
   for (const Probe& probe : loaded.scene.probes) {
-    const std::string of = probe.name + ".";
-    switch (probe.kind) {
-      case Probe::Kind::stress_strain:
-        if (const auto tension = tension_of(trace.curves, probe.name))
-          section("Stress and strain: " + probe.name,
-                  stress_strain(*tension, probe, &probe == first ? marks : std::vector<uint64_t>()));
-        break;
-      case Probe::Kind::force:
-        section("Force: " + probe.name,
-                over_time(
-                    trace, dt,
-                    {{of + "force", ""}, {of + "force_x", "x"}, {of + "force_y", "y"}, {of + "force_z", "z"}},
-                    "force"));
-        break;
-      case Probe::Kind::displacement:
-        section("Displacement: " + probe.name,
-                over_time(trace, dt, {{of + "along", ""}, {of + "x", "x"}, {of + "y", "y"}, {of + "z", "z"}},
-                          "displacement"));
-        break;
-      case Probe::Kind::velocity:
-        section("Velocity: " + probe.name, over_time(trace, dt,
-                                                     {{of + "velocity", ""},
-                                                      {of + "velocity_x", "x"},
-                                                      {of + "velocity_y", "y"},
-                                                      {of + "velocity_z", "z"}},
-                                                     "velocity"));
-        break;
-      case Probe::Kind::kinetic_energy:
-        section("Kinetic energy: " + probe.name,
-                over_time(trace, dt, {{of + "kinetic_energy", ""}}, "kinetic energy"));
-        break;
-      case Probe::Kind::temperature:
-        section("Temperature: " + probe.name,
-                over_time(trace, dt, {{of + "temperature", ""}}, "temperature"));
-        break;
+    if (probe.kind == Probe::Kind::stress_strain) {
+      if (const auto tension = tension_of(trace.curves, probe.name))
+        section("Stress and strain: " + probe.name,
+                stress_strain(*tension, probe, &probe == first ? marks : std::vector<uint64_t>()));
+      continue;
     }
+    const auto& [kind, title, label, whole, part] = *std::ranges::find(kProbed, probe.kind, &Probed::kind);
+    std::vector<std::pair<std::string, std::string>> names{{probe.name + "." + whole, ""}};
+    for (int axis = 0; part && axis < 3; ++axis)
+      names.emplace_back(probe.name + "." + part + "xyz"[axis], std::string(1, "xyz"[axis]));
+    section(title + (": " + probe.name), over_time(trace, dt, names, label));
   }
   // On axes of their own: the potential energy's change would else flatten the others.
   std::string energies;
@@ -295,21 +283,12 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
 
 // What each phase takes, of the engines that count cycles: a node's mean over the run, and the longest.
 std::string phase_section(const Trace& trace) {
-  const size_t row = trace.nodes * kPhases;
-  if (trace.cycles.empty() || row == 0) return "";
+  if (trace.cycles.empty() || trace.nodes == 0) return "";
   std::string rows;
-  for (size_t phase = 0; phase < kPhases; ++phase) {
-    uint64_t sum = 0, most = 0;
-    for (size_t k = phase; k < trace.cycles.size(); k += kPhases) {
-      const uint64_t length =
-          trace.cycles[k].end + 1 - trace.cycles[k].start;  // an empty span ends before it starts
-      sum += length;
-      most = std::max(most, length);
-    }
-    rows +=
-        fmt::format("<tr><th>{}</th><td>{:.1f}</td><td>{}</td></tr>\n", to_string(static_cast<Phase>(phase)),
-                    static_cast<double>(sum) * kPhases / static_cast<double>(trace.cycles.size()), most);
-  }
+  const auto phases = cycles_per_phase(trace);
+  for (size_t k = 0; k < phases.size(); ++k)
+    rows += fmt::format("<tr><th>{}</th><td>{:.1f}</td><td>{}</td></tr>\n", to_string(static_cast<Phase>(k)),
+                        phases[k].mean, phases[k].most);
   return "<h2>Cycles per phase</h2>\n<div class=\"wide\"><table>\n<tr><th></th><th>mean of a node</th>"
          "<th>most</th></tr>\n" +
          rows +

@@ -8,24 +8,9 @@
 
 #include "cli/advice.h"
 #include "model/analysis/tension.h"
+#include "model/trace/cycles.h"
 
 namespace cuboct {
-std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
-  const size_t row = trace.nodes * kPhases;
-  if (trace.cycles.empty() || row == 0) return std::nullopt;
-  CyclesPerStep result;
-  uint64_t before = 0;
-  const size_t steps = trace.cycles.size() / row;
-  for (size_t step = 0; step < steps; ++step) {
-    uint64_t end = 0;
-    for (size_t i = step * row; i < (step + 1) * row; ++i) end = std::max(end, trace.cycles[i].end + 1);
-    result.max = std::max(result.max, end - before);
-    before = end;
-  }
-  result.mean = static_cast<double>(before) / static_cast<double>(steps);
-  return result;
-}
-
 namespace {
 
 bool is_energy(const Curve& curve) { return curve.name.starts_with("energy."); }

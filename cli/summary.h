@@ -2,7 +2,6 @@
 // The summary that ends a run.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "cli/command.h"
@@ -10,13 +9,6 @@
 #include "model/run/record.h"
 
 namespace cuboct {
-
-// Cycles that the machine takes per step: from the end of its slowest node in one step to that in the next.
-struct CyclesPerStep {
-  double mean = 0;
-  uint64_t max = 0;
-};
-std::optional<CyclesPerStep> cycles_per_step(const Trace& trace);
 
 // Every curve's last value, and its smallest and largest; of the energies, how much the total changed and its
 // last.

@@ -9,6 +9,7 @@
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
+#include "model/base/resources.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -22,13 +23,7 @@ struct Request {
 };
 
 // Scenes and states on the host: about 200 bytes a particle, and what the engine takes while it is made.
-bool fits_in_memory(uint64_t particles) {
-  std::ifstream in("/proc/meminfo");
-  std::string name, unit;
-  for (uint64_t kilobytes = 0; in >> name >> kilobytes; std::getline(in, unit))
-    if (name == "MemAvailable:") return particles * 500 < kilobytes * 1024;
-  return true;
-}
+bool fits_in_memory(uint64_t particles) { return particles < free_memory() / 500; }
 
 // A file that gains a line with each row, so that an interrupted benchmark keeps what it found.
 class Lines {

@@ -5,22 +5,11 @@
 
 #include <cmath>
 
+#include "model/base/json.h"
+#include "model/base/text.h"
+
 namespace cuboct::gpu {
 namespace {
-
-std::string quoted(const std::string& text) {
-  std::string out(1, '"');
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      out += {'\\', c};
-    else if (static_cast<unsigned char>(c) < 0x20)
-      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-    else
-      out += c;
-  }
-  out += '"';
-  return out;
-}
 
 // Numbers that JSON cannot hold are null.
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null"; }
@@ -34,22 +23,12 @@ class JsonLine {
   JsonLine& add(const char* name, double value) { return add(name, number(value)); }
   JsonLine& add(const char* name, uint64_t value) { return add(name, std::to_string(value)); }
   JsonLine& add(const char* name, int value) { return add(name, std::to_string(value)); }
-  JsonLine& text(const char* name, const std::string& value) { return add(name, quoted(value)); }
+  JsonLine& text(const char* name, const std::string& value) { return add(name, json_text(value)); }
   std::string object() const { return fmt::format("{{{}}}", members_); }
 
  private:
   std::string members_;
 };
-
-template <class List, class Write>
-std::string json_list(const List& list, const Write& write) {
-  std::string out;
-  for (const auto& item : list) {
-    if (!out.empty()) out += ',';
-    out += write(item);
-  }
-  return fmt::format("[{}]", out);
-}
 
 // "NVIDIA H100", "2 x NVIDIA H100", "A and B".
 std::string names_of(const std::vector<Device>& devices) {
@@ -126,13 +105,13 @@ std::string table_line(const BenchSetting& setting, const BenchRow& row, const R
 std::string json_line(const BenchSetting& setting) {
   const BenchOptions& o = setting.options;
   JsonLine line;
-  line.add("devices", json_list(setting.devices, [](const Device& device) {
+  line.add("devices", json_array(setting.devices, [](const Device& device) {
              JsonLine one;
              one.add("ordinal", device.ordinal).text("name", device.name).text("bus", device.bus);
              one.add("multiprocessors", device.multiprocessors).add("memory", device.memory);
              return one.object();
            }));
-  line.add("slabs", json_list(o.engine.devices, [](int ordinal) { return std::to_string(ordinal); }));
+  line.add("slabs", json_array(o.engine.devices, [](int ordinal) { return std::to_string(ordinal); }));
   if (!setting.driver.empty()) line.text("driver", setting.driver);
   line.add("copy_bandwidth", setting.bandwidth).add("block", o.engine.block);
   line.add("repeats", o.repeats).add("least_seconds", o.seconds);
@@ -144,7 +123,7 @@ std::string json_line(const BenchSetting& setting) {
 std::string json_line(const BenchSetting& setting, const BenchRow& row, const RowResult& result) {
   JsonLine line;
   line.text("row", row.name).text("arithmetic", row.arithmetic).add("particles", result.particles);
-  line.add("steps", result.steps).add("seconds", json_list(result.seconds, number));
+  line.add("steps", result.steps).add("seconds", json_array(result.seconds, number));
   line.add("particle_steps_per_second", result.rate())
       .add("mean_particle_steps_per_second", result.mean_rate())
       .add("spread", result.spread());

@@ -7,6 +7,7 @@
 
 #include "gpu_ref/fixed_policy.h"
 #include "gpu_ref/machine.h"
+#include "hw/cell_box.h"
 #include "model/base/interrupt.h"
 #include "model/contract/golden.h"
 #include "model/contract/quantise.h"
@@ -104,17 +105,11 @@ class FixedEngine final : public Engine {
     const FixedRule& rule = plan.rule;
     typename Machine<Policy>::Setup setup;
     Geometry& g = setup.geometry;
-    Cell high = g.low = plan.lattice.cell(0);
-    for (uint32_t n = 0; n < plan.lattice.size(); ++n)
-      for (int a = 0; a < 3; ++a) {
-        g.low[a] = std::min(g.low[a], plan.lattice.cell(n)[a]);
-        high[a] = std::max(high[a], plan.lattice.cell(n)[a]);
-      }
+    const CellBox box = box_of(plan.lattice, true);
+    g.low = box.low;
     for (int a = 0; a < 3; ++a) {
-      const int period = plan.lattice.period()[a];
-      g.wraps[a] = period > 0;
-      if (period > 0) g.low[a] = 0;
-      g.total[a] = period > 0 ? period : high[a] - g.low[a] + 1;
+      g.wraps[a] = plan.lattice.period()[a] > 0;
+      g.total[a] = static_cast<int>(box.extent(a));
     }
     g.lattice = &plan.lattice;
     // Two cells' edges hold any cutoff, which is an edge at most, and the skin.

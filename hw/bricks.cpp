@@ -9,6 +9,7 @@
 #include <map>
 #include <tuple>
 
+#include "hw/cell_box.h"
 #include "model/base/error.h"
 
 namespace cuboct {
@@ -126,15 +127,10 @@ Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
     nodes_ = lattice.size();
     return;
   }
-  Cell low = lattice.cell(0), high = low;
-  for (uint32_t n = 1; n < lattice.size(); ++n)
-    for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], lattice.cell(n)[a]);
-      high[a] = std::max(high[a], lattice.cell(n)[a]);
-    }
+  const auto box = box_of(lattice, true);
+  const auto& [low, high] = box;
   Cell length, largest;
   for (int a = 0; a < 3; ++a) {
-    if (lattice.period()[a] > 0) low[a] = 0, high[a] = lattice.period()[a] - 1;
     length[a] = high[a] - low[a] + 1;
     largest[a] = std::min(shape[a], length[a]);
   }

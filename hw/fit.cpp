@@ -5,26 +5,12 @@
 #include <limits>
 #include <tuple>
 
+#include "hw/cell_box.h"
+
 namespace cuboct {
 namespace {
 
 constexpr size_t at(int index) { return static_cast<size_t>(index); }
-
-// The lowest cell, along rings 0, and the extent, as bricks are cut.
-std::pair<Cell, Cell> box_of(const Lattice& lattice) {
-  Cell low = lattice.cell(0), high = low;
-  for (uint32_t n = 1; n < lattice.size(); ++n)
-    for (int a = 0; a < 3; ++a) {
-      low[at(a)] = std::min(low[at(a)], lattice.cell(n)[at(a)]);
-      high[at(a)] = std::max(high[at(a)], lattice.cell(n)[at(a)]);
-    }
-  Cell extent;
-  for (int a = 0; a < 3; ++a) {
-    if (lattice.period()[at(a)] > 0) low[at(a)] = 0, high[at(a)] = lattice.period()[at(a)] - 1;
-    extent[at(a)] = high[at(a)] - low[at(a)] + 1;
-  }
-  return {low, extent};
-}
 
 // The brick that a cell belongs to, as one number.
 uint64_t brick_of(const Cell& cell, const Cell& low, const Cell& brick) {
@@ -61,17 +47,18 @@ FitShare worst_share(const FitAmounts& used, const FitAmounts& room) {
 
 std::vector<Cell> possible_bricks(const Lattice& lattice) {
   std::vector<Cell> bricks;
-  const Cell extent = box_of(lattice).second;
-  for (int32_t z = 1; z <= extent[2] && z <= kMostBrickCells; ++z)
-    for (int32_t y = 1; y <= extent[1] && y * z <= kMostBrickCells; ++y)
-      for (int32_t x = 1; x <= extent[0] && x * y * z <= kMostBrickCells; ++x) bricks.push_back({x, y, z});
+  const CellBox box = box_of(lattice, true);
+  for (int32_t z = 1; z <= box.extent(2) && z <= kMostBrickCells; ++z)
+    for (int32_t y = 1; y <= box.extent(1) && y * z <= kMostBrickCells; ++y)
+      for (int32_t x = 1; x <= box.extent(0) && x * y * z <= kMostBrickCells; ++x)
+        bricks.push_back({x, y, z});
   std::ranges::stable_sort(bricks, {}, cells_of);
   return bricks;
 }
 
 uint32_t count_bricks(const Lattice& lattice, const Cell& brick) {
   if (cells_of(brick) == 1) return lattice.size();
-  const Cell low = box_of(lattice).first;
+  const Cell low = box_of(lattice, true).low;
   std::vector<uint64_t> keys;
   for (uint32_t n = 0; n < lattice.size(); ++n) {
     const uint64_t key = brick_of(lattice.cell(n), low, brick);
@@ -81,17 +68,29 @@ uint32_t count_bricks(const Lattice& lattice, const Cell& brick) {
   return static_cast<uint32_t>(std::ranges::unique(keys).begin() - keys.begin());
 }
 
-std::optional<FitChoice> fastest_that_fits(const FitSpace& space, const FitAmounts& room,
-                                           const FitCosts& costs) {
-  std::vector<Candidate> fitting;
+namespace {
+
+template <typename See>
+void for_each_candidate(const FitSpace& space, const FitAmounts& room, const FitCosts& costs,
+                        const See& see) {
   for (size_t s = 0; s < space.shapes.size(); ++s)
     for (int lanes = 1; lanes <= space.most_lanes; ++lanes)
       for (int pipes = 1; pipes <= std::min(lanes, space.most_pipes); ++pipes) {
         const FitAmounts uses = costs.uses(space.shapes[s], lanes, pipes);
-        if (!has_room(uses, room)) continue;
-        fitting.push_back({s, lanes, pipes, costs.least_cycles(space.shapes[s], lanes, pipes), uses,
-                           worst_share(uses, room).share});
+        see(Candidate{s, lanes, pipes, 0, uses, worst_share(uses, room).share});
       }
+}
+
+}  // namespace
+
+std::optional<FitChoice> fastest_that_fits(const FitSpace& space, const FitAmounts& room,
+                                           const FitCosts& costs) {
+  std::vector<Candidate> fitting;
+  for_each_candidate(space, room, costs, [&](Candidate c) {
+    if (!has_room(c.uses, room)) return;
+    c.least = costs.least_cycles(space.shapes[c.shape], c.lanes, c.pipes);
+    fitting.push_back(c);
+  });
   std::ranges::stable_sort(fitting, {}, &Candidate::least);
   std::optional<Candidate> best;
   uint64_t best_cycles = 0;
@@ -112,12 +111,7 @@ std::optional<FitChoice> fastest_that_fits(const FitSpace& space, const FitAmoun
 std::optional<FitChoice> nearest_to_fit(const FitSpace& space, const FitAmounts& room,
                                         const FitCosts& costs) {
   std::vector<Candidate> all;
-  for (size_t s = 0; s < space.shapes.size(); ++s)
-    for (int lanes = 1; lanes <= space.most_lanes; ++lanes)
-      for (int pipes = 1; pipes <= std::min(lanes, space.most_pipes); ++pipes) {
-        const FitAmounts uses = costs.uses(space.shapes[s], lanes, pipes);
-        all.push_back({s, lanes, pipes, 0, uses, worst_share(uses, room).share});
-      }
+  for_each_candidate(space, room, costs, [&](const Candidate& c) { all.push_back(c); });
   std::ranges::stable_sort(all, {}, &Candidate::share);
   std::optional<FitChoice> best;
   double share = 0;
@@ -133,7 +127,7 @@ std::optional<FitChoice> nearest_to_fit(const FitSpace& space, const FitAmounts&
 }
 
 FitLoads::FitLoads(const Plan& plan, const PairCensus& census)
-    : plan_(plan), census_(census), low_(box_of(plan.lattice).first), near_(plan.lattice.size()) {
+    : plan_(plan), census_(census), low_(box_of(plan.lattice, true).low), near_(plan.lattice.size()) {
   for (uint32_t n = 0; n < plan.lattice.size(); ++n)
     for (const auto& [other, offset] : plan.lattice.neighbourhood(n)) near_[n] += census.particles(other);
 }

@@ -5,6 +5,7 @@
 
 #include <charconv>
 
+#include "model/base/enum_names.h"
 #include "model/base/error.h"
 
 namespace cuboct {
@@ -53,15 +54,8 @@ uint32_t CrcTable::operator()(const uint64_t* words, int bits) const {
 }
 
 const char* to_string(LinkCheck check) {
-  switch (check) {
-    case LinkCheck::none:
-      return "none";
-    case LinkCheck::detect:
-      return "detect";
-    case LinkCheck::retry:
-      return "retry";
-  }
-  return "?";
+  constexpr const char* kNames[] = {"none", "detect", "retry"};
+  return name_in(kNames, check);
 }
 
 FaultShare read_fault_share(const std::string& text) {

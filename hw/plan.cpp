@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "hw/cell_box.h"
 #include "model/base/hash.h"
 
 namespace cuboct {
@@ -151,14 +152,9 @@ Latency latency_of(const FixedRule& r, const Arch& arch) {
 
 uint64_t bounding_cells(const Lattice& lattice) {
   if (lattice.size() == 0) return 0;
-  Cell low = lattice.cell(0), high = low;
-  for (uint32_t n = 1; n < lattice.size(); ++n)
-    for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], lattice.cell(n)[a]);
-      high[a] = std::max(high[a], lattice.cell(n)[a]);
-    }
+  const CellBox box = box_of(lattice, false);
   uint64_t cells = 1;
-  for (int a = 0; a < 3; ++a) cells *= static_cast<uint64_t>(int64_t{high[a]} - low[a] + 1);
+  for (size_t a = 0; a < 3; ++a) cells *= static_cast<uint64_t>(box.extent(a));
   return cells;
 }
 

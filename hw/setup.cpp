@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "hw/cell_box.h"
 #include "hw/reach.h"
 
 namespace cuboct {
@@ -115,11 +116,11 @@ FixedRule fixed_rule(const Scene& scene, const Arch& arch, double edge, const Au
 
 // Every cell of the box around `cells`.
 std::vector<Cell> filled_box(const std::vector<Cell>& cells, const Arch& arch) {
-  Cell low = cells.front(), high = low;
-  for (const Cell& cell : cells)
-    for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], cell[a]), high[a] = std::max(high[a], cell[a]);
+  CellBox around;
+  for (const Cell& cell : cells) around.add(cell);
+  const auto& [low, high] = around;
   double count = 1;
-  for (int a = 0; a < 3; ++a) count *= high[a] - low[a] + 1.0;
+  for (size_t a = 0; a < 3; ++a) count *= static_cast<double>(around.extent(a));
   if (count > kMostCells)
     arch.places.fail(
         {"plan.carry"},

@@ -13,6 +13,7 @@
 #include "study/interrupted.h"
 #include "study/measures.h"
 #include "study/runner.h"
+#include "study/series.h"
 #include "study/table.h"
 #endif
 
@@ -65,18 +66,6 @@ void add_settings(Columns& columns, const Results& results, std::vector<Change> 
     });
 }
 
-std::string status_of(const Outcome& outcome) {
-  switch (outcome.status) {
-    case study::Status::done:
-      return "done";
-    case study::Status::unstable:
-      return "unstable";
-    case study::Status::refused:
-      return "refused";
-  }
-  return "?";
-}
-
 std::vector<Column> columns_of(const Results& results) {
   Columns columns(results);
   columns.texts("settings", [](auto& o) { return study::short_name(o.settings); });
@@ -84,7 +73,7 @@ std::vector<Column> columns_of(const Results& results) {
   columns.texts("arithmetic", [](auto& o) { return study::name_of(o.settings.arithmetic); });
   add_settings(columns, results, &study::Settings::scene, "");
   add_settings(columns, results, &study::Settings::arch, "arch.");
-  columns.texts("status", status_of);
+  columns.texts("status", [](auto& o) { return study::label(o.status); });
   columns.texts("why", [](auto& o) { return o.why; });
   columns.numbers("dt", [](auto& o) { return o.dt; });
   columns.numbers("particles", [](auto& o) { return o.particles; });

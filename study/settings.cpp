@@ -3,28 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "hw/engines.h"
 #include "model/base/error.h"
 #include "model/scene/config.h"
 
 namespace cuboct::study {
-namespace {
-
-std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  // A directory opens and then fails to read.
-  if (!in || !(text << in.rdbuf())) throw InputError(fmt::format("{}: cannot read this file", path));
-  return text.str();
-}
-
-}  // namespace
-
 Base read_base(const std::string& scene_path, const std::string& arch_path) {
-  Base base{scene_path, text_of(scene_path), arch_path, arch_path.empty() ? "" : text_of(arch_path)};
+  Base base{scene_path, read_config_text(scene_path), arch_path,
+            arch_path.empty() ? "" : read_config_text(arch_path)};
   resolve(base, {});
   return base;
 }

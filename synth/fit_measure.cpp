@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "model/base/hash.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
+#include "model/base/resources.h"
 #include "synth/json_file.h"
 #include "synth/netlist.h"
 #include "synth/project.h"
@@ -82,14 +82,6 @@ Meter::Meter(const Target& target, std::function<void(const std::string& what)> 
     need("nextpnr-ice40");
     tools_.push_back(first_line("nextpnr-ice40", "--version"));
   }
-}
-
-std::string Meter::cache_directory() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != 0)
-    return (fs::path(cache) / "cuboct").string();
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0)
-    return (fs::path(home) / ".cache" / "cuboct").string();
-  return "";
 }
 
 std::string Meter::key_of(const std::string& directory, bool board) const {

@@ -30,8 +30,6 @@ class Meter {
   Measured measure(const std::function<void(const std::string& directory)>& emit, bool board) const;
 
   const std::vector<std::string>& tools() const { return tools_; }  // versions
-  // Where results are kept; empty where the environment names no place.
-  static std::string cache_directory();
 
  private:
   Measured run(const std::string& directory, bool board) const;

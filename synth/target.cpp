@@ -7,6 +7,7 @@
 #include <map>
 #include <regex>
 
+#include "model/base/enum_names.h"
 #include "model/base/error.h"
 #include "model/base/spelling.h"
 
@@ -68,23 +69,8 @@ const Costs kXc7 = {{"LUT1", lut(1)},    {"LUT2", lut(1)},      {"LUT3", lut(1)}
 }  // namespace
 
 const char* to_string(Resource resource) {
-  switch (resource) {
-    case Resource::lut:
-      return "LUT";
-    case Resource::ff:
-      return "FF";
-    case Resource::dsp:
-      return "DSP";
-    case Resource::bram:
-      return "BRAM";
-    case Resource::gates:
-      return "gates";
-    case Resource::area:
-      return "um^2";
-    case Resource::cell:
-      return "logic cells";
-  }
-  return "";
+  constexpr const char* kNames[] = {"LUT", "FF", "DSP", "BRAM", "gates", "um^2", "logic cells"};
+  return name_in(kNames, resource);
 }
 
 const std::vector<Resource>& resources_of(Family family) {

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <numeric>
 
+#include "hw/cell_box.h"
 #include "model/base/error.h"
 
 namespace cuboct::emu {
@@ -23,17 +23,11 @@ void bisect(const Lattice& lattice, const std::vector<uint16_t>& weight, std::ve
   }
   int along = axis;
   if (axis < 0) {
-    Cell low, high;
-    low.fill(std::numeric_limits<int32_t>::max());
-    high.fill(std::numeric_limits<int32_t>::min());
-    for (size_t k = begin; k < end; ++k)
-      for (int a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], lattice.cell(cells[k])[a]);
-        high[a] = std::max(high[a], lattice.cell(cells[k])[a]);
-      }
+    CellBox box;
+    for (size_t k = begin; k < end; ++k) box.add(lattice.cell(cells[k]));
     // Particles are stored in rows along x: a cut across x leaves stumps of rows at the rim, so x has to be
     // twice as long.
-    const auto length = [&](int a) { return (a == 0 ? 1 : 2) * (int64_t{high[a]} - low[a]); };
+    const auto length = [&](int a) { return (a == 0 ? 1 : 2) * (box.extent(a) - 1); };
     along = 0;
     for (int a = 1; a < 3; ++a)
       if (length(a) >= length(along)) along = a;

@@ -9,13 +9,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 
 #include "model/base/error.h"
 #include "model/base/hash.h"
+#include "model/base/output.h"
 #include "model/base/text.h"
 
 namespace cuboct::emu {
@@ -48,19 +48,6 @@ std::string version_of(const std::string& tool, const std::string& package) {
   throw InputError(fmt::format("'{} --version' fails: the tool does not work", tool));
 }
 
-std::string read_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-void write_file(const fs::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw InputError(fmt::format("cannot write {}", path.string()));
-}
-
 std::string compiler() {
   const char* cxx = std::getenv("CXX");
   return cxx != nullptr && *cxx != 0 ? cxx : "c++";
@@ -80,10 +67,11 @@ void add_code(Hash& hash, const std::string& text) {
 uint64_t key_of(const Build& build, const fs::path& dir, const std::string& tools) {
   std::map<std::string, std::string> files;  // in the order of names
   for (const auto& entry : fs::recursive_directory_iterator(dir / "rtl"))
-    if (entry.is_regular_file()) files[fs::relative(entry.path(), dir).string()] = read_file(entry.path());
+    if (entry.is_regular_file())
+      files[fs::relative(entry.path(), dir).string()] = read_text(entry.path().string());
   Hash hash;
-  for (const auto& [name, text] : files) add_code(hash, "file " + name + "\n" + text);
-  for (const auto& [name, text] : build.sources) add_code(hash, "file " + name + "\n" + text);
+  for (const auto& [name, text] : files) add_code(hash, fmt::format("file {}\n{}", name, text));
+  for (const auto& [name, text] : build.sources) add_code(hash, fmt::format("file {}\n{}", name, text));
   for (const auto& [name, value] : build.constants) add_code(hash, fmt::format("{}={}", name, value));
   add_code(hash, fmt::format("{}\n{} {}\n{} {}\n{}", build.top, kVerilatorFlags, build.verilator_flags,
                              kCompilerFlags, build.compiler_flags + build.libraries, tools));
@@ -153,7 +141,7 @@ std::string compile(const Build& build, const std::string& directory) {
 
   fs::remove(log, error);
   // One copy of the node's code serves all nodes of a lattice; inlined, the build takes minutes.
-  write_file(
+  write_text(
       dir / "keep.vlt",
       "`verilator_config\nno_inline -module \"cuboct_node_core\"\nno_inline -module \"cuboct_brick_core\"\n");
   run_logged("verilator",
@@ -161,12 +149,12 @@ std::string compile(const Build& build, const std::string& directory) {
                          kVerilatorFlags, build.verilator_flags, build.top, build.top,
                          shell_word((dir / "model").string())),
              rtl, log);
-  for (const auto& [name_of_source, text] : build.sources) write_file(dir / name_of_source, text);
+  for (const auto& [name_of_source, text] : build.sources) write_text(dir / name_of_source, text);
   std::string arguments;
   for (const auto& [constant, value] : build.constants) arguments += fmt::format(" -D{}={}", constant, value);
   const Units units = units_of(build, dir / "model");
-  write_file(dir / "each_cycle.cpp", units.each_cycle);
-  write_file(dir / "once.cpp", units.once);
+  write_text(dir / "each_cycle.cpp", units.each_cycle);
+  write_text(dir / "once.cpp", units.once);
   const std::string compiled =
       fmt::format("{} {}{} -I. -Imodel -I\"$root/include\" -I\"$root/include/vltstd\" {}", compiler(),
                   kCompilerFlags, arguments, build.compiler_flags);

@@ -4,12 +4,12 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "emu/verilated/sources.h"
 #include "hw/rtl_emit.h"
+#include "model/base/resources.h"
 
 namespace cuboct::emu {
 namespace {
@@ -46,10 +46,7 @@ void copy_board(const fs::path& project, const std::vector<std::string>& files, 
 }  // namespace
 
 std::string default_build_directory() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != 0)
-    return (fs::path(cache) / "cuboct").string();
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0)
-    return (fs::path(home) / ".cache" / "cuboct").string();
+  if (std::string directory = cache_directory(); !directory.empty()) return directory;
   throw InputError("neither XDG_CACHE_HOME nor HOME is set: no place to keep compiled nodes",
                    "give one with --build-dir");
 }

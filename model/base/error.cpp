@@ -5,6 +5,7 @@
 
 #include <string_view>
 
+#include "model/base/enum_names.h"
 #include "model/base/error_parts.h"
 #include "model/base/text.h"
 
@@ -76,39 +77,22 @@ std::string bare_message(const InputError& error) {
 }
 
 const char* to_string(Fault fault) {
-  switch (fault) {
-    case Fault::none:
-      return "none";
-    case Fault::relative_velocity:
-      return "relative velocity out of width";
-    case Fault::strength:
-      return "pair strength out of width";
-    case Fault::sum:
-      return "sum of kicks out of width";
-    case Fault::displacement:
-      return "displacement out of width";
-    case Fault::velocity:
-      return "velocity out of width";
-    case Fault::left_x:
-      return "left the lattice along x";
-    case Fault::full_x:
-      return "cell full after moving along x";
-    case Fault::left_y:
-      return "left the lattice along y";
-    case Fault::full_y:
-      return "cell full after moving along y";
-    case Fault::left_z:
-      return "left the lattice along z";
-    case Fault::full_z:
-      return "cell full after moving along z";
-    case Fault::link_check:
-      return "wrong check of a beat";
-    case Fault::link_order:
-      return "beat lost or repeated";
-    case Fault::link_silent:
-      return "beats not acknowledged";
-  }
-  return "?";
+  constexpr const char* kNames[] = {"none",
+                                    "relative velocity out of width",
+                                    "pair strength out of width",
+                                    "sum of kicks out of width",
+                                    "displacement out of width",
+                                    "velocity out of width",
+                                    "left the lattice along x",
+                                    "cell full after moving along x",
+                                    "left the lattice along y",
+                                    "cell full after moving along y",
+                                    "left the lattice along z",
+                                    "cell full after moving along z",
+                                    "wrong check of a beat",
+                                    "beat lost or repeated",
+                                    "beats not acknowledged"};
+  return name_in(kNames, fault);
 }
 
 namespace {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -134,6 +135,14 @@ std::string in_bytes(double bytes) {
   size_t unit = 0;
   for (; bytes >= 999.5 && unit + 1 < std::size(kUnits); ++unit) bytes /= 1000;
   return fmt::format("{:.3g} {}", bytes, kUnits[unit]);
+}
+
+std::string cache_directory() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != 0)
+    return (fs::path(cache) / "cuboct").string();
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0)
+    return (fs::path(home) / ".cache" / "cuboct").string();
+  return {};
 }
 
 uint64_t free_disk(const std::string& path) {

@@ -18,6 +18,9 @@ uint64_t free_memory();
 // "22.6 GB": for people.
 std::string in_bytes(double bytes);
 
+// Where cuboct may keep what it can make again: below XDG_CACHE_HOME or HOME; empty where neither is set.
+std::string cache_directory();
+
 // Bytes that a user may write where `path`, which need not exist yet, would lie.
 uint64_t free_disk(const std::string& path);
 

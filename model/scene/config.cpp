@@ -14,6 +14,7 @@
 #include <string_view>
 #include <utility>
 
+#include "model/base/enum_names.h"
 #include "model/base/error.h"
 #include "model/base/excerpt.h"
 #include "model/base/spelling.h"
@@ -51,23 +52,9 @@ using Kind = ConfigNode::Kind;
 std::set<std::string>* recorder = nullptr;
 
 const char* kind_name(Kind kind) {
-  switch (kind) {
-    case Kind::boolean:
-      return "true or false";
-    case Kind::integer:
-      return "a whole number";
-    case Kind::real:
-      return "a number";
-    case Kind::string:
-      return "a string";
-    case Kind::date:
-      return "a date";
-    case Kind::array:
-      return "an array";
-    case Kind::table:
-      return "a table";
-  }
-  return "?";
+  constexpr const char* kNames[] = {"true or false", "a whole number", "a number", "a string",
+                                    "a date",        "an array",       "a table"};
+  return name_in(kNames, kind);
 }
 
 ConfigNode convert(const toml::node& from, const std::string& key, const std::string& path) {

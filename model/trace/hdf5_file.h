@@ -13,6 +13,7 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -54,68 +55,24 @@ class Handle {
   const bool* broken_;
 };
 
+// `file`: as it lies there, little-endian on every machine: same trace, same bytes.
 template <typename T>
-hid_t type_in_memory();
-template <>
-inline hid_t type_in_memory<uint64_t>() {
-  return H5T_NATIVE_UINT64;
+hid_t type_of(bool file) {
+  if constexpr (std::is_same_v<T, uint64_t>) return file ? H5T_STD_U64LE : H5T_NATIVE_UINT64;
+  if constexpr (std::is_same_v<T, int64_t>) return file ? H5T_STD_I64LE : H5T_NATIVE_INT64;
+  if constexpr (std::is_same_v<T, uint32_t>) return file ? H5T_STD_U32LE : H5T_NATIVE_UINT32;
+  if constexpr (std::is_same_v<T, int32_t>) return file ? H5T_STD_I32LE : H5T_NATIVE_INT32;
+  if constexpr (std::is_same_v<T, uint8_t>) return file ? H5T_STD_U8LE : H5T_NATIVE_UINT8;
+  if constexpr (std::is_same_v<T, double>) return file ? H5T_IEEE_F64LE : H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<T, float>) return file ? H5T_IEEE_F32LE : H5T_NATIVE_FLOAT;
 }
-template <>
-inline hid_t type_in_memory<int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-template <>
-inline hid_t type_in_memory<uint32_t>() {
-  return H5T_NATIVE_UINT32;
-}
-template <>
-inline hid_t type_in_memory<int32_t>() {
-  return H5T_NATIVE_INT32;
-}
-template <>
-inline hid_t type_in_memory<uint8_t>() {
-  return H5T_NATIVE_UINT8;
-}
-template <>
-inline hid_t type_in_memory<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-
-template <>
-inline hid_t type_in_memory<float>() {
-  return H5T_NATIVE_FLOAT;
-}
-
-// Little-endian on every machine: same trace, same bytes.
 template <typename T>
-hid_t type_in_file();
-template <>
-inline hid_t type_in_file<uint64_t>() {
-  return H5T_STD_U64LE;
+hid_t type_in_memory() {
+  return type_of<T>(false);
 }
-template <>
-inline hid_t type_in_file<int64_t>() {
-  return H5T_STD_I64LE;
-}
-template <>
-inline hid_t type_in_file<uint32_t>() {
-  return H5T_STD_U32LE;
-}
-template <>
-inline hid_t type_in_file<int32_t>() {
-  return H5T_STD_I32LE;
-}
-template <>
-inline hid_t type_in_file<uint8_t>() {
-  return H5T_STD_U8LE;
-}
-template <>
-inline hid_t type_in_file<double>() {
-  return H5T_IEEE_F64LE;
-}
-template <>
-inline hid_t type_in_file<float>() {
-  return H5T_IEEE_F32LE;
+template <typename T>
+hid_t type_in_file() {
+  return type_of<T>(true);
 }
 
 using Shape = std::vector<hsize_t>;
@@ -190,22 +147,15 @@ class Writer {
 
   template <typename T>
   void number(hid_t where, const std::string& name, T value) const {
-    Handle space(H5Screate(H5S_SCALAR), H5Sclose, error_ + name);
-    const Handle attribute =
-        handle(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-               "attribute '" + name + "'");
-    check(H5Awrite(attribute, type_in_memory<T>(), &value), name);
+    attribute(where, name, Handle(H5Screate(H5S_SCALAR), H5Sclose, error_ + name), &value);
   }
 
   // A short list as an attribute.
   template <typename T>
   void numbers(hid_t where, const std::string& name, const std::vector<T>& values) const {
     const hsize_t count = values.size();
-    Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose, error_ + name);
-    const Handle attribute =
-        handle(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-               "attribute '" + name + "'");
-    check(H5Awrite(attribute, type_in_memory<T>(), values.data()), name);
+    attribute(where, name, Handle(H5Screate_simple(1, &count, nullptr), H5Sclose, error_ + name),
+              values.data());
   }
 
   // `what` says the meaning of the rows and columns, `unit` the unit of a value.
@@ -257,6 +207,14 @@ class Writer {
   }
 
  private:
+  template <typename T>
+  void attribute(hid_t where, const std::string& name, const Handle& space, const T* values) const {
+    const Handle attribute =
+        handle(H5Acreate2(where, name.c_str(), type_in_file<T>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+               "attribute '" + name + "'");
+    check(H5Awrite(attribute, type_in_memory<T>(), values), name);
+  }
+
   Handle handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) const {
     if (id < 0) broken_ = true;
     return {id, close, error_ + what, &broken_};

@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-#include <sstream>
-
 #include "model/base/gnuplot.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
@@ -14,13 +10,6 @@
 
 namespace cuboct {
 namespace {
-
-std::string contents(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 void write_raw(const std::string& path, const Image& image) {
   write_text(path, std::string(reinterpret_cast<const char*>(image.pixels.data()), 3 * image.pixels.size()));
@@ -56,7 +45,7 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
     }
   }
   run_gnuplot(scratch, script + "\n");
-  const std::string svg = contents(scratch.path("plot.svg"));
+  const std::string svg = read_text(scratch.path("plot.svg"));
   const size_t begin = svg.find("<svg");
   if (begin == std::string::npos) throw std::runtime_error("gnuplot made no SVG");
   return svg.substr(begin);
@@ -101,7 +90,7 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
       y(height - kBar + 14), y(height - kBar + 40), gnuplot_label(bar_label), -limit, limit,
       gnuplot_file(scratch.path("bar")), limit / 127.5, -limit);
   run_gnuplot(scratch, script);
-  return contents(scratch.path("plot.png"));
+  return read_text(scratch.path("plot.png"));
 }
 
 std::string gnuplot(const std::string& data, const std::string& plot, const std::string& kind, int width,
@@ -114,7 +103,7 @@ std::string gnuplot(const std::string& data, const std::string& plot, const std:
   run_gnuplot(scratch,
               fmt::format("{}set encoding utf8\nset terminal {} background '#ffffff'\nset output {}\n{}",
                           data, terminal, gnuplot_file(out), plot));
-  return contents(out);
+  return read_text(out);
 }
 
 }  // namespace cuboct

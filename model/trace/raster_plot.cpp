@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <limits>
-#include <sstream>
 
 #include "model/base/error.h"
 #include "model/base/gnuplot.h"
@@ -75,6 +73,13 @@ Field field_of(const std::string& name) {
                    near.empty() ? "strain, speed and thickness can be drawn" : near);
 }
 
+double usual_limit(std::vector<float> all) {
+  if (all.empty()) return 0;
+  const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 90 / 100);
+  std::nth_element(all.begin(), end, all.end());
+  return *end;
+}
+
 // The few pixels that a crack parts would else take the whole scale.
 double usual_limit(const Rasters& rasters, Field field) {
   std::vector<float> all;
@@ -84,10 +89,7 @@ double usual_limit(const Rasters& rasters, Field field) {
       if (is_seen(rasters, frame, pixel) && std::isfinite(values[pixel]))
         all.push_back(std::abs(values[pixel]));
   }
-  if (all.empty()) return 0;
-  const auto end = all.begin() + static_cast<ptrdiff_t>(all.size() * 90 / 100);
-  std::nth_element(all.begin(), end, all.end());
-  return *end;
+  return usual_limit(std::move(all));
 }
 
 std::vector<size_t> spread_frames(size_t count) {
@@ -181,10 +183,7 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
       y(height - kBar + 10), y(height - kBar + 28), gnuplot_label(shown.label), low, limit,
       gnuplot_file(scratch.path("bar")), (limit - low) / 255, low);
   run_gnuplot(scratch, script);
-  std::ifstream in(scratch.path("plot.png"), std::ios::binary);
-  std::ostringstream bytes;
-  bytes << in.rdbuf();
-  return bytes.str();
+  return read_text(scratch.path("plot.png"));
 }
 
 }  // namespace cuboct

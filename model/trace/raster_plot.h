@@ -28,6 +28,8 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture);
 
 // The 90th percentile of a field's magnitude, over the drawn pixels of all frames: 1, m/s or m.
 double usual_limit(const Rasters& rasters, Field field);
+// Of sizes, wherever they are from; 0 without any.
+double usual_limit(std::vector<float> sizes);
 
 // Up to four, evenly spread, first and last included.
 std::vector<size_t> spread_frames(size_t count);

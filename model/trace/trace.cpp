@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "model/base/enum_names.h"
 #include "model/base/output.h"
 #include "model/trace/hdf5_file.h"
 #include "model/trace/trace_file.h"
@@ -344,25 +345,9 @@ void write_cycles(const Writer& out, const Trace& trace) {
 }  // namespace
 
 const char* to_string(Phase phase) {
-  switch (phase) {
-    case Phase::exchange_x:
-      return "exchange_x";
-    case Phase::exchange_y:
-      return "exchange_y";
-    case Phase::exchange_z:
-      return "exchange_z";
-    case Phase::force:
-      return "force";
-    case Phase::update:
-      return "update";
-    case Phase::migrate_x:
-      return "migrate_x";
-    case Phase::migrate_y:
-      return "migrate_y";
-    case Phase::migrate_z:
-      return "migrate_z";
-  }
-  return "?";
+  constexpr const char* kNames[] = {"exchange_x", "exchange_y", "exchange_z", "force",
+                                    "update",     "migrate_x",  "migrate_y",  "migrate_z"};
+  return name_in(kNames, phase);
 }
 
 const char* Trace::ended() const {

@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <optional>
 #include <stdexcept>
+
+#include "model/base/resources.h"
 
 namespace cuboct {
 namespace {
@@ -42,12 +43,6 @@ std::shared_ptr<const BenchCase> make_case(const BenchScene& scene) {
   return made;
 }
 
-bool fits_in_memory(uint64_t particles) {
-  std::ifstream in("/proc/meminfo");
-  std::string name, unit;
-  for (uint64_t kilobytes = 0; in >> name >> kilobytes; std::getline(in, unit))
-    if (name == "MemAvailable:") return particles * 300 < kilobytes * 1024;
-  return true;
-}
+bool fits_in_memory(uint64_t particles) { return particles < free_memory() / 300; }
 
 }  // namespace cuboct

@@ -15,10 +15,10 @@
 #include "emu/lattice/program.h"
 #include "emu/lattice/timing.h"
 #include "gpu_ref/bench_rows.h"
+#include "hw/engine_kind.h"
 #include "hw/program/remote.h"
 #include "model/base/output.h"
 #include "model/base/resources.h"
-#include "model/contract/golden.h"
 #include "model/real/reference.h"
 #include "study/bench/bench_gpu.h"
 #include "study/bench/bench_report.h"
@@ -91,8 +91,7 @@ struct Bed {
   std::shared_ptr<const BenchCase> made;
   std::unique_ptr<emu::LatticeEngine> lattice;
   std::unique_ptr<emu::TimingModel> timing;
-  std::unique_ptr<Golden> golden;
-  std::unique_ptr<Reference> real;
+  std::unique_ptr<Engine> engine;
   emu::CellSlots slots;
   std::optional<Timed> timed;
 };
@@ -139,38 +138,21 @@ void run_lattice_block(benchmark::State& state, const std::string& name, const B
                              bed.timed->steps()));
 }
 
-void run_golden_block(benchmark::State& state, const std::string& name, const BenchScene& scene,
-                      double seconds) {
-  Bed& bed = bed_of(name);
-  if (!bed.golden) {
-    bed.made = make_case(scene);
-    const Plan& plan = bed.made->plan;
-    bed.golden =
-        std::make_unique<Golden>(plan.rule, plan.lattice, plan.arch.capacity,
-                                 to_fixed(bed.made->scene.body, plan.rule, plan.lattice, plan.origin));
-    bed.timed.emplace(seconds);
-  }
-  bed.timed->run(state, [&] { bed.golden->step(); });
-  state.counters["particle_steps"] = rate(static_cast<double>(bed.timed->steps()) * bed.made->plan.particles);
-  state.SetLabel(
-      fmt::format("{} particles, 1 thread, {} steps per repeat", scene.particles(), bed.timed->steps()));
-}
-
-void run_real_block(benchmark::State& state, const std::string& name, const BenchScene& scene,
-                    const RealOptions& options, double seconds) {
+// `how`: threads and vector units.
+void run_block(benchmark::State& state, const std::string& name, const BenchScene& scene, double seconds,
+               const std::function<EngineKind(const BenchCase&)>& kind, const std::string& how) {
   if (too_large(state, scene.particles())) return;
   Bed& bed = bed_of(name);
-  if (!bed.real) {
+  if (!bed.engine) {
     bed.made = make_case(scene);
-    const Scene& s = bed.made->scene;
-    bed.real = std::make_unique<Reference>(s.rule, s.body, s.periodic, options);
+    bed.engine = kind(*bed.made).make(nullptr, false);
     bed.timed.emplace(seconds);
   }
-  bed.timed->run(state, [&] { bed.real->step(); });
+  bed.timed->run(state, [&] { bed.engine->advance(1); });
   state.counters["particle_steps"] =
       rate(static_cast<double>(bed.timed->steps()) * static_cast<double>(scene.particles()));
-  state.SetLabel(fmt::format("{} particles, {}, {}, {} steps per repeat", scene.particles(),
-                             counted(options.threads), Reference::simd(), bed.timed->steps()));
+  state.SetLabel(
+      fmt::format("{} particles, {}, {} steps per repeat", scene.particles(), how, bed.timed->steps()));
 }
 
 // The scene in a program of its own.
@@ -301,11 +283,15 @@ std::vector<Bench> benches(const BenchLength& length, int threads) {
               fmt::format("the reference engine in {}s, {} particles{}, {}", number, scene.particles(),
                           damped ? ", damped" : "", cores ? "a thread per core" : "one thread"),
               [=](benchmark::State& s) {
-                run_real_block(s, name, scene, {.precision = precision, .threads = cores ? all : 1}, seconds);
+                const RealOptions options{.precision = precision, .threads = cores ? all : 1};
+                const auto kind = [&](auto& made) { return reference_kind(made.scene, made.plan, options); };
+                run_block(s, name, scene, seconds, kind, counted(options.threads) + ", " + Reference::simd());
               });
         }
-  add("golden.block_4k", "the golden engine, 4000 particles",
-      [=](auto& s) { run_golden_block(s, "golden.block_4k", {.cells = 10}, seconds); });
+  add("golden.block_4k", "the golden engine, 4000 particles", [=](auto& s) {
+    const auto kind = [](const BenchCase& made) { return golden_kind(made.scene, made.plan); };
+    run_block(s, "golden.block_4k", {.cells = 10}, seconds, kind, "1 thread");
+  });
   add("systemc.block_2k", "the clocked engine, 2048 particles, 10 steps",
       [](auto& s) { run_systemc_block(s, {.cells = 8}, 10); });
   for (const bool on : {true, false})
