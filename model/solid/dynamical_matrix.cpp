@@ -43,8 +43,6 @@ Vec3 eigenvalues(const std::vector<Bond>& bonds, const Vec3& q) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(sum, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-constexpr std::array<std::array<int, 2>, 6> kVoigt{{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
-
 }  // namespace
 
 std::vector<Vec3> fcc_neighbours(double pitch, double cutoff) {
