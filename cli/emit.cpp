@@ -9,6 +9,7 @@
 #include "cli/emit.h"
 #include "hw/rtl_emit.h"
 #include "model/base/text.h"
+#include "model/run/static_engine.h"
 #include "model/scene/config.h"
 
 namespace cuboct {
@@ -79,6 +80,7 @@ void add_emit(CLI::App& app, int& exit_code) {
       return;
     }
     const Loaded loaded = load(options->input);
+    refuse_static(loaded.scene, "hardware");
     const Plan& plan = loaded.setup.plan;
     emit_rtl(plan, loaded.setup.initial, options->out, options->vector_steps, options->board,
              chosen_before(options->input.arch, options->out));

@@ -31,7 +31,7 @@ StrainedCell::StrainedCell(const Rule& rule, CrystalCell cell, int threads)
 void StrainedCell::gather() {
   images_ = images_of(cell_, (1 + kMargin) * rule_.law->cutoff());
   body_.type = cell_.type;
-  for (const Image& image : images_) body_.type.push_back(cell_.type[image.owner]);
+  for (const CellImage& image : images_) body_.type.push_back(cell_.type[image.owner]);
   body_.x.resize(body_.type.size());
   body_.v.assign(body_.type.size(), Vec3::Zero());
   gathered_.clear();

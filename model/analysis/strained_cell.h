@@ -36,7 +36,7 @@ class StrainedCell {
   int threads_;
   double stiffness_ = 0;  // N/m, of the stiffest site
   Body body_;             // the cell's particles and then their images
-  std::vector<Image> images_;
+  std::vector<CellImage> images_;
   std::vector<Vec3> gathered_;  // m, where the particles of body_ stood when the images were gathered
   std::optional<Reference> reference_;
 };

@@ -11,7 +11,7 @@ namespace {
 // A step of FIRE is no longer than this part of the cutoff.
 constexpr double kLongestStep = 0.02;
 // A force of a particle that is rounding: of its stiffness times the cutoff.
-constexpr double kRounding = 1e-11;
+constexpr double kRounding = 1e-12;
 
 using Flat = Eigen::Map<Eigen::VectorXd>;
 Flat flat(std::vector<Vec3>& values) {

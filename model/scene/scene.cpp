@@ -159,9 +159,18 @@ void read_time(const ConfigTable& root, const ConfigTable* stage, Scene& scene) 
     const auto of = static_cast<uint64_t>(run.integer_or(key, 0, INT64_MAX, static_cast<int64_t>(otherwise)));
     return stage ? static_cast<uint64_t>(stage->integer_or(key, 0, INT64_MAX, static_cast<int64_t>(of))) : of;
   };
-  scene.probe_every =
-      every("probe_every", scene.probes.empty() ? 0 : std::max<uint64_t>(1, scene.steps / 500));
+  const bool usual_static = run.has("static");
+  if (stage && stage->has("static"))
+    scene.loading = read_static(*stage, scene);
+  else if (usual_static)
+    scene.loading = read_static(run, scene);
+  const uint64_t least = scene.loading ? scene.loading->every : 1;
+  scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max(least, scene.steps / 500));
   scene.frame_every = every("frame_every", 0);
+  if (scene.loading) {
+    scene.probe_every = scene.loading->whole(scene.probe_every);
+    scene.frame_every = scene.loading->whole(scene.frame_every);
+  }
   if (const auto accuracy = run.find("accuracy"))
     scene.accuracy = accuracy->number(quantity::number, {.low = 1e-6, .high = 0.1});
   if (const auto strain = run.find("expected_strain"))

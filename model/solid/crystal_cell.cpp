@@ -17,7 +17,7 @@ CrystalCell CrystalCell::deformed(const Mat3& deformation) const {
   return out;
 }
 
-std::vector<Image> images_of(const CrystalCell& cell, double range) {
+std::vector<CellImage> images_of(const CrystalCell& cell, double range) {
   Vec3 low = cell.x[0], high = cell.x[0];
   for (const Vec3& x : cell.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
   const double reach = range + (high - low).norm();
@@ -27,7 +27,7 @@ std::vector<Image> images_of(const CrystalCell& cell, double range) {
     if (cell.repeats[k]) most[k] = static_cast<int>(std::ceil(reach * normal.norm() / cell.volume()));
   }
   low.array() -= range, high.array() += range;
-  std::vector<Image> images;
+  std::vector<CellImage> images;
   for (int a = -most[0]; a <= most[0]; ++a)
     for (int b = -most[1]; b <= most[1]; ++b)
       for (int c = -most[2]; c <= most[2]; ++c) {
@@ -47,7 +47,7 @@ std::vector<CellBond> bonds_of(const Rule& rule, const CrystalCell& cell) {
   std::vector<Vec3> x = cell.x;
   std::vector<uint32_t> owner(n);
   for (uint32_t i = 0; i < n; ++i) owner[i] = i;
-  for (const Image& image : images_of(cell, rule.law->cutoff())) {
+  for (const CellImage& image : images_of(cell, rule.law->cutoff())) {
     x.push_back(cell.x[image.owner] + cell.vectors * image.shift);
     owner.push_back(image.owner);
   }

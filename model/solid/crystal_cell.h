@@ -23,12 +23,12 @@ struct CrystalCell {
 };
 
 // One image of a particle: at x[owner] + vectors * shift.
-struct Image {
+struct CellImage {
   uint32_t owner;
   Vec3 shift;  // whole numbers
 };
 // All that stand within `range` (m) of the box around the cell's own particles, without those themselves.
-std::vector<Image> images_of(const CrystalCell& cell, double range);
+std::vector<CellImage> images_of(const CrystalCell& cell, double range);
 
 // A bond of a particle of the cell; each bond within the cell comes once from each end.
 struct CellBond {
