@@ -273,6 +273,11 @@ Items physics(const Loaded& loaded) {
   }
   items.add("run", fmt::format("{} step{} of {} = {}{}", scene.steps, scene.steps == 1 ? "" : "s",
                                shown(dt, "s"), shown(duration, "s"), crossings));
+  if (scene.loading)
+    items.add(
+        "loading",
+        fmt::format("static: {} load steps of {} steps each, {:g} of the load unbalanced at most",
+                    scene.steps / scene.loading->every, scene.loading->every, scene.loading->tolerance));
   items.add("step", scene.dt_limit > 0
                         ? fmt::format("{:.2g} of {}, the largest stable one of {}", scene.dt_safety,
                                       shown(scene.dt_limit, "s"), scene.dt_limit_of)

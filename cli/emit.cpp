@@ -11,6 +11,7 @@
 #include "hw/rtl_emit.h"
 #include "model/base/json.h"
 #include "model/base/text.h"
+#include "model/run/static_engine.h"
 #include "model/scene/config.h"
 
 namespace cuboct {
@@ -53,6 +54,7 @@ struct Options {
 
 Items emit_one(const Options& options) {
   const Loaded loaded = load(options.input);
+  refuse_static(loaded.scene, "hardware");
   emit_rtl(loaded.setup.plan, loaded.setup.initial, options.out, options.vector_steps, options.board,
            chosen_before(options.input.arch, options.out));
   return say_emitted(options.out, loaded.setup.plan, options.answer);

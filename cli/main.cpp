@@ -91,6 +91,7 @@ int main_of(int argc, char** argv) {
   add_crosscheck(app, exit_code);
   add_emit(app, exit_code);
   add_synth(app, exit_code);
+  add_elastic(app, exit_code);
   add_explore(app, exit_code);
   add_stability(app, exit_code);
   add_bench(app, exit_code);

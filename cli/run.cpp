@@ -31,7 +31,7 @@ namespace {
 
 struct Options {
   Input input;
-  std::string engine = "lattice";
+  std::string engine;  // empty: lattice, or the one that relaxes where the scene's loading is static
   EngineOptions engines;
   std::string out;
   uint64_t steps = 0;
@@ -137,8 +137,20 @@ struct Ended {
   bool whole = false;  // it has a last state that the next stage can begin with
 };
 
-Ended run_once(const Options& options) {
-  const Loaded loaded = load_plan(options.input);
+// With the engine that the scene asks for, where the command line names none.
+Options for_scene(Options options, const Scene& scene) {
+  if (options.engine.empty()) options.engine = scene.loading ? "reference" : "lattice";
+  options.engines.check({options.engine}, options.input);
+  if (!scene.loading) return options;
+  options.steps = scene.loading->whole(options.steps);
+  options.frame_every = scene.loading->whole(options.frame_every);
+  options.no_watch = true;  // it looks for what goes wrong in motion
+  return options;
+}
+
+Ended run_once(const Options& given) {
+  const Loaded loaded = load_plan(given.input);
+  const Options options = for_scene(given, loaded.scene);
   if (options.verbose) fmt::print(stderr, "{}", plan_text(options, loaded.setup.plan));
   catch_interrupts();
   const Scene& scene = loaded.scene;
@@ -226,8 +238,7 @@ Ended run_once(const Options& options) {
 }
 
 int run(Options options) {
-  engine_row(options.engine);
-  options.engines.check({options.engine}, options.input);
+  if (!options.engine.empty()) options.engines.check({engine_row(options.engine).name}, options.input);
   options.check_kept();
   static_cast<void>(options.formats());
   const std::vector<StageName> names = stages_of(options.input.scene);
@@ -265,10 +276,10 @@ void add_run(CLI::App& app, int& exit_code) {
   options->input.add_to(*command);
   options->input.add_start_to(*command);
   options->input.add_stalls_to(*command);
-  command
-      ->add_option("--engine", options->engine,
-                   "lattice, golden, systemc, rtl, fpga, gpu or reference (doubles or floats)")
-      ->capture_default_str();
+  command->add_option(
+      "--engine", options->engine,
+      "lattice, golden, systemc, rtl, fpga, gpu or reference (doubles or floats); default: lattice, for "
+      "static loading reference");
   auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
                     ->check(whole_number())
                     ->type_name("N");

@@ -8,6 +8,7 @@
 #include "hw/state_bounds.h"
 #include "model/run/golden_engine.h"
 #include "model/run/reference_engine.h"
+#include "model/run/static_engine.h"
 
 namespace cuboct {
 
@@ -97,6 +98,18 @@ EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptio
 
 EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
   EngineKind kind = reference_kind(scene, scene.body, options, plan.rule.cell_edge);
+  kind.plan_hash = plan.hash;
+  kind.nodes = plan.nodes();
+  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
+  return kind;
+}
+
+EngineKind static_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
+  if (options.precision == Precision::float32)
+    throw InputError("static loading is in doubles: --precision float is not for it");
+  if (options.integrator != Integrator::semi_implicit_euler)
+    throw InputError("static loading has no motion to integrate: --integrator is not for it");
+  EngineKind kind = static_kind(scene, scene.body, options.threads, plan.rule.cell_edge);
   kind.plan_hash = plan.hash;
   kind.nodes = plan.nodes();
   kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };

@@ -14,6 +14,7 @@
 #include "model/base/spelling.h"
 #include "model/run/golden_engine.h"
 #include "model/run/reference_engine.h"
+#include "model/run/static_engine.h"
 #include "model/trace/raster_plot.h"
 #include "python/catch_interrupt.h"
 
@@ -75,6 +76,7 @@ Simulation::Simulation(const Sources& sources, const std::string& engine, const 
   check_here(engine);
   options.check({engine}, {});
   Loaded loaded = load(sources);
+  refuse_static(loaded.scene, "steps from Python");
   check_workers(options.threads, 1, loaded.setup.plan);
   if (!anyway) check_size(loaded, engine, options);
   scene_ = std::move(loaded.scene);

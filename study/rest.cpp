@@ -7,6 +7,8 @@
 
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
+#include "model/contract/bond.h"
+#include "model/real/balance.h"
 #include "study/measure_run.h"
 #include "study/stability.h"
 
@@ -18,22 +20,12 @@ namespace {
 constexpr double kAtRest = 1e-9;
 constexpr size_t kMostTypes = 256;  // a type is a byte
 
-void zero_imposed(const Rule& rule, const Body& body, std::vector<Vec3>& values) {
-  for (size_t i = 0; i < values.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      if (rule.types[body.type[i]].imposed[axis]) values[i][axis] = 0;
-}
+Balance balance_of(const Scene& scene) { return {scene.rule, scene.body, scene.periodic, 1}; }
 
 // m/s^2, of the pair law and the PD controllers at rest, over the free axes.
 std::vector<Vec3> accelerations(const Scene& scene) {
-  const Rule& rule = scene.rule;
-  std::vector<Vec3> a = Reference(rule, scene.body, scene.periodic, Integrator::semi_implicit_euler).forces();
-  for (size_t i = 0; i < a.size(); ++i) {
-    const ParticleType& type = rule.types[scene.body.type[i]];
-    if (type.pd && !scene.body.u.empty()) a[i] -= type.kp * scene.body.u[i];
-    a[i] = a[i] / rule.mass_of(scene.body.type[i]) + type.gravity;
-  }
-  zero_imposed(rule, scene.body, a);
+  std::vector<Vec3> a = balance_of(scene).forces();
+  for (size_t i = 0; i < a.size(); ++i) a[i] /= scene.rule.mass_of(scene.body.type[i]);
   return a;
 }
 
@@ -43,51 +35,29 @@ double largest(const std::vector<Vec3>& values) {
   return most;
 }
 
-double norm2(const std::vector<Vec3>& values) {
-  double sum = 0;
-  for (const Vec3& value : values) sum += value.squaredNorm();
-  return sum;
-}
-
 // rad^2/s^2: the stiffest site. Between a third of the largest squared frequency and all of it, in a packing.
 double stiffest_site(const Scene& scene) {
   const Vibrations vibrations = vibrations_of(scene.rule, scene.body, scene.periodic);
   return vibrations.stiffness.rows() > 0 ? vibrations.stiffness.diagonal().maxCoeff() : 0.0;
 }
 
-// FIRE with its authors' parameters. Whether the body came to rest.
-bool relax(Scene& scene, double tolerance, double site) {
-  constexpr int kMostSteps = 20000, kDelay = 5;
-  constexpr double kGrow = 1.1, kShrink = 0.5, kMixing = 0.1, kLessMixing = 0.99;
-  Body& body = scene.body;
-  const bool pd = std::any_of(scene.rule.types.begin(), scene.rule.types.end(),
-                              [](const ParticleType& type) { return type.pd; });
-  if (pd && body.u.empty()) body.u.assign(body.size(), Vec3::Zero());
-  const double longest = 0.5 / std::sqrt(site);
-  double dt = 0.2 * longest, mixing = kMixing;
-  int downhill = 0;
-  std::vector<Vec3> v(body.size(), Vec3::Zero());
-  for (int step = 0; step < kMostSteps; ++step) {
-    if (interrupted()) throw Interrupted();
-    const std::vector<Vec3> a = accelerations(scene);
-    if (largest(a) < tolerance) return true;
-    double power = 0;
-    for (size_t i = 0; i < v.size(); ++i) power += a[i].dot(v[i]);
-    if (power > 0) {
-      const double ratio = std::sqrt(norm2(v) / norm2(a));
-      for (size_t i = 0; i < v.size(); ++i) v[i] = (1 - mixing) * v[i] + mixing * ratio * a[i];
-      if (++downhill > kDelay) dt = std::min(kGrow * dt, longest), mixing *= kLessMixing;
-    } else {
-      std::fill(v.begin(), v.end(), Vec3::Zero());
-      downhill = 0, dt *= kShrink, mixing = kMixing;
-    }
-    for (size_t i = 0; i < v.size(); ++i) {
-      v[i] += a[i] * dt;
-      body.x[i] += v[i] * dt;
-      if (!body.u.empty()) body.u[i] += v[i] * dt;
-    }
-  }
-  return largest(accelerations(scene)) < 100 * tolerance;
+// Whether the body came to rest.
+bool relax(Scene& scene, double tolerance) {
+  constexpr uint64_t kMostEvaluations = 20000;
+  Balance balance = balance_of(scene);
+  double left = 0;
+  balance.relax(
+      [&](const std::vector<Vec3>& forces) {
+        if (interrupted()) throw Interrupted();
+        left = 0;
+        for (size_t i = 0; i < forces.size(); ++i)
+          left = std::max(left, forces[i].norm() / scene.rule.mass_of(scene.body.type[i]));
+        return left < tolerance;
+      },
+      kMostEvaluations);
+  scene.body.x = balance.body().x;
+  scene.body.u = balance.body().u;
+  return left < 100 * tolerance;
 }
 
 // Gives each particle a type whose gravity is against its acceleration. False where that takes too many.
@@ -113,10 +83,10 @@ bool hold_still(Scene& scene, double tolerance) {
 }
 
 // FIRE keeps a body's symmetry, and may come to rest on a saddle: from there it is shaken, and relaxed again.
-bool relax_to_minimum(Scene& scene, double tolerance, double site) {
+bool relax_to_minimum(Scene& scene, double tolerance) {
   constexpr int kMostShakes = 3;
   uint64_t dice = 1;
-  for (int shake = 0; relax(scene, tolerance, site); ++shake) {
+  for (int shake = 0; relax(scene, tolerance); ++shake) {
     const Limit limit = stability_limit(vibrations_of(scene.rule, scene.body, scene.periodic));
     if (shake == kMostShakes || !limit.body_unstable()) return true;
     for (size_t i = 0; i < scene.body.size(); ++i)
@@ -170,7 +140,7 @@ Subject subject_of(const Scene& scene, int axis, double strain) {
   };
   if (const double start = tolerance(); start > 0 && largest(accelerations(s)) > start) {
     const std::vector<Vec3> x = s.body.x;
-    const bool rests = relax_to_minimum(s, start, start / (kAtRest * s.rule.cutoff()));
+    const bool rests = relax_to_minimum(s, start);
     double farthest = 0;
     for (size_t i = 0; i < x.size(); ++i) farthest = std::max(farthest, (s.body.x[i] - x[i]).norm());
     if (rests) {

@@ -25,7 +25,7 @@ struct Subject {
 };
 
 // The scene's body as it stands; one that is not at rest (the surface of a Lennard-Jones crystal) is relaxed
-// first, by FIRE: E. Bitzek et al., Phys. Rev. Lett. 97 (2006) 170201. With `strain` (0.1: ten per cent) it
+// first, by FIRE (model/base/fire.h). With `strain` (0.1: ten per cent) it
 // is then stretched along `axis` without lateral motion. The ends of a stretched body would spring back: each
 // of its particles is given a constant force against that, as gravity of its type, so that it rests as it is
 // stretched. Where that takes more types than there may be, it is not measurable.

@@ -96,6 +96,21 @@ class Engine final : public RealEngine {
     unpack(v_, body.v);
     if (pd_) unpack(u_, body.u);
   }
+  void place(const Body& body) override {
+    Real farthest2 = 0;
+    for (size_t i = 0; i < particles_; ++i) {
+      Real moved2 = 0;
+      for (size_t axis = 0, k = 4 * size_t{rank_[i]}; axis < 3; ++axis, ++k) {
+        x_[k] = static_cast<Real>(body.x[i][axis]);
+        v_[k] = static_cast<Real>(body.v[i][axis]);
+        if (pd_) u_[k] = static_cast<Real>(body.u[i][axis]);
+        moved2 += (x_[k] - listed_[k]) * (x_[k] - listed_[k]);
+      }
+      farthest2 = std::max(farthest2, moved2);
+      if (!std::isfinite(moved2)) farthest2 = std::numeric_limits<Real>::infinity();
+    }
+    keep_listed(farthest2, !std::isfinite(farthest2), 0);
+  }
   std::vector<Vec3> forces() const override {
     std::vector<Real> f(x_.size());
     sum(f);
@@ -206,7 +221,11 @@ class Engine final : public RealEngine {
     };
     for_each_range(particles_, 1, move_range, threads_);
     fastest_ = fastest;
-    if (!kDrifts) return;
+    if (kDrifts) keep_listed(farthest2, lost, number);
+  }
+
+  // A new list where a particle has gone too far since the last one.
+  void keep_listed(Real farthest2, bool lost, uint64_t number) {
     ++steps_on_list_;
     const double farthest = std::sqrt(static_cast<double>(farthest2));
     const bool due = --plan_in_ == 0;

@@ -17,6 +17,8 @@ class RealEngine {
   virtual void step(uint64_t number) = 0;
   // x, v and u by id.
   virtual void read(Body& body) const = 0;
+  // The state becomes that of `body`, with as many particles of the same types.
+  virtual void place(const Body& body) = 0;
   virtual std::vector<Vec3> forces() const = 0;
   virtual double largest_speed() const = 0;  // m/s, along an axis, since the start
   virtual const NearList& list() const = 0;

@@ -47,6 +47,11 @@ void Reference::step(uint64_t steps) {
   }
 }
 
+void Reference::place(const Body& body) {
+  stale_ = true;
+  engine_->place(body);
+}
+
 const Body& Reference::body() const {
   if (stale_) engine_->read(body_);
   stale_ = false;

@@ -62,6 +62,10 @@ class Reference {
   void step(uint64_t steps = 1);
   uint64_t step_count() const { return step_; }
 
+  // The state becomes that of `body`, of the same particles; the step count stays. For those who ask for
+  // forces: velocity Verlet would go on with the forces of before.
+  void place(const Body& body);
+
   // Positions are not wrapped into a periodic box: differences to earlier ones are displacements. The first
   // call after a step copies; it is not safe beside another.
   const Body& body() const;

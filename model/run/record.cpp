@@ -15,6 +15,7 @@
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
 #include "model/run/journal.h"
+#include "model/run/static_engine.h"
 
 namespace cuboct {
 namespace {
@@ -403,7 +404,9 @@ void Loop::total() {
 Recorded Loop::run() {
   if (!kind_.saves && (save_plan_.resume || !save_plan_.path.empty()))
     throw InputError(fmt::format("the {} engine leaves no checkpoints", kind_.name),
-                     kind_.name == "reference" ? "with --integrator euler it does" : "");
+                     kind_.relaxes               ? "of static loading"
+                     : kind_.name == "reference" ? "with --integrator euler it does"
+                                                 : "");
   try {
     saved_time_ = Clock::now();
     if (save_plan_.resume)
@@ -470,6 +473,7 @@ void give(const RunRequest& request, RunState state, Trace& trace) {
 }
 
 Recorded record(const Scene& scene, const EngineKind& kind, const RunRequest& request) {
+  if (!kind.relaxes) refuse_static(scene, fmt::format("the {} engine", kind.name));
   return Loop(scene, kind, request).run();
 }
 

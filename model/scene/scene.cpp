@@ -175,8 +175,17 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
     const auto of = static_cast<uint64_t>(run.integer_or(key, 0, INT64_MAX, static_cast<int64_t>(otherwise)));
     return stage ? static_cast<uint64_t>(stage->integer_or(key, 0, INT64_MAX, static_cast<int64_t>(of))) : of;
   };
-  scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max<uint64_t>(1, whole / 500));
+  if (stage && stage->has("static"))
+    scene.loading = read_static(*stage, scene);
+  else if (run.has("static"))
+    scene.loading = read_static(run, scene);
+  const uint64_t least = scene.loading ? scene.loading->every : 1;
+  scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max(least, whole / 500));
   scene.frame_every = every("frame_every", 0);
+  if (scene.loading) {
+    scene.probe_every = scene.loading->whole(scene.probe_every);
+    scene.frame_every = scene.loading->whole(scene.frame_every);
+  }
   if (const auto accuracy = run.find("accuracy"))
     scene.accuracy = accuracy->number(quantity::number, {.low = 1e-6, .high = 0.1});
   if (const auto strain = run.find("expected_strain"))
@@ -211,10 +220,12 @@ void read_reach(const ConfigTable& root, Scene& scene) {
 }  // namespace
 
 double stable_time_step(const Rule& rule, double pitch, double tolerance) {
-  return stable_time_step(rule, [pitch](const PairLaw&) { return pitch; }, tolerance);
+  return stable_time_step(
+      rule, [pitch](const PairLaw&) { return pitch; }, tolerance);
 }
 
-double stable_time_step(const Rule& rule, const std::function<double(const PairLaw&)>& pitch, double tolerance) {
+double stable_time_step(const Rule& rule, const std::function<double(const PairLaw&)>& pitch,
+                        double tolerance) {
   double kp = 0, kd = 0;           // over the mass
   double fastest = 0, damped = 0;  // frequencies squared, 1/s^2 and 1/s
   for (size_t k = 0; k < rule.types.size(); ++k) {

@@ -82,6 +82,16 @@ struct Until {
   }
 };
 
+// Quasi-static loading: constraints move on by a load step, then the body relaxes to a minimum of its energy,
+// and so on. No motion lies between.
+struct StaticLoading {
+  uint64_t every = 1;        // time steps of the scene that make a load step
+  double tolerance = 1e-3;   // of the load: the residual of docs/user/scene.md, [run]
+  uint64_t evaluations = 0;  // of forces, at most, per load step
+  // The least multiple of `every` that is no less.
+  uint64_t whole(uint64_t steps) const { return (steps + every - 1) / every * every; }
+};
+
 // The run whose last state a scene begins with.
 struct Began {
   std::string from, engine;
@@ -122,7 +132,8 @@ struct Scene {
   uint64_t probe_every = 0;  // 0: never
   uint64_t frame_every = 0;  // 0: first and last only
   std::optional<Until> until;
-  Places places;  // of the file's keys
+  std::optional<StaticLoading> loading;  // probes and frames are then those of whole load steps
+  Places places;                         // of the file's keys
 
   // What regions, displacements and strains count from.
   const Body& packing() const { return packed ? *packed : body; }

@@ -88,6 +88,9 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene);
 void read_start(const ConfigTable& root, const SceneChoice& choice, Scene& scene);
 // The stage that is chosen; none where the file has none.
 std::optional<StagePart> read_stage(const ConfigTable& root, const SceneChoice& choice, Scene& scene);
+// `static` of [run] or of a stage, over scene.steps, which become whole load steps; none for `static =
+// false`.
+std::optional<StaticLoading> read_static(const ConfigTable& table, Scene& scene);
 // `until` of [run] or of a stage. scene.probes are read.
 std::optional<Until> read_until(const ConfigTable& table, const Scene& scene);
 

@@ -150,6 +150,28 @@ std::optional<StagePart> read_stage(const ConfigTable& root, const SceneChoice& 
   return chosen;
 }
 
+std::optional<StaticLoading> read_static(const ConfigTable& table, Scene& scene) {
+  const ConfigValue value = table.at("static");
+  StaticLoading loading;
+  int64_t load_steps = 50, evaluations = 100000;
+  if (value.is_table()) {
+    const ConfigTable keys = value.table();
+    keys.record_as("run");
+    load_steps = keys.integer_or("load_steps", 1, 1000000, load_steps);
+    evaluations = keys.integer_or("evaluations", 1, INT64_MAX, evaluations);
+    loading.tolerance =
+        keys.number_or("tolerance", quantity::number, loading.tolerance, Range::between(1e-9, 0.5));
+    keys.done();
+  } else if (!value.boolean()) {
+    return std::nullopt;
+  }
+  const auto count = static_cast<uint64_t>(load_steps);
+  loading.every = std::max<uint64_t>(1, (scene.steps + count - 1) / count);
+  loading.evaluations = static_cast<uint64_t>(evaluations);
+  scene.steps = loading.whole(scene.steps);
+  return loading;
+}
+
 std::optional<Until> read_until(const ConfigTable& table, const Scene& scene) {
   const auto found = table.table_at("until");
   if (!found) return std::nullopt;

@@ -99,8 +99,6 @@ std::vector<Vec3> best_of_grid(const std::vector<Bond>& bonds, const Mat3& recip
   return best;
 }
 
-constexpr std::array<std::array<int, 2>, 6> kVoigt{{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
-
 }  // namespace
 
 std::vector<Vec3> fcc_neighbours(double pitch, double cutoff) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "model/contract/rule.h"
@@ -12,6 +13,9 @@
 namespace cuboct {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+// Voigt's order of pairs of axes: xx, yy, zz, yz, xz, xy.
+inline constexpr std::array<std::array<int, 2>, 6> kVoigt{{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
 
 // The neighbours of a site nearer than `cutoff`, in cubic axes, without the site itself; if v is one, so is
 // -v.

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "cli/command.h"
+#include "cli/elastic_text.h"
+#include "model/analysis/scene_cell.h"
+#include "model/analysis/strained_cell.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/trace/plot.h"
+
+namespace cuboct {
+namespace {
+
+struct Options {
+  std::string scene, law, pitch, density, material, polar;
+  bool reduced = false, relaxed = false, json = false;
+  double strain = 1e-6;
+  int layers = 0, threads = 1;
+};
+
+constexpr size_t kMostParticles = 100000;  // of which the force constants take some 2 GB
+constexpr int kMostLayers = 64;
+
+// The law alone as a scene; places in errors are those of this text.
+Scene scene_of_law(const Options& options) {
+  const auto value = [&](const std::string& text) {
+    return options.reduced || text == "relaxed" ? (text == "relaxed" ? "\"relaxed\"" : text)
+                                                : "\"" + text + "\"";
+  };
+  std::string text = options.reduced ? "units = \"reduced\"\n" : "";
+  text += options.density.empty() ? "mass = 1\n" : fmt::format("density = {}\n", value(options.density));
+  text += fmt::format("packing = {{ pitch = {} }}\nlaw = {{ {} }}\n", value(options.pitch), options.law);
+  text += "box = { cells = [1, 1, 1] }\n";
+  return parse_scene(text + "[run]\nsteps = 0\n", "--law");
+}
+
+Scene scene_of(const Options& options) {
+  if (options.scene.empty() == options.law.empty())
+    throw InputError("either a scene or --law",
+                     "cuboct elastic SCENE, or cuboct elastic --law 'kind = ...' --pitch P");
+  if (!options.scene.empty()) {
+    if (!options.pitch.empty() || !options.density.empty() || options.reduced)
+      throw InputError("--pitch, --density and --reduced go with --law", "a scene has its own");
+    return read_scene(options.scene);
+  }
+  if (options.pitch.empty()) throw InputError("--law needs --pitch, the distance of nearest particles");
+  if (options.density.empty() && !options.reduced)
+    throw InputError("--law needs --density, of which waves are told",
+                     "--reduced: plain numbers, and masses of 1");
+  return scene_of_law(options);
+}
+
+void check(const Options& options) {
+  if (!(options.strain >= 1e-8 && options.strain <= 1e-2))
+    throw InputError(fmt::format("--strain: {:g} is not in [1e-8, 0.01]", options.strain));
+  if (!options.polar.empty()) {
+    if (!options.polar.ends_with(".svg") && !options.polar.ends_with(".png"))
+      throw InputError(fmt::format("--polar: '{}' ends with neither .svg nor .png", options.polar));
+    check_writable(options.polar);
+  }
+}
+
+ElasticFindings findings_of(const Options& options, const Scene& scene) {
+  ElasticFindings out;
+  SceneCell start = cell_of(scene, options.material);
+  if (start.cell.x.size() > kMostParticles)
+    throw InputError(fmt::format("{} particles: 'cuboct elastic' solves for at most {}", start.cell.x.size(),
+                                 kMostParticles),
+                     "a smaller box of the same matter has the same constants");
+  out.scene = scene.path;
+  out.cell = start.of;
+  out.particles = start.cell.x.size();
+  if (options.relaxed) start.cell = without_stress(scene.rule, start.cell, options.threads);
+  StrainedCell rest(scene.rule, start.cell, options.threads);
+  out.relaxing = rest.relax();
+  out.density = density_of(scene.rule, rest.cell());
+  out.sums = elastic_tensor(scene.rule, rest.cell());
+  out.strain = options.strain;
+  out.strained =
+      constants_by_strain(scene.rule, rest.cell(), options.strain, options.threads, out.evaluations);
+  if (scene.pitch > 0) out.crystal = scene.orientation;
+  for (int n = 2; n <= options.layers; ++n) {
+    const CrystalCell slab = without_stress(scene.rule, slab_of(scene, options.material, n), options.threads);
+    out.slabs.push_back({n, slab.vectors(2, 2), plane_modulus(elastic_tensor(scene.rule, slab).c),
+                         plane_modulus(constants_by_strain(scene.rule, slab, options.strain, options.threads,
+                                                           out.evaluations))});
+  }
+  return out;
+}
+
+void draw(const ElasticFindings& found, const std::string& path) {
+  constexpr int kPoints = 360;
+  std::string data = "$sums << END\n", strained = "END\n$strained << END\n";
+  for (int i = 0; i <= kPoints; ++i) {
+    const double angle = 2 * std::acos(-1.0) * i / kPoints;
+    const Vec3 n(std::cos(angle), std::sin(angle), 0);
+    data += fmt::format("{:.6f} {:.6g}\n", angle, youngs_modulus(found.sums.c, n));
+    if (i % 10 == 0) strained += fmt::format("{:.6f} {:.6g}\n", angle, youngs_modulus(found.strained, n));
+  }
+  const std::string plot =
+      "set polar\nset size square\nunset border\nunset xtics\nunset ytics\nset grid polar 0.523599 lc "
+      "'#bbbbbb'\n"
+      "set rtics format '%.3s %cPa' tc '#444444'\nset ttics 0, 30 format '%g°' tc '#444444'\nset rrange "
+      "[0:*]\n"
+      "set key outside top right samplen 2\nset title 'E (direction) in the x-y plane'\n"
+      "plot $sums with lines lw 2 lc '#1f5fa8' title 'lattice sums', "
+      "$strained with points pt 7 ps 0.6 lc '#d9703f' title 'strained simulation'\n";
+  write_text(path, gnuplot(data + strained + "END\n", plot, path.substr(path.size() - 3), 640, 600));
+}
+
+int elastic(const Options& options) {
+  check(options);
+  catch_interrupts();
+  const Scene scene = scene_of(options);
+  const ElasticFindings found = findings_of(options, scene);
+  fmt::print("{}", options.json ? json_of(found) : text_of(found));
+  if (!options.polar.empty() && found.stable()) draw(found, options.polar);
+  return found.stable() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_elastic(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("elastic", "elastic constants, by lattice sums and by strained simulation");
+  command->add_option("scene", options->scene, "scene file (TOML)")->type_name("SCENE");
+  command->add_option("--law", options->law, "in place of a scene, of an FCC packing: the keys of its [law]")
+      ->type_name("KEYS");
+  command->add_option("--pitch", options->pitch, "of --law: distance of nearest particles, or relaxed")
+      ->type_name("P");
+  command->add_option("--density", options->density, "of --law, with its unit")->type_name("D");
+  command->add_flag("--reduced", options->reduced, "quantities of --law are plain numbers, the mass is 1");
+  command
+      ->add_option("--material", options->material,
+                   "of a scene whose box does not repeat; default: the first")
+      ->type_name("NAME");
+  command->add_flag("--relaxed", options->relaxed, "first strain the cell until it carries no stress");
+  command->add_option("--strain", options->strain, "of the strained simulations")
+      ->type_name("E")
+      ->capture_default_str();
+  command
+      ->add_option("--layers", options->layers, "also the modulus along x of slabs of 2 to N layers across z")
+      ->check(CLI::Range(2, kMostLayers))
+      ->type_name("N");
+  command
+      ->add_option("--polar", options->polar,
+                   "draw Young's modulus against direction in the x-y plane (svg, png)")
+      ->type_name("FILE");
+  command->add_option("--threads", options->threads, "of the simulations; default: 1")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command->add_flag("--json", options->json, "print as JSON");
+  command->callback([options, &exit_code] { exit_code = elastic(*options); });
+}
+
+}  // namespace cuboct

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// What `cuboct elastic` found, as a table and as JSON.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/solid/elastic_tensor.h"
+#include "model/solid/moduli.h"
+
+namespace cuboct {
+
+struct SlabModulus {
+  int layers = 0;
+  double thickness = 0;               // m, of as many layers in the packing
+  double by_sums = 0, by_strain = 0;  // Pa
+};
+
+struct ElasticFindings {
+  std::string scene, cell;
+  size_t particles = 0;
+  double density = 0;                      // kg/m^3
+  uint64_t relaxing = 0, evaluations = 0;  // of forces: to the minimum, and of all strained cells
+  double strain = 0;
+  ElasticTensor sums;
+  Matrix6 strained = Matrix6::Zero();  // Pa
+  std::optional<Mat3> crystal;         // of a packing: its cubic axes
+  std::vector<SlabModulus> slabs;
+
+  bool stable() const { return softest_strain(sums.c) > 0; }
+  // The largest difference of the two over the largest constant.
+  double difference() const {
+    return (sums.c - strained).cwiseAbs().maxCoeff() / sums.c.cwiseAbs().maxCoeff();
+  }
+};
+
+std::string text_of(const ElasticFindings& found);
+std::string json_of(const ElasticFindings& found);
+
+}  // namespace cuboct

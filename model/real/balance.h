@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// A body at rest between its constraints, in doubles: the forces on its free particles, and the way to where
+// they vanish.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "model/base/fire.h"
+#include "model/real/reference.h"
+
+namespace cuboct {
+
+// What is left of the forces of a body at rest, and what it carries. The forces that two ends of a body
+// carry, and its weight, sum up to zero but for `residual` at most: what inertia takes in a run of motion.
+struct Unbalance {
+  double residual = 0;  // N, sum of the magnitudes of the forces on free particles
+  double load = 0;   // N, the largest total force on the particles of one type that is held, moved or heavy
+  double least = 0;  // N, a residual that is rounding
+  bool within(double tolerance) const { return residual <= tolerance * load || residual <= least; }
+  double share() const { return load > 0 ? residual / load : 0; }
+};
+
+// Velocities are 0, and nothing damps. Imposed axes stay, or go where go_on() takes them; PD controllers pull
+// with kp alone.
+class Balance {
+ public:
+  // As of Reference; the rule and the types of the body count, and its x and u.
+  Balance(const Rule& rule, const Body& body, const Periodic& periodic, int threads);
+
+  const Body& body() const { return body_; }
+  const Reference& reference() const { return reference_; }
+
+  // N, on free axes: pairs, controllers and gravity. 0 on imposed ones.
+  const std::vector<Vec3>& forces();
+  // Of the last forces that were evaluated.
+  Unbalance unbalance() const;
+
+  // What is imposed moves on by its velocity for `time` s, anchors of controllers too. The free particles go
+  // where they went the last time, if that leaves smaller forces: two evaluations.
+  void go_on(double time);
+  // FIRE until `small` says that the forces are.
+  FireResult relax(const std::function<bool(const std::vector<Vec3>& forces)>& small, uint64_t most);
+
+ private:
+  void place(const Eigen::VectorXd& x);
+  double largest_force() const;
+
+  Rule rule_;
+  Body body_;
+  Reference reference_;
+  double stiffness_;           // N/m, of the stiffest site
+  std::vector<Vec3> anchor_;   // m; empty unless a type has a controller
+  std::vector<Vec3> carried_;  // N, of pairs, by id
+  std::vector<Vec3> free_;     // N
+  std::vector<Vec3>
+      last_step_;             // m, of the free particles in the last go_on() and what followed; empty: none
+  std::vector<Vec3> before_;  // m, where the last go_on() began
+};
+
+}  // namespace cuboct

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Quasi-static loading behind the interface of all engines: the scene's time steps count the load, and the
+// body is at rest at each load step. In doubles: the fixed rule's integers know forces as kicks of a step,
+// whose last bit is far above the residual that rest asks for.
+#pragma once
+
+#include "model/real/balance.h"
+#include "model/run/engine.h"
+#include "model/run/record.h"
+#include "model/scene/scene.h"
+
+namespace cuboct {
+
+class StaticEngine : public Engine {
+ public:
+  // Keeps a reference to `scene`, whose `loading` it follows; relaxes `body` first. `cell_edge`: m, in which
+  // speeds are told. `step`: that of `body`. StepError where the body finds no rest.
+  StaticEngine(const Scene& scene, const Body& body, int threads, double cell_edge, uint64_t step = 0);
+
+  uint64_t step_count() const override { return step_; }
+  // Between two load steps only the count moves.
+  void advance(uint64_t steps, std::vector<uint64_t>*) override;
+  uint64_t hash() override;
+  RunState frame(bool forces) override;
+  Reading read(const Asked& asked) override;
+  Momentum momentum() override { return {}; }
+  double largest_speed() override;
+  Counters counters() override;
+  Notes notes() override;
+  const Body* saved_body() override { return &balance_.body(); }
+  EngineMemory memory() override { return {{uint64_t{0}}, {}}; }
+
+ private:
+  void relax();
+
+  const Scene& scene_;
+  int threads_;
+  double cell_edge_;
+  uint64_t step_;
+  Balance balance_;
+  uint64_t load_steps_ = 0, evaluations_ = 0;
+  double largest_share_ = 0;     // of the load, of any load step
+  double largest_residual_ = 0;  // N, where nothing is loaded
+};
+
+// Of a scene with `loading`, from `start`.
+EngineKind static_kind(const Scene& scene, const Body& start, int threads, double cell_edge);
+
+// InputError where the scene asks for static loading, of `who` that knows motion alone: "the lattice engine".
+void refuse_static(const Scene& scene, const std::string& who);
+
+}  // namespace cuboct

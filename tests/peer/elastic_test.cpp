@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// Elastic constants beside LAMMPS: its stress of boxes that are stretched a little, of a crystal along its
+// cubic axes and of one that is turned, whose constants hold C44. Reduced units, epsilon = sigma = 1.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <numeric>
+
+#include "model/analysis/strained_cell.h"
+#include "model/contract/law.h"
+#include "model/scene/packing.h"
+#include "model/solid/moduli.h"
+#include "tests/fcc_block.h"
+#include "tests/peer/lammps.h"
+
+namespace cuboct {
+namespace {
+
+constexpr double kStrain = 1e-5;
+constexpr const char* kPair = "pair_style lj/smooth/linear 2.5\npair_coeff 1 1 1 1";
+
+Mat3 lammps_stress(const Fcc& fcc, const Vec3& size, const Vec3& stretch) {
+  test::LammpsRun run;
+  run.pair = kPair;
+  run.dt = 0.001;
+  run.steps = 1;  // LAMMPS dumps at no fewer; the frame before it counts
+  run.periodic.extent = size;
+  Body body;
+  body.x = pack(fcc, nullptr, run.periodic);
+  for (Vec3& x : body.x) x = x.cwiseProduct(stretch);
+  run.periodic.extent = size.cwiseProduct(stretch);
+  body.v.assign(body.size(), Vec3::Zero());
+  body.type.assign(body.size(), 0);
+  const std::vector<Mat3> virial = test::run_lammps(run, body)[0].virial;
+  return std::accumulate(virial.begin(), virial.end(), Mat3(Mat3::Zero())) / run.periodic.extent.prod();
+}
+
+TEST(Elastic, LennardJonesConstantsAreThoseOfLammps) {
+  if (!test::have_lammps()) GTEST_SKIP() << "LAMMPS (lmp) was not found when the build was configured";
+  const Rule rule = test::simple_rule(lennard_jones(1, 1, 2.5, 0.5, Smoothing::linear), 1, 1);
+  const double pitch = relaxed_pitch(*rule.law, 1.1), edge = std::numbers::sqrt2 * pitch;
+  CrystalCell cell;
+  cell.vectors << 0, 1, 1, 1, 0, 1, 1, 1, 0;
+  cell.vectors *= edge / 2;
+  cell.x = {Vec3::Zero()};
+  cell.type = {0};
+  uint64_t evaluations = 0;
+  const Matrix6 sums = elastic_tensor(rule, cell).c,
+                strained = constants_by_strain(rule, cell, 1e-6, 1, evaluations);
+  const Mat3 turn = Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitZ()).toRotationMatrix();
+  int compared = 0;
+  for (const auto& [axes, size] : {std::pair{Mat3(Mat3::Identity()), Vec3(4 * edge, 4 * edge, 4 * edge)},
+                                   {turn, Vec3(6 * pitch, 6 * pitch, 4 * edge)}}) {
+    // Sites stand a quarter of a pitch inside the box, none on its border.
+    const Fcc fcc{pitch, axes, Vec3::Constant(0.25 * pitch)};
+    const Matrix6 expected = in_axes(sums, axes.transpose()), simulated = in_axes(strained, axes.transpose());
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 stretch = Vec3::Ones();
+      stretch[axis] += kStrain;
+      Mat3 slope = lammps_stress(fcc, size, stretch);
+      stretch[axis] = 1 - kStrain;
+      slope = (slope - lammps_stress(fcc, size, stretch)) / (2 * kStrain);
+      for (int row = 0; row < 3; ++row, ++compared) {
+        // The central difference errs by the strain's square, times third over first derivatives: some
+        // hundred.
+        EXPECT_NEAR(slope(row, row), expected(row, axis), 1e-6 * sums(0, 0)) << row << axis;
+        EXPECT_NEAR(slope(row, row), simulated(row, axis), 1e-6 * sums(0, 0)) << row << axis;
+      }
+    }
+  }
+  EXPECT_EQ(compared, 18);
+}
+
+}  // namespace
+}  // namespace cuboct
