@@ -54,7 +54,7 @@ std::string plot_lines(const std::vector<Series>& series, const std::string& x_l
 std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
                           const std::string& bar_label, double limit) {
   // Letters of 24 pixels in a picture of 1100: they can be read where a page shows it 400 wide.
-  constexpr int kLabel = 44, kBar = 140;
+  constexpr int kLabel = 44, kBar = 180;
   const Scratch scratch;
   const int width = pictures[0].width, row = pictures[0].height + kLabel;
   const int height = static_cast<int>(pictures.size()) * row + kBar;
@@ -80,7 +80,7 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
   for (int k = 0; k < 512; ++k) bar.pixels.push_back(diverging(k % 256 / 127.5 - 1));
   write_raw(scratch.path("bar"), bar);
   script += fmt::format(
-      "unset label 1\nset lmargin at screen 0.25\nset rmargin at screen 0.75\n"
+      "unset label 1\nset lmargin at screen 0.15\nset rmargin at screen 0.85\n"
       "set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\n"
       "set border 15 lc '#444444'\nset xtics out nomirror\nset xlabel {}\n"
       "set xrange [{:.9g}:{:.9g}]\nset yrange [0:1]\n"

@@ -102,6 +102,15 @@ TEST(Report, HoldsTheWarningsOfThePlan) {
       0u);
 }
 
+TEST(Report, PicturesARunInRealNumbersToo) {
+  const Bench bench(false);
+  const std::string html =
+      page(bench, {"scenes/coupon.toml", "--steps", "40", "--frame-every", "20", "--engine", "reference"});
+  EXPECT_EQ(count(html, "data:image/png;base64,iVBORw0KGgo"), 1u);
+  EXPECT_EQ(html.find(" nodes, "), std::string::npos);  // it has none
+  ASSERT_EQ(read_trace(bench.path("run/trace.h5")).bodies.size(), 3u);
+}
+
 TEST(Report, SaysWhyARunStopped) {
   const std::string html = page(
       Bench(false), {"scenes/failures/full_node.toml", "--arch", "scenes/failures/archs/full_node.toml"}, 1);
