@@ -31,8 +31,10 @@ void read_bond(const Scene& scene, Motion& motion) {
     motion.bond_stiffness = rule.mass / (2 * scene.dt_limit * scene.dt_limit);
   double rate = motion.bond_stiffness / rule.mass;
   // The strongest bonds may be those of heavy particles.
-  if (const double slope = -rule.law->slope(motion.rest_distance); !rule.masses.empty() && slope > 0)
-    rate = slope * rule.largest_rate() / rule.mass;
+  double fastest = 0;
+  for (size_t k = 0; !rule.masses.empty() && k < rule.laws(); ++k)
+    fastest = std::max(fastest, -rule.law_at(k).slope(motion.rest_distance) * rule.largest_rate(k));
+  if (fastest > 0) rate = fastest / rule.mass;
   motion.sound_speed = motion.rest_distance * std::sqrt(rate);
 }
 
