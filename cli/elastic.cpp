@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
+#include <numbers>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/elastic_text.h"
@@ -95,23 +97,31 @@ ElasticFindings findings_of(const Options& options, const Scene& scene) {
 }
 
 void draw(const ElasticFindings& found, const std::string& path) {
-  constexpr int kPoints = 360;
-  std::string data = "$sums << END\n", strained = "END\n$strained << END\n";
+  constexpr int kPoints = 360, kEvery = 10;
+  const auto modulus = [](const Matrix6& c, double angle) {
+    return youngs_modulus(c, Vec3(std::cos(angle), std::sin(angle), 0));
+  };
+  std::vector<double> angles;
+  double most = 0;
   for (int i = 0; i <= kPoints; ++i) {
-    const double angle = 2 * std::acos(-1.0) * i / kPoints;
-    const Vec3 n(std::cos(angle), std::sin(angle), 0);
-    data += fmt::format("{:.6f} {:.6g}\n", angle, youngs_modulus(found.sums.c, n));
-    if (i % 10 == 0) strained += fmt::format("{:.6f} {:.6g}\n", angle, youngs_modulus(found.strained, n));
+    angles.push_back(2 * std::numbers::pi * i / kPoints);
+    most = std::max(most, modulus(found.sums.c, angles.back()));
   }
-  const std::string plot =
-      "set polar\nset size square\nunset border\nunset xtics\nunset ytics\nset grid polar 0.523599 lc "
-      "'#bbbbbb'\n"
-      "set rtics format '%.3s %cPa' tc '#444444'\nset ttics 0, 30 format '%g°' tc '#444444'\nset rrange "
-      "[0:*]\n"
-      "set key outside top right samplen 2\nset title 'E (direction) in the x-y plane'\n"
-      "plot $sums with lines lw 2 lc '#1f5fa8' title 'lattice sums', "
-      "$strained with points pt 7 ps 0.6 lc '#d9703f' title 'strained simulation'\n";
-  write_text(path, gnuplot(data + strained + "END\n", plot, path.substr(path.size() - 3), 640, 600));
+  const auto [scale, unit] = pressure_unit(most);
+  std::string sums = "$sums << END\n", strained = "END\n$strained << END\n";
+  for (int i = 0; i <= kPoints; ++i) {
+    sums += fmt::format("{:.6f} {:.6g}\n", angles[i], modulus(found.sums.c, angles[i]) / scale);
+    if (i % kEvery == 0)
+      strained += fmt::format("{:.6f} {:.6g}\n", angles[i], modulus(found.strained, angles[i]) / scale);
+  }
+  const std::string plot = fmt::format(
+      "set polar\nset size ratio 1\nunset border\nunset xtics\nunset ytics\nset rrange [0:{:.3g}]\n"
+      "set grid polar pi/6 lt 1 lc rgb '#dddddd'\nset rtics format '%g'\nset ttics 0, 30 format '%g°'\n"
+      "set key bmargin center horizontal\nset title \"Young's modulus in the x-y plane, {}\"\n"
+      "plot $sums with lines lw 2 lc rgb '#1f5fa8' title 'lattice sums', "
+      "$strained with points pt 7 ps 0.6 lc rgb '#d9703f' title 'strained simulation'\n",
+      1.1 * most / scale, unit);
+  write_text(path, gnuplot(sums + strained + "END\n", plot, path.substr(path.size() - 3), 620, 640));
 }
 
 int elastic(const Options& options) {

@@ -39,15 +39,8 @@ Matrix6 in_crystal(const ElasticFindings& found) {
 // What is rounding is 0, not -0.
 double shown(double ratio) { return std::abs(ratio) < 1e-9 ? 0.0 : ratio; }
 
-// The unit in which the largest constant has one to three digits before the point.
-std::pair<double, std::string> unit_of(double largest) {
-  for (const auto& [scale, name] : {std::pair{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}})
-    if (largest >= scale) return {scale, name};
-  return {1, "Pa"};
-}
-
 std::string matrix_text(const Matrix6& c, const std::string& title) {
-  const auto [scale, unit] = unit_of(c.cwiseAbs().maxCoeff());
+  const auto [scale, unit] = pressure_unit(c.cwiseAbs().maxCoeff());
   std::string out = fmt::format("\n{}, {}\n    ", title, unit);
   for (const char* pair : kPairs) out += fmt::format("{:>11}", pair);
   for (int a = 0; a < 6; ++a) {
@@ -103,6 +96,12 @@ std::string json_vector(const Vec3& v) {
 }
 
 }  // namespace
+
+std::pair<double, std::string> pressure_unit(double largest) {
+  for (const auto& [scale, name] : {std::pair{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}})
+    if (largest >= scale) return {scale, name};
+  return {1, "Pa"};
+}
 
 std::string text_of(const ElasticFindings& found) {
   const Matrix6& c = found.sums.c;

@@ -35,6 +35,9 @@ struct ElasticFindings {
   }
 };
 
+// A unit of pressure, Pa and its name, in which `largest` has one to three digits before the point.
+std::pair<double, std::string> pressure_unit(double largest);
+
 std::string text_of(const ElasticFindings& found);
 std::string json_of(const ElasticFindings& found);
 
