@@ -247,7 +247,7 @@ TEST_F(Budget, WhatCannotBeKeptIsSaid) {
   const Truth& truth = truth_of(s);
   BudgetOptions options{"0.05%", "breath", dir_.string(), 2};
   testing::internal::CaptureStdout();
-  EXPECT_EQ(run_budget(s, truth, options), 1);
+  EXPECT_EQ(run_budget(s, truth, options, {}), 1);
   const std::string out = testing::internal::GetCapturedStdout();
   EXPECT_NE(out.find("no settings of [search] keep 'breath' within 0.05%\nthe best: "), std::string::npos)
       << out;
@@ -262,7 +262,7 @@ TEST_F(Budget, TheReport) {
   const Study s = study();
   const Truth& truth = truth_of(s);
   testing::internal::CaptureStdout();
-  EXPECT_EQ(run_budget(s, truth, {"5%", "breath", dir_.string(), 2}), 0);
+  EXPECT_EQ(run_budget(s, truth, {"5%", "breath", dir_.string(), 2}, {}), 0);
   const std::string out = testing::internal::GetCapturedStdout();
   for (const char* part :
        {"figure 'breath': ", " Hz by the truth\n", "the cheapest settings within 5%\n\nsetting ",
