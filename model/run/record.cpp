@@ -287,8 +287,10 @@ void Loop::go() {
   over_ = reached();
   while (trace_.steps_done < request_.steps && !stop && !over_) {
     const auto begin = Clock::now();  // a piece is long beside what a batch costs to start
-    advance(kind_.batches ? std::min(next_stop() - trace_.steps_done, piece_) : 1);
-    record();
+    const uint64_t before = trace_.steps_done;
+    advance(kind_.batches ? std::min(next_stop() - before, piece_) : 1);
+    // Ctrl-C during a save ends a batch before its first step: this one has been recorded.
+    if (engine_->step_count() > before) record();
     if (since(begin) < 0.1 && piece_ < request_.steps) piece_ *= 2;
     show();
     bool due = false;

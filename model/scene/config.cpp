@@ -295,6 +295,17 @@ double ConfigValue::number(const Quantity& quantity, const Range& range) const {
   return values[0];
 }
 
+double ConfigValue::unit(const Quantity& quantity) const {
+  if (file_->reduced) return number(quantity, Range::positive());
+  try {
+    const ParsedQuantity one = parse_quantity("1 " + string());
+    if (!one.list && one.dimension == quantity.dimension) return one.values[0];
+  } catch (const UnitError&) {
+  }
+  fail(fmt::format("'{}' must be the unit of {}, not '{}'", node_->key, quantity.name, string()),
+       fmt::format("as in \"{}\", without the number", quantity.example));
+}
+
 std::vector<double> ConfigValue::numbers(const Quantity& quantity, const Range& range) const {
   std::vector<double> values;
   const bool plain = file_->reduced || quantity.dimension == Dimension{};

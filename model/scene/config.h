@@ -66,6 +66,8 @@ class ConfigValue {
 
   // A plain number where the dimension is 1 or the file says `units = "reduced"`, else text such as "0.5 mm".
   double number(const Quantity& quantity, const Range& range = Range::any()) const;
+  // A unit alone, such as "mm", in SI units; a plain number where the file says `units = "reduced"`.
+  double unit(const Quantity& quantity) const;
   // Several: "[0, 1, 2.5] mm", or an array whose elements are single ones.
   std::vector<double> numbers(const Quantity& quantity, const Range& range = Range::any()) const;
   Vec3 vector(const Quantity& quantity) const;

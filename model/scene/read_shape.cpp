@@ -99,9 +99,8 @@ ShapePtr read_dog_bone(const ConfigTable& t) {
 // A mesh has no unit of its own that a file would tell.
 ShapePtr read_mesh(const ConfigTable& t, const Regions& regions) {
   const ConfigValue file = t.at("file");
-  const double unit = file.reduced() ? t.number_or("unit", quantity::length, 1, Range::positive())
-                                     : t.number("unit", quantity::length, Range::positive());
-  return regions.mesh(file, unit);
+  const auto unit = file.reduced() ? t.find("unit") : t.at("unit");
+  return regions.mesh(file, unit ? unit->unit(quantity::length) : 1);
 }
 
 ShapePtr read_difference(const ConfigTable& t, const Regions& regions) {

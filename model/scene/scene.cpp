@@ -175,9 +175,10 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
     const auto of = static_cast<uint64_t>(run.integer_or(key, 0, INT64_MAX, static_cast<int64_t>(otherwise)));
     return stage ? static_cast<uint64_t>(stage->integer_or(key, 0, INT64_MAX, static_cast<int64_t>(of))) : of;
   };
+  const bool usual_static = run.has("static");  // asked for, whether a stage has its own or not
   if (stage && stage->has("static"))
     scene.loading = read_static(*stage, scene);
-  else if (run.has("static"))
+  else if (usual_static)
     scene.loading = read_static(run, scene);
   const uint64_t least = scene.loading ? scene.loading->every : 1;
   scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max(least, whole / 500));

@@ -83,7 +83,7 @@ TEST_F(Programs, WrongCommandLinesAndScenesEndWithTwo) {
     ends(scene + " --out t.h5 --stall-rate 2",
          "--stall-rate: Value 2 not in range 0.000000 to 0.990000\n" + help);
     ends("none.toml --out t.h5", "none.toml: cannot read this file\n");
-    ends("bad.toml --out t.h5", "bad.toml:1:1: unknown key 'stepz'\n");
+    ends("bad.toml --out t.h5", "bad.toml:1:1: unknown key 'stepz'\n   1 | stepz = 3\n     | ^\n");
     ends(scene + " --out none/t.h5", "cannot write none/t.h5: No such file or directory\n");
     ends(scene + " --out t.h5 --steps 5000000000",
          "5000000000 steps: the machine counts at most 4294967295\n");

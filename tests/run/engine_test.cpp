@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 
+#include "model/base/interrupt.h"
 #include "model/base/steps.h"
+#include "model/run/golden_engine.h"
 #include "model/run/reference_engine.h"
 #include "model/scene/config.h"
 #include "tests/run/kinds.h"
@@ -222,6 +225,38 @@ TEST(RealEngines, EndWhereAPositionIsLost) {
   ASSERT_FALSE(run.trace.bodies.empty());
   EXPECT_EQ(run.trace.bodies.back().step, run.trace.steps());
   for (const Vec3& x : run.trace.bodies.back().x) EXPECT_TRUE(x.allFinite());
+}
+
+// Ctrl-C comes when the run has decided to go on after step 6: the next batch ends before its first step.
+class InterruptedBetweenBatches : public GoldenEngine {
+ public:
+  using GoldenEngine::GoldenEngine;
+  std::pair<bool, bool> agreed(bool stop, bool save) override {
+    if (step_count() == 6 && !interrupted()) std::raise(SIGINT);
+    return {stop, save};
+  }
+  void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
+    if (!interrupted()) GoldenEngine::advance(steps, hashes);
+  }
+};
+
+TEST(Interrupts, BetweenBatchesRecordNoStepTwice) {
+  const Bed bed = bed_of("scenes/boards/grips.toml");
+  EngineKind kind = golden_kind(bed.scene, bed.plan);
+  kind.batches = true;
+  kind.make = [&](CheckpointReader* from, bool) {
+    return std::make_unique<InterruptedBetweenBatches>(
+        setting_of(bed.scene, bed.plan), bed.plan.arch.capacity, begin_of(bed.scene, bed.plan, from));
+  };
+  RunRequest request = everything(20);
+  request.hash_every = 2;
+  const CatchInterrupt catching;
+  const Recorded run = record(bed.scene, kind, request);
+  EXPECT_TRUE(run.interrupted);
+  EXPECT_EQ(run.trace.steps(), 6u);
+  EXPECT_EQ(run.trace.state_hash.size(), 4u);
+  for (size_t k = 1; k < run.trace.frames.size(); ++k)
+    EXPECT_LT(run.trace.frames[k - 1].step, run.trace.frames[k].step);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -134,6 +135,7 @@ pitch = "0.5 mm"
 [law]
 kind = "elastic"
 youngs_modulus = "20 kPa"
+direction = "z"
 [run]
 steps = 1
 [geometry]
@@ -184,14 +186,16 @@ TEST_F(Meshes, TellDistances) {
   }
 }
 
-// 2048 triangles on the sphere: within it by less than their sagitta.
+// Corners on the sphere: what facets cut off goes down fourfold with each halving of their edges.
 TEST_F(Meshes, OfABallHaveItsVolumeAndArea) {
-  const Mesh mesh = read_mesh(write_binary_stl("a.stl", ball(4)), 1);
-  EXPECT_EQ(mesh.facts.triangles, 2048U);
+  const double volume = 4 * M_PI / 3 * 125, area = 4 * M_PI * 25;
+  const MeshFacts coarse = read_mesh(write_binary_stl("a.stl", ball(4)), 1).facts;
+  const Mesh mesh = read_mesh(write_binary_stl("b.stl", ball(5)), 1);
+  EXPECT_EQ(mesh.facts.triangles, 8192U);
   EXPECT_TRUE(mesh.facts.closed());
-  EXPECT_NEAR(mesh.facts.volume / (4 * M_PI / 3 * 125), 1, 0.005);
-  EXPECT_LT(mesh.facts.volume, 4 * M_PI / 3 * 125);
-  EXPECT_NEAR(mesh.facts.area / (4 * M_PI * 25), 1, 0.003);
+  EXPECT_GT(volume - mesh.facts.volume, 0);
+  EXPECT_NEAR((volume - coarse.volume) / (volume - mesh.facts.volume), 4, 0.1);
+  EXPECT_NEAR((area - coarse.area) / (area - mesh.facts.area), 4, 0.1);
   const ShapePtr sphere_of = sphere(Vec3::Zero(), 5);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> within(-7, 7);
@@ -201,7 +205,8 @@ TEST_F(Meshes, OfABallHaveItsVolumeAndArea) {
   }
 }
 
-// One triangle of a hundred is missing: the sites are those of the whole, and a warning says so.
+// One triangle of a hundred is missing: the sites are those of the whole but for few within a hole's width of
+// the surface, and a warning says so.
 TEST_F(Meshes, MayLeak) {
   const Fcc fcc{.pitch = 0.4};
   Triangles t = ball(4);
@@ -214,7 +219,18 @@ TEST_F(Meshes, MayLeak) {
   EXPECT_EQ(leaky.facts.open, 60U);
   EXPECT_NEAR(leaky.facts.doubt, 1 - std::pow(0.99, 11), 0.03);
   EXPECT_NE(mesh_warning(leaky.facts).find("60 open edges"), std::string::npos);
-  EXPECT_EQ(pack(fcc, leaky.shape.get(), {}), whole);
+  const auto packed = pack(fcc, leaky.shape.get(), {});
+  size_t others = 0;
+  const auto look_for = [&](const std::vector<Vec3>& from, const std::vector<Vec3>& in) {
+    for (const Vec3& x : from) {
+      if (std::ranges::find(in, x) != in.end()) continue;
+      EXPECT_NEAR(x.norm(), 5, 0.5);  // edges are up to 0.5 long
+      ++others;
+    }
+  };
+  look_for(packed, whole);
+  look_for(whole, packed);
+  EXPECT_LE(others, 20u);  // holes
 }
 
 TEST_F(Meshes, ThatAreTurnedOrFlatInPlacesAreTold) {
@@ -266,13 +282,13 @@ TEST_F(Meshes, ThatHoldNoSolidAreRefused) {
     return fmt::format("shape = \"mesh\"\nfile = \"{}\"\n{}", file, unit);
   };
   const std::string mm = "unit = \"mm\"";
-  EXPECT_NE(error_of(of("half.stl", mm)).find("scene.toml:11:8: 'half.stl' holds no solid"),
+  EXPECT_NE(error_of(of("half.stl", mm)).find("scene.toml:12:8: 'half.stl' holds no solid"),
             std::string::npos)
       << error_of(of("half.stl", mm));
   EXPECT_NE(error_of(of("none.stl", mm)).find("no file 'none.stl'"), std::string::npos);
   EXPECT_NE(error_of(of("half.stl", "")).find("'unit'"), std::string::npos) << error_of(of("half.stl", ""));
   for (const char* file : {"text.stl", "empty.obj", "nan.obj"})
-    EXPECT_NE(error_of(of(file, mm)).find("scene.toml:11:8: "), std::string::npos) << error_of(of(file, mm));
+    EXPECT_NE(error_of(of(file, mm)).find("scene.toml:12:8: "), std::string::npos) << error_of(of(file, mm));
 }
 
 #else
