@@ -20,6 +20,7 @@ class Simulation:
     scene_steps: int
     title: str
     type_names: list[str]
+    type_masses: list[float]
     def __init__(
         self, sources: Sources, engine: str, options: dict[str, Any], probe_every: int | None, anyway: bool
     ) -> None: ...

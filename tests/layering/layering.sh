@@ -13,6 +13,7 @@ declare -A may=(
   [model/scene]="model/base model/contract model/solid"
   [model/trace]="model/base model/contract model/scene"
   [model/analysis]="model/base model/contract model/solid model/real model/scene model/trace"
+  [model/mesh]="model/base model/scene"
   [model/run]="model"
   [hw]="model"
   [synth]="model hw"

@@ -177,7 +177,7 @@ TEST(Geometry, RefusesBadShapes) {
   EXPECT_EQ(error_of("[g]\nshape = \"torus\"\n"),
             "a.toml:2:9: unknown shape 'torus'\n  hint: known: sphere, box, cylinder, capsule, half_space, "
             "extrude, "
-            "astm_d638, union, intersection or difference");
+            "astm_d638, mesh, union, intersection or difference");
   EXPECT_EQ(error_of("[g]\nshape = \"sphere\"\n"), "a.toml:1:1: missing key 'radius' in 'g'");
   EXPECT_EQ(error_of("[g]\nshape = \"sphere\"\nradius = \"1 mm\"\nradios = 3\n"),
             "a.toml:4:1: unknown key 'radios'");
