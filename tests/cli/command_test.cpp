@@ -6,17 +6,10 @@
 #include <fstream>
 #include <regex>
 
-#include "tests/cli/shell.h"
+#include "tests/cli/refusal.h"
 
 namespace cuboct::test {
 namespace {
-
-void expect_refusal(const std::vector<std::string>& arguments, const std::string& text) {
-  const Answer answer = Bench(false).cuboct(arguments);
-  EXPECT_EQ(answer.code, 2);
-  EXPECT_EQ(answer.out, "");
-  EXPECT_EQ(answer.err, text);
-}
 
 TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
   expect_refusal({},

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/shell.h"
+#include "tests/cli/refusal.h"
 
 namespace cuboct::test {
 namespace {
@@ -60,12 +60,6 @@ TEST(Elastic, OfASceneTakesItsBox) {
 }
 
 TEST(Elastic, RefusesWrongInput) {
-  const auto expect_refusal = [](const Strings& arguments, const std::string& text) {
-    const Answer answer = Bench(false).cuboct(arguments);
-    EXPECT_EQ(answer.code, 2);
-    EXPECT_EQ(answer.out, "");
-    EXPECT_EQ(without_excerpt(answer.err), text);
-  };
   expect_refusal({"elastic"},
                  "either a scene or --law\n  hint: cuboct elastic SCENE, or cuboct elastic --law 'kind = "
                  "...' --pitch P\n");

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <regex>
 
-#include "tests/cli/shell.h"
+#include "tests/cli/refusal.h"
 
 namespace cuboct::test {
 namespace {
@@ -60,12 +60,6 @@ TEST(Stability, JsonIsEscaped) {
 }
 
 TEST(Stability, RefusesWrongInput) {
-  const auto expect_refusal = [](const std::vector<std::string>& arguments, const std::string& text) {
-    const Answer answer = Bench(false).cuboct(arguments);
-    EXPECT_EQ(answer.code, 2);
-    EXPECT_EQ(answer.out, "");
-    EXPECT_EQ(answer.err, text);
-  };
   expect_refusal({"stability", "scenes/none.toml"}, "scenes/none.toml: cannot read this file\n");
   expect_refusal({"stability", "scenes/lj_block.toml", "--strian", "0.1"},
                  "unknown option '--strian' of 'cuboct stability'\n  hint: did you mean '--strain'?\n");
