@@ -241,7 +241,7 @@ double stable_time_step(const Rule& rule, const std::function<double(const PairL
     fastest = std::max(fastest, rate * w * w);
     if (!(w > 0) || rule.damping.coefficient == 0) continue;
     const double root = largest_frequency(DampingAsLaw(rule), rule.mass, of, tolerance);
-    damped = std::max(damped, root * root);
+    damped = std::max(damped, rate * root * root);
   }
   if (!(fastest > 0)) return 0;
   const double w2 = fastest + kp;

@@ -507,6 +507,13 @@ TEST_F(SceneTest, DampingLowersTheLimit) {
   EXPECT_NEAR(radius(damped.dt_limit), 1, 1e-6);
   EXPECT_GT(radius(1.01 * damped.dt_limit), 1.001);
   EXPECT_LT(radius(0.99 * damped.dt_limit), 0.999);
+  // A strength scales stiffness and damping alike.
+  const Scene strong = read(with("1 MN/m", "4 MN/m") + fmt::format("[damping]\ncoefficient = \"{} kg/s\"\n",
+                                                                   4 * damped.rule.damping.coefficient));
+  const Scene scaled =
+      read(kBase + fmt::format("[damping]\ncoefficient = \"{} kg/s\"\n", damped.rule.damping.coefficient) +
+           "[[material]]\nname = \"strong\"\nstrength = 4\n");
+  EXPECT_NEAR(scaled.dt_limit, strong.dt_limit, 1e-9 * strong.dt_limit);
 }
 
 TEST_F(SceneTest, ListedParticles) {
