@@ -3,12 +3,14 @@
 
     check.py STUDIES CUBOCT small NAME   the small version of a study ends well, with tables and pictures
     check.py STUDIES CUBOCT red NAME     the same with a defect ends with a figure that is off
+    check.py STUDIES CUBOCT page         the study of docs/user/material-studies.md runs as it stands there
     check.py STUDIES CUBOCT parts        cases are run once, again when they change, and go on when they were cut"""
 import contextlib
 import importlib
 import io
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -140,6 +142,18 @@ def parts():
         assert process.returncode == 130 and "goes on with what is left" in errors, (process.returncode, errors)
         assert (case("cut") / "checkpoint").exists(), list(case("cut").iterdir())
         assert whole(6000, "cut") == whole(6000, "once")
+
+
+def page():
+    text = (STUDIES.parent / "docs/user/material-studies.md").read_text()
+    program = re.search(r"```python\n(.*?)```", text, re.S)[1]
+    with tempfile.TemporaryDirectory() as work:
+        file = pathlib.Path(work) / "cube.py"
+        file.write_text(program)
+        done = subprocess.run([sys.executable, file, "--cuboct", CUBOCT, "--out", work], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": f"{STUDIES}:{os.environ['PYTHONPATH']}"})
+        assert done.returncode == 0, done.stderr
+        stress = [float(line.split()[-1]) for line in done.stdout.splitlines() if line.startswith("pitch")]
+        assert len(stress) == 3 and max(stress) < 1.3 * min(stress), done.stdout
 
 
 globals()[WHAT](*sys.argv[4:])
