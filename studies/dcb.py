@@ -91,6 +91,7 @@ def pitch_of(planes):
 def beam(strong, scale, planes, opened, steps, notch=NOTCH):
     """Opened to `opened` mm of half the distance of the pins. `planes` of each arm."""
     pitch = pitch_of(planes)
+    cells = int(END / (2 * pitch))
     stiffness = scale * pitch * 1e-3
     bonds = [{"between": pair, "strength": 1.0} for pair in (["A", "B"], ["U", "B"], ["U0", "B"], ["W", "A"], ["W0", "A"])]
     bonds.append({"between": ["U", "W"], "law": interface(stiffness, pitch)[0]})
@@ -101,11 +102,11 @@ def beam(strong, scale, planes, opened, steps, notch=NOTCH):
         "title": "Double cantilever beam",
         "density": "1.6 g/cm^3",
         "packing": {"pitch": f"{pitch!r} mm", "axes": [[1, 1, 0], [-1, 1, 0]], "offset": f"[0, 0, {pitch / np.sqrt(8)!r}] mm"},
-        "box": {"periodic": "y", "cells": [int(END / (2 * pitch)), 3, planes], "origin": f"[0, 0, {-planes * pitch / np.sqrt(2)!r}] mm"},
+        "box": {"periodic": "y", "cells": [cells, 3, planes], "origin": f"[0, 0, {-planes * pitch / np.sqrt(2)!r}] mm"},
         "law": law(stiffness),
         "material": materials(strong, planes, pitch, notch),
         "bond": bonds,
-        "constraint": [pin("upper", 1), pin("lower", -1), {"name": "end", "kind": "held", "axes": "x", "region": {"shape": "box", "min": f"[{END - 2 * pitch!r}, -100, -100] mm", "max": "[1000, 100, 100] mm"}}],
+        "constraint": [pin("upper", 1), pin("lower", -1), {"name": "end", "kind": "held", "axes": "x", "region": {"shape": "box", "min": f"[{2 * (cells - 1) * pitch!r}, -100, -100] mm", "max": "[1000, 100, 100] mm"}}],
         "probe": [{"name": "load", "kind": "force", "region": end(1), "axis": "z"}, {"name": "pin", "kind": "displacement", "region": end(1), "axis": "z"}],
         "run": {"duration": f"{opened * 1e-3 / 0.1!r} s", "dt_safety": 0.5, "static": {"load_steps": steps, "tolerance": 1e-3, "evaluations": 10000000}, "frame_every": 1},
     }  # fmt: skip
