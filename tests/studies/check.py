@@ -46,6 +46,19 @@ def pitch(module):
     module.TAIL += 3.0
 
 
+def branching(module):
+    module.GC *= 0.5  # of the load, not of the law
+    law = module.law
+
+    def tough(pitch):
+        module.GC *= 2
+        found = law(pitch)
+        module.GC /= 2
+        return found
+
+    module.law = tough
+
+
 def dcb(module):
     module.GIC *= 1.5
 
