@@ -38,7 +38,7 @@ def law(pitch):
     h = float(np.sqrt(GC * SCALE**2 * THICK / (1.7 * k)))
     s = np.concatenate([np.linspace(0.1, 1, 10), np.linspace(1.1, 2.3, 13)])
     force = np.where(s <= 1, -h * (s - s**3 / 3), -h / 3 * (1 + np.cos(np.pi * (s - 1) / 1.3)))
-    r = np.concatenate([[0.6, 0.8, 1 - h, 1 - h / 2, 1], 1 + h * s, [1.2, 1.4]])
+    r = np.concatenate([[0.59, 0.8, 1 - h, 1 - h / 2, 1], 1 + h * s, [1.2, 1.4]])
     f = np.concatenate([[0.4, 0.2, h, h / 2, 0], force, [0, 0]])
     text = lambda values, unit: "[" + ", ".join(f"{v:.12g}" for v in values) + "] " + unit
     return {"kind": "spline", "core": f"{0.6 * pitch!r} m", "r": text(r * pitch, "m"), "force": text(f * k * pitch, "N")}, h, k
@@ -50,7 +50,7 @@ def plate(pitch_mm, rows, share, cut, time=30.0):
     depth, reach = HIGH / 2, 2 * pitch_mm
     box = lambda x0, y0, x1, y1, z=1.0: {"shape": "box", "min": f"[{x0!r}, {y0!r}, {-z!r}] mm", "max": f"[{x1!r}, {y1!r}, {z!r}] mm"}
     travel = strain_for(share) * (depth - EDGE)  # mm, of each grip
-    speed = travel / 10.0  # mm/us: there in 10 us
+    speed, steps = travel / 10.0, int(np.ceil(travel / (0.15 * pitch_mm)))  # mm/us: there in 10 us
     grip = lambda name, s: {"name": name, "kind": "moved", "axes": "y", "region": name, "velocity": f"[0, {0.0 if cut else s * speed * 1e3!r}, 0] m/s"}
     strong = {"kind": "elastic", "stiffness": f"{k!r} N/m"}  # the same stiffness without an end: nothing breaks before the cut
     bonds = [{"between": ["edge", "edge"], "law": strong}, {"between": ["above", "below"], "contact": True}] if cut else []
@@ -69,7 +69,7 @@ def plate(pitch_mm, rows, share, cut, time=30.0):
         ],
         **({"bond": bonds} if bonds else {}),
         "constraint": [grip("top", 1), grip("bottom", -1)],
-        "run": {"duration": f"{time!r} us", "dt_safety": 0.5, "frame_every": 0} if cut else {"duration": "10 us", "static": {"load_steps": 1, "tolerance": 1e-3, "evaluations": 1000000}},
+        "run": {"duration": f"{time!r} us", "dt_safety": 0.5, "frame_every": 0} if cut else {"duration": "10 us", "static": {"load_steps": steps, "tolerance": 1e-3, "evaluations": 1000000}},
         "reach": {"margin": "2 mm"},
     }  # fmt: skip
 
