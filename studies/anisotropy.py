@@ -8,7 +8,7 @@ import itertools
 
 import numpy as np
 
-from study import Study, check, main, slope
+from study import Study, check, main
 
 # Periods of the fibres in pitches: four cells of the crystal along x, [001], three along z, [-110] (and as many along y for those along x).
 CELL = {"x": np.sqrt(2), "y": 2.0, "z": 2.0}
@@ -77,7 +77,7 @@ def pulled(case, axis, periods, dynamic=False):
     lower = {a: -0.5 * CELL[a] / PLANES[a] * pitch for a in "xyz"}
     text = lambda ends: "[" + ", ".join(f"{ends[a]!r}" for a in "xyz") + "] m"
     upper = {a: lower[a] + length[a] for a in "xyz"}
-    grip = 0.1 * length[axis]
+    grip = CELL[axis] / PLANES[axis] * pitch  # a plane alone, free to draw in: the strain is that of the whole length
     sign = {"+": f"{axis}", "-": f"-{axis}"}
     at = lambda value: "[" + ", ".join(f"{value!r}" if a == axis else "0" for a in "xyz") + "] m"
     half = lambda value, side: {"shape": "half_space", "point": at(value), "normal": sign[side]}
@@ -118,7 +118,8 @@ def pulled(case, axis, periods, dynamic=False):
 
 def modulus(case):
     (_, strain), (_, stress) = case.curve("pull.strain"), case.curve("pull.stress")
-    return slope(strain, stress, 0.0, 0.004)
+    window = strain <= 0.01
+    return float(np.polyfit(strain[window], stress[window], 2)[1])  # where the curve begins
 
 
 def layouts(count):

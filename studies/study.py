@@ -199,12 +199,6 @@ def check(name: str, value: float, reference: float, tolerance: float) -> None:
         raise SystemExit(f"{name}: {value:.6g} differs from {reference:.6g} by {100 * error:+.2f} %, more than {100 * tolerance:.3g} %")
 
 
-def slope(x: np.ndarray, y: np.ndarray, lower: float, upper: float) -> float:
-    """Of y over x by least squares, for x in [lower, upper]."""
-    window = (x >= lower) & (x <= upper)
-    return float(np.polyfit(x[window], y[window], 1)[0])
-
-
 def main(study: Any) -> None:
     """Runs the study's function; Ctrl-C ends it with exit code 130, what is finished stays."""
     try:
