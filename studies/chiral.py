@@ -113,7 +113,7 @@ def run():
     if not (abs(hand) > 0.2 and abs(hand + mirror) < 0.02 * abs(hand) and abs(straight) < 0.02 * abs(hand)):
         raise SystemExit(f"twists {hand:+.4f}, mirrored {mirror:+.4f}, straight {straight:+.4f}: no chiral cell")
     if not study.small:
-        laws = study.run({law: cell(0.4, 1, law, 0.04, motion=True) for law in ("elastic", "brittle", "viscous")})
+        laws = study.run({law: cell(0.4, 1, law, 0.01, motion=True) for law in ("elastic", "brittle", "viscous")})
         draw(study, laws)
     study.end()
 
