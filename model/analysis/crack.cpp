@@ -2,17 +2,15 @@
 #include "model/analysis/crack.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "model/analysis/strain.h"
-#include "model/base/parallel.h"
 #include "model/contract/neighbours.h"
 
 namespace cuboct {
 namespace {
-
-constexpr size_t kBondsPerPart = 50'000;
 
 // Disjoint sets of particles, each named by its least member.
 class Clusters {
@@ -29,6 +27,20 @@ class Clusters {
 
  private:
   std::vector<uint32_t> parent_;
+};
+
+// Of all pairs of types, squared, m^2.
+class Reach {
+ public:
+  explicit Reach(const Rule& rule) : types_(static_cast<int>(rule.types.size())) {
+    for (int i = 0; i < types_; ++i)
+      for (int j = 0; j < types_; ++j) squared_.push_back(std::pow(bond_reach(rule, i, j), 2));
+  }
+  double squared(int i, int j) const { return squared_[static_cast<size_t>(i * types_ + j)]; }
+
+ private:
+  int types_;
+  std::vector<double> squared_;
 };
 
 }  // namespace
@@ -48,24 +60,23 @@ CrackMeter::CrackMeter(const Probe& probe, const Periodic& periodic, const std::
   });
 }
 
-Vec3 CrackMeter::initial(const Bond& bond) const { return nearest_image(x_[bond.j] - x_[bond.i], periodic_); }
+Vec3 CrackMeter::initial(const Bond& bond) const {
+  const Vec3 d = x_[bond.j] - x_[bond.i];
+  return d.squaredNorm() < probe_.bond_length * probe_.bond_length ? d : nearest_image(d, periodic_);
+}
 
 // Ascending, so that no sum depends on how cells cut the space.
 std::vector<CrackMeter::Bond> CrackMeter::broken(const std::vector<Vec3>& moved) const {
-  const size_t parts = bonds_.size() / kBondsPerPart + 1;
-  std::vector<std::vector<Bond>> found(parts);
-  for_each_part(parts, usable_cores(), [&](size_t part, int) {
-    for (size_t k = bonds_.size() * part / parts; k < bonds_.size() * (part + 1) / parts; ++k) {
-      const Bond& bond = bonds_[k];
-      const Vec3 d = initial(bond) + moved[probe_.set.ids[bond.j]] - moved[probe_.set.ids[bond.i]];
-      const double reach = bond_reach(*probe_.rule, type(bond.i), type(bond.j));
-      if (d.squaredNorm() > reach * reach) found[part].push_back(bond);
-    }
-  });
-  std::vector<Bond> all;
-  for (const std::vector<Bond>& part : found) all.insert(all.end(), part.begin(), part.end());
-  std::sort(all.begin(), all.end());
-  return all;
+  std::vector<Vec3> u;
+  u.reserve(x_.size());
+  for (const uint32_t id : probe_.set.ids) u.push_back(moved[id]);
+  const Reach reach(*probe_.rule);
+  std::vector<Bond> gone;
+  for (const Bond& bond : bonds_)
+    if ((initial(bond) + u[bond.j] - u[bond.i]).squaredNorm() > reach.squared(type(bond.i), type(bond.j)))
+      gone.push_back(bond);
+  std::sort(gone.begin(), gone.end());
+  return gone;
 }
 
 // Broken bonds belong to one cluster where they share a particle, or where a bond, broken or not, joins their
