@@ -14,6 +14,7 @@
 #include "model/analysis/strained_cell.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
+#include "model/solid/cleavage.h"
 #include "model/trace/plot.h"
 
 namespace cuboct {
@@ -68,6 +69,17 @@ void check(const Options& options) {
   }
 }
 
+std::vector<Cleavage> cleavage_of(const Rule& rule, const CrystalCell& cell, const Mat3& crystal) {
+  const CleavagePlanes planes = cleavage_planes(rule, cell);
+  std::vector<Cleavage> out{{"{100}", crystal * Vec3(1, 0, 0)},
+                            {"{110}", crystal * Vec3(1, 1, 0).normalized()},
+                            {"{111}", crystal * Vec3(1, 1, 1).normalized()},
+                            {"weakest", planes.weakest},
+                            {"strongest", planes.strongest}};
+  for (Cleavage& one : out) one.energy = cleavage_energy(rule, cell, one.normal);
+  return out;
+}
+
 ElasticFindings findings_of(const Options& options, const Scene& scene) {
   ElasticFindings out;
   SceneCell start = cell_of(scene, options.material);
@@ -87,6 +99,7 @@ ElasticFindings findings_of(const Options& options, const Scene& scene) {
   out.strained =
       constants_by_strain(scene.rule, rest.cell(), options.strain, options.threads, out.evaluations);
   if (scene.pitch > 0) out.crystal = scene.orientation;
+  if (out.crystal && out.particles == 1) out.cleavage = cleavage_of(scene.rule, rest.cell(), *out.crystal);
   for (int n = 2; n <= options.layers; ++n) {
     const CrystalCell slab = without_stress(scene.rule, slab_of(scene, options.material, n), options.threads);
     out.slabs.push_back({n, slab.vectors(2, 2), plane_modulus(elastic_tensor(scene.rule, slab).c),

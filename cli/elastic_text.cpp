@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/quantity_text.h"
@@ -53,6 +54,10 @@ std::string matrix_text(const Matrix6& c, const std::string& title) {
   return out + "\n";
 }
 
+std::string vector_text(const Vec3& n) {
+  return fmt::format("({:.4f}, {:.4f}, {:.4f})", n.x() + 0.0, n.y() + 0.0, n.z() + 0.0);
+}
+
 std::string direction_table(const ElasticFindings& found) {
   std::string out =
       fmt::format("\n{:<10} {:<26} {:>11} {:>9} {:>9} {:>12} {:>12} {:>12}\n", "pull along", "direction", "E",
@@ -60,8 +65,7 @@ std::string direction_table(const ElasticFindings& found) {
   for (const auto& [name, n] : directions_of(found)) {
     const auto [low, high] = poissons_ratio(found.sums.c, n);
     const Vec3 speed = wave_speeds(found.sums.c, found.density, n);
-    out += fmt::format("{:<10} {:<26} {:>11} {:>9.4f} {:>9.4f} {:>12} {:>12} {:>12}\n", name,
-                       fmt::format("({:.4f}, {:.4f}, {:.4f})", n.x() + 0.0, n.y() + 0.0, n.z() + 0.0),
+    out += fmt::format("{:<10} {:<26} {:>11} {:>9.4f} {:>9.4f} {:>12} {:>12} {:>12}\n", name, vector_text(n),
                        quantity_text(youngs_modulus(found.sums.c, n), "Pa"), shown(low), shown(high),
                        quantity_text(speed[0], "m/s"), quantity_text(speed[1], "m/s"),
                        quantity_text(speed[2], "m/s"));
@@ -78,6 +82,18 @@ std::string slab_table(const ElasticFindings& found) {
     out += fmt::format("{:>6} {:>12} {:>12} {:>12} {:>10.4f}\n", slab.layers,
                        quantity_text(slab.thickness, "m"), quantity_text(slab.by_sums, "Pa"),
                        quantity_text(slab.by_strain, "Pa"), slab.by_sums / bulk);
+  return out;
+}
+
+std::string cleavage_table(const ElasticFindings& found) {
+  if (found.cleavage.empty()) return "";
+  double least = found.cleavage[0].energy;
+  for (const Cleavage& one : found.cleavage) least = std::min(least, one.energy);
+  std::string out =
+      fmt::format("\n{:<10} {:<26} {:>16} {:>10}\n", "cleavage", "normal", "energy, 2 gamma", "over least");
+  for (const Cleavage& one : found.cleavage)
+    out += fmt::format("{:<10} {:<26} {:>16} {:>10.4f}\n", one.plane, vector_text(one.normal),
+                       quantity_text(one.energy, "J/m^2"), one.energy / least);
   return out;
 }
 
@@ -137,7 +153,7 @@ std::string text_of(const ElasticFindings& found) {
   out += line("of many grains (Hill)",
               fmt::format("E {}, shear {}, Poisson's ratio {:.4f}", quantity_text(mean.youngs(), "Pa"),
                           quantity_text(mean.shear, "Pa"), mean.poisson()));
-  return out + direction_table(found) + slab_table(found);
+  return out + direction_table(found) + slab_table(found) + cleavage_table(found);
 }
 
 std::string json_of(const ElasticFindings& found) {
@@ -171,6 +187,13 @@ std::string json_of(const ElasticFindings& found) {
     out +=
         fmt::format("{}\n  {{\"layers\": {}, \"thickness\": {}, \"youngs\": {}, \"strained\": {}}}",
                     separator, slab.layers, json(slab.thickness), json(slab.by_sums), json(slab.by_strain));
+    separator = ",";
+  }
+  out += "],\n \"cleavage\": [";
+  separator = "";
+  for (const Cleavage& one : found.cleavage) {
+    out += fmt::format("{}\n  {{\"plane\": {}, \"normal\": {}, \"energy\": {}}}", separator, json(one.plane),
+                       json_vector(one.normal), json(one.energy));
     separator = ",";
   }
   return out + "]}\n";

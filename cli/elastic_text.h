@@ -17,6 +17,12 @@ struct SlabModulus {
   double by_sums = 0, by_strain = 0;  // Pa
 };
 
+struct Cleavage {
+  std::string plane;
+  Vec3 normal;        // in the scene's axes
+  double energy = 0;  // J/m^2
+};
+
 struct ElasticFindings {
   std::string scene, cell;
   size_t particles = 0;
@@ -27,6 +33,7 @@ struct ElasticFindings {
   Matrix6 strained = Matrix6::Zero();  // Pa
   std::optional<Mat3> crystal;         // of a packing: its cubic axes
   std::vector<SlabModulus> slabs;
+  std::vector<Cleavage> cleavage;  // of a packing of one material
 
   bool stable() const { return softest_strain(sums.c) > 0; }
   // The largest difference of the two over the largest constant.

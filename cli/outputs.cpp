@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "hw/engine_kind.h"
+#include "model/analysis/crack.h"
 #include "model/analysis/measure.h"
 #include "model/base/error.h"
 #include "model/base/excerpt.h"
@@ -38,8 +39,7 @@ int strain_axis(const Scene& scene) {
 }
 
 StrainMeter strain_meter(const Scene& scene, const std::vector<Vec3>& initial) {
-  // Between the first and second shell of the packing: pitch (1 + sqrt 2)/2.
-  return {initial, scene.periodic, scene.pitch > 0 ? 1.207 * scene.pitch : scene.rule.cutoff()};
+  return {initial, scene.periodic, first_shell(scene)};
 }
 
 FrameMaker::FrameMaker(const Loaded& loaded, bool whole)
@@ -58,11 +58,15 @@ const StrainMeter& FrameMaker::meter(bool fixed) const {
 }
 
 void FrameMaker::measure(Frame& frame, bool fixed) const {
+  const auto reach = [&](uint32_t i, uint32_t j) {
+    return bond_reach(loaded_.scene.rule, frame.type[i], frame.type[j]);
+  };
   if (!whole_) {
     frame.strain = meter(fixed).axial(frame.x, axis_);
+    frame.broken = meter(fixed).broken(frame.x, reach);
     return;
   }
-  for (const Deformation& one : meter(fixed).deformations(frame.x, axis_, loaded_.scene.rule.cutoff())) {
+  for (const Deformation& one : meter(fixed).deformations(frame.x, axis_, reach)) {
     frame.strain.push_back(one.axial);
     frame.tensor.push_back(one.strain);
     frame.broken.push_back(one.broken);

@@ -86,7 +86,8 @@ void add_picture(CLI::App& app, int&) {
       ->required()
       ->type_name("DIR");
   command->add_option("--out", options->out, "the PNG file; default: DIR/picture.png")->type_name("FILE");
-  command->add_option("--field", options->field, "strain, speed or thickness")->capture_default_str();
+  command->add_option("--field", options->field, "strain, speed, thickness or broken (bonds)")
+      ->capture_default_str();
   command
       ->add_option("--steps", options->steps,
                    "frames to draw, by their steps; default: first, last and two between")
@@ -94,9 +95,9 @@ void add_picture(CLI::App& app, int&) {
       ->check(whole_number())
       ->type_name("N,...");
   command
-      ->add_option(
-          "--limit", options->limit,
-          "where the colours end: strain (0.01 is 1 %), m/s or m; default: the 90th percentile of all frames")
+      ->add_option("--limit", options->limit,
+                   "where the colours end: strain (0.01 is 1 %), m/s, m or bonds; default: the 90th "
+                   "percentile of all frames")
       ->check(above_zero())
       ->type_name("V");
   command->add_option("--width", options->width, "pixels of the picture")

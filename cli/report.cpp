@@ -181,6 +181,11 @@ constexpr Probed kProbed[] = {
     {Probe::Kind::kinetic_energy, "Kinetic energy", "kinetic energy", "kinetic_energy", nullptr},
     {Probe::Kind::temperature, "Temperature", "temperature", "temperature", nullptr}};
 
+constexpr std::pair<const char*, const char*> kCrack[] = {{"length", "length"},
+                                                          {"speed", "speed over some readings"},
+                                                          {"energy", "energy of the broken bonds"},
+                                                          {"broken", "broken bonds"}};
+
 // Every curve that has more than one sample.
 std::string curve_section(const Loaded& loaded, const Trace& trace, const std::vector<uint64_t>& marks) {
   const double dt = loaded.scene.rule.dt;
@@ -194,6 +199,13 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
       if (const auto tension = tension_of(trace.curves, probe.name))
         section("Stress and strain: " + probe.name,
                 stress_strain(*tension, probe, &probe == first ? marks : std::vector<uint64_t>()));
+      continue;
+    }
+    if (probe.kind == Probe::Kind::crack) {
+      std::string figures;
+      for (const auto& [quantity, label] : kCrack)
+        figures += over_time(trace, dt, {{probe.name + "." + quantity, ""}}, label);
+      section("Crack: " + probe.name, figures);
       continue;
     }
     const auto& [kind, title, label, whole, part] = *std::ranges::find(kProbed, probe.kind, &Probed::kind);

@@ -10,6 +10,7 @@
 #include "cli/outputs.h"
 #include "hw/engine_kind.h"
 #include "hw/engines.h"
+#include "model/analysis/crack.h"
 #include "model/base/interrupt.h"
 #include "model/base/spelling.h"
 #include "model/run/golden_engine.h"
@@ -258,8 +259,10 @@ std::string Simulation::picture(const std::string& field, double limit, int widt
   const std::lock_guard lock(mutex_);
   const int axis = strain_axis(scene_);
   const Body& body = present();
-  const Frame frame{now(),     static_cast<double>(now()) * dt(), body.x, body.v,
-                    body.type, strain().axial(body.x, axis)};
+  Frame frame{now(),     static_cast<double>(now()) * dt(), body.x, body.v,
+              body.type, strain().axial(body.x, axis)};
+  frame.broken = strain().broken(
+      body.x, [&](uint32_t i, uint32_t j) { return bond_reach(scene_.rule, body.type[i], body.type[j]); });
   const double radius = frame_style(scene_).radius;
   const RasterGrid whole = raster_grid(frame, radius, static_cast<uint32_t>(width));
   const RasterGrid grid = part_of(whole, window_of(frame, whole, radius));

@@ -278,6 +278,10 @@ ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodi
       case Probe::Kind::stress_strain:
         curve("strain", "1"), curve("stress", "Pa");
         break;
+      case Probe::Kind::crack:
+        curve("broken", "1"), curve("length", "m"), curve("speed", "m/s"), curve("energy", "J");
+        cracks_.emplace_back(probe, periodic, initial);
+        break;
       case Probe::Kind::velocity:
         curves("velocity", "velocity_", "m/s");
         break;
@@ -319,6 +323,14 @@ Vec3 flow_of(const std::vector<Vec3>& v, const Probe& probe) {
   return sum / std::accumulate(probe.relative.begin(), probe.relative.end(), 0.0);
 }
 
+// m/s, from the reading `window` readings ago, or the first one, to the last.
+double speed_of(const Curve& length, const Probe& probe) {
+  const size_t last = length.value.size() - 1, from = last - std::min(last, probe.window);
+  if (last == from) return 0;
+  const double time = static_cast<double>(length.step[last] - length.step[from]) * probe.rule->dt;
+  return (length.value[last] - length.value[from]) / time;
+}
+
 }  // namespace
 
 void ProbeMeter::add(const Sample& sample) {
@@ -326,7 +338,7 @@ void ProbeMeter::add(const Sample& sample) {
     moved_[i] += nearest_image(sample.x[i] - latest_[i], periodic_);
     latest_[i] = sample.x[i];
   }
-  size_t next = 0;
+  size_t next = 0, crack = 0;
   const auto point = [&](double value) {
     curves_[next].step.push_back(sample.step);
     curves_[next++].value.push_back(value);
@@ -350,6 +362,12 @@ void ProbeMeter::add(const Sample& sample) {
         };
         point(growth(moved_) / growth(initial_));
         point(-sum_of(sample.force, probe.grip.ids).dot(probe.axis) / probe.area);
+        break;
+      }
+      case Probe::Kind::crack: {
+        const CrackMeter::Found found = cracks_[crack++].look(moved_);
+        point(static_cast<double>(found.broken)), point(found.length);
+        point(speed_of(curves_[next - 1], probe)), point(found.energy);
         break;
       }
       case Probe::Kind::velocity:

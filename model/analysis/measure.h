@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "model/analysis/crack.h"
 #include "model/contract/fixed_rule.h"
 #include "model/contract/lattice.h"
 #include "model/contract/state.h"
@@ -98,6 +99,10 @@ std::vector<Probe> placed(std::vector<Probe> probes, const std::vector<uint32_t>
 //   displacement   <name>.x, .y, .z                     m; with an axis <name>.along
 //   stress_strain  <name>.strain                        1
 //                  <name>.stress                        Pa, positive where the body pulls at the grip
+//   crack          <name>.broken                        1, bonds
+//                  <name>.length                        m, of the largest cluster of broken bonds
+//                  <name>.speed                         m/s, growth of the length over the last readings
+//                  <name>.energy                        J, what held the broken bonds at step 0
 //   velocity       <name>.velocity_x, _y, _z            m/s; with an axis <name>.velocity
 //   kinetic_energy <name>.kinetic_energy                J
 //   temperature    <name>.temperature                   K, in reduced units J
@@ -122,6 +127,7 @@ class ProbeMeter {
 
  private:
   std::vector<Probe> probes_;
+  std::vector<CrackMeter> cracks_;  // of the probes of that kind, in their order
   Periodic periodic_;
   std::vector<Vec3> initial_, latest_, moved_;
   std::vector<Curve> curves_;

@@ -79,18 +79,29 @@ std::vector<double> StrainMeter::axial(const std::vector<Vec3>& present, int axi
   return strains;
 }
 
-uint32_t StrainMeter::broken(size_t i, const std::vector<Vec3>& present, double reach) const {
-  const auto beyond = [&](const std::vector<Vec3>& x, uint32_t j) {
-    return nearest_image(x[j] - x[i], periodic_).squaredNorm() > reach * reach;
-  };
+uint32_t StrainMeter::broken(size_t i, const std::vector<Vec3>& present, const Reach& reach) const {
   uint32_t count = 0;
-  for (size_t k = first_[i]; k < first_[i + 1]; ++k)
-    count += beyond(present, neighbours_[k]) && !beyond(initial_, neighbours_[k]);
+  for (size_t k = first_[i]; k < first_[i + 1]; ++k) {
+    const uint32_t j = neighbours_[k];
+    const double end = reach(static_cast<uint32_t>(i), j);
+    const auto beyond = [&](const std::vector<Vec3>& x) {
+      return nearest_image(x[j] - x[i], periodic_).squaredNorm() > end * end;
+    };
+    count += beyond(present) && !beyond(initial_);
+  }
   return count;
 }
 
+std::vector<uint32_t> StrainMeter::broken(const std::vector<Vec3>& present, const Reach& reach) const {
+  std::vector<uint32_t> counts(initial_.size());
+  for_each_range(counts.size(), 10'000, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) counts[i] = broken(i, present, reach);
+  });
+  return counts;
+}
+
 std::vector<Deformation> StrainMeter::deformations(const std::vector<Vec3>& present, int axis,
-                                                   double reach) const {
+                                                   const Reach& reach) const {
   std::vector<Deformation> all(initial_.size());
   for_each_range(all.size(), 10'000, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "model/base/vec.h"
@@ -47,12 +48,15 @@ class StrainMeter {
   std::vector<LocalStrain> measure(const std::vector<Vec3>& present) const;
   // The elongation along one axis alone, LocalStrain::axial: 8 bytes per particle instead of 96, in threads.
   std::vector<double> axial(const std::vector<Vec3>& present, int axis) const;
-  // `reach`: m, the law's cutoff; a neighbour that was beyond it from the start never counts.
-  std::vector<Deformation> deformations(const std::vector<Vec3>& present, int axis, double reach) const;
+  // m, of the bond between two particles: a neighbour that was beyond it from the start never counts.
+  using Reach = std::function<double(uint32_t i, uint32_t j)>;
+  std::vector<Deformation> deformations(const std::vector<Vec3>& present, int axis, const Reach& reach) const;
+  // Deformation::broken alone.
+  std::vector<uint32_t> broken(const std::vector<Vec3>& present, const Reach& reach) const;
 
  private:
   Mat3 gradient(size_t i, const std::vector<Vec3>& present) const;
-  uint32_t broken(size_t i, const std::vector<Vec3>& present, double reach) const;
+  uint32_t broken(size_t i, const std::vector<Vec3>& present, const Reach& reach) const;
 
   std::vector<Vec3> initial_;
   Periodic periodic_;

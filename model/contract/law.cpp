@@ -321,18 +321,21 @@ std::shared_ptr<const PairLaw> spline_law(std::vector<double> r, std::vector<dou
   return std::make_shared<HermiteLaw>("spline_law", std::move(r), std::move(f), std::move(slopes), core);
 }
 
-std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch, double stiffness) {
+std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch, double stiffness,
+                                          double range) {
   for (const Preset& preset : presets()) {
     if (name != preset.name) continue;
     require_positive("preset_law", "pitch", pitch, "m");
     require_positive("preset_law", "stiffness", stiffness, "N/m");
+    if (!(range > 0 && range <= 1))
+      throw InputError(fmt::format("preset_law: the range {:g} is not in (0, 1]", range));
     std::vector<double> r{0.5 * pitch, pitch}, f{stiffness * pitch / 3, 0}, m{0, -stiffness};
     for (const Preset::Point& point : preset.points) {
-      r.push_back(point.r * pitch);
-      f.push_back(point.f * stiffness * pitch);
+      r.push_back(range == 1 ? point.r * pitch : pitch * (1 + range * (point.r - 1)));
+      f.push_back(point.f * stiffness * pitch * range);
       m.push_back(0);
     }
-    r.push_back(std::numbers::sqrt2 * pitch);
+    r.push_back(range == 1 ? std::numbers::sqrt2 * pitch : pitch * (1 + range * (std::numbers::sqrt2 - 1)));
     f.push_back(0);
     m.push_back(0);
     const double core = r.front();

@@ -58,7 +58,10 @@ std::shared_ptr<const PairLaw> spline_law(std::vector<double> r, std::vector<dou
 // second neighbours of the packing stand; all but viscous repel before they end. So the undeformed packing is
 // at rest, its linear elasticity is that of its nearest neighbours, and second neighbours resist only what
 // brings them closer ("hardness").
-std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch, double stiffness_N_per_m);
+// `range`, in (0, 1]: beyond the pitch, distances from it and forces are this much of that. The stiffness is
+// the same, the energy of the bond range^2 as much; the law ends at pitch (1 + range (sqrt(2) - 1)).
+std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch, double stiffness_N_per_m,
+                                          double range = 1);
 
 // Whether both give the same force at every distance; laws of no form are the same only if they are one
 // object.

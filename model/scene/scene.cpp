@@ -279,11 +279,15 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   scene.meshes = regions.mesh_facts();
   read_time(root, stage, scene);
   read_reach(root, scene);
+  for (Probe& probe : scene.probes)
+    if (probe.kind == Probe::Kind::crack) probe.rule = std::make_shared<const Rule>(scene.rule);
   root.done();
   return scene;
 }
 
 }  // namespace
+
+double first_shell(const Scene& scene) { return scene.pitch > 0 ? 1.207 * scene.pitch : scene.rule.cutoff(); }
 
 std::array<bool, 3> live_axes(const Scene& scene) {
   const Body& body = scene.body;

@@ -44,6 +44,7 @@ struct Probe {
     displacement,    // mean displacement of a set from its initial mean position, m: x, y, z; or along
     stress_strain,   // two sets and an axis: strain = change of the distance between their means along it
                      // over its initial value; stress = pull on `grip` along the axis over `area`, Pa
+    crack,           // broken bonds of a set: broken, length (m), speed (m/s), energy (J)
     velocity,        // mean of a set, m/s: velocity_x, velocity_y, velocity_z; or velocity, along an axis
     kinetic_energy,  // of a set, J
     temperature,     // of the motion of a set about its mean velocity
@@ -62,6 +63,12 @@ struct Probe {
   std::vector<double> relative;
   std::string unit;                    // of temperature: K, in reduced units J
   std::optional<Datasheet> datasheet;  // stress_strain: what the material is said to show
+  // crack:
+  double bond_length = 0;            // m, particles that begin nearer to each other have a bond
+  std::optional<double> start;       // m along the axis, from where the length counts; none: the crack's end
+  size_t window = 0;                 // readings over which the speed is taken
+  std::vector<uint8_t> types;        // of the set's particles
+  std::shared_ptr<const Rule> rule;  // of the scene
 };
 
 // Where a run ends before its last step: at the first reading of a probe that is beyond a limit.
@@ -138,6 +145,10 @@ struct Scene {
   // What regions, displacements and strains count from.
   const Body& packing() const { return packed ? *packed : body; }
 };
+
+// m: particles of the packing that begin nearer than this to each other are nearest neighbours, (1 + sqrt
+// 2)/2 pitches lies between the first and the second shell. Without a packing the cutoff.
+double first_shell(const Scene& scene);
 
 // Axes along which particles can come to differ in their motion. Of a flat sheet and of a straight chain none
 // can along some: pairs then have no force along it.

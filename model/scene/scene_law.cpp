@@ -94,6 +94,16 @@ std::shared_ptr<const PairLaw> read_spline(const ConfigTable& law, const Packing
   return placed(law, [&] { return spline_law(std::move(r), std::move(f), kind, core); });
 }
 
+// {111} planes, the weakest, are cut at 2 sqrt(3)/pitch^2 bonds per area (model/solid/cleavage.h).
+double range_for(const ConfigValue& energy, const PairLaw& whole, double pitch) {
+  const double asked = energy.number(quantity::surface_energy, Range::positive());
+  const double most = -2 * std::numbers::sqrt3 * whole.energy(pitch) / (pitch * pitch);
+  if (asked > most)
+    energy.fail(fmt::format("at this pitch and stiffness the law holds no more than {:.6g} J/m^2", most),
+                "the energy grows with pitch times stiffness");
+  return std::sqrt(asked / most);
+}
+
 std::shared_ptr<const PairLaw> read_preset(const ConfigTable& law, const std::string& name,
                                            const PackingChoice* packing) {
   const double pitch = pitch_for(law, fmt::format("the law '{}'", name), packing);
@@ -107,7 +117,10 @@ std::shared_ptr<const PairLaw> read_preset(const ConfigTable& law, const std::st
   } else {
     stiffness = positive(law, "stiffness", quantity::stiffness);
   }
-  return placed(law, [&] { return preset_law(name, pitch, stiffness); });
+  const auto whole = placed(law, [&] { return preset_law(name, pitch, stiffness); });
+  const auto energy = law.find("fracture_energy");
+  if (!energy) return whole;
+  return preset_law(name, pitch, stiffness, range_for(*energy, *whole, pitch));
 }
 
 void check_at_pitch(const ConfigTable& table, const PairLaw& law, double pitch, bool must_vanish) {

@@ -52,13 +52,22 @@ Datasheet read_datasheet(const ConfigTable& table) {
   return sheet;
 }
 
+// The region is read.
+void read_crack(const ConfigTable& table, const Scene& scene, Probe& probe) {
+  if (probe.set.ids.size() < 2) table.at("region").fail("a crack needs bonds: two particles or more");
+  probe.bond_length = table.number_or("bond_length", quantity::length, first_shell(scene), Range::positive());
+  if (const auto start = table.find("start")) probe.start = start->number(quantity::length);
+  probe.window = static_cast<size_t>(table.integer_or("window", 1, 1'000'000, 10));
+  for (const uint32_t id : probe.set.ids) probe.types.push_back(scene.body.type[id]);
+}
+
 }  // namespace
 
 void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) {
   const double tolerance = 1e-6 * (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff());
   for (const ConfigTable& table : root.tables("probe")) {
     Probe probe;
-    const std::vector<std::string> kinds = {"force",    "displacement",   "stress_strain",
+    const std::vector<std::string> kinds = {"force",    "displacement",   "stress_strain", "crack",
                                             "velocity", "kinetic_energy", "temperature"};
     probe.kind = static_cast<Probe::Kind>(table.at("kind").choice("probe", kinds));
     probe.name = read_name(table.at("name"));
@@ -69,8 +78,10 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
       return ParticleSet{name, regions.select(table.at(key), scene.body.x, tolerance)};
     };
     const bool tension = probe.kind == Probe::Kind::stress_strain;
+    const bool crack = probe.kind == Probe::Kind::crack;
     const bool scalar = probe.kind >= Probe::Kind::kinetic_energy;
-    if (tension || (!scalar && table.has("axis"))) probe.axis = table.at("axis").direction().normalized();
+    if (tension || crack || (!scalar && table.has("axis")))
+      probe.axis = table.at("axis").direction().normalized();
     if (tension) {
       probe.lower = set("lower", probe.name + ".lower");
       probe.upper = set("upper", probe.name + ".upper");
@@ -84,6 +95,7 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
       probe.set = set("region", probe.name);
       probe.scale = scene.rule.mass / 2;
       if (probe.kind == Probe::Kind::temperature) read_temperature(table, scene, probe);
+      if (crack) read_crack(table, scene, probe);
       if (!scene.rule.masses.empty())
         for (const uint32_t id : probe.set.ids)
           probe.relative.push_back(scene.rule.relative_mass(scene.body.type[id]));

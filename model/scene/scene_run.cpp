@@ -37,6 +37,10 @@ std::vector<CurveOf> curves_of(const Probe& probe) {
     case Probe::Kind::stress_strain:
       add("strain", quantity::number), add("stress", quantity::pressure);
       break;
+    case Probe::Kind::crack:
+      add("broken", quantity::number), add("length", quantity::length);
+      add("speed", quantity::velocity), add("energy", quantity::energy);
+      break;
     case Probe::Kind::velocity:
       along("velocity", "velocity_", quantity::velocity);
       break;

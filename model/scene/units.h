@@ -39,6 +39,7 @@ inline constexpr Quantity force{{{1, 1, -2, 0}}, "a force", "3 N"};
 inline constexpr Quantity stiffness{{{1, 0, -2, 0}}, "a stiffness", "1 MN/m"};
 inline constexpr Quantity pressure{{{1, -1, -2, 0}}, "a pressure", "3 GPa"};
 inline constexpr Quantity energy{{{1, 2, -2, 0}}, "an energy", "1 uJ"};
+inline constexpr Quantity surface_energy{{{1, 0, -2, 0}}, "an energy per area", "20 kJ/m^2"};
 inline constexpr Quantity damping{{{1, 0, -1, 0}}, "a damping coefficient", "0.1 kg/s"};
 inline constexpr Quantity angle{{{0, 0, 0, 1}}, "an angle", "30 deg"};
 inline constexpr Quantity angular_velocity{{{0, 0, -1, 1}}, "an angular velocity", "10 rad/s"};

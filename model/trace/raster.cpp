@@ -20,7 +20,7 @@ namespace {
 constexpr char kFormat[] = "cuboct rasters";
 // Along an axis, of what is read; twice what a run writes of its longest, whose ends may fly apart.
 constexpr hsize_t kMostPixels = 1 << 16;
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 constexpr double kTouch = 1e-6;  // pixels: rounding, at the edge of a pixel
 
 struct Extent {
@@ -113,8 +113,8 @@ RasterGrid part_of(const RasterGrid& grid, const RasterWindow& window) {
 }
 
 Raster rasterise(const Frame& frame, const RasterGrid& grid, double radius) {
-  std::vector<double> thickness(grid.pixels(), 0), strain = thickness, speed = thickness;
-  Raster raster{frame.step, frame.time, {}, {}, {}, 0};
+  std::vector<double> thickness(grid.pixels(), 0), strain = thickness, speed = thickness, broken = thickness;
+  Raster raster{frame.step, frame.time, {}, {}, {}, {}, 0};
   const double side = 2 * radius / grid.pixel;  // pixels
   // Of the volume side^2 * particle_thickness, what a whole pixel holds.
   const double full = particle_thickness(2 * radius);
@@ -125,7 +125,7 @@ Raster rasterise(const Frame& frame, const RasterGrid& grid, double radius) {
       continue;
     }
     const auto [x, y] = *at;
-    const double v = frame.v[i].norm();
+    const double v = frame.v[i].norm(), bonds = frame.broken.empty() ? 0 : frame.broken[i];
     const auto first = [](double at) { return static_cast<uint32_t>(std::max(0.0, std::floor(at))); };
     const auto last = [&](double at, uint32_t count) { return std::min(count, first(at + side) + 1); };
     const auto share = [&](uint32_t pixel, double at) {
@@ -138,16 +138,19 @@ Raster rasterise(const Frame& frame, const RasterGrid& grid, double radius) {
         thickness[pixel] += part;
         strain[pixel] += part * frame.strain[i];
         speed[pixel] += part * v;
+        broken[pixel] += part * bonds;
       }
   }
   raster.thickness.reserve(grid.pixels());
   raster.strain.reserve(grid.pixels());
   raster.speed.reserve(grid.pixels());
+  raster.broken.reserve(grid.pixels());
   for (size_t at = 0; at < grid.pixels(); ++at) {
     const double over = thickness[at] > 0 ? 1 / thickness[at] : 0;
     raster.thickness.push_back(static_cast<float>(thickness[at]));
     raster.strain.push_back(static_cast<float>(strain[at] * over));
     raster.speed.push_back(static_cast<float>(speed[at] * over));
+    raster.broken.push_back(static_cast<float>(broken[at] * over));
   }
   return raster;
 }
@@ -177,6 +180,7 @@ struct RasterWriter::Impl {
     sets.push_back(field("thickness", "m"));
     sets.push_back(field("strain", "1"));
     sets.push_back(field("speed", "m/s"));
+    sets.push_back(field("broken", "bonds"));
   }
 
   void add(const Frame& frame) {
@@ -192,7 +196,7 @@ struct RasterWriter::Impl {
     tiles.rows = up(touched.row + touched.rows, grid.rows) - tiles.row;
     Raster raster = rasterise(frame, part_of(grid, tiles), head.particle / 2);
     const uint64_t pixels = raster.thickness.size();
-    out.reserve(3 * (sizeof(float) + 1) * (pixels + kTile * kTile) + kSlack);
+    out.reserve(4 * (sizeof(float) + 1) * (pixels + kTile * kTile) + kSlack);
     out.write_block<uint64_t>(sets[0], "step", {count + 1}, {count}, {1}, &raster.step);
     out.write_block<double>(sets[1], "time", {count + 1}, {count}, {1}, &raster.time);
     out.write_block<uint64_t>(sets[2], "outside", {count + 1}, {count}, {1}, &raster.outside);
@@ -208,6 +212,7 @@ struct RasterWriter::Impl {
     write(sets[3], "thickness", raster.thickness);
     write(sets[4], "strain", raster.strain);
     write(sets[5], "speed", raster.speed);
+    write(sets[6], "broken", raster.broken);
     out.flush();
     used = join(used, touched);
     ++count;
@@ -310,7 +315,7 @@ Rasters read_rasters(const std::string& path) {
     throw InputError(fmt::format("{}: there is no picture in {} frames of {} x {} pixels", path, shape[0],
                                  used.columns, used.rows));
   in.same_length(shape[0] == step.size(), "the frames");
-  for (const char* name : {"thickness", "strain", "speed"})
+  for (const char* name : {"thickness", "strain", "speed", "broken"})
     in.check_stored(in.root(), name, {shape[0], used.rows, used.columns});
   grid = part_of(grid, used);
   const auto field = [&](const char* name, std::vector<float> Raster::*values) {
@@ -321,6 +326,7 @@ Rasters read_rasters(const std::string& path) {
   field("thickness", &Raster::thickness);
   field("strain", &Raster::strain);
   field("speed", &Raster::speed);
+  field("broken", &Raster::broken);
   in.same_length(time.size() == step.size() && outside.size() == step.size(), "the frames");
   for (size_t k = 0; k < step.size(); ++k) {
     rasters.frames[k].step = step[k];

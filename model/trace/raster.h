@@ -30,6 +30,7 @@ struct Raster {
   // Means over that material; 0 where there is none.
   std::vector<float> strain;  // 1, axial elongation as in Frame
   std::vector<float> speed;   // m/s
+  std::vector<float> broken;  // broken bonds per particle, as in Frame
   uint64_t outside = 0;       // particles that the grid does not hold
 };
 

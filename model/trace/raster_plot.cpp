@@ -45,9 +45,8 @@ bool is_seen(const Rasters& rasters, const Raster& frame, size_t pixel) {
 }
 
 std::vector<float> Raster::*values_of(Field field) {
-  return field == Field::strain  ? &Raster::strain
-         : field == Field::speed ? &Raster::speed
-                                 : &Raster::thickness;
+  constexpr std::array values{&Raster::strain, &Raster::speed, &Raster::thickness, &Raster::broken};
+  return values[static_cast<size_t>(field)];
 }
 
 // kDiverging, as gnuplot wants it.
@@ -65,12 +64,12 @@ constexpr int kTitle = 44, kLabel = 26, kTics = 34, kLeft = 62, kRight = 18, kBa
 }  // namespace
 
 Field field_of(const std::string& name) {
-  static const std::vector<std::string> kNames{"strain", "speed", "thickness"};
+  static const std::vector<std::string> kNames{"strain", "speed", "thickness", "broken"};
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found != kNames.end()) return static_cast<Field>(found - kNames.begin());
   const std::string near = did_you_mean(name, kNames);
   throw InputError(fmt::format("unknown field '{}'", name),
-                   near.empty() ? "strain, speed and thickness can be drawn" : near);
+                   near.empty() ? "strain, speed, thickness and broken can be drawn" : near);
 }
 
 double usual_limit(std::vector<float> all) {
@@ -86,7 +85,8 @@ double usual_limit(const Rasters& rasters, Field field) {
   for (const Raster& frame : rasters.frames) {
     const std::vector<float>& values = frame.*values_of(field);
     for (size_t pixel = 0; pixel < rasters.grid.pixels(); ++pixel)
-      if (is_seen(rasters, frame, pixel) && std::isfinite(values[pixel]))
+      if (is_seen(rasters, frame, pixel) && std::isfinite(values[pixel]) &&
+          (field != Field::broken || values[pixel] > 0))
         all.push_back(std::abs(values[pixel]));
   }
   return usual_limit(std::move(all));
@@ -104,8 +104,9 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
   const Unit length = readable(std::max(grid.columns, grid.rows) * grid.pixel, kLengths);
   Shown shown = picture.field == Field::strain
                     ? Shown{100, fmt::format("axial strain along {}, %", "xyz"[rasters.strain_axis])}
-                : picture.field == Field::speed
-                    ? Shown{1, "speed, m/s"}
+                : picture.field == Field::speed ? Shown{1, "speed, m/s"}
+                : picture.field == Field::broken
+                    ? Shown{1, "broken bonds per particle"}
                     : Shown{length.factor, fmt::format("thickness, {}", length.name)};
   double limit = picture.limit > 0 ? picture.limit : usual_limit(rasters, picture.field);
   limit = std::max(limit * shown.factor, 1e-9);

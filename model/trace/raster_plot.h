@@ -11,14 +11,14 @@
 
 namespace cuboct {
 
-enum class Field : uint8_t { strain, speed, thickness };
+enum class Field : uint8_t { strain, speed, thickness, broken };
 // By its name; InputError with the nearest spelling.
 Field field_of(const std::string& name);
 
 struct RasterPicture {
   Field field = Field::strain;
   std::vector<size_t> frames;  // indices into Rasters::frames, in the order of drawing
-  double limit = 0;            // of the colours, 1, m/s or m; 0: usual_limit
+  double limit = 0;            // of the colours, 1, m/s, m or bonds; 0: usual_limit
   int width = 1600;            // pixels
 };
 
@@ -26,7 +26,8 @@ struct RasterPicture {
 // less than a fifth of a particle's thickness stays white.
 std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture);
 
-// The 90th percentile of a field's magnitude, over the drawn pixels of all frames: 1, m/s or m.
+// The 90th percentile of a field's magnitude, over the drawn pixels of all frames: 1, m/s or m; of broken
+// bonds over the pixels that have some.
 double usual_limit(const Rasters& rasters, Field field);
 // Of sizes, wherever they are from; 0 without any.
 double usual_limit(std::vector<float> sizes);

@@ -164,7 +164,7 @@ class Simulation:
         self._of.set_gravity(_vector(gravity, "gravity"))
 
     def picture(self, field: str = "strain", *, limit: float | None = None, width: int = 1200) -> bytes:
-        """A PNG of the present state, by gnuplot: `field` is "strain", "speed" or "thickness".
+        """A PNG of the present state, by gnuplot: `field` is "strain", "speed", "thickness" or "broken" (bonds).
 
         `limit`: where the colours end (strain: 0.01 is 1 %; m/s; m), None: at the 90th percentile. `width`: pixels, 400 to 16384.
         """

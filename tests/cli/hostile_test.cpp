@@ -126,7 +126,7 @@ TEST_F(Hostile, PictureOfATitleThatRunsCommands) {
 TEST_F(Hostile, ATitleIsNoMarkup) {
   Rasters rasters{"x", 0, 1e-3, {0, 1, 0, 0, 1e-4, 30, 20}, {}};
   Raster& frame = rasters.frames.emplace_back();
-  frame.thickness = frame.strain = frame.speed = std::vector<float>(600, 1);
+  frame.thickness = frame.strain = frame.speed = frame.broken = std::vector<float>(600, 1);
   const auto drawn = [&](const std::string& title) {
     rasters.title = title;
     return plot_rasters(rasters, {Field::speed, {0}, 0, 500});

@@ -78,7 +78,7 @@ TEST(Picture, SaysWhatItCannotDraw) {
   refused({out, "--steps", "10,15"}, "no frame of step 15\n  hint: kept are 0, 10, 20\n");
   refused({out, "--field", "sped"}, "unknown field 'sped'\n  hint: did you mean 'speed'?\n");
   refused({out, "--field", "colour"},
-          "unknown field 'colour'\n  hint: strain, speed and thickness can be drawn\n");
+          "unknown field 'colour'\n  hint: strain, speed, thickness and broken can be drawn\n");
   fs::copy_file(out + "/trace.h5", out + "/rasters.h5", fs::copy_options::overwrite_existing);
   refused({out},
           out + "/rasters.h5 holds no rasters\n  hint: 'cuboct run SCENE --out DIR' makes DIR/rasters.h5\n");

@@ -77,6 +77,7 @@ class EveryEngine : public testing::TestWithParam<Kind> {
     run_ = record(bed.scene, GetParam().make(bed, request), request);
     expect_equal(golden_, run_, tolerance());
   }
+  void go_on(const Bed& bed, uint64_t steps);
   Recorded golden_, run_;
 };
 
@@ -129,6 +130,60 @@ TEST_P(EveryEngine, ReadsEveryProbe) {
   }
 }
 
+// A bar whose halves fly apart. Their bonds are those of the packing that cross x = 0.
+const std::string kTorn = R"(units = "reduced"
+mass = 1
+packing = { pitch = 1 }
+geometry = { shape = "box", min = [-2.9, 0, 0], max = [2.9, 2.9, 2.9] }
+law = { kind = "brittle", stiffness = 1 }
+reach = { margin = 3 }
+[[velocity]]
+region = { shape = "half_space", normal = "-x" }
+uniform = [1, 0, 0]
+[[probe]]
+name = "crack"
+kind = "crack"
+region = { shape = "sphere", radius = 9 }
+axis = "y"
+[run]
+steps = 12
+probe_every = 2
+)";
+
+Bed torn() {
+  Bed bed;
+  bed.scene = parse_scene(kTorn, "torn");
+  bed.plan = plan_of(bed.scene, {});
+  bed.one_thread.engine.threads = 1;
+  bed.two_threads.engine.threads = 2;
+  return bed;
+}
+
+size_t bonds_across(const std::vector<Vec3>& x) {
+  size_t count = 0;
+  for (const Vec3& a : x)
+    for (const Vec3& b : x) count += a.x() < 0 && b.x() > -1e-9 && (a - b).norm() < 1.1;
+  return count;
+}
+
+void expect_torn(const Bed& bed, const std::vector<Curve>& curves) {
+  ASSERT_GE(curves.size(), 4u);
+  const double bonds = static_cast<double>(bonds_across(bed.scene.body.x));
+  EXPECT_GT(bonds, 30);
+  EXPECT_EQ(curves[0].name, "crack.broken");
+  EXPECT_EQ(curves[0].value.front(), 0);
+  EXPECT_EQ(curves[0].value.back(), bonds);
+  EXPECT_NEAR(curves[3].value.back(), -bonds * bed.scene.rule.law->energy(1), 1e-4 * curves[3].value.back());
+}
+
+TEST_P(EveryEngine, CountsTheSameBrokenBonds) {
+  const Bed bed = torn();
+  RunRequest request = everything(12);
+  request.probes = every_so_often(2, 12);
+  compare(bed, request);
+  expect_torn(bed, run_.trace.curves);
+}
+
 // The state before the step that cannot be done is kept, measured and looked at.
 TEST_P(EveryEngine, EndsAtAFaultWithTheStateBefore) {
   compare(bed_of("tests/board/thrown.toml"), everything(24));
@@ -158,10 +213,14 @@ TEST_P(EveryEngine, IsLookedAtWhereItAllowsAndAtItsEnd) {
   EXPECT_EQ(run.trace.curves.front().step, (std::vector<uint64_t>{0, 6, 12, 18}));
 }
 
-// Killed, as far as files can tell, between a checkpoint and the next.
 TEST_P(EveryEngine, GoesOnFromItsCheckpointOrSaysThatItLeavesNone) {
-  const Bed bed = bed_of("scenes/boards/grips.toml");
-  RunRequest request = everything(20);
+  for (const auto& [bed, steps] : {std::pair{bed_of("scenes/boards/grips.toml"), 20}, {torn(), 12}})
+    go_on(bed, static_cast<uint64_t>(steps));
+}
+
+// Killed, as far as files can tell, between a checkpoint and the next.
+void EveryEngine::go_on(const Bed& bed, uint64_t steps) {
+  RunRequest request = everything(steps);
   const std::string path = testing::TempDir() + "run_tests." + GetParam().name;
   remove_checkpoint(path);
   request.checkpoint.path = path;
@@ -211,6 +270,14 @@ TEST(RealEngines, AreRecordedAlike) {
   // Sums in another order, over 20 steps of a warm bar.
   expect_equal(reference.trace.curves, device.trace.curves, 1e-9);
   EXPECT_NEAR(reference.momentum_change, device.momentum_change, 1e-9 * reference.momentum_change);
+}
+
+TEST(RealEngines, CountTheSameBrokenBonds) {
+  const Bed bed = torn();
+  RunRequest request = everything(12);
+  request.probes = every_so_often(2, 12);
+  const Recorded run = record(bed.scene, reference_kind(bed.scene, bed.plan, {}), request);
+  expect_torn(bed, run.trace.curves);
 }
 
 // A position that stops being finite takes the state with it: the run ends with the state before.

@@ -126,6 +126,13 @@ std::set<std::string> scene_keys() {
          "constraint = [{ name = \"pulled\", velocity = \"[1, 0, 0] m/s\" }, { name = \"fixed\", "
          "free = true }]\n";
   read_scene(path.string(), {.begins = true, .stage = "pull-2"});
+  std::ofstream(path)
+      << "density = \"1 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nbox = { cells = [2, 2, 2] }\n"
+         "law = { kind = \"brittle\", stiffness = \"1 MN/m\", fracture_energy = \"1 J/m^2\" }\n"
+         "[[probe]]\nname = \"tip\"\nkind = \"crack\"\nregion = { shape = \"sphere\", radius = "
+         "\"9 mm\" }\naxis = \"x\"\nstart = \"1 mm\"\nwindow = 2\nbond_length = \"1.1 mm\"\n"
+         "[run]\nsteps = 1\n";
+  read_scene(path.string());
   std::filesystem::remove(path);
   record_config_keys(nullptr);
   return keys;

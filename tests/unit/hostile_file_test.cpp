@@ -154,7 +154,7 @@ TEST_F(HostileFile, ShapesAreHeldAgainstTheBytes) {
   // A picture of 16 GB.
   EXPECT_EQ(of_rasters([](hid_t f) {
               const uint32_t wide = 1 << 16;
-              for (const char* field : {"thickness", "strain", "speed"})
+              for (const char* field : {"thickness", "strain", "speed", "broken"})
                 put_empty(f, field, {1, wide, wide}, H5T_IEEE_F32LE);
               for (const char* extent : {"columns", "rows"}) put_number(f, extent, H5T_NATIVE_UINT32, &wide);
             }),

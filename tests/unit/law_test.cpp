@@ -251,6 +251,25 @@ TEST(Preset, DiffersInStrengthRangeAndHardness) {
 }
 
 // The manual's table of the points is the code's.
+// Beyond the pitch the curve is the whole law's, made smaller about (pitch, 0); below it is the same.
+TEST(Preset, OfAShorterRangeIsTheSameCurveMadeSmaller) {
+  constexpr double kPitch = 2, kStiffness = 3;
+  for (const char* name : {"elastic", "brittle", "ductile", "viscous"})
+    for (const double range : {0.05, 0.4, 1.0}) {
+      const auto whole = preset_law(name, kPitch, kStiffness),
+                 part = preset_law(name, kPitch, kStiffness, range);
+      EXPECT_NEAR(part->slope(kPitch * (1 + 1e-9)), -kStiffness, 1e-6 * kStiffness);
+      EXPECT_NEAR(part->energy(kPitch), range * range * whole->energy(kPitch), 1e-12);
+      EXPECT_NEAR(part->cutoff() - kPitch, range * (whole->cutoff() - kPitch), 1e-12);
+      for (double x = 0.01; x < 0.5; x += 0.01) {
+        EXPECT_NEAR(part->force(kPitch + range * x), range * whole->force(kPitch + x), 1e-12) << name << x;
+        EXPECT_EQ(part->force(kPitch - x), whole->force(kPitch - x));
+      }
+    }
+  for (const double range : {0.0, -1.0, 1.1, std::nan("")})
+    EXPECT_THROW(preset_law("brittle", kPitch, kStiffness, range), InputError) << range;
+}
+
 TEST(Preset, IsAsDocumented) {
   std::ifstream manual(CUBOCT_SOURCE_DIR "/docs/reference/physics.md");
   int points = 0;

@@ -24,6 +24,7 @@ Frame frame_of(std::vector<Vec3> x) {
   frame.v.assign(x.size(), Vec3(0, 3, 4));
   frame.strain.assign(x.size(), 0.25);
   frame.type.assign(x.size(), 0);
+  frame.broken.assign(x.size(), 3);
   frame.x = std::move(x);
   return frame;
 }
@@ -47,6 +48,7 @@ TEST(Raster, AParticleIsSpreadByArea) {
     EXPECT_FLOAT_EQ(raster.thickness[k], static_cast<float>(expected[k])) << k;
     EXPECT_FLOAT_EQ(raster.strain[k], 0.25f);
     EXPECT_FLOAT_EQ(raster.speed[k], 5);
+    EXPECT_FLOAT_EQ(raster.broken[k], 3);
   }
   EXPECT_EQ(raster.outside, 0u);
 }
@@ -56,9 +58,11 @@ TEST(Raster, AMeanIsWeighedByArea) {
   const RasterGrid grid{.right = 0, .up = 1, .left = 0, .bottom = 0, .pixel = 1, .columns = 3, .rows = 1};
   Frame frame = frame_of({{0.75, 0.5, 0}, {2.25, 0.5, 0}});
   frame.strain = {1, -1};
+  frame.broken = {0, 4};
   const Raster raster = rasterise(frame, grid, 0.5);
   EXPECT_FLOAT_EQ(raster.strain[0], 1);
   EXPECT_NEAR(raster.strain[1], 0, 1e-6);
+  EXPECT_FLOAT_EQ(raster.broken[1], 2);
   frame.x[1][0] = 2.0;  // now half of its square
   EXPECT_FLOAT_EQ(rasterise(frame, grid, 0.5).strain[1], static_cast<float>((0.25 - 0.5) / 0.75));
 }
@@ -145,6 +149,7 @@ TEST(Raster, AFileHoldsElevenBits) {
     EXPECT_LE(std::abs(is - was), std::ldexp(std::abs(was), -11)) << k;
     rounded = rounded || is != was;
     EXPECT_LE(std::abs(again.frames[1].speed[k] - rasters.frames[1].speed[k]), 5 * 0x1p-11);
+    EXPECT_LE(std::abs(again.frames[1].broken[k] - rasters.frames[1].broken[k]), 3 * 0x1p-11);
   }
   EXPECT_TRUE(rounded);
   try {

@@ -424,6 +424,17 @@ TEST_F(SceneTest, BondsMayHaveLawsOfTheirOwn) {
   EXPECT_DOUBLE_EQ(s.rule.pair_energy(1, 1, 0.55e-3), s.rule.other_laws[0]->energy(0.55e-3));
 }
 
+// 2 sqrt(3)/pitch^2 bonds per area of {111}; stiffness 1 MN/m, pitch 0.5 mm.
+TEST_F(SceneTest, FractureEnergyIsThatOfTheWeakestPlane) {
+  const Scene s =
+      read(with("stiffness = \"1 MN/m\"", "stiffness = \"1 MN/m\"\nfracture_energy = \"2 kJ/m^2\""));
+  EXPECT_NEAR(-2 * std::sqrt(3) * s.rule.law->energy(0.5e-3) / 0.25e-6, 2e3, 1e-6);
+  EXPECT_NEAR(s.rule.law->slope(0.5e-3), -1e6, 1e-3);
+  EXPECT_EQ(error(with("stiffness = \"1 MN/m\"", "stiffness = \"1 MN/m\"\nfracture_energy = \"1 MJ/m^2\"")),
+            "a.toml:11:19: at this pitch and stiffness the law holds no more than 90891.9 J/m^2\n"
+            "  hint: the energy grows with pitch times stiffness");
+}
+
 TEST_F(SceneTest, EqualLawsAreOne) {
   const std::string same = "law = { kind = \"elastic\", stiffness = \"1 MN/m\" }\n";
   const Scene one = read(kComposite + kBetween + same);

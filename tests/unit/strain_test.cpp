@@ -121,21 +121,30 @@ TEST(Strain, DeformationsCountBrokenNeighboursAndHoldTheTensor) {
   const std::vector<Vec3> before{{7, 0, 0}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
   const std::vector<Vec3> after{{7, 0, 0}, {0, 0, 0}, {1.6, 0, 0}, {2.6, 0, 0}};
   const StrainMeter meter(before, periodic, kBetweenShells);
-  const auto all = meter.deformations(after, 0, 1.5);
+  const auto all = meter.deformations(after, 0, [](uint32_t, uint32_t) { return 1.5; });
   const auto whole = meter.measure(after);
+  const auto counts = meter.broken(after, [](uint32_t, uint32_t) { return 1.5; });
   const uint32_t broken[] = {0, 1, 1, 0};
   for (size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(all[i].broken, broken[i]) << i;
+    EXPECT_EQ(counts[i], broken[i]) << i;
     EXPECT_EQ(all[i].axial, whole[i].axial(0));
     EXPECT_FLOAT_EQ(all[i].strain[0], static_cast<float>(whole[i].lagrangian()(0, 0)));
     for (int k = 1; k < 6; ++k) EXPECT_NEAR(all[i].strain[static_cast<size_t>(k)], 0, 1e-7);
   }
   // Out of reach from the start: no bond that could break.
-  for (const Deformation& one : meter.deformations(after, 0, 0.9)) EXPECT_EQ(one.broken, 0u);
+  const auto short_reach = [](uint32_t, uint32_t) { return 0.9; };
+  for (const Deformation& one : meter.deformations(after, 0, short_reach)) EXPECT_EQ(one.broken, 0u);
+  // Each pair has a reach of its own.
+  const auto longer_at_0 = [](uint32_t i, uint32_t j) { return i == 1 || j == 1 ? 1.7 : 1.5; };
+  for (const Deformation& one : meter.deformations(after, 0, longer_at_0)) EXPECT_EQ(one.broken, 0u);
   // Shear in the plane of x and y: e_xy = 1/2 of the shift per height.
   std::vector<Vec3> block = fcc(2), sheared = block;
   for (Vec3& x : sheared) x[0] += 0.02 * x[1];
-  for (const Deformation& one : StrainMeter(block, {}, kBetweenShells).deformations(sheared, 0, 9))
+  for (const Deformation& one :
+       StrainMeter(block, {}, kBetweenShells).deformations(sheared, 0, [](uint32_t, uint32_t) {
+         return 9.0;
+       }))
     EXPECT_NEAR(one.strain[3], 0.01, 1e-6);
 }
 

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "model/analysis/crack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "model/analysis/strain.h"
+#include "model/contract/neighbours.h"
+
+namespace cuboct {
+namespace {
+
+// Disjoint sets of particles, each named by its least member.
+class Clusters {
+ public:
+  explicit Clusters(size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
+  uint32_t find(uint32_t at) {
+    while (parent_[at] != at) at = parent_[at] = parent_[parent_[at]];
+    return at;
+  }
+  void join(uint32_t a, uint32_t b) {
+    const uint32_t x = find(a), y = find(b);
+    parent_[std::max(x, y)] = std::min(x, y);
+  }
+
+ private:
+  std::vector<uint32_t> parent_;
+};
+
+// Of all pairs of types, squared, m^2.
+class Reach {
+ public:
+  explicit Reach(const Rule& rule) : types_(static_cast<int>(rule.types.size())) {
+    for (int i = 0; i < types_; ++i)
+      for (int j = 0; j < types_; ++j) squared_.push_back(std::pow(bond_reach(rule, i, j), 2));
+  }
+  double squared(int i, int j) const { return squared_[static_cast<size_t>(i * types_ + j)]; }
+
+ private:
+  int types_;
+  std::vector<double> squared_;
+};
+
+}  // namespace
+
+double bond_reach(const Rule& rule, int type_i, int type_j) {
+  return rule.only_touch(type_i, type_j) ? 0 : rule.law_of(type_i, type_j).cutoff();
+}
+
+CrackMeter::CrackMeter(const Probe& probe, const Periodic& periodic, const std::vector<Vec3>& initial)
+    : probe_(probe), periodic_(periodic) {
+  x_.reserve(probe.set.ids.size());
+  for (const uint32_t id : probe.set.ids) x_.push_back(initial[id]);
+  CellList cells(probe.bond_length, periodic);
+  cells.build(x_);
+  cells.for_each_pair(x_, [&](uint32_t i, uint32_t j, const Vec3&, double r) {
+    if (r <= bond_reach(*probe_.rule, type(i), type(j))) bonds_.push_back({std::min(i, j), std::max(i, j)});
+  });
+}
+
+Vec3 CrackMeter::initial(const Bond& bond) const {
+  const Vec3 d = x_[bond.j] - x_[bond.i];
+  return d.squaredNorm() < probe_.bond_length * probe_.bond_length ? d : nearest_image(d, periodic_);
+}
+
+// Ascending, so that no sum depends on how cells cut the space.
+std::vector<CrackMeter::Bond> CrackMeter::broken(const std::vector<Vec3>& moved) const {
+  std::vector<Vec3> u;
+  u.reserve(x_.size());
+  for (const uint32_t id : probe_.set.ids) u.push_back(moved[id]);
+  const Reach reach(*probe_.rule);
+  std::vector<Bond> gone;
+  for (const Bond& bond : bonds_)
+    if ((initial(bond) + u[bond.j] - u[bond.i]).squaredNorm() > reach.squared(type(bond.i), type(bond.j)))
+      gone.push_back(bond);
+  std::sort(gone.begin(), gone.end());
+  return gone;
+}
+
+// Broken bonds belong to one cluster where they share a particle, or where a bond, broken or not, joins their
+// particles. The crack is the cluster of most broken bonds, the first of equals; one by itself is none.
+double CrackMeter::length(const std::vector<Bond>& broken) const {
+  if (broken.size() < 2) return 0;
+  std::vector<char> torn(x_.size(), 0);
+  for (const Bond& bond : broken) torn[bond.i] = torn[bond.j] = 1;
+  Clusters clusters(x_.size());
+  for (const Bond& bond : bonds_)
+    if (torn[bond.i] && torn[bond.j]) clusters.join(bond.i, bond.j);
+  std::vector<uint32_t> count(x_.size(), 0);
+  uint32_t most = 1, crack = 0;
+  for (const Bond& bond : broken) ++count[clusters.find(bond.i)];
+  for (uint32_t at = 0; at < count.size(); ++at)
+    if (count[at] > most) most = count[at], crack = at;
+  if (most < 2) return 0;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Bond& bond : broken) {
+    if (clusters.find(bond.i) != crack) continue;
+    const double middle = (x_[bond.i] + initial(bond) / 2).dot(probe_.axis);
+    low = std::min(low, middle), high = std::max(high, middle);
+  }
+  return std::max(0.0, high - probe_.start.value_or(low));
+}
+
+CrackMeter::Found CrackMeter::look(const std::vector<Vec3>& moved) const {
+  const std::vector<Bond> gone = broken(moved);
+  Found found{gone.size(), length(gone), 0};
+  for (const Bond& bond : gone)
+    found.energy -= probe_.rule->pair_energy(type(bond.i), type(bond.j), initial(bond).norm());
+  return found;
+}
+
+}  // namespace cuboct

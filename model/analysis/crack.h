@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The bonds of a region, and the crack that broken ones make.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "model/scene/scene.h"
+
+namespace cuboct {
+
+// m, the distance beyond which a bond of two such particles is broken: the cutoff of their law. 0 where the
+// two only touch: they have no bond.
+double bond_reach(const Rule& rule, int type_i, int type_j);
+
+class CrackMeter {
+ public:
+  // Bonds are the pairs of the probe's set that are nearer than probe.bond_length in `initial`, and within
+  // their reach. The probe's ids are places in `initial`.
+  CrackMeter(const Probe& probe, const Periodic& periodic, const std::vector<Vec3>& initial);
+
+  struct Found {
+    size_t broken = 0;
+    double length = 0;  // m, of the largest cluster of broken bonds
+    double energy = 0;  // J, what held the broken bonds at the start
+  };
+  // `moved`: m, displacement of each particle since `initial`.
+  Found look(const std::vector<Vec3>& moved) const;
+  size_t bonds() const { return bonds_.size(); }
+
+ private:
+  struct Bond {
+    uint32_t i, j;  // places in the probe's set
+    auto operator<=>(const Bond&) const = default;
+  };
+  int type(uint32_t at) const { return probe_.types[at]; }
+  Vec3 initial(const Bond& bond) const;  // m, from i to j
+  std::vector<Bond> broken(const std::vector<Vec3>& moved) const;
+  double length(const std::vector<Bond>& broken) const;
+
+  Probe probe_;
+  Periodic periodic_;
+  std::vector<Vec3> x_;  // m, of the set at the start
+  std::vector<Bond> bonds_;
+};
+
+}  // namespace cuboct
