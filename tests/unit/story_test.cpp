@@ -31,6 +31,8 @@ TEST(Story, HasTheFirstBrokenBondAndTheLargestStress) {
   EXPECT_EQ(story_frames(kSteps, &peak, 2), (Frames{0, 2, 4, 5, 9}));
   const Curve between = peak_at(45);  // as near to 40 as to 50
   EXPECT_EQ(story_frames(kSteps, &between, {}), (Frames{0, 4, 5, 9}));
+  const Curve early = peak_at(0);  // a quarter of the nine frames behind it: two
+  EXPECT_EQ(story_frames(kSteps, &early, {}), (Frames{0, 2, 3, 9}));
   const Curve end = peak_at(90);
   EXPECT_EQ(story_frames(kSteps, &end, 8), (Frames{0, 3, 8, 9}));
 }
