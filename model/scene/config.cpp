@@ -67,7 +67,7 @@ ConfigNode convert(const toml::node& from, const std::string& key, const std::st
     node.kind = Kind::table;
     for (const auto& [name, value] : *table) {
       const std::string text(name.str());
-      node.items.push_back(convert(value, text, path.empty() ? text : path + "." + text));
+      node.items.push_back(convert(value, text, path.empty() ? text : fmt::format("{}.{}", path, text)));
       node.items.back().key_line = static_cast<int>(name.source().begin.line);
       node.items.back().key_column = static_cast<int>(name.source().begin.column);
     }
