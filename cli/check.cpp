@@ -14,10 +14,10 @@
 #include "cli/stages.h"
 #include "cli/summary.h"
 #include "hw/cycles.h"
+#include "hw/left_out.h"
 #include "hw/node_area.h"
 #include "model/analysis/motion.h"
 #include "model/base/resources.h"
-#include "model/contract/quantise.h"
 #include "model/run/start.h"
 #include "model/scene/packing.h"
 
@@ -35,47 +35,34 @@ void add_table(Items& items, const std::string& name, const FixedTable& table) {
 // What the plan leaves out, each with what its records would be longer by. Pair scales are
 // counted with the types that they need.
 void add_not_built(Items& items, const Plan& plan) {
-  const auto words_with = [&](const Carry& carry) {
-    return words_of(carrying(plan.rule, carry), plan.arch, plan.particles);
-  };
   // In the order of Carry.
   static constexpr std::array<const char*, Carry::kCount> kNames{
-      "damping", "pair scales", "types", "PD controllers", "third axis", "empty nodes"};
-  static constexpr std::array<const char*, Carry::kCount> kBesides{
-      "velocities, a table, 2 cycles of the pipe", "types, a table, 2 cycles of the pipe",      "types",
-      "displacements, 3 cycles of the update",     "2 of 8 phases, and all that works along z", ""};
-  const FixedRule& r = plan.rule;
-  const uint64_t cells = bounding_cells(plan.lattice);
-  const std::array<bool, Carry::kCount> used{r.damped, r.scaled,    r.type_bits > 0,
-                                             r.pd,     r.axes == 3, cells == plan.lattice.size()};
-  std::string list;
-  for (size_t k = 0; k < Carry::kCount; ++k)
-    if (!used[k])
-      list += (list.empty() ? "" : ", ") + std::string(kNames[k]) +
-              (k == 0 ? ", velocity in the halo record" : "");
-  items.add("not built", list.empty() ? "nothing is left out" : list);
-  for (size_t k = 0; k < Carry::kCount; ++k) {
-    if (used[k]) continue;
-    const std::string name = fmt::format("not built {}", kNames[k]);
-    if (k + 1 == Carry::kCount) {
-      const uint64_t empty = cells - plan.lattice.size();
-      items.add(name, empty, "cells",
-                fmt::format("of {} cells of the bounding box are not in the lattice", cells));
-      continue;
-    }
-    Carry carry;
-    carry[k] = true;
-    carry.types = carry.types || carry.scales;  // without types there is no pair of them
-    const Words words = words_with(carry);
-    const int halo = words.halo_bits - plan.words.halo_bits,
-              particle = words.particle_bits - plan.words.particle_bits;
-    items.add(name, halo, "bit",
-              fmt::format("of a halo record, {} of a particle record; {}", particle, kBesides[k]));
+      "damping", "pair scales", "types", "PD controllers", "masses", "third axis", "empty nodes"};
+  static constexpr std::array<const char*, Carry::kCount - 1> kBesides{
+      "velocities, a table, 2 cycles of the pipe",
+      "types, a table, 2 cycles of the pipe",
+      "types",
+      "displacements, 3 cycles of the update",
+      "a product per axis, 2 cycles of the update",
+      "2 of 8 phases, and all that works along z"};
+  const LeftOut left = left_out(plan);
+  std::vector<std::string> names;
+  for (const LeftOut::Part& part : left.parts) {
+    names.emplace_back(kNames[part.index]);
+    if (part.index == 0) names.back() += ", velocity in the halo record";
   }
-  const Words all = words_with(Carry::everything());
-  items.add("halo record with everything", all.halo_bits, "bit",
+  if (left.missing > 0) names.emplace_back(kNames.back());
+  items.add("not built", names.empty() ? "nothing is left out" : fmt::format("{}", fmt::join(names, ", ")));
+  for (const LeftOut::Part& part : left.parts)
+    items.add(fmt::format("not built {}", kNames[part.index]), part.halo_bits, "bit",
+              fmt::format("of a halo record, {} of a particle record; {}", part.particle_bits,
+                          kBesides[part.index]));
+  if (left.missing > 0)
+    items.add(fmt::format("not built {}", kNames.back()), left.missing, "cells",
+              fmt::format("of {} cells of the bounding box are not in the lattice", left.box));
+  items.add("halo record with everything", left.all.halo_bits, "bit",
             fmt::format("{} as built", plan.words.halo_bits));
-  items.add("particle record with everything", all.particle_bits, "bit",
+  items.add("particle record with everything", left.all.particle_bits, "bit",
             fmt::format("{} as built", plan.words.particle_bits));
 }
 
@@ -90,28 +77,14 @@ std::string reason_of(const Plan& plan, const std::string& key) {
   return {};
 }
 
-// What a tenth of the accuracy would take.
-void add_cheaper(Items& items, const Scene& scene, const Plan& plan) {
-  Widths asked = automatic_widths();
-  const FixedRule& rule = plan.rule;
-  for (const WidthReason& reason : plan.reasons)
-    if (reason.asked) return;  // formats that are chosen are no matter of accuracy
-  Scene loose = scene;
-  loose.accuracy *= 10;
-  const AutoWidths chosen = auto_widths(loose, rule.cell_edge, asked);
-  FixedRule other = quantise(loose.rule, rule.cell_edge, chosen.widths, plan.arch.table, chosen.half_unit);
-  other.axes = rule.axes;
-  other = carrying(std::move(other), plan.arch.carry);
-  const Words words = words_of(other, plan.arch, plan.particles);
-  if (words.halo_bits == plan.words.halo_bits && words.particle_bits == plan.words.particle_bits &&
-      other.widths.difference_frac == rule.widths.difference_frac &&
-      other.widths.strength_bits == rule.widths.strength_bits)
-    return;
-  items.add(fmt::format("with accuracy {:.2g}", loose.accuracy), words.halo_bits, "bit",
+void add_looser(Items& items, const Scene& scene, const Plan& plan) {
+  const auto looser = looser_formats(scene, plan);
+  if (!looser) return;
+  const auto& [accuracy, widths, words] = *looser;
+  items.add(fmt::format("with accuracy {:.2g}", accuracy), words.halo_bits, "bit",
             fmt::format(
                 "of a halo record, {} of a particle record; differences {}, strength {}, velocities {} bits",
-                words.particle_bits, other.widths.difference_frac, other.widths.strength_bits,
-                other.widths.velocity_bits));
+                words.particle_bits, widths.difference_frac, widths.strength_bits, widths.velocity_bits));
 }
 
 }  // namespace
@@ -167,7 +140,7 @@ Items resolve(const Loaded& loaded) {
     items.add(
         fmt::format("of law {}", n + 1), rule.errors[n].worst_force, "N",
         fmt::format("at {:.4g} m; {:.2g} of its largest force", rule.errors[n].at, rule.errors[n].relative));
-  add_cheaper(items, scene, plan);
+  add_looser(items, scene, plan);
   if (!plan.warnings.empty()) add_warnings(items, plan.warnings, {});
   const auto beats = [](int count) { return fmt::format("{} beat{}", count, count == 1 ? "" : "s"); };
   items.add("halo record", plan.words.halo_bits, "bit", beats(plan.words.halo_beats));

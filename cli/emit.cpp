@@ -55,9 +55,12 @@ struct Options {
 Items emit_one(const Options& options) {
   const Loaded loaded = load(options.input);
   refuse_static(loaded.scene, "hardware");
-  emit_rtl(loaded.setup.plan, loaded.setup.initial, options.out, options.vector_steps, options.board,
-           chosen_before(options.input.arch, options.out));
-  return say_emitted(options.out, loaded.setup.plan, options.answer);
+  const Plan& plan = loaded.setup.plan;
+  with_places(loaded.scene, plan.arch, [&] {
+    emit_rtl(plan, loaded.setup.initial, options.out, options.vector_steps, options.board,
+             chosen_before(options.input.arch, options.out));
+  });
+  return say_emitted(options.out, plan, options.answer);
 }
 
 // A machine for each stage, in directories of their names. `from` of the input holds the runs of all.

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "cli/answer.h"
 #include "cli/check.h"
@@ -15,6 +14,7 @@
 #include "cli/report.h"
 #include "cli/report_pictures.h"
 #include "cli/summary.h"
+#include "model/analysis/story.h"
 #include "model/analysis/tension.h"
 #include "model/base/base64.h"
 #include "model/base/directory_lock.h"
@@ -36,35 +36,6 @@ const Probe* first_tension(const Scene& scene, const Trace& trace) {
   for (const Probe& probe : scene.probes)
     if (probe.kind == Probe::Kind::stress_strain && tension_of(trace.curves, probe.name)) return &probe;
   return nullptr;
-}
-
-size_t nearest_frame(const Shots& shots, uint64_t step) {
-  size_t best = 0;
-  const auto distance = [&](size_t k) {
-    return shots.step(k) > step ? shots.step(k) - step : step - shots.step(k);
-  };
-  for (size_t k = 1; k < shots.size(); ++k)
-    if (distance(k) < distance(best)) best = k;
-  return best;
-}
-
-// Frames that tell the story: the start, the first broken bond, the largest stress, a quarter of the way from
-// there to the end, the end; where those fall together, evenly spread ones too.
-std::vector<size_t> choose_frames(const Scene& scene, const Trace& trace, const Shots& shots,
-                                  std::optional<size_t> onset) {
-  const size_t last = shots.size() - 1;
-  std::set<size_t> chosen{0, last};
-  if (onset) chosen.insert(*onset);
-  if (const Probe* probe = first_tension(scene, trace)) {
-    const Curve& stress = *tension_of(trace.curves, probe->name)->stress;
-    const auto largest = std::max_element(stress.value.begin(), stress.value.end()) - stress.value.begin();
-    const size_t peak = nearest_frame(shots, stress.step[static_cast<size_t>(largest)]);
-    chosen.insert(peak);
-    chosen.insert(peak + (last - peak) / 4);
-  }
-  for (size_t k = 1; k <= 2; ++k)
-    if (chosen.size() < 4) chosen.insert(k * last / 3);
-  return {chosen.begin(), chosen.end()};
 }
 
 // Where the colours end: as `cuboct picture` has it, of the same rasters; without them the frames tell.
@@ -390,7 +361,11 @@ void write_report(const std::string& directory, const std::string& out) {
   std::vector<uint64_t> marks;
   if (shots.size() > 0) {
     const std::optional<size_t> onset = shots.crack_onset();
-    const std::vector<size_t> chosen = choose_frames(loaded.scene, trace, shots, onset);
+    std::vector<uint64_t> steps;
+    for (size_t k = 0; k < shots.size(); ++k) steps.push_back(shots.step(k));
+    const Probe* probe = first_tension(loaded.scene, trace);
+    const std::vector<size_t> chosen =
+        story_frames(steps, probe ? tension_of(trace.curves, probe->name)->stress : nullptr, onset);
     for (const size_t k : chosen) marks.push_back(shots.step(k));
     html += page_picture(pictures(loaded, shots, chosen, onset, directory));
   }

@@ -33,16 +33,20 @@ inline void release(int device, void* memory) {
   if (memory) Stream::finish(device);
   std::free(memory);
 }
+// Of no bytes both may be null, which memcpy forbids.
+inline void copy_bytes(void* to, const void* from, size_t bytes) {
+  std::copy_n(static_cast<const char*>(from), bytes, static_cast<char*>(to));
+}
 inline void copy(Stream& stream, void* to, int, const void* from, int, size_t bytes) {
-  stream.later([=] { std::memcpy(to, from, bytes); });
+  stream.later([=] { copy_bytes(to, from, bytes); });
 }
 inline void upload(Stream& stream, void* to, const void* from, size_t bytes) {
   stream.synchronize();
-  std::memcpy(to, from, bytes);
+  copy_bytes(to, from, bytes);
 }
 inline void download(Stream& stream, void* to, const void* from, size_t bytes) {
   stream.synchronize();
-  std::memcpy(to, from, bytes);
+  copy_bytes(to, from, bytes);
 }
 inline void clear(Stream& stream, void* memory, size_t bytes) {
   stream.later([=] { std::memset(memory, 0, bytes); });

@@ -30,7 +30,8 @@ void throw_too_dense(uint64_t others) {
 }
 
 void throw_far_particle(size_t particle) {
-  throw InputError(fmt::format("particle {} is more than 1e9 cells away from the first", particle));
+  throw InputError(fmt::format("particle {} is more than 1e9 cells away from the first", particle))
+      .about({"particle", "packing"});
 }
 
 void throw_not_finite(uint64_t step, uint32_t fastest, double speed) {
@@ -62,11 +63,13 @@ void require_widths(const Widths& widths) {
   if (widths.position_frac > kMostVisibleBits)
     throw InputError(
         fmt::format("position_frac = {}: the gpu engine's positions hold {} bits of a cell at most",
-                    widths.position_frac, kMostVisibleBits));
+                    widths.position_frac, kMostVisibleBits))
+        .about({"widths.position_frac"});
   if (widths.guard > kMostResidueBits)
     throw InputError(
         fmt::format("guard = {}: the gpu engine keeps {} bits of a position beside those at most",
-                    widths.guard, kMostResidueBits));
+                    widths.guard, kMostResidueBits))
+        .about({"widths.guard"});
 }
 
 void require_memory(const Options& options, uint64_t particles, uint64_t cells, double bytes_per_particle) {
@@ -96,7 +99,8 @@ void require_tables(const Options& options, uint64_t bytes) {
         bytes > device.block_memory)
       throw InputError(fmt::format("the rule's tables take {} bytes, and a block of device {} ({}) holds {}",
                                    bytes, device.ordinal, device.name, device.block_memory),
-                       "fewer of the arch's table.index_bits");
+                       "fewer of the arch's table.index_bits")
+          .about({"table.index_bits", "law"});
 }
 
 }  // namespace cuboct::gpu

@@ -148,7 +148,7 @@ struct PowerMeter::Impl {
   }
 };
 
-PowerMeter::PowerMeter(std::vector<std::string> buses, const std::string& library)
+PowerMeter::PowerMeter(const std::vector<std::string>& buses, const std::string& library)
     : impl_(std::make_unique<Impl>()) {
   try {
     if (buses.empty()) throw NvmlError("no GPU");

@@ -48,7 +48,7 @@ class PowerMeter {
  public:
   // By PCI bus ids (Device::bus); one that comes twice counts once. Never throws: where nothing can be
   // measured `why` says it.
-  explicit PowerMeter(std::vector<std::string> buses, const std::string& library = kNvmlLibrary);
+  explicit PowerMeter(const std::vector<std::string>& buses, const std::string& library = kNvmlLibrary);
   ~PowerMeter();
   PowerMeter(const PowerMeter&) = delete;
   PowerMeter& operator=(const PowerMeter&) = delete;

@@ -104,7 +104,8 @@ RealLaw<Real> RealTables<Real>::take_law(const PairLaw& law) {
   if (terms.core2 < std::numeric_limits<Real>::min())
     throw InputError(
         fmt::format("the pair law's core is {:g} of its cutoff, whose square no {} holds", core, kName<Real>),
-        kHint<Real>);
+        kHint<Real>)
+        .about({"law.core", "law"});
   const LawForm form = law.form();
   if (const auto* lj = std::get_if<LennardJonesForm>(&form)) {
     // f/r = 24 epsilon (2 (sigma^2/r^2)^6 - (sigma^2/r^2)^3)/r^2 + offset/r
@@ -128,7 +129,8 @@ RealLaw<Real> RealTables<Real>::take_law(const PairLaw& law) {
                                    p.r2 / length * b * b};
     });
   } else {
-    throw InputError("the pair law has no closed form, which the real-number GPU engine needs");
+    throw InputError("the pair law has no closed form, which the real-number GPU engine needs")
+        .about({"law.kind"});
   }
   return terms;
 }
@@ -179,7 +181,8 @@ void RealTables<Real>::require_range(const RealLaw<Real>& terms, const PairLaw& 
   if (std::isfinite(over_r_of_any<FastRoots>(terms, cache.data(), terms.core2))) return;
   throw InputError(fmt::format("the pair law's force at its core, {:g} m, is beyond the range of a {}",
                                law.core(), kName<Real>),
-                   kHint<Real>);
+                   kHint<Real>)
+      .about({"law.core", "law"});
 }
 
 template struct RealTables<float>;

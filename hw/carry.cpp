@@ -4,11 +4,11 @@
 namespace cuboct {
 
 bool& Carry::operator[](size_t k) {
-  const std::array<bool*, kCount> fields{&damping, &scales, &types, &pd, &third_axis, &empty_nodes};
+  const std::array<bool*, kCount> fields{&damping, &scales, &types, &pd, &masses, &third_axis, &empty_nodes};
   return *fields.at(k);
 }
 
-Carry Carry::everything() { return {true, true, true, true, true, true}; }
+Carry Carry::everything() { return {true, true, true, true, true, true, true}; }
 
 FixedRule carrying(FixedRule rule, const Carry& carry) {
   if (carry.types && rule.type_bits == 0) rule.type_bits = 1;
@@ -26,6 +26,7 @@ FixedRule carrying(FixedRule rule, const Carry& carry) {
     rule.damp_shift = rule.widths.relative_velocity_frac - 1;
   }
   if (carry.pd) rule.pd = true;
+  if (carry.masses) rule.weighted = true;
   if (carry.third_axis) rule.axes = 3;
   return rule;
 }

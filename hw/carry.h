@@ -15,13 +15,14 @@ struct Carry {
   bool scales = false;       // pair scales, all 1
   bool types = false;        // a bit for the type, where one type would do
   bool pd = false;           // displacements, of no type
+  bool masses = false;       // a weight of each type, all 1
   bool third_axis = false;   // in a flat scene
   bool empty_nodes = false;  // the lattice has every cell of its bounding box
 
-  static constexpr int kCount = 6;
+  static constexpr int kCount = 7;
   // In the order of the fields: the names that an arch file uses.
-  static constexpr std::array<const char*, kCount> kNames{"damping", "scales",     "types",
-                                                          "pd",      "third_axis", "empty_nodes"};
+  static constexpr std::array<const char*, kCount> kNames{"damping", "scales",     "types",      "pd",
+                                                          "masses",  "third_axis", "empty_nodes"};
   bool& operator[](size_t k);
   static Carry everything();
 };

@@ -222,8 +222,8 @@ std::string describe(const Plan& plan) {
                                              : std::string()));
   std::string out;
   for (const auto& [used, name] : {std::pair{r.damped, "damping"}, std::pair{r.scaled, "pair scales"},
-                                   std::pair{r.pd, "force-held types"}, std::pair{r.type_bits > 0, "types"},
-                                   std::pair{r.axes == 3, "third axis"}})
+                                   std::pair{r.pd, "force-held types"}, std::pair{r.weighted, "masses"},
+                                   std::pair{r.type_bits > 0, "types"}, std::pair{r.axes == 3, "third axis"}})
     if (!used) out += (out.empty() ? "" : ", ") + std::string(name);
   line("left out, as unused", out.empty() ? "nothing" : out);
   return text;

@@ -37,21 +37,27 @@ std::string print_package(const Plan& plan, const RtlDesign& design, const Board
 
 void legalise_board(const Plan& plan, const BoardChoice& choice) {
   bit_clocks16(board_of(choice.name), choice.baud);
-  const auto at_most = [](const char* what, uint64_t value, uint64_t limit) {
+  const auto at_most = [](const char* what, uint64_t value, uint64_t limit,
+                          const std::vector<std::string>& keys) {
     if (value > limit)
-      throw InputError(fmt::format("board: {} is {}: at most {} can be emitted", what, value, limit));
+      throw InputError(fmt::format("board: {} is {}: at most {} can be emitted", what, value, limit))
+          .about(keys);
   };
-  at_most("the number of nodes", plan.nodes(), kLargest);
+  const std::vector<std::string> body{"packing", "particle"};
+  at_most("the number of nodes", plan.nodes(), kLargest, {"node.brick", "packing", "particle"});
   const int cell_bits = plan.bricks.cell_bits();
   at_most("the number of slots of a node",
-          cells_of(plan.bricks.shape()) * static_cast<uint64_t>(plan.arch.capacity), 32767);
+          cells_of(plan.bricks.shape()) * static_cast<uint64_t>(plan.arch.capacity), 32767,
+          {"node.capacity", "node.brick"});
   at_most("the width of a particle's id and of its cell",
-          static_cast<uint64_t>(plan.words.id_bits) + static_cast<uint64_t>(cell_bits), 32);
+          static_cast<uint64_t>(plan.words.id_bits) + static_cast<uint64_t>(cell_bits), 32, body);
   at_most("the width of a particle and of its cell",
-          static_cast<uint64_t>(plan.words.particle_bits) + static_cast<uint64_t>(cell_bits), 512);
-  at_most("the number of particles", plan.particles, kLargest);
-  at_most("the width of a velocity", static_cast<uint64_t>(plan.rule.widths.velocity_bits), 64);
-  at_most("the number of held and moved types", moved_types(plan.rule).size(), 255);
+          static_cast<uint64_t>(plan.words.particle_bits) + static_cast<uint64_t>(cell_bits), 512,
+          {"widths.velocity_bits", "widths.displacement_bits"});
+  at_most("the number of particles", plan.particles, kLargest, body);
+  at_most("the width of a velocity", static_cast<uint64_t>(plan.rule.widths.velocity_bits), 64,
+          {"widths.velocity_bits"});
+  at_most("the number of held and moved types", moved_types(plan.rule).size(), 255, {"constraint"});
 }
 
 std::map<std::string, std::string> print_board(const Plan& plan, const RtlDesign& design,

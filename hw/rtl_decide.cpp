@@ -206,14 +206,18 @@ std::vector<bool> exit_bits(const Plan& plan, uint32_t node) {
 }
 
 void legalise(const RtlDesign& design, bool with_lattice) {
-  const auto at_most = [](const char* what, int64_t value, int64_t limit) {
+  const auto at_most = [](const char* what, int64_t value, int64_t limit,
+                          const std::vector<std::string>& keys) {
     if (value > limit)
-      throw InputError(fmt::format("RTL: {} is {}: at most {} can be emitted", what, value, limit));
+      throw InputError(fmt::format("RTL: {} is {}: at most {} can be emitted", what, value, limit))
+          .about(keys);
   };
-  at_most("the width of a particle's exact sum", design.pair_sum_bits, 64);
-  at_most("the width of a particle", design.particle_bits, 1024);
+  at_most("the width of a particle's exact sum", design.pair_sum_bits, 64,
+          {"widths.strength_bits", "widths.difference_frac", "node.capacity"});
+  at_most("the width of a particle", design.particle_bits, 1024,
+          {"widths.velocity_bits", "widths.displacement_bits"});
   for (const RtlTable& t : design.tables) {
-    at_most("a table's index width", t.index_bits, 18);
+    at_most("a table's index width", t.index_bits, 18, {"table.index_bits"});
     for (const auto* column : {&t.c0, &t.c1, &t.c2})
       for (const int32_t c : *column)
         if (!fits(c, t.entry_bits))
@@ -224,7 +228,8 @@ void legalise(const RtlDesign& design, bool with_lattice) {
   // Observation ports are one vector over all nodes; simulators limit the width of a vector.
   const auto nodes = static_cast<int64_t>(design.cells.size());
   if (nodes < 1) throw InputError("RTL: the lattice has no node");
-  at_most("the width of the lattice's observation port", nodes * design.particle_bits, 1 << 19);
+  at_most("the width of the lattice's observation port", nodes * design.particle_bits, 1 << 19,
+          {"node.brick", "packing", "particle"});
 }
 
 }  // namespace cuboct

@@ -35,8 +35,8 @@ py::array_t<T> array_of(const std::vector<T>& values) {
 }
 py::array_t<double> array_of(const std::vector<Vec3>& values) {
   py::array_t<double> array({static_cast<py::ssize_t>(values.size()), py::ssize_t{3}});
-  static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  if (!values.empty()) std::memcpy(array.mutable_data(), values.data(), values.size() * sizeof(Vec3));
+  double* to = array.mutable_data();
+  for (const Vec3& value : values) to = std::copy_n(value.data(), 3, to);
   return array;
 }
 
@@ -190,7 +190,7 @@ void raise(const char* type, const py::tuple& arguments, const py::object& place
 
 void translate(std::exception_ptr thrown) {
   try {
-    if (thrown) std::rethrow_exception(thrown);
+    if (thrown) std::rethrow_exception(std::move(thrown));
   } catch (const InputError& error) {
     const InputError::Place* place = error.place();
     raise("InputError", py::make_tuple(bare_message(error), parts_of(error).hint),

@@ -126,7 +126,7 @@ Set set_of(const Key& key, const ConfigValue& value, const Widths& widths) {
     const int threads = static_cast<int>(value.integer(1, 4096));
     return [threads](Settings& settings) { settings.threads = threads; };
   }
-  const Set change = change_of(key.target, toml_text(value));
+  Set change = change_of(key.target, toml_text(value));
   // "auto" with its safety and a given dt rule each other out.
   if (name == "dt") return [change](Settings& s) { change_of("run.dt_safety", "")(s), change(s); };
   if (name == "dt_safety") return [change](Settings& s) { change_of("run.dt", "\"auto\"")(s), change(s); };
@@ -162,7 +162,7 @@ std::string label_of(const ConfigValue& value) {
 }
 
 std::vector<ConfigValue> notches(const ConfigValue& value) {
-  const std::vector<ConfigValue> items = value.is_array() ? value.items() : std::vector{value};
+  std::vector<ConfigValue> items = value.is_array() ? value.items() : std::vector{value};
   if (items.empty()) value.fail(fmt::format("'{}' lists nothing", value.key()));
   return items;
 }

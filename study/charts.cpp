@@ -96,7 +96,7 @@ Chart error_against_speed(const Results& results, const Measure& error, const Me
 
 // The straight line of an order, cut where it leaves the chart below.
 std::vector<Place> on_chart(const Line& line, const ChartAxis& x, const ChartAxis& y) {
-  const auto& [a, b] = line;
+  const Place &a = line.first, &b = line.second;
   const auto at = [&](double t) {
     return Place{x.logarithmic ? a.first * std::pow(b.first / a.first, t) : std::lerp(a.first, b.first, t),
                  a.second * std::pow(b.second / a.second, t)};

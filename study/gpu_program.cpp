@@ -18,7 +18,7 @@ namespace cuboct::study {
 namespace {
 
 std::string program() {
-  const std::string path = beside(std::ranges::find_if(engines(), &EngineRow::devices)->program);
+  std::string path = beside(std::ranges::find_if(engines(), &EngineRow::devices)->program);
   if (path.empty()) throw InputError("no program cuboct-gpu beside this one");
   return path;
 }

@@ -103,7 +103,7 @@ std::vector<Sweep> sweeps_of(const Results& results, const std::vector<Values>& 
     if (!std::isfinite(x[n]) || results.outcomes[n].status != Status::done) continue;
     std::string others;
     for (const auto& [key, value] : all[n])
-      if (!follows.contains(key)) others += key + "=" + value + "\n";
+      if (!follows.contains(key)) others += fmt::format("{}={}\n", key, value);
     const auto [at, added] = index.try_emplace(others, found.size());
     if (added) found.emplace_back();
     found[at->second].try_emplace(x[n], n);

@@ -29,23 +29,24 @@ Runner::Runner(const Study& study, Store& store, const RunnerOptions& options)
 }
 
 const Truth& Runner::truth() {
-  const auto [at, fresh] = truths_.try_emplace("");
-  if (!fresh) return at->second;
+  const auto added = truths_.try_emplace("");
+  Truth& truth = added.first->second;
+  if (!added.second) return truth;
   try {
     if (auto kept = store_.truth(""); kept && kept->figures.size() == study_.figures.size())
-      return at->second = std::move(*kept);
+      return truth = std::move(*kept);
     const auto compute = [&] {
-      at->second = make_truth(study_, options_.jobs, store_.truth(kBegun).value_or(Truth()),
-                              [&](const Truth& so_far) { store_.put_truth(kBegun, so_far); });
+      truth = make_truth(study_, options_.jobs, store_.truth(kBegun).value_or(Truth()),
+                         [&](const Truth& so_far) { store_.put_truth(kBegun, so_far); });
     };
     work_off({{1, compute}}, 1, "the run in doubles", options_.progress);
-    store_.put_truth(at->second);
+    store_.put_truth(truth);
     store_.drop_truth(kBegun);
   } catch (...) {
-    truths_.erase(at);
+    truths_.erase(added.first);
     throw;
   }
-  return at->second;
+  return truth;
 }
 
 // Where the settings' own scene has no run in doubles, the point will be refused for the same reason: any

@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "emu/lattice/engine.h"
-#include "hw/setup.h"
+#include "emu/lattice/run.h"
+#include "hw/engine_kind.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "study/measure_run.h"
@@ -124,30 +124,39 @@ class Judge {
   double bound_, most_;
 };
 
-Trial try_reference(const Scene& scene, const Method& method, const Judge& judge, uint64_t steps) {
-  Reference run(
-      scene.rule, scene.body, scene.periodic,
-      RealOptions{method.integrator,
-                  method.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64,
-                  method.threads});
-  Flips flips(scene.body.size());
-  std::vector<Vec3> before = scene.body.x;
+// Of an engine that begins with `start`: the way of each step in real numbers, the velocity in integers.
+Trial watch(Engine& run, const Body& start, const Judge& judge, uint64_t steps) {
+  Flips flips(start.size());
+  std::vector<Vec3> before = start.x;
   for (uint64_t n = 0; n < steps; ++n) {
     if (interrupted()) throw Interrupted();
     try {
-      run.step();
+      run.advance(1);
     } catch (const std::runtime_error& error) {
       return {Verdict::unstable, error.what()};
     }
-    const std::vector<Vec3>& x = run.body().x;
-    for (uint32_t i = 0; i < x.size(); ++i) {
-      flips.add(i, x[i] - before[i]);
-      before[i] = x[i];
-    }
+    if (const Body* body = run.saved_body())
+      for (uint32_t i = 0; i < body->size(); ++i) {
+        flips.add(i, body->x[i] - before[i]);
+        before[i] = body->x[i];
+      }
+    else
+      run.for_each_slot([&](const Particle& p) {
+        flips.add(p.id, Vec3(static_cast<double>(p.v[0]), static_cast<double>(p.v[1]),
+                             static_cast<double>(p.v[2])));
+      });
     flips.end_step();
     if (const auto trial = judge.outgrown(flips.sizes())) return *trial;
   }
   return judge.at_end(flips.sizes());
+}
+
+Trial try_reference(const Scene& scene, const Method& method, const Judge& judge, uint64_t steps) {
+  const RealOptions options{
+      method.integrator, method.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64,
+      method.threads};
+  return watch(*reference_kind(scene, scene.body, options, scene.rule.cutoff()).make(nullptr, false),
+               scene.body, judge, steps);
 }
 
 Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolution, double seed,
@@ -167,35 +176,17 @@ Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolutio
   for (ParticleType& type : scene.rule.types)
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(type.gravity[axis]) < 128 * unit) type.gravity[axis] = 0;
-  std::optional<Setup> setup;
+  std::optional<Plan> plan;
   try {
-    setup.emplace(make_setup(scene, arch));
+    plan = plan_of(scene, arch);
   } catch (const InputError& error) {
     return {Verdict::refused, error.what()};
   }
-  const FixedRule& rule = setup->plan.rule;
+  const FixedRule& rule = plan->rule;
   const Judge judge(std::ldexp(seed / rule.cell_edge, rule.widths.velocity_frac()), resolution);
-  const std::vector<Particle>& initial = setup->initial.particles;
-  emu::LatticeOptions options;
-  options.threads = method.threads;
-  emu::LatticeEngine run(
-      setup->plan, 0, static_cast<uint32_t>(initial.size()), [&](uint32_t k) { return initial[k]; }, options);
-  Flips flips(initial.size());
-  for (uint64_t n = 0; n < steps; ++n) {
-    if (interrupted()) throw Interrupted();
-    try {
-      run.step();
-    } catch (const RunError& error) {
-      return {Verdict::unstable, error.what()};
-    }
-    run.for_each_slot([&](const Particle& p) {
-      flips.add(p.id,
-                Vec3(static_cast<double>(p.v[0]), static_cast<double>(p.v[1]), static_cast<double>(p.v[2])));
-    });
-    flips.end_step();
-    if (const auto trial = judge.outgrown(flips.sizes())) return *trial;
-  }
-  return judge.at_end(flips.sizes());
+  emu::LatticeChoice choice;
+  choice.engine.threads = method.threads;
+  return watch(*emu::lattice_kind(scene, *plan, choice).make(nullptr, false), scene.body, judge, steps);
 }
 
 }  // namespace

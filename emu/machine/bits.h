@@ -15,14 +15,14 @@ struct Bits {
   // Writes the low `width` bits of `value` at `lsb`; the field must hold zeros. 0 <= width <= 64, lsb + width
   // <= 512.
   void put(int lsb, int width, int64_t value) {
-    if (width == 0) return;
+    if (width <= 0) return;
     const uint64_t v = static_cast<uint64_t>(value) & (~uint64_t{0} >> (64 - width));
     const int i = lsb >> 6, s = lsb & 63;
     word[i] |= v << s;
     if (s + width > 64) word[i + 1] |= v >> (64 - s);
   }
   uint64_t get(int lsb, int width) const {
-    if (width == 0) return 0;
+    if (width <= 0) return 0;
     const int i = lsb >> 6, s = lsb & 63;
     uint64_t v = word[i] >> s;
     if (s + width > 64) v |= word[i + 1] << (64 - s);

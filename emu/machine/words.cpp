@@ -16,11 +16,13 @@ void check_words(const Plan& plan) {
   const int widest = std::max(plan.words.halo_bits, plan.words.migrate_bits);
   if (widest > Bits::kWidth)
     throw InputError(fmt::format("a record of {} bits: the cycle-accurate engines hold at most {}", widest,
-                                 int{Bits::kWidth}));
+                                 int{Bits::kWidth}))
+        .about({"widths.velocity_bits", "widths.displacement_bits", "widths.position_frac", "widths.guard"});
   if (plan.link.checked() && plan.link.wire_bits + 1 > Bits::kWidth)
     throw InputError(fmt::format("a checked beat of {} bits: the cycle-accurate engines hold at most {}",
                                  plan.link.wire_bits + 1, int{Bits::kWidth}),
-                     "use fewer link.bits");
+                     "use fewer link.bits")
+        .about({"link.bits"});
 }
 
 void pack_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out) {

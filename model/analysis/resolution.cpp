@@ -107,8 +107,9 @@ void Resolution::choose_bonds() {
     }
   }
   if (apart <= 1e-9 * speed_) vibration_ = 0;
-  const double looked = static_cast<double>(body.size() / (body.size() / kSample + 1) + 1);
-  bond_count_ = 0.5 * static_cast<double>(bonds_.size()) / looked * static_cast<double>(body.size());
+  const size_t stride = body.size() / kSample + 1, looked = body.size() / stride + 1;
+  bond_count_ = 0.5 * static_cast<double>(bonds_.size()) / static_cast<double>(looked) *
+                static_cast<double>(body.size());
   if (vibration_ > 0) vibrated_ = std::sqrt(2 * vibration_ / (stiffness_ * bond_count_));
 }
 

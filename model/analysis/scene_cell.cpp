@@ -91,10 +91,11 @@ CrystalCell slab_of(const Scene& scene, const std::string& material, int layers)
     if (i == 0 || sites[i].z() - sites[i - 1].z() > 1e-6 * scene.pitch) begin.push_back(i);
   const size_t each = sites.size() / begin.size();
   CrystalCell slab;
-  for (size_t layer = 0; layer < static_cast<size_t>(layers); ++layer)
-    for (size_t k = 0; k < each; ++k)
-      slab.x.push_back(sites[begin[layer % begin.size()] + k] +
-                       Vec3(0, 0, box.extent.z() * static_cast<double>(layer / begin.size())));
+  for (size_t layer = 0; layer < static_cast<size_t>(layers); ++layer) {
+    const size_t repeat = layer / begin.size();
+    const Vec3 up(0, 0, box.extent.z() * static_cast<double>(repeat));
+    for (size_t k = 0; k < each; ++k) slab.x.push_back(sites[begin[layer % begin.size()] + k] + up);
+  }
   slab.type.assign(slab.x.size(), type_of(scene, material));
   slab.repeats = {true, true, false};
   box.extent.z() *= layers / static_cast<double>(begin.size());

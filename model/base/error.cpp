@@ -26,7 +26,7 @@ InputError::InputError(const std::string& message, const std::string& hint)
 InputError::InputError(const std::string& file, int line, int column, const std::string& message,
                        const std::string& hint, const std::string& excerpt)
     : std::runtime_error(with_hint(fmt::format("{}:{}:{}: {}", file, line, column, message), hint)),
-      place_(std::make_shared<const Place>(file, line, column, excerpt)) {}
+      place_(std::make_shared<const Place>(Place{file, line, column, excerpt})) {}
 
 InputError InputError::with(const std::string& hint) const {
   InputError other(parts_of(*this).message, hint);

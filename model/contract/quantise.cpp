@@ -33,10 +33,10 @@ std::vector<std::string> keys_of(const ParticleType& type, const std::string& ke
   return {constraint + "." + key, constraint};
 }
 
+std::string material_of(const ParticleType& type) { return type.name.substr(0, type.name.find('/')); }
+
 std::vector<std::string> strength_keys(const Rule& rule, size_t i, size_t j) {
-  const auto material = [&](size_t type) {
-    return rule.types[type].name.substr(0, rule.types[type].name.find('/'));
-  };
+  const auto material = [&](size_t type) { return material_of(rule.types[type]); };
   std::vector<std::string> keys{fmt::format("bond[{},{}].strength", material(i), material(j))};
   for (const size_t type : {i, j}) keys.push_back(fmt::format("material[{}].strength", material(type)));
   return keys;
@@ -83,11 +83,14 @@ int64_t quantised(double value, double whole, int frac, int bits, const char* wh
 
 int64_t weight_of(const Rule& rule, int type) {
   const double ratio = rule.relative_mass(type);
+  const ParticleType& heavy = rule.types[static_cast<size_t>(type)];
   if (ratio > kMostRatio)
     throw InputError(
         fmt::format("a particle of '{}' is {:.6g} times as heavy as the lightest: integers hold at most {}",
-                    rule.types[static_cast<size_t>(type)].name, ratio, kMostRatio),
-        "doubles hold any (--engine reference)");
+                    heavy.name, ratio, kMostRatio),
+        "doubles hold any (--engine reference)")
+        .about({fmt::format("material[{}].mass", material_of(heavy)),
+                fmt::format("material[{}].density", material_of(heavy)), "mass", "density"});
   return std::llround(std::ldexp(1 / ratio, kWeightFrac));
 }
 

@@ -79,7 +79,7 @@ Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, co
                       id, body.v[id][a], std::ldexp(velocity_unit, rule.widths.velocity_bits - 1),
                       rule.widths.velocity_bits),
           "a smaller dt or a larger cell edge lets it move fewer cells per step")
-          .about({"velocity", "particle.velocity", "run.dt"});
+          .about({"velocity[fastest]", "velocity", "particle.velocity", "run.dt"});
   }
   p.cell = lattice.find(cell);
   if (p.cell == kNoCell)

@@ -90,7 +90,7 @@ Scene load_scene(const std::string& path, const StartChoice& choice) {
 }
 
 std::string start_text(const Scene& scene, const FixedRule* rule, const Vec3& origin) {
-  const std::string where = fmt::format("step {} of {}", scene.began->step, scene.began->from);
+  std::string where = fmt::format("step {} of {}", scene.began->step, scene.began->from);
   const ExactBody* exact = scene.body.exact.get();
   if (!exact || !rule) return where;
   if (exact->fits(*rule, origin)) return where + ", bit for bit";

@@ -67,7 +67,7 @@ ConfigNode convert(const toml::node& from, const std::string& key, const std::st
     node.kind = Kind::table;
     for (const auto& [name, value] : *table) {
       const std::string text(name.str());
-      node.items.push_back(convert(value, text, path.empty() ? text : path + "." + text));
+      node.items.push_back(convert(value, text, path.empty() ? text : fmt::format("{}.{}", path, text)));
       node.items.back().key_line = static_cast<int>(name.source().begin.line);
       node.items.back().key_column = static_cast<int>(name.source().begin.column);
     }
@@ -189,6 +189,11 @@ bool ConfigValue::is_string() const { return node_->kind == Kind::string; }
 bool ConfigValue::reduced() const { return file_->reduced; }
 const std::string& ConfigValue::key() const { return node_->key; }
 
+void ConfigValue::mark(Places& places, const std::string& path) const {
+  places.add(path, node_->line, node_->column,
+             excerpt(line_of(file_->text, node_->line), node_->line, node_->column));
+}
+
 void ConfigValue::fail(const std::string& message, const std::string& hint) const {
   // What is said of the whole file stands at its first line, which says nothing.
   if (node_ == &file_->root) throw InputError(file_->path, node_->line, node_->column, message, hint);
@@ -243,7 +248,7 @@ std::string ConfigValue::string() const {
 std::string ConfigValue::file() const {
   namespace fs = std::filesystem;
   const std::string name = string();
-  const std::string path = (fs::path(file_->path).parent_path() / name).string();
+  std::string path = (fs::path(file_->path).parent_path() / name).string();
   if (!fs::is_regular_file(path))
     fail(fmt::format("no file '{}'", name), "a path is counted from the directory of " + file_->path);
   return path;

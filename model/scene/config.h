@@ -77,6 +77,8 @@ class ConfigValue {
   std::vector<ConfigValue> items() const;  // of an array
   ConfigTable table() const;
 
+  // Adds the place of this value to others, under `path`.
+  void mark(Places& places, const std::string& path) const;
   // Throws InputError that points here.
   [[noreturn]] void fail(const std::string& message, const std::string& hint = {}) const;
 

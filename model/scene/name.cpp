@@ -10,7 +10,7 @@
 namespace cuboct {
 
 std::string read_name(const ConfigValue& value) {
-  const std::string name = value.string();
+  std::string name = value.string();
   if (name.empty())
     value.fail(fmt::format("'{}' must not be empty", value.key()), "a name such as \"part_1\"");
   if (name == "." || name == "..")

@@ -102,9 +102,24 @@ void read_single_box(const ConfigTable& root, Scene& scene) {
     if (periodic[a]) scene.periodic.extent[a] = boxed.extent[a];
 }
 
+// Which key gives a free particle the largest speed: a speed that no format holds is refused there.
+class Fastest {
+ public:
+  void meet(const ConfigValue& key, double speed) {
+    if (speed > speed_) speed_ = speed, key_ = key;
+  }
+  void mark(Places& places) const {
+    if (key_) key_->mark(places, "velocity[fastest]");
+  }
+
+ private:
+  double speed_ = 0;
+  std::optional<ConfigValue> key_;
+};
+
 // The materials named by the [[particle]] entries, the last of all particles; -1: by region.
 std::vector<int> read_particles(const ConfigTable& root, const std::vector<std::string>& materials,
-                                Scene& scene) {
+                                Scene& scene, Fastest& fastest) {
   std::vector<int> named;
   const auto tables = root.tables("particle");
   scene.body.x.reserve(scene.body.x.size() + tables.size());  // behind millions: no growth by halves
@@ -119,6 +134,7 @@ std::vector<int> read_particles(const ConfigTable& root, const std::vector<std::
     }
     scene.body.x.push_back(x);
     scene.body.v.push_back(table.vector_or("velocity", quantity::velocity, Vec3::Zero()));
+    if (table.has("velocity")) fastest.meet(table.at("velocity"), scene.body.v.back().norm());
     const auto material = table.find("material");
     named.push_back(material ? static_cast<int>(material->choice("material", materials)) : -1);
     table.done();
@@ -331,9 +347,9 @@ ThermalShare thermal_share(const ConfigTable& table, const Rule& rule, int mater
   return {relative, table.has("thermal_speed") ? 1 : 1 / std::sqrt(relative)};
 }
 
-// `material`: by particle.
+// `material`, `constraint`: by particle; what a constraint holds or leads is not the fastest.
 void read_velocities(const ConfigTable& root, const Regions& regions, const std::vector<int>& material,
-                     Scene& scene) {
+                     const std::vector<int>& constraint, Scene& scene, Fastest& fastest) {
   Body& body = scene.body;
   for (const ConfigTable& table : root.tables("velocity")) {
     std::vector<uint32_t> ids;
@@ -348,10 +364,16 @@ void read_velocities(const ConfigTable& root, const Regions& regions, const std:
     Vec3 centre = Vec3::Zero();
     for (uint32_t id : ids) centre += body.x[id];
     centre /= static_cast<double>(ids.size());
-    for (uint32_t id : ids) body.v[id] += uniform + spin.cross(body.x[id] - centre);
-    if (const auto speed = thermal_speed(table, scene)) {
-      scene.thermal |= *speed > 0;
-      add_thermal(body.v, ids, *speed, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)),
+    const std::optional<double> thermal = thermal_speed(table, scene);
+    constexpr double kTail = 4;  // standard deviations: the fastest of some ten thousand
+    for (uint32_t id : ids) {
+      const Vec3 given = uniform + spin.cross(body.x[id] - centre);
+      body.v[id] += given;
+      if (constraint[id] < 0) fastest.meet(table, given.norm() + kTail * thermal.value_or(0));
+    }
+    if (thermal) {
+      scene.thermal |= *thermal > 0;
+      add_thermal(body.v, ids, *thermal, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)),
                   [&](uint32_t id) { return thermal_share(table, scene.rule, material[id]); });
     }
     table.done();
@@ -401,12 +423,12 @@ void read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
     pack_geometry(root, regions, *packing, scene);
   else
     read_single_box(root, scene);
-  const std::vector<int> named = read_particles(root, names, scene);
+  Fastest fastest;
+  const std::vector<int> named = read_particles(root, names, scene, fastest);
   Body& body = scene.body;
   if (body.size() == 0) root.fail("no particle", "add [packing] with [geometry], or [[particle]]");
   check_distinct(root, body.x, named.size());
   const std::vector<int> material = assign_materials(root, regions, named, scene);
-  read_velocities(root, regions, material, scene);
   Vec3 gravity = root.vector_or("gravity", quantity::acceleration, Vec3::Zero());
   if (stage)
     if (const auto own = stage->find("gravity")) gravity = stage->vector_of(*own, quantity::acceleration);
@@ -428,6 +450,8 @@ void read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
     table.done();
     constraints.push_back(std::move(type));
   }
+  read_velocities(root, regions, material, constraint, scene, fastest);
+  fastest.mark(scene.places);
 
   std::map<std::pair<int, int>, size_t> occurring;
   for (size_t i = 0; i < body.size(); ++i) occurring.try_emplace({material[i], constraint[i]}, 0);

@@ -137,7 +137,7 @@ std::optional<Mismatch> compare(const Trace& a, const Trace& b) {
   if (state) return state;
   if (a.steps() != b.steps() || a.state_hash.empty() != b.state_hash.empty())
     return found(Kind::length, std::to_string(a.steps()), std::to_string(b.steps()));
-  if (const auto mismatch = compare_stops(a.stop, b.stop)) return mismatch;
+  if (auto mismatch = compare_stops(a.stop, b.stop)) return mismatch;
   return compare_cycles(a, b);
 }
 

@@ -118,8 +118,8 @@ std::string plot_rasters(const Rasters& rasters, const RasterPicture& picture) {
   // A tall body gets narrower panels, so that the picture is at most twice as high as wide.
   const double shape = static_cast<double>(grid.rows) / grid.columns;
   const int most = (2 * picture.width - kTitle - kBar) / down - kLabel - kTics;
-  const int wide =
-      std::max(1, static_cast<int>(std::min<double>(picture.width / across - kLeft - kRight, most / shape)));
+  const int widest = picture.width / across - kLeft - kRight;
+  const int wide = std::max(1, static_cast<int>(std::min<double>(widest, most / shape)));
   const int high = std::max(1, static_cast<int>(std::lround(wide * shape)));
   const int row = kLabel + high + kTics, height = kTitle + down * row + kBar;
   const double px = grid.pixel * length.factor;

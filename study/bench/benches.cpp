@@ -11,9 +11,9 @@
 #include <memory>
 #include <numeric>
 
-#include "emu/lattice/engine.h"
+#include "emu/lattice/kernel.h"
 #include "emu/lattice/program.h"
-#include "emu/lattice/timing.h"
+#include "emu/lattice/run.h"
 #include "gpu_ref/bench_rows.h"
 #include "hw/engine_kind.h"
 #include "hw/program/remote.h"
@@ -77,22 +77,25 @@ emu::LatticeOptions on_threads(int threads, bool quiescence = true) {
   return options;
 }
 
-std::unique_ptr<emu::LatticeEngine> lattice_engine(const BenchCase& made,
-                                                   const emu::LatticeOptions& options) {
-  const Plan& plan = made.plan;
-  return std::make_unique<emu::LatticeEngine>(
-      plan, 0, plan.particles,
-      [&](uint32_t id) { return fixed_particle(made.scene.body, id, plan.rule, plan.lattice, plan.origin); },
-      options);
+using Make = std::function<std::unique_ptr<Engine>(const BenchCase&)>;
+
+Make lattice_of(const emu::LatticeOptions& options, bool cycles = false) {
+  return [=](const BenchCase& made) {
+    const emu::LatticeChoice choice{.engine = options};
+    return emu::lattice_kind(made.scene, made.plan, choice).make(nullptr, cycles);
+  };
+}
+
+double count_of(Engine& engine, const std::string& name) {
+  for (const auto& [of, count] : engine.counters())
+    if (of == name) return count;
+  return 0;
 }
 
 // One benchmark's objects; they live until the next benchmark begins.
 struct Bed {
   std::shared_ptr<const BenchCase> made;
-  std::unique_ptr<emu::LatticeEngine> lattice;
-  std::unique_ptr<emu::TimingModel> timing;
   std::unique_ptr<Engine> engine;
-  emu::CellSlots slots;
   std::optional<Timed> timed;
 };
 Bed& bed_of(const std::string& name) {
@@ -106,53 +109,42 @@ Bed& bed_of(const std::string& name) {
   return *bed;
 }
 
-void run_lattice_block(benchmark::State& state, const std::string& name, const BenchScene& scene, int threads,
-                       bool cycles, double seconds) {
-  if (too_large(state, scene.particles())) return;
-  Bed& bed = bed_of(name);
-  if (!bed.lattice) {
-    bed.made = make_case(scene);
-    bed.lattice = lattice_engine(*bed.made, on_threads(threads));
-    if (cycles) bed.timing = std::make_unique<emu::TimingModel>(bed.made->plan, threads);
-    bed.timed.emplace(seconds);
-  }
-  const auto node_cycles = [&] {
-    if (!bed.timing) return 0.0;
-    const std::vector<uint64_t>& starts = bed.timing->starts();
-    return std::accumulate(starts.begin(), starts.end(), 0.0);
-  };
-  double before = node_cycles();
-  const uint64_t first = bed.lattice->step_count();
-  bed.timed->run(state, [&] {
-    if (bed.timing) bed.lattice->slots(bed.slots);
-    bed.lattice->step();
-    if (bed.timing) bed.timing->step(bed.slots, bed.lattice->leaving(), {});
-  });
-  const auto done = static_cast<double>(bed.timed->steps());
-  // Cycles of all steps, those that warmed up included, scaled to the timed ones.
-  const double share = done / static_cast<double>(bed.lattice->step_count() - first);
-  state.counters["particle_steps"] = rate(done * bed.lattice->size());
-  if (bed.timing) state.counters["node_cycles"] = rate((node_cycles() - before) * share);
-  state.SetLabel(fmt::format("{} particles on {} nodes, {}, {}, {} steps per repeat", scene.particles(),
-                             bed.made->plan.nodes(), counted(bed.lattice->threads()), bed.lattice->simd(),
-                             bed.timed->steps()));
-}
-
-// `how`: threads and vector units.
+// `how`: what a label says between the particles and the steps: nodes, threads, vector units.
 void run_block(benchmark::State& state, const std::string& name, const BenchScene& scene, double seconds,
-               const std::function<EngineKind(const BenchCase&)>& kind, const std::string& how) {
+               const Make& make, const std::function<std::string(const Bed&)>& how) {
   if (too_large(state, scene.particles())) return;
   Bed& bed = bed_of(name);
   if (!bed.engine) {
     bed.made = make_case(scene);
-    bed.engine = kind(*bed.made).make(nullptr, false);
+    bed.engine = make(*bed.made);
     bed.timed.emplace(seconds);
   }
-  bed.timed->run(state, [&] { bed.engine->advance(1); });
-  state.counters["particle_steps"] =
-      rate(static_cast<double>(bed.timed->steps()) * static_cast<double>(scene.particles()));
+  // The clocks of the nodes, where the engine has them.
+  const auto node_cycles = [&] {
+    const std::vector<uint64_t> clocks = bed.engine->memory().own;
+    return std::accumulate(clocks.begin(), clocks.end(), 0.0);
+  };
+  const double before = node_cycles();
+  const uint64_t first = bed.engine->step_count();
+  bed.timed->run(state, [&] {
+    bed.engine->advance(1);
+    bed.engine->phase_times();  // else they would pile up
+  });
+  const auto done = static_cast<double>(bed.timed->steps());
+  // Cycles of all steps, those that warmed up included, scaled to the timed ones.
+  const double share = done / static_cast<double>(bed.engine->step_count() - first);
+  state.counters["particle_steps"] = rate(done * static_cast<double>(scene.particles()));
+  if (const double after = node_cycles(); after > 0)
+    state.counters["node_cycles"] = rate((after - before) * share);
   state.SetLabel(
-      fmt::format("{} particles, {}, {} steps per repeat", scene.particles(), how, bed.timed->steps()));
+      fmt::format("{} particles{}, {} steps per repeat", scene.particles(), how(bed), bed.timed->steps()));
+}
+
+std::string lattice_label(const Bed& bed) {
+  const Plan& plan = bed.made->plan;
+  return fmt::format(" on {} nodes, {}, {}", plan.nodes(),
+                     counted(static_cast<int>(count_of(*bed.engine, "threads"))),
+                     emu::kernels_here(emu::kernel_rule(plan.rule, plan.arch.capacity)).front().name);
 }
 
 // The scene in a program of its own.
@@ -200,20 +192,19 @@ void run_whole(benchmark::State& state, const std::string& group, const BenchSce
   bed_of("");  // of the benchmark before: its memory is needed
   if (too_large(state, scene.particles())) return;
   const auto made = make_case(scene);
-  const auto engine = lattice_engine(*made, options);
+  const auto engine = lattice_of(options)(*made);
   for (auto _ : state) {
     const auto begin = Clock::now();
-    for (uint64_t k = 0; k < steps; ++k) engine->step();
+    engine->advance(steps);
     state.SetIterationTime(since(begin));
   }
   const uint64_t hash = engine->hash();
   if (!same_state(state, group, hash)) return;
   state.counters["particle_steps"] = rate(static_cast<double>(steps * scene.particles()));
-  const emu::LatticeCounters& counters = engine->counters();
-  state.SetLabel(fmt::format(
-      "{} particles, {}, {} steps, {:.0f} % of the node-steps quiet, state hash {:016x}", scene.particles(),
-      counted(engine->threads()), steps,
-      100 * static_cast<double>(counters.quiet_node_steps) / static_cast<double>(counters.node_steps), hash));
+  state.SetLabel(
+      fmt::format("{} particles, {}, {} steps, {:.0f} % of the node-steps quiet, state hash {:016x}",
+                  scene.particles(), counted(static_cast<int>(count_of(*engine, "threads"))), steps,
+                  100 * count_of(*engine, "quiet_node_steps") / count_of(*engine, "node_steps"), hash));
 }
 
 // The same over MPI, a thread per rank, by the program's own clock.
@@ -262,14 +253,18 @@ std::vector<Bench> benches(const BenchLength& length, int threads) {
         add(name,
             fmt::format("the lattice engine, {} particles{}, {}", scene.particles(), damped ? ", damped" : "",
                         cores ? "a thread per core" : "one thread"),
-            [=](benchmark::State& s) { run_lattice_block(s, name, scene, cores ? all : 1, false, seconds); });
+            [=](benchmark::State& s) {
+              run_block(s, name, scene, seconds, lattice_of(on_threads(cores ? all : 1)), lattice_label);
+            });
       }
   for (const bool cores : {false, true}) {
     const std::string name = fmt::format("lattice.cycles_32k.{}", cores ? "all_cores" : "1_thread");
     add(name,
         fmt::format("the same with the timing model, 32000 particles, {}",
                     cores ? "a thread per core" : "one thread"),
-        [=](auto& s) { run_lattice_block(s, name, {}, cores ? all : 1, true, seconds); });
+        [=](auto& s) {
+          run_block(s, name, {}, seconds, lattice_of(on_threads(cores ? all : 1), true), lattice_label);
+        });
   }
   for (const auto& [size, cells] : {sizes[0], sizes[1]})
     for (const bool damped : {false, true})
@@ -284,13 +279,19 @@ std::vector<Bench> benches(const BenchLength& length, int threads) {
                           damped ? ", damped" : "", cores ? "a thread per core" : "one thread"),
               [=](benchmark::State& s) {
                 const RealOptions options{.precision = precision, .threads = cores ? all : 1};
-                const auto kind = [&](auto& made) { return reference_kind(made.scene, made.plan, options); };
-                run_block(s, name, scene, seconds, kind, counted(options.threads) + ", " + Reference::simd());
+                run_block(
+                    s, name, scene, seconds,
+                    [&](const BenchCase& made) {
+                      return reference_kind(made.scene, made.plan, options).make(nullptr, false);
+                    },
+                    [&](const Bed&) { return ", " + counted(options.threads) + ", " + Reference::simd(); });
               });
         }
   add("golden.block_4k", "the golden engine, 4000 particles", [=](auto& s) {
-    const auto kind = [](const BenchCase& made) { return golden_kind(made.scene, made.plan); };
-    run_block(s, "golden.block_4k", {.cells = 10}, seconds, kind, "1 thread");
+    const auto make = [](const BenchCase& made) {
+      return golden_kind(made.scene, made.plan).make(nullptr, false);
+    };
+    run_block(s, "golden.block_4k", {.cells = 10}, seconds, make, [](const Bed&) { return ", 1 thread"; });
   });
   add("systemc.block_2k", "the clocked engine, 2048 particles, 10 steps",
       [](auto& s) { run_systemc_block(s, {.cells = 8}, 10); });

@@ -91,6 +91,18 @@ TEST_F(Programs, WrongCommandLinesAndScenesEndWithTwo) {
   EXPECT_EQ(run(fmt::format("'{}' --help", CUBOCT_RTL)).code, 0);
 }
 
+TEST_F(Programs, RefuseWhatTheirWordsDoNotHoldAtItsKey) {
+  std::ofstream(dir_ / "a.toml") << "name = \"a\"\n[link]\nbits = 500\ncheck = \"retry\"\n";
+  for (const std::string program : {CUBOCT_SYSTEMC, CUBOCT_RTL}) {
+    const Ended e = run("'" + program +
+                        "' '" CUBOCT_SOURCE_DIR "/scenes/lj_block.toml' --arch a.toml --steps 1 --out t.h5");
+    EXPECT_EQ(e.code, 2);
+    EXPECT_EQ(e.err,
+              "a.toml:3:8: a checked beat of 521 bits: the cycle-accurate engines hold at most 512\n"
+              "   3 | bits = 500\n     |        ^\n  hint: use fewer link.bits\n");
+  }
+}
+
 TEST_F(Programs, AFileOfFramesTakesWhatACommandLineCannot) {
   const std::string scene = "'" CUBOCT_SOURCE_DIR "/scenes/lj_block.toml'",
                     program = "'" CUBOCT_SYSTEMC "' " + scene;

@@ -23,18 +23,20 @@ std::string not_built(std::vector<std::string> arguments) {
 TEST(Check, NamesWhatIsNotBuilt) {
   EXPECT_EQ(
       not_built({"check", "scenes/hot_cluster.toml"}),
-      R"(not built                        damping, velocity in the halo record, pair scales, types, PD controllers
+      R"(not built                        damping, velocity in the halo record, pair scales, types, PD controllers, masses
 not built damping                93 bit (of a halo record, 0 of a particle record; velocities, a table, 2 cycles of the pipe)
 not built pair scales            1 bit (of a halo record, 1 of a particle record; types, a table, 2 cycles of the pipe)
 not built types                  0 bit (of a halo record, 1 of a particle record; types)
 not built PD controllers         0 bit (of a halo record, 93 of a particle record; displacements, 3 cycles of the update)
+not built masses                 0 bit (of a halo record, 0 of a particle record; a product per axis, 2 cycles of the update)
 halo record with everything      158 bit (64 as built)
 particle record with everything  288 bit (194 as built)
 )");
   EXPECT_EQ(not_built({"check", "scenes/sheet.toml"}),
-            R"(not built                        pair scales, PD controllers, third axis
+            R"(not built                        pair scales, PD controllers, masses, third axis
 not built pair scales            2 bit (of a halo record, 0 of a particle record; types, a table, 2 cycles of the pipe)
 not built PD controllers         0 bit (of a halo record, 58 of a particle record; displacements, 3 cycles of the update)
+not built masses                 0 bit (of a halo record, 0 of a particle record; a product per axis, 2 cycles of the update)
 not built third axis             51 bit (of a halo record, 59 of a particle record; 2 of 8 phases, and all that works along z)
 halo record with everything      153 bit (100 as built)
 particle record with everything  276 bit (130 as built)
@@ -55,7 +57,7 @@ TEST(Check, CountsTheCellsThatTheLatticeLacks) {
                                            "[[particle]]\nposition = [20.0, 20.0, 20.0]\n"
                                            "[run]\ndt = 0.001\nsteps = 20\n";
   const Answer answer = bench.cuboct({"check", bench.path("two.toml"), "--machine"});
-  EXPECT_NE(answer.out.find("PD controllers, empty nodes\n"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("PD controllers, masses, empty nodes\n"), std::string::npos) << answer.out;
   EXPECT_NE(
       answer.out.find("not built empty nodes            1277 cells (of 1331 cells of the bounding box are "
                       "not in the lattice)\n"),
@@ -99,9 +101,10 @@ TEST(Check, TellsPhysics) {
 
 TEST(Check, NamesItInJsonToo) {
   EXPECT_EQ(not_built({"check", "scenes/coupon.toml", "--json"}),
-            R"(  "not_built": {"value": "pair scales, PD controllers"},
+            R"(  "not_built": {"value": "pair scales, PD controllers, masses"},
   "not_built_pair_scales": {"value": 2, "unit": "bit", "note": "of a halo record, 0 of a particle record; types, a table, 2 cycles of the pipe"},
   "not_built_PD_controllers": {"value": 0, "unit": "bit", "note": "of a halo record, 87 of a particle record; displacements, 3 cycles of the update"},
+  "not_built_masses": {"value": 0, "unit": "bit", "note": "of a halo record, 0 of a particle record; a product per axis, 2 cycles of the update"},
   "halo_record_with_everything": {"value": 153, "unit": "bit", "note": "151 as built"},
   "particle_record_with_everything": {"value": 276, "unit": "bit", "note": "189 as built"},
 )");

@@ -147,6 +147,24 @@ TEST_F(LimitsTest, ABoxOfTooManyCells) {
             ":13:8: the periodic box is 4e+11 cells of 2.5 m long: at most 1e+07 can be built\n");
 }
 
+// Of 3375 nodes, 195 bits each.
+TEST_F(LimitsTest, APortWiderThanRtlHas) {
+  const std::string scene =
+      file("scene.toml", kHead +
+                             "[[particle]]\nposition = [0, 0, 0]\n[[particle]]\nposition = [28, 28, 28]\n"
+                             "[run]\ndt = 0.001\nsteps = 10\n");
+  const std::string arch = file("arch.toml", "name = \"a\"\n[plan]\ncarry = [\"empty_nodes\"]\n");
+  const Answer answer =
+      bench_.cuboct({"emit", scene, "--arch", arch, "--out", bench_.path("rtl")}, 0, kSmall);
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(std::regex_match(
+      answer.err,
+      std::regex(".*scene.toml:8:1: RTL: the width of the lattice's observation port is [0-9]+: at "
+                 "most 524288 can be emitted\n   8 \\| \\[\\[particle\\]\\]\n     \\| \\^\n")))
+      << answer.err;
+  EXPECT_FALSE(std::filesystem::exists(bench_.path("rtl")));
+}
+
 TEST_F(LimitsTest, ListsOfSteps) {
   const std::string scene = kHead + kPair + "[run]\ndt = 0.001\nsteps = 1000000000000\n";
   const auto run = [&](const std::string& text, std::vector<std::string> more) {

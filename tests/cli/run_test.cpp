@@ -191,8 +191,9 @@ TEST(Run, EndsCleanlyOnCtrlC) {
 
 TEST(Run, GoesOnWhereCtrlCLeftIt) {
   const Bench bench(false);
-  const std::vector<std::string> plain{"run",   "scenes/coupon.toml", "--quiet", "--steps",
-                                       "10000", "--frame-every",      "2500",    "--out"};
+  const std::vector<std::string> plain{
+      "run",  "scenes/coupon.toml", "--quiet", "--steps", "6000", "--frame-every",
+      "1500", "--threads",          "1",       "--out"};
   const auto run = [&](const std::string& out, const std::vector<std::string>& more, double interrupt = 0) {
     std::vector<std::string> arguments = plain;
     arguments.push_back(bench.path(out));

@@ -53,8 +53,8 @@ TEST(View, FollowsTheRunAndEndsAsItsReport) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   });
-  const Answer ran =
-      bench.cuboct({"run", "scenes/coupon.toml", "--steps", "400", "--view", "--out", bench.path("run")});
+  const Answer ran = bench.cuboct({"run", "scenes/coupon.toml", "--steps", "400", "--frame-every", "400",
+                                   "--view", "--out", bench.path("run")});
   reader.request_stop();
   reader.join();
   EXPECT_EQ(ran.code, 0) << ran.err;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a position has below the bits that pairs see is kept, wherever its particle is stored.
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -133,12 +134,15 @@ TEST(FixedWidths, BeyondTheEnginesAreRefused) {
     try {
       gpu::make_fixed_engine(c.scene, c.setup.plan, c.setup.initial, {});
     } catch (const InputError& e) {
-      return std::string(e.what());
+      return fmt::format("{}: {}", fmt::join(e.keys(), ", "), e.what());
     }
     return std::string("accepted");
   };
-  EXPECT_EQ(refusal(31, 8), "position_frac = 31: the gpu engine's positions hold 30 bits of a cell at most");
-  EXPECT_EQ(refusal(20, 33), "guard = 33: the gpu engine keeps 32 bits of a position beside those at most");
+  EXPECT_EQ(
+      refusal(31, 8),
+      "widths.position_frac: position_frac = 31: the gpu engine's positions hold 30 bits of a cell at most");
+  EXPECT_EQ(refusal(20, 33),
+            "widths.guard: guard = 33: the gpu engine keeps 32 bits of a position beside those at most");
 }
 
 }  // namespace

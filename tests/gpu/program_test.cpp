@@ -313,6 +313,19 @@ TEST_F(GpuProgram, RefusesWhatItCannotDo) {
                  "--devices is an option of the gpu engine, not of golden\n");
 }
 
+// A table that no block of threads holds.
+TEST_F(GpuProgram, RefusesAtTheKeyOfTheArch) {
+  const std::string arch = bench_.path("wide.toml");
+  std::ofstream(arch) << "name = \"wide\"\n[table]\nindex_bits = 16\n";
+  const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--arch", arch, "--steps", "1"});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(answer.err.starts_with(arch + ":3:14: the rule's tables take ")) << answer.err;
+  EXPECT_NE(answer.err.find("\n   3 | index_bits = 16\n     |              ^\n  hint: fewer of the arch's "
+                            "table.index_bits\n"),
+            std::string::npos)
+      << answer.err;
+}
+
 TEST_F(GpuProgram, SaysWhatIsMissing) {
   std::filesystem::remove(bench_.path("bin/cuboct-gpu"));
   const std::string text =

@@ -208,6 +208,7 @@ TEST(LinkCode, RefusesABeatThatTheEnginesDoNotHold) {
     emu::check_words(plan);
     FAIL();
   } catch (const InputError& e) {
+    EXPECT_EQ(e.keys(), std::vector<std::string>{"link.bits"});
     EXPECT_STREQ(e.what(),
                  "a checked beat of 521 bits: the cycle-accurate engines hold at most 512\n"
                  "  hint: use fewer link.bits");

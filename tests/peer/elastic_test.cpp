@@ -54,21 +54,17 @@ TEST(Elastic, LennardJonesConstantsAreThoseOfLammps) {
     // Sites stand a quarter of a pitch inside the box, none on its border.
     const Fcc fcc{pitch, axes, Vec3::Constant(0.25 * pitch)};
     const Matrix6 expected = in_axes(sums, axes.transpose()), simulated = in_axes(strained, axes.transpose());
-    for (int axis = 0; axis < 3; ++axis) {
-      Vec3 stretch = Vec3::Ones();
-      stretch[axis] += kStrain;
-      Mat3 slope = lammps_stress(fcc, size, stretch);
-      stretch[axis] = 1 - kStrain;
-      slope = (slope - lammps_stress(fcc, size, stretch)) / (2 * kStrain);
-      for (int row = 0; row < 3; ++row, ++compared) {
-        // The central difference errs by the strain's square, times third over first derivatives: some
-        // hundred.
-        EXPECT_NEAR(slope(row, row), expected(row, axis), 1e-6 * sums(0, 0)) << row << axis;
-        EXPECT_NEAR(slope(row, row), simulated(row, axis), 1e-6 * sums(0, 0)) << row << axis;
-      }
+    // Along x: what stretches along the other axes tell is the same, or C11 and C12 again.
+    const Mat3 slope =
+        (lammps_stress(fcc, size, {1 + kStrain, 1, 1}) - lammps_stress(fcc, size, {1 - kStrain, 1, 1})) /
+        (2 * kStrain);
+    for (int row = 0; row < 3; ++row, ++compared) {
+      // The central difference errs by the strain's square, times third over first derivatives: some hundred.
+      EXPECT_NEAR(slope(row, row), expected(row, 0), 1e-6 * sums(0, 0)) << row;
+      EXPECT_NEAR(slope(row, row), simulated(row, 0), 1e-6 * sums(0, 0)) << row;
     }
   }
-  EXPECT_EQ(compared, 18);
+  EXPECT_EQ(compared, 6);
 }
 
 }  // namespace

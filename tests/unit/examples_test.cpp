@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
 #include "hw/setup.h"
 #include "model/contract/golden.h"
 #include "model/contract/neighbours.h"
+#include "model/real/reference.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {
@@ -45,7 +47,7 @@ Outcome run(const MadeSetup& setup, int steps) {
 }
 
 TEST(Examples, RunOnEveryArch) {
-  for (const char* name : {"hot_cluster", "two_types", "undamped_block", "lj_block", "coupon"}) {
+  for (const char* name : {"hot_cluster", "two_types", "undamped_block", "lj_block", "coupon", "composite"}) {
     const Scene scene = read_scene(kRoot + "/scenes/" + name + ".toml");
     for (const char* arch : {"default", "small", "fast"}) {
       SCOPED_TRACE(std::string(name) + " on " + arch);
@@ -67,6 +69,34 @@ TEST(Examples, RunToTheirEnd) {
       EXPECT_GT(outcome.corner, 0U);
     }
   }
+}
+
+// Each boundary of the composite passes on 2 Z/(Z + Z') of the speed, Z of the side that the wave comes from.
+TEST(Examples, TheCompositePassesOnWhatItsImpedancesSay) {
+  const Scene scene = read_scene(kRoot + "/scenes/composite.toml");
+  ASSERT_EQ(scene.rule.laws(), 3U);
+  ASSERT_FALSE(scene.rule.masses.empty());
+  const double ratio = std::sqrt(16 * 11.34 / (2.8 * 1.41));  // of the lead's Z to the acetal's
+  const double entered = 2 / (1 + ratio), left = entered * 2 * ratio / (1 + ratio);
+  Reference run(scene.rule, scene.body, scene.periodic);
+  double in_lead = 0, behind = 0;
+  uint64_t in_lead_steps = 0, behind_steps = 0;
+  const auto speed = [&](const std::string& name) {
+    const auto probe = std::ranges::find(scene.probes, name, &Probe::name);
+    double sum = 0;
+    for (const uint32_t id : probe->set.ids) sum += run.body().v[id].x();
+    return sum / static_cast<double>(probe->set.ids.size());
+  };
+  for (uint64_t step = 1; step <= scene.steps; ++step) {
+    run.step();
+    const double time = static_cast<double>(step) * scene.rule.dt;
+    if (time > 16e-6 && time < 27e-6) in_lead += speed("in_lead"), ++in_lead_steps;
+    if (time > 28e-6) behind += speed("behind"), ++behind_steps;
+  }
+  ASSERT_GT(in_lead_steps, 200U);
+  ASSERT_GT(behind_steps, 40U);
+  EXPECT_NEAR(in_lead / static_cast<double>(in_lead_steps), entered, 0.01 * entered);
+  EXPECT_NEAR(behind / static_cast<double>(behind_steps), left, 0.01 * left);
 }
 
 // The benchmark's claims: so many particles, 18 neighbours inside the cutoff, and migration.

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "hw/arch.h"
+#include "hw/left_out.h"
 #include "hw/setup.h"
 #include "model/contract/golden.h"
 #include "model/scene/scene.h"
@@ -109,14 +110,59 @@ TEST(Carry, ChangesNoBit) {
     }
     // What the scene has already changes nothing: types of the sheet, the third axis and the nodes of the
     // block.
-    EXPECT_GE(other, 5);
+    EXPECT_GE(other, 6);
   }
+}
+
+// What is said to be saved is what the plan that carries the part has more.
+TEST(LeftOut, IsTheDifferenceToThePlanThatCarriesIt) {
+  int parts = 0;
+  for (const Scene& scene : {sheet(), block_scene({.size = {2, 2, 2}, .jitter = 0.05, .speed = 0.1})}) {
+    const Plan plain = plan_of(scene, Arch{});
+    const LeftOut left = left_out(plain);
+    for (const LeftOut::Part& part : left.parts) {
+      Arch arch;
+      arch.carry[part.index] = true;
+      arch.carry.types = arch.carry.types || arch.carry.scales;
+      const Plan plan = plan_of(scene, arch);
+      EXPECT_NE(plan.hash, plain.hash);
+      EXPECT_EQ(plan.words.halo_bits - plain.words.halo_bits, part.halo_bits) << part.index;
+      EXPECT_EQ(plan.words.particle_bits - plain.words.particle_bits, part.particle_bits) << part.index;
+      ++parts;
+    }
+    Arch everything;
+    everything.carry = Carry::everything();
+    const Plan all = plan_of(scene, everything);
+    EXPECT_EQ(all.words.particle_bits, left.all.particle_bits);
+    EXPECT_EQ(all.lattice.size(), left.box);
+    EXPECT_EQ(all.lattice.size() - plain.lattice.size(), left.missing);
+    EXPECT_TRUE(left_out(all).parts.empty());
+  }
+  EXPECT_GE(parts, 7);
+}
+
+TEST(LeftOut, LooserFormatsAreThoseOfATenthOfTheAccuracy) {
+  Scene scene = read_scene(kRoot + "/scenes/two_types.toml");
+  const Plan plan = plan_of(scene, Arch{});
+  const auto looser = looser_formats(scene, plan);
+  ASSERT_TRUE(looser);
+  scene.accuracy *= 10;
+  const Plan other = plan_of(scene, Arch{});
+  EXPECT_EQ(looser->accuracy, scene.accuracy);
+  EXPECT_EQ(looser->words.halo_bits, other.words.halo_bits);
+  EXPECT_EQ(looser->words.particle_bits, other.words.particle_bits);
+  EXPECT_LT(looser->words.halo_bits, plan.words.halo_bits);
+  Arch asked;
+  asked.widths.guard = 12;
+  EXPECT_FALSE(looser_formats(scene, plan_of(scene, asked)));
+  const Scene narrow = read_scene(kRoot + "/scenes/coupon.toml");  // the least formats are exact enough
+  EXPECT_FALSE(looser_formats(narrow, plan_of(narrow, Arch{})));
 }
 
 TEST(Carry, IsReadFromArchFiles) {
   const Arch arch = read_arch(kRoot + "/scenes/archs/everything.toml");
   EXPECT_TRUE(arch.carry.damping && arch.carry.scales && arch.carry.types && arch.carry.pd &&
-              arch.carry.third_axis && arch.carry.empty_nodes);
+              arch.carry.masses && arch.carry.third_axis && arch.carry.empty_nodes);
   try {
     parse_arch("name = \"a\"\n[plan]\ncarry = [\"damping\", \"third_axes\"]\n", "a.toml");
     FAIL();

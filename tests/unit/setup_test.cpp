@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <regex>
 
 #include "model/base/error.h"
 #include "model/scene/config.h"
@@ -17,11 +18,14 @@ const std::string kRoot = CUBOCT_SOURCE_DIR;
 
 Scene example(const std::string& name) { return read_scene(kRoot + "/scenes/" + name + ".toml"); }
 
-std::string error_of(const std::function<void()>& act) {
+std::string what_of(const InputError& error) { return error.what(); }
+
+std::string error_of(const std::function<void()>& act,
+                     const std::function<std::string(const InputError&)>& text = what_of) {
   try {
     act();
   } catch (const InputError& error) {
-    return error.what();
+    return text(error);
   }
   return "no error";
 }
@@ -78,11 +82,13 @@ void expect_place(const std::string& more, const std::string& place, const std::
                   const std::string& arch = {}, const std::string& stage = {}) {
   const std::string grips = read_config_text(kRoot + "/scenes/boards/grips.toml");
   const std::string text = more.starts_with('[') ? grips + more : more;
-  const std::string what = error_of([&] {
+  const auto refused = [&] {
     plan_of(parse_scene(text, "s.toml", {.begins = true, .stage = stage}),
             parse_arch("name = \"a\"\n" + arch, "a.toml"));
-  });
+  };
+  const std::string what = error_of(refused), told = error_of(refused, &InputError::told);
   EXPECT_TRUE(what.starts_with(place + ": " + message)) << what;
+  EXPECT_TRUE(std::regex_search(told, std::regex("\n +[0-9]+ \\| [^\n]+\n +\\| +\\^"))) << told;
 }
 
 std::string with(const std::string& from, const std::string& to) {
@@ -120,6 +126,26 @@ TEST(Setup, RefusalsStandAtTheirKeys) {
       "[[material]]\nname = \"m\"\n[[material]]\nname = \"n\"\nregion = { shape = \"half_space\", point = "
       "[2.4, 0, 0], normal = [-1, 0, 0] }\n[[bond]]\nbetween = [\"n\", \"m\"]\nstrength = 1e-6\n",
       "s.toml:54:12", "a pair strength is ");
+  // Masses too far apart: at the heavy one's own, or at the one that it takes from the file.
+  const std::string other =
+      "[[material]]\nname = \"m\"\n[[material]]\nname = \"n\"\nregion = { shape = \"half_space\", point = "
+      "[2.4, 0, 0], normal = [-1, 0, 0] }\n";
+  expect_place(other + "mass = 1025\n", "s.toml:52:8", "a particle of 'n/right' is 1025 times as heavy");
+  expect_place(with("mass = 1.0\n", "mass = 1025.0\n") + other + "mass = 1\n", "s.toml:4:8",
+               "a particle of 'm");
+  // A particle too fast: where it is given the most; what a constraint leads is given nothing.
+  const std::string fast = "[[velocity]]\nuniform = [0, 500, 0]\n";
+  expect_place("[[velocity]]\nuniform = [0, 0.1, 0]\n" + fast, "s.toml:49:1", "particle ");
+  expect_place(
+      "[[velocity]]\nuniform = [0, 9e9, 0]\nregion = { shape = \"half_space\", point = [0.4, 0, 0], "
+      "normal = [1, 0, 0] }\n" +
+          fast,
+      "s.toml:50:1", "particle ");
+  expect_place("[[velocity]]\nthermal_speed = 500\nseed = 2\n", "s.toml:47:1", "particle ");
+  expect_place(
+      "[[particle]]\nposition = [1.5, 1.5, 3]\nvelocity = [0.1, 0, 0]\n"
+      "[[particle]]\nposition = [1.5, 1.5, 4]\nvelocity = [0, 0, 700]\n",
+      "s.toml:52:12", "particle ");
   // Of the machine: at the arch's.
   expect_place(with("steps = 24", "steps = 24 "), "a.toml:3:9", "brick = [8, 8, 8]",
                "[node]\nbrick = [8, 8, 8]\n");
