@@ -105,7 +105,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-void take(const std::vector<const Evaluation*>& done, Fit& fit) {
+// `begun`: generations before this round.
+void take(const std::vector<const Evaluation*>& done, size_t begun, Fit& fit) {
   count(done, fit);
   for (const Evaluation* evaluation : done) {
     fit.errors.push_back(evaluation->error);
@@ -113,21 +114,20 @@ void take(const std::vector<const Evaluation*>& done, Fit& fit) {
   }
   fit.best_errors.push_back(fit.best->error);
   const double middle = median({fit.errors.end() - static_cast<ptrdiff_t>(done.size()), fit.errors.end()});
-  fit.least_medians.push_back(fit.least_medians.empty() ? middle
-                                                        : std::min(middle, fit.least_medians.back()));
+  const bool first = fit.least_medians.size() == begun;
+  fit.least_medians.push_back(first ? middle : std::min(middle, fit.least_medians.back()));
 }
 
-// Whether over the last `patience` generations neither the best error nor the least median of a generation
-// fell by the threshold: the median falls while the search still gathers about a law, the best long after it
-// has no better.
-bool converged(const Fit& fit, const Search& search) {
+// Whether over the last `patience` generations of a round, which began after `begun` of them, neither the
+// best error nor the least median of a generation fell by the threshold: the median falls while the search
+// still gathers about a law, the best long after it has no better.
+bool stands(const Fit& fit, size_t begun, const Search& search) {
   const size_t now = fit.best_errors.size();
-  if (now <= search.patience) return false;
-  const size_t before = now - search.patience;
-  const auto stands = [&](const std::vector<double>& least) {
-    return least[now - 1] > (1 - search.threshold) * least[before - 1];
+  if (now <= begun + search.patience) return false;
+  const auto stands_still = [&](const std::vector<double>& least) {
+    return least[now - 1] > (1 - search.threshold) * least[now - 1 - search.patience];
   };
-  return stands(fit.best_errors) && stands(fit.least_medians);
+  return stands_still(fit.best_errors) && stands_still(fit.least_medians);
 }
 
 // What the run that came closest says of the target.
@@ -143,6 +143,21 @@ std::vector<std::string> notes_of(const FitStudy& study, const Fit& fit) {
                     "0; a longer run may help",
                     largest, last));
   return notes;
+}
+
+void search_round(const FitStudy& study, Runner& runner, double spread, const std::function<bool()>& over,
+                  const FitOptions& options, Fit& fit) {
+  const Search& search = study.search;
+  Evolution evolution(fit.best->sample, fit.best->error, search.samples, spread, search.seed);
+  const size_t begun = fit.best_errors.size();
+  while (!over() && !stands(fit, begun, search)) {
+    const auto tests = runner.all(
+        evolution.ask(),
+        fmt::format("generation {}, error {:.3g} %", fit.best_errors.size() + 1, 100 * fit.best->error));
+    take(tests, begun, fit);
+    options.see(fit);
+    evolution.tell({fit.errors.end() - search.samples, fit.errors.end()});
+  }
 }
 
 void tell_apart(const FitStudy& study, Runner& runner, Fit& fit) {
@@ -185,19 +200,18 @@ Fit run_fit(const FitStudy& study, Evaluations& evaluations, const FitOptions& o
     throw InputError(
         fmt::format("the scene cannot run the law that modulus and strength give: {}", fit.best->stop));
   options.see(fit);
-  Evolution evolution(fit.best->sample, fit.best->error, search.samples, search.spread, search.seed);
-  const auto ends = [&] {
+  // The errors of a specimen that slips are rough: a good law may stand alone among samples that lie far
+  // apart. So each round looks about the best law within half the distance, until one finds nothing better.
+  const auto over = [&] {
     if (fit.best->error <= search.goal) return fit.end = End::goal, true;
-    if (converged(fit, search)) return fit.end = End::converged, true;
-    return false;
+    return fit.best_errors.size() >= search.generations;
   };
-  while (!ends() && fit.best_errors.size() < search.generations) {
-    const auto tests = runner.all(
-        evolution.ask(),
-        fmt::format("generation {}, error {:.3g} %", fit.best_errors.size() + 1, 100 * fit.best->error));
-    take(tests, fit);
-    options.see(fit);
-    evolution.tell({fit.errors.end() - search.samples, fit.errors.end()});
+  double spread = search.spread;
+  for (bool gains = true; gains && !over(); spread /= 2) {
+    const double before = fit.best->error;
+    search_round(study, runner, spread, over, options, fit);
+    gains = fit.best->error < (1 - search.threshold) * before;
+    if (!gains && !over()) fit.end = End::converged;
   }
   fit.notes = notes_of(study, fit);
   tell_apart(study, runner, fit);

@@ -19,7 +19,7 @@ struct Fit {
   const Evaluation* best = nullptr;     // so far
   std::vector<double> errors;  // of all samples of the search, in their order; the start is not among them
   std::vector<double> best_errors;    // after each generation
-  std::vector<double> least_medians;  // of the errors of a generation's samples, so far
+  std::vector<double> least_medians;  // of the errors of a generation's samples, so far in its round
   End end = End::generations;
   size_t evaluations = 0;
   uint64_t particle_steps = 0;
