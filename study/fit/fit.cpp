@@ -24,6 +24,9 @@ constexpr double kMove = 0.02;  // of a parameter's bounds, for slopes
 // A curve that is off by less is equal, where the fit's own error is smaller.
 constexpr double kLeastDifference = 0.005;
 
+// A fit that is further off is told to be none.
+constexpr double kFar = 0.05;
+
 double thread_seconds() {
   timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -134,6 +137,10 @@ bool stands(const Fit& fit, size_t begun, const Search& search) {
 std::vector<std::string> notes_of(const FitStudy& study, const Fit& fit) {
   std::vector<std::string> notes;
   const double last = study.target.strain.back(), largest = fit.best->largest_strain;
+  if (fit.best->error > kFar)
+    notes.push_back(fmt::format(
+        "the best law is still {:.3g} % off: perhaps no law within these bounds makes such a curve",
+        100 * fit.best->error));
   if (!fit.best->stop.empty())
     notes.push_back(fmt::format("the run of the best law ended early: {}", line_text(fit.best->stop)));
   if (largest < (1 - 1e-3) * last)

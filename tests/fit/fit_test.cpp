@@ -57,11 +57,32 @@ TEST_F(SmallFit, IsNotMixedWithAnother) {
   const std::string target = data();
   const FitStudy one = read_fit(study(target, "generations = 0\n"));
   Evaluations evaluations(directory("out"), one);
-  fit(one, evaluations);
+  const Fit start = fit(one, evaluations);  // of a search of no generation
+  ASSERT_FALSE(start.notes.empty());
+  EXPECT_NE(start.notes[0].find(" % off: perhaps no law"), std::string::npos);
   const FitStudy longer = read_fit(study(target, "generations = 9\ngoal = 0.5\n"));
   EXPECT_EQ(Evaluations(path("out"), longer).size(), evaluations.size());
   const FitStudy other = read_fit(study(target, "generations = 0\nseed = 2\n"));
   EXPECT_THROW(Evaluations(path("out"), other), InputError);
+}
+
+// The fixed rule and doubles, of the same start: they part by the rounding of the rule.
+TEST_F(SmallFit, RunsInMotionOnEitherEngine) {
+  const auto tested = [&](const std::string& engine) {
+    const std::string file = path(engine + ".toml");
+    std::ofstream(file) << "scene = \"" CUBOCT_SOURCE_DIR "/scenes/studies/fit_bar_scene.toml\"\nengine = \""
+                        << engine
+                        << "\"\nreach = 1.4142135\n[change.run]\nduration = \"0.2 ms\"\nstatic = false\n"
+                        << "[target]\nstrain = [0, 0.005, 0.012]\nstress = \"[0, 15, 30] MPa\"\n";
+    const FitStudy study = read_fit(file);
+    const Tested tested = run_test(study.test, points_of(draw(study.start, study.scale)));
+    EXPECT_EQ(tested.stop, "");
+    EXPECT_GT(tested.particle_steps, 191U * 1000);
+    return first_passage(tested.strain, tested.stress, study.target.even_strain);
+  };
+  const std::vector<double> fixed = tested("lattice"), doubles = tested("reference");
+  EXPECT_GT(doubles.back(), 1e7);
+  EXPECT_LT(curve_error(fixed, doubles), 0.01);
 }
 
 // A bar that breaks, one whose law is refused, and one that finds no rest have errors all the same.
