@@ -27,6 +27,9 @@ constexpr double kLeastDifference = 0.005;
 // A fit that is further off is told to be none.
 constexpr double kFar = 0.05;
 
+// A pressure at rest, over the strength, that counts as none.
+constexpr double kAtRest = 0.01;
+
 double thread_seconds() {
   timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -141,6 +144,13 @@ std::vector<std::string> notes_of(const FitStudy& study, const Fit& fit) {
     notes.push_back(fmt::format(
         "the best law is still {:.3g} % off: perhaps no law within these bounds makes such a curve",
         100 * fit.best->error));
+  const double pressure = packing_pressure(study, parameters_of(study, fit.best->sample));
+  if (std::abs(pressure) > kAtRest * study.target.strength)
+    notes.push_back(
+        fmt::format("the undeformed packing is under a pressure of {:.3g} Pa with the best law: its reach of "
+                    "{:g} pitches "
+                    "takes in second neighbours",
+                    pressure, study.scale.reach));
   if (!fit.best->stop.empty())
     notes.push_back(fmt::format("the run of the best law ended early: {}", line_text(fit.best->stop)));
   if (largest < (1 - 1e-3) * last)

@@ -2,18 +2,29 @@
 #include "study/fit/packing_fit.h"
 
 #include "model/contract/law.h"
+#include "model/solid/dynamical_matrix.h"
 #include "study/fit/curve_error.h"
 #include "study/fit/evolution.h"
 #include "study/fit/packing_pull.h"
 
 namespace cuboct::fit {
 
+namespace {
+
+std::shared_ptr<const PairLaw> law_of(const FitStudy& study, const Parameters& parameters) {
+  const LawPoints points = points_of(draw(parameters, study.scale));
+  return spline_law(points.r, points.f, Interpolation::monotone_cubic, study.scale.pitch / 2);
+}
+
+}  // namespace
+
 std::vector<double> packing_curve(const FitStudy& study, const Parameters& parameters,
                                   const std::vector<double>& strains) {
-  const LawPoints points = points_of(draw(parameters, study.scale));
-  const double pitch = study.scale.pitch;
-  const auto law = spline_law(points.r, points.f, Interpolation::monotone_cubic, pitch / 2);
-  return packing_stress(*law, pitch, study.axes, strains);
+  return packing_stress(*law_of(study, parameters), study.scale.pitch, study.axes, strains);
+}
+
+double packing_pressure(const FitStudy& study, const Parameters& parameters) {
+  return fcc_pressure(*law_of(study, parameters), study.scale.pitch);
 }
 
 Parameters fit_packing(const FitStudy& study) {

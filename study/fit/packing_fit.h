@@ -10,6 +10,9 @@ namespace cuboct::fit {
 std::vector<double> packing_curve(const FitStudy& study, const Parameters& parameters,
                                   const std::vector<double>& strains);
 
+// Pa, of the undeformed packing.
+double packing_pressure(const FitStudy& study, const Parameters& parameters);
+
 // The law whose packing comes nearest to the target up to its largest stress, by the same search as that of
 // virtual tests, in about a second. Deterministic.
 Parameters fit_packing(const FitStudy& study);
