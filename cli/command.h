@@ -22,6 +22,7 @@ void add_crosscheck(CLI::App& app, int& exit_code);
 void add_emit(CLI::App& app, int& exit_code);
 void add_synth(CLI::App& app, int& exit_code);
 void add_explore(CLI::App& app, int& exit_code);
+void add_fit(CLI::App& app, int& exit_code);
 void add_elastic(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 void add_picture(CLI::App& app, int& exit_code);

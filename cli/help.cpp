@@ -30,6 +30,7 @@ constexpr std::array kEntries{
     Entry{"make the hardware", "synth", "cuboct synth out/rtl --target ecp5-25"},
     Entry{"study settings", "elastic", "cuboct elastic scenes/lj_block.toml"},
     Entry{"study settings", "explore", "cuboct explore scenes/studies/block.toml"},
+    Entry{"study settings", "fit", "cuboct fit scenes/studies/fit_bar.toml"},
     Entry{"study settings", "stability", "cuboct stability scenes/undamped_block.toml"},
 };
 

@@ -32,6 +32,10 @@ void add_explore(CLI::App& app, int&) { add_left_out(app, "explore", "studies", 
 void add_stability(CLI::App& app, int&) { add_left_out(app, "stability", "studies", "CUBOCT_STUDIES"); }
 #endif
 
+#ifndef CUBOCT_HAS_FITS
+void add_fit(CLI::App& app, int&) { add_left_out(app, "fit", "fits", "CUBOCT_FITS"); }
+#endif
+
 #ifndef CUBOCT_HAS_SYNTH
 void add_synth(CLI::App& app, int&) { add_left_out(app, "synth", "synthesis", "CUBOCT_SYNTH"); }
 void emit_fitted(const Input&, const std::string&, const std::string&, uint64_t, const BoardChoice&,

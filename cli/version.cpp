@@ -28,6 +28,11 @@ constexpr const char* kStudies = "built in";
 #else
 constexpr const char* kStudies = "left out";
 #endif
+#ifdef CUBOCT_HAS_FITS
+constexpr const char* kFits = "built in";
+#else
+constexpr const char* kFits = "left out";
+#endif
 #ifdef CUBOCT_HAS_SYNTH
 constexpr const char* kSynthesis = "built in";
 #else
@@ -46,6 +51,7 @@ std::string version_text() {
                    : row.ranks.empty()  ? "built in"
                                         : shared(row.ranks));
   line("studies", kStudies);
+  line("fits", kFits);
   line("synthesis", kSynthesis);
   out.pop_back();  // CLI11 ends the line
   return out;

@@ -26,13 +26,14 @@ lacks() {
   local target
   for target; do if grep -qx "$target" "$work/targets"; then echo "there is a target $target"; exit 1; fi; done
 }
-parts=(_cuboct cuboct_ranks cuboct_study cuboct_synth cuboct-systemc cuboct-rtl unit_tests)
+parts=(_cuboct cuboct_fit cuboct_ranks cuboct_study cuboct_synth cuboct-systemc cuboct-rtl unit_tests)
 
-configure "$root" -DCUBOCT_{CCACHE,MOLD,CUDA,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF
+configure "$root" -DCUBOCT_{CCACHE,MOLD,CUDA,FITS,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF
 says "The gpu engine: without its program cuboct-gpu, as this build has sanitizers or CUBOCT_CUDA is OFF"
 says "The lattice engine: on one rank alone, as CUBOCT_MPI is OFF"
 says "Python: left out, as CUBOCT_PYTHON is OFF"
 says "Studies: left out, as CUBOCT_STUDIES is OFF"
+says "Fits: left out, as CUBOCT_FITS is OFF"
 says "Synthesis: left out, as CUBOCT_SYNTH is OFF"
 says "The systemc and rtl engines: without their programs, as CUBOCT_SYSTEMC is OFF"
 says "Tests: left out, as CUBOCT_TESTS is OFF"
@@ -55,6 +56,7 @@ says "The gpu engine: without its program cuboct-gpu, as no CUDA compiler (nvcc)
 says "The lattice engine: on one rank alone, as MPI (libopenmpi-dev) is not found"
 says "Python: left out, as Python 3.11 (python3-dev) or pybind11 (pybind11-dev) is not found"
 says "Studies: left out, as SQLite (libsqlite3-dev) is not found"
+says "Fits: left out, as studies are"
 says "The systemc and rtl engines: without their programs, as SystemC (libsystemc-dev) is not found"
 says "Tests: left out, as GoogleTest (libgtest-dev) is not found"
 says "The pages as HTML: without the target docs, as mkdocs (Debian package mkdocs) is not found"
@@ -65,12 +67,13 @@ if command -v ccache >/dev/null; then
 else
   says "ccache: not used, as it is not found"
 fi
-lacks _cuboct cuboct_ranks cuboct_study cuboct-systemc cuboct-rtl unit_tests docs
+lacks _cuboct cuboct_fit cuboct_ranks cuboct_study cuboct-systemc cuboct-rtl unit_tests docs
 
-configure "$work/bare" -DCUBOCT_SYSTEMC=OFF -DCMAKE_CXX_COMPILER_LAUNCHER=env -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=bfd -DCUBOCT_MKDOCS=/bin/true
+configure "$work/bare" -DCUBOCT_SYSTEMC=OFF -DCMAKE_DISABLE_FIND_PACKAGE_pagmo=ON -DCMAKE_CXX_COMPILER_LAUNCHER=env -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=bfd -DCUBOCT_MKDOCS=/bin/true
 says "Compiler launcher, as given: env"
 says "Linker, as given: -fuse-ld=bfd"
 says "Studies: without their page, as study/web/node_modules is missing: run tools/setup, or npm ci --ignore-scripts in study/web"
+says "Fits: left out, as pagmo (libpagmo-dev) is not found"
 has cuboct cuboct_study unit_tests study_tests docs
-lacks web_tests systemc_tests program_tests link_rtl_tests
+lacks cuboct_fit fit_tests web_tests systemc_tests program_tests link_rtl_tests
 echo "three ways to configure"

@@ -347,6 +347,9 @@ TEST_F(NothingLost, NoCommandWritesIntoADirectoryInUse) {
       {"explore", "scenes/studies/block.toml", "--no-speed", "--out", dir()},
       {"stability", "scenes/undamped_block.toml", "--maps", dir()},
 #endif
+#ifdef CUBOCT_HAS_FITS
+      {"fit", "scenes/studies/fit_bar.toml", "--out", dir()},
+#endif
       {"report", dir()},
       {"picture", dir()}};
   const std::string expected = fmt::format(

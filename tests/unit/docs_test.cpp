@@ -18,6 +18,9 @@
 #ifdef CUBOCT_HAS_STUDIES
 #include "study/study.h"
 #endif
+#ifdef CUBOCT_HAS_FITS
+#include "study/fit/fit_study.h"
+#endif
 
 namespace cuboct {
 namespace {
@@ -189,6 +192,39 @@ TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
   expect_documented(page, asked);
   const auto named = documented(page);
   EXPECT_GT(named.size(), 40U);
+  for (const std::string& key : named)
+    EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
+}
+#endif
+
+#ifdef CUBOCT_HAS_FITS
+TEST(Docs, EveryFitKeyIsDocumentedAndViceVersa) {
+  const std::string page = text_of(kRoot + "/docs/user/fit.md");
+  std::set<std::string> keys, asked;
+  const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_fit_test.toml";
+  const std::string scene = kRoot + "/scenes/studies/fit_bar_scene.toml",
+                    arch = kRoot + "/scenes/archs/default.toml";
+  for (const std::string& target : {"file = \"" + kRoot + "/scenes/studies/acetal.csv\"",
+                                    std::string("strain = [0, 0.1, 0.2]\nstress = \"[0, 1, 2] MPa\"")}) {
+    std::ofstream(path) << "scene = \"" << scene << "\"\narch = \"" << arch
+                        << "\"\n[change.run]\nduration = \"1 us\"\n[bounds]\n[search]\n[target]\n"
+                        << target << "\n";
+    std::set<std::string> of_fit, of_scene;
+    record_config_keys(&of_scene);
+    read_scene(scene);
+    read_arch(arch);
+    record_config_keys(&of_fit);
+    fit::read_fit(path.string());
+    record_config_keys(nullptr);
+    keys.insert(of_fit.begin(), of_fit.end());
+    for (const std::string& key : of_fit)
+      if (!of_scene.contains(key) && !key.starts_with("change.")) asked.insert(key);
+  }
+  std::filesystem::remove(path);
+  EXPECT_GT(asked.size(), 30U);
+  expect_documented(page, asked);
+  const auto named = documented(page);
+  EXPECT_GT(named.size(), 20U);
   for (const std::string& key : named)
     EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
 }

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "study/fit/virtual_test.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <optional>
+
+#include "emu/lattice/run.h"
+#include "hw/engine_kind.h"
+#include "model/analysis/tension.h"
+#include "model/base/error_parts.h"
+#include "model/base/steps.h"
+#include "model/run/static_engine.h"
+#include "model/scene/config.h"
+#include "study/interrupted.h"
+
+namespace cuboct::fit {
+namespace {
+
+std::string list_text(const std::vector<double>& values, const char* unit, bool reduced) {
+  const std::string list = fmt::format("[{}]", fmt::join(values, ", "));
+  return reduced ? list : fmt::format("\"{} {}\"", list, unit);
+}
+
+double counted(const Trace& trace, const std::string& name) {
+  for (const auto& [key, value] : trace.counters)
+    if (key == name) return value;
+  return 0;
+}
+
+Recorded run(const Scene& scene, const Test& test, const Arch& arch) {
+  RunRequest request;
+  request.steps = scene.steps;
+  request.probes = every_so_often(scene.probe_every, scene.steps);
+  request.until = true;
+  request.hash_every = 0;
+  request.last = false;
+  RealOptions real;
+  const double cell = scene.rule.cutoff();
+  if (scene.loading) return record(scene, static_kind(scene, scene.body, 1, cell), request);
+  if (test.engine == "reference")
+    return record(scene, reference_kind(scene, scene.body, real, cell), request);
+  const Plan plan = plan_of(scene, arch);
+  emu::LatticeChoice choice;
+  choice.engine.threads = 1;
+  return record(scene, emu::lattice_kind(scene, plan, choice), request);
+}
+
+Tested read(const Scene& scene, const Test& test, const Recorded& run) {
+  Tested tested;
+  const Trace& trace = run.trace;
+  if (trace.stop) tested.stop = trace.stop->text;
+  const double rounds =
+      scene.loading ? counted(trace, "force_evaluations") : static_cast<double>(trace.steps());
+  tested.particle_steps = static_cast<uint64_t>(rounds) * scene.body.size();
+  for (const Curve& curve : trace.curves) {
+    if (curve.name == test.against) tested.strain = curve.value;
+    if (curve.name == test.curve) tested.stress = curve.value;
+  }
+  if (!scene.loading) tested.stress = running_mean(tested.stress, tension_window(tested.stress.size()));
+  return tested;
+}
+
+}  // namespace
+
+std::string scene_with(const study::Base& base, const LawPoints& law) {
+  const bool reduced = study::is_reduced(base);
+  std::vector<Change> changes;
+  for (const std::string& name : parse_config(base.scene_text, base.scene_path).at("law").table().names())
+    changes.push_back({"law." + name, ""});
+  const std::string bare = with_changes(base.scene_text, base.scene_path, changes);
+  return with_changes(bare, base.scene_path,
+                      {{"law.kind", "\"spline\""},
+                       {"law.r", list_text(law.r, "m", reduced)},
+                       {"law.force", list_text(law.f, "N", reduced)}});
+}
+
+Tested run_test(const Test& test, const LawPoints& law) {
+  Tested failed;
+  try {
+    const std::string arch_path = test.base.arch_path.empty() ? "(default arch)" : test.base.arch_path;
+    const Arch arch =
+        parse_arch(test.base.arch_text.empty() ? "name = \"default\"\n" : test.base.arch_text, arch_path);
+    Scene scene = parse_scene(scene_with(test.base, law), test.base.scene_path);
+    if (!scene.until) scene.until = Until{test.against, Until::Side::above, test.last_strain, 0};
+    const Recorded recorded = run(scene, test, arch);
+    if (recorded.interrupted) throw study::Interrupted();
+    return read(scene, test, recorded);
+  } catch (const InputError& error) {
+    failed.stop = bare_message(error);
+    failed.refused = true;
+  } catch (const std::runtime_error& error) {  // no rest, or not finite, at the start
+    failed.stop = error.what();
+  }
+  return failed;
+}
+
+}  // namespace cuboct::fit
