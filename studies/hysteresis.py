@@ -10,9 +10,12 @@ import numpy as np
 import cuboct
 from study import ROOT, Study, check, main
 
-STRAINS = (0.01, 0.04, 0.08, 0.12, 0.16, 0.2)  # between the grips
+STRAINS = (0.01, 0.04, 0.08, 0.12, 0.16)  # between the grips
 SPEEDS = (4.0, 2.0, 1.0)  # m/s
 DAMPINGS = (0.1, 0.5)
+
+
+AREA = 11.88e-6  # m^2, of the scene's probes: of its own packing
 
 
 def coarser(scene, factor):
@@ -59,16 +62,23 @@ def cycled(scene, strains, speed, damping, static_steps=0):
                 stage["probe_every"] = 20
             scene["stage"].append(stage)
     del scene["run"]["frame_every"], scene["run"]["probe_every"]
+    scene["reach"] = {"margin": "6 mm"}  # particles tear off at large strains
     return scene
 
 
-def loops(case):
-    """Of each loop: largest strain, strain and stress on the way there and back."""
-    found = []
+def section(case, pitch):
+    """m^2: what the particles of the narrow part fill, 8 mm of it."""
+    _, _, x = next(case.stages[0].frames())
+    return np.count_nonzero(np.abs(x[:, 0]) < 4e-3) * pitch**3 / np.sqrt(2) / 8e-3
+
+
+def loops(case, pitch):
+    """Of each loop: strain and stress on the way there and back."""
+    found, scale = [], AREA / section(case, pitch)
     for load, back in zip(case.stages[::2], case.stages[1::2]):
         strain = np.concatenate([stage.curve("grip.strain")[1] for stage in (load, back)])
         stress = np.concatenate([stage.curve("grip.stress")[1] for stage in (load, back)])
-        found.append((strain, stress))
+        found.append((strain, scale * stress))
     return found
 
 
@@ -81,18 +91,39 @@ def run():
     study = Study("hysteresis", __doc__)
     strains = STRAINS[1::3] if study.small else STRAINS
     speeds, dampings = ((4.0,), (0.5,)) if study.small else (SPEEDS, DAMPINGS)
-    base = specimen(1.8 if study.small else 1.4)
+    base = specimen(2.2 if study.small else 1.4)
     scenes = {f"{v:g} m/s, damping {d:g}": cycled(base, strains, v, d) for v in speeds for d in dampings}
     cases = study.run({"at rest": cycled(base, strains, 1.0, 0.5, 1000), **scenes})
+    pitch = 1e-3 * float(base["packing"]["pitch"].split()[0])
+    found = {name: loops(case, pitch) for name, case in cases.items()}
     rows = []
     energy = {}
-    for name, case in cases.items():
-        for k, (strain, stress) in enumerate(loops(case)):
+    for name in cases:
+        for k, (strain, stress) in enumerate(found[name]):
             energy[name, k] = lost(strain, stress)
             stored = 0.5 * stress.max() ** 2 / 3e9
             rows.append((name, f"{100 * strains[k]:g} %", f"{stress.max() / 1e6:.1f}", f"{100 * strain[-1]:.3f}", f"{energy[name, k] / 1e3:.1f}", f"{energy[name, k] / stored:.3f}"))
     study.table("hysteresis-loops", ("run", "loop to", "largest stress, MPa", "strain that stays, %", "energy lost, kJ/m³", "over σ²/2E"), rows)
+    # At rest: the law alone goes there and back on one curve; once particles have changed their neighbours, it does not.
+    for k, sign in ((0, -1), (len(strains) - 1, 1)):
+        strain, stress = found["at rest"][k]
+        share, stays = energy["at rest", k] / (0.5 * stress.max() ** 2 / 3e9), strain[-1]
+        if sign * (share - 0.01) <= 0 or sign * (stays - 1e-4) <= 0:
+            raise SystemExit(f"loop at rest to {100 * strains[k]:g} %: {share:.3f} of σ²/2E are lost and {100 * stays:.3f} % of strain stay, {'more' if sign > 0 else 'less'} than 0.01 and 0.01 % are expected")
+    check("strength at rest", max(stress.max() for _, stress in found["at rest"]), 72e6, 0.15)  # for which the law was set
+    with study.figure("hysteresis_loops", 2, (9, 3.8)) as (left, right):
+        for strain, stress in found["at rest"]:
+            left.plot(100 * strain, stress / 1e6, lw=0.8, color="C0")
+        left.set(title="at rest at each load step", xlabel="strain between the grips, %", ylabel="stress, MPa")
+        if speeds[0] != speeds[-1]:
+            for d in dampings:
+                for k in (0, 2):
+                    right.plot(speeds, [energy[f"{v:g} m/s, damping {d:g}", k] / 1e3 for v in speeds], "o-", label=f"to {100 * strains[k]:g} %, damping {d:g}")
+            right.axhline(energy["at rest", 2] / 1e3, lw=0.8, color="k", label=f"to {100 * strains[2]:g} %, at rest")
+            right.set(title="energy lost", xlabel="speed of the grip, m/s", ylabel="kJ/m³", yscale="log", xlim=(0, None))
+            right.legend()
     study.end()
 
 
-main(run)
+if __name__ == "__main__":
+    main(run)

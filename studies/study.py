@@ -118,12 +118,12 @@ class Study:
         if process.returncode < 0 or process.returncode == 130:
             raise KeyboardInterrupt
         if process.returncode:
-            raise SystemExit(f"{self.name}: {process.stderr.strip()}")
+            raise SystemExit(f"{self.name}: {process.stderr.strip() or process.stdout.strip()[-2000:]}")
         return process.stdout
 
     def _file(self, name: str, scene: Mapping[str, Any], options: Sequence[str]) -> tuple[pathlib.Path, bool, bool]:
         """The file of the scene; whether it was there as it is; whether the case is finished."""
-        path = self.out / "cases" / f"{name}.toml"
+        path = self.out / "cases" / f"{name.replace('/', ' per ')}.toml"
         path.parent.mkdir(parents=True, exist_ok=True)
         text = f"# options: {' '.join(options)}\n{cuboct.Scene(scene).toml()}"
         same = path.exists() and path.read_text() == text
@@ -166,18 +166,18 @@ class Study:
         print()
 
     @contextmanager
-    def figure(self, name: str, columns: int = 1, size: tuple[float, float] = (6.4, 4.2)) -> Iterator[Any]:
-        """Axes of matplotlib, which become NAME.svg."""
+    def figure(self, name: str, columns: int = 1, size: tuple[float, float] = (6.4, 4.2), kind: str = "svg") -> Iterator[Any]:
+        """Axes of matplotlib, which become NAME.svg, or for many points NAME.png."""
         import matplotlib
 
-        matplotlib.use("svg")
+        matplotlib.use("svg" if kind == "svg" else "agg")
         matplotlib.rcParams.update({"svg.hashsalt": "cuboct", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "axes.axisbelow": True})
         from matplotlib import pyplot
 
         figure, axes = pyplot.subplots(1, columns, figsize=size, layout="constrained")
         yield axes
         for folder in self._folders("images"):
-            figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+            figure.savefig(folder / f"{name}.{kind}", dpi=150, metadata={"Date": None} if kind == "svg" else {"Software": None})
         pyplot.close(figure)
 
     def _folders(self, place: str) -> list[pathlib.Path]:
@@ -197,12 +197,6 @@ def check(name: str, value: float, reference: float, tolerance: float) -> None:
     error = value / reference - 1
     if not abs(error) <= tolerance:
         raise SystemExit(f"{name}: {value:.6g} differs from {reference:.6g} by {100 * error:+.2f} %, more than {100 * tolerance:.3g} %")
-
-
-def slope(x: np.ndarray, y: np.ndarray, lower: float, upper: float) -> float:
-    """Of y over x by least squares, for x in [lower, upper]."""
-    window = (x >= lower) & (x <= upper)
-    return float(np.polyfit(x[window], y[window], 1)[0])
 
 
 def main(study: Any) -> None:

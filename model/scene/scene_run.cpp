@@ -154,6 +154,27 @@ std::optional<StagePart> read_stage(const ConfigTable& root, const SceneChoice& 
   return chosen;
 }
 
+namespace {
+
+// What a load step moves it moves at once, before the body follows: bonds that are out of reach then are
+// torn.
+void refuse_tearing(const ConfigValue& value, const StaticLoading& loading, const Scene& scene) {
+  double fastest = 0;
+  for (const ParticleType& type : scene.rule.types)
+    if (!type.pd) fastest = std::max(fastest, type.velocity.norm());
+  const double travel = fastest * static_cast<double>(loading.every) * scene.rule.dt;
+  const double most = (scene.rule.cutoff() - scene.pitch) / 2;
+  if (travel <= most) return;
+  const double steps = std::ceil(static_cast<double>(scene.steps / loading.every) * travel / most);
+  value.fail(
+      fmt::format(
+          "a load step moves a constraint by {:.3g} pitches at once, {:.3g} may do without tearing bonds",
+          travel / scene.pitch, most / scene.pitch),
+      fmt::format("load_steps = {:.0f} or more", steps));
+}
+
+}  // namespace
+
 std::optional<StaticLoading> read_static(const ConfigTable& table, Scene& scene) {
   const ConfigValue value = table.at("static");
   StaticLoading loading;
@@ -173,6 +194,7 @@ std::optional<StaticLoading> read_static(const ConfigTable& table, Scene& scene)
   loading.every = std::max<uint64_t>(1, (scene.steps + count - 1) / count);
   loading.evaluations = static_cast<uint64_t>(evaluations);
   scene.steps = loading.whole(scene.steps);
+  if (scene.pitch > 0) refuse_tearing(value, loading, scene);
   return loading;
 }
 

@@ -2,6 +2,8 @@
 // Quasi-static loading: runs of load steps, each a body at rest.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <cmath>
 
@@ -190,6 +192,24 @@ TEST(Static, IsReadAndSwitchedOffByAStage) {
       EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
       EXPECT_NE(std::string(error.what()).find("bar.toml:"), std::string::npos) << error.what();
     }
+  }
+}
+
+// The elastic law ends 0.414 pitches beyond the pitch; 0.207 are moved in 2070 steps of dt.
+TEST(Static, ALoadStepThatWouldTearBondsIsAnError) {
+  const auto pulled = [](int steps) {
+    return parse_scene(bar(fmt::format("steps = {}\nstatic = {{ load_steps = 1 }}\n", steps)), "bar");
+  };
+  pulled(20700);
+  try {
+    pulled(20800);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("a load step moves a constraint by 0.208 pitches at once, 0.207 may do"),
+              std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("load_steps = 2 or more"), std::string::npos) << error.what();
   }
 }
 
