@@ -84,7 +84,7 @@ def until_it_runs(scene, expected, length):
     """At rest: to 0.8 of the expected opening in four steps, then on by 1 % until the crack is so long."""
     scene["run"] = {"dt": DT}
     scene["stage"] = [
-        {"name": "load", "steps": steps(0.8 * expected), "static": {"load_steps": 4}},
+        {"name": "load", "steps": steps(0.8 * expected), "static": {"load_steps": max(4, math.ceil(4 * expected))}},
         {"name": "on", "steps": 100 * steps(0.01 * expected), "static": {"load_steps": 100}, "until": {"probe": "crack.length", "above": length}},
     ]
     return scene
@@ -284,4 +284,5 @@ def run():
     study.end()
 
 
-main(run)
+if __name__ == "__main__":
+    main(run)

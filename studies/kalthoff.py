@@ -34,7 +34,7 @@ def box(low, high):
     return {"shape": "box", "min": text(low), "max": text(high)}
 
 
-def plate(pitch, turn, speed=SPEED, uneven=0, energy=ENERGY):
+def plate(pitch, turn, speed=SPEED, uneven=0):
     normal, a, b, angle = TURNS[turn]
     period = pitch * (math.sqrt(2) if normal == [0, 0, 1] else 1)
     thick = math.ceil(4.3 * pitch / period) * period
@@ -48,7 +48,7 @@ def plate(pitch, turn, speed=SPEED, uneven=0, energy=ENERGY):
         "packing": {"pitch": f"{pitch!r} m", "axes": turned(a, b, angle)},
         "box": {"periodic": "z", "size": f"[{SIDE}, {SIDE}, {thick!r}] m"},
         "geometry": {"shape": "difference", "from": box([0, 0, -1], [SIDE, SIDE, 1]), "minus": [slot]},
-        "law": {"kind": "viscous", "stiffness": f"{stiffness!r} N/m", "fracture_energy": f"{energy!r} J/m^2"},
+        "law": {"kind": "viscous", "stiffness": f"{stiffness!r} N/m", "fracture_energy": f"{ENERGY!r} J/m^2"},
         "damping": {"ratio": 1.0},
         "constraint": [
             {"name": "middle", "kind": "held", "axes": "y", "region": box([-1, -1, -1], [1, 0.8 * pitch, 1])},
@@ -64,8 +64,8 @@ def plate(pitch, turn, speed=SPEED, uneven=0, energy=ENERGY):
         patch = lambda at: {"shape": "cylinder", "radius": f"{radius!r} m", "length": "1 m", "centre": f"[{at[0]!r}, {at[1]!r}, 0] m"}
         places = generator.uniform(0, SIDE, (count, 2)).tolist()
         scene["material"] = [{"name": "tough"}, {"name": "weak", "region": {"shape": "union", "of": [patch(at) for at in places]}}]
-        scene["law"]["fracture_energy"] = f"{(1 + CONTRAST) * energy!r} J/m^2"
-        scene["bond"] = [{"between": ["weak", "weak"], "law": scene["law"] | {"fracture_energy": f"{(1 - CONTRAST) * energy!r} J/m^2"}}]
+        scene["law"]["fracture_energy"] = f"{(1 + CONTRAST) * ENERGY!r} J/m^2"
+        scene["bond"] = [{"between": ["weak", "weak"], "law": scene["law"] | {"fracture_energy": f"{(1 - CONTRAST) * ENERGY!r} J/m^2"}}]
     return scene
 
 
@@ -139,4 +139,5 @@ def run():
     study.end()
 
 
-main(run)
+if __name__ == "__main__":
+    main(run)

@@ -63,6 +63,21 @@ def dcb(module):
     module.GIC *= 1.5
 
 
+def griffith(module):
+    body = module.body
+
+    def slipping(*arguments):
+        scene = body(*arguments)
+        scene["constraint"][0]["axes"] = "x"
+        return scene
+
+    module.body = slipping
+
+
+def kalthoff(module):
+    module.ENERGY *= 6
+
+
 def run(name, out, defect=None):
     """What the small version prints, and how it ends."""
     sys.argv = [name, "--small", "--jobs", "1", "--cuboct", CUBOCT, "--out", out]
