@@ -37,6 +37,8 @@ Bench::Bench(bool fake_engines) {
   directory_ = name;
   fs::create_directory(directory_ / "bin");
   fs::copy(CUBOCT_PROGRAM, directory_ / "bin/cuboct");
+  const fs::path evolution = fs::path(CUBOCT_PROGRAM).parent_path() / "cuboct-evolution.so";
+  if (fs::exists(evolution)) fs::create_symlink(evolution, directory_ / "bin/cuboct-evolution.so");
   if (fake_engines)
     for (const char* engine : {"cuboct-systemc", "cuboct-rtl"})
       fs::copy(FAKE_ENGINE, directory_ / "bin" / engine);

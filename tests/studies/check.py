@@ -161,15 +161,15 @@ def parts():
         assert whole(100, "out") != first and written() != before, "a changed case was not run again"
 
         # Cut once it runs: the same command goes on, and ends as if nothing had been.
-        process = start(6000, "cut")
+        process = start(15000, "cut")
         while not (case("cut") / "run.toml").exists() and process.poll() is None:
             time.sleep(0.05)
-        time.sleep(0.5)
+        time.sleep(0.1)
         os.killpg(process.pid, signal.SIGINT)
         _, errors = process.communicate()
         assert process.returncode == 130 and "goes on with what is left" in errors, (process.returncode, errors)
         assert (case("cut") / "checkpoint").exists(), list(case("cut").iterdir())
-        assert whole(6000, "cut") == whole(6000, "once")
+        assert whole(15000, "cut") == whole(15000, "once")
 
 
 def page():
