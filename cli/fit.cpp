@@ -64,6 +64,10 @@ class Shown {
     } catch (const InputError& error) {
       draws_ = false;
       fmt::print(stderr, "no page and no charts: {}\n", error.what());
+    } catch (const std::exception&) {
+      if (interrupted())
+        throw study::Interrupted();  // a signal to all processes of the terminal ends gnuplot too
+      throw;
     }
   }
 
