@@ -100,7 +100,7 @@ void require_tables(const Options& options, uint64_t bytes) {
       throw InputError(fmt::format("the rule's tables take {} bytes, and a block of device {} ({}) holds {}",
                                    bytes, device.ordinal, device.name, device.block_memory),
                        "fewer of the arch's table.index_bits")
-          .about({"table.index_bits", "law"});
+          .about({"table.index_bits"});
 }
 
 }  // namespace cuboct::gpu

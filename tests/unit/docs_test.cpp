@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The reference pages of the file formats and the readers name the same keys.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -95,7 +97,8 @@ std::set<std::string> documented(const std::string& page) {
 
 // All keys that readers ask for, over scenes that between them take every branch.
 std::set<std::string> scene_keys() {
-  const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_test.toml";
+  const auto path =
+      std::filesystem::temp_directory_path() / fmt::format("cuboct_docs_test_{}.toml", getpid());
   std::set<std::string> keys;
   record_config_keys(&keys);
   for (const auto& entry : std::filesystem::directory_iterator(kRoot + "/scenes"))
