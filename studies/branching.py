@@ -77,30 +77,13 @@ def plate(pitch_mm, rows, share, cut, time=30.0):
     }  # fmt: skip
 
 
-def neighbours(x, reach):
-    """Pairs of points of the plane that are nearer than `reach`."""
-    cell = np.floor((x - x.min(0)) / reach).astype(np.int64)
-    width = cell[:, 1].max() + 3
-    key = cell[:, 0] * width + cell[:, 1] + 1
-    order = np.argsort(key, kind="stable")
-    known, found = key[order], []
-    for dx, dy in ((0, 0), (0, 1), (1, -1), (1, 0), (1, 1)):
-        first, last = (np.searchsorted(known, key + dx * width + dy, side) for side in ("left", "right"))
-        for k in range((last - first).max()):
-            i = np.flatnonzero(first + k < last)
-            j = order[first[i] + k]
-            near = (np.linalg.norm(x[i] - x[j], axis=1) < reach) & ((j > i) | ((dx, dy) != (0, 0)))
-            found.append(np.stack([i[near], j[near]], 1))
-    return np.concatenate(found)
-
-
 class Crack:
     """Bonds that broke, by the frame in which they first were: middles in mm."""
 
     def __init__(self, still, case, pitch_mm):
         pitch = pitch_mm * 1e-3
         start = next(still.frames())[2][:, :2]
-        pairs = neighbours(start, 1.2 * pitch)
+        pairs = cKDTree(start).query_pairs(1.2 * pitch, output_type="ndarray")
         middle = 0.5e3 * (start[pairs[:, 0]] + start[pairs[:, 1]])
         cut = (np.abs(middle[:, 1]) < pitch_mm) & (middle[:, 0] < LONG / 2)
         grips = np.abs(middle[:, 1]) > HIGH / 2 - 2 * EDGE
@@ -153,13 +136,14 @@ def run():
         points.append((0.15, 0, 4.0))
     name = lambda pitch, rows, share: f"{pitch:g} mm, rows at {rows}, {share:g}"
     still = study.run({name(*point): plate(*point, False) for point in points})
-    cracks, particles = {}, {}
+    cut = {}
     for point in points:
-        scene = plate(*point, True)
         # Some 25 frames: a step is half of sqrt(2/3) times the pitch over the speed of waves along a row, near enough.
-        scene["run"]["frame_every"] = int(48 / point[0])
-        case = study.run({f"{name(*point)}, cut": scene}, "--engine", "reference", "--from", str(still[name(*point)].directory.resolve()))[f"{name(*point)}, cut"]
-        cracks[point], particles[point] = Crack(still[name(*point)], case, point[0]), case.value("particles")
+        cut[point] = plate(*point, True) | {"start": {"from": name(*point)}}
+        cut[point]["run"]["frame_every"] = int(48 / point[0])
+    runs = study.run({f"{name(*point)}, cut": scene for point, scene in cut.items()}, "--engine", "reference")
+    cracks = {point: Crack(still[name(*point)], run, point[0]) for point, run in zip(points, runs.values())}
+    particles = {point: run.value("particles") for point, run in zip(points, runs.values())}
     rows = []
     for point in points:
         pitch, angle, share = point

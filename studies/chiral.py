@@ -82,7 +82,8 @@ def draw(study, cases):
     with study.figure("chiral_cells", len(cases), (3.4 * len(cases), 3.9), "png") as axes:
         axes = np.atleast_1d(axes)
         for place, (name, case) in zip(axes, cases.items()):
-            first, last = [x for _, _, x in case.frames()][:: max(1, len(list(case.frames())) - 1)][:2]
+            frames = [x for _, _, x in case.frames()]
+            first, last = frames[0], frames[-1]
             moved = 1e3 * np.linalg.norm(last - first, axis=1)
             a, b = np.radians(35), np.radians(20)
             right = last @ [np.cos(a), np.sin(a), 0]

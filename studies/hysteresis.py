@@ -20,17 +20,12 @@ AREA = 11.88e-6  # m^2, of the scene's probes: of its own packing
 
 def coarser(scene, factor):
     """The same material on a packing `factor` times as wide: lengths of the law grow with it, forces with its square."""
-    numbers = lambda text: (np.array(eval_list(text)), text[text.index("]") + 1 :])
     for key, power in (("r", 1), ("force", 2)):
-        values, unit = numbers(scene["law"][key])
-        scene["law"][key] = "[" + ", ".join(f"{v * factor**power:.10g}" for v in values) + "]" + unit
+        values, unit = scene["law"][key].lstrip("[").split("]")
+        scene["law"][key] = "[" + ", ".join(f"{float(v) * factor**power:.10g}" for v in values.split(",")) + "]" + unit
     for table, key in (("packing", "pitch"), ("law", "core")):
         value, unit = scene[table][key].split()
         scene[table][key] = f"{float(value) * factor:.10g} {unit}"
-
-
-def eval_list(text):
-    return [float(part) for part in text[1 : text.index("]")].split(",")]
 
 
 def specimen(factor):

@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "model/scene/mesh.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "model/base/error.h"
-#include "model/base/process.h"
+#include "model/base/module.h"
 
 namespace cuboct {
 namespace {
 
-// Stays loaded: shapes of it may live as long as the program.
 ReadMesh* find_reader() {
-  const std::string here = program_directory() + "/";
-  for (const std::string& path : {here + kMeshModule, here + "../lib/" + kMeshModule}) {
-    if (!std::filesystem::exists(path)) continue;
-    void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    void* reader = module != nullptr ? dlsym(module, kReadMesh) : nullptr;
-    if (reader == nullptr) throw InputError(dlerror());
-    return reinterpret_cast<ReadMesh*>(reader);
-  }
+  if (void* reader = module_symbol(kMeshModule, kReadMesh)) return reinterpret_cast<ReadMesh*>(reader);
   throw InputError("this cuboct reads no meshes: it was built without Embree and Assimp",
                    "install libembree-dev and libassimp-dev, and build again");
 }

@@ -10,18 +10,10 @@
 
 #include "model/contract/law.h"
 #include "tests/fcc_block.h"
+#include "tests/fcc_cell.h"
 
 namespace cuboct {
 namespace {
-
-CrystalCell primitive_fcc(double pitch) {
-  CrystalCell cell;
-  cell.vectors << 0, 1, 1, 1, 0, 1, 1, 1, 0;
-  cell.vectors *= pitch / std::numbers::sqrt2;
-  cell.x = {Vec3(0.3, -0.1, 0.2)};
-  cell.type = {0};
-  return cell;
-}
 
 // A site has the volume pitch^3/sqrt(2). Of the nearest neighbours' bonds, all of depth U, a plane cuts per
 // pitch^2: {100} four that rise by pitch/sqrt(2), {110} one by pitch and four by half of it, {111} three by
@@ -30,7 +22,7 @@ TEST(Cleavage, OfNearestNeighboursIsTheClosedForm) {
   constexpr double kPitch = 1e-3;
   Rule rule = test::simple_rule(preset_law("brittle", kPitch, 3e5), 1, 1);
   rule.strength = {{2.0}};
-  const CrystalCell cell = primitive_fcc(kPitch);
+  const CrystalCell cell = test::primitive_fcc(kPitch);
   const double unit = -2 * rule.law->energy(kPitch) / (kPitch * kPitch);
   EXPECT_NEAR(-rule.law->energy(kPitch) / (3e5 * kPitch * kPitch), 0.0024,
               5e-5);  // docs/reference/physics.md
@@ -50,7 +42,7 @@ TEST(Cleavage, OfNearestNeighboursIsTheClosedForm) {
 // Second and third shells too: pairs of a finite block across a plane between its sites, far from its faces.
 TEST(Cleavage, OfLongerLawsIsThatOfABlockThatIsCut) {
   const Rule rule = test::simple_rule(lennard_jones(1, 1, 2.0, 0.8), 1, 1);
-  const CrystalCell cell = primitive_fcc(1.1);
+  const CrystalCell cell = test::primitive_fcc(1.1);
   const double edge = 1.1 * std::numbers::sqrt2;
   const Periodic box = test::fcc_box(4, 1.1);
   const Body body = test::fcc_block(4, 1.1);
@@ -68,7 +60,7 @@ TEST(Cleavage, OfLongerLawsIsThatOfABlockThatIsCut) {
 // No plane is weaker than the weakest, nor stronger than the strongest.
 TEST(Cleavage, ExtremesBoundRandomPlanes) {
   const Rule rule = test::simple_rule(lennard_jones(1, 1, 2.0, 0.8), 1, 1);
-  const CrystalCell cell = primitive_fcc(1.1);
+  const CrystalCell cell = test::primitive_fcc(1.1);
   const CleavagePlanes planes = cleavage_planes(rule, cell);
   const double low = cleavage_energy(rule, cell, planes.weakest);
   const double high = cleavage_energy(rule, cell, planes.strongest);

@@ -12,6 +12,7 @@
 #include "model/contract/law.h"
 #include "model/solid/moduli.h"
 #include "tests/fcc_block.h"
+#include "tests/fcc_cell.h"
 
 namespace cuboct {
 namespace {
@@ -21,15 +22,6 @@ constexpr double kStrain = 1e-6;
 // The largest difference over the largest constant.
 double difference(const Matrix6& a, const Matrix6& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
-}
-
-CrystalCell primitive_fcc(double pitch) {
-  CrystalCell cell;
-  cell.vectors << 0, 1, 1, 1, 0, 1, 1, 1, 0;
-  cell.vectors *= pitch / std::numbers::sqrt2;
-  cell.x = {Vec3(0.3, -0.1, 0.2)};
-  cell.type = {0};
-  return cell;
 }
 
 Matrix6 by_strain(const Rule& rule, const CrystalCell& cell) {
@@ -43,7 +35,7 @@ Matrix6 by_strain(const Rule& rule, const CrystalCell& cell) {
 TEST(ElasticTensor, OfThePrimitiveCellIsThatOfThePacking) {
   for (const double pitch : {1.06, 1.12}) {  // under pressure, and pulled
     const Rule rule = test::simple_rule(lennard_jones(1, 1, 2.6, 0.8), 1, 1);
-    const CrystalCell cell = primitive_fcc(pitch);
+    const CrystalCell cell = test::primitive_fcc(pitch);
     const Matrix6 expected = elastic_constants(*rule.law, pitch);
     const ElasticTensor tensor = elastic_tensor(rule, cell);
     EXPECT_LT(difference(tensor.c, expected), 1e-12);
@@ -56,7 +48,7 @@ TEST(ElasticTensor, OfThePrimitiveCellIsThatOfThePacking) {
 // 1e-6.
 TEST(ElasticTensor, OfLennardJonesIsThePublishedOne) {
   const Rule rule = test::simple_rule(lennard_jones(1, 1, 2.5, 0.8), 1, 1);
-  const CrystalCell cell = primitive_fcc(relaxed_pitch(*rule.law, 1.1));
+  const CrystalCell cell = test::primitive_fcc(relaxed_pitch(*rule.law, 1.1));
   for (const Matrix6& c : {elastic_tensor(rule, cell).c, by_strain(rule, cell)}) {
     EXPECT_NEAR(c(0, 0), 97.71, 1e-3 * 97.71);
     EXPECT_NEAR(c(0, 1), 55.63, 1e-3 * 55.63);
