@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Hysteresis: a specimen of acetal loaded and unloaded, with a law that was set on one monotonic curve.
+"""Hysteresis: a specimen of acetal loaded and unloaded, with a law that was set for a monotonic test.
 
 The specimen of scenes/acetal.toml, on a coarser packing, goes to growing strains and each time back to no stress (Strand, Tourlomousis,
 Gershenfeld, section 5). Of each loop: the energy that is lost, and the strain that stays. What is lost has three causes. Damping takes a part
