@@ -27,6 +27,7 @@ void add_elastic(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 void add_picture(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
+void add_pitch(CLI::App& app, int& exit_code);
 void add_stability(CLI::App& app, int& exit_code);
 
 // What `cuboct --version` prints.

@@ -29,6 +29,7 @@ namespace {
 
 #ifndef CUBOCT_HAS_STUDIES
 void add_explore(CLI::App& app, int&) { add_left_out(app, "explore", "studies", "CUBOCT_STUDIES"); }
+void add_pitch(CLI::App& app, int&) { add_left_out(app, "pitch", "studies", "CUBOCT_STUDIES"); }
 void add_stability(CLI::App& app, int&) { add_left_out(app, "stability", "studies", "CUBOCT_STUDIES"); }
 #endif
 

@@ -94,6 +94,7 @@ int main_of(int argc, char** argv) {
   add_elastic(app, exit_code);
   add_explore(app, exit_code);
   add_fit(app, exit_code);
+  add_pitch(app, exit_code);
   add_stability(app, exit_code);
   add_bench(app, exit_code);
   add_picture(app, exit_code);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "study/fit/fit_study.h"
+#include "study/kept_lines.h"
 
 namespace cuboct::fit {
 
@@ -34,15 +35,13 @@ class Evaluations {
   const Evaluation* find(const std::vector<double>& sample) const;
   const Evaluation& add(Evaluation evaluation);
   // Writes what was added: all of the file, or none.
-  void save();
+  void save() { kept_.save(); }
 
-  size_t size() const { return lines_.size(); }
+  size_t size() const { return kept_.size(); }
 
  private:
-  std::string path_, head_;
   std::map<std::vector<double>, Evaluation> known_;
-  std::vector<std::string> lines_;  // of the file, in the order in which they came
-  bool saved_ = true;
+  study::KeptLines kept_;
 };
 
 }  // namespace cuboct::fit

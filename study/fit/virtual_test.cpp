@@ -4,16 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <optional>
-
-#include "emu/lattice/run.h"
-#include "hw/engine_kind.h"
 #include "model/analysis/tension.h"
 #include "model/base/error_parts.h"
-#include "model/base/steps.h"
-#include "model/run/static_engine.h"
 #include "model/scene/config.h"
-#include "study/interrupted.h"
+#include "study/probe_run.h"
 
 namespace cuboct::fit {
 namespace {
@@ -23,37 +17,10 @@ std::string list_text(const std::vector<double>& values, const char* unit, bool 
   return reduced ? list : fmt::format("\"{} {}\"", list, unit);
 }
 
-double counted(const Trace& trace, const std::string& name) {
-  for (const auto& [key, value] : trace.counters)
-    if (key == name) return value;
-  return 0;
-}
-
-Recorded run(const Scene& scene, const Test& test, const Arch& arch) {
-  RunRequest request;
-  request.steps = scene.steps;
-  request.probes = every_so_often(scene.probe_every, scene.steps);
-  request.until = true;
-  request.hash_every = 0;
-  request.last = false;
-  RealOptions real;
-  const double cell = scene.rule.cutoff();
-  if (scene.loading) return record(scene, static_kind(scene, scene.body, 1, cell), request);
-  if (test.engine == "reference")
-    return record(scene, reference_kind(scene, scene.body, real, cell), request);
-  const Plan plan = plan_of(scene, arch);
-  emu::LatticeChoice choice;
-  choice.engine.threads = 1;
-  return record(scene, emu::lattice_kind(scene, plan, choice), request);
-}
-
-Tested read(const Scene& scene, const Test& test, const Recorded& run) {
+Tested read(const Scene& scene, const Test& test, const Trace& trace) {
   Tested tested;
-  const Trace& trace = run.trace;
   if (trace.stop) tested.stop = trace.stop->text;
-  const double rounds =
-      scene.loading ? counted(trace, "force_evaluations") : static_cast<double>(trace.steps());
-  tested.particle_steps = static_cast<uint64_t>(rounds) * scene.body.size();
+  tested.particle_steps = study::particle_steps(scene, trace);
   for (const Curve& curve : trace.curves) {
     if (curve.name == test.against) tested.strain = curve.value;
     if (curve.name == test.curve) tested.stress = curve.value;
@@ -84,9 +51,7 @@ Tested run_test(const Test& test, const LawPoints& law) {
         parse_arch(test.base.arch_text.empty() ? "name = \"default\"\n" : test.base.arch_text, arch_path);
     Scene scene = parse_scene(scene_with(test.base, law), test.base.scene_path);
     if (!scene.until) scene.until = Until{test.against, Until::Side::above, test.last_strain, 0};
-    const Recorded recorded = run(scene, test, arch);
-    if (recorded.interrupted) throw study::Interrupted();
-    return read(scene, test, recorded);
+    return read(scene, test, study::probe_run(scene, arch, test.engine, 1));
   } catch (const InputError& error) {
     failed.stop = bare_message(error);
     failed.refused = true;
