@@ -14,6 +14,7 @@
 #include "model/contract/law.h"
 #include "model/scene/name.h"
 #include "model/scene/scene_parts.h"
+#include "model/scene/symmetry.h"
 
 namespace cuboct {
 namespace {
@@ -412,7 +413,7 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
   return {box, periodic};
 }
 
-void read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
+Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
                const PackingChoice* packing, Scene& scene) {
   const std::vector<Material> materials = read_materials(root);
   std::vector<std::string> names;
@@ -428,7 +429,10 @@ void read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
   Body& body = scene.body;
   if (body.size() == 0) root.fail("no particle", "add [packing] with [geometry], or [[particle]]");
   check_distinct(root, body.x, named.size());
-  const std::vector<int> material = assign_materials(root, regions, named, scene);
+  std::vector<int> material = assign_materials(root, regions, named, scene);
+  const std::vector<SymmetryPlane> planes = read_symmetry(root, packing, scene);
+  Divided divided;
+  if (!planes.empty()) divided = divide(planes, body.x, tolerance_of(scene), material, names, scene.rule);
   Vec3 gravity = root.vector_or("gravity", quantity::acceleration, Vec3::Zero());
   if (stage)
     if (const auto own = stage->find("gravity")) gravity = stage->vector_of(*own, quantity::acceleration);
@@ -464,6 +468,7 @@ void read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
     type.name = pair.second < 0 ? name : name + "/" + type.name;
     type.material = pair.first;
     type.gravity = gravity;
+    if (!planes.empty()) keep_in_planes(planes, divided.planes[static_cast<size_t>(pair.first)], type);
     index = scene.rule.types.size();
     scene.rule.types.push_back(std::move(type));
   }
@@ -478,6 +483,9 @@ void read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
       if (type.imposed[a]) body.v[i][a] = type.velocity[a];
   }
   if (pd) body.u.assign(body.size(), Vec3::Zero());
+  if (planes.empty()) return scene.rule;
+  divided.whole.types = scene.rule.types;
+  return divided.whole;
 }
 
 }  // namespace cuboct

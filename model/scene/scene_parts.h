@@ -67,8 +67,9 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
 
 // Everything that gives particles: positions and velocities ([packing], [geometry], [[particle]],
 // [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and .strength.
-// scene.rule needs law, damping and mass. `stage`: whose keys replace those of the root.
-void read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
+// scene.rule needs law, damping and mass. `stage`: whose keys replace those of the root. Returns the rule of
+// the body with its images at planes of symmetry: vibrations of the part are some of the whole body's.
+Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
                const PackingChoice* packing, Scene& scene);
 
 // The largest stable time step of the perfect packing in s, 0 if unknown. With all frequencies up to w and

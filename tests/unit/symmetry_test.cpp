@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// A body cut at its planes of symmetry moves as the whole one does.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "model/analysis/measure.h"
+#include "model/base/error.h"
+#include "model/real/reference.h"
+#include "model/scene/scene.h"
+
+namespace cuboct {
+namespace {
+
+// A bar with a hole, stretched by both ends; of it what lies beyond `from`. `more` is added to the file.
+Scene bar(const std::array<double, 3>& from, const std::string& more = {},
+          const std::string& kind = "moved") {
+  return parse_scene(fmt::format(R"(density = "1.4 g/cm^3"
+[packing]
+pitch = "1 mm"
+[geometry]
+shape = "difference"
+from = {{ shape = "box", min = "[{}, {}, {}] mm", max = "[8.6, 4.3, 3] mm" }}
+minus = [{{ shape = "cylinder", radius = "1.5 mm", length = "9 mm" }}]
+[law]
+kind = "ductile"
+youngs_modulus = "3 GPa"
+direction = "x"
+fracture_energy = "10 kJ/m^2"  # a shorter cutoff: sides that narrow feel no image
+[damping]
+ratio = 0.1
+[[material]]
+name = "matrix"
+[[material]]
+name = "fibre"
+density = "2 g/cm^3"
+strength = 3
+region = {{ shape = "box", size = "[30, 3, 30] mm" }}
+[[constraint]]
+name = "right"
+kind = "{}"
+velocity = "[20, 0, 0] m/s"
+region = {{ shape = "half_space", point = "[7.5, 0, 0] mm", normal = "-x" }}
+[run]
+steps = 150
+{})",
+                                 from[0], from[1], from[2], kind, more),
+                     "bar.toml");
+}
+
+const std::string kLeft = R"([[constraint]]
+name = "left"
+kind = "moved"
+velocity = "[-20, 0, 0] m/s"
+region = { shape = "half_space", point = "[-7.5, 0, 0] mm", normal = "x" }
+)";
+
+Body after(const Scene& scene) {
+  Reference run(scene.rule, scene.body, scene.periodic);
+  run.step(scene.steps);
+  return run.body();
+}
+
+// The largest distance of the part's particles from those of the whole that began where they did.
+double apart(const Scene& part, const Scene& whole) {
+  std::map<std::array<long, 3>, size_t> at;
+  const auto key = [](const Vec3& x) {
+    return std::array{std::lround(x[0] * 1e8), std::lround(x[1] * 1e8), std::lround(x[2] * 1e8)};
+  };
+  for (size_t i = 0; i < whole.body.size(); ++i) at[key(whole.body.x[i])] = i;
+  const Body a = after(part), b = after(whole);
+  double most = 0;
+  for (size_t i = 0; i < part.body.size(); ++i)
+    most = std::max(most, (a.x[i] - b.x[at.at(key(part.body.x[i]))]).norm());
+  return most;
+}
+
+TEST(Symmetry, HalfMovesAsTheWhole) {
+  const Scene whole = bar({-8.6, -4.3, -3}, kLeft);
+  const Scene half = bar({0, -4.3, -3}, "[[symmetry]]\nnormal = \"x\"\n");
+  EXPECT_LT(half.body.size(), 0.6 * static_cast<double>(whole.body.size()));
+  EXPECT_EQ(half.rule.dt, whole.rule.dt);
+  EXPECT_LT(apart(half, whole), 1e-12);  // m: of a way of 10 mm, and forces summed in another order
+  // Without the plane the same part goes another way.
+  EXPECT_GT(apart(bar({0, -4.3, -3}), whole), 1e-5);
+}
+
+TEST(Symmetry, EighthMovesAsTheWhole) {
+  const Scene whole = bar({-8.6, -4.3, -3}, kLeft);
+  const Scene eighth =
+      bar({0, 0, 0},
+          "[[symmetry]]\nnormal = \"x\"\n[[symmetry]]\nnormal = \"y\"\n[[symmetry]]\nnormal = \"-z\"\n");
+  EXPECT_LT(apart(eighth, whole), 1e-12);
+  // Mass and energy are those of the part.
+  const auto mass = [](const Scene& scene) {
+    double sum = 0;
+    for (const uint8_t type : scene.body.type) sum += scene.rule.mass_of(type);
+    return sum;
+  };
+  EXPECT_NEAR(8 * mass(eighth), mass(whole), 1e-12 * mass(whole));
+  Reference a(eighth.rule, after(eighth), eighth.periodic), b(whole.rule, after(whole), whole.periodic);
+  EXPECT_NEAR(8 * a.potential_energy(), b.potential_energy(), 1e-9 * std::abs(b.potential_energy()));
+}
+
+TEST(Symmetry, IsRefusedWhereThereIsNone) {
+  const auto told = [](const auto& make) -> std::string {
+    try {
+      make();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  const std::string x = "[[symmetry]]\nnormal = \"x\"\n";
+  has(told([&] { bar({-8.6, 0, 0}, x); }), "both sides of this plane");
+  has(told([&] { bar({0, 0, 0}, x + "point = \"[-0.2, 0, 0] mm\"\n"); }), "no particle stands in this plane");
+  has(told([&] { bar({0, 0, 0}, x + "point = \"[8.485281374, 0, 0] mm\"\n"); }), "moves particles out");
+  has(told([&] { bar({0, 0, 0}, "[[symmetry]]\nnormal = [1, 1, 0]\n"); }), "must be an axis of the scene");
+  has(told([&] { bar({0, 0, 0}, x + x); }), "there twice");
+  has(told([&] {
+        bar({0, 0, 0}, "[[symmetry]]\nnormal = \"y\"\n[box]\nperiodic = \"y\"\ncells = [6, 3, 2]\n");
+      }),
+      "the box repeats along y");
+  has(told([&] { bar({0, 0, 0}, "[[symmetry]]\nnormal = \"y\"\n", "moved_by_force"); }), "by force");
+  // {111} planes are no mirrors of the packing.
+  has(told([&] {
+        parse_scene(R"(mass = "1 g"
+packing = { pitch = "1 mm", axes = [[1, 1, 1], [1, -1, 0]] }
+geometry = { shape = "box", min = "[0, -3, -3] mm", max = "[6, 3, 3] mm" }
+law = { kind = "elastic", stiffness = "1 kN/m" }
+run = { steps = 1 }
+[[symmetry]]
+normal = "x"
+)",
+                    "turned.toml");
+      }),
+      "not its own mirror image along x");
+  // {110} planes are, but a bond crosses them.
+  has(told([&] {
+        parse_scene(R"(mass = "1 g"
+packing = { pitch = "1 mm", axes = [[1, 1, 0], [-1, 1, 0]] }
+geometry = { shape = "box", min = "[0, -3, -3] mm", max = "[6, 3, 3] mm" }
+law = { kind = "elastic", stiffness = "1 kN/m" }
+run = { steps = 1 }
+[[symmetry]]
+normal = "x"
+)",
+                    "turned.toml");
+      }),
+      "would feel their images");
+}
+
+}  // namespace
+}  // namespace cuboct
