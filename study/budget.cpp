@@ -19,7 +19,7 @@ namespace {
 // A time step's part is the method's alone as long as numbers are still the finest, so what sets the
 // precision comes after it; an axis of the list keeps its place otherwise.
 std::vector<Axis> in_order(std::vector<Axis> axes) {
-  std::ranges::stable_partition(axes, [](const Axis& axis) {
+  std::stable_partition(axes.begin(), axes.end(), [](const Axis& axis) {
     return axis.name == "pitch" || axis.name == "cutoff" || axis.name == "integrator" || axis.name == "dt" ||
            axis.name == "dt_safety";
   });

@@ -44,7 +44,7 @@ class Flattener {
     };
     for (const auto& [name, cell] : m.at("cells").items()) {
       const std::string type = cell.at("type");
-      const std::string full = path.empty() ? name : path + "." + name;
+      const std::string full = path.empty() ? name : fmt::format("{}.{}", path, name);
       std::map<std::string, Bits> pins;
       for (const auto& [pin, bits] : cell.at("connections").items()) {
         Bits& to = pins[pin];

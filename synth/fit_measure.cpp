@@ -32,7 +32,7 @@ Synthesis whole(const std::string& directory, bool board, const std::string& out
   Synthesis s;
   const Project project = read_project(directory);
   const std::vector<std::string> files = board ? read_board(project).files : project.files;
-  for (const std::string& f : files) s.files.push_back(directory + "/" + f);
+  for (const std::string& f : files) s.files.push_back(fmt::format("{}/{}", directory, f));
   s.top = s.module = s.unit = board ? read_board(project).top : "cuboct_lattice";
   s.kept = "cuboct_node";
   s.harness = false;

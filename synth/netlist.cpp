@@ -77,7 +77,7 @@ void walk(const json& modules, const std::string& module, const std::string& pat
           const std::function<void(const std::string&, const Counts&)>& found) {
   for (const auto& [cell, what] : modules.at(module).at("cells").items()) {
     const std::string& type = what.at("type").get_ref<const std::string&>();
-    const std::string name = path.empty() ? cell : path + "." + cell;
+    const std::string name = path.empty() ? cell : fmt::format("{}.{}", path, cell);
     if (const auto cost = cost_of(type)) {
       found(name, *cost);
     } else if (modules.contains(type) && !modules.at(type).at("attributes").contains("blackbox")) {
