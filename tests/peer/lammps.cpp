@@ -47,7 +47,7 @@ class Scratch {
 std::string data_file(const LammpsRun& run, const Body& body) {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
   for (const Vec3& x : body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  std::string text = fmt::format("\n\n{} atoms\n1 atom types\n", body.size());
+  std::string text = fmt::format("\n\n{} atoms\n{} atom types\n", body.size(), run.types);
   for (int axis = 0; axis < 3; ++axis) {
     const bool ring = run.periodic.extent[axis] > 0;
     const double room = 2 * (high[axis] - low[axis]) + 10;
@@ -55,9 +55,12 @@ std::string data_file(const LammpsRun& run, const Body& body) {
     const double end = ring ? begin + run.periodic.extent[axis] : high[axis] + room;
     text += fmt::format("{0:.17g} {1:.17g} {2}lo {2}hi\n", begin, end, "xyz"[axis]);
   }
-  text += fmt::format("\nMasses\n\n1 {:.17g}\n\nAtoms # atomic\n\n", run.mass);
+  text += "\nMasses\n\n";
+  for (int type = 1; type <= run.types; ++type) text += fmt::format("{} {:.17g}\n", type, run.mass);
+  text += "\nAtoms # atomic\n\n";
   for (size_t i = 0; i < body.size(); ++i) {
-    text += fmt::format("{} 1 {:.17g} {:.17g} {:.17g}\n", i + 1, body.x[i].x(), body.x[i].y(), body.x[i].z());
+    text += fmt::format("{} {} {:.17g} {:.17g} {:.17g}\n", i + 1, body.type[i] + 1, body.x[i].x(),
+                        body.x[i].y(), body.x[i].z());
   }
   text += "\nVelocities\n\n";
   for (size_t i = 0; i < body.size(); ++i) {

@@ -27,6 +27,7 @@ struct LammpsRun {
   int steps = 0;
   std::vector<std::pair<std::string, std::string>> files;  // name, text: put beside the input
   int every = 0;                                           // steps between samples
+  int types = 1;                                           // of one mass
 };
 
 // What LAMMPS measures on its way, of all particles: J and Pa in our words.
