@@ -60,23 +60,6 @@ EngineKind golden_kind(const Scene& scene, const Plan& plan) {
   return kind;
 }
 
-namespace {
-
-Body saved_body(CheckpointReader& from, const Body& start, const RealOptions& options) {
-  if (from.head().engine.counters[0] != static_cast<uint64_t>(options.precision))
-    throw InputError(fmt::format("{} was made with another --precision", from.path()),
-                     "resume with the options of the run that wrote it");
-  if (from.head().particles != start.size())
-    throw InputError(fmt::format("{} holds {} particles, the scene has {}", from.path(),
-                                 from.head().particles, start.size()));
-  Body body;
-  body.type = start.type;
-  from.next(body);
-  return body;
-}
-
-}  // namespace
-
 EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
                           double cell_edge) {
   EngineKind kind;
@@ -90,8 +73,8 @@ EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptio
   kind.saves = options.integrator == Integrator::semi_implicit_euler;
   kind.make = [&scene, &start, options, cell_edge](CheckpointReader* from, bool) {
     if (!from) return std::make_unique<ReferenceEngine>(scene, start, options, cell_edge);
-    return std::make_unique<ReferenceEngine>(scene, saved_body(*from, start, options), options, cell_edge,
-                                             from->head().step);
+    return std::make_unique<ReferenceEngine>(scene, saved_body(*from, start, options.precision), options,
+                                             cell_edge, from->head().step);
   };
   return kind;
 }

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Hysteresis: a specimen of acetal loaded and unloaded, with a law that was set for a monotonic test.
+"""Hysteresis: specimens of acetal loaded and unloaded, with laws that were made for a monotonic test.
 
 The specimen of scenes/acetal.toml, on a coarser packing, goes to growing strains and each time back to no stress (Strand, Tourlomousis,
 Gershenfeld, section 5). Of each loop: the energy that is lost, and the strain that stays. What is lost has three causes. Damping takes a part
 that is proportional to speed, waves from the grip's turns one that grows with its square; particles that change their neighbours take the
-same at any speed, also at rest at each load step. The sweeps tell the three apart."""
+same at any speed, also at rest at each load step. The sweeps tell the three apart. A second specimen has the law that `cuboct fit` found for the
+yield of acetal: a law with a plateau, on the coupon that it was fitted on."""
 import numpy as np
 
 import cuboct
@@ -13,7 +14,8 @@ from study import ROOT, Study, check, main
 STRAINS = (0.01, 0.04, 0.08, 0.12, 0.16)  # between the grips
 SPEEDS = (4.0, 2.0, 1.0)  # m/s
 DAMPINGS = (0.1, 0.5)
-
+FITTED_STRAINS = (0.02, 0.05, 0.1, 0.15)  # between the gauge marks; the law was fitted up to 0.2
+FITTED_SPEEDS = (4.0, 1.0)
 
 AREA = 11.88e-6  # m^2, of the scene's probes: of its own packing
 
@@ -36,8 +38,15 @@ def specimen(factor):
     return scene
 
 
-def cycled(scene, strains, speed, damping, static_steps=0):
-    """Loads to each strain of the gauge, and back until the grip pulls no more."""
+def fitted():
+    """The coupon of scenes/studies/fit_coupon.toml with the law of its fit."""
+    scene = cuboct.Scene.load(ROOT / "scenes/studies/acetal_fitted.toml")
+    scene["run"].pop("static")
+    return scene
+
+
+def cycled(scene, strains, speed, damping, static_steps=0, probe="grip"):
+    """Loads to each strain that the probe reads, and back until it reads no stress."""
     scene = scene.copy()
     scene["damping"] = {"ratio": damping}
     move = lambda v: [{"name": "pulled", "velocity": f"[{v!r}, 0, 0] m/s"}]
@@ -47,8 +56,8 @@ def cycled(scene, strains, speed, damping, static_steps=0):
         # Longer than the strain takes: the stage ends where the probe says. Waves from the grip's turn do not end the way back.
         longest, turn = 1.5 * strain * length / speed, 0.1 * strain * length / speed
         for name, velocity, until in (
-            (f"load-{k}", speed, {"probe": "grip.strain", "above": strain}),
-            (f"back-{k}", -speed, {"probe": "grip.stress", "below": "0 Pa", "after": f"{turn!r} s"}),
+            (f"load-{k}", speed, {"probe": f"{probe}.strain", "above": strain}),
+            (f"back-{k}", -speed, {"probe": f"{probe}.stress", "below": "0 Pa", "after": f"{turn!r} s"}),
         ):
             stage = {"name": name, "constraint": move(velocity), "duration": f"{longest!r} s", "until": until, "frame_every": 0}
             if static_steps:
@@ -56,7 +65,8 @@ def cycled(scene, strains, speed, damping, static_steps=0):
             else:
                 stage["probe_every"] = 20
             scene["stage"].append(stage)
-    del scene["run"]["frame_every"], scene["run"]["probe_every"]
+    for key in ("frame_every", "probe_every"):
+        scene["run"].pop(key, None)
     scene["reach"] = {"margin": "6 mm"}  # particles tear off at large strains
     return scene
 
@@ -67,12 +77,12 @@ def section(case, pitch):
     return np.count_nonzero(np.abs(x[:, 0]) < 4e-3) * pitch**3 / np.sqrt(2) / 8e-3
 
 
-def loops(case, pitch):
+def loops(case, scale, probe="grip"):
     """Of each loop: strain and stress on the way there and back."""
-    found, scale = [], AREA / section(case, pitch)
+    found = []
     for load, back in zip(case.stages[::2], case.stages[1::2]):
-        strain = np.concatenate([stage.curve("grip.strain")[1] for stage in (load, back)])
-        stress = np.concatenate([stage.curve("grip.stress")[1] for stage in (load, back)])
+        strain = np.concatenate([stage.curve(f"{probe}.strain")[1] for stage in (load, back)])
+        stress = np.concatenate([stage.curve(f"{probe}.stress")[1] for stage in (load, back)])
         found.append((strain, scale * stress))
     return found
 
@@ -80,6 +90,25 @@ def loops(case, pitch):
 def lost(strain, stress):
     """J/m^3: the integral of the stress over the strain, there and back."""
     return float(np.sum(0.5 * (stress[1:] + stress[:-1]) * np.diff(strain)))
+
+
+def yielded(study):
+    """Loops of the fitted law, of which those at rest are given back."""
+    scene, strains = fitted(), FITTED_STRAINS[::2] if study.small else FITTED_STRAINS
+    scenes = {} if study.small else {f"fitted, {v:g} m/s": cycled(scene, strains, v, 0.5, probe="tension") for v in FITTED_SPEEDS}
+    cases = study.run({"fitted, at rest": cycled(scene, strains, 1.0, 0.5, 1000, probe="tension"), **scenes})
+    found = {name: loops(case, 1, "tension") for name, case in cases.items()}
+    study.table("hysteresis-fitted", HEAD, [row(name, strain, loop) for name in cases for strain, loop in zip(strains, found[name])])
+    return found["fitted, at rest"]
+
+
+def row(name, strain, loop):
+    way, stress = loop
+    stored = 0.5 * stress.max() ** 2 / 3e9
+    return (name, f"{100 * strain:g} %", f"{stress.max() / 1e6:.1f}", f"{100 * way[-1]:.3f}", f"{lost(*loop) / 1e3:.1f}", f"{lost(*loop) / stored:.3f}")
+
+
+HEAD = ("run", "loop to", "largest stress, MPa", "strain that stays, %", "energy lost, kJ/m³", "over σ²/2E")
 
 
 def run():
@@ -90,15 +119,9 @@ def run():
     scenes = {f"{v:g} m/s, damping {d:g}": cycled(base, strains, v, d) for v in speeds for d in dampings}
     cases = study.run({"at rest": cycled(base, strains, 1.0, 0.5, 1000), **scenes})
     pitch = 1e-3 * float(base["packing"]["pitch"].split()[0])
-    found = {name: loops(case, pitch) for name, case in cases.items()}
-    rows = []
-    energy = {}
-    for name in cases:
-        for k, (strain, stress) in enumerate(found[name]):
-            energy[name, k] = lost(strain, stress)
-            stored = 0.5 * stress.max() ** 2 / 3e9
-            rows.append((name, f"{100 * strains[k]:g} %", f"{stress.max() / 1e6:.1f}", f"{100 * strain[-1]:.3f}", f"{energy[name, k] / 1e3:.1f}", f"{energy[name, k] / stored:.3f}"))
-    study.table("hysteresis-loops", ("run", "loop to", "largest stress, MPa", "strain that stays, %", "energy lost, kJ/m³", "over σ²/2E"), rows)
+    found = {name: loops(case, AREA / section(case, pitch)) for name, case in cases.items()}
+    energy = {(name, k): lost(*loop) for name in cases for k, loop in enumerate(found[name])}
+    study.table("hysteresis-loops", HEAD, [row(name, strains[k], loop) for name in cases for k, loop in enumerate(found[name])])
     # At rest: the law alone goes there and back on one curve; once particles have changed their neighbours, it does not.
     for k, sign in ((0, -1), (len(strains) - 1, 1)):
         strain, stress = found["at rest"][k]
@@ -106,7 +129,11 @@ def run():
         if sign * (share - 0.01) <= 0 or sign * (stays - 1e-4) <= 0:
             raise SystemExit(f"loop at rest to {100 * strains[k]:g} %: {share:.3f} of σ²/2E are lost and {100 * stays:.3f} % of strain stay, {'more' if sign > 0 else 'less'} than 0.01 and 0.01 % are expected")
     check("strength at rest", max(stress.max() for _, stress in found["at rest"]), 72e6, 0.15)  # for which the law was set
-    with study.figure("hysteresis_loops", 2, (9, 3.8)) as (left, right):
+    plateau = yielded(study)
+    with study.figure("hysteresis_loops", 3, (12, 3.8)) as (left, right, third):
+        for strain, stress in plateau:
+            third.plot(100 * strain, stress / 1e6, lw=0.8, color="C1")
+        third.set(title="fitted law, at rest", xlabel="strain between the marks, %", ylabel="stress, MPa")
         for strain, stress in found["at rest"]:
             left.plot(100 * strain, stress / 1e6, lw=0.8, color="C0")
         left.set(title="at rest at each load step", xlabel="strain between the grips, %", ylabel="stress, MPa")

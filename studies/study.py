@@ -138,9 +138,8 @@ class Study:
         directory = path.with_suffix("")
         if not done:
             threads = [] if "--threads" in options else ["--threads", max(1, (os.cpu_count() or 1) // self.jobs)]
-            kept = [] if _static(scene) else ["--checkpoint-every", "1 min"]
             part = same and ("stage" in scene and directory.exists() or (directory / "checkpoint").exists())
-            self._command("run", path, "--out", directory, "--quiet", "--json", "--frames", "none", *threads, *kept, "--resume" if part else "--force", *options)
+            self._command("run", path, "--out", directory, "--quiet", "--json", "--frames", "none", *threads, "--checkpoint-every", "1 min", "--resume" if part else "--force", *options)
             path.with_suffix(".done").touch()
         return Case(directory)
 
@@ -185,11 +184,6 @@ class Study:
 
     def end(self) -> None:
         print(f"{time.monotonic() - self.began:.0f} s, of which finished cases took none; tables and pictures: {self.out}")
-
-
-def _static(scene: Mapping[str, Any]) -> bool:
-    """Whether some of it is at rest: such runs leave no checkpoints."""
-    return any("static" in run for run in (scene.get("run", {}), *scene.get("stage", [])))
 
 
 def check(name: str, value: float, reference: float, tolerance: float) -> None:

@@ -2,6 +2,7 @@
 #include "model/real/balance.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "model/contract/bond.h"
 
@@ -31,19 +32,30 @@ Body at_rest(const Rule& rule, Body body) {
 Balance::Balance(const Rule& rule, const Body& body, const Periodic& periodic, int threads)
     : rule_(rule),
       body_(at_rest(rule, body)),
-      reference_(rule_, body_, periodic, RealOptions{.threads = threads}),
+      periodic_(periodic),
+      threads_(threads),
       stiffness_(largest_site_stiffness(rule, body, periodic)) {
+  make_lists();
   for (size_t i = 0; i < body_.u.size(); ++i) anchor_.push_back(body_.x[i] - body_.u[i]);
+}
+
+void Balance::make_lists() { reference_.emplace(rule_, body_, periodic_, RealOptions{.threads = threads_}); }
+
+void Balance::recall(Memory memory) {
+  stiffness_ = memory.stiffness;
+  before_ = std::move(memory.before);
+  anchor_ = std::move(memory.anchor);
+  forces();
 }
 
 void Balance::place(const Eigen::VectorXd& x) {
   flat(body_.x) = x;
   for (size_t i = 0; i < body_.u.size(); ++i) body_.u[i] = body_.x[i] - anchor_[i];
-  reference_.place(body_);
+  reference_->place(body_);
 }
 
 const std::vector<Vec3>& Balance::forces() {
-  carried_ = reference_.forces();
+  carried_ = reference_->forces();
   free_ = carried_;
   for (size_t i = 0; i < free_.size(); ++i) {
     const ParticleType& type = rule_.types[body_.type[i]];
@@ -105,14 +117,17 @@ void Balance::go_on(double time) {
 FireResult Balance::relax(const std::function<bool(const std::vector<Vec3>&)>& small, uint64_t most) {
   if (!(stiffness_ > 0)) return {small(forces()), 1};
   Eigen::VectorXd x = flat(body_.x);
-  return fire(x,
-              [&](const Eigen::VectorXd& at, Eigen::VectorXd& f) {
-                place(at);
-                forces();
-                f = flat(free_);
-                return small(free_);
-              },
-              {.stiffness = stiffness_, .longest_step = kLongestStep * rule_.cutoff(), .most = most});
+  const FireResult result =
+      fire(x,
+           [&](const Eigen::VectorXd& at, Eigen::VectorXd& f) {
+             place(at);
+             forces();
+             f = flat(free_);
+             return small(free_);
+           },
+           {.stiffness = stiffness_, .longest_step = kLongestStep * rule_.cutoff(), .most = most});
+  make_lists();
+  return result;
 }
 
 }  // namespace cuboct

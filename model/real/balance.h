@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "model/base/fire.h"
@@ -29,7 +30,7 @@ class Balance {
   Balance(const Rule& rule, const Body& body, const Periodic& periodic, int threads);
 
   const Body& body() const { return body_; }
-  const Reference& reference() const { return reference_; }
+  const Reference& reference() const { return *reference_; }
 
   // N, on free axes: pairs, controllers and gravity. 0 on imposed ones.
   const std::vector<Vec3>& forces();
@@ -39,16 +40,28 @@ class Balance {
   // What is imposed moves on by its velocity for `time` s, anchors of controllers too. The free particles go
   // where they went the last time, if that leaves smaller forces: two evaluations.
   void go_on(double time);
-  // FIRE until `small` says that the forces are.
+  // What the next load step depends on besides the body: where the last one began, and the anchors of
+  // controllers; by particle, empty where there are none.
+  struct Memory {
+    double stiffness = 0;              // N/m, of the stiffest site at the start
+    std::vector<Vec3> before, anchor;  // m
+  };
+  Memory memory() const { return {stiffness_, before_, anchor_}; }
+  void recall(Memory memory);
+  // FIRE until `small` says that the forces are. Ends with lists made anew: what follows depends on the body
+  // and on memory() alone, to the last bit.
   FireResult relax(const std::function<bool(const std::vector<Vec3>& forces)>& small, uint64_t most);
 
  private:
+  void make_lists();
   void place(const Eigen::VectorXd& x);
   double largest_force() const;
 
   Rule rule_;
   Body body_;
-  Reference reference_;
+  Periodic periodic_;
+  int threads_;
+  std::optional<Reference> reference_;
   double stiffness_;           // N/m, of the stiffest site
   std::vector<Vec3> anchor_;   // m; empty unless a type has a controller
   std::vector<Vec3> carried_;  // N, of pairs, by id

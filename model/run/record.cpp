@@ -406,9 +406,7 @@ void Loop::total() {
 Recorded Loop::run() {
   if (!kind_.saves && (save_plan_.resume || !save_plan_.path.empty()))
     throw InputError(fmt::format("the {} engine leaves no checkpoints", kind_.name),
-                     kind_.relaxes               ? "of static loading"
-                     : kind_.name == "reference" ? "with --integrator euler it does"
-                                                 : "");
+                     kind_.name == "reference" ? "with --integrator euler it does" : "");
   try {
     saved_time_ = Clock::now();
     if (save_plan_.resume)

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "model/run/reference_engine.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
+
+#include "model/base/error.h"
 
 namespace cuboct {
 
@@ -42,6 +46,19 @@ Notes ReferenceEngine::notes() {
   return {{"precision", options_.precision == Precision::float32 ? "float" : "double"},
           {"integrator",
            options_.integrator == Integrator::velocity_verlet ? "velocity Verlet" : "semi-implicit Euler"}};
+}
+
+Body saved_body(CheckpointReader& from, const Body& start, Precision precision) {
+  if (from.head().engine.counters[0] != static_cast<uint64_t>(precision))
+    throw InputError(fmt::format("{} was made with another --precision", from.path()),
+                     "resume with the options of the run that wrote it");
+  if (from.head().particles != start.size())
+    throw InputError(fmt::format("{} holds {} particles, the scene has {}", from.path(),
+                                 from.head().particles, start.size()));
+  Body body;
+  body.type = start.type;
+  from.next(body);
+  return body;
 }
 
 }  // namespace cuboct

@@ -2,6 +2,7 @@
 // The rule in real numbers behind the interface of all engines.
 #pragma once
 
+#include "model/run/checkpoint.h"
 #include "model/run/engine.h"
 #include "model/scene/scene.h"
 
@@ -35,5 +36,9 @@ class ReferenceEngine : public Engine {
   uint64_t begin_;
   Reference reference_;
 };
+
+// The body of a checkpoint of an engine in real numbers, whose types are those of `start`. InputError where
+// it is of another precision or number of particles.
+Body saved_body(CheckpointReader& from, const Body& start, Precision precision);
 
 }  // namespace cuboct

@@ -4,19 +4,71 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
+#include "model/run/reference_engine.h"
 
 namespace cuboct {
-StaticEngine::StaticEngine(const Scene& scene, const Body& body, int threads, double cell_edge, uint64_t step)
+namespace {
+
+constexpr size_t kHeadWords = 6;  // of the memory
+
+void add(std::vector<uint64_t>& words, const std::vector<Vec3>& values) {
+  for (const Vec3& value : values)
+    for (const double number : value) words.push_back(std::bit_cast<uint64_t>(number));
+}
+
+std::vector<Vec3> vectors(const std::vector<uint64_t>& words, size_t from, size_t count) {
+  std::vector<Vec3> values(count);
+  for (size_t i = 0; i < count; ++i)
+    for (int a = 0; a < 3; ++a)
+      values[i][a] = std::bit_cast<double>(words[from + 3 * i + static_cast<size_t>(a)]);
+  return values;
+}
+
+}  // namespace
+
+StaticEngine::StaticEngine(const Scene& scene, const Body& body, int threads, double cell_edge)
+    : scene_(scene),
+      threads_(threads),
+      cell_edge_(cell_edge),
+      step_(0),
+      balance_(scene.rule, body, scene.periodic, threads) {
+  relax();
+}
+
+StaticEngine::StaticEngine(const Scene& scene, const Body& body, int threads, double cell_edge, uint64_t step,
+                           const std::vector<uint64_t>& own)
     : scene_(scene),
       threads_(threads),
       cell_edge_(cell_edge),
       step_(step),
       balance_(scene.rule, body, scene.periodic, threads) {
-  relax();
+  const size_t n = body.size(), anchors = balance_.body().u.size();
+  const size_t before = own.size() > kHeadWords ? own[5] : 0;
+  if (own.size() < kHeadWords || (before != 0 && before != n) ||
+      own.size() != kHeadWords + 3 * (before + anchors))
+    throw InputError("the checkpoint is not of static loading of this scene", "begin anew with --force");
+  load_steps_ = own[0], evaluations_ = own[1];
+  largest_share_ = std::bit_cast<double>(own[2]), largest_residual_ = std::bit_cast<double>(own[3]);
+  balance_.recall({std::bit_cast<double>(own[4]), vectors(own, kHeadWords, before),
+                   vectors(own, kHeadWords + 3 * before, anchors)});
+}
+
+EngineMemory StaticEngine::memory() {
+  const Balance::Memory memory = balance_.memory();
+  std::vector<uint64_t> own{load_steps_,
+                            evaluations_,
+                            std::bit_cast<uint64_t>(largest_share_),
+                            std::bit_cast<uint64_t>(largest_residual_),
+                            std::bit_cast<uint64_t>(memory.stiffness),
+                            memory.before.size()};
+  add(own, memory.before);
+  add(own, memory.anchor);
+  return {{uint64_t{0}}, own};  // doubles
 }
 
 void StaticEngine::relax() {
@@ -103,8 +155,11 @@ EngineKind static_kind(const Scene& scene, const Body& start, int threads, doubl
   kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
   kind.relaxes = true;
   kind.initial = [&start](uint32_t id) { return start.x[id]; };
-  kind.make = [&scene, &start, threads, cell_edge](CheckpointReader*, bool) {
-    return std::make_unique<StaticEngine>(scene, start, threads, cell_edge);
+  kind.saves = true;
+  kind.make = [&scene, &start, threads, cell_edge](CheckpointReader* from, bool) {
+    if (!from) return std::make_unique<StaticEngine>(scene, start, threads, cell_edge);
+    return std::make_unique<StaticEngine>(scene, saved_body(*from, start, Precision::float64), threads,
+                                          cell_edge, from->head().step, from->head().engine.own);
   };
   return kind;
 }

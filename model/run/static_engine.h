@@ -14,8 +14,12 @@ namespace cuboct {
 class StaticEngine : public Engine {
  public:
   // Keeps a reference to `scene`, whose `loading` it follows; relaxes `body` first. `cell_edge`: m, in which
-  // speeds are told. `step`: that of `body`. StepError where the body finds no rest.
-  StaticEngine(const Scene& scene, const Body& body, int threads, double cell_edge, uint64_t step = 0);
+  // speeds are told. StepError where the body finds no rest.
+  StaticEngine(const Scene& scene, const Body& body, int threads, double cell_edge);
+  // From what an engine of this scene left at `step`: its body, and memory().own. InputError where that is
+  // another's.
+  StaticEngine(const Scene& scene, const Body& body, int threads, double cell_edge, uint64_t step,
+               const std::vector<uint64_t>& own);
 
   uint64_t step_count() const override { return step_; }
   // Between two load steps only the count moves.
@@ -28,7 +32,7 @@ class StaticEngine : public Engine {
   Counters counters() override;
   Notes notes() override;
   const Body* saved_body() override { return &balance_.body(); }
-  EngineMemory memory() override { return {{uint64_t{0}}, {}}; }
+  EngineMemory memory() override;
 
  private:
   void relax();

@@ -220,6 +220,20 @@ TEST(RealStarts, GoOnFromACheckpoint) {
   expect_goes_on(bed, kind, kind, 10, 40);
 }
 
+// The next load step begins where the last two lead, and anchors are not to be had from positions to the last
+// bit.
+TEST(RealStarts, StaticLoadingGoesOnFromACheckpoint) {
+  const std::string path = kRoot + "/scenes/studies/fit_bar_scene.toml";
+  for (const char* pull : {"\"moved\"", "\"moved_by_force\""}) {
+    std::string text = read_text(path);
+    text.replace(text.find("\"moved\""), 7, pull);
+    const Bed bed = bed_of(parse_scene(text, path));
+    const EngineKind kind = static_kind(bed.scene, bed.plan, {});
+    const uint64_t every = bed.scene.loading->every;
+    expect_goes_on(bed, kind, kind, 6 * every, 10 * every);
+  }
+}
+
 // Lists are made many times before the checkpoint and behind it, at steps and with skins that depend on what
 // came before: sums are then in another order.
 TEST(RealStarts, OnDevicesGoOnFromACheckpoint) {
