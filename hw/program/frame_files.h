@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Frames that a program hands over as they come. Each is a file of its own, PREFIX.0, PREFIX.1 and so on: a
+// trace of one state (docs/reference/trace.md). A file of such a name is whole, and goes when it has been
+// read.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "model/run/engine.h"
+
+namespace cuboct {
+
+class FrameSender {
+ public:
+  explicit FrameSender(std::string prefix) : prefix_(std::move(prefix)) {}
+
+  // Throws InputError where the disk has no room; the frame is then left out, and the next one may fit.
+  void send(const RunState& frame);
+
+ private:
+  std::string prefix_;
+  uint64_t sent_ = 0;
+};
+
+class FrameReceiver {
+ public:
+  // What an earlier program left under these names goes.
+  explicit FrameReceiver(std::string prefix);
+
+  // Calls `see` with each frame that has come since, in the order in which they were sent. Throws InputError
+  // for a damaged file.
+  void receive(const std::function<void(RunState)>& see);
+
+ private:
+  std::string next() const;
+
+  std::string prefix_;
+  uint64_t received_ = 0;
+};
+
+}  // namespace cuboct
