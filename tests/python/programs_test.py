@@ -6,8 +6,10 @@ usage: programs_test.py ROOT DIRECTORY_OF_CUBOCT FAKE_ENGINE
 import os
 import re
 import shutil
+import signal
 import sys
 import tempfile
+import threading
 import unittest
 
 from support import main, scene_file
@@ -128,6 +130,20 @@ class Machine(unittest.TestCase):
             whole = cuboct.run(scene, "systemc", steps=15)
             self.assertEqual(stepped.hash, whole.hash, name)
             self.assertEqual(stepped.velocities.tolist(), whole.velocities.tolist(), name)
+
+    def test_ctrl_c_ends_a_piece(self):
+        scene = scene_file("lj_block.toml")
+        stepped = cuboct.Simulation(scene, "systemc", probe_every=0)
+        timer = threading.Timer(1, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            stepped.step(10**6)
+        timer.join()
+        self.assertGreater(stepped.steps, 0)
+        stepped.step(2)
+        golden = cuboct.Simulation(scene, "lattice", probe_every=0)
+        golden.step(stepped.steps)
+        self.assertEqual(stepped.hash, golden.hash)
 
 
 main()
