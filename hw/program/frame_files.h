@@ -16,8 +16,11 @@ class FrameSender {
  public:
   explicit FrameSender(std::string prefix) : prefix_(std::move(prefix)) {}
 
-  // Throws InputError where the disk has no room; the frame is then left out, and the next one may fit.
+  // Waits while kUnread frames have not been read, unless an interrupt ends the run: files take no more room
+  // than that. Throws InputError where the disk has no room; the frame is then left out, and the next one may
+  // fit.
   void send(const RunState& frame);
+  static constexpr uint64_t kUnread = 16;
 
  private:
   std::string prefix_;
@@ -29,13 +32,11 @@ class FrameReceiver {
   // What an earlier program left under these names goes.
   explicit FrameReceiver(std::string prefix);
 
-  // Calls `see` with each frame that has come since, in the order in which they were sent. Throws InputError
-  // for a damaged file.
-  void receive(const std::function<void(RunState)>& see);
+  // Calls `see` with the next frame in the order in which they were sent, if it is there: whether it was.
+  // Throws InputError for a damaged file.
+  bool receive(const std::function<void(RunState)>& see);
 
  private:
-  std::string next() const;
-
   std::string prefix_;
   uint64_t received_ = 0;
 };

@@ -153,9 +153,10 @@ void add_options(CLI::App& app, EngineProgram& program, Parsed& parsed) {
   app.add_option("--out", options.out, "Trace file to write (HDF5); --bench does without");
   app.add_flag("--unpacked", parsed.unpacked, "Do not compress the trace: larger, and written in less time");
   app.add_option("--error", parsed.error, "File that takes an error, in place of standard error");
-  app.add_option(
-         "--frame-files", parsed.frame_files,
-         "Each state that is kept goes into a file PREFIX.0, PREFIX.1, ... as it comes, none into the trace")
+  app.add_option("--frame-files", parsed.frame_files,
+                 "Each state that is kept goes into a file PREFIX.0, PREFIX.1, ... as it comes, none into "
+                 "the trace, for a reader "
+                 "who removes them: the program waits while 16 are there")
       ->type_name("PREFIX");
   app.add_option("--begun", parsed.begun, "File that is made when the steps begin");
   app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");

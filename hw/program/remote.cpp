@@ -60,14 +60,13 @@ std::string Remote::errors() const {
   return text;
 }
 
-void Remote::take_frames() {
-  if (frames_) frames_->receive(run_.request.keep);
-}
+bool Remote::take_frame() { return frames_ && frames_->receive(run_.request.keep); }
 
 void Remote::wait() {
   const auto begun = [this] { return !over_mpi() || fs::exists(file(".begun")); };
-  const int code = process_->wait(begun, [this] { take_frames(); });
-  take_frames();
+  const int code = process_->wait(begun, [this] { return take_frame(); });
+  while (take_frame()) {
+  }
   const std::string name = over_mpi() ? "mpirun" : fs::path(run_.program).filename().string();
   const std::string said = run_.quiet ? errors() : "";
   std::optional<InputError> error;

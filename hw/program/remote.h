@@ -43,7 +43,7 @@ class Remote {
   std::string file(const char* ending) const { return run_.trace + ending; }
   void start(std::vector<std::string> arguments);
   void wait();
-  void take_frames();
+  bool take_frame();
   std::string errors() const;
   Recorded read() const;
 

@@ -118,7 +118,7 @@ Process::~Process() {
 Process::Process(Process&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)), passed_on_(other.passed_on_) {}
 
-int Process::wait(const std::function<bool()>& begun, const std::function<void()>& meanwhile) {
+int Process::wait(const std::function<bool()>& begun, const std::function<bool()>& meanwhile) {
   constexpr std::chrono::seconds kGrace(2);
   using Clock = std::chrono::steady_clock;
   std::optional<Clock::time_point> passed_on;
@@ -142,8 +142,8 @@ int Process::wait(const std::function<bool()>& begun, const std::function<void()
     } else if (early && Clock::now() - *passed_on > kGrace) {
       kill(pid_, SIGKILL);
     }
-    if (meanwhile) meanwhile();
-    poll(&ended, count, count ? 100 : 10);
+    const bool busy = meanwhile && meanwhile();
+    poll(&ended, count, busy ? 0 : count ? 100 : 10);
   }
   if (found < 0) throw std::runtime_error(fmt::format("waitpid: {}", std::strerror(errno)));
   pid_ = -1;

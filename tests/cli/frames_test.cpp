@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "hw/program/frame_files.h"
 #include "model/base/process.h"
 #include "model/trace/trace.h"
 #include "tests/cli/shell.h"
@@ -62,6 +63,36 @@ TEST_F(ProgramFrames, OfOneThatDiesStay) {
   EXPECT_EQ(heads, 2u);
   EXPECT_TRUE(fs::exists(bench_.path("rtl/trace.part.h5")));
   EXPECT_NE(file("rtl/run.toml").find("state = 'running'"), std::string::npos) << file("rtl/run.toml");
+}
+
+// Sixteen wait at most; all come, in order, and no file is left.
+TEST_F(ProgramFrames, TakeNoMoreRoomThanTheirReaderLeaves) {
+  const std::string prefix = bench_.path("frame"), last = prefix + ".15", beyond = prefix + ".16";
+  FrameReceiver ours(prefix);  // before: it removes what an earlier program left
+  std::jthread program([&] {
+    FrameSender sender(prefix);
+    for (uint64_t step = 0; step < 40; ++step) {
+      State state{10 * step, std::vector<Particle>(3)};
+      for (uint32_t id = 0; id < 3; ++id)
+        state.particles[id].id = id, state.particles[id].x[0] = static_cast<int64_t>(step);
+      sender.send(state);
+    }
+  });
+  for (int waited = 0; waited < 1000 && !fs::exists(last); ++waited)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ASSERT_TRUE(fs::exists(last));
+  EXPECT_FALSE(fs::exists(beyond));
+  uint64_t step = 0;
+  const auto see = [&](const RunState& frame) {
+    EXPECT_EQ(std::get<State>(frame).step, 10 * step);
+    EXPECT_EQ(std::get<State>(frame).particles[2].x[0], static_cast<int64_t>(step));
+    ++step;
+  };
+  for (int waited = 0; waited < 5000 && step < 40; ++waited)
+    if (!ours.receive(see)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_EQ(step, 40u);
+  EXPECT_FALSE(fs::exists(prefix + ".39"));
 }
 
 #ifdef CUBOCT_SYSTEMC
