@@ -10,16 +10,16 @@
 
 #include "cli/answer.h"
 #include "cli/estimate.h"
-#include "cli/quantity_text.h"
 #include "cli/stages.h"
 #include "cli/summary.h"
 #include "hw/cycles.h"
 #include "hw/left_out.h"
 #include "hw/node_area.h"
 #include "model/analysis/motion.h"
+#include "model/analysis/synopsis.h"
+#include "model/base/quantity_text.h"
 #include "model/base/resources.h"
 #include "model/run/start.h"
-#include "model/scene/packing.h"
 
 namespace cuboct {
 namespace {
@@ -168,100 +168,14 @@ Items resolve(const Loaded& loaded) {
 
 namespace {
 
-// Lengths and times of a scene, for people; plain numbers in reduced units.
-class Shown {
- public:
-  explicit Shown(const Scene& scene) : reduced_(scene.boltzmann == 1) {}
-  std::string operator()(double value, const char* unit) const {
-    return quantity_text(value, reduced_ ? "" : unit);
-  }
-  std::string mass(double kg) const {
-    return reduced_ ? "mass " + (*this)(kg, "") : quantity_text(1000 * kg, "g");
-  }
-
- private:
-  bool reduced_;
-};
-
-// Of the box along axes that repeat, else of the particles' centres.
-Vec3 size_of(const Scene& scene) {
-  Vec3 size = body_size(scene);
-  for (int a = 0; a < 3; ++a)
-    if (scene.periodic.extent[a] > 0) size[a] = scene.periodic.extent[a];
-  return size;
-}
-
-std::string body_text(const Scene& scene, const Shown& shown) {
-  const Vec3 size = size_of(scene);
-  std::string text, repeats;
-  for (int a = 0; a < 3; ++a) {
-    if (scene.periodic.extent[a] > 0) repeats += "xyz"[a];
-    if (size[a] > 1e-9 * scene.rule.cutoff()) text += (text.empty() ? "" : " x ") + shown(size[a], "m");
-  }
-  if (!repeats.empty()) text += ", repeats along " + repeats;
-  const size_t count = scene.body.size();
-  text += fmt::format("{}{} particle{} of {}", text.empty() ? "" : ", ", count, count == 1 ? "" : "s",
-                      shown.mass(scene.rule.mass));
-  if (!scene.rule.masses.empty()) text += " to " + shown.mass(scene.rule.heaviest());
-  return scene.pitch > 0 ? fmt::format("{}, {} apart", text, shown(scene.pitch, "m")) : text;
-}
-
-// Three digits, but never an exponent.
-std::string times_text(double times) {
-  return times < 1000 ? fmt::format("{:.3g}", times) : count_text(times);
-}
-
-// An estimate.
-std::string waiting_text(double seconds) {
-  if (seconds < 0.1) return "under 0.1 s";
-  if (seconds < 120) return fmt::format("about {:.2g} s", seconds);
-  if (seconds < 7200) return fmt::format("about {:.0f} min", seconds / 60);
-  return "about " + count_text(seconds / 3600) + " h";
-}
-
 // What the scene is, and what a run of it does and takes.
 Items physics(const Loaded& loaded) {
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
-  const Shown shown(scene);
-  const Motion motion = motion_of(scene);
-  const double dt = scene.rule.dt, duration = static_cast<double>(scene.steps) * dt,
-               length = size_of(scene).maxCoeff();
   Items items;
   items.add("scene", scene.path);
   if (!scene.title.empty()) items.add("title", scene.title);
-  items.add("body", body_text(scene, shown));
-  for (const MeshFacts& mesh : scene.meshes)
-    items.add("mesh",
-              fmt::format("{}: {} triangles, {}; area {:.4g} m^2, volume {:.4g} m^3", mesh.file,
-                          mesh.triangles, mesh.closed() ? "closed" : "not closed", mesh.area, mesh.volume));
-  if (!scene.meshes.empty())
-    items.add("packed", fmt::format("{:.4g} m^3, a particle's share times their number",
-                                    static_cast<double>(scene.body.size()) * particle_mass(1, scene.pitch)));
-  std::string crossings;
-  if (motion.sound_speed > 0 && length > 0) {
-    items.add("waves", fmt::format("{}, {} from end to end", shown(motion.sound_speed, "m/s"),
-                                   shown(length / motion.sound_speed, "s")));
-    crossings = fmt::format(", {} crossings", times_text(duration * motion.sound_speed / length));
-  }
-  items.add("run", fmt::format("{} step{} of {} = {}{}", scene.steps, scene.steps == 1 ? "" : "s",
-                               shown(dt, "s"), shown(duration, "s"), crossings));
-  if (scene.loading)
-    items.add(
-        "loading",
-        fmt::format("static: {} load steps of {} steps each, {:g} of the load unbalanced at most",
-                    scene.steps / scene.loading->every, scene.loading->every, scene.loading->tolerance));
-  items.add("step", scene.dt_limit > 0
-                        ? fmt::format("{:.2g} of {}, the largest stable one of {}", scene.dt_safety,
-                                      shown(scene.dt_limit, "s"), scene.dt_limit_of)
-                        : "by the scene; no largest stable one is known");
-  if (motion.strain > 0)
-    items.add("strain", fmt::format("about {:.2g} %, by {}", 100 * motion.strain, motion.strain_of));
-  if (scene.until)
-    items.add(
-        "until",
-        fmt::format("{} is {} {:.6g}", scene.until->curve, scene.until->side_name(), scene.until->limit),
-        "or the last step");
+  for (const SynopsisLine& line : synopsis_of(scene)) items.add(line.name, line.text, line.note);
   if (scene.began) items.add("begins at", start_text(scene, &plan.rule, plan.origin));
   const Estimate cost = estimate(scene, plan, run_size(scene));
   std::string time;
@@ -278,23 +192,12 @@ Items physics(const Loaded& loaded) {
   return items;
 }
 
-std::string stage_text(const Scene& scene) {
-  const Shown shown(scene);
-  const double dt = scene.rule.dt;
-  std::string text = fmt::format("{} step{} of {} = {}", scene.steps, scene.steps == 1 ? "" : "s",
-                                 shown(dt, "s"), shown(static_cast<double>(scene.steps) * dt, "s"));
-  if (scene.until)
-    text += fmt::format(", until {} is {} {:.6g}", scene.until->curve, scene.until->side_name(),
-                        scene.until->limit);
-  return text + (scene.rule.damping.coefficient > 0 ? ", damped" : "");
-}
-
 // Of a scene with stages all are told, parts in one line, and the first looked at unless another is chosen.
 Items stages_in(Input& input) {
   Items items;
   const std::vector<StageName> names = stages_of(input.scene);
   for (size_t k = 0; k < names.size(); k += names[k].parts) {
-    const std::string text = stage_text(load_scene(input.scene, {names[k].name, {}, true}));
+    const std::string text = stage_synopsis(load_scene(input.scene, {names[k].name, {}, true}));
     if (names[k].parts == 1)
       items.add("stage " + stage_title(names, k), text);
     else

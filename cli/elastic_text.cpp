@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/quantity_text.h"
 #include "model/base/json.h"
+#include "model/base/quantity_text.h"
 #include "model/base/text.h"
 
 namespace cuboct {

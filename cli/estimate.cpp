@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "hw/engines.h"
+#include "model/analysis/synopsis.h"
 #include "model/base/resources.h"
 #include "model/trace/trace.h"
 
@@ -63,12 +64,6 @@ uint64_t round_interval(uint64_t steps, double most) {
 }
 
 }  // namespace
-
-Vec3 body_size(const Scene& scene) {
-  Vec3 low = scene.body.x.front(), high = low;
-  for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  return high - low;
-}
 
 RunSize run_size(const Scene& scene) {
   RunSize size;

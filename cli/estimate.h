@@ -10,9 +10,6 @@
 
 namespace cuboct {
 
-// m, of the box around the particles' centres.
-Vec3 body_size(const Scene& scene);
-
 struct RunSize {
   std::string engine = "lattice";
   uint64_t steps = 0;

@@ -10,7 +10,6 @@
 
 #include "cli/answer.h"
 #include "cli/check.h"
-#include "cli/quantity_text.h"
 #include "cli/report.h"
 #include "cli/report_pictures.h"
 #include "cli/summary.h"
@@ -20,6 +19,7 @@
 #include "model/base/directory_lock.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
+#include "model/base/quantity_text.h"
 #include "model/base/text.h"
 #include "model/trace/compare.h"
 #include "model/trace/cycles.h"

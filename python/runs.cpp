@@ -11,7 +11,6 @@
 #include "cli/summary.h"
 #include "hw/engines.h"
 #include "model/base/interrupt.h"
-#include "model/base/output.h"
 #include "model/base/process.h"
 #include "model/base/steps.h"
 #include "model/trace/compare.h"
@@ -19,16 +18,6 @@
 
 namespace cuboct::python {
 namespace {
-
-// Programs read files.
-Input input_of(const Sources& sources, const Scratch& scratch) {
-  Input input{.scene = scratch.path("scene.toml"), .arch = {}};
-  write_text(input.scene, sources.scene);
-  if (sources.arch.empty()) return input;
-  input.arch = scratch.path("arch.toml");
-  write_text(input.arch, sources.arch);
-  return input;
-}
 
 // What a program says of its own end is no error of the user's where he asked for it.
 template <typename Work>
@@ -82,7 +71,7 @@ WholeRun run(const Sources& sources, const RunAsked& asked) {
     }
   };
   const Scratch scratch;
-  const Input input = input_of(sources, scratch);
+  const Input input = write_sources(sources, scratch);
   const CatchFromPython catching;
   const uint64_t steps = request.steps;
   result.recorded = unless_interrupted([&] {
@@ -107,7 +96,7 @@ Comparison crosscheck(const Sources& sources, const std::vector<std::string>& en
   const Loaded loaded = load_plan(sources);
   const Plan& plan = loaded.setup.plan;
   const Scratch scratch;
-  const Input input = input_of(sources, scratch);
+  const Input input = write_sources(sources, scratch);
   const CatchFromPython catching;
   RunRequest request;
   request.steps = steps.value_or(loaded.scene.steps);

@@ -18,16 +18,10 @@
 #include "model/run/static_engine.h"
 #include "model/trace/raster_plot.h"
 #include "python/catch_interrupt.h"
+#include "python/program_engine.h"
 
 namespace cuboct::python {
 namespace {
-
-void check_here(const std::string& engine) {
-  if (engine_row(engine).here != Here::none) return;
-  throw InputError(fmt::format("the {} engine is a program of its own and cannot be stepped", engine),
-                   fmt::format("cuboct.run(scene, engine=\"{}\") runs it; {} can be stepped", engine,
-                               list_of(engines_that([](auto& row) { return row.here != Here::none; }))));
-}
 
 void check_size(const Loaded& loaded, const std::string& engine, const EngineOptions& options) {
   RunSize size = run_size(loaded.scene);
@@ -73,17 +67,20 @@ void check_finite(const Vec3& value, const char* what) {
 
 Simulation::Simulation(const Sources& sources, const std::string& engine, const EngineOptions& options,
                        std::optional<uint64_t> probe_every, bool anyway)
-    : engine_name_(engine), options_(options), real_(options.is_real(engine)) {
-  check_here(engine);
+    : engine_name_(engine),
+      options_(options),
+      sources_(sources),
+      real_(options.is_real(engine)),
+      program_(engine_row(engine).here == Here::none || options.ranks > 1) {
   options.check({engine}, {});
   Loaded loaded = load(sources);
   refuse_static(loaded.scene, "steps from Python");
-  check_workers(options.threads, 1, loaded.setup.plan);
+  check_workers(options.threads, options.ranks, loaded.setup.plan);
   if (!anyway) check_size(loaded, engine, options);
   scene_ = std::move(loaded.scene);
   setup_ = std::move(loaded.setup);
   probe_every_ = probe_every.value_or(scene_.probe_every);
-  if (real_) start_ = scene_.body, setup_.initial = {};
+  if (real_ && !program_) start_ = scene_.body, setup_.initial = {};
   make_engine();
   const EngineKind kind =
       real_ ? real_kind(engine, scene_, setup_.plan, false) : fixed_kind(engine, scene_, setup_.plan);
@@ -97,7 +94,9 @@ void Simulation::make_engine() {
   present_.reset();
   const Plan& plan = setup_.plan;
   const Here here = engine_row(engine_name_).here;
-  if (here == Here::reference) {
+  if (program_) {
+    engine_ = std::make_unique<ProgramEngine>(sources_, engine_name_, options_, scene_, setup_);
+  } else if (here == Here::reference) {
     RealOptions real = options_.real_options();
     real.threads = options_.threads > 0 ? options_.threads : reference_threads(start_.size());
     real.first_step = first_step_;
@@ -114,32 +113,43 @@ void Simulation::make_engine() {
 
 // Engines may lose their state in a step that fails: what was done is done again, to the same bits.
 void Simulation::stop(const StopReason& reason) {
-  make_engine();
-  while (now() < reason.step) engine_->advance(1);
+  if (!program_) {
+    make_engine();
+    while (now() < reason.step) engine_->advance(1);
+  }
   throw Stopped(reason, real_ ? "" : advice_on(reason, setup_.plan, scene_));
 }
 
-void Simulation::advance() {
+void Simulation::advance(uint64_t steps) {
   const uint64_t before = now();
   reading_.reset();
   present_.reset();
   try {
-    engine_->advance(1);
+    engine_->advance(steps);
   } catch (const RunError& e) {
     stop({e.fault, before, e.cell, e.particle, e.number, e.what()});
   } catch (const StepError& error) {
     StopReason reason = error.reason;
-    reason.step = before;
+    if (!program_) reason.step = before;
     stop(reason);
   }
+}
+
+// Steps at once: a program costs its start, and what stands in between is asked for at probes alone.
+uint64_t Simulation::piece(uint64_t steps) const {
+  if (!program_) return 1;
+  return probe_every_ > 0 ? std::min(steps, probe_every_ - now() % probe_every_) : steps;
 }
 
 void Simulation::step(uint64_t steps) {
   const std::lock_guard lock(mutex_);
   const CatchFromPython catching;
-  for (; steps > 0; --steps) {
+  const uint64_t end = now() + steps;
+  while (now() < end) {
     if (interrupted()) throw Interrupted();
-    advance();
+    const uint64_t asked = piece(end - now()), wanted = now() + asked;
+    advance(asked);
+    if (now() < wanted) continue;  // an interrupt
     if (probe_every_ > 0 && now() % probe_every_ == 0) read_probes();
   }
   if (interrupted()) throw Interrupted();
@@ -226,6 +236,11 @@ void Simulation::set_gravity(const Vec3& gravity) {
 // All that can be refused is, before anything changes.
 void Simulation::change(const std::function<void(Rule&)>& edit) {
   const std::lock_guard lock(mutex_);
+  if (program_)
+    throw InputError(
+        fmt::format("the {} engine is a program that reads the scene: nothing of it can change on the way",
+                    engine_name_),
+        "golden and lattice take changes, and have the same bits");
   Scene changed = scene_;
   edit(changed.rule);
   strain();  // its initial positions are those of the plan so far

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A scene in an engine of this process that is stepped from outside. Any thread may call any function: one
-// waits for the other.
+// A scene in an engine that is stepped from outside: in this process, or in a program of its own that is run
+// for each piece. Any thread may call any function: one waits for the other.
 #pragma once
 
 #include <functional>
@@ -38,8 +38,7 @@ struct EnergiesNow {
 class Simulation {
  public:
   // `probe_every`: steps between two readings of probes and energies, 0: none; nothing: the scene's.
-  // `anyway`: though it needs more memory than is free. InputError where the engine is no part of this
-  // process.
+  // `anyway`: though it needs more memory than is free.
   Simulation(const Sources& sources, const std::string& engine, const EngineOptions& options,
              std::optional<uint64_t> probe_every, bool anyway = false);
 
@@ -72,12 +71,13 @@ class Simulation {
 
  private:
   void make_engine();
-  void advance();
+  void advance(uint64_t steps);
   [[noreturn]] void stop(const StopReason& reason);
   void read_probes();
   const Reading& reading();
   const Body& present();
   const StrainMeter& strain();
+  uint64_t piece(uint64_t steps) const;
   void change(const std::function<void(Rule&)>& edit);
   uint64_t now() const { return engine_->step_count(); }
 
@@ -87,7 +87,8 @@ class Simulation {
   Body start_;   // the same of an engine in real numbers
   std::string engine_name_;
   EngineOptions options_;
-  bool real_;
+  Sources sources_;
+  bool real_, program_;                    // program_: the engine is one
   uint64_t first_step_ = 0, probe_every_;  // of the engine
   emu::LatticeChoice lattice_;
   std::unique_ptr<Engine> engine_;

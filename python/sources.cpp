@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "python/sources.h"
 
+#include "model/base/output.h"
+
 namespace cuboct::python {
 namespace {
 
@@ -20,6 +22,15 @@ Loaded load_plan(const Sources& sources) {
   Loaded loaded{parse_scene(sources.scene, sources.scene_path), {}};
   loaded.setup.plan = plan_of(loaded.scene, arch_of(sources));
   return loaded;
+}
+
+Input write_sources(const Sources& sources, const Scratch& scratch) {
+  Input input{.scene = scratch.path("scene.toml"), .arch = {}};
+  write_text(input.scene, sources.scene);
+  if (sources.arch.empty()) return input;
+  input.arch = scratch.path("arch.toml");
+  write_text(input.arch, sources.arch);
+  return input;
 }
 
 }  // namespace cuboct::python

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/command.h"
+#include "model/base/process.h"
 
 namespace cuboct::python {
 
@@ -17,6 +18,9 @@ struct Sources {
 // Throw InputError with the place in the text. The second without `setup.initial`.
 Loaded load(const Sources& sources);
 Loaded load_plan(const Sources& sources);
+
+// The same as files, which programs read.
+Input write_sources(const Sources& sources, const Scratch& scratch);
 
 // Ctrl-C ended what was asked for.
 class Interrupted : public std::exception {};

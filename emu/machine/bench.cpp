@@ -303,13 +303,26 @@ RunResult Bench::take_result() {
   return result;
 }
 
+double Bench::seconds() const {
+  if (begin_ == 0 || collector_.done()) return seconds_;
+  return paused_ - begin_;
+}
+
+BenchClock::BenchClock(std::vector<Bench*> benches)
+    : benches_(std::move(benches)), clock_("clock", sc_core::sc_time(1, sc_core::SC_NS)) {
+  for (Bench* b : benches_) b->clk_i(clock_);
+}
+
+void BenchClock::go_on() {
+  for (Bench* b : benches_)
+    if (b->begin_ > 0) b->begin_ += now() - b->paused_;
+  if (!std::ranges::all_of(benches_, &Bench::over)) sc_core::sc_start(sc_core::sc_time(1000, sc_core::SC_NS));
+  for (Bench* b : benches_) b->paused_ = now();
+}
+
 void simulate(const std::vector<Bench*>& benches) {
-  sc_core::sc_clock clock("clock", sc_core::sc_time(1, sc_core::SC_NS));
-  for (Bench* b : benches) b->clk_i(clock);
-  const auto all_over = [&] {
-    return std::all_of(benches.begin(), benches.end(), [](const Bench* b) { return b->over(); });
-  };
-  while (!all_over()) sc_core::sc_start(sc_core::sc_time(1000, sc_core::SC_NS));
+  BenchClock clock(benches);
+  while (!std::ranges::all_of(benches, &Bench::over)) clock.go_on();
 }
 
 }  // namespace cuboct::emu

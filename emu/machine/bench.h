@@ -92,10 +92,13 @@ class Bench : public sc_core::sc_module, private Monitor {
   sc_core::sc_in<bool> clk_i{"clk_i"};
 
   bool over() const { return timeline_.over; }
+  const Trace& trace() const { return collector_.trace(); }  // as Collector::trace
+  double seconds() const;                                    // host time of the steps so far
   // After `simulate`; throws std::runtime_error for a run that was stuck or whose node failed.
   RunResult take_result();
 
  private:
+  friend class BenchClock;
   enum class Host : uint8_t { reset, load, start, run };
 
   const Timeline& timeline() const override { return timeline_; }
@@ -122,11 +125,25 @@ class Bench : public sc_core::sc_module, private Monitor {
   std::vector<NodeModule*> expected_;  // at the next edge
   Host state_ = Host::reset;
   size_t loaded_ = 0, most_ = 0;
-  std::string stuck_;               // why there is no result
-  double begin_ = 0, seconds_ = 0;  // host time, s
+  std::string stuck_;  // why there is no result
+  // Host time, s: when the steps began, less the time between pieces; when the last piece ended; of all
+  // steps.
+  double begin_ = 0, paused_ = 0, seconds_ = 0;
 };
 
-// Clocks all benches until each is over. Once per process.
+// Clocks benches. One per process.
+class BenchClock {
+ public:
+  explicit BenchClock(std::vector<Bench*> benches);
+  // A thousand cycles, unless each bench is over.
+  void go_on();
+
+ private:
+  std::vector<Bench*> benches_;
+  sc_core::sc_clock clock_;
+};
+
+// Clocks all benches until each is over.
 void simulate(const std::vector<Bench*>& benches);
 
 }  // namespace cuboct::emu

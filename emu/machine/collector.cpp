@@ -125,10 +125,8 @@ void Collector::complete(uint64_t step) {
   if (++s.complete < nodes_) return;
   trace_.state_hash.push_back(s.hash);
   s.state.step = step;
-  const bool kept = s.kept;
-  if (kept) {
-    sort_by_id(s.state);
-    trace_.frames.push_back(std::move(s.state));
+  if (s.kept) {
+    keep(std::move(s.state));
   } else if (options_.keep_last) {
     // A fault's step ends a few steps behind the nodes that are ahead.
     constexpr size_t kAhead = 4;
@@ -136,7 +134,14 @@ void Collector::complete(uint64_t step) {
     if (recent_.size() > kAhead) recent_.pop_front();
   }
   open_.erase(step);
-  if (options_.shown) options_.shown(step, kept ? &trace_.frames.back() : nullptr);
+}
+
+void Collector::keep(State state) {
+  sort_by_id(state);
+  if (options_.take)
+    options_.take(std::move(state));
+  else
+    trace_.frames.push_back(std::move(state));
 }
 
 void Collector::close(uint64_t cycle) {
@@ -201,11 +206,8 @@ void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
 }
 
 void Collector::add_last() {
-  for (State& state : recent_) {
-    if (state.step != steps_done()) continue;
-    sort_by_id(state);
-    trace_.frames.push_back(std::move(state));
-  }
+  for (State& state : recent_)
+    if (state.step == steps_done()) keep(std::move(state));
 }
 
 Trace Collector::take_trace() {

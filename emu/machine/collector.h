@@ -20,8 +20,9 @@ struct RunOptions {
   double stall_rate = 0;         // share of cycles in which a link passes nothing, [0, 1)
   uint64_t stall_seed = 1;
   FaultOptions faults;  // on the wires
-  // Called after each step that all nodes have done, 0 too; with its state where that is kept.
-  std::function<void(uint64_t step, const State* kept)> shown{};
+  // Takes the states that are kept, ascending in step, once all nodes have shown theirs. Without it the trace
+  // holds them.
+  std::function<void(State)> take{};
   int threads = 0;          // that step nodes; 0: one per core. No bit and no cycle depends on it
   bool keep_last = false;   // keep the state after the last complete step too
   bool keep_order = false;  // keep the ids in the order of the slots, per step and cell
@@ -65,6 +66,8 @@ class Collector {
   uint64_t last_cycle() const { return last_cycle_; }  // of the run, once done
   // [step][cell]: ids in the order of the slots, if asked for.
   const std::vector<std::vector<std::vector<uint32_t>>>& order() const { return order_; }
+  // So far: a hash for each step that all nodes have shown, and the spans of those before it.
+  const Trace& trace() const { return trace_; }
   // Valid once done. `engine`, `seconds` and the counters are the caller's.
   Trace take_trace();
 
@@ -79,6 +82,7 @@ class Collector {
   void observe(uint32_t node, const NodeOutputs& out);
   uint32_t cell_of(uint32_t node, uint32_t local) const;
   void complete(uint64_t step);
+  void keep(State state);
   void close(uint64_t cycle);
   void add_last();
 

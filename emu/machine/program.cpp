@@ -8,11 +8,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "emu/machine/bench.h"
+#include "emu/machine/machine_engine.h"
 #include "hw/engine_kind.h"
 #include "hw/program/program.h"
-#include "model/analysis/meter.h"
-#include "model/run/replay_engine.h"
 
 namespace cuboct::emu {
 namespace {
@@ -21,47 +19,6 @@ double node_cycles(const Trace& trace) {  // per s
   const double cycles = trace.counters.front().second;
   return cycles * static_cast<double>(trace.nodes) / std::max(trace.seconds, 1e-9);
 }
-
-// The table of a machine that runs; its curves are measured once it has ended. Energies and forces are read
-// for rows alone, positions at each sample: a probe follows its particles across a periodic axis.
-class LiveLog {
- public:
-  LiveLog(const Scene& scene, const Plan& plan, const std::function<Vec3(uint32_t)>& initially,
-          const std::string& engine, const RunRequest& request)
-      : scene_(scene),
-        plan_(plan),
-        samples_(has_rows(request.log) ? request.probes : std::vector<uint64_t>()),
-        meter_(scene, initially, {.energies = request.energies}),
-        log_({engine, request.steps, plan.particles, samples_, request.log}, scene, meter_.curves()) {}
-
-  void add(uint64_t step, const State* kept) {
-    if (step == 0) log_.begin(0);
-    last_ = step;
-    const bool sampled = kept && std::binary_search(samples_.begin(), samples_.end(), step);
-    bool read = false;
-    log_.at(step, sampled, [&] {
-      read = true;
-      return measure(*kept, meter_.asked(false)), meter_.latest();
-    });
-    if (!sampled || read) return;
-    Asked asked = meter_.asked(false);
-    asked.energies = asked.forces = false;
-    measure(*kept, asked);
-  }
-  void end() { log_.end(last_, false, {}); }
-
- private:
-  void measure(const State& state, const Asked& asked) {
-    meter_.add(read_state(scene_.rule, plan_.rule, plan_.lattice, plan_.origin, state, asked, 1));
-  }
-
-  const Scene& scene_;
-  const Plan& plan_;
-  const std::vector<uint64_t> samples_;
-  Meter meter_;
-  RunLog log_;
-  uint64_t last_ = 0;
-};
 
 class MachineProgram : public EngineProgram {
  public:
@@ -92,23 +49,16 @@ class MachineProgram : public EngineProgram {
     return false;
   }
 
-  // The machine runs to its end, whoever looks on; what it showed is measured then.
   EngineKind kind(Scene& scene, const Plan& plan, const ProgramOptions& options) override {
     run_.steps = options.run.steps;
     run_.frames = asked_steps(options.run);
     run_.keep_last = asks_for_last(options.run);
     EngineKind kind = fixed_kind(machine_.engine, scene, plan);
-    kind.batches = kind.hashes_come = kind.logs = true;
-    kind.make = [this, &scene, &plan, &options, initially = kind.initial](CheckpointReader*, bool) {
+    kind.batches = kind.hashes_come = true;
+    kind.make = [this, &scene, &plan](CheckpointReader*, bool) {
       const State initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
-      LiveLog log(scene, plan, initially, machine_.engine, options.run);
-      if (options.run.log != LogRows::quiet)
-        run_.shown = [&log](uint64_t step, const State* kept) { log.add(step, kept); };
-      Bench bench("bench", plan, initial, run_, machine_.nodes(plan), machine_.engine);
-      simulate({&bench});
-      run_.shown = {};
-      log.end();
-      return std::make_unique<ReplayEngine>(setting_of(scene, plan), bench.take_result().trace);
+      return std::make_unique<MachineEngine>(setting_of(scene, plan), plan, initial, run_,
+                                             machine_.nodes(plan), machine_.engine);
     };
     return kind;
   }

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "hw/program/error_file.h"
+#include "hw/program/frame_files.h"
 #include "hw/setup.h"
 #include "model/analysis/meter.h"
 #include "model/base/interrupt.h"
@@ -24,7 +25,7 @@ namespace {
 // What is parsed and then settled.
 struct Parsed {
   ProgramOptions options;
-  std::string frames_file, begun, interval, error;
+  std::string frames_file, frame_files, begun, interval, error;
   bool frames_given = false, unpacked = false;
 };
 
@@ -82,14 +83,19 @@ int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& 
   settle(program, parsed, scene);
 
   std::optional<TraceWriter> writer;
+  std::optional<FrameSender> sender;
   std::string trouble;
   if (!options.out.empty() && leads) {
     writer.emplace(options.out, temporary_beside(options.out), !parsed.unpacked);
+    if (!parsed.frame_files.empty()) sender.emplace(parsed.frame_files);
     options.run.keep = [&](const RunState& frame) {
       std::visit(
           [&](const auto& state) {
             try {
-              writer->add(state);
+              if (sender)
+                sender->send(frame);
+              else
+                writer->add(state);
             } catch (const InputError& error) {
               if (trouble.empty())
                 trouble = fmt::format("{}; frames are left out from step {} on", error.what(), state.step);
@@ -147,6 +153,11 @@ void add_options(CLI::App& app, EngineProgram& program, Parsed& parsed) {
   app.add_option("--out", options.out, "Trace file to write (HDF5); --bench does without");
   app.add_flag("--unpacked", parsed.unpacked, "Do not compress the trace: larger, and written in less time");
   app.add_option("--error", parsed.error, "File that takes an error, in place of standard error");
+  app.add_option("--frame-files", parsed.frame_files,
+                 "Each state that is kept goes into a file PREFIX.0, PREFIX.1, ... as it comes, none into "
+                 "the trace, for a reader "
+                 "who removes them: the program waits while 16 are there")
+      ->type_name("PREFIX");
   app.add_option("--begun", parsed.begun, "File that is made when the steps begin");
   app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
   app.add_flag("--watch", run.watch, "Look for what makes a run wrong; energies are measured with it");

@@ -25,6 +25,10 @@ Remote::Remote(RemoteRun run) : run_(std::move(run)) {
   for (const auto& [option, value] : {std::pair{"--stage", run_.stage}, {"--from", run_.from}})
     if (!value.empty()) arguments.insert(arguments.end(), {option, value});
   if (run_.unpacked) arguments.emplace_back("--unpacked");
+  if (run_.request.keep) {
+    frames_.emplace(file(".frame"));
+    arguments.insert(arguments.end(), {"--frame-files", file(".frame")});
+  }
   fs::remove(run_.trace);  // what is found there afterwards is this run's
   start(std::move(arguments));
 }
@@ -56,8 +60,13 @@ std::string Remote::errors() const {
   return text;
 }
 
+bool Remote::take_frame() { return frames_ && frames_->receive(run_.request.keep); }
+
 void Remote::wait() {
-  const int code = over_mpi() ? process_->wait([&] { return fs::exists(file(".begun")); }) : process_->wait();
+  const auto begun = [this] { return !over_mpi() || fs::exists(file(".begun")); };
+  const int code = process_->wait(begun, [this] { return take_frame(); });
+  while (take_frame()) {
+  }
   const std::string name = over_mpi() ? "mpirun" : fs::path(run_.program).filename().string();
   const std::string said = run_.quiet ? errors() : "";
   std::optional<InputError> error;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hw/program/frame_files.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
 #include "model/run/record.h"
@@ -30,7 +31,8 @@ class Remote {
   explicit Remote(RemoteRun run);
   Remote(Remote&&) = default;
 
-  // Waits. Frames go where the request keeps them. Throws what the program threw, InputError or
+  // Waits. Frames go where the request keeps them, as they come; a program that fails leaves those before.
+  // Without a place to keep them they come with the trace. Throws what the program threw, InputError or
   // std::runtime_error; the latter too where it failed otherwise and left no trace.
   Recorded finish();
   // On stdout, where it was quiet.
@@ -41,10 +43,12 @@ class Remote {
   std::string file(const char* ending) const { return run_.trace + ending; }
   void start(std::vector<std::string> arguments);
   void wait();
+  bool take_frame();
   std::string errors() const;
   Recorded read() const;
 
   RemoteRun run_;
+  std::optional<FrameReceiver> frames_;
   std::optional<Process> process_;
   std::string trouble_;
 };

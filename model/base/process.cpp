@@ -118,14 +118,19 @@ Process::~Process() {
 Process::Process(Process&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)), passed_on_(other.passed_on_) {}
 
-int Process::wait(const std::function<bool()>& begun) {
+int Process::wait(const std::function<bool()>& begun, const std::function<bool()>& meanwhile) {
   constexpr std::chrono::seconds kGrace(2);
   using Clock = std::chrono::steady_clock;
   std::optional<Clock::time_point> passed_on;
   bool early = false;
   int status = 0;
   // Readable when the program has ended. Where the kernel gives none, we look every 10 ms.
-  pollfd ended{static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), POLLIN, 0};
+  struct Ended : pollfd {
+    explicit Ended(pid_t pid) : pollfd{static_cast<int>(syscall(SYS_pidfd_open, pid, 0)), POLLIN, 0} {}
+    ~Ended() {
+      if (fd >= 0) close(fd);
+    }
+  } ended(pid_);
   const nfds_t count = ended.fd >= 0 ? 1 : 0;
   pid_t found = 0;
   while ((found = waitpid(pid_, &status, WNOHANG)) == 0) {
@@ -137,9 +142,9 @@ int Process::wait(const std::function<bool()>& begun) {
     } else if (early && Clock::now() - *passed_on > kGrace) {
       kill(pid_, SIGKILL);
     }
-    poll(&ended, count, count ? 100 : 10);
+    const bool busy = meanwhile && meanwhile();
+    poll(&ended, count, busy ? 0 : count ? 100 : 10);
   }
-  if (ended.fd >= 0) close(ended.fd);
   if (found < 0) throw std::runtime_error(fmt::format("waitpid: {}", std::strerror(errno)));
   pid_ = -1;
   return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);

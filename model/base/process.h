@@ -29,8 +29,10 @@ class Process {
   Process& operator=(Process&&) = delete;
 
   // Exit code, or -N where signal N ended it. An interrupt of ours is passed on once, whichever thread met
-  // it; where `begun` says that there is nothing to save yet, the program is ended instead.
-  int wait(const std::function<bool()>& begun = {});
+  // it; where `begun` says that there is nothing to save yet, the program is ended instead. `meanwhile` is
+  // called every 100 ms, and again at once where it had something to do; what it throws leaves the program
+  // running until the end of this object.
+  int wait(const std::function<bool()>& begun = {}, const std::function<bool()>& meanwhile = {});
 
  private:
   pid_t pid_;

@@ -98,9 +98,7 @@ Loop::Loop(const Scene& scene, const EngineKind& kind, const RunRequest& request
               .table_error = kind.table_error,
               .threads = kind.threads}),
       looks_(kind.looks ? kind.looks(request.probes) : request.probes),
-      log_({kind.name, request.steps, kind.particles, request.probes,
-            kind.logs ? LogRows::quiet : request.log},
-           scene, meter_.curves()),
+      log_({kind.name, request.steps, kind.particles, request.probes, request.log}, scene, meter_.curves()),
       piece_(kind.in_pieces || request.checkpoint.every_seconds > 0 || request.log == LogRows::seconds ||
                      stderr_is_terminal()
                  ? 1
@@ -461,6 +459,19 @@ void remove_checkpoint(const std::string& path) {
   std::filesystem::remove(path, none);
   std::filesystem::remove(path + ".journal", none);
   std::filesystem::remove(path + ".tmp", none);
+}
+
+std::vector<uint64_t> asked_steps(const RunRequest& request) {
+  std::vector<uint64_t> steps = request.frames;
+  steps.insert(steps.end(), request.probes.begin(), request.probes.end());
+  if (request.totals || request.energies) steps.insert(steps.end(), {0, request.steps});
+  std::sort(steps.begin(), steps.end());
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+  return steps;
+}
+
+bool asks_for_last(const RunRequest& request) {
+  return request.totals || request.energies || !request.frames.empty();
 }
 
 void give(const RunRequest& request, RunState state, Trace& trace) {

@@ -64,7 +64,6 @@ struct EngineKind {
   bool hashes_come = false;               // with a batch, after each of its steps
   bool saves = false;                     // leaves checkpoints
   bool relaxes = false;                   // the scene's static loading: no other engine runs such a scene
-  bool logs = false;                      // itself, while `make` works
   std::function<Vec3(uint32_t)> initial;  // m, from where a particle's displacement counts
   // Of the probes' steps, those at which the watch looks; empty: at all.
   std::function<std::vector<uint64_t>(const std::vector<uint64_t>&)> looks;
@@ -87,6 +86,10 @@ struct Recorded {
 // the trace with a stop reason. Throws InputError for a checkpoint that is not this run's, or a file that
 // cannot be written.
 Recorded record(const Scene& scene, const EngineKind& kind, const RunRequest& request);
+
+// The steps at which a request asks for states; and whether it asks for the last one, wherever the run ends.
+std::vector<uint64_t> asked_steps(const RunRequest& request);
+bool asks_for_last(const RunRequest& request);
 
 // A kept state goes to who takes it, else into the trace.
 void give(const RunRequest& request, RunState state, Trace& trace);

@@ -32,14 +32,18 @@ def _vector(value: Sequence[float], what: str) -> tuple[float, float, float]:
 
 
 class Simulation:
-    """A scene in an engine of this process: "golden", "lattice" (fast, the same bits) or "reference" (doubles).
+    """A scene in an engine: "lattice" (fast), "golden" (the same bits), "reference" (doubles), or one in a program of its own.
+
+    "systemc", "rtl", "fpga", "gpu" with the fixed rule, and "lattice" with `ranks`, are programs. A call of `step` runs the program once, and once
+    more after each reading of the probes; each run begins with the state reached so far, and the bits are those of one whole run.
 
     Arrays are copies, by particle id. All quantities are in SI. Long calls let other threads run. Ctrl-C ends one after a whole step
     with KeyboardInterrupt; the simulation then goes on from that step.
 
     `arch`: the machine, as a `cuboct.Arch`, a dict or a path. `threads`: as many as suit the scene, where None. `precision` ("double" or
     "float") and `integrator` ("euler" or "verlet") are of the reference. `probe_every`: steps between two readings of the probes and
-    energies, 0 for none; None: the scene's own. `anyway`: though it needs more memory than is free.
+    energies, 0 for none; None: the scene's own. `anyway`: though it needs more memory than is free. `ranks`, `gpus`, `devices`, `port` and
+    `baud` are the command's options of that name.
     """
 
     def __init__(
@@ -52,9 +56,17 @@ class Simulation:
         precision: str | None = None,
         integrator: str | None = None,
         probe_every: int | None = None,
+        ranks: int | None = None,
+        gpus: int | None = None,
+        devices: Sequence[int] | None = None,
+        port: str | None = None,
+        baud: int | None = None,
         anyway: bool = False,
     ):
-        options = _given(threads=threads, precision=precision, integrator=integrator)
+        options = _given(
+            threads=threads, precision=precision, integrator=integrator, ranks=ranks, gpus=gpus,
+            devices=None if devices is None else list(devices), port=port, baud=baud,
+        )  # fmt: skip
         every = None if probe_every is None else _count(probe_every, "probe_every")
         with sources(scene, arch) as source:
             self._of = _cuboct.Simulation(source, engine, options, every, bool(anyway))

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 // An engine that lies as told, to see that `cuboct crosscheck` finds out: golden's states with the fault that
 // the variable LIE names. It stands beside a copy of cuboct as cuboct-systemc and cuboct-rtl; only the latter
-// lies.
+// lies. With "wait" or "cut" it goes on behind step 2 only once the file that WAIT_FOR names is there; then
+// "cut" dies.
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
+#include <thread>
 
 #include "hw/engine_kind.h"
 #include "hw/program/program.h"
 #include "model/contract/golden.h"
-#include "model/run/replay_engine.h"
+#include "tests/support/replay_engine.h"
 
 namespace {
 
@@ -22,6 +26,24 @@ class Stopping : public ReplayEngine {
     ReplayEngine::advance(steps, hashes);
     throw StepError({Fault::sum, step_count(), 1, 2, 3, "stopped by the fake engine"});
   }
+};
+
+// Waits for what the command makes of the frames so far.
+class Waiting : public ReplayEngine {
+ public:
+  Waiting(const FixedSetting& setting, Trace trace, bool dies)
+      : ReplayEngine(setting, std::move(trace)), dies_(dies) {}
+  void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
+    for (int waited = 0; step_count() >= 2 && !std::filesystem::exists(std::getenv("WAIT_FOR")); ++waited) {
+      if (waited == 1000) throw std::runtime_error("no frame was taken while the run went on");
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    if (dies_ && step_count() >= 2) std::abort();
+    ReplayEngine::advance(steps, hashes);
+  }
+
+ private:
+  const bool dies_;
 };
 
 class Liar : public EngineProgram {
@@ -48,6 +70,8 @@ class Liar : public EngineProgram {
       const FixedSetting setting = setting_of(scene, plan);
       Trace trace = trace_of(scene, plan, steps);
       if (lie_ == "stop") return std::unique_ptr<Engine>(new Stopping(setting, std::move(trace)));
+      if (lie_ == "wait" || lie_ == "cut")
+        return std::unique_ptr<Engine>(new Waiting(setting, std::move(trace), lie_ == "cut"));
       return std::unique_ptr<Engine>(new ReplayEngine(setting, std::move(trace)));
     };
     return kind;

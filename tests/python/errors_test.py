@@ -60,9 +60,9 @@ class Errors(unittest.TestCase):
         block = scene_file("lj_block.toml")
         self.assertEqual(str(self.refused(cuboct.Simulation, block, "latice")),
                          "unknown engine 'latice'\n  hint: did you mean 'lattice'?")  # fmt: skip
-        error = self.refused(cuboct.Simulation, block, "systemc")
-        self.assertEqual(error.message, "the systemc engine is a program of its own and cannot be stepped")
-        self.assertIn('cuboct.run(scene, engine="systemc")', error.hint)
+        error = self.refused(cuboct.Simulation, block, "gpu", precision="double")
+        self.assertEqual(error.message, "the gpu engine in real numbers cannot be stepped")
+        self.assertIn("cuboct.run", error.hint)
         self.assertEqual(self.refused(cuboct.Scene.like, "tensoin").hint, "did you mean 'tension'?")
         self.assertEqual(
             self.refused(cuboct.run, block, "reference", integrator="verlt").hint, "did you mean 'verlet'?"
@@ -89,8 +89,14 @@ class Errors(unittest.TestCase):
     def test_a_program_that_is_not_there(self):
         with tempfile.TemporaryDirectory() as folder:
             cuboct.set_program_directory(folder)
-            error = self.refused(cuboct.run, scene_file("lj_block.toml"), "systemc", steps=1)
-        self.assertEqual(error.message, "the systemc engine is not built: no program cuboct-systemc beside cuboct")
+            block = scene_file("lj_block.toml")
+            simulation = cuboct.Simulation(block, "systemc")
+            for call in (lambda: cuboct.run(block, "systemc", steps=1), lambda: simulation.step(1)):
+                self.assertEqual(
+                    self.refused(call).message,
+                    "the systemc engine is not built: no program cuboct-systemc beside cuboct",
+                )
+            self.assertEqual(simulation.steps, 0)
 
 
 class Faults(unittest.TestCase):

@@ -3,12 +3,12 @@
 
 #include "emu/machine/plain.h"
 #include "emu/systemc/node.h"
-#include "model/run/replay_engine.h"
+#include "tests/support/replay_engine.h"
 
 namespace cuboct::test {
 namespace {
 
-// The cycle-accurate nodes, as their program runs them.
+// The cycle-accurate nodes in a plain loop: of SystemC a process has one run.
 EngineKind machine_kind(const Bed& bed, const RunRequest& request) {
   EngineKind kind = fixed_kind("systemc", bed.scene, bed.plan);
   kind.batches = kind.hashes_come = true;

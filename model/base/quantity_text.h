@@ -19,4 +19,10 @@ std::string quantity_text(double value, const std::string& unit);
 // "45 million".
 std::string count_text(double count);
 
+// Three digits, and from a thousand on as count_text: never an exponent.
+std::string times_text(double times);
+
+// Of an estimate: "under 0.1 s", "about 35 s", "about 12 min", "about 3 h".
+std::string waiting_text(double seconds);
+
 }  // namespace cuboct

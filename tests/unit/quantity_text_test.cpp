@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/quantity_text.h"
+#include "model/base/quantity_text.h"
 
 #include <gtest/gtest.h>
 
@@ -23,6 +23,16 @@ TEST(QuantityText, CountsWithoutExponents) {
   EXPECT_EQ(count_text(12345), "12345");
   EXPECT_EQ(count_text(45.34e6), "45.3 million");
   EXPECT_EQ(count_text(12.34e9), "12.34 billion");
+  EXPECT_EQ(times_text(14.23), "14.2");
+  EXPECT_EQ(times_text(1234.5), "1234");
+  EXPECT_EQ(times_text(2.5e6), "2.5 million");
+}
+
+TEST(QuantityText, EstimatesWaiting) {
+  EXPECT_EQ(waiting_text(0.05), "under 0.1 s");
+  EXPECT_EQ(waiting_text(34.6), "about 35 s");
+  EXPECT_EQ(waiting_text(700), "about 12 min");
+  EXPECT_EQ(waiting_text(3 * 3600), "about 3 h");
 }
 
 }  // namespace

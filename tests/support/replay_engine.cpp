@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/run/replay_engine.h"
+#include "tests/support/replay_engine.h"
 
 #include <fmt/format.h>
 
@@ -40,19 +40,6 @@ State ReplayEngine::make_state() {
   const State* state = frame_at(trace_, step_);
   if (!state) throw std::logic_error(fmt::format("the trace holds no state of step {}", step_));
   return *state;
-}
-
-std::vector<uint64_t> asked_steps(const RunRequest& request) {
-  std::vector<uint64_t> steps = request.frames;
-  steps.insert(steps.end(), request.probes.begin(), request.probes.end());
-  if (request.totals || request.energies) steps.insert(steps.end(), {0, request.steps});
-  std::sort(steps.begin(), steps.end());
-  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
-  return steps;
-}
-
-bool asks_for_last(const RunRequest& request) {
-  return request.totals || request.energies || !request.frames.empty();
 }
 
 }  // namespace cuboct

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/quantity_text.h"
+#include "model/base/quantity_text.h"
 
 #include <fmt/format.h>
 
@@ -31,6 +31,17 @@ std::string count_text(double count) {
   if (count < 1e6) return fmt::format("{:.0f}", count);
   if (count < 1e9) return fmt::format("{:.3g} million", count / 1e6);
   return fmt::format("{:.4g} billion", count / 1e9);
+}
+
+std::string times_text(double times) {
+  return times < 1000 ? fmt::format("{:.3g}", times) : count_text(times);
+}
+
+std::string waiting_text(double seconds) {
+  if (seconds < 0.1) return "under 0.1 s";
+  if (seconds < 120) return fmt::format("about {:.2g} s", seconds);
+  if (seconds < 7200) return fmt::format("about {:.0f} min", seconds / 60);
+  return "about " + count_text(seconds / 3600) + " h";
 }
 
 }  // namespace cuboct

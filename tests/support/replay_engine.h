@@ -35,9 +35,4 @@ class ReplayEngine : public StateEngine {
   uint64_t step_ = 0, shown_ = 0;  // shown: steps whose phases were given
 };
 
-// The steps at which a request asks for states: what such a trace must hold, besides its last state where
-// asks_for_last.
-std::vector<uint64_t> asked_steps(const RunRequest& request);
-bool asks_for_last(const RunRequest& request);
-
 }  // namespace cuboct

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "hw/program/frame_files.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/trace/trace_file.h"
+
+namespace cuboct {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string name_of(const std::string& prefix, uint64_t number) {
+  return fmt::format("{}.{}", prefix, number);
+}
+
+}  // namespace
+
+void FrameSender::send(const RunState& frame) {
+  while (sent_ >= kUnread && fs::exists(name_of(prefix_, sent_ - kUnread)) && !interrupted())
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  const std::string path = name_of(prefix_, sent_);
+  TraceWriter writer(path, temporary_beside(path), false);
+  std::visit([&](const auto& state) { writer.add(state); }, frame);
+  writer.finish({});
+  ++sent_;
+}
+
+FrameReceiver::FrameReceiver(std::string prefix) : prefix_(std::move(prefix)) {
+  for (uint64_t number = 0; fs::remove(name_of(prefix_, number));) ++number;
+}
+
+bool FrameReceiver::receive(const std::function<void(RunState)>& see) {
+  const std::string path = name_of(prefix_, received_);
+  if (!fs::exists(path)) return false;
+  {
+    const TraceReader reader(path);
+    reader.frames([&](State state) { see(std::move(state)); });
+    reader.bodies([&](RealFrame frame) { see(std::move(frame)); });
+  }
+  discard(path);
+  ++received_;
+  return true;
+}
+
+}  // namespace cuboct
