@@ -84,6 +84,16 @@ def griffith(module):
     module.body = slipping
 
 
+def holed(module):
+    peak = module.peak
+
+    def tough(pitch, tail):
+        strain, stiffness = peak(pitch, tail)
+        return 1.3 * strain, stiffness
+
+    module.peak = tough
+
+
 def kalthoff(module):
     module.ENERGY *= 6
 
