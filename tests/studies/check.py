@@ -46,6 +46,16 @@ def pitch(module):
     module.TAIL += 3.0
 
 
+def bend(module):
+    bond = module.bond
+
+    def tough(turn, pitch):
+        stiffness, peak, energy = bond(turn, pitch)
+        return stiffness, peak, 1.6 * energy
+
+    module.bond = tough
+
+
 def branching(module):
     module.GC *= 0.5  # of the load, not of the law
     law = module.law
@@ -72,6 +82,16 @@ def griffith(module):
         return scene
 
     module.body = slipping
+
+
+def holed(module):
+    peak = module.peak
+
+    def tough(pitch, tail):
+        strain, stiffness = peak(pitch, tail)
+        return 1.3 * strain, stiffness
+
+    module.peak = tough
 
 
 def kalthoff(module):
