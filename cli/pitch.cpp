@@ -9,7 +9,7 @@
 #include "cli/answer.h"
 #include "cli/budget.h"
 #include "cli/command.h"
-#include "cli/quantity_text.h"
+#include "model/base/quantity_text.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
