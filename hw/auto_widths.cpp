@@ -231,8 +231,9 @@ std::vector<std::string> width_warnings(const Scene& scene, double edge, const A
       warnings.push_back(
           fmt::format("the velocity imposed on '{}' is off by {:.2g} of it: {}", type.name, v, of_guard()));
     if (g > scene.accuracy)
-      warnings.push_back(
-          fmt::format("the gravity of '{}' is off by {:.2g} of it: {}", type.name, g, of_guard()));
+      warnings.push_back(fmt::format("the {} '{}' is off by {:.2g} of it: {}",
+                                     type.pull.isZero(0) ? "gravity of" : "force on", type.name, g,
+                                     of_guard()));
     const double mass = scene.rule.mass_of(static_cast<int>(k));
     if (const double off = std::abs(mass_of(rule, static_cast<int>(k)) / mass - 1); off > scene.accuracy)
       warnings.push_back(

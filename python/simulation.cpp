@@ -229,7 +229,7 @@ void Simulation::set_velocity(const std::string& constraint, const Vec3& velocit
 void Simulation::set_gravity(const Vec3& gravity) {
   check_finite(gravity, "gravity");
   change([&](Rule& rule) {
-    for (ParticleType& type : rule.types) type.gravity = gravity;
+    for (ParticleType& type : rule.types) type.gravity = gravity + type.pull;
   });
 }
 

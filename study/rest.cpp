@@ -127,7 +127,7 @@ Scene with_parts(Scene scene, const Parts& parts) {
 Subject subject_of(const Scene& scene, int axis, double strain) {
   Subject out{scene, {}, "", true};
   Scene& s = out.scene;
-  for (ParticleType& type : s.rule.types) type.velocity = type.gravity = Vec3::Zero();
+  for (ParticleType& type : s.rule.types) type.velocity = type.gravity = type.pull = Vec3::Zero();
   std::fill(s.body.v.begin(), s.body.v.end(), Vec3::Zero());
   s.body.u.clear();
   s.steps = 0, s.probes.clear();

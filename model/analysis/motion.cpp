@@ -94,6 +94,15 @@ double bending(const Box& all, const Box& held, const Vec3& gravity, double c, d
                   0.75 * height * g * duration * duration / (reach * reach));
 }
 
+// By type: what its particles span, where a force pulls them.
+std::vector<Box> pulled_boxes(const Scene& scene) {
+  std::vector<Box> boxes(scene.rule.types.size());
+  const Body& body = planned_body(scene);
+  for (size_t i = 0; i < body.size(); ++i)
+    if (!scene.rule.types[body.type[i]].pull.isZero(0)) boxes[body.type[i]].add(body.x[i]);
+  return boxes;
+}
+
 }  // namespace
 
 Motion motion_of(const Scene& scene) {
@@ -113,8 +122,10 @@ Motion motion_of(const Scene& scene) {
     if (c > 0 && strain > motion.strain) motion.strain = strain, motion.strain_of = by;
   };
 
+  const std::vector<Box> pulled = pulled_boxes(scene);
   const bool all_driven = std::all_of(rule.types.begin(), rule.types.end(), driven);
-  for (const ParticleType& type : rule.types) {
+  for (size_t t = 0; t < rule.types.size(); ++t) {
+    const ParticleType& type = rule.types[t];
     const double speed = driven(type) ? type.velocity.norm() : 0;
     if (speed > 0) {
       motion.slowest_imposed = motion.slowest_imposed > 0 ? std::min(motion.slowest_imposed, speed) : speed;
@@ -123,10 +134,18 @@ Motion motion_of(const Scene& scene) {
         if (driven(other)) apart = std::max(apart, (type.velocity - other.velocity).norm());
       strains(std::max(apart / c, apart * duration / length), "the velocity imposed on '" + type.name + "'");
     }
-    if (const double g = type.gravity.norm(); g > 0) {
+    if (const double g = type.gravity.norm(); g > 0)
       motion.gravity = motion.gravity > 0 ? std::min(motion.gravity, g) : g;
+    if (const double a = type.pull.norm(); a > 0) {
+      // The stress is that of the pulled layer's mass: its depth counts, not the body's length.
+      const Vec3 size = pulled[t].high - pulled[t].low;
+      const double depth = type.pull.cwiseAbs().dot(size) / a + motion.rest_distance;
+      strains(std::min(a * duration / c, a * depth / (c * c)), "the force on '" + type.name + "'");
+    }
+    const Vec3 weight = type.gravity - type.pull;
+    if (const double g = weight.norm(); g > 1e-12 * type.gravity.norm()) {
       strains(std::min(g * duration / c, g * length / (c * c)), "gravity");
-      if (!driven(type)) strains(bending(all, held, type.gravity, c, duration), "gravity, which bends it");
+      if (!driven(type)) strains(bending(all, held, weight, c, duration), "gravity, which bends it");
     }
   }
   const Speeds speeds = speeds_of(scene);

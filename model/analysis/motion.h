@@ -26,6 +26,8 @@ struct Motion {
   //   holds the body,
   //                      across gravity, h high along it: at rest (Euler and Bernoulli's beam), and what its
   //                      end falls until then
+  //   force              min(a T/c, a d/c^2), a the acceleration by it and d the depth of what it pulls: the
+  //   stress behind those particles
   //   initial motion     V/c, V the root mean square about the motion of a rigid body, or the mean against
   //   what is held
   //                      or moved

@@ -417,8 +417,13 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
       const double velocity = rule.dt / length, gravity = velocity * rule.dt;
       t.velocity[a] = quantised(type.velocity[a] * velocity, type.velocity.norm() * velocity, frac,
                                 widths.velocity_bits, "an imposed velocity", keys_of(type, "velocity"));
-      t.gravity[a] = quantised(type.gravity[a] * gravity, type.gravity.norm() * gravity, frac,
-                               widths.velocity_bits, "gravity", {"gravity"});
+      const bool pulled = !type.pull.isZero(0);
+      std::vector<std::string> keys = {"gravity"};
+      for (const char* key : {"traction", "force"})
+        if (pulled) keys.insert(keys.begin(), keys_of(type, key).front());
+      t.gravity[a] =
+          quantised(type.gravity[a] * gravity, type.gravity.norm() * gravity, frac, widths.velocity_bits,
+                    pulled ? "the acceleration by a force" : "gravity", keys);
     }
     if (type.pd) {
       const double mass = rule.mass_of(index);

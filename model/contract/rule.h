@@ -47,10 +47,11 @@ struct ParticleType {
   int material = 0;                                  // index into Rule::strength
   std::array<bool, 3> imposed{false, false, false};  // axes whose velocity is imposed; held is an imposed 0
   Vec3 velocity = Vec3::Zero();  // m/s, imposed, or followed by the anchor of the PD controller
-  Vec3 gravity = Vec3::Zero();   // m/s^2
+  Vec3 gravity = Vec3::Zero();   // m/s^2, of all that acts from outside: gravity proper, and `pull`
   bool pd = false;               // held or moved by force
   double kp = 0;                 // N/m
   double kd = 0;                 // kg/s
+  Vec3 pull = Vec3::Zero();      // m/s^2, the part of `gravity` that a force makes, over the particle's mass
 };
 
 // Whether nothing imposes or steers the motion of such a particle along the axis.

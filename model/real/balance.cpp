@@ -69,18 +69,21 @@ const std::vector<Vec3>& Balance::forces() {
 
 Unbalance Balance::unbalance() const {
   Unbalance out;
-  std::vector<Vec3> of_type(rule_.types.size(), Vec3::Zero());
+  std::vector<Vec3> of_type(rule_.types.size(), Vec3::Zero()), pulled = of_type;
   Vec3 weight = Vec3::Zero();
   for (size_t i = 0; i < free_.size(); ++i) {
     const ParticleType& type = rule_.types[body_.type[i]];
     out.residual += free_[i].norm();
+    pulled[body_.type[i]] += rule_.mass_of(body_.type[i]) * type.pull;
     for (int axis = 0; axis < 3; ++axis) {
       if (type.imposed[axis] || type.pd) of_type[body_.type[i]][axis] += carried_[i][axis];
       if (!type.imposed[axis]) weight[axis] += rule_.mass_of(body_.type[i]) * type.gravity[axis];
     }
   }
   out.load = weight.norm();
-  for (const Vec3& force : of_type) out.load = std::max(out.load, force.norm());
+  // Forces that pull a body apart are its load though they balance.
+  for (const auto* forces : {&of_type, &pulled})
+    for (const Vec3& force : *forces) out.load = std::max(out.load, force.norm());
   out.least = kRounding * stiffness_ * rule_.cutoff() * static_cast<double>(body_.size());
   return out;
 }

@@ -16,7 +16,8 @@ namespace cuboct {
 // carry, and its weight, sum up to zero but for `residual` at most: what inertia takes in a run of motion.
 struct Unbalance {
   double residual = 0;  // N, sum of the magnitudes of the forces on free particles
-  double load = 0;   // N, the largest total force on the particles of one type that is held, moved or heavy
+  double load =
+      0;  // N, the largest total force on the particles of one type that is held, moved, heavy or pulled
   double least = 0;  // N, a residual that is rounding
   bool within(double tolerance) const { return residual <= tolerance * load || residual <= least; }
   double share() const { return load > 0 ? residual / load : 0; }

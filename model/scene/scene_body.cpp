@@ -284,21 +284,55 @@ std::map<std::string, ConfigTable> constraint_changes(const ConfigTable& root, c
     const ConfigValue name = table.at("name");
     if (names.empty()) name.fail("the scene has no [[constraint]]");
     name.choice("constraint", names);
-    table.not_both("velocity", "free");
-    if (!table.has("velocity") && !table.has("free"))
-      table.fail("a stage gives a constraint 'velocity' or 'free'");
+    const std::array keys = {"velocity", "force", "traction", "free"};
+    for (size_t k = 0; k < keys.size(); ++k)
+      for (size_t other = 0; other < k; ++other) table.not_both(keys[other], keys[k]);
+    if (std::ranges::none_of(keys, [&](const char* key) { return table.has(key); }))
+      table.fail("a stage gives a constraint 'velocity', 'force', 'traction' or 'free'");
     if (!changes.try_emplace(name.string(), table).second)
       name.fail(fmt::format("constraint '{}' is there twice", name.string()));
   }
   return changes;
 }
 
+const std::vector<std::string> kConstraintKinds = {"held", "moved", "held_by_force", "moved_by_force",
+                                                   "pulled"};
+
+// N, on the particles of a `pulled` constraint together. `change`: what `stage` says of it, or null.
+Vec3 read_pull(const ConfigTable& table, const ConfigTable* change, const StagePart* stage) {
+  table.not_both("force", "traction");
+  const bool traction = table.has("traction");
+  const char *key = traction ? "traction" : "force", *other = traction ? "force" : "traction";
+  const Quantity& of = traction ? quantity::pressure : quantity::force;
+  const double area = traction ? table.number("area", quantity::area, Range::positive()) : 1;
+  Vec3 value = table.at(key).vector(of);
+  if (change) {
+    for (const char* wrong : {"velocity", other})
+      if (change->has(wrong))
+        change->at(wrong).fail(
+            fmt::format("'{}' has a '{}', which a stage may change", change->at("name").string(), key));
+    if (change->has(key)) value = stage->vector_of(change->at(key), of);
+  }
+  return area * value;
+}
+
 // `change`: what `stage` says of it, or null.
 ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change, const StagePart* stage,
                              const Rule& rule, double pitch) {
   ParticleType type;
-  const std::vector<std::string> kinds = {"held", "moved", "held_by_force", "moved_by_force"};
+  const std::vector<std::string>& kinds = kConstraintKinds;
   const size_t kind = table.at("kind").choice("constraint", kinds);
+  if (kind == 4) {
+    if (const auto axes = table.find("axes"))
+      axes->fail("'axes' serves 'held' and 'moved' only, not 'pulled'",
+                 "let the force have no part along an axis");
+    return type;
+  }
+  for (const char* key : {"force", "traction"})
+    if (change && change->has(key))
+      change->at(key).fail(
+          fmt::format("'{}' is '{}' and has no {}", change->at("name").string(), kinds[kind], key),
+          "make it 'pulled', with a force of 0 where there is none");
   const bool moved = kind % 2 == 1;
   if (moved) type.velocity = table.at("velocity").vector(quantity::velocity);
   if (change && change->has("velocity")) {
@@ -324,6 +358,23 @@ ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change
     type.kd = table.number_or("kd", quantity::damping, rule.damping.coefficient, Range::not_negative());
   }
   return type;
+}
+
+double material_mass(const Rule& rule, int material) {
+  return rule.masses.empty() ? rule.mass : rule.masses[static_cast<size_t>(material)];
+}
+
+// Of each constraint's force the part of one whole particle of its own: those that no later constraint took,
+// or a stage let go. `in`: planes of symmetry in which a particle stands, by material; empty without any.
+void share_pulls(const std::vector<int>& constraint, const std::vector<int>& material,
+                 const std::vector<uint8_t>& in, std::vector<Vec3>& pull) {
+  std::vector<double> count(pull.size(), 0);
+  for (size_t i = 0; i < constraint.size(); ++i)
+    if (constraint[i] >= 0)
+      count[static_cast<size_t>(constraint[i])] +=
+          part_beside(in.empty() ? 0 : in[static_cast<size_t>(material[i])]);
+  for (size_t k = 0; k < pull.size(); ++k)
+    if (count[k] > 0) pull[k] /= count[k];
 }
 
 // Standard deviation of each component, m/s: sqrt(kT/m), m of the lightest material.
@@ -439,6 +490,7 @@ Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
   const std::map<std::string, ConfigTable> changes = constraint_changes(root, stage);
   std::vector<int> constraint(body.size(), -1);
   std::vector<ParticleType> constraints;
+  std::vector<Vec3> pull;  // N, on each particle of a constraint
   for (const ConfigTable& table : root.tables("constraint")) {
     if (constraints.size() == kMaxTypes) table.fail(fmt::format("more than {} constraints", kMaxTypes));
     const auto found = changes.find(table.at("name").string());
@@ -449,11 +501,14 @@ Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
       if (other.name == type.name)
         table.at("name").fail(fmt::format("constraint '{}' is there twice", type.name));
     const bool free = change && change->boolean_or("free", false);
+    const bool pulled = table.at("kind").string() == kConstraintKinds.back();
+    pull.push_back(pulled ? read_pull(table, change, stage) : Vec3::Zero());
     for (uint32_t id : regions.select(table.at("region"), body.x, tolerance_of(scene)))
       constraint[id] = free ? -1 : static_cast<int>(constraints.size());
     table.done();
     constraints.push_back(std::move(type));
   }
+  share_pulls(constraint, material, divided.planes, pull);
   read_velocities(root, regions, material, constraint, scene, fastest);
   fastest.mark(scene.places);
 
@@ -467,8 +522,12 @@ Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
     const std::string& name = names[static_cast<size_t>(pair.first)];
     type.name = pair.second < 0 ? name : name + "/" + type.name;
     type.material = pair.first;
-    type.gravity = gravity;
-    if (!planes.empty()) keep_in_planes(planes, divided.planes[static_cast<size_t>(pair.first)], type);
+    const uint8_t in = planes.empty() ? 0 : divided.planes[static_cast<size_t>(pair.first)];
+    if (pair.second >= 0)
+      type.pull =
+          pull[static_cast<size_t>(pair.second)] * part_beside(in) / material_mass(scene.rule, pair.first);
+    type.gravity = gravity + type.pull;
+    keep_in_planes(planes, in, type);
     index = scene.rule.types.size();
     scene.rule.types.push_back(std::move(type));
   }

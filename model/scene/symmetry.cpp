@@ -35,8 +35,6 @@ void grow(std::vector<std::vector<T>>& table, const std::vector<size_t>& origin)
   table = std::move(grown);
 }
 
-double part(unsigned planes) { return std::ldexp(1.0, -std::popcount(planes)); }
-
 std::string axes_of(const std::vector<SymmetryPlane>& planes, unsigned in) {
   std::string axes;
   for (size_t p = 0; p < planes.size(); ++p)
@@ -80,6 +78,8 @@ std::vector<uint8_t> planes_of(const std::vector<SymmetryPlane>& planes, const s
 }
 
 }  // namespace
+
+double part_beside(unsigned planes) { return std::ldexp(1.0, -std::popcount(planes)); }
 
 std::vector<SymmetryPlane> read_symmetry(const ConfigTable& root, const PackingChoice* packing,
                                          const Scene& scene) {
@@ -134,8 +134,9 @@ Divided divide(const std::vector<SymmetryPlane>& planes, const std::vector<Vec3>
   for (size_t m = before; m < origin.size(); ++m) rule.masses.push_back(rule.masses[origin[m]]);
   out.whole = rule;
   for (size_t i = 0; i < origin.size(); ++i) {
-    rule.masses[i] *= part(out.planes[i]);
-    for (size_t j = 0; j < origin.size(); ++j) rule.strength[i][j] *= part(out.planes[i] & out.planes[j]);
+    rule.masses[i] *= part_beside(out.planes[i]);
+    for (size_t j = 0; j < origin.size(); ++j)
+      rule.strength[i][j] *= part_beside(out.planes[i] & out.planes[j]);
   }
   rule.mass = *std::ranges::min_element(rule.masses);
   return out;
@@ -150,6 +151,9 @@ void keep_in_planes(const std::vector<SymmetryPlane>& planes, uint8_t in, Partic
                          "leave the plane out of its region, or take 'held' or 'moved'");
     if (type.imposed[static_cast<size_t>(axis)] && type.velocity[axis] != 0)
       planes[p].key.fail(fmt::format("'{}' moves particles out of this plane", type.name));
+    if (type.pull[axis] != 0)
+      planes[p].key.fail(fmt::format("'{}' pulls particles out of this plane", type.name),
+                         "leave the plane out of its region");
     type.imposed[static_cast<size_t>(axis)] = true;
     type.velocity[axis] = 0;
   }

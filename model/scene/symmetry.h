@@ -31,6 +31,8 @@ struct Divided {
   std::vector<uint8_t> planes;  // of each material: those in which its particles stand, a bit each
   Rule whole;                   // as if particles in planes were whole, for the same materials
 };
+// What of a particle that stands in so many planes belongs to the body that is computed.
+double part_beside(unsigned planes);
 // Divides materials into those off the planes and those in them: `material` (by particle), the names and the
 // rule's strengths, laws, contacts and masses, by material, grow. Throws InputError where no particle stands
 // in a plane, particles stand on both sides of one, or one stands so near that it would feel its image.
@@ -38,7 +40,7 @@ Divided divide(const std::vector<SymmetryPlane>& planes, const std::vector<Vec3>
                std::vector<int>& material, std::vector<std::string>& names, Rule& rule);
 
 // A type whose particles stand in these planes never leaves them. Throws InputError where its constraint
-// moves it out, or holds it by force.
+// moves or pulls it out, or holds it by force.
 void keep_in_planes(const std::vector<SymmetryPlane>& planes, uint8_t in, ParticleType& type);
 
 }  // namespace cuboct

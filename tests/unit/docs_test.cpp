@@ -139,6 +139,14 @@ std::set<std::string> scene_keys() {
          "\"9 mm\" }\naxis = \"x\"\nstart = \"1 mm\"\nwindow = 2\nbond_length = \"1.1 mm\"\n"
          "[run]\nsteps = 1\n";
   read_scene(path.string());
+  for (const char* load : {"force = \"[1, 0, 0] N\"", "traction = \"[1, 0, 0] Pa\"\narea = \"1 mm^2\""}) {
+    std::ofstream(path)
+        << "density = \"1 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nbox = { cells = [2, 2, 2] }\n"
+           "law = { kind = \"brittle\", stiffness = \"1 MN/m\" }\n"
+           "[[constraint]]\nname = \"pull\"\nkind = \"pulled\"\n"
+        << load << "\nregion = { shape = \"sphere\", radius = \"9 mm\" }\n[run]\nsteps = 1\n";
+    read_scene(path.string());
+  }
   std::filesystem::remove(path);
   record_config_keys(nullptr);
   return keys;

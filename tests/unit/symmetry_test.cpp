@@ -17,8 +17,8 @@ namespace cuboct {
 namespace {
 
 // A bar with a hole, stretched by both ends; of it what lies beyond `from`. `more` is added to the file.
-Scene bar(const std::array<double, 3>& from, const std::string& more = {},
-          const std::string& kind = "moved") {
+Scene bar(const std::array<double, 3>& from, const std::string& more = {}, const std::string& kind = "moved",
+          const std::string& load = "velocity = \"[20, 0, 0] m/s\"") {
   return parse_scene(fmt::format(R"(density = "1.4 g/cm^3"
 [packing]
 pitch = "1 mm"
@@ -43,12 +43,12 @@ region = {{ shape = "box", size = "[30, 3, 30] mm" }}
 [[constraint]]
 name = "right"
 kind = "{}"
-velocity = "[20, 0, 0] m/s"
+{}
 region = {{ shape = "half_space", point = "[7.5, 0, 0] mm", normal = "-x" }}
 [run]
 steps = 150
 {})",
-                                 from[0], from[1], from[2], kind, more),
+                                 from[0], from[1], from[2], kind, load, more),
                      "bar.toml");
 }
 
@@ -106,6 +106,24 @@ TEST(Symmetry, EighthMovesAsTheWhole) {
   EXPECT_NEAR(8 * a.potential_energy(), b.potential_energy(), 1e-9 * std::abs(b.potential_energy()));
 }
 
+TEST(Symmetry, ForceIsThatOfThePart) {
+  const std::string pull = "kind = \"pulled\"\nforce = \"[-8, 0, 0] kN\"\n";
+  std::string left = kLeft;
+  const size_t from = left.find("kind"), to = left.find("region");
+  left.replace(from, to - from, pull);
+  const Scene whole = bar({-8.6, -4.3, -3}, left, "pulled", "force = \"[8, 0, 0] kN\"");
+  const std::string planes =
+      "[[symmetry]]\nnormal = \"x\"\n[[symmetry]]\nnormal = \"y\"\n[[symmetry]]\nnormal = \"z\"\n";
+  const Scene eighth = bar({0, 0, 0}, planes, "pulled", "force = \"[2, 0, 0] kN\"");
+  EXPECT_LT(apart(eighth, whole), 1e-12);
+  // The end does move.
+  double most = 0;
+  const Body after_run = after(eighth);
+  for (size_t i = 0; i < after_run.size(); ++i)
+    most = std::max(most, after_run.x[i].x() - eighth.body.x[i].x());
+  EXPECT_GT(most, 1e-4);
+}
+
 TEST(Symmetry, IsRefusedWhereThereIsNone) {
   const auto told = [](const auto& make) -> std::string {
     try {
@@ -129,6 +147,10 @@ TEST(Symmetry, IsRefusedWhereThereIsNone) {
       }),
       "the box repeats along y");
   has(told([&] { bar({0, 0, 0}, "[[symmetry]]\nnormal = \"y\"\n", "moved_by_force"); }), "by force");
+  has(told([&] {
+        bar({0, 0, 0}, "[[symmetry]]\nnormal = \"y\"\n", "pulled", "force = \"[1, 1, 0] N\"");
+      }),
+      "pulls particles out");
   // {111} planes are no mirrors of the packing.
   has(told([&] {
         parse_scene(R"(mass = "1 g"
