@@ -98,7 +98,8 @@ ElasticFindings findings_of(const Options& options, const Scene& scene) {
   out.strain = options.strain;
   out.strained =
       constants_by_strain(scene.rule, rest.cell(), options.strain, options.threads, out.evaluations);
-  if (scene.pitch > 0) out.crystal = scene.orientation;
+  // The grains of a box have no direction in common.
+  if (scene.pitch > 0 && (scene.grains == 0 || out.particles == 1)) out.crystal = scene.orientation;
   if (out.crystal && out.particles == 1) out.cleavage = cleavage_of(scene.rule, rest.cell(), *out.crystal);
   for (int n = 2; n <= options.layers; ++n) {
     const CrystalCell slab = without_stress(scene.rule, slab_of(scene, options.material, n), options.threads);

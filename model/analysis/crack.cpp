@@ -53,6 +53,10 @@ CrackMeter::CrackMeter(const Probe& probe, const Periodic& periodic, const std::
     : probe_(probe), periodic_(periodic) {
   x_.reserve(probe.set.ids.size());
   for (const uint32_t id : probe.set.ids) x_.push_back(initial[id]);
+  for (size_t at = 0; at < probe.begin.size(); ++at) {
+    ahead_.push_back(nearest_image(probe.begin[at] - x_[at], periodic));
+    x_[at] += ahead_[at];
+  }
   CellList cells(probe.bond_length, periodic);
   cells.build(x_);
   cells.for_each_pair(x_, [&](uint32_t i, uint32_t j, const Vec3&, double r) {
@@ -70,6 +74,7 @@ std::vector<CrackMeter::Bond> CrackMeter::broken(const std::vector<Vec3>& moved)
   std::vector<Vec3> u;
   u.reserve(x_.size());
   for (const uint32_t id : probe_.set.ids) u.push_back(moved[id]);
+  for (size_t at = 0; at < ahead_.size(); ++at) u[at] -= ahead_[at];
   const Reach reach(*probe_.rule);
   std::vector<Bond> gone;
   for (const Bond& bond : bonds_)

@@ -16,8 +16,8 @@ double bond_reach(const Rule& rule, int type_i, int type_j);
 
 class CrackMeter {
  public:
-  // Bonds are the pairs of the probe's set that are nearer than probe.bond_length in `initial`, and within
-  // their reach. The probe's ids are places in `initial`.
+  // Bonds are the pairs of the probe's set that are nearer than probe.bond_length in `initial`, or in
+  // probe.begin, and within their reach. The probe's ids are places in `initial`.
   CrackMeter(const Probe& probe, const Periodic& periodic, const std::vector<Vec3>& initial);
 
   struct Found {
@@ -41,7 +41,8 @@ class CrackMeter {
 
   Probe probe_;
   Periodic periodic_;
-  std::vector<Vec3> x_;  // m, of the set at the start
+  std::vector<Vec3> x_;      // m, of the set where its bonds are taken
+  std::vector<Vec3> ahead_;  // m, from `initial` to there; empty: none
   std::vector<Bond> bonds_;
 };
 

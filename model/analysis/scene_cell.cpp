@@ -68,7 +68,8 @@ SceneCell cell_of(const Scene& scene, const std::string& material) {
   out.cell.x = {Vec3::Zero()};
   out.cell.type = {type};
   const std::string& name = scene.rule.types[type].name;
-  out.of = fmt::format("the packing's, of {}", name.substr(0, name.find('/')));
+  out.of = fmt::format("{}, of {}", scene.grains > 0 ? "one grain's that is not turned" : "the packing's",
+                       name.substr(0, name.find('/')));
   return out;
 }
 

@@ -47,7 +47,9 @@ std::string body_text(const Scene& scene, const Shown& shown) {
   text += fmt::format("{}{} particle{} of {}", text.empty() ? "" : ", ", count, count == 1 ? "" : "s",
                       shown.mass(scene.rule.mass));
   if (!scene.rule.masses.empty()) text += " to " + shown.mass(scene.rule.heaviest());
-  return scene.pitch > 0 ? fmt::format("{}, {} apart", text, shown(scene.pitch, "m")) : text;
+  if (scene.pitch > 0) text += fmt::format(", {} apart", shown(scene.pitch, "m"));
+  if (scene.grains > 0) text += fmt::format(", in {} grains", scene.grains);
+  return text;
 }
 
 void add_meshes(const Scene& scene, std::vector<SynopsisLine>& lines) {

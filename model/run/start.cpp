@@ -73,6 +73,9 @@ void begin_at(Scene& scene, const std::string& directory) {
       exact->u[id] = {};
   }
   body.exact = std::move(exact);
+  for (Probe& probe : scene.probes)
+    if (probe.from_start)
+      for (const uint32_t id : probe.set.ids) probe.begin.push_back(body.x[id]);
   scene.began = Began{directory, left.engine, left.step};
 }
 

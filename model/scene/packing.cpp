@@ -12,14 +12,10 @@
 
 #include "model/base/error.h"
 #include "model/base/parallel.h"
+#include "model/scene/packing_parts.h"
 
 namespace cuboct {
-namespace {
 
-constexpr double kTolerance = 1e-6;  // of the pitch
-
-// The h at which start + h * step lies within the bounds grown by `slack`; first > second where it never
-// does. In a crystal that is turned against a thin body, most rows of the bounds' corners' range pass it by.
 std::pair<double, double> inside_bounds(const Vec3& start, const Vec3& step, const Bounds& bounds,
                                         double slack) {
   std::pair<double, double> in{-1e9, 1e9};
@@ -35,17 +31,13 @@ std::pair<double, double> inside_bounds(const Vec3& start, const Vec3& step, con
   return in;
 }
 
-}  // namespace
-
 double Fcc::cell() const { return std::numbers::sqrt2 * pitch; }
 
 double particle_mass(double density, double pitch) {
   return density * pitch * pitch * pitch / std::numbers::sqrt2;
 }
 
-namespace {
-
-Bounds bounds_of(const Shape* shape, const Periodic& box) {
+Bounds packing_bounds(const Shape* shape, const Periodic& box) {
   Bounds bounds = shape != nullptr ? shape->bounds() : Bounds{};
   for (int a = 0; a < 3; ++a) {
     if (box.extent[a] == 0) continue;
@@ -56,12 +48,9 @@ Bounds bounds_of(const Shape* shape, const Periodic& box) {
   return bounds;
 }
 
-// Corners of the bounds in units of half cells of the crystal give the range of h, k and l.
-struct Range3 {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-};
-Range3 range_of(const Fcc& fcc, const Bounds& bounds) {
-  Range3 range;
+Bounds indices_in(const Fcc& fcc, const Bounds& bounds) {
+  Bounds range{Vec3::Constant(std::numeric_limits<double>::infinity()),
+               Vec3::Constant(-std::numeric_limits<double>::infinity())};
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 x;
     for (int a = 0; a < 3; ++a) x[a] = (corner >> a & 1) != 0 ? bounds.high[a] : bounds.low[a];
@@ -72,11 +61,9 @@ Range3 range_of(const Fcc& fcc, const Bounds& bounds) {
   return range;
 }
 
-}  // namespace
-
 PackingSize packing_size(const Fcc& fcc, const Shape* shape, const Periodic& box) {
-  const Bounds bounds = bounds_of(shape, box);
-  const Range3 range = range_of(fcc, bounds);
+  const Bounds bounds = packing_bounds(shape, box);
+  const Bounds range = indices_in(fcc, bounds);
   PackingSize size;
   size.farthest = std::max(range.low.cwiseAbs().maxCoeff(), range.high.cwiseAbs().maxCoeff());
   size.tested = 0.5;  // every other (h, k, l) is a site
@@ -95,17 +82,17 @@ PackingSize packing_size(const Fcc& fcc, const Shape* shape, const Periodic& box
     for (int k = 0; k < along; ++k)
       for (int h = 0; h < along; ++h) {
         const Vec3 x = bounds.low + (Vec3(h, k, l).array() + 0.5).matrix().cwiseProduct(extent) / along;
-        inside += shape->distance(x) <= kTolerance * fcc.pitch ? 1 : 0;
+        inside += shape->distance(x) <= kSiteTolerance * fcc.pitch ? 1 : 0;
       }
   size.sites *= inside / std::pow(along, 3);
   return size;
 }
 
 std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) {
-  const Bounds bounds = bounds_of(shape, box);
-  const double tolerance = kTolerance * fcc.pitch;
+  const Bounds bounds = packing_bounds(shape, box);
+  const double tolerance = kSiteTolerance * fcc.pitch;
   const double half = fcc.cell() / 2;
-  const Range3 range = range_of(fcc, bounds);
+  const Bounds range = indices_in(fcc, bounds);
   std::array<int64_t, 3> first, last;
   for (int a = 0; a < 3; ++a) {
     first[a] = std::llround(std::floor(range.low[a])) - 1;
@@ -162,7 +149,7 @@ bool is_period(const Fcc& fcc, const Vec3& shift) {
   const Vec3 hkl = fcc.orientation.transpose() * shift / (fcc.cell() / 2);
   int64_t sum = 0;
   for (int a = 0; a < 3; ++a) {
-    if (!(std::abs(hkl[a] - std::round(hkl[a])) < kTolerance)) return false;
+    if (!(std::abs(hkl[a] - std::round(hkl[a])) < kSiteTolerance)) return false;
     sum += std::llround(hkl[a]);
   }
   return (sum & 1) == 0;
@@ -181,8 +168,8 @@ class Deviates {
       if (have_spare_) {
         d[a] = spare_;
       } else {
-        const double radius = std::sqrt(-2 * std::log(uniform()));
-        const double angle = 2 * std::numbers::pi * uniform();
+        const double radius = std::sqrt(-2 * std::log(uniform(generator_)));
+        const double angle = 2 * std::numbers::pi * uniform(generator_);
         d[a] = radius * std::cos(angle);
         spare_ = radius * std::sin(angle);
       }
@@ -192,9 +179,6 @@ class Deviates {
   }
 
  private:
-  // In (0, 1), 53 bits: the logarithm above needs a number above 0.
-  double uniform() { return (static_cast<double>(generator_() >> 11) + 0.5) * 0x1p-53; }
-
   std::mt19937_64 generator_;
   double spare_ = 0;
   bool have_spare_ = false;

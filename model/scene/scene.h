@@ -66,6 +66,8 @@ struct Probe {
   // crack:
   double bond_length = 0;            // m, particles that begin nearer to each other have a bond
   std::optional<double> start;       // m along the axis, from where the length counts; none: the crack's end
+  bool from_start = false;           // bonds are those of where the run begins, not of the packing
+  std::vector<Vec3> begin;           // m, where the set's particles are then; empty: as packed
   size_t window = 0;                 // readings over which the speed is taken
   std::vector<uint8_t> types;        // of the set's particles
   std::shared_ptr<const Rule> rule;  // of the scene
@@ -117,7 +119,9 @@ struct Scene {
   std::shared_ptr<const Body> packed;  // as the scene packs it, where the run begins elsewhere
   Periodic periodic;
   double pitch = 0;  // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
-  Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates
+  Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates; of many
+                                        // grains those of one that is not turned
+  size_t grains = 0;                    // of the packing; 0: one crystal, or none
   std::vector<MeshFacts> meshes;        // that shapes are made of
   bool thermal = false;                 // some velocities are drawn
   double boltzmann = kBoltzmann;        // J/K; 1 in reduced units

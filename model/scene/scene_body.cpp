@@ -68,6 +68,37 @@ void check_packing(const ConfigValue& at, const Fcc& fcc, const Shape* shape, co
             hint(size.sites / most));
 }
 
+// Before grains are drawn: those that this body cannot have.
+void check_grains(const GrainChoice& choice, const GrainDomain& domain, double pitch) {
+  constexpr double kLeastSize = 3;   // pitches: less has hardly an inner particle
+  constexpr double kLeastThick = 3;  // pitches: less is a layer, of which a turned crystal leaves scraps
+  constexpr double kMostGrains = 1e7;
+  const Grains& grains = choice.grains;
+  const ConfigTable& table = choice.table;
+  if (grains.size < kLeastSize * pitch * (1 - kTolerance))
+    table.at("size").fail(
+        fmt::format("grains of {:.3g} pitches: they have at least {:g}", grains.size / pitch, kLeastSize),
+        "a larger size, or a finer pitch");
+  for (int a = 0; a < 3; ++a) {
+    const double thick = domain.extent[a] / pitch;
+    if (grains.column_axis < 0 && thick < kLeastThick)
+      table.fail(fmt::format("the body has {:.3g} pitches along {}: grains that turn any way need {:g}",
+                             thick, "xyz"[a], kLeastThick),
+                 fmt::format("texture = \"{}\" makes columns along it", "xyz"[a]));
+    if (domain.repeats[a] && domain.extent[a] < 2 * grains.closest * pitch)
+      table.fail(fmt::format(
+          "the box repeats after {:.3g} pitches along {}, grains need {:.3g}: a site would be near "
+          "its own image",
+          thick, "xyz"[a], 2 * grains.closest));
+  }
+  const double count = grain_count(grains, domain);
+  if (count < 2)
+    table.at("size").fail("the body holds one grain",
+                          "a smaller size, or no 'grains': 'axes' turn one crystal");
+  if (count > kMostGrains)
+    table.at("size").fail(fmt::format("{:.3g} grains: at most {:g} are drawn", count, kMostGrains));
+}
+
 void pack_geometry(const ConfigTable& root, const Regions& regions, const PackingChoice& packing,
                    Scene& scene) {
   const auto [boxed, periodic] = read_box(root, &packing);
@@ -91,7 +122,15 @@ void pack_geometry(const ConfigTable& root, const Regions& regions, const Packin
   }
   const ConfigValue box = geometry ? *geometry : root.at("box");
   check_packing(box, packing.fcc, shape.get(), boxed, !geometry && root.at("box").table().has("cells"));
-  scene.body.x = pack(packing.fcc, shape.get(), boxed);
+  if (packing.grains) {
+    const Grains& grains = packing.grains->grains;
+    const GrainDomain domain = grain_domain(shape.get(), boxed, periodic);
+    check_grains(*packing.grains, domain, scene.pitch);
+    scene.grains = static_cast<size_t>(grain_count(grains, domain));
+    scene.body.x = pack_grains(packing.fcc, grains, shape.get(), boxed, periodic);
+  } else {
+    scene.body.x = pack(packing.fcc, shape.get(), boxed);
+  }
   if (scene.body.x.empty()) box.fail("no particle: no site of the packing lies inside");
   scene.body.v.assign(scene.body.x.size(), Vec3::Zero());
 }
@@ -456,7 +495,8 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
     box.extent = size.vector(quantity::length);
     if (!(box.extent.minCoeff() > 0)) size.fail("'size' must be greater than 0 along each axis");
     for (size_t a = 0; a < 3; ++a)
-      if (packing != nullptr && periodic[a] && !is_period(packing->fcc, box.extent[a] * Vec3::Unit(a)))
+      if (packing != nullptr && periodic[a] && packing->repeats_by_crystal(a) &&
+          !is_period(packing->fcc, box.extent[a] * Vec3::Unit(a)))
         size.fail(fmt::format("the packing does not repeat after {:.9g} m along {}", box.extent[a], "xyz"[a]),
                   "give 'cells' instead");
   }

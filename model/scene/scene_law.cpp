@@ -44,6 +44,21 @@ void read_orientation(const ConfigTable& table, PackingChoice& packing) {
     packing.along[2] = least_integers(packing.along[0]->cross(*packing.along[1]));
 }
 
+GrainChoice read_grains(const ConfigTable& packing, const ConfigTable& table) {
+  table.record_as("packing");
+  Grains grains;
+  grains.size = table.number("size", quantity::length, Range::positive());
+  grains.seed = static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX));
+  if (const auto texture = table.find("texture"))
+    grains.column_axis = static_cast<int>(texture->choice("texture", {"random", "x", "y", "z"})) - 1;
+  grains.closest = table.number_or("closest", quantity::number, grains.closest, Range::between(0.3, 0.95));
+  table.done();
+  if (const auto axes = packing.find("axes"); axes && grains.column_axis < 0)
+    axes->fail("'axes' serves one crystal, and grains that are columns: others turn any way",
+               "give 'grains' a texture = \"x\", \"y\" or \"z\"");
+  return {grains, table};
+}
+
 // The makers of laws know no file: their complaints get the place of the table.
 template <typename Make>
 auto placed(const ConfigTable& table, Make make) {
@@ -112,7 +127,13 @@ std::shared_ptr<const PairLaw> read_preset(const ConfigTable& law, const std::st
   if (law.has("youngs_modulus")) {
     const ConfigValue along = law.at("direction");
     Vec3 direction = along.direction();
-    if (along.is_string()) direction = packing->fcc.orientation.transpose() * direction;
+    if (along.is_string()) {
+      for (int a = 0; packing->grains && a < 3; ++a)
+        if (direction[a] != 0 && a != packing->grains->grains.column_axis)
+          along.fail(fmt::format("each grain has another crystal direction along {}", "xyz"[a]),
+                     "give the crystal direction: three numbers");
+      direction = packing->fcc.orientation.transpose() * direction;
+    }
     stiffness = stiffness_from_modulus(positive(law, "youngs_modulus", quantity::pressure), direction, pitch);
   } else {
     stiffness = positive(law, "stiffness", quantity::stiffness);
@@ -144,6 +165,8 @@ std::optional<PackingChoice> read_packing(const ConfigTable& root) {
     packing.fcc.pitch = pitch.number(quantity::length, Range::positive());
   packing.fcc.offset = table->vector_or("offset", quantity::length, Vec3::Zero());
   read_orientation(*table, packing);
+  if (const auto grains = table->table_at("grains"))
+    packing.grains = std::make_shared<const GrainChoice>(read_grains(*table, *grains));
   table->done();
   return packing;
 }

@@ -12,17 +12,29 @@
 #include <vector>
 
 #include "model/scene/config.h"
+#include "model/scene/grains.h"
 #include "model/scene/packing.h"
 #include "model/scene/regions.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {
 
+struct GrainChoice {
+  Grains grains;
+  ConfigTable table;
+};
+
 // [packing]. Absent where all particles are listed.
 struct PackingChoice {
   Fcc fcc;  // pitch 0: "relaxed", to be found from the law
   std::array<std::optional<Vec3>, 3>
       along;  // crystal directions along x, y, z in least integers, where they are such
+  std::shared_ptr<const GrainChoice> grains;  // null: one crystal
+
+  // Whether the crystal has to repeat after the period of an axis.
+  bool repeats_by_crystal(size_t axis) const {
+    return !grains || grains->grains.column_axis == static_cast<int>(axis);
+  }
 };
 std::optional<PackingChoice> read_packing(const ConfigTable& root);
 

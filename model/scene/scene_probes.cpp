@@ -57,6 +57,8 @@ void read_crack(const ConfigTable& table, const Scene& scene, Probe& probe) {
   if (probe.set.ids.size() < 2) table.at("region").fail("a crack needs bonds: two particles or more");
   probe.bond_length = table.number_or("bond_length", quantity::length, first_shell(scene), Range::positive());
   if (const auto start = table.find("start")) probe.start = start->number(quantity::length);
+  if (const auto bonds = table.find("bonds"))
+    probe.from_start = bonds->choice("bonds", {"packing", "start"}) == 1;
   probe.window = static_cast<size_t>(table.integer_or("window", 1, 1'000'000, 10));
   for (const uint32_t id : probe.set.ids) probe.types.push_back(scene.body.type[id]);
 }

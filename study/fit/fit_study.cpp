@@ -68,6 +68,7 @@ const Probe& probe_of(const ConfigTable& root, const Scene& scene, FitStudy& stu
 void check_scene(const ConfigTable& root, const Scene& scene, FitStudy& study) {
   const ConfigValue where = root.at("scene");
   if (scene.pitch == 0) where.fail("a fit needs a scene with a [packing]: its law vanishes at the pitch");
+  if (scene.grains > 0) where.fail("a fit needs a packing of one crystal: its cheap case has one");
   if (scene.steps == 0) where.fail("the scene has no steps");
   const auto engine = root.find("engine");
   const std::vector<std::string> engines{"lattice", "reference"};

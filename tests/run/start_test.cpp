@@ -99,6 +99,29 @@ TEST_P(Starts, InTwoPartsAsInOne) {
   }
 }
 
+TEST_P(Starts, CracksMayCountTheBondsOfTheStart) {
+  const Directory first("crack." + GetParam().name);
+  const std::string path = first.path + "/scene.toml";
+  std::string text = read_config_text(kGrips);
+  for (const std::string from : {"packing", "start"})
+    text += "[[probe]]\nname = \"" + from + "\"\nkind = \"crack\"\naxis = \"x\"\nbonds = \"" + from +
+            "\"\nregion = { shape = \"half_space\", point = [1.2, 0, 0], normal = [-1, 0, 0] }\n";
+  write_text(path, text);
+  const Bed bed = bed_of(read_scene(path));
+  leave(bed, run(bed, 9).trace, first.path);
+  const Scene scene = load_scene(path, {{}, first.path});
+  const Probe &packed = scene.probes[scene.probes.size() - 2], &begun = scene.probes.back();
+  EXPECT_TRUE(packed.begin.empty());
+  ASSERT_EQ(begun.begin.size(), begun.set.ids.size());
+  EXPECT_LT(begun.begin.size(), scene.body.size());
+  size_t moved = 0;
+  for (size_t at = 0; at < begun.begin.size(); ++at) {
+    EXPECT_EQ(begun.begin[at], scene.body.x[begun.set.ids[at]]);
+    moved += begun.begin[at] != scene.packing().x[begun.set.ids[at]] ? 1 : 0;
+  }
+  EXPECT_GT(moved, 0u);
+}
+
 std::string with_until(const std::string& until) {
   std::string text = read_config_text(kGrips);
   const size_t run = text.find("[run]\n") + 6;

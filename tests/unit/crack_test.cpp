@@ -117,6 +117,32 @@ TEST(Crack, StrayBondsMakeNoCrack) {
   EXPECT_DOUBLE_EQ(alone.look().length, 0);
 }
 
+// The run begins with five columns open and the sheet drawn out by a tenth: what is open is no bond then, and
+// what opens further on is. In a box that repeats, particles have gone round it before the run begins.
+TEST(Crack, BondsMayBeThoseOfWhereTheRunBegins) {
+  for (const bool round : {false, true}) {
+    Sheet sheet("bonds = \"start\"\n");
+    EXPECT_TRUE(sheet.scene.probes[0].from_start);
+    if (round) sheet.scene.periodic.extent = Vec3(50, 50, 50);
+    sheet.open(5);
+    Probe& probe = sheet.scene.probes[0];
+    for (size_t i = 0; i < sheet.moved.size(); ++i) {
+      sheet.moved[i].x() += 0.1 * sheet.scene.body.x[i].x();
+      probe.begin.push_back(sheet.scene.body.x[i] + sheet.moved[i] +
+                            Vec3(round && i % 2 == 0 ? 50 : 0, 0, 0));
+    }
+    const CrackMeter meter(probe, sheet.scene.periodic, sheet.scene.body.x);
+    EXPECT_EQ(meter.bonds(), 9u * 4 + 10 * 3 - 5 - 2 +
+                                 1);  // across the step by column 5 one row is now level with the other
+    EXPECT_EQ(meter.look(sheet.moved).broken, 0u);
+    sheet.open(8);
+    const CrackMeter::Found found = meter.look(sheet.moved);
+    EXPECT_EQ(found.broken, 3u);
+    EXPECT_NEAR(found.energy, -3 * sheet.scene.rule.law->energy(1), 1e-9);
+    EXPECT_NEAR(found.length, 1.1 * 2, 1e-9);  // from column 5 to 7
+  }
+}
+
 TEST(Crack, BondsOfMaterialsCountWithTheirStrengthAndContactsAreNone) {
   const std::string upper =
       "[[material]]\nname = \"lower\"\n[[material]]\nname = \"upper\"\nstrength = 4\n"

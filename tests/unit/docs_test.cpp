@@ -133,10 +133,13 @@ std::set<std::string> scene_keys() {
          "free = true }]\n";
   read_scene(path.string(), {.begins = true, .stage = "pull-2"});
   std::ofstream(path)
-      << "density = \"1 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nbox = { cells = [2, 2, 2] }\n"
+      << "density = \"1 g/cm^3\"\nbox = { cells = [8, 8, 8] }\n"
+         "packing = { pitch = \"1 mm\", grains = { size = \"4 mm\", seed = 1, texture = \"z\", closest = 0.7 "
+         "} }\n"
          "law = { kind = \"brittle\", stiffness = \"1 MN/m\", fracture_energy = \"1 J/m^2\" }\n"
          "[[probe]]\nname = \"tip\"\nkind = \"crack\"\nregion = { shape = \"sphere\", radius = "
-         "\"9 mm\" }\naxis = \"x\"\nstart = \"1 mm\"\nwindow = 2\nbond_length = \"1.1 mm\"\n"
+         "\"9 mm\" }\naxis = \"x\"\nstart = \"1 mm\"\nwindow = 2\nbond_length = \"1.1 mm\"\nbonds = "
+         "\"start\"\n"
          "[run]\nsteps = 1\n";
   read_scene(path.string());
   for (const char* load : {"force = \"[1, 0, 0] N\"", "traction = \"[1, 0, 0] Pa\"\narea = \"1 mm^2\""}) {
