@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Branching: a crack in a plate of soda-lime glass runs, and splits in two.
 
-A plate of 100 x 40 mm with a cut from its left edge to the centre (Bobaru and Zhang 2015; the inputs of PDMATLAB2D and CabanaPD). It is drawn apart at
-its long edges at rest, then cut: each length of crack may take the energy G that the strip has stored above and below. Plane stress: one (111) layer
-of particles, isotropic, with a Poisson's ratio of 1/3. Glass breaks at strains of 1e-4. Linear elastic fracture is the same when displacements and the
+A plate of 100 x 40 mm with a cut from its left edge to the centre (Bobaru and Zhang 2015; the inputs of PDMATLAB2D and CabanaPD). A traction of 2 MPa
+pulls at its long edges from the start, as published. Or it is drawn apart at these edges at rest, then cut: each length of crack may take the energy G
+that the strip has stored above and below. Plane stress: one (111) layer of particles, isotropic, with a Poisson's ratio of 1/3. Glass breaks at strains of 1e-4. Linear elastic fracture is the same when displacements and the
 root of the fracture energy grow alike, here SCALE-fold, so that bonds break at strains of a percent and numbers need no more digits."""
 import numpy as np
 from scipy.sparse import coo_array
@@ -16,6 +16,7 @@ E, RHO, GC, POISSON = 72e9, 2440.0, 3.8, 1 / 3  # Pa, kg/m^3, J/m^2
 SCALE = 20.0
 LONG, HIGH = 100.0, 40.0  # mm
 EDGE = 1.5  # mm, of the grips
+TRACTION, PULLED, FIRM = 2e6, 43.0, 1.0  # Pa, us, mm from the edges where nothing breaks
 # Directions of the crack from the close-packed rows, degrees, and the packing's axes along x and y; z is [111].
 ROWS = {0: [[1, -1, 0], [1, 1, -2]], 14: [[4, -3, -1], [2, 5, -7]], 19: [[3, -2, -1], [1, 4, -5]], 30: [[1, 1, -2], [-1, 1, 0]]}
 THICK = np.sqrt(2 / 3)  # of a layer, in pitches
@@ -77,6 +78,21 @@ def plate(pitch_mm, rows, share, cut, time=30.0):
     }  # fmt: skip
 
 
+def pulled(pitch_mm, rows):
+    """The cut plate under the traction, which grows as displacements do. It pulls at what lies within a pitch of the edges."""
+    scene = plate(pitch_mm, rows, 0.0, True, PULLED)
+    depth = HIGH / 2
+    outer = lambda y, normal: {"shape": "half_space", "point": f"[0, {y!r}, 0] mm", "normal": normal}
+    area = LONG * THICK * pitch_mm
+    pull = lambda name, s: {"name": name, "kind": "pulled", "traction": f"[0, {s * SCALE * TRACTION!r}, 0] Pa", "area": f"{area!r} mm^2", "region": name}
+    scene["title"] = f"Glass plate under a traction, pitch {pitch_mm:g} mm, rows at {rows} degrees"
+    scene["regions"] = {"top": outer(depth - pitch_mm, "-y"), "bottom": outer(-depth + pitch_mm, "y")}
+    firm = {"shape": "union", "of": [outer(depth - FIRM, "-y"), outer(-depth + FIRM, "y")]}
+    scene["material"][1]["region"] = firm
+    scene["constraint"] = [pull("top", 1), pull("bottom", -1)]
+    return scene
+
+
 class Crack:
     """Bonds that broke, by the frame in which they first were: middles in mm."""
 
@@ -109,9 +125,24 @@ class Crack:
         _, cluster = connected_components(joined, directed=False)
         return max(LONG / 2, middle[cluster == cluster[first.argmin()], 0].max())
 
-    def speed(self):
-        """m/s, between 55 and 90 mm or as far as it ran; 0 where it did not."""
+    def start(self):
+        """s: the first frame in which the crack has grown by 1 mm; nan where it never does."""
+        grown = np.flatnonzero(self.tip > LONG / 2 + 1)
+        return self.times[grown[0]] if len(grown) else np.nan
+
+    def stop(self):
+        """The frame from which the tip stands still for 3 us, as where it meets an edge that does not break; the last one where it never does."""
+        for k in np.flatnonzero(self.tip > LONG / 2 + 5):
+            later = np.searchsorted(self.times, self.times[k] + 3e-6)
+            if later < len(self.times) and self.tip[later] == self.tip[k]:
+                return k
+        return len(self.times) - 1
+
+    def speed(self, last=None):
+        """m/s along the cut, between 55 and 90 mm or as far as it ran, up to a frame; 0 where it did not run."""
         window = (self.tip > LONG / 2 + 5) & (self.tip < LONG - 10)
+        if last is not None:
+            window[last + 1 :] = False
         if np.count_nonzero(window) < 3:
             return 0.0
         return 1e-3 * float(np.polyfit(np.array(self.times)[window], self.tip[window], 1)[0])
@@ -127,8 +158,46 @@ class Crack:
         return None
 
 
+def under_traction(study):
+    """The published load: when the crack starts, how fast it runs, whether it branches."""
+    points = [(0.8, 0)] if study.small else [(0.4, rows) for rows in ROWS] + [(0.25, 0), (0.25, 30)]
+    scenes = {}
+    for pitch, rows in points:
+        scenes[f"{pitch:g} mm, rows at {rows}, traction"] = scene = pulled(pitch, rows)
+        scene["run"]["frame_every"] = int(8 / pitch)
+    cases = study.run(scenes, "--engine", "reference")
+    rows, cracks = [], {}
+    for point, (name, case) in zip(points, cases.items()):
+        crack = cracks[point] = Crack(case, case, point[0])
+        start, speed, branch = crack.start(), crack.speed(crack.stop()) / rayleigh(), crack.branch()
+        rows.append((f"{point[0]:g}", f"{case.value('particles'):,}", f"{point[1]}", f"{1e6 * start:.1f}", f"{speed:.2f}", f"{branch:.0f}" if branch is not None else "–", f"{1e6 * crack.times[crack.stop()]:.0f}", f"{crack.tip[-1] - LONG / 2:.0f}", f"{len(crack.when)}"))
+    study.table("branching-traction", ("pitch, mm", "particles", "rows at, degrees", "start, µs", "speed / Rayleigh's", "branches after, mm", "runs until, µs", "crack at the end, mm", "bonds broken"), rows)
+    with study.figure("branching_traction", 2, (9, 3.2), "png") as (left, right):
+        for k, (point, crack) in enumerate(cracks.items()):
+            label = f"{point[0]:g} mm, {point[1]}°"
+            if point[0] == points[0][0]:
+                left.plot(*crack.middle.T, ".", ms=1.5, color=f"C{k}", label=f"{point[1]}°")
+            right.plot(1e6 * np.array(crack.times), crack.tip - LONG / 2, color=f"C{k}", lw=0.9, label=label)
+        left.set(xlim=(45, LONG), ylim=(-HIGH / 2, HIGH / 2), aspect="equal", xlabel="mm")
+        left.legend(markerscale=6, fontsize=7, loc="upper left")
+        right.plot([15, 15 + 40e3 / rayleigh()], [0, 40], "k:", lw=0.8, label="Rayleigh's speed")
+        right.set(xlabel="time, µs", ylabel="crack, mm", ylim=(-1, 52))
+        right.legend(fontsize=7)
+    for (pitch, rows), crack in cracks.items():
+        what = f"{pitch:g} mm, rows at {rows}, traction"
+        # The wave of the load meets the cut at 3.5 us, and has come back from the far edge at 10.5 us.
+        if not 3.5e-6 < crack.start() < 15e-6:
+            raise SystemExit(f"{what}: the crack starts at {1e6 * crack.start():.1f} us")
+        speed = crack.speed(crack.stop()) / rayleigh()
+        if not 0.35 < speed < 1.0:
+            raise SystemExit(f"{what}: the crack runs at {speed:.2f} of Rayleigh's speed")
+        if crack.branch() is None:
+            raise SystemExit(f"{what}: the crack does not branch")
+
+
 def run():
     study = Study("branching", __doc__)
+    under_traction(study)
     if study.small:
         points = [(0.8, 0, share) for share in (0.8, 2.0, 8.0)]
     else:

@@ -153,13 +153,13 @@ class Plate:
         return self.load[at], self.apart[at]
 
     def into_hole(self):
-        """Of the first crack: its end, how far that is from the hole, and the angle by which it falls."""
+        """Of the first crack: how far it ends from the hole, how far it rises above the notch on its way, and where it meets the hole, mm."""
         *_, end = list(self.ends())[:2]
         tip, own = self.path(end)
         if not len(own):
-            return tip, np.inf, np.nan
-        gap = max(0.0, np.linalg.norm(own - HOLE, axis=1).min() - RADIUS)
-        return tip, gap, np.degrees(np.arctan2(LEVEL - tip[1], tip[0] - NOTCH))
+            return np.inf, 0.0, tip
+        away = np.linalg.norm(own - HOLE, axis=1)
+        return max(0.0, away.min() - RADIUS), max(0.0, own[:, 1].max() - LEVEL), own[away.argmin()]
 
     def strain(self, x):
         """Largest principal strain of each particle, from how its neighbours moved (least squares)."""
@@ -214,15 +214,15 @@ def run():
         pitch, turn, turning, tail = point
         load, apart = one.first()
         late = one.late()
-        tip, gap, angle = one.into_hole()
-        rows.append((f"{pitch:g}", f"{turn}", "turn" if turning else "welded", f"{tail:g}", f"{one.particles:,}", f"{load:.3f}", f"{apart:.3f}", f"{load / loads[turning][0]:.3f}", f"{angle:.0f}", f"{gap:.1f}", *((f"{late[0]:.3f}", f"{late[1]:.2f}") if late else ("–", "–")), f"{one.evaluations / 1000:.0f}"))
+        gap, rise, meets = one.into_hole()
+        rows.append((f"{pitch:g}", f"{turn}", "turn" if turning else "welded", f"{tail:g}", f"{one.particles:,}", f"{load:.3f}", f"{apart:.3f}", f"{load / loads[turning][0]:.3f}", f"{gap:.1f}", f"{meets[0]:.0f}, {meets[1]:.0f}", f"{rise:.0f}", *((f"{late[0]:.3f}", f"{late[1]:.2f}") if late else ("–", "–")), f"{one.evaluations / 1000:.0f}"))
         if turning and tail == TAIL:
             check(f"{name((*point, 0))}: first peak, kN, over the published one", load, FIRST[0], 0.1)
             check(f"{name((*point, 0))}: distance of the pins there, mm, over the published one", apart, FIRST[1], 0.15)
             check(f"{name((*point, 0))}: first peak, kN, over Griffith's", load, loads[turning][0], 0.2)
             if gap > 1.5 * pitch:
                 raise SystemExit(f"{name((*point, 0))}: the crack ends {gap:.1f} mm from the hole")
-    study.table("holed", ("pitch, mm", "rows at, degrees", "pins", "tail", "particles", "first peak, kN", "at, mm", "over Griffith's", "path falls by, degrees", "ends from the hole, mm", "largest load beyond 0.8 mm, kN", "at, mm", "1000 force evaluations"), rows)
+    study.table("holed", ("pitch, mm", "rows at, degrees", "pins", "tail", "particles", "first peak, kN", "at, mm", "over Griffith's", "crack ends from the hole, mm", "at x, y", "rises on its way, mm", "largest load beyond 0.8 mm, kN", "at, mm", "1000 force evaluations"), rows)
     pictures(study, found)
     study.end()
 
