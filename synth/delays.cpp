@@ -119,7 +119,7 @@ const Delays kHx8k = {
      ram(2.146, 0.224, 0.274, 0.267)},
     kIce40Untimed,
     {0.60, 0.10, 0, "SB_RAM40_4K*", ice40_links(0.025, 0.260, 0.316, 0.259, 0.470)},
-    0.15,
+    0.3,
 };
 const Delays kUp5k = {
     "iCE40UP5K",
@@ -136,7 +136,7 @@ const Delays kUp5k = {
      {"SB_MAC16", {{"A_#|B_#", "O_#", 9.050}}, {}, {}}},
     kIce40Untimed,
     {1.76, 0.30, 0, "SB_RAM40_4K*|SB_MAC16", ice40_links(0.070, 0.662, 0.874, 0.675, 1.232)},
-    0.15,
+    0.2,
 };
 
 bool matches_one(std::string_view pattern, std::string_view text) {

@@ -161,6 +161,9 @@ std::optional<PackingChoice> read_packing(const ConfigTable& root) {
   if (!table) return std::nullopt;
   PackingChoice packing;
   const ConfigValue pitch = table->at("pitch");
+  if (pitch.is_string() && pitch.string() == "auto")
+    pitch.fail("a run has one pitch, which 'auto' does not tell",
+               "'cuboct pitch SCENE --error 5%' finds the coarsest one that keeps a figure within an error");
   if (!pitch.is_string() || pitch.string() != "relaxed")
     packing.fcc.pitch = pitch.number(quantity::length, Range::positive());
   packing.fcc.offset = table->vector_or("offset", quantity::length, Vec3::Zero());

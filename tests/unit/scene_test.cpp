@@ -117,6 +117,10 @@ TEST_F(SceneTest, ErrorsWordForWord) {
   // 0.0002 mm is not what is meant.
   EXPECT_EQ(error(with("\"0.5 mm\"", "2e-4")),
             "a.toml:3:9: 'pitch' needs a unit: a length such as \"0.5 mm\"");
+  EXPECT_EQ(
+      error(with("\"0.5 mm\"", "\"auto\"")),
+      "a.toml:3:9: a run has one pitch, which 'auto' does not tell\n  hint: 'cuboct pitch SCENE --error "
+      "5%' finds the coarsest one that keeps a figure within an error");
   EXPECT_EQ(error("gravity = [0, 0, -9.81]\n" + kBase),
             "a.toml:1:11: 'gravity' needs a unit: an acceleration such as \"[0, 0, -9.81] m/s^2\"");
   EXPECT_EQ(error("gravity = [0, \"0 m/s^2\", -9.81]\n" + kBase),
