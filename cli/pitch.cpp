@@ -9,11 +9,11 @@
 #include "cli/answer.h"
 #include "cli/budget.h"
 #include "cli/command.h"
-#include "model/base/quantity_text.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
+#include "model/base/quantity_text.h"
 #include "model/base/text.h"
 #include "model/trace/plot.h"
 #include "study/interrupted.h"
@@ -133,7 +133,6 @@ int find(const Options& options) {
     const std::string& unit = found.runs.back().unit;
     answer.say("limit       {}, known within {}\n", quantity_text(found.line->limit, unit),
                percent(found.line->limit_within / std::abs(found.line->limit)));
-    draw(found, question.figure, out + "/pitch.svg");
   }
   if (found.pitch) {
     const study::PitchRun& last = found.runs.back();
@@ -145,6 +144,13 @@ int find(const Options& options) {
                count_text(static_cast<double>(last.particles) * times * times * times));
   }
   answer.close(json_of(found, question.figure, out));
+  if (found.line) {
+    try {
+      draw(found, question.figure, out + "/pitch.svg");
+    } catch (const InputError& error) {
+      fmt::print(stderr, "no picture: {}\n", error.what());
+    }
+  }
   if (!found.pitch)
     throw Failed(
         fmt::format("no pitch of at most {} particles keeps {}", options.most, percent(question.error)),

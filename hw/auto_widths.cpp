@@ -218,15 +218,17 @@ std::vector<std::string> width_warnings(const Scene& scene, double edge, const A
                 kMostVelocityFrac - rule.widths.position_frac);
   };
   const double unit = std::ldexp(edge, -rule.widths.velocity_frac());
-  const auto off_by = [&](const Vec3& real, const Int3& fixed, double per_unit) {
+  const auto off_by = [&](const Vec3& real, const Int3& fixed, double per_unit, double least = 0) {
     const Vec3 kept(static_cast<double>(fixed[0]), static_cast<double>(fixed[1]),
                     static_cast<double>(fixed[2]));
-    return real.norm() > 0 ? (kept * per_unit - real).norm() / real.norm() : 0;
+    const double size = std::max(real.norm(), least);
+    return size > 0 ? (kept * per_unit - real).norm() / size : 0;
   };
   for (size_t k = 0; k < rule.types.size(); ++k) {
     const ParticleType& type = scene.rule.types[k];
     const double v = off_by(type.velocity, rule.types[k].velocity, unit / rule.dt);
-    const double g = off_by(type.gravity, rule.types[k].gravity, unit / (rule.dt * rule.dt));
+    const double g =
+        off_by(type.gravity, rule.types[k].gravity, unit / (rule.dt * rule.dt), type.pull.norm());
     if (v > scene.accuracy)
       warnings.push_back(
           fmt::format("the velocity imposed on '{}' is off by {:.2g} of it: {}", type.name, v, of_guard()));

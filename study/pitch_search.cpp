@@ -16,6 +16,7 @@
 
 #include "model/base/hash.h"
 #include "model/base/json.h"
+#include "model/trace/trace_head.h"
 #include "study/kept_lines.h"
 #include "study/probe_run.h"
 
@@ -42,9 +43,11 @@ void check_mass(const ConfigTable& table) {
 }
 
 uint64_t hash_of(const PitchQuestion& q) {
-  const std::string text = fmt::format("{}\n{}\n{} {} {} {} {} {} {}", q.base.scene_text, q.base.arch_text,
-                                       q.engine, static_cast<int>(q.figure.kind), q.figure.curve,
-                                       q.figure.against, q.figure.from, q.figure.to, q.figure.fraction);
+  // The packing too: files that the scene names may change.
+  const std::string text =
+      fmt::format("{:x}\n{}\n{}\n{} {} {} {} {} {} {}", packing_hash(resolve(q.base, {}).scene),
+                  q.base.scene_text, q.base.arch_text, q.engine, static_cast<int>(q.figure.kind),
+                  q.figure.curve, q.figure.against, q.figure.from, q.figure.to, q.figure.fraction);
   Hash hash;
   for (const char c : text) hash.add(c);
   return hash.value();
@@ -105,9 +108,9 @@ class Packings {
     const Vec3 by = std::numbers::sqrt2 * pitch * (orientation_ * shift_of(shift));
     const Vec3 offset = offset_ + by.cwiseProduct(free_);
     Settings settings;
-    settings.scene = {
-        {"packing.pitch", quantity(written(pitch))},
-        {"packing.offset", quantity(fmt::format("[{}, {}, {}]", offset[0], offset[1], offset[2]))}};
+    if (pitch != pitch_) settings.scene.push_back({"packing.pitch", quantity(written(pitch))});
+    settings.scene.push_back(
+        {"packing.offset", quantity(fmt::format("[{}, {}, {}]", offset[0], offset[1], offset[2]))});
     return settings;
   }
 
@@ -142,6 +145,18 @@ void check_refinable(const Base& base) {
   const ConfigTable root = parse_config(base.scene_text, base.scene_path);
   const auto packing = root.table_at("packing");
   if (!packing) root.fail("the scene has no [packing], so no pitch");
+  if (const auto box = root.table_at("box"))
+    if (const auto periodic = box->find("periodic"); periodic && !packing->has("grains"))
+      periodic->fail("the packing repeats in this box at some pitches only", "a body with faces, or grains");
+  if (const auto damping = root.table_at("damping"))
+    if (const auto coefficient = damping->find("coefficient"))
+      coefficient->fail("'coefficient' is that of a bond of one pitch", "give 'ratio'");
+  for (const ConfigTable& constraint : root.tables("constraint"))
+    for (const char* key : {"kp", "kd"})
+      if (const auto gain = constraint.find(key))
+        gain->fail(fmt::format("'{}' is that of a particle of one pitch", key), "leave it out");
+  if (const std::vector<ConfigTable> listed = root.tables("particle"); !listed.empty())
+    listed.front().fail("a particle has the mass of one pitch", "a shape of a material of its own");
   check_mass(root);
   check_law(root.at("law").table());
   for (const ConfigTable& bond : root.tables("bond"))
@@ -155,6 +170,11 @@ void check_refinable(const Base& base) {
     dt->fail("'dt' is stable at one pitch", "dt = \"auto\"");
   if (const auto stage = root.find("stage")) stage->fail("a scene with stages is not refined");
   if (const auto start = root.find("start")) start->fail("a state to begin from has a pitch of its own");
+  const std::array<bool, 3> live = live_axes(resolve(base, {}).scene);
+  if (!(live[0] && live[1] && live[2]))
+    root.at("geometry")
+        .fail("all particles stand in one plane: a layer is as thick as its pitch",
+              "a plate of several layers");
 }
 
 Vec3 shift_of(int k) {

@@ -33,7 +33,17 @@ void FrameSender::send(const RunState& frame) {
 }
 
 FrameReceiver::FrameReceiver(std::string prefix) : prefix_(std::move(prefix)) {
-  for (uint64_t number = 0; fs::remove(name_of(prefix_, number));) ++number;
+  const fs::path path(prefix_);
+  const std::string start = path.filename().string() + ".";
+  std::error_code none;  // a directory that is not there holds no file
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", none)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(start) && name.size() > start.size() &&
+        name.find_first_not_of("0123456789", start.size()) == std::string::npos)
+      left.push_back(entry.path());
+  }
+  for (const fs::path& file : left) fs::remove(file);
 }
 
 bool FrameReceiver::receive(const std::function<void(RunState)>& see) {

@@ -22,7 +22,7 @@ const Body& planned_body(const Scene& scene) { return scene.body.exact ? scene.p
 
 // Of the bond between nearest neighbours at rest, and their distance.
 void read_bond(const Scene& scene, Motion& motion) {
-  const Rule& rule = scene.rule;
+  const Rule& rule = scene.whole ? *scene.whole : scene.rule;
   const double rest = stiffest_rest_distance(*rule.law);
   motion.rest_distance = scene.pitch > 0 ? scene.pitch : rest > 0 ? rest : rule.cutoff();
   if (scene.pitch > 0 || rest > 0) motion.bond_stiffness = stiffest_bond(rule, motion.rest_distance);
@@ -134,7 +134,8 @@ Motion motion_of(const Scene& scene) {
         if (driven(other)) apart = std::max(apart, (type.velocity - other.velocity).norm());
       strains(std::max(apart / c, apart * duration / length), "the velocity imposed on '" + type.name + "'");
     }
-    if (const double g = type.gravity.norm(); g > 0)
+    // Of a force and a weight that balance, neither may be lost.
+    if (const double g = std::max(type.gravity.norm(), type.pull.norm()); g > 0)
       motion.gravity = motion.gravity > 0 ? std::min(motion.gravity, g) : g;
     if (const double a = type.pull.norm(); a > 0) {
       // The stress is that of the pulled layer's mass: its depth counts, not the body's length.

@@ -38,18 +38,19 @@ int more_bits(double unit, double wanted) {
 Resolution::Resolution(const Scene& scene) : scene_(scene), type_(scene.body.type) {
   const Rule& rule = scene.rule;
   const Body& body = scene.body;
-  bool held = false, moved = false, weighs = false;
+  bool held = false, moved = false, weighs = false, pulled = false;
   std::vector<char> is_free;
   for (size_t t = 0; t < rule.types.size(); ++t) {
     const ParticleType& type = rule.types[t];
     held |= leads(type);
     weighs |= !type.gravity.isZero(0);
+    pulled |= !type.pull.isZero(0);
     is_free.push_back(!leads(type));
     if (!leads(type) || type.velocity.isZero(0)) continue;
     moved = true;
     led_.push_back({static_cast<uint8_t>(t), {}, {}});
   }
-  loaded_ = moved || (weighs && held);
+  loaded_ = moved || pulled || (weighs && held);
   for (Led& led : led_) {
     for (uint32_t id = 0; id < body.size(); ++id)
       if (body.type[id] == led.type) led.ids.push_back(id);

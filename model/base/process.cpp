@@ -143,7 +143,7 @@ int Process::wait(const std::function<bool()>& begun, const std::function<bool()
       kill(pid_, SIGKILL);
     }
     const bool busy = meanwhile && meanwhile();
-    poll(&ended, count, busy ? 0 : count ? 100 : 10);
+    poll(&ended, count, busy ? 0 : meanwhile ? 5 : count ? 100 : 10);
   }
   if (found < 0) throw std::runtime_error(fmt::format("waitpid: {}", std::strerror(errno)));
   pid_ = -1;

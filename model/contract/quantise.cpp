@@ -33,7 +33,9 @@ std::vector<std::string> keys_of(const ParticleType& type, const std::string& ke
   return {constraint + "." + key, constraint};
 }
 
-std::string material_of(const ParticleType& type) { return type.name.substr(0, type.name.find('/')); }
+std::string material_of(const ParticleType& type) {
+  return type.name.substr(0, type.name.find_first_of(":/"));  // of a plane of symmetry too
+}
 
 std::vector<std::string> strength_keys(const Rule& rule, size_t i, size_t j) {
   const auto material = [&](size_t type) { return material_of(rule.types[type]); };
@@ -422,8 +424,8 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
       for (const char* key : {"traction", "force"})
         if (pulled) keys.insert(keys.begin(), keys_of(type, key).front());
       t.gravity[a] =
-          quantised(type.gravity[a] * gravity, type.gravity.norm() * gravity, frac, widths.velocity_bits,
-                    pulled ? "the acceleration by a force" : "gravity", keys);
+          quantised(type.gravity[a] * gravity, std::max(type.gravity.norm(), type.pull.norm()) * gravity,
+                    frac, widths.velocity_bits, pulled ? "the acceleration by a force" : "gravity", keys);
     }
     if (type.pd) {
       const double mass = rule.mass_of(index);

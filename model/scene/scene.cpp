@@ -274,6 +274,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   if (stage) read_damping(*stage, scene);
   const Regions regions(root);
   const Rule whole = read_body(root, stage, regions, packed, scene);
+  if (!root.tables("symmetry").empty()) scene.whole = std::make_shared<const Rule>(whole);
   if (stage) stage->check_ramps();
   read_probes(root, regions, scene);
   scene.meshes = regions.mesh_facts();

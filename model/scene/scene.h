@@ -126,6 +126,7 @@ struct Scene {
   bool thermal = false;                 // some velocities are drawn
   double boltzmann = kBoltzmann;        // J/K; 1 in reduced units
   double density = 0;                   // kg/m^3, at the top of the file; 0 if it is not given
+  std::shared_ptr<const Rule> whole;    // with [[symmetry]]: as if particles in planes were whole; else null
   double dt_limit = 0;      // s, largest stable dt: of the perfect packing, and of the vibrations of
                             // particles that are listed (docs/user/scene.md, [run]); 0 if unknown
   std::string dt_limit_of;  // what sets it, e.g. "the perfect packing"

@@ -215,6 +215,9 @@ std::vector<Material> read_materials(const ConfigTable& root) {
     for (const Material& other : materials)
       if (other.name == material.name)
         table.at("name").fail(fmt::format("material '{}' is there twice", other.name));
+    // A plane of symmetry adds ':' and its axes.
+    if (material.name.find(':') != std::string::npos)
+      table.at("name").fail(fmt::format("'name' of a material must not hold ':': '{}'", material.name));
     materials.push_back(material);
   }
   if (materials.empty()) materials.push_back({"matter", 1});
@@ -399,25 +402,33 @@ ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change
   return type;
 }
 
+bool leads(const ParticleType& type) { return type.pd || type.imposed != std::array<bool, 3>{}; }
+
 double material_mass(const Rule& rule, int material) {
   return rule.masses.empty() ? rule.mass : rule.masses[static_cast<size_t>(material)];
 }
 
 // Of each constraint's force the part of one whole particle of its own: those that no later constraint took,
-// or a stage let go. `in`: planes of symmetry in which a particle stands, by material; empty without any.
+// or a stage let go. `regions`: for errors, where none is left. `in`: planes of symmetry in which a particle
+// stands, by material; empty without any.
 void share_pulls(const std::vector<int>& constraint, const std::vector<int>& material,
-                 const std::vector<uint8_t>& in, std::vector<Vec3>& pull) {
+                 const std::vector<uint8_t>& in, const std::vector<ConfigValue>& regions,
+                 std::vector<Vec3>& pull) {
   std::vector<double> count(pull.size(), 0);
   for (size_t i = 0; i < constraint.size(); ++i)
     if (constraint[i] >= 0)
       count[static_cast<size_t>(constraint[i])] +=
           part_beside(in.empty() ? 0 : in[static_cast<size_t>(material[i])]);
-  for (size_t k = 0; k < pull.size(); ++k)
-    if (count[k] > 0) pull[k] /= count[k];
+  for (size_t k = 0; k < pull.size(); ++k) {
+    if (pull[k].isZero(0)) continue;
+    if (count[k] == 0)
+      regions[k].fail("later constraints take all particles of this region: its force pulls none");
+    pull[k] /= count[k];
+  }
 }
 
 // Standard deviation of each component, m/s: sqrt(kT/m), m of the lightest material.
-std::optional<double> thermal_speed(const ConfigTable& table, const Scene& scene) {
+std::optional<double> thermal_speed(const ConfigTable& table, const Scene& scene, double mass) {
   const char* keys[] = {"thermal_speed", "thermal_energy", "temperature"};
   table.not_both(keys[0], keys[1]);
   table.not_both(keys[0], keys[2]);
@@ -426,21 +437,23 @@ std::optional<double> thermal_speed(const ConfigTable& table, const Scene& scene
     return table.number(keys[key], quantity, Range::not_negative());
   };
   if (table.has(keys[0])) return not_negative(0, quantity::velocity);
-  if (table.has(keys[1])) return std::sqrt(not_negative(1, quantity::energy) / scene.rule.mass);
+  if (table.has(keys[1])) return std::sqrt(not_negative(1, quantity::energy) / mass);
   if (!table.has(keys[2])) return std::nullopt;
-  return std::sqrt(scene.boltzmann * not_negative(2, quantity::temperature) / scene.rule.mass);
+  return std::sqrt(scene.boltzmann * not_negative(2, quantity::temperature) / mass);
 }
 
-// Of a temperature each particle has the speed that its mass gives.
-ThermalShare thermal_share(const ConfigTable& table, const Rule& rule, int material) {
+// Of a temperature each particle has the speed that its mass gives: half of a particle that of the whole.
+ThermalShare thermal_share(const ConfigTable& table, const Rule& rule, const Rule& whole, int material) {
   if (rule.masses.empty()) return {};
-  const double relative = rule.masses[static_cast<size_t>(material)] / rule.mass;
-  return {relative, table.has("thermal_speed") ? 1 : 1 / std::sqrt(relative)};
+  const auto m = static_cast<size_t>(material);
+  return {rule.masses[m] / rule.mass,
+          table.has("thermal_speed") ? 1 : std::sqrt(whole.mass / whole.masses[m])};
 }
 
-// `material`, `constraint`: by particle; what a constraint holds or leads is not the fastest.
+// `material`: by particle. `free`: what no constraint holds or leads; others are not the fastest. `whole`:
+// the rule as if particles in planes of symmetry were whole.
 void read_velocities(const ConfigTable& root, const Regions& regions, const std::vector<int>& material,
-                     const std::vector<int>& constraint, Scene& scene, Fastest& fastest) {
+                     const std::vector<char>& free, const Rule& whole, Scene& scene, Fastest& fastest) {
   Body& body = scene.body;
   for (const ConfigTable& table : root.tables("velocity")) {
     std::vector<uint32_t> ids;
@@ -455,17 +468,17 @@ void read_velocities(const ConfigTable& root, const Regions& regions, const std:
     Vec3 centre = Vec3::Zero();
     for (uint32_t id : ids) centre += body.x[id];
     centre /= static_cast<double>(ids.size());
-    const std::optional<double> thermal = thermal_speed(table, scene);
+    const std::optional<double> thermal = thermal_speed(table, scene, whole.mass);
     constexpr double kTail = 4;  // standard deviations: the fastest of some ten thousand
     for (uint32_t id : ids) {
       const Vec3 given = uniform + spin.cross(body.x[id] - centre);
       body.v[id] += given;
-      if (constraint[id] < 0) fastest.meet(table, given.norm() + kTail * thermal.value_or(0));
+      if (free[id]) fastest.meet(table, given.norm() + kTail * thermal.value_or(0));
     }
     if (thermal) {
       scene.thermal |= *thermal > 0;
       add_thermal(body.v, ids, *thermal, static_cast<uint64_t>(table.at("seed").integer(0, INT64_MAX)),
-                  [&](uint32_t id) { return thermal_share(table, scene.rule, material[id]); });
+                  [&](uint32_t id) { return thermal_share(table, scene.rule, whole, material[id]); });
     }
     table.done();
   }
@@ -527,10 +540,12 @@ Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
   Vec3 gravity = root.vector_or("gravity", quantity::acceleration, Vec3::Zero());
   if (stage)
     if (const auto own = stage->find("gravity")) gravity = stage->vector_of(*own, quantity::acceleration);
+  check_gravity(planes, gravity);
   const std::map<std::string, ConfigTable> changes = constraint_changes(root, stage);
   std::vector<int> constraint(body.size(), -1);
   std::vector<ParticleType> constraints;
   std::vector<Vec3> pull;  // N, on each particle of a constraint
+  std::vector<ConfigValue> pulled_regions;
   for (const ConfigTable& table : root.tables("constraint")) {
     if (constraints.size() == kMaxTypes) table.fail(fmt::format("more than {} constraints", kMaxTypes));
     const auto found = changes.find(table.at("name").string());
@@ -542,14 +557,19 @@ Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
         table.at("name").fail(fmt::format("constraint '{}' is there twice", type.name));
     const bool free = change && change->boolean_or("free", false);
     const bool pulled = table.at("kind").string() == kConstraintKinds.back();
-    pull.push_back(pulled ? read_pull(table, change, stage) : Vec3::Zero());
-    for (uint32_t id : regions.select(table.at("region"), body.x, tolerance_of(scene)))
+    const Vec3 force = pulled ? read_pull(table, change, stage) : Vec3::Zero();
+    pull.push_back(free ? Vec3::Zero() : force);
+    pulled_regions.push_back(table.at("region"));
+    for (uint32_t id : regions.select(pulled_regions.back(), body.x, tolerance_of(scene)))
       constraint[id] = free ? -1 : static_cast<int>(constraints.size());
     table.done();
     constraints.push_back(std::move(type));
   }
-  share_pulls(constraint, material, divided.planes, pull);
-  read_velocities(root, regions, material, constraint, scene, fastest);
+  share_pulls(constraint, material, divided.planes, pulled_regions, pull);
+  std::vector<char> free(body.size());
+  for (size_t i = 0; i < body.size(); ++i)
+    free[i] = constraint[i] < 0 || !leads(constraints[static_cast<size_t>(constraint[i])]);
+  read_velocities(root, regions, material, free, planes.empty() ? scene.rule : divided.whole, scene, fastest);
   fastest.mark(scene.places);
 
   std::map<std::pair<int, int>, size_t> occurring;

@@ -97,6 +97,9 @@ std::vector<SymmetryPlane> read_symmetry(const ConfigTable& root, const PackingC
     const char name = "xyz"[plane.axis];
     if (scene.periodic.extent[plane.axis] > 0)
       normal.fail(fmt::format("the box repeats along {}: it has no plane of symmetry there", name));
+    if (packing != nullptr && packing->grains && packing->grains->column_axis != plane.axis)
+      normal.fail(fmt::format("grains are not their own mirror image along {}", name),
+                  fmt::format("grains that are columns along it: texture = \"{}\"", name));
     if (packing != nullptr && !mirrors(packing->fcc, plane.axis))
       normal.fail(fmt::format("the packing is not its own mirror image along {}", name),
                   "'axes' of [packing] with a cubic axis along the normal");
@@ -140,6 +143,14 @@ Divided divide(const std::vector<SymmetryPlane>& planes, const std::vector<Vec3>
   }
   rule.mass = *std::ranges::min_element(rule.masses);
   return out;
+}
+
+void check_gravity(const std::vector<SymmetryPlane>& planes, const Vec3& gravity) {
+  for (const SymmetryPlane& plane : planes)
+    if (gravity[plane.axis] != 0)
+      plane.key.fail(
+          fmt::format("gravity along {} is not its own mirror image at this plane", "xyz"[plane.axis]),
+          "only planes along which it acts can be planes of symmetry");
 }
 
 void keep_in_planes(const std::vector<SymmetryPlane>& planes, uint8_t in, ParticleType& type) {

@@ -39,6 +39,9 @@ double part_beside(unsigned planes);
 Divided divide(const std::vector<SymmetryPlane>& planes, const std::vector<Vec3>& x, double tolerance,
                std::vector<int>& material, std::vector<std::string>& names, Rule& rule);
 
+// Gravity along a normal has no mirror image. Throws InputError at the plane.
+void check_gravity(const std::vector<SymmetryPlane>& planes, const Vec3& gravity);
+
 // A type whose particles stand in these planes never leaves them. Throws InputError where its constraint
 // moves or pulls it out, or holds it by force.
 void keep_in_planes(const std::vector<SymmetryPlane>& planes, uint8_t in, ParticleType& type);

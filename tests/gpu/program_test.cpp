@@ -268,7 +268,7 @@ TEST_F(GpuProgram, AFullDiskFailsCleanly) {
   run("kept", {kBlock, "--engine", "gpu", "--steps", "3"});
   const std::string before = contents(bench_.path("kept/summary.json"));
   for (const std::string precision : {"fixed", "float"}) {
-    const FileLimit limit(900 << 10);
+    const FileLimit limit(100 << 10);
     const Answer answer =
         bench_.cuboct({"run", kBlock, "--engine", "gpu", "--precision", precision, "--steps", "80",
                        "--frame-every", "1", "--quiet", "--out", bench_.path("kept")});

@@ -97,6 +97,10 @@ TEST(PitchSearch, RefusesWhatIsOfOnePitch) {
   has(told("density = \"1.41 g/cm^3\"", "mass = \"1 g\""), "'mass' is that of a particle");
   has(told("duration = \"84 us\"", "steps = 100"), "another time at another pitch");
   has(told("static = { load_steps = 8 }", "dt = \"10 ns\""), "'dt' is stable at one pitch");
+  has(told("[run]", "[box]\nperiodic = \"z\"\nsize = \"[1, 1, 1] m\"\n[run]"), "at some pitches only");
+  has(told("[run]", "[damping]\ncoefficient = \"1 g/s\"\n[run]"), "that of a bond of one pitch");
+  has(told("[run]", "[[particle]]\nposition = \"[1, 1, 1] m\"\n[run]"), "the mass of one pitch");
+  has(told("name = \"pulled\"", "name = \"pulled\"\nkp = \"1 N/m\""), "'kp' is that of a particle");
   has(told("[run]", "[[stage]]\nname = \"a\"\n[run]"), "stages");
 }
 

@@ -222,6 +222,11 @@ TEST(Grains, WhatCannotBeIsRefusedAtItsKey) {
             "a.toml:5:42: unknown texture 'w'\n  hint: known: random, x, y or z");
   EXPECT_EQ(error("grains = { size = 7, seed = 1, sed = 1 }", box), "a.toml:5:32: unknown key 'sed'");
   EXPECT_EQ(error("grains = 7", box), "a.toml:5:10: 'grains' must be a table\n  hint: write [grains]");
+  const std::string plane = "stiffness = 1\n[[symmetry]]\nnormal = \"x\"\n";
+  EXPECT_EQ(
+      error(some, "size = [20, 20, 20]\nperiodic = \"yz\"", plane),
+      "a.toml:13:10: grains are not their own mirror image along x\n  hint: grains that are columns along "
+      "it: texture = \"x\"");
   EXPECT_EQ(error("axes = [[1, 1, 0], [-1, 1, 0]]\n" + some, box),
             "a.toml:5:8: 'axes' serves one crystal, and grains that are columns: others turn any way\n"
             "  hint: give 'grains' a texture = \"x\", \"y\" or \"z\"");

@@ -196,6 +196,9 @@ TEST(Pulled, ErrorsAreAtTheirKeys) {
   expect(message("force = [1, 0, 0]\narea = 2.0"), "unknown key 'area'");
   expect(message("force = [1, 0, 0]\nkp = 2.0"), "unknown key 'kp'");
   expect(message("force = [1, 0, 0]\naxes = \"x\""), "'axes' serves 'held' and 'moved' only, not 'pulled'");
+  expect(message("force = [1, 0, 0]",
+                 "[[constraint]]\nname = \"last\"\nkind = \"held\"\nregion = " + region + "\n"),
+         "later constraints take all particles of this region");
   const auto staged = [&](const std::string& change) {
     return message("force = [1, 0, 0]",
                    "[[constraint]]\nname = \"still\"\nkind = \"held\"\nregion = " + beyond(-3.3, "x") + "\n" +

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "model/analysis/measure.h"
+#include "model/analysis/motion.h"
 #include "model/base/error.h"
 #include "model/real/reference.h"
 #include "model/scene/scene.h"
@@ -124,6 +125,31 @@ TEST(Symmetry, ForceIsThatOfThePart) {
   EXPECT_GT(most, 1e-4);
 }
 
+// Half of a particle has the velocity of a whole one: its component of 100,000 draws, to 3 standard errors.
+TEST(Symmetry, TemperatureIsThatOfTheWhole) {
+  const std::string hot = "[[velocity]]\ntemperature = \"300 K\"\nseed = 1\n";
+  const Scene half = bar({0, -4.3, -3}, "[[symmetry]]\nnormal = \"x\"\n" + hot);
+  std::map<std::string, std::array<double, 2>> sums;
+  for (size_t i = 0; i < half.body.size(); ++i) {
+    const ParticleType& type = half.rule.types[half.body.type[i]];
+    if (type.imposed == std::array{true, true, true}) continue;
+    auto& [count, square] = sums[type.name];
+    count += 2;
+    square += half.body.v[i][1] * half.body.v[i][1] + half.body.v[i][2] * half.body.v[i][2];
+  }
+  ASSERT_TRUE(sums.contains("matrix") && sums.contains("matrix:x"));
+  const auto mean = [&](const char* name) { return sums[name][1] / sums[name][0]; };
+  EXPECT_NEAR(mean("matrix:x") / mean("matrix"), 1, 3 * std::sqrt(2 / sums["matrix:x"][0]));
+}
+
+TEST(Symmetry, WavesAreThoseOfTheWhole) {
+  const Scene whole = bar({-8.6, -4.3, -3}, kLeft);
+  const Scene eighth =
+      bar({0, 0, 0},
+          "[[symmetry]]\nnormal = \"x\"\n[[symmetry]]\nnormal = \"y\"\n[[symmetry]]\nnormal = \"z\"\n");
+  EXPECT_DOUBLE_EQ(motion_of(eighth).sound_speed, motion_of(whole).sound_speed);
+}
+
 TEST(Symmetry, IsRefusedWhereThereIsNone) {
   const auto told = [](const auto& make) -> std::string {
     try {
@@ -140,6 +166,19 @@ TEST(Symmetry, IsRefusedWhereThereIsNone) {
   has(told([&] { bar({-8.6, 0, 0}, x); }), "both sides of this plane");
   has(told([&] { bar({0, 0, 0}, x + "point = \"[-0.2, 0, 0] mm\"\n"); }), "no particle stands in this plane");
   has(told([&] { bar({0, 0, 0}, x + "point = \"[8.485281374, 0, 0] mm\"\n"); }), "moves particles out");
+  has(told([&] {
+        parse_scene(R"(gravity = "[0, 0, -9.81] m/s^2"
+mass = "1 g"
+packing = { pitch = "1 mm" }
+geometry = { shape = "box", min = "[0, 0, 0] mm", max = "[4, 4, 4] mm" }
+law = { kind = "elastic", stiffness = "1 kN/m" }
+run = { steps = 1 }
+[[symmetry]]
+normal = "z"
+)",
+                    "fallen.toml");
+      }),
+      "fallen.toml:7:1: gravity along z is not its own mirror image");
   has(told([&] { bar({0, 0, 0}, "[[symmetry]]\nnormal = [1, 1, 0]\n"); }), "must be an axis of the scene");
   has(told([&] { bar({0, 0, 0}, x + x); }), "there twice");
   has(told([&] {
