@@ -97,7 +97,7 @@ std::vector<SymmetryPlane> read_symmetry(const ConfigTable& root, const PackingC
     const char name = "xyz"[plane.axis];
     if (scene.periodic.extent[plane.axis] > 0)
       normal.fail(fmt::format("the box repeats along {}: it has no plane of symmetry there", name));
-    if (packing != nullptr && packing->grains && packing->grains->column_axis != plane.axis)
+    if (packing != nullptr && packing->grains && packing->grains->grains.column_axis != plane.axis)
       normal.fail(fmt::format("grains are not their own mirror image along {}", name),
                   fmt::format("grains that are columns along it: texture = \"{}\"", name));
     if (packing != nullptr && !mirrors(packing->fcc, plane.axis))
