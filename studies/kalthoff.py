@@ -23,7 +23,7 @@ CONTRAST = 0.6  # of the energies of tough and weak patches, over their mean
 PEAK, REACH, LITTLE = 0.1, 2.3, 4.0
 CLOSEST = 0.55  # of grains: 97 % of the crystal's density at 10 pitches
 SEEDS = (1, 2, 3, 4, 5)
-KINDS = ((1.6e-3, "random", 8, SEEDS), (1.6e-3, "z", 8, SEEDS), (0.8e-3, "random", 8, SEEDS))
+KINDS = ((1.6e-3, "random", 8, SEEDS), (1.6e-3, "z", 8, SEEDS), (0.8e-3, "random", 8, SEEDS[:3]))
 HILL = 1.9091  # modulus over c, Hill's mean of C11 = 2c, C12 = C44 = c, with c = k/(sqrt 2 pitch)
 # Normal of the slab, then the crystal direction along x. Turns about [001] repeat after 90 degrees, about [1-10] after 180.
 TURNS = {f"[001] turned by {angle:g}": ([0, 0, 1], [1, 0, 0], [0, 1, 0], angle) for angle in (0, 22.5, 45)} | {
@@ -269,6 +269,9 @@ def grains(study, kinds, ways):
             study.run({f"{name}, relaxed": still}, "--no-watch")
             scene["title"] += f", relaxed under {still['gravity']}"  # so that another relaxation makes another case
             case = study.run({name: scene | {"start": {"from": f"{name}, relaxed"}}}, "--engine", "reference", "--no-watch")[name]
+            rest = f"{name}, no impact"
+            quiet = study.run({rest: scene | {"constraint": grained(pitch, PEAK, speed=0.0)["constraint"]} | {"start": {"from": f"{name}, relaxed"}}}, "--engine", "reference", "--no-watch")[rest]
+            check(f"{rest}: open bonds and one", len(Opened(quiet, pitch, REACH * PEAK).pairs) + 1, 1, 0)
             opened = Opened(case, pitch, REACH * PEAK)
             grain = crystals(next(list(packed.values())[0].frames())[2], pitch)
             between = grain[opened.pairs[:, 0]] != grain[opened.pairs[:, 1]]
@@ -281,10 +284,6 @@ def grains(study, kinds, ways):
         count = np.isfinite(found[:, 0]).sum()
         mean, spread = np.nanmean(found, axis=0), np.nanstd(found, axis=0, ddof=1)
         means.append((what, f"{count} of {len(seeds)}", *(f"{m:.0f} ± {s:.0f}" for m, s in zip(mean[:3], spread)), f"{mean[3]:.0f}", f"{mean[4]:.0f}"))
-        rest = f"{name}, no impact"
-        quiet = study.run({rest: grained(pitch, PEAK, (size, seed, texture), speed=0.0) | {"title": scene["title"], "start": {"from": f"{name}, relaxed"}}}, "--engine", "reference", "--no-watch")[rest]
-        check(f"{rest}: open bonds and one", len(Opened(quiet, pitch, REACH * PEAK).pairs) + 1, 1, 0)
-        rows.append((f"{what}, no impact", f"{seed}", "0", "0", "–", "–", "–", "–", "–"))
     head = ("pitch, grains' size in pitches, turned", "seed", "open bonds", "of the crack", "to the tip", "least squares", "start, µs", "height, mm", "between grains, %")
     study.table("kalthoff-grains", head, rows)
     head = ("pitch, grains' size in pitches, turned", "with a crack", "to the tip", "least squares", "start, µs", "height, mm", "between grains, %")
