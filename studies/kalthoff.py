@@ -82,10 +82,12 @@ def spline(pitch, h):
     return {"kind": "spline", "core": f"{0.5 * pitch!r} m", "r": text(r * pitch, "m"), "force": text(f * spring(pitch) * pitch, "N")}
 
 
-def grained(pitch, h, grains=None, turn=None, speed=SPEED):
-    """The plate with the short law. Of one crystal where `turn` says how, else of `grains`: (size in pitches, seed, texture)."""
-    scene = plate(pitch, turn or "[001] turned by 0", speed=speed * scale_of(pitch, h))
-    scene["law"] = spline(pitch, h)
+def short(pitch, h, turn="[001] turned by 0", grains=None, speed=SPEED, uneven=0):
+    """The plate with the short law. Of one crystal, or of `grains`: (size in pitches, seed, texture)."""
+    scene = plate(pitch, turn, speed=speed * scale_of(pitch, h), uneven=uneven)
+    scene["law"] = spline(pitch, h * math.sqrt(1 + CONTRAST) if uneven else h)
+    for bond in scene.get("bond", []):
+        bond["law"] = spline(pitch, h * math.sqrt(1 - CONTRAST))
     # Faces of the notch that come nearer than bonds reach would join again.
     scene["geometry"]["minus"] = [box([-1, HEIGHT - 1.5 * pitch, -1], [NOTCH, HEIGHT + 1.5 * pitch, 1])]
     del scene["probe"]  # it would take boundaries that part for the crack
@@ -166,12 +168,12 @@ def clusters(points, pairs):
 
 
 def from_notch(middles, pitch):
-    """By middle, whether it holds together without a gap of two pitches with some that come within four pitches of the notch's end; and whether it is of
+    """By middle, whether it holds together without a gap of three pitches with some that come within four pitches of the notch's end; and whether it is of
     the crack, the most that do so with each other."""
     near = np.linalg.norm(middles - [NOTCH, HEIGHT], axis=1) < 4 * pitch
     if not near.any():
         return near, near
-    cluster = clusters(middles, cKDTree(middles).query_pairs(2 * pitch, output_type="ndarray"))
+    cluster = clusters(middles, cKDTree(middles).query_pairs(3 * pitch, output_type="ndarray"))
     return np.isin(cluster, cluster[near]), cluster == max(set(cluster[near]), key=np.bincount(cluster).__getitem__)
 
 
@@ -252,7 +254,7 @@ def crystals_of_short_law(study, pitch, ways):
         row = [turn]
         for h in strains:
             name = f"{turn}, short, {scale_of(pitch, h):.3g} times".replace("[", "").replace("]", "")
-            case = study.run({name: grained(pitch, h, turn=turn)}, "--engine", "reference", "--no-watch")[name]
+            case = study.run({name: short(pitch, h, turn)}, "--engine", "reference", "--no-watch")[name]
             opened = Opened(case, pitch, REACH * h)
             tip, fit, height = path(opened.middles[opened.crack])
             row += [text(tip), text(fit), text(1e6 * opened.start, 0), text(1e3 * height)]
@@ -260,6 +262,34 @@ def crystals_of_short_law(study, pitch, ways):
         rows.append(row)
     head = [f"{what}, {scale_of(pitch, h):.3g} times" for h in strains for what in ("to the tip", "least squares", "start, µs", "height, mm")]
     study.table("kalthoff-short", ("packing", *head), rows)
+
+
+def of(values):
+    """Mean and standard deviation of those that are numbers."""
+    values = [value for value in values if not math.isnan(value)]
+    return f"{np.mean(values):.0f} ± {np.std(values, ddof=1):.0f}" if len(values) > 1 else "–"
+
+
+def uneven_crystals_of_short_law(study, pitch, ways):
+    h = PEAK * LITTLE / scale_of(pitch, PEAK)
+    names = {(turn, seed): f"{turn}, short, uneven {seed}" for turn in TURNS for seed in SEEDS}
+    file = lambda name: name.replace("[", "").replace("]", "")
+    runs = study.run({file(name): short(pitch, h, turn, uneven=seed) for (turn, seed), name in names.items()}, "--engine", "reference", "--no-watch")
+    rows, all_of_001 = [], []
+    for turn in TURNS:
+        found = []
+        for seed in SEEDS:
+            opened = Opened(runs[file(names[turn, seed])], pitch, REACH * h * math.sqrt(1 + CONTRAST))
+            tip, fit, height = path(opened.middles[opened.crack])
+            found.append((tip, fit, 1e6 * opened.start, 1e3 * height))
+            if turn.startswith("[001]"):
+                ways[names[turn, seed].replace(", short, uneven", ", seed")] = opened, None
+        all_of_001 += found if turn.startswith("[001]") else []
+        with_crack = sum(not math.isnan(v[0]) for v in found)
+        rows.append((turn, f"{with_crack} of {len(found)}", *(of(v) for v in zip(*found)), " ".join(text(v[1], 0) for v in found)))
+    with_crack = sum(not math.isnan(v[0]) for v in all_of_001)
+    rows.append(("[001], all", f"{with_crack} of {len(all_of_001)}", *(of(v) for v in zip(*all_of_001)), ""))
+    study.table("kalthoff-uneven", ("packing", "with a crack", "to the tip", "least squares", "start, µs", "height, mm", "least squares, seed by seed"), rows)
 
 
 def grains(study, kinds, ways):
@@ -270,14 +300,14 @@ def grains(study, kinds, ways):
         what = f"{1e3 * pitch:g} mm, {size}, {'any way' if texture == 'random' else 'columns'}"
         for seed in seeds:
             name = f"grains, {what}, {seed}"
-            scene = grained(pitch, PEAK, (size, seed, texture))
+            scene = short(pitch, PEAK, grains=(size, seed, texture))
             packed = study.run({f"{name}, packed": relaxed(scene, pitch) | {"run": {"steps": 1, "dt_safety": 0.5}}}, "--engine", "reference", "--no-watch", "--steps", "0")
             still = relaxed(scene, pitch)
             study.run({f"{name}, relaxed": still}, "--no-watch")
             scene["title"] += f", relaxed under {still['gravity']}"  # so that another relaxation makes another case
             case = study.run({name: scene | {"start": {"from": f"{name}, relaxed"}}}, "--engine", "reference", "--no-watch")[name]
             rest = f"{name}, no impact"
-            quiet = study.run({rest: scene | {"constraint": grained(pitch, PEAK, speed=0.0)["constraint"]} | {"start": {"from": f"{name}, relaxed"}}}, "--engine", "reference", "--no-watch")[rest]
+            quiet = study.run({rest: scene | {"constraint": short(pitch, PEAK, speed=0.0)["constraint"]} | {"start": {"from": f"{name}, relaxed"}}}, "--engine", "reference", "--no-watch")[rest]
             opened, alone = Opened(case, pitch, REACH * PEAK), len(Opened(quiet, pitch, REACH * PEAK).pairs)
             check(f"{name}: 1 and the open bonds without impact over those with it", 1 + alone / len(opened.pairs), 1, 0.005)
             grain = crystals(next(list(packed.values())[0].frames())[2], pitch)
@@ -287,10 +317,8 @@ def grains(study, kinds, ways):
             found.append((tip, fit, 1e6 * opened.start, 1e3 * height, 100 * between[opened.crack].mean() if opened.crack.any() else math.nan))
             rows.append((what, f"{seed}", f"{alone}", f"{len(opened.pairs)}", f"{opened.crack.sum()}", *(text(v, 0) for v in found[-1])))
             print(*rows[-1], flush=True)
-        found = np.array(found)
-        count = np.isfinite(found[:, 0]).sum()
-        mean, spread = np.nanmean(found, axis=0), np.nanstd(found, axis=0, ddof=1)
-        means.append((what, f"{count} of {len(seeds)}", *(f"{m:.0f} ± {s:.0f}" for m, s in zip(mean[:3], spread)), f"{mean[3]:.0f}", f"{mean[4]:.0f}"))
+        with_crack = sum(not math.isnan(v[0]) for v in found)
+        means.append((what, f"{with_crack} of {len(found)}", *(of(v) for v in zip(*found))))
     head = ("pitch, grains' size in pitches, turned", "seed", "open bonds without impact", "with it", "of the crack", "to the tip", "least squares", "start, µs", "height, mm", "between grains, %")
     study.table("kalthoff-grains", head, rows)
     head = ("pitch, grains' size in pitches, turned", "with a crack", "to the tip", "least squares", "start, µs", "height, mm", "between grains, %")
@@ -342,9 +370,11 @@ def run():
     picture(study, "kalthoff", ways, 4, "svg")
     if not study.small:
         boundaries(study)
-        short, many = {}, {}
-        crystals_of_short_law(study, pitch, short)
-        picture(study, "kalthoff_short", short, 4, "png")
+        single, uneven, many = {}, {}, {}
+        crystals_of_short_law(study, pitch, single)
+        picture(study, "kalthoff_short", single, 4, "png")
+        uneven_crystals_of_short_law(study, pitch, uneven)
+        picture(study, "kalthoff_uneven", uneven, len(SEEDS), "png")
         grains(study, KINDS, many)
         picture(study, "kalthoff_grains", many, len(SEEDS), "png")
     study.end()
