@@ -270,26 +270,29 @@ def of(values):
     return f"{np.mean(values):.0f} ± {np.std(values, ddof=1):.0f}" if len(values) > 1 else "–"
 
 
-def uneven_crystals_of_short_law(study, pitch, ways):
+def uneven_crystals_of_short_law(study, pitch, turns, seeds, ways):
+    """Rows of a table: what the seeds of each turn say, then what all turns about [001] say together."""
     h = PEAK * LITTLE / scale_of(pitch, PEAK)
-    names = {(turn, seed): f"{turn}, short, uneven {seed}" for turn in TURNS for seed in SEEDS}
+    head = f"{1e3 * pitch:g} mm, "
+    names = {(turn, seed): f"{head}{turn}, uneven {seed}" for turn in turns for seed in seeds}
     file = lambda name: name.replace("[", "").replace("]", "")
     runs = study.run({file(name): short(pitch, h, turn, uneven=seed) for (turn, seed), name in names.items()}, "--engine", "reference", "--no-watch")
     rows, all_of_001 = [], []
-    for turn in TURNS:
+    for turn in turns:
         found = []
-        for seed in SEEDS:
+        for seed in seeds:
             opened = Opened(runs[file(names[turn, seed])], pitch, REACH * h * math.sqrt(1 + CONTRAST))
             tip, fit, height = path(opened.middles[opened.crack])
             found.append((tip, fit, 1e6 * opened.start, 1e3 * height))
             if turn.startswith("[001]"):
-                ways[names[turn, seed].replace(", short, uneven", ", seed")] = opened, None
+                ways[names[turn, seed].replace("uneven", "seed")] = opened, None
         all_of_001 += found if turn.startswith("[001]") else []
-        with_crack = sum(not math.isnan(v[0]) for v in found)
-        rows.append((turn, f"{with_crack} of {len(found)}", *(of(v) for v in zip(*found)), " ".join(text(v[1], 0) for v in found)))
-    with_crack = sum(not math.isnan(v[0]) for v in all_of_001)
-    rows.append(("[001], all", f"{with_crack} of {len(all_of_001)}", *(of(v) for v in zip(*all_of_001)), ""))
-    study.table("kalthoff-uneven", ("packing", "with a crack", "to the tip", "least squares", "start, µs", "height, mm", "least squares, seed by seed"), rows)
+        rows.append((head + turn, found))
+    rows.append((head + "all of [001]", all_of_001))
+    return [
+        (name, f"{sum(not math.isnan(v[0]) for v in found)} of {len(found)}", *(of(v) for v in zip(*found)), " ".join(text(v[1], 0) for v in found[: len(seeds)]) if "all" not in name else "")
+        for name, found in rows
+    ]
 
 
 def grains(study, kinds, ways):
@@ -373,8 +376,11 @@ def run():
         single, uneven, many = {}, {}, {}
         crystals_of_short_law(study, pitch, single)
         picture(study, "kalthoff_short", single, 4, "png")
-        uneven_crystals_of_short_law(study, pitch, uneven)
+        rows = uneven_crystals_of_short_law(study, pitch, list(TURNS), SEEDS, uneven)
         picture(study, "kalthoff_uneven", uneven, len(SEEDS), "png")
+        rows += uneven_crystals_of_short_law(study, pitch / 2, [turn for turn in TURNS if turn.startswith("[001]")], SEEDS[:3], {})
+        head = ("pitch, packing", "with a crack", "to the tip", "least squares", "start, µs", "height, mm", "least squares, seed by seed")
+        study.table("kalthoff-uneven", head, rows)
         grains(study, KINDS, many)
         picture(study, "kalthoff_grains", many, len(SEEDS), "png")
     study.end()
