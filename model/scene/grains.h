@@ -47,8 +47,8 @@ std::vector<Grain> draw_grains(const Grains& grains, const GrainDomain& domain);
 // the crystal with them, so that the whole repeats whatever the crystal's own periods are. Along the axis of
 // columns the crystal itself must repeat.
 //
-// Of sites that are nearer than `closest` those are kept first that have fewest such neighbours, then those with
-// the lower id: each stays unless one that stays is too near. Ids count the grains; in each the images
+// Of sites that are nearer than `closest` those are kept first that have fewest such neighbours, then those
+// with the lower id: each stays unless one that stays is too near. Ids count the grains; in each the images
 // in ascending order, in each image the sites ascending in (l, k, h).
 std::vector<Vec3> pack_grains(const Fcc& fcc, const Grains& grains, const Shape* shape, const Periodic& box,
                               const std::array<bool, 3>& repeats);
