@@ -333,10 +333,10 @@ std::vector<Vec3> pack_grains(const Fcc& fcc, const Grains& grains, const Shape*
   std::vector<std::vector<Vec3>> parts(images.size());
   for_each_range(images.size(), 2, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
-      const auto& [image, bounds] = images[k];
+      const Image& image = images[k].first;
       const Fcc crystal{fcc.pitch, all[image.grain].turn * fcc.orientation,
                         voronoi.centre(image) + fcc.offset};
-      for_each_site(crystal, bounds, [&](Vec3 x) {
+      for_each_site(crystal, images[k].second, [&](Vec3 x) {
         if (!take_into(box, tolerance, x) || voronoi.owner(x) != image) return;
         if (shape == nullptr || shape->distance(x) <= tolerance) parts[k].push_back(x);
       });
