@@ -224,12 +224,8 @@ bool take_into(const Periodic& box, double tolerance, Vec3& x) {
 template <typename On>
 void for_each_site(const Fcc& fcc, const Bounds& bounds, const On& on) {
   const double half = fcc.cell() / 2;
-  const Bounds range = indices_in(fcc, bounds);
-  std::array<int64_t, 3> first, last;
-  for (int a = 0; a < 3; ++a) {
-    first[a] = std::llround(std::floor(range.low[a])) - 1;
-    last[a] = std::llround(std::ceil(range.high[a])) + 1;
-  }
+  const SiteIndices indices = site_indices(fcc, bounds);
+  const std::array<int64_t, 3>&first = indices.first, &last = indices.last;
   for (int64_t l = first[2]; l <= last[2]; ++l)
     for (int64_t k = first[1]; k <= last[1]; ++k) {
       const Vec3 start =

@@ -61,6 +61,16 @@ Bounds indices_in(const Fcc& fcc, const Bounds& bounds) {
   return range;
 }
 
+SiteIndices site_indices(const Fcc& fcc, const Bounds& bounds) {
+  const Bounds range = indices_in(fcc, bounds);
+  SiteIndices indices;
+  for (int a = 0; a < 3; ++a) {
+    indices.first[a] = std::llround(std::floor(range.low[a])) - 1;
+    indices.last[a] = std::llround(std::ceil(range.high[a])) + 1;
+  }
+  return indices;
+}
+
 PackingSize packing_size(const Fcc& fcc, const Shape* shape, const Periodic& box) {
   const Bounds bounds = packing_bounds(shape, box);
   const Bounds range = indices_in(fcc, bounds);
@@ -92,12 +102,8 @@ std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) 
   const Bounds bounds = packing_bounds(shape, box);
   const double tolerance = kSiteTolerance * fcc.pitch;
   const double half = fcc.cell() / 2;
-  const Bounds range = indices_in(fcc, bounds);
-  std::array<int64_t, 3> first, last;
-  for (int a = 0; a < 3; ++a) {
-    first[a] = std::llround(std::floor(range.low[a])) - 1;
-    last[a] = std::llround(std::ceil(range.high[a])) + 1;
-  }
+  const SiteIndices indices = site_indices(fcc, bounds);
+  const std::array<int64_t, 3>&first = indices.first, &last = indices.last;
 
   const auto plane = [&](int64_t l) {
     std::vector<Vec3> sites;

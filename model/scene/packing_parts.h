@@ -2,6 +2,7 @@
 // What packings of one crystal and of many grains share.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <random>
 #include <utility>
@@ -22,6 +23,12 @@ Bounds packing_bounds(const Shape* shape, const Periodic& box);
 
 // The range of (h, k, l), in half cells of the crystal, that the corners of `bounds` span.
 Bounds indices_in(const Fcc& fcc, const Bounds& bounds);
+
+// The first and the last (h, k, l) of those, one more on each side.
+struct SiteIndices {
+  std::array<int64_t, 3> first, last;
+};
+SiteIndices site_indices(const Fcc& fcc, const Bounds& bounds);
 
 // In (0, 1), 53 bits; never 0, of which no logarithm exists.
 inline double uniform(std::mt19937_64& generator) {

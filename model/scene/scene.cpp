@@ -98,8 +98,9 @@ struct TimeLimits {
   TimeLimit given, automatic;
 };
 
-// `rule`: of the body with its images.
-TimeLimits time_limits(const Rule& rule, const Scene& scene, size_t listed) {
+// Vibrations of a part are some of those of the body with its images at planes of symmetry.
+TimeLimits time_limits(const Scene& scene, size_t listed) {
+  const Rule& rule = scene.whole ? *scene.whole : scene.rule;
   constexpr double kNone = std::numeric_limits<double>::infinity();
   TimeLimits limits;
   const double cutoff = rule.cutoff();
@@ -138,11 +139,11 @@ void read_length(const ConfigTable& table, Scene& scene) {
 }
 
 // A stage's keys replace those of [run].
-void read_time(const ConfigTable& root, const StagePart* stage, const Rule& whole, Scene& scene) {
+void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
   const auto found = root.table_at("run");
   if (!found) root.at("run");
   const ConfigTable& run = *found;
-  const TimeLimits limits = time_limits(whole, scene, root.tables("particle").size());
+  const TimeLimits limits = time_limits(scene, root.tables("particle").size());
   const auto usual = run.find("dt"), own = stage ? stage->find("dt") : std::nullopt;
   const auto dt = own ? own : usual;
   const bool automatic = !dt || (dt->is_string() && dt->string() == "auto");
@@ -169,8 +170,8 @@ void read_time(const ConfigTable& root, const StagePart* stage, const Rule& whol
   for (const ConfigTable* table : {&run, static_cast<const ConfigTable*>(stage)})
     if (table) table->not_both("steps", "duration");
   read_length(stage && (stage->has("steps") || stage->has("duration")) ? *stage : run, scene);
-  const uint64_t all = scene.steps, parts = stage ? stage->parts() : 1;
-  scene.steps = (all + parts - 1) / parts;
+  const uint64_t whole = scene.steps, parts = stage ? stage->parts() : 1;
+  scene.steps = (whole + parts - 1) / parts;
   const auto every = [&](const char* key, uint64_t otherwise) {
     const auto of = static_cast<uint64_t>(run.integer_or(key, 0, INT64_MAX, static_cast<int64_t>(otherwise)));
     return stage ? static_cast<uint64_t>(stage->integer_or(key, 0, INT64_MAX, static_cast<int64_t>(of))) : of;
@@ -181,7 +182,7 @@ void read_time(const ConfigTable& root, const StagePart* stage, const Rule& whol
   else if (usual_static)
     scene.loading = read_static(run, scene);
   const uint64_t least = scene.loading ? scene.loading->every : 1;
-  scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max(least, all / 500));
+  scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max(least, whole / 500));
   scene.frame_every = every("frame_every", 0);
   if (scene.loading) {
     scene.probe_every = scene.loading->whole(scene.probe_every);
@@ -273,12 +274,11 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   read_damping(root, scene);
   if (stage) read_damping(*stage, scene);
   const Regions regions(root);
-  const Rule whole = read_body(root, stage, regions, packed, scene);
-  if (!root.tables("symmetry").empty()) scene.whole = std::make_shared<const Rule>(whole);
+  read_body(root, stage, regions, packed, scene);
   if (stage) stage->check_ramps();
   read_probes(root, regions, scene);
   scene.meshes = regions.mesh_facts();
-  read_time(root, stage, whole, scene);
+  read_time(root, stage, scene);
   read_reach(root, scene);
   for (Probe& probe : scene.probes)
     if (probe.kind == Probe::Kind::crack) probe.rule = std::make_shared<const Rule>(scene.rule);

@@ -402,7 +402,9 @@ ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change
   return type;
 }
 
-bool leads(const ParticleType& type) { return type.pd || type.imposed != std::array<bool, 3>{}; }
+bool moves_freely(const ParticleType& type) {
+  return is_free(type, 0) && is_free(type, 1) && is_free(type, 2);
+}
 
 double material_mass(const Rule& rule, int material) {
   return rule.masses.empty() ? rule.mass : rule.masses[static_cast<size_t>(material)];
@@ -517,7 +519,7 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
   return {box, periodic};
 }
 
-Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
+void read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
                const PackingChoice* packing, Scene& scene) {
   const std::vector<Material> materials = read_materials(root);
   std::vector<std::string> names;
@@ -568,7 +570,7 @@ Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
   share_pulls(constraint, material, divided.planes, pulled_regions, pull);
   std::vector<char> free(body.size());
   for (size_t i = 0; i < body.size(); ++i)
-    free[i] = constraint[i] < 0 || !leads(constraints[static_cast<size_t>(constraint[i])]);
+    free[i] = constraint[i] < 0 || moves_freely(constraints[static_cast<size_t>(constraint[i])]);
   read_velocities(root, regions, material, free, planes.empty() ? scene.rule : divided.whole, scene, fastest);
   fastest.mark(scene.places);
 
@@ -602,9 +604,9 @@ Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
       if (type.imposed[a]) body.v[i][a] = type.velocity[a];
   }
   if (pd) body.u.assign(body.size(), Vec3::Zero());
-  if (planes.empty()) return scene.rule;
+  if (planes.empty()) return;
   divided.whole.types = scene.rule.types;
-  return divided.whole;
+  scene.whole = std::make_shared<const Rule>(std::move(divided.whole));
 }
 
 }  // namespace cuboct

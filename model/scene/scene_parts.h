@@ -78,10 +78,10 @@ double largest_stiffness(const Rule& rule, double pitch);
 std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const PackingChoice* packing);
 
 // Everything that gives particles: positions and velocities ([packing], [geometry], [[particle]],
-// [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and .strength.
-// scene.rule needs law, damping and mass. `stage`: whose keys replace those of the root. Returns the rule of
-// the body with its images at planes of symmetry: vibrations of the part are some of the whole body's.
-Rule read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
+// [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and .strength, and with
+// planes of symmetry scene.whole. scene.rule needs law, damping and mass. `stage`: whose keys replace those
+// of the root.
+void read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
                const PackingChoice* packing, Scene& scene);
 
 // The largest stable time step of the perfect packing in s, 0 if unknown. With all frequencies up to w and

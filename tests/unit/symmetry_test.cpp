@@ -60,6 +60,9 @@ velocity = "[-20, 0, 0] m/s"
 region = { shape = "half_space", point = "[-7.5, 0, 0] mm", normal = "x" }
 )";
 
+const std::string kEighth =
+    "[[symmetry]]\nnormal = \"x\"\n[[symmetry]]\nnormal = \"y\"\n[[symmetry]]\nnormal = \"z\"\n";
+
 Body after(const Scene& scene) {
   Reference run(scene.rule, scene.body, scene.periodic);
   run.step(scene.steps);
@@ -113,9 +116,7 @@ TEST(Symmetry, ForceIsThatOfThePart) {
   const size_t from = left.find("kind"), to = left.find("region");
   left.replace(from, to - from, pull);
   const Scene whole = bar({-8.6, -4.3, -3}, left, "pulled", "force = \"[8, 0, 0] kN\"");
-  const std::string planes =
-      "[[symmetry]]\nnormal = \"x\"\n[[symmetry]]\nnormal = \"y\"\n[[symmetry]]\nnormal = \"z\"\n";
-  const Scene eighth = bar({0, 0, 0}, planes, "pulled", "force = \"[2, 0, 0] kN\"");
+  const Scene eighth = bar({0, 0, 0}, kEighth, "pulled", "force = \"[2, 0, 0] kN\"");
   EXPECT_LT(apart(eighth, whole), 1e-12);
   // The end does move.
   double most = 0;
@@ -144,9 +145,7 @@ TEST(Symmetry, TemperatureIsThatOfTheWhole) {
 
 TEST(Symmetry, WavesAreThoseOfTheWhole) {
   const Scene whole = bar({-8.6, -4.3, -3}, kLeft);
-  const Scene eighth =
-      bar({0, 0, 0},
-          "[[symmetry]]\nnormal = \"x\"\n[[symmetry]]\nnormal = \"y\"\n[[symmetry]]\nnormal = \"z\"\n");
+  const Scene eighth = bar({0, 0, 0}, kEighth);
   EXPECT_DOUBLE_EQ(motion_of(eighth).sound_speed, motion_of(whole).sound_speed);
 }
 
