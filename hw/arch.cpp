@@ -30,6 +30,9 @@ void read_node(const ConfigTable& node, Arch& arch) {
   set_automatic(node, "capacity", 1, 256, arch.capacity);
   set(node, "filter_lanes", 1, 64, arch.filter_lanes);
   set(node, "force_pipes", 1, 64, arch.force_pipes);
+  if (const auto h = node.find("halos"))
+    arch.halos = static_cast<Halos>(h->choice("use of halos", {"phases", "arrival"}));
+  set(node, "streamers", 1, 2, arch.streamers);
   if (const auto m = node.find("multipliers"))
     arch.multipliers =
         static_cast<Multipliers>(m->choice("use of multipliers", {"parallel", "shared", "serial"}));

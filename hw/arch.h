@@ -25,6 +25,13 @@ enum class Multipliers : uint8_t {
 inline constexpr int kAutomatic = 0;
 Widths automatic_widths();  // every one of them
 
+// When a node uses the halo records that come over its links.
+enum class Halos : uint8_t {
+  phases,  // those of an axis once all have come
+  arrival  // each as it comes; it goes on to the later axes at once, and those that can meet no own particle
+           // are not presented
+};
+
 struct Arch {
   std::string name = "default";
   std::string text;           // of the file; empty: the defaults
@@ -32,6 +39,8 @@ struct Arch {
   int capacity = kAutomatic;  // particles that a cell holds
   int filter_lanes = 8;       // own particles that a candidate meets per cycle
   int force_pipes = 1;        // pairs per cycle
+  Halos halos = Halos::phases;
+  int streamers = 1;  // candidates per cycle: 1, or 2 where halos are used on arrival
   Multipliers multipliers = Multipliers::parallel;
   int queue_depth = 16;          // (candidate, mask) entries between filter and pipes
   bool overlap = true;           // candidates are filtered while the exchange still runs

@@ -58,6 +58,24 @@ void check_arch(const Arch& arch) {
     want(!arch.overlap, "overlap = false");
     want(cells == 1, "brick = [1, 1, 1]");
   }
+  if (arch.halos == Halos::arrival) {
+    const auto want = [&](bool is, const char* what) {
+      if (!is)
+        arch.places.fail({"node.halos"},
+                         fmt::format("halos = \"arrival\" are streamed while they come: set {}", what));
+    };
+    want(!arch.narrow_memories, "memories = \"wide\"");
+    want(arch.overlap, "overlap = true");
+    want(cells == 1, "brick = [1, 1, 1]");
+  } else if (arch.streamers > 1) {
+    arch.places.fail({"node.streamers"}, "two streamers share the faces of halos used on arrival",
+                     "set halos = \"arrival\", or streamers = 1");
+  }
+  if (arch.streamers < 1 || arch.streamers > 2 || arch.force_pipes % arch.streamers != 0)
+    arch.places.fail({"node.streamers", "node.force_pipes"},
+                     fmt::format("streamers = {} with force_pipes = {}: each streamer feeds as many pipes",
+                                 arch.streamers, arch.force_pipes),
+                     "set force_pipes to a multiple of streamers");
   if (arch.link_bits < 0 || arch.link_bits > 1024)
     arch.places.fail({"link.bits"},
                      fmt::format("link bits = {} is out of range: 1 to 1024, or 0 for one record per beat",
@@ -105,6 +123,7 @@ uint64_t hash_of(const Plan& plan) {
       .add(arch.overlap);
   if (arch.multipliers != Multipliers::parallel) hash.add(plan.latency.interval);
   if (arch.narrow_memories) hash.add(-1);
+  if (arch.halos == Halos::arrival) hash.add(-2).add(arch.streamers);
   if (w.filter_frac != Widths{}.filter_frac) hash.add(w.filter_frac);
   hash.add(plan.words.link_bits).add(plan.particles);
   if (plan.link.checked()) hash.add(static_cast<int>(plan.link.check));
@@ -143,6 +162,10 @@ Latency latency_of(const FixedRule& r, const Arch& arch) {
                                             : r.axes;
   // A product and its rounding come before the sum of v; with gains they stand beside theirs.
   latency.update = r.pd ? 7 : r.weighted ? 6 : 4;
+  if (arch.halos == Halos::arrival) {
+    ++latency.filter;  // a register behind the halos' memories
+    ++latency.update;  // another between the update and the slots' memories
+  }
   if (arch.narrow_memories) {
     latency.filter = 2;
     latency.stride = latency.update - 1;
@@ -215,7 +238,12 @@ std::string describe(const Plan& plan) {
        plan.arch.narrow_memories
            ? "1, 1, narrow memories"
            : fmt::format("{}, {}, queue of {}{}", plan.arch.filter_lanes, plan.arch.force_pipes,
-                         plan.arch.queue_depth, plan.arch.overlap ? ", force overlaps the exchange" : ""));
+                         plan.arch.queue_depth,
+                         plan.arch.halos == Halos::arrival
+                             ? fmt::format(", {} streamer{}, halos used on arrival", plan.arch.streamers,
+                                           plan.arch.streamers == 1 ? "" : "s")
+                         : plan.arch.overlap ? ", force overlaps the exchange"
+                                             : ""));
   line("latency",
        fmt::format("pipe {}, update {} cycles{}", plan.latency.pipe, plan.latency.update,
                    plan.latency.interval > 1 ? fmt::format(", a pair every {}", plan.latency.interval)

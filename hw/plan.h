@@ -17,11 +17,13 @@ namespace cuboct {
 
 // Registers of the filter with wide memories: a candidate's answer, the one chosen, sizes, masks.
 inline constexpr int kFilterStages = 4;
+// Registers of the cull on arrival: the record, its distances from the box of the own particles, the tests.
+inline constexpr int kCullStages = 3;
 
 // Fixed latencies of the datapath, in cycles; they depend only on what the rule uses and on the kind of
 // multipliers. docs/reference/node.md.
 struct Latency {
-  int filter = kFilterStages;  // from the candidate's read to its push into the queue
+  int filter = kFilterStages;  // from the candidate's read to its push into the queue; a register more on arrival
   int pipe = 0;                // from a pair's issue to its sum
   int update = 0;              // from a particle's read to the cycle in which MIGRATE may read it
   int stride =

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "emu/machine/words.h"
@@ -32,12 +33,13 @@ struct ForceStream {
   std::vector<uint32_t> queue;                       // a ring of entries
 };
 
-// Steps all cycles of the engine, register by register; its last one. `available`: the cycle from which on
-// the own cells, and the halos of each axis, may be read; the first is the engine's first cycle.
-// issue(entry, mask) issues the lowest bits of `mask`, one per pipe, and clears them.
-template <typename Issue>
-uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
-                     const std::array<uint64_t, 4>& available, ForceCounts& counts, Issue issue) {
+// Steps all cycles of one streamer and its pipes from cycle `begin` on, register by register; the last one.
+// there(segment, entry): the cycle from which on the entry may be read; complete(segment): that from which on
+// it is known that the segment has no further entry. issue(entry, mask) issues the lowest bits of `mask`, one
+// per pipe, and clears them.
+template <typename There, typename Complete, typename Issue>
+uint64_t clock_stream(const Plan& plan, ForceStream& stream, int segments, uint64_t begin, There there,
+                      Complete complete, ForceCounts& counts, Issue issue) {
   const uint32_t depth = static_cast<uint32_t>(plan.arch.queue_depth);
   stream.queue.resize(depth);
 
@@ -45,8 +47,9 @@ uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
   int segment = 0;
   uint32_t next = 0;  // the streamer's entry
   constexpr uint32_t kNone = ~uint32_t{0};
-  std::array<uint32_t, kFilterStages> filter;  // F0, F1, ...: entries
-  filter.fill(kNone);
+  std::array<uint32_t, kFilterStages + 1> stages;  // F0, F1, ...: entries
+  const std::span<uint32_t> filter(stages.data(), static_cast<size_t>(plan.latency.filter));
+  stages.fill(kNone);
   int filtering = 0;  // of these, those that are not empty
   uint32_t current = 0;
   uint64_t current_mask = 0;
@@ -54,8 +57,11 @@ uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
   int hold = 0;                  // cycles until the next pair may be issued
   int drain = 0;                 // cycles until the last issued pair is in its sum
 
-  const auto from = [&](int s) { return available[(s + 1) / 2]; };
-  uint64_t cycle = available[0];
+  // The next cycle in which the streamer may act.
+  const auto from = [&] {
+    return next < stream.segment_end[static_cast<size_t>(segment)] ? there(segment, next) : complete(segment);
+  };
+  uint64_t cycle = begin;
   for (;; ++cycle) {
     if (filtering == 0 && count == 0 && current_mask == 0 && hold == 0) {
       // Nothing moves but the pipes: on to where the streamer may go on, or the pipes are empty.
@@ -63,9 +69,9 @@ uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
         cycle += static_cast<uint64_t>(drain);
         break;
       }
-      if (from(segment) > cycle) {
-        drain = static_cast<int>(std::max<int64_t>(0, drain - static_cast<int64_t>(from(segment) - cycle)));
-        cycle = from(segment);
+      if (const uint64_t acts = from(); acts > cycle) {
+        drain = static_cast<int>(std::max<int64_t>(0, drain - static_cast<int64_t>(acts - cycle)));
+        cycle = acts;
       }
     }
     const uint32_t held = count;  // at the start of the cycle
@@ -101,18 +107,31 @@ uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
     filtering -= last != kNone;
     std::move_backward(filter.begin(), filter.end() - 1, filter.end());
     filter[0] = kNone;
-    if (segment == segments || from(segment) > cycle) continue;
-    if (next == stream.segment_end[segment]) {  // no record, or no slot to meet it
+    if (segment == segments || from() > cycle) continue;
+    const uint32_t end = stream.segment_end[static_cast<size_t>(segment)];
+    if (next == end) {  // no record, or no slot to meet it
       ++segment;
       continue;
     }
     filter[0] = next++;
     ++filtering;
     ++counts.candidates;
-    if (next == stream.segment_end[segment]) ++segment;
+    if (next == end && complete(segment) <= cycle) ++segment;
   }
-  counts.busy += cycle - available[0] + 1;
   return cycle;
+}
+
+// The same of an engine with one streamer whose halos are read by phases. `available`: the cycle from which
+// on the own cells, and the halos of each axis, may be read; the first is the engine's first cycle.
+template <typename Issue>
+uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
+                     const std::array<uint64_t, 4>& available, ForceCounts& counts, Issue issue) {
+  const auto from = [&](int segment) { return available[static_cast<size_t>(segment + 1) / 2]; };
+  const uint64_t last = clock_stream(
+      plan, stream, segments, available[0], [&](int segment, uint32_t) { return from(segment); }, from, counts,
+      issue);
+  counts.busy += last - available[0] + 1;
+  return last;
 }
 
 }  // namespace cuboct::emu

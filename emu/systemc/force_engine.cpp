@@ -17,30 +17,35 @@ struct ForceEngine::Stream : ForceStream {
 };
 
 ForceEngine::ForceEngine(const Plan& plan, const std::vector<Slot>& own,
-                         const std::array<std::vector<Candidate>, kFaces>& halo, FaultKeeper& fault)
-    : ForceMachine(plan, 1, fault), own_(own), halo_(halo) {}
+                         const std::array<std::vector<Candidate>, kFaces>& halo, const HaloTimes& times,
+                         FaultKeeper& fault)
+    : ForceMachine(plan, 1, fault), own_(own), halo_(halo), times_(times) {}
+
+void ForceEngine::begin_filter(Stream& stream) const {
+  stream.record.clear();
+  stream.mask.clear();
+  stream.passes = (static_cast<uint32_t>(own_.size()) + lanes_ - 1) / lanes_;
+  stream.own.clear();
+  for (const Slot& s : own_) stream.own.add(s.body.x, test_.shift());
+}
+
+void ForceEngine::meet_slots(Stream& stream, const Candidate& c, uint32_t self) const {
+  const uint64_t lane_mask = ~uint64_t{0} >> (64 - lanes_);
+  stream.record.push_back(&c);
+  PlanarMask met = test_(stream.own, c.x);
+  if (self < own_.size()) met.clear(self);
+  for (uint32_t p = 0; p < stream.passes; ++p) stream.mask.push_back(met.from(p * lanes_) & lane_mask);
+}
 
 // Lists the records and tests each against all own slots.
 void ForceEngine::filter(Stream& stream) const {
   const uint32_t n = static_cast<uint32_t>(own_.size());
-  stream.record.clear();
-  stream.mask.clear();
-  stream.passes = (n + lanes_ - 1) / lanes_;
-  stream.own.clear();
-  const PlanarTest test(plan_.rule);
-  for (const Slot& s : own_) stream.own.add(s.body.x, test.shift());
-  const uint64_t lane_mask = ~uint64_t{0} >> (64 - lanes_);
+  begin_filter(stream);
   for (int segment = 0; segment < segments_; ++segment) {
-    const auto one = [&](const Candidate& c, uint32_t self) {
-      stream.record.push_back(&c);
-      PlanarMask met = test(stream.own, c.x);
-      if (self < n) met.clear(self);
-      for (uint32_t p = 0; p < stream.passes; ++p) stream.mask.push_back(met.from(p * lanes_) & lane_mask);
-    };
     if (segment > 0)
-      for (const Candidate& c : halo_[segment - 1]) one(c, n);
+      for (const Candidate& c : halo_[segment - 1]) meet_slots(stream, c, n);
     else
-      for (uint32_t k = 0; k < n; ++k) one(own_[k].body, k);
+      for (uint32_t k = 0; k < n; ++k) meet_slots(stream, own_[k].body, k);
     stream.segment_end[segment] = static_cast<uint32_t>(stream.mask.size());
   }
 }
@@ -50,7 +55,7 @@ void ForceEngine::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
   const uint32_t record = stream.passes == 1 ? entry : entry / stream.passes;
   const uint32_t first_slot = (entry - record * stream.passes) * lanes_;
   const Candidate& other = *stream.record[record];
-  for (int pipe = 0; pipe < plan_.arch.force_pipes && mask != 0; ++pipe) {
+  for (int pipe = 0; pipe < plan_.arch.force_pipes / plan_.arch.streamers && mask != 0; ++pipe) {
     const size_t slot = first_slot + static_cast<size_t>(std::countr_zero(mask));
     mask &= mask - 1;
     meet(own_[slot], 0, slot, other);
@@ -62,6 +67,61 @@ uint64_t ForceEngine::stream() {
   filter(stream);
   return clock_force(plan_, stream, segments_, available_, counts_,
                      [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
+}
+
+// Streamer 0 walks the own particles and the faces below, streamer 1 those above; one alone walks all. A record
+// that came before the step was not tested against the box of the own particles.
+uint64_t ForceEngine::arrive() {
+  static thread_local Stream stream;
+  static thread_local std::vector<uint64_t> there;  // by entry
+  const uint32_t n = static_cast<uint32_t>(own_.size());
+  const uint64_t begin = available_[0];
+  Int3 low{}, high{};
+  for (size_t a = 0; a < 3 && n > 0; ++a) {
+    const auto at = [a](const Slot& s) { return s.body.x[a]; };
+    const auto [least, most] = std::ranges::minmax(own_, {}, at);
+    low[a] = at(least), high[a] = at(most);
+  }
+  const auto reaches = [&](const Candidate& c) {
+    Int3 x, nearest;
+    for (size_t a = 0; a < 3; ++a) x[a] = c.x[a], nearest[a] = std::clamp(x[a], low[a], high[a]);
+    return may_interact(plan_.rule, nearest, x);
+  };
+  uint64_t last = begin;
+  for (int streamer = 0; streamer < plan_.arch.streamers; ++streamer) {
+    begin_filter(stream);
+    there.clear();
+    std::array<uint64_t, kForceSegments> complete{};
+    size_t segments = 0;
+    const auto end_segment = [&](uint64_t known) {
+      complete[segments] = known;
+      stream.segment_end[segments++] = static_cast<uint32_t>(stream.mask.size());
+    };
+    if (streamer == 0) {
+      for (uint32_t k = 0; k < n; ++k) meet_slots(stream, own_[k].body, k);
+      there.resize(stream.mask.size(), begin);
+      end_segment(begin);
+    }
+    for (size_t face = static_cast<size_t>(streamer); face < static_cast<size_t>(segments_) - 1;
+         face += static_cast<size_t>(plan_.arch.streamers)) {
+      const auto& halo = halo_[face];
+      for (size_t k = 0; k < halo.size() && n > 0; ++k) {
+        const uint64_t came = times_.came[face][k];
+        if (came + 1 >= begin && !reaches(halo[k])) continue;
+        meet_slots(stream, halo[k], n);
+        there.resize(stream.mask.size(), came + 1 + kCullStages);
+      }
+      end_segment(times_.ended[face] == 0 ? begin : times_.ended[face] + 1 + kCullStages);
+    }
+    last = std::max(last, clock_stream(
+                              plan_, stream, static_cast<int>(segments), begin,
+                              [](int, uint32_t entry) { return there[entry]; },
+                              [&](int segment) { return complete[static_cast<size_t>(segment)]; }, counts_,
+                              [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); }));
+  }
+  last = std::max(last, available_[static_cast<size_t>(plan_.rule.axes)]);
+  counts_.busy += last - begin + 1;
+  return last;
 }
 
 // One candidate at a time: read, then walked past the slots by way of the registers T and R.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "emu/systemc/node.h"
 
+#include <utility>
+
 #include "emu/systemc/brick_node.h"
 #include "emu/systemc/link_guard.h"
 #include "model/base/fixed_math.h"
@@ -8,7 +10,7 @@
 namespace cuboct::emu {
 
 Node::Node(const Plan& plan, uint8_t has_link) : NodeMachine(plan, has_link) {
-  engine_ = std::make_unique<ForceEngine>(plan, own_, halo_, fault_);
+  engine_ = std::make_unique<ForceEngine>(plan, own_, halo_, times_, fault_);
   own_.reserve(capacity_);
   // Depths of the memories: an axis brings what the axes before it brought too.
   for (int f = 0, depth = capacity_; f < kFaces; f += 2, depth *= 3)
@@ -24,6 +26,7 @@ void Node::reset() {
     i.fifo.clear();
     i.popped = 0;
   }
+  ended_early_ = false;
   taking_ = 0;
 }
 
@@ -31,17 +34,29 @@ void Node::append(uint32_t, const Slot& slot) { own_.push_back(slot); }
 
 void Node::clear_halos() {
   for (auto& h : halo_) h.clear();
+  for (auto& came : times_.came) came.clear();
+  times_.ended.fill(0);
 }
 
 void Node::begin() {
-  segment_ = record_ = 0;
+  const bool goes_on = plan_.arch.halos == Halos::arrival && main_ < Main::force;
+  if (main_ == Main::exchange_x) {
+    relay_axis_ = 0;
+    sent_axes_ = 0;
+    ending_ = false;
+    asked_ = sending_ = {};
+  }
+  if (!goes_on || main_ == Main::exchange_x) segment_ = record_ = 0;
   kept_ = 0;
   if (main_ == Main::update) {
     const int n = static_cast<int>(own_.size());
     const int cycles = n == 0 ? 1 : (n - 1) * plan_.latency.stride + plan_.latency.update;
     phase_last_ = now_ + static_cast<uint64_t>(cycles);
   }
-  if (migrates()) migrate_ = (leaving_ & bit(axis())) != 0 && !own_.empty() ? Migrate::scan : Migrate::end;
+  if (migrates())
+    migrate_ = std::exchange(ended_early_, false)                ? Migrate::take_low
+               : (leaving_ & bit(axis())) != 0 && !own_.empty() ? Migrate::scan
+                                                                : Migrate::end;
 }
 
 int Node::relayed_size(int segment) const {
@@ -52,7 +67,71 @@ const Candidate& Node::relayed(int segment, int record) const {
   return segment == 0 ? own_[record].body : halo_[segment - 1][record];
 }
 
+void Node::next_segment() {
+  record_ = 0;
+  if (segment_ == 2 * relay_axis_)
+    ending_ = true;
+  else
+    ++segment_;
+}
+
+// The relay asks for one thing: an end beat, a record that has come, or nothing.
+Node::Relayed Node::ask() {
+  if (relay_axis_ == axes_) return {};
+  if (ending_) {
+    ending_ = false;
+    ++segment_;
+    return {Relayed::Kind::end, relay_axis_++, 0};
+  }
+  const int count = relayed_size(segment_);
+  const bool complete = segment_ == 0 || !linked(segment_ - 1) || (halo_end_ & bit(segment_ - 1)) != 0;
+  if (record_ == count) {
+    if (complete) next_segment();
+    return {};
+  }
+  const Relayed item{Relayed::Kind::record, segment_, record_++};
+  if (complete && record_ == count) next_segment();
+  return item;
+}
+
+// One cycle of the relay: what is loaded, what the memories answer, what is asked for. All wait for the links.
+void Node::relay() {
+  bool held = false;
+  if (sending_.kind == Relayed::Kind::end) {
+    held = !load_ends(faces_of(sending_.segment));
+    if (!held) sent_axes_ |= bit(sending_.segment);
+  } else if (sending_.kind == Relayed::Kind::record) {
+    uint8_t faces = 0;  // of all axes from the record's on
+    for (int a = (sending_.segment + 1) / 2; a < axes_; ++a) faces |= faces_of(a);
+    held = !can_load(faces);
+    if (!held) {
+      if (beat_ == 0) word_ = {}, pack_halo(plan_, relayed(sending_.segment, sending_.record), 0, word_);
+      for (int f = 0; f < kFaces; ++f)
+        if (faces >> f & 1) load_slice(f);
+      held = ++beat_ < plan_.words.halo_beats;
+      if (!held) beat_ = 0;
+    }
+  }
+  if (held) return;
+  if (asked_.kind == Relayed::Kind::record && asked_.segment == 0) {
+    out_->observe = true;
+    out_->observe_data = pack_particle(plan_, own_[static_cast<size_t>(asked_.record)]);
+  }
+  sending_ = std::exchange(asked_, ask());
+}
+
+bool Node::end_early(int axis) {
+  return plan_.arch.halos == Halos::arrival && ((leaving_ & bit(axis)) == 0 || own_.empty()) &&
+         load_ends(faces_of(axis));
+}
+
 void Node::exchange() {
+  if (plan_.arch.halos == Halos::arrival) {
+    const bool sent = (sent_axes_ & bit(axis())) != 0;
+    relay();
+    if (sent && (faces_of(axis()) & ~halo_end_) == 0) finish_phase(after(main_));
+    return;
+  }
   const int low = 2 * axis(), high = low + 1;
   const int segments = 1 + low;
   if (segment_ == segments) {
@@ -95,6 +174,7 @@ void Node::update() {
     for (int a = 0; a < 3; ++a)
       if (own_[k].away[a] != 0) leaving_ |= bit(a);
   }
+  ended_early_ = end_early(0);
   finish_phase(Main::migrate_x);
 }
 
@@ -165,7 +245,13 @@ void Node::take(int face, Migrate next, bool last) {
     return;
   }
   migrate_ = next;
-  if (last) finish_migration();
+  if (plan_.arch.halos == Halos::arrival && !last) {
+    const Inbox& above = inbox_[face + 1];
+    last = above.popped == above.fifo.size() && (!linked(face + 1) || (migrate_end_ & bit(face + 1)) != 0);
+  }
+  if (!last) return;
+  ended_early_ = a + 1 < axes_ && end_early(a + 1);
+  finish_migration();
 }
 
 void Node::dump() {
@@ -187,6 +273,7 @@ void Node::take_halo(int face, const Bits& record) {
   const int P = plan_.rule.widths.position_frac;
   const int64_t cell = int64_t{1} << P;
   Candidate& candidate = halo_[face].emplace_back();
+  times_.came[static_cast<size_t>(face)].push_back(now_);
   unpack_halo(plan_, record, candidate);
   int32_t& x = candidate.x[static_cast<size_t>(face / 2)];
   x = static_cast<int32_t>(wrap(face % 2 == 0 ? x - cell : x + cell, P + 2));

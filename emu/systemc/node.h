@@ -34,7 +34,20 @@ class Node final : public NodeMachine {
   void clear_halos() override;
   void take_particle(int face, const Bits& record) override;
   void take_halo(int face, const Bits& record) override;
+  void take_halo_end(int face) override { times_.ended[static_cast<size_t>(face)] = now_; }
   uint8_t awaited() const override;
+
+  // Where halos are used on arrival: a record, or an end beat, on its way through the relay.
+  struct Relayed {
+    enum class Kind : uint8_t { none, record, end } kind = Kind::none;
+    int segment = 0;  // of a record; of an end beat the axis
+    int record = 0;
+  };
+  void relay();
+  Relayed ask();
+  void next_segment();
+  // Loads the end beats of a migration that begins with the next phase, if no own particle leaves along it.
+  bool end_early(int axis);
 
   void scan();
   void take(int face, Migrate next, bool last);
@@ -48,6 +61,12 @@ class Node final : public NodeMachine {
   int segment_ = 0, record_ = 0;  // exchange; `record_` also scan and dump
   int taking_ = 0;                // narrow memories: cycles until the particle is read that TAKE waits for
   size_t kept_ = 0;               // slots that SCAN has moved down
+  HaloTimes times_;
+  Relayed asked_, sending_;   // of the relay: what the memories answer, what the links load
+  int relay_axis_ = 0;        // the end beat, or the segment, that the relay is at belongs to
+  bool ending_ = false;       // the axis's segments are done
+  uint8_t sent_axes_ = 0;     // whose end beats are loaded
+  bool ended_early_ = false;  // the next phase's end beats are loaded
   uint8_t leaving_ = 0;           // bit a: `leaving_a`
 };
 

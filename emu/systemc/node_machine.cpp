@@ -61,7 +61,8 @@ NodeMachine::Main NodeMachine::after(Main phase) const {
 // Prepares the registers for a main state's first cycle, which is the next one.
 void NodeMachine::enter(Main next) {
   main_ = next;
-  beat_ = 0;
+  const bool relays = plan_.arch.halos == Halos::arrival && next > Main::exchange_x && next < Main::force;
+  if (!relays) beat_ = 0;
   sent_ = false;
   begin();
   if (next == Main::dump || next == Main::idle) return;
@@ -144,6 +145,7 @@ void NodeMachine::receive(int face, const Beat& beat) {
   const bool migrating = migrating_ & bit(face);
   if (beat.end) {
     (migrating ? migrate_end_ : halo_end_) |= bit(face);
+    if (!migrating) take_halo_end(face);
     migrating_ ^= bit(face);
     return;
   }
@@ -187,7 +189,7 @@ void NodeMachine::clock(const NodeInputs& in, NodeOutputs& out) {
     case Main::exchange_x:
     case Main::exchange_y:
     case Main::exchange_z:
-      if (sent_)
+      if (sent_ && plan_.arch.halos == Halos::phases)
         await_halos();
       else
         exchange();

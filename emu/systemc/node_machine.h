@@ -62,6 +62,7 @@ class NodeMachine : public NodeModel {
 
   void enter(Main next);
   void finish_phase(Main next);
+  Main after(Main phase) const;
   // The last cycle of MIGRATE_a.
   void finish_migration();
   // Takes the sum of slot `index` of an own cell and puts the results of UPDATE there.
@@ -73,7 +74,8 @@ class NodeMachine : public NodeModel {
   // Prepares the node's own registers for the phase `main_`, whose first cycle is the next one. Of UPDATE it
   // sets `phase_last_`.
   virtual void begin() = 0;
-  // A cycle of the phase; of EXCHANGE_a until `sent_`.
+  // A cycle of the phase; of EXCHANGE_a until `sent_`. Where halos are used on arrival, every cycle: the node
+  // walks beside the phases and ends them.
   virtual void exchange() = 0;
   virtual void update() = 0;
   virtual void migrate() = 0;
@@ -82,6 +84,8 @@ class NodeMachine : public NodeModel {
   // A record that has come over a face in this cycle: a particle, or one of its halo.
   virtual void take_particle(int face, const Bits& record) = 0;
   virtual void take_halo(int face, const Bits& record) = 0;
+  // The end beat of a face's halo stream has come in this cycle.
+  virtual void take_halo_end(int) {}
   // Faces whose particles MIGRATE_a waits for, for doing().
   virtual uint8_t awaited() const = 0;
 
@@ -107,7 +111,6 @@ class NodeMachine : public NodeModel {
     Bits partial;
   };
 
-  Main after(Main phase) const;
   void idle(const Control& host);
   void await_halos();
   void force();

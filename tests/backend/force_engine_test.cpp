@@ -190,7 +190,8 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
           static_cast<uint64_t>(plan.arch.narrow_memories || draw(0, 2) == 0 ? 0 : draw(1, 60));
 
     emu::FaultKeeper fault;
-    emu::ForceEngine tested(plan, engine.own, engine.halo, fault);
+    const emu::HaloTimes times;
+    emu::ForceEngine tested(plan, engine.own, engine.halo, times, fault);
     tested.begin(engine.available[0]);
     for (int a = 0; a < 3; ++a) tested.available(a, engine.available[static_cast<size_t>(a) + 1]);
     const uint64_t last = tested.run();
