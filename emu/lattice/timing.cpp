@@ -5,6 +5,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "emu/lattice/arrival_timing.h"
 #include "emu/lattice/brick_timing.h"
 #include "emu/lattice/force_time.h"
 #include "emu/lattice/hits.h"
@@ -248,7 +249,9 @@ void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
 }
 
 TimingModel::TimingModel(const Plan& plan, int threads) {
-  if (plan.bricks.one_cell())
+  if (plan.arch.halos == Halos::arrival)
+    arrival_ = std::make_unique<ArrivalTiming>(plan, threads);
+  else if (plan.bricks.one_cell())
     impl_ = std::make_unique<Impl>(plan, threads);
   else
     brick_ = std::make_unique<BrickTiming>(plan, threads);
@@ -257,6 +260,7 @@ TimingModel::~TimingModel() = default;
 
 void TimingModel::step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
   if (brick_) return brick_->step(slots, leaving, spans);
+  if (arrival_) return arrival_->step(slots, leaving, spans);
   Impl& m = *impl_;
   if (!spans.empty() && spans.size() != size_t{m.nodes_} * kPhases)
     throw std::invalid_argument("spans of another lattice");
@@ -297,6 +301,7 @@ void TimingModel::step(const CellSlots& slots, std::span<const Leaving> leaving,
 
 uint64_t TimingModel::cycles(const CellSlots& slots) const {
   if (brick_) return brick_->cycles(slots);
+  if (arrival_) return arrival_->cycles(slots);
   const Impl& m = *impl_;
   if (slots.first.size() != m.nodes_ + 1) throw std::invalid_argument("slots of another lattice");
   uint64_t idle = 0;  // the last node's first cycle of IDLE
@@ -308,16 +313,20 @@ uint64_t TimingModel::cycles(const CellSlots& slots) const {
 
 std::vector<uint64_t> TimingModel::starts() const {
   if (brick_) return brick_->starts();
+  if (arrival_) return arrival_->starts();
   return {impl_->start_.begin(), impl_->start_.end() - 1};
 }
 
 void TimingModel::resume(std::span<const uint64_t> starts) {
   if (brick_) return brick_->resume(starts);
+  if (arrival_) return arrival_->resume(starts);
   if (starts.size() != impl_->nodes_) throw std::invalid_argument("starts of another lattice");
   std::copy(starts.begin(), starts.end(), impl_->start_.begin());
   impl_->steps_ = 0;  // the next step's particles are not those of the last one
 }
 
-const TimingCounters& TimingModel::counters() const { return brick_ ? brick_->counters() : impl_->counters_; }
+const TimingCounters& TimingModel::counters() const {
+  return brick_ ? brick_->counters() : arrival_ ? arrival_->counters() : impl_->counters_;
+}
 
 }  // namespace cuboct::emu

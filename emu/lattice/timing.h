@@ -16,6 +16,7 @@
 
 namespace cuboct::emu {
 
+class ArrivalTiming;
 class BrickTiming;
 
 class TimingModel {
@@ -48,7 +49,9 @@ class TimingModel {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
-  std::unique_ptr<BrickTiming> brick_;  // in its place where nodes serve bricks
+  // In its place where nodes serve bricks, or use halos on arrival.
+  std::unique_ptr<BrickTiming> brick_;
+  std::unique_ptr<ArrivalTiming> arrival_;
 };
 
 }  // namespace cuboct::emu
