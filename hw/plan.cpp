@@ -151,6 +151,8 @@ Latency latency_of(const FixedRule& r, const Arch& arch) {
   const bool serial = arch.multipliers == Multipliers::serial,
              shared = arch.multipliers == Multipliers::shared;
   if (serial) latency.product = product_cycles(r);
+  // Where cycles are few the multipliers have registers on both sides.
+  if (arch.halos == Halos::arrival && arch.multipliers == Multipliers::parallel) latency.product = 2;
   // Squares, slope, kick, and what else is multiplied: each waits for the one before.
   latency.pipe = 8 + (r.force.shape == TableShape::octaves ? 1 : 0) + table + used +
                  latency.product * (3 + table + used) + (shared ? 2 * (r.axes - 1) : 0);

@@ -29,7 +29,7 @@ struct Latency {
   int stride =
       1;  // from one particle's read to the next in UPDATE: narrow memories keep each until it is written
   int interval = 1;  // from one issue of pairs to the next
-  int product = 1;   // of the pipe's multipliers; more than 1 where they are serial
+  int product = 1;   // of the pipe's multipliers; 2 with registers on both sides, more where they are serial
 };
 
 struct Plan {

@@ -84,6 +84,10 @@ RtlDesign decide(const Plan& plan) {
   constant("Interval", plan.latency.interval, "cycles from one pair to the next");
   constant("QueueDepth", arch.queue_depth, "entries between filter and pipes");
   constant("Overlap", arch.overlap, "1: the force engine starts with the exchange");
+  if (!bricks) {
+    constant("Arrival", arch.halos == Halos::arrival, "1: halos are used as they come");
+    constant("Streamers", arch.streamers, "candidates per cycle");
+  }
   if (!bricks) constant("Narrow", arch.narrow_memories, "1: memories of words of LinkBits, one port to read");
   constant("LinkBits", plan.words.link_bits, "payload of a beat");
   constant("IdBits", plan.words.id_bits, "");
@@ -163,6 +167,8 @@ RtlDesign decide(const Plan& plan) {
   design.law_bits = rule.law_bits;
   design.law = rule.law;
   design.axes = rule.axes;
+  design.streamers = arch.streamers;
+  design.arrival = arch.halos == Halos::arrival;
   design.type_bits = rule.type_bits;
   design.velocity_bits = w.velocity_bits;
   design.particle_bits = plan.words.particle_bits;

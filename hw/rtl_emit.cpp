@@ -41,8 +41,10 @@ void add_node(Files& files, const RtlDesign& design) {
       "cuboct_migrate.sv",   "cuboct_pair_finder.sv", "cuboct_pair_walk.sv", "cuboct_relay.sv",
       "cuboct_slots.sv",     "cuboct_streamer.sv",    "cuboct_tick.sv",      "cuboct_word_halos.sv",
       "cuboct_word_inbox.sv"};
+  const std::set<std::string_view> arrival{"cuboct_arrival_relay.sv", "cuboct_box.sv", "cuboct_cull.sv"};
   const auto used = [&](std::string_view name) {
     if (checks.contains(name)) return design.checked;
+    if (arrival.contains(name)) return design.arrival;
     return design.bricks() ? !single.contains(name) : !name.starts_with("cuboct_brick_");
   };
   for (const RtlSource& source : rtl_library())

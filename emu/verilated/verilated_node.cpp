@@ -90,9 +90,15 @@ uint64_t VerilatedNode::event_cycles(size_t event, uint64_t end) const {
 
 Counters VerilatedNode::counters(uint64_t end) const {
   const auto count = [&](size_t event) { return static_cast<double>(event_cycles(event, end)); };
-  return {{"candidates", count(2)},
-          {"queue_stalls", count(1)},
-          {"issue_cycles", count(3)},
+  // Of each streamer.
+  const auto sum = [&](size_t event) {
+    double cycles = 0;
+    for (size_t e = event; e < events_.size(); e += 3) cycles += count(e);
+    return cycles;
+  };
+  return {{"candidates", sum(2)},
+          {"queue_stalls", sum(1)},
+          {"issue_cycles", sum(3)},
           {"force_cycles", count(0)}};
 }
 

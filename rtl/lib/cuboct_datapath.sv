@@ -8,6 +8,7 @@ module cuboct_datapath #(
   parameter int          Axes                 = 3,      // 2 or 3
   parameter int          Cells                = 1,      // of the node, >= 1
   parameter int          Capacity             = 16,     // particles of a cell, >= 1
+  parameter int          Streamers            = 1,      // each has its candidate, and as many pipes
   parameter int          ForcePipes           = 1,      // >= 1
   parameter int          Shared               = 0,      // 0, 1: one multiplier serves the axes in turn
   parameter int          Product              = 1,      // cycles of a multiplier of the pipe; 1 if Shared
@@ -73,7 +74,7 @@ module cuboct_datapath #(
   // Pairs of a candidate with own particles, by pipe.
   input  logic [ForcePipes-1:0]           issue_i,        // a pair enters the pipe
   input  logic [ForcePipes*PlaceBits-1:0] issue_place_i,  // with issue_i: of its own particle
-  input  logic [CandidateBits-1:0]        candidate_i,    // with issue_i, of all pipes
+  input  logic [Streamers*CandidateBits-1:0] candidate_i,    // with issue_i, of all pipes
   input  logic [ForcePipes*SeenBits-1:0]  own_i,          // in the cycle after issue_i: the own particle
   output logic [ForcePipes-1:0]           busy_o,         // the pipe holds a pair
   // The slots are at addresses: cell * Capacity + slot.
@@ -141,17 +142,20 @@ module cuboct_datapath #(
     logic [SeenBits-1:0]      own;
     logic [SomeType-1:0]      own_type, other_type;
     logic [VelBits-1:0]       own_v, other_v;
+    localparam int Streamer = f / (ForcePipes / Streamers);
+    logic [CandidateBits-1:0] candidate;
+    assign candidate = candidate_i[Streamer*CandidateBits +: CandidateBits];
     assign own = own_i[f*SeenBits +: SeenBits];
     if (HaloType > 0) begin : gen_type
       assign own_type   = own[TypeLsb +: SomeType];
-      assign other_type = candidate_i[CandPos +: SomeType];
+      assign other_type = candidate[CandPos +: SomeType];
     end else begin : gen_no_type
       assign own_type   = '0;
       assign other_type = '0;
     end
     if (HaloVelocity > 0) begin : gen_velocity
       assign own_v   = own[VelLsb +: VelBits];
-      assign other_v = candidate_i[CandPos + HaloType +: VelBits];
+      assign other_v = candidate[CandPos + HaloType +: VelBits];
     end else begin : gen_no_velocity
       assign own_v   = '0;
       assign other_v = '0;
@@ -171,7 +175,7 @@ module cuboct_datapath #(
     ) u_pipe (
       .clk_i, .rst_ni, .valid_i(issue_i[f]), .slot_i(issue_place_i[f*PlaceBits +: PlaceBits]),
       .own_x_i(own[PosBits-1:0]), .own_v_i(own_v), .own_type_i(own_type),
-      .other_x_i(candidate_i[CandPos-1:0]), .other_v_i(other_v), .other_type_i(other_type),
+      .other_x_i(candidate[CandPos-1:0]), .other_v_i(other_v), .other_type_i(other_type),
       .valid_o(kick_valid[f]), .slot_next_o(place_next), .slot_o(place), .push_o(push),
       .fault_o(pipe_fault[f]), .fault_strength_o(pipe_fault_strength[f]),
       .fault_number_o(pipe_fault_number[f*64 +: 64]), .busy_o(busy_o[f])
@@ -206,7 +210,7 @@ module cuboct_datapath #(
       assign unused_clear = ^clear_addr_i;
     end
     logic unused_own;
-    assign unused_own = ^{own, place};
+    assign unused_own = ^{own, place, candidate};
   end
   // One after the other: of pipe f and those before it.
   for (genvar f = 0; f < ForcePipes; f++) begin : gen_total

@@ -11,6 +11,13 @@ module cuboct_halos #(
   parameter int ParticleBits  = 128,
   parameter int AddrBits      = 8,    // of a record's number in any segment
   parameter int CountBits     = 9,    // of a segment's count
+  parameter int Arrival       = 0,    // 1: records are used as they come
+  parameter int Streamers     = 1,    // 1, or 2 for the faces below and above; Arrival only
+  // Of the cull; Arrival only.
+  parameter int          FilterFrac  = 8,
+  parameter logic [63:0] PlanarOne   = 64'd0,
+  parameter logic [63:0] PlanarTwo   = 64'd0,
+  parameter logic [63:0] PlanarThree = 64'd0,
   localparam int Faces        = 2 * Axes
 ) (
   input  logic                       clk_i,
@@ -23,10 +30,17 @@ module cuboct_halos #(
   // Halos.
   input  logic                       halo_clear_i,   // the step's halos are read; with the last cycle of FORCE
   output logic [Faces-1:0]           halo_end_o,     // complete; always where there is no link
-  output logic [Faces*CountBits-1:0] halo_count_o,   // by face: records that came in this step
-  input  logic                       stream_read_i,  // the streamer asks
-  input  logic [AddrBits-1:0]        stream_addr_i,  // read by the streamer: what it gets is there in the next cycle,
-  output logic [Faces*CandidateBits-1:0] stream_data_o,  // by face, and stays until it reads again
+  output logic [Faces*CountBits-1:0] halo_count_o,   // by face: records that came in this step, as the relay sees them
+  output logic [Faces-1:0]           stream_end_o,   // as the streamer sees them: complete,
+  output logic [Faces*CountBits-1:0] stream_count_o, // and how many
+  input  logic [Streamers-1:0]       stream_read_i,  // the streamer asks
+  input  logic [Streamers*AddrBits-1:0] stream_addr_i,  // read by it: what it gets is there in the next cycle (Arrival:
+  output logic [Faces*CandidateBits-1:0] stream_data_o,  // one later), by face, and stays until it reads again
+  // The box of the own particles; Arrival only.
+  input  logic                       run_i,          // the step has begun
+  input  logic                       box_empty_i,
+  input  logic [Axes*FilterFrac-1:0] box_low_i,
+  input  logic [Axes*FilterFrac-1:0] box_high_i,
   // For the relay, of all axes but the last.
   input  logic                       relay_read_i,   // it asks; without it the answers stay
   input  logic [Faces-3:0]           relay_clear_i,  // by face: the answer becomes 0
@@ -59,8 +73,25 @@ module cuboct_halos #(
   assign halo_end_o    = halo_end_q | ~has_link_i;
   assign migrate_end_o = migrate_end_q | ~has_link_i;
 
+  logic [Faces-1:0] stream_end;
+  if (Arrival != 0) begin : gen_stream_end
+    logic [Faces-1:0] stream_end_d, stream_end_q;
+    assign stream_end_d = (stream_end_q | stream_end) & ~{Faces{halo_clear_i}};
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) stream_end_q <= '0;
+      else stream_end_q <= stream_end_d;
+    end
+    assign stream_end_o = stream_end_q | ~has_link_i;
+  end else begin : gen_one_end
+    assign stream_end_o = halo_end_o;
+    logic unused_stream_end;
+    assign unused_stream_end = ^{stream_end, run_i, box_empty_i, box_low_i, box_high_i, PlanarOne, PlanarTwo,
+                                 PlanarThree};
+  end
+
   for (genvar f = 0; f < Faces; f++) begin : gen_face
     localparam int Axis  = f / 2;
+    localparam int Port  = f % Streamers;
     localparam int Depth = ((Axis == 0) ? 1 : (Axis == 1) ? 3 : 9) * Capacity;
 
     logic                     halo_valid, migrate_valid, migrate_full;
@@ -87,13 +118,40 @@ module cuboct_halos #(
       assign moved = halo;
     end
 
+    // What the streamer gets.
+    logic                append;
+    logic [HaloBits-1:0] kept;
+    if (Arrival != 0) begin : gen_cull
+      logic [Axes*(FilterFrac+2)-1:0] x;
+      for (genvar a = 0; a < Axes; a++) begin : gen_coarse
+        localparam int Lsb = a * (PositionFrac + 2) + PositionFrac - FilterFrac;
+        if (a < Axes - 1) begin : gen_signed
+          assign x[a*(FilterFrac+2) +: FilterFrac+2] = moved[Lsb +: FilterFrac+2];
+        end else begin : gen_last_axis
+          assign x[a*(FilterFrac+2) +: FilterFrac+2] = {LastSign, moved[Lsb +: FilterFrac]};
+        end
+      end
+      cuboct_cull #(
+        .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree),
+        .HaloBits(HaloBits)
+      ) u_cull (
+        .clk_i, .rst_ni, .run_i, .empty_i(box_empty_i), .low_i(box_low_i), .high_i(box_high_i), .valid_i(halo_valid),
+        .halo_i(moved), .x_i(x), .end_i(halo_end[f]), .valid_o(append), .halo_o(kept), .end_o(stream_end[f])
+      );
+    end else begin : gen_all
+      assign append        = halo_valid;
+      assign kept          = moved;
+      assign stream_end[f] = 1'b0;
+    end
+
     cuboct_inbox #(
       .HaloBits(HaloBits), .ParticleBits(ParticleBits), .HaloDepth(Depth), .Capacity(Capacity),
-      .Relayed((Axis < Axes - 1) ? 1 : 0), .AddrBits(AddrBits), .CountBits(CountBits)
+      .Relayed((Axis < Axes - 1) ? 1 : 0), .Arrival(Arrival), .AddrBits(AddrBits), .CountBits(CountBits)
     ) u_inbox (
-      .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(halo_valid), .halo_i(moved),
-      .count_o(halo_count_o[f*CountBits +: CountBits]), .read_i(stream_read_i), .addr_i(stream_addr_i),
-      .halo_o(streamed), .relay_read_i,
+      .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(append), .halo_i(kept),
+      .count_o(stream_count_o[f*CountBits +: CountBits]), .read_i(stream_read_i[Port]),
+      .addr_i(stream_addr_i[Port*AddrBits +: AddrBits]), .halo_o(streamed), .relay_append_i(halo_valid),
+      .relay_record_i(moved), .relay_count_o(halo_count_o[f*CountBits +: CountBits]), .relay_read_i,
       .relay_clear_i(relay_clear), .relay_addr_i, .relay_halo_o(relayed),
       .migrating_i, .push_i(migrate_valid), .particle_i(particle), .full_o(migrate_full), .pop_i(migrate_pop_i[f]),
       .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .empty_o(migrate_empty_o[f])

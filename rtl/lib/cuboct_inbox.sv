@@ -9,6 +9,7 @@ module cuboct_inbox #(
   parameter int HaloDepth    = 16,   // halo records, >= 1
   parameter int Capacity     = 16,   // particles, >= 1
   parameter int Relayed      = 1,    // 1: a second read port for the relay
+  parameter int Arrival      = 0,    // 1: the relay's records come apart, and what the streamer reads is a cycle later
   parameter int AddrBits     = 4,    // of the halos' read addresses, >= clog2(HaloDepth)
   parameter int CountBits    = 5     // of the halos' count, >= clog2(HaloDepth+1)
 ) (
@@ -21,7 +22,11 @@ module cuboct_inbox #(
   output logic [CountBits-1:0]    count_o,       // records that came in this step
   input  logic                    read_i,        // the streamer asks; without it the answer stays
   input  logic [AddrBits-1:0]     addr_i,        // with read_i
-  output logic [HaloBits-1:0]     halo_o,        // from the next cycle on; a migration phase leaves it
+  output logic [HaloBits-1:0]     halo_o,        // from the next cycle on, Arrival: the one after the next in which
+                                                 // something is asked; a migration phase leaves it
+  input  logic                    relay_append_i,  // Arrival: a record for the relay came
+  input  logic [HaloBits-1:0]     relay_record_i,  // with relay_append_i
+  output logic [CountBits-1:0]    relay_count_o,   // records for the relay that came in this step
   input  logic                    relay_read_i,  // the relay asks; without it the answer stays
   input  logic                    relay_clear_i, // the answer is 0
   input  logic [AddrBits-1:0]     relay_addr_i,  // with relay_read_i
@@ -38,9 +43,10 @@ module cuboct_inbox #(
   localparam int LevelBits = $clog2(Capacity + 1);
   localparam int PlaceBits = (Capacity > 1) ? $clog2(Capacity) : 1;
   localparam int Last      = Capacity - 1;  // place of a particle
+  localparam int Second    = (Capacity > 1) ? 1 : 0;
 
   logic [CountBits-1:0] count_d, count_q;
-  logic [PlaceBits-1:0] write_d, write_q, read_d, read_q;
+  logic [PlaceBits-1:0] write_d, write_q, read_d, read_q, after_d, after_q;  // after: the place behind read
   logic [LevelBits-1:0] held_d, held_q;    // particles in the memory
   logic [LevelBits-1:0] shown_d, shown_q;  // of these, those that count
   logic                 pushed_q, empty_d, empty_q;  // empty: shown is 0
@@ -48,12 +54,16 @@ module cuboct_inbox #(
     count_d = count_q;
     write_d = write_q;
     read_d  = read_q;
+    after_d = after_q;
     held_d  = held_q;
     shown_d = shown_q;
     if (append_i) count_d = count_q + 1'b1;
     if (clear_i) count_d = '0;
     if (push_i) write_d = (write_q == Last[PlaceBits-1:0]) ? '0 : write_q + 1'b1;
-    if (pop_i) read_d = (read_q == Last[PlaceBits-1:0]) ? '0 : read_q + 1'b1;
+    if (pop_i) begin
+      read_d  = after_q;
+      after_d = (after_q == Last[PlaceBits-1:0]) ? '0 : after_q + 1'b1;
+    end
     if (push_i && !pop_i) held_d = held_q + 1'b1;
     if (pop_i && !push_i) held_d = held_q - 1'b1;
     if (pushed_q && !pop_i) shown_d = shown_q + 1'b1;
@@ -65,6 +75,7 @@ module cuboct_inbox #(
       count_q  <= '0;
       write_q  <= '0;
       read_q   <= '0;
+      after_q  <= Second[PlaceBits-1:0];
       held_q   <= '0;
       shown_q  <= '0;
       pushed_q <= 1'b0;
@@ -73,6 +84,7 @@ module cuboct_inbox #(
       count_q  <= count_d;
       write_q  <= write_d;
       read_q   <= read_d;
+      after_q  <= after_d;
       held_q   <= held_d;
       shown_q  <= shown_d;
       pushed_q <= push_i;
@@ -80,23 +92,44 @@ module cuboct_inbox #(
     end
   end
 
+  logic [HaloBits-1:0] word;
   cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_words (
     .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i), .read_i(read_i),
-    .clear_i(1'b0), .read_addr_i(addr_i), .read_data_o(halo_o)
+    .clear_i(1'b0), .read_addr_i(addr_i), .read_data_o(word)
   );
+  if (Arrival != 0) begin : gen_arrival
+    // A block memory answers late in its cycle: what follows begins at a register.
+    logic [HaloBits-1:0]  halo_q;
+    logic [CountBits-1:0] relay_count_d, relay_count_q;
+    assign relay_count_d = clear_i ? '0 : relay_append_i ? relay_count_q + 1'b1 : relay_count_q;
+    always_ff @(posedge clk_i) begin
+      if (read_i) halo_q <= word;
+    end
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) relay_count_q <= '0;
+      else relay_count_q <= relay_count_d;
+    end
+    assign halo_o        = halo_q;
+    assign relay_count_o = relay_count_q;
+  end else begin : gen_phases
+    assign halo_o        = word;
+    assign relay_count_o = count_q;
+    logic unused_relay_record;
+    assign unused_relay_record = ^{relay_append_i, relay_record_i};
+  end
   cuboct_ram #(.Bits(ParticleBits), .Depth(Capacity), .AddrBits(PlaceBits)) u_particles (
     .clk_i, .write_i(push_i), .write_addr_i(write_q), .write_data_i(particle_i), .read_i(migrating_i), .clear_i(1'b0),
     .read_addr_i(read_d), .read_data_o(particle_o)
   );
   if (Relayed != 0) begin : gen_relay
     cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_halos (
-      .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i),
-      .read_i(relay_read_i), .clear_i(relay_clear_i),
+      .clk_i, .write_i((Arrival != 0) ? relay_append_i : append_i), .write_addr_i(relay_count_o[AddrBits-1:0]),
+      .write_data_i((Arrival != 0) ? relay_record_i : halo_i), .read_i(relay_read_i), .clear_i(relay_clear_i),
       .read_addr_i(relay_addr_i), .read_data_o(relay_halo_o)
     );
   end else begin : gen_no_relay
     logic unused_relay;
-    assign unused_relay = ^{relay_read_i, relay_clear_i, relay_addr_i};
+    assign unused_relay = ^{relay_read_i, relay_clear_i, relay_addr_i, relay_record_i};
     assign relay_halo_o = '0;
   end
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The three migration phases. SCAN sends those who leave along the axis and closes the gaps, END closes the streams,
-// TAKE_LOW and TAKE_HIGH append what came from below and from above. SCAN is left out where no one leaves.
+// TAKE_LOW and TAKE_HIGH append what came from below and from above. SCAN is left out where no one leaves. With Early the
+// end beats of such a phase go out in the last cycle before it, and TAKE_HIGH is left out where all has come from above.
 module cuboct_migrate #(
   parameter int Axes         = 3,    // 2 or 3
   parameter int ParticleBits = 128,  // the word that travels
@@ -8,7 +9,8 @@ module cuboct_migrate #(
   parameter int LinkBits     = 32,
   parameter int Capacity     = 16,
   parameter int SlotBits     = 4,    // of a slot's number
-  parameter int CountBits    = 5     // of the number of own particles
+  parameter int CountBits    = 5,    // of the number of own particles
+  parameter int Early        = 0     // 0, 1
 ) (
   input  logic                      clk_i,
   input  logic                      rst_ni,
@@ -16,6 +18,7 @@ module cuboct_migrate #(
   input  logic [1:0]                axis_i,           // below Axes
   output logic                      done_o,           // last cycle of the phase
   input  logic [1:0]                has_link_i,       // of the axis: below, above
+  input  logic                      before_i,         // Early: the last cycle of UPDATE
   // Own particles: a slot is {away_x, particle}.
   input  logic                      leaving_i,        // in the cycle before the phase: some particle leaves along it
   input  logic [CountBits-1:0]      count_i,          // how many; in the cycle before the phase it is that of the phase
@@ -29,16 +32,20 @@ module cuboct_migrate #(
   output logic                      write_o,          // a slot is written
   output logic [SlotBits-1:0]       write_slot_o,     // with write_o
   output logic [ParticleBits+1:0]   write_data_o,     // with write_o
-  output logic [Axes-1:0]           leaving_more_o,   // axes along which an arrived particle goes on
+  output logic [Axes-1:0]           leaving_more_o,   // axes along which an arrived particle goes on, if it is kept
+  output logic [Axes-1:0]           goes_on_o,        // with some_i: the same, kept or not
   // Links of the axis: below, above.
   input  logic [1:0]                can_load_i,       // whether each link register can take a beat in this cycle
   output logic [1:0]                load_o,           // which link registers take a beat
   output logic                      end_o,            // with load_o: an end beat
   output logic [LinkBits-1:0]       data_o,           // with load_o: payload; 0 unless someone leaves
+  input  logic                      next_can_load_i,  // Early: both links of the next phase's axis can
+  output logic                      next_load_o,      // both take an end beat
   // The inbox that is taken from.
   output logic [2*Axes-1:0]         face_o,           // which one, one bit each; none outside of TAKE_LOW and TAKE_HIGH
   input  logic                      some_i,           // a particle waits in it; not where there is none
   input  logic                      ended_i,          // its end beat came
+  input  logic                      above_done_i,     // Early: nothing waits from above, and its end beat came
   input  logic [ParticleBits-1:0]   arrived_i,        // with some_i: its oldest particle
   output logic                      pop_o,            // it is taken
   // Faults, of the particle in fault_particle_o.
@@ -51,6 +58,7 @@ module cuboct_migrate #(
   localparam int BeatBits = (Beats > 1) ? $clog2(Beats) : 1;
   localparam int LastBeat = Beats - 1;
   localparam int Last     = Capacity - 1;  // slot
+  localparam int LastAxis = Axes - 1;
 
   typedef enum logic [2:0] {Enter, Scan, End, TakeLow, TakeHigh} state_t;
 
@@ -64,9 +72,13 @@ module cuboct_migrate #(
   // The first state depends on what the update, or the axis before, found.
   // What depends on the face depends on registers.
   logic [2*Axes-1:0] face_d, face_q;
+  logic              quiet;      // no one leaves along the next phase's axis
+  logic [1:0]        face_axis;  // of the next cycle's face
+  assign quiet     = (Early != 0) && (!leaving_i || count_i == '0) && next_can_load_i;
+  assign face_axis = next_load_o && !before_i ? axis_i + 2'd1 : axis_i;
   for (genvar f = 0; f < 2 * Axes; f++) begin : gen_face
     localparam int Axis = f / 2;
-    assign face_d[f] = (axis_i == Axis[1:0]) && (state_d == ((f % 2 == 0) ? TakeLow : TakeHigh));
+    assign face_d[f] = (face_axis == Axis[1:0]) && (state_d == ((f % 2 == 0) ? TakeLow : TakeHigh));
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) face_q <= '0;
@@ -129,6 +141,8 @@ module cuboct_migrate #(
     pop_o          = some_i;
     fault_left_o   = 1'b0;
     fault_full_o   = 1'b0;
+    next_load_o    = (Early != 0) && before_i && quiet;
+    if (next_load_o) state_d = TakeLow;
     if (active_i) begin
       if (scans) begin
         state_d = Scan;
@@ -161,11 +175,16 @@ module cuboct_migrate #(
         end
       end
       if (state_q == TakeLow && !some_i && ended_i) state_d = TakeHigh;
-      if (state_q == TakeHigh && !some_i && ended_i) begin
+      if (!some_i && ended_i && (state_q == TakeHigh || (Early != 0 && state_q == TakeLow && above_done_i))) begin
         state_d = Enter;
         done_o  = 1'b1;
+        if (quiet && axis_i != LastAxis[1:0]) begin
+          next_load_o = 1'b1;
+          state_d     = TakeLow;
+        end
       end
     end
+    end_o = end_o || next_load_o;
     if (some_i) begin
       write_o      = !full_i;
       count_set_o  = !full_i;
@@ -191,6 +210,7 @@ module cuboct_migrate #(
   end
 
   assign face_o           = face_q;
+  assign goes_on_o        = goes_on;
   // From registers: whether SCAN goes on is known late; what is read without need is read again before it is looked at.
   assign looks            = active_i && (state_q == Enter || state_q == Scan);
   assign read_o           = !looks || advance;

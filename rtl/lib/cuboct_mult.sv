@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Signed product with an output register. A module of its own, kept in the hierarchy: synthesis tools that fold the
-// adder behind a product into a DSP block get it wrong otherwise. With Cycles = 1 a multiplier of latency 1; with more,
-// a bit of b_i per cycle is added up, of logic alone: the product is there Cycles cycles after en_i, a_i stays until
-// then, and the next en_i comes no sooner.
+// adder behind a product into a DSP block get it wrong otherwise. With Cycles = 1 a multiplier of latency 1; with 2
+// there are registers before it too, of its own, so that they lie beside it. With more a bit of b_i per cycle is added
+// up, of logic alone: the product is there Cycles cycles after en_i, a_i stays until then, and the next en_i comes no
+// sooner.
 (* keep_hierarchy *)
 module cuboct_mult #(
   parameter int ABits  = 18,  // >= 1
-  parameter int BBits  = 18,  // >= 1; >= 2 if Cycles > 1
-  parameter int Cycles = 1    // 1, or > BBits
+  parameter int BBits  = 18,  // >= 1; >= 2 if Cycles > 2
+  parameter int Cycles = 1    // 1, 2, or > BBits
 ) (
   input  logic                          clk_i,
-  input  logic                          rst_ni,  // used if Cycles > 1
+  input  logic                          rst_ni,  // used if Cycles > 2
   input  logic                          en_i,    // p_o keeps its value in a cycle without
   input  logic signed [ABits-1:0]       a_i,     // stays while a serial product is made
   input  logic signed [BBits-1:0]       b_i,     // with en_i
@@ -21,6 +22,23 @@ module cuboct_mult #(
     assign p_d = a_i * b_i;
     always_ff @(posedge clk_i) begin
       if (en_i) p_q <= p_d;
+    end
+    assign p_o = p_q;
+    logic unused_reset;
+    assign unused_reset = rst_ni;
+  end else if (Cycles == 2) begin : gen_registered
+    logic                          en_q;
+    logic signed [ABits-1:0]       a_q;
+    logic signed [BBits-1:0]       b_q;
+    logic signed [ABits+BBits-1:0] p_d, p_q;
+    assign p_d = a_q * b_q;
+    always_ff @(posedge clk_i) begin
+      en_q <= en_i;
+      if (en_i) begin
+        a_q <= a_i;
+        b_q <= b_i;
+      end
+      if (en_q) p_q <= p_d;
     end
     assign p_o = p_q;
     logic unused_reset;

@@ -18,6 +18,8 @@ module cuboct_node_core #(
   parameter int          Interval             = 1,      // cycles from one pair to the next
   parameter int          QueueDepth           = 16,     // entries, >= 1
   parameter int          Overlap              = 1,      // 0, 1
+  parameter int          Arrival              = 0,      // 1: halos are used as they come; with Overlap, not Narrow
+  parameter int          Streamers            = 1,      // 1, or with Arrival 2; ForcePipes is a multiple
   parameter int          Narrow               = 0,      // 1: memories of words, one port; one lane and pipe, no overlap
   parameter int          LinkBits             = 66,     // payload of a beat, >= 1
   parameter int          IdBits               = 8,      // >= 1
@@ -96,7 +98,8 @@ module cuboct_node_core #(
   output logic [Faces-1:0]        link_ready_o,
   output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
   output logic [7:0]              phase_end_o,
-  output logic [3:0]              force_event_o,  // engine runs, stalled, presents a candidate, issues; in this cycle
+  output logic [3*Streamers:0]    force_event_o,  // in this cycle: engine runs; of each streamer: it is stalled,
+                                                  // presents a candidate, issues
   output logic                    observe_valid_o,
   output logic [ParticleBits-1:0] observe_data_o,
   output logic                    fault_valid_o,
@@ -108,7 +111,9 @@ module cuboct_node_core #(
   // Every tool ends with an error where a module is missing: the parameters are out of their ranges.
   if (Axes < 2 || Axes > 3 || Capacity < 1 || FilterLanes < 1 || ForcePipes < 1 || QueueDepth < 1 || LinkBits < 1
       || IdBits < 1 || TypeBits < 0 || FilterFrac > PositionFrac
-      || (Narrow != 0 && (FilterLanes != 1 || ForcePipes != 1 || Overlap != 0))) begin : gen_range
+      || (Narrow != 0 && (FilterLanes != 1 || ForcePipes != 1 || Overlap != 0 || Arrival != 0))
+      || (Arrival != 0 && Overlap == 0) || Streamers < 1 || Streamers > 1 + Arrival
+      || ForcePipes % Streamers != 0) begin : gen_range
     cuboct_parameter_out_of_range u_error ();
   end
   // Fields of a particle.
@@ -134,7 +139,7 @@ module cuboct_node_core #(
   localparam int WordBits  = $clog2(FirstWord + ((Axes == 3) ? 9 : 3) * Capacity * HaloBeats + 1);
   // Update.
   // A cycle after the last one is written MIGRATE may read it.
-  localparam int UpdateLatency = (Pd != 0) ? 7 : (Weighted != 0) ? 6 : 4;
+  localparam int UpdateLatency = ((Pd != 0) ? 7 : (Weighted != 0) ? 6 : 4) + Arrival;
   localparam int UpdateTail    = UpdateLatency - 2;
   localparam int TickBits      = $clog2(Capacity + UpdateLatency + 1);
 
@@ -158,12 +163,13 @@ module cuboct_node_core #(
   logic [SlotBits-1:0]            own_write_slot, update_slot, migrate_write_slot, main_slot, stream_slot;
   logic [OwnBits-1:0]             own_write_data, update_data, migrate_write_data, main_data;
   logic [SeenBits-1:0]            stream_data;
-  logic                           stream_read, main_read, main_hold, migrate_read;
+  logic [Streamers-1:0]           stream_read;
+  logic                           main_read, main_hold, migrate_read;
   logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot_next;
   logic [ForcePipes*SeenBits-1:0] pipe_data;
   logic [ForcePipes*IdBits-1:0]   kick_id;
-  logic [RowBits-1:0]             row;
-  logic [FilterLanes*Axes*FilterFrac-1:0] row_data;
+  logic [Streamers*RowBits-1:0]   row;
+  logic [Streamers*FilterLanes*Axes*FilterFrac-1:0] row_data;
 
   assign load = idle_o && load_valid_i && !full_q;
   always_comb begin
@@ -202,7 +208,7 @@ module cuboct_node_core #(
   cuboct_slots #(
     .Axes(Axes), .Bits(OwnBits), .SeenBits(SeenBits), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
     .IdLsb(IdLsb), .IdBits(IdBits), .Capacity(Capacity), .SlotBits(SlotBits), .FilterLanes(FilterLanes),
-    .RowBits(RowBits), .ForcePipes(ForcePipes), .Narrow(Narrow)
+    .RowBits(RowBits), .ForcePipes(ForcePipes), .Streamers(Streamers), .Narrow(Narrow)
   ) u_slots (
     .clk_i, .write_i(own_write), .write_slot_i(own_write_slot), .write_data_i(own_write_data),
     .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read),
@@ -214,7 +220,12 @@ module cuboct_node_core #(
   // Links: receivers.
   logic [Faces-1:0]           halo_end, migrate_end, migrate_empty, migrate_face, migrate_clear;
   logic [Faces*CountBits-1:0] halo_count;
-  logic [AddrBits-1:0]        stream_addr, relay_addr;
+  logic [Faces-1:0]           stream_end;
+  logic [Faces*CountBits-1:0] stream_count;
+  logic [Streamers*AddrBits-1:0] stream_addr;
+  logic [AddrBits-1:0]        relay_addr;
+  logic                       box_empty;
+  logic [Axes*FilterFrac-1:0] box_low, box_high;
   logic                       relay_read;
   logic [Faces-2:0]           relay_pick, relay_clear;
   logic [Faces*CandidateBits-1:0]     stream_halos;
@@ -260,20 +271,25 @@ module cuboct_node_core #(
     assign stream_halos  = '0;
     assign relay_halos   = '0;
     logic unused_addr;
-    assign unused_addr = ^{stream_addr, relay_addr, relay_clear};
+    assign unused_addr = ^{stream_addr, relay_addr, relay_clear, box_empty, box_low, box_high};
+    assign stream_end   = halo_end;
+    assign stream_count = halo_count;
   end else begin : gen_wide
     logic [Faces*ParticleBits-1:0] particles;
     cuboct_halos #(
       .Axes(Axes), .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .HaloBits(HaloBits),
-      .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .AddrBits(AddrBits), .CountBits(CountBits)
+      .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .AddrBits(AddrBits), .CountBits(CountBits),
+      .Arrival(Arrival), .Streamers(Streamers), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo),
+      .PlanarThree(PlanarThree)
     ) u_halos (
       .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
-      .halo_clear_i(force_done), .halo_end_o(halo_end), .halo_count_o(halo_count),
-      .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
+      .halo_clear_i(force_done), .halo_end_o(halo_end), .halo_count_o(halo_count), .stream_end_o(stream_end),
+      .stream_count_o(stream_count), .run_i(engine_runs), .box_empty_i(box_empty), .box_low_i(box_low),
+      .box_high_i(box_high), .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
       .relay_read_i(relay_read), .relay_clear_i(relay_clear[Faces-2:1]), .relay_addr_i(relay_addr),
       .relay_data_o(relay_halos), .migrating_i(in_migrate), .migrate_clear_i(migrate_clear),
       .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty), .migrate_data_o(particles),
-      .migrate_pop_i(migrate_face & {Faces{migrate_pop}})
+      .migrate_pop_i(migrate_face & ~migrate_empty)
     );
     integer f;
     always_comb begin
@@ -288,7 +304,7 @@ module cuboct_node_core #(
     assign record    = '0;
     logic unused_narrow;
     assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, relay_pick,
-                             relay_clear[0]};
+                             relay_clear[0], migrate_pop, halo_word, halo_count};
   end
 
   // leaving[a]: some own particle has to go along axis a.
@@ -306,7 +322,8 @@ module cuboct_node_core #(
       .data_o(link_data_o[f*LinkBits +: LinkBits]), .ready_i(link_ready_i[f])
     );
   end
-  // What belongs to the axis of the present phase.
+  // What belongs to the axis of the present phase, and of the one that the next migration is along.
+  logic                      next_can_load, migrate_next_load, above_done;
   logic [1:0]                axis_halo_end;
   logic                      next_leaving;  // along the axis of the next migration phase
   integer                    b;
@@ -315,23 +332,37 @@ module cuboct_node_core #(
     axis_has_link = 2'b00;
     axis_halo_end = 2'b00;
     next_leaving  = leaving_q[0] && !in_migrate;
+    next_can_load = (can_load[1:0] == 2'b11) && !in_migrate;
+    above_done    = 1'b0;
     for (b = 0; b < Axes; b = b + 1) begin
       if (axis_onehot[b]) begin
+        above_done    = migrate_end[2*b+1] && migrate_empty[2*b+1];
         axis_can_load = can_load[2*b +: 2];
         axis_has_link = has_link_i[2*b +: 2];
         axis_halo_end = halo_end[2*b +: 2];
       end
-      if (b > 0 && in_migrate && axis_onehot[b-1]) next_leaving = leaving_q[b];
+      if (b > 0 && in_migrate && axis_onehot[b-1]) begin
+        next_leaving  = leaving_q[b];
+        next_can_load = (can_load[2*b +: 2] == 2'b11);
+      end
     end
   end
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
-  assign send_end  = in_migrate ? migrate_send_end : relay_end;
+  assign send_end  = (in_migrate || migrate_next_load) ? migrate_send_end : relay_end;
   // Of the three all but one are 0.
   cuboct_late #(.Bits(LinkBits)) u_send (
     .early_i(migrate_beat | relay_beat), .late_i(relay_halo_beat), .or_o(send_data)
   );
+  logic [Faces-1:0] relay_face_load;  // Arrival: by face
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_link
-    assign load_link[2*a +: 2] = axis_load & {2{axis_onehot[a]}};
+    logic next;
+    if (a == 0) begin : gen_first
+      assign next = !in_migrate;
+    end else begin : gen_later
+      assign next = in_migrate && axis_onehot[a-1];
+    end
+    assign load_link[2*a +: 2] = (axis_load & {2{axis_onehot[a]}}) | relay_face_load[2*a +: 2]
+                               | {2{migrate_next_load && next}};
   end
 
   // A particle as a candidate: x, y, z with their sign bits, then what the rule needs of type and v.
@@ -365,23 +396,48 @@ module cuboct_node_core #(
   end
   logic unused_relay_sign;
   assign unused_relay_sign = ^{relay_own[CandPos-1:CandPos-2], relay_halo[CandPos-1:CandPos-2]};
-  cuboct_relay #(
-    .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .AddrBits(AddrBits),
-    .CountBits(CountBits), .Narrow(Narrow), .FirstWord(FirstWord), .WordBits(WordBits)
-  ) u_relay (
-    .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
-    .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_d}), .pick_o(relay_pick), .clear_o(relay_clear),
-    .read_o(relay_read), .addr_o(relay_addr), .slot_o(relay_slot), .record_i(relay_record), .halo_i(relay_halo_record),
-    .word_o(relay_word),
-    .word_i(halo_word), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load), .end_o(relay_end),
-    .data_o(relay_beat), .halo_data_o(relay_halo_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
-  );
+  logic relay_observe;
+  if (Arrival != 0) begin : gen_arrival_relay
+    logic [Axes-1:0] sent;
+    cuboct_arrival_relay #(
+      .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .AddrBits(AddrBits),
+      .CountBits(CountBits)
+    ) u_relay (
+      .clk_i, .rst_ni, .active_i(in_exchange), .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_q}),
+      .complete_i({halo_end[Faces-3:0], 1'b1}), .read_o(relay_read), .clear_o(relay_clear), .addr_o(relay_addr),
+      .slot_o(relay_slot), .own_i(relay_record), .halo_i(relay_halo_record), .can_load_i(can_load),
+      .load_o(relay_face_load), .end_o(relay_end), .data_o(relay_beat), .observe_o(relay_observe), .sent_o(sent)
+    );
+    assign relay_sent      = ((sent & axis_onehot) != '0);
+    assign relay_load      = 1'b0;
+    assign relay_halo_beat = '0;
+    assign relay_pick      = '0;
+    assign relay_word      = '0;
+    assign relay_first_own = 1'b0;
+    logic unused_first_own;
+    assign unused_first_own = relay_first_own;
+  end else begin : gen_phase_relay
+    cuboct_relay #(
+      .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .AddrBits(AddrBits),
+      .CountBits(CountBits), .Narrow(Narrow), .FirstWord(FirstWord), .WordBits(WordBits)
+    ) u_relay (
+      .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
+      .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_d}), .pick_o(relay_pick), .clear_o(relay_clear),
+      .read_o(relay_read), .addr_o(relay_addr), .slot_o(relay_slot), .record_i(relay_record), .halo_i(relay_halo_record),
+      .word_o(relay_word),
+      .word_i(halo_word), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load), .end_o(relay_end),
+      .data_o(relay_beat), .halo_data_o(relay_halo_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
+    );
+    assign relay_face_load = '0;
+    assign relay_observe   = relay_first_own && (axis == 2'd0);
+  end
   assign exchange_done = in_exchange && relay_sent && (axis_halo_end == 2'b11);
 
   // Force engine.
-  logic [CandidateBits-1:0]     issue_candidate;
+  logic [Streamers*CandidateBits-1:0] issue_candidate;
   logic [ForcePipes-1:0]        issue, pipe_busy;
-  logic                         finder_done, present, force_stall;
+  logic                         finder_done;
+  logic [Streamers-1:0]         present, force_stall;
   logic [SlotBits-1:0]          tick_slot, tick_next;
   logic                         take, fault_left, fault_full, some_fault;
   logic [ParticleBits-1:0]      fault_particle;
@@ -417,20 +473,58 @@ module cuboct_node_core #(
     assign stream_slot = '0;
     assign stream_addr = '0;
     assign row         = '0;
+    assign force_event_o[3:1] = {issue[0], present, force_stall};
     logic unused_streams;
-    assign unused_streams = ^{past_exchange, row_data, stream_halos};
+    assign unused_streams = ^{past_exchange, row_data, stream_halos, stream_end, stream_count};
   end else begin : gen_stream
-    cuboct_pair_finder #(
-      .Axes(Axes), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne),
-      .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes),
-      .ForcePipes(ForcePipes), .Interval(Interval), .QueueDepth(QueueDepth), .RowBits(RowBits), .SlotBits(SlotBits),
-      .AddrBits(AddrBits), .CountBits(CountBits)
-    ) u_finder (
-      .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .available_i({past_exchange, 1'b1}),
-      .counts_i({halo_count, own_count_q}), .read_o(stream_read), .slot_o(stream_slot), .addr_o(stream_addr),
-      .own_i(own_candidate), .halos_i(stream_halos), .row_o(row), .row_data_i(row_data), .candidate_o(issue_candidate),
-      .issue_o(issue), .issue_slot_o(issue_slot), .present_o(present), .stall_o(force_stall), .done_o(finder_done)
-    );
+    localparam int Pipes = ForcePipes / Streamers;
+    logic [Streamers-1:0] done;
+    for (genvar s = 0; s < Streamers; s++) begin : gen_streamer
+      // One walks own particles and all faces; of two the first walks those and the faces below, the other those above.
+      localparam int Own   = (s == 0) ? 1 : 0;
+      localparam int Halos = Faces / Streamers;
+      logic [Halos+Own-1:0]             complete;
+      logic [(Halos+Own)*CountBits-1:0] counts;
+      logic [Halos*CandidateBits-1:0]   halos;
+      logic [SlotBits-1:0]              own_slot;
+      if (Own != 0) begin : gen_own
+        assign complete[0]            = 1'b1;
+        assign counts[0 +: CountBits] = own_count_q;
+        assign stream_slot            = own_slot;
+      end else begin : gen_no_own
+        logic unused_own_slot;
+        assign unused_own_slot = ^own_slot;
+      end
+      for (genvar k = 0; k < Halos; k++) begin : gen_halo
+        localparam int Face = k * Streamers + s;
+        assign complete[k+Own]                          = (Arrival != 0) ? stream_end[Face] : past_exchange[Face/2];
+        assign counts[(k+Own)*CountBits +: CountBits]   = stream_count[Face*CountBits +: CountBits];
+        assign halos[k*CandidateBits +: CandidateBits]  = stream_halos[Face*CandidateBits +: CandidateBits];
+      end
+      cuboct_pair_finder #(
+        .Axes(Axes), .Halos(Halos), .Own(Own), .Arrival(Arrival), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
+        .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits),
+        .FilterLanes(FilterLanes), .ForcePipes(Pipes), .Interval(Interval), .QueueDepth(QueueDepth),
+        .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
+      ) u_finder (
+        .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .own_count_i(own_count_q), .complete_i(complete),
+        .counts_i(counts), .read_o(stream_read[s]), .slot_o(own_slot), .addr_o(stream_addr[s*AddrBits +: AddrBits]),
+        .own_i(own_candidate), .halos_i(halos), .row_o(row[s*RowBits +: RowBits]),
+        .row_data_i(row_data[s*FilterLanes*Axes*FilterFrac +: FilterLanes*Axes*FilterFrac]),
+        .candidate_o(issue_candidate[s*CandidateBits +: CandidateBits]), .issue_o(issue[s*Pipes +: Pipes]),
+        .issue_slot_o(issue_slot[s*Pipes*SlotBits +: Pipes*SlotBits]), .present_o(present[s]),
+        .stall_o(force_stall[s]), .done_o(done[s])
+      );
+      assign force_event_o[1+3*s +: 3] = {issue[s*Pipes +: Pipes] != '0, present[s], force_stall[s]};
+    end
+    assign finder_done = (done == '1);
+    if (Arrival != 0) begin : gen_no_phases
+      logic unused_phases;
+      assign unused_phases = ^past_exchange;
+    end else begin : gen_no_ends
+      logic unused_ends;
+      assign unused_ends = ^stream_end;
+    end
     assign walk_slot    = '0;
     assign walk_word    = '0;
     assign walk_segment = 3'd0;
@@ -440,8 +534,10 @@ module cuboct_node_core #(
     logic unused_record;
     assign unused_record = ^record;
   end
-  assign force_event_o = {issue != '0, present, force_stall, engine_runs};
-  assign force_done = engine_runs && finder_done && (pipe_busy == '0);
+  assign force_event_o[0] = engine_runs;
+  // On arrival the last candidates may have been met before the last records are sent.
+  assign force_done = engine_runs && finder_done && (pipe_busy == '0)
+                   && (Arrival == 0 || past_exchange[Axes-1]);
 
   // Update and dump walk the slots. Narrow: one after the other, so that the memories' answers stay for the update.
   localparam int Tail = (Narrow != 0) ? 0 : UpdateTail;
@@ -463,8 +559,13 @@ module cuboct_node_core #(
   logic unused_tick;
   assign unused_tick = ^{tick, tick_after};
 
+  logic                written, migrate_arrived;
+  logic [SlotBits-1:0] written_slot;
+  logic [OwnBits-1:0]  written_data;
+  logic [Axes-1:0]     written_away, migrate_goes_on;
   cuboct_datapath #(
-    .Axes(Axes), .Cells(1), .Capacity(Capacity), .ForcePipes(ForcePipes), .Shared(Shared), .Product(Product),
+    .Axes(Axes), .Cells(1), .Capacity(Capacity), .Streamers(Streamers), .ForcePipes(ForcePipes), .Shared(Shared),
+    .Product(Product),
     .Interval(Interval), .Narrow(Narrow), .IdBits(IdBits), .TypeBits(TypeBits), .ParticleBits(ParticleBits),
     .SeenBits(SeenBits), .CandidateBits(CandidateBits), .PositionFrac(PositionFrac), .Guard(Guard),
     .VelocityBits(VelocityBits), .RelativeVelocityBits(RelativeVelocityBits), .StrengthBits(StrengthBits),
@@ -482,11 +583,43 @@ module cuboct_node_core #(
     .clk_i, .rst_ni, .velocity_i, .issue_i(issue), .issue_place_i(issue_slot), .candidate_i(issue_candidate),
     .own_i(pipe_data), .busy_o(pipe_busy), .kick_addr_o(kick_slot_next), .kick_id_i(kick_id), .look_addr_i(tick_next),
     .clear_i((Narrow != 0) ? update_write : take), .clear_addr_i(tick_next), .take_i(take),
-    .take_place_i(tick_slot), .slot_i(main_data), .written_o(update_write), .place_o(update_slot),
-    .slot_o(update_data), .leaving_o(away_axes), .step_end_i(step_end), .move_fault_i(fault_left || fault_full),
+    .take_place_i(tick_slot), .slot_i(main_data), .written_o(written), .place_o(written_slot),
+    .slot_o(written_data), .leaving_o(written_away), .step_end_i(step_end), .move_fault_i(fault_left || fault_full),
     .move_axis_i(axis), .move_full_i(fault_full), .move_tell_i(fault_particle[IdLsb +: IdBits]),
     .fault_o(some_fault), .fault_code_o, .fault_tell_o(fault_id_o), .fault_number_o
   );
+  if (Arrival != 0) begin : gen_written
+    // The slots' memories and banks are many: they begin at a register.
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) update_write <= 1'b0;
+      else update_write <= written;
+    end
+    always_ff @(posedge clk_i) begin
+      update_slot <= written_slot;
+      update_data <= written_data;
+      away_axes   <= written_away;
+    end
+    logic                           box_add;
+    logic [Axes*FilterFrac-1:0]     box_x;
+    assign box_add = load || (update_write && away_axes == '0) || (migrate_arrived && !full_q && migrate_goes_on == '0);
+    for (genvar a = 0; a < Axes; a++) begin : gen_box_axis
+      assign box_x[a*FilterFrac +: FilterFrac] = own_write_data[a*PositionFrac+PositionFrac-FilterFrac +: FilterFrac];
+    end
+    cuboct_box #(.Axes(Axes), .FilterFrac(FilterFrac)) u_box (
+      .clk_i, .rst_ni, .clear_i(force_done), .add_i(box_add), .x_i(box_x), .empty_o(box_empty), .low_o(box_low),
+      .high_o(box_high)
+    );
+  end else begin : gen_written_at_once
+    assign update_write = written;
+    assign update_slot  = written_slot;
+    assign update_data  = written_data;
+    assign away_axes    = written_away;
+    assign box_empty    = 1'b1;
+    assign box_low      = '0;
+    assign box_high     = '0;
+    logic unused_arrived;
+    assign unused_arrived = ^{migrate_arrived, migrate_goes_on};
+  end
   assign fault_valid_o = some_fault && step_end;  // a step's last cycle is one in which nothing moves
 
   // Migration.
@@ -505,9 +638,11 @@ module cuboct_node_core #(
   end
   cuboct_migrate #(
     .Axes(Axes), .ParticleBits(ParticleBits), .PositionBits(PosBits), .LinkBits(LinkBits), .Capacity(Capacity),
-    .SlotBits(SlotBits), .CountBits(CountBits)
+    .SlotBits(SlotBits), .CountBits(CountBits), .Early(Arrival)
   ) u_migrate (
     .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .has_link_i(axis_has_link),
+    .before_i(in_update && update_done), .next_can_load_i(next_can_load), .next_load_o(migrate_next_load),
+    .above_done_i(above_done), .goes_on_o(migrate_goes_on),
     .leaving_i(next_leaving), .count_i(own_count_q), .full_i(full_q), .count_set_o(migrate_count_set),
     .count_o(migrate_count), .full_o(migrate_full),
     .read_o(migrate_read), .read_slot_o(migrate_read_slot), .read_data_i(main_data), .write_o(migrate_write),
@@ -518,11 +653,13 @@ module cuboct_node_core #(
     .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
   );
 
+  assign migrate_arrived = migrate_some;
+
   // The main read port of the slots, asked a cycle ahead, and what is observed through it. Outside its phases each of
   // the four rests at slot 0, where its next phase begins. The port asks in every cycle in which none of them waits.
   assign main_slot       = relay_slot | tick_next | migrate_read_slot | walk_slot;
   assign main_read       = relay_read && migrate_read && !main_hold;
-  assign observe_valid_o = (relay_first_own && (axis == 2'd0)) || (in_dump && (own_count_q != '0));
+  assign observe_valid_o = relay_observe || (in_dump && (own_count_q != '0));
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
   logic unused_fields;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 // From candidates to pairs: streamer, filter lanes, queue, issue. Every own particle meets every candidate that the
-// planar test lets pass, once.
+// planar test lets pass, once. Where halos are used on arrival their memories answer a cycle later, and so does all that
+// is read beside them.
 module cuboct_pair_finder #(
   parameter int          Axes            = 3,   // 2 or 3
+  parameter int          Halos           = 6,   // segments behind the own particles', >= 1
+  parameter int          Own             = 1,   // 1: own particles are a segment, the first
+  parameter int          Arrival         = 0,   // 1: records may be read before their segment is complete
   parameter int          PositionFrac    = 20,
   parameter int          FilterFrac      = 8,
   parameter logic [63:0] PlanarOne       = 64'd0,
@@ -16,21 +20,23 @@ module cuboct_pair_finder #(
   parameter int          RowBits         = 1,
   parameter int          SlotBits        = 4,
   parameter int          AddrBits        = 8,
-  parameter int          CountBits       = 9
+  parameter int          CountBits       = 9,
+  localparam int         Segments        = Halos + Own
 ) (
   input  logic                                  clk_i,
   input  logic                                  rst_ni,
   input  logic                                  run_i,
   input  logic                                  restart_i,
-  input  logic [Axes:0]                         available_i,
-  input  logic [(2*Axes+1)*CountBits-1:0]       counts_i,
+  input  logic [CountBits-1:0]                  own_count_i,  // own particles
+  input  logic [Segments-1:0]                   complete_i,   // by segment: all records are there
+  input  logic [Segments*CountBits-1:0]         counts_i,     // records
   // Where the candidate is read: own slot, and record of the faces' halos, and a row of own positions. The memories
   // answer in the next cycle, and keep the answer until the next read.
   output logic                                  read_o,       // the memories are asked
   output logic [SlotBits-1:0]                   slot_o,       // own, with read_o
   output logic [AddrBits-1:0]                   addr_o,       // of halos, with read_o
   input  logic [CandidateBits-1:0]              own_i,        // an own particle as a candidate
-  input  logic [2*Axes*CandidateBits-1:0]       halos_i,      // by face
+  input  logic [Halos*CandidateBits-1:0]        halos_i,      // by segment behind the own ones
   output logic [RowBits-1:0]                    row_o,        // row of own slots, with read_o
   input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,  // by lane, x lowest
   // Pairs.
@@ -41,30 +47,74 @@ module cuboct_pair_finder #(
   output logic                                  stall_o,      // a full queue holds the filter
   output logic                                  done_o        // no candidate is left anywhere
 );
-  logic [2*Axes:0]          pick;
-  logic [2*Axes:0]          answer_q;  // which memory's answer is the candidate, one bit each
+  logic [Segments-1:0]      pick;
+  logic [Segments-1:0]      answer_q;  // which memory's answer is the candidate, one bit each
   logic [RowBits-1:0]       row, row_out, row_head;
   logic                     present, past, stall, filter_busy, issue_busy;
+  // As the memories' answers come.
+  logic [Segments-1:0]      read_pick;
+  logic                     read_present, read_busy;
+  logic [RowBits-1:0]       read_row;
+  logic [SlotBits-1:0]      read_slot;
+  logic [CandidateBits-1:0] read_own;
+  logic [FilterLanes*Axes*FilterFrac-1:0] read_row_data;
   logic [CandidateBits-1:0] candidate, candidate_out, candidate_head;
   logic [FilterLanes-1:0]   mask_out, mask_head;
   logic                     push, pop, full, empty;
 
   cuboct_streamer #(
-    .Axes(Axes), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits),
-    .CountBits(CountBits)
+    .Segments(Segments), .Arrival(Arrival), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits),
+    .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_streamer (
-    .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .available_i, .counts_i,
+    .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .own_i(own_count_i), .complete_i, .counts_i,
     .pick_o(pick), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
   );
 
+  if (Arrival != 0) begin : gen_later
+    logic                     present_q;
+    logic [Segments-1:0]      pick_q;
+    logic [RowBits-1:0]       row_q;
+    logic [SlotBits-1:0]      slot_q;
+    logic [CandidateBits-1:0] own_q;
+    logic [FilterLanes*Axes*FilterFrac-1:0] row_data_q;
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) present_q <= 1'b0;
+      else if (!stall) present_q <= present;
+    end
+    always_ff @(posedge clk_i) begin
+      if (!stall) begin
+        pick_q     <= pick;
+        row_q      <= row;
+        slot_q     <= slot_o;
+        own_q      <= own_i;
+        row_data_q <= row_data_i;
+      end
+    end
+    assign read_present  = present_q;
+    assign read_busy     = present_q;
+    assign read_pick     = pick_q;
+    assign read_row      = row_q;
+    assign read_slot     = slot_q;
+    assign read_own      = own_q;
+    assign read_row_data = row_data_q;
+  end else begin : gen_at_once
+    assign read_present  = present;
+    assign read_busy     = 1'b0;
+    assign read_pick     = pick;
+    assign read_row      = row;
+    assign read_slot     = slot_o;
+    assign read_own      = own_i;
+    assign read_row_data = row_data_i;
+  end
   always_ff @(posedge clk_i) begin
-    if (read_o) answer_q <= pick;
+    if (read_o) answer_q <= read_pick;
   end
   integer f;
   always_comb begin
-    candidate = own_i & {CandidateBits{answer_q[0]}};
-    for (f = 0; f < 2 * Axes; f = f + 1) begin
-      candidate = candidate | (halos_i[f*CandidateBits +: CandidateBits] & {CandidateBits{answer_q[f+1]}});
+    candidate = '0;
+    if (Own != 0) candidate = read_own & {CandidateBits{answer_q[0]}};
+    for (f = 0; f < Halos; f = f + 1) begin
+      candidate = candidate | (halos_i[f*CandidateBits +: CandidateBits] & {CandidateBits{answer_q[f+Own]}});
     end
   end
 
@@ -73,8 +123,8 @@ module cuboct_pair_finder #(
     .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes),
     .RowBits(RowBits), .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_filter (
-    .clk_i, .rst_ni, .present_i(present), .row_i(row), .own_i(pick[0]),
-    .slot_i(slot_o), .own_count_i(counts_i[0 +: CountBits]), .candidate_i(candidate), .row_data_i,
+    .clk_i, .rst_ni, .present_i(read_present), .row_i(read_row), .own_i((Own != 0) && read_pick[0]),
+    .slot_i(read_slot), .own_count_i, .candidate_i(candidate), .row_data_i(read_row_data),
     .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_out), .row_o(row_out),
     .mask_o(mask_out), .busy_o(filter_busy)
   );
@@ -97,5 +147,7 @@ module cuboct_pair_finder #(
   // Whatever they answer where no candidate is asked for, the filter does not take it; a stall is known earlier.
   assign read_o    = run_i && !stall;
   assign row_o     = row;
-  assign done_o = past && !filter_busy && empty && !issue_busy;
+  assign done_o = past && !read_busy && !filter_busy && empty && !issue_busy;
+  logic unused_own;
+  assign unused_own = ^read_own;
 endmodule

@@ -72,7 +72,7 @@ module cuboct_pipe #(
   // Every tool ends with an error where a module is missing: the parameters are out of their ranges.
   if (Axes < 2 || Axes > 3 || Degree < 1 || Degree > 2 || DampDegree < 1 || DampDegree > 2 || TypeBits < 1
       || DifferenceShift >= PositionFrac || Interval < 1 || Product < 1 || (Shared != 0 && Product != 1)
-      || (Shared != 0 && Interval < Axes) || (Product > 1 && Interval <= Product)
+      || (Shared != 0 && Interval < Axes) || (Product > 2 && Interval <= Product)
       || (LawBits != 0 && Scaled == 0)) begin : gen_range
     cuboct_parameter_out_of_range u_error ();
   end

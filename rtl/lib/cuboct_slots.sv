@@ -17,6 +17,7 @@ module cuboct_slots #(
   parameter int FilterLanes  = 8,    // >= 1
   parameter int RowBits      = 1,    // of a row's number, >= clog2(rows)
   parameter int ForcePipes   = 1,    // >= 1
+  parameter int Streamers    = 1,    // 1 or 2; own particles are read by the first, rows by each
   parameter int Narrow       = 0,    // 0, 1
   localparam int CoarseBits  = Axes * FilterFrac
 ) (
@@ -27,11 +28,11 @@ module cuboct_slots #(
   input  logic                           main_read_i,    // without it main_data_o stays
   input  logic [SlotBits-1:0]            main_slot_i,    // with main_read_i
   output logic [Bits-1:0]                main_data_o,    // of the question before
-  input  logic                           stream_read_i,  // without it stream_data_o and row_data_o stay
-  input  logic [SlotBits-1:0]            stream_slot_i,  // with stream_read_i
+  input  logic [Streamers-1:0]           stream_read_i,  // without it stream_data_o and row_data_o stay
+  input  logic [SlotBits-1:0]            stream_slot_i,  // with stream_read_i[0]
   output logic [SeenBits-1:0]            stream_data_o,  // leading fields of that slot
-  input  logic [RowBits-1:0]             row_i,          // with stream_read_i
-  output logic [FilterLanes*CoarseBits-1:0] row_data_o,  // by lane, x lowest
+  input  logic [Streamers*RowBits-1:0]   row_i,          // with stream_read_i
+  output logic [Streamers*FilterLanes*CoarseBits-1:0] row_data_o,  // by lane, x lowest
   input  logic [ForcePipes*SlotBits-1:0] pipe_slot_i,    // per pipe, in every cycle
   output logic [ForcePipes*SeenBits-1:0] pipe_data_o,    // per pipe, leading fields
   input  logic [ForcePipes*SlotBits-1:0] fault_slot_i,   // per pipe, in every cycle
@@ -51,7 +52,7 @@ module cuboct_slots #(
     assign unused_ports = ^{stream_read_i, stream_slot_i, pipe_slot_i};
   end else begin : gen_ports
     cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_stream (
-      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i),
+      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i[0]),
       .clear_i(1'b0), .read_addr_i(stream_slot_i), .read_data_o(stream_data_o)
     );
     for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
@@ -77,7 +78,6 @@ module cuboct_slots #(
     for (genvar l = 0; l < FilterLanes; l++) begin : gen_bank
       // Slot s lies in bank s % FilterLanes, row s / FilterLanes.
       logic [CoarseBits-1:0] bank_q [0:Rows-1];
-      logic [CoarseBits-1:0] row, row_q;
       for (genvar r = 0; r < Rows; r++) begin : gen_row
         localparam int Slot = r * FilterLanes + l;
         if (Slot < Capacity) begin : gen_slot
@@ -88,16 +88,19 @@ module cuboct_slots #(
           always_ff @(posedge clk_i) bank_q[r] <= '0;
         end
       end
-      if (Rows > 1) begin : gen_read
-        assign row = bank_q[row_i[$clog2(Rows)-1:0]];
-        always_ff @(posedge clk_i) begin
-          if (stream_read_i) row_q <= row;
+      for (genvar s = 0; s < Streamers; s++) begin : gen_streamer
+        logic [CoarseBits-1:0] row, row_q;
+        if (Rows > 1) begin : gen_read
+          assign row = bank_q[row_i[s*RowBits +: $clog2(Rows)]];
+          always_ff @(posedge clk_i) begin
+            if (stream_read_i[s]) row_q <= row;
+          end
+        end else begin : gen_only
+          assign row   = bank_q[0];
+          assign row_q = row;
         end
-      end else begin : gen_only
-        assign row   = bank_q[0];
-        assign row_q = row;
+        assign row_data_o[(s*FilterLanes+l)*CoarseBits +: CoarseBits] = row_q;
       end
-      assign row_data_o[l*CoarseBits +: CoarseBits] = row_q;
     end
   end
 
