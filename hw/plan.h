@@ -23,9 +23,10 @@ inline constexpr int kCullStages = 3;
 // Fixed latencies of the datapath, in cycles; they depend only on what the rule uses and on the kind of
 // multipliers. docs/reference/node.md.
 struct Latency {
-  int filter = kFilterStages;  // from the candidate's read to its push into the queue; a register more on arrival
-  int pipe = 0;                // from a pair's issue to its sum
-  int update = 0;              // from a particle's read to the cycle in which MIGRATE may read it
+  int filter =
+      kFilterStages;  // from the candidate's read to its push into the queue; a register more on arrival
+  int pipe = 0;       // from a pair's issue to its sum
+  int update = 0;     // from a particle's read to the cycle in which MIGRATE may read it
   int stride =
       1;  // from one particle's read to the next in UPDATE: narrow memories keep each until it is written
   int interval = 1;  // from one issue of pairs to the next

@@ -20,7 +20,8 @@ constexpr size_t at(Phase phase) { return static_cast<size_t>(phase); }
 
 }  // namespace
 
-// All parts of the relay move together, but for cycles in which the links load a beat that is not a record's last.
+// All parts of the relay move together, but for cycles in which the links load a beat that is not a record's
+// last.
 void ArrivalTiming::Relay::act(int64_t there) {
   asked = std::max(asked + 1, loaded);
   if (beats > 0) loaded = asked + beats;
@@ -69,14 +70,13 @@ struct ArrivalTiming::Stream {
     act(complete);
     leave(leaves.back() + 1);
   }
-  int64_t last() const {
-    return std::max({streamed + 1, filtered + 1, issued - (interval - 1) + pipe});
-  }
+  int64_t last() const { return std::max({streamed + 1, filtered + 1, issued - (interval - 1) + pipe}); }
 
   const size_t depth;
   const int64_t pipes, interval, pipe;
   std::vector<int64_t> leaves;  // cycles in which the last acts leave the filter, the oldest first
-  std::vector<int64_t>& pop;    // cycles in which entries leave the queue, after as many of long ago as it holds
+  std::vector<int64_t>&
+      pop;  // cycles in which entries leave the queue, after as many of long ago as it holds
   int64_t issued = kLongAgo, streamed = 0, filtered = kLongAgo;
 };
 
@@ -120,8 +120,7 @@ void ArrivalTiming::begin(const CellSlots& slots, std::span<const Leaving> leavi
       throw std::invalid_argument("a cell does not hold what the step before left there");
   }
   for (const Leaving& l : leaving)
-    if (l.cell >= nodes_ || l.slot >= count_[l.cell])
-      throw std::invalid_argument("no such particle leaves");
+    if (l.cell >= nodes_ || l.slot >= count_[l.cell]) throw std::invalid_argument("no such particle leaves");
   std::copy(count_.begin(), count_.end() - 1, final_count_.begin());
   migration_.plan(final_count_, leaving);
 }

@@ -88,9 +88,9 @@ class ArrivalTiming {
   std::vector<uint32_t> count_, final_count_;  // particles at its start, at its end
   std::vector<int64_t> start_;                 // first cycle
   std::vector<Sent> sent_;
-  std::array<std::vector<int64_t>, kPhases> end_;                   // the phases' last cycles
+  std::array<std::vector<int64_t>, kPhases> end_;                    // the phases' last cycles
   std::array<std::vector<int64_t>, 3> migrate_start_, migrate_end_;  // first cycle; that loads the end beat
-  std::vector<Scratch> scratch_;                                    // by thread
+  std::vector<Scratch> scratch_;                                     // by thread
   uint64_t steps_ = 0;
   TimingCounters counters_;
 };

@@ -182,7 +182,7 @@ int64_t BrickTiming::exchanged(int axis, uint32_t n) const {
 // The items of a cell's candidates before the own slots that lie in `scratch`: `planar` of hits.h.
 void BrickTiming::meet(const CellSlots& slots, uint32_t cell, const std::array<int8_t, 3>& offset, bool same,
                        uint32_t& item, Scratch& scratch) const {
-  const PlanarTest& test = filter_.test;
+  const PlanarBounds& test = filter_.test;
   const auto own = static_cast<uint32_t>(scratch.own[0].size());
   for (uint32_t k = slots.first[cell]; k < slots.first[cell + 1]; ++k) {
     std::array<int32_t, 3> x;

@@ -19,7 +19,7 @@ using V = hn::Vec<D>;
 // The candidates of `node` in the order of its streamer. A halo holds what the face's neighbour holds and,
 // for y and z, what it got along the axes before, in its own order: three nested walks of (here, below,
 // above). Returns how many, and by segment.
-size_t gather(const PlanarTest& test, const Places& places, uint32_t node, HitScratch& scratch,
+size_t gather(const PlanarBounds& test, const Places& places, uint32_t node, HitScratch& scratch,
               std::array<uint32_t, kSegments>& records) {
   const D d;
   const size_t step = hn::Lanes(d);
@@ -56,7 +56,7 @@ size_t gather(const PlanarTest& test, const Places& places, uint32_t node, HitSc
 }
 
 // hits[k] = own particles that candidate k meets, of slots [from, to) of `node`.
-void count(const PlanarTest& test, const Places& places, uint32_t node, uint32_t from, uint32_t to,
+void count(const PlanarBounds& test, const Places& places, uint32_t node, uint32_t from, uint32_t to,
            const HitScratch& scratch, size_t candidates, uint8_t* hits) {
   const D d;
   const hn::Rebind<uint8_t, D> bytes;
@@ -157,7 +157,7 @@ namespace cuboct::emu {
 
 HWY_EXPORT(filter_node);
 
-PlanarTest::PlanarTest(const FixedRule& rule)
+PlanarBounds::PlanarBounds(const FixedRule& rule)
     : position_frac(rule.widths.position_frac),
       shift(rule.widths.position_frac - rule.widths.filter_frac),
       layers(rule.axes == 3 ? 3 : 1) {

@@ -13,8 +13,8 @@ namespace cuboct::emu {
 
 // `may_interact` of model/contract/fixed_rule.h in 32 bits. They suffice for all formats: P <= 30, so that
 // candidates lie in [-2^30, 2^31); sizes are below 2^(B+1) with B <= 16.
-struct PlanarTest {
-  explicit PlanarTest(const FixedRule& rule);
+struct PlanarBounds {
+  explicit PlanarBounds(const FixedRule& rule);
   int position_frac;                // P
   int shift;                        // P - B
   size_t layers;                    // of cells around a node's along z: 3, or 1 in a flat plan
@@ -23,7 +23,7 @@ struct PlanarTest {
 
 struct Filter {
   Filter(const FixedRule& rule, int lanes, int pipes);
-  PlanarTest test;
+  PlanarBounds test;
   uint32_t lanes, pipes;
 };
 

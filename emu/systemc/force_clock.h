@@ -128,8 +128,8 @@ uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
                      const std::array<uint64_t, 4>& available, ForceCounts& counts, Issue issue) {
   const auto from = [&](int segment) { return available[static_cast<size_t>(segment + 1) / 2]; };
   const uint64_t last = clock_stream(
-      plan, stream, segments, available[0], [&](int segment, uint32_t) { return from(segment); }, from, counts,
-      issue);
+      plan, stream, segments, available[0], [&](int segment, uint32_t) { return from(segment); }, from,
+      counts, issue);
   counts.busy += last - available[0] + 1;
   return last;
 }

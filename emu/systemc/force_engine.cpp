@@ -69,8 +69,8 @@ uint64_t ForceEngine::stream() {
                      [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
 }
 
-// Streamer 0 walks the own particles and the faces below, streamer 1 those above; one alone walks all. A record
-// that came before the step was not tested against the box of the own particles.
+// Streamer 0 walks the own particles and the faces below, streamer 1 those above; one alone walks all. A
+// record that came before the step was not tested against the box of the own particles.
 uint64_t ForceEngine::arrive() {
   static thread_local Stream stream;
   static thread_local std::vector<uint64_t> there;  // by entry

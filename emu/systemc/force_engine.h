@@ -27,9 +27,7 @@ class ForceEngine final : public ForceMachine {
               FaultKeeper& fault);
 
   uint64_t run() override {
-    return plan_.arch.narrow_memories           ? walk()
-           : plan_.arch.halos == Halos::arrival ? arrive()
-                                                : stream();
+    return plan_.arch.narrow_memories ? walk() : plan_.arch.halos == Halos::arrival ? arrive() : stream();
   }
 
  private:

@@ -54,7 +54,7 @@ void Node::begin() {
     phase_last_ = now_ + static_cast<uint64_t>(cycles);
   }
   if (migrates())
-    migrate_ = std::exchange(ended_early_, false)                ? Migrate::take_low
+    migrate_ = std::exchange(ended_early_, false)               ? Migrate::take_low
                : (leaving_ & bit(axis())) != 0 && !own_.empty() ? Migrate::scan
                                                                 : Migrate::end;
 }
@@ -94,7 +94,8 @@ Node::Relayed Node::ask() {
   return item;
 }
 
-// One cycle of the relay: what is loaded, what the memories answer, what is asked for. All wait for the links.
+// One cycle of the relay: what is loaded, what the memories answer, what is asked for. All wait for the
+// links.
 void Node::relay() {
   bool held = false;
   if (sending_.kind == Relayed::Kind::end) {

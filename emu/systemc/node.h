@@ -67,7 +67,7 @@ class Node final : public NodeMachine {
   bool ending_ = false;       // the axis's segments are done
   uint8_t sent_axes_ = 0;     // whose end beats are loaded
   bool ended_early_ = false;  // the next phase's end beats are loaded
-  uint8_t leaving_ = 0;           // bit a: `leaving_a`
+  uint8_t leaving_ = 0;       // bit a: `leaving_a`
 };
 
 // Nodes of one cell, or with the plan's brick (brick_node.h).

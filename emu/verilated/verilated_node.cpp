@@ -96,10 +96,8 @@ Counters VerilatedNode::counters(uint64_t end) const {
     for (size_t e = event; e < events_.size(); e += 3) cycles += count(e);
     return cycles;
   };
-  return {{"candidates", sum(2)},
-          {"queue_stalls", sum(1)},
-          {"issue_cycles", sum(3)},
-          {"force_cycles", count(0)}};
+  return {
+      {"candidates", sum(2)}, {"queue_stalls", sum(1)}, {"issue_cycles", sum(3)}, {"force_cycles", count(0)}};
 }
 
 std::string VerilatedNode::doing() const {

@@ -32,7 +32,7 @@ module cuboct_inbox #(
   input  logic [AddrBits-1:0]     relay_addr_i,  // with relay_read_i
   output logic [HaloBits-1:0]     relay_halo_o,  // from the next cycle on
   // Particles, first in, first out.
-  input  logic                    migrating_i,   // a migration phase: the oldest particle is shown, one cycle later on
+  input  logic                    migrating_i,   // a migration phase, or before: the oldest is shown, a cycle later on
   input  logic                    push_i,        // only when not full
   input  logic [ParticleBits-1:0] particle_i,    // with push_i
   output logic                    full_o,        // Capacity particles are held

@@ -287,8 +287,8 @@ module cuboct_node_core #(
       .stream_count_o(stream_count), .run_i(engine_runs), .box_empty_i(box_empty), .box_low_i(box_low),
       .box_high_i(box_high), .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
       .relay_read_i(relay_read), .relay_clear_i(relay_clear[Faces-2:1]), .relay_addr_i(relay_addr),
-      .relay_data_o(relay_halos), .migrating_i(in_migrate), .migrate_clear_i(migrate_clear),
-      .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty), .migrate_data_o(particles),
+      .relay_data_o(relay_halos), .migrating_i(in_migrate || (Arrival != 0 && in_update)),
+      .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty), .migrate_data_o(particles),
       .migrate_pop_i(migrate_face & ~migrate_empty)
     );
     integer f;

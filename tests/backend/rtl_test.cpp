@@ -26,7 +26,8 @@ std::vector<std::string> rtl_cases() {
           "lone_diagonal",  "rich_damped",      "rich_force_held",
           "rich_ring",      "rich_shared",      "rich_narrow",
           "flat",           "flat_rich_damped", "flat_rich_force_held",
-          "flat_ring",      "flat_narrow"};
+          "flat_ring",      "flat_narrow",      "arrival_one",
+          "arrival_two",    "arrival_ring",     "flat_arrival"};
 }
 
 class Rtl : public testing::TestWithParam<std::string> {};

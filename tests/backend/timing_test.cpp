@@ -34,7 +34,8 @@ struct Seen {
   uint64_t busy = 0, filtered = 0, walked = 0;  // TimingCounters
   uint64_t checked = 0;
   uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, weighted = 0, damped = 0, rings_of_3 = 0,
-           lone_nodes = 0, flat = 0, shared = 0, coarse = 0, narrow = 0, serial = 0, bricks = 0;
+           lone_nodes = 0, flat = 0, shared = 0, coarse = 0, narrow = 0, serial = 0, bricks = 0, arrival = 0,
+           streamers = 0;
 };
 
 emu::CellSlots slots_of(const FixedRule& rule, const Golden& golden) {
@@ -153,6 +154,8 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   seen.serial += plan.arch.multipliers == Multipliers::serial;
   seen.narrow += plan.arch.narrow_memories;
   seen.bricks += plan.bricks.cells() > 1;
+  seen.arrival += plan.arch.halos == Halos::arrival;
+  seen.streamers += plan.arch.streamers > 1;
   seen.coarse += plan.rule.widths.filter_frac != Widths{}.filter_frac;
   seen.pd += plan.rule.pd;
   seen.weighted += plan.rule.weighted && !plan.rule.pd;
@@ -187,6 +190,8 @@ Case rebuilt(Case c, uint64_t seed) {
   arch.multipliers = static_cast<Multipliers>(draw(0, 2));
   arch.overlap = draw(0, 3) > 0;
   arch.narrow_memories = draw(0, 3) == 0;
+  arch.halos = Halos::phases;
+  arch.streamers = 1;
   if (arch.narrow_memories)
     arch.filter_lanes = arch.force_pipes = 1, arch.overlap = false, arch.brick = {1, 1, 1};
   arch.link_bits = std::array{0, draw(1, 8), draw(9, 200), 1024}[static_cast<size_t>(draw(0, 3))];
@@ -197,7 +202,13 @@ Case rebuilt(Case c, uint64_t seed) {
       arch.brick = bricks[static_cast<size_t>(draw(0, static_cast<int>(bricks.size()) - 1))];
   }
   // The clocked node holds checked beats of 512 bits.
-  if (arch.link_bits <= 200) arch.link_check = static_cast<LinkCheck>(draw(0, 2));
+  arch.link_check = arch.link_bits <= 200 ? static_cast<LinkCheck>(draw(0, 2)) : LinkCheck::none;
+  if (!arch.narrow_memories && cells_of(arch.brick) == 1 && draw(0, 2) == 0) {
+    arch.halos = Halos::arrival;
+    arch.overlap = true;
+    arch.streamers = arch.filter_lanes > 1 ? draw(1, 2) : 1;
+    arch.force_pipes = arch.streamers * draw(1, std::min(arch.filter_lanes / arch.streamers, 3));
+  }
   plan = make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
   c.name += " rebuilt";
   return c;
@@ -252,6 +263,8 @@ TEST(TimingRandom, EqualsTheClockedNode) {
                                                              {"serial", seen.serial},
                                                              {"coarse", seen.coarse},
                                                              {"bricks", seen.bricks},
+                                                             {"arrival", seen.arrival},
+                                                             {"streamers", seen.streamers},
                                                              {"pd", seen.pd},
                                                              {"weighted", seen.weighted},
                                                              {"damped", seen.damped},

@@ -25,7 +25,8 @@ struct Recipe {
 
 void narrow(Arch& arch) {
   arch.narrow_memories = true;
-  arch.filter_lanes = arch.force_pipes = 1;
+  arch.halos = Halos::phases;
+  arch.filter_lanes = arch.force_pipes = arch.streamers = 1;
   arch.overlap = false;
 }
 
@@ -97,6 +98,61 @@ const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
          r.steps = 40;
        }},
       {"lone_diagonal", [](R r) { r.lone = true, r.features.margin = 2; }},
+      // Halos used on arrival: several passes, several beats, checked links, rings, crowded queues.
+      {"arrival_one",
+       [](R r) {
+         r.features.jitter = 0.1;
+         r.features.speed = 0.6;
+         r.features.margin = 4;
+         r.steps = 40;
+         r.arch.halos = Halos::arrival;
+         r.arch.filter_lanes = 4;
+         r.arch.force_pipes = 3;
+         r.arch.queue_depth = 2;
+       }},
+      {"arrival_two",
+       [](R r) {
+         r.features.speed = 0.4;
+         r.features.margin = 2;
+         r.steps = 20;
+         r.features.damping = 0.2;
+         r.features.two_materials = r.features.masses = r.features.held = true;
+         r.arch.halos = Halos::arrival;
+         r.arch.streamers = r.arch.force_pipes = 2;
+         r.arch.filter_lanes = 5;
+         r.arch.link_bits = 40;
+         r.arch.table.degree = 2, r.arch.table.index_bits = 7;
+       }},
+      {"arrival_ring",
+       [](R r) {
+         r.features.size = {4, 4, 4};
+         r.features.speed = 0.4;
+         r.periodic = {1, 1, 1};
+         r.arch.halos = Halos::arrival;
+         r.arch.streamers = 2;
+         r.arch.force_pipes = 4;
+         r.arch.capacity = 20;
+         r.arch.link_check = LinkCheck::retry;
+         r.steps = 8;
+       }},
+      {"flat_arrival",
+       [](R r) {
+         r.features.flat = true;
+         r.features.size = {4, 3, 1};
+         r.features.speed = 0.5;
+         r.features.margin = 3;
+         r.arch.halos = Halos::arrival;
+         r.arch.streamers = r.arch.force_pipes = 2;
+         r.arch.link_bits = 23;
+         r.arch.queue_depth = 1;
+       }},
+      {"flat_arrival_shared",
+       [](R r) {
+         r.features.flat = r.features.force_held = true;
+         r.features.size = {3, 3, 1};
+         r.arch.halos = Halos::arrival;
+         r.arch.multipliers = Multipliers::shared;
+       }},
       // Flat ones: no third axis.
       {"flat",
        [](R r) {
@@ -351,6 +407,7 @@ Case with_brick(Case c, const Cell& brick) {
   Arch arch = plan.arch;
   arch.brick = brick;
   arch.narrow_memories = false;
+  if (cells_of(brick) > 1) arch.halos = Halos::phases, arch.streamers = 1;
   plan = make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
   return c;
 }
