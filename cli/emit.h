@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "hw/board.h"
+#include "hw/rtl_project.h"
 
 namespace cuboct {
 
@@ -17,6 +19,7 @@ void emit_fitted(const Input& input, const std::string& target, const std::strin
                  const BoardChoice& board, const Answer& answer);
 
 // What ends an emission: a line for people, and for scripts.
-Items say_emitted(const std::string& out, const Plan& plan, const Answer& answer);
+Items say_emitted(const std::string& out, const Plan& plan, const std::optional<CountedCycles>& counted,
+                  const Answer& answer);
 
 }  // namespace cuboct

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/emit.h"
+#include "cli/machine_cycles.h"
 #include "hw/rtl_emit.h"
 #include "model/base/interrupt.h"
 #include "model/base/progress.h"
@@ -36,9 +37,13 @@ void emit_fitted(const Input& input, const std::string& target, const std::strin
     }
     const Setup setup = fitter.setup();
     const std::string table = fitter.table();
-    emit_rtl(setup.plan, setup.initial, out, vector_steps, board, fitter.arch_text());
+    const std::optional<CountedCycles> counted = count_cycles(setup.plan, setup.initial, fitter.steps());
+    emit_rtl(setup.plan, setup.initial, out, vector_steps, board, fitter.arch_text(), counted);
     answer.say("{}{:<16} {}/arch.toml\n", block_text(table), "arch", line_text(out));
-    Items items = say_emitted(out, setup.plan, answer);
+    if (counted)
+      answer.say("{:<16} {:.1f}, the mean of the first {} steps, counted; the most {}\n", "cycles per step",
+                 counted->mean(), counted->steps, counted->most);
+    Items items = say_emitted(out, setup.plan, counted, answer);
     items.add("target", target);
     items.add("arch", out + "/arch.toml");
     if (answer.json) answer.close(items);

@@ -25,7 +25,7 @@ print(f"node of, on {target}", "nodes", "cycles per step", "LUT", "FF", "DSP", "
 for scene, r in reports.items():
     uses = r["block"]["uses"]
     fit = f'{r["fit"]["units"]}, by {r["fit"]["limit"]}' if "fit" in r else "-"
-    print(scene, r["nodes"], r["cycles_per_step"], *(uses[k] for k in ("LUT", "FF", "DSP", "BRAM")), fit, r.get("depth", "-"),
+    print(scene, r["nodes"], f'{r["cycles_per_step"]["counted"]["mean"]:.0f}', *(uses[k] for k in ("LUT", "FF", "DSP", "BRAM")), fit, r.get("depth", "-"),
           *([f'{r["estimate"]["mhz"]:.0f}' if "estimate" in r else "-"] if estimated else []), sep="\t")
 PYTHON
   { printf '# commit: %s\n' "$(git -C "$docs" rev-parse --short=7 HEAD)"
