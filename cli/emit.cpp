@@ -55,7 +55,7 @@ struct Options {
   std::string out, fit;
   uint64_t vector_steps = 8;
   BoardChoice board;
-  bool fixed_velocities = false;
+  bool fixed_velocities = false, unchecked = false;
   Answer answer;
 };
 
@@ -66,6 +66,8 @@ Items emit_one(const Options& options) {
   std::optional<CountedCycles> counted;
   with_places(loaded.scene, plan.arch, [&] {
     check_emit_directory(options.out);
+    if (!options.board.name.empty() && !options.unchecked)
+      check_board(options.input, plan, loaded.setup.initial, options.board);
     counted = count_cycles(plan, loaded.setup.initial, loaded.scene.steps);
     emit_rtl(plan, loaded.setup.initial, options.out, options.vector_steps, options.board,
              chosen_before(options.input.arch, options.out), counted);
@@ -144,6 +146,10 @@ void add_emit(CLI::App& app, int&) {
   command
       ->add_flag("--fixed-velocities", options->fixed_velocities,
                  "the host cannot set the velocities of held and moved types: less area")
+      ->needs(board);
+  command
+      ->add_flag("--unchecked", options->unchecked,
+                 "do not check whether the board has room: for the simulator, which runs any size")
       ->needs(board);
   options->answer.add_to(*command);
   command->callback([options] { emit(*options); });

@@ -18,6 +18,10 @@ namespace cuboct {
 void emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
                  const BoardChoice& board, const Answer& answer);
 
+// Throws InputError with the numbers where the board's FPGA has no room for the plan, Failed where a tool
+// failed or somebody interrupted. Says on stderr what could not be checked.
+void check_board(const Input& input, const Plan& plan, const State& initial, const BoardChoice& board);
+
 // What ends an emission: a line for people, and for scripts.
 Items say_emitted(const std::string& out, const Plan& plan, const std::optional<CountedCycles>& counted,
                   const Answer& answer);

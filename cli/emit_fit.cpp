@@ -7,6 +7,7 @@
 #include "model/base/interrupt.h"
 #include "model/base/progress.h"
 #include "model/base/text.h"
+#include "synth/board_fit.h"
 #include "synth/fitter.h"
 #include "synth/tool.h"
 
@@ -23,6 +24,20 @@ struct Said {
 };
 
 }  // namespace
+
+void check_board(const Input& input, const Plan& plan, const State& initial, const BoardChoice& board) {
+  catch_interrupts();
+  try {
+    const Said said;
+    if (synth::check_board_fit(input.scene, plan, initial, board, say) == synth::FitCheck::memories)
+      fmt::print(stderr,
+                 "note: of the fit only memories were checked: yosys or nextpnr-ice40 is not in PATH\n");
+  } catch (const synth::ToolFailed& error) {
+    throw Failed(error.what());
+  } catch (const synth::Interrupted&) {
+    throw Failed("interrupted; nothing was written");
+  }
+}
 
 void emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
                  const BoardChoice& board, const Answer& answer) {
