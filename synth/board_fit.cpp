@@ -16,6 +16,10 @@
 namespace cuboct::synth {
 namespace {
 
+// Memories are counted in blocks of which yosys may make registers, where they are small: only so many times
+// too many are too many without a synthesis.
+constexpr uint64_t kSurely = 20;
+
 std::string count_text(uint64_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
@@ -85,15 +89,14 @@ FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State
   const Board& board = board_of(choice.name);
   const Target& target = target_of(board.target);
   const FitAmounts room = room_of(target);
-  const auto refuse_without_room = [&](const Use& use, bool memories_alone) {
-    if (!has_room(use.all(plan.nodes()), room)) throw no_room(scene, plan, board, use, room, memories_alone);
-  };
   if (!plan.arch.narrow_memories) {
     Counts counts;
     NodeMemories memories(plan.rule, plan.arch, plan.particles);
     for (const NodeMemory& m : memories.of(plan.arch.brick, plan.arch.filter_lanes, plan.arch.force_pipes))
       counts += memory_counts(target.family, m);
-    refuse_without_room({amounts_of(counts), {}}, true);
+    const Use use{amounts_of(counts), {}};
+    if (!has_room(use.all(plan.nodes()), times(room, kSurely)))
+      throw no_room(scene, plan, board, use, room, true);
   }
   const bool tools = in_path("yosys") && (target.family != Family::ice40 || in_path("nextpnr-ice40"));
   if (!tools) return FitCheck::memories;
