@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/emit.h"
+#include "cli/machine_cycles.h"
 #include "cli/stages.h"
 #include "hw/rtl_emit.h"
 #include "model/base/json.h"
@@ -27,7 +28,8 @@ std::string chosen_before(const std::string& arch, const std::string& out) {
 
 }  // namespace
 
-Items say_emitted(const std::string& out, const Plan& plan, const Answer& answer) {
+Items say_emitted(const std::string& out, const Plan& plan, const std::optional<CountedCycles>& counted,
+                  const Answer& answer) {
   answer.say("{}: {} nodes, {} particles, plan {:016x}\n", line_text(out), plan.nodes(), plan.particles,
              plan.hash);
   Items items;
@@ -38,6 +40,11 @@ Items say_emitted(const std::string& out, const Plan& plan, const Answer& answer
   items.add("filter lanes", plan.arch.filter_lanes);
   items.add("force pipes", plan.arch.force_pipes);
   items.add("plan hash", fmt::format("{:016x}", plan.hash));
+  if (counted) {
+    items.add("mean cycles per step", counted->mean());
+    items.add("most cycles per step", counted->most);
+    items.add("counted steps", counted->steps);
+  }
   return items;
 }
 
@@ -48,7 +55,7 @@ struct Options {
   std::string out, fit;
   uint64_t vector_steps = 8;
   BoardChoice board;
-  bool fixed_velocities = false;
+  bool fixed_velocities = false, unchecked = false;
   Answer answer;
 };
 
@@ -56,11 +63,16 @@ Items emit_one(const Options& options) {
   const Loaded loaded = load(options.input);
   refuse_static(loaded.scene, "hardware");
   const Plan& plan = loaded.setup.plan;
+  std::optional<CountedCycles> counted;
   with_places(loaded.scene, plan.arch, [&] {
+    check_emit_directory(options.out);
+    if (!options.board.name.empty() && !options.unchecked)
+      check_board(options.input, plan, loaded.setup.initial, options.board);
+    counted = count_cycles(plan, loaded.setup.initial, loaded.scene.steps);
     emit_rtl(plan, loaded.setup.initial, options.out, options.vector_steps, options.board,
-             chosen_before(options.input.arch, options.out));
+             chosen_before(options.input.arch, options.out), counted);
   });
-  return say_emitted(options.out, plan, options.answer);
+  return say_emitted(options.out, plan, counted, options.answer);
 }
 
 // A machine for each stage, in directories of their names. `from` of the input holds the runs of all.
@@ -134,6 +146,10 @@ void add_emit(CLI::App& app, int&) {
   command
       ->add_flag("--fixed-velocities", options->fixed_velocities,
                  "the host cannot set the velocities of held and moved types: less area")
+      ->needs(board);
+  command
+      ->add_flag("--unchecked", options->unchecked,
+                 "do not check whether the board has room: for the simulator, which runs any size")
       ->needs(board);
   options->answer.add_to(*command);
   command->callback([options] { emit(*options); });

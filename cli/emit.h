@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "hw/board.h"
+#include "hw/rtl_project.h"
 
 namespace cuboct {
 
@@ -16,7 +18,12 @@ namespace cuboct {
 void emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
                  const BoardChoice& board, const Answer& answer);
 
+// Throws InputError with the numbers where the board's FPGA has no room for the plan, Failed where a tool
+// failed or somebody interrupted. Says on stderr what could not be checked.
+void check_board(const Input& input, const Plan& plan, const State& initial, const BoardChoice& board);
+
 // What ends an emission: a line for people, and for scripts.
-Items say_emitted(const std::string& out, const Plan& plan, const Answer& answer);
+Items say_emitted(const std::string& out, const Plan& plan, const std::optional<CountedCycles>& counted,
+                  const Answer& answer);
 
 }  // namespace cuboct

@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include "cli/emit.h"
+#include "cli/machine_cycles.h"
 #include "hw/rtl_emit.h"
 #include "model/base/interrupt.h"
 #include "model/base/progress.h"
 #include "model/base/text.h"
+#include "synth/board_fit.h"
 #include "synth/fitter.h"
 #include "synth/tool.h"
 
@@ -23,6 +25,20 @@ struct Said {
 
 }  // namespace
 
+void check_board(const Input& input, const Plan& plan, const State& initial, const BoardChoice& board) {
+  catch_interrupts();
+  try {
+    const Said said;
+    if (synth::check_board_fit(input.scene, plan, initial, board, say) == synth::FitCheck::memories)
+      fmt::print(stderr,
+                 "note: of the fit only memories were checked: yosys or nextpnr-ice40 is not in PATH\n");
+  } catch (const synth::ToolFailed& error) {
+    throw Failed(error.what());
+  } catch (const synth::Interrupted&) {
+    throw Failed("interrupted; nothing was written");
+  }
+}
+
 void emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
                  const BoardChoice& board, const Answer& answer) {
   const synth::Target& device = synth::fit_target(target, board);
@@ -36,9 +52,13 @@ void emit_fitted(const Input& input, const std::string& target, const std::strin
     }
     const Setup setup = fitter.setup();
     const std::string table = fitter.table();
-    emit_rtl(setup.plan, setup.initial, out, vector_steps, board, fitter.arch_text());
+    const std::optional<CountedCycles> counted = count_cycles(setup.plan, setup.initial, fitter.steps());
+    emit_rtl(setup.plan, setup.initial, out, vector_steps, board, fitter.arch_text(), counted);
     answer.say("{}{:<16} {}/arch.toml\n", block_text(table), "arch", line_text(out));
-    Items items = say_emitted(out, setup.plan, answer);
+    if (counted)
+      answer.say("{:<16} {:.1f}, the mean of the first {} steps, counted; the most {}\n", "cycles per step",
+                 counted->mean(), counted->steps, counted->most);
+    Items items = say_emitted(out, setup.plan, counted, answer);
     items.add("target", target);
     items.add("arch", out + "/arch.toml");
     if (answer.json) answer.close(items);

@@ -43,6 +43,9 @@ void emit_fitted(const Input&, const std::string&, const std::string&, uint64_t,
                  const Answer&) {
   refuse("emit --fit", "synthesis", "CUBOCT_SYNTH");
 }
+void check_board(const Input&, const Plan&, const State&, const BoardChoice&) {
+  fmt::print(stderr, "note: the fit was not checked: this cuboct was built without synthesis\n");
+}
 #endif
 
 }  // namespace cuboct

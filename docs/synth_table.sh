@@ -1,36 +1,91 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes the tables synth-nodes-TARGET of docs/measured/synth.md anew: what a node of five scenes takes on a target. Some
-# ten minutes. usage: docs/synth_table.sh BUILD_DIRECTORY [TARGET...]
+# Makes tables of docs/measured anew: synth-nodes-TARGET, what a node of five scenes takes on a target; with "small" in place
+# of a target rtl-small-fpgas, a node on two small FPGAs as placed with three seeds; with "ecp5-placed" synth-ecp5-placed,
+# the estimate beside nodes that were placed. Some fifteen minutes. usage: docs/synth_table.sh BUILD_DIRECTORY [TARGET...]
 set -euo pipefail
-cuboct=$1/cuboct
+build=$1 cuboct=$1/cuboct
 shift
 targets=("$@")
-[ $# -gt 0 ] || targets=(ecp5-85 xc7)
+[ $# -gt 0 ] || targets=(ecp5-85 xc7 small ecp5-placed)
 docs=$(dirname "${BASH_SOURCE[0]}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-for target in "${targets[@]}"; do
-  for scene in coupon undamped_block lj_block sheet two_types; do
-    [ -d "$work/$scene" ] || "$cuboct" emit "$docs/../scenes/$scene.toml" --out "$work/$scene" > "$work/emit.log"
-    "$cuboct" synth "$work/$scene" --target "$target" --no-place --json > "$work/$scene.json"
+yosys=$(yosys -V | cut -d' ' -f1,2)
+
+origin() {  # TARGET MACHINE
+  printf '# commit: %s\n# machine: any machine: %s\n# command: docs/synth_table.sh build %s\n' \
+    "$(git -C "$docs" rev-parse --short=7 HEAD)" "$2" "$1"
+}
+# Of the RTL that figures are of, but for its comments.
+digest() { cat "$1"/rtl/*.sv | grep -v '^ *//' | sha256sum | cut -c1-8; }
+emit() {  # NAME SCENE ARGUMENTS...
+  [ -d "$work/$1" ] || "$cuboct" emit "$docs/../scenes/$2.toml" "${@:3}" --out "$work/$1" > "$work/emit.log"
+}
+
+nodes() {  # TARGET
+  local scene scenes=(coupon undamped_block lj_block sheet two_types)
+  for scene in "${scenes[@]}"; do
+    emit "$scene" "$scene"
+    "$cuboct" synth "$work/$scene" --target "$1" --no-place --json > "$work/$scene.json"
+    digest "$work/$scene" > "$work/$scene.digest"
   done
-  python3 - "$work" "$target" > "$work/table" <<'PYTHON'
+  python3 - "$work" "$1" "${scenes[@]}" <<'PYTHON'
 import json, sys
-work, target = sys.argv[1:]
-reports = {scene: json.load(open(f"{work}/{scene}.json")) for scene in "coupon undamped_block lj_block sheet two_types".split()}
+work, target, *scenes = sys.argv[1:]
+reports = {scene: json.load(open(f"{work}/{scene}.json")) for scene in scenes}
 estimated = any("estimate" in r for r in reports.values())
 print(f"node of, on {target}", "nodes", "cycles per step", "LUT", "FF", "DSP", "BRAM", "fit", "longest path, cells",
-      *(["clock, estimated, MHz"] if estimated else []), sep="\t")
+      *(["clock, estimated, MHz"] if estimated else []), "RTL", sep="\t")
 for scene, r in reports.items():
     uses = r["block"]["uses"]
     fit = f'{r["fit"]["units"]}, by {r["fit"]["limit"]}' if "fit" in r else "-"
-    print(scene, r["nodes"], r["cycles_per_step"], *(uses[k] for k in ("LUT", "FF", "DSP", "BRAM")), fit, r.get("depth", "-"),
-          *([f'{r["estimate"]["mhz"]:.0f}' if "estimate" in r else "-"] if estimated else []), sep="\t")
+    print(scene, r["nodes"], f'{r["cycles_per_step"]["counted"]["mean"]:.0f}', *(uses[k] for k in ("LUT", "FF", "DSP", "BRAM")),
+          fit, r.get("depth", "-"), *([f'{r["estimate"]["mhz"]:.0f}' if "estimate" in r else "-"] if estimated else []),
+          open(f"{work}/{scene}.digest").read().strip(), sep="\t")
 PYTHON
-  { printf '# commit: %s\n' "$(git -C "$docs" rev-parse --short=7 HEAD)"
-    printf '# machine: any machine: %s\n' "$(yosys -V | cut -d' ' -f1,2)"
-    printf '# command: docs/synth_table.sh build %s\n' "$target"
-    cat "$work/table"; } > "$docs/measured/data/synth-nodes-$target.tsv"
+}
+
+small() {
+  local device arch seed
+  printf '%s\t' 'full node of the coupon' 'logic cells' 'of these the harness' EBR DSP 'clock, MHz: seeds 1, 2, 3' \
+    'estimated' 'cycles per step' 'steps per second, seed 1'
+  printf 'RTL\n'
+  for device in up5k:ice40 hx8k:ice40_serial; do
+    arch=${device#*:} device=${device%:*}
+    emit "$arch" coupon --arch "$docs/../scenes/archs/$arch.toml"
+    for seed in 1 2 3; do
+      "$cuboct" synth "$work/$arch" --target "$device" --unit node --seed $seed --json > "$work/$arch.$seed.json"
+    done
+    python3 - "$work" "$arch" "$(digest "$work/$arch")" <<'PYTHON'
+import json, sys
+work, arch, digest = sys.argv[1:]
+reports = [json.load(open(f"{work}/{arch}.{seed}.json")) for seed in (1, 2, 3)]
+r = reports[0]
+uses, holds, harness = r["block"]["uses"], r["holds"], r["harness_flip_flops"]
+of = lambda k: f"{uses[k]} of {holds[k]}" if holds[k] else "-"
+print(f"{r['target'].upper()}, `{arch}.toml`", f"{r['logic_cells'] + harness} of {holds['LUT']}", harness, of("BRAM"), of("DSP"),
+      ", ".join(f"{x['fmax_mhz']:.1f}" for x in reports), f"{r['estimate']['mhz']:.1f}",
+      f"{r['cycles_per_step']['counted']['mean']:.0f}", f"{r['steps_per_second']:.0f}", digest, sep="\t")
+PYTHON
+  done
+}
+
+# What the calibration's own test prints.
+placed() {
+  printf '%s\t' 'node of, on LFE5U-25F' 'placed, MHz, by seeds' 'estimated before these were known' 'estimated' error \
+    'without this node'
+  printf 'error\n'
+  "$build/synth_tests" --gtest_filter=Calibration.LeavingANodeOut | sed -n 's/^row\t//p'
+}
+
+for target in "${targets[@]}"; do
+  case $target in
+    small) table=rtl-small-fpgas tools="$yosys, nextpnr-ice40 $(dpkg-query -W -f '${Version}' nextpnr-ice40)" rows=small ;;
+    ecp5-placed) table=synth-ecp5-placed tools="placed by nextpnr-ecp5 0.8, netlists by $yosys" rows=placed ;;
+    *) table=synth-nodes-$target tools=$yosys rows=nodes ;;
+  esac
+  { origin "$target" "$tools" && "$rows" "$target"; } > "$work/table"
+  cp "$work/table" "$docs/measured/data/$table.tsv"
 done
 "$docs/tables"

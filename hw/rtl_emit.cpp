@@ -121,7 +121,8 @@ void emit_node(const Plan& plan, const std::string& dir) {
 }
 
 void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
-              const BoardChoice& board, const std::string& arch) {
+              const BoardChoice& board, const std::string& arch,
+              const std::optional<CountedCycles>& counted) {
   RtlDesign design = decide(plan);
   legalise(design, true);
   if (!board.name.empty()) {
@@ -133,7 +134,7 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
   files["rtl/cuboct_lattice.sv"] = print_lattice(design);
   add_list(files);
   if (!arch.empty()) files["arch.toml"] = arch;
-  files["project.json"] = print_project(plan, initial, modules_of(files));
+  files["project.json"] = print_project(plan, initial, modules_of(files), counted);
   for (auto& [path, text] : print_bench(plan, design, initial, vector_steps)) files[path] = std::move(text);
   if (!board.name.empty()) {
     for (auto& [path, text] : print_board(plan, design, board)) files[path] = std::move(text);

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "hw/board.h"
 #include "hw/plan.h"
+#include "hw/rtl_project.h"
 #include "model/contract/state.h"
 
 namespace cuboct {
@@ -16,9 +18,10 @@ namespace cuboct {
 // steps from golden, files.f, project.json, README.md. With a board also board/: its top module
 // cuboct_board_top, what that needs beside the lattice, pins, and files.f of all. Same plan, same bytes.
 // Throws InputError.
-// `arch`, where it is not empty, is the text of arch.toml.
+// `arch`, where it is not empty, is the text of arch.toml; `counted` goes into project.json.
 void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
-              const BoardChoice& board = {}, const std::string& arch = "");
+              const BoardChoice& board = {}, const std::string& arch = "",
+              const std::optional<CountedCycles>& counted = {});
 // Throws InputError where emit_rtl would refuse the directory as another's.
 void check_emit_directory(const std::string& dir);
 

@@ -9,11 +9,15 @@
 
 namespace cuboct {
 
-std::string print_project(const Plan& plan, const State& initial, const std::vector<std::string>& files) {
+std::string print_project(const Plan& plan, const State& initial, const std::vector<std::string>& files,
+                          const std::optional<CountedCycles>& counted) {
   using Json = nlohmann::ordered_json;
   const FixedRule& rule = plan.rule;
   const Widths& w = rule.widths;
   const ExpectedCycles cycles = expected_cycles(plan, initial);
+  Json per_step = {{"expected", cycles.step}, {"at_full_use", cycles.ideal}};
+  if (counted)
+    per_step["counted"] = {{"mean", counted->mean()}, {"most", counted->most}, {"steps", counted->steps}};
   const Json json = {
       {"plan", fmt::format("{:016x}", plan.hash)},
       {"nodes", plan.nodes()},
@@ -49,7 +53,7 @@ std::string print_project(const Plan& plan, const State& initial, const std::vec
         {"link", plan.words.link_bits}}},
       {"latency",
        {{"filter", plan.latency.filter}, {"pipe", plan.latency.pipe}, {"update", plan.latency.update}}},
-      {"cycles_per_step", {{"expected", cycles.step}, {"at_full_use", cycles.ideal}}},
+      {"cycles_per_step", per_step},
       {"node", "cuboct_node"},
       {"lattice", "cuboct_lattice"},
       {"files", files},

@@ -37,11 +37,15 @@ struct Link {
   enum class Which { each, one, alone } which = Which::each;
 };
 
-// A wire: near + doubling * log2(sinks of its net), and `far` at each end that lies in a column or row of its
-// own (DSP, block RAM).
+// A wire: share * (near + slope * log2(sinks of its net, at most `most_sinks`) + far). The slope is `spread`
+// where it ends at a pin whose likes lie apart (bits of memories and register banks), `doubling` elsewhere.
+// `far` counts at each end that lies in a column or row of its own (DSP, block RAM).
 struct Wires {
-  double near, doubling, far;
-  const char* far_cells;    // a pattern of types
+  double near, doubling, spread, far;  // ns
+  double share;                        // of what was measured on critical paths, which are no average ones
+  double most_sinks;                   // the one that matters lies no farther on a wider net
+  const char *far_from, *far_to;       // patterns of types
+  const char *spread_cells, *spread_pins;
   std::vector<Link> links;  // the first that matches counts
 };
 

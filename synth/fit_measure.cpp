@@ -28,13 +28,13 @@ namespace fs = std::filesystem;
 constexpr Resource kKept[] = {Resource::lut, Resource::ff, Resource::dsp, Resource::bram, Resource::cell};
 
 // What is synthesised of a project.
-Synthesis whole(const std::string& directory, bool board, const std::string& out) {
+Synthesis whole(const std::string& directory, bool board, Nodes nodes, const std::string& out) {
   Synthesis s;
   const Project project = read_project(directory);
   const std::vector<std::string> files = board ? read_board(project).files : project.files;
   for (const std::string& f : files) s.files.push_back(fmt::format("{}/{}", directory, f));
   s.top = s.module = s.unit = board ? read_board(project).top : "cuboct_lattice";
-  s.kept = "cuboct_node";
+  if (nodes == Nodes::apart) s.kept = "cuboct_node";
   s.harness = false;
   s.counts_only = true;
   s.out = out;
@@ -84,8 +84,8 @@ Meter::Meter(const Target& target, std::function<void(const std::string& what)> 
   }
 }
 
-std::string Meter::key_of(const std::string& directory, bool board) const {
-  Synthesis s = whole(directory, board, "");
+std::string Meter::key_of(const std::string& directory, bool board, Nodes nodes) const {
+  Synthesis s = whole(directory, board, nodes, "");
   Hash hash;
   for (std::string& file : s.files) {
     add_code(hash, read_text(file));
@@ -97,19 +97,20 @@ std::string Meter::key_of(const std::string& directory, bool board) const {
   return fmt::format("{:016x}", hash.value());
 }
 
-Measured Meter::run(const std::string& directory, bool board) const {
+Measured Meter::run(const std::string& directory, bool board, Nodes nodes) const {
   const std::string out = directory + "/measure";
   make_directory(out);
   const Runner runner(out, begins_);
-  const Synthesis s = whole(directory, board, out);
+  const Synthesis s = whole(directory, board, nodes, out);
   runner.write("synth.ys", fpga_script(s, target_));
   runner.run("yosys", "yosys", "yosys", {out + "/synth.ys"});
   const std::string netlist = out + "/netlist.json";
   const CostOf costs = costs_of(target_.family);
   Measured m;
-  m.nodes = nodes_in(netlist, s.unit);
-  m.node = count_all(netlist, s.kept, costs);
   const Counts all = count_all(netlist, s.unit, costs);
+  const bool flat = nodes == Nodes::flat;
+  m.nodes = flat ? 1 : nodes_in(netlist, s.unit);
+  m.node = flat ? all : count_all(netlist, s.kept, costs);
   for (const Resource r : kKept) m.around[r] = all[r] - m.nodes * m.node[r];
   if (target_.family == Family::ice40) {
     runner.run("nextpnr-ice40", "pack", "nextpnr-ice40",
@@ -127,12 +128,13 @@ Measured Meter::run(const std::string& directory, bool board) const {
   return m;
 }
 
-Measured Meter::measure(const std::function<void(const std::string& directory)>& emit, bool board) const {
+Measured Meter::measure(const std::function<void(const std::string& directory)>& emit, bool board,
+                        Nodes nodes) const {
   const Scratch scratch;
   const std::string directory = scratch.path("project");
   emit(directory);
   const std::string cache = cache_directory();
-  const std::string file = cache.empty() ? "" : cache + "/fit/" + key_of(directory, board) + ".json";
+  const std::string file = cache.empty() ? "" : cache + "/fit/" + key_of(directory, board, nodes) + ".json";
   std::error_code none;
   if (!file.empty() && fs::is_regular_file(file, none)) {
     try {
@@ -142,7 +144,7 @@ Measured Meter::measure(const std::function<void(const std::string& directory)>&
       // It is measured anew.
     }
   }
-  const Measured m = run(directory, board);
+  const Measured m = run(directory, board, nodes);
   if (!file.empty()) {
     try {
       make_directory(cache + "/fit");

@@ -11,6 +11,11 @@
 
 namespace cuboct::synth {
 
+// `apart`: nodes as one module, which is synthesised once. Its border stays, so where links have no neighbour
+// what they lead to is counted too. `flat`: the whole as it is built, told as one node with nothing around
+// it.
+enum class Nodes { apart, flat };
+
 struct Measured {
   Counts node;    // one
   Counts around;  // the rest of the lattice, or of the board
@@ -27,13 +32,14 @@ class Meter {
   // the user's cache directory, by the text of the RTL, the script and the versions of the tools. On ice40 a
   // node's logic cells are those that nextpnr packs. Throws what `emit` throws, ToolFailed (whose log is
   // gone), Interrupted.
-  Measured measure(const std::function<void(const std::string& directory)>& emit, bool board) const;
+  Measured measure(const std::function<void(const std::string& directory)>& emit, bool board,
+                   Nodes nodes = Nodes::apart) const;
 
   const std::vector<std::string>& tools() const { return tools_; }  // versions
 
  private:
-  Measured run(const std::string& directory, bool board) const;
-  std::string key_of(const std::string& directory, bool board) const;
+  Measured run(const std::string& directory, bool board, Nodes nodes) const;
+  std::string key_of(const std::string& directory, bool board, Nodes nodes) const;
 
   const Target& target_;
   std::function<void(const std::string&)> begins_;

@@ -189,7 +189,7 @@ void Fitter::measure(const FitPoint& point) {
           throw NotEmitted(error);
         }
       },
-      !board_.name.empty());
+      !board_.name.empty(), plan.nodes() == 1 ? Nodes::flat : Nodes::apart);
   const FitAmounts node = amounts_of(m.node), around = amounts_of(m.around);
   model_.add(point, memories(point.brick, point.lanes, point.pipes, target_.family), node);
   FitAmounts& all = measured_[point] = times(node, m.nodes);

@@ -44,6 +44,7 @@ class Fitter {
   // The arch with the choice made, its other text as it was.
   std::string arch_text() const;
   Setup setup() const;
+  uint64_t steps() const { return scene_.steps; }  // of the scene's run
 
  private:
   struct Row {

@@ -90,7 +90,7 @@ class Flow {
     report_.plan = project_.plan;
     report_.nodes = project_.nodes;
     report_.particles = project_.particles;
-    report_.cycles_per_step = project_.cycles_per_step;
+    report_.cycles = project_.cycles;
     report_.target = target.name;
     report_.device = target.family == Family::asic ? fs::path(liberty()).stem().string() : target.device;
     report_.unit = request.unit;

@@ -58,7 +58,13 @@ Project read_project(const std::string& directory) {
   project.nodes = entry<uint64_t>(json, file, "nodes");
   project.particles = entry<uint64_t>(json, file, "particles");
   project.capacity = entry<int>(json, file, "arch/capacity");
-  project.cycles_per_step = entry<uint64_t>(json, file, "cycles_per_step/expected");
+  project.cycles.expected = entry<uint64_t>(json, file, "cycles_per_step/expected");
+  // Not of every project: a run may end in its first step.
+  if (json.contains("/cycles_per_step/counted"_json_pointer)) {
+    project.cycles.mean = entry<double>(json, file, "cycles_per_step/counted/mean");
+    project.cycles.most = entry<uint64_t>(json, file, "cycles_per_step/counted/most");
+    project.cycles.steps = entry<uint64_t>(json, file, "cycles_per_step/counted/steps");
+  }
   project.files = entry<std::vector<std::string>>(json, file, "files");
   for (const std::string& f : project.files)
     if (!fs::is_regular_file(dir / f))

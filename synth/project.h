@@ -8,12 +8,22 @@
 
 namespace cuboct::synth {
 
+// Cycles per step.
+struct ProjectCycles {
+  uint64_t expected = 0;  // of the busiest node at the scene's start (hw/cycles.h)
+  // Exact, over the first `steps` steps; steps = 0: nobody counted.
+  double mean = 0;
+  uint64_t most = 0, steps = 0;
+
+  double best() const { return steps > 0 ? mean : static_cast<double>(expected); }
+};
+
 struct Project {
   std::string directory;
   std::string plan;  // hash, 16 hexadecimal digits
   uint64_t nodes = 0, particles = 0;
   int capacity = 0;
-  uint64_t cycles_per_step = 0;    // expected, of the busiest node (hw/cycles.h)
+  ProjectCycles cycles;
   std::vector<std::string> files;  // below the directory, in the order to read
 };
 

@@ -69,8 +69,29 @@ Block block_of(const nlohmann::json& json) {
 // Whether a unit's clock is that of a machine; a block alone takes no steps.
 bool whole(const std::string& unit) { return unit == "node" || unit == "lattice" || unit == "board"; }
 
-double steps_per_second(const Report& report, double mhz) {
-  return mhz * 1e6 / static_cast<double>(report.cycles_per_step);
+double steps_per_second(const Report& report, double mhz) { return mhz * 1e6 / report.cycles.best(); }
+
+std::string cycles_text(const ProjectCycles& c) {
+  if (c.steps == 0) return fmt::format("{}, expected of the busiest node: no run counted them", c.expected);
+  return fmt::format("{:.1f}, the mean of the first {} steps, counted; the most {}", c.mean, c.steps, c.most);
+}
+
+Json to_json(const ProjectCycles& c) {
+  Json json = {{"expected", c.expected}};
+  if (c.steps > 0) json["counted"] = {{"mean", c.mean}, {"most", c.most}, {"steps", c.steps}};
+  return json;
+}
+
+ProjectCycles cycles_of(const nlohmann::json& json) {
+  ProjectCycles c;
+  c.expected = json.at("expected");
+  if (json.contains("counted")) {
+    const auto& counted = json.at("counted");
+    c.mean = counted.at("mean");
+    c.most = counted.at("most");
+    c.steps = counted.at("steps");
+  }
+  return c;
 }
 
 }  // namespace
@@ -141,6 +162,7 @@ std::string print_table(const Report& report) {
   }
   if (report.cells)
     line("logic cells, packed", fmt::format("{}, and {} of the harness", *report.cells, report.harness));
+  if (whole(report.unit)) line("cycles per step", cycles_text(report.cycles));
   if (report.depth) line("longest path", fmt::format("{} cells between registers", *report.depth));
   if (report.estimate) {
     const Estimate& e = *report.estimate;
@@ -163,8 +185,7 @@ std::string print_table(const Report& report) {
     line("Fmax", fmt::format("{:.2f} MHz ({})", *report.fmax, report.fmax_from));
     if (report.icetime) line("Fmax by icetime", fmt::format("{:.2f} MHz", *report.icetime));
     if (whole(report.unit))
-      line("steps per second", fmt::format("{:.4g} at Fmax: {} cycles per step expected of the busiest node",
-                                           steps_per_second(report, *report.fmax), report.cycles_per_step));
+      line("steps per second", fmt::format("{:.4g} at Fmax", steps_per_second(report, *report.fmax)));
   } else if (!report.silicon) {
     line("Fmax", "not known: not placed");
   }
@@ -183,7 +204,7 @@ nlohmann::ordered_json to_json(const Report& report) {
                {"unit", report.unit},
                {"nodes", report.nodes},
                {"particles", report.particles},
-               {"cycles_per_step", report.cycles_per_step},
+               {"cycles_per_step", to_json(report.cycles)},
                {"used", to_json(report.used, family)},
                {"holds", to_json(report.holds, family)}};
   if (const auto fit = fit_of(report))
@@ -231,7 +252,7 @@ Report read_report(const std::string& file) {
     report.unit = json.at("unit");
     report.nodes = json.at("nodes");
     report.particles = json.at("particles");
-    report.cycles_per_step = json.at("cycles_per_step");
+    report.cycles = cycles_of(json.at("cycles_per_step"));
     report.used = counts_of(json.at("used"));
     report.holds = counts_of(json.at("holds"));
     if (json.contains("logic_cells")) report.cells = json.at("logic_cells").get<uint64_t>();

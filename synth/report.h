@@ -42,7 +42,8 @@ struct Estimate {
 
 struct Report {
   std::string plan, target, device, unit;
-  uint64_t nodes = 0, particles = 0, cycles_per_step = 0;
+  uint64_t nodes = 0, particles = 0;
+  ProjectCycles cycles;
   Block block;                    // the unit's
   Counts used;                    // by unit and harness
   Counts holds;                   // by the device; zeros for asic

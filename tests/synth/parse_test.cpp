@@ -260,7 +260,7 @@ TEST_F(Parse, Table) {
   report.target = "ecp5-25";
   report.device = "LFE5U-25F";
   report.unit = "node";
-  report.cycles_per_step = 200;
+  report.cycles = {200, 160, 170, 50};
   report.holds = target_of("ecp5-25").holds;
   const Block pipe{"cuboct_pipe", 2, {{700, 600, 6, 1}}, {}}, wires{"cuboct_resize", 4, {}, {}};
   const Block core{"cuboct_node_core", 1, {{1000, 900, 6, 3}}, {pipe, wires}};
@@ -275,6 +275,7 @@ TEST_F(Parse, Table) {
       "device holds                                24288    24288       28       56\n"
       "\n"
       "fit the device         3 of node, limited by DSP (planned to 75 %)\n"
+      "cycles per step        160.0, the mean of the first 50 steps, counted; the most 170\n"
       "longest path           31 cells between registers\n";
   EXPECT_EQ(print_table(report), head + "Fmax                   not known: not placed\n");
   report.estimate = {
@@ -296,15 +297,14 @@ TEST_F(Parse, Table) {
   EXPECT_EQ(to_json(estimated).dump(), to_json(report).dump());
   report.estimate.reset();
   report.take({125, {}, {}}, "nextpnr-ecp5, seed 1");
-  EXPECT_EQ(
-      print_table(report),
-      head +
-          "Fmax                   125.00 MHz (nextpnr-ecp5, seed 1)\n"
-          "steps per second       6.25e+05 at Fmax: 200 cycles per step expected of the busiest node\n");
+  EXPECT_EQ(print_table(report), head +
+                                     "Fmax                   125.00 MHz (nextpnr-ecp5, seed 1)\n"
+                                     "steps per second       7.812e+05 at Fmax\n");
   const Report again = read_report(file("report.json", to_json(report).dump()));
   EXPECT_EQ(print_table(again), print_table(report));
   report.unit = "pipe";
   EXPECT_EQ(print_table(report).find("steps per second"), std::string::npos);
+  EXPECT_EQ(print_table(report).find("cycles per step"), std::string::npos);
   report.unit = "node";
   report.nodes = 4;
   EXPECT_NE(print_table(report).find("limited by DSP (planned to 75 %)\n"
@@ -313,6 +313,11 @@ TEST_F(Parse, Table) {
             std::string::npos);
   report.nodes = 3;
   EXPECT_EQ(print_table(report).find("--fit"), std::string::npos);
+  report.cycles.steps = 0;
+  EXPECT_NE(print_table(report).find(
+                "cycles per step        200, expected of the busiest node: no run counted them\n"),
+            std::string::npos);
+  EXPECT_NE(print_table(report).find("steps per second       6.25e+05 at Fmax\n"), std::string::npos);
 }
 
 TEST_F(Parse, NearestTargetThatHolds) {

@@ -24,10 +24,10 @@ namespace fs = std::filesystem;
 class Refuse : public ::testing::Test {
  protected:
   // Emits the small sheet.
-  void emit() {
+  void emit(const std::optional<CountedCycles>& counted = {}) {
     const std::string here = CUBOCT_SOURCE_DIR "/tests/synth/";
     const cuboct::Setup setup = make_setup(read_scene(here + "sheet.toml"), read_arch(here + "narrow.toml"));
-    emit_rtl(setup.plan, setup.initial, dir_, 1);
+    emit_rtl(setup.plan, setup.initial, dir_, 1, {}, "", counted);
     plan_ = setup.plan;
   }
   std::string refusal(const Request& request) const {
@@ -99,12 +99,24 @@ TEST_F(Refuse, TellsOfTheProject) {
   EXPECT_EQ(project.plan.size(), 16u);
   EXPECT_EQ(std::stoull(project.plan, nullptr, 16), plan_.hash);
   EXPECT_EQ(project.capacity, 3);
-  EXPECT_GT(project.cycles_per_step, 20u);
+  EXPECT_GT(project.cycles.expected, 20u);
+  EXPECT_EQ(project.cycles.steps, 0u);
   EXPECT_EQ(project.files[0], "rtl/cuboct_pkg.sv");
   std::ifstream list(dir_ + "/files.f");
   std::vector<std::string> files;
   for (std::string line; std::getline(list, line);) files.push_back(line);
   EXPECT_EQ(project.files, files);
+}
+
+// What was counted is what clocks are divided by; what is expected is for projects without it.
+TEST_F(Refuse, CountedCyclesAreThoseOfTheProject) {
+  emit(CountedCycles{4, 250, 64});
+  const ProjectCycles cycles = read_project(dir_).cycles;
+  EXPECT_EQ(cycles.steps, 4u);
+  EXPECT_EQ(cycles.mean, 62.5);
+  EXPECT_EQ(cycles.most, 64u);
+  EXPECT_EQ(cycles.best(), 62.5);
+  EXPECT_EQ((ProjectCycles{.expected = 70}.best()), 70);
 }
 
 TEST_F(Refuse, WhatIsNoProject) {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "cli/machine_cycles.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "emu/lattice/engine.h"
+#include "emu/lattice/timing.h"
+#include "model/base/error.h"
+
+namespace cuboct {
+namespace {
+
+// Particles times steps: some seconds of one core.
+constexpr uint64_t kMostWork = 20'000'000;
+
+}  // namespace
+
+std::optional<CountedCycles> count_cycles(const Plan& plan, const State& initial, uint64_t run_steps) {
+  const uint64_t affordable = std::max<uint64_t>(1, kMostWork / std::max<uint64_t>(1, plan.particles));
+  const uint64_t steps = std::min({kCountedSteps, affordable, run_steps});
+  CountedCycles counted;
+  try {
+    emu::LatticeEngine engine(plan, initial.step, plan.particles,
+                              [&](uint32_t k) { return initial.particles[k]; }, {});
+    emu::TimingModel timing(plan, 0);
+    emu::CellSlots slots;
+    std::vector<PhaseSpan> spans(size_t{plan.nodes()} * kPhases);
+    while (counted.steps < steps) {
+      engine.slots(slots);
+      engine.step();
+      timing.step(slots, engine.leaving(), spans);
+      uint64_t end = 0;  // the slowest node's
+      for (const PhaseSpan& span : spans) end = std::max(end, span.end + 1);
+      counted.most = std::max(counted.most, end - counted.cycles);
+      counted.cycles = end;
+      ++counted.steps;
+    }
+  } catch (const RunError&) {
+    // What a run would stop at; the steps before it took what they took.
+  }
+  if (counted.steps == 0) return std::nullopt;
+  return counted;
+}
+
+}  // namespace cuboct

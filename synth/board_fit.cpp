@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "synth/board_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hw/node_memories.h"
+#include "hw/rtl_emit.h"
+#include "model/base/error.h"
+#include "model/base/process.h"
+#include "synth/fit_measure.h"
+#include "synth/fit_model.h"
+
+namespace cuboct::synth {
+namespace {
+
+// Memories are counted in blocks of which yosys may make registers, where they are small: only so many times
+// too many are too many without a synthesis.
+constexpr uint64_t kSurely = 20;
+
+std::string count_text(uint64_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+// The resources of which more is used than there is, those that it has too little of first.
+std::string excess(const FitAmounts& uses, const FitAmounts& room) {
+  std::vector<size_t> over;
+  for (size_t r = 0; r < uses.size(); ++r)
+    if (uses[r] > room[r]) over.push_back(r);
+  const auto share = [&](size_t r) {
+    return room[r] == 0 ? HUGE_VAL : static_cast<double>(uses[r]) / static_cast<double>(room[r]);
+  };
+  std::ranges::stable_sort(over, [&](size_t a, size_t b) { return share(a) > share(b); });
+  std::string text;
+  for (const size_t r : over)
+    text += fmt::format("{}{} {}/{}", text.empty() ? "" : ", ", to_string(kFitted[r]), uses[r], room[r]);
+  return text;
+}
+
+struct Use {
+  FitAmounts node{}, around{};  // of one node; of all else
+  FitAmounts all(uint64_t nodes) const {
+    FitAmounts sum = times(node, nodes);
+    for (size_t r = 0; r < sum.size(); ++r) sum[r] += around[r];
+    return sum;
+  }
+};
+
+// The most nodes like these that have room; what stands around them grows with their number.
+uint64_t nodes_that_fit(const Use& use, const FitAmounts& room, uint64_t nodes) {
+  uint64_t most = nodes;
+  const auto fits = [&](uint64_t n) {
+    Use scaled = use;
+    for (uint64_t& amount : scaled.around) amount = amount * n / nodes;
+    return has_room(scaled.all(n), room);
+  };
+  while (most > 0 && !fits(most)) --most;
+  return most;
+}
+
+InputError no_room(const std::string& scene, const Plan& plan, const Board& board, const Use& use,
+                   const FitAmounts& room, bool memories_alone) {
+  const uint64_t nodes = plan.nodes(), fitting = nodes_that_fit(use, room, nodes),
+                 cells = fitting * cells_of(plan.bricks.shape());
+  const std::string what =
+      fmt::format("{}: its {} and a host link do not fit the {} ({}): they take {}{}", scene,
+                  count_text(nodes, "node"), board.name, board.target, excess(use.all(nodes), room),
+                  memories_alone ? " for their memories alone" : "");
+  const double particles = static_cast<double>(plan.particles) / static_cast<double>(plan.lattice.size());
+  std::string hint =
+      fitting == 0
+          ? fmt::format("not one such node fits; ")
+          : fmt::format("about {} like these would fit, {} with some {} of this scene; ",
+                        count_text(fitting, "node"), count_text(cells, "cell"),
+                        count_text(std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(
+                                                             particles * static_cast<double>(cells)))),
+                                   "particle"));
+  hint += fmt::format("--fit {} looks for a machine that fits, --unchecked writes this one for the simulator",
+                      board.target);
+  return InputError(what, hint);
+}
+
+}  // namespace
+
+FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State& initial,
+                         const BoardChoice& choice, const std::function<void(const std::string&)>& says) {
+  const Board& board = board_of(choice.name);
+  const Target& target = target_of(board.target);
+  const FitAmounts room = room_of(target);
+  if (!plan.arch.narrow_memories) {
+    Counts counts;
+    NodeMemories memories(plan.rule, plan.arch, plan.particles);
+    for (const NodeMemory& m : memories.of(plan.arch.brick, plan.arch.filter_lanes, plan.arch.force_pipes))
+      counts += memory_counts(target.family, m);
+    const Use use{amounts_of(counts), {}};
+    if (!has_room(use.all(plan.nodes()), times(room, kSurely)))
+      throw no_room(scene, plan, board, use, room, true);
+  }
+  const bool tools = in_path("yosys") && (target.family != Family::ice40 || in_path("nextpnr-ice40"));
+  if (!tools) return FitCheck::memories;
+  says("synthesises the board's design");
+  const Meter meter(target, [](const std::string&) {});
+  const auto measure = [&](Nodes nodes) {
+    return meter.measure([&](const std::string& dir) { emit_rtl(plan, initial, dir, 1, choice); }, true,
+                         nodes);
+  };
+  if (plan.nodes() > 1) {
+    const Measured m = measure(Nodes::apart);
+    const Use use{amounts_of(m.node), amounts_of(m.around)};
+    const FitAmounts all = use.all(plan.nodes());
+    if (has_room(all, room)) return FitCheck::synthesised;
+    // Not so much more that the nodes' borders can be all that is too much.
+    if (!has_room(all, times(room, 2))) throw no_room(scene, plan, board, use, room, false);
+  }
+  const FitAmounts whole = amounts_of(measure(Nodes::flat).node);
+  if (has_room(whole, room)) return FitCheck::synthesised;
+  FitAmounts each = whole;
+  for (uint64_t& amount : each) amount = (amount + plan.nodes() - 1) / plan.nodes();
+  throw no_room(scene, plan, board, {each, {}}, room, false);
+}
+
+}  // namespace cuboct::synth

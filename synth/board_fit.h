@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Whether a board's FPGA has room for an emitted lattice and its host link: asked before a project is
+// written.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "hw/board.h"
+#include "hw/plan.h"
+#include "model/contract/state.h"
+
+namespace cuboct::synth {
+
+// How far it was looked into.
+enum class FitCheck {
+  memories,     // no more than the memories' words was counted: a tool is missing
+  synthesised,  // all of it, by yosys and, on ice40, nextpnr's packer
+};
+
+// `scene` and `arch`: names for messages; an empty arch is the default. Synthesises only what has room for
+// its memories; what was measured before comes from the cache (Meter). `says` hears what it does. Throws
+// InputError with the numbers, and how many cells would fit, where there is no room; ToolFailed, Interrupted.
+FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State& initial,
+                         const BoardChoice& board, const std::function<void(const std::string& what)>& says);
+
+}  // namespace cuboct::synth
