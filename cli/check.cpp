@@ -77,6 +77,19 @@ std::string reason_of(const Plan& plan, const std::string& key) {
   return {};
 }
 
+// Multipliers of FPGAs take 18 bits; a strength beyond them costs a second one and an adder.
+std::string strength_reason(const Plan& plan) {
+  constexpr int kMultiplier = 18;
+  const FixedRule& rule = plan.rule;
+  const Widths& w = rule.widths;
+  const int more = w.strength_bits - kMultiplier;
+  if (more <= 0) return "one multiplier of an FPGA takes them";
+  const bool kicks = rule.force.value_frac - more + w.difference_frac < w.velocity_frac();
+  return fmt::format("more than the {} of an FPGA's multiplier: {}", kMultiplier,
+                     kicks ? "with fewer a kick would lack bits of the velocities"
+                           : "with fewer, forces would be rounded to more than the accuracy allows");
+}
+
 void add_looser(Items& items, const Scene& scene, const Plan& plan) {
   const auto looser = looser_formats(scene, plan);
   if (!looser) return;
@@ -124,7 +137,7 @@ Items resolve(const Loaded& loaded) {
   items.add("guard bits", w.guard, "", reason_of(plan, "guard"));
   items.add("difference bits", w.difference_frac, "", reason_of(plan, "difference_frac"));
   items.add("velocity bits", w.velocity_bits, "", reason_of(plan, "velocity_bits"));
-  items.add("strength bits", w.strength_bits);
+  items.add("strength bits", w.strength_bits, "", strength_reason(plan));
   items.add("sum bits", w.sum_bits, "", reason_of(plan, "sum_bits"));
   add_table(items, "force table", rule.force);
   if (rule.damped) {

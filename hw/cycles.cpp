@@ -212,6 +212,54 @@ ExpectedCycles single_cycles(const Plan& plan, Particles particles, Pairs pairs_
   return expected;
 }
 
+// Nodes that use halos on arrival. Of a cell around, the box of the own particles lets pass about as many
+// records as make pairs; the last one comes behind all that the relay sends.
+ExpectedCycles arrival_cycles(const Plan& plan, const PairCensus& census) {
+  constexpr uint64_t kRelay = 2;  // from what the relay asks for to the links' load
+  const int axes = plan.rule.axes;
+  const auto streamers = static_cast<uint64_t>(plan.arch.streamers);
+  const auto lanes = static_cast<uint64_t>(plan.arch.filter_lanes);
+  const uint64_t end_beat = kEndBeat + static_cast<uint64_t>(plan.link.latency);
+  ExpectedCycles expected;
+  for (uint32_t n = 0; n < plan.lattice.size(); ++n) {
+    const uint64_t own = census.particles(n), passes = ceil_div(own, lanes);
+    uint64_t sent = own;  // records over the last axis
+    std::array<uint64_t, 2> items{}, pairs{};
+    for (const auto& [other, offset] : plan.lattice.neighbourhood(n)) {
+      const std::array<int8_t, 3> by{static_cast<int8_t>(offset[0]), static_cast<int8_t>(offset[1]),
+                                     static_cast<int8_t>(offset[2])};
+      // The face over which its records come is that of the last axis along which it lies apart.
+      int last = axes - 1;
+      while (last >= 0 && offset[last] == 0) --last;
+      const bool here = last < 0;
+      if (!here && offset[axes - 1] == 0) sent += census.particles(other);
+      const size_t streamer = here || streamers == 1 || offset[last] < 0 ? 0 : 1;
+      const uint64_t met = own > 0 ? census.pairs(n, by) : 0;
+      items[streamer] += (here ? own : std::min(census.particles(other), met)) * passes;
+      pairs[streamer] += met;
+    }
+    const uint64_t relayed =
+        sent * static_cast<uint64_t>(plan.words.halo_beats) + static_cast<uint64_t>(axes) + kRelay + end_beat;
+    uint64_t force = relayed + 1;
+    for (size_t s = 0; s < streamers && own > 0; ++s) {
+      const uint64_t streamed = std::max(items[s] + static_cast<uint64_t>(axes), relayed + kCullStages);
+      const uint64_t issues = ceil_div(pairs[s] * streamers, static_cast<uint64_t>(plan.arch.force_pipes)) *
+                              static_cast<uint64_t>(plan.latency.interval);
+      expected.ideal = std::max({expected.ideal, items[s], issues});
+      // The first pairs are those of the own particles, once they are through the filter. A candidate's last
+      // issue leaves half of the pipes empty.
+      const auto filter = static_cast<uint64_t>(plan.latency.filter);
+      const uint64_t each = static_cast<uint64_t>(plan.arch.force_pipes) / streamers;
+      const uint64_t uneven = std::min(items[s], pairs[s]) * (each - 1) / (2 * each);
+      force = std::max(force, std::max(streamed + filter, issues + uneven + filter + 2) + 2 +
+                                  static_cast<uint64_t>(plan.latency.pipe));
+    }
+    const uint64_t update = own > 0 ? own - 1 + static_cast<uint64_t>(plan.latency.update) : 1;
+    expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * end_beat);
+  }
+  return expected;
+}
+
 }  // namespace
 
 PairCensus::PairCensus(const FixedRule& rule, const Lattice& lattice, const State& state)
@@ -232,13 +280,15 @@ uint64_t PairCensus::pairs(uint32_t cell) const {
 
 ExpectedCycles expected_cycles(const Plan& plan, const PairCensus& census) {
   if (!plan.bricks.one_cell()) return BrickCycles(plan, census).expected();
+  if (plan.arch.halos == Halos::arrival) return arrival_cycles(plan, census);
   return single_cycles(
       plan, [&](uint32_t n) { return census.particles(n); }, [&](uint32_t n) { return census.pairs(n); },
       [](uint32_t) { return uint64_t{0}; });
 }
 
 ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
-  if (!plan.bricks.one_cell()) return expected_cycles(plan, PairCensus(plan.rule, plan.lattice, state));
+  if (!plan.bricks.one_cell() || plan.arch.halos == Halos::arrival)
+    return expected_cycles(plan, PairCensus(plan.rule, plan.lattice, state));
   const Held held = held_by(plan.lattice, state);
   return single_cycles(
       plan, [&](uint32_t n) { return held[n].size(); },

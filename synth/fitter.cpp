@@ -39,6 +39,9 @@ std::string with_choice(const std::string& text, const std::string& path, const 
 
 // With the least brick, lanes and pipes: those of the file are not what is asked for.
 Arch least(Arch arch) {
+  if (arch.halos == Halos::arrival)
+    arch.places.fail({"node.halos"}, "--fit chooses among bricks, whose halos are used by phases",
+                     "set halos = \"phases\" and streamers = 1, or emit without --fit");
   arch.brick = {1, 1, 1};
   arch.filter_lanes = arch.force_pipes = 1;
   return arch;
