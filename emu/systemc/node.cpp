@@ -123,7 +123,7 @@ void Node::relay() {
 
 bool Node::end_early(int axis) {
   return plan_.arch.halos == Halos::arrival && ((leaving_ & bit(axis)) == 0 || own_.empty()) &&
-         load_ends(faces_of(axis));
+         empty(faces_of(axis)) && load_ends(faces_of(axis));
 }
 
 void Node::exchange() {

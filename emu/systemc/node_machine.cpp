@@ -179,6 +179,7 @@ void NodeMachine::clock(const NodeInputs& in, NodeOutputs& out) {
     out.valid = 0;
     return;
   }
+  full_ = valid_;
   can_load_ = static_cast<uint8_t>(~valid_ | in.ready);
   valid_ &= static_cast<uint8_t>(~in.ready);
 

@@ -59,6 +59,8 @@ class NodeMachine : public NodeModel {
   void load_slice(int face);
   // Loads end beats, if all the faces can; whether it did.
   bool load_ends(uint8_t faces);
+  // Whether all these faces' registers were empty at the cycle's start.
+  bool empty(uint8_t faces) const { return (faces & full_) == 0; }
 
   void enter(Main next);
   void finish_phase(Main next);
@@ -121,6 +123,7 @@ class NodeMachine : public NodeModel {
   uint8_t migrating_ = 0;  // by face. Streams alternate: halo, migrate, halo, ...
   uint8_t starting_ = 0;   // phases whose first cycle is the next one to run
   uint8_t valid_ = 0, can_load_ = 0;
+  uint8_t full_ = 0;  // link registers that held a beat at the cycle's start
   uint32_t steps_ = 0, step_ = 0;
   uint64_t link_waits_ = 0, beats_ = 0;
 };

@@ -39,7 +39,7 @@ module cuboct_migrate #(
   output logic [1:0]                load_o,           // which link registers take a beat
   output logic                      end_o,            // with load_o: an end beat
   output logic [LinkBits-1:0]       data_o,           // with load_o: payload; 0 unless someone leaves
-  input  logic                      next_can_load_i,  // Early: both links of the next phase's axis can
+  input  logic                      next_empty_i,     // Early: both link registers of the next phase's axis are empty
   output logic                      next_load_o,      // both take an end beat
   // The inbox that is taken from.
   output logic [2*Axes-1:0]         face_o,           // which one, one bit each; none outside of TAKE_LOW and TAKE_HIGH
@@ -74,7 +74,7 @@ module cuboct_migrate #(
   logic [2*Axes-1:0] face_d, face_q;
   logic              quiet;      // no one leaves along the next phase's axis
   logic [1:0]        face_axis;  // of the next cycle's face
-  assign quiet     = (Early != 0) && (!leaving_i || count_i == '0) && next_can_load_i;
+  assign quiet     = (Early != 0) && (!leaving_i || count_i == '0) && next_empty_i;
   assign face_axis = next_load_o && !before_i ? axis_i + 2'd1 : axis_i;
   for (genvar f = 0; f < 2 * Axes; f++) begin : gen_face
     localparam int Axis = f / 2;
@@ -127,7 +127,6 @@ module cuboct_migrate #(
     beat_d         = beat_q;
     done_o         = 1'b0;
     load_o         = 2'b00;
-    end_o          = 1'b0;
     write_o        = 1'b0;
     // Chosen by the state: what arrives comes late in the cycle.
     write_slot_o   = takes ? count_i[SlotBits-1:0] : write_q[SlotBits-1:0];
@@ -170,7 +169,6 @@ module cuboct_migrate #(
         state_d = End;
         if (can_load_i == 2'b11) begin
           load_o  = 2'b11;
-          end_o   = 1'b1;
           state_d = TakeLow;
         end
       end
@@ -184,7 +182,6 @@ module cuboct_migrate #(
         end
       end
     end
-    end_o = end_o || next_load_o;
     if (some_i) begin
       write_o      = !full_i;
       count_set_o  = !full_i;
@@ -222,4 +219,5 @@ module cuboct_migrate #(
     .word_i(read_data_i[ParticleBits-1:0]), .beat_i(beat_q), .data_o(beat)
   );
   assign data_o = scans ? beat : '0;
+  assign end_o  = !scans;  // else only end beats are loaded
 endmodule

@@ -323,7 +323,7 @@ module cuboct_node_core #(
     );
   end
   // What belongs to the axis of the present phase, and of the one that the next migration is along.
-  logic                      next_can_load, migrate_next_load, above_done;
+  logic                      next_empty, migrate_next_load, above_done;
   logic [1:0]                axis_halo_end;
   logic                      next_leaving;  // along the axis of the next migration phase
   integer                    b;
@@ -332,7 +332,7 @@ module cuboct_node_core #(
     axis_has_link = 2'b00;
     axis_halo_end = 2'b00;
     next_leaving  = leaving_q[0] && !in_migrate;
-    next_can_load = (can_load[1:0] == 2'b11) && !in_migrate;
+    next_empty    = (link_valid_o[1:0] == 2'b00) && !in_migrate;
     above_done    = 1'b0;
     for (b = 0; b < Axes; b = b + 1) begin
       if (axis_onehot[b]) begin
@@ -343,12 +343,12 @@ module cuboct_node_core #(
       end
       if (b > 0 && in_migrate && axis_onehot[b-1]) begin
         next_leaving  = leaving_q[b];
-        next_can_load = (can_load[2*b +: 2] == 2'b11);
+        next_empty    = (link_valid_o[2*b +: 2] == 2'b00);
       end
     end
   end
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
-  assign send_end  = (in_migrate || migrate_next_load) ? migrate_send_end : relay_end;
+  assign send_end  = in_exchange ? relay_end : migrate_send_end;
   // Of the three all but one are 0.
   cuboct_late #(.Bits(LinkBits)) u_send (
     .early_i(migrate_beat | relay_beat), .late_i(relay_halo_beat), .or_o(send_data)
@@ -641,7 +641,7 @@ module cuboct_node_core #(
     .SlotBits(SlotBits), .CountBits(CountBits), .Early(Arrival)
   ) u_migrate (
     .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .has_link_i(axis_has_link),
-    .before_i(in_update && update_done), .next_can_load_i(next_can_load), .next_load_o(migrate_next_load),
+    .before_i(in_update && update_done), .next_empty_i(next_empty), .next_load_o(migrate_next_load),
     .above_done_i(above_done), .goes_on_o(migrate_goes_on),
     .leaving_i(next_leaving), .count_i(own_count_q), .full_i(full_q), .count_set_o(migrate_count_set),
     .count_o(migrate_count), .full_o(migrate_full),
