@@ -9,7 +9,8 @@ mkdir -p "$work"
 eval "$(sed -n '/^digest()/p' "$root/docs/synth_table.sh")"
 seen=0 old=0
 check() {  # TABLE, its row's first word, SCENE, ARGUMENTS of emit...
-  local project=$work/$1-$2 told now
+  local project=$work/project told now
+  rm -rf "$project"
   told=$(awk -F'\t' -v row="$2" 'index($1, row) == 1 {print $NF}' "$root/docs/measured/data/$1.tsv")
   "$cuboct" emit "$root/scenes/$3.toml" "${@:4}" --out "$project" --vector-steps 1 > /dev/null
   now=$(digest "$project")
@@ -21,7 +22,9 @@ for target in ecp5-85 xc7; do
 done
 check rtl-small-fpgas UP5K coupon --arch "$root/scenes/archs/ice40.toml"
 check rtl-small-fpgas HX8K coupon --arch "$root/scenes/archs/ice40_serial.toml"
-if [ $seen != 12 ] || [ $old != 0 ]; then
+check board-examples '`archs/icebreaker' boards/grips --arch "$root/scenes/archs/icebreaker.toml"
+check board-examples '`archs/board' boards/grips --arch "$root/scenes/archs/board.toml"
+if [ $seen != 14 ] || [ $old != 0 ]; then
   echo "$old of $seen rows are stale: docs/synth_table.sh BUILD makes them anew"
   exit 1
 fi
