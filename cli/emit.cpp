@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <filesystem>
 #include <memory>
 
 #include "cli/command.h"
@@ -13,18 +12,12 @@
 #include "model/base/json.h"
 #include "model/base/text.h"
 #include "model/run/static_engine.h"
-#include "model/scene/config.h"
 
 namespace cuboct {
 namespace {
 
-// The text of the arch where it is the one that an earlier --fit left in the project: it stays there.
-std::string chosen_before(const std::string& arch, const std::string& out) {
-  std::error_code none;
-  if (arch.empty() || !std::filesystem::equivalent(arch, std::filesystem::path(out) / "arch.toml", none))
-    return {};
-  return read_config_text(arch);
-}
+// For the commands that the project's README names.
+std::string text_of(const Arch& arch) { return arch.text.empty() ? "name = \"default\"\n" : arch.text; }
 
 }  // namespace
 
@@ -69,8 +62,8 @@ Items emit_one(const Options& options) {
     if (!options.board.name.empty() && !options.unchecked)
       check_board(options.input, plan, loaded.setup.initial, options.board);
     counted = count_cycles(plan, loaded.setup.initial, loaded.scene.steps);
-    emit_rtl(plan, loaded.setup.initial, options.out, options.vector_steps, options.board,
-             chosen_before(options.input.arch, options.out), counted);
+    emit_rtl(plan, loaded.setup.initial, options.out, options.vector_steps, options.board, text_of(plan.arch),
+             counted);
   });
   return say_emitted(options.out, plan, counted, options.answer);
 }

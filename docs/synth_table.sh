@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 # Makes tables of docs/measured anew: synth-nodes-TARGET, what a node of five scenes takes on a target; with "small" in place
 # of a target rtl-small-fpgas, a node on two small FPGAs as placed with three seeds; with "ecp5-placed" synth-ecp5-placed,
-# the estimate beside nodes that were placed. Some fifteen minutes. usage: docs/synth_table.sh BUILD_DIRECTORY [TARGET...]
+# the estimate beside nodes that were placed; with "boards" board-examples, what the examples of boards take. Some twenty
+# minutes. usage: docs/synth_table.sh BUILD_DIRECTORY [TARGET...]
 set -euo pipefail
 build=$1 cuboct=$1/cuboct
 shift
 targets=("$@")
-[ $# -gt 0 ] || targets=(ecp5-85 xc7 small ecp5-placed)
+[ $# -gt 0 ] || targets=(ecp5-85 xc7 small ecp5-placed boards)
 docs=$(dirname "${BASH_SOURCE[0]}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -71,6 +72,26 @@ PYTHON
   done
 }
 
+boards() {
+  local example board arch target clock
+  printf '%s\t' 'scenes/boards/grips.toml with' nodes LUT FF DSP BRAM 'logic cells' 'clock, MHz' "board's clock" \
+    'cycles per step'
+  printf 'RTL\n'
+  for example in icebreaker:icebreaker:up5k:12 ulx3s:board:ecp5-85:25; do
+    IFS=: read -r board arch target clock <<< "$example"
+    emit "$board" boards/grips --arch "$docs/../scenes/archs/$arch.toml" --board "$board"
+    "$cuboct" synth "$work/$board" --target "$target" --unit board --json > "$work/$board.json"
+    python3 - "$work/$board.json" "\`archs/$arch.toml\`, $target" "$clock" "$(digest "$work/$board")" <<'PYTHON'
+import json, sys
+r, name, clock, digest = json.load(open(sys.argv[1])), *sys.argv[2:]
+uses, holds = r["used"], r["holds"]
+print(name, r["nodes"], *(f"{uses[k]} of {holds[k]}" for k in ("LUT", "FF", "DSP", "BRAM")), r.get("logic_cells", "-"),
+      f"{r['fmax_mhz']:.1f}, placed" if "fmax_mhz" in r else f"{r['estimate']['mhz']:.1f}, estimated", clock,
+      f"{r['cycles_per_step']['counted']['mean']:.0f}", digest, sep="\t")
+PYTHON
+  done
+}
+
 # What the calibration's own test prints.
 placed() {
   printf '%s\t' 'node of, on LFE5U-25F' 'placed, MHz, by seeds' 'estimated before these were known' 'estimated' error \
@@ -82,6 +103,7 @@ placed() {
 for target in "${targets[@]}"; do
   case $target in
     small) table=rtl-small-fpgas tools="$yosys, nextpnr-ice40 $(dpkg-query -W -f '${Version}' nextpnr-ice40)" rows=small ;;
+    boards) table=board-examples tools="$yosys, nextpnr-ice40 $(dpkg-query -W -f '${Version}' nextpnr-ice40)" rows=boards ;;
     ecp5-placed) table=synth-ecp5-placed tools="placed by nextpnr-ecp5 0.8, netlists by $yosys" rows=placed ;;
     *) table=synth-nodes-$target tools=$yosys rows=nodes ;;
   esac

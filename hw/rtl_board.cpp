@@ -87,7 +87,7 @@ std::string print_board_readme(const Plan& plan, const BoardChoice& choice) {
   const Board& board = board_of(choice.name);
   const bool settable = choice.velocities && !moved_types(plan.rule).empty();
   return fmt::format(
-      R"(
+      R"md(
 ## The board: {0}
 
 `board/` holds what makes a bitstream of the lattice: `cuboct_board_top.sv` (the top module), `cuboct_host_link.sv` (takes a
@@ -103,15 +103,23 @@ Load:
 ```
 {3}```
 
-Run, with the scene that this project was made from:
+Run, with the scene that this project was made from; `arch.toml` is the arch that it was made with:
 
 ```
-cuboct run SCENE --engine fpga --port /dev/ttyUSB0 --baud {4}
+cuboct run SCENE --arch arch.toml --engine fpga --port /dev/ttyUSB0 --baud {4}
 ```
 
-The board answers for plan {5:016x}{7}. Without a board: `cuboct-board-sim .` runs
-these files under Verilator behind a pseudo-terminal, and prints its name.
-)",
+The board answers for plan {5:016x}{7}.
+
+Without a board: this program runs these files under Verilator behind a pseudo-terminal, whose name it prints.
+
+```
+cuboct-board-sim . > port &
+while ! grep -q . port; do sleep 0.1; done
+cuboct run SCENE --arch arch.toml --engine fpga --port "$(cat port)" --baud {4}
+kill $!
+```
+)md",
       board.title, board.pins, board.build, board.flash, choice.baud, plan.hash, board.target,
       settable ? ", or for one that differs in the velocities of held and moved types alone" : " alone");
 }

@@ -18,7 +18,8 @@ namespace cuboct {
 // steps from golden, files.f, project.json, README.md. With a board also board/: its top module
 // cuboct_board_top, what that needs beside the lattice, pins, and files.f of all. Same plan, same bytes.
 // Throws InputError.
-// `arch`, where it is not empty, is the text of arch.toml; `counted` goes into project.json.
+// `arch` is the text of arch.toml, which the board's README names; nothing where it is empty; `counted` goes
+// into project.json.
 void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
               const BoardChoice& board = {}, const std::string& arch = "",
               const std::optional<CountedCycles>& counted = {});

@@ -19,6 +19,8 @@ namespace {
 // Memories are counted in blocks of which yosys may make registers, where they are small: only so many times
 // too many are too many without a synthesis.
 constexpr uint64_t kSurely = 20;
+// Most links of so few nodes lead nowhere, and what they lead to is not built: only the whole tells.
+constexpr uint32_t kFewNodes = 8;
 
 std::string count_text(uint64_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -106,7 +108,7 @@ FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State
     return meter.measure([&](const std::string& dir) { emit_rtl(plan, initial, dir, 1, choice); }, true,
                          nodes);
   };
-  if (plan.nodes() > 1) {
+  if (plan.nodes() > kFewNodes) {
     const Measured m = measure(Nodes::apart);
     const Use use{amounts_of(m.node), amounts_of(m.around)};
     const FitAmounts all = use.all(plan.nodes());

@@ -286,6 +286,14 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   return scene;
 }
 
+// A machine's file in the place of a scene's.
+void refuse_arch(const ConfigTable& root, const std::string& path) {
+  if (root.has("law") || root.has("packing")) return;
+  for (const char* key : {"node", "link", "widths", "table", "plan"})
+    if (const auto found = root.find(key); found && found->is_table())
+      found->fail("this is an arch file, not a scene", fmt::format("--arch {} gives it to a scene", path));
+}
+
 }  // namespace
 
 double first_shell(const Scene& scene) { return scene.pitch > 0 ? 1.207 * scene.pitch : scene.rule.cutoff(); }
@@ -309,6 +317,7 @@ Scene read_scene(const std::string& path, const SceneChoice& choice) {
 }
 
 Scene parse_scene(const std::string& text, const std::string& path, const SceneChoice& choice) {
+  refuse_arch(parse_config(text, path), path);
   Scene scene = scene_of(parse_config(text, path), path, choice);
   scene.text = text;
   return scene;

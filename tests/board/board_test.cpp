@@ -204,7 +204,7 @@ TEST(Board, RequestsMayBeRepeated) {
 TEST(Board, TheCommandDrivesIt) {
   const SimulatedBoard board;
   const std::string baud = std::to_string(SimulatedBoard::kBaud);
-  const std::vector<std::string> end{"--arch", board_file("small.toml"), "--port", board.port(), "--baud",
+  const std::vector<std::string> end{"--arch", board_file("board.toml"), "--port", board.port(), "--baud",
                                      baud,     "--port-timeout",         "20"};
   const auto with = [&](std::vector<std::string> words) {
     words.insert(words.end(), end.begin(), end.end());

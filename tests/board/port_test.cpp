@@ -38,7 +38,7 @@ struct Pty {
 };
 
 Answer run_at(const std::string& port, const std::string& timeout = "0.05") {
-  return command({"run", "--quiet", board_file("grips.toml"), "--arch", board_file("small.toml"), "--engine",
+  return command({"run", "--quiet", board_file("grips.toml"), "--arch", board_file("board.toml"), "--engine",
                   "fpga", "--port", port, "--port-timeout", timeout});
 }
 

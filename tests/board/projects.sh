@@ -20,11 +20,11 @@ check() {  # NAME ARGUMENTS...
     grep -q "[ \"]$port[ \"]" "$project"/board/pins.* || { echo "no pin for $port"; exit 1; }
   done
 }
-arch=$root/scenes/boards/small.toml
-check icebreaker --board icebreaker
-check ulx3s --board ulx3s --baud 3000000
-check fixed --board ulx3s --fixed-velocities
+arch=$root/scenes/archs/board.toml
+check icebreaker --board icebreaker --unchecked
+check ulx3s --board ulx3s --baud 3000000 --unchecked
+check fixed --board ulx3s --fixed-velocities --unchecked
 ! grep -rq velocity_i "$dir/fixed/rtl/cuboct_lattice.sv"
 arch=$root/tests/board/one_node.toml
-check brick --board ulx3s
+check brick --board ulx3s --unchecked
 make -s -C "$dir/icebreaker/bench" icarus 2>&1 | grep '^PASS [1-9][0-9]* comparisons'

@@ -24,8 +24,10 @@ std::string contents(const std::string& path) {
 }  // namespace
 
 std::string board_file(const std::string& name) {
-  const bool shown = name == "grips.toml" || name == "small.toml";  // as docs/user/board.md does
-  return std::string(CUBOCT_SOURCE_DIR) + (shown ? "/scenes/boards/" : "/tests/board/") + name;
+  const char* folder = name == "grips.toml"   ? "/scenes/boards/"
+                       : name == "board.toml" ? "/scenes/archs/"
+                                              : "/tests/board/";
+  return CUBOCT_SOURCE_DIR + (folder + name);
 }
 
 BoardSetup board_setup(const std::string& scene, const std::string& arch) {

@@ -13,12 +13,12 @@
 
 namespace cuboct::test {
 
-std::string board_file(const std::string& name);  // of scenes/boards or tests/board
+std::string board_file(const std::string& name);  // of scenes/boards, scenes/archs or tests/board
 // A scene with its machine.
 struct BoardSetup : Setup {
   Scene scene;
 };
-BoardSetup board_setup(const std::string& scene, const std::string& arch = "small.toml");  // likewise
+BoardSetup board_setup(const std::string& scene, const std::string& arch = "board.toml");  // likewise
 
 struct Answer {
   int code;  // exit code
@@ -31,7 +31,7 @@ class SimulatedBoard {
  public:
   // `options`: further ones of cuboct-board-sim.
   explicit SimulatedBoard(const std::vector<std::string>& options = {},
-                          const std::string& arch = "small.toml");
+                          const std::string& arch = "board.toml");
 
   const std::string& port() const { return port_; }
   static constexpr int kBaud = 3000000;  // four clocks per bit

@@ -18,7 +18,7 @@ namespace {
 
 const std::string kRoot = CUBOCT_SOURCE_DIR;
 
-Bed bed_of(const std::string& scene, const std::string& arch = "scenes/boards/small.toml") {
+Bed bed_of(const std::string& scene, const std::string& arch = "scenes/archs/board.toml") {
   Bed bed;
   bed.scene = read_scene(kRoot + "/" + scene);
   bed.plan = plan_of(bed.scene, read_arch(arch.empty() ? arch : kRoot + "/" + arch));
@@ -283,7 +283,7 @@ TEST(RealEngines, CountTheSameBrokenBonds) {
 // A position that stops being finite takes the state with it: the run ends with the state before.
 TEST(RealEngines, EndWhereAPositionIsLost) {
   Scene scene = read_scene(kRoot + "/scenes/boards/grips.toml");
-  const Plan plan = plan_of(scene, read_arch(kRoot + "/scenes/boards/small.toml"));
+  const Plan plan = plan_of(scene, read_arch(kRoot + "/scenes/archs/board.toml"));
   scene.rule.dt *= 1e160;
   const Recorded run = record(scene, reference_kind(scene, plan, {}), everything(20));
   ASSERT_TRUE(run.trace.stop);
