@@ -70,7 +70,7 @@ struct ArrivalTiming::Stream {
     act(complete);
     leave(leaves.back() + 1);
   }
-  int64_t last() const { return std::max({streamed + 1, filtered + 1, issued - (interval - 1) + pipe}); }
+  int64_t last() const { return std::max({streamed + 2, filtered + 2, issued - (interval - 1) + pipe}); }
 
   const size_t depth;
   const int64_t pipes, interval, pipe;
@@ -269,24 +269,23 @@ void ArrivalTiming::end_beats(int axis, uint32_t n, int64_t start) {
 }
 
 void ArrivalTiming::take_particles(int axis, uint32_t n) {
-  int64_t now = migrate_end_[at(axis)][n] + 1;
+  // A phase does not end in the cycle after one that takes a particle.
+  int64_t now = migrate_end_[at(axis)][n] + 1, settled = kLongAgo;
   const auto take = [&](int side) {
-    bool some = false;
     if (migration_.any())
       for (const auto& arrival : migration_.arrivals(axis, n, side)) {
         now = std::max(now, migrate_start_[at(axis)][arrival.from] + arrival.after) + 1;
-        some = true;
+        settled = now + 1;
       }
-    return some;
   };
   const auto ended = [&](int side) { return migrate_end_[at(axis)][other(n, 2 * axis + side)] + received_; };
   take(0);
   now = std::max(now, ended(0));
   const bool some_above = migration_.any() && !migration_.arrivals(axis, n, 1).empty();
-  if (some_above || ended(1) > now) {
+  if (some_above || ended(1) > now || settled > now) {
     ++now;
     take(1);
-    now = std::max(now, ended(1));
+    now = std::max({now, ended(1), settled});
   }
   end_[at(Phase::migrate_x) + at(axis)][n] = now;
 }

@@ -35,11 +35,12 @@ struct ForceStream {
 
 // Steps all cycles of one streamer and its pipes from cycle `begin` on, register by register; the last one.
 // there(segment, entry): the cycle from which on the entry may be read; complete(segment): that from which on
-// it is known that the segment has no further entry. issue(entry, mask) issues the lowest bits of `mask`, one
-// per pipe, and clears them.
+// it is known that the segment has no further entry. `settle`: cycles after all but the pipes is empty,
+// before which the last one does not come. issue(entry, mask) issues the lowest bits of `mask`, one per pipe,
+// and clears them.
 template <typename There, typename Complete, typename Issue>
 uint64_t clock_stream(const Plan& plan, ForceStream& stream, int segments, uint64_t begin, There there,
-                      Complete complete, ForceCounts& counts, Issue issue) {
+                      Complete complete, int settle, ForceCounts& counts, Issue issue) {
   const uint32_t depth = static_cast<uint32_t>(plan.arch.queue_depth);
   stream.queue.resize(depth);
 
@@ -66,7 +67,7 @@ uint64_t clock_stream(const Plan& plan, ForceStream& stream, int segments, uint6
     if (filtering == 0 && count == 0 && current_mask == 0 && hold == 0) {
       // Nothing moves but the pipes: on to where the streamer may go on, or the pipes are empty.
       if (segment == segments) {
-        cycle += static_cast<uint64_t>(drain);
+        cycle += static_cast<uint64_t>(std::max(drain, settle));
         break;
       }
       if (const uint64_t acts = from(); acts > cycle) {
@@ -128,7 +129,7 @@ uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
                      const std::array<uint64_t, 4>& available, ForceCounts& counts, Issue issue) {
   const auto from = [&](int segment) { return available[static_cast<size_t>(segment + 1) / 2]; };
   const uint64_t last = clock_stream(
-      plan, stream, segments, available[0], [&](int segment, uint32_t) { return from(segment); }, from,
+      plan, stream, segments, available[0], [&](int segment, uint32_t) { return from(segment); }, from, 0,
       counts, issue);
   counts.busy += last - available[0] + 1;
   return last;

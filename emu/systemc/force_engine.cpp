@@ -116,7 +116,7 @@ uint64_t ForceEngine::arrive() {
     last = std::max(last, clock_stream(
                               plan_, stream, static_cast<int>(segments), begin,
                               [](int, uint32_t entry) { return there[entry]; },
-                              [&](int segment) { return complete[static_cast<size_t>(segment)]; }, counts_,
+                              [&](int segment) { return complete[static_cast<size_t>(segment)]; }, 1, counts_,
                               [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); }));
   }
   last = std::max(last, available_[static_cast<size_t>(plan_.rule.axes)]);

@@ -229,6 +229,7 @@ void Node::take(int face, Migrate next, bool last) {
     } else if (in.popped + 1 == in.fifo.size() && in.came + 1 == now_) {
       return;  // the memory has not answered yet
     }
+    took_ = now_ + 1;
     Slot s = in.fifo[in.popped++];
     if (in.popped == in.fifo.size()) in.fifo.clear(), in.popped = 0;
     s.away[a] = 0;
@@ -245,11 +246,16 @@ void Node::take(int face, Migrate next, bool last) {
     wakes_at_ = kNever;
     return;
   }
-  migrate_ = next;
-  if (plan_.arch.halos == Halos::arrival && !last) {
-    const Inbox& above = inbox_[face + 1];
-    last = above.popped == above.fifo.size() && (!linked(face + 1) || (migrate_end_ & bit(face + 1)) != 0);
+  if (plan_.arch.halos == Halos::arrival) {
+    if (!last) {
+      const Inbox& above = inbox_[face + 1];
+      last = above.popped == above.fifo.size() &&
+             (!linked(face + 1) || (migrate_end_ & bit(face + 1)) != 0) && took_ != now_;
+    } else if (took_ == now_) {
+      return;  // the slot is not written yet
+    }
   }
+  migrate_ = next;
   if (!last) return;
   ended_early_ = a + 1 < axes_ && end_early(a + 1);
   finish_migration();

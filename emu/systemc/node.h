@@ -66,6 +66,7 @@ class Node final : public NodeMachine {
   int relay_axis_ = 0;        // the end beat, or the segment, that the relay is at belongs to
   bool ending_ = false;       // the axis's segments are done
   uint8_t sent_axes_ = 0;     // whose end beats are loaded
+  uint64_t took_ = 0;         // cycle after that of the last particle that TAKE took
   bool ended_early_ = false;  // the next phase's end beats are loaded
   uint8_t leaving_ = 0;       // bit a: `leaving_a`
 };

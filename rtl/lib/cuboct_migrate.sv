@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The three migration phases. SCAN sends those who leave along the axis and closes the gaps, END closes the streams,
 // TAKE_LOW and TAKE_HIGH append what came from below and from above. SCAN is left out where no one leaves. With Early the
-// end beats of such a phase go out in the last cycle before it, and TAKE_HIGH is left out where all has come from above.
+// end beats of such a phase go out in the last cycle before it, TAKE_HIGH is left out where all has come from above, and
+// slots are written a cycle later: a phase does not end in the cycle after one that takes a particle.
 module cuboct_migrate #(
   parameter int Axes         = 3,    // 2 or 3
   parameter int ParticleBits = 128,  // the word that travels
@@ -74,7 +75,13 @@ module cuboct_migrate #(
   logic [2*Axes-1:0] face_d, face_q;
   logic              quiet;      // no one leaves along the next phase's axis
   logic [1:0]        face_axis;  // of the next cycle's face
-  assign quiet     = (Early != 0) && (!leaving_i || count_i == '0) && next_empty_i;
+  logic              took_q;     // a particle was taken in the cycle before
+  logic              none_q;     // count_i was 0 then
+  always_ff @(posedge clk_i) begin
+    took_q <= some_i;
+    none_q <= (count_i == '0);
+  end
+  assign quiet     = (Early != 0) && (!leaving_i || none_q) && next_empty_i;
   assign face_axis = next_load_o && !before_i ? axis_i + 2'd1 : axis_i;
   for (genvar f = 0; f < 2 * Axes; f++) begin : gen_face
     localparam int Axis = f / 2;
@@ -173,7 +180,8 @@ module cuboct_migrate #(
         end
       end
       if (state_q == TakeLow && !some_i && ended_i) state_d = TakeHigh;
-      if (!some_i && ended_i && (state_q == TakeHigh || (Early != 0 && state_q == TakeLow && above_done_i))) begin
+      if (!some_i && ended_i && (Early == 0 || !took_q)
+          && (state_q == TakeHigh || (Early != 0 && state_q == TakeLow && above_done_i))) begin
         state_d = Enter;
         done_o  = 1'b1;
         if (quiet && axis_i != LastAxis[1:0]) begin

@@ -205,12 +205,36 @@ module cuboct_node_core #(
       own_write_data = {2'b00, load_data_i};
     end
   end
+  logic                slots_write;
+  logic [SlotBits-1:0] slots_write_slot;
+  logic [OwnBits-1:0]  slots_write_data;
+  if (Arrival != 0) begin : gen_later_write
+    // The slots' memories and banks are many: they begin at a register.
+    logic                write_q;
+    logic [SlotBits-1:0] slot_q;
+    logic [OwnBits-1:0]  data_q;
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) write_q <= 1'b0;
+      else write_q <= own_write;
+    end
+    always_ff @(posedge clk_i) begin
+      slot_q <= own_write_slot;
+      data_q <= own_write_data;
+    end
+    assign slots_write      = write_q;
+    assign slots_write_slot = slot_q;
+    assign slots_write_data = data_q;
+  end else begin : gen_write
+    assign slots_write      = own_write;
+    assign slots_write_slot = own_write_slot;
+    assign slots_write_data = own_write_data;
+  end
   cuboct_slots #(
     .Axes(Axes), .Bits(OwnBits), .SeenBits(SeenBits), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
     .IdLsb(IdLsb), .IdBits(IdBits), .Capacity(Capacity), .SlotBits(SlotBits), .FilterLanes(FilterLanes),
     .RowBits(RowBits), .ForcePipes(ForcePipes), .Streamers(Streamers), .Narrow(Narrow)
   ) u_slots (
-    .clk_i, .write_i(own_write), .write_slot_i(own_write_slot), .write_data_i(own_write_data),
+    .clk_i, .write_i(slots_write), .write_slot_i(slots_write_slot), .write_data_i(slots_write_data),
     .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read),
     .stream_slot_i(stream_slot),
     .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data), .pipe_slot_i(issue_slot),
@@ -283,7 +307,7 @@ module cuboct_node_core #(
       .PlanarThree(PlanarThree)
     ) u_halos (
       .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
-      .halo_clear_i(force_done), .halo_end_o(halo_end), .halo_count_o(halo_count), .stream_end_o(stream_end),
+      .halo_clear_i(force_over), .halo_end_o(halo_end), .halo_count_o(halo_count), .stream_end_o(stream_end),
       .stream_count_o(stream_count), .run_i(engine_runs), .box_empty_i(box_empty), .box_low_i(box_low),
       .box_high_i(box_high), .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
       .relay_read_i(relay_read), .relay_clear_i(relay_clear[Faces-2:1]), .relay_addr_i(relay_addr),
@@ -436,7 +460,7 @@ module cuboct_node_core #(
   // Force engine.
   logic [Streamers*CandidateBits-1:0] issue_candidate;
   logic [ForcePipes-1:0]        issue, pipe_busy;
-  logic                         finder_done;
+  logic                         finder_done, force_over;
   logic [Streamers-1:0]         present, force_stall;
   logic [SlotBits-1:0]          tick_slot, tick_next;
   logic                         take, fault_left, fault_full, some_fault;
@@ -507,7 +531,7 @@ module cuboct_node_core #(
         .FilterLanes(FilterLanes), .ForcePipes(Pipes), .Interval(Interval), .QueueDepth(QueueDepth),
         .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
       ) u_finder (
-        .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .own_count_i(own_count_q), .complete_i(complete),
+        .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_over), .own_count_i(own_count_q), .complete_i(complete),
         .counts_i(counts), .read_o(stream_read[s]), .slot_o(own_slot), .addr_o(stream_addr[s*AddrBits +: AddrBits]),
         .own_i(own_candidate), .halos_i(halos), .row_o(row[s*RowBits +: RowBits]),
         .row_data_i(row_data[s*FilterLanes*Axes*FilterFrac +: FilterLanes*Axes*FilterFrac]),
@@ -535,15 +559,30 @@ module cuboct_node_core #(
     assign unused_record = ^record;
   end
   assign force_event_o[0] = engine_runs;
-  // On arrival the last candidates may have been met before the last records are sent.
-  assign force_done = engine_runs && finder_done && (pipe_busy == '0)
-                   && (Arrival == 0 || past_exchange[Axes-1]);
+  if (Arrival != 0) begin : gen_settled
+    // The last candidates may have been met before the last records are sent. What is cleared waits for a register.
+    logic found_q, over_q;
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) begin
+        found_q <= 1'b0;
+        over_q  <= 1'b0;
+      end else begin
+        found_q <= finder_done;
+        over_q  <= force_done;
+      end
+    end
+    assign force_done = past_exchange[Axes-1] && found_q && (pipe_busy == '0);
+    assign force_over = over_q;
+  end else begin : gen_at_once
+    assign force_done = engine_runs && finder_done && (pipe_busy == '0);
+    assign force_over = force_done;
+  end
 
   // Update and dump walk the slots. Narrow: one after the other, so that the memories' answers stay for the update.
   localparam int Tail = (Narrow != 0) ? 0 : UpdateTail;
   logic [TickBits-1:0] tick, tick_after;
   logic                more, taken_d, taken_q;
-  cuboct_tick #(.Tail(Tail), .CountBits(CountBits), .TickBits(TickBits)) u_tick (
+  cuboct_tick #(.Tail(Tail), .Registered(Arrival), .CountBits(CountBits), .TickBits(TickBits)) u_tick (
     .clk_i, .rst_ni, .update_i(in_update), .dump_i(in_dump), .step_i(Narrow == 0 || update_write),
     .count_i(own_count_q), .tick_o(tick), .next_o(tick_after), .more_o(more), .update_done_o(update_done),
     .dump_done_o(dump_done)
@@ -559,10 +598,8 @@ module cuboct_node_core #(
   logic unused_tick;
   assign unused_tick = ^{tick, tick_after};
 
-  logic                written, migrate_arrived;
-  logic [SlotBits-1:0] written_slot;
-  logic [OwnBits-1:0]  written_data;
-  logic [Axes-1:0]     written_away, migrate_goes_on;
+  logic                migrate_arrived;
+  logic [Axes-1:0]     migrate_goes_on;
   cuboct_datapath #(
     .Axes(Axes), .Cells(1), .Capacity(Capacity), .Streamers(Streamers), .ForcePipes(ForcePipes), .Shared(Shared),
     .Product(Product),
@@ -583,22 +620,12 @@ module cuboct_node_core #(
     .clk_i, .rst_ni, .velocity_i, .issue_i(issue), .issue_place_i(issue_slot), .candidate_i(issue_candidate),
     .own_i(pipe_data), .busy_o(pipe_busy), .kick_addr_o(kick_slot_next), .kick_id_i(kick_id), .look_addr_i(tick_next),
     .clear_i((Narrow != 0) ? update_write : take), .clear_addr_i(tick_next), .take_i(take),
-    .take_place_i(tick_slot), .slot_i(main_data), .written_o(written), .place_o(written_slot),
-    .slot_o(written_data), .leaving_o(written_away), .step_end_i(step_end), .move_fault_i(fault_left || fault_full),
+    .take_place_i(tick_slot), .slot_i(main_data), .written_o(update_write), .place_o(update_slot),
+    .slot_o(update_data), .leaving_o(away_axes), .step_end_i(step_end), .move_fault_i(fault_left || fault_full),
     .move_axis_i(axis), .move_full_i(fault_full), .move_tell_i(fault_particle[IdLsb +: IdBits]),
     .fault_o(some_fault), .fault_code_o, .fault_tell_o(fault_id_o), .fault_number_o
   );
-  if (Arrival != 0) begin : gen_written
-    // The slots' memories and banks are many: they begin at a register.
-    always_ff @(posedge clk_i) begin
-      if (!rst_ni) update_write <= 1'b0;
-      else update_write <= written;
-    end
-    always_ff @(posedge clk_i) begin
-      update_slot <= written_slot;
-      update_data <= written_data;
-      away_axes   <= written_away;
-    end
+  if (Arrival != 0) begin : gen_box
     logic                           box_add;
     logic [Axes*FilterFrac-1:0]     box_x;
     assign box_add = load || (update_write && away_axes == '0) || (migrate_arrived && !full_q && migrate_goes_on == '0);
@@ -606,14 +633,10 @@ module cuboct_node_core #(
       assign box_x[a*FilterFrac +: FilterFrac] = own_write_data[a*PositionFrac+PositionFrac-FilterFrac +: FilterFrac];
     end
     cuboct_box #(.Axes(Axes), .FilterFrac(FilterFrac)) u_box (
-      .clk_i, .rst_ni, .clear_i(force_done), .add_i(box_add), .x_i(box_x), .empty_o(box_empty), .low_o(box_low),
+      .clk_i, .rst_ni, .clear_i(force_over), .add_i(box_add), .x_i(box_x), .empty_o(box_empty), .low_o(box_low),
       .high_o(box_high)
     );
-  end else begin : gen_written_at_once
-    assign update_write = written;
-    assign update_slot  = written_slot;
-    assign update_data  = written_data;
-    assign away_axes    = written_away;
+  end else begin : gen_no_box
     assign box_empty    = 1'b1;
     assign box_low      = '0;
     assign box_high     = '0;

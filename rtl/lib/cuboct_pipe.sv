@@ -108,7 +108,12 @@ module cuboct_pipe #(
       hit_q   <= hit_d;
     end
   end
-  assign busy_o  = (valid_q != '0);
+  logic busy_q;  // valid_q is not 0
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) busy_q <= 1'b0;
+    else busy_q <= (valid_d != '0);
+  end
+  assign busy_o  = busy_q;
   assign valid_o = hit_q[Stages];
   logic [SlotBits-1:0] slot_q;  // stage 1
   always_ff @(posedge clk_i) begin

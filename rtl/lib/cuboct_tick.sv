@@ -4,6 +4,7 @@
 // memory waits for them.
 module cuboct_tick #(
   parameter int Tail      = 2,  // steps of UPDATE beyond the last particle, >= 0
+  parameter int Registered = 0, // 0, 1: count_i stays from the cycle before a phase on
   parameter int CountBits = 5,  // of the number of own particles
   parameter int TickBits  = 5   // of a step's number, that hold Capacity + Tail
 ) (
@@ -29,8 +30,19 @@ module cuboct_tick #(
   logic                none, few, moves, done;
   logic [WideBits-1:0] after_next, count;
 
-  assign none       = (count_i == '0);
-  assign few        = ((count_i >> 1) == '0);  // then the first slot is the last
+  // few: the first slot is the last.
+  if (Registered != 0) begin : gen_registered
+    logic none_q, few_q;
+    always_ff @(posedge clk_i) begin
+      none_q <= (count_i == '0);
+      few_q  <= ((count_i >> 1) == '0);
+    end
+    assign none = none_q;
+    assign few  = few_q;
+  end else begin : gen_at_once
+    assign none = (count_i == '0);
+    assign few  = ((count_i >> 1) == '0);
+  end
   assign moves      = dump_i || (update_i && step_i);
   assign done       = update_done_o || dump_done_o;
   assign after_next = {{CountBits{1'b0}}, tick_q} + Two;
