@@ -38,6 +38,8 @@ std::string print_project(const Plan& plan, const State& initial, const std::vec
         {"force_pipes", plan.arch.force_pipes},
         {"queue_depth", plan.arch.queue_depth},
         {"overlap", plan.arch.overlap},
+        {"halos_on_arrival", plan.arch.halos == Halos::arrival},
+        {"streamers", plan.arch.streamers},
         {"narrow_memories", plan.arch.narrow_memories}}},
       {"bits",
        {{"position_frac", w.position_frac},

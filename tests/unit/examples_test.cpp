@@ -49,7 +49,7 @@ Outcome run(const MadeSetup& setup, int steps) {
 TEST(Examples, RunOnEveryArch) {
   for (const char* name : {"hot_cluster", "two_types", "undamped_block", "lj_block", "coupon", "composite"}) {
     const Scene scene = read_scene(kRoot + "/scenes/" + name + ".toml");
-    for (const char* arch : {"default", "small", "fast"}) {
+    for (const char* arch : {"default", "small", "fast", "solid"}) {
       SCOPED_TRACE(std::string(name) + " on " + arch);
       EXPECT_NO_THROW(run(make_setup(scene, read_arch(kRoot + "/scenes/archs/" + arch + ".toml")), 5));
     }

@@ -77,6 +77,28 @@ TEST(Setup, BothWaysRefuseAlike) {
   EXPECT_EQ(error_of([&] { make_setup(scene, {}); }), fast);
 }
 
+TEST(Setup, RefusesMachinesThatCannotUseHalosOnArrival) {
+  const Scene scene = example("undamped_block");
+  const auto refusal = [&](const std::string& node) {
+    const Arch arch = parse_arch("name = \"a\"\n[node]\n" + node, "a.toml");
+    return error_of([&] { plan_of(scene, arch); });
+  };
+  const auto expect = [&](const std::string& node, const std::string& message) {
+    const std::string what = refusal(node);
+    EXPECT_NE(what.find(message), std::string::npos) << what;
+    EXPECT_TRUE(what.starts_with("a.toml:3:")) << what;
+  };
+  const std::string while_they_come = "halos = \"arrival\" are streamed while they come: set ";
+  expect("halos = \"arrival\"\noverlap = false", while_they_come + "overlap = true");
+  expect("halos = \"arrival\"\nbrick = [2, 1, 1]", while_they_come + "brick = [1, 1, 1]");
+  expect("halos = \"arrival\"\nmemories = \"narrow\"\nfilter_lanes = 1\noverlap = false",
+         while_they_come + "memories = \"wide\"");
+  expect("streamers = 2\nforce_pipes = 2", "two streamers share the faces of halos used on arrival");
+  expect("streamers = 2\nforce_pipes = 3\nhalos = \"arrival\"",
+         "streamers = 2 with force_pipes = 3: each streamer feeds as many pipes");
+  EXPECT_EQ(refusal("halos = \"arrival\"\nstreamers = 2\nforce_pipes = 2"), "no error");
+}
+
 // A refusal after the file was read stands at the key that it is about: the last line of `more`, column.
 void expect_place(const std::string& more, const std::string& place, const std::string& message,
                   const std::string& arch = {}, const std::string& stage = {}) {
