@@ -2,6 +2,7 @@
 // What an emitted project says of its speed, beside the run that it is of.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "model/base/output.h"
@@ -32,6 +33,39 @@ TEST(Emit, CountsTheCyclesOfTheFirstStepsOfARun) {
   EXPECT_GT(exact->max, exact->mean);  // so that the two are told apart
   EXPECT_NE(cycles.at("expected"), exact->max);
   EXPECT_DOUBLE_EQ(nlohmann::json::parse(emitted.out).at("mean_cycles_per_step").at("value"), exact->mean);
+}
+
+// A machine's file in the place of a scene's, as the two lie side by side.
+TEST(Emit, TellsAnArchFromAScene) {
+  const Bench bench(false);
+  const Answer refused = bench.cuboct({"emit", "scenes/archs/board.toml", "--out", bench.path("none")});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_EQ(refused.err,
+            "scenes/archs/board.toml:5:1: this is an arch file, not a scene\n"
+            "   5 | [node]\n"
+            "     | ^\n"
+            "  hint: --arch scenes/archs/board.toml gives it to a scene\n");
+  EXPECT_FALSE(std::filesystem::exists(bench.path("none")));
+}
+
+// The project has the arch that it was made with, so that its README can name it: the same plan.
+TEST(Emit, LeavesTheArchThatMakesTheSamePlan) {
+  const Bench bench(false);
+  const std::string scene = "scenes/lj_block.toml";
+  for (const std::string arch : {"", "scenes/archs/fast.toml"}) {
+    const auto emit = [&](const std::string& given, const std::string& out) {
+      std::vector<std::string> words{"emit", scene, "--out", bench.path(out), "--vector-steps", "1"};
+      if (!given.empty()) words.insert(words.end(), {"--arch", given});
+      const Answer answer = bench.cuboct(words);
+      EXPECT_EQ(answer.code, 0) << answer.err;
+      return nlohmann::json::parse(read_text(bench.path(out + "/project.json"))).at("plan");
+    };
+    const auto plan = emit(arch, "first");
+    EXPECT_EQ(emit(bench.path("first/arch.toml"), "second"), plan) << arch;
+    if (arch.empty()) continue;
+    EXPECT_EQ(read_text(bench.path("first/arch.toml")), read_text(CUBOCT_SOURCE_DIR "/" + arch));
+  }
 }
 
 }  // namespace
