@@ -2,6 +2,7 @@
 // What an emitted project says of its speed, beside the run that it is of.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -48,6 +49,46 @@ TEST(Emit, TellsAnArchFromAScene) {
             "  hint: --arch scenes/archs/board.toml gives it to a scene\n");
   EXPECT_FALSE(std::filesystem::exists(bench.path("none")));
 }
+
+#ifdef CUBOCT_HAS_SYNTH
+// Far too many nodes: told at once, without a tool.
+TEST(Emit, RefusesABoardThatHasNoRoom) {
+  const Bench bench(false);
+  std::vector<std::string> words{"emit",  "scenes/coupon.toml", "--board", "icebreaker",
+                                 "--out", bench.path("large")};
+  const Answer refused = bench.cuboct(words);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_EQ(
+      refused.err.find("scenes/coupon.toml: its 2640 nodes and a host link do not fit the icebreaker (up5k): "
+                       "they take BRAM "),
+      0u)
+      << refused.err;
+  EXPECT_NE(
+      refused.err.find(" for their memories alone\n  hint: not one such node fits; --fit up5k looks for a "
+                       "machine that fits, --unchecked writes this one for the simulator\n"),
+      std::string::npos)
+      << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(bench.path("large")));
+}
+
+// Without the tools that could tell, it is said that they did not.
+TEST(Emit, SaysWhatOfTheFitItCouldNotCheck) {
+  const Bench bench(false);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", bench.path("").c_str(), 1);
+  const Answer emitted =
+      bench.cuboct({"emit", "scenes/boards/grips.toml", "--arch", "scenes/archs/icebreaker.toml", "--board",
+                    "icebreaker", "--out", bench.path("bar")});
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(emitted.code, 0);
+  EXPECT_EQ(emitted.err,
+            "note: of the fit only memories were checked: yosys or nextpnr-ice40 is not in PATH\n");
+  EXPECT_NE(read_text(bench.path("bar/README.md"))
+                .find("cuboct run SCENE --arch arch.toml --engine fpga --port /dev/ttyUSB0 --baud 1000000\n"),
+            std::string::npos);
+}
+#endif
 
 // The project has the arch that it was made with, so that its README can name it: the same plan.
 TEST(Emit, LeavesTheArchThatMakesTheSamePlan) {
