@@ -18,9 +18,9 @@ enum class FitCheck {
   synthesised,  // all of it, by yosys and, on ice40, nextpnr's packer
 };
 
-// `scene` and `arch`: names for messages; an empty arch is the default. Synthesises only what has room for
-// its memories; what was measured before comes from the cache (Meter). `says` hears what it does. Throws
-// InputError with the numbers, and how many cells would fit, where there is no room; ToolFailed, Interrupted.
+// `scene`: its name, for messages. Synthesises only what may have room for its memories; what was measured
+// before comes from the cache (Meter). `says` hears what it does. Throws InputError with the numbers, and how
+// many nodes would fit, where there is no room; ToolFailed, Interrupted.
 FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State& initial,
                          const BoardChoice& board, const std::function<void(const std::string& what)>& says);
 

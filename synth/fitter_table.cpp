@@ -148,13 +148,13 @@ std::string Fitter::table() {
   });
 
   std::string text =
-      fmt::format("  {:<14} {:>6} {:>6} {:>6} {:>12}", "brick", "nodes", "lanes", "pipes", "cycles/step");
+      fmt::format("  {:<14} {:>6} {:>6} {:>6} {:>13}", "brick", "nodes", "lanes", "pipes", "expected/step");
   for (const Resource r : kFitted)
     if (shows(target_, r)) text += fmt::format(" {:>{}}", to_string(r), r == Resource::cell ? 11 : 6);
   text += "\n";
   for (const Row& row : rows) {
     const FitChoice& p = row.plan;
-    text += fmt::format("{} {:<14} {:>6} {:>6} {:>6} {:>12}", row.chosen ? ">" : " ",
+    text += fmt::format("{} {:<14} {:>6} {:>6} {:>6} {:>13}", row.chosen ? ">" : " ",
                         cells_text(p.point.brick), p.nodes, p.point.lanes, p.point.pipes, p.cycles);
     for (size_t r = 0; r < kFitted.size(); ++r)
       if (shows(target_, kFitted[r]))
