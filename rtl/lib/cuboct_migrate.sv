@@ -77,9 +77,18 @@ module cuboct_migrate #(
   logic [1:0]        face_axis;  // of the next cycle's face
   logic              took_q;     // a particle was taken in the cycle before
   logic              none_q;     // count_i was 0 then
+  // What SCAN has counted: with Early a cycle later, as the links' answers come late and no one asks before.
+  logic                 scan_set, scan_set_q, scan_full, scan_full_q;
+  logic [CountBits-1:0] scan_count, scan_count_q;
   always_ff @(posedge clk_i) begin
-    took_q <= some_i;
-    none_q <= (count_i == '0);
+    if (!rst_ni) scan_set_q <= 1'b0;
+    else scan_set_q <= scan_set;
+  end
+  always_ff @(posedge clk_i) begin
+    took_q       <= some_i;
+    none_q       <= (count_i == '0);
+    scan_count_q <= scan_count;
+    scan_full_q  <= scan_full;
   end
   assign quiet     = (Early != 0) && (!leaving_i || none_q) && next_empty_i;
   assign face_axis = next_load_o && !before_i ? axis_i + 2'd1 : axis_i;
@@ -140,9 +149,12 @@ module cuboct_migrate #(
     write_data_o   = takes
                    ? {2'b00, arrived_i[ParticleBits-1:PositionBits+AwayBits], away_on, arrived_i[PositionBits-1:0]}
                    : read_data_i;
-    count_set_o    = 1'b0;
-    count_o        = write_q;
-    full_o         = stays && (write_q == Last[CountBits-1:0]);
+    scan_set       = 1'b0;
+    scan_count     = stays ? write_q + 1'b1 : write_q;
+    scan_full      = stays && (write_q == Last[CountBits-1:0]);
+    count_set_o    = (Early != 0) && scan_set_q;
+    count_o        = scan_count_q;
+    full_o         = scan_full_q;
     leaving_more_o = '0;
     pop_o          = some_i;
     fault_left_o   = 1'b0;
@@ -167,8 +179,7 @@ module cuboct_migrate #(
         if (advance && last_slot) begin
           next_d      = {{(CountBits - 1) {1'b0}}, 1'b1};
           write_d     = '0;
-          count_set_o = 1'b1;
-          count_o     = stays ? write_q + 1'b1 : write_q;
+          scan_set    = 1'b1;
           state_d     = End;
         end
       end
@@ -189,6 +200,11 @@ module cuboct_migrate #(
           state_d     = TakeLow;
         end
       end
+    end
+    if (Early == 0) begin
+      count_set_o = scan_set;
+      count_o     = scan_count;
+      full_o      = scan_full;
     end
     if (some_i) begin
       write_o      = !full_i;

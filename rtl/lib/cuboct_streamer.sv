@@ -48,8 +48,10 @@ module cuboct_streamer #(
   end
 
   if (Arrival != 0) begin : gen_arrival
-    logic there;  // a record is to be met
-    assign there = (own_i != '0) && (record_q != count);
+    // There are own particles; they stay from the cycle before a step on.
+    logic own_q, there;  // there: a record is to be met
+    always_ff @(posedge clk_i) own_q <= (own_i != '0);
+    assign there = own_q && (record_q != count);
     assign go    = run_i && !stall_i && (there || complete);
     assign skip  = !there;
   end else begin : gen_phases
