@@ -3,6 +3,7 @@
 // faults.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <random>
 
 #include "emu/systemc/node.h"
@@ -76,10 +77,10 @@ TEST(NativeRandom, EqualsGolden) {
   RecordProperty("particle_steps", static_cast<int>(particles));
 }
 
-TEST(NativeFaults, EachArisesAsInGolden) {
+void expect_faults_of_golden(const std::function<Case(Fault)>& case_of) {
   int seen = 0;
   for (const Fault fault : all_faults()) {
-    const Case c = fault_case(fault);
+    const Case c = case_of(fault);
     const GoldenRun golden = run_golden(c.setup, c.steps);
     ASSERT_TRUE(golden.fault) << c.name;
     EXPECT_EQ(golden.fault->fault, fault) << golden.fault->what();
@@ -95,6 +96,12 @@ TEST(NativeFaults, EachArisesAsInGolden) {
     ++seen;
   }
   EXPECT_EQ(seen, 11);
+}
+
+TEST(NativeFaults, EachArisesAsInGolden) { expect_faults_of_golden(fault_case); }
+
+TEST(NativeFaults, EachArisesOnArrivalToo) {
+  expect_faults_of_golden([](Fault fault) { return with_halos_on_arrival(fault_case(fault)); });
 }
 
 TEST(NativeFaults, CapacityHoldsAtTheLimit) {

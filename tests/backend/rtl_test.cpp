@@ -132,6 +132,15 @@ TEST_P(RtlBrickFaults, AriseAsInGolden) {
 INSTANTIATE_TEST_SUITE_P(Kinds, RtlBrickFaults, testing::ValuesIn(all_faults()),
                          [](const auto& p) { return "fault_" + std::to_string(static_cast<int>(p.param)); });
 
+class RtlArrivalFaults : public testing::TestWithParam<Fault> {};
+
+TEST_P(RtlArrivalFaults, AriseAsInGolden) {
+  expect_as_in_golden(with_halos_on_arrival(fault_case(GetParam())), GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, RtlArrivalFaults, testing::ValuesIn(all_faults()),
+                         [](const auto& p) { return "fault_" + std::to_string(static_cast<int>(p.param)); });
+
 INSTANTIATE_TEST_SUITE_P(Kinds, RtlFaults, testing::ValuesIn(all_faults()),
                          [](const auto& p) { return "fault_" + std::to_string(static_cast<int>(p.param)); });
 

@@ -306,7 +306,9 @@ TEST(TimingBricks, EqualTheClockedNode) {
 TEST(TimingFaults, TheStepsBeforeAreEqual) {
   Seen seen;
   for (const Fault fault : all_faults()) EXPECT_EQ(difference(fault_case(fault), seen), "");
-  EXPECT_EQ(seen.faults, all_faults().size());
+  for (const Fault fault : all_faults())
+    EXPECT_EQ(difference(with_halos_on_arrival(fault_case(fault)), seen), "");
+  EXPECT_EQ(seen.faults, 2 * all_faults().size());
   EXPECT_GT(seen.spans, 0u);
 }
 

@@ -402,6 +402,18 @@ Case with_narrow_memories(Case c) {
   return c;
 }
 
+Case with_halos_on_arrival(Case c) {
+  Plan& plan = c.setup.plan;
+  Arch arch = plan.arch;
+  arch.brick = {1, 1, 1};
+  arch.narrow_memories = false;
+  arch.overlap = true;
+  arch.halos = Halos::arrival;
+  arch.streamers = arch.force_pipes = std::min(arch.filter_lanes, 2);
+  plan = make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
+  return c;
+}
+
 Case with_brick(Case c, const Cell& brick) {
   Plan& plan = c.setup.plan;
   Arch arch = plan.arch;
