@@ -22,8 +22,8 @@ for target in ecp5-85 xc7; do
 done
 check rtl-small-fpgas UP5K coupon --arch "$root/scenes/archs/ice40.toml"
 check rtl-small-fpgas HX8K coupon --arch "$root/scenes/archs/ice40_serial.toml"
-check board-examples '`archs/icebreaker' boards/grips --arch "$root/scenes/archs/icebreaker.toml"
-check board-examples '`archs/board' boards/grips --arch "$root/scenes/archs/board.toml"
+check board-examples '`archs/icebreaker' boards/grips --arch "$root/scenes/archs/icebreaker.toml" --board icebreaker --unchecked
+check board-examples '`archs/board' boards/grips --arch "$root/scenes/archs/board.toml" --board ulx3s --unchecked
 if [ $seen != 14 ] || [ $old != 0 ]; then
   echo "$old of $seen rows are stale: docs/synth_table.sh BUILD makes them anew"
   exit 1
