@@ -53,7 +53,7 @@ struct RtlDesign {
   std::vector<Cell> cells;  // of the nodes; of bricks their lowest ones
   std::vector<std::array<uint32_t, kFaces>> neighbour;
   int cell_bits = 0;                 // of a cell's number in its brick; 0: nodes of one cell
-  std::vector<std::string> extents;  // of bricks, by node: constants of extent_i and exit_i
+  std::vector<std::string> extents;  // of bricks, by node: constants of extent_i and exit_i, sized and binary
   std::vector<std::string> exits;
 
   bool bricks() const { return cell_bits > 0; }
@@ -70,6 +70,7 @@ RtlDesign decide(const Plan& plan);
 // Throws InputError with the numbers.
 void legalise(const RtlDesign& design, bool with_lattice);
 
+std::string head(const RtlDesign& design);  // comment lines at the top of each generated file
 std::string print_package(const RtlDesign& design);
 std::string print_table(const RtlDesign& design, const RtlTable& table);
 std::string print_scale(const RtlDesign& design);  // cuboct_scale_rom

@@ -14,6 +14,7 @@
 
 #include "hw/rtl_bench.h"
 #include "hw/rtl_board.h"
+#include "hw/rtl_bus.h"
 #include "hw/rtl_design.h"
 #include "hw/rtl_library.h"
 #include "hw/rtl_project.h"
@@ -122,12 +123,14 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
               const BoardChoice& board, const std::string& arch) {
   RtlDesign design = decide(plan);
   legalise(design, true);
-  if (!board.name.empty()) {
-    legalise_board(plan, board);
+  if (!board.name.empty()) legalise_board(plan, board);
+  if (!board.bus.empty()) legalise_bus(plan, board);
+  if (!board.name.empty() || !board.bus.empty())
     if (board.velocities) design.moved = moved_types(plan.rule);
-  }
   Files files;
   add_node(files, design);
+  for (const RtlSource& source : rtl_lattice_library())
+    files["rtl/" + std::string(source.name)] = source.text;
   files["rtl/cuboct_lattice.sv"] = print_lattice(design);
   add_list(files);
   if (!arch.empty()) files["arch.toml"] = arch;
@@ -135,8 +138,13 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
   for (auto& [path, text] : print_bench(plan, design, initial, vector_steps)) files[path] = std::move(text);
   if (!board.name.empty()) {
     for (auto& [path, text] : print_board(plan, design, board)) files[path] = std::move(text);
-    files["board/files.f"] = board_list(files["files.f"], files);
+    files["board/files.f"] = list_with(files["files.f"], "board", files);
     files["README.md"] += print_board_readme(plan, board);
+  }
+  if (!board.bus.empty()) {
+    for (auto& [path, text] : print_bus(plan, design, board)) files[path] = std::move(text);
+    files["bus/files.f"] = list_with(files["files.f"], "bus", files);
+    files["README.md"] += print_bus_readme(plan, board);
   }
   write(dir, files);
 }

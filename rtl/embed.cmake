@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
-# cmake -D OUT=file.cpp -D DIR=rtl/lib [-D FUNCTION=name] -P embed.cmake: the hand-written modules, and pins of boards, as a
-# C++ table, in the order of names; rtl_library() unless said.
-if(NOT FUNCTION)
-  set(FUNCTION rtl_library)
-endif()
+# cmake -D OUT=file.cpp -D DIR=rtl/lib -D FUNCTION=name -P embed.cmake: the hand-written modules, and pins of boards, as a
+# C++ table, in the order of names.
 file(GLOB_RECURSE sources RELATIVE ${DIR} ${DIR}/*.sv ${DIR}/*.pcf ${DIR}/*.lpf)
 list(SORT sources)
 set(text "// SPDX-License-Identifier: MIT\n#include \"hw/rtl_library.h\"\n\nnamespace cuboct {\n\n")

@@ -50,10 +50,11 @@ Answer command(const std::vector<std::string>& arguments) {
   return {code, contents(streams.out), contents(streams.err)};
 }
 
-SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options, const std::string& arch) {
+SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options, const std::string& arch,
+                               const BoardChoice& board) {
   const Setup setup = board_setup("grips.toml", arch);
   const std::string project = scratch_.path("project"), out = scratch_.path("out");
-  emit_rtl(setup.plan, setup.initial, project, 1, {.name = "icebreaker", .baud = kBaud});
+  emit_rtl(setup.plan, setup.initial, project, 1, board);
   std::vector<std::string> arguments{project, "--build-dir", CUBOCT_TEST_CACHE};
   arguments.insert(arguments.end(), options.begin(), options.end());
   process_ =

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// What a host learns of a node: that it is busy, its first fault since the reset, and its particles. Fault and particles
+// are shown of the node that the host observes; of the others they are zeros, so that an or over all nodes leaves that
+// one's.
+module cuboct_watch #(
+  parameter int ParticleBits = 154,  // of a particle, with its cell in the node
+  parameter int FaultBits    = 76    // of a fault: code, id, cell, number
+) (
+  input  logic                              clk_i,
+  input  logic                              rst_ni,
+  input  logic                              observed_i,       // the host observes this node
+  input  logic                              idle_i,           // the node is in IDLE
+  input  logic                              observe_valid_i,  // it shows a particle
+  input  logic [ParticleBits-1:0]           observe_data_i,   // with observe_valid_i
+  input  logic                              fault_valid_i,    // it tells a fault
+  input  logic [FaultBits-1:0]              fault_i,          // with fault_valid_i
+  // {busy; had a fault; is observed and had a fault; is observed and shows a particle}, from bit 3 down.
+  output logic [3:0]                        flags_o,
+  output logic [FaultBits+ParticleBits-1:0] data_o            // {the first fault, the particle}
+);
+  logic                 faulty_d, faulty_q;
+  logic [FaultBits-1:0] fault_d, fault_q;
+  logic                 tells, shows;
+  assign faulty_d = faulty_q || fault_valid_i;
+  assign fault_d  = faulty_q ? fault_q : fault_i;
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) faulty_q <= 1'b0;
+    else faulty_q <= faulty_d;
+  end
+  always_ff @(posedge clk_i) fault_q <= fault_d;
+  assign tells   = observed_i && faulty_q;
+  assign shows   = observed_i && observe_valid_i;
+  assign flags_o = {!idle_i, faulty_q, tells, shows};
+  assign data_o  = {fault_q & {FaultBits{tells}}, observe_data_i & {ParticleBits{shows}}};
+endmodule
