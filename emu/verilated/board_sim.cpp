@@ -144,7 +144,7 @@ int simulate_bus(const Library& library, void* model, const Terminal& terminal) 
     bytes.assign(tx.begin(), tx.begin() + count);
     written += static_cast<uint64_t>(taken);
     read += static_cast<uint64_t>(count);
-    quiet = to_bus.empty() && bytes.empty() && idle ? quiet + kChunk : 0;
+    quiet = to_bus.empty() && taken == 0 && bytes.empty() && idle ? quiet + kChunk : 0;
     tell(terminal, bytes);
   }
   fmt::print(stderr, "over {} cycles; {} bytes written, {} read\n", cycles, written, read);

@@ -46,6 +46,10 @@ struct Master : Instance<Model> {
   }
 
 #if BUS_AXI
+  void quiet() {
+    Model& m = *model;
+    m.axi_awvalid_i = m.axi_wvalid_i = m.axi_bready_i = m.axi_arvalid_i = m.axi_rready_i = 0;
+  }
   // Address and data come in any order, each stays until it is taken.
   bool write(uint8_t address, uint32_t data) {
     Model& m = *model;
@@ -123,6 +127,7 @@ struct Master : Instance<Model> {
     return 0;
   }
 #else
+  void quiet() { model->wb_cyc_i = model->wb_stb_i = 0; }
   // One classic cycle; whether it was acknowledged.
   bool cycle(uint8_t address, bool write, uint32_t data, uint32_t& answer) {
     Model& m = *model;
@@ -172,6 +177,7 @@ int cuboct_abi() { return kCuboctAbi; }
 void* cuboct_create(uint32_t seed) {
   auto* master = new Master(seed);
   Model& m = *master->model;
+  master->quiet();  // inputs start as random bits too
   m.rst_ni = 0;
   for (int k = 0; k < 4; ++k) master->rest();
   m.rst_ni = 1;

@@ -67,22 +67,24 @@ module cuboct_host_link #(
   localparam int IndexBits = $clog2(ArgBytes + 32);
 
   // The stream.
-  logic       byte_valid, frame_end, crc_clear, crc_valid, crc_shift, crc_good;
-  logic       send_valid, send_flag, send_ready, hears;
+  logic       byte_valid, frame_end, crc_clear, crc_valid, crc_ready, crc_shift, crc_good;
+  logic       send_valid, send_flag, send_ready, frame_ready, hears;
   logic [7:0] byte_data, crc_sum, send_data;
   cuboct_frame_rx u_frame_rx (
-    .clk_i, .rst_ni, .enable_i(hears), .valid_i(rx_valid_i && hears), .data_i(rx_data_i), .valid_o(byte_valid),
+    .clk_i, .rst_ni, .enable_i(hears), .valid_i(rx_valid_i && rx_ready_o), .data_i(rx_data_i), .valid_o(byte_valid),
     .data_o(byte_data), .end_o(frame_end)
   );
   cuboct_crc32 u_crc (
-    .clk_i, .clear_i(crc_clear), .valid_i(crc_valid), .data_i(hears ? byte_data : send_data), .sum_o(crc_sum),
-    .shift_i(crc_shift), .good_o(crc_good)
+    .clk_i, .rst_ni, .clear_i(crc_clear), .valid_i(crc_valid), .ready_o(crc_ready),
+    .data_i(hears ? byte_data : send_data), .sum_o(crc_sum), .shift_i(crc_shift), .good_o(crc_good)
   );
   cuboct_frame_tx u_frame_tx (
-    .clk_i, .rst_ni, .valid_i(send_valid), .flag_i(send_flag), .data_i(send_data), .ready_o(send_ready),
-    .valid_o(tx_valid_o), .data_o(tx_data_o), .ready_i(tx_ready_i)
+    .clk_i, .rst_ni, .valid_i(send_valid && crc_ready), .flag_i(send_flag), .data_i(send_data),
+    .ready_o(frame_ready), .valid_o(tx_valid_o), .data_o(tx_data_o), .ready_i(tx_ready_i)
   );
-  assign rx_ready_o = hears;
+  // Of a serial line no byte comes before the check sum is ready.
+  assign rx_ready_o = hears && crc_ready;
+  assign send_ready = frame_ready && crc_ready;
 
   typedef enum logic [3:0] {
     Hear, Execute, Settle, DumpStart, Dump, SendStart, SendHead, SendWord, SendSum, SendEnd

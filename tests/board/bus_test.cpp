@@ -46,8 +46,9 @@ TEST_P(Bus, HoldsGoldensBitsAndFaults) {
   ASSERT_EQ(std::sscanf(machine.end().c_str(), "over %llu cycles; %llu bytes written, %llu read", &cycles,
                         &written, &read),
             3);
-  // The first reply comes after the reset's mark, which belongs to no reply.
-  EXPECT_EQ(written + read, bytes);
+  // The machine sends a mark after its reset, which the host may throw away as it opens the port.
+  EXPECT_GE(written + read, bytes);
+  EXPECT_LE(written + read, bytes + 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Wrappers, Bus, testing::ValuesIn(buses()), [](const auto& p) { return p.param; });

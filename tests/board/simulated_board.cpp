@@ -60,7 +60,8 @@ SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options, const st
   process_ =
       std::make_unique<Process>(CUBOCT_BOARD_SIM, arguments, false, Streams{out, scratch_.path("err")});
   // The board may have to be compiled, on a busy machine for minutes.
-  for (int k = 0; k < 25000 && port_.find('\n') == std::string::npos; ++k) {
+  const std::string errors = scratch_.path("err");
+  for (int k = 0; k < 25000 && port_.find('\n') == std::string::npos && contents(errors).empty(); ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     port_ = contents(out);
   }
