@@ -78,7 +78,8 @@ std::string print_types(const RtlDesign& design);  // cuboct_type_rom
 // Of design.moved, as one vector: type by type, axis 0 in the least significant place; one bit where none is.
 std::string print_velocities(const RtlDesign& design);
 int velocities_bits(const RtlDesign& design);
-std::string print_node(const RtlDesign& design);  // cuboct_node
+std::string print_node(const RtlDesign& design);      // cuboct_node
+std::string print_node_box(const RtlDesign& design);  // its ports alone, to lint a lattice of many nodes
 std::string print_lattice(const RtlDesign& design);
 
 }  // namespace cuboct
