@@ -5,27 +5,27 @@ module cuboct_axi4lite #(
   parameter int ClockHz = 100000000,  // told to the host
   parameter int Depth   = 64          // bytes of each queue, 1 to 255
 ) (
-  input  logic        clk_i,           // ACLK
-  input  logic        rst_ni,          // ARESETn, synchronous
-  input  logic        axi_awvalid_i,
-  output logic        axi_awready_o,
-  input  logic [3:0]  axi_awaddr_i,    // byte address; the lowest two bits are not looked at
-  input  logic [2:0]  axi_awprot_i,    // not looked at
-  input  logic        axi_wvalid_i,
-  output logic        axi_wready_o,
-  input  logic [31:0] axi_wdata_i,
-  input  logic [3:0]  axi_wstrb_i,
-  output logic        axi_bvalid_o,
-  input  logic        axi_bready_i,
-  output logic [1:0]  axi_bresp_o,     // OKAY, or SLVERR where nothing was written
-  input  logic        axi_arvalid_i,
-  output logic        axi_arready_o,
-  input  logic [3:0]  axi_araddr_i,    // as axi_awaddr_i
-  input  logic [2:0]  axi_arprot_i,    // not looked at
-  output logic        axi_rvalid_o,
-  input  logic        axi_rready_i,
-  output logic [31:0] axi_rdata_o,
-  output logic [1:0]  axi_rresp_o,     // OKAY
+  input  logic        clk_i,          // ACLK
+  input  logic        rst_ni,         // ARESETn, synchronous
+  input  logic        axi_awvalid_i,  // stays, with address and protection, until axi_awready_o
+  output logic        axi_awready_o,  // with axi_wready_o
+  input  logic [3:0]  axi_awaddr_i,   // byte address; the lowest two bits are not looked at
+  input  logic [2:0]  axi_awprot_i,   // not looked at
+  input  logic        axi_wvalid_i,   // stays, with data and strobes, until axi_wready_o
+  output logic        axi_wready_o,   // with axi_awready_o
+  input  logic [31:0] axi_wdata_i,    // with axi_wvalid_i
+  input  logic [3:0]  axi_wstrb_i,    // with axi_wvalid_i: the bytes that count
+  output logic        axi_bvalid_o,   // stays, with its response, until axi_bready_i
+  input  logic        axi_bready_i,   // the response is taken
+  output logic [1:0]  axi_bresp_o,    // OKAY, or SLVERR where nothing was written
+  input  logic        axi_arvalid_i,  // stays, with address and protection, until axi_arready_o
+  output logic        axi_arready_o,  // the address is taken
+  input  logic [3:0]  axi_araddr_i,   // as axi_awaddr_i
+  input  logic [2:0]  axi_arprot_i,   // not looked at
+  output logic        axi_rvalid_o,   // stays, with data and response, until axi_rready_i
+  input  logic        axi_rready_i,   // the data are taken
+  output logic [31:0] axi_rdata_o,    // with axi_rvalid_o
+  output logic [1:0]  axi_rresp_o,    // OKAY
   output logic        interrupt_o   // a level: STATUS & ENABLE
 );
   logic        write, write_error, read;

@@ -12,15 +12,15 @@ module cuboct_mailbox #(
   input  logic        clk_i,
   input  logic        rst_ni,
   // The bus, one write and one read in each cycle at most.
-  input  logic        write_i,          // the register write_register_i is written
-  input  logic [1:0]  write_register_i, // bits 3 and 2 of the address
-  input  logic [31:0] write_data_i,     // with write_i
-  input  logic [3:0]  write_strobe_i,   // with write_i: which bytes of it count
-  output logic        write_error_o,    // a register that cannot be written, or DATA without room: nothing happens
-  input  logic        read_i,           // the register read_register_i is read; of DATA this takes the byte
-  input  logic [1:0]  read_register_i,  // bits 3 and 2 of the address
-  output logic [31:0] read_data_o,      // of read_register_i
-  output logic        interrupt_o,      // a level
+  input  logic        write_i,           // the register write_register_i is written
+  input  logic [1:0]  write_register_i,  // bits 3 and 2 of the address
+  input  logic [31:0] write_data_i,      // with write_i
+  input  logic [3:0]  write_strobe_i,    // with write_i: which bytes of it count
+  output logic        write_error_o,     // a register that cannot be written, or DATA without room: nothing happens
+  input  logic        read_i,            // the register read_register_i is read; of DATA this takes the byte
+  input  logic [1:0]  read_register_i,   // bits 3 and 2 of the address
+  output logic [31:0] read_data_o,       // of read_register_i
+  output logic        interrupt_o,       // a level
   // The machine.
   output logic        rx_valid_o,  // a byte for it
   output logic [7:0]  rx_data_o,   // with rx_valid_o
@@ -58,7 +58,8 @@ module cuboct_mailbox #(
   assign byte_written  = write_i && write_register_i == Data && write_strobe_i[0];
   assign in_push       = byte_written && !in_full;
   assign out_pop       = read_i && read_register_i == Data && !out_empty;
-  assign write_error_o = (byte_written && in_full) || (write_i && write_register_i != Data && write_register_i != Enable);
+  assign write_error_o = (byte_written && in_full)
+                      || (write_i && write_register_i != Data && write_register_i != Enable);
   assign events        = {fault_i, !busy_i, !in_full, !out_empty};
   always_comb begin
     room_d    = room_q;

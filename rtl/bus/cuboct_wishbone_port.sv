@@ -5,14 +5,14 @@ module cuboct_wishbone_port (
   input  logic        clk_i,     // CLK_I
   input  logic        rst_ni,    // RST_I inverted, synchronous
   // The bus.
-  input  logic        wb_cyc_i,
-  input  logic        wb_stb_i,
-  input  logic        wb_we_i,
+  input  logic        wb_cyc_i,  // with wb_stb_i: a request; stays until it is answered
+  input  logic        wb_stb_i,  // with wb_cyc_i
+  input  logic        wb_we_i,   // a write
   input  logic [3:0]  wb_adr_i,  // byte address; the lowest two bits are not looked at
-  input  logic [3:0]  wb_sel_i,
-  input  logic [31:0] wb_dat_i,
+  input  logic [3:0]  wb_sel_i,  // the bytes that count
+  input  logic [31:0] wb_dat_i,  // with wb_we_i
   output logic [31:0] wb_dat_o,  // with wb_ack_o of a read
-  output logic        wb_ack_o,
+  output logic        wb_ack_o,  // the request is done
   output logic        wb_err_o,  // in place of wb_ack_o, where nothing was written
   // The registers.
   output logic        write_o,           // a register is written

@@ -31,7 +31,8 @@ module cuboct_spread #(
     assign observed_o   = 1'b1;
     assign data_o       = data_i;
   end else begin : gen_tree
-    // A register of level l >= 1 is over 8^(l+1) nodes, level Levels is the host. `among`: the number is that of one of these.
+    // A register of level l >= 1 is over 8^(l+1) nodes, level Levels is the host. `among`: the number is that of one
+    // of these.
     for (genvar l = 1; l <= Levels; l++) begin : gen_level
       localparam int Below      = 1 << (3 * l + 3);
       localparam int Registers  = (l == Levels) ? 1 : (Nodes + Below - 1) / Below;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Between a host and its nodes: cuboct_spread to them, cuboct_gather from their cuboct_watch. No wire between two registers
-// is for more than eight nodes. Commands come to all nodes in the same cycle; between a command and what it changes in
-// the outputs lie 2 Levels cycles, Levels as in cuboct_spread.
+// Between a host and its nodes: cuboct_spread to them, cuboct_gather from their cuboct_watch. No wire between two
+// registers is for more than eight nodes. Commands come to all nodes in the same cycle; between a command and what it
+// changes in the outputs lie 2 Levels cycles, Levels as in cuboct_spread.
 module cuboct_tree #(
   parameter  int Nodes        = 9,    // 1 to 262144
   parameter  int CommandBits  = 32,   // of command_i

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a host learns of a node: that it is busy, its first fault since the reset, and its particles. Fault and particles
-// are shown of the node that the host observes; of the others they are zeros, so that an or over all nodes leaves that
-// one's.
+// What a host learns of a node: that it is busy, its first fault since the reset, and its particles. Fault and
+// particles are shown of the node that the host observes; of the others they are zeros, so that an or over all nodes
+// leaves that one's.
 module cuboct_watch #(
   parameter int ParticleBits = 154,  // of a particle, with its cell in the node
   parameter int FaultBits    = 76    // of a fault: code, id, cell, number
@@ -14,8 +14,7 @@ module cuboct_watch #(
   input  logic [ParticleBits-1:0]           observe_data_i,   // with observe_valid_i
   input  logic                              fault_valid_i,    // it tells a fault
   input  logic [FaultBits-1:0]              fault_i,          // with fault_valid_i
-  // {busy; had a fault; is observed and had a fault; is observed and shows a particle}, from bit 3 down.
-  output logic [3:0]                        flags_o,
+  output logic [3:0]                        flags_o,          // {busy, had a fault, that is shown, a particle is shown}
   output logic [FaultBits+ParticleBits-1:0] data_o            // {the first fault, the particle}
 );
   logic                 faulty_d, faulty_q;
