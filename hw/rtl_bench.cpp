@@ -252,9 +252,10 @@ A lattice of @NODES@ particle processors in SystemVerilog, self-contained.
 | other files of `rtl/` | the library that they use |
 | `files.f` | all of them, in the order to read |
 | `project.json` | the plan for other programs: hash, nodes, widths, cycles per step, files; `cuboct synth` reads it |
+| `docs/reference/` | the pages that the modules' comments name: `node.md` has the node cycle by cycle |
 | `bench/` | a bench that loads @LOADS@ particles, runs @STEPS@ steps and compares each observed particle with golden's |
 
-    cd bench && make verilator     # or: icarus, lint, yosys
+    cd bench && make verilator     # or: icarus, lint, yosys; waves: cuboct_bench.vcd
 
 The bench ends with `PASS n comparisons, ...` and exit status 0, or with `FAIL`, the place and another status.
 
@@ -263,6 +264,33 @@ The bench ends with `PASS n comparisons, ...` and exit status 0, or with `FAIL`,
 | port | | bits | meaning |
 |---|---|---|---|
 @PORT_ROWS@
+Nodes have the numbers 0 to @LAST_NODE@. Commands come to all nodes after @TO@ cycles; what nodes show comes after @BACK@.
+
+- **Clock and reset.** One clock, rising edge; no clock enable. `rst_ni` is synchronous: low for one edge or more, at any time.
+  It empties all nodes, and node 0 is the one observed. Memories need no reset.
+- **Load.** While `idle_o` is high, one particle in each cycle with `load_valid_i`: it goes to node `node_i`, into its next slot.
+- **Start.** `start_i` for one cycle with `idle_o`, without `load_valid_i`; the cycle after the last load will do. `idle_o` falls in
+  the next cycle and is high again when all steps are done and all that was observed has come. `busy_o` is high in as many
+  cycles as the run took.
+- **Observe.** `select_i` for one cycle makes `node_i` the node observed, from the cycle with `settled_o` on. Its particles come
+  with `observe_valid_o`, in the order of its slots, at the start of each step and after the last. A start with `steps_i` = 0
+  and `select_i` in the same cycle shows them and changes nothing: so a host reads a state, node by node.
+- **Faults.** `faulty_o`: some node had a fault, the state is of no use. `fault_valid_o` and its company tell the first fault of the
+  node observed.
+
+An instantiation:
+
+```systemverilog
+module my_design (
+@OWN_PORTS@);
+  /* verilator lint_off PINMISSING */  // probe_*
+  cuboct_lattice u_lattice (
+@OWN_PINS@
+  );
+  /* verilator lint_on PINMISSING */
+endmodule
+```
+
 ## The particle of load_data_i and observe_data_o
 
 | field | lowest bit | bits | |
@@ -405,6 +433,15 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
     signals += fmt::format("  logic {}{};\n", range_of(port), signal);
     connections.push_back(fmt::format("    .{}({})", port.name, signal));
   }
+  std::vector<RtlPort> own;  // of the host: all but the probes
+  std::vector<std::string> pins;
+  for (const RtlPort& port : lattice_ports(design))
+    if (!port.name.starts_with("probe_")) {
+      own.push_back(port);
+      pins.push_back("    ." + port.name);
+    }
+  int levels = 0;  // of cuboct_spread
+  for (uint64_t reach = 1; reach < nodes; reach *= 8) ++levels;
   const auto of_bricks = [&](const char* with, const char* without = "") {
     return std::string(bricks ? with : without);
   };
@@ -420,6 +457,11 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
       {"PLAN", describe(plan)},
       {"PORT_ROWS", port_rows(design)},
       {"FIELD_ROWS", field_rows(plan)},
+      {"LAST_NODE", std::to_string(nodes - 1)},
+      {"TO", std::to_string(levels)},
+      {"BACK", std::to_string(levels > 0 ? levels + 1 : 0)},
+      {"OWN_PORTS", print_ports(own)},
+      {"OWN_PINS", fmt::format("{}", fmt::join(pins, ",\n"))},
       {"LAST", std::to_string(static_cast<int>(last_phase(plan.rule.axes)))},
       {"SIGNALS", signals},
       {"PORTS", fmt::format("{}", fmt::join(connections, ",\n"))},

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <regex>
 #include <set>
 #include <vector>
 
@@ -54,6 +55,19 @@ void add_node(Files& files, const RtlDesign& design) {
   if (!design.scale.empty()) files["rtl/cuboct_scale_rom.sv"] = print_scale(design);
   files["rtl/cuboct_type_rom.sv"] = print_types(design);
   files["rtl/cuboct_node.sv"] = print_node(design);
+}
+
+// A page without its links to others, which a project does not hold; those within the page stay.
+std::string alone(std::string_view page) {
+  static const std::regex link(R"(\[([^\]]*)\]\(([^)#][^)]*)\))");
+  return std::regex_replace(std::string(page), link, "$1");
+}
+
+void add_pages(Files& files, const RtlDesign& design, bool host) {
+  for (const RtlSource& page : rtl_pages())
+    if (page.name == "node.md" || (page.name == "links.md" && design.checked) ||
+        (page.name == "board.md" && host))
+      files["docs/reference/" + std::string(page.name)] = alone(page.text);
 }
 
 // The package first: the others refer to it.
@@ -133,6 +147,7 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
     files["rtl/" + std::string(source.name)] = source.text;
   files["rtl/cuboct_lattice.sv"] = print_lattice(design);
   add_list(files);
+  add_pages(files, design, !board.name.empty() || !board.bus.empty());
   if (!arch.empty()) files["arch.toml"] = arch;
   files["project.json"] = print_project(plan, initial, modules_of(files));
   for (auto& [path, text] : print_bench(plan, design, initial, vector_steps)) files[path] = std::move(text);

@@ -150,7 +150,8 @@ std::string print_node_in_loop(const RtlDesign& design) {
   const char* fault = design.bricks() ? "{fault_number, fault_cell, fault_id, fault_code}"
                                       : "{fault_number, fault_id, fault_code}";
   text += fmt::format(
-      "    cuboct_watch #(.ParticleBits(WordBits), .FaultBits(FaultBits)) u_watch (\n"
+      "    cuboct_watch #(.ParticleBits(WordBits), .FaultBits(FaultBits), .Delay((Nodes > 1) ? 1 : 0)) "
+      "u_watch (\n"
       "      .clk_i, .rst_ni, .observed_i(node_observed[n]), .idle_i(idle), "
       ".observe_valid_i(observe_valid),\n"
       "      .observe_data_i({}), .fault_valid_i(fault_valid), .fault_i({}),\n"

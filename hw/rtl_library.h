@@ -17,6 +17,8 @@ struct RtlSource {
 const std::vector<RtlSource>& rtl_library();
 const std::vector<RtlSource>& rtl_lattice_library();
 const std::vector<RtlSource>& rtl_bus_library();
+// The pages of docs/reference that the modules' comments name.
+const std::vector<RtlSource>& rtl_pages();
 // Those of one board alone are called "BOARD/name".
 const std::vector<RtlSource>& rtl_board_library();
 

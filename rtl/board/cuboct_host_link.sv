@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The host's end of a lattice: takes requests from a stream of bytes, does them, replies. Frames and commands are those
-// of cuboct's reference page "a board". One request at a time: while a reply is made and sent no byte is taken.
+// of docs/reference/board.md. One request at a time: while a reply is made and sent no byte is taken.
 //
 // Particles travel through one register, `word`: shifted in for LOAD; for READ taken from a dump (a run of no
 // steps) and shifted out. A dump shows all particles of a node, so there is one for each particle that is

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Between a host and its nodes: cuboct_spread to them, cuboct_gather from their cuboct_watch. No wire between two
 // registers is for more than eight nodes. Commands come to all nodes in the same cycle; between a command and what it
-// changes in the outputs lie 2 Levels cycles, Levels as in cuboct_spread.
+// changes in the outputs lie 2 Levels + 1 cycles, Levels as in cuboct_spread; for one node none.
 module cuboct_tree #(
   parameter  int Nodes        = 9,    // 1 to 262144
   parameter  int CommandBits  = 32,   // of command_i
@@ -44,12 +44,12 @@ module cuboct_tree #(
     .clk_i, .rst_ni, .flags_i(node_flags_i), .data_i(node_data_i),
     .flags_o({busy_o, faulty_o, fault_valid_o, observe_valid_o}), .data_o({fault_o, observe_data_o})
   );
-  // A start in cycle t is a node's in t + Levels, makes it busy in the next cycle, and that comes Levels later.
+  // A start in cycle t is a node's in t + Levels, makes it busy in the next cycle, and that comes Levels + 1 later.
   if (Levels == 0) begin : gen_at_once
     assign settled_o = 1'b1;
   end else begin : gen_later
-    logic [2*Levels-1:0] wait_d, wait_q;  // a bit per cycle
-    assign wait_d    = (start_i || select_i) ? '1 : {1'b0, wait_q[2*Levels-1:1]};
+    logic [2*Levels:0] wait_d, wait_q;  // a bit per cycle
+    assign wait_d    = (start_i || select_i) ? '1 : {1'b0, wait_q[2*Levels:1]};
     assign settled_o = !wait_q[0];
     always_ff @(posedge clk_i) begin
       if (!rst_ni) wait_q <= '0;

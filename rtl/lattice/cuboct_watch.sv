@@ -4,7 +4,8 @@
 // leaves that one's.
 module cuboct_watch #(
   parameter int ParticleBits = 154,  // of a particle, with its cell in the node
-  parameter int FaultBits    = 76    // of a fault: code, id, cell, number
+  parameter int FaultBits    = 76,   // of a fault: code, id, cell, number
+  parameter int Delay        = 1     // 1: outputs come a cycle later, from registers; 0: at once
 ) (
   input  logic                              clk_i,
   input  logic                              rst_ni,
@@ -29,6 +30,17 @@ module cuboct_watch #(
   always_ff @(posedge clk_i) fault_q <= fault_d;
   assign tells   = observed_i && faulty_q;
   assign shows   = observed_i && observe_valid_i;
-  assign flags_o = {!idle_i, faulty_q, tells, shows};
-  assign data_o  = {fault_q & {FaultBits{tells}}, observe_data_i & {ParticleBits{shows}}};
+  logic [3:0]                        flags;
+  logic [FaultBits+ParticleBits-1:0] data;
+  assign flags = {!idle_i, faulty_q, tells, shows};
+  assign data  = {fault_q & {FaultBits{tells}}, observe_data_i & {ParticleBits{shows}}};
+  // A particle is late in the node's cycle: without a register here the path would go on into cuboct_gather.
+  if (Delay == 0) begin : gen_at_once
+    assign flags_o = flags;
+    assign data_o  = data;
+  end else begin : gen_later
+    cuboct_stage #(.Flags(4), .Bits(FaultBits + ParticleBits)) u_stage (
+      .clk_i, .rst_ni, .flags_i(flags), .data_i(data), .flags_o, .data_o
+    );
+  end
 endmodule

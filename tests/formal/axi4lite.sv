@@ -81,7 +81,8 @@ module axi4lite_formal (
       // Taken and done in one cycle, with what the master gives.
       a_write:      assert (write == (awvalid_i && awready) && write == (wvalid_i && wready));
       a_read:       assert (read == (arvalid_i && arready));
-      if (write) a_written: assert (write_register == awaddr_i[3:2] && write_data == wdata_i && write_strobe == wstrb_i);
+      if (write)
+        a_written: assert (write_register == awaddr_i[3:2] && write_data == wdata_i && write_strobe == wstrb_i);
       if (read) a_which: assert (read_register == araddr_i[3:2]);
       if (bvalid) a_bresp: assert (bresp == {refused_q, 1'b0});
       if (rvalid) a_rdata: assert (rdata == answer_q && rresp == 2'b00);

@@ -130,7 +130,7 @@ module cuboct_lattice #(
       .fault_number_o(fault_number),
       .idle_o(idle)
     );
-    cuboct_watch #(.ParticleBits(WordBits), .FaultBits(FaultBits)) u_watch (
+    cuboct_watch #(.ParticleBits(WordBits), .FaultBits(FaultBits), .Delay((Nodes > 1) ? 1 : 0)) u_watch (
       .clk_i, .rst_ni, .observed_i(node_observed[n]), .idle_i(idle), .observe_valid_i(observe_valid),
       .observe_data_i(observe_data), .fault_valid_i(fault_valid), .fault_i({fault_number, fault_id, fault_code}),
       .flags_o(node_flags[4*n +: 4]), .data_o(node_data[n*(FaultBits+WordBits) +: FaultBits+WordBits])
