@@ -91,6 +91,10 @@ void emit_stages(const Options& options, const std::vector<StageName>& names, co
 
 void emit(Options options) {
   options.board.velocities = !options.fixed_velocities;
+  if (!options.board.bus.empty() && !options.board.name.empty())
+    throw InputError("--bus and --board are two ways to one lattice", "give one of them");
+  if (options.fixed_velocities && options.board.bus.empty() && options.board.name.empty())
+    throw InputError("--fixed-velocities is of a host's link", "give --board or --bus with it");
   if (!options.board.name.empty()) bit_clocks16(board_of(options.board.name), options.board.baud);
   if (!options.fit.empty()) {
     if (!options.input.stage.empty() || !options.input.from.empty())
@@ -137,13 +141,16 @@ void add_emit(CLI::App& app, int&) {
       ->capture_default_str()
       ->type_name("N");
   command
-      ->add_flag("--fixed-velocities", options->fixed_velocities,
-                 "the host cannot set the velocities of held and moved types: less area")
-      ->needs(board);
-  command
       ->add_flag("--unchecked", options->unchecked,
                  "do not check whether the board has room: for the simulator, which runs any size")
       ->needs(board);
+  command
+      ->add_option("--bus", options->board.bus,
+                   "add a wrapper with registers and an interrupt: axi4lite or wishbone")
+      ->type_name("BUS");
+  command->add_flag(
+      "--fixed-velocities", options->fixed_velocities,
+      "with --board or --bus: the host cannot set the velocities of held and moved types: less area");
   options->answer.add_to(*command);
   command->callback([options] { emit(*options); });
 }

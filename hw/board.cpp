@@ -30,6 +30,11 @@ const std::vector<Board>& boards() {
   return all;
 }
 
+const std::vector<std::string>& buses() {
+  static const std::vector<std::string> all{"axi4lite", "wishbone"};
+  return all;
+}
+
 const Board& board_of(const std::string& name) {
   std::vector<std::string> names;
   for (const Board& board : boards()) {

@@ -26,11 +26,15 @@ const std::vector<Board>& boards();
 // Throws InputError with the nearest spelling.
 const Board& board_of(const std::string& name);
 
-// Which board to emit for; an empty name: none.
+// The bus wrappers that can be emitted: "axi4lite", "wishbone".
+const std::vector<std::string>& buses();
+
+// What to put around the lattice: a board's top, or a bus's wrapper; empty names: nothing.
 struct BoardChoice {
   std::string name;
   int baud = 1000000;
   bool velocities = true;  // a host may set those of moved_types()
+  std::string bus = {};
 };
 
 // Length of a bit on the serial line in 1/16 clocks of the board; at least 4 clocks, or InputError.

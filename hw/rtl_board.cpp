@@ -10,13 +10,28 @@ namespace {
 
 constexpr int kLargest = 65535;  // 16 bits for a node's number, and for a count of particles
 
-std::string print_package(const Plan& plan, const RtlDesign& design, const BoardChoice& choice) {
+std::string print_line(const RtlDesign& design, const BoardChoice& choice) {
   const Board& board = board_of(choice.name);
   return fmt::format(
       "// SPDX-License-Identifier: MIT\n"
       "// {}\n"
-      "// What the host link knows of the plan, and its line: {} baud at {} MHz.\n"
+      "// The line of the {}: {} baud at {} MHz.\n"
       "package cuboct_board_pkg;\n"
+      "  localparam int ClockHz     = {};\n"
+      "  localparam int BitClocks16 = {};  // length of a bit in 1/16 clocks\n"
+      "endpackage\n",
+      design.maker, choice.name, choice.baud, board.clock_hz / 1e6, board.clock_hz,
+      bit_clocks16(board, choice.baud));
+}
+
+}  // namespace
+
+std::string print_machine_package(const Plan& plan, const RtlDesign& design) {
+  return fmt::format(
+      "// SPDX-License-Identifier: MIT\n"
+      "// {}\n"
+      "// What the host link knows of the plan.\n"
+      "package cuboct_machine_pkg;\n"
       "  localparam int          Nodes       = {};\n"
       "  localparam int          CellBits    = {};  // of a cell's number in its node\n"
       "  localparam int          Slots       = {};  // of a node\n"
@@ -24,19 +39,13 @@ std::string print_package(const Plan& plan, const RtlDesign& design, const Board
       "  localparam logic [{}:0] Velocities = {};\n"
       "  localparam logic [63:0] PlanHash    = 64'h{:016x};\n"
       "  localparam logic [63:0] MachineHash = 64'h{:016x};\n"
-      "  localparam int          ClockHz     = {};\n"
-      "  localparam int          BitClocks16 = {};  // length of a bit in 1/16 clocks\n"
       "endpackage\n",
-      design.maker, choice.baud, board.clock_hz / 1e6, plan.nodes(), plan.bricks.cell_bits(),
+      design.maker, plan.nodes(), plan.bricks.cell_bits(),
       cells_of(plan.bricks.shape()) * static_cast<uint32_t>(plan.arch.capacity), design.moved.size(),
-      velocities_bits(design) - 1, print_velocities(design), plan.hash, machine_hash(plan), board.clock_hz,
-      bit_clocks16(board, choice.baud));
+      velocities_bits(design) - 1, print_velocities(design), plan.hash, machine_hash(plan));
 }
 
-}  // namespace
-
-void legalise_board(const Plan& plan, const BoardChoice& choice) {
-  bit_clocks16(board_of(choice.name), choice.baud);
+void legalise_machine(const Plan& plan) {
   const auto at_most = [](const char* what, uint64_t value, uint64_t limit,
                           const std::vector<std::string>& keys) {
     if (value > limit)
@@ -60,10 +69,16 @@ void legalise_board(const Plan& plan, const BoardChoice& choice) {
   at_most("the number of held and moved types", moved_types(plan.rule).size(), 255, {"constraint"});
 }
 
+void legalise_board(const Plan& plan, const BoardChoice& choice) {
+  bit_clocks16(board_of(choice.name), choice.baud);
+  legalise_machine(plan);
+}
+
 std::map<std::string, std::string> print_board(const Plan& plan, const RtlDesign& design,
                                                const BoardChoice& choice) {
   std::map<std::string, std::string> files;
-  files["board/cuboct_board_pkg.sv"] = print_package(plan, design, choice);
+  files["board/cuboct_machine_pkg.sv"] = print_machine_package(plan, design);
+  files["board/cuboct_board_pkg.sv"] = print_line(design, choice);
   for (const RtlSource& source : rtl_board_library()) {
     const std::string name(source.name);
     const size_t slash = name.find('/');
@@ -75,12 +90,13 @@ std::map<std::string, std::string> print_board(const Plan& plan, const RtlDesign
   return files;
 }
 
-std::string board_list(const std::string& lattice_list, const std::map<std::string, std::string>& files) {
-  std::string list = lattice_list + "board/cuboct_board_pkg.sv\n";
+std::string list_with(const std::string& lattice_list, const std::string& folder,
+                      const std::map<std::string, std::string>& files) {
+  std::string packages, modules;
   for (const auto& [path, text] : files)
-    if (path.starts_with("board/") && path.ends_with(".sv") && path != "board/cuboct_board_pkg.sv")
-      list += path + "\n";
-  return list;
+    if (path.starts_with(folder + "/") && path.ends_with(".sv"))
+      (path.ends_with("_pkg.sv") ? packages : modules) += path + "\n";
+  return lattice_list + packages + modules;
 }
 
 std::string print_board_readme(const Plan& plan, const BoardChoice& choice) {

@@ -55,7 +55,7 @@ struct RtlDesign {
   std::vector<Cell> cells;  // of the nodes; of bricks their lowest ones
   std::vector<std::array<uint32_t, kFaces>> neighbour;
   int cell_bits = 0;                 // of a cell's number in its brick; 0: nodes of one cell
-  std::vector<std::string> extents;  // of bricks, by node: constants of extent_i and exit_i
+  std::vector<std::string> extents;  // of bricks, by node: constants of extent_i and exit_i, sized and binary
   std::vector<std::string> exits;
 
   bool bricks() const { return cell_bits > 0; }
@@ -72,6 +72,7 @@ RtlDesign decide(const Plan& plan);
 // Throws InputError with the numbers.
 void legalise(const RtlDesign& design, bool with_lattice);
 
+std::string head(const RtlDesign& design);  // comment lines at the top of each generated file
 std::string print_package(const RtlDesign& design);
 std::string print_table(const RtlDesign& design, const RtlTable& table);
 std::string print_scale(const RtlDesign& design);  // cuboct_scale_rom
@@ -79,7 +80,8 @@ std::string print_types(const RtlDesign& design);  // cuboct_type_rom
 // Of design.moved, as one vector: type by type, axis 0 in the least significant place; one bit where none is.
 std::string print_velocities(const RtlDesign& design);
 int velocities_bits(const RtlDesign& design);
-std::string print_node(const RtlDesign& design);  // cuboct_node
+std::string print_node(const RtlDesign& design);      // cuboct_node
+std::string print_node_box(const RtlDesign& design);  // its ports alone, to lint a lattice of many nodes
 std::string print_lattice(const RtlDesign& design);
 
 }  // namespace cuboct

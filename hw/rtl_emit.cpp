@@ -9,11 +9,13 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <regex>
 #include <set>
 #include <vector>
 
 #include "hw/rtl_bench.h"
 #include "hw/rtl_board.h"
+#include "hw/rtl_bus.h"
 #include "hw/rtl_design.h"
 #include "hw/rtl_library.h"
 #include "hw/rtl_project.h"
@@ -55,6 +57,19 @@ void add_node(Files& files, const RtlDesign& design) {
   if (!design.scale.empty()) files["rtl/cuboct_scale_rom.sv"] = print_scale(design);
   files["rtl/cuboct_type_rom.sv"] = print_types(design);
   files["rtl/cuboct_node.sv"] = print_node(design);
+}
+
+// A page without its links to others, which a project does not hold; those within the page stay.
+std::string alone(std::string_view page) {
+  static const std::regex link(R"(\[([^\]]*)\]\(([^)#][^)]*)\))");
+  return std::regex_replace(std::string(page), link, "$1");
+}
+
+void add_pages(Files& files, const RtlDesign& design, bool host) {
+  for (const RtlSource& page : rtl_pages())
+    if (page.name == "node.md" || (page.name == "links.md" && design.checked) ||
+        (page.name == "board.md" && host))
+      files["docs/reference/" + std::string(page.name)] = alone(page.text);
 }
 
 // The package first: the others refer to it.
@@ -125,21 +140,29 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
               const std::optional<CountedCycles>& counted) {
   RtlDesign design = decide(plan);
   legalise(design, true);
-  if (!board.name.empty()) {
-    legalise_board(plan, board);
+  if (!board.name.empty()) legalise_board(plan, board);
+  if (!board.bus.empty()) legalise_bus(plan, board);
+  if (!board.name.empty() || !board.bus.empty())
     if (board.velocities) design.moved = moved_types(plan.rule);
-  }
   Files files;
   add_node(files, design);
+  for (const RtlSource& source : rtl_lattice_library())
+    files["rtl/" + std::string(source.name)] = source.text;
   files["rtl/cuboct_lattice.sv"] = print_lattice(design);
   add_list(files);
+  add_pages(files, design, !board.name.empty() || !board.bus.empty());
   if (!arch.empty()) files["arch.toml"] = arch;
   files["project.json"] = print_project(plan, initial, modules_of(files), counted);
   for (auto& [path, text] : print_bench(plan, design, initial, vector_steps)) files[path] = std::move(text);
   if (!board.name.empty()) {
     for (auto& [path, text] : print_board(plan, design, board)) files[path] = std::move(text);
-    files["board/files.f"] = board_list(files["files.f"], files);
+    files["board/files.f"] = list_with(files["files.f"], "board", files);
     files["README.md"] += print_board_readme(plan, board);
+  }
+  if (!board.bus.empty()) {
+    for (auto& [path, text] : print_bus(plan, design, board)) files[path] = std::move(text);
+    files["bus/files.f"] = list_with(files["files.f"], "bus", files);
+    files["README.md"] += print_bus_readme(plan, board);
   }
   write(dir, files);
 }

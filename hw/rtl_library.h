@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The hand-written SystemVerilog modules of rtl/lib, and those of rtl/board with the boards' pins, embedded
-// at build time.
+// The hand-written SystemVerilog modules of rtl/lib, rtl/lattice, rtl/bus, and of rtl/board with the boards'
+// pins, embedded at build time.
 #pragma once
 
 #include <string_view>
@@ -15,6 +15,10 @@ struct RtlSource {
 
 // In the order of names.
 const std::vector<RtlSource>& rtl_library();
+const std::vector<RtlSource>& rtl_lattice_library();
+const std::vector<RtlSource>& rtl_bus_library();
+// The pages of docs/reference that the modules' comments name.
+const std::vector<RtlSource>& rtl_pages();
 // Those of one board alone are called "BOARD/name".
 const std::vector<RtlSource>& rtl_board_library();
 

@@ -72,16 +72,41 @@ std::vector<RtlPort> node_ports(const RtlDesign& design, bool core) {
 }
 
 std::vector<RtlPort> lattice_ports(const RtlDesign& design) {
-  std::vector<RtlPort> ports;
-  for (RtlPort& port : node_ports(design, true)) {
-    const bool within = port.name.find("link_") != std::string::npos || port.name == "extent_i" ||
-                        port.name == "exit_i" || port.name == "force_event_o";
-    if (within) continue;
-    if (port.output) port.bits = port.bits == "1" ? "Nodes" : "Nodes*" + port.bits;
-    ports.push_back(std::move(port));
-    if (ports.back().name == "load_valid_i")
-      ports.push_back({kIn, "load_node_i", "32", "with load_valid_i: to this node"});
+  std::vector<RtlPort> ports, probes;
+  const std::vector<RtlPort> of_node = node_ports(design, true);
+  const auto add = [&](bool output, const char* name, const std::string& bits, const char* meaning) {
+    ports.push_back({output, name, bits, meaning});
+  };
+  for (const RtlPort& port : of_node) {
+    if (port.output || port.name == "has_link_i" || port.name == "extent_i" || port.name == "exit_i" ||
+        port.name.starts_with("link_"))
+      continue;
+    ports.push_back(port);
+    if (port.name == "steps_i") ports.back().meaning = "with start_i; 0: show the particles alone";
+    if (port.name == "load_valid_i") ports.back().meaning = "in IDLE: append a particle to node_i";
+    if (port.name == "load_data_i") {
+      add(kIn, "select_i", "1", "from now on node_i is the node observed; with start_i or not");
+      add(kIn, "node_i", "32", "with load_valid_i or select_i: a node; none has a number from Nodes on");
+    }
   }
+  add(kOut, "idle_o", "1", "nothing runs; falls in the cycle after start_i, or select_i");
+  add(kOut, "busy_o", "1", "some node is not in IDLE; as many cycles as the run took");
+  add(kOut, "settled_o", "1", "the other outputs know of the last start_i and select_i");
+  add(kOut, "faulty_o", "1", "some node had a fault since the reset");
+  for (const RtlPort& port : of_node) {
+    if (!port.output) continue;
+    const bool observe = port.name.starts_with("observe_"), fault = port.name.starts_with("fault_");
+    if (observe || fault) ports.push_back(port);
+    if (port.name == "observe_valid_o") ports.back().meaning = "the node observed shows a particle";
+    if (port.name == "fault_valid_o") ports.back().meaning = "the node observed had a fault since the reset";
+    if (fault && port.name != "fault_valid_o")
+      ports.back().meaning += port.name == "fault_code_o" ? "; of the first" : "";
+    if (observe || fault || port.name.starts_with("phase_") || port.name == "idle_o")
+      probes.push_back({kOut, "probe_" + port.name,
+                        port.bits == "1" ? "ProbeNodes" : "ProbeNodes*" + port.bits,
+                        fmt::format("if Probe = 1, by node: {}", port.meaning)});
+  }
+  ports.insert(ports.end(), probes.begin(), probes.end());
   return ports;
 }
 

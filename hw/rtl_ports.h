@@ -13,13 +13,13 @@ namespace cuboct {
 struct RtlPort {
   bool output;
   std::string name;
-  std::string bits;  // a number, or an expression of cuboct_pkg's constants, of a lattice of `Nodes` too
+  std::string bits;  // a number, or an expression of cuboct_pkg's constants, of a lattice of `ProbeNodes` too
   std::string meaning;
 };
 
 // Of cuboct_node; `core`: of the core within, whose links are not checked.
 std::vector<RtlPort> node_ports(const RtlDesign& design, bool core);
-// Of cuboct_lattice: of its nodes, those that are not links.
+// Of cuboct_lattice: the host's side, and probe_X for each output X of its nodes that is not a link's.
 std::vector<RtlPort> lattice_ports(const RtlDesign& design);
 
 // "[7:0] " with a blank, or nothing for one bit.

@@ -3,17 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
 
 #include "hw/rtl_ports.h"
 #include "hw/rtl_template.h"
 
 namespace cuboct {
 namespace {
-
-std::string head(const RtlDesign& design) {
-  return "// SPDX-License-Identifier: MIT\n// " + design.maker + "\n";
-}
 
 // A value in two's complement, as a sized hexadecimal literal.
 std::string literal(int64_t value, int bits) {
@@ -28,6 +23,10 @@ std::string concatenated(const Int3& values, int bits, int axes) {
 }
 
 }  // namespace
+
+std::string head(const RtlDesign& design) {
+  return "// SPDX-License-Identifier: MIT\n// " + design.maker + "\n";
+}
 
 std::string print_package(const RtlDesign& design) {
   std::string text =
@@ -166,6 +165,23 @@ std::string print_types(const RtlDesign& design) {
   return text + "      default: imposed_o = '0;\n    endcase\n  end\nendmodule\n";
 }
 
+std::string print_node_box(const RtlDesign& design) {
+  const std::vector<RtlPort> ports = node_ports(design, false);
+  std::string text = head(design), inputs, outputs;
+  for (const RtlPort& p : ports)
+    if (p.output)
+      outputs += fmt::format("  assign {} = '0;\n", p.name);
+    else
+      inputs += fmt::format("{}{}", inputs.empty() ? "" : ", ", p.name);
+  return text +
+         fmt::format(
+             "// The ports of cuboct_node and nothing behind them, for the lint of the lattice: the node is "
+             "linted once.\n"
+             "module cuboct_node (\n{});\n  logic unused_inputs;\n"
+             "  assign unused_inputs = ^{{{}}};\n{}endmodule\n",
+             print_ports(ports), inputs, outputs);
+}
+
 std::string print_node(const RtlDesign& design) {
   const char* core_name = design.bricks() ? "cuboct_brick_core" : "cuboct_node_core";
   std::string text = head(design);
@@ -222,99 +238,6 @@ std::string print_node(const RtlDesign& design) {
     text +=
         "  // A link's fault is told by the first cell.\n"
         "  assign fault_cell_o = core_fault_valid ? core_fault_cell : '0;\n";
-  return text + "endmodule\n";
-}
-
-std::string print_lattice(const RtlDesign& design) {
-  const size_t nodes = design.cells.size();
-  const int faces = 2 * design.axes;
-  std::string text = head(design);
-  text += fmt::format(
-      "// All nodes and their links. Node n's part of a vector over nodes has n times the part's width below "
-      "it.\n"
-      "// load_valid_i appends load_data_i to node load_node_i; start_i starts all nodes.\n"
-      "module cuboct_lattice #(\n"
-      "  localparam int Nodes = {}\n"
-      ") (\n"
-      "{});\n"
-      "  localparam int LinkBits = cuboct_pkg::{};\n{}\n",
-      nodes, print_ports(lattice_ports(design)), design.checked ? "WireBits" : "LinkBits",
-      design.checked ? "  localparam int AckBits = cuboct_pkg::AckBits;\n" : "");
-  for (size_t n = 0; n < nodes; ++n)
-    text +=
-        fmt::format("  logic [{1}:0] valid_{0}, end_{0}, ready_{0};\n  logic [{2}*LinkBits-1:0] data_{0};\n",
-                    n, faces - 1, faces);
-  if (design.checked)
-    for (size_t n = 0; n < nodes; ++n) {
-      text += fmt::format("  logic [{}*AckBits-1:0] ack_{};\n", faces, n);
-      text += fmt::format("  logic [{}:0] error_{};\n", 2 * faces - 1, n);
-    }
-  std::string unused_ends;
-  // The nodes' link errors are there for whoever counts them; the faults reach the host without.
-  if (design.checked)
-    for (size_t n = 0; n < nodes; ++n)
-      unused_ends += fmt::format("{}^error_{}", unused_ends.empty() ? "    " : ",\n    ", n);
-  std::string events;
-  for (size_t n = 0; n < nodes; ++n) events += fmt::format("{}event_{}", n == 0 ? "" : ", ", n);
-  text += fmt::format("  logic [3:0] {};\n  logic unused_events;\n  assign unused_events = ^{{{}}};\n",
-                      events, events);
-  for (size_t n = 0; n < nodes; ++n) {
-    const Cell& cell = design.cells[n];
-    std::string has, valid, end, ready, data, ack;
-    for (int f = faces - 1; f >= 0; --f) {
-      const uint32_t to = design.neighbour[n][f];
-      const int back = f ^ 1;  // the face of the neighbour that looks here
-      const char* comma = f > 0 ? ", " : "";
-      const bool linked = to != kNoNode;
-      has += linked ? '1' : '0';
-      valid += (linked ? fmt::format("valid_{}[{}]", to, back) : "1'b0") + comma;
-      end += (linked ? fmt::format("end_{}[{}]", to, back) : "1'b0") + comma;
-      ready += (linked ? fmt::format("ready_{}[{}]", to, back) : "1'b0") + comma;
-      data +=
-          (linked ? fmt::format("data_{}[{}*LinkBits +: LinkBits]", to, back) : "{LinkBits{1'b0}}") + comma;
-      ack += (linked ? fmt::format("ack_{}[{}*AckBits +: AckBits]", to, back) : "{AckBits{1'b0}}") + comma;
-      if (!linked && design.checked)
-        unused_ends +=
-            fmt::format("{}^ack_{}[{}*AckBits +: AckBits]", unused_ends.empty() ? "    " : ",\n    ", n, f);
-      if (!linked)
-        unused_ends +=
-            fmt::format("{}valid_{}[{}], end_{}[{}], ready_{}[{}], ^data_{}[{}*LinkBits +: LinkBits]",
-                        unused_ends.empty() ? "    " : ",\n    ", n, f, n, f, n, f, n, f);
-    }
-    const std::string number = std::to_string(n);
-    const std::map<std::string, std::string> special{
-        {"has_link_i", fmt::format("{}'b{}", faces, has)},
-        {"load_valid_i", "load_valid_i && load_node_i == 32'd" + number},
-        {"extent_i", design.bricks() ? design.extents[n] : ""},
-        {"exit_i", design.bricks() ? design.exits[n] : ""},
-        {"link_valid_o", "valid_" + number},
-        {"link_end_o", "end_" + number},
-        {"link_data_o", "data_" + number},
-        {"link_ready_o", "ready_" + number},
-        {"link_ack_o", "ack_" + number},
-        {"link_error_o", "error_" + number},
-        {"link_valid_i", "{" + valid + "}"},
-        {"link_end_i", "{" + end + "}"},
-        {"link_data_i", "{" + data + "}"},
-        {"link_ready_i", "{" + ready + "}"},
-        {"link_ack_i", "{" + ack + "}"},
-        {"force_event_o", "event_" + number}};
-    // The rest is the host's: inputs go to all nodes, outputs have a part for each.
-    const auto connected = [&](const RtlPort& p) {
-      if (const auto at = special.find(p.name); at != special.end())
-        return fmt::format("    .{}({})", p.name, at->second);
-      if (!p.output) return "    ." + p.name;
-      return p.bits == "1" ? fmt::format("    .{0}({0}[{1}])", p.name, n)
-                           : fmt::format("    .{0}({0}[{1}*{2} +: {2}])", p.name, n, p.bits);
-    };
-    std::vector<std::string> connections;
-    for (const RtlPort& p : node_ports(design, false)) connections.push_back(connected(p));
-    text += fmt::format("\n  // {} ({}, {}, {}).\n  cuboct_node u_node_{} (\n{}\n  );\n",
-                        design.bricks() ? "Cells from" : "Cell", cell[0], cell[1], cell[2], n,
-                        fmt::join(connections, ",\n"));
-  }
-  if (!unused_ends.empty())
-    text += "\n  logic unused_faces;\n  assign unused_faces = ^{\n" + unused_ends + "\n  };\n";
   return text + "endmodule\n";
 }
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-# cmake -D OUT=file.cpp -D DIR=rtl/lib [-D FUNCTION=name] -P embed.cmake: the hand-written modules, and pins of boards, as a
-# C++ table, in the order of names; rtl_library() unless said.
-if(NOT FUNCTION)
-  set(FUNCTION rtl_library)
+# cmake -D OUT=file.cpp -D DIR=rtl/lib -D FUNCTION=name [-D FILES=a;b] -P embed.cmake: the hand-written modules, and pins of boards, as a
+# C++ table, in the order of names.
+if(FILES)
+  set(sources ${FILES})
+else()
+  file(GLOB_RECURSE sources RELATIVE ${DIR} ${DIR}/*.sv ${DIR}/*.pcf ${DIR}/*.lpf)
 endif()
-file(GLOB_RECURSE sources RELATIVE ${DIR} ${DIR}/*.sv ${DIR}/*.pcf ${DIR}/*.lpf)
 list(SORT sources)
 set(text "// SPDX-License-Identifier: MIT\n#include \"hw/rtl_library.h\"\n\nnamespace cuboct {\n\n")
 string(APPEND text "const std::vector<RtlSource>& ${FUNCTION}() {\n  static const std::vector<RtlSource> sources{\n")

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-enum { kCuboctAbi = 6, kCuboctFaces = 6, kCuboctWords = 8 };
+enum { kCuboctAbi = 7, kCuboctFaces = 6, kCuboctWords = 8 };
 
 // Inputs of one node during one cycle. `link_data[f]` is read where bit f of `link_valid` is set.
 struct CuboctIn {
@@ -46,6 +46,10 @@ struct CuboctOut {
 // or, of the top of a board, `cycles` long: the levels of the line to it and from it, and whether the lamp
 // that says idle is lit in the end
 //   const char* cuboct_clock_board(void* model, const uint8_t* rx, uint8_t* tx, int cycles, uint8_t* idle);
+// or, of the wrapper of a bus, whose bus master writes the first of `rx_count` bytes, reads up to `tx_room`,
+// for about so many cycles, and tells how many it did, and whether no run was under way
+//   const char* cuboct_clock_bus(void* model, const uint8_t* rx, int rx_count, int* rx_taken, uint8_t* tx,
+//                                int tx_room, int* tx_count, int cycles, uint8_t* idle);
 // They return null, or "file:line" of the first assertion of the RTL that failed: then the model is of no
 // further use but to be destroyed.
 

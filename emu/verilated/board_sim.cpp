@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct-board-sim: the top of an emitted board, Verilated, behind a pseudo-terminal: a board for whoever has
-// none.
+// cuboct-board-sim: the top of an emitted board, or the wrapper of a bus, Verilated, behind a
+// pseudo-terminal: hardware for whoever has none.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -63,23 +63,37 @@ struct Terminal {
   Terminal& operator=(const Terminal&) = delete;
 };
 
-int simulate(const Request& request) {
-  const double clocks = constant_of(request.project, "BitClocks16") / 16 * (1 + request.skew / 100);
-  const Library library(compile_board(request.project, request.build_directory.empty()
-                                                           ? default_build_directory()
-                                                           : request.build_directory));
-  if (library.clock_board == nullptr) throw InputError("the compiled library is not that of a board");
-  void* model = library.create(1);
-  Terminal terminal;
-  fmt::print("{}\n", terminal.name);
-  std::fflush(stdout);
-  catch_interrupts();
+constexpr int kChunk = 64;  // cycles
 
+// What comes from the host, or nothing; waits for it where the machine sleeps.
+size_t hear(const Terminal& terminal, bool sleeps, std::array<uint8_t, 4096>& buffer) {
+  pollfd waiting{terminal.master, POLLIN, 0};
+  if (poll(&waiting, 1, sleeps ? 200 : 0) <= 0) return 0;
+  return static_cast<size_t>(std::max<ssize_t>(0, read(terminal.master, buffer.data(), buffer.size())));
+}
+
+void tell(const Terminal& terminal, const std::vector<uint8_t>& bytes) {
+  for (size_t at = 0; at < bytes.size();) {
+    const ssize_t done = write(terminal.master, bytes.data() + at, bytes.size() - at);
+    if (done <= 0) break;  // nobody reads: a serial line does not wait
+    at += static_cast<size_t>(done);
+  }
+}
+
+int failed(uint64_t cycles, const char* at) {
+  const bool rule = std::strncmp(at, "the bus", 7) == 0;
+  fmt::print(stderr, "cuboct-board-sim: cycle {}: {}\n", cycles,
+             rule ? fmt::format("{}: broken", at) : fmt::format("the assertion of the RTL at {} failed", at));
+  return 1;
+}
+
+// A serial line, level by level.
+int simulate_line(const Request& request, const Library& library, void* model, const Terminal& terminal) {
+  const double clocks = constant_of(request.project, "BitClocks16") / 16 * (1 + request.skew / 100);
   Noise back = request.noise;
   back.seed ^= 0x9e3779b97f4a7c15u;
   LineOut to_board(clocks, request.noise);
   LineIn from_board(clocks, back);
-  constexpr int kChunk = 64;  // cycles
   std::array<uint8_t, kChunk> rx{}, tx{};
   std::array<uint8_t, 4096> buffer{};
   std::vector<uint8_t> bytes;
@@ -88,41 +102,79 @@ int simulate(const Request& request) {
   uint64_t cycles = 0;
   while (!interrupted()) {
     const bool sleeps = to_board.empty() && quiet > settle;
-    pollfd waiting{terminal.master, POLLIN, 0};
-    if (poll(&waiting, 1, sleeps ? 200 : 0) > 0) {
-      const ssize_t got = read(terminal.master, buffer.data(), buffer.size());
-      for (ssize_t k = 0; k < got; ++k) to_board.send(buffer[static_cast<size_t>(k)]);
-    } else if (sleeps) {
-      continue;
-    }
+    const size_t got = hear(terminal, sleeps, buffer);
+    for (size_t k = 0; k < got; ++k) to_board.send(buffer[k]);
+    if (got == 0 && sleeps) continue;
     for (uint8_t& level : rx) level = to_board.level();
     uint8_t idle = 1;
-    if (const char* at = library.clock_board(model, rx.data(), tx.data(), kChunk, &idle); at != nullptr) {
-      fmt::print(stderr, "cuboct-board-sim: cycle {}: the assertion of the RTL at {} failed\n", cycles, at);
-      return 1;
-    }
+    if (const char* at = library.clock_board(model, rx.data(), tx.data(), kChunk, &idle); at != nullptr)
+      return failed(cycles, at);
     cycles += kChunk;
     bytes.clear();
     for (const uint8_t level : tx) from_board.take(level, bytes);
     quiet = to_board.empty() && from_board.idle() && bytes.empty() && idle ? quiet + kChunk : 0;
-    for (size_t at = 0; at < bytes.size();) {
-      const ssize_t done = write(terminal.master, bytes.data() + at, bytes.size() - at);
-      if (done <= 0) break;  // nobody reads: a serial line does not wait
-      at += static_cast<size_t>(done);
-    }
+    tell(terminal, bytes);
   }
   const NoiseCount &a = to_board.count(), &b = from_board.count();
   fmt::print(stderr,
              "{} cycles; to the board {} bytes, {} flips, {} drops, {} inserts; from it {}, {}, {}, {}\n",
              cycles, a.bytes, a.flips, a.drops, a.inserts, b.bytes, b.flips, b.drops, b.inserts);
-  library.destroy(model);
   return 0;
+}
+
+// A bus's registers, byte by byte.
+int simulate_bus(const Library& library, void* model, const Terminal& terminal) {
+  constexpr int kSettle = 1024;  // cycles after which a quiet machine has nothing to say
+  std::array<uint8_t, 4096> buffer{}, tx{};
+  std::vector<uint8_t> to_bus, bytes;
+  int quiet = 0;
+  uint64_t cycles = 0, written = 0, read = 0;
+  while (!interrupted()) {
+    const bool sleeps = to_bus.empty() && quiet > kSettle;
+    const size_t got = hear(terminal, sleeps, buffer);
+    to_bus.insert(to_bus.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(got));
+    if (got == 0 && sleeps) continue;
+    int taken = 0, count = 0;
+    uint8_t idle = 1;
+    const char* at = library.clock_bus(model, to_bus.data(), static_cast<int>(to_bus.size()), &taken,
+                                       tx.data(), static_cast<int>(tx.size()), &count, kChunk, &idle);
+    if (at != nullptr) return failed(cycles, at);
+    cycles += kChunk;
+    to_bus.erase(to_bus.begin(), to_bus.begin() + taken);
+    bytes.assign(tx.begin(), tx.begin() + count);
+    written += static_cast<uint64_t>(taken);
+    read += static_cast<uint64_t>(count);
+    quiet = to_bus.empty() && taken == 0 && bytes.empty() && idle ? quiet + kChunk : 0;
+    tell(terminal, bytes);
+  }
+  fmt::print(stderr, "over {} cycles; {} bytes written, {} read\n", cycles, written, read);
+  return 0;
+}
+
+int simulate(const Request& request) {
+  const Library library(compile_board(request.project, request.build_directory.empty()
+                                                           ? default_build_directory()
+                                                           : request.build_directory));
+  const bool line = library.clock_board != nullptr;
+  if (!line && library.clock_bus == nullptr) throw InputError("the compiled library is not that of a board");
+  const Noise& noise = request.noise;
+  if (!line && (noise.flip > 0 || noise.drop > 0 || noise.insert > 0 || request.skew != 0))
+    throw InputError(fmt::format("{} has a bus, not a serial line: nothing disturbs it", request.project));
+  void* model = library.create(1);
+  Terminal terminal;
+  fmt::print("{}\n", terminal.name);
+  std::fflush(stdout);
+  catch_interrupts();
+  const int code =
+      line ? simulate_line(request, library, model, terminal) : simulate_bus(library, model, terminal);
+  library.destroy(model);
+  return code;
 }
 
 int main_of(int argc, char** argv) {
   Request request;
   CLI::App app{"Simulates an emitted board behind a pseudo-terminal and prints its name", "cuboct-board-sim"};
-  app.add_option("project", request.project, "Directory of 'cuboct emit SCENE --board B --out DIR'")
+  app.add_option("project", request.project, "Directory of 'cuboct emit SCENE --board B --out DIR', or --bus")
       ->required()
       ->type_name("DIR");
   app.add_option("--flip-rate", request.noise.flip, "Chance that a bit on the line is wrong")

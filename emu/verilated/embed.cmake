@@ -2,7 +2,7 @@
 set(text "// SPDX-License-Identifier: MIT\n#include \"emu/verilated/sources.h\"\n\nnamespace cuboct::emu {\n\n")
 string(APPEND text "const std::vector<std::pair<std::string, std::string>>& shim_sources() {\n")
 string(APPEND text "  static const std::vector<std::pair<std::string, std::string>> sources{\n")
-foreach(source abi.h shim.h shim_board.cpp shim_lattice.cpp shim_node.cpp)
+foreach(source abi.h shim.h shim_board.cpp shim_bus.cpp shim_lattice.cpp shim_node.cpp)
   file(READ ${DIR}/${source} body)
   string(APPEND text "{\"${source}\", R\"shim~(${body})shim~\"},\n")
 endforeach()

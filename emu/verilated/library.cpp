@@ -71,7 +71,7 @@ std::string compile_node(const Plan& plan, const std::string& build_directory) {
 // All ports of more than one bit become sc_bv.
 std::string compile_lattice(const Plan& plan, const State& initial, const std::string& build_directory) {
   return compile({.top = "cuboct_lattice",
-                  .verilator_flags = "--sc --pins-bv 2",
+                  .verilator_flags = "--sc --pins-bv 2 -GProbe=1",
                   .compiler_flags = "-O1",
                   .libraries = "-lsystemc",
                   .constants = {{"NODES", static_cast<int>(plan.nodes())},
@@ -84,7 +84,9 @@ std::string compile_lattice(const Plan& plan, const State& initial, const std::s
 }
 
 std::string compile_board(const std::string& project, const std::string& build_directory) {
-  const fs::path from = project, names = from / "board" / "files.f";
+  const fs::path from = project;
+  const bool bus = fs::exists(from / "bus" / "files.f");
+  const fs::path names = from / (bus ? "bus" : "board") / "files.f";
   std::ifstream list(names);
   if (!list)
     throw InputError(fmt::format("{} holds no board: there is no {}", project, names.string()),
@@ -92,6 +94,16 @@ std::string compile_board(const std::string& project, const std::string& build_d
   std::vector<std::string> files;
   for (std::string path; std::getline(list, path);)
     if (!path.empty()) files.push_back(path);
+  if (bus) {
+    const bool axi = fs::exists(from / "bus" / "cuboct_axi4lite.sv");
+    return compile({.top = axi ? "cuboct_axi4lite" : "cuboct_wishbone",
+                    .verilator_flags = "--cc",
+                    .compiler_flags = "-O1 -fno-semantic-interposition",
+                    .constants = {{"BUS_AXI", axi ? 1 : 0}},
+                    .sources = with_headers("shim_bus.cpp"),
+                    .emit = [&](const std::string& dir) { copy_board(from, files, dir); }},
+                   build_directory);
+  }
   return compile({.top = "cuboct_board_top",
                   .verilator_flags = "--cc",
                   .compiler_flags = "-O1 -fno-semantic-interposition",
@@ -111,8 +123,9 @@ Library::Library(const std::string& path) : handle_(dlopen(path.c_str(), RTLD_NO
   find_symbol(handle_, "cuboct_place", place);
   find_symbol(handle_, "cuboct_clock_lattice", clock_lattice);
   find_symbol(handle_, "cuboct_clock_board", clock_board);
+  find_symbol(handle_, "cuboct_clock_bus", clock_bus);
   if (abi == nullptr || abi() != kCuboctAbi || create == nullptr || destroy == nullptr ||
-      (clock == nullptr && clock_lattice == nullptr && clock_board == nullptr)) {
+      (clock == nullptr && clock_lattice == nullptr && clock_board == nullptr && clock_bus == nullptr)) {
     dlclose(handle_);
     throw InputError(fmt::format("{} is not a library of this version", path),
                      "remove it: it will be built anew");

@@ -24,7 +24,8 @@ std::string compile_lattice(const Plan& plan, const State& initial, const std::s
 // What compile_node builds, for those who change it: other sources of the RTL, other flags. Refers to `plan`.
 Build node_build(const Plan& plan);
 
-// The path of the compiled top of the board that `project`, a directory of `cuboct emit --board`, holds.
+// The path of the compiled top of the board, or of the wrapper of the bus, that `project`, a directory of
+// `cuboct emit --board` or `--bus`, holds.
 std::string compile_board(const std::string& project, const std::string& build_directory);
 
 // A loaded library.
@@ -37,11 +38,13 @@ class Library {
 
   void* (*create)(uint32_t seed) = nullptr;
   void (*destroy)(void*) = nullptr;
-  // Of a node's library, of a lattice's, of a board's; null, or the assertion of the RTL that failed.
+  // Of a node's library, of a lattice's, of a board's, of a bus's; null, or the assertion of the RTL that
+  // failed.
   const char* (*clock)(void*, const CuboctIn*, CuboctOut*) = nullptr;
   void (*place)(void*, const uint64_t* extent, const uint64_t* exits) = nullptr;  // of a node with a brick
   const char* (*clock_lattice)(void*, const CuboctIn*, uint32_t, CuboctOut*) = nullptr;
   const char* (*clock_board)(void*, const uint8_t*, uint8_t*, int, uint8_t*) = nullptr;
+  const char* (*clock_bus)(void*, const uint8_t*, int, int*, uint8_t*, int, int*, int, uint8_t*) = nullptr;
 
  private:
   void* handle_ = nullptr;

@@ -3,6 +3,7 @@
 // ID_BITS and CELL_BITS (0: nodes of one cell) come from the command line. Each clock function advances
 // SystemC's time by one period.
 #include <systemc>
+#include <type_traits>
 
 #include "Vcuboct_lattice.h"
 #include "shim.h"
@@ -13,24 +14,40 @@ template <typename T>
 using Signal = sc_core::sc_signal<T>;
 template <int N>
 using Vector = sc_core::sc_signal<sc_dt::sc_bv<N>>;
+// A port of one bit is a bool.
+template <int N>
+using Of = std::conditional_t<N == 1, Signal<bool>, Vector<N>>;
+
+// Registers between the host and each node (cuboct_spread).
+constexpr int levels() {
+  int count = 0;
+  for (long reach = 1; reach < NODES; reach *= 8) ++count;
+  return count;
+}
 
 struct Lattice : Instance<Vcuboct_lattice> {
-  Signal<bool> clk, rst_n, start, load_valid;
-  Vector<32> steps, load_node;
+  Signal<bool> clk, rst_n, start, load_valid, select;
+  Vector<32> steps, node;
   Vector<PARTICLE_BITS> load_data;
+  // Of the node that a host observes; of no use here.
+  Signal<bool> all_idle, busy, settled, faulty, one_observe_valid, one_fault_valid;
+  Vector<PARTICLE_BITS> one_observe_data;
+  Vector<4> one_fault_code;
+  Of<ID_BITS> one_fault_id;
+  Vector<64> one_fault_number;
+#if CELL_BITS > 0
+  Of<CELL_BITS> one_observe_cell, one_fault_cell;
+#endif
+  // Of all nodes.
   Vector<8 * NODES> phase_start, phase_end;
-  Vector<NODES> observe_valid, fault_valid, idle;
+  Of<NODES> observe_valid, fault_valid, idle;
   Vector<NODES * PARTICLE_BITS> observe_data;
   Vector<4 * NODES> fault_code;
-  Vector<NODES * ID_BITS> fault_id;
+  Of<NODES * ID_BITS> fault_id;
   Vector<64 * NODES> fault_number;
-#if CELL_BITS > 1
-  Vector<CELL_BITS> load_cell;
-#elif CELL_BITS == 1
-  Signal<bool> load_cell;
-#endif
 #if CELL_BITS > 0
-  Vector<NODES * CELL_BITS> observe_cell, fault_cell;
+  Of<CELL_BITS> load_cell;
+  Of<NODES * CELL_BITS> observe_cell, fault_cell;
 #endif
 
   explicit Lattice(uint32_t seed) : Instance(seed, "lattice") {
@@ -39,21 +56,34 @@ struct Lattice : Instance<Vcuboct_lattice> {
     model->start_i(start);
     model->steps_i(steps);
     model->load_valid_i(load_valid);
-    model->load_node_i(load_node);
     model->load_data_i(load_data);
-    model->phase_start_o(phase_start);
-    model->phase_end_o(phase_end);
-    model->observe_valid_o(observe_valid);
-    model->observe_data_o(observe_data);
-    model->fault_valid_o(fault_valid);
-    model->fault_code_o(fault_code);
-    model->fault_id_o(fault_id);
-    model->fault_number_o(fault_number);
-    model->idle_o(idle);
+    model->select_i(select);
+    model->node_i(node);
+    model->idle_o(all_idle);
+    model->busy_o(busy);
+    model->settled_o(settled);
+    model->faulty_o(faulty);
+    model->observe_valid_o(one_observe_valid);
+    model->observe_data_o(one_observe_data);
+    model->fault_valid_o(one_fault_valid);
+    model->fault_code_o(one_fault_code);
+    model->fault_id_o(one_fault_id);
+    model->fault_number_o(one_fault_number);
+    model->probe_phase_start_o(phase_start);
+    model->probe_phase_end_o(phase_end);
+    model->probe_observe_valid_o(observe_valid);
+    model->probe_observe_data_o(observe_data);
+    model->probe_fault_valid_o(fault_valid);
+    model->probe_fault_code_o(fault_code);
+    model->probe_fault_id_o(fault_id);
+    model->probe_fault_number_o(fault_number);
+    model->probe_idle_o(idle);
 #if CELL_BITS > 0
     model->load_cell_i(load_cell);
-    model->observe_cell_o(observe_cell);
-    model->fault_cell_o(fault_cell);
+    model->observe_cell_o(one_observe_cell);
+    model->fault_cell_o(one_fault_cell);
+    model->probe_observe_cell_o(observe_cell);
+    model->probe_fault_cell_o(fault_cell);
 #endif
   }
 };
@@ -71,6 +101,8 @@ uint64_t field(const Vector<N>& signal, int lsb, int width) {
   }
   return value;
 }
+
+uint64_t field(const Signal<bool>& signal, int, int) { return signal.read(); }
 
 template <int N>
 void write(Vector<N>& signal, const uint64_t* words) {
@@ -99,12 +131,19 @@ const char* cuboct_clock_lattice(void* handle, const CuboctIn* host, uint32_t lo
   l.start.write(host->start);
   l.steps.write(host->steps);
   l.load_valid.write(host->load_valid);
-  l.load_node.write(load_node);
+  l.node.write(load_node);
   if (host->load_valid) write(l.load_data, host->load_data);
 #if CELL_BITS > 0
   l.load_cell.write(host->load_cell);
 #endif
   half_period(l, false);
+  // What has been loaded is on its way before it; each node starts so many cycles later, idle until then.
+  if (host->start)
+    for (int k = 0; k < levels(); ++k) {
+      half_period(l, true);
+      l.start.write(false);
+      half_period(l, false);
+    }
   for (int n = 0; n < NODES; ++n) {
     CuboctOut& o = out[n];
     o.phase_start = static_cast<uint8_t>(field(l.phase_start, 8 * n, 8));

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // CRC-32 of IEEE 802.3, one bit per cycle, least significant bit of a byte first. A byte given in cycle t is
-// in the register from t+9 on. Bytes come at least 10 cycles apart: a serial line needs more than that for
-// each.
+// in the register from t+9 on.
 module cuboct_crc32 (
   input  logic       clk_i,
+  input  logic       rst_ni,
   input  logic       clear_i,  // to the register's initial value
-  input  logic       valid_i,  // a byte is fed
+  input  logic       valid_i,  // a byte is fed; only in a cycle with ready_o
+  output logic       ready_o,  // what was fed is in the register
   input  logic [7:0] data_i,   // with valid_i
   output logic [7:0] sum_o,    // the check sum's next byte; it is complete when fed four times with shift_i
   input  logic       shift_i,  // with valid_i: feed the register's own byte, which moves it out
@@ -38,10 +39,14 @@ module cuboct_crc32 (
     end
   end
   always_ff @(posedge clk_i) begin
+    if (!rst_ni) left_q <= '0;
+    else left_q <= left_d;
+  end
+  always_ff @(posedge clk_i) begin
     crc_q  <= crc_d;
     data_q <= data_d;
-    left_q <= left_d;
   end
-  assign sum_o  = ~crc_q[7:0];
-  assign good_o = (crc_q == Residue);
+  assign ready_o = (left_q == '0);
+  assign sum_o   = ~crc_q[7:0];
+  assign good_o  = (crc_q == Residue);
 endmodule

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The host's end of a lattice: takes requests from a serial line, does them, replies. The frames and commands
-// are those of docs/reference/board.md. One request at a time: what comes while a reply is sent is not heard.
+// The host's end of a lattice: takes requests from a stream of bytes, does them, replies. Frames and commands are those
+// of docs/reference/board.md. One request at a time: while a reply is made and sent no byte is taken.
 //
 // Particles travel through one register, `word`: shifted in for LOAD; for READ taken from a dump (a run of no
 // steps) and shifted out. A dump shows all particles of a node, so there is one for each particle that is
@@ -15,27 +15,35 @@ module cuboct_host_link #(
   parameter int          MovedTypes   = 0,      // types whose velocities can be set
   parameter logic [63:0] PlanHash     = 64'd0,  // told by INFO
   parameter logic [63:0] MachineHash  = 64'd0,  // of the plan with all these velocities zero
-  parameter int          ClockHz      = 12000000,  // told by INFO
-  parameter int          BitClocks16  = 192     // length of a bit in 1/16 clocks, >= 64
+  parameter int          ClockHz      = 12000000  // told by INFO
 ) (
   input  logic                          clk_i,
   input  logic                          rst_ni,
-  input  logic                          rx_i,        // the serial line, not synchronous
-  output logic                          tx_o,        // the serial line
+  // Bytes from the host and to it.
+  input  logic                          rx_valid_i,  // a byte is there
+  input  logic [7:0]                    rx_data_i,   // with rx_valid_i
+  output logic                          rx_ready_o,  // a byte is taken in a cycle with rx_valid_i and rx_ready_o
+  output logic                          tx_valid_o,  // a byte is there; stays until tx_ready_i
+  output logic [7:0]                    tx_data_o,   // with tx_valid_o; stays likewise
+  input  logic                          tx_ready_i,  // a byte is taken in a cycle with tx_valid_o and tx_ready_i
   // To the lattice.
   output logic                          lattice_rst_no,  // its reset, active low
   output logic                          start_o,     // in IDLE only
   output logic [31:0]                   steps_o,     // with start_o
   output logic                          load_valid_o,  // in IDLE only
-  output logic [31:0]                   load_node_o, // with load_valid_o
   output logic [ParticleBits-1:0]       load_data_o, // with load_valid_o
-  input  logic [Nodes-1:0]              observe_valid_i,  // by node: a particle is shown
-  input  logic [Nodes*ParticleBits-1:0] observe_data_i,  // by node: its word
-  input  logic [Nodes-1:0]              fault_valid_i,  // by node: a fault
-  input  logic [4*Nodes-1:0]            fault_code_i,  // by node, with fault_valid_i
-  input  logic [Nodes*IdBits-1:0]       fault_id_i,  // by node, with fault_valid_i
-  input  logic [64*Nodes-1:0]           fault_number_i,  // by node, with fault_valid_i
-  input  logic [Nodes-1:0]              idle_i,      // by node
+  output logic                          select_o,    // node_o is to be observed
+  output logic [31:0]                   node_o,      // with load_valid_o or select_o
+  input  logic                          idle_i,      // nothing runs
+  input  logic                          busy_i,      // in as many cycles as a run takes
+  input  logic                          settled_i,   // the other inputs know of the last start_o and select_o
+  input  logic                          faulty_i,    // a node met a fault since lattice_rst_no
+  input  logic                          fault_valid_i,  // the node observed did
+  input  logic [3:0]                    fault_code_i,  // with fault_valid_i
+  input  logic [IdBits-1:0]             fault_id_i,  // with fault_valid_i
+  input  logic [63:0]                   fault_number_i,  // with fault_valid_i
+  input  logic                          observe_valid_i,  // the node observed shows a particle
+  input  logic [ParticleBits-1:0]       observe_data_i,  // with observe_valid_i
   // To the velocities of moved types.
   output logic                          velocity_reset_o,  // to the plan's
   output logic                          velocity_valid_o,  // one is set
@@ -55,36 +63,31 @@ module cuboct_host_link #(
   localparam int ArgBits   = 8 * ArgBytes;
   localparam int HeadBytes = 2;  // of a request: number, command
   localparam int SumBytes  = 4;
-  localparam int NodeBits  = (Nodes > 1) ? $clog2(Nodes) : 1;
   localparam int SlotBits  = $clog2(Capacity + 1);
   localparam int IndexBits = $clog2(ArgBytes + 32);
-  localparam int FaultBits = 4 + IdBits + 64;
 
-  // The line.
-  logic       line_valid, byte_valid, frame_end, crc_clear, crc_valid, crc_shift, crc_good;
-  logic       send_valid, send_flag, send_ready, raw_valid, raw_ready, hears;
-  logic [7:0] line_data, byte_data, crc_sum, send_data, raw_data;
-  cuboct_uart_rx #(.BitClocks16(BitClocks16)) u_uart_rx (
-    .clk_i, .rst_ni, .rx_i, .valid_o(line_valid), .data_o(line_data)
-  );
+  // The stream.
+  logic       byte_valid, frame_end, crc_clear, crc_valid, crc_ready, crc_shift, crc_good;
+  logic       send_valid, send_flag, send_ready, frame_ready, hears;
+  logic [7:0] byte_data, crc_sum, send_data;
   cuboct_frame_rx u_frame_rx (
-    .clk_i, .rst_ni, .enable_i(hears), .valid_i(line_valid), .data_i(line_data), .valid_o(byte_valid),
+    .clk_i, .rst_ni, .enable_i(hears), .valid_i(rx_valid_i && rx_ready_o), .data_i(rx_data_i), .valid_o(byte_valid),
     .data_o(byte_data), .end_o(frame_end)
   );
   cuboct_crc32 u_crc (
-    .clk_i, .clear_i(crc_clear), .valid_i(crc_valid), .data_i(hears ? byte_data : send_data), .sum_o(crc_sum),
-    .shift_i(crc_shift), .good_o(crc_good)
+    .clk_i, .rst_ni, .clear_i(crc_clear), .valid_i(crc_valid), .ready_o(crc_ready),
+    .data_i(hears ? byte_data : send_data), .sum_o(crc_sum), .shift_i(crc_shift), .good_o(crc_good)
   );
   cuboct_frame_tx u_frame_tx (
-    .clk_i, .rst_ni, .valid_i(send_valid), .flag_i(send_flag), .data_i(send_data), .ready_o(send_ready),
-    .valid_o(raw_valid), .data_o(raw_data), .ready_i(raw_ready)
+    .clk_i, .rst_ni, .valid_i(send_valid && crc_ready), .flag_i(send_flag), .data_i(send_data),
+    .ready_o(frame_ready), .valid_o(tx_valid_o), .data_o(tx_data_o), .ready_i(tx_ready_i)
   );
-  cuboct_uart_tx #(.BitClocks16(BitClocks16)) u_uart_tx (
-    .clk_i, .rst_ni, .valid_i(raw_valid), .data_i(raw_data), .ready_o(raw_ready), .tx_o
-  );
+  // Of a serial line no byte comes before the check sum is ready.
+  assign rx_ready_o = hears && crc_ready;
+  assign send_ready = frame_ready && crc_ready;
 
   typedef enum logic [3:0] {
-    Hear, Execute, DumpStart, Dump, SendStart, SendHead, SendWord, SendSum, SendEnd
+    Hear, Execute, Settle, DumpStart, Dump, SendStart, SendHead, SendWord, SendSum, SendEnd
   } state_t;
   state_t               state_d, state_q;
   logic [IndexBits-1:0] index_d, index_q;  // of a byte in a request, a reply's head, a word, the check sum
@@ -141,57 +144,15 @@ module cuboct_host_link #(
   logic [47:0]         cycles_d, cycles_q;  // of runs since RESET
   logic                run_d, run_q;        // under way
   logic                reset_d, reset_q;
-  logic                all_idle, settled, load, run, fault_any;
-  logic [NodeBits-1:0] node_d, node_q;      // to read
+  logic                rests, load, run;
   logic [SlotBits-1:0] slot_d, slot_q, seen_d, seen_q;
   logic [7:0]          words_d, words_q;    // still to read
-  assign all_idle       = (&idle_i);
-  assign settled        = all_idle && !run_q;
+  assign rests          = idle_i && !run_q;
   assign lattice_rst_no = rst_ni && !reset_q;
   assign load_valid_o   = load;
-  assign load_node_o    = {16'd0, node};
+  assign node_o         = {16'd0, node};
   assign busy_o         = run_q;
-  assign fault_o        = fault_any;
-
-  // The node to read, and its particle.
-  logic [Nodes-1:0]        is_node;
-  logic                    observe_valid;
-  logic [ParticleBits-1:0] observe_data;
-  logic [FaultBits-1:0]    fault_data;  // {number, id, code}
-  integer                  n;
-  always_comb begin
-    observe_data = '0;
-    for (n = 0; n < Nodes; n = n + 1)
-      observe_data = observe_data
-                   | (observe_data_i[n*ParticleBits +: ParticleBits] & {ParticleBits{is_node[n]}});
-  end
-  assign observe_valid = ((observe_valid_i & is_node) != '0);
-
-  // The first fault of each node since RESET.
-  logic [Nodes-1:0]           faulty_q;
-  logic [Nodes*FaultBits-1:0] faults_q;
-  for (genvar k = 0; k < Nodes; k++) begin : gen_node
-    localparam int Node = k;
-    assign is_node[k] = (Nodes == 1) || (node_q == Node[NodeBits-1:0]);
-    always_ff @(posedge clk_i) begin
-      if (!lattice_rst_no) faulty_q[k] <= 1'b0;
-      else if (fault_valid_i[k]) faulty_q[k] <= 1'b1;
-    end
-    always_ff @(posedge clk_i) begin
-      if (fault_valid_i[k] && !faulty_q[k])
-        faults_q[k*FaultBits +: FaultBits] <=
-            {fault_number_i[64*k +: 64], fault_id_i[IdBits*k +: IdBits], fault_code_i[4*k +: 4]};
-    end
-  end
-  integer f;
-  always_comb begin
-    fault_data = '0;
-    for (f = 0; f < Nodes; f = f + 1)
-      fault_data = fault_data | (faults_q[f*FaultBits +: FaultBits] & {FaultBits{is_node[f]}});
-  end
-  logic [3:0] fault_code;
-  assign fault_code = ((faulty_q & is_node) != '0) ? fault_data[3:0] : 4'd0;
-  assign fault_any = (faulty_q != '0);
+  assign fault_o        = faulty_i;
 
   // Replies: number, command, status, then what the command asks for, least significant byte first.
   localparam int InfoBytes = 26;
@@ -211,10 +172,10 @@ module cuboct_host_link #(
   logic [7:0]              status, head_data;
   assign state_data  = {cycles_q, steps_q, loaded_q};
   assign fault_reply = {
-    fault_data[4+IdBits +: 64], {(32-IdBits){1'b0}}, fault_data[4 +: IdBits], 4'd0, fault_code
+    fault_number_i, {(32-IdBits){1'b0}}, fault_id_i, 4'd0, fault_valid_i ? fault_code_i : 4'd0
   };
   assign count_data  = {{(16-SlotBits){1'b0}}, seen_q};
-  assign status      = {5'd0, refused_q, fault_any, run_q};
+  assign status      = {5'd0, refused_q, faulty_i, run_q};
   assign body_index  = index_q - HeadBytes[IndexBits-1:0] - 1'b1;
   always_comb begin
     body_bytes = ShortBytes[IndexBits-1:0];
@@ -255,7 +216,6 @@ module cuboct_host_link #(
     cycles_d   = cycles_q;
     run_d      = run_q;
     reset_d    = 1'b0;
-    node_d     = node_q;
     slot_d     = slot_q;
     seen_d     = seen_q;
     words_d    = words_q;
@@ -269,13 +229,14 @@ module cuboct_host_link #(
     steps_o    = '0;
     load       = 1'b0;
     run        = 1'b0;
+    select_o   = 1'b0;
     velocity_reset_o = reset_q;
     velocity_valid_o = 1'b0;
 
-    // A run's cycles: from the one after its start on, to the last in which some node is not idle.
+    // A run's cycles: those in which some node is not idle.
     if (run_q) begin
-      if (all_idle) run_d = 1'b0;
-      else cycles_d = cycles_q + 48'd1;
+      if (idle_i) run_d = 1'b0;
+      else if (busy_i) cycles_d = cycles_q + 48'd1;
     end
 
     unique case (state_q)
@@ -306,12 +267,12 @@ module cuboct_host_link #(
             run_d    = 1'b0;
           end
           Load: begin
-            load      = settled && load_index == loaded_q && is_node_number;
+            load      = rests && load_index == loaded_q && is_node_number;
             refused_d = !load;
             if (load) loaded_d = loaded_q + 16'd1;
           end
           Run: begin
-            run       = settled && !fault_any && run_from == steps_q && run_steps != '0;
+            run       = rests && !faulty_i && run_from == steps_q && run_steps != '0;
             refused_d = !run;
             if (run) begin
               start_o = 1'b1;
@@ -321,35 +282,39 @@ module cuboct_host_link #(
             end
           end
           Read: begin
-            node_d    = node[NodeBits-1:0];
             slot_d    = read_first[SlotBits-1:0];
             words_d   = read_words;
             seen_d    = '0;
-            refused_d = !settled || !is_node_number || read_first[15:SlotBits] != '0;
-            if (!refused_d) state_d = DumpStart;
+            refused_d = !rests || !is_node_number || read_first[15:SlotBits] != '0;
+            if (!refused_d) begin
+              select_o = 1'b1;
+              state_d  = DumpStart;
+            end
           end
           Velocity: begin
-            velocity_valid_o = settled && is_moved && velocity_axis_o < Axes[7:0];
+            velocity_valid_o = rests && is_moved && velocity_axis_o < Axes[7:0];
             refused_d        = !velocity_valid_o;
           end
           Fault: begin
-            node_d    = node[NodeBits-1:0];
             refused_d = !is_node_number;
+            select_o  = is_node_number;
+            state_d   = Settle;
           end
           default: refused_d = 1'b1;
         endcase
       end
+      Settle: if (settled_i) state_d = SendStart;
       DumpStart: begin
         start_o = 1'b1;
         seen_d  = '0;
         state_d = Dump;
       end
       Dump: begin
-        if (observe_valid) begin
-          if (seen_q == slot_q) word_d[ParticleBits-1:0] = observe_data;
+        if (observe_valid_i) begin
+          if (seen_q == slot_q) word_d[ParticleBits-1:0] = observe_data_i;
           seen_d = seen_q + 1'b1;
         end
-        if (all_idle) begin
+        if (idle_i) begin
           // The first dump of a reply comes before its head.
           state_d = SendWord;
           if (index_q == '0) state_d = SendStart;
@@ -440,7 +405,6 @@ module cuboct_host_link #(
     command_q <= command_d;
     word_q    <= word_d;
     refused_q <= refused_d;
-    node_q    <= node_d;
     slot_q    <= slot_d;
     seen_q    <= seen_d;
     words_q   <= words_d;

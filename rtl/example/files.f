@@ -8,6 +8,7 @@ rtl/cuboct_fifo.sv
 rtl/cuboct_filter.sv
 rtl/cuboct_filter_lane.sv
 rtl/cuboct_force_rom.sv
+rtl/cuboct_gather.sv
 rtl/cuboct_halos.sv
 rtl/cuboct_hold.sv
 rtl/cuboct_inbox.sv
@@ -31,10 +32,14 @@ rtl/cuboct_resize.sv
 rtl/cuboct_round_odd.sv
 rtl/cuboct_sequencer.sv
 rtl/cuboct_slots.sv
+rtl/cuboct_spread.sv
+rtl/cuboct_stage.sv
 rtl/cuboct_streamer.sv
 rtl/cuboct_sums.sv
 rtl/cuboct_tick.sv
+rtl/cuboct_tree.sv
 rtl/cuboct_type_rom.sv
 rtl/cuboct_update.sv
+rtl/cuboct_watch.sv
 rtl/cuboct_word_halos.sv
 rtl/cuboct_word_inbox.sv

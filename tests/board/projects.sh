@@ -15,6 +15,10 @@ check() {  # NAME ARGUMENTS...
   (cd "$project" && verilator --lint-only -Wall --top-module cuboct_board_top -f board/files.f)
   (cd "$project" && yosys -q -p "read_verilog -sv $(tr '\n' ' ' < board/files.f); hierarchy -check -top cuboct_board_top; proc; check -assert" > yosys.log)
   ! grep -i latch "$project/yosys.log"
+  # The README's instantiation is one.
+  awk '/^```systemverilog$/ {inside = 1; next} /^```/ {inside = 0} inside' "$project/README.md" > "$project/my_design.sv"
+  (cd "$project" && verilator --lint-only -Wall --top-module my_design $(cat files.f) my_design.sv)
+  rm "$project/my_design.sv"
   local port
   for port in $(sed -nE 's/^  (in|out)put +logic +([a-z0-9_]+).*/\2/p' "$project/board/cuboct_board_top.sv"); do
     grep -q "[ \"]$port[ \"]" "$project"/board/pins.* || { echo "no pin for $port"; exit 1; }

@@ -52,16 +52,18 @@ Answer command(const std::vector<std::string>& arguments) {
   return {code, contents(streams.out), contents(streams.err)};
 }
 
-SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options, const std::string& arch) {
+SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options, const std::string& arch,
+                               const BoardChoice& board) {
   const Setup setup = board_setup("grips.toml", arch);
   const std::string project = scratch_.path("project"), out = scratch_.path("out");
-  emit_rtl(setup.plan, setup.initial, project, 1, {.name = "icebreaker", .baud = kBaud});
+  emit_rtl(setup.plan, setup.initial, project, 1, board);
   std::vector<std::string> arguments{project, "--build-dir", CUBOCT_TEST_CACHE};
   arguments.insert(arguments.end(), options.begin(), options.end());
   process_ =
       std::make_unique<Process>(CUBOCT_BOARD_SIM, arguments, false, Streams{out, scratch_.path("err")});
   // The board may have to be compiled, on a busy machine for minutes.
-  for (int k = 0; k < 25000 && port_.find('\n') == std::string::npos; ++k) {
+  const std::string errors = scratch_.path("err");
+  for (int k = 0; k < 25000 && port_.find('\n') == std::string::npos && contents(errors).empty(); ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     port_ = contents(out);
   }

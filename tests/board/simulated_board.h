@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "emu/board/session.h"
+#include "hw/board.h"
 #include "hw/setup.h"
 #include "model/base/process.h"
 #include "model/trace/trace.h"
@@ -29,12 +30,13 @@ Answer command(const std::vector<std::string>& arguments);
 
 class SimulatedBoard {
  public:
+  static constexpr int kBaud = 3000000;  // four clocks per bit
   // `options`: further ones of cuboct-board-sim.
   explicit SimulatedBoard(const std::vector<std::string>& options = {},
-                          const std::string& arch = "board.toml");
+                          const std::string& arch = "board.toml",
+                          const BoardChoice& board = {.name = "icebreaker", .baud = kBaud});
 
   const std::string& port() const { return port_; }
-  static constexpr int kBaud = 3000000;  // four clocks per bit
   // Ends it; what it told: "... cycles; to the board N bytes, ...".
   std::string end();
 

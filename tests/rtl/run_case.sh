@@ -27,8 +27,8 @@ case $mutation in
       's/\.arrived_i(arrived)/.arrived_i(arrived \& ~({{(ParticleBits-Axes*Guard){1'"'"'b0}}, {(Axes*Guard){1'"'"'b1}}} << (IdLsb+IdBits)))/' ;;
   # The second record of each halo memory is not kept.
   record) edit "$rtl/cuboct_inbox.sv" 's/write_i(append_i), \(.*read_i(read_i)\)/write_i(append_i \&\& count_q != 1), \1/' ;;
-  # A node hears its neighbour below x where it should hear the one above.
-  link) edit "$rtl/cuboct_lattice.sv" 's/\.link_valid_i({\(.*\), valid_\([0-9]*\)\[0\], 1.b0})/.link_valid_i({\1, 1'"'"'b0, valid_\2[0]})/' ;;
+  # A node hears its neighbour below x where it should hear the one above, and the other way round.
+  link) edit "$rtl/cuboct_lattice.sv" 's/\.link_valid_i(valid_in)/.link_valid_i(valid_in ^ {valid_in[1] ^ valid_in[0], valid_in[1] ^ valid_in[0]})/' ;;
   *) echo "no mutation $mutation"; exit 2 ;;
 esac
 for target in "$@"; do

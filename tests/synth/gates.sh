@@ -20,7 +20,7 @@ grep -q '^module cuboct_node(' netlist.v
 models=$(dirname "$(command -v yosys)")/../share/yosys/ice40/cells_sim.v
 simulate() {
   iverilog -g2012 -DNO_ICE40_DEFAULT_ASSIGNMENTS -o bench.vvp -s cuboct_bench narrow/rtl/cuboct_pkg.sv \
-    narrow/rtl/cuboct_lattice.sv "$1" "$models" narrow/bench/cuboct_bench.sv \
+    narrow/rtl/cuboct_{stage,spread,gather,watch,tree,lattice}.sv "$1" "$models" narrow/bench/cuboct_bench.sv \
     2> log || { cat log; exit 1; }
   vvp -n bench.vvp
 }

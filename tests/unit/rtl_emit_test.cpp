@@ -46,21 +46,27 @@ TEST(RtlEmit, CopiesTheLibraryByteForByte) {
   const fs::path library = fs::path(CUBOCT_SOURCE_DIR) / "rtl",
                  root = fs::temp_directory_path() / ("cuboct-emit-copies-" + std::to_string(getpid()));
   for (const Arch& arch : {Arch{}, bricks})
-    for (const BoardChoice& board : {BoardChoice{}, BoardChoice{.name = "ulx3s"},
-                                     BoardChoice{.name = "icebreaker", .velocities = false}}) {
+    for (const BoardChoice& board :
+         {BoardChoice{}, BoardChoice{.name = "ulx3s"}, BoardChoice{.name = "icebreaker", .velocities = false},
+          BoardChoice{.name = "", .bus = "axi4lite"},
+          BoardChoice{.name = "", .velocities = false, .bus = "wishbone"}}) {
       const auto setup = make_setup(held, arch);
       emit_rtl(setup.plan, setup.initial, root.string(), 1, board);
       size_t copies = 0;
       for (const auto& entry : fs::recursive_directory_iterator(root)) {
         const fs::path name = entry.path().filename();
-        for (const fs::path& folder : {library / "lib", library / "board", library / "board" / board.name})
-          if (fs::is_regular_file(folder / name)) {
+        for (const fs::path& folder : {library / "lib", library / "lattice", library / "board",
+                                       library / "bus", library / "board" / board.name})
+          if (!name.empty() && fs::is_regular_file(folder / name)) {
             EXPECT_EQ(text_of(entry.path()), text_of(folder / name)) << name;
             ++copies;
           }
       }
-      EXPECT_GE(copies, board.name.empty() ? 25u : 35u);
-      const bool brick = arch.brick[0] > 1, settable = !board.name.empty() && board.velocities;
+      const bool host = !board.name.empty() || !board.bus.empty();
+      EXPECT_GE(copies, host ? 38u : 30u);
+      EXPECT_EQ(fs::exists(root / "bus/cuboct_axi4lite.sv"), board.bus == "axi4lite");
+      EXPECT_EQ(fs::exists(root / "bus/cuboct_wishbone.sv"), board.bus == "wishbone");
+      const bool brick = arch.brick[0] > 1, settable = host && board.velocities;
       EXPECT_EQ(fs::exists(root / "rtl/cuboct_brick_core.sv"), brick);
       EXPECT_EQ(fs::exists(root / "rtl/cuboct_node_core.sv"), !brick);
       EXPECT_EQ(text_of(root / "rtl/cuboct_node.sv").find(".MovedTypes(0)") == std::string::npos, settable);

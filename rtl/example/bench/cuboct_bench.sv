@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Made by cuboct emit from plan 5290aa12107ad825; do not edit.
-// Loads the lattice, runs Steps steps and compares every particle that a node observes with golden's.
+// Loads the lattice, runs Steps steps and compares every particle that a node shows with golden's. Then it reads the
+// last state back as hosts do, a node at a time. +waves writes cuboct_bench.vcd, where the simulator can.
 `timescale 1ns / 1ns
 module cuboct_bench;
   localparam int Nodes        = 2;
+  localparam int ProbeNodes   = Nodes;
   localparam int ParticleBits = cuboct_pkg::ParticleBits;
   localparam int IdBits       = cuboct_pkg::IdBits;
   localparam int Loads        = 8;
@@ -16,36 +18,57 @@ module cuboct_bench;
   logic start;
   logic [31:0] steps;
   logic load_valid;
-  logic [31:0] load_node;
   logic [cuboct_pkg::ParticleBits-1:0] load_data;
-  logic [Nodes*8-1:0] phase_start;
-  logic [Nodes*8-1:0] phase_end;
-  logic [Nodes-1:0] observe_valid;
-  logic [Nodes*cuboct_pkg::ParticleBits-1:0] observe_data;
-  logic [Nodes-1:0] fault_valid;
-  logic [Nodes*4-1:0] fault_code;
-  logic [Nodes*cuboct_pkg::IdBits-1:0] fault_id;
-  logic [Nodes*64-1:0] fault_number;
-  logic [Nodes-1:0] idle;
-  assign steps = Steps;
+  logic select;
+  logic [31:0] node;
+  logic idle;
+  logic busy;
+  logic settled;
+  logic faulty;
+  logic observe_valid;
+  logic [cuboct_pkg::ParticleBits-1:0] observe_data;
+  logic fault_valid;
+  logic [3:0] fault_code;
+  logic [cuboct_pkg::IdBits-1:0] fault_id;
+  logic [63:0] fault_number;
+  logic [ProbeNodes*8-1:0] probe_phase_start;
+  logic [ProbeNodes*8-1:0] probe_phase_end;
+  logic [ProbeNodes-1:0] probe_observe_valid;
+  logic [ProbeNodes*cuboct_pkg::ParticleBits-1:0] probe_observe_data;
+  logic [ProbeNodes-1:0] probe_fault_valid;
+  logic [ProbeNodes*4-1:0] probe_fault_code;
+  logic [ProbeNodes*cuboct_pkg::IdBits-1:0] probe_fault_id;
+  logic [ProbeNodes*64-1:0] probe_fault_number;
+  logic [ProbeNodes-1:0] probe_idle;
 
-  cuboct_lattice u_lattice (
+  cuboct_lattice #(.Probe(1)) u_lattice (
     .clk_i(clk),
     .rst_ni(rst_n),
     .start_i(start),
     .steps_i(steps),
     .load_valid_i(load_valid),
-    .load_node_i(load_node),
     .load_data_i(load_data),
-    .phase_start_o(phase_start),
-    .phase_end_o(phase_end),
+    .select_i(select),
+    .node_i(node),
+    .idle_o(idle),
+    .busy_o(busy),
+    .settled_o(settled),
+    .faulty_o(faulty),
     .observe_valid_o(observe_valid),
     .observe_data_o(observe_data),
     .fault_valid_o(fault_valid),
     .fault_code_o(fault_code),
     .fault_id_o(fault_id),
     .fault_number_o(fault_number),
-    .idle_o(idle)
+    .probe_phase_start_o(probe_phase_start),
+    .probe_phase_end_o(probe_phase_end),
+    .probe_observe_valid_o(probe_observe_valid),
+    .probe_observe_data_o(probe_observe_data),
+    .probe_fault_valid_o(probe_fault_valid),
+    .probe_fault_code_o(probe_fault_code),
+    .probe_fault_id_o(probe_fault_id),
+    .probe_fault_number_o(probe_fault_number),
+    .probe_idle_o(probe_idle)
   );
 
   // Words are {node, particle}; {step, slot, particle}, all of node 0 in the order of time, then of node 1, ...;
@@ -55,10 +78,11 @@ module cuboct_bench;
   logic [31:0] first [0:Nodes];
 
   integer next [0:Nodes-1];
-  integer n, k, cycle, compared, phases;
+  integer last [0:Nodes-1];  // where the last state of a node begins; -1: it has no particle
+  integer n, k, cycle, compared, phases, counted;
   logic [ParticleBits-1:0] got, want;
   logic [31:0] step, slot;
-  logic running;
+  logic running, reads;
 
   initial clk = 1'b0;
   always #5 clk = !clk;
@@ -68,7 +92,13 @@ module cuboct_bench;
     $readmemh("expected.hex", expected);
     $readmemh("first.hex", first);
     for (n = 0; n < Nodes; n = n + 1) next[n] = first[n];
-    rst_n = 1'b0; start = 1'b0; load_valid = 1'b0; load_node = '0; load_data = '0; running = 1'b0;
+    rst_n = 1'b0; start = 1'b0; load_valid = 1'b0; node = '0; load_data = '0; running = 1'b0;
+    select = 1'b0; steps = '0;
+  end
+
+  initial if ($test$plusargs("waves")) begin
+    $dumpfile("cuboct_bench.vcd");
+    $dumpvars(0, cuboct_bench);
   end
 
   // Four cycles of reset, a particle per cycle, start.
@@ -78,26 +108,36 @@ module cuboct_bench;
     tick       <= tick + 1;
     rst_n      <= (tick >= 4);
     load_valid <= (tick >= 6 && tick < 6 + Loads);
-    if (tick >= 6 && tick < 6 + Loads) {load_node, load_data} <= loads[tick-6];
+    if (tick >= 6 && tick < 6 + Loads) {node, load_data} <= loads[tick-6];
     start      <= (tick == 6 + Loads);
+    steps      <= Steps;
+    select     <= 1'b0;
     if (tick == 7 + Loads) running <= 1'b1;
+    if (reads) begin
+      start  <= idle && !start && reader < Nodes;
+      select <= idle && !start && reader < Nodes;
+      node   <= reader;
+      steps  <= 32'd0;
+    end
   end
 
   initial begin
     cycle    = 0;
     compared = 0;
     phases   = 0;
+    counted  = 0;
   end
-  always @(posedge clk) if (running) begin
-    cycle = cycle + 1;
+  always @(posedge clk) if (running && !reads) begin
+    if (!(&probe_idle)) cycle = cycle + 1;
+    if (busy) counted = counted + 1;
     for (k = 0; k < Nodes; k = k + 1) begin
-      if (fault_valid[k]) begin
-        $display("FAIL node %0d: fault %0d, particle %0d, number %0d", k, fault_code[4*k +: 4],
-                 fault_id[IdBits*k +: IdBits], $signed(fault_number[64*k +: 64]));
+      if (probe_fault_valid[k]) begin
+        $display("FAIL node %0d: fault %0d, particle %0d, number %0d", k, probe_fault_code[4*k +: 4],
+                 probe_fault_id[IdBits*k +: IdBits], $signed(probe_fault_number[64*k +: 64]));
         $fatal(1, "fault");
       end
-      if (observe_valid[k]) begin
-        got = observe_data[ParticleBits*k +: ParticleBits];
+      if (probe_observe_valid[k]) begin
+        got = probe_observe_data[ParticleBits*k +: ParticleBits];
         if (next[k] >= first[k+1]) begin
           $display("FAIL node %0d: observes a particle more than golden has", k);
           $fatal(1, "more");
@@ -164,11 +204,12 @@ module cuboct_bench;
           $fatal(1, "differs");
         end
         compared = compared + 1;
+        if (step == Steps && last[k] < 0) last[k] = next[k];
         next[k] = next[k] + 1;
       end
-      if (phase_end[8*k+7]) phases = phases + 1;
+      if (probe_phase_end[8*k+7]) phases = phases + 1;
     end
-    if (cycle > 1 && (&idle)) begin
+    if (cycle > 0 && idle) begin
       for (k = 0; k < Nodes; k = k + 1) if (next[k] != first[k+1]) begin
         {step, slot, want} = expected[next[k]];
         $display("FAIL step %0d node %0d slot %0d: particle %0d was not observed", step, k, slot,
@@ -180,16 +221,51 @@ module cuboct_bench;
                  Steps * Nodes);
         $fatal(1, "count");
       end
-      $display("PASS %0d comparisons, %0d steps, %0d nodes, %0d cycles", compared, Steps, Nodes, cycle - 1);
-      $finish;
+      if (counted != cycle) begin
+        $display("FAIL busy_o was high in %0d cycles of %0d", counted, cycle);
+        $fatal(1, "busy");
+      end
+      reads <= 1'b1;
     end
     if (cycle > Limit) begin
-      for (k = Nodes - 1; k > 0 && idle[k]; k = k - 1) ;
+      for (k = Nodes - 1; k > 0 && probe_idle[k]; k = k - 1) ;
       $display("FAIL node %0d: still busy after %0d cycles", k, cycle);
       $fatal(1, "timeout");
     end
   end
 
+  // Node by node: start with select shows its particles.
+  integer reader, read, place, m;
+  initial begin
+    reads  = 1'b0;
+    reader = 0;
+    read   = 0;
+    place  = 0;
+    for (m = 0; m < Nodes; m = m + 1) last[m] = -1;
+  end
+  always @(posedge clk) if (reads) begin
+    if (observe_valid) begin
+      want = expected[last[reader-1]+place][0 +: ParticleBits];
+      if (place >= first[reader] - last[reader-1] || observe_data !== want) begin
+        $display("FAIL node %0d: reads particle %0d of the last state as %h, golden has %h", reader - 1, place,
+                 observe_data, want);
+        $fatal(1, "read");
+      end
+      place = place + 1;
+      read  = read + 1;
+    end
+    if (start) reader <= reader + 1;
+    if (start) place = 0;
+    if (idle && !start && reader == Nodes) begin
+      if (read != Loads || faulty) begin
+        $display("FAIL %0d of %0d particles were read, fault %0d", read, Loads, faulty);
+        $fatal(1, "read");
+      end
+      $display("PASS %0d comparisons, %0d steps, %0d nodes, %0d cycles", compared, Steps, Nodes, cycle);
+      $finish;
+    end
+  end
+
   logic unused_phases;
-  assign unused_phases = ^{phase_start, phase_end};
+  assign unused_phases = ^{probe_phase_start, settled, fault_valid, fault_code, fault_id, fault_number};
 endmodule
