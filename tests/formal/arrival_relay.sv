@@ -78,14 +78,13 @@ module arrival_relay_formal #(
   );
   for (genvar m = 0; m < Segments; m++) begin : gen_memory
     localparam logic [2:0] Memory = m;
+    logic [AddrBits-1:0] asked;
+    assign asked = (m == 0) ? slot : addr;
     always_ff @(posedge clk_i) begin
       if (m > 0 && clear[m]) answers_q[m*HaloBits +: HaloBits] <= '0;
-      else if (read) begin
-        answers_q[m*HaloBits +: HaloBits] <= junk_i;
-        if (m == 0 && {1'b0, slot} < there[0 +: CountBits]) answers_q[0 +: HaloBits] <= {Memory, slot};
-        if (m > 0 && {1'b0, addr} < there[m*CountBits +: CountBits])
-          answers_q[m*HaloBits +: HaloBits] <= {Memory, addr};
-      end
+      else if (read && {1'b0, asked} < there[m*CountBits +: CountBits])
+        answers_q[m*HaloBits +: HaloBits] <= {Memory, asked};
+      else if (read) answers_q[m*HaloBits +: HaloBits] <= junk_i;
     end
   end
   assign own = answers_q[0 +: HaloBits];
