@@ -26,6 +26,7 @@ rtl/cuboct_pair_finder.sv
 rtl/cuboct_pair_table.sv
 rtl/cuboct_pair_walk.sv
 rtl/cuboct_pipe.sv
+rtl/cuboct_planar.sv
 rtl/cuboct_ram.sv
 rtl/cuboct_relay.sv
 rtl/cuboct_resize.sv

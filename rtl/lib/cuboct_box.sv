@@ -10,9 +10,9 @@ module cuboct_box #(
   input  logic                       clear_i,  // the box becomes empty
   input  logic                       add_i,    // a particle is added
   input  logic [Axes*FilterFrac-1:0] x_i,      // with add_i: x, y, z
-  output logic                       empty_o,
+  output logic                       empty_o,  // nothing was added since the clear
   output logic [Axes*FilterFrac-1:0] low_o,    // without empty_o
-  output logic [Axes*FilterFrac-1:0] high_o
+  output logic [Axes*FilterFrac-1:0] high_o    // without empty_o
 );
   logic                       add_q, empty_d, empty_q;
   logic [Axes*FilterFrac-1:0] x_q;

@@ -15,8 +15,8 @@ module cuboct_cull #(
   // The box; constant while run_i.
   input  logic                           run_i,    // the step has begun
   input  logic                           empty_i,  // there is no own particle
-  input  logic [Axes*FilterFrac-1:0]     low_i,
-  input  logic [Axes*FilterFrac-1:0]     high_i,
+  input  logic [Axes*FilterFrac-1:0]     low_i,    // x, y, z
+  input  logic [Axes*FilterFrac-1:0]     high_i,   // x, y, z
   // From the link.
   input  logic                           valid_i,  // a record comes
   input  logic [HaloBits-1:0]            halo_i,   // with valid_i
@@ -25,7 +25,7 @@ module cuboct_cull #(
   // To the streamer's memory, three cycles later.
   output logic                           valid_o,  // a record passes
   output logic [HaloBits-1:0]            halo_o,   // with valid_o
-  output logic                           end_o
+  output logic                           end_o     // the stream has ended
 );
   localparam int Tests = (Axes == 3) ? 5 : 2;
   localparam int Wide  = FilterFrac + 3;

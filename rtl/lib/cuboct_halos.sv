@@ -38,9 +38,9 @@ module cuboct_halos #(
   output logic [Faces*CandidateBits-1:0] stream_data_o,  // one later), by face, and stays until it reads again
   // The box of the own particles; Arrival only.
   input  logic                       run_i,          // the step has begun
-  input  logic                       box_empty_i,
-  input  logic [Axes*FilterFrac-1:0] box_low_i,
-  input  logic [Axes*FilterFrac-1:0] box_high_i,
+  input  logic                       box_empty_i,    // there is no own particle
+  input  logic [Axes*FilterFrac-1:0] box_low_i,      // without box_empty_i: x, y, z
+  input  logic [Axes*FilterFrac-1:0] box_high_i,     // without box_empty_i
   // For the relay, of all axes but the last.
   input  logic                       relay_read_i,   // it asks; without it the answers stay
   input  logic [Faces-3:0]           relay_clear_i,  // by face: the answer becomes 0

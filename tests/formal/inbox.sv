@@ -2,18 +2,22 @@
 // cuboct_inbox: the k-th halo since the clear, k any, is what both ports answer in the cycle after they asked
 // for address k; the streamer's answer stays until the memory is read for someone else. A watched particle,
 // any of those pushed, comes out once, after those before it and before those after it, unchanged; it counts
-// from the second cycle after its push on. Neither stream touches what the other one keeps.
+// from the second cycle after its push on. Neither stream touches what the other one keeps. Arrival: the relay's
+// records come apart from the streamer's, and the streamer's answer comes with its next question.
 module inbox_formal #(
   parameter int HaloDepth    = 2,
   parameter int Capacity     = 2,
   parameter int HaloBits     = 2,
   parameter int ParticleBits = 1,
-  parameter int Relayed      = 1
+  parameter int Relayed      = 1,
+  parameter int Arrival      = 0
 ) (
   input logic                    clk_i,
   input logic                    clear_i,
   input logic                    append_i,
   input logic [HaloBits-1:0]     halo_i,
+  input logic                    relay_append_i,
+  input logic [HaloBits-1:0]     relay_record_i,
   input logic                    read_i,
   input logic [7:0]              addr_i, relay_addr_i,
   input logic                    relay_read_i,
@@ -31,16 +35,16 @@ module inbox_formal #(
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
 
-  logic [CountBits-1:0]    count;
+  logic [CountBits-1:0]    count, relay_count;
   logic [HaloBits-1:0]     halo, relay_halo;
   logic                    full, empty;
   logic [ParticleBits-1:0] particle;
   cuboct_inbox #(
     .HaloBits(HaloBits), .ParticleBits(ParticleBits), .HaloDepth(HaloDepth), .Capacity(Capacity),
-    .Relayed(Relayed), .AddrBits(AddrBits), .CountBits(CountBits)
+    .Relayed(Relayed), .Arrival(Arrival), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .clear_i, .append_i, .halo_i, .count_o(count), .read_i,
-    .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_read_i, .relay_clear_i,
+    .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_append_i, .relay_record_i, .relay_count_o(relay_count), .relay_read_i, .relay_clear_i,
     .relay_addr_i(relay_addr_i[AddrBits-1:0]),
     .relay_halo_o(relay_halo), .migrating_i, .push_i, .particle_i, .full_o(full), .pop_i,
     .particle_o(particle), .empty_o(empty)
@@ -48,37 +52,52 @@ module inbox_formal #(
 
   // Halos come only where there is room and never in the cycle of the clear: cuboct_halos asserts the one,
   // the proof `neighbours` shows both. A link brings one record at a time (proof `link`).
-  logic [CountBits-1:0] count_q, held_q, before_q;
+  // What passes the cull comes cycles later, and may meet a particle.
+  logic [CountBits-1:0] count_q, relay_count_q, held_q, before_q;
   always_comb begin
-    if (append_i) assume (running_q && !clear_i && !push_i && count_q != HaloDepth[CountBits-1:0]);
+    if (append_i) assume (running_q && !clear_i && count_q != HaloDepth[CountBits-1:0]);
+    if (append_i && Arrival == 0) assume (!push_i);
+    if (relay_append_i) assume (running_q && !clear_i && !push_i && relay_count_q != HaloDepth[CountBits-1:0]);
+    if (Arrival == 0) assume (relay_append_i == append_i && relay_record_i == halo_i);
     if (push_i) assume (running_q && !full);
     if (pop_i) assume (running_q && !empty);
   end
 
   // The watched halo, by its number, and what is known of the answers.
   (* anyconst *) logic [AddrBits-1:0] number;
-  logic                               counts, cleared_q, asked_q, relayed_q, kept_q;
-  logic [HaloBits-1:0]                value_q, answer_q, relay_answer_q;
+  logic                               counts, relay_counts, cleared_q, asked_q, shown_halo_q, halo_known, relayed_q, kept_q;
+  logic [HaloBits-1:0]                value_q, relay_value_q, answer_q, shown_answer_q, halo_answer, relay_answer_q;
+  // Arrival: an answer is shown with the next question.
+  assign halo_known   = (Arrival != 0) ? shown_halo_q : asked_q;
+  assign halo_answer  = (Arrival != 0) ? shown_answer_q : answer_q;
+  assign relay_counts = ({{(CountBits - AddrBits) {1'b0}}, number} < relay_count_q);
   assign counts = ({{(CountBits - AddrBits) {1'b0}}, number} < count_q);
   always_ff @(posedge clk_i) begin
     if (!running_q) begin
-      count_q   <= '0;
-      cleared_q <= 1'b0;
-      asked_q   <= 1'b0;
+      count_q       <= '0;
+      relay_count_q <= '0;
+      cleared_q     <= 1'b0;
+      asked_q       <= 1'b0;
+      shown_halo_q  <= 1'b0;
       relayed_q <= 1'b0;
       kept_q    <= 1'b0;
     end else begin
       if (clear_i) count_q <= '0;
       else if (append_i) count_q <= count_q + 1'b1;
+      if (clear_i) relay_count_q <= '0;
+      else if (relay_append_i) relay_count_q <= relay_count_q + 1'b1;
+      if (read_i) shown_halo_q <= asked_q;
       cleared_q <= cleared_q || (clear_i && count_q == HaloDepth[CountBits-1:0]);
       if (read_i) asked_q <= counts && addr_i[AddrBits-1:0] == number;
-      kept_q    <= asked_q && !read_i;  // the answer stays
-      if (relay_read_i) relayed_q <= counts && relay_addr_i[AddrBits-1:0] == number;
+      kept_q    <= halo_known && !read_i;  // the answer stays
+      if (relay_read_i) relayed_q <= relay_counts && relay_addr_i[AddrBits-1:0] == number;
       if (relay_clear_i) relayed_q <= 1'b1;
     end
     if (append_i && count_q == {{(CountBits - AddrBits) {1'b0}}, number}) value_q <= halo_i;
+    if (relay_append_i && relay_count_q == {{(CountBits - AddrBits) {1'b0}}, number}) relay_value_q <= relay_record_i;
     if (read_i) answer_q <= value_q;
-    if (relay_read_i) relay_answer_q <= value_q;
+    if (read_i) shown_answer_q <= answer_q;
+    if (relay_read_i) relay_answer_q <= relay_value_q;
     if (relay_clear_i) relay_answer_q <= '0;
   end
 
@@ -128,7 +147,9 @@ module inbox_formal #(
   always_ff @(posedge clk_i) begin
     if (running_q) begin
       a_count: assert (count == count_q && count_q <= HaloDepth[CountBits-1:0]);
-      if (asked_q) a_halo: assert (halo == answer_q && !torn_q);
+      a_relay_count: assert (relay_count == relay_count_q);
+      if (halo_known) a_halo: assert (halo == halo_answer);
+      if (asked_q) a_torn: assert (!torn_q);
       if (relayed_q && Relayed != 0) a_relay: assert (relay_halo == relay_answer_q);
       a_full:  assert (full == (held_q == Capacity[CountBits-1:0]));
       a_empty: assert (empty == (held_q == {{(CountBits - 1) {1'b0}}, pushed_q}));
@@ -139,7 +160,7 @@ module inbox_formal #(
       c_all:     cover (count == HaloDepth[CountBits-1:0] && full && asked_q && relayed_q && value_q == '1);
       c_cleared: cover (cleared_q && count == '0);
       c_again:   cover (cleared_q && counts && asked_q && value_q == '1);
-      c_kept:    cover (kept_q && asked_q && count == '0 && answer_q == '1);
+      c_kept:    cover (kept_q && halo_known && count == '0 && halo_answer == '1);
       c_drained: cover (empty && watched_q && !inside_q && held_q == '0 && !pushed_q && count != '0);
       c_wrapped: cover (full && watched_q && !inside_q);
       c_both:    cover (migrating_q && inside_q && shown_q && before_q == '0 && pop_i

@@ -4,12 +4,14 @@
 // after the question; who asks for one in the cycle in which it is written gets anything. A watched own
 // particle, any, stays once in its place, or is sent once, in its place, on the link of its direction, or is
 // told once as a fault where that link does not exist. A watched arrival, any, is appended once in its place or
-// told once as a fault where no slot is free.
+// told once as a fault where no slot is free. Early: where no one leaves along a phase's axis the end beats may go out in
+// the last cycle before it, which is one of the update or the last of the phase before, and do so if both links can load.
 module migrate_formal #(
   parameter int Axes     = 2,
   parameter int Capacity = 2,
   parameter int LinkBits = 4,
-  parameter int TagBits  = 1
+  parameter int TagBits  = 1,
+  parameter int Early    = 0   // 0, 1
 ) (
   input logic                    clk_i,
   input logic                    begin_i,    // a phase begins
@@ -39,8 +41,16 @@ module migrate_formal #(
   (* anyconst *) logic [1:0] has_link;
 
   // Phases.
-  logic       active_q, done, first_q, leaving_q;
+  logic       active_q, done, first_q, leaving_q, begins, next_load;
   logic [1:0] axis_q;
+  localparam int LastAxis = Axes - 1;
+  assign begins = running_q && begin_i && (!active_q || done);
+  // Early: the phases of a step follow one another, the first behind the update.
+  always_comb begin
+    if (Early != 0 && begins) assume (axis_i == (active_q ? axis_q + 2'd1 : 2'd0));
+    if (Early != 0 && begins && !active_q) assume (axis_q == 2'd0);  // in the update, too
+    if (Early != 0 && active_q && done) assume (begin_i == (axis_q != LastAxis[1:0]));
+  end
   always_ff @(posedge clk_i) begin
     if (!running_q) begin
       active_q <= 1'b0;
@@ -68,6 +78,10 @@ module migrate_formal #(
     end
     if (read && write && write_slot == read_slot) read_data <= torn_i;
   end
+  // Early: in the update no one ceases to leave, nor does the count change.
+  logic known_q;
+  always_ff @(posedge clk_i) known_q <= leaving_i && count_q != '0;
+  always_comb if (Early != 0 && begins && !active_q && known_q) assume (leaving_i && count_q != '0);
   // The slot that is asked for in the cycle before the phase is not written in that cycle, nor does the count change.
   logic sets;
   assign sets = !active_q && set_i;
@@ -108,7 +122,7 @@ module migrate_formal #(
       .AddrBits(1), .CountBits(CountBits)
     ) u_inbox (
       .clk_i, .rst_ni(running_q), .clear_i(1'b0), .append_i(1'b0), .halo_i(1'b0), .read_i(1'b0),
-      .addr_i(1'b0), .relay_addr_i(1'b0), .migrating_i(active_q), .push_i(push[f]),
+      .addr_i(1'b0), .relay_addr_i(1'b0), .migrating_i(active_q || (Early != 0 && begins)), .push_i(push[f]),
       .particle_i(arrive_data_i[f*ParticleBits +: ParticleBits]), .full_o(full[f]), .pop_i(pop[f]),
       .particle_o(arrived[f*ParticleBits +: ParticleBits]), .empty_o(empty[f])
     );
@@ -131,7 +145,7 @@ module migrate_formal #(
   logic [Axes-1:0]         more;
   for (genvar f = 0; f < 2; f++) begin : gen_tx
     cuboct_link_tx #(.LinkBits(LinkBits)) u_tx (
-      .clk_i, .rst_ni(running_q), .has_link_i(has_link[f]), .load_i(load[f]), .end_i(is_end), .data_i(data),
+      .clk_i, .rst_ni(running_q), .has_link_i(has_link[f]), .load_i(load[f] || next_load), .end_i(is_end), .data_i(data),
       .can_load_o(can_load[f]), .valid_o(valid[f]), .end_o(sent_end[f]),
           .data_o(sent_data[f*LinkBits +: LinkBits]),
       .ready_i(ready_i[f])
@@ -140,9 +154,11 @@ module migrate_formal #(
   cuboct_migrate #(
     .Axes(Axes), .ParticleBits(ParticleBits), .PositionBits(PositionBits), .LinkBits(LinkBits),
         .Capacity(Capacity),
-    .SlotBits(SlotBits), .CountBits(CountBits)
+    .SlotBits(SlotBits), .CountBits(CountBits), .Early(Early)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_o(done), .has_link_i(has_link),
+    .before_i(Early != 0 && begins && !active_q), .next_can_load_i(can_load == 2'b11), .next_load_o(next_load),
+    .above_done_i(ended[1] && empty[1]),
     .leaving_i, .count_i(count_q), .full_i(count_q == Capacity[CountBits-1:0]), .count_set_o(count_set),
     .count_o(new_count), .full_o(new_full),
     .read_o(read), .read_slot_o(read_slot), .read_data_i(read_data), .write_o(write), .write_slot_o(write_slot),
@@ -248,7 +264,7 @@ module migrate_formal #(
       left_q       <= '0;
       full_q       <= '0;
       beat_q       <= '0;
-      ended_both_q <= 1'b0;
+      ended_both_q <= running_q && next_load;
       more_q       <= '0;
     end else begin
       if (load != 2'b00 && !is_end) beat_q <= record ? '0 : beat_q + 1'b1;
@@ -324,7 +340,7 @@ module migrate_formal #(
       a_idle:  assert (active_q || (!write && !count_set && load == 2'b00 && pop == 2'b00 && !fault_left
           && !fault_full));
       a_may:   assert ((load & ~can_load) == 2'b00);
-      a_one:   assert (!is_end ? (load != 2'b11) : (load == 2'b11));
+      a_one:   assert (!is_end ? (load != 2'b11) : next_load ? (load == 2'b00) : (load == 2'b11));
       a_face:  assert ((face & ~({{(2 * Axes - 2) {1'b0}}, 2'b11} << {axis_q, 1'b0})) == '0 && side != 2'b11
                        && (active_q || face == '0));
       a_pop:   assert ((pop & empty) == 2'b00);
@@ -340,8 +356,12 @@ module migrate_formal #(
       if (fault_left && is && wanted != 2'd0 && !linked && left_q == place) begin
         a_left: assert (fault_particle == value[ParticleBits-1:0]);
       end
-      if (is_end) a_end: assert (data == '0 && beat_q == '0 && !ended_both_q && down_q == downs && up_q
+      if (is_end && !next_load) a_end: assert (data == '0 && beat_q == '0 && !ended_both_q && down_q == downs && up_q
           == ups);
+      // The early end beats: of a phase that begins, along which no one leaves, as soon as both links can.
+      a_early: assert (next_load == (Early != 0 && begins && (!leaving_i || count_q == '0) && can_load == 2'b11));
+      if (next_load) a_early_end: assert (is_end && data == '0 && beat_q == '0);
+      if (first_q && ended_both_q) a_no_one: assert (downs == '0 && ups == '0 && lefts == '0);
       if (ended_both_q && load != 2'b00) a_after: assert (0);
       if (fault_full && came_w_q && !room && {2'b00, full_q} == arrival_place - Capacity[CountBits+1:0]) begin
         a_full: assert (fault_particle == arrival_q && above == pop[1]);
@@ -357,7 +377,8 @@ module migrate_formal #(
           a_appended: assert (at_arrival == {2'b00, kept_as});
           a_goes_on:  assert (arrival_goes_on);
         end
-        c_still:   cover (quiet_q && stays != '0 && came_w_q);
+        c_early:   cover (Early == 0 || (first_q && axis_q == LastAxis[1:0]));
+        c_still:   cover ((Early != 0 || quiet_q) && stays != '0 && came_w_q);
         c_crowded: cover (fault_full || full_q != '0);
         c_swap:    cover (down_q != '0 && came_w_q && room && count_q == Capacity[CountBits-1:0]);
         c_left:    cover (left_q != '0);

@@ -7,13 +7,16 @@
 module slots_formal #(
   parameter int Capacity    = 3,
   parameter int FilterLanes = 2,
-  parameter int ForcePipes  = 1
+  parameter int ForcePipes  = 1,
+  parameter int Streamers   = 1   // the last one's rows are watched
 ) (
   input logic       clk_i,
   input logic       write_i,
   input logic [4:0] slot_i,
   input logic [7:0] data_i,     // x[2] y[2] seen[1] id[2] rest[1]
   input logic       stream_read_i,
+  input logic       first_read_i,   // of two streamers the first, which reads another row
+  input logic [4:0] first_row_i,
   input logic [4:0] main_i, stream_i,
   input logic [4:0] pipe_i,     // read by the last pipe
   input logic [4:0] fault_i,    // and for its faults
@@ -31,7 +34,7 @@ module slots_formal #(
     assume (watched_lane < FilterLanes[4:0]);
     if (write_i) assume (slot_i < Capacity[4:0]);
     assume (main_i < Capacity[4:0] && stream_i < Capacity[4:0]);
-    assume (pipe_i < Capacity[4:0] && fault_i < Capacity[4:0] && row_i < Rows[4:0]);
+    assume (pipe_i < Capacity[4:0] && fault_i < Capacity[4:0] && row_i < Rows[4:0] && first_row_i < Rows[4:0]);
   end
 
   logic [7:0]                     main_data;
@@ -39,9 +42,15 @@ module slots_formal #(
   logic [ForcePipes*SlotBits-1:0] pipe_slot, fault_slot;
   logic [ForcePipes*5-1:0]        pipe_data;
   logic [ForcePipes*2-1:0]        fault_id;
-  logic [FilterLanes*2-1:0]       row_data;
+  logic [Streamers*FilterLanes*2-1:0] row_data;
+  logic [Streamers-1:0]               stream_read;
+  logic [Streamers*RowBits-1:0]       row;
   integer                         l;
   always_comb begin
+    stream_read              = {Streamers{first_read_i}};
+    row                      = {Streamers{first_row_i[RowBits-1:0]}};
+    stream_read[Streamers-1] = stream_read_i;
+    row[(Streamers-1)*RowBits +: RowBits] = row_i[RowBits-1:0];
     pipe_slot  = '0;
     fault_slot = '0;
     pipe_slot[(ForcePipes-1)*SlotBits +: SlotBits]  = pipe_i[SlotBits-1:0];
@@ -50,11 +59,11 @@ module slots_formal #(
   cuboct_slots #(
     .Axes(2), .Bits(8), .SeenBits(5), .PositionFrac(2), .FilterFrac(1), .IdLsb(5), .IdBits(2),
     .Capacity(Capacity), .SlotBits(SlotBits), .FilterLanes(FilterLanes), .RowBits(RowBits),
-    .ForcePipes(ForcePipes)
+    .ForcePipes(ForcePipes), .Streamers(Streamers)
   ) u_dut (
     .clk_i, .write_i, .write_slot_i(slot_i[SlotBits-1:0]), .write_data_i(data_i),
-    .main_read_i(1'b1), .main_slot_i(main_i[SlotBits-1:0]), .main_data_o(main_data), .stream_read_i,
-    .stream_slot_i(stream_i[SlotBits-1:0]), .stream_data_o(stream_data), .row_i(row_i[RowBits-1:0]),
+    .main_read_i(1'b1), .main_slot_i(main_i[SlotBits-1:0]), .main_data_o(main_data), .stream_read_i(stream_read),
+    .stream_slot_i(stream_i[SlotBits-1:0]), .stream_data_o(stream_data), .row_i(row),
     .row_data_o(row_data), .pipe_slot_i(pipe_slot), .pipe_data_o(pipe_data), .fault_slot_i(fault_slot),
     .fault_id_o(fault_id)
   );
@@ -76,21 +85,23 @@ module slots_formal #(
     ask_q    <= written_q && !writes && main_i == watched;
     pipe_q   <= written_q && !writes && pipe_i == watched;
     fault_q  <= written_q && !writes && fault_i == watched;
-    if (stream_read_i) begin
+    if (stream_read[0]) begin
       stream_q       <= written_q && !writes && stream_i == watched;
       stream_value_q <= value_q[4:0];
+    end
+    if (stream_read_i) begin
       lane_q         <= written_q && !writes && row_i == watched_row;
       lane_value_q   <= {value_q[3], value_q[1]};
     end else if (Rows == 1 && writes) begin
       lane_q <= 1'b0;
     end
-    later_q <= stream_q && !stream_read_i && (Rows == 1 || writes);  // an answer stays
+    later_q <= stream_q && !stream_read[0] && !stream_read_i && (Rows == 1 || writes);  // an answer stays
   end
   logic [1:0] lane_data;
   always_comb begin
     lane_data = '0;
     for (l = 0; l < FilterLanes; l = l + 1) begin
-      if (watched_lane == l[4:0]) lane_data = row_data[l*2 +: 2];
+      if (watched_lane == l[4:0]) lane_data = row_data[((Streamers-1)*FilterLanes+l)*2 +: 2];
     end
   end
   always_ff @(posedge clk_i) begin

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 // cuboct_streamer through any number of steps, with any counts, segments that come when they like and any
 // stalls: each record of each segment is presented once with each row of own slots, in order; `past` comes
-// after the last one and only when every segment was there.
+// after the last one and only when every segment was there. Arrival: a segment's records come one by one, in
+// any cycle, and each is presented only after it came.
 module streamer_formal #(
   parameter int Axes        = 2,
   parameter int FilterLanes = 2,
-  parameter int AddrBits    = 1   // a segment holds up to 2^AddrBits records, a node as many particles
+  parameter int AddrBits    = 1,  // a segment holds up to 2^AddrBits records, a node as many particles
+  parameter int Arrival     = 0   // 0, 1
 ) (
   input logic          clk_i,
   input logic          stall_i,
   input logic          begin_i,
   input logic          over_i,
-  input logic [Axes:0] come_i,     // a segment's records are complete
+  input logic [2*Axes:0] come_i,   // an axis's segments are complete; Arrival: one record of the segment comes, or its end
   input logic [(2*Axes+1)*(AddrBits+1)-1:0] counts_i
 );
   localparam int CountBits = AddrBits + 1;
@@ -33,7 +35,7 @@ module streamer_formal #(
     if (!running_q) run_q <= 1'b0;
     else run_q <= run_q ? (!restart || begin_i) : begin_i;
     if (!running_q || restart) available_q <= {{Axes{1'b0}}, 1'b1};
-    else if (run_q) available_q <= available_q | come_i;
+    else if (run_q) available_q <= available_q | come_i[Axes:0];
     if (!run_q || restart) counts_q <= counts_i;
   end
   integer a;
@@ -41,6 +43,35 @@ module streamer_formal #(
     for (a = 0; a < Segments; a = a + 1) begin
       assume (counts_i[a*CountBits +: CountBits] <= Most[CountBits-1:0]);
       assume (counts_q[a*CountBits +: CountBits] <= Most[CountBits-1:0]);
+    end
+  end
+
+  // What the streamer is told.
+  logic [Segments-1:0]           complete, complete_q;
+  logic [Segments*CountBits-1:0] counts, came_q;
+  integer                        t;
+  always_ff @(posedge clk_i) begin
+    for (t = 1; t < Segments; t = t + 1) begin
+      if (!run_q || restart) begin
+        came_q[t*CountBits +: CountBits] <= '0;
+        complete_q[t]                    <= 1'b0;
+      end else if (come_i[t] && came_q[t*CountBits +: CountBits] != counts_q[t*CountBits +: CountBits]) begin
+        came_q[t*CountBits +: CountBits] <= came_q[t*CountBits +: CountBits] + 1'b1;
+      end else if (come_i[t]) begin
+        complete_q[t] <= 1'b1;
+      end
+    end
+  end
+  always_comb begin
+    counts   = counts_q;
+    complete = '0;
+    for (t = 0; t < Segments; t = t + 1) begin
+      if (Arrival == 0) complete[t] = available_q[(t+1)/2];
+      else if (t == 0) complete[t] = 1'b1;
+      else begin
+        complete[t]                      = complete_q[t];
+        counts[t*CountBits +: CountBits] = came_q[t*CountBits +: CountBits];
+      end
     end
   end
 
@@ -57,16 +88,31 @@ module streamer_formal #(
   logic [RowBits-1:0]  row;
   logic                present;
   cuboct_streamer #(
-    .Axes(Axes), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(AddrBits), .AddrBits(AddrBits),
-        .CountBits(CountBits)
+    .Segments(Segments), .Arrival(Arrival), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(AddrBits),
+    .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .available_i(available_q),
-        .counts_i(counts_q),
+    .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .own_i(counts_q[0 +: CountBits]),
+    .complete_i(complete), .counts_i(counts),
     .pick_o(pick), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .past_o(past)
   );
 
-  logic [2:0] half;  // which axis the segment belongs to, 0 for own
-  assign half = (segment + 3'd1) >> 1;
+  // Of the picked segment.
+  (* keep *) logic [CountBits-1:0] tap_record;  // its next record, which may be one behind the last
+  logic                            here, waits;  // it may be read: its next record is there; nothing is to be done yet
+  integer                          q;
+  always_comb begin
+    here  = 1'b0;
+    waits = 1'b1;
+    for (q = 0; q < Segments; q = q + 1) begin
+      if (pick[q]) begin
+        waits = !complete[q];
+        here  = complete[q];
+        if (Arrival != 0) here = ({1'b0, addr} < counts[q*CountBits +: CountBits]);
+        if (Arrival != 0 && counts_q[0 +: CountBits] != '0 && tap_record < counts[q*CountBits +: CountBits])
+          waits = 1'b0;
+      end
+    end
+  end
 
   // The least (segment, record, row) not yet presented.
   logic [2:0]           due_segment_q, next_segment;
@@ -105,22 +151,22 @@ module streamer_formal #(
   end
 
   // Progress: a cycle that is not stalled and whose segment is there moves (segment, record, row) upwards.
-  logic [AddrBits+RowBits+2:0] rank, rank_q;
+  logic [CountBits+RowBits+2:0] rank, rank_q;
   logic                        moves_q;
-  assign rank = {segment, addr, row};
+  assign rank = {segment, (Arrival != 0) ? tap_record : {1'b0, addr}, row};
   always_ff @(posedge clk_i) begin
     rank_q  <= rank;
-    moves_q <= running_q && run_q && !stall_i && !past && available_q[half];
+    moves_q <= running_q && run_q && !stall_i && !past && !waits;
   end
 
   always_ff @(posedge clk_i) begin
     if (running_q) begin
       if (present) begin
-        a_may:  assert (run_q && !stall_i && available_q[half]);
+        a_may:  assert (run_q && !stall_i && here);
         a_next: assert (!all && segment == next_segment && {1'b0, addr} == next_record
                         && {{(CountBits + 1 - RowBits) {1'b0}}, row} == next_row && slot == addr);
       end
-      if (past) a_past: assert (all && available_q == '1);
+      if (past) a_past: assert (all && complete == '1);
       if (moves_q) a_progress: assert (rank > rank_q);
       c_empty: cover (restart && counts_q == '0);
       c_full:  cover (past && counts_q[(Segments-1)*CountBits +: CountBits] == Most[CountBits-1:0]

@@ -65,6 +65,13 @@ RandomScene random_scene(uint64_t seed) {
     arch.brick = brick;
     setup = make_setup(scene, arch);
   }
+  // Apart, too.
+  Dice arrivals(seed * 0x9fb21c651e98df25u + 5);
+  if (arch.overlap && !arch.narrow_memories && setup.plan.bricks.cells() == 1 && arrivals.chance(40)) {
+    arch.halos = Halos::arrival;
+    arch.streamers = arch.force_pipes % 2 == 0 && arrivals.chance(60) ? 2 : 1;
+    setup = make_setup(scene, arch);
+  }
   const LinkCheck check = arch.link_check;
   RandomScene result{{"seed " + std::to_string(seed), std::move(setup), base.steps, std::move(scene)}, {{}}};
   const auto stalled = [&dice] {
@@ -120,6 +127,8 @@ std::map<std::string, uint64_t> stimuli_of(const RandomScene& scene, const Judge
   n["several passes"] = arch.filter_lanes < arch.capacity;
   n["no overlap"] = !arch.overlap;
   n["narrow memories"] = arch.narrow_memories;
+  n["halos used on arrival"] = arch.halos == Halos::arrival;
+  n["two streamers"] = arch.streamers == 2;
   n["several beats per record"] = plan.words.halo_beats > 1;
   n["queue was full"] = counter("queue_stalls") > 0;
   n["cycles with a full queue"] = counter("queue_stalls");

@@ -483,6 +483,61 @@ const std::map<std::string, Recipe>& recipes() {
          recipes().at("fails_w")(s);
          narrow(s.arch);
        }},
+      // Halos used on arrival: particles go everywhere, nodes fill up, some are empty.
+      {"arrival",
+       [](S s) {
+         recipes().at("hot")(s);
+         s.arch.halos = Halos::arrival;
+       }},
+      // Two streamers of one pipe each; records at the cutoff of a particle in the box, a coarse planar test.
+      {"arrival_two",
+       [](S s) {
+         recipes().at("edge")(s);
+         s.features.damping = 0.2;
+         s.features.two_materials = true;
+         s.arch.halos = Halos::arrival;
+         s.arch.streamers = s.arch.force_pipes = 2;
+       }},
+      {"arrival_flat",
+       [](S s) {
+         recipes().at("drift")(s);
+         s.arch.overlap = true;
+         s.arch.halos = Halos::arrival;
+         s.arch.streamers = s.arch.force_pipes = 2;
+       }},
+      // One beat per record, one row, PD: an update of three cycles more.
+      {"arrival_pd",
+       [](S s) {
+         recipes().at("pd")(s);
+         s.arch.overlap = true;
+         s.arch.halos = Halos::arrival;
+         s.arch.capacity = s.arch.filter_lanes = 8;
+         s.arch.link_bits = 0;
+       }},
+      // Ends where a particle leaves.
+      {"arrival_retry",
+       [](S s) {
+         recipes().at("retry")(s);
+         s.arch.halos = Halos::arrival;
+       }},
+      // Ends where one particle too many comes.
+      {"arrival_full",
+       [](S s) {
+         recipes().at("full")(s);
+         s.arch.halos = Halos::arrival;
+       }},
+      {"arrival_fly",
+       [](S s) {
+         recipes().at("fly")(s);
+         s.steps = 60;
+         s.arch.halos = Halos::arrival;
+       }},
+      {"arrival_fails_sum",
+       [](S s) {
+         recipes().at("fails_sum")(s);
+         s.arch.halos = Halos::arrival;
+         s.arch.streamers = 2;
+       }},
   };
   return all;
 }

@@ -38,6 +38,8 @@ module cuboct_node (
     .Interval(cuboct_pkg::Interval),
     .QueueDepth(cuboct_pkg::QueueDepth),
     .Overlap(cuboct_pkg::Overlap),
+    .Arrival(cuboct_pkg::Arrival),
+    .Streamers(cuboct_pkg::Streamers),
     .Narrow(cuboct_pkg::Narrow),
     .LinkBits(cuboct_pkg::LinkBits),
     .IdBits(cuboct_pkg::IdBits),

@@ -11,6 +11,8 @@ package cuboct_pkg;
   localparam int          Interval             = 1;             // cycles from one pair to the next
   localparam int          QueueDepth           = 4;             // entries between filter and pipes
   localparam int          Overlap              = 1;             // 1: the force engine starts with the exchange
+  localparam int          Arrival              = 0;             // 1: halos are used as they come
+  localparam int          Streamers            = 1;             // candidates per cycle
   localparam int          Narrow               = 0;             // 1: memories of words of LinkBits, one port to read
   localparam int          LinkBits             = 64;            // payload of a beat
   localparam int          IdBits               = 3;
