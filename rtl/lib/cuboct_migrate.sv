@@ -76,7 +76,7 @@ module cuboct_migrate #(
   logic              quiet;      // no one leaves along the next phase's axis
   logic [1:0]        face_axis;  // of the next cycle's face
   logic              took_q;     // a particle was taken in the cycle before
-  logic              none_q;     // count_i was 0 then
+  logic              none_q;     // no particle is left, but for one taken in the cycle before
   // What SCAN has counted: with Early a cycle later, as the links' answers come late and no one asks before.
   logic                 scan_set, scan_set_q, scan_full, scan_full_q;
   logic [CountBits-1:0] scan_count, scan_count_q;
@@ -86,7 +86,7 @@ module cuboct_migrate #(
   end
   always_ff @(posedge clk_i) begin
     took_q       <= some_i;
-    none_q       <= (count_i == '0);
+    none_q       <= scan_set_q ? (scan_count_q == '0) : (count_i == '0);
     scan_count_q <= scan_count;
     scan_full_q  <= scan_full;
   end

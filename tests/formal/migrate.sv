@@ -5,7 +5,7 @@
 // particle, any, stays once in its place, or is sent once, in its place, on the link of its direction, or is
 // told once as a fault where that link does not exist. A watched arrival, any, is appended once in its place or
 // told once as a fault where no slot is free. Early: where no one leaves along a phase's axis the end beats may go out in
-// the last cycle before it, which is one of the update or the last of the phase before, and do so if both links can load.
+// the last cycle before it, which is one of the update or the last of the phase before, and do so if both link registers are empty.
 module migrate_formal #(
   parameter int Axes     = 2,
   parameter int Capacity = 2,
@@ -72,16 +72,40 @@ module migrate_formal #(
   logic [SlotWidth-1:0]          read_data, write_data;
   logic                          count_set, new_full, write, read;
   integer                        r, w;
+  // Early: slots are written through a register.
+  logic                          stored;
+  logic [SlotBits-1:0]           stored_slot;
+  logic [SlotWidth-1:0]          stored_data;
+  if (Early != 0) begin : gen_stored
+    logic                 stored_q;
+    logic [SlotBits-1:0]  stored_slot_q;
+    logic [SlotWidth-1:0] stored_data_q;
+    always_ff @(posedge clk_i) begin
+      stored_q      <= running_q && write;
+      stored_slot_q <= write_slot;
+      stored_data_q <= write_data;
+    end
+    assign stored      = stored_q;
+    assign stored_slot = stored_slot_q;
+    assign stored_data = stored_data_q;
+  end else begin : gen_stored_at_once
+    assign stored      = write;
+    assign stored_slot = write_slot;
+    assign stored_data = write_data;
+  end
   always_ff @(posedge clk_i) begin
     for (r = 0; r < Capacity; r = r + 1) begin
       if (read && read_slot == r[SlotBits-1:0]) read_data <= slots_q[r*SlotWidth +: SlotWidth];
     end
-    if (read && write && write_slot == read_slot) read_data <= torn_i;
+    if (read && stored && stored_slot == read_slot) read_data <= torn_i;
   end
   // Early: in the update no one ceases to leave, nor does the count change.
   logic known_q;
   always_ff @(posedge clk_i) known_q <= leaving_i && count_q != '0;
   always_comb if (Early != 0 && begins && !active_q && known_q) assume (leaving_i && count_q != '0);
+  logic [CountBits-1:0] count_before_q;
+  always_ff @(posedge clk_i) count_before_q <= count_q;
+  always_comb if (Early != 0 && begins && !active_q) assume (count_q == count_before_q);
   // The slot that is asked for in the cycle before the phase is not written in that cycle, nor does the count change.
   logic sets;
   assign sets = !active_q && set_i;
@@ -94,7 +118,7 @@ module migrate_formal #(
     else if (count_set) count_q <= new_count;
     else if (sets) count_q <= set_count_i[CountBits-1:0];
     for (w = 0; w < Capacity; w = w + 1) begin
-      if (write && write_slot == w[SlotBits-1:0]) slots_q[w*SlotWidth +: SlotWidth] <= write_data;
+      if (stored && stored_slot == w[SlotBits-1:0]) slots_q[w*SlotWidth +: SlotWidth] <= stored_data;
       else if (sets && set_slot_i == w[3:0]) slots_q[w*SlotWidth +: SlotWidth] <= set_data_i;
     end
   end
@@ -138,7 +162,8 @@ module migrate_formal #(
   end
 
   logic [1:0]              can_load, load, valid, sent_end;
-  logic                    is_end, fault_left, fault_full;
+  logic                    tells_end, is_end, fault_left, fault_full;
+  assign is_end = tells_end && (load != 2'b00 || next_load);  // what is not loaded is nothing
   logic [LinkBits-1:0]     data;
   logic [2*LinkBits-1:0]   sent_data;
   logic [ParticleBits-1:0] fault_particle;
@@ -157,12 +182,12 @@ module migrate_formal #(
     .SlotBits(SlotBits), .CountBits(CountBits), .Early(Early)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_o(done), .has_link_i(has_link),
-    .before_i(Early != 0 && begins && !active_q), .next_can_load_i(can_load == 2'b11), .next_load_o(next_load),
+    .before_i(Early != 0 && begins && !active_q), .next_empty_i(valid == 2'b00), .next_load_o(next_load),
     .above_done_i(ended[1] && empty[1]),
     .leaving_i, .count_i(count_q), .full_i(count_q == Capacity[CountBits-1:0]), .count_set_o(count_set),
     .count_o(new_count), .full_o(new_full),
     .read_o(read), .read_slot_o(read_slot), .read_data_i(read_data), .write_o(write), .write_slot_o(write_slot),
-    .write_data_o(write_data), .leaving_more_o(more), .can_load_i(can_load), .load_o(load), .end_o(is_end),
+    .write_data_o(write_data), .leaving_more_o(more), .can_load_i(can_load), .load_o(load), .end_o(tells_end),
     .data_o(data), .face_o(face), .some_i((side & ~empty) != 2'b00), .ended_i((side & ended) != 2'b00),
     .arrived_i(taken), .pop_o(pops),
     .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
@@ -358,8 +383,8 @@ module migrate_formal #(
       end
       if (is_end && !next_load) a_end: assert (data == '0 && beat_q == '0 && !ended_both_q && down_q == downs && up_q
           == ups);
-      // The early end beats: of a phase that begins, along which no one leaves, as soon as both links can.
-      a_early: assert (next_load == (Early != 0 && begins && (!leaving_i || count_q == '0) && can_load == 2'b11));
+      // The early end beats: of a phase that begins, along which no one leaves, if both link registers are empty.
+      a_early: assert (next_load == (Early != 0 && begins && (!leaving_i || count_q == '0) && valid == 2'b00));
       if (next_load) a_early_end: assert (is_end && data == '0 && beat_q == '0);
       if (first_q && ended_both_q) a_no_one: assert (downs == '0 && ups == '0 && lefts == '0);
       if (ended_both_q && load != 2'b00) a_after: assert (0);
