@@ -16,7 +16,7 @@ module cuboct_watch #(
   input  logic                              fault_valid_i,    // it tells a fault
   input  logic [FaultBits-1:0]              fault_i,          // with fault_valid_i
   output logic [3:0]                        flags_o,          // {busy, had a fault, that is shown, a particle is shown}
-  output logic [FaultBits+ParticleBits-1:0] data_o            // {the first fault, the particle}
+  output logic [FaultBits+ParticleBits-1:0] data_o            // {first fault, particle}: each counts with its flag
 );
   logic                 faulty_d, faulty_q;
   logic [FaultBits-1:0] fault_d, fault_q;
@@ -33,7 +33,8 @@ module cuboct_watch #(
   logic [3:0]                        flags;
   logic [FaultBits+ParticleBits-1:0] data;
   assign flags = {!idle_i, faulty_q, tells, shows};
-  assign data  = {fault_q & {FaultBits{tells}}, observe_data_i & {ParticleBits{shows}}};
+  // By what is there early in the cycle alone: the valid of a particle is late.
+  assign data  = {fault_q, observe_data_i} & {(FaultBits + ParticleBits){observed_i}};
   // A particle is late in the node's cycle: without a register here the path would go on into cuboct_gather.
   if (Delay == 0) begin : gen_at_once
     assign flags_o = flags;
