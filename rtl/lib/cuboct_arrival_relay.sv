@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The sender of the exchange phases where halos are used on arrival: one walk over own records, the halos of -x, +x and,
-// with three axes, of -y, +y. A record goes over the links of all axes behind its own in lock step, as soon as it has
-// come; behind an axis's last record its end beat follows. What is asked for in one cycle stands in the memories'
+// The sender of the exchange phases where halos are used on arrival: one walk over own records, the halos of -x, +x
+// and, with three axes, of -y, +y. A record goes over the links of all axes behind its own in lock step, as soon as it
+// has come; behind an axis's last record its end beat follows. What is asked for in one cycle stands in the memories'
 // answers in the next, and in the register that the links load in the one after; all wait for the links.
 module cuboct_arrival_relay #(
   parameter int Axes      = 3,   // 2 or 3
@@ -18,7 +18,7 @@ module cuboct_arrival_relay #(
   input  logic [(2*Axes-1)*CountBits-1:0] counts_i,  // records that have come
   input  logic [2*Axes-2:0]      complete_i,  // no other will come
   output logic                   read_o,      // asks for what comes next; without it the answers stay
-  output logic [2*Axes-2:0]      clear_o,     // by segment: its memory's answer becomes 0, as it is not the one asked for
+  output logic [2*Axes-2:0]      clear_o,     // by segment: its memory's answer becomes 0, as it is not asked
   output logic [AddrBits-1:0]    addr_o,      // with read_o: of the record
   output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles; 0 where none is asked for
   input  logic [HaloBits-1:0]    own_i,       // the answer of the own particles

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lets pass the halo records of a face that may interact with a particle somewhere in the box of the own ones: the
-// planar test against the box's nearest point, in three cycles. What is tested before the step begins passes, as the box
-// is not known yet. The end of the face's stream goes through the same registers.
+// planar test against the box's nearest point, in three cycles. What is tested before the step begins passes, as the
+// box is not known yet. The end of the face's stream goes through the same registers.
 module cuboct_cull #(
   parameter int          Axes        = 3,      // 2 or 3
   parameter int          FilterFrac  = 8,      // leading bits of a position that are tested
@@ -20,7 +20,7 @@ module cuboct_cull #(
   // From the link.
   input  logic                           valid_i,  // a record comes
   input  logic [HaloBits-1:0]            halo_i,   // with valid_i
-  input  logic [Axes*(FilterFrac+2)-1:0] x_i,      // with valid_i: its position's leading bits, signed, in the own frame
+  input  logic [Axes*(FilterFrac+2)-1:0] x_i,      // with valid_i: its place, leading bits, signed, in the own frame
   input  logic                           end_i,    // the stream ends
   // To the streamer's memory, three cycles later.
   output logic                           valid_o,  // a record passes

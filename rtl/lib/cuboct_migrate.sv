@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The three migration phases. SCAN sends those who leave along the axis and closes the gaps, END closes the streams,
-// TAKE_LOW and TAKE_HIGH append what came from below and from above. SCAN is left out where no one leaves. With Early the
-// end beats of such a phase go out in the last cycle before it, TAKE_HIGH is left out where all has come from above, and
-// slots are written a cycle later: a phase does not end in the cycle after one that takes a particle.
+// TAKE_LOW and TAKE_HIGH append what came from below and from above. SCAN is left out where no one leaves. With Early
+// the end beats of such a phase go out in the last cycle before it, TAKE_HIGH is left out where all has come from
+// above, and slots are written a cycle later: a phase does not end in the cycle after one that takes a particle.
 module cuboct_migrate #(
   parameter int Axes         = 3,    // 2 or 3
   parameter int ParticleBits = 128,  // the word that travels

@@ -312,7 +312,8 @@ module cuboct_node_core #(
       .box_high_i(box_high), .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
       .relay_read_i(relay_read), .relay_clear_i(relay_clear[Faces-2:1]), .relay_addr_i(relay_addr),
       .relay_data_o(relay_halos), .migrating_i(in_migrate || (Arrival != 0 && in_update)),
-      .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty), .migrate_data_o(particles),
+      .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty),
+      .migrate_data_o(particles),
       .migrate_pop_i(migrate_face & ~migrate_empty)
     );
     integer f;
@@ -447,7 +448,8 @@ module cuboct_node_core #(
     ) u_relay (
       .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
       .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_d}), .pick_o(relay_pick), .clear_o(relay_clear),
-      .read_o(relay_read), .addr_o(relay_addr), .slot_o(relay_slot), .record_i(relay_record), .halo_i(relay_halo_record),
+      .read_o(relay_read), .addr_o(relay_addr), .slot_o(relay_slot), .record_i(relay_record),
+      .halo_i(relay_halo_record),
       .word_o(relay_word),
       .word_i(halo_word), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load), .end_o(relay_end),
       .data_o(relay_beat), .halo_data_o(relay_halo_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)

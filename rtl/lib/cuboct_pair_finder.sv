@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // From candidates to pairs: streamer, filter lanes, queue, issue. Every own particle meets every candidate that the
-// planar test lets pass, once. Where halos are used on arrival their memories answer a cycle later, and so does all that
-// is read beside them.
+// planar test lets pass, once. Where halos are used on arrival their memories answer a cycle later, and so does all
+// that is read beside them.
 module cuboct_pair_finder #(
   parameter int          Axes            = 3,   // 2 or 3
   parameter int          Halos           = 6,   // segments behind the own particles', >= 1

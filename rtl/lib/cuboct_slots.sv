@@ -52,7 +52,8 @@ module cuboct_slots #(
     assign unused_ports = ^{stream_read_i, stream_slot_i, pipe_slot_i};
   end else begin : gen_ports
     cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_stream (
-      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]), .read_i(stream_read_i[0]),
+      .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]),
+      .read_i(stream_read_i[0]),
       .clear_i(1'b0), .read_addr_i(stream_slot_i), .read_data_o(stream_data_o)
     );
     for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// cuboct_arrival_relay through any number of exchanges, with any counts, records that come one by one in any cycle, also
-// before the exchange, and any pauses of each link: each record of each segment is sent once, segments and records in
-// order, in lock step over all links of its axis and those behind, and only after it came; behind an axis's last record
-// both its links get one end beat. A record's content is its own name, (segment, number), so what is sent tells where it
-// was read; the memories answer in the cycle after the question, with anything for a record that has not come.
+// cuboct_arrival_relay through any number of exchanges, with any counts, records that come one by one in any cycle,
+// also before the exchange, and any pauses of each link: each record of each segment is sent once, segments and records
+// in order, in lock step over all links of its axis and those behind, and only after it came; behind an axis's last
+// record both its links get one end beat. A record's content is its own name, (segment, number), so what is sent tells
+// where it was read; the memories answer in the cycle after the question, with anything for a record that has not come.
 module arrival_relay_formal #(
   parameter int Axes     = 2,
   parameter int AddrBits = 1,   // a segment holds up to 2^AddrBits records
@@ -94,8 +94,8 @@ module arrival_relay_formal #(
     for (h = 1; h < Segments; h = h + 1) halo = halo | answers_q[h*HaloBits +: HaloBits];
   end
 
-  // What must come: the least (segment, number) not yet sent, of the segments of the axes that have not ended; or, where
-  // those of the next axis to end are all sent, its end.
+  // What must come: the least (segment, number) not yet sent, of the segments of the axes that have not ended; or,
+  // where those of the next axis to end are all sent, its end.
   logic [2:0]                due_segment_q, next_segment;
   logic [CountBits-1:0]      due_record_q, next_record;
   logic [1:0]                ended_q;   // axes that have
@@ -172,7 +172,9 @@ module arrival_relay_formal #(
         if (is_end) a_end: assert (data == '0 && beat_q == '0);
       end
       if (record) a_record: assert (whole == due);
-      if (observe) a_observe: assert (own == {3'd0, observed_q[AddrBits-1:0]} && observed_q != counts_q[0 +: CountBits]);
+      if (observe) begin
+        a_observe: assert (own == {3'd0, observed_q[AddrBits-1:0]} && observed_q != counts_q[0 +: CountBits]);
+      end
       if (ended_q != '0) a_observed: assert (observed_q == counts_q[0 +: CountBits]);
       if (active_q) a_sent: assert (sent == (({{(Axes - 1) {1'b0}}, 1'b1} << ended_q) - 1'b1));
       a_progress: assert (idle_q <= Patience[3:0]);

@@ -47,7 +47,8 @@ module box_formal #(
       a_empty: assert (empty == !some_q);
       if (is_q) a_inside: assert (!empty && low_w <= watched && watched <= high_w);
       if (!empty && (low_w == watched || high_w == watched)) a_tight: assert (is_q);
-      c_wide:  cover (!empty && is_q && last && low_w == '0 && high_w == '1 && watched == {1'b1, {(FilterFrac - 1) {1'b0}}});
+      c_wide:  cover (!empty && is_q && last && low_w == '0 && high_w == '1
+                      && watched == {1'b1, {(FilterFrac - 1) {1'b0}}});
       c_again: cover (cleared_q && !empty && low_w == high_w && low_w == watched);
     end
   end

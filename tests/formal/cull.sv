@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // cuboct_cull with a box of any size and a stream of records, one watched: three cycles after it came it passes,
 // unchanged, if the step had not begun or the test lets it through, else it does not; ends come three cycles later. The
-// test is told here by magnitudes: of the box's nearest point. And it drops no record that cuboct_filter_lane would find
-// near any particle inside the box.
+// test is told here by magnitudes: of the box's nearest point. And it drops no record that cuboct_filter_lane would
+// find near any particle inside the box.
 module cull_formal #(
   parameter int Axes        = 2,
   parameter int FilterFrac  = 3,
@@ -78,7 +78,8 @@ module cull_formal #(
                                  x_q[a*(FilterFrac+2) +: FilterFrac+2]});
       assign least    = $signed({{(Bits - FilterFrac) {1'b0}}, low_q[a*FilterFrac +: FilterFrac]});
       assign most     = $signed({{(Bits - FilterFrac) {1'b0}}, high_q[a*FilterFrac +: FilterFrac]});
-      assign sizes[a*Bits +: Bits] = (position < least) ? least - position - 1 : (position > most) ? position - most : '0;
+      assign sizes[a*Bits +: Bits] = (position < least) ? least - position - 1
+                                 : (position > most) ? position - most : '0;
       assign within[a] = inside[a*FilterFrac +: FilterFrac] >= low_q[a*FilterFrac +: FilterFrac]
                       && inside[a*FilterFrac +: FilterFrac] <= high_q[a*FilterFrac +: FilterFrac];
     end else begin : gen_none

@@ -44,7 +44,8 @@ module inbox_formal #(
     .Relayed(Relayed), .Arrival(Arrival), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .clear_i, .append_i, .halo_i, .count_o(count), .read_i,
-    .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_append_i, .relay_record_i, .relay_count_o(relay_count), .relay_read_i, .relay_clear_i,
+    .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_append_i, .relay_record_i, .relay_count_o(relay_count),
+    .relay_read_i, .relay_clear_i,
     .relay_addr_i(relay_addr_i[AddrBits-1:0]),
     .relay_halo_o(relay_halo), .migrating_i, .push_i, .particle_i, .full_o(full), .pop_i,
     .particle_o(particle), .empty_o(empty)
@@ -65,7 +66,8 @@ module inbox_formal #(
 
   // The watched halo, by its number, and what is known of the answers.
   (* anyconst *) logic [AddrBits-1:0] number;
-  logic                               counts, relay_counts, cleared_q, asked_q, shown_halo_q, halo_known, relayed_q, kept_q;
+  logic                               counts, relay_counts, cleared_q, asked_q, shown_halo_q, halo_known, relayed_q;
+  logic                               kept_q;
   logic [HaloBits-1:0]                value_q, relay_value_q, answer_q, shown_answer_q, halo_answer, relay_answer_q;
   // Arrival: an answer is shown with the next question.
   assign halo_known   = (Arrival != 0) ? shown_halo_q : asked_q;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// cuboct_migrate with the slots, two link registers and two inboxes of arrivals, through any number of
-// phases, each from any slots and count, under any stalls and any arrivals. The slots answer in the cycle
-// after the question; who asks for one in the cycle in which it is written gets anything. A watched own
-// particle, any, stays once in its place, or is sent once, in its place, on the link of its direction, or is
-// told once as a fault where that link does not exist. A watched arrival, any, is appended once in its place or
-// told once as a fault where no slot is free. Early: where no one leaves along a phase's axis the end beats may go out in
-// the last cycle before it, which is one of the update or the last of the phase before, and do so if both link registers are empty.
+// cuboct_migrate with the slots, two link registers and two inboxes of arrivals, through any number of phases, each
+// from any slots and count, under any stalls and any arrivals. The slots answer in the cycle after the question; who
+// asks for one in the cycle in which it is written gets anything. A watched own particle, any, stays once in its place,
+// or is sent once, in its place, on the link of its direction, or is told once as a fault where that link does not
+// exist. A watched arrival, any, is appended once in its place or told once as a fault where no slot is free. Early:
+// where no one leaves along a phase's axis the end beats may go out in the last cycle before it, which is one of the
+// update or the last of the phase before, and do so if both link registers are empty.
 module migrate_formal #(
   parameter int Axes     = 2,
   parameter int Capacity = 2,
@@ -106,6 +106,10 @@ module migrate_formal #(
   logic [CountBits-1:0] count_before_q;
   always_ff @(posedge clk_i) count_before_q <= count_q;
   always_comb if (Early != 0 && begins && !active_q) assume (count_q == count_before_q);
+  // No phase begins in the cycle after the reset.
+  logic ran_q = 1'b0;
+  always_ff @(posedge clk_i) ran_q <= running_q;
+  always_comb if (Early != 0 && begins) assume (ran_q);
   // The slot that is asked for in the cycle before the phase is not written in that cycle, nor does the count change.
   logic sets;
   assign sets = !active_q && set_i;
@@ -170,7 +174,8 @@ module migrate_formal #(
   logic [Axes-1:0]         more;
   for (genvar f = 0; f < 2; f++) begin : gen_tx
     cuboct_link_tx #(.LinkBits(LinkBits)) u_tx (
-      .clk_i, .rst_ni(running_q), .has_link_i(has_link[f]), .load_i(load[f] || next_load), .end_i(is_end), .data_i(data),
+      .clk_i, .rst_ni(running_q), .has_link_i(has_link[f]), .load_i(load[f] || next_load), .end_i(is_end),
+      .data_i(data),
       .can_load_o(can_load[f]), .valid_o(valid[f]), .end_o(sent_end[f]),
           .data_o(sent_data[f*LinkBits +: LinkBits]),
       .ready_i(ready_i[f])

@@ -13,7 +13,7 @@ module streamer_formal #(
   input logic          stall_i,
   input logic          begin_i,
   input logic          over_i,
-  input logic [2*Axes:0] come_i,   // an axis's segments are complete; Arrival: one record of the segment comes, or its end
+  input logic [2*Axes:0] come_i,   // an axis is complete; Arrival: a record of the segment comes, or its end
   input logic [(2*Axes+1)*(AddrBits+1)-1:0] counts_i
 );
   localparam int CountBits = AddrBits + 1;
@@ -37,6 +37,11 @@ module streamer_formal #(
     if (!running_q || restart) available_q <= {{Axes{1'b0}}, 1'b1};
     else if (run_q) available_q <= available_q | come_i[Axes:0];
     if (!run_q || restart) counts_q <= counts_i;
+  end
+  // Arrival: own particles stay from the cycle before a step on.
+  always_comb begin
+    if (Arrival != 0 && begin_i && (!run_q || restart))
+      assume (running_q && counts_i[0 +: CountBits] == counts_q[0 +: CountBits]);
   end
   integer a;
   always_comb begin
