@@ -148,6 +148,7 @@ module cuboct_node_core #(
   logic [1:0] axis;
   logic [Axes-1:0] past_exchange;
   logic       exchange_done, force_done, update_done, migrate_done, dump_done;
+  logic       force_over;  // what the force engine has read may be cleared
   cuboct_sequencer #(.Axes(Axes), .Overlap(Overlap)) u_sequencer (
     .clk_i, .rst_ni, .start_i, .steps_i, .exchange_done_i(exchange_done), .force_done_i(force_done),
     .update_done_i(update_done), .migrate_done_i(migrate_done), .dump_done_i(dump_done), .idle_o,
@@ -462,7 +463,7 @@ module cuboct_node_core #(
   // Force engine.
   logic [Streamers*CandidateBits-1:0] issue_candidate;
   logic [ForcePipes-1:0]        issue, pipe_busy;
-  logic                         finder_done, force_over;
+  logic                         finder_done;
   logic [Streamers-1:0]         present, force_stall;
   logic [SlotBits-1:0]          tick_slot, tick_next;
   logic                         take, fault_left, fault_full, some_fault;
