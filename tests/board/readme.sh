@@ -12,7 +12,7 @@ scene=$root/scenes/boards/grips.toml
 fail() { echo "$1"; exit 1; }
 # blocks PROJECT WORD: the blocks of the README that hold the word, in turn.
 blocks() {
-  awk -v word="$2" '/^```$/ {if (inside && index(block, word)) printf "%s", block; inside = !inside; block = ""; next}
+  awk -v word="$2" '/^```/ {if (inside && index(block, word)) printf "%s", block; inside = !inside; block = ""; next}
     inside {block = block $0 "\n"}' "$1/README.md"
 }
 
