@@ -7,6 +7,7 @@
 #include "emu/lattice/engine.h"
 #include "emu/lattice/timing.h"
 #include "model/base/error.h"
+#include "model/base/interrupt.h"
 
 namespace cuboct {
 namespace {
@@ -18,15 +19,21 @@ constexpr uint64_t kMostWork = 20'000'000;
 
 std::optional<CountedCycles> count_cycles(const Plan& plan, const State& initial, uint64_t run_steps) {
   const uint64_t affordable = std::max<uint64_t>(1, kMostWork / std::max<uint64_t>(1, plan.particles));
-  const uint64_t steps = std::min({kCountedSteps, affordable, run_steps});
-  CountedCycles counted;
+  const auto run = count_run(plan, initial, std::min({kCountedSteps, affordable, run_steps}));
+  if (!run) return std::nullopt;
+  return run->cycles;
+}
+
+std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint64_t steps) {
+  CountedRun run;
+  CountedCycles& counted = run.cycles;
+  emu::TimingModel timing(plan, 0);
   try {
     emu::LatticeEngine engine(plan, initial.step, plan.particles,
                               [&](uint32_t k) { return initial.particles[k]; }, {});
-    emu::TimingModel timing(plan, 0);
     emu::CellSlots slots;
     std::vector<PhaseSpan> spans(size_t{plan.nodes()} * kPhases);
-    while (counted.steps < steps) {
+    while (counted.steps < steps && !interrupted()) {
       engine.slots(slots);
       engine.step();
       timing.step(slots, engine.leaving(), spans);
@@ -40,7 +47,8 @@ std::optional<CountedCycles> count_cycles(const Plan& plan, const State& initial
     // What a run would stop at; the steps before it took what they took.
   }
   if (counted.steps == 0) return std::nullopt;
-  return counted;
+  run.nodes.assign(timing.events().begin(), timing.events().end());
+  return run;
 }
 
 }  // namespace cuboct

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
+#include "hw/events.h"
 #include "hw/rtl_project.h"
 
 namespace cuboct {
@@ -14,5 +16,13 @@ namespace cuboct {
 // Ends before a step that breaks a width or a capacity; nothing where that is the first.
 inline constexpr uint64_t kCountedSteps = 200;
 std::optional<CountedCycles> count_cycles(const Plan& plan, const State& initial, uint64_t run_steps);
+
+// The same with what each node did; `steps` of them, fewer where a step breaks something or there is an
+// interrupt (model/base/interrupt.h).
+struct CountedRun {
+  CountedCycles cycles;
+  std::vector<MachineEvents> nodes;
+};
+std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint64_t steps);
 
 }  // namespace cuboct

@@ -4,19 +4,21 @@
 namespace cuboct {
 namespace {
 
-constexpr std::array<NamedEvent, 13> kNames{{{"steps", &MachineEvents::steps},
+constexpr std::array<NamedEvent, 15> kNames{{{"steps", &MachineEvents::steps},
                                              {"updates", &MachineEvents::updates},
                                              {"candidates", &MachineEvents::candidates},
-                                             {"entries", &MachineEvents::entries},
-                                             {"issues", &MachineEvents::issues},
-                                             {"pairs", &MachineEvents::pairs},
+                                             {"queue_entries", &MachineEvents::entries},
+                                             {"issue_cycles", &MachineEvents::issues},
+                                             {"pairs_issued", &MachineEvents::pairs},
                                              {"queue_stalls", &MachineEvents::queue_stalls},
                                              {"relayed", &MachineEvents::relayed},
                                              {"halos", &MachineEvents::halos},
                                              {"tested", &MachineEvents::tested},
                                              {"moved", &MachineEvents::moved},
+                                             {"left", &MachineEvents::left},
+                                             {"inner", &MachineEvents::inner},
                                              {"scanned", &MachineEvents::scanned},
-                                             {"beats", &MachineEvents::beats}}};
+                                             {"link_beats", &MachineEvents::beats}}};
 
 }  // namespace
 

@@ -27,7 +27,9 @@ struct MachineEvents {
   uint64_t halos = 0;         // records that came over its links
   uint64_t tested = 0;        // of these, tested against the box of the own particles (halos on arrival)
   uint64_t moved = 0;         // particles that came over its links
-  uint64_t scanned = 0;       // slots looked at by SCAN
+  uint64_t left = 0;          // particles that left over its links
+  uint64_t inner = 0;         // particles that went from one of its cells to another (bricks)
+  uint64_t scanned = 0;       // slots that SCAN read; it writes those that stay
   uint64_t beats = 0;         // loaded into its link registers, end beats included
   std::array<uint64_t, kPhases> phase_cycles{};  // cycles of its phases; FORCE's run beside others
 

@@ -168,6 +168,7 @@ RtlDesign decide(const Plan& plan) {
   design.law = rule.law;
   design.axes = rule.axes;
   design.streamers = arch.streamers;
+  design.pipes = arch.force_pipes;
   design.arrival = arch.halos == Halos::arrival;
   design.type_bits = rule.type_bits;
   design.velocity_bits = w.velocity_bits;

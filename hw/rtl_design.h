@@ -45,7 +45,7 @@ struct RtlDesign {
   int law_bits = 0;                         // of a law's number; 0: one law
   std::vector<std::vector<uint8_t>> law;    // types x types; empty where there is one law
   int axes = 3;
-  int streamers = 1;
+  int streamers = 1, pipes = 1;
   bool arrival = false;  // halos are used as they come
   int type_bits = 0;
   int velocity_bits = 0;

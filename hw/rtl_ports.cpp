@@ -57,8 +57,9 @@ std::vector<RtlPort> node_ports(const RtlDesign& design, bool core) {
   add(true, kOut, "phase_start_o", "8",
       "first cycle of a phase: exchange x y z, force, update, migrate x y z");
   add(true, kOut, "phase_end_o", "8", "last cycle of a phase");
-  add(true, kOut, "force_event_o", std::to_string(1 + 3 * design.streamers),
-      "the force engine runs; each streamer is stalled, presents a candidate, issues pairs");
+  add(true, kOut, "force_event_o", std::to_string(1 + 3 * design.streamers + design.pipes),
+      "the force engine runs; each streamer is stalled, presents a candidate, issues pairs; each pipe takes "
+      "a pair");
   add(true, kOut, "observe_valid_o", "1", "a particle, at the start of each step and after the last");
   add(bricks, kOut, "observe_cell_o", cell, "with observe_valid_o: its cell in the node");
   add(true, kOut, "observe_data_o", particle, "with observe_valid_o: the particle");

@@ -31,13 +31,14 @@ void ArrivalTiming::Relay::act(int64_t there) {
 
 // The streamer acts again when what it did `filter` acts before leaves the filter.
 struct ArrivalTiming::Stream {
-  Stream(const Plan& plan, int64_t begin, std::vector<int64_t>& popped)
+  Stream(const Plan& plan, int64_t begin, std::vector<int64_t>& popped, MachineEvents& node_events)
       : depth(static_cast<size_t>(plan.arch.queue_depth)),
         pipes(plan.arch.force_pipes / plan.arch.streamers),
         interval(plan.latency.interval),
         pipe(plan.latency.pipe),
         leaves(at(plan.latency.filter)),
-        pop(popped) {
+        pop(popped),
+        events(node_events) {
     for (size_t k = 0; k < leaves.size(); ++k) leaves[k] = begin + static_cast<int64_t>(k);
     pop.assign(depth, kLongAgo);
   }
@@ -55,12 +56,18 @@ struct ArrivalTiming::Stream {
   }
   void present(int64_t from, int hits) {
     act(from);
+    ++events.candidates;
     filtered = leaves.back() + 1;
     if (hits > 0) {
-      filtered = std::max(filtered, pop[pop.size() - depth] + 1);
+      const int64_t room = pop[pop.size() - depth] + 1;
+      if (room > filtered) events.queue_stalls += static_cast<uint64_t>(room - filtered), filtered = room;
       const int64_t moved = std::max(issued, filtered + 1);
       pop.push_back(moved);
-      issued = moved + (hits + pipes - 1) / pipes * interval;
+      const int64_t issues = (hits + pipes - 1) / pipes;
+      issued = moved + issues * interval;
+      ++events.entries;
+      events.issues += static_cast<uint64_t>(issues);
+      events.pairs += static_cast<uint64_t>(hits);
     }
     leave(filtered);
   }
@@ -77,6 +84,7 @@ struct ArrivalTiming::Stream {
   std::vector<int64_t> leaves;  // cycles in which the last acts leave the filter, the oldest first
   std::vector<int64_t>&
       pop;  // cycles in which entries leave the queue, after as many of long ago as it holds
+  MachineEvents& events;
   int64_t issued = kLongAgo, streamed = 0, filtered = kLongAgo;
 };
 
@@ -94,7 +102,8 @@ ArrivalTiming::ArrivalTiming(const Plan& plan, int threads)
       final_count_(nodes_),
       start_(nodes_),
       sent_(nodes_ + 1),
-      scratch_(at(threads_)) {
+      scratch_(at(threads_)),
+      events_(nodes_) {
   for (size_t k = 0; k < 3; ++k) planar_[k] = static_cast<int32_t>(plan.rule.planar[k]);
   neighbour_[nodes_].fill(nodes_);
   for (uint32_t n = 0; n < nodes_; ++n)
@@ -171,7 +180,8 @@ bool ArrivalTiming::near(const std::array<int32_t, 3>& own, const std::array<int
 // A face's halo is what its neighbour holds, then what that one's neighbours along the axes before do, -x
 // before +x: nested walks over the axes, the last one outermost. `loaded` counts the neighbour's relay.
 void ArrivalTiming::gather(const CellSlots& slots, uint32_t n, int face, const std::array<int32_t, 3>& low,
-                           const std::array<int32_t, 3>& high, std::vector<Halo>& halo) const {
+                           const std::array<int32_t, 3>& high, std::vector<Halo>& halo,
+                           MachineEvents& events) const {
   halo.clear();
   const int axis = face / 2, cell = 1 << plan_.rule.widths.position_frac;
   const Sent& sent = sent_[other(n, face)];
@@ -187,7 +197,9 @@ void ArrivalTiming::gather(const CellSlots& slots, uint32_t n, int face, const s
         nearest[a] = std::clamp(h.x[a], low[a], high[a]);
       }
       // What came before the step was not tested.
-      if (came + 1 < start_[n] || near(nearest, h.x)) halo.push_back(h);
+      const bool tested = came + 1 >= start_[n];
+      events.tested += tested;
+      if (!tested || near(nearest, h.x)) halo.push_back(h);
     }
   };
   std::array<int32_t, 3> by{};
@@ -204,7 +216,7 @@ void ArrivalTiming::gather(const CellSlots& slots, uint32_t n, int face, const s
     }
 }
 
-int64_t ArrivalTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratch) const {
+int64_t ArrivalTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratch) {
   const uint32_t count = count_[n];
   std::array<int32_t, 3> low{}, high{};
   for (size_t a = 0; a < 3; ++a) {
@@ -227,7 +239,7 @@ int64_t ArrivalTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratc
   int64_t last = end_[at(axes_ == 3 ? Phase::exchange_z : Phase::exchange_y)][n] + 1;
   const int streamers = plan_.arch.streamers;
   for (int s = 0; s < streamers; ++s) {
-    Stream stream(plan_, start_[n], scratch.popped);
+    Stream stream(plan_, start_[n], scratch.popped, events_[n]);
     if (s == 0) {
       for (uint32_t k = 0; k < count; ++k)
         present(stream, start_[n], {scratch.own[0][k], scratch.own[1][k], scratch.own[2][k]}, k);
@@ -235,7 +247,7 @@ int64_t ArrivalTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratc
     }
     for (int face = s; face < 2 * axes_; face += streamers) {
       scratch.halo.clear();
-      if (count > 0) gather(slots, n, face, low, high, scratch.halo);
+      if (count > 0) gather(slots, n, face, low, high, scratch.halo, events_[n]);
       for (const Halo& h : scratch.halo) present(stream, h.from, h.x, count);
       const int64_t ended = sent_[other(n, face)].end[at(face / 2)] + received_ + kCullStages;
       stream.next_segment(scratch.halo.empty(), std::max(ended, start_[n]));
@@ -290,6 +302,21 @@ void ArrivalTiming::take_particles(int axis, uint32_t n) {
   end_[at(Phase::migrate_x) + at(axis)][n] = now;
 }
 
+// A relay reads a record once for all its links.
+void ArrivalTiming::count_records(uint32_t n) {
+  MachineEvents& events = events_[n];
+  events.updates += count_[n];
+  events.relayed += sent_[n].record.size();
+  for (int face = 0; face < 2 * axes_; ++face) {
+    const uint32_t near = other(n, face);
+    if (near == nodes_) continue;
+    events.halos += sent_[near].records[at(face / 2)];
+    // And the end beats, of records and of particles.
+    events.beats += sent_[n].records[at(face / 2)] * static_cast<uint64_t>(halo_beats_) + 2;
+  }
+  migration_.count(n, axes_, events);
+}
+
 void ArrivalTiming::step(const CellSlots& slots, std::span<const Leaving> leaving,
                          std::span<PhaseSpan> spans) {
   if (!spans.empty() && spans.size() != size_t{nodes_} * kPhases)
@@ -319,7 +346,8 @@ void ArrivalTiming::step(const CellSlots& slots, std::span<const Leaving> leavin
   }
   for_all([&](uint32_t n) {
     if (axes_ == 2) end_[at(Phase::migrate_z)][n] = end_[at(Phase::migrate_y)][n];
-    if (!spans.empty()) write_spans(spans, n, start_[n], end_, true);
+    count_records(n);
+    write_spans(spans, n, start_[n], end_, true, events_[n]);
     start_[n] = end_[at(Phase::migrate_z)][n] + 1;
   });
   ++steps_;

@@ -12,6 +12,7 @@
 #include "emu/lattice/migrate_time.h"
 #include "emu/lattice/node_force.h"
 #include "emu/lattice/slots.h"
+#include "hw/events.h"
 #include "hw/plan.h"
 #include "model/trace/trace.h"
 
@@ -25,6 +26,7 @@ class ArrivalTiming {
   uint64_t cycles(const CellSlots& slots) const;
   std::vector<uint64_t> starts() const { return {start_.begin(), start_.end()}; }
   void resume(std::span<const uint64_t> starts);
+  std::span<const MachineEvents> events() const { return events_; }
   const TimingCounters& counters() const { return counters_; }
 
  private:
@@ -67,10 +69,11 @@ class ArrivalTiming {
   void begin(const CellSlots& slots, std::span<const Leaving> leaving);
   void relay(int axis, uint32_t n);
   void exchange_to_update(const CellSlots& slots, uint32_t n, Scratch& scratch);
-  int64_t force(const CellSlots& slots, uint32_t n, Scratch& scratch) const;
+  int64_t force(const CellSlots& slots, uint32_t n, Scratch& scratch);
+  void count_records(uint32_t n);
   // The records that come over a face and reach the box [low, high].
   void gather(const CellSlots& slots, uint32_t n, int face, const std::array<int32_t, 3>& low,
-              const std::array<int32_t, 3>& high, std::vector<Halo>& halo) const;
+              const std::array<int32_t, 3>& high, std::vector<Halo>& halo, MachineEvents& events) const;
   bool near(const std::array<int32_t, 3>& own, const std::array<int32_t, 3>& other) const;
   void end_beats(int axis, uint32_t n, int64_t start);
   void take_particles(int axis, uint32_t n);
@@ -91,6 +94,7 @@ class ArrivalTiming {
   std::array<std::vector<int64_t>, kPhases> end_;                    // the phases' last cycles
   std::array<std::vector<int64_t>, 3> migrate_start_, migrate_end_;  // first cycle; that loads the end beat
   std::vector<Scratch> scratch_;                                     // by thread
+  std::vector<MachineEvents> events_;                                // by node
   uint64_t steps_ = 0;
   TimingCounters counters_;
 };

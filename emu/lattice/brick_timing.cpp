@@ -24,7 +24,7 @@ int64_t ceil_div(int64_t a, int64_t b) { return (a + b - 1) / b; }
 }  // namespace
 
 BrickMigration::BrickMigration(const Plan& plan)
-    : plan_(plan), leaving_(plan.lattice.size()), arrived_(plan.lattice.size()) {
+    : plan_(plan), leaving_(plan.lattice.size()), arrived_(plan.lattice.size()), events_(plan.nodes()) {
   for (auto* cycles : {&scan_, &land_})
     for (auto& of_axis : *cycles) of_axis.resize(plan.nodes());
 }
@@ -42,6 +42,7 @@ void BrickMigration::plan(std::vector<uint32_t>& count, std::span<const Leaving>
   any_ = !leaving.empty();
   if (!any_) return;
   movers_.clear();
+  std::fill(events_.begin(), events_.end(), MachineEvents{});
   std::fill(leaving_.begin(), leaving_.end(), 0);
   for (const Leaving& l : leaving) {
     movers_.push_back({l.cell, l.away});
@@ -61,6 +62,7 @@ void BrickMigration::move(int axis, std::vector<uint32_t>& count, const BrickMap
       const bool leaves = cell != kNoCell && (leaving_[cell] & bit(axis)) != 0;
       any = any || leaves;
       cycles += leaves ? std::max<int64_t>(count[cell], 1) : 1;
+      if (leaves) events_[n].scanned += count[cell];
     }
     scan[n] = any ? cycles : 0;
     land[n] = 0;
@@ -72,7 +74,15 @@ void BrickMigration::move(int axis, std::vector<uint32_t>& count, const BrickMap
     const int face = 2 * axis + (direction > 0);
     const uint32_t to = plan_.lattice.neighbour(m.cell, face);
     if (to == kNoCell) throw std::invalid_argument("a particle leaves the lattice");
-    if (crosses(m.cell, face)) scan[plan_.node_of(m.cell)] += plan_.words.migrate_beats - 1;
+    MachineEvents& events = events_[plan_.node_of(m.cell)];
+    if (crosses(m.cell, face)) {
+      scan[plan_.node_of(m.cell)] += plan_.words.migrate_beats - 1;
+      ++events.left;
+      events.beats += static_cast<uint64_t>(plan_.words.migrate_beats);
+      ++events_[plan_.node_of(to)].moved;
+    } else {
+      ++events.inner;
+    }
     --count[m.cell];
     ++arrived_[to];
     land[plan_.node_of(to)] = 1;
@@ -108,7 +118,8 @@ BrickTiming::BrickTiming(const Plan& plan, int threads)
       start_(nodes_),
       halo_end_(nodes_),
       sent_(nodes_),
-      scratch_(static_cast<size_t>(threads_)) {
+      scratch_(static_cast<size_t>(threads_)),
+      events_(nodes_) {
   for (auto& cycles : end_) cycles.resize(nodes_);
   for (auto& cycles : migrate_end_) cycles.resize(nodes_);
 }
@@ -150,6 +161,13 @@ int64_t BrickTiming::layer(int face, uint32_t n) const {
     cycles += records == 0 ? 1 : records * halo_beats_;
   }
   return cycles;
+}
+
+uint64_t BrickTiming::layer_records(int face, uint32_t n) const {
+  uint64_t records = 0;
+  for (const BrickWalk::Sent& s : map_.walk(n).sent[at(face)])
+    if (const uint32_t cell = map_.cell(n, s.grid); cell != kNoCell) records += count_[cell];
+  return records;
 }
 
 // The cycles in which the end beats of EXCHANGE_a are loaded.
@@ -203,28 +221,30 @@ void BrickTiming::meet(const CellSlots& slots, uint32_t cell, const std::array<i
       }
       const uint32_t slot = k - slots.first[cell];
       if (same && slot >= from && slot < to) --hits;
-      if (hits > 0)
-        scratch.entries.push_back(
-            ForceWork::entry(item, static_cast<uint32_t>(ceil_div(hits, int64_t{filter_.pipes}))));
+      if (hits == 0) continue;
+      scratch.entries.push_back(
+          ForceWork::entry(item, static_cast<uint32_t>(ceil_div(hits, int64_t{filter_.pipes}))));
+      scratch.pairs += static_cast<uint64_t>(hits);
     }
   }
 }
 
 // The engine's last cycle. A visit at which nobody meets is an item without hits.
-int64_t BrickTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratch) const {
+int64_t BrickTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratch) {
   const int64_t begin = plan_.arch.overlap ? start_[n] : end_[at(Phase::exchange_z)][n] + 1;
   Available available;
   for (int a = 0; a < 3; ++a) available[at(a)] = end_[at(a)][n] + 1 - begin;
   const BrickWalk& walk = map_.walk(n);
   ForceWork work;
   scratch.entries.clear();
+  scratch.idle = scratch.pairs = 0;
   uint32_t item = 0;
   for (size_t segment = 0; segment < work.items.size(); ++segment) {
     const uint32_t first = item;
     for (const BrickWalk::Visit& visit : walk.visits[segment]) {
       const uint32_t own = plan_.cell_of(n, visit.own);
       if (own == kNoCell || count_[own] == 0) {
-        ++item;
+        ++item, ++scratch.idle;
         continue;
       }
       for (size_t a = 0; a < 3; ++a) {
@@ -236,7 +256,7 @@ int64_t BrickTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratch)
         const BrickWalk::Near& near = walk.near[k];
         const uint32_t cell = map_.cell(n, near.grid);
         if (cell == kNoCell || count_[cell] == 0)
-          ++item;
+          ++item, ++scratch.idle;
         else
           meet(slots, cell, near.offset, near.offset == std::array<int8_t, 3>{}, item, scratch);
       }
@@ -245,7 +265,13 @@ int64_t BrickTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratch)
   }
   work.entries = scratch.entries;
   for (int64_t& from : available) from = std::max<int64_t>(from, 0);
-  return begin + force_time(shape_, work, available, scratch.popped);
+  work.pairs = scratch.pairs;
+  const ForceTime time = force_time(shape_, work, available, scratch.popped);
+  MachineEvents& events = events_[n];
+  count_work(work, true, events);
+  events.candidates -= scratch.idle;
+  events.queue_stalls += static_cast<uint64_t>(time.stalls);
+  return begin + time.last;
 }
 
 void BrickTiming::exchange_to_update(const CellSlots& slots, uint32_t n, Scratch& scratch) {
@@ -269,10 +295,32 @@ void BrickTiming::take_particles(int axis, uint32_t n) {
   if (axis + 1 < axes_) migrate_end_[at(axis + 1)][n] = last + 1 + migration_.scan(axis + 1, n);
 }
 
+// A brick one cell thick reads what it sends along the axis once for both links.
+void BrickTiming::count_records(uint32_t n) {
+  MachineEvents& events = events_[n];
+  for (const uint32_t local : map_.walk(n).own)
+    if (const uint32_t cell = plan_.cell_of(n, local); cell != kNoCell) events.updates += count_[cell];
+  for (int axis = 0; axis < axes_; ++axis) {
+    bool read = false;  // by the walk for the other link
+    for (int face = 2 * axis; face < 2 * axis + 2; ++face) {
+      const uint32_t near = plan_.neighbour(n, face);
+      if (near == kNoNode) continue;
+      const uint64_t records = layer_records(face, n);
+      if (!read) events.relayed += records;
+      read = plan_.bricks.shape()[axis] == 1;
+      events.halos += layer_records(face ^ 1, near);
+      // And the end beats, of records and of particles.
+      events.beats += records * static_cast<uint64_t>(halo_beats_) + 2;
+    }
+  }
+}
+
 // Where an axis does not exist its phases end with those before them.
 void BrickTiming::finish(uint32_t n, std::span<PhaseSpan> spans) {
   if (axes_ == 2) end_[at(Phase::migrate_z)][n] = end_[at(Phase::migrate_y)][n];
-  if (!spans.empty()) write_spans(spans, n, start_[n], end_, plan_.arch.overlap);
+  count_records(n);
+  migration_.count(n, events_[n]);
+  write_spans(spans, n, start_[n], end_, plan_.arch.overlap, events_[n]);
   start_[n] = end_[at(Phase::migrate_z)][n] + 1;
 }
 

@@ -11,6 +11,7 @@
 #include "emu/lattice/hits.h"
 #include "emu/lattice/node_force.h"
 #include "emu/lattice/slots.h"
+#include "hw/events.h"
 #include "hw/plan.h"
 #include "model/trace/trace.h"
 
@@ -26,6 +27,10 @@ class BrickMigration {
   // 0 where no own particle leaves its cell; where none comes to one.
   int64_t scan(int axis, uint32_t node) const { return any_ ? scan_[static_cast<size_t>(axis)][node] : 0; }
   int64_t land(int axis, uint32_t node) const { return any_ ? land_[static_cast<size_t>(axis)][node] : 0; }
+  // Adds what the migrations of the planned step do to a node.
+  void count(uint32_t node, MachineEvents& events) const {
+    if (any_) events += events_[node];
+  }
 
  private:
   struct Mover {
@@ -41,6 +46,7 @@ class BrickMigration {
   std::vector<uint8_t> leaving_;   // [cell] bit a: `leaving_a`
   std::vector<uint32_t> arrived_;  // [cell] along the axis at hand
   std::array<std::vector<int64_t>, 3> scan_, land_;
+  std::vector<MachineEvents> events_;  // by node
 };
 
 class BrickTiming {
@@ -51,6 +57,7 @@ class BrickTiming {
   uint64_t cycles(const CellSlots& slots) const;
   std::vector<uint64_t> starts() const { return {start_.begin(), start_.end()}; }
   void resume(std::span<const uint64_t> starts);
+  std::span<const MachineEvents> events() const { return events_; }
   const TimingCounters& counters() const { return counters_; }
 
  private:
@@ -58,15 +65,18 @@ class BrickTiming {
     std::array<std::vector<int32_t>, 3> own;  // of a cell, B fractional bits
     std::vector<uint32_t> entries;
     std::vector<int64_t> popped;
+    uint64_t idle = 0, pairs = 0;  // of a step: items that meet nobody, hits
   };
 
   void begin(const CellSlots& slots, std::span<const Leaving> leaving);
   void send(int axis, uint32_t n);
   int64_t exchanged(int axis, uint32_t n) const;
   int64_t layer(int face, uint32_t n) const;
+  uint64_t layer_records(int face, uint32_t n) const;
   int64_t walk(uint32_t n, const uint32_t* first) const;
   void exchange_to_update(const CellSlots& slots, uint32_t n, Scratch& scratch);
-  int64_t force(const CellSlots& slots, uint32_t n, Scratch& scratch) const;
+  int64_t force(const CellSlots& slots, uint32_t n, Scratch& scratch);
+  void count_records(uint32_t n);
   void meet(const CellSlots& slots, uint32_t cell, const std::array<int8_t, 3>& offset, bool same,
             uint32_t& item, Scratch& scratch) const;
   void take_particles(int axis, uint32_t n);
@@ -88,6 +98,7 @@ class BrickTiming {
   std::vector<std::array<int64_t, 3>> sent_;           // ... the last of them, by axis
   std::array<std::vector<int64_t>, 3> migrate_end_;    // [axis][node]
   std::vector<Scratch> scratch_;                       // by thread
+  std::vector<MachineEvents> events_;                  // by node
   uint64_t steps_ = 0;
   TimingCounters counters_;
 };

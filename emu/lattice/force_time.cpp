@@ -14,11 +14,11 @@ namespace {
 constexpr int64_t kLongAgo = INT64_MIN / 4;
 
 // One candidate after the other: read, then walked past the slots.
-int64_t walk_time(const ForceShape& shape, const ForceWork& work) {
+ForceTime walk_time(const ForceShape& shape, const ForceWork& work) {
   const uint32_t* entry = work.entries.data();
   const uint32_t* const last_entry = entry + work.entries.size();
   const int64_t own = std::lround(std::sqrt(work.items[0]));
-  int64_t cycle = 0, ready = 0, empty = 0;
+  int64_t cycle = 0, ready = 0, empty = 0, stalls = 0;
   int64_t item = 0;
   const size_t segments = 1 + 2 * static_cast<size_t>(shape.axes);
   for (size_t segment = 0; segment < segments; ++segment) {
@@ -37,6 +37,7 @@ int64_t walk_time(const ForceShape& shape, const ForceWork& work) {
       for (; entry != last_entry && *entry >> ForceWork::kCycleBits < item + own; ++entry) {
         go_on((*entry >> ForceWork::kCycleBits) - item);
         const int64_t issued = std::max(result, ready);
+        stalls += issued - result;
         ready = issued + shape.interval;
         empty = issued + shape.pipe;
         // The next slot follows at once where T held it; else it is asked for anew.
@@ -54,13 +55,13 @@ int64_t walk_time(const ForceShape& shape, const ForceWork& work) {
       cycle = result;
     }
   }
-  return std::max(cycle, empty);
+  return {std::max(cycle, empty), stalls};
 }
 
 }  // namespace
 
-int64_t force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
-                   std::vector<int64_t>& popped) {
+ForceTime force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
+                     std::vector<int64_t>& popped) {
   if (shape.read > 0) return walk_time(shape, work);
   const auto depth = static_cast<size_t>(shape.queue_depth);
   const int64_t interval = shape.interval;
@@ -83,6 +84,7 @@ int64_t force_time(const ForceShape& shape, const ForceWork& work, const Availab
       kLongAgo;          // last cycle that the entries so far keep `current`: the next may move there in it
   int64_t streamed = 0;  // cycle of the last presentation
   int64_t filtered = kLongAgo;  // cycle in which the last item leaves the filter
+  int64_t stalls = 0;
   const uint32_t* entry = work.entries.data();
   const uint32_t* const last_entry = entry + entries;
   int64_t first_item = 0;
@@ -110,6 +112,7 @@ int64_t force_time(const ForceShape& shape, const ForceWork& work, const Availab
                     cycles = (*entry & ((1 << ForceWork::kCycleBits) - 1)) * interval;
       if (const int64_t room = *pop + 1 - item; room > base) {
         leave_until(item);
+        stalls += room - base;
         base = room;
       }
       const int64_t moved = std::max(issued, base + item + 1);
@@ -121,7 +124,7 @@ int64_t force_time(const ForceShape& shape, const ForceWork& work, const Availab
     filtered = leaves.back();
     first_item = end_item;
   }
-  return std::max({streamed + 1, filtered + 1, issued - (interval - 1) + shape.pipe});
+  return {std::max({streamed + 1, filtered + 1, issued - (interval - 1) + shape.pipe}), stalls};
 }
 
 }  // namespace cuboct::emu

@@ -35,16 +35,21 @@ struct ForceWork {
 
   std::array<uint32_t, kSegments> items{};  // by segment
   std::span<const uint32_t> entries;        // ascending
+  uint64_t pairs = 0;                       // hits of all entries
 };
 
 // Cycle, counted from the engine's first, at which the halos of an axis may be read: [axis]. Not positive
 // where that is so from the start.
 using Available = std::array<int64_t, 3>;
 
-// The engine's last cycle, counted from its first (0). `popped` is scratch, any content. With narrow memories
-// a record's items, its passes, are the own particles.
-int64_t force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
-                   std::vector<int64_t>& popped);
+struct ForceTime {
+  int64_t last = 0;    // the engine's last cycle, counted from its first (0)
+  int64_t stalls = 0;  // cycles in which a full queue, or with narrow memories a busy pipe, held the streamer
+};
+
+// `popped` is scratch, any content. With narrow memories a record's items, its passes, are the own particles.
+ForceTime force_time(const ForceShape& shape, const ForceWork& work, const Available& available,
+                     std::vector<int64_t>& popped);
 
 // The same where there is no item: the segments are passed at cycles 0, max(1, x), ..., one after the
 // other, and the engine ends a cycle after the last.

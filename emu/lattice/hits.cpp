@@ -2,6 +2,7 @@
 #include "emu/lattice/hits.h"
 
 #include <algorithm>
+#include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "emu/lattice/hits.cpp"
@@ -107,8 +108,8 @@ const uint8_t* by_item(HitScratch& scratch, size_t candidates, uint32_t passes) 
   return items;
 }
 
-// Entries of the items with hits.
-size_t pack(const uint8_t* hits, size_t items, uint32_t pipes, uint32_t* entries) {
+// Entries of the items with hits, and the sum of hits.
+std::pair<size_t, uint64_t> pack(const uint8_t* hits, size_t items, uint32_t pipes, uint32_t* entries) {
   const D d;
   const hn::Rebind<uint8_t, D> bytes;
   // ceil(h / F) = floor(h1 / F) with h1 = h + F - 1 < 128. With r = floor(2^16 / F) + 1, h1 r / 2^16 exceeds
@@ -120,15 +121,17 @@ size_t pack(const uint8_t* hits, size_t items, uint32_t pipes, uint32_t* entries
           count = hn::Set(d, static_cast<int32_t>(items));
   auto* to = reinterpret_cast<int32_t*>(entries);
   size_t packed = 0;
+  V pairs = hn::Zero(d);  // at most 27 * 256 * 256 hits
   for (size_t k = 0; k < items; k += hn::Lanes(d)) {
     const V h = hn::PromoteTo(d, hn::LoadU(bytes, hits + k));
     const V cycles = hn::ShiftRight<16>(hn::Mul(hn::Add(h, more), reciprocal));
     const auto hit = hn::And(hn::Gt(h, hn::Zero(d)), hn::Lt(item, count));
+    pairs = hn::Add(pairs, hn::IfThenElseZero(hit, h));
     packed +=
         hn::CompressStore(hn::Or(hn::ShiftLeft<ForceWork::kCycleBits>(item), cycles), hit, d, to + packed);
     item = hn::Add(item, step);
   }
-  return packed;
+  return {packed, static_cast<uint64_t>(hn::GetLane(hn::SumOfLanes(d, pairs)))};
 }
 
 }  // namespace
@@ -144,8 +147,9 @@ ForceWork filter_node(const Filter& filter, const Places& places, uint32_t node,
   }
   for (uint32_t& items : work.items) items *= passes;
   const uint8_t* const items = by_item(scratch, candidates, passes);
-  const size_t entries = pack(items, candidates * passes, filter.pipes, scratch.entries.data());
+  const auto [entries, pairs] = pack(items, candidates * passes, filter.pipes, scratch.entries.data());
   work.entries = {scratch.entries.data(), entries};
+  work.pairs = pairs;
   return work;
 }
 

@@ -26,6 +26,17 @@ std::span<const Migration::Arrival> Migration::arrivals(int axis, uint32_t node,
   return {arrivals_.data() + from, to - from};
 }
 
+void Migration::count(uint32_t node, int axes, MachineEvents& events) const {
+  if (!any_) return;
+  for (int axis = 0; axis < axes; ++axis) {
+    const Scan& s = scanned(axis, node);
+    events.scanned += static_cast<uint64_t>(s.slots);
+    events.left += static_cast<uint64_t>(s.left);
+    events.beats += static_cast<uint64_t>(s.left) * static_cast<uint64_t>(beats_);
+    for (int side = 0; side < 2; ++side) events.moved += arrivals(axis, node, side).size();
+  }
+}
+
 void Migration::mark(std::span<uint8_t> changed) const {
   for (const auto& nodes : leaving_)
     for (const uint32_t node : nodes) changed[node] = 1;
@@ -35,7 +46,7 @@ void Migration::mark(std::span<uint8_t> changed) const {
 
 void Migration::forget() {
   for (int axis = 0; axis < 3; ++axis) {
-    for (const uint32_t node : leaving_[at(axis)]) scan_[at(axis)][node] = 0, leaving_bits_[node] = 0;
+    for (const uint32_t node : leaving_[at(axis)]) scan_[at(axis)][node] = {}, leaving_bits_[node] = 0;
     for (const uint32_t node : received_[at(axis)]) group_[at(axis)][node] = -1;
     leaving_[at(axis)].clear();
     received_[at(axis)].clear();
@@ -75,7 +86,7 @@ void Migration::plan(std::span<uint32_t> count, std::span<const Leaving> leaving
 // SCAN: a cycle per slot, and the further beats of those that leave. Those who stay close ranks.
 void Migration::depart(int axis, std::span<uint32_t> count) {
   for (const uint32_t node : leaving_[at(axis)])  // none, if the last particle left along an earlier axis
-    scan_[at(axis)][node] = static_cast<int32_t>(count[node]);
+    scan_[at(axis)][node].slots = static_cast<int32_t>(count[node]);
   landings_.clear();
   size_t kept = 0;
   uint32_t node = kNoNode, gone = 0;
@@ -98,7 +109,7 @@ void Migration::depart(int axis, std::span<uint32_t> count) {
                          m.away,
                          {node, last_beat + on_the_way_}});
     --count[node];
-    scan_[at(axis)][node] += beats_ - 1;
+    ++scan_[at(axis)][node].left;
   }
   movers_.resize(kept);
 }

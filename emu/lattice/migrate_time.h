@@ -10,6 +10,7 @@
 
 #include "emu/lattice/slots.h"
 #include "hw/bricks.h"
+#include "hw/events.h"
 #include "model/contract/lattice.h"
 
 namespace cuboct::emu {
@@ -36,8 +37,19 @@ class Migration {
 
   // Whether anything moves in the step; if not, no node scans and nothing arrives.
   bool any() const { return any_; }
-  // Cycles of SCAN.
-  int64_t scan(int axis, uint32_t node) const { return scan_[static_cast<size_t>(axis)][node]; }
+  // What SCAN does.
+  struct Scan {
+    int32_t slots = 0;  // that it reads
+    int32_t left = 0;   // particles that leave
+  };
+  const Scan& scanned(int axis, uint32_t node) const { return scan_[static_cast<size_t>(axis)][node]; }
+  // Its cycles.
+  int64_t scan(int axis, uint32_t node) const {
+    const Scan& s = scanned(axis, node);
+    return s.slots + int64_t{s.left} * (beats_ - 1);
+  }
+  // Adds what the migrations of the planned step do to a node.
+  void count(uint32_t node, int axes, MachineEvents& events) const;
   // What comes over -a (side 0) or +a (side 1), in order.
   std::span<const Arrival> arrivals(int axis, uint32_t node, int side) const;
 
@@ -65,7 +77,7 @@ class Migration {
   std::vector<Landing> landings_;
   std::array<std::vector<uint32_t>, 3> leaving_;   // [axis] nodes whose `leaving_a` is set, each once
   std::vector<uint8_t> leaving_bits_;              // [node] bit a: `leaving_a`
-  std::array<std::vector<int32_t>, 3> scan_;       // [axis][node]
+  std::array<std::vector<Scan>, 3> scan_;          // [axis][node]
   std::array<std::vector<int32_t>, 3> group_;      // [axis][node]: its arrivals, -1 for none
   std::array<std::vector<uint32_t>, 3> received_;  // [axis] nodes with arrivals
   std::vector<std::array<uint32_t, 3>> groups_;    // arrivals from -a, from +a, end: into arrivals_

@@ -58,6 +58,7 @@ struct TimingModel::Impl {
   int64_t force(uint32_t n, Scratch& scratch);
   void send_particles(int axis, uint32_t n, int64_t start);
   int64_t taken(int axis, uint32_t n, int side, int64_t now) const;
+  void count_records(uint32_t n);
 
   const Plan& plan_;
   const uint32_t nodes_;
@@ -74,15 +75,16 @@ struct TimingModel::Impl {
   std::array<std::vector<int32_t>, 3> x_, old_x_;  // at its start, and at that of the step before
   std::vector<uint32_t> first_, old_first_;        // one more
   std::vector<uint32_t> count_, final_count_;      // particles at its start, at its end
-  std::vector<uint8_t> changed_;          // other particles than in the step before, or another order
-  std::vector<uint8_t> moved_, moved_x_;  // ... or another position; there, or in a neighbour along x too
-  std::vector<uint32_t> sent_y_;          // records that it sends along y
+  std::vector<uint8_t> changed_;           // other particles than in the step before, or another order
+  std::vector<uint8_t> moved_, moved_x_;   // ... or another position; there, or in a neighbour along x too
+  std::vector<uint32_t> sent_y_, sent_z_;  // records that it sends along y, z
 
   Cycles start_;                     // the step's first cycle
   std::array<Cycles, kPhases> end_;  // the phases' last cycles
   std::array<Cycles, 3> halo_end_, migrate_end_,
       migrate_start_;  // [axis] cycle that loads the end beat; first cycle
   std::vector<NodeForce> force_;
+  std::vector<MachineEvents> events_;
   std::vector<Scratch> scratch_;  // by thread
   uint64_t steps_ = 0;
   TimingCounters counters_;
@@ -110,8 +112,10 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       moved_(nodes_ + 1),
       moved_x_(nodes_ + 1),
       sent_y_(nodes_ + 1),
+      sent_z_(nodes_ + 1),
       start_(nodes_ + 1),
-      force_(nodes_) {
+      force_(nodes_),
+      events_(nodes_) {
   neighbour_[nodes_].fill(nodes_);
   for (uint32_t n = 0; n < nodes_; ++n)
     for (int f = 0; f < kFaces; ++f) {
@@ -190,6 +194,7 @@ void TimingModel::Impl::exchange_y(uint32_t n) {
   moved_x_[n] = moved_[n] | moved_[near[0]] | moved_[near[1]];
   const int64_t end = end_[at(Phase::exchange_y)][n] = exchanged(1, n);
   if (axes_ == 2) return;
+  sent_z_[n] = sent_y_[n] + sent_y_[near[2]] + sent_y_[near[3]];
   halo_end_[2][n] = end + 1 + stream(count_[n]) + stream(count_[near[0]]) + stream(count_[near[1]]) +
                     stream(sent_y_[near[2]]) + stream(sent_y_[near[3]]);
 }
@@ -208,8 +213,8 @@ int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
   for (size_t a = 0; a < 3; ++a) available[a] = end_[a][n] + 1 - begin;
   if (count_[n] == 0) return begin + idle_force_time(available, axes_);
   const Places places{{x_[0].data(), x_[1].data(), x_[2].data()}, first_.data(), neighbour_.data()};
-  return begin +
-         force_[n].time(filter_, places, n, shape_, available, still(n), scratch.hits, scratch.counters);
+  return begin + force_[n].time(filter_, places, n, shape_, available, still(n), scratch.hits,
+                                scratch.counters, events_[n]);
 }
 
 // Where an axis does not exist its phases end with those before them.
@@ -243,8 +248,27 @@ void TimingModel::Impl::take_particles(int axis, uint32_t n) {
   if (axis + 1 < axes_) send_particles(axis + 1, n, next);
 }
 
+// A relay reads what it sends along an axis once for both links, and whether there are links or not.
+void TimingModel::Impl::count_records(uint32_t n) {
+  MachineEvents& events = events_[n];
+  for (int axis = 0; axis < axes_; ++axis) {
+    const std::vector<uint32_t>& sent = axis == 0 ? count_ : axis == 1 ? sent_y_ : sent_z_;
+    events.relayed += sent[n];
+    for (int face = 2 * axis; face < 2 * axis + 2; ++face) {
+      const uint32_t near = neighbour_[n][at(face)];
+      if (near == nodes_) continue;
+      events.halos += sent[near];
+      // And the end beats, of records and of particles.
+      events.beats += sent[n] * static_cast<uint64_t>(halo_beats_) + 2;
+    }
+  }
+}
+
 void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
-  if (!spans.empty()) write_spans(spans, n, start_[n], end_, plan_.arch.overlap);
+  events_[n].updates += count_[n];
+  count_records(n);
+  migration_.count(n, axes_, events_[n]);
+  write_spans(spans, n, start_[n], end_, plan_.arch.overlap, events_[n]);
   start_[n] = end_[at(Phase::migrate_z)][n] + 1;
 }
 
@@ -323,6 +347,10 @@ void TimingModel::resume(std::span<const uint64_t> starts) {
   if (starts.size() != impl_->nodes_) throw std::invalid_argument("starts of another lattice");
   std::copy(starts.begin(), starts.end(), impl_->start_.begin());
   impl_->steps_ = 0;  // the next step's particles are not those of the last one
+}
+
+std::span<const MachineEvents> TimingModel::events() const {
+  return brick_ ? brick_->events() : arrival_ ? arrival_->events() : impl_->events_;
 }
 
 const TimingCounters& TimingModel::counters() const {

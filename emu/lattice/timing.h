@@ -11,6 +11,7 @@
 
 #include "emu/lattice/node_force.h"
 #include "emu/lattice/slots.h"
+#include "hw/events.h"
 #include "hw/plan.h"
 #include "model/trace/trace.h"
 
@@ -44,6 +45,8 @@ class TimingModel {
   // Goes on from there. Throws std::invalid_argument where the size is not the number of nodes.
   void resume(std::span<const uint64_t> starts);
 
+  // Of all steps so far, by node: since the start, or since `resume`d by another model.
+  std::span<const MachineEvents> events() const;
   const TimingCounters& counters() const;
 
  private:

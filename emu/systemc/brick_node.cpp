@@ -98,6 +98,7 @@ void BrickNode::exchange() {
   const BrickWalk::Sent& from = layer[place_];
   if (beat_ == 0) {
     word_ = {};
+    ++relayed_;
     pack_halo(plan_,
               from.local >= 0 ? cells_.own[static_cast<size_t>(from.local)][record_].body
                               : cells_.halo[from.grid][record_],
@@ -165,6 +166,7 @@ void BrickNode::scan() {
     } else if (!leave(c, s)) {
       return;
     }
+    ++scanned_;
     const size_t held = slots.size();
     const bool cell_over = record_ + 1 == held;
     walk_over = walk_on(held);
@@ -196,6 +198,7 @@ bool BrickNode::leave(uint32_t local, const Slot& slot) {
     at[a] += up ? 1 : -1;
     inner_[up ? 0 : 1].push_back({grid_.local(at), slot});
     inner_[up ? 0 : 1].back().slot.away[static_cast<size_t>(a)] = 0;
+    ++inner_moves_;
     return true;
   }
   if (!can_load(bit(face))) return false;
@@ -206,6 +209,7 @@ bool BrickNode::leave(uint32_t local, const Slot& slot) {
   load_slice(face);
   if (++beat_ < plan_.words.migrate_beats) return false;
   beat_ = 0;
+  ++left_;
   return true;
 }
 

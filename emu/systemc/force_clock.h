@@ -23,6 +23,8 @@ struct ForceCounts {
   uint64_t pairs_inside = 0;  // of these, nearer than the cutoff
   uint64_t stalls = 0;        // cycles in which a full queue held the streamer
   uint64_t issue_cycles = 0;  // cycles that issued a pair
+  uint64_t entries = 0;       // pushed into the queue
+  uint64_t tested = 0;        // halo records tested against the box of the own particles
   uint64_t busy = 0;          // cycles from the engine's first to its last
 };
 
@@ -104,6 +106,7 @@ uint64_t clock_stream(const Plan& plan, ForceStream& stream, int segments, uint6
       const uint32_t tail = head + count;
       stream.queue[tail < depth ? tail : tail - depth] = last;
       ++count;
+      ++counts.entries;
     }
     filtering -= last != kNone;
     std::move_backward(filter.begin(), filter.end() - 1, filter.end());

@@ -107,7 +107,9 @@ uint64_t ForceEngine::arrive() {
       const auto& halo = halo_[face];
       for (size_t k = 0; k < halo.size() && n > 0; ++k) {
         const uint64_t came = times_.came[face][k];
-        if (came + 1 >= begin && !reaches(halo[k])) continue;
+        const bool tested = came + 1 >= begin;
+        counts_.tested += tested;
+        if (tested && !reaches(halo[k])) continue;
         meet_slots(stream, halo[k], n);
         there.resize(stream.mask.size(), came + 1 + kCullStages);
       }

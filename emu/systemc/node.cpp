@@ -106,7 +106,8 @@ void Node::relay() {
     for (int a = (sending_.segment + 1) / 2; a < axes_; ++a) faces |= faces_of(a);
     held = !can_load(faces);
     if (!held) {
-      if (beat_ == 0) word_ = {}, pack_halo(plan_, relayed(sending_.segment, sending_.record), 0, word_);
+      if (beat_ == 0)
+        word_ = {}, pack_halo(plan_, relayed(sending_.segment, sending_.record), 0, word_), ++relayed_;
       for (int f = 0; f < kFaces; ++f)
         if (faces >> f & 1) load_slice(f);
       held = ++beat_ < plan_.words.halo_beats;
@@ -149,6 +150,7 @@ void Node::exchange() {
     out_->observe_data = pack_particle(plan_, own_[record_]);
   }
   const Candidate& record = relayed(segment_, record_);
+  relayed_ += beat_ == 0;
   if (plan_.words.halo_beats == 1) {
     for (const int f : {low, high})
       if (linked(f)) pack_halo(plan_, record, 0, load(f, false));
@@ -213,7 +215,9 @@ void Node::scan() {
     load_slice(face);
     if (++beat_ < plan_.words.migrate_beats) return;
     beat_ = 0;
+    ++left_;
   }
+  ++scanned_;
   if (static_cast<size_t>(++record_) < own_.size()) return;
   own_.resize(kept_);
   migrate_ = Migrate::end;

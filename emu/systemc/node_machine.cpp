@@ -106,6 +106,7 @@ void NodeMachine::finish_slot(Slot& slot, uint32_t cell, size_t index) {
   const FinishResult r = finish(plan_.rule, engine_->take_sum(cell, index), position_of(w, slot), slot.body.v,
                                 slot.u, slot.body.type);
   fault_.add(r.fault, slot.id, r.number, cell);
+  ++updates_;
   slot.u = r.u;
   for (size_t a = 0; a < 3; ++a) {
     slot.body.v[a] = wrap(r.v[a], w.velocity_bits);
@@ -159,10 +160,13 @@ void NodeMachine::receive(int face, const Beat& beat) {
     a.beat = 0;
     record = &a.partial;
   }
-  if (migrating)
+  if (migrating) {
+    ++moved_;
     take_particle(face, *record);
-  else
+  } else {
+    ++halos_;
     take_halo(face, *record);
+  }
 }
 
 void NodeMachine::clock(const NodeInputs& in, NodeOutputs& out) {
@@ -241,10 +245,23 @@ std::string NodeMachine::doing() const {
 Counters NodeMachine::counters(uint64_t) const {
   const ForceCounts& c = engine_->counts();
   const auto number = [](uint64_t n) { return static_cast<double>(n); };
-  return {{"candidates", number(c.candidates)},     {"pairs_issued", number(c.pairs_issued)},
-          {"pairs_inside", number(c.pairs_inside)}, {"queue_stalls", number(c.stalls)},
-          {"issue_cycles", number(c.issue_cycles)}, {"force_cycles", number(c.busy)},
-          {"link_beats", number(beats_)},           {"link_waits", number(link_waits_)}};
+  return {{"candidates", number(c.candidates)},
+          {"pairs_issued", number(c.pairs_issued)},
+          {"pairs_inside", number(c.pairs_inside)},
+          {"queue_stalls", number(c.stalls)},
+          {"issue_cycles", number(c.issue_cycles)},
+          {"force_cycles", number(c.busy)},
+          {"link_beats", number(beats_)},
+          {"link_waits", number(link_waits_)},
+          {"updates", number(updates_)},
+          {"queue_entries", number(c.entries)},
+          {"relayed", number(relayed_)},
+          {"halos", number(halos_)},
+          {"tested", number(c.tested)},
+          {"moved", number(moved_)},
+          {"left", number(left_)},
+          {"inner", number(inner_moves_)},
+          {"scanned", number(scanned_)}};
 }
 
 }  // namespace cuboct::emu

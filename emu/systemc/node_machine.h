@@ -105,6 +105,9 @@ class NodeMachine : public NodeModel {
   uint64_t phase_last_ = 0;     // the last cycle of FORCE or UPDATE, known from its start
   uint64_t wakes_at_ = 0;       // as wakes_at()
   NodeOutputs* out_ = nullptr;  // of the cycle that runs
+  // Records read to send them on, slots read by SCAN, particles that left over a link or for another own
+  // cell.
+  uint64_t relayed_ = 0, scanned_ = 0, left_ = 0, inner_moves_ = 0;
 
  private:
   // A record of several beats on its way in.
@@ -125,7 +128,7 @@ class NodeMachine : public NodeModel {
   uint8_t valid_ = 0, can_load_ = 0;
   uint8_t full_ = 0;  // link registers that held a beat at the cycle's start
   uint32_t steps_ = 0, step_ = 0;
-  uint64_t link_waits_ = 0, beats_ = 0;
+  uint64_t link_waits_ = 0, beats_ = 0, updates_ = 0, halos_ = 0, moved_ = 0;
 };
 
 }  // namespace cuboct::emu

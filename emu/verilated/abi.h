@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-enum { kCuboctAbi = 7, kCuboctFaces = 6, kCuboctWords = 8 };
+enum { kCuboctAbi = 8, kCuboctFaces = 6, kCuboctWords = 8 };
 
 // Inputs of one node during one cycle. `link_data[f]` is read where bit f of `link_valid` is set.
 struct CuboctIn {
@@ -22,6 +22,7 @@ struct CuboctOut {
   uint8_t phase_start, phase_end, observe_valid, fault_valid, fault_code, idle;
   uint8_t link_valid, link_end, link_ready;
   uint8_t force_event;              // of a node alone: engine runs; by streamer: stalled, presents, issues
+  uint8_t pairs;                    // of a node alone: pipes that take a pair
   uint8_t beat_errors, ack_errors;  // of the cycle; these and link_ack where links are checked
   uint8_t still;  // of a node alone: with the same inputs no clock would change a bit of it, nor show more
                   // than force_event

@@ -59,7 +59,8 @@ Build node_build(const Plan& plan) {
                         {"LINK_BITS", plan.link.wire_bits},
                         {"ACK_BITS", plan.link.ack_bits},
                         {"PARTICLE_BITS", plan.words.particle_bits},
-                        {"BRICK", plan.bricks.one_cell() ? 0 : 1}},
+                        {"BRICK", plan.bricks.one_cell() ? 0 : 1},
+                        {"EVENTS", 1 + 3 * plan.arch.streamers}},
           .sources = with_headers("shim_node.cpp"),
           .emit = [&plan](const std::string& dir) { emit_node(plan, dir); }};
 }

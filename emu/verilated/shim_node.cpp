@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One Verilated node. FACES, LINK_BITS (of link_data), ACK_BITS (0 where links are not checked),
-// PARTICLE_BITS and BRICK (1: of a brick) come from the command line.
+// PARTICLE_BITS, BRICK (1: of a brick) and EVENTS (bits of force_event_o but for the pipes') come from the
+// command line.
 #include <algorithm>
 #include <cstring>
 #include <type_traits>
@@ -157,7 +158,11 @@ const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
   out->phase_start = m.phase_start_o;
   out->phase_end = m.phase_end_o;
   out->idle = m.idle_o;
-  out->force_event = m.force_event_o;
+  uint64_t events[2] = {};  // at most 2 streamers, 64 pipes
+  get_port(m.force_event_o, events);
+  out->force_event = static_cast<uint8_t>(events[0] & ((1u << EVENTS) - 1));
+  out->pairs =
+      static_cast<uint8_t>(__builtin_popcountll(events[0] >> EVENTS) + __builtin_popcountll(events[1]));
   out->observe_valid = m.observe_valid_o;
   if (m.observe_valid_o) {
     get_port(m.observe_data_o, n.particle);

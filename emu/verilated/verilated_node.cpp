@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <stdexcept>
 
@@ -62,6 +63,9 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
     ports.link_data[f] = in.beat[f]->payload.word.data();
   }
   for (size_t e = 0; e < events_.size(); ++e) events_[e] = event_cycles(e, in.now);
+  if (host.reset_n)
+    beats_ +=
+        static_cast<uint64_t>(std::popcount(static_cast<unsigned>(out_.link_valid & has_link_ & in.ready)));
   last_ = in.now;
   const char* failed = library_->clock(model_, &ports, &out_);
   if (failed != nullptr) {
@@ -71,7 +75,8 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
   if (host.start) begin_ = in.now + 1;
 
   read_outputs(out_, out);
-  if (!host.reset_n) out_.force_event = 0;  // what registers hold before is no event
+  if (!host.reset_n) out_.force_event = out_.pairs = 0;  // what registers hold before is no event
+  pairs_ += out_.pairs;
   out.valid = out.loaded = out_.link_valid & has_link_;
   out.ready = out_.link_ready & has_link_;
   std::copy(out_.link_ack, out_.link_ack + kFaces, out.ack.begin());
@@ -96,8 +101,9 @@ Counters VerilatedNode::counters(uint64_t end) const {
     for (size_t e = event; e < events_.size(); e += 3) cycles += count(e);
     return cycles;
   };
-  return {
-      {"candidates", sum(2)}, {"queue_stalls", sum(1)}, {"issue_cycles", sum(3)}, {"force_cycles", count(0)}};
+  return {{"candidates", sum(2)},     {"pairs_issued", static_cast<double>(pairs_)},
+          {"queue_stalls", sum(1)},   {"issue_cycles", sum(3)},
+          {"force_cycles", count(0)}, {"link_beats", static_cast<double>(beats_)}};
 }
 
 std::string VerilatedNode::doing() const {

@@ -36,6 +36,7 @@ class VerilatedNode : public NodeModel {
   uint8_t phases_ = 0;  // that run
   uint64_t event_cycles(size_t event, uint64_t end) const;
   std::array<uint64_t, 7> events_{};  // cycles of each bit of force_event_o, up to `last_`
+  uint64_t pairs_ = 0, beats_ = 0;    // that pipes took; that receivers took
   uint64_t last_ = 0;                 // cycle of the last call; force_event_o stays through those left out
   bool idle_ = true;
   std::optional<uint64_t> begin_;  // edge of the run's cycle 0, once it was started

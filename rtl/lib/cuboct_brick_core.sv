@@ -103,7 +103,8 @@ module cuboct_brick_core #(
   output logic [Faces-1:0]        link_ready_o,
   output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
   output logic [7:0]              phase_end_o,
-  output logic [3:0]              force_event_o,  // engine runs, stalled, presents a candidate, issues; in this cycle
+  output logic [ForcePipes+3:0]   force_event_o,  // in this cycle: engine runs, stalled, presents a candidate, issues;
+                                                  // each pipe takes a pair
   output logic                    observe_valid_o,
   output logic [CellBits-1:0]     observe_cell_o,
   output logic [ParticleBits-1:0] observe_data_o,
@@ -504,7 +505,7 @@ module cuboct_brick_core #(
     .halos_i(stream_halos), .row_o(row), .row_data_i(row_data), .candidate_o(issue_candidate), .cell_o(issue_cell),
     .issue_o(issue), .issue_slot_o(issue_slot), .meet_o(meet), .stall_o(force_stall), .done_o(finder_done)
   );
-  assign force_event_o = {issue != '0, meet, force_stall, engine_runs};
+  assign force_event_o = {issue, issue != '0, meet, force_stall, engine_runs};
   assign force_done = engine_runs && finder_done && (pipe_busy == '0);
 
   // Update and dump walk the cells and their slots.

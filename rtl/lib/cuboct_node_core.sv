@@ -98,8 +98,8 @@ module cuboct_node_core #(
   output logic [Faces-1:0]        link_ready_o,
   output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
   output logic [7:0]              phase_end_o,
-  output logic [3*Streamers:0]    force_event_o,  // in this cycle: engine runs; of each streamer: it is stalled,
-                                                  // presents a candidate, issues
+  output logic [3*Streamers+ForcePipes:0] force_event_o,  // in this cycle: engine runs; of each streamer: it is
+                                                  // stalled, presents a candidate, issues; each pipe takes a pair
   output logic                    observe_valid_o,
   output logic [ParticleBits-1:0] observe_data_o,
   output logic                    fault_valid_o,
@@ -562,6 +562,7 @@ module cuboct_node_core #(
     assign unused_record = ^record;
   end
   assign force_event_o[0] = engine_runs;
+  assign force_event_o[3*Streamers+1 +: ForcePipes] = issue;
   if (Arrival != 0) begin : gen_settled
     // The last candidates may have been met before the last records are sent. What is cleared waits for a register.
     logic found_q, over_q;

@@ -77,7 +77,8 @@ void expect_golden(const Case& c) {
   EXPECT_EQ(counter_of(rs, "node_calls"), static_cast<double>(plan.nodes()) * counter_of(rs, "cycles"));
   // What the RTL's force engines did: each count is the native nodes'.
   for (const auto& [a, b] : {std::pair{&nf, &rf}, std::pair{&ns, &rs}})
-    for (const char* name : {"candidates", "queue_stalls", "issue_cycles", "force_cycles"}) {
+    for (const char* name :
+         {"candidates", "pairs_issued", "queue_stalls", "issue_cycles", "force_cycles", "link_beats"}) {
       EXPECT_EQ(counter_of(*a, name), counter_of(*b, name)) << name;
       if (std::string(name) != "queue_stalls") {
         EXPECT_GT(counter_of(*b, name), 0) << name;

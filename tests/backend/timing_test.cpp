@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <random>
 
@@ -36,6 +37,7 @@ struct Seen {
   uint64_t no_overlap = 0, queue_of_one = 0, pipes = 0, pd = 0, weighted = 0, damped = 0, rings_of_3 = 0,
            lone_nodes = 0, flat = 0, shared = 0, coarse = 0, narrow = 0, serial = 0, bricks = 0, arrival = 0,
            streamers = 0;
+  std::map<std::string, uint64_t> events;
 };
 
 emu::CellSlots slots_of(const FixedRule& rule, const Golden& golden) {
@@ -96,6 +98,24 @@ void note(Seen& seen, const Plan& plan, const Golden& golden, const std::vector<
   seen.multi_beat += plan.words.halo_beats > 1 || plan.words.migrate_beats > 1;
 }
 
+// The first event that the model counts otherwise than the clocked nodes of a run without a stop.
+std::string other_events(const MachineEvents& events, const Trace& trace, Seen& seen) {
+  for (const auto& [name, count] : event_names()) {
+    if (std::string(name) == "steps") continue;
+    const auto found = std::ranges::find(trace.counters, name, &std::pair<std::string, double>::first);
+    if (found == trace.counters.end()) return fmt::format("no counter of {}", name);
+    if (static_cast<double>(events.*count) != found->second)
+      return fmt::format("{} {}, expected {}", events.*count, name, found->second);
+    seen.events[name] += events.*count;
+  }
+  std::array<uint64_t, kPhases> cycles{};
+  for (size_t k = 0; k < trace.cycles.size(); ++k)
+    cycles[k % kPhases] += trace.cycles[k].end + 1 - trace.cycles[k].start;
+  if (cycles != events.phase_cycles) return "other cycles of phases";
+  if (events.steps != trace.steps() * trace.nodes) return "other steps of nodes";
+  return {};
+}
+
 void count_work(Seen& seen, const emu::TimingModel& model) {
   seen.busy += model.counters().busy;
   seen.filtered += model.counters().filtered;
@@ -113,6 +133,7 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
   auto model = std::make_unique<emu::TimingModel>(plan, threads);
   std::vector<PhaseSpan> spans(size_t{nodes} * kPhases);
+  MachineEvents events;
   for (uint64_t step = 0; step < trace.steps(); ++step) {
     const auto slots = slots_of(plan.rule, golden);
     const auto before = places_of(golden);
@@ -123,6 +144,7 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
     // A model that is made anew and told where it was goes on alike.
     if (step == trace.steps() / 2) {
       count_work(seen, *model);
+      events += sum(model->events());
       auto other = std::make_unique<emu::TimingModel>(plan, threads);
       other->resume(model->starts());
       model = std::move(other);
@@ -140,6 +162,9 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
     const auto counted = static_cast<uint64_t>(trace.counters.at(0).second);
     const uint64_t cycles = model->cycles(slots_of(plan.rule, golden));
     if (cycles != counted) return fmt::format("{}: {} cycles, expected {}", c.name, cycles, counted);
+    events += sum(model->events());
+    const std::string other = other_events(events, trace, seen);
+    if (!other.empty()) return fmt::format("{}: {}", c.name, other);
   }
   count_work(seen, *model);
   ++seen.runs;
@@ -272,6 +297,8 @@ TEST(TimingRandom, EqualsTheClockedNode) {
                                                              {"lone_nodes", seen.lone_nodes},
                                                              {"flat", seen.flat},
                                                              {"not walked", seen.filtered - seen.walked}};
+  seen.events["steps"] = seen.runs;
+  for (const auto& [name, count] : event_names()) EXPECT_GT(seen.events[name], 0u) << name;
   for (const auto& [name, count] : counts) {
     RecordProperty(name, static_cast<int>(count));
     EXPECT_GT(count, 0u) << name;

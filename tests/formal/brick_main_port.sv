@@ -45,7 +45,8 @@ module brick_main_port_formal #(
   logic [Faces-1:0]          link_valid, link_end, link_ready;
   logic [Faces*LinkBits-1:0] link_data;
   logic [7:0]                phase_start, phase_end;
-  logic [3:0]                events, code;
+  logic [3:0]                code;
+  logic [4:0]                events;
   logic                      observe, fault, id, idle;
   logic [CellBits-1:0]       observed_cell, fault_cell, load_cell;
   logic [8+2*Pd:0]           observed, loaded;

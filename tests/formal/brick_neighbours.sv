@@ -49,7 +49,8 @@ module brick_neighbours_formal #(
     logic                      observe, fault, id, load;
     logic [ParticleBits-1:0]   observed;
     logic [CellBits-1:0]       observed_cell, fault_cell, load_cell;
-    logic [3:0]                code, events;
+    logic [3:0]                code;
+    logic [4:0]                events;
     logic [63:0]               number;
     always_comb begin
       assume (extent[0 +: GridBits] >= 1 && extent[0 +: GridBits] <= BrickX);

@@ -31,7 +31,8 @@ module main_port_formal #(
   logic [Faces-1:0]          link_valid, link_end, link_ready;
   logic [Faces*LinkBits-1:0] link_data;
   logic [7:0]                phase_start, phase_end;
-  logic [3:0]                event_now, code;
+  logic [3:0]                code;
+  logic [4:0]                event_now;
   logic                      observe, fault, id, idle;
   logic [8+2*Pd:0]           observed;
   logic [63:0]               number;
