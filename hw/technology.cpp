@@ -81,9 +81,8 @@ Technology technology_of(const ConfigTable& root) {
   for (size_t k = 0; k < kConstants; ++k) {
     const auto constant = static_cast<Constant>(k);
     if (const auto table = root.table_at(kRows[k].name))
-      technology.figures[k] =
-          figure_of(*table, kRows[k].unit,
-                    constant == Constant::memory_read || constant == Constant::memory_write);
+      technology.figures[k] = figure_of(
+          *table, kRows[k].unit, constant == Constant::memory_read || constant == Constant::memory_write);
   }
   const bool memory = technology.at(Constant::memory_read) || technology.at(Constant::memory_write);
   if (memory && !technology.at(Constant::memory_exponent))
@@ -107,8 +106,7 @@ std::vector<LinkKind> parse_links(const std::string& text, const std::string& pa
   const ConfigTable root = parse_config(text, path);
   std::vector<LinkKind> links;
   for (const std::string& name : root.names())
-    links.push_back(
-        {name, figure_of(root.at(name).table(), unit_of(Constant::link_bit), false)});
+    links.push_back({name, figure_of(root.at(name).table(), unit_of(Constant::link_bit), false)});
   return links;
 }
 
