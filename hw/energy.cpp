@@ -140,7 +140,7 @@ void add_wires(Sheet& sheet, const Plan& plan, const MachineEvents& e, std::span
   if (side.high > 0) {
     if (!technology.at(Constant::link_bit))
       sheet.add("links: wires", beats, "beats", Constant::wire_bit_mm, beat_bits(plan) * side);
-    sheet.add("wires within nodes", bits, "bits", Constant::wire_bit_mm, 0.5 * side);
+    if (bits > 0) sheet.add("wires within nodes", bits, "bits", Constant::wire_bit_mm, 0.5 * side);
     return;
   }
   if (!technology.at(Constant::link_bit))
@@ -213,8 +213,9 @@ constexpr double kMm2 = 1e-6;  // um^2
 
 }  // namespace
 
-// What five synthesised nodes have of flip-flops over what their datapath and links need at least: 2.38 to 3.03
-// times, widened to 2.2 and 3.3 (docs/measured/data/synth-nodes-ecp5-85.tsv). Delays, control, ports of memories.
+// What five synthesised nodes have of flip-flops over what their datapath and links need at least: 2.38
+// to 3.03 times, widened to 2.2 and 3.3 (docs/measured/data/synth-nodes-ecp5-85.tsv). Delays, control, ports
+// of memories.
 Band register_bits(const Plan& plan) {
   constexpr Band kOver{2.2, 3.3};
   const DatapathWork work = datapath_work(plan);
