@@ -4,16 +4,25 @@
 namespace cuboct {
 namespace {
 
-constexpr std::array<NamedEvent, 15> kNames{{{"steps", &MachineEvents::steps},
+constexpr std::array<NamedEvent, 24> kNames{{{"steps", &MachineEvents::steps},
                                              {"updates", &MachineEvents::updates},
                                              {"candidates", &MachineEvents::candidates},
+                                             {"candidates_x", &MachineEvents::candidates_x},
+                                             {"candidates_y", &MachineEvents::candidates_y},
+                                             {"candidates_z", &MachineEvents::candidates_z},
                                              {"queue_entries", &MachineEvents::entries},
                                              {"issue_cycles", &MachineEvents::issues},
                                              {"pairs_issued", &MachineEvents::pairs},
                                              {"queue_stalls", &MachineEvents::queue_stalls},
                                              {"relayed", &MachineEvents::relayed},
-                                             {"halos", &MachineEvents::halos},
+                                             {"relayed_own", &MachineEvents::relayed_own},
+                                             {"halos_x", &MachineEvents::halos_x},
+                                             {"halos_y", &MachineEvents::halos_y},
+                                             {"halos_z", &MachineEvents::halos_z},
                                              {"tested", &MachineEvents::tested},
+                                             {"culled_x", &MachineEvents::culled_x},
+                                             {"culled_y", &MachineEvents::culled_y},
+                                             {"culled_z", &MachineEvents::culled_z},
                                              {"moved", &MachineEvents::moved},
                                              {"left", &MachineEvents::left},
                                              {"inner", &MachineEvents::inner},
@@ -23,6 +32,18 @@ constexpr std::array<NamedEvent, 15> kNames{{{"steps", &MachineEvents::steps},
 }  // namespace
 
 std::span<const NamedEvent> event_names() { return kNames; }
+
+uint64_t& halos_along(MachineEvents& events, int axis) {
+  return axis == 0 ? events.halos_x : axis == 1 ? events.halos_y : events.halos_z;
+}
+
+uint64_t& candidates_along(MachineEvents& events, int axis) {
+  return axis == 0 ? events.candidates_x : axis == 1 ? events.candidates_y : events.candidates_z;
+}
+
+uint64_t& culled_along(MachineEvents& events, int axis) {
+  return axis == 0 ? events.culled_x : axis == 1 ? events.culled_y : events.culled_z;
+}
 
 MachineEvents& MachineEvents::operator+=(const MachineEvents& other) {
   for (const auto& [name, count] : kNames) this->*count += other.*count;

@@ -199,7 +199,10 @@ void ArrivalTiming::gather(const CellSlots& slots, uint32_t n, int face, const s
       // What came before the step was not tested.
       const bool tested = came + 1 >= start_[n];
       events.tested += tested;
-      if (!tested || near(nearest, h.x)) halo.push_back(h);
+      if (!tested || near(nearest, h.x))
+        halo.push_back(h);
+      else
+        ++culled_along(events, axis);
     }
   };
   std::array<int32_t, 3> by{};
@@ -248,7 +251,9 @@ int64_t ArrivalTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratc
     for (int face = s; face < 2 * axes_; face += streamers) {
       scratch.halo.clear();
       if (count > 0) gather(slots, n, face, low, high, scratch.halo, events_[n]);
+      const uint64_t before = events_[n].candidates;
       for (const Halo& h : scratch.halo) present(stream, h.from, h.x, count);
+      candidates_along(events_[n], face / 2) += events_[n].candidates - before;
       const int64_t ended = sent_[other(n, face)].end[at(face / 2)] + received_ + kCullStages;
       stream.next_segment(scratch.halo.empty(), std::max(ended, start_[n]));
     }
@@ -307,10 +312,11 @@ void ArrivalTiming::count_records(uint32_t n) {
   MachineEvents& events = events_[n];
   events.updates += count_[n];
   events.relayed += sent_[n].record.size();
+  events.relayed_own += count_[n];
   for (int face = 0; face < 2 * axes_; ++face) {
     const uint32_t near = other(n, face);
     if (near == nodes_) continue;
-    events.halos += sent_[near].records[at(face / 2)];
+    halos_along(events, face / 2) += sent_[near].records[at(face / 2)];
     // And the end beats, of records and of particles.
     events.beats += sent_[n].records[at(face / 2)] * static_cast<uint64_t>(halo_beats_) + 2;
   }

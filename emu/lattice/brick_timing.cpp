@@ -163,10 +163,11 @@ int64_t BrickTiming::layer(int face, uint32_t n) const {
   return cycles;
 }
 
-uint64_t BrickTiming::layer_records(int face, uint32_t n) const {
+uint64_t BrickTiming::layer_records(int face, uint32_t n, bool own) const {
   uint64_t records = 0;
   for (const BrickWalk::Sent& s : map_.walk(n).sent[at(face)])
-    if (const uint32_t cell = map_.cell(n, s.grid); cell != kNoCell) records += count_[cell];
+    if (const uint32_t cell = map_.cell(n, s.grid); cell != kNoCell && (!own || s.local >= 0))
+      records += count_[cell];
   return records;
 }
 
@@ -237,14 +238,15 @@ int64_t BrickTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratch)
   const BrickWalk& walk = map_.walk(n);
   ForceWork work;
   scratch.entries.clear();
-  scratch.idle = scratch.pairs = 0;
+  scratch.idle = {};
+  scratch.pairs = 0;
   uint32_t item = 0;
   for (size_t segment = 0; segment < work.items.size(); ++segment) {
     const uint32_t first = item;
     for (const BrickWalk::Visit& visit : walk.visits[segment]) {
       const uint32_t own = plan_.cell_of(n, visit.own);
       if (own == kNoCell || count_[own] == 0) {
-        ++item, ++scratch.idle;
+        ++item, ++scratch.idle[segment];
         continue;
       }
       for (size_t a = 0; a < 3; ++a) {
@@ -256,7 +258,7 @@ int64_t BrickTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratch)
         const BrickWalk::Near& near = walk.near[k];
         const uint32_t cell = map_.cell(n, near.grid);
         if (cell == kNoCell || count_[cell] == 0)
-          ++item, ++scratch.idle;
+          ++item, ++scratch.idle[segment];
         else
           meet(slots, cell, near.offset, near.offset == std::array<int8_t, 3>{}, item, scratch);
       }
@@ -269,7 +271,10 @@ int64_t BrickTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratch)
   const ForceTime time = force_time(shape_, work, available, scratch.popped);
   MachineEvents& events = events_[n];
   count_work(work, true, events);
-  events.candidates -= scratch.idle;
+  for (size_t segment = 0; segment < scratch.idle.size(); ++segment) {
+    events.candidates -= scratch.idle[segment];
+    if (segment > 0) candidates_along(events, static_cast<int>(segment - 1) / 2) -= scratch.idle[segment];
+  }
   events.queue_stalls += static_cast<uint64_t>(time.stalls);
   return begin + time.last;
 }
@@ -305,10 +310,10 @@ void BrickTiming::count_records(uint32_t n) {
     for (int face = 2 * axis; face < 2 * axis + 2; ++face) {
       const uint32_t near = plan_.neighbour(n, face);
       if (near == kNoNode) continue;
-      const uint64_t records = layer_records(face, n);
-      if (!read) events.relayed += records;
+      const uint64_t records = layer_records(face, n, false);
+      if (!read) events.relayed += records, events.relayed_own += layer_records(face, n, true);
       read = plan_.bricks.shape()[axis] == 1;
-      events.halos += layer_records(face ^ 1, near);
+      halos_along(events, axis) += layer_records(face ^ 1, near, false);
       // And the end beats, of records and of particles.
       events.beats += records * static_cast<uint64_t>(halo_beats_) + 2;
     }

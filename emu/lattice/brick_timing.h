@@ -65,14 +65,16 @@ class BrickTiming {
     std::array<std::vector<int32_t>, 3> own;  // of a cell, B fractional bits
     std::vector<uint32_t> entries;
     std::vector<int64_t> popped;
-    uint64_t idle = 0, pairs = 0;  // of a step: items that meet nobody, hits
+    uint64_t pairs = 0;                      // of a step: hits
+    std::array<uint64_t, kSegments> idle{};  // ... items that meet nobody
   };
 
   void begin(const CellSlots& slots, std::span<const Leaving> leaving);
   void send(int axis, uint32_t n);
   int64_t exchanged(int axis, uint32_t n) const;
   int64_t layer(int face, uint32_t n) const;
-  uint64_t layer_records(int face, uint32_t n) const;
+  // Records of the layer that goes over a face; `own`: those of own cells alone.
+  uint64_t layer_records(int face, uint32_t n, bool own) const;
   int64_t walk(uint32_t n, const uint32_t* first) const;
   void exchange_to_update(const CellSlots& slots, uint32_t n, Scratch& scratch);
   int64_t force(const CellSlots& slots, uint32_t n, Scratch& scratch);

@@ -22,7 +22,10 @@ struct TimingCounters {
 
 // Adds what the filter and the pipes do in a step. `queued`: there is a queue.
 inline void count_work(const ForceWork& work, bool queued, MachineEvents& events) {
-  for (const uint32_t items : work.items) events.candidates += items;
+  for (size_t segment = 0; segment < work.items.size(); ++segment) {
+    events.candidates += work.items[segment];
+    if (segment > 0) candidates_along(events, static_cast<int>(segment - 1) / 2) += work.items[segment];
+  }
   if (queued) events.entries += work.entries.size();
   for (const uint32_t entry : work.entries) events.issues += entry & ((1u << ForceWork::kCycleBits) - 1);
   events.pairs += work.pairs;

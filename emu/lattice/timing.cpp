@@ -254,10 +254,11 @@ void TimingModel::Impl::count_records(uint32_t n) {
   for (int axis = 0; axis < axes_; ++axis) {
     const std::vector<uint32_t>& sent = axis == 0 ? count_ : axis == 1 ? sent_y_ : sent_z_;
     events.relayed += sent[n];
+    events.relayed_own += count_[n];
     for (int face = 2 * axis; face < 2 * axis + 2; ++face) {
       const uint32_t near = neighbour_[n][at(face)];
       if (near == nodes_) continue;
-      events.halos += sent[near];
+      halos_along(events, axis) += sent[near];
       // And the end beats, of records and of particles.
       events.beats += sent[n] * static_cast<uint64_t>(halo_beats_) + 2;
     }

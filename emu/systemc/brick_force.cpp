@@ -17,7 +17,7 @@ struct BrickForce::Stream : ForceStream {
   std::vector<Candidate> candidate;  // in the frame of the own cell
   std::vector<Item> item;
   PlanarSlots own;
-  uint64_t idle = 0;  // items at which nobody met
+  std::array<uint64_t, kForceSegments> idle{};  // items at which nobody met
 };
 
 // The candidates of one cell before the slots of another.
@@ -46,18 +46,18 @@ void BrickForce::filter(Stream& stream) const {
   stream.mask.clear();
   stream.candidate.clear();
   stream.item.clear();
-  stream.idle = 0;
+  stream.idle = {};
   const PlanarTest test(plan_.rule);
-  const auto nobody = [&] {
+  const auto nobody = [&](size_t segment) {
     stream.mask.push_back(0);
     stream.item.push_back({});
-    ++stream.idle;
+    ++stream.idle[segment];
   };
   for (size_t segment = 0; segment < walk_.visits.size(); ++segment) {
     for (const BrickWalk::Visit& visit : walk_.visits[segment]) {
       const std::vector<Slot>& slots = cells_.own[visit.own];
       if (slots.empty()) {
-        nobody();
+        nobody(segment);
         continue;
       }
       stream.own.clear();
@@ -65,7 +65,7 @@ void BrickForce::filter(Stream& stream) const {
       for (uint32_t k = visit.first; k < visit.end; ++k) {
         const size_t before = stream.item.size();
         present(stream, visit.own, walk_.near[k]);
-        if (stream.item.size() == before) nobody();
+        if (stream.item.size() == before) nobody(segment);
       }
     }
     stream.segment_end[segment] = static_cast<uint32_t>(stream.item.size());
@@ -87,7 +87,12 @@ uint64_t BrickForce::run() {
   filter(stream);
   const uint64_t last = clock_force(plan_, stream, segments_, available_, counts_,
                                     [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
-  counts_.candidates -= stream.idle;
+  for (size_t segment = 0; segment < static_cast<size_t>(segments_); ++segment) {
+    counts_.candidates -= stream.idle[segment];
+    if (segment == 0) continue;
+    counts_.by_axis[(segment - 1) / 2] +=
+        stream.segment_end[segment] - stream.segment_end[segment - 1] - stream.idle[segment];
+  }
   return last;
 }
 

@@ -98,7 +98,7 @@ void BrickNode::exchange() {
   const BrickWalk::Sent& from = layer[place_];
   if (beat_ == 0) {
     word_ = {};
-    ++relayed_;
+    count_relayed(from.local >= 0);
     pack_halo(plan_,
               from.local >= 0 ? cells_.own[static_cast<size_t>(from.local)][record_].body
                               : cells_.halo[from.grid][record_],

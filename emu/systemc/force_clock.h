@@ -18,14 +18,16 @@ inline constexpr int kForceSegments =
     1 + kFaces;  // own, -x, +x, -y, +y, -z, +z; of a flat plan without -z, +z
 
 struct ForceCounts {
-  uint64_t candidates = 0;    // (record, pass) presented to the filter
-  uint64_t pairs_issued = 0;  // that passed the planar test
-  uint64_t pairs_inside = 0;  // of these, nearer than the cutoff
-  uint64_t stalls = 0;        // cycles in which a full queue held the streamer
-  uint64_t issue_cycles = 0;  // cycles that issued a pair
-  uint64_t entries = 0;       // pushed into the queue
-  uint64_t tested = 0;        // halo records tested against the box of the own particles
-  uint64_t busy = 0;          // cycles from the engine's first to its last
+  uint64_t candidates = 0;            // (record, pass) presented to the filter
+  std::array<uint64_t, 3> by_axis{};  // of these, halo records, by the axis of their face
+  uint64_t pairs_issued = 0;          // that passed the planar test
+  uint64_t pairs_inside = 0;          // of these, nearer than the cutoff
+  uint64_t stalls = 0;                // cycles in which a full queue held the streamer
+  uint64_t issue_cycles = 0;          // cycles that issued a pair
+  uint64_t entries = 0;               // pushed into the queue
+  uint64_t tested = 0;                // halo records tested against the box of the own particles
+  std::array<uint64_t, 3> culled{};   // of these, left out, by the axis of their face
+  uint64_t busy = 0;                  // cycles from the engine's first to its last
 };
 
 // What the streamer presents in a step, in order, and the engine's queue.

@@ -50,6 +50,11 @@ void ForceEngine::filter(Stream& stream) const {
   }
 }
 
+void ForceEngine::count_faces(const Stream& stream) {
+  for (size_t segment = 1; segment < static_cast<size_t>(segments_); ++segment)
+    counts_.by_axis[(segment - 1) / 2] += stream.segment_end[segment] - stream.segment_end[segment - 1];
+}
+
 // Issues the lowest bits of `mask`, one per pipe, and clears them.
 void ForceEngine::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
   const uint32_t record = stream.passes == 1 ? entry : entry / stream.passes;
@@ -65,6 +70,7 @@ void ForceEngine::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
 uint64_t ForceEngine::stream() {
   static thread_local Stream stream;  // of the node that runs: a lattice of nodes shares the cache lines
   filter(stream);
+  count_faces(stream);
   return clock_force(plan_, stream, segments_, available_, counts_,
                      [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
 }
@@ -105,14 +111,19 @@ uint64_t ForceEngine::arrive() {
     for (size_t face = static_cast<size_t>(streamer); face < static_cast<size_t>(segments_) - 1;
          face += static_cast<size_t>(plan_.arch.streamers)) {
       const auto& halo = halo_[face];
+      const size_t before = stream.mask.size();
       for (size_t k = 0; k < halo.size() && n > 0; ++k) {
         const uint64_t came = times_.came[face][k];
         const bool tested = came + 1 >= begin;
         counts_.tested += tested;
-        if (tested && !reaches(halo[k])) continue;
+        if (tested && !reaches(halo[k])) {
+          ++counts_.culled[face / 2];
+          continue;
+        }
         meet_slots(stream, halo[k], n);
         there.resize(stream.mask.size(), came + 1 + kCullStages);
       }
+      counts_.by_axis[face / 2] += stream.mask.size() - before;
       end_segment(times_.ended[face] == 0 ? begin : times_.ended[face] + 1 + kCullStages);
     }
     last = std::max(last, clock_stream(
@@ -130,6 +141,7 @@ uint64_t ForceEngine::arrive() {
 uint64_t ForceEngine::walk() {
   static thread_local Stream stream;
   filter(stream);
+  count_faces(stream);
   const uint32_t n = static_cast<uint32_t>(own_.size());
   const auto interval = static_cast<uint64_t>(plan_.latency.interval);
   uint64_t cycle = available_[0], ready = cycle, empty = cycle;  // the pipe takes a pair; holds none

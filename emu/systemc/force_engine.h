@@ -39,6 +39,7 @@ class ForceEngine final : public ForceMachine {
   // Tests a record against all own slots but `self`.
   void meet_slots(Stream& stream, const Candidate& c, uint32_t self) const;
   void filter(Stream& stream) const;
+  void count_faces(const Stream& stream);
   void issue(const Stream& stream, uint32_t entry, uint64_t& mask);
 
   const std::vector<Slot>& own_;

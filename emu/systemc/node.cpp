@@ -106,8 +106,11 @@ void Node::relay() {
     for (int a = (sending_.segment + 1) / 2; a < axes_; ++a) faces |= faces_of(a);
     held = !can_load(faces);
     if (!held) {
-      if (beat_ == 0)
-        word_ = {}, pack_halo(plan_, relayed(sending_.segment, sending_.record), 0, word_), ++relayed_;
+      if (beat_ == 0) {
+        word_ = {};
+        pack_halo(plan_, relayed(sending_.segment, sending_.record), 0, word_);
+        count_relayed(sending_.segment == 0);
+      }
       for (int f = 0; f < kFaces; ++f)
         if (faces >> f & 1) load_slice(f);
       held = ++beat_ < plan_.words.halo_beats;
@@ -150,7 +153,7 @@ void Node::exchange() {
     out_->observe_data = pack_particle(plan_, own_[record_]);
   }
   const Candidate& record = relayed(segment_, record_);
-  relayed_ += beat_ == 0;
+  if (beat_ == 0) count_relayed(segment_ == 0);
   if (plan_.words.halo_beats == 1) {
     for (const int f : {low, high})
       if (linked(f)) pack_halo(plan_, record, 0, load(f, false));

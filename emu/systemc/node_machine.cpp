@@ -164,7 +164,7 @@ void NodeMachine::receive(int face, const Beat& beat) {
     ++moved_;
     take_particle(face, *record);
   } else {
-    ++halos_;
+    ++halos_[static_cast<size_t>(face / 2)];
     take_halo(face, *record);
   }
 }
@@ -246,6 +246,9 @@ Counters NodeMachine::counters(uint64_t) const {
   const ForceCounts& c = engine_->counts();
   const auto number = [](uint64_t n) { return static_cast<double>(n); };
   return {{"candidates", number(c.candidates)},
+          {"candidates_x", number(c.by_axis[0])},
+          {"candidates_y", number(c.by_axis[1])},
+          {"candidates_z", number(c.by_axis[2])},
           {"pairs_issued", number(c.pairs_issued)},
           {"pairs_inside", number(c.pairs_inside)},
           {"queue_stalls", number(c.stalls)},
@@ -256,8 +259,14 @@ Counters NodeMachine::counters(uint64_t) const {
           {"updates", number(updates_)},
           {"queue_entries", number(c.entries)},
           {"relayed", number(relayed_)},
-          {"halos", number(halos_)},
+          {"relayed_own", number(relayed_own_)},
+          {"halos_x", number(halos_[0])},
+          {"halos_y", number(halos_[1])},
+          {"halos_z", number(halos_[2])},
           {"tested", number(c.tested)},
+          {"culled_x", number(c.culled[0])},
+          {"culled_y", number(c.culled[1])},
+          {"culled_z", number(c.culled[2])},
           {"moved", number(moved_)},
           {"left", number(left_)},
           {"inner", number(inner_moves_)},

@@ -62,6 +62,8 @@ class NodeMachine : public NodeModel {
   // Whether all these faces' registers were empty at the cycle's start.
   bool empty(uint8_t faces) const { return (faces & full_) == 0; }
 
+  void count_relayed(bool own) { ++relayed_, relayed_own_ += own; }
+
   void enter(Main next);
   void finish_phase(Main next);
   Main after(Main phase) const;
@@ -107,7 +109,7 @@ class NodeMachine : public NodeModel {
   NodeOutputs* out_ = nullptr;  // of the cycle that runs
   // Records read to send them on, slots read by SCAN, particles that left over a link or for another own
   // cell.
-  uint64_t relayed_ = 0, scanned_ = 0, left_ = 0, inner_moves_ = 0;
+  uint64_t relayed_ = 0, relayed_own_ = 0, scanned_ = 0, left_ = 0, inner_moves_ = 0;
 
  private:
   // A record of several beats on its way in.
@@ -128,7 +130,8 @@ class NodeMachine : public NodeModel {
   uint8_t valid_ = 0, can_load_ = 0;
   uint8_t full_ = 0;  // link registers that held a beat at the cycle's start
   uint32_t steps_ = 0, step_ = 0;
-  uint64_t link_waits_ = 0, beats_ = 0, updates_ = 0, halos_ = 0, moved_ = 0;
+  uint64_t link_waits_ = 0, beats_ = 0, updates_ = 0, moved_ = 0;
+  std::array<uint64_t, 3> halos_{};  // records that came, by axis
 };
 
 }  // namespace cuboct::emu
