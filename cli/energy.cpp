@@ -11,6 +11,7 @@
 #include "cli/energy_text.h"
 #include "cli/machine_cycles.h"
 #include "cli/technologies.h"
+#include "hw/memory_traffic.h"
 #include "model/base/interrupt.h"
 #include "model/base/spelling.h"
 #include "model/scene/units.h"
@@ -58,6 +59,7 @@ EnergyMachine machine_of(const Options& options, const std::string& arch, double
   m.cycles = run->cycles.cycles;
   m.events = sum(run->nodes);
   m.updates = m.events.updates;
+  m.traffic = memory_traffic(plan, m.events);
   for (const Technology& t : technologies)
     m.findings.push_back({t.name, t.title, energy_of(plan, m.events, m.traffic, m.cycles, clock, t),
                           area_of(plan, t), sensitivity_of(plan, m.events, m.traffic, m.cycles, clock, t)});

@@ -29,21 +29,27 @@ void check_counts(const Plan& plan, const MachineEvents& e, std::span<const Memo
                                               count, cycles, plan.nodes(), most));
   };
   const auto of = [](uint64_t count) { return static_cast<double>(count); };
+  const double links = slots * faces(plan);
   check("steps", of(e.steps), slots);
   check("updates", of(e.updates), slots);
   check("candidates", of(e.candidates), streams);
+  check("candidates of links", of(e.candidates_x) + of(e.candidates_y) + of(e.candidates_z),
+        of(e.candidates));
   check("entries", of(e.entries), of(e.candidates));
   check("issues", of(e.issues), streams);
   check("pairs", of(e.pairs), slots * plan.arch.force_pipes);
   check("queue_stalls", of(e.queue_stalls), streams);
   check("relayed", of(e.relayed), slots);
-  check("halos", of(e.halos), slots * faces(plan));
-  check("tested", of(e.tested), of(e.halos));
-  check("moved", of(e.moved), slots * faces(plan));
-  check("left", of(e.left), slots * faces(plan));
-  check("inner", of(e.inner), slots);
+  check("relayed_own", of(e.relayed_own), of(e.relayed));
+  const double halos = of(e.halos_x) + of(e.halos_y) + of(e.halos_z);
+  check("halos", halos, links);
+  check("tested", of(e.tested), halos);
+  check("culled", of(e.culled_x) + of(e.culled_y) + of(e.culled_z), of(e.tested));
+  check("moved", of(e.moved), links);
   check("scanned", of(e.scanned), slots);
-  check("beats", of(e.beats), slots * faces(plan));
+  check("left", of(e.left), of(e.scanned));
+  check("inner", of(e.inner), slots);
+  check("beats", of(e.beats), links);
   for (uint64_t phase : e.phase_cycles) check("phase cycles", of(phase), slots);
   // Four ports to read, two to write in each copy are more than any memory has.
   for (const MemoryTraffic& m : traffic) {
@@ -99,9 +105,6 @@ void add_datapath(Sheet& sheet, const Plan& plan, const MachineEvents& e) {
              tests = static_cast<double>(e.candidates) * plan.arch.filter_lanes;
   sheet.add("pairs: products", pairs, "pairs", Constant::multiply_bit2, exact(work.pair.bit_products()));
   sheet.add("pairs: adders", pairs, "pairs", Constant::add_bit, exact(work.pair.adder_bits));
-  for (const TableWords& table : work.pair.tables)
-    sheet.memory("pairs: table", pairs * table.count, Constant::memory_read, static_cast<double>(table.words),
-                 table.bits);
   sheet.add("pairs: registers", pairs, "pairs", Constant::register_bit, exact(work.pair.register_bits));
   sheet.add("filter: adders", tests, "tests", Constant::add_bit, exact(work.lane.adder_bits));
   sheet.add("filter: registers", tests, "tests", Constant::register_bit, exact(work.lane.register_bits));
@@ -120,6 +123,10 @@ void add_datapath(Sheet& sheet, const Plan& plan, const MachineEvents& e) {
 void add_memories(Sheet& sheet, std::span<const MemoryTraffic> traffic, Energy& energy) {
   if (traffic.empty()) energy.missing.emplace_back("memories: their reads and writes were not counted");
   for (const MemoryTraffic& m : traffic) {
+    if (!m.counted) {
+      energy.missing.push_back(fmt::format("memory of {}: no event tells its reads and writes", m.holds));
+      continue;
+    }
     const auto words = static_cast<double>(m.words);
     if (m.reads > 0)
       sheet.memory("read " + m.holds, static_cast<double>(m.reads), Constant::memory_read, words, m.bits);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hw/events.h"
+#include "hw/memory_traffic.h"
 #include "hw/plan.h"
 #include "hw/technology.h"
 

@@ -36,12 +36,12 @@ MachineEvents events() {
   MachineEvents e;
   e.steps = 5 * block().nodes();
   e.updates = 2000, e.candidates = 40000, e.entries = 20000, e.issues = 30000, e.pairs = 30000;
-  e.relayed = 9000, e.halos = 8000, e.beats = 12000;
+  e.relayed = 9000, e.halos_x = 8000, e.beats = 12000;
   return e;
 }
 
 std::vector<MemoryTraffic> traffic() {
-  return {{"own particles", 16, 160, 1, 4000, 2000}, {"sums", 64, 90, 1, 30000, 30000}};
+  return {{"own particles", 16, 160, 1, 4000, 2000, true}, {"sums", 64, 90, 1, 30000, 30000, true}};
 }
 
 Energy energy(const MachineEvents& e, const Technology& t) {
@@ -103,12 +103,12 @@ TEST(Energy, TheSumIsThatOfAllTerms) {
     EXPECT_EQ(r.source, "made") << r.term;
   }
   EXPECT_EQ(e.sum, sum);
-  const std::vector<std::string> all{"pairs: products",     "pairs: adders",     "pairs: table",
-                                     "pairs: registers",    "filter: adders",    "filter: registers",
-                                     "update: adders",      "update: registers", "read own particles",
-                                     "write own particles", "read sums",         "write sums",
-                                     "links: registers",    "links: wires",      "wires within nodes",
-                                     "clock of registers",  "leakage of logic",  "leakage of memories"};
+  const std::vector<std::string> all{"pairs: products",   "pairs: adders",      "pairs: registers",
+                                     "filter: adders",    "filter: registers",  "update: adders",
+                                     "update: registers", "read own particles", "write own particles",
+                                     "read sums",         "write sums",         "links: registers",
+                                     "links: wires",      "wires within nodes", "clock of registers",
+                                     "leakage of logic",  "leakage of memories"};
   EXPECT_EQ(terms, all);
 }
 
@@ -171,6 +171,15 @@ TEST(Energy, RefusesCountsThatThePlanCannotHave) {
   EXPECT_THROW(energy_of(block(), events(), words, kCycles, kClock, made()), std::invalid_argument);
   for (double clock : {0.0, -1.0, std::nan(""), HUGE_VAL})
     EXPECT_THROW(energy_of(block(), events(), traffic(), kCycles, clock, made()), std::invalid_argument);
+}
+
+TEST(Energy, WhatNoEventTellsOfAMemoryIsMissing) {
+  auto words = traffic();
+  words[1].counted = false;
+  const Energy e = energy_of(block(), events(), words, kCycles, kClock, made());
+  EXPECT_TRUE(lacks(e, "memory of sums"));
+  EXPECT_TRUE(std::ranges::none_of(e.rows, [](const EnergyRow& r) { return r.term == "read sums"; }));
+  EXPECT_TRUE(lacks(energy_of(block(), events(), {}, kCycles, kClock, made()), "memories"));
 }
 
 // A device's clock and rest stand for all nodes in one, or one each.
