@@ -273,6 +273,13 @@ Area area_of(const Plan& plan, const Technology& technology) {
   };
   add("memories", exact(node.memories), Constant::memory_bit_area);
   add("tables", exact(node.tables), Constant::memory_bit_area);
+  // At least one transistor a bit, as a table may be a ROM.
+  if (const auto& transistor = technology.at(Constant::transistor_area); whole && transistor) {
+    Band& tables = area.rows.back().mm2;
+    const double least = std::min(tables.low, nodes * kMm2 * node.tables * transistor->band.low);
+    area.sum.low += least - tables.low;
+    tables.low = least;
+  }
   add("logic", node.transistors, Constant::transistor_area);
   add("registers", node.registers, Constant::register_area);
   if (whole) {

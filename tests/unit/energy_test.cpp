@@ -255,7 +255,8 @@ TEST(Area, PartsByHandAndSumOfParts) {
   const double nodes = block().nodes();
   Band sum;
   for (const AreaRow& r : area.rows) sum += r.mm2;
-  EXPECT_EQ(area.sum, sum);
+  EXPECT_DOUBLE_EQ(area.sum.low, sum.low);
+  EXPECT_DOUBLE_EQ(area.sum.high, sum.high);
   ASSERT_EQ(area.rows.size(), 5U);
   EXPECT_EQ(area.rows[0].part, "memories");
   EXPECT_DOUBLE_EQ(area.rows[3].mm2.low, nodes * 1e-6 * register_bits(block()).low);
@@ -265,6 +266,19 @@ TEST(Area, PartsByHandAndSumOfParts) {
                        (34 * work.pair.bit_products() +
                         28 * (work.pair.adder_bits + 8 * work.lane.adder_bits + work.update.adder_bits)));
   EXPECT_NEAR(nodes * area.side.low * area.side.low, area.sum.low, 1e-12);
+}
+
+// A table may be a ROM of one transistor a bit, or a memory that is written once.
+TEST(Area, ATableIsAtLeastATransistorABit) {
+  Technology t = made();
+  t.at(Constant::memory_bit_area)->band = {10, 20};
+  const Area area = area_of(block(), t);
+  const double bits = block().nodes() * datapath_work(block()).pair.table_bits();
+  EXPECT_DOUBLE_EQ(area.rows[1].mm2.low, 1e-6 * bits);
+  EXPECT_DOUBLE_EQ(area.rows[1].mm2.high, 20e-6 * bits);
+  double low = 0;
+  for (const AreaRow& r : area.rows) low += r.mm2.low;
+  EXPECT_NEAR(area.sum.low, low, 1e-9 * low);
 }
 
 TEST(Area, OneMultiplierForTheAxesIsSmaller) {
