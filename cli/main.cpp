@@ -91,6 +91,7 @@ int main_of(int argc, char** argv) {
   add_crosscheck(app, exit_code);
   add_emit(app, exit_code);
   add_synth(app, exit_code);
+  add_energy(app, exit_code);
   add_elastic(app, exit_code);
   add_explore(app, exit_code);
   add_fit(app, exit_code);

@@ -2,6 +2,7 @@
 // What a node is made of, in transistors at work: independent of any device and of the tools for it.
 #pragma once
 
+#include "hw/pair_work.h"
 #include "hw/plan.h"
 #include "model/contract/rule.h"
 
@@ -20,6 +21,8 @@ struct NodeArea {
   double transistors() const { return multipliers + tables + adders + particles; }
 };
 NodeArea area_of(const Plan& plan);
+// Of this work alone, without `particles`: a multiplier, an adder for each that the work names.
+NodeArea logic_of(const DatapathWork& work, const Arch& arch);
 // Bits of a node's memories of particles, halos, queue and sums: NodeArea::particles over a cell's 6.
 double memory_bits(const Plan& plan);
 // The same node with all numbers as floats of `mantissa` bits (53, 24) and `bits` of storage (64, 32): a law

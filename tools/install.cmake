@@ -14,4 +14,4 @@ install(TARGETS ${installed} RUNTIME_DEPENDENCY_SET libraries RUNTIME DESTINATIO
 install(RUNTIME_DEPENDENCY_SET libraries
   PRE_EXCLUDE_REGEXES "^ld-linux" "^lib(c|m|mvec|dl|rt|pthread|resolv|util|anl)\\.so"
   LIBRARY DESTINATION lib)
-install(DIRECTORY scenes DESTINATION .)
+install(DIRECTORY scenes technologies DESTINATION .)

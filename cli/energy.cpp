@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "cli/answer.h"
+#include "cli/command.h"
+#include "cli/energy_text.h"
+#include "cli/machine_cycles.h"
+#include "cli/technologies.h"
+#include "hw/memory_traffic.h"
+#include "model/base/interrupt.h"
+#include "model/base/spelling.h"
+#include "model/scene/units.h"
+
+namespace cuboct {
+namespace {
+
+struct Options {
+  Input input;
+  std::string beside, link, clock = "100 MHz";
+  std::vector<std::string> technologies{"cmos45", "cmos7"};
+  uint64_t steps = kCountedSteps;
+  bool json = false;
+};
+
+double clock_of(const std::string& text) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(fmt::format("--clock: '{}' {}", text, why), "--clock '100 MHz'");
+  };
+  try {
+    const ParsedQuantity q = parse_quantity(text);
+    if (q.list || q.dimension != Dimension{{0, 0, -1}}) refuse("is not a frequency");
+    constexpr double kLeast = 1, kMost = 1e12;
+    if (!(q.values[0] >= kLeast && q.values[0] <= kMost)) refuse("is not in [1 Hz, 1 THz]");
+    return q.values[0];
+  } catch (const UnitError& error) {
+    refuse("is not a frequency: " + error.message);
+  }
+  return 0;
+}
+
+EnergyMachine machine_of(const Options& options, const std::string& arch, double clock,
+                         const std::vector<Technology>& technologies) {
+  Input input = options.input;
+  input.arch = arch;
+  const Loaded loaded = load(input);
+  const Plan& plan = loaded.setup.plan;
+  const auto run = count_run(plan, loaded.setup.initial, options.steps);
+  if (!run && interrupted()) throw Failed("interrupted");
+  if (!run) throw Failed("the first step breaks a width or a capacity", "'cuboct run' tells which");
+  EnergyMachine m;
+  m.arch = plan.arch.name;
+  m.nodes = plan.nodes();
+  m.steps = run->cycles.steps;
+  m.cycles = run->cycles.cycles;
+  m.events = sum(run->nodes);
+  m.updates = m.events.updates;
+  m.traffic = memory_traffic(plan, m.events);
+  for (const Technology& t : technologies)
+    m.findings.push_back({t.name, t.title, energy_of(plan, m.events, m.traffic, m.cycles, clock, t),
+                          area_of(plan, t), sensitivity_of(plan, m.events, m.traffic, m.cycles, clock, t)});
+  return m;
+}
+
+int energy(const Options& options) {
+  catch_interrupts();
+  EnergyFindings found;
+  found.scene = options.input.scene;
+  found.link = options.link;
+  found.clock = clock_of(options.clock);
+  std::vector<Technology> technologies;
+  for (const std::string& name : options.technologies) {
+    technologies.push_back(technology_named(name));
+    if (!options.link.empty()) technologies.back() = with_link(std::move(technologies.back()), options.link);
+  }
+  if (options.steps == 0) throw InputError("--steps: no step, no energy", "--steps 200");
+  found.machines.push_back(machine_of(options, options.input.arch, found.clock, technologies));
+  if (!options.beside.empty())
+    found.machines.push_back(machine_of(options, options.beside, found.clock, technologies));
+  fmt::print("{}", options.json ? json_of(found) : text_of(found));
+  return 0;
+}
+
+}  // namespace
+
+void add_energy(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("energy", "joules, watts and area of a scene's machine, in bands");
+  options->input.add_to(*command);
+  command->add_option("--beside", options->beside, "a second machine description, to compare with the first")
+      ->type_name("FILE");
+  command
+      ->add_option("--technology", options->technologies,
+                   "one or several, with commas: " + list_of(technology_names()) + ", or files")
+      ->delimiter(',')
+      ->default_str("cmos45,cmos7")
+      ->type_name("NAME");
+  command
+      ->add_option("--link", options->link,
+                   "links go between chips, by " + list_of(link_names()) + "; default: wires on chip")
+      ->type_name("KIND");
+  command->add_option("--clock", options->clock, "of the machine")->type_name("F")->capture_default_str();
+  command->add_option("--steps", options->steps, "that are counted")
+      ->check(whole_number())
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "print one JSON document instead of lines for people");
+  command->callback([options, &exit_code] { exit_code = energy(*options); });
+}
+
+}  // namespace cuboct
