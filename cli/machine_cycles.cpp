@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "emu/lattice/engine.h"
+#include "emu/lattice/kicks.h"
 #include "emu/lattice/timing.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
@@ -26,16 +27,22 @@ std::optional<CountedCycles> count_cycles(const Plan& plan, const State& initial
 
 std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint64_t steps) {
   CountedRun run;
+  run.nodes.resize(plan.nodes());
   CountedCycles& counted = run.cycles;
   emu::TimingModel timing(plan, 0);
   try {
     emu::LatticeEngine engine(plan, initial.step, plan.particles,
                               [&](uint32_t k) { return initial.particles[k]; }, {});
     emu::CellSlots slots;
+    emu::KickCounter kicks(plan, 0);
+    std::vector<Particle> particles;
     std::vector<PhaseSpan> spans(size_t{plan.nodes()} * kPhases);
     while (counted.steps < steps && !interrupted()) {
       engine.slots(slots);
+      particles.clear();
+      engine.for_each_slot([&](const Particle& p) { particles.push_back(p); });
       engine.step();
+      kicks.add(particles, run.nodes);
       timing.step(slots, engine.leaving(), spans);
       uint64_t end = 0;  // the slowest node's
       for (const PhaseSpan& span : spans) end = std::max(end, span.end + 1);
@@ -47,7 +54,7 @@ std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint
     // What a run would stop at; the steps before it took what they took.
   }
   if (counted.steps == 0) return std::nullopt;
-  run.nodes.assign(timing.events().begin(), timing.events().end());
+  for (size_t n = 0; n < run.nodes.size(); ++n) run.nodes[n] += timing.events()[n];
   return run;
 }
 

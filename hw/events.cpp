@@ -4,7 +4,7 @@
 namespace cuboct {
 namespace {
 
-constexpr std::array<NamedEvent, 24> kNames{{{"steps", &MachineEvents::steps},
+constexpr std::array<NamedEvent, 25> kNames{{{"steps", &MachineEvents::steps},
                                              {"updates", &MachineEvents::updates},
                                              {"candidates", &MachineEvents::candidates},
                                              {"candidates_x", &MachineEvents::candidates_x},
@@ -13,6 +13,7 @@ constexpr std::array<NamedEvent, 24> kNames{{{"steps", &MachineEvents::steps},
                                              {"queue_entries", &MachineEvents::entries},
                                              {"issue_cycles", &MachineEvents::issues},
                                              {"pairs_issued", &MachineEvents::pairs},
+                                             {"pairs_inside", &MachineEvents::kicks},
                                              {"queue_stalls", &MachineEvents::queue_stalls},
                                              {"relayed", &MachineEvents::relayed},
                                              {"relayed_own", &MachineEvents::relayed_own},

@@ -21,6 +21,7 @@ struct MachineEvents {
   uint64_t entries = 0;       // of these, with hits: pushed into the queue (narrow memories: none)
   uint64_t issues = 0;        // cycles that issued a pair, of each streamer
   uint64_t pairs = 0;         // issued to a pipe
+  uint64_t kicks = 0;         // of these, nearer than the cutoff: added to a sum (emu/lattice/kicks.h)
   uint64_t queue_stalls = 0;  // cycles in which a full queue (narrow memories: a busy pipe) held the streamer
   uint64_t relayed = 0;       // records that the node read to send them on, own ones included
   uint64_t relayed_own = 0;   // of these, own ones

@@ -64,7 +64,7 @@ std::vector<MemoryTraffic> memory_traffic(const Plan& plan, const MachineEvents&
     if (holds == "own particles, for the pipes" || holds == "ids, for the pipes' faults")
       return Access{e.pairs, written * pipes};
     if (holds == "queue") return Access{e.entries, e.entries};
-    if (holds == "sums") return Access{e.pairs + e.updates * pipes, e.pairs};
+    if (holds == "sums") return Access{e.kicks + e.updates * pipes, e.kicks};
     if (holds == "particles between cells") return Access{e.inner, e.inner};
     if (holds == "leading bits of positions")
       return Access{e.candidates * static_cast<uint64_t>(arch.filter_lanes), written};

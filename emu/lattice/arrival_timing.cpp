@@ -199,7 +199,7 @@ void ArrivalTiming::gather(const CellSlots& slots, uint32_t n, int face, const s
       // What came before the step was not tested.
       const bool tested = came + 1 >= start_[n];
       events.tested += tested;
-      if (!tested || near(nearest, h.x))
+      if (!tested || (count_[n] > 0 && near(nearest, h.x)))
         halo.push_back(h);
       else
         ++culled_along(events, axis);
@@ -250,7 +250,8 @@ int64_t ArrivalTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratc
     }
     for (int face = s; face < 2 * axes_; face += streamers) {
       scratch.halo.clear();
-      if (count > 0) gather(slots, n, face, low, high, scratch.halo, events_[n]);
+      gather(slots, n, face, low, high, scratch.halo, events_[n]);
+      if (count == 0) scratch.halo.clear();
       const uint64_t before = events_[n].candidates;
       for (const Halo& h : scratch.halo) present(stream, h.from, h.x, count);
       candidates_along(events_[n], face / 2) += events_[n].candidates - before;

@@ -45,7 +45,7 @@ class TimingModel {
   // Goes on from there. Throws std::invalid_argument where the size is not the number of nodes.
   void resume(std::span<const uint64_t> starts);
 
-  // Of all steps so far, by node: since the start, or since `resume`d by another model.
+  // Of all steps so far, by node; of a model that resumed, those since then. Without kicks (kicks.h).
   std::span<const MachineEvents> events() const;
   const TimingCounters& counters() const;
 

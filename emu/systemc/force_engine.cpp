@@ -112,14 +112,15 @@ uint64_t ForceEngine::arrive() {
          face += static_cast<size_t>(plan_.arch.streamers)) {
       const auto& halo = halo_[face];
       const size_t before = stream.mask.size();
-      for (size_t k = 0; k < halo.size() && n > 0; ++k) {
+      for (size_t k = 0; k < halo.size(); ++k) {
         const uint64_t came = times_.came[face][k];
         const bool tested = came + 1 >= begin;
         counts_.tested += tested;
-        if (tested && !reaches(halo[k])) {
+        if (tested && (n == 0 || !reaches(halo[k]))) {
           ++counts_.culled[face / 2];
           continue;
         }
+        if (n == 0) continue;
         meet_slots(stream, halo[k], n);
         there.resize(stream.mask.size(), came + 1 + kCullStages);
       }

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "emu/lattice/engine.h"
+#include "emu/lattice/kicks.h"
 #include "emu/lattice/timing.h"
 #include "emu/systemc/node.h"
 #include "model/contract/golden.h"
@@ -134,10 +135,13 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
   auto model = std::make_unique<emu::TimingModel>(plan, threads);
   std::vector<PhaseSpan> spans(size_t{nodes} * kPhases);
   MachineEvents events;
+  emu::KickCounter kicks(plan, threads);
+  std::vector<MachineEvents> kicked(nodes);
   for (uint64_t step = 0; step < trace.steps(); ++step) {
     const auto slots = slots_of(plan.rule, golden);
     const auto before = places_of(golden);
     const Golden old = golden;
+    kicks.add(golden.state().particles, kicked);
     golden.step();
     const auto leaving = leaving_between(plan.lattice, before, places_of(golden));
     note(seen, plan, old, leaving);
@@ -163,6 +167,7 @@ std::string difference(const Case& c, Seen& seen, int threads = 1) {
     const uint64_t cycles = model->cycles(slots_of(plan.rule, golden));
     if (cycles != counted) return fmt::format("{}: {} cycles, expected {}", c.name, cycles, counted);
     events += sum(model->events());
+    events += sum(kicked);
     const std::string other = other_events(events, trace, seen);
     if (!other.empty()) return fmt::format("{}: {}", c.name, other);
   }
