@@ -263,6 +263,12 @@ TEST(Energy, APipeIsThatOfItsNetlist) {
   if (std::getenv("CUBOCT_VERBOSE")) printf("pipe %g to %g pJ\n", pipe.low, pipe.high);
   EXPECT_LT(pipe.low, 660);
   EXPECT_GT(pipe.high, 660);
+  // Its area, 0.790 mm^2, likewise: transistors of products and adders, registers at least those counted.
+  Band area = (34 * pair.bit_products() + 28 * pair.adder_bits) * t.at(Constant::transistor_area)->band;
+  area += Band{pair.register_bits, 3.2 * pair.register_bits} * t.at(Constant::register_area)->band;
+  if (std::getenv("CUBOCT_VERBOSE")) printf("pipe %g to %g mm^2\n", 1e-6 * area.low, 1e-6 * area.high);
+  EXPECT_LT(area.low, 0.790e6);
+  EXPECT_GT(area.high, 0.790e6);
 }
 
 TEST(Area, PartsByHandAndSumOfParts) {
