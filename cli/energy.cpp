@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cli/answer.h"
@@ -23,7 +24,7 @@ struct Options {
   Input input;
   std::string beside, link, clock = "100 MHz";
   std::vector<std::string> technologies{"cmos45", "cmos7"};
-  uint64_t steps = kCountedSteps;
+  std::optional<uint64_t> steps;  // empty: as many as take some seconds
   bool json = false;
 };
 
@@ -49,7 +50,10 @@ EnergyMachine machine_of(const Options& options, const std::string& arch, double
   input.arch = arch;
   const Loaded loaded = load(input);
   const Plan& plan = loaded.setup.plan;
-  const auto run = count_run(plan, loaded.setup.initial, options.steps);
+  constexpr uint64_t kMostWork = 20'000'000;  // particles times steps
+  const uint64_t affordable = std::max<uint64_t>(1, kMostWork / std::max<uint64_t>(1, plan.particles));
+  const auto run =
+      count_run(plan, loaded.setup.initial, options.steps.value_or(std::min(kCountedSteps, affordable)));
   if (!run && interrupted()) throw Failed("interrupted");
   if (!run) throw Failed("the first step breaks a width or a capacity", "'cuboct run' tells which");
   EnergyMachine m;
@@ -77,7 +81,7 @@ int energy(const Options& options) {
     technologies.push_back(technology_named(name));
     if (!options.link.empty()) technologies.back() = with_link(std::move(technologies.back()), options.link);
   }
-  if (options.steps == 0) throw InputError("--steps: no step, no energy", "--steps 200");
+  if (options.steps == uint64_t{0}) throw InputError("--steps: no step, no energy", "--steps 200");
   found.machines.push_back(machine_of(options, options.input.arch, found.clock, technologies));
   if (!options.beside.empty())
     found.machines.push_back(machine_of(options, options.beside, found.clock, technologies));
@@ -104,10 +108,11 @@ void add_energy(CLI::App& app, int& exit_code) {
                    "links go between chips, by " + list_of(link_names()) + "; default: wires on chip")
       ->type_name("KIND");
   command->add_option("--clock", options->clock, "of the machine")->type_name("F")->capture_default_str();
-  command->add_option("--steps", options->steps, "that are counted")
+  command
+      ->add_option("--steps", options->steps,
+                   fmt::format("that are counted; default: {}, fewer of very many particles", kCountedSteps))
       ->check(whole_number())
-      ->type_name("N")
-      ->capture_default_str();
+      ->type_name("N");
   command->add_flag("--json", options->json, "print one JSON document instead of lines for people");
   command->callback([options, &exit_code] { exit_code = energy(*options); });
 }

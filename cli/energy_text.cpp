@@ -31,11 +31,13 @@ std::string known(const Energy& energy, const Band& band, const std::string& uni
 }
 
 std::string events_text(const EnergyMachine& m) {
-  std::string out = fmt::format("\nevents of {}, {} steps, {} cycles\n", m.arch, m.steps, m.cycles);
+  std::string out =
+      fmt::format("\nevents of {}, {} steps, {} cycles\n", line_text(m.arch), m.steps, m.cycles);
   for (const auto& [name, count] : event_names())
     if (m.events.*count > 0) out += fmt::format("  {:<14} {:>14}\n", name, m.events.*count);
   if (m.traffic.empty()) return out;
-  out += fmt::format("memories of {}                       words x bits        reads       writes\n", m.arch);
+  out += fmt::format("memories of {}                       words x bits        reads       writes\n",
+                     line_text(m.arch));
   for (const MemoryTraffic& t : m.traffic)
     out += fmt::format("  {:<38} {:>6} x {:<4} {:>12} {:>12}\n", t.holds, t.words, t.bits, t.reads, t.writes);
   return out;
@@ -57,7 +59,8 @@ std::vector<EnergyRow> merged(const std::vector<EnergyRow>& rows) {
 }
 
 std::string finding_text(const EnergyFindings& all, const EnergyMachine& m, const EnergyFinding& f) {
-  std::string out = fmt::format("\n{} in {}: {}\n", m.arch, f.technology, f.title);
+  std::string out =
+      fmt::format("\n{} in {}: {}\n", line_text(m.arch), line_text(f.technology), line_text(f.title));
   for (const EnergyRow& row : merged(f.energy.rows))
     out += fmt::format("  {:<46} {:>26}\n", row.term,
                        band_text(1e-12 / static_cast<double>(m.updates) * row.picojoules, "J"));
@@ -75,8 +78,10 @@ std::string finding_text(const EnergyFindings& all, const EnergyMachine& m, cons
     out += fmt::format(
         "    {:<44} {:>26}\n", name_of(f.bars[k].constant),
         band_text(1e-12 / static_cast<double>(m.updates) * Band{f.bars[k].low, f.bars[k].high}, "J"));
-  for (const std::string& missing : f.energy.missing) out += fmt::format("  missing: {}\n", missing);
-  for (const std::string& missing : f.area.missing) out += fmt::format("  missing of area: {}\n", missing);
+  for (const std::string& missing : f.energy.missing)
+    out += fmt::format("  missing: {}\n", line_text(missing));
+  for (const std::string& missing : f.area.missing)
+    out += fmt::format("  missing of area: {}\n", line_text(missing));
   return out;
 }
 
@@ -197,7 +202,8 @@ std::string text_of(const EnergyFindings& found) {
   }
   const std::vector<Pair> pairs = pairs_of(found);
   if (!pairs.empty()) out += "\nenergy per particle-step, two by two\n";
-  for (const Pair& p : pairs) out += fmt::format("  {}, {}: {}\n", p.first, p.second, p.order);
+  for (const Pair& p : pairs)
+    out += fmt::format("  {}, {}: {}\n", line_text(p.first), line_text(p.second), p.order);
   return out;
 }
 

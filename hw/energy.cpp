@@ -38,12 +38,13 @@ void check_counts(const Plan& plan, const MachineEvents& e, std::span<const Memo
   check("entries", of(e.entries), of(e.candidates));
   check("issues", of(e.issues), streams);
   check("pairs", of(e.pairs), slots * plan.arch.force_pipes);
+  check("kicks", of(e.kicks), of(e.pairs));
   check("queue_stalls", of(e.queue_stalls), streams);
   check("relayed", of(e.relayed), slots);
   check("relayed_own", of(e.relayed_own), of(e.relayed));
   const double halos = of(e.halos_x) + of(e.halos_y) + of(e.halos_z);
   check("halos", halos, links);
-  check("tested", of(e.tested), halos);
+  check("tested", of(e.tested), plan.arch.halos == Halos::arrival ? halos : 0);
   check("culled", of(e.culled_x) + of(e.culled_y) + of(e.culled_z), of(e.tested));
   check("moved", of(e.moved), links);
   check("scanned", of(e.scanned), slots);
@@ -108,10 +109,11 @@ void add_datapath(Sheet& sheet, const Plan& plan, const MachineEvents& e) {
   sheet.add("pairs: registers", pairs, "pairs", Constant::register_bit, exact(work.pair.register_bits));
   sheet.add("filter: adders", tests, "tests", Constant::add_bit, exact(work.lane.adder_bits));
   sheet.add("filter: registers", tests, "tests", Constant::register_bit, exact(work.lane.register_bits));
-  if (e.tested > 0)
-    sheet.add("cull: adders", static_cast<double>(e.tested), "records", Constant::add_bit,
-              // Two distances per axis from the box, and a lane's tests.
-              exact(work.lane.adder_bits + plan.rule.axes * (plan.rule.widths.filter_frac + 2)));
+  if (e.tested > 0) {
+    const auto tested = static_cast<double>(e.tested);
+    sheet.add("cull: adders", tested, "records", Constant::add_bit, exact(work.cull.adder_bits));
+    sheet.add("cull: registers", tested, "records", Constant::register_bit, exact(work.cull.register_bits));
+  }
   if (!work.update.products.empty())
     sheet.add("update: products", updates, "particles", Constant::multiply_bit2,
               exact(work.update.bit_products()));
@@ -175,15 +177,18 @@ struct NodeBits {
 // A product that is made a bit a cycle takes an adder of its operands at least.
 Band transistors_of(const Plan& plan) {
   DatapathWork work = datapath_work(plan);
+  Arch arch = plan.arch;
+  arch.filter_lanes *= arch.streamers;  // each has a filter of its own
+  work.update.adder_bits += faces(plan) * work.cull.adder_bits;
   Band band;
-  const NodeArea parallel = logic_of(work, plan.arch);
+  const NodeArea parallel = logic_of(work, arch);
   band.high = parallel.multipliers + parallel.adders;
   for (Product& p : work.pair.products) {
     if (plan.arch.multipliers == Multipliers::shared) p.count = 1;
     if (plan.arch.multipliers == Multipliers::serial)
       work.pair.adder_bits += p.count * (p.a + p.b), p.count = 0;
   }
-  const NodeArea least = logic_of(work, plan.arch);
+  const NodeArea least = logic_of(work, arch);
   band.low = std::min(band.high, least.multipliers + least.adders);
   return band;
 }
@@ -220,17 +225,18 @@ constexpr double kMm2 = 1e-6;  // um^2
 
 }  // namespace
 
-// What five synthesised nodes have of flip-flops over what their datapath and links need at least: 2.38
-// to 3.03 times, widened to 2.2 and 3.3 (docs/measured/data/synth-nodes-ecp5-85.tsv). Delays, control, ports
-// of memories.
+// What synthesised nodes have of flip-flops over what their datapath and links need at least: with wide
+// memories 2.0 to 3.0 times, with narrow ones, which have neither filter nor queue, 1.2 and 1.5; both widened
+// (docs/measured/energy.md). The rest is delays, control, ports of memories.
 Band register_bits(const Plan& plan) {
-  constexpr Band kOver{2.2, 3.3};
+  constexpr Band kWide{1.9, 3.2}, kNarrow{1.1, 1.6};
   const DatapathWork work = datapath_work(plan);
   const Arch& arch = plan.arch;
   const double bits = arch.force_pipes * work.pair.register_bits +
-                      arch.filter_lanes * work.lane.register_bits + work.update.register_bits +
+                      arch.streamers * arch.filter_lanes * work.lane.register_bits +
+                      faces(plan) * work.cull.register_bits + work.update.register_bits +
                       2 * faces(plan) * (beat_bits(plan) + 1);
-  return bits * kOver;
+  return bits * (arch.narrow_memories ? kNarrow : kWide);
 }
 
 Band memory_bit_energy(const Figure& figure, const Figure& exponent, double words) {

@@ -57,6 +57,9 @@ Work pair_of(const Plan& plan, int axes) {
     work.adder_bits += s;
     work.register_bits += s + kScaleBits;
   }
+  // With registers on both sides of a multiplier those of its operands.
+  if (plan.arch.multipliers == Multipliers::parallel && plan.latency.product > 1)
+    for (const Product& p : work.products) work.register_bits += p.count * (p.a + p.b);
   return work;
 }
 
@@ -75,6 +78,16 @@ Work lane_of(const Plan& plan, int axes, WorkOf of) {
   lane.adder_bits = axes * (B + 2) + axes * (B + 3) + pairs * 2 * (B + 3) + (axes == 3 ? 3 * (B + 4) : 0);
   lane.register_bits = axes * (B + 1) + (axes == 3 ? 5 : 2);  // sizes, tests
   return lane;
+}
+
+// cuboct_cull: each axis's distance from both sides of the box, a lane's tests; the record waits for these.
+Work cull_of(const Plan& plan, int axes, const Work& lane) {
+  Work cull;
+  if (plan.arch.halos != Halos::arrival) return cull;
+  const int B = std::min(plan.rule.widths.filter_frac, plan.rule.widths.position_frac);
+  cull.adder_bits = lane.adder_bits - axes * (B + 2) + 2 * axes * (B + 3);
+  cull.register_bits = kCullStages * plan.words.halo_bits + axes * (B + 2) + lane.register_bits;
+  return cull;
 }
 
 // Per axis: two adders of v, and x with its residue.
@@ -126,7 +139,9 @@ int kick_bits(const FixedRule& rule) {
 
 DatapathWork datapath_work(const Plan& plan, WorkOf of) {
   const int axes = of == WorkOf::cost ? 3 : plan.rule.axes;
-  return {pair_of(plan, axes), lane_of(plan, axes, of), update_of(plan, axes)};
+  DatapathWork work{pair_of(plan, axes), lane_of(plan, axes, of), update_of(plan, axes), {}};
+  if (of == WorkOf::built) work.cull = cull_of(plan, axes, work.lane);
+  return work;
 }
 
 }  // namespace cuboct

@@ -40,6 +40,7 @@ struct DatapathWork {
   Work pair;    // from the positions of a pair to its kick in a sum
   Work lane;    // one candidate against one own particle
   Work update;  // of one particle
+  Work cull;    // with halos on arrival: of one record, against the box of the own particles
 };
 
 // `built`: as rtl/lib computes it, z left out of flat plans. `cost`: what the cost of a study counts, so that

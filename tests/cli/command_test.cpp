@@ -12,10 +12,11 @@ namespace cuboct::test {
 namespace {
 
 TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
-  expect_refusal({},
-                 "no command\n  hint: one of new, check, run, crosscheck, emit, synth, energy, elastic, explore, "
-                 "fit, pitch, stability, bench, "
-                 "picture or report; see 'cuboct --help'\n");
+  expect_refusal(
+      {},
+      "no command\n  hint: one of new, check, run, crosscheck, emit, synth, energy, elastic, explore, "
+      "fit, pitch, stability, bench, "
+      "picture or report; see 'cuboct --help'\n");
   expect_refusal({"chek"}, "unknown command 'chek'\n  hint: did you mean 'check'?\n");
   expect_refusal({"simulate"},
                  "unknown command 'simulate'\n  hint: one of new, check, run, crosscheck, emit, synth, "

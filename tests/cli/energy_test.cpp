@@ -113,6 +113,22 @@ TEST(EnergyCommand, LinksBetweenChips) {
   EXPECT_TRUE(std::ranges::none_of(terms, [](const Json& t) { return t["term"] == "links: wires"; }));
 }
 
+// Names of a file reach a terminal as text alone.
+TEST(EnergyCommand, NamesOfFilesAreEscaped) {
+  const Bench bench(false);
+  const std::string technology = bench.path("t.toml");
+  std::ofstream(technology) << "name = \"x\\u001b[31m\"\ntitle = \"y\\nz\"\n"
+                            << "[add_bit]\nlow = 1\nhigh = 2\nunit = \"pJ/bit\"\nsource = \"s\"\n";
+  const Strings words = of({"--technology", technology + ",cmos45"});
+  const Answer answer = bench.cuboct(words);
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(answer.out.find('\x1b'), std::string::npos);
+  EXPECT_EQ(answer.out.find("y\nz"), std::string::npos);
+  Strings json = words;
+  json.emplace_back("--json");
+  EXPECT_EQ(Json::parse(bench.cuboct(json).out)["machines"][0]["technologies"][0]["technology"], "x\x1b[31m");
+}
+
 TEST(EnergyCommand, RefusesWrongInput) {
   expect_refusal(of({"--technology", "cmos54"}),
                  "unknown technology 'cmos54'\n  hint: did you mean 'cmos45'?\n");

@@ -58,6 +58,20 @@ TEST(PairWork, DampingAndTypesAddTheirProducts) {
   EXPECT_GT(damped.register_bits, plain.register_bits);
 }
 
+// Three registers hold a record of a halo while its distances and tests are made; operands of products wait
+// in registers of their own.
+TEST(PairWork, HalosOnArrivalAreCulled) {
+  const Plan phases = plan("undamped_block");
+  const Plan arrival = plan_of(read_scene(CUBOCT_SOURCE_DIR "/scenes/undamped_block.toml"),
+                               read_arch(CUBOCT_SOURCE_DIR "/scenes/archs/solid.toml"));
+  EXPECT_EQ(datapath_work(phases).cull.adder_bits, 0);
+  const DatapathWork work = datapath_work(arrival);
+  EXPECT_GE(work.cull.register_bits, 3 * arrival.words.halo_bits);
+  double operands = 0;
+  for (const Product& p : work.pair.products) operands += p.count * (p.a + p.b);
+  EXPECT_EQ(work.pair.register_bits, datapath_work(phases).pair.register_bits + operands);
+}
+
 // Area by the same list: 34 transistors a bit product, 28 an adder's bit, 6 a bit of memory.
 TEST(PairWork, AreaIsThatOfTheWork) {
   for (const char* scene : {"undamped_block", "coupon", "sheet", "two_types"}) {

@@ -97,6 +97,15 @@ TEST(Technology, FilesOfTheTreeAreSound) {
   EXPECT_EQ(links[1].figure.band, (Band{0.25, 0.5}));
 }
 
+TEST(Technology, ThePagesExampleIsRead) {
+  const std::string page = read_config_text(CUBOCT_SOURCE_DIR "/docs/user/energy.md");
+  const size_t begin = page.find("```toml\n") + 8, end = page.find("```", begin);
+  ASSERT_LT(end, page.size());
+  const Technology t = parse_technology(page.substr(begin, end - begin), "energy.md");
+  EXPECT_EQ(t.name, "mine");
+  EXPECT_TRUE(t.at(Constant::add_bit));
+}
+
 // Two published tables of one operation differ: no band of these is a point.
 TEST(Technology, PublishedBandsAreBands) {
   for (const char* name : {"cmos45", "cmos7"}) {
