@@ -498,6 +498,13 @@ const std::map<std::string, Recipe>& recipes() {
          s.arch.halos = Halos::arrival;
          s.arch.streamers = s.arch.force_pipes = 2;
        }},
+      // The same in two nodes: small enough for netlists.
+      {"arrival_damped",
+       [](S s) {
+         recipes().at("damped")(s);
+         s.arch.halos = Halos::arrival;
+         s.arch.streamers = 2;
+       }},
       {"arrival_flat",
        [](S s) {
          recipes().at("drift")(s);
