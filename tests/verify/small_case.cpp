@@ -161,22 +161,14 @@ void narrow(Arch& arch) {
 // Another case's scene and machine in nodes of several cells.
 const std::map<std::string, std::pair<const char*, Cell>>& bricks() {
   static const std::map<std::string, std::pair<const char*, Cell>> all{
-      {"brick_hot", {"hot", {2, 2, 1}}},
-      {"brick_thin", {"hot", {1, 2, 1}}},
-      {"brick_whole", {"hot", {2, 2, 2}}},
-      {"brick_drift", {"drift", {2, 3, 1}}},
-      {"brick_full", {"full", {2, 1, 1}}},
-      {"brick_pd", {"pd", {2, 1, 1}}},
-      {"brick_edge", {"edge", {2, 1, 2}}},
-      {"brick_pour", {"pour", {2, 1, 1}}},
-      {"brick_retry", {"retry", {2, 1, 1}}},
-      {"brick_fails_sum", {"fails_sum", {2, 1, 1}}},
-      {"brick_fails_v", {"fails_v", {2, 1, 1}}},
-      {"brick_fly", {"fly", {2, 2, 2}}},
-      {"brick_fails_w", {"fails_w", {2, 1, 1}}},
-      {"brick_fails_free", {"fails_free", {2, 1, 1}}},
-      {"brick_fails_s", {"fails_s", {2, 1, 1}}},
-      {"brick_shared", {"flat_shared", {1, 2, 1}}},
+      {"brick_hot", {"hot", {2, 2, 1}}},           {"brick_thin", {"hot", {1, 2, 1}}},
+      {"brick_whole", {"hot", {2, 2, 2}}},         {"brick_drift", {"drift", {2, 3, 1}}},
+      {"brick_full", {"full", {2, 1, 1}}},         {"brick_pd", {"pd", {2, 1, 1}}},
+      {"brick_edge", {"edge", {2, 1, 2}}},         {"brick_pour", {"pour", {2, 1, 1}}},
+      {"brick_retry", {"retry", {2, 1, 1}}},       {"brick_fails_sum", {"fails_sum", {2, 1, 1}}},
+      {"brick_fails_v", {"fails_v", {2, 1, 1}}},   {"brick_fly", {"fly", {2, 2, 2}}},
+      {"brick_fails_w", {"fails_w", {2, 1, 1}}},   {"brick_fails_free", {"fails_free", {2, 1, 1}}},
+      {"brick_fails_s", {"fails_s", {2, 1, 1}}},   {"brick_shared", {"flat_shared", {1, 2, 1}}},
       {"brick_serial", {"flat_serial", {2, 1, 1}}}};
   return all;
 }
