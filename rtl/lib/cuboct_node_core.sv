@@ -210,7 +210,8 @@ module cuboct_node_core #(
   logic [SlotBits-1:0] slots_write_slot;
   logic [OwnBits-1:0]  slots_write_data;
   if (Arrival != 0) begin : gen_later_write
-    // The slots' memories and banks are many: they begin at a register.
+    // The slots' memories and banks are many: they begin at a register. What is loaded goes past it, as DUMP may ask for
+    // it in the cycle after.
     logic                write_q;
     logic [SlotBits-1:0] slot_q;
     logic [OwnBits-1:0]  data_q;
@@ -222,9 +223,9 @@ module cuboct_node_core #(
       slot_q <= own_write_slot;
       data_q <= own_write_data;
     end
-    assign slots_write      = write_q;
-    assign slots_write_slot = slot_q;
-    assign slots_write_data = data_q;
+    assign slots_write      = idle_o ? load : write_q;
+    assign slots_write_slot = idle_o ? own_count_q[SlotBits-1:0] : slot_q;
+    assign slots_write_data = idle_o ? {2'b00, load_data_i} : data_q;
   end else begin : gen_write
     assign slots_write      = own_write;
     assign slots_write_slot = own_write_slot;

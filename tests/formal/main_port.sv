@@ -9,6 +9,7 @@ module main_port_formal #(
   parameter int LinkBits = 10,
   parameter int Weighted = 0,  // 0, 1: masses differ, an update of two cycles more
   parameter int Pd       = 0,  // 0, 1: types held by force only, an update of three cycles more
+  parameter int Arrival  = 0,  // 0, 1: halos on arrival, slots written through a register
   parameter int Steps    = 2   // of a run, at most
 ) (
   input logic                  clk_i,
@@ -44,7 +45,8 @@ module main_port_formal #(
   cuboct_node_core #(
     .Axes(2), .Capacity(Capacity), .FilterLanes(1), .ForcePipes(1), .QueueDepth(1), .LinkBits(LinkBits),
     .IdBits(1), .PositionFrac(1), .Guard(1), .VelocityBits(1), .RelativeVelocityBits(1), .DifferenceShift(0),
-    .FilterFrac(1), .Weighted(Weighted), .Pd(Pd), .DisplacementBits(1), .Overlap(1)
+    .FilterFrac(1), .Weighted(Weighted), .Pd(Pd), .DisplacementBits(1), .Overlap(1),
+    .Arrival(Arrival)
   ) u_node (
     .clk_i, .rst_ni(running_q), .start_i, .steps_i, .has_link_i(has_link), .load_valid_i(load_i),
     .load_data_i({(9+2*Pd) {1'b0}}), .velocity_i(1'b0), .link_valid_o(link_valid), .link_end_o(link_end),
@@ -54,11 +56,13 @@ module main_port_formal #(
     .fault_code_o(code), .fault_id_o(id), .fault_number_o(number), .idle_o(idle)
   );
 
-  // What the contract says of what is cut out, and of the links: the finder is done only in FORCE; the update
+  // What the contract says of what is cut out, and of the links: the finder is done only in FORCE, with
+  // Arrival when all streams have ended; the update
   // writes a slot so many cycles after it took it; no halo after the end of its stream (`neighbours`), no
   // record beyond the room of its memory (`neighbours_room`).
   (* keep *) logic                       tap_finder_done, tap_take, tap_update_write;
   (* keep *) logic [1:0]                 tap_past_exchange;
+  (* keep *) logic [Faces-1:0]           tap_stream_end;  // Arrival: the streamer knows the end
   (* keep *) logic [SlotBits-1:0]        tap_tick_slot, tap_update_slot;
   (* keep *) logic [Faces-1:0]           tap_halo, tap_halo_end, tap_halo_ended, tap_arrival, tap_full;
   (* keep *) logic [Faces*CountBits-1:0] tap_count;
@@ -70,7 +74,8 @@ module main_port_formal #(
     slots_q <= {slots_q[(Taken-1)*SlotBits-1:0], tap_tick_slot};
   end
   always_comb begin
-    assume (!tap_finder_done || tap_past_exchange[1]);
+    if (Arrival != 0) assume (!tap_finder_done || tap_stream_end == '1);
+    else assume (!tap_finder_done || tap_past_exchange[1]);
     assume (tap_update_write == takes_q[Taken-1]);
     if (takes_q[Taken-1]) assume (tap_update_slot == slots_q[(Taken-1)*SlotBits +: SlotBits]);
     assume (((tap_halo | tap_halo_end) & tap_halo_ended) == '0);
@@ -93,23 +98,31 @@ module main_port_formal #(
   (* keep *) logic [CountBits-1:0] tap_migrate_next;
   (* keep *) logic                tap_write, tap_main_read;
   (* keep *) logic [SlotBits-1:0] tap_write_slot, tap_main_slot;
-  (* keep *) logic                tap_pop;
+  (* keep *) logic                tap_pop, tap_inbox_asked;
   (* keep *) logic [3:0]          tap_face;
   logic                           relays, scans, dumps, together_q, migrated_q;
   logic [SlotBits-1:0]            asked_q;
-  assign relays = tap_relay_load && !tap_relay_end && tap_pick[0];
+  // With Arrival the relay looks at the answer as it takes it into a register; its k-th look in a step is of slot k.
+  (* keep *) logic                tap_observe, tap_in_exchange;
+  logic [SlotBits-1:0]            seen_q, own;
+  always_ff @(posedge clk_i) begin
+    if (!running_q || !tap_in_exchange) seen_q <= '0;
+    else if (tap_observe) seen_q <= seen_q + 1'b1;
+  end
+  assign own    = (Arrival != 0) ? seen_q : tap_relay_next[SlotBits-1:0] - 1'b1;
+  assign relays = (Arrival != 0) ? tap_observe : tap_relay_load && !tap_relay_end && tap_pick[0];
   assign scans  = tap_in_migrate && tap_scans;
   assign dumps  = tap_in_dump && tap_own_count != '0;
   always_ff @(posedge clk_i) begin
     if (tap_main_read) asked_q <= tap_main_slot;
-    migrated_q <= tap_in_migrate;
+    migrated_q <= tap_inbox_asked;
     // As it was asked for, or since.
     together_q <= tap_write && tap_write_slot == (tap_main_read ? tap_main_slot : asked_q)
                   || (together_q && !tap_main_read);
   end
   always_ff @(posedge clk_i) begin
     if (running_q) begin
-      if (relays) a_relay: assert (asked_q == tap_relay_next[SlotBits-1:0] - 1'b1);
+      if (relays) a_relay: assert (asked_q == own);
       if (tap_take) a_update: assert (asked_q == tap_tick_slot);
       if (scans) a_migrate: assert (asked_q == tap_migrate_next[SlotBits-1:0] - 1'b1);
       if (dumps) a_dump: assert (asked_q == tap_tick_slot);

@@ -9,7 +9,8 @@ module neighbours_formal #(
   parameter int Capacity = 1,
   parameter int LinkBits = 10,
   parameter int Steps    = 3,  // of a run, at most
-  parameter int Narrow   = 0   // narrow memories
+  parameter int Narrow   = 0,  // narrow memories
+  parameter int Arrival  = 0   // halos on arrival
 ) (
   input logic        clk_i,
   input logic        start_i,
@@ -23,6 +24,7 @@ module neighbours_formal #(
   localparam int Above        = 2 * Axis + 1;  // of the first towards the second
   localparam int SlotBits     = (Capacity > 1) ? $clog2(Capacity) : 1;
   localparam int CountBits    = $clog2(3 * Capacity) + 1;
+  localparam int Culls        = 3;              // registers of cuboct_cull
   localparam int Room         = ((Axis == 0) ? 1 : 3) * Capacity;  // of the face's halo memory
   localparam int ParticleBits = 9;             // x y away_y v id residue: 1 1 2 1 1 1 1 1
 
@@ -67,7 +69,7 @@ module neighbours_formal #(
       .Axes(2), .Capacity(Capacity), .FilterLanes(1), .ForcePipes(1), .QueueDepth(1), .LinkBits(LinkBits),
           .IdBits(1),
       .PositionFrac(1), .Guard(1), .VelocityBits(1), .RelativeVelocityBits(1), .DifferenceShift(0),
-          .FilterFrac(1), .Overlap((Narrow != 0) ? 0 : 1), .Narrow(Narrow)
+          .FilterFrac(1), .Overlap((Narrow != 0) ? 0 : 1), .Narrow(Narrow), .Arrival(Arrival)
     ) u_node (
       .clk_i, .rst_ni(running_q), .start_i(start), .steps_i, .has_link_i(has_link),
       .load_valid_i(running_q && load_i[n]), .load_data_i(9'd0), .velocity_i(1'b0),
@@ -81,9 +83,11 @@ module neighbours_formal #(
     assign step[n] = phase_end[8*n+6];  // MIGRATE_Y is the last of a step
 
     // What the contract says of the units that are cut out: the finder is done only in FORCE, as the last
-    // segment is there only then (proof `streamer`); the update writes a slot two cycles after it was read.
+    // segment is there only then (proof `streamer`), or with Arrival only when all streams have ended (proof
+    // `arrival_streamer`); the update writes a slot two cycles after it was read.
     (* keep *) logic       tap_finder_done, tap_take, tap_update_write;
     (* keep *) logic [1:0] tap_past_exchange;
+    (* keep *) logic [3:0] tap_stream_end;  // Arrival: by face, all that is not culled is there for the streamer
     (* keep *) logic [SlotBits-1:0] tap_tick_slot, tap_update_slot;
     logic [SlotBits-1:0]            slot_1_q, slot_2_q;
     logic                  take_1_q, take_2_q;
@@ -94,7 +98,8 @@ module neighbours_formal #(
       slot_2_q <= slot_1_q;
     end
     always_comb begin
-      assume (!tap_finder_done || tap_past_exchange[1]);
+      if (Arrival != 0) assume (!tap_finder_done || tap_stream_end == 4'b1111);
+      else assume (!tap_finder_done || tap_past_exchange[1]);
       assume (tap_update_write == take_2_q && (!take_2_q || tap_update_slot == slot_2_q));
     end
   end
@@ -104,7 +109,9 @@ module neighbours_formal #(
   (* keep *) logic [9:0] tap_states_0, tap_states_1;
   (* keep *) logic       tap_exchange_0, tap_exchange_1, tap_migrating_0, tap_migrating_1;
   (* keep *) logic [2:0] tap_axis_0, tap_axis_1;        // of the sequencer
-  (* keep *) logic       tap_sent_0, tap_sent_1;        // of the relay
+  // Of the relay: the axis' end is sent; with Arrival by axis, else of the present one.
+  (* keep *) logic [Arrival:0] tap_sent_0, tap_sent_1;
+  (* keep *) logic       tap_cleared_0, tap_cleared_1;  // Arrival: halos are cleared at this cycle's end
   (* keep *) logic [2:0] tap_migrate_0, tap_migrate_1;  // state of the migration
   (* keep *) logic [1:0] tap_axis_halo_0, tap_axis_halo_1;
   (* keep *) logic [3:0] tap_empty_0, tap_empty_1, tap_ended_0, tap_ended_1;  // by face, of particles
@@ -121,7 +128,16 @@ module neighbours_formal #(
   (* keep *) logic [Faces*CountBits-1:0] tap_count_0, tap_count_1;
   (* keep *) logic [3:0] tap_halo_ended_0, tap_halo_ended_1, tap_migrate_ended_0, tap_migrate_ended_1;
   localparam logic [3:0] ExchangeY = 4'd1, Force = 4'd3, Update = 4'd4, MigrateX = 4'd5, MigrateY = 4'd6, Dump = 4'd8;
-  localparam logic [2:0] TakeLow = 3'd3, TakeHigh = 3'd4;
+  localparam logic [2:0] End = 3'd2, TakeLow = 3'd3, TakeHigh = 3'd4;
+
+  // The end of the stream over the two nodes' link is sent; that of the axis of an exchange phase.
+  logic link_sent_0, link_sent_1, axis_sent_0, axis_sent_1, cleared_0, cleared_1;
+  assign link_sent_0 = tap_sent_0[(Arrival != 0) ? Axis : 0];
+  assign link_sent_1 = tap_sent_1[(Arrival != 0) ? Axis : 0];
+  assign axis_sent_0 = (tap_state_0 == ExchangeY) ? tap_sent_0[Arrival] : tap_sent_0[0];
+  assign axis_sent_1 = (tap_state_1 == ExchangeY) ? tap_sent_1[Arrival] : tap_sent_1[0];
+  assign cleared_0   = (Arrival != 0) && tap_cleared_0;
+  assign cleared_1   = (Arrival != 0) && tap_cleared_1;
 
   // A node that does nothing until something comes.
   logic [1:0] waits;
@@ -138,10 +154,56 @@ module neighbours_formal #(
       end
     end
   endfunction
-  assign waits[0] = waiting(tap_state_0, tap_sent_0, tap_migrate_0, axis_empty_0, axis_ended_0,
+  assign waits[0] = waiting(tap_state_0, axis_sent_0, tap_migrate_0, axis_empty_0, axis_ended_0,
       tap_axis_halo_0, idle[0]);
-  assign waits[1] = waiting(tap_state_1, tap_sent_1, tap_migrate_1, axis_empty_1, axis_ended_1,
+  assign waits[1] = waiting(tap_state_1, axis_sent_1, tap_migrate_1, axis_empty_1, axis_ended_1,
       tap_axis_halo_1, idle[1]);
+
+  // Arrival: what lies between a receiver and the streamer's memory, and in the relay.
+  (* keep *) logic [3:0] tap_streamed_0, tap_streamed_1;          // by face: a record is written for the streamer
+  (* keep *) logic [3:0] tap_stream_ended_0, tap_stream_ended_1;  // by face: the streamer knows the end
+  (* keep *) logic [Faces*Culls-1:0] tap_culled_0, tap_culled_1;      // by face: registers with a record,
+  (* keep *) logic [Faces*Culls-1:0] tap_cull_end_0, tap_cull_end_1;  // with the end; the latest in the low bit
+  (* keep *) logic tap_found_0, tap_found_1;                      // all pairs are found
+  // Axis whose end is asked for next; then of the memories' answers and of what the links load: valid, an end, axes.
+  (* keep *) logic [9:0] tap_relay_0, tap_relay_1;
+  // Of the migration, a cycle late: someone leaves, no one is there, SCAN has counted; and of the node: who leaves.
+  (* keep *) logic tap_scans_0, tap_scans_1, tap_none_0, tap_none_1, tap_scanned_0, tap_scanned_1;
+  (* keep *) logic [1:0] tap_leaving_0, tap_leaving_1;
+  // An end follows all records; where it is at the streamer, no record is on the way.
+  function automatic logic culls(input logic ended, input logic known, input logic [Culls-1:0] culled,
+                                 input logic [Culls-1:0] cull_end);
+    begin
+      culls = !ended ? !known && cull_end == '0
+                     : known ? cull_end == '0 && culled == '0
+                             : cull_end != '0 && (cull_end & (cull_end - 1'b1)) == '0
+                               && (culled & ((cull_end - 1'b1) | cull_end)) == '0;
+    end
+  endfunction
+  // Each axis' end is in one place: still to be asked for, answered, at the links, or sent; ends are in the axes' order.
+  // Records of an axis are before its end.
+  function automatic logic relays(input logic [3:0] state, input logic [Arrival:0] sent, input logic [9:0] relay);
+    logic [1:0] left, answer, link, answer_end, link_end;
+    begin
+      left       = {relay[9] || relay[8], relay[8]};
+      answer     = {2{relay[7] && !relay[6]}} & relay[5:4];
+      answer_end = {2{relay[7] && relay[6]}} & relay[5:4];
+      link       = {2{relay[3] && !relay[2]}} & relay[1:0];
+      link_end   = {2{relay[3] && relay[2]}} & relay[1:0];
+      relays     = (relay[9:8] != 2'b11) && (answer & ~left) == '0 && (link & ~left & ~answer_end) == '0
+                   && (left ^ answer_end ^ link_end ^ sent) == 2'b11
+                   && (left & answer_end) == '0 && (left & link_end) == '0 && (left & sent) == '0
+                   && (answer_end & link_end) == '0 && (answer_end & sent) == '0 && (link_end & sent) == '0
+                   && answer_end != 2'b11 && link_end != 2'b11 && (!answer_end[1] || !left[0])
+                   && (!link_end[1] || sent[0]) && (!sent[1] || sent[0])
+                   && (!relay[7] || relay[5:4] != '0) && (!relay[3] || relay[1:0] != '0)
+                   && (!(relay[7] && !relay[6]) || relay[5]) && (!(relay[3] && !relay[2]) || relay[1])
+                   && (state != ExchangeY || sent[0]);
+      if (state > Force || (state == Force && sent != 2'b11)) begin
+        relays = relay[9:8] == 2'b01 && !relay[7] && !relay[3] && sent == '0;
+      end
+    end
+  endfunction
 
   logic signed [2:0] ahead_q;  // steps that the first has done more than the second
   logic              apart_q;
@@ -177,7 +239,7 @@ module neighbours_formal #(
     begin
       sent_of = 3'd1;
       if (state == 4'd8 || state == 4'd9 || state < Axis) sent_of = 3'd0;
-      if (state == Axis) sent_of = {2'b00, sent};
+      if (state == Axis || (Arrival != 0 && state < Axis)) sent_of = {2'b00, sent};
       if (state == 4'd5 + Axis) sent_of = (migrate == TakeLow || migrate == TakeHigh) ? 3'd2 : 3'd1;
       if (state > 4'd5 + Axis && state < 4'd8) sent_of = 3'd2;
     end
@@ -185,13 +247,14 @@ module neighbours_formal #(
   // It is between a stream's first beat and its end, if it has begun.
   function automatic logic sending(input logic [3:0] state, input logic sent, input logic [2:0] migrate);
     begin
-      sending = (state == Axis && !sent) || (state == 4'd5 + Axis && migrate < TakeLow);
+      sending = ((state == Axis || (Arrival != 0 && state < Axis)) && !sent) || (state == 4'd5 + Axis && migrate < TakeLow);
     end
   endfunction
-  function automatic logic [2:0] used_of(input logic [3:0] state);
+  // With Arrival the halos are cleared in the first cycle of UPDATE.
+  function automatic logic [2:0] used_of(input logic [3:0] state, input logic cleared);
     begin
       used_of = 3'd0;
-      if (state >= Update && state <= 4'd5 + Axis) used_of = 3'd1;
+      if (state >= Update && state <= 4'd5 + Axis && !cleared) used_of = 3'd1;
       if (state > 4'd5 + Axis && state < 4'd8) used_of = 3'd2;
     end
   endfunction
@@ -203,9 +266,9 @@ module neighbours_formal #(
     if (running_q) begin
       // Halos of the next step never meet those of this one, nor arrivals.
       if (tap_halo_0[Above] || tap_halo_end_0[Above]) a_halo_0: assert (tap_state_0 != Force
-          && !tap_halo_ended_0[Above]);
+          && !cleared_0 && !tap_halo_ended_0[Above]);
       if (tap_halo_1[Below] || tap_halo_end_1[Below]) a_halo_1: assert (tap_state_1 != Force
-          && !tap_halo_ended_1[Below]);
+          && !cleared_1 && !tap_halo_ended_1[Below]);
       if (tap_arrival_0[Above] || tap_arrival_end_0[Above]) a_arrival_0: assert (!tap_migrate_ended_0[Above]);
       if (tap_arrival_1[Below] || tap_arrival_end_1[Below]) a_arrival_1: assert (!tap_migrate_ended_1[Below]);
       if (tap_halo_0[Above]) a_room_0: assert (tap_count_0[Above*CountBits +: CountBits] != Room[CountBits-1:0]);
@@ -216,25 +279,25 @@ module neighbours_formal #(
       a_step:     assert (ahead_q >= -3'sd1 && ahead_q <= 3'sd1);
       a_deadlock: assert (!(waits == 2'b11 && idle != 2'b11 && valid == 2'b00));
       a_stop:     assert (idle != 2'b11 || valid == 2'b00);
-      i_sent_0: assert (sent_0_q == {step_0_q[1:0], 1'b0} + sent_of(tap_state_0, tap_sent_0, tap_migrate_0));
-      i_sent_1: assert (sent_1_q == {step_1_q[1:0], 1'b0} + sent_of(tap_state_1, tap_sent_1, tap_migrate_1));
+      i_sent_0: assert (sent_0_q == {step_0_q[1:0], 1'b0} + sent_of(tap_state_0, link_sent_0, tap_migrate_0));
+      i_sent_1: assert (sent_1_q == {step_1_q[1:0], 1'b0} + sent_of(tap_state_1, link_sent_1, tap_migrate_1));
       i_told_0: assert (told_0_q + {2'b00, valid[1] && ends[1]} == sent_1_q);
       i_told_1: assert (told_1_q + {2'b00, valid[0] && ends[0]} == sent_0_q);
-      i_used_0: assert (told_0_q == {step_0_q[1:0], 1'b0} + used_of(tap_state_0) + ready_0);
-      i_used_1: assert (told_1_q == {step_1_q[1:0], 1'b0} + used_of(tap_state_1) + ready_1);
-      i_beat_0: assert (!valid[0] || ends[0] || sending(tap_state_0, tap_sent_0, tap_migrate_0));
-      i_beat_1: assert (!valid[1] || ends[1] || sending(tap_state_1, tap_sent_1, tap_migrate_1));
+      i_used_0: assert (told_0_q == {step_0_q[1:0], 1'b0} + used_of(tap_state_0, cleared_0) + ready_0);
+      i_used_1: assert (told_1_q == {step_1_q[1:0], 1'b0} + used_of(tap_state_1, cleared_1) + ready_1);
+      i_beat_0: assert (!valid[0] || ends[0] || sending(tap_state_0, link_sent_0, tap_migrate_0));
+      i_beat_1: assert (!valid[1] || ends[1] || sending(tap_state_1, link_sent_1, tap_migrate_1));
       i_high:   assert ((tap_migrate_0 != TakeHigh || axis_ended_0[0]) && (tap_migrate_1 != TakeHigh
           || axis_ended_1[0]));
       i_past_0: assert (!(tap_state_0 > Axis && tap_state_0 <= Force) || tap_halo_ended_0[Above]);
       i_past_1: assert (!(tap_state_1 > Axis && tap_state_1 <= Force) || tap_halo_ended_1[Below]);
       i_next_0: assert (tap_next_0[Above] == told_0_q[0]);
       i_next_1: assert (tap_next_1[Below] == told_1_q[0]);
-      i_flags_0: assert ((used_of(tap_state_0) == 3'd1) ? (tap_migrate_ended_0[Above]
+      i_flags_0: assert ((used_of(tap_state_0, cleared_0) == 3'd1) ? (tap_migrate_ended_0[Above]
           || !tap_halo_ended_0[Above])
                                                        : (tap_halo_ended_0[Above]
                                                            || !tap_migrate_ended_0[Above]));
-      i_flags_1: assert ((used_of(tap_state_1) == 3'd1) ? (tap_migrate_ended_1[Below]
+      i_flags_1: assert ((used_of(tap_state_1, cleared_1) == 3'd1) ? (tap_migrate_ended_1[Below]
           || !tap_halo_ended_1[Below])
                                                        : (tap_halo_ended_1[Below]
                                                            || !tap_migrate_ended_1[Below]));
@@ -249,7 +312,30 @@ module neighbours_formal #(
                         && tap_steps_0[2:0] + step_0_q == tap_steps_1[2:0] + step_1_q);
       i_run:    assert ((tap_state_0 < 4'd8) == (tap_steps_0 != '0) && (tap_state_1 < 4'd8)
           == (tap_steps_1 != '0));
-      i_sent:   assert ((!tap_sent_0 || tap_state_0 <= 4'd1) && (!tap_sent_1 || tap_state_1 <= 4'd1));
+      // With Arrival a cycle longer.
+      i_sent:   assert ((tap_sent_0 == '0 || tap_state_0 <= 4'd1 || (Arrival != 0 && tap_state_0 == Force))
+                        && (tap_sent_1 == '0 || tap_state_1 <= 4'd1 || (Arrival != 0 && tap_state_1 == Force)));
+      if (Arrival != 0) begin
+        // What comes for the streamer is cleared only when all is there.
+        if (cleared_0) a_streamed_0: assert (!tap_streamed_0[Above] && tap_culled_0[Above*Culls +: Culls] == '0);
+        if (cleared_1) a_streamed_1: assert (!tap_streamed_1[Below] && tap_culled_1[Below*Culls +: Culls] == '0);
+        i_cleared_0: assert (tap_state_0 == Update ? cleared_0 == tap_halo_ended_0[Above]
+                             && (!cleared_0 || tap_stream_ended_0[Above]) : !cleared_0);
+        i_cleared_1: assert (tap_state_1 == Update ? cleared_1 == tap_halo_ended_1[Below]
+                             && (!cleared_1 || tap_stream_ended_1[Below]) : !cleared_1);
+        i_culls_0: assert (culls(tap_halo_ended_0[Above], tap_stream_ended_0[Above],
+                               tap_culled_0[Above*Culls +: Culls], tap_cull_end_0[Above*Culls +: Culls]));
+        i_culls_1: assert (culls(tap_halo_ended_1[Below], tap_stream_ended_1[Below],
+                               tap_culled_1[Below*Culls +: Culls], tap_cull_end_1[Below*Culls +: Culls]));
+        i_found_0: assert (!(tap_found_0 && tap_state_0 <= Force) || tap_stream_ended_0[Above]);
+        i_found_1: assert (!(tap_found_1 && tap_state_1 <= Force) || tap_stream_ended_1[Below]);
+        i_quiet_0: assert ((!tap_scanned_0 || tap_migrate_0 == End) && (tap_migrating_0 || idle[0] || !tap_scans_0
+                           || (tap_leaving_0[0] && !tap_none_0)));
+        i_quiet_1: assert ((!tap_scanned_1 || tap_migrate_1 == End) && (tap_migrating_1 || idle[1] || !tap_scans_1
+                           || (tap_leaving_1[0] && !tap_none_1)));
+        i_relay_0: assert (relays(tap_state_0, tap_sent_0, tap_relay_0));
+        i_relay_1: assert (relays(tap_state_1, tap_sent_1, tap_relay_1));
+      end
       i_axis_0: assert (tap_axis_0 == ((tap_state_0 == ExchangeY || tap_state_0 == MigrateY) ? 3'b010 : 3'b001));
       i_axis_1: assert (tap_axis_1 == ((tap_state_1 == ExchangeY || tap_state_1 == MigrateY) ? 3'b010 : 3'b001));
       i_face_0: assert (tap_face_0

@@ -87,6 +87,9 @@ sed -i "s/replace = .*/replace = \"assign empty_o = !(count_q != '0);\"/" table.
 expect 1 '^FAIL  counter/always +not seen in 8 cycles' counter
 table pdr 1 "" "" "no such line"
 expect 1 "^FAIL  counter/always +cuboct_fifo.sv holds 'no such line' 0 times, not once" counter/always
+expect 1 "^counter/always: cuboct_fifo.sv holds 'no such line' 0 times, not once" --check
+table pdr 1 "" "" "$find"
+expect 0 '^1 mutants stand in the library$' --check
 
 # Tables that are wrong.
 sed -i '/proof.mutants/,$d' table.toml

@@ -68,6 +68,13 @@ void cross_the_corner(Setup& setup) {
   }
 }
 
+// All of the last cell go to the one below it along x, in the first step.
+void pour_down(Setup& setup) {
+  const int64_t most = (int64_t{1} << (setup.plan.rule.widths.velocity_bits - 4)) - 1;
+  for (Particle& q : setup.initial.particles)
+    if (q.cell == setup.plan.lattice.size() - 1) q.x[0] = 3 + q.id, q.v[0] = -most;
+}
+
 // Half of the particles drift up, half down, all the time: inboxes go round.
 void drift(Scene& scene) {
   for (size_t k = 0; k < scene.body.size(); ++k) scene.body.v[k] += (k % 2 == 0 ? 1 : -1) * Vec3(1.6, 1.1, 0);
@@ -154,21 +161,14 @@ void narrow(Arch& arch) {
 // Another case's scene and machine in nodes of several cells.
 const std::map<std::string, std::pair<const char*, Cell>>& bricks() {
   static const std::map<std::string, std::pair<const char*, Cell>> all{
-      {"brick_hot", {"hot", {2, 2, 1}}},
-      {"brick_thin", {"hot", {1, 2, 1}}},
-      {"brick_whole", {"hot", {2, 2, 2}}},
-      {"brick_drift", {"drift", {2, 3, 1}}},
-      {"brick_full", {"full", {2, 1, 1}}},
-      {"brick_pd", {"pd", {2, 1, 1}}},
-      {"brick_edge", {"edge", {2, 1, 2}}},
-      {"brick_retry", {"retry", {2, 1, 1}}},
-      {"brick_fails_sum", {"fails_sum", {2, 1, 1}}},
-      {"brick_fails_v", {"fails_v", {2, 1, 1}}},
-      {"brick_fly", {"fly", {2, 2, 2}}},
-      {"brick_fails_w", {"fails_w", {2, 1, 1}}},
-      {"brick_fails_free", {"fails_free", {2, 1, 1}}},
-      {"brick_fails_s", {"fails_s", {2, 1, 1}}},
-      {"brick_shared", {"flat_shared", {1, 2, 1}}},
+      {"brick_hot", {"hot", {2, 2, 1}}},           {"brick_thin", {"hot", {1, 2, 1}}},
+      {"brick_whole", {"hot", {2, 2, 2}}},         {"brick_drift", {"drift", {2, 3, 1}}},
+      {"brick_full", {"full", {2, 1, 1}}},         {"brick_pd", {"pd", {2, 1, 1}}},
+      {"brick_edge", {"edge", {2, 1, 2}}},         {"brick_pour", {"pour", {2, 1, 1}}},
+      {"brick_retry", {"retry", {2, 1, 1}}},       {"brick_fails_sum", {"fails_sum", {2, 1, 1}}},
+      {"brick_fails_v", {"fails_v", {2, 1, 1}}},   {"brick_fly", {"fly", {2, 2, 2}}},
+      {"brick_fails_w", {"fails_w", {2, 1, 1}}},   {"brick_fails_free", {"fails_free", {2, 1, 1}}},
+      {"brick_fails_s", {"fails_s", {2, 1, 1}}},   {"brick_shared", {"flat_shared", {1, 2, 1}}},
       {"brick_serial", {"flat_serial", {2, 1, 1}}}};
   return all;
 }
@@ -222,6 +222,13 @@ const std::map<std::string, Recipe>& recipes() {
            for (size_t k = 0; k < scene.body.size(); ++k)
              scene.body.v[k] = Vec3(scene.body.x[k].x() < 1.3 ? 0.5 : 0, 0, 0);
          };
+       }},
+      // Several come to a cell from above in one step.
+      {"pour",
+       [](S s) {
+         s.arch.capacity = 8;
+         s.steps = 2;
+         s.place = pour_down;
        }},
       // As many lanes as pipes, a row that is not full, differences that are not rounded.
       {"octaves",
@@ -497,6 +504,13 @@ const std::map<std::string, Recipe>& recipes() {
          s.features.two_materials = true;
          s.arch.halos = Halos::arrival;
          s.arch.streamers = s.arch.force_pipes = 2;
+       }},
+      // The same in two nodes: small enough for netlists.
+      {"arrival_damped",
+       [](S s) {
+         recipes().at("damped")(s);
+         s.arch.halos = Halos::arrival;
+         s.arch.streamers = 2;
        }},
       {"arrival_flat",
        [](S s) {
