@@ -5,7 +5,7 @@ module cuboct_split #(
   parameter int ForcePipes  = 1,  // >= 1
   parameter int SlotBits    = 4   // of a slot's number
 ) (
-  input  logic [FilterLanes-1:0]         mask_i,
+  input  logic [FilterLanes-1:0]         mask_i,   // lanes that may interact
   output logic [ForcePipes-1:0]          valid_o,  // per pipe: a bit is for it
   output logic [ForcePipes*SlotBits-1:0] lane_o,   // with valid_o: which one
   output logic [FilterLanes-1:0]         rest_o    // the bits above
