@@ -59,6 +59,7 @@ module cuboct_arrival_relay #(
   logic                 last_beat, can_load;
   logic                 end_d, more_d, more_q;  // more: behind the beat to be loaded comes another of the record
   logic [Axes-1:0]      axes_d;
+  logic [2*Axes-1:0]    stays;               // links' beats that are not taken
   logic [2*Axes-1:0]    waits_d, waits_q;    // links that must be taken from before they load what is to be loaded
 
   // What is there to be asked for, counted as it comes and as it is asked for: it needs no comparison of two numbers.
@@ -140,11 +141,8 @@ module cuboct_arrival_relay #(
       axis_d   = axis_q << 1;
     end
     if (!active_i) begin
-      pick_d   = FirstSegment;
-      axis_d   = FirstAxis;
-      ending_d = 1'b0;
-      record_d = '0;
-      next_d   = One;
+      pick_d = FirstSegment;  // the others are at rest behind the last end beat
+      axis_d = FirstAxis;
     end
   end
 
@@ -170,9 +168,10 @@ module cuboct_arrival_relay #(
   for (genvar f = 0; f < 2 * Axes; f++) begin : gen_face
     assign load_o[f]  = some_load && axes_q[f/2];
     // What was loaded waits there, and what was not taken.
-    assign waits_d[f] = !can_load ? waits_q[f] && !ready_i[f]
+    assign stays[f]   = valid_i[f] && !ready_i[f];
+    assign waits_d[f] = !can_load ? waits_q[f] && stays[f]
                       : (more_q ? valid_q && axes_q[f/2] : answer_q && answer_axes_q[f/2])
-                        && ((valid_q && axes_q[f/2] && has_link_i[f]) || (valid_i[f] && !ready_i[f]));
+                        && ((valid_q && axes_q[f/2] && has_link_i[f]) || stays[f]);
   end
 
   always_ff @(posedge clk_i) begin
