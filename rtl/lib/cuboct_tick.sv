@@ -4,7 +4,7 @@
 // memory waits for them.
 module cuboct_tick #(
   parameter int Tail      = 2,  // steps of UPDATE beyond the last particle, >= 0
-  parameter int Registered = 0, // 0, 1: count_i stays from the cycle before a phase on
+  parameter int Registered = 0, // 0, 1: count_i stays from the cycle before a phase on, and step_i is 1
   parameter int CountBits = 5,  // of the number of own particles
   parameter int TickBits  = 5   // of a step's number, that hold Capacity + Tail
 ) (
@@ -40,9 +40,12 @@ module cuboct_tick #(
     end
     assign none = none_q;
     assign few  = few_q;
+    // Nothing pauses, and at rest the slot is 0.
+    assign next_o = (past_q[Tail] || !(dump_i || update_i)) ? '0 : next_q;
   end else begin : gen_at_once
     assign none = (count_i == '0);
     assign few  = ((count_i >> 1) == '0);
+    assign next_o = past_q[Tail] ? '0 : moves ? next_q : tick_q;  // from registers
   end
   assign moves      = dump_i || (update_i && step_i);
   assign done       = update_done_o || dump_done_o;
@@ -60,7 +63,6 @@ module cuboct_tick #(
       past_d    = past_q << 1;
       past_d[0] = past_q[0] || last_q || few;
     end
-    next_o = past_q[Tail] ? '0 : tick_d;  // from registers
     if (done) begin
       tick_d = '0;
       next_d = One;
