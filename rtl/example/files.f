@@ -33,6 +33,7 @@ rtl/cuboct_resize.sv
 rtl/cuboct_round_odd.sv
 rtl/cuboct_sequencer.sv
 rtl/cuboct_slots.sv
+rtl/cuboct_split.sv
 rtl/cuboct_spread.sv
 rtl/cuboct_stage.sv
 rtl/cuboct_streamer.sv

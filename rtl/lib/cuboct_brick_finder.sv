@@ -76,7 +76,9 @@ module cuboct_brick_finder #(
   logic                     present, nobody, same, past, stall, filter_busy, issue_busy;
   logic [HaloBits-1:0]      record_word;
   logic [AllBits-1:0]       candidate, candidate_out, candidate_head, candidate_now;
-  logic [FilterLanes-1:0]   mask_out, mask_head;
+  logic [FilterLanes-1:0]   mask_out, rest_out, rest_head;
+  logic [ForcePipes-1:0]    valid_out, valid_head;  // first pairs of the mask
+  logic [ForcePipes*SlotBits-1:0] lane_out, lane_head;
   logic                     push, pop, full, empty;
 
   cuboct_brick_streamer #(
@@ -135,17 +137,23 @@ module cuboct_brick_finder #(
     .row_o(row_out), .mask_o(mask_out), .busy_o(filter_busy)
   );
 
-  cuboct_fifo #(.Bits(AllBits + RowBits + FilterLanes), .Depth(QueueDepth)) u_queue (
-    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_out, row_out, mask_out}), .full_o(full),
-    .pop_i(pop), .data_o({candidate_head, row_head, mask_head}), .empty_o(empty)
+  cuboct_split #(.FilterLanes(FilterLanes), .ForcePipes(ForcePipes), .SlotBits(SlotBits)) u_split (
+    .mask_i(mask_out), .valid_o(valid_out), .lane_o(lane_out), .rest_o(rest_out)
+  );
+  cuboct_fifo #(
+    .Bits(AllBits + RowBits + ForcePipes * (1 + SlotBits) + FilterLanes), .Depth(QueueDepth)
+  ) u_queue (
+    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_out, row_out, valid_out, lane_out, rest_out}),
+    .full_o(full),
+    .pop_i(pop), .data_o({candidate_head, row_head, valid_head, lane_head, rest_head}), .empty_o(empty)
   );
 
   cuboct_issue #(
     .CandidateBits(AllBits), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits),
     .ForcePipes(ForcePipes), .Interval(Interval)
   ) u_issue (
-    .clk_i, .rst_ni, .empty_i(empty), .candidate_i(candidate_head), .row_i(row_head), .mask_i(mask_head),
-    .pop_o(pop), .candidate_o(candidate_now), .valid_o(issue_o), .slot_o(issue_slot_o), .busy_o(issue_busy)
+    .clk_i, .rst_ni, .empty_i(empty), .candidate_i(candidate_head), .row_i(row_head), .valid_i(valid_head),
+    .lane_i(lane_head), .rest_i(rest_head), .pop_o(pop), .candidate_o(candidate_now), .valid_o(issue_o), .slot_o(issue_slot_o), .busy_o(issue_busy)
   );
 
   assign candidate_o = candidate_now[CandidateBits-1:0];

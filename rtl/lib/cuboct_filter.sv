@@ -48,7 +48,20 @@ module cuboct_filter #(
   logic [FilterLanes-1:0]   mask, f3_mask_q;
   logic                     wants_push;
 
-  assign wants_push = valid_q[3] && (f3_mask_q != '0);
+  // Whether there is something to push is asked first of all in a cycle: two lanes each have said it before F3.
+  localparam int Pairs = (FilterLanes + 1) / 2;
+  logic [Pairs-1:0] some_d, some_q;
+  integer           p;
+  always_comb begin
+    some_d = '0;
+    for (p = 0; p < FilterLanes; p = p + 1) some_d[p/2] = some_d[p/2] || (valid_q[2] && mask[p]);
+    if (stall_o) some_d = some_q;
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) some_q <= '0;
+    else some_q <= some_d;
+  end
+  assign wants_push = (some_q != '0);
   assign stall_o    = wants_push && full_i;
   assign push_o     = wants_push && !full_i;
   assign valid_d    = stall_o ? valid_q : {valid_q[2:0], present_i};

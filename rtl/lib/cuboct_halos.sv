@@ -31,8 +31,9 @@ module cuboct_halos #(
   input  logic                       halo_clear_i,   // the step's halos are read; with the last cycle of FORCE
   output logic [Faces-1:0]           halo_end_o,     // complete; always where there is no link
   output logic [Faces*CountBits-1:0] halo_count_o,   // by face: records that came in this step, as the relay sees them
+  output logic [Faces-1:0]           halo_came_o,    // one comes: it counts from the next cycle on
   output logic [Faces-1:0]           stream_end_o,   // as the streamer sees them: complete,
-  output logic [Faces*CountBits-1:0] stream_count_o, // and how many
+  output logic [Faces-1:0]           stream_came_o,  // and a record comes: it may be read from the next cycle on
   input  logic [Streamers-1:0]       stream_read_i,  // the streamer asks
   input  logic [Streamers*AddrBits-1:0] stream_addr_i,  // read by it: what it gets is there in the next cycle (Arrival:
   output logic [Faces*CandidateBits-1:0] stream_data_o,  // one later), by face, and stays until it reads again
@@ -43,7 +44,7 @@ module cuboct_halos #(
   input  logic [Axes*FilterFrac-1:0] box_high_i,     // without box_empty_i
   // For the relay, of all axes but the last.
   input  logic                       relay_read_i,   // it asks; without it the answers stay
-  input  logic [Faces-3:0]           relay_clear_i,  // by face: the answer becomes 0
+  input  logic [Faces-3:0]           relay_clear_i,  // with relay_read_i, by face: the answer becomes 0
   input  logic [AddrBits-1:0]        relay_addr_i,   // with relay_read_i
   output logic [(Faces-2)*CandidateBits-1:0] relay_data_o,  // by face, from the next cycle on
   // Migrating particles.
@@ -51,6 +52,8 @@ module cuboct_halos #(
   input  logic [Faces-1:0]           migrate_clear_i,  // by face: last cycle of its axis's migration
   output logic [Faces-1:0]           migrate_end_o,  // complete; always where there is no link
   output logic [Faces-1:0]           migrate_empty_o,  // by face: no particle waits
+  output logic [Faces-1:0]           migrate_some_next_o,  // in the next cycle one waits;
+  output logic [Faces-1:0]           migrate_over_next_o,  // none does and the stream is complete, if it is not cleared
   output logic [Faces*ParticleBits-1:0] migrate_data_o,  // by face: the oldest particle
   input  logic [Faces-1:0]           migrate_pop_i   // by face: it is taken
 );
@@ -94,7 +97,8 @@ module cuboct_halos #(
     localparam int Port  = f % Streamers;
     localparam int Depth = ((Axis == 0) ? 1 : (Axis == 1) ? 3 : 9) * Capacity;
 
-    logic                     halo_valid, migrate_valid, migrate_full;
+    logic                     halo_valid, migrate_valid, migrate_full, empty_next;
+    logic [CountBits-1:0]     stream_count;
     logic [HaloBits-1:0]      halo;
     logic [ParticleBits-1:0]  particle;
     cuboct_link_rx #(.LinkBits(LinkBits), .HaloBits(HaloBits), .MigrateBits(ParticleBits)) u_rx (
@@ -149,13 +153,18 @@ module cuboct_halos #(
       .Relayed((Axis < Axes - 1) ? 1 : 0), .Arrival(Arrival), .AddrBits(AddrBits), .CountBits(CountBits)
     ) u_inbox (
       .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(append), .halo_i(kept),
-      .count_o(stream_count_o[f*CountBits +: CountBits]), .read_i(stream_read_i[Port]),
+      .count_o(stream_count), .read_i(stream_read_i[Port]),
       .addr_i(stream_addr_i[Port*AddrBits +: AddrBits]), .halo_o(streamed), .relay_append_i(halo_valid),
       .relay_record_i(moved), .relay_count_o(halo_count_o[f*CountBits +: CountBits]), .relay_read_i,
       .relay_clear_i(relay_clear), .relay_addr_i, .relay_halo_o(relayed),
       .migrating_i, .push_i(migrate_valid), .particle_i(particle), .full_o(migrate_full), .pop_i(migrate_pop_i[f]),
-      .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .empty_o(migrate_empty_o[f])
+      .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .empty_o(migrate_empty_o[f]),
+      .empty_next_o(empty_next)
     );
+    assign halo_came_o[f]         = halo_valid;
+    assign stream_came_o[f]       = append;
+    assign migrate_some_next_o[f] = !empty_next;
+    assign migrate_over_next_o[f] = empty_next && (migrate_end_q[f] || migrate_end[f] || !has_link_i[f]);
     assign stream_data_o[f*CandidateBits +: CandPos] = {LastSign, streamed[LastLsb+PositionFrac-1:0]};
     if (RestBits > 0) begin : gen_rest
       assign stream_data_o[f*CandidateBits+CandPos +: RestBits] = streamed[HaloBits-1 -: RestBits];
@@ -179,6 +188,6 @@ module cuboct_halos #(
     end
 `endif
     logic unused_full;
-    assign unused_full = migrate_full;
+    assign unused_full = ^{migrate_full, stream_count};
   end
 endmodule

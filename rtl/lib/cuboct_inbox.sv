@@ -28,7 +28,7 @@ module cuboct_inbox #(
   input  logic [HaloBits-1:0]     relay_record_i,  // with relay_append_i
   output logic [CountBits-1:0]    relay_count_o,   // records for the relay that came in this step
   input  logic                    relay_read_i,  // the relay asks; without it the answer stays
-  input  logic                    relay_clear_i, // the answer is 0
+  input  logic                    relay_clear_i, // with relay_read_i: the answer is 0
   input  logic [AddrBits-1:0]     relay_addr_i,  // with relay_read_i
   output logic [HaloBits-1:0]     relay_halo_o,  // from the next cycle on
   // Particles, first in, first out.
@@ -38,7 +38,8 @@ module cuboct_inbox #(
   output logic                    full_o,        // Capacity particles are held
   input  logic                    pop_i,         // only when not empty
   output logic [ParticleBits-1:0] particle_o,    // the oldest, without empty_o
-  output logic                    empty_o        // no particle counts yet
+  output logic                    empty_o,       // no particle counts yet
+  output logic                    empty_next_o   // empty_o of the next cycle
 );
   localparam int LevelBits = $clog2(Capacity + 1);
   localparam int PlaceBits = (Capacity > 1) ? $clog2(Capacity) : 1;
@@ -136,4 +137,5 @@ module cuboct_inbox #(
   assign count_o    = count_q;
   assign full_o     = (held_q == Capacity[LevelBits-1:0]);
   assign empty_o    = empty_q;
+  assign empty_next_o = empty_d;
 endmodule

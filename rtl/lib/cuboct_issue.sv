@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Between queue and pipes: the register `current` holds one queue entry; every Interval cycles the ForcePipes lowest
 // bits of its mask are issued, the lowest to pipe 0. When no bit remains the oldest entry of the queue follows without
-// a gap.
+// a gap. What is issued comes from registers, as pipes read the slots' memories with it: an entry's first pairs are
+// chosen before the queue, the others a cycle ahead.
 module cuboct_issue #(
   parameter int CandidateBits = 66, // of a candidate
   parameter int FilterLanes   = 8,  // bits of the mask
@@ -16,7 +17,10 @@ module cuboct_issue #(
   input  logic                           empty_i,                           // there is none
   input  logic [CandidateBits-1:0]       candidate_i,                       // without empty_i
   input  logic [RowBits-1:0]             row_i,                             // without empty_i
-  input  logic [FilterLanes-1:0]         mask_i,                            // without empty_i; not 0
+  // Its mask, as cuboct_split has it; without empty_i.
+  input  logic [ForcePipes-1:0]          valid_i,                           // the first pairs, at least one
+  input  logic [ForcePipes*SlotBits-1:0] lane_i,                            // with valid_i
+  input  logic [FilterLanes-1:0]         rest_i,                            // the bits above
   output logic                           pop_o,                             // it is taken
   // To the pipes: the candidate, and per pipe the own slot that it meets.
   output logic [CandidateBits-1:0]       candidate_o,                       // with valid_o
@@ -24,39 +28,28 @@ module cuboct_issue #(
   output logic [ForcePipes*SlotBits-1:0] slot_o,                            // with valid_o
   output logic                           busy_o                             // current holds an entry
 );
-  logic [CandidateBits-1:0] candidate_q;
-  logic [RowBits-1:0]       row_q;
-  logic [FilterLanes-1:0]   mask_d, mask_q;
-  logic [FilterLanes-1:0]   rest, below, lowest;  // what the pipes before leave; bits above its lowest; that
-  logic [SlotBits-1:0]      row_base;
-  logic                     first, last;   // cycle of an interval
+  logic [CandidateBits-1:0]       candidate_q;
+  logic [RowBits-1:0]             row_q;
+  logic [ForcePipes-1:0]          valid_d, valid_q, rest_valid;
+  logic [ForcePipes*SlotBits-1:0] slot_d, slot_q, lane, rest_lane;
+  logic [FilterLanes-1:0]         rest_d, rest_q, rest_rest;  // behind the pairs of this cycle; behind those of the next
+  logic                           none_d, none_q;             // rest_q is 0
+  logic [RowBits-1:0]             row;
+  logic [SlotBits-1:0]            row_base;
+  logic                           first, last;                // cycle of an interval
 
-  // The lane whose bit is set. A slot's number needs no more bits: lanes beyond the last slot never pass.
-  function automatic logic [SlotBits-1:0] lane_of(input logic [FilterLanes-1:0] onehot);
-    integer l;
-    begin
-      lane_of = '0;
-      for (l = 0; l < FilterLanes; l = l + 1) begin
-        if (onehot[l]) lane_of = l[SlotBits-1:0];
-      end
-    end
-  endfunction
-
-  assign row_base = {{(SlotBits - RowBits) {1'b0}}, row_q} * FilterLanes[SlotBits-1:0];
-  integer f, k;
-  always_comb begin
-    rest    = mask_q;
-    lowest  = '0;
-    below   = '0;
-    valid_o = '0;
-    slot_o  = '0;
-    for (f = 0; f < ForcePipes; f = f + 1) begin
-      for (k = 1; k < FilterLanes; k = k + 1) below[k] = below[k-1] || rest[k-1];
-      lowest                          = rest & ~below;
-      valid_o[f]                      = first && (rest != '0);
-      slot_o[f*SlotBits +: SlotBits] = row_base + lane_of(lowest);
-      rest                            = rest & below;
-    end
+  // Whatever follows is chosen a cycle ahead: from the queue's head, or from the rest of this entry.
+  cuboct_split #(.FilterLanes(FilterLanes), .ForcePipes(ForcePipes), .SlotBits(SlotBits)) u_split (
+    .mask_i(rest_q), .valid_o(rest_valid), .lane_o(rest_lane), .rest_o(rest_rest)
+  );
+  assign row      = pop_o ? row_i : row_q;
+  assign lane     = pop_o ? lane_i : rest_lane;
+  assign row_base = {{(SlotBits - RowBits) {1'b0}}, row} * FilterLanes[SlotBits-1:0];
+  assign valid_d  = pop_o ? valid_i : rest_valid;
+  assign rest_d   = pop_o ? rest_i : rest_rest;
+  assign none_d   = (rest_d == '0);
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_slot
+    assign slot_d[f*SlotBits +: SlotBits] = row_base + lane[f*SlotBits +: SlotBits];
   end
 
   if (Interval == 1) begin : gen_every_cycle
@@ -67,7 +60,7 @@ module cuboct_issue #(
     localparam int Last      = Interval - 1;
     logic [PhaseBits-1:0] phase_d, phase_q;
     assign first   = (phase_q == '0);
-    assign last    = (phase_q == Last[PhaseBits-1:0]) || (mask_q == '0);
+    assign last    = (phase_q == Last[PhaseBits-1:0]) || !valid_q[0];
     assign phase_d = last ? '0 : phase_q + 1'b1;
     always_ff @(posedge clk_i) begin
       if (!rst_ni) phase_q <= '0;
@@ -75,13 +68,20 @@ module cuboct_issue #(
     end
   end
 
-  assign pop_o  = last && (rest == '0) && !empty_i;
-  assign mask_d = pop_o ? mask_i : last ? rest : mask_q;
+  assign pop_o = last && none_q && !empty_i;
   always_ff @(posedge clk_i) begin
-    if (!rst_ni) mask_q <= '0;
-    else mask_q <= mask_d;
+    if (!rst_ni) begin
+      valid_q <= '0;
+      rest_q  <= '0;
+      none_q  <= 1'b1;
+    end else if (last) begin
+      valid_q <= valid_d;
+      rest_q  <= rest_d;
+      none_q  <= none_d;
+    end
   end
   always_ff @(posedge clk_i) begin
+    if (last) slot_q <= slot_d;
     if (pop_o) begin
       candidate_q <= candidate_i;
       row_q       <= row_i;
@@ -89,5 +89,7 @@ module cuboct_issue #(
   end
 
   assign candidate_o = candidate_q;
-  assign busy_o      = (mask_q != '0);
+  assign valid_o     = valid_q & {ForcePipes{first}};
+  assign slot_o      = slot_q;
+  assign busy_o      = valid_q[0];
 endmodule

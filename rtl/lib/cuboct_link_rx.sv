@@ -29,28 +29,46 @@ module cuboct_link_rx #(
   localparam int MigrateLast  = MigrateBeats - 1;
 
   logic                migrating_d, migrating_q;  // the stream that comes next, or is coming
-  logic [BeatBits-1:0] beat_d, beat_q, last_beat;
+  logic [BeatBits-1:0] beat_d, beat_q, last_beat, other_last;  // last: of a record of this stream, of one of the next
+  logic                last_d, last_q;             // beat_q is last_beat
+  logic                halo_last_q, migrate_last_q;  // and the stream is one of halos, of particles
   logic                take, record_done;
 
   assign ready_o     = 1'b1;
   assign take        = valid_i && !end_i;
   assign last_beat   = migrating_q ? MigrateLast[BeatBits-1:0] : HaloLast[BeatBits-1:0];
-  assign record_done = take && (beat_q == last_beat);
+  assign other_last  = migrating_q ? HaloLast[BeatBits-1:0] : MigrateLast[BeatBits-1:0];
+  assign record_done = take && last_q;
 
   always_comb begin
     beat_d      = beat_q;
     migrating_d = migrating_q;
-    if (record_done) beat_d = '0;
-    else if (take) beat_d = beat_q + 1'b1;
-    if (valid_i && end_i) migrating_d = !migrating_q;
+    last_d      = last_q;
+    if (record_done) begin
+      beat_d = '0;
+      last_d = (last_beat == '0);
+    end else if (take) begin
+      beat_d = beat_q + 1'b1;
+      last_d = (beat_q + 1'b1 == last_beat);
+    end
+    if (valid_i && end_i) begin
+      migrating_d = !migrating_q;
+      last_d      = (beat_q == other_last);
+    end
   end
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       beat_q      <= '0;
+      last_q      <= (HaloLast == 0);
+      halo_last_q <= (HaloLast == 0);
+      migrate_last_q <= 1'b0;
       migrating_q <= 1'b0;
     end else begin
       beat_q      <= beat_d;
+      last_q      <= last_d;
+      halo_last_q <= last_d && !migrating_d;
+      migrate_last_q <= last_d && migrating_d;
       migrating_q <= migrating_d;
     end
   end
@@ -73,8 +91,8 @@ module cuboct_link_rx #(
 
   assign halo_o          = halo_padded[HaloBits-1:0];
   assign migrate_o       = migrate_padded[MigrateBits-1:0];
-  assign halo_valid_o    = record_done && !migrating_q;
-  assign migrate_valid_o = record_done && migrating_q;
+  assign halo_valid_o    = take && halo_last_q;
+  assign migrate_valid_o = take && migrate_last_q;
   assign halo_end_o      = valid_i && end_i && !migrating_q;
   assign migrate_end_o   = valid_i && end_i && migrating_q;
 

@@ -34,7 +34,7 @@ module cuboct_migrate #(
   output logic [SlotBits-1:0]       write_slot_o,     // with write_o
   output logic [ParticleBits+1:0]   write_data_o,     // with write_o
   output logic [Axes-1:0]           leaving_more_o,   // axes along which an arrived particle goes on, if it is kept
-  output logic [Axes-1:0]           goes_on_o,        // with some_i: the same, kept or not
+  output logic [Axes-1:0]           goes_on_o,        // with pop_o: the same, kept or not
   // Links of the axis: below, above.
   input  logic [1:0]                can_load_i,       // whether each link register can take a beat in this cycle
   output logic [1:0]                load_o,           // which link registers take a beat
@@ -44,10 +44,10 @@ module cuboct_migrate #(
   output logic                      next_load_o,      // both take an end beat
   // The inbox that is taken from.
   output logic [2*Axes-1:0]         face_o,           // which one, one bit each; none outside of TAKE_LOW and TAKE_HIGH
-  input  logic                      some_i,           // a particle waits in it; not where there is none
-  input  logic                      ended_i,          // its end beat came
-  input  logic                      above_done_i,     // Early: nothing waits from above, and its end beat came
-  input  logic [ParticleBits-1:0]   arrived_i,        // with some_i: its oldest particle
+  // Of the axis: below, above.
+  input  logic [1:0]                some_i,           // a particle waits
+  input  logic [1:0]                over_i,           // none does, and the end beat came
+  input  logic [ParticleBits-1:0]   arrived_i,        // where one waits: the oldest particle of face_o
   output logic                      pop_o,            // it is taken
   // Faults, of the particle in fault_particle_o.
   output logic                      fault_left_o,     // there is no link: it is dropped
@@ -68,13 +68,16 @@ module cuboct_migrate #(
   logic [CountBits-1:0] next_d, next_q, write_d, write_q;  // Scan: the slot after this one, slots kept
   logic [BeatBits-1:0]  beat_d, beat_q;
   logic [1:0]           away;
+  logic                 low_d, low_q, high_d, high_q;      // in TakeLow, in TakeHigh
+  logic                 some;                              // a particle is taken
+  logic                 follows, stays_low;
   logic                 stays, up, linked, loadable, last_beat, advance, last_slot, takes, looks;
 
   // The first state depends on what the update, or the axis before, found.
   // What depends on the face depends on registers.
   logic [2*Axes-1:0] face_d, face_q;
   logic              quiet;      // no one leaves along the next phase's axis
-  logic [1:0]        face_axis;  // of the next cycle's face
+  logic [1:0]        face_axis;  // of the next phase
   logic              took_q;     // a particle was taken in the cycle before
   logic              none_q;     // no particle is left, but for one taken in the cycle before
   // What SCAN has counted: with Early a cycle later, as the links' answers come late and no one asks before.
@@ -85,16 +88,20 @@ module cuboct_migrate #(
     else scan_set_q <= scan_set;
   end
   always_ff @(posedge clk_i) begin
-    took_q       <= some_i;
+    took_q       <= some;
     none_q       <= scan_set_q ? (scan_count_q == '0) : (count_i == '0);
     scan_count_q <= scan_count;
     scan_full_q  <= scan_full;
   end
   assign quiet     = (Early != 0) && (!leaving_i || none_q) && next_empty_i;
-  assign face_axis = next_load_o && !before_i ? axis_i + 2'd1 : axis_i;
+  assign face_axis = before_i ? axis_i : axis_i + 2'd1;
   for (genvar f = 0; f < 2 * Axes; f++) begin : gen_face
     localparam int Axis = f / 2;
-    assign face_d[f] = (face_axis == Axis[1:0]) && (state_d == ((f % 2 == 0) ? TakeLow : TakeHigh));
+    if (f % 2 == 0) begin : gen_low
+      assign face_d[f] = (quiet && follows && face_axis == Axis[1:0]) || (stays_low && axis_i == Axis[1:0]);
+    end else begin : gen_high
+      assign face_d[f] = high_d && (axis_i == Axis[1:0]);
+    end
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) face_q <= '0;
@@ -121,7 +128,14 @@ module cuboct_migrate #(
   assign advance   = stays || !linked || (loadable && last_beat);  // SCAN is done with the slot
   assign last_slot = (next_q == count_i);
 
-  assign takes     = (state_q == TakeLow) || (state_q == TakeHigh);
+  assign takes     = low_q || high_q;
+  assign some      = (low_q && some_i[0]) || (high_q && some_i[1]);
+  assign done_o    = over_i[1] && (high_q || (Early != 0 && low_q && over_i[0])) && (Early == 0 || !took_q);
+  // Whether all is quiet is known late.
+  assign follows   = (Early != 0) && (before_i || (done_o && axis_i != LastAxis[1:0]));  // the next phase begins
+  assign stays_low = (active_i && ends && can_load_i == 2'b11) || (low_q && !over_i[0]);
+  assign low_d     = (quiet && follows) || stays_low;
+  assign high_d    = ((low_q && over_i[0]) || high_q) && !done_o;
 
   // An arrived particle has come to where it goes on this axis.
   logic [AwayBits-1:0] away_on;
@@ -141,7 +155,6 @@ module cuboct_migrate #(
     next_d         = next_q;
     write_d        = write_q;
     beat_d         = beat_q;
-    done_o         = 1'b0;
     load_o         = 2'b00;
     write_o        = 1'b0;
     // Chosen by the state: what arrives comes late in the cycle.
@@ -156,11 +169,10 @@ module cuboct_migrate #(
     count_o        = scan_count_q;
     full_o         = scan_full_q;
     leaving_more_o = '0;
-    pop_o          = some_i;
+    pop_o          = some;
     fault_left_o   = 1'b0;
     fault_full_o   = 1'b0;
-    next_load_o    = (Early != 0) && before_i && quiet;
-    if (next_load_o) state_d = TakeLow;
+    next_load_o    = quiet && follows;
     if (active_i) begin
       if (scans) begin
         state_d = Scan;
@@ -185,28 +197,18 @@ module cuboct_migrate #(
       end
       if (ends) begin
         state_d = End;
-        if (can_load_i == 2'b11) begin
-          load_o  = 2'b11;
-          state_d = TakeLow;
-        end
+        if (can_load_i == 2'b11) load_o = 2'b11;
       end
-      if (state_q == TakeLow && !some_i && ended_i) state_d = TakeHigh;
-      if (!some_i && ended_i && (Early == 0 || !took_q)
-          && (state_q == TakeHigh || (Early != 0 && state_q == TakeLow && above_done_i))) begin
-        state_d = Enter;
-        done_o  = 1'b1;
-        if (quiet && axis_i != LastAxis[1:0]) begin
-          next_load_o = 1'b1;
-          state_d     = TakeLow;
-        end
-      end
+      if (done_o) state_d = Enter;
     end
+    if (high_d) state_d = TakeHigh;
+    if (low_d) state_d = TakeLow;
     if (Early == 0) begin
       count_set_o = scan_set;
       count_o     = scan_count;
       full_o      = scan_full;
     end
-    if (some_i) begin
+    if (some) begin
       write_o      = !full_i;
       count_set_o  = !full_i;
       count_o      = count_i + 1'b1;
@@ -222,11 +224,15 @@ module cuboct_migrate #(
       next_q  <= {{(CountBits - 1) {1'b0}}, 1'b1};
       write_q <= '0;
       beat_q  <= '0;
+      low_q   <= 1'b0;
+      high_q  <= 1'b0;
     end else begin
       state_q <= state_d;
       next_q  <= next_d;
       write_q <= write_d;
       beat_q  <= beat_d;
+      low_q   <= low_d;
+      high_q  <= high_d;
     end
   end
 

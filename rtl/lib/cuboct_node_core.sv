@@ -247,7 +247,8 @@ module cuboct_node_core #(
   logic [Faces-1:0]           halo_end, migrate_end, migrate_empty, migrate_face, migrate_clear;
   logic [Faces*CountBits-1:0] halo_count;
   logic [Faces-1:0]           stream_end;
-  logic [Faces*CountBits-1:0] stream_count;
+  logic [Faces-1:0]           some_next, over_next;  // migrating particles, in the next cycle: one waits; none does, all came
+  logic [Faces-1:0]           stream_came, halo_came;  // a record comes
   logic [Streamers*AddrBits-1:0] stream_addr;
   logic [AddrBits-1:0]        relay_addr;
   logic                       box_empty;
@@ -263,7 +264,7 @@ module cuboct_node_core #(
   logic [LinkBits-1:0]  halo_word;
   logic                 record_shift, record_set;
   logic [HaloBits-1:0]  own_record, record;
-  logic                 migrate_some, migrate_pop;
+  logic                 migrate_pop;
   logic [Axes-1:0]      axis_onehot;
   if (Narrow != 0) begin : gen_narrow
     logic [Faces-1:0]        face;
@@ -292,14 +293,16 @@ module cuboct_node_core #(
       .particle_valid_o(shown), .particle_o(particle), .pop_i(migrate_pop)
     );
     assign migrate_empty = {Faces{!shown}};
-    assign migrate_some  = shown;
     assign arrived       = particle;
     assign stream_halos  = '0;
     assign relay_halos   = '0;
     logic unused_addr;
     assign unused_addr = ^{stream_addr, relay_addr, relay_clear, box_empty, box_low, box_high};
     assign stream_end   = halo_end;
-    assign stream_count = halo_count;
+    assign stream_came  = '0;
+    assign halo_came    = '0;
+    assign some_next    = '0;
+    assign over_next    = '0;
   end else begin : gen_wide
     logic [Faces*ParticleBits-1:0] particles;
     cuboct_halos #(
@@ -310,11 +313,12 @@ module cuboct_node_core #(
     ) u_halos (
       .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
       .halo_clear_i(force_over), .halo_end_o(halo_end), .halo_count_o(halo_count), .stream_end_o(stream_end),
-      .stream_count_o(stream_count), .run_i(engine_runs), .box_empty_i(box_empty), .box_low_i(box_low),
+      .halo_came_o(halo_came), .stream_came_o(stream_came), .run_i(engine_runs), .box_empty_i(box_empty), .box_low_i(box_low),
       .box_high_i(box_high), .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
       .relay_read_i(relay_read), .relay_clear_i(relay_clear[Faces-2:1]), .relay_addr_i(relay_addr),
       .relay_data_o(relay_halos), .migrating_i(in_migrate || (Arrival != 0 && in_update)),
       .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty),
+      .migrate_some_next_o(some_next), .migrate_over_next_o(over_next),
       .migrate_data_o(particles),
       .migrate_pop_i(migrate_face & ~migrate_empty)
     );
@@ -326,13 +330,15 @@ module cuboct_node_core #(
                              & {ParticleBits{migrate_face[f]}});
       end
     end
-    assign migrate_some = ((migrate_face & ~migrate_empty) != '0);
     assign halo_word = '0;
     assign record    = '0;
     logic unused_narrow;
     assign unused_narrow = ^{relay_word, walk_word, walk_segment, record_shift, record_set, own_record, relay_pick,
                              relay_clear[0], migrate_pop, halo_word, halo_count};
   end
+
+  logic unused_told;
+  assign unused_told = ^{halo_came, migrate_end};
 
   // leaving[a]: some own particle has to go along axis a.
   logic [Axes-1:0] leaving_d, leaving_q, leaving_more, away_axes;
@@ -350,7 +356,7 @@ module cuboct_node_core #(
     );
   end
   // What belongs to the axis of the present phase, and of the one that the next migration is along.
-  logic                      next_empty, migrate_next_load, above_done;
+  logic                      next_empty, migrate_next_load;
   logic [1:0]                axis_halo_end;
   logic                      next_leaving;  // along the axis of the next migration phase
   integer                    b;
@@ -360,10 +366,8 @@ module cuboct_node_core #(
     axis_halo_end = 2'b00;
     next_leaving  = leaving_q[0] && !in_migrate;
     next_empty    = (link_valid_o[1:0] == 2'b00) && !in_migrate;
-    above_done    = 1'b0;
     for (b = 0; b < Axes; b = b + 1) begin
       if (axis_onehot[b]) begin
-        above_done    = migrate_end[2*b+1] && migrate_empty[2*b+1];
         axis_can_load = can_load[2*b +: 2];
         axis_has_link = has_link_i[2*b +: 2];
         axis_halo_end = halo_end[2*b +: 2];
@@ -373,6 +377,37 @@ module cuboct_node_core #(
         next_empty    = (link_valid_o[2*b +: 2] == 2'b00);
       end
     end
+  end
+  // The same of the inboxes: what migration is told comes from registers.
+  logic [1:0] axis_some, axis_over;  // below, above: a particle waits; none does, and all came
+  if (Narrow != 0) begin : gen_narrow_over
+    assign axis_some = ~migrate_empty[1:0];
+    assign axis_over = {2{migrate_empty[0] && (migrate_face & migrate_end) != '0}};
+    logic unused_next;
+    assign unused_next = ^{some_next, over_next};
+  end else begin : gen_wide_over
+    logic [1:0] some_here, some_there, over_here, over_there, some_q, over_q;  // of this axis, of the next one
+    integer     c;
+    always_comb begin
+      some_here  = 2'b00;
+      some_there = 2'b00;
+      over_here  = 2'b00;
+      over_there = 2'b00;
+      for (c = 0; c < Axes; c = c + 1) begin
+        some_here = some_here | (some_next[2*c +: 2] & {2{axis_onehot[c]}});
+        over_here = over_here | (over_next[2*c +: 2] & {2{axis_onehot[c]}});
+        if (c > 0) begin
+          some_there = some_there | (some_next[2*c +: 2] & {2{axis_onehot[c-1]}});
+          over_there = over_there | (over_next[2*c +: 2] & {2{axis_onehot[c-1]}});
+        end
+      end
+    end
+    always_ff @(posedge clk_i) begin
+      some_q <= migrate_done ? some_there : some_here;
+      over_q <= migrate_done ? over_there : over_here;
+    end
+    assign axis_some = some_q;
+    assign axis_over = over_q;
   end
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
   assign send_end  = in_exchange ? relay_end : migrate_send_end;
@@ -430,9 +465,10 @@ module cuboct_node_core #(
       .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .AddrBits(AddrBits),
       .CountBits(CountBits)
     ) u_relay (
-      .clk_i, .rst_ni, .active_i(in_exchange), .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_q}),
+      .clk_i, .rst_ni, .active_i(in_exchange), .own_count_i(own_count_q), .came_i(halo_came[Faces-3:0]),
       .complete_i({halo_end[Faces-3:0], 1'b1}), .read_o(relay_read), .clear_o(relay_clear), .addr_o(relay_addr),
-      .slot_o(relay_slot), .own_i(relay_record), .halo_i(relay_halo_record), .can_load_i(can_load),
+      .slot_o(relay_slot), .own_i(relay_record), .halo_i(relay_halo_record), .has_link_i, .valid_i(link_valid_o),
+      .ready_i(link_ready_i),
       .load_o(relay_face_load), .end_o(relay_end), .data_o(relay_beat), .observe_o(relay_observe), .sent_o(sent)
     );
     assign relay_sent      = ((sent & axis_onehot) != '0);
@@ -503,7 +539,7 @@ module cuboct_node_core #(
     assign row         = '0;
     assign force_event_o[3:1] = {issue[0], present, force_stall};
     logic unused_streams;
-    assign unused_streams = ^{past_exchange, row_data, stream_halos, stream_end, stream_count};
+    assign unused_streams = ^{past_exchange, row_data, stream_halos, stream_end, stream_came};
   end else begin : gen_stream
     localparam int Pipes = ForcePipes / Streamers;
     logic [Streamers-1:0] done;
@@ -512,12 +548,11 @@ module cuboct_node_core #(
       localparam int Own   = (s == 0) ? 1 : 0;
       localparam int Halos = Faces / Streamers;
       logic [Halos+Own-1:0]             complete;
-      logic [(Halos+Own)*CountBits-1:0] counts;
+      logic [Halos-1:0]                 came;
       logic [Halos*CandidateBits-1:0]   halos;
       logic [SlotBits-1:0]              own_slot;
       if (Own != 0) begin : gen_own
         assign complete[0]            = 1'b1;
-        assign counts[0 +: CountBits] = own_count_q;
         assign stream_slot            = own_slot;
       end else begin : gen_no_own
         logic unused_own_slot;
@@ -526,7 +561,7 @@ module cuboct_node_core #(
       for (genvar k = 0; k < Halos; k++) begin : gen_halo
         localparam int Face = k * Streamers + s;
         assign complete[k+Own]                          = (Arrival != 0) ? stream_end[Face] : past_exchange[Face/2];
-        assign counts[(k+Own)*CountBits +: CountBits]   = stream_count[Face*CountBits +: CountBits];
+        assign came[k]                                  = stream_came[Face];
         assign halos[k*CandidateBits +: CandidateBits]  = stream_halos[Face*CandidateBits +: CandidateBits];
       end
       cuboct_pair_finder #(
@@ -536,7 +571,7 @@ module cuboct_node_core #(
         .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
       ) u_finder (
         .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_over), .own_count_i(own_count_q), .complete_i(complete),
-        .counts_i(counts), .read_o(stream_read[s]), .slot_o(own_slot), .addr_o(stream_addr[s*AddrBits +: AddrBits]),
+        .came_i(came), .read_o(stream_read[s]), .slot_o(own_slot), .addr_o(stream_addr[s*AddrBits +: AddrBits]),
         .own_i(own_candidate), .halos_i(halos), .row_o(row[s*RowBits +: RowBits]),
         .row_data_i(row_data[s*FilterLanes*Axes*FilterFrac +: FilterLanes*Axes*FilterFrac]),
         .candidate_o(issue_candidate[s*CandidateBits +: CandidateBits]), .issue_o(issue[s*Pipes +: Pipes]),
@@ -670,18 +705,18 @@ module cuboct_node_core #(
   ) u_migrate (
     .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .has_link_i(axis_has_link),
     .before_i(in_update && update_done), .next_empty_i(next_empty), .next_load_o(migrate_next_load),
-    .above_done_i(above_done), .goes_on_o(migrate_goes_on),
+    .goes_on_o(migrate_goes_on),
     .leaving_i(next_leaving), .count_i(own_count_q), .full_i(full_q), .count_set_o(migrate_count_set),
     .count_o(migrate_count), .full_o(migrate_full),
     .read_o(migrate_read), .read_slot_o(migrate_read_slot), .read_data_i(main_data), .write_o(migrate_write),
     .write_slot_o(migrate_write_slot), .write_data_o(migrate_write_data), .leaving_more_o(leaving_more),
     .can_load_i(axis_can_load), .load_o(migrate_load), .end_o(migrate_send_end), .data_o(migrate_beat),
-    .face_o(migrate_face), .some_i(migrate_some), .ended_i((migrate_face & migrate_end) != '0), .arrived_i(arrived),
+    .face_o(migrate_face), .some_i(axis_some), .over_i(axis_over), .arrived_i(arrived),
     .pop_o(migrate_pop),
     .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
   );
 
-  assign migrate_arrived = migrate_some;
+  assign migrate_arrived = migrate_pop;
 
   // The main read port of the slots, asked a cycle ahead, and what is observed through it. Outside its phases each of
   // the four rests at slot 0, where its next phase begins. The port asks in every cycle in which none of them waits.

@@ -29,7 +29,7 @@ module cuboct_pair_finder #(
   input  logic                                  restart_i,
   input  logic [CountBits-1:0]                  own_count_i,  // own particles
   input  logic [Segments-1:0]                   complete_i,   // by segment: all records are there
-  input  logic [Segments*CountBits-1:0]         counts_i,     // records
+  input  logic [Halos-1:0]                      came_i,       // by segment behind the own ones: a record comes
   // Where the candidate is read: own slot, and record of the faces' halos, and a row of own positions. The memories
   // answer in the next cycle, and keep the answer until the next read.
   output logic                                  read_o,       // the memories are asked
@@ -59,14 +59,16 @@ module cuboct_pair_finder #(
   logic [CandidateBits-1:0] read_own;
   logic [FilterLanes*Axes*FilterFrac-1:0] read_row_data;
   logic [CandidateBits-1:0] candidate, candidate_out, candidate_head;
-  logic [FilterLanes-1:0]   mask_out, mask_head;
+  logic [FilterLanes-1:0]   mask_out, rest_out, rest_head;
+  logic [ForcePipes-1:0]    valid_out, valid_head;  // first pairs of the mask
+  logic [ForcePipes*SlotBits-1:0] lane_out, lane_head;
   logic                     push, pop, full, empty;
 
   cuboct_streamer #(
-    .Segments(Segments), .Arrival(Arrival), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits),
+    .Segments(Segments), .Own(Own), .Arrival(Arrival), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits),
     .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_streamer (
-    .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .own_i(own_count_i), .complete_i, .counts_i,
+    .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .own_i(own_count_i), .complete_i, .came_i,
     .pick_o(pick), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
   );
 
@@ -129,23 +131,29 @@ module cuboct_pair_finder #(
     .mask_o(mask_out), .busy_o(filter_busy)
   );
 
-  cuboct_fifo #(.Bits(CandidateBits + RowBits + FilterLanes), .Depth(QueueDepth)) u_queue (
-    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_out, row_out, mask_out}), .full_o(full),
-    .pop_i(pop), .data_o({candidate_head, row_head, mask_head}), .empty_o(empty)
+  cuboct_split #(.FilterLanes(FilterLanes), .ForcePipes(ForcePipes), .SlotBits(SlotBits)) u_split (
+    .mask_i(mask_out), .valid_o(valid_out), .lane_o(lane_out), .rest_o(rest_out)
+  );
+  cuboct_fifo #(
+    .Bits(CandidateBits + RowBits + ForcePipes * (1 + SlotBits) + FilterLanes), .Depth(QueueDepth)
+  ) u_queue (
+    .clk_i, .rst_ni, .push_i(push), .data_i({candidate_out, row_out, valid_out, lane_out, rest_out}),
+    .full_o(full),
+    .pop_i(pop), .data_o({candidate_head, row_head, valid_head, lane_head, rest_head}), .empty_o(empty)
   );
 
   cuboct_issue #(
     .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits),
     .ForcePipes(ForcePipes), .Interval(Interval)
   ) u_issue (
-    .clk_i, .rst_ni, .empty_i(empty), .candidate_i(candidate_head), .row_i(row_head), .mask_i(mask_head),
-    .pop_o(pop), .candidate_o, .valid_o(issue_o), .slot_o(issue_slot_o), .busy_o(issue_busy)
+    .clk_i, .rst_ni, .empty_i(empty), .candidate_i(candidate_head), .row_i(row_head), .valid_i(valid_head),
+    .lane_i(lane_head), .rest_i(rest_head), .pop_o(pop), .candidate_o, .valid_o(issue_o), .slot_o(issue_slot_o), .busy_o(issue_busy)
   );
 
   assign stall_o   = stall;
   assign present_o = present;
   // Whatever they answer where no candidate is asked for, the filter does not take it; a stall is known earlier.
-  assign read_o    = run_i && !stall;
+  assign read_o    = !stall;
   assign row_o     = row;
   assign done_o = past && !read_busy && !filter_busy && empty && !issue_busy;
   logic unused_own;

@@ -11,7 +11,7 @@ module cuboct_ram #(
   input  logic [AddrBits-1:0] write_addr_i, // with write_i
   input  logic [Bits-1:0]     write_data_i, // with write_i
   input  logic                read_i,       // without it the answer stays
-  input  logic                clear_i,      // the answer is 0, whatever read_i is
+  input  logic                clear_i,      // with read_i: the answer is 0
   input  logic [AddrBits-1:0] read_addr_i,  // with read_i
   output logic [Bits-1:0]     read_data_o   // from the next cycle on
 );
@@ -25,8 +25,10 @@ module cuboct_ram #(
       if (write_i) mem_q[write_addr_i[IndexBits-1:0]] <= write_data_i;
     end
     always_ff @(posedge clk_i) begin
-      if (clear_i) read_q <= '0;
-      else if (read_i) read_q <= mem_q[read_addr_i[IndexBits-1:0]];
+      if (read_i) begin
+        if (clear_i) read_q <= '0;
+        else read_q <= mem_q[read_addr_i[IndexBits-1:0]];
+      end
     end
     assign read_data_o = read_q;
   end else begin : gen_any
@@ -36,8 +38,10 @@ module cuboct_ram #(
       if (write_i) mem_q[write_addr_i[IndexBits-1:0]] <= write_data_i;
     end
     always_ff @(posedge clk_i) begin
-      if (clear_i) read_q <= '0;
-      else if (read_i) read_q <= mem_q[read_addr_i[IndexBits-1:0]];
+      if (read_i) begin
+        if (clear_i) read_q <= '0;
+        else read_q <= mem_q[read_addr_i[IndexBits-1:0]];
+      end
     end
     assign read_data_o = read_q;
   end

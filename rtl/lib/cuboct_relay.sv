@@ -21,7 +21,7 @@ module cuboct_relay #(
   // Segments: 0 own, then the halos of -x, +x and, with three axes, -y, +y; their counts, and where to read.
   input  logic [(2*Axes-1)*CountBits-1:0] counts_i,  // constant in a phase; of own ones the next cycle's
   output logic [2*Axes-2:0]      pick_o,      // which one, one bit each; none for the end beat
-  output logic [2*Axes-2:0]      clear_o,     // by segment: its memory's answer becomes 0, as it is not picked next
+  output logic [2*Axes-2:0]      clear_o,     // with read_o, by segment: its memory's answer becomes 0, as it is not picked next
   output logic                   read_o,      // asks all for what comes next; without it the answers stay
   output logic [AddrBits-1:0]    addr_o,      // with read_o: of the record
   output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles; 0 outside of a phase
@@ -109,7 +109,7 @@ module cuboct_relay #(
   end
 
   assign pick_o      = pick_q;
-  assign clear_o     = ~pick_next & {Segments{read_o}};
+  assign clear_o     = ~pick_next;
   assign addr_o      = (active_i && !past && !leaves) ? next_q[AddrBits-1:0] : '0;
   assign slot_o      = addr_o[SlotBits-1:0];
   assign sent_o      = sent_q;

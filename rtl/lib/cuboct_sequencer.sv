@@ -49,12 +49,12 @@ module cuboct_sequencer #(
   logic          y_d, z_d;
   logic [2:0]    axis_q;  // as onehot_o
   logic [31:0]   steps_d, steps_q;  // still to do, this one included
-  logic          start, last_step, none;
+  logic          last_step_q;       // the step is the last one: known a cycle after the step's first
+  logic          start, none;
 
   assign start     = state_q[Idle] && start_i;
-  assign last_step = (steps_q == 32'd1);
   assign none      = (steps_i == 32'd0);
-  assign enter[ExchangeX] = (start && !none) || (step_end_o && !last_step);
+  assign enter[ExchangeX] = (start && !none) || (step_end_o && !last_step_q);
   assign enter[ExchangeY] = state_q[ExchangeX] && exchange_done_i;
   assign enter[ExchangeZ] = (Axes == 3) && state_q[ExchangeY] && exchange_done_i;
   assign enter[Force]     = state_q[LastExchange] && exchange_done_i;
@@ -62,7 +62,7 @@ module cuboct_sequencer #(
   assign enter[MigrateX]  = state_q[Update] && update_done_i;
   assign enter[MigrateY]  = state_q[MigrateX] && migrate_done_i;
   assign enter[MigrateZ]  = (Axes == 3) && state_q[MigrateY] && migrate_done_i;
-  assign enter[Dump]      = (start && none) || (step_end_o && last_step);
+  assign enter[Dump]      = (start && none) || (step_end_o && last_step_q);
   assign enter[Idle]      = state_q[Dump] && dump_done_i;
   assign leave            = {start, dump_done_i, {3{migrate_done_i}}, update_done_i, force_done_i,
                              {3{exchange_done_i}}};
@@ -91,6 +91,8 @@ module cuboct_sequencer #(
       axis_q     <= {z_d, y_d, !z_d && !y_d};
     end
   end
+
+  always_ff @(posedge clk_i) last_step_q <= (steps_q == 32'd1);
 
   logic in_force, engine_first;
   assign in_force     = state_q[Force];

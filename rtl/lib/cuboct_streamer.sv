@@ -3,21 +3,24 @@
 // own slots. One (record, row) per cycle, or one segment left without a record.
 module cuboct_streamer #(
   parameter int Segments    = 7,  // >= 1
+  parameter int Own         = 1,  // 1: the first segment are the own particles
   parameter int Arrival     = 0,  // 1: a record may be read before its segment is complete
   parameter int FilterLanes = 8,  // own slots per row
   parameter int RowBits     = 1,  // of a row's number
   parameter int SlotBits    = 4,  // of an own slot's number
   parameter int AddrBits    = 8,  // of a record's number in any segment
-  parameter int CountBits   = 8   // of a segment's count
+  parameter int CountBits   = 8,  // of a segment's count
+  localparam int Halos      = Segments - Own
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
   input  logic                   run_i,        // the force engine's phase
   input  logic                   restart_i,    // its last cycle
   input  logic                   stall_i,      // nothing moves
-  input  logic [CountBits-1:0]   own_i,        // own particles
+  input  logic [CountBits-1:0]   own_i,        // own particles; they stay from the cycle before run_i on
   input  logic [Segments-1:0]    complete_i,   // by segment: all records are there
-  input  logic [Segments*CountBits-1:0] counts_i,  // records; Arrival: that are there, else with complete_i
+  input  logic [Halos-1:0]       came_i,       // by segment behind the own one: a record comes, also before run_i, not
+                                               // with restart_i; it may be read from the next cycle on
   output logic [Segments-1:0]    pick_o,       // segment, a bit each; none if past_o
   output logic [AddrBits-1:0]    addr_o,       // the record's number in its segment
   output logic [SlotBits-1:0]    slot_o,       // addr_o, for the own particles
@@ -26,6 +29,7 @@ module cuboct_streamer #(
   output logic                   past_o        // all segments are done
 );
   localparam logic [CountBits-1:0] One = 1;
+  localparam logic [CountBits-1:0] Two = 2;
   localparam logic [Segments-1:0] First = 1;
   localparam int RowSlots = CountBits + $clog2(FilterLanes + 1);  // bits of a slot number beyond the last row
 
@@ -34,32 +38,73 @@ module cuboct_streamer #(
   logic [CountBits-1:0] next_d, next_q;            // record_q and 1
   logic [RowBits-1:0]   row_d, row_q;
   logic [RowSlots-1:0]  next_slot_d, next_slot_q;  // first slot of the next row
-  logic [CountBits-1:0] count;
-  logic                 complete, skip, go, last_row, last_record;
+  logic                 last_row_d, last_row_q;    // next_slot_q >= own_i
+  logic                 own_q, few_q;              // own particles: some; no more than one row
+  logic [Segments-1:0]  came, some, one;           // by segment: records that are not done with: any, one
+  logic                 complete, there, only, skip, go, done, last_record;
 
-  integer s;
-  always_comb begin
-    count    = '0;
-    complete = 1'b0;
-    for (s = 0; s < Segments; s = s + 1) begin
-      count    = count | (counts_i[s*CountBits +: CountBits] & {CountBits{pick_q[s]}});
-      complete = complete || (pick_q[s] && complete_i[s]);
+  // What is there to be met, counted as it comes and as it is done with: it needs no comparison of two numbers, and is
+  // known from registers.
+  if (Own != 0) begin : gen_own
+    assign came = {came_i, 1'b0};
+  end else begin : gen_no_own
+    assign came = came_i;
+  end
+  for (genvar g = 0; g < Segments; g++) begin : gen_left
+    localparam int IsOwn = (Own != 0 && g == 0) ? 1 : 0;
+    logic [CountBits-1:0] left_d, left_q;
+    logic                 some_d, some_q, one_d, one_q, meets;
+    assign meets = done && pick_q[g];
+    always_comb begin
+      left_d = left_q;
+      some_d = some_q;
+      one_d  = one_q;
+      if (came[g] && !meets) begin
+        left_d = left_q + 1'b1;
+        some_d = 1'b1;
+        one_d  = !some_q;
+      end else if (meets && !came[g]) begin
+        left_d = left_q - 1'b1;
+        some_d = !one_q;
+        one_d  = (left_q == Two);
+      end
+      if (restart_i) begin
+        left_d = '0;
+        some_d = 1'b0;
+        one_d  = 1'b0;
+      end
+      if (IsOwn != 0 && !run_i) begin
+        left_d = own_i;
+        some_d = (own_i != '0);
+        one_d  = (own_i == One);
+      end
     end
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) begin
+        left_q <= '0;
+        some_q <= 1'b0;
+        one_q  <= 1'b0;
+      end else begin
+        left_q <= left_d;
+        some_q <= some_d;
+        one_q  <= one_d;
+      end
+    end
+    assign some[g] = some_q;
+    assign one[g]  = one_q;
   end
 
-  if (Arrival != 0) begin : gen_arrival
-    // There are own particles; they stay from the cycle before a step on.
-    logic own_q, there;  // there: a record is to be met
-    always_ff @(posedge clk_i) own_q <= (own_i != '0);
-    assign there = own_q && (record_q != count);
-    assign go    = run_i && !stall_i && (there || complete);
-    assign skip  = !there;
-  end else begin : gen_phases
-    assign go   = run_i && !stall_i && complete;
-    assign skip = (own_i == '0) || (count == '0);
+  always_ff @(posedge clk_i) begin
+    own_q <= (own_i != '0);
+    few_q <= ({{(RowSlots - CountBits) {1'b0}}, own_i} <= FilterLanes[RowSlots-1:0]);
   end
-  assign last_row    = (next_slot_q >= {{(RowSlots - CountBits) {1'b0}}, own_i});
-  assign last_record = ((Arrival == 0) || complete) && (count == next_q);
+  assign complete    = ((pick_q & complete_i) != '0);
+  assign there       = own_q && ((pick_q & some) != '0);
+  assign only        = ((pick_q & one) != '0);
+  assign go          = run_i && !stall_i && (complete || (Arrival != 0 && there));
+  assign skip        = !there;
+  assign done        = go && !skip && last_row_q;  // with the record
+  assign last_record = complete && only;
   assign present_o   = go && !skip;
 
   always_comb begin
@@ -74,7 +119,7 @@ module cuboct_streamer #(
         record_d = '0;
         next_d   = One;
       end
-    end else if (go && !last_row) begin
+    end else if (go && !last_row_q) begin
       row_d       = row_q + 1'b1;
       next_slot_d = next_slot_q + FilterLanes[RowSlots-1:0];
     end else if (go) begin
@@ -89,6 +134,10 @@ module cuboct_streamer #(
       end
     end
     if (restart_i) pick_d = First;
+    last_row_d = last_row_q;
+    if (!run_i) last_row_d = ({{(RowSlots - CountBits) {1'b0}}, own_i} <= FilterLanes[RowSlots-1:0]);
+    else if (done) last_row_d = few_q;
+    else if (go && !skip) last_row_d = (next_slot_q + FilterLanes[RowSlots-1:0] >= {{(RowSlots - CountBits) {1'b0}}, own_i});
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
@@ -97,12 +146,14 @@ module cuboct_streamer #(
       next_q      <= One;
       row_q       <= '0;
       next_slot_q <= FilterLanes[RowSlots-1:0];
+      last_row_q  <= 1'b0;
     end else begin
       pick_q      <= pick_d;
       record_q    <= record_d;
       next_q      <= next_d;
       row_q       <= row_d;
       next_slot_q <= next_slot_d;
+      last_row_q  <= last_row_d;
     end
   end
 

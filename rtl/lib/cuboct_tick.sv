@@ -4,7 +4,7 @@
 // memory waits for them.
 module cuboct_tick #(
   parameter int Tail      = 2,  // steps of UPDATE beyond the last particle, >= 0
-  parameter int Registered = 0, // 0, 1: count_i stays from the cycle before a phase on
+  parameter int Registered = 0, // 0, 1: count_i stays from the cycle before a phase on, and step_i is 1
   parameter int CountBits = 5,  // of the number of own particles
   parameter int TickBits  = 5   // of a step's number, that hold Capacity + Tail
 ) (
@@ -22,9 +22,10 @@ module cuboct_tick #(
   output logic                 dump_done_o     // last cycle of DUMP
 );
   localparam int WideBits = CountBits + TickBits;
-  localparam logic [WideBits-1:0] Two = 2;
+  localparam logic [WideBits-1:0] WideOne = 1;
+  localparam logic [TickBits-1:0] One = 1;
 
-  logic [TickBits-1:0] tick_d, tick_q;
+  logic [TickBits-1:0] tick_d, tick_q, next_d, next_q;  // next_q: tick_q and 1
   logic                last_d, last_q;  // tick_q + 1 == count_i > 1
   logic [Tail:0]       past_d, past_q;  // bit k: tick_q >= count_i + k
   logic                none, few, moves, done;
@@ -39,27 +40,32 @@ module cuboct_tick #(
     end
     assign none = none_q;
     assign few  = few_q;
+    // Nothing pauses, and at rest the slot is 0.
+    assign next_o = (past_q[Tail] || !(dump_i || update_i)) ? '0 : next_q;
   end else begin : gen_at_once
     assign none = (count_i == '0);
     assign few  = ((count_i >> 1) == '0);
+    assign next_o = past_q[Tail] ? '0 : moves ? next_q : tick_q;  // from registers
   end
   assign moves      = dump_i || (update_i && step_i);
   assign done       = update_done_o || dump_done_o;
-  assign after_next = {{CountBits{1'b0}}, tick_q} + Two;
+  assign after_next = {{CountBits{1'b0}}, next_q} + WideOne;
   assign count      = {{TickBits{1'b0}}, count_i};
   always_comb begin
     tick_d = tick_q;
+    next_d = next_q;
     last_d = last_q;
     past_d = past_q;
     if (moves) begin
-      tick_d    = tick_q + 1'b1;
+      tick_d    = next_q;
+      next_d    = next_q + 1'b1;
       last_d    = (after_next == count);
       past_d    = past_q << 1;
       past_d[0] = past_q[0] || last_q || few;
     end
-    next_o = past_q[Tail] ? '0 : tick_d;  // from registers
     if (done) begin
       tick_d = '0;
+      next_d = One;
       last_d = 1'b0;
       past_d = '0;
     end
@@ -67,10 +73,12 @@ module cuboct_tick #(
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       tick_q <= '0;
+      next_q <= One;
       last_q <= 1'b0;
       past_q <= '0;
     end else begin
       tick_q <= tick_d;
+      next_q <= next_d;
       last_q <= last_d;
       past_q <= past_d;
     end

@@ -11,7 +11,8 @@ module arrival_relay_formal #(
   parameter int Patience = 5    // cycles of two links free and something to send, within which a beat is loaded
 ) (
   input logic                clk_i,
-  input logic [2*Axes-1:0]   can_load_i,
+  input logic [2*Axes-1:0]   held_i,   // before an exchange: the link's register will hold a beat in the next cycle
+  input logic [2*Axes-1:0]   ready_i,  // what it holds is taken
   input logic                over_i,   // the exchange ends, if all was sent
   input logic                begin_i,
   input logic [2*Axes-2:0]   come_i,   // a record of the segment comes, or after the last its end
@@ -34,7 +35,23 @@ module arrival_relay_formal #(
   logic [Segments*CountBits-1:0] counts_q, came_q;
   logic [Segments-1:0]           complete_q;
   integer                        t;
+  // A link's register holds what was loaded until it is taken; before an exchange what it holds comes from anyone.
+  (* anyconst *) logic [2*Axes-1:0] has_link;
+  logic [2*Axes-1:0] held_q, can_load, load;
+  always_ff @(posedge clk_i) begin
+    if (!running_q) held_q <= '0;
+    else held_q <= (active_q ? load | (held_q & ~ready_i) : held_i) & has_link;
+  end
+  assign can_load = ~held_q | ready_i;
   assign done = active_q && sent == '1 && over_i;
+  logic [Segments-1:0] come;  // a record does
+  always_comb begin
+    come = '0;
+    for (t = 1; t < Segments; t = t + 1) begin
+      come[t] = running_q && !done && come_i[t]
+             && came_q[t*CountBits +: CountBits] != counts_q[t*CountBits +: CountBits];
+    end
+  end
   always_ff @(posedge clk_i) begin
     active_q <= running_q && (active_q ? !done : begin_i);
     if (!running_q || done) counts_q <= counts_i;
@@ -42,7 +59,7 @@ module arrival_relay_formal #(
       if (!running_q || done) begin
         came_q[t*CountBits +: CountBits] <= '0;
         complete_q[t]                    <= 1'b0;
-      end else if (come_i[t] && came_q[t*CountBits +: CountBits] != counts_q[t*CountBits +: CountBits]) begin
+      end else if (come[t]) begin
         came_q[t*CountBits +: CountBits] <= came_q[t*CountBits +: CountBits] + 1'b1;
       end else if (come_i[t]) begin
         complete_q[t] <= 1'b1;
@@ -61,7 +78,6 @@ module arrival_relay_formal #(
   assign there    = {came_q[Segments*CountBits-1:CountBits], counts_q[0 +: CountBits]};
   assign complete = {complete_q[Segments-1:1], 1'b1};
 
-  logic [2*Axes-1:0]            load;
   logic                         is_end, observe, read;
   logic [LinkBits-1:0]          data;
   logic [Segments-1:0]          clear;
@@ -72,8 +88,9 @@ module arrival_relay_formal #(
     .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(AddrBits), .AddrBits(AddrBits),
     .CountBits(CountBits)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .active_i(active_q), .counts_i(there), .complete_i(complete), .read_o(read),
-    .clear_o(clear), .addr_o(addr), .slot_o(slot), .own_i(own), .halo_i(halo), .can_load_i, .load_o(load),
+    .clk_i, .rst_ni(running_q), .active_i(active_q), .own_count_i(counts_q[0 +: CountBits]),
+    .came_i(come[Segments-1:1]), .complete_i(complete), .read_o(read),
+    .clear_o(clear), .addr_o(addr), .slot_o(slot), .own_i(own), .halo_i(halo), .has_link_i(has_link), .valid_i(held_q), .ready_i, .load_o(load),
     .end_o(is_end), .data_o(data), .observe_o(observe), .sent_o(sent)
   );
   for (genvar m = 0; m < Segments; m++) begin : gen_memory
@@ -81,7 +98,7 @@ module arrival_relay_formal #(
     logic [AddrBits-1:0] asked;
     assign asked = (m == 0) ? slot : addr;
     always_ff @(posedge clk_i) begin
-      if (m > 0 && clear[m]) answers_q[m*HaloBits +: HaloBits] <= '0;
+      if (m > 0 && read && clear[m]) answers_q[m*HaloBits +: HaloBits] <= '0;
       else if (read && {1'b0, asked} < there[m*CountBits +: CountBits])
         answers_q[m*HaloBits +: HaloBits] <= {Memory, asked};
       else if (read) answers_q[m*HaloBits +: HaloBits] <= junk_i;
@@ -137,7 +154,7 @@ module arrival_relay_formal #(
   logic [CountBits-1:0] observed_q;
   logic [3:0]           idle_q;  // cycles in which something could be sent, and was not, one after the other
   logic                 idle, late_q, split_q;
-  assign idle = active_q && can_load_i == '1 && (some || ends) && ready && load == '0;
+  assign idle = active_q && can_load == '1 && (some || ends) && ready && load == '0;
   always_ff @(posedge clk_i) begin
     parts_q <= whole;
     idle_q  <= (running_q && idle) ? idle_q + 1'b1 : '0;
@@ -158,14 +175,14 @@ module arrival_relay_formal #(
       if (load != '0 && is_end) ended_q <= ended_q + 1'b1;
       if (observe) observed_q <= observed_q + 1'b1;
       late_q  <= late_q || (some && !ready && next_record != '0);
-      split_q <= split_q || (some && ready && can_load_i != '0 && can_load_i != '1);
+      split_q <= split_q || (some && ready && can_load != '0 && can_load != '1);
     end
   end
 
   always_ff @(posedge clk_i) begin
     if (running_q) begin
       if (load != '0) begin
-        a_may:   assert (active_q && (load & ~can_load_i) == '0);
+        a_may:   assert (active_q && (load & ~can_load) == '0);
         a_links: assert (load == links);
         a_kind:  assert (is_end ? ends : some);
         a_come:  assert (ready);

@@ -93,14 +93,14 @@ module inbox_formal #(
       if (read_i) asked_q <= counts && addr_i[AddrBits-1:0] == number;
       kept_q    <= halo_known && !read_i;  // the answer stays
       if (relay_read_i) relayed_q <= relay_counts && relay_addr_i[AddrBits-1:0] == number;
-      if (relay_clear_i) relayed_q <= 1'b1;
+      if (relay_read_i && relay_clear_i) relayed_q <= 1'b1;
     end
     if (append_i && count_q == {{(CountBits - AddrBits) {1'b0}}, number}) value_q <= halo_i;
     if (relay_append_i && relay_count_q == {{(CountBits - AddrBits) {1'b0}}, number}) relay_value_q <= relay_record_i;
     if (read_i) answer_q <= value_q;
     if (read_i) shown_answer_q <= answer_q;
     if (relay_read_i) relay_answer_q <= relay_value_q;
-    if (relay_clear_i) relay_answer_q <= '0;
+    if (relay_read_i && relay_clear_i) relay_answer_q <= '0;
   end
 
   // The watched particle: how many are inside, of which the last may not count yet; how many stand before it.

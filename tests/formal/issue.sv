@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// cuboct_issue behind any queue: each bit of each entry's mask is issued once, with its candidate and its
+// cuboct_split and cuboct_issue behind any queue: each bit of each entry's mask is issued once, with its candidate and its
 // slot, lowest first, within ceil(FilterLanes / ForcePipes) intervals; no other pair is. It issues in the
 // first cycle of each interval, and goes on to the next entry in the last.
 module issue_formal #(
@@ -30,11 +30,18 @@ module issue_formal #(
   logic [1:0]                     candidate;
   logic [ForcePipes-1:0]          valid;
   logic [ForcePipes*SlotBits-1:0] slot;
+  logic [ForcePipes-1:0]          head_valid;
+  logic [ForcePipes*SlotBits-1:0] head_lane;
+  logic [FilterLanes-1:0]         head_rest;
+  cuboct_split #(.FilterLanes(FilterLanes), .ForcePipes(ForcePipes), .SlotBits(SlotBits)) u_split (
+    .mask_i, .valid_o(head_valid), .lane_o(head_lane), .rest_o(head_rest)
+  );
   cuboct_issue #(
     .CandidateBits(2), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits),
         .ForcePipes(ForcePipes), .Interval(Interval)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .empty_i, .candidate_i, .row_i, .mask_i, .pop_o(pop), .candidate_o(candidate),
+    .clk_i, .rst_ni(running_q), .empty_i, .candidate_i, .row_i, .valid_i(head_valid), .lane_i(head_lane),
+    .rest_i(head_rest), .pop_o(pop), .candidate_o(candidate),
     .valid_o(valid), .slot_o(slot), .busy_o(busy)
   );
 

@@ -188,12 +188,11 @@ module migrate_formal #(
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_o(done), .has_link_i(has_link),
     .before_i(Early != 0 && begins && !active_q), .next_empty_i(valid == 2'b00), .next_load_o(next_load),
-    .above_done_i(ended[1] && empty[1]),
     .leaving_i, .count_i(count_q), .full_i(count_q == Capacity[CountBits-1:0]), .count_set_o(count_set),
     .count_o(new_count), .full_o(new_full),
     .read_o(read), .read_slot_o(read_slot), .read_data_i(read_data), .write_o(write), .write_slot_o(write_slot),
     .write_data_o(write_data), .leaving_more_o(more), .can_load_i(can_load), .load_o(load), .end_o(tells_end),
-    .data_o(data), .face_o(face), .some_i((side & ~empty) != 2'b00), .ended_i((side & ended) != 2'b00),
+    .data_o(data), .face_o(face), .some_i(~empty), .over_i(ended & empty),
     .arrived_i(taken), .pop_o(pops),
     .fault_left_o(fault_left), .fault_full_o(fault_full), .fault_particle_o(fault_particle)
   );

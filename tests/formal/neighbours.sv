@@ -116,6 +116,10 @@ module neighbours_formal #(
   (* keep *) logic [1:0] tap_axis_halo_0, tap_axis_halo_1;
   (* keep *) logic [3:0] tap_empty_0, tap_empty_1, tap_ended_0, tap_ended_1;  // by face, of particles
   (* keep *) logic [3:0] tap_face_0, tap_face_1;  // that migration takes from
+  (* keep *) logic [1:0] tap_taking_0, tap_taking_1;  // what migration keeps of it: from below, from above;
+  (* keep *) logic [1:0] tap_some_0, tap_some_1, tap_over_0, tap_over_1;  // what it is told of the axis
+  (* keep *) logic       tap_last_0, tap_last_1;  // of the steps
+  (* keep *) logic [7:0] tap_ends_0, tap_ends_1;  // by face: the next beat ends a halo; a particle
   logic [1:0]            axis_empty_0, axis_empty_1, axis_ended_0, axis_ended_1;
   assign axis_empty_0 = tap_axis_0[1] ? tap_empty_0[3:2] : tap_empty_0[1:0];
   assign axis_empty_1 = tap_axis_1[1] ? tap_empty_1[3:2] : tap_empty_1[1:0];
@@ -345,6 +349,18 @@ module neighbours_formal #(
       i_phase:  assert ((tap_migrate_0 == 3'd0 || tap_state_0 == MigrateX || tap_state_0 == MigrateY)
                         && (tap_migrate_1 == 3'd0 || tap_state_1 == MigrateX || tap_state_1 == MigrateY)
                         && tap_migrate_0 <= TakeHigh && tap_migrate_1 <= TakeHigh);
+      i_taking: assert (tap_taking_0 == {tap_migrate_0 == TakeHigh, tap_migrate_0 == TakeLow}
+                        && tap_taking_1 == {tap_migrate_1 == TakeHigh, tap_migrate_1 == TakeLow});
+      i_last:   assert ((tap_state_0 == '0 || tap_state_0 > 4'd7 || tap_last_0 == (tap_steps_0 == 32'd1))
+                        && (tap_state_1 == '0 || tap_state_1 > 4'd7 || tap_last_1 == (tap_steps_1 == 32'd1)));
+      if (Narrow == 0) begin
+        i_told_axis_0: assert ((tap_state_0 != MigrateX && tap_state_0 != MigrateY)
+                               || (tap_some_0 == ~axis_empty_0 && tap_over_0 == (axis_empty_0 & axis_ended_0)));
+        i_told_axis_1: assert ((tap_state_1 != MigrateX && tap_state_1 != MigrateY)
+                               || (tap_some_1 == ~axis_empty_1 && tap_over_1 == (axis_empty_1 & axis_ended_1)));
+        i_ends:        assert ((tap_ends_0 & {~tap_next_0, tap_next_0}) == '0
+                               && (tap_ends_1 & {~tap_next_1, tap_next_1}) == '0);
+      end
       i_ahead:  assert (ahead_q == $signed(step_0_q - step_1_q));
       c_apart:    cover (apart_q);
       c_waits:    cover (waits[0] && tap_state_0 == Axis && tap_state_1 == Force);

@@ -75,7 +75,7 @@ module relay_formal #(
   for (genvar m = 0; m < Segments; m++) begin : gen_memory
     localparam logic [2:0] Memory = m;
     always_ff @(posedge clk_i) begin
-      if (m > 0 && clear[m]) answers_q[m*HaloBits +: HaloBits] <= '0;
+      if (m > 0 && read && clear[m]) answers_q[m*HaloBits +: HaloBits] <= '0;
       else if (read) answers_q[m*HaloBits +: HaloBits] <= {Memory, addr};
     end
   end

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// cuboct_streamer through any number of steps, with any counts, segments that come when they like and any
+// cuboct_streamer through any number of steps, with any counts, records that come one by one, when they like, and any
 // stalls: each record of each segment is presented once with each row of own slots, in order; `past` comes
 // after the last one and only when every segment was there. Arrival: a segment's records come one by one, in
 // any cycle, and each is presented only after it came.
@@ -13,7 +13,7 @@ module streamer_formal #(
   input logic          stall_i,
   input logic          begin_i,
   input logic          over_i,
-  input logic [2*Axes:0] come_i,   // an axis is complete; Arrival: a record of the segment comes, or its end
+  input logic [2*Axes:0] come_i,   // a record of the segment comes, or its end
   input logic [(2*Axes+1)*(AddrBits+1)-1:0] counts_i
 );
   localparam int CountBits = AddrBits + 1;
@@ -28,20 +28,13 @@ module streamer_formal #(
   // A step: the engine runs from begin to the restart in its last cycle, which comes after `past`. Own
   // particles are there at once; a segment's count is final when it is available.
   logic                          run_q, past, restart;
-  logic [Axes:0]                 available_q;
   logic [Segments*CountBits-1:0] counts_q;
   assign restart = run_q && past && over_i;
   always_ff @(posedge clk_i) begin
     if (!running_q) run_q <= 1'b0;
-    else run_q <= run_q ? (!restart || begin_i) : begin_i;
-    if (!running_q || restart) available_q <= {{Axes{1'b0}}, 1'b1};
-    else if (run_q) available_q <= available_q | come_i[Axes:0];
-    if (!run_q || restart) counts_q <= counts_i;
-  end
-  // Arrival: own particles stay from the cycle before a step on.
-  always_comb begin
-    if (Arrival != 0 && begin_i && (!run_q || restart))
-      assume (running_q && counts_i[0 +: CountBits] == counts_q[0 +: CountBits]);
+    else run_q <= run_q ? !restart : begin_i;
+    if (!running_q || restart) counts_q <= counts_i;
+    else if (!run_q && !begin_i) counts_q[0 +: CountBits] <= counts_i[0 +: CountBits];
   end
   integer a;
   always_comb begin
@@ -52,17 +45,25 @@ module streamer_formal #(
   end
 
   // What the streamer is told.
-  logic [Segments-1:0]           complete, complete_q;
+  logic [Segments-1:0]           complete, complete_q, come;
   logic [Segments*CountBits-1:0] counts, came_q;
   integer                        t;
+  // Records come one by one, also between two steps; without Arrival each before its segment is available.
+  always_comb begin
+    come = '0;
+    for (t = 1; t < Segments; t = t + 1) begin
+      come[t] = running_q && !restart && come_i[t]
+             && came_q[t*CountBits +: CountBits] != counts_q[t*CountBits +: CountBits];
+    end
+  end
   always_ff @(posedge clk_i) begin
     for (t = 1; t < Segments; t = t + 1) begin
-      if (!run_q || restart) begin
+      if (!running_q || restart) begin
         came_q[t*CountBits +: CountBits] <= '0;
         complete_q[t]                    <= 1'b0;
-      end else if (come_i[t] && came_q[t*CountBits +: CountBits] != counts_q[t*CountBits +: CountBits]) begin
+      end else if (come[t]) begin
         came_q[t*CountBits +: CountBits] <= came_q[t*CountBits +: CountBits] + 1'b1;
-      end else if (come_i[t]) begin
+      end else if (come_i[t] && came_q[t*CountBits +: CountBits] == counts_q[t*CountBits +: CountBits]) begin
         complete_q[t] <= 1'b1;
       end
     end
@@ -71,8 +72,7 @@ module streamer_formal #(
     counts   = counts_q;
     complete = '0;
     for (t = 0; t < Segments; t = t + 1) begin
-      if (Arrival == 0) complete[t] = available_q[(t+1)/2];
-      else if (t == 0) complete[t] = 1'b1;
+      if (t == 0) complete[t] = 1'b1;
       else begin
         complete[t]                      = complete_q[t];
         counts[t*CountBits +: CountBits] = came_q[t*CountBits +: CountBits];
@@ -97,7 +97,7 @@ module streamer_formal #(
     .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .own_i(counts_q[0 +: CountBits]),
-    .complete_i(complete), .counts_i(counts),
+    .complete_i(complete), .came_i(come[Segments-1:1]),
     .pick_o(pick), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .past_o(past)
   );
 
@@ -164,6 +164,9 @@ module streamer_formal #(
     moves_q <= running_q && run_q && !stall_i && !past && !waits;
   end
 
+  logic again_q;  // a second step
+  always_ff @(posedge clk_i) again_q <= running_q && (again_q || restart);
+
   always_ff @(posedge clk_i) begin
     if (running_q) begin
       if (present) begin
@@ -177,7 +180,7 @@ module streamer_formal #(
       c_full:  cover (past && counts_q[(Segments-1)*CountBits +: CountBits] == Most[CountBits-1:0]
           && due_segment_q == Segments[2:0] - 3'd1);
       c_rows:  cover (present && next_row != '0 && next_record != '0);
-      c_again: cover (restart && begin_i && due_segment_q != '0);
+      c_again: cover (restart && again_q && due_segment_q != '0);
     end
   end
 endmodule

@@ -31,8 +31,7 @@ module cuboct_ram #(
     if (write_i && write_addr_i == read_addr_i) word = torn;
   end
   always_ff @(posedge clk_i) begin
-    if (clear_i) read_q <= '0;
-    else if (read_i) read_q <= word;
+    if (read_i) read_q <= clear_i ? '0 : word;
   end
   assign read_data_o = read_q;
 endmodule
