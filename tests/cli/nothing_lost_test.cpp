@@ -297,7 +297,8 @@ TEST_P(OfEngine, SigtermEndsItAsCtrlCDoes) {
 TEST_F(NothingLost, SigtermEndsSystemcToo) {
   fs::remove(bench_.path("bin/cuboct-systemc"));
   fs::copy(CUBOCT_SYSTEMC, bench_.path("bin/cuboct-systemc"));
-  Started started(bench_, run({"--engine", "systemc", "--steps", "1000000", "--frame-every", "1"}));
+  Started started(bench_,
+                  run({"--engine", "systemc", "--steps", "1000000", "--frame-every", "1", "--anyway"}));
   ASSERT_TRUE(comes([&] { return !processes(bench_, "cuboct-systemc").empty(); }));
   std::this_thread::sleep_for(std::chrono::seconds(2));
   started.signal(SIGTERM);

@@ -90,8 +90,8 @@ module arrival_relay_formal #(
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .own_count_i(counts_q[0 +: CountBits]),
     .came_i(come[Segments-1:1]), .complete_i(complete), .read_o(read),
-    .clear_o(clear), .addr_o(addr), .slot_o(slot), .own_i(own), .halo_i(halo), .has_link_i(has_link), .valid_i(held_q), .ready_i, .load_o(load),
-    .end_o(is_end), .data_o(data), .observe_o(observe), .sent_o(sent)
+    .clear_o(clear), .addr_o(addr), .slot_o(slot), .own_i(own), .halo_i(halo), .has_link_i(has_link),
+    .valid_i(held_q), .ready_i, .load_o(load), .end_o(is_end), .data_o(data), .observe_o(observe), .sent_o(sent)
   );
   for (genvar m = 0; m < Segments; m++) begin : gen_memory
     localparam logic [2:0] Memory = m;

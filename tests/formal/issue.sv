@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_split and cuboct_issue behind any queue: each bit of each entry's mask is issued once, with its candidate and its
-// slot, lowest first, within ceil(FilterLanes / ForcePipes) intervals; no other pair is. It issues in the
+// cuboct_split and cuboct_issue behind any queue: each bit of each entry's mask is issued once, with its candidate
+// and its slot, lowest first, within ceil(FilterLanes / ForcePipes) intervals; no other pair is. It issues in the
 // first cycle of each interval, and goes on to the next entry in the last.
 module issue_formal #(
   parameter int FilterLanes = 4,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// cuboct_mailbox before any bus, machine and order of reads and writes: each byte that is written with room, or that the
-// machine gives, comes out once, in its turn, unchanged; what the registers show, when a write is refused and when the
-// interrupt is high is what the header says.
+// cuboct_mailbox before any bus, machine and order of reads and writes: each byte that is written with room, or that
+// the machine gives, comes out once, in its turn, unchanged; what the registers show, when a write is refused and when
+// the interrupt is high is what the header says.
 module mailbox_formal #(
   parameter int Depth = 3  // bytes of each queue
 ) (

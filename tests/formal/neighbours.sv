@@ -184,8 +184,8 @@ module neighbours_formal #(
                                && (culled & ((cull_end - 1'b1) | cull_end)) == '0;
     end
   endfunction
-  // Each axis' end is in one place: still to be asked for, answered, at the links, or sent; ends are in the axes' order.
-  // Records of an axis are before its end.
+  // Each axis' end is in one place: still to be asked for, answered, at the links, or sent; ends are in the
+  // axes' order. Records of an axis are before its end.
   function automatic logic relays(input logic [3:0] state, input logic [Arrival:0] sent, input logic [9:0] relay);
     logic [1:0] left, answer, link, answer_end, link_end;
     begin
@@ -251,7 +251,8 @@ module neighbours_formal #(
   // It is between a stream's first beat and its end, if it has begun.
   function automatic logic sending(input logic [3:0] state, input logic sent, input logic [2:0] migrate);
     begin
-      sending = ((state == Axis || (Arrival != 0 && state < Axis)) && !sent) || (state == 4'd5 + Axis && migrate < TakeLow);
+      sending = ((state == Axis || (Arrival != 0 && state < Axis)) && !sent)
+                || (state == 4'd5 + Axis && migrate < TakeLow);
     end
   endfunction
   // With Arrival the halos are cleared in the first cycle of UPDATE.

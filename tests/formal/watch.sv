@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cuboct_watch beside any node: what a host sees of it is the node's first fault since the reset and its particles, while
-// the host observes it, else zeros; busy and "had a fault" are shown always.
+// cuboct_watch beside any node: what a host sees of it is the node's first fault since the reset and its particles,
+// while the host observes it, else zeros; busy and "had a fault" are shown always.
 module watch_formal #(
   parameter int ParticleBits = 2,
   parameter int FaultBits    = 2,
