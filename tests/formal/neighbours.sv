@@ -171,6 +171,9 @@ module neighbours_formal #(
   (* keep *) logic tap_found_0, tap_found_1;                      // all pairs are found
   // Axis whose end is asked for next; then of the memories' answers and of what the links load: valid, an end, axes.
   (* keep *) logic [9:0] tap_relay_0, tap_relay_1;
+  // Links that must be taken from before the relay loads; another beat of the record comes, the beat is its last.
+  (* keep *) logic [3:0] tap_waits_0, tap_waits_1;
+  (* keep *) logic [1:0] tap_more_0, tap_more_1;
   // Of the migration, a cycle late: someone leaves, no one is there, SCAN has counted; and of the node: who leaves.
   (* keep *) logic tap_scans_0, tap_scans_1, tap_none_0, tap_none_1, tap_scanned_0, tap_scanned_1;
   (* keep *) logic [1:0] tap_leaving_0, tap_leaving_1;
@@ -207,6 +210,11 @@ module neighbours_formal #(
         relays = relay[9:8] == 2'b01 && !relay[7] && !relay[3] && sent == '0;
       end
     end
+  endfunction
+
+  // By face: the relay has a beat for its link.
+  function automatic logic [3:0] beat_for(input logic [9:0] relay);
+    beat_for = {4{relay[3]}} & {{2{relay[1]}}, {2{relay[0]}}};
   endfunction
 
   logic signed [2:0] ahead_q;  // steps that the first has done more than the second
@@ -340,6 +348,10 @@ module neighbours_formal #(
                            || (tap_leaving_1[0] && !tap_none_1)));
         i_relay_0: assert (relays(tap_state_0, tap_sent_0, tap_relay_0));
         i_relay_1: assert (relays(tap_state_1, tap_sent_1, tap_relay_1));
+        i_waits_0: assert (tap_waits_0 == (all_valid[0 +: Faces] & beat_for(tap_relay_0))
+                           && tap_more_0[1] == (tap_relay_0[3] && !tap_more_0[0]));
+        i_waits_1: assert (tap_waits_1 == (all_valid[Faces +: Faces] & beat_for(tap_relay_1))
+                           && tap_more_1[1] == (tap_relay_1[3] && !tap_more_1[0]));
       end
       i_axis_0: assert (tap_axis_0 == ((tap_state_0 == ExchangeY || tap_state_0 == MigrateY) ? 3'b010 : 3'b001));
       i_axis_1: assert (tap_axis_1 == ((tap_state_1 == ExchangeY || tap_state_1 == MigrateY) ? 3'b010 : 3'b001));
