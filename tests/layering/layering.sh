@@ -8,6 +8,7 @@ cd "$1"
 declare -A may=(
   [model/base]=""
   [model/contract]="model/base"
+  [model/bond_order]="model/base"
   [model/solid]="model/base model/contract"
   [model/real]="model/base model/contract"
   [model/scene]="model/base model/contract model/solid"

@@ -95,17 +95,62 @@ run {}
                      frames ? fmt::format(kDump, run.steps) : "", frames ? run.steps : run.every, run.steps);
 }
 
+// Axes that do not repeat get a box well around the atoms.
+std::string data_file(const LammpsAtoms& atoms) {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+  for (const Vec3& x : atoms.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  std::string text = fmt::format("\n\n{} atoms\n{} atom types\n", atoms.x.size(), atoms.elements);
+  const Mat3& edges = atoms.box.edges;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool ring = atoms.box.periodic[axis];
+    const double begin = ring ? 0 : low[axis] - 10, end = ring ? edges(axis, axis) : high[axis] + 10;
+    text += fmt::format("{0:.17g} {1:.17g} {2}lo {2}hi\n", begin, end, "xyz"[axis]);
+  }
+  text +=
+      fmt::format("{:.17g} {:.17g} {:.17g} xy xz yz\n\nMasses\n\n", edges(0, 1), edges(0, 2), edges(1, 2));
+  for (int type = 1; type <= atoms.elements; ++type) text += fmt::format("{} 12\n", type);
+  text += "\nAtoms # atomic\n\n";
+  for (size_t i = 0; i < atoms.x.size(); ++i) {
+    const int type = atoms.element.empty() ? 1 : atoms.element[i] + 1;
+    text += fmt::format("{} {} {:.17g} {:.17g} {:.17g}\n", i + 1, type, atoms.x[i].x(), atoms.x[i].y(),
+                        atoms.x[i].z());
+  }
+  return text;
+}
+
+constexpr const char* kForces = R"(units metal
+boundary {} {} {}
+atom_style atomic
+newton on
+box tilt large
+read_data atoms.data
+{}
+neighbor 0.3 bin
+thermo_style custom step pe
+thermo_modify norm no format float "energies %.17g"
+compute virial all stress/atom NULL virial
+dump frames all custom 1 frames.txt id fx fy fz c_virial[1] c_virial[2] c_virial[3] c_virial[4] c_virial[5] c_virial[6]
+dump_modify frames sort id format float %.17g
+run 0
+)";
+// LAMMPS's bar angstrom^3 of an eV.
+constexpr double kLammpsPressure = 1.6021765e6;
+
+void run_in(const Scratch& scratch) {
+  const std::string command =
+      fmt::format("cd '{}' && OMP_NUM_THREADS=1 '{}' -in in.lmp -log none > out.txt 2>&1",
+                  scratch.path().string(), CUBOCT_LMP);
+  if (std::system(command.c_str()) != 0)
+    throw std::runtime_error("LAMMPS failed:\n" + scratch.read("out.txt"));
+}
+
 // Runs LAMMPS in the scratch directory.
 std::vector<LammpsSample> samples_of(const LammpsRun& run, const Body& body, const Scratch& scratch,
                                      bool frames) {
   scratch.write("body.data", data_file(run, body));
   scratch.write("in.lmp", input_file(run, frames));
   for (const auto& [name, text] : run.files) scratch.write(name, text);
-  const std::string command =
-      fmt::format("cd '{}' && OMP_NUM_THREADS=1 '{}' -in in.lmp -log none > out.txt 2>&1",
-                  scratch.path().string(), CUBOCT_LMP);
-  if (std::system(command.c_str()) != 0)
-    throw std::runtime_error("LAMMPS failed:\n" + scratch.read("out.txt"));
+  run_in(scratch);
   // The lines "step energies pe energies ke energies press" of the output.
   std::vector<LammpsSample> samples;
   std::istringstream out(scratch.read("out.txt"));
@@ -158,6 +203,40 @@ std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body) {
     frames[k].kinetic_energy = samples[k].kinetic_energy;
   }
   return frames;
+}
+
+LammpsForces lammps_forces(const LammpsAtoms& atoms) {
+  const Scratch scratch;
+  scratch.write("atoms.data", data_file(atoms));
+  const auto boundary = [&](int axis) { return atoms.box.periodic[axis] ? 'p' : 'f'; };
+  scratch.write("in.lmp", fmt::format(kForces, boundary(0), boundary(1), boundary(2), atoms.pair));
+  run_in(scratch);
+  LammpsForces forces;
+  std::istringstream text(scratch.read("frames.txt"));
+  std::string line;
+  while (std::getline(text, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
+  }
+  double sum[6] = {};
+  for (size_t i = 0; i < atoms.x.size(); ++i) {
+    size_t id = 0;
+    Vec3 f;
+    text >> id >> f[0] >> f[1] >> f[2];
+    for (double& component : sum) {
+      double of = 0;
+      text >> of;
+      component += of / kLammpsPressure;
+    }
+    if (!text || id != i + 1) throw std::runtime_error("LAMMPS wrote a broken frame");
+    forces.f.push_back(f);
+  }
+  forces.virial << sum[0], sum[3], sum[4], sum[3], sum[1], sum[5], sum[4], sum[5], sum[2];
+  std::istringstream out(scratch.read("out.txt"));
+  std::string word;
+  for (long step = 0; std::getline(out, line);) {
+    std::istringstream words(line);
+    if (words >> step >> word >> forces.energy && word == "energies") return forces;
+  }
+  throw std::runtime_error("LAMMPS wrote no energy");
 }
 
 std::vector<LammpsSample> sample_lammps(const LammpsRun& run, const Body& body) {

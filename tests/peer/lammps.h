@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "model/bond_order/atom_box.h"
 #include "model/contract/rule.h"
 
 namespace cuboct::test {
@@ -40,5 +41,20 @@ struct LammpsSample {
 std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body);
 // Samples at step 0, every, 2 every, ...; no frames.
 std::vector<LammpsSample> sample_lammps(const LammpsRun& run, const Body& body);
+
+// Atoms in LAMMPS's metal units (eV, angstrom, bar), of any elements and any box.
+struct LammpsAtoms {
+  AtomBox box;  // edges upper triangular, as LAMMPS has them
+  std::vector<Vec3> x;
+  std::vector<uint8_t> element;  // empty: all are the first
+  int elements = 1;
+  std::string pair;  // the lines that set pair_style and pair_coeff
+};
+struct LammpsForces {
+  std::vector<Vec3> f;  // eV/angstrom
+  double energy = 0;    // eV
+  Mat3 virial;          // eV: dE/dstrain
+};
+LammpsForces lammps_forces(const LammpsAtoms& atoms);
 
 }  // namespace cuboct::test
