@@ -108,7 +108,7 @@ std::string data_file(const LammpsAtoms& atoms) {
   }
   text +=
       fmt::format("{:.17g} {:.17g} {:.17g} xy xz yz\n\nMasses\n\n", edges(0, 1), edges(0, 2), edges(1, 2));
-  for (int type = 1; type <= atoms.elements; ++type) text += fmt::format("{} 12\n", type);
+  for (int type = 1; type <= atoms.elements; ++type) text += fmt::format("{} {:.17g}\n", type, atoms.mass);
   text += "\nAtoms # atomic\n\n";
   for (size_t i = 0; i < atoms.x.size(); ++i) {
     const int type = atoms.element.empty() ? 1 : atoms.element[i] + 1;
@@ -129,9 +129,11 @@ neighbor 0.3 bin
 thermo_style custom step pe
 thermo_modify norm no format float "energies %.17g"
 compute virial all stress/atom NULL virial
-dump frames all custom 1 frames.txt id fx fy fz c_virial[1] c_virial[2] c_virial[3] c_virial[4] c_virial[5] c_virial[6]
+timestep {:.17g}
+{}
+dump frames all custom {} frames.txt id xu yu zu fx fy fz c_virial[1] c_virial[2] c_virial[3] c_virial[4] c_virial[5] c_virial[6]
 dump_modify frames sort id format float %.17g
-run 0
+run {}
 )";
 // LAMMPS's bar angstrom^3 of an eV.
 constexpr double kLammpsPressure = 1.6021765e6;
@@ -209,24 +211,28 @@ LammpsForces lammps_forces(const LammpsAtoms& atoms) {
   const Scratch scratch;
   scratch.write("atoms.data", data_file(atoms));
   const auto boundary = [&](int axis) { return atoms.box.periodic[axis] ? 'p' : 'f'; };
-  scratch.write("in.lmp", fmt::format(kForces, boundary(0), boundary(1), boundary(2), atoms.pair));
+  scratch.write("in.lmp", fmt::format(kForces, boundary(0), boundary(1), boundary(2), atoms.pair, atoms.dt,
+                                      atoms.moves, std::max(1, atoms.steps), atoms.steps));
   run_in(scratch);
   LammpsForces forces;
   std::istringstream text(scratch.read("frames.txt"));
   std::string line;
-  while (std::getline(text, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
-  }
+  // The last frame.
+  for (int frame = atoms.steps > 0 ? 2 : 1; frame > 0; --frame)
+    while (std::getline(text, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
+    }
   double sum[6] = {};
   for (size_t i = 0; i < atoms.x.size(); ++i) {
     size_t id = 0;
-    Vec3 f;
-    text >> id >> f[0] >> f[1] >> f[2];
+    Vec3 x, f;
+    text >> id >> x[0] >> x[1] >> x[2] >> f[0] >> f[1] >> f[2];
     for (double& component : sum) {
       double of = 0;
       text >> of;
       component += of / kLammpsPressure;
     }
     if (!text || id != i + 1) throw std::runtime_error("LAMMPS wrote a broken frame");
+    forces.x.push_back(x);
     forces.f.push_back(f);
   }
   forces.virial << sum[0], sum[3], sum[4], sum[3], sum[1], sum[5], sum[4], sum[5], sum[2];
@@ -234,7 +240,7 @@ LammpsForces lammps_forces(const LammpsAtoms& atoms) {
   std::string word;
   for (long step = 0; std::getline(out, line);) {
     std::istringstream words(line);
-    if (words >> step >> word >> forces.energy && word == "energies") return forces;
+    if (words >> step >> word >> forces.energy && word == "energies" && step == atoms.steps) return forces;
   }
   throw std::runtime_error("LAMMPS wrote no energy");
 }

@@ -48,13 +48,21 @@ struct LammpsAtoms {
   std::vector<Vec3> x;
   std::vector<uint8_t> element;  // empty: all are the first
   int elements = 1;
-  std::string pair;  // the lines that set pair_style and pair_coeff
+  std::string pair = {};   // the lines that set pair_style and pair_coeff
+  std::string moves = {};  // lines that make them move: fixes, groups
+  double mass = 12;        // g/mol, of all
+  double dt = 0.001;       // ps
+  int steps = 0;
 };
 struct LammpsForces {
+  std::vector<Vec3> x;  // angstrom, unwrapped
   std::vector<Vec3> f;  // eV/angstrom
   double energy = 0;    // eV
   Mat3 virial;          // eV: dE/dstrain
 };
+// eV ps^2/angstrom^2 of a g/mol, as LAMMPS has it.
+inline constexpr double kLammpsMass = 1.0364269e-4;
+// At the last step.
 LammpsForces lammps_forces(const LammpsAtoms& atoms);
 
 }  // namespace cuboct::test

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "model/bond_order/atom_cell.h"
+#include "model/bond_order/atom_motion.h"
 #include "tests/peer/lammps.h"
 
 namespace cuboct {
@@ -51,7 +52,11 @@ void compare(const Tersoff& tersoff, const std::string& file, const AtomCell& ce
   std::string pair = "pair_style tersoff\npair_coeff * * " + kPotentials + "/" + file;
   for (const std::string& name : tersoff.elements) pair += " " + name;
   const test::LammpsForces expected =
-      test::lammps_forces({cell.box, cell.x, element, static_cast<int>(tersoff.elements.size()), pair});
+      test::lammps_forces({.box = cell.box,
+                           .x = cell.x,
+                           .element = element,
+                           .elements = static_cast<int>(tersoff.elements.size()),
+                           .pair = pair});
   TersoffForces forces(tersoff);
   BondList list(tersoff.cutoff(), 0.3, bond_lanes());
   list.update(cell.box, cell.x);
@@ -132,6 +137,47 @@ TEST(TersoffPeerSheet, TornGraphene) {
     shake(cell, 0.1, 23);
     compare(carbon, "SiC.tersoff", cell);
   }
+}
+
+// A sheet with an edge crack, whose lower and upper edges are driven apart along y while all atoms bear a
+// force along x. Rounding grows with time, here by some hundred in 200 steps.
+TEST(TersoffPeerSheet, TornInTime) {
+  if (!test::have_lammps() || kPotentials.empty())
+    GTEST_SKIP() << "LAMMPS or its potential files are not installed";
+  AtomCell cell = graphene_sheet(1.4606, 3.35, 12, 7);
+  cut_slit(cell, 10, 15, 2.5);
+  cell.box.periodic = {false, false, false};
+  shake(cell, 0.05, 31);
+  const size_t n = cell.x.size(), edge = 48;  // atoms of a row of rectangles, the first and the last
+  const std::string moves = "group edges id 1:" + std::to_string(edge) + " " + std::to_string(n - edge + 1) +
+                            ":" + std::to_string(n) + "\ngroup low id 1:" + std::to_string(edge) +
+                            "\ngroup high subtract edges low\nvelocity low set NULL -12 NULL\n"
+                            "velocity high set NULL 12 NULL\nfix push all addforce 0.05 0 0\n"
+                            "fix hold edges setforce NULL 0 NULL\nfix nve all nve";
+  test::LammpsAtoms atoms{.box = cell.box, .x = cell.x, .element = {}};
+  atoms.pair = "pair_style tersoff\npair_coeff * * " + kPotentials + "/SiC.tersoff C";
+  atoms.moves = moves, atoms.dt = 5e-4, atoms.steps = 200;
+  const test::LammpsForces expected = test::lammps_forces(atoms);
+
+  AtomLoads loads{std::vector<Vec3>(n, Vec3(0.05, 0, 0)), std::vector<std::array<bool, 3>>(n),
+                  std::vector<Vec3>(n)};
+  AtomSystem system{cell.box, cell.x, std::vector<Vec3>(n, Vec3::Zero()), {}, {12 * test::kLammpsMass}};
+  for (size_t i = 0; i < n; ++i)
+    if (i < edge || i >= n - edge) {
+      loads.imposed[i][1] = true;
+      system.v[i][1] = loads.velocity[i][1] = i < edge ? -12 : 12;
+    }
+  AtomMotion motion(read_tersoff(kPotentials + "/SiC.tersoff", {"C"}), system, {.dt = 5e-4});
+  motion.load(loads);
+  motion.step(200);
+  double worst = 0, moved = 0;
+  for (size_t i = 0; i < n; ++i) {
+    worst = std::max(worst, (motion.atoms().x[i] - expected.x[i]).norm());
+    moved = std::max(moved, (expected.x[i] - cell.x[i]).norm());
+  }
+  ASSERT_GT(moved, 1);  // angstrom
+  EXPECT_LT(worst, 1e-9);
+  RecordProperty("motion_error", std::to_string(worst * 1e12) + "e-12");
 }
 
 TEST(TersoffPeerSheet, SiliconCarbide) {
