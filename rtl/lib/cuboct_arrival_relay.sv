@@ -20,7 +20,7 @@ module cuboct_arrival_relay #(
                                               // it may be asked for from the next cycle on
   input  logic [2*Axes-2:0]      complete_i,  // no other will come
   output logic                   read_o,      // asks for what comes next; without it the answers stay
-  output logic [2*Axes-2:0]      clear_o,     // with read_o, by segment: its memory's answer becomes 0, as it is not asked
+  output logic [2*Axes-2:0]      clear_o,     // with read_o, by segment: its memory is not asked, its answer is 0
   output logic [AddrBits-1:0]    addr_o,      // with read_o: of the record
   output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles; 0 where none is asked for
   input  logic [HaloBits-1:0]    own_i,       // the answer of the own particles

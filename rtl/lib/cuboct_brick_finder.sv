@@ -153,7 +153,8 @@ module cuboct_brick_finder #(
     .ForcePipes(ForcePipes), .Interval(Interval)
   ) u_issue (
     .clk_i, .rst_ni, .empty_i(empty), .candidate_i(candidate_head), .row_i(row_head), .valid_i(valid_head),
-    .lane_i(lane_head), .rest_i(rest_head), .pop_o(pop), .candidate_o(candidate_now), .valid_o(issue_o), .slot_o(issue_slot_o), .busy_o(issue_busy)
+    .lane_i(lane_head), .rest_i(rest_head), .pop_o(pop), .candidate_o(candidate_now), .valid_o(issue_o),
+    .slot_o(issue_slot_o), .busy_o(issue_busy)
   );
 
   assign candidate_o = candidate_now[CandidateBits-1:0];

@@ -32,7 +32,7 @@ module cuboct_issue #(
   logic [RowBits-1:0]             row_q;
   logic [ForcePipes-1:0]          valid_d, valid_q, rest_valid;
   logic [ForcePipes*SlotBits-1:0] slot_d, slot_q, lane, rest_lane;
-  logic [FilterLanes-1:0]         rest_d, rest_q, rest_rest;  // behind the pairs of this cycle; behind those of the next
+  logic [FilterLanes-1:0]         rest_d, rest_q, rest_rest;  // behind the pairs of this cycle; of the next one
   logic                           none_d, none_q;             // rest_q is 0
   logic [RowBits-1:0]             row;
   logic [SlotBits-1:0]            row_base;

@@ -98,8 +98,7 @@ module cuboct_node_core #(
   output logic [Faces-1:0]        link_ready_o,
   output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
   output logic [7:0]              phase_end_o,
-  output logic [3*Streamers+ForcePipes:0] force_event_o,  // in this cycle: engine runs; of each streamer: it is
-                                                  // stalled, presents a candidate, issues; each pipe takes a pair
+  output logic [3*Streamers+ForcePipes:0] force_event_o,  // runs; by streamer: stalls, presents, issues; by pipe: pair
   output logic                    observe_valid_o,
   output logic [ParticleBits-1:0] observe_data_o,
   output logic                    fault_valid_o,
@@ -210,8 +209,8 @@ module cuboct_node_core #(
   logic [SlotBits-1:0] slots_write_slot;
   logic [OwnBits-1:0]  slots_write_data;
   if (Arrival != 0) begin : gen_later_write
-    // The slots' memories and banks are many: they begin at a register. What is loaded goes past it, as DUMP may ask for
-    // it in the cycle after.
+    // The slots' memories and banks are many: they begin at a register. What is loaded goes past it, as DUMP may ask
+    // for it in the cycle after.
     logic                write_q;
     logic [SlotBits-1:0] slot_q;
     logic [OwnBits-1:0]  data_q;
@@ -247,7 +246,7 @@ module cuboct_node_core #(
   logic [Faces-1:0]           halo_end, migrate_end, migrate_empty, migrate_face, migrate_clear;
   logic [Faces*CountBits-1:0] halo_count;
   logic [Faces-1:0]           stream_end;
-  logic [Faces-1:0]           some_next, over_next;  // migrating particles, in the next cycle: one waits; none does, all came
+  logic [Faces-1:0]           some_next, over_next;  // migrating particles, next cycle: one waits; none does, all came
   logic [Faces-1:0]           stream_came, halo_came;  // a record comes
   logic [Streamers*AddrBits-1:0] stream_addr;
   logic [AddrBits-1:0]        relay_addr;
@@ -313,8 +312,9 @@ module cuboct_node_core #(
     ) u_halos (
       .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
       .halo_clear_i(force_over), .halo_end_o(halo_end), .halo_count_o(halo_count), .stream_end_o(stream_end),
-      .halo_came_o(halo_came), .stream_came_o(stream_came), .run_i(engine_runs), .box_empty_i(box_empty), .box_low_i(box_low),
-      .box_high_i(box_high), .stream_read_i(stream_read), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
+      .halo_came_o(halo_came), .stream_came_o(stream_came), .run_i(engine_runs),
+      .box_empty_i(box_empty), .box_low_i(box_low), .box_high_i(box_high), .stream_read_i(stream_read),
+      .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
       .relay_read_i(relay_read), .relay_clear_i(relay_clear[Faces-2:1]), .relay_addr_i(relay_addr),
       .relay_data_o(relay_halos), .migrating_i(in_migrate || (Arrival != 0 && in_update)),
       .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty),

@@ -65,8 +65,8 @@ module cuboct_pair_finder #(
   logic                     push, pop, full, empty;
 
   cuboct_streamer #(
-    .Segments(Segments), .Own(Own), .Arrival(Arrival), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(SlotBits),
-    .AddrBits(AddrBits), .CountBits(CountBits)
+    .Segments(Segments), .Own(Own), .Arrival(Arrival), .FilterLanes(FilterLanes), .RowBits(RowBits),
+    .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_streamer (
     .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .own_i(own_count_i), .complete_i, .came_i,
     .pick_o(pick), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
@@ -147,7 +147,8 @@ module cuboct_pair_finder #(
     .ForcePipes(ForcePipes), .Interval(Interval)
   ) u_issue (
     .clk_i, .rst_ni, .empty_i(empty), .candidate_i(candidate_head), .row_i(row_head), .valid_i(valid_head),
-    .lane_i(lane_head), .rest_i(rest_head), .pop_o(pop), .candidate_o, .valid_o(issue_o), .slot_o(issue_slot_o), .busy_o(issue_busy)
+    .lane_i(lane_head), .rest_i(rest_head), .pop_o(pop), .candidate_o, .valid_o(issue_o),
+    .slot_o(issue_slot_o), .busy_o(issue_busy)
   );
 
   assign stall_o   = stall;

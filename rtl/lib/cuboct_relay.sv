@@ -21,7 +21,7 @@ module cuboct_relay #(
   // Segments: 0 own, then the halos of -x, +x and, with three axes, -y, +y; their counts, and where to read.
   input  logic [(2*Axes-1)*CountBits-1:0] counts_i,  // constant in a phase; of own ones the next cycle's
   output logic [2*Axes-2:0]      pick_o,      // which one, one bit each; none for the end beat
-  output logic [2*Axes-2:0]      clear_o,     // with read_o, by segment: its memory's answer becomes 0, as it is not picked next
+  output logic [2*Axes-2:0]      clear_o,     // with read_o, by segment: it is not picked next, its answer is 0
   output logic                   read_o,      // asks all for what comes next; without it the answers stay
   output logic [AddrBits-1:0]    addr_o,      // with read_o: of the record
   output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles; 0 outside of a phase

@@ -137,7 +137,8 @@ module cuboct_streamer #(
     last_row_d = last_row_q;
     if (!run_i) last_row_d = ({{(RowSlots - CountBits) {1'b0}}, own_i} <= FilterLanes[RowSlots-1:0]);
     else if (done) last_row_d = few_q;
-    else if (go && !skip) last_row_d = (next_slot_q + FilterLanes[RowSlots-1:0] >= {{(RowSlots - CountBits) {1'b0}}, own_i});
+    else if (go && !skip)
+      last_row_d = (next_slot_q + FilterLanes[RowSlots-1:0] >= {{(RowSlots - CountBits) {1'b0}}, own_i});
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
