@@ -31,6 +31,10 @@ module cuboct_mailbox #(
   input  logic        busy_i,      // a run is under way
   input  logic        fault_i      // some node met a fault
 );
+  // Every tool ends with an error where a module is missing: a queue's level has 8 bits in STATUS.
+  if (Depth < 1 || Depth > 255) begin : gen_range
+    cuboct_parameter_out_of_range u_error ();
+  end
   localparam logic [1:0]  Data = 2'd0, Status = 2'd1, Enable = 2'd2;
   localparam logic [31:0] Ident = 32'h43554201;
 
