@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: MIT
 # Makes tables of docs/measured anew: synth-nodes-TARGET, what a node of five scenes takes on a target; with "small" in place
 # of a target rtl-small-fpgas, a node on two small FPGAs as placed with three seeds; with "ecp5-placed" synth-ecp5-placed,
-# the estimate beside nodes that were placed; with "boards" board-examples, what the examples of boards take. Some twenty
-# minutes. usage: docs/synth_table.sh BUILD_DIRECTORY [TARGET...]
+# the estimate beside nodes that were placed; with "boards" board-examples, what the examples of boards take; with "solids"
+# halo-clock, machines for solids and their steps per second. Some thirty minutes.
+# usage: docs/synth_table.sh BUILD_DIRECTORY [TARGET...]
 set -euo pipefail
 build=$1 cuboct=$1/cuboct
 shift
 targets=("$@")
-[ $# -gt 0 ] || targets=(ecp5-85 xc7 small ecp5-placed boards)
+[ $# -gt 0 ] || targets=(ecp5-85 xc7 small ecp5-placed boards solids)
 docs=$(dirname "${BASH_SOURCE[0]}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -92,6 +93,31 @@ PYTHON
   done
 }
 
+# The default machine, the one for solids, and that one with twice the pipes.
+solids() {
+  local scene machine
+  sed 's/^force_pipes = 2$/force_pipes = 4/' "$docs/../scenes/archs/solid.toml" > "$work/four_pipes.toml"
+  cp "$docs"/../scenes/archs/{default,solid}.toml "$work"
+  printf '%s\t' 'node of' machine 'cycles per step' LUT FF DSP BRAM 'clock, estimated, MHz' 'million steps/s' 'steps/s per LUT'
+  printf 'the longest path ends in\n'
+  for scene in undamped_block coupon; do
+    for machine in default solid four_pipes; do
+      emit "$scene.$machine" "$scene" --arch "$work/$machine.toml"
+      "$cuboct" synth "$work/$scene.$machine" --target ecp5-85 --no-place --json > "$work/$scene.$machine.json"
+      python3 - "$work/$scene.$machine.json" "$scene" "$machine" <<'PYTHON'
+import json, sys
+r, scene, machine = json.load(open(sys.argv[1])), *sys.argv[2:]
+uses, mhz, end = r["block"]["uses"], r["estimate"]["mhz"], r["estimate"]["ends"][0]
+cycles = r["cycles_per_step"]["counted"]["mean"]
+steps = mhz * 1e6 / cycles
+named = {"four_pipes": "`solid.toml`, four pipes"}.get(machine, f"`{machine}.toml`")
+print(scene, named, f"{cycles:.1f}", *(f"{uses[k]:,}" for k in ("LUT", "FF", "DSP", "BRAM")),
+      f"{mhz:.1f}", f"{steps / 1e6:.2f}", f"{steps / uses['LUT']:.0f}", f'`{end["to"]}`', sep="\t")
+PYTHON
+    done
+  done
+}
+
 # What the calibration's own test prints.
 placed() {
   printf '%s\t' 'node of, on LFE5U-25F' 'placed, MHz, by seeds' 'estimated before these were known' 'estimated' error \
@@ -103,6 +129,7 @@ placed() {
 for target in "${targets[@]}"; do
   case $target in
     small) table=rtl-small-fpgas tools="$yosys, nextpnr-ice40 $(dpkg-query -W -f '${Version}' nextpnr-ice40)" rows=small ;;
+    solids) table=halo-clock tools=$yosys rows=solids ;;
     boards) table=board-examples tools="$yosys, nextpnr-ice40 $(dpkg-query -W -f '${Version}' nextpnr-ice40)" rows=boards ;;
     ecp5-placed) table=synth-ecp5-placed tools="placed by nextpnr-ecp5 0.8, netlists by $yosys" rows=placed ;;
     *) table=synth-nodes-$target tools=$yosys rows=nodes ;;

@@ -227,7 +227,7 @@ TEST(Calibration, TheLongestPathIsOfAKindThatWasCritical) {
   }
 }
 
-// docs/ecp5_table makes a table of what this prints.
+// docs/synth_table.sh makes a table of what this prints.
 TEST(Calibration, LeavingANodeOut) {
   const std::vector<Row> hops = rows_of("ecp5_hops.tsv");
   const Paths paths = near_critical();
