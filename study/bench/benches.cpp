@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -23,41 +22,11 @@
 #include "study/bench/bench_gpu.h"
 #include "study/bench/bench_report.h"
 #include "study/bench/bench_scene.h"
+#include "study/bench/bench_tersoff.h"
+#include "study/bench/timed.h"
 
 namespace cuboct {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-// Times `step` for about so many seconds in each repetition; answers the steps of one. The number is found in
-// the first, which warms up, and then stays.
-class Timed {
- public:
-  explicit Timed(double seconds) : seconds_(seconds) {}
-
-  void run(benchmark::State& state, const std::function<void()>& step) {
-    if (steps_ == 0) {
-      for (int k = 0; k < 3; ++k) step();  // memory is touched, lists are made
-      const auto begin = Clock::now();
-      uint64_t warm = 0;
-      for (; warm < 1 || (since(begin) < 0.3 * seconds_ && warm < 1000); ++warm) step();
-      steps_ =
-          std::max<uint64_t>(1, static_cast<uint64_t>(seconds_ * static_cast<double>(warm) / since(begin)));
-    }
-    for (auto _ : state) {
-      const auto begin = Clock::now();
-      for (uint64_t k = 0; k < steps_; ++k) step();
-      state.SetIterationTime(since(begin));
-    }
-  }
-  uint64_t steps() const { return steps_; }
-
- private:
-  double seconds_;
-  uint64_t steps_ = 0;
-};
 
 std::string counted(int threads) { return fmt::format("{} thread{}", threads, threads == 1 ? "" : "s"); }
 
@@ -295,6 +264,7 @@ std::vector<Bench> benches(const BenchLength& length, int threads) {
   });
   add("systemc.block_2k", "the clocked engine, 2048 particles, 10 steps",
       [](auto& s) { run_systemc_block(s, {.cells = 8}, 10); });
+  for (Bench& bench : tersoff_benches(seconds, all)) list.push_back(std::move(bench));
   for (const bool on : {true, false})
     add(
         fmt::format("impact.quiescence_{}", on ? "on" : "off"),
