@@ -103,7 +103,8 @@ module cuboct_brick_core #(
   output logic [Faces-1:0]        link_ready_o,
   output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
   output logic [7:0]              phase_end_o,
-  output logic [ForcePipes+3:0]   force_event_o,  // engine runs, stalls, presents a candidate, issues; by pipe: a pair
+  output logic [ForcePipes+3:0]   force_event_o,  // in this cycle: engine runs, stalled, presents a candidate, issues;
+                                                  // each pipe takes a pair
   output logic                    observe_valid_o,
   output logic [CellBits-1:0]     observe_cell_o,
   output logic [ParticleBits-1:0] observe_data_o,

@@ -98,7 +98,8 @@ module cuboct_node_core #(
   output logic [Faces-1:0]        link_ready_o,
   output logic [7:0]              phase_start_o,  // exchange x y z, force, update, migrate x y z
   output logic [7:0]              phase_end_o,
-  output logic [3*Streamers+ForcePipes:0] force_event_o,  // runs; by streamer: stalls, presents, issues; by pipe: pair
+  output logic [3*Streamers+ForcePipes:0] force_event_o,  // in this cycle: engine runs; of each streamer: it is
+                                                  // stalled, presents a candidate, issues; each pipe takes a pair
   output logic                    observe_valid_o,
   output logic [ParticleBits-1:0] observe_data_o,
   output logic                    fault_valid_o,

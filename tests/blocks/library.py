@@ -49,6 +49,9 @@ def bits_of(range_text):
     return f"{match[1]}+{int(match[2]) + 1}" if match else f"{high}+1"
 
 
+WIDEST_INDENT = 8  # columns before the comment of a group; one farther right belongs to the declaration above
+
+
 def header_items(lines):
     """The declarations between module and `);`: (line number, code, comment, group), a declaration per entry,
     numbers from 0."""
@@ -57,7 +60,10 @@ def header_items(lines):
     for number, line in enumerate(lines):
         text, _, remark = line.partition("//")
         text, remark = text.strip(), remark.strip()
-        if not text and remark and not code:
+        if not text and remark and not code and items and line.index("//") > WIDEST_INDENT:
+            start_of, declared, words, group_of = items[-1]  # goes on with the words of the line before
+            items[-1] = (start_of, declared, f"{words} {remark}", group_of)
+        elif not text and remark and not code:
             group, joins = (f"{group} {remark}" if joins else remark), True
         elif text.startswith(("module ", ");")):
             continue

@@ -66,6 +66,10 @@ edit rtl/lib/cuboct_fifo.sv 's|// with push_i||'
 expect ports 2 "rtl/lib/cuboct_fifo.sv: cuboct_fifo: 'data_i' has no comment at its line"
 
 fresh
+edit rtl/lib/cuboct_fifo.sv 's|// with push_i$|&\n                           // goes on|'
+expect ports 1 "| with push_i goes on |"
+
+fresh
 sed 's/cuboct_fifo/cuboct_other/' "$work/tree/rtl/lib/cuboct_fifo.sv" > "$work/tree/rtl/lib/cuboct_other.sv"
 expect ports 2 "module cuboct_other is on no page of docs/reference/blocks"
 
