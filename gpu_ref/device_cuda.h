@@ -208,6 +208,21 @@ __global__ void __launch_bounds__(kLargestBlock)
   if (threadIdx.x % 32 == 0) atomicMax(out, most);
 }
 
+// The threads of a block that work on one thing: each takes its share of the indices 0 .. count - 1, and goes
+// on when all are done.
+struct Block {
+  template <class F>
+  __device__ void each(uint32_t count, const F& f) const {
+    for (uint32_t k = threadIdx.x; k < count; k += blockDim.x) f(k);
+    __syncthreads();
+  }
+};
+template <class F>
+__global__ void block_kernel(const __grid_constant__ F f) {
+  extern __shared__ uint4 memory[];
+  f(blockIdx.x, Block{}, memory);
+}
+
 inline unsigned blocks_for(uint32_t count, int block) { return (count + block - 1) / block; }
 
 // Blocks stay for the whole loop where there is much to do, so that what each prepares is prepared seldom.
@@ -222,19 +237,30 @@ void for_each(Stream& stream, uint32_t begin, uint32_t end, int block, const F& 
   each_kernel<<<blocks_for(end - begin, block), block, 0, stream.get()>>>(begin, end, f);
   check(cudaGetLastError(), "start a kernel");
 }
+// Lets a kernel's blocks have so many bytes of shared memory; they may have less than 48 KiB unasked.
+template <class Kernel>
+void ask_for_memory(const Kernel& kernel, size_t bytes, const char* what) {
+  if (bytes > size_t{48} * 1024)
+    check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(bytes)),
+          what);
+}
 template <class F>
 void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int block, const void* cache, size_t words,
                      const F& f) {
   if (begin >= end) return;
   stream.activate();
-  // A block may have so much unasked; up to four times that on some devices.
-  constexpr size_t kUnasked = 48 * 1024;
-  if (words * 4 > kUnasked)
-    check(cudaFuncSetAttribute(cached_kernel<F>, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                               static_cast<int>(words * 4)),
-          "hold a rule's tables in a block's shared memory");
+  ask_for_memory(cached_kernel<F>, words * 4, "hold a rule's tables in a block's shared memory");
   cached_kernel<<<resident_blocks(stream, end - begin, block), block, words * 4, stream.get()>>>(
       begin, end, static_cast<const uint32_t*>(cache), static_cast<uint32_t>(words), f);
+  check(cudaGetLastError(), "start a kernel");
+}
+// Calls f(index, block, memory), a block of threads and `bytes` of its memory each.
+template <class F>
+void for_each_block(Stream& stream, uint32_t count, int threads, size_t bytes, const F& f) {
+  if (count == 0) return;
+  stream.activate();
+  ask_for_memory(block_kernel<F>, bytes, "hold a problem in a block's shared memory");
+  block_kernel<<<count, threads, bytes, stream.get()>>>(f);
   check(cudaGetLastError(), "start a kernel");
 }
 template <class F>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -82,6 +83,19 @@ void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int, const vo
   stream.later([=] {
     if (f.idle()) return;
     for (uint32_t i = begin; i < end; ++i) f(i, cache);
+  });
+}
+struct Block {
+  template <class F>
+  void each(uint32_t count, const F& f) const {
+    for (uint32_t k = 0; k < count; ++k) f(k);
+  }
+};
+template <class F>
+void for_each_block(Stream& stream, uint32_t count, int, size_t bytes, const F& f) {
+  stream.later([=] {
+    std::vector<std::max_align_t> memory(bytes / sizeof(std::max_align_t) + 1);
+    for (uint32_t i = 0; i < count; ++i) f(i, Block{}, memory.data());
   });
 }
 template <class F>

@@ -103,4 +103,25 @@ void require_tables(const Options& options, uint64_t bytes) {
           .about({"table.index_bits"});
 }
 
+void throw_thin_cell(size_t sample, double thickness, double reach) {
+  throw InputError(
+      fmt::format("sample {}: its cell is {:.4g} angstrom thick, less than the reach of the forces, {:.4g}",
+                  sample, thickness, reach),
+      "cutoff and skin of the bonds make the reach");
+}
+
+void require_sample(int device, uint64_t atoms, uint64_t bonds, uint64_t bytes) {
+  uint64_t has = 0;
+  for (const Device& found : find_devices(nullptr))
+    if (found.ordinal == device) has = found.block_memory;
+  if (bonds <= 0xffff && bytes <= has) return;
+  throw InputError(
+      fmt::format("a sample of {} atoms with {} bonds takes {} bytes; a block of device {} has {}", atoms,
+                  bonds, bytes, device, has));
+}
+
+void throw_lost_sample(size_t sample) {
+  throw std::runtime_error(fmt::format("sample {}: a force is not finite", sample));
+}
+
 }  // namespace cuboct::gpu

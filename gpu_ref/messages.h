@@ -23,6 +23,12 @@ void require_widths(const Widths& widths);
 void require_memory(const Options& options, uint64_t particles, uint64_t cells, double bytes_per_particle);
 // InputError where a block of a device cannot hold a rule's tables.
 void require_tables(const Options& options, uint64_t bytes);
+// InputError: a sample's cell (gpu_ref/samples.h) is too thin, angstrom.
+[[noreturn]] void throw_thin_cell(size_t sample, double thickness, double reach);
+// InputError where the memory of a device's block cannot hold a sample of so many bytes.
+void require_sample(int device, uint64_t atoms, uint64_t bonds, uint64_t bytes);
+// std::runtime_error
+[[noreturn]] void throw_lost_sample(size_t sample);
 // std::runtime_error: in the step after `step`.
 [[noreturn]] void throw_not_finite(uint64_t step, uint32_t fastest, double speed);
 

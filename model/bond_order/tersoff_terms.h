@@ -11,6 +11,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/base/fixed_math.h"
+
 namespace cuboct {
 
 // Of one ordered triple of elements (i, j, k): zeta takes gamma ... cos_theta0, R and D of the triple; the
@@ -32,7 +34,7 @@ struct Sloped {
 
 // fc falls from 1 at R - D to 0 at R + D.
 template <class Real>
-Sloped<Real> tersoff_cutoff(const TersoffTerm<Real>& t, const Real& r) {
+CUBOCT_HD Sloped<Real> tersoff_cutoff(const TersoffTerm<Real>& t, const Real& r) {
   using std::cos, std::sin;
   if (r < t.R - t.D) return {Real(1), Real(0)};
   if (!(r < t.R + t.D)) return {Real(0), Real(0)};
@@ -43,7 +45,7 @@ Sloped<Real> tersoff_cutoff(const TersoffTerm<Real>& t, const Real& r) {
 // g and dg/dcos. The usual gamma (1 + c^2/d^2 - c^2/(d^2 + u^2)), u = cos - cos_theta0, without its
 // cancellation.
 template <class Real>
-Sloped<Real> tersoff_angle(const TersoffTerm<Real>& t, const Real& cosine) {
+CUBOCT_HD Sloped<Real> tersoff_angle(const TersoffTerm<Real>& t, const Real& cosine) {
   const Real u = cosine - t.cos_theta0, d2 = t.d * t.d, over = Real(1) / (d2 + u * u);
   const Real c2 = t.gamma * t.c * t.c;
   return {t.gamma + c2 * u * u * over / d2, Real(2) * c2 * u * over * over};
@@ -52,7 +54,7 @@ Sloped<Real> tersoff_angle(const TersoffTerm<Real>& t, const Real& cosine) {
 // exp((lambda3 x)^m) and its slope by x = r_ij - r_ik. Beyond an exponent of 69 the value is 1e30 with no
 // slope, as in LAMMPS: such a bond has no order left.
 template <class Real>
-Sloped<Real> tersoff_stretch(const TersoffTerm<Real>& t, const Real& x) {
+CUBOCT_HD Sloped<Real> tersoff_stretch(const TersoffTerm<Real>& t, const Real& x) {
   using std::exp;
   const Real y = t.lambda3 * x;
   const Real power = t.m == 3 ? y * y * y : y;
@@ -65,7 +67,7 @@ Sloped<Real> tersoff_stretch(const TersoffTerm<Real>& t, const Real& x) {
 // b and db/dzeta, zeta >= 0. With u = n log(beta zeta) and e = exp(-|u|) nothing overflows:
 //   log(1 + exp(u)) = max(u, 0) + log(1 + e),  zeta db/dzeta = -b/2 exp(u)/(1 + exp(u)).
 template <class Real>
-Sloped<Real> tersoff_order(const TersoffTerm<Real>& t, const Real& zeta) {
+CUBOCT_HD Sloped<Real> tersoff_order(const TersoffTerm<Real>& t, const Real& zeta) {
   using std::exp, std::log;
   const Real x = t.beta * zeta;
   if (!(x > Real(1e-300))) return {Real(1), Real(0)};
@@ -78,13 +80,13 @@ Sloped<Real> tersoff_order(const TersoffTerm<Real>& t, const Real& zeta) {
 
 // A exp(-lambda1 r) and B exp(-lambda2 r).
 template <class Real>
-Sloped<Real> tersoff_repulsion(const TersoffTerm<Real>& t, const Real& r) {
+CUBOCT_HD Sloped<Real> tersoff_repulsion(const TersoffTerm<Real>& t, const Real& r) {
   using std::exp;
   const Real value = t.A * exp(-t.lambda1 * r);
   return {value, -t.lambda1 * value};
 }
 template <class Real>
-Sloped<Real> tersoff_attraction(const TersoffTerm<Real>& t, const Real& r) {
+CUBOCT_HD Sloped<Real> tersoff_attraction(const TersoffTerm<Real>& t, const Real& r) {
   using std::exp;
   const Real value = t.B * exp(-t.lambda2 * r);
   return {value, -t.lambda2 * value};
