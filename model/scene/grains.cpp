@@ -10,6 +10,7 @@
 #include "model/base/parallel.h"
 #include "model/contract/neighbours.h"
 #include "model/scene/packing_parts.h"
+#include "model/scene/random_turn.h"
 
 namespace cuboct {
 namespace {
@@ -73,25 +74,6 @@ class Blocks {
   std::array<int, 3> count_{};
   Vec3 edge_ = Vec3::Zero();  // m
 };
-
-// Rotation by a unit quaternion that is uniform on its sphere (G. Marsaglia, "Choosing a point from the
-// surface of a sphere", Ann. Math. Stat. 43, 645 (1972)).
-Mat3 any_turn(std::mt19937_64& generator) {
-  const auto disc = [&] {
-    for (;;) {
-      const double x = 2 * uniform(generator) - 1, y = 2 * uniform(generator) - 1, square = x * x + y * y;
-      if (square < 1 && square > 0) return std::array{x, y, square};
-    }
-  };
-  const auto [a, b, first] = disc();
-  const auto [u, v, second] = disc();
-  const double rest = std::sqrt((1 - first) / second), c = u * rest, d = v * rest;
-  Mat3 turn;
-  turn << a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c),  //
-      2 * (b * c + a * d), a * a - b * b + c * c - d * d, 2 * (c * d - a * b),      //
-      2 * (b * d - a * c), 2 * (c * d + a * b), a * a - b * b - c * c + d * d;
-  return turn;
-}
 
 // About one axis. What lies along it keeps its coordinate to the last bit: a flat sheet stays flat.
 Mat3 turn_about(int axis, std::mt19937_64& generator) {
@@ -312,7 +294,7 @@ std::vector<Grain> draw_grains(const Grains& grains, const GrainDomain& domain) 
         room = room && domain.between(grain.centre, all[other].centre).norm() >= grains.size / 2;
     });
     if (!room) continue;
-    grain.turn = grains.column_axis < 0 ? any_turn(generator) : turn_about(grains.column_axis, generator);
+    grain.turn = grains.column_axis < 0 ? random_turn(generator) : turn_about(grains.column_axis, generator);
     inside[home].push_back(static_cast<uint32_t>(all.size()));
     all.push_back(grain);
   }

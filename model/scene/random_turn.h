@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <random>
+
+#include "model/base/vec.h"
+
+namespace cuboct {
+
+// Any rotation, all alike in chance; the same on every machine.
+Mat3 random_turn(std::mt19937_64& generator);
+
+}  // namespace cuboct
