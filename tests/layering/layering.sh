@@ -15,6 +15,7 @@ declare -A may=(
   [model/trace]="model/base model/contract model/scene"
   [model/analysis]="model/base model/contract model/solid model/real model/scene model/trace"
   [model/mesh]="model/base model/scene"
+  [model/multiscale]="model/base model/solid model/scene model/bond_order"
   [model/run]="model"
   [hw]="model"
   [synth]="model hw"

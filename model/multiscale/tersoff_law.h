@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Tersoff's potential (model/bond_order) as samples take it.
+#pragma once
+
+#include <memory>
+
+#include "model/bond_order/tersoff_parameters.h"
+#include "model/multiscale/atomic_sample.h"
+
+namespace cuboct {
+
+// `tersoff` in eV and angstrom, of one element or more: the atoms are of the first.
+std::shared_ptr<const AtomicLaw> tersoff_law(Tersoff tersoff);
+
+}  // namespace cuboct
