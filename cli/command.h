@@ -28,6 +28,7 @@ void add_energy(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 void add_picture(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
+void add_multiscale(CLI::App& app, int& exit_code);
 void add_pitch(CLI::App& app, int& exit_code);
 void add_stability(CLI::App& app, int& exit_code);
 

@@ -93,6 +93,7 @@ int main_of(int argc, char** argv) {
   add_synth(app, exit_code);
   add_energy(app, exit_code);
   add_elastic(app, exit_code);
+  add_multiscale(app, exit_code);
   add_explore(app, exit_code);
   add_fit(app, exit_code);
   add_pitch(app, exit_code);

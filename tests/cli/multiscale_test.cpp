@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// `cuboct multiscale` as a user meets it: the studies of silicon beside the values that their paper measures
+// itself by, and what is refused.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/shell.h"
+
+namespace cuboct::test {
+namespace {
+
+using Json = nlohmann::json;
+
+Json found_by(const Bench& bench, const std::string& study) {
+  const Answer answer =
+      bench.cuboct({"multiscale", "scenes/studies/" + study + ".toml", "--out", bench.path(study), "--json"});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  return Json::parse(answer.out);
+}
+
+double value(const Json& found, const char* name) { return found[name]["value"].get<double>(); }
+
+// Zhuravlev et al., Symmetry 13 (2021) 219: constants of its table 1 as printed; 160 GPa and 0.22.
+TEST(Multiscale, StretchedSiliconIsThatOfThePaper) {
+  const Bench bench(false);
+  const Json found = found_by(bench, "silicon_stretch");
+  EXPECT_NEAR(value(found, "C11"), 166, 0.5);
+  EXPECT_NEAR(value(found, "C12"), 63, 0.5);
+  EXPECT_NEAR(value(found, "C44"), 78, 0.5);
+  EXPECT_NEAR(value(found, "modulus"), 160, 0.03 * 160);
+  EXPECT_NEAR(value(found, "Poisson_ratio"), 0.22, 0.005);
+  EXPECT_LT(value(found, "modulus_error"), 0.5);
+  for (const char* file : {"stretch.tsv", "stress.svg", "volume.svg", "summary.json"})
+    EXPECT_TRUE(std::filesystem::exists(bench.path("silicon_stretch/") + file)) << file;
+}
+
+TEST(Multiscale, PressureWaveThroughAPlateHasItsSpeed) {
+  const Bench bench(false);
+  const Json found = found_by(bench, "silicon_plate");
+  EXPECT_NEAR(value(found, "wave_speed"), 8850, 0.01 * 8850);
+  EXPECT_NEAR(value(found, "wave_speed"), value(found, "Hill_wave_speed"), 0.01 * 8850);
+  EXPECT_GT(std::filesystem::file_size(bench.path("silicon_plate/velocity.png")), 2000U);
+  // A second time it is done already.
+  EXPECT_EQ(found_by(bench, "silicon_plate"), found);
+}
+
+std::string rod(const std::string& material, const std::string& peak) {
+  return "[material]\n" + material +
+         "edge = \"5.43 angstrom\"\nmass = \"28.0855 u\"\ncells = 1\n[mesh]\ncubes = [6, 1, 1]\nsize = \"[6, "
+         "1, 1] um\"\n"
+         "[wave]\nalong = \"x\"\npeak = \"" +
+         peak + "\"\n";
+}
+
+TEST(Multiscale, SaysWhatGoesWrong) {
+  const Bench bench(false);
+  const auto told = [&](const std::string& text) {
+    std::ofstream(bench.path("a.toml")) << text;
+    return bench.cuboct({"multiscale", bench.path("a.toml"), "--out", bench.path("out")});
+  };
+  // Tersoff's angular term alone, turned over: silicon's lattice is no minimum.
+  const Answer unstable =
+      told(rod("parameters = { A = 3821.34, B = 113.17, lambda1 = 3.36252, lambda2 = 1.27279, "
+               "lambda3 = 1.19417, beta = 0.132272, n = 4.16334, gamma = 5.71477, c = 9.69902, d = 2.35646, "
+               "cos_theta0 = 0.9, "
+               "R = 2.85, D = 0.15 }\n",
+               "10 MPa"));
+  EXPECT_EQ(unstable.code, 2);
+  EXPECT_NE(unstable.err.find("parameters of the study: "), std::string::npos) << unstable.err;
+  const Answer torn = told(rod("potential = \"si_multiscale\"\n", "500 GPa"));
+  EXPECT_EQ(torn.code, 1);
+  EXPECT_EQ(torn.err.find("element "), 0U) << torn.err;
+}
+
+}  // namespace
+}  // namespace cuboct::test
