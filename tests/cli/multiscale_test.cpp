@@ -59,7 +59,7 @@ TEST(Multiscale, SaysWhatGoesWrong) {
   const Bench bench(false);
   const auto told = [&](const std::string& text) {
     std::ofstream(bench.path("a.toml")) << text;
-    return bench.cuboct({"multiscale", bench.path("a.toml"), "--out", bench.path("out")});
+    return bench.cuboct({"multiscale", bench.path("a.toml"), "--out", bench.path("torn")});
   };
   // Tersoff's angular term alone, turned over: silicon's lattice is no minimum.
   const Answer unstable =
