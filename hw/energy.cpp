@@ -239,7 +239,7 @@ Band register_bits(const Plan& plan) {
   return bits * (arch.narrow_memories ? kNarrow : kWide);
 }
 
-Band memory_bit_energy(const Figure& figure, const Figure& exponent, double words) {
+Band memory_bit_energy(const TechnologyFigure& figure, const TechnologyFigure& exponent, double words) {
   const double ratio = words / figure.words;
   const double a = std::pow(ratio, exponent.band.low), b = std::pow(ratio, exponent.band.high);
   return {figure.band.low * std::min(a, b), figure.band.high * std::max(a, b)};

@@ -54,7 +54,7 @@ Area area_of(const Plan& plan, const Technology& technology);
 Band register_bits(const Plan& plan);
 
 // pJ of a bit of a memory of so many words.
-Band memory_bit_energy(const Figure& figure, const Figure& exponent, double words);
+Band memory_bit_energy(const TechnologyFigure& figure, const TechnologyFigure& exponent, double words);
 
 // The sum with one constant at its ends and all others in the middle of their bands: the longest bar first.
 struct Sensitivity {

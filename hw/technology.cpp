@@ -42,9 +42,9 @@ std::string text_at(const ConfigTable& table, const std::string& key, const std:
   return text;
 }
 
-Figure figure_of(const ConfigTable& table, const std::string& unit, bool of_memory) {
+TechnologyFigure figure_of(const ConfigTable& table, const std::string& unit, bool of_memory) {
   constexpr double kMost = 1e12;  // of any figure in its unit
-  Figure figure;
+  TechnologyFigure figure;
   figure.band.low = table.number("low", quantity::number, Range::between(0, kMost));
   figure.band.high = table.number("high", quantity::number, Range::between(0, kMost));
   if (figure.band.low > figure.band.high)

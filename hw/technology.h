@@ -46,7 +46,7 @@ inline constexpr size_t kConstants = static_cast<size_t>(Constant::wire_pitch) +
 const char* name_of(Constant constant);
 const char* unit_of(Constant constant);
 
-struct Figure {
+struct TechnologyFigure {
   Band band;         // >= 0
   double words = 0;  // memory_read, memory_write: of the memory that it is of
   std::string source;
@@ -54,10 +54,12 @@ struct Figure {
 
 struct Technology {
   std::string name, title;
-  std::array<std::optional<Figure>, kConstants> figures;
+  std::array<std::optional<TechnologyFigure>, kConstants> figures;
 
-  const std::optional<Figure>& at(Constant constant) const { return figures[static_cast<size_t>(constant)]; }
-  std::optional<Figure>& at(Constant constant) { return figures[static_cast<size_t>(constant)]; }
+  const std::optional<TechnologyFigure>& at(Constant constant) const {
+    return figures[static_cast<size_t>(constant)];
+  }
+  std::optional<TechnologyFigure>& at(Constant constant) { return figures[static_cast<size_t>(constant)]; }
 };
 
 // Throws InputError at the place of what is wrong: a figure without a source, low above high, another unit
@@ -68,7 +70,7 @@ Technology parse_technology(const std::string& text, const std::string& path);
 // Kinds of link between chips, of a file of them.
 struct LinkKind {
   std::string name;
-  Figure figure;  // pJ/bit
+  TechnologyFigure figure;  // pJ/bit
 };
 std::vector<LinkKind> parse_links(const std::string& text, const std::string& path);
 

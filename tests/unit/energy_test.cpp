@@ -63,7 +63,7 @@ bool lacks(const Energy& e, const std::string& term) {
 Technology made() {
   Technology t;
   t.name = "made";
-  for (auto& figure : t.figures) figure = Figure{{1, 2}, 16, "made"};
+  for (auto& figure : t.figures) figure = TechnologyFigure{{1, 2}, 16, "made"};
   t.at(Constant::memory_exponent)->band = {0.5, 1};
   t.at(Constant::clock_device) = t.at(Constant::static_device) = t.at(Constant::link_bit) = std::nullopt;
   return t;
@@ -207,7 +207,7 @@ TEST(Energy, AnFpgaPaysByDevice) {
 
 TEST(Energy, ALinkBetweenChipsReplacesItsWire) {
   Technology t = made();
-  t.at(Constant::link_bit) = Figure{{0.25, 0.5}, 0, "made"};
+  t.at(Constant::link_bit) = TechnologyFigure{{0.25, 0.5}, 0, "made"};
   const Energy e = energy(events(), t);
   EXPECT_EQ(row(e, "links").picojoules.high, 0.5 * 12000 * (block().words.link_bits + 1));
   EXPECT_TRUE(std::ranges::none_of(e.rows, [](const EnergyRow& r) { return r.term == "links: wires"; }));
