@@ -8,10 +8,12 @@
 #include "cli/answer.h"
 #include "cli/budget.h"
 #include "cli/command.h"
+#include "cli/explore_machines.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
 #include "model/base/text.h"
+#include "study/machines/machine_study.h"
 #include "study/measure_run.h"
 #include "study/page.h"
 #include "study/runner.h"
@@ -25,6 +27,8 @@ struct Options {
   std::vector<std::string> add;
   int jobs = 0;
   bool no_speed = false;
+  bool best = false, confirm = false;
+  std::string emit;
   Answer answer;
 };
 
@@ -69,7 +73,22 @@ void report(const study::Results& results, const std::string& out, const std::st
                             {"charts", json(charts)}}));
 }
 
+int explore_machines_of(const Options& options) {
+  if (!options.error.empty() || !options.add.empty() || options.no_speed)
+    throw InputError("--error, --figure, --add and --no-speed are of studies of errors",
+                     "a study of machines has constraints = [\"error <= 1%\"]");
+  const bool best = options.best || !options.emit.empty();
+  return explore_machines(
+      {options.study, options.out.empty() ? default_directory(options.study) : options.out, options.jobs,
+       best, options.confirm, options.emit},
+      options.answer);
+}
+
 int explore(const Options& options) {
+  if (study::is_machine_study(options.study)) return explore_machines_of(options);
+  if (options.best || options.confirm || !options.emit.empty())
+    throw InputError("--best, --confirm and --emit are of studies of machines",
+                     "give the file a [[machines]]");
   const study::Study study = study::read_study(options.study);
   const bool budget = !options.error.empty();
   if (budget) check_budget(study, options.error, options.figure);
@@ -103,7 +122,8 @@ int explore(const Options& options) {
 
 void add_explore(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("explore", "chart speed against accuracy over a study's settings");
+  CLI::App* command =
+      app.add_subcommand("explore", "chart a study's settings or machines: errors, speed, cycles, energy");
   command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
   command
       ->add_option("--out", options->out,
@@ -120,6 +140,12 @@ void add_explore(CLI::App& app, int& exit_code) {
       ->type_name("E");
   command->add_option("--figure", options->figure, "the figure of --error")->type_name("NAME");
   command->add_flag("--no-speed", options->no_speed, "measure errors alone");
+  command->add_flag(
+      "--best", options->best,
+      "of a study of machines: choose the one that keeps all constraints and has the least of what is "
+      "minimised");
+  command->add_option("--emit", options->emit, "write the RTL project of that machine")->type_name("DIR");
+  command->add_flag("--confirm", options->confirm, "synthesise the machine before it is chosen");
   options->answer.add_to(*command);
   command->callback([options, &exit_code] { exit_code = explore(*options); });
 }

@@ -15,6 +15,7 @@ extern const char kOsu018Technology[];
 extern const char kIce40Technology[];
 extern const char kEcp5Technology[];
 extern const char kLinksTechnology[];
+extern const char kMachinePeers[];  // study/machines/peers.h
 
 // "cmos45", or a file's path: one that has a slash or ends in .toml. InputError with the nearest spelling.
 Technology technology_named(const std::string& name);

@@ -66,8 +66,11 @@ void fit_widths(Settings& settings, const Widths& base) {
 
 struct Key {
   const char* name;
-  const char* target;  // key of the scene, of the arch ("arch."); null: of the settings themselves
-  bool alone = true;   // a value that is wrong by itself is a mistake
+  const char* target;    // key of the scene, of the arch ("arch."); null: of the settings themselves
+  bool alone = true;     // a value that is wrong by itself is a mistake
+  bool machine = false;  // no error depends on it
+
+  bool is_of(KeysOf keys) const { return keys == KeysOf::machines ? target != nullptr : !machine; }
 };
 
 // In the order in which axes nest, the last one fastest.
@@ -98,6 +101,17 @@ constexpr Key kKeys[] = {
     {"index_bits", "arch.table.index_bits"},
     {"fraction_bits", "arch.table.fraction_bits"},
     {"threads", nullptr},
+    {"brick", "arch.node.brick", false, true},
+    {"filter_lanes", "arch.node.filter_lanes", true, true},
+    {"force_pipes", "arch.node.force_pipes", true, true},
+    {"multipliers", "arch.node.multipliers", true, true},
+    {"memories", "arch.node.memories", true, true},
+    {"halos", "arch.node.halos", true, true},
+    {"streamers", "arch.node.streamers", true, true},
+    {"queue_depth", "arch.node.queue_depth", true, true},
+    {"overlap", "arch.node.overlap", true, true},
+    {"link_bits", "arch.link.bits", true, true},
+    {"link_check", "arch.link.check", true, true},
 };
 
 // What one value of one key does.
@@ -161,15 +175,17 @@ std::string label_of(const ConfigValue& value) {
   return value.is_string() ? value.string() : toml_text(value);
 }
 
-std::vector<ConfigValue> notches(const ConfigValue& value) {
+// One brick is a list of its own.
+std::vector<ConfigValue> notches(const ConfigValue& value, bool of_lists = false) {
   std::vector<ConfigValue> items = value.is_array() ? value.items() : std::vector{value};
+  if (of_lists && !items.empty() && !items[0].is_array()) items = {value};
   if (items.empty()) value.fail(fmt::format("'{}' lists nothing", value.key()));
   return items;
 }
 
 Axis axis_of(const Key& key, const ConfigValue& value, const Base& base, const Widths& widths) {
   Axis axis{key.name, {}, {}};
-  for (const ConfigValue& item : notches(value)) {
+  for (const ConfigValue& item : notches(value, std::string(key.name) == "brick")) {
     axis.labels.push_back(label_of(item));
     axis.sets.push_back(set_of(key, item, widths));
     if (key.alone && key.target) try_alone(item, axis.sets.back(), base);
@@ -177,16 +193,19 @@ Axis axis_of(const Key& key, const ConfigValue& value, const Base& base, const W
   return axis;
 }
 
+const char* name_of(KeysOf keys) { return keys == KeysOf::errors ? "sweep" : "machines"; }
+
 // Each preset sets what it names.
-Axis read_presets(const ConfigValue& value, const Base& base, const Widths& widths) {
+Axis read_presets(const ConfigValue& value, const Base& base, const Widths& widths, KeysOf keys) {
   Axis axis{"presets", {}, {}};
   for (const ConfigValue& item : notches(value)) {
     const ConfigTable preset = item.table();
-    preset.record_as("sweep");
+    preset.record_as(name_of(keys));
     axis.labels.push_back(preset.at("name").string());
     std::vector<Set> sets;
     for (const Key& key : kKeys)
-      if (const auto found = preset.find(key.name)) sets.push_back(set_of(key, *found, widths));
+      if (const auto found = key.is_of(keys) ? preset.find(key.name) : std::nullopt)
+        sets.push_back(set_of(key, *found, widths));
     axis.sets.push_back([sets](Settings& settings) {
       for (const Set& set : sets) set(settings);
     });
@@ -223,13 +242,14 @@ std::vector<Leaf> leaves(const ConfigTable& table) {
   return out;
 }
 
-std::vector<Axis> read_axes(const ConfigTable& table, const Base& base) {
+std::vector<Axis> read_axes(const ConfigTable& table, const Base& base, KeysOf keys) {
   std::vector<Axis> axes;
   const Widths widths = widths_of(base);
-  table.record_as("sweep");  // its keys have one place in the documentation
+  table.record_as(name_of(keys));  // its keys have one place in the documentation
   for (const Key& key : kKeys)
-    if (const auto value = table.find(key.name)) axes.push_back(axis_of(key, *value, base, widths));
-  if (const auto presets = table.find("presets")) axes.push_back(read_presets(*presets, base, widths));
+    if (const auto value = key.is_of(keys) ? table.find(key.name) : std::nullopt)
+      axes.push_back(axis_of(key, *value, base, widths));
+  if (const auto presets = table.find("presets")) axes.push_back(read_presets(*presets, base, widths, keys));
   if (const auto set = table.table_at("set"))
     for (const Leaf& leaf : leaves(*set)) {
       Axis axis{leaf.key, {}, {}};

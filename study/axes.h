@@ -9,11 +9,15 @@
 
 namespace cuboct::study {
 
+// Which keys a table has: those that errors depend on, or those of a machine in fixed arithmetic, which are
+// the same less the engine's own, and the rest of the arch file's.
+enum class KeysOf : uint8_t { errors, machines };
+
 // The axes of a table, in the order of docs/user/study.md: those of the table's keys that are there, then its
 // `presets`, then what stands in its `set`. Every value is tried on the base by itself: InputError at the
 // value where it makes no scene or arch, but for those that may turn out impossible only together with others
-// (pitch, cutoff, dt, cell_edge).
-std::vector<Axis> read_axes(const ConfigTable& table, const Base& base);
+// (pitch, cutoff, dt, cell_edge). Keys that the caller asked for before stay its own.
+std::vector<Axis> read_axes(const ConfigTable& table, const Base& base, KeysOf keys = KeysOf::errors);
 
 // All that stands in a table of changes, [change] or `set`: {"run.duration", "\"0.3 ms\""}, ... as TOML text,
 // in the order of the file. Keys of the arch begin with "arch.".

@@ -42,11 +42,12 @@ struct Plotted {
   Stroke stroke = Stroke::none;
   double width = 0;           // of the line, in pixels
   std::vector<Rows> rows;     // joined each by itself, or
-  std::vector<Place> places;  // a line through no row; without a key its name stands beside the middle one
+  std::vector<Place> places;  // a line through no row, or bars: two places each and one of nan after them;
+                              // without a key a line's name stands beside its middle place
 };
 
 // The part of the chart below `high`.
-struct Band {
+struct ChartBand {
   double high = 0;
   std::string text;
 };
@@ -59,7 +60,7 @@ struct Chart {
   ChartAxis x, y;
   std::vector<Plotted> plotted;  // the last on top
   Rows best;                     // that stand out
-  std::optional<Band> band;
+  std::optional<ChartBand> band;
   std::string corner;  // names the better one, the lower left or right
   bool corner_left = false;
   bool key = true;

@@ -34,9 +34,9 @@ Rows all_rows(size_t count) {
 
 bool is_error(double value) { return std::isfinite(value) && value >= 0; }
 
-std::optional<Band> below_truth(const Measure& error, const ChartAxis& axis) {
+std::optional<ChartBand> below_truth(const Measure& error, const ChartAxis& axis) {
   if (error.floor <= axis.low) return std::nullopt;
-  return Band{std::min(error.floor, axis.high), "below: the truth's own error"};
+  return ChartBand{std::min(error.floor, axis.high), "below: the truth's own error"};
 }
 
 Plotted marks_of(const Series& series, double size) {

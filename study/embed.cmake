@@ -18,6 +18,8 @@ add_part(web_library ${modules}/echarts/dist/echarts.common.min.js)
 add_part(web_frame page.html)
 add_part(web_style page.css)
 add_part(web_script format.js charts.js tables.js page.js)
+add_part(web_machines_frame machines.html)
+add_part(web_machines_script format.js charts.js tables.js machines.js)
 add_part(web_licences ${modules}/echarts/NOTICE ${modules}/echarts/LICENSE ${modules}/echarts/licenses/LICENSE-d3
          ${modules}/zrender/LICENSE ${modules}/tslib/LICENSE.txt)
 file(WRITE ${OUT} "${text}\n}  // namespace cuboct::study\n")

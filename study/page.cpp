@@ -11,6 +11,7 @@
 #include "model/base/output.h"
 #include "model/base/text.h"
 #include "study/chart.h"
+#include "study/chart_json.h"
 #include "study/measures.h"
 #include "study/series.h"
 #include "study/web.h"
@@ -40,54 +41,6 @@ std::string decades_json(const Results& results, const std::vector<Measure>& err
       return json_array(cheapest_by_decade(results.outcomes, error.value, merit), row_json);
     });
   });
-}
-
-// Charts name their values by an index into `columns`: several share one.
-std::string axis_json(const ChartAxis& axis, std::vector<std::string>& columns) {
-  const std::string values = json(axis.values);
-  const auto at = std::ranges::find(columns, values) - columns.begin();
-  if (at == std::ssize(columns)) columns.push_back(values);
-  const auto tick_json = [](const Tick& tick) {
-    return json_array(std::array{json(tick.at), json(tick.label)});
-  };
-  return json_object({{"label", json(axis.label)},
-                      {"column", std::to_string(at)},
-                      {"logarithmic", json(axis.logarithmic)},
-                      {"decades", json(axis.decades)},
-                      {"range", json(std::vector{axis.low, axis.high})},
-                      {"ticks", json_array(axis.ticks, tick_json)}});
-}
-
-std::string plotted_json(const Plotted& plotted) {
-  static constexpr const char* kStrokes[] = {"none", "solid", "dashed", "dotted"};
-  const auto place_json = [](const Place& place) { return json(std::vector{place.first, place.second}); };
-  return json_object({{"name", json(plotted.name)},
-                      {"colour", json(plotted.colour)},
-                      {"symbol", std::to_string(plotted.symbol)},
-                      {"size", json(plotted.size)},
-                      {"stroke", json(std::string(kStrokes[static_cast<size_t>(plotted.stroke)]))},
-                      {"width", json(plotted.width)},
-                      {"rows", json_array(plotted.rows, [](const Rows& rows) { return json(rows); })},
-                      {"places", json_array(plotted.places, place_json)}});
-}
-
-std::string chart_json(const Chart& chart, std::vector<std::string>& columns) {
-  const auto index = [](std::optional<size_t> n) { return n ? std::to_string(*n) : "null"; };
-  return json_object(
-      {{"section", json(chart.section)},
-       {"error", index(chart.error)},
-       {"speed", index(chart.speed)},
-       {"title", json(chart.title)},
-       {"caption", json(chart.caption)},
-       {"x", axis_json(chart.x, columns)},
-       {"y", axis_json(chart.y, columns)},
-       {"plotted", json_array(chart.plotted, plotted_json)},
-       {"best", json(chart.best)},
-       {"band", chart.band ? json_array(std::array{json(chart.band->high), json(chart.band->text)}) : "null"},
-       {"corner", json(chart.corner)},
-       {"corner_left", json(chart.corner_left)},
-       {"key", json(chart.key)},
-       {"tips", json(chart.tips)}});
 }
 
 std::string series_json(const Series& series) {
@@ -134,8 +87,7 @@ std::string data_of(const Results& results) {
   const std::vector<Measure> errors = error_measures(results), speeds = speed_measures(results);
   const Truth& truth = results.truth;
   std::vector<std::string> columns;
-  const std::string charts =
-      json_array(charts_of(results), [&](const Chart& chart) { return chart_json(chart, columns); });
+  const std::string charts = charts_json(charts_of(results), columns);
   return json_object({{"title", json(results.title)},
                       {"scene", json(results.scene)},
                       {"machine", json(results.machine)},
@@ -160,28 +112,17 @@ std::string data_of(const Results& results) {
 
 bool has_page() { return true; }
 
-// The frame's places "@name@", in their order.
 std::string page_of(const Results& results) {
   const std::string title = html_text(results.title.empty() ? "A study" : results.title);
-  const std::pair<const char*, std::string> parts[] = {{"@title@", title},
-                                                       {"@style@", std::string(web_style())},
-                                                       {"@title@", title},
-                                                       {"@licences@", html_text(std::string(web_licences()))},
-                                                       {"@data@", data_of(results)},
-                                                       {"@library@", std::string(web_library())},
-                                                       {"@script@", std::string(web_script())}};
-  const std::string_view frame = web_frame();
-  std::string page;
-  size_t from = 0;
-  for (const auto& [name, text] : parts) {
-    const size_t at = frame.find(name, from);
-    if (at == std::string_view::npos) throw std::logic_error(fmt::format("study/web/page.html: no {}", name));
-    page += frame.substr(from, at - from);
-    page += text;
-    from = at + std::string_view(name).size();
-  }
-  page += frame.substr(from);
-  return page;
+  const std::vector<std::pair<const char*, std::string>> parts = {
+      {"@title@", title},
+      {"@style@", std::string(web_style())},
+      {"@title@", title},
+      {"@licences@", html_text(std::string(web_licences()))},
+      {"@data@", data_of(results)},
+      {"@library@", std::string(web_library())},
+      {"@script@", std::string(web_script())}};
+  return filled_frame(web_frame(), parts);
 }
 
 void write_page(const Results& results, const std::string& path) { write_text(path, page_of(results)); }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "study/chart.h"
 #include "study/front.h"
 #include "study/store.h"
 
@@ -22,5 +23,6 @@ void write_page(const Results& results, const std::string& path);
 // The same charts as PNG and SVG, made by gnuplot, in a directory that is made where needed: charts_of
 // study/chart.h. The names of the files, without directory. Throws InputError where gnuplot is missing.
 std::vector<std::string> write_charts(const Results& results, const std::string& directory);
+std::vector<std::string> write_charts(const std::vector<Chart>& charts, const std::string& directory);
 
 }  // namespace cuboct::study

@@ -62,7 +62,13 @@ std::string corner_text(const Chart& chart) {
                      chart.corner_left ? 0.01 : 0.99, chart.corner_left ? "left" : "right");
 }
 
+// Places in twos, a place of nan after each (study/chart.h).
+bool are_bars(const Plotted& plotted) {
+  return plotted.places.size() > 2 && std::isnan(plotted.places[2].first);
+}
+
 std::string style_of(const Plotted& plotted) {
+  if (are_bars(plotted)) return fmt::format("vectors nohead lw {} lc '{}'", plotted.width, plotted.colour);
   const bool marks = plotted.symbol >= 0, line = plotted.stroke != Stroke::none;
   std::string style = marks && line ? "linespoints" : marks ? "points" : "lines";
   if (marks) style += fmt::format(" pt {} ps {:.2g}", kPointTypes[plotted.symbol], plotted.size / kPointSize);
@@ -82,6 +88,12 @@ struct Plot {
     for (const auto& [x, y] : places) data += fmt::format("{} {}\n", x, y);
     data += "\n";
   }
+  // Lines apart from one another, each of two places.
+  void add_bars(const std::vector<Place>& places) {
+    for (size_t k = 0; k + 1 < places.size(); k += 3)
+      data += fmt::format("{} {} {} {}\n", places[k].first, places[k].second,
+                          places[k + 1].first - places[k].first, places[k + 1].second - places[k].second);
+  }
   void add_rows(const Rows& rows) {
     std::vector<Place> places;
     for (const size_t row : rows)
@@ -94,7 +106,10 @@ struct Plot {
       what = fmt::format("$data{}", blocks++);
       data += what + " << END\n";
       for (const Rows& rows : plotted.rows) add_rows(rows);
-      add_line(plotted.places);
+      if (are_bars(plotted))
+        add_bars(plotted.places);
+      else
+        add_line(plotted.places);
       data += "END\n";
     }
     const bool titled = !plotted.name.empty() && std::ranges::find(named, plotted.name) == named.end();
@@ -107,10 +122,14 @@ struct Plot {
 }  // namespace
 
 std::vector<std::string> write_charts(const Results& results, const std::string& directory) {
+  return write_charts(charts_of(results), directory);
+}
+
+std::vector<std::string> write_charts(const std::vector<Chart>& charts, const std::string& directory) {
   make_directory(directory);
   std::string script = "set encoding utf8\n";
   std::vector<std::string> files;
-  for (const Chart& chart : charts_of(results)) {
+  for (const Chart& chart : charts) {
     Plot plot{chart};
     for (const Plotted& plotted : chart.plotted) plot.add(plotted, style_of(plotted));
     if (!chart.best.empty()) {

@@ -13,6 +13,7 @@
 #include "model/scene/config.h"
 #include "study/axes.h"
 #include "study/changed_base.h"
+#include "study/study_frame.h"
 
 namespace cuboct::study {
 namespace {
@@ -141,8 +142,7 @@ double size_of_run(const Study& study, const Settings& settings) {
   }
 }
 
-Study read_study(const std::string& path) {
-  const ConfigTable root = read_config(path);
+Study read_study_frame(const ConfigTable& root, const std::string& path) {
   Study study;
   study.path = path;
   study.title = root.string_or("title", "");
@@ -153,14 +153,20 @@ Study read_study(const std::string& path) {
   const Scene scene = resolve(study.base, plain).scene;
   read_grid(root, scene, study);
   read_truth_settings(root, study);
-  read_speed_settings(root, study);
   read_figures(root, scene, study);
+  study.hash = hash_of(study);
+  return study;
+}
+
+Study read_study(const std::string& path) {
+  const ConfigTable root = read_config(path);
+  Study study = read_study_frame(root, path);
+  read_speed_settings(root, study);
   read_points(root, study);
   if (const auto search = root.table_at("search")) read_search(*search, study);
   if (study.points.empty() && study.search.empty())
     root.fail("a study without points", "add a [[sweep]] or a [search]");
   root.done();
-  study.hash = hash_of(study);
   return study;
 }
 

@@ -7,10 +7,12 @@
 
 namespace cuboct::study {
 
-std::string_view web_library();   // Apache ECharts, minified, with its notice
-std::string_view web_frame();     // HTML, with places for the rest
-std::string_view web_style();     // CSS
-std::string_view web_script();    // JavaScript
+std::string_view web_library();         // Apache ECharts, minified, with its notice
+std::string_view web_frame();           // HTML, with places for the rest
+std::string_view web_style();           // CSS
+std::string_view web_script();          // JavaScript
+std::string_view web_machines_frame();  // the same of a study of machines
+std::string_view web_machines_script();
 std::string_view web_licences();  // plain text
 
 }  // namespace cuboct::study

@@ -57,7 +57,7 @@ function line_series(plotted, k, named) {
   const middle = plotted.places.length >> 1;
   return {name: plotted.name, type: "line", silent: true, color: plotted.colour, lineStyle: {type: plotted.stroke, width: plotted.width},
     symbol: named ? "none" : "circle", symbolSize: 0.01, showAllSymbol: true,
-    data: plotted.places.map((value, p) => ({value, label: !named && p === middle ? beside(plotted, k) : {show: false}}))};
+    data: plotted.places.map(([x, y]) => (x === null ? ["-", "-"] : [x, y])).map((value, p) => ({value, label: !named && p === middle ? beside(plotted, k) : {show: false}}))};
 }
 
 function mark_series(chart, plotted) {

@@ -18,6 +18,7 @@
 #include "model/scene/config.h"
 #include "model/scene/scene.h"
 #ifdef CUBOCT_HAS_STUDIES
+#include "study/machines/machine_study.h"
 #include "study/study.h"
 #endif
 #ifdef CUBOCT_HAS_FITS
@@ -208,6 +209,38 @@ TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
   EXPECT_GT(named.size(), 40U);
   for (const std::string& key : named)
     EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
+}
+#endif
+
+#ifdef CUBOCT_HAS_STUDIES
+// Keys that studies of machines have beside those of other studies.
+TEST(Docs, EveryKeyOfStudiesOfMachinesIsDocumentedAndViceVersa) {
+  const std::string page = text_of(kRoot + "/docs/user/machines.md");
+  const auto path =
+      std::filesystem::temp_directory_path() / fmt::format("cuboct_docs_machines_{}.toml", getpid());
+  std::ofstream(path) << "scene = \"" << kRoot << "/scenes/undamped_block.toml\"\n"
+                      << "[[machines]]\npresets = [ { name = \"a\" } ]\n[evolve]\n";
+  std::set<std::string> keys, asked{"steps", "constraints", "minimise"};
+  record_config_keys(&keys);
+  study::read_machine_study(path.string(),
+                            {[](const std::string&) { return Technology(); },
+                             [](Technology technology, const std::string&) { return technology; },
+                             {}});
+  record_config_keys(nullptr);
+  std::filesystem::remove(path);
+  for (const std::string& key : keys)
+    if (key.starts_with("machines.") || key.starts_with("evolve.")) asked.insert(key);
+  EXPECT_GT(asked.size(), 40U);
+  for (const char* key : {"steps", "constraints", "minimise"}) EXPECT_TRUE(keys.contains(key)) << key;
+  // [evolve] has the keys of grids: its section names its own alone.
+  std::erase_if(asked, [&](const std::string& key) {
+    return key.starts_with("evolve.") && asked.contains("machines." + key.substr(7));
+  });
+  expect_documented(page, asked);
+  const auto named = documented(page);
+  EXPECT_GT(named.size(), 40U);
+  for (const std::string& key : named)
+    EXPECT_TRUE(asked.contains(key)) << key << " is documented but not read";
 }
 #endif
 
