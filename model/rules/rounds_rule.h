@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// A rule of several rounds in doubles: its declaration, and the terms that an engine runs by it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/contract/rule.h"
+#include "model/rules/declaration.h"
+
+namespace cuboct {
+
+// The rule on the particles of one body. A row is what one particle does: the rows of [begin, end) are done
+// in ascending order by one thread, others at the same time, and a row writes what is of its particle alone.
+// So no bit depends on threads.
+class RoundsTerms {
+ public:
+  virtual ~RoundsTerms() = default;
+
+  // Before the first round, from the positions, m by id, in no image: what the declaration calls `ready`.
+  // std::runtime_error where a position is not finite.
+  virtual void begin(const std::vector<Vec3>& x) = 0;
+  // The pair term of a round, which sums over a particle's bonds by ascending id of the other. With `keeps`
+  // the bonds' own fields change: a step was made; else the state is only looked at.
+  virtual void pair(size_t round, size_t begin, size_t end, bool keeps) = 0;
+  virtual void finish(size_t round, size_t begin, size_t end) = 0;
+  // N, on each particle, by the last round.
+  virtual const std::vector<Vec3>& force() const = 0;
+
+  // By what the last rounds left. J; Pa, tension positive, over `volume` (m^3).
+  virtual double energy() const = 0;
+  virtual Mat3 stress(size_t particle, double volume) const = 0;
+  // Of a particle's bonds the share that is broken, 0 to 1, and how many bonds there are (each once).
+  virtual double damage(size_t) const { return 0; }
+  virtual uint64_t bonds() const = 0;
+
+  // The bonds' own fields, as a checkpoint keeps them. recall(): InputError where they are another body's.
+  virtual std::vector<uint64_t> memory() const { return {}; }
+  virtual void recall(const std::vector<uint64_t>&) {}
+};
+
+class RoundsRule {
+ public:
+  virtual ~RoundsRule() = default;
+
+  virtual const RuleDeclaration& declaration() const = 0;
+  // m, beyond which no particle has a bond to another.
+  virtual double reach() const = 0;
+  // m, beyond which the bond of two nearest neighbours is broken; infinite where none breaks.
+  virtual double bond_reach() const = 0;
+  // s, the largest stable time step of an undamaged body; 0 where it is not known.
+  virtual double stable_time_step(double mass, double pitch) const = 0;
+  // N/m, of the stiffest motion of a particle; 0 where it is not known.
+  virtual double stiffness() const = 0;
+  // What sets it apart from another, in SI units: for people, and for the hash of a run.
+  virtual std::vector<DeclarationLine> settings() const = 0;
+  // InputError where the body does not fit: a particle with too few bonds, ...
+  virtual std::unique_ptr<RoundsTerms> bind(const Body& body, const Periodic& periodic,
+                                            int threads) const = 0;
+};
+
+// What stands for the pair law in a Rule that has rounds: no force, up to the rule's reach. `rule` may be
+// null while the body is read, on which it depends.
+std::shared_ptr<const PairLaw> rounds_law(double reach, std::shared_ptr<const RoundsRule> rule);
+// The rounds of such a Rule; null: it is of pairs.
+const RoundsRule* rounds_of(const Rule& rule);
+// InputError where the rule has rounds, of `who` that knows pairs alone: "the lattice engine".
+void refuse_rounds(const Rule& rule, const std::string& who);
+
+}  // namespace cuboct
