@@ -23,7 +23,8 @@ function axis_options(axis, nameGap) {
 
 function base_options(chart) {
   const slim = narrow();
-  const names = [...new Map(chart.plotted.map((p) => [p.name, {name: p.name, itemStyle: p.symbol < 0 ? {opacity: 0} : {}}])).values()];
+  const names = chart.plotted.filter((p, k) => chart.plotted.findIndex((q) => q.name === p.name) === k)
+    .map((p) => ({name: p.name, itemStyle: p.symbol < 0 ? {opacity: 0} : {}}));
   const key = chart.key ? {
     legend: {type: "scroll", top: 0, left: 0, width: slim ? "100%" : "86%", itemWidth: 16, itemHeight: 11, textStyle: kText, data: names},
     toolbox: {top: slim ? 30 : 0, right: 0, iconStyle: {borderColor: "#333"}, feature: {
