@@ -10,6 +10,8 @@
 namespace cuboct {
 namespace {
 
+constexpr int kMostBoardNodes = 1 << 20;  // of a device, along an axis
+
 void set(const ConfigTable& table, const char* key, int low, int high, int& value) {
   value = static_cast<int>(table.integer_or(key, low, high, value));
 }
@@ -21,6 +23,17 @@ void set_automatic(const ConfigTable& table, const char* key, int low, int high,
   value = found->is_string() && found->choice("width", {"auto"}) == 0
               ? kAutomatic
               : static_cast<int>(found->integer(low, high));
+}
+
+// Three numbers, along x, y and z; `hint` is an example.
+Cell read_cells(const ConfigValue& value, const char* what, const char* hint, int most) {
+  const std::vector<ConfigValue> numbers = value.items();
+  if (numbers.size() != 3)
+    value.fail(fmt::format("{}, along x, y and z: got {}", what, numbers.size()), hint);
+  Cell cells;
+  for (int a = 0; a < 3; ++a)
+    cells[a] = static_cast<int32_t>(numbers[static_cast<size_t>(a)].integer(1, most));
+  return cells;
 }
 
 void read_node(const ConfigTable& node, Arch& arch) {
@@ -38,17 +51,20 @@ void read_node(const ConfigTable& node, Arch& arch) {
         static_cast<Multipliers>(m->choice("use of multipliers", {"parallel", "shared", "serial"}));
   set(node, "queue_depth", 1, 1024, arch.queue_depth);
   arch.overlap = node.boolean_or("overlap", arch.overlap);
-  if (const auto brick = node.find("brick")) {
-    const std::vector<ConfigValue> cells = brick->items();
-    if (cells.size() != 3)
-      brick->fail(fmt::format("a brick has three numbers of cells, along x, y and z: got {}", cells.size()),
-                  "such as [2, 2, 2]; in a flat scene [2, 2, 1]");
-    for (int a = 0; a < 3; ++a)
-      arch.brick[a] = static_cast<int32_t>(cells[static_cast<size_t>(a)].integer(1, kMostBrickCells));
-  }
+  if (const auto brick = node.find("brick"))
+    arch.brick = read_cells(*brick, "a brick has three numbers of cells",
+                            "such as [2, 2, 2]; in a flat scene [2, 2, 1]", kMostBrickCells);
   if (const auto m = node.find("memories"))
     arch.narrow_memories = m->choice("kind of memories", {"wide", "narrow"}) == 1;
   node.done();
+}
+
+void read_boards(const ConfigTable& table, Boards& boards) {
+  boards.nodes = read_cells(table.at("nodes"), "a device has three numbers of nodes",
+                            "such as [8, 8, 4]; in a flat scene [8, 8, 1]", kMostBoardNodes);
+  set(table, "latency", 1, Boards::kMostLatency, boards.latency);
+  set(table, "interval", 1, Boards::kMostInterval, boards.interval);
+  table.done();
 }
 
 void read_widths(const ConfigTable& table, Widths& w) {
@@ -98,6 +114,7 @@ Arch arch_of(const ConfigTable& root) {
       arch.link_check = static_cast<LinkCheck>(check->choice("link check", {"none", "detect", "retry"}));
     link->done();
   }
+  if (const auto boards = root.table_at("boards")) read_boards(*boards, arch.boards);
   if (const auto widths = root.table_at("widths")) read_widths(*widths, arch.widths);
   if (const auto table = root.table_at("table")) read_table(*table, arch.table);
   if (const auto plan = root.table_at("plan")) read_plan(*plan, arch.carry);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "hw/boards.h"
 #include "hw/carry.h"
 #include "hw/link_code.h"
 #include "model/base/vec.h"
@@ -48,6 +49,7 @@ struct Arch {
   bool narrow_memories = false;  // words of a beat's width, one port to read: hw/plan.h says what that asks
   int link_bits = 0;             // payload bits per beat; 0: one halo record per beat
   LinkCheck link_check = LinkCheck::none;
+  Boards boards;  // on how many devices the nodes stand
   Widths widths = automatic_widths();
   TableChoice table;
   Carry carry;

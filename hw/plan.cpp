@@ -76,6 +76,14 @@ void check_arch(const Arch& arch) {
                      fmt::format("streamers = {} with force_pipes = {}: each streamer feeds as many pipes",
                                  arch.streamers, arch.force_pipes),
                      "set force_pipes to a multiple of streamers");
+  if (arch.boards.several() && arch.link_check != LinkCheck::none)
+    arch.places.fail(
+        {"link.check", "boards"},
+        fmt::format("check = \"{}\" with [boards]: the window of {} beats and the patience of {} "
+                    "cycles are those of a wire",
+                    to_string(arch.link_check), link_code(arch.link_check, 1).window,
+                    link_code(arch.link_check, 1).patience),
+        "leave the check of links between devices to their line code: set check = \"none\"");
   if (arch.link_bits < 0 || arch.link_bits > 1024)
     arch.places.fail({"link.bits"},
                      fmt::format("link bits = {} is out of range: 1 to 1024, or 0 for one record per beat",
@@ -129,6 +137,10 @@ uint64_t hash_of(const Plan& plan) {
   if (plan.link.checked()) hash.add(static_cast<int>(plan.link.check));
   if (!plan.bricks.one_cell())
     for (const int32_t c : arch.brick) hash.add(c);
+  if (arch.boards.several()) {
+    for (const int32_t n : arch.boards.nodes) hash.add(n);
+    hash.add(arch.boards.latency).add(arch.boards.interval);
+  }
   for (const int32_t p : plan.lattice.period()) hash.add(p);
   for (uint32_t n = 0; n < plan.lattice.size(); ++n)
     for (const int32_t c : plan.lattice.cell(n)) hash.add(c);
@@ -196,6 +208,7 @@ Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, u
   plan.words = words_of(plan.rule, plan.arch, particles);
   plan.latency = latency_of(plan.rule, plan.arch);
   plan.link = link_code(plan.arch.link_check, plan.words.link_bits);
+  plan.cut = cut_links(plan.lattice, plan.bricks, plan.arch.boards);
   plan.hash = hash_of(plan);
   return plan;
 }
@@ -236,6 +249,10 @@ std::string describe(const Plan& plan) {
          fmt::format("{}: {} bits of sequence and {} of check (0x{:x}, distance {}) per beat, {} cycles more",
                      to_string(code.check), code.sequence_bits, code.beat.width, code.beat.polynomial,
                      code.distance, code.latency));
+  if (const Boards& boards = plan.arch.boards; boards.several())
+    line("devices", fmt::format("{} of up to {} nodes; links between them: {} cycles, a beat every {}",
+                                BoardMap(plan.lattice, plan.bricks, boards).devices,
+                                fmt::join(boards.nodes, " x "), boards.latency, boards.interval));
   line("filter lanes, pipes",
        plan.arch.narrow_memories
            ? "1, 1, narrow memories"

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "hw/arch.h"
 #include "hw/auto_widths.h"
@@ -42,6 +43,7 @@ struct Plan {
   Words words;
   Latency latency;
   LinkCode link;
+  std::vector<uint8_t> cut;  // by node, bit f: the link over face f leads to another device; empty on one
   uint32_t particles = 0;
   uint64_t hash = 0;  // of everything above that an engine can see
   // For people: why formats and capacity are what they are, and what they cannot do.
@@ -53,6 +55,8 @@ struct Plan {
   uint32_t neighbour(uint32_t node, int face) const { return bricks.neighbour(lattice, node, face); }
   // Coordinates of a node's lowest cell.
   Cell low_of(uint32_t node) const { return bricks.low(lattice, node); }
+  // Whether the link of a node over a face leads to another device.
+  bool crosses(uint32_t node, int face) const { return !cut.empty() && (cut[node] >> face & 1) != 0; }
   uint32_t node_of(uint32_t cell) const { return bricks.node_of(cell); }
   uint32_t local_of(uint32_t cell) const { return bricks.local_of(cell); }
   // The lattice's cell number `local` of a node, or kNoCell.

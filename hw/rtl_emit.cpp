@@ -138,6 +138,9 @@ void emit_node(const Plan& plan, const std::string& dir) {
 void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
               const BoardChoice& board, const std::string& arch,
               const std::optional<CountedCycles>& counted) {
+  if (plan.arch.boards.several())
+    plan.arch.places.fail({"boards"}, "a project is for one device, and [boards] cuts the machine into several",
+                          "leave out [boards]; 'cuboct run --engine rtl' clocks the whole machine with it");
   RtlDesign design = decide(plan);
   legalise(design, true);
   if (!board.name.empty()) legalise_board(plan, board);

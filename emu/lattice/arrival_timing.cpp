@@ -24,8 +24,7 @@ constexpr size_t at(Phase phase) { return static_cast<size_t>(phase); }
 // last.
 void ArrivalTiming::Relay::act(int64_t there) {
   asked = std::max(asked + 1, loaded);
-  if (beats > 0) loaded = asked + beats;
-  beats = 0;
+  loaded = std::max(loaded, answered);
   if (there > asked) asked = std::max(there, loaded);
 }
 
@@ -98,6 +97,7 @@ ArrivalTiming::ArrivalTiming(const Plan& plan, int threads)
       received_(kReceived + plan.link.latency),
       neighbour_(nodes_ + 1),
       migration_(plan.lattice, plan.words.migrate_beats, static_cast<int>(received_ + kAnswered)),
+      links_(plan),
       count_(nodes_ + 1),
       final_count_(nodes_),
       start_(nodes_),
@@ -132,21 +132,30 @@ void ArrivalTiming::begin(const CellSlots& slots, std::span<const Leaving> leavi
     if (l.cell >= nodes_ || l.slot >= count_[l.cell]) throw std::invalid_argument("no such particle leaves");
   std::copy(count_.begin(), count_.end() - 1, final_count_.begin());
   migration_.plan(final_count_, leaving);
+  if (!links_.any() || !migration_.any()) return;
+  for (int axis = 0; axis < axes_; ++axis) seen_[at(axis)].resize(migration_.departures(axis).size());
 }
 
 // The segments of an axis: own particles before the first, then the halos of the axis before.
 void ArrivalTiming::relay(int axis, uint32_t n) {
   Sent& sent = sent_[n];
   Relay& relay = sent.relay;
+  const auto cut = [&](int face) { return links_.cut(n, face); };
+  uint8_t faces = 0;  // of this axis and those behind it
+  for (int a = axis; a < axes_; ++a) faces |= faces_along(a);
   const auto segment = [&](uint32_t count, int64_t complete, const auto& there) {
     for (uint32_t k = 0; k < count; ++k) {
       relay.act(there(k));
-      sent.record.push_back(relay.send(halo_beats_));
+      relay.answered = links_.load(n, faces, relay.sends(), halo_beats_);
+      sent.record.push_back(relay.answered);
+      for (int f = 2 * axis; f < 2 * axes_ && links_.any(); ++f)
+        if (cut(f)) sent.seen[at(f)].push_back(links_.seen(n, f));
     }
     if (count == 0 || complete > relay.asked) relay.act(complete);
   };
   if (axis == 0) {
     relay = {start_[n] - 1};
+    for (auto& seen : sent.seen) seen.clear();
     // Neighbours read the records of an axis while those of the next are appended: no one moves them.
     size_t records = 0;
     for (const uint32_t y : {n, other(n, 2), other(n, 3)})
@@ -156,14 +165,17 @@ void ArrivalTiming::relay(int axis, uint32_t n) {
     segment(count_[n], kLongAgo, [](uint32_t) { return kLongAgo; });
   } else {
     for (int side = 0; side < 2; ++side) {
-      const Sent& from = sent_[other(n, 2 * axis - 2 + side)];
-      segment(from.records[at(axis - 1)], from.end[at(axis - 1)] + received_,
-              [&](uint32_t k) { return from.record[k] + received_; });
+      const int face = 2 * axis - 2 + side;
+      const uint32_t from = other(n, face);
+      segment(sent_[from].records[at(axis - 1)], ended(from, face ^ 1),
+              [&](uint32_t k) { return came(from, face ^ 1, k); });
     }
   }
   sent.records[at(axis)] = static_cast<uint32_t>(sent.record.size());
   relay.act(kLongAgo);
-  sent.end[at(axis)] = relay.send(1);
+  sent.end[at(axis)] = relay.answered = links_.load(n, faces_along(axis), relay.sends(), 1);
+  for (const int f : {2 * axis, 2 * axis + 1})
+    if (cut(f)) sent.end_seen[at(f)] = links_.seen(n, f);
 }
 
 bool ArrivalTiming::near(const std::array<int32_t, 3>& own, const std::array<int32_t, 3>& other_x) const {
@@ -184,20 +196,20 @@ void ArrivalTiming::gather(const CellSlots& slots, uint32_t n, int face, const s
                            MachineEvents& events) const {
   halo.clear();
   const int axis = face / 2, cell = 1 << plan_.rule.widths.position_frac;
-  const Sent& sent = sent_[other(n, face)];
+  const uint32_t sender = other(n, face);
   size_t loaded = 0;
   const auto visit = [&](uint32_t of, const std::array<int32_t, 3>& by) {
     if (of == nodes_) return;
     for (uint32_t k = slots.first[of]; k < slots.first[of + 1]; ++k) {
-      const int64_t came = sent.record[loaded++] + received_ - 1;
-      Halo h{came + 1 + kCullStages, {}};
+      const int64_t seen = came(sender, face ^ 1, loaded++);
+      Halo h{seen + kCullStages, {}};
       std::array<int32_t, 3> nearest;
       for (size_t a = 0; a < 3; ++a) {
         h.x[a] = (slots.x[a][k] + by[a]) >> shift_;
         nearest[a] = std::clamp(h.x[a], low[a], high[a]);
       }
       // What came before the step was not tested.
-      const bool tested = came + 1 >= start_[n];
+      const bool tested = seen >= start_[n];
       events.tested += tested;
       if (!tested || (count_[n] > 0 && near(nearest, h.x)))
         halo.push_back(h);
@@ -255,8 +267,8 @@ int64_t ArrivalTiming::force(const CellSlots& slots, uint32_t n, Scratch& scratc
       const uint64_t before = events_[n].candidates;
       for (const Halo& h : scratch.halo) present(stream, h.from, h.x, count);
       candidates_along(events_[n], face / 2) += events_[n].candidates - before;
-      const int64_t ended = sent_[other(n, face)].end[at(face / 2)] + received_ + kCullStages;
-      stream.next_segment(scratch.halo.empty(), std::max(ended, start_[n]));
+      const int64_t complete = ended(other(n, face), face ^ 1) + kCullStages;
+      stream.next_segment(scratch.halo.empty(), std::max(complete, start_[n]));
     }
     last = std::max(last, stream.last());
   }
@@ -268,8 +280,7 @@ void ArrivalTiming::exchange_to_update(const CellSlots& slots, uint32_t n, Scrat
   for (int axis = 0; axis < 3; ++axis) {
     if (axis < axes_) {
       last = std::max(last + 1, sent_[n].end[at(axis)] + kSent);
-      for (const int face : {2 * axis, 2 * axis + 1})
-        last = std::max(last, sent_[other(n, face)].end[at(axis)] + received_);
+      for (const int face : {2 * axis, 2 * axis + 1}) last = std::max(last, ended(other(n, face), face ^ 1));
     }
     end_[at(axis)][n] = last;
   }
@@ -283,7 +294,27 @@ void ArrivalTiming::exchange_to_update(const CellSlots& slots, uint32_t n, Scrat
 void ArrivalTiming::end_beats(int axis, uint32_t n, int64_t start) {
   const int64_t scan = migration_.any() ? migration_.scan(axis, n) : 0;
   migrate_start_[at(axis)][n] = start;
-  migrate_end_[at(axis)][n] = scan == 0 ? start - 1 : start + scan;
+  const uint8_t faces = faces_along(axis);
+  // That cycle asks for empty registers; a register that is emptied in a cycle was not empty in it.
+  const bool early = scan == 0 && links_.can_load(n, faces) < start - 1;
+  migrate_end_[at(axis)][n] = links_.load(n, faces, early ? start - 1 : scanned(axis, n, start), 1);
+}
+
+// The first cycle after SCAN: a cycle for each slot, and loads for what leaves.
+int64_t ArrivalTiming::scanned(int axis, uint32_t n, int64_t start) {
+  if (!migration_.any()) return start;
+  if (!links_.any()) return start + migration_.scan(axis, n);
+  const auto [first, departures] = migration_.departures(axis, n);
+  int64_t now = start, slot = 0;
+  for (size_t k = 0; k < departures.size(); ++k) {
+    const auto& [node, left, face] = departures[k];
+    const int64_t last =
+        links_.load(n, static_cast<uint8_t>(1u << face), now + left - slot, plan_.words.migrate_beats);
+    seen_[at(axis)][first + k] = (links_.cut(n, face) ? links_.seen(n, face) : last + received_) + kAnswered;
+    now = last + 1;
+    slot = int64_t{left} + 1;
+  }
+  return now + migration_.scanned(axis, n).slots - slot;
 }
 
 void ArrivalTiming::take_particles(int axis, uint32_t n) {
@@ -292,18 +323,23 @@ void ArrivalTiming::take_particles(int axis, uint32_t n) {
   const auto take = [&](int side) {
     if (migration_.any())
       for (const auto& arrival : migration_.arrivals(axis, n, side)) {
-        now = std::max(now, migrate_start_[at(axis)][arrival.from] + arrival.after) + 1;
+        const int64_t seen = links_.any() ? seen_[at(axis)][arrival.departure]
+                                          : migrate_start_[at(axis)][arrival.from] + arrival.after;
+        now = std::max(now, seen) + 1;
         settled = now + 1;
       }
   };
-  const auto ended = [&](int side) { return migrate_end_[at(axis)][other(n, 2 * axis + side)] + received_; };
+  const auto all_came = [&](int side) {
+    const int face = 2 * axis + side;
+    return migrated(other(n, face), face ^ 1);
+  };
   take(0);
-  now = std::max(now, ended(0));
+  now = std::max(now, all_came(0));
   const bool some_above = migration_.any() && !migration_.arrivals(axis, n, 1).empty();
-  if (some_above || ended(1) > now || settled > now) {
+  if (some_above || all_came(1) > now || settled > now) {
     ++now;
     take(1);
-    now = std::max({now, ended(1), settled});
+    now = std::max({now, all_came(1), settled});
   }
   end_[at(Phase::migrate_x) + at(axis)][n] = now;
 }
@@ -372,9 +408,16 @@ uint64_t ArrivalTiming::cycles(const CellSlots& slots) const {
   return static_cast<uint64_t>(idle) + 1;
 }
 
+std::vector<uint64_t> ArrivalTiming::starts() const {
+  std::vector<uint64_t> starts(start_.begin(), start_.end());
+  links_.save(starts);
+  return starts;
+}
+
 void ArrivalTiming::resume(std::span<const uint64_t> starts) {
-  if (starts.size() != nodes_) throw std::invalid_argument("starts of another lattice");
-  std::copy(starts.begin(), starts.end(), start_.begin());
+  if (starts.size() != nodes_ + links_.saved()) throw std::invalid_argument("starts of another lattice");
+  std::copy_n(starts.begin(), nodes_, start_.begin());
+  links_.load_state(starts.subspan(nodes_));
   steps_ = 0;
 }
 

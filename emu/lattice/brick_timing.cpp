@@ -114,6 +114,8 @@ BrickTiming::BrickTiming(const Plan& plan, int threads)
       shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval},
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       migration_(plan),
+      links_(plan),
+      by_cell_(plan.lattice, plan.words.migrate_beats, 0),
       count_(plan.lattice.size()),
       start_(nodes_),
       halo_end_(nodes_),
@@ -140,6 +142,9 @@ void BrickTiming::begin(const CellSlots& slots, std::span<const Leaving> leaving
     if (l.cell >= cells || l.slot >= count_[l.cell]) throw std::invalid_argument("no such particle leaves");
   final_count_ = count_;
   migration_.plan(final_count_, leaving, map_);
+  if (!links_.any()) return;
+  by_cell_count_ = count_;
+  by_cell_.plan(by_cell_count_, leaving);
 }
 
 // Cycles of a walk over the node's own cells.
@@ -152,15 +157,16 @@ int64_t BrickTiming::walk(uint32_t n, const uint32_t* first) const {
   return cycles;
 }
 
-// Cycles of the layer that goes over a face.
-int64_t BrickTiming::layer(int face, uint32_t n) const {
-  int64_t cycles = 0;
+// The layer that goes over `face` is loaded into the registers of `faces` from `start` on; the cycle that
+// loads the end beat.
+int64_t BrickTiming::load_layer(uint8_t faces, int face, uint32_t n, int64_t start) {
+  int64_t now = start;
   for (const BrickWalk::Sent& s : map_.walk(n).sent[at(face)]) {
     const uint32_t cell = map_.cell(n, s.grid);
     const int64_t records = cell == kNoCell ? 0 : count_[cell];
-    cycles += records == 0 ? 1 : records * halo_beats_;
+    now = records == 0 ? now + 1 : links_.load(n, faces, now, records * halo_beats_) + 1;
   }
-  return cycles;
+  return links_.load(n, faces, now, 1);
 }
 
 uint64_t BrickTiming::layer_records(int face, uint32_t n, bool own) const {
@@ -178,15 +184,23 @@ void BrickTiming::send(int axis, uint32_t n) {
   for (int side = 0; side < 2; ++side) {
     const int face = 2 * axis + side;
     const bool linked = plan_.neighbour(n, face) != kNoNode;
-    if (thin) {  // both at once
-      if (linked) halo_end_[n][at(face)] = now + layer(face, n);
-      sent_[n][at(axis)] =
-          std::max(side == 0 ? now : sent_[n][at(axis)], linked ? halo_end_[n][at(face)] : now);
+    if (thin && linked) {  // both at once
+      const int64_t end = load_layer(faces_along(axis), face, n, now);
+      halo_end_[n][at(face)] = halo_end_[n][at(face ^ 1)] = sent_[n][at(axis)] = end;
+      return;
+    }
+    if (thin) {
+      sent_[n][at(axis)] = now;
       continue;
     }
-    if (linked) now += layer(face, n);
+    if (linked) now = load_layer(static_cast<uint8_t>(1u << face), face, n, now);
     halo_end_[n][at(face)] = sent_[n][at(axis)] = now++;
   }
+}
+
+// The cycle in which a node sees over `face` the end beat that its neighbour there loaded in `end`.
+int64_t BrickTiming::ended(int64_t end, uint32_t near, int face) const {
+  return links_.cut(near, face ^ 1) ? links_.seen(near, face ^ 1) : end + received_;
 }
 
 // The last cycle of EXCHANGE_a.
@@ -194,7 +208,7 @@ int64_t BrickTiming::exchanged(int axis, uint32_t n) const {
   int64_t last = sent_[n][at(axis)] + kSent;
   for (int face = 2 * axis; face < 2 * axis + 2; ++face)
     if (const uint32_t near = plan_.neighbour(n, face); near != kNoNode)
-      last = std::max(last, halo_end_[near][at(face ^ 1)] + received_);
+      last = std::max(last, ended(halo_end_[near][at(face ^ 1)], near, face));
   return last;
 }
 
@@ -287,17 +301,42 @@ void BrickTiming::exchange_to_update(const CellSlots& slots, uint32_t n, Scratch
     if (const uint32_t cell = plan_.cell_of(n, local); cell != kNoCell) held += count_[cell];
   const int64_t end = end_[at(Phase::update)][n] =
       force_end + (held == 0 ? 1 : walk(n, slots.first.data()) - 1 + plan_.latency.update);
-  migrate_end_[0][n] = end + 1 + migration_.scan(0, n);
+  migrate_end_[0][n] = scanned(0, n, end + 1);
+}
+
+// The cycle that loads the end beats behind SCAN, whose first cycle is `start`.
+int64_t BrickTiming::scanned(int axis, uint32_t n, int64_t start) {
+  const int64_t scan = migration_.scan(axis, n);
+  if (!links_.any() || scan == 0) return links_.load(n, faces_along(axis), start + scan, 1);
+  int64_t now = start;
+  for (const uint32_t local : map_.walk(n).own) {
+    const uint32_t cell = plan_.cell_of(n, local);
+    const int64_t slots = cell == kNoCell ? 0 : by_cell_.scanned(axis, cell).slots;
+    if (slots == 0) {
+      ++now;
+      continue;
+    }
+    int64_t slot = 0;
+    for (const auto& d : by_cell_.departures(axis, cell).departures) {
+      now += d.slot - slot;
+      slot = d.slot + 1;
+      now = migration_.crosses(cell, d.face)
+                ? links_.load(n, static_cast<uint8_t>(1u << d.face), now, plan_.words.migrate_beats) + 1
+                : now + 1;
+    }
+    now += slots - slot;
+  }
+  return links_.load(n, faces_along(axis), now, 1);
 }
 
 void BrickTiming::take_particles(int axis, uint32_t n) {
   int64_t last = migrate_end_[at(axis)][n] + 1;
   for (int face = 2 * axis; face < 2 * axis + 2; ++face)
     if (const uint32_t near = plan_.neighbour(n, face); near != kNoNode)
-      last = std::max(last, migrate_end_[at(axis)][near] + received_);
+      last = std::max(last, ended(migrate_end_[at(axis)][near], near, face));
   last += migration_.land(axis, n);
   end_[at(Phase::migrate_x) + at(axis)][n] = last;
-  if (axis + 1 < axes_) migrate_end_[at(axis + 1)][n] = last + 1 + migration_.scan(axis + 1, n);
+  if (axis + 1 < axes_) migrate_end_[at(axis + 1)][n] = scanned(axis + 1, n, last + 1);
 }
 
 // A brick one cell thick reads what it sends along the axis once for both links.
@@ -367,9 +406,16 @@ uint64_t BrickTiming::cycles(const CellSlots& slots) const {
   return static_cast<uint64_t>(idle) + 1;
 }
 
+std::vector<uint64_t> BrickTiming::starts() const {
+  std::vector<uint64_t> starts(start_.begin(), start_.end());
+  links_.save(starts);
+  return starts;
+}
+
 void BrickTiming::resume(std::span<const uint64_t> starts) {
-  if (starts.size() != nodes_) throw std::invalid_argument("starts of another lattice");
-  std::copy(starts.begin(), starts.end(), start_.begin());
+  if (starts.size() != nodes_ + links_.saved()) throw std::invalid_argument("starts of another lattice");
+  std::copy_n(starts.begin(), nodes_, start_.begin());
+  links_.load_state(starts.subspan(nodes_));
   steps_ = 0;
 }
 

@@ -8,7 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "emu/lattice/board_links.h"
 #include "emu/lattice/hits.h"
+#include "emu/lattice/migrate_time.h"
 #include "emu/lattice/node_force.h"
 #include "emu/lattice/slots.h"
 #include "hw/events.h"
@@ -27,6 +29,8 @@ class BrickMigration {
   // 0 where no own particle leaves its cell; where none comes to one.
   int64_t scan(int axis, uint32_t node) const { return any_ ? scan_[static_cast<size_t>(axis)][node] : 0; }
   int64_t land(int axis, uint32_t node) const { return any_ ? land_[static_cast<size_t>(axis)][node] : 0; }
+  // Whether the step over this face of a cell leaves its brick.
+  bool crosses(uint32_t cell, int face) const;
   // Adds what the migrations of the planned step do to a node.
   void count(uint32_t node, MachineEvents& events) const {
     if (any_) events += events_[node];
@@ -38,7 +42,6 @@ class BrickMigration {
     std::array<int8_t, 3> away;  // axes still to go
   };
   void move(int axis, std::vector<uint32_t>& count, const BrickMap& map);
-  bool crosses(uint32_t cell, int face) const;
 
   const Plan& plan_;
   bool any_ = false;
@@ -55,7 +58,7 @@ class BrickTiming {
   BrickTiming(const Plan& plan, int threads);
   void step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans);
   uint64_t cycles(const CellSlots& slots) const;
-  std::vector<uint64_t> starts() const { return {start_.begin(), start_.end()}; }
+  std::vector<uint64_t> starts() const;
   void resume(std::span<const uint64_t> starts);
   std::span<const MachineEvents> events() const { return events_; }
   const TimingCounters& counters() const { return counters_; }
@@ -72,7 +75,9 @@ class BrickTiming {
   void begin(const CellSlots& slots, std::span<const Leaving> leaving);
   void send(int axis, uint32_t n);
   int64_t exchanged(int axis, uint32_t n) const;
-  int64_t layer(int face, uint32_t n) const;
+  int64_t load_layer(uint8_t faces, int face, uint32_t n, int64_t start);
+  int64_t scanned(int axis, uint32_t n, int64_t start);
+  int64_t ended(int64_t end, uint32_t near, int face) const;
   // Records of the layer that goes over a face; `own`: those of own cells alone.
   uint64_t layer_records(int face, uint32_t n, bool own) const;
   int64_t walk(uint32_t n, const uint32_t* first) const;
@@ -92,6 +97,11 @@ class BrickTiming {
   const ForceShape shape_;
   const Filter filter_;
   BrickMigration migration_;
+  BoardLinks links_;
+  // With several devices: the slots of what leaves a cell, as if each cell were a node, and each cell's
+  // particles at the step's end.
+  Migration by_cell_;
+  std::vector<uint32_t> by_cell_count_;
 
   std::vector<uint32_t> count_, final_count_;          // by cell: at the step's start, at its end
   std::vector<int64_t> start_;                         // by node: the step's first cycle

@@ -26,6 +26,12 @@ std::span<const Migration::Arrival> Migration::arrivals(int axis, uint32_t node,
   return {arrivals_.data() + from, to - from};
 }
 
+Migration::OfNode Migration::departures(int axis, uint32_t node) const {
+  const auto& all = departures_[at(axis)];
+  const auto found = std::ranges::equal_range(all, node, {}, &Departure::node);
+  return {static_cast<uint32_t>(found.begin() - all.begin()), {found.begin(), found.end()}};
+}
+
 void Migration::count(uint32_t node, int axes, MachineEvents& events) const {
   if (!any_) return;
   for (int axis = 0; axis < axes; ++axis) {
@@ -50,6 +56,7 @@ void Migration::forget() {
     for (const uint32_t node : received_[at(axis)]) group_[at(axis)][node] = -1;
     leaving_[at(axis)].clear();
     received_[at(axis)].clear();
+    departures_[at(axis)].clear();
   }
   movers_.clear();
   groups_.clear();
@@ -103,11 +110,9 @@ void Migration::depart(int axis, std::span<uint32_t> count) {
     m.away[at(axis)] = 0;
     ++gone;
     const auto last_beat = static_cast<int32_t>(m.slot + gone * static_cast<uint32_t>(beats_ - 1));
-    landings_.push_back({to,
-                         direction > 0 ? 0u : 1u,
-                         static_cast<uint32_t>(landings_.size()),
-                         m.away,
-                         {node, last_beat + on_the_way_}});
+    const auto order = static_cast<uint32_t>(landings_.size());
+    departures_[at(axis)].push_back({node, m.slot, 2 * axis + (direction > 0)});
+    landings_.push_back({to, direction > 0 ? 0u : 1u, order, m.away, {node, last_beat + on_the_way_, order}});
     --count[node];
     ++scan_[at(axis)][node].left;
   }

@@ -26,6 +26,12 @@ class Migration {
   struct Arrival {
     uint32_t from;
     int32_t after;
+    uint32_t departure;  // which of departures(axis)
+  };
+  // A particle that leaves over a face, met by SCAN in this slot.
+  struct Departure {
+    uint32_t node, slot;
+    int face;
   };
 
   // Plans one step. `count`: particles by node at its start, and after the call those at its end. `leaving`
@@ -50,6 +56,14 @@ class Migration {
   }
   // Adds what the migrations of the planned step do to a node.
   void count(uint32_t node, int axes, MachineEvents& events) const;
+  // Of the planned step, by node, then slot.
+  std::span<const Departure> departures(int axis) const { return departures_[static_cast<size_t>(axis)]; }
+  // Those of one node, and the number of the first.
+  struct OfNode {
+    uint32_t first;
+    std::span<const Departure> departures;
+  };
+  OfNode departures(int axis, uint32_t node) const;
   // What comes over -a (side 0) or +a (side 1), in order.
   std::span<const Arrival> arrivals(int axis, uint32_t node, int side) const;
 
@@ -75,12 +89,13 @@ class Migration {
   bool any_ = false;
   std::vector<Mover> movers_;  // by node, then slot
   std::vector<Landing> landings_;
-  std::array<std::vector<uint32_t>, 3> leaving_;   // [axis] nodes whose `leaving_a` is set, each once
-  std::vector<uint8_t> leaving_bits_;              // [node] bit a: `leaving_a`
-  std::array<std::vector<Scan>, 3> scan_;          // [axis][node]
-  std::array<std::vector<int32_t>, 3> group_;      // [axis][node]: its arrivals, -1 for none
-  std::array<std::vector<uint32_t>, 3> received_;  // [axis] nodes with arrivals
-  std::vector<std::array<uint32_t, 3>> groups_;    // arrivals from -a, from +a, end: into arrivals_
+  std::array<std::vector<Departure>, 3> departures_;  // [axis]
+  std::array<std::vector<uint32_t>, 3> leaving_;      // [axis] nodes whose `leaving_a` is set, each once
+  std::vector<uint8_t> leaving_bits_;                 // [node] bit a: `leaving_a`
+  std::array<std::vector<Scan>, 3> scan_;             // [axis][node]
+  std::array<std::vector<int32_t>, 3> group_;         // [axis][node]: its arrivals, -1 for none
+  std::array<std::vector<uint32_t>, 3> received_;     // [axis] nodes with arrivals
+  std::vector<std::array<uint32_t, 3>> groups_;       // arrivals from -a, from +a, end: into arrivals_
   std::vector<Arrival> arrivals_;
 };
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "emu/lattice/arrival_timing.h"
+#include "emu/lattice/board_links.h"
 #include "emu/lattice/brick_timing.h"
 #include "emu/lattice/force_time.h"
 #include "emu/lattice/hits.h"
@@ -45,6 +46,7 @@ struct TimingModel::Impl {
   void begin(const CellSlots& slots, std::span<const Leaving> leaving);
   // One node's part of a step, pass by pass (take_particles once per axis): each pass needs of the neighbours
   // what they did in the passes before.
+  void send_x(uint32_t n);
   void exchange_x(const CellSlots& slots, uint32_t n);
   void exchange_y(uint32_t n);
   void exchange_z_to_update(uint32_t n, Scratch& scratch);
@@ -53,10 +55,12 @@ struct TimingModel::Impl {
 
   void place(const CellSlots& slots, uint32_t n);
   bool still(uint32_t n) const;
-  int64_t stream(int64_t records) const { return records == 0 ? 1 : records * halo_beats_; }
+  int64_t sent(int axis, uint32_t n, int64_t start, std::initializer_list<uint32_t> segments);
+  int64_t ended(const std::array<Cycles, 3>& end, int axis, uint32_t n, int side) const;
   int64_t exchanged(int axis, uint32_t n) const;
   int64_t force(uint32_t n, Scratch& scratch);
   void send_particles(int axis, uint32_t n, int64_t start);
+  int64_t scanned(int axis, uint32_t n, int64_t start);
   int64_t taken(int axis, uint32_t n, int side, int64_t now) const;
   void count_records(uint32_t n);
 
@@ -69,7 +73,10 @@ struct TimingModel::Impl {
   const Filter filter_;
   std::vector<std::array<uint32_t, 6>> neighbour_;  // nodes + 1; number `nodes_` where there is none
   const int64_t take_;                              // cycles of TAKE per particle
+  const int64_t answered_;                          // until a particle that was received is seen
   Migration migration_;
+  BoardLinks links_;
+  std::array<Cycles, 3> seen_;  // with several devices: [axis][departure] the cycle in which it is seen
 
   // Of the step, nodes + 1 each: the one that does not exist is empty.
   std::array<std::vector<int32_t>, 3> x_, old_x_;  // at its start, and at that of the step before
@@ -102,8 +109,9 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       neighbour_(nodes_ + 1),
       take_(plan.arch.narrow_memories ? plan.words.migrate_beats + 2 : 1),
-      migration_(plan.lattice, plan.words.migrate_beats,
-                 static_cast<int>(received_ + (plan.arch.narrow_memories ? 0 : kAnswered))),
+      answered_(plan.arch.narrow_memories ? 0 : kAnswered),
+      migration_(plan.lattice, plan.words.migrate_beats, static_cast<int>(received_ + answered_)),
+      links_(plan),
       first_(nodes_ + 2),
       old_first_(nodes_ + 2),
       count_(nodes_ + 1),
@@ -157,6 +165,8 @@ void TimingModel::Impl::begin(const CellSlots& slots, std::span<const Leaving> l
   migration_.mark(changed_);
   std::copy(count_.begin(), count_.end(), final_count_.begin());
   migration_.plan(final_count_, leaving);
+  if (!links_.any() || !migration_.any()) return;
+  for (int axis = 0; axis < axes_; ++axis) seen_[at(axis)].resize(migration_.departures(axis).size());
 }
 
 // Takes the node's particles, and notes whether they are where they were.
@@ -171,22 +181,38 @@ void TimingModel::Impl::place(const CellSlots& slots, uint32_t n) {
   moved_[n] = moved;
 }
 
+// The cycle that loads the end beat of a stream of these segments, by their records, whose phase begins in
+// `start`.
+int64_t TimingModel::Impl::sent(int axis, uint32_t n, int64_t start,
+                                std::initializer_list<uint32_t> segments) {
+  int64_t now = start;
+  const uint8_t faces = faces_along(axis);
+  for (const uint32_t records : segments)
+    now = records == 0 ? now + 1 : links_.load(n, faces, now, records * halo_beats_) + 1;
+  return links_.load(n, faces, now, 1);
+}
+
+// The cycle in which the node sees the end beat that its neighbour loaded in `end`.
+int64_t TimingModel::Impl::ended(const std::array<Cycles, 3>& end, int axis, uint32_t n, int side) const {
+  const int face = 2 * axis + side;
+  const uint32_t near = neighbour_[n][at(face)];
+  return links_.cut(near, face ^ 1) ? links_.seen(near, face ^ 1) : end[at(axis)][near] + received_;
+}
+
 // The last cycle of EXCHANGE_a.
 int64_t TimingModel::Impl::exchanged(int axis, uint32_t n) const {
-  const Cycles& end = halo_end_[at(axis)];
-  const auto& near = neighbour_[n];
   return std::max(
-      {end[n] + kSent, end[near[at(2 * axis)]] + received_, end[near[at(2 * axis + 1)]] + received_});
+      {halo_end_[at(axis)][n] + kSent, ended(halo_end_, axis, n, 0), ended(halo_end_, axis, n, 1)});
 }
+
+void TimingModel::Impl::send_x(uint32_t n) { halo_end_[0][n] = sent(0, n, start_[n], {count_[n]}); }
 
 void TimingModel::Impl::exchange_x(const CellSlots& slots, uint32_t n) {
   place(slots, n);
   const uint32_t own = count_[n], low = neighbour_[n][0], high = neighbour_[n][1];
   sent_y_[n] = own + count_[low] + count_[high];
-  const auto halo_end = [this](uint32_t of) { return start_[of] + stream(count_[of]); };
-  const int64_t end = std::max({halo_end(n) + kSent, halo_end(low) + received_, halo_end(high) + received_});
-  end_[at(Phase::exchange_x)][n] = end;
-  halo_end_[1][n] = end + 1 + stream(own) + stream(count_[low]) + stream(count_[high]);
+  const int64_t end = end_[at(Phase::exchange_x)][n] = exchanged(0, n);
+  halo_end_[1][n] = sent(1, n, end + 1, {own, count_[low], count_[high]});
 }
 
 void TimingModel::Impl::exchange_y(uint32_t n) {
@@ -195,8 +221,8 @@ void TimingModel::Impl::exchange_y(uint32_t n) {
   const int64_t end = end_[at(Phase::exchange_y)][n] = exchanged(1, n);
   if (axes_ == 2) return;
   sent_z_[n] = sent_y_[n] + sent_y_[near[2]] + sent_y_[near[3]];
-  halo_end_[2][n] = end + 1 + stream(count_[n]) + stream(count_[near[0]]) + stream(count_[near[1]]) +
-                    stream(sent_y_[near[2]]) + stream(sent_y_[near[3]]);
+  halo_end_[2][n] =
+      sent(2, n, end + 1, {count_[n], count_[near[0]], count_[near[1]], sent_y_[near[2]], sent_y_[near[3]]});
 }
 
 // Whether the node and the 26 around hold what they held a step before, where they held it.
@@ -229,16 +255,35 @@ void TimingModel::Impl::exchange_z_to_update(uint32_t n, Scratch& scratch) {
 
 void TimingModel::Impl::send_particles(int axis, uint32_t n, int64_t start) {
   migrate_start_[at(axis)][n] = start;
-  migrate_end_[at(axis)][n] = start + (migration_.any() ? migration_.scan(axis, n) : 0);
+  migrate_end_[at(axis)][n] = links_.any() ? links_.load(n, faces_along(axis), scanned(axis, n, start), 1)
+                                           : start + (migration_.any() ? migration_.scan(axis, n) : 0);
+}
+
+// With several devices: the first cycle after SCAN. A cycle for each slot, and loads for what leaves.
+int64_t TimingModel::Impl::scanned(int axis, uint32_t n, int64_t start) {
+  if (!migration_.any()) return start;
+  const auto [first, departures] = migration_.departures(axis, n);
+  int64_t now = start;
+  uint32_t slot = 0;
+  for (size_t k = 0; k < departures.size(); ++k) {
+    const auto& [node, left, face] = departures[k];
+    const int64_t last =
+        links_.load(n, static_cast<uint8_t>(1u << face), now + left - slot, plan_.words.migrate_beats);
+    seen_[at(axis)][first + k] = (links_.cut(n, face) ? links_.seen(n, face) : last + received_) + answered_;
+    now = last + 1;
+    slot = left + 1;
+  }
+  return now + migration_.scanned(axis, n).slots - slot;
 }
 
 // The cycle after TAKE_LOW (side 0) or TAKE_HIGH, whose first cycle is `now`.
 int64_t TimingModel::Impl::taken(int axis, uint32_t n, int side, int64_t now) const {
   if (migration_.any())
     for (const auto& arrival : migration_.arrivals(axis, n, side))
-      now = std::max(now, migrate_start_[at(axis)][arrival.from] + arrival.after) + take_;
-  const uint32_t near = neighbour_[n][at(2 * axis + side)];
-  return std::max(now, migrate_end_[at(axis)][near] + received_) + 1;
+      now = std::max(now, links_.any() ? seen_[at(axis)][arrival.departure]
+                                       : migrate_start_[at(axis)][arrival.from] + arrival.after) +
+            take_;
+  return std::max(now, ended(migrate_end_, axis, n, side)) + 1;
 }
 
 void TimingModel::Impl::take_particles(int axis, uint32_t n) {
@@ -301,6 +346,7 @@ void TimingModel::step(const CellSlots& slots, std::span<const Leaving> leaving,
     };
     for_each_range(m.nodes_, 1, range, threads);
   };
+  for_all([&](uint32_t n) { m.send_x(n); });
   for_all([&](uint32_t n) { m.exchange_x(slots, n); });
   for_all([&](uint32_t n) { m.exchange_y(n); });
   for_each_part(static_cast<size_t>((nodes + share - 1) / share), threads, [&](size_t k, int member) {
@@ -339,14 +385,19 @@ uint64_t TimingModel::cycles(const CellSlots& slots) const {
 std::vector<uint64_t> TimingModel::starts() const {
   if (brick_) return brick_->starts();
   if (arrival_) return arrival_->starts();
-  return {impl_->start_.begin(), impl_->start_.end() - 1};
+  std::vector<uint64_t> starts(impl_->start_.begin(), impl_->start_.end() - 1);
+  impl_->links_.save(starts);
+  return starts;
 }
 
 void TimingModel::resume(std::span<const uint64_t> starts) {
   if (brick_) return brick_->resume(starts);
   if (arrival_) return arrival_->resume(starts);
-  if (starts.size() != impl_->nodes_) throw std::invalid_argument("starts of another lattice");
-  std::copy(starts.begin(), starts.end(), impl_->start_.begin());
+  const size_t nodes = impl_->nodes_;
+  if (starts.size() != nodes + impl_->links_.saved())
+    throw std::invalid_argument("starts of another lattice");
+  std::copy_n(starts.begin(), nodes, impl_->start_.begin());
+  impl_->links_.load_state(starts.subspan(nodes));
   impl_->steps_ = 0;  // the next step's particles are not those of the last one
 }
 

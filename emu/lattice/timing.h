@@ -40,9 +40,10 @@ class TimingModel {
   // included: what the cycle-accurate engines count. `slots` are the particles then.
   uint64_t cycles(const CellSlots& slots) const;
 
-  // All that later steps depend on: the cycle, by node, at which the next step begins.
+  // All that later steps depend on: the cycle, by node, at which the next step begins; with several devices
+  // then what the links between them do.
   std::vector<uint64_t> starts() const;
-  // Goes on from there. Throws std::invalid_argument where the size is not the number of nodes.
+  // Goes on from there. Throws std::invalid_argument where the size is another.
   void resume(std::span<const uint64_t> starts);
 
   // Of all steps so far, by node; of a model that resumed, those since then. Without kicks (kicks.h).

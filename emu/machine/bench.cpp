@@ -186,14 +186,8 @@ Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State&
     expected_.push_back(nodes_[n].get());
   }
   for (uint32_t n = 0; n < plan.nodes(); ++n)
-    for (int f = 0; f < kFaces; ++f) {
-      const uint32_t other = plan.neighbour(n, f);
-      if (other == kNoNode) continue;
-      links_.push_back(std::make_unique<Link>(fmt::format("link_{}_{}", n, f).c_str(), timeline_, stalls_,
-                                              n * kFaces + static_cast<uint32_t>(f), faults_.at(n, f)));
-      nodes_[n]->link_o[static_cast<size_t>(f)](*links_.back());
-      nodes_[other]->link_i[static_cast<size_t>(f ^ 1)](*links_.back());
-    }
+    for (int f = 0; f < kFaces; ++f)
+      if (plan.neighbour(n, f) != kNoNode) wire(n, f);
   timeline_.period = sc_core::sc_time(1, sc_core::SC_NS).value();
   SC_HAS_PROCESS(Bench);
   SC_METHOD(host);
@@ -205,6 +199,33 @@ Bench::Bench(const sc_core::sc_module_name& name, const Plan& plan, const State&
 }
 
 Bench::~Bench() = default;
+
+// What node `n` sends over a face. Between devices there are two channels, and the board's link.
+void Bench::wire(uint32_t n, int face) {
+  const uint32_t number = n * kFaces + static_cast<uint32_t>(face);
+  const auto channel = [&](const char* end) -> Link& {
+    const std::string name = fmt::format("link_{}_{}{}", n, face, end);
+    return *links_.emplace_back(
+        std::make_unique<Link>(name.c_str(), timeline_, stalls_, number, faults_.at(n, face)));
+  };
+  auto& sender = nodes_[n]->link_o[static_cast<size_t>(face)];
+  auto& receiver = nodes_[plan_.neighbour(n, face)]->link_i[static_cast<size_t>(face ^ 1)];
+  if (!plan_.crosses(n, face)) {
+    Link& link = channel("");
+    sender(link);
+    receiver(link);
+    return;
+  }
+  Link &from = channel("_from"), &to = channel("_to");
+  const std::string name = fmt::format("board_{}_{}", n, face);
+  BoardLink& board =
+      *board_links_.emplace_back(std::make_unique<BoardLink>(name.c_str(), timeline_, plan_.arch.boards));
+  board.clk_i(clk_i);
+  sender(from);
+  board.link_i(from);
+  board.link_o(to);
+  receiver(to);
+}
 
 void Bench::report(uint32_t node, const NodeOutputs& out) {
   if (timeline_.over) return;

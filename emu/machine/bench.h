@@ -11,6 +11,7 @@
 #include <systemc>
 #include <vector>
 
+#include "emu/machine/board_link.h"
 #include "emu/machine/collector.h"
 #include "emu/machine/link.h"
 #include "emu/machine/plain.h"
@@ -108,6 +109,7 @@ class Bench : public sc_core::sc_module, private Monitor {
   void evaluate() override;
   void host();
   void tick() { ++timeline_.edge; }
+  void wire(uint32_t node, int face);
 
   const Plan& plan_;
   const RunOptions options_;
@@ -121,6 +123,7 @@ class Bench : public sc_core::sc_module, private Monitor {
   Collector collector_;
   sc_core::sc_vector<sc_core::sc_signal<Control>> control_;
   std::vector<std::unique_ptr<Link>> links_;
+  std::vector<std::unique_ptr<BoardLink>> board_links_;
   std::vector<std::unique_ptr<NodeModule>> nodes_;
   std::vector<NodeModule*> expected_;  // at the next edge
   Host state_ = Host::reset;

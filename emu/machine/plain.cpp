@@ -6,6 +6,7 @@
 #include <chrono>
 #include <optional>
 
+#include "emu/machine/board_wire.h"
 #include "emu/machine/stall.h"
 
 namespace cuboct::emu {
@@ -34,11 +35,19 @@ class Machine {
       places[n].model = factory(n, links_of(plan_, n));
       for (size_t f = 0; f < kFaces; ++f) places[n].out.beat[f] = &places[n].next[f];
     }
+    if (plan_.cut.empty()) return;
+    boards_.resize(places.size() * kFaces);
+    for (uint32_t n = 0; n < places.size(); ++n)
+      for (int f = 0; f < kFaces; ++f)
+        if (plan_.crosses(n, f)) boards_[n * kFaces + static_cast<size_t>(f)].emplace(plan_.arch.boards);
   }
 
   // Of every node: all read the registers of before the edge, then all registers change. `cycle` is that of
   // the run, from where on links stall and fail; nothing before it.
   void clock(std::optional<uint64_t> cycle) {
+    for (uint32_t n = 0; n < places.size() && !boards_.empty(); ++n)
+      for (int f = 0; f < kFaces; ++f)
+        if (plan_.crosses(n, f)) pass(n, f, cycle);
     for (uint32_t n = 0; n < places.size(); ++n) {
       Place& p = places[n];
       p.in = {now_, &p.control, 0, 0, {}, {}};
@@ -75,11 +84,36 @@ class Machine {
   FaultyWires faults;
 
  private:
+  // A link between devices, and what its ends see of it in a cycle.
+  struct Board : BoardWire {
+    using BoardWire::BoardWire;
+    FaultyWire::View view;
+    Beat beat;
+  };
+  bool passes(uint32_t n, int face, std::optional<uint64_t> cycle) const {
+    return !cycle || !stalls_.stalled(n * kFaces + static_cast<uint32_t>(face), *cycle);
+  }
+  // One cycle of such a link: a beat goes in, another comes out.
+  void pass(uint32_t n, int face, std::optional<uint64_t> cycle) {
+    Board& board = *boards_[n * kFaces + static_cast<size_t>(face)];
+    const Place &from = places[n], &to = places[plan_.neighbour(n, face)];
+    const bool open = passes(n, face, cycle);
+    board.view = {};
+    board.view.ready = open && board.ready(now_);
+    if (board.view.ready && (from.valid >> face & 1)) board.take(now_, from.beat[static_cast<size_t>(face)]);
+    const Beat* const come = open ? board.come(now_) : nullptr;
+    if (come == nullptr) return;
+    board.beat = *come;
+    board.view.valid = true;
+    board.view.beat = &board.beat;
+    if (to.ready >> (face ^ 1) & 1) board.read();
+  }
   // The wire of node `n` over `face`, to `other`.
   FaultyWire::View look(uint32_t n, int face, uint32_t other, std::optional<uint64_t> cycle) {
+    if (plan_.crosses(n, face)) return boards_[n * kFaces + static_cast<size_t>(face)]->view;
     const Place &from = places[n], &to = places[other];
     const int back = face ^ 1;
-    const bool passes = !cycle || !stalls_.stalled(n * kFaces + static_cast<uint32_t>(face), *cycle);
+    const bool passes = this->passes(n, face, cycle);
     const FaultyWire::View truth{passes && (from.valid >> face & 1), &from.beat[static_cast<size_t>(face)],
                                  passes && (to.ready >> back & 1), to.ack[static_cast<size_t>(back)]};
     FaultyWire* const wire = cycle ? faults.at(n, face) : nullptr;
@@ -88,6 +122,7 @@ class Machine {
 
   const Plan& plan_;
   const StallSource stalls_;
+  std::vector<std::optional<Board>> boards_;  // by sender * kFaces + face; none on one device
   uint64_t now_ = 0;
 };
 

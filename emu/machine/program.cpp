@@ -53,6 +53,9 @@ class MachineProgram : public EngineProgram {
     run_.steps = options.run.steps;
     run_.frames = asked_steps(options.run);
     run_.keep_last = asks_for_last(options.run);
+    if (run_.faults.enabled() && plan.arch.boards.several())
+      throw InputError("--inject-faults: links between devices have no faults here",
+                       "leave out [boards], or the faults");
     EngineKind kind = fixed_kind(machine_.engine, scene, plan);
     kind.batches = kind.hashes_come = true;
     kind.make = [this, &scene, &plan](CheckpointReader*, bool) {

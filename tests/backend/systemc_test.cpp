@@ -79,6 +79,49 @@ TEST(SystemCBricks, EqualGoldenAndThePlainLoop) {
   }
 }
 
+// Links between devices: nodes of each kind, in one simulation, without and with stalls.
+TEST(SystemCBoards, EqualGoldenAndThePlainLoop) {
+  const std::vector<std::pair<std::string, Boards>> boards{
+      {"undamped_2x2x2", {{1, 2, 1}, 1, 1}}, {"hot_gas", {{2, 1, 3}, 30, 1}},
+      {"arrival_ring", {{1, 1, 1}, 9, 5}},   {"arrival_two", {{2, 2, 2}, 17, 3}},
+      {"rich_narrow", {{1, 2, 2}, 5, 7}},    {"brick_serial", {{1, 1, 1}, 12, 2}},
+      {"flat_ring", {{2, 1, 1}, 40, 11}}};
+  std::vector<std::unique_ptr<Case>> cases;
+  std::vector<std::unique_ptr<emu::Bench>> benches;
+  std::vector<emu::Bench*> all;
+  for (const auto& [name, cut] : boards)
+    for (const double rate : {0.0, 0.3}) {
+      const Case& c = *cases.emplace_back(std::make_unique<Case>(with_boards(make_case(name), cut)));
+      EXPECT_FALSE(c.setup.plan.cut.empty()) << name;
+      benches.push_back(std::make_unique<emu::Bench>(
+          ("boards" + std::to_string(benches.size())).c_str(), c.setup.plan, c.setup.initial,
+          keep_all(c.steps, rate, 7), emu::native_nodes(c.setup.plan), "systemc"));
+      all.push_back(benches.back().get());
+    }
+  emu::simulate(all);
+  for (size_t k = 0; k < cases.size(); ++k) {
+    const Case& c = *cases[k];
+    const Plan& plan = c.setup.plan;
+    const emu::RunResult run = benches[k]->take_result();
+    const Compared compared = compare(plan, run_golden(c.setup, c.steps), run);
+    EXPECT_EQ(compared.difference, "") << c.name;
+    EXPECT_EQ(compared.steps, c.steps + 1);
+    const auto options = keep_all(c.steps, k % 2 == 0 ? 0.0 : 0.3, 7);
+    const Compared with_plain =
+        compare_cycles(run, run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain"));
+    EXPECT_EQ(with_plain.difference, "") << c.name;
+    EXPECT_EQ(with_plain.spans, c.steps * plan.nodes() * kPhases);
+    // A machine without these links takes fewer cycles.
+    const Case whole = with_boards(c, {});
+    EXPECT_LT(
+        run_plain(whole.setup.plan, c.setup.initial, options, emu::native_nodes(whole.setup.plan), "plain")
+            .trace.counters[0]
+            .second,
+        run.trace.counters[0].second)
+        << c.name;
+  }
+}
+
 // A native node that is called in every cycle.
 class Restless : public emu::NodeModel {
  public:

@@ -414,6 +414,15 @@ Case with_halos_on_arrival(Case c) {
   return c;
 }
 
+Case with_boards(Case c, const Boards& boards) {
+  Plan& plan = c.setup.plan;
+  Arch arch = plan.arch;
+  arch.boards = boards;
+  arch.link_check = LinkCheck::none;
+  plan = make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
+  return c;
+}
+
 Case with_brick(Case c, const Cell& brick) {
   Plan& plan = c.setup.plan;
   Arch arch = plan.arch;
