@@ -17,6 +17,7 @@ void BoardLink::end_of_elaboration() {
 }
 
 void BoardLink::cycle() {
+  if (timeline_.over) return;
   const uint64_t now = timeline_.edge;
   if (in_.held != 0 && ready_ && !link_i->gated()) wire_.take(now, *in_.inputs.beat[0]);
   const bool taken = valid_ && out_.ready != 0 && !link_o->gated();
