@@ -99,16 +99,6 @@ INSTANTIATE_TEST_SUITE_P(Bricks, Rtl,
                                          "brick_shared"),
                          [](const auto& p) { return p.param.substr(0, p.param.find('.')); });
 
-// Links between devices around the emitted nodes: those of the cases above, whose nodes they share.
-class RtlBoards : public testing::TestWithParam<std::string> {};
-TEST_P(RtlBoards, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
-  const Case c = with_boards(make_case(GetParam()), {{1, 2, 1}, 13, 3});
-  ASSERT_FALSE(c.setup.plan.cut.empty());
-  expect_golden(c);
-}
-INSTANTIATE_TEST_SUITE_P(Cases, RtlBoards, testing::Values("hot_gas", "arrival_two"),
-                         [](const auto& p) { return p.param; });
-
 class RtlFaults : public testing::TestWithParam<Fault> {};
 
 void expect_as_in_golden(const Case& c, Fault fault) {

@@ -11,6 +11,7 @@
 #include "model/contract/golden.h"
 #include "model/scene/scene.h"
 #include "tests/backend/clocked_timing.h"
+#include "tests/backend/engines.h"
 #include "tests/support/block.h"
 #include "tests/support/cases.h"
 
