@@ -139,7 +139,8 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
               const BoardChoice& board, const std::string& arch,
               const std::optional<CountedCycles>& counted) {
   if (plan.arch.boards.several())
-    plan.arch.places.fail({"boards"}, "a project is for one device, and [boards] cuts the machine into several",
+    plan.arch.places.fail({"boards"},
+                          "a project is for one device, and [boards] cuts the machine into several",
                           "leave out [boards]; 'cuboct run --engine rtl' clocks the whole machine with it");
   RtlDesign design = decide(plan);
   legalise(design, true);
