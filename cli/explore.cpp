@@ -123,7 +123,7 @@ int explore(const Options& options) {
 void add_explore(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("explore", "chart a study's settings or machines: errors, speed, cycles, energy");
+      app.add_subcommand("explore", "chart a study's settings or machines: errors, speed, energy");
   command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
   command
       ->add_option("--out", options->out,
