@@ -172,6 +172,7 @@ TEST(Docs, EveryArchKeyIsDocumentedAndViceVersa) {
   std::set<std::string> keys;
   record_config_keys(&keys);
   read_arch(kRoot + "/scenes/archs/default.toml");
+  parse_arch("name = \"t\"\n[boards]\nnodes = [1, 1, 1]\n", "boards");
   record_config_keys(nullptr);
   expect_documented(page, keys);
   const auto named = documented(page);
@@ -281,7 +282,13 @@ TEST(Docs, EveryFitKeyIsDocumentedAndViceVersa) {
 TEST(Docs, ArchRangesAreThoseOfTheReader) {
   const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_ranges_test.toml";
   const auto accepts = [&](const std::string& section, const std::string& key, int value) {
-    std::ofstream(path) << "name = \"t\"\n[" << section << "]\n" << key << " = " << value << "\n";
+    std::ofstream file(path);
+    file << "name = \"t\"\n[" << section << "]\n";
+    if (key == "nodes")
+      file << "nodes = [" << value << ", 1, 1]\n";
+    else
+      file << (section == "boards" ? "nodes = [1, 1, 1]\n" : "") << key << " = " << value << "\n";
+    file.close();
     try {
       read_arch(path.string());
     } catch (const InputError&) {
@@ -305,7 +312,7 @@ TEST(Docs, ArchRangesAreThoseOfTheReader) {
       ++rows;
     }
   }
-  EXPECT_EQ(rows, 19);
+  EXPECT_EQ(rows, 22);
   std::filesystem::remove(path);
 }
 
