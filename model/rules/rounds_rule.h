@@ -61,12 +61,4 @@ class RoundsRule {
                                             int threads) const = 0;
 };
 
-// What stands for the pair law in a Rule that has rounds: no force, up to the rule's reach. `rule` may be
-// null while the body is read, on which it depends.
-std::shared_ptr<const PairLaw> rounds_law(double reach, std::shared_ptr<const RoundsRule> rule);
-// The rounds of such a Rule; null: it is of pairs.
-const RoundsRule* rounds_of(const Rule& rule);
-// InputError where the rule has rounds, of `who` that knows pairs alone: "the lattice engine".
-void refuse_rounds(const Rule& rule, const std::string& who);
-
 }  // namespace cuboct

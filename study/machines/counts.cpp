@@ -21,17 +21,6 @@ constexpr const char* kNoBits[] = {"node.filter_lanes", "node.force_pipes", "nod
                                    "node.queue_depth",  "node.overlap",     "node.brick",
                                    "link.bits",         "link.check"};
 
-Arch without_machine(Arch arch) {
-  const Arch plain;
-  arch.filter_lanes = plain.filter_lanes, arch.force_pipes = plain.force_pipes;
-  arch.multipliers = plain.multipliers, arch.narrow_memories = plain.narrow_memories;
-  arch.halos = plain.halos, arch.streamers = plain.streamers;
-  arch.queue_depth = plain.queue_depth, arch.overlap = plain.overlap;
-  arch.brick = plain.brick;
-  arch.link_bits = plain.link_bits, arch.link_check = plain.link_check;
-  return arch;
-}
-
 Arch with_machine(Arch arch, const Arch& machine) {
   arch.filter_lanes = machine.filter_lanes, arch.force_pipes = machine.force_pipes;
   arch.multipliers = machine.multipliers, arch.narrow_memories = machine.narrow_memories;
@@ -41,6 +30,8 @@ Arch with_machine(Arch arch, const Arch& machine) {
   arch.link_bits = machine.link_bits, arch.link_check = machine.link_check;
   return arch;
 }
+
+Arch without_machine(const Arch& arch) { return with_machine(arch, {}); }
 
 double per(uint64_t count, double steps) { return static_cast<double>(count) / steps; }
 
