@@ -90,7 +90,7 @@ module cuboct_lattice #(
     end
     logic [7:0] phase_start;
     logic [7:0] phase_end;
-    logic [3:0] force_event;
+    logic [4:0] force_event;
     logic observe_valid;
     logic [cuboct_pkg::ParticleBits-1:0] observe_data;
     logic fault_valid;

@@ -19,7 +19,7 @@ module cuboct_node (
   output logic [5:0]                          link_ready_o,
   output logic [7:0]                          phase_start_o,
   output logic [7:0]                          phase_end_o,
-  output logic [3:0]                          force_event_o,
+  output logic [4:0]                          force_event_o,
   output logic                                observe_valid_o,
   output logic [cuboct_pkg::ParticleBits-1:0] observe_data_o,
   output logic                                fault_valid_o,
