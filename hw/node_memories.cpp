@@ -59,8 +59,10 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
   ram("ids, for the pipes' faults", cells * capacity, words.id_bits, pipes);
   // A candidate with the pairs of its row: one for each pipe at once, the others by the lane.
   const int cell_bits = clog2(cells), slot_bits = std::max(1, clog2(capacity));
-  const int queue_bits = candidate + cell_bits + std::max(1, clog2(rows)) + lanes + pipes * (1 + slot_bits);
-  memories.push_back({"queue", static_cast<uint64_t>(arch.queue_depth), queue_bits, 1, Kind::prompt});
+  const int queue_bits =
+      candidate + cell_bits + std::max(1, clog2(rows)) + lanes + pipes / arch.streamers * (1 + slot_bits);
+  memories.push_back(
+      {"queue", static_cast<uint64_t>(arch.queue_depth), queue_bits, arch.streamers, Kind::prompt});
   if (cells == 1) {
     memories.push_back({"sums", capacity, rule.axes * sum_bits_, pipes, Kind::prompt});
     for (int a = 0; a < rule.axes; ++a) {

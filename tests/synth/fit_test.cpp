@@ -78,6 +78,9 @@ TEST(FitMemories, AreThoseOfTheRtl) {
   EXPECT_EQ(text_of(counted(held)), text_of(elaborated(held)));
   const Plan plain = plan_of_scene("undamped_block", [](Arch& a) { a.link_bits = 40; });
   EXPECT_EQ(text_of(counted(plain)), text_of(elaborated(plain)));
+  const Plan arrival = plan_of_scene(
+      "undamped_block", [](Arch& a) { a.halos = Halos::arrival, a.streamers = 2, a.force_pipes = 4; });
+  EXPECT_EQ(text_of(counted(arrival)), text_of(elaborated(arrival)));
 }
 
 TEST(FitMemories, AreThoseOfBricks) {
