@@ -52,13 +52,20 @@ std::array<double, kStepParts> parts_of(const MachineEvents& node, uint64_t end,
           per(update, steps), per(migrate + after, steps)};
 }
 
+// Beats that an exchange needs one after another. By phases each axis follows the one before it, over two
+// faces at once. On arrival all axes go in lock step, so what the relay reads goes over the last one's links.
+double link_demand(const Plan& plan, const MachineEvents& e, double steps) {
+  if (plan.arch.halos != Halos::arrival) return per(e.beats, 2 * steps);
+  return per(e.relayed * static_cast<uint64_t>(plan.words.halo_beats), steps);
+}
+
 std::array<double, kDemands> demands_of(const Plan& plan, std::span<const MachineEvents> nodes,
                                         double steps) {
   std::array<double, kDemands> most{};
   for (const MachineEvents& e : nodes) {
     const std::array<double, kDemands> mine{
         per(e.candidates, steps * plan.arch.streamers),
-        per(e.pairs, steps * plan.arch.force_pipes) * plan.latency.interval, per(e.beats, 2 * steps),
+        per(e.pairs, steps * plan.arch.force_pipes) * plan.latency.interval, link_demand(plan, e, steps),
         per(e.updates * static_cast<uint64_t>(plan.latency.stride) + e.scanned, steps)};
     for (size_t k = 0; k < kDemands; ++k) most[k] = std::max(most[k], mine[k]);
   }

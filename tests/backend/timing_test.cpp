@@ -30,21 +30,37 @@ TEST_P(Timing, EqualsTheClockedNode) {
 INSTANTIATE_TEST_SUITE_P(Cases, Timing, testing::ValuesIn(case_names()),
                          [](const auto& p) { return p.param; });
 
-TEST(TimingRandom, EqualsTheClockedNode) {
-  Seen seen;
-  for (uint64_t seed = 1; seed <= 300; ++seed) {
+void compare_random(uint64_t first, uint64_t last, uint64_t last_flat, Seen& seen) {
+  for (uint64_t seed = first; seed <= last; ++seed) {
     const Case c = random_case(seed);
     ASSERT_EQ(difference(c, seen), "");
     ASSERT_EQ(difference(rebuilt(c, seed), seen), "");
   }
-  for (uint64_t seed = 1; seed <= 100; ++seed) {
+  for (uint64_t seed = first; seed <= last_flat; ++seed) {
     const Case c = random_flat_case(seed);
     ASSERT_EQ(difference(c, seen), "");
     ASSERT_EQ(difference(rebuilt(c, seed), seen), "");
   }
+}
+
+void compare_rebuilt(uint64_t first, uint64_t last, Seen& seen) {
   for (const std::string& name : case_names())
-    for (uint64_t seed = 1; seed <= 4; ++seed)
+    for (uint64_t seed = first; seed <= last; ++seed)
       ASSERT_EQ(difference(rebuilt(make_case(name), seed), seen), "");
+}
+
+// Of the full tier.
+TEST(TimingRandomMore, EqualsTheClockedNode) {
+  Seen seen;
+  compare_random(81, 300, 100, seen);
+  compare_rebuilt(2, 4, seen);
+  EXPECT_GT(seen.runs, 480u);
+}
+
+TEST(TimingRandom, EqualsTheClockedNode) {
+  Seen seen;
+  compare_random(1, 80, 30, seen);
+  compare_rebuilt(1, 1, seen);
   const std::vector<std::pair<const char*, uint64_t>> counts{{"spans", seen.spans},
                                                              {"runs", seen.runs},
                                                              {"faults", seen.faults},

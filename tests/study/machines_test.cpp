@@ -91,6 +91,26 @@ TEST(Machines, DemandsAreThoseOfTheBusiestNode) {
   for (const double demand : counted[0]->demands) EXPECT_LE(demand, counted[0]->mean());
 }
 
+// Nothing but links binds this machine, and they are used nearly all the time: a demand that counted the axes
+// one after another would be more than there is.
+TEST(Machines, LinksDemandNoMoreThanThereIs) {
+  const Base base = read_base(kRoot + "/scenes/lj_block.toml", "");
+  const SharedSetup shared(base, of_bits({}));
+  Settings settings;
+  settings.arch = {{"node.halos", "\"arrival\""},
+                   {"node.streamers", "2"},
+                   {"node.force_pipes", "64"},
+                   {"node.filter_lanes", "64"},
+                   {"node.queue_depth", "256"}};
+  const Case c = resolve(base, settings);
+  const std::vector<Plan> plans{shared.plan_of(c.arch)};
+  const auto counted = count_machines(shared, plans, 4);
+  const double links = counted[0]->demands[static_cast<size_t>(Demand::links)];
+  EXPECT_LE(links, counted[0]->mean());
+  EXPECT_GE(links, 0.5 * counted[0]->mean());
+  EXPECT_EQ(bound_of(*counted[0]), "links");
+}
+
 MachineValue band(double low, double high, bool open = false) {
   return {{low, high}, Known::estimated, open};
 }
