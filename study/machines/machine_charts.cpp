@@ -22,7 +22,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr char kPeerColour[] = "#555555";
 // Bars of a stacked chart.
-constexpr size_t kMostBars = 24;
+constexpr size_t kMostBars = 16;
 
 // A band's place on a logarithmic axis. Of what is open, its low end.
 double middle(const MachineValue& v) {
@@ -148,63 +148,60 @@ Chart rate_chart(const MachineResults& r, const RateChart& what) {
   return chart;
 }
 
-// What each machine of the front spends its cycles on, bar by bar.
-Chart parts_chart(const MachineResults& r) {
+// Machines of the front, or of all, each once, the fastest first; of many some, evenly.
+std::vector<size_t> machines_for_bars(const MachineResults& r) {
   std::vector<size_t> some;
   std::set<std::string> known;
   const auto take = [&](size_t n) {
-    if (some.size() < kMostBars && r.findings[n].done() &&
-        known.insert(r.findings[n].choice.machine_key()).second)
-      some.push_back(n);
+    if (r.findings[n].done() && known.insert(r.findings[n].choice.machine_key()).second) some.push_back(n);
   };
   for (const size_t n : r.front) take(n);
   if (some.empty())
     for (size_t n = 0; n < r.findings.size(); ++n) take(n);
+  std::ranges::stable_sort(some, {}, [&](size_t n) { return r.findings[n].counts->mean(); });
+  if (some.size() <= kMostBars) return some;
+  std::vector<size_t> fewer;
+  for (size_t k = 0; k < kMostBars; ++k) fewer.push_back(some[k * (some.size() - 1) / (kMostBars - 1)]);
+  return fewer;
+}
+
+// What share of its cycles a machine spends on what, bar by bar: steps of machines differ a hundredfold.
+Chart parts_chart(const MachineResults& r) {
+  const std::vector<size_t> some = machines_for_bars(r);
   Chart chart;
   if (some.empty()) return chart;
-  std::vector<double> x, y;
+  std::vector<double> x, y(some.size(), 100.0);
   std::vector<std::string> names;
-  double most = 0;
   for (size_t k = 0; k < some.size(); ++k) {
-    const MachineFinding& f = r.findings[some[k]];
-    x.push_back(static_cast<double>(k)), y.push_back(f.counts->mean());
-    names.push_back(some.size() > 12 ? std::to_string(some[k] + 1)
-                                     : fmt::format("{} {}", some[k] + 1, bound_of(*f.counts)));
+    x.push_back(static_cast<double>(k));
+    const double cycles = r.findings[some[k]].counts->mean();
+    names.push_back(cycles < 1e4 ? fmt::format("{:.0f}", cycles) : fmt::format("{:.0f}k", cycles / 1000));
     chart.tips.push_back(tip_of(r, some[k]));
-    most = std::max(most, f.counts->mean());
   }
   for (size_t part = 0; part < kStepParts; ++part) {
-    Plotted bars{name_of(static_cast<StepPart>(part)),
-                 series_colour(part),
-                 -1,
-                 0,
-                 Stroke::solid,
-                 some.size() > 12 ? 14.0 : 26.0,
-                 {},
-                 {}};
+    Plotted bars{
+        name_of(static_cast<StepPart>(part)), series_colour(part), -1, 0, Stroke::solid, 20.0, {}, {}};
     for (size_t k = 0; k < some.size(); ++k) {
-      const auto& parts = r.findings[some[k]].counts->parts;
-      const double from =
-          std::accumulate(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(part), 0.0);
-      bars.places.emplace_back(x[k], from);
-      bars.places.emplace_back(x[k], from + parts[part]);
+      const MachineCounts& counts = *r.findings[some[k]].counts;
+      const double from = std::accumulate(counts.parts.begin(),
+                                          counts.parts.begin() + static_cast<std::ptrdiff_t>(part), 0.0);
+      bars.places.emplace_back(x[k], 100 * from / counts.mean());
+      bars.places.emplace_back(x[k], 100 * (from + counts.parts[part]) / counts.mean());
       bars.places.emplace_back(kNone, kNone);
     }
     chart.plotted.push_back(std::move(bars));
   }
   Rows all(some.size());
   std::iota(all.begin(), all.end(), size_t{0});
-  chart.plotted.push_back({"all of a step", "#222222", 0, 6, Stroke::none, 0, {all}, {}});
+  chart.plotted.push_back({"a step", "#222222", 0, 4, Stroke::none, 0, {all}, {}});
   chart.id = "parts", chart.section = "bound";
   chart.title = "What a step's cycles go to, machines of the front";
   chart.caption =
       "Of the node that waits least; the parts add up to the step. Force is what is left of it when the last "
       "exchange is over.";
-  chart.x = named_axis("machine", x, names);
-  chart.y = ChartAxis{"cycles per step", y, false, false, 0, 1.08 * most, {}};
-  const double step = std::pow(10, std::floor(std::log10(most)));
-  for (double tick = 0; tick <= 1.08 * most; tick += most / step < 4 ? step / 2 : step)
-    chart.y.ticks.push_back({tick, number_text(tick)});
+  chart.x = named_axis("cycles per step of each machine", x, names);
+  chart.y = ChartAxis{"share of a step, %", y, false, false, 0, 105, {}};
+  for (double tick = 0; tick <= 100; tick += 20) chart.y.ticks.push_back({tick, number_text(tick)});
   return chart;
 }
 
@@ -215,6 +212,16 @@ std::vector<size_t> machines_once(const MachineResults& r) {
   for (size_t n = 0; n < r.findings.size(); ++n)
     if (r.findings[n].done() && known.insert(r.findings[n].choice.machine_key()).second) some.push_back(n);
   return some;
+}
+
+// A kind of mark for each part that binds.
+void plot_by_bound(Chart& chart, const Groups& groups) {
+  size_t k = 0;
+  for (const auto& [name, rows] : groups) {
+    const int symbol = static_cast<int>(k % kSymbols);
+    chart.plotted.push_back({"bound by " + name, series_colour(k), symbol, 8, Stroke::none, 0, {rows}, {}});
+    ++k;
+  }
 }
 
 // Pairs per cycle of the busiest node, against what the tightest of its lanes, pipes and links allows.
@@ -238,18 +245,7 @@ Chart roof_chart(const MachineResults& r) {
   if (low < high)
     chart.plotted.push_back(
         {"the roof", "#222222", -1, 0, Stroke::dashed, 1.5, {}, {{low, low}, {high, high}}});
-  size_t k = 0;
-  for (const auto& [name, rows] : groups) {
-    chart.plotted.push_back({"bound by " + name,
-                             series_colour(k),
-                             static_cast<int>(k % kSymbols),
-                             8,
-                             Stroke::none,
-                             0,
-                             {rows},
-                             {}});
-    ++k;
-  }
+  plot_by_bound(chart, groups);
   chart.id = "roof", chart.section = "bound";
   chart.title = "How near machines come to what their parts allow";
   chart.caption =
@@ -292,18 +288,7 @@ Chart strong_chart(const MachineResults& r) {
   const double most = *sizes.rbegin(), least = std::max(*sizes.begin(), most * chart.y.low / first);
   ideal = {{least, first * least / most}, {most, first}};
   chart.plotted.push_back({"in proportion to the nodes", "#777777", -1, 0, Stroke::dashed, 1.5, {}, ideal});
-  size_t k = 0;
-  for (const auto& [name, rows] : groups) {
-    chart.plotted.push_back({"bound by " + name,
-                             series_colour(k),
-                             static_cast<int>(k % kSymbols),
-                             8,
-                             Stroke::none,
-                             0,
-                             {rows},
-                             {}});
-    ++k;
-  }
+  plot_by_bound(chart, groups);
   chart.id = "strong", chart.section = "scaling";
   chart.title = "Strong scaling: one scene on more and more nodes";
   chart.caption =
