@@ -7,12 +7,14 @@
 #include <memory>
 
 #include "cli/answer.h"
+#include "cli/bond_fit.h"
 #include "cli/command.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
+#include "model/scene/config.h"
 #include "study/fit/fit_page.h"
 #include "study/interrupted.h"
 
@@ -144,6 +146,12 @@ std::string json_of(const fit::FitStudy& study, const fit::Fit& fit, const std::
                       {"page", draws ? json(out + "/page.html") : "null"}});
 }
 
+// Studies of parameters of a potential have [fit], those of a curve's law have not.
+bool is_bond_study(const std::string& path) {
+  const auto fit = read_config(path).find("fit");
+  return fit && fit->is_table();
+}
+
 int fit_study(const Options& options) {
   const Clock::time_point begin = Clock::now();
   catch_interrupts();
@@ -183,7 +191,8 @@ int fit_study(const Options& options) {
 
 void add_fit(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("fit", "find the force law that makes a stress-strain curve");
+  CLI::App* command =
+      app.add_subcommand("fit", "find the force law of a stress-strain curve, or a potential of a crystal");
   command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
   command
       ->add_option("--out", options->out,
@@ -193,7 +202,11 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   options->answer.add_to(*command);
-  command->callback([options, &exit_code] { exit_code = fit_study(*options); });
+  command->callback([options, &exit_code] {
+    exit_code = is_bond_study(options->study)
+                    ? fit_bonds(options->study, options->out, options->jobs, options->answer)
+                    : fit_study(*options);
+  });
 }
 
 }  // namespace cuboct
