@@ -122,7 +122,10 @@ Items items_of(const BondFindings& found) {
     add_properties(items, found);
     add_rest(items, found);
     const TersoffFree p = free_of(best_term(found.study, fit));
-    for (size_t k = 0; k < kTersoffFree; ++k) items.add(kTersoffFreeNames[k], p[k]);
+    for (size_t k = 0; k < kTersoffFree; ++k) {
+      // B is a modulus too.
+      items.add(fmt::format("parameter {}", kTersoffFreeNames[k]), p[k]);
+    }
   }
   const auto equal = std::ranges::count_if(
       fit.starts, [&](const bond_fit::Found& f) { return f.loss <= found.study.enough; });

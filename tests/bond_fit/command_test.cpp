@@ -40,7 +40,9 @@ TEST_F(BondFitCommand, WritesParametersThatOthersTake) {
   EXPECT_LT(told["loss"]["value"].get<double>(), 1e-5);
   EXPECT_NEAR(told["loss_of_si_multiscale"]["value"].get<double>(), 0.0308, 1e-4);
   const Tersoff fitted = read_tersoff(path("out/fitted.tersoff"), {"Si"});
-  EXPECT_DOUBLE_EQ(fitted.terms[0].A, told["A"]["value"].get<double>());
+  EXPECT_DOUBLE_EQ(fitted.terms[0].A, told["parameter_A"]["value"].get<double>());
+  EXPECT_NEAR(told["B"]["value"].get<double>(), 99, 1e-2);
+  EXPECT_DOUBLE_EQ(fitted.terms[0].B, told["parameter_B"]["value"].get<double>());
   const double c44_told = told["C44"]["value"];
   EXPECT_NEAR(diamond_properties(fitted.terms[0], 5.429, false).value[c44] * 160.2176634, c44_told, 1e-3);
   EXPECT_EQ(contents(path("out/trials.tsv")).find("set\tperiodic"), 0U);
