@@ -129,7 +129,6 @@ NamedSet read_from(const ConfigValue& value, const Problem& problem) {
 }
 
 void read_fit_table(const ConfigTable& table, BondStudy& study) {
-  table.at("kind").choice("kind", {"tersoff"});
   study.starts = static_cast<int>(table.integer_or("starts", 0, 1'000'000, 200));
   study.seed = static_cast<uint64_t>(table.integer_or("seed", 0, std::numeric_limits<int64_t>::max(), 1));
   study.evaluations = static_cast<int>(table.integer_or("evaluations", 1, 1'000'000, 2000));
@@ -195,6 +194,7 @@ BondStudy read_bond_study(const std::string& path) {
   BondStudy study;
   study.path = path;
   study.title = root.string_or("title", "");
+  root.at("fit").table().at("kind").choice("kind", {"tersoff"});
   read_target(root.at("target").table(), study.problem.goal);
   read_weights(root, study.problem.goal);
   read_potential(root, study);

@@ -70,6 +70,7 @@ TEST_F(BondFitCommand, RefusesBeforeItBegins) {
   };
   std::string less = kTarget;
   less.erase(less.find("C44 ="));
+  EXPECT_EQ(refused(file("[fit]\n")), "study.toml:1:1: missing key 'kind' in 'fit'\n");
   EXPECT_EQ(refused(with(less)), "study.toml:5:1: missing key 'C44' in 'target'\n");
   EXPECT_EQ(refused(with(kTarget, "[weights]\nC44 = -1\n")),
             "study.toml:23:7: 'C44' must be at least 0, not -1\n");
