@@ -10,6 +10,7 @@
 
 #include "cli/answer.h"
 #include "cli/estimate.h"
+#include "cli/load_any.h"
 #include "cli/stages.h"
 #include "cli/summary.h"
 #include "hw/cycles.h"
@@ -19,6 +20,7 @@
 #include "model/analysis/synopsis.h"
 #include "model/base/quantity_text.h"
 #include "model/base/resources.h"
+#include "model/rules/rounds_rule.h"
 #include "model/run/start.h"
 
 namespace cuboct {
@@ -195,10 +197,12 @@ Items physics(const Loaded& loaded) {
   if (cost.seconds > 0)
     time = fmt::format(", {} on {} thread{}", waiting_text(cost.seconds), cost.threads,
                        cost.threads == 1 ? "" : "s");
+  add_rounds(items, scene);
   items.add("work", fmt::format("{} particle-steps{}, {} of memory", count_text(cost.particle_steps), time,
                                 in_bytes(cost.memory)));
   items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),
                                 cost.frames == 1 ? "" : "s"));
+  if (rounds_of(scene.rule) != nullptr) return items;
   items.add("machine", fmt::format("{} node{}; --machine tells formats, records and cycles", plan.nodes(),
                                    plan.nodes() == 1 ? "" : "s"));
   if (!plan.warnings.empty()) add_warnings(items, plan.warnings, {});
@@ -242,8 +246,9 @@ void add_check(CLI::App& app, int&) {
   options->answer.add_to(*command);
   command->callback([options] {
     const Items stages = stages_in(options->input);
-    const Loaded loaded = load(options->input);
-    Items items = options->answer.json || options->machine ? resolve(loaded) : physics(loaded);
+    const Loaded loaded = options->machine ? load(options->input) : load_any(options->input);
+    const bool whole = options->machine || (options->answer.json && rounds_of(loaded.scene.rule) == nullptr);
+    Items items = whole ? resolve(loaded) : physics(loaded);
     for (const Items::Item& stage : stages.all()) items.add(stage.name, stage.text);
     options->answer.close(items);
   });

@@ -9,6 +9,8 @@
 #include "emu/lattice/run.h"
 #include "hw/engine_kind.h"
 #include "hw/engines.h"
+#include "hw/rounds_kind.h"
+#include "model/rules/rounds_rule.h"
 #include "model/run/static_engine.h"
 
 namespace cuboct {
@@ -63,6 +65,7 @@ Recorded run_here(const EngineRow& row, const Loaded& loaded, const EngineOption
     RealOptions real = options.real_options();
     real.threads = options.threads > 0 ? options.threads : reference_threads(scene.body.size());
     if (scene.loading) return record(scene, static_kind(scene, plan, real), request);
+    if (rounds_of(scene.rule) != nullptr) return record(scene, rounds_kind(scene, plan, real), request);
     return record(scene, reference_kind(scene, plan, real), request);
   }
   emu::LatticeRun run{request, {}};
@@ -75,7 +78,10 @@ Recorded run_here(const EngineRow& row, const Loaded& loaded, const EngineOption
 EngineRun::EngineRun(const std::string& engine, const Input& input, const Loaded& loaded,
                      const EngineOptions& options, RunRequest request, const std::string& path, bool once) {
   const EngineRow& row = engine_row(engine);
-  if (row.here != Here::reference) refuse_static(loaded.scene, fmt::format("the {} engine", engine));
+  if (row.here != Here::reference) {
+    refuse_static(loaded.scene, fmt::format("the {} engine", engine));
+    refuse_rounds(loaded.scene.rule, fmt::format("the {} engine", engine));
+  }
   if (!row.ranks.empty()) check_workers(options.threads, options.ranks, loaded.setup.plan);
   if (!options.checkpoint_every.empty()) read_interval(options.checkpoint_every, request.checkpoint);
   request.checkpoint.resume = options.resume;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "cli/load_any.h"
 #include "model/base/directory_lock.h"
 #include "model/base/output.h"
 #include "model/trace/frames.h"
@@ -98,7 +99,7 @@ struct Recorder::Impl {
                                    1e-6 * static_cast<double>(bytes)));
     }
     write_state("running");
-    write_text(path("plan.txt"), describe(loaded.setup.plan));
+    write_text(path("plan.txt"), plan_text(loaded));
     trace.writer.emplace(path("trace.h5"), path("trace.part.h5"), true, &head);
     rasters.writer.emplace(path("rasters.h5"), path("rasters.part.h5"),
                            Rasters{loaded.scene.title, strain_axis(loaded.scene), 2 * style.radius, {}, {}},

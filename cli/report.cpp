@@ -10,6 +10,7 @@
 
 #include "cli/answer.h"
 #include "cli/check.h"
+#include "cli/load_any.h"
 #include "cli/report.h"
 #include "cli/report_pictures.h"
 #include "cli/summary.h"
@@ -339,7 +340,7 @@ void write_report(const std::string& directory, const std::string& out) {
   Input input{record.scene, record.arch};
   input.stage = record.stage;
   input.from = record.from;
-  const Loaded loaded = load(input);
+  const Loaded loaded = load_any(input);
   const Trace trace = read_trace(directory + "/trace.h5");
   const Plan& plan = loaded.setup.plan;
   if (trace.plan_hash != plan.hash)

@@ -15,6 +15,7 @@
 #include "cli/command.h"
 #include "cli/engine_run.h"
 #include "cli/estimate.h"
+#include "cli/load_any.h"
 #include "cli/recorder.h"
 #include "cli/stages.h"
 #include "cli/summary.h"
@@ -24,6 +25,7 @@
 #include "model/base/process.h"
 #include "model/base/progress.h"
 #include "model/base/steps.h"
+#include "model/rules/rounds_rule.h"
 #include "model/run/start.h"
 
 namespace cuboct {
@@ -139,7 +141,8 @@ struct Ended {
 
 // With the engine that the scene asks for, where the command line names none.
 Options for_scene(Options options, const Scene& scene) {
-  if (options.engine.empty()) options.engine = scene.loading ? "reference" : "lattice";
+  if (options.engine.empty())
+    options.engine = scene.loading || rounds_of(scene.rule) != nullptr ? "reference" : "lattice";
   options.engines.check({options.engine}, options.input);
   if (!scene.loading) return options;
   options.steps = scene.loading->whole(options.steps);
@@ -149,7 +152,7 @@ Options for_scene(Options options, const Scene& scene) {
 }
 
 Ended run_once(const Options& given) {
-  const Loaded loaded = load_plan(given.input);
+  const Loaded loaded = load_any(given.input);
   const Options options = for_scene(given, loaded.scene);
   if (options.verbose) fmt::print(stderr, "{}", plan_text(options, loaded.setup.plan));
   catch_interrupts();

@@ -12,6 +12,7 @@
 
 #include "hw/cell_box.h"
 #include "hw/reach.h"
+#include "model/rules/rounds_rule.h"
 
 namespace cuboct {
 namespace {
@@ -138,6 +139,7 @@ std::vector<Cell> filled_box(const std::vector<Cell>& cells, const Arch& arch) {
 // `see` is given each particle of the initial state once, in the order of ids.
 template <typename See>
 Plan plan_with(const Scene& scene, Arch arch, See see) {
+  refuse_rounds(scene.rule, "a machine");
   const double edge = cell_edge_of(scene, arch);
   // Cells start a quarter of an edge below the packing, so that the planes of an aligned crystal do not lie
   // on faces; along z a flat body's only plane does.

@@ -8,6 +8,7 @@
 
 #include "model/analysis/strain.h"
 #include "model/contract/neighbours.h"
+#include "model/rules/rounds_rule.h"
 
 namespace cuboct {
 namespace {
@@ -46,6 +47,7 @@ class Reach {
 }  // namespace
 
 double bond_reach(const Rule& rule, int type_i, int type_j) {
+  if (const RoundsRule* rounds = rounds_of(rule)) return rounds->bond_reach();
   return rule.only_touch(type_i, type_j) ? 0 : rule.law_of(type_i, type_j).cutoff();
 }
 

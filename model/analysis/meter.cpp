@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "model/analysis/meter.h"
 
+#include "model/rules/rounds_rule.h"
+
 namespace cuboct {
 namespace {
 
@@ -27,7 +29,9 @@ Meter::Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, c
       forces_ |= probe.kind == Probe::Kind::force || probe.kind == Probe::Kind::stress_strain;
       velocities_ |= probe.kind >= Probe::Kind::velocity;
     }
-  if (options.energies && options.watch) watch_.emplace(scene, options.table_error, options.threads);
+  // What a run is watched for is of pair laws.
+  const bool watch = options.watch && rounds_of(scene.rule) == nullptr;
+  if (options.energies && watch) watch_.emplace(scene, options.table_error, options.threads);
 }
 
 Asked Meter::asked(bool look) {

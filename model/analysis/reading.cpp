@@ -3,6 +3,8 @@
 
 #include <numeric>
 
+#include "model/analysis/body_reading.h"
+
 namespace cuboct {
 
 Reading read_state(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
@@ -26,29 +28,14 @@ Reading read_state(const Rule& rule, const FixedRule& fixed, const Lattice& latt
 }
 
 Reading read_reference(const Rule& rule, const Reference& reference, double late, const Asked& asked) {
-  Reading reading;
-  reading.step = reference.step_count();
   const Body& body = reference.body();
   std::vector<Vec3> force;
   if (asked.forces || asked.velocities || asked.energies) force = reference.forces();
-  for (const uint32_t id : asked.ids) {
-    reading.x.push_back(body.x[id]);
-    reading.force.push_back(force.empty() ? Vec3(Vec3::Zero()) : force[id]);
-    if (asked.velocities) reading.v.push_back(body.v[id] + late * acceleration(rule, body, id, force[id]));
-  }
+  Reading reading = read_body(rule, body, force, late, asked);
+  reading.step = reference.step_count();
   if (!asked.energies) return reading;
-  Energies& e = reading.energies;
-  for (size_t i = 0; i < body.size(); ++i) {
-    const Vec3 v = body.v[i] + late * acceleration(rule, body, i, force[i]);
-    const ParticleType& type = rule.types[body.type[i]];
-    const double relative = rule.relative_mass(body.type[i]), mass = rule.mass * relative;
-    e.kinetic += mass * v.squaredNorm() / 2;
-    e.gravity -= mass * type.gravity.dot(body.x[i]);
-    for (int a = 0; a < 3; ++a)
-      if (is_free(type, a)) e.free.kinetic += mass * v[a] * v[a] / 2, e.free.velocities[a] += relative * v[a];
-  }
-  e.potential = reference.potential_energy();
-  if (asked.watch) asked.watch->see(reference.step_count(), body, force, e);
+  reading.energies.potential = reference.potential_energy();
+  if (asked.watch) asked.watch->see(reference.step_count(), body, force, reading.energies);
   if (asked.volume > 0) {
     const std::vector<Mat3> stress = reference.virial_stress(asked.volume);
     reading.stress = std::accumulate(stress.begin(), stress.end(), Mat3(Mat3::Zero()));

@@ -7,6 +7,7 @@
 
 #include "model/real/near_list.h"
 #include "model/real/reference.h"
+#include "model/rules/rounds_rule.h"
 
 namespace cuboct {
 
@@ -21,8 +22,13 @@ class RealEngine {
   virtual void place(const Body& body) = 0;
   virtual std::vector<Vec3> forces() const = 0;
   virtual double largest_speed() const = 0;  // m/s, along an axis, since the start
-  virtual const NearList& list() const = 0;
+  virtual const NearList& list() const = 0;  // of pairs: not of a rule of several rounds
   virtual uint64_t lists_made() const = 0;
+  // Of a rule of several rounds, at the state of now; null: pairs.
+  virtual const RoundsTerms* terms() const { return nullptr; }
+  // What a checkpoint keeps besides x, v and u.
+  virtual std::vector<uint64_t> memory() const { return {}; }
+  virtual void recall(const std::vector<uint64_t>&) {}
 };
 
 // Sizes and types of the body fit the rule.

@@ -90,6 +90,7 @@ void Reference::for_each_neighbour(On&& on) const {
 }
 
 double Reference::potential_energy() const {
+  if (const RoundsTerms* terms = engine_->terms()) return terms->energy();
   std::vector<double> of(body().size());
   for_each_neighbour([&](uint32_t i, uint32_t j, const Vec3&, double r2) {
     if (i < j) of[i] += rule_.pair_energy(body_.type[i], body_.type[j], std::sqrt(r2));
@@ -112,6 +113,10 @@ Vec3 Reference::momentum() const {
 
 std::vector<Mat3> Reference::virial_stress(double volume) const {
   std::vector<Mat3> stress(body().size(), Mat3::Zero());
+  if (const RoundsTerms* terms = engine_->terms()) {
+    for (size_t i = 0; i < stress.size(); ++i) stress[i] = terms->stress(i, volume);
+    return stress;
+  }
   const bool damps = rule_.damping.coefficient > 0;
   for_each_neighbour([&](uint32_t i, uint32_t j, const Vec3& d, double r2) {
     const double r = std::sqrt(r2);

@@ -61,4 +61,13 @@ class RoundsRule {
                                             int threads) const = 0;
 };
 
+// What stands for the pair law in a Rule that has rounds, with the rule's reach. Its force, energy and slope
+// throw InputError, so that nothing that knows pairs alone takes it for a law without force. `rule` may be
+// null while the body is read, on which it depends; then they are 0.
+std::shared_ptr<const PairLaw> rounds_law(double reach, std::shared_ptr<const RoundsRule> rule);
+// The rounds of such a Rule; null: it is of pairs.
+const RoundsRule* rounds_of(const Rule& rule);
+// InputError where the rule has rounds, of `who` that knows pairs alone: "the lattice engine".
+void refuse_rounds(const Rule& rule, const std::string& who);
+
 }  // namespace cuboct

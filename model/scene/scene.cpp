@@ -10,6 +10,7 @@
 
 #include "model/base/error.h"
 #include "model/contract/law.h"
+#include "model/rules/rounds_rule.h"
 #include "model/scene/scene_parts.h"
 #include "model/solid/dynamical_matrix.h"
 #include "model/solid/vibrations.h"
@@ -104,6 +105,11 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   TimeLimits limits;
   const double cutoff = rule.cutoff();
+  if (const RoundsRule* rounds = rounds_of(rule)) {
+    limits.given.meet(rounds->stable_time_step(rule.mass, scene.pitch), "the perfect packing");
+    limits.automatic = limits.given;
+    return limits;
+  }
   if (scene.pitch > 0) limits.given.meet(stable_time_step(rule, scene.pitch), "the perfect packing");
   bool small = false;  // a box that every engine will refuse
   for (const double extent : scene.periodic.extent) small = small || (extent > 0 && extent < 2 * cutoff);
@@ -181,6 +187,11 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
     scene.loading = read_static(*stage, scene);
   else if (usual_static)
     scene.loading = read_static(run, scene);
+  if (const RoundsRule* rounds = rounds_of(scene.rule);
+      scene.loading && rounds != nullptr && std::isfinite(rounds->bond_reach()))
+    (run.has("static") ? run : *stage)
+        .at("static")
+        .fail("static loading knows no bonds that break", "leave out what breaks them, or let the body move");
   const uint64_t least = scene.loading ? scene.loading->every : 1;
   scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max(least, whole / 500));
   scene.frame_every = every("frame_every", 0);
@@ -265,7 +276,8 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   const StagePart* stage = chosen ? &*chosen : nullptr;
   auto packing = read_packing(root);
   PackingChoice* packed = packing ? &*packing : nullptr;
-  scene.rule.law = read_law(root, packed);
+  const std::optional<RuleChoice> rounds = read_rule(root, packed);
+  scene.rule.law = rounds ? rounds_law(rounds->reach, nullptr) : read_law(root, packed);
   if (packing) {
     scene.pitch = packing->fcc.pitch;
     scene.orientation = packing->fcc.orientation;
@@ -276,6 +288,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   const Regions regions(root);
   read_body(root, stage, regions, packed, scene);
   if (stage) stage->check_ramps();
+  if (rounds) scene.rule.law = rounds_law(rounds->reach, rounds->make(root, regions, scene));
   read_probes(root, regions, scene);
   scene.meshes = regions.mesh_facts();
   read_time(root, stage, scene);
@@ -288,7 +301,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
 
 // A machine's file in the place of a scene's.
 void refuse_arch(const ConfigTable& root, const std::string& path) {
-  if (root.has("law") || root.has("packing")) return;
+  if (root.has("law") || root.has("packing") || root.has("rule")) return;
   for (const char* key : {"node", "link", "widths", "table", "plan"})
     if (const auto found = root.find(key); found && found->is_table())
       found->fail("this is an arch file, not a scene", fmt::format("--arch {} gives it to a scene", path));

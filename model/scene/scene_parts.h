@@ -19,6 +19,8 @@
 
 namespace cuboct {
 
+class RoundsRule;  // model/rules/rounds_rule.h
+
 struct GrainChoice {
   Grains grains;
   ConfigTable table;
@@ -70,6 +72,14 @@ double stiffness_from_modulus(double modulus, const Vec3& direction, double pitc
 std::shared_ptr<const PairLaw> read_law(const ConfigTable& root, PackingChoice* packing);
 // A [law] table, or the `law` of a bond.
 std::shared_ptr<const PairLaw> read_law_table(const ConfigTable& table, PackingChoice* packing);
+// [rule], in the place of [law]: a rule of several rounds, which is made when the body is read.
+struct RuleChoice {
+  double reach = 0;  // m
+  // InputError where the scene has what the rule cannot do.
+  std::function<std::shared_ptr<const RoundsRule>(const ConfigTable& root, const Regions&, const Scene&)>
+      make;
+};
+std::optional<RuleChoice> read_rule(const ConfigTable& root, const PackingChoice* packing);
 // The largest of strength |df/dr| over the pairs of materials, from the pitch (0: the law's core) to the
 // cutoff, N/m, from 4096 samples.
 double largest_stiffness(const Rule& rule, double pitch);

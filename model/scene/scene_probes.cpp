@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "model/rules/rounds_rule.h"
 #include "model/scene/name.h"
 #include "model/scene/scene_parts.h"
 
@@ -54,6 +55,9 @@ Datasheet read_datasheet(const ConfigTable& table) {
 
 // The region is read.
 void read_crack(const ConfigTable& table, const Scene& scene, Probe& probe) {
+  if (rounds_of(scene.rule) != nullptr)
+    table.at("kind").fail("a crack probe counts the bonds of a pair law, and [rule] has none",
+                          "the counters mean_damage and largest_damage of a run tell what broke");
   if (probe.set.ids.size() < 2) table.at("region").fail("a crack needs bonds: two particles or more");
   probe.bond_length = table.number_or("bond_length", quantity::length, first_shell(scene), Range::positive());
   if (const auto start = table.find("start")) probe.start = start->number(quantity::length);

@@ -151,6 +151,19 @@ std::set<std::string> scene_keys() {
         << load << "\nregion = { shape = \"sphere\", radius = \"9 mm\" }\n[run]\nsteps = 1\n";
     read_scene(path.string());
   }
+  // Of a packing, and of a sheet of points in no packing.
+  for (const char* rule :
+       {"packing = { pitch = \"1 mm\" }\nbox = { cells = [4, 4, 4] }\n[rule]\nkind = \"lps\"\n"
+        "bulk_modulus = \"40 GPa\"\npoissons_ratio = 0.2\nhorizon_pitches = 1.5\nfracture_energy = \"3 "
+        "J/m^2\"\ndamage_width = 1e-5\nunbreakable = [ { shape = \"half_space\", normal = \"x\" } ]\n"
+        "[[rule.slit]]\ncorner = \"[1, 0, 0] mm\"\nalong = \"[0, 2, 0] mm\"\nacross = \"[0, 0, 2] mm\"\n",
+        "particle = [ { position = \"[0, 0, 0] mm\" }, { position = \"[1, 0, 0] mm\" } ]\n[rule]\n"
+        "kind = \"lps\"\nyoungs_modulus = \"72 GPa\"\npoissons_ratio = 0.2\nplane = \"stress\"\nhorizon = "
+        "\"3 mm\"\ninfluence_power = 1\nvolume = \"1 mm^3\"\nquadrature = \"fitted\"\nspacing = \"1 "
+        "mm\"\norder = 3\nstrain = \"small\"\nsurface_correction = true\ncritical_stretch = 0.01\n"}) {
+    std::ofstream(path) << "mass = \"1 g\"\n" << rule << "[run]\ndt = \"1 ns\"\nsteps = 1\n";
+    read_scene(path.string());
+  }
   std::filesystem::remove(path);
   record_config_keys(nullptr);
   return keys;

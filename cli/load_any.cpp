@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "cli/load_any.h"
+
+#include <fmt/format.h>
+
+#include "hw/real_plan.h"
+#include "model/rules/rounds_rule.h"
+#include "model/run/start.h"
+
+namespace cuboct {
+
+Loaded load_any(const Input& input) {
+  Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
+  const Arch arch = read_arch(input.arch);
+  loaded.setup.plan = rounds_of(loaded.scene.rule) != nullptr ? real_plan_of(loaded.scene, arch)
+                                                              : plan_of(loaded.scene, arch);
+  return loaded;
+}
+
+void add_rounds(Items& items, const Scene& scene) {
+  const RoundsRule* rule = rounds_of(scene.rule);
+  if (rule == nullptr) return;
+  for (const auto& lines : {lines_of(rule->declaration()), rule->settings()})
+    for (const DeclarationLine& line : lines) items.add(line.name, line.text, line.note);
+}
+
+std::string plan_text(const Loaded& loaded) {
+  if (rounds_of(loaded.scene.rule) == nullptr) return describe(loaded.setup.plan);
+  Items items;
+  add_rounds(items, loaded.scene);
+  return items.text();
+}
+
+}  // namespace cuboct

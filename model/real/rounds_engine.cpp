@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "model/real/rounds_engine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "model/base/error.h"
+#include "model/base/parallel.h"
+
+namespace cuboct {
+namespace {
+
+constexpr size_t kRows = 64;  // of a part: rows differ in their work, parts are dealt out one by one
+
+class RoundsEngine final : public RealEngine {
+ public:
+  RoundsEngine(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options)
+      : rule_(rule),
+        options_(options),
+        x_(body.x),
+        v_(body.v),
+        u_(body.u),
+        type_(body.type),
+        rounds_(*rounds_of(rule)),
+        terms_(rounds_.bind(body, periodic, options.threads)) {
+    for (const Vec3& v : v_) fastest_ = std::max(fastest_, v.cwiseAbs().maxCoeff());
+    evaluate(false);
+  }
+
+  void step(uint64_t number) override {
+    try {
+      const double dt = rule_.dt;
+      if (options_.integrator == Integrator::semi_implicit_euler) {
+        evaluate(true);
+        move(dt, dt);
+      } else {
+        move(dt / 2, dt);
+        evaluate(true);
+        move(dt / 2, 0);
+      }
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(fmt::format("step {}: {}; is dt too long?", number, error.what()));
+    }
+    fresh_ = false;
+  }
+
+  void read(Body& body) const override { body.x = x_, body.v = v_, body.u = u_; }
+  void place(const Body& body) override {
+    x_ = body.x, v_ = body.v;
+    if (!u_.empty()) u_ = body.u;
+    fresh_ = false;
+  }
+  std::vector<Vec3> forces() const override {
+    refresh();
+    return terms_->force();
+  }
+  const RoundsTerms* terms() const override {
+    refresh();
+    return terms_.get();
+  }
+  double largest_speed() const override { return fastest_; }
+  const NearList& list() const override { throw std::logic_error("a rule of rounds has no list of pairs"); }
+  uint64_t lists_made() const override { return 1; }
+  std::vector<uint64_t> memory() const override { return terms_->memory(); }
+  void recall(const std::vector<uint64_t>& memory) override {
+    terms_->recall(memory);
+    fresh_ = false;
+  }
+
+ private:
+  // The rounds, one after another: none begins before all particles have finished the one before it.
+  void evaluate(bool keeps) const {
+    terms_->begin(x_);
+    const size_t parts = (x_.size() + kRows - 1) / kRows;
+    for (size_t round = 0; round < rounds_.declaration().rounds.size(); ++round)
+      for_each_part(parts, options_.threads, [&](size_t part, int) {
+        const size_t begin = part * kRows, end = std::min(begin + kRows, x_.size());
+        terms_->pair(round, begin, end, keeps);
+        terms_->finish(round, begin, end);
+      });
+    fresh_ = true;
+  }
+  void refresh() const {
+    if (!fresh_) evaluate(false);
+  }
+
+  // v += a * kick with imposed velocities; then u and x by v * drift.
+  void move(double kick, double drift) {
+    const std::vector<Vec3>& f = terms_->force();
+    for (size_t i = 0; i < x_.size(); ++i) {
+      const ParticleType& type = rule_.types[type_[i]];
+      Vec3 force = f[i];
+      if (type.pd) force -= type.kp * u_[i] + type.kd * (v_[i] - type.velocity);
+      const Vec3 a = force / rule_.mass_of(type_[i]) + type.gravity;
+      for (int axis = 0; axis < 3; ++axis)
+        v_[i][axis] = type.imposed[axis] ? type.velocity[axis] : v_[i][axis] + a[axis] * kick;
+      fastest_ = std::max(fastest_, v_[i].cwiseAbs().maxCoeff());
+      if (type.pd) u_[i] += (v_[i] - type.velocity) * drift;
+      x_[i] += v_[i] * drift;
+    }
+  }
+
+  const Rule rule_;
+  const RealOptions options_;
+  std::vector<Vec3> x_, v_, u_;
+  std::vector<uint8_t> type_;
+  const RoundsRule& rounds_;  // of rule_
+  std::unique_ptr<RoundsTerms> terms_;
+  mutable bool fresh_ = false;  // the terms are those of x_
+  double fastest_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<RealEngine> make_rounds_engine(const Rule& rule, const Body& body, const Periodic& periodic,
+                                               const RealOptions& options) {
+  const std::string name = rounds_of(rule)->declaration().name;
+  if (options.precision == Precision::float32)
+    throw InputError(fmt::format("the rule '{}' runs in doubles: --precision float is not for it", name));
+  if (options.order_seed != 0) throw InputError(fmt::format("the rule '{}' sums in one order, by id", name));
+  if (rule.damping.coefficient > 0)
+    throw InputError(fmt::format("the rule '{}' has no damping by pairs", name), "leave [damping] out");
+  return std::make_unique<RoundsEngine>(rule, body, periodic, options);
+}
+
+}  // namespace cuboct

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "model/rules/rounds_rule.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "model/base/error.h"
+
+namespace cuboct {
+namespace {
+
+[[noreturn]] void refuse(const RoundsRule& rule, const std::string& who) {
+  throw InputError(fmt::format("the rule '{}' has {} rounds, and {} knows the pair law alone",
+                               rule.declaration().name, rule.declaration().rounds.size(), who),
+                   "'cuboct run' with the reference engine runs it");
+}
+
+class RoundsLaw final : public PairLaw {
+ public:
+  RoundsLaw(double reach, std::shared_ptr<const RoundsRule> rule) : reach_(reach), rule_(std::move(rule)) {}
+  double force(double) const override { return none(); }
+  double energy(double) const override { return none(); }
+  double slope(double) const override { return none(); }
+  double cutoff() const override { return reach_; }
+  double core() const override { return reach_ / 1000; }
+  const RoundsRule* rule() const { return rule_.get(); }
+
+ private:
+  // Who asks for a pair force would take the body for one without any.
+  double none() const {
+    if (rule_ != nullptr) refuse(*rule_, "what is asked for");
+    return 0;
+  }
+
+  double reach_;
+  std::shared_ptr<const RoundsRule> rule_;
+};
+
+}  // namespace
+
+std::shared_ptr<const PairLaw> rounds_law(double reach, std::shared_ptr<const RoundsRule> rule) {
+  return std::make_shared<RoundsLaw>(reach, std::move(rule));
+}
+
+const RoundsRule* rounds_of(const Rule& rule) {
+  const auto* law = dynamic_cast<const RoundsLaw*>(rule.law.get());
+  return law == nullptr ? nullptr : law->rule();
+}
+
+void refuse_rounds(const Rule& rule, const std::string& who) {
+  if (const RoundsRule* rounds = rounds_of(rule)) refuse(*rounds, who);
+}
+
+}  // namespace cuboct

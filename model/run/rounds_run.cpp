@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "model/run/rounds_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "model/analysis/body_reading.h"
+#include "model/base/error.h"
+#include "model/real/rounds_engine.h"
+#include "model/run/reference_engine.h"
+
+namespace cuboct {
+namespace {
+
+// The displacements from anchors that the rule counts, where the body has none yet.
+Body anchored(const Scene& scene, Body body) {
+  const bool pd = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
+  if (pd && body.u.empty()) body.u.assign(body.size(), Vec3::Zero());
+  return body;
+}
+
+// Bonds count from the body as packed, wherever it is now.
+std::unique_ptr<RealEngine> engine_of(const Scene& scene, const Body& now, const RealOptions& options,
+                                      const std::vector<uint64_t>& bonds) {
+  Body packed = now;
+  packed.x = scene.packing().x;
+  auto engine = make_rounds_engine(scene.rule, packed, scene.periodic, options);
+  engine->place(now);
+  if (!bonds.empty()) engine->recall(bonds);
+  return engine;
+}
+
+}  // namespace
+
+RoundsRun::RoundsRun(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge,
+                     uint64_t step, const std::vector<uint64_t>& bonds)
+    : scene_(scene),
+      options_(std::make_unique<RealOptions>(options)),
+      cell_edge_(cell_edge),
+      step_(step),
+      body_(anchored(scene, body)),
+      engine_(engine_of(scene, body_, options, bonds)) {}
+RoundsRun::~RoundsRun() = default;
+
+void RoundsRun::advance(uint64_t steps, std::vector<uint64_t>*) {
+  for (; steps > 0; --steps) {
+    try {
+      engine_->step(step_);
+    } catch (const std::runtime_error& error) {
+      throw StepError({Fault::none, step_, 0, 0, 0, error.what()});
+    }
+    ++step_;
+    stale_ = true;
+  }
+}
+
+const Body& RoundsRun::body() {
+  if (stale_) engine_->read(body_);
+  stale_ = false;
+  return body_;
+}
+
+uint64_t RoundsRun::hash() { throw std::logic_error("states in real numbers have no hash"); }
+
+RunState RoundsRun::frame(bool forces) {
+  const Body& now = body();
+  return RealFrame{step_, now.x, now.v, forces ? engine_->forces() : std::vector<Vec3>(), now.u};
+}
+
+Reading RoundsRun::read(const Asked& asked) {
+  const bool half_step = options_->integrator == Integrator::semi_implicit_euler;
+  const double late = half_step ? scene_.rule.dt / 2 : 0;
+  const Body& now = body();
+  const std::vector<Vec3> force = engine_->forces();
+  Reading reading = read_body(scene_.rule, now, force, late, asked);
+  reading.step = step_;
+  if (!asked.energies) return reading;
+  reading.energies.potential = engine_->terms()->energy();
+  if (asked.watch) asked.watch->see(step_, now, force, reading.energies);
+  if (asked.volume > 0)
+    for (size_t i = 0; i < now.size(); ++i) reading.stress += engine_->terms()->stress(i, asked.volume);
+  return reading;
+}
+
+Momentum RoundsRun::momentum() {
+  Vec3 sum = Vec3::Zero();
+  const Body& now = body();
+  for (size_t i = 0; i < now.size(); ++i) sum += scene_.rule.mass_of(now.type[i]) * now.v[i];
+  return {{}, sum};
+}
+
+double RoundsRun::largest_speed() { return engine_->largest_speed() * scene_.rule.dt / cell_edge_; }
+
+Counters RoundsRun::counters() {
+  Counters counters{{"threads", options_->threads},
+                    {"bonds", static_cast<double>(engine_->terms()->bonds())}};
+  double damaged = 0, most = 0;
+  for (size_t i = 0; i < body_.size(); ++i) {
+    const double damage = engine_->terms()->damage(i);
+    damaged += damage, most = std::max(most, damage);
+  }
+  counters.emplace_back("mean_damage", damaged / static_cast<double>(body_.size()));
+  counters.emplace_back("largest_damage", most);
+  return counters;
+}
+
+Notes RoundsRun::notes() {
+  return {{"precision", "double"},
+          {"integrator",
+           options_->integrator == Integrator::velocity_verlet ? "velocity Verlet" : "semi-implicit Euler"},
+          {"rule", rounds_of(scene_.rule)->declaration().name}};
+}
+
+EngineMemory RoundsRun::memory() { return {{static_cast<uint64_t>(options_->precision)}, engine_->memory()}; }
+
+EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions& options, double cell_edge) {
+  EngineKind kind;
+  kind.name = "reference";
+  kind.particles = start.size();
+  kind.fixed = kind.keeps_state = false;
+  kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
+  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
+  kind.saves = options.integrator == Integrator::semi_implicit_euler;
+  kind.make = [&scene, &start, options, cell_edge](CheckpointReader* from, bool) {
+    if (!from) return std::make_unique<RoundsRun>(scene, start, options, cell_edge);
+    return std::make_unique<RoundsRun>(scene, saved_body(*from, start, options.precision), options, cell_edge,
+                                       from->head().step, from->head().engine.own);
+  };
+  return kind;
+}
+
+}  // namespace cuboct

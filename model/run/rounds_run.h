@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// A rule of several rounds behind the interface of all engines.
+#pragma once
+
+#include <memory>
+
+#include "model/run/engine.h"
+#include "model/run/record.h"
+#include "model/scene/scene.h"
+
+namespace cuboct {
+
+class RealEngine;
+struct RealOptions;
+
+class RoundsRun : public Engine {
+ public:
+  // Keeps a reference to `scene`, whose rule has rounds. `cell_edge`: m, in which speeds are told. `step`,
+  // `bonds`: of `body`, and what its bonds kept then; empty: as packed. InputError where the body does not
+  // fit the rule.
+  RoundsRun(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge,
+            uint64_t step = 0, const std::vector<uint64_t>& bonds = {});
+  ~RoundsRun() override;
+
+  uint64_t step_count() const override { return step_; }
+  void advance(uint64_t steps, std::vector<uint64_t>*) override;
+  uint64_t hash() override;
+  RunState frame(bool forces) override;
+  Reading read(const Asked& asked) override;
+  Momentum momentum() override;
+  double largest_speed() override;
+  Counters counters() override;
+  Notes notes() override;
+  const Body* saved_body() override { return &body(); }
+  EngineMemory memory() override;
+
+ private:
+  const Body& body();
+
+  const Scene& scene_;
+  std::unique_ptr<RealOptions> options_;
+  double cell_edge_;
+  uint64_t step_;
+  Body body_;
+  bool stale_ = false;
+  std::unique_ptr<RealEngine> engine_;
+};
+
+// From `start` instead of the scene's body.
+EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions& options, double cell_edge);
+
+}  // namespace cuboct

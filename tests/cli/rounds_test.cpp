@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// Scenes with [rule] as a user meets them: `check`, `run` and `report`, and every command that knows pairs
+// alone.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "model/base/json.h"
+#include "tests/cli/shell.h"
+
+namespace cuboct::test {
+namespace {
+
+std::string scene_with(const std::string& rule, const std::string& more = "") {
+  return "density = \"2440 kg/m^3\"\npacking = { pitch = \"1 mm\" }\n"
+         "geometry = { shape = \"box\", min = \"[0, 0, 0] mm\", max = \"[8, 8, 4] mm\" }\n[rule]\n" +
+         rule + more + "[run]\ndt = \"auto\"\nsteps = 400\n";
+}
+
+const std::string kGlass = "kind = \"lps\"\nyoungs_modulus = \"72 GPa\"\npoissons_ratio = 0.22\n";
+const std::string kBreaks = "fracture_energy = \"3.8 J/m^2\"\n";
+const std::string kPulled =
+    "[[velocity]]\nregion = { shape = \"half_space\", point = \"[0, 4.1, 0] mm\", normal = \"y\" }\n"
+    "uniform = \"[0, 40, 0] m/s\"\n";
+
+class RoundsTest : public testing::Test {
+ protected:
+  std::string scene(const std::string& text) const {
+    std::ofstream(bench_.path("scene.toml")) << text;
+    return bench_.path("scene.toml");
+  }
+  const Bench bench_{false};
+};
+
+TEST_F(RoundsTest, CheckTellsTheRule) {
+  const Answer answer = bench_.cuboct({"check", scene(scene_with(kGlass + kBreaks))});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  for (const char* part : {"dilatation", "round", "critical stretch", "particle-steps"})
+    EXPECT_NE(answer.out.find(part), std::string::npos) << part << "\n" << answer.out;
+}
+
+// Pulled apart at 40 m/s the block breaks; the reference engine is taken without being named.
+TEST_F(RoundsTest, RunBreaksAndReports) {
+  const std::string out = bench_.path("run");
+  const Answer answer =
+      bench_.cuboct({"run", scene(scene_with(kGlass + kBreaks, kPulled)), "--out", out, "--json"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const Json summary = Json::parse(answer.out);
+  EXPECT_EQ(summary["engine"]["value"], "reference");
+  EXPECT_GT(summary["largest_damage"]["value"].get<double>(), 0.5);
+  EXPECT_LT(summary["mean_damage"]["value"].get<double>(), summary["largest_damage"]["value"].get<double>());
+  const Answer report = bench_.cuboct({"report", out});
+  EXPECT_EQ(report.code, 0) << report.err;
+  const Answer whole = bench_.cuboct({"run", scene(scene_with(kGlass, kPulled)), "--json"});
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  EXPECT_EQ(Json::parse(whole.out)["largest_damage"]["value"], 0);
+}
+
+TEST_F(RoundsTest, WrongInputHasItsPlace) {
+  const auto refused = [&](const std::string& text, const std::string& place, const std::string& what) {
+    const std::string path = scene(text);
+    const Answer answer = bench_.cuboct({"check", path});
+    EXPECT_EQ(answer.code, 2) << answer.out;
+    EXPECT_TRUE(answer.err.starts_with(path + place)) << answer.err;
+    EXPECT_NE(answer.err.find(what), std::string::npos) << answer.err;
+  };
+  refused(scene_with("kind = \"lps\"\nyoungs_modulus = \"72 GPa\"\n"), ":4:1:", "poissons_ratio");
+  refused(scene_with(kGlass + "horizon = \"-1 mm\"\n"), ":8:", "horizon");
+  refused(scene_with("kind = \"lsp\"\n"), ":5:", "lps");
+  refused(scene_with(kGlass,
+                     "[[probe]]\nname = \"tip\"\nkind = \"crack\"\naxis = \"x\"\nregion = { shape = "
+                     "\"sphere\", radius = \"9 mm\" }\n"),
+          ":10:", "counts the bonds of a pair law");
+}
+
+// No command takes the rule for a law without force.
+TEST_F(RoundsTest, WhatKnowsPairsAloneRefuses) {
+  const std::string path = scene(scene_with(kGlass));
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{"run", path, "--engine", "lattice"},
+                                             {"run", path, "--engine", "golden"},
+                                             {"check", path, "--machine"},
+                                             {"crosscheck", path},
+                                             {"energy", path, "--technology", "45nm"},
+                                             {"elastic", path},
+                                             {"stability", path},
+                                             {"emit", path, "--out", bench_.path("rtl")}}) {
+    const Answer answer = bench_.cuboct(command);
+    EXPECT_EQ(answer.code, 2) << command[0] << answer.out << answer.err;
+    EXPECT_NE(answer.err.find("knows the pair law alone"), std::string::npos) << command[0] << answer.err;
+    EXPECT_NE(answer.err.find("reference engine runs it"), std::string::npos) << command[0] << answer.err;
+  }
+}
+
+}  // namespace
+}  // namespace cuboct::test
