@@ -102,9 +102,12 @@ void add_looser(Items& items, const Scene& scene, const Plan& plan) {
                 words.particle_bits, widths.difference_frac, widths.strength_bits, widths.velocity_bits));
 }
 
+Items physics(const Loaded& loaded);
+
 }  // namespace
 
 Items resolve(const Loaded& loaded) {
+  if (rounds_of(loaded.scene.rule) != nullptr) return physics(loaded);
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
   const FixedRule& rule = plan.rule;
@@ -247,8 +250,7 @@ void add_check(CLI::App& app, int&) {
   command->callback([options] {
     const Items stages = stages_in(options->input);
     const Loaded loaded = options->machine ? load(options->input) : load_any(options->input);
-    const bool whole = options->machine || (options->answer.json && rounds_of(loaded.scene.rule) == nullptr);
-    Items items = whole ? resolve(loaded) : physics(loaded);
+    Items items = options->answer.json || options->machine ? resolve(loaded) : physics(loaded);
     for (const Items::Item& stage : stages.all()) items.add(stage.name, stage.text);
     options->answer.close(items);
   });

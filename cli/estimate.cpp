@@ -201,7 +201,7 @@ void check_workers(int threads, int ranks, const Plan& plan) {
   const bool elsewhere =
       set("SLURM_JOB_ID") || set("PBS_JOBID") || set("LSB_JOBID") || set("OMPI_MCA_orte_default_hostfile");
   const auto nodes = static_cast<int>(std::min<uint32_t>(plan.nodes(), 1 << 30));  // a rank has whole ones
-  if (ranks <= nodes && (ranks <= most || elsewhere)) return;
+  if (ranks <= 1 || (ranks <= nodes && (ranks <= most || elsewhere))) return;
   throw InputError(
       fmt::format("--ranks {}: {}, and the scene {} node{}", ranks, here, nodes, nodes == 1 ? "" : "s"),
       fmt::format("--ranks {}", std::min(cores, nodes)));

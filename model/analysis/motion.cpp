@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "model/contract/law.h"
+#include "model/rules/rounds_rule.h"
 
 namespace cuboct {
 namespace {
@@ -23,6 +24,12 @@ const Body& planned_body(const Scene& scene) { return scene.body.exact ? scene.p
 // Of the bond between nearest neighbours at rest, and their distance.
 void read_bond(const Scene& scene, Motion& motion) {
   const Rule& rule = scene.whole ? *scene.whole : scene.rule;
+  if (const RoundsRule* rounds = rounds_of(rule)) {
+    motion.rest_distance = scene.pitch > 0 ? scene.pitch : rule.cutoff();
+    motion.bond_stiffness = rounds->stiffness();
+    motion.sound_speed = rounds->sound_speed(rule.mass);
+    return;
+  }
   const double rest = stiffest_rest_distance(*rule.law);
   motion.rest_distance = scene.pitch > 0 ? scene.pitch : rest > 0 ? rest : rule.cutoff();
   if (scene.pitch > 0 || rest > 0) motion.bond_stiffness = stiffest_bond(rule, motion.rest_distance);

@@ -149,6 +149,10 @@ double LpsRule::stable_time_step(double mass, double) const {
   return full_.empty() ? 0 : 2 / std::sqrt(stiffness() / mass);
 }
 
+double LpsRule::sound_speed(double mass) const {
+  return std::sqrt((material_.lambda + 2 * material_.mu) * material_.volume / mass);
+}
+
 std::vector<DeclarationLine> LpsRule::settings() const {
   const LpsMaterial& m = material_;
   std::vector<DeclarationLine> lines{

@@ -77,6 +77,7 @@ class LpsRule final : public RoundsRule {
   double bond_reach() const override;
   double stable_time_step(double mass, double pitch) const override;
   double stiffness() const override;
+  double sound_speed(double mass) const override;
   std::vector<DeclarationLine> settings() const override;
   std::unique_ptr<RoundsTerms> bind(const Body& body, const Periodic& periodic, int threads) const override;
 

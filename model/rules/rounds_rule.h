@@ -54,6 +54,8 @@ class RoundsRule {
   virtual double stable_time_step(double mass, double pitch) const = 0;
   // N/m, of the stiffest motion of a particle; 0 where it is not known.
   virtual double stiffness() const = 0;
+  // m/s, of the fastest long wave in matter of particles of this mass; 0 where it is not known.
+  virtual double sound_speed(double mass) const = 0;
   // What sets it apart from another, in SI units: for people, and for the hash of a run.
   virtual std::vector<DeclarationLine> settings() const = 0;
   // InputError where the body does not fit: a particle with too few bonds, ...

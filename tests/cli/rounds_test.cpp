@@ -5,8 +5,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
-#include "model/base/json.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -46,7 +46,7 @@ TEST_F(RoundsTest, RunBreaksAndReports) {
   const Answer answer =
       bench_.cuboct({"run", scene(scene_with(kGlass + kBreaks, kPulled)), "--out", out, "--json"});
   ASSERT_EQ(answer.code, 0) << answer.err;
-  const Json summary = Json::parse(answer.out);
+  const nlohmann::json summary = nlohmann::json::parse(answer.out);
   EXPECT_EQ(summary["engine"]["value"], "reference");
   EXPECT_GT(summary["largest_damage"]["value"].get<double>(), 0.5);
   EXPECT_LT(summary["mean_damage"]["value"].get<double>(), summary["largest_damage"]["value"].get<double>());
@@ -54,7 +54,7 @@ TEST_F(RoundsTest, RunBreaksAndReports) {
   EXPECT_EQ(report.code, 0) << report.err;
   const Answer whole = bench_.cuboct({"run", scene(scene_with(kGlass, kPulled)), "--json"});
   ASSERT_EQ(whole.code, 0) << whole.err;
-  EXPECT_EQ(Json::parse(whole.out)["largest_damage"]["value"], 0);
+  EXPECT_EQ(nlohmann::json::parse(whole.out)["largest_damage"]["value"], 0);
 }
 
 TEST_F(RoundsTest, WrongInputHasItsPlace) {
@@ -82,7 +82,7 @@ TEST_F(RoundsTest, WhatKnowsPairsAloneRefuses) {
                                              {"run", path, "--engine", "golden"},
                                              {"check", path, "--machine"},
                                              {"crosscheck", path},
-                                             {"energy", path, "--technology", "45nm"},
+                                             {"energy", path, "--technology", "cmos45"},
                                              {"elastic", path},
                                              {"stability", path},
                                              {"emit", path, "--out", bench_.path("rtl")}}) {
