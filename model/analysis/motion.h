@@ -13,8 +13,9 @@ struct Motion {
   double slowest_imposed = 0;  // m/s, the least speed but 0 of a type that is moved
   double gravity = 0;          // m/s^2, the least but 0
   double initial_speed = 0;    // m/s, root mean square of the particles that move freely at the start
-  double bond_stiffness = 0;   // N/m, of the bond between nearest neighbours, strongest materials; of a rule
-                              // of rounds that of a particle's stiffest motion; 0: unknown
+  // N/m, of the bond between nearest neighbours, strongest materials; of a rule of rounds that of a
+  // particle's stiffest motion; 0: unknown
+  double bond_stiffness = 0;
   double sound_speed = 0;    // m/s, of waves along a row of such bonds, or of the rule's fastest; 0: unknown
   double rest_distance = 0;  // m, between nearest neighbours
   // The largest strain that the scene makes, as far as the following tell; 0: nothing does. With c the speed
