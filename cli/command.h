@@ -25,6 +25,7 @@ void add_explore(CLI::App& app, int& exit_code);
 void add_fit(CLI::App& app, int& exit_code);
 void add_elastic(CLI::App& app, int& exit_code);
 void add_energy(CLI::App& app, int& exit_code);
+void add_boards(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 void add_picture(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);

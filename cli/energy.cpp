@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/answer.h"
+#include "cli/clock_option.h"
 #include "cli/command.h"
 #include "cli/energy_text.h"
 #include "cli/machine_cycles.h"
@@ -15,7 +16,6 @@
 #include "hw/memory_traffic.h"
 #include "model/base/interrupt.h"
 #include "model/base/spelling.h"
-#include "model/scene/units.h"
 
 namespace cuboct {
 namespace {
@@ -27,22 +27,6 @@ struct Options {
   std::optional<uint64_t> steps;  // empty: as many as take some seconds
   bool json = false;
 };
-
-double clock_of(const std::string& text) {
-  const auto refuse = [&](const std::string& why) {
-    throw InputError(fmt::format("--clock: '{}' {}", text, why), "--clock '100 MHz'");
-  };
-  try {
-    const ParsedQuantity q = parse_quantity(text);
-    if (q.list || q.dimension != Dimension{{0, 0, -1}}) refuse("is not a frequency");
-    constexpr double kLeast = 1, kMost = 1e12;
-    if (!(q.values[0] >= kLeast && q.values[0] <= kMost)) refuse("is not in [1 Hz, 1 THz]");
-    return q.values[0];
-  } catch (const UnitError& error) {
-    refuse("is not a frequency: " + error.message);
-  }
-  return 0;
-}
 
 EnergyMachine machine_of(const Options& options, const std::string& arch, double clock,
                          const std::vector<Technology>& technologies) {

@@ -29,6 +29,7 @@ constexpr std::array kEntries{
     Entry{"make the hardware", "emit", "cuboct emit scenes/lj_block.toml --out out/rtl"},
     Entry{"make the hardware", "synth", "cuboct synth out/rtl --target ecp5-25"},
     Entry{"make the hardware", "energy", "cuboct energy scenes/coupon.toml --technology cmos45"},
+    Entry{"make the hardware", "boards", "cuboct boards scenes/coupon.toml --nodes 64"},
     Entry{"study settings", "elastic", "cuboct elastic scenes/lj_block.toml"},
     Entry{"study settings", "explore", "cuboct explore scenes/studies/block.toml"},
     Entry{"study settings", "fit", "cuboct fit scenes/studies/fit_bar.toml"},

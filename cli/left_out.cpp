@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "cli/boards.h"
 #include "cli/command.h"
 #include "cli/emit.h"
 #include "model/base/error.h"
@@ -42,6 +43,9 @@ void add_synth(CLI::App& app, int&) { add_left_out(app, "synth", "synthesis", "C
 void emit_fitted(const Input&, const std::string&, const std::string&, uint64_t, const BoardChoice&,
                  const Answer&) {
   refuse("emit --fit", "synthesis", "CUBOCT_SYNTH");
+}
+DeviceRoom device_room(const Plan&, const std::string&) {
+  refuse("boards --device", "synthesis", "CUBOCT_SYNTH");
 }
 void check_board(const Input&, const Plan&, const State&, const BoardChoice&) {
   fmt::print(stderr, "note: the fit was not checked: this cuboct was built without synthesis\n");

@@ -92,6 +92,7 @@ int main_of(int argc, char** argv) {
   add_emit(app, exit_code);
   add_synth(app, exit_code);
   add_energy(app, exit_code);
+  add_boards(app, exit_code);
   add_elastic(app, exit_code);
   add_multiscale(app, exit_code);
   add_explore(app, exit_code);

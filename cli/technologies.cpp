@@ -9,6 +9,7 @@
 
 #include "model/base/error.h"
 #include "model/base/spelling.h"
+#include "model/scene/config.h"
 
 namespace cuboct {
 namespace {
@@ -47,6 +48,11 @@ std::vector<std::string> link_names() {
   std::vector<std::string> names;
   for (const LinkKind& link : links()) names.push_back(link.name);
   return names;
+}
+
+std::vector<BoardLinkKind> board_links(const std::string& file) {
+  return file.empty() ? parse_board_links(kBoardsTechnology, "technologies/boards.toml")
+                      : parse_board_links(read_config_text(file), file);
 }
 
 Technology with_link(Technology technology, const std::string& kind) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hw/board_link.h"
 #include "hw/technology.h"
 
 namespace cuboct {
@@ -16,6 +17,7 @@ extern const char kIce40Technology[];
 extern const char kEcp5Technology[];
 extern const char kLinksTechnology[];
 extern const char kMachinePeers[];  // study/machines/peers.h
+extern const char kBoardsTechnology[];
 
 // "cmos45", or a file's path: one that has a slash or ends in .toml. InputError with the nearest spelling.
 Technology technology_named(const std::string& name);
@@ -23,5 +25,7 @@ std::vector<std::string> technology_names();
 // "ucie". The technology, its links of this kind between chips.
 Technology with_link(Technology technology, const std::string& kind);
 std::vector<std::string> link_names();
+// Kinds of link between devices: of `file`, or those built in where it is empty.
+std::vector<BoardLinkKind> board_links(const std::string& file);
 
 }  // namespace cuboct
