@@ -192,7 +192,7 @@ int fit_study(const Options& options) {
 void add_fit(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("fit", "find the force law of a stress-strain curve, or a potential of a crystal");
+      app.add_subcommand("fit", "find the force law of a curve, or the potential of a crystal");
   command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
   command
       ->add_option("--out", options->out,
