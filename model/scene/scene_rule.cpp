@@ -126,15 +126,17 @@ std::vector<char> read_unbreakable(const ConfigTable& table, const Regions& regi
   return kept;
 }
 
-// What a rule of rounds has not, or not yet.
-void check_scene(const ConfigTable& root, const ConfigTable& table, const LpsMaterial& m,
-                 const Scene& scene) {
+// What a rule of rounds has not, or not yet: before the body is read, which asks the pair law for it.
+void refuse_pairs(const ConfigTable& root) {
   if (const auto symmetry = root.find("symmetry"))
     symmetry->fail("planes of symmetry serve the pair law alone", "a whole body, with constraints");
   if (const auto damping = root.find("damping"))
     damping->fail("damping by pairs serves the pair law alone",
                   "static = { } in [run] brings a body to rest without it");
   if (root.has("bond")) root.at("bond").fail("[[bond]] serves the pair law alone");
+}
+
+void check_body(const ConfigTable& root, const ConfigTable& table, const LpsMaterial& m, const Scene& scene) {
   for (const auto& row : scene.rule.strength)
     for (const double strength : row)
       if (strength != 1) root.fail("the materials' 'strength' serves the pair law alone");
@@ -167,7 +169,7 @@ RuleChoice read_lps(const ConfigTable& table, const PackingChoice* packing) {
   return {m.horizon * (1 + 1e-6),
           [=](const ConfigTable& root, const Regions& regions,
               const Scene& scene) -> std::shared_ptr<const RoundsRule> {
-            check_scene(root, table, m, scene);
+            check_body(root, table, m, scene);
             std::vector<char> kept = read_unbreakable(table, regions, scene, m.breaks());
             table.done();
             return placed(table, [&] { return std::make_shared<LpsRule>(m, full, slits, std::move(kept)); });
@@ -180,6 +182,7 @@ std::optional<RuleChoice> read_rule(const ConfigTable& root, const PackingChoice
   const auto table = root.table_at("rule");
   if (!table) return std::nullopt;
   root.not_both("law", "rule");
+  refuse_pairs(root);
   table->record_as("rule");
   if (packing != nullptr && packing->fcc.pitch == 0)
     table->fail("a rule of rounds needs a given pitch, not \"relaxed\"");

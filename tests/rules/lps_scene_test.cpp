@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "model/analysis/motion.h"
 #include "model/base/error.h"
 #include "model/real/reference.h"
 #include "model/rules/rounds_rule.h"
@@ -102,6 +103,14 @@ TEST(LpsScene, TheStableStepIsThatOfTheLattice) {
   EXPECT_TRUE(grows(1.2));
 }
 
+// What a scene says of its motion: long pressure waves run at sqrt(E (1 - nu)/((1 + nu)(1 - 2 nu) density)).
+TEST(LpsScene, WavesAreThoseOfTheSolid) {
+  const Motion motion = motion_of(parse_scene(scene_with("", kPulled), "plate"));
+  EXPECT_NEAR(motion.sound_speed, std::sqrt(72e9 * 0.78 / (1.22 * 0.56 * 2440)), 1e-6);
+  EXPECT_EQ(motion.rest_distance, 1e-3);
+  EXPECT_GT(motion.strain, 1e-3);
+}
+
 std::string refusal(const std::string& text) {
   try {
     parse_scene(text, "s.toml");
@@ -125,6 +134,7 @@ TEST(LpsScene, WhatCannotBeIsRefusedAtItsKey) {
   has(scene_with("horizont = 3\n"), "s.toml:8:1", "unknown key 'horizont'");
   has(scene_with("", "[law]\nkind = \"elastic\"\nstiffness = \"1 N/m\"\n"), "s.toml:", "'law'");
   has(scene_with("", "[damping]\ncoefficient = \"1 kg/s\"\n"), "s.toml:", "damping");
+  has(scene_with("", "[damping]\nratio = 0.1\n"), "s.toml:", "damping by pairs serves the pair law alone");
   has(scene_with("quadrature = \"fitted\"\nstrain = \"small\"\norder = 8\n"), "s.toml:10:9",
       "between 2 and 7");
   EXPECT_EQ(refusal(scene_with("")), "none");
