@@ -12,15 +12,16 @@ namespace cuboct::test {
 namespace {
 
 TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
-  expect_refusal({},
-                 "no command\n  hint: one of new, check, run, crosscheck, emit, synth, energy, elastic, "
-                 "multiscale, explore, "
-                 "fit, pitch, stability, bench, "
-                 "picture or report; see 'cuboct --help'\n");
+  expect_refusal(
+      {},
+      "no command\n  hint: one of new, check, run, crosscheck, emit, synth, energy, boards, elastic, "
+      "multiscale, explore, "
+      "fit, pitch, stability, bench, "
+      "picture or report; see 'cuboct --help'\n");
   expect_refusal({"chek"}, "unknown command 'chek'\n  hint: did you mean 'check'?\n");
   expect_refusal({"simulate"},
                  "unknown command 'simulate'\n  hint: one of new, check, run, crosscheck, emit, synth, "
-                 "energy, elastic, multiscale, explore, "
+                 "energy, boards, elastic, multiscale, explore, "
                  "fit, pitch, stability, bench, picture or report\n");
   expect_refusal({"--verbose"}, "unknown option '--verbose'\n  hint: see 'cuboct --help'\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--stepz", "3"},

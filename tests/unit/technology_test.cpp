@@ -81,7 +81,8 @@ TEST(Technology, AMemoryNeedsItsWordsAndAnExponent) {
 TEST(Technology, FilesOfTheTreeAreSound) {
   int files = 0, figures = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kTechnologies)) {
-    if (entry.path().stem() == "links" || entry.path().stem() == "machines") continue;
+    const std::string stem = entry.path().stem();
+    if (stem == "links" || stem == "machines" || stem == "boards") continue;  // of other kinds
     const Technology t = read_technology(entry.path().string());
     EXPECT_EQ(t.name, entry.path().stem().string());
     EXPECT_FALSE(t.title.empty()) << t.name;
