@@ -9,6 +9,7 @@ declare -A may=(
   [model/base]=""
   [model/contract]="model/base"
   [model/bond_order]="model/base"
+  [model/coarse]="model/base"
   [model/rules]="model/base model/contract"
   [model/solid]="model/base model/contract"
   [model/real]="model/base model/contract model/rules"
