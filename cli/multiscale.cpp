@@ -3,16 +3,21 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/multiscale_compare.h"
+#include "cli/multiscale_node.h"
 #include "cli/multiscale_text.h"
+#include "cli/technologies.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
 #include "model/base/progress.h"
 #include "model/base/resources.h"
+#include "model/base/spelling.h"
 #include "model/base/text.h"
 
 namespace cuboct {
@@ -20,33 +25,36 @@ namespace {
 
 struct Options {
   std::string study, out;
-  int threads = 0;
+  int threads = 0, fraction = SampleNodeOptions().fraction;
+  std::vector<std::string> technologies;  // of a node; empty: none is counted
+  std::string clock = "1 GHz";
   Answer answer;
 };
 
 // A line on a terminal, rewritten in place.
 class Status {
  public:
+  explicit Status(std::string before = {}) : before_(std::move(before)) {}
   ~Status() {
     if (shown_) fmt::print(stderr, "\r\x1b[K");
   }
   void say(size_t set, size_t sets, double part) {
     if (!stderr_is_terminal()) return;
-    fmt::print(stderr, "\r\x1b[Kset {} of {}: {:.0f} %", set + 1, sets, 100 * part);
+    fmt::print(stderr, "\r\x1b[K{}set {} of {}: {:.0f} %", before_, set + 1, sets, 100 * part);
     std::fflush(stderr);
     shown_ = true;
   }
 
  private:
+  std::string before_;
   bool shown_ = false;
 };
 
 std::vector<SetOutcome> run(const ElementStudy& study, const std::shared_ptr<const SampleMaterial>& material,
-                            const Options& options, const std::string& out) {
-  Status status;
+                            const Options& options, const std::string& progress, Status status = Status()) {
   ElementRunOptions how;
   how.threads = options.threads > 0 ? options.threads : usable_cores();
-  how.progress = out + "/progress";
+  how.progress = progress;
   how.see = [&](size_t set, double part) {
     status.say(set, study.sets, part);
     return !interrupted();
@@ -60,25 +68,67 @@ std::vector<SetOutcome> run(const ElementStudy& study, const std::shared_ptr<con
   }
 }
 
+void draw(const std::function<void()>& how) {
+  try {
+    how();
+  } catch (const InputError& error) {
+    fmt::print(stderr, "no pictures: {}\n", error.what());
+  }
+}
+
+void run_study(const ElementStudy& study, const std::shared_ptr<const SampleMaterial>& material,
+               const Options& options, const std::string& out) {
+  std::optional<NodeFindings> node;
+  if (!options.technologies.empty())
+    node = node_of(study, *material, options.fraction, options.clock, options.technologies);
+  const ElementFindings found{study, *material, run(study, material, options, out + "/progress")};
+  Items items = items_of(found);
+  if (node) add_node(items, *node), write_node(*node, out);
+  write_element_tables(found, out);
+  write_text(out + "/summary.json", items.json());
+  options.answer.close(items);
+  draw([&] { draw_elements(found, out); });
+}
+
+// Each point of the grid with the study's own file, and a file of progress of its own.
+void run_comparison(const ElementStudy& study, const Options& options, const std::string& out) {
+  std::map<std::pair<int, double>, std::shared_ptr<const SampleMaterial>> materials;
+  const auto point_of = [&](const ElementEffort& effort, const std::string& name, Status status) {
+    const ElementStudy one = read_element_study(options.study, effort);
+    auto& material = materials[{effort.cells, effort.force}];
+    if (material == nullptr) material = material_of(one);
+    return compared_point(effort, one, *material,
+                          run(one, material, options, out + "/progress." + name, std::move(status)));
+  };
+  const std::vector<ElementEffort> efforts = efforts_of(*study.compare);
+  Comparison compared{study.title, {}, {}};
+  for (size_t k = 0; k < efforts.size(); ++k)
+    compared.points.push_back(point_of(efforts[k], std::to_string(k + 1),
+                                       Status(fmt::format("point {} of {}, ", k + 1, efforts.size()))));
+  const auto at = std::ranges::find(efforts, finest(*study.compare));
+  compared.finest = compared.points[static_cast<size_t>(at - efforts.begin())];
+  const Items items = items_of(compared);
+  write_comparison(compared, out);
+  write_text(out + "/summary.json", items.json());
+  options.answer.close(items);
+  draw([&] { draw_comparison(compared, out); });
+}
+
 void multiscale(const Options& options) {
   const ElementStudy study = read_element_study(options.study);
   const std::string out = options.out.empty()
                               ? std::filesystem::path(options.study).stem().string() + ".multiscale"
                               : options.out;
+  if (study.compare && !options.technologies.empty())
+    throw InputError("--technology: a node is counted for one study, not for a comparison");
   const std::shared_ptr<const SampleMaterial> material = material_of(study);
   const DirectoryLock lock(out, "cuboct multiscale");
   check_writable(out + "/summary.json");
   catch_interrupts();
-  const ElementFindings found{study, *material, run(study, material, options, out)};
-  const Items items = items_of(found);
-  write_element_tables(found, out);
-  write_text(out + "/summary.json", items.json());
-  options.answer.close(items);
-  try {
-    draw_elements(found, out);
-  } catch (const InputError& error) {
-    fmt::print(stderr, "no pictures: {}\n", error.what());
-  }
+  if (study.compare)
+    run_comparison(study, options, out);
+  else
+    run_study(study, material, options, out);
   options.answer.say("directory {}\n", line_text(out));
 }
 
@@ -96,6 +146,17 @@ void add_multiscale(CLI::App& app, int& exit_code) {
   command->add_option("--threads", options->threads, "they change no bit; default: one per core")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
+  command
+      ->add_option("--technology", options->technologies,
+                   "also count a node for each element, in joules of these: " + list_of(technology_names()) +
+                       ", or files")
+      ->delimiter(',')
+      ->type_name("NAME");
+  command->add_option("--clock", options->clock, "of the node")->type_name("F")->capture_default_str();
+  command->add_option("--fraction", options->fraction, "bits behind the point of the node's numbers")
+      ->check(CLI::Range(10, 40))
+      ->type_name("BITS")
+      ->capture_default_str();
   options->answer.add_to(*command);
   command->callback([options, &exit_code] { multiscale(*options), exit_code = 0; });
 }

@@ -26,10 +26,24 @@ std::string spread_note(const SetMean& m, size_t sets, double scale, const std::
                      m.deviation / scale, unit.empty() ? "" : " " + unit);
 }
 
+// The stiffness of each shell, and how far the constants are from what was asked of them.
+void add_springs(Items& items, const SpringInput& input) {
+  std::string shells;
+  for (const ShellSprings::Shell& shell : input.springs.shells)
+    shells += fmt::format("{}{:.4g} eV/angstrom^2 at {:.4g} angstrom", shells.empty() ? "" : ", ",
+                          shell.stiffness, shell.rest);
+  items.add("springs", shells);
+  const auto miss = [](double have, double asked) { return 100 * (have / asked - 1); };
+  items.add("C12 off", miss(input.fit.c44, input.c12), "%",
+            fmt::format("{:.4g} GPa asked; under a pair law C44 is at most C12", input.c12 / 1e9));
+  items.add("C44 off", miss(input.fit.c44, input.c44), "%", fmt::format("{:.4g} GPa asked", input.c44 / 1e9));
+}
+
 void add_material(Items& items, const ElementFindings& found) {
   const SampleMaterial& m = found.material;
   const auto gpa = [](double value) { return value / 1e9; };
   items.add("potential", line_text(found.study.material.name));
+  if (found.study.material.springs) add_springs(items, *found.study.material.springs);
   items.add("sample", static_cast<uint64_t>(m.lattice.place.size()), "atoms");
   items.add("edge", m.edge(found.study.material.cells), "angstrom");
   items.add("energy", m.energy, "eV per atom");
@@ -84,8 +98,9 @@ void add_wave(Items& items, const ElementFindings& found) {
 
 void add_work(Items& items, const ElementFindings& found) {
   SampleWork work;
-  double seconds = 0;
-  for (const SetOutcome& set : found.sets) work.add(set.work), seconds += set.seconds;
+  double seconds = 0, processor = 0;
+  for (const SetOutcome& set : found.sets)
+    work.add(set.work), seconds += set.seconds, processor += set.processor;
   items.add("stress updates", work.updates);
   items.add("relaxations", work.relaxations, "",
             fmt::format("{:.3g} % of the updates, {:.3g} evaluations of forces each",
@@ -93,12 +108,15 @@ void add_work(Items& items, const ElementFindings& found) {
                             static_cast<double>(std::max<uint64_t>(work.updates, 1)),
                         static_cast<double>(work.evaluations) /
                             static_cast<double>(std::max<uint64_t>(work.relaxations, 1))));
+  items.add("atom steps", work.evaluations * found.material.lattice.place.size(), "",
+            "evaluations of forces times atoms of a sample");
   if (found.study.strain_tolerance > 0 && work.measured > 0)
     items.add(
         "stress error", std::sqrt(work.squared_error / static_cast<double>(work.measured)) / 1e6, "MPa",
         fmt::format("root mean square where relaxations ended a stretch without one; largest {:.2g} MPa",
                     work.largest_error / 1e6));
   items.add("time", seconds, "s");
+  items.add("processor time", processor, "s", "of all threads");
 }
 
 std::string block(const std::string& name, const std::string& rows) {

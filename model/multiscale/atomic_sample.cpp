@@ -92,10 +92,11 @@ double AtomicLattice::density() const {
          (std::abs(cell.determinant()) * kAngstrom * kAngstrom * kAngstrom);
 }
 
-AtomicLattice diamond_lattice(double edge, int cells, double mass) {
-  const std::array<Vec3, 8> basis{Vec3(0, 0, 0),       Vec3(0, .5, .5),     Vec3(.5, 0, .5),
+AtomicLattice crystal_lattice(Crystal crystal, double edge, int cells, double mass) {
+  const std::array<Vec3, 8> sites{Vec3(0, 0, 0),       Vec3(0, .5, .5),     Vec3(.5, 0, .5),
                                   Vec3(.5, .5, 0),     Vec3(.25, .25, .25), Vec3(.25, .75, .75),
                                   Vec3(.75, .25, .75), Vec3(.75, .75, .25)};
+  const std::span<const Vec3> basis(sites.data(), crystal == Crystal::fcc ? 4 : 8);
   AtomicLattice out{edge * cells * Mat3::Identity(), {}, mass};
   for (int k = 0; k < cells; ++k)
     for (int j = 0; j < cells; ++j)

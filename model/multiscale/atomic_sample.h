@@ -42,8 +42,11 @@ struct AtomicLattice {
   double density() const;  // kg/m^3
 };
 
-// cells^3 cubic cells of edge `edge` (angstrom) with 8 atoms each.
-AtomicLattice diamond_lattice(double edge, int cells, double mass);
+// Of diamond a cubic cell has 8 atoms, of FCC 4.
+enum class Crystal : uint8_t { diamond, fcc };
+
+// cells^3 cubic cells of edge `edge` (angstrom).
+AtomicLattice crystal_lattice(Crystal crystal, double edge, int cells, double mass);
 
 struct Relaxation {
   double force = 1e-6;   // eV/angstrom: no component of a force on an atom is larger at rest

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "model/base/error.h"
+#include "model/base/error_parts.h"
 #include "model/base/hash.h"
 #include "model/multiscale/mesh_file.h"
 #include "model/multiscale/tersoff_law.h"
@@ -19,7 +20,8 @@ namespace {
 constexpr double kElectronVolt = 1.602176634e-19;  // J
 constexpr double kAngstrom = 1e-10;                // m
 constexpr int64_t kMostCubes = 100, kMostSets = 1000;
-constexpr double kMostStrain = 0.2;
+constexpr double kMostStrain = 0.2, kMostTolerance = 0.01;
+constexpr int kMostCells = 4, kMostRefine = 16;
 
 uint64_t hash_of(const std::string& text, Hash hash = {}) {
   for (const char c : text) hash.add(c);
@@ -70,14 +72,43 @@ Tersoff read_potential(const ConfigTable& table, std::string& name) {
   return tersoff_set(name);
 }
 
+SpringInput read_springs(const ConfigTable& table, Crystal crystal, double edge) {
+  SpringInput out;
+  const auto constant = [&](const char* key) {
+    return table.number(key, quantity::pressure, Range::positive());
+  };
+  out.c11 = constant("C11"), out.c12 = constant("C12"), out.c44 = constant("C44");
+  table.done();
+  out.fit = cauchy_fit(out.c11, out.c12, out.c44);
+  try {
+    out.springs = springs_of(crystal, edge, out.fit);
+  } catch (const InputError& error) {
+    const ErrorParts parts = parts_of(error);
+    table.fail(parts.message, parts.hint);
+  }
+  return out;
+}
+
+double eV_per_angstrom(double force) { return force * kAngstrom / kElectronVolt; }
+
 MaterialInput read_material(const ConfigTable& table) {
   MaterialInput out;
-  out.law = tersoff_law(read_potential(table, out.name));
   out.guess = table.number("edge", quantity::length, Range::positive()) / kAngstrom;
+  if (const auto crystal = table.find("crystal"))
+    out.crystal = static_cast<Crystal>(crystal->choice("crystal", {"diamond", "fcc"}));
+  for (const char* other : {"potential", "file", "parameters"}) table.not_both("springs", other);
+  if (const auto springs = table.table_at("springs")) {
+    out.springs = read_springs(*springs, out.crystal, out.guess);
+    out.law = spring_law(out.springs->springs), out.name = "springs";
+  } else {
+    Tersoff tersoff = read_potential(table, out.name);
+    out.tersoff = tersoff.terms[0];
+    out.law = tersoff_law(std::move(tersoff));
+  }
   out.mass = table.number("mass", quantity::mass, Range::positive());
-  out.cells = static_cast<int>(table.integer_or("cells", 1, 4, 2));
-  out.force = table.number_or("force", quantity::force, 1e-6 * kElectronVolt / kAngstrom, Range::positive()) *
-              kAngstrom / kElectronVolt;
+  out.cells = static_cast<int>(table.integer_or("cells", 1, kMostCells, 2));
+  out.force = eV_per_angstrom(
+      table.number_or("force", quantity::force, 1e-6 * kElectronVolt / kAngstrom, Range::positive()));
   table.done();
   return out;
 }
@@ -93,8 +124,8 @@ std::array<int, 3> cubes_of(const ConfigTable& table) {
   return out;
 }
 
-ElementMesh read_box(const ConfigTable& table, int grain_cubes) {
-  const std::array<int, 3> cubes = cubes_of(table);
+ElementMesh read_box(const ConfigTable& table, int grain_cubes, int refine) {
+  std::array<int, 3> cubes = cubes_of(table);
   const ConfigValue size = table.at("size");
   const Vec3 extent = size.vector(quantity::length);
   if (!(extent.array() > 0).all()) size.fail("'size' must be positive along each axis");
@@ -104,10 +135,11 @@ ElementMesh read_box(const ConfigTable& table, int grain_cubes) {
       table.at("cubes").fail(fmt::format("along {}, which repeats, the number of cubes must be even, not {}",
                                          "xyz"[a], cubes[a]),
                              "the division into tetrahedra is mirrored in every second cube");
-  return box_mesh(cubes, extent, repeats, grain_cubes);
+  for (int& count : cubes) count *= refine;
+  return box_mesh(cubes, extent, repeats, grain_cubes * refine);
 }
 
-void read_mesh(ElementStudy& study, const ConfigTable& table, int grain_cubes) {
+void read_mesh(ElementStudy& study, const ConfigTable& table, int grain_cubes, int refine) {
   table.not_both("file", "cubes");
   if (const auto file = table.find("file")) {
     study.mesh_name = file->file();
@@ -118,7 +150,7 @@ void read_mesh(ElementStudy& study, const ConfigTable& table, int grain_cubes) {
     study.hash = hash_of(read_config_text(study.mesh_name), Hash().add(static_cast<int64_t>(study.hash)));
   } else {
     study.mesh_name = study.path;
-    study.mesh = read_box(table, grain_cubes);
+    study.mesh = read_box(table, grain_cubes, refine);
   }
   table.done();
 }
@@ -183,9 +215,70 @@ WaveInput read_wave(const ConfigTable& table, const ElementMesh& mesh) {
   return out;
 }
 
+std::vector<int> integers_of(const ConfigTable& table, const char* key, int most, int otherwise) {
+  const auto value = table.find(key);
+  if (!value) return {otherwise};
+  std::vector<int> out;
+  for (const ConfigValue& item : value->items()) out.push_back(static_cast<int>(item.integer(1, most)));
+  if (out.empty()) value->fail(fmt::format("'{}' has no value", key));
+  return out;
+}
+
+std::vector<double> numbers_of(const ConfigTable& table, const char* key, const Quantity& quantity,
+                               const Range& range, double otherwise) {
+  const auto value = table.find(key);
+  if (!value) return {otherwise};
+  std::vector<double> out = value->numbers(quantity, range);
+  if (out.empty()) value->fail(fmt::format("'{}' has no value", key));
+  return out;
+}
+
+CompareInput read_compare(const ConfigTable& table, const ElementStudy& study, bool box, int grain_cubes) {
+  CompareInput out;
+  out.cells = integers_of(table, "cells", kMostCells, study.material.cells);
+  out.force = numbers_of(table, "force", quantity::force, Range::positive(),
+                         study.material.force * kElectronVolt / kAngstrom);
+  for (double& force : out.force) force = eV_per_angstrom(force);
+  out.strain_tolerance = numbers_of(table, "strain_tolerance", quantity::number,
+                                    Range::between(0, kMostTolerance), study.strain_tolerance);
+  out.refine = integers_of(table, "refine", kMostRefine, 1);
+  if (const auto refine = table.find("refine")) {
+    if (!box) refine->fail("a mesh from a file has its elements: leave out 'refine'");
+    if (grain_cubes == 0 && !study.orientation)
+      refine->fail("elements that are grains each make another polycrystal when they are cut",
+                   "give grains.cubes = 1, or more");
+  }
+  table.done();
+  if (efforts_of(out).size() < 2) table.fail("one point alone compares with nothing");
+  return out;
+}
+
+void apply(const ElementEffort& effort, ElementStudy& study) {
+  study.material.cells = effort.cells, study.material.force = effort.force;
+  study.strain_tolerance = effort.strain_tolerance;
+  Hash hash;
+  hash.add(static_cast<int64_t>(study.hash)).add(int64_t{effort.cells}).add(int64_t{effort.refine});
+  study.hash = hash_of(fmt::format("{} {}", effort.force, effort.strain_tolerance), hash);
+}
+
 }  // namespace
 
-ElementStudy read_element_study(const std::string& path) {
+std::vector<ElementEffort> efforts_of(const CompareInput& compare) {
+  std::vector<ElementEffort> out;
+  for (const int refine : compare.refine)
+    for (const int cells : compare.cells)
+      for (const double force : compare.force)
+        for (const double tolerance : compare.strain_tolerance)
+          out.push_back({cells, force, tolerance, refine});
+  return out;
+}
+
+ElementEffort finest(const CompareInput& compare) {
+  return {std::ranges::max(compare.cells), std::ranges::min(compare.force),
+          std::ranges::min(compare.strain_tolerance), std::ranges::max(compare.refine)};
+}
+
+ElementStudy read_element_study(const std::string& path, const std::optional<ElementEffort>& effort) {
   ElementStudy out;
   out.path = path;
   const std::string text = read_config_text(path);
@@ -195,15 +288,18 @@ ElementStudy read_element_study(const std::string& path) {
   const auto table = [&](const char* key) { return root.at(key).table(); };
   out.material = read_material(table("material"));
   const int grain_cubes = root.has("grains") ? read_grains(out, table("grains")) : 0;
-  read_mesh(out, table("mesh"), grain_cubes);
+  read_mesh(out, table("mesh"), grain_cubes, effort ? effort->refine : 1);
   if (const auto samples = root.table_at("samples")) {
     out.strain_tolerance =
-        samples->number_or("strain_tolerance", quantity::number, 0, Range::between(0, 0.01));
+        samples->number_or("strain_tolerance", quantity::number, 0, Range::between(0, kMostTolerance));
     samples->done();
   }
   if (const auto stretch = root.table_at("stretch")) out.stretch = read_stretch(*stretch, out.mesh);
   if (const auto wave = root.table_at("wave")) out.wave = read_wave(*wave, out.mesh);
+  if (const auto compare = root.table_at("compare"))
+    out.compare = read_compare(*compare, out, root.at("mesh").table().has("cubes"), grain_cubes);
   root.done();
+  if (effort) apply(*effort, out);
   if (!out.stretch && !out.wave) root.fail("nothing to study: the file has neither [stretch] nor [wave]");
   check_mesh(out.mesh, out.mesh_name);
   return out;
@@ -212,10 +308,12 @@ ElementStudy read_element_study(const std::string& path) {
 std::shared_ptr<const SampleMaterial> material_of(const ElementStudy& study) {
   const MaterialInput& m = study.material;
   try {
-    return std::make_shared<const SampleMaterial>(diamond_material(m.law, m.guess, m.cells, m.mass, m.force));
+    return std::make_shared<const SampleMaterial>(
+        crystal_material(m.crystal, m.law, m.guess, m.cells, m.mass, m.force));
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}: {}", study.path, m.name, first_line(error.what())),
-                     "these parameters hold no stable lattice of diamond");
+                     fmt::format("these parameters hold no stable lattice of {}",
+                                 m.crystal == Crystal::fcc ? "FCC" : "diamond"));
   }
 }
 

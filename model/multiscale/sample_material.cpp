@@ -49,10 +49,9 @@ double find_edge(AtomicForces& forces, AtomicLattice lattice, int cells, double 
   for (double away = 0; away <= (kReach - 1) * guess; away += step)
     for (const double low : {guess + away, guess - away - step})
       if (pulls(low) <= 0 && pulls(low + step) > 0) return rest_edge(forces, lattice, cells, low, low + step);
-  throw InputError(
-      fmt::format("no edge of a diamond cell between {:.4g} and {:.4g} angstrom is without stress",
-                  guess / kReach, guess * kReach),
-      "the parameters of the potential hold no such lattice");
+  throw InputError(fmt::format("no edge of a cubic cell between {:.4g} and {:.4g} angstrom is without stress",
+                               guess / kReach, guess * kReach),
+                   "the parameters of the potential hold no such lattice");
 }
 
 Eigen::VectorXd eigenvalues_of(AtomicForces& forces, const AtomicLattice& lattice) {
@@ -118,13 +117,13 @@ void check_vibrations(const Eigen::VectorXd& stiffness) {
 
 }  // namespace
 
-SampleMaterial diamond_material(std::shared_ptr<const AtomicLaw> law, double guess, int cells, double mass,
-                                double force) {
+SampleMaterial crystal_material(Crystal crystal, std::shared_ptr<const AtomicLaw> law, double guess,
+                                int cells, double mass, double force) {
   SampleMaterial out;
   const std::unique_ptr<AtomicForces> forces = law->forces();
   out.law = std::move(law);
-  out.lattice = diamond_lattice(guess, cells, mass);
-  out.lattice = diamond_lattice(find_edge(*forces, out.lattice, cells, guess), cells, mass);
+  out.lattice = crystal_lattice(crystal, guess, cells, mass);
+  out.lattice = crystal_lattice(crystal, find_edge(*forces, out.lattice, cells, guess), cells, mass);
   const Eigen::VectorXd stiffness = eigenvalues_of(*forces, out.lattice);
   check_vibrations(stiffness);
   out.softest = stiffness[3];

@@ -22,11 +22,11 @@ struct SampleMaterial {
   double edge(int cells) const { return lattice.cell(0, 0) / cells; }  // angstrom
 };
 
-// The diamond sample of cells^3 cubic cells whose stress is 0, its edge within a factor of 1.2 of `guess`
+// The sample of cells^3 cubic cells whose stress is 0, its edge within a factor of 1.2 of `guess`
 // (angstrom). `force`: of Relaxation. Refused by InputError: a law without such an edge, one under which the
 // lattice is no minimum (a vibration of the sample is not restored, the constants are not positive definite).
-SampleMaterial diamond_material(std::shared_ptr<const AtomicLaw> law, double guess, int cells, double mass,
-                                double force);
+SampleMaterial crystal_material(Crystal crystal, std::shared_ptr<const AtomicLaw> law, double guess,
+                                int cells, double mass, double force);
 
 // Symmetric: half of (F^T F - 1), Green's strain of a deformation gradient.
 Mat3 green_strain(const Mat3& gradient);

@@ -12,7 +12,7 @@
 namespace cuboct {
 namespace {
 
-constexpr uint64_t kLayout = 0x6375626f'656c6d31;  // changes with what is saved
+constexpr uint64_t kLayout = 0x6375626f'656c6d32;  // changes with what is saved
 
 // The same walk over all members writes and reads.
 class Out {
@@ -107,7 +107,7 @@ void visit(File& file, auto& outcome) requires requires {
 }
 {
   walk(file, outcome.stretch, outcome.moduli.youngs, outcome.moduli.poisson, outcome.wave, outcome.work,
-       outcome.seconds);
+       outcome.seconds, outcome.processor);
 }
 template <class File>
 void visit(File& file, auto& sample) requires requires {

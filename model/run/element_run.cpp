@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "model/multiscale/element_stiffness.h"
 #include "model/run/element_progress.h"
@@ -19,6 +20,12 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 // A set of grains, from where its progress is to its end.
 class SetRun {
  public:
@@ -29,7 +36,7 @@ class SetRun {
   void run() {
     if (study_.stretch && !now_.waving) stretch();
     if (study_.wave) wave();
-    now_.outcome.seconds += seconds_since(began_);
+    count_time();
     file_.done.push_back(std::move(now_.outcome));
     now_ = {};
     save();
@@ -107,7 +114,9 @@ class SetRun {
   // The front is followed from where the whole pulse has come in to where its reflection from the end is not
   // felt yet.
   void finish(const WaveSlices& slices, double pulse, WaveOutcome& out) const {
-    out.front = front_of(slices, now_.history, out.dt, pulse, slices.length() - pulse);
+    // A slice may lie on an end of that stretch: no rounding is to leave it out.
+    const double edge = 1e-6 * slices.width();
+    out.front = front_of(slices, now_.history, out.dt, pulse - edge, slices.length() - pulse + edge);
     out.speed = speed_of(out.front);
     double most = 0;
     for (const auto& row : now_.history)
@@ -138,11 +147,16 @@ class SetRun {
     if (!options_.progress.empty()) {
       take(body);
       rest();
-      now_.outcome.seconds += seconds_since(began_);
-      began_ = Clock::now();
+      count_time();
       save();
     }
     if (stops) throw ElementRunStopped();
+  }
+
+  void count_time() {
+    now_.outcome.seconds += seconds_since(began_);
+    now_.outcome.processor += processor_seconds() - processor_began_;
+    began_ = Clock::now(), processor_began_ = processor_seconds();
   }
 
   void save() {
@@ -156,6 +170,7 @@ class SetRun {
   ElementProgressFile& file_;
   ElementProgress& now_;
   Clock::time_point began_ = Clock::now(), saved_ = began_;
+  double processor_began_ = processor_seconds();
 };
 
 }  // namespace

@@ -32,7 +32,8 @@ struct SetOutcome {
   Moduli moduli;
   WaveOutcome wave;
   SampleWork work;
-  double seconds = 0;  // of the wall's clock
+  double seconds = 0;    // of the wall's clock
+  double processor = 0;  // s, of all threads of this process
 };
 
 // Where the set at hand is.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tests/cli/shell.h"
 
@@ -45,6 +46,53 @@ TEST(Multiscale, PressureWaveThroughAPlateHasItsSpeed) {
   EXPECT_GT(std::filesystem::file_size(bench.path("silicon_plate/velocity.png")), 2000U);
   // A second time it is done already.
   EXPECT_EQ(found_by(bench, "silicon_plate"), found);
+}
+
+const std::string kSmall =
+    "[material]\npotential = \"si_multiscale\"\nedge = \"5.43 angstrom\"\nmass = \"28.0855 u\"\ncells = 1\n"
+    "[mesh]\ncubes = [2, 1, 1]\nsize = \"[2, 1, 1] um\"\nrepeats = \"x\"\n[grains]\ncubes = 1\n"
+    "[stretch]\naxis = \"x\"\nstrains = [0.001, 0.002]\n";
+
+// Of two meshes and two tolerances the finer mesh without a tolerance is what others are told against.
+TEST(Multiscale, ComparesAccuracyWithCost) {
+  const Bench bench(false);
+  std::ofstream(bench.path("c.toml"))
+      << kSmall << "[compare]\nrefine = [1, 2]\nstrain_tolerance = [0, 1e-3]\n";
+  const std::vector<std::string> command{"multiscale", bench.path("c.toml"), "--out", bench.path("c"),
+                                         "--json"};
+  const Answer answer = bench.cuboct(command);
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const Json points = Json::parse(answer.out)["points"]["value"];
+  ASSERT_EQ(points.size(), 4U);
+  EXPECT_EQ(points[2]["modulus_error"].get<double>(), 0);
+  EXPECT_GT(std::abs(points[0]["modulus_error"].get<double>()), 1e-4);
+  EXPECT_GT(points[2]["atom_steps"].get<uint64_t>(), 5 * points[0]["atom_steps"].get<uint64_t>());
+  EXPECT_LT(points[3]["atom_steps"].get<uint64_t>(), points[2]["atom_steps"].get<uint64_t>());
+  EXPECT_NEAR(points[2]["modulus"].get<double>(), 160, 0.05 * 160);
+  for (const char* file : {"c/compare.tsv", "c/compare.svg"})
+    EXPECT_GT(std::filesystem::file_size(bench.path(file)), 200U) << file;
+  // All points are done: a second time says the same, times included.
+  EXPECT_EQ(bench.cuboct(command).out, answer.out);
+}
+
+TEST(Multiscale, CountsANodeForEachElement) {
+  const Bench bench(false);
+  std::ofstream(bench.path("n.toml")) << kSmall;
+  const Answer answer = bench.cuboct(
+      {"multiscale", bench.path("n.toml"), "--out", bench.path("n"), "--json", "--technology", "cmos7,ecp5"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const Json found = Json::parse(answer.out);
+  EXPECT_LT(value(found, "node_cmos7_least"), value(found, "node_cmos7_most"));
+  EXPECT_EQ(found["node_ecp5"]["value"], "no figure");
+  EXPECT_TRUE(std::filesystem::exists(bench.path("n/node.tsv")));
+  std::ofstream(bench.path("s.toml"))
+      << std::regex_replace(kSmall, std::regex("potential = .*"),
+                            "springs = { C11 = \"165.6 GPa\", C12 = \"63.4 GPa\", C44 = \"78.1 GPa\" }");
+  const Answer springs =
+      bench.cuboct({"multiscale", bench.path("s.toml"), "--out", bench.path("s"), "--technology", "cmos7"});
+  EXPECT_EQ(springs.code, 2);
+  EXPECT_EQ(springs.err.find("--technology: a node is counted for Tersoff's potential alone"), 0U)
+      << springs.err;
 }
 
 std::string rod(const std::string& material, const std::string& peak) {

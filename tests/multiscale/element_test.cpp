@@ -20,7 +20,7 @@ constexpr double kMass = 28.0855 * 1.66053906660e-27;  // kg
 
 std::shared_ptr<const SampleMaterial> springs() {
   static const auto material = std::make_shared<const SampleMaterial>(
-      diamond_material(std::make_shared<test::Springs>(), 5.5, 2, kMass, 1e-9));
+      crystal_material(Crystal::diamond, std::make_shared<test::Springs>(), 5.5, 2, kMass, 1e-9));
   return material;
 }
 
@@ -251,7 +251,7 @@ TEST(ElementBody, StopsAtAnElementThatTurnsInsideOut) {
 TEST(SampleMaterial, RefusesUnstableParameters) {
   const auto law = std::make_shared<test::Springs>();
   law->next = -0.5;
-  EXPECT_THROW(diamond_material(law, 5.43, 2, kMass, 1e-9), InputError);
+  EXPECT_THROW(crystal_material(Crystal::diamond, law, 5.43, 2, kMass, 1e-9), InputError);
 }
 
 }  // namespace

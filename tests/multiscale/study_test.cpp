@@ -31,6 +31,12 @@ const std::string kRod =
     "[mesh]\ncubes = [12, 1, 1]\nsize = \"[12, 1, 1] um\"\n[samples]\nstrain_tolerance = 2e-5\n"
     "[wave]\nalong = \"x\"\npeak = \"10 MPa\"\npulse = \"0.3 ns\"\nsnapshots = \"[0.5, 1] ns\"\n";
 
+const std::string kSprings =
+    "crystal = \"fcc\"\nsprings = { C11 = \"160 GPa\", C12 = \"60 GPa\", C44 = \"80 GPa\" }";
+const std::string kCompare =
+    "[compare]\nrefine = [1, 2]\ncells = [1, 2]\nstrain_tolerance = [0, 1e-4]\n"
+    "force = [\"1e-4 eV/angstrom\", \"1e-6 eV/angstrom\"]\n";
+
 class Folder {
  public:
   Folder()
@@ -89,6 +95,51 @@ TEST(ElementStudy, SaysWhereAFileIsWrong) {
   EXPECT_NE(
       refusal(kMaterial + "[mesh]\ncubes = [1, 1, 1]\nsize = \"[1, 1, 1] um\"\n").find("nothing to study"),
       std::string::npos);
+}
+
+TEST(ElementStudy, RefusesComparisonsThatSayNothing) {
+  const std::string grains = changed(kBar, "sets = 2", "sets = 2\ncubes = 1");
+  EXPECT_EQ(refusal(grains + kCompare), "");
+  EXPECT_NE(refusal(kBar + kCompare)
+                .find("each make another polycrystal when they are cut\n"
+                      "  hint: give grains.cubes = 1, or more"),
+            std::string::npos);
+  EXPECT_NE(refusal(grains + "[compare]\ncells = [2]\n").find("one point alone compares with nothing"),
+            std::string::npos);
+  EXPECT_NE(refusal(grains + "[compare]\nrefine = [0]\n").find("study.toml:19:11: "), std::string::npos);
+  EXPECT_NE(refusal(changed(kBar, "potential", kSprings + "\npotential")).find("springs"), std::string::npos);
+  EXPECT_NE(refusal(changed(kBar, "potential = \"si_erhart_albe\"", changed(kSprings, "160", "100")))
+                .find("C11 is not above 2 C44\n"),
+            std::string::npos);
+}
+
+// The grid holds each combination once; a refined mesh has the same grains in the same places.
+TEST(ElementStudy, ComparesTheSameGrains) {
+  const Folder folder;
+  const std::string path =
+      folder.write("a.toml", changed(kBar, "sets = 2", "sets = 2\ncubes = 1") + kCompare);
+  const ElementStudy own = read_element_study(path);
+  const std::vector<ElementEffort> efforts = efforts_of(*own.compare);
+  ASSERT_EQ(efforts.size(), 16U);
+  EXPECT_EQ(std::ranges::count(efforts, finest(*own.compare)), 1);
+  EXPECT_EQ(finest(*own.compare).refine, 2);
+  std::set<uint64_t> hashes{own.hash};
+  for (const ElementEffort& effort : efforts) hashes.insert(read_element_study(path, effort).hash);
+  EXPECT_EQ(hashes.size(), 17U);
+  const ElementStudy fine = read_element_study(path, finest(*own.compare));
+  EXPECT_EQ(fine.material.cells, 2);
+  EXPECT_EQ(fine.strain_tolerance, 0);
+  ASSERT_EQ(fine.mesh.elements.size(), 8 * own.mesh.elements.size());
+  ASSERT_EQ(fine.mesh.grains(), own.mesh.grains());
+  const auto centres = [](const ElementMesh& mesh) {
+    std::vector<Vec3> sum(mesh.grains(), Vec3::Zero());
+    for (size_t e = 0; e < mesh.elements.size(); ++e)
+      for (const auto& corner : mesh.elements[e])
+        sum[mesh.grain[e]] += element_volume(mesh, e) / 4 * corner_place(corner, mesh.x, mesh.period);
+    return sum;
+  };
+  for (uint32_t g = 0; g < own.mesh.grains(); ++g)
+    EXPECT_LT((centres(own.mesh)[g] - centres(fine.mesh)[g]).norm(), 1e-6 * centres(own.mesh)[g].norm());
 }
 
 void expect_same(const SetOutcome& a, const SetOutcome& b) {
@@ -237,6 +288,9 @@ TEST(ElementStudy, PageNamesEveryKeyAndNoOther) {
   read_element_study(folder.write(
       "c.toml", changed(changed(kRod, "potential = \"si_erhart_albe\"", inline_set),
                         "cubes = [12, 1, 1]\nsize = \"[12, 1, 1] um\"", "file = \"c.msh\"\nunit = \"um\"")));
+  read_element_study(folder.write(
+      "d.toml", changed(changed(kBar, "potential = \"si_erhart_albe\"", kSprings), "sets = 2", "cubes = 1") +
+                    kCompare));
   record_config_keys(nullptr);
   std::ifstream in(CUBOCT_SOURCE_DIR "/docs/user/multiscale.md");
   std::set<std::string> named;
