@@ -273,19 +273,10 @@ module cuboct_datapath #(
     assign old_u        = '0;
   end
 
-  // Source 0 is pipe 0 or the update, which never speak in one cycle. A particle is in one cell, so the cell below its
-  // id changes no order.
-  logic [ForcePipes-1:0]          fault_valid;
-  logic [ForcePipes*4-1:0]        fault_code;
-  logic [ForcePipes*TellBits-1:0] fault_tell;
-  logic [ForcePipes*64-1:0]       fault_number;
-  for (genvar f = 0; f < ForcePipes; f++) begin : gen_fault
-    logic updates;
-    assign updates                            = (f == 0) && update_fault;
-    assign fault_valid[f]                     = updates || pipe_fault[f];
-    assign fault_code[f*4 +: 4]               = updates ? update_fault_code : pipe_fault_strength[f] ? 4'd2 : 4'd1;
-    assign fault_tell[f*TellBits +: TellBits] = updates ? update_fault_tell : kick_tell[f*TellBits +: TellBits];
-    assign fault_number[f*64 +: 64]           = updates ? update_fault_number : pipe_fault_number[f*64 +: 64];
+  // A particle is in one cell, so the cell below its id changes no order.
+  logic [ForcePipes*4-1:0] pipe_code;
+  for (genvar f = 0; f < ForcePipes; f++) begin : gen_code
+    assign pipe_code[f*4 +: 4] = pipe_fault_strength[f] ? 4'd2 : 4'd1;
   end
   logic                move_fault_q, move_full_q;
   logic [3:0]          move_code, move_code_q;
@@ -301,10 +292,11 @@ module cuboct_datapath #(
     move_tell_q <= move_tell_i;
   end
   cuboct_least_fault #(.Sources(ForcePipes), .IdBits(TellBits), .NumberBits(NumberBits)) u_fault (
-    .clk_i, .rst_ni, .clear_i(step_end_i), .valid_i(fault_valid), .code_i(fault_code), .id_i(fault_tell),
-    .number_i(fault_number), .move_valid_i(move_fault_q), .move_code_i(move_code_q), .move_id_i(move_tell_q),
-    .move_number_i(move_full_q ? {32'd0, Capacity} : 64'd0), .valid_o(fault_o), .code_o(fault_code_o),
-    .id_o(fault_tell_o), .number_o(fault_number_o)
+    .clk_i, .rst_ni, .clear_i(step_end_i), .valid_i(pipe_fault), .code_i(pipe_code), .id_i(kick_tell),
+    .number_i(pipe_fault_number), .update_valid_i(update_fault), .update_code_i(update_fault_code),
+    .update_id_i(update_fault_tell), .update_number_i(update_fault_number), .move_valid_i(move_fault_q),
+    .move_code_i(move_code_q), .move_id_i(move_tell_q), .move_number_i(move_full_q ? {32'd0, Capacity} : 64'd0),
+    .valid_o(fault_o), .code_o(fault_code_o), .id_o(fault_tell_o), .number_o(fault_number_o)
   );
 
   logic unused_fields;

@@ -1,43 +1,64 @@
 // SPDX-License-Identifier: MIT
-// Keeps the least fault of a step, by (code, id, number); number is signed, code 0 is none. What pipes and update say
-// is compared a cycle later. Migration speaks in the step's last cycle too, so what it says is shown at once: its codes
-// are above theirs and never fall within a step, so that its id alone is compared, and that with faults of the same
-// code.
+// Keeps the least fault of a step, by (code, id, number); number is signed, code 0 is none. What pipes say in one cycle
+// goes through a tree of registers, that halves it in each cycle; what the update says enters at its root, as it counts
+// only where no pipe spoke: its codes are above theirs. What the root has is compared with what is kept a cycle later.
+// Migration speaks in the step's last cycle too, so what it says is shown at once: its codes are above all others and
+// never fall within a step, so that its id alone is compared, and that with faults of the same code.
 module cuboct_least_fault #(
-  parameter int Sources    = 1,  // pipes, that may speak in one cycle; the update in place of the first; >= 1
+  parameter int Sources    = 1,  // pipes, that may speak in one cycle; >= 1
   parameter int IdBits     = 8,  // of an id, >= 1
   parameter int NumberBits = 64  // that hold every number, <= 64
 ) (
   input  logic                      clk_i,
   input  logic                      rst_ni,
-  input  logic                      clear_i,       // the step's last cycle: no source spoke in it or in the one before
-  input  logic [Sources-1:0]        valid_i,       // per source: a fault
-  input  logic [Sources*4-1:0]      code_i,        // 1 to 5
-  input  logic [Sources*IdBits-1:0] id_i,          // of the particle
-  input  logic [Sources*64-1:0]     number_i,      // signed
-  input  logic                      move_valid_i,  // a fault of migration
-  input  logic [3:0]                move_code_i,   // 6 to 11, none below an earlier one of the step
-  input  logic [IdBits-1:0]         move_id_i,     // of the particle
-  input  logic [63:0]               move_number_i, // one for each code, >= 0
-  output logic                      valid_o,       // with clear_i: there was one in the step
-  output logic [3:0]                code_o,        // of the least; 0 where there is none
-  output logic [IdBits-1:0]         id_o,          // 0 where there is none
-  output logic signed [63:0]        number_o       // 0 where there is none
+  input  logic                      clear_i,          // the step's last cycle: the update spoke neither in it nor in the
+                                                      // one before, a pipe not in the $clog2(Sources) before these either
+  input  logic [Sources-1:0]        valid_i,          // per pipe: a fault
+  input  logic [Sources*4-1:0]      code_i,           // 1 or 2
+  input  logic [Sources*IdBits-1:0] id_i,             // of the particle
+  input  logic [Sources*64-1:0]     number_i,         // signed
+  input  logic                      update_valid_i,   // a fault of the update
+  input  logic [3:0]                update_code_i,    // 3 to 5
+  input  logic [IdBits-1:0]         update_id_i,      // of the particle
+  input  logic [63:0]               update_number_i,  // signed
+  input  logic                      move_valid_i,     // a fault of migration
+  input  logic [3:0]                move_code_i,      // 6 to 11, none below an earlier one of the step
+  input  logic [IdBits-1:0]         move_id_i,        // of the particle
+  input  logic [63:0]               move_number_i,    // one for each code, >= 0
+  output logic                      valid_o,          // with clear_i: there was one in the step
+  output logic [3:0]                code_o,           // of the least; 0 where there is none
+  output logic [IdBits-1:0]         id_o,             // 0 where there is none
+  output logic signed [63:0]        number_o          // 0 where there is none
 );
+  // With its sign inverted, number orders as an unsigned value.
   localparam int KeyBits = 4 + IdBits + NumberBits;
+  localparam int Nodes   = 2 * Sources;  // 1 is the root; n holds the lesser of 2n and 2n+1, or pipe n-Sources
 
-  logic [Sources-1:0]        late_valid_q;
-  logic [Sources*4-1:0]      code_q;
-  logic [Sources*IdBits-1:0] id_q;
-  logic [Sources*64-1:0]     number_q;
-  always_ff @(posedge clk_i) begin
-    if (!rst_ni) late_valid_q <= '0;
-    else late_valid_q <= valid_i;
-  end
-  always_ff @(posedge clk_i) begin
-    code_q   <= code_i;
-    id_q     <= id_i;
-    number_q <= number_i;
+  logic [Nodes-1:1]               late_q;  // a fault on its way
+  logic [Nodes*KeyBits-1:KeyBits] late_key_q;
+  logic [KeyBits-1:0]             update_key;
+  assign update_key = {update_code_i, update_id_i, !update_number_i[63], update_number_i[NumberBits-2:0]};
+  for (genvar n = 1; n < Nodes; n++) begin : gen_node
+    logic               some, all;
+    logic [KeyBits-1:0] key, all_key;
+    if (n >= Sources) begin : gen_pipe
+      localparam int S = n - Sources;
+      assign some = valid_i[S];
+      assign key  = {code_i[S*4 +: 4], id_i[S*IdBits +: IdBits], !number_i[S*64+63], number_i[S*64 +: NumberBits-1]};
+    end else begin : gen_lesser
+      logic upper;
+      assign some  = late_q[2*n] || late_q[2*n+1];
+      assign upper = !late_q[2*n]
+                  || (late_q[2*n+1] && late_key_q[(2*n+1)*KeyBits +: KeyBits] < late_key_q[2*n*KeyBits +: KeyBits]);
+      assign key   = upper ? late_key_q[(2*n+1)*KeyBits +: KeyBits] : late_key_q[2*n*KeyBits +: KeyBits];
+    end
+    assign all     = some || (n == 1 && update_valid_i);
+    assign all_key = (n == 1 && !some) ? update_key : key;
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) late_q[n] <= 1'b0;
+      else late_q[n] <= all;
+    end
+    always_ff @(posedge clk_i) late_key_q[n*KeyBits +: KeyBits] <= all_key;
   end
 
   // Bit by bit: tools that build it from a carry chain take the chain's end to come early, and put the choices behind.
@@ -49,36 +70,22 @@ module cuboct_least_fault #(
     end
   endfunction
 
-  // With its sign inverted, number orders as an unsigned value.
-  logic                seen, valid_d, valid_q, moved;
-  logic [KeyBits-1:0]  key_d, key_q, key, move_key;
-  integer              s;
+  logic               valid_q, moved, less;
+  logic [KeyBits-1:0] key_d, key_q, move_key;
   assign move_key = {move_code_i, move_id_i, !move_number_i[NumberBits-1], move_number_i[NumberBits-2:0]};
   assign moved    = move_valid_i
-                 && ((!valid_q && late_valid_q == '0)
+                 && ((!valid_q && late_q == '0)
                      || (valid_q && key_q[NumberBits+IdBits +: 4] == move_code_i
                          && below(move_id_i, key_q[NumberBits +: IdBits])));
-  always_comb begin
-    seen  = valid_q;
-    key_d = key_q;
-    key   = key_q;
-    for (s = 0; s < Sources; s = s + 1) begin
-      if (late_valid_q[s]) begin
-        key = {code_q[s*4 +: 4], id_q[s*IdBits +: IdBits], !number_q[s*64+63], number_q[s*64 +: NumberBits-1]};
-        if (!seen || key < key_d) key_d = key;
-        seen = 1'b1;
-      end
-    end
-    if (moved) key_d = move_key;
-    valid_d = (seen || move_valid_i) && !clear_i;
-  end
+  assign less     = late_q[1] && (!valid_q || late_key_q[KeyBits +: KeyBits] < key_q);
+  assign key_d    = moved ? move_key : late_key_q[KeyBits +: KeyBits];
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) valid_q <= 1'b0;
-    else valid_q <= valid_d;
+    else valid_q <= (valid_q || late_q[1] || moved) && !clear_i;
   end
   always_ff @(posedge clk_i) begin
-    if (late_valid_q != '0 || moved) key_q <= key_d;
+    if (less || moved) key_q <= key_d;
   end
 
   logic [KeyBits-1:0] least;
@@ -90,5 +97,5 @@ module cuboct_least_fault #(
   assign number = valid_o ? $signed({!least[NumberBits-1], least[NumberBits-2:0]}) : '0;
   cuboct_resize #(.InBits(NumberBits), .OutBits(64)) u_number (.a_i(number), .y_o(number_o));
   logic unused_numbers;
-  assign unused_numbers = ^{number_q, move_number_i};
+  assign unused_numbers = ^{number_i, update_number_i, move_number_i};
 endmodule
