@@ -2,6 +2,7 @@
 #include <string_view>
 
 #include "gpu_ref/bench.h"
+#include "gpu_ref/lps_bench.h"
 #include "gpu_ref/program.h"
 #include "gpu_ref/samples_bench.h"
 
@@ -9,5 +10,6 @@ int main(int argc, char** argv) {
   if (argc > 1 && argv[1] == std::string_view("bench")) return cuboct::gpu::run_bench(argc - 1, argv + 1);
   if (argc > 1 && argv[1] == std::string_view("samples"))
     return cuboct::gpu::run_samples_bench(argc - 1, argv + 1);
+  if (argc > 1 && argv[1] == std::string_view("lps")) return cuboct::gpu::run_lps_bench(argc - 1, argv + 1);
   return cuboct::gpu::run_gpu_program(argc, argv);
 }

@@ -124,4 +124,30 @@ void throw_lost_sample(size_t sample) {
   throw std::runtime_error(fmt::format("sample {}: a force is not finite", sample));
 }
 
+void require_lps(const Rule& rule, const LpsMaterial& material) {
+  if (material.corrected)
+    throw InputError("the GPU's peridynamic solid has no free-surface correction",
+                     "leave surface_correction out, or use the reference engine");
+  for (const ParticleType& type : rule.types)
+    if (type.pd)
+      throw InputError(
+          fmt::format("the GPU's peridynamic solid has no '{}', held or moved by force", type.name),
+          "kind = \"held\", \"moved\" or \"pulled\", or the reference engine");
+}
+
+void require_lps_memory(int device, uint64_t particles, uint64_t bytes) {
+  for (const Device& found : find_devices(nullptr))
+    if (found.ordinal == device && bytes > found.free)
+      throw InputError(
+          fmt::format("{} points and their bonds need {:.1f} GiB on device {} ({}), which has "
+                      "{:.1f} GiB free",
+                      particles, static_cast<double>(bytes) / 0x1p30, device, found.name,
+                      static_cast<double>(found.free) / 0x1p30));
+}
+
+void throw_lost_point(uint64_t step, uint32_t particle) {
+  throw std::runtime_error(fmt::format(
+      "up to step {}: particle {} has a position that is not finite; is dt too long?", step, particle));
+}
+
 }  // namespace cuboct::gpu

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "gpu_ref/engine.h"
+#include "model/rules/lps.h"
 
 namespace cuboct::gpu {
 
@@ -29,6 +30,11 @@ void require_tables(const Options& options, uint64_t bytes);
 void require_sample(int device, uint64_t atoms, uint64_t bonds, uint64_t bytes);
 // std::runtime_error
 [[noreturn]] void throw_lost_sample(size_t sample);
+// InputError where a scene has what the peridynamic solid of gpu_ref/lps.h has not, or does not fit.
+void require_lps(const Rule& rule, const LpsMaterial& material);
+void require_lps_memory(int device, uint64_t particles, uint64_t bytes);
+// std::runtime_error: some step up to this one lost it.
+[[noreturn]] void throw_lost_point(uint64_t step, uint32_t particle);
 // std::runtime_error: in the step after `step`.
 [[noreturn]] void throw_not_finite(uint64_t step, uint32_t fastest, double speed);
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "model/base/error.h"
+#include "model/rules/lps_bond.h"
 #include "model/rules/lps_lattice.h"
 #include "model/rules/lps_terms.h"
 
@@ -79,10 +80,7 @@ void check(const LpsMaterial& m) {
 
 double LpsMaterial::weight(double r) const { return std::pow(horizon / r, influence); }
 
-double LpsMaterial::left(double most) const {
-  if (damage_width == 0) return most < critical_stretch ? 1 : 0;
-  return (1 - std::tanh((most - critical_stretch) / damage_width)) / 2;
-}
+double LpsMaterial::left(double most) const { return lps_left(most, critical_stretch, damage_width); }
 
 double full_weight(const LpsMaterial& material, const std::vector<Vec3>& full) {
   return moment(material, full, 2);

@@ -12,6 +12,7 @@
 
 #include "model/base/error.h"
 #include "model/base/parallel.h"
+#include "model/rules/lps_bond.h"
 #include "model/rules/lps_surface.h"
 #include "model/rules/quadrature.h"
 
@@ -20,10 +21,10 @@ namespace {
 
 constexpr size_t kRows = 256;  // least rows that are worth a thread
 
-class LpsTerms final : public RoundsTerms {
+class TermsOfBody final : public LpsTerms {
  public:
-  LpsTerms(const LpsMaterial& material, double whole, ReferenceBonds bonds, const std::vector<Vec3>& x,
-           const std::vector<char>& unbreakable, int threads)
+  TermsOfBody(const LpsMaterial& material, double whole, ReferenceBonds bonds, const std::vector<Vec3>& x,
+              const std::vector<char>& unbreakable, int threads)
       : m_(material), whole_(whole), threads_(threads), x0_(x), bonds_(std::move(bonds)) {
     const size_t n = x.size();
     weigh();
@@ -65,9 +66,8 @@ class LpsTerms final : public RoundsTerms {
   void finish(size_t round, size_t begin, size_t end) override {
     for (size_t i = begin; i < end; ++i) {
       if (round == 0) {
-        const double m = weighted(i);
-        dilatation_[i] *= m_.dimensions / m;
-        pressure_[i] = m_.dilatation_factor() * dilatation_[i] / m;
+        const auto made = lps_dilated<double>(dilatation_[i], inverse_[i], m_.dimensions, factor_);
+        dilatation_[i] = made.dilatation, pressure_[i] = made.pressure;
       } else {
         if (m_.corrected) force_[i] += dilatation_[i] * missing_[i];
         force_[i] *= m_.volume;
@@ -100,6 +100,14 @@ class LpsTerms final : public RoundsTerms {
     }
     return sum * (m_.volume / (2 * volume));
   }
+
+  const LpsMaterial& material() const override { return m_; }
+  const ReferenceBonds& reference() const override { return bonds_; }
+  const std::vector<double>& volumes() const override { return bare_; }
+  const std::vector<double>& weights() const override { return weight_; }
+  const std::vector<double>& inverse_weighted() const override { return inverse_; }
+  const std::vector<double>& dilatation() const override { return dilatation_; }
+  bool breaks(uint64_t b) const override { return !most_.empty() && most_[b] != kNever; }
 
   double damage(size_t i) const override {
     if (left_.empty()) return 0;
@@ -138,7 +146,8 @@ class LpsTerms final : public RoundsTerms {
   double lengthening(size_t i, uint64_t b) const {
     const Vec3& r = bonds_.vector[b];
     const Vec3 moved = u_[bonds_.other[b]] - u_[i];
-    return m_.finite ? (r + moved).norm() - length_[b] : r.dot(moved) / length_[b];
+    return m_.finite ? lps_now(r.data(), length_[b], moved.data()).longer
+                     : lps_along(r.data(), moved.data()) / length_[b];
   }
   // Of a bond's pull the size, as a force density.
   double tension(size_t i, uint64_t b) const {
@@ -218,14 +227,15 @@ class LpsTerms final : public RoundsTerms {
       bool weaker = false;
       for (uint64_t b = bonds_.begin(i); b < bonds_.end(i); ++b) {
         if (left_[b] == 0 || most_[b] == kNever) continue;
-        const double s = (bonds_.vector[b] + u_[bonds_.other[b]] - u_[i]).norm() / length_[b] - 1;
+        const Vec3 moved = u_[bonds_.other[b]] - u_[i];
+        const double s = lps_now(bonds_.vector[b].data(), length_[b], moved.data()).longer / length_[b];
         if (s <= most_[b]) continue;
         most_[b] = s;
         const double left = left_of(s);
         weaker |= left != left_[b];
         left_[b] = left;
       }
-      if (weaker) look_at(i);
+      if (weaker && m_.corrected) look_at(i);
     }
   }
 
@@ -241,11 +251,11 @@ class LpsTerms final : public RoundsTerms {
         const Vec3 moved = u_[bonds_.other[b]] - home;
         const double w = breaks ? left_[b] * weight_[b] : weight_[b];
         if (kFinite)
-          sum += w * length_[b] * ((r + moved).norm() - length_[b]);
+          sum += lps_opening(lps_now(r.data(), length_[b], moved.data()), length_[b], w);
         else if (m_.corrected)
           sum += w * r.dot(shape_[i] * moved);
         else
-          sum += w * r.dot(moved);
+          sum += lps_small_opening(r.data(), moved.data(), w);
       }
       dilatation_[i] = sum;
     }
@@ -266,11 +276,10 @@ class LpsTerms final : public RoundsTerms {
         const double w = breaks ? left_[b] * weight_[b] : weight_[b];
         const double p = pressure + pressure_[j], q = half * (inverse + inverse_[j]);
         if (kFinite) {
-          const Vec3 y = r + moved;
-          const double now = y.norm();
-          if (now > 0) sum += w * (p * length_[b] + q * (now - length_[b])) / now * y;
+          const LpsBondNow<double> now = lps_now(r.data(), length_[b], moved.data());
+          sum += lps_pull(now, length_[b], w, p, q) * Eigen::Map<const Vec3>(now.y);
         } else {
-          sum += w * (p + q * r.dot(moved) / (length_[b] * length_[b])) * r;
+          sum += lps_small_pull(r.data(), moved.data(), length_[b], w, p, q) * r;
         }
       }
       force_[i] = sum;
@@ -278,7 +287,7 @@ class LpsTerms final : public RoundsTerms {
   }
 
   const LpsMaterial m_;
-  const double whole_;
+  const double whole_, factor_ = m_.dilatation_factor();
   const int threads_;
   const std::vector<Vec3> x0_;
   const ReferenceBonds bonds_;
@@ -296,10 +305,10 @@ double share_of(const LpsMaterial& m, double r) {
   return 0.5 + (m.horizon - r) / m.spacing;
 }
 
-std::unique_ptr<RoundsTerms> make_lps_terms(const LpsMaterial& material, double whole, ReferenceBonds bonds,
-                                            const std::vector<Vec3>& x, const std::vector<char>& unbreakable,
-                                            int threads) {
-  return std::make_unique<LpsTerms>(material, whole, std::move(bonds), x, unbreakable, threads);
+std::unique_ptr<LpsTerms> make_lps_terms(const LpsMaterial& material, double whole, ReferenceBonds bonds,
+                                         const std::vector<Vec3>& x, const std::vector<char>& unbreakable,
+                                         int threads) {
+  return std::make_unique<TermsOfBody>(material, whole, std::move(bonds), x, unbreakable, threads);
 }
 
 }  // namespace cuboct
