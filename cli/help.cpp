@@ -33,6 +33,7 @@ constexpr std::array kEntries{
     Entry{"study settings", "elastic", "cuboct elastic scenes/lj_block.toml"},
     Entry{"study settings", "explore", "cuboct explore scenes/studies/block.toml"},
     Entry{"study settings", "fit", "cuboct fit scenes/studies/fit_bar.toml"},
+    Entry{"study settings", "learn", "cuboct learn scenes/studies/graphene.toml"},
     Entry{"study settings", "multiscale", "cuboct multiscale scenes/studies/silicon_stretch.toml"},
     Entry{"study settings", "pitch", "cuboct pitch scenes/studies/pitch_bar.toml --error 10%"},
     Entry{"study settings", "stability", "cuboct stability scenes/undamped_block.toml"},

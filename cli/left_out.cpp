@@ -6,6 +6,7 @@
 #include "cli/boards.h"
 #include "cli/command.h"
 #include "cli/emit.h"
+#include "cli/learn.h"
 #include "model/base/error.h"
 
 namespace cuboct {
@@ -36,6 +37,10 @@ void add_stability(CLI::App& app, int&) { add_left_out(app, "stability", "studie
 
 #ifndef CUBOCT_HAS_FITS
 void add_fit(CLI::App& app, int&) { add_left_out(app, "fit", "fits", "CUBOCT_FITS"); }
+#endif
+
+#ifndef CUBOCT_HAS_LEARN
+void add_learn(CLI::App& app, int&) { add_left_out(app, "learn", "studies and NLopt", "CUBOCT_STUDIES"); }
 #endif
 
 #ifndef CUBOCT_HAS_SYNTH

@@ -12,6 +12,7 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/learn.h"
 #include "model/base/output.h"
 #include "model/base/resources.h"
 #include "model/base/spelling.h"
@@ -97,6 +98,7 @@ int main_of(int argc, char** argv) {
   add_multiscale(app, exit_code);
   add_explore(app, exit_code);
   add_fit(app, exit_code);
+  add_learn(app, exit_code);
   add_pitch(app, exit_code);
   add_stability(app, exit_code);
   add_bench(app, exit_code);

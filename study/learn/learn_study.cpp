@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "study/learn/learn_study.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "model/base/error.h"
+#include "model/base/hash.h"
+#include "model/scene/config.h"
+
+namespace cuboct::learn {
+namespace {
+
+constexpr double kElectronVolt = 1.602176634e-19;                              // J
+constexpr double kAngstrom = 1e-10, kPicosecond = 1e-12;                       // m, s
+constexpr double kMassUnit = kElectronVolt * 1e-24 / (kAngstrom * kAngstrom);  // kg
+constexpr int kMostCells = 400, kMostPoints = 100, kMostSeeds = 100, kMostDegree = 12;
+
+double length(const ConfigTable& table, const char* key, double otherwise, const Range& range) {
+  return table.number_or(key, quantity::length, otherwise * kAngstrom, range) / kAngstrom;
+}
+double force(const ConfigTable& table, const char* key, double otherwise) {
+  constexpr double kUnit = kElectronVolt / kAngstrom;
+  return table.number_or(key, quantity::force, otherwise * kUnit, Range::positive()) / kUnit;
+}
+SheetInput read_sheet(const ConfigTable& table) {
+  SheetInput out;
+  const std::vector<std::string> names = tersoff_set_names();
+  out.potential = names[table.at("potential").choice("potential", names)];
+  out.tersoff = tersoff_set(out.potential);
+  out.bond = length(table, "bond", 1.46, Range::positive());
+  out.thickness = length(table, "thickness", 3.35, Range::positive());
+  out.mass = table.number("mass", quantity::mass, Range::positive()) / kMassUnit;
+  const ConfigValue cells = table.at("cells");
+  const std::vector<ConfigValue> items = cells.items();
+  if (items.size() != 2) cells.fail("'cells' needs two numbers, along x and y");
+  for (size_t a = 0; a < 2; ++a) out.cells[a] = static_cast<int>(items[a].integer(4, kMostCells));
+  table.done();
+  return out;
+}
+
+GridInput read_grid(const ConfigTable& table) {
+  GridInput out;
+  out.points = static_cast<int>(table.at("points").integer(6, kMostPoints));
+  out.radius = table.number_or("radius", quantity::number, out.radius, {.low = 1, .high = 5});
+  table.done();
+  return out;
+}
+
+DiscInput read_disc(const ConfigTable& table) {
+  DiscInput out;
+  out.force = static_cast<int>(table.at("force").choice("axis", {"x", "y"}));
+  out.centres = static_cast<int>(table.at("centres").choice("axis", {"x", "y"}));
+  out.radius = table.number("radius", quantity::length, Range::positive()) / kAngstrom;
+  table.done();
+  return out;
+}
+
+StaticInput read_static(const ConfigTable& table) {
+  StaticInput out;
+  out.strain = table.number_or("strain", quantity::number, out.strain, {.low = 1e-6, .high = 0.02});
+  out.waves = static_cast<int>(table.integer_or("waves", 1, 20, out.waves));
+  out.force = force(table, "force", out.force);
+  for (const ConfigTable& disc : table.tables("disc")) out.discs.push_back(read_disc(disc));
+  if (out.discs.empty()) table.fail("no [[static.disc]]: there is nothing to validate with");
+  table.done();
+  return out;
+}
+
+KernelInput read_kernel(const ConfigTable& table) {
+  KernelInput out;
+  if (const auto horizons = table.find("horizons"))
+    out.horizons = horizons->numbers(quantity::number, Range::between(2, 10));
+  if (const auto degrees = table.find("degrees")) {
+    out.degrees.clear();
+    for (const ConfigValue& one : degrees->items())
+      out.degrees.push_back(static_cast<int>(one.integer(0, kMostDegree)));
+  }
+  for (const char* key : {"horizons", "degrees"})
+    if (table.has(key) && table.at(key).items().empty())
+      table.at(key).fail(fmt::format("'{}' is empty", key));
+  out.smoothing = table.number_or("smoothing", quantity::number, out.smoothing, Range::not_negative());
+  out.isotropy = table.number_or("isotropy", quantity::number, out.isotropy, Range::not_negative());
+  out.zeta = table.number_or("zeta", quantity::number, out.zeta, Range::positive());
+  out.seeds = static_cast<int>(table.integer_or("seeds", 1, kMostSeeds, out.seeds));
+  out.evaluations = static_cast<int>(table.integer_or("evaluations", 1, 1'000'000, out.evaluations));
+  out.seed = static_cast<uint64_t>(table.integer_or("seed", 1, std::numeric_limits<int64_t>::max(), 1));
+  table.done();
+  return out;
+}
+
+class Hashed {
+ public:
+  Hashed& operator<<(double value) { return hash_.add(std::bit_cast<int64_t>(value)), *this; }
+  Hashed& operator<<(const std::string& text) {
+    for (const char c : text) hash_.add(c);
+    return *this;
+  }
+  uint64_t value() const { return hash_.value(); }
+
+ private:
+  Hash hash_;
+};
+
+void hash_data(LearnStudy& s) {
+  Hashed all;
+  all << s.sheet.potential << s.sheet.bond << s.sheet.mass << s.sheet.thickness << s.sheet.cells[0]
+      << s.sheet.cells[1] << s.grid.points << s.grid.radius << s.still.strain << s.still.waves
+      << s.still.force;
+  for (const DiscInput& disc : s.still.discs) all << disc.force << disc.centres << disc.radius;
+  s.data_hash = all.value();
+}
+
+}  // namespace
+
+LearnStudy read_learn_study(const std::string& path) {
+  LearnStudy out;
+  out.path = path;
+  const ConfigTable root = read_config(path);
+  out.title = root.string_or("title", "");
+  const auto table = [&](const char* key) { return root.at(key).table(); };
+  out.sheet = read_sheet(table("sheet"));
+  out.grid = read_grid(table("grid"));
+  out.still = read_static(table("static"));
+  if (const auto kernel = root.table_at("kernel")) out.kernel = read_kernel(*kernel);
+  root.done();
+  hash_data(out);
+  return out;
+}
+
+}  // namespace cuboct::learn
