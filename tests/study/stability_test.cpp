@@ -26,12 +26,12 @@ Scene block(int cells, std::shared_ptr<const PairLaw> law, bool periodic = false
   return scene;
 }
 
-struct Asked {
+struct AskedPoint {
   const char* name;
   Method method;
 };
-const std::vector<Asked>& methods() {
-  static const std::vector<Asked> all{
+const std::vector<AskedPoint>& methods() {
+  static const std::vector<AskedPoint> all{
       {"Euler", {Arithmetic::float64, Integrator::semi_implicit_euler}},
       {"Verlet", {Arithmetic::float64, Integrator::velocity_verlet}},
       {"Euler in floats", {Arithmetic::float32, Integrator::semi_implicit_euler}},
@@ -44,7 +44,7 @@ const std::vector<Asked>& methods() {
 // that stands out of their rounding, and rounding keeps pushing a damped body: 1 % more.
 void expect_as_predicted(const Subject& subject, const Arch& arch = {}) {
   ASSERT_TRUE(subject.measurable) << subject.note;
-  for (const Asked& asked : methods()) {
+  for (const AskedPoint& asked : methods()) {
     const MeasuredLimit measured = measured_limit(subject, arch, asked.method, 0.005);
     EXPECT_FALSE(measured.refused) << asked.name << ": " << measured.sign;
     EXPECT_LE(measured.unstable, 1.00501 * measured.stable) << asked.name;
@@ -187,7 +187,7 @@ TEST(Stability, NoStepCuresABodyThatBuckles) {
 TEST(Stability, VerdictsFarFromTheLimit) {
   const Subject subject = subject_of(block(2, preset_law("elastic", 1, kStiffness)));
   const uint64_t steps = steps_to_tell(subject.limit, 0.01);
-  for (const Asked& asked : methods()) {
+  for (const AskedPoint& asked : methods()) {
     for (const double part : {0.02, 0.1, 0.5, 0.98})
       EXPECT_EQ(try_step(subject, Arch{}, asked.method, part * subject.limit.dt, 0.01, steps).verdict,
                 Verdict::stable)

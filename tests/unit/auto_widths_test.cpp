@@ -31,7 +31,7 @@ direction = [1, 0, 0]
 )";
 
 // Its ends `held` and `moved` along x.
-Scene bar(const std::string& velocity, const std::string& run, const std::string& top = "") {
+Scene drawn_bar(const std::string& velocity, const std::string& run, const std::string& top = "") {
   return parse_scene(top + kBar + R"([[constraint]]
 name = "fixed"
 kind = "held"
@@ -66,8 +66,8 @@ TEST(AutoWidths, ImposedVelocitiesAndGravityAreRightToTheAccuracy) {
   int met = 0;
   for (const char* velocity : {"[1, 0, 0] um/s", "[5, 0, 0] mm/s", "[0.3, 0.4, 0] m/s", "[50, 0, 0] m/s"})
     for (const double accuracy : {1e-1, 1e-3, 1e-4}) {
-      const Scene scene = bar(velocity, fmt::format("steps = 20000\naccuracy = {}\n", accuracy),
-                              "gravity = \"[0, 0, -9.81] m/s^2\"\n");
+      const Scene scene = drawn_bar(velocity, fmt::format("steps = 20000\naccuracy = {}\n", accuracy),
+                                    "gravity = \"[0, 0, -9.81] m/s^2\"\n");
       const Plan plan = plan_of(scene, {});
       const double unit = std::ldexp(plan.rule.cell_edge, -plan.rule.widths.velocity_frac()) / scene.rule.dt;
       const bool capped = reason(plan.reasons, "guard").wanted > plan.rule.widths.guard;
@@ -86,7 +86,7 @@ TEST(AutoWidths, ImposedVelocitiesAndGravityAreRightToTheAccuracy) {
 
 // One end at 5 mm/s for 20,000 steps of 36.9 ns: 3.69 um of 6 mm.
 TEST(AutoWidths, TheExpectedStrainHasItsUnits) {
-  const Scene scene = bar("[5, 0, 0] mm/s", "steps = 20000\n");
+  const Scene scene = drawn_bar("[5, 0, 0] mm/s", "steps = 20000\n");
   const Motion motion = motion_of(scene);
   const double length = 5.5 * 0.7071067811865476e-3 + 1.5 * 0.7071067811865476e-3 + 0.7071067811865476e-3;
   EXPECT_NEAR(motion.strain, 5e-3 * 20000 * scene.rule.dt / length, 0.05 * motion.strain);
@@ -105,7 +105,7 @@ TEST(AutoWidths, TheExpectedStrainHasItsUnits) {
 
 // A wave carries V/c before it has crossed the body.
 TEST(AutoWidths, AFastPullStrainsByAWave) {
-  const Scene scene = bar("[20, 0, 0] m/s", "steps = 3\n");
+  const Scene scene = drawn_bar("[20, 0, 0] m/s", "steps = 3\n");
   const Motion motion = motion_of(scene);
   const double c = 0.5e-3 * std::sqrt(motion.bond_stiffness / scene.rule.mass);
   EXPECT_DOUBLE_EQ(motion.sound_speed, c);
@@ -156,7 +156,7 @@ TEST(AutoWidths, LargeStrainsTakeTheLeast) {
 }
 
 TEST(AutoWidths, WhatTheArchSaysWinsAndIsWarnedOf) {
-  const Scene scene = bar("[5, 0, 0] mm/s", "steps = 20000\n");
+  const Scene scene = drawn_bar("[5, 0, 0] mm/s", "steps = 20000\n");
   Arch arch;
   arch.widths.difference_frac = 14;
   const Plan plan = plan_of(scene, arch);
@@ -173,7 +173,7 @@ TEST(AutoWidths, WhatTheArchSaysWinsAndIsWarnedOf) {
 // Of what damping sees, and of what bounds a width that the arch leaves to us; the numbers that are named
 // work.
 TEST(AutoWidths, WarningsNameTheKeyThatBounds) {
-  const Scene scene = bar("[5, 0, 0] mm/s", "steps = 20000\n", "damping.ratio = 0.1\n");
+  const Scene scene = drawn_bar("[5, 0, 0] mm/s", "steps = 20000\n", "damping.ratio = 0.1\n");
   EXPECT_TRUE(plan_of(scene, {}).warnings.empty());
   const auto warning = [&](auto set) {
     Arch arch;
@@ -211,7 +211,7 @@ steps = 1000000
 
 // The widths that a refusal names work.
 TEST(AutoWidths, ARefusalNamesWidthsThatHold) {
-  const Scene scene = bar("[1, 0, 0] um/s", "steps = 20000\n");
+  const Scene scene = drawn_bar("[1, 0, 0] um/s", "steps = 20000\n");
   Arch arch;
   arch.widths.position_frac = 20;
   arch.widths.guard = 8;

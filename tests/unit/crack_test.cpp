@@ -16,7 +16,7 @@ namespace {
 Probe crack_of(const Scene& scene) { return scene.probes.at(0); }
 
 // A bar of the packing that repeats across x, whose crystal has n along x and m along y.
-Scene bar(const std::string& axes, const std::string& law, const std::string& probe = "") {
+Scene notched_bar(const std::string& axes, const std::string& law, const std::string& probe = "") {
   return parse_scene("units = \"reduced\"\nmass = 1\npacking = { pitch = 0.5, axes = " + axes + " }\n" +
                          "box = { cells = [4, 4, 4], periodic = \"yz\" }\nlaw = { " + law +
                          " }\n[[probe]]\nname = \"crack\"\nkind = \"crack\"\naxis = \"y\"\n"
@@ -45,7 +45,7 @@ TEST(Crack, OfABarCutInTwoHasTheBondsOfItsPlane) {
         Of{"[[1, 1, 1], [1, -1, 0]]", 3 * std::sqrt(2.0 / 3)}}) {
     for (const std::string law :
          {"kind = \"brittle\", stiffness = 2.0", "kind = \"elastic\", stiffness = 1.0"}) {
-      const Scene scene = bar(axes, law);
+      const Scene scene = notched_bar(axes, law);
       const CrackMeter meter(crack_of(scene), scene.periodic, scene.body.x);
       std::vector<Vec3> moved(scene.body.size(), Vec3::Zero());
       EXPECT_EQ(meter.look(moved).broken, 0u);
@@ -186,7 +186,7 @@ TEST(Crack, SpeedIsTheGrowthOverTheWindow) {
 TEST(Crack, ErrorsSayWhatItNeeds) {
   const auto error = [](const std::string& probe) {
     try {
-      bar("[[1, 0, 0], [0, 1, 0]]", "kind = \"brittle\", stiffness = 1.0", probe);
+      notched_bar("[[1, 0, 0], [0, 1, 0]]", "kind = \"brittle\", stiffness = 1.0", probe);
     } catch (const InputError& e) {
       return std::string(e.what());
     }

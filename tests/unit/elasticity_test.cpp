@@ -45,9 +45,9 @@ struct Constants {
   double c11, c12, c44;
 };
 
-constexpr double kStrain = 1e-4;  // the error of a central difference is of the order of its square
+constexpr double kDifference = 1e-4;  // the error of a central difference is of the order of its square
 
-Constants by_strain(const std::shared_ptr<const PairLaw>& law, double pitch, double strain = kStrain) {
+Constants by_strain(const std::shared_ptr<const PairLaw>& law, double pitch, double strain = kDifference) {
   Mat3 stretch = Mat3::Zero(), shear = Mat3::Zero();
   stretch(0, 0) = strain;
   shear(0, 1) = shear(1, 0) = strain / 2;
@@ -71,9 +71,9 @@ TEST(Elasticity, OfLennardJonesTruncatedAt2_5) {
   EXPECT_NEAR(c.c44, 55.63, 1e-3 * 55.63);
   EXPECT_NEAR((c.c11 + 2 * c.c12) / 3, 69.66, 1e-3 * 69.66);
   // A periodic box says the same.
-  const Vec3 plus(1 + kStrain, 1, 1), minus(1 - kStrain, 1, 1);
+  const Vec3 plus(1 + kDifference, 1, 1), minus(1 - kDifference, 1, 1);
   const Mat3 box =
-      (stress_in_a_box(law, pitch, 4, plus) - stress_in_a_box(law, pitch, 4, minus)) / (2 * kStrain);
+      (stress_in_a_box(law, pitch, 4, plus) - stress_in_a_box(law, pitch, 4, minus)) / (2 * kDifference);
   EXPECT_NEAR(box(0, 0), c.c11, 1e-8 * c.c11);
   EXPECT_NEAR(box(1, 1), c.c12, 1e-8 * c.c11);
   EXPECT_NEAR(box(2, 2), c.c12, 1e-8 * c.c11);

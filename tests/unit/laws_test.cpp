@@ -125,7 +125,7 @@ TEST(Laws, OneThatIsZeroIsTold) {
 // --- A laminate --------------------------------------------------------------------------------------------
 
 constexpr int kPlanes = 6;  // of each material in a period along z
-constexpr double kStrain = 1e-5;
+constexpr double kSmallStrain = 1e-5;
 
 // A periodic FCC crystal whose (001) planes are by turns stiff and soft.
 Scene laminate(double stiff, double soft, double interface) {
@@ -169,7 +169,7 @@ Vec3 stress_of(Scene scene, const Vec3& strain) {
   run.step(8000);
   double largest = 0;
   for (const Vec3& f : run.forces()) largest = std::max(largest, f.norm());
-  EXPECT_LT(largest, 1e-7 * kStrain * -scene.rule.law->slope(1));
+  EXPECT_LT(largest, 1e-7 * kSmallStrain * -scene.rule.law->slope(1));
   Vec3 mean = Vec3::Zero();
   const std::vector<Mat3> stress = run.virial_stress(fcc_volume(1));
   for (const Mat3& of : stress) mean += of.diagonal() / static_cast<double>(stress.size());
@@ -197,15 +197,15 @@ TEST(Laws, LaminateIsReussAcrossAndVoigtAlongItsLayers) {
     const double n = kPlanes, inner = n - 1, period = 2 * n;
     const double reuss = 2 * period / (inner / stiff + inner / soft + 2 / between);
     const double voigt = (stiff + soft) / 2 + (inner * stiff + inner * soft + 2 * between) / period / 2;
-    const Vec3 across = stress_of(scene, kStrain * Vec3::UnitZ()) / kStrain,
-               along = stress_of(scene, kStrain * Vec3::UnitX()) / kStrain;
-    EXPECT_NEAR(across.z(), reuss, 5 * kStrain * reuss);
-    EXPECT_NEAR(along.x() - across.x() * along.z() / across.z(), voigt, 5 * kStrain * voigt);
+    const Vec3 across = stress_of(scene, kSmallStrain * Vec3::UnitZ()) / kSmallStrain,
+               along = stress_of(scene, kSmallStrain * Vec3::UnitX()) / kSmallStrain;
+    EXPECT_NEAR(across.z(), reuss, 5 * kSmallStrain * reuss);
+    EXPECT_NEAR(along.x() - across.x() * along.z() / across.z(), voigt, 5 * kSmallStrain * voigt);
     if (interface != 8.0 / 5) continue;
     // Two gaps of the harmonic mean are one of each phase: then Reuss is that of the two phases alone.
     // Voigt's differs from theirs by what the interfaces lack, (arithmetic - harmonic mean)/2 in 1 of n
     // gaps: 4.2 % of it here.
-    EXPECT_NEAR(across.z(), 2 * 2 / (1 / stiff + 1 / soft), 5 * kStrain * reuss);
+    EXPECT_NEAR(across.z(), 2 * 2 / (1 / stiff + 1 / soft), 5 * kSmallStrain * reuss);
     const double whole = 1.5 * (stiff + soft) / 2;
     EXPECT_NEAR(voigt, whole - ((stiff + soft) / 2 - between) / 2 / n, 1e-9);
     EXPECT_LT(voigt, whole);
