@@ -14,9 +14,9 @@
 namespace cuboct {
 namespace {
 
-const std::string kRoot = CUBOCT_SOURCE_DIR;
+const std::string kTree = CUBOCT_SOURCE_DIR;
 
-Scene example(const std::string& name) { return read_scene(kRoot + "/scenes/" + name + ".toml"); }
+Scene example(const std::string& name) { return read_scene(kTree + "/scenes/" + name + ".toml"); }
 
 std::string what_of(const InputError& error) { return error.what(); }
 
@@ -102,7 +102,7 @@ TEST(Setup, RefusesMachinesThatCannotUseHalosOnArrival) {
 // A refusal after the file was read stands at the key that it is about: the last line of `more`, column.
 void expect_place(const std::string& more, const std::string& place, const std::string& message,
                   const std::string& arch = {}, const std::string& stage = {}) {
-  const std::string grips = read_config_text(kRoot + "/scenes/boards/grips.toml");
+  const std::string grips = read_config_text(kTree + "/scenes/boards/grips.toml");
   const std::string text = more.starts_with('[') ? grips + more : more;
   const auto refused = [&] {
     plan_of(parse_scene(text, "s.toml", {.begins = true, .stage = stage}),
@@ -114,7 +114,7 @@ void expect_place(const std::string& more, const std::string& place, const std::
 }
 
 std::string with(const std::string& from, const std::string& to) {
-  std::string text = read_config_text(kRoot + "/scenes/boards/grips.toml");
+  std::string text = read_config_text(kTree + "/scenes/boards/grips.toml");
   const size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
