@@ -48,7 +48,7 @@ TEST(Multiscale, PressureWaveThroughAPlateHasItsSpeed) {
   EXPECT_EQ(found_by(bench, "silicon_plate"), found);
 }
 
-const std::string kSmall =
+const std::string kSmallStudy =
     "[material]\npotential = \"si_multiscale\"\nedge = \"5.43 angstrom\"\nmass = \"28.0855 u\"\ncells = 1\n"
     "[mesh]\ncubes = [2, 1, 1]\nsize = \"[2, 1, 1] um\"\nrepeats = \"x\"\n[grains]\ncubes = 1\n"
     "[stretch]\naxis = \"x\"\nstrains = [0.001, 0.002]\n";
@@ -57,7 +57,7 @@ const std::string kSmall =
 TEST(Multiscale, ComparesAccuracyWithCost) {
   const Bench bench(false);
   std::ofstream(bench.path("c.toml"))
-      << kSmall << "[compare]\nrefine = [1, 2]\nstrain_tolerance = [0, 1e-3]\n";
+      << kSmallStudy << "[compare]\nrefine = [1, 2]\nstrain_tolerance = [0, 1e-3]\n";
   const std::vector<std::string> command{"multiscale", bench.path("c.toml"), "--out", bench.path("c"),
                                          "--json"};
   const Answer answer = bench.cuboct(command);
@@ -77,7 +77,7 @@ TEST(Multiscale, ComparesAccuracyWithCost) {
 
 TEST(Multiscale, CountsANodeForEachElement) {
   const Bench bench(false);
-  std::ofstream(bench.path("n.toml")) << kSmall;
+  std::ofstream(bench.path("n.toml")) << kSmallStudy;
   const Answer answer = bench.cuboct(
       {"multiscale", bench.path("n.toml"), "--out", bench.path("n"), "--json", "--technology", "cmos7,ecp5"});
   ASSERT_EQ(answer.code, 0) << answer.err;
@@ -86,7 +86,7 @@ TEST(Multiscale, CountsANodeForEachElement) {
   EXPECT_EQ(found["node_ecp5"]["value"], "no figure");
   EXPECT_TRUE(std::filesystem::exists(bench.path("n/node.tsv")));
   std::ofstream(bench.path("s.toml"))
-      << std::regex_replace(kSmall, std::regex("potential = .*"),
+      << std::regex_replace(kSmallStudy, std::regex("potential = .*"),
                             "springs = { C11 = \"165.6 GPa\", C12 = \"63.4 GPa\", C44 = \"78.1 GPa\" }");
   const Answer springs =
       bench.cuboct({"multiscale", bench.path("s.toml"), "--out", bench.path("s"), "--technology", "cmos7"});

@@ -10,7 +10,7 @@
 namespace cuboct {
 namespace {
 
-std::vector<Cell> box(int nx, int ny, int nz) {
+std::vector<Cell> cells_of_box(int nx, int ny, int nz) {
   std::vector<Cell> cells;
   for (int x = 0; x < nx; ++x)
     for (int y = 0; y < ny; ++y)
@@ -19,7 +19,7 @@ std::vector<Cell> box(int nx, int ny, int nz) {
 }
 
 TEST(Lattice, BoxHasItsLinksInOrder) {
-  const Lattice lattice(box(3, 2, 1), {0, 0, 0});
+  const Lattice lattice(cells_of_box(3, 2, 1), {0, 0, 0});
   ASSERT_EQ(lattice.size(), 6u);
   EXPECT_EQ(lattice.cell(1), (Cell{1, 0, 0}));  // (z, y, x) order
   EXPECT_EQ(lattice.cell(3), (Cell{0, 1, 0}));
@@ -33,7 +33,7 @@ TEST(Lattice, BoxHasItsLinksInOrder) {
 }
 
 TEST(Lattice, RingsWrap) {
-  const Lattice lattice(box(3, 4, 5), {3, 4, 5});
+  const Lattice lattice(cells_of_box(3, 4, 5), {3, 4, 5});
   EXPECT_EQ(lattice.neighbour(0, 0), 2u);
   EXPECT_EQ(lattice.find({-1, 4, 5}), 2u);
   for (uint32_t n = 0; n < lattice.size(); ++n) {
@@ -153,8 +153,8 @@ TEST(Lattice, IsTheClosureOfItsCells) {
 
 // A lattice over the box that holds both would have 10^18 cells.
 TEST(Lattice, TwoBodiesAMillionCellsApart) {
-  std::vector<Cell> cells = box(20, 20, 20);
-  for (const Cell& c : box(20, 20, 20))
+  std::vector<Cell> cells = cells_of_box(20, 20, 20);
+  for (const Cell& c : cells_of_box(20, 20, 20))
     cells.push_back({c[0] + 1'000'000, c[1] - 1'000'000, c[2] + 1'000'000});
   cells.push_back({500'000, 0, 0});
   const Lattice lattice(cells, {0, 0, 0});

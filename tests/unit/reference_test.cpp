@@ -130,13 +130,13 @@ TEST(Reference, ControllerIsADampedOscillatorAroundItsMovingAnchor) {
   }
 }
 
-struct Crystal {
+struct ShakenCrystal {
   Body body;
   Periodic box;
   double pitch;
 };
-Crystal shaken(const PairLaw& law, int cells, double shift, double speed) {
-  Crystal c;
+ShakenCrystal shaken(const PairLaw& law, int cells, double shift, double speed) {
+  ShakenCrystal c;
   c.pitch = relaxed_pitch(law, 1.1);
   c.body = test::fcc_block(cells, c.pitch);
   c.box = test::fcc_box(cells, c.pitch);
@@ -146,7 +146,7 @@ Crystal shaken(const PairLaw& law, int cells, double shift, double speed) {
 
 TEST(Reference, ForcesAreTheGradientOfTheEnergy) {
   const auto law = lennard_jones(1, 1, 2.3, 0.8);
-  Crystal c = shaken(*law, 3, 0.05, 0);
+  ShakenCrystal c = shaken(*law, 3, 0.05, 0);
   for (const Periodic& periodic : {Periodic{}, c.box}) {
     const Rule rule = test::simple_rule(law, 1, 0.001);
     const std::vector<Vec3> f = Reference(rule, c.body, periodic, semi_implicit_euler).forces();
@@ -168,7 +168,7 @@ TEST(Reference, ForcesAreTheGradientOfTheEnergy) {
 // The mean virial stress of a periodic box is the derivative of its energy by strain over its volume.
 TEST(Reference, StressIsTheDerivativeOfTheEnergyByStrain) {
   const auto law = lennard_jones(1, 1, 2.3, 0.8);
-  const Crystal c = shaken(*law, 4, 0.05, 0);
+  const ShakenCrystal c = shaken(*law, 4, 0.05, 0);
   const Rule rule = test::simple_rule(law, 1, 0.001);
   const double volume = c.box.extent.prod();
   const double n = static_cast<double>(c.body.size());
@@ -192,7 +192,7 @@ TEST(Reference, StressIsTheDerivativeOfTheEnergyByStrain) {
 // The invariants of the rule: translation, permutation, momentum, angular momentum, reversal.
 TEST(Reference, KeepsWhatTheRuleKeeps) {
   const auto law = lennard_jones(1, 1, 2.3, 0.8);
-  const Crystal c = shaken(*law, 3, 0.05, 0.3);
+  const ShakenCrystal c = shaken(*law, 3, 0.05, 0.3);
   Rule rule = test::simple_rule(law, 1, 0.002);
   rule.damping.coefficient = 0.5;
   const auto angular = [](const Body& body) {
@@ -231,7 +231,7 @@ TEST(Reference, KeepsWhatTheRuleKeeps) {
 // step apart they hold the same positions.
 TEST(Reference, EulerIsVerletWithVelocitiesAtHalfSteps) {
   const auto law = lennard_jones(1, 1, 2.3, 0.8);
-  const Crystal c = shaken(*law, 3, 0.05, 0.3);
+  const ShakenCrystal c = shaken(*law, 3, 0.05, 0.3);
   const Rule rule = test::simple_rule(law, 1, 0.002);
   Reference verlet(rule, c.body, {}, velocity_verlet);
   Body behind = c.body;
@@ -289,7 +289,7 @@ TEST(Reference, DampingLowersTheLimit) {
 // the energy is smooth.
 TEST(Reference, EnergyFluctuatesAsTheOrderOfTheIntegrator) {
   const auto law = lennard_jones(1, 1, 2.567, 0.8);
-  const Crystal c = shaken(*law, 4, 0, 0.35);
+  const ShakenCrystal c = shaken(*law, 4, 0, 0.35);
   const auto rms = [&](Integrator integrator, double dt) {
     Reference run(test::simple_rule(law, 1, dt), c.body, c.box, integrator);
     const int steps = static_cast<int>(std::lround(2 / dt));
