@@ -11,8 +11,8 @@ module cuboct_least_fault #(
 ) (
   input  logic                      clk_i,
   input  logic                      rst_ni,
-  input  logic                      clear_i,          // the step's last cycle: the update spoke neither in it nor in the
-                                                      // one before, a pipe not in the $clog2(Sources) before these either
+  input  logic                      clear_i,          // the step's last cycle: neither in it nor in the one before
+                                                      // the update spoke, nor a pipe in $clog2(Sources) more
   input  logic [Sources-1:0]        valid_i,          // per pipe: a fault
   input  logic [Sources*4-1:0]      code_i,           // 1 or 2
   input  logic [Sources*IdBits-1:0] id_i,             // of the particle
