@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "gpu_ref/bench_report.h"
+#include "gpu_ref/command.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
@@ -167,20 +168,11 @@ int run_bench(int argc, char** argv, const BenchMachine& machine) {
                  "Also write a line of JSON for the machine and for each row to this file");
   app.add_option("--lines", request.lines, "Also write 'name value unit' lines to this file");
   app.add_option("--machine", request.machine, "Write to this file what the devices are, and end");
-  try {
-    app.parse(argc, argv);
+  return run_command(app, argc, argv, [&] {
     if (options.engine.block % 32 != 0 || options.engine.block < 32 || options.engine.block > 256)
       throw InputError(fmt::format("--block {}: not a multiple of 32 from 32 to 256", options.engine.block));
     return run(request, machine);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  } catch (const InputError& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 2;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "cuboct-gpu: {}\n", e.what());
-    return 1;
-  }
+  });
 }
 
 }  // namespace cuboct::gpu

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "gpu_ref/bench.h"
+#include "gpu_ref/command.h"
 #include "gpu_ref/lps_compare.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
@@ -207,18 +208,7 @@ int run_lps_bench(int argc, char** argv) {
   Request request;
   CLI::App app{"Runs a linear peridynamic solid on a GPU, and measures it", "cuboct-gpu lps"};
   add_options(app, request);
-  try {
-    app.parse(argc, argv);
-    return run(request);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  } catch (const InputError& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 2;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "cuboct-gpu: {}\n", e.what());
-    return 1;
-  }
+  return run_command(app, argc, argv, [&] { return run(request); });
 }
 
 }  // namespace cuboct::gpu

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "gpu_ref/bench.h"
+#include "gpu_ref/command.h"
 #include "gpu_ref/samples.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
@@ -190,18 +191,7 @@ int run_samples_bench(int argc, char** argv) {
       ->check(CLI::Range(1e-9, 1.0))
       ->capture_default_str();
   app.add_flag("--no-energy", request.no_energy, "Measure no energies");
-  try {
-    app.parse(argc, argv);
-    return run(request);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  } catch (const InputError& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 2;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "cuboct-gpu: {}\n", e.what());
-    return 1;
-  }
+  return run_command(app, argc, argv, [&] { return run(request); });
 }
 
 }  // namespace cuboct::gpu
