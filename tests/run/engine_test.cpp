@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What a run leaves is the same, whichever engine did it.
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <csignal>
@@ -221,7 +224,7 @@ TEST_P(EveryEngine, GoesOnFromItsCheckpointOrSaysThatItLeavesNone) {
 // Killed, as far as files can tell, between a checkpoint and the next.
 void EveryEngine::go_on(const Bed& bed, uint64_t steps) {
   RunRequest request = everything(steps);
-  const std::string path = testing::TempDir() + "run_tests." + GetParam().name;
+  const std::string path = fmt::format("{}run_tests.{}.{}", testing::TempDir(), GetParam().name, getpid());
   remove_checkpoint(path);
   request.checkpoint.path = path;
   request.checkpoint.every_steps = 5;

@@ -2,6 +2,9 @@
 // A run in two parts is the run in one: the second part begins with the last state of the first, read from
 // its trace.
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
@@ -26,7 +29,8 @@ const std::string kGrips = kRoot + "/scenes/boards/grips.toml";
 // A directory that is gone with the test.
 class Directory {
  public:
-  explicit Directory(const std::string& name) : path(testing::TempDir() + "start_test." + name) {
+  explicit Directory(const std::string& name)
+      : path(fmt::format("{}start_test.{}.{}", testing::TempDir(), name, getpid())) {
     fs::remove_all(path);
     fs::create_directories(path);
   }
