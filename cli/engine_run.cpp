@@ -80,7 +80,8 @@ EngineRun::EngineRun(const std::string& engine, const Input& input, const Loaded
   const EngineRow& row = engine_row(engine);
   if (row.here != Here::reference) {
     refuse_static(loaded.scene, fmt::format("the {} engine", engine));
-    refuse_rounds(loaded.scene.rule, fmt::format("the {} engine", engine));
+    with_places(loaded.scene, loaded.setup.plan.arch,
+                [&] { refuse_rounds(loaded.scene.rule, fmt::format("the {} engine", engine)); });
   }
   if (!row.ranks.empty()) check_workers(options.threads, options.ranks, loaded.setup.plan);
   if (!options.checkpoint_every.empty()) read_interval(options.checkpoint_every, request.checkpoint);

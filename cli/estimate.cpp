@@ -66,13 +66,15 @@ uint64_t round_interval(uint64_t steps, double most) {
 
 // A rule of rounds keeps its bonds from the start: a neighbour is one, with all rounds and all that it keeps.
 // Times are those of the linear peridynamic solid with 17 bonds a particle, on one core of an EPYC: where
-// none breaks, and while an eighth of them does.
+// none breaks, and while an eighth of them does. Bonds of the moment are those of Tersoff's potential, a
+// sheet of carbon and a block of silicon.
 EngineCost cost_of(const EngineRow& engine, const Scene& scene) {
   EngineCost cost = engine.cost;
   const RoundsRule* rounds = rounds_of(scene.rule);
   if (rounds == nullptr || engine.here != Here::reference) return cost;
   const bool breaks = std::isfinite(rounds->bond_reach());
   cost.neighbour_time = breaks ? 38e-9 : 13e-9, cost.neighbour = 70;
+  if (rounds->declaration().bonds == BondRange::current) cost.neighbour_time = 10e-9;
   return cost;
 }
 

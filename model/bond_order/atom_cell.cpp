@@ -128,6 +128,24 @@ void rest_within(TersoffForces& forces, AtomCell& cell, double force) {
       fmt::format("a cell of {} atoms has not come to rest in {} steps", cell.x.size(), kMost));
 }
 
+double largest_curvature(TersoffForces& forces, const AtomCell& cell) {
+  constexpr int kTurns = 500;
+  BondList list = list_for(forces);
+  const Eigen::MatrixXd hessian = hessian_of(forces, list, cell);
+  // Neighbours move against each other: numbers without a pattern.
+  Eigen::VectorXd direction(hessian.rows());
+  for (Eigen::Index k = 0; k < direction.size(); ++k)
+    direction[k] = std::sin(12.9898 * static_cast<double>(k) + 1);
+  double largest = 0;
+  for (int turn = 0; turn < kTurns && direction.norm() > 0; ++turn) {
+    direction.normalize();
+    const Eigen::VectorXd bent = hessian * direction;
+    largest = direction.dot(bent);
+    direction = bent;
+  }
+  return largest;
+}
+
 Mat3 stress_of(TersoffForces& forces, const AtomCell& cell) {
   BondList list = list_for(forces);
   forces_on(forces, list, cell, true);

@@ -33,6 +33,10 @@ void rest_within(TersoffForces& forces, AtomCell& cell, double force);
 // rest.
 AtomCell at_no_pressure(TersoffForces& forces, const AtomCell& cell);
 
+// The largest eigenvalue of d2E/dx2, in energy/length^2: of the stiffest motion that repeats with the box.
+// From below, within a part in a thousand.
+double largest_curvature(TersoffForces& forces, const AtomCell& cell);
+
 // Per volume of the box, tension positive.
 Mat3 stress_of(TersoffForces& forces, const AtomCell& cell);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "model/base/parallel.h"
 
@@ -47,11 +48,19 @@ void TersoffForces::place(const BondList& list, const AtomBox& box, std::span<co
   }
 }
 
-void TersoffForces::evaluate(const BondList& list, const AtomBox& box, std::span<const Vec3> x,
-                             std::span<Vec3> f, const TersoffAsked& asked) {
-  if (list.atoms() != x.size() || f.size() != x.size())
-    throw std::invalid_argument(
-        fmt::format("{} positions, a list of {} and {} forces", x.size(), list.atoms(), f.size()));
+TersoffSweep TersoffForces::sweep() {
+  return {list_,
+          x_.data(),
+          partial_.data(),
+          force_.data(),
+          sums_ ? energies_.data() : nullptr,
+          sums_ ? virials_.data() : nullptr};
+}
+
+void TersoffForces::begin(const BondList& list, const AtomBox& box, std::span<const Vec3> x,
+                          const TersoffAsked& asked) {
+  if (list.atoms() != x.size())
+    throw std::invalid_argument(fmt::format("{} positions and a list of {}", x.size(), list.atoms()));
   if (list.lanes() != bond_lanes())
     throw std::invalid_argument("the list is of other lanes than the vectors here");
   if (!asked.element.empty() && asked.element.size() != x.size())
@@ -59,41 +68,69 @@ void TersoffForces::evaluate(const BondList& list, const AtomBox& box, std::span
   for (const uint8_t element : asked.element)
     if (element >= tersoff_.elements.size())
       throw std::invalid_argument(fmt::format("no element {}", element));
+  list_ = &list;
+  sums_ = asked.sums;
   lanes_ = list.lanes();
   place(list, box, x, asked);
-  const size_t groups = list.groups(), slots = list.slots(), rows = list.rows();
-  reserve(partial_, 4 * rows * lanes_), reserve(force_, 4 * slots);
-  if (asked.sums) reserve(energies_, slots), reserve(virials_, 6 * slots);
-  const TersoffSweep sweep{&list,
-                           x_.data(),
-                           partial_.data(),
-                           force_.data(),
-                           asked.sums ? energies_.data() : nullptr,
-                           asked.sums ? virials_.data() : nullptr};
-  const size_t parts = std::max<size_t>(1, (groups + kGroupsOfPart - 1) / kGroupsOfPart);
-  const auto begin = [&](size_t part) { return groups * part / parts; };
-  const int threads = std::max(1, asked.threads);
-  const size_t each = tersoff_scratch(list.most_rows()) + kAlign / sizeof(double);
-  reserve(memory_, each * static_cast<size_t>(threads) + kAlign);
-  for_each_part(parts, threads, [&](size_t part, int member) {
-    if (tersoff_.elements.size() > 1)
-      return tersoff_plain_partials(tersoff_, sweep, begin(part), begin(part + 1));
-    auto at = reinterpret_cast<uintptr_t>(memory_.data() + each * static_cast<size_t>(member));
-    at = (at + kAlign - 1) / kAlign * kAlign;
-    tersoff_partials(tersoff_.terms[0], sweep, begin(part), begin(part + 1), reinterpret_cast<double*>(at));
-  });
-  for_each_part(parts, threads, [&](size_t part, int) {
-    tersoff_collect(sweep, begin(part), begin(part + 1));
-    for (size_t i = begin(part) * lanes_; i < std::min(x.size(), begin(part + 1) * lanes_); ++i)
-      f[i] = Vec3(force_[4 * i], force_[4 * i + 1], force_[4 * i + 2]);
-  });
-  if (asked.sums) add_up(x.size());
+  reserve(partial_, 4 * list.rows() * lanes_), reserve(force_, 4 * list.slots());
+  if (sums_) reserve(energies_, list.slots()), reserve(virials_, 6 * list.slots());
 }
 
-void TersoffForces::add_up(size_t atoms) {
+void TersoffForces::first_sweep(size_t first, size_t last) {
+  if (tersoff_.elements.size() > 1) return tersoff_plain_partials(tersoff_, sweep(), first, last);
+  thread_local std::vector<double> memory;  // of all objects that a thread serves
+  reserve(memory, tersoff_scratch(list_->most_rows()) + kAlign / sizeof(double));
+  auto at = reinterpret_cast<uintptr_t>(memory.data());
+  at = (at + kAlign - 1) / kAlign * kAlign;
+  tersoff_partials(tersoff_.terms[0], sweep(), first, last, reinterpret_cast<double*>(at));
+}
+
+void TersoffForces::second_sweep(size_t first, size_t last, std::span<Vec3> f) {
+  tersoff_collect(sweep(), first, last);
+  for (size_t i = first * lanes_; i < std::min(f.size(), last * lanes_); ++i)
+    f[i] = Vec3(force_[4 * i], force_[4 * i + 1], force_[4 * i + 2]);
+}
+
+void TersoffForces::evaluate(const BondList& list, const AtomBox& box, std::span<const Vec3> x,
+                             std::span<Vec3> f, const TersoffAsked& asked) {
+  if (f.size() != x.size())
+    throw std::invalid_argument(fmt::format("{} positions and {} forces", x.size(), f.size()));
+  begin(list, box, x, asked);
+  const size_t groups = list.groups(),
+               parts = std::max<size_t>(1, (groups + kGroupsOfPart - 1) / kGroupsOfPart);
+  const auto from = [&](size_t part) { return groups * part / parts; };
+  for_each_part(parts, asked.threads, [&](size_t part, int) { first_sweep(from(part), from(part + 1)); });
+  for_each_part(parts, asked.threads, [&](size_t part, int) { second_sweep(from(part), from(part + 1), f); });
+  if (sums_) add_up();
+}
+
+void TersoffForces::sum_up(int threads) {
+  if (!std::exchange(sums_, true)) reserve(energies_, list_->slots()), reserve(virials_, 6 * list_->slots());
+  const size_t groups = list_->groups(),
+               parts = std::max<size_t>(1, (groups + kGroupsOfPart - 1) / kGroupsOfPart);
+  for_each_part(parts, threads,
+                [&](size_t part, int) { first_sweep(groups * part / parts, groups * (part + 1) / parts); });
+  add_up();
+}
+
+uint64_t TersoffForces::bonds() const {
+  const auto at = [&](size_t place) { return Vec3(x_[place], x_[place + 1], x_[place + 2]); };
+  const auto element = [&](size_t place) { return static_cast<size_t>(x_[place + 3]); };
+  uint64_t ends = 0;
+  for (size_t i = 0; i < list_->atoms(); ++i)
+    for (size_t row = list_->first_row()[i / lanes_]; row < list_->first_row()[i / lanes_ + 1]; ++row) {
+      const size_t other = list_->entry()[row * lanes_ + i % lanes_];
+      if (other == 4 * i) continue;
+      const TersoffTerm<double>& bond = tersoff_.term(element(4 * i), element(other), element(other));
+      ends += (at(4 * i) - at(other)).norm() < bond.R + bond.D;
+    }
+  return ends / 2;
+}
+
+void TersoffForces::add_up() {
   energy_ = 0;
   virial_.setZero();
-  for (size_t i = 0; i < atoms; ++i) energy_ += energies_[i], virial_ += virial_of(i);
+  for (size_t i = 0; i < list_->atoms(); ++i) energy_ += energies_[i], virial_ += virial_of(i);
 }
 
 Mat3 TersoffForces::virial_of(size_t atom) const {

@@ -9,6 +9,7 @@
 //   forces.evaluate(list, box, x, f, {.sums = true});
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,17 @@ class TersoffForces {
   void evaluate(const BondList& list, const AtomBox& box, std::span<const Vec3> x, std::span<Vec3> f,
                 const TersoffAsked& asked = {});
 
+  // The same in parts, for who runs the sweeps: begin() with what is asked, the first sweep over all groups,
+  // then the second, each group once and by any thread, then the sums. `list` and the lists of `asked` must
+  // stay until then.
+  void begin(const BondList& list, const AtomBox& box, std::span<const Vec3> x, const TersoffAsked& asked);
+  void first_sweep(size_t first, size_t last);
+  void second_sweep(size_t first, size_t last, std::span<Vec3> f);
+  // Energy and virial of the positions of the last begin(), whatever it asked.
+  void sum_up(int threads);
+  // Pairs of the last begin() that are within the cutoff, each once.
+  uint64_t bonds() const;
+
   // Of the last evaluation with sums. Summed by ascending atom.
   double energy() const { return energy_; }
   // dE/dstrain = sum_ij d_ij (x) G_ij, symmetric; over the box's volume the stress, tension positive.
@@ -47,15 +59,17 @@ class TersoffForces {
 
  private:
   void place(const BondList& list, const AtomBox& box, std::span<const Vec3> x, const TersoffAsked& asked);
-  void add_up(size_t atoms);
+  void add_up();
+  TersoffSweep sweep();
 
   Tersoff tersoff_;
+  const BondList* list_ = nullptr;  // of the last begin()
+  bool sums_ = false;
   size_t lanes_ = 1;
   double energy_ = 0;
   Mat3 virial_ = Mat3::Zero();
-  // Aligned for vectors.
-  std::vector<double> memory_;
-  std::vector<double> x_, partial_, force_, energies_, virials_;
+  std::vector<double> x_;
+  std::vector<double> partial_, force_, energies_, virials_;
 };
 
 }  // namespace cuboct

@@ -212,4 +212,16 @@ Tersoff read_tersoff(const std::string& path, const std::vector<std::string>& el
   return tersoff;
 }
 
+std::vector<std::string> tersoff_elements(const std::string& path) {
+  const std::vector<Word> words = words_of(path);
+  std::vector<std::string> elements;
+  for (size_t at = 0; at + 17 <= words.size(); at += 17)
+    if (words[at].text == words[at + 1].text && words[at].text == words[at + 2].text)
+      elements.push_back(words[at].text);
+  if (elements.empty())
+    throw InputError(fmt::format("{} has no entry of one element", line_text(path)),
+                     "an entry has three elements and 14 numbers");
+  return elements;
+}
+
 }  // namespace cuboct

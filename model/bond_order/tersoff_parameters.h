@@ -36,4 +36,7 @@ Tersoff tersoff_of(const std::string& element, const TersoffTerm<double>& term);
 // and comments behind #. InputError with file, line and column.
 Tersoff read_tersoff(const std::string& path, const std::vector<std::string>& elements);
 
+// The elements of which such a file has entries of their own (element element element), in its order.
+std::vector<std::string> tersoff_elements(const std::string& path);
+
 }  // namespace cuboct

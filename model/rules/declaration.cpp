@@ -43,7 +43,8 @@ void check_round(const RuleDeclaration& rule, const RuleRound& round, std::set<s
 
 std::vector<std::string> texts(const std::vector<RuleField>& fields) {
   std::vector<std::string> out;
-  for (const RuleField& field : fields) out.push_back(fmt::format("{} ({})", field.name, field.numbers));
+  for (const RuleField& field : fields)
+    out.push_back(fmt::format("{} ({}{})", field.name, field.numbers, field.of_bonds ? " a bond" : ""));
   return out;
 }
 
@@ -76,9 +77,10 @@ void check(const RuleDeclaration& rule) {
     refuse(rule, "its last round makes no 'force'");
 }
 
-int numbers_of(const std::vector<RuleField>& fields) {
+int numbers_of(const std::vector<RuleField>& fields, bool of_bonds) {
   int sum = 0;
-  for (const RuleField& field : fields) sum += field.numbers;
+  for (const RuleField& field : fields)
+    if (field.of_bonds == of_bonds) sum += field.numbers;
   return sum;
 }
 
@@ -94,7 +96,11 @@ std::vector<DeclarationLine> lines_of(const RuleDeclaration& rule) {
                    rule.bonds == BondRange::reference ? "bonds of the body as packed"
                                                       : "bonds between those that are near now"});
   const auto fields = [&](const char* name, const std::vector<RuleField>& of) {
-    if (!of.empty()) lines.push_back({name, list(texts(of)), fmt::format("{} numbers each", numbers_of(of))});
+    if (of.empty()) return;
+    const int bonds = numbers_of(of, true);
+    lines.push_back({name, list(texts(of)),
+                     fmt::format("{} numbers each{}", numbers_of(of),
+                                 bonds == 0 ? "" : fmt::format(", and {} a bond", bonds))});
   };
   fields("particle fields", rule.particle);
   fields("bond constants", rule.constants);

@@ -20,7 +20,8 @@ struct RuleField {
   std::string name;
   int numbers = 1;
   std::string unit;
-  std::string what;  // one line for people
+  std::string what;       // one line for people
+  bool of_bonds = false;  // so many for each bond that the particle has
 };
 
 struct RuleRound {
@@ -55,8 +56,8 @@ inline constexpr const char* kForceField = "force";
 // without force; bond fields of bonds that are not kept.
 void check(const RuleDeclaration& declaration);
 
-// Numbers of all fields together.
-int numbers_of(const std::vector<RuleField>& fields);
+// Numbers of all fields together: of those that a particle has once, or of those that it has for each bond.
+int numbers_of(const std::vector<RuleField>& fields, bool of_bonds = false);
 // The field's place in the list. std::logic_error where there is none.
 size_t place_of(const std::vector<RuleField>& fields, const std::string& name);
 

@@ -97,6 +97,8 @@ double RoundsRun::largest_speed() { return engine_->largest_speed() * scene_.rul
 Counters RoundsRun::counters() {
   Counters counters{{"threads", options_->threads},
                     {"bonds", static_cast<double>(engine_->terms()->bonds())}};
+  // Bonds of the moment are whole or are not there.
+  if (rounds_of(scene_.rule)->declaration().bonds == BondRange::current) return counters;
   double damaged = 0, most = 0;
   for (size_t i = 0; i < body_.size(); ++i) {
     const double damage = engine_->terms()->damage(i);

@@ -106,7 +106,8 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
   TimeLimits limits;
   const double cutoff = rule.cutoff();
   if (const RoundsRule* rounds = rounds_of(rule)) {
-    limits.given.meet(rounds->stable_time_step(rule.mass, scene.pitch), "the perfect packing");
+    limits.given.meet(rounds->stable_time_step(rule.mass, scene.pitch),
+                      scene.pitch > 0 ? "the perfect packing" : "the perfect crystal");
     limits.automatic = limits.given;
     return limits;
   }
@@ -187,8 +188,9 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
     scene.loading = read_static(*stage, scene);
   else if (usual_static)
     scene.loading = read_static(run, scene);
-  if (const RoundsRule* rounds = rounds_of(scene.rule);
-      scene.loading && rounds != nullptr && std::isfinite(rounds->bond_reach()))
+  if (const RoundsRule* rounds = rounds_of(scene.rule); scene.loading && rounds != nullptr &&
+                                                        rounds->declaration().bonds == BondRange::reference &&
+                                                        std::isfinite(rounds->bond_reach()))
     (run.has("static") ? run : *stage)
         .at("static")
         .fail("static loading knows no bonds that break", "leave out what breaks them, or let the body move");
@@ -276,7 +278,9 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   const StagePart* stage = chosen ? &*chosen : nullptr;
   auto packing = read_packing(root);
   PackingChoice* packed = packing ? &*packing : nullptr;
-  const std::optional<RuleChoice> rounds = read_rule(root, packed);
+  auto crystal = read_crystal(root);
+  CrystalChoice* grown = crystal ? &*crystal : nullptr;
+  const std::optional<RuleChoice> rounds = read_rule(root, packed, grown);
   scene.rule.law = rounds ? rounds_law(rounds->reach, nullptr) : read_law(root, packed);
   if (packing) {
     scene.pitch = packing->fcc.pitch;
@@ -286,7 +290,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   read_damping(root, scene);
   if (stage) read_damping(*stage, scene);
   const Regions regions(root);
-  read_body(root, stage, regions, packed, scene);
+  read_body(root, stage, regions, packed, grown, scene);
   if (stage) stage->check_ramps();
   if (rounds) scene.rule.law = rounds_law(rounds->reach, rounds->make(root, regions, scene));
   read_probes(root, regions, scene);

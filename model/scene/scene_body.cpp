@@ -99,9 +99,20 @@ void check_grains(const GrainChoice& choice, const GrainDomain& domain, double p
     table.at("size").fail(fmt::format("{:.3g} grains: at most {:g} are drawn", count, kMostGrains));
 }
 
+SitePeriods periods_of(const PackingChoice& packing) {
+  return {[&packing](size_t a, const ConfigValue& cells) {
+            if (!packing.along[a]) cells.fail("'cells' needs 'axes' of whole numbers; give 'size' instead");
+            return packing.along[a]->norm() * packing.fcc.cell();
+          },
+          [&packing](size_t a, double extent) {
+            return !packing.repeats_by_crystal(a) || is_period(packing.fcc, extent * Vec3::Unit(a));
+          }};
+}
+
 void pack_geometry(const ConfigTable& root, const Regions& regions, const PackingChoice& packing,
                    Scene& scene) {
-  const auto [boxed, periodic] = read_box(root, &packing);
+  const SitePeriods sites = periods_of(packing);
+  const auto [boxed, periodic] = read_box(root, &sites);
   for (size_t a = 0; a < 3; ++a)
     if (periodic[a]) scene.periodic.extent[a] = boxed.extent[a];
   scene.periodic.origin = boxed.origin;
@@ -488,7 +499,7 @@ void read_velocities(const ConfigTable& root, const Regions& regions, const std:
 
 }  // namespace
 
-std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const PackingChoice* packing) {
+std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const SitePeriods* sites) {
   Periodic box;
   std::array<bool, 3> periodic{};
   const auto table = root.table_at("box");
@@ -496,22 +507,20 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
   if (table->has("periodic")) periodic = table->axes("periodic");
   box.origin = table->vector_or("origin", quantity::length, Vec3::Zero());
   table->not_both("cells", "size");
-  if (packing != nullptr && table->has("cells")) {
+  if (sites != nullptr && table->has("cells")) {
     const ConfigValue cells = table->at("cells");
     const Vec3 n = cells.vector(quantity::number);
     for (size_t a = 0; a < 3; ++a) {
       if (!(n[a] >= 1 && n[a] == std::round(n[a])))
         cells.fail("'cells' must hold three whole numbers of at least 1");
-      if (!packing->along[a]) cells.fail("'cells' needs 'axes' of whole numbers; give 'size' instead");
-      box.extent[a] = n[a] * packing->along[a]->norm() * packing->fcc.cell();
+      box.extent[a] = n[a] * sites->edge(a, cells);
     }
   } else {
     const ConfigValue size = table->at("size");
     box.extent = size.vector(quantity::length);
     if (!(box.extent.minCoeff() > 0)) size.fail("'size' must be greater than 0 along each axis");
     for (size_t a = 0; a < 3; ++a)
-      if (packing != nullptr && periodic[a] && packing->repeats_by_crystal(a) &&
-          !is_period(packing->fcc, box.extent[a] * Vec3::Unit(a)))
+      if (sites != nullptr && periodic[a] && !sites->repeats(a, box.extent[a]))
         size.fail(fmt::format("the packing does not repeat after {:.9g} m along {}", box.extent[a], "xyz"[a]),
                   "give 'cells' instead");
   }
@@ -520,7 +529,7 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
 }
 
 void read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
-               const PackingChoice* packing, Scene& scene) {
+               const PackingChoice* packing, const CrystalChoice* crystal, Scene& scene) {
   const std::vector<Material> materials = read_materials(root);
   std::vector<std::string> names;
   for (const Material& material : materials) names.push_back(material.name);
@@ -528,6 +537,8 @@ void read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
 
   if (packing != nullptr)
     pack_geometry(root, regions, *packing, scene);
+  else if (crystal != nullptr)
+    place_crystal(root, regions, *crystal, scene);
   else
     read_single_box(root, scene);
   Fastest fastest;

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "model/base/error_parts.h"
+#include "model/bond_order/crystal_rest.h"
 #include "model/scene/config.h"
 #include "model/scene/grains.h"
 #include "model/scene/packing.h"
@@ -39,6 +41,22 @@ struct PackingChoice {
   }
 };
 std::optional<PackingChoice> read_packing(const ConfigTable& root);
+
+// [crystal]. Absent in scenes of a packing, or where all particles are listed.
+struct CrystalChoice {
+  AtomLattice lattice = AtomLattice::diamond;
+  double bond = 0;  // m, between nearest neighbours; 0: "relaxed", to be found from the potential
+  Vec3 offset = Vec3::Zero();
+  bool turned = false;  // graphene: zigzag rows along y
+  ConfigTable table;
+
+  double edge(size_t axis) const;  // m, of the cell that repeats
+  bool repeats(size_t axis) const { return axis < 2 || lattice == AtomLattice::diamond; }
+};
+std::optional<CrystalChoice> read_crystal(const ConfigTable& root);
+// Positions of [crystal] in [box] and [geometry], and the axes that repeat. Fills scene.body and .periodic.
+void place_crystal(const ConfigTable& root, const Regions& regions, const CrystalChoice& crystal,
+                   Scene& scene);
 
 // The table of the stage that is chosen, as one of its parts.
 class StagePart : public ConfigTable {
@@ -79,20 +97,47 @@ struct RuleChoice {
   std::function<std::shared_ptr<const RoundsRule>(const ConfigTable& root, const Regions&, const Scene&)>
       make;
 };
-std::optional<RuleChoice> read_rule(const ConfigTable& root, const PackingChoice* packing);
+// Sets crystal->bond where it was "relaxed".
+std::optional<RuleChoice> read_rule(const ConfigTable& root, const PackingChoice* packing,
+                                    CrystalChoice* crystal);
+// Its kinds.
+RuleChoice read_lps_rule(const ConfigTable& table, const PackingChoice* packing);
+RuleChoice read_tersoff_rule(const ConfigTable& table, CrystalChoice* crystal);
+// What no rule of rounds can do.
+void check_rounds_body(const ConfigTable& root, const Scene& scene);
+
+// What `make` makes; an error of it that knows no file gets the place of `value`.
+template <typename Make>
+auto placed_at(const ConfigValue& value, Make make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    if (error.place() != nullptr) throw;
+    const ErrorParts parts = parts_of(error);
+    value.fail(parts.message, parts.hint);
+  }
+}
+
 // The largest of strength |df/dr| over the pairs of materials, from the pitch (0: the law's core) to the
 // cutoff, N/m, from 4096 samples.
 double largest_stiffness(const Rule& rule, double pitch);
 
-// The box of [periodic] or `cells`; the second marks the axes that repeat.
-std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const PackingChoice* packing);
+// After what the sites of a packing or a crystal repeat.
+struct SitePeriods {
+  // m, of a cell along an axis; fails at `cells` where there is none.
+  std::function<double(size_t axis, const ConfigValue& cells)> edge;
+  std::function<bool(size_t axis, double extent)> repeats;
+};
+// The box of [periodic] or `cells`; the second marks the axes that repeat. `sites`: null where all particles
+// are listed.
+std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const SitePeriods* sites);
 
-// Everything that gives particles: positions and velocities ([packing], [geometry], [[particle]],
+// Everything that gives particles: positions and velocities ([packing], [crystal], [geometry], [[particle]],
 // [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and .strength, and with
 // planes of symmetry scene.whole. scene.rule needs law, damping and mass. `stage`: whose keys replace those
 // of the root.
 void read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
-               const PackingChoice* packing, Scene& scene);
+               const PackingChoice* packing, const CrystalChoice* crystal, Scene& scene);
 
 // The largest stable time step of the perfect packing in s, 0 if unknown. With all frequencies up to w and
 // all damping rates up to g (rates of the matrices K/m and C/m) the update v += -dt (K/m x + C/m v), x += dt

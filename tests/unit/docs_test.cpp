@@ -164,6 +164,10 @@ std::set<std::string> scene_keys() {
     std::ofstream(path) << "mass = \"1 g\"\n" << rule << "[run]\ndt = \"1 ns\"\nsteps = 1\n";
     read_scene(path.string());
   }
+  std::ofstream(path) << "mass = \"28 u\"\ncrystal = { lattice = \"diamond\", edge = \"5.4 angstrom\" }\n"
+                         "box = { cells = [2, 2, 2] }\n[rule]\nkind = \"tersoff\"\npotential = \"si_1989\"\n"
+                         "[run]\nsteps = 1\n";
+  read_scene(path.string());
   std::filesystem::remove(path);
   record_config_keys(nullptr);
   return keys;
