@@ -8,8 +8,10 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "cli/answer.h"
+#include "cli/learn_cracks.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
@@ -51,8 +53,8 @@ Items items_of(const learn::LearnStudy& study, const Learned& found) {
   Items items;
   items.add("study", study.title);
   items.add("atoms", static_cast<uint64_t>(found.atoms));
-  items.add("samples", static_cast<uint64_t>(found.training), "",
-            fmt::format("and {} to validate; a bond is strained by {:.2g} % at most", found.validation,
+  items.add("samples", static_cast<uint64_t>(found.training.size()), "",
+            fmt::format("and {} to validate; a bond is strained by {:.2g} % at most", found.validation.size(),
                         100 * found.strain));
   items.add("horizon", best.horizon, "spacings", fmt::format("of {:.3g} m", found.grid.step()));
   items.add("degree", best.degree);
@@ -112,13 +114,18 @@ void run(const Options& options) {
   check_writable(out + "/summary.json");
   catch_interrupts();
   try {
-    const Learned found = learn::learn(study, out, options.jobs > 0 ? options.jobs : usable_cores());
-    const Items items = items_of(study, found);
+    const int jobs = options.jobs > 0 ? options.jobs : usable_cores();
+    const Learned found = learn::learn(study, out, jobs);
+    std::optional<learn::Cracks> cracks;
+    if (study.cracks) cracks = learn::learn_cracks(study, found, out, jobs);
+    Items items = items_of(study, found);
     write_tables(found, out);
+    if (cracks) add_cracks(items, study, *cracks), write_crack_tables(study, *cracks, out);
     write_text(out + "/summary.json", items.json());
     options.answer.close(items);
     try {
       draw(found, out);
+      if (cracks) draw_cracks(study, *cracks, out);
     } catch (const InputError& error) {
       fmt::print(stderr, "no picture: {}\n", error.what());
     }

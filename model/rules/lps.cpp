@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,6 +21,17 @@ namespace {
 double ball(const LpsMaterial& m, double k) {
   const double pi = std::numbers::pi, area = m.dimensions == 3 ? 4 * pi : 2 * pi;
   const double power = k - m.influence + m.dimensions;
+  if (!m.bernstein.empty()) {
+    // Of t^(power - 1) times each polynomial over [0, 1]: (P over j) B(power + j, P - j + 1).
+    double sum = 0;
+    const auto degree = static_cast<double>(m.bernstein.size() - 1);
+    for (size_t j = 0; j < m.bernstein.size(); ++j) {
+      const auto order = static_cast<double>(j);
+      sum += m.bernstein[j] * std::tgamma(degree + 1) / std::tgamma(order + 1) * std::tgamma(power + order) /
+             std::tgamma(power + degree + 1);
+    }
+    return area * std::pow(m.horizon, k + m.dimensions) * sum;
+  }
   // Of a sheet V is an area times a thickness, which the caller's volume has and this integral has not.
   return area * std::pow(m.horizon, k + m.dimensions) / power;
 }
@@ -78,7 +90,21 @@ void check(const LpsMaterial& m) {
 
 }  // namespace
 
-double LpsMaterial::weight(double r) const { return std::pow(horizon / r, influence); }
+double bernstein(size_t k, size_t degree, double r) {
+  double binomial = 1;
+  for (size_t j = 1; j <= k; ++j) binomial *= static_cast<double>(degree + 1 - j) / static_cast<double>(j);
+  return binomial * std::pow(r, k) * std::pow(1 - r, degree - k);
+}
+
+double LpsMaterial::weight(double r) const {
+  const double power = std::pow(horizon / r, influence);
+  if (bernstein.empty()) return power;
+  double shape = 0;
+  // A bond may be longer than the horizon by rounding.
+  for (size_t k = 0; k < bernstein.size(); ++k)
+    shape += bernstein[k] * cuboct::bernstein(k, bernstein.size() - 1, std::min(r / horizon, 1.0));
+  return power * shape;
+}
 
 double LpsMaterial::left(double most) const { return lps_left(most, critical_stretch, damage_width); }
 

@@ -29,8 +29,11 @@ struct LpsMaterial {
   double mu = 0;         // Pa
   double horizon = 0;    // m
   double influence = 0;  // p: a bond of length r has the weight (horizon/r)^p
-  double volume = 0;     // m^3, of a particle
-  double spacing = 0;    // m, of the points, over which `partial` tapers
+  // D_k of sum D_k B_k,P(r/horizon), Bernstein's polynomials of degree P = size - 1, by which the weight is
+  // multiplied; equation 35. Empty: 1.
+  std::vector<double> bernstein = {};
+  double volume = 0;   // m^3, of a particle
+  double spacing = 0;  // m, of the points, over which `partial` tapers
   LpsQuadrature quadrature = LpsQuadrature::points;
   int order = 5;           // of the polynomials that `fitted` integrates
   bool finite = true;      // bonds turn with the body; else displacements are small
@@ -48,6 +51,9 @@ struct LpsMaterial {
   double dilatation_factor() const { return dimensions * (lambda - mu); }
   double stretch_factor() const { return (dimensions == 3 ? 30 : 16) * mu; }
 };
+
+// (P over k) r^k (1 - r)^(P - k), equation 36.
+double bernstein(size_t k, size_t degree, double r);
 
 // sum w r^2 V over the bonds `full` of a particle that lacks none; without any the integral over the horizon.
 // m^5, of a sheet m^4 times its thickness.

@@ -206,14 +206,15 @@ class TermsOfBody final : public LpsTerms {
   void check_span(size_t i, const Mat3& second) const {
     const Vec3 values = Eigen::SelfAdjointEigenSolver<Mat3>(second).eigenvalues();
     const uint64_t count = bonds_.end(i) - bonds_.begin(i);
-    const double least = values[3 - m_.dimensions];
-    if (least > 1e-9 * std::abs(values[2])) return;
+    // Of a sheet one of the three is 0, out of its plane.
+    const bool unstable = values[0] < -1e-9 * std::abs(values[2]);
+    if (!unstable && values[3 - m_.dimensions] > 1e-9 * std::abs(values[2])) return;
     const std::string where =
         fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m", i, x0_[i][0], x0_[i][1], x0_[i][2]);
-    if (least < 0)
+    if (unstable)
       throw InputError(fmt::format("{}: the weights of its {} bonds are of no stable solid: their second "
                                    "moment has the eigenvalue {:.3g}",
-                                   where, count, least),
+                                   where, count, values[0]),
                        "another influence or horizon");
     throw InputError(fmt::format("{} has {} bond{} within the horizon of {:.6g} m, which do not span {} "
                                  "dimensions",

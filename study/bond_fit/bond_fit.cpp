@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <numeric>
 
 #include "model/base/interrupt.h"
 #include "model/bond_order/atom_cell.h"
 #include "study/bond_fit/kept_starts.h"
 #include "study/interrupted.h"
+#include "study/thread_time.h"
 #include "study/work.h"
 
 namespace cuboct::bond_fit {
@@ -19,12 +19,6 @@ namespace {
 
 constexpr size_t kBatch = 64;       // starts between two saves
 constexpr double kDistinct = 0.01;  // of the bounds, of some parameter: two sets are two
-
-double thread_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 Point start_point(const BondStudy& study, int number) {
   if (number == 0) return point_of(study.problem, free_of(study.from->term));
@@ -192,11 +186,11 @@ std::vector<Compared> compare_methods(const BondStudy& study, const BondFitOptio
   in_threads(
       work, "methods", options,
       [&](One& one) {
-        const double begin = thread_seconds();
+        const double begin = study::thread_seconds();
         one.found = descend(study.problem, out[one.method].method,
                             random_start(study.problem, study.seed, one.number), study.compare->evaluations,
                             one.number, &one.descent);
-        one.seconds = thread_seconds() - begin;
+        one.seconds = study::thread_seconds() - begin;
       },
       [&](One& one) {
         out[one.method].found.push_back(one.found);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
@@ -14,6 +13,7 @@
 #include "study/fit/evolution.h"
 #include "study/fit/packing_fit.h"
 #include "study/interrupted.h"
+#include "study/thread_time.h"
 #include "study/work.h"
 
 namespace cuboct::fit {
@@ -30,18 +30,12 @@ constexpr double kFar = 0.05;
 // A pressure at rest, over the strength, that counts as none.
 constexpr double kAtRest = 0.01;
 
-double thread_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 LawPoints law_of(const FitStudy& study, const Sample& sample) {
   return points_of(draw(parameters_of(study, sample), study.scale));
 }
 
 Evaluation evaluate(const FitStudy& study, const Sample& sample) {
-  const double begin = thread_seconds();
+  const double begin = study::thread_seconds();
   const Tested tested = run_test(study.test, law_of(study, sample));
   Evaluation out;
   out.sample = sample;
@@ -54,7 +48,7 @@ Evaluation evaluate(const FitStudy& study, const Sample& sample) {
   if (!tested.strain.empty()) out.largest_strain = *std::ranges::max_element(tested.strain);
   out.particle_steps = tested.particle_steps;
   out.stop = tested.stop;
-  out.seconds = thread_seconds() - begin;
+  out.seconds = study::thread_seconds() - begin;
   return out;
 }
 

@@ -187,22 +187,29 @@ struct Closed {
 
 struct Watched {
   const KernelProblem& problem;
+  bool pairs = false;
   int evaluations = 0;
   static double call(unsigned size, const double* x, double* slope, void* self) {
     auto& watched = *static_cast<Watched*>(self);
     ++watched.evaluations;
-    return watched.problem.at(Unknowns(x, x + size), slope);
+    Unknowns at(x, x + size);
+    if (watched.pairs) at[0] = 2 * at[1];
+    const double value = watched.problem.at(at, slope);
+    if (watched.pairs && slope) slope[1] += 2 * slope[0], slope[0] = 0;
+    return value;
   }
 };
 
 // NLopt ends with a negative code where rounding leaves nothing to gain: x is then the best that it had.
-int descend(const KernelProblem& problem, Unknowns& x, int most) {
-  Watched watched{problem};
+int descend(const KernelProblem& problem, Unknowns& x, const KernelSearch& of, int most) {
+  Watched watched{problem, of.pairs};
   const auto size = static_cast<unsigned>(x.size());
   const std::unique_ptr<nlopt_opt_s, Closed> search(nlopt_create(NLOPT_LD_LBFGS, size));
   Unknowns low(x.size(), -50), high(x.size(), 50);
   low[0] = low[1] = kLeast, high[0] = high[1] = 20;
   low[2] = 0, high[2] = kMostAlpha;
+  if (of.positive) std::fill(low.begin() + 3, low.end(), 0.0);
+  if (of.like) low[0] = high[0] = x[0], low[1] = high[1] = x[1];
   nlopt_set_lower_bounds(search.get(), low.data());
   nlopt_set_upper_bounds(search.get(), high.data());
   nlopt_set_min_objective(search.get(), &Watched::call, &watched);
@@ -211,6 +218,7 @@ int descend(const KernelProblem& problem, Unknowns& x, int most) {
   double least = 0;
   if (nlopt_optimize(search.get(), x.data(), &least) == NLOPT_INVALID_ARGS)
     throw std::logic_error("NLopt refuses what the search asks of it");
+  if (of.pairs) x[0] = 2 * x[1];
   return watched.evaluations;
 }
 
@@ -241,20 +249,21 @@ Unknowns start(int degree, uint64_t draw) {
 }  // namespace
 
 KernelFit fit_kernel(const Grid& grid, const std::vector<StaticSample>& training,
-                     const std::vector<StaticSample>& validation, const KernelInput& input, double horizon,
-                     int degree, uint64_t draw) {
-  const Symbol symbol(grid, horizon);
-  const KernelLoss loss(symbol, all_of(training), drawn(training.size(), draw));
+                     const std::vector<StaticSample>& validation, const KernelInput& input,
+                     const KernelSearch& of) {
+  const Symbol symbol(grid, of.horizon);
+  const KernelLoss loss(symbol, all_of(training), drawn(training.size(), of.draw));
   const KernelLoss beside(symbol, all_of(validation), std::vector<double>(validation.size(), 1));
   KernelProblem problem(symbol, loss, input);
-  Unknowns x = start(degree, draw);
+  Unknowns x = start(of.degree, of.draw);
+  if (of.like) x[0] = (of.like->lambda + of.like->mu) / kTera, x[1] = of.like->mu / kTera;
   problem.multiplier.assign(problem.constraints(x).size(), 0);
   problem.penalty = 1;
   KernelFit out;
-  const auto residual = [&](const KernelLoss& of) {
-    const Kernel k = kernel_of(x, horizon);
+  const auto residual = [&](const KernelLoss& loss_of) {
+    const Kernel k = kernel_of(x, of.horizon);
     const Symbol::Parts parts = symbol.parts(symbol.kappa(symbol.kernel_at(k.alpha, k.D)));
-    return std::sqrt(std::max(0.0, of.at(k.lambda / kTera, k.mu / kTera, parts)));
+    return std::sqrt(std::max(0.0, loss_of.at(k.lambda / kTera, k.mu / kTera, parts)));
   };
   const auto look = [&] {
     out.training = residual(loss), out.validation = residual(beside);
@@ -265,7 +274,7 @@ KernelFit fit_kernel(const Grid& grid, const std::vector<StaticSample>& training
   for (int turn = 0; turn < kOuter && out.evaluations < input.evaluations; ++turn) {
     // In pieces, so that the curve shows the way.
     for (int piece = 0; piece < 8 && out.evaluations < input.evaluations; ++piece) {
-      const int done = descend(problem, x, std::max(4, input.evaluations / 40));
+      const int done = descend(problem, x, of, std::max(4, input.evaluations / 40));
       out.evaluations += done;
       look();
       if (done < std::max(4, input.evaluations / 40)) break;
@@ -278,7 +287,7 @@ KernelFit fit_kernel(const Grid& grid, const std::vector<StaticSample>& training
     if (out.constraint < before / 2) problem.penalty *= 4;
     before = std::min(0.0, out.constraint);
   }
-  out.kernel = kernel_of(x, horizon);
+  out.kernel = kernel_of(x, of.horizon);
   return out;
 }
 

@@ -60,9 +60,18 @@ struct KernelFit {
   int evaluations = 0;
   std::vector<CurvePoint> curve;
 };
-// `draw`: samples are drawn anew, with replacement, by this seed; 0: each once. It also turns the start.
+// What is looked for.
+struct KernelSearch {
+  double horizon = 0;  // over the spacing
+  int degree = 0;
+  // Samples are drawn anew, with replacement, by this seed; 0: each once. It also turns the start.
+  uint64_t draw = 0;
+  bool positive = false;         // no D_k below 0, and so no weight of a bond
+  const Kernel* like = nullptr;  // has the moduli; null: they are learned too
+  bool pairs = false;            // lambda = mu, where dilatation leaves no force: bonds are a pair law
+};
 KernelFit fit_kernel(const Grid& grid, const std::vector<StaticSample>& training,
-                     const std::vector<StaticSample>& validation, const KernelInput& input, double horizon,
-                     int degree, uint64_t draw);
+                     const std::vector<StaticSample>& validation, const KernelInput& input,
+                     const KernelSearch& search);
 
 }  // namespace cuboct::learn

@@ -13,6 +13,7 @@
 #include "model/base/json.h"
 #include "study/interrupted.h"
 #include "study/kept_lines.h"
+#include "study/learn/field_text.h"
 #include "study/work.h"
 
 namespace cuboct::learn {
@@ -20,25 +21,12 @@ namespace {
 
 constexpr double kHeld = -1e-4;  // a constraint that is less below 0 holds
 
-std::string text_of(const std::vector<Vec3>& field) {
-  std::vector<double> flat;
-  for (const Vec3& one : field) flat.insert(flat.end(), {one[0], one[1]});
-  return json(flat);
-}
-
-std::vector<Vec3> field_of(const nlohmann::json& numbers) {
-  std::vector<Vec3> out;
-  for (size_t k = 0; k + 1 < numbers.size(); k += 2)
-    out.emplace_back(numbers.at(k).get<double>(), numbers.at(k + 1).get<double>(), 0);
-  return out;
-}
-
 std::vector<StaticSample> samples_of(const LearnStudy& study, const AtomCell& sheet,
                                      const std::vector<StaticLoad>& loads, const std::string& directory,
                                      int jobs) {
   std::map<std::string, StaticSample> known;
   study::KeptLines kept(
-      directory + "/samples.jsonl", study.data_hash, "the samples of another sheet or load",
+      directory + "/samples.jsonl", study.static_hash, "the samples of another sheet or load",
       [&](const nlohmann::json& line) {
         known[line.at("name")] = {field_of(line.at("u")), field_of(line.at("b")), line.at("strain")};
       });
@@ -52,8 +40,8 @@ std::vector<StaticSample> samples_of(const LearnStudy& study, const AtomCell& sh
                         const std::lock_guard lock(guard);
                         kept.add(json_object({{"name", json(load.name)},
                                               {"strain", json(sample.strain)},
-                                              {"u", text_of(sample.u)},
-                                              {"b", text_of(sample.b)}}));
+                                              {"u", text_of_field(sample.u)},
+                                              {"b", text_of_field(sample.b)}}));
                         known[load.name] = std::move(sample);
                       }});
   }
@@ -84,23 +72,22 @@ size_t best_of(const std::vector<Tried>& tried) {
 Learned learn(const LearnStudy& study, const std::string& directory, int jobs) {
   const AtomCell sheet = resting_sheet(study.sheet);
   Learned out;
-  out.grid = grid_of(study, sheet);
+  out.grid = grid_of(study, sheet, study.grid.points);
   out.atoms = sheet.x.size();
   for (const double horizon : study.kernel.horizons) Symbol(out.grid, horizon);  // refuses before the work
   const std::vector<StaticLoad> loads = static_loads(study, sheet);
   const std::vector<StaticSample> samples = samples_of(study, sheet, loads, directory, jobs);
-  std::vector<StaticSample> training, validation;
   for (size_t k = 0; k < loads.size(); ++k) {
-    (loads[k].training ? training : validation).push_back(samples[k]);
+    (loads[k].training ? out.training : out.validation).push_back(samples[k]);
     out.strain = std::max(out.strain, samples[k].strain);
   }
-  out.training = training.size(), out.validation = validation.size();
   std::vector<study::Piece> pieces;
   for (const double horizon : study.kernel.horizons)
     for (const int degree : study.kernel.degrees) out.tried.push_back({horizon, degree, {}});
   const auto fit = [&](const Tried& one, uint64_t draw) {
     if (interrupted()) throw study::Interrupted();
-    return fit_kernel(out.grid, training, validation, study.kernel, one.horizon, one.degree, draw);
+    return fit_kernel(out.grid, out.training, out.validation, study.kernel,
+                      {.horizon = one.horizon, .degree = one.degree, .draw = draw});
   };
   for (Tried& one : out.tried) pieces.push_back({1, [&] { one.fit = fit(one, 0); }});
   study::work_off(std::move(pieces), jobs, "kernels", true);

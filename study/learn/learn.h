@@ -13,7 +13,8 @@ struct Tried {
 };
 struct Learned {
   Grid grid;
-  size_t atoms = 0, training = 0, validation = 0;
+  size_t atoms = 0;
+  std::vector<StaticSample> training, validation;
   double strain = 0;             // the largest of a bond in all samples
   std::vector<Tried> tried;      // each horizon with each degree
   size_t best = 0;               // of those: the least validation residual among those whose constraints hold

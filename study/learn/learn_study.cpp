@@ -17,7 +17,7 @@ namespace {
 constexpr double kElectronVolt = 1.602176634e-19;                              // J
 constexpr double kAngstrom = 1e-10, kPicosecond = 1e-12;                       // m, s
 constexpr double kMassUnit = kElectronVolt * 1e-24 / (kAngstrom * kAngstrom);  // kg
-constexpr int kMostCells = 400, kMostPoints = 100, kMostSeeds = 100, kMostDegree = 12;
+constexpr int kMostCells = 400, kMostPoints = 100, kMostFrames = 1000, kMostSeeds = 100, kMostDegree = 12;
 
 double length(const ConfigTable& table, const char* key, double otherwise, const Range& range) {
   return table.number_or(key, quantity::length, otherwise * kAngstrom, range) / kAngstrom;
@@ -26,6 +26,10 @@ double force(const ConfigTable& table, const char* key, double otherwise) {
   constexpr double kUnit = kElectronVolt / kAngstrom;
   return table.number_or(key, quantity::force, otherwise * kUnit, Range::positive()) / kUnit;
 }
+double time(const ConfigTable& table, const char* key, double otherwise) {
+  return table.number_or(key, quantity::time, otherwise * kPicosecond, Range::positive()) / kPicosecond;
+}
+
 SheetInput read_sheet(const ConfigTable& table) {
   SheetInput out;
   const std::vector<std::string> names = tersoff_set_names();
@@ -45,7 +49,11 @@ SheetInput read_sheet(const ConfigTable& table) {
 GridInput read_grid(const ConfigTable& table) {
   GridInput out;
   out.points = static_cast<int>(table.at("points").integer(6, kMostPoints));
+  out.fine_points = static_cast<int>(table.integer_or("fine_points", 6, kMostPoints, out.fine_points));
+  out.coarse_points = static_cast<int>(table.integer_or("coarse_points", 6, kMostPoints, out.coarse_points));
   out.radius = table.number_or("radius", quantity::number, out.radius, {.low = 1, .high = 5});
+  out.noise = length(table, "noise", out.noise, Range::positive());
+  out.tube = length(table, "tube", out.tube, Range::positive());
   table.done();
   return out;
 }
@@ -66,6 +74,21 @@ StaticInput read_static(const ConfigTable& table) {
   out.force = force(table, "force", out.force);
   for (const ConfigTable& disc : table.tables("disc")) out.discs.push_back(read_disc(disc));
   if (out.discs.empty()) table.fail("no [[static.disc]]: there is nothing to validate with");
+  table.done();
+  return out;
+}
+
+FractureInput read_fracture(const ConfigTable& table) {
+  FractureInput out;
+  out.slit = length(table, "slit", out.slit, Range::positive());
+  out.grip = length(table, "grip", out.grip, Range::positive());
+  out.velocity = table.number("velocity", quantity::velocity, Range::positive()) * kPicosecond / kAngstrom;
+  out.push = force(table, "push", out.push);
+  out.duration = time(table, "duration", out.duration);
+  out.frames = static_cast<int>(table.integer_or("frames", 4, kMostFrames, out.frames));
+  out.interval = time(table, "interval", out.interval);
+  out.dt = time(table, "dt", out.dt);
+  if (out.dt > out.interval) table.at("dt").fail("dt is longer than 'interval'");
   table.done();
   return out;
 }
@@ -92,6 +115,34 @@ KernelInput read_kernel(const ConfigTable& table) {
   return out;
 }
 
+StretchInput read_stretch(const ConfigTable& table, const FractureInput& fracture) {
+  StretchInput out;
+  out.positive = table.boolean_or("positive", out.positive);
+  out.horizon = table.number_or("horizon", quantity::number, out.horizon, Range::between(2, 10));
+  out.degree = static_cast<int>(table.integer_or("degree", 0, kMostDegree, out.degree));
+  out.width = table.number_or("width", quantity::number, out.width, Range::positive());
+  out.low = table.number_or("low", quantity::number, out.low, Range::positive());
+  out.high = table.number_or("high", quantity::number, out.high, Range::positive());
+  if (out.low >= out.high) table.at("high").fail("'high' must be above 'low'");
+  if (const auto frames = table.find("frames")) {
+    const std::vector<ConfigValue> items = frames->items();
+    if (items.size() != 2) frames->fail("'frames' takes the first and the last frame");
+    for (size_t k = 0; k < 2; ++k) out.frames[k] = static_cast<int>(items[k].integer(1, fracture.frames - 1));
+    if (out.frames[0] > out.frames[1]) frames->fail("'frames' takes the first and the last frame");
+  }
+  table.done();
+  return out;
+}
+
+PredictionInput read_prediction(const ConfigTable& table) {
+  PredictionInput out;
+  out.collar = table.number_or("collar", quantity::number, out.collar, {.low = 0, .high = 100});
+  out.dt = table.number_or("dt", quantity::number, out.dt, {.low = 0.01, .high = 0.95});
+  out.watts = table.number_or("watts", quantity::number, out.watts, Range::positive());
+  table.done();
+  return out;
+}
+
 class Hashed {
  public:
   Hashed& operator<<(double value) { return hash_.add(std::bit_cast<int64_t>(value)), *this; }
@@ -108,10 +159,23 @@ class Hashed {
 void hash_data(LearnStudy& s) {
   Hashed all;
   all << s.sheet.potential << s.sheet.bond << s.sheet.mass << s.sheet.thickness << s.sheet.cells[0]
-      << s.sheet.cells[1] << s.grid.points << s.grid.radius << s.still.strain << s.still.waves
-      << s.still.force;
-  for (const DiscInput& disc : s.still.discs) all << disc.force << disc.centres << disc.radius;
-  s.data_hash = all.value();
+      << s.sheet.cells[1] << s.grid.points << s.grid.radius;
+  Hashed still = all, fracture = all;
+  still << s.still.strain << s.still.waves << s.still.force;
+  for (const DiscInput& disc : s.still.discs) still << disc.force << disc.centres << disc.radius;
+  const FractureInput& f = s.fracture;
+  fracture << s.grid.fine_points << s.grid.coarse_points << s.grid.noise << s.grid.tube << f.slit << f.grip
+           << f.velocity << f.push << f.duration << f.frames << f.interval << f.dt << s.still.force;
+  s.static_hash = still.value(), s.fracture_hash = fracture.value();
+}
+
+// The slit lies between two columns of points.
+void check_columns(const ConfigTable& grid, const GridInput& input) {
+  const std::pair<const char*, int> counts[] = {
+      {"points", input.points}, {"fine_points", input.fine_points}, {"coarse_points", input.coarse_points}};
+  for (const auto& [key, points] : counts)
+    if (points % 2 != 0)
+      grid.at(key).fail("an odd number of points has a column on the slit", "an even number");
 }
 
 }  // namespace
@@ -126,6 +190,15 @@ LearnStudy read_learn_study(const std::string& path) {
   out.grid = read_grid(table("grid"));
   out.still = read_static(table("static"));
   if (const auto kernel = root.table_at("kernel")) out.kernel = read_kernel(*kernel);
+  const auto fracture = root.table_at("fracture"), stretch = root.table_at("stretch"),
+             prediction = root.table_at("prediction");
+  if (fracture) {
+    out.cracks = true;
+    out.fracture = read_fracture(*fracture);
+    check_columns(table("grid"), out.grid);
+    if (stretch) out.stretch = read_stretch(*stretch, out.fracture);
+    if (prediction) out.prediction = read_prediction(*prediction);
+  }
   root.done();
   hash_data(out);
   return out;

@@ -24,8 +24,12 @@ struct SheetInput {
 };
 
 struct GridInput {
-  int points = 20;    // along an edge
-  double radius = 2;  // of the cone, over the spacing
+  int points = 20;       // along an edge
+  int fine_points = 32;  // of the finer grid of the third prediction
+  int coarse_points = 14;
+  double radius = 2;    // of the cone, over the spacing
+  double noise = 0.03;  // angstrom, of CrackSight
+  double tube = 2;      // angstrom, of CrackSight
 };
 
 // Equation 44: a push within three discs, at the middle and at both ends of an axis.
@@ -43,6 +47,17 @@ struct StaticInput {
   std::vector<DiscInput> discs;  // of the validation
 };
 
+struct FractureInput {
+  double slit = 25;     // angstrom, from the lower edge
+  double grip = 3;      // angstrom, of both edges
+  double velocity = 0;  // angstrom/ps, of an edge at the bottom, 0 at the top
+  double push = 0;      // b0 of the test, eV/angstrom on an atom
+  double duration = 0;  // t_r of the test, ps
+  int frames = 40;
+  double interval = 0.0495;  // ps, between frames
+  double dt = 5e-4;          // ps
+};
+
 struct KernelInput {
   std::vector<double> horizons{2.5, 3, 4};  // over the spacing
   std::vector<int> degrees{3, 5, 7};        // P
@@ -54,13 +69,32 @@ struct KernelInput {
   uint64_t seed = 1;
 };
 
+struct StretchInput {
+  bool positive = true;              // a kernel of its own breaks; false: the learned one, as in the paper
+  double horizon = 4;                // over the spacing: of that kernel
+  int degree = 3;                    // of it
+  double width = 0.05;               // eta
+  double low = 0.04, high = 0.44;    // between which s0 is looked for
+  std::array<int, 2> frames{5, 20};  // of the training, inclusive
+};
+
+struct PredictionInput {
+  double collar = 2;  // over the spacing: points nearer to the edge have the atoms' displacements
+  double dt = 0.5;    // of the largest stable step
+  double watts = 10;  // of a core, assumed: joules are seconds times this
+};
+
 struct LearnStudy {
   std::string path, title;
   SheetInput sheet;
   GridInput grid;
   StaticInput still;
   KernelInput kernel;
-  uint64_t data_hash = 0;  // of all that the data hang on
+  bool cracks = false;  // whether there is a [fracture], with what follows
+  FractureInput fracture;
+  StretchInput stretch;
+  PredictionInput prediction;
+  uint64_t static_hash = 0, fracture_hash = 0;  // of all that the data hang on
 };
 
 // Throws InputError with file:line:column.

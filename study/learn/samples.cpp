@@ -19,8 +19,9 @@ std::vector<Vec3> Grid::all() const {
   return out;
 }
 
-CoarsePoints Grid::coarse() const {
-  return {2, all(), radius, volume(), Vec3(points * spacing[0], points * spacing[1], 0)};
+CoarsePoints Grid::coarse(bool periodic) const {
+  const Vec3 period = periodic ? Vec3(points * spacing[0], points * spacing[1], 0) : Vec3(Vec3::Zero());
+  return {2, all(), radius, volume(), period};
 }
 
 AtomCell resting_sheet(const SheetInput& input) {
@@ -32,9 +33,9 @@ AtomCell resting_sheet(const SheetInput& input) {
   return sheet;
 }
 
-Grid grid_of(const LearnStudy& study, const AtomCell& sheet) {
+Grid grid_of(const LearnStudy& study, const AtomCell& sheet, int points) {
   Grid grid;
-  grid.points = study.grid.points;
+  grid.points = points;
   grid.spacing = sheet.box.edges.diagonal() * kAngstrom / grid.points;
   grid.spacing[2] = 0;
   grid.thickness = study.sheet.thickness * kAngstrom;

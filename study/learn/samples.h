@@ -16,6 +16,7 @@ namespace cuboct::learn {
 
 inline constexpr double kElectronVolt = 1.602176634e-19;  // J
 inline constexpr double kAngstrom = 1e-10;                // m
+inline constexpr double kPicosecond = 1e-12;              // s
 
 // Points in rows along x and y, (i + 1/2) spacings from the lower corner; the middle of the sheet is at 0.
 struct Grid {
@@ -29,12 +30,12 @@ struct Grid {
   size_t size() const { return static_cast<size_t>(points) * static_cast<size_t>(points); }
   Vec3 at(size_t k) const;  // x changes first
   std::vector<Vec3> all() const;
-  CoarsePoints coarse() const;  // that repeat
+  CoarsePoints coarse(bool periodic) const;
 };
 
 // A sheet at rest without stress, its middle at 0. Angstrom.
 AtomCell resting_sheet(const SheetInput& sheet);
-Grid grid_of(const LearnStudy& study, const AtomCell& sheet);
+Grid grid_of(const LearnStudy& study, const AtomCell& sheet, int points);
 
 // A load on a sheet that repeats, and what it does.
 struct StaticLoad {

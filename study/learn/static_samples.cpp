@@ -109,11 +109,11 @@ StaticSample rest_under(const LearnStudy& study, const AtomCell& sheet, const St
     throw InputError(fmt::format("{}: a bond is strained by {:.3g} %, more than {:g} %", load.name,
                                  100 * out.strain, 100 * study.still.most),
                      "a smaller static.strain");
-  const Grid grid = grid_of(study, sheet);
+  const Grid grid = grid_of(study, sheet, study.grid.points);
   std::vector<Vec3> x = sheet.x, b = forces;
   for (size_t i = 0; i < x.size(); ++i)
     x[i] *= kAngstrom, u[i] *= kAngstrom, b[i] *= kElectronVolt / kAngstrom;
-  const CoarseGrain grain(grid.coarse(), x, std::vector<double>(x.size(), 1));
+  const CoarseGrain grain(grid.coarse(true), x, std::vector<double>(x.size(), 1));
   out.u = grain.linear_mean(u), out.b = grain.density_of(b);
   return out;
 }

@@ -110,7 +110,7 @@ TEST(FitKernel, FindsTheModuliOfAnElasticSolid) {
   const auto training = elastic(grid, -0.2e12, 0.7e12, 2);
   KernelInput input;
   input.evaluations = 1000;
-  const KernelFit fit = fit_kernel(grid, training, training, input, 3, 5, 0);
+  const KernelFit fit = fit_kernel(grid, training, training, input, {.horizon = 3, .degree = 5});
   EXPECT_NEAR(fit.kernel.mu / 0.7e12, 1, 0.02);
   EXPECT_NEAR(fit.kernel.lambda / -0.2e12, 1, 0.1);
   EXPECT_LT(fit.validation, 0.05);
@@ -123,7 +123,7 @@ TEST(FitKernel, RefusesWhatItCannotLearnFrom) {
   auto samples = elastic(grid, -0.2e12, 0.7e12, 1);
   samples[1].u[5][0] = std::nan("");
   try {
-    fit_kernel(grid, samples, samples, {}, 3, 3, 0);
+    fit_kernel(grid, samples, samples, {}, {.horizon = 3, .degree = 3});
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "sample 1 has no load, or a number that is not finite");

@@ -136,6 +136,24 @@ TEST(Lps, BondsKeepTheirDamageThroughACheckpoint) {
 
 // Closed forms of the ball: w = 1: 8 G0/(15 K h); w = 1/r: 5 G0/(9 K h); in two dimensions with w = 1,
 // G0 = 8 K s^2/m times h^5/5, m = 2 pi h^4/4.
+// Bernstein's polynomials sum to 1, so that equal coefficients scale the power alone. The integral of the
+// weight over the horizon is that of 20,000 rings of a disc: a midpoint sum, off by some 1e-8.
+TEST(Lps, BernsteinWeightsAreWhatIsIntegrated) {
+  LpsMaterial m = cubic_material();
+  m.dimensions = 2, m.quadrature = LpsQuadrature::fitted;
+  const double plain = m.weight(1.7);
+  m.bernstein = {2, 2, 2, 2};
+  EXPECT_NEAR(m.weight(1.7), 2 * plain, 1e-14);
+  m.bernstein = {1.5, -0.3, 0.8, 0.2};
+  double rings = 0;
+  constexpr int kRings = 20000;
+  for (int k = 0; k < kRings; ++k) {
+    const double r = (k + 0.5) * m.horizon / kRings;
+    rings += 2 * M_PI * r * m.weight(r) * r * r * m.horizon / kRings;
+  }
+  EXPECT_NEAR(full_weight(m, {}) / rings, 1, 1e-7);
+}
+
 TEST(Lps, CriticalStretchIsThatOfTheFractureEnergy) {
   LpsMaterial m = cubic_material();
   const double energy = 1e-3;
