@@ -9,50 +9,37 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/multiscale_compare.h"
+#include "cli/multiscale_gpu.h"
 #include "cli/multiscale_node.h"
 #include "cli/multiscale_text.h"
 #include "cli/technologies.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
-#include "model/base/progress.h"
 #include "model/base/resources.h"
 #include "model/base/spelling.h"
 #include "model/base/text.h"
+#include "model/run/set_status.h"
 
 namespace cuboct {
 namespace {
 
 struct Options {
   std::string study, out;
+  bool gpu = false;
   int threads = 0, fraction = SampleNodeOptions().fraction;
   std::vector<std::string> technologies;  // of a node; empty: none is counted
   std::string clock = "1 GHz";
   Answer answer;
 };
 
-// A line on a terminal, rewritten in place.
-class Status {
- public:
-  explicit Status(std::string before = {}) : before_(std::move(before)) {}
-  ~Status() {
-    if (shown_) fmt::print(stderr, "\r\x1b[K");
-  }
-  void say(size_t set, size_t sets, double part) {
-    if (!stderr_is_terminal()) return;
-    fmt::print(stderr, "\r\x1b[K{}set {} of {}: {:.0f} %", before_, set + 1, sets, 100 * part);
-    std::fflush(stderr);
-    shown_ = true;
-  }
-
- private:
-  std::string before_;
-  bool shown_ = false;
-};
-
+// `point`: of [compare], from 1; 0: the study itself.
 std::vector<SetOutcome> run(const ElementStudy& study, const std::shared_ptr<const SampleMaterial>& material,
-                            const Options& options, const std::string& progress, Status status = Status()) {
+                            const Options& options, const std::string& progress, size_t point = 0,
+                            const std::string& before = {}) {
+  if (options.gpu) run_on_gpu({options.study, progress, before, point, options.threads});
   ElementRunOptions how;
+  SetStatus status(before);
   how.threads = options.threads > 0 ? options.threads : usable_cores();
   how.progress = progress;
   how.see = [&](size_t set, double part) {
@@ -62,7 +49,7 @@ std::vector<SetOutcome> run(const ElementStudy& study, const std::shared_ptr<con
   try {
     return run_elements(study, material, how);
   } catch (const ElementRunStopped&) {
-    throw Failed("interrupted; the same command goes on where it was");
+    throw Failed(kInterruptedElements);
   } catch (const ElementError& error) {
     throw Failed(error.what());
   }
@@ -93,18 +80,19 @@ void run_study(const ElementStudy& study, const std::shared_ptr<const SampleMate
 // Each point of the grid with the study's own file, and a file of progress of its own.
 void run_comparison(const ElementStudy& study, const Options& options, const std::string& out) {
   std::map<std::pair<int, double>, std::shared_ptr<const SampleMaterial>> materials;
-  const auto point_of = [&](const ElementEffort& effort, const std::string& name, Status status) {
+  const auto point_of = [&](const ElementEffort& effort, size_t point, const std::string& before) {
     const ElementStudy one = read_element_study(options.study, effort);
     auto& material = materials[{effort.cells, effort.force}];
     if (material == nullptr) material = material_of(one);
-    return compared_point(effort, one, *material,
-                          run(one, material, options, out + "/progress." + name, std::move(status)));
+    return compared_point(
+        effort, one, *material,
+        run(one, material, options, fmt::format("{}/progress.{}", out, point), point, before));
   };
   const std::vector<ElementEffort> efforts = efforts_of(*study.compare);
   Comparison compared{study.title, {}, {}};
   for (size_t k = 0; k < efforts.size(); ++k)
-    compared.points.push_back(point_of(efforts[k], std::to_string(k + 1),
-                                       Status(fmt::format("point {} of {}, ", k + 1, efforts.size()))));
+    compared.points.push_back(
+        point_of(efforts[k], k + 1, fmt::format("point {} of {}, ", k + 1, efforts.size())));
   const auto at = std::ranges::find(efforts, finest(*study.compare));
   compared.finest = compared.points[static_cast<size_t>(at - efforts.begin())];
   const Items items = items_of(compared);
@@ -121,6 +109,7 @@ void multiscale(const Options& options) {
                               : options.out;
   if (study.compare && !options.technologies.empty())
     throw InputError("--technology: a node is counted for one study, not for a comparison");
+  if (options.gpu) check_gpu(study);
   const std::shared_ptr<const SampleMaterial> material = material_of(study);
   const DirectoryLock lock(out, "cuboct multiscale");
   check_writable(out + "/summary.json");
@@ -146,6 +135,8 @@ void add_multiscale(CLI::App& app, int& exit_code) {
   command->add_option("--threads", options->threads, "they change no bit; default: one per core")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
+  command->add_flag("--gpu", options->gpu,
+                    "relax samples on the first GPU: pays from some ten thousand elements on");
   command
       ->add_option("--technology", options->technologies,
                    "also count a node for each element, in joules of these: " + list_of(technology_names()) +

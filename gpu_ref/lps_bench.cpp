@@ -13,6 +13,7 @@
 #include "gpu_ref/bench.h"
 #include "gpu_ref/command.h"
 #include "gpu_ref/lps_compare.h"
+#include "gpu_ref/messages.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/real/rounds_engine.h"
@@ -54,15 +55,6 @@ struct Case {
 void line(const std::string& name, double value, const char* unit) {
   fmt::print("lps.{} {:.6g} {}\n", name, value, unit);
   std::fflush(stdout);
-}
-
-Device device_of(const Request& request) {
-  std::string why;
-  const std::vector<Device> devices = find_devices(&why);
-  if (devices.empty()) throw InputError("no GPU: " + why);
-  for (const Device& device : devices)
-    if (device.ordinal == request.device) return device;
-  throw InputError(fmt::format("--device: there is no CUDA device {}", request.device));
 }
 
 // Where points are damaged: their number, and the box around them as packed.
@@ -155,7 +147,7 @@ void follow(const Request& request, const std::string& name, Case& of, LpsDevice
 }
 
 int run(const Request& request) {
-  const Device at = device_of(request);
+  const Device at = device_at(request.device);
   Case of(request);
   const uint64_t steps = request.steps > 0 ? request.steps : of.scene.steps;
   catch_interrupts();

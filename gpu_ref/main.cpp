@@ -3,6 +3,7 @@
 
 #include "gpu_ref/bench.h"
 #include "gpu_ref/lps_bench.h"
+#include "gpu_ref/multiscale.h"
 #include "gpu_ref/program.h"
 #include "gpu_ref/samples_bench.h"
 
@@ -10,6 +11,8 @@ int main(int argc, char** argv) {
   if (argc > 1 && argv[1] == std::string_view("bench")) return cuboct::gpu::run_bench(argc - 1, argv + 1);
   if (argc > 1 && argv[1] == std::string_view("samples"))
     return cuboct::gpu::run_samples_bench(argc - 1, argv + 1);
+  if (argc > 1 && argv[1] == std::string_view("multiscale"))
+    return cuboct::gpu::run_multiscale(argc - 1, argv + 1);
   if (argc > 1 && argv[1] == std::string_view("lps")) return cuboct::gpu::run_lps_bench(argc - 1, argv + 1);
   return cuboct::gpu::run_gpu_program(argc, argv);
 }

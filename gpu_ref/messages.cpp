@@ -9,6 +9,7 @@
 
 #include "gpu_ref/particle.h"
 #include "model/base/error.h"
+#include "model/multiscale/element_body.h"
 
 namespace cuboct::gpu {
 
@@ -103,11 +104,27 @@ void require_tables(const Options& options, uint64_t bytes) {
           .about({"table.index_bits"});
 }
 
+Device device_at(int ordinal) {
+  std::string why;
+  const std::vector<Device> devices = find_devices(&why);
+  if (devices.empty()) throw InputError("no GPU: " + why);
+  for (const Device& device : devices)
+    if (device.ordinal == ordinal) return device;
+  throw InputError(fmt::format("--device: there is no CUDA device {}", ordinal));
+}
+
 void throw_thin_cell(size_t sample, double thickness, double reach) {
   throw InputError(
       fmt::format("sample {}: its cell is {:.4g} angstrom thick, less than the reach of the forces, {:.4g}",
                   sample, thickness, reach),
       "cutoff and skin of the bonds make the reach");
+}
+
+void throw_crushed_element(size_t element, double thickness, double reach) {
+  throw ElementError(element,
+                     fmt::format("its sample is {:.4g} angstrom thick, less than the reach of the forces, "
+                                 "{:.4g}, which a GPU needs",
+                                 thickness, reach));
 }
 
 void require_sample(int device, uint64_t atoms, uint64_t bonds, uint64_t bytes) {

@@ -24,8 +24,12 @@ void require_widths(const Widths& widths);
 void require_memory(const Options& options, uint64_t particles, uint64_t cells, double bytes_per_particle);
 // InputError where a block of a device cannot hold a rule's tables.
 void require_tables(const Options& options, uint64_t bytes);
+// InputError where there is none of this ordinal.
+Device device_at(int ordinal);
 // InputError: a sample's cell (gpu_ref/samples.h) is too thin, angstrom.
 [[noreturn]] void throw_thin_cell(size_t sample, double thickness, double reach);
+// ElementError: the sample of an element (gpu_ref/sample_relaxer.h) has become so.
+[[noreturn]] void throw_crushed_element(size_t element, double thickness, double reach);
 // InputError where the memory of a device's block cannot hold a sample of so many bytes.
 void require_sample(int device, uint64_t atoms, uint64_t bonds, uint64_t bytes);
 // std::runtime_error

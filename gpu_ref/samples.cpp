@@ -21,9 +21,6 @@ TersoffTerm<Real> term_in(const TersoffTerm<double>& t) {
       real(t.beta), real(t.lambda2), real(t.B),       real(t.R), real(t.D), real(t.lambda1),    real(t.A)};
 }
 
-// Threads of a block: a bond each. More than this leaves fewer blocks to a processor.
-constexpr uint32_t kMostThreads = 512;
-
 template <class Real>
 class SamplesOf final : public Samples {
  public:
@@ -75,9 +72,8 @@ class SamplesOf final : public Samples {
   void relax(double tolerance, double stiffness, uint32_t most) override {
     run({.kind = Kind::relax,
          .steps = most,
-         .dt = static_cast<Real>(1 / std::sqrt(stiffness)),
          .tolerance = static_cast<Real>(tolerance),
-         .longest = static_cast<Real>(0.1)});
+         .stiffness = static_cast<Real>(stiffness)});
   }
 
   std::vector<SampleState> states() const override {
@@ -129,8 +125,7 @@ class SamplesOf final : public Samples {
     while (true) {
       const SamplesView<Real> view{x_.data(),    v_.data(),       f_.data(),
                                    cell_.data(), inverse_.data(), sums_.data()};
-      const uint32_t threads = std::clamp<uint32_t>((4 * rule_.atoms + 31) / 32 * 32, 32, kMostThreads);
-      for_each_block(stream_, static_cast<uint32_t>(count_), static_cast<int>(threads), block_bytes(),
+      for_each_block(stream_, static_cast<uint32_t>(count_), sample_threads(rule_.atoms), block_bytes(),
                      SampleKernel<Real>{view, rule_, task});
       const std::vector<SampleSums<Real>> sums = sums_.host(stream_, 0, count_);
       const auto fault = [&](SampleFault which) {

@@ -10,6 +10,7 @@
 
 #include "gpu_ref/bench.h"
 #include "gpu_ref/command.h"
+#include "gpu_ref/messages.h"
 #include "gpu_ref/samples.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
@@ -105,12 +106,7 @@ void line(const char* name, double value, const char* unit) {
 
 int run(const Request& request) {
   const Tersoff tersoff = tersoff_set(request.set);
-  std::string why;
-  const std::vector<Device> devices = find_devices(&why);
-  if (devices.empty()) throw InputError("no GPU: " + why);
-  if (static_cast<size_t>(request.device) >= devices.size())
-    throw InputError(fmt::format("--device: there is no CUDA device {}", request.device));
-  const Device& device = devices[static_cast<size_t>(request.device)];
+  const Device device = device_at(request.device);
   const std::vector<AtomCell> cells = samples_of(request);
   const std::unique_ptr<Samples> samples = make_samples(
       tersoff.term(0, 0, 0), {.doubles = request.precision == "double", .device = request.device});
@@ -139,6 +135,7 @@ int run(const Request& request) {
   const double work = static_cast<double>(atoms) * steps;
   line("atom_steps_per_second", work / median(seconds), "1/s");
   line("slowest_repeat", work / *std::max_element(seconds.begin(), seconds.end()), "1/s");
+  std::string why;
   if (const auto energy = request.no_energy ? std::nullopt : meter.finish(&why)) {
     line("joules_per_atom_step", energy->per_particle_step(atoms), "J");
     line("power", energy->power.watts, "W");

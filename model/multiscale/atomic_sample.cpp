@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/base/fire.h"
+#include "model/multiscale/sample_descent.h"
 
 namespace cuboct {
 namespace {
@@ -13,11 +14,6 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double kAngstrom = 1e-10;  // m
-constexpr uint64_t kSteepest = 60;   // evaluations before FIRE takes over
-// Of 1/stiffness: no step downhill is shorter or longer. Soft modes of silicon samples have 1/100 of the
-// stiffest one's curvature.
-constexpr double kShortest = 0.2, kLongest = 100;
-constexpr double kLongestMove = 0.1;  // angstrom, of an atom at a time
 
 // A sample in one cell; its degrees of freedom are the atoms' coordinates.
 class Strained {
@@ -48,15 +44,15 @@ class Strained {
     evaluate(x_, f);
     double length = 1 / how.stiffness;
     while (!rests(how)) {
-      if (answer_.evaluations >= kSteepest) return false;
+      if (answer_.evaluations >= kDescentEvaluations) return false;
       step = length * f;
       if (const double most = step.cwiseAbs().maxCoeff(); most > kLongestMove) step *= kLongestMove / most;
       x_ += step;
       last_f.swap(f);
       evaluate(x_, f);
       const double bend = step.dot(last_f - f);
-      length = bend > 0 ? std::clamp(step.squaredNorm() / bend, kShortest / how.stiffness,
-                                     kLongest / how.stiffness)
+      length = bend > 0 ? std::clamp(step.squaredNorm() / bend, kShortestDescent / how.stiffness,
+                                     kLongestDescent / how.stiffness)
                         : 1 / how.stiffness;
     }
     return true;

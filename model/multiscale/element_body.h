@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "model/multiscale/element_mesh.h"
-#include "model/multiscale/sample_material.h"
+#include "model/multiscale/sample_relaxer.h"
 
 namespace cuboct {
 
@@ -20,12 +20,16 @@ class ElementError : public std::runtime_error {
   size_t element;
 };
 
-// The sample of an element, as its last relaxation left it.
-struct ElementSample {
-  std::vector<Vec3> place;     // fractions of the strained sample's edges
+// What the last relaxation of an element's sample said.
+struct SampleRest {
   Mat3 strain = Mat3::Zero();  // Green's, of that relaxation, in the axes of the lattice
   Mat3 stress = Mat3::Zero();  // Pa, second Piola-Kirchhoff's, in those too
   double energy = 0;           // J/m^3 of the undeformed element, 0 without strain
+};
+
+// The sample of an element, as its last relaxation left it.
+struct ElementSample : SampleRest {
+  std::vector<Vec3> place;  // fractions of the strained sample's edges
 };
 
 // What the samples did, and how far the stresses between relaxations were off.
@@ -43,7 +47,8 @@ struct ElementOptions {
   // A sample is relaxed anew where a component of its Green strain moved by more than this since its last
   // relaxation; 0: always. Between, its stress changes by the constants of the undeformed sample.
   double strain_tolerance = 0;
-  int threads = 1;  // they change no bit
+  int threads = 1;         // they change no bit
+  RelaxerMaker relaxer{};  // none: host_relaxer(threads)
 };
 
 class ElementBody {
@@ -81,13 +86,28 @@ class ElementBody {
   }  // 1/m, of the undeformed
 
   const SampleWork& work() const { return work_; }
-  const std::vector<ElementSample>& samples() const { return samples_; }
+  std::vector<ElementSample> samples() const;
   // Of a run that goes on: the next update then ends as it did in the run before.
   void restore(std::vector<ElementSample> samples, const SampleWork& work);
 
  private:
-  void update_element(size_t element, AtomicForces& forces, SampleWork& work);
-  void relax(size_t element, const Mat3& strain, AtomicForces& forces, SampleWork& work);
+  // An element in the update at hand, in the axes of its lattice.
+  struct Strained {
+    Mat3 gradient, strain;
+    double expansion;
+    bool due;       // to be relaxed
+    Mat3 stretch;   // where due: the upper triangle H with H^T H = 1 + 2 strain
+    size_t due_at;  // the same: in due_
+  };
+  template <typename Work>
+  void for_each_element(const Work& work) const;
+  void strain_elements();
+  void relax_due();
+  void stress_elements();
+  void strain_element(size_t element);
+  void take_answer(size_t element, const SampleAnswer& answer, SampleWork& work);
+  void stress_element(size_t element);
+  void push_corners(size_t element);
   void add_forces();
 
   ElementMesh mesh_;
@@ -100,9 +120,14 @@ class ElementBody {
   std::vector<Vec3> x_, force_;
   Vec3 period_;
   std::vector<Mat3> stress_;
-  std::vector<ElementSample> samples_;
-  std::vector<std::unique_ptr<AtomicForces>> forces_;  // of each thread
+  std::vector<SampleRest> rest_;
+  std::unique_ptr<SampleRelaxer> relaxer_;
   SampleWork work_;
+  // Of the update at hand.
+  std::vector<Strained> strained_;
+  std::vector<std::array<Vec3, 4>> corner_force_;  // N
+  std::vector<StrainedSample> due_;
+  std::vector<SampleAnswer> answers_;  // of due_
 };
 
 // Uniformly random turns, one for each grain.

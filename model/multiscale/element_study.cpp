@@ -318,13 +318,13 @@ std::shared_ptr<const SampleMaterial> material_of(const ElementStudy& study) {
 }
 
 ElementBody body_of(const ElementStudy& study, std::shared_ptr<const SampleMaterial> material, size_t set,
-                    int threads) {
+                    int threads, const RelaxerMaker& relaxer) {
   const size_t grains = study.mesh.grains();
   return {study.mesh,
           std::move(material),
           study.orientation ? std::vector<Mat3>(grains, *study.orientation)
                             : random_turns(grains, study.seed + set),
-          {study.strain_tolerance, threads},
+          {study.strain_tolerance, threads, relaxer},
           study.mesh_name};
 }
 

@@ -89,8 +89,8 @@ ElementEffort finest(const CompareInput& compare);
 // The study's material. InputError at the place of the potential where its parameters hold no lattice.
 std::shared_ptr<const SampleMaterial> material_of(const ElementStudy& study);
 
-// The body of set `set`, its samples at rest without strain.
+// The body of set `set`, its samples at rest without strain. `threads`, `relaxer`: ElementOptions.
 ElementBody body_of(const ElementStudy& study, std::shared_ptr<const SampleMaterial> material, size_t set,
-                    int threads);
+                    int threads, const RelaxerMaker& relaxer = {});
 
 }  // namespace cuboct

@@ -44,7 +44,7 @@ class SetRun {
 
  private:
   ElementBody body() {
-    ElementBody out = body_of(study_, material_, file_.done.size(), options_.threads);
+    ElementBody out = body_of(study_, material_, file_.done.size(), options_.threads, options_.relaxer);
     if (now_.begun) {
       out.x() = now_.x, out.period() = now_.period;
       out.restore(now_.samples, now_.outcome.work);

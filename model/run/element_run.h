@@ -50,6 +50,7 @@ struct ElementProgress {
 
 struct ElementRunOptions {
   int threads = 1;
+  RelaxerMaker relaxer{};  // of ElementOptions
   double save_every = 20;  // s, of the wall's clock
   std::string progress;    // file; empty: none is left
   // How much of the set is done, from 0 to 1; with the set from 0. False: stop now.
