@@ -136,7 +136,7 @@ void add_multiscale(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   command->add_flag("--gpu", options->gpu,
-                    "relax samples on the first GPU: pays from some ten thousand elements on");
+                    "relax samples on the first GPU: pays from some 400,000 relaxations on");
   command
       ->add_option("--technology", options->technologies,
                    "also count a node for each element, in joules of these: " + list_of(technology_names()) +
