@@ -66,8 +66,8 @@ uint64_t round_interval(uint64_t steps, double most) {
 
 // A rule of rounds keeps its bonds from the start: a neighbour is one, with all rounds and all that it keeps.
 // Times are those of the linear peridynamic solid with 17 bonds a particle, on one core of an EPYC: where
-// none breaks, and while an eighth of them does. Bonds of the moment are those of Tersoff's potential, a
-// sheet of carbon and a block of silicon.
+// none breaks, and while an eighth of them does. Bonds of the moment are those of Tersoff's potential in a
+// sheet of carbon.
 EngineCost cost_of(const EngineRow& engine, const Scene& scene) {
   EngineCost cost = engine.cost;
   const RoundsRule* rounds = rounds_of(scene.rule);
