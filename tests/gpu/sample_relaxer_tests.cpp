@@ -138,6 +138,18 @@ TEST(SampleRelaxer, ListsAnewWhereTheLatticesListDoesNotServe) {
   }
 }
 
+// Pressed to three quarters of its edge, second neighbours come from 3.84 to 2.88 angstrom, within the cutoff
+// of 3: bonds that the lattice's list lacks.
+TEST(SampleRelaxer, FindsBondsThatTheLatticeHasNot) {
+  const SampleMaterial& material = silicon(2);
+  const std::vector<StrainedSample> due{{0, 0.75 * material.lattice.cell}};
+  std::vector<SampleAnswer> device(1), host(1);
+  device_relaxer(parameters().terms[0])(material, 1)->relax(due, device);
+  host_relaxer(1)(material, 1)->relax(due, host);
+  EXPECT_NEAR(device[0].energy, host[0].energy, 1e-8);
+  EXPECT_NEAR(device[0].stress(0, 0), host[0].stress(0, 0), 1e-9 * std::abs(host[0].stress(0, 0)));
+}
+
 TEST(SampleRelaxer, SaysWhichSampleFindsNoRest) {
   SampleMaterial hasty = silicon(1);
   hasty.relaxation.most = 2;
