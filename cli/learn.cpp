@@ -115,6 +115,7 @@ void run(const Options& options) {
   catch_interrupts();
   try {
     const int jobs = options.jobs > 0 ? options.jobs : usable_cores();
+    if (study.cracks) learn::check_cracks(study);
     const Learned found = learn::learn(study, out, jobs);
     std::optional<learn::Cracks> cracks;
     if (study.cracks) cracks = learn::learn_cracks(study, found, out, jobs);

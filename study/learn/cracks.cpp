@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "study/learn/cracks.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "model/base/error.h"
 #include "study/learn/crack_data.h"
 #include "study/thread_time.h"
 #include "study/work.h"
@@ -79,10 +82,19 @@ class Stage {
 
 }  // namespace
 
+void check_cracks(const LearnStudy& study) {
+  const AtomCell sheet = resting_sheet(study.sheet);
+  const double edge = sheet.box.edges(1, 1);
+  if (study.fracture.slit > edge - study.sheet.bond)
+    throw InputError(fmt::format("{}: a slit of {:g} angstrom parts the sheet, whose edge is {:.3g} angstrom",
+                                 study.path, study.fracture.slit, edge),
+                     "a shorter fracture.slit, or more cells");
+  for (const Grid& grid : fracture_grids(study, sheet)) Symbol(grid, study.stretch.horizon);
+}
+
 Cracks learn_cracks(const LearnStudy& study, const Learned& learned, const std::string& directory, int jobs) {
   Cracks out;
   out.grids = fracture_grids(study, resting_sheet(study.sheet));
-  for (const Grid& grid : out.grids) Symbol(grid, study.stretch.horizon);  // refuses before the work
   out.samples = cracked_sheets(study, directory, jobs);
   const Stage stage(study, learned, out);
   const KernelFit& best = learned.tried[learned.best].fit;

@@ -43,6 +43,8 @@ struct Cracks {
   std::array<std::vector<CrackState>, 3> seen, predicted;  // [test][frame], of `model`
 };
 
+// Before the work. InputError where the slit parts the sheet, or the horizon has too few points on a grid.
+void check_cracks(const LearnStudy& study);
 // DIR/cracks.jsonl keeps what the atoms did. Throws study::Interrupted.
 Cracks learn_cracks(const LearnStudy& study, const Learned& learned, const std::string& directory, int jobs);
 

@@ -131,7 +131,7 @@ TEST(FitStretch, FindsWhatMadeTheCrack) {
 
 class CracksCommand : public testing::Test {
  protected:
-  std::string study(const std::string& points) const {
+  std::string study(const std::string& points, const std::string& slit = "12") const {
     const std::string path = bench_.path("small.toml");
     std::ofstream(path)
         << "[sheet]\npotential = \"c_1989\"\nmass = \"2e-26 kg\"\ncells = [16, 9]\n[grid]\npoints = "
@@ -139,7 +139,9 @@ class CracksCommand : public testing::Test {
         << "\nfine_points = 12\ncoarse_points = 8\n"
            "[static]\nwaves = 1\ndisc = [{ force = \"x\", centres = \"y\", radius = \"10 angstrom\" }]\n"
            "[kernel]\nhorizons = [3]\ndegrees = [5]\nseeds = 2\n"
-           "[fracture]\nslit = \"12 angstrom\"\nvelocity = \"2000 m/s\"\npush = \"3 nN\"\n"
+           "[fracture]\nslit = \""
+        << slit
+        << " angstrom\"\nvelocity = \"2000 m/s\"\npush = \"3 nN\"\n"
            "duration = \"0.1 ps\"\nframes = 12\n"
            "[stretch]\nhorizon = 3\ndegree = 0\nframes = [3, 8]\n";
     return path;
@@ -174,6 +176,12 @@ TEST_F(CracksCommand, RefusesAColumnOnTheSlit) {
   EXPECT_EQ(answer.code, 2);
   EXPECT_NE(answer.err.find("small.toml:6:"), std::string::npos) << answer.err;
   EXPECT_NE(answer.err.find("an odd number of points has a column on the slit"), std::string::npos);
+}
+
+TEST_F(CracksCommand, RefusesASlitThatPartsTheSheet) {
+  const auto answer = bench_.cuboct({"learn", study("8", "50"), "--out", bench_.path("none")});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_NE(answer.err.find("a slit of 50 angstrom parts the sheet"), std::string::npos) << answer.err;
 }
 
 }  // namespace
