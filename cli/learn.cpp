@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -20,6 +19,7 @@
 #include "model/trace/plot.h"
 #include "study/interrupted.h"
 #include "study/learn/learn.h"
+#include "study/learn/spread.h"
 
 namespace cuboct {
 namespace {
@@ -36,12 +36,8 @@ struct Options {
 
 // Of the fits with samples drawn anew.
 std::string spread(const Learned& found, double (*of)(const KernelFit&), const char* format) {
-  double sum = 0, squares = 0;
-  const auto n = static_cast<double>(found.drawn.size());
-  for (const KernelFit& fit : found.drawn) sum += of(fit), squares += of(fit) * of(fit);
-  const double mean = sum / n,
-               deviation = n > 1 ? std::sqrt(std::max(0.0, (squares - n * mean * mean) / (n - 1))) : 0;
-  return fmt::format(fmt::runtime(format), mean, deviation, found.drawn.size());
+  const learn::Spread drawn = learn::spread_of(found.drawn, of);
+  return fmt::format(fmt::runtime(format), drawn.mean, drawn.deviation, found.drawn.size());
 }
 
 Items items_of(const learn::LearnStudy& study, const Learned& found) {

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "model/base/output.h"
 #include "model/trace/plot.h"
+#include "study/learn/spread.h"
 
 namespace cuboct {
 namespace {
@@ -18,17 +18,7 @@ using learn::CrackModel;
 using learn::Cracks;
 using learn::CrackState;
 using learn::LearnStudy;
-
-struct Spread {
-  double mean = 0, deviation = 0;
-};
-Spread spread_of(const Cracks& cracks, const std::function<double(const CrackModel&)>& of) {
-  double sum = 0, squares = 0;
-  const auto n = static_cast<double>(cracks.drawn.size());
-  for (const CrackModel& model : cracks.drawn) sum += of(model), squares += of(model) * of(model);
-  const double mean = sum / n;
-  return {mean, n > 1 ? std::sqrt(std::max(0.0, (squares - n * mean * mean) / (n - 1))) : 0};
-}
+using learn::Spread;
 
 struct Measure {
   const char* name;
@@ -45,7 +35,8 @@ constexpr const char* kLoads[] = {"pulled", "pushed"};
 void add_test(Items& items, const Cracks& cracks, size_t test) {
   for (const Measure& of : kMeasures) {
     const double error = cracks.model.tests[test].*of.value;
-    const Spread drawn = spread_of(cracks, [&](const CrackModel& m) { return m.tests[test].*of.value; });
+    const Spread drawn =
+        spread_of(cracks.drawn, [&](const CrackModel& m) { return m.tests[test].*of.value; });
     items.add(
         fmt::format("{}: {}", learn::kCrackTests[test], of.name), 100 * error, "%",
         fmt::format("mean of squares {:.2g} %; the paper {:g} %; samples drawn anew: {:.3g} +- {:.2g} %",
@@ -57,7 +48,7 @@ void add_test(Items& items, const Cracks& cracks, size_t test) {
 }  // namespace
 
 void add_cracks(Items& items, const LearnStudy& study, const Cracks& cracks) {
-  const Spread drawn = spread_of(cracks, [](const CrackModel& m) { return m.stretch.stretch; });
+  const Spread drawn = spread_of(cracks.drawn, [](const CrackModel& m) { return m.stretch.stretch; });
   items.add("breaking kernel, validation residual", cracks.model.validation, "",
             study.stretch.positive ? fmt::format("no negative weight; horizon {:g} spacings, degree {}",
                                                  study.stretch.horizon, study.stretch.degree)
@@ -77,7 +68,7 @@ void write_crack_tables(const LearnStudy& study, const Cracks& cracks, const std
   std::string tests = "test\tmeasure\terror\tsquares\tdrawn_mean\tdrawn_deviation\tpaper\n";
   for (size_t t = 0; t < learn::kCrackTests.size(); ++t)
     for (const Measure& of : kMeasures) {
-      const Spread drawn = spread_of(cracks, [&](const CrackModel& m) { return m.tests[t].*of.value; });
+      const Spread drawn = spread_of(cracks.drawn, [&](const CrackModel& m) { return m.tests[t].*of.value; });
       tests += fmt::format("{}\t{}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.6g}\t{:g}\n", learn::kCrackTests[t], of.name,
                            cracks.model.tests[t].*of.value, cracks.model.tests[t].*of.squares, drawn.mean,
                            drawn.deviation, learn::kPaperErrors[t].*of.paper);
@@ -159,7 +150,7 @@ std::string block(const std::string& name, const learn::Grid& grid, const CrackS
 
 // Like the paper's Figures 6 to 8: atoms, then displacement and damage, each as seen and as predicted.
 void draw_test(const Cracks& cracks, size_t test, const std::string& path) {
-  const size_t load = test == 1 ? 1 : 0, grid = test == 2 ? 1 : 0;
+  const size_t load = learn::load_of_test(test), grid = learn::grid_of_test(test);
   const std::vector<learn::AtomFrame>& atoms = cracks.samples[load].atoms;
   double wide = 0, most = 0;
   std::string data;

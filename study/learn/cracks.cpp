@@ -36,10 +36,6 @@ class Stage {
     return model;
   }
 
-  // [test]: of which load and on which grid.
-  static size_t load_of(size_t test) { return test == 1 ? 1 : 0; }
-  static size_t grid_of(size_t test) { return test == 2 ? 1 : 0; }
-
   std::vector<CrackState> seen_by(const CrackModel& model, size_t load, size_t grid) const {
     return seen(data(load, grid), model.kernel, breaking(model, grid), slit());
   }
@@ -71,7 +67,7 @@ class Stage {
     return {model.stretch.stretch * std::sqrt(coarser), study_.stretch.width};
   }
   CrackErrors errors(const CrackModel& model, size_t test) const {
-    const size_t load = load_of(test), grid = grid_of(test);
+    const size_t load = load_of_test(test), grid = grid_of_test(test);
     return errors_of(predicted_by(model, load, grid), seen_by(model, load, grid), free(grid));
   }
 
@@ -107,8 +103,8 @@ Cracks learn_cracks(const LearnStudy& study, const Learned& learned, const std::
         {1, [&, k] { out.drawn[k] = stage.learn(learned.drawn[k], study.kernel.seed + k, false); }});
   study::work_off(std::move(pieces), jobs, "critical stretches", true);
   for (size_t t = 0; t < kCrackTests.size(); ++t) {
-    out.seen[t] = stage.seen_by(out.model, Stage::load_of(t), Stage::grid_of(t));
-    out.predicted[t] = stage.predicted_by(out.model, Stage::load_of(t), Stage::grid_of(t));
+    out.seen[t] = stage.seen_by(out.model, load_of_test(t), grid_of_test(t));
+    out.predicted[t] = stage.predicted_by(out.model, load_of_test(t), grid_of_test(t));
   }
   for (const size_t load : {0, 1}) {
     out.cost.push_back({"atoms", 0, FractureLoad{static_cast<uint8_t>(load)}, {}, out.samples[load].seconds});

@@ -12,12 +12,13 @@ struct CrackModel {
   Kernel kernel;
   double validation = 0;             // residual of the kernel's own fit
   StretchFit stretch;                // of the training's grid
-  std::array<CrackErrors, 3> tests;  // CrackTest
+  std::array<CrackErrors, 3> tests;  // of kCrackTests
 };
 
-// Sections 5.2 to 5.4. `other_load` is of the pulse, the others of the pull.
-enum class CrackTest : uint8_t { longer_time, other_load, finer_grid };
+// Sections 5.2 to 5.4, by number, with the load (FractureLoad) and the grid of each.
 inline constexpr std::array<const char*, 3> kCrackTests{"longer time", "other load", "finer grid"};
+constexpr size_t load_of_test(size_t test) { return test == 1 ? 1 : 0; }
+constexpr size_t grid_of_test(size_t test) { return test == 2 ? 1 : 0; }
 // What the paper reports: displacement, damage.
 struct PaperErrors {
   double displacement, damage;

@@ -11,17 +11,6 @@
 #include "model/rules/quadrature.h"
 
 namespace cuboct::learn {
-namespace {
-
-// (P over k) r^k (1 - r)^(P - k), equation 36.
-double bernstein(size_t k, size_t degree, double r) {
-  double binomial = 1;
-  for (size_t j = 1; j <= k; ++j) binomial *= static_cast<double>(degree + 1 - j) / static_cast<double>(j);
-  return binomial * std::pow(r, k) * std::pow(1 - r, degree - k);
-}
-
-}  // namespace
-
 Symbol::Symbol(const Grid& grid, double horizon) : grid_(grid), horizon_(horizon * grid.step()) {
   const int most = static_cast<int>(std::ceil(horizon)) + 1;
   if (2 * horizon >= grid.points)
