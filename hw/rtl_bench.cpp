@@ -211,11 +211,12 @@ lint:
 	$(VERILATOR) --lint-only -Wall --top-module cuboct_node $(RTL)
 	$(VERILATOR) --lint-only -Wall -Wno-UNUSEDPARAM --top-module cuboct_lattice $(filter-out ../rtl/cuboct_node%,$(RTL)) lint/cuboct_node.sv
 
-# The constant bit-operation tree of Verilator 5.006 is wrong in rare cases; without it nothing is slower.
+# The constant bit-operation tree of Verilator 5.006 is wrong in rare cases; without it nothing is slower. Its makefile
+# refuses a CURDIR with a blank, and looks at that alone.
 verilator: obj_dir/cuboct_bench
 	./obj_dir/cuboct_bench
 obj_dir/cuboct_bench: $(RTL) cuboct_bench.sv
-	$(VERILATOR) --binary --timing -fno-const-bit-op-tree -Wno-fatal -O3 -MAKEFLAGS OPT_FAST=-O1 --Mdir obj_dir -o cuboct_bench \
+	$(VERILATOR) --binary --timing -fno-const-bit-op-tree -Wno-fatal -O3 -MAKEFLAGS OPT_FAST=-O1 -MAKEFLAGS CURDIR=obj_dir --Mdir obj_dir -o cuboct_bench \
 	  --top-module cuboct_bench $(RTL) cuboct_bench.sv
 
 # With always_comb Icarus 11 hangs in this design: time stands still at 445. The cause is not known. With always @* the

@@ -59,8 +59,9 @@ module cuboct_brick_slots #(
     .read_data_o(main_data)
   );
   assign main_data_o = same_q ? written_q : main_data;
-  // The migration does not wait for the block's answer.
-  (* no_rw_check, ram_style = "distributed" *) logic [2*Axes-1:0] away_mem_q [0:Depth-1];
+  // The migration does not wait for a block's answer. Tools then take LUTs by themselves, or registers where a device
+  // has no LUTs that are memory; asked for LUTs, yosys ends there with an error.
+  (* no_rw_check *) logic [2*Axes-1:0] away_mem_q [0:Depth-1];
   localparam int DepthBits = $clog2(Depth);
   logic [2*Axes-1:0] away_d, away_q, write_away;
   assign write_away = {write_data_i[Axes*PositionFrac +: 2*(Axes-1)], write_data_i[Bits-1 -: 2]};

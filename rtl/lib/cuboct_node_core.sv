@@ -297,7 +297,8 @@ module cuboct_node_core #(
     assign stream_halos  = '0;
     assign relay_halos   = '0;
     logic unused_addr;
-    assign unused_addr = ^{stream_addr, relay_addr, relay_clear, box_empty, box_low, box_high};
+    assign unused_addr = ^{stream_addr, relay_addr, relay_clear, relay_pick[0], force_over, migrate_empty, box_empty,
+                           box_low, box_high};
     assign stream_end   = halo_end;
     assign stream_came  = '0;
     assign halo_came    = '0;

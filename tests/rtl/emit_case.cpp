@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-// emit_case NAME DIR [STEPS]: emits the project of a test case (tests/support/cases.h; random_<seed> is a
-// random one, `example` the committed one). emit_case --list prints the names.
+// emit_case NAME DIR [STEPS]: emits the project of a test case (tests/support/cases.h; random_<seed>,
+// random_flat_<seed> and random_brick_<seed> are random ones, `example` the committed one). Behind a name
+// ".narrow": with narrow memories;
+// ".arrival": with halos on arrival. emit_case --kinds prints names that between them have every kind of
+// node.
 #include <cstdio>
 #include <string>
 
@@ -22,23 +25,54 @@ cuboct::test::Case example() {
   return {"example", make_setup(scene, arch), 2};
 }
 
+bool take_end(std::string& name, const std::string& end) {
+  if (!name.ends_with(end)) return false;
+  name.erase(name.size() - end.size());
+  return true;
+}
+
+cuboct::test::Case case_of(std::string name) {
+  using namespace cuboct::test;
+  if (take_end(name, ".narrow")) return with_narrow_memories(case_of(name));
+  if (take_end(name, ".arrival")) return with_halos_on_arrival(case_of(name));
+  if (name == "example") return example();
+  const auto seeded = [&](const std::string& start) { return std::stoull(name.substr(start.size())); };
+  if (name.starts_with("random_flat_")) return random_flat_case(seeded("random_flat_"));
+  if (name.starts_with("random_brick_")) return random_brick_case(seeded("random_brick_"));
+  if (name.starts_with("random_")) return random_case(seeded("random_"));
+  return make_case(name);
+}
+
+// Every case with each kind of memories, halos and links that it can have, and with a brick; then drawn ones.
+void print_kinds() {
+  using namespace cuboct::test;
+  constexpr int kDrawn = 6;
+  for (const char* kind : {".snug.narrow", ".snug.arrival", ".snug", ".retry"})
+    for (const std::string& name : case_names()) std::printf("%s%s\n", name.c_str(), kind);
+  for (const std::string& name : case_names()) {
+    const std::vector<cuboct::Cell> bricks = bricks_for(make_case(name + ".snug").setup.plan.lattice);
+    if (bricks.empty()) continue;
+    const cuboct::Cell& brick = bricks.back();
+    std::printf("%s.snug.brick_%dx%dx%d\n", name.c_str(), brick[0], brick[1], brick[2]);
+  }
+  for (int seed = 1; seed <= kDrawn; ++seed)
+    std::printf("random_%d\nrandom_flat_%d\nrandom_brick_%d\nrandom_%d.narrow\n", seed, seed, seed, seed);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace cuboct;
-  if (argc == 2 && std::string(argv[1]) == "--list") {
-    for (const std::string& name : test::case_names()) std::printf("%s\n", name.c_str());
+  if (argc == 2 && std::string(argv[1]) == "--kinds") {
+    print_kinds();
     return 0;
   }
   if (argc < 3 || argc > 4) {
-    std::fprintf(stderr, "usage: emit_case NAME DIR [STEPS] | --list\n");
+    std::fprintf(stderr, "usage: emit_case NAME DIR [STEPS] | --kinds\n");
     return 2;
   }
   try {
-    const std::string name = argv[1];
-    const test::Case c = name == "example"             ? example()
-                         : name.starts_with("random_") ? test::random_case(std::stoull(name.substr(7)))
-                                                       : test::make_case(name);
+    const test::Case c = case_of(argv[1]);
     emit_rtl(c.setup.plan, c.setup.initial, argv[2], argc == 4 ? std::stoull(argv[3]) : c.steps);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "emit_case: %s\n", e.what());
