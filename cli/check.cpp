@@ -186,6 +186,19 @@ Items resolve(const Loaded& loaded) {
 
 namespace {
 
+std::string work_text(const Estimate& cost) {
+  std::string time;
+  if (cost.seconds > 0)
+    time = fmt::format("{} on {} thread{}", waiting_text(cost.seconds), cost.threads,
+                       cost.threads == 1 ? "" : "s");
+  if (cost.load_steps == 0)
+    return fmt::format("{} particle-steps{}{}", count_text(cost.particle_steps), time.empty() ? "" : ", ",
+                       time);
+  return fmt::format("{} load step{}, each as many evaluations of forces as bring the body to rest{}{}",
+                     count_text(static_cast<double>(cost.load_steps)), cost.load_steps == 1 ? "" : "s",
+                     time.empty() ? "" : ", of ", time);
+}
+
 // What the scene is, and what a run of it does and takes.
 Items physics(const Loaded& loaded) {
   const Scene& scene = loaded.scene;
@@ -196,13 +209,8 @@ Items physics(const Loaded& loaded) {
   for (const SynopsisLine& line : synopsis_of(scene)) items.add(line.name, line.text, line.note);
   if (scene.began) items.add("begins at", start_text(scene, &plan.rule, plan.origin));
   const Estimate cost = estimate(scene, plan, run_size(scene));
-  std::string time;
-  if (cost.seconds > 0)
-    time = fmt::format(", {} on {} thread{}", waiting_text(cost.seconds), cost.threads,
-                       cost.threads == 1 ? "" : "s");
   add_rounds(items, scene);
-  items.add("work", fmt::format("{} particle-steps{}, {} of memory", count_text(cost.particle_steps), time,
-                                in_bytes(cost.memory)));
+  items.add("work", fmt::format("{}, {} of memory", work_text(cost), in_bytes(cost.memory)));
   items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),
                                 cost.frames == 1 ? "" : "s"));
   if (rounds_of(scene.rule) != nullptr) return items;

@@ -82,7 +82,7 @@ EngineCost cost_of(const EngineRow& engine, const Scene& scene) {
 
 RunSize run_size(const Scene& scene) {
   RunSize size;
-  if (rounds_of(scene.rule) != nullptr) size.engine = "reference";
+  if (rounds_of(scene.rule) != nullptr || scene.loading) size.engine = "reference";
   size.steps = scene.steps;
   size.frame_every = scene.frame_every;
   size.probe_every = scene.probe_every;
@@ -96,7 +96,10 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
   const double particles = plan.particles, cells = plan.lattice.size(),
                steps = static_cast<double>(size.steps);
   Estimate e;
-  e.particle_steps = particles * steps;
+  // How many evaluations bring a body to rest is not known before.
+  if (scene.loading) e.load_steps = size.steps / scene.loading->every;
+  const double rounds = scene.loading ? 1 : steps;
+  e.particle_steps = particles * rounds;
   if (rates.neighbour_time > 0) {
     constexpr double kEach = 1000;  // fewer particles are not worth a thread
     e.threads = rates.threads
@@ -107,7 +110,7 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
     // A particle costs something however few neighbours it has.
     // So do cells at rest, which one thread passes over.
     e.seconds = e.particle_steps * rates.neighbour_time * std::max(4.0, extent.neighbours) / e.threads +
-                steps * cells * rates.cell_time;
+                rounds * cells * rates.cell_time;
     e.rate = e.seconds > 0 ? e.particle_steps / (e.seconds * e.threads) : 0;
   }
 
@@ -135,8 +138,16 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
 }
 
 void add_estimate(Items& items, const Estimate& e) {
-  items.add("particle-steps", e.particle_steps);
-  if (e.seconds > 0)
+  if (e.load_steps > 0)
+    items.add("load steps", e.load_steps);
+  else
+    items.add("particle-steps", e.particle_steps);
+  if (e.seconds > 0 && e.load_steps > 0)
+    items.add("time per evaluation", e.seconds, "s",
+              fmt::format("an estimate, on {} thread{}; a load step takes as many evaluations of forces as "
+                          "bring the body to rest",
+                          e.threads, e.threads == 1 ? "" : "s"));
+  else if (e.seconds > 0)
     items.add("time", e.seconds, "s",
               fmt::format("an estimate: {:.2g} particle-steps/s on {} thread{}; what rests costs less",
                           e.rate * e.threads, e.threads, e.threads == 1 ? "" : "s"));

@@ -26,6 +26,7 @@ struct RunSize {
 RunSize run_size(const Scene& scene);
 
 struct Estimate {
+  uint64_t load_steps = 0;  // of a static run: what follows is of one evaluation of forces; else 0
   double particle_steps = 0;
   double seconds = 0;  // 0: no rate is known for this engine
   double rate = 0;     // particle-steps/s of one thread that `seconds` counts with

@@ -213,13 +213,15 @@ std::string warning_section(const std::vector<std::string>& of_plan, const Trace
 std::string engine_row(const Loaded& loaded, const Trace& trace, const std::string& equal) {
   const uint64_t updates = trace.steps() * loaded.setup.plan.particles;
   const auto cycles = cycles_per_step(trace);
+  // Time steps of a static run count its load: particles are not updated in them.
+  const bool moves = !loaded.scene.loading;
   return fmt::format(
       "<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.3g}</td><td>{}</td></"
       "tr>\n",
-      html_text(trace.engine), trace.steps(), updates, equal,
+      html_text(trace.engine), trace.steps(), moves ? std::to_string(updates) : "–", equal,
       cycles ? fmt::format("{:.1f}", cycles->mean) : "–", cycles ? std::to_string(cycles->max) : "–",
       trace.seconds,
-      trace.seconds > 0 ? fmt::format("{:.3g}", static_cast<double>(updates) / trace.seconds) : "–");
+      moves && trace.seconds > 0 ? fmt::format("{:.3g}", static_cast<double>(updates) / trace.seconds) : "–");
 }
 
 std::string engine_section(const Loaded& loaded, const Trace& run, const std::string& directory) {

@@ -8,6 +8,7 @@
 
 #include "cli/advice.h"
 #include "model/analysis/tension.h"
+#include "model/run/static_engine.h"
 #include "model/trace/cycles.h"
 
 namespace cuboct {
@@ -24,6 +25,17 @@ double largest_energy(const std::vector<Curve>& curves) {
     if (is_energy(curve))
       for (const double value : curve.value) largest = std::max(largest, std::abs(value));
   return largest;
+}
+
+// Of a static run the work is evaluations of forces: its time steps count the load.
+void add_speed(Items& items, const Scene& scene, const Trace& trace, double particles) {
+  if (!(trace.seconds > 0)) return;
+  if (!scene.loading)
+    return items.add("speed", static_cast<double>(trace.steps()) * particles / trace.seconds,
+                     "particle-steps/s");
+  for (const auto& [name, value] : trace.counters)
+    if (name == kEvaluations)
+      items.add("speed", value * particles / trace.seconds, "particles/s", "in evaluations of forces");
 }
 
 void add_tension(Items& items, const Scene& scene, const std::vector<Curve>& curves) {
@@ -117,9 +129,7 @@ Items summarise(const Loaded& loaded, const Recorded& run, bool real) {
   items.add("steps", trace.steps());
   items.add("simulated time", static_cast<double>(trace.steps()) * plan.rule.dt, "s");
   items.add("host time", trace.seconds, "s");
-  if (trace.seconds > 0)
-    items.add("speed", static_cast<double>(trace.steps() * plan.particles) / trace.seconds,
-              "particle-steps/s");
+  add_speed(items, loaded.scene, trace, plan.particles);
 
   const char* forced = keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside";
   if (real)

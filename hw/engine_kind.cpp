@@ -73,8 +73,8 @@ EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptio
   kind.saves = options.integrator == Integrator::semi_implicit_euler;
   kind.make = [&scene, &start, options, cell_edge](CheckpointReader* from, bool) {
     if (!from) return std::make_unique<ReferenceEngine>(scene, start, options, cell_edge);
-    return std::make_unique<ReferenceEngine>(scene, saved_body(*from, start, options.precision), options,
-                                             cell_edge, from->head().step);
+    return std::make_unique<ReferenceEngine>(scene, saved_body(*from, scene.rule, start, options.precision),
+                                             options, cell_edge, from->head().step);
   };
   return kind;
 }
@@ -95,7 +95,6 @@ EngineKind static_kind(const Scene& scene, const Plan& plan, const RealOptions& 
   EngineKind kind = static_kind(scene, scene.body, options.threads, plan.rule.cell_edge);
   kind.plan_hash = plan.hash;
   kind.nodes = plan.nodes();
-  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
   return kind;
 }
 

@@ -36,6 +36,8 @@ Plan real_plan_of(const Scene& scene, const Arch& arch) {
     add(hash, scene.body.v[i]);
     hash.add(scene.body.type[i]);
   }
+  if (scene.body.bonds)
+    for (const uint64_t word : scene.body.bonds->kept) hash.add(static_cast<int64_t>(word));
   plan.hash = hash.value();
   return plan;
 }

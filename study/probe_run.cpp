@@ -42,7 +42,7 @@ uint64_t particle_steps(const Scene& scene, const Trace& trace) {
   auto rounds = static_cast<double>(trace.steps());
   if (scene.loading)
     for (const auto& [name, value] : trace.counters)
-      if (name == "force_evaluations") rounds = value;
+      if (name == kEvaluations) rounds = value;
   return static_cast<uint64_t>(rounds) * scene.body.size();
 }
 

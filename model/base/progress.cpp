@@ -37,9 +37,10 @@ void Progress::at(uint64_t step) {
   const double seconds = std::chrono::duration<double>(now - begin_).count();
   const double rate = static_cast<double>(step - first_) / seconds;
   const auto left = rate > 0 ? static_cast<uint64_t>(static_cast<double>(steps_ - step) / rate) : 0;
-  fmt::print(stderr, "\r\x1b[K{}: step {} of {} ({} %), {:.3g} particle-steps/s, {}:{:02} left", label_, step,
-             steps_, steps_ > 0 ? step * 100 / steps_ : 100, rate * static_cast<double>(particles_),
-             left / 60, left % 60);
+  const std::string speed =
+      particles_ > 0 ? fmt::format("{:.3g} particle-steps/s, ", rate * static_cast<double>(particles_)) : "";
+  fmt::print(stderr, "\r\x1b[K{}: step {} of {} ({} %), {}{}:{:02} left", label_, step, steps_,
+             steps_ > 0 ? step * 100 / steps_ : 100, speed, left / 60, left % 60);
   std::fflush(stderr);
 }
 

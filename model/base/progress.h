@@ -10,7 +10,7 @@ namespace cuboct {
 // A line on stderr with rate and time left, rewritten in place; nothing where stderr is no terminal.
 class Progress {
  public:
-  // `shown` false: nothing on a terminal either.
+  // `particles`: of the rate; 0: without it. `shown` false: nothing on a terminal either.
   Progress(std::string label, uint64_t steps, uint64_t particles, bool shown = true);
   ~Progress() { wipe(); }
   Progress(const Progress&) = delete;

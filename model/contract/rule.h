@@ -156,6 +156,12 @@ struct Rule {
 
 struct ExactBody;
 
+// Bonds of a rule of several rounds that are those of the body as packed, and what they keep.
+struct BondState {
+  std::vector<Vec3> packed;    // m, by id: where each bond counts from
+  std::vector<uint64_t> kept;  // of keep_bonds() (model/rules/rounds_rule.h); empty: nothing yet
+};
+
 // Particles in SI units; the index is the particle's id.
 struct Body {
   std::vector<Vec3> x;        // m
@@ -165,6 +171,8 @@ struct Body {
   // The same in the integers of a fixed rule that left them (model/contract/state.h); null: there are none.
   // Whoever changes x, v or u drops it.
   std::shared_ptr<const ExactBody> exact;
+  // Null: bonds are those of where the particles are, and whole.
+  std::shared_ptr<const BondState> bonds{};
 
   size_t size() const { return x.size(); }
 };

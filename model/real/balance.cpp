@@ -25,7 +25,7 @@ Body at_rest(const Rule& rule, Body body) {
   body.exact.reset();
   const bool pd = std::ranges::any_of(rule.types, &ParticleType::pd);
   if (pd && body.u.empty()) body.u.assign(body.size(), Vec3::Zero());
-  return body;
+  return with_bonds(rule, body, body);
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ const std::vector<Vec3>& Balance::forces() {
   free_ = carried_;
   for (size_t i = 0; i < free_.size(); ++i) {
     const ParticleType& type = rule_.types[body_.type[i]];
-    free_[i] += rule_.mass_of(body_.type[i]) * type.gravity;
+    if (loaded_) free_[i] += rule_.mass_of(body_.type[i]) * type.gravity;
     if (type.pd) free_[i] -= type.kp * body_.u[i];
     for (int axis = 0; axis < 3; ++axis)
       if (type.imposed[axis]) free_[i][axis] = 0;
@@ -122,16 +122,29 @@ void Balance::go_on(double time) {
 FireResult Balance::relax(const std::function<bool(const std::vector<Vec3>&)>& small, uint64_t most) {
   if (!(stiffness_ > 0)) return {small(forces()), 1};
   Eigen::VectorXd x = flat(body_.x);
-  const FireResult result =
-      fire(x,
-           [&](const Eigen::VectorXd& at, Eigen::VectorXd& f) {
-             place(at);
-             forces();
-             f = flat(free_);
-             return small(free_);
-           },
-           {.stiffness = stiffness_, .longest_step = kLongestStep * rule_.cutoff(), .most = most});
-  make_lists();
+  const auto to_rest = [&](uint64_t evaluations) {
+    return fire(
+        x,
+        [&](const Eigen::VectorXd& at, Eigen::VectorXd& f) {
+          place(at);
+          forces();
+          f = flat(free_);
+          return small(free_);
+        },
+        {.stiffness = stiffness_, .longest_step = kLongestStep * rule_.cutoff(), .most = evaluations});
+  };
+  FireResult result = to_rest(most);
+  while (has_bond_memory(rule_) && result.at_rest) {
+    reference_->give_way();
+    ++result.evaluations;
+    if (small(forces())) break;
+    const FireResult again = to_rest(most - std::min(most, result.evaluations));
+    result = {again.at_rest, result.evaluations + again.evaluations};
+  }
+  if (has_reference_bonds(rule_))
+    keep_bonds(body_, *reference_->terms());
+  else
+    make_lists();
   return result;
 }
 

@@ -38,6 +38,9 @@ class Balance {
   // Of the last forces that were evaluated.
   Unbalance unbalance() const;
 
+  // Whether gravity and the forces of pulled constraints act: they do at first.
+  void load(bool acts) { loaded_ = acts; }
+
   // What is imposed moves on by its velocity for `time` s, anchors of controllers too. The free particles go
   // where they went the last time, if that leaves smaller forces: two evaluations.
   void go_on(double time);
@@ -49,8 +52,9 @@ class Balance {
   };
   Memory memory() const { return {stiffness_, before_, anchor_}; }
   void recall(Memory memory);
-  // FIRE until `small` says that the forces are. Ends with lists made anew: what follows depends on the body
-  // and on memory() alone, to the last bit.
+  // FIRE until `small` says that the forces are. Bonds that break do so at rest: those that it stretches too
+  // far, all at once, and the body relaxes again until the forces stay small. What follows depends on the
+  // body and on memory() alone, to the last bit: lists of pairs are made anew.
   FireResult relax(const std::function<bool(const std::vector<Vec3>& forces)>& small, uint64_t most);
 
  private:
@@ -62,6 +66,7 @@ class Balance {
   Body body_;
   Periodic periodic_;
   int threads_;
+  bool loaded_ = true;
   std::optional<Reference> reference_;
   double stiffness_;           // N/m, of the stiffest site
   std::vector<Vec3> anchor_;   // m; empty unless a type has a controller

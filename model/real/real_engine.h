@@ -21,6 +21,8 @@ class RealEngine {
   // The state becomes that of `body`, with as many particles of the same types.
   virtual void place(const Body& body) = 0;
   virtual std::vector<Vec3> forces() const = 0;
+  // The bonds of a rule of rounds give way as they do in a step, without one.
+  virtual void give_way() {}
   virtual double largest_speed() const = 0;  // m/s, along an axis, since the start
   virtual const NearList& list() const = 0;  // of pairs: not of a rule of several rounds
   virtual uint64_t lists_made() const = 0;

@@ -52,6 +52,10 @@ void Reference::place(const Body& body) {
   engine_->place(body);
 }
 
+void Reference::give_way() { engine_->give_way(); }
+
+const RoundsTerms* Reference::terms() const { return engine_->terms(); }
+
 const Body& Reference::body() const {
   if (stale_) engine_->read(body_);
   stale_ = false;

@@ -42,6 +42,7 @@ struct RealOptions {
 int reference_threads(size_t particles);
 
 class RealEngine;
+class RoundsTerms;
 
 // A particle's sum runs over its own pairs by ascending id of the other, each rounded in the same way
 // whatever computes it: the bits are a function of rule, body and integrator, not of threads, vectors or
@@ -65,6 +66,8 @@ class Reference {
   // The state becomes that of `body`, of the same particles; the step count stays. For those who ask for
   // forces: velocity Verlet would go on with the forces of before.
   void place(const Body& body);
+  // The bonds of a rule of rounds give way as the state stretches them, as they do in a step.
+  void give_way();
 
   // Positions are not wrapped into a periodic box: differences to earlier ones are displacements. The first
   // call after a step copies; it is not safe beside another.
@@ -87,6 +90,8 @@ class Reference {
   // rest: the kinetic part -m v (x) v / volume is left out, as it would count the motion of a body as stress.
   // D. H. Tsai, J. Chem. Phys. 70 (1979) 1375.
   std::vector<Mat3> virial_stress(double volume) const;
+  // Of a rule of rounds; null: it is of pairs.
+  const RoundsTerms* terms() const;
 
   // How often neighbour lists were made, and the instruction set that evaluates pairs, e.g. "AVX3".
   uint64_t lists_made() const;

@@ -14,6 +14,11 @@ namespace {
 
 constexpr size_t kRows = 64;  // of a part: rows differ in their work, parts are dealt out one by one
 
+Body as_packed(Body body) {
+  if (body.bonds) body.x = body.bonds->packed;
+  return body;
+}
+
 class RoundsEngine final : public RealEngine {
  public:
   RoundsEngine(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options)
@@ -24,7 +29,8 @@ class RoundsEngine final : public RealEngine {
         u_(body.u),
         type_(body.type),
         rounds_(*rounds_of(rule)),
-        terms_(rounds_.bind(body, periodic, options.threads)) {
+        terms_(rounds_.bind(as_packed(body), periodic, options.threads)) {
+    recall_bonds(*terms_, body);
     for (const Vec3& v : v_) fastest_ = std::max(fastest_, v.cwiseAbs().maxCoeff());
     evaluate(false);
   }
@@ -60,6 +66,7 @@ class RoundsEngine final : public RealEngine {
     refresh();
     return terms_.get();
   }
+  void give_way() override { evaluate(true); }
   double largest_speed() const override { return fastest_; }
   const NearList& list() const override { throw std::logic_error("a rule of rounds has no list of pairs"); }
   uint64_t lists_made() const override { return 1; }

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "model/base/error.h"
+#include "model/base/hash.h"
 #include "model/base/parallel.h"
 #include "model/rules/lps_bond.h"
 #include "model/rules/lps_surface.h"
@@ -126,13 +127,23 @@ class TermsOfBody final : public LpsTerms {
   }
   void recall(const std::vector<uint64_t>& words) override {
     if (words.size() != most_.size())
-      throw InputError(
-          fmt::format("the checkpoint holds {} bonds, the body has {}", words.size(), most_.size()));
+      throw InputError(fmt::format("the state holds {} bonds, the body has {}", words.size(), most_.size()));
     for (size_t b = 0; b < words.size(); ++b) {
-      most_[b] = std::bit_cast<double>(words[b]);
+      const auto most = std::bit_cast<double>(words[b]);
+      if ((most == kNever) != (most_[b] == kNever) || std::isnan(most))
+        throw InputError(fmt::format("the state's bond {} has no stretch that it could have", b));
+      most_[b] = most;
       left_[b] = left_of(most_[b]);
     }
     for (size_t i = 0; i < u_.size(); ++i) look_at(i);
+  }
+  uint64_t memory_hash() const override {
+    Hash hash;
+    for (const double number : {m_.critical_stretch, m_.damage_width})
+      hash.add(std::bit_cast<int64_t>(number));
+    for (const uint64_t first : bonds_.first) hash.add(static_cast<int64_t>(first));
+    for (uint64_t b = 0; b < bonds_.other.size(); ++b) hash.add(bonds_.other[b] | int64_t{breaks(b)} << 32);
+    return hash.value();
   }
 
  private:

@@ -49,6 +49,41 @@ const RoundsRule* rounds_of(const Rule& rule) {
   return law == nullptr ? nullptr : law->rule();
 }
 
+bool has_reference_bonds(const Rule& rule) {
+  const RoundsRule* rounds = rounds_of(rule);
+  return rounds != nullptr && rounds->declaration().bonds == BondRange::reference;
+}
+
+bool has_bond_memory(const Rule& rule) {
+  const RoundsRule* rounds = rounds_of(rule);
+  return rounds != nullptr && !rounds->declaration().bond.empty();
+}
+
+Body with_bonds(const Rule& rule, Body body, const Body& start) {
+  if (!has_reference_bonds(rule)) return body;
+  body.bonds = start.bonds ? start.bonds : std::make_shared<BondState>(BondState{start.x, {}});
+  return body;
+}
+
+void keep_bonds(Body& body, const RoundsTerms& terms) {
+  if (!body.bonds) return;
+  std::vector<uint64_t> kept = terms.memory();
+  if (!kept.empty()) kept.insert(kept.begin(), terms.memory_hash());
+  body.bonds = std::make_shared<BondState>(BondState{body.bonds->packed, std::move(kept)});
+}
+
+void recall_bonds(RoundsTerms& terms, const Body& body) {
+  if (!body.bonds || body.bonds->kept.empty()) return;
+  const std::vector<uint64_t>& kept = body.bonds->kept;
+  if (kept.front() != terms.memory_hash())
+    throw InputError(
+        "the state was left by other bonds: its horizon, slits, unbreakable regions, critical "
+        "stretch and damage width are not those of the rule here",
+        "go on with the rule that left it")
+        .about({"start.from", "rule"});
+  terms.recall({kept.begin() + 1, kept.end()});
+}
+
 void refuse_rounds(const Rule& rule, const std::string& who) {
   if (const RoundsRule* rounds = rounds_of(rule)) refuse(*rounds, who);
 }

@@ -39,6 +39,8 @@ class RoundsTerms {
   // The bonds' own fields, as a checkpoint keeps them. recall(): InputError where they are another body's.
   virtual std::vector<uint64_t> memory() const { return {}; }
   virtual void recall(const std::vector<uint64_t>&) {}
+  // Of what decides what memory() means: the bonds that there are, and the law by which they give way.
+  virtual uint64_t memory_hash() const { return 0; }
 };
 
 class RoundsRule {
@@ -69,6 +71,19 @@ class RoundsRule {
 std::shared_ptr<const PairLaw> rounds_law(double reach, std::shared_ptr<const RoundsRule> rule);
 // The rounds of such a Rule; null: it is of pairs.
 const RoundsRule* rounds_of(const Rule& rule);
+// Whether bonds are those of the body as packed: a body that has moved must say where that was.
+bool has_reference_bonds(const Rule& rule);
+// Whether bonds keep what they went through: a body that goes on must bring it.
+bool has_bond_memory(const Rule& rule);
+// The body with Body::bonds, where the rule's are those of the body as packed: those of `start`, or, where it
+// has none, of where its particles are.
+Body with_bonds(const Rule& rule, Body body, const Body& start);
+
+// Body::bonds of the terms, where the body has them, and back. recall_bonds: InputError where the bonds are
+// others, or give way by another law.
+void keep_bonds(Body& body, const RoundsTerms& terms);
+void recall_bonds(RoundsTerms& terms, const Body& body);
+
 // InputError where the rule has rounds, of `who` that knows pairs alone: "the lattice engine".
 void refuse_rounds(const Rule& rule, const std::string& who);
 

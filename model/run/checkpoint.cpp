@@ -16,7 +16,7 @@ namespace cuboct {
 namespace {
 
 constexpr uint64_t kMagic = 0x5450434854424355;  // "UCBTHCPT"
-constexpr uint64_t kVersion = 2;
+constexpr uint64_t kVersion = 3;
 constexpr size_t kCounters = 3;  // words; of an engine that counts less they are 0
 
 void put(WordWriter& out, const std::vector<Vec3>& list) {
@@ -63,7 +63,13 @@ void write_checkpoint(const std::string& path, const CheckpointHead& head, Engin
     out->words(head.engine.own);
   });
   engine.for_each_slot([&](const Particle& p) { attempt([&] { put(*out, p, displaced); }); });
-  if (const Body* body = engine.saved_body()) attempt([&] { put(*out, body->x, body->v, body->u); });
+  if (const Body* body = engine.saved_body())
+    attempt([&] {
+      put(*out, body->x, body->v, body->u);
+      const std::vector<uint64_t> kept = body->bonds ? body->bonds->kept : std::vector<uint64_t>();
+      out->word(kept.size());
+      out->words(kept);
+    });
   attempt([&] {
     out->word(out->mark().hash);
     out->sync();
@@ -119,7 +125,11 @@ CheckpointReader::CheckpointReader(const std::string& path, uint64_t plan_hash, 
 
 void CheckpointReader::rewind() { in_.seek(first_); }
 
-void CheckpointReader::next(Body& body) { take_body(in_, head_.particles, displaced_, body); }
+void CheckpointReader::next(Body& body, std::vector<uint64_t>& kept) {
+  take_body(in_, head_.particles, displaced_, body);
+  kept.resize(in_.count(1));
+  in_.words(kept);
+}
 
 Particle CheckpointReader::next() { return take_particle(in_, displaced_); }
 

@@ -40,9 +40,10 @@ class CheckpointReader {
 
   const std::string& path() const { return path_; }
   const CheckpointHead& head() const { return head_; }
-  Particle next();        // head().particles times
-  void next(Body& body);  // of an engine in real numbers: all at once, by id; types stay
-  void rewind();          // to the first particle
+  Particle next();  // head().particles times
+  // Of an engine in real numbers: all at once, by id; types stay. `kept`: of BondState.
+  void next(Body& body, std::vector<uint64_t>& kept);
+  void rewind();  // to the first particle
 
  private:
   std::string path_;

@@ -72,7 +72,7 @@ class Engine {
 
   // Of engines whose state is saved: the particles in the order in which a new engine is to take them.
   virtual void for_each_slot(const std::function<void(const Particle&)>&) {}
-  // Of one in real numbers: all particles at once, by id.
+  // Of one in real numbers: all particles at once, by id, with what their bonds keep.
   virtual const Body* saved_body() { return nullptr; }
   virtual EngineMemory memory() { return {}; }
 

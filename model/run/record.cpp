@@ -14,6 +14,7 @@
 #include "model/analysis/meter.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
+#include "model/rules/rounds_rule.h"
 #include "model/run/journal.h"
 #include "model/run/static_engine.h"
 
@@ -98,7 +99,8 @@ Loop::Loop(const Scene& scene, const EngineKind& kind, const RunRequest& request
               .table_error = kind.table_error,
               .threads = kind.threads}),
       looks_(kind.looks ? kind.looks(request.probes) : request.probes),
-      log_({kind.name, request.steps, kind.particles, request.probes, request.log}, scene, meter_.curves()),
+      log_({kind.name, request.steps, kind.relaxes ? 0 : kind.particles, request.probes, request.log}, scene,
+           meter_.curves()),
       piece_(kind.in_pieces || request.checkpoint.every_seconds > 0 || request.log == LogRows::seconds ||
                      stderr_is_terminal()
                  ? 1
@@ -116,7 +118,9 @@ void Loop::make_engine(CheckpointReader* from, bool cycles) {
 }
 
 void Loop::start() {
+  const auto begin = Clock::now();
   make_engine(nullptr, request_.cycles);
+  if (kind_.relaxes) trace_.seconds += since(begin);  // to rest, which is the run's work
   if (!save_plan_.path.empty() && leads()) {
     if (std::filesystem::exists(save_plan_.path))
       throw InputError(fmt::format("{} holds a run that did not end", save_plan_.path),
@@ -369,13 +373,15 @@ void Loop::finish() {
   const bool sample = request_.last && request_.energies && !among(request_.probes, last);
   const bool look = request_.last && meter_.watch() && looked_ != last;
   const bool hash = request_.last && hashed() && last % request_.hash_every != 0;
-  if (lost_ && (sample || look || hash || frame || request_.totals)) go_back_to(last);
+  const bool bonds = request_.last && !request_.frames.empty() && has_reference_bonds(scene_.rule);
+  if (lost_ && (sample || look || hash || frame || bonds || request_.totals)) go_back_to(last);
   if (hash) trace_.state_hash.push_back(engine_->hash());
   if (sample || look) measure(look || sample, sample);
   if (frame) {
     RunState last_frame = engine_->frame(request_.forces);
     if (leads()) give(request_, std::move(last_frame), trace_);
   }
+  if (bonds) trace_.bonds = engine_->saved_body()->bonds->kept;
   if (leads()) log_.end(last, sample || among(request_.probes, last), [this] { return meter_.latest(); });
   trace_.curves = meter_.curves();
   meter_.conclude();

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "model/base/error.h"
+#include "model/rules/rounds_rule.h"
 
 namespace cuboct {
 
@@ -48,7 +49,7 @@ Notes ReferenceEngine::notes() {
            options_.integrator == Integrator::velocity_verlet ? "velocity Verlet" : "semi-implicit Euler"}};
 }
 
-Body saved_body(CheckpointReader& from, const Body& start, Precision precision) {
+Body saved_body(CheckpointReader& from, const Rule& rule, const Body& start, Precision precision) {
   if (from.head().engine.counters[0] != static_cast<uint64_t>(precision))
     throw InputError(fmt::format("{} was made with another --precision", from.path()),
                      "resume with the options of the run that wrote it");
@@ -57,7 +58,10 @@ Body saved_body(CheckpointReader& from, const Body& start, Precision precision) 
                                  from.head().particles, start.size()));
   Body body;
   body.type = start.type;
-  from.next(body);
+  std::vector<uint64_t> kept;
+  from.next(body, kept);
+  body = with_bonds(rule, std::move(body), start);
+  if (body.bonds) body.bonds = std::make_shared<BondState>(BondState{body.bonds->packed, std::move(kept)});
   return body;
 }
 

@@ -37,8 +37,8 @@ class ReferenceEngine : public Engine {
   Reference reference_;
 };
 
-// The body of a checkpoint of an engine in real numbers, whose types are those of `start`. InputError where
-// it is of another precision or number of particles.
-Body saved_body(CheckpointReader& from, const Body& start, Precision precision);
+// The body of a checkpoint of an engine in real numbers, whose types are those of `start`, and whose bonds
+// count from where those of `start` do. InputError where it is of another precision or number of particles.
+Body saved_body(CheckpointReader& from, const Rule& rule, const Body& start, Precision precision);
 
 }  // namespace cuboct

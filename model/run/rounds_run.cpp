@@ -4,45 +4,35 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 
 #include "model/analysis/body_reading.h"
 #include "model/base/error.h"
 #include "model/real/rounds_engine.h"
+#include "model/run/bond_counters.h"
 #include "model/run/reference_engine.h"
 
 namespace cuboct {
 namespace {
 
-// The displacements from anchors that the rule counts, where the body has none yet.
-Body anchored(const Scene& scene, Body body) {
+// With the displacements from anchors that the rule counts, where the body has none yet.
+Body completed(const Scene& scene, const Body& start) {
+  Body body = with_bonds(scene.rule, start, start);
   const bool pd = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
   if (pd && body.u.empty()) body.u.assign(body.size(), Vec3::Zero());
   return body;
 }
 
-// Bonds count from the body as packed, wherever it is now.
-std::unique_ptr<RealEngine> engine_of(const Scene& scene, const Body& now, const RealOptions& options,
-                                      const std::vector<uint64_t>& bonds) {
-  Body packed = now;
-  packed.x = scene.packing().x;
-  auto engine = make_rounds_engine(scene.rule, packed, scene.periodic, options);
-  engine->place(now);
-  if (!bonds.empty()) engine->recall(bonds);
-  return engine;
-}
-
 }  // namespace
 
 RoundsRun::RoundsRun(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge,
-                     uint64_t step, const std::vector<uint64_t>& bonds)
+                     uint64_t step)
     : scene_(scene),
       options_(std::make_unique<RealOptions>(options)),
       cell_edge_(cell_edge),
       step_(step),
-      body_(anchored(scene, body)),
-      engine_(engine_of(scene, body_, options, bonds)) {}
+      body_(completed(scene, body)),
+      engine_(make_rounds_engine(scene.rule, body_, scene.periodic, options)) {}
 RoundsRun::~RoundsRun() = default;
 
 void RoundsRun::advance(uint64_t steps, std::vector<uint64_t>*) {
@@ -95,17 +85,8 @@ Momentum RoundsRun::momentum() {
 double RoundsRun::largest_speed() { return engine_->largest_speed() * scene_.rule.dt / cell_edge_; }
 
 Counters RoundsRun::counters() {
-  Counters counters{{"threads", options_->threads},
-                    {"bonds", static_cast<double>(engine_->terms()->bonds())}};
-  // Bonds of the moment are whole or are not there.
-  if (rounds_of(scene_.rule)->declaration().bonds == BondRange::current) return counters;
-  double damaged = 0, most = 0;
-  for (size_t i = 0; i < body_.size(); ++i) {
-    const double damage = engine_->terms()->damage(i);
-    damaged += damage, most = std::max(most, damage);
-  }
-  counters.emplace_back("mean_damage", damaged / static_cast<double>(body_.size()));
-  counters.emplace_back("largest_damage", most);
+  Counters counters{{"threads", options_->threads}};
+  add_bonds(counters, scene_.rule, *engine_->terms(), body_.size());
   return counters;
 }
 
@@ -116,7 +97,13 @@ Notes RoundsRun::notes() {
           {"rule", rounds_of(scene_.rule)->declaration().name}};
 }
 
-EngineMemory RoundsRun::memory() { return {{static_cast<uint64_t>(options_->precision)}, engine_->memory()}; }
+const Body* RoundsRun::saved_body() {
+  body();
+  keep_bonds(body_, *engine_->terms());
+  return &body_;
+}
+
+EngineMemory RoundsRun::memory() { return {{static_cast<uint64_t>(options_->precision)}, {}}; }
 
 EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions& options, double cell_edge) {
   EngineKind kind;
@@ -128,8 +115,8 @@ EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions&
   kind.saves = options.integrator == Integrator::semi_implicit_euler;
   kind.make = [&scene, &start, options, cell_edge](CheckpointReader* from, bool) {
     if (!from) return std::make_unique<RoundsRun>(scene, start, options, cell_edge);
-    return std::make_unique<RoundsRun>(scene, saved_body(*from, start, options.precision), options, cell_edge,
-                                       from->head().step, from->head().engine.own);
+    return std::make_unique<RoundsRun>(scene, saved_body(*from, scene.rule, start, options.precision),
+                                       options, cell_edge, from->head().step);
   };
   return kind;
 }

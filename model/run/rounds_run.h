@@ -15,11 +15,10 @@ struct RealOptions;
 
 class RoundsRun : public Engine {
  public:
-  // Keeps a reference to `scene`, whose rule has rounds. `cell_edge`: m, in which speeds are told. `step`,
-  // `bonds`: of `body`, and what its bonds kept then; empty: as packed. InputError where the body does not
-  // fit the rule.
+  // Keeps a reference to `scene`, whose rule has rounds. `cell_edge`: m, in which speeds are told. `step`: of
+  // `body`. InputError where the body, or what its bonds keep, does not fit the rule.
   RoundsRun(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge,
-            uint64_t step = 0, const std::vector<uint64_t>& bonds = {});
+            uint64_t step = 0);
   ~RoundsRun() override;
 
   uint64_t step_count() const override { return step_; }
@@ -31,7 +30,7 @@ class RoundsRun : public Engine {
   double largest_speed() override;
   Counters counters() override;
   Notes notes() override;
-  const Body* saved_body() override { return &body(); }
+  const Body* saved_body() override;
   EngineMemory memory() override;
 
  private:

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "model/base/error.h"
+#include "model/rules/rounds_rule.h"
 #include "model/trace/left_state.h"
 #include "model/trace/trace_head.h"
 
@@ -41,6 +42,23 @@ void check_alike(const Scene& scene, const LeftState& left, const std::string& f
   }
 }
 
+// What the bonds of the scene's rule went through must have come with the state, and nothing else.
+std::shared_ptr<const BondState> bonds_of(const Scene& scene, const LeftState& left,
+                                          const std::string& from) {
+  const auto refuse = [&](const std::string& what) {
+    scene.places.fail({"start.from", "rule"}, fmt::format("{} {}", from, what),
+                      "a run of this scene's [rule] leaves a state that it can go on from");
+  };
+  const BondState* there = left.body.bonds.get();
+  if (has_bond_memory(scene.rule) && there == nullptr)
+    refuse("does not say which bonds are broken: another rule left it, or an older program");
+  if (!has_bond_memory(scene.rule) && there != nullptr && !there->kept.empty())
+    refuse("holds bonds that can break, and here none can: they would heal");
+  if (!has_reference_bonds(scene.rule)) return nullptr;
+  return std::make_shared<BondState>(
+      BondState{scene.packing().x, there != nullptr ? there->kept : std::vector<uint64_t>()});
+}
+
 // Whether a particle's displacement from its anchor goes on: the same constraint holds it by force. Else the
 // anchor stands where the particle is.
 bool keeps_anchor(const Scene& scene, const LeftState& left, size_t id) {
@@ -73,6 +91,7 @@ void begin_at(Scene& scene, const std::string& directory) {
       exact->u[id] = {};
   }
   body.exact = std::move(exact);
+  body.bonds = bonds_of(scene, left, directory);
   for (Probe& probe : scene.probes)
     if (probe.from_start)
       for (const uint32_t id : probe.set.ids) probe.begin.push_back(body.x[id]);

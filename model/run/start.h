@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Runs that begin where another one ended. The scene packs its particles as ever, so that regions,
-// displacements and strains count from the packing; then positions and velocities become those of the state
-// that was left.
+// displacements and strains count from the packing; then positions, velocities and what bonds keep become
+// those of the state that was left.
 #pragma once
 
 #include <string>

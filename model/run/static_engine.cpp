@@ -9,12 +9,13 @@
 
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
+#include "model/run/bond_counters.h"
 #include "model/run/reference_engine.h"
 
 namespace cuboct {
 namespace {
 
-constexpr size_t kHeadWords = 6;  // of the memory
+constexpr size_t kHeadWords = 7;  // of the memory
 
 void add(std::vector<uint64_t>& words, const std::vector<Vec3>& values) {
   for (const Vec3& value : values)
@@ -37,7 +38,16 @@ StaticEngine::StaticEngine(const Scene& scene, const Body& body, int threads, do
       cell_edge_(cell_edge),
       step_(0),
       balance_(scene.rule, body, scene.periodic, threads) {
+  const auto any = [&](const Vec3 ParticleType::*of) {
+    return std::ranges::any_of(scene.rule.types,
+                               [&](const ParticleType& type) { return !(type.*of).isZero(); });
+  };
+  const bool pulled = any(&ParticleType::gravity), moved = any(&ParticleType::velocity);
+  if (scene.packed || !(pulled || moved)) return;
+  balance_.load(false);
   relax();
+  balance_.load(true);
+  rests_ = !pulled;
 }
 
 StaticEngine::StaticEngine(const Scene& scene, const Body& body, int threads, double cell_edge, uint64_t step,
@@ -48,13 +58,14 @@ StaticEngine::StaticEngine(const Scene& scene, const Body& body, int threads, do
       step_(step),
       balance_(scene.rule, body, scene.periodic, threads) {
   const size_t n = body.size(), anchors = balance_.body().u.size();
-  const size_t before = own.size() > kHeadWords ? own[5] : 0;
+  const size_t before = own.size() > kHeadWords ? own[6] : 0;
   if (own.size() < kHeadWords || (before != 0 && before != n) ||
       own.size() != kHeadWords + 3 * (before + anchors))
     throw InputError("the checkpoint is not of static loading of this scene", "begin anew with --force");
   load_steps_ = own[0], evaluations_ = own[1];
   largest_share_ = std::bit_cast<double>(own[2]), largest_residual_ = std::bit_cast<double>(own[3]);
-  balance_.recall({std::bit_cast<double>(own[4]), vectors(own, kHeadWords, before),
+  rests_ = own[4] != 0;
+  balance_.recall({std::bit_cast<double>(own[5]), vectors(own, kHeadWords, before),
                    vectors(own, kHeadWords + 3 * before, anchors)});
 }
 
@@ -64,6 +75,7 @@ EngineMemory StaticEngine::memory() {
                             evaluations_,
                             std::bit_cast<uint64_t>(largest_share_),
                             std::bit_cast<uint64_t>(largest_residual_),
+                            uint64_t{rests_},
                             std::bit_cast<uint64_t>(memory.stiffness),
                             memory.before.size()};
   add(own, memory.before);
@@ -98,6 +110,7 @@ void StaticEngine::relax() {
 
 void StaticEngine::advance(uint64_t steps, std::vector<uint64_t>*) {
   const uint64_t every = scene_.loading->every;
+  if (steps > 0 && !rests_) relax(), rests_ = true;
   for (const uint64_t end = step_ + steps; step_ < end;) {
     const uint64_t next = (step_ / every + 1) * every;
     if (next > end) {
@@ -134,9 +147,12 @@ double StaticEngine::largest_speed() {
 }
 
 Counters StaticEngine::counters() {
-  return {{"threads", threads_},
-          {"load_steps", static_cast<double>(load_steps_)},
-          {"force_evaluations", static_cast<double>(evaluations_)}};
+  Counters counters{{"threads", threads_},
+                    {"load_steps", static_cast<double>(load_steps_)},
+                    {kEvaluations, static_cast<double>(evaluations_)}};
+  if (const RoundsTerms* terms = balance_.reference().terms())
+    add_bonds(counters, scene_.rule, *terms, balance_.body().size());
+  return counters;
 }
 
 Notes StaticEngine::notes() {
@@ -154,12 +170,12 @@ EngineKind static_kind(const Scene& scene, const Body& start, int threads, doubl
   kind.fixed = kind.keeps_state = false;
   kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
   kind.relaxes = true;
-  kind.initial = [&start](uint32_t id) { return start.x[id]; };
+  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
   kind.saves = true;
   kind.make = [&scene, &start, threads, cell_edge](CheckpointReader* from, bool) {
     if (!from) return std::make_unique<StaticEngine>(scene, start, threads, cell_edge);
-    return std::make_unique<StaticEngine>(scene, saved_body(*from, start, Precision::float64), threads,
-                                          cell_edge, from->head().step, from->head().engine.own);
+    return std::make_unique<StaticEngine>(scene, saved_body(*from, scene.rule, start, Precision::float64),
+                                          threads, cell_edge, from->head().step, from->head().engine.own);
   };
   return kind;
 }

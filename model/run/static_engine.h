@@ -2,6 +2,10 @@
 // Quasi-static loading behind the interface of all engines: the scene's time steps count the load, and the
 // body is at rest at each load step. In doubles: the fixed rule's integers know forces as kicks of a step,
 // whose last bit is far above the residual that rest asks for.
+//
+// Step 0 is the body before its load: at rest without gravity and the forces of pulled constraints. One that
+// another run left, or that nothing loads, is as it is. The first step brings it to rest under those forces;
+// each load step then moves the constraints on.
 #pragma once
 
 #include "model/real/balance.h"
@@ -11,10 +15,13 @@
 
 namespace cuboct {
 
+// The counter of force evaluations.
+inline constexpr const char* kEvaluations = "force_evaluations";
+
 class StaticEngine : public Engine {
  public:
-  // Keeps a reference to `scene`, whose `loading` it follows; relaxes `body` first. `cell_edge`: m, in which
-  // speeds are told. StepError where the body finds no rest.
+  // Keeps a reference to `scene`, whose `loading` it follows. `cell_edge`: m, in which speeds are told.
+  // StepError where the body finds no rest.
   StaticEngine(const Scene& scene, const Body& body, int threads, double cell_edge);
   // From what an engine of this scene left at `step`: its body, and memory().own. InputError where that is
   // another's.
@@ -42,6 +49,7 @@ class StaticEngine : public Engine {
   double cell_edge_;
   uint64_t step_;
   Balance balance_;
+  bool rests_ = false;  // under the load that acts without a load step
   uint64_t load_steps_ = 0, evaluations_ = 0;
   double largest_share_ = 0;     // of the load, of any load step
   double largest_residual_ = 0;  // N, where nothing is loaded

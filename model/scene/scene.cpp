@@ -188,12 +188,6 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
     scene.loading = read_static(*stage, scene);
   else if (usual_static)
     scene.loading = read_static(run, scene);
-  if (const RoundsRule* rounds = rounds_of(scene.rule); scene.loading && rounds != nullptr &&
-                                                        rounds->declaration().bonds == BondRange::reference &&
-                                                        std::isfinite(rounds->bond_reach()))
-    (run.has("static") ? run : *stage)
-        .at("static")
-        .fail("static loading knows no bonds that break", "leave out what breaks them, or let the body move");
   const uint64_t least = scene.loading ? scene.loading->every : 1;
   scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max(least, whole / 500));
   scene.frame_every = every("frame_every", 0);

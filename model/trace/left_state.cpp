@@ -119,6 +119,8 @@ void read_real(const Reader& in, LeftState& left) {
   };
   triple("x", body.x), triple("v", body.v);
   if (in.has(group, "u")) triple("u", body.u);
+  if (in.has(group, "bonds"))
+    body.bonds = std::make_shared<BondState>(BondState{{}, in.array<uint64_t>(group, "bonds")});
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct LeftState {
   uint64_t packing = 0;            // model/trace/trace_head.h
   std::vector<std::string> types;  // names, "material" or "material/constraint"
   // By id, in SI; of a fixed engine with its integers in `exact`. `u` is empty where nothing is held by
-  // force.
+  // force. `bonds` do not say where they count from: that is the packing.
   Body body;
 };
 

@@ -155,7 +155,10 @@ class BodyRows {
     out_.flush();
   }
   uint64_t pending() const { return 4 * x_.chunk_bytes(); }
-  void finish() {
+  void finish(const std::optional<std::vector<uint64_t>>& bonds) {
+    if (bonds)
+      out_.array(group_, "bonds", {bonds->size()}, *bonds, "",
+                 "what the bonds of the last body keep: docs/reference/trace.md");
     x_.finish(), v_.finish();
     if (force_) force_->finish();
     if (u_) u_->finish();
@@ -450,7 +453,7 @@ void TraceWriter::finish(const Trace& trace) {
     if (!impl_->frames) impl_->frames.emplace(out, 0, nullptr);
     impl_->frames->finish();
     impl_->frames.reset();
-    if (impl_->bodies) impl_->bodies->finish();
+    if (impl_->bodies) impl_->bodies->finish(trace.bonds);
     impl_->bodies.reset();
     write_curves(out, trace.curves);
     write_cycles(out, trace);
@@ -539,6 +542,9 @@ Trace read_rest(const Reader& in) {
     for (size_t i = 0; i < of.size(); ++i) trace.notes.emplace_back(of[i], texts[i]);
   }
   read_findings(in, trace);
+  if (in.has(in.root(), "bodies"))
+    if (const Handle bodies = in.group(in.root(), "bodies"); in.has(bodies, "bonds"))
+      trace.bonds = in.array<uint64_t>(bodies, "bonds");
   if (in.has(in.root(), "reached")) {
     const Handle reached = in.group(in.root(), "reached");
     trace.reached =

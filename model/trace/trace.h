@@ -84,6 +84,8 @@ struct Trace {
   uint64_t steps_done = 0;    // read where steps() cannot count state_hash: hash_every above 1, or no hashes
   std::vector<State> frames;  // the states that were asked for, ascending in step
   std::vector<RealFrame> bodies;  // the same of a run in real numbers; one number of particles in all
+  // BondState::kept after the last of `bodies`; nothing where bonds are not those of the body as packed.
+  std::optional<std::vector<uint64_t>> bonds;
   std::vector<Curve> curves;
   std::vector<PhaseSpan>
       cycles;  // [(step * nodes + node) * kPhases + phase]; empty where the engine counts none

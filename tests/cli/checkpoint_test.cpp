@@ -222,7 +222,7 @@ TEST_F(Checkpoint, RefusesWhatIsDamaged) {
   std::string later = good;
   later[8] = 9;
   write("state", later);
-  EXPECT_TRUE(refused(" is a checkpoint of version 9; this program reads version 2\n"));
+  EXPECT_TRUE(refused(" is a checkpoint of version 9; this program reads version 3\n"));
 
   write("state", good);
   write("state.journal", journal.substr(0, 80));

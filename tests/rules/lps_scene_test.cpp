@@ -42,7 +42,8 @@ TEST(LpsScene, NoBitDependsOnThreads) {
   }
 }
 
-// With what its bonds kept, a run in two parts is the run in one; without, it is not.
+// With what its bonds kept, a run in two parts is the run in one; where they count from there, or without
+// what they kept, it is not.
 TEST(LpsScene, ARunInTwoPartsIsTheRunInOne) {
   const Scene scene =
       parse_scene(scene_with("fracture_energy = \"3.8 J/m^2\"\ndamage_width = 1e-5\n", kPulled), "plate");
@@ -50,18 +51,24 @@ TEST(LpsScene, ARunInTwoPartsIsTheRunInOne) {
   RoundsRun first(scene, scene.body, {}, 1e-3);
   first.advance(25, nullptr);
   const Body half = *first.saved_body();
-  const auto rest = [&](const std::vector<uint64_t>& bonds) {
-    RoundsRun second(scene, half, {}, 1e-3, 25, bonds);
+  const auto rest = [&](const std::shared_ptr<const BondState>& bonds) {
+    Body begin = half;
+    begin.bonds = bonds;
+    RoundsRun second(scene, begin, {}, 1e-3, 25);
     second.advance(15, nullptr);
     return *second.saved_body();
   };
-  const Body kept = rest(first.memory().own), healed = rest({});
-  double apart = 0;
+  const Body kept = rest(half.bonds), moved = rest(nullptr);
+  const Body healed = rest(std::make_shared<BondState>(BondState{scene.body.x, {}}));
+  double apart = 0, away = 0;
   for (size_t i = 0; i < whole.size(); ++i) {
     EXPECT_EQ(whole.x[i], kept.x[i]) << i;
     apart = std::max(apart, (whole.x[i] - healed.x[i]).norm());
+    away = std::max(away, (whole.x[i] - moved.x[i]).norm());
   }
+  EXPECT_EQ(whole.bonds->kept, kept.bonds->kept);
   EXPECT_GT(apart, 0);
+  EXPECT_GT(away, 0);
 }
 
 // Undamaged and free: momentum is kept to rounding, and energy to the order of the step squared.
@@ -147,7 +154,6 @@ TEST(LpsScene, EnginesOfPairsRefuseIt) {
   EXPECT_THROW(RoundsRun(scene, scene.body, RealOptions{.precision = Precision::float32}, 1e-3), InputError);
 }
 
-// The reference of static loading finds the state at rest: a bar under tension has its Young's modulus.
 TEST(LpsScene, PotentialEnergyOfTheReferenceIsTheRules) {
   const Scene scene = parse_scene(scene_with(""), "plate");
   Body body = scene.body;

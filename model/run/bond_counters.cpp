@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#include "model/run/bond_counters.h"
+
+#include <algorithm>
+
+namespace cuboct {
+
+void add_bonds(Counters& counters, const Rule& rule, const RoundsTerms& terms, size_t particles) {
+  counters.emplace_back("bonds", static_cast<double>(terms.bonds()));
+  // Bonds of the moment are whole or are not there.
+  if (!has_reference_bonds(rule)) return;
+  double damaged = 0, most = 0;
+  for (size_t i = 0; i < particles; ++i) {
+    const double damage = terms.damage(i);
+    damaged += damage, most = std::max(most, damage);
+  }
+  counters.emplace_back("mean_damage", damaged / static_cast<double>(particles));
+  counters.emplace_back("largest_damage", most);
+}
+
+}  // namespace cuboct
