@@ -159,7 +159,8 @@ void write_bond_tables(const BondFindings& found, const std::string& directory) 
 std::string potential_file(const BondStudy& study, const bond_fit::BondFit& fit) {
   const TersoffTerm<double> t = best_term(study, fit);
   return fmt::format(
-      "# Tersoff's parameters by cuboct fit, for a crystal of edge {:g} angstrom; eV and angstrom\n"
+      "# Tersoff's parameters by cuboct fit, for a crystal of edge {:g} angstrom. UNITS: metal (eV, "
+      "angstrom)\n"
       "# element element element m gamma lambda3 c d cos_theta0 n beta lambda2 B R D lambda1 A\n"
       "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}\n",
       study.problem.goal.edge, study.element, study.element, study.element, t.m, t.gamma, t.lambda3, t.c, t.d,

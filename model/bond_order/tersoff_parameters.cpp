@@ -95,27 +95,58 @@ struct Word {
   int line = 0, column = 0;
 };
 
-std::vector<Word> words_of(const std::string& path) {
+struct File {
+  std::vector<Word> words, comments;
+};
+
+File words_of(const std::string& path) {
   std::ifstream in(path);
   if (!in)
     throw InputError(fmt::format("cannot read {}", line_text(path)), "a file of LAMMPS's pair_style tersoff");
-  std::vector<Word> words;
+  File file;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
-    line.resize(std::min(line.size(), line.find('#')));
+    const size_t comment = std::min(line.size(), line.find('#'));
     constexpr const char* kBlank = " \t\r";
     for (size_t at = line.find_first_not_of(kBlank); at != std::string::npos;) {
-      const size_t end = std::min(line.find_first_of(kBlank, at), line.size());
-      words.push_back({line.substr(at, end - at), number, static_cast<int>(at) + 1});
+      size_t end = std::min(line.find_first_of(kBlank, at), line.size());
+      if (at < comment) end = std::min(end, comment);
+      (at < comment ? file.words : file.comments)
+          .push_back({line.substr(at, end - at), number, static_cast<int>(at) + 1});
       at = line.find_first_not_of(kBlank, end);
     }
   }
-  return words;
+  return file;
 }
 
 InputError wrong(const std::string& path, const Word& at, const std::string& what,
                  const std::string& hint = {}) {
   return InputError(path, at.line, at.column, what, hint);
+}
+
+// eV per kcal/mol: the thermochemical calorie, 4.184 J (NIST SP 811, appendix B.8), Avogadro's number and the
+// elementary charge (CODATA 2018, exact). LAMMPS's own factor, 1/23.060549, is 5e-8 of it less.
+constexpr double kKilocaloriePerMole = 4184 / (6.02214076e23 * 1.602176634e-19);
+
+// eV of the file's unit of energy, by LAMMPS's tag "UNITS: metal" or "UNITS: real" in a comment; both have
+// angstrom. Without a tag metal, as LAMMPS's own files were before there were tags.
+double energy_unit(const std::string& path, const std::vector<Word>& comments) {
+  constexpr const char* kHint = "'UNITS: metal' is eV and angstrom, 'UNITS: real' kcal/mol and angstrom";
+  const Word* said = nullptr;
+  for (size_t k = 0; k < comments.size(); ++k) {
+    if (comments[k].text != "UNITS:") continue;
+    if (k + 1 == comments.size() || comments[k + 1].line != comments[k].line)
+      throw wrong(path, comments[k], "'UNITS:' names no units", kHint);
+    const Word& units = comments[k + 1];
+    if (units.text != "metal" && units.text != "real")
+      throw wrong(path, units, fmt::format("parameters in units '{}' are not read", line_text(units.text)),
+                  kHint);
+    if (said && said->text != units.text)
+      throw wrong(path, units,
+                  fmt::format("units '{}', but line {} says '{}'", units.text, said->line, said->text));
+    said = &units;
+  }
+  return said && said->text == "real" ? kKilocaloriePerMole : 1;
 }
 
 double number_of(const std::string& path, const Word& word, const char* name) {
@@ -179,7 +210,9 @@ Tersoff tersoff_of(const std::string& element, const TersoffTerm<double>& t) {
 }
 
 Tersoff read_tersoff(const std::string& path, const std::vector<std::string>& elements) {
-  const std::vector<Word> words = words_of(path);
+  const File file = words_of(path);
+  const std::vector<Word>& words = file.words;
+  const double unit = energy_unit(path, file.comments);
   const size_t count = elements.size();
   std::vector<std::optional<TersoffTerm<double>>> found(count * count * count);
   for (size_t at = 0; at < words.size(); at += 17) {
@@ -209,11 +242,11 @@ Tersoff read_tersoff(const std::string& path, const std::vector<std::string>& el
                                    elements[index % count]));
     tersoff.terms.push_back(*found[index]);
   }
-  return tersoff;
+  return unit == 1 ? tersoff : tersoff.scaled(unit, 1);
 }
 
 std::vector<std::string> tersoff_elements(const std::string& path) {
-  const std::vector<Word> words = words_of(path);
+  const std::vector<Word> words = words_of(path).words;
   std::vector<std::string> elements;
   for (size_t at = 0; at + 17 <= words.size(); at += 17)
     if (words[at].text == words[at + 1].text && words[at].text == words[at + 2].text)

@@ -33,7 +33,7 @@ Tersoff tersoff_of(const std::string& element, const TersoffTerm<double>& term);
 
 // All triples of `elements` from a file of LAMMPS: entries of 17 words, which may go on over lines,
 //   element element element m gamma lambda3 c d cos_theta0 n beta lambda2 B R D lambda1 A
-// and comments behind #. InputError with file, line and column.
+// and comments behind #, which may say UNITS: real. Terms are in eV. InputError with file, line, column.
 Tersoff read_tersoff(const std::string& path, const std::vector<std::string>& elements);
 
 // The elements of which such a file has entries of their own (element element element), in its order.

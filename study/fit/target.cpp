@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "model/base/spelling.h"
+#include "model/base/text.h"
 #include "study/fit/csv.h"
 #include "study/fit/curve_error.h"
 
@@ -71,30 +73,42 @@ void measure(Target& target, const Fail& fail) {
          "");
 }
 
-// In the unit of its column, or of `key` of the study.
-double unit_of(const ConfigTable& table, const Csv& csv, const CsvColumn& column, const std::string& key,
-               const Quantity& quantity) {
-  if (table.has(key)) {
-    const ConfigValue value = table.at(key);
-    if (quantity.dimension == quantity::number.dimension)
-      return value.choice("unit", {"1", "%"}) == 1 ? 0.01 : 1;
-    return value.unit(quantity);
-  }
+// What the header says, where it says it in words that are known.
+std::optional<double> unit_of(const CsvColumn& column, const Quantity& quantity) {
   if (quantity.dimension == quantity::number.dimension) {
     if (column.unit == "%") return 0.01;
-    if (column.unit.empty() || column.unit == "1" || column.unit == "-") return 1;
-    csv.fail(csv.header, column.column, fmt::format("'{}' is no unit of strain", column.unit),
-             "strains are in % or have no unit");
+    return column.unit == "1" || column.unit == "-" ? std::optional(1.0) : std::nullopt;
   }
-  if (table.reduced() && column.unit.empty()) return 1;
-  if (column.unit.empty())
-    csv.fail(csv.header, column.column, fmt::format("the unit of '{}' is missing", column.name),
-             fmt::format("write '{} (MPa)', or {} = \"MPa\" in [target]", column.name, key));
   try {
     const ParsedQuantity parsed = parse_quantity("1 " + column.unit);
     if (parsed.dimension == quantity.dimension && parsed.values.size() == 1) return parsed.values[0];
   } catch (const UnitError&) {
   }
+  return std::nullopt;
+}
+
+// In the unit of its column, or of `key` of the study.
+double unit_of(const ConfigTable& table, const Csv& csv, const CsvColumn& column, const std::string& key,
+               const Quantity& quantity) {
+  const bool number = quantity.dimension == quantity::number.dimension;
+  const std::optional<double> said = unit_of(column, quantity);
+  if (const auto value = table.find(key)) {
+    const double unit = !number ? value->unit(quantity) : value->choice("unit", {"1", "%"}) == 1 ? 0.01 : 1;
+    if (said && std::abs(*said / unit - 1) > 1e-12)
+      value->fail(
+          fmt::format("'{}' is not the unit that line {} of {} states for '{}', '{}'", value->string(),
+                      csv.header, line_text(csv.path), line_text(column.name), line_text(column.unit)),
+          fmt::format("without '{}' the file's unit holds", key));
+    return unit;
+  }
+  if (said) return *said;
+  if (column.unit.empty() && (number || table.reduced())) return 1;
+  if (column.unit.empty())
+    csv.fail(csv.header, column.column, fmt::format("the unit of '{}' is missing", column.name),
+             fmt::format("write '{} (MPa)', or {} = \"MPa\" in [target]", column.name, key));
+  if (number)
+    csv.fail(csv.header, column.column, fmt::format("'{}' is no unit of strain", column.unit),
+             "strains are in % or have no unit");
   csv.fail(csv.header, column.column, fmt::format("'{}' is no unit of {}", column.unit, quantity.name),
            "e.g. MPa");
 }

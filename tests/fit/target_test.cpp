@@ -46,6 +46,24 @@ TEST_F(Target, ReadsUnitsFromHeaderOrKeys) {
   }
 }
 
+// A unit in the header and another in the study: one of them is wrong.
+TEST_F(Target, AUnitThatTheHeaderContradictsIsRefused) {
+  const std::string rows = "0,0\n0.5,15\n1,20\n";
+  EXPECT_EQ(of_csv("strain (%),stress (MPa)\n" + rows, "stress_unit = \"N/mm^2\"\nstrain_unit = \"%\"\n"),
+            "accepted");
+  EXPECT_EQ(of_csv("strain (mm/mm),stress (psi)\n" + rows, "stress_unit = \"kPa\"\nstrain_unit = \"1\"\n"),
+            "accepted");  // words that are not known say nothing
+  const std::string stress = of_csv("strain,stress (MPa)\n" + rows, "stress_unit = \"kPa\"\n");
+  EXPECT_NE(stress.find("'kPa' is not the unit that line 1 of t.csv states for 'stress', 'MPa'\n"
+                        "  hint: without 'stress_unit' the file's unit holds"),
+            std::string::npos)
+      << stress;
+  const std::string strain = of_csv("# x\nstrain [%],stress (MPa)\n" + rows, "strain_unit = \"1\"\n");
+  EXPECT_NE(strain.find("'1' is not the unit that line 2 of t.csv states for 'strain', '%'"),
+            std::string::npos)
+      << strain;
+}
+
 TEST_F(Target, RefusesWhatIsNoCurve) {
   const std::string head = "strain,stress (MPa)\n";
   EXPECT_EQ(

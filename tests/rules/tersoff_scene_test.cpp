@@ -228,6 +228,29 @@ std::string carbon_refusal(const std::string& text) {
   return "none";
 }
 
+// The set of 1988 in kcal/mol: the energy of silicon is that of the set in eV, -4.630 eV an atom.
+TEST(TersoffScene, AFileInRealUnitsIsTheSetInMetalUnits) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / fmt::format("cuboct_real_{}.tersoff", getpid())).string();
+  std::ofstream(path)
+      << "# DATE: 2007-10-25 UNITS: real\n"
+         "Si Si Si 3.0 1.0 1.3258 4.8381 2.0417 0.0 22.956 0.33675 1.3258 2199.35 3.0 0.2 3.2394 "
+         "75286.4\n";
+  const auto energy = [](const std::string& rule) {
+    const Scene scene = parse_scene(carbon("crystal = { lattice = \"diamond\", bond = \"2.35 angstrom\" "
+                                           "}\nbox = { cells = [2, 2, 2], periodic = "
+                                           "\"xyz\" }\n",
+                                           "", rule),
+                                    "s");
+    RoundsRun run(scene, scene.body, {}, 1e-9);
+    return potential_of(run) / static_cast<double>(scene.body.size()) / kEv;
+  };
+  const double real = energy("file = \"" + path + "\"\nelement = \"Si\"");
+  std::filesystem::remove(path);
+  EXPECT_NEAR(real, -4.630, 5e-4);
+  EXPECT_NEAR(real, energy("potential = \"si_1988\""), 1e-4);  // both files round A and B
+}
+
 TEST(TersoffScene, WhatCannotBeIsRefusedAtItsKey) {
   const auto has = [](const std::string& text, const std::string& place, const std::string& what) {
     const std::string said = carbon_refusal(text);
