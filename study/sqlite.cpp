@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "model/base/input_file.h"
+
 namespace cuboct::study {
 
 Database::Database(const std::string& path, bool writable) : path_(path) {
+  check_is_file(path);
   const int flags = writable ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   if (sqlite3_open_v2(path.c_str(), &handle_, flags | SQLITE_OPEN_FULLMUTEX, nullptr) != SQLITE_OK) {
     const std::string text = fmt::format("cannot open {}: {}", path, sqlite3_errmsg(handle_));

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <regex>
+#include <sstream>
 
 #include "model/base/enum_names.h"
 #include "model/base/error.h"
+#include "model/base/input_file.h"
 #include "model/base/spelling.h"
 
 namespace cuboct::synth {
@@ -128,8 +129,8 @@ CostOf costs_of_liberty(const std::string& file) {
   // here.
   static const std::regex cell_form(R"re(^\s*cell\s*\(\s*"?([A-Za-z0-9_]+)"?\s*\))re"),
       area_form(R"re(^\s*area\s*:\s*([0-9.eE+-]+))re"), register_form(R"re(^\s*(ff|latch)(_bank)?\s*\()re");
-  std::ifstream in(file);
-  if (!in) throw InputError(file + ": cannot be read");
+  constexpr uint64_t kMostBytes = uint64_t{1} << 30;  // of a large library
+  std::istringstream in(read_input(file, kMostBytes));
   Costs costs;
   Counts* cell = nullptr;
   std::smatch m;

@@ -5,15 +5,15 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
+#include <sstream>
 
 #include "model/base/error.h"
+#include "model/base/input_file.h"
 
 namespace cuboct {
 
 std::vector<uint64_t> read_steps(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw InputError(fmt::format("{}: cannot read this file", path));
+  std::istringstream in(read_input(path));
   std::vector<uint64_t> steps;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {

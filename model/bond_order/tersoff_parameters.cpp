@@ -7,10 +7,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "model/base/error.h"
+#include "model/base/input_file.h"
 #include "model/base/spelling.h"
 #include "model/base/text.h"
 
@@ -100,9 +101,7 @@ struct File {
 };
 
 File words_of(const std::string& path) {
-  std::ifstream in(path);
-  if (!in)
-    throw InputError(fmt::format("cannot read {}", line_text(path)), "a file of LAMMPS's pair_style tersoff");
+  std::istringstream in(read_input(path));
   File file;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {

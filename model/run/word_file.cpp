@@ -13,6 +13,7 @@
 #include <filesystem>
 
 #include "model/base/error.h"
+#include "model/base/input_file.h"
 
 namespace cuboct {
 namespace {
@@ -86,7 +87,9 @@ void WordWriter::sync() {
   if (sync_file(file_) != 0) throw cannot("write", path_, errno);
 }
 
-WordReader::WordReader(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "rb")) {
+WordReader::WordReader(const std::string& path) : path_(path) {
+  check_is_file(path);
+  file_ = std::fopen(path.c_str(), "rb");
   struct stat status {};
   if (!file_) throw cannot("read", path, errno);
   if (fstat(fileno(file_), &status) != 0) {

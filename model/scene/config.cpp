@@ -8,15 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "model/base/enum_names.h"
 #include "model/base/error.h"
 #include "model/base/excerpt.h"
+#include "model/base/input_file.h"
 #include "model/base/spelling.h"
 
 namespace cuboct {
@@ -509,13 +508,7 @@ ConfigTable parse_config(std::string text, const std::string& path) {
   return root;
 }
 
-std::string read_config_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  // A directory opens and then fails to read.
-  if (!in || !(text << in.rdbuf())) throw InputError(fmt::format("{}: cannot read this file", path));
-  return text.str();
-}
+std::string read_config_text(const std::string& path) { return read_input(path); }
 
 ConfigTable read_config(const std::string& path) { return parse_config(read_config_text(path), path); }
 

@@ -148,6 +148,10 @@ void check_at_pitch(const ConfigTable& table, const PairLaw& law, double pitch, 
   if (law.cutoff() <= pitch)
     table.fail(
         fmt::format("the cutoff {:.6g} m of the law is not beyond the pitch {:.6g} m", law.cutoff(), pitch));
+  placed(table, [&] {
+    check_neighbours(pitch, law.cutoff());
+    return true;
+  });
   const double f = law.force(pitch);
   if (must_vanish && std::abs(f) > 1e-6 * std::abs(law.slope(pitch)) * pitch)
     table.fail(fmt::format("the law does not vanish at the pitch: {:.6g} N at {:.6g} m", f, pitch),

@@ -35,9 +35,13 @@ double read_horizon(const ConfigTable& table, const PackingChoice* packing) {
   constexpr double kSecondShell = 1.5;  // pitches: 18 neighbours
   if (packing == nullptr) return table.number("horizon", quantity::length, Range::positive());
   table.not_both("horizon", "horizon_pitches");
-  if (table.has("horizon")) return table.number("horizon", quantity::length, Range::positive());
-  return packing->fcc.pitch *
-         table.number_or("horizon_pitches", quantity::number, kSecondShell, Range::between(1, 10));
+  constexpr double kMostPitches = 10;  // 5,900 neighbours
+  const double pitch = packing->fcc.pitch;
+  if (table.has("horizon"))
+    return table.number("horizon", quantity::length,
+                        {.low = 0, .high = kMostPitches * pitch, .low_open = true});
+  return pitch *
+         table.number_or("horizon_pitches", quantity::number, kSecondShell, Range::between(1, kMostPitches));
 }
 
 double read_volume(const ConfigTable& table, const PackingChoice* packing, const LpsMaterial& m) {

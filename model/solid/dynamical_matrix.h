@@ -17,8 +17,13 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // Voigt's order of pairs of axes: xx, yy, zz, yz, xz, xy.
 inline constexpr std::array<std::array<int, 2>, 6> kVoigt{{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
 
+// Of a site, at most: sums over more take seconds each, and a scene makes hundreds.
+inline constexpr double kMostNeighbours = 1e5;
+// InputError where the ball of that radius holds more.
+void check_neighbours(double pitch, double cutoff);
+
 // The neighbours of a site nearer than `cutoff`, in cubic axes, without the site itself; if v is one, so is
-// -v.
+// -v. InputError where there are too many.
 std::vector<Vec3> fcc_neighbours(double pitch, double cutoff);
 
 // Volume per particle, m^3: pitch^3 / sqrt(2).

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/base/spelling.h"
 #include "study/changed_base.h"
@@ -114,6 +115,25 @@ void read_search(const ConfigTable& root, Search& search) {
   table->done();
 }
 
+// A stiff law has short steps. The one at the start is as stiff as those that are tried, but for a factor.
+void check_work(const ConfigTable& root, const FitStudy& study) {
+  constexpr double kMostWork = 1e11;  // particle-steps of one run: hours, and a fit makes hundreds of runs
+  Scene scene;
+  try {
+    scene = parse_scene(scene_with(study.test.base, points_of(draw(study.start, study.scale))),
+                        study.test.base.scene_path);
+  } catch (const InputError&) {
+    return;  // no run takes such a law
+  }
+  const double work = static_cast<double>(scene.steps) * static_cast<double>(scene.body.size());
+  if (scene.loading || work <= kMostWork) return;
+  root.at("target").fail(
+      fmt::format("a run of the scene with a law for this curve, whose modulus is {:.3g} Pa, takes {:.3g} "
+                  "particle-steps: at most {:.3g} are made",
+                  study.target.modulus, work, kMostWork),
+      "the right unit of the stresses, a shorter 'duration' of the scene, or static loading");
+}
+
 uint64_t hash_of(const FitStudy& study) {
   std::string text = fmt::format(
       "{}\n{}\n{} {} {} {} {} {}", study.test.base.scene_text, study.test.base.arch_text, study.test.engine,
@@ -150,6 +170,7 @@ FitStudy read_fit(const std::string& path) {
   read_search(root, study.search);
   if (const auto target = root.table_at("target")) target->done();
   root.done();
+  check_work(root, study);
   study.hash = hash_of(study);
   return study;
 }

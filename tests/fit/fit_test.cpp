@@ -85,6 +85,30 @@ TEST_F(SmallFit, RunsInMotionOnEitherEngine) {
   EXPECT_LT(curve_error(fixed, doubles), 0.01);
 }
 
+// Stresses in the wrong unit make a law so stiff that a run in motion has 1e9 steps; a static run has none.
+TEST_F(SmallFit, WorkOfYearsIsRefusedBeforeItBegins) {
+  const auto refusal = [&](const std::string& loading, const std::string& stress) -> std::string {
+    const std::string file = path("stiff.toml");
+    std::ofstream(file) << "scene = \"" CUBOCT_SOURCE_DIR "/scenes/studies/fit_bar_scene.toml\"\n"
+                        << "reach = 1.4142135\n[change.run]\nstatic = " << loading
+                        << "\n[target]\nstrain = [0, 0.01, 0.02, 0.05]\nstress = \"" << stress << "\"\n";
+    try {
+      read_fit(file);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "read";
+  };
+  const std::string far = refusal("false", "[0, 1e17, 2e17, 4e17] Pa");
+  EXPECT_NE(
+      far.find(
+          "stiff.toml:5:1: a run of the scene with a law for this curve, whose modulus is 1e+19 Pa, takes "
+          "1.71e+11 particle-steps: at most 1e+11 are made"),
+      std::string::npos)
+      << far;
+  EXPECT_EQ(refusal("{ load_steps = 12, evaluations = 500 }", "[0, 1e17, 2e17, 4e17] Pa"), "read");
+}
+
 // A bar that breaks, one whose law is refused, and one that finds no rest have errors all the same.
 TEST_F(SmallFit, LawsThatFailHaveAnError) {
   const FitStudy study = read_fit(this->study(data(), ""));

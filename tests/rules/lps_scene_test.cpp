@@ -134,6 +134,7 @@ TEST(LpsScene, WhatCannotBeIsRefusedAtItsKey) {
     EXPECT_NE(said.find(what), std::string::npos) << said;
   };
   has(scene_with("horizon = \"0.5 mm\"\n"), "s.toml:4:1", "no neighbour is within the horizon");
+  has(scene_with("horizon = \"1 m\"\n"), "s.toml:8:11", "'horizon' must be above 0 and at most ");
   has(scene_with("surface_correction = true\n"), "s.toml:4:1", "one of small displacements");
   has(scene_with("damage_width = 1e-4\n"), "s.toml:8:1", "of bonds that break");
   has(scene_with("critical_stretch = 0.1\nfracture_energy = \"1 J/m^2\"\n"), "s.toml:", "fracture_energy");

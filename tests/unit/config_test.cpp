@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <functional>
 
 #include "model/base/error.h"
+#include "model/base/input_file.h"
 #include "model/scene/config.h"
 
 namespace cuboct {
@@ -111,7 +117,40 @@ TEST(Config, PassesSyntaxErrorsOn) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "no/such/file.toml: cannot read this file");
   }
-  EXPECT_THROW(read_config("."), InputError);
+}
+
+// What no scene is: a device without end, a directory, a pipe that no one writes into, more than is read.
+TEST(Config, IsOfAFileOrAPipeThatEnds) {
+  const auto refusal = [](const std::string& path, uint64_t most = kMostInput) -> std::string {
+    try {
+      return "read " + read_input(path, most);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: cannot read this file: it is a device");
+  EXPECT_EQ(refusal("/dev/urandom"), "/dev/urandom: cannot read this file: it is a device");
+  EXPECT_EQ(refusal("/"), "/: cannot read this file: it is a directory");
+  const std::string path = testing::TempDir() + fmt::format("input.{}", getpid());
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(refusal(path), "read ");
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_EQ(write(ends[1], "one two", 7), 7);
+  close(ends[1]);
+  EXPECT_EQ(refusal(fmt::format("/dev/fd/{}", ends[0])), "read one two");
+  close(ends[0]);
+  EXPECT_THROW(check_is_file(path), InputError);
+  std::filesystem::remove(path);
+  std::ofstream(path) << "eleven byte";
+  EXPECT_EQ(refusal(path, 11), "read eleven byte");
+  EXPECT_EQ(refusal(path, 10), path + ": cannot read this file: it holds 11 B, and at most 10 B are read");
+  check_is_file(path);
+  std::filesystem::remove(path);
+  std::ofstream(path).close();
+  std::filesystem::resize_file(path, uint64_t{1} << 40);  // of which the disk holds nothing
+  EXPECT_EQ(refusal(path), path + ": cannot read this file: it holds 1.1 TB, and at most 268 MB are read");
+  std::filesystem::remove(path);
 }
 
 }  // namespace

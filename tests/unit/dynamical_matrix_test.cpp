@@ -27,6 +27,13 @@ TEST(FccNeighbours, HaveTheShellsOfTheTextbook) {
   EXPECT_TRUE(fcc_neighbours(1, 0.99).empty());
 }
 
+// A ball of 25 pitches holds 4 pi/3 sqrt(2) 25^3 = 92,561 particles, one of 26 holds 104,117.
+TEST(FccNeighbours, AreABoundedNumber) {
+  EXPECT_NEAR(static_cast<double>(fcc_neighbours(0.1, 2.5).size()), 92561, 300);  // its surface is rough
+  EXPECT_THROW(fcc_neighbours(0.1, 2.6), InputError);
+  EXPECT_THROW(fcc_neighbours(1e-9, 1), InputError);
+}
+
 // Nearest neighbours joined by springs k at rest. At X = (2 pi/a)(1,0,0) the 8 neighbours with a component
 // along x move against the particle, each resisting with 2 k e_x^2 = k: m w^2 = 8 k along x, and 4 k across
 // (its 4 neighbours in either plane). At L the 6 neighbours off the plane do, each with 2 k (2/3): again 8 k.
