@@ -54,9 +54,7 @@ std::string body_text(const Scene& scene, const Shown& shown) {
 
 void add_meshes(const Scene& scene, std::vector<SynopsisLine>& lines) {
   for (const MeshFacts& mesh : scene.meshes)
-    lines.push_back({"mesh", fmt::format("{}: {} triangles, {}; area {:.4g} m^2, volume {:.4g} m^3",
-                                         mesh.file, mesh.triangles, mesh.closed() ? "closed" : "not closed",
-                                         mesh.area, mesh.volume)});
+    lines.push_back({"mesh", fmt::format("{}: {}", mesh.file, mesh_text(mesh))});
   if (scene.meshes.empty()) return;
   const double volume = static_cast<double>(scene.body.size()) * particle_mass(1, scene.pitch);
   lines.push_back({"packed", fmt::format("{:.4g} m^3, a particle's share times their number", volume)});

@@ -1,63 +1,70 @@
 // SPDX-License-Identifier: MIT
-// The module that reads meshes: Assimp reads the file, Embree searches the triangles.
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
+// The module that makes a solid of the triangles that cuboct-read-mesh left.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "model/mesh/solid.h"
+#include "model/mesh/triangle_file.h"
 
 namespace cuboct {
 namespace {
 
-// All meshes of the file, where its nodes put them; lines and points left out.
-Surface triangles_of(const aiScene& scene, double unit) {
-  Surface surface;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene.mMeshes[m];
-    const auto first = static_cast<uint32_t>(surface.points.size());
-    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-      const aiVector3D& x = mesh.mVertices[v];
-      surface.points.push_back(unit * Vec3(x.x, x.y, x.z));
-    }
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3) continue;
-      surface.triangles.push_back(
-          {first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
-    }
-  }
-  return surface;
+// What left the file may have been led astray by what it read: nothing of it is believed.
+bool read(const std::string& path, TriangleFileHead& head, Surface& surface) {
+  std::ifstream in(path, std::ios::binary);
+  const auto get = [&](void* to, size_t bytes) {
+    return static_cast<bool>(in.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)));
+  };
+  if (!get(&head, sizeof head)) return false;
+  const uint64_t bytes = std::filesystem::file_size(path) - sizeof head;
+  if (head.points > bytes || head.triangles > bytes ||
+      head.points * sizeof(Vec3) + head.triangles * 3 * sizeof(uint32_t) != bytes)
+    return false;
+  surface.points.resize(head.points);
+  surface.triangles.resize(head.triangles);
+  if (!get(surface.points.data(), head.points * sizeof(Vec3)) ||
+      !get(surface.triangles.data(), head.triangles * 3 * sizeof(uint32_t)))
+    return false;
+  for (const auto& triangle : surface.triangles)
+    for (const uint32_t point : triangle)
+      if (point >= head.points) return false;
+  return std::isfinite(head.unit) && head.unit >= 0 && std::isfinite(head.rounding);
 }
 
-bool is_finite(const Surface& surface) {
-  for (const Vec3& x : surface.points)
-    if (!x.allFinite()) return false;
-  return true;
+double size_of(const Surface& surface) {
+  if (surface.points.empty()) return 0;
+  Vec3 low = surface.points[0], high = low;
+  for (const Vec3& x : surface.points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  return (high - low).maxCoeff();
 }
 
 }  // namespace
 
-extern "C" void cuboct_read_mesh(const std::string& file, double unit, Mesh& mesh, std::string& error) {
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_PreTransformVertices);
-  if (scene == nullptr) {
-    error = importer.GetErrorString();
+extern "C" void cuboct_read_mesh(const std::string& triangles, std::optional<double> unit, Mesh& mesh,
+                                 std::string& error) {
+  TriangleFileHead head;
+  Surface surface;
+  if (!read(triangles, head, surface)) {
+    error = "it holds triangles of points that are not there";
     return;
   }
-  Surface surface = triangles_of(*scene, unit);
-  importer.FreeScene();
-  if (!is_finite(surface)) {
-    error = "a coordinate is not a finite number";
-    return;
-  }
-  mesh.facts.flat = join_points(surface);
+  MeshFacts& facts = mesh.facts;
+  facts.stated_unit = head.unit, facts.up = static_cast<char>(head.up);
+  facts.unit = unit.value_or(head.unit);
+  if (facts.unit == 0) return;  // the caller says what is missing
+  for (Vec3& x : surface.points) x *= facts.unit;
+  facts.rounding = head.rounding * facts.unit;
+  facts.size = size_of(surface);
+  if (facts.too_coarse()) return;
+  facts.flat = join_points(surface);
   if (surface.triangles.empty()) {
     error = "no triangle with an area";
     return;
   }
-  look_at(surface, mesh.facts);
-  mesh.shape = solid_within(std::move(surface), mesh.facts);
+  facts.turned = orient(surface);
+  look_at(surface, facts);
+  mesh.shape = solid_within(std::move(surface), facts);
 }
 
 }  // namespace cuboct

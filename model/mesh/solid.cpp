@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace cuboct {
 namespace {
@@ -25,10 +27,16 @@ std::array<Vec3, kRays> directions() {
   return all;
 }
 
+// Of rays from a point, those for which it is inside, and those for which it is inside more than once.
+struct Votes {
+  int inside = 0, twice = 0;
+};
+
 // Embree's searches are in floats: about the middle of the body, and a margin wider than their rounding.
 class Solid final : public Shape {
  public:
-  Solid(Surface surface, bool closed) : Shape(100), surface_(std::move(surface)), closed_(closed) {
+  Solid(Surface surface, bool closed)
+      : Shape(100), surface_(std::move(surface)), closed_(closed), volumes_(volumes_of(surface_)) {
     for (const Vec3& x : surface_.points) {
       bounds_.low = bounds_.low.cwiseMin(x);
       bounds_.high = bounds_.high.cwiseMax(x);
@@ -41,6 +49,7 @@ class Solid final : public Shape {
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     add_triangles();
     rtcCommitScene(scene_);
+    turn_outwards();
   }
   Solid(const Solid&) = delete;
   Solid& operator=(const Solid&) = delete;
@@ -58,15 +67,44 @@ class Solid final : public Shape {
   bool in_bounds(const Vec3& x) const {
     return (x.array() >= bounds_.low.array()).all() && (x.array() <= bounds_.high.array()).all();
   }
-  // Of the first `rays`, how many say that x is inside.
-  int votes(const Vec3& x, int rays) const {
+  // Of the first `rays`; those of the shell `but` set aside.
+  Votes votes(const Vec3& x, int rays, uint32_t but = kNoShell) const {
     static const std::array<Vec3, kRays> kDirections = directions();
-    int votes = 0;
-    for (int k = 0; k < rays; ++k) votes += crossings(x, kDirections[k]) & 1;
+    Votes votes;
+    for (int k = 0; k < rays; ++k) {
+      const int windings = std::abs(windings_about(x, kDirections[k], but));
+      votes.inside += windings > 0 ? 1 : 0;
+      votes.twice += windings > 1 ? 1 : 0;
+    }
     return votes;
   }
+  double volume() const {
+    double sum = 0;
+    for (const double volume : volumes_) sum += volume;
+    return sum;
+  }
+  size_t inside_out() const { return inside_out_; }
 
  private:
+  static constexpr uint32_t kNoShell = std::numeric_limits<uint32_t>::max();
+
+  // A shell whose normals point inwards is a cavity where another holds it, else a body that is inside out.
+  // Where a body reaches into others, some of its corners do not.
+  void turn_outwards() {
+    sense_.assign(volumes_.size(), 1);
+    if (volume() < 0)
+      for (size_t s = 0; s < sense_.size(); ++s) sense_[s] = -1, volumes_[s] = -volumes_[s];
+    constexpr size_t kCorners = 8;
+    std::vector<size_t> size(volumes_.size()), seen(volumes_.size());
+    for (const uint32_t shell : surface_.shells) ++size[shell];
+    for (size_t t = 0; t < surface_.triangles.size(); ++t) {
+      const uint32_t shell = surface_.shells[t];
+      if (volumes_[shell] >= 0 || seen[shell]++ % (size[shell] / kCorners + 1) != 0) continue;
+      if (2 * votes(surface_.corner(t, 0), kRays, shell).inside > kRays) continue;
+      sense_[shell] = -sense_[shell], volumes_[shell] = -volumes_[shell];
+      ++inside_out_;
+    }
+  }
   void add_triangles() {
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -87,20 +125,31 @@ class Solid final : public Shape {
   bool holds(const Vec3& x) const {
     if (!in_bounds(x)) return false;
     if (closed_) {
-      const int first = votes(x, 3);
+      const int first = votes(x, 3).inside;
       if (first == 0 || first == 3) return first == 3;
     }
-    return 2 * votes(x, kRays) > kRays;
+    return 2 * votes(x, kRays).inside > kRays;
   }
 
+  // How often the surface winds about x: what a ray leaves less what it enters. Of bodies that overlap each
+  // counts one, of a body's cavity none is left.
   struct Counter : RTCIntersectContext {
-    int hits = 0;
+    const Solid* solid;
+    Vec3 direction;
+    uint32_t but;
+    int windings = 0;
   };
-  int crossings(const Vec3& x, const Vec3& direction) const {
+  int windings_about(const Vec3& x, const Vec3& direction, uint32_t but) const {
     Counter counter;
     rtcInitIntersectContext(&counter);
+    counter.solid = this, counter.direction = direction, counter.but = but;
     counter.filter = [](const RTCFilterFunctionNArguments* call) {
-      ++static_cast<Counter*>(call->context)->hits;
+      auto& counter = *static_cast<Counter*>(call->context);
+      const Solid& solid = *counter.solid;
+      const uint32_t triangle = RTCHitN_primID(call->hit, call->N, 0);
+      const uint32_t shell = solid.surface_.shells[triangle];
+      const bool leaves = area_vector(solid.surface_, triangle).dot(counter.direction) > 0;
+      if (shell != counter.but) counter.windings += leaves ? solid.sense_[shell] : -solid.sense_[shell];
       call->valid[0] = 0;  // go on
     };
     RTCRay ray{};
@@ -111,7 +160,7 @@ class Solid final : public Shape {
     ray.tfar = std::numeric_limits<float>::infinity();
     ray.mask = ~0u;
     rtcOccluded1(scene_, &counter, &ray);
-    return counter.hits;
+    return counter.windings;
   }
 
   struct Nearest {
@@ -146,6 +195,9 @@ class Solid final : public Shape {
 
   Surface surface_;
   bool closed_;
+  std::vector<double> volumes_;  // m^3, of shells: negative of cavities
+  std::vector<int8_t> sense_;    // of shells: -1 where the triangles' normals point into the body
+  size_t inside_out_ = 0;        // bodies among others that were not
   Bounds bounds_{Vec3::Constant(std::numeric_limits<double>::infinity()),
                  Vec3::Constant(-std::numeric_limits<double>::infinity())};
   Vec3 middle_;
@@ -155,28 +207,33 @@ class Solid final : public Shape {
 };
 
 // Over points drawn in the bounds. One of a closed surface may still be in doubt: a ray grazes an edge.
-double doubt_of(const Solid& solid) {
+void draw_points(const Solid& solid, MeshFacts& facts) {
   constexpr int kPoints = 4096;
   const Bounds bounds = solid.bounds();
   std::mt19937_64 random(1);
-  int inside = 0, doubtful = 0;
+  int inside = 0, doubtful = 0, twice = 0;
   for (int i = 0; i < kPoints; ++i) {
     Vec3 x;
     for (int a = 0; a < 3; ++a)
       x[a] = bounds.low[a] +
              (bounds.high[a] - bounds.low[a]) * std::ldexp(static_cast<double>(random() >> 11), -53);
-    const int votes = solid.votes(x, kRays);
-    inside += 2 * votes > kRays;
-    doubtful += 2 * votes > kRays && votes < kRays;
+    const Votes votes = solid.votes(x, kRays);
+    if (2 * votes.inside < kRays) continue;
+    ++inside;
+    doubtful += votes.inside < kRays ? 1 : 0;
+    twice += 2 * votes.twice > kRays ? 1 : 0;
   }
-  return inside > 0 ? static_cast<double>(doubtful) / inside : 1;
+  facts.doubt = inside > 0 ? static_cast<double>(doubtful) / inside : 1;
+  facts.overlap = inside > 0 ? static_cast<double>(twice) / inside : 0;
 }
 
 }  // namespace
 
 ShapePtr solid_within(Surface surface, MeshFacts& facts) {
   auto solid = std::make_shared<Solid>(std::move(surface), facts.closed());
-  facts.doubt = doubt_of(*solid);
+  facts.volume = solid->volume();
+  facts.inside_out = solid->inside_out();
+  draw_points(*solid, facts);
   return solid;
 }
 

@@ -6,7 +6,8 @@
 
 namespace cuboct {
 
-// As read_mesh() says of shapes; fills in `doubt`. `facts`: of this surface.
+// As read_mesh() says of shapes; fills in what rays and shells tell. `facts`: of this surface, which is
+// oriented.
 ShapePtr solid_within(Surface surface, MeshFacts& facts);
 
 }  // namespace cuboct

@@ -8,33 +8,22 @@
 #include <tuple>
 
 namespace cuboct {
-namespace {
-
 Vec3 area_vector(const Surface& surface, size_t triangle) {
   const Vec3 a = surface.corner(triangle, 0);
   return 0.5 * (surface.corner(triangle, 1) - a).cross(surface.corner(triangle, 2) - a);
 }
 
-// An edge from its lesser to its greater point; `along`: whether the triangle goes that way.
-struct Edge {
-  uint32_t low, high;
-  bool along;
-  bool joins(const Edge& other) const { return low == other.low && high == other.high; }
-};
-
 std::vector<Edge> edges_of(const Surface& surface) {
   std::vector<Edge> edges;
   edges.reserve(3 * surface.triangles.size());
-  for (const auto& triangle : surface.triangles)
+  for (uint32_t t = 0; t < surface.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {
-      const uint32_t from = triangle[k], to = triangle[(k + 1) % 3];
-      edges.push_back({std::min(from, to), std::max(from, to), from < to});
+      const uint32_t from = surface.triangles[t][k], to = surface.triangles[t][(k + 1) % 3];
+      edges.push_back({std::min(from, to), std::max(from, to), t, from < to});
     }
-  std::ranges::sort(edges, {}, [](const Edge& e) { return std::tuple(e.low, e.high); });
+  std::ranges::sort(edges, {}, [](const Edge& e) { return std::tuple(e.low, e.high, e.triangle); });
   return edges;
 }
-
-}  // namespace
 
 size_t join_points(Surface& surface) {
   const std::vector<Vec3>& points = surface.points;
@@ -61,20 +50,23 @@ size_t join_points(Surface& surface) {
 
 void look_at(const Surface& surface, MeshFacts& facts) {
   facts.triangles = surface.triangles.size();
-  const Vec3 origin = surface.points[surface.triangles[0][0]];  // near the body: less to cancel
-  for (size_t t = 0; t < surface.triangles.size(); ++t) {
-    const Vec3 area = area_vector(surface, t);
-    facts.area += area.norm();
-    facts.volume += area.dot(surface.corner(t, 0) - origin) / 3;
-  }
-  facts.volume = std::abs(facts.volume);  // normals may all point inwards
+  for (size_t t = 0; t < surface.triangles.size(); ++t) facts.area += area_vector(surface, t).norm();
   const std::vector<Edge> edges = edges_of(surface);
   for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end].joins(edges[begin])) ++end;
-    facts.open += end - begin == 1;
-    facts.crowded += end - begin > 2;
-    facts.turned += end - begin == 2 && edges[begin].along == edges[begin + 1].along;
+    size_t along = 0;
+    for (; end < edges.size() && edges[end].joins(edges[begin]); ++end) along += edges[end].along ? 1 : 0;
+    const size_t count = end - begin;
+    if (2 * along == count) continue;  // the triangles of one side go along it, those of the other back
+    ++(count == 1 ? facts.open : count == 2 ? facts.one_sided : facts.crowded);
   }
+}
+
+std::vector<double> volumes_of(const Surface& surface) {
+  std::vector<double> volumes(*std::ranges::max_element(surface.shells) + 1);
+  const Vec3 origin = surface.points[surface.triangles[0][0]];  // near the body: less to cancel
+  for (size_t t = 0; t < surface.triangles.size(); ++t)
+    volumes[surface.shells[t]] += area_vector(surface, t).dot(surface.corner(t, 0) - origin) / 3;
+  return volumes;
 }
 
 Vec3 nearest_point(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -96,11 +96,10 @@ ShapePtr read_dog_bone(const ConfigTable& t) {
   return dog_bone(bone);
 }
 
-// A mesh has no unit of its own that a file would tell.
 ShapePtr read_mesh(const ConfigTable& t, const Regions& regions) {
   const ConfigValue file = t.at("file");
-  const auto unit = file.reduced() ? t.find("unit") : t.at("unit");
-  return regions.mesh(file, unit ? unit->unit(quantity::length) : 1);
+  if (const auto unit = t.find("unit")) return regions.mesh(file, unit->unit(quantity::length));
+  return regions.mesh(file, file.reduced() ? std::optional<double>(1) : std::nullopt);
 }
 
 ShapePtr read_difference(const ConfigTable& t, const Regions& regions) {

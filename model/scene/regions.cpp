@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/base/error.h"
+#include "model/base/error_parts.h"
 #include "model/base/parallel.h"
 
 namespace cuboct {
@@ -52,7 +54,7 @@ ShapePtr Regions::resolve(size_t region, const ConfigValue& at) const {
   return shapes_[region] = std::move(shape);
 }
 
-ShapePtr Regions::mesh(const ConfigValue& file, double unit) const {
+ShapePtr Regions::mesh(const ConfigValue& file, std::optional<double> unit) const {
   const std::string path = file.file();
   for (const auto& [of, mesh] : meshes_)
     if (of == unit && mesh.facts.file == path) return mesh.shape;
@@ -60,16 +62,23 @@ ShapePtr Regions::mesh(const ConfigValue& file, double unit) const {
   try {
     mesh = read_mesh(path, unit);
   } catch (const InputError& error) {
-    file.fail(error.what());
+    const ErrorParts parts = parts_of(error);
+    file.fail(fmt::format("'{}': {}", file.string(), parts.message), parts.hint);
   }
+  const MeshFacts& facts = mesh.facts;
+  // Reduced lengths are as many metres as the user thinks of.
+  if (!file.reduced() && facts.stated_unit > 0 && std::abs(facts.unit / facts.stated_unit - 1) > 1e-6)
+    file.fail(fmt::format("'{}' states that its unit is {:.7g} m{}, and 'unit' says {:.7g} m", file.string(),
+                          facts.stated_unit, facts.up == 0 ? "" : fmt::format(" and that {} is up", facts.up),
+                          facts.unit),
+              "leave 'unit' out; 'scale' makes a shape larger or smaller, and 'rotate' turns it");
   constexpr double kMostDoubt = 0.25;
-  if (mesh.facts.doubt > kMostDoubt)
+  if (facts.doubt > kMostDoubt)
     file.fail(fmt::format(
                   "'{}' holds no solid: its surface has {} open edges, and for {:.0f} % of the points inside "
                   "some rays tell otherwise",
-                  file.string(), mesh.facts.open, 100 * mesh.facts.doubt),
+                  file.string(), facts.open, 100 * facts.doubt),
               "a closed mesh: CAD programs and MeshLab close holes");
-  mesh.facts.file = path;
   meshes_.emplace_back(unit, mesh);
   return mesh.shape;
 }

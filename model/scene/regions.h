@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ class Regions {
   explicit Regions(const ConfigTable& root);
   bool has(const std::string& name) const;
   // Of all meshes read so far, in the order of their first use; each file is read once.
-  ShapePtr mesh(const ConfigValue& file, double unit) const;
+  ShapePtr mesh(const ConfigValue& file, std::optional<double> unit) const;
   std::vector<MeshFacts> mesh_facts() const;
   // The shape of the region that a string of the file names.
   ShapePtr named(const ConfigValue& name) const;
@@ -31,10 +32,10 @@ class Regions {
 
   std::vector<std::string> names_;
   std::vector<ConfigValue> values_;
-  mutable std::vector<ShapePtr> shapes_;                 // null until resolved
-  mutable std::vector<size_t> open_;                     // being resolved, each made of the next
-  mutable std::vector<std::pair<double, Mesh>> meshes_;  // with the unit, m
-  mutable double tests_ = 0;                             // of particles, by select()
+  mutable std::vector<ShapePtr> shapes_;  // null until resolved
+  mutable std::vector<size_t> open_;      // being resolved, each made of the next
+  mutable std::vector<std::pair<std::optional<double>, Mesh>> meshes_;  // with the unit that was given, m
+  mutable double tests_ = 0;                                            // of particles, by select()
 };
 
 // "name", { shape = "...", ... } or { region = "name", ... }; docs/user/scene.md lists shapes and keys.

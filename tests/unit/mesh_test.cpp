@@ -1,46 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Solids from meshes, against the same solids as closed forms.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <random>
 
-#include "model/base/error.h"
-#include "model/base/process.h"
-#include "model/scene/mesh.h"
 #include "model/scene/packing.h"
-#include "model/scene/scene.h"
+#include "tests/unit/mesh_files.h"
 
 namespace cuboct {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Triangles {
-  std::vector<Vec3> x;
-  std::vector<std::array<uint32_t, 3>> corners;
-};
-
-// The cube of edge 10 about the origin, normals outwards.
-Triangles cube() {
-  Triangles t;
-  for (int k = 0; k < 8; ++k) t.x.emplace_back(k & 1 ? 5 : -5, k & 2 ? 5 : -5, k & 4 ? 5 : -5);
-  for (const auto& [a, b, c, d] : std::vector<std::array<uint32_t, 4>>{
-           {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
-    t.corners.push_back({a, b, c});
-    t.corners.push_back({a, c, d});
-  }
-  return t;
-}
 
 // The sphere of radius 5: an octahedron whose triangles are cut in four `times` over.
 Triangles ball(int times) {
@@ -68,91 +38,7 @@ Triangles ball(int times) {
   return t;
 }
 
-class Meshes : public testing::Test {
- protected:
-  Meshes() : directory_(fs::path(testing::TempDir()) / fmt::format("meshes.{}", getpid())) {
-    fs::create_directories(directory_);
-#ifdef CUBOCT_MESH_DIRECTORY
-    set_program_directory(CUBOCT_MESH_DIRECTORY);
-#else
-    set_program_directory(directory_.string());
-#endif
-  }
-  ~Meshes() override {
-    set_program_directory("");
-    fs::remove_all(directory_);
-  }
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-    return path(name);
-  }
-  std::string write_obj(const std::string& name, const Triangles& t) const {
-    std::string text;
-    for (const Vec3& x : t.x) text += fmt::format("v {:.9g} {:.9g} {:.9g}\n", x[0], x[1], x[2]);
-    for (const auto& [a, b, c] : t.corners) text += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
-    return write(name, text);
-  }
-  std::string write_ply(const std::string& name, const Triangles& t) const {
-    std::string text = fmt::format(
-        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-        t.x.size(), t.corners.size());
-    for (const Vec3& x : t.x) text += fmt::format("{:.9g} {:.9g} {:.9g}\n", x[0], x[1], x[2]);
-    for (const auto& [a, b, c] : t.corners) text += fmt::format("3 {} {} {}\n", a, b, c);
-    return write(name, text);
-  }
-  std::string write_stl(const std::string& name, const Triangles& t) const {
-    std::string text = "solid part\n";
-    for (const auto& corner : t.corners) {
-      text += "facet normal 0 0 0\nouter loop\n";
-      for (const uint32_t k : corner)
-        text += fmt::format("vertex {:.9g} {:.9g} {:.9g}\n", t.x[k][0], t.x[k][1], t.x[k][2]);
-      text += "endloop\nendfacet\n";
-    }
-    return write(name, text + "endsolid part\n");
-  }
-  std::string write_binary_stl(const std::string& name, const Triangles& t) const {
-    std::string bytes(80, ' ');
-    const auto put = [&](const auto& value) {
-      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-    };
-    put(static_cast<uint32_t>(t.corners.size()));
-    for (const auto& corner : t.corners) {
-      for (int k = 0; k < 3; ++k) put(0.0F);
-      for (const uint32_t k : corner)
-        for (int a = 0; a < 3; ++a) put(static_cast<float>(t.x[k][a]));
-      put(uint16_t{0});
-    }
-    return write(name, bytes);
-  }
-
-  Scene scene(const std::string& geometry, const std::string& more = {}) const {
-    return parse_scene(R"(density = "1 g/cm^3"
-[packing]
-pitch = "0.5 mm"
-[law]
-kind = "elastic"
-youngs_modulus = "20 kPa"
-direction = "z"
-[run]
-steps = 1
-[geometry]
-)" + geometry + "\n" + more,
-                       path("scene.toml"));
-  }
-  std::string error_of(const std::string& geometry) const {
-    try {
-      scene(geometry);
-    } catch (const InputError& error) {
-      return error.told();
-    }
-    return "none";
-  }
-
-  fs::path directory_;
-};
+using Meshes = MeshFiles;
 
 #ifdef CUBOCT_MESH_DIRECTORY
 
@@ -240,7 +126,9 @@ TEST_F(Meshes, ThatAreTurnedOrFlatInPlacesAreTold) {
   const Mesh mesh = read_mesh(write_obj("a.obj", t), 1);
   EXPECT_EQ(mesh.facts.flat, 1U);
   EXPECT_EQ(mesh.facts.turned, 3U);
-  EXPECT_NE(mesh_warning(mesh.facts).find("turned"), std::string::npos);
+  EXPECT_NE(mesh_text(mesh.facts).find("closed, 3 edges of triangles that were turned"), std::string::npos)
+      << mesh_text(mesh.facts);
+  EXPECT_EQ(mesh_warning(mesh.facts), "");
   EXPECT_NEAR(mesh.shape->distance({0, 0, 4}), -1, 1e-5);
 }
 
