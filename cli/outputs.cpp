@@ -93,7 +93,9 @@ FrameStyle frame_style(const Scene& scene) {
   FrameStyle style;
   style.periodic = scene.periodic;
   style.radius = (scene.pitch > 0 ? scene.pitch : scene.rule.cutoff()) / 2;
-  for (const ParticleType& type : scene.rule.types) style.types.push_back(type.name);
+  style.reduced = scene.boltzmann == 1;
+  for (size_t k = 0; k < scene.rule.types.size(); ++k)
+    style.types.push_back(frame_type(scene.rule.types[k].name, scene.rule.mass_of(static_cast<int>(k))));
   return style;
 }
 

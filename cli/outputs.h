@@ -8,7 +8,7 @@
 
 #include "cli/command.h"
 #include "model/analysis/strain.h"
-#include "model/trace/frames.h"
+#include "model/trace/frame.h"
 #include "model/trace/trace.h"
 #include "model/trace/trace_head.h"
 

@@ -18,6 +18,7 @@
 #include "model/trace/frames.h"
 #include "model/trace/raster.h"
 #include "model/trace/trace_file.h"
+#include "model/trace/vtk_frames.h"
 
 namespace cuboct {
 namespace {
@@ -30,8 +31,9 @@ constexpr uint64_t kMost =
     1 << 28;  // a run of so many steps that its hashes take more may well be ended early
 
 // What a run writes, besides run.toml and pictures.
-constexpr const char* kFiles[] = {"trace.h5",      "summary.json",   "plan.txt",   "frames.xyz",
-                                  "frames.xyz.gz", "frames.dump.gz", "frames.pvd", "rasters.h5"};
+constexpr const char* kFiles[] = {"trace.h5",       "summary.json",  "plan.txt",
+                                  "frames.xyz",     "frames.xyz.gz", "frames.ase.xyz",
+                                  "frames.dump.gz", "frames.pvd",    "rasters.h5"};
 
 void refuse_what_is_kept(const RecorderOptions& options) {
   const std::string& directory = options.directory;
@@ -69,6 +71,8 @@ struct Recorder::Impl {
         maker(loaded, !options.no_states && !options.frames.empty()),
         head(head_of(loaded, options.real, options.si)) {
     head.cells = !options.no_states || options.cycles;
+    if (wants("ase") && style.reduced)
+      throw InputError("--frames ase is in angstrom, and the scene's units are reduced", "--frames xyz");
     refuse_what_is_kept(options);
     if (!options.resume)
       for (const char* name : {"checkpoint", "checkpoint.journal", "checkpoint.tmp"}) fs::remove(path(name));
@@ -86,8 +90,9 @@ struct Recorder::Impl {
   void begin() {
     if (begun) return;
     begun = true;
-    for (const char* name : {"run.toml", "summary.json", "trace.h5", "trace.part.h5", "rasters.h5",
-                             "rasters.part.h5", "frames.xyz", "frames.xyz.gz", "frames.dump.gz"})
+    for (const char* name :
+         {"run.toml", "summary.json", "trace.h5", "trace.part.h5", "rasters.h5", "rasters.part.h5",
+          "frames.xyz", "frames.xyz.gz", "frames.ase.xyz", "frames.dump.gz"})
       fs::remove(path(name));
     remove_vtk(path("frames"));
     write_text(path(kBallast), "");
@@ -106,7 +111,8 @@ struct Recorder::Impl {
                            options.raster);
     if (wants("vtp")) vtk.writer.emplace(path("frames"), style);
     if (wants("xyz")) xyz.writer.emplace(path("frames.xyz"), style);
-    if (wants("xyz.gz")) packed_xyz.writer.emplace(path("frames.xyz.gz"), style, true);
+    if (wants("xyz.gz")) packed_xyz.writer.emplace(path("frames.xyz.gz"), style, XyzForm{.packed = true});
+    if (wants("ase")) ase.writer.emplace(path("frames.ase.xyz"), style, XyzForm{.ase = true});
     if (wants("lammps")) lammps.writer.emplace(path("frames.dump.gz"), style);
   }
 
@@ -138,6 +144,7 @@ struct Recorder::Impl {
     add(vtk, frame);
     add(xyz, frame);
     add(packed_xyz, frame);
+    add(ase, frame);
     add(lammps, frame);
     if (options.see) options.see(frame);
     ++frames;
@@ -163,7 +170,7 @@ struct Recorder::Impl {
   Output<TraceWriter> trace{"trace.h5"};
   Output<RasterWriter> rasters{"rasters.h5"};
   Output<VtkWriter> vtk{"frames.pvd"};
-  Output<XyzWriter> xyz{"frames.xyz"}, packed_xyz{"frames.xyz.gz"};
+  Output<XyzWriter> xyz{"frames.xyz"}, packed_xyz{"frames.xyz.gz"}, ase{"frames.ase.xyz"};
   Output<LammpsWriter> lammps{"frames.dump.gz"};
 };
 
@@ -209,6 +216,7 @@ void Recorder::finish(const Trace& trace, const Items& summary, const std::strin
   to.vtk.writer.reset();
   to.xyz.writer.reset();
   to.packed_xyz.writer.reset();
+  to.ase.writer.reset();
   to.lammps.writer.reset();
   whole("summary.json", [&] { write_text(to.path("summary.json"), summary.json()); });
   to.options.record.reached = trace.reached.has_value();
@@ -224,6 +232,7 @@ std::string Recorder::trouble() const {
   of.tell(text, of.vtk, of.wants("vtp"));
   of.tell(text, of.xyz, of.wants("xyz"));
   of.tell(text, of.packed_xyz, of.wants("xyz.gz"));
+  of.tell(text, of.ase, of.wants("ase"));
   of.tell(text, of.lammps, of.wants("lammps"));
   for (const std::string& name : of.missing) missing += fmt::format("; {} is missing", name);
   return fmt::format("{}; of {} frames {}{}", of.first_error, of.frames, text, missing);

@@ -294,11 +294,11 @@ void add_run(CLI::App& app, int& exit_code) {
   auto* formats =
       command
           ->add_option("--frames", options->frames,
-                       "formats of the frames in DIR, written as they come: xyz, xyz.gz, vtp, lammps "
-                       "(frames.dump.gz), or none; default: xyz,vtp")
+                       "formats of the frames in DIR, written as they come: xyz, xyz.gz, ase "
+                       "(frames.ase.xyz), vtp, lammps (frames.dump.gz), or none; default: xyz,vtp")
           ->delimiter(',')
           ->allow_extra_args(false)
-          ->check(CLI::IsMember({"xyz", "xyz.gz", "vtp", "lammps", "none"}))
+          ->check(CLI::IsMember({"xyz", "xyz.gz", "ase", "vtp", "lammps", "none"}))
           ->type_name("A,B,...");
   options->engines.add_machines(*command);
   options->engines.add_numbers(*command);

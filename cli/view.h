@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/command.h"
-#include "model/trace/frames.h"
+#include "model/trace/frame.h"
 
 namespace cuboct {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-// Both formats are written by hand: extended XYZ is plain text, and the few tags of a VTK point set do not
-// justify the VTK libraries (over 100 packages on Debian) in every build.
 #include "model/trace/frames.h"
 
 #include <fmt/compile.h>
@@ -8,136 +6,15 @@
 #include <zlib.h>
 
 #include <array>
-#include <bit>
-#include <filesystem>
+#include <cmath>
 #include <iterator>
 #include <new>
-#include <type_traits>
 
-#include "model/base/base64.h"
 #include "model/base/error.h"
-#include "model/base/output.h"
 #include "model/base/text.h"
+#include "model/scene/units.h"
 
 namespace cuboct {
-namespace {
-
-std::string species(const FrameStyle& style, uint8_t type) {
-  return xyz_word(type < style.types.size() ? style.types[type] : fmt::format("type{}", type));
-}
-
-struct Box {
-  Vec3 lower, extent;
-};
-
-Box box_of(const Frame& frame, const FrameStyle& style) {
-  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
-  bool any = false;
-  for (const Vec3& x : frame.x) {
-    lower = any ? Vec3(lower.cwiseMin(x)) : x;
-    upper = any ? Vec3(upper.cwiseMax(x)) : x;
-    any = true;
-  }
-  Box box{lower - Vec3::Constant(style.radius), upper - lower + Vec3::Constant(2 * style.radius)};
-  for (int axis = 0; axis < 3; ++axis)
-    if (style.periodic.extent[axis] > 0) {
-      box.lower[axis] = style.periodic.origin[axis];
-      box.extent[axis] = style.periodic.extent[axis];
-    }
-  return box;
-}
-
-template <typename T>
-constexpr const char* kVtkType = std::is_same_v<T, double>     ? "Float64"
-                                 : std::is_same_v<T, float>    ? "Float32"
-                                 : std::is_same_v<T, uint32_t> ? "UInt32"
-                                                               : "UInt8";
-
-// Writes the DataArrays of one file in VTK's packed inline form: base64 of the number of blocks, their size,
-// that of a last one that is shorter (0: none) and their packed sizes, then base64 of all blocks.
-// Little-endian.
-class VtkArrays {
- public:
-  explicit VtkArrays(TextFile& file) : file_(file) {}
-
-  // value(k) for k = 0 ... count - 1.
-  template <typename T, typename Value>
-  void write(const std::string& attributes, size_t count, Value value) {
-    static_assert(std::endian::native == std::endian::little, "the header says LittleEndian");
-    file_.write(fmt::format("        <DataArray type=\"{}\" {} format=\"binary\">", kVtkType<T>, attributes));
-    head_ = {0, kBlock, 0};
-    for (size_t k = 0; k < count; ++k) {
-      const T one = value(k);
-      const auto* at = reinterpret_cast<const uint8_t*>(&one);
-      block_.insert(block_.end(), at, at + sizeof one);
-      if (block_.size() == kBlock) pack();
-    }
-    head_[2] = block_.size();
-    if (!block_.empty()) pack();
-    file_.write(base64(head_.data(), head_.size() * sizeof head_[0]));
-    file_.write(base64(packed_.data(), packed_.size()));
-    packed_.clear();
-    file_.write("</DataArray>\n");
-  }
-  template <typename T>
-  void triples(const std::string& attributes, const std::vector<Vec3>& values) {
-    write<T>(attributes + " NumberOfComponents=\"3\"", 3 * values.size(),
-             [&](size_t k) { return static_cast<T>(values[k / 3][static_cast<int>(k % 3)]); });
-  }
-
- private:
-  static constexpr size_t kBlock = 1 << 18;  // bytes, of all types a multiple
-
-  void pack() {
-    uLongf size = compressBound(block_.size());
-    const size_t before = packed_.size();
-    packed_.resize(before + size);
-    if (compress2(packed_.data() + before, &size, block_.data(), block_.size(), Z_BEST_SPEED) != Z_OK)
-      throw std::bad_alloc();  // the one way in which it can fail here
-    packed_.resize(before + size);
-    ++head_[0];
-    head_.push_back(size);
-    block_.clear();
-  }
-
-  TextFile& file_;
-  std::vector<uint64_t> head_;
-  std::vector<uint8_t> block_, packed_;
-};
-
-// VTK's symmetric tensors go xx, yy, zz, xy, yz, xz.
-constexpr std::array<size_t, 6> kVtkOrder{0, 1, 2, 3, 5, 4};
-
-void write_vtp(TextFile& out, const Frame& frame, const FrameStyle& style) {
-  const size_t n = frame.x.size();
-  VtkArrays arrays(out);
-  out.write(fmt::format(
-      "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
-      "compressor=\"vtkZLibDataCompressor\">\n"
-      "  <PolyData>\n"
-      "    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
-      "NumberOfPolys=\"0\">\n      <PointData Scalars=\"axial_strain\" Vectors=\"velocity\">\n",
-      n, n));
-  const auto index = [](size_t k) { return static_cast<uint32_t>(k); };
-  arrays.write<float>("Name=\"axial_strain\"", n,
-                      [&](size_t k) { return static_cast<float>(frame.strain[k]); });
-  arrays.write<float>("Name=\"strain\" NumberOfComponents=\"6\"", 6 * n,
-                      [&](size_t k) { return frame.tensor[k / 6][kVtkOrder[k % 6]]; });
-  arrays.write<uint32_t>("Name=\"broken_bonds\"", n, [&](size_t k) { return frame.broken[k]; });
-  arrays.triples<float>("Name=\"velocity\"", frame.v);
-  arrays.write<uint8_t>("Name=\"type\"", n, [&](size_t k) { return frame.type[k]; });
-  arrays.write<uint32_t>("Name=\"id\"", n, index);
-  arrays.write<float>("Name=\"radius\"", n, [&](size_t) { return static_cast<float>(style.radius); });
-  out.write("      </PointData>\n      <Points>\n");
-  arrays.triples<double>("Name=\"position\"", frame.x);
-  out.write("      </Points>\n      <Verts>\n");
-  arrays.write<uint32_t>("Name=\"connectivity\"", n, index);
-  arrays.write<uint32_t>("Name=\"offsets\"", n, [](size_t k) { return static_cast<uint32_t>(k + 1); });
-  out.write("      </Verts>\n    </Piece>\n  </PolyData>\n</VTKFile>\n");
-}
-
-}  // namespace
 
 struct FrameText::Packer {
   Packer() {
@@ -209,99 +86,121 @@ void write_lines(FrameText& file, fmt::memory_buffer& out, size_t count, Line li
   file.commit();
 }
 
+// The field's numbers of a particle, each behind a blank.
+template <typename Out>
+void write_numbers(Out to, const FrameField& field, const Frame& frame, size_t i) {
+  for (size_t c = 0; c < field.numbers(); ++c) {
+    const double value = field.value(frame, i, c);
+    if (field.whole)
+      fmt::format_to(to, FMT_COMPILE(" {}"), static_cast<uint64_t>(value));
+    else
+      fmt::format_to(to, FMT_COMPILE(" {:.6g}"), value);
+  }
+}
+
+// Scales a field, and says so in its unit.
+void convert(FrameField& field, const std::string& name, const std::string& unit,
+             const std::function<double(const Frame&, size_t particle)>& factor) {
+  field.name = name, field.unit = unit;
+  field.value = [value = std::move(field.value), factor](const Frame& frame, size_t i, size_t c) {
+    return value(frame, i, c) * factor(frame, i);
+  };
+}
+
+double si(const char* unit) { return parse_quantity(std::string("1 ") + unit).values[0]; }
+
+// In ASE's units (ase.units: eV, angstrom and u are 1).
+void convert_to_ase(std::vector<FrameField>& fields, const std::vector<FrameType>& types) {
+  const double u = si("u"), momentum = std::sqrt(u * si("eV")), length = si("angstrom");
+  std::vector<double> masses;
+  for (const FrameType& type : types) masses.push_back(type.mass);
+  const auto mass = [masses](const Frame& frame, size_t i) { return masses[frame.type[i]]; };
+  for (FrameField& field : fields) {
+    if (field.name == "radius")
+      convert(field, "radius", "angstrom", [length](const Frame&, size_t) { return 1 / length; });
+    if (field.name == "velocity")
+      convert(field, "momenta", "sqrt(u*eV)",
+              [mass, momentum](const Frame& frame, size_t i) { return mass(frame, i) / momentum; });
+  }
+  fields.push_back({"masses", "u", {}, false, [mass, u](const Frame& frame, size_t i, size_t) {
+                      return mass(frame, i) / u;
+                    }});
+}
+
 }  // namespace
 
-XyzWriter::XyzWriter(const std::string& path, const FrameStyle& style, bool packed)
-    : style_(style), file_(path, packed) {
-  for (int type = 0; type < 256; ++type) names_.push_back(species(style, static_cast<uint8_t>(type)));
+XyzWriter::XyzWriter(const std::string& path, const FrameStyle& style, const XyzForm& form)
+    : style_(style), fields_(frame_fields(style)), file_(path, form.packed) {
+  if (form.ase) {
+    length_ = 1 / si("angstrom");
+    convert_to_ase(fields_, style.types);
+  }
+  for (FrameField& field : fields_)
+    if (field.name == "velocity") field.name = "velo";  // OVITO's word
+  for (size_t k = 0; k < style.types.size(); ++k) {
+    const FrameType& type = style.types[k];
+    species_.push_back(type.species);
+    words_.push_back(fmt::format("{} {} {}", k, xyz_word(type.material),
+                                 type.constraint.empty() ? "-" : xyz_word(type.constraint)));
+  }
+  const std::string length = form.ase ? "angstrom" : unit_text(style, "m");
+  head_ = "Properties=species:S:1:pos:R:3:id:I:1:type_index:I:1:material:S:1:constraint:S:1";
+  std::string units =
+      fmt::format("Time:{} Lattice:{} Origin:{} pos:{}", unit_text(style, "s"), length, length, length);
+  for (const FrameField& field : fields_) {
+    head_ += fmt::format(":{}:{}:{}", field.name, field.whole ? 'I' : 'R', field.numbers());
+    units += fmt::format(" {}:{}", field.name, unit_text(style, field.unit));
+  }
+  head_ += " units=\"" + units + "\"";
 }
 
 void XyzWriter::add(const Frame& frame) {
-  const Box box = box_of(frame, style_);
+  const FrameBox box = box_of(frame, style_);
   const auto flag = [&](int axis) { return style_.periodic.extent[axis] > 0 ? 'T' : 'F'; };
-  const std::string radius = fmt::format("{:.6g}", style_.radius);
+  const Vec3 extent = length_ * box.extent, lower = length_ * box.lower;
   fmt::memory_buffer out;
   fmt::format_to(std::back_inserter(out),
                  "{}\nLattice=\"{:.9g} 0 0 0 {:.9g} 0 0 0 {:.9g}\" Origin=\"{:.9g} {:.9g} {:.9g}\" "
-                 "pbc=\"{} {} {}\" Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1:"
-                 "StrainTensor:R:6:BrokenBonds:I:1 Step={} Time={:.9g}\n",
-                 frame.x.size(), box.extent[0], box.extent[1], box.extent[2], box.lower[0], box.lower[1],
-                 box.lower[2], flag(0), flag(1), flag(2), frame.step, frame.time);
+                 "pbc=\"{} {} {}\" {} Step={} Time={:.9g}\n",
+                 frame.x.size(), extent[0], extent[1], extent[2], lower[0], lower[1], lower[2], flag(0),
+                 flag(1), flag(2), head_, frame.step, frame.time);
   write_lines(file_, out, frame.x.size(), [&](auto to, size_t i) {
-    const Vec3 &x = frame.x[i], &v = frame.v[i];
-    const auto& e = frame.tensor[i];
-    fmt::format_to(
-        to,
-        FMT_COMPILE("{} {} {:.9g} {:.9g} {:.9g} {:.6g} {:.6g} {:.6g} {} {:.6g} {:.5g} {:.5g} {:.5g} "
-                    "{:.5g} {:.5g} {:.5g} {}\n"),
-        i, names_[frame.type[i]], x[0], x[1], x[2], v[0], v[1], v[2], radius, frame.strain[i], e[0], e[1],
-        e[2], e[3], e[4], e[5], frame.broken[i]);
+    const Vec3 x = length_ * frame.x[i];
+    fmt::format_to(to, FMT_COMPILE("{} {:.9g} {:.9g} {:.9g} {} {}"), species_[frame.type[i]], x[0], x[1],
+                   x[2], i, words_[frame.type[i]]);
+    for (const FrameField& field : fields_) write_numbers(to, field, frame, i);
+    *to++ = '\n';
   });
 }
 
 LammpsWriter::LammpsWriter(const std::string& path, const FrameStyle& style)
-    : style_(style), file_(path, true) {}
+    : style_(style), fields_(frame_fields(style)), columns_("id type x y z"), file_(path, true) {
+  for (const FrameField& field : fields_) {
+    if (field.components.empty()) columns_ += " " + field.name;
+    for (const std::string& component : field.components)
+      columns_ += field.name == "velocity" ? " v" + component : " " + field.name + "_" + component;
+  }
+}
 
 void LammpsWriter::add(const Frame& frame) {
-  const Box box = box_of(frame, style_);
-  const std::string radius = fmt::format("{:.6g}", style_.radius);
+  const FrameBox box = box_of(frame, style_);
   fmt::memory_buffer out;
   const auto to = std::back_inserter(out);
-  fmt::format_to(to, "ITEM: UNITS\nsi\nITEM: TIME\n{:.9g}\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\n",
-                 frame.time, frame.step, frame.x.size());
+  fmt::format_to(to, "ITEM: UNITS\n{}\nITEM: TIME\n{:.9g}\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\n",
+                 style_.reduced ? "lj" : "si", frame.time, frame.step, frame.x.size());
   std::string ends;
   for (int axis = 0; axis < 3; ++axis) ends += style_.periodic.extent[axis] > 0 ? " pp" : " ff";
   fmt::format_to(to, "ITEM: BOX BOUNDS{}\n", ends);
   for (int axis = 0; axis < 3; ++axis)
     fmt::format_to(to, "{:.9g} {:.9g}\n", box.lower[axis], box.lower[axis] + box.extent[axis]);
-  fmt::format_to(to,
-                 "ITEM: ATOMS id type x y z vx vy vz radius StrainTensor.XX StrainTensor.YY StrainTensor.ZZ "
-                 "StrainTensor.XY StrainTensor.XZ StrainTensor.YZ AxialStrain BrokenBonds\n");
+  fmt::format_to(to, "ITEM: ATOMS {}\n", columns_);
   write_lines(file_, out, frame.x.size(), [&](auto line, size_t i) {
-    const Vec3 &x = frame.x[i], &v = frame.v[i];
-    const auto& e = frame.tensor[i];
-    fmt::format_to(
-        line,
-        FMT_COMPILE("{} {} {:.9g} {:.9g} {:.9g} {:.6g} {:.6g} {:.6g} {} {:.5g} {:.5g} {:.5g} {:.5g} "
-                    "{:.5g} {:.5g} {:.6g} {}\n"),
-        i, frame.type[i] + 1, x[0], x[1], x[2], v[0], v[1], v[2], radius, e[0], e[1], e[2], e[3], e[4], e[5],
-        frame.strain[i], frame.broken[i]);
+    const Vec3& x = frame.x[i];
+    fmt::format_to(line, FMT_COMPILE("{} {} {:.9g} {:.9g} {:.9g}"), i + 1, frame.type[i] + 1, x[0], x[1],
+                   x[2]);
+    for (const FrameField& field : fields_) write_numbers(line, field, frame, i);
+    *line++ = '\n';
   });
-}
-
-namespace {
-
-std::string vtp_name(const std::string& stem, size_t k) { return fmt::format("{}_{:06}.vtp", stem, k); }
-
-void remove_vtp(const std::string& stem) {
-  for (size_t k = 0; std::filesystem::remove(vtp_name(stem, k)); ++k) {
-  }
-}
-
-}  // namespace
-
-VtkWriter::VtkWriter(const std::string& stem, const FrameStyle& style)
-    : stem_(stem),
-      style_(style),
-      list_(stem + ".pvd",
-            "<?xml version=\"1.0\"?>\n"
-            "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n",
-            "  </Collection>\n</VTKFile>\n") {
-  remove_vtp(stem);
-}
-
-void remove_vtk(const std::string& stem) {
-  std::filesystem::remove(stem + ".pvd");
-  remove_vtp(stem);
-}
-
-void VtkWriter::add(const Frame& frame) {
-  const std::string path = vtp_name(stem_, count_);
-  write_text(path, [&](TextFile& out) { write_vtp(out, frame, style_); });
-  list_.write(fmt::format("    <DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}\"/>\n", frame.time,
-                          html_text(std::filesystem::path(path).filename().string())));
-  list_.commit();
-  ++count_;
 }
 
 }  // namespace cuboct

@@ -1,35 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Frames for the viewers of the field: extended XYZ and LAMMPS dumps for OVITO, VTK XML for ParaView. Real
-// units: m, s, m/s.
+// Frames as text: extended XYZ for OVITO and ASE, LAMMPS dumps for LAMMPS and OVITO.
+// docs/reference/frames.md.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "model/base/output.h"
-#include "model/contract/rule.h"
+#include "model/trace/frame.h"
 
 namespace cuboct {
-
-// One moment, ready to draw. The index is the particle's id.
-struct Frame {
-  uint64_t step = 0;
-  double time = 0;                             // s
-  std::vector<Vec3> x, v;                      // m, m/s
-  std::vector<uint8_t> type;                   // index into the rule's types
-  std::vector<double> strain{};                // axial elongation, 1 (strain.h)
-  std::vector<std::array<float, 6>> tensor{};  // Green-Lagrange strain: xx, yy, zz, xy, xz, yz
-  std::vector<uint32_t> broken{};              // initial neighbours that are out of reach
-};
-
-struct FrameStyle {
-  Periodic periodic;
-  double radius = 0;               // m, of a drawn particle: half the pitch
-  std::vector<std::string> types;  // names, by type index
-};
 
 // A text that grows frame by frame, plain or as gzip: a member of its own per commit, so that what is there
 // can be read while the run goes.
@@ -46,23 +27,30 @@ class FrameText {
   std::unique_ptr<Packer> packer_;  // null: plain
 };
 
-// All frames in one file, one after another; each has a Lattice, Properties and Time entry as OVITO reads
-// them: id, species, pos (m), velo (m/s), Radius (m), AxialStrain, StrainTensor (six components),
-// BrokenBonds. An axis without a period has the extent of the frame.
+struct XyzForm {
+  bool packed = false;
+  // In ASE's units: angstrom, u, and momenta in sqrt(u eV) in the place of velocities. Not of reduced units.
+  bool ase = false;
+};
+
+// All frames in one file, one after another. `Properties` names the columns, `units` their units.
 class XyzWriter {
  public:
-  XyzWriter(const std::string& path, const FrameStyle& style, bool packed = false);  // the file is empty then
+  XyzWriter(const std::string& path, const FrameStyle& style, const XyzForm& form = {});  // empty then
   // Throws InputError where the disk has no room: the frame is then left out.
   void add(const Frame& frame);
 
  private:
   FrameStyle style_;
-  std::vector<std::string> names_;
+  std::vector<FrameField> fields_;
+  std::vector<std::string> species_, words_;  // by type: the first column, and those that do not change
+  std::string head_;                          // Properties and units
+  double length_ = 1;                         // of the file's unit in a metre
   FrameText file_;
 };
 
-// A LAMMPS dump of all frames, as gzip, with the columns' names that OVITO knows. `id` is cuboct's, from 0;
-// `type` counts from 1.
+// A LAMMPS dump of all frames, as gzip. `id` counts from 1, as LAMMPS has it; cuboct's own is one less. So
+// does `type`.
 class LammpsWriter {
  public:
   LammpsWriter(const std::string& path, const FrameStyle& style);
@@ -71,25 +59,9 @@ class LammpsWriter {
 
  private:
   FrameStyle style_;
+  std::vector<FrameField> fields_;
+  std::string columns_;
   FrameText file_;
 };
-
-// <stem>.pvd lists <stem>_000000.vtp, ...: one file per frame with velocity, type, id, strain, broken bonds
-// and radius per point, packed by zlib. Positions are doubles, the rest floats.
-class VtkWriter {
- public:
-  VtkWriter(const std::string& stem, const FrameStyle& style);
-  // Throws InputError where the disk has no room: the frame is then left out.
-  void add(const Frame& frame);
-
- private:
-  std::string stem_;
-  FrameStyle style_;
-  GrowingFile list_;
-  size_t count_ = 0;
-};
-
-// The files of an earlier run.
-void remove_vtk(const std::string& stem);
 
 }  // namespace cuboct

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "model/trace/frames.h"
+#include "model/trace/frame.h"
 
 namespace cuboct {
 

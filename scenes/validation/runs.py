@@ -56,7 +56,7 @@ def first_frame(run):
         count = int(frames.readline())
         box = [float(x) for x in re.search(r'Lattice="([^"]*)"', frames.readline()).group(1).split()]
         rows = np.array([frames.readline().split() for _ in range(count)])
-    return np.array(box)[[0, 4, 8]], rows[:, 2:5].astype(float), rows[:, 5:8].astype(float)
+    return np.array(box)[[0, 4, 8]], rows[:, 1:4].astype(float), rows[:, 8:11].astype(float)
 
 
 def lammps(run, out, pair, dt, steps, every):

@@ -106,7 +106,7 @@ std::vector<uint64_t> xyz_steps(const std::string& directory) {
     steps.push_back(std::stoull(line.substr(line.find("Step=") + 5)));
     for (int k = 0; k < particles; ++k) {
       EXPECT_TRUE(std::getline(in, line));
-      EXPECT_EQ(std::count(line.begin(), line.end(), ' '), 16) << line;
+      EXPECT_EQ(std::count(line.begin(), line.end(), ' '), 19) << line;
     }
   }
   return steps;

@@ -292,6 +292,7 @@ TEST(Run, LeavesTheFramesThatAreAskedFor) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(files("none"), Names{});
   EXPECT_EQ(files("lammps"), Names{"frames.dump.gz"});
+  EXPECT_EQ(files("ase"), Names{"frames.ase.xyz"});
   EXPECT_EQ(files("xyz.gz,vtp"),
             (Names{"frames.pvd", "frames.xyz.gz", "frames_000000.vtp", "frames_000001.vtp"}));
   // A run with other formats replaces those of the run before.
@@ -301,13 +302,20 @@ TEST(Run, LeavesTheFramesThatAreAskedFor) {
                 .code,
             0);
   EXPECT_FALSE(fs::exists(bench.path("lammps/frames.dump.gz")));
-  for (const auto& [formats, text] : {std::pair{"pdb", "--frames: pdb not in {xyz,xyz.gz,vtp,lammps,none}\n"},
-                                      {"none,xyz", "--frames: none goes with no other format\n"}}) {
+  for (const auto& [formats, text] :
+       {std::pair{"pdb", "--frames: pdb not in {xyz,xyz.gz,ase,vtp,lammps,none}\n"},
+        {"none,xyz", "--frames: none goes with no other format\n"}}) {
     const Answer answer =
         bench.cuboct({"run", "scenes/coupon.toml", "--frames", formats, "--out", bench.path("out_dir")});
     EXPECT_EQ(answer.code, 2);
     EXPECT_EQ(answer.err, text);
   }
+  const Answer reduced = bench.cuboct(
+      {"run", "scenes/lj_block.toml", "--frames", "xyz,ase", "--steps", "1", "--out", bench.path("reduced")});
+  EXPECT_EQ(reduced.code, 2);
+  EXPECT_EQ(reduced.err,
+            "--frames ase is in angstrom, and the scene's units are reduced\n  hint: --frames xyz\n");
+  EXPECT_FALSE(fs::exists(bench.path("reduced/trace.part.h5")));
   EXPECT_EQ(bench.cuboct({"run", "scenes/coupon.toml", "--frames", "vtp"}).err,
             "--frames needs --out DIR: without it nothing of the run is kept\n");
 }

@@ -36,12 +36,13 @@ def run(out, scene, *more):
 
 
 def xyz_frames(path):
-    """(time, ids, types, positions, velocities) of each frame of an extended XYZ file."""
+    """(time, ids, types as they stand there, positions, velocities) of each frame of an extended XYZ file."""
     with open(path, encoding="utf-8") as file:
         while count := file.readline():
             time = float(re.search(r" Time=(\S+)", file.readline()).group(1))
             rows = np.array([file.readline().split() for _ in range(int(count))])
-            yield time, rows[:, 0].astype(int), rows[:, 1], rows[:, 2:5].astype(float), rows[:, 5:8].astype(float)
+            types = [f"{material}/{constraint}" if constraint != "-" else material for material, constraint in rows[:, 6:8]]
+            yield time, rows[:, 4].astype(int), types, rows[:, 1:4].astype(float), rows[:, 8:11].astype(float)
 
 
 def compare(read_frames, path, xyz):
@@ -52,7 +53,7 @@ def compare(read_frames, path, xyz):
     for mine, its in zip(read_frames(path), xyz_frames(xyz), strict=True):
         assert abs(mine[0] - its[0]) <= 1e-8 * its[0], "time"
         assert np.array_equal(mine[1], its[1]), "ids"
-        assert [name.replace(" ", "_") for name in mine[2]] == list(its[2]), "types"
+        assert [name.replace(" ", "_") for name in mine[2]] == its[2], "types"
         rows = slice(at, at + len(mine[1]))
         for name, a, b, si, digits in (("x", mine[3], its[3], x_si[rows], 1e-8), ("v", mine[4], its[4], v_si[rows], 1e-5)):
             size = np.abs(b).max()
@@ -68,7 +69,7 @@ def compare_bodies(x, types, xyz):
     """Of a run in real numbers."""
     frames = list(xyz_frames(xyz))
     assert np.abs(x - np.concatenate([frame[3] for frame in frames])).max() <= 1e-8 * np.abs(x).max()
-    assert list(types) == list(frames[0][2])
+    assert list(types) == frames[0][2]
     return len(frames)
 
 

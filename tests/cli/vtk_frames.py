@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reads the frames of a torn coupon with VTK itself: arrays under the names that docs/reference/trace.md has, positions and
+"""Reads the frames of a torn coupon with VTK itself: positions and
 types those of the trace, strains and broken bonds those that positions make. Ends with 77 where VTK is not installed.
 
 usage: vtk_frames.py ROOT DIRECTORY_OF_CUBOCT
@@ -82,10 +82,10 @@ axis = np.eye(3)[0]  # of the scene's stress-strain probe
 most = 0
 for k, (x, data) in enumerate(frames):
     rows = slice(first[k], first[k + 1])
-    assert set(data) == {"axial_strain", "strain", "broken_bonds", "velocity", "type", "id", "radius"}, set(data)
+    assert set(data) == {"axial_strain", "strain", "broken_bonds", "velocity", "type_index", "id", "radius"}, set(data)
     assert x.dtype == np.float64 and np.abs(x - x_si[rows]).max() < 1e-12 * np.abs(x).max()
     assert np.abs(data["velocity"] - v_si[rows]).max() <= 1e-6 * np.abs(v_si[rows]).max()
-    assert np.array_equal(data["type"], types[rows]) and len(set(data["type"])) > 1
+    assert np.array_equal(data["type_index"], types[rows]) and len(set(data["type_index"])) > 1
     assert np.array_equal(data["id"], np.arange(len(x)))
     assert np.allclose(data["radius"], facts["pitch"] / 2, rtol=1e-6)
     full, f, tensor = strains(x0, x, near)

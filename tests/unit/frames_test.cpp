@@ -14,6 +14,7 @@
 
 #include "model/base/base64.h"
 #include "model/base/error.h"
+#include "model/trace/vtk_frames.h"
 #include "tests/support/file_limit.h"
 
 namespace cuboct {
@@ -108,7 +109,7 @@ class Frames : public testing::Test {
       frames_.push_back(frame);
     }
     style_.radius = 0.5;
-    style_.types = {"delrin", "delrin/top grip"};
+    style_.types = {frame_type("delrin", 1), frame_type("Cu/top grip", 2)};
     style_.periodic = {Vec3(-1, 0, 0), Vec3(4, 0, 0)};
   }
   void TearDown() override { fs::remove_all(directory_); }
@@ -118,24 +119,76 @@ class Frames : public testing::Test {
   FrameStyle style_;
 };
 
-TEST_F(Frames, ExtendedXyzHoldsBoxColumnsAndTimes) {
+constexpr const char* kRest = "radius:R:1:axial_strain:R:1:strain:R:6:broken_bonds:I:1";
+
+TEST_F(Frames, ExtendedXyzHoldsBoxColumnsUnitsAndTimes) {
   write_extended_xyz(directory_ / "f.xyz", frames_, style_);
   // Along y, which has no period, the second frame reaches farther.
   const auto head = [](const std::string& y) {
     return "2\nLattice=\"4 0 0 0 " + y +
            " 0 0 0 4\" Origin=\"-1 -0.5 -0.5\" pbc=\"T F F\" "
-           "Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:Radius:R:1:AxialStrain:R:1:"
-           "StrainTensor:R:6:BrokenBonds:I:1 ";
+           "Properties=species:S:1:pos:R:3:id:I:1:type_index:I:1:material:S:1:constraint:S:1:velo:R:3:" +
+           kRest +
+           " units=\"Time:s Lattice:m Origin:m pos:m velo:m/s radius:m axial_strain:1 strain:1 "
+           "broken_bonds:1\" ";
   };
   EXPECT_EQ(text_of(directory_ / "f.xyz"),
             head("3") +
                 "Step=0 Time=0\n"
-                "0 delrin 0 0 0 0 0 0 0.5 0 0 0 0 0 0 0 0\n"
-                "1 delrin/top_grip 1 2 3 0 0.5 0 0.5 0 0.25 0 0 0.5 0 -0.001 0\n" +
+                "X 0 0 0 0 0 delrin - 0 0 0 0.5 0 0 0 0 0 0 0 0\n"
+                "Cu 1 2 3 1 1 Cu top_grip 0 0.5 0 0.5 0 0.25 0 0 0.5 0 -0.001 0\n" +
                 head("4") +
                 "Step=10 Time=0.5\n"
-                "0 delrin 0 0 0 0 0 0 0.5 0 0 0 0 0 0 0 0\n"
-                "1 delrin/top_grip 1 3 3 0 0.5 0 0.5 0.125 0.25 0 0 0.5 0 -0.001 3\n");
+                "X 0 0 0 0 0 delrin - 0 0 0 0.5 0 0 0 0 0 0 0 0\n"
+                "Cu 1 3 3 1 1 Cu top_grip 0 0.5 0 0.5 0.125 0.25 0 0 0.5 0 -0.001 3\n");
+}
+
+// Angstrom, u, and momenta in sqrt(u eV): 1 u at 1 sqrt(eV/u), 9822.694750 m/s, has 1.
+TEST_F(Frames, ExtendedXyzMayBeInTheUnitsOfAse) {
+  constexpr double kU = 1.66053906660e-27;  // kg
+  style_.types = {frame_type("delrin", 2 * kU), frame_type("Cu", 63 * kU)};
+  style_.radius = 1e-10;
+  style_.periodic = {};
+  Frame& frame = frames_[0];
+  frame.x = {Vec3(0, 0, 0), Vec3(2e-10, 0, 3e-10)};
+  frame.v = {Vec3(9822.69475, 0, 0), Vec3(0, 0, -9822.69475)};
+  {
+    XyzWriter out((directory_ / "f.xyz").string(), style_, {.ase = true});
+    out.add(frame);
+  }
+  EXPECT_EQ(text_of(directory_ / "f.xyz"),
+            "2\nLattice=\"4 0 0 0 2 0 0 0 5\" Origin=\"-1 -1 -1\" pbc=\"F F F\" "
+            "Properties=species:S:1:pos:R:3:id:I:1:type_index:I:1:material:S:1:constraint:S:1:momenta:R:3:" +
+                std::string(kRest) +
+                ":masses:R:1 units=\"Time:s Lattice:angstrom Origin:angstrom pos:angstrom momenta:sqrt(u*eV) "
+                "radius:angstrom axial_strain:1 strain:1 broken_bonds:1 masses:u\" "
+                "Step=0 Time=0\n"
+                "X 0 0 0 0 0 delrin - 2 0 0 1 0 0 0 0 0 0 0 0 2\n"
+                "Cu 2 0 3 1 1 Cu - 0 0 -63 1 0 0.25 0 0 0.5 0 -0.001 0 63\n");
+}
+
+TEST(FrameTypes, ASpeciesIsAnElementOrX) {
+  EXPECT_EQ(frame_type("Cu", 1).species, "Cu");
+  EXPECT_EQ(frame_type("W/held", 1).species, "W");
+  for (const char* other : {"Matter", "steel", "cu", "CU", "", "Si O", "i", "He Li"})
+    EXPECT_EQ(frame_type(other, 1).species, "X");
+  EXPECT_EQ(frame_type("a b/c d", 1).material, "a b");
+  EXPECT_EQ(frame_type("a b/c d", 1).constraint, "c d");
+  EXPECT_EQ(frame_type("a b", 1).constraint, "");
+}
+
+TEST_F(Frames, ReducedUnitsAreCalledSo) {
+  style_.reduced = true;
+  write_extended_xyz(directory_ / "f.xyz", frames_, style_);
+  EXPECT_NE(text_of(directory_ / "f.xyz")
+                .find("units=\"Time:reduced Lattice:reduced Origin:reduced pos:reduced "
+                      "velo:reduced radius:reduced axial_strain:1 "),
+            std::string::npos);
+  {
+    LammpsWriter out((directory_ / "f.gz").string(), style_);
+    out.add(frames_[0]);
+  }
+  EXPECT_TRUE(unpacked(directory_ / "f.gz").starts_with("ITEM: UNITS\nlj\n"));
 }
 
 TEST_F(Frames, VtkListsItsFilesAndHoldsTheValues) {
@@ -153,12 +206,16 @@ TEST_F(Frames, VtkListsItsFilesAndHoldsTheValues) {
   // In VTK's order: xx, yy, zz, xy, yz, xz.
   EXPECT_EQ(values_of<float>(vtp, "strain"),
             (std::vector<float>{0, 0, 0, 0, 0, 0, 0.25f, 0, 0, 0.5f, -1e-3f, 0}));
+  EXPECT_NE(vtp.find("ComponentName4=\"yz\" ComponentName5=\"xz\""), std::string::npos);
+  EXPECT_NE(vtp.find("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">m/s</InformationKey>"),
+            std::string::npos);
   EXPECT_EQ(values_of<uint32_t>(vtp, "broken_bonds"), (std::vector<uint32_t>{0, 3}));
+  EXPECT_EQ(values_of<uint8_t>(vtp, "type_index"), (std::vector<uint8_t>{0, 1}));
   EXPECT_EQ(values_of<uint32_t>(vtp, "offsets"), (std::vector<uint32_t>{1, 2}));
   EXPECT_NE(vtp.find("NumberOfPoints=\"2\""), std::string::npos);
 }
 
-TEST_F(Frames, LammpsDumpHasTheColumnsThatOvitoKnows) {
+TEST_F(Frames, LammpsDumpCountsFromOne) {
   {
     LammpsWriter out((directory_ / "f.gz").string(), style_);
     for (const Frame& frame : frames_) out.add(frame);
@@ -166,19 +223,19 @@ TEST_F(Frames, LammpsDumpHasTheColumnsThatOvitoKnows) {
   const auto head = [](const std::string& time, const std::string& step, const std::string& y) {
     return "ITEM: UNITS\nsi\nITEM: TIME\n" + time + "\nITEM: TIMESTEP\n" + step +
            "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff ff\n-1 3\n-0.5 " + y +
-           "\n-0.5 3.5\nITEM: ATOMS id type x y z vx vy vz radius StrainTensor.XX StrainTensor.YY "
-           "StrainTensor.ZZ StrainTensor.XY StrainTensor.XZ StrainTensor.YZ AxialStrain BrokenBonds\n"
-           "0 1 0 0 0 0 0 0 0.5 0 0 0 0 0 0 0 0\n";
+           "\n-0.5 3.5\nITEM: ATOMS id type x y z vx vy vz radius axial_strain strain_xx strain_yy strain_zz "
+           "strain_xy strain_xz strain_yz broken_bonds\n"
+           "1 1 0 0 0 0 0 0 0.5 0 0 0 0 0 0 0 0\n";
   };
   EXPECT_EQ(unpacked(directory_ / "f.gz"),
-            head("0", "0", "2.5") + "1 2 1 2 3 0 0.5 0 0.5 0.25 0 0 0.5 0 -0.001 0 0\n" +
-                head("0.5", "10", "3.5") + "1 2 1 3 3 0 0.5 0 0.5 0.25 0 0 0.5 0 -0.001 0.125 3\n");
+            head("0", "0", "2.5") + "2 2 1 2 3 0 0.5 0 0.5 0 0.25 0 0 0.5 0 -0.001 0\n" +
+                head("0.5", "10", "3.5") + "2 2 1 3 3 0 0.5 0 0.5 0.125 0.25 0 0 0.5 0 -0.001 3\n");
 }
 
 TEST_F(Frames, PackedXyzIsXyz) {
   write_extended_xyz(directory_ / "f.xyz", frames_, style_);
   {
-    XyzWriter out((directory_ / "f.gz").string(), style_, true);
+    XyzWriter out((directory_ / "f.gz").string(), style_, {.packed = true});
     for (const Frame& frame : frames_) {
       out.add(frame);
       EXPECT_FALSE(unpacked(directory_ / "f.gz").empty());  // whole as it grows
@@ -204,8 +261,9 @@ TEST_F(Frames, LargeFramesAreWhole) {
     position.insert(position.end(), {x[0], x[1], x[2]});
     std::ostringstream line;
     line.precision(9);
-    line << i << (i % 2 == 0 ? " delrin " : " delrin/top_grip ") << x[0] << ' ' << x[1] << ' ' << x[2]
-         << " 0 0.25 " << i % 7 << " 0.5 0.125 0 0 0 0 0 0 " << i << "\n";
+    line << (i % 2 == 0 ? "X " : "Cu ") << x[0] << ' ' << x[1] << ' ' << x[2] << ' ' << i
+         << (i % 2 == 0 ? " 0 delrin - " : " 1 Cu top_grip ") << "0 0.25 " << i % 7
+         << " 0.5 0.125 0 0 0 0 0 0 " << i << "\n";
     lines += line.str();
   }
   write_vtk(directory_ / "f", {frame}, style_);
