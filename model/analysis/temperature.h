@@ -15,7 +15,8 @@ namespace cuboct {
 class Thermometer {
  public:
   explicit Thermometer(const Scene& scene);
-  // Whether the scene has a temperature: it is undamped, or draws thermal velocities, and particles are free.
+  // Whether the scene has a temperature: particles are free, and it draws thermal velocities, or is one of
+  // undamped molecules.
   bool wanted() const { return wanted_; }
   double degrees() const { return degrees_; }
   double temperature(const FreeMotion& motion) const;  // K, in reduced units J; of a scene that has one

@@ -112,6 +112,11 @@ TEST(Static, RunWritesWhatARunWrites) {
   EXPECT_EQ(summary["load_steps"]["value"], 5);
   EXPECT_GT(summary["force_evaluations"]["value"].get<double>(), 10);
   EXPECT_LT(summary["grip.force"]["value"].get<double>(), -0.01);
+  const double work = summary["force_evaluations"]["value"].get<double>() *
+                      summary["particles"]["value"].get<double>() /
+                      summary["host_time"]["value"].get<double>();
+  EXPECT_NEAR(summary["speed"]["value"].get<double>(), work, 1e-3 * work);
+  EXPECT_EQ(summary["speed"]["unit"], "particles/s");
   EXPECT_EQ(summary["loading"]["value"].get<std::string>().find("static: at each load step "), 0U);
   for (const char* file : {"trace.h5", "frames.xyz", "summary.json"})
     EXPECT_FALSE(contents(out + "/" + file).empty()) << file;
@@ -121,6 +126,13 @@ TEST(Static, RunWritesWhatARunWrites) {
   EXPECT_NE(check.out.find("static: 5 load steps of 100 steps each, 0.001 of the load unbalanced at most"),
             std::string::npos)
       << check.out;
+  EXPECT_NE(check.out.find("5 load steps, each as many evaluations of forces as bring the body to rest, of "),
+            std::string::npos)
+      << check.out;
+  EXPECT_EQ(check.out.find("particle-steps"), std::string::npos) << check.out;
+  const Json resolved = Json::parse(bench.cuboct({"check", scene, "--json"}).out);
+  EXPECT_EQ(resolved["load_steps"]["value"], 5);
+  EXPECT_FALSE(resolved.contains("particle-steps") || resolved.contains("particle_steps"));
 }
 
 // A static stage, then one of motion that begins with what it left.

@@ -57,6 +57,31 @@ TEST_F(RoundsTest, RunBreaksAndReports) {
   EXPECT_EQ(nlohmann::json::parse(whole.out)["largest_damage"]["value"], 0);
 }
 
+// Stages and --from hand broken bonds on: what one stage broke the next one has.
+TEST_F(RoundsTest, StagesKeepWhatBroke) {
+  const std::string path = scene(scene_with(kGlass + kBreaks, kPulled) +
+                                 "[[stage]]\nname = \"open\"\n[[stage]]\nname = \"rest\"\nsteps = 5\n");
+  const std::string out = bench_.path("run");
+  const Answer answer = bench_.cuboct({"run", path, "--out", out, "--frames", "none", "--json"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const nlohmann::json stages = nlohmann::json::parse(answer.out)["stages"];
+  const auto damage = [](const nlohmann::json& summary) {
+    return summary["mean_damage"]["value"].get<double>();
+  };
+  EXPECT_GT(damage(stages[0]["summary"]), 0.01);
+  EXPECT_GE(damage(stages[1]["summary"]), damage(stages[0]["summary"]));
+  const auto alone = [&](const std::string& text) {
+    return bench_.cuboct({"run", scene(text), "--from", out + "/1-open", "--steps", "5", "--json"});
+  };
+  const Answer same = alone(scene_with(kGlass + kBreaks));
+  ASSERT_EQ(same.code, 0) << same.err;
+  EXPECT_EQ(damage(nlohmann::json::parse(same.out)), damage(stages[1]["summary"]));
+  const Answer other = alone(scene_with(kGlass + "fracture_energy = \"4 J/m^2\"\n"));
+  EXPECT_EQ(other.code, 2) << other.out;
+  EXPECT_TRUE(other.err.starts_with(bench_.path("scene.toml") + ":4:1: the state was left by other bonds"))
+      << other.err;
+}
+
 TEST_F(RoundsTest, WrongInputHasItsPlace) {
   const auto refused = [&](const std::string& text, const std::string& place, const std::string& what) {
     const std::string path = scene(text);

@@ -87,12 +87,14 @@ double counter(const Recorded& run, const std::string& name) {
 const std::string kLeft = "region = { shape = \"half_space\", point = \"[-8, 0, 0] mm\", normal = \"x\" }\n",
                   kRight = "region = { shape = \"half_space\", point = \"[8, 0, 0] mm\", normal = \"-x\" }\n";
 
-// A bar of 6 x 6 x 20 mm that is held at its left end.
-std::string bar(const std::string& more, const std::string& run, const std::string& rule = "") {
+// A bar of 20 mm that is held at its left end. `width`: mm.
+std::string bar(const std::string& more, const std::string& run, const std::string& rule = "",
+                int width = 6) {
   return "density = \"2.44 g/cm^3\"\npacking = { pitch = \"1 mm\" }\n"
-         "geometry = { shape = \"box\", size = \"[20, 6, 6] mm\" }\n"
-         "[rule]\nkind = \"lps\"\nyoungs_modulus = \"10 GPa\"\npoissons_ratio = 0.25\n" +
-         rule + "[[constraint]]\nname = \"left\"\nkind = \"held\"\n" + kLeft + more +
+         "geometry = { shape = \"box\", size = \"[20, " +
+         fmt::format("{0}, {0}", width) + "] mm\" }\n" +
+         "[rule]\nkind = \"lps\"\nyoungs_modulus = \"10 GPa\"\npoissons_ratio = 0.25\n" + rule +
+         "[[constraint]]\nname = \"left\"\nkind = \"held\"\n" + kLeft + more +
          "[[probe]]\nname = \"end\"\nkind = \"displacement\"\naxis = \"x\"\n" + kRight +
          "[[probe]]\nname = \"support\"\nkind = \"force\"\naxis = \"x\"\n" + kLeft + "[run]\n" + run;
 }
@@ -113,7 +115,7 @@ std::string moved(const std::string& run, const std::string& rule = "") {
 // it, and, as the body is linear, it holds half of the force's work.
 TEST(LpsStatic, ABarRestsWhereItsForcePutsItHoweverItIsLoaded) {
   double first = 0;
-  for (const int load_steps : {1, 2, 5, 20}) {
+  for (const int load_steps : {1, 2, 5}) {
     SCOPED_TRACE(load_steps);
     const Recorded at_rest = run(parse_scene(
         pulled(fmt::format("duration = \"20 us\"\nstatic = {{ load_steps = {} }}\n", load_steps)), "bar"));
@@ -121,8 +123,7 @@ TEST(LpsStatic, ABarRestsWhereItsForcePutsItHoweverItIsLoaded) {
     ASSERT_EQ(end.size(), load_steps + 1u);
     EXPECT_EQ(end.front(), 0);  // before the load
     EXPECT_EQ(curve(at_rest, "support.force").front(), 0);
-    EXPECT_EQ(at_rest.trace.bodies.front().x[0],
-              run(parse_scene(pulled("steps = 1\nstatic = true\n"), "bar")).trace.bodies.front().x[0]);
+    EXPECT_EQ(at_rest.trace.bodies.front().x, parse_scene(pulled("steps = 1\n"), "bar").body.x);
     EXPECT_NEAR(end.back(), 1.41e-5, 0.01e-5);
     if (first == 0) first = end.back();
     EXPECT_NEAR(end.back(), first, 1e-3 * first);
@@ -175,7 +176,7 @@ const std::string kBrittle = "critical_stretch = 2e-3\ndamage_width = 5e-4\n";
 // Ends pulled apart so fast that bonds give way between them.
 std::string torn(const std::string& run, const std::string& rule = kBrittle) {
   return bar("[[constraint]]\nname = \"right\"\nkind = \"moved\"\nvelocity = \"[40, 0, 0] m/s\"\n" + kRight,
-             "dt = \"auto\"\nprobe_every = 5\n" + run, rule);
+             "dt = \"auto\"\nprobe_every = 5\n" + run, rule, 4);
 }
 
 TEST(LpsStatic, GoesOnFromACheckpoint) {

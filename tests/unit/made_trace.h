@@ -43,6 +43,7 @@ inline Trace made_trace() {
                    {{-1, 0.1, 2}, {7, 8.5, 9}},
                    {{3, 0, 0}, {-3, 0, 1e9}},
                    {{1e-9, 0, 0}, {0, 0, 2}}}};
+  trace.bonds = {7, ~uint64_t{0}};
   trace.reached = Reached{"grip.force_x", "beyond", 2, -0.5, 0.25};
   trace.notes = {{"precision", "float"}, {"device 0", "a device, of some name"}, {"empty", ""}};
   trace.watched = 2;

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "hw/engine_kind.h"
 #include "hw/setup.h"
@@ -116,7 +118,7 @@ TEST(Static, EqualLoadStepsBeginWhereTheLastOneWent) {
   EXPECT_LT(ten, 3 * one);
 }
 
-// A particle lies on a plate that it only touches: the push is its weight.
+// A particle lies on a plate that it only touches: the push is its weight. Step 0 is before that.
 TEST(Static, ContactCarriesTheWeight) {
   const std::string scene =
       "units = \"reduced\"\nmass = 1.0\ngravity = [0, 0, -0.5]\n[law]\nkind = \"lj\"\nepsilon = 1.0\nsigma = "
@@ -132,8 +134,38 @@ TEST(Static, ContactCarriesTheWeight) {
   const Scene read = parse_scene(scene, "plate");
   const Recorded run = run_static(read);
   ASSERT_FALSE(run.trace.stop) << run.trace.stop->text;
+  EXPECT_NEAR(curve(run, "plate.force").value.front(), 0, 1e-3 * 0.5);
+  EXPECT_GT(run.trace.bodies.front().x[1].z(), run.trace.bodies.back().x[1].z() + 1e-3);
   EXPECT_NEAR(curve(run, "plate.force").value.back(), -0.5, 1e-3 * 0.5);
   EXPECT_NEAR(read.rule.law->force(run.trace.bodies.back().x[1].z()), 0.5, 1e-3 * 0.5);
+}
+
+// Nothing loads the pair: it stands at step 0 as it begins, and then goes where the law has no force.
+TEST(Static, WithoutLoadStepZeroIsTheBodyAsItBegins) {
+  const Scene scene = parse_scene(
+      "units = \"reduced\"\nmass = 1.0\n[law]\nkind = \"lj\"\nepsilon = 1.0\nsigma = 1.0\ncutoff = 2.5\n"
+      "[[particle]]\nposition = [0, 0, 0]\n[[particle]]\nposition = [1.3, 0, 0]\n"
+      "[run]\ndt = 0.001\nsteps = 10\nstatic = { load_steps = 1 }\n",
+      "pair");
+  const Recorded run = run_static(scene);
+  ASSERT_FALSE(run.trace.stop) << run.trace.stop->text;
+  const auto apart = [](const RealFrame& frame) { return (frame.x[1] - frame.x[0]).norm(); };
+  EXPECT_EQ(apart(run.trace.bodies.front()), 1.3);
+  EXPECT_NEAR(apart(run.trace.bodies.back()), std::pow(2, 1.0 / 6), 1e-6);
+}
+
+// A sleep is never shorter than it says.
+TEST(Static, HostTimeCountsHowTheBodyCameToRest) {
+  const Scene scene = parse_scene(bar("steps = 100\nstatic = { load_steps = 1 }\n"), "bar");
+  EngineKind kind = static_kind(scene, scene.body, 1, 1);
+  constexpr std::chrono::milliseconds kSleep{20};
+  kind.make = [&scene, kSleep](CheckpointReader*, bool) {
+    std::this_thread::sleep_for(kSleep);
+    return std::make_unique<StaticEngine>(scene, scene.body, 1, 1);
+  };
+  RunRequest request;
+  request.steps = 0;
+  EXPECT_GE(record(scene, kind, request).trace.seconds, 0.02);
 }
 
 TEST(Static, ABodyThatFallsFindsNoRest) {

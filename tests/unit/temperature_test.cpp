@@ -103,6 +103,35 @@ TEST(Temperature, IsMeasuredInUndampedAndInHotScenesAlone) {
   EXPECT_EQ(in_doubles(parse_scene(scene_of(two + damped), "s.toml")).curve("temperature"), nullptr);
 }
 
+// What is heavier than a molecule stands for matter whose heat lies within it, unless the scene draws
+// velocities; so do points of a peridynamic solid.
+TEST(Temperature, IsOfMoleculesAlone) {
+  const auto wanted = [](const std::string& mass, const std::string& more = "") {
+    return Thermometer(
+               parse_scene("mass = \"" + mass +
+                               "\"\n[law]\nkind = \"lj\"\nepsilon = \"1e-21 J\"\nsigma = \"3 "
+                               "angstrom\"\ncutoff = \"8 angstrom\"\n"
+                               "[[particle]]\nposition = \"[0, 0, 0] angstrom\"\n[[particle]]\nposition = "
+                               "\"[4, 0, 0] angstrom\"\n[run]\ndt = \"1 fs\"\nsteps = 1\n" +
+                               more,
+                           "s.toml"))
+        .wanted();
+  };
+  EXPECT_TRUE(wanted("1e-25 kg"));
+  EXPECT_TRUE(wanted("9e-21 kg"));
+  EXPECT_FALSE(wanted("1.1e-20 kg"));
+  EXPECT_FALSE(wanted("1e-6 kg"));
+  EXPECT_TRUE(wanted("1e-6 kg", "[[velocity]]\nthermal_speed = \"1 m/s\"\nseed = 1\n"));
+  EXPECT_FALSE(
+      Thermometer(
+          parse_scene(
+              "density = \"2 g/cm^3\"\npacking = { pitch = \"4 angstrom\" }\n"
+              "geometry = { shape = \"box\", size = \"[20, 20, 20] angstrom\" }\n[rule]\nkind = \"lps\"\n"
+              "youngs_modulus = \"70 GPa\"\npoissons_ratio = 0.3\n[run]\ndt = \"auto\"\nsteps = 1\n",
+              "glass.toml"))
+          .wanted());
+}
+
 // 256 particles of kT = 0.2 J have 765 degrees: T is 0.2 J but for sqrt(2/765) = 5 % of scatter.
 TEST(Temperature, OfADrawIsThatOfItsThermalEnergy) {
   const Scene scene = read_scene(std::string(CUBOCT_SOURCE_DIR) + "/scenes/lj_block.toml");

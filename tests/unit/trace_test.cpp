@@ -82,6 +82,7 @@ void expect_equal(const Trace& a, const Trace& b) {
   EXPECT_EQ(a.counters, b.counters);
   EXPECT_EQ(a.notes, b.notes);
   ASSERT_EQ(a.bodies.size(), b.bodies.size());
+  EXPECT_EQ(a.bonds, b.bonds);
   for (size_t k = 0; k < a.bodies.size(); ++k) {
     EXPECT_EQ(a.bodies[k].step, b.bodies[k].step);
     EXPECT_EQ(a.bodies[k].x, b.bodies[k].x);
